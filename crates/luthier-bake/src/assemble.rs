@@ -1,0 +1,103 @@
+//! From tiles to atlases.
+
+use luthier_lut::{Atlas, AtlasLayout, ColorMode, Image, LayerRecord, TableKind, Tile};
+use luthier_material::Material;
+
+use crate::BakeError;
+use crate::graph::{Observer, Results};
+use crate::plan::{ImageReader, Plan, Tiles, color_mode};
+use crate::settings::Settings;
+
+/// What a set of materials needs at run time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bake {
+    /// At most one atlas of each kind, in binding order.
+    pub atlases: Vec<Atlas>,
+    /// Each material, in the order given.
+    pub materials: Vec<BakedMaterial>,
+}
+
+/// One material of a bake.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BakedMaterial {
+    /// How its tables came by their colour.
+    pub color: ColorMode,
+    /// Its layers from the top down, with the tiles that serve them.
+    pub records: Vec<LayerRecord>,
+}
+
+/// Widest texture that atlases of several columns are laid out for; any device of the last decade has it.
+const MAX_WIDTH: u32 = 2048;
+
+/// Tallest texture of one column.
+const MAX_HEIGHT: u32 = 2048;
+
+/// Bakes all tables of a set of materials. `read_image` fetches thickness maps.
+///
+/// # Errors
+/// See [`BakeError`]. Nothing depends on the number of threads of the current rayon pool but the time it takes.
+pub fn bake(materials: &[Material], read_image: ImageReader<'_>, observer: &dyn Observer) -> Result<Bake, BakeError> {
+    if materials.is_empty() {
+        return Err(BakeError::Empty);
+    }
+    for (i, second) in materials.iter().enumerate() {
+        if let Some(first) = materials[..i].iter().find(|m| m.name == second.name) {
+            return Err(BakeError::DuplicateName {
+                name: second.name.clone(),
+                first: first.source.clone(),
+                second: second.source.clone(),
+            });
+        }
+    }
+    let Plan { settings, graph, tiles, records } = Plan::new(materials, read_image)?;
+    let results = graph.run(observer);
+    let atlases = TableKind::ALL
+        .into_iter()
+        .zip(&tiles)
+        .filter(|(_, tiles)| !tiles.tiles.is_empty())
+        .map(|(kind, tiles)| atlas(kind, tiles, &settings, &results))
+        .collect();
+    let materials =
+        materials.iter().zip(records).map(|(m, records)| BakedMaterial { color: color_mode(m), records }).collect();
+    Ok(Bake { atlases, materials })
+}
+
+fn atlas(kind: TableKind, tiles: &Tiles, settings: &Settings, results: &Results) -> Atlas {
+    let (x, y, format) = match kind {
+        TableKind::Fresnel => (&settings.fresnel.0, None, settings.fresnel.1),
+        TableKind::Distribution => {
+            (&settings.distribution.0[0], Some(&settings.distribution.0[1]), settings.distribution.1)
+        }
+        TableKind::Fgd => (&settings.fgd.0[0], Some(&settings.fgd.0[1]), settings.fgd.1),
+        TableKind::Phase => (&settings.phase.0, None, settings.phase.1),
+        TableKind::Thickness => (&settings.thickness.0[0], Some(&settings.thickness.0[1]), settings.thickness.1),
+    };
+    let apron = u32::from(kind == TableKind::Thickness);
+    let count = tiles.tiles.len() as u32;
+    let mut layout = AtlasLayout { x: x.clone(), y: y.cloned(), apron, columns: 1, tiles: count };
+    let [tile_width, tile_height] = layout.tile_size();
+    let rows = (MAX_HEIGHT / tile_height).max(1);
+    layout.columns = count.div_ceil(rows).min((MAX_WIDTH / tile_width).max(1));
+
+    let channels = tiles.tiles.first().map_or(1, |(_, key)| results.tile(*key).truth.channels);
+    let [width, height] = layout.size();
+    let mut truth = Image::zeros(width, height, channels);
+    let mut entries = Vec::with_capacity(tiles.tiles.len());
+    for (index, (name, key)) in tiles.tiles.iter().enumerate() {
+        let data = results.tile(*key);
+        let [ox, oy] = layout.origin(index as u32);
+        for j in 0..data.truth.height {
+            for i in 0..data.truth.width {
+                truth.texel_mut(ox + i, oy + j).copy_from_slice(data.truth.texel(i, j));
+            }
+        }
+        entries.push(Tile {
+            name: name.clone(),
+            model: data.model.clone(),
+            input_hash: key.to_string(),
+            error: data.error.clone(),
+        });
+    }
+    let texels = format.quantise(&truth);
+    Atlas { kind, layout, format, tiles: entries, truth, texels }
+}

@@ -1,0 +1,180 @@
+//! FGD-infinity tiles: the energy that one rough interface sends back, all bounces of its micro-surface included.
+
+use luthier_lut::{Axis, Comparison, Image, TableKind, TexelFormat, WeightBits, measure_scan};
+use luthier_optics::Rgb;
+use luthier_optics::albedo::{FacetStatistics, ReflectanceCurves};
+use luthier_optics::color::{Color, WavelengthNode, luminance};
+use luthier_optics::interface::Interface;
+use luthier_optics::stack::Distribution;
+use rayon::prelude::*;
+use serde_json::{Value, json};
+
+use crate::facet_grid::{CrossedJob, DOMAIN_ALPHA, DOMAIN_COS_THETA, FacetGridJob};
+use crate::graph::Inputs;
+use crate::job::{Job, TileData, lone_tile};
+use crate::json;
+use crate::smooth::savitzky_golay;
+
+/// Every so many of the 5 nm nodes are kept where spectra are smooth.
+const STRIDE: usize = 6;
+
+/// The same for films, whose spectra oscillate.
+const FILM_STRIDE: usize = 2;
+
+#[derive(Debug, Clone)]
+pub(crate) struct FgdJob {
+    pub(crate) interface: Interface,
+    /// Whether light can cross: false for conductors.
+    pub(crate) transparent: bool,
+    pub(crate) distribution: Distribution,
+    pub(crate) color: Color,
+    /// cos_theta and alpha.
+    pub(crate) axes: [Axis; 2],
+    pub(crate) format: TexelFormat,
+}
+
+impl FgdJob {
+    pub(crate) fn inputs(&self) -> Value {
+        json!({
+            "interface": json::interface(&self.interface),
+            "transparent": self.transparent,
+            "distribution": self.distribution.name(),
+            "color": json::color(&self.color),
+            "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
+            "format": self.format.name(),
+        })
+    }
+
+    pub(crate) fn dependencies(&self) -> Vec<Job> {
+        let mut jobs = vec![self.facet_grid()];
+        jobs.extend(self.crossed());
+        jobs
+    }
+
+    fn facet_grid(&self) -> Job {
+        Job::FacetGrid(FacetGridJob { distribution: self.distribution, axes: self.axes.clone() })
+    }
+
+    fn crossed(&self) -> Option<Job> {
+        self.transparent.then(|| {
+            Job::Crossed(CrossedJob {
+                interface: self.interface.clone(),
+                color: self.color,
+                distribution: self.distribution,
+                axes: self.axes.clone(),
+            })
+        })
+    }
+
+    pub(crate) fn run(&self, inputs: &Inputs<'_>) -> TileData {
+        let [x, y] = &self.axes;
+        let grid = inputs.facet_grid(&self.facet_grid());
+        let crossed = self.crossed().map(|job| inputs.crossed(&job));
+        let curves = Curves::new(&self.interface, &self.color);
+        let crossed_at = |u| crossed.map_or(0.0, |c| c.at(u));
+
+        let bounces: Vec<Bounces> = grid.nodes.par_iter().map(|s| curves.bounces(s)).collect();
+        let mut later: [Vec<f64>; 3] = [0, 1, 2].map(|c: usize| bounces.iter().map(|b| b.later_share[c]).collect());
+        for channel in &mut later {
+            savitzky_golay(channel, x.size as usize, y.size as usize);
+        }
+        let mut truth = Image::zeros(x.size, y.size, 4);
+        for (i, (statistics, b)) in grid.nodes.iter().zip(&bounces).enumerate() {
+            let never_crossed: Rgb = [0, 1, 2].map(|c: usize| b.first[c] + statistics.remaining() * later[c][i]);
+            let (column, row) = (i as u32 % x.size, i as u32 / x.size);
+            let back = crossed_at([x.node_coordinate(f64::from(column)), y.node_coordinate(f64::from(row))]);
+            let [r, g, b] = never_crossed.map(|c| (c + back) as f32);
+            truth.texel_mut(column, row).copy_from_slice(&[r, g, b, luminance(never_crossed) as f32]);
+        }
+
+        let atlas = lone_tile(TableKind::Fgd, &[x, y], self.format, &truth);
+        let probes: Vec<[f64; 4]> = grid
+            .probes
+            .par_iter()
+            .map(|statistics| {
+                let b = curves.bounces(statistics);
+                let [r, g, b] = [0, 1, 2].map(|c: usize| b.first[c] + statistics.remaining() * b.later_share[c]);
+                [r, g, b, luminance([r, g, b])]
+            })
+            .collect();
+        let probe_at = |u: [f64; 2]| {
+            let [i, j] = [0, 1].map(|k: usize| {
+                let t = (u[k] - grid.scan.from[k]) / (grid.scan.to[k] - grid.scan.from[k]);
+                (t * f64::from(grid.scan.points[k])) as usize
+            });
+            probes[j * grid.scan.points[0] as usize + i]
+        };
+        let mut error = measure_scan(
+            &grid.scan,
+            |u| {
+                let [r, g, b, a] = probe_at(u);
+                let back = crossed_at(u);
+                let sampled = atlas.sample(0, [x.decode(u[0]), y.decode(u[1])], WeightBits::Fixed(8));
+                Comparison { expected: [r + back, g + back, b + back, a], sampled }
+            },
+            |u| vec![x.decode(u[0]), y.decode(u[1])],
+        );
+        // The crossed part has an error of its own; the worst of both may meet.
+        println!(
+            "PROBE {:?} scan {:.2e} crossed {:.2e}",
+            self.distribution,
+            error.max_abs_err,
+            crossed.map_or(0.0, |c| c.max_abs_err)
+        );
+        error.max_abs_err += crossed.map_or(0.0, |c| c.max_abs_err);
+        let model = format!(
+            "directional albedo with all bounces, height-correlated Smith, {}; errors for cos_theta >= {DOMAIN_COS_THETA}, \
+             alpha >= {DOMAIN_ALPHA}",
+            self.distribution.name()
+        );
+        TileData { model, truth, error }
+    }
+}
+
+/// Reflectance curves of an interface at the wavelengths of a colour mode.
+struct Curves {
+    weights: Vec<Rgb>,
+    curves: ReflectanceCurves,
+}
+
+/// Albedo of the first bounce, and share of the rest that comes out in the end.
+struct Bounces {
+    first: Rgb,
+    later_share: Rgb,
+}
+
+impl Curves {
+    fn new(interface: &Interface, color: &Color) -> Self {
+        let (weights, interfaces): (Vec<_>, Vec<_>) =
+            interface.at_nodes(&nodes(interface, color)).nodes.into_iter().unzip();
+        let curves = ReflectanceCurves::new(interfaces.len(), |k, cos| interfaces[k].reflectance(cos));
+        Self { weights, curves }
+    }
+
+    fn bounces(&self, statistics: &FacetStatistics) -> Bounces {
+        Bounces {
+            first: self.rgb(&statistics.single_scattering(&self.curves)),
+            later_share: self.rgb(&statistics.later_share(&self.curves)),
+        }
+    }
+
+    fn rgb(&self, values: &[f64]) -> Rgb {
+        let mut rgb = [0.0; 3];
+        for (weights, value) in self.weights.iter().zip(values) {
+            for (c, weight) in weights.iter().enumerate() {
+                rgb[c] += weight * value;
+            }
+        }
+        rgb
+    }
+}
+
+fn nodes(interface: &Interface, color: &Color) -> Vec<WavelengthNode> {
+    color.coarse_nodes(if interface.films.is_empty() { STRIDE } else { FILM_STRIDE })
+}
+
+/// Reflectance curve of an interface, averaged over wavelengths by luminance.
+pub(crate) fn wavelength_mean(interface: &Interface, color: &Color) -> ReflectanceCurves {
+    let sampled = interface.at_nodes(&nodes(interface, color));
+    ReflectanceCurves::new(1, |_, cos| luminance(sampled.rgb(cos)).clamp(0.0, 1.0))
+}

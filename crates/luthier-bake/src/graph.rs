@@ -1,0 +1,101 @@
+//! The graph of jobs and its execution.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use crate::facet_grid::{CrossedGrid, FacetGrid};
+use crate::job::{Artefact, Job, JobKind, Key, TileData};
+
+/// Told what happens, from any thread. It cannot change what is computed.
+pub trait Observer: Sync {
+    /// The number of jobs is known.
+    fn planned(&self, jobs: usize);
+    /// A job is done. Jobs of one batch run side by side.
+    fn finished(&self, kind: JobKind);
+    /// All jobs of one kind in one batch are about to run, or have run.
+    fn batch(&self, kind: JobKind, running: bool);
+}
+
+/// An observer that does nothing.
+#[derive(Debug, Clone, Copy)]
+pub struct Silent;
+
+impl Observer for Silent {
+    fn planned(&self, _: usize) {}
+    fn finished(&self, _: JobKind) {}
+    fn batch(&self, _: JobKind, _: bool) {}
+}
+
+/// Distinct jobs, dependencies before dependants.
+#[derive(Debug, Default)]
+pub(crate) struct Graph {
+    jobs: BTreeMap<JobKind, BTreeMap<Key, Job>>,
+}
+
+/// Results by key.
+#[derive(Debug, Default)]
+pub(crate) struct Results(BTreeMap<Key, Artefact>);
+
+/// The results that a running job may read: those of its dependencies.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Inputs<'a>(&'a Results);
+
+impl Graph {
+    /// Adds a job and all that it needs; a job that is already there is not added again.
+    pub(crate) fn add(&mut self, job: Job) -> Key {
+        for dependency in job.dependencies() {
+            self.add(dependency);
+        }
+        let key = job.key();
+        self.jobs.entry(job.kind()).or_default().entry(key).or_insert(job);
+        key
+    }
+
+    /// Runs everything on the rayon pool. Kinds run in their order, which puts dependencies first; jobs of one kind run side
+    /// by side.
+    pub(crate) fn run(self, observer: &dyn Observer) -> Results {
+        observer.planned(self.jobs.values().map(BTreeMap::len).sum());
+        let mut results = Results::default();
+        for (kind, jobs) in self.jobs {
+            observer.batch(kind, true);
+            let done: Vec<(Key, Artefact)> = jobs
+                .into_par_iter()
+                .map(|(key, job)| {
+                    let artefact = job.run(&Inputs(&results));
+                    observer.finished(kind);
+                    (key, artefact)
+                })
+                .collect();
+            results.0.extend(done);
+            observer.batch(kind, false);
+        }
+        results
+    }
+}
+
+impl Results {
+    /// The tile of a planned job.
+    pub(crate) fn tile(&self, key: Key) -> &TileData {
+        match self.0.get(&key) {
+            Some(Artefact::Tile(tile)) => tile,
+            _ => unreachable!("every planned tile job has run"),
+        }
+    }
+}
+
+impl<'a> Inputs<'a> {
+    pub(crate) fn facet_grid(self, job: &Job) -> &'a FacetGrid {
+        match self.0.0.get(&job.key()) {
+            Some(Artefact::FacetGrid(grid)) => grid,
+            _ => unreachable!("facet grids run before the tiles that need them"),
+        }
+    }
+
+    pub(crate) fn crossed(self, job: &Job) -> &'a CrossedGrid {
+        match self.0.0.get(&job.key()) {
+            Some(Artefact::Crossed(grid)) => grid,
+            _ => unreachable!("crossed grids run before the tiles that need them"),
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! From materials to tables: a graph of pure jobs.
+//!
+//! [`bake`] plans one job per distinct table tile, runs the graph on the rayon pool, and assembles one atlas per kind with
+//! the layer records that refer to its tiles. A job is a pure function of its inputs; its [`Key`] is the hash of these, so
+//! equal interfaces of different materials share a tile, and the bytes depend on nothing else: not on threads, build
+//! profile or platform.
+//!
+//! Simplifications: interfaces are tabulated at the nominal thickness of their films; anisotropic surfaces enter with the
+//! geometric mean of their slope parameters.
+//!
+//! Out of scope: reading material files, encoding textures, shaders, the command line.
+
+mod assemble;
+mod distribution;
+mod error;
+mod facet_grid;
+mod fgd;
+mod fresnel;
+mod graph;
+mod job;
+mod json;
+mod phase;
+mod plan;
+mod records;
+mod settings;
+mod smooth;
+mod thickness;
+
+pub use assemble::{Bake, BakedMaterial, bake};
+pub use error::BakeError;
+pub use graph::{Observer, Silent};
+pub use job::{JobKind, Key};
+pub use plan::ImageReader;

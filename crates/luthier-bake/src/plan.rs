@@ -1,0 +1,159 @@
+//! From materials to jobs: which tile serves which layer.
+
+use luthier_lut::{ColorMode, Image, LayerRecord, TableKind};
+use luthier_material::{ColorSetting, FilmVariation, Material, VariationSource};
+use luthier_optics::color::Color;
+use luthier_optics::interface::Interface;
+use luthier_optics::stack::{Base, Film, Layer};
+
+use crate::BakeError;
+use crate::distribution::DistributionJob;
+use crate::fgd::FgdJob;
+use crate::fresnel::FresnelJob;
+use crate::graph::Graph;
+use crate::job::{Job, Key};
+use crate::phase::PhaseJob;
+use crate::records::records;
+use crate::settings::Settings;
+use crate::thickness::{Relief, ThicknessJob};
+
+/// The tiles of one kind, in the order of their first use.
+#[derive(Debug, Default)]
+pub(crate) struct Tiles {
+    pub(crate) tiles: Vec<(String, Key)>,
+}
+
+impl Tiles {
+    fn tile(&mut self, key: Key, name: impl FnOnce() -> String) -> u32 {
+        let index = self.tiles.iter().position(|(_, k)| *k == key).unwrap_or_else(|| {
+            self.tiles.push((name(), key));
+            self.tiles.len() - 1
+        });
+        index as u32
+    }
+}
+
+/// Everything to compute for a set of materials.
+#[derive(Debug)]
+pub(crate) struct Plan {
+    pub(crate) settings: Settings,
+    pub(crate) graph: Graph,
+    /// One per table kind, in binding order.
+    pub(crate) tiles: [Tiles; 5],
+    /// Layer records per material, tiles filled in.
+    pub(crate) records: Vec<Vec<LayerRecord>>,
+}
+
+/// How the tables of a material come by their colour: spectrally, unless its file asks otherwise.
+pub(crate) fn color_mode(material: &Material) -> ColorMode {
+    match material.bake.color {
+        Some(ColorSetting::ThreeWavelengths) => ColorMode::ThreeWavelengths,
+        Some(ColorSetting::Spectral) | None => ColorMode::Spectral,
+    }
+}
+
+/// Reads an image that a material names: material file, path as written there.
+pub type ImageReader<'a> = &'a dyn Fn(&str, &str) -> Result<Image, String>;
+
+impl Plan {
+    pub(crate) fn new(materials: &[Material], read_image: ImageReader<'_>) -> Result<Self, BakeError> {
+        let settings = Settings::of(materials)?;
+        let mut plan = Self { settings, graph: Graph::default(), tiles: Default::default(), records: Vec::new() };
+        for material in materials {
+            let records = plan.material(material, read_image)?;
+            plan.records.push(records);
+        }
+        Ok(plan)
+    }
+
+    fn material(&mut self, material: &Material, read: ImageReader<'_>) -> Result<Vec<LayerRecord>, BakeError> {
+        let wavelengths_nm = material.bake.wavelengths_nm();
+        let color = match color_mode(material) {
+            ColorMode::Spectral => Color::Spectral,
+            ColorMode::ThreeWavelengths => Color::ThreeWavelengths(wavelengths_nm),
+        };
+        let mut records = records(&material.stack, wavelengths_nm);
+        for (i, (record, layer)) in records.iter_mut().zip(&material.stack.layers).enumerate() {
+            let Some(interface) = Interface::of(&material.stack, i) else { continue };
+            let name = || format!("{}/{i}", material.name);
+            self.interface(record, layer, interface, color, &name);
+            let Some(film) = layer.films.first() else { continue };
+            self.phase(record, film, wavelengths_nm, &name);
+            if let Some(variation) = material.layers.get(i).and_then(|l| l.film_variation.as_ref()) {
+                self.thickness(record, film, variation, material, read, &name)?;
+            }
+        }
+        Ok(records)
+    }
+
+    fn interface(
+        &mut self,
+        record: &mut LayerRecord,
+        layer: &Layer,
+        interface: Interface,
+        color: Color,
+        name: &dyn Fn() -> String,
+    ) {
+        let (axis, format) = self.settings.fresnel.clone();
+        let job = FresnelJob { interface: interface.clone(), color, axis, format };
+        record.fresnel_tile = Some(self.add(TableKind::Fresnel, Job::Fresnel(job), name));
+
+        let distribution = layer.surface.distribution;
+        let (axes, format) = self.settings.distribution.clone();
+        let job = Job::Distribution(DistributionJob { distribution, axes, format });
+        let tile = self.add(TableKind::Distribution, job, &|| distribution.name().to_owned());
+        record.distribution_tile = Some(tile);
+
+        let (axes, format) = self.settings.fgd.clone();
+        let transparent = matches!(layer.base, Base::Dielectric { .. });
+        let job = FgdJob { interface, transparent, distribution, color, axes, format };
+        record.fgd_tile = Some(self.add(TableKind::Fgd, Job::Fgd(job), name));
+    }
+
+    fn phase(&mut self, record: &mut LayerRecord, film: &Film, wavelengths_nm: [f64; 3], name: &dyn Fn() -> String) {
+        let (axis, format) = self.settings.phase.clone();
+        let thickness_max_nm = film.thickness.max_nm;
+        let job = PhaseJob { film: film.ior.clone(), thickness_max_nm, wavelengths_nm, axis, format };
+        record.phase_tile = Some(self.add(TableKind::Phase, Job::Phase(job), name));
+    }
+
+    fn thickness(
+        &mut self,
+        record: &mut LayerRecord,
+        film: &Film,
+        variation: &FilmVariation,
+        material: &Material,
+        read: ImageReader<'_>,
+        name: &dyn Fn() -> String,
+    ) -> Result<(), BakeError> {
+        let relief = match &variation.source {
+            VariationSource::Noise { seed, frequency, octaves } => {
+                Relief::Noise { seed: *seed, frequency: *frequency, octaves: *octaves }
+            }
+            VariationSource::Image { path } => {
+                let image = read(&material.source, path).map_err(|reason| BakeError::Map {
+                    material: material.source.clone(),
+                    path: path.clone(),
+                    reason,
+                })?;
+                Relief::Image(image)
+            }
+        };
+        let (axes, format) = self.settings.thickness.clone();
+        let job = ThicknessJob {
+            relief,
+            min_nm: film.thickness.min_nm,
+            max_nm: film.thickness.max_nm,
+            extent_um: variation.extent_um,
+            axes,
+            format,
+        };
+        record.thickness_tile = Some(self.add(TableKind::Thickness, Job::Thickness(job), name));
+        Ok(())
+    }
+
+    fn add(&mut self, kind: TableKind, job: Job, name: &dyn Fn() -> String) -> u32 {
+        let key = self.graph.add(job);
+        self.tiles[kind.binding() as usize].tile(key, name)
+    }
+}

@@ -1,0 +1,130 @@
+//! One set of table settings for all materials of a bake.
+
+use std::f64::consts::FRAC_PI_2;
+use std::fmt::Debug;
+
+use luthier_layers::elek;
+use luthier_lut::{Axis, Mapping, TexelFormat};
+use luthier_material::{AlphaMapping, BakeSettings, DistributionMapping, Format, FresnelMapping, Material};
+
+use crate::BakeError;
+
+/// Axes and formats of every table kind, after defaults.
+#[derive(Debug, Clone)]
+pub(crate) struct Settings {
+    pub(crate) fresnel: (Axis, TexelFormat),
+    pub(crate) distribution: ([Axis; 2], TexelFormat),
+    pub(crate) fgd: ([Axis; 2], TexelFormat),
+    pub(crate) phase: (Axis, TexelFormat),
+    pub(crate) thickness: ([Axis; 2], TexelFormat),
+}
+
+impl Settings {
+    /// What the materials ask for, where they agree.
+    ///
+    /// # Errors
+    /// [`BakeError::Conflict`] where they do not.
+    pub(crate) fn of(materials: &[Material]) -> Result<Self, BakeError> {
+        let ask = Ask(materials);
+        let mapping = ask.one("bake.fresnel.mapping", |b| b.fresnel.mapping)?.unwrap_or(FresnelMapping::Cosine);
+        let size = ask.one("bake.fresnel.size", |b| b.fresnel.size)?.unwrap_or(128);
+        let row = match mapping {
+            FresnelMapping::Cosine => axis("cos_theta", "", [0.0, 1.0], size, Mapping::Linear),
+            FresnelMapping::SqrtCosine => axis("cos_theta", "", [0.0, 1.0], size, Mapping::Power { exponent: 2.0 }),
+            FresnelMapping::Theta => axis("theta", "rad", [0.0, FRAC_PI_2], size, Mapping::Linear),
+        };
+        let fresnel = (row, ask.format("bake.fresnel.format", |b| b.fresnel.format, TexelFormat::Rgba16Float)?);
+
+        let size = ask.one("bake.distribution.size", |b| b.distribution.size)?.unwrap_or([512, 512]);
+        let exponent = ask.one("bake.distribution.exponent", |b| b.distribution.exponent)?.unwrap_or(8.0);
+        let mapping = ask.one("bake.distribution.mapping", |b| b.distribution.mapping)?;
+        let angle = match mapping.unwrap_or(DistributionMapping::Power) {
+            DistributionMapping::Power => {
+                axis("theta_h", "rad", [0.0, FRAC_PI_2], size[0], Mapping::Power { exponent })
+            }
+            DistributionMapping::Linear => axis("theta_h", "rad", [0.0, FRAC_PI_2], size[0], Mapping::Linear),
+            DistributionMapping::CosPower => {
+                axis("cos_theta_h", "", [0.0, 1.0], size[0], Mapping::Power { exponent: 1.0 / exponent })
+            }
+        };
+        let alpha_mapping = ask.one("bake.distribution.alpha_mapping", |b| b.distribution.alpha_mapping)?;
+        let slope = match alpha_mapping.unwrap_or(AlphaMapping::Log) {
+            AlphaMapping::Log => axis("alpha", "", [elek::ALPHA_MIN, 1.0], size[1], Mapping::Logarithmic),
+            AlphaMapping::Linear => axis("alpha", "", [0.0, 1.0], size[1], Mapping::Linear),
+        };
+        let format = ask.format("bake.distribution.format", |b| b.distribution.format, TexelFormat::R16Float)?;
+        let distribution = ([angle, slope], format);
+
+        let size = ask.one("bake.fgd.size", |b| b.fgd.size)?.unwrap_or([64, 64]);
+        let fgd = (
+            [
+                axis("cos_theta", "", [0.0, 1.0], size[0], Mapping::Power { exponent: 2.0 }),
+                axis("alpha", "", [0.0, 1.0], size[1], Mapping::Power { exponent: 3.0 }),
+            ],
+            ask.format("bake.fgd.format", |b| b.fgd.format, TexelFormat::Rgba16Float)?,
+        );
+
+        let size = ask.one("bake.phase.size", |b| b.phase.size)?.unwrap_or(256);
+        let phase = (
+            axis("normalised_thickness", "", [0.0, 1.0], size, Mapping::Linear),
+            ask.format("bake.phase.format", |b| b.phase.format, TexelFormat::Rgba16Float)?,
+        );
+
+        let size = ask.one("bake.thickness.size", |b| b.thickness.size)?.unwrap_or(256);
+        let thickness = (
+            ["u", "v"].map(|name| axis(name, "", [0.0, 1.0], size, Mapping::Periodic)),
+            ask.format("bake.thickness.format", |b| b.thickness.format, TexelFormat::Rgba16Float)?,
+        );
+        Ok(Self { fresnel, distribution, fgd, phase, thickness })
+    }
+}
+
+fn axis(quantity: &str, unit: &str, [min, max]: [f64; 2], size: u32, mapping: Mapping) -> Axis {
+    Axis { quantity: quantity.to_owned(), unit: unit.to_owned(), min, max, size, mapping }
+}
+
+/// The materials, asked for one setting at a time.
+struct Ask<'a>(&'a [Material]);
+
+impl Ask<'_> {
+    /// The value that all materials which give one agree on.
+    fn one<T: PartialEq + Debug>(
+        &self,
+        setting: &'static str,
+        get: impl Fn(&BakeSettings) -> Option<T>,
+    ) -> Result<Option<T>, BakeError> {
+        let mut first: Option<(&Material, T)> = None;
+        for material in self.0 {
+            let Some(value) = get(&material.bake) else { continue };
+            match &first {
+                None => first = Some((material, value)),
+                Some((other, expected)) if *expected != value => {
+                    return Err(BakeError::Conflict {
+                        setting,
+                        first: other.source.clone(),
+                        first_value: format!("{expected:?}"),
+                        second: material.source.clone(),
+                        second_value: format!("{value:?}"),
+                    });
+                }
+                Some(_) => {}
+            }
+        }
+        Ok(first.map(|(_, value)| value))
+    }
+
+    fn format(
+        &self,
+        setting: &'static str,
+        get: impl Fn(&BakeSettings) -> Option<Format>,
+        default: TexelFormat,
+    ) -> Result<TexelFormat, BakeError> {
+        Ok(self.one(setting, get)?.map_or(default, |format| match format {
+            Format::R16Float => TexelFormat::R16Float,
+            Format::R32Float => TexelFormat::R32Float,
+            Format::Rgba8Unorm => TexelFormat::Rgba8Unorm,
+            Format::Rgba16Float => TexelFormat::Rgba16Float,
+            Format::Rgba32Float => TexelFormat::Rgba32Float,
+        }))
+    }
+}

@@ -1,0 +1,166 @@
+//! Group 0, as the manifest lists it.
+
+use luthier_lut::{BindingEntry, TableKind, TexelFormat, material_buffer};
+use wgpu::{BindGroupLayoutEntry, BindingType, ShaderStages};
+
+use crate::context::Context;
+use crate::{Artefacts, GpuError};
+
+/// One binding that a shader names.
+#[derive(Debug)]
+enum Resource {
+    Table(wgpu::TextureView, TexelFormat),
+    Sampler(wgpu::Sampler),
+    Materials,
+}
+
+/// The resources of group 0 and their layout. The material buffer is given per bind group.
+#[derive(Debug)]
+pub(crate) struct ShaderBindings {
+    resources: Vec<(u32, Resource)>,
+    pub(crate) layout: wgpu::BindGroupLayout,
+}
+
+impl ShaderBindings {
+    /// Uploads the tables that the shader names.
+    pub(crate) fn new(context: &Context, artefacts: &Artefacts, wgsl: &str) -> Result<Self, GpuError> {
+        let mut resources = Vec::new();
+        // A form binds what its text names: the full form needs no table.
+        for entry in artefacts.manifest.bindings.iter().filter(|entry| wgsl.contains(&entry.name)) {
+            resources.push((entry.binding, resource(context, artefacts, entry)?));
+        }
+        let entries: Vec<_> = resources.iter().map(|(binding, r)| layout_entry(*binding, r)).collect();
+        let layout = context.guarded("bindings of the manifest", || {
+            context.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some("luthier"),
+                entries: &entries,
+            })
+        })?;
+        Ok(Self { resources, layout })
+    }
+
+    /// Group 0 with these words as the material buffer.
+    pub(crate) fn group(&self, context: &Context, materials: &[[f32; 4]]) -> Result<wgpu::BindGroup, GpuError> {
+        context.guarded("material buffer", || {
+            let buffer = context.upload("luthier_materials", bytemuck::cast_slice(materials));
+            let entries: Vec<_> = self
+                .resources
+                .iter()
+                .map(|(binding, resource)| wgpu::BindGroupEntry {
+                    binding: *binding,
+                    resource: match resource {
+                        Resource::Table(view, _) => wgpu::BindingResource::TextureView(view),
+                        Resource::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
+                        Resource::Materials => buffer.as_entire_binding(),
+                    },
+                })
+                .collect();
+            context.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("luthier"),
+                layout: &self.layout,
+                entries: &entries,
+            })
+        })
+    }
+}
+
+/// The material buffer of a bake.
+pub(crate) fn material_words(artefacts: &Artefacts) -> Vec<[f32; 4]> {
+    let layers: Vec<_> = artefacts.manifest.materials.iter().map(|m| m.layers.as_slice()).collect();
+    material_buffer(&layers)
+}
+
+fn resource(context: &Context, artefacts: &Artefacts, entry: &BindingEntry) -> Result<Resource, GpuError> {
+    let unknown = || GpuError::Binding { name: entry.name.clone(), resource: entry.resource.clone() };
+    match entry.resource.as_str() {
+        "buffer" => Ok(Resource::Materials),
+        "sampler" => {
+            let sampler = context.guarded("sampler", || {
+                context.device.create_sampler(&wgpu::SamplerDescriptor {
+                    label: Some(&entry.name),
+                    mag_filter: wgpu::FilterMode::Linear,
+                    min_filter: wgpu::FilterMode::Linear,
+                    ..Default::default()
+                })
+            })?;
+            Ok(Resource::Sampler(sampler))
+        }
+        "texture_2d<f32>" => {
+            let named = |kind: &TableKind| entry.name.strip_prefix("luthier_") == Some(kind.name());
+            let kind = TableKind::ALL.into_iter().find(named).ok_or_else(unknown)?;
+            table(context, artefacts, kind)
+        }
+        _ => Err(unknown()),
+    }
+}
+
+fn table(context: &Context, artefacts: &Artefacts, kind: TableKind) -> Result<Resource, GpuError> {
+    let texels = artefacts.table(kind).ok_or(GpuError::MissingTexels { kind })?;
+    let (width, height) = (texels.width, texels.height);
+    let limit = context.device.limits().max_texture_dimension_2d;
+    if width > limit || height > limit {
+        return Err(GpuError::TextureTooLarge { kind, width, height, limit });
+    }
+    let view = context.guarded(kind.name(), || {
+        let texture = context.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(kind.name()),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: texture_format(texels.format),
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        context.upload_texels(&texture, &texels.bytes, width * texels.format.texel_bytes());
+        texture.create_view(&wgpu::TextureViewDescriptor::default())
+    })?;
+    Ok(Resource::Table(view, texels.format))
+}
+
+fn layout_entry(binding: u32, resource: &Resource) -> BindGroupLayoutEntry {
+    let ty = match resource {
+        Resource::Table(_, format) => BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: format.is_filterable() },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
+        Resource::Sampler(_) => BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+        Resource::Materials => storage(true),
+    };
+    BindGroupLayoutEntry { binding, visibility: ShaderStages::COMPUTE, ty, count: None }
+}
+
+/// Layout of group 1: `kernel_inputs` and `kernel_outputs`.
+pub(crate) fn kernel_layout(context: &Context) -> Result<wgpu::BindGroupLayout, GpuError> {
+    let entry = |binding, read_only| BindGroupLayoutEntry {
+        binding,
+        visibility: ShaderStages::COMPUTE,
+        ty: storage(read_only),
+        count: None,
+    };
+    context.guarded("kernel bindings", || {
+        context.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("kernel"),
+            entries: &[entry(0, true), entry(1, false)],
+        })
+    })
+}
+
+fn storage(read_only: bool) -> BindingType {
+    BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Storage { read_only },
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    }
+}
+
+fn texture_format(format: TexelFormat) -> wgpu::TextureFormat {
+    match format {
+        TexelFormat::R16Float => wgpu::TextureFormat::R16Float,
+        TexelFormat::R32Float => wgpu::TextureFormat::R32Float,
+        TexelFormat::Rgba8Unorm => wgpu::TextureFormat::Rgba8Unorm,
+        TexelFormat::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
+        TexelFormat::Rgba32Float => wgpu::TextureFormat::Rgba32Float,
+    }
+}

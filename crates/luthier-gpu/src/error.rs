@@ -1,0 +1,211 @@
+use std::path::PathBuf;
+
+use luthier_lut::{LutError, TableKind, TexelFormat};
+use luthier_texture::TextureError;
+use thiserror::Error;
+
+/// Why artefacts cannot be loaded, bound or run.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum GpuError {
+    /// A file of the bake cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The manifest is not one.
+    #[error("{}: {source}", path.display())]
+    Manifest {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: LutError,
+    },
+    /// The manifest names a file outside its own folder.
+    #[error("the manifest names `{path}`, which is not a path inside its folder")]
+    OutsideFolder {
+        /// As in the manifest.
+        path: String,
+    },
+    /// A file is not the one that the manifest describes.
+    #[error(
+        "{} is not the file that the manifest describes (SHA-256 {found}, manifest {expected}); bake again",
+        path.display()
+    )]
+    Hash {
+        /// The file.
+        path: PathBuf,
+        /// Hash of its bytes, hex.
+        found: String,
+        /// Hash in the manifest, hex.
+        expected: String,
+    },
+    /// A texture cannot be decoded.
+    #[error("{}: {source}", path.display())]
+    Texture {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: TextureError,
+    },
+    /// A shader is not UTF-8.
+    #[error("{} is not UTF-8 text", path.display())]
+    ShaderText {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The layout of a table in the manifest is impossible.
+    #[error("the manifest gives the {} table an impossible layout", kind.name())]
+    Layout {
+        /// The table.
+        kind: TableKind,
+    },
+    /// A table has texels that differ from its entry in the manifest.
+    #[error("the {} table is {found}; the manifest says {expected}", kind.name())]
+    TableMismatch {
+        /// The table.
+        kind: TableKind,
+        /// Size, format and bytes at hand.
+        found: String,
+        /// Size, format and bytes according to the manifest.
+        expected: String,
+    },
+    /// The manifest lists a table whose texels were not given.
+    #[error("no texels for the {} table", kind.name())]
+    MissingTexels {
+        /// The table.
+        kind: TableKind,
+    },
+    /// No material at all.
+    #[error("the bake holds no material")]
+    NoMaterials,
+    /// A material without layers.
+    #[error("material `{name}` has no layer")]
+    NoLayers {
+        /// Its name.
+        name: String,
+    },
+    /// No WGSL shader of the form asked for.
+    #[error("the bake holds no WGSL shader of the form `{form}`; it has: {known}")]
+    NoShader {
+        /// Asked for.
+        form: String,
+        /// Forms at hand, comma-separated.
+        known: String,
+    },
+    /// A binding of the manifest that this version cannot make.
+    #[error("the manifest binds `{name}` as `{resource}`, which this version does not know")]
+    Binding {
+        /// Name of the variable.
+        name: String,
+        /// Kind of resource.
+        resource: String,
+    },
+    /// No adapter can run compute shaders.
+    #[error(
+        "no graphics adapter found that can run compute shaders; without a GPU, install the software Vulkan driver \
+         (Debian and Ubuntu: apt-get install mesa-vulkan-drivers libvulkan1)"
+    )]
+    NoAdapter,
+    /// Adapters, but none of that name.
+    #[error("no adapter's name contains `{wanted}`; found: {found}")]
+    NoSuchAdapter {
+        /// Part of a name, as asked for.
+        wanted: String,
+        /// Names of the adapters at hand, comma-separated.
+        found: String,
+    },
+    /// The adapter refuses to open.
+    #[error("cannot open {adapter}: {source}")]
+    Open {
+        /// Name of the adapter.
+        adapter: String,
+        /// What the driver says.
+        source: wgpu::RequestDeviceError,
+    },
+    /// A texture larger than the device takes.
+    #[error("the {} table is {width} x {height} texels; this device takes {limit} along a side", kind.name())]
+    TextureTooLarge {
+        /// The table.
+        kind: TableKind,
+        /// Texels across.
+        width: u32,
+        /// Texels down.
+        height: u32,
+        /// Largest side.
+        limit: u32,
+    },
+    /// The device or the shader compiler refuses.
+    #[error("{what}: {message}")]
+    Refused {
+        /// What was being done.
+        what: String,
+        /// What the device says.
+        message: String,
+    },
+    /// The device ran out of memory.
+    #[error("{what}: the device is out of memory")]
+    OutOfMemory {
+        /// What was being done.
+        what: String,
+    },
+    /// The device is gone: driver reset, removal.
+    #[error("the device was lost: {0}")]
+    Lost(String),
+    /// No answer from the device in time.
+    #[error("the device did not finish within {seconds} s")]
+    Timeout {
+        /// How long it was given.
+        seconds: u64,
+    },
+    /// A material number that the bake does not have.
+    #[error("material {material} of {count}")]
+    NoMaterial {
+        /// Asked for, from 0.
+        material: u32,
+        /// How many there are.
+        count: usize,
+    },
+    /// A table that the bake, or this form of the shader, does not have.
+    #[error("no {} table in the `{form}` shader of this bake", kind.name())]
+    NoTable {
+        /// Asked for.
+        kind: TableKind,
+        /// Form of the shader.
+        form: String,
+    },
+    /// A tile that the table does not have.
+    #[error("tile {tile} of {count} in the {} table", kind.name())]
+    NoTile {
+        /// The table.
+        kind: TableKind,
+        /// Asked for, from 0.
+        tile: u32,
+        /// How many there are.
+        count: u32,
+    },
+    /// The ball needs the table look-ups.
+    #[error("a preview needs the `baked` shader; this scene runs `{form}`")]
+    PreviewForm {
+        /// Form of the shader.
+        form: String,
+    },
+    /// A preview setting out of range.
+    #[error("preview setting {name} = {value}; {allowed}")]
+    Setting {
+        /// Name of the field.
+        name: &'static str,
+        /// Its value.
+        value: String,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+}
+
+/// Size, format and byte count of a table, in words.
+pub(crate) fn describe(size: [u32; 2], format: TexelFormat, bytes: u64) -> String {
+    format!("{} x {} {format}, {bytes} bytes", size[0], size[1])
+}

@@ -1,0 +1,41 @@
+use crate::context::Pass;
+use crate::{GpuError, Scene};
+
+pub(crate) const KERNEL: &str = include_str!("wgsl/evaluate.wgsl");
+
+/// Threads of a workgroup in the evaluation and look-up kernels.
+pub(crate) const WORKGROUP: usize = 64;
+
+/// Elements per submission: 8 MiB of pairs, and at most a quarter of a second's work on a software adapter.
+pub(crate) const CHUNK: usize = 1 << 18;
+
+impl Scene {
+    /// `luthier_eval` of a material for pairs `(wi, wo)`: unit vectors in the local frame, away from the surface. Gives
+    /// `f cos_theta_i`, linear RGB, in the order of the pairs; any number of them.
+    ///
+    /// # Errors
+    /// [`GpuError::NoMaterial`], and whatever the device reports.
+    pub fn evaluate(&self, material: u32, pairs: &[([f32; 3], [f32; 3])]) -> Result<Vec<[f32; 3]>, GpuError> {
+        self.layers(material)?;
+        let mut values = Vec::with_capacity(pairs.len());
+        for chunk in pairs.chunks(CHUNK) {
+            let words: Vec<[u32; 8]> = chunk
+                .iter()
+                .map(|(wi, wo)| {
+                    let ([ix, iy, iz], [ox, oy, oz]) = (wi.map(f32::to_bits), wo.map(f32::to_bits));
+                    [ix, iy, iz, material, ox, oy, oz, 0]
+                })
+                .collect();
+            let out = self.context.run(&Pass {
+                what: "evaluation",
+                pipeline: &self.evaluate,
+                shader_group: &self.group,
+                workgroups: [chunk.len().div_ceil(WORKGROUP) as u32, 1],
+                inputs: bytemuck::cast_slice(&words),
+                output_words: chunk.len(),
+            })?;
+            values.extend(out.into_iter().map(|[r, g, b, _]| [r, g, b]));
+        }
+        Ok(values)
+    }
+}

@@ -1,0 +1,111 @@
+use std::sync::OnceLock;
+
+use luthier_lut::{LayerRecord, Manifest, TableKind};
+
+use crate::bindings::{ShaderBindings, kernel_layout, material_words};
+use crate::context::Context;
+use crate::{Artefacts, GpuError, evaluate};
+
+/// A bake on a device, ready to evaluate, to look up and to render.
+#[derive(Debug)]
+pub struct Scene {
+    pub(crate) context: Context,
+    pub(crate) manifest: Manifest,
+    form: String,
+    wgsl: String,
+    pub(crate) bindings: ShaderBindings,
+    /// Group 0 with the materials as baked.
+    pub(crate) group: wgpu::BindGroup,
+    kernels: wgpu::PipelineLayout,
+    pub(crate) evaluate: wgpu::ComputePipeline,
+    pub(crate) lookups: [OnceLock<wgpu::ComputePipeline>; TableKind::ALL.len()],
+    pub(crate) ball: OnceLock<wgpu::ComputePipeline>,
+}
+
+impl Scene {
+    pub(crate) fn new(context: Context, artefacts: &Artefacts, form: &str) -> Result<Self, GpuError> {
+        let shader = artefacts.shader(form)?;
+        let bindings = ShaderBindings::new(&context, artefacts, &shader.wgsl)?;
+        let group = bindings.group(&context, &material_words(artefacts))?;
+        let kernel_group = kernel_layout(&context)?;
+        let kernels = context.guarded("pipeline layout", || {
+            context.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some("luthier kernel"),
+                bind_group_layouts: &[Some(&bindings.layout), Some(&kernel_group)],
+                immediate_size: 0,
+            })
+        })?;
+        let evaluate = compile(&context, &kernels, form, &shader.wgsl, evaluate::KERNEL)?;
+        Ok(Self {
+            context,
+            manifest: artefacts.manifest.clone(),
+            form: form.to_owned(),
+            wgsl: shader.wgsl.clone(),
+            bindings,
+            group,
+            kernels,
+            evaluate,
+            lookups: Default::default(),
+            ball: OnceLock::new(),
+        })
+    }
+
+    /// Which form of the shader runs here: `baked` or `full`.
+    pub fn form(&self) -> &str {
+        &self.form
+    }
+
+    /// The layers of a material.
+    pub(crate) fn layers(&self, material: u32) -> Result<&[LayerRecord], GpuError> {
+        let materials = &self.manifest.materials;
+        let entry = materials.get(material as usize);
+        entry.map(|m| m.layers.as_slice()).ok_or(GpuError::NoMaterial { material, count: materials.len() })
+    }
+
+    /// Whether the shader reads a table.
+    pub(crate) fn reads(&self, kind: TableKind) -> bool {
+        self.wgsl.contains(&format!("fn luthier_lookup_{}(", kind.name()))
+    }
+
+    /// The pipeline in `cell`, compiled at its first use.
+    pub(crate) fn pipeline<'a>(
+        &self,
+        cell: &'a OnceLock<wgpu::ComputePipeline>,
+        kernel: &str,
+    ) -> Result<&'a wgpu::ComputePipeline, GpuError> {
+        match cell.get() {
+            Some(pipeline) => Ok(pipeline),
+            None => {
+                let pipeline = compile(&self.context, &self.kernels, &self.form, &self.wgsl, kernel)?;
+                Ok(cell.get_or_init(|| pipeline))
+            }
+        }
+    }
+}
+
+/// Compiles the shader with a kernel behind it. The entry point of every kernel is its only one.
+fn compile(
+    context: &Context,
+    layout: &wgpu::PipelineLayout,
+    form: &str,
+    wgsl: &str,
+    kernel: &str,
+) -> Result<wgpu::ComputePipeline, GpuError> {
+    let what = format!("the `{form}` shader");
+    let module = context.guarded(&what, || {
+        context.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(form),
+            source: wgpu::ShaderSource::Wgsl(format!("{wgsl}\n{kernel}").into()),
+        })
+    })?;
+    context.guarded(&what, || {
+        context.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(form),
+            layout: Some(layout),
+            module: &module,
+            entry_point: None,
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        })
+    })
+}

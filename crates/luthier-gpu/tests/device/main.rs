@@ -1,0 +1,11 @@
+//! Artefacts made by hand, on whatever adapter there is. One test binary: a device is opened once per test, and
+//! linking wgpu is slow.
+
+mod adapter;
+mod bake_by_hand;
+mod ball;
+mod evaluate;
+mod loading;
+mod lookup;
+mod record_terms;
+mod refusal;

@@ -1,0 +1,47 @@
+//! What the device refuses comes back as an error, and leaves the device usable.
+
+use luthier_gpu::{Artefacts, GpuError, WgslShader};
+use luthier_lut::BindingEntry;
+
+use crate::adapter::gpu;
+use crate::bake_by_hand::{diffuse, manifest};
+
+const GOOD: &str = "
+@group(0) @binding(6) var<storage, read> luthier_materials: array<vec4<f32>>;
+fn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
+    return wi + wo + luthier_materials[material].xyz;
+}";
+
+/// A bake whose shader and binding are given as they are.
+fn bake(wgsl: &str, name: &str, resource: &str) -> Artefacts {
+    let mut manifest = manifest(vec![vec![diffuse([0.5; 3], 0.0)]], &[]);
+    manifest.bindings = vec![BindingEntry { binding: 6, name: name.to_owned(), resource: resource.to_owned() }];
+    let shaders = vec![WgslShader { form: "full".to_owned(), wgsl: wgsl.to_owned() }];
+    Artefacts::from_parts(manifest, Vec::new(), shaders).unwrap()
+}
+
+#[test]
+fn bad_shaders_are_errors_and_the_device_lives_on() {
+    let Some(gpu) = gpu() else { return };
+    let materials = "luthier_materials";
+    for (wgsl, name, resource) in [
+        ("this is not WGSL", materials, "buffer"),
+        ("fn luthier_eval(a: u32) -> f32 { return 1.0; }", materials, "buffer"),
+        // Declared by the shader, absent from the manifest; and bound as something else.
+        (GOOD, "something_else", "buffer"),
+        (GOOD, materials, "sampler"),
+    ] {
+        let error = gpu.scene(&bake(wgsl, name, resource), "full").unwrap_err();
+        assert!(matches!(&error, GpuError::Refused { what, .. } if what.contains("full")), "{error}");
+    }
+    let error = gpu.scene(&bake(GOOD, materials, "texture_3d<f32>"), "full").unwrap_err();
+    assert!(matches!(error, GpuError::Binding { .. }), "{error}");
+    let error = gpu.scene(&bake("const luthier_water = 1.0;", "luthier_water", "texture_2d<f32>"), "full").unwrap_err();
+    assert!(matches!(error, GpuError::Binding { .. }), "{error}");
+
+    let scene = gpu.scene(&bake(GOOD, materials, "buffer"), "full").unwrap();
+    assert_eq!(scene.form(), "full");
+    // The header word of material 0: its layers begin at word 1, and there is one.
+    let got = scene.evaluate(0, &[([0.0, 0.0, 1.0], [0.5, 0.0, 0.0])]).unwrap();
+    assert_eq!(got, [[1.5, 1.0, 1.0]]);
+}

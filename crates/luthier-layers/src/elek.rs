@@ -1,0 +1,160 @@
+//! Elek's real-time form of the layered model of Weidlich and Wilkie, for any number of layers.
+//!
+//! O. Elek, "Layered Materials in Real-Time Rendering", CESCG 2010, eq. 2-4 and Algorithm 1:
+//!
+//! ```text
+//! f(i) = f_i(L, V) + T_12 f(i+1)(L', V') a t
+//! T_12 = T_21 = 1 - F(V.H)      a = exp(-sigma d (1/NL' + 1/NV'))      t = (1 - G) + T_21 G
+//! ```
+//!
+//! with f_i the Torrance-Sparrow BRDF `F D G / (4 NL NV)`, D normalised (the paper's prefactors disagree with each
+//! other; see CONVENTIONS.md), G of V-cavities, and L', V' refracted at the surface normal. As in the paper, a
+//! layer is never smoother than the one above it, which stands for the blur of refraction.
+//!
+//! Simplifications of the model, all the paper's: no inter-reflection between layers, no 1/n^2 compression of
+//! radiance, `t` gives back blocked light heuristically, absorption and `f_i` combine in three colour channels.
+//! Roughness is isotropic: anisotropic surfaces enter with the geometric mean of their slope parameters.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use luthier_optics::Rgb;
+use luthier_optics::stack::{Base, Diffuse, Distribution, Stack};
+
+use crate::oren_nayar;
+
+/// Smallest slope parameter of the model. Smoother surfaces are evaluated with this one: a lobe 0.06 degrees wide, well
+/// below what one pixel or one light source resolves, and still safe in f32.
+pub const ALPHA_MIN: f64 = 1e-3;
+
+/// Wavelength at which one scalar index bends the refracted directions (sodium D).
+pub const REFRACTION_WAVELENGTH_NM: f64 = 589.3;
+
+/// The model's name, as manifests and reports give it.
+pub const MODEL: &str = "elek";
+
+/// One layer as the model sees it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Layer {
+    /// Slope distribution.
+    pub distribution: Distribution,
+    /// Isotropic slope parameter, at least [`ALPHA_MIN`].
+    pub alpha: f64,
+    /// What the interface does with light that it does not reflect.
+    pub below: Below,
+}
+
+/// What follows below an interface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Below {
+    /// A transparent medium: real index below over index above, and the optical depth of the slab.
+    Dielectric {
+        /// Index below over index above.
+        eta: f64,
+        /// Optical depth along the normal.
+        optical_depth: Rgb,
+    },
+    /// Nothing: a conductor.
+    Conductor,
+    /// The layer is a diffuse base, without an interface of its own.
+    Diffuse(Diffuse),
+}
+
+/// The two factors of the model that can be read from tables.
+pub trait Terms {
+    /// Fresnel reflectance of the interface of a layer, by number from the top.
+    fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb;
+
+    /// `pi alpha^2 D(theta_h, alpha)` of a slope distribution, from the cosine and the squared sine of theta_h.
+    fn distribution(&self, distribution: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64;
+}
+
+/// The layers of a stack as the model sees them.
+pub fn layers(stack: &Stack) -> Vec<Layer> {
+    let mut above = stack.exterior.at(REFRACTION_WAVELENGTH_NM).re;
+    let mut out = Vec::with_capacity(stack.layers.len());
+    for layer in &stack.layers {
+        let below = match &layer.base {
+            Base::Dielectric { ior, slab } => {
+                let index = ior.at(REFRACTION_WAVELENGTH_NM).re;
+                let eta = index / above;
+                above = index;
+                Below::Dielectric { eta, optical_depth: slab.optical_depth() }
+            }
+            Base::Conductor { .. } => Below::Conductor,
+            Base::Diffuse(diffuse) => Below::Diffuse(*diffuse),
+        };
+        out.push(Layer {
+            distribution: layer.surface.distribution,
+            alpha: layer.surface.alpha_isotropic().clamp(ALPHA_MIN, 1.0),
+            below,
+        });
+    }
+    out
+}
+
+/// `f cos_theta_i` of the layers for light from `wi` seen from `wo`, per channel. Zero when either is at or below the
+/// horizon. Finite for all unit directions. Not reciprocal below the first interface (eq. 2 is not).
+pub fn eval(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3) -> Rgb {
+    if wi.z <= 0.0 || wo.z <= 0.0 {
+        return [0.0; 3];
+    }
+    let (mut wi_local, mut wo_local) = (wi, wo);
+    let mut throughput = [wi.z; 3];
+    let mut total = [0.0; 3];
+    let mut alpha_above = ALPHA_MIN;
+
+    for (i, layer) in layers.iter().enumerate() {
+        if let Below::Diffuse(diffuse) = layer.below {
+            add(&mut total, throughput, oren_nayar::brdf(&diffuse, wi_local, wo_local));
+            break;
+        }
+        let alpha = layer.alpha.max(alpha_above);
+        alpha_above = alpha;
+
+        // For unit directions wo.wh is half the length of their sum; in this form directions that were rounded to f32 do not
+        // cancel at grazing angles.
+        let bisector = wi_local + wo_local;
+        let length = bisector.length();
+        if length == 0.0 {
+            break;
+        }
+        let wh = bisector / length;
+        let cos_theta_d = (0.5 * length).min(1.0);
+        let sin_theta_h_sq = wh.x * wh.x + wh.y * wh.y;
+        let f = terms.fresnel(i, cos_theta_d);
+        let d = terms.distribution(layer.distribution, alpha, wh.z, sin_theta_h_sq) / (PI * alpha * alpha);
+        let g = v_cavity(wi_local.z, wo_local.z, wh.z, cos_theta_d);
+        let geometry = d * g / (4.0 * wi_local.z * wo_local.z);
+        add(&mut total, throughput, f.map(|f| f * geometry));
+
+        let Below::Dielectric { eta, optical_depth } = layer.below else { break };
+        let (Some(wi_below), Some(wo_below)) = (refract(wi_local, eta), refract(wo_local, eta)) else { break };
+        let path = 1.0 / wi_below.z + 1.0 / wo_below.z;
+        for c in 0..3 {
+            let transmitted = 1.0 - f[c];
+            let absorbed = libm::exp(-optical_depth[c] * path);
+            throughput[c] *= transmitted * absorbed * ((1.0 - g) + transmitted * g);
+        }
+        (wi_local, wo_local) = (wi_below, wo_below);
+    }
+    total
+}
+
+/// Masking and shadowing of V-cavities (Torrance and Sparrow 1967; Cook and Torrance 1982, eq. 9).
+pub fn v_cavity(cos_theta_i: f64, cos_theta_o: f64, cos_theta_h: f64, cos_theta_d: f64) -> f64 {
+    (2.0 * cos_theta_h * cos_theta_i.min(cos_theta_o) / cos_theta_d).min(1.0)
+}
+
+/// The direction in the medium below, turned to point up again, or `None` when it is totally reflected. The tangential part
+/// keeps its sign.
+fn refract(w: DVec3, eta: f64) -> Option<DVec3> {
+    let cos_sq = (w.z * w.z + (eta - 1.0) * (eta + 1.0)) / (eta * eta);
+    (cos_sq > 0.0).then(|| DVec3::new(w.x / eta, w.y / eta, cos_sq.sqrt()))
+}
+
+fn add(total: &mut Rgb, weight: Rgb, value: Rgb) {
+    for c in 0..3 {
+        total[c] += weight[c] * value[c];
+    }
+}

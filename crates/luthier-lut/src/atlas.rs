@@ -1,0 +1,202 @@
+use serde::{Deserialize, Serialize};
+
+use crate::{Axis, ErrorStats, Image, TexelFormat, WeightBits, bilinear};
+
+/// What a table holds. One texture of each kind serves any number of materials.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TableKind {
+    /// Fresnel reflectance over the cosine, RGB; one row per interface.
+    Fresnel,
+    /// `pi alpha^2 D` over angle and alpha; one tile per slope distribution.
+    Distribution,
+    /// Directional albedo with all microsurface bounces over (cos_theta, alpha), RGB, and in A the luminance of
+    /// the part that never crossed the interface; one tile per interface.
+    Fgd,
+    /// Granier's `2 cos(2 Phi)` over normalised thickness, RGB; one row per film.
+    Phase,
+    /// Granier's T_d over (u, v): normalised thickness, slopes, normalisation factor; one tile per varying film.
+    Thickness,
+}
+
+impl TableKind {
+    /// All kinds, in binding order.
+    pub const ALL: [Self; 5] = [Self::Fresnel, Self::Distribution, Self::Fgd, Self::Phase, Self::Thickness];
+
+    /// The name in files, manifest and shaders.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fresnel => "fresnel",
+            Self::Distribution => "distribution",
+            Self::Fgd => "fgd",
+            Self::Phase => "phase",
+            Self::Thickness => "thickness",
+        }
+    }
+
+    /// Binding number of its texture; the sampler and the material buffer follow (5 and 6).
+    pub fn binding(self) -> u32 {
+        self as u32
+    }
+}
+
+/// Where every texel of an atlas lies: equal tiles in a grid, filled row by row.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AtlasLayout {
+    /// Axis across a tile.
+    pub x: Axis,
+    /// Axis down a tile; absent when a tile is a single row.
+    pub y: Option<Axis>,
+    /// Texels repeated around a tile (1 for periodic axes, else 0).
+    pub apron: u32,
+    /// Tiles side by side.
+    pub columns: u32,
+    /// Number of tiles, at least 1.
+    pub tiles: u32,
+}
+
+impl AtlasLayout {
+    /// Texels of one tile, apron included.
+    pub fn tile_size(&self) -> [u32; 2] {
+        [self.x.size + 2 * self.apron, self.y.as_ref().map_or(1, |y| y.size + 2 * self.apron)]
+    }
+
+    /// Texels of the whole texture.
+    pub fn size(&self) -> [u32; 2] {
+        let [w, h] = self.tile_size();
+        [w * self.columns, h * self.tiles.div_ceil(self.columns)]
+    }
+
+    /// First texel of a tile, apron included.
+    pub fn origin(&self, tile: u32) -> [u32; 2] {
+        let [w, h] = self.tile_size();
+        [tile % self.columns * w, tile / self.columns * h]
+    }
+
+    /// The position in texels (centres at `i + 0.5`) that a look-up of these axis values reads; `values[1]` is
+    /// ignored by a single row. A read at this position never touches another tile: the outermost nodes are texel
+    /// centres.
+    pub fn position(&self, tile: u32, values: [f64; 2]) -> [f64; 2] {
+        let [ox, oy] = self.origin(tile).map(f64::from);
+        let apron = f64::from(self.apron);
+        let x = ox + apron + self.x.index(values[0]) + 0.5;
+        let y = self.y.as_ref().map_or(oy + 0.5, |axis| oy + apron + axis.index(values[1]) + 0.5);
+        [x, y]
+    }
+}
+
+/// One tile: whose table it is and how good it is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Tile {
+    /// Readable name: `red-lacquer/0`, `beckmann`.
+    pub name: String,
+    /// What was tabulated, in words that name the model.
+    pub model: String,
+    /// SHA-256 of the inputs of the job that made it, hex.
+    pub input_hash: String,
+    /// Error of a sampled read against the function, as measured by the baker.
+    pub error: ErrorStats,
+}
+
+/// A baked texture: layout, tiles, the truth in f32, and the texels that ship.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Atlas {
+    /// What it holds.
+    pub kind: TableKind,
+    /// Where it lies.
+    pub layout: AtlasLayout,
+    /// What ships.
+    pub format: TexelFormat,
+    /// One entry per tile.
+    pub tiles: Vec<Tile>,
+    /// Unquantised values.
+    pub truth: Image,
+    /// The same, as the shader reads it: quantised to `format`.
+    pub texels: Image,
+}
+
+impl Atlas {
+    /// Reads the quantised texels as the hardware would.
+    pub fn sample(&self, tile: u32, values: [f64; 2], weights: WeightBits) -> [f64; 4] {
+        bilinear(&self.texels, self.layout.position(tile, values), weights)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::Mapping;
+
+    fn axis(size: u32, mapping: Mapping) -> Axis {
+        Axis { quantity: "x".into(), unit: String::new(), min: 0.5, max: 2.0, size, mapping }
+    }
+
+    fn any_layout() -> impl Strategy<Value = AtlasLayout> {
+        let mapping =
+            prop_oneof![Just(Mapping::Linear), Just(Mapping::Power { exponent: 8.0 }), Just(Mapping::Logarithmic),];
+        let sizes = (2..40u32, prop::option::of(2..40u32));
+        (sizes, mapping, any::<bool>(), 1..5u32, 1..12u32).prop_map(|((w, h), mapping, periodic, columns, tiles)| {
+            let mapping = if periodic { Mapping::Periodic } else { mapping };
+            AtlasLayout {
+                x: axis(w, mapping),
+                y: h.map(|h| axis(h, mapping)),
+                apron: u32::from(periodic),
+                columns,
+                tiles,
+            }
+        })
+    }
+
+    proptest! {
+        /// The other tiles hold a value that would show however little it weighed.
+        #[test]
+        fn reads_never_touch_another_tile(layout in any_layout(), tile: u32, values in [-5.0..5.0f64, -5.0..5.0f64], ends: [bool; 2]) {
+            let tile = tile % layout.tiles;
+            let values = [0, 1].map(|i| if ends[i] { layout.x.max } else { values[i] });
+            let [width, height] = layout.size();
+            let mut image = Image { data: vec![1e30; (width * height) as usize], ..Image::zeros(width, height, 1) };
+            let [x0, y0] = layout.origin(tile);
+            let [w, h] = layout.tile_size();
+            prop_assert!(x0 + w <= width && y0 + h <= height);
+            for y in y0..y0 + h {
+                for x in x0..x0 + w {
+                    image.texel_mut(x, y)[0] = 1.0;
+                }
+            }
+            for weights in [WeightBits::Exact, WeightBits::Fixed(8)] {
+                prop_assert_eq!(bilinear(&image, layout.position(tile, values), weights)[0], 1.0);
+            }
+        }
+    }
+
+    #[test]
+    fn tiles_fill_rows_without_overlap() {
+        let layout = AtlasLayout {
+            x: axis(8, Mapping::Periodic),
+            y: Some(axis(4, Mapping::Periodic)),
+            apron: 1,
+            columns: 3,
+            tiles: 7,
+        };
+        assert_eq!(layout.tile_size(), [10, 6]);
+        assert_eq!(layout.size(), [30, 18]);
+        assert_eq!([0, 2, 3, 6].map(|tile| layout.origin(tile)), [[0, 0], [20, 0], [0, 6], [0, 12]]);
+    }
+
+    #[test]
+    fn the_outermost_nodes_are_texel_centres() {
+        let layout = AtlasLayout { x: axis(128, Mapping::Linear), y: None, apron: 0, columns: 2, tiles: 3 };
+        assert_eq!(layout.position(1, [0.5, f64::NAN]), [128.5, 0.5]);
+        assert_eq!(layout.position(2, [2.0, 0.0]), [127.5, 1.5]);
+    }
+
+    #[test]
+    fn bindings_follow_the_order_of_the_kinds() {
+        assert_eq!(TableKind::ALL.map(TableKind::binding), [0, 1, 2, 3, 4]);
+        for kind in TableKind::ALL {
+            assert_eq!(serde_json::to_string(&kind).unwrap(), format!("\"{}\"", kind.name()));
+        }
+    }
+}

@@ -1,0 +1,29 @@
+use thiserror::Error;
+
+/// Why a table or a manifest is not usable.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum LutError {
+    /// The manifest is not JSON of the documented shape.
+    #[error("not a luthier manifest: {0}")]
+    Manifest(#[from] serde_json::Error),
+    /// The manifest was written by another version of the format.
+    #[error("manifest schema {found}, this program reads schema {expected}; bake again with this version")]
+    ManifestSchema {
+        /// In the file.
+        found: u32,
+        /// Understood here.
+        expected: u32,
+    },
+    /// Texel bytes that do not fit the layout.
+    #[error("{found} bytes of texels where {expected} are needed")]
+    TexelBytes {
+        /// Given.
+        found: usize,
+        /// Width x height x bytes per texel.
+        expected: usize,
+    },
+    /// A texel format that does not exist.
+    #[error("unknown texel format `{0}`; known: r16float, r32float, rgba8unorm, rgba16float, rgba32float")]
+    UnknownFormat(String),
+}

@@ -1,0 +1,233 @@
+use std::fmt;
+use std::str::FromStr;
+
+use half::f16;
+use serde::{Deserialize, Serialize};
+
+use crate::{Image, LutError};
+
+/// Texel formats, named as WebGPU names them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum TexelFormat {
+    /// One half float.
+    R16Float,
+    /// One float. Not filterable in core WebGPU.
+    R32Float,
+    /// Four unsigned normalised bytes, linear.
+    Rgba8Unorm,
+    /// Four half floats.
+    Rgba16Float,
+    /// Four floats. Not filterable in core WebGPU.
+    Rgba32Float,
+}
+
+impl TexelFormat {
+    /// All formats, for listings and tests.
+    pub const ALL: [Self; 5] = [Self::R16Float, Self::R32Float, Self::Rgba8Unorm, Self::Rgba16Float, Self::Rgba32Float];
+
+    /// The WebGPU name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::R16Float => "r16float",
+            Self::R32Float => "r32float",
+            Self::Rgba8Unorm => "rgba8unorm",
+            Self::Rgba16Float => "rgba16float",
+            Self::Rgba32Float => "rgba32float",
+        }
+    }
+
+    /// Channels per texel.
+    pub fn channels(self) -> u32 {
+        match self {
+            Self::R16Float | Self::R32Float => 1,
+            Self::Rgba8Unorm | Self::Rgba16Float | Self::Rgba32Float => 4,
+        }
+    }
+
+    /// Bytes per channel.
+    pub fn channel_bytes(self) -> u32 {
+        match self {
+            Self::Rgba8Unorm => 1,
+            Self::R16Float | Self::Rgba16Float => 2,
+            Self::R32Float | Self::Rgba32Float => 4,
+        }
+    }
+
+    /// Bytes per texel.
+    pub fn texel_bytes(self) -> u32 {
+        self.channels() * self.channel_bytes()
+    }
+
+    /// Whether a filtering sampler may read it in core WebGPU.
+    pub fn is_filterable(self) -> bool {
+        self.channel_bytes() < 4
+    }
+
+    /// The texels of an image as little-endian bytes, rounded to nearest. Channels the image lacks are 0, and 1 for
+    /// alpha; surplus channels are dropped. Unorm clamps to 0..1; half clamps to its finite range.
+    pub fn encode(self, image: &Image) -> Vec<u8> {
+        let mut bytes = Vec::with_capacity(image.texel_count() * self.texel_bytes() as usize);
+        for texel in image.texels() {
+            for c in 0..self.channels() as usize {
+                let v = texel.get(c).copied().unwrap_or(if c == 3 { 1.0 } else { 0.0 });
+                match self.channel_bytes() {
+                    1 => bytes.push((v.clamp(0.0, 1.0) * 255.0).round() as u8),
+                    2 => {
+                        let finite = v.clamp(-f16::MAX.to_f32(), f16::MAX.to_f32());
+                        bytes.extend_from_slice(&f16::from_f32(finite).to_le_bytes());
+                    }
+                    _ => bytes.extend_from_slice(&v.to_le_bytes()),
+                }
+            }
+        }
+        bytes
+    }
+
+    /// The image that a shader reads once these texels have been encoded.
+    pub fn quantise(self, image: &Image) -> Image {
+        let data = self.encode(image);
+        Image { width: image.width, height: image.height, channels: self.channels(), data: self.values(&data) }
+    }
+
+    /// The image that a shader reads from these bytes.
+    ///
+    /// # Errors
+    /// [`LutError::TexelBytes`] when the length does not fit.
+    pub fn decode(self, width: u32, height: u32, bytes: &[u8]) -> Result<Image, LutError> {
+        let expected = (width as usize).saturating_mul(height as usize).saturating_mul(self.texel_bytes() as usize);
+        if bytes.len() != expected {
+            return Err(LutError::TexelBytes { found: bytes.len(), expected });
+        }
+        Ok(Image { width, height, channels: self.channels(), data: self.values(bytes) })
+    }
+
+    fn values(self, bytes: &[u8]) -> Vec<f32> {
+        match self.channel_bytes() {
+            1 => bytes.iter().map(|&b| f32::from(b) / 255.0).collect(),
+            2 => bytes.chunks_exact(2).map(|b| f16::from_le_bytes([b[0], b[1]]).to_f32()).collect(),
+            _ => bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect(),
+        }
+    }
+}
+
+impl fmt::Display for TexelFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for TexelFormat {
+    type Err = LutError;
+
+    fn from_str(s: &str) -> Result<Self, LutError> {
+        Self::ALL.into_iter().find(|f| f.name() == s).ok_or_else(|| LutError::UnknownFormat(s.to_owned()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn row(channels: u32, data: &[f32]) -> Image {
+        Image { width: data.len() as u32 / channels, height: 1, channels, data: data.to_vec() }
+    }
+
+    /// Bit patterns of IEEE 754 binary16, worked out by hand.
+    #[test]
+    fn half_floats_round_to_nearest_even() {
+        for (value, bits) in [
+            (0.0, 0x0000),
+            (-0.0, 0x8000),
+            (1.0, 0x3c00),
+            (-2.0, 0xc000),
+            (1.0 / 3.0, 0x3555),
+            (65504.0, 0x7bff),
+            // Halfway between 1 and the next half, 1 + 2^-10: to the even one; a little more: up.
+            (1.0 + 1.0 / 2048.0, 0x3c00),
+            (1.0 + 1.0 / 2048.0 + 1e-6, 0x3c01),
+            // Halfway between 1 + 2^-10 and 1 + 2^-9: the even one is above.
+            (1.0 + 3.0 / 2048.0, 0x3c02),
+            // Smallest normal, smallest subnormal, and half of that.
+            (6.103_515_6e-5, 0x0400),
+            (5.960_464_5e-8, 0x0001),
+            (2.980_232_2e-8, 0x0000),
+            // Beyond the range: clamped rather than infinite.
+            (1e6, 0x7bff),
+            (f32::NEG_INFINITY, 0xfbff),
+        ] {
+            let bytes = TexelFormat::R16Float.encode(&row(1, &[value]));
+            assert_eq!(u16::from_le_bytes([bytes[0], bytes[1]]), bits, "{value}");
+        }
+    }
+
+    #[test]
+    fn unorm_rounds_and_clamps() {
+        let values =
+            [0.0, 1.0, 0.5, 127.0 / 255.0, 0.499 / 255.0, 0.501 / 255.0, -1.0, 3.0, f32::NAN, 254.4 / 255.0, 0.2, 0.8];
+        let bytes = TexelFormat::Rgba8Unorm.encode(&row(4, &values));
+        assert_eq!(bytes, [0, 255, 128, 127, 0, 1, 0, 255, 0, 254, 51, 204]);
+    }
+
+    #[test]
+    fn missing_channels_are_black_and_opaque_surplus_ones_go() {
+        let image = row(1, &[0.25]);
+        assert_eq!(TexelFormat::Rgba8Unorm.encode(&image), [64, 0, 0, 255]);
+        let decoded = TexelFormat::Rgba32Float.decode(1, 1, &TexelFormat::Rgba32Float.encode(&image)).unwrap();
+        assert_eq!(decoded.data, [0.25, 0.0, 0.0, 1.0]);
+        let image = row(4, &[0.25, 0.5, 0.75, 1.0]);
+        assert_eq!(TexelFormat::R32Float.encode(&image), 0.25f32.to_le_bytes());
+    }
+
+    #[test]
+    fn names_parse_and_serialise_alike() {
+        for format in TexelFormat::ALL {
+            assert_eq!(format.to_string().parse::<TexelFormat>().unwrap(), format);
+            assert_eq!(serde_json::to_string(&format).unwrap(), format!("\"{format}\""));
+        }
+        assert!(matches!("rgba8unorm-srgb".parse::<TexelFormat>(), Err(LutError::UnknownFormat(_))));
+    }
+
+    #[test]
+    fn sizes_are_those_of_webgpu() {
+        let sizes = TexelFormat::ALL.map(|format| (format.texel_bytes(), format.is_filterable()));
+        assert_eq!(sizes, [(2, true), (4, false), (4, true), (8, true), (16, false)]);
+    }
+
+    #[test]
+    fn wrong_lengths_are_errors_even_when_sizes_overflow() {
+        for format in TexelFormat::ALL {
+            assert!(matches!(format.decode(2, 2, &[0; 3]), Err(LutError::TexelBytes { found: 3, .. })));
+            assert!(format.decode(u32::MAX, u32::MAX, &[]).is_err());
+            assert!(format.decode(1 << 31, 2, &[]).is_err());
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn what_was_decoded_encodes_to_the_same_bytes(bytes in prop::collection::vec(any::<u8>(), 48)) {
+            for format in TexelFormat::ALL {
+                let width = 48 / format.texel_bytes();
+                let image = format.decode(width, 1, &bytes).unwrap();
+                // Half floats that are not finite are clamped, by contract; floats that are not numbers keep their bits.
+                if format.channel_bytes() == 2 && image.data.iter().any(|v| !v.is_finite()) {
+                    continue;
+                }
+                prop_assert_eq!(&format.encode(&image), &bytes);
+            }
+        }
+
+        #[test]
+        fn rounding_is_within_half_a_step(values in prop::collection::vec(0.0..1.0f32, 8)) {
+            // Half steps below 1: 2^-12 for half floats, 1/510 for unorm (and the rounding of f32 itself).
+            for (format, half_step) in [(TexelFormat::Rgba16Float, 1.0 / 4096.0), (TexelFormat::Rgba8Unorm, 1.0 / 509.99)] {
+                let found = format.decode(2, 1, &format.encode(&row(4, &values))).unwrap();
+                for (a, b) in found.data.iter().zip(&values) {
+                    prop_assert!((a - b).abs() <= half_step, "{format}: {b} became {a}");
+                }
+            }
+        }
+    }
+}

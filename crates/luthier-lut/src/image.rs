@@ -1,0 +1,60 @@
+/// A rectangle of texels in f32, row by row from the top, channels interleaved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Image {
+    /// Texels across.
+    pub width: u32,
+    /// Texels down.
+    pub height: u32,
+    /// Values per texel, 1..=4.
+    pub channels: u32,
+    /// `width * height * channels` values.
+    pub data: Vec<f32>,
+}
+
+impl Image {
+    /// All zero.
+    pub fn zeros(width: u32, height: u32, channels: u32) -> Self {
+        Self { width, height, channels, data: vec![0.0; width as usize * height as usize * channels as usize] }
+    }
+
+    /// Number of texels.
+    pub fn texel_count(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+
+    /// The channels of one texel.
+    pub fn texel(&self, x: u32, y: u32) -> &[f32] {
+        let start = self.start(x, y);
+        &self.data[start..start + self.channels as usize]
+    }
+
+    /// The channels of one texel, to write.
+    pub fn texel_mut(&mut self, x: u32, y: u32) -> &mut [f32] {
+        let start = self.start(x, y);
+        &mut self.data[start..start + self.channels as usize]
+    }
+
+    /// All texels, row by row.
+    pub fn texels(&self) -> impl Iterator<Item = &[f32]> {
+        self.data.chunks_exact(self.channels as usize)
+    }
+
+    fn start(&self, x: u32, y: u32) -> usize {
+        (y as usize * self.width as usize + x as usize) * self.channels as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texels_are_rows_from_the_top() {
+        let mut image = Image::zeros(3, 2, 2);
+        image.texel_mut(2, 0).copy_from_slice(&[1.0, 2.0]);
+        image.texel_mut(0, 1)[1] = 3.0;
+        assert_eq!(image.data, [0.0, 0.0, 0.0, 0.0, 1.0, 2.0, 0.0, 3.0, 0.0, 0.0, 0.0, 0.0]);
+        assert_eq!(image.texel(2, 0), [1.0, 2.0]);
+        assert_eq!(image.texels().count(), image.texel_count());
+    }
+}

@@ -1,0 +1,32 @@
+//! Look-up tables as data: named axes with their mappings, texel formats, atlases of tiles, a sampler that
+//! behaves as texture hardware does, error statistics, and the manifest that ties a bake together.
+//!
+//! This crate is the one source of truth for where a value lies in a texture. The baker writes by it, the
+//! shader emitter prints it, the judge reads by it.
+//!
+//! Simplifications: tables have one or two axes and one mip level; filtering is bilinear with
+//! clamp-to-edge.
+//!
+//! Out of scope: file containers (`luthier-texture`), the functions that fill tables (`luthier-optics`).
+
+mod atlas;
+mod axis;
+mod error;
+mod format;
+mod image;
+mod manifest;
+mod measure;
+mod record;
+mod sampler;
+
+pub use atlas::{Atlas, AtlasLayout, TableKind, Tile};
+pub use axis::{Axis, Mapping};
+pub use error::LutError;
+pub use format::TexelFormat;
+pub use image::Image;
+pub use manifest::{
+    BindingEntry, ColorMode, FileEntry, MANIFEST_SCHEMA, Manifest, MaterialEntry, ShaderEntry, TableEntry,
+};
+pub use measure::{Comparison, ErrorStats, Scan, Worst, measure, measure_scan};
+pub use record::{LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, material_buffer};
+pub use sampler::{WeightBits, bilinear};

@@ -1,0 +1,291 @@
+use serde::{Deserialize, Serialize};
+
+use crate::{AtlasLayout, LayerRecord, LutError, TableKind, TexelFormat, Tile};
+
+/// Version of the manifest's shape. A reader refuses any other.
+pub const MANIFEST_SCHEMA: u32 = 1;
+
+/// `manifest.json`: everything a bake made and how it hangs together. Paths are relative to the manifest.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// [`MANIFEST_SCHEMA`].
+    pub schema: u32,
+    /// Program and version: `luthier 0.1.0`.
+    pub generator: String,
+    /// The reflectance model that the shaders evaluate: `elek`.
+    pub model: String,
+    /// The materials, in the order of their numbers in the shader.
+    pub materials: Vec<MaterialEntry>,
+    /// The tables, at most one of each kind, in binding order.
+    pub tables: Vec<TableEntry>,
+    /// The emitted shaders.
+    pub shaders: Vec<ShaderEntry>,
+    /// What to bind where, in group 0.
+    pub bindings: Vec<BindingEntry>,
+}
+
+/// How spectra became colour channels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ColorMode {
+    /// Integrated against the CIE 1931 2-degree observer under D65, to linear Rec.709.
+    Spectral,
+    /// The value at three wavelengths, taken for the three channels.
+    ThreeWavelengths,
+}
+
+/// One material.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MaterialEntry {
+    /// Name, unique in the bake; letters, digits and hyphens.
+    pub name: String,
+    /// The file it came from, as it was named on the command line.
+    pub source: String,
+    /// SHA-256 of that file, hex.
+    pub source_hash: String,
+    /// Surface class a-h of Weidlich and Wilkie 2009, chapter 4.
+    pub class: String,
+    /// How the colour of its tables was made.
+    pub color: ColorMode,
+    /// The three wavelengths of the full (table-free) shader, RGB order.
+    pub wavelengths_nm: [f64; 3],
+    /// The layers from the top down.
+    pub layers: Vec<LayerRecord>,
+}
+
+/// One table: a texture and its truth.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TableEntry {
+    /// What it holds.
+    pub kind: TableKind,
+    /// Where its texels lie.
+    pub layout: AtlasLayout,
+    /// Texel format of the texture.
+    pub format: TexelFormat,
+    /// Bytes of its texels, uncompressed.
+    pub texel_bytes: u64,
+    /// The texture: KTX2.
+    pub texture: FileEntry,
+    /// The unquantised values: EXR, 32-bit float.
+    pub truth: FileEntry,
+    /// A picture to look at: PNG, sRGB-encoded, clipped to 0..1.
+    pub picture: FileEntry,
+    /// One entry per tile.
+    pub tiles: Vec<Tile>,
+}
+
+/// A file of the bake.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FileEntry {
+    /// Path relative to the manifest, with forward slashes.
+    pub path: String,
+    /// SHA-256 of its bytes, hex.
+    pub sha256: String,
+}
+
+/// An emitted shader.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ShaderEntry {
+    /// `wgsl`, `glsl450` or `glsl-es300`.
+    pub target: String,
+    /// `baked` reads the tables; `full` evaluates in ALU.
+    pub form: String,
+    /// The file.
+    pub file: FileEntry,
+}
+
+/// One binding of group 0.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BindingEntry {
+    /// Binding number.
+    pub binding: u32,
+    /// Name of the variable in the shaders.
+    pub name: String,
+    /// `texture_2d<f32>`, `sampler` (linear, clamp-to-edge) or `buffer` (read-only, array of `vec4<f32>`).
+    pub resource: String,
+}
+
+impl Manifest {
+    /// JSON, indented, with a final newline.
+    ///
+    /// # Errors
+    /// [`LutError::Manifest`] if a number is not finite.
+    pub fn to_json(&self) -> Result<String, LutError> {
+        let mut json = serde_json::to_string_pretty(self)?;
+        // What is not finite has become null, which no number reads back.
+        serde_json::from_str::<Self>(&json)?;
+        json.push('\n');
+        Ok(json)
+    }
+
+    /// Reads what [`Manifest::to_json`] wrote.
+    ///
+    /// # Errors
+    /// [`LutError::Manifest`] for other JSON, [`LutError::ManifestSchema`] for another version.
+    pub fn from_json(json: &str) -> Result<Self, LutError> {
+        #[derive(Deserialize)]
+        struct Version {
+            schema: u32,
+        }
+        let Version { schema } = serde_json::from_str(json)?;
+        if schema != MANIFEST_SCHEMA {
+            return Err(LutError::ManifestSchema { found: schema, expected: MANIFEST_SCHEMA });
+        }
+        Ok(serde_json::from_str(json)?)
+    }
+
+    /// The table of a kind, if the bake has one.
+    pub fn table(&self, kind: TableKind) -> Option<&TableEntry> {
+        self.tables.iter().find(|t| t.kind == kind)
+    }
+
+    /// The number of a material in the shader.
+    pub fn material_index(&self, name: &str) -> Option<u32> {
+        self.materials.iter().position(|m| m.name == name).map(|i| i as u32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Axis, ErrorStats, LayerKind, Mapping, Worst};
+
+    fn manifest() -> Manifest {
+        let file = |path: &str| FileEntry { path: path.into(), sha256: "00ff".repeat(16) };
+        let axis = |quantity: &str, mapping| Axis {
+            quantity: quantity.into(),
+            unit: "rad".into(),
+            min: 1e-3,
+            max: std::f64::consts::FRAC_PI_2,
+            size: 512,
+            mapping,
+        };
+        let error = ErrorStats {
+            max_abs_err: 0.1 + 0.2,
+            rms_err: 1.234_567_890_123_456_7e-5,
+            p99_abs_err: 4.9e-324,
+            worst: Worst { at: vec![1.0 / 3.0, 2.0 / 3.0], channel: 2, expected: 0.7, sampled: 1e300 },
+            points: u64::MAX,
+        };
+        let layer = LayerRecord {
+            kind: LayerKind::Dielectric,
+            distribution: "beckmann".into(),
+            alpha: 0.09,
+            eta: 1.5,
+            optical_depth: [0.1, 0.2, 0.3],
+            albedo: [0.0; 3],
+            sigma: 0.0,
+            ior_n: [1.49, 1.5, 1.51],
+            ior_k: [0.0; 3],
+            film_ior_n: [0.0; 3],
+            film_ior_k: [0.0; 3],
+            film_thickness_waves: [0.0; 3],
+            film_thickness_nm: 0.0,
+            film_thickness_max_nm: 0.0,
+            fresnel_tile: Some(0),
+            distribution_tile: Some(1),
+            fgd_tile: None,
+            phase_tile: None,
+            thickness_tile: None,
+        };
+        let table = |kind: TableKind, mapping| TableEntry {
+            kind,
+            layout: AtlasLayout {
+                x: axis("theta_h", mapping),
+                y: Some(axis("alpha", Mapping::Logarithmic)),
+                apron: 0,
+                columns: 1,
+                tiles: 1,
+            },
+            format: TexelFormat::R16Float,
+            texel_bytes: 524_288,
+            texture: file("tables/distribution.ktx2"),
+            truth: file("tables/distribution.exr"),
+            picture: file("tables/distribution.png"),
+            tiles: vec![Tile {
+                name: "beckmann".into(),
+                model: "pi alpha^2 D, Beckmann".into(),
+                input_hash: "ab".repeat(32),
+                error: error.clone(),
+            }],
+        };
+        Manifest {
+            schema: MANIFEST_SCHEMA,
+            generator: "luthier 0.1.0".into(),
+            model: "elek".into(),
+            materials: vec![MaterialEntry {
+                name: "red-lacquer".into(),
+                source: "materials/red-lacquer.toml".into(),
+                source_hash: "12".repeat(32),
+                class: "c".into(),
+                color: ColorMode::Spectral,
+                wavelengths_nm: [645.0, 525.0, 445.0],
+                layers: vec![layer],
+            }],
+            tables: vec![
+                table(TableKind::Distribution, Mapping::Power { exponent: 8.0 }),
+                table(TableKind::Thickness, Mapping::Periodic),
+            ],
+            shaders: vec![ShaderEntry {
+                target: "wgsl".into(),
+                form: "baked".into(),
+                file: file("shaders/baked.wgsl"),
+            }],
+            bindings: vec![BindingEntry {
+                binding: 1,
+                name: "luthier_distribution".into(),
+                resource: "texture_2d<f32>".into(),
+            }],
+        }
+    }
+
+    /// Every bit of every number survives, subnormal ones and long fractions included.
+    #[test]
+    fn json_round_trip() {
+        let manifest = manifest();
+        let json = manifest.to_json().unwrap();
+        assert!(json.ends_with("}\n"));
+        let again = Manifest::from_json(&json).unwrap();
+        assert_eq!(again, manifest);
+        assert_eq!(again.to_json().unwrap(), json);
+    }
+
+    #[test]
+    fn names_in_the_file_are_those_documented() {
+        let value: serde_json::Value = serde_json::from_str(&manifest().to_json().unwrap()).unwrap();
+        assert_eq!(value["materials"][0]["color"], "spectral");
+        assert_eq!(value["tables"][0]["kind"], "distribution");
+        assert_eq!(value["tables"][0]["format"], "r16float");
+        assert_eq!(value["tables"][0]["layout"]["x"]["mapping"]["kind"], "power");
+        assert_eq!(value["tables"][0]["layout"]["x"]["mapping"]["exponent"], 8.0);
+        assert_eq!(value["materials"][0]["layers"][0]["kind"], "dielectric");
+        assert_eq!(value["materials"][0]["layers"][0]["fgd_tile"], serde_json::Value::Null);
+    }
+
+    #[test]
+    fn another_schema_is_refused_before_its_shape_is_looked_at() {
+        let refused = Manifest::from_json(r#"{"schema": 2, "future": true}"#);
+        assert!(matches!(refused, Err(LutError::ManifestSchema { found: 2, expected: MANIFEST_SCHEMA })));
+        for other in ["", "{}", "[]", r#"{"schema": "1"}"#, r#"{"schema": 1}"#, r#"{"schema": -1}"#] {
+            assert!(matches!(Manifest::from_json(other), Err(LutError::Manifest(_))), "{other}");
+        }
+    }
+
+    #[test]
+    fn a_number_that_is_not_finite_is_refused() {
+        for bad in [f64::NAN, f64::INFINITY] {
+            let mut manifest = manifest();
+            manifest.tables[0].tiles[0].error.max_abs_err = bad;
+            assert!(matches!(manifest.to_json(), Err(LutError::Manifest(_))), "{bad}");
+        }
+    }
+
+    #[test]
+    fn look_ups_by_kind_and_name() {
+        let manifest = manifest();
+        assert_eq!(manifest.table(TableKind::Thickness).unwrap().layout.x.mapping, Mapping::Periodic);
+        assert!(manifest.table(TableKind::Fresnel).is_none());
+        assert_eq!(manifest.material_index("red-lacquer"), Some(0));
+        assert_eq!(manifest.material_index("blue-lacquer"), None);
+    }
+}

@@ -1,0 +1,184 @@
+use serde::{Deserialize, Serialize};
+
+/// `vec4` words of a material's header in the material buffer.
+pub const MATERIAL_WORDS: usize = 1;
+/// `vec4` words of a layer in the material buffer.
+pub const LAYER_WORDS: usize = 9;
+
+/// What a layer is to the shader.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LayerKind {
+    /// A dielectric interface with a slab below: reflects, and lets light through.
+    Dielectric,
+    /// A conductor: reflects only.
+    Conductor,
+    /// A diffuse base.
+    Diffuse,
+}
+
+/// Everything a shader needs of one layer; the f64 twin reads the same record.
+///
+/// Indices are relative to the medium above the interface; the three samples are those of the material's three
+/// wavelengths.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LayerRecord {
+    /// What the layer is.
+    pub kind: LayerKind,
+    /// Slope distribution, by name: `beckmann` or `ggx`.
+    pub distribution: String,
+    /// Isotropic slope parameter, clamped to the domain of the model.
+    pub alpha: f64,
+    /// Real index below over index above at 589.3 nm, which bends the refracted directions; 1 for opaque bases.
+    pub eta: f64,
+    /// Absorption times thickness of the slab below, RGB.
+    pub optical_depth: [f64; 3],
+    /// Diffuse albedo, RGB.
+    pub albedo: [f64; 3],
+    /// Oren-Nayar slope deviation, radians; 0 is Lambert.
+    pub sigma: f64,
+    /// Real part of the relative index at the three wavelengths.
+    pub ior_n: [f64; 3],
+    /// Imaginary part.
+    pub ior_k: [f64; 3],
+    /// Real part of the film's relative index; 0 without a film.
+    pub film_ior_n: [f64; 3],
+    /// Imaginary part.
+    pub film_ior_k: [f64; 3],
+    /// Film thickness over the wavelength in the medium above, per channel; 0 without a film.
+    pub film_thickness_waves: [f64; 3],
+    /// Nominal film thickness; 0 without a film.
+    pub film_thickness_nm: f64,
+    /// Thickest the film gets; 0 without a film.
+    pub film_thickness_max_nm: f64,
+    /// Tile of the Fresnel atlas.
+    pub fresnel_tile: Option<u32>,
+    /// Tile of the distribution atlas.
+    pub distribution_tile: Option<u32>,
+    /// Tile of the FGD atlas.
+    pub fgd_tile: Option<u32>,
+    /// Tile of the phase atlas.
+    pub phase_tile: Option<u32>,
+    /// Tile of the thickness atlas.
+    pub thickness_tile: Option<u32>,
+}
+
+impl LayerRecord {
+    /// The words of the material buffer, in the order that the shader unpacks them. Tiles are numbers, -1 for none.
+    ///
+    /// | word | x, y, z, w |
+    /// |---|---|
+    /// | 0 | kind (0 dielectric, 1 conductor, 2 diffuse), alpha, eta, sigma |
+    /// | 1 | Fresnel tile, distribution tile, FGD tile, phase tile |
+    /// | 2 | optical depth RGB, thickness tile |
+    /// | 3 | albedo RGB, distribution (0 beckmann, 1 ggx) |
+    /// | 4 | ior_n RGB, film thickness nm |
+    /// | 5 | ior_k RGB, film thickness max nm |
+    /// | 6 | film_ior_n RGB, 0 |
+    /// | 7 | film_ior_k RGB, 0 |
+    /// | 8 | film thickness in waves RGB, 0 |
+    pub fn words(&self) -> [[f32; 4]; LAYER_WORDS] {
+        let kind = match self.kind {
+            LayerKind::Dielectric => 0.0,
+            LayerKind::Conductor => 1.0,
+            LayerKind::Diffuse => 2.0,
+        };
+        let distribution = if self.distribution == "ggx" { 1.0 } else { 0.0 };
+        let tile = |t: Option<u32>| t.map_or(-1.0, |t| t as f32);
+        let rgbw = |rgb: [f64; 3], w: f32| [rgb[0] as f32, rgb[1] as f32, rgb[2] as f32, w];
+        [
+            [kind, self.alpha as f32, self.eta as f32, self.sigma as f32],
+            [tile(self.fresnel_tile), tile(self.distribution_tile), tile(self.fgd_tile), tile(self.phase_tile)],
+            rgbw(self.optical_depth, tile(self.thickness_tile)),
+            rgbw(self.albedo, distribution),
+            rgbw(self.ior_n, self.film_thickness_nm as f32),
+            rgbw(self.ior_k, self.film_thickness_max_nm as f32),
+            rgbw(self.film_ior_n, 0.0),
+            rgbw(self.film_ior_k, 0.0),
+            rgbw(self.film_thickness_waves, 0.0),
+        ]
+    }
+}
+
+/// The material buffer: one header word per material (index of its first layer's first word, number of layers, 0, 0),
+/// then [`LAYER_WORDS`] words per layer, in order.
+pub fn material_buffer(materials: &[&[LayerRecord]]) -> Vec<[f32; 4]> {
+    let mut words = Vec::new();
+    let mut first = materials.len() * MATERIAL_WORDS;
+    for layers in materials {
+        words.push([first as f32, layers.len() as f32, 0.0, 0.0]);
+        first += layers.len() * LAYER_WORDS;
+    }
+    for layer in materials.iter().flat_map(|layers| layers.iter()) {
+        words.extend(layer.words());
+    }
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbered(kind: LayerKind) -> LayerRecord {
+        LayerRecord {
+            kind,
+            distribution: "ggx".into(),
+            alpha: 1.0,
+            eta: 2.0,
+            optical_depth: [3.0, 4.0, 5.0],
+            albedo: [6.0, 7.0, 8.0],
+            sigma: 9.0,
+            ior_n: [10.0, 11.0, 12.0],
+            ior_k: [13.0, 14.0, 15.0],
+            film_ior_n: [16.0, 17.0, 18.0],
+            film_ior_k: [19.0, 20.0, 21.0],
+            film_thickness_waves: [22.0, 23.0, 24.0],
+            film_thickness_nm: 25.0,
+            film_thickness_max_nm: 26.0,
+            fresnel_tile: Some(27),
+            distribution_tile: Some(28),
+            fgd_tile: None,
+            phase_tile: Some(0),
+            thickness_tile: None,
+        }
+    }
+
+    /// The table in the documentation of `words`, filled in by hand.
+    #[test]
+    fn words_lie_where_the_documentation_says() {
+        assert_eq!(
+            numbered(LayerKind::Conductor).words(),
+            [
+                [1.0, 1.0, 2.0, 9.0],
+                [27.0, 28.0, -1.0, 0.0],
+                [3.0, 4.0, 5.0, -1.0],
+                [6.0, 7.0, 8.0, 1.0],
+                [10.0, 11.0, 12.0, 25.0],
+                [13.0, 14.0, 15.0, 26.0],
+                [16.0, 17.0, 18.0, 0.0],
+                [19.0, 20.0, 21.0, 0.0],
+                [22.0, 23.0, 24.0, 0.0],
+            ]
+        );
+        assert_eq!(numbered(LayerKind::Dielectric).words()[0][0], 0.0);
+        assert_eq!(numbered(LayerKind::Diffuse).words()[0][0], 2.0);
+        let beckmann = LayerRecord { distribution: "beckmann".into(), ..numbered(LayerKind::Diffuse) };
+        assert_eq!(beckmann.words()[3][3], 0.0);
+    }
+
+    #[test]
+    fn headers_point_at_the_layers() {
+        let [top, middle, base] = [LayerKind::Dielectric, LayerKind::Conductor, LayerKind::Diffuse].map(numbered);
+        let one = [middle.clone()];
+        let two = [top.clone(), base.clone()];
+        let buffer = material_buffer(&[&two, &[], &one]);
+        assert_eq!(buffer[..3], [[3.0, 2.0, 0.0, 0.0], [21.0, 0.0, 0.0, 0.0], [21.0, 1.0, 0.0, 0.0]]);
+        assert_eq!(buffer.len(), 3 * MATERIAL_WORDS + 3 * LAYER_WORDS);
+        for (header, layers) in buffer.iter().zip([&two[..], &[], &one[..]]) {
+            let first = header[0] as usize;
+            let words: Vec<[f32; 4]> = layers.iter().flat_map(LayerRecord::words).collect();
+            assert_eq!(buffer[first..first + layers.len() * LAYER_WORDS], words);
+        }
+        assert!(material_buffer(&[]).is_empty());
+    }
+}

@@ -1,0 +1,134 @@
+use crate::named::named;
+
+/// The three wavelengths of a material that names none, as R, G and B (Granier and Heidrich 2003).
+pub const DEFAULT_WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
+
+named! {
+    /// What the channels of a table are.
+    pub enum ColorSetting {
+        /// Spectra, integrated against the CIE 1931 observer under D65.
+        Spectral = "spectral",
+        /// The function at three wavelengths, taken as R, G and B.
+        ThreeWavelengths = "three-wavelengths",
+    }
+}
+
+named! {
+    /// Texel formats, named as WebGPU names them.
+    pub enum Format {
+        /// One half float.
+        R16Float = "r16float",
+        /// One float.
+        R32Float = "r32float",
+        /// Four unsigned normalised bytes.
+        Rgba8Unorm = "rgba8unorm",
+        /// Four half floats.
+        Rgba16Float = "rgba16float",
+        /// Four floats.
+        Rgba32Float = "rgba32float",
+    }
+}
+
+named! {
+    /// Axis of a Fresnel row.
+    pub enum FresnelMapping {
+        /// Linear in cos theta.
+        Cosine = "cosine",
+        /// Linear in the square root of cos theta.
+        SqrtCosine = "sqrt-cosine",
+        /// Linear in theta.
+        Theta = "theta",
+    }
+}
+
+named! {
+    /// Angle axis of the table of slope distributions.
+    pub enum DistributionMapping {
+        /// theta_h = (pi/2) u^exponent (Elek 2010, section 3.1).
+        Power = "power",
+        /// theta_h = (pi/2) u.
+        Linear = "linear",
+        /// cos theta_h = u^(1/exponent): the other reading of the same passage, for comparison.
+        CosPower = "cos-power",
+    }
+}
+
+named! {
+    /// Slope axis of the table of slope distributions.
+    pub enum AlphaMapping {
+        /// Equal ratios.
+        Log = "log",
+        /// Equal steps.
+        Linear = "linear",
+    }
+}
+
+/// What a material asks of its tables; `None` leaves the choice to the baker.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct BakeSettings {
+    /// Spectral or at three wavelengths.
+    pub color: Option<ColorSetting>,
+    /// Wavelengths taken as R, G and B, in nm.
+    pub wavelengths_nm: Option<[f64; 3]>,
+    /// Fresnel rows.
+    pub fresnel: FresnelSettings,
+    /// Slope distribution.
+    pub distribution: DistributionSettings,
+    /// Energy of the rough interface.
+    pub fgd: GridSettings,
+    /// Phase rows of films.
+    pub phase: RowSettings,
+    /// Thickness textures of films; square.
+    pub thickness: RowSettings,
+}
+
+impl BakeSettings {
+    /// The three wavelengths, by default [`DEFAULT_WAVELENGTHS_NM`].
+    pub fn wavelengths_nm(&self) -> [f64; 3] {
+        self.wavelengths_nm.unwrap_or(DEFAULT_WAVELENGTHS_NM)
+    }
+}
+
+/// Settings of the Fresnel rows.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct FresnelSettings {
+    /// Texels of a row.
+    pub size: Option<u32>,
+    /// Texel format.
+    pub format: Option<Format>,
+    /// Axis.
+    pub mapping: Option<FresnelMapping>,
+}
+
+/// Settings of the table of slope distributions.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct DistributionSettings {
+    /// Texels along the angle and along alpha.
+    pub size: Option<[u32; 2]>,
+    /// Texel format.
+    pub format: Option<Format>,
+    /// Angle axis.
+    pub mapping: Option<DistributionMapping>,
+    /// Exponent of the angle axis.
+    pub exponent: Option<f64>,
+    /// Slope axis.
+    pub alpha_mapping: Option<AlphaMapping>,
+}
+
+/// Settings of a table with two axes.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct GridSettings {
+    /// Texels along x and y.
+    pub size: Option<[u32; 2]>,
+    /// Texel format.
+    pub format: Option<Format>,
+}
+
+/// Settings of a row or of a square texture.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct RowSettings {
+    /// Texels along a side.
+    pub size: Option<u32>,
+    /// Texel format.
+    pub format: Option<Format>,
+}

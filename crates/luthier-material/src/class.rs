@@ -1,0 +1,159 @@
+use std::fmt;
+
+use luthier_optics::stack::{Base, Stack, Surface};
+
+/// The eight classes of layered surfaces of Weidlich and Wilkie 2009, chapter 4.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum SurfaceClass {
+    /// Smooth clear coat on a diffuse base.
+    A,
+    /// Smooth tinted coat on a diffuse base.
+    B,
+    /// Rough coat on a diffuse base.
+    C,
+    /// Smooth coat on a smooth metal.
+    D,
+    /// Smooth coat on a rough metal.
+    E,
+    /// Rough coat on a smooth metal.
+    F,
+    /// Rough coat on a rough metal.
+    G,
+    /// More than two layers.
+    H,
+}
+
+/// Steepest slope, in degrees, of a surface that counts as smooth. The text calls 0.01 to 4 degrees smooth (glossy
+/// paint, and the 4-degree base of its metal foil) and 5 to 40 degrees rough (frosted paint).
+pub const SMOOTH_SLOPE_DEG: f64 = 4.5;
+
+/// Smallest optical depth of a channel that tints a coat: 1 % per pass.
+const TINT_DEPTH: f64 = 0.01;
+
+impl SurfaceClass {
+    /// All classes in order.
+    pub const ALL: [Self; 8] = [Self::A, Self::B, Self::C, Self::D, Self::E, Self::F, Self::G, Self::H];
+
+    /// The class by the decision tree of chapter 4: metal or not; is the top smooth; is the base smooth; and h for more
+    /// than two layers. Films share a layer's surface and do not count.
+    ///
+    /// The tree asks how a surface looks, so it extends to what the text leaves out. A surface of one layer is its own
+    /// top and base: a bare metal is d or g, a bare diffuse surface has no highlight and is c. A dielectric base, glass
+    /// for instance, goes with the diffuse ones: a, b or c by its top.
+    pub fn of(stack: &Stack) -> Self {
+        let (Some(top), Some(base)) = (stack.layers.first(), stack.layers.last()) else { return Self::C };
+        if stack.layers.len() > 2 {
+            return Self::H;
+        }
+        let coated = stack.layers.len() == 2;
+        let top_smooth = is_smooth(&top.surface) && !matches!(top.base, Base::Diffuse(_));
+        let tinted = match &top.base {
+            Base::Dielectric { slab, .. } => coated && slab.optical_depth().iter().any(|&d| d >= TINT_DEPTH),
+            _ => false,
+        };
+        match (&base.base, top_smooth) {
+            (Base::Conductor { .. }, true) if is_smooth(&base.surface) => Self::D,
+            (Base::Conductor { .. }, true) => Self::E,
+            (Base::Conductor { .. }, false) if is_smooth(&base.surface) => Self::F,
+            (Base::Conductor { .. }, false) => Self::G,
+            (_, true) if tinted => Self::B,
+            (_, true) => Self::A,
+            (_, false) => Self::C,
+        }
+    }
+
+    /// The letter that the text gives it.
+    pub fn letter(self) -> char {
+        match self {
+            Self::A => 'a',
+            Self::B => 'b',
+            Self::C => 'c',
+            Self::D => 'd',
+            Self::E => 'e',
+            Self::F => 'f',
+            Self::G => 'g',
+            Self::H => 'h',
+        }
+    }
+
+    /// The name that the text gives it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::A => "Glossy Paint",
+            Self::B => "Tinted Glazing",
+            Self::C => "Frosted Paint",
+            Self::D => "Metal Foil",
+            Self::E => "Metallic Paint",
+            Self::F => "Frosted Metal",
+            Self::G => "Patina",
+            Self::H => "Multi-Layer",
+        }
+    }
+}
+
+impl fmt::Display for SurfaceClass {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}) {}", self.letter(), self.name())
+    }
+}
+
+fn is_smooth(surface: &Surface) -> bool {
+    surface.alpha_isotropic() <= libm::tan(SMOOTH_SLOPE_DEG.to_radians())
+}
+
+#[cfg(test)]
+mod tests {
+    use luthier_optics::ior::Ior;
+    use luthier_optics::stack::{Diffuse, Distribution, Layer, Slab};
+
+    use super::*;
+
+    fn slope(deg: f64) -> Surface {
+        Surface::isotropic(Distribution::Beckmann, libm::tan(deg.to_radians()))
+    }
+
+    fn coat(deg: f64, absorption: f64) -> Layer {
+        let slab = Slab { thickness_um: 1.0, absorption_per_um: [0.0, absorption, 0.0] };
+        let base = Base::Dielectric { ior: Ior::constant(1.5, 0.0).unwrap(), slab };
+        Layer { films: Vec::new(), surface: slope(deg), base }
+    }
+
+    fn metal(deg: f64) -> Layer {
+        Layer {
+            films: Vec::new(),
+            surface: slope(deg),
+            base: Base::Conductor { ior: Ior::constant(1.0, 5.0).unwrap() },
+        }
+    }
+
+    fn diffuse() -> Layer {
+        let base = Base::Diffuse(Diffuse { albedo: [0.5; 3], sigma: 0.0 });
+        Layer { films: Vec::new(), surface: Surface::smooth(), base }
+    }
+
+    fn letter(layers: Vec<Layer>) -> char {
+        SurfaceClass::of(&Stack { exterior: Ior::vacuum(), layers }).letter()
+    }
+
+    /// The tree of figure 4.3 and the thresholds of the text, branch by branch.
+    #[test]
+    fn the_tree_has_eight_leaves() {
+        assert_eq!(letter(vec![coat(3.5, 0.0), diffuse()]), 'a');
+        assert_eq!(letter(vec![coat(1.5, 1.0), diffuse()]), 'b');
+        assert_eq!(letter(vec![coat(10.0, 1.0), diffuse()]), 'c');
+        assert_eq!(letter(vec![coat(1.0, 0.5), metal(4.0)]), 'd');
+        assert_eq!(letter(vec![coat(1.0, 0.5), metal(12.0)]), 'e');
+        assert_eq!(letter(vec![coat(17.0, 0.5), metal(1.0)]), 'f');
+        assert_eq!(letter(vec![coat(7.0, 0.0), metal(10.0)]), 'g');
+        assert_eq!(letter(vec![coat(30.0, 0.0), coat(7.0, 0.0), diffuse()]), 'h');
+    }
+
+    #[test]
+    fn one_layer_is_its_own_top_and_base() {
+        assert_eq!(letter(vec![metal(0.0)]), 'd');
+        assert_eq!(letter(vec![metal(20.0)]), 'g');
+        assert_eq!(letter(vec![diffuse()]), 'c');
+        assert_eq!(letter(vec![coat(0.0, 1.0)]), 'a');
+        assert_eq!(letter(vec![coat(20.0, 0.0)]), 'c');
+    }
+}

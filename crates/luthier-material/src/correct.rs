@@ -1,0 +1,70 @@
+//! What a number outside its range was probably meant to be.
+
+use crate::grammar::Range;
+use crate::suggest::short;
+
+/// A hint with the corrected value of `name`, which is outside `range`. In a list the value stands alone.
+pub(crate) fn corrected(name: &str, range: Range, value: f64, in_list: bool) -> Option<String> {
+    let write = |v: f64| if in_list { format!("`{}`", short(v)) } else { format!("`{name} = {}`", short(v)) };
+    if !value.is_finite() {
+        return None;
+    }
+    if value < 0.0 && range.contains(-value) {
+        let why = if name == "k" { "k > 0 absorbs (phase e^{+i beta}): " } else { "" };
+        return Some(format!("{why}write {}", write(-value)));
+    }
+    match name {
+        "n" | "ior" => return Some(format!("vacuum has {}", write(1.0))),
+        "alpha" | "alpha_x" | "alpha_y" if value > 1.0 && value <= 45.0 => {
+            let slope = short(libm::tan(value.to_radians()));
+            return Some(format!("alpha is a slope, not an angle: {} degrees is `{name} = {slope}`", short(value)));
+        }
+        "roughness" if value > 1.0 && value <= 100.0 => {
+            return Some(format!("{} per cent is {}", short(value), write(value / 100.0)));
+        }
+        "sigma" if value > 0.0 && value <= 90.0 => {
+            return Some(format!("sigma is in radians: {} degrees is {}", short(value), write(value.to_radians())));
+        }
+        "albedo" | "diffuse_albedo" | "tarnish" if value > 1.5 && value <= 255.0 => {
+            let linear = write(srgb_to_linear(value / 255.0));
+            return Some(format!("linear reflectance is wanted: the 8-bit sRGB value {} is {linear}", short(value)));
+        }
+        "wavelengths_nm" if value > 0.0 && value < 20.0 => {
+            return Some(format!("wavelengths are in nm: {} um is {}", short(value), write(value * 1000.0)));
+        }
+        _ => {}
+    }
+    let nearest = if value > range.max { range.max } else { range.min };
+    range.contains(nearest).then(|| format!("the nearest allowed is {}", write(nearest)))
+}
+
+/// IEC 61966-2-1.
+fn srgb_to_linear(encoded: f64) -> f64 {
+    if encoded <= 0.04045 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grammar::{NOT_NEGATIVE, POSITIVE, UNIT};
+
+    fn hint(name: &str, range: Range, value: f64) -> String {
+        corrected(name, range, value, false).unwrap()
+    }
+
+    #[test]
+    fn hints_hold_the_corrected_value() {
+        assert!(hint("k", NOT_NEGATIVE, -2.4).contains("`k = 2.4`"));
+        assert!(hint("thickness_um", NOT_NEGATIVE, -3.0).contains("`thickness_um = 3`"));
+        assert!(hint("n", POSITIVE, 0.0).contains("`n = 1`"));
+        assert!(hint("roughness", UNIT, 35.0).contains("`roughness = 0.35`"));
+        assert!(hint("sigma", UNIT, 20.0).contains("`sigma = 0.34907`"));
+        assert!(hint("extent", UNIT, 7.0).contains("`extent = 1`"));
+        // tan 12 degrees
+        assert!(hint("alpha", UNIT, 12.0).contains("`alpha = 0.21256`"));
+        // Oracle: sRGB 188 is the code value of linear 0.5029.
+        assert!(hint("albedo", UNIT, 188.0).contains("`albedo = 0.50289`"));
+        assert_eq!(corrected("alpha", UNIT, f64::NAN, false), None);
+        assert_eq!(corrected("albedo", UNIT, 1.2, true).as_deref(), Some("the nearest allowed is `1`"));
+    }
+}

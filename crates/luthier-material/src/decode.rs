@@ -1,0 +1,65 @@
+//! From a document to a material. The checker has seen to keys, types and ranges; what is left is what the values mean
+//! together. Where a value is missing or wrong a stand-in keeps the decoder going, so that one run reports everything; the
+//! result counts only when nothing was reported.
+
+mod bake;
+mod effects;
+mod films;
+mod ior;
+mod layers;
+mod surface;
+
+use luthier_optics::ior::Ior;
+use luthier_optics::stack::Stack;
+
+use crate::class::SurfaceClass;
+use crate::diagnostic::Sink;
+use crate::doubt::{self, Sources};
+use crate::material::Material;
+use crate::section::Section;
+
+/// Reads a file that a material refers to, by its path relative to the material file.
+pub(crate) type Read<'r> = &'r dyn Fn(&str) -> std::io::Result<String>;
+
+/// k up to which a medium passes for transparent: 0.2 % over a path of one wavelength.
+const TRANSPARENT_K: f64 = 1e-4;
+
+/// Decodes a document, with its doubts.
+pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read<'_>, sink: &mut Sink<'_>) -> Material {
+    let mut sources = Sources::default();
+    let exterior = exterior(document, read, sink, &mut sources);
+    let (layers, extras) = layers::decode(document, read, sink, &mut sources);
+    let stack = Stack { exterior, layers };
+    let bake = bake::decode(document, sink);
+    let effects = effects::decode(document, &stack, sink);
+    if !sink.has_errors() {
+        doubt::report(&stack, &bake, &sources, sink);
+    }
+    Material {
+        name: document.text("name").unwrap_or_default().to_owned(),
+        source: label.to_owned(),
+        text: text.to_owned(),
+        description: document.text("description").unwrap_or_default().to_owned(),
+        references: document.texts("references"),
+        class: SurfaceClass::of(&stack),
+        stack,
+        layers: extras,
+        effects,
+        bake,
+    }
+}
+
+/// The exterior medium. A trace of absorption in a data set is dropped; real absorption is an error.
+fn exterior(document: &Section<'_>, read: Read<'_>, sink: &mut Sink<'_>, sources: &mut Sources) -> Ior {
+    let Some(ior) = ior::decode(document, "exterior", read, sink, sources) else { return Ior::vacuum() };
+    let k_max = ior.samples().iter().fold(0.0, |k: f64, s| k.max(s.k));
+    if k_max > TRANSPARENT_K {
+        let span = document.value_span("exterior");
+        let message = format!("the exterior must be transparent, but its k reaches {}", crate::suggest::short(k_max));
+        let n = crate::suggest::short(ior.at(doubt::SODIUM_D_NM).re);
+        sink.error(span, message, Some(format!("write `exterior = {n}` for its real part alone")));
+    }
+    let mut samples = ior.samples().to_vec();
+    samples.iter_mut().for_each(|s| s.k = 0.0);
+    Ior::sampled(samples).unwrap_or(ior)
+}

@@ -1,0 +1,69 @@
+use crate::bake_settings::{
+    AlphaMapping, BakeSettings, ColorSetting, DistributionMapping, DistributionSettings, Format, FresnelMapping,
+    FresnelSettings, GridSettings, RowSettings,
+};
+use crate::diagnostic::Sink;
+use crate::section::Section;
+
+/// What the file asks of its tables.
+pub(super) fn decode(document: &Section<'_>, sink: &mut Sink<'_>) -> BakeSettings {
+    let Some(at) = document.section("bake") else { return BakeSettings::default() };
+    let wavelengths_nm = at.rgb("wavelengths_nm").filter(|w| distinct(w, &at, sink));
+    BakeSettings {
+        color: at.text("color").and_then(ColorSetting::from_name),
+        wavelengths_nm,
+        fresnel: at.section("fresnel").map(|at| fresnel(&at)).unwrap_or_default(),
+        distribution: at.section("distribution").map(|at| distribution(&at, sink)).unwrap_or_default(),
+        fgd: at.section("fgd").map(|at| grid(&at)).unwrap_or_default(),
+        phase: at.section("phase").map(|at| row(&at)).unwrap_or_default(),
+        thickness: at.section("thickness").map(|at| row(&at)).unwrap_or_default(),
+    }
+}
+
+fn distinct(wavelengths: &[f64; 3], at: &Section<'_>, sink: &mut Sink<'_>) -> bool {
+    let [r, g, b] = *wavelengths;
+    if r > g && g > b {
+        return true;
+    }
+    let span = at.value_span("wavelengths_nm");
+    if !sink.has_error_in(&span) {
+        let hint = "write them as R, G, B: `wavelengths_nm = [645, 525, 445]`".to_owned();
+        sink.error(span, "the wavelengths of R, G and B must descend", Some(hint));
+    }
+    false
+}
+
+fn format(at: &Section<'_>) -> Option<Format> {
+    at.text("format").and_then(Format::from_name)
+}
+
+fn fresnel(at: &Section<'_>) -> FresnelSettings {
+    FresnelSettings {
+        size: at.integer("size"),
+        format: format(at),
+        mapping: at.text("mapping").and_then(FresnelMapping::from_name),
+    }
+}
+
+fn distribution(at: &Section<'_>, sink: &mut Sink<'_>) -> DistributionSettings {
+    let mapping = at.text("mapping").and_then(DistributionMapping::from_name);
+    if mapping == Some(DistributionMapping::Linear) && at.has("exponent") {
+        let hint = "leave it out, or write `mapping = \"power\"`".to_owned();
+        sink.warn(at.key_span("exponent"), "a linear axis has no exponent", Some(hint));
+    }
+    DistributionSettings {
+        size: at.pair("size"),
+        format: format(at),
+        mapping,
+        exponent: at.number("exponent"),
+        alpha_mapping: at.text("alpha_mapping").and_then(AlphaMapping::from_name),
+    }
+}
+
+fn grid(at: &Section<'_>) -> GridSettings {
+    GridSettings { size: at.pair("size"), format: format(at) }
+}
+
+fn row(at: &Section<'_>) -> RowSettings {
+    RowSettings { size: at.integer("size"), format: format(at) }
+}

@@ -1,0 +1,61 @@
+use luthier_optics::stack::Stack;
+
+use super::films;
+use crate::diagnostic::Sink;
+use crate::effects::{Effects, FlakeSource, Flakes, Patina};
+use crate::section::Section;
+use crate::suggest::short;
+
+/// The effects of a material.
+pub(super) fn decode(document: &Section<'_>, stack: &Stack, sink: &mut Sink<'_>) -> Effects {
+    let Some(at) = document.section("effects") else { return Effects::default() };
+    for effect in ["flakes", "patina"] {
+        if at.has(effect) && stack.layers.len() == 1 {
+            let hint = "add a dielectric `[[layer]]` on top".to_owned();
+            sink.error(at.key_span(effect), format!("`{effect}` needs a layer below the first interface"), Some(hint));
+        }
+    }
+    Effects {
+        flakes: at.section("flakes").and_then(|at| flakes(&at)),
+        patina: at.section("patina").and_then(|at| patina(&at, sink)),
+    }
+}
+
+fn flakes(at: &Section<'_>) -> Option<Flakes> {
+    let source = match at.path("normal_map") {
+        Some(path) => FlakeSource::NormalMap { path },
+        None => {
+            let cells = at.section("cells")?;
+            FlakeSource::Cells {
+                seed: cells.integer("seed").unwrap_or(0),
+                count: cells.integer("count").unwrap_or(64),
+                spread: cells.number("spread_deg").unwrap_or(15.0).to_radians(),
+            }
+        }
+    };
+    Some(Flakes {
+        source,
+        tiling: at.number("tiling").unwrap_or(1000.0),
+        scale: at.number("scale").unwrap_or(1.0),
+        fade_start: at.number("fade_start").unwrap_or(1.0),
+    })
+}
+
+fn patina(at: &Section<'_>, sink: &mut Sink<'_>) -> Option<Patina> {
+    let (extent, transition) = (at.number("extent")?, at.number("transition")?);
+    let (least, most) = (-transition, 1.0 + transition);
+    if !(least..=most).contains(&extent) && !sink.has_error_in(&at.span) {
+        let message =
+            format!("`extent` runs from -transition to 1 + transition, {} to {} here", short(least), short(most));
+        let hint = format!("the nearest allowed is `extent = {}`", short(extent.clamp(least.min(most), most)));
+        sink.error(at.value_span("extent"), message, Some(hint));
+    }
+    Some(Patina {
+        extent,
+        transition,
+        map: films::map(&at.section("map")?)?,
+        diffuse_albedo: at.rgb("diffuse_albedo").unwrap_or([0.0; 3]),
+        base_alpha: at.number("base_alpha"),
+        tarnish: at.rgb("tarnish").unwrap_or([1.0; 3]),
+    })
+}

@@ -1,0 +1,160 @@
+use std::ops::Range as Span;
+
+use luthier_optics::constants::{dataset, datasets, parse_csv};
+use luthier_optics::ior::{Ior, IorSample};
+
+use super::Read;
+use crate::diagnostic::Sink;
+use crate::doubt::Sources;
+use crate::section::{Numbers, Section, section};
+use crate::suggest::{did_you_mean, short};
+
+/// The index under `key`, or `None` when it is absent or wrong.
+pub(super) fn decode(
+    at: &Section<'_>,
+    key: &str,
+    read: Read<'_>,
+    sink: &mut Sink<'_>,
+    sources: &mut Sources,
+) -> Option<Ior> {
+    let value = at.value(key)?;
+    if let Some(number) = at.number(key) {
+        return Ior::constant(number, 0.0).ok();
+    }
+    if let Some(text) = at.text(key) {
+        let ior = by_name(text, value.span(), read, sink)?;
+        if let Some(range) = ior.range_nm() {
+            sources.spectra.push((text.to_owned(), range, value.span()));
+        }
+        return Some(ior);
+    }
+    sampled(&section(value)?, sink)
+}
+
+/// `{ n, k, wavelengths_nm }`.
+fn sampled(at: &Section<'_>, sink: &mut Sink<'_>) -> Option<Ior> {
+    let n = at.numbers("n")?;
+    let k = if at.has("k") { at.numbers("k")? } else { Numbers::One(0.0) };
+    let wavelengths = match at.numbers("wavelengths_nm") {
+        Some(Numbers::Many(w)) => w,
+        Some(Numbers::One(_)) => return None,
+        None => {
+            if let (Numbers::One(n), Numbers::One(k)) = (&n, &k) {
+                return Ior::constant(*n, *k).ok();
+            }
+            let list = if matches!(n, Numbers::Many(_)) { "n" } else { "k" };
+            if !at.has("wavelengths_nm") {
+                let hint = "say where they were sampled: `wavelengths_nm = [690, 550, 450]`";
+                sink.error(at.value_span(list), "a list needs its wavelengths", Some(hint.to_owned()));
+            }
+            return None;
+        }
+    };
+    if let (Numbers::One(_), Numbers::One(_)) = (&n, &k) {
+        let hint = "leave them out: the index is constant".to_owned();
+        sink.error(at.key_span("wavelengths_nm"), "wavelengths without a list of n or k", Some(hint));
+        return None;
+    }
+    let n = as_many("n", n, &wavelengths, at, sink)?;
+    let k = as_many("k", k, &wavelengths, at, sink)?;
+
+    let mut samples: Vec<IorSample> = wavelengths
+        .iter()
+        .zip(n.iter().zip(&k))
+        .map(|(&wavelength_nm, (&n, &k))| IorSample { wavelength_nm, n, k })
+        .collect();
+    samples.sort_by(|a, b| a.wavelength_nm.total_cmp(&b.wavelength_nm));
+    match Ior::sampled(samples) {
+        Ok(ior) => Some(ior),
+        Err(error) => {
+            if !sink.has_error_in(&at.span) {
+                sink.error(at.value_span("wavelengths_nm"), error.to_string(), None);
+            }
+            None
+        }
+    }
+}
+
+fn as_many(
+    name: &str,
+    numbers: Numbers,
+    wavelengths: &[f64],
+    at: &Section<'_>,
+    sink: &mut Sink<'_>,
+) -> Option<Vec<f64>> {
+    match numbers {
+        Numbers::One(value) => Some(vec![value; wavelengths.len()]),
+        Numbers::Many(values) if values.len() == wavelengths.len() => Some(values),
+        Numbers::Many(values) => {
+            let message = format!("{} values of `{name}` for {} wavelengths", values.len(), wavelengths.len());
+            sink.error(at.value_span(name), message, Some("give one value for each wavelength".to_owned()));
+            None
+        }
+    }
+}
+
+/// A CSV file, or a built-in data set.
+fn by_name(name: &str, span: Span<usize>, read: Read<'_>, sink: &mut Sink<'_>) -> Option<Ior> {
+    if name.to_ascii_lowercase().ends_with(".csv") {
+        return match read(name) {
+            Ok(text) => match parse_csv(&text) {
+                Ok(ior) => Some(ior),
+                Err(error) => {
+                    sink.error(span, format!("`{name}`: {error}"), None);
+                    None
+                }
+            },
+            Err(error) => {
+                let hint = "the path is relative to the material file".to_owned();
+                sink.error(span, format!("cannot read `{name}`: {error}"), Some(hint));
+                None
+            }
+        };
+    }
+    if let Some(set) = dataset(name) {
+        return Some(set.ior.clone());
+    }
+    if name.is_empty() {
+        return None;
+    }
+    let hint = match nearest_dataset(name) {
+        Some((id, called)) => format!("did you mean `\"{id}\"` ({called})?"),
+        None if name.parse::<f64>().is_ok() => format!("write the number {} without quotes", short(name.parse().ok()?)),
+        None => "`luthier ior` lists the data sets; a path must end in `.csv`".to_owned(),
+    };
+    sink.error(span, format!("there is no data set `{name}`"), Some(hint));
+    None
+}
+
+/// The data set that a name probably means: by id, or by what people call it.
+fn nearest_dataset(name: &str) -> Option<(&'static str, &'static str)> {
+    let lower = name.to_lowercase();
+    let called = |set: &str| {
+        set.to_lowercase().split(|c: char| !c.is_alphanumeric()).any(|word| word.len() > 2 && word == lower)
+    };
+    if let Some(set) = datasets().iter().find(|d| d.id == lower).or_else(|| datasets().iter().find(|d| called(d.name)))
+    {
+        return Some((set.id, set.name));
+    }
+    let words = datasets().iter().flat_map(|d| {
+        std::iter::once(d.id).chain(d.name.split(|c: char| !c.is_alphanumeric()).filter(|w| w.len() > 2))
+    });
+    let word = did_you_mean(name, words)?;
+    let set =
+        datasets().iter().find(|d| d.id == word || d.name.split(|c: char| !c.is_alphanumeric()).any(|w| w == word))?;
+    Some((set.id, set.name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn people_call_data_sets_by_other_names() {
+        assert_eq!(nearest_dataset("Au").map(|d| d.0), Some("au"));
+        assert_eq!(nearest_dataset("gold").map(|d| d.0), Some("au"));
+        assert_eq!(nearest_dataset("aluminum").map(|d| d.0), Some("al"));
+        assert_eq!(nearest_dataset("brass_7030").map(|d| d.0), Some("brass_70_30"));
+        assert_eq!(nearest_dataset("unobtainium"), None);
+    }
+}

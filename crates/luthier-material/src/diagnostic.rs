@@ -1,0 +1,164 @@
+use std::ops::Range;
+
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+
+/// How bad it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Severity {
+    /// The file is not a material.
+    Error,
+    /// The file is a material, but perhaps not the one that was meant.
+    Warning,
+}
+
+impl Severity {
+    /// `error` or `warning`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Error => "error",
+            Self::Warning => "warning",
+        }
+    }
+}
+
+/// Something to say about a place in a material file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// How bad it is.
+    pub severity: Severity,
+    /// Label of the file, as given to [`parse`](crate::parse).
+    pub label: String,
+    /// Line of the start of the span, from 1.
+    pub line: usize,
+    /// Column of the start of the span in characters, from 1.
+    pub column: usize,
+    /// Bytes of the text that it is about.
+    pub span: Range<usize>,
+    /// What is wrong.
+    pub message: String,
+    /// What to do about it.
+    pub hint: Option<String>,
+}
+
+impl Diagnostic {
+    /// The diagnostic with the lines that it is about, as plain text. `text` is what was parsed.
+    pub fn render(&self, text: &str) -> String {
+        self.render_with(text, &Renderer::plain())
+    }
+
+    /// As [`render`](Self::render), with the ANSI escapes of a colour terminal.
+    pub fn render_coloured(&self, text: &str) -> String {
+        self.render_with(text, &Renderer::styled())
+    }
+
+    fn render_with(&self, text: &str, renderer: &Renderer) -> String {
+        let level = match self.severity {
+            Severity::Error => Level::ERROR,
+            Severity::Warning => Level::WARNING,
+        };
+        // A label that is not of this text must not bring the renderer down.
+        let span = clamp_to_text(text, self.span.clone());
+        let snippet = Snippet::source(text).path(&self.label).annotation(AnnotationKind::Primary.span(span));
+        let mut group = level.primary_title(&self.message).element(snippet);
+        if let Some(hint) = &self.hint {
+            group = group.element(Level::HELP.message(hint));
+        }
+        renderer.render(&[group])
+    }
+}
+
+/// Collects diagnostics of one text.
+pub(crate) struct Sink<'t> {
+    label: &'t str,
+    text: &'t str,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl<'t> Sink<'t> {
+    pub(crate) fn new(label: &'t str, text: &'t str) -> Self {
+        Self { label, text, diagnostics: Vec::new() }
+    }
+
+    pub(crate) fn error(&mut self, span: Range<usize>, message: impl Into<String>, hint: Option<String>) {
+        self.push(Severity::Error, span, message.into(), hint);
+    }
+
+    pub(crate) fn warn(&mut self, span: Range<usize>, message: impl Into<String>, hint: Option<String>) {
+        self.push(Severity::Warning, span, message.into(), hint);
+    }
+
+    pub(crate) fn has_errors(&self) -> bool {
+        self.diagnostics.iter().any(|d| d.severity == Severity::Error)
+    }
+
+    /// Whether an error about a part of the span has been said already.
+    pub(crate) fn has_error_in(&self, span: &Range<usize>) -> bool {
+        self.diagnostics
+            .iter()
+            .any(|d| d.severity == Severity::Error && span.start <= d.span.start && d.span.end <= span.end)
+    }
+
+    /// All diagnostics in the order of the text.
+    pub(crate) fn into_diagnostics(self) -> Vec<Diagnostic> {
+        let mut diagnostics = self.diagnostics;
+        diagnostics.sort_by_key(|d| (d.span.start, d.span.end));
+        diagnostics
+    }
+
+    fn push(&mut self, severity: Severity, span: Range<usize>, message: String, hint: Option<String>) {
+        let span = clamp_to_text(self.text, span);
+        let before = &self.text[..span.start];
+        let line_start = before.rfind('\n').map_or(0, |i| i + 1);
+        self.diagnostics.push(Diagnostic {
+            severity,
+            label: self.label.to_owned(),
+            line: before.matches('\n').count() + 1,
+            column: before[line_start..].chars().count() + 1,
+            span,
+            message,
+            hint,
+        });
+    }
+}
+
+fn clamp_to_text(text: &str, span: Range<usize>) -> Range<usize> {
+    let start = text.floor_char_boundary(span.start);
+    start..text.ceil_char_boundary(span.end.max(start))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_and_columns_count_characters_from_one() {
+        let text = "a = 1\nü = 2\n";
+        let mut sink = Sink::new("x.toml", text);
+        sink.error(11..12, "later", None);
+        sink.warn(0..1, "first", None);
+        let diagnostics = sink.into_diagnostics();
+        assert_eq!((diagnostics[0].line, diagnostics[0].column), (1, 1));
+        assert_eq!((diagnostics[1].line, diagnostics[1].column), (2, 5));
+    }
+
+    #[test]
+    fn rendering_shows_place_line_and_hint() {
+        let text = "alpha = 3\n";
+        let mut sink = Sink::new("x.toml", text);
+        sink.error(8..9, "`alpha` must be from 0 to 1, found 3", Some("write `alpha = 1`".to_owned()));
+        let rendered = sink.into_diagnostics()[0].render(text);
+        for part in ["error: `alpha` must be from 0 to 1, found 3", "x.toml:1:9", "1 | alpha = 3", "write `alpha = 1`"]
+        {
+            assert!(rendered.contains(part), "{rendered}");
+        }
+    }
+
+    #[test]
+    fn spans_outside_the_text_are_clamped() {
+        let mut sink = Sink::new("x.toml", "ü");
+        sink.error(1..9, "m", None);
+        let d = sink.into_diagnostics().remove(0);
+        assert_eq!(d.span, 0..2);
+        let _ = d.render("");
+    }
+}

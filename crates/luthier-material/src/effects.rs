@@ -1,0 +1,64 @@
+use luthier_optics::Rgb;
+
+use crate::material::VariationSource;
+
+/// Effects that modify the layered model.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Effects {
+    /// Glints of flakes in the coat.
+    pub flakes: Option<Flakes>,
+    /// Growth of the first layer over the rest.
+    pub patina: Option<Patina>,
+}
+
+/// Metal flakes: normals that are perturbed below the first interface only (Elek 2010, section 4.1).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flakes {
+    /// Where the normals come from.
+    pub source: FlakeSource,
+    /// Repeats of the map per unit of texture coordinate.
+    pub tiling: f64,
+    /// Weight of the flakes' normal against the surface's.
+    pub scale: f64,
+    /// Distance from the eye, in scene units, up to which the flakes keep their full weight.
+    pub fade_start: f64,
+}
+
+/// Where the normals of flakes come from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FlakeSource {
+    /// A tangent-space normal map, sampled without filtering.
+    NormalMap {
+        /// Path relative to the material file.
+        path: String,
+    },
+    /// One random normal per cell of a grid.
+    Cells {
+        /// Seed.
+        seed: u32,
+        /// Cells along one repeat.
+        count: u32,
+        /// Standard deviation of the flakes' slope angle, in radians.
+        spread: f64,
+    },
+}
+
+/// Patina: where the map says so, the first layer has grown over the others (Elek 2010, section 4.2).
+///
+/// The amount of patina is `clamp(1/2 + (extent - map) / (2 transition), 0, 1)`, a step at `transition = 0`; the model
+/// is evaluated with and without the first layer, and blended by that amount.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Patina {
+    /// How far it has developed, in `-transition..=1 + transition`.
+    pub extent: f64,
+    /// Softness of the boundary, 0..=1.
+    pub transition: f64,
+    /// Order of development: dark places come first.
+    pub map: VariationSource,
+    /// Diffuse reflectance that stands for scattering in the patina.
+    pub diffuse_albedo: Rgb,
+    /// Slope parameter of the layer below where patina has grown; `None` leaves it alone.
+    pub base_alpha: Option<f64>,
+    /// Factor on the reflection of the layer below where patina has grown.
+    pub tarnish: Rgb,
+}

@@ -1,0 +1,183 @@
+//! The grammar of material files as data. The checker, the decoder's choices and the JSON Schema all follow these
+//! tables; a key that is not here does not exist.
+
+mod bake;
+mod document;
+mod effects;
+mod layers;
+
+pub(crate) use document::DOCUMENT;
+
+/// Version of the grammar that this crate reads.
+pub(crate) const SCHEMA_VERSION: i64 = 1;
+
+/// A table: its keys, and what must hold between them.
+pub(crate) struct Table {
+    /// Name, for messages and for the schema.
+    pub(crate) name: &'static str,
+    /// What it describes.
+    pub(crate) doc: &'static str,
+    /// Its keys.
+    pub(crate) keys: &'static [Key],
+    /// Groups of keys of which exactly one must be given.
+    pub(crate) exactly_one: Option<Alternatives>,
+}
+
+/// Ways to say the same thing, of which a table takes exactly one.
+pub(crate) struct Alternatives {
+    /// What is said, with its article.
+    pub(crate) what: &'static str,
+    /// Each way is one or more keys that go together.
+    pub(crate) forms: &'static [&'static [&'static str]],
+    /// The ways as a reader would write them.
+    pub(crate) examples: &'static str,
+}
+
+/// A key of a table.
+pub(crate) struct Key {
+    pub(crate) name: &'static str,
+    pub(crate) kind: Kind,
+    pub(crate) doc: &'static str,
+    pub(crate) required: bool,
+    /// Value when absent, in JSON; empty when absence has a meaning of its own.
+    pub(crate) default: &'static str,
+}
+
+/// What a value may be.
+pub(crate) enum Kind {
+    /// `true` only.
+    True,
+    /// A finite number.
+    Number(Range),
+    /// A whole number between two bounds, both included.
+    Integer(i64, i64),
+    /// A string.
+    Text(TextForm),
+    /// One of some strings.
+    Choice(&'static [&'static str]),
+    /// An array of so many values of one kind.
+    List { item: &'static Kind, min: usize, max: usize },
+    /// A table.
+    Table(&'static Table),
+    /// An array of tables that say in `tag` what they are.
+    Tagged { tag: &'static str, variants: &'static [&'static Table] },
+    /// One of several kinds; no two share a TOML type.
+    OneOf(&'static [Kind]),
+}
+
+/// What a string must look like.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum TextForm {
+    /// Anything.
+    Prose,
+    /// Letters, digits and hyphens; the first is no hyphen.
+    Name,
+    /// Not empty.
+    Path,
+}
+
+/// Bounds of a number.
+#[derive(Clone, Copy)]
+pub(crate) struct Range {
+    pub(crate) min: f64,
+    pub(crate) max: f64,
+    /// Whether `min` itself is left out.
+    pub(crate) above: bool,
+}
+
+impl Range {
+    pub(crate) fn contains(self, value: f64) -> bool {
+        value.is_finite() && value <= self.max && if self.above { value > self.min } else { value >= self.min }
+    }
+}
+
+pub(crate) const ANY: Range = Range { min: f64::NEG_INFINITY, max: f64::INFINITY, above: false };
+pub(crate) const POSITIVE: Range = Range { min: 0.0, max: f64::INFINITY, above: true };
+pub(crate) const NOT_NEGATIVE: Range = Range { min: 0.0, max: f64::INFINITY, above: false };
+pub(crate) const UNIT: Range = Range { min: 0.0, max: 1.0, above: false };
+pub(crate) const UNIT_ABOVE_ZERO: Range = Range { min: 0.0, max: 1.0, above: true };
+
+pub(crate) const NOT_NEGATIVE_RGB: Kind =
+    Kind::OneOf(&[Kind::Number(NOT_NEGATIVE), Kind::List { item: &Kind::Number(NOT_NEGATIVE), min: 3, max: 3 }]);
+pub(crate) const UNIT_RGB: Kind =
+    Kind::OneOf(&[Kind::Number(UNIT), Kind::List { item: &Kind::Number(UNIT), min: 3, max: 3 }]);
+pub(crate) const PATH: Kind = Kind::Text(TextForm::Path);
+
+impl Key {
+    pub(crate) const fn required(name: &'static str, kind: Kind, doc: &'static str) -> Self {
+        Self { name, kind, doc, required: true, default: "" }
+    }
+
+    pub(crate) const fn optional(name: &'static str, kind: Kind, doc: &'static str) -> Self {
+        Self { name, kind, doc, required: false, default: "" }
+    }
+
+    pub(crate) const fn with_default(name: &'static str, kind: Kind, default: &'static str, doc: &'static str) -> Self {
+        Self { name, kind, doc, required: false, default }
+    }
+}
+
+impl Table {
+    pub(crate) fn key(&self, name: &str) -> Option<&'static Key> {
+        self.keys.iter().find(|k| k.name == name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn visit(table: &'static Table, seen: &mut Vec<&'static str>) {
+        if seen.contains(&table.name) {
+            return;
+        }
+        seen.push(table.name);
+        assert!(!table.doc.is_empty(), "{}", table.name);
+        for (i, key) in table.keys.iter().enumerate() {
+            assert!(table.keys[..i].iter().all(|k| k.name != key.name), "{}.{} twice", table.name, key.name);
+            assert!(!key.doc.is_empty(), "{}.{}", table.name, key.name);
+            assert!(!key.required || key.default.is_empty(), "{}.{}", table.name, key.name);
+            visit_kind(&key.kind, seen);
+        }
+        for form in table.exactly_one.iter().flat_map(|a| a.forms) {
+            assert!(form.iter().all(|name| table.key(name).is_some_and(|k| !k.required)), "{}: {form:?}", table.name);
+        }
+    }
+
+    fn visit_kind(kind: &'static Kind, seen: &mut Vec<&'static str>) {
+        match kind {
+            Kind::Table(table) => visit(table, seen),
+            Kind::Tagged { tag, variants } => {
+                for variant in *variants {
+                    assert!(variant.key(tag).is_some(), "{}", variant.name);
+                    visit(variant, seen);
+                }
+            }
+            Kind::OneOf(kinds) => {
+                let types: Vec<_> = kinds.iter().map(toml_type).collect();
+                assert!((1..types.len()).all(|i| !types[..i].contains(&types[i])), "{types:?}");
+                kinds.iter().for_each(|k| visit_kind(k, seen));
+            }
+            Kind::List { item, .. } => visit_kind(item, seen),
+            _ => {}
+        }
+    }
+
+    fn toml_type(kind: &Kind) -> &'static str {
+        match kind {
+            Kind::True => "boolean",
+            Kind::Number(_) | Kind::Integer(..) => "number",
+            Kind::Text(_) | Kind::Choice(_) => "string",
+            Kind::List { .. } | Kind::Tagged { .. } => "array",
+            Kind::Table(_) => "table",
+            Kind::OneOf(_) => "nested",
+        }
+    }
+
+    #[test]
+    fn tables_are_consistent() {
+        let mut seen = Vec::new();
+        visit(&DOCUMENT, &mut seen);
+        assert!(seen.len() >= 15, "{seen:?}");
+    }
+}

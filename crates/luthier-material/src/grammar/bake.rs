@@ -1,0 +1,91 @@
+use super::{Key, Kind, Range, Table};
+use crate::bake_settings::{AlphaMapping, ColorSetting, DistributionMapping, FresnelMapping};
+
+/// Wavelengths that the colour matching functions cover.
+const VISIBLE_NM: Range = Range { min: 360.0, max: 830.0, above: false };
+
+/// From no mapping at all to far steeper than any lobe needs.
+const EXPONENT: Range = Range { min: 1.0, max: 64.0, above: false };
+
+/// Texels along a side: interpolation needs two; beyond 8192 devices need not follow.
+const SIDE: Kind = Kind::Integer(2, 8192);
+const SIDES: Kind = Kind::List { item: &SIDE, min: 2, max: 2 };
+
+const COLOR_FORMATS: Kind = Kind::Choice(&["rgba8unorm", "rgba16float", "rgba32float"]);
+const FLOAT_FORMATS: Kind = Kind::Choice(&["rgba16float", "rgba32float"]);
+const SCALAR_FORMATS: Kind = Kind::Choice(&["r16float", "r32float"]);
+
+const FORMAT_DOC: &str = "Texel format, by its WebGPU name.";
+const SIDE_DOC: &str = "Texels along a side.";
+
+pub(super) static BAKE: Table = Table {
+    name: "bake",
+    doc: "How the tables of this material are to be baked; what is left out is the baker's choice.",
+    keys: &[
+        Key::optional(
+            "color",
+            Kind::Choice(ColorSetting::NAMES),
+            "Integrate spectra, or take the function at three wavelengths as R, G, B.",
+        ),
+        Key::with_default(
+            "wavelengths_nm",
+            Kind::List { item: &Kind::Number(VISIBLE_NM), min: 3, max: 3 },
+            "[645, 525, 445]",
+            "The wavelengths taken as R, G and B, in nm.",
+        ),
+        Key::optional("fresnel", Kind::Table(&FRESNEL), "Fresnel rows."),
+        Key::optional("distribution", Kind::Table(&DISTRIBUTION), "Table of the slope distribution."),
+        Key::optional("fgd", Kind::Table(&FGD), "Energy of the rough interface, all bounces."),
+        Key::optional("phase", Kind::Table(&PHASE), "Phase rows of films."),
+        Key::optional("thickness", Kind::Table(&THICKNESS), "Thickness textures of films."),
+    ],
+    exactly_one: None,
+};
+
+static FRESNEL: Table = Table {
+    name: "fresnel-table",
+    doc: "Fresnel rows.",
+    keys: &[
+        Key::optional("size", SIDE, "Texels of a row."),
+        Key::optional("format", COLOR_FORMATS, FORMAT_DOC),
+        Key::optional("mapping", Kind::Choice(FresnelMapping::NAMES), "What the axis is linear in."),
+    ],
+    exactly_one: None,
+};
+
+static DISTRIBUTION: Table = Table {
+    name: "distribution-table",
+    doc: "Table of the slope distribution over angle and alpha.",
+    keys: &[
+        Key::optional("size", SIDES, "Texels along the angle and along alpha."),
+        Key::optional("format", SCALAR_FORMATS, FORMAT_DOC),
+        Key::optional("mapping", Kind::Choice(DistributionMapping::NAMES), "Mapping of the angle axis."),
+        Key::optional("exponent", Kind::Number(EXPONENT), "Exponent of the angle axis."),
+        Key::optional("alpha_mapping", Kind::Choice(AlphaMapping::NAMES), "Mapping of the alpha axis."),
+    ],
+    exactly_one: None,
+};
+
+static FGD: Table = Table {
+    name: "fgd-table",
+    doc: "Energy reflected by the rough interface, over cosine and alpha.",
+    keys: &[
+        Key::optional("size", SIDES, "Texels along the cosine and along alpha."),
+        Key::optional("format", FLOAT_FORMATS, FORMAT_DOC),
+    ],
+    exactly_one: None,
+};
+
+static PHASE: Table = Table {
+    name: "phase-table",
+    doc: "Phase rows of films, over normalised thickness.",
+    keys: &[Key::optional("size", SIDE, "Texels of a row."), Key::optional("format", FLOAT_FORMATS, FORMAT_DOC)],
+    exactly_one: None,
+};
+
+static THICKNESS: Table = Table {
+    name: "thickness-table",
+    doc: "Thickness textures of films; square.",
+    keys: &[Key::optional("size", SIDE, SIDE_DOC), Key::optional("format", FLOAT_FORMATS, FORMAT_DOC)],
+    exactly_one: None,
+};

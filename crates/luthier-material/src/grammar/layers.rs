@@ -1,0 +1,225 @@
+use super::{
+    Alternatives, Key, Kind, NOT_NEGATIVE, NOT_NEGATIVE_RGB, PATH, POSITIVE, Range, Table, TextForm, UNIT,
+    UNIT_ABOVE_ZERO, UNIT_RGB,
+};
+
+/// Wavelengths that samples of an index may have: far wider than what is seen, narrow enough to notice micrometres.
+const SAMPLED_NM: Range = Range { min: 100.0, max: 30_000.0, above: false };
+
+/// Mean slopes of which the slope parameter, the tangent, stays within its domain.
+const SLOPE_DEG: Range = Range { min: 0.0, max: 45.0, above: false };
+
+const SIGMA: Range = Range { min: 0.0, max: std::f64::consts::FRAC_PI_2, above: false };
+
+/// Enough for any table of samples that is still written by hand.
+const SAMPLES_MAX: usize = 1024;
+
+pub(super) const IOR: Kind = Kind::OneOf(&[
+    Kind::Number(POSITIVE),
+    Kind::Table(&IOR_TABLE),
+    // The name of a data set or the path of a CSV file; the decoder looks it up.
+    Kind::Text(TextForm::Path),
+]);
+
+static IOR_TABLE: Table = Table {
+    name: "ior",
+    doc: "A complex index n + ik: constant, or sampled at wavelengths (for instance those of red, green and blue).",
+    keys: &[
+        Key::required(
+            "n",
+            Kind::OneOf(&[
+                Kind::Number(POSITIVE),
+                Kind::List { item: &Kind::Number(POSITIVE), min: 1, max: SAMPLES_MAX },
+            ]),
+            "Real part: a number, or one for each wavelength.",
+        ),
+        Key::with_default(
+            "k",
+            Kind::OneOf(&[
+                Kind::Number(NOT_NEGATIVE),
+                Kind::List { item: &Kind::Number(NOT_NEGATIVE), min: 1, max: SAMPLES_MAX },
+            ]),
+            "0",
+            "Extinction coefficient: a number, or one for each wavelength.",
+        ),
+        Key::optional(
+            "wavelengths_nm",
+            Kind::List { item: &Kind::Number(SAMPLED_NM), min: 1, max: SAMPLES_MAX },
+            "Vacuum wavelengths of the samples in nm, in any order. Needed when n or k is a list.",
+        ),
+    ],
+    exactly_one: None,
+};
+
+const IOR_DOC: &str = "Index of refraction: a number, a table { n, k, wavelengths_nm }, the name of a built-in data set, \
+                       or the path of a CSV file with the columns wavelength_nm, n, k.";
+
+const SURFACE: Option<Alternatives> = Some(Alternatives {
+    what: "surface",
+    forms: &[&["roughness"], &["alpha"], &["slope_deg"], &["smooth"], &["alpha_x", "alpha_y"]],
+    examples: "`smooth = true`, `roughness`, `alpha`, `slope_deg`, or `alpha_x` with `alpha_y`",
+});
+
+const TYPE_DOC: &str = "What the layer is.";
+const ROUGHNESS: Key =
+    Key::optional("roughness", Kind::Number(UNIT), "Artist's roughness, 0 to 1: alpha is its square.");
+const ALPHA: Key = Key::optional("alpha", Kind::Number(UNIT), "Slope parameter of the distribution, 0 to 1.");
+const SLOPE: Key =
+    Key::optional("slope_deg", Kind::Number(SLOPE_DEG), "Mean slope in degrees, 0 to 45: alpha is its tangent.");
+const SMOOTH: Key = Key::optional("smooth", Kind::True, "A perfectly smooth surface.");
+const ALPHA_X: Key =
+    Key::optional("alpha_x", Kind::Number(UNIT_ABOVE_ZERO), "Slope parameter along the tangent; with alpha_y.");
+const ALPHA_Y: Key =
+    Key::optional("alpha_y", Kind::Number(UNIT_ABOVE_ZERO), "Slope parameter along the bitangent; with alpha_x.");
+const ROTATION: Key = Key::with_default(
+    "rotation_deg",
+    Kind::Number(super::ANY),
+    "0",
+    "Angle from the surface's tangent to this layer's in degrees, counter-clockwise; with alpha_x and alpha_y.",
+);
+const DISTRIBUTION: Key =
+    Key::with_default("distribution", Kind::Choice(&["ggx", "beckmann"]), "\"ggx\"", "Distribution of the slopes.");
+
+const MAPS_DOC: &str = "Textures that modulate the layer.";
+const NORMAL_MAP: Key = Key::optional("normal", PATH, "Path of a tangent-space normal map.");
+const ROUGHNESS_MAP: Key = Key::optional("roughness", PATH, "Path of a map that multiplies the roughness.");
+const THICKNESS_MAP: Key = Key::optional("thickness", PATH, "Path of a map that multiplies the slab's thickness.");
+
+static DIELECTRIC_MAPS: Table = Table {
+    name: "dielectric-maps",
+    doc: MAPS_DOC,
+    keys: &[NORMAL_MAP, ROUGHNESS_MAP, THICKNESS_MAP],
+    exactly_one: None,
+};
+static CONDUCTOR_MAPS: Table =
+    Table { name: "conductor-maps", doc: MAPS_DOC, keys: &[NORMAL_MAP, ROUGHNESS_MAP], exactly_one: None };
+static DIFFUSE_MAPS: Table = Table { name: "diffuse-maps", doc: MAPS_DOC, keys: &[NORMAL_MAP], exactly_one: None };
+
+pub(super) static DIELECTRIC: Table = Table {
+    name: "dielectric",
+    doc: "A transparent interface and the slab below it, down to the next layer.",
+    keys: &[
+        Key::required("type", Kind::Choice(&["dielectric"]), TYPE_DOC),
+        Key::required("ior", IOR, IOR_DOC),
+        ROUGHNESS,
+        ALPHA,
+        SLOPE,
+        SMOOTH,
+        ALPHA_X,
+        ALPHA_Y,
+        ROTATION,
+        DISTRIBUTION,
+        Key::with_default("thickness_um", Kind::Number(NOT_NEGATIVE), "0", "Thickness of the slab in um."),
+        Key::with_default(
+            "absorption_per_um",
+            NOT_NEGATIVE_RGB,
+            "0",
+            "Absorption coefficient of the slab in 1/um: a number, or one for each of R, G, B. It takes the colour away.",
+        ),
+        Key::optional("maps", Kind::Table(&DIELECTRIC_MAPS), MAPS_DOC),
+    ],
+    exactly_one: SURFACE,
+};
+
+pub(super) static CONDUCTOR: Table = Table {
+    name: "conductor",
+    doc: "An opaque metal or semiconductor; the last layer.",
+    keys: &[
+        Key::required("type", Kind::Choice(&["conductor"]), TYPE_DOC),
+        Key::required("ior", IOR, IOR_DOC),
+        ROUGHNESS,
+        ALPHA,
+        SLOPE,
+        SMOOTH,
+        ALPHA_X,
+        ALPHA_Y,
+        ROTATION,
+        DISTRIBUTION,
+        Key::optional("maps", Kind::Table(&CONDUCTOR_MAPS), MAPS_DOC),
+    ],
+    exactly_one: SURFACE,
+};
+
+pub(super) static DIFFUSE: Table = Table {
+    name: "diffuse",
+    doc: "An opaque diffuse base (Lambert, or Oren and Nayar); the last layer. It has no interface.",
+    keys: &[
+        Key::required("type", Kind::Choice(&["diffuse"]), TYPE_DOC),
+        Key::required(
+            "albedo",
+            UNIT_RGB,
+            "Diffuse reflectance: a number, or one for each of R, G, B (linear Rec.709).",
+        ),
+        Key::with_default(
+            "sigma",
+            Kind::Number(SIGMA),
+            "0",
+            "Standard deviation of the facets' slope angle in radians; 0 is Lambert.",
+        ),
+        Key::optional("maps", Kind::Table(&DIFFUSE_MAPS), MAPS_DOC),
+    ],
+    exactly_one: None,
+};
+
+pub(super) static THIN_FILM: Table = Table {
+    name: "thin-film",
+    doc: "A coherent film on the interface of the next dielectric or conductor, whose surface it shares.",
+    keys: &[
+        Key::required("type", Kind::Choice(&["thin-film"]), TYPE_DOC),
+        Key::required("ior", IOR, IOR_DOC),
+        Key::required(
+            "thickness_nm",
+            Kind::OneOf(&[Kind::Number(POSITIVE), Kind::Table(&FILM_THICKNESS)]),
+            "Thickness in nm: a number, or a table { min, max, extent_um, map }.",
+        ),
+    ],
+    exactly_one: None,
+};
+
+static FILM_THICKNESS: Table = Table {
+    name: "film-thickness",
+    doc: "A thickness that varies over the surface between two extremes.",
+    keys: &[
+        Key::required("min", Kind::Number(NOT_NEGATIVE), "Thinnest, in nm."),
+        Key::required("max", Kind::Number(POSITIVE), "Thickest, in nm."),
+        Key::required("extent_um", Kind::Number(POSITIVE), "Width of one repeat of the map on the surface, in um."),
+        Key::required("map", Kind::Table(&VARIATION), "How it varies: 0 is the thinnest, 1 the thickest."),
+    ],
+    exactly_one: None,
+};
+
+/// A scalar map.
+pub(super) static VARIATION: Table = Table {
+    name: "map",
+    doc: "A scalar map: noise or an image.",
+    keys: &[
+        Key::optional("noise", Kind::Table(&NOISE), "Fractal gradient noise."),
+        Key::optional("image", PATH, "Path of an image; its red channel is read as linear."),
+    ],
+    exactly_one: Some(Alternatives {
+        what: "map",
+        forms: &[&["noise"], &["image"]],
+        examples: "`noise = {}` or `image = \"map.png\"`",
+    }),
+};
+
+static NOISE: Table = Table {
+    name: "noise",
+    doc: "Fractal gradient noise that repeats.",
+    keys: &[
+        Key::with_default("seed", Kind::Integer(0, u32::MAX as i64), "0", "Seed."),
+        Key::with_default(
+            "frequency",
+            Kind::Number(POSITIVE),
+            "4",
+            "Lattice cells of the first octave along one repeat.",
+        ),
+        Key::with_default(
+            "octaves",
+            Kind::Integer(1, 12),
+            "4",
+            "Octaves, each of twice the frequency and half the weight.",
+        ),
+    ],
+    exactly_one: None,
+};

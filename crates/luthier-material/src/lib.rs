@@ -1,0 +1,37 @@
+//! Material files: TOML to a validated layer stack, with diagnostics that point at the mistake.
+//!
+//! [`parse`] reads one file. A declarative grammar (keys, types, ranges, alternatives) checks it first, a decoder then
+//! builds the [`Stack`](luthier_optics::stack::Stack); both report as much as they can in one run. [`schema`] is the same
+//! grammar as JSON Schema.
+//!
+//! Physical nonsense is an error, doubtful physics a warning. This crate crosses the units of files (degrees, artist's
+//! roughness) into those of the optics (radians, slope parameters), once.
+//!
+//! Out of scope: evaluating a material, and reading images; files named as maps are not opened here.
+
+mod bake_settings;
+mod check;
+mod class;
+mod correct;
+mod decode;
+mod diagnostic;
+mod doubt;
+mod effects;
+mod grammar;
+mod material;
+mod named;
+mod parse;
+mod schema;
+mod section;
+mod suggest;
+
+pub use bake_settings::{
+    AlphaMapping, BakeSettings, ColorSetting, DEFAULT_WAVELENGTHS_NM, DistributionMapping, DistributionSettings,
+    Format, FresnelMapping, FresnelSettings, GridSettings, RowSettings,
+};
+pub use class::{SMOOTH_SLOPE_DEG, SurfaceClass};
+pub use diagnostic::{Diagnostic, Severity};
+pub use effects::{Effects, FlakeSource, Flakes, Patina};
+pub use material::{FilmVariation, LayerExtras, Maps, Material, VariationSource};
+pub use parse::{Parsed, parse};
+pub use schema::schema;

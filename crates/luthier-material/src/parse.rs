@@ -1,0 +1,73 @@
+use toml::de::DeTable;
+
+use crate::check::check_table;
+use crate::decode::decode;
+use crate::diagnostic::{Diagnostic, Sink};
+use crate::grammar::DOCUMENT;
+use crate::material::Material;
+use crate::section::Section;
+
+/// A material, and what to doubt about it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parsed {
+    /// The material.
+    pub material: Material,
+    /// Warnings in the order of the text.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Reads a material file.
+///
+/// `label` names the file in diagnostics. `read` returns the text of a file that the material refers to by a path relative
+/// to itself (CSV files of indices); images are not read.
+///
+/// ```
+/// let text = r#"
+/// schema = 1
+/// name = "gilding"
+///
+/// [[layer]]
+/// type = "conductor"
+/// ior = "au"
+/// roughness = 0.3
+/// "#;
+/// let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+/// let parsed = luthier_material::parse("gilding.toml", text, &no_files).unwrap();
+/// assert!((parsed.material.stack.layers[0].surface.alpha_x - 0.09).abs() < 1e-12);
+///
+/// let wrong = text.replace("0.3", "30");
+/// let diagnostics = luthier_material::parse("gilding.toml", &wrong, &no_files).unwrap_err();
+/// assert_eq!((diagnostics[0].line, diagnostics[0].column), (8, 13));
+/// assert_eq!(diagnostics[0].hint.as_deref(), Some("30 per cent is `roughness = 0.3`"));
+/// ```
+///
+/// # Errors
+/// All diagnostics, at least one of them an error, in the order of the text.
+pub fn parse(
+    label: &str,
+    text: &str,
+    read: &dyn Fn(&str) -> std::io::Result<String>,
+) -> Result<Parsed, Vec<Diagnostic>> {
+    let mut sink = Sink::new(label, text);
+    let (document, errors) = DeTable::parse_recoverable(text);
+    for error in &errors {
+        let hint = error.message().contains("duplicate key").then(|| "keep one of the two".to_owned());
+        sink.error(error.span().unwrap_or(0..0), format!("not TOML: {}", error.message()), hint);
+    }
+    // What could be recovered from broken TOML is not what was meant: its other mistakes would mislead.
+    if sink.has_errors() {
+        return Err(sink.into_diagnostics());
+    }
+    // The span of a document is all of it; what is missing from it is missing at its start.
+    let document = Section { table: document.get_ref(), span: 0..0 };
+    check_table(&DOCUMENT, &[], &document, &mut sink);
+    let version = document.value_span("schema");
+    if document.has("schema") && sink.has_error_in(&version) {
+        // A file of another version has other rules: only that is worth saying.
+        return Err(sink.into_diagnostics().into_iter().filter(|d| d.span == version).collect());
+    }
+    let material = decode(label, text, &document, read, &mut sink);
+    let failed = sink.has_errors();
+    let diagnostics = sink.into_diagnostics();
+    if failed { Err(diagnostics) } else { Ok(Parsed { material, warnings: diagnostics }) }
+}

@@ -1,0 +1,141 @@
+//! JSON Schema of the grammar, for editors.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Map, Value, json};
+
+use crate::grammar::{DOCUMENT, Kind, Table, TextForm};
+
+/// The grammar of material files as JSON Schema (draft 2020-12), generated from the tables that files are checked against.
+///
+/// What holds between values, such as a conductor being the last layer, is beyond it.
+pub fn schema() -> Value {
+    let mut definitions = BTreeMap::new();
+    let mut root = match table(&DOCUMENT, &mut definitions) {
+        Value::Object(root) => root,
+        _ => Map::new(),
+    };
+    root.insert("$schema".to_owned(), json!("https://json-schema.org/draft/2020-12/schema"));
+    root.insert("title".to_owned(), json!("luthier material"));
+    root.insert("$defs".to_owned(), definitions.into_iter().collect::<Map<_, _>>().into());
+    Value::Object(root)
+}
+
+type Definitions = BTreeMap<String, Value>;
+
+fn table(table: &'static Table, definitions: &mut Definitions) -> Value {
+    let mut properties = Map::new();
+    for key in table.keys {
+        let mut value = kind(&key.kind, definitions);
+        if let Value::Object(value) = &mut value {
+            value.insert("description".to_owned(), json!(key.doc));
+            if let Ok(default) = serde_json::from_str::<Value>(key.default) {
+                value.insert("default".to_owned(), default);
+            }
+        }
+        properties.insert(key.name.to_owned(), value);
+    }
+    let required: Vec<&str> = table.keys.iter().filter(|k| k.required).map(|k| k.name).collect();
+    let mut schema = json!({
+        "type": "object",
+        "description": table.doc,
+        "properties": properties,
+        "required": required,
+        "additionalProperties": false,
+    });
+    if let (Some(alternatives), Value::Object(schema)) = (&table.exactly_one, &mut schema) {
+        let forms: Vec<Value> = alternatives.forms.iter().map(|form| json!({ "required": form })).collect();
+        schema.insert("oneOf".to_owned(), forms.into());
+        // Keys that go together.
+        let together = alternatives.forms.iter().filter(|form| form.len() > 1);
+        let dependent: Map<String, Value> =
+            together.flat_map(|form| form.iter().map(move |k| ((*k).to_owned(), json!(form)))).collect();
+        if !dependent.is_empty() {
+            schema.insert("dependentRequired".to_owned(), dependent.into());
+        }
+    }
+    schema
+}
+
+fn kind(of: &'static Kind, definitions: &mut Definitions) -> Value {
+    match of {
+        Kind::True => json!({ "const": true }),
+        Kind::Number(range) => {
+            let mut schema = Map::new();
+            schema.insert("type".to_owned(), json!("number"));
+            if range.min.is_finite() {
+                let bound = if range.above { "exclusiveMinimum" } else { "minimum" };
+                schema.insert(bound.to_owned(), json!(range.min));
+            }
+            if range.max.is_finite() {
+                schema.insert("maximum".to_owned(), json!(range.max));
+            }
+            schema.into()
+        }
+        Kind::Integer(min, max) if min == max => json!({ "const": min }),
+        Kind::Integer(min, max) => json!({ "type": "integer", "minimum": min, "maximum": max }),
+        Kind::Text(TextForm::Prose) => json!({ "type": "string" }),
+        Kind::Text(TextForm::Path) => json!({ "type": "string", "minLength": 1 }),
+        Kind::Text(TextForm::Name) => json!({ "type": "string", "pattern": "^[A-Za-z0-9][A-Za-z0-9-]*$" }),
+        Kind::Choice([one]) => json!({ "const": one }),
+        Kind::Choice(names) => json!({ "enum": names }),
+        Kind::List { item, min, max } => {
+            let mut schema = json!({ "type": "array", "items": kind(item, definitions), "minItems": min });
+            if let (true, Value::Object(schema)) = (*max < usize::MAX, &mut schema) {
+                schema.insert("maxItems".to_owned(), json!(max));
+            }
+            schema
+        }
+        Kind::Table(table) => reference(table, definitions),
+        Kind::Tagged { variants, .. } => {
+            let variants: Vec<Value> = variants.iter().map(|v| reference(v, definitions)).collect();
+            json!({ "type": "array", "minItems": 1, "items": { "oneOf": variants } })
+        }
+        Kind::OneOf(kinds) => json!({ "oneOf": kinds.iter().map(|k| kind(k, definitions)).collect::<Vec<_>>() }),
+    }
+}
+
+/// A reference to a table's definition, which is made on first use.
+fn reference(to: &'static Table, definitions: &mut Definitions) -> Value {
+    if !definitions.contains_key(to.name) {
+        // A place holder first: a table that held itself would not end otherwise.
+        definitions.insert(to.name.to_owned(), Value::Null);
+        let schema = table(to, definitions);
+        definitions.insert(to.name.to_owned(), schema);
+    }
+    json!({ "$ref": format!("#/$defs/{}", to.name) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_reference_resolves() {
+        fn visit(value: &Value, root: &Value) {
+            match value {
+                Value::Object(map) => {
+                    if let Some(Value::String(reference)) = map.get("$ref") {
+                        assert!(root.pointer(&reference[1..]).is_some_and(Value::is_object), "{reference}");
+                    }
+                    map.values().for_each(|v| visit(v, root));
+                }
+                Value::Array(items) => items.iter().for_each(|v| visit(v, root)),
+                _ => {}
+            }
+        }
+        let schema = schema();
+        visit(&schema, &schema);
+    }
+
+    #[test]
+    fn it_says_what_the_grammar_says() {
+        let schema = schema();
+        assert_eq!(schema.pointer("/properties/schema/const"), Some(&json!(1)));
+        assert_eq!(schema.pointer("/required"), Some(&json!(["schema", "name", "layer"])));
+        assert_eq!(schema.pointer("/$defs/dielectric/properties/alpha/maximum"), Some(&json!(1.0)));
+        assert_eq!(schema.pointer("/$defs/dielectric/oneOf/4/required"), Some(&json!(["alpha_x", "alpha_y"])));
+        assert_eq!(schema.pointer("/$defs/noise/properties/octaves/default"), Some(&json!(4)));
+        assert_eq!(schema.pointer("/$defs/thin-film/properties/roughness"), None);
+    }
+}

@@ -1,0 +1,115 @@
+use std::ops::Range as Span;
+
+use toml::Spanned;
+use toml::de::{DeArray, DeTable, DeValue};
+
+/// A table of the document and where it stands, read by key. A value of another type reads as absent: the checker has
+/// reported it.
+#[derive(Clone)]
+pub(crate) struct Section<'t> {
+    pub(crate) table: &'t DeTable<'t>,
+    pub(crate) span: Span<usize>,
+}
+
+impl<'t> Section<'t> {
+    pub(crate) fn value(&self, key: &str) -> Option<&'t Spanned<DeValue<'t>>> {
+        self.table.get(key)
+    }
+
+    pub(crate) fn has(&self, key: &str) -> bool {
+        self.value(key).is_some()
+    }
+
+    /// Where the key stands; where the table stands when it lacks the key.
+    pub(crate) fn key_span(&self, key: &str) -> Span<usize> {
+        self.table.get_key_value(key).map_or_else(|| self.span.clone(), |(k, _)| k.span())
+    }
+
+    /// Where the value stands; where the table stands when it lacks the key.
+    pub(crate) fn value_span(&self, key: &str) -> Span<usize> {
+        self.value(key).map_or_else(|| self.span.clone(), Spanned::span)
+    }
+
+    pub(crate) fn section(&self, key: &str) -> Option<Section<'t>> {
+        section(self.value(key)?)
+    }
+
+    pub(crate) fn sections(&self, key: &str) -> Vec<Section<'t>> {
+        self.array(key).into_iter().flat_map(|array| array.iter()).filter_map(section).collect()
+    }
+
+    pub(crate) fn number(&self, key: &str) -> Option<f64> {
+        number(self.value(key)?.get_ref())
+    }
+
+    pub(crate) fn integer(&self, key: &str) -> Option<u32> {
+        integer(self.value(key)?.get_ref()).and_then(|i| u32::try_from(i).ok())
+    }
+
+    pub(crate) fn text(&self, key: &str) -> Option<&'t str> {
+        self.value(key)?.get_ref().as_str()
+    }
+
+    pub(crate) fn path(&self, key: &str) -> Option<String> {
+        self.text(key).map(str::to_owned)
+    }
+
+    pub(crate) fn texts(&self, key: &str) -> Vec<String> {
+        let array = self.array(key);
+        array.into_iter().flat_map(|a| a.iter()).filter_map(|v| Some(v.get_ref().as_str()?.to_owned())).collect()
+    }
+
+    /// A number, or an array of numbers.
+    pub(crate) fn numbers(&self, key: &str) -> Option<Numbers> {
+        let value = self.value(key)?.get_ref();
+        if let Some(one) = number(value) {
+            return Some(Numbers::One(one));
+        }
+        value.as_array()?.iter().map(|v| number(v.get_ref())).collect::<Option<Vec<f64>>>().map(Numbers::Many)
+    }
+
+    /// A triple of numbers; one number stands for three.
+    pub(crate) fn rgb(&self, key: &str) -> Option<[f64; 3]> {
+        match self.numbers(key)? {
+            Numbers::One(v) => Some([v; 3]),
+            Numbers::Many(v) => v.try_into().ok(),
+        }
+    }
+
+    /// A pair of whole numbers.
+    pub(crate) fn pair(&self, key: &str) -> Option<[u32; 2]> {
+        let items = self.array(key)?.iter().map(|v| u32::try_from(integer(v.get_ref())?).ok());
+        items.collect::<Option<Vec<u32>>>()?.try_into().ok()
+    }
+
+    fn array(&self, key: &str) -> Option<&'t DeArray<'t>> {
+        self.value(key)?.get_ref().as_array()
+    }
+}
+
+/// One number or several.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Numbers {
+    One(f64),
+    Many(Vec<f64>),
+}
+
+pub(crate) fn section<'t>(value: &'t Spanned<DeValue<'t>>) -> Option<Section<'t>> {
+    Some(Section { table: value.get_ref().as_table()?, span: value.span() })
+}
+
+/// A float or an integer; TOML lets people write 1 for 1.0.
+pub(crate) fn number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Float(float) => float.as_str().parse().ok(),
+        DeValue::Integer(_) => integer(value).map(|i| i as f64),
+        _ => None,
+    }
+}
+
+pub(crate) fn integer(value: &DeValue<'_>) -> Option<i64> {
+    match value {
+        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix()).ok(),
+        _ => None,
+    }
+}

@@ -1,0 +1,70 @@
+//! Each broken file under `tests/broken/` gives exactly the messages in the `.expected` file beside it.
+//!
+//! `LUTHIER_BLESS=1 cargo test -p luthier-material --test broken` writes the expectations anew: read the difference.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use luthier_material::{Severity, parse};
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/broken")
+}
+
+fn cases() -> Vec<PathBuf> {
+    let mut cases: Vec<PathBuf> = fs::read_dir(folder())
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
+        .collect();
+    cases.sort();
+    cases
+}
+
+/// System messages differ between platforms; ours must not.
+fn nothing_to_read(_: &str) -> io::Result<String> {
+    Err(io::Error::new(io::ErrorKind::NotFound, "no such file"))
+}
+
+fn rendered(path: &Path) -> String {
+    let text = fs::read_to_string(path).unwrap();
+    let label = path.file_name().unwrap().to_str().unwrap();
+    match parse(label, &text, &nothing_to_read) {
+        Ok(_) => panic!("{label} parses"),
+        Err(diagnostics) => {
+            assert!(diagnostics.iter().any(|d| d.severity == Severity::Error), "{label} fails without an error");
+            assert!(diagnostics.iter().all(|d| d.line >= 1 && d.column >= 1 && d.label == label), "{label}");
+            diagnostics.iter().map(|d| d.render(&text) + "\n").collect()
+        }
+    }
+}
+
+#[test]
+fn messages_are_as_expected() {
+    let cases = cases();
+    assert!(cases.len() >= 10, "{} cases", cases.len());
+    let mut wrong = Vec::new();
+    for case in &cases {
+        let found = rendered(case);
+        let path = case.with_extension("expected");
+        if std::env::var_os("LUTHIER_BLESS").is_some() {
+            fs::write(&path, &found).unwrap();
+        }
+        let expected = fs::read_to_string(&path).unwrap_or_default().replace("\r\n", "\n");
+        if found != expected {
+            wrong.push(format!("{}\nexpected:\n{expected}\nfound:\n{found}", case.display()));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_expectation_has_its_case() {
+    for entry in fs::read_dir(folder()).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|e| e == "expected") {
+            assert!(path.with_extension("toml").exists(), "{}", path.display());
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! Every file in `materials/` is a material, cites its source, and explains what is doubtful about it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use luthier_material::{Material, Parsed, parse};
+use luthier_optics::stack::Base;
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../materials")
+}
+
+fn read(name: &str) -> (String, Parsed) {
+    let text = fs::read_to_string(folder().join(name)).unwrap();
+    match parse(name, &text, &|path| fs::read_to_string(folder().join(path))) {
+        Ok(parsed) => (text, parsed),
+        Err(diagnostics) => panic!("{}", diagnostics.iter().map(|d| d.render(&text)).collect::<String>()),
+    }
+}
+
+fn material(name: &str) -> Material {
+    read(&format!("{name}.toml")).1.material
+}
+
+fn files() -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(folder())
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| name.ends_with(".toml"))
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn all_parse_and_cite_their_source() {
+    let files = files();
+    assert!(files.len() >= 18, "{files:?}");
+    for file in files {
+        let (text, parsed) = read(&file);
+        assert_eq!(format!("{}.toml", parsed.material.name), file);
+        assert!(!parsed.material.references.is_empty() && !parsed.material.description.is_empty(), "{file}");
+        assert!(text.contains("\n# Source: "), "{file}");
+    }
+}
+
+#[test]
+fn every_warning_is_explained_in_the_file() {
+    for file in files() {
+        let (text, parsed) = read(&file);
+        let explained = text.lines().filter(|line| line.starts_with("# Warning: ")).count();
+        let warnings: String = parsed.warnings.iter().map(|d| d.render(&text) + "\n").collect();
+        assert_eq!(parsed.warnings.len(), explained, "{file}\n{warnings}");
+    }
+}
+
+/// Oracle: the type that each parameter sheet of the course stands under.
+#[test]
+fn the_classes_are_those_of_the_course() {
+    for (name, letter) in [
+        ("red-lacquer", 'b'),
+        ("ceramic-glaze", 'a'),
+        ("acrylic-lacquer", 'a'),
+        ("frosted-acrylic", 'c'),
+        ("sugar", 'c'),
+        ("latex", 'c'),
+        ("brass-foil", 'd'),
+        ("car-paint", 'e'),
+        ("gold-metallic-paint", 'e'),
+        ("blue-metallic-paint", 'f'),
+        ("gold-paint", 'f'),
+        ("silver-paint", 'g'),
+        ("house-paint", 'h'),
+    ] {
+        assert_eq!(material(name).class.letter(), letter, "{name}");
+    }
+}
+
+/// Oracle: the sheet of the car paint, with its slopes converted on paper (tan 1 and tan 12 degrees).
+#[test]
+fn the_car_paint_is_as_printed() {
+    let stack = material("car-paint").stack;
+    let [coat, base] = stack.layers.as_slice() else { panic!("{} layers", stack.layers.len()) };
+    assert!((coat.surface.alpha_x - 0.017_455_065).abs() < 1e-9);
+    assert!((base.surface.alpha_x - 0.212_556_562).abs() < 1e-9);
+    let Base::Dielectric { ior, slab } = &coat.base else { panic!("{coat:?}") };
+    assert_eq!((ior.at(550.0).re, ior.at(550.0).im), (1.5, 0.0));
+    for (depth, expected) in slab.optical_depth().iter().zip([1.47, 0.6, 0.42]) {
+        assert!((depth - expected).abs() < 1e-12);
+    }
+    let Base::Conductor { ior } = &base.base else { panic!("{base:?}") };
+    assert_eq!((ior.at(450.0).re, ior.at(450.0).im), (0.6, 5.38));
+    assert_eq!((ior.at(690.0).re, ior.at(690.0).im), (1.74, 8.21));
+}
+
+/// The film of Granier's figure lies on the dielectric below it, and only its thickness varies.
+#[test]
+fn a_film_joins_the_layer_that_it_coats() {
+    let material = material("granier-film");
+    assert_eq!((material.stack.layers.len(), material.layers.len()), (2, 2));
+    let film = &material.stack.layers[0].films[0];
+    assert_eq!((film.thickness.min_nm, film.thickness.max_nm), (66.0, 76.0));
+    assert_eq!([645.0, 525.0, 445.0].map(|nm| film.ior.at(nm).re), [1.4, 1.45, 1.6]);
+    assert!(material.layers[0].film_variation.is_some() && material.layers[1].film_variation.is_none());
+    // sqrt(2 / 92)
+    assert!((material.stack.layers[0].surface.alpha_x - 0.147_442).abs() < 1e-5);
+}

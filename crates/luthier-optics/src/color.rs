@@ -1,0 +1,171 @@
+//! From spectra to colour: wavelengths with a weight per channel.
+
+use std::sync::OnceLock;
+
+use crate::Rgb;
+
+/// Red, green and blue wavelengths of Granier and Heidrich 2003, the default of the three-wavelength mode.
+pub const GRANIER_WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
+
+/// Luminance of linear Rec.709 (IEC 61966-2-1, second row of the RGB to XYZ matrix).
+pub const LUMINANCE: Rgb = [0.2126, 0.7152, 0.0722];
+
+/// How a function of wavelength becomes three numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Color {
+    /// Integrated over 360 to 830 nm in 5 nm steps against the CIE 1931 2-degree observer under D65, in linear Rec.709.
+    /// A perfect reflector is exactly (1, 1, 1). Channels may leave 0..1: real colours exceed the gamut.
+    Spectral,
+    /// The value at three wavelengths (R, G, B, in nm), taken for the channels: the habit of real-time rendering.
+    ThreeWavelengths([f64; 3]),
+}
+
+/// One wavelength and what a unit of reflectance there adds to each channel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WavelengthNode {
+    /// Vacuum wavelength.
+    pub wavelength_nm: f64,
+    /// Weight per channel.
+    pub weight: Rgb,
+}
+
+impl Color {
+    /// The wavelengths to evaluate; the weights of each channel sum to one.
+    pub fn nodes(&self) -> Vec<WavelengthNode> {
+        match self {
+            Self::Spectral => cie_1931_d65().to_vec(),
+            Self::ThreeWavelengths(wavelengths) => {
+                let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+                std::iter::zip(wavelengths, unit)
+                    .map(|(&wavelength_nm, weight)| WavelengthNode { wavelength_nm, weight })
+                    .collect()
+            }
+        }
+    }
+
+    /// Fewer wavelengths for costly integrands: every `stride`-th node, with the weights of those between shared out
+    /// linearly. Exact for functions that are linear between the nodes kept; three wavelengths stay as they are.
+    pub fn coarse_nodes(&self, stride: usize) -> Vec<WavelengthNode> {
+        let nodes = self.nodes();
+        if matches!(self, Self::ThreeWavelengths(_)) || stride <= 1 {
+            return nodes;
+        }
+        let last = nodes.len() - 1;
+        let mut kept: Vec<usize> = (0..=last).step_by(stride).collect();
+        if kept.last() != Some(&last) {
+            kept.push(last);
+        }
+        let mut coarse: Vec<WavelengthNode> =
+            kept.iter().map(|&i| WavelengthNode { weight: [0.0; 3], ..nodes[i] }).collect();
+        for node in &nodes {
+            let right = coarse.partition_point(|c| c.wavelength_nm < node.wavelength_nm).clamp(1, coarse.len() - 1);
+            let (a, b) = (coarse[right - 1].wavelength_nm, coarse[right].wavelength_nm);
+            let t = (node.wavelength_nm - a) / (b - a);
+            for c in 0..3 {
+                coarse[right - 1].weight[c] += (1.0 - t) * node.weight[c];
+                coarse[right].weight[c] += t * node.weight[c];
+            }
+        }
+        coarse
+    }
+}
+
+/// Relative luminance of linear Rec.709.
+pub fn luminance(rgb: Rgb) -> f64 {
+    LUMINANCE[0] * rgb[0] + LUMINANCE[1] * rgb[1] + LUMINANCE[2] * rgb[2]
+}
+
+/// Weights of the observer times D65, through the matrix from XYZ to Rec.709 whose white is that very illuminant.
+fn cie_1931_d65() -> &'static [WavelengthNode] {
+    static NODES: OnceLock<Vec<WavelengthNode>> = OnceLock::new();
+    NODES.get_or_init(|| {
+        let rows: Vec<[f64; 5]> = include_str!("../data/cie_1931_d65.csv")
+            .lines()
+            .filter(|line| !line.starts_with('#'))
+            .map(|line| {
+                let mut row = [f64::NAN; 5];
+                for (value, field) in row.iter_mut().zip(line.split(',')) {
+                    *value = field.parse().unwrap_or(f64::NAN);
+                }
+                row
+            })
+            .collect();
+        let mut white = [0.0; 3];
+        for [_, x, y, z, power] in &rows {
+            for (sum, bar) in white.iter_mut().zip([x, y, z]) {
+                *sum += bar * power;
+            }
+        }
+        let scale = 1.0 / white[1];
+        let to_rgb = xyz_to_rec709(white.map(|w| w * scale));
+        rows.iter()
+            .map(|&[wavelength_nm, x, y, z, power]| {
+                let xyz = [x, y, z].map(|bar| bar * power * scale);
+                WavelengthNode { wavelength_nm, weight: multiply(&to_rgb, xyz) }
+            })
+            .collect()
+    })
+}
+
+type Matrix = [[f64; 3]; 3];
+
+fn multiply(m: &Matrix, v: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|r: usize| m[r][0] * v[0] + m[r][1] * v[1] + m[r][2] * v[2])
+}
+
+/// From XYZ to linear RGB with the Rec.709 primaries and the given white (SMPTE RP 177-1993).
+fn xyz_to_rec709(white: [f64; 3]) -> Matrix {
+    let primaries = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]];
+    let xyz = primaries.map(|[x, y]: [f64; 2]| [x / y, 1.0, (1.0 - x - y) / y]);
+    let columns: Matrix = [0, 1, 2].map(|r: usize| [xyz[0][r], xyz[1][r], xyz[2][r]]);
+    let scale = multiply(&inverse(&columns), white);
+    inverse(&columns.map(|row| [row[0] * scale[0], row[1] * scale[1], row[2] * scale[2]]))
+}
+
+fn inverse(m: &Matrix) -> Matrix {
+    let cofactor = |r: usize, c: usize| {
+        let (r1, r2, c1, c2) = ((r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3);
+        m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1]
+    };
+    let determinant = (0..3).map(|c| m[0][c] * cofactor(0, c)).sum::<f64>();
+    [0, 1, 2].map(|r: usize| [0, 1, 2].map(|c: usize| cofactor(c, r) / determinant))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sums(nodes: &[WavelengthNode]) -> Rgb {
+        [0, 1, 2].map(|c: usize| nodes.iter().map(|n| n.weight[c]).sum())
+    }
+
+    #[test]
+    fn a_perfect_reflector_is_white() {
+        for nodes in [Color::Spectral.nodes(), Color::Spectral.coarse_nodes(4), Color::Spectral.coarse_nodes(7)] {
+            for channel in sums(&nodes) {
+                assert!((channel - 1.0).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn matrix_matches_the_standard() {
+        // IEC 61966-2-1 prints four decimals, for the white (0.3127, 0.3290).
+        let m = xyz_to_rec709([0.3127 / 0.3290, 1.0, (1.0 - 0.3127 - 0.3290) / 0.3290]);
+        let printed = [[3.2406, -1.5372, -0.4986], [-0.9689, 1.8758, 0.0415], [0.0557, -0.2040, 1.0570]];
+        for (row, expected) in m.iter().zip(printed) {
+            for (a, b) in row.iter().zip(expected) {
+                assert!((a - b).abs() < 4e-4, "{a} against {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn coarse_nodes_integrate_straight_lines_exactly() {
+        let line = |nm: f64| 0.2 + 0.001 * nm;
+        let integrate =
+            |nodes: &[WavelengthNode]| nodes.iter().map(|n| n.weight[1] * line(n.wavelength_nm)).sum::<f64>();
+        let fine = integrate(&Color::Spectral.nodes());
+        assert!((fine - integrate(&Color::Spectral.coarse_nodes(5))).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,112 @@
+//! One interface of a stack as a function of wavelength and angle.
+
+use num_complex::Complex64;
+
+use crate::Rgb;
+use crate::color::{Color, WavelengthNode};
+use crate::fresnel::{FilmLayer, coated};
+use crate::ior::Ior;
+use crate::stack::{Base, Film, Stack};
+
+/// The optics of one interface: the medium above, films, the medium below. No micro-surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Interface {
+    /// Transparent medium above (its k is ignored: light that reaches the interface has been attenuated already).
+    pub above: Ior,
+    /// Films from the top down, at their nominal thickness.
+    pub films: Vec<Film>,
+    /// Medium below.
+    pub below: Ior,
+}
+
+impl Interface {
+    /// The interface at the top of a layer, or `None` for a diffuse base, which has none, and out of range.
+    pub fn of(stack: &Stack, layer: usize) -> Option<Self> {
+        let here = stack.layers.get(layer)?;
+        let below = match &here.base {
+            Base::Dielectric { ior, .. } | Base::Conductor { ior } => ior.clone(),
+            Base::Diffuse(_) => return None,
+        };
+        let above = match layer.checked_sub(1).and_then(|l| stack.layers.get(l)).map(|l| &l.base) {
+            None => stack.exterior.clone(),
+            Some(Base::Dielectric { ior, .. }) => ior.clone(),
+            Some(Base::Conductor { .. } | Base::Diffuse(_)) => return None,
+        };
+        Some(Self { above, films: here.films.clone(), below })
+    }
+
+    /// Index above, films and index below at one wavelength.
+    pub fn at(&self, wavelength_nm: f64) -> Monochrome {
+        Monochrome {
+            above: Complex64::new(self.above.at(wavelength_nm).re, 0.0),
+            films: self
+                .films
+                .iter()
+                .map(|f| FilmLayer { ior: f.ior.at(wavelength_nm), waves: f.thickness.nominal_nm() / wavelength_nm })
+                .collect(),
+            below: self.below.at(wavelength_nm),
+        }
+    }
+
+    /// Whether the reflectance is the same at every wavelength.
+    pub fn is_achromatic(&self) -> bool {
+        self.films.is_empty() && self.above.is_constant() && self.below.is_constant()
+    }
+
+    /// The interface at every node of a colour mode; a single node when it is achromatic.
+    pub fn sampled(&self, color: &Color) -> Sampled {
+        self.at_nodes(&color.nodes())
+    }
+
+    /// The interface at given wavelength nodes; a single node when it is achromatic.
+    pub fn at_nodes(&self, nodes: &[WavelengthNode]) -> Sampled {
+        if self.is_achromatic() {
+            return Sampled { nodes: vec![([1.0; 3], self.at(550.0))] };
+        }
+        Sampled { nodes: nodes.iter().map(|n| (n.weight, self.at(n.wavelength_nm))).collect() }
+    }
+}
+
+/// An interface at one wavelength.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Monochrome {
+    /// Index above, real.
+    pub above: Complex64,
+    /// Films from the top down.
+    pub films: Vec<FilmLayer>,
+    /// Index below.
+    pub below: Complex64,
+}
+
+impl Monochrome {
+    /// Unpolarised reflectance.
+    pub fn reflectance(&self, cos_theta_i: f64) -> f64 {
+        coated(self.above, &self.films, self.below, cos_theta_i).unpolarised()
+    }
+}
+
+/// An interface at the wavelengths of a colour mode, ready to evaluate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sampled {
+    /// Channel weights and the interface at each wavelength.
+    pub nodes: Vec<(Rgb, Monochrome)>,
+}
+
+impl Sampled {
+    /// Unpolarised reflectance per channel.
+    pub fn rgb(&self, cos_theta_i: f64) -> Rgb {
+        self.sum(|interface| interface.reflectance(cos_theta_i))
+    }
+
+    /// Weighted sum over the wavelengths of any function of the interface.
+    pub fn sum(&self, mut f: impl FnMut(&Monochrome) -> f64) -> Rgb {
+        let mut rgb = [0.0; 3];
+        for (weight, interface) in &self.nodes {
+            let value = f(interface);
+            for c in 0..3 {
+                rgb[c] += weight[c] * value;
+            }
+        }
+        rgb
+    }
+}

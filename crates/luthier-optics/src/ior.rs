@@ -1,0 +1,120 @@
+//! Complex refractive indices as functions of wavelength.
+
+use num_complex::Complex64;
+use thiserror::Error;
+
+/// One sample of a complex index `n + i k` (`k >= 0` absorbs; phase convention e^{+i beta}).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct IorSample {
+    /// Vacuum wavelength.
+    pub wavelength_nm: f64,
+    /// Real part.
+    pub n: f64,
+    /// Extinction coefficient, not negative.
+    pub k: f64,
+}
+
+/// Why a list of samples is not an index.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum IorError {
+    /// No sample at all.
+    #[error("an index needs at least one sample")]
+    Empty,
+    /// A wavelength repeats or descends.
+    #[error("wavelengths must ascend: {0} nm is followed by {1} nm")]
+    NotAscending(f64, f64),
+    /// `n <= 0`, `k < 0`, or not finite.
+    #[error("the index {n} + {k}i at {wavelength_nm} nm is not physical: n must be positive, k must not be negative")]
+    NotPhysical {
+        /// Where.
+        wavelength_nm: f64,
+        /// Real part given.
+        n: f64,
+        /// Extinction coefficient given.
+        k: f64,
+    },
+}
+
+/// A complex index as a function of wavelength: samples joined by straight lines in `n` and `k`,
+/// held constant outside their range.
+///
+/// Linear in wavelength is what the built-in data were resampled with; against a monotone cubic the
+/// normal-incidence reflectance of the built-in metals moves by at most 0.004.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ior {
+    samples: Vec<IorSample>,
+}
+
+impl Ior {
+    /// Vacuum, and air for our purposes.
+    pub fn vacuum() -> Self {
+        Self { samples: vec![IorSample { wavelength_nm: 550.0, n: 1.0, k: 0.0 }] }
+    }
+
+    /// The same index at every wavelength.
+    ///
+    /// # Errors
+    /// [`IorError::NotPhysical`] unless `n > 0`, `k >= 0` and both are finite.
+    pub fn constant(n: f64, k: f64) -> Result<Self, IorError> {
+        Self::sampled(vec![IorSample { wavelength_nm: 550.0, n, k }])
+    }
+
+    /// An index from samples in strictly ascending wavelength.
+    ///
+    /// # Errors
+    /// See [`IorError`].
+    pub fn sampled(samples: Vec<IorSample>) -> Result<Self, IorError> {
+        if samples.is_empty() {
+            return Err(IorError::Empty);
+        }
+        for pair in samples.windows(2) {
+            if pair[1].wavelength_nm <= pair[0].wavelength_nm {
+                return Err(IorError::NotAscending(pair[0].wavelength_nm, pair[1].wavelength_nm));
+            }
+        }
+        for s in &samples {
+            let physical = s.n > 0.0 && s.k >= 0.0 && s.n.is_finite() && s.k.is_finite();
+            if !physical || !s.wavelength_nm.is_finite() {
+                return Err(IorError::NotPhysical { wavelength_nm: s.wavelength_nm, n: s.n, k: s.k });
+            }
+        }
+        Ok(Self { samples })
+    }
+
+    /// The samples, ascending in wavelength.
+    pub fn samples(&self) -> &[IorSample] {
+        &self.samples
+    }
+
+    /// Whether the index is the same at every wavelength.
+    pub fn is_constant(&self) -> bool {
+        self.samples.iter().all(|s| s.n == self.samples[0].n && s.k == self.samples[0].k)
+    }
+
+    /// First and last wavelength of the samples, or `None` for a constant, which holds everywhere.
+    pub fn range_nm(&self) -> Option<(f64, f64)> {
+        match self.samples.as_slice() {
+            [_] => None,
+            [first, .., last] => Some((first.wavelength_nm, last.wavelength_nm)),
+            [] => None,
+        }
+    }
+
+    /// The index at a vacuum wavelength; clamped outside the range of the samples.
+    pub fn at(&self, wavelength_nm: f64) -> Complex64 {
+        let after = self.samples.partition_point(|s| s.wavelength_nm <= wavelength_nm);
+        if after == 0 {
+            let s = self.samples[0];
+            return Complex64::new(s.n, s.k);
+        }
+        let a = self.samples[after - 1];
+        match self.samples.get(after) {
+            None => Complex64::new(a.n, a.k),
+            Some(b) => {
+                let t = (wavelength_nm - a.wavelength_nm) / (b.wavelength_nm - a.wavelength_nm);
+                Complex64::new(a.n + (b.n - a.n) * t, a.k + (b.k - a.k) * t)
+            }
+        }
+    }
+}

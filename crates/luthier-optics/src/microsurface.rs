@@ -1,0 +1,231 @@
+//! Random walks on Smith micro-surfaces: every bounce between facets, not only the first.
+//!
+//! Heitz, Hanika, d'Eon and Dachsbacher 2016, "Multiple-Scattering Microfacet BSDFs with the Smith Model". Heights
+//! enter only through the fraction `c` of the surface that lies below: the result does not depend on the height
+//! distribution, so `c` itself is the coordinate, 1 at the top. A ray that goes up with Smith's Lambda leaves with
+//! probability `c^Lambda`.
+
+use glam::DVec3;
+
+use crate::albedo::ReflectanceCurves;
+use crate::microfacet::lambda;
+use crate::stack::Distribution;
+use crate::visible_normals;
+
+/// Walks whose remaining light falls below this fraction end; what is left counts as leaving at the last facet. The error
+/// this makes in a reflectance is below half of it.
+const REMAINDER: f64 = 1e-3;
+
+/// No walk has more facets than this.
+const MAX_FACETS: u32 = 64;
+
+/// Sobol dimensions that one facet uses.
+const DIMENSIONS: u32 = 4;
+
+/// Which walk: its numbers are a function of this and nothing else.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Walk {
+    /// Which family of walks; families are independent of each other.
+    pub seed: u32,
+    /// Which walk of the family; families are low-discrepancy in it (Owen-scrambled Sobol).
+    pub index: u32,
+}
+
+impl Walk {
+    /// Number `dimension` of a facet, in 0..1.
+    fn random(self, facet: u32, dimension: u32) -> f64 {
+        f64::from(sobol_burley::sample(self.index, (facet * DIMENSIONS + dimension) % 256, self.seed))
+    }
+}
+
+/// A facet of a walk.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Facet {
+    /// Cosine between the ray and the facet's normal: the argument of Fresnel's formulas.
+    pub cos_theta_d: f64,
+    /// Fraction of the incident light that leaves after this facet if all facets reflect everything. The fractions of
+    /// a walk sum to 1.
+    pub leaving: f64,
+}
+
+/// A walk of the light that falls at `cos_theta_i` on a perfectly reflecting surface: its facets in order.
+///
+/// The walk depends on the geometry only, so one walk serves every Fresnel term: multiply the reflectances of the facets
+/// up to each, times what leaves there. `alpha` > 0, `cos_theta_i` > 0.
+pub fn reflecting_walk(distribution: Distribution, alpha: f64, cos_theta_i: f64, walk: Walk, visit: impl FnMut(Facet)) {
+    let ray = -incident(cos_theta_i);
+    let height = drop_in(distribution, alpha, ray, 1.0, walk.random(0, 0));
+    walk_from(distribution, alpha, Start { ray, height, facet: 0 }, walk, visit);
+}
+
+/// The rest of a walk whose first facet is known: light from `cos_theta_i` has left the facet along `ray` and will meet the
+/// surface again.
+///
+/// First facets lie at heights of density `(1 + Lambda_i) c^Lambda_i`; a share `1 - c^Lambda_o` of the light goes on. In
+/// `-ln c` the product of the two is the density of a sum of two exponential variables, of rates `1 + Lambda_i` and
+/// `1 + Lambda_i + Lambda_o`, so the height is drawn exactly and all walks weigh the same.
+pub fn walk_after_first_facet(
+    distribution: Distribution,
+    alpha: f64,
+    cos_theta_i: f64,
+    ray: DVec3,
+    walk: Walk,
+    visit: impl FnMut(Facet),
+) {
+    let rate = 1.0 + lambda(distribution, alpha, cos_theta_i);
+    let mut height = libm::pow(1.0 - walk.random(0, 0), 1.0 / rate);
+    if ray.z > 0.0 {
+        let onward = lambda(distribution, alpha, ray.z);
+        height *= libm::pow(1.0 - walk.random(0, 3), 1.0 / (rate + onward));
+    }
+    let escape = escape(distribution, alpha, ray, height);
+    let height = next_height(distribution, alpha, ray, height, walk.random(1, 0) * (1.0 - escape));
+    walk_from(distribution, alpha, Start { ray, height, facet: 1 }, walk, visit);
+}
+
+/// A ray about to meet facet number `facet` at `height`.
+struct Start {
+    ray: DVec3,
+    height: f64,
+    facet: u32,
+}
+
+fn walk_from(distribution: Distribution, alpha: f64, start: Start, walk: Walk, mut visit: impl FnMut(Facet)) {
+    let Start { mut ray, mut height, facet: first } = start;
+    let mut light = 1.0;
+    for facet in first..MAX_FACETS {
+        let w = -ray;
+        let m = visible_normals::sample(distribution, alpha, w, [walk.random(facet, 1), walk.random(facet, 2)]);
+        let cos_theta_d = w.dot(m).max(0.0);
+        ray = (2.0 * cos_theta_d * m - w).normalize();
+        let escape = escape(distribution, alpha, ray, height);
+        let left = light * (1.0 - escape);
+        if left < REMAINDER || facet + 1 == MAX_FACETS {
+            visit(Facet { cos_theta_d, leaving: light });
+            return;
+        }
+        visit(Facet { cos_theta_d, leaving: light * escape });
+        light = left;
+        height = next_height(distribution, alpha, ray, height, walk.random(facet + 1, 0) * (1.0 - escape));
+    }
+}
+
+/// Branches of a walk that carry more light than this are split into their reflected and refracted halves; lesser ones take
+/// one of them by chance.
+const SPLIT: f64 = 0.02;
+
+/// An interface between transparent media, as the facets of a micro-surface have it.
+#[derive(Debug, Clone, Copy)]
+pub struct TransparentFacets<'a> {
+    /// Index below over index above.
+    pub eta: f64,
+    /// Reflectance from above (the first curve), films included. From below it is the same at the refracted angle (no absorption), and 1 under
+    /// total reflection.
+    pub from_above: &'a ReflectanceCurves,
+}
+
+impl TransparentFacets<'_> {
+    /// Reflectance, and cosine of the refracted ray on the other side.
+    fn split(&self, above: bool, cos_theta: f64) -> (f64, f64) {
+        let eta_ti = if above { self.eta } else { 1.0 / self.eta };
+        let cos_t_sq = 1.0 - (1.0 - cos_theta * cos_theta) / (eta_ti * eta_ti);
+        if cos_t_sq <= 0.0 {
+            return (1.0, 0.0);
+        }
+        let cos_t = libm::sqrt(cos_t_sq);
+        (self.from_above.at(0, if above { cos_theta } else { cos_t.min(1.0) }), cos_t)
+    }
+}
+
+/// Fraction of the light of a walk that crosses an interface between transparent media, and leaves it upward all the same.
+///
+/// What leaves counts by its expectation; strong branches are followed both ways, weak ones reflect or refract by chance.
+/// `alpha` > 0, `cos_theta_i` > 0.
+pub fn crossed_and_returned(
+    distribution: Distribution,
+    alpha: f64,
+    facets: TransparentFacets<'_>,
+    cos_theta_i: f64,
+    walk: Walk,
+) -> f64 {
+    let ray = -incident(cos_theta_i);
+    let height = drop_in(distribution, alpha, ray, 1.0, walk.random(0, 0));
+    let mut branches = vec![Branch { ray, height, light: 1.0, facet: 0, above: true, crossed: false }];
+    let mut returned = 0.0;
+    while let Some(branch) = branches.pop() {
+        let Branch { ray, height, light, facet, above, .. } = branch;
+        let w = -ray;
+        let m = visible_normals::sample(distribution, alpha, w, [walk.random(facet, 1), walk.random(facet, 2)]);
+        let cos_theta_d = w.dot(m).max(0.0);
+        let eta_ti = if above { facets.eta } else { 1.0 / facets.eta };
+        let (reflectance, cos_t) = facets.split(above, cos_theta_d);
+
+        let reflected = (2.0 * cos_theta_d * m - w).normalize();
+        let mirror = Branch { ray: reflected, light: light * reflectance, ..branch };
+        let refracted = (m * (cos_theta_d / eta_ti - cos_t) - w / eta_ti).normalize();
+        let through = Branch {
+            // In the frame of the other side, where the surface is flipped and heights count from the other end.
+            ray: DVec3::new(refracted.x, refracted.y, -refracted.z),
+            height: 1.0 - height,
+            light: light * (1.0 - reflectance),
+            above: !above,
+            crossed: true,
+            ..branch
+        };
+        let both = if light > SPLIT {
+            [Some(mirror), Some(through)]
+        } else if walk.random(facet, 3) < reflectance {
+            [Some(Branch { light, ..mirror }), None]
+        } else {
+            [None, Some(Branch { light, ..through })]
+        };
+        for next in both.into_iter().flatten() {
+            let escape = escape(distribution, alpha, next.ray, next.height);
+            if next.above && next.crossed {
+                returned += next.light * escape;
+            }
+            let left = next.light * (1.0 - escape);
+            if left > REMAINDER && facet + 1 < MAX_FACETS {
+                let u = walk.random(facet + 1, 0) * (1.0 - escape);
+                let height = next_height(distribution, alpha, next.ray, next.height, u);
+                branches.push(Branch { height, light: left, facet: facet + 1, ..next });
+            }
+        }
+    }
+    returned
+}
+
+/// Light on its way between facets, in the frame of the side it is on.
+#[derive(Clone, Copy)]
+struct Branch {
+    ray: DVec3,
+    height: f64,
+    light: f64,
+    facet: u32,
+    above: bool,
+    crossed: bool,
+}
+
+fn incident(cos_theta_i: f64) -> DVec3 {
+    DVec3::new(libm::sqrt((1.0 - cos_theta_i * cos_theta_i).max(0.0)), 0.0, cos_theta_i)
+}
+
+/// Probability that a ray leaves the surface from a height without meeting it again (Heitz et al. 2016, eq. 20).
+fn escape(distribution: Distribution, alpha: f64, ray: DVec3, height: f64) -> f64 {
+    if ray.z <= 0.0 { 0.0 } else { libm::pow(height, lambda(distribution, alpha, ray.z)) }
+}
+
+/// Where a ray meets the surface again, given that it does: `u` is uniform in 0..(1 - probability to leave).
+fn next_height(distribution: Distribution, alpha: f64, ray: DVec3, height: f64, u: f64) -> f64 {
+    if ray.z > 0.0 {
+        let lambda = lambda(distribution, alpha, ray.z);
+        if lambda == 0.0 { 1.0 } else { (height * libm::pow(1.0 - u, -1.0 / lambda)).min(1.0) }
+    } else {
+        drop_in(distribution, alpha, ray, height, u)
+    }
+}
+
+/// Where a ray that goes down meets the surface.
+fn drop_in(distribution: Distribution, alpha: f64, ray: DVec3, height: f64, u: f64) -> f64 {
+    height * libm::pow(1.0 - u, 1.0 / (1.0 + lambda(distribution, alpha, -ray.z)))
+}

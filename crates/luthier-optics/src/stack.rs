@@ -1,0 +1,152 @@
+//! What a layered surface is made of: the description that every model evaluates.
+//!
+//! A [`Stack`] is read from the top down. Each [`Layer`] is one interface (its micro-surface, the thin
+//! films that coat it, the medium or base below it). A dielectric base continues into a [`Slab`] and
+//! the next layer; a conductor or a diffuse base ends the stack; a dielectric that comes last is
+//! half-infinite, and what enters it is lost.
+
+use crate::Rgb;
+use crate::ior::Ior;
+
+/// A layered surface, from the exterior down.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stack {
+    /// The medium above the first layer; transparent (k = 0 everywhere).
+    pub exterior: Ior,
+    /// The interfaces from the top down; at least one.
+    pub layers: Vec<Layer>,
+}
+
+/// One interface and what lies below it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layer {
+    /// Coherent thin films on the interface, from the top down; they share its micro-surface.
+    pub films: Vec<Film>,
+    /// The micro-surface. Ignored by a diffuse base.
+    pub surface: Surface,
+    /// What is below.
+    pub base: Base,
+}
+
+/// What lies below an interface.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Base {
+    /// A transparent or absorbing medium, and the slab of it down to the next layer.
+    Dielectric {
+        /// Index of the medium.
+        ior: Ior,
+        /// The slab below the interface; of no consequence when the layer is the last (half-infinite).
+        slab: Slab,
+    },
+    /// An opaque medium.
+    Conductor {
+        /// Complex index of the medium.
+        ior: Ior,
+    },
+    /// An opaque diffuse base, with no interface of its own.
+    Diffuse(Diffuse),
+}
+
+/// A medium between two interfaces; it absorbs but does not scatter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slab {
+    /// Thickness along the normal.
+    pub thickness_um: f64,
+    /// Absorption coefficient per colour channel (linear Rec.709).
+    pub absorption_per_um: Rgb,
+}
+
+impl Slab {
+    /// Thickness times absorption, per channel: the optical depth along the normal.
+    pub fn optical_depth(&self) -> Rgb {
+        self.absorption_per_um.map(|a| a * self.thickness_um)
+    }
+}
+
+/// An opaque diffuse reflector (Oren and Nayar 1994, full model; Lambert at `sigma = 0`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Diffuse {
+    /// Diffuse albedo per channel (linear Rec.709), each in 0..1.
+    pub albedo: Rgb,
+    /// Standard deviation of the facet slope angle, in radians; 0 is Lambert.
+    pub sigma: f64,
+}
+
+/// A coherent thin film.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Film {
+    /// Index of the film.
+    pub ior: Ior,
+    /// Thickness.
+    pub thickness: FilmThickness,
+}
+
+/// Thickness of a film, constant or varying over the surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FilmThickness {
+    /// Thinnest.
+    pub min_nm: f64,
+    /// Thickest; equal to `min_nm` for a film of constant thickness.
+    pub max_nm: f64,
+}
+
+impl FilmThickness {
+    /// The middle of the range: what models without a thickness map use.
+    pub fn nominal_nm(&self) -> f64 {
+        0.5 * (self.min_nm + self.max_nm)
+    }
+}
+
+/// Slope distribution of a micro-surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Distribution {
+    /// Beckmann and Spizzichino 1963: Gaussian slopes.
+    Beckmann,
+    /// Trowbridge and Reitz 1975; "GGX" in Walter et al. 2007.
+    Ggx,
+}
+
+impl Distribution {
+    /// The name used in files, manifests and shaders.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Beckmann => "beckmann",
+            Self::Ggx => "ggx",
+        }
+    }
+}
+
+/// A micro-surface: slope parameters along two tangents. `alpha_x == alpha_y == 0` is smooth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Surface {
+    /// Slope distribution.
+    pub distribution: Distribution,
+    /// Slope parameter along the tangent, 0..=1.
+    pub alpha_x: f64,
+    /// Slope parameter along the bitangent, 0..=1.
+    pub alpha_y: f64,
+    /// Angle from the surface's tangent to this layer's, counter-clockwise, in radians.
+    pub rotation: f64,
+}
+
+impl Surface {
+    /// Isotropic surface.
+    pub fn isotropic(distribution: Distribution, alpha: f64) -> Self {
+        Self { distribution, alpha_x: alpha, alpha_y: alpha, rotation: 0.0 }
+    }
+
+    /// Perfectly smooth.
+    pub fn smooth() -> Self {
+        Self::isotropic(Distribution::Ggx, 0.0)
+    }
+
+    /// Whether both slope parameters are zero.
+    pub fn is_smooth(&self) -> bool {
+        self.alpha_x == 0.0 && self.alpha_y == 0.0
+    }
+
+    /// Geometric mean of the two slope parameters: what isotropic models use.
+    pub fn alpha_isotropic(&self) -> f64 {
+        (self.alpha_x * self.alpha_y).sqrt()
+    }
+}

@@ -1,0 +1,10 @@
+//! Charts as inline SVG. Colours, strokes and type come from the page's style sheet by class name.
+
+mod errors;
+mod frame;
+mod scale;
+mod tables;
+
+pub(crate) use errors::{by_angle, exceedance, max_by_material, series};
+pub(crate) use frame::legend;
+pub(crate) use tables::{bytes_by_table, error_by_alpha, reflectance};

@@ -1,0 +1,91 @@
+//! From values to pixels, and the ticks between.
+
+/// One axis of a chart.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Scale {
+    min: f64,
+    max: f64,
+    log: bool,
+    /// Distance of labelled ticks on a linear scale.
+    step: f64,
+}
+
+impl Scale {
+    /// Linear from `min` to `max` with a tick every `step`.
+    pub(crate) fn linear(min: f64, max: f64, step: f64) -> Self {
+        Self { min, max, log: false, step }
+    }
+
+    /// Logarithmic over whole decades that hold all positive values; at least one decade, none below `smallest`.
+    pub(crate) fn decades(values: impl Iterator<Item = f64>, smallest: f64) -> Self {
+        let mut range: Option<(f64, f64)> = None;
+        for value in values.filter(|v| *v > 0.0 && v.is_finite()) {
+            let value = value.max(smallest);
+            range = Some(range.map_or((value, value), |(lo, hi)| (lo.min(value), hi.max(value))));
+        }
+        let (lo, hi) = range.unwrap_or((1e-4, 1e-3));
+        let first = libm::floor(libm::log10(lo) + 1e-9);
+        let last = libm::ceil(libm::log10(hi) - 1e-9).max(first + 1.0);
+        Self { min: first, max: last, log: true, step: 1.0 }
+    }
+
+    /// Position in 0..1; values beyond the ends, and zero on a logarithmic scale, sit at the end.
+    pub(crate) fn fraction(&self, value: f64) -> f64 {
+        let v = match (self.log, value > 0.0) {
+            (true, true) => libm::log10(value),
+            (true, false) => self.min,
+            (false, _) => value,
+        };
+        ((v - self.min) / (self.max - self.min)).clamp(0.0, 1.0)
+    }
+
+    /// Position in 0..1 and label of every tick; on a logarithmic scale at most eight.
+    pub(crate) fn ticks(&self) -> Vec<(f64, String)> {
+        let span = self.max - self.min;
+        let step = if self.log { libm::ceil(span / 7.0) } else { self.step };
+        let count = libm::floor(span / step + 1e-9) as u32;
+        let tick = |i: u32| {
+            let v = self.min + f64::from(i) * step;
+            let label = if self.log { power_of_ten(v as i32) } else { crate::format::number((v * 1e9).round() / 1e9) };
+            ((v - self.min) / span, label)
+        };
+        (0..=count).map(tick).collect()
+    }
+}
+
+/// `10⁻⁴`.
+fn power_of_ten(exponent: i32) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    if exponent == 0 {
+        return "1".to_owned();
+    }
+    let mut out = String::from("10");
+    for c in exponent.to_string().chars() {
+        out.push(c.to_digit(10).map_or('⁻', |d| DIGITS[d as usize]));
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decades_hold_their_values() {
+        let s = Scale::decades([3e-5, 2e-3, 0.0, f64::NAN].into_iter(), 1e-9);
+        assert_eq!(s.ticks().iter().map(|t| t.1.as_str()).collect::<Vec<_>>(), ["10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²"]);
+        assert!((s.fraction(1e-4) - 1.0 / 3.0).abs() < 1e-12);
+        assert_eq!((s.fraction(0.0), s.fraction(5.0)), (0.0, 1.0));
+    }
+
+    #[test]
+    fn an_empty_scale_is_still_a_scale() {
+        assert_eq!(Scale::decades(std::iter::empty(), 1e-9).ticks().len(), 2);
+    }
+
+    #[test]
+    fn linear_ticks() {
+        let s = Scale::linear(0.0, 90.0, 30.0);
+        assert_eq!(s.ticks().into_iter().map(|t| t.1).collect::<Vec<_>>(), ["0", "30", "60", "90"]);
+    }
+}

@@ -1,0 +1,94 @@
+use luthier_lut::TableKind;
+use thiserror::Error;
+
+use crate::Form;
+
+/// Why no judgement could be passed.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ReportError {
+    /// The stacks are not those of the manifest.
+    #[error("the manifest has {manifest} materials, {stacks} stacks were given; bake and report from the same files")]
+    MaterialCount {
+        /// In the manifest.
+        manifest: usize,
+        /// Given.
+        stacks: usize,
+    },
+    /// A stack and its record differ in their layers.
+    #[error(
+        "material `{material}`: layer {layer} of the manifest is not layer {layer} of the material file; bake again"
+    )]
+    Layers {
+        /// Name of the material.
+        material: String,
+        /// First layer that differs, from 0.
+        layer: usize,
+    },
+    /// A texture that the manifest lists was not given.
+    #[error("no texels for the {} table", .0.name())]
+    MissingTexture(TableKind),
+    /// Texels that do not fit the layout.
+    #[error("the {} table is {found_width} x {found_height}, its layout needs {width} x {height}", .kind.name())]
+    TextureSize {
+        /// Which table.
+        kind: TableKind,
+        /// Width needed.
+        width: u64,
+        /// Height needed.
+        height: u64,
+        /// Width given.
+        found_width: u32,
+        /// Height given.
+        found_height: u32,
+    },
+    /// A layout that describes no texture: no tile, no column, an axis with fewer than two nodes or without extent.
+    #[error("the layout of the {} table is not usable: {reason}", .kind.name())]
+    Layout {
+        /// Which table.
+        kind: TableKind,
+        /// What is wrong with it.
+        reason: &'static str,
+    },
+    /// A layer that needs a table has no tile in it.
+    #[error("material `{material}`: layer {layer} has no tile in the {} table", .kind.name())]
+    MissingTile {
+        /// Name of the material.
+        material: String,
+        /// Layer, from 0.
+        layer: usize,
+        /// Which table.
+        kind: TableKind,
+    },
+    /// The model that the shaders evaluate is not one the judge has a reference for.
+    #[error("the shaders evaluate the model `{0}`, there is a reference for `elek` only")]
+    UnknownModel(String),
+    /// No direction pairs were asked for.
+    #[error("at least one pair of directions per set is needed")]
+    NoPairs,
+    /// The device refused.
+    #[error("the {form} shader failed on material {material}: {message}")]
+    Device {
+        /// Which shader.
+        form: Form,
+        /// Number of the material.
+        material: u32,
+        /// What the device said.
+        message: String,
+    },
+    /// The device answered with another number of values than it was asked for.
+    #[error("the {form} shader gave {found} values for {asked} pairs of directions of material {material}")]
+    DeviceCount {
+        /// Which shader.
+        form: Form,
+        /// Number of the material.
+        material: u32,
+        /// Pairs asked.
+        asked: usize,
+        /// Values given.
+        found: usize,
+    },
+    /// The report is not JSON of the documented shape.
+    #[error("not a luthier report: {0}")]
+    Json(#[from] serde_json::Error),
+}

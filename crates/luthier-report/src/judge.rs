@@ -1,0 +1,336 @@
+use std::fmt;
+
+use glam::DVec3;
+use luthier_layers::elek::{self, Layer, Terms};
+use luthier_layers::terms::Exact;
+use luthier_lut::{ColorMode, LayerKind, LayerRecord};
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use luthier_optics::stack::Stack;
+use rayon::prelude::*;
+
+use crate::report::{Compared, Comparison, MaterialReport, REPORT_SCHEMA, Report, TableReport};
+use crate::table_terms::{TableTerms, Weights};
+use crate::{
+    AngleProfile, Device, DirectionSet, Exceedance, FLOOR, Form, Pair, ReportError, Statistics, Subject, format,
+    statistics, table_scan,
+};
+
+/// How far the judge's largest table error may exceed the baker's before it is a finding: both scan finitely many
+/// points.
+const BAKER_MARGIN: f64 = 1.05;
+
+/// How to judge.
+#[derive(Clone)]
+pub struct Settings<'a> {
+    /// Pairs of directions in every set of every material, at least 1.
+    pub pairs_per_set: u32,
+    /// Limit on [`Report::max_error`].
+    pub budget: Option<f64>,
+    /// What the caller knows about the run: shown and stored as given.
+    pub provenance: Vec<(String, String)>,
+    /// Called after every set of every material.
+    pub progress: Option<&'a dyn Fn(Progress<'_>)>,
+}
+
+impl Default for Settings<'_> {
+    /// 4096 pairs, no budget, no provenance, no progress.
+    fn default() -> Self {
+        Self { pairs_per_set: 4096, budget: None, provenance: Vec::new(), progress: None }
+    }
+}
+
+impl fmt::Debug for Settings<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Settings")
+            .field("pairs_per_set", &self.pairs_per_set)
+            .field("budget", &self.budget)
+            .field("provenance", &self.provenance)
+            .finish_non_exhaustive()
+    }
+}
+
+/// How far a judgement has come.
+#[derive(Debug, Clone, Copy)]
+pub struct Progress<'a> {
+    /// Sets done, of all materials.
+    pub done: u64,
+    /// Sets in all.
+    pub total: u64,
+    /// The material at hand.
+    pub material: &'a str,
+}
+
+/// Judges a bake: its tables always, its shaders when there is a device to run them.
+///
+/// The result depends on the subject, the settings and the device's values only, not on the number of threads.
+///
+/// # Errors
+/// See [`ReportError`]: a subject that does not fit together, a device that fails. Bad values are no error here; they
+/// are in the report.
+pub fn judge(
+    subject: &Subject<'_>,
+    device: Option<&dyn Device>,
+    settings: &Settings<'_>,
+) -> Result<Report, ReportError> {
+    if settings.pairs_per_set == 0 {
+        return Err(ReportError::NoPairs);
+    }
+    subject.check()?;
+    let manifest = subject.manifest;
+    let references: Vec<References> = manifest
+        .materials
+        .iter()
+        .zip(&subject.stacks)
+        .map(|(material, stack)| References::new(stack, material.wavelengths_nm, material.color))
+        .collect();
+    let baked: Vec<Exact> = references.iter().map(|r| r.baked().clone()).collect();
+    let tables = table_scan::scan(subject, &baked)?;
+
+    let total = manifest.materials.len() as u64 * DirectionSet::ALL.len() as u64;
+    let mut materials = Vec::with_capacity(manifest.materials.len());
+    let mut weights = WeightsVote::default();
+    let mut findings = Vec::new();
+    for (index, (entry, references)) in manifest.materials.iter().zip(&references).enumerate() {
+        let eight_bit = TableTerms::new(subject, index, Weights::EightBit)?;
+        let exact_weights = TableTerms::new(subject, index, Weights::Exact)?;
+        let layers = &references.layers;
+        record_findings(&entry.name, layers, &entry.layers, &mut findings);
+        let mut gathered = Gathered::default();
+        for (set_number, set) in (0..).zip(DirectionSet::ALL) {
+            let pairs = set.pairs(settings.pairs_per_set, layers);
+            let three = evaluate(layers, &references.three, &pairs);
+            let spectral = evaluate(layers, &references.spectral, &pairs);
+            let baked_reference = match entry.color {
+                ColorMode::Spectral => &spectral,
+                ColorMode::ThreeWavelengths => &three,
+            };
+            let tables_8 = evaluate(layers, &eight_bit, &pairs);
+            let tables_exact = evaluate(layers, &exact_weights, &pairs);
+            gathered.add(Compared::TablesEightBit, set, &pairs, &tables_8, baked_reference);
+            gathered.add(Compared::TablesExact, set, &pairs, &tables_exact, baked_reference);
+            gathered.add(Compared::ThreeWavelengths, set, &pairs, &three, &spectral);
+            if let Some(device) = device {
+                let found = run(device, Form::Full, index as u32, &pairs)?;
+                gathered.add(Compared::FullDevice, set, &pairs, &found, &three);
+                let found = run(device, Form::Baked, index as u32, &pairs)?;
+                gathered.add(Compared::BakedDevice, set, &pairs, &found, baked_reference);
+                weights.add(&found, &tables_8, &tables_exact);
+                gathered.device.push((set, pairs, found, [tables_8, tables_exact]));
+            }
+            if let Some(progress) = settings.progress {
+                let done = index as u64 * DirectionSet::ALL.len() as u64 + set_number + 1;
+                progress(Progress { done, total, material: &entry.name });
+            }
+        }
+        materials.push((entry, gathered));
+    }
+
+    let device_weights = device.map(|_| weights.decide());
+    let materials: Vec<MaterialReport> = materials
+        .into_iter()
+        .map(|(entry, mut gathered)| {
+            if let Some(weights) = device_weights {
+                gathered.split_arithmetic(weights);
+            }
+            gathered.comparisons.sort_by_key(|c| c.compared);
+            MaterialReport {
+                name: entry.name.clone(),
+                source: entry.source.clone(),
+                class: entry.class.clone(),
+                color: entry.color,
+                layers: entry.layers.iter().map(format::layer).collect(),
+                comparisons: gathered.comparisons,
+            }
+        })
+        .collect();
+    table_findings(&tables, &mut findings);
+    value_findings(&materials, &mut findings);
+    Ok(Report {
+        schema: REPORT_SCHEMA,
+        generator: manifest.generator.clone(),
+        model: manifest.model.clone(),
+        provenance: settings.provenance.clone(),
+        device: device.map(Device::name),
+        device_weights,
+        budget: settings.budget,
+        pairs_per_set: settings.pairs_per_set,
+        floor: FLOOR,
+        findings,
+        tables,
+        materials,
+    })
+}
+
+/// Exact terms of one material.
+struct References {
+    layers: Vec<Layer>,
+    spectral: Exact,
+    three: Exact,
+    color: ColorMode,
+}
+
+impl References {
+    fn new(stack: &Stack, wavelengths_nm: [f64; 3], color: ColorMode) -> Self {
+        Self {
+            layers: elek::layers(stack),
+            spectral: Exact::new(stack, Color::Spectral),
+            three: Exact::new(stack, Color::ThreeWavelengths(wavelengths_nm)),
+            color,
+        }
+    }
+
+    /// What the tables stand for.
+    fn baked(&self) -> &Exact {
+        match self.color {
+            ColorMode::Spectral => &self.spectral,
+            ColorMode::ThreeWavelengths => &self.three,
+        }
+    }
+}
+
+/// The model in f64 at exactly the f32 directions that the device gets.
+fn evaluate(layers: &[Layer], terms: &(impl Terms + Sync), pairs: &[Pair]) -> Vec<Rgb> {
+    let wide = |w: [f32; 3]| DVec3::from(w.map(f64::from));
+    pairs.par_iter().map(|&(wi, wo)| elek::eval(layers, terms, wide(wi), wide(wo))).collect()
+}
+
+fn run(device: &dyn Device, form: Form, material: u32, pairs: &[Pair]) -> Result<Vec<Rgb>, ReportError> {
+    let values =
+        device.evaluate(form, material, pairs).map_err(|message| ReportError::Device { form, material, message })?;
+    if values.len() != pairs.len() {
+        return Err(ReportError::DeviceCount { form, material, asked: pairs.len(), found: values.len() });
+    }
+    Ok(values.into_iter().map(|v| v.map(f64::from)).collect())
+}
+
+/// Pairs, the device's values there, and those of f64 arithmetic on the tables with 8-bit and exact weights.
+type DeviceRun = (DirectionSet, Vec<Pair>, Vec<Rgb>, [Vec<Rgb>; 2]);
+
+/// The comparisons of one material, as they come in.
+#[derive(Default)]
+struct Gathered {
+    comparisons: Vec<Comparison>,
+    device: Vec<DeviceRun>,
+}
+
+impl Gathered {
+    fn add(&mut self, compared: Compared, set: DirectionSet, pairs: &[Pair], found: &[Rgb], expected: &[Rgb]) {
+        let at = self.comparisons.iter().position(|c| c.compared == compared).unwrap_or_else(|| {
+            self.comparisons.push(Comparison {
+                compared,
+                sets: Vec::new(),
+                by_angle: AngleProfile::new(),
+                exceedance: Exceedance::new(),
+            });
+            self.comparisons.len() - 1
+        });
+        let comparison = &mut self.comparisons[at];
+        comparison.sets.push((set, statistics(pairs, found, expected)));
+        comparison.by_angle.add(pairs, found, expected);
+        comparison.exceedance.add(found, expected);
+    }
+
+    /// Compares the device with f64 on the same tables, now that its weights are known.
+    fn split_arithmetic(&mut self, weights: Weights) {
+        for (set, pairs, found, [eight_bit, exact]) in std::mem::take(&mut self.device) {
+            let expected = match weights {
+                Weights::EightBit => &eight_bit,
+                Weights::Exact => &exact,
+            };
+            self.add(Compared::Arithmetic, set, &pairs, &found, expected);
+        }
+    }
+}
+
+/// Which weights explain a device: the smaller sum of squared relative errors over all materials.
+#[derive(Default)]
+struct WeightsVote {
+    eight_bit: f64,
+    exact: f64,
+}
+
+impl WeightsVote {
+    fn add(&mut self, device: &[Rgb], eight_bit: &[Rgb], exact: &[Rgb]) {
+        let sum = |expected: &[Rgb]| {
+            let errors = device.iter().zip(expected).flat_map(|(d, e)| (0..3).map(|c| (d[c], e[c])));
+            let squares = errors.map(|(d, e)| (d - e).abs() / e.abs().max(FLOOR)).map(|e| e * e);
+            squares.filter(|e| e.is_finite()).sum::<f64>()
+        };
+        self.eight_bit += sum(eight_bit);
+        self.exact += sum(exact);
+    }
+
+    fn decide(&self) -> Weights {
+        if self.exact <= self.eight_bit { Weights::Exact } else { Weights::EightBit }
+    }
+}
+
+/// Records whose numbers are not those of the material file. The running maximum of alpha counts: no layer is evaluated
+/// smoother than the one above it.
+fn record_findings(material: &str, layers: &[Layer], records: &[LayerRecord], findings: &mut Vec<String>) {
+    let (mut alpha, mut recorded) = (0.0_f64, 0.0_f64);
+    for (i, (layer, record)) in layers.iter().zip(records).enumerate() {
+        if record.kind == LayerKind::Diffuse {
+            break;
+        }
+        alpha = alpha.max(layer.alpha);
+        recorded = recorded.max(record.alpha);
+        if (alpha - recorded).abs() > 1e-6 {
+            findings.push(format!(
+                "{material}, layer {i}: the shader's alpha is {}, the material file's {}.",
+                format::number(recorded),
+                format::number(alpha)
+            ));
+        }
+        if let elek::Below::Dielectric { eta, .. } = layer.below
+            && (eta - record.eta).abs() > 1e-6
+        {
+            findings.push(format!(
+                "{material}, layer {i}: the shader's relative index is {}, the material file's {}.",
+                format::number(record.eta),
+                format::number(eta)
+            ));
+        }
+    }
+}
+
+fn table_findings(tables: &[TableReport], findings: &mut Vec<String>) {
+    for table in tables {
+        for tile in &table.tiles {
+            let name = format!("{} tile {}", table.kind.name(), tile.name);
+            if tile.not_finite > 0 {
+                findings.push(format!("{name}: {} reads are not finite.", tile.not_finite));
+            }
+            if tile.users.is_empty() {
+                findings.push(format!("{name}: no layer reads it."));
+            }
+            let Some(judge) = &tile.judge else { continue };
+            if judge.max_abs_err > BAKER_MARGIN * tile.baker.max_abs_err {
+                findings.push(format!(
+                    "{name}: measured here {}, the baker states {}.",
+                    format::error(judge.max_abs_err),
+                    format::error(tile.baker.max_abs_err)
+                ));
+            }
+        }
+    }
+}
+
+fn value_findings(materials: &[MaterialReport], findings: &mut Vec<String>) {
+    for material in materials {
+        for comparison in &material.comparisons {
+            for (set, Statistics { not_finite, pairs, .. }) in &comparison.sets {
+                if *not_finite > 0 {
+                    findings.push(format!(
+                        "{}, {}, {} set: {not_finite} of {} values are not finite.",
+                        material.name,
+                        comparison.compared.name(),
+                        set.name(),
+                        3 * pairs
+                    ));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! One section per material.
+
+use luthier_lut::ColorMode;
+use std::fmt::Write;
+
+use super::{anchor, cell, summary};
+use crate::chart::{self, legend};
+use crate::format::{error, escape, number};
+use crate::report::{Compared, MaterialReport, Report};
+use crate::{DirectionSet, ErrorSummary, Statistics};
+
+pub(super) fn write(out: &mut String, report: &Report) {
+    out.push_str(
+        "<h2 id=\"materials\">Materials</h2><p>Largest relative error of f cos θᵢ in each set of directions, and \
+         below it the 99th percentile and the root mean square. The sets and floors are defined under <a \
+         href=\"#method\">method</a>.</p>",
+    );
+    let mut drawn = summary::shown(report).to_vec();
+    if report.device.is_some() {
+        drawn.push(Compared::Arithmetic);
+    }
+    let series: Vec<_> = drawn.iter().map(|c| chart::series(*c)).collect();
+    for (index, material) in report.materials.iter().enumerate() {
+        let _ = write!(
+            out,
+            "<article id=\"{}\"><h3>{}</h3><p class=\"sub\">class {} · {} · <code>{}</code><br/>{}</p>",
+            anchor(index),
+            escape(&material.name),
+            escape(&material.class),
+            color(material.color),
+            escape(&material.source),
+            escape(&material.layers.join(" / "))
+        );
+        out.push_str("<div class=\"split\"><figure>");
+        if report.device.is_some() {
+            out.push_str(&legend(&series));
+        }
+        out.push_str(&chart::by_angle(material, &drawn, report.budget));
+        out.push_str("</figure><div>");
+        sets(out, material, report.budget);
+        out.push_str("</div></div>");
+        worst(out, material, report.device.is_some());
+        out.push_str("</article>\n");
+    }
+}
+
+/// Comparisons down, sets across.
+fn sets(out: &mut String, material: &MaterialReport, budget: Option<f64>) {
+    out.push_str("<div class=\"scroll\"><table><thead><tr><th></th>");
+    for set in DirectionSet::ALL {
+        let _ = write!(out, "<th class=\"n\">{}</th>", set.name());
+    }
+    out.push_str("</tr></thead><tbody>");
+    for comparison in &material.comparisons {
+        let judged = matches!(comparison.compared, Compared::BakedDevice | Compared::FullDevice);
+        let _ = write!(out, "<tr><th>{}</th>", comparison.compared.name());
+        for (_, statistics) in &comparison.sets {
+            let max = statistics.max_error();
+            let class = if judged && budget.is_some_and(|b| max > b) { "n over" } else { "n" };
+            let ErrorSummary { p99, rms, .. } = statistics.relative;
+            let _ =
+                write!(out, "<td class=\"{class}\">{}<small>{} · {}</small></td>", error(max), error(p99), error(rms));
+        }
+        out.push_str("</tr>");
+    }
+    out.push_str("</tbody></table></div>");
+}
+
+/// Other floors, and the worst pairs, of what is judged.
+fn worst(out: &mut String, material: &MaterialReport, with_device: bool) {
+    let shown =
+        if with_device { &[Compared::BakedDevice, Compared::FullDevice][..] } else { &[Compared::TablesEightBit] };
+    out.push_str(
+        "<div class=\"scroll\"><table><thead><tr><th></th><th>set</th><th class=\"n\">peak</th><th class=\"n\">max, \
+         floor white/10</th>",
+    );
+    out.push_str(
+        "<th class=\"n\">floor white/1000</th><th class=\"n\">floor peak/10</th><th class=\"n\">max \
+         absolute</th><th>worst pair</th></tr></thead><tbody>",
+    );
+    for comparison in shown.iter().filter_map(|c| material.comparison(*c)) {
+        for (i, (set, s)) in comparison.sets.iter().enumerate() {
+            out.push_str("<tr>");
+            if i == 0 {
+                let _ = write!(out, "<th rowspan=\"{}\">{}</th>", comparison.sets.len(), comparison.compared.name());
+            }
+            let _ = write!(out, "<td>{}</td>", set.name());
+            for value in [s.peak, s.relative.max, s.relative_dim.max, s.relative_peak.max, s.max_abs_err] {
+                out.push_str(&cell(&error(value)));
+            }
+            let _ = write!(out, "<td>{}</td></tr>", pair(s));
+        }
+    }
+    out.push_str("</tbody></table></div>");
+}
+
+fn pair(statistics: &Statistics) -> String {
+    match (statistics.not_finite_at, statistics.worst.first()) {
+        (Some((wi, wo)), _) => format!("{} values not finite, first at {}", statistics.not_finite, angles(wi, wo)),
+        (None, Some(w)) => format!(
+            "{}, {}: {}, reference {}",
+            angles(w.wi, w.wo),
+            ["R", "G", "B"].get(w.channel as usize).unwrap_or(&"?"),
+            error(w.found),
+            error(w.expected)
+        ),
+        (None, None) => "–".to_owned(),
+    }
+}
+
+/// A pair of directions in words.
+pub(super) fn angles(wi: [f32; 3], wo: [f32; 3]) -> String {
+    // From the tangential part: the arc cosine has no digits left near the normal, nor f32 near the horizon.
+    let theta = |w: [f32; 3]| libm::atan2(libm::hypot(f64::from(w[0]), f64::from(w[1])), f64::from(w[2])).to_degrees();
+    let phi = |w: [f32; 3]| libm::atan2(f64::from(w[1]), f64::from(w[0])).to_degrees();
+    let turn = libm::fabs(libm::remainder(phi(wo) - phi(wi), 360.0));
+    format!("θᵢ {}°, θₒ {}°, Δφ {:.1}°", number_deg(theta(wi)), number_deg(theta(wo)), turn)
+}
+
+fn number_deg(degrees: f64) -> String {
+    number((degrees * 1e4).round() / 1e4)
+}
+
+/// How the tables of a material came by their colour, in words.
+fn color(color: ColorMode) -> &'static str {
+    match color {
+        ColorMode::Spectral => "spectral",
+        ColorMode::ThreeWavelengths => "three wavelengths",
+    }
+}

@@ -1,0 +1,183 @@
+//! Verdict, key figures, and all materials at one glance.
+
+use std::fmt::Write;
+
+use crate::chart::{self, legend};
+use crate::format::{bytes, error, escape, number};
+use crate::report::{Compared, Report, WorstCase};
+
+use super::{anchor, cell};
+
+/// What the overview draws and lists.
+pub(super) fn shown(report: &Report) -> &'static [Compared] {
+    if report.device.is_some() {
+        &[Compared::BakedDevice, Compared::TablesEightBit, Compared::FullDevice]
+    } else {
+        &[Compared::TablesEightBit, Compared::TablesExact]
+    }
+}
+
+pub(super) fn write(out: &mut String, report: &Report) {
+    out.push_str("<header><h1>Error report</h1><p class=\"sub\">");
+    let mut facts = vec![format!("Baked by {}", escape(&report.generator))];
+    facts.push(match &report.device {
+        Some(device) => format!("run on {}", escape(device)),
+        None => "no shader was run".to_owned(),
+    });
+    facts.extend(report.provenance.iter().map(|(name, value)| format!("{}: {}", escape(name), escape(value))));
+    out.push_str(&facts.join(" · "));
+    out.push_str("</p><nav><a href=\"#materials-at-a-glance\">Overview</a>");
+    out.push_str(
+        "<a href=\"#tables\">Tables</a><a href=\"#materials\">Materials</a><a \
+         href=\"#method\">Method</a></nav></header>\n",
+    );
+    verdict(out, report);
+    figures(out, report);
+    overview(out, report);
+}
+
+fn verdict(out: &mut String, report: &Report) {
+    let max = report.max_error();
+    let (class, words) = match (report.is_within_budget(), report.budget) {
+        (Some(true), Some(budget)) => (" good", format!("Within budget: {} of {}", error(max), error(budget))),
+        (Some(false), Some(budget)) if max.is_finite() => {
+            (" bad", format!("Over budget: {}, limit {}", error(max), error(budget)))
+        }
+        (Some(false), _) => (" bad", "Over budget: some values are not finite".to_owned()),
+        _ if max.is_finite() => ("", format!("Largest error {}", error(max))),
+        _ => (" bad", "Some values are not finite".to_owned()),
+    };
+    let judged = if report.device.is_some() {
+        "the emitted shaders (table-reading and table-free) against their references in f64"
+    } else {
+        "the tables, read with 8-bit weights and f64 arithmetic, against exact terms: no shader was run"
+    };
+    let _ = writeln!(
+        out,
+        "<section class=\"verdict{class}\"><p class=\"figure\">{}</p><p>The figure is the largest error of f cos θᵢ \
+         over all materials, directions and channels, of {judged}; relative to max(|reference|, {}), a tenth of a \
+         white diffuser.{}</p></section>",
+        escape(&words),
+        number(report.floor),
+        report.worst().map_or(String::new(), |worst| at(&worst))
+    );
+}
+
+/// Where the worst is, in words.
+fn at(worst: &WorstCase<'_>) -> String {
+    let place = format!("{}, {}, {} set", worst.material, worst.compared.name(), worst.set.name());
+    match (worst.statistics.not_finite_at, worst.statistics.worst.first()) {
+        (Some((wi, wo)), _) => {
+            format!(" It is at {}: {}.", escape(&place), super::materials::angles(wi, wo))
+        }
+        (None, Some(pair)) => format!(
+            " It is at {}: {}; {} where {} is right.",
+            escape(&place),
+            super::materials::angles(pair.wi, pair.wo),
+            error(pair.found),
+            error(pair.expected)
+        ),
+        (None, None) => String::new(),
+    }
+}
+
+fn figures(out: &mut String, report: &Report) {
+    let total_bytes: u64 = report.tables.iter().map(|t| t.texel_bytes).sum();
+    let judged: Vec<Compared> = match report.device {
+        Some(_) => vec![Compared::BakedDevice, Compared::FullDevice],
+        None => vec![Compared::TablesEightBit],
+    };
+    let statistics =
+        || report.materials.iter().flat_map(|m| judged.iter().filter_map(|c| m.comparison(*c))).flat_map(|c| &c.sets);
+    let samples: u64 = statistics().map(|(_, s)| 3 * s.pairs).sum();
+    let not_finite: u64 = statistics().map(|(_, s)| s.not_finite).sum();
+    let mut facts = vec![
+        ("materials", report.materials.len().to_string()),
+        ("tables", report.tables.len().to_string()),
+        ("texel bytes", bytes(total_bytes)),
+        ("values judged", samples.to_string()),
+        ("not finite", not_finite.to_string()),
+    ];
+    for compared in judged {
+        let max =
+            report.materials.iter().filter_map(|m| m.comparison(compared)).map(|c| c.max_error()).fold(0.0, f64::max);
+        facts.push((compared.name(), error(max)));
+    }
+    if let Some(arithmetic) = report.max_arithmetic_error() {
+        facts.push(("arithmetic of both", error(arithmetic)));
+    }
+    out.push_str("<dl class=\"facts\">");
+    for (name, value) in facts {
+        let _ = write!(out, "<div><dt>{}</dt><dd>{}</dd></div>", escape(name), escape(&value));
+    }
+    out.push_str("</dl>\n");
+}
+
+fn overview(out: &mut String, report: &Report) {
+    let shown = shown(report);
+    let series: Vec<_> = shown.iter().map(|c| chart::series(*c)).collect();
+    out.push_str("<h2 id=\"materials-at-a-glance\">Materials at a glance</h2><figure>");
+    out.push_str(&legend(&series));
+    out.push_str(&chart::max_by_material(report, shown));
+    out.push_str(if report.device.is_some() {
+        "<figcaption>Where the ring holds the diamond, the tables make the error; where it lies to the right of it, \
+         f32 arithmetic does. The square shares no table: it is arithmetic alone, at three wavelengths. Errors of \
+         zero have no mark.</figcaption></figure>\n"
+    } else {
+        "<figcaption>Both marks are the tables alone; what lies between them is the precision of the sampler's \
+         weights. Errors of zero have no mark.</figcaption></figure>\n"
+    });
+    out.push_str("<div class=\"pair\"><figure>");
+    out.push_str(&chart::exceedance(report, shown));
+    out.push_str(
+        "<figcaption>How rare the largest errors are: the share of all samples, all materials and sets in equal \
+         parts, whose error exceeds the value on the x axis. Colours as above.</figcaption></figure><figure>",
+    );
+    out.push_str(&chart::bytes_by_table(&report.tables));
+    out.push_str(
+        "<figcaption>Uncompressed bytes of the tables; they serve all materials \
+         together.</figcaption></figure></div>\n",
+    );
+    rows(out, report, shown);
+}
+
+fn rows(out: &mut String, report: &Report, shown: &[Compared]) {
+    let mut columns = shown.to_vec();
+    if report.device.is_some() {
+        columns.push(Compared::Arithmetic);
+    }
+    columns.push(Compared::ThreeWavelengths);
+    out.push_str("<div class=\"scroll\"><table><thead><tr><th>material</th><th>class</th><th>layers</th>");
+    for compared in &columns {
+        let _ = write!(out, "<th class=\"n\">{}</th>", compared.name());
+    }
+    out.push_str("</tr></thead><tbody>");
+    for (index, material) in report.materials.iter().enumerate() {
+        let _ = write!(
+            out,
+            "<tr><th><a href=\"#{}\">{}</a></th><td>{}</td><td>{}</td>",
+            anchor(index),
+            escape(&material.name),
+            escape(&material.class),
+            material.layers.len()
+        );
+        for &compared in &columns {
+            let value = material.comparison(compared).map(|c| c.max_error());
+            let judged = compared.is_judged(report.device.is_some());
+            let over = judged && value.zip(report.budget).is_some_and(|(value, budget)| value > budget);
+            match value {
+                Some(value) if over => {
+                    let _ = write!(out, "<td class=\"n over\">{}</td>", error(value));
+                }
+                Some(value) => out.push_str(&cell(&error(value))),
+                None => out.push_str(&cell("–")),
+            }
+        }
+        out.push_str("</tr>");
+    }
+    out.push_str(
+        "</tbody></table></div><p class=\"note\">Largest relative errors over all sets of directions. “Three \
+         wavelengths” is no error: it is how far the model at three wavelengths lies from the spectral one, both in \
+         f64.</p>\n",
+    );
+}

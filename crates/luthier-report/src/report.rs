@@ -1,0 +1,288 @@
+//! What a judgement consists of, as data.
+
+use luthier_lut::{AtlasLayout, ColorMode, ErrorStats, TableKind, TexelFormat};
+use serde::{Deserialize, Serialize};
+
+use crate::{AngleProfile, DirectionSet, Exceedance, ReportError, Statistics, Weights, page};
+
+/// Version of the report's shape.
+pub const REPORT_SCHEMA: u32 = 1;
+
+/// The judgement of a bake: `report.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// [`REPORT_SCHEMA`].
+    pub schema: u32,
+    /// Program and version that baked.
+    pub generator: String,
+    /// The reflectance model of shaders and reference.
+    pub model: String,
+    /// Whatever the caller knows about the run, in the caller's order.
+    pub provenance: Vec<(String, String)>,
+    /// The adapter; absent when no shader was run.
+    pub device: Option<String>,
+    /// The interpolation weights that explain the device's values best; absent when no shader was run.
+    pub device_weights: Option<Weights>,
+    /// The limit on [`Report::max_error`], if one was set.
+    pub budget: Option<f64>,
+    /// Pairs of directions in every set.
+    pub pairs_per_set: u32,
+    /// The floor of the relative errors: [`crate::FLOOR`].
+    pub floor: f64,
+    /// Oddities, in words: values that are not finite, figures of the baker that the judge does not confirm.
+    pub findings: Vec<String>,
+    /// The tables, in binding order.
+    pub tables: Vec<TableReport>,
+    /// The materials, in the order of the manifest.
+    pub materials: Vec<MaterialReport>,
+}
+
+/// One table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TableReport {
+    /// What it holds.
+    pub kind: TableKind,
+    /// Texels of the texture.
+    pub size: [u32; 2],
+    /// Axes, mappings and tiles.
+    pub layout: AtlasLayout,
+    /// Texel format.
+    pub format: TexelFormat,
+    /// Bytes of its texels, uncompressed.
+    pub texel_bytes: u64,
+    /// The file, relative to the manifest.
+    pub path: String,
+    /// One entry per tile.
+    pub tiles: Vec<TileReport>,
+}
+
+/// One tile of a table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TileReport {
+    /// Its name.
+    pub name: String,
+    /// What was tabulated.
+    pub model: String,
+    /// The layers that read it, as `material/layer`.
+    pub users: Vec<String>,
+    /// Its error as the baker measured it.
+    pub baker: ErrorStats,
+    /// Its error as measured here from the shipped texels, with 8-bit weights where a sampler filters the format;
+    /// absent for tables that the model does not read.
+    pub judge: Option<ErrorStats>,
+    /// Reads that were not finite; they are not part of `judge`.
+    pub not_finite: u64,
+    /// What is drawn of it.
+    pub curves: Curves,
+}
+
+/// Curves of a tile.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Curves {
+    /// Nothing is drawn.
+    None,
+    /// A Fresnel row, as read.
+    Reflectance(Vec<ReflectancePoint>),
+    /// The error of a distribution.
+    ByAlpha(Vec<AlphaPoint>),
+}
+
+/// A point of a Fresnel row.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ReflectancePoint {
+    /// Angle to the normal, degrees.
+    pub theta_deg: f32,
+    /// Reflectance, RGB.
+    pub rgb: [f32; 3],
+}
+
+/// The error of a distribution in a band of alpha.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct AlphaPoint {
+    /// Middle of the band.
+    pub alpha: f32,
+    /// Largest error over the angle, as a fraction of the largest value at that alpha.
+    pub max_err_of_peak: f32,
+}
+
+/// One material.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MaterialReport {
+    /// Its name.
+    pub name: String,
+    /// The file it was described in.
+    pub source: String,
+    /// Surface class a-h.
+    pub class: String,
+    /// How its tables came by their colour, and so what the baked shader is compared with.
+    pub color: ColorMode,
+    /// The layers from the top down, in words.
+    pub layers: Vec<String>,
+    /// What was compared with what.
+    pub comparisons: Vec<Comparison>,
+}
+
+/// What is compared with what; always `f cos_theta_i`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Compared {
+    /// The table-reading shader on the device, against exact terms in f64.
+    BakedDevice,
+    /// The tables alone: f64 arithmetic, 8-bit weights, against exact terms.
+    TablesEightBit,
+    /// The tables alone: f64 arithmetic, exact weights, against exact terms.
+    TablesExact,
+    /// f32 arithmetic alone: the table-reading shader on the device, against f64 arithmetic on the same tables.
+    Arithmetic,
+    /// The table-free shader on the device, against exact terms at its three wavelengths in f64.
+    FullDevice,
+    /// No error but a difference of models: three wavelengths against the spectrum, both in f64.
+    ThreeWavelengths,
+}
+
+impl Compared {
+    /// Short name, for tables and legends.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::BakedDevice => "baked shader",
+            Self::TablesEightBit => "tables, 8-bit weights",
+            Self::TablesExact => "tables, exact weights",
+            Self::Arithmetic => "f32 arithmetic",
+            Self::FullDevice => "full shader",
+            Self::ThreeWavelengths => "three wavelengths",
+        }
+    }
+
+    /// Whether it is a comparison that [`Report::max_error`] covers in a run with or without a device.
+    pub(crate) fn is_judged(self, with_device: bool) -> bool {
+        match self {
+            Self::BakedDevice | Self::FullDevice => with_device,
+            Self::TablesEightBit => !with_device,
+            Self::TablesExact | Self::Arithmetic | Self::ThreeWavelengths => false,
+        }
+    }
+}
+
+/// A comparison over all sets of directions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Comparison {
+    /// What with what.
+    pub compared: Compared,
+    /// Statistics per set, in the order of [`DirectionSet::ALL`].
+    pub sets: Vec<(DirectionSet, Statistics)>,
+    /// Largest error by angle, over all sets.
+    pub by_angle: AngleProfile,
+    /// How many errors exceed what, over all sets.
+    pub exceedance: Exceedance,
+}
+
+impl Comparison {
+    /// The largest relative error of all sets; infinite when a sample is not finite.
+    pub fn max_error(&self) -> f64 {
+        self.sets.iter().map(|(_, s)| s.max_error()).fold(0.0, f64::max)
+    }
+}
+
+impl MaterialReport {
+    /// The comparison of a kind, if it was made.
+    pub fn comparison(&self, compared: Compared) -> Option<&Comparison> {
+        self.comparisons.iter().find(|c| c.compared == compared)
+    }
+}
+
+/// Where the largest error is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WorstCase<'a> {
+    /// Name of the material.
+    pub material: &'a str,
+    /// What was compared.
+    pub compared: Compared,
+    /// In which set.
+    pub set: DirectionSet,
+    /// The statistics of that set; the pair is the first of `worst`, or `not_finite_at` when that is given.
+    pub statistics: &'a Statistics,
+    /// The error: that of [`Report::max_error`].
+    pub error: f64,
+}
+
+impl Report {
+    /// The figure that a limit is compared with: the largest error of `f cos_theta_i`, relative to max(|reference|,
+    /// [`crate::FLOOR`]), of any channel, set and material - of both shaders on the device against their f64
+    /// references, or, when no shader was run, of the tables read with 8-bit weights. Infinite when any of those
+    /// samples, or any read of the table scans, is not finite.
+    pub fn max_error(&self) -> f64 {
+        let reads = self.tables.iter().flat_map(|t| &t.tiles).any(|t| t.not_finite > 0);
+        if reads { f64::INFINITY } else { self.worst().map_or(0.0, |w| w.error) }
+    }
+
+    /// Where the largest error of the shaders is (without a device, of the tables); nothing without materials.
+    pub fn worst(&self) -> Option<WorstCase<'_>> {
+        let mut worst: Option<WorstCase<'_>> = None;
+        for material in &self.materials {
+            for comparison in material.comparisons.iter().filter(|c| c.compared.is_judged(self.device.is_some())) {
+                for (set, statistics) in &comparison.sets {
+                    let error = statistics.max_error();
+                    if worst.is_none_or(|w| error > w.error) {
+                        let (material, compared) = (material.name.as_str(), comparison.compared);
+                        worst = Some(WorstCase { material, compared, set: *set, statistics, error });
+                    }
+                }
+            }
+        }
+        worst
+    }
+
+    /// The largest error of f32 arithmetic, measured like [`Report::max_error`]: of the table-reading shader against
+    /// f64 on the same tables, and of the table-free one against its reference. Nothing when no shader was run.
+    pub fn max_arithmetic_error(&self) -> Option<f64> {
+        let arithmetic = |m: &MaterialReport| {
+            let of = |compared| m.comparison(compared).map_or(0.0, Comparison::max_error);
+            of(Compared::Arithmetic).max(of(Compared::FullDevice))
+        };
+        self.device.as_ref().map(|_| self.materials.iter().map(arithmetic).fold(0.0, f64::max))
+    }
+
+    /// Whether [`Report::max_error`] is within the budget; nothing without a budget.
+    pub fn is_within_budget(&self) -> Option<bool> {
+        self.budget.map(|budget| self.max_error() <= budget)
+    }
+
+    /// JSON, indented, with a final newline. Besides the fields it has `max_error`, `max_arithmetic_error` (null when
+    /// not finite) and `within_budget`.
+    ///
+    /// # Errors
+    /// [`ReportError::Json`], should the writer fail.
+    pub fn to_json(&self) -> Result<String, ReportError> {
+        #[derive(Serialize)]
+        struct WithFigures<'a> {
+            max_error: Option<f64>,
+            max_arithmetic_error: Option<f64>,
+            within_budget: Option<bool>,
+            #[serde(flatten)]
+            report: &'a Report,
+        }
+        let mut json = serde_json::to_string_pretty(&WithFigures {
+            max_error: Some(self.max_error()).filter(|e| e.is_finite()),
+            max_arithmetic_error: self.max_arithmetic_error().filter(|e| e.is_finite()),
+            within_budget: self.is_within_budget(),
+            report: self,
+        })?;
+        json.push('\n');
+        Ok(json)
+    }
+
+    /// Reads what [`Report::to_json`] wrote.
+    ///
+    /// # Errors
+    /// [`ReportError::Json`] for other JSON.
+    pub fn from_json(json: &str) -> Result<Self, ReportError> {
+        Ok(serde_json::from_str(json)?)
+    }
+
+    /// A self-contained page: charts are inline SVG, no script, no external resource; light, dark and print. It is
+    /// well-formed XML too.
+    pub fn to_html(&self) -> String {
+        page::html(self)
+    }
+}

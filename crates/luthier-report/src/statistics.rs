@@ -1,0 +1,201 @@
+//! Errors of many values at once: what is relative to what, and the order statistics.
+
+use std::f64::consts::FRAC_1_PI;
+
+use luthier_optics::Rgb;
+use serde::{Deserialize, Serialize};
+
+use crate::Pair;
+
+/// The floor of relative errors: a tenth of what a white diffuser gives in light along its normal (`f cos_theta_i` =
+/// 1/pi).
+///
+/// Above it an error is relative; below it, a relative error of 1e-3 is an absolute one of 1e-4 of diffuse white, a
+/// third of the darkest step of an 8-bit sRGB picture (1/(255 x 12.92) = 3.0e-4) that is exposed for that white.
+pub const FLOOR: f64 = 0.1 * FRAC_1_PI;
+
+/// A hundred times lower: a thousandth of diffuse white. Shows what [`FLOOR`] hides and very long exposures or very
+/// bright lights would show.
+pub const DIM_FLOOR: f64 = 1e-3 * FRAC_1_PI;
+
+/// The third floor is this fraction of the largest value of the set: the error of the highlight alone.
+pub const PEAK_FRACTION: f64 = 0.1;
+
+/// Number of worst pairs that are kept.
+const WORST_KEPT: usize = 3;
+
+/// Order statistics of errors.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ErrorSummary {
+    /// Largest.
+    pub max: f64,
+    /// 99th percentile, by nearest rank.
+    pub p99: f64,
+    /// Root mean square.
+    pub rms: f64,
+}
+
+/// One of the worst pairs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct WorstPair {
+    /// Direction to the light; exactly the f32 values that were used.
+    pub wi: [f32; 3],
+    /// Direction to the eye.
+    pub wo: [f32; 3],
+    /// Channel, 0-based.
+    pub channel: u32,
+    /// Reference there.
+    pub expected: f64,
+    /// What was judged.
+    pub found: f64,
+    /// Error relative to max(|expected|, [`FLOOR`]).
+    pub error: f64,
+}
+
+/// Errors of `f cos_theta_i` over a set of pairs, every channel a sample of its own.
+///
+/// Values that are not finite are counted, and are in none of the other figures.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Statistics {
+    /// Pairs judged; three samples each.
+    pub pairs: u64,
+    /// Samples that are NaN or infinite.
+    pub not_finite: u64,
+    /// The first pair with such a sample.
+    pub not_finite_at: Option<Pair>,
+    /// Largest reference value of the set.
+    pub peak: f64,
+    /// Largest absolute error.
+    pub max_abs_err: f64,
+    /// Relative to max(|reference|, [`FLOOR`]): the figure of merit.
+    pub relative: ErrorSummary,
+    /// Relative to max(|reference|, [`DIM_FLOOR`]).
+    pub relative_dim: ErrorSummary,
+    /// Relative to max(|reference|, [`PEAK_FRACTION`] x `peak`).
+    pub relative_peak: ErrorSummary,
+    /// The worst pairs by `relative`, worst first.
+    pub worst: Vec<WorstPair>,
+}
+
+impl Statistics {
+    /// The largest relative error; infinite when any sample is not finite.
+    pub fn max_error(&self) -> f64 {
+        if self.not_finite > 0 { f64::INFINITY } else { self.relative.max }
+    }
+}
+
+/// |found - expected| / max(|expected|, floor); not finite when either is not.
+pub(crate) fn relative_error(found: f64, expected: f64, floor: f64) -> f64 {
+    let error = (found - expected).abs() / expected.abs().max(floor);
+    if expected.is_finite() { error } else { f64::NAN }
+}
+
+/// Statistics of `found` against `expected`, which are parallel to `pairs`; surplus values are ignored.
+pub fn statistics(pairs: &[Pair], found: &[Rgb], expected: &[Rgb]) -> Statistics {
+    let mut samples = Vec::with_capacity(3 * pairs.len());
+    let mut not_finite = 0;
+    let mut not_finite_at = None;
+    let mut worst: Vec<WorstPair> = Vec::with_capacity(WORST_KEPT + 1);
+    let (mut peak, mut max_abs_err) = (0.0_f64, 0.0_f64);
+    for ((&(wi, wo), found), expected) in pairs.iter().zip(found).zip(expected) {
+        let mut worst_channel: Option<WorstPair> = None;
+        for channel in 0..3 {
+            let (found, expected) = (found[channel], expected[channel]);
+            let error = relative_error(found, expected, FLOOR);
+            if !error.is_finite() {
+                not_finite += 1;
+                not_finite_at.get_or_insert((wi, wo));
+                continue;
+            }
+            peak = peak.max(expected.abs());
+            max_abs_err = max_abs_err.max((found - expected).abs());
+            samples.push((found, expected));
+            if worst_channel.as_ref().is_none_or(|w| error > w.error) {
+                worst_channel = Some(WorstPair { wi, wo, channel: channel as u32, expected, found, error });
+            }
+        }
+        if let Some(candidate) = worst_channel {
+            let rank = worst.partition_point(|w| w.error >= candidate.error);
+            if rank < WORST_KEPT {
+                worst.insert(rank, candidate);
+                worst.truncate(WORST_KEPT);
+            }
+        }
+    }
+    let summary = |floor: f64| {
+        // A set whose reference is zero throughout has no peak to be relative to.
+        let floor = if floor > 0.0 { floor } else { FLOOR };
+        summarise(samples.iter().map(|&(found, expected)| relative_error(found, expected, floor)).collect())
+    };
+    Statistics {
+        pairs: pairs.len() as u64,
+        not_finite,
+        not_finite_at,
+        peak,
+        max_abs_err,
+        relative: summary(FLOOR),
+        relative_dim: summary(DIM_FLOOR),
+        relative_peak: summary(PEAK_FRACTION * peak),
+        worst,
+    }
+}
+
+/// Order statistics of finite errors; zeros when there are none.
+pub(crate) fn summarise(mut errors: Vec<f64>) -> ErrorSummary {
+    let count = errors.len();
+    if count == 0 {
+        return ErrorSummary { max: 0.0, p99: 0.0, rms: 0.0 };
+    }
+    let max = errors.iter().copied().fold(0.0, f64::max);
+    let rms = (errors.iter().map(|e| e * e).sum::<f64>() / count as f64).sqrt();
+    let rank = (count * 99).div_ceil(100).clamp(1, count) - 1;
+    let (_, &mut p99, _) = errors.select_nth_unstable_by(rank, f64::total_cmp);
+    ErrorSummary { max, p99, rms }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const UP: Pair = ([0.0, 0.0, 1.0], [0.0, 0.0, 1.0]);
+
+    #[test]
+    fn order_statistics_by_hand() {
+        // 1..=200: nearest rank of 99% is the 198th; mean square is (n + 1)(2n + 1)/6.
+        let s = summarise((1..=200).rev().map(f64::from).collect());
+        assert_eq!((s.max, s.p99), (200.0, 198.0));
+        assert!((s.rms - (201.0_f64 * 401.0 / 6.0).sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn floors_by_hand() {
+        // One bright sample 1% off, one dark sample off by 0.001, one exact.
+        let s = statistics(&[UP], &[[10.1, 0.001, 0.5]], &[[10.0, 0.0, 0.5]]);
+        assert_eq!(s.peak, 10.0);
+        assert!((s.max_abs_err - 0.1).abs() < 1e-12);
+        assert!((s.relative.max - 0.001 / FLOOR).abs() < 1e-12, "dark sample over the floor: 0.0314");
+        assert!((s.relative_dim.max - 0.001 / DIM_FLOOR).abs() < 1e-9, "3.14");
+        assert!((s.relative_peak.max - 0.01).abs() < 1e-12, "floor is 1.0: the bright sample's 1%");
+        assert_eq!(s.worst[0].channel, 1);
+    }
+
+    #[test]
+    fn values_that_are_not_finite_are_counted_and_make_the_error_infinite() {
+        let found = [[f64::NAN, 1.0, f64::INFINITY], [1.0, 1.0, 1.0]];
+        let s = statistics(&[UP, UP], &found, &[[1.0; 3], [1.0; 3]]);
+        assert_eq!((s.not_finite, s.not_finite_at), (2, Some(UP)));
+        assert_eq!(s.relative.max, 0.0);
+        assert_eq!(s.max_error(), f64::INFINITY);
+        let s = statistics(&[UP], &[[1.0; 3]], &[[f64::INFINITY; 3]]);
+        assert_eq!(s.not_finite, 3, "a reference that is not finite is no reference");
+    }
+
+    #[test]
+    fn worst_pairs_are_ordered_and_distinct() {
+        let pairs = [UP; 5];
+        let found = [[1.1; 3], [1.5; 3], [1.0; 3], [1.3; 3], [1.2; 3]];
+        let s = statistics(&pairs, &found, &[[1.0; 3]; 5]);
+        let errors: Vec<f64> = s.worst.iter().map(|w| w.error).collect();
+        assert_eq!(errors, [0.5, 0.3, 0.2].map(|e: f64| (1.0 + e) - 1.0));
+    }
+}

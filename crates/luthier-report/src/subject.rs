@@ -1,0 +1,102 @@
+use luthier_layers::elek::{self, Below};
+use luthier_lut::{Image, LayerKind, LayerRecord, Manifest, TableEntry, TableKind};
+use luthier_optics::stack::Stack;
+
+use crate::ReportError;
+
+/// What is judged: a bake as its users get it, and what it was made from.
+#[derive(Debug, Clone)]
+pub struct Subject<'a> {
+    /// The manifest of the bake.
+    pub manifest: &'a Manifest,
+    /// The texels of every table as a shader reads them: decoded from the shipped textures.
+    pub textures: Vec<(TableKind, Image)>,
+    /// The surfaces that the materials describe, parallel to the materials of the manifest.
+    pub stacks: Vec<Stack>,
+}
+
+/// A table whose texels fit its layout.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Table<'a> {
+    pub(crate) entry: &'a TableEntry,
+    pub(crate) texels: &'a Image,
+}
+
+impl Subject<'_> {
+    /// The table of a kind, if the bake has one, checked so that every read of one of its tiles is in bounds.
+    ///
+    /// # Errors
+    /// [`ReportError::MissingTexture`], [`ReportError::Layout`], [`ReportError::TextureSize`].
+    pub(crate) fn table(&self, kind: TableKind) -> Result<Option<Table<'_>>, ReportError> {
+        let Some(entry) = self.manifest.table(kind) else { return Ok(None) };
+        let (_, texels) = self.textures.iter().find(|(k, _)| *k == kind).ok_or(ReportError::MissingTexture(kind))?;
+        let layout = &entry.layout;
+        let refuse = |reason| Err(ReportError::Layout { kind, reason });
+        if layout.tiles == 0 || layout.columns == 0 {
+            return refuse("no tiles");
+        }
+        if entry.tiles.len() != layout.tiles as usize {
+            return refuse("its tiles are not those that the manifest describes");
+        }
+        for axis in [Some(&layout.x), layout.y.as_ref()].into_iter().flatten() {
+            if axis.size < 2 {
+                return refuse("an axis has fewer than two nodes");
+            }
+            let ordered = axis.min < axis.max;
+            if !ordered || !axis.min.is_finite() || !axis.max.is_finite() {
+                return refuse("an axis has no extent");
+            }
+        }
+        // In 64 bits: a manifest from elsewhere may hold numbers whose product does not fit 32.
+        let apron = 2 * u64::from(layout.apron);
+        let rows = u64::from(layout.tiles.div_ceil(layout.columns));
+        let width = (u64::from(layout.x.size) + apron).checked_mul(u64::from(layout.columns));
+        let tile_height = layout.y.as_ref().map_or(1, |y| u64::from(y.size) + apron);
+        let (Some(width), Some(height)) = (width, tile_height.checked_mul(rows)) else {
+            return refuse("it is larger than any texture");
+        };
+        let values = u128::from(width) * u128::from(height) * u128::from(texels.channels);
+        let fits = (u64::from(texels.width), u64::from(texels.height)) == (width, height);
+        if !fits || texels.channels == 0 || texels.channels > 4 || values != texels.data.len() as u128 {
+            let (found_width, found_height) = (texels.width, texels.height);
+            return Err(ReportError::TextureSize { kind, width, height, found_width, found_height });
+        }
+        Ok(Some(Table { entry, texels }))
+    }
+
+    /// Checks that stacks and records describe the same layers.
+    ///
+    /// # Errors
+    /// [`ReportError::UnknownModel`], [`ReportError::MaterialCount`], [`ReportError::Layers`].
+    pub(crate) fn check(&self) -> Result<(), ReportError> {
+        if self.manifest.model != elek::MODEL {
+            return Err(ReportError::UnknownModel(self.manifest.model.clone()));
+        }
+        let (manifest, stacks) = (self.manifest.materials.len(), self.stacks.len());
+        if manifest != stacks {
+            return Err(ReportError::MaterialCount { manifest, stacks });
+        }
+        for (material, stack) in self.manifest.materials.iter().zip(&self.stacks) {
+            let layers = elek::layers(stack);
+            let differs = |layer| ReportError::Layers { material: material.name.clone(), layer };
+            if layers.len() != material.layers.len() {
+                return Err(differs(layers.len().min(material.layers.len())));
+            }
+            for (i, (layer, record)) in layers.iter().zip(&material.layers).enumerate() {
+                if !same_kind(layer, record) {
+                    return Err(differs(i));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn same_kind(layer: &elek::Layer, record: &LayerRecord) -> bool {
+    let named = record.distribution == layer.distribution.name();
+    match layer.below {
+        Below::Dielectric { .. } => record.kind == LayerKind::Dielectric && named,
+        Below::Conductor => record.kind == LayerKind::Conductor && named,
+        Below::Diffuse(_) => record.kind == LayerKind::Diffuse,
+    }
+}

@@ -1,0 +1,240 @@
+//! A small bake made here, from the exact terms and the layout rules, and devices with planted errors.
+
+use glam::DVec3;
+use luthier_layers::elek::{self, Below, Terms};
+use luthier_layers::terms::Exact;
+use luthier_lut::{
+    AtlasLayout, Axis, ColorMode, ErrorStats, FileEntry, Image, LayerKind, LayerRecord, MANIFEST_SCHEMA, Manifest,
+    Mapping, MaterialEntry, TableEntry, TableKind, TexelFormat, Tile, Worst,
+};
+use luthier_optics::color::Color;
+use luthier_optics::ior::{Ior, IorSample};
+use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Slab, Stack, Surface};
+use luthier_report::{Device, Form, Pair, Subject, TableTerms, Weights};
+
+pub(crate) const WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
+
+/// Named stacks of the shapes that the model knows.
+pub(crate) fn stacks() -> Vec<(&'static str, Stack)> {
+    let layer = |surface, base| Layer { films: Vec::new(), surface, base };
+    let coat = |alpha, absorption_per_um| {
+        let slab = Slab { thickness_um: 50.0, absorption_per_um };
+        let ior = Ior::constant(1.5, 0.0).unwrap();
+        layer(Surface::isotropic(Distribution::Beckmann, alpha), Base::Dielectric { ior, slab })
+    };
+    let metal = |distribution, alpha| layer(Surface::isotropic(distribution, alpha), Base::Conductor { ior: copper() });
+    let base = |albedo, sigma| layer(Surface::smooth(), Base::Diffuse(Diffuse { albedo, sigma }));
+    let stack = |layers| Stack { exterior: Ior::vacuum(), layers };
+    vec![
+        ("red-lacquer", stack(vec![coat(0.05, [0.0002, 0.012, 0.02]), base([0.8, 0.7, 0.7], 0.0)])),
+        ("lacquered-copper", stack(vec![coat(0.02, [0.0, 0.001, 0.002]), metal(Distribution::Ggx, 0.3)])),
+        ("copper & <satin>", stack(vec![metal(Distribution::Beckmann, 0.15)])),
+        ("plaster", stack(vec![base([0.7, 0.68, 0.62], 0.4)])),
+    ]
+}
+
+/// Roughly copper's; the shape matters, not the metal.
+fn copper() -> Ior {
+    let samples = [(400.0, 1.2, 2.2), (550.0, 1.0, 2.6), (600.0, 0.4, 3.0), (700.0, 0.2, 4.1)];
+    Ior::sampled(samples.map(|(wavelength_nm, n, k)| IorSample { wavelength_nm, n, k }).to_vec()).unwrap()
+}
+
+/// A bake of [`stacks`]: the manifest and the decoded texels.
+pub(crate) struct Bake {
+    pub(crate) manifest: Manifest,
+    pub(crate) textures: Vec<(TableKind, Image)>,
+    pub(crate) stacks: Vec<Stack>,
+}
+
+impl Bake {
+    pub(crate) fn new() -> Self {
+        let named = stacks();
+        let fresnel_axis = axis("cos_theta", 0.0, 1.0, 128, Mapping::Linear);
+        let mut rows = Vec::new();
+        let mut materials = Vec::new();
+        for (name, stack) in &named {
+            let exact = Exact::new(stack, Color::Spectral);
+            let mut records = Vec::new();
+            for (l, layer) in elek::layers(stack).iter().enumerate() {
+                let mut record = record(layer);
+                if record.kind != LayerKind::Diffuse {
+                    record.fresnel_tile = Some(rows.len() as u32);
+                    record.distribution_tile = Some(u32::from(layer.distribution == Distribution::Ggx));
+                    let row: Vec<_> = (0..128).map(|i| exact.fresnel(l, fresnel_axis.node(i))).collect();
+                    rows.push((format!("{name}/{l}"), row));
+                }
+                records.push(record);
+            }
+            materials.push(MaterialEntry {
+                name: (*name).to_owned(),
+                source: format!("materials/{name}.toml"),
+                source_hash: String::new(),
+                class: "c".to_owned(),
+                color: ColorMode::Spectral,
+                wavelengths_nm: WAVELENGTHS_NM,
+                layers: records,
+            });
+        }
+        let layout = AtlasLayout { x: fresnel_axis, y: None, apron: 0, columns: 1, tiles: rows.len() as u32 };
+        let mut fresnel = Image::zeros(128, rows.len() as u32, 4);
+        for (y, (_, row)) in (0..).zip(&rows) {
+            for (x, rgb) in (0..).zip(row) {
+                fresnel.texel_mut(x, y).copy_from_slice(&[rgb[0] as f32, rgb[1] as f32, rgb[2] as f32, 1.0]);
+            }
+        }
+        let names = rows.into_iter().map(|(name, _)| name).collect();
+        let (fresnel_table, fresnel) = table(TableKind::Fresnel, layout, TexelFormat::Rgba16Float, names, &fresnel);
+        let (distribution_table, distribution) = distribution();
+        let manifest = Manifest {
+            schema: MANIFEST_SCHEMA,
+            generator: "fixture 1".to_owned(),
+            model: elek::MODEL.to_owned(),
+            materials,
+            tables: vec![fresnel_table, distribution_table],
+            shaders: Vec::new(),
+            bindings: Vec::new(),
+        };
+        let textures = vec![(TableKind::Fresnel, fresnel), (TableKind::Distribution, distribution)];
+        Self { manifest, textures, stacks: named.into_iter().map(|(_, stack)| stack).collect() }
+    }
+
+    pub(crate) fn subject(&self) -> Subject<'_> {
+        Subject { manifest: &self.manifest, textures: self.textures.clone(), stacks: self.stacks.clone() }
+    }
+
+    /// A device with f64 inside and f32 at its ends: reads the tables with exact weights, and spoils each value with
+    /// `spoil`.
+    pub(crate) fn device<S: Fn(Form, u32, usize, [f32; 3]) -> [f32; 3]>(&self, spoil: S) -> FakeDevice<'_, S> {
+        FakeDevice { subject: self.subject(), spoil, baked_reads_tables: true }
+    }
+}
+
+pub(crate) struct FakeDevice<'a, S> {
+    subject: Subject<'a>,
+    spoil: S,
+    /// Otherwise the baked form evaluates the exact spectral terms: a device without table error.
+    pub(crate) baked_reads_tables: bool,
+}
+
+impl<S: Fn(Form, u32, usize, [f32; 3]) -> [f32; 3]> Device for FakeDevice<'_, S> {
+    fn name(&self) -> String {
+        "Fake & Sons <f64>".to_owned()
+    }
+
+    fn evaluate(&self, form: Form, material: u32, pairs: &[Pair]) -> Result<Vec<[f32; 3]>, String> {
+        let stack = &self.subject.stacks[material as usize];
+        let layers = elek::layers(stack);
+        let tables = TableTerms::new(&self.subject, material as usize, Weights::Exact).map_err(|e| e.to_string())?;
+        let spectral = Exact::new(stack, Color::Spectral);
+        let three = Exact::new(stack, Color::ThreeWavelengths(WAVELENGTHS_NM));
+        let wide = |w: [f32; 3]| DVec3::from(w.map(f64::from));
+        let value = |(n, &(wi, wo)): (usize, &Pair)| {
+            let value = match form {
+                Form::Baked if self.baked_reads_tables => elek::eval(&layers, &tables, wide(wi), wide(wo)),
+                Form::Baked => elek::eval(&layers, &spectral, wide(wi), wide(wo)),
+                Form::Full => elek::eval(&layers, &three, wide(wi), wide(wo)),
+            };
+            (self.spoil)(form, material, n, value.map(|v| v as f32))
+        };
+        Ok(pairs.iter().enumerate().map(value).collect())
+    }
+}
+
+fn axis(quantity: &str, min: f64, max: f64, size: u32, mapping: Mapping) -> Axis {
+    Axis { quantity: quantity.to_owned(), unit: String::new(), min, max, size, mapping }
+}
+
+/// Beckmann and GGX side by side, from their textbook forms.
+fn distribution() -> (TableEntry, Image) {
+    let half_pi = std::f64::consts::FRAC_PI_2;
+    let x = axis("theta_h", 0.0, half_pi, 512, Mapping::Power { exponent: 8.0 });
+    let y = axis("alpha", 1e-3, 1.0, 512, Mapping::Logarithmic);
+    let layout = AtlasLayout { x, y: Some(y.clone()), apron: 0, columns: 2, tiles: 2 };
+    let mut image = Image::zeros(1024, 512, 1);
+    for j in 0..512 {
+        let alpha = y.node(j);
+        for i in 0..512 {
+            let tan = layout.x.node(i).tan();
+            let cos_sq = 1.0 / (1.0 + tan * tan);
+            let slope_sq = (tan / alpha) * (tan / alpha);
+            let beckmann = if i == 511 { 0.0 } else { (-slope_sq).exp() / (cos_sq * cos_sq) };
+            let ggx = 1.0 / (cos_sq * (1.0 + slope_sq)).powi(2);
+            image.texel_mut(i, j)[0] = beckmann as f32;
+            image.texel_mut(512 + i, j)[0] = ggx as f32;
+        }
+    }
+    let names = vec!["beckmann".to_owned(), "ggx".to_owned()];
+    table(TableKind::Distribution, layout, TexelFormat::R16Float, names, &image)
+}
+
+fn table(
+    kind: TableKind,
+    layout: AtlasLayout,
+    format: TexelFormat,
+    names: Vec<String>,
+    truth: &Image,
+) -> (TableEntry, Image) {
+    let bytes = format.encode(truth);
+    let texels = format.decode(truth.width, truth.height, &bytes).unwrap();
+    let file =
+        |extension: &str| FileEntry { path: format!("tables/{}.{extension}", kind.name()), sha256: String::new() };
+    let at = vec![0.0; if layout.y.is_some() { 2 } else { 1 }];
+    let tile = |name| Tile {
+        name,
+        model: "from the fixture".to_owned(),
+        input_hash: String::new(),
+        // Generous, so that the judge has nothing to find.
+        error: ErrorStats {
+            max_abs_err: 0.5,
+            rms_err: 0.1,
+            p99_abs_err: 0.2,
+            worst: Worst { at: at.clone(), channel: 0, expected: 0.5, sampled: 1.0 },
+            points: 1,
+        },
+    };
+    let entry = TableEntry {
+        kind,
+        layout,
+        format,
+        texel_bytes: bytes.len() as u64,
+        texture: file("ktx2"),
+        truth: file("exr"),
+        picture: file("png"),
+        tiles: names.into_iter().map(tile).collect(),
+    };
+    (entry, texels)
+}
+
+fn record(layer: &elek::Layer) -> LayerRecord {
+    let mut record = LayerRecord {
+        kind: LayerKind::Conductor,
+        distribution: layer.distribution.name().to_owned(),
+        alpha: layer.alpha,
+        eta: 1.0,
+        optical_depth: [0.0; 3],
+        albedo: [0.0; 3],
+        sigma: 0.0,
+        ior_n: [1.0; 3],
+        ior_k: [0.0; 3],
+        film_ior_n: [0.0; 3],
+        film_ior_k: [0.0; 3],
+        film_thickness_waves: [0.0; 3],
+        film_thickness_nm: 0.0,
+        film_thickness_max_nm: 0.0,
+        fresnel_tile: None,
+        distribution_tile: None,
+        fgd_tile: None,
+        phase_tile: None,
+        thickness_tile: None,
+    };
+    match layer.below {
+        Below::Conductor => {}
+        Below::Dielectric { eta, optical_depth } => {
+            (record.kind, record.eta, record.optical_depth) = (LayerKind::Dielectric, eta, optical_depth);
+        }
+        Below::Diffuse(Diffuse { albedo, sigma }) => {
+            (record.kind, record.albedo, record.sigma) = (LayerKind::Diffuse, albedo, sigma);
+        }
+    }
+    record
+}

@@ -1,0 +1,94 @@
+use luthier_lut::TableKind;
+use thiserror::Error;
+
+/// Why no shader came out.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ShaderError {
+    /// The set has no materials.
+    #[error("no materials: a shader needs at least one")]
+    NoMaterials,
+    /// A material has no layers.
+    #[error("material `{0}` has no layers")]
+    NoLayers(String),
+    /// A name that makes no identifier.
+    #[error("`{0}` makes no shader identifier: names are letters, digits and hyphens")]
+    Name(String),
+    /// Two names that make the same identifier.
+    #[error("materials `{first}` and `{second}` are both `{constant}` in a shader; rename one")]
+    NameClash {
+        /// The earlier material.
+        first: String,
+        /// The later material.
+        second: String,
+        /// The identifier.
+        constant: String,
+    },
+    /// A slope distribution that the shader does not know.
+    #[error("layer {layer} of `{material}`: unknown slope distribution `{distribution}`; known: beckmann, ggx")]
+    Distribution {
+        /// The material.
+        material: String,
+        /// The layer, 0 at the top.
+        layer: usize,
+        /// The name given.
+        distribution: String,
+    },
+    /// The baked form needs a tile that the layer does not have.
+    #[error("layer {layer} of `{material}` has no tile of the {} table, which the baked form reads", table.name())]
+    NoTile {
+        /// The material.
+        material: String,
+        /// The layer, 0 at the top.
+        layer: usize,
+        /// The table.
+        table: TableKind,
+    },
+    /// A layer points at a table or tile that the set does not have.
+    #[error("layer {layer} of `{material}` reads tile {tile} of the {} table, which has {tiles} tiles", table.name())]
+    TileOutOfRange {
+        /// The material.
+        material: String,
+        /// The layer, 0 at the top.
+        layer: usize,
+        /// The table.
+        table: TableKind,
+        /// The tile wanted.
+        tile: u32,
+        /// The tiles there are; 0 without the table.
+        tiles: u32,
+    },
+    /// A table whose layout no look-up is written for.
+    #[error("the {} table cannot be read by the shader: {reason}", table.name())]
+    Layout {
+        /// The table.
+        table: TableKind,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// More material data than a uniform block holds in GLSL ES 3.00.
+    #[error(
+        "the materials take {words} vec4 words; a GLSL ES 3.00 uniform block is only guaranteed to hold {limit}; emit fewer materials"
+    )]
+    UniformBlockTooLarge {
+        /// Words needed.
+        words: usize,
+        /// Words that every implementation holds.
+        limit: usize,
+    },
+    /// The text is not valid WGSL. The message shows the place.
+    #[error("not valid WGSL:\n{0}")]
+    Invalid(String),
+    /// The module has no GLSL form.
+    #[error("no GLSL for this shader: {0}")]
+    Glsl(#[from] naga::back::glsl::Error),
+    /// The GLSL writer gave text of an unexpected shape.
+    #[error("unexpected GLSL from naga: {0}")]
+    GlslShape(&'static str),
+    /// A form that does not exist.
+    #[error("unknown shader form `{0}`; known: baked, full")]
+    UnknownForm(String),
+    /// A target that does not exist.
+    #[error("unknown shader target `{0}`; known: wgsl, glsl450, glsl-es300")]
+    UnknownTarget(String),
+}

@@ -1,0 +1,163 @@
+//! Look-ups: the texel position of a value, as WGSL for one layout.
+
+use std::fmt::Write as _;
+
+use luthier_lut::{Axis, Mapping, TableKind};
+
+use crate::features::Features;
+use crate::module::prune;
+use crate::{ShaderError, TableFace};
+
+/// WGSL of a table: its texture, its sizes, its look-up.
+pub(crate) fn lookup(table: &TableFace, features: &Features) -> Result<String, ShaderError> {
+    let kind = table.kind;
+    let (module, has_rows, x_names): (_, _, &[&str]) = match kind {
+        TableKind::Fresnel => (include_str!("wgsl/lookup_fresnel.wgsl"), false, &["cos_theta", "theta"]),
+        TableKind::Distribution => (include_str!("wgsl/lookup_distribution.wgsl"), true, &["cos_theta_h", "theta_h"]),
+        TableKind::Fgd => (include_str!("wgsl/lookup_fgd.wgsl"), true, &["cos_theta", "theta"]),
+        TableKind::Phase => (include_str!("wgsl/lookup_phase.wgsl"), false, &["s"]),
+        TableKind::Thickness => (include_str!("wgsl/lookup_thickness.wgsl"), true, &["u"]),
+    };
+    let layout = &table.layout;
+    let fail = |reason: String| ShaderError::Layout { table: kind, reason };
+    if layout.columns == 0 || layout.tiles == 0 {
+        return Err(fail("it has no tiles".to_owned()));
+    }
+    if layout.y.is_some() != has_rows {
+        let expected = if has_rows { "two axes are" } else { "one axis is" };
+        return Err(fail(format!("{expected} expected")));
+    }
+    let y_name = if kind == TableKind::Thickness { "v" } else { "alpha" };
+    check_axis(&layout.x, x_names, kind)?;
+    if let Some(y) = &layout.y {
+        check_axis(y, &[y_name], kind)?;
+    }
+    let is_periodic = |axis: &Axis| axis.mapping == Mapping::Periodic;
+    if layout.apron == 0 && (is_periodic(&layout.x) || layout.y.as_ref().is_some_and(is_periodic)) {
+        return Err(fail("a periodic axis needs an apron".to_owned()));
+    }
+
+    let has_angle = layout.x.quantity.starts_with("theta");
+    let mut out = constants(table);
+    for line in prune(module, &features.with("theta_axis", has_angle)).lines() {
+        if let Some(value) = place(line, "let x = $x(") {
+            node_index(&mut out, "x", &layout.x, value);
+        } else if let (Some(value), Some(y)) = (place(line, "let y = $y("), &layout.y) {
+            node_index(&mut out, "y", y, value);
+        } else if line.contains("$position") {
+            position(&mut out, table);
+        } else {
+            let _ = writeln!(out, "{}", line.replace("$read", &read(table)));
+        }
+    }
+    Ok(out)
+}
+
+/// The argument of a place that stands alone on its line.
+fn place<'l>(line: &'l str, opening: &str) -> Option<&'l str> {
+    line.trim().strip_prefix(opening)?.strip_suffix(");")
+}
+
+fn check_axis(axis: &Axis, names: &[&str], table: TableKind) -> Result<(), ShaderError> {
+    let fail = |reason: String| Err(ShaderError::Layout { table, reason });
+    if !names.contains(&axis.quantity.as_str()) {
+        return fail(format!("its axis is `{}`, known here: {}", axis.quantity, names.join(", ")));
+    }
+    let is_range = axis.min.is_finite() && axis.max.is_finite() && axis.min < axis.max;
+    let is_mapped = match axis.mapping {
+        Mapping::Linear | Mapping::Periodic => true,
+        Mapping::Power { exponent } => exponent.is_finite() && exponent > 0.0,
+        Mapping::Logarithmic => axis.min > 0.0,
+    };
+    if axis.size < 2 || !is_range || !is_mapped {
+        return fail(format!("its axis `{}` has no valid range, size or mapping", axis.quantity));
+    }
+    Ok(())
+}
+
+/// Sizes of the atlas, with a line that says what they are.
+fn constants(table: &TableFace) -> String {
+    let upper = table.kind.name().to_ascii_uppercase();
+    let layout = &table.layout;
+    let ([width, height], [tile_width, tile_height]) = (layout.size(), layout.tile_size());
+    let mut out = String::new();
+    let _ = writeln!(out, "const LUTHIER_{upper}_SIZE: vec2<f32> = vec2<f32>({width}.0, {height}.0);");
+    if layout.tiles > 1 && (layout.columns > 1 || layout.y.is_some()) {
+        let _ = writeln!(out, "const LUTHIER_{upper}_TILE: vec2<f32> = vec2<f32>({tile_width}.0, {tile_height}.0);");
+        if layout.columns > 1 {
+            let _ = writeln!(out, "const LUTHIER_{upper}_COLUMNS: f32 = {}.0;", layout.columns);
+        }
+    }
+    out.push('\n');
+    out
+}
+
+/// `let position = ...;`: the texel position of node (x, y) of a tile.
+fn position(out: &mut String, table: &TableFace) {
+    let (upper, layout) = (table.kind.name().to_ascii_uppercase(), &table.layout);
+    let apron = f64::from(layout.apron) + 0.5;
+    let x = format!("x + {}", float(apron));
+    let y = if layout.y.is_some() { format!("y + {}", float(apron)) } else { "0.5".to_owned() };
+    let _ = match (layout.tiles, layout.columns) {
+        (1, _) => writeln!(out, "    let position = vec2<f32>({x}, {y});"),
+        (_, 1) if layout.y.is_none() => writeln!(out, "    let position = vec2<f32>({x}, tile + {y});"),
+        (_, 1) => writeln!(out, "    let position = vec2<f32>({x}, tile * LUTHIER_{upper}_TILE.y + {y});"),
+        _ => writeln!(
+            out,
+            "    let row = floor((tile + 0.5) / LUTHIER_{upper}_COLUMNS);\n    \
+             let column = tile - row * LUTHIER_{upper}_COLUMNS;\n    \
+             let position = vec2<f32>(column, row) * LUTHIER_{upper}_TILE + vec2<f32>({x}, {y});"
+        ),
+    };
+}
+
+fn read(table: &TableFace) -> String {
+    let name = table.kind.name();
+    if table.format.is_filterable() {
+        let upper = name.to_ascii_uppercase();
+        format!("textureSampleLevel(luthier_{name}, luthier_sampler, position / LUTHIER_{upper}_SIZE, 0.0)")
+    } else {
+        format!("luthier_bilinear(luthier_{name}, position)")
+    }
+}
+
+/// `let NAME = ...;`: the fractional node index of a value, the WGSL of [`Axis::index`].
+fn node_index(out: &mut String, name: &str, axis: &Axis, value: &str) {
+    let steps = float(f64::from(axis.intervals()));
+    let range = axis.max - axis.min;
+    let shifted = if axis.min == 0.0 { value.to_owned() } else { format!("({value} - {})", float(axis.min)) };
+    let t = if range == 1.0 { shifted } else { format!("{shifted} / {}", float(range)) };
+    let t = t.strip_prefix('(').and_then(|t| t.strip_suffix(')')).map_or(t.clone(), str::to_owned);
+    let index = match axis.mapping {
+        Mapping::Linear => format!("saturate({t})"),
+        Mapping::Periodic => format!("fract({t})"),
+        Mapping::Logarithmic => {
+            let scale = libm::log2(axis.max / axis.min);
+            format!("saturate(log2(max({value}, {min}) / {min}) / {})", float(scale), min = float(axis.min))
+        }
+        Mapping::Power { exponent } => {
+            if let Some(roots) = halvings(exponent) {
+                format!("{}saturate({t}){}", "sqrt(".repeat(roots), ")".repeat(roots))
+            } else if let Some(squares) = halvings(1.0 / exponent) {
+                let _ = writeln!(out, "    var {name}_power = saturate({t});");
+                for _ in 0..squares {
+                    let _ = writeln!(out, "    {name}_power *= {name}_power;");
+                }
+                format!("{name}_power")
+            } else {
+                format!("pow(saturate({t}), {})", float(1.0 / exponent))
+            }
+        }
+    };
+    let _ = writeln!(out, "    let {name} = {index} * {steps};");
+}
+
+/// How often a power of two above 1 (up to 2^8) is halved to give 1.
+fn halvings(exponent: f64) -> Option<usize> {
+    (1..=8).find(|&n| exponent == f64::from(1u32 << n))
+}
+
+/// A number as a WGSL literal that reads back as the same f32.
+fn float(value: f64) -> String {
+    format!("{:?}", value as f32)
+}

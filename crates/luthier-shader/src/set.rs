@@ -1,0 +1,176 @@
+use std::collections::BTreeMap;
+
+use luthier_lut::{
+    AtlasLayout, BindingEntry, LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, Manifest, MaterialEntry, TableKind,
+    TexelFormat,
+};
+
+use crate::{Form, ShaderError};
+
+/// Binding of the sampler.
+const SAMPLER_BINDING: u32 = 5;
+/// Binding of the material buffer.
+const MATERIALS_BINDING: u32 = 6;
+
+/// What the emitter must know of a table: not its texels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TableFace {
+    /// What it holds.
+    pub kind: TableKind,
+    /// Where its texels lie.
+    pub layout: AtlasLayout,
+    /// What its texels are.
+    pub format: TexelFormat,
+}
+
+/// The materials that one shader serves, in the order of their numbers, and the tables they point into.
+///
+/// Tables that no layer has a tile of are ignored: they are neither bound nor mentioned.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MaterialSet<'a> {
+    /// The materials.
+    pub materials: &'a [MaterialEntry],
+    /// The tables, at most one of a kind; of several the first counts.
+    pub tables: Vec<TableFace>,
+}
+
+impl<'a> MaterialSet<'a> {
+    /// All materials and tables of a bake.
+    pub fn from_manifest(manifest: &'a Manifest) -> Self {
+        let face = |t: &luthier_lut::TableEntry| TableFace { kind: t.kind, layout: t.layout.clone(), format: t.format };
+        Self { materials: &manifest.materials, tables: manifest.tables.iter().map(face).collect() }
+    }
+
+    /// All layers of all materials, from the top down.
+    pub(crate) fn layers(&self) -> impl Iterator<Item = &LayerRecord> {
+        self.materials.iter().flat_map(|m| &m.layers)
+    }
+
+    /// Words of the material buffer.
+    pub(crate) fn words(&self) -> usize {
+        self.materials.len() * MATERIAL_WORDS + self.layers().count() * LAYER_WORDS
+    }
+
+    /// The tables that a form reads, in binding order.
+    pub(crate) fn tables_read(&self, form: Form) -> impl Iterator<Item = &TableFace> {
+        TableKind::ALL
+            .into_iter()
+            .filter(move |&kind| form == Form::Baked && self.layers().any(|layer| tile(layer, kind).is_some()))
+            .filter_map(|kind| self.tables.iter().find(|t| t.kind == kind))
+    }
+
+    /// The identifiers of the materials, in order.
+    pub(crate) fn constants(&self) -> Result<Vec<String>, ShaderError> {
+        let mut seen: BTreeMap<String, &str> = BTreeMap::new();
+        let mut constants = Vec::with_capacity(self.materials.len());
+        for material in self.materials {
+            let constant = constant(&material.name)?;
+            if let Some(first) = seen.insert(constant.clone(), &material.name) {
+                let (first, second) = (first.to_owned(), material.name.clone());
+                return Err(ShaderError::NameClash { first, second, constant });
+            }
+            constants.push(constant);
+        }
+        Ok(constants)
+    }
+
+    /// Whether every layer is one that the emitted functions can evaluate.
+    pub(crate) fn check(&self, form: Form) -> Result<(), ShaderError> {
+        if self.materials.is_empty() {
+            return Err(ShaderError::NoMaterials);
+        }
+        for material in self.materials {
+            if material.layers.is_empty() {
+                return Err(ShaderError::NoLayers(material.name.clone()));
+            }
+            for (i, layer) in material.layers.iter().enumerate() {
+                self.check_layer(form, &material.name, i, layer)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn check_layer(&self, form: Form, material: &str, i: usize, layer: &LayerRecord) -> Result<(), ShaderError> {
+        let (material, is_interface) = (material.to_owned(), layer.kind != LayerKind::Diffuse);
+        if is_interface && !matches!(layer.distribution.as_str(), "beckmann" | "ggx") {
+            let distribution = layer.distribution.clone();
+            return Err(ShaderError::Distribution { material, layer: i, distribution });
+        }
+        if form == Form::Full {
+            return Ok(());
+        }
+        for table in TableKind::ALL {
+            let tiles = self.tables.iter().find(|t| t.kind == table).map_or(0, |t| t.layout.tiles);
+            let is_read_by_eval = is_interface && matches!(table, TableKind::Fresnel | TableKind::Distribution);
+            match tile(layer, table) {
+                None if is_read_by_eval => return Err(ShaderError::NoTile { material, layer: i, table }),
+                Some(tile) if tile >= tiles => {
+                    return Err(ShaderError::TileOutOfRange { material, layer: i, table, tile, tiles });
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What to bind in group 0 for a form of the shader: textures that are read, the sampler if any of them is
+/// filtered, the material buffer.
+pub fn bindings(set: &MaterialSet<'_>, form: Form) -> Vec<BindingEntry> {
+    let entry = |binding, name: String, resource: &str| BindingEntry { binding, name, resource: resource.to_owned() };
+    let mut bindings = Vec::new();
+    let mut is_sampled = false;
+    for table in set.tables_read(form) {
+        is_sampled |= table.format.is_filterable();
+        bindings.push(entry(table.kind.binding(), format!("luthier_{}", table.kind.name()), "texture_2d<f32>"));
+    }
+    if is_sampled {
+        bindings.push(entry(SAMPLER_BINDING, "luthier_sampler".to_owned(), "sampler"));
+    }
+    bindings.push(entry(MATERIALS_BINDING, "luthier_materials".to_owned(), "buffer"));
+    bindings
+}
+
+/// The tile of a layer in a table.
+fn tile(layer: &LayerRecord, kind: TableKind) -> Option<u32> {
+    match kind {
+        TableKind::Fresnel => layer.fresnel_tile,
+        TableKind::Distribution => layer.distribution_tile,
+        TableKind::Fgd => layer.fgd_tile,
+        TableKind::Phase => layer.phase_tile,
+        TableKind::Thickness => layer.thickness_tile,
+    }
+}
+
+/// `red-lacquer` to `LUTHIER_MATERIAL_RED_LACQUER`. A last digit is followed by `_ID`: names end in a letter.
+fn constant(name: &str) -> Result<String, ShaderError> {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    let words: Vec<&str> = name.split(['-', '_']).filter(|word| !word.is_empty()).collect();
+    if words.is_empty() || !name.chars().all(is_plain) {
+        return Err(ShaderError::Name(name.to_owned()));
+    }
+    let mut constant = format!("LUTHIER_MATERIAL_{}", words.join("_").to_ascii_uppercase());
+    if constant.ends_with(|c: char| c.is_ascii_digit()) {
+        constant.push_str("_ID");
+    }
+    Ok(constant)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn constants_are_upper_case_and_end_in_a_letter() {
+        for (name, expected) in [
+            ("red-lacquer", "LUTHIER_MATERIAL_RED_LACQUER"),
+            ("granier-film-2", "LUTHIER_MATERIAL_GRANIER_FILM_2_ID"),
+            ("a--b-", "LUTHIER_MATERIAL_A_B"),
+        ] {
+            assert_eq!(constant(name).unwrap(), expected);
+        }
+        for name in ["", "-", "sp ace", "émail", "a;b"] {
+            assert!(matches!(constant(name), Err(ShaderError::Name(_))), "{name}");
+        }
+    }
+}

@@ -1,0 +1,88 @@
+use std::fmt;
+use std::str::FromStr;
+
+use crate::ShaderError;
+
+/// How the emitted shader evaluates a material.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Form {
+    /// Reads the baked tables.
+    Baked,
+    /// Computes everything; binds the material buffer only.
+    Full,
+}
+
+impl Form {
+    /// Both forms.
+    pub const ALL: [Self; 2] = [Self::Baked, Self::Full];
+
+    /// The name in files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Baked => "baked",
+            Self::Full => "full",
+        }
+    }
+}
+
+impl fmt::Display for Form {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Form {
+    type Err = ShaderError;
+
+    fn from_str(s: &str) -> Result<Self, ShaderError> {
+        Self::ALL.into_iter().find(|form| form.name() == s).ok_or_else(|| ShaderError::UnknownForm(s.to_owned()))
+    }
+}
+
+/// The language of an emitted shader.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Target {
+    /// WebGPU shading language.
+    Wgsl,
+    /// Desktop GLSL 4.50; the material buffer is a std430 storage block.
+    Glsl450,
+    /// GLSL ES 3.00 (WebGL 2); the material buffer is a std140 uniform block.
+    GlslEs300,
+}
+
+impl Target {
+    /// All targets.
+    pub const ALL: [Self; 3] = [Self::Wgsl, Self::Glsl450, Self::GlslEs300];
+
+    /// The name in manifests and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Wgsl => "wgsl",
+            Self::Glsl450 => "glsl450",
+            Self::GlslEs300 => "glsl-es300",
+        }
+    }
+
+    /// The ending of a file in this language, without the leading dot; different for every target.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Wgsl => "wgsl",
+            Self::Glsl450 => "450.glsl",
+            Self::GlslEs300 => "es300.glsl",
+        }
+    }
+}
+
+impl fmt::Display for Target {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Target {
+    type Err = ShaderError;
+
+    fn from_str(s: &str) -> Result<Self, ShaderError> {
+        Self::ALL.into_iter().find(|t| t.name() == s).ok_or_else(|| ShaderError::UnknownTarget(s.to_owned()))
+    }
+}

@@ -1,0 +1,82 @@
+const LUTHIER_DIELECTRIC: u32 = 0u; //? below, conductor
+const LUTHIER_DIFFUSE: u32 = 2u; //? mixed
+const LUTHIER_LAYER_WORDS: u32 = 9u;
+
+/// One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
+struct LuthierLayer {
+    /// 0 dielectric, 1 conductor, 2 diffuse base.
+    kind: u32,
+    /// Slope parameter of the micro-surface. //? interface
+    alpha: f32, //? interface
+    /// Index below over index above, for the refracted directions. //? below
+    eta: f32, //? below
+    /// Absorption times thickness of the slab below the interface, RGB. //? absorption
+    optical_depth: vec3<f32>, //? absorption
+    /// Diffuse albedo, RGB. //? diffuse
+    albedo: vec3<f32>, //? diffuse
+    /// Oren-Nayar slope deviation in radians; 0 is Lambert. //? oren_nayar
+    sigma: f32, //? oren_nayar
+    /// Tile of the Fresnel table. //? fresnel
+    fresnel_tile: f32, //? fresnel
+    /// Tile of the distribution table. //? distribution
+    distribution_tile: f32, //? distribution
+    /// Tile of the albedo table. //? fgd
+    fgd_tile: f32, //? fgd
+    /// Tile of the phase table. //? phase
+    phase_tile: f32, //? phase
+    /// Tile of the thickness table. //? thickness
+    thickness_tile: f32, //? thickness
+    /// Nominal thickness of the film, nm; 0 without a film. //? phase|thickness
+    film_thickness_nm: f32, //? phase|thickness
+    /// Greatest thickness of the film, nm; 0 without a film. //? phase|thickness
+    film_thickness_max_nm: f32, //? phase|thickness
+    /// Slope distribution: 0 Beckmann, 1 GGX. //? full, beckmann, ggx
+    distribution: f32, //? full, beckmann, ggx
+    /// Real part of the index below, at three wavelengths. //? full, interface
+    ior_n: vec3<f32>, //? full, interface
+    /// Imaginary part of it. //? full, interface
+    ior_k: vec3<f32>, //? full, interface
+    /// Real part of the index of the film; 0 without a film. //? full, film
+    film_ior_n: vec3<f32>, //? full, film
+    /// Imaginary part of it. //? full, film
+    film_ior_k: vec3<f32>, //? full, film
+    /// Thickness of the film in wavelengths of the medium above. //? full, film
+    film_waves: vec3<f32>, //? full, film
+}
+
+/// Number of layers of a material.
+fn luthier_layer_count(material: u32) -> u32 {
+    return u32(luthier_materials[material].y);
+}
+
+/// A layer of a material, counted from the top.
+fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
+    let first = u32(luthier_materials[material].x) + index * LUTHIER_LAYER_WORDS;
+    let head = luthier_materials[first];
+    let tiles = luthier_materials[first + 1u]; //? fresnel|distribution|fgd|phase
+    let slab = luthier_materials[first + 2u]; //? absorption|thickness
+    let base = luthier_materials[first + 3u]; //? diffuse|full, diffuse|beckmann, diffuse|ggx
+    let real_part = luthier_materials[first + 4u]; //? full|phase|thickness, interface
+    let imaginary_part = luthier_materials[first + 5u]; //? full|phase|thickness, interface
+    var layer: LuthierLayer;
+    layer.kind = u32(head.x);
+    layer.alpha = head.y; //? interface
+    layer.eta = head.z; //? below
+    layer.optical_depth = slab.xyz; //? absorption
+    layer.albedo = base.xyz; //? diffuse
+    layer.sigma = head.w; //? oren_nayar
+    layer.fresnel_tile = tiles.x; //? fresnel
+    layer.distribution_tile = tiles.y; //? distribution
+    layer.fgd_tile = tiles.z; //? fgd
+    layer.phase_tile = tiles.w; //? phase
+    layer.thickness_tile = slab.w; //? thickness
+    layer.film_thickness_nm = real_part.w; //? phase|thickness
+    layer.film_thickness_max_nm = imaginary_part.w; //? phase|thickness
+    layer.distribution = base.w; //? full, beckmann, ggx
+    layer.ior_n = real_part.xyz; //? full, interface
+    layer.ior_k = imaginary_part.xyz; //? full, interface
+    layer.film_ior_n = luthier_materials[first + 6u].xyz; //? full, film
+    layer.film_ior_k = luthier_materials[first + 7u].xyz; //? full, film
+    layer.film_waves = luthier_materials[first + 8u].xyz; //? full, film
+    return layer;
+}

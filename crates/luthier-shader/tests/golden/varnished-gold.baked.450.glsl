@@ -1,0 +1,158 @@
+// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
+// Fresnel reflectance and slope distribution are read from tables.
+//
+// Tables, in texels:
+//   fresnel       128 x 3 rgba16float, 3 tiles of 128 x 1; cos_theta 0..1
+//   distribution  512 x 1024 r16float, 2 tiles of 512 x 512; theta_h 0..1.5707964 as u^8, alpha 0.001..1 logarithmic
+//
+// Bindings, group 0:
+//   0 luthier_fresnel: sampler2D
+//   1 luthier_distribution: sampler2D
+//   each texture filtered linearly, clamped to its edge
+//   6 luthier_materials: storage block LuthierMaterials (std430), 19 vec4
+//
+// Materials:
+//   0 varnished-gold, 2 layers
+
+// One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
+struct LuthierLayer {
+    // 0 dielectric, 1 conductor, 2 diffuse base.
+    uint kind;
+    // Slope parameter of the micro-surface.
+    float alpha;
+    // Index below over index above, for the refracted directions.
+    float eta;
+    // Tile of the Fresnel table.
+    float fresnel_tile;
+    // Tile of the distribution table.
+    float distribution_tile;
+};
+
+// What the light has met on its way down and back up: directions, and sums over the layers so far.
+struct LuthierPath {
+    // To the light, in the medium above the next layer.
+    vec3 wi;
+    // To the eye, in the medium above the next layer.
+    vec3 wo;
+    // Share of the light that comes down to the next layer and back out, times the outer cos_theta_i.
+    vec3 throughput;
+    // Reflected by the layers so far: f cos_theta_i.
+    vec3 reflected;
+    // Greatest slope parameter so far: a layer is never smoother than those above it.
+    float alpha;
+    // Whether any light reaches the next layer.
+    bool open;
+};
+
+const uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
+const vec2 LUTHIER_FRESNEL_SIZE = vec2(128.0, 3.0);
+const vec2 LUTHIER_DISTRIBUTION_SIZE = vec2(512.0, 1024.0);
+const vec2 LUTHIER_DISTRIBUTION_TILE = vec2(512.0, 512.0);
+const uint LUTHIER_DIELECTRIC = 0u;
+const uint LUTHIER_LAYER_WORDS = 9u;
+const float LUTHIER_PI = 3.1415927;
+
+layout(binding = 0) uniform sampler2D luthier_fresnel;
+layout(binding = 1) uniform sampler2D luthier_distribution;
+layout(std430, binding = 6) readonly buffer LuthierMaterials { vec4 luthier_materials[]; };
+
+// Fresnel reflectance of an interface, RGB.
+vec3 luthier_lookup_fresnel(float tile, float cos_theta) {
+    float x = clamp(cos_theta, 0.0, 1.0) * 127.0;
+    vec2 position = vec2(x + 0.5, tile + 0.5);
+    return textureLod(luthier_fresnel, vec2(position / LUTHIER_FRESNEL_SIZE), 0.0).xyz;
+}
+
+// pi alpha^2 D of a slope distribution, for the angle between half vector and normal: D is this over pi alpha^2.
+float luthier_lookup_distribution(float tile, float cos_theta_h, float sin_theta_h_sq, float alpha) {
+    float theta_h = atan(sqrt(sin_theta_h_sq), cos_theta_h);
+    float x = sqrt(sqrt(sqrt(clamp(theta_h / 1.5707964, 0.0, 1.0)))) * 511.0;
+    float y = clamp(log2(max(alpha, 0.001) / 0.001) / 9.965784, 0.0, 1.0) * 511.0;
+    vec2 position = vec2(x + 0.5, ((tile * 512.0) + y) + 0.5);
+    return textureLod(luthier_distribution, vec2(position / LUTHIER_DISTRIBUTION_SIZE), 0.0).x;
+}
+
+// Number of layers of a material.
+uint luthier_layer_count(uint material) {
+    return uint(luthier_materials[material].y);
+}
+
+// A layer of a material, counted from the top.
+LuthierLayer luthier_layer(uint material, uint index) {
+    LuthierLayer layer = LuthierLayer(0u, 0.0, 0.0, 0.0, 0.0);
+    uint first = uint(luthier_materials[material].x) + (index * LUTHIER_LAYER_WORDS);
+    vec4 head = luthier_materials[first];
+    vec4 tiles = luthier_materials[first + 1u];
+    layer.kind = uint(head.x);
+    layer.alpha = head.y;
+    layer.eta = head.z;
+    layer.fresnel_tile = tiles.x;
+    layer.distribution_tile = tiles.y;
+    return layer;
+}
+
+// Fresnel reflectance of a layer, from its row of the table.
+vec3 luthier_fresnel_term(LuthierLayer layer, float cos_theta_d) {
+    return luthier_lookup_fresnel(layer.fresnel_tile, cos_theta_d);
+}
+
+// pi alpha^2 D of a layer, from the table.
+float luthier_distribution_term(LuthierLayer layer, float alpha, float cos_theta_h, float sin_theta_h_sq) {
+    return luthier_lookup_distribution(layer.distribution_tile, cos_theta_h, sin_theta_h_sq, alpha);
+}
+
+// Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
+// layer below it (Elek 2010, eq. 2-4).
+LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
+    float alpha = max(path.alpha, layer.alpha);
+    LuthierPath next = path;
+    next.alpha = alpha;
+    next.open = false;
+    vec3 bisector = path.wi + path.wo;
+    float length_sq = dot(bisector, bisector);
+    if (length_sq < 1e-24) {
+        return next;
+    }
+    float cos_theta_d = min(0.5 * sqrt(length_sq), 1.0);
+    float cos_theta_h = bisector.z / sqrt(length_sq);
+    float sin_theta_h_sq = dot(bisector.xy, bisector.xy) / length_sq;
+    vec3 fresnel = luthier_fresnel_term(layer, cos_theta_d);
+    float slopes = luthier_distribution_term(layer, alpha, cos_theta_h, sin_theta_h_sq);
+    float cavity = (2.0 * cos_theta_h) / cos_theta_d;
+    float low = min(path.wi.z, path.wo.z);
+    float high = max(path.wi.z, path.wo.z);
+    float shape = ((slopes / ((LUTHIER_PI * alpha) * alpha)) * min(cavity, 1.0 / low)) / (4.0 * high);
+    next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
+    if (layer.kind != LUTHIER_DIELECTRIC) {
+        return next;
+    }
+    vec2 cosines = vec2(path.wi.z, path.wo.z);
+    vec2 cosines_sq = ((cosines * cosines) + vec2((layer.eta - 1.0) * (layer.eta + 1.0))) / vec2(layer.eta * layer.eta);
+    if (min(cosines_sq.x, cosines_sq.y) <= 0.0) {
+        return next;
+    }
+    vec2 refracted = sqrt(cosines_sq);
+    next.wi = vec3(path.wi.xy / vec2(layer.eta), refracted.x);
+    next.wo = vec3(path.wo.xy / vec2(layer.eta), refracted.y);
+    next.open = true;
+    float masking = min(cavity * low, 1.0);
+    vec3 crossed = vec3(1.0) - fresnel;
+    vec3 kept = crossed * (vec3(1.0 - masking) + (crossed * masking));
+    next.throughput = path.throughput * kept;
+    return next;
+}
+
+// f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away
+// from the surface. Zero when either is not above the horizon.
+vec3 luthier_eval(uint material, vec3 wi, vec3 wo) {
+    if (min(wi.z, wo.z) <= 0.0) {
+        return vec3(0.0);
+    }
+    uint count = luthier_layer_count(material);
+    LuthierPath path = LuthierPath(wi, wo, vec3(wi.z), vec3(0.0), 0.0, true);
+    path = luthier_add_interface(path, luthier_layer(material, 0u));
+    if (path.open && (count > 1u)) {
+        path = luthier_add_interface(path, luthier_layer(material, 1u));
+    }
+    return path.reflected;
+}

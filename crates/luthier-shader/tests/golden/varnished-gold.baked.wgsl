@@ -1,0 +1,170 @@
+// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
+// Fresnel reflectance and slope distribution are read from tables.
+//
+// Tables, in texels:
+//   fresnel       128 x 3 rgba16float, 3 tiles of 128 x 1; cos_theta 0..1
+//   distribution  512 x 1024 r16float, 2 tiles of 512 x 512; theta_h 0..1.5707964 as u^8, alpha 0.001..1 logarithmic
+//
+// Bindings, group 0:
+//   0 luthier_fresnel: texture
+//   1 luthier_distribution: texture
+//   5 luthier_sampler: sampler, linear, clamp to edge
+//   6 luthier_materials: storage buffer, 19 vec4
+//
+// Materials:
+//   0 varnished-gold, 2 layers
+
+const LUTHIER_MATERIAL_VARNISHED_GOLD: u32 = 0u;
+
+@group(0) @binding(0) var luthier_fresnel: texture_2d<f32>;
+@group(0) @binding(1) var luthier_distribution: texture_2d<f32>;
+@group(0) @binding(5) var luthier_sampler: sampler;
+@group(0) @binding(6) var<storage, read> luthier_materials: array<vec4<f32>>;
+
+const LUTHIER_FRESNEL_SIZE: vec2<f32> = vec2<f32>(128.0, 3.0);
+
+/// Fresnel reflectance of an interface, RGB.
+fn luthier_lookup_fresnel(tile: f32, cos_theta: f32) -> vec3<f32> {
+    let x = saturate(cos_theta) * 127.0;
+    let position = vec2<f32>(x + 0.5, tile + 0.5);
+    return textureSampleLevel(luthier_fresnel, luthier_sampler, position / LUTHIER_FRESNEL_SIZE, 0.0).rgb;
+}
+
+const LUTHIER_DISTRIBUTION_SIZE: vec2<f32> = vec2<f32>(512.0, 1024.0);
+const LUTHIER_DISTRIBUTION_TILE: vec2<f32> = vec2<f32>(512.0, 512.0);
+
+/// pi alpha^2 D of a slope distribution, for the angle between half vector and normal: D is this over pi alpha^2.
+fn luthier_lookup_distribution(tile: f32, cos_theta_h: f32, sin_theta_h_sq: f32, alpha: f32) -> f32 {
+    let theta_h = atan2(sqrt(sin_theta_h_sq), cos_theta_h);
+    let x = sqrt(sqrt(sqrt(saturate(theta_h / 1.5707964)))) * 511.0;
+    let y = saturate(log2(max(alpha, 0.001) / 0.001) / 9.965784) * 511.0;
+    let position = vec2<f32>(x + 0.5, tile * LUTHIER_DISTRIBUTION_TILE.y + y + 0.5);
+    return textureSampleLevel(luthier_distribution, luthier_sampler, position / LUTHIER_DISTRIBUTION_SIZE, 0.0).r;
+}
+
+const LUTHIER_DIELECTRIC: u32 = 0u;
+const LUTHIER_LAYER_WORDS: u32 = 9u;
+
+/// One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
+struct LuthierLayer {
+    /// 0 dielectric, 1 conductor, 2 diffuse base.
+    kind: u32,
+    /// Slope parameter of the micro-surface.
+    alpha: f32,
+    /// Index below over index above, for the refracted directions.
+    eta: f32,
+    /// Tile of the Fresnel table.
+    fresnel_tile: f32,
+    /// Tile of the distribution table.
+    distribution_tile: f32,
+}
+
+/// Number of layers of a material.
+fn luthier_layer_count(material: u32) -> u32 {
+    return u32(luthier_materials[material].y);
+}
+
+/// A layer of a material, counted from the top.
+fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
+    let first = u32(luthier_materials[material].x) + index * LUTHIER_LAYER_WORDS;
+    let head = luthier_materials[first];
+    let tiles = luthier_materials[first + 1u];
+    var layer: LuthierLayer;
+    layer.kind = u32(head.x);
+    layer.alpha = head.y;
+    layer.eta = head.z;
+    layer.fresnel_tile = tiles.x;
+    layer.distribution_tile = tiles.y;
+    return layer;
+}
+
+/// Fresnel reflectance of a layer, from its row of the table.
+fn luthier_fresnel_term(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
+    return luthier_lookup_fresnel(layer.fresnel_tile, cos_theta_d);
+}
+
+/// pi alpha^2 D of a layer, from the table.
+fn luthier_distribution_term(layer: LuthierLayer, alpha: f32, cos_theta_h: f32, sin_theta_h_sq: f32) -> f32 {
+    return luthier_lookup_distribution(layer.distribution_tile, cos_theta_h, sin_theta_h_sq, alpha);
+}
+
+const LUTHIER_PI: f32 = 3.14159265;
+
+/// What the light has met on its way down and back up: directions, and sums over the layers so far.
+struct LuthierPath {
+    /// To the light, in the medium above the next layer.
+    wi: vec3<f32>,
+    /// To the eye, in the medium above the next layer.
+    wo: vec3<f32>,
+    /// Share of the light that comes down to the next layer and back out, times the outer cos_theta_i.
+    throughput: vec3<f32>,
+    /// Reflected by the layers so far: f cos_theta_i.
+    reflected: vec3<f32>,
+    /// Greatest slope parameter so far: a layer is never smoother than those above it.
+    alpha: f32,
+    /// Whether any light reaches the next layer.
+    open: bool,
+}
+
+/// Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
+/// layer below it (Elek 2010, eq. 2-4).
+fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
+    let alpha = max(path.alpha, layer.alpha);
+    var next = path;
+    next.alpha = alpha;
+    next.open = false;
+
+    // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
+    let bisector = path.wi + path.wo;
+    let length_sq = dot(bisector, bisector);
+    if length_sq < 1e-24 {
+        return next;
+    }
+    let cos_theta_d = min(0.5 * sqrt(length_sq), 1.0);
+    let cos_theta_h = bisector.z / sqrt(length_sq);
+    let sin_theta_h_sq = dot(bisector.xy, bisector.xy) / length_sq;
+
+    let fresnel = luthier_fresnel_term(layer, cos_theta_d);
+    let slopes = luthier_distribution_term(layer, alpha, cos_theta_h, sin_theta_h_sq);
+    // G of V-cavities is min(1, cavity * low); G / (low * high) is formed without the product, which may underflow.
+    let cavity = 2.0 * cos_theta_h / cos_theta_d;
+    let low = min(path.wi.z, path.wo.z);
+    let high = max(path.wi.z, path.wo.z);
+    let shape = slopes / (LUTHIER_PI * alpha * alpha) * min(cavity, 1.0 / low) / (4.0 * high);
+    next.reflected = path.reflected + path.throughput * fresnel * shape;
+
+    if layer.kind != LUTHIER_DIELECTRIC {
+        return next;
+    }
+    // Refracted at the normal; the squared cosine is written so that it does not cancel for an index near 1.
+    let cosines = vec2<f32>(path.wi.z, path.wo.z);
+    let cosines_sq = (cosines * cosines + (layer.eta - 1.0) * (layer.eta + 1.0)) / (layer.eta * layer.eta);
+    if min(cosines_sq.x, cosines_sq.y) <= 0.0 {
+        return next;
+    }
+    let refracted = sqrt(cosines_sq);
+    next.wi = vec3<f32>(path.wi.xy / layer.eta, refracted.x);
+    next.wo = vec3<f32>(path.wo.xy / layer.eta, refracted.y);
+    next.open = true;
+    // (1 - F) down, (1 - F) up, and part of what the cavities block comes back.
+    let masking = min(cavity * low, 1.0);
+    let crossed = 1.0 - fresnel;
+    let kept = crossed * (1.0 - masking + crossed * masking);
+    next.throughput = path.throughput * kept;
+    return next;
+}
+
+/// f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away
+/// from the surface. Zero when either is not above the horizon.
+fn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
+    if min(wi.z, wo.z) <= 0.0 {
+        return vec3<f32>(0.0);
+    }
+    let count = luthier_layer_count(material);
+    var path = LuthierPath(wi, wo, vec3<f32>(wi.z), vec3<f32>(0.0), 0.0, true);
+    path = luthier_add_interface(path, luthier_layer(material, 0u));
+    if path.open & (count > 1u) {
+        path = luthier_add_interface(path, luthier_layer(material, 1u));
+    }
+    return path.reflected;
+}

@@ -1,0 +1,194 @@
+// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
+// No tables: Fresnel equations at three wavelengths, closed forms of D.
+//
+// Bindings, group 0:
+//   6 luthier_materials: storage buffer, 19 vec4
+//
+// Materials:
+//   0 varnished-gold, 2 layers
+
+const LUTHIER_MATERIAL_VARNISHED_GOLD: u32 = 0u;
+
+@group(0) @binding(6) var<storage, read> luthier_materials: array<vec4<f32>>;
+
+const LUTHIER_DIELECTRIC: u32 = 0u;
+const LUTHIER_LAYER_WORDS: u32 = 9u;
+
+/// One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
+struct LuthierLayer {
+    /// 0 dielectric, 1 conductor, 2 diffuse base.
+    kind: u32,
+    /// Slope parameter of the micro-surface.
+    alpha: f32,
+    /// Index below over index above, for the refracted directions.
+    eta: f32,
+    /// Slope distribution: 0 Beckmann, 1 GGX.
+    distribution: f32,
+    /// Real part of the index below, at three wavelengths.
+    ior_n: vec3<f32>,
+    /// Imaginary part of it.
+    ior_k: vec3<f32>,
+}
+
+/// Number of layers of a material.
+fn luthier_layer_count(material: u32) -> u32 {
+    return u32(luthier_materials[material].y);
+}
+
+/// A layer of a material, counted from the top.
+fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
+    let first = u32(luthier_materials[material].x) + index * LUTHIER_LAYER_WORDS;
+    let head = luthier_materials[first];
+    let base = luthier_materials[first + 3u];
+    let real_part = luthier_materials[first + 4u];
+    let imaginary_part = luthier_materials[first + 5u];
+    var layer: LuthierLayer;
+    layer.kind = u32(head.x);
+    layer.alpha = head.y;
+    layer.eta = head.z;
+    layer.distribution = base.w;
+    layer.ior_n = real_part.xyz;
+    layer.ior_k = imaginary_part.xyz;
+    return layer;
+}
+
+/// Complex numbers at three wavelengths.
+struct LuthierComplex {
+    re: vec3<f32>,
+    im: vec3<f32>,
+}
+
+/// Normal component of the wave vector in a medium, over that above: sqrt((n + i k)^2 - sin_theta^2), both parts >= 0.
+/// Formed without cancellation for an index near 1, under total reflection, and for weak absorption.
+fn luthier_normal_index(ior_n: vec3<f32>, ior_k: vec3<f32>, cos_theta: f32) -> LuthierComplex {
+    let square = (ior_n - 1.0) * (ior_n + 1.0) - ior_k * ior_k + cos_theta * cos_theta;
+    let product = ior_n * ior_k;
+    let modulus = sqrt(square * square + 4.0 * product * product);
+    let large_sq = 0.5 * (modulus + abs(square));
+    let small_sq = product * product / max(large_sq, vec3<f32>(1e-30));
+    let propagates = square >= vec3<f32>(0.0);
+    let re_sq = select(small_sq, large_sq, propagates);
+    let im_sq = select(large_sq, small_sq, propagates);
+    return LuthierComplex(sqrt(re_sq), sqrt(im_sq));
+}
+
+/// Exact Fresnel reflectance of unpolarised light for the relative index n + i k, total reflection included.
+fn luthier_fresnel(ior_n: vec3<f32>, ior_k: vec3<f32>, cos_theta: f32) -> vec3<f32> {
+    let below = luthier_normal_index(ior_n, ior_k, cos_theta);
+    let sin_sq = 1.0 - cos_theta * cos_theta;
+    let im_sq = below.im * below.im;
+    let difference = below.re - cos_theta;
+    let sum = below.re + cos_theta;
+    let refl_s = (difference * difference + im_sq) / (sum * sum + im_sq);
+    let along = below.re * cos_theta;
+    let across = im_sq * cos_theta * cos_theta;
+    let refl_ratio = ((along - sin_sq) * (along - sin_sq) + across) / ((along + sin_sq) * (along + sin_sq) + across);
+    return 0.5 * refl_s * (1.0 + refl_ratio);
+}
+
+/// pi alpha^2 D of Beckmann. Below a cosine of 0.1 it is zero in f32 for any alpha <= 1.
+fn luthier_beckmann(alpha: f32, cos_theta_h: f32, sin_theta_h_sq: f32) -> f32 {
+    let cos_sq = max(cos_theta_h * cos_theta_h, 0.01);
+    return exp(-sin_theta_h_sq / (cos_sq * alpha * alpha)) / (cos_sq * cos_sq);
+}
+
+/// pi alpha^2 D of GGX (Trowbridge-Reitz).
+fn luthier_ggx(alpha: f32, cos_theta_h: f32, sin_theta_h_sq: f32) -> f32 {
+    let alpha_sq = alpha * alpha;
+    let ratio = alpha_sq / (alpha_sq * cos_theta_h * cos_theta_h + sin_theta_h_sq);
+    return ratio * ratio;
+}
+
+/// Fresnel reflectance of a layer at three wavelengths, its film included.
+fn luthier_fresnel_term(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
+    return luthier_fresnel(layer.ior_n, layer.ior_k, cos_theta_d);
+}
+
+/// pi alpha^2 D of a layer.
+fn luthier_distribution_term(layer: LuthierLayer, alpha: f32, cos_theta_h: f32, sin_theta_h_sq: f32) -> f32 {
+    if layer.distribution > 0.5 {
+        return luthier_ggx(alpha, cos_theta_h, sin_theta_h_sq);
+    }
+    return luthier_beckmann(alpha, cos_theta_h, sin_theta_h_sq);
+}
+
+const LUTHIER_PI: f32 = 3.14159265;
+
+/// What the light has met on its way down and back up: directions, and sums over the layers so far.
+struct LuthierPath {
+    /// To the light, in the medium above the next layer.
+    wi: vec3<f32>,
+    /// To the eye, in the medium above the next layer.
+    wo: vec3<f32>,
+    /// Share of the light that comes down to the next layer and back out, times the outer cos_theta_i.
+    throughput: vec3<f32>,
+    /// Reflected by the layers so far: f cos_theta_i.
+    reflected: vec3<f32>,
+    /// Greatest slope parameter so far: a layer is never smoother than those above it.
+    alpha: f32,
+    /// Whether any light reaches the next layer.
+    open: bool,
+}
+
+/// Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
+/// layer below it (Elek 2010, eq. 2-4).
+fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
+    let alpha = max(path.alpha, layer.alpha);
+    var next = path;
+    next.alpha = alpha;
+    next.open = false;
+
+    // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
+    let bisector = path.wi + path.wo;
+    let length_sq = dot(bisector, bisector);
+    if length_sq < 1e-24 {
+        return next;
+    }
+    let cos_theta_d = min(0.5 * sqrt(length_sq), 1.0);
+    let cos_theta_h = bisector.z / sqrt(length_sq);
+    let sin_theta_h_sq = dot(bisector.xy, bisector.xy) / length_sq;
+
+    let fresnel = luthier_fresnel_term(layer, cos_theta_d);
+    let slopes = luthier_distribution_term(layer, alpha, cos_theta_h, sin_theta_h_sq);
+    // G of V-cavities is min(1, cavity * low); G / (low * high) is formed without the product, which may underflow.
+    let cavity = 2.0 * cos_theta_h / cos_theta_d;
+    let low = min(path.wi.z, path.wo.z);
+    let high = max(path.wi.z, path.wo.z);
+    let shape = slopes / (LUTHIER_PI * alpha * alpha) * min(cavity, 1.0 / low) / (4.0 * high);
+    next.reflected = path.reflected + path.throughput * fresnel * shape;
+
+    if layer.kind != LUTHIER_DIELECTRIC {
+        return next;
+    }
+    // Refracted at the normal; the squared cosine is written so that it does not cancel for an index near 1.
+    let cosines = vec2<f32>(path.wi.z, path.wo.z);
+    let cosines_sq = (cosines * cosines + (layer.eta - 1.0) * (layer.eta + 1.0)) / (layer.eta * layer.eta);
+    if min(cosines_sq.x, cosines_sq.y) <= 0.0 {
+        return next;
+    }
+    let refracted = sqrt(cosines_sq);
+    next.wi = vec3<f32>(path.wi.xy / layer.eta, refracted.x);
+    next.wo = vec3<f32>(path.wo.xy / layer.eta, refracted.y);
+    next.open = true;
+    // (1 - F) down, (1 - F) up, and part of what the cavities block comes back.
+    let masking = min(cavity * low, 1.0);
+    let crossed = 1.0 - fresnel;
+    let kept = crossed * (1.0 - masking + crossed * masking);
+    next.throughput = path.throughput * kept;
+    return next;
+}
+
+/// f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away
+/// from the surface. Zero when either is not above the horizon.
+fn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
+    if min(wi.z, wo.z) <= 0.0 {
+        return vec3<f32>(0.0);
+    }
+    let count = luthier_layer_count(material);
+    var path = LuthierPath(wi, wo, vec3<f32>(wi.z), vec3<f32>(0.0), 0.0, true);
+    path = luthier_add_interface(path, luthier_layer(material, 0u));
+    if path.open & (count > 1u) {
+        path = luthier_add_interface(path, luthier_layer(material, 1u));
+    }
+    return path.reflected;
+}

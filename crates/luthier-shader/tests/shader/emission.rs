@@ -1,0 +1,202 @@
+//! Everything that can be emitted passes naga; what a set does not need is not in its text.
+
+use crate::scenes::{clear, conductor, dielectric, diffuse, filmed, material, sets, tables};
+use luthier_lut::{LayerKind, Mapping, TableKind, TexelFormat};
+use luthier_shader::{Form, MaterialSet, ShaderError, TableFace, Target, bindings, complete, emit, validate};
+
+/// Emits in all forms and languages; each is validated on the way.
+fn emit_all(materials: &[luthier_lut::MaterialEntry], tables: &[TableFace]) {
+    let set = MaterialSet { materials, tables: tables.to_vec() };
+    for form in Form::ALL {
+        for target in Target::ALL {
+            complete(&set, form, target).unwrap_or_else(|e| panic!("{form} {target}: {e}"));
+        }
+    }
+}
+
+fn richest() -> Vec<luthier_lut::MaterialEntry> {
+    sets().pop().unwrap().1
+}
+
+#[test]
+fn every_set_passes() {
+    for (_, materials) in sets() {
+        emit_all(&materials, &tables());
+    }
+}
+
+#[test]
+fn every_format_passes() {
+    for format in TexelFormat::ALL {
+        let tables: Vec<_> = tables().into_iter().map(|t| TableFace { format, ..t }).collect();
+        emit_all(&richest(), &tables);
+    }
+    // One table filtered, one not.
+    let mut mixed = tables();
+    mixed[1].format = TexelFormat::R32Float;
+    emit_all(&richest(), &mixed);
+}
+
+#[test]
+fn every_mapping_passes() {
+    let exponents = [0.125, 0.25, 0.5, 1.0, 1.7, 2.0, 3.0, 4.0, 8.0, 16.0];
+    let mut mappings = vec![Mapping::Linear, Mapping::Logarithmic, Mapping::Periodic];
+    mappings.extend(exponents.map(|exponent| Mapping::Power { exponent }));
+    for mapping in mappings {
+        let mut tables = tables();
+        for table in &mut tables {
+            let axes = std::iter::once(&mut table.layout.x).chain(&mut table.layout.y);
+            for axis in axes {
+                axis.mapping = mapping;
+                if mapping == Mapping::Logarithmic {
+                    axis.min = axis.min.max(1e-3);
+                }
+            }
+            table.layout.apron = 1;
+        }
+        emit_all(&richest(), &tables);
+    }
+}
+
+#[test]
+fn every_axis_and_layout_passes() {
+    for (fresnel, distribution) in [("cos_theta", "theta_h"), ("theta", "cos_theta_h")] {
+        for (columns, tiles) in [(1, 6), (2, 7), (6, 6)] {
+            let mut tables = tables();
+            tables[0].layout.x.quantity = fresnel.to_owned();
+            tables[2].layout.x.quantity = fresnel.to_owned();
+            tables[1].layout.x.quantity = distribution.to_owned();
+            for table in &mut tables {
+                (table.layout.columns, table.layout.tiles) = (columns, tiles);
+            }
+            emit_all(&richest(), &tables);
+        }
+    }
+}
+
+#[test]
+fn what_a_set_lacks_is_not_in_its_text() {
+    let text = |layers: &[luthier_lut::LayerRecord], form| {
+        let materials = [material("sample", layers)];
+        emit(&MaterialSet { materials: &materials, tables: tables() }, form, Target::Wgsl).unwrap()
+    };
+    let film = ["film", "airy", "phase", "luthier_thickness"];
+    let depth = ["optical_depth", "exp(-layer"];
+    let oren = ["sigma", "Oren"];
+    let cases: [(&[luthier_lut::LayerRecord], &[&[&str]]); 6] = [
+        (&[diffuse(0.0)], &[&film, &depth, &oren, &["alpha", "fresnel", "Path", "luthier_sampler"]]),
+        (&[dielectric()], &[&film, &depth, &oren, &["layer.eta", "albedo:", "open = true", "ggx", "diffuse("]]),
+        (&[clear(), diffuse(0.0)], &[&film, &depth, &oren, &["ggx"]]),
+        (&[dielectric(), diffuse(0.4)], &[&film, &["ggx", "luthier_add_layer"]]),
+        (&[conductor()], &[&film, &depth, &oren, &["beckmann", "layer.eta", "LUTHIER_DIELECTRIC"]]),
+        (&[filmed(), conductor()], &[&depth, &oren, &["LUTHIER_DIFFUSE"]]),
+    ];
+    for (layers, absent) in cases {
+        for form in Form::ALL {
+            let text = text(layers, form);
+            let code: String = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
+            for word in absent.iter().flat_map(|words| words.iter()) {
+                assert!(!code.contains(word), "`{word}` is in {form} of {layers:?}:\n{text}");
+            }
+        }
+    }
+    assert!(text(&[filmed()], Form::Full).contains("luthier_film("));
+    assert!(text(&[filmed()], Form::Baked).contains("luthier_lookup_phase("));
+}
+
+#[test]
+fn shipped_functions_have_no_loops_and_no_placeholders() {
+    for (_, materials) in sets() {
+        let set = MaterialSet { materials: &materials, tables: tables() };
+        for form in Form::ALL {
+            for target in Target::ALL {
+                let text = emit(&set, form, target).unwrap();
+                for word in ["loop", "while", "for (", "$", "//?", "_group_", "_e1", "main(", "\n\n\n"] {
+                    assert!(!text.contains(word), "`{word}` in {form} {target}:\n{text}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn functions_of_the_face_are_documented_in_every_language() {
+    let materials = richest();
+    let set = MaterialSet { materials: &materials, tables: tables() };
+    for target in Target::ALL {
+        let text = emit(&set, Form::Baked, target).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        for name in ["eval", "lookup_fresnel", "lookup_distribution", "lookup_fgd", "lookup_phase", "lookup_thickness"]
+        {
+            let at = lines.iter().position(|l| l.contains(&format!("luthier_{name}(")) && l.ends_with('{')).unwrap();
+            assert!(lines[at - 1].starts_with("//"), "{target} {name}");
+        }
+    }
+}
+
+#[test]
+fn full_binds_the_buffer_only_and_baked_what_it_reads() {
+    let numbers = |layers: &[luthier_lut::LayerRecord], tables: Vec<TableFace>, form| {
+        let materials = [material("sample", layers)];
+        bindings(&MaterialSet { materials: &materials, tables }, form).iter().map(|b| b.binding).collect::<Vec<_>>()
+    };
+    assert_eq!(numbers(&[filmed()], tables(), Form::Full), [6]);
+    assert_eq!(numbers(&[filmed()], tables(), Form::Baked), [0, 1, 3, 4, 5, 6]);
+    assert_eq!(numbers(&[dielectric()], tables(), Form::Baked), [0, 1, 2, 5, 6]);
+    assert_eq!(numbers(&[diffuse(0.0)], tables(), Form::Baked), [6]);
+    let unfiltered = tables().into_iter().map(|t| TableFace { format: TexelFormat::Rgba32Float, ..t }).collect();
+    assert_eq!(numbers(&[dielectric()], unfiltered, Form::Baked), [0, 1, 2, 6]);
+}
+
+#[test]
+fn sets_that_cannot_be_emitted_say_why() {
+    let attempt = |materials: &[luthier_lut::MaterialEntry], tables: Vec<TableFace>, target| {
+        emit(&MaterialSet { materials, tables }, Form::Baked, target).unwrap_err()
+    };
+    let lone = |layer| [material("sample", &[layer])];
+    assert!(matches!(attempt(&[], tables(), Target::Wgsl), ShaderError::NoMaterials));
+    assert!(matches!(attempt(&[material("a", &[])], tables(), Target::Wgsl), ShaderError::NoLayers(_)));
+    let twins = [material("a-b", &[conductor()]), material("A-B", &[conductor()])];
+    assert!(matches!(attempt(&twins, tables(), Target::Wgsl), ShaderError::NameClash { .. }));
+    let mut layer = conductor();
+    layer.fresnel_tile = None;
+    let error = attempt(&lone(layer), tables(), Target::Wgsl);
+    assert!(matches!(error, ShaderError::NoTile { table: TableKind::Fresnel, layer: 0, .. }), "{error}");
+    let error = attempt(&lone(conductor()), Vec::new(), Target::Wgsl);
+    assert!(matches!(error, ShaderError::TileOutOfRange { tiles: 0, .. }), "{error}");
+    let mut layer = conductor();
+    layer.distribution = "phong".to_owned();
+    assert!(matches!(attempt(&lone(layer), tables(), Target::Wgsl), ShaderError::Distribution { .. }));
+    let mut odd = tables();
+    odd[0].layout.x.quantity = "wavelength".to_owned();
+    assert!(matches!(attempt(&lone(conductor()), odd, Target::Wgsl), ShaderError::Layout { .. }));
+    let many: Vec<_> = (0..120).map(|i| material(&format!("m{i}"), &[conductor()])).collect();
+    let error = attempt(&many, tables(), Target::GlslEs300);
+    assert!(matches!(error, ShaderError::UniformBlockTooLarge { words: 1200, limit: 1024 }), "{error}");
+    assert!(emit(&MaterialSet { materials: &many, tables: tables() }, Form::Baked, Target::Glsl450).is_ok());
+}
+
+#[test]
+fn kernels_can_be_appended() {
+    let materials = [material("gold", &[conductor()])];
+    let set = MaterialSet { materials: &materials, tables: tables() };
+    let kernel = "@group(1) @binding(0) var<storage, read_write> out: array<vec3<f32>>;\n\
+        @compute @workgroup_size(64) fn kernel(@builtin(global_invocation_id) id: vec3<u32>) {\n\
+        out[id.x] = luthier_eval(LUTHIER_MATERIAL_GOLD, vec3<f32>(0.0, 0.0, 1.0), vec3<f32>(0.0, 0.0, 1.0)); }";
+    for form in Form::ALL {
+        validate(&format!("{}\n{kernel}", emit(&set, form, Target::Wgsl).unwrap())).unwrap();
+    }
+}
+
+#[test]
+fn names_read_back() {
+    for form in Form::ALL {
+        assert_eq!(form.to_string().parse::<Form>().unwrap(), form);
+    }
+    for target in Target::ALL {
+        assert_eq!(target.to_string().parse::<Target>().unwrap(), target);
+    }
+    assert!("hlsl".parse::<Target>().unwrap_err().to_string().contains("glsl-es300"));
+    assert!("fast".parse::<Form>().is_err());
+    assert_eq!(LayerKind::Conductor, conductor().kind);
+}

@@ -1,0 +1,164 @@
+//! Material sets for the tests: small, with one material for every kind of layer.
+
+use luthier_lut::{
+    AtlasLayout, Axis, ColorMode, LayerKind, LayerRecord, Mapping, MaterialEntry, TableKind, TexelFormat,
+};
+use luthier_shader::TableFace;
+
+/// An interface without film: red-lacquer's coat.
+pub(crate) fn dielectric() -> LayerRecord {
+    LayerRecord {
+        kind: LayerKind::Dielectric,
+        distribution: "beckmann".to_owned(),
+        alpha: 0.02,
+        eta: 1.5,
+        optical_depth: [0.1, 0.5, 0.9],
+        albedo: [0.0; 3],
+        sigma: 0.0,
+        ior_n: [1.49, 1.5, 1.51],
+        ior_k: [0.0; 3],
+        film_ior_n: [0.0; 3],
+        film_ior_k: [0.0; 3],
+        film_thickness_waves: [0.0; 3],
+        film_thickness_nm: 0.0,
+        film_thickness_max_nm: 0.0,
+        fresnel_tile: Some(0),
+        distribution_tile: Some(0),
+        fgd_tile: Some(0),
+        phase_tile: None,
+        thickness_tile: None,
+    }
+}
+
+/// A coat that does not absorb.
+pub(crate) fn clear() -> LayerRecord {
+    LayerRecord { optical_depth: [0.0; 3], ..dielectric() }
+}
+
+/// Gold.
+pub(crate) fn conductor() -> LayerRecord {
+    LayerRecord {
+        kind: LayerKind::Conductor,
+        distribution: "ggx".to_owned(),
+        alpha: 0.3,
+        eta: 1.0,
+        optical_depth: [0.0; 3],
+        ior_n: [0.16, 0.42, 1.47],
+        ior_k: [3.9, 2.4, 1.95],
+        fresnel_tile: Some(1),
+        distribution_tile: Some(1),
+        fgd_tile: Some(1),
+        ..dielectric()
+    }
+}
+
+/// A diffuse base; Lambert for `sigma` 0.
+pub(crate) fn diffuse(sigma: f64) -> LayerRecord {
+    LayerRecord {
+        kind: LayerKind::Diffuse,
+        eta: 1.0,
+        optical_depth: [0.0; 3],
+        albedo: [0.8, 0.5, 0.2],
+        sigma,
+        fresnel_tile: None,
+        distribution_tile: None,
+        fgd_tile: None,
+        ..dielectric()
+    }
+}
+
+/// An interface under a film of varying thickness.
+pub(crate) fn filmed() -> LayerRecord {
+    LayerRecord {
+        film_ior_n: [1.39, 1.4, 1.41],
+        film_ior_k: [0.0, 0.0, 0.01],
+        film_thickness_waves: [0.43, 0.55, 0.67],
+        film_thickness_nm: 300.0,
+        film_thickness_max_nm: 400.0,
+        phase_tile: Some(0),
+        thickness_tile: Some(0),
+        fresnel_tile: Some(2),
+        fgd_tile: None,
+        ..clear()
+    }
+}
+
+/// A material of these layers.
+pub(crate) fn material(name: &str, layers: &[LayerRecord]) -> MaterialEntry {
+    MaterialEntry {
+        name: name.to_owned(),
+        source: format!("materials/{name}.toml"),
+        source_hash: String::new(),
+        class: "d".to_owned(),
+        color: ColorMode::Spectral,
+        wavelengths_nm: [645.0, 525.0, 445.0],
+        layers: layers.to_vec(),
+    }
+}
+
+/// Sets by name, from the simplest to the richest.
+pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
+    let lacquer = || material("red-lacquer", &[dielectric(), diffuse(0.0)]);
+    let house = || material("house-paint", &[dielectric(), clear(), diffuse(0.4)]);
+    let gold = || material("gold", &[conductor()]);
+    let oil = || material("oil-film-2", &[filmed(), conductor()]);
+    vec![
+        ("lambert", vec![material("chalk", &[diffuse(0.0)])]),
+        ("clay", vec![material("clay", &[diffuse(0.3)])]),
+        ("glass", vec![material("glass", &[dielectric()])]),
+        ("gold", vec![gold()]),
+        ("lacquer", vec![lacquer()]),
+        ("varnish", vec![material("varnish", &[clear(), conductor()])]),
+        ("soap", vec![material("soap", &[filmed()])]),
+        ("mixed-depths", vec![gold(), lacquer(), house()]),
+        ("mixed-tops", vec![material("chalk", &[diffuse(0.0)]), lacquer()]),
+        ("everything", vec![lacquer(), house(), gold(), oil(), material("clay", &[diffuse(0.3)])]),
+    ]
+}
+
+fn axis(quantity: &str, min: f64, max: f64, size: u32, mapping: Mapping) -> Axis {
+    Axis { quantity: quantity.to_owned(), unit: String::new(), min, max, size, mapping }
+}
+
+/// The tables of a bake with default settings.
+pub(crate) fn tables() -> Vec<TableFace> {
+    let cos_theta = |size| axis("cos_theta", 0.0, 1.0, size, Mapping::Linear);
+    let alpha = |mapping, size| axis("alpha", 1e-3, 1.0, size, mapping);
+    let half_pi = std::f64::consts::FRAC_PI_2;
+    let face = |kind, x, y, apron, columns, tiles, format| TableFace {
+        kind,
+        layout: AtlasLayout { x, y, apron, columns, tiles },
+        format,
+    };
+    vec![
+        face(TableKind::Fresnel, cos_theta(128), None, 0, 1, 3, TexelFormat::Rgba16Float),
+        face(
+            TableKind::Distribution,
+            axis("theta_h", 0.0, half_pi, 512, Mapping::Power { exponent: 8.0 }),
+            Some(alpha(Mapping::Logarithmic, 512)),
+            0,
+            1,
+            2,
+            TexelFormat::R16Float,
+        ),
+        face(
+            TableKind::Fgd,
+            axis("cos_theta", 0.0, 1.0, 32, Mapping::Power { exponent: 2.0 }),
+            Some(alpha(Mapping::Linear, 32)),
+            0,
+            4,
+            6,
+            TexelFormat::Rgba16Float,
+        ),
+        face(TableKind::Phase, axis("s", 0.0, 1.0, 256, Mapping::Linear), None, 0, 1, 1, TexelFormat::Rgba16Float),
+        face(
+            TableKind::Thickness,
+            axis("u", 0.0, 1.0, 256, Mapping::Periodic),
+            Some(axis("v", 0.0, 1.0, 256, Mapping::Periodic)),
+            1,
+            1,
+            1,
+            TexelFormat::Rgba8Unorm,
+        ),
+    ]
+}

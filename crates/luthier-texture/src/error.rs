@@ -1,0 +1,107 @@
+use std::borrow::Cow;
+use std::fmt;
+
+use luthier_lut::LutError;
+use thiserror::Error;
+
+use crate::{MAX_BYTES, MAX_SIDE};
+
+/// The file formats of this crate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Container {
+    /// Khronos texture container, version 2.
+    Ktx2,
+    /// OpenEXR.
+    Exr,
+    /// Portable network graphics.
+    Png,
+}
+
+impl fmt::Display for Container {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Ktx2 => "KTX2",
+            Self::Exr => "EXR",
+            Self::Png => "PNG",
+        })
+    }
+}
+
+/// Why a texture cannot be written or a file cannot be read.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum TextureError {
+    /// A side is 0 or above [`MAX_SIDE`], or the texels take more than [`MAX_BYTES`].
+    #[error("{width} x {height} texels: sides are 1 to {MAX_SIDE}, and all texels take at most {} MiB", MAX_BYTES >> 20)]
+    Size {
+        /// Texels across.
+        width: u32,
+        /// Texels down.
+        height: u32,
+    },
+    /// More or fewer values than width, height and channels ask for.
+    #[error("{found} values where {expected} are needed")]
+    Length {
+        /// Given.
+        found: usize,
+        /// Needed.
+        expected: usize,
+    },
+    /// An image with no channels or more than four.
+    #[error("{0} channels; an image has 1 to 4")]
+    Channels(u32),
+    /// A metadata entry that not every container can hold.
+    #[error("metadata `{key}`: {reason}")]
+    Metadata {
+        /// The key at fault.
+        key: String,
+        /// What is wrong.
+        reason: &'static str,
+    },
+    /// Not a file of this format, or a damaged one.
+    #[error("not a valid {container} file: {reason}")]
+    Malformed {
+        /// The format that was expected.
+        container: Container,
+        /// What is wrong.
+        reason: Cow<'static, str>,
+    },
+    /// A valid file that holds more than luthier reads.
+    #[error("{container} file with {what}, which luthier does not read")]
+    Unsupported {
+        /// The format.
+        container: Container,
+        /// What it holds.
+        what: Cow<'static, str>,
+    },
+    /// Zstandard data of a KTX2 file that does not decompress.
+    #[error("not a valid KTX2 file: damaged zstd data")]
+    Zstd(#[from] ruzstd::decoding::errors::FrameDecoderError),
+    /// A PNG file that does not decode.
+    #[error("not a valid PNG file")]
+    PngDecode(#[from] ::png::DecodingError),
+    /// The PNG encoder refused.
+    #[error("cannot encode PNG")]
+    PngEncode(#[from] ::png::EncodingError),
+    /// A grey-scale map was expected.
+    #[error("the image has colours; a map needs equal red, green and blue, as at ({x}, {y}) they are not")]
+    NotGrey {
+        /// Column of the first coloured pixel, 0-based.
+        x: u32,
+        /// Its row.
+        y: u32,
+    },
+    /// Texels that do not fit their format.
+    #[error(transparent)]
+    Lut(#[from] LutError),
+}
+
+impl TextureError {
+    pub(crate) fn malformed(container: Container, reason: impl Into<Cow<'static, str>>) -> Self {
+        Self::Malformed { container, reason: reason.into() }
+    }
+
+    pub(crate) fn unsupported(container: Container, what: impl Into<Cow<'static, str>>) -> Self {
+        Self::Unsupported { container, what: what.into() }
+    }
+}

@@ -1,0 +1,217 @@
+//! KTX2 (Khronos KTX file format 2.0): one level, zstd-supercompressed, with a basic data format descriptor.
+
+use ::ktx2::dfd::{Basic, Block};
+use ::ktx2::{Format, Header, Index, LevelIndex, ParseError, SupercompressionScheme};
+use luthier_lut::TexelFormat;
+
+use crate::error::Container;
+use crate::limits::checked_bytes;
+use crate::metadata::is_reserved;
+use crate::{Metadata, Texture, TextureError, metadata, zstd};
+
+/// Value of the `KTXwriter` entry.
+const WRITER: &str = concat!("luthier ", env!("CARGO_PKG_VERSION"));
+
+/// Most bytes of key/value data that are read.
+const MAX_METADATA_BYTES: u32 = 16 << 20;
+
+/// Bytes of the descriptor section that may differ from ours without changing what the texels mean: colour primaries,
+/// alpha flags, and the plane sizes, which some writers leave 0 under supercompression.
+const FREE_DFD_BYTES: [std::ops::Range<usize>; 3] = [13..14, 15..16, 20..28];
+
+/// A KTX2 file of a texture: header, level index, descriptor, key/value data sorted by key, zstd texels.
+///
+/// # Errors
+/// [`TextureError::Size`], [`TextureError::Lut`] when the bytes do not fit the size, [`TextureError::Metadata`].
+pub fn encode(texture: &Texture) -> Result<Vec<u8>, TextureError> {
+    let expected = checked_bytes(texture.width, texture.height, texture.format.texel_bytes())?;
+    if texture.bytes.len() != expected {
+        return Err(TextureError::Length { found: texture.bytes.len(), expected });
+    }
+    metadata::check(&texture.metadata)?;
+
+    let (descriptor, type_size) = descriptor_section(texture.format)?;
+    let key_values = key_value_section(&texture.metadata)?;
+    let texels = zstd::compress(&texture.bytes)?;
+
+    // Sections follow each other without gaps: descriptor and key/value entries are multiples of 4 bytes, and
+    // supercompressed levels need no alignment.
+    let descriptor_at = Header::LENGTH + LevelIndex::LENGTH;
+    let key_values_at = descriptor_at + descriptor.len();
+    let texels_at = key_values_at + key_values.len();
+    let header = Header {
+        format: Some(vulkan_format(texture.format)),
+        type_size,
+        pixel_width: texture.width,
+        pixel_height: texture.height,
+        pixel_depth: 0,
+        layer_count: 0,
+        face_count: 1,
+        level_count: 1,
+        supercompression_scheme: Some(SupercompressionScheme::Zstandard),
+        index: Index {
+            dfd_byte_offset: descriptor_at as u32,
+            dfd_byte_length: descriptor.len() as u32,
+            kvd_byte_offset: key_values_at as u32,
+            kvd_byte_length: key_values.len() as u32,
+            sgd_byte_offset: 0,
+            sgd_byte_length: 0,
+        },
+    };
+    let level = LevelIndex {
+        byte_offset: texels_at as u64,
+        byte_length: texels.len() as u64,
+        uncompressed_byte_length: texture.bytes.len() as u64,
+    };
+    Ok([&header.as_bytes(), level.as_bytes().as_slice(), &descriptor, &key_values, &texels].concat())
+}
+
+/// Reads a KTX2 file of the shape that [`encode`] writes, with zstd or no supercompression. Keys that the KTX
+/// specification reserves (`KTXwriter`) are left out of the metadata.
+///
+/// # Errors
+/// [`TextureError::Malformed`] and [`TextureError::Zstd`] for damaged files, [`TextureError::Unsupported`] for other
+/// formats and shapes, [`TextureError::Size`].
+pub fn decode(file: &[u8]) -> Result<Texture, TextureError> {
+    let fixed = file.first_chunk().ok_or_else(|| malformed("it ends within the header"))?;
+    let header = Header::from_bytes(fixed).map_err(|error| {
+        malformed(match error {
+            ParseError::BadMagic => "it does not begin with the KTX 2.0 identifier",
+            ParseError::ZeroWidth => "the width is 0",
+            ParseError::ZeroFaceCount => "there are 0 faces",
+            _ => "the header does not parse",
+        })
+    })?;
+    let format = texel_format(&header)?;
+    check_shape(&header)?;
+    let expected = checked_bytes(header.pixel_width, header.pixel_height, format.texel_bytes())?;
+
+    let index = header.index;
+    let descriptor = section(file, index.dfd_byte_offset.into(), index.dfd_byte_length.into())?;
+    if !describes(descriptor, &descriptor_section(format)?.0) {
+        return Err(malformed("the data format descriptor contradicts the format"));
+    }
+    if index.kvd_byte_length > MAX_METADATA_BYTES {
+        return Err(malformed("the key/value data are too long"));
+    }
+    let metadata = read_key_values(section(file, index.kvd_byte_offset.into(), index.kvd_byte_length.into())?)?;
+
+    let level = section(file, Header::LENGTH as u64, LevelIndex::LENGTH as u64)?;
+    let level = LevelIndex::from_bytes(level.first_chunk().ok_or_else(|| malformed("the level index is missing"))?);
+    if level.uncompressed_byte_length != expected as u64 {
+        return Err(malformed("the level has another length than its size and format need"));
+    }
+    let stored = section(file, level.byte_offset, level.byte_length)?;
+    let bytes = match header.supercompression_scheme {
+        None if stored.len() == expected => stored.to_vec(),
+        None => return Err(malformed("the level has another length than its size and format need")),
+        Some(SupercompressionScheme::Zstandard) => zstd::decompress(stored, expected)?,
+        Some(other) => return Err(unsupported(format!("{other:?} supercompression"))),
+    };
+    Ok(Texture { format, width: header.pixel_width, height: header.pixel_height, bytes, metadata })
+}
+
+fn malformed(reason: &'static str) -> TextureError {
+    TextureError::malformed(Container::Ktx2, reason)
+}
+
+fn unsupported(what: impl Into<std::borrow::Cow<'static, str>>) -> TextureError {
+    TextureError::unsupported(Container::Ktx2, what)
+}
+
+fn vulkan_format(format: TexelFormat) -> Format {
+    match format {
+        TexelFormat::R16Float => Format::R16_SFLOAT,
+        TexelFormat::R32Float => Format::R32_SFLOAT,
+        TexelFormat::Rgba8Unorm => Format::R8G8B8A8_UNORM,
+        TexelFormat::Rgba16Float => Format::R16G16B16A16_SFLOAT,
+        TexelFormat::Rgba32Float => Format::R32G32B32A32_SFLOAT,
+    }
+}
+
+fn texel_format(header: &Header) -> Result<TexelFormat, TextureError> {
+    let found = TexelFormat::ALL.into_iter().find(|&format| Some(vulkan_format(format)) == header.format);
+    found.ok_or_else(|| match header.format {
+        Some(format) => unsupported(format!("{format:?} texels")),
+        None => unsupported("texels of undefined format"),
+    })
+}
+
+fn check_shape(header: &Header) -> Result<(), TextureError> {
+    let Header { pixel_height, pixel_depth, layer_count, face_count, level_count, .. } = *header;
+    if pixel_height == 0 || pixel_depth != 0 {
+        Err(unsupported("a texture that is not two-dimensional"))
+    } else if layer_count != 0 || face_count != 1 || level_count > 1 {
+        Err(unsupported("several layers, faces or levels"))
+    } else {
+        Ok(())
+    }
+}
+
+/// The descriptor section (its length, then one basic block) and the size that the header states for endian conversion.
+fn descriptor_section(format: TexelFormat) -> Result<(Vec<u8>, u32), TextureError> {
+    let (basic, type_size) = Basic::from_format(vulkan_format(format))
+        .map_err(|_| unsupported(format!("{format} texels, for which there is no descriptor")))?;
+    let block = Block::Basic(basic).to_vec();
+    let length = (block.len() + 4) as u32;
+    Ok(([length.to_le_bytes().as_slice(), &block].concat(), type_size))
+}
+
+/// Whether two descriptor sections mean the same texels.
+fn describes(found: &[u8], expected: &[u8]) -> bool {
+    let free = |i: usize| FREE_DFD_BYTES.iter().any(|range| range.contains(&i));
+    found.len() == expected.len() && found.iter().zip(expected).enumerate().all(|(i, (a, b))| a == b || free(i))
+}
+
+/// Entries in the order of their keys' code points, as section 3.11 of the specification demands: length, key, NUL,
+/// value, NUL, padding to 4 bytes.
+fn key_value_section(metadata: &Metadata) -> Result<Vec<u8>, TextureError> {
+    let mut entries: Vec<(&str, &str)> = metadata.iter().map(|(key, value)| (key.as_str(), value.as_str())).collect();
+    entries.push(("KTXwriter", WRITER));
+    entries.sort_unstable();
+    let mut section = Vec::new();
+    for (key, value) in entries {
+        section.extend_from_slice(&((key.len() + value.len() + 2) as u32).to_le_bytes());
+        for text in [key, value] {
+            section.extend_from_slice(text.as_bytes());
+            section.push(0);
+        }
+        section.resize(section.len().next_multiple_of(4), 0);
+    }
+    if section.len() <= MAX_METADATA_BYTES as usize {
+        Ok(section)
+    } else {
+        Err(TextureError::Metadata { key: "KTXwriter".into(), reason: "all entries together take more than 16 MiB" })
+    }
+}
+
+fn read_key_values(mut section: &[u8]) -> Result<Metadata, TextureError> {
+    let cut = || malformed("a key/value entry is cut off");
+    let mut metadata = Metadata::new();
+    while let Some((length, rest)) = section.split_first_chunk() {
+        let length = u32::from_le_bytes(*length) as usize;
+        let entry = rest.get(..length).ok_or_else(cut)?;
+        section = rest.get(length.next_multiple_of(4)..).unwrap_or_default();
+
+        let key_end = entry.iter().position(|&b| b == 0).ok_or_else(|| malformed("a key does not end"))?;
+        let text = |bytes| std::str::from_utf8(bytes).map_err(|_| malformed("a key or value is not UTF-8"));
+        let key = text(&entry[..key_end])?;
+        let value = &entry[key_end + 1..];
+        if key == "KTXorientation" && !value.starts_with(b"rd") {
+            return Err(unsupported("rows from the bottom or columns from the right"));
+        }
+        if !is_reserved(key) {
+            let value = text(value.strip_suffix(&[0]).unwrap_or(value))?;
+            metadata.push((key.to_owned(), value.to_owned()));
+        }
+    }
+    if section.is_empty() { Ok(metadata) } else { Err(cut()) }
+}
+
+fn section(file: &[u8], offset: u64, length: u64) -> Result<&[u8], TextureError> {
+    let range = usize::try_from(offset).ok().zip(offset.checked_add(length).and_then(|end| usize::try_from(end).ok()));
+    range.and_then(|(start, end)| file.get(start..end)).ok_or_else(|| malformed("a section lies outside the file"))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,26 @@
+//! Containers: KTX2 for the texels that ship, EXR for the unquantised truth, PNG to look at. The bytes of a file depend
+//! on its content only; nothing here reads a clock or starts a thread.
+//!
+//! Every reader takes untrusted bytes: sizes are checked against [`MAX_SIDE`] and [`MAX_BYTES`] before anything is
+//! allocated for them, and memory grows with the data found rather than with the data promised.
+//!
+//! Simplifications: textures are two-dimensional with one level, one layer and one face; EXR files are single-part
+//! scan-line images of 32-bit floats.
+//!
+//! Out of scope: paths and files (callers hand over and receive bytes), block compression, other people's EXR files
+//! beyond the shape above.
+
+mod error;
+pub mod exr;
+pub mod ktx2;
+mod limits;
+mod metadata;
+pub mod png;
+mod srgb;
+mod texture;
+mod zstd;
+
+pub use error::{Container, TextureError};
+pub use limits::{MAX_BYTES, MAX_SIDE};
+pub use metadata::Metadata;
+pub use texture::Texture;

@@ -1,0 +1,54 @@
+use crate::TextureError;
+
+/// What a file says about itself: key and value, in order. The same entries can be written to every container, so keys
+/// are 1 to 64 ASCII letters, digits, `.`, `_` and `-`, distinct, and do not begin with `KTX` or `ktx`; values hold no
+/// NUL and are at most 1 MiB.
+pub type Metadata = Vec<(String, String)>;
+
+/// PNG allows 79 bytes; this leaves room for a prefix.
+const MAX_KEY_BYTES: usize = 64;
+const MAX_VALUE_BYTES: usize = 1 << 20;
+
+/// Whether a key belongs to the KTX specification (section 3.11.1 reserves the prefix).
+pub(crate) fn is_reserved(key: &str) -> bool {
+    key.starts_with("KTX") || key.starts_with("ktx")
+}
+
+/// Checks the rules of [`Metadata`].
+pub(crate) fn check(metadata: &[(String, String)]) -> Result<(), TextureError> {
+    let plain = |key: &str| key.bytes().all(|b| b.is_ascii_alphanumeric() || b".-_".contains(&b));
+    for (i, (key, value)) in metadata.iter().enumerate() {
+        let reason = if key.is_empty() || key.len() > MAX_KEY_BYTES || !plain(key) {
+            "a key is 1 to 64 ASCII letters, digits, `.`, `_` or `-`"
+        } else if is_reserved(key) {
+            "keys that begin with KTX are reserved by that format"
+        } else if metadata[..i].iter().any(|(earlier, _)| earlier == key) {
+            "the key appears twice"
+        } else if value.contains('\0') {
+            "a value cannot hold NUL"
+        } else if value.len() > MAX_VALUE_BYTES {
+            "a value is at most 1 MiB"
+        } else {
+            continue;
+        };
+        return Err(TextureError::Metadata { key: key.clone(), reason });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_that_some_container_cannot_hold_are_refused() {
+        let entry = |key: &str, value: &str| (key.to_owned(), value.to_owned());
+        assert!(check(&[entry("model", "Smith, α = 0.5"), entry("input-hash", "")]).is_ok());
+        for key in ["", "two words", "größe", "KTXwriter", "ktxfoo", &"x".repeat(65)] {
+            assert!(check(&[entry(key, "v")]).is_err(), "{key}");
+        }
+        assert!(check(&[entry("a", "1"), entry("a", "2")]).is_err());
+        assert!(check(&[entry("a", "1\0")]).is_err());
+        assert!(check(&[entry("a", &"x".repeat(MAX_VALUE_BYTES + 1))]).is_err());
+    }
+}

@@ -1,0 +1,97 @@
+mod fixtures;
+
+use proptest::prelude::*;
+
+use super::*;
+use fixtures::{GREY_2, GREY_16, GREY_ALPHA, PALETTE};
+
+fn colours(width: u32, height: u32) -> Vec<u8> {
+    (0..width * height * 3).map(|i| (i * 37 + i * i / 5) as u8).collect()
+}
+
+#[test]
+fn rgb_survives() {
+    for (width, height) in [(1, 1), (128, 1), (33, 20)] {
+        let rgb8 = colours(width, height);
+        let image = decode(&encode_rgb(width, height, &rgb8, &[]).unwrap()).unwrap();
+        assert_eq!((image.width, image.height, image.channels), (width, height, 4));
+        for (texel, rgb) in image.texels().zip(rgb8.chunks_exact(3)) {
+            assert_eq!([texel[0], texel[1], texel[2]], [rgb[0], rgb[1], rgb[2]].map(|v| f32::from(v) / 255.0));
+            assert_eq!(texel[3], 1.0);
+        }
+    }
+}
+
+#[test]
+fn metadata_are_text_chunks() {
+    let metadata = [("model".to_owned(), "Fresnel".to_owned()), ("author".to_owned(), "José".to_owned())];
+    let file = encode_rgb(1, 1, &[1, 2, 3], &metadata).unwrap();
+    let has = |chunk: &[u8]| file.windows(chunk.len()).any(|window| window == chunk);
+    assert!(has(b"tEXtmodel\0Fresnel"));
+    assert!(has("iTXtauthor\0\0\0\0\0José".as_bytes()));
+    assert!(has(b"sRGB\x01"));
+}
+
+#[test]
+fn linear_images_are_encoded_and_clipped() {
+    let rgba = Image { width: 2, height: 1, channels: 4, data: vec![0.5, 2.0, -1.0, 0.1, 0.0, 1.0, 0.215_860_5, 0.0] };
+    let found = decode(&encode_image(&rgba).unwrap()).unwrap();
+    let codes: Vec<f32> = found.data.iter().map(|v| v * 255.0).collect();
+    assert_eq!(codes, [188.0, 255.0, 0.0, 255.0, 0.0, 255.0, 128.0, 255.0]);
+
+    let grey = Image { width: 1, height: 1, channels: 1, data: vec![0.5] };
+    let found = decode_gray(&encode_image(&grey).unwrap()).unwrap();
+    assert_eq!(found.data, [188.0 / 255.0]);
+}
+
+#[test]
+fn maps_of_every_depth_are_read() {
+    let grey_16 = decode_gray(GREY_16).unwrap();
+    assert_eq!((grey_16.width, grey_16.height, grey_16.channels), (2, 2, 1));
+    assert_eq!(grey_16.data, [0.0, 1.0 / 65535.0, 32768.0 / 65535.0, 1.0]);
+    assert_eq!(decode_gray(GREY_2).unwrap().data, [0.0, 85.0, 170.0, 255.0].map(|v| v / 255.0));
+    assert_eq!(decode_gray(GREY_ALPHA).unwrap().data, [51.0 / 255.0]);
+    assert!(matches!(decode_gray(PALETTE), Err(TextureError::NotGrey { x: 1, y: 0 })));
+    assert_eq!(decode(PALETTE).unwrap().data, [0.4, 0.4, 0.4, 1.0, 1.0, 0.0, 0.2, 1.0]);
+    assert_eq!(decode(GREY_ALPHA).unwrap().data, [0.2, 0.2, 0.2, 0.8]);
+}
+
+#[test]
+fn unusable_input_is_refused() {
+    assert!(matches!(encode_rgb(2, 2, &[0; 11], &[]), Err(TextureError::Length { found: 11, expected: 12 })));
+    assert!(matches!(encode_rgb(0, 2, &[], &[]), Err(TextureError::Size { .. })));
+    assert!(matches!(decode(b"GIF89a"), Err(TextureError::PngDecode(_))));
+}
+
+#[test]
+fn a_promise_that_the_file_cannot_keep_is_refused() {
+    // GREY_16 with 8192 x 8192 in its header, checksum by Python's zlib.crc32.
+    let mut file = GREY_16.to_vec();
+    file[16..24].copy_from_slice(&[0, 0, 32, 0, 0, 0, 32, 0]);
+    file[29..33].copy_from_slice(&[0x7, 0x51, 0x49, 0xc6]);
+    assert!(matches!(decode_gray(&file), Err(TextureError::Malformed { .. })));
+    assert!(matches!(decode(&file), Err(TextureError::Size { .. })));
+}
+
+proptest! {
+    #[test]
+    fn truncated_files_are_errors(keep in 0.0..1.0f64) {
+        let file = encode_rgb(20, 30, &colours(20, 30), &[]).unwrap();
+        // The IEND chunk, the last 12 bytes, adds no pixels.
+        prop_assert!(decode(&file[..(keep * (file.len() - 12) as f64) as usize]).is_err());
+    }
+
+    #[test]
+    fn damaged_files_never_panic(damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8)) {
+        for source in [encode_rgb(20, 30, &colours(20, 30), &[]).unwrap(), GREY_2.to_vec(), PALETTE.to_vec()] {
+            let mut file = source;
+            for (index, byte) in &damage {
+                let at = index.index(file.len());
+                file[at] = *byte;
+            }
+            if let Ok(image) = decode(&file) {
+                prop_assert_eq!(image.data.len() as u32, image.width * image.height * 4);
+            }
+        }
+    }
+}
