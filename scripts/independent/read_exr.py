@@ -49,7 +49,7 @@ class Table:
         planes = part.channels()
         names = {1: "Y", 2: "YA", 3: "RGB", 4: "RGBA"}[len(planes)]
         self.values = np.stack([planes[name].pixels for name in names], axis=-1)
-        self.attributes = {k: v for k, v in part.header().items() if k.startswith("luthier.")}
+        self.metadata = json.loads(part.header().get("luthier", "{}"))
 
     def nodes(self, which):
         """The axis values at the nodes of axis "x" or "y"."""

@@ -1,6 +1,6 @@
 //! From tiles to atlases.
 
-use luthier_lut::{Atlas, AtlasLayout, ColorMode, Image, LayerRecord, TableKind, Tile};
+use luthier_lut::{Atlas, AtlasLayout, Axis, ColorMode, Image, LayerRecord, TableKind, TexelFormat, Tile};
 use luthier_material::Material;
 
 use crate::BakeError;
@@ -26,17 +26,42 @@ pub struct BakedMaterial {
     pub records: Vec<LayerRecord>,
 }
 
-/// Widest texture that atlases of several columns are laid out for; any device of the last decade has it.
-const MAX_WIDTH: u32 = 2048;
+/// What a bake would consist of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outline {
+    /// Kind, layout and texel format of each table, in binding order.
+    pub tables: Vec<(TableKind, AtlasLayout, TexelFormat)>,
+    /// Each material, in the order given.
+    pub materials: Vec<BakedMaterial>,
+}
 
-/// Tallest texture of one column.
-const MAX_HEIGHT: u32 = 2048;
+/// Longest side that textures are laid out for while tiles fit: any device of the last decade has it.
+const MAX_SIDE: u32 = 2048;
+
+/// What a bake of these materials would consist of, without computing it: each material with the tiles that serve it, and the
+/// layout and texel format of each table, in binding order.
+///
+/// # Errors
+/// See [`BakeError`].
+pub fn outline(materials: &[Material], read_image: ImageReader<'_>) -> Result<Outline, BakeError> {
+    let Plan { settings, tiles, records, .. } = plan(materials, read_image)?;
+    let tables =
+        used(&tiles).map(|(kind, tiles)| (kind, layout(kind, tiles, &settings), format(kind, &settings))).collect();
+    Ok(Outline { tables, materials: baked_materials(materials, records) })
+}
 
 /// Bakes all tables of a set of materials. `read_image` fetches thickness maps.
 ///
 /// # Errors
 /// See [`BakeError`]. Nothing depends on the number of threads of the current rayon pool but the time it takes.
 pub fn bake(materials: &[Material], read_image: ImageReader<'_>, observer: &dyn Observer) -> Result<Bake, BakeError> {
+    let Plan { settings, graph, tiles, records } = plan(materials, read_image)?;
+    let results = graph.run(observer);
+    let atlases = used(&tiles).map(|(kind, tiles)| atlas(kind, tiles, &settings, &results)).collect();
+    Ok(Bake { atlases, materials: baked_materials(materials, records) })
+}
+
+fn plan(materials: &[Material], read_image: ImageReader<'_>) -> Result<Plan, BakeError> {
     if materials.is_empty() {
         return Err(BakeError::Empty);
     }
@@ -49,36 +74,52 @@ pub fn bake(materials: &[Material], read_image: ImageReader<'_>, observer: &dyn 
             });
         }
     }
-    let Plan { settings, graph, tiles, records } = Plan::new(materials, read_image)?;
-    let results = graph.run(observer);
-    let atlases = TableKind::ALL
-        .into_iter()
-        .zip(&tiles)
-        .filter(|(_, tiles)| !tiles.tiles.is_empty())
-        .map(|(kind, tiles)| atlas(kind, tiles, &settings, &results))
-        .collect();
-    let materials =
-        materials.iter().zip(records).map(|(m, records)| BakedMaterial { color: color_mode(m), records }).collect();
-    Ok(Bake { atlases, materials })
+    Plan::new(materials, read_image)
 }
 
-fn atlas(kind: TableKind, tiles: &Tiles, settings: &Settings, results: &Results) -> Atlas {
-    let (x, y, format) = match kind {
-        TableKind::Fresnel => (&settings.fresnel.0, None, settings.fresnel.1),
-        TableKind::Distribution => {
-            (&settings.distribution.0[0], Some(&settings.distribution.0[1]), settings.distribution.1)
-        }
-        TableKind::Fgd => (&settings.fgd.0[0], Some(&settings.fgd.0[1]), settings.fgd.1),
-        TableKind::Phase => (&settings.phase.0, None, settings.phase.1),
-        TableKind::Thickness => (&settings.thickness.0[0], Some(&settings.thickness.0[1]), settings.thickness.1),
-    };
+fn used(tiles: &[Tiles; 5]) -> impl Iterator<Item = (TableKind, &Tiles)> {
+    TableKind::ALL.into_iter().zip(tiles).filter(|(_, tiles)| !tiles.tiles.is_empty())
+}
+
+fn baked_materials(materials: &[Material], records: Vec<Vec<LayerRecord>>) -> Vec<BakedMaterial> {
+    materials.iter().zip(records).map(|(m, records)| BakedMaterial { color: color_mode(m), records }).collect()
+}
+
+fn axes(kind: TableKind, settings: &Settings) -> (&Axis, Option<&Axis>) {
+    match kind {
+        TableKind::Fresnel => (&settings.fresnel.0, None),
+        TableKind::Distribution => (&settings.distribution.0[0], Some(&settings.distribution.0[1])),
+        TableKind::Fgd => (&settings.fgd.0[0], Some(&settings.fgd.0[1])),
+        TableKind::Phase => (&settings.phase.0, None),
+        TableKind::Thickness => (&settings.thickness.0[0], Some(&settings.thickness.0[1])),
+    }
+}
+
+fn format(kind: TableKind, settings: &Settings) -> TexelFormat {
+    match kind {
+        TableKind::Fresnel => settings.fresnel.1,
+        TableKind::Distribution => settings.distribution.1,
+        TableKind::Fgd => settings.fgd.1,
+        TableKind::Phase => settings.phase.1,
+        TableKind::Thickness => settings.thickness.1,
+    }
+}
+
+/// Tiles in one column while they fit, else in as many as it takes.
+fn layout(kind: TableKind, tiles: &Tiles, settings: &Settings) -> AtlasLayout {
+    let (x, y) = axes(kind, settings);
     let apron = u32::from(kind == TableKind::Thickness);
     let count = tiles.tiles.len() as u32;
     let mut layout = AtlasLayout { x: x.clone(), y: y.cloned(), apron, columns: 1, tiles: count };
-    let [tile_width, tile_height] = layout.tile_size();
-    let rows = (MAX_HEIGHT / tile_height).max(1);
-    layout.columns = count.div_ceil(rows).min((MAX_WIDTH / tile_width).max(1));
+    let [width, height] = layout.tile_size();
+    let rows = (MAX_SIDE / height).max(1);
+    layout.columns = count.div_ceil(rows).min((MAX_SIDE / width).max(1));
+    layout
+}
 
+fn atlas(kind: TableKind, tiles: &Tiles, settings: &Settings, results: &Results) -> Atlas {
+    let layout = layout(kind, tiles, settings);
+    let format = format(kind, settings);
     let channels = tiles.tiles.first().map_or(1, |(_, key)| results.tile(*key).truth.channels);
     let [width, height] = layout.size();
     let mut truth = Image::zeros(width, height, channels);

@@ -115,12 +115,6 @@ impl FgdJob {
             |u| vec![x.decode(u[0]), y.decode(u[1])],
         );
         // The crossed part has an error of its own; the worst of both may meet.
-        println!(
-            "PROBE {:?} scan {:.2e} crossed {:.2e}",
-            self.distribution,
-            error.max_abs_err,
-            crossed.map_or(0.0, |c| c.max_abs_err)
-        );
         error.max_abs_err += crossed.map_or(0.0, |c| c.max_abs_err);
         let model = format!(
             "directional albedo with all bounces, height-correlated Smith, {}; errors for cos_theta >= {DOMAIN_COS_THETA}, \

@@ -26,7 +26,7 @@ mod settings;
 mod smooth;
 mod thickness;
 
-pub use assemble::{Bake, BakedMaterial, bake};
+pub use assemble::{Bake, BakedMaterial, Outline, bake, outline};
 pub use error::BakeError;
 pub use graph::{Observer, Silent};
 pub use job::{JobKind, Key};

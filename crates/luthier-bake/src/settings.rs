@@ -66,7 +66,7 @@ impl Settings {
 
         let size = ask.one("bake.phase.size", |b| b.phase.size)?.unwrap_or(256);
         let phase = (
-            axis("normalised_thickness", "", [0.0, 1.0], size, Mapping::Linear),
+            axis("s", "", [0.0, 1.0], size, Mapping::Linear),
             ask.format("bake.phase.format", |b| b.phase.format, TexelFormat::Rgba16Float)?,
         );
 

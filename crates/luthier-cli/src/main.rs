@@ -1,1 +1,37 @@
-fn main() {}
+//! The `luthier` command: sole owner of paths, standard streams and exit codes.
+
+mod artefacts;
+mod bake_files;
+mod cli;
+#[cfg(feature = "gpu")]
+mod device;
+mod failure;
+mod materials;
+mod output;
+mod progress;
+mod staging;
+mod verb;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::cli::{Cli, Verb};
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let outcome = match &cli.verb {
+        Verb::Bake(options) => verb::bake::run(options),
+        Verb::Check(options) => verb::check::run(options),
+        Verb::Report(options) => verb::report::run(options),
+        #[cfg(feature = "gpu")]
+        Verb::Preview(options) => verb::preview::run(options),
+        Verb::Shader(options) => verb::shader::run(options),
+        Verb::Ior(options) => verb::ior::run(options),
+        Verb::Schema => verb::schema::run(),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.exit(),
+    }
+}

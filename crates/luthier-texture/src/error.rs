@@ -77,12 +77,18 @@ pub enum TextureError {
     /// Zstandard data of a KTX2 file that does not decompress.
     #[error("not a valid KTX2 file: damaged zstd data")]
     Zstd(#[from] ruzstd::decoding::errors::FrameDecoderError),
+    /// An EXR file that does not decode.
+    #[error("not a valid EXR file")]
+    ExrDecode(#[source] ::exr::error::Error),
+    /// The EXR encoder refused.
+    #[error("cannot encode EXR")]
+    ExrEncode(#[source] ::exr::error::Error),
     /// A PNG file that does not decode.
     #[error("not a valid PNG file")]
-    PngDecode(#[from] ::png::DecodingError),
+    PngDecode(#[source] ::image::ImageError),
     /// The PNG encoder refused.
     #[error("cannot encode PNG")]
-    PngEncode(#[from] ::png::EncodingError),
+    PngEncode(#[source] ::image::ImageError),
     /// A grey-scale map was expected.
     #[error("the image has colours; a map needs equal red, green and blue, as at ({x}, {y}) they are not")]
     NotGrey {

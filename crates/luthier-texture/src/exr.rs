@@ -1,69 +1,174 @@
-//! OpenEXR: single-part scan-line images of 32-bit floats, ZIP-compressed (lossless).
+//! OpenEXR: single-part scan-line images of 32-bit floats, ZIP-compressed (lossless), through the `exr` crate.
 //!
-//! Written here rather than through the `exr` crate, which keeps custom attributes in a hash map and so writes them in
-//! another order each time, and which allocates by the header when it reads. That crate is the oracle of the tests.
-//! Layout: "OpenEXR File Layout", openexr.com, version 2.
+//! That crate keeps custom attributes in a hash map, whose order differs from run to run. So that the bytes do not, all
+//! metadata are one attribute: `luthier`, a string that holds a JSON object of strings, sorted by key.
 
-mod blocks;
-mod header;
+use std::collections::BTreeMap;
+use std::io::Cursor;
 
+use ::exr::block;
+use ::exr::block::UncompressedBlock;
+use ::exr::block::reader::ChunksReader;
+use ::exr::error::Error;
+use ::exr::meta::attribute::{AttributeValue, ChannelList, Compression, LineOrder, SampleType, Text};
+use ::exr::meta::header::{Header, LayerAttributes};
+use ::exr::meta::{BlockDescription, MetaData};
+use ::exr::prelude::{
+    AnyChannel, AnyChannels, Blocks, Encoding, FlatSamples, Image as ExrImage, Layer, SmallVec, Vec2, WritableImage,
+};
 use luthier_lut::Image;
 
 use crate::error::Container;
 use crate::limits::{check_image, checked_bytes};
 use crate::{Metadata, TextureError, metadata};
-use blocks::{Compression, ImageShape};
-use header::Header;
 
-/// What the names of metadata attributes begin with.
-const PREFIX: &str = "luthier.";
+/// Name of the attribute that holds the metadata.
+const ATTRIBUTE: &str = "luthier";
+/// Key whose value is also written to the standard attribute `software`.
+const GENERATOR: &str = "generator";
 
 /// An EXR file of an image, bit-exact. Channels are named by their count: Y; Y, A; R, G, B; R, G, B, A. Metadata become
-/// string attributes named `luthier.` and the key, in the given order.
+/// the JSON object described above; the value of `generator` is also the standard attribute `software`.
 ///
 /// # Errors
-/// [`TextureError::Size`], [`TextureError::Channels`], [`TextureError::Length`], [`TextureError::Metadata`].
+/// [`TextureError::Size`], [`TextureError::Channels`], [`TextureError::Length`], [`TextureError::Metadata`],
+/// [`TextureError::ExrEncode`].
 pub fn encode(image: &Image, metadata: &Metadata) -> Result<Vec<u8>, TextureError> {
     check_image(image)?;
     metadata::check(metadata)?;
-    let shape = ImageShape { width: image.width, height: image.height, channels: image.channels };
-    let mut file = header::write(shape, Compression::Zip, metadata);
+    let channels = image.channels as usize;
+    let plane = |c: usize| FlatSamples::F32(image.data.iter().skip(c).step_by(channels).copied().collect());
+    let planes = channel_names(channels).iter().enumerate().map(|(c, &name)| AnyChannel::new(name, plane(c)));
 
-    let blocks = blocks::compress(image, shape);
-    let mut offset = (file.len() + 8 * blocks.len()) as u64;
-    for block in &blocks {
-        file.extend_from_slice(&offset.to_le_bytes());
-        offset += block.len() as u64;
+    let mut attributes = LayerAttributes::default();
+    if !metadata.is_empty() {
+        let object: BTreeMap<&str, &str> = metadata.iter().map(|(key, value)| (key.as_str(), value.as_str())).collect();
+        let json = serde_json::to_string(&object)
+            .map_err(|_| TextureError::Metadata { key: ATTRIBUTE.into(), reason: "it cannot be written as JSON" })?;
+        attributes.other.insert(Text::from(ATTRIBUTE), AttributeValue::Text(utf8(&json)));
+        attributes.software_name = object.get(GENERATOR).map(|name| utf8(name));
     }
-    file.extend(blocks.into_iter().flatten());
-    Ok(file)
+    let encoding =
+        Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
+    let size = (image.width as usize, image.height as usize);
+    let layer = Layer::new(size, attributes, encoding, AnyChannels::sort(planes.collect()));
+
+    let mut file = Cursor::new(Vec::new());
+    ExrImage::from_layer(layer).write().non_parallel().to_buffered(&mut file).map_err(TextureError::ExrEncode)?;
+    Ok(file.into_inner())
 }
 
-/// Reads an EXR file of the shape that [`encode`] writes: one part, scan lines, 32-bit float channels named as there,
-/// uncompressed or ZIP. Attributes of other makers are left out of the metadata.
+/// Reads an EXR file of the shape that [`encode`] writes: one part, scan lines from the top, 32-bit float channels named
+/// as there, uncompressed or ZIP. The metadata are sorted by key, and empty in files of other makers.
 ///
 /// # Errors
-/// [`TextureError::Malformed`] for damaged files, [`TextureError::Unsupported`] for other shapes,
-/// [`TextureError::Size`].
+/// [`TextureError::Malformed`] and [`TextureError::ExrDecode`] for damaged files, [`TextureError::Unsupported`] for
+/// other shapes, [`TextureError::Size`].
 pub fn decode(file: &[u8]) -> Result<(Image, Metadata), TextureError> {
-    let (Header { shape, top, compression, channel_order, metadata }, after_header) = header::read(file)?;
-    let ImageShape { width, height, channels } = shape;
-    let values = checked_bytes(width, height, 4 * channels)? / 4;
+    let reader = block::read(Cursor::new(file), true).map_err(read_error)?;
+    let [header] = reader.headers() else { return Err(unsupported("several parts")) };
+    let places = channel_places(&header.channels)?;
+    let (width, height, channels) = (side(header.layer_size.0), side(header.layer_size.1), places.len());
+    let values = checked_bytes(width, height, 4 * channels as u32)? / 4;
+    check_shape(header)?;
+    let metadata = read_metadata(header)?;
 
-    let count = height.div_ceil(compression.lines()) as usize;
-    let table = after_header.get(..8 * count).ok_or_else(|| malformed("it ends within the offset table"))?;
+    // Rows are appended as they come, so that memory follows the data found.
+    let row_values = width as usize * channels;
     let mut data = Vec::new();
-    for (i, offset) in table.chunks_exact(8).enumerate() {
-        let offset = offset.iter().rev().fold(0, |sum, &byte| sum << 8 | u64::from(byte));
-        let block = usize::try_from(offset).ok().and_then(|start| file.get(start..));
-        let block = block.ok_or_else(|| malformed("a block lies outside the file"))?;
-        let first_row = i as u32 * compression.lines();
-        let rows = compression.lines().min(height - first_row);
-        let part = ImageShape { height: rows, ..shape };
-        blocks::decompress(block, part, i64::from(top) + i64::from(first_row), compression, &channel_order, &mut data)?;
+    let blocks = reader.all_chunks(true).map_err(read_error)?;
+    let mut in_order = true;
+    blocks
+        .decompress_sequential(true, |meta, block| {
+            in_order &= block.index.pixel_position == Vec2(0, data.len() / row_values);
+            if in_order {
+                append_rows(&mut data, meta, &block, &places);
+            }
+            Ok(())
+        })
+        .map_err(read_error)?;
+    if !in_order {
+        return Err(unsupported("rows in another order than from the top"));
     }
-    debug_assert_eq!(data.len(), values);
-    Ok((Image { width, height, channels, data }, metadata))
+    if data.len() != values {
+        return Err(malformed("it has fewer rows than it states"));
+    }
+    Ok((Image { width, height, channels: channels as u32, data }, metadata))
+}
+
+/// Appends the rows of a block, channels interleaved; `places` are those of the file's channels in a texel.
+fn append_rows(data: &mut Vec<f32>, meta: &MetaData, block: &UncompressedBlock, places: &[usize]) {
+    let Vec2(width, height) = block.index.pixel_size;
+    let start = data.len();
+    data.resize(start + width * height * places.len(), 0.0);
+    for line in meta.headers.iter().flat_map(|header| block.lines(&header.channels)) {
+        let row = line.location.position.1 - block.index.pixel_position.1;
+        let first = start + row * width * places.len() + places[line.location.channel];
+        let texels = data[first..].iter_mut().step_by(places.len());
+        for (value, bytes) in texels.zip(line.value.as_chunks().0) {
+            *value = f32::from_ne_bytes(*bytes);
+        }
+    }
+}
+
+/// Channel names in the order of the image.
+fn channel_names(channels: usize) -> &'static [&'static str] {
+    match channels {
+        1 => &["Y"],
+        2 => &["Y", "A"],
+        3 => &["R", "G", "B"],
+        _ => &["R", "G", "B", "A"],
+    }
+}
+
+/// For each channel of the file, its place in a texel.
+fn channel_places(channels: &ChannelList) -> Result<SmallVec<[usize; 4]>, TextureError> {
+    let wanted = channel_names(channels.list.len());
+    let place = |name: &Text| wanted.iter().position(|w| name.as_slice() == w.as_bytes());
+    let places: SmallVec<[usize; 4]> = channels.list.iter().filter_map(|channel| place(&channel.name)).collect();
+    // The crate has checked that names are distinct.
+    if channels.list.len() != wanted.len() || places.len() != wanted.len() {
+        return Err(unsupported("channels other than Y, YA, RGB or RGBA"));
+    }
+    if channels.list.iter().any(|channel| channel.sample_type != SampleType::F32 || channel.sampling != Vec2(1, 1)) {
+        return Err(unsupported("channels that are subsampled or not 32-bit float"));
+    }
+    Ok(places)
+}
+
+fn check_shape(header: &Header) -> Result<(), TextureError> {
+    if header.deep || header.blocks != BlockDescription::ScanLines {
+        return Err(unsupported("tiles or deep data"));
+    }
+    match header.compression {
+        Compression::Uncompressed | Compression::ZIP1 | Compression::ZIP16 => Ok(()),
+        _ => Err(unsupported("a compression other than none and ZIP")),
+    }
+}
+
+fn read_metadata(header: &Header) -> Result<Metadata, TextureError> {
+    let Some(value) = header.own_attributes.other.get(ATTRIBUTE.as_bytes()) else { return Ok(Metadata::new()) };
+    let AttributeValue::Text(json) = value else { return Err(malformed("the attribute `luthier` is not a string")) };
+    let object: BTreeMap<String, String> = serde_json::from_slice(json.as_slice())
+        .map_err(|_| malformed("the attribute `luthier` is not a JSON object of strings"))?;
+    Ok(object.into_iter().collect())
+}
+
+/// Sides beyond `u32` become its maximum, which no limit lets pass.
+fn side(length: usize) -> u32 {
+    u32::try_from(length).unwrap_or(u32::MAX)
+}
+
+/// The crate's own constructor takes Latin-1 only; the format does not care.
+fn utf8(text: &str) -> Text {
+    Text::from_slice_unchecked(text.as_bytes())
+}
+
+fn read_error(error: Error) -> TextureError {
+    match error {
+        Error::NotSupported(what) => TextureError::unsupported(Container::Exr, what),
+        error => TextureError::ExrDecode(error),
+    }
 }
 
 fn malformed(reason: &'static str) -> TextureError {

@@ -4,6 +4,8 @@
 //! Every reader takes untrusted bytes: sizes are checked against [`MAX_SIDE`] and [`MAX_BYTES`] before anything is
 //! allocated for them, and memory grows with the data found rather than with the data promised.
 //!
+//! The codecs are those of the `ktx2`, `ruzstd`, `exr` and `image` crates.
+//!
 //! Simplifications: textures are two-dimensional with one level, one layer and one face; EXR files are single-part
 //! scan-line images of 32-bit floats.
 //!

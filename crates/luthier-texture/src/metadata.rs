@@ -1,11 +1,10 @@
 use crate::TextureError;
 
-/// What a file says about itself: key and value, in order. The same entries can be written to every container, so keys
-/// are 1 to 64 ASCII letters, digits, `.`, `_` and `-`, distinct, and do not begin with `KTX` or `ktx`; values hold no
-/// NUL and are at most 1 MiB.
+/// What a KTX2 or EXR file says about itself: key and value. Both sort the entries by key. The same entries can be
+/// written to both, so keys are 1 to 64 ASCII letters, digits, `.`, `_` and `-`, distinct, and do not begin with `KTX` or
+/// `ktx`; values hold no NUL and are at most 1 MiB.
 pub type Metadata = Vec<(String, String)>;
 
-/// PNG allows 79 bytes; this leaves room for a prefix.
 const MAX_KEY_BYTES: usize = 64;
 const MAX_VALUE_BYTES: usize = 1 << 20;
 

@@ -2,58 +2,43 @@
 
 use std::io::Cursor;
 
-use ::png::{BitDepth, ColorType, Compression, Decoder, Encoder, SrgbRenderingIntent, Transformations};
+use ::image::codecs::png::{CompressionType, FilterType, PngDecoder, PngEncoder};
+use ::image::{ExtendedColorType, ImageDecoder, ImageEncoder, Limits};
 use luthier_lut::Image;
 
 use crate::error::Container;
 use crate::limits::{check_image, checked_bytes};
-use crate::{TextureError, metadata, srgb};
+use crate::{TextureError, srgb};
 
 /// Deflate expands by at most 1032 (RFC 1951: a match of 258 bytes in two bits); a file that promises more is damaged.
 const MAX_EXPANSION: u64 = 1032;
 
-/// A PNG of sRGB pixels, three bytes each, row by row from the top. Metadata (see [`crate::Metadata`]) become text
-/// chunks in the given order: tEXt, or iTXt where they are not ASCII.
+/// What the decoder may allocate beside the pixels: rows, and the chunks that it keeps.
+const MAX_DECODER_BYTES: u64 = 16 << 20;
+
+/// A PNG of sRGB pixels, three bytes each, row by row from the top. It holds no metadata: it is only to look at.
 ///
 /// # Errors
-/// [`TextureError::Size`], [`TextureError::Length`], [`TextureError::Metadata`].
-pub fn encode_rgb(
-    width: u32,
-    height: u32,
-    rgb8: &[u8],
-    metadata: &[(String, String)],
-) -> Result<Vec<u8>, TextureError> {
+/// [`TextureError::Size`], [`TextureError::Length`], [`TextureError::PngEncode`].
+pub fn encode_rgb(width: u32, height: u32, rgb8: &[u8]) -> Result<Vec<u8>, TextureError> {
     let expected = checked_bytes(width, height, 3)?;
     if rgb8.len() != expected {
         return Err(TextureError::Length { found: rgb8.len(), expected });
     }
-    metadata::check(metadata)?;
     let mut file = Vec::new();
-    let mut encoder = Encoder::new(&mut file, width, height);
-    encoder.set_color(ColorType::Rgb);
-    encoder.set_depth(BitDepth::Eight);
-    encoder.set_compression(Compression::High);
-    encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
-    for (key, value) in metadata {
-        if value.is_ascii() {
-            encoder.add_text_chunk(key.clone(), value.clone())?;
-        } else {
-            encoder.add_itxt_chunk(key.clone(), value.clone())?;
-        }
-    }
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(rgb8)?;
-    writer.finish()?;
+    PngEncoder::new_with_quality(&mut file, CompressionType::Best, FilterType::Adaptive)
+        .write_image(rgb8, width, height, ExtendedColorType::Rgb8)
+        .map_err(TextureError::PngEncode)?;
     Ok(file)
 }
 
 /// A PNG of a linear image, sRGB-encoded and clipped to 0..=1. One and two channels become grey; alpha is left out.
 ///
 /// # Errors
-/// [`TextureError::Size`], [`TextureError::Channels`], [`TextureError::Length`].
+/// [`TextureError::Size`], [`TextureError::Channels`], [`TextureError::Length`], [`TextureError::PngEncode`].
 pub fn encode_image(image: &Image) -> Result<Vec<u8>, TextureError> {
     check_image(image)?;
-    encode_rgb(image.width, image.height, &srgb::rgb8(image), &[])
+    encode_rgb(image.width, image.height, &srgb::rgb8(image))
 }
 
 /// A map: one channel in 0..=1, the stored values over their maximum (8 or 16 bits), not linearised. Alpha is ignored;
@@ -102,31 +87,27 @@ struct Pixels {
 
 /// Reads pixels that will become an image of `channels_wanted`.
 fn read(file: &[u8], channels_wanted: u32) -> Result<Pixels, TextureError> {
-    let malformed = |reason: &'static str| TextureError::malformed(Container::Png, reason);
-    let mut decoder = Decoder::new(Cursor::new(file));
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(MAX_DECODER_BYTES);
     // Palettes, 1 to 4 bits and colour keys become 8-bit channels.
-    decoder.set_transformations(Transformations::EXPAND);
-    let mut reader = decoder.read_info()?;
-    let info = reader.info();
-    let (width, height) = (info.width, info.height);
-    let bits = u64::from(width) * u64::from(height) * info.bits_per_pixel() as u64;
-
-    let (color, depth) = reader.output_color_type();
-    let channels = color.samples();
-    checked_bytes(width, height, 4 * channels_wanted.max(channels as u32))?;
-    if bits / 8 > MAX_EXPANSION * file.len() as u64 {
-        return Err(malformed("it is too short for the size that it states"));
+    let decoder = PngDecoder::with_limits(Cursor::new(file), limits).map_err(TextureError::PngDecode)?;
+    let (width, height) = decoder.dimensions();
+    let color = decoder.color_type();
+    let channels = color.channel_count();
+    checked_bytes(width, height, 4 * channels_wanted.max(channels.into()))?;
+    // A pixel takes one bit at least.
+    if u64::from(width) * u64::from(height) / 8 > MAX_EXPANSION * file.len() as u64 {
+        return Err(TextureError::malformed(Container::Png, "it is too short for the size that it states"));
     }
-    let size = reader.output_buffer_size().ok_or(TextureError::Size { width, height })?;
+    let size = usize::try_from(decoder.total_bytes()).map_err(|_| TextureError::Size { width, height })?;
     let mut bytes = vec![0; size];
-    reader.next_frame(&mut bytes)?;
-    let values = match depth {
-        BitDepth::Sixteen => {
-            bytes.chunks_exact(2).map(|b| f32::from(u16::from_be_bytes([b[0], b[1]])) / 65535.0).collect()
-        }
-        _ => bytes.iter().map(|&b| f32::from(b) / 255.0).collect(),
+    decoder.read_image(&mut bytes).map_err(TextureError::PngDecode)?;
+    let values = if color.bytes_per_pixel() == channels {
+        bytes.iter().map(|&b| f32::from(b) / 255.0).collect()
+    } else {
+        bytes.as_chunks().0.iter().map(|&b| f32::from(u16::from_ne_bytes(b)) / 65535.0).collect()
     };
-    Ok(Pixels { width, height, channels, values })
+    Ok(Pixels { width, height, channels: channels.into(), values })
 }
 
 #[cfg(test)]

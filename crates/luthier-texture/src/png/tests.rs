@@ -13,23 +13,13 @@ fn colours(width: u32, height: u32) -> Vec<u8> {
 fn rgb_survives() {
     for (width, height) in [(1, 1), (128, 1), (33, 20)] {
         let rgb8 = colours(width, height);
-        let image = decode(&encode_rgb(width, height, &rgb8, &[]).unwrap()).unwrap();
+        let image = decode(&encode_rgb(width, height, &rgb8).unwrap()).unwrap();
         assert_eq!((image.width, image.height, image.channels), (width, height, 4));
         for (texel, rgb) in image.texels().zip(rgb8.chunks_exact(3)) {
             assert_eq!([texel[0], texel[1], texel[2]], [rgb[0], rgb[1], rgb[2]].map(|v| f32::from(v) / 255.0));
             assert_eq!(texel[3], 1.0);
         }
     }
-}
-
-#[test]
-fn metadata_are_text_chunks() {
-    let metadata = [("model".to_owned(), "Fresnel".to_owned()), ("author".to_owned(), "José".to_owned())];
-    let file = encode_rgb(1, 1, &[1, 2, 3], &metadata).unwrap();
-    let has = |chunk: &[u8]| file.windows(chunk.len()).any(|window| window == chunk);
-    assert!(has(b"tEXtmodel\0Fresnel"));
-    assert!(has("iTXtauthor\0\0\0\0\0José".as_bytes()));
-    assert!(has(b"sRGB\x01"));
 }
 
 #[test]
@@ -58,8 +48,8 @@ fn maps_of_every_depth_are_read() {
 
 #[test]
 fn unusable_input_is_refused() {
-    assert!(matches!(encode_rgb(2, 2, &[0; 11], &[]), Err(TextureError::Length { found: 11, expected: 12 })));
-    assert!(matches!(encode_rgb(0, 2, &[], &[]), Err(TextureError::Size { .. })));
+    assert!(matches!(encode_rgb(2, 2, &[0; 11]), Err(TextureError::Length { found: 11, expected: 12 })));
+    assert!(matches!(encode_rgb(0, 2, &[]), Err(TextureError::Size { .. })));
     assert!(matches!(decode(b"GIF89a"), Err(TextureError::PngDecode(_))));
 }
 
@@ -76,14 +66,14 @@ fn a_promise_that_the_file_cannot_keep_is_refused() {
 proptest! {
     #[test]
     fn truncated_files_are_errors(keep in 0.0..1.0f64) {
-        let file = encode_rgb(20, 30, &colours(20, 30), &[]).unwrap();
+        let file = encode_rgb(20, 30, &colours(20, 30)).unwrap();
         // The IEND chunk, the last 12 bytes, adds no pixels.
         prop_assert!(decode(&file[..(keep * (file.len() - 12) as f64) as usize]).is_err());
     }
 
     #[test]
     fn damaged_files_never_panic(damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8)) {
-        for source in [encode_rgb(20, 30, &colours(20, 30), &[]).unwrap(), GREY_2.to_vec(), PALETTE.to_vec()] {
+        for source in [encode_rgb(20, 30, &colours(20, 30)).unwrap(), GREY_2.to_vec(), PALETTE.to_vec()] {
             let mut file = source;
             for (index, byte) in &damage {
                 let at = index.index(file.len());

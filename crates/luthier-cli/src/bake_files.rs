@@ -1,0 +1,169 @@
+//! A bake as files: textures, truth, pictures, shaders, manifest.
+
+use luthier_bake::Bake;
+use luthier_lut::{
+    Atlas, AtlasLayout, Axis, FileEntry, Image, MANIFEST_SCHEMA, Manifest, Mapping, MaterialEntry, ShaderEntry,
+    TableEntry, TableKind,
+};
+use luthier_material::Material;
+use luthier_shader::{Form, MaterialSet, Target};
+use luthier_texture::{Metadata, Texture, exr, ktx2, png};
+use rayon::prelude::*;
+use sha2::{Digest, Sha256};
+
+use crate::failure::{Failure, Outcome};
+
+/// Program and version, as files and reports name it.
+pub(crate) const GENERATOR: &str = concat!("luthier ", env!("CARGO_PKG_VERSION"));
+
+/// The reflectance model of this version's shaders.
+const MODEL: &str = "elek";
+
+/// File name of the manifest.
+pub(crate) const MANIFEST: &str = "manifest.json";
+
+/// All files of a bake but the manifest, with their paths relative to it.
+pub(crate) struct BakeFiles {
+    pub(crate) manifest: Manifest,
+    pub(crate) files: Vec<(String, Vec<u8>)>,
+}
+
+impl BakeFiles {
+    /// Encodes tables, emits and validates shaders, and describes it all in the manifest.
+    pub(crate) fn new(materials: &[Material], bake: &Bake) -> Outcome<Self> {
+        let mut files = Vec::new();
+        let mut tables = Vec::new();
+        let encoded: Vec<EncodedTable> = bake.atlases.par_iter().map(encode).collect::<Outcome<_>>()?;
+        for (atlas, table) in bake.atlases.iter().zip(encoded) {
+            let [texture, truth, picture] = [("ktx2", table.texture), ("exr", table.truth), ("png", table.picture)]
+                .map(|(extension, bytes)| add(&mut files, format!("tables/{}.{extension}", atlas.kind.name()), bytes));
+            let [width, height] = atlas.layout.size();
+            tables.push(TableEntry {
+                kind: atlas.kind,
+                layout: atlas.layout.clone(),
+                format: atlas.format,
+                texel_bytes: u64::from(width) * u64::from(height) * u64::from(atlas.format.texel_bytes()),
+                texture,
+                truth,
+                picture,
+                tiles: atlas.tiles.clone(),
+            });
+        }
+        let mut manifest = Manifest {
+            schema: MANIFEST_SCHEMA,
+            generator: GENERATOR.to_owned(),
+            model: MODEL.to_owned(),
+            materials: material_entries(materials, &bake.materials),
+            tables,
+            shaders: Vec::new(),
+            bindings: Vec::new(),
+        };
+        let set = MaterialSet::from_manifest(&manifest);
+        let mut shaders = Vec::new();
+        for form in Form::ALL {
+            for target in Target::ALL {
+                let text = luthier_shader::emit(&set, form, target).map_err(Failure::input)?;
+                let path = format!("shaders/{}.{}", form.name(), target.extension());
+                let file = add(&mut files, path, text.into_bytes());
+                shaders.push(ShaderEntry { target: target.name().to_owned(), form: form.name().to_owned(), file });
+            }
+        }
+        let bindings = luthier_shader::bindings(&set, Form::Baked);
+        (manifest.shaders, manifest.bindings) = (shaders, bindings);
+        Ok(Self { manifest, files })
+    }
+}
+
+/// What the manifest says of each material.
+pub(crate) fn material_entries(materials: &[Material], baked: &[luthier_bake::BakedMaterial]) -> Vec<MaterialEntry> {
+    materials
+        .iter()
+        .zip(baked)
+        .map(|(material, baked)| MaterialEntry {
+            name: material.name.clone(),
+            source: material.source.clone(),
+            source_hash: sha256(material.text.as_bytes()),
+            class: material.class.letter().to_string(),
+            color: baked.color,
+            wavelengths_nm: material.bake.wavelengths_nm(),
+            layers: baked.records.clone(),
+        })
+        .collect()
+}
+
+/// SHA-256 in hex.
+pub(crate) fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+fn add(files: &mut Vec<(String, Vec<u8>)>, path: String, bytes: Vec<u8>) -> FileEntry {
+    let entry = FileEntry { path: path.clone(), sha256: sha256(&bytes) };
+    files.push((path, bytes));
+    entry
+}
+
+struct EncodedTable {
+    texture: Vec<u8>,
+    truth: Vec<u8>,
+    picture: Vec<u8>,
+}
+
+fn encode(atlas: &Atlas) -> Outcome<EncodedTable> {
+    let metadata = metadata(atlas);
+    let encoded = || {
+        Ok::<_, luthier_texture::TextureError>(EncodedTable {
+            texture: ktx2::encode(&Texture::from_atlas(atlas, metadata.clone()))?,
+            truth: exr::encode(&atlas.truth, &metadata)?,
+            picture: png::encode_image(&picture(atlas))?,
+        })
+    };
+    encoded().map_err(Failure::input)
+}
+
+/// What every container of a table says about itself.
+fn metadata(atlas: &Atlas) -> Metadata {
+    let AtlasLayout { x, y, apron, columns, tiles } = &atlas.layout;
+    let joined = |f: &dyn Fn(&luthier_lut::Tile) -> String| atlas.tiles.iter().map(f).collect::<Vec<_>>().join("\n");
+    let hashes = joined(&|t| t.input_hash.clone());
+    let mut pairs = vec![
+        ("generator", GENERATOR.to_owned()),
+        ("table", atlas.kind.name().to_owned()),
+        ("model", joined(&|t| t.model.clone())),
+        ("axis.x", axis(x)),
+        ("tile.names", joined(&|t| t.name.clone())),
+        ("tile.count", tiles.to_string()),
+        ("tile.columns", columns.to_string()),
+        ("tile.apron", apron.to_string()),
+        ("texel.format", atlas.format.name().to_owned()),
+        ("input.sha256", sha256(hashes.as_bytes())),
+    ];
+    if let Some(y) = y {
+        pairs.push(("axis.y", axis(y)));
+    }
+    pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+}
+
+fn axis(axis: &Axis) -> String {
+    let Axis { quantity, unit, min, max, size, mapping } = axis;
+    let mapping = match mapping {
+        Mapping::Linear => "linear".to_owned(),
+        Mapping::Power { exponent } => format!("power {exponent}"),
+        Mapping::Logarithmic => "logarithmic".to_owned(),
+        Mapping::Periodic => "periodic".to_owned(),
+    };
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    format!("{quantity}: {min} to {max}{unit}, {size} nodes, {mapping}")
+}
+
+/// A table as something to look at: its first three channels, brought into 0..1 where they are signed.
+fn picture(atlas: &Atlas) -> Image {
+    let truth = &atlas.truth;
+    let channels = truth.channels.min(3);
+    let mut data = Vec::with_capacity(truth.texel_count() * channels as usize);
+    for texel in truth.texels() {
+        for &value in &texel[..channels as usize] {
+            data.push(if atlas.kind == TableKind::Phase { 0.25 * value + 0.5 } else { value });
+        }
+    }
+    Image { width: truth.width, height: truth.height, channels, data }
+}

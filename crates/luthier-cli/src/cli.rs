@@ -1,0 +1,210 @@
+//! The command line: the one definition of verbs, options and their help.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use luthier_shader::{Form, Target};
+
+const AFTER_HELP: &str = "\
+Exit codes:
+  0  success
+  1  an input is invalid, or a budget is exceeded
+  2  the command line is wrong
+  3  a file cannot be read or written
+  4  no usable graphics adapter, or it failed
+
+Examples:
+  luthier bake materials            tables, manifest and shaders into out/
+  luthier report --max-error 1e-3   judge out/ against the full evaluation in f64
+  luthier preview materials/red-lacquer.toml -o ball.png
+  luthier check my-material.toml
+  luthier shader materials/red-lacquer.toml --target glsl450";
+
+/// Bakes layered materials into look-up tables, with a shader that reads them and a report that proves the error.
+#[derive(Debug, Parser)]
+#[command(name = "luthier", version, after_help = AFTER_HELP, max_term_width = 100)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Verb {
+    /// Bake materials: textures, manifest and shaders
+    Bake(BakeOptions),
+    /// Validate material files and print the class of each surface
+    Check(CheckOptions),
+    /// Judge a bake: tables and shaders against the full evaluation in f64
+    Report(ReportOptions),
+    /// Render a lit ball of a material off screen
+    #[cfg(feature = "gpu")]
+    Preview(PreviewOptions),
+    /// Print the shader of some materials
+    Shader(ShaderOptions),
+    /// List the built-in optical constants, or show one set
+    Ior(IorOptions),
+    /// Print the JSON Schema of material files
+    Schema,
+}
+
+/// Files to work on.
+#[derive(Debug, Args)]
+pub(crate) struct Sources {
+    /// Material files, or folders of them (their *.toml, not deeper)
+    #[arg(value_name = "PATH", default_value = "materials")]
+    pub(crate) paths: Vec<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  luthier bake materials\n  luthier bake a.toml b.toml --out build/luts --threads 1 --json"
+)]
+pub(crate) struct BakeOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Folder to write to
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub(crate) out: PathBuf,
+    /// Threads to use; by default all. The bytes do not depend on it
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<usize>,
+    /// Print what was made as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print errors only
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  luthier check materials\n  luthier check mine.toml --json")]
+pub(crate) struct CheckOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Print the diagnostics as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  luthier report\n  luthier report --out build/luts --max-error 1e-3\n  luthier report --no-device --json"
+)]
+pub(crate) struct ReportOptions {
+    /// Folder of the bake; the report goes into its folder report/
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub(crate) out: PathBuf,
+    /// Exit with 1 when the largest relative error of a shader exceeds this
+    #[arg(long, value_name = "X", value_parser = positive)]
+    pub(crate) max_error: Option<f64>,
+    /// Pairs of directions in every set of every material
+    #[arg(long, value_name = "N", default_value_t = 4096, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) pairs: u32,
+    /// Judge the tables only, without running the shaders
+    #[arg(long)]
+    pub(crate) no_device: bool,
+    /// Use the graphics adapter whose name contains this
+    #[cfg(feature = "gpu")]
+    #[arg(long, value_name = "NAME", conflicts_with = "no_device")]
+    pub(crate) adapter: Option<String>,
+    /// Print report.json to standard output as well
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[cfg(feature = "gpu")]
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  luthier preview materials/red-lacquer.toml -o ball.png\n  luthier preview red-lacquer -o ball.png --size 1024"
+)]
+pub(crate) struct PreviewOptions {
+    /// A material file, or the name of a material in the bake
+    #[arg(value_name = "MATERIAL")]
+    pub(crate) material: String,
+    /// Picture to write (PNG)
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+    /// Folder of the bake, for materials by name
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub(crate) out: PathBuf,
+    /// Side of the picture in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 512, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub(crate) size: u32,
+    /// Samples along each side of a pixel
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=16))]
+    pub(crate) samples: u32,
+    /// Exposure in stops
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_hyphen_values = true)]
+    pub(crate) exposure: f32,
+    /// Use the graphics adapter whose name contains this
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  luthier shader materials\n  luthier shader mine.toml --target glsl-es300 --form full --complete"
+)]
+pub(crate) struct ShaderOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Language
+    #[arg(long, value_enum, default_value_t = TargetName::Wgsl)]
+    pub(crate) target: TargetName,
+    /// Reads the tables, or evaluates everything in ALU
+    #[arg(long, value_enum, default_value_t = FormName::Baked)]
+    pub(crate) form: FormName,
+    /// A complete small fragment shader instead of functions to paste
+    #[arg(long)]
+    pub(crate) complete: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  luthier ior\n  luthier ior au\n  luthier ior tio2_film --json")]
+pub(crate) struct IorOptions {
+    /// Id of a data set; without it, all are listed
+    #[arg(value_name = "NAME")]
+    pub(crate) name: Option<String>,
+    /// Print as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum TargetName {
+    Wgsl,
+    Glsl450,
+    GlslEs300,
+}
+
+impl From<TargetName> for Target {
+    fn from(name: TargetName) -> Self {
+        match name {
+            TargetName::Wgsl => Self::Wgsl,
+            TargetName::Glsl450 => Self::Glsl450,
+            TargetName::GlslEs300 => Self::GlslEs300,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum FormName {
+    Baked,
+    Full,
+}
+
+impl From<FormName> for Form {
+    fn from(name: FormName) -> Self {
+        match name {
+            FormName::Baked => Self::Baked,
+            FormName::Full => Self::Full,
+        }
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("expected a positive number, such as 1e-3".to_owned()),
+    }
+}

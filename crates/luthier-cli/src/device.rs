@@ -1,0 +1,45 @@
+//! The graphics adapter as the judge sees it.
+
+use luthier_gpu::{Artefacts, Gpu, GpuError, Scene};
+use luthier_report::{Device, Form};
+
+use crate::failure::{Failure, Outcome};
+
+/// Both shaders of a bake, ready to run.
+pub(crate) struct Shaders {
+    name: String,
+    baked: Scene,
+    full: Scene,
+}
+
+impl Shaders {
+    pub(crate) fn new(gpu: &Gpu, artefacts: &Artefacts) -> Outcome<Self> {
+        let scene = |form| gpu.scene(artefacts, form).map_err(device);
+        let name = format!("{} ({}, {})", gpu.adapter_name(), gpu.backend(), gpu.driver());
+        Ok(Self { name, baked: scene("baked")?, full: scene("full")? })
+    }
+}
+
+impl Device for Shaders {
+    fn name(&self) -> String {
+        self.name.clone()
+    }
+
+    fn evaluate(&self, form: Form, material: u32, pairs: &[luthier_report::Pair]) -> Result<Vec<[f32; 3]>, String> {
+        let scene = match form {
+            Form::Baked => &self.baked,
+            Form::Full => &self.full,
+        };
+        scene.evaluate(material, pairs).map_err(|source| source.to_string())
+    }
+}
+
+/// Opens an adapter: the best there is, or the one whose name contains a text.
+pub(crate) fn open(name: Option<&str>) -> Outcome<Gpu> {
+    name.map_or_else(Gpu::open, Gpu::open_named).map_err(device)
+}
+
+/// An error of the runtime.
+pub(crate) fn device(source: GpuError) -> Failure {
+    Failure::Device(source.into())
+}

@@ -1,0 +1,119 @@
+use std::time::Instant;
+
+use luthier_bake::Silent;
+use luthier_lut::Manifest;
+use serde_json::{Value, json};
+
+use crate::artefacts;
+use crate::bake_files::{BakeFiles, MANIFEST};
+use crate::cli::BakeOptions;
+use crate::failure::{Failure, Outcome, files};
+use crate::materials::{read, read_image, valid};
+use crate::output::{bytes, print};
+use crate::progress::BakeProgress;
+use crate::staging::Staging;
+
+/// Bakes files into a folder. The folder changes only once everything is made.
+pub(crate) fn run(options: &BakeOptions) -> Outcome {
+    let start = Instant::now();
+    let materials = valid(read(&options.sources.paths)?)?;
+    let progress = BakeProgress::new();
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(options.threads.unwrap_or(0))
+        .build()
+        .map_err(|source| Failure::Files(anyhow::Error::new(source).context("cannot start threads")))?;
+    let made = pool.install(|| {
+        let bake = if options.quiet {
+            luthier_bake::bake(&materials, &read_image, &Silent)
+        } else {
+            luthier_bake::bake(&materials, &read_image, &progress)
+        };
+        BakeFiles::new(&materials, &bake.map_err(Failure::input)?)
+    })?;
+    publish(options, &made)?;
+
+    if options.json {
+        print(&format!("{:#}", summary(options, &made.manifest, &progress, start)))
+    } else if options.quiet {
+        Ok(())
+    } else {
+        print(&text(options, &made.manifest, &progress, start))
+    }
+}
+
+/// Moves everything into place, the manifest last, and removes what an earlier bake left and this one does not have.
+fn publish(options: &BakeOptions, made: &BakeFiles) -> Outcome {
+    let stale = artefacts::manifest(&options.out).map_or_else(|_| Vec::new(), |old| paths(&old));
+    let manifest = made.manifest.to_json().map_err(Failure::input)?;
+    let mut staging = Staging::for_folder(&options.out)?;
+    for (path, bytes) in &made.files {
+        staging.write(path, bytes)?;
+    }
+    staging.write(MANIFEST, manifest.as_bytes())?;
+    staging.publish()?;
+    let current = paths(&made.manifest);
+    for path in stale.iter().filter(|p| !current.contains(p)) {
+        let path = options.out.join(path);
+        if path.exists() {
+            std::fs::remove_file(&path).map_err(files(&path, "remove"))?;
+        }
+    }
+    Ok(())
+}
+
+/// All files that a manifest names; absolute paths and parents, which we never write, are left out.
+fn paths(manifest: &Manifest) -> Vec<String> {
+    let tables = manifest.tables.iter().flat_map(|t| [&t.texture, &t.truth, &t.picture]);
+    let all = tables.chain(manifest.shaders.iter().map(|s| &s.file));
+    all.map(|file| file.path.clone()).filter(|p| !p.starts_with('/') && !p.contains("..") && !p.contains(':')).collect()
+}
+
+fn text(options: &BakeOptions, manifest: &Manifest, progress: &BakeProgress, start: Instant) -> String {
+    let mut out = format!("{} materials, {} tables\n\n", manifest.materials.len(), manifest.tables.len());
+    out.push_str(&format!(
+        "{:<13} {:>6}  {:>11}  {:<11} {:>10}  {:>9}\n",
+        "table", "tiles", "texels", "format", "size", "max error"
+    ));
+    for table in &manifest.tables {
+        let [width, height] = table.layout.size();
+        let worst = table.tiles.iter().map(|t| t.error.max_abs_err).fold(0.0, f64::max);
+        out.push_str(&format!(
+            "{:<13} {:>6}  {:>11}  {:<11} {:>10}  {worst:>9.1e}\n",
+            table.kind.name(),
+            table.layout.tiles,
+            format!("{width}x{height}"),
+            table.format.name(),
+            bytes(table.texel_bytes),
+        ));
+    }
+    let jobs: Vec<String> = progress.seconds().iter().map(|(kind, s)| format!("{} {s:.2}", kind.name())).collect();
+    out.push_str(&format!("\nseconds: {}; all {:.2}\n", jobs.join(", "), start.elapsed().as_secs_f64()));
+    out.push_str(&format!("wrote {}\n", options.out.join(MANIFEST).display()));
+    out
+}
+
+fn summary(options: &BakeOptions, manifest: &Manifest, progress: &BakeProgress, start: Instant) -> Value {
+    let tables: Vec<Value> = manifest
+        .tables
+        .iter()
+        .map(|t| {
+            let worst = t.tiles.iter().map(|t| t.error.max_abs_err).fold(0.0, f64::max);
+            json!({
+                "kind": t.kind.name(),
+                "tiles": t.layout.tiles,
+                "size": t.layout.size(),
+                "format": t.format.name(),
+                "texel_bytes": t.texel_bytes,
+                "max_abs_err": worst,
+            })
+        })
+        .collect();
+    let seconds: Value = progress.seconds().iter().map(|(kind, s)| (kind.name().to_owned(), json!(s))).collect();
+    json!({
+        "manifest": options.out.join(MANIFEST).to_string_lossy(),
+        "materials": manifest.materials.iter().map(|m| &m.name).collect::<Vec<_>>(),
+        "tables": tables,
+        "seconds": seconds,
+        "seconds_all": start.elapsed().as_secs_f64(),
+    })
+}

@@ -1,0 +1,10 @@
+//! The physics against oracles that share no code with it: walks by brute force, transfer matrices, conservation and
+//! reciprocity, published colours of metals, histograms.
+
+mod albedo;
+mod brute_force;
+mod conservation;
+mod crossing;
+mod metals;
+mod transfer_matrix;
+mod visible_normals;
