@@ -123,15 +123,13 @@ fn atlas(kind: TableKind, tiles: &Tiles, settings: &Settings, results: &Results)
     let channels = tiles.tiles.first().map_or(1, |(_, key)| results.tile(*key).truth.channels);
     let [width, height] = layout.size();
     let mut truth = Image::zeros(width, height, channels);
+    let mut texels = Image::zeros(width, height, format.channels());
     let mut entries = Vec::with_capacity(tiles.tiles.len());
     for (index, (name, key)) in tiles.tiles.iter().enumerate() {
         let data = results.tile(*key);
-        let [ox, oy] = layout.origin(index as u32);
-        for j in 0..data.truth.height {
-            for i in 0..data.truth.width {
-                truth.texel_mut(ox + i, oy + j).copy_from_slice(data.truth.texel(i, j));
-            }
-        }
+        let origin = layout.origin(index as u32);
+        place(&mut truth, origin, &data.truth);
+        place(&mut texels, origin, &data.texels);
         entries.push(Tile {
             name: name.clone(),
             model: data.model.clone(),
@@ -139,6 +137,14 @@ fn atlas(kind: TableKind, tiles: &Tiles, settings: &Settings, results: &Results)
             error: data.error.clone(),
         });
     }
-    let texels = format.quantise(&truth);
     Atlas { kind, layout, format, tiles: entries, truth, texels }
+}
+
+/// Copies a tile into an atlas.
+fn place(atlas: &mut Image, [ox, oy]: [u32; 2], tile: &Image) {
+    for j in 0..tile.height {
+        for i in 0..tile.width {
+            atlas.texel_mut(ox + i, oy + j).copy_from_slice(tile.texel(i, j));
+        }
+    }
 }

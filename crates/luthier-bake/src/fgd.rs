@@ -4,22 +4,28 @@ use luthier_lut::{Axis, Comparison, Image, TableKind, TexelFormat, WeightBits, m
 use luthier_optics::Rgb;
 use luthier_optics::albedo::{FacetStatistics, ReflectanceCurves};
 use luthier_optics::color::{Color, WavelengthNode, luminance};
-use luthier_optics::interface::Interface;
+use luthier_optics::interface::{Interface, Sampled};
 use luthier_optics::stack::Distribution;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use crate::facet_grid::{CrossedJob, DOMAIN_ALPHA, DOMAIN_COS_THETA, FacetGridJob};
+use crate::facet_grid::{CrossedJob, DOMAIN_ALPHA, DOMAIN_COS_THETA, FacetGrid, FacetGridJob};
 use crate::graph::Inputs;
 use crate::job::{Job, TileData, lone_tile};
 use crate::json;
 use crate::smooth::savitzky_golay;
 
-/// Every so many of the 5 nm nodes are kept where spectra are smooth.
-const STRIDE: usize = 6;
+/// What leaving out wavelengths may change in the share of the light after the first bounce; that bounce has all.
+const SPECTRUM_TOLERANCE: f64 = 4e-4;
 
-/// The same for films, whose spectra oscillate.
-const FILM_STRIDE: usize = 2;
+/// Where spectra are compared to decide which wavelengths are left out.
+const SPECTRUM_COS_THETA: [f64; 5] = [1.0, 0.6, 0.3, 0.15, 0.05];
+
+/// Powers of the reflectance that are compared: as many reflections.
+const SPECTRUM_POWERS: i32 = 3;
+
+/// Every so many points of the error scan, along each axis, all wavelengths are taken.
+const SPECTRUM_PROBES: usize = 5;
 
 #[derive(Debug, Clone)]
 pub(crate) struct FgdJob {
@@ -114,21 +120,21 @@ impl FgdJob {
             },
             |u| vec![x.decode(u[0]), y.decode(u[1])],
         );
-        // The crossed part has an error of its own; the worst of both may meet.
-        error.max_abs_err += crossed.map_or(0.0, |c| c.max_abs_err);
+        // The crossed part and the wavelengths left out have errors of their own; the worst of all may meet.
+        error.max_abs_err += crossed.map_or(0.0, |c| c.max_abs_err) + curves.spectrum_error(grid);
         let model = format!(
             "directional albedo with all bounces, height-correlated Smith, {}; errors for cos_theta >= {DOMAIN_COS_THETA}, \
              alpha >= {DOMAIN_ALPHA}",
             self.distribution.name()
         );
-        TileData { model, truth, error }
+        TileData { model, truth, texels: atlas.texels, error }
     }
 }
 
-/// Reflectance curves of an interface at the wavelengths of a colour mode.
+/// Reflectance curves of an interface at the wavelengths of a colour mode: all, and enough for later bounces.
 struct Curves {
-    weights: Vec<Rgb>,
-    curves: ReflectanceCurves,
+    all: Weighted,
+    later: Weighted,
 }
 
 /// Albedo of the first bounce, and share of the rest that comes out in the end.
@@ -139,17 +145,47 @@ struct Bounces {
 
 impl Curves {
     fn new(interface: &Interface, color: &Color) -> Self {
-        let (weights, interfaces): (Vec<_>, Vec<_>) =
-            interface.at_nodes(&nodes(interface, color)).nodes.into_iter().unzip();
-        let curves = ReflectanceCurves::new(interfaces.len(), |k, cos| interfaces[k].reflectance(cos));
-        Self { weights, curves }
+        let at = |nodes: &[WavelengthNode]| Weighted::new(interface.at_nodes(nodes));
+        Self { all: at(&color.nodes()), later: at(&sparse(interface, color)) }
     }
 
     fn bounces(&self, statistics: &FacetStatistics) -> Bounces {
         Bounces {
-            first: self.rgb(&statistics.single_scattering(&self.curves)),
-            later_share: self.rgb(&statistics.later_share(&self.curves)),
+            first: self.all.rgb(&statistics.single_scattering(&self.all.curves)),
+            later_share: self.later.rgb(&statistics.later_share(&self.later.curves)),
         }
+    }
+
+    /// Largest change of an albedo by all wavelengths in place of the sparse ones, at some points of the error scan.
+    fn spectrum_error(&self, grid: &FacetGrid) -> f64 {
+        let [width, height] = grid.scan.points.map(|n| n as usize);
+        let start = SPECTRUM_PROBES / 2;
+        let rows = (start..height).step_by(SPECTRUM_PROBES);
+        let points = rows.flat_map(|j| (start..width).step_by(SPECTRUM_PROBES).map(move |i| j * width + i));
+        let errors: Vec<f64> = points
+            .collect::<Vec<_>>()
+            .into_par_iter()
+            .map(|point| {
+                let statistics = &grid.probes[point];
+                let [a, b] = [&self.all, &self.later].map(|c| c.rgb(&statistics.later_share(&c.curves)));
+                (0..3).map(|c| statistics.remaining() * (a[c] - b[c]).abs()).fold(0.0, f64::max)
+            })
+            .collect();
+        errors.into_iter().fold(0.0, f64::max)
+    }
+}
+
+/// Curves at some wavelengths, and the weights of these.
+struct Weighted {
+    weights: Vec<Rgb>,
+    curves: ReflectanceCurves,
+}
+
+impl Weighted {
+    fn new(sampled: Sampled) -> Self {
+        let (weights, interfaces): (Vec<_>, Vec<_>) = sampled.nodes.into_iter().unzip();
+        let curves = ReflectanceCurves::new(interfaces.len(), |k, cos| interfaces[k].reflectance(cos));
+        Self { weights, curves }
     }
 
     fn rgb(&self, values: &[f64]) -> Rgb {
@@ -163,12 +199,23 @@ impl Curves {
     }
 }
 
-fn nodes(interface: &Interface, color: &Color) -> Vec<WavelengthNode> {
-    color.coarse_nodes(if interface.films.is_empty() { STRIDE } else { FILM_STRIDE })
+/// Wavelengths that suffice for products of a few reflectances.
+fn sparse(interface: &Interface, color: &Color) -> Vec<WavelengthNode> {
+    let nodes = color.nodes();
+    let mut spectra = Vec::new();
+    for cos in SPECTRUM_COS_THETA {
+        let reflectance: Vec<f64> = nodes.iter().map(|n| interface.at(n.wavelength_nm).reflectance(cos)).collect();
+        let mut power = vec![1.0; nodes.len()];
+        for _ in 0..SPECTRUM_POWERS {
+            power.iter_mut().zip(&reflectance).for_each(|(p, r)| *p *= r);
+            spectra.push(power.clone());
+        }
+    }
+    color.sparse_nodes(&spectra, SPECTRUM_TOLERANCE)
 }
 
 /// Reflectance curve of an interface, averaged over wavelengths by luminance.
 pub(crate) fn wavelength_mean(interface: &Interface, color: &Color) -> ReflectanceCurves {
-    let sampled = interface.at_nodes(&nodes(interface, color));
+    let sampled = interface.sampled(color);
     ReflectanceCurves::new(1, |_, cos| luminance(sampled.rgb(cos)).clamp(0.0, 1.0))
 }

@@ -49,7 +49,7 @@ impl FresnelJob {
             |u| vec![self.axis.decode(u[0])],
         );
         let films = if self.interface.films.is_empty() { "bare interface" } else { "films, Airy" };
-        TileData { model: format!("exact complex Fresnel, unpolarised; {films}"), truth, error }
+        TileData { model: format!("exact complex Fresnel, unpolarised; {films}"), truth, texels: atlas.texels, error }
     }
 
     fn cos_theta(&self, value: f64) -> f64 {

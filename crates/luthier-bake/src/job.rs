@@ -6,6 +6,7 @@ use luthier_lut::{Atlas, AtlasLayout, Axis, ErrorStats, Image, TableKind, TexelF
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
+use crate::balance;
 use crate::distribution::DistributionJob;
 use crate::facet_grid::{CrossedGrid, CrossedJob, FacetGrid, FacetGridJob};
 use crate::fgd::FgdJob;
@@ -15,7 +16,7 @@ use crate::phase::PhaseJob;
 use crate::thickness::ThicknessJob;
 
 /// Changes whenever the same inputs give other bytes than before; part of every key.
-const REVISION: u32 = 1;
+const REVISION: u32 = 2;
 
 /// SHA-256 of a job's inputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -135,11 +136,12 @@ pub(crate) enum Artefact {
     Crossed(CrossedGrid),
 }
 
-/// One tile: its texels (apron included) and its error as sampled.
+/// One tile, apron included: its values, its texels, and its error as sampled.
 #[derive(Debug, Clone)]
 pub(crate) struct TileData {
     pub(crate) model: String,
     pub(crate) truth: Image,
+    pub(crate) texels: Image,
     pub(crate) error: ErrorStats,
 }
 
@@ -154,5 +156,5 @@ pub(crate) fn lone_tile(kind: TableKind, axes: &[&Axis], format: TexelFormat, tr
         tiles: 1,
     };
     let tiles: Vec<Tile> = Vec::new();
-    Atlas { kind, layout, format, tiles, texels: format.quantise(truth), truth: truth.clone() }
+    Atlas { kind, layout, format, tiles, texels: balance::texels(kind, format, truth), truth: truth.clone() }
 }

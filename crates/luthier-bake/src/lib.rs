@@ -11,6 +11,7 @@
 //! Out of scope: reading material files, encoding textures, shaders, the command line.
 
 mod assemble;
+mod balance;
 mod distribution;
 mod error;
 mod facet_grid;

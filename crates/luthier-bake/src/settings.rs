@@ -52,7 +52,7 @@ impl Settings {
             AlphaMapping::Log => axis("alpha", "", [elek::ALPHA_MIN, 1.0], size[1], Mapping::Logarithmic),
             AlphaMapping::Linear => axis("alpha", "", [0.0, 1.0], size[1], Mapping::Linear),
         };
-        let format = ask.format("bake.distribution.format", |b| b.distribution.format, TexelFormat::R16Float)?;
+        let format = ask.format("bake.distribution.format", |b| b.distribution.format, TexelFormat::Rg16Float)?;
         let distribution = ([angle, slope], format);
 
         let size = ask.one("bake.fgd.size", |b| b.fgd.size)?.unwrap_or([64, 64]);
@@ -121,6 +121,7 @@ impl Ask<'_> {
     ) -> Result<TexelFormat, BakeError> {
         Ok(self.one(setting, get)?.map_or(default, |format| match format {
             Format::R16Float => TexelFormat::R16Float,
+            Format::Rg16Float => TexelFormat::Rg16Float,
             Format::R32Float => TexelFormat::R32Float,
             Format::Rgba8Unorm => TexelFormat::Rgba8Unorm,
             Format::Rgba16Float => TexelFormat::Rgba16Float,

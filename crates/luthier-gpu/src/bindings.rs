@@ -157,6 +157,7 @@ fn storage(read_only: bool) -> BindingType {
 
 fn texture_format(format: TexelFormat) -> wgpu::TextureFormat {
     match format {
+        TexelFormat::Rg16Float => wgpu::TextureFormat::Rg16Float,
         TexelFormat::R16Float => wgpu::TextureFormat::R16Float,
         TexelFormat::R32Float => wgpu::TextureFormat::R32Float,
         TexelFormat::Rgba8Unorm => wgpu::TextureFormat::Rgba8Unorm,

@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use crate::{Axis, ErrorStats, Image, TexelFormat, WeightBits, bilinear};
+use crate::{Axis, Encoding, ErrorStats, Image, TexelFormat, WeightBits, bilinear};
 
 /// What a table holds. One texture of each kind serves any number of materials.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -111,14 +111,15 @@ pub struct Atlas {
     pub tiles: Vec<Tile>,
     /// Unquantised values.
     pub truth: Image,
-    /// The same, as the shader reads it: quantised to `format`.
+    /// What ships: texels of `format`, as the shader reads them.
     pub texels: Image,
 }
 
 impl Atlas {
-    /// Reads the quantised texels as the hardware would.
+    /// Reads the quantised texels as the hardware and the shader would.
     pub fn sample(&self, tile: u32, values: [f64; 2], weights: WeightBits) -> [f64; 4] {
-        bilinear(&self.texels, self.layout.position(tile, values), weights)
+        let texel = bilinear(&self.texels, self.layout.position(tile, values), weights);
+        Encoding::of(self.kind, self.format).decode(texel)
     }
 }
 

@@ -12,6 +12,8 @@ use crate::{Image, LutError};
 pub enum TexelFormat {
     /// One half float.
     R16Float,
+    /// Two half floats.
+    Rg16Float,
     /// One float. Not filterable in core WebGPU.
     R32Float,
     /// Four unsigned normalised bytes, linear.
@@ -24,12 +26,14 @@ pub enum TexelFormat {
 
 impl TexelFormat {
     /// All formats, for listings and tests.
-    pub const ALL: [Self; 5] = [Self::R16Float, Self::R32Float, Self::Rgba8Unorm, Self::Rgba16Float, Self::Rgba32Float];
+    pub const ALL: [Self; 6] =
+        [Self::R16Float, Self::Rg16Float, Self::R32Float, Self::Rgba8Unorm, Self::Rgba16Float, Self::Rgba32Float];
 
     /// The WebGPU name.
     pub fn name(self) -> &'static str {
         match self {
             Self::R16Float => "r16float",
+            Self::Rg16Float => "rg16float",
             Self::R32Float => "r32float",
             Self::Rgba8Unorm => "rgba8unorm",
             Self::Rgba16Float => "rgba16float",
@@ -41,6 +45,7 @@ impl TexelFormat {
     pub fn channels(self) -> u32 {
         match self {
             Self::R16Float | Self::R32Float => 1,
+            Self::Rg16Float => 2,
             Self::Rgba8Unorm | Self::Rgba16Float | Self::Rgba32Float => 4,
         }
     }
@@ -49,7 +54,7 @@ impl TexelFormat {
     pub fn channel_bytes(self) -> u32 {
         match self {
             Self::Rgba8Unorm => 1,
-            Self::R16Float | Self::Rgba16Float => 2,
+            Self::R16Float | Self::Rg16Float | Self::Rgba16Float => 2,
             Self::R32Float | Self::Rgba32Float => 4,
         }
     }
@@ -193,7 +198,7 @@ mod tests {
     #[test]
     fn sizes_are_those_of_webgpu() {
         let sizes = TexelFormat::ALL.map(|format| (format.texel_bytes(), format.is_filterable()));
-        assert_eq!(sizes, [(2, true), (4, false), (4, true), (8, true), (16, false)]);
+        assert_eq!(sizes, [(2, true), (4, true), (4, false), (4, true), (8, true), (16, false)]);
     }
 
     #[test]

@@ -11,6 +11,7 @@
 
 mod atlas;
 mod axis;
+mod encoding;
 mod error;
 mod format;
 mod image;
@@ -21,6 +22,7 @@ mod sampler;
 
 pub use atlas::{Atlas, AtlasLayout, TableKind, Tile};
 pub use axis::{Axis, Mapping};
+pub use encoding::Encoding;
 pub use error::LutError;
 pub use format::TexelFormat;
 pub use image::Image;

@@ -18,6 +18,8 @@ named! {
     pub enum Format {
         /// One half float.
         R16Float = "r16float",
+        /// Two half floats, which hold the sixteenth root of one value.
+        Rg16Float = "rg16float",
         /// One float.
         R32Float = "r32float",
         /// Four unsigned normalised bytes.

@@ -43,31 +43,63 @@ impl Color {
         }
     }
 
-    /// Fewer wavelengths for costly integrands: every `stride`-th node, with the weights of those between shared out
-    /// linearly. Exact for functions that are linear between the nodes kept; three wavelengths stay as they are.
-    pub fn coarse_nodes(&self, stride: usize) -> Vec<WavelengthNode> {
+    /// Fewer wavelengths for costly integrands that vary as given spectra do: `spectra` have a value per node of
+    /// [`Color::nodes`]. Nodes between which straight lines follow all spectra are left out, and their weights shared between
+    /// the neighbours kept.
+    ///
+    /// For each spectrum, what the lines miss, times the largest weight there, adds up to at most `tolerance`: a bound on the error
+    /// of its integral in every channel. Nodes are kept one after the other where most is missed (Ramer 1972). Three
+    /// wavelengths stay as they are.
+    pub fn sparse_nodes(&self, spectra: &[Vec<f64>], tolerance: f64) -> Vec<WavelengthNode> {
         let nodes = self.nodes();
-        if matches!(self, Self::ThreeWavelengths(_)) || stride <= 1 {
+        if matches!(self, Self::ThreeWavelengths(_)) {
             return nodes;
         }
-        let last = nodes.len() - 1;
-        let mut kept: Vec<usize> = (0..=last).step_by(stride).collect();
-        if kept.last() != Some(&last) {
-            kept.push(last);
+        let mut kept = vec![0, nodes.len() - 1];
+        loop {
+            let mut missed = vec![0.0; spectra.len()];
+            let mut worst = (0.0, 0);
+            for pair in kept.windows(2) {
+                for i in pair[0] + 1..pair[1] {
+                    let t = between(&nodes, i, pair[0], pair[1]);
+                    let weight = nodes[i].weight.iter().fold(0.0, |max: f64, w| max.max(w.abs()));
+                    for (sum, spectrum) in missed.iter_mut().zip(spectra) {
+                        let line = (1.0 - t) * spectrum[pair[0]] + t * spectrum[pair[1]];
+                        let here = weight * (spectrum[i] - line).abs();
+                        *sum += here;
+                        if here > worst.0 {
+                            worst = (here, i);
+                        }
+                    }
+                }
+            }
+            if missed.iter().all(|sum| *sum <= tolerance) {
+                return lump(&nodes, &kept);
+            }
+            kept.insert(kept.partition_point(|&k| k < worst.1), worst.1);
         }
-        let mut coarse: Vec<WavelengthNode> =
-            kept.iter().map(|&i| WavelengthNode { weight: [0.0; 3], ..nodes[i] }).collect();
-        for node in &nodes {
-            let right = coarse.partition_point(|c| c.wavelength_nm < node.wavelength_nm).clamp(1, coarse.len() - 1);
-            let (a, b) = (coarse[right - 1].wavelength_nm, coarse[right].wavelength_nm);
-            let t = (node.wavelength_nm - a) / (b - a);
+    }
+}
+
+/// How far node `i` is from node `a` to node `b`.
+fn between(nodes: &[WavelengthNode], i: usize, a: usize, b: usize) -> f64 {
+    let nm = |i: usize| nodes[i].wavelength_nm;
+    (nm(i) - nm(a)) / (nm(b) - nm(a))
+}
+
+/// The kept nodes, with the weights of the others shared out linearly.
+fn lump(nodes: &[WavelengthNode], kept: &[usize]) -> Vec<WavelengthNode> {
+    let mut lumped: Vec<WavelengthNode> = kept.iter().map(|&i| nodes[i]).collect();
+    for (k, pair) in kept.windows(2).enumerate() {
+        for i in pair[0] + 1..pair[1] {
+            let t = between(nodes, i, pair[0], pair[1]);
             for c in 0..3 {
-                coarse[right - 1].weight[c] += (1.0 - t) * node.weight[c];
-                coarse[right].weight[c] += t * node.weight[c];
+                lumped[k].weight[c] += (1.0 - t) * nodes[i].weight[c];
+                lumped[k + 1].weight[c] += t * nodes[i].weight[c];
             }
         }
-        coarse
     }
+    lumped
 }
 
 /// Relative luminance of linear Rec.709.
@@ -141,7 +173,8 @@ mod tests {
 
     #[test]
     fn a_perfect_reflector_is_white() {
-        for nodes in [Color::Spectral.nodes(), Color::Spectral.coarse_nodes(4), Color::Spectral.coarse_nodes(7)] {
+        let wave = Color::Spectral.nodes().iter().map(|n| libm::sin(0.1 * n.wavelength_nm)).collect();
+        for nodes in [Color::Spectral.nodes(), Color::Spectral.sparse_nodes(&[wave], 0.1)] {
             for channel in sums(&nodes) {
                 assert!((channel - 1.0).abs() < 1e-12);
             }
@@ -161,11 +194,27 @@ mod tests {
     }
 
     #[test]
-    fn coarse_nodes_integrate_straight_lines_exactly() {
+    fn sparse_nodes_keep_to_their_tolerance() {
+        let nodes = Color::Spectral.nodes();
+        let edge = |nm: f64| 0.5 + libm::atan((nm - 510.0) / 15.0) / std::f64::consts::PI;
         let line = |nm: f64| 0.2 + 0.001 * nm;
-        let integrate =
-            |nodes: &[WavelengthNode]| nodes.iter().map(|n| n.weight[1] * line(n.wavelength_nm)).sum::<f64>();
-        let fine = integrate(&Color::Spectral.nodes());
-        assert!((fine - integrate(&Color::Spectral.coarse_nodes(5))).abs() < 1e-12);
+        let spectrum = |f: &dyn Fn(f64) -> f64| nodes.iter().map(|n| f(n.wavelength_nm)).collect::<Vec<f64>>();
+        let spectra = [spectrum(&edge), spectrum(&|nm| edge(nm) * edge(nm)), spectrum(&line)];
+        let integrate = |nodes: &[WavelengthNode], f: &dyn Fn(f64) -> f64| {
+            [0, 1, 2].map(|c: usize| nodes.iter().map(|n| n.weight[c] * f(n.wavelength_nm)).sum::<f64>())
+        };
+        let mut counts = Vec::new();
+        for tolerance in [1e-2, 1e-3, 1e-4] {
+            let sparse = Color::Spectral.sparse_nodes(&spectra, tolerance);
+            for (a, b) in integrate(&nodes, &edge).into_iter().zip(integrate(&sparse, &edge)) {
+                assert!((a - b).abs() <= tolerance);
+            }
+            for (a, b) in integrate(&nodes, &line).into_iter().zip(integrate(&sparse, &line)) {
+                assert!((a - b).abs() < 1e-12);
+            }
+            counts.push(sparse.len());
+        }
+        assert!(counts[0] < counts[1] && counts[1] < counts[2] && counts[2] < 60, "{counts:?}");
+        assert_eq!(Color::Spectral.sparse_nodes(&spectra[2..], 1e-6).len(), 2);
     }
 }

@@ -29,6 +29,9 @@ pub struct FilmLayer {
     pub waves: f64,
 }
 
+/// Least wave number along the normal inside a film, over the vacuum's.
+const FILM_Q_MIN: f64 = 1e-8;
+
 /// Reflectance of a bare interface, exact for any complex index below, total reflection included.
 ///
 /// `above` and `below` are indices `n + i k`; `cos_theta_i` in 0..=1. Born and Wolf, Principles of Optics, 7th ed.,
@@ -48,7 +51,14 @@ pub fn coated(above: Complex64, films: &[FilmLayer], below: Complex64, cos_theta
     let q_above = above * cos_theta_i;
     let normal = |ior: Complex64| sqrt((ior - above) * (ior + above) + q_above * q_above);
 
-    let medium = |i: usize| if i == 0 { (above, q_above) } else { (films[i - 1].ior, normal(films[i - 1].ior)) };
+    // Airy's formula is 0/0 for a film exactly at its critical angle. The reflectance is even in q, so a q kept off zero errs by
+    // its square only, and by rounding over q.
+    let inside = |ior: Complex64| {
+        let q = normal(ior);
+        if q.norm_sqr() < FILM_Q_MIN * FILM_Q_MIN { Complex64::new(FILM_Q_MIN, 0.0) } else { q }
+    };
+
+    let medium = |i: usize| if i == 0 { (above, q_above) } else { (films[i - 1].ior, inside(films[i - 1].ior)) };
     let amplitudes = |upper: (Complex64, Complex64), lower: (Complex64, Complex64)| {
         let (na, qa) = upper;
         let (nb, qb) = lower;

@@ -11,7 +11,8 @@ use crate::stack::Distribution;
 /// `w` is any unit direction that sees the surface: from above, or from below (`w.z < 0`) as the rays of a walk between
 /// facets do. GGX: Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", whose cap holds for
 /// directions from below too. Beckmann: Heitz and d'Eon 2014, the slope along the plane of incidence by inverting its
-/// cumulative distribution. `alpha` > 0.
+/// cumulative distribution; slopes end at six times alpha, so a direction from below has to see such slopes (one that does
+/// not meets no facet). `alpha` > 0.
 pub fn sample(distribution: Distribution, alpha: f64, w: DVec3, u: [f64; 2]) -> DVec3 {
     let stretched = DVec3::new(alpha * w.x, alpha * w.y, w.z).normalize();
     match distribution {

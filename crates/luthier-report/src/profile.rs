@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{FLOOR, Pair, statistics::relative_error};
+use crate::statistics::{brightest, relative_error};
+use crate::{FLOOR, Pair};
 use luthier_optics::Rgb;
 
 /// Bins of [`AngleProfile`], 3 degrees each.
@@ -28,7 +29,7 @@ impl AngleProfile {
             let degrees = libm::acos(cos.clamp(0.0, 1.0)).to_degrees();
             let bin = ((degrees / 90.0 * ANGLE_BINS as f64) as usize).min(ANGLE_BINS - 1);
             for channel in 0..3 {
-                let error = relative_error(found[channel], expected[channel], FLOOR);
+                let error = relative_error(found[channel], expected[channel], brightest(expected), FLOOR);
                 if error.is_finite() {
                     let slot = &mut self.max[bin];
                     *slot = Some(slot.map_or(error, |e| e.max(error)));
@@ -65,7 +66,7 @@ impl Exceedance {
     pub(crate) fn add(&mut self, found: &[Rgb], expected: &[Rgb]) {
         for (found, expected) in found.iter().zip(expected) {
             for channel in 0..3 {
-                let error = relative_error(found[channel], expected[channel], FLOOR);
+                let error = relative_error(found[channel], expected[channel], brightest(expected), FLOOR);
                 if error.is_finite() {
                     let last = self.counts.len() - 1;
                     let class = if error < Self::MIN {

@@ -10,7 +10,7 @@ use crate::Pair;
 /// The floor of relative errors: a tenth of what a white diffuser gives in light along its normal (`f cos_theta_i` =
 /// 1/pi).
 ///
-/// Above it an error is relative; below it, a relative error of 1e-3 is an absolute one of 1e-4 of diffuse white, a
+/// Above it an error is relative, to the brightest channel of the colour; below it, a relative error of 1e-3 is an absolute one of 1e-4 of diffuse white, a
 /// third of the darkest step of an 8-bit sRGB picture (1/(255 x 12.92) = 3.0e-4) that is exposed for that white.
 pub const FLOOR: f64 = 0.1 * FRAC_1_PI;
 
@@ -48,7 +48,7 @@ pub struct WorstPair {
     pub expected: f64,
     /// What was judged.
     pub found: f64,
-    /// Error relative to max(|expected|, [`FLOOR`]).
+    /// Error relative to max(brightest channel of the reference, [`FLOOR`]).
     pub error: f64,
 }
 
@@ -67,11 +67,11 @@ pub struct Statistics {
     pub peak: f64,
     /// Largest absolute error.
     pub max_abs_err: f64,
-    /// Relative to max(|reference|, [`FLOOR`]): the figure of merit.
+    /// Relative to max(brightest channel of the reference, [`FLOOR`]): the figure of merit.
     pub relative: ErrorSummary,
-    /// Relative to max(|reference|, [`DIM_FLOOR`]).
+    /// Relative to max(brightest channel of the reference, [`DIM_FLOOR`]).
     pub relative_dim: ErrorSummary,
-    /// Relative to max(|reference|, [`PEAK_FRACTION`] x `peak`).
+    /// Relative to max(brightest channel of the reference, [`PEAK_FRACTION`] x `peak`).
     pub relative_peak: ErrorSummary,
     /// The worst pairs by `relative`, worst first.
     pub worst: Vec<WorstPair>,
@@ -84,10 +84,16 @@ impl Statistics {
     }
 }
 
-/// |found - expected| / max(|expected|, floor); not finite when either is not.
-pub(crate) fn relative_error(found: f64, expected: f64, floor: f64) -> f64 {
-    let error = (found - expected).abs() / expected.abs().max(floor);
+/// |found - expected| / max(|brightest|, floor); not finite when a value is not.
+pub(crate) fn relative_error(found: f64, expected: f64, brightest: f64, floor: f64) -> f64 {
+    let error = (found - expected).abs() / brightest.max(floor);
     if expected.is_finite() { error } else { f64::NAN }
+}
+
+/// What a channel's error is relative to: the brightest channel of the colour. A channel that interference or absorption
+/// extinguishes is seen beside the others, not alone.
+pub(crate) fn brightest(expected: &Rgb) -> f64 {
+    expected.iter().fold(0.0, |sum: f64, c| sum.max(c.abs()))
 }
 
 /// Statistics of `found` against `expected`, which are parallel to `pairs`; surplus values are ignored.
@@ -99,9 +105,10 @@ pub fn statistics(pairs: &[Pair], found: &[Rgb], expected: &[Rgb]) -> Statistics
     let (mut peak, mut max_abs_err) = (0.0_f64, 0.0_f64);
     for ((&(wi, wo), found), expected) in pairs.iter().zip(found).zip(expected) {
         let mut worst_channel: Option<WorstPair> = None;
+        let bright = brightest(expected);
         for channel in 0..3 {
             let (found, expected) = (found[channel], expected[channel]);
-            let error = relative_error(found, expected, FLOOR);
+            let error = relative_error(found, expected, bright, FLOOR);
             if !error.is_finite() {
                 not_finite += 1;
                 not_finite_at.get_or_insert((wi, wo));
@@ -109,7 +116,7 @@ pub fn statistics(pairs: &[Pair], found: &[Rgb], expected: &[Rgb]) -> Statistics
             }
             peak = peak.max(expected.abs());
             max_abs_err = max_abs_err.max((found - expected).abs());
-            samples.push((found, expected));
+            samples.push((found, expected, bright));
             if worst_channel.as_ref().is_none_or(|w| error > w.error) {
                 worst_channel = Some(WorstPair { wi, wo, channel: channel as u32, expected, found, error });
             }
@@ -125,7 +132,9 @@ pub fn statistics(pairs: &[Pair], found: &[Rgb], expected: &[Rgb]) -> Statistics
     let summary = |floor: f64| {
         // A set whose reference is zero throughout has no peak to be relative to.
         let floor = if floor > 0.0 { floor } else { FLOOR };
-        summarise(samples.iter().map(|&(found, expected)| relative_error(found, expected, floor)).collect())
+        summarise(
+            samples.iter().map(|&(found, expected, bright)| relative_error(found, expected, bright, floor)).collect(),
+        )
     };
     Statistics {
         pairs: pairs.len() as u64,
@@ -169,14 +178,14 @@ mod tests {
 
     #[test]
     fn floors_by_hand() {
-        // One bright sample 1% off, one dark sample off by 0.001, one exact.
-        let s = statistics(&[UP], &[[10.1, 0.001, 0.5]], &[[10.0, 0.0, 0.5]]);
+        // One bright grey 1% off in one channel, one dark one off by 0.001.
+        let s = statistics(&[UP, UP], &[[10.1, 10.0, 0.5], [0.001, 0.0, 0.0]], &[[10.0, 10.0, 0.5], [0.0; 3]]);
         assert_eq!(s.peak, 10.0);
         assert!((s.max_abs_err - 0.1).abs() < 1e-12);
         assert!((s.relative.max - 0.001 / FLOOR).abs() < 1e-12, "dark sample over the floor: 0.0314");
         assert!((s.relative_dim.max - 0.001 / DIM_FLOOR).abs() < 1e-9, "3.14");
         assert!((s.relative_peak.max - 0.01).abs() < 1e-12, "floor is 1.0: the bright sample's 1%");
-        assert_eq!(s.worst[0].channel, 1);
+        assert_eq!((s.worst[0].channel, s.worst[0].found), (0, 0.001));
     }
 
     #[test]

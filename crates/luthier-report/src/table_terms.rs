@@ -1,7 +1,7 @@
 //! The model's terms as a shader reads them: from texels.
 
 use luthier_layers::elek::Terms;
-use luthier_lut::{LayerKind, TableKind, TexelFormat, WeightBits, bilinear};
+use luthier_lut::{Encoding, LayerKind, TableKind, TexelFormat, WeightBits, bilinear};
 use luthier_optics::Rgb;
 use luthier_optics::stack::Distribution;
 use serde::{Deserialize, Serialize};
@@ -32,7 +32,9 @@ impl Weights {
 impl Table<'_> {
     /// A sampled read of a tile.
     pub(crate) fn read(&self, tile: u32, values: [f64; 2], weights: Weights) -> [f64; 4] {
-        bilinear(self.texels, self.entry.layout.position(tile, values), weights.bits(self.entry.format))
+        let position = self.entry.layout.position(tile, values);
+        let texel = bilinear(self.texels, position, weights.bits(self.entry.format));
+        Encoding::of(self.entry.kind, self.entry.format).decode(texel)
     }
 }
 

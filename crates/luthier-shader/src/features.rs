@@ -28,6 +28,7 @@ impl Features {
         "mixed",
         "oren_nayar",
         "phase",
+        "split_root",
         "theta_axis",
         "thickness",
         "bilinear",

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use luthier_lut::{Axis, Mapping, TableKind};
+use luthier_lut::{Axis, Encoding, Mapping, TableKind};
 
 use crate::features::Features;
 use crate::module::prune;
@@ -39,7 +39,9 @@ pub(crate) fn lookup(table: &TableFace, features: &Features) -> Result<String, S
 
     let has_angle = layout.x.quantity.starts_with("theta");
     let mut out = constants(table);
-    for line in prune(module, &features.with("theta_axis", has_angle)).lines() {
+    let is_split = Encoding::of(kind, table.format) == Encoding::SplitSixteenthRoot;
+    let features = features.with("theta_axis", has_angle).with("split_root", is_split);
+    for line in prune(module, &features).lines() {
         if let Some(value) = place(line, "let x = $x(") {
             node_index(&mut out, "x", &layout.x, value);
         } else if let (Some(value), Some(y)) = (place(line, "let y = $y("), &layout.y) {

@@ -122,6 +122,7 @@ fn unsupported(what: impl Into<std::borrow::Cow<'static, str>>) -> TextureError 
 fn vulkan_format(format: TexelFormat) -> Format {
     match format {
         TexelFormat::R16Float => Format::R16_SFLOAT,
+        TexelFormat::Rg16Float => Format::R16G16_SFLOAT,
         TexelFormat::R32Float => Format::R32_SFLOAT,
         TexelFormat::Rgba8Unorm => Format::R8G8B8A8_UNORM,
         TexelFormat::Rgba16Float => Format::R16G16B16A16_SFLOAT,

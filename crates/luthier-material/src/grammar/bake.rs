@@ -13,7 +13,7 @@ const SIDES: Kind = Kind::List { item: &SIDE, min: 2, max: 2 };
 
 const COLOR_FORMATS: Kind = Kind::Choice(&["rgba8unorm", "rgba16float", "rgba32float"]);
 const FLOAT_FORMATS: Kind = Kind::Choice(&["rgba16float", "rgba32float"]);
-const SCALAR_FORMATS: Kind = Kind::Choice(&["r16float", "r32float"]);
+const SCALAR_FORMATS: Kind = Kind::Choice(&["r16float", "rg16float", "r32float"]);
 
 const FORMAT_DOC: &str = "Texel format, by its WebGPU name.";
 const SIDE_DOC: &str = "Texels along a side.";

@@ -77,3 +77,22 @@ proptest! {
         }
     }
 }
+
+/// At its critical angle a film's wave does not advance along the normal, and both roads divide zero by zero. In the limit the
+/// matrices are [1, -i 2 pi d/lambda; 0, 1] for s and [1, 0; -i n^2 2 pi d/lambda, 1] for p.
+#[test]
+fn a_film_at_its_critical_angle() {
+    // (3/4)^2 = (5/4)^2 (1 - (4/5)^2), in floating point too.
+    let (above, film, below, cos, waves) = (1.25, 0.75, c(1.5, 0.0), 0.8, 0.3);
+    let found = coated(c(above, 0.0), &[FilmLayer { ior: c(film, 0.0), waves }], below, cos);
+    let phase = c(0.0, -2.0 * PI * waves);
+    let q = (2.25f64 - 0.5625).sqrt();
+    let expected = |top: f64, bottom: f64, electric: Complex64, magnetic: Complex64| {
+        let (e, h) = (c(1.0, 0.0) + electric * bottom, c(bottom, 0.0) + magnetic);
+        ((top * e - h) / (top * e + h)).norm_sqr()
+    };
+    let s = expected(above * cos, q, phase, c(0.0, 0.0));
+    let p = expected(above / cos, 2.25 / q, c(0.0, 0.0), phase * film * film);
+    assert!((found.refl_s - s).abs() < 1e-7, "{} against {s}", found.refl_s);
+    assert!((found.refl_p - p).abs() < 1e-7, "{} against {p}", found.refl_p);
+}

@@ -21,7 +21,7 @@ pub(super) fn write(out: &mut String, report: &Report) {
     comparisons(out, report);
     let _ = write!(
         out,
-        "<p><b>Relative errors</b> are |value − reference| / max(|reference|, floor), every colour channel a \
+        "<p><b>Relative errors</b> are |value − reference| / max(brightest channel of the reference, floor), every colour channel a \
          sample. The floor of the headline is {} in f cos θᵢ: a tenth of a white diffuser lit along its normal. \
          Below it an error of 10⁻³ is 10⁻⁴ of diffuse white, a third of the darkest step of an 8-bit sRGB picture \
          exposed for that white. Two other floors show what this one hides: {} (a thousandth of white) judges the \

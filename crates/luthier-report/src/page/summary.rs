@@ -55,7 +55,7 @@ fn verdict(out: &mut String, report: &Report) {
     let _ = writeln!(
         out,
         "<section class=\"verdict{class}\"><p class=\"figure\">{}</p><p>The figure is the largest error of f cos θᵢ \
-         over all materials, directions and channels, of {judged}; relative to max(|reference|, {}), a tenth of a \
+         over all materials, directions and channels, of {judged}; relative to max(brightest channel of the reference, {}), a tenth of a \
          white diffuser.{}</p></section>",
         escape(&words),
         number(report.floor),

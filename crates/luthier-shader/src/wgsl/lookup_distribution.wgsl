@@ -5,5 +5,12 @@ fn luthier_lookup_distribution(tile: f32, cos_theta_h: f32, sin_theta_h_sq: f32,
     let x = $x(cos_theta_h); //? !theta_axis
     let y = $y(alpha);
     let position = $position(x, y);
-    return $read.r;
+    // The texel holds the sixteenth root, split in two halves. //? split_root
+    let halves = $read.rg; //? split_root
+    let root = halves.x + halves.y / 1024.0; //? split_root
+    let square = root * root; //? split_root
+    let fourth = square * square; //? split_root
+    let eighth = fourth * fourth; //? split_root
+    return eighth * eighth; //? split_root
+    return $read.r; //? !split_root
 }
