@@ -14,11 +14,18 @@ use crate::microsurface::{TransparentFacets, Walk, crossed_and_returned, walk_af
 use crate::quadrature::gauss_legendre;
 use crate::stack::Distribution;
 
-/// Nodes of the cosine axis that first-bounce weights are spread over.
+/// Nodes of the cosine axis that first-bounce weights are spread over by cubics.
 const FIRST_NODES: usize = 129;
 
-/// Nodes of the cosine axis that walks look reflectances up on.
+/// Nodes of the cosine axis that walks look reflectances up on, and that first-bounce weights are spread over by straight
+/// lines for curves that cubics between the coarser nodes do not follow.
 const WALK_NODES: usize = 1025;
+
+/// How closely cubics have to follow a curve: the most that they may add to an albedo.
+const CUBIC_TOLERANCE: f64 = 5e-5;
+
+/// Points of a curve, per interval of nodes, in the means that stand for it where cubics fail.
+const MEAN_POINTS: u32 = 8;
 
 /// Directions flatter than this are evaluated as this one: the limit at grazing incidence.
 pub const COS_THETA_MIN: f64 = 1e-5;
@@ -32,6 +39,9 @@ pub struct ReflectanceCurves {
     count: usize,
     /// All curves at the first node, then all at the second.
     values: Vec<f64>,
+    /// Means of all curves around the nodes, in the same order, if one of them has a kink (the critical angle) or is too steep
+    /// for cubics. A density that is smooth across an interval, spread by straight lines, integrates exactly against these.
+    means: Option<Vec<f64>>,
 }
 
 impl ReflectanceCurves {
@@ -39,7 +49,26 @@ impl ReflectanceCurves {
     pub fn new(count: usize, f: impl Fn(usize, f64) -> f64) -> Self {
         let last = (WALK_NODES - 1) as f64;
         let node = |i: usize| (0..count).map(move |k| (k, i as f64 / last));
-        Self { count, values: (0..WALK_NODES).flat_map(node).map(|(k, cos)| f(k, cos)).collect() }
+        let mut curves =
+            Self { count, values: (0..WALK_NODES).flat_map(node).map(|(k, cos)| f(k, cos)).collect(), means: None };
+        if !curves.cubics_follow() {
+            let means =
+                (0..WALK_NODES).flat_map(node).map(|(k, cos)| tent_mean(|c| f(k, c), cos, 1.0 / last)).collect();
+            curves.means = Some(means);
+        }
+        curves
+    }
+
+    /// Whether cubics between the coarser nodes pass all finer nodes closely enough.
+    fn cubics_follow(&self) -> bool {
+        (0..WALK_NODES).all(|i| {
+            let (base, weights) = cubic(i as f64 / (WALK_NODES - 1) as f64);
+            let fine = &self.values[i * self.count..(i + 1) * self.count];
+            fine.iter().enumerate().all(|(k, value)| {
+                let at = weights.iter().enumerate().map(|(j, w)| w * self.at_first_node(base + j)[k]).sum::<f64>();
+                (at - value).abs() <= CUBIC_TOLERANCE
+            })
+        })
     }
 
     /// Number of curves.
@@ -91,6 +120,8 @@ impl Effort {
 pub struct FacetStatistics {
     /// Weight of the first bounce per cosine node; the sum is the single-scattering albedo for F = 1.
     first: Vec<f64>,
+    /// The same over the finer nodes, by straight lines.
+    first_fine: Vec<f64>,
     /// What the first bounce leaves of the light.
     remaining: f64,
     /// Facets of all walks, one after the other: cosine, and light that leaves there. The sign of the latter marks the end of
@@ -108,13 +139,17 @@ impl FacetStatistics {
     pub fn new(distribution: Distribution, alpha: f64, cos_theta_i: f64, effort: Effort, seed: u32) -> Self {
         let cos_theta_i = cos_theta_i.clamp(COS_THETA_MIN, 1.0);
         let mut first = vec![0.0; FIRST_NODES];
+        let mut first_fine = vec![0.0; WALK_NODES];
         if alpha < ALPHA_MIN {
             spread(&mut first, cos_theta_i, 1.0);
-            return Self { first, remaining: 0.0, facets: Vec::new(), later: 0.0 };
+            spread_fine(&mut first_fine, cos_theta_i, 1.0);
+            return Self { first, first_fine, remaining: 0.0, facets: Vec::new(), later: 0.0 };
         }
         let surface = Microsurface::new(distribution, alpha, cos_theta_i);
         surface.first_facets(effort.first, Horizon::Above, |facet| {
-            spread(&mut first, facet.cos_theta_d, facet.weight * surface.leaving(&facet));
+            let leaving = facet.weight * surface.leaving(&facet);
+            spread(&mut first, facet.cos_theta_d, leaving);
+            spread_fine(&mut first_fine, facet.cos_theta_d, leaving);
         });
         let remaining = 1.0 - first.iter().sum::<f64>();
 
@@ -138,15 +173,21 @@ impl FacetStatistics {
                 }
             });
         }
-        Self { first, remaining, facets, later }
+        Self { first, first_fine, remaining, facets, later }
     }
 
     /// Albedo of the first bounce alone, per curve.
     pub fn single_scattering(&self, f: &ReflectanceCurves) -> Vec<f64> {
         let mut sums = vec![0.0; f.count];
-        for (i, weight) in self.first.iter().enumerate() {
-            for (sum, value) in sums.iter_mut().zip(f.at_first_node(i)) {
+        let mut add = |weight: &f64, values: &[f64]| {
+            for (sum, value) in sums.iter_mut().zip(values) {
                 *sum += weight * value;
+            }
+        };
+        match &f.means {
+            None => self.first.iter().enumerate().for_each(|(i, weight)| add(weight, f.at_first_node(i))),
+            Some(means) => {
+                self.first_fine.iter().zip(means.chunks_exact(f.count)).for_each(|(w, values)| add(w, values))
             }
         }
         sums
@@ -204,18 +245,48 @@ pub fn crossed_albedo(
 
 /// Spreads a weight over four neighbouring nodes so that cubics integrate exactly.
 fn spread(first: &mut [f64], cos_theta: f64, weight: f64) {
+    let (base, weights) = cubic(cos_theta);
+    for (k, l) in weights.into_iter().enumerate() {
+        first[base + k] += weight * l;
+    }
+}
+
+/// The first of the four coarse nodes around a cosine, and the weights of Lagrange's cubic.
+fn cubic(cos_theta: f64) -> (usize, [f64; 4]) {
     let p = cos_theta.clamp(0.0, 1.0) * (FIRST_NODES - 1) as f64;
     let base = (p as usize).clamp(1, FIRST_NODES - 3) - 1;
     let t = p - base as f64;
-    let lagrange = [
+    let weights = [
         -(t - 1.0) * (t - 2.0) * (t - 3.0) / 6.0,
         t * (t - 2.0) * (t - 3.0) / 2.0,
         -t * (t - 1.0) * (t - 3.0) / 2.0,
         t * (t - 1.0) * (t - 2.0) / 6.0,
     ];
-    for (k, l) in lagrange.into_iter().enumerate() {
-        first[base + k] += weight * l;
+    (base, weights)
+}
+
+/// Spreads a weight over the two finer nodes around a cosine.
+fn spread_fine(first: &mut [f64], cos_theta: f64, weight: f64) {
+    let p = cos_theta.clamp(0.0, 1.0) * (WALK_NODES - 1) as f64;
+    let base = (p as usize).min(WALK_NODES - 2);
+    let t = p - base as f64;
+    first[base] += weight * (1.0 - t);
+    first[base + 1] += weight * t;
+}
+
+/// Mean of a function of the cosine around a node, weighted by a tent as wide as the intervals beside it, which is cut off at 0
+/// and 1.
+fn tent_mean(f: impl Fn(f64) -> f64, cos_theta: f64, interval: f64) -> f64 {
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for i in 0..2 * MEAN_POINTS {
+        let t = (f64::from(i) + 0.5) / f64::from(MEAN_POINTS) - 1.0;
+        let (at, weight) = (cos_theta + t * interval, 1.0 - t.abs());
+        if (0.0..=1.0).contains(&at) {
+            sum += weight * f(at);
+            weights += weight;
+        }
     }
+    sum / weights
 }
 
 /// Walks that start with less than this share of the light of all later bounces are left out.

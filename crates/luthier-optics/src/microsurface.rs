@@ -2,8 +2,8 @@
 //!
 //! Heitz, Hanika, d'Eon and Dachsbacher 2016, "Multiple-Scattering Microfacet BSDFs with the Smith Model". Heights
 //! enter only through the fraction `c` of the surface that lies below: the result does not depend on the height
-//! distribution, so `c` itself is the coordinate, 1 at the top. A ray that goes up with Smith's Lambda leaves with
-//! probability `c^Lambda`.
+//! distribution. The coordinate here is the depth `-ln c`, 0 at the top: a ray that goes up with Smith's Lambda leaves
+//! from there with probability `exp(-Lambda depth)`.
 
 use glam::DVec3;
 
@@ -19,8 +19,8 @@ const REMAINDER: f64 = 1e-3;
 /// No walk has more facets than this.
 const MAX_FACETS: u32 = 64;
 
-/// Sobol dimensions that one facet uses.
-const DIMENSIONS: u32 = 4;
+/// Sets of four Sobol dimensions that there are.
+const SETS: u32 = 64;
 
 /// Which walk: its numbers are a function of this and nothing else.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,9 +32,9 @@ pub struct Walk {
 }
 
 impl Walk {
-    /// Number `dimension` of a facet, in 0..1.
-    fn random(self, facet: u32, dimension: u32) -> f64 {
-        f64::from(sobol_burley::sample(self.index, (facet * DIMENSIONS + dimension) % 256, self.seed))
+    /// The four numbers of a facet, each in 0..1: depth before it, two for its normal, and one to choose.
+    fn numbers(self, facet: u32) -> [f64; 4] {
+        sobol_burley::sample_4d(self.index, facet % SETS, self.seed).map(f64::from)
     }
 }
 
@@ -54,8 +54,8 @@ pub struct Facet {
 /// up to each, times what leaves there. `alpha` > 0, `cos_theta_i` > 0.
 pub fn reflecting_walk(distribution: Distribution, alpha: f64, cos_theta_i: f64, walk: Walk, visit: impl FnMut(Facet)) {
     let ray = -incident(cos_theta_i);
-    let height = drop_in(distribution, alpha, ray, 1.0, walk.random(0, 0));
-    walk_from(distribution, alpha, Start { ray, height, facet: 0 }, walk, visit);
+    let depth = drop_in(distribution, alpha, ray, 0.0, walk.numbers(0)[0]);
+    walk_from(distribution, alpha, Start { ray, depth, facet: 0 }, walk, visit);
 }
 
 /// The rest of a walk whose first facet is known: light from `cos_theta_i` has left the facet along `ray` and will meet the
@@ -63,7 +63,7 @@ pub fn reflecting_walk(distribution: Distribution, alpha: f64, cos_theta_i: f64,
 ///
 /// First facets lie at heights of density `(1 + Lambda_i) c^Lambda_i`; a share `1 - c^Lambda_o` of the light goes on. In
 /// `-ln c` the product of the two is the density of a sum of two exponential variables, of rates `1 + Lambda_i` and
-/// `1 + Lambda_i + Lambda_o`, so the height is drawn exactly and all walks weigh the same.
+/// `1 + Lambda_i + Lambda_o`, so the depth is drawn exactly and all walks weigh the same.
 pub fn walk_after_first_facet(
     distribution: Distribution,
     alpha: f64,
@@ -73,32 +73,33 @@ pub fn walk_after_first_facet(
     visit: impl FnMut(Facet),
 ) {
     let rate = 1.0 + lambda(distribution, alpha, cos_theta_i);
-    let mut height = libm::pow(1.0 - walk.random(0, 0), 1.0 / rate);
+    let [first, .., second] = walk.numbers(0);
+    let mut depth = -libm::log(1.0 - first) / rate;
     if ray.z > 0.0 {
-        let onward = lambda(distribution, alpha, ray.z);
-        height *= libm::pow(1.0 - walk.random(0, 3), 1.0 / (rate + onward));
+        depth -= libm::log(1.0 - second) / (rate + lambda(distribution, alpha, ray.z));
     }
-    let escape = escape(distribution, alpha, ray, height);
-    let height = next_height(distribution, alpha, ray, height, walk.random(1, 0) * (1.0 - escape));
-    walk_from(distribution, alpha, Start { ray, height, facet: 1 }, walk, visit);
+    let escape = escape(distribution, alpha, ray, depth);
+    let depth = next_depth(distribution, alpha, ray, depth, walk.numbers(1)[0] * (1.0 - escape));
+    walk_from(distribution, alpha, Start { ray, depth, facet: 1 }, walk, visit);
 }
 
-/// A ray about to meet facet number `facet` at `height`.
+/// A ray about to meet facet number `facet` at `depth`.
 struct Start {
     ray: DVec3,
-    height: f64,
+    depth: f64,
     facet: u32,
 }
 
 fn walk_from(distribution: Distribution, alpha: f64, start: Start, walk: Walk, mut visit: impl FnMut(Facet)) {
-    let Start { mut ray, mut height, facet: first } = start;
+    let Start { mut ray, mut depth, facet: first } = start;
     let mut light = 1.0;
+    let mut numbers = walk.numbers(first);
     for facet in first..MAX_FACETS {
         let w = -ray;
-        let m = visible_normals::sample(distribution, alpha, w, [walk.random(facet, 1), walk.random(facet, 2)]);
+        let m = visible_normals::sample(distribution, alpha, w, [numbers[1], numbers[2]]);
         let cos_theta_d = w.dot(m).max(0.0);
         ray = (2.0 * cos_theta_d * m - w).normalize();
-        let escape = escape(distribution, alpha, ray, height);
+        let escape = escape(distribution, alpha, ray, depth);
         let left = light * (1.0 - escape);
         if left < REMAINDER || facet + 1 == MAX_FACETS {
             visit(Facet { cos_theta_d, leaving: light });
@@ -106,7 +107,8 @@ fn walk_from(distribution: Distribution, alpha: f64, start: Start, walk: Walk, m
         }
         visit(Facet { cos_theta_d, leaving: light * escape });
         light = left;
-        height = next_height(distribution, alpha, ray, height, walk.random(facet + 1, 0) * (1.0 - escape));
+        numbers = walk.numbers(facet + 1);
+        depth = next_depth(distribution, alpha, ray, depth, numbers[0] * (1.0 - escape));
     }
 }
 
@@ -149,13 +151,14 @@ pub fn crossed_and_returned(
     walk: Walk,
 ) -> f64 {
     let ray = -incident(cos_theta_i);
-    let height = drop_in(distribution, alpha, ray, 1.0, walk.random(0, 0));
-    let mut branches = vec![Branch { ray, height, light: 1.0, facet: 0, above: true, crossed: false }];
+    let depth = drop_in(distribution, alpha, ray, 0.0, walk.numbers(0)[0]);
+    let mut branches = vec![Branch { ray, depth, light: 1.0, facet: 0, above: true, crossed: false }];
     let mut returned = 0.0;
     while let Some(branch) = branches.pop() {
-        let Branch { ray, height, light, facet, above, .. } = branch;
+        let Branch { ray, depth, light, facet, above, .. } = branch;
         let w = -ray;
-        let m = visible_normals::sample(distribution, alpha, w, [walk.random(facet, 1), walk.random(facet, 2)]);
+        let [_, u, v, choice] = walk.numbers(facet);
+        let m = visible_normals::sample(distribution, alpha, w, [u, v]);
         let cos_theta_d = w.dot(m).max(0.0);
         let eta_ti = if above { facets.eta } else { 1.0 / facets.eta };
         let (reflectance, cos_t) = facets.split(above, cos_theta_d);
@@ -166,7 +169,7 @@ pub fn crossed_and_returned(
         let through = Branch {
             // In the frame of the other side, where the surface is flipped and heights count from the other end.
             ray: DVec3::new(refracted.x, refracted.y, -refracted.z),
-            height: 1.0 - height,
+            depth: flipped(depth),
             light: light * (1.0 - reflectance),
             above: !above,
             crossed: true,
@@ -174,21 +177,21 @@ pub fn crossed_and_returned(
         };
         let both = if light > SPLIT {
             [Some(mirror), Some(through)]
-        } else if walk.random(facet, 3) < reflectance {
+        } else if choice < reflectance {
             [Some(Branch { light, ..mirror }), None]
         } else {
             [None, Some(Branch { light, ..through })]
         };
         for next in both.into_iter().flatten() {
-            let escape = escape(distribution, alpha, next.ray, next.height);
+            let escape = escape(distribution, alpha, next.ray, next.depth);
             if next.above && next.crossed {
                 returned += next.light * escape;
             }
             let left = next.light * (1.0 - escape);
             if left > REMAINDER && facet + 1 < MAX_FACETS {
-                let u = walk.random(facet + 1, 0) * (1.0 - escape);
-                let height = next_height(distribution, alpha, next.ray, next.height, u);
-                branches.push(Branch { height, light: left, facet: facet + 1, ..next });
+                let u = walk.numbers(facet + 1)[0] * (1.0 - escape);
+                let depth = next_depth(distribution, alpha, next.ray, next.depth, u);
+                branches.push(Branch { depth, light: left, facet: facet + 1, ..next });
             }
         }
     }
@@ -199,7 +202,7 @@ pub fn crossed_and_returned(
 #[derive(Clone, Copy)]
 struct Branch {
     ray: DVec3,
-    height: f64,
+    depth: f64,
     light: f64,
     facet: u32,
     above: bool,
@@ -210,22 +213,27 @@ fn incident(cos_theta_i: f64) -> DVec3 {
     DVec3::new(libm::sqrt((1.0 - cos_theta_i * cos_theta_i).max(0.0)), 0.0, cos_theta_i)
 }
 
-/// Probability that a ray leaves the surface from a height without meeting it again (Heitz et al. 2016, eq. 20).
-fn escape(distribution: Distribution, alpha: f64, ray: DVec3, height: f64) -> f64 {
-    if ray.z <= 0.0 { 0.0 } else { libm::pow(height, lambda(distribution, alpha, ray.z)) }
+/// Probability that a ray leaves the surface from a depth without meeting it again (Heitz et al. 2016, eq. 20).
+fn escape(distribution: Distribution, alpha: f64, ray: DVec3, depth: f64) -> f64 {
+    if ray.z <= 0.0 { 0.0 } else { libm::exp(-depth * lambda(distribution, alpha, ray.z)) }
 }
 
 /// Where a ray meets the surface again, given that it does: `u` is uniform in 0..(1 - probability to leave).
-fn next_height(distribution: Distribution, alpha: f64, ray: DVec3, height: f64, u: f64) -> f64 {
+fn next_depth(distribution: Distribution, alpha: f64, ray: DVec3, depth: f64, u: f64) -> f64 {
     if ray.z > 0.0 {
         let lambda = lambda(distribution, alpha, ray.z);
-        if lambda == 0.0 { 1.0 } else { (height * libm::pow(1.0 - u, -1.0 / lambda)).min(1.0) }
+        if lambda == 0.0 { 0.0 } else { (depth + libm::log(1.0 - u) / lambda).max(0.0) }
     } else {
-        drop_in(distribution, alpha, ray, height, u)
+        drop_in(distribution, alpha, ray, depth, u)
     }
 }
 
 /// Where a ray that goes down meets the surface.
-fn drop_in(distribution: Distribution, alpha: f64, ray: DVec3, height: f64, u: f64) -> f64 {
-    height * libm::pow(1.0 - u, 1.0 / (1.0 + lambda(distribution, alpha, -ray.z)))
+fn drop_in(distribution: Distribution, alpha: f64, ray: DVec3, depth: f64, u: f64) -> f64 {
+    depth - libm::log(1.0 - u) / (1.0 + lambda(distribution, alpha, -ray.z))
+}
+
+/// The same place in the frame of the other side: from `-ln c` to `-ln(1 - c)`.
+fn flipped(depth: f64) -> f64 {
+    -libm::log((-libm::expm1(-depth)).max(f64::MIN_POSITIVE))
 }

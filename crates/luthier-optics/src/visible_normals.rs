@@ -26,7 +26,7 @@ pub fn sample(distribution: Distribution, alpha: f64, w: DVec3, u: [f64; 2]) -> 
         Distribution::Beckmann => {
             let sin = libm::hypot(stretched.x, stretched.y);
             let along = invert_visible_slope(stretched.z, sin, u[0]);
-            let across = invert_visible_slope(1.0, 0.0, u[1]);
+            let across = normal_slope(u[1]);
             let (cos_phi, sin_phi) = if sin > 0.0 { (stretched.x / sin, stretched.y / sin) } else { (1.0, 0.0) };
             let x = cos_phi * along - sin_phi * across;
             let y = sin_phi * along + cos_phi * across;
@@ -73,6 +73,16 @@ fn invert_visible_slope(cos: f64, sin: f64, u: f64) -> f64 {
     x
 }
 
+/// The slope x with `(1 + erf x)/2 = u`: Winitzki's closed form, good to 2e-3, and one step of Halley's method on it.
+fn normal_slope(u: f64) -> f64 {
+    let u = u.clamp(1e-15, 1.0 - 1e-15);
+    let tails = libm::log(4.0 * u * (1.0 - u));
+    let a = 2.0 / (PI * 0.147) + 0.5 * tails;
+    let guess = libm::copysign(libm::sqrt(libm::sqrt(a * a - tails / 0.147) - a), u - 0.5);
+    let newton = (0.5 * libm::erfc(-guess) - u) * libm::sqrt(PI) * libm::exp(guess * guess);
+    guess - newton / (1.0 + newton * guess)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -112,6 +122,14 @@ mod tests {
         }
         for (s, e) in sampled.iter().zip(expected) {
             assert!((s - e / weight).abs() < 2e-3, "{distribution:?} {alpha} {cos}: {s} against {}", e / weight);
+        }
+    }
+
+    #[test]
+    fn normal_slopes_invert_the_error_function() {
+        for i in 1..1000 {
+            let u = f64::from(i) / 1000.0;
+            assert!((0.5 * libm::erfc(-normal_slope(u)) - u).abs() < 1e-8, "{u}");
         }
     }
 

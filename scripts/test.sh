@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# All tests. On Debian and its relatives it installs what they need (the software Vulkan driver and the shader
+# validators); elsewhere it says what is missing. Needs nothing but a Rust toolchain otherwise.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+packages=(mesa-vulkan-drivers libvulkan1 glslang-tools spirv-tools)
+
+step() { printf '\n== %s\n' "$1"; }
+
+missing() {
+  command -v glslangValidator >/dev/null || echo glslangValidator
+  command -v spirv-val >/dev/null || echo spirv-val
+  ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so' || echo 'the Vulkan loader'
+  ls /usr/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json >/dev/null 2>&1 || echo 'a Vulkan driver'
+}
+
+need=$(missing || true)
+if [ -n "$need" ]; then
+  step "installing what the tests need"
+  as_root=""
+  [ "$(id -u)" = 0 ] || as_root=sudo
+  if command -v apt-get >/dev/null && { [ -z "$as_root" ] || command -v sudo >/dev/null; }; then
+    $as_root apt-get update -q
+    DEBIAN_FRONTEND=noninteractive $as_root apt-get install -y -q --no-install-recommends "${packages[@]}"
+  else
+    printf 'missing:\n%s\nOn Debian: apt-get install %s\nTests that need them are skipped, or fail when CI is set.\n' \
+      "$need" "${packages[*]}"
+  fi
+fi
+
+step "unit and integration tests"
+cargo test --workspace --locked
+
+step "the lean build has no wgpu"
+cargo check --locked -p luthier-cli --no-default-features
+if cargo tree --locked -p luthier-cli --no-default-features -e normal | grep -E '\bwgpu\b'; then
+  echo "error: the lean build depends on wgpu"
+  exit 1
+fi
+
+step "same bytes for 1 and 2 threads, debug and release"
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cargo build --locked --release -p luthier-cli
+cargo build --locked -p luthier-cli
+bake() { "./target/$1/luthier" bake materials --out "$work/$1-$2" --threads "$2" --quiet 2>/dev/null; }
+bake release 1
+bake release 2
+bake debug 2
+for other in release-2 debug-2; do
+  diff -r "$work/release-1" "$work/$other" && echo "release-1 = $other"
+done
+
+step "judging the bake"
+if [ -n "$(missing)" ]; then
+  ./target/release/luthier report --out "$work/release-1" --no-device --max-error 2e-2
+else
+  ./target/release/luthier report --out "$work/release-1" --max-error 2e-2
+fi
