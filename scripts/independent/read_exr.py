@@ -9,7 +9,7 @@ walk on the Smith micro-surface (Heitz et al. 2016).
     python3 scripts/independent/read_exr.py out/manifest.json
     python3 scripts/independent/read_exr.py out/manifest.json --index brass-foil/0=brass_70_30.csv --index coated/1=cu.csv/1.5
 
-Without --index only interfaces with the same index at all wavelengths of the manifest are evaluated. --index TILE=BELOW or
+Without --index, spectral interfaces are evaluated only if their index is the same at all wavelengths of the manifest. --index TILE=BELOW or
 TILE=BELOW/ABOVE names the media below and above an interface: a number, `n,k`, or a CSV of wavelength_nm, n, k.
 Exits with 1 when a Fresnel or distribution table differs by more than its tolerance, or an FGD value by more than five
 standard errors and 1e-3.
@@ -129,8 +129,10 @@ def fresnel(cos_theta, index):
     inner = index * cos_t
     inner = np.where(inner.imag < 0.0, -inner, inner)
     cos_t = inner / index
-    r_s = (cos_theta - inner) / (cos_theta + inner)
-    r_p = (index * cos_theta - cos_t) / (index * cos_theta + cos_t)
+    # An index-matched interface at grazing incidence is 0/0, and reflects nothing.
+    with np.errstate(invalid="ignore"):
+        r_s = np.nan_to_num((cos_theta - inner) / (cos_theta + inner))
+        r_p = np.nan_to_num((index * cos_theta - cos_t) / (index * cos_theta + cos_t))
     return 0.5 * (np.abs(r_s) ** 2 + np.abs(r_p) ** 2)
 
 
@@ -265,8 +267,11 @@ def relative_index(name, layer, colour, options):
         below, _, above = spec.partition("/")
         above = index_at(above, colour.wavelengths, options.data) if above else 1.0
         return index_at(below, colour.wavelengths, options.data) / above
-    constant = len(set(layer["ior_n"])) == 1 and len(set(layer["ior_k"])) == 1
-    if not constant or layer["film_thickness_max_nm"] > 0.0:
+    if layer["film_thickness_max_nm"] > 0.0:
+        return None
+    if len(colour.wavelengths) == 3:
+        return np.array(layer["ior_n"]) + 1j * np.array(layer["ior_k"])
+    if len(set(layer["ior_n"])) > 1 or len(set(layer["ior_k"])) > 1:
         return None
     return np.full(len(colour.wavelengths), complex(layer["ior_n"][0], layer["ior_k"][0]))
 
@@ -286,7 +291,7 @@ def check_fresnel(table, manifest, options):
     good, left_out = True, []
     for tile, material, layer in interfaces(manifest, "fresnel_tile"):
         name = table.entry["tiles"][tile]["name"]
-        colour = Colour(manifest["color"], material["wavelengths_nm"], options.data)
+        colour = Colour(material["color"], material["wavelengths_nm"], options.data)
         index = relative_index(name, layer, colour, options)
         if index is None:
             left_out.append(name)
@@ -319,7 +324,7 @@ def check_fgd(table, manifest, options):
     mu, alpha = cosines(table), table.nodes("y")
     for tile, material, layer in interfaces(manifest, "fgd_tile"):
         name = table.entry["tiles"][tile]["name"]
-        colour = Colour(manifest["color"], material["wavelengths_nm"], options.data)
+        colour = Colour(material["color"], material["wavelengths_nm"], options.data)
         index = relative_index(name, layer, colour, options)
         is_dielectric = layer["kind"] == "dielectric"
         if index is None or (is_dielectric and (len(set(index)) > 1 or index[0].imag != 0.0)):

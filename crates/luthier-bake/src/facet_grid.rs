@@ -14,11 +14,11 @@ use crate::fgd::wavelength_mean;
 use crate::json;
 use crate::smooth::savitzky_golay;
 
-/// Effort at the nodes, where neighbours share their noise.
-const NODE_EFFORT: Effort = Effort { first: 20, later: 26 };
+/// Effort at the nodes, where neighbours share their noise, and at the points of the error scan.
+const EFFORT: [Effort; 2] = [Effort { first: 20, later: 26 }, Effort { first: 24, later: 48 }];
 
-/// Effort at the points of the error scan.
-const PROBE_EFFORT: Effort = Effort { first: 24, later: 48 };
+/// The same for reflectances with a kink, which quadratures resolve slowly.
+const KINKED_EFFORT: [Effort; 2] = [Effort { first: 64, later: 40 }, Effort { first: 128, later: 96 }];
 
 /// Points of the error scan along each axis.
 const PROBES: u32 = 16;
@@ -32,6 +32,8 @@ pub(crate) const DOMAIN_ALPHA: f64 = 0.01;
 #[derive(Debug, Clone)]
 pub(crate) struct FacetGridJob {
     pub(crate) distribution: Distribution,
+    /// Whether light may be totally reflected at an angle.
+    pub(crate) kinked: bool,
     /// cos_theta and alpha.
     pub(crate) axes: [Axis; 2],
 }
@@ -48,15 +50,17 @@ impl FacetGridJob {
     pub(crate) fn inputs(&self) -> Value {
         json!({
             "distribution": self.distribution.name(),
+            "kinked": self.kinked,
             "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
         })
     }
 
     pub(crate) fn run(&self) -> FacetGrid {
         let [x, y] = &self.axes;
+        let [node_effort, probe_effort] = if self.kinked { KINKED_EFFORT } else { EFFORT };
         let nodes = (0..x.size * y.size)
             .into_par_iter()
-            .map(|texel| self.at(x.node(texel % x.size), y.node(texel / x.size), NODE_EFFORT, seed(texel)))
+            .map(|texel| self.at(x.node(texel % x.size), y.node(texel / x.size), node_effort, seed(texel)))
             .collect();
         let scan = Scan {
             points: [PROBES, PROBES],
@@ -68,7 +72,7 @@ impl FacetGridJob {
             .into_par_iter()
             .map(|point| {
                 let u = scan.coordinate([point % PROBES, point / PROBES]);
-                self.at(x.decode(u[0]), y.decode(u[1]), PROBE_EFFORT, seed(!point))
+                self.at(x.decode(u[0]), y.decode(u[1]), probe_effort, seed(!point))
             })
             .collect();
         FacetGrid { nodes, scan, probes }

@@ -58,7 +58,12 @@ impl FgdJob {
     }
 
     fn facet_grid(&self) -> Job {
-        Job::FacetGrid(FacetGridJob { distribution: self.distribution, axes: self.axes.clone() })
+        let kinked = self.transparent
+            && self.color.nodes().iter().any(|node| {
+                let at = self.interface.at(node.wavelength_nm);
+                at.below.re < at.above.re
+            });
+        Job::FacetGrid(FacetGridJob { distribution: self.distribution, kinked, axes: self.axes.clone() })
     }
 
     fn crossed(&self) -> Option<Job> {

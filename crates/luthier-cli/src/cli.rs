@@ -66,8 +66,8 @@ pub(crate) struct BakeOptions {
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(crate) out: PathBuf,
     /// Threads to use; by default all. The bytes do not depend on it
-    #[arg(long, value_name = "N")]
-    pub(crate) threads: Option<usize>,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
     /// Print what was made as JSON
     #[arg(long)]
     pub(crate) json: bool,

@@ -19,7 +19,7 @@ pub(crate) fn run(options: &BakeOptions) -> Outcome {
     let materials = valid(read(&options.sources.paths)?)?;
     let progress = BakeProgress::new();
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(options.threads.unwrap_or(0))
+        .num_threads(options.threads.map_or(0, usize::from))
         .build()
         .map_err(|source| Failure::Files(anyhow::Error::new(source).context("cannot start threads")))?;
     let made = pool.install(|| {

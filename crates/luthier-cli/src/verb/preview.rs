@@ -37,7 +37,7 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
     let settings = BallSettings {
         size: options.size,
         samples: options.samples,
-        exposure: options.exposure.exp2(),
+        exposure: libm::exp2f(options.exposure),
         ..BallSettings::default()
     };
     let image = scene.render_ball(material, &settings).map_err(device)?;

@@ -154,11 +154,12 @@ fn distribution() -> (TableEntry, Image) {
     for j in 0..512 {
         let alpha = y.node(j);
         for i in 0..512 {
-            let tan = layout.x.node(i).tan();
+            let tan = libm::tan(layout.x.node(i));
             let cos_sq = 1.0 / (1.0 + tan * tan);
             let slope_sq = (tan / alpha) * (tan / alpha);
-            let beckmann = if i == 511 { 0.0 } else { (-slope_sq).exp() / (cos_sq * cos_sq) };
-            let ggx = 1.0 / (cos_sq * (1.0 + slope_sq)).powi(2);
+            let beckmann = if i == 511 { 0.0 } else { libm::exp(-slope_sq) / (cos_sq * cos_sq) };
+            let inverse = cos_sq * (1.0 + slope_sq);
+            let ggx = 1.0 / (inverse * inverse);
             image.texel_mut(i, j)[0] = beckmann as f32;
             image.texel_mut(512 + i, j)[0] = ggx as f32;
         }
