@@ -7,14 +7,19 @@ use luthier_lut::{Encoding, Image, TableKind, TexelFormat};
 /// Between nodes that lie on a curve of second derivative f'', linear interpolation is off by up to h^2 f''/8, always to
 /// the same side. Nodes moved towards the chord by half of that, `h^2 f''/16`, spread the error evenly to both sides and
 /// halve its maximum (the usual minimax argument for broken lines). Second differences stand for h^2 f''; nodes at the
-/// border stay where they are.
+/// border stay where they are, and what is not negative stays so: at the foot of a lobe a second difference says little.
 pub(crate) fn texels(kind: TableKind, format: TexelFormat, truth: &Image) -> Image {
     let roots = Encoding::of(kind, format).to_root(truth);
-    let balanced = if kind == TableKind::Thickness { roots } else { balance(&roots) };
+    let balanced = match kind {
+        TableKind::Thickness => roots,
+        TableKind::Phase => balance(&roots, f64::NEG_INFINITY),
+        TableKind::Fresnel | TableKind::Distribution | TableKind::Fgd => balance(&roots, 0.0),
+    };
     format.quantise(&Encoding::of(kind, format).split(&balanced))
 }
 
-fn balance(image: &Image) -> Image {
+/// Nodes that are not below `floor` are not moved below it.
+fn balance(image: &Image, floor: f64) -> Image {
     let mut out = image.clone();
     let at = |x: u32, y: u32, c: usize| f64::from(image.texel(x, y)[c]);
     for y in 0..image.height {
@@ -28,7 +33,7 @@ fn balance(image: &Image) -> Image {
                 if y > 0 && y + 1 < image.height {
                     curvature += at(x, y - 1, c) - 2.0 * here + at(x, y + 1, c);
                 }
-                out.texel_mut(x, y)[c] = (here - curvature / 16.0) as f32;
+                out.texel_mut(x, y)[c] = (here - curvature / 16.0).max(floor.min(here)) as f32;
             }
         }
     }
@@ -54,6 +59,14 @@ mod tests {
     fn a_parabola_is_met_twice_as_well() {
         let plain = Image { width: 17, height: 1, channels: 1, data: (0..17).map(|i| (i * i) as f32).collect() };
         assert!((worst(&plain) - 0.25).abs() < 1e-6);
-        assert!((worst(&balance(&plain)) - 0.125).abs() < 1e-6);
+        assert!((worst(&balance(&plain, 0.0)) - 0.125).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_foot_of_a_lobe_is_not_dug_out() {
+        let lobe = Image { width: 5, height: 1, channels: 1, data: vec![1.0, 0.9, 0.0, -0.2, 0.9] };
+        let balanced = balance(&lobe, 0.0);
+        assert_eq!((balanced.data[2], balanced.data[3]), (0.0, -0.2));
+        assert!(balance(&lobe, f64::NEG_INFINITY).data[2] < 0.0);
     }
 }

@@ -75,6 +75,9 @@ impl Scan {
     }
 }
 
+/// Points of a scan that the search for the worst error starts from.
+const CLIMBS: usize = 12;
+
 /// [`measure_scan`] over the whole table.
 pub fn measure(
     cells: [u32; 2],
@@ -85,8 +88,9 @@ pub fn measure(
     measure_scan(&Scan::whole(cells, per_cell), compare, axis_values)
 }
 
-/// Compares a table with its function at the points of a scan, then climbs from the worst point to the local maximum,
-/// halving the step whenever no neighbour is worse.
+/// Compares a table with its function at the points of a scan, then climbs from the worst of them, each to its local maximum,
+/// halving the step whenever no neighbour is worse. Quantised texels and weights make the error a saw: one climb would stop
+/// at the nearest tooth.
 ///
 /// `compare` receives coordinates `u` in 0..=1; `axis_values` turns the worst `u` into what is reported. The scan
 /// is sequential and sums in a fixed order: the result does not depend on threads.
@@ -98,33 +102,20 @@ pub fn measure_scan(
     let counts = scan.points.map(|n| n.max(1));
     let mut errors = Vec::with_capacity(counts[0] as usize * counts[1] as usize);
     let mut sum_of_squares = 0.0;
-    let mut worst = Candidate { u: [0.5, 0.5], channel: 0, error: -1.0 };
+    let mut starts: Vec<Candidate> = Vec::with_capacity(CLIMBS + 1);
     for j in 0..counts[1] {
         for i in 0..counts[0] {
             let candidate = Candidate::at(scan.coordinate([i, j]), &compare);
             sum_of_squares += candidate.error * candidate.error;
             errors.push(candidate.error);
-            worst = worst.max(candidate);
+            // The worst first; of equals the first.
+            let place = starts.partition_point(|s| s.error >= candidate.error);
+            starts.insert(place, candidate);
+            starts.truncate(CLIMBS);
         }
     }
-
-    let axes = [0, 1].into_iter().filter(|&k: &usize| scan.to[k] > scan.from[k]);
-    let mut step = [0, 1].map(|k: usize| 0.5 * (scan.to[k] - scan.from[k]) / f64::from(counts[k]));
-    let mut halvings = 0;
-    while halvings < scan.refinements {
-        let before = worst.error;
-        for axis in axes.clone() {
-            for sign in [-1.0, 1.0] {
-                let mut u = worst.u;
-                u[axis] = (u[axis] + sign * step[axis]).clamp(scan.from[axis], scan.to[axis]);
-                worst = worst.max(Candidate::at(u, &compare));
-            }
-        }
-        if worst.error <= before {
-            step = step.map(|s| 0.5 * s);
-            halvings += 1;
-        }
-    }
+    let nothing = Candidate { u: [0.5, 0.5], channel: 0, error: -1.0 };
+    let worst = starts.into_iter().map(|start| climb(scan, start, &compare)).fold(nothing, Candidate::max);
 
     let points = errors.len();
     errors.sort_by(f64::total_cmp);
@@ -142,6 +133,29 @@ pub fn measure_scan(
         },
         points: points as u64,
     }
+}
+
+/// From a point to a local maximum of the error.
+fn climb(scan: &Scan, start: Candidate, compare: &impl Fn([f64; 2]) -> Comparison) -> Candidate {
+    let mut worst = start;
+    let axes = [0, 1].into_iter().filter(|&k: &usize| scan.to[k] > scan.from[k]);
+    let mut step = [0, 1].map(|k: usize| 0.5 * (scan.to[k] - scan.from[k]) / f64::from(scan.points[k].max(1)));
+    let mut halvings = 0;
+    while halvings < scan.refinements {
+        let before = worst.error;
+        for axis in axes.clone() {
+            for sign in [-1.0, 1.0] {
+                let mut u = worst.u;
+                u[axis] = (u[axis] + sign * step[axis]).clamp(scan.from[axis], scan.to[axis]);
+                worst = worst.max(Candidate::at(u, compare));
+            }
+        }
+        if worst.error <= before {
+            step = step.map(|s| 0.5 * s);
+            halvings += 1;
+        }
+    }
+    worst
 }
 
 #[derive(Clone, Copy)]

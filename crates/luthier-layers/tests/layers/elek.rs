@@ -47,7 +47,10 @@ fn mirror(alpha: f64) -> Layer {
 fn pairs() -> Vec<(DVec3, DVec3)> {
     let angles = [0.0, 20.0, 50.0, 75.0, 89.0];
     let pair = |i: f64, o: f64, phi: f64| (direction(i, 12.0), direction(o, phi));
-    angles.iter().flat_map(|&i| angles.iter().flat_map(move |&o| [0.0, 70.0, 192.0].map(|phi| pair(i, o, phi)))).collect()
+    angles
+        .iter()
+        .flat_map(|&i| angles.iter().flat_map(move |&o| [0.0, 70.0, 192.0].map(|phi| pair(i, o, phi))))
+        .collect()
 }
 
 #[test]
@@ -113,7 +116,8 @@ fn albedo(layers: &[Layer], terms: &impl Terms, alpha: f64, eta: f64, wo: DVec3)
         let tan = alpha * (x / (1.0 - x)).sqrt();
         let cos = 1.0 / (1.0 + tan * tan).sqrt();
         // dh = cos^3 tan dtan dphi, and tan dtan = alpha^2/2 dx/(1 - x)^2.
-        let measure = cos.powi(3) * alpha * alpha / (2.0 * (1.0 - x) * (1.0 - x)) * weight * 2.0 * PI / f64::from(azimuths);
+        let measure =
+            cos.powi(3) * alpha * alpha / (2.0 * (1.0 - x) * (1.0 - x)) * weight * 2.0 * PI / f64::from(azimuths);
         for k in 0..azimuths {
             let phi = 2.0 * PI * (f64::from(k) + 0.5) / f64::from(azimuths);
             let h = DVec3::new(tan * phi.cos(), tan * phi.sin(), 1.0) * cos;
@@ -177,10 +181,7 @@ fn values_of_the_published_model() {
                 Surface::isotropic(Distribution::Beckmann, 0.2),
                 Base::Dielectric { ior: Ior::constant(1.5, 0.0).unwrap(), slab },
             ),
-            layer(
-                Surface::isotropic(Distribution::Ggx, 0.3),
-                Base::Conductor { ior: Ior::sampled(samples).unwrap() },
-            ),
+            layer(Surface::isotropic(Distribution::Ggx, 0.3), Base::Conductor { ior: Ior::sampled(samples).unwrap() }),
         ],
     };
     let terms = Exact::new(&stack, Color::ThreeWavelengths(wavelengths));

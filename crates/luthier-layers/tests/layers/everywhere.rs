@@ -23,10 +23,8 @@ fn ior(n: f64, k: f64) -> Ior {
 }
 
 fn films() -> impl Strategy<Value = Vec<Film>> {
-    let film = (1.01..2.6, 0.0..2000.0).prop_map(|(n, nm)| Film {
-        ior: ior(n, 0.0),
-        thickness: FilmThickness { min_nm: nm, max_nm: nm },
-    });
+    let film = (1.01..2.6, 0.0..2000.0)
+        .prop_map(|(n, nm)| Film { ior: ior(n, 0.0), thickness: FilmThickness { min_nm: nm, max_nm: nm } });
     prop::collection::vec(film, 0..=1)
 }
 

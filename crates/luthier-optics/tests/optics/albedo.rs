@@ -88,6 +88,28 @@ fn a_dielectric_of_ggx_facets() {
     check(Distribution::Ggx, Facets::Dielectric { n: 1.5 }, |cos| dielectric(1.5, cos));
 }
 
+/// Below a medium of lesser index light is totally reflected beyond an angle: a kink that quadrature has to resolve.
+#[test]
+fn the_first_bounce_out_of_the_denser_medium() {
+    let n = 1.0 / 1.5;
+    let curves = ReflectanceCurves::new(1, |_, cos| dielectric(n, cos));
+    for distribution in [Distribution::Beckmann, Distribution::Ggx] {
+        for (i, (alpha, cos_theta)) in POINTS.into_iter().enumerate() {
+            let surface = Surface {
+                slopes: same(distribution),
+                heights: Heights::Uniform,
+                alpha,
+                facets: Facets::Dielectric { n },
+            };
+            let share = surface.shares(cos_theta, WALKS / 4, 200 + i as u64);
+            let effort = Effort { first: 128, later: 0 };
+            let found = FacetStatistics::new(distribution, alpha, cos_theta, effort, 0).single_scattering(&curves)[0];
+            let limit = 4.0 * share.sigma(share.once) + BIAS;
+            assert!((found - share.once).abs() < limit, "{distribution:?} {alpha} {cos_theta}: {found} {}", share.once);
+        }
+    }
+}
+
 /// The oracle itself: a result that depends on the distribution of heights would be wrong (Heitz et al. 2016, section 4).
 #[test]
 fn heights_do_not_matter() {

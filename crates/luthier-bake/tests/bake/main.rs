@@ -1,0 +1,13 @@
+//! Baked tables against closed forms and brute force, and what a bake promises about bytes, sharing and refusals.
+
+#![expect(clippy::disallowed_methods, reason = "oracles: nothing that ships depends on them")]
+
+mod albedo;
+// The oracle of the optics, which uses nothing of the workspace.
+#[expect(dead_code, reason = "the tests of the optics use all of it")]
+#[path = "../../../luthier-optics/tests/optics/brute_force.rs"]
+mod brute_force;
+mod closed_forms;
+mod films;
+mod materials;
+mod sharing;

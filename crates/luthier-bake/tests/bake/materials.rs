@@ -1,0 +1,51 @@
+//! Materials for tests, written as files.
+
+use luthier_bake::{Bake, BakeError, Silent, bake};
+use luthier_lut::{Atlas, TableKind};
+use luthier_material::{Material, parse};
+
+/// Tables small enough to be baked in a moment.
+pub(crate) const SMALL: &str = "
+[bake.fresnel]
+size = 24
+[bake.distribution]
+size = [24, 16]
+[bake.fgd]
+size = [8, 8]
+[bake.phase]
+size = 32
+[bake.thickness]
+size = 16
+";
+
+/// A material of that name with these layers (TOML) and settings.
+pub(crate) fn material(name: &str, layers: &str, settings: &str) -> Material {
+    let text = format!("schema = 1\nname = \"{name}\"\n{layers}\n{settings}\n");
+    let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+    match parse(&format!("{name}.toml"), &text, &no_files) {
+        Ok(parsed) => parsed.material,
+        Err(errors) => panic!("{}", errors.iter().map(|e| e.render(&text)).collect::<String>()),
+    }
+}
+
+/// One conductor, GGX.
+pub(crate) fn conductor(ior: &str, alpha: f64) -> String {
+    format!("[[layer]]\ntype = \"conductor\"\nior = {ior}\nalpha = {alpha}\n")
+}
+
+/// A half-infinite dielectric.
+pub(crate) fn dielectric(ior: &str, alpha: f64) -> String {
+    format!("[[layer]]\ntype = \"dielectric\"\nior = {ior}\nalpha = {alpha}\n")
+}
+
+pub(crate) fn try_bake(materials: &[Material]) -> Result<Bake, BakeError> {
+    bake(materials, &|_, _| Err("no images here".to_owned()), &Silent)
+}
+
+pub(crate) fn bake_all(materials: &[Material]) -> Bake {
+    try_bake(materials).unwrap()
+}
+
+pub(crate) fn atlas(bake: &Bake, kind: TableKind) -> &Atlas {
+    bake.atlases.iter().find(|a| a.kind == kind).unwrap()
+}
