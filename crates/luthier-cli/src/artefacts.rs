@@ -15,9 +15,10 @@ pub(crate) fn manifest(folder: &Path) -> Outcome<Manifest> {
         let hint = format!("no bake in {}: run `luthier bake` first", folder.display());
         return Err(Failure::Files(anyhow::anyhow!(hint)));
     }
-    let json = std::fs::read_to_string(&path).map_err(files(&path, "read"))?;
-    Manifest::from_json(&json)
-        .map_err(|source| Failure::Input(anyhow::Error::new(source).context(path.display().to_string())))
+    let json = std::fs::read(&path).map_err(files(&path, "read"))?;
+    let unusable = |source: anyhow::Error| Failure::Input(source.context(path.display().to_string()));
+    let json = String::from_utf8(json).map_err(|source| unusable(source.into()))?;
+    Manifest::from_json(&json).map_err(|source| unusable(source.into()))
 }
 
 /// The texels of all tables, as a shader reads them.

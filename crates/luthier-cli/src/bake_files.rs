@@ -22,6 +22,12 @@ const MODEL: &str = "elek";
 /// File name of the manifest.
 pub(crate) const MANIFEST: &str = "manifest.json";
 
+/// Folder of the report beside the manifest.
+pub(crate) const REPORT_FOLDER: &str = "report";
+
+/// The report: for programs, and for people.
+pub(crate) const REPORT_FILES: [&str; 2] = ["report/report.json", "report/index.html"];
+
 /// All files of a bake but the manifest, with their paths relative to it.
 pub(crate) struct BakeFiles {
     pub(crate) manifest: Manifest,

@@ -44,6 +44,7 @@ pub(crate) enum Verb {
     /// List the built-in optical constants, or show one set
     Ior(IorOptions),
     /// Print the JSON Schema of material files
+    #[command(after_help = "Examples:\n  luthier schema > material.schema.json")]
     Schema,
 }
 
@@ -95,7 +96,7 @@ pub(crate) struct ReportOptions {
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(crate) out: PathBuf,
     /// Exit with 1 when the largest relative error of a shader exceeds this
-    #[arg(long, value_name = "X", value_parser = positive)]
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) max_error: Option<f64>,
     /// Pairs of directions in every set of every material
     #[arg(long, value_name = "N", default_value_t = 4096, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
@@ -134,7 +135,7 @@ pub(crate) struct PreviewOptions {
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=16))]
     pub(crate) samples: u32,
     /// Exposure in stops
-    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_hyphen_values = true)]
+    #[arg(long, value_name = "EV", default_value_t = 0.0, value_parser = stops, allow_hyphen_values = true)]
     pub(crate) exposure: f32,
     /// Use the graphics adapter whose name contains this
     #[arg(long, value_name = "NAME")]
@@ -206,5 +207,13 @@ fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         _ => Err("expected a positive number, such as 1e-3".to_owned()),
+    }
+}
+
+#[cfg(feature = "gpu")]
+fn stops(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(value) if value.abs() <= 20.0 => Ok(value),
+        _ => Err("expected stops from -20 to 20".to_owned()),
     }
 }

@@ -39,7 +39,22 @@ pub(crate) fn open(name: Option<&str>) -> Outcome<Gpu> {
     name.map_or_else(Gpu::open, Gpu::open_named).map_err(device)
 }
 
-/// An error of the runtime.
+/// An error of the runtime: what is wrong with the bake is not the adapter's fault.
 pub(crate) fn device(source: GpuError) -> Failure {
-    Failure::Device(source.into())
+    match source {
+        GpuError::Read { .. } => Failure::Files(source.into()),
+        GpuError::Manifest { .. }
+        | GpuError::OutsideFolder { .. }
+        | GpuError::Hash { .. }
+        | GpuError::Texture { .. }
+        | GpuError::ShaderText { .. }
+        | GpuError::Layout { .. }
+        | GpuError::TableMismatch { .. }
+        | GpuError::MissingTexels { .. }
+        | GpuError::NoMaterials
+        | GpuError::NoLayers { .. }
+        | GpuError::NoShader { .. }
+        | GpuError::Binding { .. } => Failure::Input(source.into()),
+        _ => Failure::Device(source.into()),
+    }
 }

@@ -2,6 +2,8 @@ use std::fmt;
 use std::io;
 use std::process::ExitCode;
 
+use crate::output::complain;
+
 /// Why a command ends with another code than 0. The codes are documented in `luthier --help`.
 #[derive(Debug)]
 pub(crate) enum Failure {
@@ -36,10 +38,23 @@ impl Failure {
             Self::Device(error) => (4, Some(error)),
         };
         if let Some(error) = error {
-            eprintln!("error: {error:#}");
+            complain(&format!("error: {}", sentence(error)));
         }
         ExitCode::from(code)
     }
+}
+
+/// An error and its causes. Many errors quote their cause already; what was said is not said again.
+fn sentence(error: &anyhow::Error) -> String {
+    let mut text = String::new();
+    for cause in error.chain().map(ToString::to_string) {
+        if text.is_empty() {
+            text = cause;
+        } else if !text.ends_with(&cause) {
+            text = format!("{text}: {cause}");
+        }
+    }
+    text
 }
 
 /// An input/output error and the path that it is about.
@@ -62,5 +77,19 @@ impl From<io::Error> for Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{self:?}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn causes_are_named_once() {
+        let cause = || io::Error::other("disc on fire");
+        let quoting = anyhow::Error::new(cause()).context("cannot read a.toml: disc on fire");
+        assert_eq!(sentence(&quoting), "cannot read a.toml: disc on fire");
+        let silent = anyhow::Error::new(cause()).context("cannot read a.toml").context("cannot judge");
+        assert_eq!(sentence(&silent), "cannot judge: cannot read a.toml: disc on fire");
     }
 }

@@ -1,13 +1,15 @@
 //! Material files on disk.
 
 use std::collections::BTreeSet;
-use std::io::IsTerminal;
-use std::path::{Path, PathBuf};
+use std::io::{self, ErrorKind, IsTerminal};
+use std::path::{MAIN_SEPARATOR, Path, PathBuf};
+use std::string::FromUtf8Error;
 
 use luthier_lut::Image;
-use luthier_material::{Diagnostic, Material, Parsed, parse};
+use luthier_material::{Diagnostic, Material, Parsed, Severity, parse};
 
 use crate::failure::{Failure, Outcome, files};
+use crate::output::complain;
 
 /// A file that was read, and what became of it.
 pub(crate) struct Source {
@@ -32,7 +34,7 @@ impl Source {
         let colour = std::io::stderr().is_terminal();
         for diagnostic in self.diagnostics() {
             let text = if colour { diagnostic.render_coloured(&self.text) } else { diagnostic.render(&self.text) };
-            eprintln!("{text}\n");
+            complain(&format!("{text}\n"));
         }
     }
 }
@@ -46,7 +48,7 @@ pub(crate) fn read(paths: &[PathBuf]) -> Outcome<Vec<Source>> {
         if here.is_empty() {
             return Err(Failure::Input(anyhow::anyhow!("no *.toml in the folder {}", path.display())));
         }
-        found.extend(here.into_iter().filter(|p| seen.insert(p.clone())));
+        found.extend(here.into_iter().filter(|p| seen.insert(p.canonicalize().unwrap_or_else(|_| p.clone()))));
     }
     found.iter().map(|path| read_one(path)).collect()
 }
@@ -55,17 +57,39 @@ pub(crate) fn read(paths: &[PathBuf]) -> Outcome<Vec<Source>> {
 pub(crate) fn read_one(path: &Path) -> Outcome<Source> {
     let bytes = std::fs::read(path).map_err(files(path, "read"))?;
     let label = label(path);
-    let text = String::from_utf8(bytes).map_err(|source| {
-        let line = source.as_bytes()[..source.utf8_error().valid_up_to()].iter().filter(|&&b| b == b'\n').count() + 1;
-        Failure::Input(anyhow::anyhow!("{label}:{line}: the file is not UTF-8; save it as UTF-8"))
-    })?;
+    let text = match String::from_utf8(bytes) {
+        Ok(text) => text,
+        Err(source) => return Ok(not_utf8(label, &source)),
+    };
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    let parsed = parse(&label, &text, &|name| std::fs::read_to_string(folder.join(name)));
+    let parsed = parse(&label, &text, &|name| std::fs::read_to_string(folder.join(name)).map_err(plainly));
     Ok(Source { label, text, parsed })
 }
 
-/// The materials of all files; or, when any is invalid, all diagnostics and a failure.
-pub(crate) fn valid(sources: Vec<Source>) -> Outcome<Vec<Material>> {
+/// A file of other bytes than text: they are shown as replacement characters.
+fn not_utf8(label: String, source: &FromUtf8Error) -> Source {
+    let start = source.utf8_error().valid_up_to();
+    let text = String::from_utf8_lossy(source.as_bytes()).into_owned();
+    let before = &text[..start];
+    let diagnostic = Diagnostic {
+        severity: Severity::Error,
+        label: label.clone(),
+        line: before.matches('\n').count() + 1,
+        column: before.chars().rev().take_while(|&c| c != '\n').count() + 1,
+        span: start..start + char::REPLACEMENT_CHARACTER.len_utf8(),
+        message: "the file is not UTF-8".to_owned(),
+        hint: Some("save it as UTF-8".to_owned()),
+    };
+    Source { label, text, parsed: Err(vec![diagnostic]) }
+}
+
+/// The commonest error in words that do not depend on the system.
+fn plainly(error: io::Error) -> io::Error {
+    if error.kind() == ErrorKind::NotFound { io::Error::new(ErrorKind::NotFound, "no such file") } else { error }
+}
+
+/// The materials of all files; or, when any is invalid, its diagnostics and a failure.
+pub(crate) fn valid(sources: Vec<Source>, quiet: bool) -> Outcome<Vec<Material>> {
     let broken = sources.iter().filter(|s| s.parsed.is_err()).count();
     if broken > 0 {
         for source in sources.iter().filter(|s| s.parsed.is_err()) {
@@ -76,8 +100,10 @@ pub(crate) fn valid(sources: Vec<Source>) -> Outcome<Vec<Material>> {
             "{broken} of {total} material files cannot be used; nothing was written"
         )));
     }
-    for source in &sources {
-        source.print_diagnostics();
+    if !quiet {
+        for source in &sources {
+            source.print_diagnostics();
+        }
     }
     Ok(sources.into_iter().filter_map(|s| s.parsed.ok()).map(|parsed| parsed.material).collect())
 }
@@ -85,13 +111,13 @@ pub(crate) fn valid(sources: Vec<Source>) -> Outcome<Vec<Material>> {
 /// Reads an image that a material names, relative to the material's file.
 pub(crate) fn read_image(material: &str, path: &str) -> Result<Image, String> {
     let path = Path::new(material).parent().unwrap_or(Path::new("")).join(path);
-    let bytes = std::fs::read(&path).map_err(|source| source.to_string())?;
+    let bytes = std::fs::read(&path).map_err(|source| plainly(source).to_string())?;
     luthier_texture::png::decode_gray(&bytes).map_err(|source| source.to_string())
 }
 
 /// A path as messages and manifests have it: with forward slashes everywhere.
 fn label(path: &Path) -> String {
-    path.to_string_lossy().replace('\\', "/")
+    path.to_string_lossy().replace(MAIN_SEPARATOR, "/")
 }
 
 fn toml_files(folder: &Path) -> Outcome<Vec<PathBuf>> {

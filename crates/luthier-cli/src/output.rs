@@ -1,4 +1,4 @@
-//! Standard output.
+//! Standard output and standard error.
 
 use std::io::{self, Write};
 
@@ -13,6 +13,11 @@ pub(crate) fn print(text: &str) -> Outcome {
     }
     out.flush()?;
     Ok(())
+}
+
+/// Writes a line to standard error. Where nobody listens there is nobody to tell.
+pub(crate) fn complain(line: &str) {
+    let _ = writeln!(io::stderr().lock(), "{line}");
 }
 
 /// Bytes for people.

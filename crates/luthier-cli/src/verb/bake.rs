@@ -1,11 +1,11 @@
+use std::path::{Component, Path};
 use std::time::Instant;
 
 use luthier_bake::Silent;
 use luthier_lut::Manifest;
 use serde_json::{Value, json};
 
-use crate::artefacts;
-use crate::bake_files::{BakeFiles, MANIFEST};
+use crate::bake_files::{BakeFiles, MANIFEST, REPORT_FILES, REPORT_FOLDER};
 use crate::cli::BakeOptions;
 use crate::failure::{Failure, Outcome, files};
 use crate::materials::{read, read_image, valid};
@@ -16,7 +16,7 @@ use crate::staging::Staging;
 /// Bakes files into a folder. The folder changes only once everything is made.
 pub(crate) fn run(options: &BakeOptions) -> Outcome {
     let start = Instant::now();
-    let materials = valid(read(&options.sources.paths)?)?;
+    let materials = valid(read(&options.sources.paths)?, options.quiet)?;
     let progress = BakeProgress::new();
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads.map_or(0, usize::from))
@@ -41,31 +41,60 @@ pub(crate) fn run(options: &BakeOptions) -> Outcome {
     }
 }
 
-/// Moves everything into place, the manifest last, and removes what an earlier bake left and this one does not have.
+/// Moves everything into place, the manifest last, and removes what an earlier bake left and this one does not have; the
+/// report on another bake too.
 fn publish(options: &BakeOptions, made: &BakeFiles) -> Outcome {
-    let stale = artefacts::manifest(&options.out).map_or_else(|_| Vec::new(), |old| paths(&old));
     let manifest = made.manifest.to_json().map_err(Failure::input)?;
+    // Unreadable is as good as none: what it named, nobody knows.
+    let old = std::fs::read_to_string(options.out.join(MANIFEST)).unwrap_or_default();
+    let stale = if old == manifest { Vec::new() } else { left_by(&old) };
     let mut staging = Staging::for_folder(&options.out)?;
     for (path, bytes) in &made.files {
         staging.write(path, bytes)?;
     }
     staging.write(MANIFEST, manifest.as_bytes())?;
     staging.publish()?;
-    let current = paths(&made.manifest);
-    for path in stale.iter().filter(|p| !current.contains(p)) {
+    let current: Vec<&Path> =
+        made.files.iter().map(|(path, _)| path.as_str()).chain([MANIFEST]).map(Path::new).collect();
+    for path in stale.iter().filter(|p| !current.contains(&Path::new(p))) {
         let path = options.out.join(path);
-        if path.exists() {
+        if path.is_file() {
             std::fs::remove_file(&path).map_err(files(&path, "remove"))?;
         }
+    }
+    if !stale.is_empty() {
+        // Stays if something else is in it.
+        let _ = std::fs::remove_dir(options.out.join(REPORT_FOLDER));
     }
     Ok(())
 }
 
-/// All files that a manifest names; absolute paths and parents, which we never write, are left out.
-fn paths(manifest: &Manifest) -> Vec<String> {
-    let tables = manifest.tables.iter().flat_map(|t| [&t.texture, &t.truth, &t.picture]);
-    let all = tables.chain(manifest.shaders.iter().map(|s| &s.file));
-    all.map(|file| file.path.clone()).filter(|p| !p.starts_with('/') && !p.contains("..") && !p.contains(':')).collect()
+/// The files of an earlier bake, and of the report on it: whatever its manifest, of any schema, names with a hash. A manifest
+/// of another program names nothing of ours.
+fn left_by(manifest: &str) -> Vec<String> {
+    let Ok(manifest) = serde_json::from_str::<Value>(manifest) else { return Vec::new() };
+    if !manifest["generator"].as_str().is_some_and(|g| g.starts_with("luthier ")) {
+        return Vec::new();
+    }
+    let mut paths: Vec<String> = REPORT_FILES.map(str::to_owned).into();
+    let mut open = vec![&manifest];
+    while let Some(value) = open.pop() {
+        match value {
+            Value::Array(items) => open.extend(items),
+            Value::Object(entries) => {
+                if let (Some(Value::String(path)), Some(Value::String(_))) =
+                    (entries.get("path"), entries.get("sha256"))
+                {
+                    paths.push(path.clone());
+                }
+                open.extend(entries.values());
+            }
+            _ => {}
+        }
+    }
+    // We write nothing outside the folder, and remove nothing there.
+    paths.retain(|p| Path::new(p).components().all(|part| matches!(part, Component::Normal(_))));
+    paths
 }
 
 fn text(options: &BakeOptions, manifest: &Manifest, progress: &BakeProgress, start: Instant) -> String {

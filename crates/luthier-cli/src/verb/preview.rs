@@ -5,6 +5,7 @@ use luthier_gpu::{Artefacts, BallSettings, TableTexels, WgslShader};
 use luthier_lut::Image;
 use luthier_texture::png;
 
+use crate::artefacts::manifest;
 use crate::bake_files::BakeFiles;
 use crate::cli::PreviewOptions;
 use crate::device::{device, open};
@@ -17,6 +18,7 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
     let artefacts = if file.extension().is_some_and(|e| e == "toml") {
         bake_one(file)?
     } else {
+        manifest(&options.out)?;
         Artefacts::load(&options.out).map_err(device)?
     };
     let material = if file.extension().is_some_and(|e| e == "toml") {
@@ -47,7 +49,7 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
 
 /// Bakes one material in memory.
 fn bake_one(file: &Path) -> Outcome<Artefacts> {
-    let materials = valid(vec![read_one(file)?])?;
+    let materials = valid(vec![read_one(file)?], false)?;
     let bake = luthier_bake::bake(&materials, &read_image, &Silent).map_err(Failure::input)?;
     let made = BakeFiles::new(&materials, &bake)?;
     let tables = bake

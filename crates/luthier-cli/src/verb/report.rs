@@ -5,7 +5,7 @@ use luthier_optics::stack::Stack;
 use luthier_report::{Device, Report, Settings, Subject, judge};
 
 use crate::artefacts::{manifest, textures};
-use crate::bake_files::{GENERATOR, sha256};
+use crate::bake_files::{GENERATOR, REPORT_FILES, sha256};
 use crate::cli::ReportOptions;
 use crate::failure::{Failure, Outcome};
 use crate::materials::read_one;
@@ -35,8 +35,9 @@ pub(crate) fn run(options: &ReportOptions) -> Outcome {
 
     let json = report.to_json().map_err(Failure::input)?;
     let mut staging = Staging::for_folder(&options.out)?;
-    staging.write("report/report.json", json.as_bytes())?;
-    staging.write("report/index.html", report.to_html().as_bytes())?;
+    let [data, page] = REPORT_FILES;
+    staging.write(data, json.as_bytes())?;
+    staging.write(page, report.to_html().as_bytes())?;
     staging.publish()?;
 
     print(&if options.json { json } else { text(&report, &options.out) })?;
@@ -49,7 +50,13 @@ fn stacks(manifest: &Manifest) -> Outcome<Vec<Stack>> {
         .materials
         .iter()
         .map(|entry| {
-            let source = read_one(Path::new(&entry.source))?;
+            let source = read_one(Path::new(&entry.source)).map_err(|failure| match failure {
+                Failure::Files(error) => Failure::Files(error.context(format!(
+                    "the bake was made from {}, which the judge reads again; run the report where the bake ran",
+                    entry.source
+                ))),
+                other => other,
+            })?;
             if sha256(source.text.as_bytes()) != entry.source_hash {
                 let text = format!("{} has changed since it was baked; bake again", entry.source);
                 return Err(Failure::Input(anyhow::anyhow!(text)));
@@ -100,6 +107,6 @@ fn text(report: &Report, folder: &Path) -> String {
     if let (Some(budget), Some(within)) = (report.budget, report.is_within_budget()) {
         out.push_str(&format!("budget {budget:e}: {}\n", if within { "held" } else { "exceeded" }));
     }
-    out.push_str(&format!("wrote {}\n", folder.join("report").join("index.html").display()));
+    out.push_str(&format!("wrote {}\n", folder.join(REPORT_FILES[1]).display()));
     out
 }

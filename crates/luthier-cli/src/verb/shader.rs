@@ -8,7 +8,7 @@ use crate::output::print;
 
 /// Prints the shader of some materials, without baking them.
 pub(crate) fn run(options: &ShaderOptions) -> Outcome {
-    let materials = valid(read(&options.sources.paths)?)?;
+    let materials = valid(read(&options.sources.paths)?, false)?;
     let outline = luthier_bake::outline(&materials, &read_image).map_err(Failure::input)?;
     let entries = material_entries(&materials, &outline.materials);
     let tables = outline.tables.into_iter().map(|(kind, layout, format)| TableFace { kind, layout, format }).collect();

@@ -1,0 +1,46 @@
+use crate::workshop::Workshop;
+
+const VERBS: &[&str] = if cfg!(feature = "gpu") {
+    &["bake", "check", "report", "preview", "shader", "ior", "schema"]
+} else {
+    &["bake", "check", "report", "shader", "ior", "schema"]
+};
+
+#[test]
+fn the_command_explains_itself() {
+    let workshop = Workshop::new();
+    let text = workshop.run(&["--help"]).exits(0).stdout;
+    for verb in VERBS {
+        assert!(text.lines().any(|line| line.trim_start().starts_with(&format!("{verb} "))), "{verb}");
+    }
+    for code in 0..=4 {
+        assert!(text.lines().any(|line| line.starts_with(&format!("  {code}  "))), "exit code {code}");
+    }
+    assert!(text.contains("Examples:\n  luthier bake materials"), "{text}");
+    let version = workshop.run(&["--version"]).exits(0).stdout;
+    assert_eq!(version, format!("luthier {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn every_verb_shows_an_example() {
+    let workshop = Workshop::new();
+    for verb in VERBS {
+        for args in [["help", verb], [verb, "--help"]] {
+            let text = workshop.run(&args).exits(0).stdout;
+            let (_, examples) = text.split_once("Examples:\n").unwrap_or_else(|| panic!("{verb} has no example"));
+            let commands: Vec<&str> = examples.lines().filter(|line| !line.is_empty()).collect();
+            assert!(!commands.is_empty(), "{verb}");
+            assert!(commands.iter().all(|line| line.starts_with(&format!("  luthier {verb}"))), "{commands:?}");
+        }
+    }
+}
+
+#[test]
+fn wrong_command_lines() {
+    let workshop = Workshop::new();
+    workshop.run(&["varnish"]).fails(2, &["varnish"]);
+    workshop.run(&["bake", "--ouch"]).fails(2, &["--ouch"]);
+    workshop.run(&["schema", "extra"]).fails(2, &["extra"]);
+    let run = workshop.run(&[]).exits(2);
+    assert!(run.stderr.contains("Usage: luthier"), "{}", run.stderr);
+}

@@ -1,0 +1,18 @@
+//! The `luthier` command as a stranger meets it: every verb through the binary, judged by files, streams and exit codes.
+
+mod bake;
+mod bake_refusals;
+mod check;
+mod crate_graph;
+mod help;
+mod ior;
+mod material_texts;
+mod outdated;
+mod pipes;
+#[cfg(feature = "gpu")]
+mod preview;
+mod report;
+mod schema;
+mod shader;
+mod thickness_map;
+mod workshop;

@@ -1,0 +1,82 @@
+//! Small materials: tables that bake in no time.
+
+/// Table settings that all materials here share; unoptimised builds bake them in a moment.
+const SMALL: &str = "
+[bake]
+fresnel = { size = 64 }
+distribution = { size = [32, 32] }
+fgd = { size = [8, 8] }
+phase = { size = 32 }
+thickness = { size = 16 }
+";
+
+/// No table at all.
+pub(crate) fn matte(name: &str) -> String {
+    format!("schema = 1\nname = \"{name}\"\n\n[[layer]]\ntype = \"diffuse\"\nalbedo = [0.6, 0.3, 0.1]\n")
+}
+
+/// Fresnel, distribution and FGD tables: a rough, tinted coat on a diffuse base.
+pub(crate) fn lacquer(name: &str) -> String {
+    format!("schema = 1\nname = \"{name}\"\n{LACQUER}{SMALL}")
+}
+
+/// As [`lacquer`], but with the default Fresnel and distribution tables.
+#[cfg(feature = "gpu")]
+pub(crate) fn fine_lacquer(name: &str) -> String {
+    format!("schema = 1\nname = \"{name}\"\n{LACQUER}\n[bake]\nfgd = {{ size = [8, 8] }}\n")
+}
+
+const LACQUER: &str = "
+[[layer]]
+type = \"dielectric\"
+ior = 1.5
+roughness = 0.4
+thickness_um = 1
+absorption_per_um = [0.1, 0.5, 0.9]
+
+[[layer]]
+type = \"diffuse\"
+albedo = [0.8, 0.2, 0.2]
+";
+
+/// The same tables with other content: rough gold.
+pub(crate) fn gold(name: &str) -> String {
+    format!("schema = 1\nname = \"{name}\"\n\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nroughness = 0.5\n{SMALL}")
+}
+
+/// All five tables: a film whose thickness follows a map, on glass.
+pub(crate) fn film(name: &str, map: &str) -> String {
+    format!(
+        "schema = 1\nname = \"{name}\"
+
+[[layer]]
+type = \"thin-film\"
+ior = 1.33
+
+[layer.thickness_nm]
+min = 100
+max = 400
+extent_um = 1000
+map = {map}
+
+[[layer]]
+type = \"dielectric\"
+ior = 1.5
+roughness = 0.3
+
+[[layer]]
+type = \"diffuse\"
+albedo = 0
+{SMALL}"
+    )
+}
+
+/// Perlin noise for [`film`].
+pub(crate) const NOISE: &str = "{ noise = { seed = 3, frequency = 2, octaves = 2 } }";
+
+/// A material that is valid but doubtful: an interface between equal media.
+pub(crate) fn doubtful(name: &str) -> String {
+    let top = "[[layer]]\ntype = \"dielectric\"\nior = 1.0\nsmooth = true\n";
+    let base = "[[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\n";
+    format!("schema = 1\nname = \"{name}\"\n\n{top}\n{base}{SMALL}")
+}
