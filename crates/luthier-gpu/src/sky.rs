@@ -187,7 +187,7 @@ mod tests {
             let r = (1.0 - y * y).sqrt();
             for j in 0..columns {
                 let phi = (f64::from(j) + 0.5) / f64::from(columns) * 2.0 * PI;
-                sum += f([r * phi.cos(), y, r * phi.sin()]);
+                sum += f([r * libm::cos(phi), y, r * libm::sin(phi)]);
             }
         }
         sum * 4.0 * PI / f64::from(rows * columns)

@@ -11,7 +11,7 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is, for the check that modules name no other.
     #[cfg(test)]
-    pub(crate) const ALL: [&'static str; 19] = [
+    pub(crate) const ALL: [&'static str; 20] = [
         "absorption",
         "bare",
         "beckmann",
