@@ -2,15 +2,17 @@
 //! material enters, computed once for all of them.
 
 use luthier_lut::{Axis, Scan};
+use luthier_optics::Rgb;
 use luthier_optics::albedo::{Effort, FacetStatistics, crossed_albedo};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
+use luthier_optics::ior::Ior;
 use luthier_optics::microsurface::TransparentFacets;
 use luthier_optics::stack::Distribution;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use crate::fgd::wavelength_mean;
+use crate::fgd::crossed_curves;
 use crate::json;
 use crate::smooth::savitzky_golay;
 
@@ -111,6 +113,9 @@ const CROSSED_NODES_FILM: u32 = 32;
 /// Walks per node.
 const CROSSED_WALKS: u32 = 256;
 
+/// The same for films, per wavelength.
+const CROSSED_WALKS_FILM: u32 = 64;
+
 /// Points along each axis at which the grid is compared with four times the walks.
 const CROSSED_PROBES: u32 = 4;
 
@@ -121,7 +126,7 @@ const REFRACTION_WAVELENGTH_NM: f64 = 589.3;
 #[derive(Debug)]
 pub(crate) struct CrossedGrid {
     side: usize,
-    values: Vec<f64>,
+    values: [Vec<f64>; 3],
     /// Largest difference found at a few points off the nodes.
     pub(crate) max_abs_err: f64,
 }
@@ -137,51 +142,69 @@ impl CrossedJob {
     }
 
     pub(crate) fn run(&self) -> CrossedGrid {
-        let curve = wavelength_mean(&self.interface, &self.color);
-        let eta =
-            self.interface.below.at(REFRACTION_WAVELENGTH_NM).re / self.interface.above.at(REFRACTION_WAVELENGTH_NM).re;
-        let facets = TransparentFacets { eta, from_above: &curve };
-        let at = |u: [f64; 2], walks, seed| self.at(facets, u, walks, seed);
-        let side = if self.interface.films.is_empty() { CROSSED_NODES } else { CROSSED_NODES_FILM };
+        let crossing = self.crossing();
+        let (side, walks) = match self.interface.films.len() {
+            0 => (CROSSED_NODES, CROSSED_WALKS),
+            _ => (CROSSED_NODES_FILM, CROSSED_WALKS_FILM),
+        };
         let last = f64::from(side - 1);
-        let mut values: Vec<f64> = (0..side * side)
+        let nodes: Vec<Rgb> = (0..side * side)
             .into_par_iter()
-            .map(|node| {
-                let u = [node % side, node / side].map(|i| f64::from(i) / last);
-                at(u, CROSSED_WALKS, seed(node))
-            })
+            .map(|node| crossing([node % side, node / side].map(|i| f64::from(i) / last), walks, seed(node)))
             .collect();
-        savitzky_golay(&mut values, side as usize, side as usize);
-        values.iter_mut().for_each(|v| *v = v.max(0.0));
+        let mut values = [0, 1, 2].map(|c: usize| nodes.iter().map(|rgb| rgb[c]).collect::<Vec<_>>());
+        for channel in &mut values {
+            savitzky_golay(channel, side as usize, side as usize);
+            if self.interface.films.is_empty() {
+                // Smoothing may dip below zero; only colours out of gamut, which films have, may stay there.
+                channel.iter_mut().for_each(|v| *v = v.max(0.0));
+            }
+        }
         let mut grid = CrossedGrid { side: side as usize, values, max_abs_err: 0.0 };
         let errors: Vec<f64> = (0..CROSSED_PROBES * CROSSED_PROBES)
             .into_par_iter()
             .map(|point| {
                 let u = [point % CROSSED_PROBES, point / CROSSED_PROBES]
                     .map(|i| (f64::from(i) + 0.5) / f64::from(CROSSED_PROBES));
-                (at(u, 4 * CROSSED_WALKS, seed(!point)) - grid.at(u)).abs()
+                let (truth, read) = (crossing(u, 4 * walks, seed(!point)), grid.at(u));
+                (0..3).map(|c| (truth[c] - read[c]).abs()).fold(0.0, f64::max)
             })
             .collect();
         grid.max_abs_err = errors.into_iter().fold(0.0, f64::max);
         grid
     }
 
-    fn at(&self, facets: TransparentFacets<'_>, u: [f64; 2], walks: u32, seed: u32) -> f64 {
-        let [x, y] = &self.axes;
-        crossed_albedo(self.distribution, y.decode(u[1]), facets, x.decode(u[0]), walks, seed)
+    /// The crossed part as a function of coordinates, number of walks and seed.
+    fn crossing(&self) -> impl Fn([f64; 2], u32, u32) -> Rgb + Sync {
+        let weighted = crossed_curves(&self.interface, &self.color);
+        let index = |ior: &Ior| ior.at(REFRACTION_WAVELENGTH_NM).re;
+        let eta = index(&self.interface.below) / index(&self.interface.above);
+        move |u, walks, seed| {
+            let [x, y] = &self.axes;
+            let (cos_theta, alpha) = (x.decode(u[0]), y.decode(u[1]));
+            let albedos: Vec<f64> = (0..weighted.curves.count())
+                .map(|curve| {
+                    let facets = TransparentFacets { eta, from_above: &weighted.curves, curve };
+                    crossed_albedo(self.distribution, alpha, facets, cos_theta, walks, seed)
+                })
+                .collect();
+            weighted.rgb(&albedos)
+        }
     }
 }
 
 impl CrossedGrid {
-    /// Bilinear between the coarse nodes.
-    pub(crate) fn at(&self, u: [f64; 2]) -> f64 {
+    /// Bilinear between the coarse nodes, per channel.
+    pub(crate) fn at(&self, u: [f64; 2]) -> Rgb {
         let last = self.side - 1;
         let [x, y] = u.map(|u| u.clamp(0.0, 1.0) * last as f64);
         let (i, j) = ((x as usize).min(last - 1), (y as usize).min(last - 1));
         let (s, t) = (x - i as f64, y - j as f64);
-        let node = |i: usize, j: usize| self.values[j * self.side + i];
-        let top = node(i, j) * (1.0 - s) + node(i + 1, j) * s;
-        let bottom = node(i, j + 1) * (1.0 - s) + node(i + 1, j + 1) * s;
-        top * (1.0 - t) + bottom * t
+        [0, 1, 2].map(|c: usize| {
+            let node = |i: usize, j: usize| self.values[c][j * self.side + i];
+            let top = node(i, j) * (1.0 - s) + node(i + 1, j) * s;
+            let bottom = node(i, j + 1) * (1.0 - s) + node(i + 1, j + 1) * s;
+            top * (1.0 - t) + bottom * t
+        })
     }
 }

@@ -18,6 +18,9 @@ use crate::smooth::savitzky_golay;
 /// What leaving out wavelengths may change in the share of the light after the first bounce; that bounce has all.
 const SPECTRUM_TOLERANCE: f64 = 4e-4;
 
+/// The same for the crossed part of films, which is a fraction of the light.
+const CROSSED_SPECTRUM_TOLERANCE: f64 = 2e-2;
+
 /// Where spectra are compared to decide which wavelengths are left out.
 const SPECTRUM_COS_THETA: [f64; 5] = [1.0, 0.6, 0.3, 0.15, 0.05];
 
@@ -82,7 +85,7 @@ impl FgdJob {
         let grid = inputs.facet_grid(&self.facet_grid());
         let crossed = self.crossed().map(|job| inputs.crossed(&job));
         let curves = Curves::new(&self.interface, &self.color);
-        let crossed_at = |u| crossed.map_or(0.0, |c| c.at(u));
+        let crossed_at = |u| crossed.map_or([0.0; 3], |c| c.at(u));
 
         let bounces: Vec<Bounces> = grid.nodes.par_iter().map(|s| curves.bounces(s)).collect();
         let mut later: [Vec<f64>; 3] = [0, 1, 2].map(|c: usize| bounces.iter().map(|b| b.later_share[c]).collect());
@@ -94,7 +97,7 @@ impl FgdJob {
             let never_crossed: Rgb = [0, 1, 2].map(|c: usize| b.first[c] + statistics.remaining() * later[c][i]);
             let (column, row) = (i as u32 % x.size, i as u32 / x.size);
             let back = crossed_at([x.node_coordinate(f64::from(column)), y.node_coordinate(f64::from(row))]);
-            let [r, g, b] = never_crossed.map(|c| (c + back) as f32);
+            let [r, g, b] = [0, 1, 2].map(|c: usize| (never_crossed[c] + back[c]) as f32);
             truth.texel_mut(column, row).copy_from_slice(&[r, g, b, luminance(never_crossed) as f32]);
         }
 
@@ -121,7 +124,7 @@ impl FgdJob {
                 let [r, g, b, a] = probe_at(u);
                 let back = crossed_at(u);
                 let sampled = atlas.sample(0, [x.decode(u[0]), y.decode(u[1])], WeightBits::Fixed(8));
-                Comparison { expected: [r + back, g + back, b + back, a], sampled }
+                Comparison { expected: [r + back[0], g + back[1], b + back[2], a], sampled }
             },
             |u| vec![x.decode(u[0]), y.decode(u[1])],
         );
@@ -151,7 +154,7 @@ struct Bounces {
 impl Curves {
     fn new(interface: &Interface, color: &Color) -> Self {
         let at = |nodes: &[WavelengthNode]| Weighted::new(interface.at_nodes(nodes));
-        Self { all: at(&color.nodes()), later: at(&sparse(interface, color)) }
+        Self { all: at(&color.nodes()), later: at(&sparse(interface, color, SPECTRUM_TOLERANCE)) }
     }
 
     fn bounces(&self, statistics: &FacetStatistics) -> Bounces {
@@ -181,9 +184,9 @@ impl Curves {
 }
 
 /// Curves at some wavelengths, and the weights of these.
-struct Weighted {
-    weights: Vec<Rgb>,
-    curves: ReflectanceCurves,
+pub(crate) struct Weighted {
+    pub(crate) weights: Vec<Rgb>,
+    pub(crate) curves: ReflectanceCurves,
 }
 
 impl Weighted {
@@ -193,7 +196,7 @@ impl Weighted {
         Self { weights, curves }
     }
 
-    fn rgb(&self, values: &[f64]) -> Rgb {
+    pub(crate) fn rgb(&self, values: &[f64]) -> Rgb {
         let mut rgb = [0.0; 3];
         for (weights, value) in self.weights.iter().zip(values) {
             for (c, weight) in weights.iter().enumerate() {
@@ -205,7 +208,7 @@ impl Weighted {
 }
 
 /// Wavelengths that suffice for products of a few reflectances.
-fn sparse(interface: &Interface, color: &Color) -> Vec<WavelengthNode> {
+fn sparse(interface: &Interface, color: &Color, tolerance: f64) -> Vec<WavelengthNode> {
     let nodes = color.nodes();
     let mut spectra = Vec::new();
     for cos in SPECTRUM_COS_THETA {
@@ -216,11 +219,16 @@ fn sparse(interface: &Interface, color: &Color) -> Vec<WavelengthNode> {
             spectra.push(power.clone());
         }
     }
-    color.sparse_nodes(&spectra, SPECTRUM_TOLERANCE)
+    color.sparse_nodes(&spectra, tolerance)
 }
 
-/// Reflectance curve of an interface, averaged over wavelengths by luminance.
-pub(crate) fn wavelength_mean(interface: &Interface, color: &Color) -> ReflectanceCurves {
-    let sampled = interface.sampled(color);
-    ReflectanceCurves::new(1, |_, cos| luminance(sampled.rgb(cos)).clamp(0.0, 1.0))
+/// The curves that stand for an interface in its crossed part. Films colour it strongly and get a curve per wavelength; for
+/// bare interfaces, whose index varies little, the mean by luminance serves all channels.
+pub(crate) fn crossed_curves(interface: &Interface, color: &Color) -> Weighted {
+    if interface.films.is_empty() {
+        let sampled = interface.sampled(color);
+        let mean = ReflectanceCurves::new(1, |_, cos| luminance(sampled.rgb(cos)).clamp(0.0, 1.0));
+        return Weighted { weights: vec![[1.0; 3]], curves: mean };
+    }
+    Weighted::new(interface.at_nodes(&sparse(interface, color, CROSSED_SPECTRUM_TOLERANCE)))
 }

@@ -513,7 +513,7 @@ mod tests {
         for mu in [0.1, 0.5, 1.0] {
             let s = FacetStatistics::new(Distribution::Ggx, 0.0, mu, EFFORT, 0);
             assert!((s.albedo(&curve)[0] - fresnel(mu)).abs() < 1e-5);
-            let facets = TransparentFacets { eta: 1.5, from_above: &curve };
+            let facets = TransparentFacets { eta: 1.5, from_above: &curve, curve: 0 };
             assert_eq!(crossed_albedo(Distribution::Ggx, 0.0, facets, mu, 16, 0), 0.0);
         }
     }

@@ -121,9 +121,11 @@ const SPLIT: f64 = 0.02;
 pub struct TransparentFacets<'a> {
     /// Index below over index above.
     pub eta: f64,
-    /// Reflectance from above (the first curve), films included. From below it is the same at the refracted angle (no absorption), and 1 under
-    /// total reflection.
+    /// Reflectances from above, films included. From below they are the same at the refracted angle (no absorption), and 1
+    /// under total reflection.
     pub from_above: &'a ReflectanceCurves,
+    /// Which of the curves.
+    pub curve: usize,
 }
 
 impl TransparentFacets<'_> {
@@ -135,7 +137,7 @@ impl TransparentFacets<'_> {
             return (1.0, 0.0);
         }
         let cos_t = libm::sqrt(cos_t_sq);
-        (self.from_above.at(0, if above { cos_theta } else { cos_t.min(1.0) }), cos_t)
+        (self.from_above.at(self.curve, if above { cos_theta } else { cos_t.min(1.0) }), cos_t)
     }
 }
 

@@ -50,7 +50,9 @@ fn invert_visible_slope(cos: f64, sin: f64, u: f64) -> f64 {
     // Between a logistic guess at the normal quantile (seen from the normal) and Rayleigh's (grazing).
     let v = u.clamp(1e-9, 1.0 - 1e-9);
     let guess = cos.max(0.0) * 0.43 * libm::log(v / (1.0 - v)) - sin * libm::sqrt(-libm::log(v));
-    let mut x = guess.clamp(low, high);
+    // Where the visible slopes end, their density starts like a wedge: the rest of it grows like a square.
+    let limit = high;
+    let mut x = if guess < limit { guess.max(low) } else { (limit - libm::sqrt(1.0 - u)).max(low) };
     for _ in 0..60 {
         let gauss = libm::exp(-x * x);
         let excess = cumulative(x, gauss) - target;
@@ -66,7 +68,7 @@ fn invert_visible_slope(cos: f64, sin: f64, u: f64) -> f64 {
         let next = x - step;
         let inside = next > low && next < high;
         x = if inside { next } else { 0.5 * (low + high) };
-        if (inside && step.abs() < 1e-4) || high - low < 1e-12 {
+        if (inside && step.abs() < 1e-4 * (limit - next).min(1.0)) || high - low < 1e-12 {
             break;
         }
     }

@@ -15,6 +15,19 @@ pub(crate) fn error(value: f64) -> String {
     }
 }
 
+/// An error with its standard error, where it has one: `1.23e-4 ± 2e-6`.
+pub(crate) fn uncertain(value: f64, standard_error: Option<f64>) -> String {
+    match standard_error {
+        Some(e) if e > 0.0 => format!("{} ± {e:.0e}", error(value)),
+        _ => error(value),
+    }
+}
+
+/// A value to be compared with its like: five significant digits.
+pub(crate) fn value(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) { number(rounded(value, 5)) } else { format!("{value:.4e}") }
+}
+
 /// A quantity in at most six significant digits, without trailing zeros.
 pub(crate) fn number(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
@@ -31,6 +44,11 @@ fn significant(value: f64, digits: i32) -> String {
     let magnitude = libm::floor(libm::log10(value.abs())) as i32;
     let decimals = (digits - 1 - magnitude).max(0) as usize;
     format!("{value:.decimals$}")
+}
+
+/// A value rounded to a number of significant decimal digits: short in JSON, for what is drawn only.
+pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
 }
 
 /// A size: `6.0 KiB`.
@@ -108,6 +126,22 @@ mod tests {
         {
             assert_eq!(number(value), text);
         }
+    }
+
+    #[test]
+    fn values_have_five_digits() {
+        for (value, text) in [(0.171_237_89, "0.17124"), (19.755_844, "19.756"), (58_234_140.0, "5.8234e7"), (0.0, "0")]
+        {
+            assert_eq!(super::value(value), text);
+        }
+    }
+
+    #[test]
+    fn rounding_keeps_significant_digits() {
+        for (value, digits, expected) in [(0.123_456, 3, 0.123), (-98_765.0, 2, -99_000.0), (0.0, 4, 0.0)] {
+            assert_eq!(rounded(value, digits), expected);
+        }
+        assert!(rounded(f64::NAN, 4).is_nan());
     }
 
     #[test]

@@ -9,27 +9,33 @@ use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
 use rayon::prelude::*;
 
+use crate::exceptions::{Factors, Miss, exception};
 use crate::report::{Compared, Comparison, MaterialReport, REPORT_SCHEMA, Report, TableReport};
+use crate::statistics::{brightest, relative_error};
 use crate::table_terms::{TableTerms, Weights};
 use crate::{
-    AngleProfile, Device, DirectionSet, Exceedance, FLOOR, Form, Pair, ReportError, Statistics, Subject, format,
-    statistics, table_scan,
+    AngleProfile, Device, DirectionSet, Exceedance, FLOOR, Form, Pair, ReportError, Statistics, Subject,
+    TARGET_MAX_REL_ERR, format, scan, statistics,
 };
 
 /// How far the judge's largest table error may exceed the baker's before it is a finding: both scan finitely many
 /// points.
 const BAKER_MARGIN: f64 = 1.05;
 
+/// Standard errors by which an estimated table error has to exceed the baker's besides.
+const UNCERTAINTY_MARGIN: f64 = 4.0;
+
 /// How to judge.
 #[derive(Clone)]
 pub struct Settings<'a> {
-    /// Pairs of directions in every set of every material, at least 1.
+    /// Pairs of directions in every set of every material, at least 1. Albedos are estimated at a point for every 64 of them,
+    /// 4 to 48.
     pub pairs_per_set: u32,
     /// Limit on [`Report::max_error`].
     pub budget: Option<f64>,
     /// What the caller knows about the run: shown and stored as given.
     pub provenance: Vec<(String, String)>,
-    /// Called after every set of every material.
+    /// Called after every part of the table scan and every set of every material.
     pub progress: Option<&'a dyn Fn(Progress<'_>)>,
 }
 
@@ -53,12 +59,12 @@ impl fmt::Debug for Settings<'_> {
 /// How far a judgement has come.
 #[derive(Debug, Clone, Copy)]
 pub struct Progress<'a> {
-    /// Sets done, of all materials.
+    /// Steps done: parts of the table scan, then sets of every material.
     pub done: u64,
-    /// Sets in all.
+    /// Steps in all.
     pub total: u64,
-    /// The material at hand.
-    pub material: &'a str,
+    /// The material at hand; `tables` while these are scanned.
+    pub subject: &'a str,
 }
 
 /// Judges a bake: its tables always, its shaders when there is a device to run them.
@@ -85,19 +91,26 @@ pub fn judge(
         .map(|(material, stack)| References::new(stack, material.wavelengths_nm, material.color))
         .collect();
     let baked: Vec<Exact> = references.iter().map(|r| r.baked().clone()).collect();
-    let tables = table_scan::scan(subject, &baked)?;
+    let total = u64::from(scan::STEPS) + (manifest.materials.len() * DirectionSet::ALL.len()) as u64;
+    let mut done = 0;
+    let mut step = |subject: &str| {
+        done += 1;
+        if let Some(progress) = settings.progress {
+            progress(Progress { done, total, subject });
+        }
+    };
+    let mut findings = Vec::new();
+    let tables = scan::scan(subject, &baked, settings.pairs_per_set, &mut || step("tables"), &mut findings)?;
 
-    let total = manifest.materials.len() as u64 * DirectionSet::ALL.len() as u64;
     let mut materials = Vec::with_capacity(manifest.materials.len());
     let mut weights = WeightsVote::default();
-    let mut findings = Vec::new();
     for (index, (entry, references)) in manifest.materials.iter().zip(&references).enumerate() {
         let eight_bit = TableTerms::new(subject, index, Weights::EightBit)?;
         let exact_weights = TableTerms::new(subject, index, Weights::Exact)?;
         let layers = &references.layers;
         record_findings(&entry.name, layers, &entry.layers, &mut findings);
-        let mut gathered = Gathered::default();
-        for (set_number, set) in (0..).zip(DirectionSet::ALL) {
+        let mut gathered = Gathered::new(device.is_some());
+        for set in DirectionSet::ALL {
             let pairs = set.pairs(settings.pairs_per_set, layers);
             let three = evaluate(layers, &references.three, &pairs);
             let spectral = evaluate(layers, &references.spectral, &pairs);
@@ -118,32 +131,42 @@ pub fn judge(
                 weights.add(&found, &tables_8, &tables_exact);
                 gathered.device.push((set, pairs, found, [tables_8, tables_exact]));
             }
-            if let Some(progress) = settings.progress {
-                let done = index as u64 * DirectionSet::ALL.len() as u64 + set_number + 1;
-                progress(Progress { done, total, material: &entry.name });
-            }
+            step(&entry.name);
         }
-        materials.push((entry, gathered));
+        materials.push(gathered);
     }
 
     let device_weights = device.map(|_| weights.decide());
-    let materials: Vec<MaterialReport> = materials
-        .into_iter()
-        .map(|(entry, mut gathered)| {
-            if let Some(weights) = device_weights {
-                gathered.split_arithmetic(weights);
-            }
-            gathered.comparisons.sort_by_key(|c| c.compared);
-            MaterialReport {
-                name: entry.name.clone(),
-                source: entry.source.clone(),
-                class: entry.class.clone(),
-                color: entry.color,
-                layers: entry.layers.iter().map(format::layer).collect(),
-                comparisons: gathered.comparisons,
-            }
-        })
-        .collect();
+    let mut exceptions = Vec::new();
+    let mut judged = Vec::with_capacity(materials.len());
+    for (index, mut gathered) in materials.into_iter().enumerate() {
+        let entry = &manifest.materials[index];
+        if let Some(weights) = device_weights {
+            gathered.split_arithmetic(weights);
+        }
+        gathered.comparisons.sort_by_key(|c| c.compared);
+        let material = MaterialReport {
+            name: entry.name.clone(),
+            source: entry.source.clone(),
+            class: entry.class.clone(),
+            color: entry.color,
+            layers: entry.layers.iter().map(format::layer).collect(),
+            comparisons: gathered.comparisons,
+        };
+        let read = TableTerms::new(subject, index, device_weights.unwrap_or(Weights::EightBit))?;
+        for (compared, misses) in gathered.misses {
+            let reference = &references[index];
+            let factors = Factors {
+                layers: &reference.layers,
+                exact: reference.baked(),
+                tables: (compared != Compared::FullDevice).then_some(&read),
+                on_device: device.is_some(),
+            };
+            exceptions.extend(exception(&material, compared, &misses, &factors));
+        }
+        judged.push(material);
+    }
+    let materials = judged;
     table_findings(&tables, &mut findings);
     value_findings(&materials, &mut findings);
     Ok(Report {
@@ -157,6 +180,8 @@ pub fn judge(
         pairs_per_set: settings.pairs_per_set,
         floor: FLOOR,
         findings,
+        target_max_rel_err: TARGET_MAX_REL_ERR,
+        exceptions,
         tables,
         materials,
     })
@@ -208,13 +233,19 @@ fn run(device: &dyn Device, form: Form, material: u32, pairs: &[Pair]) -> Result
 type DeviceRun = (DirectionSet, Vec<Pair>, Vec<Rgb>, [Vec<Rgb>; 2]);
 
 /// The comparisons of one material, as they come in.
-#[derive(Default)]
 struct Gathered {
+    with_device: bool,
     comparisons: Vec<Comparison>,
     device: Vec<DeviceRun>,
+    /// Pairs that miss the target, of the comparisons that are judged.
+    misses: Vec<(Compared, Vec<Miss>)>,
 }
 
 impl Gathered {
+    fn new(with_device: bool) -> Self {
+        Self { with_device, comparisons: Vec::new(), device: Vec::new(), misses: Vec::new() }
+    }
+
     fn add(&mut self, compared: Compared, set: DirectionSet, pairs: &[Pair], found: &[Rgb], expected: &[Rgb]) {
         let at = self.comparisons.iter().position(|c| c.compared == compared).unwrap_or_else(|| {
             self.comparisons.push(Comparison {
@@ -229,6 +260,13 @@ impl Gathered {
         comparison.sets.push((set, statistics(pairs, found, expected)));
         comparison.by_angle.add(pairs, found, expected);
         comparison.exceedance.add(found, expected);
+        if compared.is_judged(self.with_device) {
+            let misses = Miss::among(pairs, found, expected);
+            match self.misses.iter_mut().find(|(c, _)| *c == compared) {
+                Some((_, all)) => all.extend(misses),
+                None => self.misses.push((compared, misses)),
+            }
+        }
     }
 
     /// Compares the device with f64 on the same tables, now that its weights are known.
@@ -253,9 +291,11 @@ struct WeightsVote {
 impl WeightsVote {
     fn add(&mut self, device: &[Rgb], eight_bit: &[Rgb], exact: &[Rgb]) {
         let sum = |expected: &[Rgb]| {
-            let errors = device.iter().zip(expected).flat_map(|(d, e)| (0..3).map(|c| (d[c], e[c])));
-            let squares = errors.map(|(d, e)| (d - e).abs() / e.abs().max(FLOOR)).map(|e| e * e);
-            squares.filter(|e| e.is_finite()).sum::<f64>()
+            let errors = device.iter().zip(expected).flat_map(|(d, e)| {
+                let bright = brightest(e);
+                [0, 1, 2].map(|c: usize| relative_error(d[c], e[c], bright, FLOOR))
+            });
+            errors.map(|e| e * e).filter(|e| e.is_finite()).sum::<f64>()
         };
         self.eight_bit += sum(eight_bit);
         self.exact += sum(exact);
@@ -306,10 +346,11 @@ fn table_findings(tables: &[TableReport], findings: &mut Vec<String>) {
                 findings.push(format!("{name}: no layer reads it."));
             }
             let Some(judge) = &tile.judge else { continue };
-            if judge.max_abs_err > BAKER_MARGIN * tile.baker.max_abs_err {
+            let doubt = UNCERTAINTY_MARGIN * tile.uncertainty.unwrap_or(0.0);
+            if judge.max_abs_err - doubt > BAKER_MARGIN * tile.baker.max_abs_err {
                 findings.push(format!(
                     "{name}: measured here {}, the baker states {}.",
-                    format::error(judge.max_abs_err),
+                    format::uncertain(judge.max_abs_err, tile.uncertainty),
                     format::error(tile.baker.max_abs_err)
                 ));
             }

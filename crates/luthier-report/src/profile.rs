@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::statistics::{brightest, relative_error};
-use crate::{FLOOR, Pair};
+use crate::{FLOOR, Pair, format};
 use luthier_optics::Rgb;
 
 /// Bins of [`AngleProfile`], 3 degrees each.
@@ -12,7 +12,7 @@ pub const ANGLE_BINS: usize = 30;
 /// Largest relative error (floor [`FLOOR`]) by the larger of the two angles to the normal.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AngleProfile {
-    /// From 0 to 90 degrees in equal bins; nothing where no pair fell.
+    /// From 0 to 90 degrees in equal bins, in four significant digits; nothing where no pair fell.
     pub max: Vec<Option<f64>>,
 }
 
@@ -30,9 +30,9 @@ impl AngleProfile {
             let bin = ((degrees / 90.0 * ANGLE_BINS as f64) as usize).min(ANGLE_BINS - 1);
             for channel in 0..3 {
                 let error = relative_error(found[channel], expected[channel], brightest(expected), FLOOR);
-                if error.is_finite() {
-                    let slot = &mut self.max[bin];
-                    *slot = Some(slot.map_or(error, |e| e.max(error)));
+                let slot = &mut self.max[bin];
+                if error.is_finite() && slot.is_none_or(|max| error > max) {
+                    *slot = Some(format::rounded(error, 4));
                 }
             }
         }

@@ -3,12 +3,13 @@
 use luthier_lut::{AtlasLayout, ColorMode, ErrorStats, TableKind, TexelFormat};
 use serde::{Deserialize, Serialize};
 
-use crate::{AngleProfile, DirectionSet, Exceedance, ReportError, Statistics, Weights, page};
+use crate::exceptions::Exception;
+use crate::{AngleProfile, DirectionSet, Exceedance, ReportError, Statistics, Weights, json, page};
 
 /// Version of the report's shape.
-pub const REPORT_SCHEMA: u32 = 1;
+pub const REPORT_SCHEMA: u32 = 2;
 
-/// The judgement of a bake: `report.json`.
+/// The judgement of a bake: `report.json`, whose shape is `docs/report.schema.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     /// [`REPORT_SCHEMA`].
@@ -31,6 +32,11 @@ pub struct Report {
     pub floor: f64,
     /// Oddities, in words: values that are not finite, figures of the baker that the judge does not confirm.
     pub findings: Vec<String>,
+    /// The target that exceptions miss: [`crate::TARGET_MAX_REL_ERR`].
+    pub target_max_rel_err: f64,
+    /// Every material and shader that misses the target somewhere (without a device: every material whose tables, read
+    /// with 8-bit weights, do), in the order of the materials. Samples that are not finite are findings instead.
+    pub exceptions: Vec<Exception>,
     /// The tables, in binding order.
     pub tables: Vec<TableReport>,
     /// The materials, in the order of the manifest.
@@ -68,42 +74,45 @@ pub struct TileReport {
     /// Its error as the baker measured it.
     pub baker: ErrorStats,
     /// Its error as measured here from the shipped texels, with 8-bit weights where a sampler filters the format;
-    /// absent for tables that the model does not read.
+    /// absent for thickness maps, whose truth only the baker has, and for tiles that no layer reads.
     pub judge: Option<ErrorStats>,
+    /// Standard error of the reference at the worst point of `judge`, where the reference is an estimate itself.
+    pub uncertainty: Option<f64>,
     /// Reads that were not finite; they are not part of `judge`.
     pub not_finite: u64,
     /// What is drawn of it.
     pub curves: Curves,
 }
 
-/// Curves of a tile.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Curves of a tile, in four significant digits: for drawing.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Curves {
     /// Nothing is drawn.
+    #[default]
     None,
     /// A Fresnel row, as read.
-    Reflectance(Vec<ReflectancePoint>),
+    Reflectance(ReflectanceCurve),
     /// The error of a distribution.
     ByAlpha(Vec<AlphaPoint>),
 }
 
-/// A point of a Fresnel row.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct ReflectancePoint {
-    /// Angle to the normal, degrees.
-    pub theta_deg: f32,
+/// A Fresnel row over the angle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ReflectanceCurve {
+    /// Degrees from one point to the next; the first is at the normal.
+    pub step_deg: f64,
     /// Reflectance, RGB.
-    pub rgb: [f32; 3],
+    pub rgb: Vec<[f64; 3]>,
 }
 
 /// The error of a distribution in a band of alpha.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AlphaPoint {
     /// Middle of the band.
-    pub alpha: f32,
+    pub alpha: f64,
     /// Largest error over the angle, as a fraction of the largest value at that alpha.
-    pub max_err_of_peak: f32,
+    pub max_err_of_peak: f64,
 }
 
 /// One material.
@@ -200,15 +209,15 @@ pub struct WorstCase<'a> {
     pub compared: Compared,
     /// In which set.
     pub set: DirectionSet,
-    /// The statistics of that set; the pair is the first of `worst`, or `not_finite_at` when that is given.
+    /// The statistics of that set; the pair is its `worst`, or `not_finite_at` when that is given.
     pub statistics: &'a Statistics,
     /// The error: that of [`Report::max_error`].
     pub error: f64,
 }
 
 impl Report {
-    /// The figure that a limit is compared with: the largest error of `f cos_theta_i`, relative to max(|reference|,
-    /// [`crate::FLOOR`]), of any channel, set and material - of both shaders on the device against their f64
+    /// The figure that a limit is compared with: the largest error of `f cos_theta_i`, relative to max(brightest
+    /// channel of the reference, [`crate::FLOOR`]), of any channel, set and material - of both shaders on the device against their f64
     /// references, or, when no shader was run, of the tables read with 8-bit weights. Infinite when any of those
     /// samples, or any read of the table scans, is not finite.
     pub fn max_error(&self) -> f64 {
@@ -248,7 +257,7 @@ impl Report {
         self.budget.map(|budget| self.max_error() <= budget)
     }
 
-    /// JSON, indented, with a final newline. Besides the fields it has `max_error`, `max_arithmetic_error` (null when
+    /// JSON, objects indented and arrays in a line, with a final newline. Besides the fields it has `max_error`, `max_arithmetic_error` (null when
     /// not finite) and `within_budget`.
     ///
     /// # Errors
@@ -262,14 +271,12 @@ impl Report {
             #[serde(flatten)]
             report: &'a Report,
         }
-        let mut json = serde_json::to_string_pretty(&WithFigures {
+        json::to_string(&WithFigures {
             max_error: Some(self.max_error()).filter(|e| e.is_finite()),
             max_arithmetic_error: self.max_arithmetic_error().filter(|e| e.is_finite()),
             within_budget: self.is_within_budget(),
             report: self,
-        })?;
-        json.push('\n');
-        Ok(json)
+        })
     }
 
     /// Reads what [`Report::to_json`] wrote.

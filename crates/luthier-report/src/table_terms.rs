@@ -38,7 +38,7 @@ impl Table<'_> {
     }
 }
 
-/// What the x axis of a distribution table is.
+/// What the x axis of a table over an angle is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum AngleAxis {
     Theta,
@@ -46,27 +46,34 @@ pub(crate) enum AngleAxis {
 }
 
 impl AngleAxis {
-    /// Of a distribution table.
+    /// Of a Fresnel, distribution or FGD table.
     ///
     /// # Errors
-    /// [`ReportError::Layout`] when the axes are not those of a distribution.
+    /// [`ReportError::Layout`] when the axes are not those of such a table.
     pub(crate) fn of(table: &Table<'_>) -> Result<Self, ReportError> {
-        let refuse = |reason| Err(ReportError::Layout { kind: TableKind::Distribution, reason });
-        if table.entry.layout.y.is_none() {
+        let kind = table.entry.kind;
+        let refuse = |reason| Err(ReportError::Layout { kind, reason });
+        if kind != TableKind::Fresnel && table.entry.layout.y.is_none() {
             return refuse("it has no alpha axis");
         }
         match table.entry.layout.x.quantity.as_str() {
-            "theta_h" => Ok(Self::Theta),
-            "cos_theta_h" => Ok(Self::CosTheta),
-            _ => refuse("its x axis is neither theta_h nor cos_theta_h"),
+            "theta" | "theta_h" => Ok(Self::Theta),
+            "cos_theta" | "cos_theta_h" => Ok(Self::CosTheta),
+            _ => refuse("its x axis is neither an angle nor a cosine"),
         }
     }
 
-    fn value(self, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
+    /// The axis value of an angle, from its cosine and squared sine.
+    fn value(self, cos_theta: f64, sin_theta_sq: f64) -> f64 {
         match self {
-            Self::Theta => libm::atan2(sin_theta_h_sq.max(0.0).sqrt(), cos_theta_h),
-            Self::CosTheta => cos_theta_h,
+            Self::Theta => libm::atan2(sin_theta_sq.max(0.0).sqrt(), cos_theta),
+            Self::CosTheta => cos_theta,
         }
+    }
+
+    /// The axis value of a cosine.
+    pub(crate) fn value_at(self, cos_theta: f64) -> f64 {
+        self.value(cos_theta, (1.0 - cos_theta) * (1.0 + cos_theta))
     }
 
     /// Cosine and squared sine of an axis value.
@@ -84,7 +91,7 @@ impl AngleAxis {
 /// Terms of one material, read from the shipped tables with f64 arithmetic.
 #[derive(Debug)]
 pub struct TableTerms<'a> {
-    fresnel: Option<Table<'a>>,
+    fresnel: Option<(Table<'a>, AngleAxis)>,
     fresnel_tiles: Vec<u32>,
     distribution: Option<(Table<'a>, AngleAxis)>,
     distribution_tiles: Vec<(Distribution, u32)>,
@@ -97,11 +104,12 @@ impl<'a> TableTerms<'a> {
     /// # Errors
     /// A table that does not fit its layout, or a layer that needs a tile and has none.
     pub fn new(subject: &'a Subject<'_>, material: usize, weights: Weights) -> Result<Self, ReportError> {
-        let fresnel = subject.table(TableKind::Fresnel)?;
-        let distribution = match subject.table(TableKind::Distribution)? {
-            Some(table) => Some((table, AngleAxis::of(&table)?)),
-            None => None,
+        let with_angle = |kind| match subject.table(kind)? {
+            Some(table) => Ok(Some((table, AngleAxis::of(&table)?))),
+            None => Ok::<_, ReportError>(None),
         };
+        let fresnel = with_angle(TableKind::Fresnel)?;
+        let distribution = with_angle(TableKind::Distribution)?;
         let mut terms =
             Self { fresnel, fresnel_tiles: Vec::new(), distribution, distribution_tiles: Vec::new(), weights };
         let Some(entry) = subject.manifest.materials.get(material) else {
@@ -118,7 +126,8 @@ impl<'a> TableTerms<'a> {
                 let exists = |t: &u32| table.is_some_and(|table| *t < table.entry.layout.tiles);
                 tile.filter(exists).ok_or(ReportError::MissingTile { material: entry.name.clone(), layer, kind })
             };
-            terms.fresnel_tiles.push(tile(TableKind::Fresnel, terms.fresnel.as_ref(), record.fresnel_tile)?);
+            let table = terms.fresnel.as_ref().map(|(table, _)| table);
+            terms.fresnel_tiles.push(tile(TableKind::Fresnel, table, record.fresnel_tile)?);
             let table = terms.distribution.as_ref().map(|(table, _)| table);
             let distribution_tile = tile(TableKind::Distribution, table, record.distribution_tile)?;
             let distribution = if record.distribution == Distribution::Ggx.name() {
@@ -133,12 +142,29 @@ impl<'a> TableTerms<'a> {
         }
         Ok(terms)
     }
+
+    /// Name of the row that a layer reads; empty for a layer that reads none.
+    pub(crate) fn fresnel_name(&self, layer: usize) -> &str {
+        tile_name(self.fresnel.as_ref().map(|(table, _)| table), self.fresnel_tiles.get(layer).copied())
+    }
+
+    /// Name of the tile of a distribution; empty when there is none.
+    pub(crate) fn distribution_name(&self, distribution: Distribution) -> &str {
+        let tile = self.distribution_tiles.iter().find(|(d, _)| *d == distribution).map(|(_, tile)| *tile);
+        tile_name(self.distribution.as_ref().map(|(table, _)| table), tile)
+    }
+}
+
+fn tile_name<'a>(table: Option<&Table<'a>>, tile: Option<u32>) -> &'a str {
+    table.zip(tile).and_then(|(table, tile)| table.entry.tiles.get(tile as usize)).map_or("", |tile| &tile.name)
 }
 
 impl Terms for TableTerms<'_> {
     fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
-        let (Some(table), Some(&tile)) = (&self.fresnel, self.fresnel_tiles.get(layer)) else { return [f64::NAN; 3] };
-        let [r, g, b, _] = table.read(tile, [cos_theta_d, 0.0], self.weights);
+        let (Some((table, angle)), Some(&tile)) = (&self.fresnel, self.fresnel_tiles.get(layer)) else {
+            return [f64::NAN; 3];
+        };
+        let [r, g, b, _] = table.read(tile, [angle.value_at(cos_theta_d), 0.0], self.weights);
         [r, g, b]
     }
 

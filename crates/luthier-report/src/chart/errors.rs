@@ -22,21 +22,20 @@ pub(crate) fn series(compared: Compared) -> Series {
     Series { class, mark, name: compared.name() }
 }
 
-/// A row per material, a mark per comparison at its largest error; with the budget, if there is one.
+/// A row per material, a mark per comparison at its largest error; with the budget, or the target if there is none.
 pub(crate) fn max_by_material(report: &Report, compared: &[Compared]) -> String {
     const ROW: f64 = 24.0;
     let values = || {
         let comparisons = report.materials.iter().flat_map(|m| compared.iter().filter_map(|c| m.comparison(*c)));
         comparisons.map(|c| c.max_error())
     };
-    let x = Scale::decades(values().chain(report.budget), SMALLEST);
+    let (limit, named) = report.budget.map_or((report.target_max_rel_err, "target"), |budget| (budget, "budget"));
+    let x = Scale::decades(values().chain([limit]), SMALLEST);
     let margin = Margin { left: 210.0, right: 74.0, top: 20.0, bottom: 38.0 };
     let height = margin.top + margin.bottom + ROW * report.materials.len() as f64;
     let mut frame = Frame::new([1000.0, height], margin, x, Scale::linear(0.0, 1.0, 1.0));
-    frame.x_axis("largest error, relative to max(|reference|, floor); logarithmic");
-    if let Some(budget) = report.budget {
-        frame.rule_x(budget, &format!("budget {}", error(budget)));
-    }
+    frame.x_axis("largest error, relative to max(brightest channel of the reference, floor); logarithmic");
+    frame.rule_x(limit, &format!("{named} {}", error(limit)));
     for (row, material) in report.materials.iter().enumerate() {
         let y = margin.top + ROW * (row as f64 + 0.5);
         frame.text(margin.left - 12.0, y + 4.0, "end", "label", &material.name);
@@ -75,7 +74,7 @@ pub(crate) fn exceedance(report: &Report, compared: &[Compared]) -> String {
     let y = Scale::decades(points().map(|p| p.1), 1e-7);
     let margin = Margin { left: 44.0, right: 14.0, top: 24.0, bottom: 38.0 };
     let mut frame = Frame::new([490.0, 290.0], margin, x, y);
-    frame.x_axis("relative error");
+    frame.x_axis("relative error, as above");
     frame.y_axis("share of samples with a larger error");
     if let Some(budget) = report.budget {
         frame.rule_x(budget, "");

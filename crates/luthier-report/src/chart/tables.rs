@@ -3,19 +3,20 @@
 use super::frame::{Frame, Margin};
 use super::scale::Scale;
 use crate::format::bytes;
-use crate::report::{AlphaPoint, ReflectancePoint, TableReport};
+use crate::report::{AlphaPoint, ReflectanceCurve, TableReport};
 
 /// Reflectance of a Fresnel row over the angle, three channels.
-pub(crate) fn reflectance(name: &str, points: &[ReflectancePoint]) -> String {
-    let largest = points.iter().flat_map(|p| p.rgb).fold(1.0_f32, f32::max);
-    let top = if largest > 1.0 { libm::ceil(f64::from(largest) * 10.0 - 1e-9) / 10.0 } else { 1.0 };
+pub(crate) fn reflectance(name: &str, curve: &ReflectanceCurve) -> String {
+    let largest = curve.rgb.iter().flatten().copied().fold(1.0, f64::max);
+    let top = libm::ceil(largest * 10.0 - 1e-9) / 10.0;
     let margin = Margin { left: 28.0, right: 8.0, top: 10.0, bottom: 22.0 };
     let mut frame = Frame::new([236.0, 150.0], margin, Scale::linear(0.0, 90.0, 30.0), Scale::linear(0.0, top, 0.5));
     frame.x_axis("");
     frame.y_axis("");
     for (channel, class) in ["c-blue", "c-green", "c-red"].into_iter().enumerate() {
         let channel = 2 - channel;
-        frame.line(class, points.iter().map(|p| Some((f64::from(p.theta_deg), f64::from(p.rgb[channel])))));
+        let points = (0..).zip(&curve.rgb).map(|(n, rgb): (u32, _)| (curve.step_deg * f64::from(n), rgb[channel]));
+        frame.line(class, points.map(Some));
     }
     frame.finish(&format!("Reflectance of {name} over the angle, 0 to 90 degrees"))
 }
@@ -26,17 +27,17 @@ const DISTRIBUTION_CLASSES: [&str; 4] = ["s-baked", "s-tables", "s-full", "s-ari
 /// Largest error over the angle as a fraction of the peak, against alpha; one curve per tile.
 pub(crate) fn error_by_alpha(curves: &[(&str, &[AlphaPoint])]) -> String {
     let points = || curves.iter().flat_map(|(_, points)| points.iter());
-    let x = Scale::decades(points().map(|p| f64::from(p.alpha)), 1e-4);
-    let y = Scale::decades(points().map(|p| f64::from(p.max_err_of_peak)), 1e-9);
+    let x = Scale::decades(points().map(|p| p.alpha), 1e-4);
+    let y = Scale::decades(points().map(|p| p.max_err_of_peak), 1e-9);
     let margin = Margin { left: 44.0, right: 80.0, top: 24.0, bottom: 38.0 };
     let mut frame = Frame::new([560.0, 250.0], margin, x, y);
     frame.x_axis("alpha");
     frame.y_axis("largest error over the angle / peak at that alpha");
     for (i, (name, points)) in curves.iter().enumerate() {
         let class = DISTRIBUTION_CLASSES[i % DISTRIBUTION_CLASSES.len()];
-        frame.line(class, points.iter().map(|p| Some((f64::from(p.alpha), f64::from(p.max_err_of_peak)))));
+        frame.line(class, points.iter().map(|p| Some((p.alpha, p.max_err_of_peak))));
         if let Some(last) = points.last() {
-            let (x, y) = (frame.px(f64::from(last.alpha)), frame.py(f64::from(last.max_err_of_peak)));
+            let (x, y) = (frame.px(last.alpha), frame.py(last.max_err_of_peak));
             frame.text(x + 6.0, y + 4.0, "start", &format!("name {class}"), name);
         }
     }

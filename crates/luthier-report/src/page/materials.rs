@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use super::{anchor, cell, summary};
 use crate::chart::{self, legend};
-use crate::format::{error, escape, number};
+use crate::format::{error, escape, number, value};
 use crate::report::{Compared, MaterialReport, Report};
 use crate::{DirectionSet, ErrorSummary, Statistics};
 
@@ -95,14 +95,14 @@ fn worst(out: &mut String, material: &MaterialReport, with_device: bool) {
 }
 
 fn pair(statistics: &Statistics) -> String {
-    match (statistics.not_finite_at, statistics.worst.first()) {
+    match (statistics.not_finite_at, &statistics.worst) {
         (Some((wi, wo)), _) => format!("{} values not finite, first at {}", statistics.not_finite, angles(wi, wo)),
         (None, Some(w)) => format!(
             "{}, {}: {}, reference {}",
             angles(w.wi, w.wo),
             ["R", "G", "B"].get(w.channel as usize).unwrap_or(&"?"),
-            error(w.found),
-            error(w.expected)
+            value(w.found),
+            value(w.expected)
         ),
         (None, None) => "–".to_owned(),
     }
@@ -114,10 +114,10 @@ pub(super) fn angles(wi: [f32; 3], wo: [f32; 3]) -> String {
     let theta = |w: [f32; 3]| libm::atan2(libm::hypot(f64::from(w[0]), f64::from(w[1])), f64::from(w[2])).to_degrees();
     let phi = |w: [f32; 3]| libm::atan2(f64::from(w[1]), f64::from(w[0])).to_degrees();
     let turn = libm::fabs(libm::remainder(phi(wo) - phi(wi), 360.0));
-    format!("θᵢ {}°, θₒ {}°, Δφ {:.1}°", number_deg(theta(wi)), number_deg(theta(wo)), turn)
+    format!("θᵢ\u{a0}{}°, θₒ\u{a0}{}°, Δφ\u{a0}{:.1}°", number_deg(theta(wi)), number_deg(theta(wo)), turn)
 }
 
-fn number_deg(degrees: f64) -> String {
+pub(super) fn number_deg(degrees: f64) -> String {
     number((degrees * 1e4).round() / 1e4)
 }
 

@@ -42,11 +42,14 @@ pub(super) fn write(out: &mut String, report: &Report) {
     out.push_str("</tbody></table>");
     out.push_str(
         "<p><b>Tables</b> are scanned from the shipped texels: Fresnel rows at eight points a cell and 256 grazing \
-         cosines against every interface that reads them, distributions at one point in every cell. Formats that a \
-         sampler filters are read with 8-bit weights; others exactly, as shaders fetch them. Values and weights are \
-         otherwise f64.</p><p><b>Not judged here:</b> the model against nature; pairs below the horizon; tables \
-         that the model does not read (their errors are the baker's); film thickness maps, which the reference \
-         takes at their nominal value.</p>\n",
+         cosines against every interface that reads them, distributions at one point in every cell, phase rows at \
+         eight points a cell against the closed form, albedos at some dozen points against an estimate of their own. \
+         Formats that a sampler filters are read with 8-bit weights; others exactly, as shaders fetch them. Values and \
+         weights are otherwise f64.</p><p><b>Exceptions.</b> For a pair that misses the target, the f64 model is \
+         evaluated again with exact terms but for one, which is read from the tables: the Fresnel term or the \
+         distribution of each layer in turn. What the device adds to f64 on the same tables is f32 arithmetic. The \
+         largest of these is the cause.</p><p><b>Not judged here:</b> the model against nature; pairs below the \
+         horizon; film thickness maps, which the reference takes at their nominal value.</p>\n",
     );
     if !report.provenance.is_empty() {
         out.push_str("<h2 id=\"provenance\">Provenance</h2><table><tbody>");

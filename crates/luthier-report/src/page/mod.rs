@@ -1,5 +1,6 @@
 //! The report as a page.
 
+mod exceptions;
 mod findings;
 mod materials;
 mod method;
@@ -17,7 +18,9 @@ pub(crate) fn html(report: &Report) -> String {
     out.push_str("<title>luthier: error report</title><style>\n");
     out.push_str(include_str!("style.css"));
     out.push_str("</style></head>\n<body><main>\n");
-    summary::write(&mut out, report);
+    summary::head(&mut out, report);
+    exceptions::write(&mut out, report);
+    summary::overview(&mut out, report);
     findings::write(&mut out, report);
     tables::write(&mut out, report);
     materials::write(&mut out, report);

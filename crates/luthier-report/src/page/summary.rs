@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::chart::{self, legend};
-use crate::format::{bytes, error, escape, number};
+use crate::format::{bytes, error, escape, number, value};
 use crate::report::{Compared, Report, WorstCase};
 
 use super::{anchor, cell};
@@ -17,7 +17,8 @@ pub(super) fn shown(report: &Report) -> &'static [Compared] {
     }
 }
 
-pub(super) fn write(out: &mut String, report: &Report) {
+/// Title, verdict and key figures.
+pub(super) fn head(out: &mut String, report: &Report) {
     out.push_str("<header><h1>Error report</h1><p class=\"sub\">");
     let mut facts = vec![format!("Baked by {}", escape(&report.generator))];
     facts.push(match &report.device {
@@ -26,14 +27,13 @@ pub(super) fn write(out: &mut String, report: &Report) {
     });
     facts.extend(report.provenance.iter().map(|(name, value)| format!("{}: {}", escape(name), escape(value))));
     out.push_str(&facts.join(" · "));
-    out.push_str("</p><nav><a href=\"#materials-at-a-glance\">Overview</a>");
+    out.push_str("</p><nav><a href=\"#exceptions\">Exceptions</a><a href=\"#materials-at-a-glance\">Overview</a>");
     out.push_str(
         "<a href=\"#tables\">Tables</a><a href=\"#materials\">Materials</a><a \
          href=\"#method\">Method</a></nav></header>\n",
     );
     verdict(out, report);
     figures(out, report);
-    overview(out, report);
 }
 
 fn verdict(out: &mut String, report: &Report) {
@@ -66,7 +66,7 @@ fn verdict(out: &mut String, report: &Report) {
 /// Where the worst is, in words.
 fn at(worst: &WorstCase<'_>) -> String {
     let place = format!("{}, {}, {} set", worst.material, worst.compared.name(), worst.set.name());
-    match (worst.statistics.not_finite_at, worst.statistics.worst.first()) {
+    match (worst.statistics.not_finite_at, &worst.statistics.worst) {
         (Some((wi, wo)), _) => {
             format!(" It is at {}: {}.", escape(&place), super::materials::angles(wi, wo))
         }
@@ -74,8 +74,8 @@ fn at(worst: &WorstCase<'_>) -> String {
             " It is at {}: {}; {} where {} is right.",
             escape(&place),
             super::materials::angles(pair.wi, pair.wo),
-            error(pair.found),
-            error(pair.expected)
+            value(pair.found),
+            value(pair.expected)
         ),
         (None, None) => String::new(),
     }
@@ -113,7 +113,8 @@ fn figures(out: &mut String, report: &Report) {
     out.push_str("</dl>\n");
 }
 
-fn overview(out: &mut String, report: &Report) {
+/// All materials at one glance.
+pub(super) fn overview(out: &mut String, report: &Report) {
     let shown = shown(report);
     let series: Vec<_> = shown.iter().map(|c| chart::series(*c)).collect();
     out.push_str("<h2 id=\"materials-at-a-glance\">Materials at a glance</h2><figure>");
@@ -178,6 +179,6 @@ fn rows(out: &mut String, report: &Report, shown: &[Compared]) {
     out.push_str(
         "</tbody></table></div><p class=\"note\">Largest relative errors over all sets of directions. “Three \
          wavelengths” is no error: it is how far the model at three wavelengths lies from the spectral one, both in \
-         f64.</p>\n",
+         f64. All are relative to max(brightest channel of the reference, floor).</p>\n",
     );
 }

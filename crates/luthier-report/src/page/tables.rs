@@ -5,9 +5,11 @@ use std::fmt::Write;
 use luthier_lut::{ErrorStats, TableKind};
 
 use super::cell;
+use crate::TARGET_MAX_REL_ERR;
 use crate::chart;
-use crate::format::{axis, bytes, error, escape, number};
+use crate::format::{axis, bytes, error, escape, number, uncertain};
 use crate::report::{AlphaPoint, Curves, Report, TableReport, TileReport};
+use crate::scan::{DOMAIN_ALPHA, DOMAIN_COS_THETA, REPEATS, points};
 
 pub(super) fn write(out: &mut String, report: &Report) {
     out.push_str("<h2 id=\"tables\">Tables</h2>");
@@ -40,16 +42,15 @@ pub(super) fn write(out: &mut String, report: &Report) {
     }
     out.push_str("</tbody></table></div>\n");
     for table in &report.tables {
-        section(out, table);
+        section(out, table, points(report.pairs_per_set));
     }
 }
 
-fn section(out: &mut String, table: &TableReport) {
+fn section(out: &mut String, table: &TableReport, points: u32) {
     let _ = write!(out, "<h3 id=\"table-{0}\">{0}</h3>", table.kind.name());
     let _ = write!(out, "<p>{}</p>", purpose(table.kind));
     reflectances(out, table);
     alphas(out, table);
-    let measured = table.tiles.iter().any(|t| t.judge.is_some());
     out.push_str(
         "<div class=\"scroll\"><table><thead><tr><th>tile</th><th>read by</th><th>measured</th><th \
          class=\"n\">max</th><th class=\"n\">99%</th>",
@@ -66,24 +67,46 @@ fn section(out: &mut String, table: &TableReport) {
         );
         match &tile.judge {
             Some(judge) => {
-                stats(out, "here", judge, table);
+                stats(out, "here", judge, tile.uncertainty, table);
                 out.push_str("</tr><tr>");
-                stats(out, "by the baker", &tile.baker, table);
+                stats(out, "by the baker", &tile.baker, None, table);
             }
-            None => stats(out, "by the baker", &tile.baker, table),
+            None => stats(out, "by the baker", &tile.baker, None, table),
         }
         out.push_str("</tr>");
     }
-    out.push_str(
-        "</tbody></table></div><p class=\"note\">Absolute errors of a sampled read: quantised texels, bilinear, off \
-         the nodes. ",
+    let _ = writeln!(
+        out,
+        "</tbody></table></div><p class=\"note\">Absolute errors of a sampled read: quantised texels, bilinear, off the \
+         nodes. {}</p>",
+        escape(&how(table, points))
     );
-    out.push_str(if measured {
-        "“Here” is this report's own scan of the shipped texels at other points, without local refinement; a \
-         baker's maximum, which is refined, should not be smaller.</p>\n"
-    } else {
-        "These are the baker's own figures: the model does not read this table, and it is not measured again.</p>\n"
-    });
+}
+
+/// How the figures of a table came about, and what they say.
+fn how(table: &TableReport, points: u32) -> String {
+    let here = "“Here” is this report's own scan of the shipped texels at other points, without local refinement; a \
+                baker's maximum, which is refined, should not be smaller.";
+    match table.kind {
+        TableKind::Fresnel | TableKind::Distribution | TableKind::Phase => here.to_owned(),
+        TableKind::Fgd => {
+            let measured: Vec<_> = table.tiles.iter().filter_map(|t| t.judge.as_ref()).collect();
+            let within = measured.iter().filter(|j| j.max_abs_err <= TARGET_MAX_REL_ERR).count();
+            format!(
+                "“Here” is an independent estimate at {points} points with cos θ from {DOMAIN_COS_THETA} and α from \
+                 {DOMAIN_ALPHA}: exact quadrature of the first bounce, walks for the others, light that crosses and \
+                 returns followed at every wavelength; ± is the standard error of {REPEATS} repetitions at the worst \
+                 point. {within} of {} tiles are within {}.",
+                measured.len(),
+                number(TARGET_MAX_REL_ERR)
+            )
+        }
+        TableKind::Thickness => {
+            "These are the baker's own figures, because only the baker has the map; here the range, and the \
+                                 normalisation against the slopes, are checked, and what does not fit is a finding."
+                .to_owned()
+        }
+    }
 }
 
 fn purpose(kind: TableKind) -> &'static str {
@@ -111,9 +134,12 @@ fn users(tile: &TileReport) -> String {
     text
 }
 
-fn stats(out: &mut String, by: &str, stats: &ErrorStats, table: &TableReport) {
+fn stats(out: &mut String, by: &str, stats: &ErrorStats, uncertainty: Option<f64>, table: &TableReport) {
     let _ = write!(out, "<td class=\"by\">{by}</td>");
-    for value in [stats.max_abs_err, stats.p99_abs_err, stats.rms_err] {
+    let over = table.kind == TableKind::Fgd && stats.max_abs_err > TARGET_MAX_REL_ERR;
+    let class = if over { "n over" } else { "n" };
+    let _ = write!(out, "<td class=\"{class}\">{}</td>", uncertain(stats.max_abs_err, uncertainty));
+    for value in [stats.p99_abs_err, stats.rms_err] {
         out.push_str(&cell(&error(value)));
     }
     out.push_str(&cell(&stats.points.to_string()));
@@ -136,11 +162,11 @@ fn stats(out: &mut String, by: &str, stats: &ErrorStats, table: &TableReport) {
 
 fn reflectances(out: &mut String, table: &TableReport) {
     let rows = table.tiles.iter().filter_map(|tile| match &tile.curves {
-        Curves::Reflectance(points) => Some((tile, points)),
+        Curves::Reflectance(curve) => Some((tile, curve)),
         Curves::ByAlpha(_) | Curves::None => None,
     });
     let mut figures = String::new();
-    for (tile, points) in rows {
+    for (tile, curve) in rows {
         let max = tile
             .judge
             .as_ref()
@@ -148,7 +174,7 @@ fn reflectances(out: &mut String, table: &TableReport) {
         let _ = write!(
             figures,
             "<figure>{}<figcaption><b>{}</b><br/>{max}</figcaption></figure>",
-            chart::reflectance(&tile.name, points),
+            chart::reflectance(&tile.name, curve),
             escape(&tile.name)
         );
     }

@@ -140,7 +140,7 @@ impl<S: Fn(Form, u32, usize, [f32; 3]) -> [f32; 3]> Device for FakeDevice<'_, S>
     }
 }
 
-fn axis(quantity: &str, min: f64, max: f64, size: u32, mapping: Mapping) -> Axis {
+pub(crate) fn axis(quantity: &str, min: f64, max: f64, size: u32, mapping: Mapping) -> Axis {
     Axis { quantity: quantity.to_owned(), unit: String::new(), min, max, size, mapping }
 }
 
@@ -168,7 +168,7 @@ fn distribution() -> (TableEntry, Image) {
     table(TableKind::Distribution, layout, TexelFormat::R16Float, names, &image)
 }
 
-fn table(
+pub(crate) fn table(
     kind: TableKind,
     layout: AtlasLayout,
     format: TexelFormat,

@@ -1,5 +1,8 @@
 //! The judge against bakes and devices whose errors are known.
 
+mod exceptions;
 mod fixture;
 mod judgement;
 mod page;
+mod schema;
+mod tables;

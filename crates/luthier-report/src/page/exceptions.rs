@@ -1,0 +1,149 @@
+//! What misses the target, and why.
+
+use std::fmt::Write;
+
+use super::materials::{angles, number_deg};
+use super::{anchor, cell};
+use crate::exceptions::{Cause, Exception, Factor, Part};
+use crate::format::{error, escape, number, rounded, value};
+use crate::report::{Compared, Report};
+
+pub(super) fn write(out: &mut String, report: &Report) {
+    out.push_str("<h2 id=\"exceptions\">Exceptions</h2>");
+    let judged = |compared: &Compared| compared.is_judged(report.device.is_some());
+    let comparisons = || report.materials.iter().flat_map(|m| &m.comparisons).filter(|c| judged(&c.compared));
+    let target = number(report.target_max_rel_err);
+    let floor = number(report.floor);
+    let of = if report.device.is_some() { "materials × shaders" } else { "materials" };
+    let all = comparisons().count();
+    if report.exceptions.is_empty() {
+        let _ = writeln!(
+            out,
+            "<p>None: no finite sample of the {all} {of} is further than {target} from its reference, relative to \
+             max(brightest channel of the reference, {floor}).</p>"
+        );
+        return;
+    }
+    let samples: u64 = comparisons().flat_map(|c| &c.sets).map(|(_, s)| 3 * s.pairs - s.not_finite).sum();
+    let above: u64 = report.exceptions.iter().map(|e| e.samples_above).sum();
+    let _ = write!(
+        out,
+        "<p>The target is a largest error of {target}, relative to max(brightest channel of the reference, {floor}). {} of \
+         {all} {of} miss it somewhere, in {} of all samples ({above} of {samples}).</p>",
+        report.exceptions.len(),
+        share(above, samples)
+    );
+    out.push_str(
+        "<div class=\"scroll\"><table class=\"exceptions\"><thead><tr><th>material</th><th class=\"n\">max</th><th \
+         class=\"n\">above target</th><th>worst pair</th><th>cause</th></tr></thead><tbody>",
+    );
+    for exception in &report.exceptions {
+        row(out, report, exception);
+    }
+    out.push_str(
+        "</tbody></table></div><p class=\"note\">“Beyond” is the smallest of the larger angles to the normal. Causes are measured: each factor is read from the tables alone, in f64, \
+         with all others exact, and f32 arithmetic is taken alone; the largest part is the cause. A part may exceed the \
+         whole where another makes up for it. The last words say whose doing the other pairs above the target \
+         are.</p>\n",
+    );
+}
+
+fn row(out: &mut String, report: &Report, exception: &Exception) {
+    let Exception { material, compared, worst, .. } = exception;
+    let index = report.materials.iter().position(|m| m.name == *material).unwrap_or_default();
+    let _ = write!(
+        out,
+        "<tr><th><a href=\"#{}\">{}</a><small>{}</small></th>",
+        anchor(index),
+        escape(material),
+        compared.name()
+    );
+    out.push_str(&cell(&error(worst.error)));
+    let _ = write!(
+        out,
+        "<td class=\"n\">{}<small>beyond {:.1}°</small></td>",
+        share(exception.samples_above, exception.samples),
+        exception.least_angle_deg
+    );
+    let _ = write!(
+        out,
+        "<td>{}<small>{}, {}: {}, reference {}</small></td>",
+        angles(worst.wi, worst.wo),
+        exception.set.name(),
+        ["R", "G", "B"].get(worst.channel as usize).unwrap_or(&"?"),
+        value(worst.found),
+        value(worst.expected)
+    );
+    let Some((first, rest)) = exception.parts.split_first() else {
+        out.push_str("<td>–</td></tr>");
+        return;
+    };
+    let mut small = format!("alone {}", error(first.rel_err.abs()));
+    if let Some(next) = rest.first() {
+        let _ = write!(small, ", {} {}", short(next), error(next.rel_err.abs()));
+    }
+    let _ = write!(small, " · {}", tally(&exception.tally));
+    let _ = write!(out, "<td>{}<small>{}</small></td></tr>", escape(&cause(&first.cause)), escape(&small));
+}
+
+/// A cause in words, with the error of the table there.
+fn cause(cause: &Cause) -> String {
+    match cause {
+        Cause::Fresnel { tile, cos_theta_d, expected, sampled, .. } => {
+            format!("Fresnel row {tile} at cos θ {}: {}", number(rounded(*cos_theta_d, 3)), off(*expected, *sampled))
+        }
+        Cause::Distribution { tile, alpha, theta_h_deg, expected, sampled, .. } => format!(
+            "distribution table {tile} at α {}, θₕ {}°: {}",
+            number(rounded(*alpha, 3)),
+            number_deg(*theta_h_deg),
+            off(*expected, *sampled)
+        ),
+        Cause::Arithmetic => "f32 arithmetic".to_owned(),
+    }
+}
+
+/// What a read gives and what it should.
+fn off(expected: f64, sampled: f64) -> String {
+    let percent = 100.0 * (sampled - expected) / expected.abs();
+    let sign = if percent < 0.0 { "−" } else { "+" };
+    let relative = if percent.is_finite() {
+        format!(" ({sign}{}\u{a0}%)", number(rounded(percent.abs(), 2)))
+    } else {
+        String::new()
+    };
+    format!("{} for {}{relative}", value(sampled), value(expected))
+}
+
+fn short(part: &Part) -> String {
+    match &part.cause {
+        Cause::Fresnel { layer, .. } => format!("Fresnel of layer {layer}"),
+        Cause::Distribution { layer, .. } => format!("distribution of layer {layer}"),
+        Cause::Arithmetic => "arithmetic".to_owned(),
+    }
+}
+
+/// Whose doing the misses are.
+fn tally(tally: &[(Factor, u64)]) -> String {
+    let name = |factor| match factor {
+        Factor::Fresnel => "Fresnel",
+        Factor::Distribution => "distribution",
+        Factor::Arithmetic => "arithmetic",
+    };
+    let total: u64 = tally.iter().map(|(_, count)| count).sum();
+    match tally {
+        [] => "no pair looked at".to_owned(),
+        [(factor, _)] => format!("all pairs above: {}", name(*factor)),
+        several => {
+            let each = several.iter().map(|(factor, count)| format!("{} {}", name(*factor), share(*count, total)));
+            format!("pairs above: {}", each.collect::<Vec<_>>().join(", "))
+        }
+    }
+}
+
+/// A percentage in two significant digits.
+fn share(part: u64, whole: u64) -> String {
+    if whole == 0 {
+        return "–".to_owned();
+    }
+    format!("{}\u{a0}%", number(rounded(100.0 * part as f64 / whole as f64, 2)))
+}

@@ -1,0 +1,30 @@
+use std::f64::consts::TAU;
+
+use super::{Measured, Scan, User, coordinate};
+use crate::Subject;
+use crate::report::Curves;
+use crate::subject::Table;
+use crate::table_terms::Weights;
+
+/// Points in every cell of a row.
+const POINTS_PER_CELL: u32 = 8;
+
+/// A phase row against `2 cos(2 pi (2 d_max n / lambda) s)` (Granier and Heidrich 2003, eq. 19) of every film that reads it,
+/// at the three wavelengths of its material.
+pub(super) fn scan(table: &Table<'_>, tile: u32, users: &[User], subject: &Subject<'_>) -> Option<Measured> {
+    let axis = &table.entry.layout.x;
+    let count = axis.intervals() * POINTS_PER_CELL;
+    let mut scan = Scan::default();
+    for &(material, layer) in users {
+        let film = subject.stacks[material].layers.get(layer).and_then(|l| l.films.first())?;
+        let wavelengths_nm = subject.manifest.materials[material].wavelengths_nm;
+        let waves = wavelengths_nm.map(|nm| 2.0 * film.thickness.max_nm * film.ior.at(nm).re / nm);
+        for s in (0..count).map(|n| axis.decode(coordinate(n, count))) {
+            let sampled = table.read(tile, [s, 0.0], Weights::EightBit);
+            for channel in 0..3 {
+                scan.add(&[s], channel, 2.0 * libm::cos(TAU * waves[channel] * s), sampled[channel]);
+            }
+        }
+    }
+    Some(Measured { scan, curves: Curves::None, uncertainty: None })
+}

@@ -1,0 +1,51 @@
+use super::User;
+use crate::Subject;
+use crate::format::number;
+use crate::subject::Table;
+
+/// Half a unit in the last place of a half float, with room for one more rounding: what a shipped value may be off by,
+/// relative to itself.
+const HALF_FLOAT: f64 = 1e-3;
+
+/// What a thickness texture holds that cannot be: a thickness outside the range of its film, or a normalisation factor that
+/// is not `sqrt(1 + dx^2 + dy^2)` of its slopes. The map itself is the material file's and unknown here.
+pub(super) fn doubts(table: &Table<'_>, tile: u32, users: &[User], subject: &Subject<'_>) -> Vec<String> {
+    let mut doubts = Vec::new();
+    let [x0, y0] = table.entry.layout.origin(tile);
+    let [width, height] = table.entry.layout.tile_size();
+    let name = &table.entry.tiles[tile as usize].name;
+    if table.texels.channels < 4 {
+        return vec![format!("thickness tile {name}: it has fewer than four channels.")];
+    }
+    let (mut low, mut high, mut tilted) = (f64::INFINITY, f64::NEG_INFINITY, 0_u64);
+    for (x, y) in (y0..y0 + height).flat_map(|y| (x0..x0 + width).map(move |x| (x, y))) {
+        let texel = table.texels.texel(x, y);
+        let [d, dx, dy, n] = [0, 1, 2, 3].map(|c: usize| f64::from(texel[c]));
+        (low, high) = (low.min(d), high.max(d));
+        let expected = libm::sqrt(1.0 + dx * dx + dy * dy);
+        // Written so that a value that is not a number is a doubt.
+        let agrees = d.is_finite() && (n - expected).abs() <= HALF_FLOAT * expected;
+        tilted += u64::from(!agrees);
+    }
+    if tilted > 0 {
+        doubts.push(format!(
+            "thickness tile {name}: in {tilted} texels the normalisation factor is not that of the slopes."
+        ));
+    }
+    for &(material, layer) in users {
+        let Some(film) = subject.stacks[material].layers.get(layer).and_then(|l| l.films.first()) else { continue };
+        let to_nm = 2.0 * film.thickness.max_nm;
+        let (found_low, found_high) = (low * to_nm, high * to_nm);
+        let slack = HALF_FLOAT * film.thickness.max_nm;
+        if found_low < film.thickness.min_nm - slack || found_high > film.thickness.max_nm + slack {
+            doubts.push(format!(
+                "thickness tile {name}: it holds {} to {} nm, the film is {} to {} nm.",
+                number(found_low),
+                number(found_high),
+                number(film.thickness.min_nm),
+                number(film.thickness.max_nm)
+            ));
+        }
+    }
+    doubts
+}
