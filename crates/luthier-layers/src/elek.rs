@@ -21,7 +21,7 @@ use glam::DVec3;
 use luthier_optics::Rgb;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Stack};
 
-use crate::oren_nayar;
+use crate::{frame, oren_nayar};
 
 /// Smallest slope parameter of the model. Smoother surfaces are evaluated with this one: a lobe 0.06 degrees wide, well
 /// below what one pixel or one light source resolves, and still safe in f32.
@@ -96,6 +96,13 @@ pub fn layers(stack: &Stack) -> Vec<Layer> {
 /// `f cos_theta_i` of the layers for light from `wi` seen from `wo`, per channel. Zero when either is at or below the
 /// horizon. Finite for all unit directions. Not reciprocal below the first interface (eq. 2 is not).
 pub fn eval(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3) -> Rgb {
+    eval_below(layers, terms, wi, wo, DVec3::Z)
+}
+
+/// [`eval`] with another normal below the first interface (unit, in the surface's frame): what flakes in the coat look like
+/// (Elek 2010, section 4.1). The refracted directions are measured against it, the path lengths of the first slab included, as
+/// in the paper's code; layers below see nothing when it hides either of them.
+pub fn eval_below(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3, normal_below: DVec3) -> Rgb {
     if wi.z <= 0.0 || wo.z <= 0.0 {
         return [0.0; 3];
     }
@@ -129,7 +136,13 @@ pub fn eval(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3) -> Rgb {
         add(&mut total, throughput, f.map(|f| f * geometry));
 
         let Below::Dielectric { eta, optical_depth } = layer.below else { break };
-        let (Some(wi_below), Some(wo_below)) = (refract(wi_local, eta), refract(wo_local, eta)) else { break };
+        let (Some(mut wi_below), Some(mut wo_below)) = (refract(wi_local, eta), refract(wo_local, eta)) else { break };
+        if i == 0 && normal_below != DVec3::Z {
+            (wi_below, wo_below) = (frame::local(normal_below, wi_below), frame::local(normal_below, wo_below));
+            if wi_below.z <= 0.0 || wo_below.z <= 0.0 {
+                break;
+            }
+        }
         let path = 1.0 / wi_below.z + 1.0 / wo_below.z;
         for c in 0..3 {
             let transmitted = 1.0 - f[c];
@@ -148,7 +161,7 @@ pub fn v_cavity(cos_theta_i: f64, cos_theta_o: f64, cos_theta_h: f64, cos_theta_
 
 /// The direction in the medium below, turned to point up again, or `None` when it is totally reflected. The tangential part
 /// keeps its sign.
-fn refract(w: DVec3, eta: f64) -> Option<DVec3> {
+pub(crate) fn refract(w: DVec3, eta: f64) -> Option<DVec3> {
     let cos_sq = (w.z * w.z + (eta - 1.0) * (eta + 1.0)) / (eta * eta);
     (cos_sq > 0.0).then(|| DVec3::new(w.x / eta, w.y / eta, cos_sq.sqrt()))
 }

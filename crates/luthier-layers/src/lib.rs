@@ -6,6 +6,32 @@
 //!
 //! Out of scope: reading material files, tables, devices.
 
+pub mod belcour;
 pub mod elek;
+pub mod elek_model;
+pub mod facets;
+pub mod flakes;
+pub mod fluorescence;
+pub mod frame;
+pub mod granier_heidrich;
+mod hash;
+pub mod heterogeneous;
+pub mod layered_mc;
+pub mod microfacet;
+pub mod model;
+pub mod monochrome;
 pub mod oren_nayar;
+pub mod patina;
+pub mod perlin;
+pub mod phong;
+pub mod plane_stack;
+pub mod random_walk;
+pub mod registry;
+pub mod statistics;
 pub mod terms;
+pub mod textured;
+pub mod voronoi;
+pub mod weidlich_wilkie;
+pub mod weidlich_wilkie_corrected;
+pub mod weidlich_wilkie_sampling;
+pub mod yamaguchi;

@@ -34,3 +34,9 @@ pub fn brdf(diffuse: &Diffuse, wi: DVec3, wo: DVec3) -> Rgb {
     let bounced = 0.17 * sigma_sq / (sigma_sq + 0.13) * (1.0 - cos_phi * back * back);
     diffuse.albedo.map(|rho| FRAC_1_PI * (rho * direct + rho * rho * bounced).max(0.0))
 }
+
+/// [`brdf`] of a single albedo.
+pub fn brdf_scalar(albedo: f64, sigma: f64, wi: DVec3, wo: DVec3) -> f64 {
+    let [value, ..] = brdf(&Diffuse { albedo: [albedo; 3], sigma }, wi, wo);
+    value
+}

@@ -13,12 +13,18 @@
 pub mod albedo;
 pub mod color;
 pub mod constants;
+pub mod f0_table;
+pub mod film_color;
 pub mod fresnel;
 pub mod interface;
 pub mod ior;
+pub mod masking;
 pub mod microfacet;
 pub mod microsurface;
+pub mod ndf;
 pub mod quadrature;
+pub mod sampling;
+pub mod schlick;
 pub mod stack;
 pub mod visible_normals;
 

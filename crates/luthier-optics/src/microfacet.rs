@@ -50,7 +50,7 @@ pub fn lambda(distribution: Distribution, alpha: f64, cos_theta: f64) -> f64 {
         Distribution::Ggx => {
             // (sqrt(1 + x) - 1) / 2 without cancellation.
             let x = alpha * alpha * tan_sq;
-            0.5 * x / (libm::sqrt(1.0 + x) + 1.0)
+            if x.is_finite() { 0.5 * x / (libm::sqrt(1.0 + x) + 1.0) } else { f64::INFINITY }
         }
         Distribution::Beckmann => {
             let nu = 1.0 / (alpha * libm::sqrt(tan_sq));

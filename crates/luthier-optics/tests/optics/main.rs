@@ -8,5 +8,6 @@ mod brute_force;
 mod conservation;
 mod crossing;
 mod metals;
+mod sampling;
 mod transfer_matrix;
 mod visible_normals;

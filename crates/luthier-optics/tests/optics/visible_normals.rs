@@ -8,7 +8,7 @@ use luthier_optics::visible_normals::sample;
 
 use crate::brute_force::Random;
 
-const SAMPLES: u32 = 1 << 18;
+pub(crate) const SAMPLES: u32 = 1 << 18;
 
 /// Cells of the slope's radius and azimuth.
 const CELLS: [usize; 2] = [24, 32];
@@ -20,7 +20,7 @@ const POINTS: usize = 24;
 const POOL_BELOW: f64 = 5.0;
 
 /// Chance that any of all the comparisons of this file fails although all is well.
-const SIGNIFICANCE: f64 = 0.01;
+pub(crate) const SIGNIFICANCE: f64 = 0.01;
 
 const ALPHAS: [f64; 4] = [0.005, 0.1, 0.5, 1.0];
 
@@ -75,7 +75,7 @@ fn observed(distribution: Distribution, alpha: f64, cos: f64, seed: u64) -> Vec<
 }
 
 /// Pearson's sum and its degrees of freedom.
-fn chi_square(expected: &[f64], observed: &[u32]) -> (f64, f64) {
+pub(crate) fn chi_square(expected: &[f64], observed: &[u32]) -> (f64, f64) {
     let term = |expected: f64, found: f64| (found - expected) * (found - expected) / expected;
     let (mut sum, mut cells, mut pool) = (0.0, 0.0, [0.0; 2]);
     for (share, &count) in expected.iter().zip(observed) {
@@ -97,7 +97,7 @@ fn chi_square(expected: &[f64], observed: &[u32]) -> (f64, f64) {
 }
 
 /// How many standard deviations above its mean a chi-square is (Wilson and Hilferty 1931): its cube root is normal.
-fn deviations(chi_square: f64, freedom: f64) -> f64 {
+pub(crate) fn deviations(chi_square: f64, freedom: f64) -> f64 {
     let variance = 2.0 / (9.0 * freedom);
     ((chi_square / freedom).cbrt() - (1.0 - variance)) / variance.sqrt()
 }

@@ -1,0 +1,30 @@
+//! Frames around a tilted normal.
+
+use glam::DVec3;
+
+/// The direction `w` in the frame whose +z is `normal`, both unit: the surface's frame turned the shortest way, so that
+/// tangents keep their sense. `normal.z > -1`; the identity for +z.
+pub fn local(normal: DVec3, w: DVec3) -> DVec3 {
+    let n = normal;
+    let a = 1.0 / (1.0 + n.z);
+    let shear = -n.x * n.y * a;
+    let tangent = DVec3::new(1.0 - n.x * n.x * a, shear, -n.x);
+    let bitangent = DVec3::new(shear, 1.0 - n.y * n.y * a, -n.y);
+    DVec3::new(tangent.dot(w), bitangent.dot(w), n.dot(w))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_normal_becomes_z_and_angles_stay() {
+        let n = DVec3::new(0.3, -0.5, 0.7).normalize();
+        let (a, b) = (DVec3::new(0.1, 0.9, 0.2).normalize(), DVec3::new(-0.4, 0.2, 0.6).normalize());
+        assert!((local(n, n) - DVec3::Z).length() < 1e-15);
+        assert!((local(n, a).dot(local(n, b)) - a.dot(b)).abs() < 1e-15);
+        // Right-handed.
+        assert!((local(n, a.cross(b)) - local(n, a).cross(local(n, b))).length() < 1e-15);
+        assert_eq!(local(DVec3::Z, a), a);
+    }
+}

@@ -1,0 +1,95 @@
+//! Random numbers as a function of a seed, a path and a count.
+
+use glam::DVec2;
+
+/// Increment of the counter: 2^64 over the golden ratio, odd.
+const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// The numbers of one path: the k-th is a hash of (seed, path, k), whatever other paths do.
+#[derive(Debug, Clone)]
+pub(crate) struct Stream {
+    counter: u64,
+}
+
+impl Stream {
+    /// The stream of a path.
+    pub(crate) fn new(seed: u64, path: u64) -> Self {
+        Self { counter: mix(mix(seed.wrapping_add(GOLDEN)).wrapping_add(path.wrapping_mul(GOLDEN))) }
+    }
+
+    /// A seed from a seed and a number.
+    pub(crate) fn hash(seed: u64, number: u64) -> u64 {
+        mix(mix(seed.wrapping_add(GOLDEN)) ^ number.wrapping_mul(GOLDEN))
+    }
+
+    #[inline]
+    fn next(&mut self) -> u64 {
+        self.counter = self.counter.wrapping_add(GOLDEN);
+        mix(self.counter)
+    }
+
+    /// Uniform in 0..1, 1 excluded, in steps of 2^-53.
+    #[inline]
+    pub(crate) fn uniform(&mut self) -> f64 {
+        (self.next() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+    }
+
+    /// A uniform direction in the plane, and a number uniform in 0..1 that is independent of it.
+    ///
+    /// A point of the unit disc by rejection: its squared radius is uniform, and doubling its angle needs no root
+    /// (Marsaglia 1972 for the disc).
+    #[inline]
+    pub(crate) fn direction_and_uniform(&mut self) -> (DVec2, f64) {
+        loop {
+            // Two numbers of 32 bits at the middles of their steps, from -1 to 1.
+            let bits = self.next();
+            let side = |bits: u64| (bits as f64 + 0.5) * (1.0 / (1u64 << 31) as f64) - 1.0;
+            let p = DVec2::new(side(bits >> 32), side(bits & 0xffff_ffff));
+            let r_sq = p.length_squared();
+            if r_sq < 1.0 {
+                return (DVec2::new(p.x * p.x - p.y * p.y, 2.0 * p.x * p.y) / r_sq, r_sq);
+            }
+        }
+    }
+}
+
+/// Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators": the finaliser of SplitMix64
+/// (Stafford's variant 13).
+fn mix(mut z: u64) -> u64 {
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_neighbouring_paths_are_uniform_and_uncorrelated() {
+        let n = 100_000u64;
+        let first: Vec<f64> = (0..n).map(|i| Stream::new(7, i).uniform()).collect();
+        let mean = first.iter().sum::<f64>() / n as f64;
+        let product = first.windows(2).map(|w| (w[0] - 0.5) * (w[1] - 0.5)).sum::<f64>() / n as f64;
+        // Standard errors: sqrt(1/12 / n) and 1/12 / sqrt(n).
+        assert!((mean - 0.5).abs() < 4.0 * 9.2e-4, "{mean}");
+        assert!(product.abs() < 4.0 * 2.7e-4, "{product}");
+    }
+
+    #[test]
+    fn directions_are_isotropic_and_independent_of_the_number() {
+        let mut stream = Stream::new(1, 2);
+        let n = 100_000;
+        let (mut moments, mut mean) = ([0.0; 4], 0.0);
+        for _ in 0..n {
+            let (d, u) = stream.direction_and_uniform();
+            assert!((d.length() - 1.0).abs() < 1e-12 && u < 1.0);
+            mean += u / f64::from(n);
+            for (m, v) in moments.iter_mut().zip([d.x, d.y, d.x * d.y, (d.x * d.x - 0.5) * (u - 0.5)]) {
+                *m += v / f64::from(n);
+            }
+        }
+        assert!((mean - 0.5).abs() < 4e-3);
+        assert!(moments.iter().all(|m| m.abs() < 4.0 * 0.71 / 316.0), "{moments:?}");
+    }
+}

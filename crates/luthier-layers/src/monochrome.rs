@@ -1,0 +1,119 @@
+//! A layered surface at one wavelength: what every model evaluates.
+
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use luthier_optics::fresnel::{FilmLayer, coated};
+use luthier_optics::stack::{Base, Stack, Surface};
+use num_complex::Complex64;
+
+/// A stack at one wavelength, for one colour channel.
+///
+/// Indices are spectral; absorption and diffuse albedo are given per colour channel, so a channel goes with the wavelength. Colour is
+/// the sum over wavelengths of the channel's weight times the model at (wavelength, channel).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Monochrome {
+    /// Real index of the exterior.
+    pub exterior: f64,
+    /// Interfaces from the top down; at least one.
+    pub layers: Vec<MonochromeLayer>,
+}
+
+/// One interface and what lies below it, at one wavelength.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MonochromeLayer {
+    /// The micro-surface.
+    pub surface: Surface,
+    /// Real index above.
+    pub above: f64,
+    /// Coherent films from the top down.
+    pub films: Vec<FilmLayer>,
+    /// What lies below.
+    pub below: MonochromeBelow,
+}
+
+/// What lies below an interface, at one wavelength.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum MonochromeBelow {
+    /// A transparent medium: real index, and optical depth of the slab along the normal. Last in the stack: half-infinite.
+    Dielectric {
+        /// Index.
+        ior: f64,
+        /// Complex index, for the reflectance of the interface.
+        complex_ior: Complex64,
+        /// Optical depth along the normal.
+        optical_depth: f64,
+    },
+    /// An opaque conductor.
+    Conductor {
+        /// Complex index.
+        ior: Complex64,
+    },
+    /// A diffuse base without an interface of its own.
+    Diffuse {
+        /// Albedo.
+        albedo: f64,
+        /// Oren-Nayar slope deviation, radians.
+        sigma: f64,
+    },
+}
+
+impl Monochrome {
+    /// The stack at a wavelength, for channel 0, 1 or 2.
+    pub fn new(stack: &Stack, wavelength_nm: f64, channel: usize) -> Self {
+        let exterior = stack.exterior.at(wavelength_nm).re;
+        let mut above = exterior;
+        let mut layers = Vec::with_capacity(stack.layers.len());
+        for layer in &stack.layers {
+            let films = layer
+                .films
+                .iter()
+                .map(|f| FilmLayer { ior: f.ior.at(wavelength_nm), waves: f.thickness.nominal_nm() / wavelength_nm })
+                .collect();
+            let (below, next) = match &layer.base {
+                Base::Dielectric { ior, slab } => {
+                    let complex_ior = ior.at(wavelength_nm);
+                    let optical_depth = slab.optical_depth()[channel];
+                    (MonochromeBelow::Dielectric { ior: complex_ior.re, complex_ior, optical_depth }, complex_ior.re)
+                }
+                Base::Conductor { ior } => (MonochromeBelow::Conductor { ior: ior.at(wavelength_nm) }, above),
+                Base::Diffuse(d) => (MonochromeBelow::Diffuse { albedo: d.albedo[channel], sigma: d.sigma }, above),
+            };
+            layers.push(MonochromeLayer { surface: layer.surface, above, films, below });
+            above = next;
+        }
+        Self { exterior, layers }
+    }
+}
+
+impl MonochromeLayer {
+    /// Unpolarised reflectance of the interface for light from above; 0 for a diffuse base, which has none.
+    pub fn reflectance(&self, cos_theta_i: f64) -> f64 {
+        let below = match self.below {
+            MonochromeBelow::Dielectric { complex_ior, .. } => complex_ior,
+            MonochromeBelow::Conductor { ior } => ior,
+            MonochromeBelow::Diffuse { .. } => return 0.0,
+        };
+        coated(Complex64::new(self.above, 0.0), &self.films, below, cos_theta_i).unpolarised()
+    }
+
+    /// Index below over index above; 1 where nothing is transmitted.
+    pub fn eta(&self) -> f64 {
+        match self.below {
+            MonochromeBelow::Dielectric { ior, .. } => ior / self.above,
+            MonochromeBelow::Conductor { .. } | MonochromeBelow::Diffuse { .. } => 1.0,
+        }
+    }
+}
+
+/// The value of a function of the monochrome stack in colour.
+pub fn in_color(stack: &Stack, color: &Color, mut f: impl FnMut(&Monochrome) -> f64) -> Rgb {
+    let mut rgb = [0.0; 3];
+    for node in color.nodes() {
+        for (channel, sum) in rgb.iter_mut().enumerate() {
+            if node.weight[channel] != 0.0 {
+                *sum += node.weight[channel] * f(&Monochrome::new(stack, node.wavelength_nm, channel));
+            }
+        }
+    }
+    rgb
+}

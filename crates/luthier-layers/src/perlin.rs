@@ -1,0 +1,72 @@
+//! Gradient noise in the plane.
+
+use std::f64::consts::PI;
+
+use glam::DVec2;
+
+use crate::hash;
+
+/// Perlin's noise with the quintic fade of 2002, unit gradients at random angles, summed over octaves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Perlin {
+    /// Which noise.
+    pub seed: u32,
+    /// Lattice cells per unit of length in the first octave; each octave doubles it and halves the amplitude.
+    pub frequency: f64,
+    /// How many octaves.
+    pub octaves: u32,
+}
+
+impl Perlin {
+    /// The noise at a place: mean 0, within -1..=1, zero at the lattice points of a single octave.
+    pub fn at(&self, uv: DVec2) -> f64 {
+        let (mut sum, mut total, mut amplitude) = (0.0, 0.0, 1.0);
+        let mut p = uv * self.frequency;
+        for octave in 0..self.octaves {
+            sum += amplitude * gradient_noise(self.seed.wrapping_add(octave), p);
+            total += amplitude;
+            amplitude *= 0.5;
+            p *= 2.0;
+        }
+        // One octave reaches sqrt(1/2) at most.
+        if total > 0.0 { std::f64::consts::SQRT_2 * sum / total } else { 0.0 }
+    }
+}
+
+fn gradient_noise(seed: u32, p: DVec2) -> f64 {
+    let (x, y) = (hash::floor(p.x), hash::floor(p.y));
+    let (dx, dy) = (p.x - x as f64, p.y - y as f64);
+    let corner = |i: i64, j: i64| {
+        let angle = 2.0 * PI * hash::unit(hash::cell(seed, x.saturating_add(i), y.saturating_add(j)), 0);
+        libm::cos(angle) * (dx - i as f64) + libm::sin(angle) * (dy - j as f64)
+    };
+    let fade = |t: f64| t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+    let lerp = |a: f64, b: f64, t: f64| a + (b - a) * t;
+    let (u, v) = (fade(dx), fade(dy));
+    lerp(lerp(corner(0, 0), corner(1, 0), u), lerp(corner(0, 1), corner(1, 1), u), v)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_vanishes_on_the_lattice_and_stays_in_range_and_smooth() {
+        let noise = Perlin { seed: 1, frequency: 1.0, octaves: 1 };
+        let rough = Perlin { seed: 1, frequency: 3.0, octaves: 5 };
+        let (mut sum, mut most) = (0.0, 0.0f64);
+        for i in -150..150 {
+            assert_eq!(noise.at(DVec2::new(f64::from(i), f64::from(-2 * i))), 0.0);
+            for j in -150..150 {
+                let p = DVec2::new(f64::from(i) * 0.0731, f64::from(j) * 0.0517);
+                let value = noise.at(p);
+                most = most.max(value.abs()).max(rough.at(p).abs());
+                sum += value;
+                // Gradients of fade and ramps together are below 4 per unit.
+                assert!((noise.at(p + DVec2::new(1e-6, 1e-6)) - value).abs() < 8e-6);
+            }
+        }
+        assert!(most <= 1.0 && most > 0.5, "{most}");
+        assert!((sum / 90_000.0).abs() < 0.05, "{sum}");
+    }
+}

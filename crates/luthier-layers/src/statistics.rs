@@ -1,0 +1,19 @@
+//! Layers as operators on the statistics of light: energy, mean direction, variance.
+//!
+//! L. Belcour, "Efficient Rendering of Layered Materials using an Atomic Decomposition with Statistical Operators", SIGGRAPH
+//! 2018; Yamaguchi, Yatagawa, Tokuyoshi and Morishima, "Real-time Rendering of Layered Materials with Anisotropic Normal
+//! Distributions", SIGGRAPH Asia 2019 Technical Briefs, whose eq. 1-3 restate it. A lobe of light is a point in the unit
+//! disc (the mean of its directions, projected on the surface), an energy and a spread around that point. Interfaces and
+//! slabs change the three; adding sums all paths between them.
+//!
+//! The two papers differ in the type of a spread only: a number, or a covariance matrix. So does the code: everything here is
+//! generic over [`spread::Spread`].
+//!
+//! Out of scope: media that scatter.
+
+pub mod adding;
+pub mod diffuse_base;
+pub mod energy;
+pub mod evaluate;
+pub mod spread;
+pub mod total_reflection;

@@ -1,0 +1,149 @@
+//! A diffuse base below the layers, which the papers do not have: its light has no mean direction to follow.
+
+use glam::DVec3;
+use luthier_optics::quadrature::gauss_legendre;
+use luthier_optics::stack::Diffuse;
+
+use super::adding::{Transport, add};
+use super::energy::Energy;
+use crate::monochrome::{Monochrome, MonochromeBelow};
+use crate::oren_nayar;
+
+/// Points over the directions of diffuse light: within 1e-7 for smooth interfaces.
+const POINTS: usize = 24;
+
+/// A diffuse base as the layers above let it be seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DiffuseBase {
+    albedo: f64,
+    sigma: f64,
+    /// Index above the base over index of the exterior.
+    eta: f64,
+    /// Part of the base's cosine-weighted light that the layers send back down to it.
+    internal: f64,
+}
+
+impl DiffuseBase {
+    /// The base of a stack, or `None` if it has no diffuse one.
+    ///
+    /// Light of the base beyond the critical angle of the exterior is totally reflected; it crosses the lowest slab only.
+    pub fn new(stack: &Monochrome, energy: &impl Energy) -> Option<Self> {
+        let base = stack.layers.iter().position(|l| matches!(l.below, MonochromeBelow::Diffuse { .. }))?;
+        let MonochromeBelow::Diffuse { albedo, sigma } = stack.layers[base].below else { return None };
+        let eta = stack.layers[base].above / stack.exterior;
+        let slab = |cos: f64| match base.checked_sub(1).map(|above| stack.layers[above].below) {
+            Some(MonochromeBelow::Dielectric { optical_depth, .. }) => libm::exp(-2.0 * optical_depth / cos),
+            _ => 1.0,
+        };
+        // A bare base is below no interface.
+        let internal = if base == 0 {
+            0.0
+        } else {
+            let critical_sq = ((eta - 1.0) * (eta + 1.0) / (eta * eta)).max(0.0);
+            let critical = critical_sq.sqrt();
+            let mut sum = 0.0;
+            for (x, weight) in gauss_legendre(POINTS) {
+                let beyond = critical * x;
+                sum += weight * critical * 2.0 * beyond * slab(beyond);
+                // Squared away from the critical angle, where reflectances start like square roots.
+                let cos = critical + (1.0 - critical) * x * x;
+                let cos_outside_sq = 1.0 - eta * eta * (1.0 - cos) * (1.0 + cos);
+                if cos_outside_sq > 0.0 {
+                    let from_below = add::<f64>(stack, energy, cos_outside_sq.sqrt().min(1.0)).from_below;
+                    sum += weight * (1.0 - critical) * 2.0 * x * 2.0 * cos * from_below;
+                }
+            }
+            sum
+        };
+        Some(Self { albedo, sigma, eta, internal: internal.clamp(0.0, 1.0) })
+    }
+
+    /// BRDF of the base seen through the layers, in 1/sr, from the transports of both directions at their own angles.
+    ///
+    /// `f = T(wi) T(wo) f_base / (n^2 (1 - rho R))`, R the diffuse reflectance from below: exact for smooth layers on Lambert.
+    /// Reciprocal.
+    pub fn brdf<S>(&self, wi: (DVec3, &Transport<S>), wo: (DVec3, &Transport<S>)) -> f64 {
+        let inside = |(w, transport): (DVec3, &Transport<S>)| {
+            let cos = transport.cos_theta;
+            let across = libm::hypot(w.x, w.y);
+            let scale = if across > 0.0 { (1.0 - cos * cos).max(0.0).sqrt() / across } else { 0.0 };
+            DVec3::new(w.x * scale, w.y * scale, cos)
+        };
+        let transmitted = wi.1.transmitted * wo.1.transmitted;
+        if transmitted <= 0.0 {
+            return 0.0;
+        }
+        let diffuse = Diffuse { albedo: [self.albedo; 3], sigma: self.sigma };
+        let [f, ..] = oren_nayar::brdf(&diffuse, inside(wi), inside(wo));
+        let lost = 1.0 - self.albedo * self.internal;
+        // A white base below layers that return everything: nothing is transmitted to it either.
+        if lost <= 0.0 { 0.0 } else { transmitted * f / (self.eta * self.eta * lost) }
+    }
+
+    /// Cosine-weighted reflectance of the layers from below.
+    pub fn internal_reflectance(&self) -> f64 {
+        self.internal
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+    use crate::monochrome::MonochromeLayer;
+    use luthier_optics::stack::Surface;
+    use num_complex::Complex64;
+
+    fn coated(albedo: f64, optical_depth: f64) -> Monochrome {
+        let layer = |above, below| MonochromeLayer { surface: Surface::smooth(), above, films: Vec::new(), below };
+        let coat = MonochromeBelow::Dielectric { ior: 1.5, complex_ior: Complex64::new(1.5, 0.0), optical_depth };
+        let base = MonochromeBelow::Diffuse { albedo, sigma: 0.0 };
+        Monochrome { exterior: 1.0, layers: vec![layer(1.0, coat), layer(1.5, base)] }
+    }
+
+    fn fresnel(stack: &Monochrome) -> impl Energy {
+        |layer: usize, cos: f64, _: f64| stack.layers[layer].reflectance(cos)
+    }
+
+    #[test]
+    fn smooth_coat_on_lambert_closed_forms() {
+        // Oracle: closed-form averages of Fresnel's formulas; normal incidence and hemispherical.
+        for (rho, normal, hemispherical) in [
+            (0.18, 0.11813908, 0.16570257),
+            (0.5, 0.31607089, 0.35295886),
+            (0.8, 0.63283341, 0.65263668),
+            (1.0, 1.0, 1.0),
+        ] {
+            let stack = coated(rho, 0.0);
+            let energy = fresnel(&stack);
+            let base = DiffuseBase::new(&stack, &energy).unwrap();
+            assert!((base.internal_reflectance() - 0.5963457597).abs() < 1e-7);
+            let albedo = |cos: f64| {
+                let eye = add::<f64>(&stack, &energy, cos);
+                let wo = DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+                // f depends on the cosine of wi only; cos^2 gathers points at grazing angles.
+                let mut sum = eye.reflected();
+                for (x, weight) in gauss_legendre(64) {
+                    let mu = x * x;
+                    let wi = DVec3::new((1.0 - mu * mu).sqrt(), 0.0, mu);
+                    let light = add::<f64>(&stack, &energy, mu);
+                    sum += weight * 2.0 * x * 2.0 * PI * mu * base.brdf((wi, &light), (wo, &eye));
+                }
+                sum
+            };
+            assert!((albedo(1.0) - normal).abs() < 1e-7, "{rho}: {}", albedo(1.0));
+            let mean: f64 = gauss_legendre(64).iter().map(|(x, w)| w * 2.0 * x * 2.0 * x * x * albedo(x * x)).sum();
+            assert!((mean - hemispherical).abs() < 1e-7, "{rho}: {mean}");
+        }
+    }
+
+    #[test]
+    fn absorption_darkens_the_base() {
+        let internal = |depth| {
+            let stack = coated(0.5, depth);
+            DiffuseBase::new(&stack, &fresnel(&stack)).unwrap().internal_reflectance()
+        };
+        assert!(internal(0.1) < internal(0.0) && internal(50.0) < 1e-9);
+    }
+}

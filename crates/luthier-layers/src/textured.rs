@@ -1,0 +1,95 @@
+//! Texture samples in front of any model.
+
+use glam::DVec3;
+
+use crate::frame;
+use crate::model::Model;
+use crate::monochrome::{Monochrome, MonochromeBelow};
+
+/// What normal, roughness and thickness textures say about one place (Elek 2010, Algorithm 1, line 2, and section 3).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TextureSample {
+    /// Normal, unit, in the surface's frame.
+    pub normal: DVec3,
+    /// Factor on the slope parameters of every layer; results are clamped to 0..=1.
+    pub alpha_factor: f64,
+    /// Factor on the thickness of the slab below the first interface.
+    pub slab_factor: f64,
+    /// Factor on the thickness of the films on the first interface.
+    pub film_factor: f64,
+}
+
+impl TextureSample {
+    /// No texture.
+    pub const NONE: Self = Self { normal: DVec3::Z, alpha_factor: 1.0, slab_factor: 1.0, film_factor: 1.0 };
+
+    /// The stack as it is at the place.
+    pub fn apply(&self, stack: &Monochrome) -> Monochrome {
+        let mut here = stack.clone();
+        for layer in &mut here.layers {
+            for alpha in [&mut layer.surface.alpha_x, &mut layer.surface.alpha_y] {
+                *alpha = (*alpha * self.alpha_factor).clamp(0.0, 1.0);
+            }
+        }
+        if let Some(layer) = here.layers.first_mut() {
+            for film in &mut layer.films {
+                film.waves *= self.film_factor;
+            }
+            if let MonochromeBelow::Dielectric { optical_depth, .. } = &mut layer.below {
+                *optical_depth *= self.slab_factor;
+            }
+        }
+        here
+    }
+
+    /// `f cos_theta_i` of a model at the place; the cosine is that against the sampled normal.
+    pub fn eval(&self, model: &dyn Model, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
+        if wi.z <= 0.0 || wo.z <= 0.0 {
+            return 0.0;
+        }
+        model.eval(&self.apply(stack), frame::local(self.normal, wi), frame::local(self.normal, wo))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elek_model::Elek;
+    use crate::monochrome::MonochromeLayer;
+    use luthier_optics::fresnel::FilmLayer;
+    use luthier_optics::stack::{Distribution, Surface};
+    use num_complex::Complex64;
+
+    fn coated(alpha: f64, optical_depth: f64, waves: f64) -> Monochrome {
+        let below = MonochromeBelow::Dielectric { ior: 1.5, complex_ior: Complex64::new(1.5, 0.0), optical_depth };
+        let coat = MonochromeLayer {
+            surface: Surface::isotropic(Distribution::Ggx, alpha),
+            above: 1.0,
+            films: vec![FilmLayer { ior: Complex64::new(1.3, 0.0), waves }],
+            below,
+        };
+        let base = MonochromeLayer {
+            surface: Surface::smooth(),
+            above: 1.5,
+            films: Vec::new(),
+            below: MonochromeBelow::Diffuse { albedo: 0.5, sigma: 0.0 },
+        };
+        Monochrome { exterior: 1.0, layers: vec![coat, base] }
+    }
+
+    #[test]
+    fn each_texture_acts_on_its_own_quantity() {
+        let (wi, wo) = (DVec3::new(0.3, 0.0, 0.7).normalize(), DVec3::new(-0.1, 0.2, 0.7).normalize());
+        let sample = TextureSample { alpha_factor: 0.5, slab_factor: 3.0, film_factor: 2.0, ..TextureSample::NONE };
+        assert_eq!(sample.apply(&coated(0.4, 0.1, 0.2)), coated(0.2, 0.1 * 3.0, 0.4));
+        // Turning normal and directions together changes nothing.
+        let turned = TextureSample { normal: DVec3::new(0.1, -0.2, 0.9).normalize(), ..TextureSample::NONE };
+        let stack = coated(0.4, 0.1, 0.2);
+        let back = |w: DVec3| {
+            let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|e| frame::local(turned.normal, e));
+            DVec3::new(x.dot(w), y.dot(w), z.dot(w))
+        };
+        let expected = Elek.eval(&stack, wi, wo);
+        assert!((turned.eval(&Elek, &stack, back(wi), back(wo)) / expected - 1.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,100 @@
+//! Granier and Heidrich's model against its paper's numbers and other formulas.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use luthier_layers::granier_heidrich::{Film, GranierHeidrich, exponent};
+use luthier_layers::model::Model;
+use luthier_optics::fresnel::FilmLayer;
+use num_complex::Complex64;
+
+use crate::sphere::{albedo, at, mirrored};
+use crate::stacks::{dielectric, ggx, lambert, stack};
+
+fn film(eta: f64, waves_inside: Option<f64>) -> Film {
+    Film { eta, waves_inside, inner_normal: DVec3::Z, exponents: [90.0, 170.0] }
+}
+
+fn close(found: f64, expected: f64, tolerance: f64) {
+    assert!((found - expected).abs() < tolerance, "{found} {expected}");
+}
+
+/// The stated gain: 1.94 at 80 degrees, n = 1.5, beams in phase. And destructive interference takes light away.
+#[test]
+fn beams_in_phase_return_nearly_twice_what_falls_in() {
+    let wi = at(80.0);
+    // cos_theta_t of 80 degrees: the phase 2 Phi = 4 pi waves cos_theta_t is a turn.
+    let cos_t = (1.0 - (80f64.to_radians().sin() / 1.5).powi(2)).sqrt();
+    let at_phase = |turns: f64| film(1.5, Some(turns / (2.0 * cos_t))).specular(wi, mirrored(wi));
+    close(at_phase(1.0), 1.94, 5e-3);
+    assert!(at_phase(0.5) < 0.02);
+    // Out of phase altogether: the two powers, which is what energy allows.
+    close(film(1.5, None).specular(wi, mirrored(wi)), at_phase(0.25), 1e-12);
+}
+
+/// Eq. 14 is Schlick's mean, f + (1 - f)/21, and eq. 15 the rest. Eq. 18 for n = 1.5: Td = 0.914286.
+#[test]
+fn the_diffuse_term_is_that_of_the_paper() {
+    for eta in [1.33, 1.5, 1.8, 2.5] {
+        let f = ((eta - 1.0) / (eta + 1.0)) * ((eta - 1.0) / (eta + 1.0));
+        close(film(eta, None).diffuse_reflectance(), f + (1.0 - f) / 21.0, 1e-14);
+        close(1.0 - film(eta, None).diffuse_reflectance(), 80.0 / 21.0 * eta / ((1.0 + eta) * (1.0 + eta)), 1e-14);
+        for waves in [0.0, 0.1, 0.25, 0.4] {
+            let t = 80.0 / 21.0 * eta / ((1.0 + eta) * (1.0 + eta));
+            let expected = 1.0 + 2.0 * (4.0 * PI * waves).cos() * (t * (1.0 - t)).sqrt();
+            close(film(eta, Some(waves)).diffuse(), expected, 1e-13);
+        }
+    }
+    close(film(1.5, None).diffuse(), 1.0, 1e-14);
+}
+
+/// Normals that agree send all wavelengths one way; a deviation of 14 degrees (figure 6) spreads them as Snell's law says.
+#[test]
+fn a_deviated_inner_normal_disperses() {
+    let peak = |eta: f64, deviation: f64| {
+        let inner_normal = at(deviation);
+        let film = Film { eta, waves_inside: None, inner_normal, exponents: [0.0, 1e5] };
+        (-8900..8900)
+            .map(|i| f64::from(i) * 0.01)
+            .max_by(|a, b| {
+                let value = |theta: f64| film.beams(DVec3::Z, at(theta)).transmitted;
+                value(*a).total_cmp(&value(*b))
+            })
+            .unwrap()
+    };
+    for eta in [1.5, 1.6, 1.8] {
+        close(peak(eta, 0.0), 0.0, 0.02);
+        // Turned by twice the deviation inside, refracted on the way out.
+        let expected = (eta * 28f64.to_radians().sin()).asin().to_degrees();
+        close(peak(eta, 14.0), expected, 0.05);
+    }
+}
+
+/// No transmitted beam when the inner boundary faces away (eq. 11).
+#[test]
+fn boundaries_that_face_away_transmit_nothing() {
+    let tilted = Film { inner_normal: at(60.0), ..film(1.5, Some(0.3)) };
+    assert_eq!(tilted.beams(DVec3::Z, mirrored(at(85.0))).transmitted, 0.0);
+    assert!(tilted.beams(DVec3::Z, mirrored(at(85.0))).reflected > 0.0);
+    assert!(film(1.5, Some(0.3)).beams(DVec3::Z, mirrored(at(85.0))).transmitted > 0.0);
+}
+
+/// The film of figure 4 from a stack: exponent 90 is alpha 0.14744; the diffuse weight is the base's albedo, 0.7.
+#[test]
+fn parameters_come_from_the_stack() {
+    close(exponent(0.14744), 90.0, 0.01);
+    let mut granier = stack(&[(ggx(0.14744), dielectric(1.8, 0.0)), (ggx(0.0), lambert(0.7))]);
+    granier.layers[0].films = vec![FilmLayer { ior: Complex64::new(1.45, 0.0), waves: 71.0 / 525.0 }];
+    let film = GranierHeidrich::default().film(&granier).unwrap();
+    assert_eq!((film.eta, film.waves_inside), (1.45, Some(1.45 * (71.0 / 525.0))));
+    let diffuse = GranierHeidrich { specular_weight: 0.0, ..GranierHeidrich::default() };
+    let wi = at(50.0);
+    close(diffuse.eval(&granier, wi, at(10.0)), 0.7 * film.diffuse() / PI * wi.z, 1e-12);
+}
+
+/// Without interference a thick layer of n = 1.5 returns F + n^2 T at normal incidence: no 1/n^2, no object.
+#[test]
+fn a_thick_layer_gains_the_square_of_its_index() {
+    let thick = stack(&[(ggx(0.02), dielectric(1.5, 0.0))]);
+    close(albedo(&GranierHeidrich::default(), &thick, DVec3::Z), 0.04 + 2.25 * 0.96 * 0.96, 2e-2);
+}

@@ -1,0 +1,11 @@
+//! The classic models against closed forms and published numbers, and the measure of what they break.
+
+#![expect(clippy::disallowed_methods, reason = "oracles: nothing that ships depends on them")]
+
+mod energy;
+mod everywhere;
+mod granier_heidrich;
+mod sampling;
+mod smooth_coats;
+mod sphere;
+mod stacks;

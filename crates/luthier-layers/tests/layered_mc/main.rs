@@ -1,0 +1,12 @@
+//! The reference against closed forms, other formulations, and what must hold of any truth.
+
+#![expect(clippy::disallowed_methods, reason = "oracles: nothing that ships depends on them")]
+
+mod closed_forms;
+mod furnace;
+mod integrals;
+mod one_facet;
+mod rough_coat;
+mod scenes;
+mod single_interface;
+mod symmetry;
