@@ -11,7 +11,7 @@ step() { printf '\n== %s\n' "$1"; }
 missing() {
   command -v glslangValidator >/dev/null || echo glslangValidator
   command -v spirv-val >/dev/null || echo spirv-val
-  ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so' || echo 'the Vulkan loader'
+  ldconfig -p 2>/dev/null | grep 'libvulkan\.so' >/dev/null || echo 'the Vulkan loader'
   ls /usr/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json >/dev/null 2>&1 || echo 'a Vulkan driver'
 }
 
