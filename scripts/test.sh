@@ -12,7 +12,8 @@ missing() {
   command -v glslangValidator >/dev/null || echo glslangValidator
   command -v spirv-val >/dev/null || echo spirv-val
   ldconfig -p 2>/dev/null | grep 'libvulkan\.so' >/dev/null || echo 'the Vulkan loader'
-  ls /usr/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json >/dev/null 2>&1 || echo 'a Vulkan driver'
+  compgen -G '/usr/share/vulkan/icd.d/*.json' >/dev/null || compgen -G '/etc/vulkan/icd.d/*.json' >/dev/null ||
+    echo 'a Vulkan driver'
 }
 
 need=$(missing || true)
