@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 use crate::facet_grid::{CrossedJob, DOMAIN_ALPHA, DOMAIN_COS_THETA, FacetGrid, FacetGridJob};
 use crate::graph::Inputs;
-use crate::job::{Job, TileData, lone_tile};
+use crate::job::{Job, TileData, color_in_words, lone_tile};
 use crate::json;
 use crate::smooth::savitzky_golay;
 
@@ -131,9 +131,10 @@ impl FgdJob {
         // The crossed part and the wavelengths left out have errors of their own; the worst of all may meet.
         error.max_abs_err += crossed.map_or(0.0, |c| c.max_abs_err) + curves.spectrum_error(grid);
         let model = format!(
-            "directional albedo with all bounces, height-correlated Smith, {}; errors for cos_theta >= {DOMAIN_COS_THETA}, \
+            "directional albedo with all bounces, height-correlated Smith, {}; {}; errors for cos_theta >= {DOMAIN_COS_THETA}, \
              alpha >= {DOMAIN_ALPHA}",
-            self.distribution.name()
+            self.distribution.name(),
+            color_in_words(&self.color)
         );
         TileData { model, truth, texels: atlas.texels, error }
     }

@@ -5,7 +5,7 @@ use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use serde_json::{Value, json};
 
-use crate::job::{TileData, lone_tile};
+use crate::job::{TileData, color_in_words, lone_tile};
 use crate::json;
 
 /// Points of the error scan per texel interval.
@@ -49,7 +49,12 @@ impl FresnelJob {
             |u| vec![self.axis.decode(u[0])],
         );
         let films = if self.interface.films.is_empty() { "bare interface" } else { "films, Airy" };
-        TileData { model: format!("exact complex Fresnel, unpolarised; {films}"), truth, texels: atlas.texels, error }
+        TileData {
+            model: format!("exact complex Fresnel, unpolarised; {films}; {}", color_in_words(&self.color)),
+            truth,
+            texels: atlas.texels,
+            error,
+        }
     }
 
     fn cos_theta(&self, value: f64) -> f64 {

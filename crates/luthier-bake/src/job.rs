@@ -3,6 +3,7 @@
 use std::fmt;
 
 use luthier_lut::{Atlas, AtlasLayout, Axis, ErrorStats, Image, TableKind, TexelFormat, Tile};
+use luthier_optics::color::Color;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
@@ -157,4 +158,12 @@ pub(crate) fn lone_tile(kind: TableKind, axes: &[&Axis], format: TexelFormat, tr
     };
     let tiles: Vec<Tile> = Vec::new();
     Atlas { kind, layout, format, tiles, texels: balance::texels(kind, format, truth), truth: truth.clone() }
+}
+
+/// How the colour of a tile was made, for its description.
+pub(crate) fn color_in_words(color: &Color) -> String {
+    match color {
+        Color::Spectral => "spectral, CIE 1931 under D65, linear Rec.709".to_owned(),
+        Color::ThreeWavelengths([r, g, b]) => format!("RGB taken at {r}, {g} and {b} nm"),
+    }
 }
