@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use luthier_shader::{Form, Target};
 
+use crate::directions::Angles;
+
 const AFTER_HELP: &str = "\
 Exit codes:
   0  success
@@ -41,6 +43,10 @@ pub(crate) enum Verb {
     Preview(PreviewOptions),
     /// Print the shader of some materials
     Shader(ShaderOptions),
+    /// List the reflectance models
+    Models(ModelsOptions),
+    /// Evaluate a reflectance model of a material in f64
+    Eval(EvalOptions),
     /// List the built-in optical constants, or show one set
     Ior(IorOptions),
     /// Print the JSON Schema of material files
@@ -161,6 +167,57 @@ pub(crate) struct ShaderOptions {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  luthier models\n  luthier models --json")]
+pub(crate) struct ModelsOptions {
+    /// Print as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+const EVAL_EXAMPLES: &str = "\
+Prints f cos theta_i in linear Rec.709, spectral by default. Estimates come with their standard error.
+
+Examples:
+  luthier eval materials/red-lacquer.toml --model belcour --wi 30,0 --wo 45,180
+  luthier eval materials/red-lacquer.toml --model layered-mc --wi 30,0 --wo 45,180 --wavelength 550
+  luthier eval materials/car-paint.toml --model elek --directions pairs.csv --three-wavelengths
+  luthier eval materials/car-paint.toml --model elek --directions - --json
+  luthier eval materials/car-paint.toml --model elek --albedo";
+
+#[derive(Debug, Args)]
+#[command(after_help = EVAL_EXAMPLES)]
+pub(crate) struct EvalOptions {
+    /// A material file
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
+    /// Name of a model; `luthier models` lists them
+    #[arg(long, value_name = "NAME")]
+    pub(crate) model: String,
+    /// Direction to the light, in degrees: theta from the normal (0 to 90), phi around it
+    #[arg(long, value_name = "THETA,PHI", allow_hyphen_values = true, requires = "wo")]
+    #[arg(required_unless_present_any = ["directions", "albedo"], conflicts_with_all = ["directions", "albedo"])]
+    pub(crate) wi: Option<Angles>,
+    /// Direction to the eye
+    #[arg(long, value_name = "THETA,PHI", allow_hyphen_values = true, requires = "wi")]
+    pub(crate) wo: Option<Angles>,
+    /// CSV file of lines theta_i,phi_i,theta_o,phi_o in degrees; `-` is standard input. Lines that begin with # do not count
+    #[arg(long, value_name = "CSV", conflicts_with = "albedo")]
+    pub(crate) directions: Option<PathBuf>,
+    /// Directional albedo against angle instead of values: at 550 nm unless another wavelength is given
+    #[arg(long, conflicts_with = "three_wavelengths")]
+    pub(crate) albedo: bool,
+    /// One wavelength, 360 to 830 nm. Absorption and diffuse albedo are those of the channel nearest to it (645, 525, 445 nm)
+    #[arg(long, value_name = "NM", value_parser = wavelength, conflicts_with = "three_wavelengths")]
+    pub(crate) wavelength: Option<f64>,
+    /// The material's three wavelengths taken as R, G, B instead of spectral colour
+    #[arg(long)]
+    pub(crate) three_wavelengths: bool,
+    /// Print as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  luthier ior\n  luthier ior au\n  luthier ior tio2_film --json")]
 pub(crate) struct IorOptions {
     /// Id of a data set; without it, all are listed
@@ -200,6 +257,13 @@ impl From<FormName> for Form {
             FormName::Baked => Self::Baked,
             FormName::Full => Self::Full,
         }
+    }
+}
+
+fn wavelength(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (360.0..=830.0).contains(&value) => Ok(value),
+        _ => Err("expected a wavelength from 360 to 830 nm".to_owned()),
     }
 }
 

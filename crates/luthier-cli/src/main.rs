@@ -5,6 +5,7 @@ mod bake_files;
 mod cli;
 #[cfg(feature = "gpu")]
 mod device;
+mod directions;
 mod failure;
 mod materials;
 mod output;
@@ -27,6 +28,8 @@ fn main() -> ExitCode {
         #[cfg(feature = "gpu")]
         Verb::Preview(options) => verb::preview::run(options),
         Verb::Shader(options) => verb::shader::run(options),
+        Verb::Models(options) => verb::models::run(options),
+        Verb::Eval(options) => verb::eval::run(options),
         Verb::Ior(options) => verb::ior::run(options),
         Verb::Schema => verb::schema::run(),
     };

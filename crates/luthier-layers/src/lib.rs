@@ -7,6 +7,7 @@
 //! Out of scope: reading material files, tables, devices.
 
 pub mod belcour;
+pub mod directional_albedo;
 pub mod elek;
 pub mod elek_model;
 pub mod facets;

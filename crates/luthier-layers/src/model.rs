@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::layered_mc::Estimate;
 use crate::monochrome::Monochrome;
 
 /// What a model is, for listings and reports.
@@ -25,4 +26,19 @@ pub trait Model: Sync {
     /// `f cos_theta_i` for light from `wi` seen from `wo`: unit, in the local frame, away from the surface. Zero when either
     /// is at or below the horizon; finite for all unit directions.
     fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64;
+
+    /// The model as an estimator, if its values are means of random samples.
+    fn estimator(&self) -> Option<&dyn Estimator> {
+        None
+    }
+}
+
+/// A model whose values are means of random samples. The same arguments give the same numbers.
+pub trait Estimator: Sync {
+    /// As [`Model::eval`], with its standard error.
+    fn eval_with_error(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> Estimate;
+
+    /// Directional albedo: the share of the light from `wo` that leaves upward, light mirrored by smooth interfaces
+    /// included.
+    fn albedo_with_error(&self, stack: &Monochrome, wo: DVec3) -> Estimate;
 }

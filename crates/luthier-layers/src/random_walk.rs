@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use crate::layered_mc::{Estimate, Interface, InterfaceMode, Side, Sided, Stream, both_above, mixed_seed};
-use crate::model::{Model, ModelInfo};
+use crate::model::{Estimator, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeLayer};
 
 /// Walks between the facets of one interface. The same fields give the same numbers.
@@ -75,8 +75,24 @@ impl Model for RandomWalk {
     }
 
     fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
-        let Some(top) = stack.layers.first() else { return 0.0 };
+        self.eval_with_error(stack, wi, wo).mean
+    }
+
+    fn estimator(&self) -> Option<&dyn Estimator> {
+        Some(self)
+    }
+}
+
+impl Estimator for RandomWalk {
+    fn eval_with_error(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> Estimate {
+        let Some(top) = stack.layers.first() else { return Estimate::exact(0.0) };
         let walks = Self { seed: mixed_seed(self.seed, stack, wi, wo), ..*self };
-        walks.density(top, (Side::Above, wo), (Side::Above, wi)).mean
+        walks.density(top, (Side::Above, wo), (Side::Above, wi))
+    }
+
+    fn albedo_with_error(&self, stack: &Monochrome, wo: DVec3) -> Estimate {
+        let Some(top) = stack.layers.first() else { return Estimate::exact(0.0) };
+        let walks = Self { seed: mixed_seed(self.seed, stack, wo, wo), ..*self };
+        walks.albedo(top, Side::Above, wo).0
     }
 }

@@ -39,3 +39,23 @@ pub fn models() -> Vec<Box<dyn Model>> {
         Box::new(LayeredMc::new(InterfaceMode::OneFacet)),
     ]
 }
+
+/// The model of a name.
+pub fn model(name: &str) -> Option<Box<dyn Model>> {
+    models().into_iter().find(|model| model.info().name == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique_and_found() {
+        let names: Vec<&str> = models().iter().map(|model| model.info().name).collect();
+        for (i, name) in names.iter().enumerate() {
+            assert!(!names[..i].contains(name), "{name} twice");
+            assert_eq!(model(name).map(|model| model.info().name), Some(*name));
+        }
+        assert!(model("").is_none() && model("Phong").is_none());
+    }
+}

@@ -1,9 +1,9 @@
 use crate::workshop::Workshop;
 
 const VERBS: &[&str] = if cfg!(feature = "gpu") {
-    &["bake", "check", "report", "preview", "shader", "ior", "schema"]
+    &["bake", "check", "report", "preview", "shader", "models", "eval", "ior", "schema"]
 } else {
-    &["bake", "check", "report", "shader", "ior", "schema"]
+    &["bake", "check", "report", "shader", "models", "eval", "ior", "schema"]
 };
 
 #[test]

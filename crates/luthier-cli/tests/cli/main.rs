@@ -4,6 +4,7 @@ mod bake;
 mod bake_refusals;
 mod check;
 mod crate_graph;
+mod eval;
 mod help;
 mod ior;
 mod material_texts;

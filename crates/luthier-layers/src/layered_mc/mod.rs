@@ -31,7 +31,7 @@ pub(crate) use interface::Interface;
 pub(crate) use random::Stream;
 pub(crate) use rough::Sided;
 
-use crate::model::{Model, ModelInfo};
+use crate::model::{Estimator, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 use connect::Scratch;
 use path::Interfaces;
@@ -126,7 +126,21 @@ impl Model for LayeredMc {
     /// The mean of [`LayeredMc::estimate`]. The seed is mixed with the arguments, so that errors are independent
     /// between wavelengths and average out in colour.
     fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
-        Self { seed: mixed_seed(self.seed, stack, wi, wo), ..*self }.estimate(stack, wi, wo).mean
+        self.eval_with_error(stack, wi, wo).mean
+    }
+
+    fn estimator(&self) -> Option<&dyn Estimator> {
+        Some(self)
+    }
+}
+
+impl Estimator for LayeredMc {
+    fn eval_with_error(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> Estimate {
+        Self { seed: mixed_seed(self.seed, stack, wi, wo), ..*self }.estimate(stack, wi, wo)
+    }
+
+    fn albedo_with_error(&self, stack: &Monochrome, wo: DVec3) -> Estimate {
+        Self { seed: mixed_seed(self.seed, stack, wo, wo), ..*self }.albedo(stack, wo, self.samples)
     }
 }
 

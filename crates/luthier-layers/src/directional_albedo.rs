@@ -1,0 +1,114 @@
+//! Directional albedo of a model: by its own estimate, or by quadrature over the hemisphere.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use glam::DVec3;
+use luthier_optics::quadrature::gauss_legendre;
+
+use crate::model::Model;
+use crate::monochrome::Monochrome;
+
+/// Points along each half axis: the first rule, and the largest.
+const POINTS: [usize; 2] = [16, 128];
+
+/// A change on doubling with which the quadrature is content.
+const CONTENT: f64 = 1e-4;
+
+/// A directional albedo and how far it may be off.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DirectionalAlbedo {
+    /// Share of the light that is reflected.
+    pub value: f64,
+    /// Standard error of an estimate; of a quadrature the change on the last doubling of its points.
+    pub error: f64,
+    /// Whether the model estimated it by itself; then light mirrored by smooth interfaces is in it.
+    pub is_estimate: bool,
+}
+
+/// Directional albedo seen from `wo` (unit, above the surface; 0 below): the integral of `f cos_theta_i` over the light.
+///
+/// Models that are functions are integrated with Gauss-Legendre points along theta and phi, which crowd at the mirror
+/// direction so that sharp lobes are resolved, and are doubled until nothing changes by more than 1e-4. Light mirrored by
+/// smooth interfaces is no function and is left out.
+pub fn directional_albedo(model: &dyn Model, stack: &Monochrome, wo: DVec3) -> DirectionalAlbedo {
+    if wo.z <= 0.0 {
+        return DirectionalAlbedo { value: 0.0, error: 0.0, is_estimate: false };
+    }
+    if let Some(estimator) = model.estimator() {
+        let own = estimator.albedo_with_error(stack, wo);
+        return DirectionalAlbedo { value: own.mean, error: own.std_err, is_estimate: true };
+    }
+    let [mut points, most] = POINTS;
+    let mut value = integral(model, stack, wo, points);
+    loop {
+        points *= 2;
+        let finer = integral(model, stack, wo, points);
+        let error = (finer - value).abs();
+        if error <= CONTENT || points >= most {
+            return DirectionalAlbedo { value: finer, error, is_estimate: false };
+        }
+        value = finer;
+    }
+}
+
+/// With `points` on each side of the mirror direction in theta and in phi.
+fn integral(model: &dyn Model, stack: &Monochrome, wo: DVec3, points: usize) -> f64 {
+    let rule = gauss_legendre(points);
+    let theta_o = libm::atan2(libm::hypot(wo.x, wo.y), wo.z);
+    let phi_mirror = libm::atan2(-wo.y, -wo.x);
+    let thetas: Vec<(f64, f64)> =
+        crowded(&rule, theta_o, -theta_o).chain(crowded(&rule, theta_o, FRAC_PI_2 - theta_o)).collect();
+    let phis: Vec<(f64, f64)> = crowded(&rule, phi_mirror, -PI).chain(crowded(&rule, phi_mirror, PI)).collect();
+    let mut sum = 0.0;
+    for &(theta, d_theta) in &thetas {
+        let (sin_theta, cos_theta) = libm::sincos(theta);
+        let mut ring = 0.0;
+        for &(phi, d_phi) in &phis {
+            let (sin_phi, cos_phi) = libm::sincos(phi);
+            let wi = DVec3::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta);
+            ring += d_phi * model.eval(stack, wi, wo);
+        }
+        sum += d_theta * sin_theta * ring;
+    }
+    sum
+}
+
+/// A rule on 0..=1 laid from `start` over `length` (of either sign), with spacing that grows as the square of the distance along
+/// it: nodes and positive weights.
+fn crowded(rule: &[(f64, f64)], start: f64, length: f64) -> impl Iterator<Item = (f64, f64)> {
+    rule.iter().map(move |&(t, weight)| (start + length * t * t * t, 3.0 * t * t * weight * length.abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::ModelInfo;
+
+    /// `f = (n + 2) / (2 pi) cos^n` about the mirror direction for normal incidence, whose albedo is 1.
+    struct Lobe(f64);
+
+    impl Model for Lobe {
+        fn info(&self) -> ModelInfo {
+            ModelInfo { name: "lobe", source: "", domain: "", leaves_out: "" }
+        }
+
+        fn eval(&self, _: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
+            let mirrored = DVec3::new(-wo.x, -wo.y, wo.z);
+            (self.0 + 2.0) / (2.0 * PI) * libm::pow(mirrored.dot(wi).max(0.0), self.0) * wi.z
+        }
+    }
+
+    #[test]
+    fn closed_forms() {
+        let stack = Monochrome { exterior: 1.0, layers: Vec::new() };
+        for n in [0.0, 1.0, 1e3, 1e7] {
+            let albedo = directional_albedo(&Lobe(n), &stack, DVec3::Z);
+            assert!((albedo.value - 1.0).abs() < 1e-6 && albedo.error < 1e-4, "{n}: {albedo:?}");
+        }
+        // Sharp lobes aside the normal: the cosine of the mirror direction times (n + 2) / (n + 1).
+        let wo = DVec3::new(0.48, 0.64, 0.6);
+        let albedo = directional_albedo(&Lobe(1e5), &stack, wo);
+        assert!((albedo.value - 0.6 * 100_002.0 / 100_001.0).abs() < 1e-4, "{albedo:?}");
+        assert_eq!(directional_albedo(&Lobe(1.0), &stack, -wo).value, 0.0);
+    }
+}
