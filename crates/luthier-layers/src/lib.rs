@@ -1,4 +1,7 @@
-//! Evaluation of layer stacks: the real-time models, each in f64 as the twin of its shader.
+//! Evaluation of layer stacks in f64: the real-time models, of which `elek` is the twin of the emitted shader, and the
+//! references that judge them, `random_walk` for one interface and `layered_mc` for a whole stack.
+//!
+//! A [`model::Model`] evaluates a [`monochrome::Monochrome`] stack at one wavelength; [`registry`] lists all by name.
 //!
 //! Every model takes directions in the local frame (+z is the normal, both point away from the surface) and returns
 //! `f cos_theta_i`, the BRDF times the cosine of the incident direction: that stays finite where the BRDF alone does
