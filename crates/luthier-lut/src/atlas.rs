@@ -17,11 +17,16 @@ pub enum TableKind {
     Phase,
     /// Granier's T_d over (u, v): normalised thickness, slopes, normalisation factor; one tile per varying film.
     Thickness,
+    /// Reflectance of an interface over the cosine and the thickness of its film, RGB; one tile per interface whose film varies.
+    Film,
+    /// Share of a lobe inside a medium that is not totally reflected at its surface, over (cos_theta, alpha); one tile per index.
+    Escape,
 }
 
 impl TableKind {
     /// All kinds, in binding order.
-    pub const ALL: [Self; 5] = [Self::Fresnel, Self::Distribution, Self::Fgd, Self::Phase, Self::Thickness];
+    pub const ALL: [Self; 7] =
+        [Self::Fresnel, Self::Distribution, Self::Fgd, Self::Phase, Self::Thickness, Self::Film, Self::Escape];
 
     /// The name in files, manifest and shaders.
     pub fn name(self) -> &'static str {
@@ -31,12 +36,22 @@ impl TableKind {
             Self::Fgd => "fgd",
             Self::Phase => "phase",
             Self::Thickness => "thickness",
+            Self::Film => "film",
+            Self::Escape => "escape",
         }
     }
 
-    /// Binding number of its texture; the sampler and the material buffer follow (5 and 6).
+    /// Binding number of its texture. 5 is the sampler, 6 the material buffer.
     pub fn binding(self) -> u32 {
-        self as u32
+        match self {
+            Self::Fresnel => 0,
+            Self::Distribution => 1,
+            Self::Fgd => 2,
+            Self::Phase => 3,
+            Self::Thickness => 4,
+            Self::Film => 7,
+            Self::Escape => 8,
+        }
     }
 }
 
@@ -195,7 +210,7 @@ mod tests {
 
     #[test]
     fn bindings_follow_the_order_of_the_kinds() {
-        assert_eq!(TableKind::ALL.map(TableKind::binding), [0, 1, 2, 3, 4]);
+        assert_eq!(TableKind::ALL.map(TableKind::binding), [0, 1, 2, 3, 4, 7, 8]);
         for kind in TableKind::ALL {
             assert_eq!(serde_json::to_string(&kind).unwrap(), format!("\"{}\"", kind.name()));
         }

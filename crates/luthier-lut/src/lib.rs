@@ -11,6 +11,7 @@
 
 mod atlas;
 mod axis;
+mod constants;
 mod encoding;
 mod error;
 mod format;
@@ -19,9 +20,11 @@ mod manifest;
 mod measure;
 mod record;
 mod sampler;
+mod shading;
 
 pub use atlas::{Atlas, AtlasLayout, TableKind, Tile};
 pub use axis::{Axis, Mapping};
+pub use constants::{FlakesRecord, MaterialConstants, PatinaRecord};
 pub use encoding::Encoding;
 pub use error::LutError;
 pub use format::TexelFormat;
@@ -32,3 +35,4 @@ pub use manifest::{
 pub use measure::{Comparison, ErrorStats, Scan, Worst, measure, measure_scan};
 pub use record::{LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, material_buffer};
 pub use sampler::{WeightBits, bilinear};
+pub use shading::ShadingModel;

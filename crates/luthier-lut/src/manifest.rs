@@ -1,9 +1,9 @@
 use serde::{Deserialize, Serialize};
 
-use crate::{AtlasLayout, LayerRecord, LutError, TableKind, TexelFormat, Tile};
+use crate::{AtlasLayout, LayerRecord, LutError, MaterialConstants, ShadingModel, TableKind, TexelFormat, Tile};
 
 /// Version of the manifest's shape. A reader refuses any other.
-pub const MANIFEST_SCHEMA: u32 = 1;
+pub const MANIFEST_SCHEMA: u32 = 2;
 
 /// `manifest.json`: everything a bake made and how it hangs together. Paths are relative to the manifest.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -12,8 +12,6 @@ pub struct Manifest {
     pub schema: u32,
     /// Program and version: `luthier 0.1.0`.
     pub generator: String,
-    /// The reflectance model that the shaders evaluate: `elek`.
-    pub model: String,
     /// The materials, in the order of their numbers in the shader.
     pub materials: Vec<MaterialEntry>,
     /// The tables, at most one of each kind, in binding order.
@@ -22,20 +20,23 @@ pub struct Manifest {
     pub shaders: Vec<ShaderEntry>,
     /// What to bind where, in group 0.
     pub bindings: Vec<BindingEntry>,
+    /// The material buffer: little-endian `vec4<f32>` words, see [`crate::material_buffer`].
+    pub material_buffer: FileEntry,
 }
 
 /// How spectra became colour channels.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ColorMode {
     /// Integrated against the CIE 1931 2-degree observer under D65, to linear Rec.709.
+    #[default]
     Spectral,
     /// The value at three wavelengths, taken for the three channels.
     ThreeWavelengths,
 }
 
 /// One material.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MaterialEntry {
     /// Name, unique in the bake; letters, digits and hyphens.
     pub name: String,
@@ -45,10 +46,14 @@ pub struct MaterialEntry {
     pub source_hash: String,
     /// Surface class a-h of Weidlich and Wilkie 2009, chapter 4.
     pub class: String,
+    /// The reflectance model that the shaders evaluate.
+    pub model: ShadingModel,
     /// How the colour of its tables was made.
     pub color: ColorMode,
     /// The three wavelengths of the full (table-free) shader, RGB order.
     pub wavelengths_nm: [f64; 3],
+    /// What belongs to the whole surface.
+    pub constants: MaterialConstants,
     /// The layers from the top down.
     pub layers: Vec<LayerRecord>,
 }
@@ -75,7 +80,7 @@ pub struct TableEntry {
 }
 
 /// A file of the bake.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct FileEntry {
     /// Path relative to the manifest, with forward slashes.
     pub path: String,
@@ -103,6 +108,13 @@ pub struct BindingEntry {
     pub name: String,
     /// `texture_2d<f32>`, `sampler` (linear, clamp-to-edge) or `buffer` (read-only, array of `vec4<f32>`).
     pub resource: String,
+}
+
+impl MaterialEntry {
+    /// Whether textures make the surface differ from place to place.
+    pub fn varies(&self) -> bool {
+        self.constants.flakes.is_some() || self.constants.patina.is_some() || self.layers.iter().any(LayerRecord::varies)
+    }
 }
 
 impl Manifest {
@@ -173,20 +185,10 @@ mod tests {
             alpha: 0.09,
             eta: 1.5,
             optical_depth: [0.1, 0.2, 0.3],
-            albedo: [0.0; 3],
-            sigma: 0.0,
             ior_n: [1.49, 1.5, 1.51],
-            ior_k: [0.0; 3],
-            film_ior_n: [0.0; 3],
-            film_ior_k: [0.0; 3],
-            film_thickness_waves: [0.0; 3],
-            film_thickness_nm: 0.0,
-            film_thickness_max_nm: 0.0,
             fresnel_tile: Some(0),
             distribution_tile: Some(1),
-            fgd_tile: None,
-            phase_tile: None,
-            thickness_tile: None,
+            ..LayerRecord::default()
         };
         let table = |kind: TableKind, mapping| TableEntry {
             kind,
@@ -212,14 +214,15 @@ mod tests {
         Manifest {
             schema: MANIFEST_SCHEMA,
             generator: "luthier 0.1.0".into(),
-            model: "elek".into(),
             materials: vec![MaterialEntry {
                 name: "red-lacquer".into(),
                 source: "materials/red-lacquer.toml".into(),
                 source_hash: "12".repeat(32),
                 class: "c".into(),
+                model: ShadingModel::Belcour,
                 color: ColorMode::Spectral,
                 wavelengths_nm: [645.0, 525.0, 445.0],
+                constants: MaterialConstants::default(),
                 layers: vec![layer],
             }],
             tables: vec![
@@ -236,6 +239,7 @@ mod tests {
                 name: "luthier_distribution".into(),
                 resource: "texture_2d<f32>".into(),
             }],
+            material_buffer: file("materials.bin"),
         }
     }
 
@@ -254,6 +258,7 @@ mod tests {
     fn names_in_the_file_are_those_documented() {
         let value: serde_json::Value = serde_json::from_str(&manifest().to_json().unwrap()).unwrap();
         assert_eq!(value["materials"][0]["color"], "spectral");
+        assert_eq!(value["materials"][0]["model"], "belcour");
         assert_eq!(value["tables"][0]["kind"], "distribution");
         assert_eq!(value["tables"][0]["format"], "r16float");
         assert_eq!(value["tables"][0]["layout"]["x"]["mapping"]["kind"], "power");
@@ -264,9 +269,9 @@ mod tests {
 
     #[test]
     fn another_schema_is_refused_before_its_shape_is_looked_at() {
-        let refused = Manifest::from_json(r#"{"schema": 2, "future": true}"#);
-        assert!(matches!(refused, Err(LutError::ManifestSchema { found: 2, expected: MANIFEST_SCHEMA })));
-        for other in ["", "{}", "[]", r#"{"schema": "1"}"#, r#"{"schema": 1}"#, r#"{"schema": -1}"#] {
+        let refused = Manifest::from_json(r#"{"schema": 3, "future": true}"#);
+        assert!(matches!(refused, Err(LutError::ManifestSchema { found: 3, expected: MANIFEST_SCHEMA })));
+        for other in ["", "{}", "[]", r#"{"schema": "1"}"#, r#"{"schema": 2}"#, r#"{"schema": -1}"#] {
             assert!(matches!(Manifest::from_json(other), Err(LutError::Manifest(_))), "{other}");
         }
     }

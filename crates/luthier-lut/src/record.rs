@@ -1,15 +1,18 @@
 use serde::{Deserialize, Serialize};
 
+use crate::{MaterialConstants, MaterialEntry};
+
 /// `vec4` words of a material's header in the material buffer.
-pub const MATERIAL_WORDS: usize = 1;
+pub const MATERIAL_WORDS: usize = 9;
 /// `vec4` words of a layer in the material buffer.
-pub const LAYER_WORDS: usize = 9;
+pub const LAYER_WORDS: usize = 10;
 
 /// What a layer is to the shader.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LayerKind {
     /// A dielectric interface with a slab below: reflects, and lets light through.
+    #[default]
     Dielectric,
     /// A conductor: reflects only.
     Conductor,
@@ -21,7 +24,7 @@ pub enum LayerKind {
 ///
 /// Indices are relative to the medium above the interface; the three samples are those of the material's three
 /// wavelengths.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct LayerRecord {
     /// What the layer is.
     pub kind: LayerKind,
@@ -29,6 +32,10 @@ pub struct LayerRecord {
     pub distribution: String,
     /// Isotropic slope parameter, clamped to the domain of the model.
     pub alpha: f64,
+    /// Slope parameters along the layer's tangent and bitangent, clamped alike.
+    pub alpha_xy: [f64; 2],
+    /// From the surface's tangent to the layer's, counter-clockwise, in radians.
+    pub rotation: f64,
     /// Real index below over index above at 589.3 nm, which bends the refracted directions; 1 for opaque bases.
     pub eta: f64,
     /// Absorption times thickness of the slab below, RGB.
@@ -57,13 +64,24 @@ pub struct LayerRecord {
     pub distribution_tile: Option<u32>,
     /// Tile of the FGD atlas.
     pub fgd_tile: Option<u32>,
+    /// Tile of the FGD atlas for light from below.
+    pub fgd_below_tile: Option<u32>,
     /// Tile of the phase atlas.
     pub phase_tile: Option<u32>,
     /// Tile of the thickness atlas.
     pub thickness_tile: Option<u32>,
+    /// Tile of the film atlas.
+    pub film_tile: Option<u32>,
+    /// Tile of the escape atlas: for light that leaves the layer's medium upward.
+    pub escape_tile: Option<u32>,
 }
 
 impl LayerRecord {
+    /// Whether the thickness of its film varies over the surface.
+    pub fn varies(&self) -> bool {
+        self.film_thickness_max_nm > self.film_thickness_nm
+    }
+
     /// The words of the material buffer, in the order that the shader unpacks them. Tiles are numbers, -1 for none.
     ///
     /// | word | x, y, z, w |
@@ -74,9 +92,10 @@ impl LayerRecord {
     /// | 3 | albedo RGB, distribution (0 beckmann, 1 ggx) |
     /// | 4 | ior_n RGB, film thickness nm |
     /// | 5 | ior_k RGB, film thickness max nm |
-    /// | 6 | film_ior_n RGB, 0 |
-    /// | 7 | film_ior_k RGB, 0 |
-    /// | 8 | film thickness in waves RGB, 0 |
+    /// | 6 | film_ior_n RGB, film tile |
+    /// | 7 | film_ior_k RGB, FGD tile from below |
+    /// | 8 | film thickness in waves RGB, escape tile |
+    /// | 9 | alpha_x, alpha_y, cosine and sine of the rotation |
     pub fn words(&self) -> [[f32; 4]; LAYER_WORDS] {
         let kind = match self.kind {
             LayerKind::Dielectric => 0.0,
@@ -93,37 +112,53 @@ impl LayerRecord {
             rgbw(self.albedo, distribution),
             rgbw(self.ior_n, self.film_thickness_nm as f32),
             rgbw(self.ior_k, self.film_thickness_max_nm as f32),
-            rgbw(self.film_ior_n, 0.0),
-            rgbw(self.film_ior_k, 0.0),
-            rgbw(self.film_thickness_waves, 0.0),
+            rgbw(self.film_ior_n, tile(self.film_tile)),
+            rgbw(self.film_ior_k, tile(self.fgd_below_tile)),
+            rgbw(self.film_thickness_waves, tile(self.escape_tile)),
+            [
+                self.alpha_xy[0] as f32,
+                self.alpha_xy[1] as f32,
+                libm::cos(self.rotation) as f32,
+                libm::sin(self.rotation) as f32,
+            ],
         ]
     }
 }
 
-/// The material buffer: one header word per material (index of its first layer's first word, number of layers, 0, 0),
-/// then [`LAYER_WORDS`] words per layer, in order.
-pub fn material_buffer(materials: &[&[LayerRecord]]) -> Vec<[f32; 4]> {
+/// The material buffer: [`MATERIAL_WORDS`] header words per material, then [`LAYER_WORDS`] words per layer, in order.
+///
+/// | header word | x, y, z, w |
+/// |---|---|
+/// | 0 | index of its first layer's first word, number of layers, number of the model, 0 |
+/// | 1-8 | see [`MaterialConstants::words`] |
+pub fn material_buffer(materials: &[MaterialEntry]) -> Vec<[f32; 4]> {
     let mut words = Vec::new();
     let mut first = materials.len() * MATERIAL_WORDS;
-    for layers in materials {
-        words.push([first as f32, layers.len() as f32, 0.0, 0.0]);
-        first += layers.len() * LAYER_WORDS;
+    for material in materials {
+        words.push([first as f32, material.layers.len() as f32, material.model.number() as f32, 0.0]);
+        words.extend(material.constants.words());
+        first += material.layers.len() * LAYER_WORDS;
     }
-    for layer in materials.iter().flat_map(|layers| layers.iter()) {
+    for layer in materials.iter().flat_map(|material| &material.layers) {
         words.extend(layer.words());
     }
     words
 }
 
+const _: () = assert!(MATERIAL_WORDS == 1 + MaterialConstants::WORDS, "one word, and the constants");
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ShadingModel;
 
     fn numbered(kind: LayerKind) -> LayerRecord {
         LayerRecord {
             kind,
             distribution: "ggx".into(),
             alpha: 1.0,
+            alpha_xy: [30.0, 31.0],
+            rotation: 0.0,
             eta: 2.0,
             optical_depth: [3.0, 4.0, 5.0],
             albedo: [6.0, 7.0, 8.0],
@@ -138,8 +173,11 @@ mod tests {
             fresnel_tile: Some(27),
             distribution_tile: Some(28),
             fgd_tile: None,
+            fgd_below_tile: Some(32),
             phase_tile: Some(0),
             thickness_tile: None,
+            film_tile: Some(33),
+            escape_tile: Some(34),
         }
     }
 
@@ -155,9 +193,10 @@ mod tests {
                 [6.0, 7.0, 8.0, 1.0],
                 [10.0, 11.0, 12.0, 25.0],
                 [13.0, 14.0, 15.0, 26.0],
-                [16.0, 17.0, 18.0, 0.0],
-                [19.0, 20.0, 21.0, 0.0],
-                [22.0, 23.0, 24.0, 0.0],
+                [16.0, 17.0, 18.0, 33.0],
+                [19.0, 20.0, 21.0, 32.0],
+                [22.0, 23.0, 24.0, 34.0],
+                [30.0, 31.0, 1.0, 0.0],
             ]
         );
         assert_eq!(numbered(LayerKind::Dielectric).words()[0][0], 0.0);
@@ -169,15 +208,20 @@ mod tests {
     #[test]
     fn headers_point_at_the_layers() {
         let [top, middle, base] = [LayerKind::Dielectric, LayerKind::Conductor, LayerKind::Diffuse].map(numbered);
-        let one = [middle.clone()];
-        let two = [top.clone(), base.clone()];
-        let buffer = material_buffer(&[&two, &[], &one]);
-        assert_eq!(buffer[..3], [[3.0, 2.0, 0.0, 0.0], [21.0, 0.0, 0.0, 0.0], [21.0, 1.0, 0.0, 0.0]]);
+        let material = |model, layers| MaterialEntry { model, layers, ..MaterialEntry::default() };
+        let materials = [
+            material(ShadingModel::Elek, vec![top, base]),
+            material(ShadingModel::Phong, Vec::new()),
+            material(ShadingModel::Microfacet, vec![middle]),
+        ];
+        let buffer = material_buffer(&materials);
+        let headers: Vec<[f32; 4]> = buffer[..3 * MATERIAL_WORDS].iter().step_by(MATERIAL_WORDS).copied().collect();
+        assert_eq!(headers, [[27.0, 2.0, 0.0, 0.0], [47.0, 0.0, 5.0, 0.0], [47.0, 1.0, 6.0, 0.0]]);
         assert_eq!(buffer.len(), 3 * MATERIAL_WORDS + 3 * LAYER_WORDS);
-        for (header, layers) in buffer.iter().zip([&two[..], &[], &one[..]]) {
+        for (header, material) in headers.iter().zip(&materials) {
             let first = header[0] as usize;
-            let words: Vec<[f32; 4]> = layers.iter().flat_map(LayerRecord::words).collect();
-            assert_eq!(buffer[first..first + layers.len() * LAYER_WORDS], words);
+            let words: Vec<[f32; 4]> = material.layers.iter().flat_map(LayerRecord::words).collect();
+            assert_eq!(buffer[first..first + words.len()], words);
         }
         assert!(material_buffer(&[]).is_empty());
     }

@@ -1,13 +1,10 @@
 use std::fmt::Write as _;
 
-use luthier_lut::{Axis, Mapping};
+use luthier_lut::{Axis, Mapping, ShadingModel};
 
 use crate::glsl;
 use crate::wgsl::{Buffer, compose};
 use crate::{Form, MaterialSet, ShaderError, Target, bindings, validate};
-
-/// The reflectance model of the emitted shaders, as the manifest names it.
-const MODEL: &str = "elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010)";
 
 /// Words of the smallest uniform block that GLSL ES 3.00 guarantees (16 KiB).
 const UNIFORM_WORDS: usize = 1024;
@@ -64,7 +61,8 @@ fn header(set: &MaterialSet<'_>, form: Form, target: Target) -> String {
         "// luthier {}, form {form}, {target}. Generated: bake again instead of editing.",
         env!("CARGO_PKG_VERSION")
     );
-    let _ = writeln!(out, "// Model: {MODEL}.");
+    let models: Vec<&str> = set.models().map(ShadingModel::title).collect();
+    let _ = writeln!(out, "// Model{}: {}.", if models.len() == 1 { "" } else { "s" }, models.join("; "));
     let _ = match form {
         Form::Baked => writeln!(out, "// Fresnel reflectance and slope distribution are read from tables."),
         Form::Full => writeln!(out, "// No tables: Fresnel equations at three wavelengths, closed forms of D."),
@@ -109,7 +107,13 @@ fn header(set: &MaterialSet<'_>, form: Form, target: Target) -> String {
     out.push_str("//\n// Materials:\n");
     for (i, material) in set.materials.iter().enumerate() {
         let layers = material.layers.len();
-        let _ = writeln!(out, "//   {i} {}, {layers} layer{}", material.name, if layers == 1 { "" } else { "s" });
+        let _ = writeln!(
+            out,
+            "//   {i} {}, {}, {layers} layer{}",
+            material.name,
+            material.model.name(),
+            if layers == 1 { "" } else { "s" }
+        );
     }
     out
 }

@@ -1,6 +1,6 @@
 use std::collections::BTreeSet;
 
-use luthier_lut::{LayerKind, LayerRecord};
+use luthier_lut::{LayerKind, LayerRecord, MaterialEntry, ShadingModel, TableKind};
 
 use crate::{Form, MaterialSet};
 
@@ -11,23 +11,32 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is, for the check that modules name no other.
     #[cfg(test)]
-    pub(crate) const ALL: [&'static str; 20] = [
+    pub(crate) const ALL: [&'static str; 29] = [
         "absorption",
+        "anisotropic",
         "bare",
         "beckmann",
         "below",
+        "chain",
+        "chain_diffuse",
         "conductor",
         "diffuse",
         "distribution",
+        "escape",
         "fgd",
         "film",
+        "film_table",
         "fresnel",
         "full",
         "ggx",
         "interface",
+        "microfacet_diffuse",
         "mixed",
         "oren_nayar",
         "phase",
+        "phong",
+        "place",
+        "smith",
         "split_root",
         "theta_axis",
         "thickness",
@@ -36,43 +45,21 @@ impl Features {
 
     pub(crate) fn of(set: &MaterialSet<'_>, form: Form) -> Self {
         let mut names = BTreeSet::new();
-        let is_diffuse = |layer: &LayerRecord| layer.kind == LayerKind::Diffuse;
-        for layer in set.layers() {
-            if is_diffuse(layer) {
-                names.insert("diffuse");
-                if layer.sigma != 0.0 {
-                    names.insert("oren_nayar");
-                }
-                continue;
-            }
-            names.insert("interface");
-            names.insert(if layer.distribution == "ggx" { "ggx" } else { "beckmann" });
-            names.insert(if layer.film_ior_n[0] > 0.0 { "film" } else { "bare" });
-            if layer.kind == LayerKind::Conductor {
-                names.insert("conductor");
+        for material in set.materials {
+            names.extend(of_model(material));
+            if material.varies() {
+                names.insert("place");
             }
         }
-        for pair in set.materials.iter().flat_map(|m| m.layers.windows(2)) {
-            if pair[0].kind == LayerKind::Dielectric {
-                names.insert("below");
-                if pair[0].optical_depth.iter().any(|&depth| depth != 0.0) {
-                    names.insert("absorption");
-                }
-            }
-        }
-        let depth = set.materials.iter().map(|m| m.layers.len()).max().unwrap_or(0);
-        for i in 0..depth {
-            let mut here = set.materials.iter().filter_map(|m| m.layers.get(i)).map(is_diffuse);
-            let first = here.next();
-            if here.any(|diffuse| Some(diffuse) != first) {
-                names.insert("mixed");
-            }
+        if set.models().any(|model| is_mixed(set, model)) {
+            names.insert("mixed");
         }
         if form == Form::Full {
             names.insert("full");
         }
         for table in set.tables_read(form) {
-            names.insert(table.kind.name());
+            // `film` is whether any layer has one.
+            names.insert(if table.kind == TableKind::Film { "film_table" } else { table.kind.name() });
             if !table.format.is_filterable() {
                 names.insert("bilinear");
             }
@@ -92,6 +79,77 @@ impl Features {
         }
         Self(names)
     }
+}
+
+/// What the layers that a material's model reads make use of.
+fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
+    let mut names = BTreeSet::new();
+    let is_diffuse = |layer: &LayerRecord| layer.kind == LayerKind::Diffuse;
+    let layers = match material.model {
+        ShadingModel::Phong => {
+            names.insert("phong");
+            return names;
+        }
+        ShadingModel::Microfacet => &material.layers[..material.layers.len().min(1)],
+        ShadingModel::Elek
+        | ShadingModel::WeidlichWilkie
+        | ShadingModel::GranierHeidrich
+        | ShadingModel::Belcour
+        | ShadingModel::Yamaguchi => material.layers.as_slice(),
+    };
+    for layer in layers {
+        if is_diffuse(layer) {
+            names.insert("diffuse");
+            if layer.sigma != 0.0 {
+                names.insert("oren_nayar");
+            }
+            continue;
+        }
+        names.insert("interface");
+        names.insert(if layer.distribution == "ggx" { "ggx" } else { "beckmann" });
+        names.insert(if layer.film_ior_n[0] > 0.0 { "film" } else { "bare" });
+        if layer.kind == LayerKind::Conductor {
+            names.insert("conductor");
+        }
+        if material.model != ShadingModel::Elek && layer.alpha_xy[0] != layer.alpha_xy[1] {
+            names.insert("anisotropic");
+        }
+    }
+    for pair in layers.windows(2) {
+        if pair[0].kind == LayerKind::Dielectric {
+            names.insert("below");
+            if pair[0].optical_depth.iter().any(|&depth| depth != 0.0) {
+                names.insert("absorption");
+            }
+        }
+    }
+    let (has_interface, has_diffuse) = (names.contains("interface"), names.contains("diffuse"));
+    match material.model {
+        ShadingModel::Microfacet if has_interface => names.insert("smith"),
+        ShadingModel::Microfacet => names.insert("microfacet_diffuse"),
+        ShadingModel::Elek if has_interface => {
+            if has_diffuse {
+                names.insert("chain_diffuse");
+            }
+            names.insert("chain")
+        }
+        _ => false,
+    };
+    names
+}
+
+/// Whether the layers at some depth of the materials of a model are diffuse bases and interfaces.
+fn is_mixed(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
+    let layers = || set.materials.iter().filter(|m| m.model == model).map(|m| &m.layers);
+    let depth = match model {
+        ShadingModel::Phong => 0,
+        ShadingModel::Microfacet => 1,
+        _ => layers().map(Vec::len).max().unwrap_or(0),
+    };
+    (0..depth).any(|i| {
+        let kinds = || layers().filter_map(|layers| layers.get(i)).map(|layer| layer.kind == LayerKind::Diffuse);
+        kinds().any(|diffuse| diffuse) && kinds().any(|diffuse| !diffuse)
+    })
 }
 
 #[cfg(test)]

@@ -53,7 +53,7 @@ fn entry_point(set: &MaterialSet<'_>, form: Form) -> String {
         let arguments = match table.kind {
             TableKind::Fresnel | TableKind::Phase => "0.0, 0.0",
             TableKind::Distribution => "0.0, 0.0, 0.0, 0.0",
-            TableKind::Fgd => "0.0, 0.0, 0.0",
+            TableKind::Fgd | TableKind::Film | TableKind::Escape => "0.0, 0.0, 0.0",
             TableKind::Thickness => "0.0, vec2<f32>()",
         };
         let _ = writeln!(out, "    _ = luthier_lookup_{}({arguments});", table.kind.name());

@@ -13,6 +13,7 @@
 //!
 //! Out of scope: texels and files (`luthier-lut`, `luthier-texture`), devices (`luthier-gpu`), HLSL and MSL.
 
+mod chain;
 mod emit;
 mod error;
 mod features;

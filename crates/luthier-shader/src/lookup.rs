@@ -17,6 +17,8 @@ pub(crate) fn lookup(table: &TableFace, features: &Features) -> Result<String, S
         TableKind::Fgd => (include_str!("wgsl/lookup_fgd.wgsl"), true, &["cos_theta", "theta"]),
         TableKind::Phase => (include_str!("wgsl/lookup_phase.wgsl"), false, &["s"]),
         TableKind::Thickness => (include_str!("wgsl/lookup_thickness.wgsl"), true, &["u"]),
+        TableKind::Film => (include_str!("wgsl/lookup_film.wgsl"), true, &["cos_theta"]),
+        TableKind::Escape => (include_str!("wgsl/lookup_escape.wgsl"), true, &["cos_theta"]),
     };
     let layout = &table.layout;
     let fail = |reason: String| ShaderError::Layout { table: kind, reason };
@@ -27,7 +29,11 @@ pub(crate) fn lookup(table: &TableFace, features: &Features) -> Result<String, S
         let expected = if has_rows { "two axes are" } else { "one axis is" };
         return Err(fail(format!("{expected} expected")));
     }
-    let y_name = if kind == TableKind::Thickness { "v" } else { "alpha" };
+    let y_name = match kind {
+        TableKind::Thickness => "v",
+        TableKind::Film => "fraction",
+        _ => "alpha",
+    };
     check_axis(&layout.x, x_names, kind)?;
     if let Some(y) = &layout.y {
         check_axis(y, &[y_name], kind)?;

@@ -14,7 +14,9 @@ pub(crate) fn prune(module: &str, features: &Features) -> String {
             Some((text, condition)) => (text.trim_end(), holds(condition, features)),
             None => (line, true),
         };
-        if keep {
+        // What was left out may leave two blank lines behind.
+        let is_doubled = text.is_empty() && (out.is_empty() || out.ends_with("\n\n"));
+        if keep && !is_doubled {
             out.push_str(text);
             out.push('\n');
         }

@@ -1,8 +1,8 @@
 use std::collections::BTreeMap;
 
 use luthier_lut::{
-    AtlasLayout, BindingEntry, LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, Manifest, MaterialEntry, TableKind,
-    TexelFormat,
+    AtlasLayout, BindingEntry, LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, Manifest, MaterialEntry, ShadingModel,
+    TableKind, TexelFormat,
 };
 
 use crate::{Form, ShaderError};
@@ -46,6 +46,11 @@ impl<'a> MaterialSet<'a> {
         self.materials.iter().flat_map(|m| &m.layers)
     }
 
+    /// The models in use, in the order of their numbers.
+    pub(crate) fn models(&self) -> impl Iterator<Item = ShadingModel> {
+        ShadingModel::ALL.into_iter().filter(|&model| self.materials.iter().any(|m| m.model == model))
+    }
+
     /// Words of the material buffer.
     pub(crate) fn words(&self) -> usize {
         self.materials.len() * MATERIAL_WORDS + self.layers().count() * LAYER_WORDS
@@ -82,6 +87,9 @@ impl<'a> MaterialSet<'a> {
         for material in self.materials {
             if material.layers.is_empty() {
                 return Err(ShaderError::NoLayers(material.name.clone()));
+            }
+            if !crate::wgsl::MODELS.contains(&material.model) {
+                return Err(ShaderError::Model { material: material.name.clone(), model: material.model });
             }
             for (i, layer) in material.layers.iter().enumerate() {
                 self.check_layer(form, &material.name, i, layer)?;
@@ -139,6 +147,8 @@ fn tile(layer: &LayerRecord, kind: TableKind) -> Option<u32> {
         TableKind::Fgd => layer.fgd_tile,
         TableKind::Phase => layer.phase_tile,
         TableKind::Thickness => layer.thickness_tile,
+        TableKind::Film => layer.film_tile,
+        TableKind::Escape => layer.escape_tile,
     }
 }
 

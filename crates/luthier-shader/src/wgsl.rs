@@ -1,13 +1,17 @@
-//! Composition: the modules that a set needs, and `luthier_eval` written out layer by layer.
+//! Composition: the modules that a set needs, one function per model in use, and `luthier_eval` that chooses among them.
 
 use std::fmt::Write as _;
 
-use luthier_lut::LayerKind;
+use luthier_lut::ShadingModel;
 
+use crate::chain;
 use crate::features::Features;
 use crate::lookup::lookup;
 use crate::module::prune;
 use crate::{Form, MaterialSet, ShaderError, bindings};
+
+/// The models that there are shaders of.
+pub(crate) const MODELS: [ShadingModel; 3] = [ShadingModel::Elek, ShadingModel::Phong, ShadingModel::Microfacet];
 
 /// Where the material buffer lives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,7 +33,9 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     }
     let modules = [
         (has("bilinear"), include_str!("wgsl/bilinear.wgsl")),
+        (has("interface") || has("phong"), include_str!("wgsl/pi.wgsl")),
         (true, include_str!("wgsl/layer.wgsl")),
+        (has("place"), include_str!("wgsl/place.wgsl")),
         (has("oren_nayar"), include_str!("wgsl/oren_nayar.wgsl")),
         (has("diffuse") && !has("oren_nayar"), include_str!("wgsl/lambert.wgsl")),
         (has("full") && has("interface"), include_str!("wgsl/complex.wgsl")),
@@ -39,15 +45,49 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         (has("full") && has("ggx"), include_str!("wgsl/ggx.wgsl")),
         (has("full") && has("interface"), include_str!("wgsl/terms_full.wgsl")),
         (!has("full") && has("interface"), include_str!("wgsl/terms_baked.wgsl")),
-        (has("interface"), include_str!("wgsl/interface.wgsl")),
-        (has("interface") && has("diffuse"), include_str!("wgsl/base.wgsl")),
+        (has("smith"), include_str!("wgsl/smith.wgsl")),
+        (has("chain"), include_str!("wgsl/path.wgsl")),
     ];
-    parts.extend(modules.iter().filter(|(used, _)| *used).map(|(_, module)| prune(module, &features)));
+    parts.extend(modules.iter().filter(|(used, _)| *used).map(|(_, module)| text(module, &features)));
+    for model in set.models() {
+        parts.extend(self::model(set, model, &features));
+    }
     parts.push(eval(set, &features));
+    parts.retain(|part| !part.is_empty());
     Ok(parts.join("\n"))
 }
 
-/// Numbers of the materials, by name.
+/// The lines of a module that a set keeps. Models take a `LuthierPlace` where a material of the set varies over its surface:
+/// `$place_parameter` declares it, `$place_argument` hands it on, and `$layer(` reads a layer as it is there.
+pub(crate) fn text(module: &str, features: &Features) -> String {
+    let [parameter, argument, layer] = if features.has("place") {
+        ["place: LuthierPlace, ", "place, ", "luthier_layer_at(place, "]
+    } else {
+        ["", "", "luthier_layer("]
+    };
+    let text = prune(module, features).replace("$place_parameter ", parameter).replace("$place_argument ", argument);
+    text.replace("$layer(", layer)
+}
+
+/// The modules of a model, `luthier_eval_<model>` last.
+fn model(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec<String> {
+    let module = |text| self::text(text, features);
+    match model {
+        ShadingModel::Elek => vec![
+            if features.has("chain") { module(include_str!("wgsl/elek.wgsl")) } else { String::new() },
+            module(&chain::eval(set, model, features)),
+        ],
+        ShadingModel::Phong => vec![module(include_str!("wgsl/phong.wgsl"))],
+        ShadingModel::Microfacet => vec![module(include_str!("wgsl/microfacet.wgsl"))],
+        // Refused by `MaterialSet::check`.
+        ShadingModel::WeidlichWilkie
+        | ShadingModel::GranierHeidrich
+        | ShadingModel::Belcour
+        | ShadingModel::Yamaguchi => Vec::new(),
+    }
+}
+
+/// Numbers of the materials, by name, and of the models if there are several.
 fn constants(set: &MaterialSet<'_>) -> Result<String, ShaderError> {
     let mut out = String::new();
     for (i, constant) in set.constants()?.iter().enumerate() {
@@ -69,38 +109,46 @@ fn declarations(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> String {
     out
 }
 
-/// `luthier_eval`, with one step for every layer that a material of the set may have.
+/// The functions that choose the model of a material: `luthier_eval`, and `luthier_eval_at` where surfaces vary.
 fn eval(set: &MaterialSet<'_>, features: &Features) -> String {
-    let diffuse = if features.has("oren_nayar") { "luthier_diffuse(layer, wi, wo)" } else { "luthier_diffuse(layer)" };
-    let mut out = String::from(
-        "/// f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away\n\
-         /// from the surface. Zero when either is not above the horizon.\n\
-         fn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {\n\
-         \x20   if min(wi.z, wo.z) <= 0.0 {\n        return vec3<f32>(0.0);\n    }\n",
-    );
-    if !features.has("interface") {
-        let _ = writeln!(out, "    let layer = luthier_layer(material, 0u);\n    return wi.z * {diffuse};\n}}");
-        return out;
+    const SUMMARY: &str = "/// f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away\n\
+         /// from the surface. Zero when either is not above the horizon.\n";
+    let guard = "    if min(wi.z, wo.z) <= 0.0 {\n        return vec3<f32>(0.0);\n    }\n";
+    let mut body = String::from(guard);
+    let turned = features.has("place");
+    if turned {
+        body.push_str("    let wi_here = luthier_turned(place.normal, wi);\n    let wo_here = luthier_turned(place.normal, wo);\n");
+        body.push_str(&guard.replace("wi.z", "wi_here.z").replace("wo.z", "wo_here.z"));
     }
-    let depth = set.materials.iter().map(|m| m.layers.len()).max().unwrap_or(0);
-    if depth > 1 {
-        out.push_str("    let count = luthier_layer_count(material);\n");
+    let call = |model: ShadingModel| {
+        let name = function(model);
+        let arguments = if turned { "place, material, wi_here, wo_here" } else { "material, wi, wo" };
+        format!("{name}({arguments})")
+    };
+    let models: Vec<ShadingModel> = set.models().collect();
+    if let [first, others @ ..] = models.as_slice() {
+        if !others.is_empty() {
+            body.push_str("    let model = u32(luthier_materials[luthier_header(material)].z);\n");
+        }
+        for &other in others {
+            let (number, call) = (other.number(), call(other));
+            let _ = writeln!(body, "    if model == {number}u {{\n        return {call};\n    }}");
+        }
+        let _ = writeln!(body, "    return {};", call(*first));
     }
-    out.push_str("    var path = LuthierPath(wi, wo, vec3<f32>(wi.z), vec3<f32>(0.0), 0.0, true);\n");
-    for i in 0..depth {
-        let mut here = set.materials.iter().filter_map(|m| m.layers.get(i)).map(|l| l.kind == LayerKind::Diffuse);
-        let has_diffuse = here.clone().any(|is_diffuse| is_diffuse);
-        let add = match (has_diffuse, here.any(|is_diffuse| !is_diffuse)) {
-            (true, true) => "luthier_add_layer",
-            (true, false) => "luthier_add_diffuse",
-            _ => "luthier_add_interface",
-        };
-        let step = format!("path = {add}(path, luthier_layer(material, {i}u));");
-        let _ = match i {
-            0 => writeln!(out, "    {step}"),
-            _ => writeln!(out, "    if path.open & (count > {i}u) {{\n        {step}\n    }}"),
-        };
+    let parameters = "material: u32, wi: vec3<f32>, wo: vec3<f32>";
+    if turned {
+        format!(
+            "{SUMMARY}fn luthier_eval_at(place: LuthierPlace, {parameters}) -> vec3<f32> {{\n{body}}}\n\n\
+             /// The same at a place without textures.\n\
+             fn luthier_eval({parameters}) -> vec3<f32> {{\n    return luthier_eval_at(luthier_place(), material, wi, wo);\n}}\n"
+        )
+    } else {
+        format!("{SUMMARY}fn luthier_eval({parameters}) -> vec3<f32> {{\n{body}}}\n")
     }
-    out.push_str("    return path.reflected;\n}\n");
-    out
+}
+
+/// The function of a model.
+pub(crate) fn function(model: ShadingModel) -> String {
+    format!("luthier_eval_{}", model.name().replace('-', "_"))
 }

@@ -1,6 +1,7 @@
 const LUTHIER_DIELECTRIC: u32 = 0u; //? below, conductor
 const LUTHIER_DIFFUSE: u32 = 2u; //? mixed
-const LUTHIER_LAYER_WORDS: u32 = 9u;
+const LUTHIER_MATERIAL_WORDS: u32 = 9u;
+const LUTHIER_LAYER_WORDS: u32 = 10u;
 
 /// One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
 struct LuthierLayer {
@@ -26,12 +27,16 @@ struct LuthierLayer {
     phase_tile: f32, //? phase
     /// Tile of the thickness table. //? thickness
     thickness_tile: f32, //? thickness
-    /// Nominal thickness of the film, nm; 0 without a film. //? phase|thickness
-    film_thickness_nm: f32, //? phase|thickness
-    /// Greatest thickness of the film, nm; 0 without a film. //? phase|thickness
-    film_thickness_max_nm: f32, //? phase|thickness
-    /// Slope distribution: 0 Beckmann, 1 GGX. //? full, beckmann, ggx
-    distribution: f32, //? full, beckmann, ggx
+    /// Tile of the film table. //? film_table
+    film_tile: f32, //? film_table
+    /// Tile of the escape table. //? escape
+    escape_tile: f32, //? escape
+    /// Nominal thickness of the film, nm; 0 without a film. //? phase|thickness|film_table
+    film_thickness_nm: f32, //? phase|thickness|film_table
+    /// Greatest thickness of the film, nm; 0 without a film. //? phase|thickness|film_table
+    film_thickness_max_nm: f32, //? phase|thickness|film_table
+    /// Slope distribution: 0 Beckmann, 1 GGX. //? full|smith, beckmann, ggx
+    distribution: f32, //? full|smith, beckmann, ggx
     /// Real part of the index below, at three wavelengths. //? full, interface
     ior_n: vec3<f32>, //? full, interface
     /// Imaginary part of it. //? full, interface
@@ -42,22 +47,31 @@ struct LuthierLayer {
     film_ior_k: vec3<f32>, //? full, film
     /// Thickness of the film in wavelengths of the medium above. //? full, film
     film_waves: vec3<f32>, //? full, film
+    /// Slope parameters along the tangent and the bitangent of the layer. //? anisotropic
+    alpha_xy: vec2<f32>, //? anisotropic
+    /// Cosine and sine of the angle from the surface's tangent to the layer's. //? anisotropic
+    rotation: vec2<f32>, //? anisotropic
+}
+
+/// Index of the first word of a material in the buffer.
+fn luthier_header(material: u32) -> u32 {
+    return material * LUTHIER_MATERIAL_WORDS;
 }
 
 /// Number of layers of a material.
 fn luthier_layer_count(material: u32) -> u32 {
-    return u32(luthier_materials[material].y);
+    return u32(luthier_materials[luthier_header(material)].y);
 }
 
 /// A layer of a material, counted from the top.
 fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
-    let first = u32(luthier_materials[material].x) + index * LUTHIER_LAYER_WORDS;
+    let first = u32(luthier_materials[luthier_header(material)].x) + index * LUTHIER_LAYER_WORDS;
     let head = luthier_materials[first];
     let tiles = luthier_materials[first + 1u]; //? fresnel|distribution|fgd|phase
     let slab = luthier_materials[first + 2u]; //? absorption|thickness
-    let base = luthier_materials[first + 3u]; //? diffuse|full, diffuse|beckmann, diffuse|ggx
-    let real_part = luthier_materials[first + 4u]; //? full|phase|thickness, interface
-    let imaginary_part = luthier_materials[first + 5u]; //? full|phase|thickness, interface
+    let base = luthier_materials[first + 3u]; //? diffuse|full|smith, diffuse|beckmann, diffuse|ggx
+    let real_part = luthier_materials[first + 4u]; //? full|phase|thickness|film_table, interface
+    let imaginary_part = luthier_materials[first + 5u]; //? full|phase|thickness|film_table, interface
     var layer: LuthierLayer;
     layer.kind = u32(head.x);
     layer.alpha = head.y; //? interface
@@ -70,13 +84,17 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     layer.fgd_tile = tiles.z; //? fgd
     layer.phase_tile = tiles.w; //? phase
     layer.thickness_tile = slab.w; //? thickness
-    layer.film_thickness_nm = real_part.w; //? phase|thickness
-    layer.film_thickness_max_nm = imaginary_part.w; //? phase|thickness
-    layer.distribution = base.w; //? full, beckmann, ggx
+    layer.film_tile = luthier_materials[first + 6u].w; //? film_table
+    layer.escape_tile = luthier_materials[first + 8u].w; //? escape
+    layer.film_thickness_nm = real_part.w; //? phase|thickness|film_table
+    layer.film_thickness_max_nm = imaginary_part.w; //? phase|thickness|film_table
+    layer.distribution = base.w; //? full|smith, beckmann, ggx
     layer.ior_n = real_part.xyz; //? full, interface
     layer.ior_k = imaginary_part.xyz; //? full, interface
     layer.film_ior_n = luthier_materials[first + 6u].xyz; //? full, film
     layer.film_ior_k = luthier_materials[first + 7u].xyz; //? full, film
     layer.film_waves = luthier_materials[first + 8u].xyz; //? full, film
+    layer.alpha_xy = luthier_materials[first + 9u].xy; //? anisotropic
+    layer.rotation = luthier_materials[first + 9u].zw; //? anisotropic
     return layer;
 }

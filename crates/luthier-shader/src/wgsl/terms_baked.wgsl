@@ -1,5 +1,9 @@
-/// Fresnel reflectance of a layer, from its row of the table.
+/// Fresnel reflectance of a layer, from its row or, under a film that varies, its tile of the tables.
 fn luthier_fresnel_term(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
+    if layer.film_tile >= 0.0 { //? film_table
+        let fraction = layer.film_thickness_nm / layer.film_thickness_max_nm; //? film_table
+        return luthier_lookup_film(layer.film_tile, cos_theta_d, fraction); //? film_table
+    } //? film_table
     return luthier_lookup_fresnel(layer.fresnel_tile, cos_theta_d);
 }
 

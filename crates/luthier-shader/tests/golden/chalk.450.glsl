@@ -2,10 +2,10 @@
 // Fresnel reflectance and slope distribution are read from tables.
 //
 // Bindings, group 0:
-//   6 luthier_materials: storage block LuthierMaterials (std430), 10 vec4
+//   6 luthier_materials: storage block LuthierMaterials (std430), 19 vec4
 //
 // Materials:
-//   0 chalk, 1 layer
+//   0 chalk, elek, 1 layer
 
 // One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
 struct LuthierLayer {
@@ -16,19 +16,25 @@ struct LuthierLayer {
 };
 
 const uint LUTHIER_MATERIAL_CHALK = 0u;
-const uint LUTHIER_LAYER_WORDS = 9u;
+const uint LUTHIER_MATERIAL_WORDS = 9u;
+const uint LUTHIER_LAYER_WORDS = 10u;
 
 layout(std430, binding = 6) readonly buffer LuthierMaterials { vec4 luthier_materials[]; };
 
+// Index of the first word of a material in the buffer.
+uint luthier_header(uint material) {
+    return material * LUTHIER_MATERIAL_WORDS;
+}
+
 // Number of layers of a material.
 uint luthier_layer_count(uint material) {
-    return uint(luthier_materials[material].y);
+    return uint(luthier_materials[luthier_header(material)].y);
 }
 
 // A layer of a material, counted from the top.
 LuthierLayer luthier_layer(uint material, uint index) {
     LuthierLayer layer = LuthierLayer(0u, vec3(0.0));
-    uint first = uint(luthier_materials[material].x) + (index * LUTHIER_LAYER_WORDS);
+    uint first = uint(luthier_materials[luthier_header(material)].x) + (index * LUTHIER_LAYER_WORDS);
     vec4 head = luthier_materials[first];
     vec4 base = luthier_materials[first + 3u];
     layer.kind = uint(head.x);
@@ -41,12 +47,17 @@ vec3 luthier_diffuse(LuthierLayer layer) {
     return layer.albedo * 0.31830987;
 }
 
+// f cos_theta_i of the model `elek`, both directions above the horizon.
+vec3 luthier_eval_elek(uint material, vec3 wi, vec3 wo) {
+    LuthierLayer layer = luthier_layer(material, 0u);
+    return wi.z * luthier_diffuse(layer);
+}
+
 // f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away
 // from the surface. Zero when either is not above the horizon.
 vec3 luthier_eval(uint material, vec3 wi, vec3 wo) {
     if (min(wi.z, wo.z) <= 0.0) {
         return vec3(0.0);
     }
-    LuthierLayer layer = luthier_layer(material, 0u);
-    return wi.z * luthier_diffuse(layer);
+    return luthier_eval_elek(material, wi, wo);
 }

@@ -2,16 +2,17 @@
 // Fresnel reflectance and slope distribution are read from tables.
 //
 // Bindings, group 0:
-//   6 luthier_materials: storage buffer, 10 vec4
+//   6 luthier_materials: storage buffer, 19 vec4
 //
 // Materials:
-//   0 chalk, 1 layer
+//   0 chalk, elek, 1 layer
 
 const LUTHIER_MATERIAL_CHALK: u32 = 0u;
 
 @group(0) @binding(6) var<storage, read> luthier_materials: array<vec4<f32>>;
 
-const LUTHIER_LAYER_WORDS: u32 = 9u;
+const LUTHIER_MATERIAL_WORDS: u32 = 9u;
+const LUTHIER_LAYER_WORDS: u32 = 10u;
 
 /// One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
 struct LuthierLayer {
@@ -21,14 +22,19 @@ struct LuthierLayer {
     albedo: vec3<f32>,
 }
 
+/// Index of the first word of a material in the buffer.
+fn luthier_header(material: u32) -> u32 {
+    return material * LUTHIER_MATERIAL_WORDS;
+}
+
 /// Number of layers of a material.
 fn luthier_layer_count(material: u32) -> u32 {
-    return u32(luthier_materials[material].y);
+    return u32(luthier_materials[luthier_header(material)].y);
 }
 
 /// A layer of a material, counted from the top.
 fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
-    let first = u32(luthier_materials[material].x) + index * LUTHIER_LAYER_WORDS;
+    let first = u32(luthier_materials[luthier_header(material)].x) + index * LUTHIER_LAYER_WORDS;
     let head = luthier_materials[first];
     let base = luthier_materials[first + 3u];
     var layer: LuthierLayer;
@@ -42,12 +48,17 @@ fn luthier_diffuse(layer: LuthierLayer) -> vec3<f32> {
     return layer.albedo * 0.318309886;
 }
 
+/// f cos_theta_i of the model `elek`, both directions above the horizon.
+fn luthier_eval_elek(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
+    let layer = luthier_layer(material, 0u);
+    return wi.z * luthier_diffuse(layer);
+}
+
 /// f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away
 /// from the surface. Zero when either is not above the horizon.
 fn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
     if min(wi.z, wo.z) <= 0.0 {
         return vec3<f32>(0.0);
     }
-    let layer = luthier_layer(material, 0u);
-    return wi.z * luthier_diffuse(layer);
+    return luthier_eval_elek(material, wi, wo);
 }

@@ -9,10 +9,10 @@
 //   0 luthier_fresnel: sampler2D
 //   1 luthier_distribution: sampler2D
 //   each texture filtered linearly, clamped to its edge
-//   6 luthier_materials: storage block LuthierMaterials (std430), 19 vec4
+//   6 luthier_materials: storage block LuthierMaterials (std430), 29 vec4
 //
 // Materials:
-//   0 varnished-gold, 2 layers
+//   0 varnished-gold, elek, 2 layers
 
 // One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
 struct LuthierLayer {
@@ -48,9 +48,10 @@ const uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
 const vec2 LUTHIER_FRESNEL_SIZE = vec2(128.0, 3.0);
 const vec2 LUTHIER_DISTRIBUTION_SIZE = vec2(512.0, 1024.0);
 const vec2 LUTHIER_DISTRIBUTION_TILE = vec2(512.0, 512.0);
-const uint LUTHIER_DIELECTRIC = 0u;
-const uint LUTHIER_LAYER_WORDS = 9u;
 const float LUTHIER_PI = 3.1415927;
+const uint LUTHIER_DIELECTRIC = 0u;
+const uint LUTHIER_MATERIAL_WORDS = 9u;
+const uint LUTHIER_LAYER_WORDS = 10u;
 
 layout(binding = 0) uniform sampler2D luthier_fresnel;
 layout(binding = 1) uniform sampler2D luthier_distribution;
@@ -72,15 +73,20 @@ float luthier_lookup_distribution(float tile, float cos_theta_h, float sin_theta
     return textureLod(luthier_distribution, vec2(position / LUTHIER_DISTRIBUTION_SIZE), 0.0).x;
 }
 
+// Index of the first word of a material in the buffer.
+uint luthier_header(uint material) {
+    return material * LUTHIER_MATERIAL_WORDS;
+}
+
 // Number of layers of a material.
 uint luthier_layer_count(uint material) {
-    return uint(luthier_materials[material].y);
+    return uint(luthier_materials[luthier_header(material)].y);
 }
 
 // A layer of a material, counted from the top.
 LuthierLayer luthier_layer(uint material, uint index) {
     LuthierLayer layer = LuthierLayer(0u, 0.0, 0.0, 0.0, 0.0);
-    uint first = uint(luthier_materials[material].x) + (index * LUTHIER_LAYER_WORDS);
+    uint first = uint(luthier_materials[luthier_header(material)].x) + (index * LUTHIER_LAYER_WORDS);
     vec4 head = luthier_materials[first];
     vec4 tiles = luthier_materials[first + 1u];
     layer.kind = uint(head.x);
@@ -91,7 +97,7 @@ LuthierLayer luthier_layer(uint material, uint index) {
     return layer;
 }
 
-// Fresnel reflectance of a layer, from its row of the table.
+// Fresnel reflectance of a layer, from its row or, under a film that varies, its tile of the tables.
 vec3 luthier_fresnel_term(LuthierLayer layer, float cos_theta_d) {
     return luthier_lookup_fresnel(layer.fresnel_tile, cos_theta_d);
 }
@@ -103,7 +109,7 @@ float luthier_distribution_term(LuthierLayer layer, float alpha, float cos_theta
 
 // Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
 // layer below it (Elek 2010, eq. 2-4).
-LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
+LuthierPath luthier_elek_interface(LuthierPath path, LuthierLayer layer) {
     float alpha = max(path.alpha, layer.alpha);
     LuthierPath next = path;
     next.alpha = alpha;
@@ -142,17 +148,22 @@ LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     return next;
 }
 
+// f cos_theta_i of the model `elek`, both directions above the horizon.
+vec3 luthier_eval_elek(uint material, vec3 wi, vec3 wo) {
+    uint count = luthier_layer_count(material);
+    LuthierPath path = LuthierPath(wi, wo, vec3(wi.z), vec3(0.0), 0.0, true);
+    path = luthier_elek_interface(path, luthier_layer(material, 0u));
+    if (path.open && (count > 1u)) {
+        path = luthier_elek_interface(path, luthier_layer(material, 1u));
+    }
+    return path.reflected;
+}
+
 // f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away
 // from the surface. Zero when either is not above the horizon.
 vec3 luthier_eval(uint material, vec3 wi, vec3 wo) {
     if (min(wi.z, wo.z) <= 0.0) {
         return vec3(0.0);
     }
-    uint count = luthier_layer_count(material);
-    LuthierPath path = LuthierPath(wi, wo, vec3(wi.z), vec3(0.0), 0.0, true);
-    path = luthier_add_interface(path, luthier_layer(material, 0u));
-    if (path.open && (count > 1u)) {
-        path = luthier_add_interface(path, luthier_layer(material, 1u));
-    }
-    return path.reflected;
+    return luthier_eval_elek(material, wi, wo);
 }

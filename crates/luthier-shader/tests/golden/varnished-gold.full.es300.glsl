@@ -3,10 +3,10 @@
 // Needs `precision highp float;` and `precision highp int;` above.
 //
 // Bindings, by name:
-//   luthier_materials: uniform block LuthierMaterials (std140), 19 vec4
+//   luthier_materials: uniform block LuthierMaterials (std140), 29 vec4
 //
 // Materials:
-//   0 varnished-gold, 2 layers
+//   0 varnished-gold, elek, 2 layers
 
 // One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
 struct LuthierLayer {
@@ -47,21 +47,27 @@ struct LuthierPath {
 };
 
 const uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
-const uint LUTHIER_DIELECTRIC = 0u;
-const uint LUTHIER_LAYER_WORDS = 9u;
 const float LUTHIER_PI = 3.1415927;
+const uint LUTHIER_DIELECTRIC = 0u;
+const uint LUTHIER_MATERIAL_WORDS = 9u;
+const uint LUTHIER_LAYER_WORDS = 10u;
 
-layout(std140) uniform LuthierMaterials { vec4 luthier_materials[19]; };
+layout(std140) uniform LuthierMaterials { vec4 luthier_materials[29]; };
+
+// Index of the first word of a material in the buffer.
+uint luthier_header(uint material) {
+    return material * LUTHIER_MATERIAL_WORDS;
+}
 
 // Number of layers of a material.
 uint luthier_layer_count(uint material) {
-    return uint(luthier_materials[material].y);
+    return uint(luthier_materials[luthier_header(material)].y);
 }
 
 // A layer of a material, counted from the top.
 LuthierLayer luthier_layer(uint material, uint index) {
     LuthierLayer layer = LuthierLayer(0u, 0.0, 0.0, 0.0, vec3(0.0), vec3(0.0));
-    uint first = uint(luthier_materials[material].x) + (index * LUTHIER_LAYER_WORDS);
+    uint first = uint(luthier_materials[luthier_header(material)].x) + (index * LUTHIER_LAYER_WORDS);
     vec4 head = luthier_materials[first];
     vec4 base = luthier_materials[first + 3u];
     vec4 real_part = luthier_materials[first + 4u];
@@ -131,7 +137,7 @@ float luthier_distribution_term(LuthierLayer layer, float alpha, float cos_theta
 
 // Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
 // layer below it (Elek 2010, eq. 2-4).
-LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
+LuthierPath luthier_elek_interface(LuthierPath path, LuthierLayer layer) {
     float alpha = max(path.alpha, layer.alpha);
     LuthierPath next = path;
     next.alpha = alpha;
@@ -170,17 +176,22 @@ LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     return next;
 }
 
+// f cos_theta_i of the model `elek`, both directions above the horizon.
+vec3 luthier_eval_elek(uint material, vec3 wi, vec3 wo) {
+    uint count = luthier_layer_count(material);
+    LuthierPath path = LuthierPath(wi, wo, vec3(wi.z), vec3(0.0), 0.0, true);
+    path = luthier_elek_interface(path, luthier_layer(material, 0u));
+    if (path.open && (count > 1u)) {
+        path = luthier_elek_interface(path, luthier_layer(material, 1u));
+    }
+    return path.reflected;
+}
+
 // f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away
 // from the surface. Zero when either is not above the horizon.
 vec3 luthier_eval(uint material, vec3 wi, vec3 wo) {
     if (min(wi.z, wo.z) <= 0.0) {
         return vec3(0.0);
     }
-    uint count = luthier_layer_count(material);
-    LuthierPath path = LuthierPath(wi, wo, vec3(wi.z), vec3(0.0), 0.0, true);
-    path = luthier_add_interface(path, luthier_layer(material, 0u));
-    if (path.open && (count > 1u)) {
-        path = luthier_add_interface(path, luthier_layer(material, 1u));
-    }
-    return path.reflected;
+    return luthier_eval_elek(material, wi, wo);
 }

@@ -2,17 +2,20 @@
 // No tables: Fresnel equations at three wavelengths, closed forms of D.
 //
 // Bindings, group 0:
-//   6 luthier_materials: storage buffer, 19 vec4
+//   6 luthier_materials: storage buffer, 29 vec4
 //
 // Materials:
-//   0 varnished-gold, 2 layers
+//   0 varnished-gold, elek, 2 layers
 
 const LUTHIER_MATERIAL_VARNISHED_GOLD: u32 = 0u;
 
 @group(0) @binding(6) var<storage, read> luthier_materials: array<vec4<f32>>;
 
+const LUTHIER_PI: f32 = 3.14159265;
+
 const LUTHIER_DIELECTRIC: u32 = 0u;
-const LUTHIER_LAYER_WORDS: u32 = 9u;
+const LUTHIER_MATERIAL_WORDS: u32 = 9u;
+const LUTHIER_LAYER_WORDS: u32 = 10u;
 
 /// One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
 struct LuthierLayer {
@@ -30,14 +33,19 @@ struct LuthierLayer {
     ior_k: vec3<f32>,
 }
 
+/// Index of the first word of a material in the buffer.
+fn luthier_header(material: u32) -> u32 {
+    return material * LUTHIER_MATERIAL_WORDS;
+}
+
 /// Number of layers of a material.
 fn luthier_layer_count(material: u32) -> u32 {
-    return u32(luthier_materials[material].y);
+    return u32(luthier_materials[luthier_header(material)].y);
 }
 
 /// A layer of a material, counted from the top.
 fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
-    let first = u32(luthier_materials[material].x) + index * LUTHIER_LAYER_WORDS;
+    let first = u32(luthier_materials[luthier_header(material)].x) + index * LUTHIER_LAYER_WORDS;
     let head = luthier_materials[first];
     let base = luthier_materials[first + 3u];
     let real_part = luthier_materials[first + 4u];
@@ -112,8 +120,6 @@ fn luthier_distribution_term(layer: LuthierLayer, alpha: f32, cos_theta_h: f32, 
     return luthier_beckmann(alpha, cos_theta_h, sin_theta_h_sq);
 }
 
-const LUTHIER_PI: f32 = 3.14159265;
-
 /// What the light has met on its way down and back up: directions, and sums over the layers so far.
 struct LuthierPath {
     /// To the light, in the medium above the next layer.
@@ -132,7 +138,7 @@ struct LuthierPath {
 
 /// Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
 /// layer below it (Elek 2010, eq. 2-4).
-fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
+fn luthier_elek_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
     let alpha = max(path.alpha, layer.alpha);
     var next = path;
     next.alpha = alpha;
@@ -178,17 +184,22 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     return next;
 }
 
+/// f cos_theta_i of the model `elek`, both directions above the horizon.
+fn luthier_eval_elek(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
+    let count = luthier_layer_count(material);
+    var path = LuthierPath(wi, wo, vec3<f32>(wi.z), vec3<f32>(0.0), 0.0, true);
+    path = luthier_elek_interface(path, luthier_layer(material, 0u));
+    if path.open & (count > 1u) {
+        path = luthier_elek_interface(path, luthier_layer(material, 1u));
+    }
+    return path.reflected;
+}
+
 /// f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away
 /// from the surface. Zero when either is not above the horizon.
 fn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
     if min(wi.z, wo.z) <= 0.0 {
         return vec3<f32>(0.0);
     }
-    let count = luthier_layer_count(material);
-    var path = LuthierPath(wi, wo, vec3<f32>(wi.z), vec3<f32>(0.0), 0.0, true);
-    path = luthier_add_interface(path, luthier_layer(material, 0u));
-    if path.open & (count > 1u) {
-        path = luthier_add_interface(path, luthier_layer(material, 1u));
-    }
-    return path.reflected;
+    return luthier_eval_elek(material, wi, wo);
 }

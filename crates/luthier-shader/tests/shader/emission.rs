@@ -87,7 +87,7 @@ fn what_a_set_lacks_is_not_in_its_text() {
         (&[diffuse(0.0)], &[&film, &depth, &oren, &["alpha", "fresnel", "Path", "luthier_sampler"]]),
         (&[dielectric()], &[&film, &depth, &oren, &["layer.eta", "albedo:", "open = true", "ggx", "diffuse("]]),
         (&[clear(), diffuse(0.0)], &[&film, &depth, &oren, &["ggx"]]),
-        (&[dielectric(), diffuse(0.4)], &[&film, &["ggx", "luthier_add_layer"]]),
+        (&[dielectric(), diffuse(0.4)], &[&film, &["ggx", "LUTHIER_DIFFUSE"]]),
         (&[conductor()], &[&film, &depth, &oren, &["beckmann", "layer.eta", "LUTHIER_DIELECTRIC"]]),
         (&[filmed(), conductor()], &[&depth, &oren, &["LUTHIER_DIFFUSE"]]),
     ];
@@ -141,7 +141,7 @@ fn full_binds_the_buffer_only_and_baked_what_it_reads() {
         bindings(&MaterialSet { materials: &materials, tables }, form).iter().map(|b| b.binding).collect::<Vec<_>>()
     };
     assert_eq!(numbers(&[filmed()], tables(), Form::Full), [6]);
-    assert_eq!(numbers(&[filmed()], tables(), Form::Baked), [0, 1, 3, 4, 5, 6]);
+    assert_eq!(numbers(&[filmed()], tables(), Form::Baked), [0, 1, 3, 4, 7, 5, 6]);
     assert_eq!(numbers(&[dielectric()], tables(), Form::Baked), [0, 1, 2, 5, 6]);
     assert_eq!(numbers(&[diffuse(0.0)], tables(), Form::Baked), [6]);
     let unfiltered = tables().into_iter().map(|t| TableFace { format: TexelFormat::Rgba32Float, ..t }).collect();
@@ -172,7 +172,7 @@ fn sets_that_cannot_be_emitted_say_why() {
     assert!(matches!(attempt(&lone(conductor()), odd, Target::Wgsl), ShaderError::Layout { .. }));
     let many: Vec<_> = (0..120).map(|i| material(&format!("m{i}"), &[conductor()])).collect();
     let error = attempt(&many, tables(), Target::GlslEs300);
-    assert!(matches!(error, ShaderError::UniformBlockTooLarge { words: 1200, limit: 1024 }), "{error}");
+    assert!(matches!(error, ShaderError::UniformBlockTooLarge { words: 2280, limit: 1024 }), "{error}");
     assert!(emit(&MaterialSet { materials: &many, tables: tables() }, Form::Baked, Target::Glsl450).is_ok());
 }
 

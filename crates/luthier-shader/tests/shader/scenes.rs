@@ -1,7 +1,7 @@
 //! Material sets for the tests: small, with one material for every kind of layer.
 
 use luthier_lut::{
-    AtlasLayout, Axis, ColorMode, LayerKind, LayerRecord, Mapping, MaterialEntry, TableKind, TexelFormat,
+    AtlasLayout, Axis, LayerKind, LayerRecord, Mapping, MaterialEntry, ShadingModel, TableKind, TexelFormat,
 };
 use luthier_shader::TableFace;
 
@@ -13,20 +13,12 @@ pub(crate) fn dielectric() -> LayerRecord {
         alpha: 0.02,
         eta: 1.5,
         optical_depth: [0.1, 0.5, 0.9],
-        albedo: [0.0; 3],
-        sigma: 0.0,
+        alpha_xy: [0.02; 2],
         ior_n: [1.49, 1.5, 1.51],
-        ior_k: [0.0; 3],
-        film_ior_n: [0.0; 3],
-        film_ior_k: [0.0; 3],
-        film_thickness_waves: [0.0; 3],
-        film_thickness_nm: 0.0,
-        film_thickness_max_nm: 0.0,
         fresnel_tile: Some(0),
         distribution_tile: Some(0),
         fgd_tile: Some(0),
-        phase_tile: None,
-        thickness_tile: None,
+        ..LayerRecord::default()
     }
 }
 
@@ -41,6 +33,7 @@ pub(crate) fn conductor() -> LayerRecord {
         kind: LayerKind::Conductor,
         distribution: "ggx".to_owned(),
         alpha: 0.3,
+        alpha_xy: [0.3; 2],
         eta: 1.0,
         optical_depth: [0.0; 3],
         ior_n: [0.16, 0.42, 1.47],
@@ -77,6 +70,7 @@ pub(crate) fn filmed() -> LayerRecord {
         film_thickness_max_nm: 400.0,
         phase_tile: Some(0),
         thickness_tile: Some(0),
+        film_tile: Some(0),
         fresnel_tile: Some(2),
         fgd_tile: None,
         ..clear()
@@ -87,12 +81,9 @@ pub(crate) fn filmed() -> LayerRecord {
 pub(crate) fn material(name: &str, layers: &[LayerRecord]) -> MaterialEntry {
     MaterialEntry {
         name: name.to_owned(),
-        source: format!("materials/{name}.toml"),
-        source_hash: String::new(),
-        class: "d".to_owned(),
-        color: ColorMode::Spectral,
         wavelengths_nm: [645.0, 525.0, 445.0],
         layers: layers.to_vec(),
+        ..MaterialEntry::default()
     }
 }
 
@@ -102,8 +93,11 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
     let house = || material("house-paint", &[dielectric(), clear(), diffuse(0.4)]);
     let gold = || material("gold", &[conductor()]);
     let oil = || material("oil-film-2", &[filmed(), conductor()]);
+    let chalk = || material("chalk", &[diffuse(0.0)]);
+    let brushed = || material("brushed", &[LayerRecord { alpha_xy: [0.1, 0.4], rotation: 0.5, ..conductor() }]);
+    let of = |model, material: MaterialEntry| MaterialEntry { model, ..material };
     vec![
-        ("lambert", vec![material("chalk", &[diffuse(0.0)])]),
+        ("lambert", vec![chalk()]),
         ("clay", vec![material("clay", &[diffuse(0.3)])]),
         ("glass", vec![material("glass", &[dielectric()])]),
         ("gold", vec![gold()]),
@@ -111,7 +105,11 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
         ("varnish", vec![material("varnish", &[clear(), conductor()])]),
         ("soap", vec![material("soap", &[filmed()])]),
         ("mixed-depths", vec![gold(), lacquer(), house()]),
-        ("mixed-tops", vec![material("chalk", &[diffuse(0.0)]), lacquer()]),
+        ("mixed-tops", vec![chalk(), lacquer()]),
+        ("phong", vec![of(ShadingModel::Phong, lacquer())]),
+        ("microfacet", vec![of(ShadingModel::Microfacet, gold()), of(ShadingModel::Microfacet, brushed())]),
+        ("microfacet-mixed", vec![of(ShadingModel::Microfacet, chalk()), of(ShadingModel::Microfacet, lacquer())]),
+        ("models", vec![lacquer(), of(ShadingModel::Phong, gold()), of(ShadingModel::Microfacet, brushed()), oil()]),
         ("everything", vec![lacquer(), house(), gold(), oil(), material("clay", &[diffuse(0.3)])]),
     ]
 }
@@ -159,6 +157,24 @@ pub(crate) fn tables() -> Vec<TableFace> {
             1,
             1,
             TexelFormat::Rgba8Unorm,
+        ),
+        face(
+            TableKind::Film,
+            cos_theta(64),
+            Some(axis("fraction", 0.0, 1.0, 64, Mapping::Linear)),
+            0,
+            1,
+            1,
+            TexelFormat::Rgba16Float,
+        ),
+        face(
+            TableKind::Escape,
+            cos_theta(32),
+            Some(alpha(Mapping::Linear, 32)),
+            0,
+            1,
+            1,
+            TexelFormat::R16Float,
         ),
     ]
 }

@@ -1,24 +1,6 @@
-const LUTHIER_PI: f32 = 3.14159265;
-
-/// What the light has met on its way down and back up: directions, and sums over the layers so far.
-struct LuthierPath {
-    /// To the light, in the medium above the next layer.
-    wi: vec3<f32>,
-    /// To the eye, in the medium above the next layer.
-    wo: vec3<f32>,
-    /// Share of the light that comes down to the next layer and back out, times the outer cos_theta_i.
-    throughput: vec3<f32>,
-    /// Reflected by the layers so far: f cos_theta_i.
-    reflected: vec3<f32>,
-    /// Greatest slope parameter so far: a layer is never smoother than those above it.
-    alpha: f32,
-    /// Whether any light reaches the next layer.
-    open: bool,
-}
-
 /// Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
 /// layer below it (Elek 2010, eq. 2-4).
-fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
+fn luthier_elek_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
     let alpha = max(path.alpha, layer.alpha);
     var next = path;
     next.alpha = alpha;

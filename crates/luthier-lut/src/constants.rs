@@ -1,0 +1,127 @@
+use serde::{Deserialize, Serialize};
+
+/// What a shader needs of a whole surface, beside its layers; what a model does not use is zero.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct MaterialConstants {
+    /// Diffuse coefficient of Phong's model, RGB.
+    pub phong_diffuse: [f64; 3],
+    /// Specular coefficient of Phong's model, RGB.
+    pub phong_specular: [f64; 3],
+    /// Exponent of Phong's model, about the mirror direction.
+    pub phong_exponent: f64,
+    /// Cosine-weighted share of the light from a diffuse base that the layers above send back to it, RGB.
+    pub internal_reflectance: [f64; 3],
+    /// Flakes in the coat.
+    pub flakes: Option<FlakesRecord>,
+    /// Patina: the first layer has grown over the others in places.
+    pub patina: Option<PatinaRecord>,
+}
+
+/// Flakes, one per cell of a grid (Elek 2010, section 4.1).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct FlakesRecord {
+    /// Which flakes.
+    pub seed: u32,
+    /// Cells along one repeat.
+    pub count: u32,
+    /// Repeats per unit of texture coordinate.
+    pub tiling: f64,
+    /// Standard deviation of the flakes' slope angle, radians.
+    pub spread: f64,
+    /// Weight of the flakes' normal against the surface's.
+    pub scale: f64,
+    /// Distance from the eye, in scene units, up to which flakes keep their full weight.
+    pub fade_start: f64,
+}
+
+/// Patina (Elek 2010, section 4.2): its amount is `clamp(1/2 + (extent - map) / (2 transition), 0, 1)`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PatinaRecord {
+    /// How far it has developed.
+    pub extent: f64,
+    /// Softness of its edge; 0 is a step.
+    pub transition: f64,
+    /// Diffuse albedo that stands for scattering in the patina, RGB.
+    pub diffuse_albedo: [f64; 3],
+    /// Slope parameter of the layer below where patina has grown; `None` leaves it alone.
+    pub base_alpha: Option<f64>,
+    /// Factor on the reflection of the layer below where patina has grown, RGB.
+    pub tarnish: [f64; 3],
+}
+
+impl MaterialConstants {
+    /// `vec4` words of the constants in the material buffer.
+    pub const WORDS: usize = 8;
+
+    /// The words, in the order that the shader unpacks them.
+    ///
+    /// | header word | x, y, z, w |
+    /// |---|---|
+    /// | 1 | Phong's diffuse coefficient RGB, exponent |
+    /// | 2 | Phong's specular coefficient RGB, 0 |
+    /// | 3 | internal reflectance RGB, 0 |
+    /// | 4 | flakes: low and high 16 bits of the seed, cells, tiling; all 0 without flakes |
+    /// | 5 | flakes: spread, scale, fade start, 0 |
+    /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; all 0 without patina |
+    /// | 7 | patina: diffuse albedo RGB, 0 |
+    /// | 8 | patina: tarnish RGB, 0 |
+    pub fn words(&self) -> [[f32; 4]; Self::WORDS] {
+        let with = |[r, g, b]: [f64; 3], w: f64| [r as f32, g as f32, b as f32, w as f32];
+        let mut words = [[0.0; 4]; Self::WORDS];
+        words[0] = with(self.phong_diffuse, self.phong_exponent);
+        words[1] = with(self.phong_specular, 0.0);
+        words[2] = with(self.internal_reflectance, 0.0);
+        if let Some(f) = &self.flakes {
+            let half = |bits: u32| (bits & 0xffff) as f32;
+            words[3] = [half(f.seed), half(f.seed >> 16), f.count as f32, f.tiling as f32];
+            words[4] = with([f.spread, f.scale, f.fade_start], 0.0);
+        }
+        if let Some(p) = &self.patina {
+            words[5] = with([p.extent, p.transition, p.base_alpha.unwrap_or(-1.0)], 1.0);
+            words[6] = with(p.diffuse_albedo, 0.0);
+            words[7] = with(p.tarnish, 0.0);
+        }
+        words
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The table in the documentation of `words`, filled in by hand.
+    #[test]
+    fn words_lie_where_the_documentation_says() {
+        let flakes =
+            FlakesRecord { seed: 0x0003_0002, count: 4, tiling: 5.0, spread: 6.0, scale: 7.0, fade_start: 8.0 };
+        let patina = PatinaRecord {
+            extent: 9.0,
+            transition: 10.0,
+            diffuse_albedo: [11.0, 12.0, 13.0],
+            base_alpha: None,
+            tarnish: [14.0, 15.0, 16.0],
+        };
+        let constants = MaterialConstants {
+            phong_diffuse: [20.0, 21.0, 22.0],
+            phong_specular: [23.0, 24.0, 25.0],
+            phong_exponent: 26.0,
+            internal_reflectance: [27.0, 28.0, 29.0],
+            flakes: Some(flakes),
+            patina: Some(patina),
+        };
+        assert_eq!(
+            constants.words(),
+            [
+                [20.0, 21.0, 22.0, 26.0],
+                [23.0, 24.0, 25.0, 0.0],
+                [27.0, 28.0, 29.0, 0.0],
+                [2.0, 3.0, 4.0, 5.0],
+                [6.0, 7.0, 8.0, 0.0],
+                [9.0, 10.0, -1.0, 1.0],
+                [11.0, 12.0, 13.0, 0.0],
+                [14.0, 15.0, 16.0, 0.0],
+            ]
+        );
+        assert_eq!(MaterialConstants::default().words(), [[0.0; 4]; MaterialConstants::WORDS]);
+    }
+}

@@ -1,0 +1,22 @@
+/// f cos_theta_i of one lobe about the mirror direction over one diffuse term (Phong 1975, the lobe scaled so that a whole one
+/// carries the specular coefficient).
+fn luthier_eval_phong($place_parameter material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
+    let header = luthier_header(material);
+    let diffuse = luthier_materials[header + 1u];
+    let specular = luthier_materials[header + 2u].rgb;
+    let exponent = diffuse.w; //? !place
+    // The exponent is (1/alpha^2 - 1) / 2. //? place
+    let exponent = max((diffuse.w + 0.5) / (place.alpha_factor * place.alpha_factor) - 0.5, 0.0); //? place
+    // 1 minus the cosine to the mirror direction is half a squared distance: no cancellation in narrow lobes.
+    let apart = vec3<f32>(wi.xy + wo.xy, wi.z - wo.z);
+    let away = 0.5 * dot(apart, apart);
+    var lobe = 0.0;
+    if away < 1.0 {
+        // log(1 - away), as a series where the logarithm would round what is left of 1.
+        let s = away / (2.0 - away);
+        let s_sq = s * s;
+        let series = -2.0 * s * (1.0 + s_sq * (0.33333333 + s_sq * (0.2 + s_sq * 0.14285714)));
+        lobe = exp(exponent * select(log(1.0 - away), series, away < 0.5));
+    }
+    return diffuse.rgb * (wi.z / LUTHIER_PI) + specular * ((exponent + 1.0) * lobe / (2.0 * LUTHIER_PI));
+}

@@ -1,0 +1,1 @@
+const LUTHIER_PI: f32 = 3.14159265;

@@ -1,0 +1,37 @@
+/// What textures say about one place of a surface. Factors multiply what the material says.
+struct LuthierPlace {
+    /// Normal, unit, in the frame of the directions.
+    normal: vec3<f32>,
+    /// Factor on the slope parameters of every layer.
+    alpha_factor: f32,
+    /// Factor on the thickness of the slab below the first interface.
+    slab_factor: f32,
+    /// Factor on the thickness of the film on the first interface.
+    film_factor: f32,
+}
+
+/// A place without textures.
+fn luthier_place() -> LuthierPlace {
+    return LuthierPlace(vec3<f32>(0.0, 0.0, 1.0), 1.0, 1.0, 1.0);
+}
+
+/// A layer of a material, counted from the top, as it is at a place.
+fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLayer {
+    var layer = luthier_layer(material, index);
+    layer.alpha = clamp(layer.alpha * place.alpha_factor, 0.001, 1.0); //? interface
+    layer.alpha_xy = clamp(layer.alpha_xy * place.alpha_factor, vec2<f32>(0.001), vec2<f32>(1.0)); //? anisotropic
+    if index == 0u { //? absorption|film
+        layer.optical_depth *= place.slab_factor; //? absorption
+        layer.film_waves *= place.film_factor; //? full, film
+        layer.film_thickness_nm *= place.film_factor; //? phase|thickness|film_table
+    } //? absorption|film
+    return layer;
+}
+
+/// A direction in a frame whose normal is `normal` (unit, in the frame of the direction): the least rotation that takes +z
+/// there is undone.
+fn luthier_turned(normal: vec3<f32>, w: vec3<f32>) -> vec3<f32> {
+    let across = w.x * normal.x + w.y * normal.y;
+    let along = w.z + across / (1.0 + max(normal.z, 0.0));
+    return vec3<f32>(w.xy - normal.xy * along, across + w.z * normal.z);
+}
