@@ -1,11 +1,15 @@
 //! From tiles to atlases.
 
-use luthier_lut::{Atlas, AtlasLayout, Axis, ColorMode, Image, LayerRecord, TableKind, TexelFormat, Tile};
+use luthier_lut::{
+    Atlas, AtlasLayout, Axis, ColorMode, Image, LayerRecord, MaterialConstants, ShadingModel, TableKind, TexelFormat,
+    Tile,
+};
 use luthier_material::Material;
 
 use crate::BakeError;
+use crate::constants::constants;
 use crate::graph::{Observer, Results};
-use crate::plan::{ImageReader, Plan, Tiles, color_mode};
+use crate::plan::{ImageReader, Plan, Tiles, color_mode, shading_model};
 use crate::settings::Settings;
 
 /// What a set of materials needs at run time.
@@ -20,8 +24,12 @@ pub struct Bake {
 /// One material of a bake.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BakedMaterial {
+    /// The reflectance model of its shader.
+    pub model: ShadingModel,
     /// How its tables came by their colour.
     pub color: ColorMode,
+    /// What belongs to the whole surface.
+    pub constants: MaterialConstants,
     /// Its layers from the top down, with the tiles that serve them.
     pub records: Vec<LayerRecord>,
 }
@@ -77,12 +85,18 @@ fn plan(materials: &[Material], read_image: ImageReader<'_>) -> Result<Plan, Bak
     Plan::new(materials, read_image)
 }
 
-fn used(tiles: &[Tiles; 5]) -> impl Iterator<Item = (TableKind, &Tiles)> {
+fn used(tiles: &[Tiles; TableKind::ALL.len()]) -> impl Iterator<Item = (TableKind, &Tiles)> {
     TableKind::ALL.into_iter().zip(tiles).filter(|(_, tiles)| !tiles.tiles.is_empty())
 }
 
 fn baked_materials(materials: &[Material], records: Vec<Vec<LayerRecord>>) -> Vec<BakedMaterial> {
-    materials.iter().zip(records).map(|(m, records)| BakedMaterial { color: color_mode(m), records }).collect()
+    let baked = |(m, records): (&Material, Vec<LayerRecord>)| BakedMaterial {
+        model: shading_model(m),
+        color: color_mode(m),
+        constants: constants(m),
+        records,
+    };
+    materials.iter().zip(records).map(baked).collect()
 }
 
 fn axes(kind: TableKind, settings: &Settings) -> (&Axis, Option<&Axis>) {
@@ -92,6 +106,8 @@ fn axes(kind: TableKind, settings: &Settings) -> (&Axis, Option<&Axis>) {
         TableKind::Fgd => (&settings.fgd.0[0], Some(&settings.fgd.0[1])),
         TableKind::Phase => (&settings.phase.0, None),
         TableKind::Thickness => (&settings.thickness.0[0], Some(&settings.thickness.0[1])),
+        TableKind::Film => (&settings.film.0[0], Some(&settings.film.0[1])),
+        TableKind::Escape => (&settings.escape.0[0], Some(&settings.escape.0[1])),
     }
 }
 
@@ -102,6 +118,8 @@ fn format(kind: TableKind, settings: &Settings) -> TexelFormat {
         TableKind::Fgd => settings.fgd.1,
         TableKind::Phase => settings.phase.1,
         TableKind::Thickness => settings.thickness.1,
+        TableKind::Film => settings.film.1,
+        TableKind::Escape => settings.escape.1,
     }
 }
 

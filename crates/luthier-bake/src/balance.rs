@@ -13,7 +13,9 @@ pub(crate) fn texels(kind: TableKind, format: TexelFormat, truth: &Image) -> Ima
     let balanced = match kind {
         TableKind::Thickness => roots,
         TableKind::Phase => balance(&roots, f64::NEG_INFINITY),
-        TableKind::Fresnel | TableKind::Distribution | TableKind::Fgd => balance(&roots, 0.0),
+        TableKind::Fresnel | TableKind::Distribution | TableKind::Fgd | TableKind::Film | TableKind::Escape => {
+            balance(&roots, 0.0)
+        }
     };
     format.quantise(&Encoding::of(kind, format).split(&balanced))
 }

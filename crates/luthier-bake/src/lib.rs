@@ -12,6 +12,7 @@
 
 mod assemble;
 mod balance;
+mod constants;
 mod distribution;
 mod error;
 mod facet_grid;

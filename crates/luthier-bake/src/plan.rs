@@ -1,7 +1,7 @@
 //! From materials to jobs: which tile serves which layer.
 
-use luthier_lut::{ColorMode, Image, LayerRecord, TableKind};
-use luthier_material::{ColorSetting, FilmVariation, Material, VariationSource};
+use luthier_lut::{ColorMode, Image, LayerRecord, ShadingModel, TableKind};
+use luthier_material::{ColorSetting, FilmVariation, Material, ModelSetting, VariationSource};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::stack::{Base, Film, Layer};
@@ -39,9 +39,17 @@ pub(crate) struct Plan {
     pub(crate) settings: Settings,
     pub(crate) graph: Graph,
     /// One per table kind, in binding order.
-    pub(crate) tiles: [Tiles; 5],
+    pub(crate) tiles: [Tiles; TableKind::ALL.len()],
     /// Layer records per material, tiles filled in.
     pub(crate) records: Vec<Vec<LayerRecord>>,
+}
+
+/// The colour that the tables of a material hold.
+pub(crate) fn color(material: &Material) -> Color {
+    match color_mode(material) {
+        ColorMode::Spectral => Color::Spectral,
+        ColorMode::ThreeWavelengths => Color::ThreeWavelengths(material.bake.wavelengths_nm()),
+    }
 }
 
 /// How the tables of a material come by their colour: spectrally, unless its file asks otherwise.
@@ -50,6 +58,12 @@ pub(crate) fn color_mode(material: &Material) -> ColorMode {
         Some(ColorSetting::ThreeWavelengths) => ColorMode::ThreeWavelengths,
         Some(ColorSetting::Spectral) | None => ColorMode::Spectral,
     }
+}
+
+/// The model that shades a material: Elek's, unless its file asks for another.
+pub(crate) fn shading_model(material: &Material) -> ShadingModel {
+    let name = material.bake.model.map(ModelSetting::name);
+    name.and_then(ShadingModel::from_name).unwrap_or_default()
 }
 
 /// Reads an image that a material names: material file, path as written there.
@@ -68,10 +82,7 @@ impl Plan {
 
     fn material(&mut self, material: &Material, read: ImageReader<'_>) -> Result<Vec<LayerRecord>, BakeError> {
         let wavelengths_nm = material.bake.wavelengths_nm();
-        let color = match color_mode(material) {
-            ColorMode::Spectral => Color::Spectral,
-            ColorMode::ThreeWavelengths => Color::ThreeWavelengths(wavelengths_nm),
-        };
+        let color = color(material);
         let mut records = records(&material.stack, wavelengths_nm);
         for (i, (record, layer)) in records.iter_mut().zip(&material.stack.layers).enumerate() {
             let Some(interface) = Interface::of(&material.stack, i) else { continue };
@@ -154,6 +165,6 @@ impl Plan {
 
     fn add(&mut self, kind: TableKind, job: Job, name: &dyn Fn() -> String) -> u32 {
         let key = self.graph.add(job);
-        self.tiles[kind.binding() as usize].tile(key, name)
+        self.tiles[kind as usize].tile(key, name)
     }
 }

@@ -1,6 +1,6 @@
 //! Layer records: what a shader needs of each layer.
 
-use luthier_layers::elek::{self, Below};
+use luthier_layers::elek::{self, ALPHA_MIN, Below};
 use luthier_lut::{LayerKind, LayerRecord};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
@@ -13,26 +13,16 @@ pub(crate) fn records(stack: &Stack, wavelengths_nm: [f64; 3]) -> Vec<LayerRecor
         .iter()
         .enumerate()
         .map(|(i, layer)| {
+            let surface = &stack.layers[i].surface;
             let mut record = LayerRecord {
                 kind: LayerKind::Conductor,
                 distribution: layer.distribution.name().to_owned(),
                 alpha: layer.alpha,
+                alpha_xy: [surface.alpha_x, surface.alpha_y].map(|alpha| alpha.clamp(ALPHA_MIN, 1.0)),
+                rotation: surface.rotation,
                 eta: 1.0,
-                optical_depth: [0.0; 3],
-                albedo: [0.0; 3],
-                sigma: 0.0,
                 ior_n: [1.0; 3],
-                ior_k: [0.0; 3],
-                film_ior_n: [0.0; 3],
-                film_ior_k: [0.0; 3],
-                film_thickness_waves: [0.0; 3],
-                film_thickness_nm: 0.0,
-                film_thickness_max_nm: 0.0,
-                fresnel_tile: None,
-                distribution_tile: None,
-                fgd_tile: None,
-                phase_tile: None,
-                thickness_tile: None,
+                ..LayerRecord::default()
             };
             match layer.below {
                 Below::Dielectric { eta, optical_depth } => {

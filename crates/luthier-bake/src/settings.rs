@@ -17,6 +17,8 @@ pub(crate) struct Settings {
     pub(crate) fgd: ([Axis; 2], TexelFormat),
     pub(crate) phase: (Axis, TexelFormat),
     pub(crate) thickness: ([Axis; 2], TexelFormat),
+    pub(crate) film: ([Axis; 2], TexelFormat),
+    pub(crate) escape: ([Axis; 2], TexelFormat),
 }
 
 impl Settings {
@@ -75,7 +77,21 @@ impl Settings {
             ["u", "v"].map(|name| axis(name, "", [0.0, 1.0], size, Mapping::Periodic)),
             ask.format("bake.thickness.format", |b| b.thickness.format, TexelFormat::Rgba16Float)?,
         );
-        Ok(Self { fresnel, distribution, fgd, phase, thickness })
+        let film = (
+            [
+                axis("cos_theta", "", [0.0, 1.0], 64, Mapping::Linear),
+                axis("fraction", "", [0.0, 1.0], 256, Mapping::Linear),
+            ],
+            TexelFormat::Rgba16Float,
+        );
+        let escape = (
+            [
+                axis("cos_theta", "", [0.0, 1.0], 64, Mapping::Linear),
+                axis("alpha", "", [0.0, 1.0], 64, Mapping::Power { exponent: 2.0 }),
+            ],
+            TexelFormat::R16Float,
+        );
+        Ok(Self { fresnel, distribution, fgd, phase, thickness, film, escape })
     }
 }
 

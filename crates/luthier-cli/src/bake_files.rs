@@ -3,7 +3,7 @@
 use luthier_bake::Bake;
 use luthier_lut::{
     Atlas, AtlasLayout, Axis, FileEntry, Image, MANIFEST_SCHEMA, Manifest, Mapping, MaterialEntry, ShaderEntry,
-    TableEntry, TableKind,
+    TableEntry, TableKind, material_buffer,
 };
 use luthier_material::Material;
 use luthier_shader::{Form, MaterialSet, Target};
@@ -15,9 +15,6 @@ use crate::failure::{Failure, Outcome};
 
 /// Program and version, as files and reports name it.
 pub(crate) const GENERATOR: &str = concat!("luthier ", env!("CARGO_PKG_VERSION"));
-
-/// The reflectance model of this version's shaders.
-const MODEL: &str = "elek";
 
 /// File name of the manifest.
 pub(crate) const MANIFEST: &str = "manifest.json";
@@ -58,12 +55,15 @@ impl BakeFiles {
         let mut manifest = Manifest {
             schema: MANIFEST_SCHEMA,
             generator: GENERATOR.to_owned(),
-            model: MODEL.to_owned(),
             materials: material_entries(materials, &bake.materials),
             tables,
             shaders: Vec::new(),
             bindings: Vec::new(),
+            material_buffer: FileEntry::default(),
         };
+        let words = material_buffer(&manifest.materials);
+        let bytes = words.as_flattened().iter().flat_map(|value| value.to_le_bytes()).collect();
+        manifest.material_buffer = add(&mut files, "materials.bin".to_owned(), bytes);
         let set = MaterialSet::from_manifest(&manifest);
         let mut shaders = Vec::new();
         for form in Form::ALL {
@@ -90,8 +90,10 @@ pub(crate) fn material_entries(materials: &[Material], baked: &[luthier_bake::Ba
             source: material.source.clone(),
             source_hash: sha256(material.text.as_bytes()),
             class: material.class.letter().to_string(),
+            model: baked.model,
             color: baked.color,
             wavelengths_nm: material.bake.wavelengths_nm(),
+            constants: baked.constants.clone(),
             layers: baked.records.clone(),
         })
         .collect()

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use luthier_material::ModelSetting;
 use luthier_shader::{Form, Target};
 
 use crate::directions::Angles;
@@ -62,6 +64,14 @@ pub(crate) struct Sources {
     pub(crate) paths: Vec<PathBuf>,
 }
 
+/// The model of the shaders.
+#[derive(Debug, Args)]
+pub(crate) struct Shading {
+    /// Reflectance model of the shader; by default the one that each material file asks for
+    #[arg(long, value_name = "NAME", value_parser = shading_model())]
+    pub(crate) model: Option<ModelSetting>,
+}
+
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples:\n  luthier bake materials\n  luthier bake a.toml b.toml --out build/luts --threads 1 --json"
@@ -69,6 +79,8 @@ pub(crate) struct Sources {
 pub(crate) struct BakeOptions {
     #[command(flatten)]
     pub(crate) sources: Sources,
+    #[command(flatten)]
+    pub(crate) shading: Shading,
     /// Folder to write to
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(crate) out: PathBuf,
@@ -128,6 +140,8 @@ pub(crate) struct PreviewOptions {
     /// A material file, or the name of a material in the bake
     #[arg(value_name = "MATERIAL")]
     pub(crate) material: String,
+    #[command(flatten)]
+    pub(crate) shading: Shading,
     /// Picture to write (PNG)
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: PathBuf,
@@ -155,6 +169,8 @@ pub(crate) struct PreviewOptions {
 pub(crate) struct ShaderOptions {
     #[command(flatten)]
     pub(crate) sources: Sources,
+    #[command(flatten)]
+    pub(crate) shading: Shading,
     /// Language
     #[arg(long, value_enum, default_value_t = TargetName::Wgsl)]
     pub(crate) target: TargetName,
@@ -265,6 +281,11 @@ fn wavelength(text: &str) -> Result<f64, String> {
         Ok(value) if (360.0..=830.0).contains(&value) => Ok(value),
         _ => Err("expected a wavelength from 360 to 830 nm".to_owned()),
     }
+}
+
+fn shading_model() -> impl TypedValueParser<Value = ModelSetting> {
+    PossibleValuesParser::new(ModelSetting::NAMES.iter().copied())
+        .try_map(|name| ModelSetting::from_name(&name).ok_or_else(|| format!("no model `{name}`")))
 }
 
 fn positive(text: &str) -> Result<f64, String> {

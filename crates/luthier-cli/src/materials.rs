@@ -8,6 +8,7 @@ use std::string::FromUtf8Error;
 use luthier_lut::Image;
 use luthier_material::{Diagnostic, Material, Parsed, Severity, parse};
 
+use crate::cli::Shading;
 use crate::failure::{Failure, Outcome, files};
 use crate::output::complain;
 
@@ -106,6 +107,14 @@ pub(crate) fn valid(sources: Vec<Source>, quiet: bool) -> Outcome<Vec<Material>>
         }
     }
     Ok(sources.into_iter().filter_map(|s| s.parsed.ok()).map(|parsed| parsed.material).collect())
+}
+
+/// The materials, shaded by the model that the command line asks for.
+pub(crate) fn shaded(mut materials: Vec<Material>, shading: &Shading) -> Vec<Material> {
+    if shading.model.is_some() {
+        materials.iter_mut().for_each(|material| material.bake.model = shading.model);
+    }
+    materials
 }
 
 /// Reads an image that a material names, relative to the material's file.

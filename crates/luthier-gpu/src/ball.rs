@@ -97,9 +97,8 @@ impl Scene {
 
     /// The material buffer with slopes widened by the light.
     fn widened_words(&self, angular_radius: f32) -> Vec<[f32; 4]> {
-        let widen = |m: &MaterialEntry| widened(&m.layers, angular_radius);
-        let materials: Vec<_> = self.manifest.materials.iter().map(widen).collect();
-        material_buffer(&materials.iter().map(Vec::as_slice).collect::<Vec<_>>())
+        let widen = |m: &MaterialEntry| MaterialEntry { layers: widened(&m.layers, angular_radius), ..m.clone() };
+        material_buffer(&self.manifest.materials.iter().map(widen).collect::<Vec<_>>())
     }
 
     /// The kernel, with the look-ups that the shader has. A set of diffuse bases has no Fresnel table, and needs none.
@@ -120,8 +119,10 @@ impl Scene {
 /// Layers with slopes widened by a light of this angular radius: the half vector turns by half of what the light does.
 fn widened(layers: &[LayerRecord], angular_radius: f32) -> Vec<LayerRecord> {
     let spread = 0.5 * f64::from(angular_radius);
+    let wider = |alpha: f64| libm::sqrt(alpha * alpha + spread * spread).min(1.0);
     let widen = |layer: &LayerRecord| LayerRecord {
-        alpha: libm::sqrt(layer.alpha * layer.alpha + spread * spread).min(1.0),
+        alpha: wider(layer.alpha),
+        alpha_xy: layer.alpha_xy.map(wider),
         ..layer.clone()
     };
     layers.iter().map(widen).collect()

@@ -66,8 +66,7 @@ impl ShaderBindings {
 
 /// The material buffer of a bake.
 pub(crate) fn material_words(artefacts: &Artefacts) -> Vec<[f32; 4]> {
-    let layers: Vec<_> = artefacts.manifest.materials.iter().map(|m| m.layers.as_slice()).collect();
-    material_buffer(&layers)
+    material_buffer(&artefacts.manifest.materials)
 }
 
 fn resource(context: &Context, artefacts: &Artefacts, entry: &BindingEntry) -> Result<Resource, GpuError> {

@@ -56,6 +56,8 @@ fn call(kind: TableKind) -> &'static str {
         TableKind::Fgd => "luthier_lookup_fgd(at.x, at.y, at.z)",
         TableKind::Phase => "vec4<f32>(luthier_lookup_phase(at.x, at.y), 0.0)",
         TableKind::Thickness => "luthier_lookup_thickness(at.x, at.yz)",
+        TableKind::Film => "vec4<f32>(luthier_lookup_film(at.x, at.y, at.z), 0.0)",
+        TableKind::Escape => "vec4<f32>(luthier_lookup_escape(at.x, at.y, at.z), 0.0, 0.0, 0.0)",
     }
 }
 

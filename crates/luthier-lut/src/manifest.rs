@@ -113,7 +113,9 @@ pub struct BindingEntry {
 impl MaterialEntry {
     /// Whether textures make the surface differ from place to place.
     pub fn varies(&self) -> bool {
-        self.constants.flakes.is_some() || self.constants.patina.is_some() || self.layers.iter().any(LayerRecord::varies)
+        self.constants.flakes.is_some()
+            || self.constants.patina.is_some()
+            || self.layers.iter().any(LayerRecord::varies)
     }
 }
 

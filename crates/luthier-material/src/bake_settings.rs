@@ -14,6 +14,26 @@ named! {
 }
 
 named! {
+    /// Models that shaders evaluate.
+    pub enum ModelSetting {
+        /// Elek 2010.
+        Elek = "elek",
+        /// Weidlich and Wilkie 2007.
+        WeidlichWilkie = "weidlich-wilkie",
+        /// Granier and Heidrich 2003.
+        GranierHeidrich = "granier-heidrich",
+        /// Belcour 2018.
+        Belcour = "belcour",
+        /// Yamaguchi et al. 2019.
+        Yamaguchi = "yamaguchi",
+        /// One Phong lobe over one diffuse term.
+        Phong = "phong",
+        /// The first interface alone.
+        Microfacet = "microfacet",
+    }
+}
+
+named! {
     /// Texel formats, named as WebGPU names them.
     pub enum Format {
         /// One half float.
@@ -68,6 +88,8 @@ named! {
 /// What a material asks of its tables; `None` leaves the choice to the baker.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct BakeSettings {
+    /// The reflectance model of the shader.
+    pub model: Option<ModelSetting>,
     /// Spectral or at three wavelengths.
     pub color: Option<ColorSetting>,
     /// Wavelengths taken as R, G and B, in nm.

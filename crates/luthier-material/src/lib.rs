@@ -27,7 +27,7 @@ mod suggest;
 
 pub use bake_settings::{
     AlphaMapping, BakeSettings, ColorSetting, DEFAULT_WAVELENGTHS_NM, DistributionMapping, DistributionSettings,
-    Format, FresnelMapping, FresnelSettings, GridSettings, RowSettings,
+    Format, FresnelMapping, FresnelSettings, GridSettings, ModelSetting, RowSettings,
 };
 pub use class::{SMOOTH_SLOPE_DEG, SurfaceClass};
 pub use diagnostic::{Diagnostic, Severity};

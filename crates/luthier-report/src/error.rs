@@ -1,4 +1,4 @@
-use luthier_lut::TableKind;
+use luthier_lut::{ShadingModel, TableKind};
 use thiserror::Error;
 
 use crate::Form;
@@ -60,9 +60,14 @@ pub enum ReportError {
         /// Which table.
         kind: TableKind,
     },
-    /// The model that the shaders evaluate is not one the judge has a reference for.
-    #[error("the shaders evaluate the model `{0}`, there is a reference for `elek` only")]
-    UnknownModel(String),
+    /// A material is shaded by a model that the judge has no reference for.
+    #[error("the shaders evaluate `{material}` with the model `{}`, there is a reference for `elek` only", model.name())]
+    Model {
+        /// The material.
+        material: String,
+        /// Its model.
+        model: ShadingModel,
+    },
     /// No direction pairs were asked for.
     #[error("at least one pair of directions per set is needed")]
     NoPairs,

@@ -3,7 +3,7 @@ use std::fmt;
 use glam::DVec3;
 use luthier_layers::elek::{self, Layer, Terms};
 use luthier_layers::terms::Exact;
-use luthier_lut::{ColorMode, LayerKind, LayerRecord};
+use luthier_lut::{ColorMode, LayerKind, LayerRecord, Manifest, ShadingModel};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
@@ -172,7 +172,7 @@ pub fn judge(
     Ok(Report {
         schema: REPORT_SCHEMA,
         generator: manifest.generator.clone(),
-        model: manifest.model.clone(),
+        model: models(manifest),
         provenance: settings.provenance.clone(),
         device: device.map(Device::name),
         device_weights,
@@ -185,6 +185,13 @@ pub fn judge(
         tables,
         materials,
     })
+}
+
+/// Names of the models in use.
+fn models(manifest: &Manifest) -> String {
+    let used = |model: &ShadingModel| manifest.materials.iter().any(|m| m.model == *model);
+    let names: Vec<&str> = ShadingModel::ALL.into_iter().filter(used).map(ShadingModel::name).collect();
+    names.join(", ")
 }
 
 /// Exact terms of one material.

@@ -1,8 +1,8 @@
 use std::collections::BTreeMap;
 
 use luthier_lut::{
-    AtlasLayout, BindingEntry, LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, Manifest, MaterialEntry, ShadingModel,
-    TableKind, TexelFormat,
+    AtlasLayout, BindingEntry, LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, Manifest, MaterialEntry,
+    ShadingModel, TableKind, TexelFormat,
 };
 
 use crate::{Form, ShaderError};

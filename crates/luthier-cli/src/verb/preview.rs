@@ -7,16 +7,16 @@ use luthier_texture::png;
 
 use crate::artefacts::manifest;
 use crate::bake_files::BakeFiles;
-use crate::cli::PreviewOptions;
+use crate::cli::{PreviewOptions, Shading};
 use crate::device::{device, open};
 use crate::failure::{Failure, Outcome, files};
-use crate::materials::{read_image, read_one, valid};
+use crate::materials::{read_image, read_one, shaded, valid};
 
 /// Renders a ball and writes it as PNG.
 pub(crate) fn run(options: &PreviewOptions) -> Outcome {
     let file = Path::new(&options.material);
     let artefacts = if file.extension().is_some_and(|e| e == "toml") {
-        bake_one(file)?
+        bake_one(file, &options.shading)?
     } else {
         manifest(&options.out)?;
         Artefacts::load(&options.out).map_err(device)?
@@ -48,8 +48,8 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
 }
 
 /// Bakes one material in memory.
-fn bake_one(file: &Path) -> Outcome<Artefacts> {
-    let materials = valid(vec![read_one(file)?], false)?;
+fn bake_one(file: &Path, shading: &Shading) -> Outcome<Artefacts> {
+    let materials = shaded(valid(vec![read_one(file)?], false)?, shading);
     let bake = luthier_bake::bake(&materials, &read_image, &Silent).map_err(Failure::input)?;
     let made = BakeFiles::new(&materials, &bake)?;
     let tables = bake

@@ -67,21 +67,9 @@ pub(crate) fn dielectric(alpha: f64, n: f64) -> LayerRecord {
         distribution: "ggx".to_owned(),
         alpha,
         eta: n,
-        optical_depth: [0.0; 3],
-        albedo: [0.0; 3],
-        sigma: 0.0,
+        alpha_xy: [alpha; 2],
         ior_n: [n; 3],
-        ior_k: [0.0; 3],
-        film_ior_n: [0.0; 3],
-        film_ior_k: [0.0; 3],
-        film_thickness_waves: [0.0; 3],
-        film_thickness_nm: 0.0,
-        film_thickness_max_nm: 0.0,
-        fresnel_tile: None,
-        distribution_tile: None,
-        fgd_tile: None,
-        phase_tile: None,
-        thickness_tile: None,
+        ..LayerRecord::default()
     }
 }
 
@@ -106,11 +94,10 @@ pub(crate) fn manifest(materials: Vec<Vec<LayerRecord>>, tables: &[Table]) -> Ma
         .map(|(i, layers)| MaterialEntry {
             name: name(i),
             source: "by hand".to_owned(),
-            source_hash: String::new(),
-            class: "a".to_owned(),
             color: ColorMode::ThreeWavelengths,
             wavelengths_nm: [645.0, 525.0, 445.0],
             layers,
+            ..MaterialEntry::default()
         })
         .collect();
     let tables = tables
@@ -129,11 +116,11 @@ pub(crate) fn manifest(materials: Vec<Vec<LayerRecord>>, tables: &[Table]) -> Ma
     Manifest {
         schema: MANIFEST_SCHEMA,
         generator: "by hand".to_owned(),
-        model: "elek".to_owned(),
         materials,
         tables,
         shaders: Vec::new(),
         bindings: Vec::new(),
+        material_buffer: no_file(),
     }
 }
 

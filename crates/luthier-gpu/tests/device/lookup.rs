@@ -30,6 +30,8 @@ fn layers(tables: &[Table]) -> Vec<Vec<LayerRecord>> {
                 TableKind::Fgd => layer.fgd_tile = Some(tile),
                 TableKind::Phase => layer.phase_tile = Some(tile),
                 TableKind::Thickness => layer.thickness_tile = Some(tile),
+                TableKind::Film => layer.film_tile = Some(tile),
+                TableKind::Escape => layer.escape_tile = Some(tile),
             }
             layers.push(vec![layer, diffuse([0.5; 3], 0.0)]);
         }

@@ -1,6 +1,6 @@
 use crate::bake_settings::{
     AlphaMapping, BakeSettings, ColorSetting, DistributionMapping, DistributionSettings, Format, FresnelMapping,
-    FresnelSettings, GridSettings, RowSettings,
+    FresnelSettings, GridSettings, ModelSetting, RowSettings,
 };
 use crate::diagnostic::Sink;
 use crate::section::Section;
@@ -10,6 +10,7 @@ pub(super) fn decode(document: &Section<'_>, sink: &mut Sink<'_>) -> BakeSetting
     let Some(at) = document.section("bake") else { return BakeSettings::default() };
     let wavelengths_nm = at.rgb("wavelengths_nm").filter(|w| distinct(w, &at, sink));
     BakeSettings {
+        model: at.text("model").and_then(ModelSetting::from_name),
         color: at.text("color").and_then(ColorSetting::from_name),
         wavelengths_nm,
         fresnel: at.section("fresnel").map(|at| fresnel(&at)).unwrap_or_default(),

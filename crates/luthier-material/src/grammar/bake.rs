@@ -1,5 +1,5 @@
 use super::{Key, Kind, Range, Table};
-use crate::bake_settings::{AlphaMapping, ColorSetting, DistributionMapping, FresnelMapping};
+use crate::bake_settings::{AlphaMapping, ColorSetting, DistributionMapping, FresnelMapping, ModelSetting};
 
 /// Wavelengths that the colour matching functions cover.
 const VISIBLE_NM: Range = Range { min: 360.0, max: 830.0, above: false };
@@ -22,6 +22,12 @@ pub(super) static BAKE: Table = Table {
     name: "bake",
     doc: "How the tables of this material are to be baked; what is left out is the baker's choice.",
     keys: &[
+        Key::with_default(
+            "model",
+            Kind::Choice(ModelSetting::NAMES),
+            "\"elek\"",
+            "The reflectance model that the shader evaluates.",
+        ),
         Key::optional(
             "color",
             Kind::Choice(ColorSetting::NAMES),

@@ -88,7 +88,9 @@ fn how(table: &TableReport, points: u32) -> String {
     let here = "“Here” is this report's own scan of the shipped texels at other points, without local refinement; a \
                 baker's maximum, which is refined, should not be smaller.";
     match table.kind {
-        TableKind::Fresnel | TableKind::Distribution | TableKind::Phase => here.to_owned(),
+        TableKind::Fresnel | TableKind::Distribution | TableKind::Phase | TableKind::Film | TableKind::Escape => {
+            here.to_owned()
+        }
         TableKind::Fgd => {
             let measured: Vec<_> = table.tiles.iter().filter_map(|t| t.judge.as_ref()).collect();
             let within = measured.iter().filter(|j| j.max_abs_err <= TARGET_MAX_REL_ERR).count();
@@ -118,6 +120,8 @@ fn purpose(kind: TableKind) -> &'static str {
              the part that never crossed."
         }
         TableKind::Phase => "Interference of a film: 2 cos(2 Φ) over normalised thickness, RGB.",
+        TableKind::Film => "Reflectance of an interface over cosine and thickness of its film, RGB.",
+        TableKind::Escape => "Share of a lobe that is not totally reflected inside.",
         TableKind::Thickness => "Thickness of a varying film: normalised thickness, slopes, normalisation.",
     }
 }

@@ -45,6 +45,7 @@ pub(crate) fn scan(
                 TableKind::Distribution => distribution::scan(&table, number, &users, subject)?,
                 TableKind::Fgd => albedo.as_mut().and_then(|tiles| tiles[number as usize].take()),
                 TableKind::Phase => phase::scan(&table, number, &users, subject),
+                TableKind::Film | TableKind::Escape => None,
                 TableKind::Thickness => {
                     findings.extend(thickness::doubts(&table, number, &users, subject));
                     None
@@ -90,6 +91,8 @@ fn users(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<User> {
                 TableKind::Fgd => record.fgd_tile,
                 TableKind::Phase => record.phase_tile,
                 TableKind::Thickness => record.thickness_tile,
+                TableKind::Film => record.film_tile,
+                TableKind::Escape => record.escape_tile,
             };
             if used == Some(tile) {
                 out.push((m, l));

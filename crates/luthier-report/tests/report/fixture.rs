@@ -4,8 +4,8 @@ use glam::DVec3;
 use luthier_layers::elek::{self, Below, Terms};
 use luthier_layers::terms::Exact;
 use luthier_lut::{
-    AtlasLayout, Axis, ColorMode, ErrorStats, FileEntry, Image, LayerKind, LayerRecord, MANIFEST_SCHEMA, Manifest,
-    Mapping, MaterialEntry, TableEntry, TableKind, TexelFormat, Tile, Worst,
+    AtlasLayout, Axis, ErrorStats, FileEntry, Image, LayerKind, LayerRecord, MANIFEST_SCHEMA, Manifest, Mapping,
+    MaterialEntry, TableEntry, TableKind, TexelFormat, Tile, Worst,
 };
 use luthier_optics::color::Color;
 use luthier_optics::ior::{Ior, IorSample};
@@ -68,11 +68,10 @@ impl Bake {
             materials.push(MaterialEntry {
                 name: (*name).to_owned(),
                 source: format!("materials/{name}.toml"),
-                source_hash: String::new(),
                 class: "c".to_owned(),
-                color: ColorMode::Spectral,
                 wavelengths_nm: WAVELENGTHS_NM,
                 layers: records,
+                ..MaterialEntry::default()
             });
         }
         let layout = AtlasLayout { x: fresnel_axis, y: None, apron: 0, columns: 1, tiles: rows.len() as u32 };
@@ -88,11 +87,11 @@ impl Bake {
         let manifest = Manifest {
             schema: MANIFEST_SCHEMA,
             generator: "fixture 1".to_owned(),
-            model: elek::MODEL.to_owned(),
             materials,
             tables: vec![fresnel_table, distribution_table],
             shaders: Vec::new(),
             bindings: Vec::new(),
+            material_buffer: FileEntry::default(),
         };
         let textures = vec![(TableKind::Fresnel, fresnel), (TableKind::Distribution, distribution)];
         Self { manifest, textures, stacks: named.into_iter().map(|(_, stack)| stack).collect() }
@@ -211,22 +210,10 @@ fn record(layer: &elek::Layer) -> LayerRecord {
         kind: LayerKind::Conductor,
         distribution: layer.distribution.name().to_owned(),
         alpha: layer.alpha,
+        alpha_xy: [layer.alpha; 2],
         eta: 1.0,
-        optical_depth: [0.0; 3],
-        albedo: [0.0; 3],
-        sigma: 0.0,
         ior_n: [1.0; 3],
-        ior_k: [0.0; 3],
-        film_ior_n: [0.0; 3],
-        film_ior_k: [0.0; 3],
-        film_thickness_waves: [0.0; 3],
-        film_thickness_nm: 0.0,
-        film_thickness_max_nm: 0.0,
-        fresnel_tile: None,
-        distribution_tile: None,
-        fgd_tile: None,
-        phase_tile: None,
-        thickness_tile: None,
+        ..LayerRecord::default()
     };
     match layer.below {
         Below::Conductor => {}

@@ -1,4 +1,4 @@
-use luthier_lut::{Image, TableKind};
+use luthier_lut::{Image, ShadingModel, TableKind};
 use luthier_report::{Compared, Form, Report, ReportError, Settings, Subject, Weights, judge};
 
 use crate::fixture::Bake;
@@ -157,7 +157,7 @@ fn what_does_not_fit_together_is_refused() {
         refused(&|b| b.manifest.materials[0].layers[0].fresnel_tile = Some(99)),
         ReportError::MissingTile { layer: 0, kind: TableKind::Fresnel, .. }
     ));
-    assert!(matches!(refused(&|b| b.manifest.model = "other".to_owned()), ReportError::UnknownModel(_)));
+    assert!(matches!(refused(&|b| b.manifest.materials[0].model = ShadingModel::Belcour), ReportError::Model { .. }));
     let none = Settings { pairs_per_set: 0, ..Settings::default() };
     assert!(matches!(judge(&bake.subject(), None, &none).unwrap_err(), ReportError::NoPairs));
     let nothing = Subject { textures: Vec::new(), ..bake.subject() };

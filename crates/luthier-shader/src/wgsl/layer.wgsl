@@ -70,8 +70,8 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     let tiles = luthier_materials[first + 1u]; //? fresnel|distribution|fgd|phase
     let slab = luthier_materials[first + 2u]; //? absorption|thickness
     let base = luthier_materials[first + 3u]; //? diffuse|full|smith, diffuse|beckmann, diffuse|ggx
-    let real_part = luthier_materials[first + 4u]; //? full|phase|thickness|film_table, interface
-    let imaginary_part = luthier_materials[first + 5u]; //? full|phase|thickness|film_table, interface
+    let real_part = luthier_materials[first + 4u]; //? full|phase|thickness|film_table, interface|phase|thickness|film_table
+    let imaginary_part = luthier_materials[first + 5u]; //? full|phase|thickness|film_table, interface|phase|thickness|film_table
     var layer: LuthierLayer;
     layer.kind = u32(head.x);
     layer.alpha = head.y; //? interface

@@ -42,10 +42,12 @@ fn luthier_smith_lobe(layer: LuthierLayer, wi: vec3<f32>, wo: vec3<f32>) -> Luth
     let cos_theta_h = bisector.z / sqrt(length_sq);
     // The slope parameter along the azimuth of the half vector. //? anisotropic
     let area = layer.alpha_xy.x * layer.alpha_xy.y; //? anisotropic
-    let across = luthier_stretched(layer, bisector).yx; //? anisotropic
+    let turn = layer.rotation; //? anisotropic
+    let x = layer.alpha_xy.y * (turn.x * bisector.x + turn.y * bisector.y); //? anisotropic
+    let y = layer.alpha_xy.x * (turn.x * bisector.y - turn.y * bisector.x); //? anisotropic
     let plain = dot(bisector.xy, bisector.xy); //? anisotropic
-    let along = area * inverseSqrt(max(dot(across, across), 1e-30) / max(plain, 1e-30)); //? anisotropic
-    let alpha = select(layer.alpha, along, plain > 0.0); //? anisotropic
+    let along = area * sqrt(plain / max(x * x + y * y, 1e-30)); //? anisotropic
+    let alpha = select(layer.alpha, along, x * x + y * y > 1e-30); //? anisotropic
     let slopes = luthier_distribution_term(layer, alpha, cos_theta_h, sin_theta_h_sq) / (LUTHIER_PI * area); //? anisotropic
     let area = layer.alpha * layer.alpha; //? !anisotropic
     let slopes = luthier_distribution_term(layer, layer.alpha, cos_theta_h, sin_theta_h_sq) / (LUTHIER_PI * area); //? !anisotropic

@@ -107,6 +107,7 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
         ("mixed-depths", vec![gold(), lacquer(), house()]),
         ("mixed-tops", vec![chalk(), lacquer()]),
         ("phong", vec![of(ShadingModel::Phong, lacquer())]),
+        ("phong-film", vec![of(ShadingModel::Phong, oil())]),
         ("microfacet", vec![of(ShadingModel::Microfacet, gold()), of(ShadingModel::Microfacet, brushed())]),
         ("microfacet-mixed", vec![of(ShadingModel::Microfacet, chalk()), of(ShadingModel::Microfacet, lacquer())]),
         ("models", vec![lacquer(), of(ShadingModel::Phong, gold()), of(ShadingModel::Microfacet, brushed()), oil()]),
@@ -167,14 +168,6 @@ pub(crate) fn tables() -> Vec<TableFace> {
             1,
             TexelFormat::Rgba16Float,
         ),
-        face(
-            TableKind::Escape,
-            cos_theta(32),
-            Some(alpha(Mapping::Linear, 32)),
-            0,
-            1,
-            1,
-            TexelFormat::R16Float,
-        ),
+        face(TableKind::Escape, cos_theta(32), Some(alpha(Mapping::Linear, 32)), 0, 1, 1, TexelFormat::R16Float),
     ]
 }
