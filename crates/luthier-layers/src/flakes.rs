@@ -43,10 +43,13 @@ impl Flakes {
         DVec3::new(sin * libm::cos(phi), sin * libm::sin(phi), libm::cos(angle))
     }
 
-    /// The normal that the layers below see from a distance: `normalize(max(distance / fade_start, 1) z + scale m)`, m the
+    /// The normal that the layers below see from a distance: `normalize(z + max(distance / fade_start, 1) z + scale m)`, m the
     /// flake's. The flakes fade out with distance as more of them share a pixel.
+    ///
+    /// The first z is the surface's normal, to which the paper's code adds the two others (`N += ...`), though its text speaks of
+    /// those two alone: at scale 1 a flake tilted by a small angle tilts the lobe below by a third of it, not by half.
     pub fn normal(&self, uv: DVec2, distance: f64) -> DVec3 {
-        let weight = (distance / self.fade_start).max(1.0);
+        let weight = 1.0 + (distance / self.fade_start).max(1.0);
         (DVec3::new(0.0, 0.0, weight) + self.scale * self.flake(uv)).normalize_or(DVec3::Z)
     }
 
@@ -121,5 +124,10 @@ mod tests {
         let tilt = |distance| libm::acos(FLAKES.normal(uv, distance).z);
         assert_eq!(tilt(0.2), tilt(1.0));
         assert!(tilt(2.0) < tilt(1.0) && tilt(1e6) < 1e-5);
+        // N += max(distance, 1) z + m with N = z: tangents of 2 z + m, and of 6 z + m at distance 5.
+        let m = FLAKES.flake(uv);
+        let tangent = libm::hypot(m.x, m.y);
+        assert!((libm::tan(tilt(1.0)) - tangent / (2.0 + m.z)).abs() < 1e-12);
+        assert!((libm::tan(tilt(5.0)) - tangent / (6.0 + m.z)).abs() < 1e-12);
     }
 }

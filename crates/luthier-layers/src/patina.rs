@@ -17,7 +17,8 @@ pub struct Patina {
     pub extent: f64,
     /// Softness of its boundary, 0..=1.
     pub transition: f64,
-    /// Diffuse reflectance that stands for scattering in it.
+    /// Diffuse reflectance that stands for scattering in it. The paper multiplies it by what the absorption spectrum leaves over, in a
+    /// line of code that is lost; here the product is given.
     pub diffuse_albedo: f64,
     /// Slope parameter of the layer below where it has grown; `None` leaves that layer as it is.
     pub base_alpha: Option<f64>,
