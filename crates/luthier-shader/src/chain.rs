@@ -8,10 +8,9 @@ use crate::MaterialSet;
 use crate::features::Features;
 use crate::wgsl::function;
 
-/// `luthier_eval_<model>` of a model whose function `luthier_<model>_interface` adds an interface to a `LuthierPath`.
-pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> String {
+/// `luthier_eval_<model>` of a model, whose function `interface` adds an interface to a `LuthierPath`.
+pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, features: &Features) -> String {
     let name = function(model);
-    let interface = format!("{}_interface", name.replace("_eval_", "_"));
     let layers: Vec<_> = set.materials.iter().filter(|m| m.model == model).map(|m| m.layers.as_slice()).collect();
     let mut out = format!(
         "/// f cos_theta_i of the model `{}`, both directions above the horizon.\n\
@@ -34,7 +33,7 @@ pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Featur
         let here = || layers.iter().filter_map(|layers| layers.get(i));
         let add = |function: &str| format!("path = {function}(path, $layer(material, {i}u));");
         let step = match (here().any(is_diffuse), here().all(is_diffuse)) {
-            (false, _) => vec![add(&interface)],
+            (false, _) => vec![add(interface)],
             (true, true) => vec![add("luthier_add_diffuse")],
             (true, false) => vec![
                 format!("let layer_{i} = $layer(material, {i}u);"),

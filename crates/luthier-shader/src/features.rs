@@ -11,7 +11,7 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is, for the check that modules name no other.
     #[cfg(test)]
-    pub(crate) const ALL: [&'static str; 29] = [
+    pub(crate) const ALL: [&'static str; 30] = [
         "absorption",
         "anisotropic",
         "bare",
@@ -19,6 +19,7 @@ impl Features {
         "below",
         "chain",
         "chain_diffuse",
+        "clamped",
         "conductor",
         "diffuse",
         "distribution",
@@ -127,9 +128,12 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
     match material.model {
         ShadingModel::Microfacet if has_interface => names.insert("smith"),
         ShadingModel::Microfacet => names.insert("microfacet_diffuse"),
-        ShadingModel::Elek if has_interface => {
+        ShadingModel::Elek | ShadingModel::WeidlichWilkie if has_interface => {
             if has_diffuse {
                 names.insert("chain_diffuse");
+            }
+            if material.model == ShadingModel::Elek {
+                names.insert("clamped");
             }
             names.insert("chain")
         }

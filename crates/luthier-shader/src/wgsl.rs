@@ -11,7 +11,8 @@ use crate::module::prune;
 use crate::{Form, MaterialSet, ShaderError, bindings};
 
 /// The models that there are shaders of.
-pub(crate) const MODELS: [ShadingModel; 3] = [ShadingModel::Elek, ShadingModel::Phong, ShadingModel::Microfacet];
+pub(crate) const MODELS: [ShadingModel; 4] =
+    [ShadingModel::Elek, ShadingModel::WeidlichWilkie, ShadingModel::Phong, ShadingModel::Microfacet];
 
 /// Where the material buffer lives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,6 +46,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         (has("full") && has("ggx"), include_str!("wgsl/ggx.wgsl")),
         (has("full") && has("interface"), include_str!("wgsl/terms_full.wgsl")),
         (!has("full") && has("interface"), include_str!("wgsl/terms_baked.wgsl")),
+        (has("smith") || has("chain"), include_str!("wgsl/slopes.wgsl")),
         (has("smith"), include_str!("wgsl/smith.wgsl")),
         (has("chain"), include_str!("wgsl/path.wgsl")),
     ];
@@ -74,16 +76,14 @@ fn model(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec
     let module = |text| self::text(text, features);
     match model {
         ShadingModel::Elek => vec![
-            if features.has("chain") { module(include_str!("wgsl/elek.wgsl")) } else { String::new() },
-            module(&chain::eval(set, model, features)),
+            if features.has("clamped") { module(include_str!("wgsl/elek.wgsl")) } else { String::new() },
+            module(&chain::eval(set, model, "luthier_elek_interface", features)),
         ],
+        ShadingModel::WeidlichWilkie => vec![module(&chain::eval(set, model, "luthier_add_interface", features))],
         ShadingModel::Phong => vec![module(include_str!("wgsl/phong.wgsl"))],
         ShadingModel::Microfacet => vec![module(include_str!("wgsl/microfacet.wgsl"))],
         // Refused by `MaterialSet::check`.
-        ShadingModel::WeidlichWilkie
-        | ShadingModel::GranierHeidrich
-        | ShadingModel::Belcour
-        | ShadingModel::Yamaguchi => Vec::new(),
+        ShadingModel::GranierHeidrich | ShadingModel::Belcour | ShadingModel::Yamaguchi => Vec::new(),
     }
 }
 

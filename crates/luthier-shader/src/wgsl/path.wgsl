@@ -23,3 +23,47 @@ fn luthier_add_diffuse(path: LuthierPath, layer: LuthierLayer) -> LuthierPath { 
     next.open = false; //? chain_diffuse
     return next; //? chain_diffuse
 } //? chain_diffuse
+
+/// Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
+/// layer below it (Weidlich and Wilkie 2007; Elek 2010, eq. 2-4).
+fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
+    var next = path;
+    next.open = false;
+
+    // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
+    let bisector = path.wi + path.wo;
+    let length_sq = dot(bisector, bisector);
+    if length_sq < 1e-24 {
+        return next;
+    }
+    let cos_theta_d = min(0.5 * sqrt(length_sq), 1.0);
+    let fresnel = luthier_fresnel_term(layer, cos_theta_d);
+    // G of V-cavities is min(1, cavity * low); G / (low * high) is formed without the product, which may underflow.
+    let cavity = 2.0 * bisector.z / (sqrt(length_sq) * cos_theta_d);
+    let low = min(path.wi.z, path.wo.z);
+    let high = max(path.wi.z, path.wo.z);
+    let shape = luthier_density(layer, bisector, length_sq) * min(cavity, 1.0 / low) / (4.0 * high);
+    next.reflected = path.reflected + path.throughput * fresnel * shape;
+
+    if layer.kind != LUTHIER_DIELECTRIC { //? below, conductor
+        return next; //? below, conductor
+    } //? below, conductor
+    // Refracted at the normal; the squared cosine is written so that it does not cancel for an index near 1. //? below
+    let cosines = vec2<f32>(path.wi.z, path.wo.z); //? below
+    let cosines_sq = (cosines * cosines + (layer.eta - 1.0) * (layer.eta + 1.0)) / (layer.eta * layer.eta); //? below
+    if min(cosines_sq.x, cosines_sq.y) <= 0.0 { //? below
+        return next; //? below
+    } //? below
+    let refracted = sqrt(cosines_sq); //? below
+    next.wi = vec3<f32>(path.wi.xy / layer.eta, refracted.x); //? below
+    next.wo = vec3<f32>(path.wo.xy / layer.eta, refracted.y); //? below
+    next.open = true; //? below
+    // (1 - F) down, (1 - F) up, and part of what the cavities block comes back. //? below
+    let masking = min(cavity * low, 1.0); //? below
+    let crossed = 1.0 - fresnel; //? below
+    let kept = crossed * (1.0 - masking + crossed * masking); //? below
+    next.throughput = path.throughput * kept; //? below, !absorption
+    let absorbed = exp(-layer.optical_depth * (1.0 / refracted.x + 1.0 / refracted.y)); //? below, absorption
+    next.throughput = path.throughput * kept * absorbed; //? below, absorption
+    return next;
+}

@@ -109,12 +109,19 @@ float luthier_distribution_term(LuthierLayer layer, float alpha, float cos_theta
     return luthier_lookup_distribution(layer.distribution_tile, cos_theta_h, sin_theta_h_sq, alpha);
 }
 
+// D of a layer at the half vector along `bisector`, whose squared length is `length_sq`.
+float luthier_density(LuthierLayer layer, vec3 bisector, float length_sq) {
+    float cos_theta_h = bisector.z / sqrt(length_sq);
+    float across_sq = dot(bisector.xy, bisector.xy);
+    float area = layer.alpha * layer.alpha;
+    float alpha = layer.alpha;
+    return luthier_distribution_term(layer, alpha, cos_theta_h, across_sq / length_sq) / (LUTHIER_PI * area);
+}
+
 // Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
-// layer below it (Elek 2010, eq. 2-4).
-LuthierPath luthier_elek_interface(LuthierPath path, LuthierLayer layer) {
-    float alpha = max(path.alpha, layer.alpha);
+// layer below it (Weidlich and Wilkie 2007; Elek 2010, eq. 2-4).
+LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     LuthierPath next = path;
-    next.alpha = alpha;
     next.open = false;
     vec3 bisector = path.wi + path.wo;
     float length_sq = dot(bisector, bisector);
@@ -122,14 +129,11 @@ LuthierPath luthier_elek_interface(LuthierPath path, LuthierLayer layer) {
         return next;
     }
     float cos_theta_d = min(0.5 * sqrt(length_sq), 1.0);
-    float cos_theta_h = bisector.z / sqrt(length_sq);
-    float sin_theta_h_sq = dot(bisector.xy, bisector.xy) / length_sq;
     vec3 fresnel = luthier_fresnel_term(layer, cos_theta_d);
-    float slopes = luthier_distribution_term(layer, alpha, cos_theta_h, sin_theta_h_sq);
-    float cavity = (2.0 * cos_theta_h) / cos_theta_d;
+    float cavity = (2.0 * bisector.z) / (sqrt(length_sq) * cos_theta_d);
     float low = min(path.wi.z, path.wo.z);
     float high = max(path.wi.z, path.wo.z);
-    float shape = ((slopes / ((LUTHIER_PI * alpha) * alpha)) * min(cavity, 1.0 / low)) / (4.0 * high);
+    float shape = (luthier_density(layer, bisector, length_sq) * min(cavity, 1.0 / low)) / (4.0 * high);
     next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
     if (layer.kind != LUTHIER_DIELECTRIC) {
         return next;
@@ -147,6 +151,15 @@ LuthierPath luthier_elek_interface(LuthierPath path, LuthierLayer layer) {
     vec3 crossed = vec3(1.0) - fresnel;
     vec3 kept = crossed * (vec3(1.0 - masking) + (crossed * masking));
     next.throughput = path.throughput * kept;
+    return next;
+}
+
+// Adds an interface, which is never smoother than those above it.
+LuthierPath luthier_elek_interface(LuthierPath path, LuthierLayer layer) {
+    LuthierLayer rougher = layer;
+    rougher.alpha = max(path.alpha, layer.alpha);
+    LuthierPath next = luthier_add_interface(path, rougher);
+    next.alpha = rougher.alpha;
     return next;
 }
 

@@ -120,6 +120,15 @@ fn luthier_distribution_term(layer: LuthierLayer, alpha: f32, cos_theta_h: f32, 
     return luthier_beckmann(alpha, cos_theta_h, sin_theta_h_sq);
 }
 
+/// D of a layer at the half vector along `bisector`, whose squared length is `length_sq`.
+fn luthier_density(layer: LuthierLayer, bisector: vec3<f32>, length_sq: f32) -> f32 {
+    let cos_theta_h = bisector.z / sqrt(length_sq);
+    let across_sq = dot(bisector.xy, bisector.xy);
+    let area = layer.alpha * layer.alpha;
+    let alpha = layer.alpha;
+    return luthier_distribution_term(layer, alpha, cos_theta_h, across_sq / length_sq) / (LUTHIER_PI * area);
+}
+
 /// What the light has met on its way down and back up: directions, and sums over the layers so far.
 struct LuthierPath {
     /// To the light, in the medium above the next layer.
@@ -137,11 +146,9 @@ struct LuthierPath {
 }
 
 /// Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
-/// layer below it (Elek 2010, eq. 2-4).
-fn luthier_elek_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
-    let alpha = max(path.alpha, layer.alpha);
+/// layer below it (Weidlich and Wilkie 2007; Elek 2010, eq. 2-4).
+fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
     var next = path;
-    next.alpha = alpha;
     next.open = false;
 
     // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
@@ -151,16 +158,12 @@ fn luthier_elek_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath
         return next;
     }
     let cos_theta_d = min(0.5 * sqrt(length_sq), 1.0);
-    let cos_theta_h = bisector.z / sqrt(length_sq);
-    let sin_theta_h_sq = dot(bisector.xy, bisector.xy) / length_sq;
-
     let fresnel = luthier_fresnel_term(layer, cos_theta_d);
-    let slopes = luthier_distribution_term(layer, alpha, cos_theta_h, sin_theta_h_sq);
     // G of V-cavities is min(1, cavity * low); G / (low * high) is formed without the product, which may underflow.
-    let cavity = 2.0 * cos_theta_h / cos_theta_d;
+    let cavity = 2.0 * bisector.z / (sqrt(length_sq) * cos_theta_d);
     let low = min(path.wi.z, path.wo.z);
     let high = max(path.wi.z, path.wo.z);
-    let shape = slopes / (LUTHIER_PI * alpha * alpha) * min(cavity, 1.0 / low) / (4.0 * high);
+    let shape = luthier_density(layer, bisector, length_sq) * min(cavity, 1.0 / low) / (4.0 * high);
     next.reflected = path.reflected + path.throughput * fresnel * shape;
 
     if layer.kind != LUTHIER_DIELECTRIC {
@@ -181,6 +184,15 @@ fn luthier_elek_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath
     let crossed = 1.0 - fresnel;
     let kept = crossed * (1.0 - masking + crossed * masking);
     next.throughput = path.throughput * kept;
+    return next;
+}
+
+/// Adds an interface, which is never smoother than those above it.
+fn luthier_elek_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
+    var rougher = layer;
+    rougher.alpha = max(path.alpha, layer.alpha);
+    var next = luthier_add_interface(path, rougher);
+    next.alpha = rougher.alpha;
     return next;
 }
 

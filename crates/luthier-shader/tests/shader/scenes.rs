@@ -106,11 +106,24 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
         ("soap", vec![material("soap", &[filmed()])]),
         ("mixed-depths", vec![gold(), lacquer(), house()]),
         ("mixed-tops", vec![chalk(), lacquer()]),
+        (
+            "weidlich-wilkie",
+            vec![of(ShadingModel::WeidlichWilkie, house()), of(ShadingModel::WeidlichWilkie, brushed())],
+        ),
         ("phong", vec![of(ShadingModel::Phong, lacquer())]),
         ("phong-film", vec![of(ShadingModel::Phong, oil())]),
         ("microfacet", vec![of(ShadingModel::Microfacet, gold()), of(ShadingModel::Microfacet, brushed())]),
         ("microfacet-mixed", vec![of(ShadingModel::Microfacet, chalk()), of(ShadingModel::Microfacet, lacquer())]),
-        ("models", vec![lacquer(), of(ShadingModel::Phong, gold()), of(ShadingModel::Microfacet, brushed()), oil()]),
+        (
+            "models",
+            vec![
+                lacquer(),
+                of(ShadingModel::Phong, gold()),
+                of(ShadingModel::Microfacet, brushed()),
+                of(ShadingModel::WeidlichWilkie, house()),
+                oil(),
+            ],
+        ),
         ("everything", vec![lacquer(), house(), gold(), oil(), material("clay", &[diffuse(0.3)])]),
     ]
 }
