@@ -165,6 +165,27 @@ impl Model for Fluorescence {
     }
 }
 
+/// A fluorescent surface between two of its bins, as a model: whatever stack it is shown, it is the surface's own.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reradiated {
+    /// The surface.
+    pub surface: Fluorescent,
+    /// Bin of the light.
+    pub from: usize,
+    /// Bin that is seen.
+    pub to: usize,
+}
+
+impl Model for Reradiated {
+    fn info(&self) -> ModelInfo {
+        Fluorescence.info()
+    }
+
+    fn eval(&self, _: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
+        self.surface.eval(wi, self.from, wo, self.to)
+    }
+}
+
 /// `(1 - M H)^-1 M`, H diagonal: what the base sends up in all, when of that the share `held[k]` of bin k comes back each time.
 /// Gauss elimination without exchange of rows, for the diagonal dominates every column: those of M H sum to at most
 /// `held` < 1.
