@@ -19,7 +19,7 @@
 
 use glam::DVec3;
 
-use crate::model::{Model, ModelInfo};
+use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::Monochrome;
 use crate::statistics::evaluate::{Follow, Memory};
 
@@ -46,6 +46,12 @@ impl Model for Belcour {
         };
         ModelInfo {
             name,
+            kind: Kind::Layered,
+            claims: match self.follow {
+                Follow::Eye => Claims::ENERGY,
+                Follow::HalfVector => Claims::RECIPROCAL,
+            },
+            inputs: &[],
             source: match self.follow {
                 Follow::Eye => "Belcour 2018, sec. 3-5 (atomic operators, adding, total reflection)",
                 Follow::HalfVector => "Belcour 2018, sec. 3-5, at the angle against the half vector",

@@ -36,7 +36,8 @@ use glam::DVec3;
 
 use crate::elek::refract;
 use crate::facets::ALPHA_MIN;
-use crate::model::{Model, ModelInfo};
+use crate::inputs::{Input, Inputs};
+use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 
 /// A film as the model takes it, at one wavelength.
@@ -176,6 +177,9 @@ impl Model for GranierHeidrich {
     fn info(&self) -> ModelInfo {
         ModelInfo {
             name: "granier-heidrich",
+            kind: Kind::Layered,
+            claims: Claims::NONE,
+            inputs: &[Input::InnerNormal],
             source: "Granier and Heidrich 2003, eq. 3-18",
             domain: "one film, or one transparent layer, on an object; indices rising inwards",
             leaves_out: "the object's reflectance, absorption, bounces, reciprocity; the specular part returns all light, beams in \
@@ -211,6 +215,10 @@ impl Model for GranierHeidrich {
             (None, None) => (0.0, 0.0),
         };
         self.specular_weight * specular + base * diffuse * FRAC_1_PI * wi.z
+    }
+
+    fn with_inputs(&self, inputs: &Inputs) -> Option<Box<dyn Model>> {
+        Some(Box::new(Self { inner_normal: inputs.inner_normal.unwrap_or(self.inner_normal), ..*self }))
     }
 }
 

@@ -17,7 +17,7 @@
 
 use glam::DVec3;
 
-use crate::model::{Model, ModelInfo};
+use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::Monochrome;
 use crate::statistics::evaluate::{Follow, Memory};
 use crate::statistics::spread::Covariance;
@@ -44,6 +44,12 @@ impl Model for Yamaguchi {
         };
         ModelInfo {
             name,
+            kind: Kind::Layered,
+            claims: match self.follow {
+                Follow::Eye => Claims::ENERGY,
+                Follow::HalfVector => Claims::RECIPROCAL,
+            },
+            inputs: &[],
             source: match self.follow {
                 Follow::Eye => "Yamaguchi et al. 2019, eq. 1-5 and sec. 2.1, with the adding of Belcour 2018",
                 Follow::HalfVector => "Yamaguchi et al. 2019, at the angle against the half vector",

@@ -5,9 +5,13 @@ mod bake_refusals;
 mod check;
 mod crate_graph;
 mod eval;
+mod eval_furnace;
+mod eval_inputs;
+mod fluorescence;
 mod help;
 mod ior;
 mod material_texts;
+mod models;
 mod outdated;
 mod pipes;
 #[cfg(feature = "gpu")]

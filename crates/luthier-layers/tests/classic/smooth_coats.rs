@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use luthier_layers::elek_model::Elek;
 use luthier_layers::facets::{Facets, Masking};
-use luthier_layers::microfacet::Microfacet;
+use luthier_layers::microfacet::{Components, Microfacet};
 use luthier_layers::model::Model;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
 use luthier_layers::oren_nayar;
@@ -37,7 +37,8 @@ fn over_lambert(rho: f64) -> Monochrome {
 
 /// Albedo with what lies below the first interface divided by n^2.
 fn compressed(model: &dyn Model, stack: &Monochrome, theta_deg: f64) -> f64 {
-    let top = albedo(&Microfacet { masking: Masking::VCavity }, stack, at(theta_deg));
+    let top =
+        albedo(&Microfacet::new(Components { masking: Masking::VCavity, ..Components::PLAIN }), stack, at(theta_deg));
     top + (albedo(model, stack, at(theta_deg)) - top) / N_SQ
 }
 
@@ -127,7 +128,7 @@ fn limits() {
         let coated = stack(&[(ggx(0.1), dielectric(1.0, 0.0)), (ggx(0.3), WHITE)]);
         close(model.eval(&coated, wi, wo) / model.eval(&bare, wi, wo), 1.0, 1e-12);
         let black = stack(&[(ggx(0.3), dielectric(1.5, 1e4)), (ggx(0.3), WHITE)]);
-        let top = Microfacet { masking: Masking::VCavity }.eval(&black, wi, wo);
+        let top = Microfacet::new(Components { masking: Masking::VCavity, ..Components::PLAIN }).eval(&black, wi, wo);
         close(model.eval(&black, wi, wo) / top, 1.0, 1e-12);
     }
 }
