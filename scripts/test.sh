@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# All tests. On Debian and its relatives it installs what they need (the software Vulkan driver and the shader
-# validators); elsewhere it says what is missing. Needs nothing but a Rust toolchain otherwise.
+# All tests. On Debian and its relatives it installs what they need (the software Vulkan driver, the shader validators, and
+# Tint from npm); elsewhere it says what is missing. Needs nothing but a Rust toolchain otherwise.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -28,6 +28,17 @@ if [ -n "$need" ]; then
     printf 'missing:\n%s\nOn Debian: apt-get install %s\nTests that need them are skipped, or fail when CI is set.\n' \
       "$need" "${packages[*]}"
   fi
+fi
+
+step "installing Tint"
+if ! command -v npm >/dev/null && [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
+  apt-get update -q
+  DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends nodejs npm
+fi
+if command -v npm >/dev/null; then
+  [ -d scripts/tint/node_modules/webgpu ] || npm ci --prefix scripts/tint --ignore-scripts --no-audit --no-fund
+else
+  echo "missing: npm (Debian packages nodejs, npm). Tests of WGSL by Tint are skipped, or fail when CI is set."
 fi
 
 step "unit and integration tests"

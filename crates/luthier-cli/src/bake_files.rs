@@ -16,6 +16,9 @@ use crate::failure::{Failure, Outcome};
 /// Program and version, as files and reports name it.
 pub(crate) const GENERATOR: &str = concat!("luthier ", env!("CARGO_PKG_VERSION"));
 
+/// The languages that a bake writes; `luthier shader` knows more.
+const TARGETS: [Target; 3] = [Target::Wgsl, Target::Glsl450, Target::GlslEs300];
+
 /// File name of the manifest.
 pub(crate) const MANIFEST: &str = "manifest.json";
 
@@ -67,7 +70,7 @@ impl BakeFiles {
         let set = MaterialSet::from_manifest(&manifest);
         let mut shaders = Vec::new();
         for form in Form::ALL {
-            for target in Target::ALL {
+            for target in TARGETS {
                 let text = luthier_shader::emit(&set, form, target).map_err(Failure::input)?;
                 let path = format!("shaders/{}.{}", form.name(), target.extension());
                 let file = add(&mut files, path, text.into_bytes());

@@ -44,7 +44,7 @@ pub(crate) enum Verb {
     /// Render a lit ball of a material off screen
     #[cfg(feature = "gpu")]
     Preview(PreviewOptions),
-    /// Print the shader of some materials
+    /// Print the shader of some materials, or write it to a file
     Shader(ShaderOptions),
     /// List the reflectance models
     Models(ModelsOptions),
@@ -165,7 +165,7 @@ pub(crate) struct PreviewOptions {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  luthier shader materials\n  luthier shader mine.toml --target glsl-es300 --form full --complete"
+    after_help = "Examples:\n  luthier shader materials\n  luthier shader mine.toml --target glsl-es300 --form full --complete\n  luthier shader mine.toml --target spirv --complete -o mine.spv"
 )]
 pub(crate) struct ShaderOptions {
     #[command(flatten)]
@@ -178,9 +178,12 @@ pub(crate) struct ShaderOptions {
     /// Reads the tables, or evaluates everything in ALU
     #[arg(long, value_enum, default_value_t = FormName::Baked)]
     pub(crate) form: FormName,
-    /// A complete small fragment shader instead of functions to paste
+    /// A complete small fragment shader instead of functions to paste (SPIR-V: instead of a library to link)
     #[arg(long)]
     pub(crate) complete: bool,
+    /// File to write instead of standard output
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -276,6 +279,11 @@ pub(crate) enum TargetName {
     Wgsl,
     Glsl450,
     GlslEs300,
+    Hlsl,
+    Msl,
+    /// Bytes: not to a terminal
+    #[value(name = "spirv")]
+    SpirV,
 }
 
 impl From<TargetName> for Target {
@@ -284,6 +292,9 @@ impl From<TargetName> for Target {
             TargetName::Wgsl => Self::Wgsl,
             TargetName::Glsl450 => Self::Glsl450,
             TargetName::GlslEs300 => Self::GlslEs300,
+            TargetName::Hlsl => Self::Hlsl,
+            TargetName::Msl => Self::Msl,
+            TargetName::SpirV => Self::SpirV,
         }
     }
 }

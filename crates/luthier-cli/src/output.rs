@@ -1,8 +1,8 @@
 //! Standard output and standard error.
 
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 
-use crate::failure::Outcome;
+use crate::failure::{Failure, Outcome};
 
 /// Writes a text and a final newline.
 pub(crate) fn print(text: &str) -> Outcome {
@@ -11,6 +11,17 @@ pub(crate) fn print(text: &str) -> Outcome {
     if !text.ends_with('\n') {
         out.write_all(b"\n")?;
     }
+    out.flush()?;
+    Ok(())
+}
+
+/// Writes bytes as they are. Those that are no text are refused where standard output is a terminal.
+pub(crate) fn print_bytes(bytes: &[u8], is_text: bool) -> Outcome {
+    let mut out = io::stdout().lock();
+    if !is_text && out.is_terminal() {
+        return Err(Failure::Input(anyhow::anyhow!("a terminal cannot show bytes: name a file with -o")));
+    }
+    out.write_all(bytes)?;
     out.flush()?;
     Ok(())
 }

@@ -2,55 +2,70 @@ use std::fmt::Write as _;
 
 use luthier_lut::{Axis, Mapping, ShadingModel};
 
-use crate::glsl;
+use crate::binding_lines::binding_lines;
 use crate::wgsl::{Buffer, compose};
-use crate::{Form, MaterialSet, ShaderError, Target, bindings, validate};
+use crate::{Form, MaterialSet, ShaderError, Target, glsl, hlsl, msl, validate};
 
 /// Words of the smallest uniform block that GLSL ES 3.00 guarantees (16 KiB).
 const UNIFORM_WORDS: usize = 1024;
+
+/// The entry point of a complete shader, in WGSL.
+pub(crate) const FRAGMENT: &str = include_str!("wgsl/fragment.wgsl");
 
 /// A snippet to paste: functions, bindings and constants for the materials of a set, without an entry point. It has been
 /// parsed and validated.
 ///
 /// # Errors
-/// See [`ShaderError`]: materials that no shader can be emitted for, or a defect found by naga.
+/// See [`ShaderError`]: materials that no shader can be emitted for, a defect found by naga, or SPIR-V, which is no text.
 pub fn emit(set: &MaterialSet<'_>, form: Form, target: Target) -> Result<String, ShaderError> {
-    let buffer = if target == Target::GlslEs300 { Buffer::Uniform } else { Buffer::Storage };
-    let wgsl = compose(set, form, buffer)?;
+    text(set, form, target, "")
+}
+
+/// A complete fragment shader around the snippet: `luthier_eval` for interpolated directions and a flat material number.
+/// Its entry point is `main`; in MSL, where no function may have that name, `main_`.
+///
+/// # Errors
+/// As [`emit`].
+pub fn complete(set: &MaterialSet<'_>, form: Form, target: Target) -> Result<String, ShaderError> {
+    Ok(match target {
+        Target::Wgsl | Target::Hlsl | Target::Msl | Target::SpirV => text(set, form, target, FRAGMENT)?,
+        Target::Glsl450 => {
+            let snippet = emit(set, form, target)?;
+            format!("#version 450 core\n{snippet}\n{}", include_str!("glsl/fragment_450.glsl"))
+        }
+        Target::GlslEs300 => {
+            let snippet = emit(set, form, target)?;
+            let precision = "precision highp float;\nprecision highp int;\n";
+            format!("#version 300 es\n{precision}{snippet}\n{}", include_str!("glsl/fragment_es300.glsl"))
+        }
+    })
+}
+
+/// A snippet and what WGSL is to follow it, in a language of text.
+fn text(set: &MaterialSet<'_>, form: Form, target: Target, more: &str) -> Result<String, ShaderError> {
+    let wgsl = body(set, form, target, more)?;
     let body = match target {
         Target::Wgsl => {
             validate(&wgsl)?;
             wgsl
         }
-        Target::Glsl450 | Target::GlslEs300 => {
-            let words = set.words();
-            if buffer == Buffer::Uniform && words > UNIFORM_WORDS {
-                return Err(ShaderError::UniformBlockTooLarge { words, limit: UNIFORM_WORDS });
-            }
-            glsl::from_wgsl(&wgsl, set, form, target)?
-        }
+        Target::Glsl450 | Target::GlslEs300 => glsl::from_wgsl(&wgsl, set, form, target)?,
+        Target::Hlsl => hlsl::from_wgsl(&wgsl, set, form)?,
+        Target::Msl => msl::from_wgsl(&wgsl, set, form)?,
+        Target::SpirV => return Err(ShaderError::NotText),
     };
     Ok(format!("{}\n{body}", header(set, form, target)))
 }
 
-/// A complete fragment shader around the snippet: `luthier_eval` for interpolated directions and a flat material number.
-///
-/// # Errors
-/// As [`emit`].
-pub fn complete(set: &MaterialSet<'_>, form: Form, target: Target) -> Result<String, ShaderError> {
-    let snippet = emit(set, form, target)?;
-    Ok(match target {
-        Target::Wgsl => {
-            let shader = format!("{snippet}\n{}", include_str!("wgsl/fragment.wgsl"));
-            validate(&shader)?;
-            shader
-        }
-        Target::Glsl450 => format!("#version 450 core\n{snippet}\n{}", include_str!("glsl/fragment_450.glsl")),
-        Target::GlslEs300 => {
-            let precision = "precision highp float;\nprecision highp int;\n";
-            format!("#version 300 es\n{precision}{snippet}\n{}", include_str!("glsl/fragment_es300.glsl"))
-        }
-    })
+/// The WGSL that a target is made from, and what WGSL is to follow it.
+pub(crate) fn body(set: &MaterialSet<'_>, form: Form, target: Target, more: &str) -> Result<String, ShaderError> {
+    let buffer = if matches!(target, Target::GlslEs300 | Target::Msl) { Buffer::Uniform } else { Buffer::Storage };
+    let wgsl = compose(set, form, buffer)?;
+    let words = set.words();
+    if target == Target::GlslEs300 && words > UNIFORM_WORDS {
+        return Err(ShaderError::UniformBlockTooLarge { words, limit: UNIFORM_WORDS });
+    }
+    Ok(if more.is_empty() { wgsl } else { format!("{wgsl}\n{more}") })
 }
 
 /// The comment at the top: what this is, what it reads, what to bind.
@@ -67,9 +82,12 @@ fn header(set: &MaterialSet<'_>, form: Form, target: Target) -> String {
         Form::Baked => writeln!(out, "// Fresnel reflectance and slope distribution are read from tables."),
         Form::Full => writeln!(out, "// No tables: Fresnel equations at three wavelengths, closed forms of D."),
     };
-    if target == Target::GlslEs300 {
-        out.push_str("// Needs `precision highp float;` and `precision highp int;` above.\n");
-    }
+    out.push_str(match target {
+        Target::GlslEs300 => "// Needs `precision highp float;` and `precision highp int;` above.\n",
+        Target::Hlsl => "// Shader model 5.1. Checked by glslang, not by a compiler of Direct3D.\n",
+        Target::Msl => "// Metal 2.0. Not checked by a Metal compiler.\n",
+        Target::Wgsl | Target::Glsl450 | Target::SpirV => "",
+    });
     if set.tables_read(form).next().is_some() {
         out.push_str("//\n// Tables, in texels:\n");
         for table in set.tables_read(form) {
@@ -86,24 +104,7 @@ fn header(set: &MaterialSet<'_>, form: Form, target: Target) -> String {
             );
         }
     }
-    out.push_str("//\n");
-    out.push_str(if target == Target::GlslEs300 { "// Bindings, by name:\n" } else { "// Bindings, group 0:\n" });
-    for entry in bindings(set, form) {
-        if target != Target::Wgsl && entry.resource == "sampler" {
-            out.push_str("//   each texture filtered linearly, clamped to its edge\n");
-            continue;
-        }
-        let resource = match (entry.resource.as_str(), target) {
-            ("buffer", Target::GlslEs300) => format!("uniform block LuthierMaterials (std140), {} vec4", set.words()),
-            ("buffer", Target::Glsl450) => format!("storage block LuthierMaterials (std430), {} vec4", set.words()),
-            ("buffer", Target::Wgsl) => format!("storage buffer, {} vec4", set.words()),
-            ("sampler", _) => "sampler, linear, clamp to edge".to_owned(),
-            (_, Target::Wgsl) => "texture".to_owned(),
-            _ => "sampler2D".to_owned(),
-        };
-        let number = if target == Target::GlslEs300 { String::new() } else { format!("{} ", entry.binding) };
-        let _ = writeln!(out, "//   {number}{}: {resource}", entry.name);
-    }
+    out.push_str(&binding_lines(set, form, target));
     out.push_str("//\n// Materials:\n");
     for (i, material) in set.materials.iter().enumerate() {
         let layers = material.layers.len();

@@ -1,6 +1,8 @@
 use luthier_lut::{ShadingModel, TableKind};
 use thiserror::Error;
 
+use crate::Target;
+
 /// Why no shader came out.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -87,16 +89,27 @@ pub enum ShaderError {
     /// The text is not valid WGSL. The message shows the place.
     #[error("not valid WGSL:\n{0}")]
     Invalid(String),
-    /// The module has no GLSL form.
-    #[error("no GLSL for this shader: {0}")]
-    Glsl(#[from] naga::back::glsl::Error),
-    /// The GLSL writer gave text of an unexpected shape.
-    #[error("unexpected GLSL from naga: {0}")]
-    GlslShape(&'static str),
+    /// naga has no such form of the module, or gave text of an unexpected shape.
+    #[error("no {target} for this shader: {reason}")]
+    Untranslatable {
+        /// The language.
+        target: Target,
+        /// What stands in the way.
+        reason: String,
+    },
+    /// SPIR-V was asked for as text.
+    #[error("SPIR-V is no text")]
+    NotText,
     /// A form that does not exist.
     #[error("unknown shader form `{0}`; known: baked, full")]
     UnknownForm(String),
     /// A target that does not exist.
-    #[error("unknown shader target `{0}`; known: wgsl, glsl450, glsl-es300")]
+    #[error("unknown shader target `{0}`; known: wgsl, glsl450, glsl-es300, hlsl, msl, spirv")]
     UnknownTarget(String),
+}
+
+impl ShaderError {
+    pub(crate) fn untranslatable(target: Target, reason: impl ToString) -> Self {
+        Self::Untranslatable { target, reason: reason.to_string() }
+    }
 }

@@ -11,7 +11,7 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is, for the check that modules name no other.
     #[cfg(test)]
-    pub(crate) const ALL: [&'static str; 30] = [
+    pub(crate) const ALL: [&'static str; 35] = [
         "absorption",
         "anisotropic",
         "bare",
@@ -30,6 +30,11 @@ impl Features {
         "fresnel",
         "full",
         "ggx",
+        "granier",
+        "granier_bare",
+        "granier_base",
+        "granier_film",
+        "granier_transparent",
         "interface",
         "microfacet_diffuse",
         "mixed",
@@ -91,14 +96,15 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
             names.insert("phong");
             return names;
         }
-        ShadingModel::Microfacet => &material.layers[..material.layers.len().min(1)],
-        ShadingModel::Elek
-        | ShadingModel::WeidlichWilkie
-        | ShadingModel::GranierHeidrich
-        | ShadingModel::Belcour
-        | ShadingModel::Yamaguchi => material.layers.as_slice(),
+        ShadingModel::Microfacet | ShadingModel::GranierHeidrich => &material.layers[..material.layers.len().min(1)],
+        ShadingModel::Elek | ShadingModel::WeidlichWilkie | ShadingModel::Belcour | ShadingModel::Yamaguchi => {
+            material.layers.as_slice()
+        }
     };
     for layer in layers {
+        if is_diffuse(layer) && material.model == ShadingModel::GranierHeidrich {
+            continue;
+        }
         if is_diffuse(layer) {
             names.insert("diffuse");
             if layer.sigma != 0.0 {
@@ -136,6 +142,23 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
                 names.insert("clamped");
             }
             names.insert("chain")
+        }
+        ShadingModel::GranierHeidrich => {
+            let first = &material.layers[0];
+            let has_film = first.film_ior_n[0] > 0.0;
+            if has_film {
+                names.insert("granier_film");
+            }
+            match first.kind {
+                _ if has_film => names.insert("granier_transparent"),
+                LayerKind::Dielectric => names.insert("granier_transparent"),
+                LayerKind::Conductor => names.insert("granier_bare"),
+                LayerKind::Diffuse => false,
+            };
+            if material.layers.last().is_some_and(is_diffuse) {
+                names.insert("granier_base");
+            }
+            names.insert("granier")
         }
         _ => false,
     };

@@ -1,9 +1,6 @@
 //! GLSL of a composed module: naga's output, with our names, comments and no entry point.
 
-mod comments;
-mod tidy;
-
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use luthier_lut::TableKind;
@@ -11,8 +8,7 @@ use naga::back::glsl::{Options, PipelineOptions, ReflectionInfo, Version, Writer
 use naga::proc::BoundsCheckPolicies;
 use naga::{GlobalVariable, Handle, Module, ResourceBinding, ShaderStage};
 
-use self::comments::Comments;
-use self::tidy::{rename, tidy};
+use crate::text::{layout, rename};
 use crate::validate::module;
 use crate::{Form, MaterialSet, ShaderError, Target, bindings};
 
@@ -35,14 +31,16 @@ pub(crate) fn from_wgsl(wgsl: &str, set: &MaterialSet<'_>, form: Form, target: T
     let pipeline =
         PipelineOptions { shader_stage: ShaderStage::Fragment, entry_point: ENTRY.to_owned(), multiview: None };
     let mut text = String::new();
-    let mut writer = Writer::new(&mut text, &module, &info, &options, &pipeline, BoundsCheckPolicies::default())?;
-    let names = names(&module, &writer.write()?);
-    let body = body(&text)?;
+    let refused = |e: naga::back::glsl::Error| ShaderError::untranslatable(target, e);
+    let mut writer =
+        Writer::new(&mut text, &module, &info, &options, &pipeline, BoundsCheckPolicies::default()).map_err(refused)?;
+    let names = names(&module, &writer.write().map_err(refused)?);
+    let body = body(&text).ok_or_else(|| ShaderError::untranslatable(target, "no entry point"))?;
     let body = rename(body, |word| names.get(word).map(String::as_str));
     if body.contains("_group_0_") {
-        return Err(ShaderError::GlslShape("a binding without a name"));
+        return Err(ShaderError::untranslatable(target, "a binding without a name"));
     }
-    Ok(layout(&body, &module, &Comments::of(wgsl)))
+    Ok(layout(&body, &module, wgsl))
 }
 
 /// An entry point that uses every binding, so that naga reports the name it gives to each.
@@ -79,8 +77,8 @@ fn names(module: &Module, reflection: &ReflectionInfo) -> BTreeMap<String, Strin
 }
 
 /// What lies between the precision statements and the entry point.
-fn body(text: &str) -> Result<&str, ShaderError> {
-    let end = text.find("\nvoid main()").ok_or(ShaderError::GlslShape("no entry point"))?;
+fn body(text: &str) -> Option<&str> {
+    let end = text.find("\nvoid main()")?;
     let mut start = 0;
     for line in text[..end].split_inclusive('\n') {
         // Storage blocks need no extension in 450.
@@ -90,61 +88,5 @@ fn body(text: &str) -> Result<&str, ShaderError> {
         }
         start += line.len();
     }
-    Ok(&text[start..end])
-}
-
-/// The declarations one by one: comments put back, functions tidied, blank lines between unlike things.
-fn layout(body: &str, module: &Module, comments: &Comments<'_>) -> String {
-    let globals: BTreeSet<&str> = module
-        .functions
-        .iter()
-        .filter_map(|(_, f)| f.name.as_deref())
-        .chain(module.constants.iter().filter_map(|(_, c)| c.name.as_deref()))
-        .chain(module.global_variables.iter().filter_map(|(_, v)| v.name.as_deref()))
-        .chain(module.types.iter().filter_map(|(_, t)| t.name.as_deref()))
-        .collect();
-    let mut out = String::with_capacity(body.len() * 2);
-    let mut last = String::new();
-    for declaration in declarations(body) {
-        let first = declaration.lines().next().unwrap_or_default();
-        let kind = first.split([' ', '(']).next().unwrap_or_default();
-        if !out.is_empty() && (kind != last || declaration.contains('\n')) {
-            out.push('\n');
-        }
-        kind.clone_into(&mut last);
-        if kind == "struct" {
-            out.push_str(&comments.on_structure(&declaration));
-        } else if declaration.contains('\n') {
-            let name = first.split('(').next().and_then(|head| head.rsplit(' ').next()).unwrap_or_default();
-            comments.write(&mut out, name, "");
-            let function = module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(name));
-            match function {
-                Some((_, function)) => out.push_str(&tidy(&declaration, function, &globals)),
-                None => out.push_str(&declaration),
-            }
-        } else {
-            out.push_str(&declaration);
-        }
-        if !out.ends_with('\n') {
-            out.push('\n');
-        }
-    }
-    out
-}
-
-/// The declarations at file level, in order: single lines, structures and functions.
-fn declarations(body: &str) -> Vec<String> {
-    let mut out: Vec<String> = Vec::new();
-    let mut is_open = false;
-    for line in body.lines().filter(|line| !line.is_empty()) {
-        match out.last_mut() {
-            Some(declaration) if is_open => {
-                declaration.push('\n');
-                declaration.push_str(line);
-            }
-            _ => out.push(line.to_owned()),
-        }
-        is_open = if is_open { !line.starts_with('}') } else { line.ends_with('{') };
-    }
-    out
+    Some(&text[start..end])
 }

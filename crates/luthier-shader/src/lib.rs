@@ -1,32 +1,38 @@
 //! Shaders for exactly the materials and tables at hand.
 //!
 //! [`emit`] composes WGSL from small modules (`src/wgsl`, one per model or table), leaves out what no material of the set
-//! uses, has naga validate it, and gives it as WGSL, GLSL 4.50 or GLSL ES 3.00. The result is a snippet to paste:
-//! `luthier_eval` and its helpers, no entry point, group 0 for [`bindings`]. [`complete`] puts a small fragment shader
-//! around it.
+//! uses, has naga validate it, and gives it as WGSL, GLSL 4.50, GLSL ES 3.00, HLSL or MSL. The result is a snippet to
+//! paste: `luthier_eval` and its helpers, no entry point, group 0 for [`bindings`]. [`complete`] puts a small fragment shader
+//! around it. [`emit_spirv`] and [`complete_spirv`] give the same as SPIR-V: a library to link, and a shader.
 //!
 //! There are no loops in the emitted functions: `luthier_eval` has one step for every layer that a material of the set may
-//! have. They are finite for all unit directions and slope parameters from 0.001 to 1. GLSL is naga's output with our
-//! names and comments put back.
+//! have. They are finite for all unit directions and slope parameters from 0.001 to 1. GLSL, HLSL and MSL are naga's
+//! output with our names and comments put back.
 //!
 //! Simplifications: bindings are in group 0; materials are isotropic; the full form knows one film per interface.
 //!
-//! Out of scope: texels and files (`luthier-lut`, `luthier-texture`), devices (`luthier-gpu`), HLSL and MSL.
+//! Out of scope: texels and files (`luthier-lut`, `luthier-texture`), devices (`luthier-gpu`).
 
+mod binding_lines;
 mod chain;
 mod emit;
 mod error;
 mod features;
 mod glsl;
+mod hlsl;
 mod lookup;
 mod module;
+mod msl;
 mod set;
+mod spirv;
 mod target;
+mod text;
 mod validate;
 mod wgsl;
 
 pub use emit::{complete, emit};
 pub use error::ShaderError;
 pub use set::{MaterialSet, TableFace, bindings};
+pub use spirv::{complete_spirv, emit_spirv};
 pub use target::{Form, Target};
 pub use validate::validate;

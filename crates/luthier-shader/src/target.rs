@@ -48,11 +48,20 @@ pub enum Target {
     Glsl450,
     /// GLSL ES 3.00 (WebGL 2); the material buffer is a std140 uniform block.
     GlslEs300,
+    /// HLSL, shader model 5.1; the material buffer is a `ByteAddressBuffer`.
+    Hlsl,
+    /// Metal Shading Language 2.0; textures, sampler and material buffer (`constant`) are arguments of the functions.
+    Msl,
+    /// SPIR-V 1.3, in bytes.
+    SpirV,
 }
 
 impl Target {
     /// All targets.
-    pub const ALL: [Self; 3] = [Self::Wgsl, Self::Glsl450, Self::GlslEs300];
+    pub const ALL: [Self; 6] = [Self::Wgsl, Self::Glsl450, Self::GlslEs300, Self::Hlsl, Self::Msl, Self::SpirV];
+
+    /// The targets that are text.
+    pub const TEXT: [Self; 5] = [Self::Wgsl, Self::Glsl450, Self::GlslEs300, Self::Hlsl, Self::Msl];
 
     /// The name in manifests and on the command line.
     pub fn name(self) -> &'static str {
@@ -60,6 +69,9 @@ impl Target {
             Self::Wgsl => "wgsl",
             Self::Glsl450 => "glsl450",
             Self::GlslEs300 => "glsl-es300",
+            Self::Hlsl => "hlsl",
+            Self::Msl => "msl",
+            Self::SpirV => "spirv",
         }
     }
 
@@ -69,6 +81,9 @@ impl Target {
             Self::Wgsl => "wgsl",
             Self::Glsl450 => "450.glsl",
             Self::GlslEs300 => "es300.glsl",
+            Self::Hlsl => "hlsl",
+            Self::Msl => "metal",
+            Self::SpirV => "spv",
         }
     }
 }

@@ -11,8 +11,13 @@ use crate::module::prune;
 use crate::{Form, MaterialSet, ShaderError, bindings};
 
 /// The models that there are shaders of.
-pub(crate) const MODELS: [ShadingModel; 4] =
-    [ShadingModel::Elek, ShadingModel::WeidlichWilkie, ShadingModel::Phong, ShadingModel::Microfacet];
+pub(crate) const MODELS: [ShadingModel; 5] = [
+    ShadingModel::Elek,
+    ShadingModel::WeidlichWilkie,
+    ShadingModel::GranierHeidrich,
+    ShadingModel::Phong,
+    ShadingModel::Microfacet,
+];
 
 /// Where the material buffer lives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,9 +39,10 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     }
     let modules = [
         (has("bilinear"), include_str!("wgsl/bilinear.wgsl")),
-        (has("interface") || has("phong"), include_str!("wgsl/pi.wgsl")),
+        (has("interface") || has("phong") || has("granier_base"), include_str!("wgsl/pi.wgsl")),
         (true, include_str!("wgsl/layer.wgsl")),
         (has("place"), include_str!("wgsl/place.wgsl")),
+        (has("phong") || has("granier") && has("interface"), include_str!("wgsl/lobe.wgsl")),
         (has("oren_nayar"), include_str!("wgsl/oren_nayar.wgsl")),
         (has("diffuse") && !has("oren_nayar"), include_str!("wgsl/lambert.wgsl")),
         (has("full") && has("interface"), include_str!("wgsl/complex.wgsl")),
@@ -80,10 +86,11 @@ fn model(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec
             module(&chain::eval(set, model, "luthier_elek_interface", features)),
         ],
         ShadingModel::WeidlichWilkie => vec![module(&chain::eval(set, model, "luthier_add_interface", features))],
+        ShadingModel::GranierHeidrich => vec![module(include_str!("wgsl/granier_heidrich.wgsl"))],
         ShadingModel::Phong => vec![module(include_str!("wgsl/phong.wgsl"))],
         ShadingModel::Microfacet => vec![module(include_str!("wgsl/microfacet.wgsl"))],
         // Refused by `MaterialSet::check`.
-        ShadingModel::GranierHeidrich | ShadingModel::Belcour | ShadingModel::Yamaguchi => Vec::new(),
+        ShadingModel::Belcour | ShadingModel::Yamaguchi => Vec::new(),
     }
 }
 

@@ -1,5 +1,6 @@
-const LUTHIER_DIELECTRIC: u32 = 0u; //? below, conductor
-const LUTHIER_DIFFUSE: u32 = 2u; //? mixed
+const LUTHIER_DIELECTRIC: u32 = 0u; //? below|granier, conductor|granier
+const LUTHIER_CONDUCTOR: u32 = 1u; //? granier_bare
+const LUTHIER_DIFFUSE: u32 = 2u; //? mixed|granier_base
 const LUTHIER_MATERIAL_WORDS: u32 = 9u;
 const LUTHIER_LAYER_WORDS: u32 = 10u;
 
@@ -13,8 +14,8 @@ struct LuthierLayer {
     eta: f32, //? below
     /// Absorption times thickness of the slab below the interface, RGB. //? absorption
     optical_depth: vec3<f32>, //? absorption
-    /// Diffuse albedo, RGB. //? diffuse
-    albedo: vec3<f32>, //? diffuse
+    /// Diffuse albedo, RGB. //? diffuse|granier_base
+    albedo: vec3<f32>, //? diffuse|granier_base
     /// Oren-Nayar slope deviation in radians; 0 is Lambert. //? oren_nayar
     sigma: f32, //? oren_nayar
     /// Tile of the Fresnel table. //? fresnel
@@ -37,16 +38,16 @@ struct LuthierLayer {
     film_thickness_max_nm: f32, //? phase|thickness|film_table
     /// Slope distribution: 0 Beckmann, 1 GGX. //? full|smith, beckmann, ggx
     distribution: f32, //? full|smith, beckmann, ggx
-    /// Real part of the index below, at three wavelengths. //? full, interface
-    ior_n: vec3<f32>, //? full, interface
-    /// Imaginary part of it. //? full, interface
-    ior_k: vec3<f32>, //? full, interface
-    /// Real part of the index of the film; 0 without a film. //? full, film
-    film_ior_n: vec3<f32>, //? full, film
-    /// Imaginary part of it. //? full, film
-    film_ior_k: vec3<f32>, //? full, film
-    /// Thickness of the film in wavelengths of the medium above. //? full, film
-    film_waves: vec3<f32>, //? full, film
+    /// Real part of the index below, at three wavelengths. //? full|granier, interface
+    ior_n: vec3<f32>, //? full|granier, interface
+    /// Imaginary part of it. //? full|granier, interface
+    ior_k: vec3<f32>, //? full|granier, interface
+    /// Real part of the index of the film; 0 without a film. //? full|granier, film
+    film_ior_n: vec3<f32>, //? full|granier, film
+    /// Imaginary part of it. //? full|granier, film
+    film_ior_k: vec3<f32>, //? full|granier, film
+    /// Thickness of the film in wavelengths of the medium above. //? full|granier, film
+    film_waves: vec3<f32>, //? full|granier, film
     /// Slope parameters along the tangent and the bitangent of the layer. //? anisotropic
     alpha_xy: vec2<f32>, //? anisotropic
     /// Cosine and sine of the angle from the surface's tangent to the layer's. //? anisotropic
@@ -69,15 +70,15 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     let head = luthier_materials[first];
     let tiles = luthier_materials[first + 1u]; //? fresnel|distribution|fgd|phase
     let slab = luthier_materials[first + 2u]; //? absorption|thickness
-    let base = luthier_materials[first + 3u]; //? diffuse|full|smith, diffuse|beckmann, diffuse|ggx
-    let real_part = luthier_materials[first + 4u]; //? full|phase|thickness|film_table, interface|phase|thickness|film_table
-    let imaginary_part = luthier_materials[first + 5u]; //? full|phase|thickness|film_table, interface|phase|thickness|film_table
+    let base = luthier_materials[first + 3u]; //? diffuse|full|smith|granier_base, diffuse|beckmann|granier_base, diffuse|ggx|granier_base
+    let real_part = luthier_materials[first + 4u]; //? full|granier|phase|thickness|film_table, interface|phase|thickness|film_table
+    let imaginary_part = luthier_materials[first + 5u]; //? full|granier|phase|thickness|film_table, interface|phase|thickness|film_table
     var layer: LuthierLayer;
     layer.kind = u32(head.x);
     layer.alpha = head.y; //? interface
     layer.eta = head.z; //? below
     layer.optical_depth = slab.xyz; //? absorption
-    layer.albedo = base.xyz; //? diffuse
+    layer.albedo = base.xyz; //? diffuse|granier_base
     layer.sigma = head.w; //? oren_nayar
     layer.fresnel_tile = tiles.x; //? fresnel
     layer.distribution_tile = tiles.y; //? distribution
@@ -89,11 +90,11 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     layer.film_thickness_nm = real_part.w; //? phase|thickness|film_table
     layer.film_thickness_max_nm = imaginary_part.w; //? phase|thickness|film_table
     layer.distribution = base.w; //? full|smith, beckmann, ggx
-    layer.ior_n = real_part.xyz; //? full, interface
-    layer.ior_k = imaginary_part.xyz; //? full, interface
-    layer.film_ior_n = luthier_materials[first + 6u].xyz; //? full, film
-    layer.film_ior_k = luthier_materials[first + 7u].xyz; //? full, film
-    layer.film_waves = luthier_materials[first + 8u].xyz; //? full, film
+    layer.ior_n = real_part.xyz; //? full|granier, interface
+    layer.ior_k = imaginary_part.xyz; //? full|granier, interface
+    layer.film_ior_n = luthier_materials[first + 6u].xyz; //? full|granier, film
+    layer.film_ior_k = luthier_materials[first + 7u].xyz; //? full|granier, film
+    layer.film_waves = luthier_materials[first + 8u].xyz; //? full|granier, film
     layer.alpha_xy = luthier_materials[first + 9u].xy; //? anisotropic
     layer.rotation = luthier_materials[first + 9u].zw; //? anisotropic
     return layer;

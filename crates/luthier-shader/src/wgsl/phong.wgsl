@@ -9,14 +9,6 @@ fn luthier_eval_phong($place_parameter material: u32, wi: vec3<f32>, wo: vec3<f3
     let exponent = max((diffuse.w + 0.5) / (place.alpha_factor * place.alpha_factor) - 0.5, 0.0); //? place
     // 1 minus the cosine to the mirror direction is half a squared distance: no cancellation in narrow lobes.
     let apart = vec3<f32>(wi.xy + wo.xy, wi.z - wo.z);
-    let away = 0.5 * dot(apart, apart);
-    var lobe = 0.0;
-    if away < 1.0 {
-        // log(1 - away), as a series where the logarithm would round what is left of 1.
-        let s = away / (2.0 - away);
-        let s_sq = s * s;
-        let series = -2.0 * s * (1.0 + s_sq * (0.33333333 + s_sq * (0.2 + s_sq * 0.14285714)));
-        lobe = exp(exponent * select(log(1.0 - away), series, away < 0.5));
-    }
+    let lobe = luthier_power_lobe(0.5 * dot(apart, apart), exponent);
     return diffuse.rgb * (wi.z / LUTHIER_PI) + specular * ((exponent + 1.0) * lobe / (2.0 * LUTHIER_PI));
 }

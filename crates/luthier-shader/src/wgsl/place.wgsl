@@ -8,11 +8,19 @@ struct LuthierPlace {
     slab_factor: f32,
     /// Factor on the thickness of the film on the first interface.
     film_factor: f32,
+    /// Normal of the lower boundary of that film, unit, in the frame of `normal`. //? granier
+    inner_normal: vec3<f32>, //? granier
 }
 
 /// A place without textures.
 fn luthier_place() -> LuthierPlace {
-    return LuthierPlace(vec3<f32>(0.0, 0.0, 1.0), 1.0, 1.0, 1.0);
+    var place: LuthierPlace;
+    place.normal = vec3<f32>(0.0, 0.0, 1.0);
+    place.alpha_factor = 1.0;
+    place.slab_factor = 1.0;
+    place.film_factor = 1.0;
+    place.inner_normal = vec3<f32>(0.0, 0.0, 1.0); //? granier
+    return place;
 }
 
 /// A layer of a material, counted from the top, as it is at a place.
@@ -22,7 +30,7 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
     layer.alpha_xy = clamp(layer.alpha_xy * place.alpha_factor, vec2<f32>(0.001), vec2<f32>(1.0)); //? anisotropic
     if index == 0u { //? absorption|film
         layer.optical_depth *= place.slab_factor; //? absorption
-        layer.film_waves *= place.film_factor; //? full, film
+        layer.film_waves *= place.film_factor; //? full|granier, film
         layer.film_thickness_nm *= place.film_factor; //? phase|thickness|film_table
     } //? absorption|film
     return layer;

@@ -2,15 +2,19 @@
 
 use crate::scenes::{clear, conductor, dielectric, diffuse, filmed, material, sets, tables};
 use luthier_lut::{LayerKind, Mapping, TableKind, TexelFormat};
-use luthier_shader::{Form, MaterialSet, ShaderError, TableFace, Target, bindings, complete, emit, validate};
+use luthier_shader::{
+    Form, MaterialSet, ShaderError, TableFace, Target, bindings, complete, complete_spirv, emit, emit_spirv, validate,
+};
 
 /// Emits in all forms and languages; each is validated on the way.
 fn emit_all(materials: &[luthier_lut::MaterialEntry], tables: &[TableFace]) {
     let set = MaterialSet { materials, tables: tables.to_vec() };
     for form in Form::ALL {
-        for target in Target::ALL {
+        for target in Target::TEXT {
             complete(&set, form, target).unwrap_or_else(|e| panic!("{form} {target}: {e}"));
         }
+        emit_spirv(&set, form).unwrap_or_else(|e| panic!("{form} library: {e}"));
+        complete_spirv(&set, form).unwrap_or_else(|e| panic!("{form} shader: {e}"));
     }
 }
 
@@ -109,7 +113,7 @@ fn shipped_functions_have_no_loops_and_no_placeholders() {
     for (_, materials) in sets() {
         let set = MaterialSet { materials: &materials, tables: tables() };
         for form in Form::ALL {
-            for target in Target::ALL {
+            for target in Target::TEXT {
                 let text = emit(&set, form, target).unwrap();
                 for word in ["loop", "while", "for (", "$", "//?", "_group_", "_e1", "main(", "\n\n\n"] {
                     assert!(!text.contains(word), "`{word}` in {form} {target}:\n{text}");
@@ -119,16 +123,40 @@ fn shipped_functions_have_no_loops_and_no_placeholders() {
     }
 }
 
+/// Bindings keep their numbers in every language, in the snippet's header and in what a complete shader declares.
+#[test]
+fn complete_shaders_bind_by_our_numbers() {
+    let materials = richest();
+    let set = MaterialSet { materials: &materials, tables: tables() };
+    for (target, texture, sampler, buffer, entry) in [
+        (Target::Hlsl, "register(t1)", "register(s5)", "register(t6)", "float4 main("),
+        (Target::Msl, "[[texture(1)]]", "[[sampler(5)]]", "[[buffer(6)]]", "fragment main_Output main_("),
+    ] {
+        let text = complete(&set, Form::Baked, target).unwrap();
+        let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with("//")).collect();
+        for (name, place) in [
+            ("luthier_distribution", texture),
+            ("luthier_sampler", sampler),
+            ("luthier_materials", buffer),
+            (entry, ""),
+        ] {
+            assert!(lines.iter().any(|l| l.contains(name) && l.contains(place)), "{target} {name} {place}:\n{text}");
+        }
+        assert!(!text.contains("_e5") && !text.to_lowercase().contains("naga"), "{text}");
+    }
+}
+
 #[test]
 fn functions_of_the_face_are_documented_in_every_language() {
     let materials = richest();
     let set = MaterialSet { materials: &materials, tables: tables() };
-    for target in Target::ALL {
+    for target in Target::TEXT {
         let text = emit(&set, Form::Baked, target).unwrap();
         let lines: Vec<&str> = text.lines().collect();
         for name in ["eval", "lookup_fresnel", "lookup_distribution", "lookup_fgd", "lookup_phase", "lookup_thickness"]
         {
-            let at = lines.iter().position(|l| l.contains(&format!("luthier_{name}(")) && l.ends_with('{')).unwrap();
+            let at =
+                lines.iter().position(|l| l.contains(&format!(" luthier_{name}(")) && l.ends_with(['{', '('])).unwrap();
             assert!(lines[at - 1].starts_with("//"), "{target} {name}");
         }
     }
@@ -170,6 +198,7 @@ fn sets_that_cannot_be_emitted_say_why() {
     let mut odd = tables();
     odd[0].layout.x.quantity = "wavelength".to_owned();
     assert!(matches!(attempt(&lone(conductor()), odd, Target::Wgsl), ShaderError::Layout { .. }));
+    assert!(matches!(attempt(&lone(conductor()), tables(), Target::SpirV), ShaderError::NotText));
     let many: Vec<_> = (0..120).map(|i| material(&format!("m{i}"), &[conductor()])).collect();
     let error = attempt(&many, tables(), Target::GlslEs300);
     assert!(matches!(error, ShaderError::UniformBlockTooLarge { words: 2280, limit: 1024 }), "{error}");
@@ -196,7 +225,10 @@ fn names_read_back() {
     for target in Target::ALL {
         assert_eq!(target.to_string().parse::<Target>().unwrap(), target);
     }
-    assert!("hlsl".parse::<Target>().unwrap_err().to_string().contains("glsl-es300"));
+    for target in Target::ALL {
+        assert!("cg".parse::<Target>().unwrap_err().to_string().contains(target.name()));
+        assert_eq!(Target::TEXT.contains(&target), target != Target::SpirV);
+    }
     assert!("fast".parse::<Form>().is_err());
     assert_eq!(LayerKind::Conductor, conductor().kind);
 }

@@ -1,10 +1,18 @@
-//! Independent judges: the Khronos reference compiler and SPIR-V validator on everything that is emitted as GLSL.
+//! Independent judges: the Khronos reference compiler on GLSL and HLSL, the Khronos validator and linker on SPIR-V, Tint on
+//! WGSL. Nothing here can judge MSL.
 
 use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use luthier_lut::MaterialEntry;
+use luthier_shader::{Form, MaterialSet, Target, complete, complete_spirv, emit, emit_spirv};
+use tempfile::TempDir;
+
 use crate::scenes::{sets, tables};
-use luthier_shader::{Form, MaterialSet, Target, complete};
+
+/// What SPIR-V emitted here is for.
+const VULKAN: &str = "vulkan1.1";
 
 /// Whether a program can be started. On a build server it must be.
 fn is_installed(program: &str, package: &str) -> bool {
@@ -21,38 +29,156 @@ fn expect_success(output: &Output, what: &str, source: &str) {
     assert!(output.status.success(), "{what}:\n{stdout}{stderr}\n{source}");
 }
 
+/// Every set of materials in both forms, with a name and a folder to work in.
+fn each(mut judge: impl FnMut(&str, &MaterialSet<'_>, Form, &Path)) {
+    let folder = TempDir::new().unwrap();
+    for (name, materials) in sets() {
+        for form in Form::ALL {
+            judge(&format!("{name} {form}"), &set(&materials), form, folder.path());
+        }
+    }
+}
+
+fn set(materials: &[MaterialEntry]) -> MaterialSet<'_> {
+    MaterialSet { materials, tables: tables() }
+}
+
+/// Compiles with glslang into `shader.spv` of the folder.
+fn compile(text: &str, folder: &Path, what: &str, options: &[&str]) -> PathBuf {
+    let (source, module) = (folder.join("shader.txt"), folder.join("shader.spv"));
+    fs::write(&source, text).unwrap();
+    let mut command = Command::new("glslangValidator");
+    let output = command.args(options).args(["-S", "frag", "-o"]).arg(&module).arg(&source).output().unwrap();
+    expect_success(&output, what, text);
+    module
+}
+
+/// Has spirv-val judge a module.
+fn validate_spirv(module: &Path, environment: &str, what: &str, source: &str) {
+    let output = Command::new("spirv-val").args(["--target-env", environment]).arg(module).output().unwrap();
+    expect_success(&output, &format!("{what} {environment}"), source);
+}
+
 #[test]
-fn khronos_tools_accept_complete_shaders() {
-    if !is_installed("glslangValidator", "glslang-tools") {
+fn khronos_tools_accept_complete_glsl() {
+    if !is_installed("glslangValidator", "glslang-tools") || !is_installed("spirv-val", "spirv-tools") {
         return;
     }
-    let has_spirv_val = is_installed("spirv-val", "spirv-tools");
-    let folder = tempfile::tempdir().unwrap();
-    for (name, materials) in sets() {
-        let set = MaterialSet { materials: &materials, tables: tables() };
-        for form in Form::ALL {
-            for target in [Target::Glsl450, Target::GlslEs300] {
-                let what = format!("{name} {form} {target}");
-                let source = complete(&set, form, target).unwrap();
-                let path = folder.path().join("shader.frag");
-                fs::write(&path, &source).unwrap();
-                let parsed = Command::new("glslangValidator").args(["-S", "frag"]).arg(&path).output().unwrap();
-                expect_success(&parsed, &what, &source);
-                if target == Target::GlslEs300 {
-                    continue;
-                }
-                for (client, environment) in [("-V", "vulkan1.1"), ("-G", "opengl4.5")] {
-                    let spirv = folder.path().join("shader.spv");
-                    let mut compile = Command::new("glslangValidator");
-                    compile.args([client, "-S", "frag", "-o"]).arg(&spirv).arg(&path);
-                    expect_success(&compile.output().unwrap(), &format!("{what} {client}"), &source);
-                    if has_spirv_val {
-                        let check =
-                            Command::new("spirv-val").args(["--target-env", environment]).arg(&spirv).output().unwrap();
-                        expect_success(&check, &format!("{what} {environment}"), &source);
-                    }
-                }
-            }
+    each(|what, set, form, folder| {
+        let text = complete(set, form, Target::Glsl450).unwrap();
+        for (client, environment) in [("-V", VULKAN), ("-G", "opengl4.5")] {
+            let module = compile(&text, folder, what, &[client]);
+            validate_spirv(&module, environment, what, &text);
         }
+        // GLSL ES 3.00 has no locations for what the vertex shader hands over, so it makes no SPIR-V.
+        let (text, source) = (complete(set, form, Target::GlslEs300).unwrap(), folder.join("shader.frag"));
+        fs::write(&source, &text).unwrap();
+        expect_success(&Command::new("glslangValidator").arg(&source).output().unwrap(), what, &text);
+    });
+}
+
+#[test]
+fn khronos_tools_accept_complete_hlsl() {
+    if !is_installed("glslangValidator", "glslang-tools") || !is_installed("spirv-val", "spirv-tools") {
+        return;
+    }
+    each(|what, set, form, folder| {
+        let text = complete(set, form, Target::Hlsl).unwrap();
+        let module = compile(&text, folder, what, &["-D", "-V", "-e", "main"]);
+        validate_spirv(&module, VULKAN, what, &text);
+    });
+}
+
+#[test]
+fn khronos_tools_accept_spirv() {
+    if !is_installed("spirv-val", "spirv-tools") {
+        return;
+    }
+    each(|what, set, form, folder| {
+        let module = folder.join("module.spv");
+        fs::write(&module, complete_spirv(set, form).unwrap()).unwrap();
+        validate_spirv(&module, VULKAN, what, "");
+        fs::write(&module, emit_spirv(set, form).unwrap()).unwrap();
+        // No Vulkan environment has libraries.
+        validate_spirv(&module, "spv1.3", what, "");
+    });
+}
+
+/// A shader made elsewhere, which imports `luthier_eval`, links with the library to one that Vulkan takes.
+#[test]
+fn a_shader_links_with_the_spirv_library() {
+    if !is_installed("spirv-link", "spirv-tools") {
+        return;
+    }
+    each(|what, set, form, folder| {
+        let path = |name: &str| folder.join(name);
+        fs::write(path("user.spvasm"), include_str!("user.spvasm")).unwrap();
+        fs::write(path("library.spv"), emit_spirv(set, form).unwrap()).unwrap();
+        let mut assemble = Command::new("spirv-as");
+        assemble.args(["--target-env", "spv1.3", "-o"]).args([path("user.spv"), path("user.spvasm")]);
+        expect_success(&assemble.output().unwrap(), what, "");
+        let mut link = Command::new("spirv-link");
+        link.args(["--target-env", "spv1.3", "-o"]).args([path("linked.spv"), path("user.spv"), path("library.spv")]);
+        expect_success(&link.output().unwrap(), what, "");
+        validate_spirv(&path("linked.spv"), VULKAN, what, "");
+    });
+}
+
+/// The script that has Tint compile files; `None` where it cannot run. On a build server it must.
+fn tint() -> Option<PathBuf> {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts/tint/validate.mjs");
+    if script.with_file_name("node_modules").exists() && is_installed("node", "nodejs") {
+        return Some(script);
+    }
+    let hint = "Tint is missing: run `npm install --prefix scripts/tint` (Debian packages nodejs, npm)";
+    assert!(std::env::var_os("CI").is_none(), "{hint}");
+    eprintln!("skipped: {hint}");
+    None
+}
+
+#[test]
+fn tint_accepts_wgsl() {
+    let Some(script) = tint() else { return };
+    let folder = TempDir::new().unwrap();
+    let mut files = Vec::new();
+    each(|what, set, form, _| {
+        for (part, text) in
+            [("snippet", emit(set, form, Target::Wgsl)), ("complete", complete(set, form, Target::Wgsl))]
+        {
+            let file = folder.path().join(format!("{what} {part}.wgsl"));
+            fs::write(&file, text.unwrap()).unwrap();
+            files.push(file);
+        }
+    });
+    let output = Command::new("node").arg(&script).args(&files).output().unwrap();
+    expect_success(&output, "tint", "");
+    let verdict = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(verdict.ends_with(&format!("tint: {} passed, 0 failed\n", files.len())), "{verdict}");
+}
+
+/// The judges can say no: each finds a fault in a text that is nearly right.
+#[test]
+fn judges_find_a_fault() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("shader.wgsl");
+    let materials = sets().pop().unwrap().1;
+    let faulty = |target| complete(&set(&materials), Form::Baked, target).unwrap().replacen("sqrt(", "sqrd(", 1);
+    if let Some(script) = tint() {
+        fs::write(&file, faulty(Target::Wgsl)).unwrap();
+        assert_eq!(Command::new("node").arg(&script).arg(&file).output().unwrap().status.code(), Some(1));
+    }
+    if is_installed("glslangValidator", "glslang-tools") {
+        for (target, options) in [(Target::Glsl450, ["-V", "-g"]), (Target::Hlsl, ["-D", "-V"])] {
+            fs::write(&file, faulty(target)).unwrap();
+            let mut command = Command::new("glslangValidator");
+            command.current_dir(folder.path()).args(options).args(["-S", "frag", "-e", "main"]).arg(&file);
+            assert!(!command.output().unwrap().status.success(), "{target}");
+        }
+    }
+    if is_installed("spirv-val", "spirv-tools") {
+        let mut module = complete_spirv(&set(&materials), Form::Baked).unwrap();
+        module.truncate(module.len() - 4);
+        fs::write(&file, module).unwrap();
+        assert!(!Command::new("spirv-val").arg(&file).output().unwrap().status.success());
     }
 }

@@ -33,11 +33,14 @@ pub(super) fn tidy(text: &str, function: &Function, globals: &BTreeSet<&str>) ->
 }
 
 /// The text with some of its words replaced; members (after a dot) are left alone.
-pub(super) fn rename<'n>(text: &str, name: impl Fn(&str) -> Option<&'n str>) -> String {
+pub(crate) fn rename<N: AsRef<str>>(text: &str, name: impl Fn(&str) -> Option<N>) -> String {
     let mut out = String::with_capacity(text.len());
     for word in words(text) {
         let is_member = out.ends_with('.');
-        out.push_str(name(word).filter(|_| !is_member).unwrap_or(word));
+        match name(word).filter(|_| !is_member) {
+            Some(name) => out.push_str(name.as_ref()),
+            None => out.push_str(word),
+        }
     }
     out
 }
@@ -88,32 +91,55 @@ fn unnumbered(word: &str) -> Option<&str> {
     (is_numbered && name.ends_with(|c: char| c.is_ascii_alphabetic())).then_some(name)
 }
 
-/// Names that WGSL allows and GLSL keeps for itself: those that a shader writer might well give to a value.
-const RESERVED: [&str; 24] = [
+/// Names that WGSL allows and another language keeps for itself: those that a shader writer might well give to a value.
+const RESERVED: [&str; 47] = [
     "active",
+    "asm",
     "attribute",
     "buffer",
     "centroid",
+    "char",
     "common",
+    "constant",
+    "device",
     "double",
     "filter",
     "fixed",
     "flat",
+    "fragment",
     "half",
     "highp",
     "in",
+    "inline",
     "inout",
     "input",
+    "kernel",
+    "line",
+    "linear",
+    "long",
     "lowp",
+    "matrix",
+    "metal",
     "out",
     "output",
     "partition",
+    "pass",
     "patch",
+    "point",
+    "precise",
     "sample",
+    "sampler",
     "shared",
+    "short",
     "smooth",
+    "string",
     "superp",
+    "technique",
+    "texture",
+    "triangle",
     "varying",
+    "vector",
+    "vertex",
 ];
 
 /// Puts `TYPE _eN = VALUE;` into the next line where that is the only place that reads it.
@@ -124,6 +150,7 @@ fn without_temporaries(mut lines: Vec<String>) -> Vec<String> {
         };
         let uses = |line: &String| words(line).filter(|word| *word == name).count();
         if uses(&lines[i + 1]) == 1 && lines.iter().map(uses).sum::<usize>() == 2 {
+            let value = if is_compound(&value) { format!("({value})") } else { value };
             lines[i + 1] = rename(&lines[i + 1], |word| (word == name).then_some(value.as_str()));
             lines.remove(i);
         }
@@ -137,6 +164,19 @@ fn temporary(line: &str) -> Option<(&str, &str)> {
     let name = declared.split_once(' ')?.1;
     name.strip_prefix("_e")?.parse::<usize>().ok()?;
     Some((name, value))
+}
+
+/// Whether a value has an operator outside all brackets.
+fn is_compound(value: &str) -> bool {
+    let mut depth = 0;
+    value.chars().any(|c| {
+        match c {
+            '(' | '[' | '{' => depth += 1,
+            ')' | ']' | '}' => depth -= 1,
+            _ => {}
+        }
+        depth == 0 && c == ' '
+    })
 }
 
 /// Declares a variable where it is first given a value, if that is at the outer level: naga declares all at the top.
@@ -227,6 +267,17 @@ mod tests {
             "float f() {\n    float _e3 = x;\n    x = 1.0;\n    return _e3;\n}",
         ] {
             assert_eq!(without_temporaries(lines(kept)), lines(kept));
+        }
+    }
+
+    #[test]
+    fn a_value_with_an_operator_moves_in_brackets() {
+        let lines = ["float f() {", "    float _e3 = a + b;", "    return _e3 * c;", "}"].map(str::to_owned);
+        assert_eq!(without_temporaries(lines.to_vec())[1], "    return (a + b) * c;");
+        for (value, expected) in
+            [("g(a + b)", false), ("a[i + 1].xyz", false), ("(a + b) * c", true), ("P {a, b}", true)]
+        {
+            assert_eq!(is_compound(value), expected, "{value}");
         }
     }
 

@@ -1,0 +1,68 @@
+// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
+// Fresnel reflectance and slope distribution are read from tables.
+// Shader model 5.1. Checked by glslang, not by a compiler of Direct3D.
+//
+// Registers, space0:
+//   t6 luthier_materials: ByteAddressBuffer, 19 float4
+//
+// Materials:
+//   0 chalk, elek, 1 layer
+
+// One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
+struct LuthierLayer {
+    // 0 dielectric, 1 conductor, 2 diffuse base.
+    uint kind;
+    // Diffuse albedo, RGB.
+    float3 albedo;
+};
+
+static const uint LUTHIER_MATERIAL_CHALK = 0u;
+static const uint LUTHIER_MATERIAL_WORDS = 9u;
+static const uint LUTHIER_LAYER_WORDS = 10u;
+
+ByteAddressBuffer luthier_materials : register(t6);
+
+// Index of the first word of a material in the buffer.
+uint luthier_header(uint material) {
+    return material * LUTHIER_MATERIAL_WORDS;
+}
+
+uint luthier_wgsl_f2u32(float value) {
+    return uint(clamp(value, 0.0, 4294967000.0));
+}
+
+// Number of layers of a material.
+uint luthier_layer_count(uint material) {
+    return luthier_wgsl_f2u32(asfloat(luthier_materials.Load(4+luthier_header(material)*16)));
+}
+
+// A layer of a material, counted from the top.
+LuthierLayer luthier_layer(uint material, uint index) {
+    LuthierLayer layer = (LuthierLayer)0;
+    uint first = luthier_wgsl_f2u32(asfloat(luthier_materials.Load(0+luthier_header(material)*16))) + (index * LUTHIER_LAYER_WORDS);
+    float4 head = asfloat(luthier_materials.Load4(first*16));
+    float4 base = asfloat(luthier_materials.Load4((first + 3u)*16));
+    layer.kind = luthier_wgsl_f2u32(head.x);
+    layer.albedo = base.xyz;
+    return layer;
+}
+
+// BRDF of a Lambertian base.
+float3 luthier_diffuse(LuthierLayer layer) {
+    return layer.albedo * 0.31830987;
+}
+
+// f cos_theta_i of the model `elek`, both directions above the horizon.
+float3 luthier_eval_elek(uint material, float3 wi, float3 wo) {
+    LuthierLayer layer = luthier_layer(material, 0u);
+    return wi.z * luthier_diffuse(layer);
+}
+
+// f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away
+// from the surface. Zero when either is not above the horizon.
+float3 luthier_eval(uint material, float3 wi, float3 wo) {
+    if (min(wi.z, wo.z) <= 0.0) {
+        return (0.0).xxx;
+    }
+    return luthier_eval_elek(material, wi, wo);
+}

@@ -1,0 +1,87 @@
+// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
+// Fresnel reflectance and slope distribution are read from tables.
+// Metal 2.0. Not checked by a Metal compiler.
+//
+// Bindings, by argument index of a complete shader. A function takes those that it reads, in this order, as its last
+// arguments:
+//   buffer(6) luthier_materials: constant LuthierMaterials&, 19 float4
+//
+// Materials:
+//   0 chalk, elek, 1 layer
+
+#include <metal_stdlib>
+#include <simd/simd.h>
+
+using metal::uint;
+
+struct LuthierMaterials {
+    metal::float4 inner[19];
+};
+
+// One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
+struct LuthierLayer {
+    // 0 dielectric, 1 conductor, 2 diffuse base.
+    uint kind;
+    char _pad1[12];
+    // Diffuse albedo, RGB.
+    metal::float3 albedo;
+};
+
+constant uint LUTHIER_MATERIAL_CHALK = 0u;
+constant uint LUTHIER_MATERIAL_WORDS = 9u;
+constant uint LUTHIER_LAYER_WORDS = 10u;
+
+// Index of the first word of a material in the buffer.
+uint luthier_header(uint material) {
+    return material * LUTHIER_MATERIAL_WORDS;
+}
+
+uint luthier_wgsl_f2u32(float value) {
+    return static_cast<uint>(metal::clamp(value, 0.0, 4294967000.0));
+}
+
+// Number of layers of a material.
+uint luthier_layer_count(uint material, constant LuthierMaterials& luthier_materials) {
+    return luthier_wgsl_f2u32(luthier_materials.inner[luthier_header(material)].y);
+}
+
+// A layer of a material, counted from the top.
+LuthierLayer luthier_layer(uint material, uint index, constant LuthierMaterials& luthier_materials) {
+    LuthierLayer layer = {};
+    uint first = luthier_wgsl_f2u32(luthier_materials.inner[luthier_header(material)].x) + (index * LUTHIER_LAYER_WORDS);
+    metal::float4 head = luthier_materials.inner[first];
+    metal::float4 base = luthier_materials.inner[first + 3u];
+    layer.kind = luthier_wgsl_f2u32(head.x);
+    layer.albedo = base.xyz;
+    return layer;
+}
+
+// BRDF of a Lambertian base.
+metal::float3 luthier_diffuse(LuthierLayer layer) {
+    return layer.albedo * 0.31830987;
+}
+
+// f cos_theta_i of the model `elek`, both directions above the horizon.
+metal::float3 luthier_eval_elek(
+    uint material,
+    metal::float3 wi,
+    metal::float3 wo,
+    constant LuthierMaterials& luthier_materials
+) {
+    LuthierLayer layer = luthier_layer(material, 0u, luthier_materials);
+    return wi.z * luthier_diffuse(layer);
+}
+
+// f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away
+// from the surface. Zero when either is not above the horizon.
+metal::float3 luthier_eval(
+    uint material,
+    metal::float3 wi,
+    metal::float3 wo,
+    constant LuthierMaterials& luthier_materials
+) {
+    if (metal::min(wi.z, wo.z) <= 0.0) {
+        return metal::float3(0.0);
+    }
+    return luthier_eval_elek(material, wi, wo, luthier_materials);
+}

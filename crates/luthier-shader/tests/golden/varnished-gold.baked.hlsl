@@ -1,0 +1,199 @@
+// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
+// Fresnel reflectance and slope distribution are read from tables.
+// Shader model 5.1. Checked by glslang, not by a compiler of Direct3D.
+//
+// Tables, in texels:
+//   fresnel       128 x 3 rgba16float, 3 tiles of 128 x 1; cos_theta 0..1
+//   distribution  512 x 1024 r16float, 2 tiles of 512 x 512; theta_h 0..1.5707964 as u^8, alpha 0.001..1 logarithmic
+//
+// Registers, space0:
+//   t0 luthier_fresnel: Texture2D<float4>
+//   t1 luthier_distribution: Texture2D<float4>
+//   s5 luthier_sampler: SamplerState, linear, clamp to edge
+//   t6 luthier_materials: ByteAddressBuffer, 29 float4
+//
+// Materials:
+//   0 varnished-gold, elek, 2 layers
+
+// One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
+struct LuthierLayer {
+    // 0 dielectric, 1 conductor, 2 diffuse base.
+    uint kind;
+    // Slope parameter of the micro-surface.
+    float alpha;
+    // Index below over index above, for the refracted directions.
+    float eta;
+    // Tile of the Fresnel table.
+    float fresnel_tile;
+    // Tile of the distribution table.
+    float distribution_tile;
+};
+
+// What the light has met on its way down and back up: directions, and sums over the layers so far.
+struct LuthierPath {
+    // To the light, in the medium above the next layer.
+    float3 wi;
+    // To the eye, in the medium above the next layer.
+    float3 wo;
+    // Share of the light that comes down to the next layer and back out, times the outer cos_theta_i.
+    float3 throughput;
+    // Reflected by the layers so far: f cos_theta_i.
+    float3 reflected;
+    // Greatest slope parameter so far: a layer is never smoother than those above it.
+    float alpha;
+    // Whether any light reaches the next layer.
+    bool open;
+};
+
+static const uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
+static const float2 LUTHIER_FRESNEL_SIZE = float2(128.0, 3.0);
+static const float2 LUTHIER_DISTRIBUTION_SIZE = float2(512.0, 1024.0);
+static const float2 LUTHIER_DISTRIBUTION_TILE = float2(512.0, 512.0);
+static const float LUTHIER_PI = 3.1415927;
+static const uint LUTHIER_DIELECTRIC = 0u;
+static const uint LUTHIER_MATERIAL_WORDS = 9u;
+static const uint LUTHIER_LAYER_WORDS = 10u;
+
+Texture2D<float4> luthier_fresnel : register(t0);
+Texture2D<float4> luthier_distribution : register(t1);
+SamplerState luthier_sampler : register(s5);
+ByteAddressBuffer luthier_materials : register(t6);
+
+// Fresnel reflectance of an interface, RGB.
+float3 luthier_lookup_fresnel(float tile, float cos_theta) {
+    float x = saturate(cos_theta) * 127.0;
+    float2 position = float2(x + 0.5, tile + 0.5);
+    return luthier_fresnel.SampleLevel(luthier_sampler, position / LUTHIER_FRESNEL_SIZE, 0.0).xyz;
+}
+
+// pi alpha^2 D of a slope distribution, for the angle between half vector and normal: D is this over pi alpha^2.
+float luthier_lookup_distribution(float tile, float cos_theta_h, float sin_theta_h_sq, float alpha) {
+    float theta_h = atan2(sqrt(sin_theta_h_sq), cos_theta_h);
+    float x = sqrt(sqrt(sqrt(saturate(theta_h / 1.5707964)))) * 511.0;
+    float y = saturate(log2(max(alpha, 0.001) / 0.001) / 9.965784) * 511.0;
+    float2 position = float2(x + 0.5, ((tile * 512.0) + y) + 0.5);
+    return luthier_distribution.SampleLevel(luthier_sampler, position / LUTHIER_DISTRIBUTION_SIZE, 0.0).x;
+}
+
+// Index of the first word of a material in the buffer.
+uint luthier_header(uint material) {
+    return material * LUTHIER_MATERIAL_WORDS;
+}
+
+uint luthier_wgsl_f2u32(float value) {
+    return uint(clamp(value, 0.0, 4294967000.0));
+}
+
+// Number of layers of a material.
+uint luthier_layer_count(uint material) {
+    return luthier_wgsl_f2u32(asfloat(luthier_materials.Load(4+luthier_header(material)*16)));
+}
+
+// A layer of a material, counted from the top.
+LuthierLayer luthier_layer(uint material, uint index) {
+    LuthierLayer layer = (LuthierLayer)0;
+    uint first = luthier_wgsl_f2u32(asfloat(luthier_materials.Load(0+luthier_header(material)*16))) + (index * LUTHIER_LAYER_WORDS);
+    float4 head = asfloat(luthier_materials.Load4(first*16));
+    float4 tiles = asfloat(luthier_materials.Load4((first + 1u)*16));
+    layer.kind = luthier_wgsl_f2u32(head.x);
+    layer.alpha = head.y;
+    layer.eta = head.z;
+    layer.fresnel_tile = tiles.x;
+    layer.distribution_tile = tiles.y;
+    return layer;
+}
+
+// Fresnel reflectance of a layer, from its row or, under a film that varies, its tile of the tables.
+float3 luthier_fresnel_term(LuthierLayer layer, float cos_theta_d) {
+    return luthier_lookup_fresnel(layer.fresnel_tile, cos_theta_d);
+}
+
+// pi alpha^2 D of a layer, from the table.
+float luthier_distribution_term(LuthierLayer layer, float alpha, float cos_theta_h, float sin_theta_h_sq) {
+    return luthier_lookup_distribution(layer.distribution_tile, cos_theta_h, sin_theta_h_sq, alpha);
+}
+
+// D of a layer at the half vector along `bisector`, whose squared length is `length_sq`.
+float luthier_density(LuthierLayer layer, float3 bisector, float length_sq) {
+    float cos_theta_h = bisector.z / sqrt(length_sq);
+    float across_sq = dot(bisector.xy, bisector.xy);
+    float area = layer.alpha * layer.alpha;
+    float alpha = layer.alpha;
+    return luthier_distribution_term(layer, alpha, cos_theta_h, across_sq / length_sq) / (LUTHIER_PI * area);
+}
+
+// Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
+// layer below it (Weidlich and Wilkie 2007; Elek 2010, eq. 2-4).
+LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
+    LuthierPath next = path;
+    next.open = false;
+    float3 bisector = path.wi + path.wo;
+    float length_sq = dot(bisector, bisector);
+    if (length_sq < 1e-24) {
+        return next;
+    }
+    float cos_theta_d = min(0.5 * sqrt(length_sq), 1.0);
+    float3 fresnel = luthier_fresnel_term(layer, cos_theta_d);
+    float cavity = (2.0 * bisector.z) / (sqrt(length_sq) * cos_theta_d);
+    float low = min(path.wi.z, path.wo.z);
+    float high = max(path.wi.z, path.wo.z);
+    float shape = (luthier_density(layer, bisector, length_sq) * min(cavity, 1.0 / low)) / (4.0 * high);
+    next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
+    if (layer.kind != LUTHIER_DIELECTRIC) {
+        return next;
+    }
+    float2 cosines = float2(path.wi.z, path.wo.z);
+    float2 cosines_sq = ((cosines * cosines) + ((layer.eta - 1.0) * (layer.eta + 1.0)).xx) / (layer.eta * layer.eta).xx;
+    if (min(cosines_sq.x, cosines_sq.y) <= 0.0) {
+        return next;
+    }
+    float2 refracted = sqrt(cosines_sq);
+    next.wi = float3(path.wi.xy / (layer.eta).xx, refracted.x);
+    next.wo = float3(path.wo.xy / (layer.eta).xx, refracted.y);
+    next.open = true;
+    float masking = min(cavity * low, 1.0);
+    float3 crossed = (1.0).xxx - fresnel;
+    float3 kept = crossed * ((1.0 - masking).xxx + (crossed * masking));
+    next.throughput = path.throughput * kept;
+    return next;
+}
+
+// Adds an interface, which is never smoother than those above it.
+LuthierPath luthier_elek_interface(LuthierPath path, LuthierLayer layer) {
+    LuthierLayer rougher = layer;
+    rougher.alpha = max(path.alpha, layer.alpha);
+    LuthierPath next = luthier_add_interface(path, rougher);
+    next.alpha = rougher.alpha;
+    return next;
+}
+
+LuthierPath ConstructLuthierPath(float3 arg0, float3 arg1, float3 arg2, float3 arg3, float arg4, bool arg5) {
+    LuthierPath ret = (LuthierPath)0;
+    ret.wi = arg0;
+    ret.wo = arg1;
+    ret.throughput = arg2;
+    ret.reflected = arg3;
+    ret.alpha = arg4;
+    ret.open = arg5;
+    return ret;
+}
+
+// f cos_theta_i of the model `elek`, both directions above the horizon.
+float3 luthier_eval_elek(uint material, float3 wi, float3 wo) {
+    uint count = luthier_layer_count(material);
+    LuthierPath path = ConstructLuthierPath(wi, wo, (wi.z).xxx, (0.0).xxx, 0.0, true);
+    path = luthier_elek_interface(path, luthier_layer(material, 0u));
+    if (path.open & (count > 1u)) {
+        path = luthier_elek_interface(path, luthier_layer(material, 1u));
+    }
+    return path.reflected;
+}
+
+// f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away
+// from the surface. Zero when either is not above the horizon.
+float3 luthier_eval(uint material, float3 wi, float3 wo) {
+    if (min(wi.z, wo.z) <= 0.0) {
+        return (0.0).xxx;
+    }
+    return luthier_eval_elek(material, wi, wo);
+}

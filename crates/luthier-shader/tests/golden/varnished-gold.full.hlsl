@@ -1,0 +1,232 @@
+// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
+// No tables: Fresnel equations at three wavelengths, closed forms of D.
+// Shader model 5.1. Checked by glslang, not by a compiler of Direct3D.
+//
+// Registers, space0:
+//   t6 luthier_materials: ByteAddressBuffer, 29 float4
+//
+// Materials:
+//   0 varnished-gold, elek, 2 layers
+
+// One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
+struct LuthierLayer {
+    // 0 dielectric, 1 conductor, 2 diffuse base.
+    uint kind;
+    // Slope parameter of the micro-surface.
+    float alpha;
+    // Index below over index above, for the refracted directions.
+    float eta;
+    // Slope distribution: 0 Beckmann, 1 GGX.
+    float distribution;
+    // Real part of the index below, at three wavelengths.
+    float3 ior_n;
+    // Imaginary part of it.
+    float3 ior_k;
+};
+
+// Complex numbers at three wavelengths.
+struct LuthierComplex {
+    float3 re;
+    float3 im;
+};
+
+// What the light has met on its way down and back up: directions, and sums over the layers so far.
+struct LuthierPath {
+    // To the light, in the medium above the next layer.
+    float3 wi;
+    // To the eye, in the medium above the next layer.
+    float3 wo;
+    // Share of the light that comes down to the next layer and back out, times the outer cos_theta_i.
+    float3 throughput;
+    // Reflected by the layers so far: f cos_theta_i.
+    float3 reflected;
+    // Greatest slope parameter so far: a layer is never smoother than those above it.
+    float alpha;
+    // Whether any light reaches the next layer.
+    bool open;
+};
+
+static const uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
+static const float LUTHIER_PI = 3.1415927;
+static const uint LUTHIER_DIELECTRIC = 0u;
+static const uint LUTHIER_MATERIAL_WORDS = 9u;
+static const uint LUTHIER_LAYER_WORDS = 10u;
+
+ByteAddressBuffer luthier_materials : register(t6);
+
+// Index of the first word of a material in the buffer.
+uint luthier_header(uint material) {
+    return material * LUTHIER_MATERIAL_WORDS;
+}
+
+uint luthier_wgsl_f2u32(float value) {
+    return uint(clamp(value, 0.0, 4294967000.0));
+}
+
+// Number of layers of a material.
+uint luthier_layer_count(uint material) {
+    return luthier_wgsl_f2u32(asfloat(luthier_materials.Load(4+luthier_header(material)*16)));
+}
+
+// A layer of a material, counted from the top.
+LuthierLayer luthier_layer(uint material, uint index) {
+    LuthierLayer layer = (LuthierLayer)0;
+    uint first = luthier_wgsl_f2u32(asfloat(luthier_materials.Load(0+luthier_header(material)*16))) + (index * LUTHIER_LAYER_WORDS);
+    float4 head = asfloat(luthier_materials.Load4(first*16));
+    float4 base = asfloat(luthier_materials.Load4((first + 3u)*16));
+    float4 real_part = asfloat(luthier_materials.Load4((first + 4u)*16));
+    float4 imaginary_part = asfloat(luthier_materials.Load4((first + 5u)*16));
+    layer.kind = luthier_wgsl_f2u32(head.x);
+    layer.alpha = head.y;
+    layer.eta = head.z;
+    layer.distribution = base.w;
+    layer.ior_n = real_part.xyz;
+    layer.ior_k = imaginary_part.xyz;
+    return layer;
+}
+
+LuthierComplex ConstructLuthierComplex(float3 arg0, float3 arg1) {
+    LuthierComplex ret = (LuthierComplex)0;
+    ret.re = arg0;
+    ret.im = arg1;
+    return ret;
+}
+
+// Normal component of the wave vector in a medium, over that above: sqrt((n + i k)^2 - sin_theta^2), both parts >= 0.
+// Formed without cancellation for an index near 1, under total reflection, and for weak absorption.
+LuthierComplex luthier_normal_index(float3 ior_n, float3 ior_k, float cos_theta) {
+    float3 square = (((ior_n - (1.0).xxx) * (ior_n + (1.0).xxx)) - (ior_k * ior_k)) + (cos_theta * cos_theta).xxx;
+    float3 product = ior_n * ior_k;
+    float3 modulus = sqrt((square * square) + ((4.0 * product) * product));
+    float3 large_sq = 0.5 * (modulus + abs(square));
+    float3 small_sq = (product * product) / max(large_sq, (1e-30).xxx);
+    bool3 propagates = square >= (0.0).xxx;
+    float3 re_sq = propagates ? large_sq : small_sq;
+    float3 im_sq = propagates ? small_sq : large_sq;
+    return ConstructLuthierComplex(sqrt(re_sq), sqrt(im_sq));
+}
+
+// Exact Fresnel reflectance of unpolarised light for the relative index n + i k, total reflection included.
+float3 luthier_fresnel(float3 ior_n, float3 ior_k, float cos_theta) {
+    LuthierComplex below = luthier_normal_index(ior_n, ior_k, cos_theta);
+    float sin_sq = 1.0 - (cos_theta * cos_theta);
+    float3 im_sq = below.im * below.im;
+    float3 difference = below.re - (cos_theta).xxx;
+    float3 sum = below.re + (cos_theta).xxx;
+    float3 refl_s = ((difference * difference) + im_sq) / ((sum * sum) + im_sq);
+    float3 along = below.re * cos_theta;
+    float3 across = (im_sq * cos_theta) * cos_theta;
+    float3 refl_ratio = (((along - (sin_sq).xxx) * (along - (sin_sq).xxx)) + across) / (((along + (sin_sq).xxx) * (along + (sin_sq).xxx)) + across);
+    return (0.5 * refl_s) * ((1.0).xxx + refl_ratio);
+}
+
+// pi alpha^2 D of Beckmann. Below a cosine of 0.1 it is zero in f32 for any alpha <= 1.
+float luthier_beckmann(float alpha, float cos_theta_h, float sin_theta_h_sq) {
+    float cos_sq = max(cos_theta_h * cos_theta_h, 0.01);
+    return exp(-(sin_theta_h_sq) / ((cos_sq * alpha) * alpha)) / (cos_sq * cos_sq);
+}
+
+// pi alpha^2 D of GGX (Trowbridge-Reitz).
+float luthier_ggx(float alpha, float cos_theta_h, float sin_theta_h_sq) {
+    float alpha_sq = alpha * alpha;
+    float ratio = alpha_sq / (((alpha_sq * cos_theta_h) * cos_theta_h) + sin_theta_h_sq);
+    return ratio * ratio;
+}
+
+// Fresnel reflectance of a layer at three wavelengths, its film included.
+float3 luthier_fresnel_term(LuthierLayer layer, float cos_theta_d) {
+    return luthier_fresnel(layer.ior_n, layer.ior_k, cos_theta_d);
+}
+
+// pi alpha^2 D of a layer.
+float luthier_distribution_term(LuthierLayer layer, float alpha, float cos_theta_h, float sin_theta_h_sq) {
+    if (layer.distribution > 0.5) {
+        return luthier_ggx(alpha, cos_theta_h, sin_theta_h_sq);
+    }
+    return luthier_beckmann(alpha, cos_theta_h, sin_theta_h_sq);
+}
+
+// D of a layer at the half vector along `bisector`, whose squared length is `length_sq`.
+float luthier_density(LuthierLayer layer, float3 bisector, float length_sq) {
+    float cos_theta_h = bisector.z / sqrt(length_sq);
+    float across_sq = dot(bisector.xy, bisector.xy);
+    float area = layer.alpha * layer.alpha;
+    float alpha = layer.alpha;
+    return luthier_distribution_term(layer, alpha, cos_theta_h, across_sq / length_sq) / (LUTHIER_PI * area);
+}
+
+// Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
+// layer below it (Weidlich and Wilkie 2007; Elek 2010, eq. 2-4).
+LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
+    LuthierPath next = path;
+    next.open = false;
+    float3 bisector = path.wi + path.wo;
+    float length_sq = dot(bisector, bisector);
+    if (length_sq < 1e-24) {
+        return next;
+    }
+    float cos_theta_d = min(0.5 * sqrt(length_sq), 1.0);
+    float3 fresnel = luthier_fresnel_term(layer, cos_theta_d);
+    float cavity = (2.0 * bisector.z) / (sqrt(length_sq) * cos_theta_d);
+    float low = min(path.wi.z, path.wo.z);
+    float high = max(path.wi.z, path.wo.z);
+    float shape = (luthier_density(layer, bisector, length_sq) * min(cavity, 1.0 / low)) / (4.0 * high);
+    next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
+    if (layer.kind != LUTHIER_DIELECTRIC) {
+        return next;
+    }
+    float2 cosines = float2(path.wi.z, path.wo.z);
+    float2 cosines_sq = ((cosines * cosines) + ((layer.eta - 1.0) * (layer.eta + 1.0)).xx) / (layer.eta * layer.eta).xx;
+    if (min(cosines_sq.x, cosines_sq.y) <= 0.0) {
+        return next;
+    }
+    float2 refracted = sqrt(cosines_sq);
+    next.wi = float3(path.wi.xy / (layer.eta).xx, refracted.x);
+    next.wo = float3(path.wo.xy / (layer.eta).xx, refracted.y);
+    next.open = true;
+    float masking = min(cavity * low, 1.0);
+    float3 crossed = (1.0).xxx - fresnel;
+    float3 kept = crossed * ((1.0 - masking).xxx + (crossed * masking));
+    next.throughput = path.throughput * kept;
+    return next;
+}
+
+// Adds an interface, which is never smoother than those above it.
+LuthierPath luthier_elek_interface(LuthierPath path, LuthierLayer layer) {
+    LuthierLayer rougher = layer;
+    rougher.alpha = max(path.alpha, layer.alpha);
+    LuthierPath next = luthier_add_interface(path, rougher);
+    next.alpha = rougher.alpha;
+    return next;
+}
+
+LuthierPath ConstructLuthierPath(float3 arg0, float3 arg1, float3 arg2, float3 arg3, float arg4, bool arg5) {
+    LuthierPath ret = (LuthierPath)0;
+    ret.wi = arg0;
+    ret.wo = arg1;
+    ret.throughput = arg2;
+    ret.reflected = arg3;
+    ret.alpha = arg4;
+    ret.open = arg5;
+    return ret;
+}
+
+// f cos_theta_i of the model `elek`, both directions above the horizon.
+float3 luthier_eval_elek(uint material, float3 wi, float3 wo) {
+    uint count = luthier_layer_count(material);
+    LuthierPath path = ConstructLuthierPath(wi, wo, (wi.z).xxx, (0.0).xxx, 0.0, true);
+    path = luthier_elek_interface(path, luthier_layer(material, 0u));
+    if (path.open & (count > 1u)) {
+        path = luthier_elek_interface(path, luthier_layer(material, 1u));
+    }
+    return path.reflected;
+}
+
+// f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away
+// from the surface. Zero when either is not above the horizon.
+float3 luthier_eval(uint material, float3 wi, float3 wo) {
+    if (min(wi.z, wo.z) <= 0.0) {
+        return (0.0).xxx;
+    }
+    return luthier_eval_elek(material, wi, wo);
+}
