@@ -3,8 +3,12 @@
 mod bake;
 mod bake_refusals;
 mod check;
+#[cfg(feature = "gpu")]
+mod compare;
 mod crate_graph;
 mod eval;
+#[cfg(feature = "gpu")]
+mod gallery;
 mod help;
 mod ior;
 mod material_texts;
