@@ -41,9 +41,15 @@ pub(crate) enum Verb {
     Check(CheckOptions),
     /// Judge a bake: tables and shaders against the full evaluation in f64
     Report(ReportOptions),
-    /// Render a lit ball of a material off screen
+    /// Render a material off screen
     #[cfg(feature = "gpu")]
     Preview(PreviewOptions),
+    /// Render a contact sheet of many materials
+    #[cfg(feature = "gpu")]
+    Gallery(GalleryOptions),
+    /// Render a material with two shaders and compare the pictures
+    #[cfg(feature = "gpu")]
+    Compare(CompareOptions),
     /// Print the shader of some materials, or write it to a file
     Shader(ShaderOptions),
     /// List the reflectance models
@@ -133,35 +139,9 @@ pub(crate) struct ReportOptions {
 }
 
 #[cfg(feature = "gpu")]
-#[derive(Debug, Args)]
-#[command(
-    after_help = "Examples:\n  luthier preview materials/red-lacquer.toml -o ball.png\n  luthier preview red-lacquer -o ball.png --size 1024"
-)]
-pub(crate) struct PreviewOptions {
-    /// A material file, or the name of a material in the bake
-    #[arg(value_name = "MATERIAL")]
-    pub(crate) material: String,
-    #[command(flatten)]
-    pub(crate) shading: Shading,
-    /// Picture to write (PNG)
-    #[arg(long, short, value_name = "FILE")]
-    pub(crate) output: PathBuf,
-    /// Folder of the bake, for materials by name
-    #[arg(long, value_name = "DIR", default_value = "out")]
-    pub(crate) out: PathBuf,
-    /// Side of the picture in pixels
-    #[arg(long, value_name = "PIXELS", default_value_t = 512, value_parser = clap::value_parser!(u32).range(1..=4096))]
-    pub(crate) size: u32,
-    /// Samples along each side of a pixel
-    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=16))]
-    pub(crate) samples: u32,
-    /// Exposure in stops
-    #[arg(long, value_name = "EV", default_value_t = 0.0, value_parser = stops, allow_hyphen_values = true)]
-    pub(crate) exposure: f32,
-    /// Use the graphics adapter whose name contains this
-    #[arg(long, value_name = "NAME")]
-    pub(crate) adapter: Option<String>,
-}
+mod render;
+#[cfg(feature = "gpu")]
+pub(crate) use render::{CompareOptions, GalleryOptions, Look, PreviewOptions, ShapeName};
 
 #[derive(Debug, Args)]
 #[command(
@@ -330,13 +310,5 @@ fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         _ => Err("expected a positive number, such as 1e-3".to_owned()),
-    }
-}
-
-#[cfg(feature = "gpu")]
-fn stops(text: &str) -> Result<f32, String> {
-    match text.parse::<f32>() {
-        Ok(value) if value.abs() <= 20.0 => Ok(value),
-        _ => Err("expected stops from -20 to 20".to_owned()),
     }
 }

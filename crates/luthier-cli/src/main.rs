@@ -7,11 +7,19 @@ mod cli;
 mod device;
 mod directions;
 mod failure;
+#[cfg(feature = "gpu")]
+mod grid;
 mod materials;
+#[cfg(feature = "gpu")]
+mod memory_bake;
 mod model_inputs;
 mod output;
+#[cfg(feature = "gpu")]
+mod picture;
 mod progress;
 mod reradiation;
+#[cfg(feature = "gpu")]
+mod sheet;
 mod staging;
 mod verb;
 
@@ -29,6 +37,10 @@ fn main() -> ExitCode {
         Verb::Report(options) => verb::report::run(options),
         #[cfg(feature = "gpu")]
         Verb::Preview(options) => verb::preview::run(options),
+        #[cfg(feature = "gpu")]
+        Verb::Gallery(options) => verb::gallery::run(options),
+        #[cfg(feature = "gpu")]
+        Verb::Compare(options) => verb::compare::run(options),
         Verb::Shader(options) => verb::shader::run(options),
         Verb::Models(options) => verb::models::run(options),
         Verb::Eval(options) => verb::eval::run(options),

@@ -187,14 +187,14 @@ pub enum GpuError {
         /// How many there are.
         count: u32,
     },
-    /// The ball needs the table look-ups.
-    #[error("a preview needs the `baked` shader; this scene runs `{form}`")]
-    PreviewForm {
+    /// Blurred maps of the environment need the table look-ups.
+    #[error("without samples of the environment only the `baked` shader can be rendered; this scene runs `{form}`")]
+    Prefiltered {
         /// Form of the shader.
         form: String,
     },
-    /// A preview setting out of range.
-    #[error("preview setting {name} = {value}; {allowed}")]
+    /// A setting of the renderer out of range.
+    #[error("render setting {name} = {value}; {allowed}")]
     Setting {
         /// Name of the field.
         name: &'static str,

@@ -1,5 +1,5 @@
 //! The runtime: loads what a bake wrote, and nothing else, binds the emitted shader on a wgpu device, evaluates it
-//! for arrays of directions, reads its tables, and renders a preview ball.
+//! for arrays of directions, reads its tables, and renders pictures.
 //!
 //! ```no_run
 //! # fn main() -> Result<(), luthier_gpu::GpuError> {
@@ -14,25 +14,37 @@
 //! Every call blocks until the device has answered. Group 0 is the shader's, as the manifest lists it; group 1
 //! belongs to the kernels of this crate (`src/wgsl`), which are appended to the text of the shader.
 //!
-//! Simplifications: one device at a time, compute passes only (the ball is a compute kernel, so that it runs wherever
-//! evaluation does), and a timeout per submission in place of cancellation.
+//! Simplifications: one device at a time, compute passes only (the renderer is a compute kernel, so that it runs wherever
+//! evaluation does), shapes that rays meet in closed form, no shadows and no light between parts of a shape, and a timeout
+//! per submission in place of cancellation.
 //!
-//! Out of scope: windows, tone mapping, encoding pictures, the models themselves (the shader brings them).
+//! Out of scope: windows, encoding pictures, the models themselves (the shader brings them).
 
 mod artefacts;
-mod ball;
 mod bindings;
 mod context;
+mod environment;
 mod error;
 mod evaluate;
 mod gpu;
+mod light;
 mod lookup;
+mod panorama;
+mod prefilter;
+mod render;
 mod scene;
+mod shape;
 mod sky;
+mod tone;
+mod vector;
 
 pub use artefacts::{Artefacts, TableTexels, WgslShader};
-pub use ball::BallSettings;
+pub use environment::{Blur, Environment};
 pub use error::GpuError;
 pub use gpu::Gpu;
+pub use light::Light;
+pub use render::{Backdrop, RenderSettings};
 pub use scene::Scene;
+pub use shape::{Camera, GRID_SIDE, Shape};
 pub use sky::{Sky, SoftLight};
+pub use tone::ToneMapping;

@@ -19,7 +19,7 @@ pub struct Scene {
     kernels: wgpu::PipelineLayout,
     pub(crate) evaluate: wgpu::ComputePipeline,
     pub(crate) lookups: [OnceLock<wgpu::ComputePipeline>; TableKind::ALL.len()],
-    pub(crate) ball: OnceLock<wgpu::ComputePipeline>,
+    pub(crate) render: OnceLock<wgpu::ComputePipeline>,
 }
 
 impl Scene {
@@ -46,7 +46,7 @@ impl Scene {
             kernels,
             evaluate,
             lookups: Default::default(),
-            ball: OnceLock::new(),
+            render: OnceLock::new(),
         })
     }
 

@@ -93,6 +93,14 @@ pub enum ReportError {
         /// Values given.
         found: usize,
     },
+    /// Pictures that cannot be compared: width, height and channels of each.
+    #[error("pictures of {} x {} with {} channels and {} x {} with {}; both must be RGB of one size", a.0, a.1, a.2, b.0, b.1, b.2)]
+    Pictures {
+        /// The first.
+        a: (u32, u32, u32),
+        /// The second.
+        b: (u32, u32, u32),
+    },
     /// The report is not JSON of the documented shape.
     #[error("not a luthier report: {0}")]
     Json(#[from] serde_json::Error),

@@ -10,6 +10,8 @@
 //! - whatever misses [`TARGET_MAX_REL_ERR`] is listed with the factor that makes it miss;
 //! - directional albedos (FGD) are estimated anew, wavelength by wavelength, with the uncertainty of the estimate.
 //!
+//! [`compare_pictures`] compares two rendered pictures.
+//!
 //! Simplifications: of thickness maps only what follows from the stack is checked (range, normalisation), because their
 //! truth is a noise function or an image that only the baker has; the albedo's estimate shares its walks and quadrature with
 //! the baker (both are of `luthier-optics`), not their seeds, number or colour treatment.
@@ -21,10 +23,12 @@ mod device;
 mod directions;
 mod error;
 mod exceptions;
+mod flip;
 mod format;
 mod json;
 mod judge;
 mod page;
+mod picture;
 mod profile;
 mod report;
 mod scan;
@@ -37,6 +41,7 @@ pub use directions::{DirectionSet, Pair};
 pub use error::ReportError;
 pub use exceptions::{Cause, Exception, Factor, Part};
 pub use judge::{Progress, Settings, judge};
+pub use picture::{PIXELS_PER_DEGREE, PictureComparison, compare_pictures};
 pub use profile::{ANGLE_BINS, AngleProfile, Exceedance};
 pub use report::{
     AlphaPoint, Compared, Comparison, Curves, MaterialReport, REPORT_SCHEMA, ReflectanceCurve, Report, TableReport,

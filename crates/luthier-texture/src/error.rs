@@ -15,6 +15,8 @@ pub enum Container {
     Exr,
     /// Portable network graphics.
     Png,
+    /// Radiance RGBE.
+    Hdr,
 }
 
 impl fmt::Display for Container {
@@ -23,6 +25,7 @@ impl fmt::Display for Container {
             Self::Ktx2 => "KTX2",
             Self::Exr => "EXR",
             Self::Png => "PNG",
+            Self::Hdr => "Radiance HDR",
         })
     }
 }
@@ -86,6 +89,9 @@ pub enum TextureError {
     /// A PNG file that does not decode.
     #[error("not a valid PNG file")]
     PngDecode(#[source] ::image::ImageError),
+    /// A Radiance file that does not decode.
+    #[error("not a valid Radiance HDR file")]
+    HdrDecode(#[source] ::image::ImageError),
     /// The PNG encoder refused.
     #[error("cannot encode PNG")]
     PngEncode(#[source] ::image::ImageError),

@@ -1,4 +1,5 @@
-//! Containers: KTX2 for the texels that ship, EXR for the unquantised truth, PNG to look at. The bytes of a file depend
+//! Containers: KTX2 for the texels that ship, EXR for the unquantised truth, PNG to look at; and pictures of radiance that
+//! others made, EXR or Radiance HDR, to read. The bytes of a file depend
 //! on its content only; nothing here reads a clock or starts a thread.
 //!
 //! Every reader takes untrusted bytes: sizes are checked against [`MAX_SIDE`] and [`MAX_BYTES`] before anything is
@@ -9,8 +10,7 @@
 //! Simplifications: textures are two-dimensional with one level, one layer and one face; EXR files are single-part
 //! scan-line images of 32-bit floats.
 //!
-//! Out of scope: paths and files (callers hand over and receive bytes), block compression, other people's EXR files
-//! beyond the shape above.
+//! Out of scope: paths and files (callers hand over and receive bytes), block compression, other people's tables in EXR.
 
 mod error;
 pub mod exr;
@@ -18,6 +18,7 @@ pub mod ktx2;
 mod limits;
 mod metadata;
 pub mod png;
+pub mod radiance;
 mod srgb;
 mod texture;
 mod zstd;

@@ -2,7 +2,11 @@
 
 pub(crate) mod bake;
 pub(crate) mod check;
+#[cfg(feature = "gpu")]
+pub(crate) mod compare;
 pub(crate) mod eval;
+#[cfg(feature = "gpu")]
+pub(crate) mod gallery;
 pub(crate) mod ior;
 pub(crate) mod models;
 #[cfg(feature = "gpu")]

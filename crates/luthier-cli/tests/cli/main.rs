@@ -3,11 +3,15 @@
 mod bake;
 mod bake_refusals;
 mod check;
+#[cfg(feature = "gpu")]
+mod compare;
 mod crate_graph;
 mod eval;
 mod eval_furnace;
 mod eval_inputs;
 mod fluorescence;
+#[cfg(feature = "gpu")]
+mod gallery;
 mod help;
 mod ior;
 mod material_texts;

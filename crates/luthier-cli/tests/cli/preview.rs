@@ -92,6 +92,84 @@ fn pictures_that_cannot_be_written() {
         return;
     }
     run.fails(3, &["no/folder.png"]);
+    workshop.run(&["preview", "lacquer", "-o", "ball.gif"]).fails(1, &["ball.gif", ".png or .exr"]);
     workshop.run(&["preview", "lacquer"]).fails(2, &["required"]);
     workshop.run(&["preview", "lacquer", "-o", "x.png", "--size", "0"]).fails(2, &["--size"]);
+}
+
+#[test]
+fn every_shape() {
+    let workshop = baked();
+    let Some(sphere) = preview(&workshop, "matte.toml", "sphere.png", &[]) else { return };
+    for shape in ["torus", "plane"] {
+        let picture = preview(&workshop, "matte.toml", "shape.png", &["--shape", shape]).unwrap();
+        assert!(picture != sphere && mean(&picture, [0, 0, 48, 48]) > 1.0, "{shape}");
+    }
+}
+
+/// 25 materials that no file has: metals at the top are copper, dielectrics at the bottom have a copper-coloured base, and
+/// highlights spread to the right.
+#[test]
+fn the_grid() {
+    let workshop = Workshop::new();
+    let run = workshop.run(&["preview", "--shape", "grid", "-o", "grid.png", "--size", "110", "--samples", "2"]);
+    if lacks_adapter(&run) {
+        return;
+    }
+    run.exits(0);
+    let picture = image::open(workshop.path("grid.png")).unwrap().into_rgb8();
+    for cell in 0..25 {
+        let [x, y] = [cell % 5, cell / 5].map(|i: u32| 13 + i * 21 - 6);
+        let [r, _, b] = [0, 1, 2].map(|c| {
+            let pixels = image::imageops::crop_imm(&picture, x, y, 12, 12).to_image();
+            pixels.pixels().map(|p| f64::from(p.0[c])).sum::<f64>()
+        });
+        assert!(r > 1.05 * b && b > 0.0, "{cell}: {r} {b}");
+    }
+    workshop.run(&["preview", "a.toml", "--shape", "grid", "-o", "no.png"]).fails(1, &["grid"]);
+    workshop.run(&["preview", "-o", "no.png"]).fails(1, &["--shape grid"]);
+}
+
+/// Light on the left of a map lights the left of the ball; EXR pictures are linear and not clipped.
+#[test]
+fn an_environment_by_file() {
+    let workshop = Workshop::with(&[("matte.toml", &matte("matte"))]);
+    let (width, height) = (64, 32);
+    let left = |x: u32| if x < width / 2 { 8.0 } else { 0.5 };
+    let map = image::Rgb32FImage::from_fn(width, height, |x, _| image::Rgb([left(x); 3]));
+    let mut file = Vec::new();
+    image::codecs::hdr::HdrEncoder::new(&mut file).encode(&map.pixels().copied().collect::<Vec<_>>(), 64, 32).unwrap();
+    workshop.write("studio.hdr", file);
+    let dim = ["--environment", "studio.hdr", "--exposure", "-4"];
+    let Some(picture) = preview(&workshop, "matte.toml", "ball.png", &dim) else { return };
+    assert!(mean(&picture, [12, 16, 8, 16]) > 1.2 * mean(&picture, [28, 16, 8, 16]));
+
+    let more = ["--environment", "studio.hdr", "--background", "--tone", "none"];
+    let args = ["preview", "matte.toml", "-o", "ball.exr", "--size", "48", "--samples", "1"];
+    workshop.run(&[&args[..], &more[..]].concat()).exits(0);
+    let (exr, _) = luthier_texture::exr::decode(&std::fs::read(workshop.path("ball.exr")).unwrap()).unwrap();
+    assert!((exr.texel(0, 0)[0] / 8.0 - 1.0).abs() < 0.02 && (exr.texel(47, 0)[0] / 0.5 - 1.0).abs() < 0.02);
+
+    workshop.write("broken.hdr", "#?RADIANCE\n");
+    let bad = |file: &str, code, parts: &[&str]| {
+        workshop.run(&["preview", "matte.toml", "-o", "no.png", "--environment", file]).fails(code, parts);
+    };
+    bad("broken.hdr", 1, &["broken.hdr"]);
+    bad("matte.toml", 1, &["matte.toml", "neither OpenEXR nor Radiance"]);
+    bad("missing.hdr", 3, &["missing.hdr"]);
+}
+
+#[test]
+fn lights_and_tone_curves() {
+    let workshop = Workshop::with(&[("matte.toml", &matte("matte"))]);
+    let from_right = ["--light", "1,0,0.2"];
+    let Some(right) = preview(&workshop, "matte.toml", "right.png", &from_right) else { return };
+    let left = preview(&workshop, "matte.toml", "left.png", &["--point-light", "-5,0,1"]).unwrap();
+    let halves = |p: &RgbImage| [mean(p, [6, 16, 12, 16]), mean(p, [30, 16, 12, 16])];
+    assert!(halves(&right)[1] > halves(&right)[0] && halves(&left)[0] > halves(&left)[1]);
+    let reinhard = preview(&workshop, "matte.toml", "tone.png", &[&from_right[..], &["--tone", "reinhard"]].concat());
+    assert!(mean(&reinhard.unwrap(), [0, 0, 48, 48]) < mean(&right, [0, 0, 48, 48]));
+    for bad in ["1,2", "0,0,0", "a,b,c", "inf,0,0"] {
+        workshop.run(&["preview", "matte.toml", "-o", "no.png", "--light", bad]).fails(2, &["--light", bad]);
+    }
 }

@@ -5,9 +5,10 @@
 
 mod adapter;
 mod bake_by_hand;
-mod ball;
+mod environment;
 mod evaluate;
 mod loading;
 mod lookup;
 mod record_terms;
 mod refusal;
+mod render;

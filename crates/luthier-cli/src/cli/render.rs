@@ -1,0 +1,201 @@
+//! Options of the verbs that make pictures.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use luthier_gpu::{Shape, ToneMapping};
+
+use super::{Shading, Sources};
+
+const PREVIEW_EXAMPLES: &str = "\
+MATERIAL is a material file, or the name of a material in the bake. Directions and positions have +y up and +z to the eye;
+the shapes are about 1 in radius. The grid takes no material: it shows F0 from 0.04 to that of copper against roughness.
+
+Examples:
+  luthier preview materials/red-lacquer.toml -o ball.png
+  luthier preview red-lacquer -o ball.png --size 1024
+  luthier preview materials/car-paint.toml -o ring.png --shape torus --environment studio.hdr
+  luthier preview --shape grid -o grid.png";
+
+/// How pictures are lit, sampled and written.
+#[derive(Debug, Args)]
+pub(crate) struct Look {
+    /// Samples along each side of a pixel
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=16))]
+    pub(crate) samples: u32,
+    /// Exposure in stops
+    #[arg(long, value_name = "EV", default_value_t = 0.0, value_parser = stops, allow_hyphen_values = true)]
+    pub(crate) exposure: f32,
+    /// Tone curve of PNG files; EXR files are linear without one
+    #[arg(long, value_enum, default_value_t = ToneName::Shoulder)]
+    pub(crate) tone: ToneName,
+    /// Light from all around: an equirectangular EXR or Radiance HDR file, up is its top. By default a built-in studio
+    #[arg(long, value_name = "FILE")]
+    pub(crate) environment: Option<PathBuf>,
+    /// Directions per sample and lobe in which the shader is asked for the environment; 0 reads blurred maps instead
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=4096))]
+    pub(crate) environment_samples: Option<u32>,
+    /// Show the environment behind
+    #[arg(long)]
+    pub(crate) background: bool,
+    /// A light from this direction. With this, --point-light or --environment there is no default light
+    #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true)]
+    pub(crate) light: Vec<Triple>,
+    /// A light at this position, as bright at the centre as --light
+    #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true)]
+    pub(crate) point_light: Vec<Triple>,
+    /// Use the graphics adapter whose name contains this
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = PREVIEW_EXAMPLES)]
+pub(crate) struct PreviewOptions {
+    /// A material file, or the name of a material in the bake
+    #[arg(value_name = "MATERIAL")]
+    pub(crate) material: Option<String>,
+    #[command(flatten)]
+    pub(crate) shading: Shading,
+    /// Picture to write: .png or .exr
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+    /// Folder of the bake, for materials by name
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub(crate) out: PathBuf,
+    /// What to render
+    #[arg(long, value_enum, default_value_t = ShapeName::Sphere)]
+    pub(crate) shape: ShapeName,
+    /// Side of the picture in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 512, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub(crate) size: u32,
+    #[command(flatten)]
+    pub(crate) look: Look,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  luthier gallery -o sheet.png\n  luthier gallery materials mine.toml -o sheet.png --columns 6"
+)]
+pub(crate) struct GalleryOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    #[command(flatten)]
+    pub(crate) shading: Shading,
+    /// Picture to write: .png or .exr
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+    /// What to render: sphere, torus or plane
+    #[arg(long, value_enum, default_value_t = ShapeName::Sphere)]
+    pub(crate) shape: ShapeName,
+    /// Side of each picture in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 160, value_parser = clap::value_parser!(u32).range(16..=1024))]
+    pub(crate) size: u32,
+    /// Pictures in a row; by default about as many as rows
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub(crate) columns: Option<u32>,
+    #[command(flatten)]
+    pub(crate) look: Look,
+}
+
+const COMPARE_EXAMPLES: &str = "\
+Writes a.png, b.png, difference.png (absolute, of what a display shows, brightened as printed) and flip.png (0 black, 1 white)
+into a folder. RMSE is of linear radiance over all pixels and channels; FLIP is of the displayed pictures at 67 pixels per
+degree. The environment goes through both shaders with the same 64 directions unless told otherwise.
+
+Examples:
+  luthier compare materials/car-paint.toml --a baked --b full -o comparison
+  luthier compare red-lacquer --b full -o comparison --json";
+
+#[derive(Debug, Args)]
+#[command(after_help = COMPARE_EXAMPLES)]
+pub(crate) struct CompareOptions {
+    /// A material file, or the name of a material in the bake
+    #[arg(value_name = "MATERIAL")]
+    pub(crate) material: String,
+    /// The first shader: its form as the manifest names it
+    #[arg(long, value_name = "FORM", default_value = "baked")]
+    pub(crate) a: String,
+    /// The second shader
+    #[arg(long, value_name = "FORM", default_value = "full")]
+    pub(crate) b: String,
+    /// Folder to write to
+    #[arg(long, short, value_name = "DIR")]
+    pub(crate) output: PathBuf,
+    /// Folder of the bake, for materials by name
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub(crate) out: PathBuf,
+    /// What to render: sphere, torus or plane
+    #[arg(long, value_enum, default_value_t = ShapeName::Sphere)]
+    pub(crate) shape: ShapeName,
+    /// Side of the pictures in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub(crate) size: u32,
+    /// Print the result as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) look: Look,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ShapeName {
+    Sphere,
+    Torus,
+    Plane,
+    /// Five by five spheres, metallic against roughness
+    Grid,
+}
+
+impl From<ShapeName> for Shape {
+    fn from(name: ShapeName) -> Self {
+        match name {
+            ShapeName::Sphere => Self::Sphere,
+            ShapeName::Torus => Self::Torus,
+            ShapeName::Plane => Self::Plane,
+            ShapeName::Grid => Self::Grid,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum ToneName {
+    /// Clipped at 1
+    None,
+    /// Unchanged to 0.8, then bent towards 1
+    Shoulder,
+    /// x / (1 + x)
+    Reinhard,
+    /// Narkowicz's fit to the ACES film curve
+    Aces,
+}
+
+impl From<ToneName> for ToneMapping {
+    fn from(name: ToneName) -> Self {
+        match name {
+            ToneName::None => Self::None,
+            ToneName::Shoulder => Self::Shoulder,
+            ToneName::Reinhard => Self::Reinhard,
+            ToneName::Aces => Self::Aces,
+        }
+    }
+}
+
+/// Three numbers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Triple(pub(crate) [f32; 3]);
+
+fn triple(text: &str) -> Result<Triple, String> {
+    let numbers: Option<Vec<f32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[x, y, z]) if [x, y, z].iter().all(|v| v.is_finite()) && [x, y, z] != [0.0; 3] => Ok(Triple([x, y, z])),
+        _ => Err("expected three numbers that are not all 0, such as 1,2,3".to_owned()),
+    }
+}
+
+fn stops(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(value) if value.abs() <= 20.0 => Ok(value),
+        _ => Err("expected stops from -20 to 20".to_owned()),
+    }
+}

@@ -1,0 +1,78 @@
+//! Pictures: how they are lit, and how they are written.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use luthier_gpu::{Backdrop, Environment, Light, RenderSettings, Shape, ToneMapping};
+use luthier_lut::Image;
+use luthier_texture::{Metadata, exr, png, radiance};
+
+use crate::cli::Look;
+use crate::device::device;
+use crate::failure::{Failure, Outcome, files};
+
+/// The settings that options ask for.
+pub(crate) fn settings(look: &Look, shape: Shape, size: u32) -> Outcome<RenderSettings> {
+    let mut settings = RenderSettings::new(shape).map_err(device)?;
+    settings.size = size;
+    settings.samples = look.samples;
+    settings.exposure = libm::exp2f(look.exposure);
+    settings.environment_samples = look.environment_samples.unwrap_or(0);
+    if let Some(path) = &look.environment {
+        settings.environment = Arc::new(environment(path)?);
+    }
+    if look.background {
+        settings.backdrop = Backdrop::Environment;
+    }
+    let default = settings.lights.drain(..).next();
+    let Some(Light::Directional { irradiance, .. }) = default else { return Ok(settings) };
+    settings.lights.extend(look.light.iter().map(|v| Light::Directional { direction: v.0, irradiance }));
+    settings.lights.extend(look.point_light.iter().map(|v| {
+        let distance_sq: f32 = v.0.iter().map(|x| x * x).sum();
+        Light::Point { position: v.0, intensity: irradiance.map(|e| e * distance_sq) }
+    }));
+    if settings.lights.is_empty() && look.environment.is_none() {
+        settings.lights.extend(default);
+    }
+    Ok(settings)
+}
+
+fn environment(path: &Path) -> Outcome<Environment> {
+    let bytes = std::fs::read(path).map_err(files(path, "read"))?;
+    let unusable = |source: anyhow::Error| Failure::Input(source.context(path.display().to_string()));
+    let mut map = radiance::decode(&bytes).map_err(|source| unusable(source.into()))?;
+    // Resampling leaves small negative values in many maps.
+    map.data.iter_mut().for_each(|v| *v = if *v < 0.0 { 0.0 } else { *v });
+    Environment::new(map).map_err(|source| unusable(source.into()))
+}
+
+/// What a picture is written as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Format {
+    Png,
+    Exr,
+}
+
+impl Format {
+    /// By the extension of a file.
+    pub(crate) fn of(path: &Path) -> Outcome<Self> {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        match extension.as_deref() {
+            Some("png") => Ok(Self::Png),
+            Some("exr") => Ok(Self::Exr),
+            _ => {
+                let text = format!("cannot write {}: pictures are .png or .exr", path.display());
+                Err(Failure::Input(anyhow::anyhow!(text)))
+            }
+        }
+    }
+
+    /// Writes a linear picture: EXR as it is, PNG with a tone curve and the transfer function of sRGB.
+    pub(crate) fn write(self, path: &Path, image: Image, tone: ToneMapping) -> Outcome {
+        let bytes = match self {
+            Self::Png => png::encode_image(&tone.image(image)),
+            Self::Exr => exr::encode(&image, &Metadata::new()),
+        };
+        std::fs::write(path, bytes.map_err(Failure::input)?).map_err(files(path, "write"))
+    }
+}

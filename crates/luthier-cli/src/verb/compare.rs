@@ -1,0 +1,90 @@
+use luthier_gpu::{GpuError, ToneMapping};
+use luthier_lut::Image;
+use luthier_report::{PIXELS_PER_DEGREE, PictureComparison, compare_pictures};
+use serde_json::{Value, json};
+
+use crate::cli::{CompareOptions, Shading, ShapeName};
+use crate::device::{device, open};
+use crate::failure::{Failure, Outcome, files};
+use crate::memory_bake;
+use crate::output::print;
+use crate::picture::{Format, settings};
+
+/// Directions of the environment where none are asked for.
+const ENVIRONMENT_SAMPLES: u32 = 64;
+
+/// Renders a material with two shaders of the bake, under the same light with the same samples.
+pub(crate) fn run(options: &CompareOptions) -> Outcome {
+    if options.shape == ShapeName::Grid {
+        return Err(Failure::Input(anyhow::anyhow!("a comparison is of one material; the grid has 25 of its own")));
+    }
+    let (artefacts, material) = memory_bake::find(&options.material, &Shading { model: None }, &options.out)?;
+    for form in [&options.a, &options.b] {
+        artefacts.shader(form).map_err(device)?;
+    }
+    let look = &options.look;
+    let mut settings = settings(look, options.shape.into(), options.size)?;
+    settings.environment_samples = look.environment_samples.unwrap_or(ENVIRONMENT_SAMPLES);
+    let gpu = open(look.adapter.as_deref())?;
+    let render =
+        |form: &str| -> Result<Image, GpuError> { gpu.scene(&artefacts, form)?.render(&[material], &settings) };
+    let a = render(&options.a).map_err(device)?;
+    let b = render(&options.b).map_err(device)?;
+
+    let tone = ToneMapping::from(look.tone);
+    let compared = compare_pictures(&a, &b, |v| tone.value(v)).map_err(Failure::input)?;
+    let (difference, gain) = difference(&a, &b, tone);
+    std::fs::create_dir_all(&options.output).map_err(files(&options.output, "make"))?;
+    let pictures = [
+        ("a.png", a, tone),
+        ("b.png", b, tone),
+        ("difference.png", difference, ToneMapping::None),
+        ("flip.png", compared.flip.clone(), ToneMapping::None),
+    ];
+    for (name, image, tone) in pictures {
+        Format::Png.write(&options.output.join(name), image, tone)?;
+    }
+    if options.json {
+        return print(&format!("{:#}", json(options, &compared, gain)));
+    }
+    let PictureComparison { rms_err, max_abs_err, flip_mean, flip_max, .. } = compared;
+    print(&format!(
+        "a {}, b {}: {} pixels square\n\
+         rmse {rms_err:.3e}, largest difference {max_abs_err:.3e} (linear radiance)\n\
+         flip {flip_mean:.4} mean, {flip_max:.4} largest ({PIXELS_PER_DEGREE:.2} pixels per degree)\n\
+         wrote a.png, b.png, difference.png (times {gain}), flip.png to {}",
+        options.a,
+        options.b,
+        options.size,
+        options.output.display(),
+    ))
+}
+
+/// Absolute difference of what a display shows, brightened by the largest power of two that keeps it within 1.
+fn difference(a: &Image, b: &Image, tone: ToneMapping) -> (Image, u32) {
+    let shown = |v: f32| tone.value(v).min(1.0);
+    let mut image = a.clone();
+    image.data.iter_mut().zip(&b.data).for_each(|(a, b)| *a = (shown(*a) - shown(*b)).abs());
+    let largest = image.data.iter().copied().fold(0.0, f32::max);
+    let mut gain = 1;
+    while gain < 1 << 16 && largest > 0.0 && largest * (2 * gain) as f32 <= 1.0 {
+        gain *= 2;
+    }
+    image.data.iter_mut().for_each(|v| *v *= gain as f32);
+    (image, gain)
+}
+
+fn json(options: &CompareOptions, compared: &PictureComparison, gain: u32) -> Value {
+    json!({
+        "material": options.material,
+        "a": options.a,
+        "b": options.b,
+        "size": options.size,
+        "rms_err": compared.rms_err,
+        "max_abs_err": compared.max_abs_err,
+        "flip_mean": compared.flip_mean,
+        "flip_max": compared.flip_max,
+        "flip_pixels_per_degree": PIXELS_PER_DEGREE,
+        "difference_gain": gain,
+    })
+}

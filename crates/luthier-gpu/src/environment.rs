@@ -1,0 +1,202 @@
+use std::sync::OnceLock;
+
+use luthier_lut::Image;
+use rayon::prelude::*;
+
+use crate::panorama::{bilinear, coordinates, direction, shrunk, solid_angle, texel_direction};
+use crate::prefilter::{ALPHAS, Lobe, level_height};
+use crate::sky::setting;
+use crate::vector::{dot, tangents};
+use crate::{GpuError, Sky};
+
+/// Rows of the largest map kept: one texel is 0.35 degrees.
+const MAX_HEIGHT: u32 = 512;
+
+/// Rows of the maps that irradiance is integrated from and stored in.
+const IRRADIANCE_HEIGHT: u32 = 32;
+
+/// Light from all around, far away: an equirectangular map of radiance, linear RGB, and what smooth and rough surfaces
+/// make of it.
+///
+/// Its top is +y, its middle looks along -z, the way the default camera looks. Blurred copies are made at their first
+/// use, per slope distribution; they depend on the map only.
+#[derive(Debug)]
+pub struct Environment {
+    /// The map, then each half as high as the one before.
+    levels: Vec<Image>,
+    irradiance: OnceLock<Image>,
+    ggx: OnceLock<Vec<Image>>,
+    beckmann: OnceLock<Vec<Image>>,
+}
+
+/// A slope distribution that reflections of the environment are blurred by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Blur {
+    /// Trowbridge-Reitz.
+    Ggx,
+    /// Beckmann.
+    Beckmann,
+}
+
+impl Environment {
+    /// The environment of a map: RGB, twice as wide as high. Maps with more than 512 rows are averaged down to that.
+    ///
+    /// # Errors
+    /// [`GpuError::Setting`] for another shape, and for radiance that is negative or not finite.
+    pub fn new(map: Image) -> Result<Self, GpuError> {
+        if map.channels != 3 || map.height < 2 || map.width != 2 * map.height {
+            let found = format!("{} x {} with {} channels", map.width, map.height, map.channels);
+            return Err(setting("environment", found, "an RGB map is twice as wide as high"));
+        }
+        if let Some(value) = map.data.iter().find(|v| !v.is_finite() || **v < 0.0) {
+            return Err(setting("environment", value.to_string(), "radiance is finite and not negative"));
+        }
+        let mut levels = vec![if map.height > MAX_HEIGHT { shrunk(&map, MAX_HEIGHT) } else { map }];
+        while let Some(height) = levels.last().map(|map| map.height / 2).filter(|&height| height > 0) {
+            let next = shrunk(&levels[levels.len() - 1], height);
+            levels.push(next);
+        }
+        Ok(Self { levels, irradiance: OnceLock::new(), ggx: OnceLock::new(), beckmann: OnceLock::new() })
+    }
+
+    /// A map of a sky, fine enough for its sharpest light.
+    ///
+    /// # Errors
+    /// [`GpuError::Setting`].
+    pub fn sky(sky: &Sky) -> Result<Self, GpuError> {
+        sky.check()?;
+        // Eight rows to the spread of the sharpest light, which bilinear reads follow within a percent.
+        let height = (8.0 * sky.sharpness().sqrt()) as u32;
+        let height = height.next_power_of_two().clamp(32, MAX_HEIGHT);
+        let mut map = Image::zeros(2 * height, height, 3);
+        for y in 0..height {
+            for x in 0..map.width {
+                let radiance = sky.radiance(texel_direction(&map, x, y)).map(|v| v.max(0.0) as f32);
+                map.texel_mut(x, y).copy_from_slice(&radiance);
+            }
+        }
+        Self::new(map)
+    }
+
+    /// The map.
+    pub fn map(&self) -> &Image {
+        &self.levels[0]
+    }
+
+    /// Radiance from a unit direction.
+    pub fn radiance(&self, direction: [f64; 3]) -> [f64; 3] {
+        bilinear(self.map(), coordinates(direction))
+    }
+
+    /// Irradiance of a patch with this unit normal, over pi: what a white Lambertian patch sends out.
+    pub fn diffuse(&self, normal: [f64; 3]) -> [f64; 3] {
+        bilinear(self.irradiance_map(), coordinates(normal))
+    }
+
+    /// What a rough mirror with slope parameter `alpha` shows around the mirrored direction, over its albedo: see
+    /// [`crate::Scene::render`].
+    pub fn mirrored(&self, blur: Blur, alpha: f64, direction: [f64; 3]) -> [f64; 3] {
+        let at = coordinates(direction);
+        let read = |k: usize| bilinear(if k == 0 { self.map() } else { &self.chain(blur)[k - 1] }, at);
+        let (low, weight) = crate::prefilter::place(alpha);
+        let (a, b) = (read(low), read((low + 1).min(ALPHAS.len())));
+        [0, 1, 2].map(|c| a[c] + weight * (b[c] - a[c]))
+    }
+
+    /// Irradiance over pi, by direct summation over a small copy of the map. The weights of each texel sum to 1, so
+    /// that an even environment is returned exactly.
+    pub(crate) fn irradiance_map(&self) -> &Image {
+        self.irradiance.get_or_init(|| {
+            let source = self.level_with(IRRADIANCE_HEIGHT);
+            let mut lights = Vec::with_capacity(source.texel_count());
+            for y in 0..source.height {
+                for x in 0..source.width {
+                    let radiance = [0, 1, 2].map(|c| f64::from(source.texel(x, y)[c]));
+                    lights.push((texel_direction(source, x, y), solid_angle(source, y), radiance));
+                }
+            }
+            filled(2 * IRRADIANCE_HEIGHT, IRRADIANCE_HEIGHT, |normal| {
+                let (mut sum, mut weights) = ([0.0; 3], 0.0);
+                for (direction, solid_angle, radiance) in &lights {
+                    let weight = solid_angle * dot(*direction, normal).max(0.0);
+                    weights += weight;
+                    for (sum, value) in sum.iter_mut().zip(radiance) {
+                        *sum += weight * value;
+                    }
+                }
+                sum.map(|v| v / weights)
+            })
+        })
+    }
+
+    /// The map blurred for each of [`ALPHAS`].
+    pub(crate) fn chain(&self, blur: Blur) -> &[Image] {
+        let cell = match blur {
+            Blur::Ggx => &self.ggx,
+            Blur::Beckmann => &self.beckmann,
+        };
+        cell.get_or_init(|| ALPHAS.iter().map(|&alpha| self.blurred(blur, alpha)).collect())
+    }
+
+    /// The map blurred by a lobe. A lobe looks the same from every texel of a row, but for its azimuth: where its samples
+    /// lie is worked out once per row.
+    fn blurred(&self, blur: Blur, alpha: f64) -> Image {
+        let height = level_height(alpha).min(self.map().height.max(16));
+        let lobe = Lobe::new(blur, alpha, self.map().height);
+        let mut map = Image::zeros(2 * height, height, 3);
+        let columns = 2 * height as usize;
+        map.data.par_chunks_mut(3 * columns).enumerate().for_each(|(y, row)| {
+            let r = direction(0.5, (y as f64 + 0.5) / f64::from(height));
+            let [t, b] = tangents(r);
+            let samples: Vec<_> = lobe
+                .samples
+                .iter()
+                .map(|sample| {
+                    let [x, y, z] = sample.direction;
+                    let [u, v] = coordinates([0, 1, 2].map(|c| x * t[c] + y * b[c] + z * r[c]));
+                    (u - 0.5, v, sample.level, sample.weight)
+                })
+                .collect();
+            for (x, texel) in row.chunks_exact_mut(3).enumerate() {
+                let u = (x as f64 + 0.5) / columns as f64;
+                let mut sum = [0.0; 3];
+                for &(turn, v, level, weight) in &samples {
+                    let value = self.filtered([u + turn, v], level);
+                    (0..3).for_each(|c| sum[c] += weight * value[c]);
+                }
+                texel.copy_from_slice(&sum.map(|v| v as f32));
+            }
+        });
+        map
+    }
+
+    /// Radiance averaged over about a texel of a level; levels in between are mixed.
+    fn filtered(&self, at: [f64; 2], level: f64) -> [f64; 3] {
+        let last = self.levels.len() - 1;
+        let level = level.clamp(0.0, last as f64);
+        let (low, weight) = (level as usize, level.fract());
+        let near = bilinear(&self.levels[low], at);
+        let far = bilinear(&self.levels[(low + 1).min(last)], at);
+        [0, 1, 2].map(|c| near[c] + weight * (far[c] - near[c]))
+    }
+
+    /// The finest level with at most this many rows.
+    fn level_with(&self, height: u32) -> &Image {
+        self.levels.iter().find(|map| map.height <= height).unwrap_or(&self.levels[self.levels.len() - 1])
+    }
+}
+
+/// A map of a function of the direction.
+fn filled(width: u32, height: u32, value: impl Fn([f64; 3]) -> [f64; 3] + Sync) -> Image {
+    let mut map = Image::zeros(width, height, 3);
+    let shape = Image { data: Vec::new(), ..map.clone() };
+    map.data.par_chunks_mut(3 * width as usize).enumerate().for_each(|(y, row)| {
+        for (x, texel) in row.chunks_exact_mut(3).enumerate() {
+            texel.copy_from_slice(&value(texel_direction(&shape, x as u32, y as u32)).map(|v| v as f32));
+        }
+    });
+    map
+}
+
+#[cfg(test)]
+mod tests;

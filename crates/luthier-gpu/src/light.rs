@@ -1,0 +1,54 @@
+use crate::GpuError;
+use crate::sky::{check_direction, setting};
+
+/// A light without a visible body. Linear RGB; +y is up.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Light {
+    /// Far away.
+    Directional {
+        /// To the light; need not be unit.
+        direction: [f32; 3],
+        /// What it gives to a patch that faces it.
+        irradiance: [f32; 3],
+    },
+    /// Near: irradiance falls with the square of the distance.
+    Point {
+        /// Where it is.
+        position: [f32; 3],
+        /// What it gives to a patch that faces it at distance 1.
+        intensity: [f32; 3],
+    },
+}
+
+impl Light {
+    pub(crate) fn check(&self) -> Result<(), GpuError> {
+        let color = match self {
+            Self::Directional { direction, irradiance } => {
+                check_direction("lights.direction", *direction)?;
+                irradiance
+            }
+            Self::Point { position, intensity } => {
+                if !position.iter().all(|v| v.is_finite()) {
+                    return Err(setting("lights.position", format!("{position:?}"), "finite"));
+                }
+                intensity
+            }
+        };
+        if color.iter().all(|v| v.is_finite() && *v >= 0.0) {
+            return Ok(());
+        }
+        Err(setting("lights", format!("{color:?}"), "irradiance and intensity are finite and not negative"))
+    }
+
+    /// The words of a light in `render.wgsl`: direction and 0, or position and 1; then its colour.
+    pub(crate) fn words(&self) -> [[f32; 4]; 2] {
+        let word = |[x, y, z]: [f32; 3], w: f32| [x, y, z, w];
+        match self {
+            Self::Directional { direction, irradiance } => {
+                let length = direction.iter().map(|x| x * x).sum::<f32>().sqrt();
+                [word(direction.map(|x| x / length), 0.0), word(*irradiance, 0.0)]
+            }
+            Self::Point { position, intensity } => [word(*position, 1.0), word(*intensity, 0.0)],
+        }
+    }
+}

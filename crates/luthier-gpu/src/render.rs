@@ -1,0 +1,298 @@
+use std::sync::Arc;
+
+use luthier_lut::{Image, LayerKind, LayerRecord, MaterialEntry, TableKind, material_buffer};
+
+use crate::context::Pass;
+use crate::environment::{Blur, Environment};
+use crate::prefilter::ALPHAS;
+use crate::sky::setting;
+use crate::{Camera, GpuError, Light, Scene, Shape, Sky};
+
+/// Evaluations per submission: about a second on a software adapter.
+const EVALUATIONS_PER_PASS: u32 = 1 << 21;
+
+/// Side of a workgroup, pixels.
+const WORKGROUP: u32 = 8;
+
+/// `vec4` words before `words` in `render.wgsl`.
+const HEADER_WORDS: usize = 8;
+
+/// What is behind the shape. It takes no part in the light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Backdrop {
+    /// A colour in the middle that darkens towards the corners.
+    Plain([f32; 3]),
+    /// The environment itself.
+    Environment,
+}
+
+/// How a shape is lit and seen. Radiance and irradiance are linear RGB in the same arbitrary unit; +y is up, +z points
+/// to the eye.
+#[derive(Debug, Clone)]
+pub struct RenderSettings {
+    /// Side of the picture in pixels, 1 to 4096.
+    pub size: u32,
+    /// Samples along each side of a pixel, 1 to 16: the middles of equal squares.
+    pub samples: u32,
+    /// What is rendered.
+    pub shape: Shape,
+    /// From where.
+    pub camera: Camera,
+    /// Lights without a body, at most 64. Nothing casts a shadow.
+    pub lights: Vec<Light>,
+    /// Angular radius of the lights in radians, 0 to 0.5. For them, the squares of all slope parameters grow by the square
+    /// of half of it, so that the highlight of a smooth surface has a size; the reflected energy stays the same.
+    pub light_angular_radius: f32,
+    /// Light from all around.
+    pub environment: Arc<Environment>,
+    /// 0 reads maps that were blurred beforehand. Above, up to 4096: the environment goes through `luthier_eval` for that
+    /// many directions per lobe of the material and sample of the pixel, which is slow and noisy and has no other error.
+    pub environment_samples: u32,
+    /// Behind the shape.
+    pub backdrop: Backdrop,
+    /// Factor on the whole picture. At 1 and with the default lights, the brightest part of a white Lambertian ball is
+    /// between 0.9 and 1.
+    pub exposure: f32,
+}
+
+impl RenderSettings {
+    /// The defaults for a shape: its camera, one light from the left, the studio of [`Sky::default`].
+    ///
+    /// # Errors
+    /// None that the default sky could cause; the type is that of [`Environment::sky`].
+    pub fn new(shape: Shape) -> Result<Self, GpuError> {
+        Ok(Self {
+            size: 512,
+            samples: 4,
+            shape,
+            camera: shape.camera(),
+            lights: vec![Light::Directional { direction: [-0.45, 0.7, 0.6], irradiance: [1.75, 1.7, 1.62] }],
+            light_angular_radius: 0.05,
+            environment: Arc::new(Environment::sky(&Sky::default())?),
+            environment_samples: 0,
+            backdrop: Backdrop::Plain([0.13, 0.13, 0.133]),
+            exposure: 1.0,
+        })
+    }
+}
+
+impl Scene {
+    /// Renders a shape, one material for each of its parts ([`Shape::materials`]): linear RGB, `settings.size` squared, not
+    /// tone mapped; highlights exceed 1.
+    ///
+    /// Lights go through `luthier_eval`. So does the environment where `environment_samples` is set. Otherwise its
+    /// reflection is split in two factors (Karis 2013): each interface reflects its albedo (the FGD table where the layer
+    /// has a tile of it, else Fresnel) times the environment blurred by the lobe that the surface has at normal
+    /// incidence, around the mirrored direction; a diffuse base reflects its albedo times irradiance / pi; layers above
+    /// attenuate both by Fresnel transmission and absorption along the refracted directions. Simplifications of this way:
+    /// the lobe does not stretch towards grazing angles, the base counts as Lambert, light from everywhere enters at its
+    /// mean cosine 2/3, nothing bounces between layers. The albedo holds all bounces within one interface, `luthier_eval`
+    /// the first; and below a coat `luthier_eval` spreads a lobe over eta^2 the solid angle without dimming it
+    /// (Weidlich and Wilkie's eq. 3.1 lacks 1 / eta^2), where this way keeps to the energy that came in.
+    ///
+    /// # Errors
+    /// [`GpuError::Prefiltered`] for another form than `baked` without samples, [`GpuError::Setting`],
+    /// [`GpuError::NoMaterial`], and whatever the device reports.
+    pub fn render(&self, materials: &[u32], settings: &RenderSettings) -> Result<Image, GpuError> {
+        settings.check(materials)?;
+        for &material in materials {
+            self.layers(material)?;
+        }
+        if self.form() != "baked" && settings.environment_samples == 0 {
+            return Err(GpuError::Prefiltered { form: self.form().to_owned() });
+        }
+        let group = self.bindings.group(&self.context, &self.widened_words(settings.light_angular_radius))?;
+        let pipeline = self.pipeline(&self.render, &self.render_kernel())?;
+        let mut inputs = self.inputs(materials, settings);
+
+        let size = settings.size;
+        let lobes = 1 + self.manifest.materials.iter().map(|m| m.layers.len()).max().unwrap_or(0) as u32;
+        let per_pixel = settings.samples * settings.samples * (1 + settings.environment_samples * lobes);
+        let rows = (EVALUATIONS_PER_PASS / (size * per_pixel).max(1)).clamp(1, size);
+        let mut data = Vec::with_capacity((size * size * 3) as usize);
+        for row in (0..size).step_by(rows as usize) {
+            let rows = rows.min(size - row);
+            inputs[5][1] = row;
+            let pixels = self.context.run(&Pass {
+                what: "rendering",
+                pipeline,
+                shader_group: &group,
+                workgroups: [size.div_ceil(WORKGROUP), rows.div_ceil(WORKGROUP)],
+                inputs: bytemuck::cast_slice(&inputs),
+                output_words: (size * rows) as usize,
+            })?;
+            data.extend(pixels.iter().flat_map(|pixel| &pixel[..3]));
+        }
+        Ok(Image { width: size, height: size, channels: 3, data })
+    }
+
+    /// The material buffer: all materials as they are, then all again with slopes widened by the lights.
+    fn widened_words(&self, angular_radius: f32) -> Vec<[f32; 4]> {
+        let widen = |m: &MaterialEntry| MaterialEntry { layers: widened(&m.layers, angular_radius), ..m.clone() };
+        let mut materials = self.manifest.materials.clone();
+        materials.extend(self.manifest.materials.iter().map(widen));
+        material_buffer(&materials)
+    }
+
+    /// The kernel, with the look-ups that the shader has. A set of diffuse bases has no Fresnel table, and needs none.
+    fn render_kernel(&self) -> String {
+        let body = |kind, call| if self.reads(kind) { call } else { "vec3<f32>(0.0)" };
+        let fresnel = body(TableKind::Fresnel, "luthier_lookup_fresnel(tile, cos_theta)");
+        let fgd = body(TableKind::Fgd, "luthier_lookup_fgd(tile, cos_theta, alpha).rgb");
+        let lookups = format!(
+            "fn shading_fresnel(tile: f32, cos_theta: f32) -> vec3<f32> {{\n    return {fresnel};\n}}\n\
+             fn shading_fgd(tile: f32, cos_theta: f32, alpha: f32) -> vec3<f32> {{\n    return {fgd};\n}}\n"
+        );
+        [
+            include_str!("wgsl/shape.wgsl"),
+            include_str!("wgsl/environment.wgsl"),
+            include_str!("wgsl/shading.wgsl"),
+            include_str!("wgsl/render.wgsl"),
+            &lookups,
+        ]
+        .join("\n")
+    }
+
+    /// The words of `Render` in `render.wgsl`.
+    fn inputs(&self, materials: &[u32], settings: &RenderSettings) -> Vec<[u32; 4]> {
+        let used = self.blurs();
+        // Maps: the environment, irradiance, then a chain for each distribution in use.
+        let chain_of = |layer: &LayerRecord| {
+            let place = used.iter().position(|blur| *blur == blur_of(layer)).unwrap_or(0);
+            (2 + place * ALPHAS.len()) as f32
+        };
+        let mut words: Vec<[u32; 4]> = materials.iter().map(|&m| [m, 0, 0, 0]).collect();
+        let lights = words.len();
+        words.extend(settings.lights.iter().flat_map(Light::words).map(bits));
+
+        let headers = words.len();
+        let entries = &self.manifest.materials;
+        let mut first = headers + entries.len();
+        for entry in entries {
+            words.push([first as u32, entry.layers.len() as u32, 0, 0]);
+            first += entry.layers.len() * 4;
+        }
+        for layer in entries.iter().flat_map(|entry| &entry.layers) {
+            words.extend(layer_words(layer, chain_of(layer)).map(bits));
+        }
+
+        let prefiltered = settings.environment_samples == 0;
+        let environment = &settings.environment;
+        let mut maps = vec![environment.map()];
+        if prefiltered {
+            maps.push(environment.irradiance_map());
+            maps.extend(used.iter().flat_map(|&blur| environment.chain(blur)));
+        }
+        let map_headers = words.len();
+        let mut first = map_headers + maps.len();
+        for map in &maps {
+            words.push([first as u32, map.width, map.height, 0]);
+            first += map.texel_count();
+        }
+        for map in &maps {
+            words.extend(map.texels().map(|t| bits([t[0], t[1], t[2], 0.0])));
+        }
+        let starts = [lights, headers, map_headers].map(|at| at as u32);
+        let mut inputs = self.header(settings, starts);
+        inputs.extend(words);
+        inputs
+    }
+
+    fn header(&self, settings: &RenderSettings, [lights, headers, maps]: [u32; 3]) -> Vec<[u32; 4]> {
+        let [eye, target, right, up] = settings.camera.words();
+        let (backdrop, behind) = match settings.backdrop {
+            Backdrop::Plain(color) => (color, 0.0),
+            Backdrop::Environment => ([0.0; 3], 1.0),
+        };
+        let with = |[x, y, z, _]: [f32; 4], w: f32| bits([x, y, z, w]);
+        let [r, g, b] = backdrop.map(f32::to_bits);
+        let header: [[u32; 4]; HEADER_WORDS] = [
+            with(eye, settings.exposure),
+            with(target, behind),
+            bits(right),
+            bits(up),
+            [r, g, b, settings.size],
+            [settings.samples, 0, settings.shape.number(), settings.environment_samples],
+            [settings.lights.len() as u32, self.manifest.materials.len() as u32, 0, lights],
+            [headers, maps, 0, 0],
+        ];
+        header.to_vec()
+    }
+
+    /// The slope distributions of all layers, in the order of their chains.
+    fn blurs(&self) -> Vec<Blur> {
+        let layers = || self.manifest.materials.iter().flat_map(|m| &m.layers).filter(|l| l.kind != LayerKind::Diffuse);
+        [Blur::Ggx, Blur::Beckmann].into_iter().filter(|blur| layers().any(|l| blur_of(l) == *blur)).collect()
+    }
+}
+
+fn blur_of(layer: &LayerRecord) -> Blur {
+    if layer.distribution == "ggx" { Blur::Ggx } else { Blur::Beckmann }
+}
+
+fn bits(word: [f32; 4]) -> [u32; 4] {
+    word.map(f32::to_bits)
+}
+
+/// The words of `ShadingLayer` in `shading.wgsl`.
+fn layer_words(layer: &LayerRecord, chain: f32) -> [[f32; 4]; 4] {
+    let kind = match layer.kind {
+        LayerKind::Dielectric => 0.0,
+        LayerKind::Conductor => 1.0,
+        LayerKind::Diffuse => 2.0,
+    };
+    let tile = |tile: Option<u32>| tile.map_or(-1.0, |t| t as f32);
+    let rgb = |[r, g, b]: [f64; 3]| [r as f32, g as f32, b as f32, 0.0];
+    [
+        [kind, layer.alpha as f32, layer.eta as f32, chain],
+        [tile(layer.fresnel_tile), tile(layer.fgd_tile), 0.0, 0.0],
+        rgb(layer.optical_depth),
+        rgb(layer.albedo),
+    ]
+}
+
+/// Layers with slopes widened by a light of this angular radius: the half vector turns by half of what the light does.
+fn widened(layers: &[LayerRecord], angular_radius: f32) -> Vec<LayerRecord> {
+    let spread = 0.5 * f64::from(angular_radius);
+    let wider = |alpha: f64| libm::sqrt(alpha * alpha + spread * spread).min(1.0);
+    let widen = |layer: &LayerRecord| LayerRecord {
+        alpha: wider(layer.alpha),
+        alpha_xy: layer.alpha_xy.map(wider),
+        ..layer.clone()
+    };
+    layers.iter().map(widen).collect()
+}
+
+impl RenderSettings {
+    fn check(&self, materials: &[u32]) -> Result<(), GpuError> {
+        if materials.len() != self.shape.materials() {
+            return Err(setting("materials", materials.len().to_string(), "one for each part of the shape"));
+        }
+        if !(1..=4096).contains(&self.size) {
+            return Err(setting("size", self.size.to_string(), "1 to 4096 pixels"));
+        }
+        if !(1..=16).contains(&self.samples) {
+            return Err(setting("samples", self.samples.to_string(), "1 to 16 along a side of a pixel"));
+        }
+        if self.environment_samples > 4096 {
+            return Err(setting("environment_samples", self.environment_samples.to_string(), "0 to 4096"));
+        }
+        if self.lights.len() > 64 {
+            return Err(setting("lights", self.lights.len().to_string(), "at most 64"));
+        }
+        if !(0.0..=0.5).contains(&self.light_angular_radius) {
+            return Err(setting("light_angular_radius", self.light_angular_radius.to_string(), "0 to 0.5 radians"));
+        }
+        let backdrop = match self.backdrop {
+            Backdrop::Plain(color) => color,
+            Backdrop::Environment => [0.0; 3],
+        };
+        for value in backdrop.into_iter().chain([self.exposure]) {
+            if !value.is_finite() || value < 0.0 {
+                return Err(setting("backdrop or exposure", value.to_string(), "finite and not negative"));
+            }
+        }
+        self.lights.iter().try_for_each(Light::check)?;
+        self.camera.check()
+    }
+}

@@ -1,0 +1,91 @@
+use crate::GpuError;
+use crate::sky::setting;
+use crate::vector::{cross, unit};
+
+/// What is looked at. All shapes are about the origin, +y is up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shape {
+    /// The unit sphere. Tangents follow the parallels.
+    Sphere,
+    /// A ring of radius 0.72 around the y axis, 0.3 thick to each side. Tangents follow the ring.
+    Torus,
+    /// A square of side 2 in the plane y = 0, facing up. Tangents along +x.
+    Plane,
+    /// Five by five spheres in the plane z = 0: one material each, row by row from the top left.
+    Grid,
+}
+
+/// Spheres along a side of the grid.
+pub const GRID_SIDE: u32 = 5;
+
+/// Where the picture is taken from. It is square and in perspective.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    /// The eye.
+    pub eye: [f32; 3],
+    /// What it looks at; +y of the world is up in the picture.
+    pub target: [f32; 3],
+    /// Half the side of what the picture shows at the distance of the target.
+    pub half_extent: f32,
+}
+
+impl Shape {
+    /// How many materials it takes.
+    pub fn materials(self) -> usize {
+        match self {
+            Self::Grid => (GRID_SIDE * GRID_SIDE) as usize,
+            _ => 1,
+        }
+    }
+
+    /// A long lens on the whole shape: from +z at the height of the centre, or from above where a shape lies flat.
+    pub fn camera(self) -> Camera {
+        let (distance, elevation, half_extent): (f64, f64, f32) = match self {
+            Self::Sphere => (7.0, 0.0, 1.22),
+            Self::Torus => (7.0, 0.65, 1.14),
+            Self::Plane => (7.0, 0.5, 1.35),
+            Self::Grid => (16.0, 0.0, 2.75),
+        };
+        let (sin, cos) = libm::sincos(elevation);
+        let eye = [0.0, distance * sin, distance * cos].map(|v| v as f32);
+        Camera { eye, target: [0.0; 3], half_extent }
+    }
+
+    /// Its number in `shape.wgsl`.
+    pub(crate) fn number(self) -> u32 {
+        match self {
+            Self::Sphere => 0,
+            Self::Torus => 1,
+            Self::Plane => 2,
+            Self::Grid => 3,
+        }
+    }
+}
+
+impl Camera {
+    pub(crate) fn check(&self) -> Result<(), GpuError> {
+        let sight = self.sight();
+        let across = (sight[0] * sight[0] + sight[2] * sight[2]).sqrt();
+        let finite = self.eye.iter().chain(&self.target).all(|v| v.is_finite());
+        if !finite || across < 1e-6 {
+            return Err(setting("camera", format!("{self:?}"), "the eye is neither at, above nor below the target"));
+        }
+        if self.half_extent.is_finite() && self.half_extent > 0.0 {
+            return Ok(());
+        }
+        Err(setting("camera.half_extent", self.half_extent.to_string(), "finite and positive"))
+    }
+
+    /// The words of the camera in `render.wgsl`: eye; target; half the picture to the right; half the picture up.
+    pub(crate) fn words(&self) -> [[f32; 4]; 4] {
+        let forward = unit(self.sight());
+        let right = unit(cross(forward, [0.0, 1.0, 0.0]));
+        let up = cross(right, forward);
+        let half = |v: [f64; 3]| v.map(|x| (x * f64::from(self.half_extent)) as f32);
+        [self.eye, self.target, half(right), half(up)].map(|[x, y, z]| [x, y, z, 0.0])
+    }
+
+    fn sight(&self) -> [f64; 3] {
+        [0, 1, 2].map(|c| f64::from(self.target[c]) - f64::from(self.eye[c]))
+    }
+}

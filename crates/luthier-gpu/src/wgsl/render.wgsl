@@ -1,0 +1,65 @@
+// Renders a shape. One thread per pixel.
+
+struct Render {
+    eye: vec3<f32>,
+    exposure: f32,
+    target_point: vec3<f32>,
+    // 1 where the environment is seen behind the shape.
+    environment_behind: f32,
+    // Half the picture, in the plane through the target.
+    right: vec3<f32>,
+    up: vec3<f32>,
+    backdrop: vec3<f32>,
+    size: u32,
+    samples: u32,
+    // First row of this dispatch.
+    row: u32,
+    shape: u32,
+    // Directions per lobe and sample; 0 reads blurred maps instead.
+    environment_samples: u32,
+    light_count: u32,
+    material_count: u32,
+    // Where in `words` things begin.
+    parts: u32,
+    lights: u32,
+    materials: u32,
+    maps: u32,
+    words: array<vec4<f32>>,
+}
+
+@group(1) @binding(0) var<storage, read> kernel_inputs: Render;
+@group(1) @binding(1) var<storage, read_write> kernel_outputs: array<vec4<f32>>;
+
+// Radiance along the ray through a point of the picture, -1 to 1 in both coordinates.
+fn render_radiance(at: vec2<f32>, seed: u32) -> vec3<f32> {
+    let through = kernel_inputs.target_point + at.x * kernel_inputs.right + at.y * kernel_inputs.up;
+    let ray = normalize(through - kernel_inputs.eye);
+    let hit = shape_hit(kernel_inputs.shape, kernel_inputs.eye, ray);
+    if hit.found {
+        return shading_radiance(hit.part, hit.place, -ray, seed);
+    }
+    if kernel_inputs.environment_behind == 1.0 {
+        return environment_radiance(ray);
+    }
+    return kernel_inputs.backdrop * (1.0 - 0.3 * min(dot(at, at), 2.0));
+}
+
+@compute @workgroup_size(8, 8)
+fn kernel_render(@builtin(global_invocation_id) thread: vec3<u32>) {
+    let size = kernel_inputs.size;
+    let index = thread.y * size + thread.x;
+    if thread.x >= size || index >= arrayLength(&kernel_outputs) {
+        return;
+    }
+    let pixel = vec2<f32>(f32(thread.x), f32(kernel_inputs.row + thread.y));
+    let samples = kernel_inputs.samples;
+    var sum = vec3<f32>(0.0);
+    for (var j = 0u; j < samples; j++) {
+        for (var i = 0u; i < samples; i++) {
+            let at = (pixel + (vec2<f32>(f32(i), f32(j)) + 0.5) / f32(samples)) / f32(size);
+            let seed = ((kernel_inputs.row + thread.y) * size + thread.x) * samples * samples + j * samples + i;
+            sum += render_radiance(vec2<f32>(2.0 * at.x - 1.0, 1.0 - 2.0 * at.y), seed);
+        }
+    }
+    kernel_outputs[index] = vec4<f32>(sum * (kernel_inputs.exposure / f32(samples * samples)), 1.0);
+}
