@@ -10,6 +10,8 @@
 //! - whatever misses [`TARGET_MAX_REL_ERR`] is listed with the factor that makes it miss;
 //! - directional albedos (FGD) are estimated anew, wavelength by wavelength, with the uncertainty of the estimate.
 //!
+//! [`judge_models`] is the judge of what the bake stands on: every reflectance model against the Monte Carlo of whole stacks.
+//!
 //! Simplifications: of thickness maps only what follows from the stack is checked (range, normalisation), because their
 //! truth is a noise function or an image that only the baker has; the albedo's estimate shares its walks and quadrature with
 //! the baker (both are of `luthier-optics`), not their seeds, number or colour treatment.
@@ -24,6 +26,7 @@ mod exceptions;
 mod format;
 mod json;
 mod judge;
+mod models;
 mod page;
 mod profile;
 mod report;
@@ -37,6 +40,9 @@ pub use directions::{DirectionSet, Pair};
 pub use error::ReportError;
 pub use exceptions::{Cause, Exception, Factor, Part};
 pub use judge::{Progress, Settings, judge};
+pub use models::{
+    MaterialModels, ModelErrors, ModelSettings, ModelSubject, ModelsReport, Quantity, ViewError, Worst, judge_models,
+};
 pub use profile::{ANGLE_BINS, AngleProfile, Exceedance};
 pub use report::{
     AlphaPoint, Compared, Comparison, Curves, MaterialReport, REPORT_SCHEMA, ReflectanceCurve, Report, TableReport,

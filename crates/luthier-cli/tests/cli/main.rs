@@ -8,6 +8,7 @@ mod eval;
 mod help;
 mod ior;
 mod material_texts;
+mod models;
 mod outdated;
 mod pipes;
 #[cfg(feature = "gpu")]
