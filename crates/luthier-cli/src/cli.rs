@@ -3,10 +3,11 @@
 use std::num::NonZeroU32;
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use luthier_shader::{Form, Target};
 
 use crate::directions::Angles;
+use crate::model_inputs::ModelInputs;
 
 const AFTER_HELP: &str = "\
 Exit codes:
@@ -47,7 +48,7 @@ pub(crate) enum Verb {
     /// List the reflectance models
     Models(ModelsOptions),
     /// Evaluate a reflectance model of a material in f64
-    Eval(EvalOptions),
+    Eval(Box<EvalOptions>),
     /// List the built-in optical constants, or show one set
     Ior(IorOptions),
     /// Print the JSON Schema of material files
@@ -187,15 +188,26 @@ pub(crate) struct ModelsOptions {
 const EVAL_EXAMPLES: &str = "\
 Prints f cos theta_i in linear Rec.709, spectral by default. Estimates come with their standard error.
 
+Furnace: the surface without loss (no absorption, conductors and diffuse bases that reflect everything, a white base below a \
+last medium; for models of one interface a mirror below it) under light of radiance 1 from everywhere. What a model shows \
+of it is 1 where it keeps all energy.
+
+Matrix: CSV. The first row has the wavelengths of the light in nm after a first field that is free; each row below has a \
+wavelength that comes out, the same ones, and the shares of the power of each wavelength of the light that come out there.
+
 Examples:
   luthier eval materials/red-lacquer.toml --model belcour --wi 30,0 --wo 45,180
   luthier eval materials/red-lacquer.toml --model layered-mc --wi 30,0 --wo 45,180 --wavelength 550
   luthier eval materials/car-paint.toml --model elek --directions pairs.csv --three-wavelengths
   luthier eval materials/car-paint.toml --model elek --directions - --json
-  luthier eval materials/car-paint.toml --model elek --albedo";
+  luthier eval materials/car-paint.toml --model elek --albedo
+  luthier eval materials/car-paint.toml --model weidlich-wilkie --furnace
+  luthier eval materials/car-paint.toml --model flakes --uv 0.2,0.7 --wi 30,0 --wo 45,180
+  luthier eval a.toml --model fluorescence --matrix m.csv --excitation 530 --wavelength 600 --albedo";
 
 #[derive(Debug, Args)]
 #[command(after_help = EVAL_EXAMPLES)]
+#[command(group = ArgGroup::new("what").required(true).args(["wi", "directions", "albedo", "furnace", "environment"]))]
 pub(crate) struct EvalOptions {
     /// A material file
     #[arg(value_name = "FILE")]
@@ -205,34 +217,49 @@ pub(crate) struct EvalOptions {
     pub(crate) model: String,
     /// Direction to the light, in degrees: theta from the normal (0 to 90), phi around it
     #[arg(long, value_name = "THETA,PHI", allow_hyphen_values = true, requires = "wo")]
-    #[arg(required_unless_present_any = ["directions", "albedo"], conflicts_with_all = ["directions", "albedo"])]
     pub(crate) wi: Option<Angles>,
     /// Direction to the eye
     #[arg(long, value_name = "THETA,PHI", allow_hyphen_values = true, requires = "wi")]
     pub(crate) wo: Option<Angles>,
     /// CSV file of lines theta_i,phi_i,theta_o,phi_o in degrees; `-` is standard input. Lines that begin with # do not count
-    #[arg(long, value_name = "CSV", conflicts_with = "albedo")]
+    #[arg(long, value_name = "CSV")]
     pub(crate) directions: Option<PathBuf>,
     /// Directional albedo against angle instead of values: at 550 nm unless another wavelength is given
-    #[arg(long, conflicts_with = "three_wavelengths")]
+    #[arg(long)]
     pub(crate) albedo: bool,
+    /// White furnace against angle: radiance of the lossless surface under light of radiance 1, and its deviation from 1
+    #[arg(long)]
+    pub(crate) furnace: bool,
+    /// What the first interface mirrors of an environment of radiance 1, against angle (elek)
+    #[arg(long)]
+    pub(crate) environment: bool,
+    /// Spectral colour, the default
+    #[arg(long, conflicts_with_all = ["albedo", "furnace", "environment"])]
+    pub(crate) rgb: bool,
     /// One wavelength, 360 to 830 nm. Absorption and diffuse albedo are those of the channel nearest to it (645, 525, 445 nm)
-    #[arg(long, value_name = "NM", value_parser = wavelength, conflicts_with = "three_wavelengths")]
+    #[arg(long, value_name = "NM", value_parser = wavelength, conflicts_with_all = ["rgb", "three_wavelengths"])]
     pub(crate) wavelength: Option<f64>,
     /// The material's three wavelengths taken as R, G, B instead of spectral colour
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["rgb", "albedo", "furnace", "environment"])]
     pub(crate) three_wavelengths: bool,
     /// Print as JSON
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) inputs: ModelInputs,
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  luthier ior\n  luthier ior au\n  luthier ior tio2_film --json")]
+#[command(
+    after_help = "Examples:\n  luthier ior\n  luthier ior au\n  luthier ior tio2_film --json\n  luthier ior --f0"
+)]
 pub(crate) struct IorOptions {
     /// Id of a data set; without it, all are listed
     #[arg(value_name = "NAME")]
     pub(crate) name: Option<String>,
+    /// The printed tables of reflectance at normal incidence beside what the data sets give
+    #[arg(long, conflicts_with = "name")]
+    pub(crate) f0: bool,
     /// Print as JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -270,7 +297,7 @@ impl From<FormName> for Form {
     }
 }
 
-fn wavelength(text: &str) -> Result<f64, String> {
+pub(crate) fn wavelength(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if (360.0..=830.0).contains(&value) => Ok(value),
         _ => Err("expected a wavelength from 360 to 830 nm".to_owned()),

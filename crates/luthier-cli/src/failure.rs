@@ -2,6 +2,8 @@ use std::fmt;
 use std::io;
 use std::process::ExitCode;
 
+use luthier_material::did_you_mean;
+
 use crate::output::complain;
 
 /// Why a command ends with another code than 0. The codes are documented in `luthier --help`.
@@ -11,6 +13,8 @@ pub(crate) enum Failure {
     Verdict,
     /// Exit code 1: an input is not usable.
     Input(anyhow::Error),
+    /// Exit code 2: the command line asks for what there is not.
+    Usage(anyhow::Error),
     /// Exit code 3: a file cannot be read or written.
     Files(anyhow::Error),
     /// Exit code 4: no usable graphics adapter, or it failed.
@@ -28,11 +32,19 @@ impl Failure {
         Self::Input(error.into())
     }
 
+    /// A name on the command line that is none of those known.
+    pub(crate) fn unknown(what: &str, name: &str, known: &[&str]) -> Self {
+        let hint =
+            did_you_mean(name, known.iter().copied()).map_or(String::new(), |near| format!("did you mean `{near}`? "));
+        Self::Usage(anyhow::anyhow!("no {what} `{name}`; {hint}known: {}", known.join(", ")))
+    }
+
     pub(crate) fn exit(&self) -> ExitCode {
         let (code, error) = match self {
             Self::BrokenPipe => (0, None),
             Self::Verdict => (1, None),
             Self::Input(error) => (1, Some(error)),
+            Self::Usage(error) => (2, Some(error)),
             Self::Files(error) => (3, Some(error)),
             #[cfg(feature = "gpu")]
             Self::Device(error) => (4, Some(error)),

@@ -8,8 +8,10 @@ mod device;
 mod directions;
 mod failure;
 mod materials;
+mod model_inputs;
 mod output;
 mod progress;
+mod reradiation;
 mod staging;
 mod verb;
 

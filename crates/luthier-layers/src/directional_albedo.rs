@@ -82,14 +82,15 @@ fn crowded(rule: &[(f64, f64)], start: f64, length: f64) -> impl Iterator<Item =
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::ModelInfo;
+    use crate::model::{Claims, Kind, ModelInfo};
 
     /// `f = (n + 2) / (2 pi) cos^n` about the mirror direction for normal incidence, whose albedo is 1.
     struct Lobe(f64);
 
     impl Model for Lobe {
         fn info(&self) -> ModelInfo {
-            ModelInfo { name: "lobe", source: "", domain: "", leaves_out: "" }
+            let (kind, claims) = (Kind::Surface, Claims::NONE);
+            ModelInfo { name: "lobe", kind, claims, source: "", domain: "", leaves_out: "", inputs: &[] }
         }
 
         fn eval(&self, _: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {

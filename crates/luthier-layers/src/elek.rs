@@ -94,7 +94,8 @@ pub fn layers(stack: &Stack) -> Vec<Layer> {
 }
 
 /// `f cos_theta_i` of the layers for light from `wi` seen from `wo`, per channel. Zero when either is at or below the
-/// horizon. Finite for all unit directions. Not reciprocal below the first interface (eq. 2 is not).
+/// horizon. Finite for all unit directions. Reciprocal: every factor of eq. 2 is symmetric in the two directions with T_12 and T_21
+/// at the half vector.
 pub fn eval(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3) -> Rgb {
     eval_below(layers, terms, wi, wo, DVec3::Z)
 }

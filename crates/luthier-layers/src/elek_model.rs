@@ -6,7 +6,8 @@ use luthier_optics::microfacet;
 use luthier_optics::stack::{Diffuse, Distribution};
 
 use crate::elek::{self, ALPHA_MIN, Below, Layer, Terms};
-use crate::model::{Model, ModelInfo};
+use crate::inputs::Input;
+use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 
 /// The real-time model of [`elek`] with exact terms at one wavelength: the index that bends the directions is the wavelength's
@@ -18,9 +19,12 @@ impl Model for Elek {
     fn info(&self) -> ModelInfo {
         ModelInfo {
             name: elek::MODEL,
+            kind: Kind::Layered,
+            claims: Claims::RECIPROCAL,
             source: "Elek 2010, eq. 2-4 and Algorithm 1",
             domain: "any number of isotropic interfaces above a conductor or a diffuse base; alpha from 1e-3",
             leaves_out: "bounces between layers, 1/n^2, blur by refraction (stood for by the roughness clamp)",
+            inputs: &[Input::Environment],
         }
     }
 

@@ -6,7 +6,8 @@ use glam::{DVec2, DVec3};
 
 use crate::elek_model;
 use crate::hash;
-use crate::model::{Model, ModelInfo};
+use crate::inputs::{Input, Inputs};
+use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::Monochrome;
 
 /// Flakes below the first interface, one per cell of a grid, each with a normal of its own (Elek 2010, section 4.1).
@@ -43,10 +44,13 @@ impl Flakes {
         DVec3::new(sin * libm::cos(phi), sin * libm::sin(phi), libm::cos(angle))
     }
 
-    /// The normal that the layers below see from a distance: `normalize(max(distance / fade_start, 1) z + scale m)`, m the
+    /// The normal that the layers below see from a distance: `normalize(z + max(distance / fade_start, 1) z + scale m)`, m the
     /// flake's. The flakes fade out with distance as more of them share a pixel.
+    ///
+    /// The first z is the surface's normal, to which the paper's code adds the two others (`N += ...`), though its text speaks of
+    /// those two alone: at scale 1 a flake tilted by a small angle tilts the lobe below by a third of it, not by half.
     pub fn normal(&self, uv: DVec2, distance: f64) -> DVec3 {
-        let weight = (distance / self.fade_start).max(1.0);
+        let weight = 1.0 + (distance / self.fade_start).max(1.0);
         (DVec3::new(0.0, 0.0, weight) + self.scale * self.flake(uv)).normalize_or(DVec3::Z)
     }
 
@@ -57,20 +61,33 @@ impl Flakes {
     }
 }
 
-/// Many flakes at once, as a surface far enough away shows them: the mean over the first cells of the grid, each at full weight.
+/// Many flakes at once, as one pixel shows them: the mean over the first cells of the grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlakeMean {
     /// The flakes.
     pub flakes: Flakes,
     /// How many of them.
     pub samples: u32,
+    /// Distance of the eye.
+    pub distance: f64,
+}
+
+/// One flake: what is seen at a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FlakeAt {
+    /// The flakes.
+    pub flakes: Flakes,
+    /// Texture coordinate of the place.
+    pub uv: DVec2,
+    /// Distance of the eye.
+    pub distance: f64,
 }
 
 impl Default for FlakeMean {
     /// 256 flakes of the paper's weight, 0.2 radians of spread.
     fn default() -> Self {
         let flakes = Flakes { seed: 0, count: 256, tiling: 1.0, spread: 0.2, scale: 1.0, fade_start: 1.0 };
-        Self { flakes, samples: 256 }
+        Self { flakes, samples: 256, distance: 0.0 }
     }
 }
 
@@ -78,9 +95,12 @@ impl Model for FlakeMean {
     fn info(&self) -> ModelInfo {
         ModelInfo {
             name: "flakes",
+            kind: Kind::Place,
+            claims: Claims::RECIPROCAL,
             source: "Elek 2010, section 4.1",
-            domain: "a tinted coat over a metal; the mean over 256 flakes of 0.2 rad spread",
-            leaves_out: "what Elek's model leaves out; single glints (see Flakes::eval)",
+            domain: "a tinted coat over a metal; flakes of 0.2 rad spread: the one at a place, or the mean over 256",
+            leaves_out: "what Elek's model leaves out; light that passes from one flake to another",
+            inputs: &[Input::Uv, Input::Distance],
         }
     }
 
@@ -90,10 +110,28 @@ impl Model for FlakeMean {
             .map(|i| {
                 let (x, y) = (f64::from(i % self.flakes.count.max(1)), f64::from(i / self.flakes.count.max(1)));
                 let uv = DVec2::new(x + 0.5, y + 0.5) / (count * self.flakes.tiling);
-                self.flakes.eval(stack, uv, 0.0, wi, wo)
+                self.flakes.eval(stack, uv, self.distance, wi, wo)
             })
             .sum();
         if self.samples == 0 { 0.0 } else { sum / f64::from(self.samples) }
+    }
+
+    fn with_inputs(&self, inputs: &Inputs) -> Option<Box<dyn Model>> {
+        let (flakes, distance) = (self.flakes, inputs.distance.unwrap_or(self.distance));
+        Some(match inputs.uv {
+            Some(uv) => Box::new(FlakeAt { flakes, uv, distance }),
+            None => Box::new(Self { distance, ..*self }),
+        })
+    }
+}
+
+impl Model for FlakeAt {
+    fn info(&self) -> ModelInfo {
+        FlakeMean::default().info()
+    }
+
+    fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
+        self.flakes.eval(stack, self.uv, self.distance, wi, wo)
     }
 }
 
@@ -121,5 +159,10 @@ mod tests {
         let tilt = |distance| libm::acos(FLAKES.normal(uv, distance).z);
         assert_eq!(tilt(0.2), tilt(1.0));
         assert!(tilt(2.0) < tilt(1.0) && tilt(1e6) < 1e-5);
+        // N += max(distance, 1) z + m with N = z: tangents of 2 z + m, and of 6 z + m at distance 5.
+        let m = FLAKES.flake(uv);
+        let tangent = libm::hypot(m.x, m.y);
+        assert!((libm::tan(tilt(1.0)) - tangent / (2.0 + m.z)).abs() < 1e-12);
+        assert!((libm::tan(tilt(5.0)) - tangent / (6.0 + m.z)).abs() < 1e-12);
     }
 }

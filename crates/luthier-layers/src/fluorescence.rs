@@ -13,17 +13,10 @@ use glam::DVec3;
 use luthier_optics::quadrature::gauss_legendre;
 
 use crate::facets::{Facets, Masking};
-use crate::model::ModelInfo;
+use crate::inputs::Input;
+use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 use crate::plane_stack::{diffuse_return, seen_from_above};
-
-/// What this is, for listings: it takes two wavelengths, so that it is not one of the models that take one.
-pub const INFO: ModelInfo = ModelInfo {
-    name: "fluorescence",
-    source: "Wilkie et al. 2006; Weidlich and Wilkie 2009, section 5.2.2",
-    domain: "a transparent coat over a diffuse base with a re-radiation matrix; exact for smooth coats",
-    leaves_out: "blur by refraction; bounces inside the coat's micro-surface",
-};
 
 /// Why a re-radiation matrix was refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -145,6 +138,54 @@ impl Fluorescent {
     }
 }
 
+/// The model without a re-radiation matrix: one wavelength, at which the base returns its albedo. Zero for a stack that is not one
+/// transparent coat over a diffuse base. With a matrix it takes two wavelengths: [`Fluorescent`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Fluorescence;
+
+impl Model for Fluorescence {
+    fn info(&self) -> ModelInfo {
+        ModelInfo {
+            name: "fluorescence",
+            kind: Kind::Layered,
+            claims: Claims::BOTH,
+            source: "Wilkie et al. 2006; Weidlich and Wilkie 2009, section 5.2.2",
+            domain: "one transparent coat over a diffuse base with a re-radiation matrix, by default its albedo; exact for a smooth \
+                     coat; alpha from 1e-4",
+            leaves_out: "blur by refraction; bounces inside the coat's micro-surface; the base's roughness",
+            inputs: &[Input::Matrix, Input::Excitation],
+        }
+    }
+
+    fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
+        let Some(MonochromeBelow::Diffuse { albedo, .. }) = stack.layers.last().map(|layer| layer.below) else {
+            return 0.0;
+        };
+        Fluorescent::new(vec![stack.clone()], &[albedo]).map_or(0.0, |surface| surface.eval(wi, 0, wo, 0))
+    }
+}
+
+/// A fluorescent surface between two of its bins, as a model: whatever stack it is shown, it is the surface's own.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reradiated {
+    /// The surface.
+    pub surface: Fluorescent,
+    /// Bin of the light.
+    pub from: usize,
+    /// Bin that is seen.
+    pub to: usize,
+}
+
+impl Model for Reradiated {
+    fn info(&self) -> ModelInfo {
+        Fluorescence.info()
+    }
+
+    fn eval(&self, _: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
+        self.surface.eval(wi, self.from, wo, self.to)
+    }
+}
+
 /// `(1 - M H)^-1 M`, H diagonal: what the base sends up in all, when of that the share `held[k]` of bin k comes back each time.
 /// Gauss elimination without exchange of rows, for the diagonal dominates every column: those of M H sum to at most
 /// `held` < 1.
@@ -208,6 +249,10 @@ mod tests {
             assert!((found - (expected - 0.04)).abs() < 6e-5, "{bin}: {found}");
         }
         assert_eq!(f.eval(DVec3::Z, 0, DVec3::Z, 1), 0.0);
+        // The model by name has the stack's own albedo.
+        let half = Fluorescent::new(vec![coat(1.5, 0.0)], &[0.5]).unwrap();
+        let wo = DVec3::new(0.6, 0.0, 0.8);
+        assert_eq!(Fluorescence.eval(&coat(1.5, 0.0), DVec3::Z, wo), half.eval(DVec3::Z, 0, wo, 0));
     }
 
     /// Oracle: the bounces one after the other.

@@ -13,10 +13,22 @@
 //! F is Schlick's; t_i and t_o are refracted at the outer normal n_0 with the index of the wavelength, r_ti is t_i mirrored at
 //! the inner normal n_1: normals that differ deviate the beam and spread colours, as a prism does.
 //!
-//! What is wrong with it, and measured in the tests: both beams are added at full strength whatever the object reflects, so that
-//! where they are in phase a surface returns up to twice what it receives; the lobe of the transmitted beam widens on its
-//! way out without getting darker, a factor of n^2; and the formula has no half-wave shifts, so that indices have to
-//! rise from outside to inside.
+//! The paper's lobes have height one: it does not say what share of the light they carry, and at its exponents it is 1/76 and less
+//! of their coefficients. [`GranierHeidrich`] scales them so that each carries its coefficient, the transmitted one in the film,
+//! where its directions are.
+//!
+//! What is then wrong with it is the paper's, and measured in the tests:
+//!
+//! - both beams are added at full strength: where they are in phase the specular part returns `F + T^2 + 2 sqrt(F) T`, for n = 1.5
+//!   1.346 at the normal and 1.939 at 80 degrees, at the peaks (an eye under a white sky sees 1.316 and 1.483, because the
+//!   transmitted lobe is the wider one);
+//! - the transmitted beam is that of an object that mirrors everything, whatever the object; without interference it makes the
+//!   specular part `F + T^2`, nearly one, of any stack;
+//! - the diffuse term comes on top, up to `1 + 2 sqrt(T_d R_d)` (1.560 for n = 1.5) times its weight: a white object without
+//!   interference returns 1.96 at the normal;
+//! - T is Schlick's at the angle inside (eq. 9 and 10), F at the angle outside, so that it is not reciprocal, nor are lobes
+//!   without a cosine;
+//! - no half-wave shifts: indices have to rise from outside to inside.
 
 use std::f64::consts::{FRAC_1_PI, PI};
 
@@ -24,7 +36,8 @@ use glam::DVec3;
 
 use crate::elek::refract;
 use crate::facets::ALPHA_MIN;
-use crate::model::{Model, ModelInfo};
+use crate::inputs::{Input, Inputs};
+use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 
 /// A film as the model takes it, at one wavelength.
@@ -49,6 +62,9 @@ pub struct Beams {
     pub transmitted: f64,
     /// `2 Phi`, radians; 0 when nothing is transmitted.
     pub phase: f64,
+    /// Solid angle of the incident light in the film over that outside, `cos_theta_i / (eta^2 cos_theta_t)`; 0 when nothing is
+    /// transmitted.
+    pub compression: f64,
 }
 
 impl Film {
@@ -61,12 +77,12 @@ impl Film {
     /// Eq. 3, 6 and 10. No transmitted beam in the cases of eq. 11, and under total reflection.
     pub fn beams(&self, wi: DVec3, wo: DVec3) -> Beams {
         if wi.z <= 0.0 || wo.z <= 0.0 {
-            return Beams { reflected: 0.0, transmitted: 0.0, phase: 0.0 };
+            return Beams { reflected: 0.0, transmitted: 0.0, phase: 0.0, compression: 0.0 };
         }
         let f = self.normal_reflectance();
         let fresnel = schlick(f, wi.z);
         let reflected = fresnel * lobe(DVec3::new(-wi.x, -wi.y, wi.z), wo, self.exponents[0]);
-        let none = Beams { reflected, transmitted: 0.0, phase: 0.0 };
+        let none = Beams { reflected, transmitted: 0.0, phase: 0.0, compression: 0.0 };
 
         // t_i and t_o turned to point up: -t_i, -t_o.
         let (Some(ti), Some(to)) = (refract(wi, self.eta), refract(wo, self.eta)) else { return none };
@@ -77,20 +93,24 @@ impl Film {
         let mirrored = 2.0 * ti.dot(n) * n - ti;
         let leaving = 1.0 - schlick(f, to.z.min(1.0));
         let transmitted = (1.0 - fresnel) * leaving * lobe(mirrored, to, self.exponents[1]);
-        Beams { reflected, transmitted, phase: 2.0 * PI * self.waves_inside.unwrap_or(0.0) * (ti.z + to.z) }
+        Beams {
+            reflected,
+            transmitted,
+            phase: 2.0 * PI * self.waves_inside.unwrap_or(0.0) * (ti.z + to.z),
+            compression: wi.z / (self.eta * self.eta * ti.z),
+        }
     }
 
     /// Eq. 5: lobes of height one, as printed. Without interference when the layer is too thick for it.
     pub fn specular(&self, wi: DVec3, wo: DVec3) -> f64 {
-        self.superpose(self.beams(wi, wo), [1.0; 2])
+        let Beams { reflected, transmitted, phase, .. } = self.beams(wi, wo);
+        self.superpose(reflected, transmitted, phase)
     }
 
     /// Eq. 13 with eq. 14, 15 and 17: the paper's eq. 18.
     pub fn diffuse(&self) -> f64 {
         let reflected = self.diffuse_reflectance();
-        let beams =
-            Beams { reflected, transmitted: 1.0 - reflected, phase: 4.0 * PI * self.waves_inside.unwrap_or(0.0) };
-        self.superpose(beams, [1.0; 2])
+        self.superpose(reflected, 1.0 - reflected, 4.0 * PI * self.waves_inside.unwrap_or(0.0))
     }
 
     /// Eq. 14: the cosine-weighted mean of Schlick's reflectance.
@@ -99,11 +119,10 @@ impl Film {
         (21.0 * (n * n + 1.0) - 38.0 * n) / (21.0 * sum * sum)
     }
 
-    /// Both beams with factors on their powers, and their interference.
-    fn superpose(&self, beams: Beams, [r, t]: [f64; 2]) -> f64 {
-        let (r, t) = (r * beams.reflected, t * beams.transmitted);
+    /// Two powers and their interference (eq. 4).
+    fn superpose(&self, r: f64, t: f64, phase: f64) -> f64 {
         let interference = match self.waves_inside {
-            Some(_) => 2.0 * libm::cos(beams.phase) * libm::sqrt(r * t),
+            Some(_) => 2.0 * libm::cos(phase) * libm::sqrt(r * t),
             None => 0.0,
         };
         (r + t + interference).max(0.0)
@@ -112,10 +131,13 @@ impl Film {
 
 /// The model on a stack.
 ///
-/// The film is the first coherent one of the first interface, or its slab, then without interference. The lobes, of height one
-/// in the paper, are scaled by `(e + 1) / (2 pi)` so that each carries its coefficient. Exponents are `2/alpha^2 - 2`
-/// unless given. The diffuse weight is the albedo of the diffuse base, zero without one. A first interface with neither film nor
-/// slab (a bare conductor) has the reflected beam alone, with its own reflectance at normal incidence.
+/// The film is the first coherent one of the first interface, or its slab, then without interference: the mean over thicknesses.
+/// Lobes are Phong's of 1975, without a cosine, times `(e + 1) / (2 pi)`, that of the transmitted beam over solid angles in the
+/// film: what an eye sees of a white sky by each is its coefficient, at any angle, but for what falls below the horizon.
+/// Exponents are `2/alpha^2 - 2` unless given, which is how the material of the paper's figure 4 states them; about the mirror
+/// direction such a lobe is half as wide as the surface's. The diffuse weight is the albedo of the diffuse base, zero without one. A
+/// first interface with neither film nor slab (a bare conductor) has the reflected beam alone, with its own reflectance at normal
+/// incidence. Layers and slabs below the film do not count.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GranierHeidrich {
     /// Normal n_1 of the inner boundary, unit.
@@ -155,9 +177,13 @@ impl Model for GranierHeidrich {
     fn info(&self) -> ModelInfo {
         ModelInfo {
             name: "granier-heidrich",
+            kind: Kind::Layered,
+            claims: Claims::NONE,
+            inputs: &[Input::InnerNormal],
             source: "Granier and Heidrich 2003, eq. 3-18",
             domain: "one film, or one transparent layer, on an object; indices rising inwards",
-            leaves_out: "the object's reflectance, absorption, bounces; gains energy where the beams are in phase",
+            leaves_out: "the object's reflectance, absorption, bounces, reciprocity; the specular part returns all light, beams in \
+                         phase up to twice that, and the diffuse term comes on top",
         }
     }
 
@@ -173,7 +199,9 @@ impl Model for GranierHeidrich {
         let (specular, diffuse) = match (self.film(stack), stack.layers.first()) {
             (Some(film), _) => {
                 let [e0, e1] = film.exponents;
-                (film.superpose(film.beams(wi, wo), [scale(e0), scale(e1)]), film.diffuse())
+                let Beams { reflected, transmitted, phase, compression } = film.beams(wi, wo);
+                let (r, t) = (scale(e0) * reflected, scale(e1) * compression * transmitted);
+                (film.superpose(r, t, phase), film.diffuse())
             }
             (None, Some(layer)) => {
                 let e = self.exponents.map_or_else(|| exponent(layer.surface.alpha_isotropic()), |e| e[0]);
@@ -187,6 +215,10 @@ impl Model for GranierHeidrich {
             (None, None) => (0.0, 0.0),
         };
         self.specular_weight * specular + base * diffuse * FRAC_1_PI * wi.z
+    }
+
+    fn with_inputs(&self, inputs: &Inputs) -> Option<Box<dyn Model>> {
+        Some(Box::new(Self { inner_normal: inputs.inner_normal.unwrap_or(self.inner_normal), ..*self }))
     }
 }
 

@@ -9,18 +9,12 @@ use std::f64::consts::PI;
 use glam::{DVec2, DVec3};
 
 use crate::frame;
-use crate::model::{Model, ModelInfo};
+use crate::inputs::{Input, Inputs};
+use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::Monochrome;
 use crate::perlin::Perlin;
 use crate::voronoi::Voronoi;
-
-/// What this is, for listings: it needs a place, so that it is not one of the models that take directions alone.
-pub const INFO: ModelInfo = ModelInfo {
-    name: "heterogeneous",
-    source: "Weidlich and Wilkie 2009, section 5.2.1",
-    domain: "any model over stacks spread by Voronoi cells, glitter and noise",
-    leaves_out: "light that passes from one particle to another",
-};
+use crate::weidlich_wilkie::WeidlichWilkie;
 
 /// What is at a place: a stack by number, and its normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,6 +111,94 @@ pub fn eval(model: &dyn Model, stacks: &[Monochrome], pick: Pick, wi: DVec3, wo:
     }
 }
 
+/// How the models by name spread two stacks: number 0, and number 1, the other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pattern {
+    /// Voronoi cells, 20 per unit of length, half of them of either stack.
+    Cells,
+    /// A fifth of the Voronoi cells, 20 per unit of length, glitters: the other stack, tilted by up to 0.3 radians.
+    Glitter,
+    /// Perlin noise of three octaves, the first with 4 cells per unit of length: the other stack where it is above 0.
+    Switch,
+}
+
+impl Pattern {
+    /// All of them, in the order of listings.
+    pub const ALL: [Self; 3] = [Self::Cells, Self::Glitter, Self::Switch];
+
+    fn map(self) -> Map {
+        let cells = Voronoi { seed: 0, frequency: 20.0 };
+        match self {
+            Self::Cells => Map::Cells { cells, stacks: vec![0, 1] },
+            Self::Glitter => {
+                Map::Glitter { cells, stacks: vec![1], filled: 0.2, tilt: 0.3, under: Box::new(Map::Uniform(0)) }
+            }
+            Self::Switch => Map::Switch {
+                noise: Perlin { seed: 0, frequency: 4.0, octaves: 3 },
+                threshold: 0.0,
+                below: Box::new(Map::Uniform(0)),
+                above: Box::new(Map::Uniform(1)),
+            },
+        }
+    }
+}
+
+/// The model of Weidlich and Wilkie at a place of a pattern. [`Model::stack_index`] says which of the two stacks is there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Heterogeneous {
+    pattern: Pattern,
+    pick: Pick,
+}
+
+impl Heterogeneous {
+    /// At a texture coordinate.
+    pub fn new(pattern: Pattern, uv: DVec2) -> Self {
+        Self { pattern, pick: pattern.map().pick(uv) }
+    }
+}
+
+impl Model for Heterogeneous {
+    fn info(&self) -> ModelInfo {
+        let (name, domain, claims) = match self.pattern {
+            Pattern::Cells => {
+                ("heterogeneous", "two stacks spread by Voronoi cells, 20 per unit of length", Claims::RECIPROCAL)
+            }
+            Pattern::Glitter => (
+                "heterogeneous-glitter",
+                "one stack in a fifth of the Voronoi cells, tilted by up to 0.3 rad, over another",
+                Claims::NONE,
+            ),
+            Pattern::Switch => (
+                "heterogeneous-switch",
+                "two stacks, switched by Perlin noise of three octaves from 4 per unit of length",
+                Claims::RECIPROCAL,
+            ),
+        };
+        ModelInfo {
+            name,
+            kind: Kind::Place,
+            claims,
+            source: "Weidlich and Wilkie 2009, section 5.2.1, over eq. 3.1-3.3",
+            domain,
+            leaves_out: "what weidlich-wilkie leaves out; light that passes from one particle to another",
+            inputs: &[Input::Uv, Input::OtherStack],
+        }
+    }
+
+    fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
+        eval(&WeidlichWilkie::default(), std::slice::from_ref(stack), Pick { stack: 0, ..self.pick }, wi, wo)
+    }
+
+    fn with_inputs(&self, inputs: &Inputs) -> Option<Box<dyn Model>> {
+        let place = inputs.uv.map_or(*self, |uv| Self::new(self.pattern, uv));
+        Some(Box::new(place))
+    }
+
+    fn stack_index(&self) -> usize {
+        self.pick.stack
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -171,5 +253,41 @@ mod tests {
             assert!((1700..3300).contains(&count), "{counts:?}");
         }
         assert_eq!(cells(1, &[]).pick(DVec2::ZERO).stack, 0);
+    }
+
+    #[test]
+    fn patterns_use_both_stacks_and_only_glitter_tilts() {
+        for pattern in Pattern::ALL {
+            let picks: Vec<Pick> = places().map(|uv| Heterogeneous::new(pattern, uv).pick).collect();
+            let others = picks.iter().filter(|pick| pick.stack == 1).count();
+            let expected = if pattern == Pattern::Glitter { 1000..3000 } else { 3500..6500 };
+            assert!(expected.contains(&others), "{pattern:?}: {others}");
+            let tilted = picks.iter().filter(|pick| pick.normal != DVec3::Z).count();
+            assert_eq!(tilted, if pattern == Pattern::Glitter { others } else { 0 }, "{pattern:?}");
+        }
+    }
+
+    /// A flat particle is the model; a tilted one the model in its frame.
+    #[test]
+    fn what_is_picked_is_evaluated() {
+        use crate::monochrome::{MonochromeBelow, MonochromeLayer};
+        use luthier_optics::stack::{Distribution, Surface};
+        let below = MonochromeBelow::Conductor { ior: num_complex::Complex64::new(0.2, 3.0) };
+        let surface = Surface::isotropic(Distribution::Ggx, 0.3);
+        let layers = vec![MonochromeLayer { surface, above: 1.0, films: Vec::new(), below }];
+        let stack = Monochrome { exterior: 1.0, layers };
+        let (wi, wo) = (DVec3::new(0.3, 0.2, 0.8).normalize(), DVec3::new(-0.1, 0.3, 0.9).normalize());
+        let flat = WeidlichWilkie::default().eval(&stack, wi, wo);
+        for uv in places() {
+            let place = Heterogeneous::new(Pattern::Glitter, uv);
+            let n = place.pick.normal;
+            let found = place.eval(&stack, wi, wo);
+            if n == DVec3::Z {
+                assert_eq!(found, flat);
+            } else {
+                let expected = WeidlichWilkie::default().eval(&stack, frame::local(n, wi), frame::local(n, wo));
+                assert_eq!(found, expected);
+            }
+        }
     }
 }

@@ -10,6 +10,9 @@
 //! Out of scope: reading material files, tables, devices.
 
 pub mod belcour;
+pub mod closed_form;
+pub mod densities;
+pub mod diffuse;
 pub mod directional_albedo;
 pub mod elek;
 pub mod elek_model;
@@ -17,13 +20,18 @@ pub mod facets;
 pub mod flakes;
 pub mod fluorescence;
 pub mod frame;
+pub mod furnace;
 pub mod granier_heidrich;
 mod hash;
 pub mod heterogeneous;
+pub mod inputs;
+pub mod interface_fresnel;
 pub mod layered_mc;
+mod memo;
 pub mod microfacet;
 pub mod model;
 pub mod monochrome;
+pub mod normals;
 pub mod oren_nayar;
 pub mod patina;
 pub mod perlin;
@@ -34,6 +42,7 @@ pub mod registry;
 pub mod statistics;
 pub mod terms;
 pub mod textured;
+pub mod transfer_matrix;
 pub mod voronoi;
 pub mod weidlich_wilkie;
 pub mod weidlich_wilkie_corrected;

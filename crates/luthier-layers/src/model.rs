@@ -1,7 +1,10 @@
 //! Models by name.
 
 use glam::DVec3;
+use luthier_optics::Rgb;
 
+use crate::furnace;
+use crate::inputs::{Input, Inputs};
 use crate::layered_mc::Estimate;
 use crate::monochrome::Monochrome;
 
@@ -10,12 +13,69 @@ use crate::monochrome::Monochrome;
 pub struct ModelInfo {
     /// The name by which `luthier eval --model` reaches it.
     pub name: &'static str,
+    /// What sort of model.
+    pub kind: Kind,
+    /// Laws that it keeps.
+    pub claims: Claims,
     /// Paper and equations.
     pub source: &'static str,
     /// Stacks and parameters for which it is valid.
     pub domain: &'static str,
     /// What it leaves out.
     pub leaves_out: &'static str,
+    /// What it takes besides a stack and two directions.
+    pub inputs: &'static [Input],
+}
+
+/// Sorts of models, in the order of listings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// One surface: a single interface, or the diffuse base.
+    Surface,
+    /// A whole stack.
+    Layered,
+    /// A whole stack that looks different from place to place.
+    Place,
+    /// The density of a sampling method in solid angle, in place of `f cos_theta_i`.
+    Density,
+    /// Right by construction: what the others are judged by.
+    Reference,
+}
+
+impl Kind {
+    /// All of them, in the order of listings.
+    pub const ALL: [Self; 5] = [Self::Surface, Self::Layered, Self::Place, Self::Density, Self::Reference];
+
+    /// The name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Surface => "surface",
+            Self::Layered => "layered",
+            Self::Place => "place",
+            Self::Density => "density",
+            Self::Reference => "reference",
+        }
+    }
+}
+
+/// Laws of reflection that a model keeps for all stacks of its domain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Claims {
+    /// `f(wi, wo) = f(wo, wi)`, f without the cosine.
+    pub reciprocal: bool,
+    /// The directional albedo is at most 1.
+    pub conserves_energy: bool,
+}
+
+impl Claims {
+    /// Both.
+    pub const BOTH: Self = Self { reciprocal: true, conserves_energy: true };
+    /// Reciprocity alone.
+    pub const RECIPROCAL: Self = Self { reciprocal: true, conserves_energy: false };
+    /// Energy alone.
+    pub const ENERGY: Self = Self { reciprocal: false, conserves_energy: true };
+    /// Neither.
+    pub const NONE: Self = Self { reciprocal: false, conserves_energy: false };
 }
 
 /// A reflectance model that evaluates at one wavelength.
@@ -27,9 +87,31 @@ pub trait Model: Sync {
     /// is at or below the horizon; finite for all unit directions.
     fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64;
 
+    /// The model's own colour, for one whose spectral colour is not the sum over the wavelengths: linear Rec.709, D65 white.
+    /// `channels` are wavelengths in nm taken as R, G and B, and the stack at each.
+    fn eval_rgb(&self, _channels: &[(f64, Monochrome); 3], _wi: DVec3, _wo: DVec3) -> Option<Rgb> {
+        None
+    }
+
     /// The model as an estimator, if its values are means of random samples.
     fn estimator(&self) -> Option<&dyn Estimator> {
         None
+    }
+
+    /// The model with other inputs in place of its own; `None` for one that takes none. Inputs that it does not take (see
+    /// [`ModelInfo::inputs`]) are of no consequence.
+    fn with_inputs(&self, _inputs: &Inputs) -> Option<Box<dyn Model>> {
+        None
+    }
+
+    /// Which of several stacks the model evaluates, for one that spreads them over places.
+    fn stack_index(&self) -> usize {
+        0
+    }
+
+    /// The stack of a white furnace, see [`furnace`].
+    fn lossless(&self, stack: &Monochrome) -> Monochrome {
+        furnace::lossless(stack)
     }
 }
 

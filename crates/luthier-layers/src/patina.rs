@@ -5,7 +5,8 @@ use std::f64::consts::FRAC_1_PI;
 use glam::DVec3;
 
 use crate::elek_model;
-use crate::model::{Model, ModelInfo};
+use crate::inputs::{Input, Inputs};
+use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::Monochrome;
 
 /// Patina over the layers of a stack, at one wavelength (Elek 2010, section 4.2): the stack's first layer is the patina.
@@ -17,7 +18,8 @@ pub struct Patina {
     pub extent: f64,
     /// Softness of its boundary, 0..=1.
     pub transition: f64,
-    /// Diffuse reflectance that stands for scattering in it.
+    /// Diffuse reflectance that stands for scattering in it. The paper multiplies it by what the absorption spectrum leaves over, in a
+    /// line of code that is lost; here the product is given.
     pub diffuse_albedo: f64,
     /// Slope parameter of the layer below where it has grown; `None` leaves that layer as it is.
     pub base_alpha: Option<f64>,
@@ -99,6 +101,9 @@ impl Model for PatinaAt {
     fn info(&self) -> ModelInfo {
         ModelInfo {
             name: "patina",
+            kind: Kind::Place,
+            claims: Claims::RECIPROCAL,
+            inputs: &[Input::Extent, Input::Map],
             source: "Elek 2010, section 4.2",
             domain: "a first layer that has grown over the rest; half grown, diffuse reflectance 0.3",
             leaves_out: "what Elek's model leaves out; scattering in the patina is a Lambert term",
@@ -107,6 +112,11 @@ impl Model for PatinaAt {
 
     fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
         self.patina.eval(stack, self.map, wi, wo)
+    }
+
+    fn with_inputs(&self, inputs: &Inputs) -> Option<Box<dyn Model>> {
+        let patina = Patina { extent: inputs.extent.unwrap_or(self.patina.extent), ..self.patina };
+        Some(Box::new(Self { patina, map: inputs.map.unwrap_or(self.map) }))
     }
 }
 

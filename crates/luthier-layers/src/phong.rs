@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_1_PI, PI};
 use glam::DVec3;
 
 use crate::facets::ALPHA_MIN;
-use crate::model::{Model, ModelInfo};
+use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 use crate::plane_stack::seen_from_above;
 
@@ -63,9 +63,12 @@ impl Model for Phong {
     fn info(&self) -> ModelInfo {
         ModelInfo {
             name: "phong",
+            kind: Kind::Surface,
+            claims: Claims::NONE,
             source: "Phong 1975; the single-layer shader of Elek 2010, Table 1",
             domain: "a visual stand-in for any stack",
             leaves_out: "Fresnel, absorption at an angle, reciprocity: everything but one lobe and one diffuse term",
+            inputs: &[],
         }
     }
 

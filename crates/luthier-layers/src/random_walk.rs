@@ -6,8 +6,9 @@
 
 use glam::DVec3;
 
+use crate::furnace;
 use crate::layered_mc::{Estimate, Interface, InterfaceMode, Side, Sided, Stream, both_above, mixed_seed};
-use crate::model::{Estimator, Model, ModelInfo};
+use crate::model::{Claims, Estimator, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeLayer};
 
 /// Walks between the facets of one interface. The same fields give the same numbers.
@@ -68,9 +69,12 @@ impl Model for RandomWalk {
     fn info(&self) -> ModelInfo {
         ModelInfo {
             name: "random-walk",
+            kind: Kind::Reference,
+            claims: Claims::BOTH,
             source: "Heitz, Hanika, d'Eon and Dachsbacher 2016",
             domain: "one rough interface; an estimate, with noise",
             leaves_out: "everything below the top interface; smooth interfaces; polarisation between facets",
+            inputs: &[],
         }
     }
 
@@ -80,6 +84,10 @@ impl Model for RandomWalk {
 
     fn estimator(&self) -> Option<&dyn Estimator> {
         Some(self)
+    }
+
+    fn lossless(&self, stack: &Monochrome) -> Monochrome {
+        furnace::lossless_interface(stack)
     }
 }
 

@@ -1,12 +1,18 @@
 //! All models by name.
 
+use glam::DVec2;
+
 use crate::belcour::Belcour;
+use crate::closed_form::ClosedForm;
+use crate::densities::Density;
+use crate::diffuse::{Lambert, OrenNayar};
 use crate::elek_model::Elek;
-use crate::facets::Masking;
 use crate::flakes::FlakeMean;
+use crate::fluorescence::Fluorescence;
 use crate::granier_heidrich::GranierHeidrich;
+use crate::heterogeneous::{Heterogeneous, Pattern};
 use crate::layered_mc::{InterfaceMode, LayeredMc};
-use crate::microfacet::Microfacet;
+use crate::microfacet::{Microfacet, VARIANTS};
 use crate::model::Model;
 use crate::patina::PatinaAt;
 use crate::phong::Phong;
@@ -16,28 +22,38 @@ use crate::weidlich_wilkie::{Refraction, Transmission, WeidlichWilkie};
 use crate::weidlich_wilkie_corrected::WeidlichWilkieCorrected;
 use crate::yamaguchi::Yamaguchi;
 
-/// Every model, in the order of listings.
+/// Every model, in the order of listings: by kind.
 pub fn models() -> Vec<Box<dyn Model>> {
-    vec![
-        Box::new(Phong),
-        Box::new(Microfacet { masking: Masking::Smith }),
-        Box::new(Microfacet { masking: Masking::VCavity }),
-        Box::new(Elek),
-        Box::new(FlakeMean::default()),
-        Box::new(PatinaAt::default()),
-        Box::new(WeidlichWilkie::default()),
+    let microfacets =
+        VARIANTS.iter().map(|(_, components, _)| Box::new(Microfacet::new(*components)) as Box<dyn Model>);
+    let heterogeneous =
+        Pattern::ALL.map(|pattern| Box::new(Heterogeneous::new(pattern, DVec2::ZERO)) as Box<dyn Model>);
+    let densities = Density::ALL.map(|density| Box::new(density) as Box<dyn Model>);
+    let mut models: Vec<Box<dyn Model>> = microfacets.collect();
+    models.extend([Box::new(Lambert) as Box<dyn Model>, Box::new(OrenNayar), Box::new(Phong)]);
+    models.extend([
+        Box::new(WeidlichWilkie::default()) as Box<dyn Model>,
         Box::new(WeidlichWilkie { transmission: Transmission::Directions, ..WeidlichWilkie::default() }),
         Box::new(WeidlichWilkie { refraction: Refraction::Facet, ..WeidlichWilkie::default() }),
         Box::new(WeidlichWilkieCorrected::new()),
+        Box::new(Elek),
         Box::new(GranierHeidrich::default()),
         Box::new(Belcour::new(Follow::Eye)),
         Box::new(Belcour::new(Follow::HalfVector)),
         Box::new(Yamaguchi::new(Follow::Eye)),
         Box::new(Yamaguchi::new(Follow::HalfVector)),
-        Box::new(RandomWalk::new()),
+        Box::new(Fluorescence),
+    ]);
+    models.extend([Box::new(FlakeMean::default()) as Box<dyn Model>, Box::new(PatinaAt::default())]);
+    models.extend(heterogeneous);
+    models.extend(densities);
+    models.extend([
+        Box::new(RandomWalk::new()) as Box<dyn Model>,
         Box::new(LayeredMc::new(InterfaceMode::SmithWalk)),
         Box::new(LayeredMc::new(InterfaceMode::OneFacet)),
-    ]
+        Box::new(ClosedForm::new()),
+    ]);
+    models
 }
 
 /// The model of a name.
@@ -56,6 +72,8 @@ mod tests {
             assert!(!names[..i].contains(name), "{name} twice");
             assert_eq!(model(name).map(|model| model.info().name), Some(*name));
         }
+        let kinds: Vec<_> = models().iter().map(|model| model.info().kind).collect();
+        assert!(kinds.is_sorted(), "{kinds:?}");
         assert!(model("").is_none() && model("Phong").is_none());
     }
 }

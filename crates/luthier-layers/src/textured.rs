@@ -1,9 +1,11 @@
 //! Texture samples in front of any model.
 
 use glam::DVec3;
+use luthier_optics::Rgb;
 
 use crate::frame;
-use crate::model::Model;
+use crate::layered_mc::Estimate;
+use crate::model::{Estimator, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 
 /// What normal, roughness and thickness textures say about one place (Elek 2010, Algorithm 1, line 2, and section 3).
@@ -51,6 +53,61 @@ impl TextureSample {
     }
 }
 
+/// A model at a place with textures.
+pub struct Textured {
+    /// What the textures say there.
+    pub sample: TextureSample,
+    /// The model.
+    pub model: Box<dyn Model>,
+}
+
+impl Model for Textured {
+    fn info(&self) -> ModelInfo {
+        self.model.info()
+    }
+
+    fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
+        self.sample.eval(self.model.as_ref(), stack, wi, wo)
+    }
+
+    fn eval_rgb(&self, channels: &[(f64, Monochrome); 3], wi: DVec3, wo: DVec3) -> Option<Rgb> {
+        let here = channels.each_ref().map(|(nm, stack)| (*nm, self.sample.apply(stack)));
+        let [wi_local, wo_local] = [wi, wo].map(|w| frame::local(self.sample.normal, w));
+        let seen = wi.z > 0.0 && wo.z > 0.0;
+        self.model.eval_rgb(&here, wi_local, wo_local).map(|rgb| if seen { rgb } else { [0.0; 3] })
+    }
+
+    fn estimator(&self) -> Option<&dyn Estimator> {
+        self.model.estimator().map(|_| self as &dyn Estimator)
+    }
+
+    fn stack_index(&self) -> usize {
+        self.model.stack_index()
+    }
+
+    fn lossless(&self, stack: &Monochrome) -> Monochrome {
+        self.model.lossless(stack)
+    }
+}
+
+/// Of an estimator; the albedo is what leaves the tilted surface upward, whether or not the flat one hides it.
+impl Estimator for Textured {
+    fn eval_with_error(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> Estimate {
+        match self.model.estimator() {
+            Some(own) if wi.z > 0.0 && wo.z > 0.0 => {
+                let [wi, wo] = [wi, wo].map(|w| frame::local(self.sample.normal, w));
+                own.eval_with_error(&self.sample.apply(stack), wi, wo)
+            }
+            _ => Estimate::exact(self.eval(stack, wi, wo)),
+        }
+    }
+
+    fn albedo_with_error(&self, stack: &Monochrome, wo: DVec3) -> Estimate {
+        let wo = frame::local(self.sample.normal, wo);
+        self.model.estimator().map_or(Estimate::exact(0.0), |own| own.albedo_with_error(&self.sample.apply(stack), wo))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -91,5 +148,29 @@ mod tests {
         };
         let expected = Elek.eval(&stack, wi, wo);
         assert!((turned.eval(&Elek, &stack, back(wi), back(wo)) / expected - 1.0).abs() < 1e-12);
+    }
+
+    /// As a model it is the same, estimators keep their error, and colour of its own is that of the film at the place.
+    #[test]
+    fn a_textured_model_is_the_model_at_the_place() {
+        use crate::interface_fresnel::Fresnel;
+        use crate::layered_mc::{InterfaceMode, LayeredMc};
+        use crate::microfacet::{Components, Microfacet};
+        let (wi, wo) = (DVec3::new(0.3, 0.0, 0.7).normalize(), DVec3::new(-0.1, 0.2, 0.7).normalize());
+        let sample = TextureSample { alpha_factor: 0.5, film_factor: 2.0, ..TextureSample::NONE };
+        let (stack, here) = (coated(0.4, 0.1, 0.2), coated(0.2, 0.1, 0.4));
+        let reference = LayeredMc { samples: 64, ..LayeredMc::new(InterfaceMode::SmithWalk) };
+        let textured = Textured { sample, model: Box::new(reference) };
+        let estimator = textured.estimator().unwrap();
+        assert_eq!(estimator.eval_with_error(&stack, wi, wo), reference.eval_with_error(&here, wi, wo));
+        assert_eq!(estimator.albedo_with_error(&stack, wo), reference.albedo_with_error(&here, wo));
+        assert_eq!(textured.eval(&stack, wi, wo), reference.eval(&here, wi, wo));
+
+        let prefiltered = || Microfacet::new(Components { fresnel: Fresnel::BelcourBarla, ..Components::PLAIN });
+        let channels = |stack: &Monochrome| [645.0, 525.0, 445.0].map(|nm| (nm, stack.clone()));
+        let textured = Textured { sample, model: Box::new(prefiltered()) };
+        let found = textured.eval_rgb(&channels(&stack), wi, wo);
+        assert_eq!(found, prefiltered().eval_rgb(&channels(&here), wi, wo));
+        assert!(found.is_some() && textured.estimator().is_none());
     }
 }

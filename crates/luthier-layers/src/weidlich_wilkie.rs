@@ -20,7 +20,7 @@ use glam::DVec3;
 
 use crate::elek::refract;
 use crate::facets::{Facets, Masking};
-use crate::model::{Model, ModelInfo};
+use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 use crate::oren_nayar;
 
@@ -87,9 +87,12 @@ impl Model for WeidlichWilkie {
         };
         ModelInfo {
             name,
+            kind: Kind::Layered,
+            claims: Claims::RECIPROCAL,
             source: "Weidlich and Wilkie 2009, eq. 3.1-3.3; Elek 2010, eq. 2-4",
             domain,
             leaves_out: "1/n^2 (up to n^2 times too bright), bounces between layers, blur by refraction",
+            inputs: &[],
         }
     }
 

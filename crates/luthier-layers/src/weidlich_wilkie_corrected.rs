@@ -21,7 +21,7 @@ use luthier_optics::quadrature::gauss_legendre;
 
 use crate::elek::refract;
 use crate::facets::{Facets, Masking};
-use crate::model::{Model, ModelInfo};
+use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 use crate::oren_nayar;
 use crate::plane_stack::{diffuse_return, seen_from_above, seen_from_below};
@@ -52,9 +52,12 @@ impl Model for WeidlichWilkieCorrected {
     fn info(&self) -> ModelInfo {
         ModelInfo {
             name: "weidlich-wilkie-corrected",
+            kind: Kind::Layered,
+            claims: Claims::BOTH,
             source: "Weidlich and Wilkie 2009, eq. 3.1-3.2, with 1/n^2 and the geometric series of inner bounces",
             domain: "any stack; exact for smooth interfaces over a mirror or Lambert's surface; alpha from 1e-4",
             leaves_out: "blur by refraction and by inner bounces; interfaces transmit and return as if smooth",
+            inputs: &[],
         }
     }
 

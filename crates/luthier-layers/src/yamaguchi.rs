@@ -7,11 +7,17 @@
 //!
 //! The paper gives two layers and refers to the adding of Belcour for more; so does this. Energies are those of
 //! isotropic surfaces with the geometric mean of the slope parameters, exact FGD-infinity in place of the paper's
-//! approximation.
+//! approximation, or that of a table through [`evaluate`](crate::statistics::evaluate::evaluate).
+//!
+//! The paper's Jacobians are `2 cos theta_i` for reflection and `(cos theta_i - eta cos theta_t)/eta` for refraction, eta being n_i/n_t
+//! in its eq. 2 and n_t/n_i in its eq. 5. Reflection's drops out, because h is a fit to reflected light. Refraction's
+//! over `2 cos theta_t` is Belcour's `s = 1/2 |1 - cos theta_i / (n12 cos theta_t)|`, with the eta of eq. 5. The widening of
+//! light that enters, sigma/eta in eq. 2, is backwards; as in Belcour's adding, spreads grow by
+//! `j = n12 cos theta_t / cos theta_i` on the way out.
 
 use glam::DVec3;
 
-use crate::model::{Model, ModelInfo};
+use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::Monochrome;
 use crate::statistics::evaluate::{Follow, Memory};
 use crate::statistics::spread::Covariance;
@@ -38,6 +44,12 @@ impl Model for Yamaguchi {
         };
         ModelInfo {
             name,
+            kind: Kind::Layered,
+            claims: match self.follow {
+                Follow::Eye => Claims::ENERGY,
+                Follow::HalfVector => Claims::RECIPROCAL,
+            },
+            inputs: &[],
             source: match self.follow {
                 Follow::Eye => "Yamaguchi et al. 2019, eq. 1-5 and sec. 2.1, with the adding of Belcour 2018",
                 Follow::HalfVector => "Yamaguchi et al. 2019, at the angle against the half vector",
@@ -49,7 +61,8 @@ impl Model for Yamaguchi {
                     "reciprocity, anisotropy of energies, shear and skew of lobes, light that lobes lose to masking"
                 }
                 Follow::HalfVector => {
-                    "anisotropy of energies, shear and skew of lobes, light that lobes lose to masking"
+                    "conservation of energy at grazing angles, anisotropy of energies, shear and skew of lobes, light that \
+                     lobes lose to masking"
                 }
             },
         }

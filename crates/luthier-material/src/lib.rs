@@ -35,3 +35,4 @@ pub use effects::{Effects, FlakeSource, Flakes, Patina};
 pub use material::{FilmVariation, LayerExtras, Maps, Material, VariationSource};
 pub use parse::{Parsed, parse};
 pub use schema::schema;
+pub use suggest::did_you_mean;

@@ -1,6 +1,6 @@
 /// The candidate that a misspelt word most likely stands for, if one is close enough: a few edits away, or the word
 /// continued (`thickness` for `thickness_um`).
-pub(crate) fn did_you_mean<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
+pub fn did_you_mean<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     let word = word.to_lowercase().replace('-', "_");
     let distance = |candidate: &str| {
         let candidate = candidate.to_lowercase().replace('-', "_");

@@ -1,6 +1,7 @@
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::constants::{Dataset, dataset, datasets};
+use luthier_optics::f0_table::{DIELECTRIC_F0, DielectricF0, F0_TABLE, F0Entry};
 use luthier_optics::interface::Interface;
 use luthier_optics::ior::Ior;
 use serde_json::{Value, json};
@@ -11,13 +12,16 @@ use crate::output::print;
 
 /// Lists the built-in optical constants, or shows one set.
 pub(crate) fn run(options: &IorOptions) -> Outcome {
+    if options.f0 {
+        return print(&if options.json { format!("{:#}", f0_tables()) } else { f0_text() });
+    }
     let Some(name) = &options.name else {
         let text = if options.json { format!("{:#}", Value::from_iter(datasets().iter().map(head))) } else { list() };
         return print(&text);
     };
     let set = dataset(name).ok_or_else(|| {
         let known: Vec<&str> = datasets().iter().map(|d| d.id).collect();
-        Failure::Input(anyhow::anyhow!("no data set `{name}`; known: {}", known.join(", ")))
+        Failure::unknown("data set", name, &known)
     })?;
     print(&if options.json { format!("{:#}", whole(set)) } else { show(set) })
 }
@@ -85,4 +89,52 @@ fn whole(set: &Dataset) -> Value {
     value["samples"] =
         set.ior.samples().iter().map(|s| json!({"wavelength_nm": s.wavelength_nm, "n": s.n, "k": s.k})).collect();
     value
+}
+
+/// The index in vacuum of a dielectric of some F0.
+fn index_of(f0: f64) -> f64 {
+    let r = f0.sqrt();
+    (1.0 + r) / (1.0 - r)
+}
+
+fn f0_text() -> String {
+    let triple = |rgb: Rgb| format!("{:>7.3} {:>6.3} {:>6.3}", rgb[0], rgb[1], rgb[2]);
+    let mut out = format!(
+        "F0 in air, linear sRGB\n{:<18} {:<22} {:<8} {:<22} difference\n",
+        "metal", "printed in the lecture", "data set", "computed under D65"
+    );
+    for entry in F0_TABLE {
+        let [computed, difference] =
+            [entry.computed(), entry.difference()].map(|rgb| rgb.map_or_else(String::new, triple));
+        let printed = triple(entry.linear);
+        out.push_str(&format!("{:<18} {printed:<22} {:<8} {computed:<22} {difference}\n", entry.name, entry.dataset));
+    }
+    out.push_str(&format!("\n{:<18} {:<22} index that belongs to it\n", "dielectric", "printed in the lecture"));
+    for class in DIELECTRIC_F0 {
+        let [[low, high], [from, to]] = [class.linear, class.linear.map(index_of)];
+        let printed = format!("{low:>7.3} to {high:.3}");
+        out.push_str(&format!("{:<18} {printed:<22} {from:.3} to {to:.3}\n", class.name));
+    }
+    out
+}
+
+fn f0_tables() -> Value {
+    let metal = |entry: &F0Entry| {
+        json!({
+            "name": entry.name,
+            "printed_linear": entry.linear,
+            "printed_srgb": entry.srgb,
+            "dataset": entry.dataset,
+            "computed_linear": entry.computed(),
+            "difference": entry.difference(),
+        })
+    };
+    let dielectric = |class: &DielectricF0| {
+        let index = class.linear.map(index_of);
+        json!({"name": class.name, "printed_linear": class.linear, "printed_srgb": class.srgb, "index": index})
+    };
+    json!({
+        "metals": F0_TABLE.iter().map(metal).collect::<Value>(),
+        "dielectrics": DIELECTRIC_F0.iter().map(dielectric).collect::<Value>(),
+    })
 }

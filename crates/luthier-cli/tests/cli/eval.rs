@@ -1,4 +1,4 @@
-//! `models` and `eval`.
+//! `eval`: directions, colour, errors.
 
 use std::f64::consts::PI;
 
@@ -11,29 +11,12 @@ fn numbers(line: &str) -> Vec<f64> {
     line.split(',').map(|field| field.parse().unwrap()).collect()
 }
 
-#[test]
-fn the_list_names_every_model() {
-    let workshop = Workshop::new();
-    let text = workshop.run(&["models"]).exits(0).stdout;
-    let json = workshop.run(&["models", "--json"]).exits(0).json();
-    let names: Vec<&str> = json.as_array().unwrap().iter().map(|model| model["name"].as_str().unwrap()).collect();
-    assert_eq!(text.lines().filter(|line| !line.starts_with(' ') && !line.is_empty()).collect::<Vec<_>>(), names);
-    for needed in ["phong", "microfacet", "elek", "weidlich-wilkie", "belcour", "yamaguchi", "layered-mc"] {
-        assert!(names.contains(&needed), "{needed}");
-    }
-    for model in json.as_array().unwrap() {
-        for key in ["source", "domain", "leaves_out"] {
-            assert!(model[key].as_str().is_some_and(|text| !text.is_empty()), "{}: {key}", model["name"]);
-        }
-    }
-}
-
 /// A Lambertian surface: f cos theta_i is albedo cos theta_i / pi, from everywhere and in every mode.
 #[test]
 fn a_matte_surface_is_lambertian() {
     let workshop = Workshop::with(&[("m.toml", &matte("m"))]);
     let expected = [0.6, 0.3, 0.1].map(|albedo| albedo * 0.5 / PI);
-    for mode in [&[][..], &["--three-wavelengths"]] {
+    for mode in [&[][..], &["--rgb"], &["--three-wavelengths"]] {
         let args = ["eval", "m.toml", "--model", "elek", "--wi", "60,10", "--wo", "30,-50"];
         let text = workshop.run(&[&args, mode].concat()).exits(0).stdout;
         let [head, row] = text.lines().collect::<Vec<_>>()[..] else { panic!("{text}") };
@@ -123,7 +106,13 @@ fn what_eval_refuses() {
     let workshop = Workshop::with(&[("m.toml", &matte("m"))]);
     let pair = ["--wi", "0,0", "--wo", "0,0"];
     let run = |args: &[&str]| workshop.run(&[&["eval"], args].concat());
-    run(&[&["m.toml", "--model", "oracle"], &pair[..]].concat()).fails(1, &["`oracle`", "belcour", "layered-mc"]);
+    run(&[&["m.toml", "--model", "oracle"], &pair[..]].concat())
+        .fails(2, &["`oracle`; known", "belcour", "layered-mc"]);
+    run(&[&["m.toml", "--model", "belcor"], &pair[..]].concat()).fails(2, &["`belcor`; did you mean `belcour`? known"]);
+    let both = ["m.toml", "--model", "elek", "--rgb", "--wavelength", "550"];
+    run(&[&both, &pair[..]].concat()).fails(2, &["--rgb", "--wavelength"]);
+    run(&["m.toml", "--model", "elek", "--albedo", "--furnace"]).fails(2, &["--albedo", "--furnace"]);
+    run(&["m.toml", "--model", "elek", "--albedo", "--rgb"]).fails(2, &["--rgb"]);
     run(&[&["no.toml", "--model", "elek"], &pair[..]].concat()).fails(3, &["no.toml"]);
     run(&["m.toml", "--model", "elek"]).fails(2, &["required"]);
     run(&["m.toml", "--model", "elek", "--wi", "0,0"]).fails(2, &["required"]);

@@ -73,6 +73,29 @@ fn well_known_indices() {
 #[test]
 fn unknown_sets() {
     let workshop = Workshop::new();
-    workshop.run(&["ior", "unobtainium"]).fails(1, &["`unobtainium`", "au", "water"]);
-    workshop.run(&["ior", ""]).fails(1, &["``"]);
+    workshop.run(&["ior", "unobtainium"]).fails(2, &["`unobtainium`; known", "au", "water"]);
+    workshop.run(&["ior", "tio2_flim"]).fails(2, &["did you mean `tio2_film`?"]);
+    workshop.run(&["ior", ""]).fails(2, &["``"]);
+}
+
+/// Oracles: the lecture's printed gold and zinc; what the data sets give in another program's sums (zinc's red differs by 0.211).
+#[test]
+fn printed_reflectances_beside_computed_ones() {
+    let workshop = Workshop::new();
+    let json = workshop.run(&["ior", "--f0", "--json"]).exits(0).json();
+    let metals = json["metals"].as_array().unwrap();
+    assert_eq!((metals.len(), json["dielectrics"].as_array().unwrap().len()), (12, 4));
+    let metal = |name: &str| metals.iter().find(|metal| metal["name"] == name).unwrap();
+    assert_eq!(metal("Gold")["printed_linear"].as_array().unwrap()[0], 1.022);
+    let zinc = metal("Zinc")["difference"][0].as_f64().unwrap();
+    assert!((zinc - 0.211).abs() < 6.5e-4, "{zinc}");
+    // 0.04 is the F0 of 1.5.
+    let plastic = json["dielectrics"][1]["index"][0].as_f64().unwrap();
+    assert!((plastic - 1.5).abs() < 1e-12, "{plastic}");
+    let text = workshop.run(&["ior", "--f0"]).exits(0).stdout;
+    for entry in metals.iter().chain(json["dielectrics"].as_array().unwrap()) {
+        let name = entry["name"].as_str().unwrap();
+        assert_eq!(text.lines().filter(|line| line.starts_with(name)).count(), 1, "{name}");
+    }
+    workshop.run(&["ior", "au", "--f0"]).fails(2, &["--f0"]);
 }

@@ -80,3 +80,34 @@ pub(crate) fn doubtful(name: &str) -> String {
     let base = "[[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\n";
     format!("schema = 1\nname = \"{name}\"\n\n{top}\n{base}{SMALL}")
 }
+
+/// A film on a rough coat on a diffuse base: every model has something to say of it.
+pub(crate) fn filmed(name: &str) -> String {
+    format!(
+        "schema = 1\nname = \"{name}\"
+
+[[layer]]
+type = \"thin-film\"
+ior = 1.33
+thickness_nm = 300
+
+[[layer]]
+type = \"dielectric\"
+ior = 1.5
+alpha = 0.2
+thickness_um = 1
+absorption_per_um = [0.1, 0.2, 0.3]
+
+[[layer]]
+type = \"diffuse\"
+albedo = 0.5
+sigma = 0.35
+{SMALL}"
+    )
+}
+
+/// A smooth coat without absorption on a diffuse base of albedo 0.8.
+pub(crate) fn smooth_coat(name: &str) -> String {
+    let coat = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nsmooth = true\n";
+    format!("schema = 1\nname = \"{name}\"\n\n{coat}\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n{SMALL}")
+}

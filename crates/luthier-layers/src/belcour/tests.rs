@@ -8,7 +8,10 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::monochrome::{MonochromeBelow, MonochromeLayer};
+use crate::statistics::adding::add;
+use crate::statistics::energy::Energy;
 use crate::statistics::evaluate::{Prepared, evaluate};
+use crate::statistics::spread::{alpha, variance};
 
 fn coated(coat: f64, base: f64, below: MonochromeBelow) -> Monochrome {
     let surface = |alpha| Surface::isotropic(Distribution::Ggx, alpha);
@@ -70,7 +73,7 @@ fn albedo_is_at_most_one_and_near_the_energy_for_narrow_lobes() {
     }
     let stack = coated(0.02, 0.03, gold());
     let prepared = Prepared::new(&stack);
-    let energy = crate::statistics::adding::add::<f64>(&stack, prepared.energy(), 0.8).reflected();
+    let energy = add::<f64>(&stack, prepared.energy(), 0.8).reflected();
     let got = albedo(&stack, Follow::Eye, 0.8);
     assert!((got - energy).abs() < 0.01 * energy, "{got} against {energy}");
 }
@@ -95,7 +98,6 @@ fn a_table_can_stand_in_for_the_energies() {
     let (wi, wo) = (direction(0.7, 0.3), direction(0.6, 3.0));
     let exact = prepared.eval::<f64>(Follow::Eye, wi, wo);
     // A coarse table of FGD-infinity for the two layers, read linearly.
-    use crate::statistics::energy::Energy;
     let table: Vec<Vec<f64>> =
         (0..2).map(|layer| (0..64).map(|i| prepared.energy().fgd(layer, f64::from(i) / 63.0, 0.2)).collect()).collect();
     let read = |layer: usize, cos: f64, _alpha: f64| {
@@ -106,6 +108,52 @@ fn a_table_can_stand_in_for_the_energies() {
     };
     let got = evaluate::<f64>(&stack, &read, None, Follow::Eye, wi, wo);
     assert!((got - exact).abs() < 2e-3 * exact, "{got} against {exact}");
+}
+
+/// Fresnel without total reflection: the two-layer formulas.
+struct Plain<'a>(&'a Monochrome);
+
+impl Energy for Plain<'_> {
+    fn fgd(&self, layer: usize, cos: f64, _: f64) -> f64 {
+        self.0.layers[layer].reflectance(cos)
+    }
+
+    fn escaping(&self, _: f64, _: f64, _: f64) -> f64 {
+        1.0
+    }
+}
+
+/// What the paper's code does differently: one m for all channels. Slopes of the base's lobe against that for the mean of m, by the
+/// two-layer formula; gold at 690, 550 and 450 nm below a coat of n = 1.5, both of alpha 0.2.
+#[test]
+fn bounces_by_wavelength_differ_little_from_their_mean() {
+    for (cos_i, expected) in
+        [(1.0, [0.0121, 0.0037, -0.0160]), (0.5, [0.0174, 0.0051, -0.0233]), (0.2, [0.0256, 0.0058, -0.0384])]
+    {
+        let n = 1.5;
+        let cos_t = f64::sqrt(1.0 - (1.0 - cos_i * cos_i) / (n * n));
+        let j = n * cos_t / cos_i;
+        let stacks = [(0.16, 3.8), (0.42, 2.5), (1.56, 1.9)]
+            .map(|(re, im)| coated(0.2, 0.2, MonochromeBelow::Conductor { ior: Complex64::new(re, im) }));
+        let bounces = stacks.each_ref().map(|stack| {
+            let echo = stack.layers[0].reflectance(cos_i) * stack.layers[1].reflectance(cos_t);
+            echo / (1.0 - echo)
+        });
+        // Absorption lowers m; the formula is that without it.
+        let clear = stacks.map(|mut stack| {
+            stack.layers[0].below =
+                MonochromeBelow::Dielectric { ior: n, complex_ior: Complex64::new(n, 0.0), optical_depth: 0.0 };
+            stack
+        });
+        let m = bounces.iter().sum::<f64>() / 3.0;
+        let t12 = variance(0.1 * (1.0 - 1.0 / j).abs());
+        let t21 = variance(0.1 * (1.0 - j).abs());
+        let mean = alpha(t21 + j * (t12 + variance(0.2) * (1.0 + 2.0 * m)));
+        for (stack, expected) in clear.iter().zip(expected) {
+            let found = alpha(add::<f64>(stack, &Plain(stack), cos_i).lobes[1].spread) / mean - 1.0;
+            assert!((found - expected).abs() < 1e-4, "{cos_i}: {found} against {expected}");
+        }
+    }
 }
 
 #[test]

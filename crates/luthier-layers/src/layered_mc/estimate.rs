@@ -5,8 +5,9 @@
 pub struct Estimate {
     /// The mean.
     pub mean: f64,
-    /// Its standard error, from the spread of the samples; 0 for values that are exact. With heavy tails and few
-    /// samples it is itself an estimate that may be too low.
+    /// Its standard error, from the spread of the samples; 0 for values that are exact. Where rare paths carry much of the
+    /// value it is too low until some were met: the value of a rough dielectric off its highlight came out 0.5% low from 2e5
+    /// walks, with an error stated as 0.01%.
     pub std_err: f64,
 }
 

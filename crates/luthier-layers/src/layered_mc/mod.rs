@@ -31,7 +31,7 @@ pub(crate) use interface::Interface;
 pub(crate) use random::Stream;
 pub(crate) use rough::Sided;
 
-use crate::model::{Estimator, Model, ModelInfo};
+use crate::model::{Claims, Estimator, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 use connect::Scratch;
 use path::Interfaces;
@@ -109,12 +109,18 @@ impl Model for LayeredMc {
         match self.mode {
             InterfaceMode::SmithWalk => ModelInfo {
                 name: "layered-mc",
+                kind: Kind::Reference,
+                claims: Claims::BOTH,
+                inputs: &[],
                 source,
                 domain: "any stack; an estimate, with noise",
                 leaves_out: "light that meets smooth interfaces only; polarisation between interfaces",
             },
             InterfaceMode::OneFacet => ModelInfo {
                 name: "layered-mc-one-facet",
+                kind: Kind::Reference,
+                claims: Claims::BOTH,
+                inputs: &[],
                 source,
                 domain: "any stack; an estimate, with noise",
                 leaves_out: "bounces between facets (what is blocked is lost); light that meets smooth interfaces \

@@ -26,6 +26,9 @@ pub struct Transport<S> {
     pub lobes: Vec<Lobe<S>>,
     /// Part of the light that arrives below the last interface, slabs included: T0i.
     pub transmitted: f64,
+    /// Part of the light at the mean direction below the last interface that leaves the stack upward: Ti0. Less than T0i where
+    /// lobes of rough interfaces are totally reflected.
+    pub emerging: f64,
     /// Reflectance of the whole stack from below at the mean direction there: Ri0.
     pub from_below: f64,
     /// Cosine of the mean direction below the last interface; 0 if light is totally reflected on its way.
@@ -81,13 +84,13 @@ pub fn add<S: Spread>(stack: &Monochrome, energy: &impl Energy, cos_theta: f64) 
         lobes.push(Lobe { energy: t0i * r12 * upward, spread: spread.limited() });
 
         let MonochromeBelow::Dielectric { ior, optical_depth, .. } = layer.below else {
-            (t0i, cos_i) = (0.0, 0.0);
+            (t0i, ti0, cos_i) = (0.0, 0.0, 0.0);
             break;
         };
         let n12 = ior / layer.above;
         let cos_t_sq = (cos_i * cos_i + (n12 - 1.0) * (n12 + 1.0)) / (n12 * n12);
         if cos_t_sq <= 0.0 {
-            (t0i, cos_i) = (0.0, 0.0);
+            (t0i, ti0, cos_i) = (0.0, 0.0, 0.0);
             break;
         }
         let cos_t = cos_t_sq.sqrt().clamp(COS_THETA_MIN, 1.0);
@@ -118,7 +121,7 @@ pub fn add<S: Spread>(stack: &Monochrome, energy: &impl Energy, cos_theta: f64) 
         ti0 *= slab;
         ri0 *= slab * slab;
     }
-    Transport { lobes, transmitted: t0i, from_below: ri0, cos_theta: cos_i }
+    Transport { lobes, transmitted: t0i, emerging: ti0, from_below: ri0, cos_theta: cos_i }
 }
 
 #[cfg(test)]

@@ -21,6 +21,8 @@ pub struct DiffuseBase {
     eta: f64,
     /// Part of the base's cosine-weighted light that the layers send back down to it.
     internal: f64,
+    /// What of such light the layers let up, over what they let down: 1 for smooth ones.
+    upward: f64,
 }
 
 impl DiffuseBase {
@@ -36,12 +38,12 @@ impl DiffuseBase {
             _ => 1.0,
         };
         // A bare base is below no interface.
-        let internal = if base == 0 {
-            0.0
+        let (internal, upward) = if base == 0 {
+            (0.0, 1.0)
         } else {
             let critical_sq = ((eta - 1.0) * (eta + 1.0) / (eta * eta)).max(0.0);
             let critical = critical_sq.sqrt();
-            let mut sum = 0.0;
+            let (mut sum, mut up, mut down) = (0.0, 0.0, 0.0);
             for (x, weight) in gauss_legendre(POINTS) {
                 let beyond = critical * x;
                 sum += weight * critical * 2.0 * beyond * slab(beyond);
@@ -49,19 +51,25 @@ impl DiffuseBase {
                 let cos = critical + (1.0 - critical) * x * x;
                 let cos_outside_sq = 1.0 - eta * eta * (1.0 - cos) * (1.0 + cos);
                 if cos_outside_sq > 0.0 {
-                    let from_below = add::<f64>(stack, energy, cos_outside_sq.sqrt().min(1.0)).from_below;
-                    sum += weight * (1.0 - critical) * 2.0 * x * 2.0 * cos * from_below;
+                    let transport = add::<f64>(stack, energy, cos_outside_sq.sqrt().min(1.0));
+                    let share = weight * (1.0 - critical) * 2.0 * x * 2.0 * cos;
+                    sum += share * transport.from_below;
+                    up += share * transport.emerging;
+                    down += share * transport.transmitted;
                 }
             }
-            sum
+            (sum, if down > 0.0 { (up / down).min(1.0) } else { 1.0 })
         };
-        Some(Self { albedo, sigma, eta, internal: internal.clamp(0.0, 1.0) })
+        Some(Self { albedo, sigma, eta, internal: internal.clamp(0.0, 1.0), upward })
     }
 
     /// BRDF of the base seen through the layers, in 1/sr, from the transports of both directions at their own angles.
     ///
     /// `f = T(wi) T(wo) f_base / (n^2 (1 - rho R))`, R the diffuse reflectance from below: exact for smooth layers on Lambert.
-    /// Reciprocal.
+    ///
+    /// Through rough layers less light gets up, Ti0, than down, T0i, because the statistics count total reflection on the way up alone;
+    /// R goes with Ti0. Both T are T0i, and their means over diffuse light bring the difference in as one factor, so that the base
+    /// never returns more than enters, and all of it if it is white and nothing absorbs. Reciprocal.
     pub fn brdf<S>(&self, wi: (DVec3, &Transport<S>), wo: (DVec3, &Transport<S>)) -> f64 {
         let inside = |(w, transport): (DVec3, &Transport<S>)| {
             let cos = transport.cos_theta;
@@ -69,7 +77,7 @@ impl DiffuseBase {
             let scale = if across > 0.0 { (1.0 - cos * cos).max(0.0).sqrt() / across } else { 0.0 };
             DVec3::new(w.x * scale, w.y * scale, cos)
         };
-        let transmitted = wi.1.transmitted * wo.1.transmitted;
+        let transmitted = wi.1.transmitted * wo.1.transmitted * self.upward;
         if transmitted <= 0.0 {
             return 0.0;
         }

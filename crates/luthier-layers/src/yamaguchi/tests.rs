@@ -5,10 +5,11 @@ use num_complex::Complex64;
 use proptest::prelude::*;
 
 use super::*;
+use crate::belcour::Belcour;
 use crate::monochrome::{MonochromeBelow, MonochromeLayer};
 use crate::statistics::adding::add;
 use crate::statistics::energy::Energy;
-use crate::statistics::evaluate::evaluate;
+use crate::statistics::evaluate::{Prepared, evaluate};
 use crate::statistics::spread::variance;
 
 fn surface(alpha_x: f64, alpha_y: f64, rotation: f64) -> Surface {
@@ -92,6 +93,36 @@ fn isotropic_surfaces_give_belcour() {
             assert!((a - b).abs() < 1e-10 * b, "{a} {b}");
         }
     }
+}
+
+/// As registered, energies and total reflection included.
+#[test]
+fn isotropic_stacks_give_belcour_as_models() {
+    let stack = coated(surface(0.2, 0.2, 0.9), surface(0.3, 0.3, -0.2));
+    for follow in [Follow::Eye, Follow::HalfVector] {
+        let (ours, belcour) = (Yamaguchi::new(follow), Belcour::new(follow));
+        for (cos_i, cos_o, phi) in [(0.9, 0.8, 3.0), (0.3, 0.6, 1.0), (0.05, 0.1, PI), (1.0, 1.0, 0.0)] {
+            let (wi, wo) = (direction(cos_i, 0.0), direction(cos_o, phi));
+            let (a, b) = (ours.eval(&stack, wi, wo), belcour.eval(&stack, wi, wo));
+            assert!((a - b).abs() < 1e-10 * b, "{follow:?}: {a} {b}");
+        }
+    }
+}
+
+#[test]
+fn a_table_can_stand_in_for_the_energies() {
+    let stack = coated(surface(0.1, 0.4, 0.2), surface(0.3, 0.05, 0.5));
+    let prepared = Prepared::new(&stack);
+    let table: Vec<Vec<f64>> =
+        (0..2).map(|layer| (0..64).map(|i| prepared.energy().fgd(layer, f64::from(i) / 63.0, 0.2)).collect()).collect();
+    let read = |layer: usize, cos: f64, _: f64| {
+        let i = ((cos * 63.0) as usize).min(62);
+        table[layer][i] + (table[layer][i + 1] - table[layer][i]) * (cos * 63.0 - i as f64)
+    };
+    let (wi, wo) = (direction(0.7, 0.3), direction(0.6, 3.0));
+    let exact = prepared.eval::<Covariance>(Follow::Eye, wi, wo);
+    let got = evaluate::<Covariance>(&stack, &read, None, Follow::Eye, wi, wo);
+    assert!(exact > 0.0 && (got - exact).abs() < 2e-3 * exact, "{got} against {exact}");
 }
 
 #[test]

@@ -5,10 +5,11 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use luthier_layers::granier_heidrich::{Film, GranierHeidrich, exponent};
 use luthier_layers::model::Model;
+use luthier_layers::monochrome::Monochrome;
 use luthier_optics::fresnel::FilmLayer;
 use num_complex::Complex64;
 
-use crate::sphere::{albedo, at, mirrored};
+use crate::sphere::{at, furnace, mirrored};
 use crate::stacks::{dielectric, ggx, lambert, stack};
 
 fn film(eta: f64, waves_inside: Option<f64>) -> Film {
@@ -92,9 +93,47 @@ fn parameters_come_from_the_stack() {
     close(diffuse.eval(&granier, wi, at(10.0)), 0.7 * film.diffuse() / PI * wi.z, 1e-12);
 }
 
-/// Without interference a thick layer of n = 1.5 returns F + n^2 T at normal incidence: no 1/n^2, no object.
+/// What an eye sees of a white sky by narrow lobes. Without interference it is the coefficients of the two beams, `F + T_i T_o`, T_o
+/// at the angle inside (eq. 10). Beams in phase add `2 sqrt(F T_i T_o)` at the peaks and less around them, because the transmitted
+/// lobe is wider outside, n across and n cos_t/cos_i along the plane of incidence. Oracle: Schlick's formula, and the overlap
+/// `sqrt(2 a / (1 + a^2))` per axis of Gaussians of relative width a.
 #[test]
-fn a_thick_layer_gains_the_square_of_its_index() {
-    let thick = stack(&[(ggx(0.02), dielectric(1.5, 0.0))]);
-    close(albedo(&GranierHeidrich::default(), &thick, DVec3::Z), 0.04 + 2.25 * 0.96 * 0.96, 2e-2);
+fn narrow_lobes_carry_their_coefficients() {
+    for (theta, together, peak, seen_in_phase) in
+        [(0.0, 0.9616, 1.3456, 1.3161), (60.0, 0.9626, 1.4625, 1.3644), (80.0, 0.9759, 1.9392, 1.4827)]
+    {
+        let wo = at(theta);
+        let cos_t = (1.0 - (wo.x / 1.5) * (wo.x / 1.5)).sqrt();
+        let waves = 0.5 / cos_t;
+        let mut glossy = stack(&[(ggx(0.001), dielectric(1.5, 0.0)), (ggx(0.0), lambert(0.0))]);
+        let seen = |stack: &Monochrome| furnace(&GranierHeidrich::default(), stack, wo);
+        close(film(1.5, None).specular(mirrored(wo), wo), together, 1e-4);
+        close(seen(&glossy), together, 1e-3);
+        glossy.layers[0].films = vec![FilmLayer { ior: Complex64::new(1.5, 0.0), waves: waves / 1.5 }];
+        close(film(1.5, Some(waves)).specular(mirrored(wo), wo), peak, 1e-4);
+        let schlick = |cos: f64| 0.04 + 0.96 * (1.0 - cos).powi(5);
+        let (f, t) = (schlick(wo.z), (1.0 - schlick(wo.z)) * (1.0 - schlick(cos_t)));
+        let overlap = [1.5, 1.5 * cos_t / wo.z].map(|a: f64| (2.0 * a / (1.0 + a * a)).sqrt());
+        close(f + t + 2.0 * (f * t).sqrt() * overlap[0] * overlap[1], seen_in_phase, 1e-3);
+        close(seen(&glossy), seen_in_phase, 1e-3);
+    }
+}
+
+/// On a white object that scatters, all that enters comes back twice: mirrored, and diffuse.
+#[test]
+fn the_diffuse_term_comes_on_top() {
+    let coated = stack(&[(ggx(0.1), dielectric(1.5, 0.0)), (ggx(0.0), lambert(1.0))]);
+    close(furnace(&GranierHeidrich::default(), &coated, DVec3::Z), 1.0 + 0.04 + 0.96 * 0.96, 1e-2);
+    close(film(1.5, Some(0.0)).diffuse(), 1.560, 1e-3);
+}
+
+/// The printed lobes have height one: with the exponents of figure 4 they carry 1/91 and, wider by refraction, 1/76 of the
+/// hemisphere's 2 pi.
+#[test]
+fn printed_lobes_carry_a_small_share() {
+    let film = film(1.5, None);
+    let carried =
+        |beam: fn(&Film, DVec3) -> f64| crate::sphere::integral(DVec3::Z, 500, 48, |wi| beam(&film, wi)) / (2.0 * PI);
+    close(carried(|f, wi| f.beams(wi, DVec3::Z).reflected) / 0.04, 1.0 / 91.0, 1e-5);
+    close(carried(|f, wi| f.beams(wi, DVec3::Z).transmitted) / (0.96 * 0.96), 1.0 / 76.0, 1e-4);
 }

@@ -2,9 +2,11 @@
 
 #![expect(clippy::disallowed_methods, reason = "oracles: nothing that ships depends on them")]
 
+mod claims;
 mod energy;
 mod everywhere;
 mod granier_heidrich;
+mod random;
 mod sampling;
 mod smooth_coats;
 mod sphere;

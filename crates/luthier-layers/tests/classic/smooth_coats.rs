@@ -2,11 +2,13 @@
 
 use std::f64::consts::PI;
 
+use glam::DVec3;
 use luthier_layers::elek_model::Elek;
-use luthier_layers::facets::Masking;
-use luthier_layers::microfacet::Microfacet;
+use luthier_layers::facets::{Facets, Masking};
+use luthier_layers::microfacet::{Components, Microfacet};
 use luthier_layers::model::Model;
-use luthier_layers::monochrome::Monochrome;
+use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
+use luthier_layers::oren_nayar;
 use luthier_layers::weidlich_wilkie::{Refraction, Transmission, WeidlichWilkie};
 use luthier_layers::weidlich_wilkie_corrected::WeidlichWilkieCorrected;
 
@@ -35,7 +37,8 @@ fn over_lambert(rho: f64) -> Monochrome {
 
 /// Albedo with what lies below the first interface divided by n^2.
 fn compressed(model: &dyn Model, stack: &Monochrome, theta_deg: f64) -> f64 {
-    let top = albedo(&Microfacet { masking: Masking::VCavity }, stack, at(theta_deg));
+    let top =
+        albedo(&Microfacet::new(Components { masking: Masking::VCavity, ..Components::PLAIN }), stack, at(theta_deg));
     top + (albedo(model, stack, at(theta_deg)) - top) / N_SQ
 }
 
@@ -125,7 +128,38 @@ fn limits() {
         let coated = stack(&[(ggx(0.1), dielectric(1.0, 0.0)), (ggx(0.3), WHITE)]);
         close(model.eval(&coated, wi, wo) / model.eval(&bare, wi, wo), 1.0, 1e-12);
         let black = stack(&[(ggx(0.3), dielectric(1.5, 1e4)), (ggx(0.3), WHITE)]);
-        let top = Microfacet { masking: Masking::VCavity }.eval(&black, wi, wo);
+        let top = Microfacet::new(Components { masking: Masking::VCavity, ..Components::PLAIN }).eval(&black, wi, wo);
         close(model.eval(&black, wi, wo) / top, 1.0, 1e-12);
+    }
+}
+
+/// Oracle: eq. 3.1 as the recursion that it is, each layer's f its own BRDF, with 3.2 and 3.3; three interfaces and an Oren-Nayar
+/// base, two absorbing slabs of different thickness.
+#[test]
+fn many_layers_are_the_recursion_of_the_course() {
+    fn recursion(stack: &Monochrome, k: usize, wi: DVec3, wo: DVec3) -> f64 {
+        let layer = &stack.layers[k];
+        if let MonochromeBelow::Diffuse { albedo, sigma } = layer.below {
+            return oren_nayar::brdf_scalar(albedo, sigma, wi, wo);
+        }
+        let wh = (wi + wo).normalize();
+        let g = (2.0 * wh.z * wi.z / wo.dot(wh)).min(2.0 * wh.z * wo.z / wo.dot(wh)).min(1.0);
+        let f = layer.reflectance(wo.dot(wh));
+        let own = f * Facets::new(&layer.surface).density(wh) * g / (4.0 * wi.z * wo.z);
+        let MonochromeBelow::Dielectric { ior, optical_depth, .. } = layer.below else { return own };
+        let n = ior / layer.above;
+        let refract = |w: DVec3| DVec3::new(w.x / n, w.y / n, (1.0 - (1.0 - w.z * w.z) / (n * n)).sqrt());
+        let (wi, wo) = (refract(wi), refract(wo));
+        let a = (-optical_depth * (1.0 / wi.z + 1.0 / wo.z)).exp();
+        let t = (1.0 - g) + (1.0 - f) * g;
+        own + (1.0 - f) * recursion(stack, k + 1, wi, wo) * a * t
+    }
+    let base = MonochromeBelow::Diffuse { albedo: 0.7, sigma: 0.4 };
+    let layers = [(ggx(0.4), dielectric(1.3, 0.3)), (ggx(0.2), dielectric(1.7, 0.1)), (ggx(0.5), dielectric(1.4, 0.6))];
+    let stack = stack(&[layers[0], layers[1], layers[2], (ggx(0.0), base)]);
+    for (i, o) in [(10.0, 30.0), (50.0, 20.0), (70.0, 80.0)] {
+        let (wi, wo) = (at(i), mirrored(at(o)));
+        let expected = recursion(&stack, 0, wi, wo) * wi.z;
+        close(WeidlichWilkie::default().eval(&stack, wi, wo) / expected, 1.0, 1e-12);
     }
 }

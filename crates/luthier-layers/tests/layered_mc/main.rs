@@ -2,8 +2,10 @@
 
 #![expect(clippy::disallowed_methods, reason = "oracles: nothing that ships depends on them")]
 
+mod adding;
 mod closed_forms;
 mod furnace;
+mod independent;
 mod integrals;
 mod one_facet;
 mod rough_coat;

@@ -92,8 +92,7 @@ mod tests {
     use crate::models::{THETAS_DEG, direction};
     use luthier_layers::directional_albedo::directional_albedo;
     use luthier_layers::elek_model::Elek;
-    use luthier_layers::facets::Masking;
-    use luthier_layers::microfacet::Microfacet;
+    use luthier_layers::microfacet::{Components, Microfacet};
     use luthier_layers::phong::Phong;
     use luthier_optics::ior::Ior;
     use luthier_optics::stack::{Base, Distribution, Layer, Stack, Surface};
@@ -109,7 +108,7 @@ mod tests {
     fn albedos_are_those_of_another_quadrature() {
         let brushed = Surface { distribution: Distribution::Beckmann, alpha_x: 0.4, alpha_y: 0.1, rotation: 0.3 };
         let surfaces = [brushed, Surface::isotropic(Distribution::Ggx, 0.3)];
-        let models: [&dyn Model; 3] = [&Microfacet { masking: Masking::Smith }, &Elek, &Phong];
+        let models: [&dyn Model; 3] = [&Microfacet::new(Components::PLAIN), &Elek, &Phong];
         for stack in surfaces.map(metal) {
             for theta_deg in THETAS_DEG {
                 let cells = Cells::new(direction(theta_deg, 30.0));
@@ -131,7 +130,7 @@ mod tests {
         let stack = metal(Surface::smooth());
         for theta_deg in THETAS_DEG {
             let cells = Cells::new(direction(theta_deg, 30.0));
-            let found = Energies::of(&Microfacet { masking: Masking::Smith }, &stack, &cells).energies;
+            let found = Energies::of(&Microfacet::new(Components::PLAIN), &stack, &cells).energies;
             let expected = stack.layers[0].reflectance(cells.wo.z);
             assert!((found[0] - expected).abs() < 1e-3, "{theta_deg}: {} {expected}", found[0]);
             assert!(found[1..].iter().sum::<f64>() < 1e-3, "{theta_deg}");

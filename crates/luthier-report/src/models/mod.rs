@@ -28,8 +28,9 @@ use std::num::NonZeroU32;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec3;
+use luthier_layers::inputs::Input;
 use luthier_layers::layered_mc::{InterfaceMode, LayeredMc};
-use luthier_layers::model::Model;
+use luthier_layers::model::{Kind, Model, ModelInfo};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::registry::models;
 use luthier_optics::stack::Stack;
@@ -73,7 +74,7 @@ pub struct ModelSettings {
     pub seed: u64,
 }
 
-/// Judges all models but the references on all materials. `progress` is told how many materials of how many are done.
+/// Judges all models of layers, and two of single surfaces beside them, on all materials. `progress` is told how many materials of how many are done.
 ///
 /// The result depends on subjects and settings only, not on the number of threads.
 pub fn judge_models(
@@ -120,10 +121,20 @@ impl Row {
     }
 }
 
-/// All rows, in the order of listings.
+/// Surfaces of one layer that layered models are shown beside.
+const SINGLE: [&str; 2] = ["microfacet", "phong"];
+
+/// All rows, in the order of listings: models of layers, those that look different from place to place as they are registered. Not
+/// those that spread two stacks, of which a material has one.
 fn rows() -> Vec<Row> {
-    let functions = models().into_iter().filter(|model| model.estimator().is_none()).map(Row::Model);
-    functions.chain([Row::Paths(InterfaceMode::OneFacet), Row::Paths(InterfaceMode::SmithWalk)]).collect()
+    let is_judged = |info: ModelInfo| match info.kind {
+        Kind::Surface => SINGLE.contains(&info.name),
+        Kind::Layered => true,
+        Kind::Place => !info.inputs.contains(&Input::OtherStack),
+        Kind::Density | Kind::Reference => false,
+    };
+    let judged = models().into_iter().filter(|model| is_judged(model.info())).map(Row::Model);
+    judged.chain([Row::Paths(InterfaceMode::OneFacet), Row::Paths(InterfaceMode::SmithWalk)]).collect()
 }
 
 /// Errors per row and view.

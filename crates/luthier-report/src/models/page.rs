@@ -33,8 +33,8 @@ fn preamble(report: &ModelsReport, command: &str) -> String {
     format!(
         "# The models against the reference
 
-How far every reflectance model of `luthier models` is from `layered-mc`, the Monte Carlo of the whole stack that walks between the
-facets of rough interfaces. Every line of this page is made by
+How far every model of layers that `luthier models` lists is from `layered-mc`, the Monte Carlo of the whole stack that walks between the
+facets of rough interfaces; `microfacet` and `phong` stand beside them for what one layer alone does. Every line of this page is made by
 
     {command}
 

@@ -1,0 +1,150 @@
+//! Options of `eval` that some models take, and what becomes of them.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::Args;
+use glam::DVec2;
+use luthier_layers::inputs::{Input, Inputs};
+use luthier_layers::model::Model;
+use luthier_layers::registry::models;
+use luthier_layers::textured::{TextureSample, Textured};
+
+use crate::directions::Angles;
+use crate::failure::{Failure, Outcome};
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Options of some models")]
+pub(crate) struct ModelInputs {
+    /// Texture coordinate of the place (flakes, heterogeneous and its kind)
+    #[arg(long, value_name = "U,V", allow_hyphen_values = true)]
+    uv: Option<Uv>,
+    /// Distance of the eye, in scene units (flakes)
+    #[arg(long, value_name = "X", value_parser = not_negative, allow_hyphen_values = true)]
+    distance: Option<f64>,
+    /// How far the patina has developed: below 0 not at all, above 1 everywhere (patina)
+    #[arg(long, value_name = "X", value_parser = number, allow_hyphen_values = true)]
+    extent: Option<f64>,
+    /// Value of the patina's map at the place, 0 to 1; dark places come first (patina)
+    #[arg(long, value_name = "X", value_parser = share, allow_hyphen_values = true)]
+    map: Option<f64>,
+    /// Normal of the inner boundary of the film (granier-heidrich)
+    #[arg(long, value_name = "THETA,PHI", allow_hyphen_values = true)]
+    inner_normal: Option<Angles>,
+    /// A second material; without it both are the same (heterogeneous and its kind)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) other: Option<PathBuf>,
+    /// Re-radiation matrix of the base as a CSV file, see below; --wavelength is the light seen (fluorescence)
+    #[arg(long, value_name = "CSV", requires = "excitation")]
+    #[arg(conflicts_with_all = ["furnace", "alpha_factor", "slab_factor", "film_factor"])]
+    pub(crate) matrix: Option<PathBuf>,
+    /// Wavelength of the light, when it is not the one seen (fluorescence)
+    #[arg(long, value_name = "NM", value_parser = crate::cli::wavelength)]
+    #[arg(requires = "matrix", requires = "wavelength")]
+    pub(crate) excitation: Option<f64>,
+    #[command(flatten)]
+    textures: Textures,
+}
+
+/// What textures say about the place, in front of any model.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Textures at the place, for every model")]
+struct Textures {
+    /// Normal of the place
+    #[arg(long, value_name = "THETA,PHI", allow_hyphen_values = true, conflicts_with_all = ["albedo", "furnace", "environment"])]
+    normal: Option<Angles>,
+    /// Factor on the slope parameters of all layers
+    #[arg(long, value_name = "X", value_parser = not_negative, allow_hyphen_values = true)]
+    alpha_factor: Option<f64>,
+    /// Factor on the thickness of the slab below the first interface
+    #[arg(long, value_name = "X", value_parser = not_negative, allow_hyphen_values = true)]
+    slab_factor: Option<f64>,
+    /// Factor on the thickness of the films on the first interface
+    #[arg(long, value_name = "X", value_parser = not_negative, allow_hyphen_values = true)]
+    film_factor: Option<f64>,
+}
+
+impl Textures {
+    fn sample(&self) -> TextureSample {
+        TextureSample {
+            normal: self.normal.map_or(TextureSample::NONE.normal, Angles::direction),
+            alpha_factor: self.alpha_factor.unwrap_or(1.0),
+            slab_factor: self.slab_factor.unwrap_or(1.0),
+            film_factor: self.film_factor.unwrap_or(1.0),
+        }
+    }
+}
+
+impl ModelInputs {
+    /// Refuses options that the model does not take.
+    pub(crate) fn check(&self, model: &dyn Model, environment: bool) -> Outcome {
+        let given = [
+            (Input::Uv, self.uv.is_some()),
+            (Input::Distance, self.distance.is_some()),
+            (Input::Extent, self.extent.is_some()),
+            (Input::Map, self.map.is_some()),
+            (Input::InnerNormal, self.inner_normal.is_some()),
+            (Input::OtherStack, self.other.is_some()),
+            (Input::Environment, environment),
+            (Input::Matrix, self.matrix.is_some()),
+            (Input::Excitation, self.excitation.is_some()),
+        ];
+        let info = model.info();
+        let refused = given.into_iter().find(|(input, is_given)| *is_given && !info.inputs.contains(input));
+        let Some((input, _)) = refused else { return Ok(()) };
+        let infos = models().into_iter().map(|model| model.info());
+        let takers: Vec<&str> = infos.filter(|i| i.inputs.contains(&input)).map(|i| i.name).collect();
+        Err(Failure::Usage(anyhow::anyhow!(
+            "model `{}` does not take --{}; those that do: {}",
+            info.name,
+            input.name(),
+            takers.join(", ")
+        )))
+    }
+
+    /// The model with its inputs.
+    pub(crate) fn give(&self, model: Box<dyn Model>) -> Box<dyn Model> {
+        let inputs = Inputs {
+            uv: self.uv.map(|Uv(uv)| uv),
+            distance: self.distance,
+            extent: self.extent,
+            map: self.map,
+            inner_normal: self.inner_normal.map(Angles::direction),
+        };
+        model.with_inputs(&inputs).unwrap_or(model)
+    }
+
+    /// The model as textures show it.
+    pub(crate) fn textured(&self, model: Box<dyn Model>) -> Box<dyn Model> {
+        let sample = self.textures.sample();
+        if sample == TextureSample::NONE { model } else { Box::new(Textured { sample, model }) }
+    }
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Uv(DVec2);
+
+impl FromStr for Uv {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected = || "expected a texture coordinate u,v, such as 0.25,0.5".to_owned();
+        let (u, v) = text.split_once(',').ok_or_else(expected)?;
+        match (number(u.trim()), number(v.trim())) {
+            (Ok(u), Ok(v)) => Ok(Self(DVec2::new(u, v))),
+            _ => Err(expected()),
+        }
+    }
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(|| "expected a number".to_owned())
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    number(text).ok().filter(|x| *x >= 0.0).ok_or_else(|| "expected a number from 0 up".to_owned())
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    number(text).ok().filter(|x| (0.0..=1.0).contains(x)).ok_or_else(|| "expected a number from 0 to 1".to_owned())
+}

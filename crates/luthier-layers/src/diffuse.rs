@@ -1,0 +1,105 @@
+//! The diffuse base of a stack by itself, as if nothing lay above it.
+
+use glam::DVec3;
+
+use crate::model::{Claims, Kind, Model, ModelInfo};
+use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
+use crate::oren_nayar;
+
+/// Lambert 1760: `f = albedo / pi`. Zero for a stack without a diffuse base.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Lambert;
+
+/// Oren and Nayar 1994, with inter-reflection: [`oren_nayar::brdf`]. Zero for a stack without a diffuse base.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct OrenNayar;
+
+impl Model for Lambert {
+    fn info(&self) -> ModelInfo {
+        ModelInfo {
+            name: "lambert",
+            kind: Kind::Surface,
+            claims: Claims::BOTH,
+            source: "Lambert 1760",
+            domain: "the diffuse base of any stack, by itself; 0 without one",
+            leaves_out: "everything above the base, and the base's roughness",
+            inputs: &[],
+        }
+    }
+
+    fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
+        base(stack, wi, wo, |albedo, _| oren_nayar::brdf_scalar(albedo, 0.0, wi, wo))
+    }
+
+    fn lossless(&self, stack: &Monochrome) -> Monochrome {
+        white_base(stack)
+    }
+}
+
+impl Model for OrenNayar {
+    fn info(&self) -> ModelInfo {
+        ModelInfo {
+            name: "oren-nayar",
+            kind: Kind::Surface,
+            claims: Claims::RECIPROCAL,
+            source: "Oren and Nayar 1994, eq. 26-30, with inter-reflection",
+            domain: "the diffuse base of any stack, by itself; 0 without one",
+            leaves_out: "everything above the base; gains at grazing angles, 1.7% at 89 degrees for sigma 0.5",
+            inputs: &[],
+        }
+    }
+
+    fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
+        base(stack, wi, wo, |albedo, sigma| oren_nayar::brdf_scalar(albedo, sigma, wi, wo))
+    }
+
+    fn lossless(&self, stack: &Monochrome) -> Monochrome {
+        white_base(stack)
+    }
+}
+
+fn base(stack: &Monochrome, wi: DVec3, wo: DVec3, brdf: impl Fn(f64, f64) -> f64) -> f64 {
+    match stack.layers.last().map(|layer| layer.below) {
+        Some(MonochromeBelow::Diffuse { albedo, sigma }) if wi.z > 0.0 && wo.z > 0.0 => wi.z * brdf(albedo, sigma),
+        _ => 0.0,
+    }
+}
+
+/// The base alone, white; nothing where there is none.
+fn white_base(stack: &Monochrome) -> Monochrome {
+    let white = |layer: &MonochromeLayer| match layer.below {
+        MonochromeBelow::Diffuse { sigma, .. } => {
+            Some(MonochromeLayer { below: MonochromeBelow::Diffuse { albedo: 1.0, sigma }, ..layer.clone() })
+        }
+        MonochromeBelow::Dielectric { .. } | MonochromeBelow::Conductor { .. } => None,
+    };
+    Monochrome { exterior: stack.exterior, layers: stack.layers.last().and_then(white).into_iter().collect() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use luthier_optics::stack::Surface;
+    use num_complex::Complex64;
+
+    fn stack(last: MonochromeBelow) -> Monochrome {
+        let coat = MonochromeBelow::Dielectric { ior: 1.5, complex_ior: Complex64::new(1.5, 0.0), optical_depth: 1.0 };
+        let layer = |above, below| MonochromeLayer { surface: Surface::smooth(), above, films: Vec::new(), below };
+        Monochrome { exterior: 1.0, layers: vec![layer(1.0, coat), layer(1.5, last)] }
+    }
+
+    /// By hand: albedo cos / pi; and Oren and Nayar's C1 + C3-free value at the normal, 1 - 0.5 s/(s + 0.33) + 0.17 rho s/(s + 0.13), s
+    /// being sigma squared.
+    #[test]
+    fn the_base_alone_is_seen() {
+        let base = stack(MonochromeBelow::Diffuse { albedo: 0.6, sigma: 0.5 });
+        let wi = DVec3::new(0.6, 0.0, 0.8);
+        assert!((Lambert.eval(&base, wi, DVec3::Z) - 0.6 * 0.8 / std::f64::consts::PI).abs() < 1e-15);
+        let expected = 0.6 / std::f64::consts::PI * (1.0 - 0.5 * 0.25 / 0.58 + 0.17 * 0.6 * 0.25 / 0.38);
+        let found = OrenNayar.eval(&base, DVec3::Z, DVec3::Z);
+        assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        let metal = stack(MonochromeBelow::Conductor { ior: Complex64::new(0.2, 3.0) });
+        assert_eq!([Lambert.eval(&metal, wi, DVec3::Z), OrenNayar.eval(&metal, wi, DVec3::Z)], [0.0; 2]);
+        assert_eq!(Lambert.eval(&base, -wi, DVec3::Z), 0.0);
+    }
+}

@@ -1,0 +1,114 @@
+//! The white furnace: a lossless surface under uniform light of unit radiance has to vanish, radiance 1 in every direction.
+//!
+//! Which surface is lossless depends on what a model knows of it:
+//!
+//! - [`lossless`], for models of a whole stack: no absorption in slabs, films and dielectrics, conductors that reflect
+//!   everything, diffuse bases of albedo 1. A medium without end below the last interface gets a white Lambert base at
+//!   its far end, so that what enters comes back.
+//! - [`lossless_interface`], for models of the first interface: the same with a conductor below it.
+//!
+//! Roughness, indices of dielectrics, films and their thicknesses stay. What a model lacks to 1 is what it leaves out: bounces
+//! between facets or layers; what it has above 1, it makes up.
+
+use glam::DVec3;
+use luthier_optics::stack::Surface;
+use num_complex::Complex64;
+
+use crate::directional_albedo::{DirectionalAlbedo, directional_albedo};
+use crate::model::Model;
+use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
+
+/// An index without a real part: no light enters, at any angle and under any lossless film.
+const MIRROR: MonochromeBelow = MonochromeBelow::Conductor { ior: Complex64::new(0.0, 10.0) };
+
+/// Radiance towards `wo` (unit, above the surface) of the model's lossless stack under light of radiance 1 from everywhere: the
+/// directional albedo that `wo` sees, with its error.
+pub fn furnace(model: &dyn Model, stack: &Monochrome, wo: DVec3) -> DirectionalAlbedo {
+    directional_albedo(model, &model.lossless(stack), wo)
+}
+
+/// The stack without loss.
+pub fn lossless(stack: &Monochrome) -> Monochrome {
+    let mut white = stack.clone();
+    for layer in &mut white.layers {
+        without_absorption(layer);
+    }
+    if let Some(MonochromeBelow::Dielectric { ior, .. }) = white.layers.last().map(|layer| layer.below) {
+        let below = MonochromeBelow::Diffuse { albedo: 1.0, sigma: 0.0 };
+        white.layers.push(MonochromeLayer { surface: Surface::smooth(), above: ior, films: Vec::new(), below });
+    }
+    white
+}
+
+/// The first interface, without loss and with a mirror below it; a diffuse first layer is white.
+pub fn lossless_interface(stack: &Monochrome) -> Monochrome {
+    let mut white = stack.clone();
+    white.layers.truncate(1);
+    if let Some(layer) = white.layers.first_mut() {
+        without_absorption(layer);
+        if matches!(layer.below, MonochromeBelow::Dielectric { .. }) {
+            layer.below = MIRROR;
+        }
+    }
+    white
+}
+
+fn without_absorption(layer: &mut MonochromeLayer) {
+    for film in &mut layer.films {
+        film.ior.im = 0.0;
+    }
+    match &mut layer.below {
+        MonochromeBelow::Dielectric { ior, complex_ior, optical_depth } => {
+            (*complex_ior, *optical_depth) = (Complex64::new(*ior, 0.0), 0.0);
+        }
+        MonochromeBelow::Conductor { .. } => layer.below = MIRROR,
+        MonochromeBelow::Diffuse { albedo, .. } => *albedo = 1.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::closed_form::ClosedForm;
+    use crate::microfacet::{Components, Microfacet};
+    use luthier_optics::fresnel::FilmLayer;
+    use luthier_optics::stack::Distribution;
+
+    fn filmed(alpha: f64, base: MonochromeBelow) -> Monochrome {
+        let film = FilmLayer { ior: Complex64::new(1.4, 0.3), waves: 0.4 };
+        let coat = MonochromeBelow::Dielectric { ior: 1.5, complex_ior: Complex64::new(1.5, 1e-3), optical_depth: 0.7 };
+        let surface = Surface::isotropic(Distribution::Ggx, alpha);
+        let layer = |above, films, below| MonochromeLayer { surface, above, films, below };
+        Monochrome { exterior: 1.0, layers: vec![layer(1.0, vec![film], coat), layer(1.5, Vec::new(), base)] }
+    }
+
+    fn towards(cos_theta_o: f64) -> DVec3 {
+        DVec3::new(libm::sqrt(1.0 - cos_theta_o * cos_theta_o), 0.0, cos_theta_o)
+    }
+
+    /// An exact model vanishes in it, whatever the stack was.
+    #[test]
+    fn smooth_stacks_return_everything() {
+        let gold = MonochromeBelow::Conductor { ior: Complex64::new(0.2, 3.0) };
+        let grey = MonochromeBelow::Diffuse { albedo: 0.3, sigma: 0.0 };
+        let glass = MonochromeBelow::Dielectric { ior: 1.2, complex_ior: Complex64::new(1.2, 0.0), optical_depth: 0.4 };
+        for base in [gold, grey, glass] {
+            for cos_theta_o in [0.1, 0.6, 1.0] {
+                let radiance = furnace(&ClosedForm::new(), &filmed(0.0, base), towards(cos_theta_o)).value;
+                // Of the diffuse base's quadrature.
+                assert!((radiance - 1.0).abs() < 1e-6, "{base:?} {cos_theta_o}: {radiance}");
+            }
+        }
+    }
+
+    /// Oracle: single scattering of GGX with F = 1 at alpha 0.5, whatever the film: 0.6878485151 at the normal, 0.69825 at 60 degrees.
+    #[test]
+    fn one_interface_lacks_what_facets_scatter_twice() {
+        let grey = MonochromeBelow::Diffuse { albedo: 0.3, sigma: 0.0 };
+        let microfacet = Microfacet::new(Components::PLAIN);
+        for (cos_theta_o, expected) in [(1.0, 0.6878485151), (0.5, 0.69825)] {
+            let radiance = furnace(&microfacet, &filmed(0.5, grey), towards(cos_theta_o));
+            assert!((radiance.value - expected).abs() < 1e-4 + radiance.error, "{cos_theta_o}: {radiance:?}");
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! What models take besides a stack and two directions.
+
+use glam::{DVec2, DVec3};
+
+/// Something that a model takes, for listings and for telling who takes what.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Input {
+    /// [`Inputs::uv`].
+    Uv,
+    /// [`Inputs::distance`].
+    Distance,
+    /// [`Inputs::extent`].
+    Extent,
+    /// [`Inputs::map`].
+    Map,
+    /// [`Inputs::inner_normal`].
+    InnerNormal,
+    /// A second stack, see [`Model::stack_index`](crate::model::Model::stack_index).
+    OtherStack,
+    /// The light of an environment ([`elek_model::environment`](crate::elek_model::environment)).
+    Environment,
+    /// A re-radiation matrix ([`fluorescence`](crate::fluorescence)).
+    Matrix,
+    /// The wavelength of the light, when it is not the one seen.
+    Excitation,
+}
+
+impl Input {
+    /// The name in files; on the command line it follows two hyphens.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Uv => "uv",
+            Self::Distance => "distance",
+            Self::Extent => "extent",
+            Self::Map => "map",
+            Self::InnerNormal => "inner-normal",
+            Self::OtherStack => "other",
+            Self::Environment => "environment",
+            Self::Matrix => "matrix",
+            Self::Excitation => "excitation",
+        }
+    }
+}
+
+/// Inputs of a model; `None` leaves the model's own.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Inputs {
+    /// Texture coordinate of the place.
+    pub uv: Option<DVec2>,
+    /// Distance of the eye, in the scene's unit of length; at least 0.
+    pub distance: Option<f64>,
+    /// How far patina has developed: below 0 none, above 1 all, see [`Patina::extent`](crate::patina::Patina::extent).
+    pub extent: Option<f64>,
+    /// Value of the patina's map, 0..=1.
+    pub map: Option<f64>,
+    /// Normal of the inner boundary of a film, unit, in the surface's frame.
+    pub inner_normal: Option<DVec3>,
+}
