@@ -16,6 +16,7 @@ pub(crate) fn constants(material: &Material) -> MaterialConstants {
         phong_specular: in_color(stack, &color, |one| Coefficients::of(one).specular),
         phong_exponent: exponent(stack, material.bake.wavelengths_nm()),
         internal_reflectance: [0.0; 3],
+        upward_loss: 0.0,
         flakes: flakes(&material.effects),
         patina: patina(&material.effects),
     }
