@@ -25,6 +25,7 @@ mod module;
 mod msl;
 mod set;
 mod spirv;
+mod statistics;
 mod target;
 mod text;
 mod validate;
