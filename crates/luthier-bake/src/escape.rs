@@ -4,7 +4,7 @@ use luthier_layers::statistics::total_reflection::escaping_share;
 use luthier_lut::{Axis, Comparison, Image, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
 use serde_json::{Value, json};
 
-use crate::facet_grid::{DOMAIN_ALPHA, DOMAIN_COS_THETA, Side};
+use crate::facet_grid::{DOMAIN_ALPHA, DOMAIN_COS_THETA};
 use crate::job::{TileData, lone_tile};
 use crate::json;
 
@@ -62,7 +62,10 @@ impl EscapeJob {
         TileData { model, truth, texels: atlas.texels, error }
     }
 
+    /// The share of the lobe around the direction into which light at `cos_theta` outside is refracted.
     fn value(&self, cos_theta: f64, alpha: f64) -> f64 {
-        escaping_share(Side::Below { eta: self.eta }.cos_theta(cos_theta), alpha, 1.0 / self.eta)
+        let eta = self.eta;
+        let inside = ((cos_theta * cos_theta + (eta - 1.0) * (eta + 1.0)) / (eta * eta)).sqrt();
+        escaping_share(inside, alpha, 1.0 / eta)
     }
 }

@@ -32,42 +32,11 @@ pub(crate) const DOMAIN_COS_THETA: f64 = 0.0087;
 /// Where errors are measured: from this alpha on.
 pub(crate) const DOMAIN_ALPHA: f64 = 0.01;
 
-/// From where light meets an interface.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Side {
-    /// From above, at the cosine of the table.
-    Above,
-    /// From below, at the direction into which light at the cosine of the table is refracted from above.
-    Below {
-        /// Index below over index above.
-        eta: f64,
-    },
-}
-
-impl Side {
-    /// The cosine of the light for a cosine of the table; 0 where nothing is refracted to.
-    pub(crate) fn cos_theta(self, table: f64) -> f64 {
-        match self {
-            Self::Above => table,
-            Self::Below { eta } => ((table * table + (eta - 1.0) * (eta + 1.0)) / (eta * eta)).max(0.0).sqrt(),
-        }
-    }
-
-    /// Inputs of a job with what tells it from one that meets light from above.
-    pub(crate) fn inputs(self, mut inputs: Value) -> Value {
-        if let Self::Below { eta } = self {
-            inputs["from_below"] = json!(eta);
-        }
-        inputs
-    }
-}
-
 #[derive(Debug, Clone)]
 pub(crate) struct FacetGridJob {
     pub(crate) distribution: Distribution,
     /// Whether light may be totally reflected at an angle.
     pub(crate) kinked: bool,
-    pub(crate) side: Side,
     /// cos_theta and alpha.
     pub(crate) axes: [Axis; 2],
 }
@@ -82,11 +51,11 @@ pub(crate) struct FacetGrid {
 
 impl FacetGridJob {
     pub(crate) fn inputs(&self) -> Value {
-        self.side.inputs(json!({
+        json!({
             "distribution": self.distribution.name(),
             "kinked": self.kinked,
             "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
-        }))
+        })
     }
 
     pub(crate) fn run(&self) -> FacetGrid {
@@ -113,7 +82,7 @@ impl FacetGridJob {
     }
 
     fn at(&self, cos_theta: f64, alpha: f64, effort: Effort, seed: u32) -> FacetStatistics {
-        FacetStatistics::new(self.distribution, alpha, self.side.cos_theta(cos_theta), effort, seed)
+        FacetStatistics::new(self.distribution, alpha, cos_theta, effort, seed)
     }
 }
 
@@ -129,9 +98,7 @@ fn seed(texel: u32) -> u32 {
 /// Light that crosses a dielectric interface and comes back: small and smooth, so a coarse grid serves.
 #[derive(Debug, Clone)]
 pub(crate) struct CrossedJob {
-    /// As the light meets it: turned over for light from below.
     pub(crate) interface: Interface,
-    pub(crate) side: Side,
     pub(crate) color: Color,
     pub(crate) distribution: Distribution,
     /// cos_theta and alpha of the table; the coarse grid lies on the same coordinates.
@@ -167,12 +134,12 @@ pub(crate) struct CrossedGrid {
 
 impl CrossedJob {
     pub(crate) fn inputs(&self) -> Value {
-        self.side.inputs(json!({
+        json!({
             "interface": json::interface(&self.interface),
             "color": json::color(&self.color),
             "distribution": self.distribution.name(),
             "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
-        }))
+        })
     }
 
     pub(crate) fn run(&self) -> CrossedGrid {
@@ -215,7 +182,7 @@ impl CrossedJob {
         let eta = index(&self.interface.below) / index(&self.interface.above);
         move |u, walks, seed| {
             let [x, y] = &self.axes;
-            let (cos_theta, alpha) = (self.side.cos_theta(x.decode(u[0])), y.decode(u[1]));
+            let (cos_theta, alpha) = (x.decode(u[0]), y.decode(u[1]));
             let albedos: Vec<f64> = (0..weighted.curves.count())
                 .map(|curve| {
                     let facets = TransparentFacets { eta, from_above: &weighted.curves, curve };

@@ -9,7 +9,6 @@ use luthier_optics::stack::{Base, Film, Layer};
 use crate::BakeError;
 use crate::distribution::DistributionJob;
 use crate::escape::EscapeJob;
-use crate::facet_grid::Side;
 use crate::fgd::FgdJob;
 use crate::fresnel::FresnelJob;
 use crate::graph::Graph;
@@ -34,10 +33,6 @@ impl Tiles {
         index as u32
     }
 }
-
-/// Interfaces smoother than this send back the same from either side, so nothing is tabulated; the table would blur the onset of
-/// total reflection, which is beyond what is read of it.
-const NEARLY_SMOOTH: f64 = 0.025;
 
 /// Everything to compute for a set of materials.
 #[derive(Debug)]
@@ -98,9 +93,9 @@ impl Plan {
         for (i, (record, layer)) in records.iter_mut().zip(&material.stack.layers).enumerate() {
             let Some(interface) = Interface::of(&material.stack, i) else { continue };
             let name = || format!("{}/{i}", material.name);
-            let fgd = self.interface(record, layer, interface, color, &name);
+            self.interface(record, layer, interface, color, &name);
             if is_statistical(shading_model(material)) && Interface::of(&material.stack, i + 1).is_some() {
-                self.add_below(record, fgd, &name);
+                self.escape(record, &name);
             }
             let Some(film) = layer.films.first() else { continue };
             self.phase(record, film, wavelengths_nm, &name);
@@ -118,7 +113,7 @@ impl Plan {
         interface: Interface,
         color: Color,
         name: &dyn Fn() -> String,
-    ) -> FgdJob {
+    ) {
         let (axis, format) = self.settings.fresnel.clone();
         let job = FresnelJob { interface: interface.clone(), color, axis, format };
         record.fresnel_tile = Some(self.add(TableKind::Fresnel, Job::Fresnel(job), name));
@@ -131,17 +126,12 @@ impl Plan {
 
         let (axes, format) = self.settings.fgd.clone();
         let transparent = matches!(layer.base, Base::Dielectric { .. });
-        let job = FgdJob { interface, side: Side::Above, transparent, distribution, color, axes, format };
-        record.fgd_tile = Some(self.add(TableKind::Fgd, Job::Fgd(job.clone()), name));
-        job
+        let job = FgdJob { interface, transparent, distribution, color, axes, format };
+        record.fgd_tile = Some(self.add(TableKind::Fgd, Job::Fgd(job), name));
     }
 
-    /// What the statistics read of an interface that another one lies below.
-    fn add_below(&mut self, record: &mut LayerRecord, fgd: FgdJob, name: &dyn Fn() -> String) {
-        if record.alpha >= NEARLY_SMOOTH {
-            let below = || format!("{} from below", name());
-            record.fgd_below_tile = Some(self.add(TableKind::Fgd, Job::Fgd(fgd.turned_over(record.eta)), &below));
-        }
+    /// What of the lobes of an interface below is totally reflected here, where anything is.
+    fn escape(&mut self, record: &mut LayerRecord, name: &dyn Fn() -> String) {
         if record.eta > 1.0 {
             let (axes, format) = self.settings.escape.clone();
             let job = EscapeJob { eta: record.eta, axes, format };

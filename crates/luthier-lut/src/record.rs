@@ -64,9 +64,6 @@ pub struct LayerRecord {
     pub distribution_tile: Option<u32>,
     /// Tile of the FGD atlas.
     pub fgd_tile: Option<u32>,
-    /// Tile of the FGD atlas for light from below: over the cosine *above* the interface, of the direction that is refracted into the
-    /// one from below. Over that, smooth interfaces have no kink at the critical angle.
-    pub fgd_below_tile: Option<u32>,
     /// Tile of the phase atlas.
     pub phase_tile: Option<u32>,
     /// Tile of the thickness atlas.
@@ -95,7 +92,7 @@ impl LayerRecord {
     /// | 4 | ior_n RGB, film thickness nm |
     /// | 5 | ior_k RGB, film thickness max nm |
     /// | 6 | film_ior_n RGB, film tile |
-    /// | 7 | film_ior_k RGB, FGD tile from below |
+    /// | 7 | film_ior_k RGB, 0 |
     /// | 8 | film thickness in waves RGB, escape tile |
     /// | 9 | alpha_x, alpha_y, cosine and sine of the rotation |
     pub fn words(&self) -> [[f32; 4]; LAYER_WORDS] {
@@ -115,7 +112,7 @@ impl LayerRecord {
             rgbw(self.ior_n, self.film_thickness_nm as f32),
             rgbw(self.ior_k, self.film_thickness_max_nm as f32),
             rgbw(self.film_ior_n, tile(self.film_tile)),
-            rgbw(self.film_ior_k, tile(self.fgd_below_tile)),
+            rgbw(self.film_ior_k, 0.0),
             rgbw(self.film_thickness_waves, tile(self.escape_tile)),
             [
                 self.alpha_xy[0] as f32,
@@ -175,7 +172,6 @@ mod tests {
             fresnel_tile: Some(27),
             distribution_tile: Some(28),
             fgd_tile: None,
-            fgd_below_tile: Some(32),
             phase_tile: Some(0),
             thickness_tile: None,
             film_tile: Some(33),
@@ -196,7 +192,7 @@ mod tests {
                 [10.0, 11.0, 12.0, 25.0],
                 [13.0, 14.0, 15.0, 26.0],
                 [16.0, 17.0, 18.0, 33.0],
-                [19.0, 20.0, 21.0, 32.0],
+                [19.0, 20.0, 21.0, 0.0],
                 [22.0, 23.0, 24.0, 34.0],
                 [30.0, 31.0, 1.0, 0.0],
             ]

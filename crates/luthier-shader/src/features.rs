@@ -11,7 +11,7 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is, for the check that modules name no other.
     #[cfg(test)]
-    pub(crate) const ALL: [&'static str; 38] = [
+    pub(crate) const ALL: [&'static str; 37] = [
         "absorption",
         "anisotropic",
         "bare",
@@ -25,7 +25,6 @@ impl Features {
         "distribution",
         "escape",
         "fgd",
-        "fgd_below",
         "film",
         "film_table",
         "fresnel",
@@ -65,8 +64,6 @@ impl Features {
         }
         if form == Form::Full {
             names.insert("full");
-        } else if set.layers().any(|layer| layer.fgd_below_tile.is_some()) {
-            names.insert("fgd_below");
         }
         for table in set.tables_read(form) {
             // `film` is whether any layer has one.

@@ -116,8 +116,7 @@ impl<'a> MaterialSet<'a> {
         }
         for table in TableKind::ALL {
             let tiles = self.tables.iter().find(|t| t.kind == table).map_or(0, |t| t.layout.tiles);
-            let below = layer.fgd_below_tile.filter(|_| table == TableKind::Fgd);
-            match tile(layer, table).max(below) {
+            match tile(layer, table) {
                 None if is_interface && needed.contains(&table) => {
                     return Err(ShaderError::NoTile { material, layer: i, table });
                 }

@@ -47,9 +47,13 @@ impl<S, const C: usize> Transport<S, C> {
 /// Sends light at `cos_theta` (in the exterior, 0..=1) through a stack, down to the last interface or to a diffuse base.
 ///
 /// Belcour 2018, sec. 4 and 5. Interface 12 is added below a stack 0i with Ri0 R12 summed as a geometric series; energies
-/// from below are taken at the refracted mean direction, where they equal those from above unless [`Energy::fgd_below`] knows
-/// better. Total reflection moves the part of a lobe beyond the critical angle of the interface above from Ti0 to Ri0; that part
-/// crosses the slab once more on its way down.
+/// from below are taken at the refracted mean direction, as those from above: R21 = R12. Total reflection moves the part of a lobe
+/// beyond the critical angle of the interface above from Ti0 to Ri0; that part crosses the slab once more on its way down.
+///
+/// R21 = R12 holds for smooth interfaces. A rough one sends more back from below, where facets are beyond the critical angle. But
+/// FGD-infinity from below at the mean direction of a lobe that is much wider helps at the normal only: for glass on gold of alpha (0.2,
+/// 0.2) and (0.5, 0.1) albedos then miss those of light paths by up to 0.03, 0.08 and 0.12 at 0, 60 and 80 degrees, and with R21 = R12 by
+/// 0.07, 0.04 and 0.02.
 ///
 /// Channels have energies of their own. They share directions and spreads: the number of bounces that widen a lobe is the mean over the
 /// channels, as in the paper, and so are the weights by which lobes are merged.
@@ -104,10 +108,7 @@ pub fn add<S: Spread, const C: usize>(stack: &Layers<C>, energy: &impl Energy<C>
             break;
         }
         let cos_t = cos_t_sq.sqrt().clamp(COS_THETA_MIN, 1.0);
-        let r21 = match energy.fgd_below(i, cos_i, layer.surface.alpha_isotropic()) {
-            Some(r21) => r21.map(|r| r.clamp(0.0, 1.0)),
-            None => r12,
-        };
+        let r21 = r12;
         let j12 = n12 * cos_t / cos_i;
         let spread_t12 = S::of(&layer.surface, 0.5 * (1.0 - 1.0 / j12).abs());
         let spread_t21 = S::of(&layer.surface, 0.5 * (1.0 - j12).abs());

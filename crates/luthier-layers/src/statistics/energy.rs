@@ -18,16 +18,6 @@ pub trait Energy<const C: usize> {
     /// interface sends back, all bounces between its facets included. `alpha` is the isotropic slope parameter of the layer.
     fn fgd(&self, layer: usize, cos_theta_i: f64, alpha: f64) -> [f64; C];
 
-    /// The same of light from below, at the direction into which light at `cos_theta_i` above is refracted. `None`: as from above,
-    /// which holds for smooth interfaces.
-    ///
-    /// A rough interface does send more back from below, facets being beyond the critical angle. But taken at the mean direction of a lobe
-    /// that is much wider, it brings albedos nearer to those of light paths at the normal only: for glass on gold of alpha (0.2, 0.2) and
-    /// (0.5, 0.1) they miss by up to 0.034, 0.077 and 0.123 at 0, 60 and 80 degrees, and with `None` by 0.073, 0.043 and 0.015.
-    fn fgd_below(&self, _layer: usize, _cos_theta_i: f64, _alpha: f64) -> Option<[f64; C]> {
-        None
-    }
-
     /// TIR: see [`escaping_share`]. The lobe is in the medium below the interface of `layer`, and meets that interface.
     fn escaping(&self, _layer: usize, cos_theta_i: f64, alpha: f64, eta: f64) -> f64 {
         escaping_share(cos_theta_i, alpha, eta)

@@ -93,11 +93,7 @@ fn $add(path: $Path, layer: LuthierLayer) -> $Path {
     let spread_t12 = $interface_spread(layer, 0.5 * abs(1.0 - 1.0 / widening)); //? below
     let spread_t21 = $interface_spread(layer, 0.5 * abs(1.0 - widening)); //? below
 
-    var r21 = r12; //? below, fgd_below
-    if layer.fgd_below_tile >= 0.0 { //? below, fgd_below
-        r21 = saturate(luthier_lookup_fgd(layer.fgd_below_tile, path.cos_theta, layer.alpha).rgb); //? below, fgd_below
-    } //? below, fgd_below
-    let r21 = r12; //? below, !fgd_below
+    let r21 = r12; //? below
     let back = (1.0 - r21) * ri0 * downward; //? below
     let reflected = r21 + back; //? below
     let share = dot(back, vec3<f32>(1.0)) / max(dot(reflected, vec3<f32>(1.0)), 1e-20); //? below

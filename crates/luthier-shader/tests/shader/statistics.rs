@@ -20,7 +20,7 @@ use num_complex::Complex64;
 
 use crate::arithmetic::{direction, directions, eval, full};
 use crate::machine::{Machine, Value, vector};
-use crate::scenes::{clear, conductor, dielectric, diffuse, filmed, material, sets, tables, with_below};
+use crate::scenes::{clear, conductor, dielectric, diffuse, filmed, material, sets, tables, with_escape};
 
 /// The stack that a material's records describe.
 fn layers(material: &MaterialEntry) -> Layers<3> {
@@ -80,10 +80,6 @@ impl Read<'_> {
 impl Energy<3> for Read<'_> {
     fn fgd(&self, layer: usize, cos_theta_i: f64, alpha: f64) -> [f64; 3] {
         Self::at(&self.fgd, self.material.layers[layer].fgd_tile.unwrap(), [cos_theta_i, alpha])
-    }
-
-    fn fgd_below(&self, layer: usize, cos_theta_i: f64, alpha: f64) -> Option<[f64; 3]> {
-        Some(Self::at(&self.fgd, self.material.layers[layer].fgd_below_tile?, [cos_theta_i, alpha]))
     }
 
     fn escaping(&self, layer: usize, cos_theta_i: f64, alpha: f64, eta: f64) -> f64 {
@@ -218,8 +214,8 @@ fn extremes() -> Vec<MaterialEntry> {
                     rotation: 0.7,
                     ..layer
                 };
-                let coat = LayerRecord { eta, ior_n: [eta; 3], ..with_below(dielectric()) };
-                let under = LayerRecord { eta: 1.0 / eta, ior_n: [1.0 / eta; 3], ..with_below(clear()) };
+                let coat = LayerRecord { eta, ior_n: [eta; 3], ..with_escape(dielectric()) };
+                let under = LayerRecord { eta: 1.0 / eta, ior_n: [1.0 / eta; 3], ..with_escape(clear()) };
                 let coats = [rough(coat, [alpha, 1.0]), rough(under, [alpha; 2])];
                 for base in [rough(conductor(), [alpha; 2]), diffuse(0.7)] {
                     let name = format!("m{}-a", materials.len());
@@ -262,7 +258,7 @@ fn every_unit_direction_gives_a_finite_value() {
 fn narrow_lobes_keep_their_shape() {
     for model in [ShadingModel::Belcour, ShadingModel::Yamaguchi] {
         let sharp = |layer: LayerRecord| LayerRecord { alpha: 1e-3, alpha_xy: [1e-3; 2], ..layer };
-        let layers = [sharp(with_below(clear())), sharp(conductor())];
+        let layers = [sharp(with_escape(clear())), sharp(conductor())];
         let materials = [MaterialEntry { model, ..material("sharp", &layers) }];
         let machine = full(&materials);
         for (wi, _) in directions(200) {
@@ -281,7 +277,7 @@ fn narrow_lobes_keep_their_shape() {
 #[test]
 fn lobes_carry_no_more_than_arrives_and_all_of_it_on_a_white_base() {
     let white = || LayerRecord { fgd_tile: Some(4), ..conductor() };
-    let coat = |layer: LayerRecord, alpha: f64| with_below(LayerRecord { alpha, alpha_xy: [alpha; 2], ..layer });
+    let coat = |layer: LayerRecord, alpha: f64| with_escape(LayerRecord { alpha, alpha_xy: [alpha; 2], ..layer });
     for model in [ShadingModel::Belcour, ShadingModel::Yamaguchi] {
         let of = |name: &str, layers: &[LayerRecord]| MaterialEntry { model, ..material(name, layers) };
         let materials: Vec<_> = [0.001, 0.3, 1.0]
@@ -326,7 +322,7 @@ fn places_change_slopes_slabs_and_films() {
                  place.alpha_factor = 2.0; place.slab_factor = 3.0; place.film_factor = 0.5; \
                  return luthier_eval_at(place, material, wi, wo); }";
     for model in [ShadingModel::Belcour, ShadingModel::Yamaguchi] {
-        let oiled = LayerRecord { optical_depth: [0.1, 0.2, 0.3], ..with_below(filmed()) };
+        let oiled = LayerRecord { optical_depth: [0.1, 0.2, 0.3], ..with_escape(filmed()) };
         let base = LayerRecord { alpha: 0.2, alpha_xy: [0.1, 0.4], rotation: 0.5, ..conductor() };
         let of = |layers: &[LayerRecord]| [MaterialEntry { model, ..material("oiled", layers) }];
         let materials = of(&[oiled.clone(), base.clone()]);
