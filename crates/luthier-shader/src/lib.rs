@@ -36,3 +36,4 @@ pub use set::{MaterialSet, TableFace, bindings};
 pub use spirv::{complete_spirv, emit_spirv};
 pub use target::{Form, Target};
 pub use validate::validate;
+pub use wgsl::has_shader;

@@ -19,6 +19,11 @@ pub(crate) const MODELS: [ShadingModel; 5] = [
     ShadingModel::Microfacet,
 ];
 
+/// Whether there is a shader of a model.
+pub fn has_shader(model: ShadingModel) -> bool {
+    MODELS.contains(&model)
+}
+
 /// Where the material buffer lives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Buffer {

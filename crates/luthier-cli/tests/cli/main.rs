@@ -17,6 +17,8 @@ mod ior;
 mod material_texts;
 mod models;
 mod outdated;
+#[cfg(feature = "gpu")]
+mod parity;
 mod pipes;
 #[cfg(feature = "gpu")]
 mod preview;
