@@ -121,8 +121,8 @@ pub const KNOWN: [Known; 3] = [
         share: Share::Table,
         factor: Factor::Fresnel,
         limit: 2e-2,
-        reason: "What lies below an interface is seen through (1 - F)² of it. In the last intervals of the row (cos θ below 0.02) 1 - F is \
-                 a few hundredths and less, and F, a straight line in each, is some 3e-4 off. The row of a free film bends more.",
+        reason: "What lies below an interface is seen through (1 - F)² of it. In the last intervals of the row (cos θ below 0.03) 1 - F is \
+                 small, and F, a straight line in each, is some 3e-4 off. The row of a free film bends more.",
     },
     Known {
         name: "DISTRIBUTION_FAR_OUT",
@@ -130,7 +130,7 @@ pub const KNOWN: [Known; 3] = [
         share: Share::Table,
         factor: Factor::Distribution,
         limit: 1e-2,
-        reason: "Half vectors beyond 60° on surfaces of alpha 0.5 and more: the angle axis has its nodes near the normal, and division \
+        reason: "Half vectors beyond 55° on surfaces of alpha 0.45 and more: the angle axis has its nodes near the normal, and division \
                  by both cosines makes what is small there bright.",
     },
     Known {
