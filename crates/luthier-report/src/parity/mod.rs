@@ -121,6 +121,11 @@ impl ParityRow {
 }
 
 impl Parity {
+    /// A run of some rows.
+    pub fn new(generator: &str, device: String, pairs_per_set: u32, rows: Vec<ParityRow>) -> Self {
+        Self { generator: generator.to_owned(), device, pairs_per_set, floor: FLOOR, rows }
+    }
+
     /// Whether all rows hold.
     pub fn holds(&self) -> bool {
         self.rows.iter().all(ParityRow::holds)
@@ -174,6 +179,15 @@ struct Block {
     tables: [Vec<Rgb>; 2],
     baked: Vec<Rgb>,
     full: Vec<Rgb>,
+}
+
+impl Block {
+    fn read(&self, weights: Weights) -> &Vec<Rgb> {
+        match weights {
+            Weights::EightBit => &self.tables[0],
+            Weights::Exact => &self.tables[1],
+        }
+    }
 }
 
 fn compare(
@@ -230,12 +244,8 @@ fn compare(
             parts: Vec::new(),
         }
     };
-    let table_values = |block: &Block| match weights {
-        Weights::EightBit => block.tables[0].clone(),
-        Weights::Exact => block.tables[1].clone(),
-    };
     let mut baked =
-        row(Form::Baked, Compared::new(&blocks, |b| &b.baked, |b| &b.reference, Some(&table_values)), Some(weights));
+        row(Form::Baked, Compared::new(&blocks, |b| &b.baked, |b| &b.reference, Some(weights)), Some(weights));
     baked.parts = parts(subject, &blocks, weights, &baked)?;
     let full = row(Form::Full, Compared::new(&blocks, |b| &b.full, |b| &b.three, None), None);
     Ok([baked, full])
@@ -273,7 +283,7 @@ impl Compared {
         blocks: &[Block],
         found: impl Fn(&Block) -> &Vec<Rgb>,
         reference: impl Fn(&Block) -> &Vec<Rgb>,
-        tables: Option<&dyn Fn(&Block) -> Vec<Rgb>>,
+        weights: Option<Weights>,
     ) -> Self {
         let (mut pairs, mut all_found, mut all_reference, mut all_tables) = (vec![], vec![], vec![], vec![]);
         let mut ends = Vec::new();
@@ -281,7 +291,7 @@ impl Compared {
             pairs.extend_from_slice(&block.pairs);
             all_found.extend_from_slice(found(block));
             all_reference.extend_from_slice(reference(block));
-            all_tables.extend(tables.map_or_else(|| reference(block).clone(), |tables| tables(block)));
+            all_tables.extend_from_slice(weights.map_or_else(|| reference(block), |weights| block.read(weights)));
             ends.push((block.set, pairs.len()));
         }
         let with_set = |statistics: Statistics| {
@@ -308,16 +318,9 @@ impl Compared {
         }
         Self {
             total: statistics(&pairs, &all_found, &all_reference),
-            table: tables.map(|_| with_set(statistics(&pairs, &all_tables, &all_reference))),
+            table: weights.map(|_| with_set(statistics(&pairs, &all_tables, &all_reference))),
             arithmetic: with_set(statistics(&pairs, &all_found, &all_tables)),
             sets,
         }
-    }
-}
-
-impl Parity {
-    /// A run of some rows.
-    pub fn new(generator: &str, device: String, pairs_per_set: u32, rows: Vec<ParityRow>) -> Self {
-        Self { generator: generator.to_owned(), device, pairs_per_set, floor: FLOOR, rows }
     }
 }
