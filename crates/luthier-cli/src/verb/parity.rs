@@ -66,7 +66,7 @@ pub(crate) fn run(options: &ParityOptions) -> Outcome {
         let broken = Share::ALL.into_iter().filter(|share| row.verdict(*share) == Verdict::Broken);
         let shares: Vec<String> = broken.map(|share| format!("{} {:.2e}", share.name(), row.max(share))).collect();
         complain(&format!(
-            "{}, {}, {}: {} not finite; beyond its tolerance: {}\n",
+            "{}, {}, {}: {} not finite; beyond its tolerance: {}",
             row.model.name(),
             row.form,
             row.material,
