@@ -15,6 +15,7 @@ mod balance;
 mod constants;
 mod distribution;
 mod error;
+mod escape;
 mod facet_grid;
 mod fgd;
 mod fresnel;
@@ -27,6 +28,7 @@ mod records;
 mod settings;
 mod smooth;
 mod thickness;
+mod veil;
 
 pub use assemble::{Bake, BakedMaterial, Outline, bake, outline};
 pub use error::BakeError;

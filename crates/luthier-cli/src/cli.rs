@@ -154,7 +154,7 @@ pub(crate) const PARITY_PAIRS: u32 = 20_000;
 pub(crate) struct ParityOptions {
     #[command(flatten)]
     pub(crate) sources: Sources,
-    /// Model to compare; may be given again. By default all that have shaders
+    /// Model to compare; may be given again. By default all that have a twin
     #[arg(long, value_name = "NAME", value_parser = shading_model())]
     pub(crate) model: Vec<ModelSetting>,
     /// Pairs of directions in each of the five sets of every material

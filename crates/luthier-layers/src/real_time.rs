@@ -34,6 +34,9 @@ enum Kind {
 }
 
 impl Twin {
+    /// Names of the models that have a twin.
+    pub const MODELS: [&str; 5] = [elek::MODEL, "weidlich-wilkie", "granier-heidrich", "phong", "microfacet"];
+
     /// The twin of the shader of a model, by the model's name; `None` for a model that has none. `wavelengths_nm` are those of the
     /// three channels. `color` says how Phong's coefficients come by their colour, which both forms of the shader read from the
     /// material; the colour of everything else is that of the [`Terms`].
@@ -257,6 +260,8 @@ mod tests {
     #[test]
     fn a_model_without_a_shader_has_no_twin() {
         let stack = Stack { exterior: Ior::vacuum(), layers: vec![coat(dispersive(1.5))] };
-        assert!(Twin::new("layered-mc", &stack, WAVELENGTHS_NM, Color::Spectral).is_none());
+        let twin = |name| Twin::new(name, &stack, WAVELENGTHS_NM, Color::Spectral);
+        assert!(twin("layered-mc").is_none());
+        assert!(Twin::MODELS.into_iter().all(|name| twin(name).is_some()));
     }
 }

@@ -11,3 +11,4 @@ mod closed_forms;
 mod films;
 mod materials;
 mod sharing;
+mod statistics;

@@ -1,5 +1,6 @@
 use luthier_bake::Silent;
 use luthier_gpu::{Artefacts, Gpu, TableTexels, WgslShader};
+use luthier_layers::real_time::Twin;
 use luthier_lut::{
     Atlas, FileEntry, Image, MANIFEST_SCHEMA, Manifest, MaterialEntry, ShadingModel, TableEntry, TableKind,
     material_buffer,
@@ -77,12 +78,12 @@ pub(crate) fn run(options: &ParityOptions) -> Outcome {
     if report.holds() { Ok(()) } else { Err(Failure::Verdict) }
 }
 
-/// The models to compare: those that there are shaders of, unless named.
+/// The models to compare: those that have a twin, unless named.
 fn models(options: &ParityOptions) -> Vec<ShadingModel> {
     let named: Vec<ShadingModel> =
         options.model.iter().filter_map(|setting| ShadingModel::from_name(setting.name())).collect();
     if named.is_empty() {
-        ShadingModel::ALL.into_iter().filter(|model| luthier_shader::has_shader(*model)).collect()
+        ShadingModel::ALL.into_iter().filter(|model| Twin::MODELS.contains(&model.name())).collect()
     } else {
         named
     }

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use luthier_layers::real_time::Twin;
 use luthier_lut::ShadingModel;
 
 use super::tolerances::{KNOWN, Tolerance, tolerance};
@@ -53,6 +54,11 @@ against the reference; *total* is the device against the reference.
     );
     for set in ParitySet::ALL {
         let _ = writeln!(out, "| {} | {} |", set.name(), set.description());
+    }
+    let missing = ShadingModel::ALL.into_iter().map(ShadingModel::name).filter(|name| !Twin::MODELS.contains(name));
+    let missing: Vec<&str> = missing.collect();
+    if !missing.is_empty() {
+        let _ = writeln!(out, "\nNot compared, for want of a twin that reads tables: {}.", missing.join(", "));
     }
     out
 }

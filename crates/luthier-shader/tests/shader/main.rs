@@ -9,3 +9,4 @@ mod judges;
 mod machine;
 mod paper;
 mod scenes;
+mod statistics;
