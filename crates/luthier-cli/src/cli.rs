@@ -42,6 +42,9 @@ pub(crate) enum Verb {
     Check(CheckOptions),
     /// Judge a bake: tables and shaders against the full evaluation in f64
     Report(ReportOptions),
+    /// Compare every shader of every material with its f64 twin: a page in Markdown
+    #[cfg(feature = "gpu")]
+    Parity(ParityOptions),
     /// Render a material off screen
     #[cfg(feature = "gpu")]
     Preview(PreviewOptions),
@@ -135,6 +138,35 @@ pub(crate) struct ReportOptions {
     #[arg(long, value_name = "NAME", conflicts_with = "no_device")]
     pub(crate) adapter: Option<String>,
     /// Print report.json to standard output as well
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Pairs of directions in each of the five sets: 100,000 in all.
+#[cfg(feature = "gpu")]
+pub(crate) const PARITY_PAIRS: u32 = 20_000;
+
+#[cfg(feature = "gpu")]
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Exits with 1 when an error exceeds its tolerance and the reason is not listed.\n\nExamples:\n  luthier parity materials -o docs/parity.md\n  luthier parity mine.toml --model elek --model phong --pairs 1000 --json"
+)]
+pub(crate) struct ParityOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Model to compare; may be given again. By default all that have a twin
+    #[arg(long, value_name = "NAME", value_parser = shading_model())]
+    pub(crate) model: Vec<ModelSetting>,
+    /// Pairs of directions in each of the five sets of every material
+    #[arg(long, value_name = "N", default_value_t = PARITY_PAIRS, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) pairs: u32,
+    /// Use the graphics adapter whose name contains this
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+    /// File to write instead of standard output
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// JSON instead of Markdown
     #[arg(long)]
     pub(crate) json: bool,
 }

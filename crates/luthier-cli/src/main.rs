@@ -36,6 +36,8 @@ fn main() -> ExitCode {
         Verb::Check(options) => verb::check::run(options),
         Verb::Report(options) => verb::report::run(options),
         #[cfg(feature = "gpu")]
+        Verb::Parity(options) => verb::parity::run(options),
+        #[cfg(feature = "gpu")]
         Verb::Preview(options) => verb::preview::run(options),
         #[cfg(feature = "gpu")]
         Verb::Gallery(options) => verb::gallery::run(options),

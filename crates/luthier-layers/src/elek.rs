@@ -60,13 +60,26 @@ pub enum Below {
     Diffuse(Diffuse),
 }
 
-/// The two factors of the model that can be read from tables.
+/// The factors of a model that can be read from tables. Layers are numbered from the top.
 pub trait Terms {
-    /// Fresnel reflectance of the interface of a layer, by number from the top.
+    /// Fresnel reflectance of the interface of a layer.
     fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb;
 
-    /// `pi alpha^2 D(theta_h, alpha)` of a slope distribution, from the cosine and the squared sine of theta_h.
-    fn distribution(&self, distribution: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64;
+    /// `pi alpha^2 D(theta_h, alpha)` of the slope distribution of a layer, from the cosine and the squared sine of theta_h.
+    fn distribution(
+        &self,
+        layer: usize,
+        distribution: Distribution,
+        alpha: f64,
+        cos_theta_h: f64,
+        sin_theta_h_sq: f64,
+    ) -> f64;
+
+    /// `2 cos(2 Phi)` of the film of a layer, in one colour channel, for the sum of the cosines in it; `None` where no table holds it,
+    /// and it is to be computed. [`eval`] has no use for it.
+    fn swing(&self, _layer: usize, _channel: usize, _cosines: f64) -> Option<f64> {
+        None
+    }
 }
 
 /// The layers of a stack as the model sees them.
@@ -131,7 +144,7 @@ pub fn eval_below(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3, no
         let cos_theta_d = (0.5 * length).min(1.0);
         let sin_theta_h_sq = wh.x * wh.x + wh.y * wh.y;
         let f = terms.fresnel(i, cos_theta_d);
-        let d = terms.distribution(layer.distribution, alpha, wh.z, sin_theta_h_sq) / (PI * alpha * alpha);
+        let d = terms.distribution(i, layer.distribution, alpha, wh.z, sin_theta_h_sq) / (PI * alpha * alpha);
         let g = v_cavity(wi_local.z, wo_local.z, wh.z, cos_theta_d);
         let geometry = d * g / (4.0 * wi_local.z * wo_local.z);
         add(&mut total, throughput, f.map(|f| f * geometry));

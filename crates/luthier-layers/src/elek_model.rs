@@ -84,7 +84,14 @@ impl Terms for Exact<'_> {
         [self.stack.layers.get(layer).map_or(0.0, |l| tint * l.reflectance(cos_theta_d)); 3]
     }
 
-    fn distribution(&self, distribution: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
+    fn distribution(
+        &self,
+        _: usize,
+        distribution: Distribution,
+        alpha: f64,
+        cos_theta_h: f64,
+        sin_theta_h_sq: f64,
+    ) -> f64 {
         microfacet::scaled_distribution(distribution, alpha, cos_theta_h, sin_theta_h_sq)
     }
 }

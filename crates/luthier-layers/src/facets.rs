@@ -12,6 +12,7 @@ use luthier_optics::stack::{Distribution, Surface};
 use luthier_optics::{microfacet, visible_normals};
 
 use crate::elek::v_cavity;
+use crate::monochrome::Optics;
 
 /// Slope parameters below this one are evaluated as this one: a lobe 0.006 degrees wide. A model of finite lobes has no other
 /// way to show a mirror.
@@ -101,9 +102,21 @@ impl Facets {
 
     /// The normalised distribution D of facet normals.
     pub fn density(&self, wh: DVec3) -> f64 {
-        let m = self.turned(wh);
-        let (x, y) = (m.x / self.alpha_x, m.y / self.alpha_y);
-        microfacet::scaled_distribution(self.distribution, 1.0, m.z, x * x + y * y) / (PI * self.alpha_x * self.alpha_y)
+        self.density_by(wh, |alpha, cos, sin_sq| microfacet::scaled_distribution(self.distribution, alpha, cos, sin_sq))
+    }
+
+    /// [`Facets::density`] from the isotropic `pi alpha^2 D` of alpha, the cosine and the squared sine of the angle: along one azimuth
+    /// an anisotropic surface is an isotropic one of another slope parameter.
+    pub fn density_by(&self, wh: DVec3, scaled: impl Fn(f64, f64, f64) -> f64) -> f64 {
+        let sin_sq = wh.x * wh.x + wh.y * wh.y;
+        let area = self.alpha_x * self.alpha_y;
+        let mut alpha = self.alpha_x;
+        if self.alpha_x != self.alpha_y && sin_sq > 0.0 {
+            let m = self.turned(wh);
+            let (x, y) = (self.alpha_y * m.x, self.alpha_x * m.y);
+            alpha = area * libm::sqrt(sin_sq / (x * x + y * y));
+        }
+        scaled(alpha, wh.z, sin_sq) / (PI * area)
     }
 
     /// Smith's Lambda of an upward direction.
@@ -115,6 +128,13 @@ impl Facets {
     pub fn lobe(&self, masking: Masking, wi: DVec3, wo: DVec3) -> Option<Lobe> {
         let alpha = libm::sqrt(self.alpha_x * self.alpha_y);
         masking.lobe([wi, wo], alpha, |wh| self.density(wh), |w| self.lambda(w))
+    }
+
+    /// [`Facets::lobe`] with the distribution of a layer of [`Optics`].
+    pub fn lobe_of(&self, optics: &impl Optics, layer: usize, masking: Masking, wi: DVec3, wo: DVec3) -> Option<Lobe> {
+        let alpha = libm::sqrt(self.alpha_x * self.alpha_y);
+        let scaled = |alpha, cos, sin_sq| optics.distribution(layer, alpha, cos, sin_sq);
+        masking.lobe([wi, wo], alpha, |wh| self.density_by(wh, scaled), |w| self.lambda(w))
     }
 
     /// A facet normal that `w` sees, from two numbers in 0..1. `w.z > 0`.

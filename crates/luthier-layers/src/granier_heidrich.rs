@@ -38,7 +38,7 @@ use crate::elek::refract;
 use crate::facets::ALPHA_MIN;
 use crate::inputs::{Input, Inputs};
 use crate::model::{Claims, Kind, Model, ModelInfo};
-use crate::monochrome::{Monochrome, MonochromeBelow};
+use crate::monochrome::{Monochrome, MonochromeBelow, Optics};
 
 /// A film as the model takes it, at one wavelength.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,15 +53,15 @@ pub struct Film {
     pub exponents: [f64; 2],
 }
 
-/// The powers of the two beams as the paper's eq. 6 and 10 give them, lobes of height one, and the phase `2 Phi` between them.
+/// The powers of the two beams as the paper's eq. 6 and 10 give them, lobes of height one, and what the phase between them follows from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Beams {
     /// R.
     pub reflected: f64,
     /// T.
     pub transmitted: f64,
-    /// `2 Phi`, radians; 0 when nothing is transmitted.
-    pub phase: f64,
+    /// Sum of the cosines of both directions in the film, to which the phase is proportional; 0 when nothing is transmitted.
+    pub cosines: f64,
     /// Solid angle of the incident light in the film over that outside, `cos_theta_i / (eta^2 cos_theta_t)`; 0 when nothing is
     /// transmitted.
     pub compression: f64,
@@ -77,12 +77,12 @@ impl Film {
     /// Eq. 3, 6 and 10. No transmitted beam in the cases of eq. 11, and under total reflection.
     pub fn beams(&self, wi: DVec3, wo: DVec3) -> Beams {
         if wi.z <= 0.0 || wo.z <= 0.0 {
-            return Beams { reflected: 0.0, transmitted: 0.0, phase: 0.0, compression: 0.0 };
+            return Beams { reflected: 0.0, transmitted: 0.0, cosines: 0.0, compression: 0.0 };
         }
         let f = self.normal_reflectance();
         let fresnel = schlick(f, wi.z);
         let reflected = fresnel * lobe(DVec3::new(-wi.x, -wi.y, wi.z), wo, self.exponents[0]);
-        let none = Beams { reflected, transmitted: 0.0, phase: 0.0, compression: 0.0 };
+        let none = Beams { reflected, transmitted: 0.0, cosines: 0.0, compression: 0.0 };
 
         // t_i and t_o turned to point up: -t_i, -t_o.
         let (Some(ti), Some(to)) = (refract(wi, self.eta), refract(wo, self.eta)) else { return none };
@@ -93,24 +93,29 @@ impl Film {
         let mirrored = 2.0 * ti.dot(n) * n - ti;
         let leaving = 1.0 - schlick(f, to.z.min(1.0));
         let transmitted = (1.0 - fresnel) * leaving * lobe(mirrored, to, self.exponents[1]);
-        Beams {
-            reflected,
-            transmitted,
-            phase: 2.0 * PI * self.waves_inside.unwrap_or(0.0) * (ti.z + to.z),
-            compression: wi.z / (self.eta * self.eta * ti.z),
-        }
+        Beams { reflected, transmitted, cosines: ti.z + to.z, compression: wi.z / (self.eta * self.eta * ti.z) }
     }
 
     /// Eq. 5: lobes of height one, as printed. Without interference when the layer is too thick for it.
     pub fn specular(&self, wi: DVec3, wo: DVec3) -> f64 {
-        let Beams { reflected, transmitted, phase, .. } = self.beams(wi, wo);
-        self.superpose(reflected, transmitted, phase)
+        let Beams { reflected, transmitted, cosines, .. } = self.beams(wi, wo);
+        superpose(reflected, transmitted, self.swing(cosines))
     }
 
     /// Eq. 13 with eq. 14, 15 and 17: the paper's eq. 18.
     pub fn diffuse(&self) -> f64 {
+        self.diffuse_by(self.swing(2.0))
+    }
+
+    /// [`Film::diffuse`] from `2 cos(2 Phi)` at the normal.
+    fn diffuse_by(&self, swing: f64) -> f64 {
         let reflected = self.diffuse_reflectance();
-        self.superpose(reflected, 1.0 - reflected, 4.0 * PI * self.waves_inside.unwrap_or(0.0))
+        superpose(reflected, 1.0 - reflected, swing)
+    }
+
+    /// `2 cos(2 Phi)` for a sum of cosines in the film; 0 when the layer is too thick to interfere.
+    fn swing(&self, cosines: f64) -> f64 {
+        self.waves_inside.map_or(0.0, |waves| 2.0 * libm::cos(2.0 * PI * waves * cosines))
     }
 
     /// Eq. 14: the cosine-weighted mean of Schlick's reflectance.
@@ -118,15 +123,11 @@ impl Film {
         let (n, sum) = (self.eta, 1.0 + self.eta);
         (21.0 * (n * n + 1.0) - 38.0 * n) / (21.0 * sum * sum)
     }
+}
 
-    /// Two powers and their interference (eq. 4).
-    fn superpose(&self, r: f64, t: f64, phase: f64) -> f64 {
-        let interference = match self.waves_inside {
-            Some(_) => 2.0 * libm::cos(phase) * libm::sqrt(r * t),
-            None => 0.0,
-        };
-        (r + t + interference).max(0.0)
-    }
+/// Two powers and their interference (eq. 4), from `2 cos(2 Phi)`.
+fn superpose(r: f64, t: f64, swing: f64) -> f64 {
+    (r + t + swing * libm::sqrt(r * t)).max(0.0)
 }
 
 /// The model on a stack.
@@ -188,6 +189,17 @@ impl Model for GranierHeidrich {
     }
 
     fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
+        self.eval_with(stack, stack, wi, wo)
+    }
+
+    fn with_inputs(&self, inputs: &Inputs) -> Option<Box<dyn Model>> {
+        Some(Box::new(Self { inner_normal: inputs.inner_normal.unwrap_or(self.inner_normal), ..*self }))
+    }
+}
+
+impl GranierHeidrich {
+    /// [`Model::eval`] with optical terms that may come from elsewhere.
+    pub fn eval_with(&self, stack: &Monochrome, optics: &impl Optics, wi: DVec3, wo: DVec3) -> f64 {
         if wi.z <= 0.0 || wo.z <= 0.0 {
             return 0.0;
         }
@@ -199,13 +211,14 @@ impl Model for GranierHeidrich {
         let (specular, diffuse) = match (self.film(stack), stack.layers.first()) {
             (Some(film), _) => {
                 let [e0, e1] = film.exponents;
-                let Beams { reflected, transmitted, phase, compression } = film.beams(wi, wo);
+                let Beams { reflected, transmitted, cosines, compression } = film.beams(wi, wo);
                 let (r, t) = (scale(e0) * reflected, scale(e1) * compression * transmitted);
-                (film.superpose(r, t, phase), film.diffuse())
+                let swing = |cosines| film.waves_inside.map_or(0.0, |_| optics.swing(0, cosines));
+                (superpose(r, t, swing(cosines)), film.diffuse_by(swing(2.0)))
             }
             (None, Some(layer)) => {
                 let e = self.exponents.map_or_else(|| exponent(layer.surface.alpha_isotropic()), |e| e[0]);
-                let f = layer.reflectance(1.0);
+                let f = optics.reflectance(0, 1.0);
                 let reflected = match layer.below {
                     MonochromeBelow::Diffuse { .. } => 0.0,
                     _ => schlick(f, wi.z) * scale(e) * lobe(DVec3::new(-wi.x, -wi.y, wi.z), wo, e),
@@ -215,10 +228,6 @@ impl Model for GranierHeidrich {
             (None, None) => (0.0, 0.0),
         };
         self.specular_weight * specular + base * diffuse * FRAC_1_PI * wi.z
-    }
-
-    fn with_inputs(&self, inputs: &Inputs) -> Option<Box<dyn Model>> {
-        Some(Box::new(Self { inner_normal: inputs.inner_normal.unwrap_or(self.inner_normal), ..*self }))
     }
 }
 

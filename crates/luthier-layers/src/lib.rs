@@ -1,4 +1,4 @@
-//! Evaluation of layer stacks in f64: the real-time models, of which `elek` is the twin of the emitted shader, and the
+//! Evaluation of layer stacks in f64: the real-time models, `real_time` with the twins of the emitted shaders, and the
 //! references that judge them, `random_walk` for one interface and `layered_mc` for a whole stack.
 //!
 //! A [`model::Model`] evaluates a [`monochrome::Monochrome`] stack at one wavelength; [`registry`] lists all by name.
@@ -38,6 +38,7 @@ pub mod perlin;
 pub mod phong;
 pub mod plane_stack;
 pub mod random_walk;
+pub mod real_time;
 pub mod registry;
 pub mod statistics;
 pub mod terms;

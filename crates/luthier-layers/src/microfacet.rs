@@ -4,12 +4,12 @@ use glam::DVec3;
 use luthier_optics::Rgb;
 use luthier_optics::stack::Distribution;
 
-use crate::facets::Masking;
+use crate::facets::{Facets, Masking};
 use crate::furnace;
 use crate::interface_fresnel::{Fresnel, LazanyiMemo};
 use crate::memo::Memo;
 use crate::model::{Claims, Kind, Model, ModelInfo};
-use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
+use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer, Optics};
 use crate::normals::{Normals, NormalsMemo};
 use crate::oren_nayar;
 
@@ -145,9 +145,31 @@ impl Microfacet {
     }
 
     /// `f cos_theta_i` but for the reflectance, and the angle for that.
-    fn lobe(&self, layer: &MonochromeLayer, wi: DVec3, wo: DVec3) -> Option<(f64, f64)> {
+    fn lobe(&self, layer: &MonochromeLayer, optics: &impl Optics, wi: DVec3, wo: DVec3) -> Option<(f64, f64)> {
         let Components { normals, masking, .. } = self.components;
-        normals.lobe(&self.normals, &layer.surface, masking, wi, wo).map(|lobe| (lobe.value, lobe.cos_theta_d))
+        let lobe = match normals {
+            Normals::Surface => Facets::new(&layer.surface).lobe_of(optics, 0, masking, wi, wo),
+            _ => normals.lobe(&self.normals, &layer.surface, masking, wi, wo),
+        };
+        lobe.map(|lobe| (lobe.value, lobe.cos_theta_d))
+    }
+
+    /// [`Model::eval`] with optical terms that may come from elsewhere; of the components, these are the surface's own distribution
+    /// and the exact reflectance.
+    pub fn eval_with(&self, stack: &Monochrome, optics: &impl Optics, wi: DVec3, wo: DVec3) -> f64 {
+        let Some(layer) = stack.layers.first() else { return 0.0 };
+        if wi.z <= 0.0 || wo.z <= 0.0 {
+            return 0.0;
+        }
+        if let MonochromeBelow::Diffuse { albedo, sigma } = layer.below {
+            return wi.z * oren_nayar::brdf_scalar(albedo, sigma, wi, wo);
+        }
+        let Some((value, cos_theta_d)) = self.lobe(layer, optics, wi, wo) else { return 0.0 };
+        let reflectance = match self.components.fresnel {
+            Fresnel::Exact => optics.reflectance(0, cos_theta_d),
+            other => other.reflectance(&self.fits, layer, cos_theta_d),
+        };
+        reflectance * value
     }
 }
 
@@ -178,21 +200,13 @@ impl Model for Microfacet {
     }
 
     fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
-        let Some(layer) = stack.layers.first() else { return 0.0 };
-        if wi.z <= 0.0 || wo.z <= 0.0 {
-            return 0.0;
-        }
-        if let MonochromeBelow::Diffuse { albedo, sigma } = layer.below {
-            return wi.z * oren_nayar::brdf_scalar(albedo, sigma, wi, wo);
-        }
-        let Some((value, cos_theta_d)) = self.lobe(layer, wi, wo) else { return 0.0 };
-        self.components.fresnel.reflectance(&self.fits, layer, cos_theta_d) * value
+        self.eval_with(stack, stack, wi, wo)
     }
 
     fn eval_rgb(&self, channels: &[(f64, Monochrome); 3], wi: DVec3, wo: DVec3) -> Option<Rgb> {
         let cos_theta_d = (0.5 * (wi + wo).length()).min(1.0);
         let reflectance = self.components.fresnel.rgb(channels, cos_theta_d)?;
-        let (value, _) = self.lobe(channels[0].1.layers.first()?, wi, wo).unwrap_or((0.0, 0.0));
+        let (value, _) = self.lobe(channels[0].1.layers.first()?, &channels[0].1, wi, wo).unwrap_or((0.0, 0.0));
         Some(reflectance.map(|r| r * value))
     }
 

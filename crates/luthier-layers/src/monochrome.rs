@@ -3,8 +3,24 @@
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::fresnel::{FilmLayer, coated};
+use luthier_optics::microfacet;
 use luthier_optics::stack::{Base, Stack, Surface};
 use num_complex::Complex64;
+use std::f64::consts::PI;
+
+/// The optical terms of a stack at one wavelength, by number of the layer from the top: what models do not compute themselves. A
+/// [`Monochrome`] computes them; tables stand in for it.
+pub trait Optics {
+    /// Reflectance of an interface, see [`MonochromeLayer::reflectance`].
+    fn reflectance(&self, layer: usize, cos_theta_i: f64) -> f64;
+
+    /// `pi alpha^2 D` of the layer's distribution, see [`microfacet::scaled_distribution`].
+    fn distribution(&self, layer: usize, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64;
+
+    /// `2 cos(2 Phi)` of the first film of a layer for the sum of the cosines in it (Granier and Heidrich 2003, eq. 3 and 19); 0
+    /// without a film.
+    fn swing(&self, layer: usize, cosines: f64) -> f64;
+}
 
 /// A stack at one wavelength, for one colour channel.
 ///
@@ -82,6 +98,23 @@ impl Monochrome {
             above = next;
         }
         Self { exterior, layers }
+    }
+}
+
+impl Optics for Monochrome {
+    fn reflectance(&self, layer: usize, cos_theta_i: f64) -> f64 {
+        self.layers.get(layer).map_or(0.0, |layer| layer.reflectance(cos_theta_i))
+    }
+
+    fn distribution(&self, layer: usize, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
+        self.layers.get(layer).map_or(0.0, |layer| {
+            microfacet::scaled_distribution(layer.surface.distribution, alpha, cos_theta_h, sin_theta_h_sq)
+        })
+    }
+
+    fn swing(&self, layer: usize, cosines: f64) -> f64 {
+        let film = self.layers.get(layer).and_then(|layer| layer.films.first());
+        film.map_or(0.0, |film| 2.0 * libm::cos(2.0 * PI * film.ior.re * film.waves * cosines))
     }
 }
 

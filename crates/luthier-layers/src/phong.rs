@@ -57,6 +57,19 @@ impl Coefficients {
         let alpha = alpha.clamp(ALPHA_MIN, 1.0);
         Self { diffuse, specular, exponent: 0.25 * (2.0 / (alpha * alpha) - 2.0) }
     }
+
+    /// `f cos_theta_i`; zero unless both directions are above the horizon.
+    pub fn eval(&self, wi: DVec3, wo: DVec3) -> f64 {
+        if wi.z <= 0.0 || wo.z <= 0.0 {
+            return 0.0;
+        }
+        let Self { diffuse, specular, exponent } = *self;
+        // 1 - r.wo is half the squared distance between the two: no cancellation in narrow lobes.
+        let mirror = DVec3::new(-wi.x, -wi.y, wi.z);
+        let away = 0.5 * (mirror - wo).length_squared();
+        let lobe = if away < 1.0 { libm::exp(exponent * libm::log1p(-away)) } else { 0.0 };
+        FRAC_1_PI * diffuse * wi.z + specular * (exponent + 1.0) / (2.0 * PI) * lobe
+    }
 }
 
 impl Model for Phong {
@@ -73,14 +86,6 @@ impl Model for Phong {
     }
 
     fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
-        if wi.z <= 0.0 || wo.z <= 0.0 {
-            return 0.0;
-        }
-        let Coefficients { diffuse, specular, exponent } = Coefficients::of(stack);
-        // 1 - r.wo is half the squared distance between the two: no cancellation in narrow lobes.
-        let mirror = DVec3::new(-wi.x, -wi.y, wi.z);
-        let away = 0.5 * (mirror - wo).length_squared();
-        let lobe = if away < 1.0 { libm::exp(exponent * libm::log1p(-away)) } else { 0.0 };
-        FRAC_1_PI * diffuse * wi.z + specular * (exponent + 1.0) / (2.0 * PI) * lobe
+        if wi.z <= 0.0 || wo.z <= 0.0 { 0.0 } else { Coefficients::of(stack).eval(wi, wo) }
     }
 }

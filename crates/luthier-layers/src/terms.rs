@@ -1,4 +1,4 @@
-//! The exact terms of the Elek model: what tables stand in for.
+//! The exact terms of the real-time models in colour: what tables stand in for.
 
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
@@ -29,7 +29,14 @@ impl Terms for Exact {
         self.interfaces.get(layer).and_then(Option::as_ref).map_or([0.0; 3], |i| i.rgb(cos_theta_d))
     }
 
-    fn distribution(&self, distribution: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
+    fn distribution(
+        &self,
+        _: usize,
+        distribution: Distribution,
+        alpha: f64,
+        cos_theta_h: f64,
+        sin_theta_h_sq: f64,
+    ) -> f64 {
         microfacet::scaled_distribution(distribution, alpha, cos_theta_h, sin_theta_h_sq)
     }
 }

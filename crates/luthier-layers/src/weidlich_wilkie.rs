@@ -21,7 +21,7 @@ use glam::DVec3;
 use crate::elek::refract;
 use crate::facets::{Facets, Masking};
 use crate::model::{Claims, Kind, Model, ModelInfo};
-use crate::monochrome::{Monochrome, MonochromeBelow};
+use crate::monochrome::{Monochrome, MonochromeBelow, Optics};
 use crate::oren_nayar;
 
 /// At which normal both directions are refracted.
@@ -97,19 +97,27 @@ impl Model for WeidlichWilkie {
     }
 
     fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
+        self.eval_with(stack, stack, wi, wo)
+    }
+}
+
+impl WeidlichWilkie {
+    /// [`Model::eval`] with optical terms that may come from elsewhere.
+    pub fn eval_with(self, stack: &Monochrome, optics: &impl Optics, wi: DVec3, wo: DVec3) -> f64 {
         if wi.z <= 0.0 || wo.z <= 0.0 {
             return 0.0;
         }
         let (mut wi_local, mut wo_local) = (wi, wo);
         let (mut throughput, mut total) = (1.0, 0.0);
-        for layer in &stack.layers {
+        for (i, layer) in stack.layers.iter().enumerate() {
             // f_cos below carries the local cosine; the model wants that of the exterior.
             let cosines = wi.z / wi_local.z;
             if let MonochromeBelow::Diffuse { albedo, sigma } = layer.below {
                 return total + throughput * wi.z * oren_nayar::brdf_scalar(albedo, sigma, wi_local, wo_local);
             }
-            let Some(lobe) = Facets::new(&layer.surface).lobe(Masking::VCavity, wi_local, wo_local) else { break };
-            let reflected = layer.reflectance(lobe.cos_theta_d);
+            let facets = Facets::new(&layer.surface);
+            let Some(lobe) = facets.lobe_of(optics, i, Masking::VCavity, wi_local, wo_local) else { break };
+            let reflected = optics.reflectance(i, lobe.cos_theta_d);
             total += throughput * cosines * reflected * lobe.value;
 
             let MonochromeBelow::Dielectric { optical_depth, .. } = layer.below else { break };
@@ -120,7 +128,8 @@ impl Model for WeidlichWilkie {
                     transmitted * ((1.0 - lobe.masking) + transmitted * lobe.masking)
                 }
                 Transmission::Directions => {
-                    (1.0 - layer.reflectance(wi_local.z.min(1.0))) * (1.0 - layer.reflectance(wo_local.z.min(1.0)))
+                    (1.0 - optics.reflectance(i, wi_local.z.min(1.0)))
+                        * (1.0 - optics.reflectance(i, wo_local.z.min(1.0)))
                 }
             };
             let absorbed = libm::exp(-optical_depth * (1.0 / wi_below.z + 1.0 / wo_below.z));

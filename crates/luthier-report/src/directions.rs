@@ -24,7 +24,7 @@ pub enum DirectionSet {
 }
 
 /// Smallest cosine of the grazing set: 89.99994 degrees.
-const GRAZING_COS_MIN: f64 = 1e-6;
+pub(crate) const GRAZING_COS_MIN: f64 = 1e-6;
 /// Largest cosine of the grazing sets: 84.3 degrees.
 const GRAZING_COS_MAX: f64 = 0.1;
 /// Smallest cosine of the glancing set: 89.99 degrees. Two f32 directions that nearly oppose each other fix
@@ -32,7 +32,7 @@ const GRAZING_COS_MAX: f64 = 0.1;
 /// answer to the precision that is asked for.
 const GLANCING_COS_MIN: f64 = 1.745e-4;
 /// Half-vector slopes reach this many alpha: Beckmann has fallen to e^-16, GGX to 1/289 of its peak.
-const LOBE_REACH: f64 = 4.0;
+pub(crate) const LOBE_REACH: f64 = 4.0;
 
 impl DirectionSet {
     /// All sets, in the order of the report.
@@ -93,12 +93,7 @@ impl DirectionSet {
             Self::Highlight | Self::Glancing => {
                 let cos = if self == Self::Highlight { 1.0 - a } else { log_uniform(GLANCING_COS_MIN, a) };
                 let wi = direction(cos, b);
-                let slope = LOBE_REACH * c * spreads[variant];
-                let wh = DVec3::new(slope * libm::cos(TAU * d), slope * libm::sin(TAU * d), 1.0).normalize();
-                let wo = 2.0 * wi.dot(wh) * wh - wi;
-                // A mirrored direction below the horizon is folded up rather than dropped: the count stays, and what
-                // it gives is one more grazing pair.
-                (wi, DVec3::new(wo.x, wo.y, wo.z.abs()))
+                (wi, mirrored(wi, LOBE_REACH * c * spreads[variant], d))
             }
         };
         let smallest = if self == Self::Glancing { GLANCING_COS_MIN } else { GRAZING_COS_MIN };
@@ -108,7 +103,7 @@ impl DirectionSet {
 
 /// Slope spread of every lobe as seen from outside. The half vector of a lobe below interfaces of index `eta` is the
 /// outer one with its tangential part divided by `eta`. A material without a lobe gets one moderate spread.
-fn spreads(layers: &[Layer]) -> Vec<f64> {
+pub(crate) fn spreads(layers: &[Layer]) -> Vec<f64> {
     let mut out = Vec::new();
     let (mut eta_above, mut alpha_above) = (1.0, 0.0_f64);
     for layer in layers {
@@ -131,7 +126,7 @@ fn spreads(layers: &[Layer]) -> Vec<f64> {
 ///
 /// Additive recurrences are simpler, but the four-dimensional one on the root of x^5 = x + 1 has
 /// `1/x + 5/x^3 = 4.0002`: thousands of its points lie on six lines of the two cosines.
-fn halton(n: u32) -> [f64; 4] {
+pub(crate) fn halton(n: u32) -> [f64; 4] {
     [2, 3, 5, 7].map(|base| {
         let (mut index, mut fraction, mut scale) = (u64::from(n) + 1, 0.0, 1.0);
         while index > 0 {
@@ -143,16 +138,24 @@ fn halton(n: u32) -> [f64; 4] {
     })
 }
 
-fn log_uniform(min: f64, u: f64) -> f64 {
+/// The mirror direction of `wi` about a half vector of a slope and an azimuth in turns. Below the horizon it is folded up rather than
+/// dropped: the count stays, and what it gives is one more grazing pair.
+pub(crate) fn mirrored(wi: DVec3, slope: f64, turn: f64) -> DVec3 {
+    let wh = DVec3::new(slope * libm::cos(TAU * turn), slope * libm::sin(TAU * turn), 1.0).normalize();
+    let wo = 2.0 * wi.dot(wh) * wh - wi;
+    DVec3::new(wo.x, wo.y, wo.z.abs())
+}
+
+pub(crate) fn log_uniform(min: f64, u: f64) -> f64 {
     min * libm::pow(GRAZING_COS_MAX / min, u)
 }
 
-fn direction(cos_theta: f64, turn: f64) -> DVec3 {
+pub(crate) fn direction(cos_theta: f64, turn: f64) -> DVec3 {
     let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
     DVec3::new(sin_theta * libm::cos(TAU * turn), sin_theta * libm::sin(TAU * turn), cos_theta)
 }
 
-fn rounded(w: DVec3, smallest_cos: f64) -> [f32; 3] {
+pub(crate) fn rounded(w: DVec3, smallest_cos: f64) -> [f32; 3] {
     [w.x as f32, w.y as f32, w.z.max(smallest_cos) as f32]
 }
 

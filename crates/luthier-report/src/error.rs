@@ -61,7 +61,7 @@ pub enum ReportError {
         kind: TableKind,
     },
     /// A material is shaded by a model that the judge has no reference for.
-    #[error("the shaders evaluate `{material}` with the model `{}`, there is a reference for `elek` only", model.name())]
+    #[error("the shaders evaluate `{material}` with the model `{}`, which has no reference here", model.name())]
     Model {
         /// The material.
         material: String,

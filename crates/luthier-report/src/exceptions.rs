@@ -1,9 +1,10 @@
 //! Where a shader misses the target, and what makes it miss.
 
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 
 use glam::DVec3;
-use luthier_layers::elek::{self, Layer, Terms};
+use luthier_layers::elek::Terms;
+use luthier_layers::real_time::Twin;
 use luthier_layers::terms::Exact;
 use luthier_optics::Rgb;
 use luthier_optics::stack::Distribution;
@@ -50,6 +51,8 @@ pub enum Factor {
     Fresnel,
     /// A distribution tile.
     Distribution,
+    /// A phase row.
+    Phase,
     /// f32 arithmetic: what is left when f64 reads the same tables.
     Arithmetic,
 }
@@ -95,6 +98,13 @@ pub enum Cause {
         /// What the tile gives.
         sampled: f64,
     },
+    /// A phase row, in the channel of the worst pair.
+    Phase {
+        /// Layer, from 0.
+        layer: u32,
+        /// Sum of the cosines in the film.
+        cosines: f64,
+    },
     /// f32 arithmetic.
     Arithmetic,
 }
@@ -105,6 +115,7 @@ impl Cause {
         match self {
             Self::Fresnel { .. } => Factor::Fresnel,
             Self::Distribution { .. } => Factor::Distribution,
+            Self::Phase { .. } => Factor::Phase,
             Self::Arithmetic => Factor::Arithmetic,
         }
     }
@@ -140,6 +151,17 @@ impl Miss {
         pairs.iter().zip(found).zip(expected).filter_map(each).collect()
     }
 
+    /// A pair, whether it misses or not.
+    pub(crate) fn at(pair: Pair, channel: usize, found: &Rgb, expected: &Rgb) -> Self {
+        Self {
+            pair,
+            channel,
+            found: found[channel],
+            expected: expected[channel],
+            scale: brightest(expected).max(FLOOR),
+        }
+    }
+
     fn of(pair: &WorstPair, misses: &[Self]) -> Option<Self> {
         misses.iter().find(|m| m.pair == (pair.wi, pair.wo)).copied()
     }
@@ -156,7 +178,7 @@ impl Miss {
 
 /// What is needed to take an error apart.
 pub(crate) struct Factors<'a> {
-    pub(crate) layers: &'a [Layer],
+    pub(crate) twin: &'a Twin,
     pub(crate) exact: &'a Exact,
     /// The tables as the shader reads them; nothing for a shader that reads none.
     pub(crate) tables: Option<&'a TableTerms<'a>>,
@@ -187,7 +209,7 @@ pub(crate) fn exception(
     let taken: Vec<&Miss> = misses.iter().step_by(stride).collect();
     let causes: Vec<Option<Factor>> =
         taken.par_iter().map(|miss| factors.parts(miss).first().map(|part| part.cause.factor())).collect();
-    let mut tally: Vec<(Factor, u64)> = [Factor::Fresnel, Factor::Distribution, Factor::Arithmetic]
+    let mut tally: Vec<(Factor, u64)> = [Factor::Fresnel, Factor::Distribution, Factor::Phase, Factor::Arithmetic]
         .map(|factor| (factor, causes.iter().filter(|c| **c == Some(factor)).count() as u64))
         .into_iter()
         .filter(|(_, count)| *count > 0)
@@ -210,20 +232,26 @@ pub(crate) fn exception(
 impl Factors<'_> {
     /// What an error is made of, largest first: each factor of each layer read from the tables while all others are exact,
     /// and f32 arithmetic against f64 on the same tables. Products of errors, of second order, are nobody's.
-    fn parts(&self, miss: &Miss) -> Vec<Part> {
+    pub(crate) fn parts(&self, miss: &Miss) -> Vec<Part> {
         let [wi, wo] = [miss.pair.0, miss.pair.1].map(|w| DVec3::from(w.map(f64::from)));
         let mut parts = Vec::new();
         let mut without_arithmetic = miss.expected;
         if let Some(tables) = self.tables {
             let recorder = Mixed::new(self.exact, tables, None);
-            elek::eval(self.layers, &recorder, wi, wo);
+            self.twin.eval(&recorder, wi, wo);
+            let mut seen = Vec::new();
             for read in recorder.reads.into_inner() {
-                let mixed = Mixed::new(self.exact, tables, Some((read.layer, read.factor())));
-                let value = elek::eval(self.layers, &mixed, wi, wo)[miss.channel];
+                let part = (read.layer, read.factor());
+                if seen.contains(&part) {
+                    continue;
+                }
+                seen.push(part);
+                let mixed = Mixed::new(self.exact, tables, Some(part));
+                let value = self.twin.eval(&mixed, wi, wo)[miss.channel];
                 let rel_err = (value - miss.expected) / miss.scale;
                 parts.push(Part { rel_err, cause: read.cause(tables, miss.channel) });
             }
-            without_arithmetic = elek::eval(self.layers, tables, wi, wo)[miss.channel];
+            without_arithmetic = self.twin.eval(tables, wi, wo)[miss.channel];
         }
         if self.on_device {
             let rel_err = (miss.found - without_arithmetic) / miss.scale;
@@ -236,14 +264,10 @@ impl Factors<'_> {
 }
 
 /// Exact terms but for one factor of one layer, which is read from the tables; keeps a record of all that was asked for.
-///
-/// The distribution is asked for without a layer. It is that of the Fresnel term before it: the model takes both of one
-/// layer before it goes on to the next.
 struct Mixed<'a> {
     exact: &'a Exact,
     tables: &'a TableTerms<'a>,
     from_tables: Option<(usize, Factor)>,
-    layer: Cell<usize>,
     reads: RefCell<Vec<Read>>,
 }
 
@@ -255,12 +279,13 @@ struct Read {
 
 enum Term {
     Fresnel { cos_theta_d: f64, expected: Rgb, sampled: Rgb },
-    Distribution { distribution: Distribution, alpha: f64, theta_h: f64, expected: f64, sampled: f64 },
+    Distribution { alpha: f64, theta_h: f64, expected: f64, sampled: f64 },
+    Phase { cosines: f64 },
 }
 
 impl<'a> Mixed<'a> {
     fn new(exact: &'a Exact, tables: &'a TableTerms<'a>, from_tables: Option<(usize, Factor)>) -> Self {
-        Self { exact, tables, from_tables, layer: Cell::new(0), reads: RefCell::new(Vec::new()) }
+        Self { exact, tables, from_tables, reads: RefCell::new(Vec::new()) }
     }
 
     fn record<T>(&self, layer: usize, term: Term, expected: T, sampled: T) -> T {
@@ -273,17 +298,29 @@ impl<'a> Mixed<'a> {
 
 impl Terms for Mixed<'_> {
     fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
-        self.layer.set(layer);
         let [expected, sampled] = [self.exact.fresnel(layer, cos_theta_d), self.tables.fresnel(layer, cos_theta_d)];
         self.record(layer, Term::Fresnel { cos_theta_d, expected, sampled }, expected, sampled)
     }
 
-    fn distribution(&self, distribution: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
-        let expected = self.exact.distribution(distribution, alpha, cos_theta_h, sin_theta_h_sq);
-        let sampled = self.tables.distribution(distribution, alpha, cos_theta_h, sin_theta_h_sq);
+    fn distribution(
+        &self,
+        layer: usize,
+        distribution: Distribution,
+        alpha: f64,
+        cos_theta_h: f64,
+        sin_theta_h_sq: f64,
+    ) -> f64 {
+        let expected = self.exact.distribution(layer, distribution, alpha, cos_theta_h, sin_theta_h_sq);
+        let sampled = self.tables.distribution(layer, distribution, alpha, cos_theta_h, sin_theta_h_sq);
         let theta_h = libm::atan2(sin_theta_h_sq.sqrt(), cos_theta_h);
-        let term = Term::Distribution { distribution, alpha, theta_h, expected, sampled };
-        self.record(self.layer.get(), term, expected, sampled)
+        let term = Term::Distribution { alpha, theta_h, expected, sampled };
+        self.record(layer, term, expected, sampled)
+    }
+
+    /// The exact value is computed by the model.
+    fn swing(&self, layer: usize, channel: usize, cosines: f64) -> Option<f64> {
+        let sampled = self.tables.swing(layer, channel, cosines)?;
+        self.record(layer, Term::Phase { cosines }, None, Some(sampled))
     }
 }
 
@@ -292,6 +329,7 @@ impl Read {
         match self.term {
             Term::Fresnel { .. } => Factor::Fresnel,
             Term::Distribution { .. } => Factor::Distribution,
+            Term::Phase { .. } => Factor::Phase,
         }
     }
 
@@ -305,14 +343,15 @@ impl Read {
                 expected: expected[channel],
                 sampled: sampled[channel],
             },
-            Term::Distribution { distribution, alpha, theta_h, expected, sampled } => Cause::Distribution {
+            Term::Distribution { alpha, theta_h, expected, sampled } => Cause::Distribution {
                 layer,
-                tile: tables.distribution_name(distribution).to_owned(),
+                tile: tables.distribution_name(self.layer).to_owned(),
                 alpha,
                 theta_h_deg: theta_h.to_degrees(),
                 expected,
                 sampled,
             },
+            Term::Phase { cosines } => Cause::Phase { layer, cosines },
         }
     }
 }

@@ -2,8 +2,9 @@ use std::fmt;
 
 use glam::DVec3;
 use luthier_layers::elek::{self, Layer, Terms};
+use luthier_layers::real_time::Twin;
 use luthier_layers::terms::Exact;
-use luthier_lut::{ColorMode, LayerKind, LayerRecord, Manifest, ShadingModel};
+use luthier_lut::{ColorMode, LayerKind, LayerRecord, Manifest, MaterialEntry, ShadingModel};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
@@ -88,8 +89,8 @@ pub fn judge(
         .materials
         .iter()
         .zip(&subject.stacks)
-        .map(|(material, stack)| References::new(stack, material.wavelengths_nm, material.color))
-        .collect();
+        .map(|(material, stack)| References::new(stack, material))
+        .collect::<Result<_, _>>()?;
     let baked: Vec<Exact> = references.iter().map(|r| r.baked().clone()).collect();
     let total = u64::from(scan::STEPS) + (manifest.materials.len() * DirectionSet::ALL.len()) as u64;
     let mut done = 0;
@@ -112,14 +113,14 @@ pub fn judge(
         let mut gathered = Gathered::new(device.is_some());
         for set in DirectionSet::ALL {
             let pairs = set.pairs(settings.pairs_per_set, layers);
-            let three = evaluate(layers, &references.three, &pairs);
-            let spectral = evaluate(layers, &references.spectral, &pairs);
+            let three = evaluate(&references.twin, &references.three, &pairs);
+            let spectral = evaluate(&references.twin, &references.spectral, &pairs);
             let baked_reference = match entry.color {
                 ColorMode::Spectral => &spectral,
                 ColorMode::ThreeWavelengths => &three,
             };
-            let tables_8 = evaluate(layers, &eight_bit, &pairs);
-            let tables_exact = evaluate(layers, &exact_weights, &pairs);
+            let tables_8 = evaluate(&references.twin, &eight_bit, &pairs);
+            let tables_exact = evaluate(&references.twin, &exact_weights, &pairs);
             gathered.add(Compared::TablesEightBit, set, &pairs, &tables_8, baked_reference);
             gathered.add(Compared::TablesExact, set, &pairs, &tables_exact, baked_reference);
             gathered.add(Compared::ThreeWavelengths, set, &pairs, &three, &spectral);
@@ -157,7 +158,7 @@ pub fn judge(
         for (compared, misses) in gathered.misses {
             let reference = &references[index];
             let factors = Factors {
-                layers: &reference.layers,
+                twin: &reference.twin,
                 exact: reference.baked(),
                 tables: (compared != Compared::FullDevice).then_some(&read),
                 on_device: device.is_some(),
@@ -194,26 +195,35 @@ fn models(manifest: &Manifest) -> String {
     names.join(", ")
 }
 
-/// Exact terms of one material.
-struct References {
-    layers: Vec<Layer>,
-    spectral: Exact,
-    three: Exact,
+/// The f64 twin of one material's shader, and its exact terms.
+pub(crate) struct References {
+    pub(crate) layers: Vec<Layer>,
+    pub(crate) twin: Twin,
+    pub(crate) spectral: Exact,
+    pub(crate) three: Exact,
     color: ColorMode,
 }
 
 impl References {
-    fn new(stack: &Stack, wavelengths_nm: [f64; 3], color: ColorMode) -> Self {
-        Self {
+    pub(crate) fn new(stack: &Stack, material: &MaterialEntry) -> Result<Self, ReportError> {
+        let three = Color::ThreeWavelengths(material.wavelengths_nm);
+        let color = match material.color {
+            ColorMode::Spectral => Color::Spectral,
+            ColorMode::ThreeWavelengths => three,
+        };
+        let model = material.model;
+        let twin = Twin::new(model.name(), stack, material.wavelengths_nm, color);
+        Ok(Self {
             layers: elek::layers(stack),
+            twin: twin.ok_or_else(|| ReportError::Model { material: material.name.clone(), model })?,
             spectral: Exact::new(stack, Color::Spectral),
-            three: Exact::new(stack, Color::ThreeWavelengths(wavelengths_nm)),
-            color,
-        }
+            three: Exact::new(stack, three),
+            color: material.color,
+        })
     }
 
     /// What the tables stand for.
-    fn baked(&self) -> &Exact {
+    pub(crate) fn baked(&self) -> &Exact {
         match self.color {
             ColorMode::Spectral => &self.spectral,
             ColorMode::ThreeWavelengths => &self.three,
@@ -222,12 +232,12 @@ impl References {
 }
 
 /// The model in f64 at exactly the f32 directions that the device gets.
-fn evaluate(layers: &[Layer], terms: &(impl Terms + Sync), pairs: &[Pair]) -> Vec<Rgb> {
+pub(crate) fn evaluate(twin: &Twin, terms: &(impl Terms + Sync), pairs: &[Pair]) -> Vec<Rgb> {
     let wide = |w: [f32; 3]| DVec3::from(w.map(f64::from));
-    pairs.par_iter().map(|&(wi, wo)| elek::eval(layers, terms, wide(wi), wide(wo))).collect()
+    pairs.par_iter().map(|&(wi, wo)| twin.eval(terms, wide(wi), wide(wo))).collect()
 }
 
-fn run(device: &dyn Device, form: Form, material: u32, pairs: &[Pair]) -> Result<Vec<Rgb>, ReportError> {
+pub(crate) fn run(device: &dyn Device, form: Form, material: u32, pairs: &[Pair]) -> Result<Vec<Rgb>, ReportError> {
     let values =
         device.evaluate(form, material, pairs).map_err(|message| ReportError::Device { form, material, message })?;
     if values.len() != pairs.len() {
@@ -290,13 +300,13 @@ impl Gathered {
 
 /// Which weights explain a device: the smaller sum of squared relative errors over all materials.
 #[derive(Default)]
-struct WeightsVote {
+pub(crate) struct WeightsVote {
     eight_bit: f64,
     exact: f64,
 }
 
 impl WeightsVote {
-    fn add(&mut self, device: &[Rgb], eight_bit: &[Rgb], exact: &[Rgb]) {
+    pub(crate) fn add(&mut self, device: &[Rgb], eight_bit: &[Rgb], exact: &[Rgb]) {
         let sum = |expected: &[Rgb]| {
             let errors = device.iter().zip(expected).flat_map(|(d, e)| {
                 let bright = brightest(e);
@@ -308,7 +318,7 @@ impl WeightsVote {
         self.exact += sum(exact);
     }
 
-    fn decide(&self) -> Weights {
+    pub(crate) fn decide(&self) -> Weights {
         if self.exact <= self.eight_bit { Weights::Exact } else { Weights::EightBit }
     }
 }

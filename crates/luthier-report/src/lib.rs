@@ -4,13 +4,13 @@
 //! [`Device`] that runs the emitted shaders. Every figure of the [`Report`] comes from that run:
 //!
 //! - tables are read back through the sampler of `luthier-lut` at points of the judge's own choosing;
-//! - shaders are compared with `luthier_layers::elek` over deterministic sets of directions;
+//! - shaders are compared with `luthier_layers::real_time` over deterministic sets of directions;
 //! - the error of the baked shader is split into what the tables do and what f32 arithmetic does;
 //! - the difference between three wavelengths and the spectrum is shown apart, so that nobody takes it for an error;
 //! - whatever misses [`TARGET_MAX_REL_ERR`] is listed with the factor that makes it miss;
 //! - directional albedos (FGD) are estimated anew, wavelength by wavelength, with the uncertainty of the estimate.
 //!
-//! [`compare_pictures`] compares two rendered pictures.
+//! [`parity`] compares the shaders of all models with their f64 twins. [`compare_pictures`] compares two rendered pictures.
 //! [`judge_models`] is the judge of what the bake stands on: every reflectance model against the Monte Carlo of whole stacks.
 //!
 //! Simplifications: of thickness maps only what follows from the stack is checked (range, normalisation), because their
@@ -30,6 +30,7 @@ mod json;
 mod judge;
 mod models;
 mod page;
+mod parity;
 mod picture;
 mod profile;
 mod report;
@@ -45,6 +46,10 @@ pub use exceptions::{Cause, Exception, Factor, Part};
 pub use judge::{Progress, Settings, judge};
 pub use models::{
     MaterialModels, ModelErrors, ModelSettings, ModelSubject, ModelsReport, Quantity, ViewError, Worst, judge_models,
+};
+pub use parity::{
+    KNOWN, Known, POLISHED_ALPHAS, Parity, ParityCase, ParityRow, ParitySet, Share, Tolerance, Verdict, parity,
+    tolerance,
 };
 pub use picture::{PIXELS_PER_DEGREE, PictureComparison, compare_pictures};
 pub use profile::{ANGLE_BINS, AngleProfile, Exceedance};

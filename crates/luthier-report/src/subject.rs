@@ -1,5 +1,5 @@
 use luthier_layers::elek::{self, Below};
-use luthier_lut::{Image, LayerKind, LayerRecord, Manifest, ShadingModel, TableEntry, TableKind};
+use luthier_lut::{Image, LayerKind, LayerRecord, Manifest, TableEntry, TableKind};
 use luthier_optics::stack::Stack;
 
 use crate::ReportError;
@@ -67,11 +67,8 @@ impl Subject<'_> {
     /// Checks that stacks and records describe the same layers.
     ///
     /// # Errors
-    /// [`ReportError::Model`], [`ReportError::MaterialCount`], [`ReportError::Layers`].
+    /// [`ReportError::MaterialCount`], [`ReportError::Layers`].
     pub(crate) fn check(&self) -> Result<(), ReportError> {
-        if let Some(other) = self.manifest.materials.iter().find(|m| m.model != ShadingModel::Elek) {
-            return Err(ReportError::Model { material: other.name.clone(), model: other.model });
-        }
         let (manifest, stacks) = (self.manifest.materials.len(), self.stacks.len());
         if manifest != stacks {
             return Err(ReportError::MaterialCount { manifest, stacks });

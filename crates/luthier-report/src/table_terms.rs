@@ -1,7 +1,9 @@
 //! The model's terms as a shader reads them: from texels.
 
 use luthier_layers::elek::Terms;
-use luthier_lut::{Encoding, LayerKind, TableKind, TexelFormat, WeightBits, bilinear};
+use luthier_lut::{
+    Encoding, LayerKind, LayerRecord, MaterialEntry, ShadingModel, TableKind, TexelFormat, WeightBits, bilinear,
+};
 use luthier_optics::Rgb;
 use luthier_optics::stack::Distribution;
 use serde::{Deserialize, Serialize};
@@ -92,9 +94,10 @@ impl AngleAxis {
 #[derive(Debug)]
 pub struct TableTerms<'a> {
     fresnel: Option<(Table<'a>, AngleAxis)>,
-    fresnel_tiles: Vec<u32>,
     distribution: Option<(Table<'a>, AngleAxis)>,
-    distribution_tiles: Vec<(Distribution, u32)>,
+    phase: Option<Table<'a>>,
+    film: Option<Table<'a>>,
+    records: &'a [LayerRecord],
     weights: Weights,
 }
 
@@ -108,69 +111,128 @@ impl<'a> TableTerms<'a> {
             Some(table) => Ok(Some((table, AngleAxis::of(&table)?))),
             None => Ok::<_, ReportError>(None),
         };
-        let fresnel = with_angle(TableKind::Fresnel)?;
-        let distribution = with_angle(TableKind::Distribution)?;
-        let mut terms =
-            Self { fresnel, fresnel_tiles: Vec::new(), distribution, distribution_tiles: Vec::new(), weights };
         let Some(entry) = subject.manifest.materials.get(material) else {
             return Err(ReportError::MaterialCount {
                 manifest: subject.manifest.materials.len(),
                 stacks: subject.stacks.len(),
             });
         };
-        for (layer, record) in entry.layers.iter().enumerate() {
-            if record.kind == LayerKind::Diffuse {
-                break;
-            }
-            let tile = |kind, table: Option<&Table<'_>>, tile: Option<u32>| {
-                let exists = |t: &u32| table.is_some_and(|table| *t < table.entry.layout.tiles);
-                tile.filter(exists).ok_or(ReportError::MissingTile { material: entry.name.clone(), layer, kind })
-            };
-            let table = terms.fresnel.as_ref().map(|(table, _)| table);
-            terms.fresnel_tiles.push(tile(TableKind::Fresnel, table, record.fresnel_tile)?);
-            let table = terms.distribution.as_ref().map(|(table, _)| table);
-            let distribution_tile = tile(TableKind::Distribution, table, record.distribution_tile)?;
-            let distribution = if record.distribution == Distribution::Ggx.name() {
-                Distribution::Ggx
-            } else {
-                Distribution::Beckmann
-            };
-            terms.distribution_tiles.push((distribution, distribution_tile));
-            if record.kind == LayerKind::Conductor {
-                break;
+        let terms = Self {
+            fresnel: with_angle(TableKind::Fresnel)?,
+            distribution: with_angle(TableKind::Distribution)?,
+            phase: subject.table(TableKind::Phase)?,
+            film: subject.table(TableKind::Film)?,
+            records: &entry.layers,
+            weights,
+        };
+        for (layer, kind) in read_by(entry) {
+            if terms.tile(kind, layer).is_none() {
+                return Err(ReportError::MissingTile { material: entry.name.clone(), layer, kind });
             }
         }
         Ok(terms)
     }
 
-    /// Name of the row that a layer reads; empty for a layer that reads none.
-    pub(crate) fn fresnel_name(&self, layer: usize) -> &str {
-        tile_name(self.fresnel.as_ref().map(|(table, _)| table), self.fresnel_tiles.get(layer).copied())
+    fn table(&self, kind: TableKind) -> Option<Table<'a>> {
+        match kind {
+            TableKind::Fresnel => self.fresnel.map(|(table, _)| table),
+            TableKind::Distribution => self.distribution.map(|(table, _)| table),
+            TableKind::Phase => self.phase,
+            TableKind::Film => self.film,
+            TableKind::Fgd | TableKind::Thickness | TableKind::Escape => None,
+        }
     }
 
-    /// Name of the tile of a distribution; empty when there is none.
-    pub(crate) fn distribution_name(&self, distribution: Distribution) -> &str {
-        let tile = self.distribution_tiles.iter().find(|(d, _)| *d == distribution).map(|(_, tile)| *tile);
-        tile_name(self.distribution.as_ref().map(|(table, _)| table), tile)
+    /// The tile that a layer reads, if it is there.
+    fn tile(&self, kind: TableKind, layer: usize) -> Option<u32> {
+        let record = self.records.get(layer)?;
+        let tile = match kind {
+            TableKind::Fresnel => record.fresnel_tile,
+            TableKind::Distribution => record.distribution_tile,
+            TableKind::Phase => record.phase_tile,
+            TableKind::Film => record.film_tile,
+            TableKind::Fgd | TableKind::Thickness | TableKind::Escape => None,
+        };
+        let tiles = self.table(kind)?.entry.layout.tiles;
+        tile.filter(|tile| *tile < tiles)
+    }
+
+    /// Name of the row that a layer reads; empty for a layer that reads none.
+    pub(crate) fn fresnel_name(&self, layer: usize) -> &str {
+        let kind = if self.tile(TableKind::Film, layer).is_some() { TableKind::Film } else { TableKind::Fresnel };
+        self.name(kind, layer)
+    }
+
+    /// Name of the distribution tile that a layer reads; empty when there is none.
+    pub(crate) fn distribution_name(&self, layer: usize) -> &str {
+        self.name(TableKind::Distribution, layer)
+    }
+
+    fn name(&self, kind: TableKind, layer: usize) -> &str {
+        let tile = self.table(kind).zip(self.tile(kind, layer));
+        tile.and_then(|(table, tile)| table.entry.tiles.get(tile as usize)).map_or("", |tile| &tile.name)
     }
 }
 
-fn tile_name<'a>(table: Option<&Table<'a>>, tile: Option<u32>) -> &'a str {
-    table.zip(tile).and_then(|(table, tile)| table.entry.tiles.get(tile as usize)).map_or("", |tile| &tile.name)
+/// Layers and tables without which the shader of a material cannot be evaluated.
+fn read_by(entry: &MaterialEntry) -> Vec<(usize, TableKind)> {
+    let count = match entry.model {
+        ShadingModel::Phong => 0,
+        ShadingModel::Microfacet | ShadingModel::GranierHeidrich => 1,
+        ShadingModel::Elek | ShadingModel::WeidlichWilkie | ShadingModel::Belcour | ShadingModel::Yamaguchi => {
+            entry.layers.len()
+        }
+    };
+    let mut out = Vec::new();
+    for (layer, record) in entry.layers.iter().enumerate().take(count) {
+        if record.kind == LayerKind::Diffuse {
+            break;
+        }
+        let has_film = record.film_ior_n[0] > 0.0;
+        if entry.model == ShadingModel::GranierHeidrich {
+            match record.kind {
+                _ if has_film => out.push((layer, TableKind::Phase)),
+                LayerKind::Conductor => out.push((layer, TableKind::Fresnel)),
+                LayerKind::Dielectric | LayerKind::Diffuse => {}
+            }
+            continue;
+        }
+        out.push((layer, if record.film_tile.is_some() { TableKind::Film } else { TableKind::Fresnel }));
+        out.push((layer, TableKind::Distribution));
+        if record.kind == LayerKind::Conductor {
+            break;
+        }
+    }
+    out
 }
 
 impl Terms for TableTerms<'_> {
     fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
-        let (Some((table, angle)), Some(&tile)) = (&self.fresnel, self.fresnel_tiles.get(layer)) else {
-            return [f64::NAN; 3];
+        let [r, g, b, _] = if let (Some(table), Some(tile)) = (self.film, self.tile(TableKind::Film, layer)) {
+            let record = &self.records[layer];
+            table.read(tile, [cos_theta_d, record.film_thickness_nm / record.film_thickness_max_nm], self.weights)
+        } else if let (Some((table, angle)), Some(tile)) = (self.fresnel, self.tile(TableKind::Fresnel, layer)) {
+            table.read(tile, [angle.value_at(cos_theta_d), 0.0], self.weights)
+        } else {
+            [f64::NAN; 4]
         };
-        let [r, g, b, _] = table.read(tile, [angle.value_at(cos_theta_d), 0.0], self.weights);
         [r, g, b]
     }
 
-    fn distribution(&self, distribution: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
-        let tile = self.distribution_tiles.iter().find(|(d, _)| *d == distribution);
-        let (Some((table, angle)), Some(&(_, tile))) = (&self.distribution, tile) else { return f64::NAN };
-        table.read(tile, [angle.value(cos_theta_h, sin_theta_h_sq), alpha], self.weights)[0]
+    fn distribution(&self, layer: usize, _: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
+        match (self.distribution, self.tile(TableKind::Distribution, layer)) {
+            (Some((table, angle)), Some(tile)) => {
+                table.read(tile, [angle.value(cos_theta_h, sin_theta_h_sq), alpha], self.weights)[0]
+            }
+            _ => f64::NAN,
+        }
+    }
+
+    /// From the row over s, the sum of the cosines times d / (2 d_max) (Granier and Heidrich 2003, eq. 19).
+    fn swing(&self, layer: usize, channel: usize, cosines: f64) -> Option<f64> {
+        let (table, tile) = (self.phase?, self.tile(TableKind::Phase, layer)?);
+        let record = &self.records[layer];
+        let s = 0.5 * cosines * record.film_thickness_nm / record.film_thickness_max_nm;
+        Some(table.read(tile, [s, 0.0], self.weights)[channel])
     }
 }

@@ -28,7 +28,7 @@ pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, 
     if depth > 1 {
         out.push_str("    let count = luthier_layer_count(material);\n");
     }
-    out.push_str("    var path = LuthierPath(wi, wo, vec3<f32>(wi.z), vec3<f32>(0.0), 0.0, true);\n");
+    out.push_str("    var path = LuthierPath(wi, wo, wi.xy + wo.xy, vec3<f32>(wi.z), vec3<f32>(0.0), 0.0, true);\n");
     for i in 0..depth {
         let here = || layers.iter().filter_map(|layers| layers.get(i));
         let add = |function: &str| format!("path = {function}(path, $layer(material, {i}u));");

@@ -10,6 +10,8 @@ pub(crate) mod gallery;
 pub(crate) mod ior;
 pub(crate) mod models;
 #[cfg(feature = "gpu")]
+pub(crate) mod parity;
+#[cfg(feature = "gpu")]
 pub(crate) mod preview;
 pub(crate) mod report;
 pub(crate) mod schema;

@@ -18,6 +18,8 @@ mod material_texts;
 mod model_judge;
 mod models;
 mod outdated;
+#[cfg(feature = "gpu")]
+mod parity;
 mod pipes;
 #[cfg(feature = "gpu")]
 mod preview;

@@ -184,7 +184,14 @@ impl Terms for TableTerms<'_> {
         [r, g, b]
     }
 
-    fn distribution(&self, distribution: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
+    fn distribution(
+        &self,
+        _: usize,
+        distribution: Distribution,
+        alpha: f64,
+        cos_theta_h: f64,
+        sin_theta_h_sq: f64,
+    ) -> f64 {
         let (table, texels) = &self.distribution;
         let theta_h = sin_theta_h_sq.sqrt().atan2(cos_theta_h);
         let tile = u32::from(distribution == Distribution::Ggx);
@@ -210,7 +217,7 @@ fn the_baked_form_equals_f64_on_the_same_tables() {
     let distribution = Table::new(TableKind::Distribution, square, TexelFormat::R32Float, |tile, [theta_h, alpha]| {
         let kind = if tile == 0 { Distribution::Beckmann } else { Distribution::Ggx };
         let (sin, cos) = theta_h.sin_cos();
-        [RecordTerms(&[]).distribution(kind, alpha.max(1e-3), cos, sin * sin) as f32; 4]
+        [RecordTerms(&[]).distribution(0, kind, alpha.max(1e-3), cos, sin * sin) as f32; 4]
     });
     let tables = [fresnel.clone(), distribution.clone()];
 

@@ -21,7 +21,14 @@ impl Terms for RecordTerms<'_> {
         })
     }
 
-    fn distribution(&self, distribution: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
+    fn distribution(
+        &self,
+        _: usize,
+        distribution: Distribution,
+        alpha: f64,
+        cos_theta_h: f64,
+        sin_theta_h_sq: f64,
+    ) -> f64 {
         let cos_sq = cos_theta_h * cos_theta_h;
         let tan_sq_over_alpha_sq = sin_theta_h_sq / (cos_sq * alpha * alpha);
         match distribution {

@@ -22,7 +22,14 @@ impl<const N: usize> Terms for Plain<N> {
         [self.0[layer]; 3]
     }
 
-    fn distribution(&self, distribution: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
+    fn distribution(
+        &self,
+        _: usize,
+        distribution: Distribution,
+        alpha: f64,
+        cos_theta_h: f64,
+        sin_theta_h_sq: f64,
+    ) -> f64 {
         match distribution {
             Distribution::Beckmann => 0.0,
             Distribution::Ggx => scaled_distribution(distribution, alpha, cos_theta_h, sin_theta_h_sq),

@@ -87,7 +87,7 @@ fn row(out: &mut String, report: &Report, exception: &Exception) {
 }
 
 /// A cause in words, with the error of the table there.
-fn cause(cause: &Cause) -> String {
+pub(crate) fn cause(cause: &Cause) -> String {
     match cause {
         Cause::Fresnel { tile, cos_theta_d, expected, sampled, .. } => {
             format!("Fresnel row {tile} at cos θ {}: {}", number(rounded(*cos_theta_d, 3)), off(*expected, *sampled))
@@ -98,6 +98,9 @@ fn cause(cause: &Cause) -> String {
             number_deg(*theta_h_deg),
             off(*expected, *sampled)
         ),
+        Cause::Phase { layer, cosines } => {
+            format!("phase row of layer {layer} at a sum of cosines of {}", number(rounded(*cosines, 3)))
+        }
         Cause::Arithmetic => "f32 arithmetic".to_owned(),
     }
 }
@@ -118,6 +121,7 @@ fn short(part: &Part) -> String {
     match &part.cause {
         Cause::Fresnel { layer, .. } => format!("Fresnel of layer {layer}"),
         Cause::Distribution { layer, .. } => format!("distribution of layer {layer}"),
+        Cause::Phase { layer, .. } => format!("phase of layer {layer}"),
         Cause::Arithmetic => "arithmetic".to_owned(),
     }
 }
@@ -127,6 +131,7 @@ fn tally(tally: &[(Factor, u64)]) -> String {
     let name = |factor| match factor {
         Factor::Fresnel => "Fresnel",
         Factor::Distribution => "distribution",
+        Factor::Phase => "phase",
         Factor::Arithmetic => "arithmetic",
     };
     let total: u64 = tally.iter().map(|(_, count)| count).sum();

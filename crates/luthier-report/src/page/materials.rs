@@ -109,7 +109,7 @@ fn pair(statistics: &Statistics) -> String {
 }
 
 /// A pair of directions in words.
-pub(super) fn angles(wi: [f32; 3], wo: [f32; 3]) -> String {
+pub(crate) fn angles(wi: [f32; 3], wo: [f32; 3]) -> String {
     // From the tangential part: the arc cosine has no digits left near the normal, nor f32 near the horizon.
     let theta = |w: [f32; 3]| libm::atan2(libm::hypot(f64::from(w[0]), f64::from(w[1])), f64::from(w[2])).to_degrees();
     let phi = |w: [f32; 3]| libm::atan2(f64::from(w[1]), f64::from(w[0])).to_degrees();

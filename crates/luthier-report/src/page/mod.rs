@@ -7,6 +7,9 @@ mod method;
 mod summary;
 mod tables;
 
+pub(crate) use exceptions::cause;
+pub(crate) use materials::angles;
+
 use crate::Report;
 use crate::format::escape;
 

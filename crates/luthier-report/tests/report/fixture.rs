@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use luthier_layers::elek::{self, Below, Terms};
+use luthier_layers::real_time::Twin;
 use luthier_layers::terms::Exact;
 use luthier_lut::{
     AtlasLayout, Axis, ErrorStats, FileEntry, Image, LayerKind, LayerRecord, MANIFEST_SCHEMA, Manifest, Mapping,
@@ -122,16 +123,17 @@ impl<S: Fn(Form, u32, usize, [f32; 3]) -> [f32; 3]> Device for FakeDevice<'_, S>
 
     fn evaluate(&self, form: Form, material: u32, pairs: &[Pair]) -> Result<Vec<[f32; 3]>, String> {
         let stack = &self.subject.stacks[material as usize];
-        let layers = elek::layers(stack);
+        let model = self.subject.manifest.materials[material as usize].model.name();
+        let twin = Twin::new(model, stack, WAVELENGTHS_NM, Color::Spectral).ok_or("no twin")?;
         let tables = TableTerms::new(&self.subject, material as usize, Weights::Exact).map_err(|e| e.to_string())?;
         let spectral = Exact::new(stack, Color::Spectral);
         let three = Exact::new(stack, Color::ThreeWavelengths(WAVELENGTHS_NM));
         let wide = |w: [f32; 3]| DVec3::from(w.map(f64::from));
         let value = |(n, &(wi, wo)): (usize, &Pair)| {
             let value = match form {
-                Form::Baked if self.baked_reads_tables => elek::eval(&layers, &tables, wide(wi), wide(wo)),
-                Form::Baked => elek::eval(&layers, &spectral, wide(wi), wide(wo)),
-                Form::Full => elek::eval(&layers, &three, wide(wi), wide(wo)),
+                Form::Baked if self.baked_reads_tables => twin.eval(&tables, wide(wi), wide(wo)),
+                Form::Baked => twin.eval(&spectral, wide(wi), wide(wo)),
+                Form::Full => twin.eval(&three, wide(wi), wide(wo)),
             };
             (self.spoil)(form, material, n, value.map(|v| v as f32))
         };

@@ -4,5 +4,6 @@ mod exceptions;
 mod fixture;
 mod judgement;
 mod page;
+mod parity;
 mod schema;
 mod tables;

@@ -24,11 +24,18 @@ fn luthier_beam(wi: vec3<f32>, wo: vec3<f32>, eta: f32, exponent: f32, normal: v
     if min(across, dot(to, normal)) <= 0.0 { //? granier_transparent
         return LuthierBeam(0.0, 0.0); //? granier_transparent
     } //? granier_transparent
-    let apart = 2.0 * across * normal - ti - to; //? granier_transparent
+    // 2 across normal - ti - to without differences of rounded cosines: in a narrow lobe all of it cancels but a little. //? granier_transparent
+    let tilt = normal.xy; //? granier_transparent
+    let rise = (wi.z - wo.z) * (wi.z + wo.z) / (eta * eta * (ti.z + to.z)); //? granier_transparent
+    let apart = vec3<f32>( //? granier_transparent
+        2.0 * across * tilt - (wi.xy + wo.xy) / eta, //? granier_transparent
+        2.0 * (dot(ti.xy, tilt) * normal.z - ti.z * dot(tilt, tilt)) + rise, //? granier_transparent
+    ); //? granier_transparent
     let root = (eta - 1.0) / (eta + 1.0); //? granier_transparent
-    let normal_reflectance = vec3<f32>(root * root); //? granier_transparent
-    let entering = 1.0 - luthier_schlick(normal_reflectance, wi.z).x; //? granier_transparent
-    let leaving = 1.0 - luthier_schlick(normal_reflectance, min(to.z, 1.0)).x; //? granier_transparent
+    let leaving = 1.0 - luthier_schlick(vec3<f32>(root * root), min(to.z, 1.0)).x; //? granier_transparent
+    // The same of the way in, multiplied out: at grazing angles it is small. //? granier_transparent
+    let c = wi.z; //? granier_transparent
+    let entering = (1.0 - root * root) * c * (5.0 + c * (-10.0 + c * (10.0 + c * (-5.0 + c)))); //? granier_transparent
     // Directions crowd in the film by cos_theta_i / (eta^2 cos_theta_t). //? granier_transparent
     let crowding = wi.z / (eta * eta * ti.z); //? granier_transparent
     let lobe = (exponent + 1.0) / (2.0 * LUTHIER_PI) * luthier_power_lobe(0.5 * dot(apart, apart), exponent); //? granier_transparent

@@ -4,6 +4,8 @@ struct LuthierPath {
     wi: vec3<f32>,
     /// To the eye, in the medium above the next layer.
     wo: vec3<f32>,
+    /// Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
+    across: vec2<f32>,
     /// Share of the light that comes down to the next layer and back out, times the outer cos_theta_i.
     throughput: vec3<f32>,
     /// Reflected by the layers so far: f cos_theta_i.
@@ -31,7 +33,7 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     next.open = false;
 
     // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
-    let bisector = path.wi + path.wo;
+    let bisector = vec3<f32>(path.across, path.wi.z + path.wo.z);
     let length_sq = dot(bisector, bisector);
     if length_sq < 1e-24 {
         return next;
@@ -57,6 +59,7 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     let refracted = sqrt(cosines_sq); //? below
     next.wi = vec3<f32>(path.wi.xy / layer.eta, refracted.x); //? below
     next.wo = vec3<f32>(path.wo.xy / layer.eta, refracted.y); //? below
+    next.across = path.across / layer.eta; //? below
     next.open = true; //? below
     // (1 - F) down, (1 - F) up, and part of what the cavities block comes back. //? below
     let masking = min(cavity * low, 1.0); //? below

@@ -35,6 +35,8 @@ struct LuthierPath {
     vec3 wi;
     // To the eye, in the medium above the next layer.
     vec3 wo;
+    // Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
+    vec2 across;
     // Share of the light that comes down to the next layer and back out, times the outer cos_theta_i.
     vec3 throughput;
     // Reflected by the layers so far: f cos_theta_i.
@@ -68,7 +70,12 @@ vec3 luthier_lookup_fresnel(float tile, float cos_theta) {
 
 // pi alpha^2 D of a slope distribution, for the angle between half vector and normal: D is this over pi alpha^2.
 float luthier_lookup_distribution(float tile, float cos_theta_h, float sin_theta_h_sq, float alpha) {
-    float theta_h = atan(sqrt(sin_theta_h_sq), cos_theta_h);
+    float tangent = sqrt(sin_theta_h_sq) / (1.0 + cos_theta_h);
+    bool is_wide = tangent > 0.41421357;
+    float t = is_wide ? ((tangent - 1.0) / (tangent + 1.0)) : tangent;
+    float t_sq = t * t;
+    float series = t_sq * (-0.3333295 + (t_sq * (0.19977711 + (t_sq * (-0.13877685 + (t_sq * 0.08053744))))));
+    float theta_h = 2.0 * (((is_wide ? 0.7853982 : 0.0) + t) + (t * series));
     float x = sqrt(sqrt(sqrt(clamp(theta_h / 1.5707964, 0.0, 1.0)))) * 511.0;
     float y = clamp(log2(max(alpha, 0.001) / 0.001) / 9.965784, 0.0, 1.0) * 511.0;
     vec2 position = vec2(x + 0.5, ((tile * 512.0) + y) + 0.5);
@@ -123,7 +130,7 @@ float luthier_density(LuthierLayer layer, vec3 bisector, float length_sq) {
 LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     LuthierPath next = path;
     next.open = false;
-    vec3 bisector = path.wi + path.wo;
+    vec3 bisector = vec3(path.across, path.wi.z + path.wo.z);
     float length_sq = dot(bisector, bisector);
     if (length_sq < 1e-24) {
         return next;
@@ -146,6 +153,7 @@ LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     vec2 refracted = sqrt(cosines_sq);
     next.wi = vec3(path.wi.xy / vec2(layer.eta), refracted.x);
     next.wo = vec3(path.wo.xy / vec2(layer.eta), refracted.y);
+    next.across = path.across / vec2(layer.eta);
     next.open = true;
     float masking = min(cavity * low, 1.0);
     vec3 crossed = vec3(1.0) - fresnel;
@@ -166,7 +174,7 @@ LuthierPath luthier_elek_interface(LuthierPath path, LuthierLayer layer) {
 // f cos_theta_i of the model `elek`, both directions above the horizon.
 vec3 luthier_eval_elek(uint material, vec3 wi, vec3 wo) {
     uint count = luthier_layer_count(material);
-    LuthierPath path = LuthierPath(wi, wo, vec3(wi.z), vec3(0.0), 0.0, true);
+    LuthierPath path = LuthierPath(wi, wo, wi.xy + wo.xy, vec3(wi.z), vec3(0.0), 0.0, true);
     path = luthier_elek_interface(path, luthier_layer(material, 0u));
     if (path.open && (count > 1u)) {
         path = luthier_elek_interface(path, luthier_layer(material, 1u));

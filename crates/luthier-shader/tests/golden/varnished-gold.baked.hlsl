@@ -35,6 +35,8 @@ struct LuthierPath {
     float3 wi;
     // To the eye, in the medium above the next layer.
     float3 wo;
+    // Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
+    float2 across;
     // Share of the light that comes down to the next layer and back out, times the outer cos_theta_i.
     float3 throughput;
     // Reflected by the layers so far: f cos_theta_i.
@@ -68,7 +70,12 @@ float3 luthier_lookup_fresnel(float tile, float cos_theta) {
 
 // pi alpha^2 D of a slope distribution, for the angle between half vector and normal: D is this over pi alpha^2.
 float luthier_lookup_distribution(float tile, float cos_theta_h, float sin_theta_h_sq, float alpha) {
-    float theta_h = atan2(sqrt(sin_theta_h_sq), cos_theta_h);
+    float tangent = sqrt(sin_theta_h_sq) / (1.0 + cos_theta_h);
+    bool is_wide = tangent > 0.41421357;
+    float t = is_wide ? ((tangent - 1.0) / (tangent + 1.0)) : tangent;
+    float t_sq = t * t;
+    float series = t_sq * (-0.3333295 + (t_sq * (0.19977711 + (t_sq * (-0.13877685 + (t_sq * 0.08053744))))));
+    float theta_h = 2.0 * (((is_wide ? 0.7853982 : 0.0) + t) + (t * series));
     float x = sqrt(sqrt(sqrt(saturate(theta_h / 1.5707964)))) * 511.0;
     float y = saturate(log2(max(alpha, 0.001) / 0.001) / 9.965784) * 511.0;
     float2 position = float2(x + 0.5, ((tile * 512.0) + y) + 0.5);
@@ -127,7 +134,7 @@ float luthier_density(LuthierLayer layer, float3 bisector, float length_sq) {
 LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     LuthierPath next = path;
     next.open = false;
-    float3 bisector = path.wi + path.wo;
+    float3 bisector = float3(path.across, path.wi.z + path.wo.z);
     float length_sq = dot(bisector, bisector);
     if (length_sq < 1e-24) {
         return next;
@@ -150,6 +157,7 @@ LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     float2 refracted = sqrt(cosines_sq);
     next.wi = float3(path.wi.xy / (layer.eta).xx, refracted.x);
     next.wo = float3(path.wo.xy / (layer.eta).xx, refracted.y);
+    next.across = path.across / (layer.eta).xx;
     next.open = true;
     float masking = min(cavity * low, 1.0);
     float3 crossed = (1.0).xxx - fresnel;
@@ -167,21 +175,22 @@ LuthierPath luthier_elek_interface(LuthierPath path, LuthierLayer layer) {
     return next;
 }
 
-LuthierPath ConstructLuthierPath(float3 arg0, float3 arg1, float3 arg2, float3 arg3, float arg4, bool arg5) {
+LuthierPath ConstructLuthierPath(float3 arg0, float3 arg1, float2 arg2, float3 arg3, float3 arg4, float arg5, bool arg6) {
     LuthierPath ret = (LuthierPath)0;
     ret.wi = arg0;
     ret.wo = arg1;
-    ret.throughput = arg2;
-    ret.reflected = arg3;
-    ret.alpha = arg4;
-    ret.open = arg5;
+    ret.across = arg2;
+    ret.throughput = arg3;
+    ret.reflected = arg4;
+    ret.alpha = arg5;
+    ret.open = arg6;
     return ret;
 }
 
 // f cos_theta_i of the model `elek`, both directions above the horizon.
 float3 luthier_eval_elek(uint material, float3 wi, float3 wo) {
     uint count = luthier_layer_count(material);
-    LuthierPath path = ConstructLuthierPath(wi, wo, (wi.z).xxx, (0.0).xxx, 0.0, true);
+    LuthierPath path = ConstructLuthierPath(wi, wo, wi.xy + wo.xy, (wi.z).xxx, (0.0).xxx, 0.0, true);
     path = luthier_elek_interface(path, luthier_layer(material, 0u));
     if (path.open & (count > 1u)) {
         path = luthier_elek_interface(path, luthier_layer(material, 1u));

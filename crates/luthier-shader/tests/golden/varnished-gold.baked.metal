@@ -45,6 +45,9 @@ struct LuthierPath {
     metal::float3 wi;
     // To the eye, in the medium above the next layer.
     metal::float3 wo;
+    // Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
+    metal::float2 across;
+    char _pad3[8];
     // Share of the light that comes down to the next layer and back out, times the outer cos_theta_i.
     metal::float3 throughput;
     // Reflected by the layers so far: f cos_theta_i.
@@ -85,7 +88,12 @@ float luthier_lookup_distribution(
     metal::texture2d<float> luthier_distribution,
     metal::sampler luthier_sampler
 ) {
-    float theta_h = metal::atan2(metal::sqrt(sin_theta_h_sq), cos_theta_h);
+    float tangent = metal::sqrt(sin_theta_h_sq) / (1.0 + cos_theta_h);
+    bool is_wide = tangent > 0.41421357;
+    float t = is_wide ? ((tangent - 1.0) / (tangent + 1.0)) : tangent;
+    float t_sq = t * t;
+    float series = t_sq * (-0.3333295 + (t_sq * (0.19977711 + (t_sq * (-0.13877685 + (t_sq * 0.08053744))))));
+    float theta_h = 2.0 * (((is_wide ? 0.7853982 : 0.0) + t) + (t * series));
     float x = metal::sqrt(metal::sqrt(metal::sqrt(metal::saturate(theta_h / 1.5707964)))) * 511.0;
     float y = metal::saturate(metal::log2(metal::max(alpha, 0.001) / 0.001) / 9.965784) * 511.0;
     metal::float2 position = metal::float2(x + 0.5, ((tile * 512.0) + y) + 0.5);
@@ -168,7 +176,7 @@ LuthierPath luthier_add_interface(
 ) {
     LuthierPath next = path;
     next.open = false;
-    metal::float3 bisector = path.wi + path.wo;
+    metal::float3 bisector = metal::float3(path.across, path.wi.z + path.wo.z);
     float length_sq = metal::dot(bisector, bisector);
     if (length_sq < 0.000000000000000000000001) {
         return next;
@@ -191,6 +199,7 @@ LuthierPath luthier_add_interface(
     metal::float2 refracted = metal::sqrt(cosines_sq);
     next.wi = metal::float3(path.wi.xy / metal::float2(layer.eta), refracted.x);
     next.wo = metal::float3(path.wo.xy / metal::float2(layer.eta), refracted.y);
+    next.across = path.across / metal::float2(layer.eta);
     next.open = true;
     float masking = metal::min(cavity * low, 1.0);
     metal::float3 crossed = metal::float3(1.0) - fresnel;
@@ -225,7 +234,7 @@ metal::float3 luthier_eval_elek(
     constant LuthierMaterials& luthier_materials
 ) {
     uint count = luthier_layer_count(material, luthier_materials);
-    LuthierPath path = LuthierPath {wi, wo, metal::float3(wi.z), metal::float3(0.0), 0.0, true};
+    LuthierPath path = LuthierPath {wi, wo, wi.xy + wo.xy, {}, metal::float3(wi.z), metal::float3(0.0), 0.0, true};
     path = luthier_elek_interface(path, luthier_layer(material, 0u, luthier_materials), luthier_fresnel, luthier_distribution, luthier_sampler);
     if (path.open & (count > 1u)) {
         path = luthier_elek_interface(path, luthier_layer(material, 1u, luthier_materials), luthier_fresnel, luthier_distribution, luthier_sampler);

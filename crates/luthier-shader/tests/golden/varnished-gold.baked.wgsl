@@ -35,7 +35,14 @@ const LUTHIER_DISTRIBUTION_TILE: vec2<f32> = vec2<f32>(512.0, 512.0);
 
 /// pi alpha^2 D of a slope distribution, for the angle between half vector and normal: D is this over pi alpha^2.
 fn luthier_lookup_distribution(tile: f32, cos_theta_h: f32, sin_theta_h_sq: f32, alpha: f32) -> f32 {
-    let theta_h = atan2(sqrt(sin_theta_h_sq), cos_theta_h);
+    // atan2 may be a thousandth of a lobe off on some devices; this is twice the arc tangent of the tangent of the half angle, by the
+    // polynomial of Cephes.
+    let tangent = sqrt(sin_theta_h_sq) / (1.0 + cos_theta_h);
+    let is_wide = tangent > 0.41421356;
+    let t = select(tangent, (tangent - 1.0) / (tangent + 1.0), is_wide);
+    let t_sq = t * t;
+    let series = t_sq * (-0.33332949 + t_sq * (0.19977711 + t_sq * (-0.13877686 + t_sq * 0.08053744)));
+    let theta_h = 2.0 * (select(0.0, 0.78539816, is_wide) + t + t * series);
     let x = sqrt(sqrt(sqrt(saturate(theta_h / 1.5707964)))) * 511.0;
     let y = saturate(log2(max(alpha, 0.001) / 0.001) / 9.965784) * 511.0;
     let position = vec2<f32>(x + 0.5, tile * LUTHIER_DISTRIBUTION_TILE.y + y + 0.5);
@@ -111,6 +118,8 @@ struct LuthierPath {
     wi: vec3<f32>,
     /// To the eye, in the medium above the next layer.
     wo: vec3<f32>,
+    /// Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
+    across: vec2<f32>,
     /// Share of the light that comes down to the next layer and back out, times the outer cos_theta_i.
     throughput: vec3<f32>,
     /// Reflected by the layers so far: f cos_theta_i.
@@ -128,7 +137,7 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     next.open = false;
 
     // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
-    let bisector = path.wi + path.wo;
+    let bisector = vec3<f32>(path.across, path.wi.z + path.wo.z);
     let length_sq = dot(bisector, bisector);
     if length_sq < 1e-24 {
         return next;
@@ -154,6 +163,7 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     let refracted = sqrt(cosines_sq);
     next.wi = vec3<f32>(path.wi.xy / layer.eta, refracted.x);
     next.wo = vec3<f32>(path.wo.xy / layer.eta, refracted.y);
+    next.across = path.across / layer.eta;
     next.open = true;
     // (1 - F) down, (1 - F) up, and part of what the cavities block comes back.
     let masking = min(cavity * low, 1.0);
@@ -175,7 +185,7 @@ fn luthier_elek_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath
 /// f cos_theta_i of the model `elek`, both directions above the horizon.
 fn luthier_eval_elek(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
     let count = luthier_layer_count(material);
-    var path = LuthierPath(wi, wo, vec3<f32>(wi.z), vec3<f32>(0.0), 0.0, true);
+    var path = LuthierPath(wi, wo, wi.xy + wo.xy, vec3<f32>(wi.z), vec3<f32>(0.0), 0.0, true);
     path = luthier_elek_interface(path, luthier_layer(material, 0u));
     if path.open & (count > 1u) {
         path = luthier_elek_interface(path, luthier_layer(material, 1u));

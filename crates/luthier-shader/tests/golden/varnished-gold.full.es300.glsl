@@ -36,6 +36,8 @@ struct LuthierPath {
     vec3 wi;
     // To the eye, in the medium above the next layer.
     vec3 wo;
+    // Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
+    vec2 across;
     // Share of the light that comes down to the next layer and back out, times the outer cos_theta_i.
     vec3 throughput;
     // Reflected by the layers so far: f cos_theta_i.
@@ -149,7 +151,7 @@ float luthier_density(LuthierLayer layer, vec3 bisector, float length_sq) {
 LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     LuthierPath next = path;
     next.open = false;
-    vec3 bisector = path.wi + path.wo;
+    vec3 bisector = vec3(path.across, path.wi.z + path.wo.z);
     float length_sq = dot(bisector, bisector);
     if (length_sq < 1e-24) {
         return next;
@@ -172,6 +174,7 @@ LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     vec2 refracted = sqrt(cosines_sq);
     next.wi = vec3(path.wi.xy / vec2(layer.eta), refracted.x);
     next.wo = vec3(path.wo.xy / vec2(layer.eta), refracted.y);
+    next.across = path.across / vec2(layer.eta);
     next.open = true;
     float masking = min(cavity * low, 1.0);
     vec3 crossed = vec3(1.0) - fresnel;
@@ -192,7 +195,7 @@ LuthierPath luthier_elek_interface(LuthierPath path, LuthierLayer layer) {
 // f cos_theta_i of the model `elek`, both directions above the horizon.
 vec3 luthier_eval_elek(uint material, vec3 wi, vec3 wo) {
     uint count = luthier_layer_count(material);
-    LuthierPath path = LuthierPath(wi, wo, vec3(wi.z), vec3(0.0), 0.0, true);
+    LuthierPath path = LuthierPath(wi, wo, wi.xy + wo.xy, vec3(wi.z), vec3(0.0), 0.0, true);
     path = luthier_elek_interface(path, luthier_layer(material, 0u));
     if (path.open && (count > 1u)) {
         path = luthier_elek_interface(path, luthier_layer(material, 1u));

@@ -36,6 +36,8 @@ struct LuthierPath {
     float3 wi;
     // To the eye, in the medium above the next layer.
     float3 wo;
+    // Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
+    float2 across;
     // Share of the light that comes down to the next layer and back out, times the outer cos_theta_i.
     float3 throughput;
     // Reflected by the layers so far: f cos_theta_i.
@@ -160,7 +162,7 @@ float luthier_density(LuthierLayer layer, float3 bisector, float length_sq) {
 LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     LuthierPath next = path;
     next.open = false;
-    float3 bisector = path.wi + path.wo;
+    float3 bisector = float3(path.across, path.wi.z + path.wo.z);
     float length_sq = dot(bisector, bisector);
     if (length_sq < 1e-24) {
         return next;
@@ -183,6 +185,7 @@ LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     float2 refracted = sqrt(cosines_sq);
     next.wi = float3(path.wi.xy / (layer.eta).xx, refracted.x);
     next.wo = float3(path.wo.xy / (layer.eta).xx, refracted.y);
+    next.across = path.across / (layer.eta).xx;
     next.open = true;
     float masking = min(cavity * low, 1.0);
     float3 crossed = (1.0).xxx - fresnel;
@@ -200,21 +203,22 @@ LuthierPath luthier_elek_interface(LuthierPath path, LuthierLayer layer) {
     return next;
 }
 
-LuthierPath ConstructLuthierPath(float3 arg0, float3 arg1, float3 arg2, float3 arg3, float arg4, bool arg5) {
+LuthierPath ConstructLuthierPath(float3 arg0, float3 arg1, float2 arg2, float3 arg3, float3 arg4, float arg5, bool arg6) {
     LuthierPath ret = (LuthierPath)0;
     ret.wi = arg0;
     ret.wo = arg1;
-    ret.throughput = arg2;
-    ret.reflected = arg3;
-    ret.alpha = arg4;
-    ret.open = arg5;
+    ret.across = arg2;
+    ret.throughput = arg3;
+    ret.reflected = arg4;
+    ret.alpha = arg5;
+    ret.open = arg6;
     return ret;
 }
 
 // f cos_theta_i of the model `elek`, both directions above the horizon.
 float3 luthier_eval_elek(uint material, float3 wi, float3 wo) {
     uint count = luthier_layer_count(material);
-    LuthierPath path = ConstructLuthierPath(wi, wo, (wi.z).xxx, (0.0).xxx, 0.0, true);
+    LuthierPath path = ConstructLuthierPath(wi, wo, wi.xy + wo.xy, (wi.z).xxx, (0.0).xxx, 0.0, true);
     path = luthier_elek_interface(path, luthier_layer(material, 0u));
     if (path.open & (count > 1u)) {
         path = luthier_elek_interface(path, luthier_layer(material, 1u));

@@ -46,6 +46,9 @@ struct LuthierPath {
     metal::float3 wi;
     // To the eye, in the medium above the next layer.
     metal::float3 wo;
+    // Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
+    metal::float2 across;
+    char _pad3[8];
     // Share of the light that comes down to the next layer and back out, times the outer cos_theta_i.
     metal::float3 throughput;
     // Reflected by the layers so far: f cos_theta_i.
@@ -161,7 +164,7 @@ float luthier_density(LuthierLayer layer, metal::float3 bisector, float length_s
 LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     LuthierPath next = path;
     next.open = false;
-    metal::float3 bisector = path.wi + path.wo;
+    metal::float3 bisector = metal::float3(path.across, path.wi.z + path.wo.z);
     float length_sq = metal::dot(bisector, bisector);
     if (length_sq < 0.000000000000000000000001) {
         return next;
@@ -184,6 +187,7 @@ LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     metal::float2 refracted = metal::sqrt(cosines_sq);
     next.wi = metal::float3(path.wi.xy / metal::float2(layer.eta), refracted.x);
     next.wo = metal::float3(path.wo.xy / metal::float2(layer.eta), refracted.y);
+    next.across = path.across / metal::float2(layer.eta);
     next.open = true;
     float masking = metal::min(cavity * low, 1.0);
     metal::float3 crossed = metal::float3(1.0) - fresnel;
@@ -209,7 +213,7 @@ metal::float3 luthier_eval_elek(
     constant LuthierMaterials& luthier_materials
 ) {
     uint count = luthier_layer_count(material, luthier_materials);
-    LuthierPath path = LuthierPath {wi, wo, metal::float3(wi.z), metal::float3(0.0), 0.0, true};
+    LuthierPath path = LuthierPath {wi, wo, wi.xy + wo.xy, {}, metal::float3(wi.z), metal::float3(0.0), 0.0, true};
     path = luthier_elek_interface(path, luthier_layer(material, 0u, luthier_materials));
     if (path.open & (count > 1u)) {
         path = luthier_elek_interface(path, luthier_layer(material, 1u, luthier_materials));

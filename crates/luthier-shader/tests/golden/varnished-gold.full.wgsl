@@ -135,6 +135,8 @@ struct LuthierPath {
     wi: vec3<f32>,
     /// To the eye, in the medium above the next layer.
     wo: vec3<f32>,
+    /// Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
+    across: vec2<f32>,
     /// Share of the light that comes down to the next layer and back out, times the outer cos_theta_i.
     throughput: vec3<f32>,
     /// Reflected by the layers so far: f cos_theta_i.
@@ -152,7 +154,7 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     next.open = false;
 
     // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
-    let bisector = path.wi + path.wo;
+    let bisector = vec3<f32>(path.across, path.wi.z + path.wo.z);
     let length_sq = dot(bisector, bisector);
     if length_sq < 1e-24 {
         return next;
@@ -178,6 +180,7 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     let refracted = sqrt(cosines_sq);
     next.wi = vec3<f32>(path.wi.xy / layer.eta, refracted.x);
     next.wo = vec3<f32>(path.wo.xy / layer.eta, refracted.y);
+    next.across = path.across / layer.eta;
     next.open = true;
     // (1 - F) down, (1 - F) up, and part of what the cavities block comes back.
     let masking = min(cavity * low, 1.0);
@@ -199,7 +202,7 @@ fn luthier_elek_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath
 /// f cos_theta_i of the model `elek`, both directions above the horizon.
 fn luthier_eval_elek(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
     let count = luthier_layer_count(material);
-    var path = LuthierPath(wi, wo, vec3<f32>(wi.z), vec3<f32>(0.0), 0.0, true);
+    var path = LuthierPath(wi, wo, wi.xy + wo.xy, vec3<f32>(wi.z), vec3<f32>(0.0), 0.0, true);
     path = luthier_elek_interface(path, luthier_layer(material, 0u));
     if path.open & (count > 1u) {
         path = luthier_elek_interface(path, luthier_layer(material, 1u));

@@ -1,0 +1,205 @@
+use luthier_bake::Silent;
+use luthier_gpu::{Artefacts, Gpu, TableTexels, WgslShader};
+use luthier_layers::real_time::Twin;
+use luthier_lut::{
+    Atlas, FileEntry, Image, MANIFEST_SCHEMA, Manifest, MaterialEntry, ShadingModel, TableEntry, TableKind,
+    material_buffer,
+};
+use luthier_material::{Material, ModelSetting};
+use luthier_optics::stack::{Base, Layer, Stack};
+use luthier_report::{POLISHED_ALPHAS, Parity, ParityCase, Share, Subject, Verdict, parity};
+use luthier_shader::{Form, MaterialSet, Target};
+
+use crate::bake_files::{GENERATOR, material_entries, sha256};
+use crate::cli::ParityOptions;
+use crate::device::{Shaders, device, open};
+use crate::failure::{Failure, Outcome, files};
+use crate::materials::{read, read_image, valid};
+use crate::output::{complain, print};
+use crate::progress::Bar;
+
+/// Least slope parameter of the polished variants: that of layer records.
+const ALPHA_MIN: f64 = luthier_layers::elek::ALPHA_MIN;
+
+/// Compares every shader with its f64 twin.
+pub(crate) fn run(options: &ParityOptions) -> Outcome {
+    let materials = valid(read(&options.sources.paths)?, true)?;
+    let models = models(options);
+    let all: Vec<Material> =
+        models.iter().flat_map(|model| materials.iter().flat_map(|m| variants(m, *model))).collect();
+    let baking = Bar::new("baking");
+    let bake = luthier_bake::bake(&all, &read_image, &Silent).map_err(Failure::input)?;
+    drop(baking);
+    let entries = material_entries(&all, &bake.materials);
+    let bar = Bar::new("comparing");
+    let gpu = open(options.adapter.as_deref())?;
+    let total = models.len() * materials.len();
+    let (mut rows, mut done, mut adapter) = (Vec::new(), 0, String::new());
+    let per_model = materials.len() * (1 + POLISHED_ALPHAS.len());
+    for (index, _) in models.iter().enumerate() {
+        let range = index * per_model..(index + 1) * per_model;
+        let stacks = all[range.clone()].iter().map(|m| m.stack.clone()).collect();
+        let compiled = Compiled::new(&gpu, &bake.atlases, &entries[range], stacks)?;
+        adapter = luthier_report::Device::name(&compiled.shaders);
+        let cases: Vec<ParityCase> = (0..).zip(&materials).map(|(n, material)| case(n, material)).collect();
+        let mut progress = || {
+            done += 1;
+            bar.set(done as u64, total as u64);
+        };
+        let subject = Subject {
+            manifest: &compiled.manifest,
+            textures: compiled.textures.clone(),
+            stacks: compiled.stacks.clone(),
+        };
+        let found =
+            parity(&subject, &compiled.shaders, &cases, options.pairs, &mut progress).map_err(Failure::input)?;
+        rows.extend(found);
+    }
+    drop(bar);
+    let report = Parity::new(GENERATOR, adapter, options.pairs, rows);
+    let text =
+        if options.json { report.to_json().map_err(Failure::input)? } else { report.to_markdown(&command(options)) };
+    match &options.output {
+        Some(path) => std::fs::write(path, text).map_err(files(path, "write"))?,
+        None => print(&text)?,
+    }
+    for row in report.rows.iter().filter(|row| !row.holds()) {
+        let broken = Share::ALL.into_iter().filter(|share| row.verdict(*share) == Verdict::Broken);
+        let shares: Vec<String> = broken.map(|share| format!("{} {:.2e}", share.name(), row.max(share))).collect();
+        complain(&format!(
+            "{}, {}, {}: {} not finite; beyond its tolerance: {}",
+            row.model.name(),
+            row.form,
+            row.material,
+            row.not_finite,
+            shares.join(", ")
+        ));
+    }
+    if report.holds() { Ok(()) } else { Err(Failure::Verdict) }
+}
+
+/// The models to compare: those that have a twin, unless named.
+fn models(options: &ParityOptions) -> Vec<ShadingModel> {
+    let named: Vec<ShadingModel> =
+        options.model.iter().filter_map(|setting| ShadingModel::from_name(setting.name())).collect();
+    if named.is_empty() {
+        ShadingModel::ALL.into_iter().filter(|model| Twin::MODELS.contains(&model.name())).collect()
+    } else {
+        named
+    }
+}
+
+/// A material shaded by a model, and its polished variants; names are unique over all models.
+fn variants(material: &Material, model: ShadingModel) -> Vec<Material> {
+    let mut base = material.clone();
+    base.bake.model = ModelSetting::from_name(model.name());
+    base.name = format!("{}-{}", material.name, model.name());
+    let polished = POLISHED_ALPHAS.iter().enumerate().map(|(i, &alpha)| {
+        let mut polished = base.clone();
+        polish(&mut polished.stack, alpha);
+        polished.name = format!("{}-polished-{i}", base.name);
+        polished
+    });
+    std::iter::once(base.clone()).chain(polished).collect()
+}
+
+/// Scales all slope parameters alike, so that the largest is `alpha`.
+fn polish(stack: &mut Stack, alpha: f64) {
+    let is_interface = |layer: &&mut Layer| !matches!(layer.base, Base::Diffuse(_));
+    let largest = stack
+        .layers
+        .iter_mut()
+        .filter(is_interface)
+        .fold(0.0, |largest: f64, layer| largest.max(layer.surface.alpha_x).max(layer.surface.alpha_y));
+    let factor = if largest > 0.0 { alpha / largest } else { 1.0 };
+    for layer in stack.layers.iter_mut().filter(is_interface) {
+        for alpha in [&mut layer.surface.alpha_x, &mut layer.surface.alpha_y] {
+            *alpha = (*alpha * factor).max(ALPHA_MIN);
+        }
+    }
+}
+
+/// The numbers of the variants of the n-th material.
+fn case(n: u32, material: &Material) -> ParityCase {
+    let first = n * (1 + POLISHED_ALPHAS.len() as u32);
+    ParityCase {
+        name: material.name.clone(),
+        material: first,
+        polished: (1..=POLISHED_ALPHAS.len() as u32).map(|i| first + i).collect(),
+    }
+}
+
+/// The shaders of some materials of a bake, on the device.
+struct Compiled {
+    manifest: Manifest,
+    textures: Vec<(TableKind, Image)>,
+    stacks: Vec<Stack>,
+    shaders: Shaders,
+}
+
+impl Compiled {
+    fn new(gpu: &Gpu, atlases: &[Atlas], entries: &[MaterialEntry], stacks: Vec<Stack>) -> Outcome<Self> {
+        let mut manifest = Manifest {
+            schema: MANIFEST_SCHEMA,
+            generator: GENERATOR.to_owned(),
+            materials: entries.to_vec(),
+            tables: atlases.iter().map(table).collect(),
+            shaders: Vec::new(),
+            bindings: Vec::new(),
+            material_buffer: FileEntry::default(),
+        };
+        let words = material_buffer(&manifest.materials);
+        let bytes: Vec<u8> = words.as_flattened().iter().flat_map(|value| value.to_le_bytes()).collect();
+        manifest.material_buffer.sha256 = sha256(&bytes);
+        let set = MaterialSet::from_manifest(&manifest);
+        let shader = |form: Form| {
+            let wgsl = luthier_shader::emit(&set, form, Target::Wgsl).map_err(Failure::input)?;
+            Ok::<_, Failure>(WgslShader { form: form.name().to_owned(), wgsl })
+        };
+        let shaders = Form::ALL.into_iter().map(shader).collect::<Outcome<Vec<_>>>()?;
+        let bindings = luthier_shader::bindings(&set, Form::Baked);
+        manifest.bindings = bindings;
+        let texels = atlases.iter().map(|atlas| TableTexels {
+            kind: atlas.kind,
+            format: atlas.format,
+            width: atlas.texels.width,
+            height: atlas.texels.height,
+            bytes: atlas.format.encode(&atlas.texels),
+        });
+        let artefacts = Artefacts::from_parts(manifest.clone(), texels.collect(), shaders).map_err(device)?;
+        let shaders = Shaders::new(gpu, &artefacts)?;
+        let textures = atlases.iter().map(|atlas| (atlas.kind, atlas.texels.clone())).collect();
+        Ok(Self { manifest, textures, stacks, shaders })
+    }
+}
+
+/// What the manifest says of a table that is in memory.
+fn table(atlas: &Atlas) -> TableEntry {
+    let [width, height] = atlas.layout.size();
+    TableEntry {
+        kind: atlas.kind,
+        layout: atlas.layout.clone(),
+        format: atlas.format,
+        texel_bytes: u64::from(width) * u64::from(height) * u64::from(atlas.format.texel_bytes()),
+        texture: FileEntry::default(),
+        truth: FileEntry::default(),
+        picture: FileEntry::default(),
+        tiles: atlas.tiles.clone(),
+    }
+}
+
+/// The command line that makes the page.
+fn command(options: &ParityOptions) -> String {
+    let mut words = vec!["luthier parity".to_owned()];
+    words.extend(options.sources.paths.iter().map(|path| path.display().to_string()));
+    for model in &options.model {
+        words.push(format!("--model {}", model.name()));
+    }
+    if options.pairs != crate::cli::PARITY_PAIRS {
+        words.push(format!("--pairs {}", options.pairs));
+    }
+    if let Some(path) = &options.output {
+        words.push(format!("-o {}", path.display()));
+    }
+    words.join(" ")
+}

@@ -1,0 +1,49 @@
+use serde_json::Value;
+
+use crate::material_texts::{fine_lacquer, gold, lacquer};
+use crate::workshop::{Workshop, lacks_adapter};
+
+#[test]
+fn every_shader_is_compared_with_its_twin() {
+    let workshop = Workshop::with(&[("m/lacquer.toml", &fine_lacquer("lacquer")), ("gold.toml", &gold("gold"))]);
+    let run = workshop.run(&["parity", "m", "--pairs", "60", "--json"]);
+    if lacks_adapter(&run) {
+        return;
+    }
+    let report: Value = serde_json::from_str(&run.exits(0).stdout).unwrap();
+    let rows = report["rows"].as_array().unwrap();
+    let of = |model: &str| rows.iter().filter(|row| row["model"] == model).count();
+    for model in ["elek", "weidlich-wilkie", "granier-heidrich", "phong", "microfacet"] {
+        assert_eq!(of(model), 2, "{model}: two forms");
+    }
+    for row in rows {
+        assert_eq!((&row["pairs"], &row["not_finite"]), (&Value::from(300), &Value::from(0)), "{row}");
+        assert!(row["total"]["max"].as_f64().unwrap() > 0.0, "f32 is never exact everywhere: {row}");
+    }
+
+    let run = workshop.run(&["parity", "gold.toml", "--model", "phong", "--pairs", "8", "-o", "page.md"]).exits(0);
+    assert_eq!(run.stdout, "");
+    let page = workshop.text("page.md");
+    assert!(page.contains("luthier parity gold.toml --model phong --pairs 8 -o page.md"), "{page}");
+    assert!(page.contains("## phong") && !page.contains("## elek"), "{page}");
+}
+
+/// Tables of a few texels are far off: their error is no arithmetic's, has no reason that is known, and fails the run.
+#[test]
+fn coarse_tables_break_their_tolerance() {
+    let workshop = Workshop::with(&[("lacquer.toml", &lacquer("lacquer"))]);
+    let run = workshop.run(&["parity", "lacquer.toml", "--model", "elek", "--pairs", "60"]);
+    if lacks_adapter(&run) {
+        return;
+    }
+    let run = run.exits(1);
+    assert!(run.stderr.contains("elek, baked, lacquer: 0 not finite; beyond its tolerance: table"), "{}", run.stderr);
+    assert!(run.stdout.contains("**not accepted**"), "{}", run.stdout);
+}
+
+#[test]
+fn what_cannot_be_compared() {
+    let workshop = Workshop::with(&[("a.toml", &gold("gold"))]);
+    workshop.run(&["parity", "missing.toml"]).fails(3, &["missing.toml"]);
+    workshop.run(&["parity", "a.toml", "--model", "no-such-model"]).fails(2, &["no-such-model"]);
+}

@@ -1,0 +1,267 @@
+//! f64 twins of the emitted shaders: the same models in three colour channels, with optical terms that are computed or read from
+//! tables.
+//!
+//! No model is written here: a twin evaluates the model of its module, channel by channel, with what is particular to shaders: one
+//! set of slope parameters, at least [`ALPHA_MIN`]; one index at [`REFRACTION_WAVELENGTH_NM`] that bends the directions of all
+//! channels, except in Granier and Heidrich's model, which bends each by the index of its own wavelength; reflectances from
+//! [`Terms`].
+
+use std::cell::RefCell;
+
+use glam::DVec3;
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use luthier_optics::stack::{Base, Stack, Surface};
+
+use crate::elek::{self, ALPHA_MIN, REFRACTION_WAVELENGTH_NM, Terms};
+use crate::granier_heidrich::GranierHeidrich;
+use crate::microfacet::{Components, Microfacet};
+use crate::monochrome::{Monochrome, MonochromeBelow, Optics, in_color};
+use crate::phong::Coefficients;
+use crate::weidlich_wilkie::WeidlichWilkie;
+
+/// The twin of a shader, for one surface.
+#[derive(Debug)]
+pub struct Twin(Kind);
+
+#[derive(Debug)]
+enum Kind {
+    Elek(Vec<elek::Layer>),
+    WeidlichWilkie([Monochrome; 3]),
+    GranierHeidrich([Monochrome; 3]),
+    Phong([Coefficients; 3]),
+    Microfacet(Box<(Microfacet, [Monochrome; 3])>),
+}
+
+impl Twin {
+    /// Names of the models that have a twin.
+    pub const MODELS: [&str; 5] = [elek::MODEL, "weidlich-wilkie", "granier-heidrich", "phong", "microfacet"];
+
+    /// The twin of the shader of a model, by the model's name; `None` for a model that has none. `wavelengths_nm` are those of the
+    /// three channels. `color` says how Phong's coefficients come by their colour, which both forms of the shader read from the
+    /// material; the colour of everything else is that of the [`Terms`].
+    pub fn new(model: &str, stack: &Stack, wavelengths_nm: [f64; 3], color: Color) -> Option<Self> {
+        let channels = || {
+            let mut channels = channels(stack, wavelengths_nm);
+            channels.iter_mut().for_each(|one| bend_alike(one, stack));
+            channels
+        };
+        Some(Self(match model {
+            elek::MODEL => Kind::Elek(elek::layers(stack)),
+            "weidlich-wilkie" => Kind::WeidlichWilkie(channels()),
+            "granier-heidrich" => Kind::GranierHeidrich(granier_channels(stack, wavelengths_nm)),
+            "phong" => Kind::Phong(coefficients(stack, wavelengths_nm, color)),
+            "microfacet" => Kind::Microfacet(Box::new((Microfacet::new(Components::PLAIN), channels()))),
+            _ => return None,
+        }))
+    }
+
+    /// `f cos_theta_i`, RGB. Zero when either direction is at or below the horizon. Terms are asked once for every value, however many
+    /// channels need it.
+    pub fn eval(&self, terms: &impl Terms, wi: DVec3, wo: DVec3) -> Rgb {
+        match &self.0 {
+            Kind::Elek(layers) => elek::eval(layers, terms, wi, wo),
+            Kind::WeidlichWilkie(stacks) => {
+                each(terms, stacks, |stack, optics| WeidlichWilkie::default().eval_with(stack, optics, wi, wo))
+            }
+            Kind::GranierHeidrich(stacks) => {
+                each(terms, stacks, |stack, optics| GranierHeidrich::default().eval_with(stack, optics, wi, wo))
+            }
+            Kind::Phong(channels) => channels.map(|coefficients| coefficients.eval(wi, wo)),
+            Kind::Microfacet(one) => each(terms, &one.1, |stack, optics| one.0.eval_with(stack, optics, wi, wo)),
+        }
+    }
+}
+
+/// A model at each channel's wavelength.
+fn each<T: Terms>(terms: &T, stacks: &[Monochrome; 3], eval: impl Fn(&Monochrome, &Channel<'_, T>) -> f64) -> Rgb {
+    let memory = Memory::default();
+    [0, 1, 2].map(|channel| eval(&stacks[channel], &Channel { terms, stacks, channel, memory: &memory }))
+}
+
+/// The stack at each wavelength, slope parameters clamped as in layer records.
+fn channels(stack: &Stack, wavelengths_nm: [f64; 3]) -> [Monochrome; 3] {
+    let clamped = |alpha: f64| alpha.clamp(ALPHA_MIN, 1.0);
+    [0, 1, 2].map(|channel| {
+        let mut one = Monochrome::new(stack, wavelengths_nm[channel], channel);
+        for Surface { alpha_x, alpha_y, .. } in one.layers.iter_mut().map(|layer| &mut layer.surface) {
+            (*alpha_x, *alpha_y) = (clamped(*alpha_x), clamped(*alpha_y));
+        }
+        one
+    })
+}
+
+/// The same with isotropic surfaces, whose slope parameter is clamped after the mean is taken.
+fn granier_channels(stack: &Stack, wavelengths_nm: [f64; 3]) -> [Monochrome; 3] {
+    let mut channels = channels(stack, wavelengths_nm);
+    for one in &mut channels {
+        for (layer, given) in one.layers.iter_mut().zip(&stack.layers) {
+            let alpha = given.surface.alpha_isotropic().clamp(ALPHA_MIN, 1.0);
+            layer.surface = Surface::isotropic(given.surface.distribution, alpha);
+        }
+    }
+    channels
+}
+
+/// Replaces the real indices, which bend directions, by those of the common wavelength. Reflectances come from elsewhere.
+fn bend_alike(one: &mut Monochrome, stack: &Stack) {
+    let mut above = stack.exterior.at(REFRACTION_WAVELENGTH_NM).re;
+    for (layer, given) in one.layers.iter_mut().zip(&stack.layers) {
+        layer.above = above;
+        if let (MonochromeBelow::Dielectric { ior, .. }, Base::Dielectric { ior: given, .. }) =
+            (&mut layer.below, &given.base)
+        {
+            *ior = given.at(REFRACTION_WAVELENGTH_NM).re;
+            above = *ior;
+        }
+    }
+}
+
+/// Phong's coefficients in colour; one lobe has one exponent, that of the green wavelength.
+fn coefficients(stack: &Stack, wavelengths_nm: [f64; 3], color: Color) -> [Coefficients; 3] {
+    let diffuse = in_color(stack, &color, |one| Coefficients::of(one).diffuse);
+    let specular = in_color(stack, &color, |one| Coefficients::of(one).specular);
+    let Coefficients { exponent, .. } = Coefficients::of(&Monochrome::new(stack, wavelengths_nm[1], 1));
+    [0, 1, 2].map(|c| Coefficients { diffuse: diffuse[c], specular: specular[c], exponent })
+}
+
+/// What terms have said during one evaluation, by layer and arguments.
+#[derive(Debug, Default)]
+struct Memory {
+    reflectances: RefCell<Vec<(usize, f64, Rgb)>>,
+    distributions: RefCell<Vec<(usize, [f64; 3], f64)>>,
+}
+
+/// Terms as one channel sees them.
+struct Channel<'a, T> {
+    terms: &'a T,
+    stacks: &'a [Monochrome; 3],
+    channel: usize,
+    memory: &'a Memory,
+}
+
+impl<T: Terms> Optics for Channel<'_, T> {
+    fn reflectance(&self, layer: usize, cos_theta_i: f64) -> f64 {
+        let mut known = self.memory.reflectances.borrow_mut();
+        if let Some((.., rgb)) = known.iter().find(|(l, cos, _)| (*l, *cos) == (layer, cos_theta_i)) {
+            return rgb[self.channel];
+        }
+        let rgb = self.terms.fresnel(layer, cos_theta_i);
+        known.push((layer, cos_theta_i, rgb));
+        rgb[self.channel]
+    }
+
+    fn distribution(&self, layer: usize, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
+        let arguments = [alpha, cos_theta_h, sin_theta_h_sq];
+        let mut known = self.memory.distributions.borrow_mut();
+        if let Some((.., value)) = known.iter().find(|(l, a, _)| (*l, *a) == (layer, arguments)) {
+            return *value;
+        }
+        let Some(surface) = self.stacks[self.channel].layers.get(layer).map(|layer| layer.surface) else { return 0.0 };
+        let value = self.terms.distribution(layer, surface.distribution, alpha, cos_theta_h, sin_theta_h_sq);
+        known.push((layer, arguments, value));
+        value
+    }
+
+    fn swing(&self, layer: usize, cosines: f64) -> f64 {
+        let tabulated = self.terms.swing(layer, self.channel, cosines);
+        tabulated.unwrap_or_else(|| self.stacks[self.channel].swing(layer, cosines))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use luthier_optics::ior::{Ior, IorSample};
+    use luthier_optics::stack::{Diffuse, Distribution, Film, FilmThickness, Layer, Slab};
+
+    use super::*;
+    use crate::model::Model;
+    use crate::registry;
+    use crate::terms::Exact;
+
+    const WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
+
+    fn dispersive(n: f64) -> Ior {
+        let samples = [(400.0, n + 0.05, 0.0), (700.0, n - 0.05, 0.0)];
+        Ior::sampled(samples.map(|(wavelength_nm, n, k)| IorSample { wavelength_nm, n, k }).to_vec()).unwrap()
+    }
+
+    fn layer(surface: Surface, base: Base) -> Layer {
+        Layer { films: Vec::new(), surface, base }
+    }
+
+    fn coat(ior: Ior) -> Layer {
+        let surface = Surface { distribution: Distribution::Ggx, alpha_x: 0.3, alpha_y: 0.1, rotation: 0.4 };
+        layer(
+            surface,
+            Base::Dielectric { ior, slab: Slab { thickness_um: 10.0, absorption_per_um: [0.01, 0.02, 0.03] } },
+        )
+    }
+
+    fn directions() -> [(DVec3, DVec3); 2] {
+        let unit = |x, y, z| DVec3::new(x, y, z).normalize();
+        [(unit(0.3, 0.1, 0.7), unit(-0.2, 0.2, 0.9)), (unit(0.9, 0.0, 0.1), unit(-0.8, 0.3, 0.2))]
+    }
+
+    /// Oracle: the model at each wavelength alone. Where nothing disperses, bending all channels alike changes nothing.
+    #[test]
+    fn exact_twins_are_the_models_at_three_wavelengths() {
+        let metal = layer(
+            Surface::isotropic(Distribution::Beckmann, 0.4),
+            Base::Conductor { ior: Ior::constant(0.2, 3.0).unwrap() },
+        );
+        let film = Film { ior: dispersive(1.6), thickness: FilmThickness { min_nm: 300.0, max_nm: 300.0 } };
+        let filmed = Layer { films: vec![film], ..metal.clone() };
+        let base = layer(Surface::smooth(), Base::Diffuse(Diffuse { albedo: [0.2, 0.5, 0.8], sigma: 0.3 }));
+        let stack = |layers| Stack { exterior: Ior::vacuum(), layers };
+        let plain = Ior::constant(1.5, 0.0).unwrap();
+        let dispersive_coat = stack(vec![coat(dispersive(1.5)), base.clone()]);
+        let cases = [
+            ("elek", stack(vec![coat(plain.clone()), metal.clone()])),
+            ("weidlich-wilkie", stack(vec![coat(plain), metal])),
+            ("microfacet", stack(vec![filmed.clone()])),
+            ("microfacet", dispersive_coat.clone()),
+            ("granier-heidrich", stack(vec![filmed, base])),
+            ("granier-heidrich", dispersive_coat),
+        ];
+        for (name, stack) in cases {
+            let color = Color::ThreeWavelengths(WAVELENGTHS_NM);
+            let twin = Twin::new(name, &stack, WAVELENGTHS_NM, color).unwrap();
+            let model = registry::model(name).unwrap();
+            for (wi, wo) in directions() {
+                let found = twin.eval(&Exact::new(&stack, color), wi, wo);
+                for (c, nm) in WAVELENGTHS_NM.into_iter().enumerate() {
+                    let expected = model.eval(&Monochrome::new(&stack, nm, c), wi, wo);
+                    assert!(expected > 1e-6, "{name}: {expected}");
+                    assert!((found[c] / expected - 1.0).abs() < 1e-12, "{name}, {c}: {} for {expected}", found[c]);
+                }
+            }
+        }
+    }
+
+    /// Dispersion moves what lies below a coat, channel by channel, but for the models whose shaders bend all alike.
+    #[test]
+    fn one_index_bends_all_channels() {
+        let metal = Base::Conductor { ior: Ior::constant(0.2, 3.0).unwrap() };
+        let smooth = layer(Surface::isotropic(Distribution::Beckmann, 0.05), metal);
+        let stack = Stack { exterior: Ior::vacuum(), layers: vec![coat(dispersive(1.5)), smooth] };
+        let color = Color::ThreeWavelengths(WAVELENGTHS_NM);
+        let twin = Twin::new("weidlich-wilkie", &stack, WAVELENGTHS_NM, color).unwrap();
+        let (wi, wo) = directions()[1];
+        let found = twin.eval(&Exact::new(&stack, color), wi, wo);
+        let own = WeidlichWilkie::default().eval(&Monochrome::new(&stack, 645.0, 0), wi, wo);
+        assert!((found[0] / own - 1.0).abs() > 1e-4, "{} {own}", found[0]);
+        let mut alike = Monochrome::new(&stack, 645.0, 0);
+        bend_alike(&mut alike, &stack);
+        assert!((alike.layers[0].eta() - dispersive(1.5).at(REFRACTION_WAVELENGTH_NM).re).abs() < 1e-15);
+        assert_eq!(alike.layers[1].above, alike.layers[0].eta());
+    }
+
+    #[test]
+    fn a_model_without_a_shader_has_no_twin() {
+        let stack = Stack { exterior: Ior::vacuum(), layers: vec![coat(dispersive(1.5))] };
+        let twin = |name| Twin::new(name, &stack, WAVELENGTHS_NM, Color::Spectral);
+        assert!(twin("layered-mc").is_none());
+        assert!(Twin::MODELS.into_iter().all(|name| twin(name).is_some()));
+    }
+}

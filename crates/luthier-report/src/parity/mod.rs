@@ -1,0 +1,326 @@
+//! Parity: every shader on a device against its f64 twin, over five sets of directions.
+
+mod page;
+mod sets;
+mod tolerances;
+
+use luthier_layers::real_time::Twin;
+use luthier_lut::{ColorMode, ShadingModel};
+use luthier_optics::Rgb;
+use serde::{Deserialize, Serialize};
+
+use crate::exceptions::{Factor, Factors, Miss, Part};
+use crate::judge::{References, WeightsVote, evaluate, run};
+use crate::table_terms::TableTerms;
+use crate::{
+    Device, ErrorSummary, FLOOR, Form, Pair, ReportError, Statistics, Subject, Weights, WorstPair, json, statistics,
+};
+
+pub use sets::{POLISHED_ALPHAS, ParitySet};
+pub use tolerances::{KNOWN, Known, Share, Tolerance, tolerance};
+
+use tolerances::known;
+
+/// A material of a bake, and its polished variants ([`POLISHED_ALPHAS`]): numbers of materials of the [`Subject`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct ParityCase {
+    /// Name of the material.
+    pub name: String,
+    /// The material.
+    pub material: u32,
+    /// Its variants; at least one.
+    pub polished: Vec<u32>,
+}
+
+/// A parity run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Parity {
+    /// Program and version.
+    pub generator: String,
+    /// The adapter.
+    pub device: String,
+    /// Pairs of directions in each of the five sets.
+    pub pairs_per_set: u32,
+    /// What errors are relative to: max(brightest channel of the reference, this).
+    pub floor: f64,
+    /// One per model, material and form.
+    pub rows: Vec<ParityRow>,
+}
+
+/// One shader of one material, over all sets.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ParityRow {
+    /// The model.
+    pub model: ShadingModel,
+    /// The form.
+    pub form: Form,
+    /// Name of the material.
+    pub material: String,
+    /// What the reference is: spectral or at three wavelengths.
+    pub color: ColorMode,
+    /// Pairs compared; three samples each.
+    pub pairs: u64,
+    /// Samples that are NaN or infinite; they are in none of the errors.
+    pub not_finite: u64,
+    /// The device against the reference.
+    pub total: ErrorSummary,
+    /// f64 on the tables, read with the device's weights, against the reference; nothing for a form without tables.
+    pub table: Option<ErrorSummary>,
+    /// The device against f64 on the same tables; without tables, against the reference.
+    pub arithmetic: ErrorSummary,
+    /// The weights that explain the device's values best; nothing for a form without tables.
+    pub weights: Option<Weights>,
+    /// Largest table and arithmetic error of every set.
+    pub sets: Vec<(ParitySet, [f64; 2])>,
+    /// The pair with the largest table error, and the set it is in.
+    pub worst_table: Option<(ParitySet, WorstPair)>,
+    /// The pair with the largest arithmetic error.
+    pub worst_arithmetic: Option<(ParitySet, WorstPair)>,
+    /// What the error of the shader is made of at the pair with the largest table error, largest first.
+    pub parts: Vec<Part>,
+}
+
+/// Whether an error keeps its tolerance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Verdict {
+    /// It does.
+    Met,
+    /// It does not, for a reason that is known and listed.
+    Explained(&'static Known),
+    /// It does not.
+    Broken,
+}
+
+impl ParityRow {
+    /// The largest error of a share.
+    pub fn max(&self, share: Share) -> f64 {
+        match share {
+            Share::Table => self.table.map_or(0.0, |table| table.max),
+            Share::Arithmetic => self.arithmetic.max,
+        }
+    }
+
+    /// Whether the largest error of a share keeps the tolerance of the model.
+    pub fn verdict(&self, share: Share) -> Verdict {
+        let max = self.max(share);
+        if max <= tolerance(self.model, self.form, share).limit {
+            return Verdict::Met;
+        }
+        let factor = match share {
+            Share::Table => self.parts.first().map(|part| part.cause.factor()),
+            Share::Arithmetic => Some(Factor::Arithmetic),
+        };
+        let known = factor.and_then(|factor| known(self.model, share, factor));
+        known.filter(|known| max <= known.limit).map_or(Verdict::Broken, Verdict::Explained)
+    }
+
+    /// Whether nothing is unexplained: all samples finite, all tolerances met or the reason listed.
+    pub fn holds(&self) -> bool {
+        self.not_finite == 0 && Share::ALL.into_iter().all(|share| self.verdict(share) != Verdict::Broken)
+    }
+}
+
+impl Parity {
+    /// A run of some rows.
+    pub fn new(generator: &str, device: String, pairs_per_set: u32, rows: Vec<ParityRow>) -> Self {
+        Self { generator: generator.to_owned(), device, pairs_per_set, floor: FLOOR, rows }
+    }
+
+    /// Whether all rows hold.
+    pub fn holds(&self) -> bool {
+        self.rows.iter().all(ParityRow::holds)
+    }
+
+    /// JSON, objects indented and arrays in a line, with a final newline.
+    ///
+    /// # Errors
+    /// [`ReportError::Json`], should the writer fail.
+    pub fn to_json(&self) -> Result<String, ReportError> {
+        json::to_string(self)
+    }
+
+    /// A page in Markdown; `command` is the command line that makes it.
+    pub fn to_markdown(&self, command: &str) -> String {
+        page::markdown(self, command)
+    }
+}
+
+/// Compares the shaders of a bake with their twins: two rows for every case. `progress` is called after each case.
+///
+/// # Errors
+/// See [`ReportError`].
+pub fn parity(
+    subject: &Subject<'_>,
+    device: &dyn Device,
+    cases: &[ParityCase],
+    pairs_per_set: u32,
+    progress: &mut dyn FnMut(),
+) -> Result<Vec<ParityRow>, ReportError> {
+    if pairs_per_set == 0 {
+        return Err(ReportError::NoPairs);
+    }
+    subject.check()?;
+    let mut rows = Vec::with_capacity(2 * cases.len());
+    for case in cases {
+        rows.extend(compare(subject, device, case, pairs_per_set)?);
+        progress();
+    }
+    Ok(rows)
+}
+
+/// Values at the pairs of a set, of one material.
+struct Block {
+    set: ParitySet,
+    material: usize,
+    pairs: Vec<Pair>,
+    reference: Vec<Rgb>,
+    three: Vec<Rgb>,
+    /// f64 on the tables, with 8-bit and with exact weights.
+    tables: [Vec<Rgb>; 2],
+    baked: Vec<Rgb>,
+    full: Vec<Rgb>,
+}
+
+impl Block {
+    fn read(&self, weights: Weights) -> &Vec<Rgb> {
+        match weights {
+            Weights::EightBit => &self.tables[0],
+            Weights::Exact => &self.tables[1],
+        }
+    }
+}
+
+fn compare(
+    subject: &Subject<'_>,
+    device: &dyn Device,
+    case: &ParityCase,
+    pairs_per_set: u32,
+) -> Result<[ParityRow; 2], ReportError> {
+    let mut blocks = Vec::new();
+    let mut vote = WeightsVote::default();
+    for set in ParitySet::ALL {
+        let own = [case.material];
+        let materials = if set == ParitySet::Smooth { case.polished.as_slice() } else { &own };
+        let count = pairs_per_set.div_ceil(materials.len().max(1) as u32);
+        for &number in materials {
+            let material = number as usize;
+            let references = references(subject, material)?;
+            let References { layers, twin, three, .. } = &references;
+            let pairs = set.pairs(count, layers);
+            let tables =
+                |weights| Ok::<_, ReportError>(evaluate(twin, &TableTerms::new(subject, material, weights)?, &pairs));
+            let block = Block {
+                set,
+                material,
+                reference: evaluate(twin, references.baked(), &pairs),
+                three: evaluate(twin, three, &pairs),
+                tables: [tables(Weights::EightBit)?, tables(Weights::Exact)?],
+                baked: run(device, Form::Baked, number, &pairs)?,
+                full: run(device, Form::Full, number, &pairs)?,
+                pairs,
+            };
+            vote.add(&block.baked, &block.tables[0], &block.tables[1]);
+            blocks.push(block);
+        }
+    }
+    let weights = vote.decide();
+    let entry = &subject.manifest.materials[case.material as usize];
+    let row = |form, compared: Compared, weights| {
+        let Compared { total, table, arithmetic, sets } = compared;
+        ParityRow {
+            model: entry.model,
+            form,
+            material: case.name.clone(),
+            color: entry.color,
+            pairs: total.pairs,
+            not_finite: total.not_finite,
+            total: total.relative,
+            table: table.as_ref().map(|(statistics, _)| statistics.relative),
+            arithmetic: arithmetic.0.relative,
+            weights,
+            sets,
+            worst_table: table.and_then(|(statistics, set)| Some((set?, statistics.worst?))),
+            worst_arithmetic: arithmetic.1.zip(arithmetic.0.worst),
+            parts: Vec::new(),
+        }
+    };
+    let mut baked =
+        row(Form::Baked, Compared::new(&blocks, |b| &b.baked, |b| &b.reference, Some(weights)), Some(weights));
+    baked.parts = parts(subject, &blocks, weights, &baked)?;
+    let full = row(Form::Full, Compared::new(&blocks, |b| &b.full, |b| &b.three, None), None);
+    Ok([baked, full])
+}
+
+fn references(subject: &Subject<'_>, material: usize) -> Result<References, ReportError> {
+    References::new(&subject.stacks[material], &subject.manifest.materials[material])
+}
+
+/// What makes the largest table error.
+fn parts(subject: &Subject<'_>, blocks: &[Block], weights: Weights, row: &ParityRow) -> Result<Vec<Part>, ReportError> {
+    let Some((set, worst)) = &row.worst_table else { return Ok(Vec::new()) };
+    let at = blocks.iter().filter(|block| block.set == *set).find_map(|block| {
+        block.pairs.iter().position(|pair| *pair == (worst.wi, worst.wo)).map(|index| (block, index))
+    });
+    let Some((block, index)) = at else { return Ok(Vec::new()) };
+    let references = references(subject, block.material)?;
+    let tables = TableTerms::new(subject, block.material, weights)?;
+    let twin: &Twin = &references.twin;
+    let factors = Factors { twin, exact: references.baked(), tables: Some(&tables), on_device: false };
+    let miss = Miss::at(block.pairs[index], worst.channel as usize, &block.baked[index], &block.reference[index]);
+    Ok(factors.parts(&miss))
+}
+
+/// Errors over all sets.
+struct Compared {
+    total: Statistics,
+    table: Option<(Statistics, Option<ParitySet>)>,
+    arithmetic: (Statistics, Option<ParitySet>),
+    sets: Vec<(ParitySet, [f64; 2])>,
+}
+
+impl Compared {
+    fn new(
+        blocks: &[Block],
+        found: impl Fn(&Block) -> &Vec<Rgb>,
+        reference: impl Fn(&Block) -> &Vec<Rgb>,
+        weights: Option<Weights>,
+    ) -> Self {
+        let (mut pairs, mut all_found, mut all_reference, mut all_tables) = (vec![], vec![], vec![], vec![]);
+        let mut ends = Vec::new();
+        for block in blocks {
+            pairs.extend_from_slice(&block.pairs);
+            all_found.extend_from_slice(found(block));
+            all_reference.extend_from_slice(reference(block));
+            all_tables.extend_from_slice(weights.map_or_else(|| reference(block), |weights| block.read(weights)));
+            ends.push((block.set, pairs.len()));
+        }
+        let with_set = |statistics: Statistics| {
+            let pair = statistics.worst.as_ref().map(|w| (w.wi, w.wo));
+            let index = pair.and_then(|pair| pairs.iter().position(|p| *p == pair));
+            let set = index.and_then(|index| ends.iter().find(|(_, end)| index < *end)).map(|(set, _)| *set);
+            (statistics, set)
+        };
+        let mut sets = Vec::new();
+        for set in ParitySet::ALL {
+            let mut max = [0.0_f64; 2];
+            let mut start = 0;
+            for (of, end) in &ends {
+                let range = start..*end;
+                start = *end;
+                if *of == set {
+                    let (p, f) = (&pairs[range.clone()], &all_found[range.clone()]);
+                    let (r, t) = (&all_reference[range.clone()], &all_tables[range]);
+                    max[0] = max[0].max(statistics(p, t, r).relative.max);
+                    max[1] = max[1].max(statistics(p, f, t).relative.max);
+                }
+            }
+            sets.push((set, max));
+        }
+        Self {
+            total: statistics(&pairs, &all_found, &all_reference),
+            table: weights.map(|_| with_set(statistics(&pairs, &all_tables, &all_reference))),
+            arithmetic: with_set(statistics(&pairs, &all_found, &all_tables)),
+            sets,
+        }
+    }
+}

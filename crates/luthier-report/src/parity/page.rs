@@ -1,0 +1,209 @@
+//! The page of a parity run, in Markdown.
+
+use std::fmt::Write;
+
+use luthier_layers::real_time::Twin;
+use luthier_lut::ShadingModel;
+
+use super::tolerances::{KNOWN, Tolerance, tolerance};
+use super::{Parity, ParityRow, ParitySet, Share, Verdict};
+use crate::format::{error, number};
+use crate::page::{angles, cause};
+use crate::{ErrorSummary, Form};
+
+/// The whole page.
+pub(super) fn markdown(parity: &Parity, command: &str) -> String {
+    let mut out = preamble(parity, command);
+    summary(&mut out, parity);
+    tolerances(&mut out, parity);
+    exceptions(&mut out, parity);
+    for model in models(parity) {
+        materials(&mut out, parity, model);
+    }
+    out
+}
+
+fn models(parity: &Parity) -> Vec<ShadingModel> {
+    let mut models: Vec<ShadingModel> = parity.rows.iter().map(|row| row.model).collect();
+    models.dedup();
+    models
+}
+
+fn preamble(parity: &Parity, command: &str) -> String {
+    let Parity { generator, device, pairs_per_set, floor, rows } = parity;
+    let pairs: u64 = rows.iter().map(|row| row.pairs).max().unwrap_or(0);
+    let mut out = format!(
+        "# The shaders against their f64 twins
+
+Every shader of every material on a device, against the same model in f64. All of this page is made by
+
+    {command}
+
+on {device}, by {generator}. Compared is f cos θᵢ at {pairs} pairs of directions for each model, form and material: {pairs_per_set} in \
+each of five sets. An error is relative to max(brightest channel of the reference, {}), a tenth of what a white diffuser gives; every \
+channel is a sample.
+
+The reference of `baked` is the material's colour, spectral or at three wavelengths; that of `full` is three wavelengths. *Table* is f64 \
+arithmetic on the texels that ship against the reference; *arithmetic* is the device against that, or, where there is no table, \
+against the reference; *total* is the device against the reference.
+
+| set | directions |
+|---|---|
+",
+        number(*floor)
+    );
+    for set in ParitySet::ALL {
+        let _ = writeln!(out, "| {} | {} |", set.name(), set.description());
+    }
+    let missing = ShadingModel::ALL.into_iter().map(ShadingModel::name).filter(|name| !Twin::MODELS.contains(name));
+    let missing: Vec<&str> = missing.collect();
+    if !missing.is_empty() {
+        let _ = writeln!(out, "\nNot compared, for want of a twin that reads tables: {}.", missing.join(", "));
+    }
+    out
+}
+
+fn summary(out: &mut String, parity: &Parity) {
+    out.push_str(
+        "\n## Summary\n\nThe largest of all materials. Root mean squares are of the worst material.\n\n| model | form | total max | p99 | rms | table max | p99 \
+         | rms | arithmetic max | p99 | rms | not finite |\n|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
+    );
+    for model in models(parity) {
+        for form in [Form::Baked, Form::Full] {
+            let rows = || parity.rows.iter().filter(|row| row.model == model && row.form == form);
+            let largest = |get: &dyn Fn(&ParityRow) -> Option<ErrorSummary>| {
+                rows().filter_map(get).reduce(|a, b| ErrorSummary {
+                    max: a.max.max(b.max),
+                    p99: a.p99.max(b.p99),
+                    rms: a.rms.max(b.rms),
+                })
+            };
+            let cells = [
+                errors(largest(&|row| Some(row.total))),
+                errors(largest(&|row| row.table)),
+                errors(largest(&|row| Some(row.arithmetic))),
+            ];
+            let not_finite: u64 = rows().map(|row| row.not_finite).sum();
+            let _ = writeln!(out, "| {} | {form} | {} | {not_finite} |", model.name(), cells.join(" | "));
+        }
+    }
+    out.push_str("\nThe largest error of each set, table and arithmetic:\n\n| model | form |");
+    for set in ParitySet::ALL {
+        let _ = write!(out, " {} |", set.name());
+    }
+    out.push_str("\n|---|---|--:|--:|--:|--:|--:|\n");
+    for model in models(parity) {
+        for form in [Form::Baked, Form::Full] {
+            let _ = write!(out, "| {} | {form} |", model.name());
+            for (index, _) in ParitySet::ALL.iter().enumerate() {
+                let rows = parity.rows.iter().filter(|row| row.model == model && row.form == form);
+                let [table, arithmetic] = rows.fold([0.0_f64; 2], |max, row| {
+                    let (_, errors) = row.sets[index];
+                    [max[0].max(errors[0]), max[1].max(errors[1])]
+                });
+                let _ = match form {
+                    Form::Baked => write!(out, " {}, {} |", error(table), error(arithmetic)),
+                    Form::Full => write!(out, " {} |", error(arithmetic)),
+                };
+            }
+            out.push('\n');
+        }
+    }
+}
+
+/// Maximum, 99th percentile and root mean square, as cells.
+fn errors(summary: Option<ErrorSummary>) -> String {
+    summary
+        .map_or_else(|| "– | – | –".to_owned(), |s| format!("{} | {} | {}", error(s.max), error(s.p99), error(s.rms)))
+}
+
+fn tolerances(out: &mut String, parity: &Parity) {
+    out.push_str("\n## Tolerances\n\nOf the largest error of a share.\n\n| tolerance | limit | of | reason |\n|---|--:|---|---|\n");
+    let mut named: Vec<(Tolerance, Vec<String>)> = Vec::new();
+    for model in models(parity) {
+        for form in [Form::Baked, Form::Full] {
+            for share in Share::ALL {
+                if share == Share::Table && form == Form::Full {
+                    continue;
+                }
+                let tolerance = tolerance(model, form, share);
+                let of = format!("{} {form}: {}", model.name(), share.name());
+                match named.iter_mut().find(|(t, _)| *t == tolerance) {
+                    Some((_, all)) => all.push(of),
+                    None => named.push((tolerance, vec![of])),
+                }
+            }
+        }
+    }
+    for (Tolerance { name, limit, reason }, of) in named {
+        let _ = writeln!(out, "| `{name}` | {} | {} | {reason} |", limit_text(limit), of.join(", "));
+    }
+}
+
+fn limit_text(limit: f64) -> String {
+    if limit == 0.0 { "0".to_owned() } else { format!("{limit:e}") }
+}
+
+fn exceptions(out: &mut String, parity: &Parity) {
+    out.push_str("\n## Exceptions\n\n");
+    let beyond: Vec<(&ParityRow, Share, Verdict)> = parity
+        .rows
+        .iter()
+        .flat_map(|row| Share::ALL.map(|share| (row, share, row.verdict(share))))
+        .filter(|(.., verdict)| *verdict != Verdict::Met)
+        .collect();
+    if beyond.is_empty() {
+        out.push_str("None: every tolerance is met.\n");
+        return;
+    }
+    let used = |name| beyond.iter().any(|(.., verdict)| matches!(verdict, Verdict::Explained(k) if k.name == name));
+    if KNOWN.iter().any(|known| used(known.name)) {
+        out.push_str("An error beyond its tolerance is accepted where the factor at fault, measured, is one that is known:\n\n| known | limit | reason |\n|---|--:|---|\n");
+        for known in KNOWN.iter().filter(|known| used(known.name)) {
+            let _ = writeln!(out, "| `{}` | {} | {} |", known.name, limit_text(known.limit), known.reason);
+        }
+        out.push('\n');
+    }
+    out.push_str("| model | form | material | share | max | p99 | set, worst pair | at fault there | accepted as |\n|---|---|---|---|--:|--:|---|---|---|\n");
+    for (row, share, verdict) in beyond {
+        let (errors, worst) = match share {
+            Share::Table => (row.table, &row.worst_table),
+            Share::Arithmetic => (Some(row.arithmetic), &row.worst_arithmetic),
+        };
+        let p99 = errors.map_or(0.0, |errors| errors.p99);
+        let place =
+            worst.as_ref().map_or_else(String::new, |(set, w)| format!("{}, {}", set.name(), angles(w.wi, w.wo)));
+        let fault = match share {
+            Share::Table => row.parts.first().map_or_else(String::new, |part| cause(&part.cause)),
+            Share::Arithmetic => "f32 arithmetic".to_owned(),
+        };
+        let accepted = match verdict {
+            Verdict::Explained(known) => format!("`{}`", known.name),
+            Verdict::Met | Verdict::Broken => "**not accepted**".to_owned(),
+        };
+        let _ = writeln!(
+            out,
+            "| {} | {} | {} | {} | {} | {} | {place} | {fault} | {accepted} |",
+            row.model.name(),
+            row.form,
+            row.material,
+            share.name(),
+            error(row.max(share)),
+            error(p99),
+        );
+    }
+}
+
+fn materials(out: &mut String, parity: &Parity, model: ShadingModel) {
+    let _ = write!(
+        out,
+        "\n## {}\n\n| material | form | total max | p99 | rms | table max | p99 | rms | arithmetic max | p99 | rms | not finite |\n\
+         |---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
+        model.name()
+    );
+    for row in parity.rows.iter().filter(|row| row.model == model) {
+        let ParityRow { material, form, total, table, arithmetic, not_finite, .. } = row;
+        let cells = [errors(Some(*total)), errors(*table), errors(Some(*arithmetic))].join(" | ");
+        let _ = writeln!(out, "| {material} | {form} | {cells} | {not_finite} |");
+    }
+}

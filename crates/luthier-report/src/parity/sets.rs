@@ -1,0 +1,184 @@
+//! Directions of the parity run.
+
+use glam::DVec3;
+use luthier_layers::elek::{Below, Layer};
+use serde::{Deserialize, Serialize};
+
+use crate::directions::{GRAZING_COS_MIN, LOBE_REACH, direction, halton, log_uniform, mirrored, rounded, spreads};
+use crate::{DirectionSet, Pair};
+
+/// Where a shader is compared with its twin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ParitySet {
+    /// Both directions uniform over the hemisphere.
+    Uniform,
+    /// Near the mirror direction.
+    NearSpecular,
+    /// Grazing to 89.9 degrees.
+    Grazing,
+    /// Near the mirror direction of smoother surfaces, alpha down to 0.001.
+    Smooth,
+    /// Along one line, and below the horizon.
+    Opposite,
+}
+
+/// Cosine of 89.9 degrees.
+const COS_89_9: f64 = 1.745_328_365_898_309e-3;
+
+/// Largest slope parameter of the polished variants of a material that the smooth set is evaluated on: all of its slope parameters are
+/// scaled alike, so that the largest is this, and none goes below 0.001.
+pub const POLISHED_ALPHAS: [f64; 4] = [0.001, 0.003, 0.01, 0.03];
+
+impl ParitySet {
+    /// All sets, in the order of the page.
+    pub const ALL: [Self; 5] = [Self::Uniform, Self::NearSpecular, Self::Grazing, Self::Smooth, Self::Opposite];
+
+    /// The name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Uniform => "uniform",
+            Self::NearSpecular => "near-specular",
+            Self::Grazing => "grazing",
+            Self::Smooth => "smooth",
+            Self::Opposite => "opposite",
+        }
+    }
+
+    /// What is in it, for a reader.
+    pub fn description(self) -> &'static str {
+        match self {
+            Self::Uniform => "Both directions uniform over the hemisphere.",
+            Self::NearSpecular => {
+                "wi uniform, wo mirrored about half vectors whose slope reaches four alpha of each lobe in turn (widened by refraction \
+                 for lobes below the first interface)."
+            }
+            Self::Grazing => {
+                "Cosines log-uniform from that of 89.9° to 0.1: a sixth of the pairs with both directions grazing, a sixth with wi \
+                 only, a sixth with wo only, at any azimuths; half with wi grazing and wo near its mirror direction."
+            }
+            Self::Smooth => {
+                "As near-specular, on four polished variants of the material: all slope parameters scaled alike, so that the largest is \
+                 0.001, 0.003, 0.01 and 0.03, none below 0.001."
+            }
+            Self::Opposite => {
+                "A quarter each: wo opposite in azimuth with both cosines log-uniform from 1e-6 to 0.1; wo = wi; wo = -wi, and both \
+                 below the horizon, where the value is exactly 0."
+            }
+        }
+    }
+
+    /// The first `count` pairs for a material with these layers: points of a Halton sequence, rounded to f32 at the end.
+    pub fn pairs(self, count: u32, layers: &[Layer]) -> Vec<Pair> {
+        match self {
+            Self::Uniform => DirectionSet::Random.pairs(count, layers),
+            Self::NearSpecular | Self::Smooth => {
+                let spreads = all_spreads(layers);
+                let pair = |n: u32| {
+                    let [a, b, c, d] = halton(n / spreads.len() as u32);
+                    let wi = direction(1.0 - a, b);
+                    let wo = mirrored(wi, LOBE_REACH * c * spreads[n as usize % spreads.len()], d);
+                    (rounded(wi, GRAZING_COS_MIN), rounded(wo, GRAZING_COS_MIN))
+                };
+                (0..count).map(pair).collect()
+            }
+            Self::Grazing => {
+                let spreads = all_spreads(layers);
+                (0..count).map(|n| grazing(n, &spreads)).collect()
+            }
+            Self::Opposite => (0..count).map(opposite).collect(),
+        }
+    }
+}
+
+/// Slope spreads of every lobe: of models in which no layer is smoother than the one above it, and of those without that rule.
+fn all_spreads(layers: &[Layer]) -> Vec<f64> {
+    let mut all = spreads(layers);
+    let mut eta_above = 1.0;
+    for layer in layers {
+        let own = layer.alpha * eta_above;
+        match layer.below {
+            Below::Diffuse(_) => break,
+            Below::Conductor => {}
+            Below::Dielectric { eta, .. } => eta_above *= eta,
+        }
+        if !all.contains(&own) {
+            all.push(own);
+        }
+    }
+    all
+}
+
+fn grazing(n: u32, spreads: &[f64]) -> Pair {
+    let [a, b, c, d] = halton(n / 6);
+    let (wi, wo) = match n % 6 {
+        0 => (direction(log_uniform(COS_89_9, a), b), direction(log_uniform(COS_89_9, c), d)),
+        1 => (direction(log_uniform(COS_89_9, a), b), direction(1.0 - c, d)),
+        2 => (direction(1.0 - a, b), direction(log_uniform(COS_89_9, c), d)),
+        _ => {
+            let [a, b, c, d] = halton(n / 2);
+            let wi = direction(log_uniform(COS_89_9, a), b);
+            (wi, mirrored(wi, LOBE_REACH * c * spreads[(n / 6) as usize % spreads.len()], d))
+        }
+    };
+    (rounded(wi, COS_89_9), rounded(wo, COS_89_9))
+}
+
+fn opposite(n: u32) -> Pair {
+    let [a, b, c, d] = halton(n / 4);
+    let up = rounded(direction(1.0 - a, b), GRAZING_COS_MIN);
+    let down = |w: [f32; 3]| w.map(|x| -x);
+    match n % 4 {
+        0 => {
+            let wi = direction(log_uniform(GRAZING_COS_MIN, a), b);
+            let wo: DVec3 = direction(log_uniform(GRAZING_COS_MIN, c), b + 0.5 + 1e-2 * (d - 0.5));
+            (rounded(wi, GRAZING_COS_MIN), rounded(wo, GRAZING_COS_MIN))
+        }
+        1 => (up, up),
+        2 => (up, down(up)),
+        _ => (down(up), down(rounded(direction(1.0 - c, d), GRAZING_COS_MIN))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use luthier_optics::stack::Distribution;
+
+    use super::*;
+
+    fn layers() -> Vec<Layer> {
+        let coat = Below::Dielectric { eta: 1.5, optical_depth: [0.0; 3] };
+        vec![
+            Layer { distribution: Distribution::Ggx, alpha: 0.2, below: coat },
+            Layer { distribution: Distribution::Beckmann, alpha: 0.05, below: Below::Conductor },
+        ]
+    }
+
+    #[test]
+    fn sets_are_where_they_say() {
+        for set in ParitySet::ALL {
+            let pairs = set.pairs(6000, &layers());
+            assert_eq!(pairs.len(), 6000);
+            for (wi, wo) in &pairs {
+                for w in [wi, wo] {
+                    let length_sq: f64 = w.iter().map(|&c| f64::from(c) * f64::from(c)).sum();
+                    assert!((length_sq - 1.0).abs() < 4e-6, "{set:?} {w:?}: {length_sq}");
+                }
+            }
+            let lowest = pairs.iter().map(|(wi, wo)| wi[2].min(wo[2])).fold(1.0, f32::min);
+            match set {
+                ParitySet::Grazing => assert!((1.745e-3..1.75e-3).contains(&lowest), "{lowest}"),
+                ParitySet::Opposite => {
+                    let below = pairs.iter().filter(|(wi, wo)| wi[2].min(wo[2]) < 0.0).count();
+                    assert_eq!(below, 3000);
+                }
+                _ => assert!(lowest > 0.0, "{set:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn a_smooth_layer_below_a_rough_one_has_its_own_highlights() {
+        assert_eq!(all_spreads(&layers()), [0.2, 0.2 * 1.5, 0.05 * 1.5]);
+    }
+}

@@ -1,0 +1,150 @@
+//! How far a shader may be from its twin, model by model, and what is known to be further.
+
+use luthier_lut::ShadingModel;
+use serde::{Deserialize, Serialize};
+
+use crate::Form;
+use crate::exceptions::Factor;
+
+/// A share of the error of a shader.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Share {
+    /// What reading tables does.
+    Table,
+    /// What f32 does.
+    Arithmetic,
+}
+
+impl Share {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Table, Self::Arithmetic];
+
+    /// The name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Table => "table",
+            Self::Arithmetic => "arithmetic",
+        }
+    }
+}
+
+/// The largest error of one share that a shader is held to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerance {
+    /// Its name.
+    pub name: &'static str,
+    /// Relative to max(brightest channel of the reference, [`crate::FLOOR`]).
+    pub limit: f64,
+    /// Why it is what it is.
+    pub reason: &'static str,
+}
+
+const LOBE_TABLE: Tolerance = Tolerance {
+    name: "LOBE_TABLE",
+    limit: 2.5e-3,
+    reason: "The distribution is interpolated between 512 slope parameters from 0.001 to 1, a ratio of 1.014 from one to the next; at \
+             the foot of a lobe a value that is a few thousandths off is still bright over the floor.",
+};
+
+const PHASE_TABLE: Tolerance = Tolerance {
+    name: "PHASE_TABLE",
+    limit: 1.5e-3,
+    reason: "Between the 256 nodes of a phase row a cosine is a straight line, and its texels are half floats of up to 2.",
+};
+
+const NO_TABLE: Tolerance = Tolerance { name: "NO_TABLE", limit: 0.0, reason: "Nothing is read from a table." };
+
+const LOBE_READ: Tolerance = Tolerance {
+    name: "LOBE_READ",
+    limit: 2e-4,
+    reason: "The distribution's texel is its sixteenth root: a rounding error of the coordinate or of the filter comes out sixteen \
+             times as large.",
+};
+
+const LAYERS_IN_F32: Tolerance = Tolerance {
+    name: "LAYERS_IN_F32",
+    limit: 5e-5,
+    reason: "Some tens of roundings of 6e-8 for every layer, in an exponential whose argument may be ten or more before the value is below \
+             the floor.",
+};
+
+const BEAMS_IN_F32: Tolerance = Tolerance {
+    name: "BEAMS_IN_F32",
+    limit: 2e-5,
+    reason: "As one layer; the exponents of the lobes reach 2e6, but what they are applied to is formed without cancellation.",
+};
+
+const PHONG_IN_F32: Tolerance = Tolerance {
+    name: "PHONG_IN_F32",
+    limit: 1e-5,
+    reason: "One exponential of a product whose factors have an error of 1e-7 each: the error is that times the exponent's \
+             argument, which the value outweighs beyond 1.",
+};
+
+/// The tolerance of a shader.
+pub fn tolerance(model: ShadingModel, form: Form, share: Share) -> Tolerance {
+    match (share, model) {
+        (Share::Table, ShadingModel::Phong) => NO_TABLE,
+        (Share::Table, _) if form == Form::Full => NO_TABLE,
+        (Share::Table, ShadingModel::GranierHeidrich) => PHASE_TABLE,
+        (Share::Table, _) => LOBE_TABLE,
+        (Share::Arithmetic, ShadingModel::Phong) => PHONG_IN_F32,
+        (Share::Arithmetic, ShadingModel::GranierHeidrich) => BEAMS_IN_F32,
+        (Share::Arithmetic, _) if form == Form::Baked => LOBE_READ,
+        (Share::Arithmetic, _) => LAYERS_IN_F32,
+    }
+}
+
+/// A larger error whose reason is known: the factor that was measured to be at fault where it is largest, up to a limit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Known {
+    /// Its name.
+    pub name: &'static str,
+    /// The models.
+    pub models: &'static [ShadingModel],
+    /// The share.
+    pub share: Share,
+    /// What has to be at fault.
+    pub factor: Factor,
+    /// How far it goes.
+    pub limit: f64,
+    /// Where it comes from.
+    pub reason: &'static str,
+}
+
+/// What is known.
+pub const KNOWN: [Known; 3] = [
+    Known {
+        name: "FRESNEL_UNDER_A_COAT",
+        models: &[ShadingModel::Elek, ShadingModel::WeidlichWilkie],
+        share: Share::Table,
+        factor: Factor::Fresnel,
+        limit: 2e-2,
+        reason: "What lies below an interface is seen through (1 - F)² of it. In the last intervals of the row (cos θ below 0.03) 1 - F is \
+                 small, and F, a straight line in each, is some 3e-4 off. The row of a free film bends more.",
+    },
+    Known {
+        name: "DISTRIBUTION_FAR_OUT",
+        models: &[ShadingModel::Elek, ShadingModel::WeidlichWilkie],
+        share: Share::Table,
+        factor: Factor::Distribution,
+        limit: 1e-2,
+        reason: "Half vectors beyond 55° on surfaces of alpha 0.45 and more: the angle axis has its nodes near the normal, and division \
+                 by both cosines makes what is small there bright.",
+    },
+    Known {
+        name: "FILM_AT_GRAZING",
+        models: &[ShadingModel::Microfacet],
+        share: Share::Table,
+        factor: Factor::Fresnel,
+        limit: 2e-2,
+        reason: "The reflectance of a free film falls from 1 within the last interval of its row (cos θ < 1/127), which is a straight \
+                 line there.",
+    },
+];
+
+/// What is known of a share of the error of a model that a factor is at fault for.
+pub(super) fn known(model: ShadingModel, share: Share, factor: Factor) -> Option<&'static Known> {
+    KNOWN.iter().find(|k| k.models.contains(&model) && k.share == share && k.factor == factor)
+}
