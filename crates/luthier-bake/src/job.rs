@@ -11,6 +11,7 @@ use crate::balance;
 use crate::distribution::DistributionJob;
 use crate::facet_grid::{CrossedGrid, CrossedJob, FacetGrid, FacetGridJob};
 use crate::fgd::FgdJob;
+use crate::film::FilmJob;
 use crate::fresnel::FresnelJob;
 use crate::graph::Inputs;
 use crate::phase::PhaseJob;
@@ -53,6 +54,8 @@ pub enum JobKind {
     Phase,
     /// One thickness texture.
     Thickness,
+    /// One film tile.
+    Film,
 }
 
 impl JobKind {
@@ -66,6 +69,7 @@ impl JobKind {
             Self::Fgd => "fgd",
             Self::Phase => "phase",
             Self::Thickness => "thickness",
+            Self::Film => "film",
         }
     }
 }
@@ -80,6 +84,7 @@ pub(crate) enum Job {
     Fgd(FgdJob),
     Phase(PhaseJob),
     Thickness(ThicknessJob),
+    Film(FilmJob),
 }
 
 impl Job {
@@ -92,6 +97,7 @@ impl Job {
             Self::Fgd(_) => JobKind::Fgd,
             Self::Phase(_) => JobKind::Phase,
             Self::Thickness(_) => JobKind::Thickness,
+            Self::Film(_) => JobKind::Film,
         }
     }
 
@@ -104,6 +110,7 @@ impl Job {
             Self::Fgd(job) => job.inputs(),
             Self::Phase(job) => job.inputs(),
             Self::Thickness(job) => job.inputs(),
+            Self::Film(job) => job.inputs(),
         };
         Key::of(self.kind(), &inputs)
     }
@@ -125,6 +132,7 @@ impl Job {
             Self::Fgd(job) => Artefact::Tile(job.run(inputs)),
             Self::Phase(job) => Artefact::Tile(job.run()),
             Self::Thickness(job) => Artefact::Tile(job.run()),
+            Self::Film(job) => Artefact::Tile(job.run()),
         }
     }
 }
