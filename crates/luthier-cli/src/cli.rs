@@ -1,5 +1,6 @@
 //! The command line: the one definition of verbs, options and their help.
 
+use std::num::NonZeroU32;
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -166,9 +167,18 @@ pub(crate) struct ShaderOptions {
     pub(crate) output: Option<PathBuf>,
 }
 
+/// Standard errors of albedos are then at most 1e-3: 0.5 over the root.
+pub(crate) const MODEL_SAMPLES: NonZeroU32 = NonZeroU32::new(1 << 18).expect("not zero");
+
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  luthier models\n  luthier models --json")]
+#[command(after_help = "Examples:\n  luthier models\n  luthier models --judge materials > docs/models.md")]
 pub(crate) struct ModelsOptions {
+    /// Compare every model with the layered-mc reference on materials, a page in Markdown: files, or folders of them
+    #[arg(long, value_name = "PATH", num_args = 1..)]
+    pub(crate) judge: Vec<PathBuf>,
+    /// Paths of the reference for each wavelength and direction of --judge; by default minutes of work
+    #[arg(long, value_name = "N", default_value_t = MODEL_SAMPLES, requires = "judge")]
+    pub(crate) samples: NonZeroU32,
     /// Print as JSON
     #[arg(long)]
     pub(crate) json: bool,

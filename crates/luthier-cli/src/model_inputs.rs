@@ -42,6 +42,12 @@ pub(crate) struct ModelInputs {
     #[arg(long, value_name = "NM", value_parser = crate::cli::wavelength)]
     #[arg(requires = "matrix", requires = "wavelength")]
     pub(crate) excitation: Option<f64>,
+    /// Random samples per value (random-walk, layered-mc and its kind); 4096 unless given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    samples: Option<u64>,
+    /// Which random numbers (random-walk, layered-mc and its kind)
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
     #[command(flatten)]
     textures: Textures,
 }
@@ -88,6 +94,8 @@ impl ModelInputs {
             (Input::Environment, environment),
             (Input::Matrix, self.matrix.is_some()),
             (Input::Excitation, self.excitation.is_some()),
+            (Input::Samples, self.samples.is_some()),
+            (Input::Seed, self.seed.is_some()),
         ];
         let info = model.info();
         let refused = given.into_iter().find(|(input, is_given)| *is_given && !info.inputs.contains(input));
@@ -110,6 +118,8 @@ impl ModelInputs {
             extent: self.extent,
             map: self.map,
             inner_normal: self.inner_normal.map(Angles::direction),
+            samples: self.samples,
+            seed: self.seed,
         };
         model.with_inputs(&inputs).unwrap_or(model)
     }

@@ -34,13 +34,20 @@ impl Staging {
         Ok(())
     }
 
-    /// Moves all files into place in the order in which they were written.
+    /// Moves all files into place in the order in which they were written, once every folder for them is there and no folder is
+    /// in a file's place.
     pub(crate) fn publish(self) -> Outcome {
         for path in &self.written {
             let to = self.target.join(path);
             if let Some(parent) = to.parent() {
                 std::fs::create_dir_all(parent).map_err(files(parent, "make the folder"))?;
             }
+            if to.is_dir() {
+                return Err(files(&to, "write")(std::io::ErrorKind::IsADirectory.into()));
+            }
+        }
+        for path in &self.written {
+            let to = self.target.join(path);
             std::fs::rename(self.folder.path().join(path), &to).map_err(files(&to, "write"))?;
         }
         Ok(())

@@ -23,6 +23,10 @@ pub enum Input {
     Matrix,
     /// The wavelength of the light, when it is not the one seen.
     Excitation,
+    /// [`Inputs::samples`].
+    Samples,
+    /// [`Inputs::seed`].
+    Seed,
 }
 
 impl Input {
@@ -38,6 +42,8 @@ impl Input {
             Self::Environment => "environment",
             Self::Matrix => "matrix",
             Self::Excitation => "excitation",
+            Self::Samples => "samples",
+            Self::Seed => "seed",
         }
     }
 }
@@ -55,4 +61,8 @@ pub struct Inputs {
     pub map: Option<f64>,
     /// Normal of the inner boundary of a film, unit, in the surface's frame.
     pub inner_normal: Option<DVec3>,
+    /// Random samples per value of an estimate.
+    pub samples: Option<u64>,
+    /// Which random numbers an estimate is made of.
+    pub seed: Option<u64>,
 }

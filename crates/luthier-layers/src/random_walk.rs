@@ -7,6 +7,7 @@
 use glam::DVec3;
 
 use crate::furnace;
+use crate::inputs::{Input, Inputs};
 use crate::layered_mc::{Estimate, Interface, InterfaceMode, Side, Sided, Stream, both_above, mixed_seed};
 use crate::model::{Claims, Estimator, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeLayer};
@@ -74,7 +75,7 @@ impl Model for RandomWalk {
             source: "Heitz, Hanika, d'Eon and Dachsbacher 2016",
             domain: "one rough interface; an estimate, with noise",
             leaves_out: "everything below the top interface; smooth interfaces; polarisation between facets",
-            inputs: &[],
+            inputs: &[Input::Samples, Input::Seed],
         }
     }
 
@@ -84,6 +85,11 @@ impl Model for RandomWalk {
 
     fn estimator(&self) -> Option<&dyn Estimator> {
         Some(self)
+    }
+
+    fn with_inputs(&self, inputs: &Inputs) -> Option<Box<dyn Model>> {
+        let (samples, seed) = (inputs.samples.unwrap_or(self.samples), inputs.seed.unwrap_or(self.seed));
+        Some(Box::new(Self { samples, seed }))
     }
 
     fn lossless(&self, stack: &Monochrome) -> Monochrome {

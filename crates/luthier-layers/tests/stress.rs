@@ -7,7 +7,7 @@
 use glam::DVec3;
 use luthier_layers::directional_albedo::directional_albedo;
 use luthier_layers::layered_mc::{Estimate, InterfaceMode, LayeredMc};
-use luthier_layers::model::Model;
+use luthier_layers::model::{Kind, Model};
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 use luthier_layers::registry::{model, models};
 use luthier_layers::statistics::adding::add;
@@ -227,6 +227,11 @@ fn a_coat_and_a_base_that_reflect_everything_are_not_zero_over_zero() {
     }
 }
 
+/// Models of whole stacks, and the references.
+fn models_of_layers() -> impl Iterator<Item = Box<dyn Model>> {
+    models().into_iter().filter(|m| matches!(m.info().kind, Kind::Layered | Kind::Place | Kind::Reference))
+}
+
 /// One of each kind of base.
 fn kinds() -> [Monochrome; 3] {
     let chalk = MonochromeBelow::Diffuse { albedo: 0.8, sigma: 0.3 };
@@ -261,19 +266,24 @@ fn opposite_directions_have_no_half_vector_and_every_model_gives_zero() {
 #[test]
 fn grazing_mirror_directions_make_v_cavities_grow_without_bound_and_smith_s_masking_not() {
     let v_cavities = ["microfacet-v-cavity", "elek", "flakes", "patina"];
+    let on_v_cavities = |name: &str| {
+        v_cavities.contains(&name) || ["weidlich-wilkie", "heterogeneous"].iter().any(|start| name.starts_with(start))
+    };
     let [metal, coated, chalk] = kinds();
-    for model in models() {
+    for model in models_of_layers().chain(["microfacet", "microfacet-v-cavity"].map(named)) {
         let name = model.info().name;
         let value = |stack: &Monochrome, cos: f64| {
             let sin = (1.0 - cos * cos).sqrt();
             model.eval(stack, DVec3::new(sin, 0.0, cos), DVec3::new(-sin, 0.0, cos))
         };
         for stack in [&metal, &coated, &chalk] {
-            let growth = value(stack, 1e-6) / value(stack, 1e-3);
-            if v_cavities.contains(&name) || name.starts_with("weidlich-wilkie") {
-                assert_near(growth, 1000.0, 10.0);
+            let (near, far) = (value(stack, 1e-6), value(stack, 1e-3));
+            if ["closed-form", "fluorescence"].contains(&name) {
+                // No lobe at all, or none but on a diffuse base.
+                assert!(near <= 1.02 * far, "{name}: {near} {far}");
             } else {
-                assert_near(growth, 1.0, 0.02);
+                let (growth, slack) = if on_v_cavities(name) { (1000.0, 10.0) } else { (1.0, 0.02) };
+                assert_near(near / far, growth, slack);
             }
             for cos in [1e-1, 1e-3, 1e-6, 1e-9] {
                 let power = value(stack, cos) * cos;
@@ -329,9 +339,14 @@ fn an_index_matched_coat_is_not_there_but_for_elek_s_clamp() {
     let (wi, wo) = (at(30.0, 0.0), at(40.0, 170.0));
     for coat in [0.1, 0.6] {
         let coated = stack(&[(coat, glass(1.0, 0.0)), (0.3, BRIGHT)]);
-        for model in models() {
+        for model in models_of_layers().chain(["microfacet", "microfacet-v-cavity"].map(named)) {
             let name = model.info().name;
-            let ratio = model.eval(&coated, wi, wo) / model.eval(&bare, wi, wo);
+            let bare_value = model.eval(&bare, wi, wo);
+            if bare_value == 0.0 {
+                assert!(["closed-form", "fluorescence"].contains(&name), "{name} has no such stacks");
+                continue;
+            }
+            let ratio = model.eval(&coated, wi, wo) / bare_value;
             match name {
                 "microfacet" | "microfacet-v-cavity" | "random-walk" => assert_eq!(ratio, 0.0, "{name}"),
                 "elek" if coat > 0.3 => assert_near(ratio, 0.298, 1e-3),

@@ -11,6 +11,7 @@
 //! - directional albedos (FGD) are estimated anew, wavelength by wavelength, with the uncertainty of the estimate.
 //!
 //! [`compare_pictures`] compares two rendered pictures.
+//! [`judge_models`] is the judge of what the bake stands on: every reflectance model against the Monte Carlo of whole stacks.
 //!
 //! Simplifications: of thickness maps only what follows from the stack is checked (range, normalisation), because their
 //! truth is a noise function or an image that only the baker has; the albedo's estimate shares its walks and quadrature with
@@ -27,6 +28,7 @@ mod flip;
 mod format;
 mod json;
 mod judge;
+mod models;
 mod page;
 mod picture;
 mod profile;
@@ -41,6 +43,9 @@ pub use directions::{DirectionSet, Pair};
 pub use error::ReportError;
 pub use exceptions::{Cause, Exception, Factor, Part};
 pub use judge::{Progress, Settings, judge};
+pub use models::{
+    MaterialModels, ModelErrors, ModelSettings, ModelSubject, ModelsReport, Quantity, ViewError, Worst, judge_models,
+};
 pub use picture::{PIXELS_PER_DEGREE, PictureComparison, compare_pictures};
 pub use profile::{ANGLE_BINS, AngleProfile, Exceedance};
 pub use report::{

@@ -127,6 +127,27 @@ fn textures_act_on_every_model() {
     assert!((found - expected).abs() < 1e-12, "{found} {expected}");
 }
 
+/// Sixteen times the samples, a quarter of the standard error; another seed, another value within their errors.
+#[test]
+fn estimates_take_samples_and_a_seed() {
+    let workshop = workshop();
+    for model in ["random-walk", "layered-mc", "layered-mc-one-facet"] {
+        let of = |more: &[&str]| {
+            let args = [&["eval", "p.toml", "--model", model, "--json"], &PAIR[..], more].concat();
+            let json = workshop.run(&args).exits(0).json();
+            ["value", "std_err"].map(|key| json["values"][0][key][0].as_f64().unwrap())
+        };
+        let ([few, few_err], [many, many_err]) = (of(&["--samples", "20000"]), of(&["--samples", "320000"]));
+        assert!((0.15..0.4).contains(&(many_err / few_err)), "{model}: {few_err} {many_err}");
+        let [other, other_err] = of(&["--samples", "20000", "--seed", "7"]);
+        assert!(other != few && (other - few).abs() < 5.0 * (few_err + other_err), "{model}: {few} {other}");
+        assert!((many - few).abs() < 5.0 * few_err, "{model}: {few} {many}");
+    }
+    workshop
+        .run(&[&["eval", "p.toml", "--model", "layered-mc"], &PAIR[..], &["--samples", "0"]].concat())
+        .fails(2, &["1.."]);
+}
+
 #[test]
 fn what_models_do_not_take_is_refused() {
     let workshop = workshop();
@@ -139,6 +160,7 @@ fn what_models_do_not_take_is_refused() {
     refuses("flakes", &["--map", "1"], &["--map", "patina"]);
     refuses("elek", &["--inner-normal", "1,0"], &["--inner-normal", "granier-heidrich"]);
     refuses("elek", &["--other", "m.toml"], &["--other", "heterogeneous"]);
+    refuses("elek", &["--samples", "9"], &["--samples", "layered-mc"]);
     refuses("flakes", &["--uv", "0.1"], &["texture coordinate"]);
     refuses("flakes", &["--uv", "0.1,x"], &["texture coordinate"]);
     refuses("flakes", &["--distance=-1"], &["from 0 up"]);

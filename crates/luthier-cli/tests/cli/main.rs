@@ -15,6 +15,7 @@ mod gallery;
 mod help;
 mod ior;
 mod material_texts;
+mod model_judge;
 mod models;
 mod outdated;
 mod pipes;

@@ -31,6 +31,7 @@ pub(crate) use interface::Interface;
 pub(crate) use random::Stream;
 pub(crate) use rough::Sided;
 
+use crate::inputs::{Input, Inputs};
 use crate::model::{Claims, Estimator, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 use connect::Scratch;
@@ -111,7 +112,7 @@ impl Model for LayeredMc {
                 name: "layered-mc",
                 kind: Kind::Reference,
                 claims: Claims::BOTH,
-                inputs: &[],
+                inputs: &[Input::Samples, Input::Seed],
                 source,
                 domain: "any stack; an estimate, with noise",
                 leaves_out: "light that meets smooth interfaces only; polarisation between interfaces",
@@ -120,7 +121,7 @@ impl Model for LayeredMc {
                 name: "layered-mc-one-facet",
                 kind: Kind::Reference,
                 claims: Claims::BOTH,
-                inputs: &[],
+                inputs: &[Input::Samples, Input::Seed],
                 source,
                 domain: "any stack; an estimate, with noise",
                 leaves_out: "bounces between facets (what is blocked is lost); light that meets smooth interfaces \
@@ -137,6 +138,11 @@ impl Model for LayeredMc {
 
     fn estimator(&self) -> Option<&dyn Estimator> {
         Some(self)
+    }
+
+    fn with_inputs(&self, inputs: &Inputs) -> Option<Box<dyn Model>> {
+        let (samples, seed) = (inputs.samples.unwrap_or(self.samples), inputs.seed.unwrap_or(self.seed));
+        Some(Box::new(Self { samples, seed, ..*self }))
     }
 }
 

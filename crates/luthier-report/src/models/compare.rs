@@ -1,0 +1,122 @@
+//! Two errors of one view.
+
+use std::f64::consts::PI;
+
+use super::energies::Energies;
+use super::paths::Histogram;
+use super::report::{Quantity, ViewError};
+
+/// The errors of energies against the reference, with their standard errors.
+///
+/// The lobe error's is to first order, for fixed signs of the differences. Where the difference in a cell is noise, its
+/// absolute value is not: it adds to the lobe error. [`ViewError::lobe_floor`] is what that comes to when all differences are noise.
+pub(super) fn compare(found: &Energies, reference: &Histogram, wavelength_nm: f64, theta_deg: f64) -> ViewError {
+    // Variance of a sum of the reference's energies plus, at the factors of their own, of those found.
+    let spread = |of_reference: &dyn Fn(usize) -> f64, of_found: &dyn Fn(usize) -> f64| {
+        let own = found.noise.as_ref().map_or(0.0, |paths| paths.variance(of_found));
+        libm::sqrt(reference.variance(of_reference) + own)
+    };
+    let albedo_ref = reference.albedo();
+    let albedo = found.energies.iter().sum::<f64>();
+    // Nothing to compare with: everything found is infinitely too much.
+    let per_light = |energy: f64| if energy == 0.0 { 0.0 } else { energy / albedo_ref };
+
+    let moved: f64 = found.energies.iter().zip(&reference.energies).map(|(e, r)| (e - r).abs()).sum();
+    let lobe = per_light(0.5 * moved);
+    let half_sign = |cell: usize| match found.energies[cell] - reference.energies[cell] {
+        d if d > 0.0 => 0.5,
+        d if d < 0.0 => -0.5,
+        _ => 0.0,
+    };
+    let cell_noise = |cell: usize| {
+        let own = found.noise.as_ref().map_or(0.0, |paths| paths.cell_variance(cell));
+        libm::sqrt(reference.cell_variance(cell) + own)
+    };
+    let lobe_noise: f64 = (0..reference.energies.len()).map(cell_noise).sum();
+    ViewError {
+        wavelength_nm,
+        theta_deg,
+        albedo: Quantity {
+            error: (albedo - albedo_ref).abs(),
+            std_err: spread(&|_| 1.0, &|_| 1.0),
+            quadrature_change: found.change[0],
+        },
+        lobe: Quantity {
+            error: lobe,
+            std_err: per_light(spread(&|cell| half_sign(cell) + lobe, &half_sign)),
+            quadrature_change: per_light(found.change[1]),
+        },
+        // Mean absolute value of a normal variable: sqrt(2 / pi) of its deviation.
+        lobe_floor: per_light(0.5 * libm::sqrt(2.0 / PI) * lobe_noise),
+        albedo_model: albedo,
+        albedo_reference: albedo_ref,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn exact(energies: &[f64]) -> Energies {
+        Energies { energies: energies.to_vec(), change: [0.0; 2], noise: None }
+    }
+
+    /// `count` paths of weight 1 with the given chances.
+    fn paths(energies: &[f64], count: f64) -> Histogram {
+        Histogram { energies: energies.to_vec(), squares: energies.to_vec(), count }
+    }
+
+    #[test]
+    fn lobes_with_known_errors() {
+        let reference = paths(&[0.5, 0.3, 0.0, 0.0], 1e4);
+        let error = |energies: &[f64]| compare(&exact(energies), &reference, 550.0, 0.0);
+        let same = error(&[0.5, 0.3, 0.0, 0.0]);
+        assert!(same.albedo.error < 1e-15 && same.lobe.error < 1e-15);
+        // The same energy elsewhere.
+        let apart = error(&[0.0, 0.0, 0.7, 0.1]);
+        assert!(apart.albedo.error < 1e-15 && (apart.lobe.error - 1.0).abs() < 1e-15);
+        // Black: half of the light is in neither.
+        let black = error(&[0.0; 4]);
+        assert!((black.albedo.error - 0.8).abs() < 1e-15 && (black.lobe.error - 0.5).abs() < 1e-15);
+        // A quarter of the light moved.
+        assert!((error(&[0.3, 0.5, 0.0, 0.0]).lobe.error - 0.25).abs() < 1e-15);
+        // Standard error of a share of 0.8 of ten thousand paths.
+        assert!((same.albedo.std_err - 0.004).abs() < 1e-15);
+        assert!(compare(&exact(&[0.1]), &paths(&[0.0], 10.0), 550.0, 0.0).lobe.error.is_infinite());
+    }
+
+    /// Oracle: the spread over many references, drawn by a small generator.
+    #[test]
+    fn standard_error_and_floor_are_those_of_repetition() {
+        let chances = [0.4, 0.2, 0.1, 0.05];
+        let model = [0.3, 0.25, 0.2, 0.1];
+        let (runs, count) = (400, 1000);
+        let mut state = 1u64;
+        let (mut errors, mut floors, mut std_err, mut floor) = (Vec::new(), 0.0, 0.0, 0.0);
+        for _ in 0..runs {
+            let mut energies = [0.0; 4];
+            for _ in 0..count {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                let mut u = (state >> 11) as f64 / (1u64 << 53) as f64;
+                for (energy, chance) in energies.iter_mut().zip(chances) {
+                    if (0.0..chance).contains(&u) {
+                        *energy += 1.0 / f64::from(count);
+                    }
+                    u -= chance;
+                }
+            }
+            let reference = paths(&energies, f64::from(count));
+            let view = compare(&exact(&model), &reference, 550.0, 0.0);
+            errors.push(view.lobe.error);
+            std_err += view.lobe.std_err / f64::from(runs);
+            let same = compare(&exact(&chances), &reference, 550.0, 0.0);
+            floors += same.lobe.error / f64::from(runs);
+            floor += same.lobe_floor / f64::from(runs);
+        }
+        let mean = errors.iter().sum::<f64>() / f64::from(runs);
+        let variance = errors.iter().map(|e| (e - mean) * (e - mean)).sum::<f64>() / f64::from(runs - 1);
+        // Relative standard error of a deviation from 400 runs: 3.5%.
+        assert!((libm::sqrt(variance) / std_err - 1.0).abs() < 0.15, "{} {std_err}", libm::sqrt(variance));
+        assert!((floors / floor - 1.0).abs() < 0.15, "{floors} {floor}");
+    }
+}

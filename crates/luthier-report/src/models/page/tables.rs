@@ -1,0 +1,128 @@
+//! Tables of the page: one for each family of models, materials down, models across.
+
+use crate::models::{MaterialModels, ModelErrors, ModelsReport, Worst};
+
+/// Families of models: title, and how the names of its members begin.
+const FAMILIES: [(&str, &[&str]); 5] = [
+    ("One layer", &["microfacet", "phong"]),
+    ("Weidlich and Wilkie", &["weidlich-wilkie", "fluorescence"]),
+    ("Elek, Granier and Heidrich", &["elek", "flakes", "patina", "granier-heidrich"]),
+    ("Statistics of light", &["belcour", "yamaguchi"]),
+    ("The reference itself", &["layered-mc"]),
+];
+
+/// The title for models of no family.
+const OTHERS: &str = "Others";
+
+/// Which error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Albedo,
+    Lobe,
+}
+
+impl Kind {
+    pub(super) fn of(self, errors: &ModelErrors) -> &Worst {
+        match self {
+            Self::Albedo => &errors.albedo,
+            Self::Lobe => &errors.lobe,
+        }
+    }
+}
+
+/// The model with the smallest error; the first of those that are equal as printed.
+pub(super) fn best_model(material: &MaterialModels, kind: Kind) -> Option<&ModelErrors> {
+    let printed = |m: &&ModelErrors| (kind.of(m).quantity.error * 1e3).round();
+    material.models.iter().filter(|m| m.is_model).min_by(|a, b| printed(a).total_cmp(&printed(b)))
+}
+
+/// The tables of an error.
+pub(super) fn errors(report: &ModelsReport, kind: Kind) -> String {
+    let names: Vec<&str> =
+        report.materials.first().map_or_else(Vec::new, |m| m.models.iter().map(|e| e.name).collect());
+    let titles = FAMILIES.iter().map(|(title, _)| *title).chain([OTHERS]);
+    let mut out = String::new();
+    for title in titles {
+        let members: Vec<usize> = (0..names.len()).filter(|i| family(names[*i]) == title).collect();
+        if members.is_empty() {
+            continue;
+        }
+        let mut head: Vec<String> = members.iter().map(|i| names[*i].to_owned()).collect();
+        head.insert(0, "material".to_owned());
+        head.push("±".to_owned());
+        if kind == Kind::Lobe {
+            head.push("noise".to_owned());
+        }
+        let rows = report.materials.iter().map(|material| row(material, &members, kind));
+        out.push_str(&format!("\n### {title}\n\n{}", table(&head, rows)));
+    }
+    out
+}
+
+fn family(name: &str) -> &'static str {
+    let is_of = |prefixes: &[&str]| prefixes.iter().any(|prefix| name.starts_with(prefix));
+    FAMILIES.iter().find(|(_, prefixes)| is_of(prefixes)).map_or(OTHERS, |(title, _)| title)
+}
+
+fn row(material: &MaterialModels, members: &[usize], kind: Kind) -> Vec<String> {
+    let best = best_model(material, kind).map(|m| m.name);
+    let mut row = vec![material.name.clone()];
+    let (mut uncertainty, mut floor) = (0.0, 0.0);
+    for errors in members.iter().map(|i| &material.models[*i]) {
+        let worst = kind.of(errors);
+        let text = number(worst.quantity.error);
+        row.push(if best == Some(errors.name) { format!("**{text}**") } else { text });
+        uncertainty = f64::max(uncertainty, worst.quantity.uncertainty());
+        floor = f64::max(floor, worst.floor);
+    }
+    row.push(number(uncertainty));
+    if kind == Kind::Lobe {
+        row.push(number(floor));
+    }
+    row
+}
+
+/// The best model of every material, by either error.
+pub(super) fn best(report: &ModelsReport) -> String {
+    let head = ["material", "by albedo ", "error", "by lobe ", "error"].map(str::to_owned);
+    let rows = report.materials.iter().map(|material| {
+        let mut row = vec![material.name.clone()];
+        for kind in [Kind::Albedo, Kind::Lobe] {
+            let Some(best) = best_model(material, kind) else { continue };
+            row.extend([best.name.to_owned(), number(kind.of(best).quantity.error)]);
+        }
+        row
+    });
+    format!("\n## The best model of each material\n\n{}", table(&head, rows))
+}
+
+/// Numbers to the right; columns whose head ends in a space, and the first, are text.
+pub(super) fn table(head: &[String], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+    let line = |cells: &[String]| {
+        format!("| {} |\n", cells.iter().map(|cell| cell.trim_end()).collect::<Vec<_>>().join(" | "))
+    };
+    let rule: Vec<String> =
+        (0..head.len()).map(|i| if i == 0 || head[i].ends_with(' ') { "---" } else { "---:" }.to_owned()).collect();
+    let mut out = line(head) + &line(&rule);
+    rows.into_iter().for_each(|row| out.push_str(&line(&row)));
+    out
+}
+
+/// Three decimals: the reference knows no more. Errors that are no number are shown.
+pub(super) fn number(value: f64) -> String {
+    if value.is_finite() { format!("{value:.3}") } else { "infinite".to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::models::rows;
+
+    #[test]
+    fn every_row_has_a_family() {
+        for row in rows() {
+            assert_ne!(family(row.name()), OTHERS, "{}", row.name());
+        }
+        assert_eq!(family("quite-new"), OTHERS);
+    }
+}

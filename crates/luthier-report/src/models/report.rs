@@ -1,0 +1,155 @@
+use serde::Serialize;
+
+use super::page;
+use super::{ModelSettings, ModelSubject, PHI_DEG, Row, THETAS_DEG};
+use crate::{ReportError, json};
+
+/// How far all models are from the reference, on all materials.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModelsReport {
+    /// Paths of the reference per view.
+    pub samples: u32,
+    /// Which family of random numbers.
+    pub seed: u64,
+    /// Angles of the eye against the normal.
+    pub thetas_deg: Vec<f64>,
+    /// Azimuth of the eye.
+    pub phi_deg: f64,
+    /// The materials, in the order of the subjects.
+    pub materials: Vec<MaterialModels>,
+}
+
+/// How far all models are from the reference, on one material.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MaterialModels {
+    /// The material.
+    pub name: String,
+    /// Its wavelengths.
+    pub wavelengths_nm: [f64; 3],
+    /// The rows: all models, then what is compared besides; the same for every material.
+    pub models: Vec<ModelErrors>,
+}
+
+/// How far a model is from the reference, on one material.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModelErrors {
+    /// The model, or what else is compared.
+    pub name: &'static str,
+    /// Whether it is a model: the others are the reference in other modes or with other random numbers.
+    pub is_model: bool,
+    /// Largest albedo error.
+    pub albedo: Worst,
+    /// Largest lobe error.
+    pub lobe: Worst,
+    /// All views.
+    pub views: Vec<ViewError>,
+}
+
+/// An error and how far it may be off.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Quantity {
+    /// The error, not negative.
+    pub error: f64,
+    /// Its standard error, from the noise of the reference.
+    pub std_err: f64,
+    /// By how much the model's quadrature changed when its points were last doubled.
+    pub quadrature_change: f64,
+}
+
+impl Quantity {
+    /// Half the 95 % interval of the noise, and the whole change of the quadrature.
+    pub fn uncertainty(&self) -> f64 {
+        1.96 * self.std_err + self.quadrature_change
+    }
+}
+
+/// The largest of the errors of some views, and where.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Worst {
+    /// The error.
+    #[serde(flatten)]
+    pub quantity: Quantity,
+    /// Of a lobe error: see [`ViewError::lobe_floor`]. Of an albedo error, 0.
+    pub floor: f64,
+    /// At this wavelength,
+    pub wavelength_nm: f64,
+    /// seen at this angle.
+    pub theta_deg: f64,
+}
+
+/// Errors of one view: at a wavelength, from a direction.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ViewError {
+    /// Wavelength.
+    pub wavelength_nm: f64,
+    /// Angle of the eye against the normal.
+    pub theta_deg: f64,
+    /// Absolute difference of the directional albedos.
+    pub albedo: Quantity,
+    /// Half the absolute differences of the cells' energies, over the reference's albedo.
+    pub lobe: Quantity,
+    /// The lobe error that noise alone makes on average, where model and reference agree.
+    pub lobe_floor: f64,
+    /// Directional albedo of the model.
+    pub albedo_model: f64,
+    /// Directional albedo of the reference.
+    pub albedo_reference: f64,
+}
+
+impl ModelsReport {
+    /// From the views per subject and row.
+    pub(super) fn new(
+        subjects: &[ModelSubject],
+        settings: ModelSettings,
+        rows: &[Row],
+        judged: Vec<Vec<Vec<ViewError>>>,
+    ) -> Self {
+        let materials = subjects.iter().zip(judged).map(|(subject, judged)| MaterialModels {
+            name: subject.name.clone(),
+            wavelengths_nm: subject.wavelengths_nm,
+            models: rows.iter().zip(judged).map(|(row, views)| ModelErrors::new(row, views)).collect(),
+        });
+        Self {
+            samples: settings.samples.get(),
+            seed: settings.seed,
+            thetas_deg: THETAS_DEG.to_vec(),
+            phi_deg: PHI_DEG,
+            materials: materials.collect(),
+        }
+    }
+
+    /// As JSON. Errors that are infinite, because the reference is black, are null.
+    ///
+    /// # Errors
+    /// [`ReportError::Json`], should serialisation fail.
+    pub fn to_json(&self) -> Result<String, ReportError> {
+        json::to_string(self)
+    }
+
+    /// As a page in Markdown; `command` is what made it.
+    pub fn to_markdown(&self, command: &str) -> String {
+        page::page(self, command)
+    }
+}
+
+impl ModelErrors {
+    fn new(row: &Row, views: Vec<ViewError>) -> Self {
+        let worst = |of: fn(&ViewError) -> Worst| {
+            // There are always views: the list of angles is not empty.
+            views.iter().map(of).max_by(|a, b| a.quantity.error.total_cmp(&b.quantity.error)).unwrap_or_default()
+        };
+        Self {
+            name: row.name(),
+            is_model: matches!(row, Row::Model(_)),
+            albedo: worst(|view| view.worst(view.albedo, 0.0)),
+            lobe: worst(|view| view.worst(view.lobe, view.lobe_floor)),
+            views,
+        }
+    }
+}
+
+impl ViewError {
+    fn worst(&self, quantity: Quantity, floor: f64) -> Worst {
+        Worst { quantity, floor, wavelength_nm: self.wavelength_nm, theta_deg: self.theta_deg }
+    }
+}
