@@ -142,7 +142,9 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
     match material.model {
         ShadingModel::Microfacet if has_interface => names.insert("smith"),
         ShadingModel::Microfacet => names.insert("microfacet_diffuse"),
-        ShadingModel::Elek | ShadingModel::WeidlichWilkie if has_interface => {
+        // Beside a coat it is a step of the chain; alone in its set it needs none.
+        ShadingModel::Elek | ShadingModel::WeidlichWilkie if !has_interface => names.insert("chain_diffuse"),
+        ShadingModel::Elek | ShadingModel::WeidlichWilkie => {
             if has_diffuse {
                 names.insert("chain_diffuse");
             }

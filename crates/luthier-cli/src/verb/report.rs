@@ -59,7 +59,6 @@ fn stacks(manifest: &Manifest) -> Outcome<Vec<Stack>> {
                 other => other,
             })?;
             let Ok(Parsed { material, .. }) = &source.parsed else {
-                source.print_diagnostics();
                 return Err(changed(&entry.source));
             };
             if source_hash(material)? != entry.source_hash {
@@ -71,7 +70,7 @@ fn stacks(manifest: &Manifest) -> Outcome<Vec<Stack>> {
 }
 
 fn changed(source: &str) -> Failure {
-    let text = format!("{source}, or a file that it names, has changed since it was baked; bake again");
+    let text = format!("{source} has changed since it was baked, or a file that it names; bake again");
     Failure::Input(anyhow::anyhow!(text))
 }
 

@@ -58,7 +58,7 @@ fn a_bake_is_what_its_manifest_says() {
         let source = workshop.text(material["source"].as_str().unwrap());
         assert_eq!(material["source_hash"], sha256(source.as_bytes()));
     }
-    let kinds = ["fresnel", "distribution", "fgd", "phase", "thickness"];
+    let kinds = ["fresnel", "distribution", "fgd", "phase", "thickness", "film"];
     assert_eq!(names(&manifest["tables"], "kind"), kinds, "in binding order");
     assert!(kinds.iter().all(|kind| run.stdout.contains(kind)), "{}", run.stdout);
     Manifest::from_json(&workshop.text("out/manifest.json")).unwrap();

@@ -153,6 +153,7 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
         ("effects-without-layers", [flaked(), patina()].map(|m| of(ShadingModel::Microfacet, m)).into()),
         ("mixed-depths", vec![gold(), lacquer(), house()]),
         ("mixed-tops", vec![chalk(), lacquer()]),
+        ("chalk-and-metal", vec![chalk(), gold()]),
         (
             "weidlich-wilkie",
             vec![of(ShadingModel::WeidlichWilkie, house()), of(ShadingModel::WeidlichWilkie, brushed())],
