@@ -18,8 +18,8 @@ const PER_CELL: u32 = 2;
 #[derive(Debug, Clone)]
 pub(crate) struct FilmJob {
     pub(crate) interface: Interface,
-    /// Thickness of the top film at fraction 1.
-    pub(crate) max_nm: f64,
+    /// Thinnest and thickest of the top film; the thickest is at fraction 1.
+    pub(crate) thickness: FilmThickness,
     pub(crate) color: Color,
     pub(crate) axes: [Axis; 2],
     pub(crate) format: TexelFormat,
@@ -29,6 +29,7 @@ impl FilmJob {
     pub(crate) fn inputs(&self) -> Value {
         json!({
             "interface": json::interface(&self.thickest()),
+            "least": self.least(),
             "color": json::color(&self.color),
             "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
             "format": self.format.name(),
@@ -39,9 +40,16 @@ impl FilmJob {
     fn thickest(&self) -> Interface {
         let mut interface = self.interface.clone();
         if let Some(film) = interface.films.first_mut() {
-            film.thickness = FilmThickness { min_nm: self.max_nm, max_nm: self.max_nm };
+            film.thickness.min_nm = self.thickness.max_nm;
+            film.thickness.max_nm = self.thickness.max_nm;
         }
         interface
+    }
+
+    /// The least fraction that the film has. The tile goes on to 0, for films that a shader thins further; its error is stated from
+    /// here on. At 0 and grazing angles the function is not continuous: no film reflects nothing where any film reflects all.
+    fn least(&self) -> f64 {
+        self.thickness.min_nm / self.thickness.max_nm
     }
 
     pub(crate) fn run(&self) -> TileData {
@@ -55,8 +63,9 @@ impl FilmJob {
             }
         }
         let atlas = lone_tile(TableKind::Film, &[x, y], self.format, &truth);
+        let whole = Scan::whole([x.intervals(), y.intervals()], [PER_CELL; 2]);
         let error = measure_scan(
-            &Scan::whole([x.intervals(), y.intervals()], [PER_CELL; 2]),
+            &Scan { from: [0.0, y.encode(self.least())], ..whole },
             |u| {
                 let values = [x.decode(u[0]), y.decode(u[1])];
                 let [r, g, b]: Rgb = at_fraction(&thickest, values[1]).rgb(values[0]);
@@ -66,7 +75,11 @@ impl FilmJob {
             |u| vec![x.decode(u[0]), y.decode(u[1])],
         );
         TileData {
-            model: format!("films, Airy, over d/{} nm of the top one; {}", self.max_nm, color_in_words(&self.color)),
+            model: format!(
+                "films, Airy, over d/{} nm of the top one; {}",
+                self.thickness.max_nm,
+                color_in_words(&self.color)
+            ),
             truth,
             texels: atlas.texels,
             error,

@@ -4,7 +4,7 @@ use luthier_lut::{ColorMode, Image, LayerRecord, ShadingModel, TableKind};
 use luthier_material::{ColorSetting, FilmVariation, LayerExtras, Material, ModelSetting};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
-use luthier_optics::stack::{Base, Film, Layer, Stack};
+use luthier_optics::stack::{Base, Film, FilmThickness, Layer, Stack};
 
 use crate::BakeError;
 use crate::distribution::DistributionJob;
@@ -122,7 +122,7 @@ impl Plan {
             let Some(film) = layer.films.first() else { continue };
             self.phase(record, film, wavelengths_nm, &name);
             if record.varies() {
-                self.film(record, interface, film.thickness.max_nm, color, &name);
+                self.film(record, interface, film.thickness, color, &name);
             }
             if let Some(variation) = extras.get(i).and_then(|l| l.film_variation.as_ref()) {
                 self.thickness(record, film, variation, material, read, &name)?;
@@ -135,12 +135,12 @@ impl Plan {
         &mut self,
         record: &mut LayerRecord,
         interface: Interface,
-        max_nm: f64,
+        thickness: FilmThickness,
         color: Color,
         name: &dyn Fn() -> String,
     ) {
         let (axes, format) = self.settings.film.clone();
-        let job = FilmJob { interface, max_nm, color, axes, format };
+        let job = FilmJob { interface, thickness, color, axes, format };
         record.film_tile = Some(self.add(TableKind::Film, Job::Film(job), name));
     }
 

@@ -85,7 +85,7 @@ fn containers_are_what_they_are_called() {
     let magic: [(&str, &[u8]); 3] =
         [("ktx2", b"\xabKTX 20\xbb\r\n\x1a\n"), ("exr", &[0x76, 0x2f, 0x31, 0x01]), ("png", b"\x89PNG\r\n\x1a\n")];
     let tables = workshop.tree("out/tables");
-    assert_eq!(tables.len(), 15);
+    assert_eq!(tables.len(), 18);
     for (path, bytes) in tables {
         let (_, start) = magic.iter().find(|(extension, _)| path.ends_with(extension)).unwrap();
         assert!(bytes.starts_with(start), "{path}");
