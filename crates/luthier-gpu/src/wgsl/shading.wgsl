@@ -141,7 +141,7 @@ fn shading_prefiltered(
             total += leaving * entering * layer.albedo * environment_diffuse(normal);
             break;
         }
-        layer.alpha = clamp(layer.alpha * factors.alpha, 1e-3, 1.0);
+        layer.alpha = min(layer.alpha * factors.alpha, 1.0);
         if i == 1u && factors.patina >= 0.0 && patina_diffuse.w >= 0.0 {
             layer.alpha = mix(layer.alpha, patina_diffuse.w, factors.patina);
         }
