@@ -19,8 +19,9 @@ use crate::smooth::savitzky_golay;
 /// Effort at the nodes, where neighbours share their noise, and at the points of the error scan.
 const EFFORT: [Effort; 2] = [Effort { first: 20, later: 26 }, Effort { first: 24, later: 48 }];
 
-/// The same for reflectances with a kink, which quadratures resolve slowly.
-const KINKED_EFFORT: [Effort; 2] = [Effort { first: 64, later: 40 }, Effort { first: 128, later: 96 }];
+/// The same for reflectances with a kink, which quadratures resolve slowly. The walks of a point stay below the 65536 that the sequence of
+/// their random numbers has.
+const KINKED_EFFORT: [Effort; 2] = [Effort { first: 64, later: 40 }, Effort { first: 128, later: 72 }];
 
 /// Points of the error scan along each axis.
 const PROBES: u32 = 16;
@@ -31,11 +32,42 @@ pub(crate) const DOMAIN_COS_THETA: f64 = 0.0087;
 /// Where errors are measured: from this alpha on.
 pub(crate) const DOMAIN_ALPHA: f64 = 0.01;
 
+/// From where light meets an interface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Side {
+    /// From above, at the cosine of the table.
+    Above,
+    /// From below, at the direction into which light at the cosine of the table is refracted from above.
+    Below {
+        /// Index below over index above.
+        eta: f64,
+    },
+}
+
+impl Side {
+    /// The cosine of the light for a cosine of the table; 0 where nothing is refracted to.
+    pub(crate) fn cos_theta(self, table: f64) -> f64 {
+        match self {
+            Self::Above => table,
+            Self::Below { eta } => ((table * table + (eta - 1.0) * (eta + 1.0)) / (eta * eta)).max(0.0).sqrt(),
+        }
+    }
+
+    /// Inputs of a job with what tells it from one that meets light from above.
+    pub(crate) fn inputs(self, mut inputs: Value) -> Value {
+        if let Self::Below { eta } = self {
+            inputs["from_below"] = json!(eta);
+        }
+        inputs
+    }
+}
+
 #[derive(Debug, Clone)]
 pub(crate) struct FacetGridJob {
     pub(crate) distribution: Distribution,
     /// Whether light may be totally reflected at an angle.
     pub(crate) kinked: bool,
+    pub(crate) side: Side,
     /// cos_theta and alpha.
     pub(crate) axes: [Axis; 2],
 }
@@ -50,11 +82,11 @@ pub(crate) struct FacetGrid {
 
 impl FacetGridJob {
     pub(crate) fn inputs(&self) -> Value {
-        json!({
+        self.side.inputs(json!({
             "distribution": self.distribution.name(),
             "kinked": self.kinked,
             "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
-        })
+        }))
     }
 
     pub(crate) fn run(&self) -> FacetGrid {
@@ -81,7 +113,7 @@ impl FacetGridJob {
     }
 
     fn at(&self, cos_theta: f64, alpha: f64, effort: Effort, seed: u32) -> FacetStatistics {
-        FacetStatistics::new(self.distribution, alpha, cos_theta, effort, seed)
+        FacetStatistics::new(self.distribution, alpha, self.side.cos_theta(cos_theta), effort, seed)
     }
 }
 
@@ -97,7 +129,9 @@ fn seed(texel: u32) -> u32 {
 /// Light that crosses a dielectric interface and comes back: small and smooth, so a coarse grid serves.
 #[derive(Debug, Clone)]
 pub(crate) struct CrossedJob {
+    /// As the light meets it: turned over for light from below.
     pub(crate) interface: Interface,
+    pub(crate) side: Side,
     pub(crate) color: Color,
     pub(crate) distribution: Distribution,
     /// cos_theta and alpha of the table; the coarse grid lies on the same coordinates.
@@ -133,12 +167,12 @@ pub(crate) struct CrossedGrid {
 
 impl CrossedJob {
     pub(crate) fn inputs(&self) -> Value {
-        json!({
+        self.side.inputs(json!({
             "interface": json::interface(&self.interface),
             "color": json::color(&self.color),
             "distribution": self.distribution.name(),
             "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
-        })
+        }))
     }
 
     pub(crate) fn run(&self) -> CrossedGrid {
@@ -181,7 +215,7 @@ impl CrossedJob {
         let eta = index(&self.interface.below) / index(&self.interface.above);
         move |u, walks, seed| {
             let [x, y] = &self.axes;
-            let (cos_theta, alpha) = (x.decode(u[0]), y.decode(u[1]));
+            let (cos_theta, alpha) = (self.side.cos_theta(x.decode(u[0])), y.decode(u[1]));
             let albedos: Vec<f64> = (0..weighted.curves.count())
                 .map(|curve| {
                     let facets = TransparentFacets { eta, from_above: &weighted.curves, curve };

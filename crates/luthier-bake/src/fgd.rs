@@ -9,7 +9,7 @@ use luthier_optics::stack::Distribution;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use crate::facet_grid::{CrossedJob, DOMAIN_ALPHA, DOMAIN_COS_THETA, FacetGrid, FacetGridJob};
+use crate::facet_grid::{CrossedJob, DOMAIN_ALPHA, DOMAIN_COS_THETA, FacetGrid, FacetGridJob, Side};
 use crate::graph::Inputs;
 use crate::job::{Job, TileData, color_in_words, lone_tile};
 use crate::json;
@@ -32,7 +32,9 @@ const SPECTRUM_PROBES: usize = 5;
 
 #[derive(Debug, Clone)]
 pub(crate) struct FgdJob {
+    /// As the light meets it: turned over for light from below.
     pub(crate) interface: Interface,
+    pub(crate) side: Side,
     /// Whether light can cross: false for conductors.
     pub(crate) transparent: bool,
     pub(crate) distribution: Distribution,
@@ -44,14 +46,21 @@ pub(crate) struct FgdJob {
 
 impl FgdJob {
     pub(crate) fn inputs(&self) -> Value {
-        json!({
+        self.side.inputs(json!({
             "interface": json::interface(&self.interface),
             "transparent": self.transparent,
             "distribution": self.distribution.name(),
             "color": json::color(&self.color),
             "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
             "format": self.format.name(),
-        })
+        }))
+    }
+
+    /// The same interface for light from below; `eta` is the index below over the index above.
+    pub(crate) fn turned_over(&self, eta: f64) -> Self {
+        let Interface { above, films, below } = self.interface.clone();
+        let films = films.into_iter().rev().collect();
+        Self { interface: Interface { above: below, films, below: above }, side: Side::Below { eta }, ..self.clone() }
     }
 
     pub(crate) fn dependencies(&self) -> Vec<Job> {
@@ -66,13 +75,19 @@ impl FgdJob {
                 let at = self.interface.at(node.wavelength_nm);
                 at.below.re < at.above.re
             });
-        Job::FacetGrid(FacetGridJob { distribution: self.distribution, kinked, axes: self.axes.clone() })
+        Job::FacetGrid(FacetGridJob {
+            distribution: self.distribution,
+            kinked,
+            side: self.side,
+            axes: self.axes.clone(),
+        })
     }
 
     fn crossed(&self) -> Option<Job> {
         self.transparent.then(|| {
             Job::Crossed(CrossedJob {
                 interface: self.interface.clone(),
+                side: self.side,
                 color: self.color,
                 distribution: self.distribution,
                 axes: self.axes.clone(),
@@ -131,9 +146,10 @@ impl FgdJob {
         // The crossed part and the wavelengths left out have errors of their own; the worst of all may meet.
         error.max_abs_err += crossed.map_or(0.0, |c| c.max_abs_err) + curves.spectrum_error(grid);
         let model = format!(
-            "directional albedo with all bounces, height-correlated Smith, {}; {}; errors for cos_theta >= {DOMAIN_COS_THETA}, \
+            "directional albedo with all bounces, height-correlated Smith, {}{}; {}; errors for cos_theta >= {DOMAIN_COS_THETA}, \
              alpha >= {DOMAIN_ALPHA}",
             self.distribution.name(),
+            if self.side == Side::Above { "" } else { ", from below, over the cosine above" },
             color_in_words(&self.color)
         );
         TileData { model, truth, texels: atlas.texels, error }

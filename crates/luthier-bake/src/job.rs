@@ -9,6 +9,7 @@ use sha2::{Digest, Sha256};
 
 use crate::balance;
 use crate::distribution::DistributionJob;
+use crate::escape::EscapeJob;
 use crate::facet_grid::{CrossedGrid, CrossedJob, FacetGrid, FacetGridJob};
 use crate::fgd::FgdJob;
 use crate::film::FilmJob;
@@ -56,6 +57,8 @@ pub enum JobKind {
     Thickness,
     /// One film tile.
     Film,
+    /// One escape tile.
+    Escape,
 }
 
 impl JobKind {
@@ -70,6 +73,7 @@ impl JobKind {
             Self::Phase => "phase",
             Self::Thickness => "thickness",
             Self::Film => "film",
+            Self::Escape => "escape",
         }
     }
 }
@@ -85,6 +89,7 @@ pub(crate) enum Job {
     Phase(PhaseJob),
     Thickness(ThicknessJob),
     Film(FilmJob),
+    Escape(EscapeJob),
 }
 
 impl Job {
@@ -98,6 +103,7 @@ impl Job {
             Self::Phase(_) => JobKind::Phase,
             Self::Thickness(_) => JobKind::Thickness,
             Self::Film(_) => JobKind::Film,
+            Self::Escape(_) => JobKind::Escape,
         }
     }
 
@@ -111,6 +117,7 @@ impl Job {
             Self::Phase(job) => job.inputs(),
             Self::Thickness(job) => job.inputs(),
             Self::Film(job) => job.inputs(),
+            Self::Escape(job) => job.inputs(),
         };
         Key::of(self.kind(), &inputs)
     }
@@ -133,6 +140,7 @@ impl Job {
             Self::Phase(job) => Artefact::Tile(job.run()),
             Self::Thickness(job) => Artefact::Tile(job.run()),
             Self::Film(job) => Artefact::Tile(job.run()),
+            Self::Escape(job) => Artefact::Tile(job.run()),
         }
     }
 }

@@ -16,6 +16,7 @@ mod balance;
 mod constants;
 mod distribution;
 mod error;
+mod escape;
 mod facet_grid;
 mod fgd;
 mod film;
@@ -31,6 +32,7 @@ mod relief;
 mod settings;
 mod smooth;
 mod thickness;
+mod veil;
 
 pub use assemble::{Bake, BakedMaterial, Outline, bake, outline};
 pub use error::BakeError;

@@ -8,6 +8,8 @@ use luthier_optics::stack::{Base, Film, FilmThickness, Layer, Stack};
 
 use crate::BakeError;
 use crate::distribution::DistributionJob;
+use crate::escape::EscapeJob;
+use crate::facet_grid::Side;
 use crate::fgd::FgdJob;
 use crate::film::FilmJob;
 use crate::fresnel::FresnelJob;
@@ -34,6 +36,10 @@ impl Tiles {
         index as u32
     }
 }
+
+/// Interfaces smoother than this send back the same from either side, so nothing is tabulated; the table would blur the onset of
+/// total reflection, which is beyond what is read of it.
+const NEARLY_SMOOTH: f64 = 0.025;
 
 /// Everything to compute for a set of materials.
 #[derive(Debug)]
@@ -74,6 +80,11 @@ pub(crate) fn color_mode(material: &Material) -> ColorMode {
 pub(crate) fn shading_model(material: &Material) -> ShadingModel {
     let name = material.bake.model.map(ModelSetting::name);
     name.and_then(ShadingModel::from_name).unwrap_or_default()
+}
+
+/// Whether a model follows light through the layers as statistics, and reads what they send back downward.
+pub(crate) fn is_statistical(model: ShadingModel) -> bool {
+    matches!(model, ShadingModel::Belcour | ShadingModel::Yamaguchi)
 }
 
 /// Reads an image that a material names: material file, path as written there.
@@ -118,7 +129,10 @@ impl Plan {
         for (i, (record, layer)) in records.iter_mut().zip(&stack.layers).enumerate() {
             let Some(interface) = Interface::of(stack, i) else { continue };
             let name = || format!("{}/{label}{i}", material.name);
-            self.interface(record, layer, interface.clone(), color, &name);
+            let fgd = self.interface(record, layer, interface.clone(), color, &name);
+            if is_statistical(shading_model(material)) && Interface::of(stack, i + 1).is_some() {
+                self.add_below(record, fgd, &name);
+            }
             let Some(film) = layer.films.first() else { continue };
             self.phase(record, film, wavelengths_nm, &name);
             if record.varies() {
@@ -151,7 +165,7 @@ impl Plan {
         interface: Interface,
         color: Color,
         name: &dyn Fn() -> String,
-    ) {
+    ) -> FgdJob {
         let (axis, format) = self.settings.fresnel.clone();
         let job = FresnelJob { interface: interface.clone(), color, axis, format };
         record.fresnel_tile = Some(self.add(TableKind::Fresnel, Job::Fresnel(job), name));
@@ -164,8 +178,22 @@ impl Plan {
 
         let (axes, format) = self.settings.fgd.clone();
         let transparent = matches!(layer.base, Base::Dielectric { .. });
-        let job = FgdJob { interface, transparent, distribution, color, axes, format };
-        record.fgd_tile = Some(self.add(TableKind::Fgd, Job::Fgd(job), name));
+        let job = FgdJob { interface, side: Side::Above, transparent, distribution, color, axes, format };
+        record.fgd_tile = Some(self.add(TableKind::Fgd, Job::Fgd(job.clone()), name));
+        job
+    }
+
+    /// What the statistics read of an interface that another one lies below.
+    fn add_below(&mut self, record: &mut LayerRecord, fgd: FgdJob, name: &dyn Fn() -> String) {
+        if record.alpha >= NEARLY_SMOOTH {
+            let below = || format!("{} from below", name());
+            record.fgd_below_tile = Some(self.add(TableKind::Fgd, Job::Fgd(fgd.turned_over(record.eta)), &below));
+        }
+        if record.eta > 1.0 {
+            let (axes, format) = self.settings.escape.clone();
+            let job = EscapeJob { eta: record.eta, axes, format };
+            record.escape_tile = Some(self.add(TableKind::Escape, Job::Escape(job), name));
+        }
     }
 
     fn phase(&mut self, record: &mut LayerRecord, film: &Film, wavelengths_nm: [f64; 3], name: &dyn Fn() -> String) {

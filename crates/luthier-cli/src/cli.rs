@@ -142,7 +142,7 @@ pub(crate) struct ReportOptions {
 #[cfg(feature = "gpu")]
 mod render;
 #[cfg(feature = "gpu")]
-pub(crate) use render::{CompareOptions, GalleryOptions, Look, PreviewOptions, ShapeName};
+pub(crate) use render::{CompareOptions, GalleryOptions, Look, PreviewOptions, ShaderChoice, ShapeName};
 
 #[derive(Debug, Args)]
 #[command(

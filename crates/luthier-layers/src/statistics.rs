@@ -7,7 +7,8 @@
 //! slabs change the three; adding sums all paths between them.
 //!
 //! The two papers differ in the type of a spread only: a number, or a covariance matrix. So does the code: everything here is
-//! generic over [`spread::Spread`].
+//! generic over [`spread::Spread`]. It is generic over the number of channels too: the models of this crate have one, a wavelength; shaders
+//! have three colours that share directions and spreads ([`layers::Layers::rgb`]).
 //!
 //! Out of scope: media that scatter.
 
@@ -15,5 +16,6 @@ pub mod adding;
 pub mod diffuse_base;
 pub mod energy;
 pub mod evaluate;
+pub mod layers;
 pub mod spread;
 pub mod total_reflection;

@@ -12,6 +12,7 @@ use luthier_layers::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 use luthier_layers::registry::{model, models};
 use luthier_layers::statistics::adding::add;
 use luthier_layers::statistics::energy::Energy;
+use luthier_layers::statistics::layers::Layers;
 use luthier_layers::statistics::spread::alpha;
 use luthier_optics::fresnel::interface;
 use luthier_optics::microfacet::lambda;
@@ -152,11 +153,11 @@ fn all_orders(mode: InterfaceMode, coat: f64, base: f64, n: f64) -> Vec<(DVec3, 
 #[test]
 fn width_of_a_base_below_a_rough_coat_is_neither_elek_s_clamp_nor_belcour_s_sum() {
     struct FirstPass;
-    impl Energy for FirstPass {
-        fn fgd(&self, layer: usize, _: f64, _: f64) -> f64 {
-            if layer == 0 { 0.0 } else { 1.0 }
+    impl Energy<1> for FirstPass {
+        fn fgd(&self, layer: usize, _: f64, _: f64) -> [f64; 1] {
+            [if layer == 0 { 0.0 } else { 1.0 }]
         }
-        fn escaping(&self, _: f64, _: f64, _: f64) -> f64 {
+        fn escaping(&self, _: usize, _: f64, _: f64, _: f64) -> f64 {
             1.0
         }
     }
@@ -170,7 +171,7 @@ fn width_of_a_base_below_a_rough_coat_is_neither_elek_s_clamp_nor_belcour_s_sum(
         assert_near(median_slope(all_orders(InterfaceMode::SmithWalk, coat, base, 1.5)), walks, 3e-3);
 
         let coated = stack(&[(coat, glass(1.5, 0.0)), (base, WHITE)]);
-        assert_near(alpha(add::<f64>(&coated, &FirstPass, 1.0).lobes[1].spread), belcour, 6e-4);
+        assert_near(alpha(add::<f64, 1>(&Layers::from(&coated), &FirstPass, 1.0).lobes[1].spread), belcour, 6e-4);
         let clamped = stack(&[(coat, glass(1.5, 0.0)), (elek, WHITE)]);
         let value = |stack| named("elek").eval(stack, at(10.0, 0.0), at(25.0, 150.0));
         assert_eq!(value(&coated), value(&clamped));
@@ -216,8 +217,8 @@ fn a_coat_and_a_base_that_reflect_everything_are_not_zero_over_zero() {
     let coated = stack(&[(0.0, glass(1.5, 0.0)), (0.0, WHITE)]);
     for coat in [1.0, 1.0 - 1e-15, 1.0 - 1e-9] {
         let energy = |layer: usize, _: f64, _: f64| if layer == 0 { coat } else { 1.0 };
-        let got = add::<f64>(&coated, &energy, 0.5);
-        assert_near(got.reflected(), 1.0, 1e-12);
+        let got = add::<f64, 1>(&Layers::from(&coated), &energy, 0.5);
+        assert_near(got.reflected()[0], 1.0, 1e-12);
     }
     let horizon = at(90.0 - 1e-7, 0.0);
     assert_agrees(LayeredMc::new(InterfaceMode::SmithWalk).albedo(&coated, horizon, 2_000), 1.0, 1e-3);

@@ -19,7 +19,8 @@ pub enum TableKind {
     Thickness,
     /// Reflectance of an interface over the cosine and the thickness of its film, RGB; one tile per interface whose film varies.
     Film,
-    /// Share of a lobe inside a medium that is not totally reflected at its surface, over (cos_theta, alpha); one tile per index.
+    /// Share of a lobe inside a medium that is not totally reflected at its surface, over (cos_theta, alpha), the cosine being that of the
+    /// refracted direction outside; one tile per index.
     Escape,
 }
 

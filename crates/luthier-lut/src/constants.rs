@@ -13,6 +13,9 @@ pub struct MaterialConstants {
     pub phong_exponent: f64,
     /// Cosine-weighted share of the light from a diffuse base that the layers above send back to it, RGB.
     pub internal_reflectance: [f64; 3],
+    /// What layers keep of diffuse light from below beyond what they keep of it from above: 1 - Ti0/T0i of the statistics; 0 for
+    /// smooth ones.
+    pub upward_loss: f64,
     /// Flakes in the coat.
     pub flakes: Option<FlakesRecord>,
     /// Patina: the first layer has grown over the others in places.
@@ -78,7 +81,7 @@ impl MaterialConstants {
     /// |---|---|
     /// | 1 | Phong's diffuse coefficient RGB, exponent |
     /// | 2 | Phong's specular coefficient RGB, 0 |
-    /// | 3 | internal reflectance RGB, 0 |
+    /// | 3 | internal reflectance RGB, upward loss |
     /// | 4 | flakes: low and high 16 bits of the seed, cells, tiling; all 0 without flakes |
     /// | 5 | flakes: spread, scale, fade start, 0 |
     /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; all 0 without patina |
@@ -91,7 +94,7 @@ impl MaterialConstants {
         let mut words = [[0.0; 4]; Self::WORDS];
         words[0] = with(self.phong_diffuse, self.phong_exponent);
         words[1] = with(self.phong_specular, 0.0);
-        words[2] = with(self.internal_reflectance, 0.0);
+        words[2] = with(self.internal_reflectance, self.upward_loss);
         let half = |bits: u32| (bits & 0xffff) as f32;
         if let Some(f) = &self.flakes {
             words[3] = [half(f.seed), half(f.seed >> 16), f.count as f32, f.tiling as f32];
@@ -134,6 +137,7 @@ mod tests {
             phong_specular: [23.0, 24.0, 25.0],
             phong_exponent: 26.0,
             internal_reflectance: [27.0, 28.0, 29.0],
+            upward_loss: 30.0,
             flakes: Some(flakes),
             patina: Some(patina),
             glitter: Some(glitter),
@@ -143,7 +147,7 @@ mod tests {
             [
                 [20.0, 21.0, 22.0, 26.0],
                 [23.0, 24.0, 25.0, 0.0],
-                [27.0, 28.0, 29.0, 0.0],
+                [27.0, 28.0, 29.0, 30.0],
                 [2.0, 3.0, 4.0, 5.0],
                 [6.0, 7.0, 8.0, 0.0],
                 [9.0, 10.0, -1.0, 1.0],

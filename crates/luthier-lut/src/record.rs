@@ -64,7 +64,8 @@ pub struct LayerRecord {
     pub distribution_tile: Option<u32>,
     /// Tile of the FGD atlas.
     pub fgd_tile: Option<u32>,
-    /// Tile of the FGD atlas for light from below.
+    /// Tile of the FGD atlas for light from below: over the cosine *above* the interface, of the direction that is refracted into the
+    /// one from below. Over that, smooth interfaces have no kink at the critical angle.
     pub fgd_below_tile: Option<u32>,
     /// Tile of the phase atlas.
     pub phase_tile: Option<u32>,
@@ -72,7 +73,8 @@ pub struct LayerRecord {
     pub thickness_tile: Option<u32>,
     /// Tile of the film atlas.
     pub film_tile: Option<u32>,
-    /// Tile of the escape atlas: for light that leaves the layer's medium upward.
+    /// Tile of the escape atlas: for lobes in the layer's medium that meet its interface from below, over the cosine above the
+    /// interface of the refracted direction.
     pub escape_tile: Option<u32>,
 }
 

@@ -82,6 +82,17 @@ fn header(set: &MaterialSet<'_>, form: Form, target: Target) -> String {
         Form::Baked => writeln!(out, "// Fresnel reflectance and slope distribution are read from tables."),
         Form::Full => writeln!(out, "// No tables: Fresnel equations at three wavelengths, closed forms of D."),
     };
+    if set.models().any(|model| matches!(model, ShadingModel::Belcour | ShadingModel::Yamaguchi)) {
+        out.push_str(match form {
+            Form::Baked => {
+                "// belcour, yamaguchi: energies and total reflection are read from tables, lobes are closed forms of GGX.\n"
+            }
+            Form::Full => {
+                "// belcour, yamaguchi: facets count as level in energies, and no part of a lobe is totally reflected. Albedos of coated\n\
+                 // metals are up to 0.3 too high.\n"
+            }
+        });
+    }
     out.push_str(match target {
         Target::GlslEs300 => "// Needs `precision highp float;` and `precision highp int;` above.\n",
         Target::Hlsl => "// Shader model 5.1. Checked by glslang, not by a compiler of Direct3D.\n",

@@ -1,4 +1,4 @@
-use luthier_lut::{ShadingModel, TableKind};
+use luthier_lut::TableKind;
 use thiserror::Error;
 
 use crate::Target;
@@ -13,14 +13,6 @@ pub enum ShaderError {
     /// A material has no layers.
     #[error("material `{0}` has no layers")]
     NoLayers(String),
-    /// A model that has no shader.
-    #[error("material `{material}`: there is no shader of the model `{}`", model.name())]
-    Model {
-        /// The material.
-        material: String,
-        /// Its model.
-        model: ShadingModel,
-    },
     /// A name that makes no identifier.
     #[error("`{0}` makes no shader identifier: names are letters, digits and hyphens")]
     Name(String),

@@ -11,7 +11,7 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is, for the check that modules name no other.
     #[cfg(test)]
-    pub(crate) const ALL: [&'static str; 38] = [
+    pub(crate) const ALL: [&'static str; 41] = [
         "absorption",
         "anisotropic",
         "bare",
@@ -25,6 +25,7 @@ impl Features {
         "distribution",
         "escape",
         "fgd",
+        "fgd_below",
         "film",
         "film_table",
         "flakes",
@@ -47,6 +48,8 @@ impl Features {
         "place",
         "smith",
         "split_root",
+        "statistics",
+        "statistics_base",
         "theta_axis",
         "thickness",
         "bilinear",
@@ -68,6 +71,8 @@ impl Features {
         }
         if form == Form::Full {
             names.insert("full");
+        } else if set.layers().any(|layer| layer.fgd_below_tile.is_some()) {
+            names.insert("fgd_below");
         }
         for table in set.tables_read(form) {
             // `film` is whether any layer has one.
@@ -126,7 +131,8 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
         if layer.kind == LayerKind::Conductor {
             names.insert("conductor");
         }
-        if material.model != ShadingModel::Elek && layer.alpha_xy[0] != layer.alpha_xy[1] {
+        let is_isotropic = matches!(material.model, ShadingModel::Elek | ShadingModel::Belcour);
+        if !is_isotropic && layer.alpha_xy[0] != layer.alpha_xy[1] {
             names.insert("anisotropic");
         }
     }
@@ -159,6 +165,12 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
                 names.insert("patina");
             }
             names.insert("chain")
+        }
+        ShadingModel::Belcour | ShadingModel::Yamaguchi if has_interface => {
+            if has_diffuse {
+                names.insert("statistics_base");
+            }
+            names.insert("statistics")
         }
         ShadingModel::GranierHeidrich => {
             let first = &material.layers[0];

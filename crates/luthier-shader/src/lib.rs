@@ -9,9 +9,10 @@
 //! output with our names and comments put back.
 //!
 //! Effects: flakes tilt what lies below the first interface, and patina covers it, in the models `elek` and `weidlich-wilkie`;
-//! models without such a layer (`granier-heidrich`, `phong`, `microfacet`) leave both out. Glitter turns the whole surface, for any
-//! model. A shader fills a `LuthierPlace` with `luthier_flake_normal`, `luthier_patina_amount`, `luthier_glitter_normal` and
-//! `luthier_film_place`, and calls `luthier_eval_at`.
+//! models without such a layer (`granier-heidrich`, `phong`, `microfacet`) or that mix all layers into a few lobes (`belcour`,
+//! `yamaguchi`) leave both out. Glitter turns the whole surface, for any model. A shader fills a `LuthierPlace` with
+//! `luthier_flake_normal`, `luthier_patina_amount`, `luthier_glitter_normal` and `luthier_film_place`, and calls
+//! `luthier_eval_at`.
 //!
 //! Simplifications: bindings are in group 0; the full form knows one film per interface.
 //!
@@ -29,6 +30,7 @@ mod module;
 mod msl;
 mod set;
 mod spirv;
+mod statistics;
 mod target;
 mod text;
 mod validate;

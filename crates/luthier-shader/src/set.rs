@@ -88,18 +88,25 @@ impl<'a> MaterialSet<'a> {
             if material.layers.is_empty() {
                 return Err(ShaderError::NoLayers(material.name.clone()));
             }
-            if !crate::wgsl::MODELS.contains(&material.model) {
-                return Err(ShaderError::Model { material: material.name.clone(), model: material.model });
-            }
             for (i, layer) in material.records().enumerate() {
-                self.check_layer(form, &material.name, i, layer)?;
+                self.check_layer(form, material, i, layer)?;
             }
         }
         Ok(())
     }
 
-    fn check_layer(&self, form: Form, material: &str, i: usize, layer: &LayerRecord) -> Result<(), ShaderError> {
-        let (material, is_interface) = (material.to_owned(), layer.kind != LayerKind::Diffuse);
+    fn check_layer(
+        &self,
+        form: Form,
+        material: &MaterialEntry,
+        i: usize,
+        layer: &LayerRecord,
+    ) -> Result<(), ShaderError> {
+        let needed: &[TableKind] = match material.model {
+            ShadingModel::Belcour | ShadingModel::Yamaguchi => &[TableKind::Fgd],
+            _ => &[TableKind::Fresnel, TableKind::Distribution],
+        };
+        let (material, is_interface) = (material.name.clone(), layer.kind != LayerKind::Diffuse);
         if is_interface && !matches!(layer.distribution.as_str(), "beckmann" | "ggx") {
             let distribution = layer.distribution.clone();
             return Err(ShaderError::Distribution { material, layer: i, distribution });
@@ -109,9 +116,11 @@ impl<'a> MaterialSet<'a> {
         }
         for table in TableKind::ALL {
             let tiles = self.tables.iter().find(|t| t.kind == table).map_or(0, |t| t.layout.tiles);
-            let is_read_by_eval = is_interface && matches!(table, TableKind::Fresnel | TableKind::Distribution);
-            match tile(layer, table) {
-                None if is_read_by_eval => return Err(ShaderError::NoTile { material, layer: i, table }),
+            let below = layer.fgd_below_tile.filter(|_| table == TableKind::Fgd);
+            match tile(layer, table).max(below) {
+                None if is_interface && needed.contains(&table) => {
+                    return Err(ShaderError::NoTile { material, layer: i, table });
+                }
                 Some(tile) if tile >= tiles => {
                     return Err(ShaderError::TileOutOfRange { material, layer: i, table, tile, tiles });
                 }

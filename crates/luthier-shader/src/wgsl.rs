@@ -8,16 +8,8 @@ use crate::chain;
 use crate::features::Features;
 use crate::lookup::lookup;
 use crate::module::prune;
+use crate::statistics;
 use crate::{Form, MaterialSet, ShaderError, bindings};
-
-/// The models that there are shaders of.
-pub(crate) const MODELS: [ShadingModel; 5] = [
-    ShadingModel::Elek,
-    ShadingModel::WeidlichWilkie,
-    ShadingModel::GranierHeidrich,
-    ShadingModel::Phong,
-    ShadingModel::Microfacet,
-];
 
 /// Where the material buffer lives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,6 +29,8 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     for table in set.tables_read(form) {
         parts.push(lookup(table, &features)?);
     }
+    // D is a function of the layers' own slope parameters; the statistics have lobes of others.
+    let facets = has("chain") || has("smith");
     let modules = [
         (has("bilinear"), include_str!("wgsl/bilinear.wgsl")),
         (["interface", "phong", "granier_base", "glitter"].into_iter().any(has), include_str!("wgsl/pi.wgsl")),
@@ -52,13 +46,14 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         (has("full") && has("interface"), include_str!("wgsl/complex.wgsl")),
         (has("full") && has("bare"), include_str!("wgsl/fresnel.wgsl")),
         (has("full") && has("film"), include_str!("wgsl/film.wgsl")),
-        (has("full") && has("beckmann"), include_str!("wgsl/beckmann.wgsl")),
-        (has("full") && has("ggx"), include_str!("wgsl/ggx.wgsl")),
+        (has("full") && has("beckmann") && facets, include_str!("wgsl/beckmann.wgsl")),
+        (has("full") && has("ggx") && facets, include_str!("wgsl/ggx.wgsl")),
         (has("full") && has("interface"), include_str!("wgsl/terms_full.wgsl")),
-        (!has("full") && has("interface"), include_str!("wgsl/terms_baked.wgsl")),
+        (!has("full") && (facets || has("granier_bare")), include_str!("wgsl/terms_baked.wgsl")),
         (has("smith") || has("chain"), include_str!("wgsl/slopes.wgsl")),
         (has("smith"), include_str!("wgsl/smith.wgsl")),
         (has("chain"), include_str!("wgsl/path.wgsl")),
+        (has("statistics"), include_str!("wgsl/statistics.wgsl")),
     ];
     parts.extend(modules.iter().filter(|(used, _)| *used).map(|(_, module)| text(module, &features)));
     for model in set.models() {
@@ -93,8 +88,7 @@ fn model(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec
         ShadingModel::GranierHeidrich => vec![module(include_str!("wgsl/granier_heidrich.wgsl"))],
         ShadingModel::Phong => vec![module(include_str!("wgsl/phong.wgsl"))],
         ShadingModel::Microfacet => vec![module(include_str!("wgsl/microfacet.wgsl"))],
-        // Refused by `MaterialSet::check`.
-        ShadingModel::Belcour | ShadingModel::Yamaguchi => Vec::new(),
+        ShadingModel::Belcour | ShadingModel::Yamaguchi => statistics::modules(set, model, features),
     }
 }
 

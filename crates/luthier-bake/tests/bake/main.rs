@@ -13,3 +13,4 @@ mod film_table;
 mod films;
 mod materials;
 mod sharing;
+mod statistics;

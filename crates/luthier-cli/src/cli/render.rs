@@ -1,9 +1,12 @@
 //! Options of the verbs that make pictures.
 
+use std::fmt;
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 use luthier_gpu::{Shape, ToneMapping};
+use luthier_material::ModelSetting;
 
 use super::{Shading, Sources};
 
@@ -105,6 +108,7 @@ degree. The environment goes through both shaders with the same 64 directions un
 
 Examples:
   luthier compare materials/car-paint.toml --a baked --b full -o comparison
+  luthier compare materials/car-paint.toml --a elek --b microfacet/full -o comparison
   luthier compare red-lacquer --b full -o comparison --json";
 
 #[derive(Debug, Args)]
@@ -113,12 +117,12 @@ pub(crate) struct CompareOptions {
     /// A material file, or the name of a material in the bake
     #[arg(value_name = "MATERIAL")]
     pub(crate) material: String,
-    /// The first shader: its form as the manifest names it
-    #[arg(long, value_name = "FORM", default_value = "baked")]
-    pub(crate) a: String,
+    /// The first shader: a form as the manifest names it, a model, or both as MODEL/FORM
+    #[arg(long, value_name = "SHADER", default_value = "baked")]
+    pub(crate) a: ShaderChoice,
     /// The second shader
-    #[arg(long, value_name = "FORM", default_value = "full")]
-    pub(crate) b: String,
+    #[arg(long, value_name = "SHADER", default_value = "full")]
+    pub(crate) b: ShaderChoice,
     /// Folder to write to
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: PathBuf,
@@ -136,6 +140,39 @@ pub(crate) struct CompareOptions {
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) look: Look,
+}
+
+/// A shader to compare: what is left out is the material's model, or the baked form.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct ShaderChoice {
+    pub(crate) model: Option<ModelSetting>,
+    pub(crate) form: String,
+}
+
+impl FromStr for ShaderChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if let Some(model) = ModelSetting::from_name(text) {
+            return Ok(Self { model: Some(model), form: "baked".to_owned() });
+        }
+        let Some((name, form)) = text.split_once('/') else {
+            return Ok(Self { model: None, form: text.to_owned() });
+        };
+        match ModelSetting::from_name(name) {
+            Some(model) => Ok(Self { model: Some(model), form: form.to_owned() }),
+            None => Err(format!("no model `{name}`; known: {}", ModelSetting::NAMES.join(", "))),
+        }
+    }
+}
+
+impl fmt::Display for ShaderChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.model {
+            Some(model) => write!(f, "{}/{}", model.name(), self.form),
+            None => f.write_str(&self.form),
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

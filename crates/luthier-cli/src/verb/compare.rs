@@ -1,9 +1,11 @@
-use luthier_gpu::{GpuError, ToneMapping};
+use std::path::Path;
+
+use luthier_gpu::{Artefacts, GpuError, ToneMapping};
 use luthier_lut::Image;
 use luthier_report::{PIXELS_PER_DEGREE, PictureComparison, compare_pictures};
 use serde_json::{Value, json};
 
-use crate::cli::{CompareOptions, Shading, ShapeName};
+use crate::cli::{CompareOptions, ShaderChoice, Shading, ShapeName};
 use crate::device::{device, open};
 use crate::failure::{Failure, Outcome, files};
 use crate::memory_bake;
@@ -13,23 +15,22 @@ use crate::picture::{Format, settings};
 /// Directions of the environment where none are asked for.
 const ENVIRONMENT_SAMPLES: u32 = 64;
 
-/// Renders a material with two shaders of the bake, under the same light with the same samples.
+/// Renders a material with two shaders, under the same light with the same samples.
 pub(crate) fn run(options: &CompareOptions) -> Outcome {
     if options.shape == ShapeName::Grid {
         return Err(Failure::Input(anyhow::anyhow!("a comparison is of one material; the grid has 25 of its own")));
     }
-    let (artefacts, material) = memory_bake::find(&options.material, &Shading { model: None }, &options.out)?;
-    for form in [&options.a, &options.b] {
-        artefacts.shader(form).map_err(device)?;
-    }
+    let [a, b] = [&options.a, &options.b].map(|choice| Subject::of(options, choice));
+    let (a, b) = (a?, b?);
     let look = &options.look;
     let mut settings = settings(look, options.shape.into(), options.size)?;
     settings.environment_samples = look.environment_samples.unwrap_or(ENVIRONMENT_SAMPLES);
     let gpu = open(look.adapter.as_deref())?;
-    let render =
-        |form: &str| -> Result<Image, GpuError> { gpu.scene(&artefacts, form)?.render(&[material], &settings) };
-    let a = render(&options.a).map_err(device)?;
-    let b = render(&options.b).map_err(device)?;
+    let render = |subject: &Subject<'_>| -> Result<Image, GpuError> {
+        gpu.scene(&subject.artefacts, subject.form)?.render(&[subject.material], &settings)
+    };
+    let a = render(&a).map_err(device)?;
+    let b = render(&b).map_err(device)?;
 
     let tone = ToneMapping::from(look.tone);
     let compared = compare_pictures(&a, &b, |v| tone.value(v)).map_err(Failure::input)?;
@@ -60,6 +61,28 @@ pub(crate) fn run(options: &CompareOptions) -> Outcome {
     ))
 }
 
+/// One side of the comparison.
+struct Subject<'a> {
+    artefacts: Artefacts,
+    material: u32,
+    form: &'a str,
+}
+
+impl<'a> Subject<'a> {
+    fn of(options: &CompareOptions, choice: &'a ShaderChoice) -> Outcome<Self> {
+        let is_file = Path::new(&options.material).extension().is_some_and(|e| e == "toml");
+        if choice.model.is_some() && !is_file {
+            return Err(Failure::Input(anyhow::anyhow!(
+                "the bake has its models already; name a .toml file to choose one"
+            )));
+        }
+        let shading = Shading { model: choice.model };
+        let (artefacts, material) = memory_bake::find(&options.material, &shading, &options.out)?;
+        artefacts.shader(&choice.form).map_err(device)?;
+        Ok(Self { artefacts, material, form: &choice.form })
+    }
+}
+
 /// Absolute difference of what a display shows, brightened by the largest power of two that keeps it within 1.
 fn difference(a: &Image, b: &Image, tone: ToneMapping) -> (Image, u32) {
     let shown = |v: f32| tone.value(v).min(1.0);
@@ -77,8 +100,8 @@ fn difference(a: &Image, b: &Image, tone: ToneMapping) -> (Image, u32) {
 fn json(options: &CompareOptions, compared: &PictureComparison, gain: u32) -> Value {
     json!({
         "material": options.material,
-        "a": options.a,
-        "b": options.b,
+        "a": options.a.to_string(),
+        "b": options.b.to_string(),
         "size": options.size,
         "rms_err": compared.rms_err,
         "max_abs_err": compared.max_abs_err,

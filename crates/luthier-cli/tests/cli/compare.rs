@@ -27,6 +27,10 @@ fn tables_and_arithmetic_look_alike() {
     }
     let same = compare("full", "full", &["--json"]).exits(0).json();
     assert_eq!((same["rms_err"].as_f64(), same["flip_max"].as_f64()), (Some(0.0), Some(0.0)));
+    // Another model is another picture.
+    let models = compare("elek", "phong/full", &["--json"]).exits(0).json();
+    assert_eq!((models["a"].as_str(), models["b"].as_str()), (Some("elek/baked"), Some("phong/full")));
+    assert!(models["flip_mean"].as_f64() > json["flip_mean"].as_f64(), "{models}");
     let text = compare("baked", "full", &[]).exits(0).stdout;
     assert!(text.contains("a baked, b full") && text.contains("rmse") && text.contains("flip"), "{text}");
 }
@@ -34,7 +38,9 @@ fn tables_and_arithmetic_look_alike() {
 #[test]
 fn what_cannot_be_compared() {
     let workshop = Workshop::with(&[("a.toml", &matte("ash"))]);
-    workshop.run(&["compare", "a.toml", "--b", "phong", "-o", "no"]).fails(1, &["`phong`", "baked, full"]);
+    workshop.run(&["compare", "a.toml", "--b", "fast", "-o", "no"]).fails(1, &["`fast`", "baked, full"]);
+    workshop.run(&["compare", "a.toml", "--b", "fong/full", "-o", "no"]).fails(2, &["`fong`", "phong"]);
+    workshop.run(&["compare", "ash", "--a", "phong", "-o", "no"]).fails(1, &[".toml"]);
     workshop.run(&["compare", "a.toml", "--shape", "grid", "-o", "no"]).fails(1, &["grid"]);
     workshop.run(&["compare", "a.toml"]).fails(2, &["required"]);
     assert!(!workshop.path("no").exists());

@@ -11,6 +11,7 @@ use crate::monochrome::{MonochromeBelow, MonochromeLayer};
 use crate::statistics::adding::add;
 use crate::statistics::energy::Energy;
 use crate::statistics::evaluate::{Prepared, evaluate};
+use crate::statistics::layers::Layers;
 use crate::statistics::spread::{alpha, variance};
 
 fn coated(coat: f64, base: f64, below: MonochromeBelow) -> Monochrome {
@@ -73,7 +74,7 @@ fn albedo_is_at_most_one_and_near_the_energy_for_narrow_lobes() {
     }
     let stack = coated(0.02, 0.03, gold());
     let prepared = Prepared::new(&stack);
-    let energy = add::<f64>(&stack, prepared.energy(), 0.8).reflected();
+    let [energy] = add::<f64, 1>(prepared.layers(), prepared.energy(), 0.8).reflected();
     let got = albedo(&stack, Follow::Eye, 0.8);
     assert!((got - energy).abs() < 0.01 * energy, "{got} against {energy}");
 }
@@ -98,27 +99,28 @@ fn a_table_can_stand_in_for_the_energies() {
     let (wi, wo) = (direction(0.7, 0.3), direction(0.6, 3.0));
     let exact = prepared.eval::<f64>(Follow::Eye, wi, wo);
     // A coarse table of FGD-infinity for the two layers, read linearly.
-    let table: Vec<Vec<f64>> =
-        (0..2).map(|layer| (0..64).map(|i| prepared.energy().fgd(layer, f64::from(i) / 63.0, 0.2)).collect()).collect();
+    let table: Vec<Vec<f64>> = (0..2)
+        .map(|layer| (0..64).map(|i| prepared.energy().fgd(layer, f64::from(i) / 63.0, 0.2)[0]).collect())
+        .collect();
     let read = |layer: usize, cos: f64, _alpha: f64| {
         let at = cos * 63.0;
         let i = (at as usize).min(62);
         let row = &table[layer];
         row[i] + (row[i + 1] - row[i]) * (at - i as f64)
     };
-    let got = evaluate::<f64>(&stack, &read, None, Follow::Eye, wi, wo);
+    let [got] = evaluate::<f64, 1>(prepared.layers(), &read, None, Follow::Eye, wi, wo);
     assert!((got - exact).abs() < 2e-3 * exact, "{got} against {exact}");
 }
 
 /// Fresnel without total reflection: the two-layer formulas.
 struct Plain<'a>(&'a Monochrome);
 
-impl Energy for Plain<'_> {
-    fn fgd(&self, layer: usize, cos: f64, _: f64) -> f64 {
-        self.0.layers[layer].reflectance(cos)
+impl Energy<1> for Plain<'_> {
+    fn fgd(&self, layer: usize, cos: f64, _: f64) -> [f64; 1] {
+        [self.0.layers[layer].reflectance(cos)]
     }
 
-    fn escaping(&self, _: f64, _: f64, _: f64) -> f64 {
+    fn escaping(&self, _: usize, _: f64, _: f64, _: f64) -> f64 {
         1.0
     }
 }
@@ -150,7 +152,7 @@ fn bounces_by_wavelength_differ_little_from_their_mean() {
         let t21 = variance(0.1 * (1.0 - j).abs());
         let mean = alpha(t21 + j * (t12 + variance(0.2) * (1.0 + 2.0 * m)));
         for (stack, expected) in clear.iter().zip(expected) {
-            let found = alpha(add::<f64>(stack, &Plain(stack), cos_i).lobes[1].spread) / mean - 1.0;
+            let found = alpha(add::<f64, 1>(&Layers::from(stack), &Plain(stack), cos_i).lobes[1].spread) / mean - 1.0;
             assert!((found - expected).abs() < 1e-4, "{cos_i}: {found} against {expected}");
         }
     }
@@ -189,10 +191,10 @@ proptest! {
         }
         // Fresnel in place of FGD-infinity: the walks have tests of their own.
         let energy = |layer: usize, cos: f64, _: f64| stack.layers[layer].reflectance(cos);
-        let base = crate::statistics::diffuse_base::DiffuseBase::new(&stack, &energy);
+        let base = crate::statistics::diffuse_base::DiffuseBase::new(&Layers::from(&stack), &energy);
         let (wi, wo) = (direction(cosines[0], 0.0), direction(cosines[1], phi));
         for follow in [Follow::Eye, Follow::HalfVector] {
-            let value = evaluate::<f64>(&stack, &energy, base.as_ref(), follow, wi, wo);
+            let [value] = evaluate::<f64, 1>(&Layers::from(&stack), &energy, base.as_ref(), follow, wi, wo);
             prop_assert!(value.is_finite() && value >= 0.0, "{value}");
         }
     }

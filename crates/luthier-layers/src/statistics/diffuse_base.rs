@@ -1,66 +1,90 @@
 //! A diffuse base below the layers, which the papers do not have: its light has no mean direction to follow.
 
+use std::array::from_fn;
+
 use glam::DVec3;
 use luthier_optics::quadrature::gauss_legendre;
-use luthier_optics::stack::Diffuse;
 
 use super::adding::{Transport, add};
 use super::energy::Energy;
-use crate::monochrome::{Monochrome, MonochromeBelow};
+use super::layers::{Below, Layers};
 use crate::oren_nayar;
 
 /// Points over the directions of diffuse light: within 1e-7 for smooth interfaces.
 const POINTS: usize = 24;
 
-/// A diffuse base as the layers above let it be seen.
+/// A diffuse base as the layers above let it be seen, in `C` channels.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DiffuseBase {
-    albedo: f64,
+pub struct DiffuseBase<const C: usize> {
+    albedo: [f64; C],
     sigma: f64,
     /// Index above the base over index of the exterior.
     eta: f64,
-    /// Part of the base's cosine-weighted light that the layers send back down to it.
-    internal: f64,
-    /// What of such light the layers let up, over what they let down: 1 for smooth ones.
-    upward: f64,
+    veil: Veil<C>,
 }
 
-impl DiffuseBase {
-    /// The base of a stack, or `None` if it has no diffuse one.
+/// What the layers above a diffuse base do to diffuse light, whatever the direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Veil<const C: usize> {
+    /// Part of the base's cosine-weighted light that the layers send back down to it.
+    pub internal: [f64; C],
+    /// What of such light the layers let up, over what they let down: 1 for smooth ones.
+    pub upward: [f64; C],
+}
+
+impl<const C: usize> Veil<C> {
+    /// Nothing above the base.
+    pub const NONE: Self = Self { internal: [0.0; C], upward: [1.0; C] };
+
+    /// Of the layers above the base of a stack, or `None` if it has no diffuse one.
     ///
     /// Light of the base beyond the critical angle of the exterior is totally reflected; it crosses the lowest slab only.
-    pub fn new(stack: &Monochrome, energy: &impl Energy) -> Option<Self> {
-        let base = stack.layers.iter().position(|l| matches!(l.below, MonochromeBelow::Diffuse { .. }))?;
-        let MonochromeBelow::Diffuse { albedo, sigma } = stack.layers[base].below else { return None };
-        let eta = stack.layers[base].above / stack.exterior;
-        let slab = |cos: f64| match base.checked_sub(1).map(|above| stack.layers[above].below) {
-            Some(MonochromeBelow::Dielectric { optical_depth, .. }) => libm::exp(-2.0 * optical_depth / cos),
-            _ => 1.0,
+    pub fn new(stack: &Layers<C>, energy: &impl Energy<C>) -> Option<Self> {
+        let (base, ..) = stack.base()?;
+        let Some(lowest) = base.checked_sub(1).and_then(|above| stack.layers.get(above)) else {
+            return Some(Self::NONE);
         };
-        // A bare base is below no interface.
-        let (internal, upward) = if base == 0 {
-            (0.0, 1.0)
-        } else {
-            let critical_sq = ((eta - 1.0) * (eta + 1.0) / (eta * eta)).max(0.0);
-            let critical = critical_sq.sqrt();
-            let (mut sum, mut up, mut down) = (0.0, 0.0, 0.0);
-            for (x, weight) in gauss_legendre(POINTS) {
-                let beyond = critical * x;
-                sum += weight * critical * 2.0 * beyond * slab(beyond);
-                // Squared away from the critical angle, where reflectances start like square roots.
-                let cos = critical + (1.0 - critical) * x * x;
-                let cos_outside_sq = 1.0 - eta * eta * (1.0 - cos) * (1.0 + cos);
-                if cos_outside_sq > 0.0 {
-                    let transport = add::<f64>(stack, energy, cos_outside_sq.sqrt().min(1.0));
-                    let share = weight * (1.0 - critical) * 2.0 * x * 2.0 * cos;
-                    sum += share * transport.from_below;
-                    up += share * transport.emerging;
-                    down += share * transport.transmitted;
+        let depth = match lowest.below {
+            Below::Dielectric { optical_depth, .. } => optical_depth,
+            Below::Conductor | Below::Diffuse { .. } => [0.0; C],
+        };
+        let eta = stack.layers[base].above / stack.exterior;
+        let critical_sq = ((eta - 1.0) * (eta + 1.0) / (eta * eta)).max(0.0);
+        let critical = critical_sq.sqrt();
+        let (mut sum, mut up, mut down) = ([0.0; C], [0.0; C], [0.0; C]);
+        for (x, weight) in gauss_legendre(POINTS) {
+            let beyond = critical * x;
+            for c in 0..C {
+                sum[c] += weight * critical * 2.0 * beyond * libm::exp(-2.0 * depth[c] / beyond);
+            }
+            // Squared away from the critical angle, where reflectances start like square roots.
+            let cos = critical + (1.0 - critical) * x * x;
+            let cos_outside_sq = 1.0 - eta * eta * (1.0 - cos) * (1.0 + cos);
+            if cos_outside_sq > 0.0 {
+                let transport = add::<f64, C>(stack, energy, cos_outside_sq.sqrt().min(1.0));
+                let share = weight * (1.0 - critical) * 2.0 * x * 2.0 * cos;
+                for c in 0..C {
+                    sum[c] += share * transport.from_below[c];
+                    up[c] += share * transport.emerging[c];
+                    down[c] += share * transport.transmitted[c];
                 }
             }
-            (sum, if down > 0.0 { (up / down).min(1.0) } else { 1.0 })
-        };
-        Some(Self { albedo, sigma, eta, internal: internal.clamp(0.0, 1.0), upward })
+        }
+        let upward = from_fn(|c| if down[c] > 0.0 { (up[c] / down[c]).min(1.0) } else { 1.0 });
+        Some(Self { internal: sum.map(|r| r.clamp(0.0, 1.0)), upward })
+    }
+}
+
+impl<const C: usize> DiffuseBase<C> {
+    /// The base of a stack, or `None` if it has no diffuse one.
+    pub fn new(stack: &Layers<C>, energy: &impl Energy<C>) -> Option<Self> {
+        Self::veiled(stack, Veil::new(stack, energy)?)
+    }
+
+    /// The same where it is known what the layers do to diffuse light.
+    pub fn veiled(stack: &Layers<C>, veil: Veil<C>) -> Option<Self> {
+        let (base, albedo, sigma) = stack.base()?;
+        Some(Self { albedo, sigma, eta: stack.layers[base].above / stack.exterior, veil })
     }
 
     /// BRDF of the base seen through the layers, in 1/sr, from the transports of both directions at their own angles.
@@ -70,27 +94,28 @@ impl DiffuseBase {
     /// Through rough layers less light gets up, Ti0, than down, T0i, because the statistics count total reflection on the way up alone;
     /// R goes with Ti0. Both T are T0i, and their means over diffuse light bring the difference in as one factor, so that the base
     /// never returns more than enters, and all of it if it is white and nothing absorbs. Reciprocal.
-    pub fn brdf<S>(&self, wi: (DVec3, &Transport<S>), wo: (DVec3, &Transport<S>)) -> f64 {
-        let inside = |(w, transport): (DVec3, &Transport<S>)| {
+    pub fn brdf<S>(&self, wi: (DVec3, &Transport<S, C>), wo: (DVec3, &Transport<S, C>)) -> [f64; C] {
+        let inside = |(w, transport): (DVec3, &Transport<S, C>)| {
             let cos = transport.cos_theta;
             let across = libm::hypot(w.x, w.y);
             let scale = if across > 0.0 { (1.0 - cos * cos).max(0.0).sqrt() / across } else { 0.0 };
             DVec3::new(w.x * scale, w.y * scale, cos)
         };
-        let transmitted = wi.1.transmitted * wo.1.transmitted * self.upward;
-        if transmitted <= 0.0 {
-            return 0.0;
-        }
-        let diffuse = Diffuse { albedo: [self.albedo; 3], sigma: self.sigma };
-        let [f, ..] = oren_nayar::brdf(&diffuse, inside(wi), inside(wo));
-        let lost = 1.0 - self.albedo * self.internal;
-        // A white base below layers that return everything: nothing is transmitted to it either.
-        if lost <= 0.0 { 0.0 } else { transmitted * f / (self.eta * self.eta * lost) }
+        from_fn(|c| {
+            let transmitted = wi.1.transmitted[c] * wo.1.transmitted[c] * self.veil.upward[c];
+            // A white base below layers that return everything: nothing is transmitted to it either.
+            let lost = 1.0 - self.albedo[c] * self.veil.internal[c];
+            if transmitted <= 0.0 || lost <= 0.0 {
+                return 0.0;
+            }
+            let f = oren_nayar::brdf_scalar(self.albedo[c], self.sigma, inside(wi), inside(wo));
+            transmitted * f / (self.eta * self.eta * lost)
+        })
     }
 
-    /// Cosine-weighted reflectance of the layers from below.
-    pub fn internal_reflectance(&self) -> f64 {
-        self.internal
+    /// What the layers above do to its light.
+    pub fn veil(&self) -> Veil<C> {
+        self.veil
     }
 }
 
@@ -99,7 +124,7 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::*;
-    use crate::monochrome::MonochromeLayer;
+    use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
     use luthier_optics::stack::Surface;
     use num_complex::Complex64;
 
@@ -110,7 +135,7 @@ mod tests {
         Monochrome { exterior: 1.0, layers: vec![layer(1.0, coat), layer(1.5, base)] }
     }
 
-    fn fresnel(stack: &Monochrome) -> impl Energy {
+    fn fresnel(stack: &Monochrome) -> impl Energy<1> {
         |layer: usize, cos: f64, _: f64| stack.layers[layer].reflectance(cos)
     }
 
@@ -125,18 +150,19 @@ mod tests {
         ] {
             let stack = coated(rho, 0.0);
             let energy = fresnel(&stack);
+            let stack = Layers::from(&stack);
             let base = DiffuseBase::new(&stack, &energy).unwrap();
-            assert!((base.internal_reflectance() - 0.5963457597).abs() < 1e-7);
+            assert!((base.veil().internal[0] - 0.5963457597).abs() < 1e-7);
             let albedo = |cos: f64| {
-                let eye = add::<f64>(&stack, &energy, cos);
+                let eye = add::<f64, 1>(&stack, &energy, cos);
                 let wo = DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
                 // f depends on the cosine of wi only; cos^2 gathers points at grazing angles.
-                let mut sum = eye.reflected();
+                let [mut sum] = eye.reflected();
                 for (x, weight) in gauss_legendre(64) {
                     let mu = x * x;
                     let wi = DVec3::new((1.0 - mu * mu).sqrt(), 0.0, mu);
-                    let light = add::<f64>(&stack, &energy, mu);
-                    sum += weight * 2.0 * x * 2.0 * PI * mu * base.brdf((wi, &light), (wo, &eye));
+                    let light = add::<f64, 1>(&stack, &energy, mu);
+                    sum += weight * 2.0 * x * 2.0 * PI * mu * base.brdf((wi, &light), (wo, &eye))[0];
                 }
                 sum
             };
@@ -150,7 +176,7 @@ mod tests {
     fn absorption_darkens_the_base() {
         let internal = |depth| {
             let stack = coated(0.5, depth);
-            DiffuseBase::new(&stack, &fresnel(&stack)).unwrap().internal_reflectance()
+            Veil::new(&Layers::from(&stack), &fresnel(&stack)).unwrap().internal[0]
         };
         assert!(internal(0.1) < internal(0.0) && internal(50.0) < 1e-9);
     }

@@ -5,8 +5,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use glam::DVec3;
 
 use super::adding::add;
-use super::diffuse_base::DiffuseBase;
+use super::diffuse_base::{DiffuseBase, Veil};
 use super::energy::{Energy, ExactEnergy, FacetCache};
+use super::layers::Layers;
 use super::spread::Spread;
 use crate::facets::{Facets, Masking};
 use crate::monochrome::Monochrome;
@@ -25,32 +26,34 @@ pub enum Follow {
 ///
 /// Light that leaves a lobe's surface downward, or is blocked on it, is lost, although FGD-infinity counts it: directional albedos
 /// fall short of the energies by what single scattering loses.
-pub fn evaluate<S: Spread>(
-    stack: &Monochrome,
-    energy: &impl Energy,
-    base: Option<&DiffuseBase>,
+pub fn evaluate<S: Spread, const C: usize>(
+    stack: &Layers<C>,
+    energy: &impl Energy<C>,
+    base: Option<&DiffuseBase<C>>,
     follow: Follow,
     wi: DVec3,
     wo: DVec3,
-) -> f64 {
+) -> [f64; C] {
+    let mut sum = [0.0; C];
     if wi.z <= 0.0 || wo.z <= 0.0 {
-        return 0.0;
+        return sum;
     }
     let cos_theta = match follow {
         Follow::Eye => wo.z,
         // For unit directions wo.wh is half the length of their sum.
         Follow::HalfVector => (0.5 * (wi + wo).length()).min(1.0),
     };
-    let mut sum = 0.0;
-    for lobe in add::<S>(stack, energy, cos_theta).lobes {
-        if lobe.energy > 0.0 {
+    for lobe in add::<S, C>(stack, energy, cos_theta).lobes {
+        if lobe.energy.iter().any(|&energy| energy > 0.0) {
             let facets = Facets::new(&lobe.spread.surface()).lobe(Masking::Smith, wi, wo);
-            sum += lobe.energy * facets.map_or(0.0, |l| l.value);
+            let value = facets.map_or(0.0, |l| l.value);
+            sum.iter_mut().zip(lobe.energy).for_each(|(sum, energy)| *sum += energy * value);
         }
     }
     if let Some(base) = base {
-        let [light, eye] = [wi, wo].map(|w| add::<S>(stack, energy, w.z));
-        sum += base.brdf((wi, &light), (wo, &eye)) * wi.z;
+        let [light, eye] = [wi, wo].map(|w| add::<S, C>(stack, energy, w.z));
+        let brdf = base.brdf((wi, &light), (wo, &eye));
+        sum.iter_mut().zip(brdf).for_each(|(sum, f)| *sum += f * wi.z);
     }
     sum
 }
@@ -59,8 +62,9 @@ pub fn evaluate<S: Spread>(
 #[derive(Debug, Clone)]
 pub struct Prepared {
     stack: Monochrome,
+    layers: Layers<1>,
     energy: ExactEnergy,
-    base: Option<DiffuseBase>,
+    base: Option<DiffuseBase<1>>,
 }
 
 impl Prepared {
@@ -71,8 +75,19 @@ impl Prepared {
 
     fn with_facets(stack: &Monochrome, facets: &mut FacetCache) -> Self {
         let energy = ExactEnergy::with_facets(stack, facets);
-        let base = DiffuseBase::new(stack, &energy);
-        Self { stack: stack.clone(), energy, base }
+        let layers = Layers::from(stack);
+        let base = DiffuseBase::new(&layers, &energy);
+        Self { stack: stack.clone(), layers, energy, base }
+    }
+
+    /// The stack as the statistics see it.
+    pub fn layers(&self) -> &Layers<1> {
+        &self.layers
+    }
+
+    /// What the layers do to the light of a diffuse base.
+    pub fn veil(&self) -> Option<Veil<1>> {
+        self.base.as_ref().map(DiffuseBase::veil)
     }
 
     /// The energies.
@@ -82,7 +97,8 @@ impl Prepared {
 
     /// `f cos_theta_i`; see [`evaluate`].
     pub fn eval<S: Spread>(&self, follow: Follow, wi: DVec3, wo: DVec3) -> f64 {
-        evaluate::<S>(&self.stack, &self.energy, self.base.as_ref(), follow, wi, wo)
+        let [value] = evaluate::<S, 1>(&self.layers, &self.energy, self.base.as_ref(), follow, wi, wo);
+        value
     }
 }
 

@@ -10,6 +10,7 @@ use crate::monochrome::{MonochromeBelow, MonochromeLayer};
 use crate::statistics::adding::add;
 use crate::statistics::energy::Energy;
 use crate::statistics::evaluate::{Prepared, evaluate};
+use crate::statistics::layers::Layers;
 use crate::statistics::spread::variance;
 
 fn surface(alpha_x: f64, alpha_y: f64, rotation: f64) -> Surface {
@@ -32,19 +33,19 @@ fn direction(cos: f64, phi: f64) -> DVec3 {
     DVec3::new(sin * libm::cos(phi), sin * libm::sin(phi), cos)
 }
 
-fn fresnel(stack: &Monochrome) -> impl Energy {
+fn fresnel(stack: &Monochrome) -> impl Energy<1> {
     |layer: usize, cos: f64, _: f64| stack.layers[layer].reflectance(cos)
 }
 
 /// Fresnel without total reflection, as the two-layer formulas have it.
 struct Plain<'a>(&'a Monochrome);
 
-impl Energy for Plain<'_> {
-    fn fgd(&self, layer: usize, cos: f64, _: f64) -> f64 {
-        self.0.layers[layer].reflectance(cos)
+impl Energy<1> for Plain<'_> {
+    fn fgd(&self, layer: usize, cos: f64, _: f64) -> [f64; 1] {
+        [self.0.layers[layer].reflectance(cos)]
     }
 
-    fn escaping(&self, _: f64, _: f64, _: f64) -> f64 {
+    fn escaping(&self, _: usize, _: f64, _: f64, _: f64) -> f64 {
         1.0
     }
 }
@@ -69,8 +70,8 @@ fn two_layers_are_the_formulas_of_the_paper() {
     let t21 = sigma(coat, 0.5 * (1.0 - n * cos_t / cos_i).abs());
     let (r1, b) = (sigma(coat, 1.0), sigma(base, 1.0));
 
-    let lobes = add::<Covariance>(&stack, &Plain(&stack), cos_i).lobes;
-    assert!((lobes[0].energy - r12).abs() < 1e-15 && (lobes[1].energy - weight).abs() < 1e-15);
+    let lobes = add::<Covariance, 1>(&Layers::from(&stack), &Plain(&stack), cos_i).lobes;
+    assert!((lobes[0].energy[0] - r12).abs() < 1e-15 && (lobes[1].energy[0] - weight).abs() < 1e-15);
     for (lobe, expected) in
         [(lobes[0], r1), (lobes[1], [0, 1, 2].map(|k| t21[k] + j12 * (t12[k] + b[k] + m * (b[k] + r1[k]))))]
     {
@@ -88,8 +89,8 @@ fn isotropic_surfaces_give_belcour() {
     for (cos_i, cos_o, phi) in [(0.9, 0.8, 3.0), (0.3, 0.6, 1.0), (0.05, 0.1, PI), (1.0, 1.0, 0.0)] {
         let (wi, wo) = (direction(cos_i, 0.0), direction(cos_o, phi));
         for follow in [Follow::Eye, Follow::HalfVector] {
-            let a = evaluate::<Covariance>(&stack, &energy, None, follow, wi, wo);
-            let b = evaluate::<f64>(&stack, &energy, None, follow, wi, wo);
+            let [a] = evaluate::<Covariance, 1>(&Layers::from(&stack), &energy, None, follow, wi, wo);
+            let [b] = evaluate::<f64, 1>(&Layers::from(&stack), &energy, None, follow, wi, wo);
             assert!((a - b).abs() < 1e-10 * b, "{a} {b}");
         }
     }
@@ -113,15 +114,16 @@ fn isotropic_stacks_give_belcour_as_models() {
 fn a_table_can_stand_in_for_the_energies() {
     let stack = coated(surface(0.1, 0.4, 0.2), surface(0.3, 0.05, 0.5));
     let prepared = Prepared::new(&stack);
-    let table: Vec<Vec<f64>> =
-        (0..2).map(|layer| (0..64).map(|i| prepared.energy().fgd(layer, f64::from(i) / 63.0, 0.2)).collect()).collect();
+    let table: Vec<Vec<f64>> = (0..2)
+        .map(|layer| (0..64).map(|i| prepared.energy().fgd(layer, f64::from(i) / 63.0, 0.2)[0]).collect())
+        .collect();
     let read = |layer: usize, cos: f64, _: f64| {
         let i = ((cos * 63.0) as usize).min(62);
         table[layer][i] + (table[layer][i + 1] - table[layer][i]) * (cos * 63.0 - i as f64)
     };
     let (wi, wo) = (direction(0.7, 0.3), direction(0.6, 3.0));
     let exact = prepared.eval::<Covariance>(Follow::Eye, wi, wo);
-    let got = evaluate::<Covariance>(&stack, &read, None, Follow::Eye, wi, wo);
+    let [got] = evaluate::<Covariance, 1>(&Layers::from(&stack), &read, None, Follow::Eye, wi, wo);
     assert!(exact > 0.0 && (got - exact).abs() < 2e-3 * exact, "{got} against {exact}");
 }
 
@@ -130,7 +132,8 @@ fn a_quarter_turn_swaps_the_slopes() {
     let stack = coated(surface(0.1, 0.4, 0.2), surface(0.3, 0.05, 0.5));
     let turned = coated(surface(0.4, 0.1, 0.2 + FRAC_PI_2), surface(0.05, 0.3, 0.5 + FRAC_PI_2));
     let (wi, wo) = (direction(0.7, 0.3), direction(0.6, 3.0));
-    let [a, b] = [&stack, &turned].map(|s| evaluate::<Covariance>(s, &fresnel(s), None, Follow::Eye, wi, wo));
+    let [[a], [b]] =
+        [&stack, &turned].map(|s| evaluate::<Covariance, 1>(&Layers::from(s), &fresnel(s), None, Follow::Eye, wi, wo));
     assert!((a - b).abs() < 1e-12 * a, "{a} {b}");
 }
 
@@ -140,7 +143,7 @@ fn turning_everything_changes_nothing() {
     let at = |turn: f64| {
         let stack = coated(surface(0.1, 0.4, 0.2 + turn), surface(0.3, 0.05, 0.5 + turn));
         let [wi, wo] = [wi, wo].map(|(cos, phi)| direction(cos, phi + turn));
-        evaluate::<Covariance>(&stack, &fresnel(&stack), None, Follow::Eye, wi, wo)
+        evaluate::<Covariance, 1>(&Layers::from(&stack), &fresnel(&stack), None, Follow::Eye, wi, wo)[0]
     };
     for turn in [0.4, 2.0, -1.3] {
         assert!((at(turn) - at(0.0)).abs() < 1e-11 * at(0.0), "{turn}");
@@ -178,7 +181,7 @@ proptest! {
         let stack = coated(surface(alphas[0], alphas[1], turns[0]), surface(alphas[2], alphas[3], turns[1]));
         let (wi, wo) = (direction(cosines[0], 0.0), direction(cosines[1], phi));
         for follow in [Follow::Eye, Follow::HalfVector] {
-            let value = evaluate::<Covariance>(&stack, &fresnel(&stack), None, follow, wi, wo);
+            let [value] = evaluate::<Covariance, 1>(&Layers::from(&stack), &fresnel(&stack), None, follow, wi, wo);
             prop_assert!(value.is_finite() && value >= 0.0, "{value}");
         }
     }

@@ -24,6 +24,8 @@ struct LuthierLayer {
     distribution_tile: f32, //? distribution
     /// Tile of the albedo table. //? fgd
     fgd_tile: f32, //? fgd
+    /// Tile of the albedo table for light from below; -1 where that is as from above. //? fgd_below
+    fgd_below_tile: f32, //? fgd_below
     /// Tile of the phase table. //? phase
     phase_tile: f32, //? phase
     /// Tile of the thickness table. //? thickness
@@ -85,6 +87,7 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     layer.fresnel_tile = tiles.x; //? fresnel
     layer.distribution_tile = tiles.y; //? distribution
     layer.fgd_tile = tiles.z; //? fgd
+    layer.fgd_below_tile = luthier_materials[first + 7u].w; //? fgd_below
     layer.phase_tile = tiles.w; //? phase
     layer.thickness_tile = slab.w; //? thickness
     layer.film_tile = luthier_materials[first + 6u].w; //? film_table

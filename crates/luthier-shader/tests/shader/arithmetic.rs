@@ -12,12 +12,12 @@ use luthier_lut::{
 };
 use luthier_shader::{Form, MaterialSet, TableFace, Target, emit};
 
-fn full(materials: &[MaterialEntry]) -> Machine {
+pub(crate) fn full(materials: &[MaterialEntry]) -> Machine {
     let set = MaterialSet { materials, tables: Vec::new() };
     Machine::new(&emit(&set, Form::Full, Target::Wgsl).unwrap(), &material_buffer(materials), BTreeMap::new())
 }
 
-fn direction(cos_theta: f64, phi: f64) -> [f64; 3] {
+pub(crate) fn direction(cos_theta: f64, phi: f64) -> [f64; 3] {
     // Rounded to f32 and put back to unit length in f64, so that both sides see the same direction.
     let sin = (1.0 - cos_theta * cos_theta).sqrt();
     let rounded = [sin * phi.cos(), sin * phi.sin(), cos_theta].map(|v| f64::from(v as f32));
@@ -27,7 +27,7 @@ fn direction(cos_theta: f64, phi: f64) -> [f64; 3] {
 
 /// Pairs of directions that fill the hemisphere evenly (R3 sequence), half of them near mirror directions, where the
 /// lobes are.
-fn directions(count: u32) -> impl Iterator<Item = ([f64; 3], [f64; 3])> {
+pub(crate) fn directions(count: u32) -> impl Iterator<Item = ([f64; 3], [f64; 3])> {
     (0..count).map(|i| {
         let r = [0.819_172_513_396_164_4, 0.671_043_606_703_789_3, 0.549_700_477_901_960_1]
             .map(|a| (0.5 + a * f64::from(i)).fract());
@@ -44,7 +44,7 @@ fn directions(count: u32) -> impl Iterator<Item = ([f64; 3], [f64; 3])> {
     })
 }
 
-fn eval(machine: &Machine, material: u32, wi: [f64; 3], wo: [f64; 3]) -> Vec<f32> {
+pub(crate) fn eval(machine: &Machine, material: u32, wi: [f64; 3], wo: [f64; 3]) -> Vec<f32> {
     let [wi, wo] = [wi, wo].map(|w| vector(&w.map(|v| v as f32)));
     machine.call("luthier_eval", vec![Value::U(material), wi, wo]).floats()
 }

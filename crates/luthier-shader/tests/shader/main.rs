@@ -10,3 +10,4 @@ mod judges;
 mod machine;
 mod paper;
 mod scenes;
+mod statistics;

@@ -78,6 +78,11 @@ pub(crate) fn filmed() -> LayerRecord {
     }
 }
 
+/// A layer of a material of the statistical models: with the tiles for light from below.
+pub(crate) fn with_below(layer: LayerRecord) -> LayerRecord {
+    LayerRecord { fgd_tile: layer.fgd_tile.or(Some(2)), fgd_below_tile: Some(3), escape_tile: Some(0), ..layer }
+}
+
 /// A material of these layers.
 pub(crate) fn material(name: &str, layers: &[LayerRecord]) -> MaterialEntry {
     MaterialEntry {
@@ -129,6 +134,24 @@ pub(crate) fn glitter() -> MaterialEntry {
     MaterialEntry { constants, ..material("glitter", &[conductor()]) }
 }
 
+/// A film on a coat on gold.
+fn oil_below() -> MaterialEntry {
+    material("oiled-varnish", &[with_below(filmed()), conductor()])
+}
+
+/// Two absorbing coats of different indices on gold.
+fn coats() -> MaterialEntry {
+    let under = LayerRecord { eta: 1.2, ior_n: [1.19, 1.2, 1.21], ..dielectric() };
+    material("two-coats", &[with_below(dielectric()), with_below(under), conductor()])
+}
+
+/// Anisotropic surfaces with two tangents.
+fn coated_brushed() -> MaterialEntry {
+    let coat = LayerRecord { alpha_xy: [0.3, 0.05], alpha: 0.122474487, rotation: -0.3, ..dielectric() };
+    let base = LayerRecord { alpha_xy: [0.1, 0.4], alpha: 0.2, rotation: 0.5, ..conductor() };
+    material("coated-brushed", &[with_below(coat), base])
+}
+
 /// Sets by name, from the simplest to the richest.
 pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
     let lacquer = || material("red-lacquer", &[dielectric(), diffuse(0.0)]);
@@ -166,9 +189,30 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
         ("phong-film", vec![of(ShadingModel::Phong, oil())]),
         ("microfacet", vec![of(ShadingModel::Microfacet, gold()), of(ShadingModel::Microfacet, brushed())]),
         ("microfacet-mixed", vec![of(ShadingModel::Microfacet, chalk()), of(ShadingModel::Microfacet, lacquer())]),
+        ("belcour", vec![of(ShadingModel::Belcour, gold())]),
+        ("belcour-base", vec![of(ShadingModel::Belcour, house())]),
+        ("belcour-bare", vec![of(ShadingModel::Belcour, chalk())]),
+        (
+            "belcour-coat",
+            vec![of(ShadingModel::Belcour, material("varnish", &[with_below(dielectric()), conductor()]))],
+        ),
+        ("belcour-mixed", [chalk(), oil_below(), coats(), house()].map(|m| of(ShadingModel::Belcour, m)).into()),
+        ("yamaguchi", vec![of(ShadingModel::Yamaguchi, coated_brushed())]),
+        ("yamaguchi-isotropic", vec![of(ShadingModel::Yamaguchi, coats())]),
+        (
+            "statistics",
+            vec![
+                of(ShadingModel::Yamaguchi, coated_brushed()),
+                of(ShadingModel::Belcour, oil_below()),
+                brushed(),
+                house(),
+            ],
+        ),
         (
             "models",
             vec![
+                of(ShadingModel::Belcour, coats()),
+                of(ShadingModel::Yamaguchi, coated_brushed()),
                 lacquer(),
                 of(ShadingModel::Phong, gold()),
                 of(ShadingModel::Microfacet, brushed()),

@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use proptest::prelude::*;
 
 use super::*;
-use crate::monochrome::MonochromeLayer;
+use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 use crate::statistics::spread::{Covariance, alpha};
 
 fn glass(ior: f64, optical_depth: f64) -> MonochromeBelow {
@@ -29,7 +29,7 @@ fn metal() -> MonochromeBelow {
     MonochromeBelow::Conductor { ior: Complex64::new(0.2, 3.5) }
 }
 
-fn fresnel(stack: &Monochrome) -> impl Energy {
+fn fresnel(stack: &Monochrome) -> impl Energy<1> {
     |layer: usize, cos: f64, _: f64| stack.layers[layer].reflectance(cos)
 }
 
@@ -41,8 +41,8 @@ fn smooth_coat_on_a_mirror_is_the_closed_form() {
     for (optical_depth, expected) in [(0.0, 1.0), (0.1, 0.7992518131), (1.0, 0.1441269347)] {
         let stack = stack(&[(0.0, glass(1.5, optical_depth)), (0.0, metal())]);
         let mirror = |layer: usize, cos: f64, _: f64| if layer == 0 { stack.layers[0].reflectance(cos) } else { 1.0 };
-        let got = add::<f64>(&stack, &mirror, COS_45);
-        assert!((got.reflected() - expected).abs() < 1e-10, "{optical_depth}: {}", got.reflected());
+        let got = add::<f64, 1>(&Layers::from(&stack), &mirror, COS_45);
+        assert!((got.reflected()[0] - expected).abs() < 1e-10, "{optical_depth}: {}", got.reflected()[0]);
         assert!(got.lobes.iter().all(|l| l.spread == 0.0));
     }
 }
@@ -53,9 +53,9 @@ fn the_lossless_limit_of_the_series_is_one() {
     let stack = stack(&[(0.3, glass(1.5, 0.0)), (0.2, metal())]);
     for outer in [1.0, 1.0 - 1e-16, 1.0 - 1e-12, 1.0 - 1e-6] {
         let nearly = |layer: usize, _: f64, _: f64| if layer == 0 { outer } else { 1.0 };
-        let got = add::<f64>(&stack, &nearly, 0.8);
-        assert!((got.reflected() - 1.0).abs() < 1e-9, "{outer}: {}", got.reflected());
-        assert!(got.lobes.iter().all(|l| l.energy.is_finite() && l.spread.is_finite()));
+        let got = add::<f64, 1>(&Layers::from(&stack), &nearly, 0.8);
+        assert!((got.reflected()[0] - 1.0).abs() < 1e-9, "{outer}: {}", got.reflected()[0]);
+        assert!(got.lobes.iter().all(|l| l.energy[0].is_finite() && l.spread.is_finite()));
     }
 }
 
@@ -90,7 +90,7 @@ fn smooth_stacks_agree_with_transfer_matrices() {
     for layers in [&dielectrics[..], &on_metal[..]] {
         let stack = stack(layers);
         for cos in [1.0, 0.8, 0.5, 0.2, 0.05] {
-            let got = add::<f64>(&stack, &fresnel(&stack), cos).reflected();
+            let got = add::<f64, 1>(&Layers::from(&stack), &fresnel(&stack), cos).reflected()[0];
             let expected = transfer_matrices(&stack, cos);
             assert!((got - expected).abs() < 1e-12, "{cos}: {got} against {expected}");
         }
@@ -105,15 +105,15 @@ fn base_under_a_rough_coat_has_the_published_width() {
         let stack = stack(&[(coat, glass(1.5, 0.0)), (base, metal())]);
         let first_pass = |layer: usize, _: f64, _: f64| if layer == 0 { 0.0 } else { 1.0 };
         struct FirstPass<E>(E);
-        impl<E: Energy> Energy for FirstPass<E> {
-            fn fgd(&self, layer: usize, cos: f64, alpha: f64) -> f64 {
+        impl<E: Energy<1>> Energy<1> for FirstPass<E> {
+            fn fgd(&self, layer: usize, cos: f64, alpha: f64) -> [f64; 1] {
                 self.0.fgd(layer, cos, alpha)
             }
-            fn escaping(&self, _: f64, _: f64, _: f64) -> f64 {
+            fn escaping(&self, _: usize, _: f64, _: f64, _: f64) -> f64 {
                 1.0
             }
         }
-        let lobe = add::<f64>(&stack, &FirstPass(first_pass), 1.0).lobes[1];
+        let lobe = add::<f64, 1>(&Layers::from(&stack), &FirstPass(first_pass), 1.0).lobes[1];
         assert!((alpha(lobe.spread) - expected).abs() < 6e-4, "{coat} {base}: {}", alpha(lobe.spread));
     }
 }
@@ -143,7 +143,7 @@ fn jacobian_is_the_slope_gain_of_refraction() {
         // The model scales the variance by it, and h grows like alpha^1.1: slopes widen by its power 1/1.1 and the lobe is narrower than
         // light's by 4% to 11%.
         let stack = stack(&[(0.0, glass(1.5, 0.0)), (1e-4, metal())]);
-        let lobe = add::<f64>(&stack, &|layer: usize, _: f64, _: f64| layer as f64, cos).lobes[1];
+        let lobe = add::<f64, 1>(&Layers::from(&stack), &|layer: usize, _: f64, _: f64| layer as f64, cos).lobes[1];
         let widened = alpha(lobe.spread) / 1e-4;
         assert!((widened - libm::pow(gain, 1.0 / 1.1)).abs() < 1e-3, "{degrees}: {widened}");
         assert!(widened < gain && widened > 0.89 * gain);
@@ -156,11 +156,11 @@ fn total_reflection_keeps_light_below_a_smooth_coat() {
     // and an absorbing slab takes more than without total reflection.
     let lossless = |layer: usize, _: f64, _: f64| if layer == 0 { 0.04 } else { 1.0 };
     let clear = stack(&[(0.0, glass(1.5, 0.0)), (0.6, metal())]);
-    let kept = add::<f64>(&clear, &lossless, 0.9);
-    assert!((kept.reflected() - 1.0).abs() < 1e-12);
+    let kept = add::<f64, 1>(&Layers::from(&clear), &lossless, 0.9);
+    assert!((kept.reflected()[0] - 1.0).abs() < 1e-12);
     let [narrow, wide] = [1e-3, 0.6].map(|base| {
         let stack = stack(&[(0.0, glass(1.5, 0.3)), (base, metal())]);
-        add::<f64>(&stack, &lossless, 0.9).reflected()
+        add::<f64, 1>(&Layers::from(&stack), &lossless, 0.9).reflected()[0]
     });
     assert!(wide < narrow - 0.02, "{wide} {narrow}");
 }
@@ -168,9 +168,9 @@ fn total_reflection_keeps_light_below_a_smooth_coat() {
 #[test]
 fn light_beyond_the_critical_angle_goes_no_further() {
     let stack = stack(&[(0.0, glass(1.5, 0.0)), (0.0, glass(1.0, 0.0)), (0.0, glass(0.5, 0.0)), (0.0, metal())]);
-    let got = add::<f64>(&stack, &fresnel(&stack), 0.5);
-    assert_eq!((got.lobes.len(), got.transmitted, got.cos_theta), (3, 0.0, 0.0));
-    assert!((got.reflected() - 1.0).abs() < 1e-12);
+    let got = add::<f64, 1>(&Layers::from(&stack), &fresnel(&stack), 0.5);
+    assert_eq!((got.lobes.len(), got.transmitted, got.cos_theta), (3, [0.0], 0.0));
+    assert!((got.reflected()[0] - 1.0).abs() < 1e-12);
 }
 
 proptest! {
@@ -189,16 +189,16 @@ proptest! {
         });
         let stack = Monochrome { exterior: 1.0, layers: layers.collect() };
         let energy = |layer: usize, _: f64, _: f64| reflectances[layer];
-        let scalar = add::<f64>(&stack, &energy, cos);
-        let total = scalar.reflected() + scalar.transmitted;
+        let scalar = add::<f64, 1>(&Layers::from(&stack), &energy, cos);
+        let total = scalar.reflected()[0] + scalar.transmitted[0];
         prop_assert!((0.0..=1.0 + 1e-9).contains(&total), "{total}");
-        prop_assert!((0.0..=1.0 + 1e-9).contains(&scalar.from_below));
+        prop_assert!((0.0..=1.0 + 1e-9).contains(&scalar.from_below[0]));
         for lobe in &scalar.lobes {
-            prop_assert!(lobe.energy >= 0.0 && lobe.spread >= 0.0 && lobe.spread.is_finite());
+            prop_assert!(lobe.energy[0] >= 0.0 && lobe.spread >= 0.0 && lobe.spread.is_finite());
         }
-        for lobe in add::<Covariance>(&stack, &energy, cos).lobes {
+        for lobe in add::<Covariance, 1>(&Layers::from(&stack), &energy, cos).lobes {
             let p = lobe.spread.principal();
-            prop_assert!(lobe.energy >= 0.0 && p.second >= 0.0 && p.first.is_finite());
+            prop_assert!(lobe.energy[0] >= 0.0 && p.second >= 0.0 && p.first.is_finite());
         }
     }
 }

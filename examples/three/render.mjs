@@ -1,0 +1,93 @@
+// Renders the page in a Chromium without a window: node render.mjs BAKE SCENE PNG
+// Without PNG it serves the page until it is stopped, for a browser with a window.
+// The environment variable CHROMIUM names the program.
+
+import { spawn } from "node:child_process";
+import { mkdtemp, readFile, rm, writeFile } from "node:fs/promises";
+import { createServer } from "node:http";
+import { tmpdir } from "node:os";
+import path from "node:path";
+import { fileURLToPath } from "node:url";
+
+const TIMEOUT_MS = 120_000;
+const TYPES = { ".html": "text/html", ".js": "text/javascript", ".json": "application/json", ".wasm": "application/wasm" };
+
+const [bake, scene, picture] = process.argv.slice(2);
+if (!scene) {
+  console.error("usage: node render.mjs BAKE SCENE [PNG]");
+  process.exit(2);
+}
+const here = path.dirname(fileURLToPath(import.meta.url));
+const folders = [
+  ["/three/", path.join(here, "node_modules/three")],
+  ["/bake/", path.resolve(bake)],
+  ["/", here],
+];
+
+/** File behind a path of the page. */
+function find(url) {
+  if (url === "/") return path.join(here, "index.html");
+  if (url === "/scene.json") return path.resolve(scene);
+  const [prefix, folder] = folders.find(([prefix]) => url.startsWith(prefix));
+  const file = path.resolve(folder, url.slice(prefix.length));
+  if (!file.startsWith(folder + path.sep)) throw new Error("outside the folder");
+  return file;
+}
+
+let saved;
+const answer = new Promise((resolve) => (saved = resolve));
+const server = createServer(async (request, response) => {
+  const { pathname } = new URL(request.url, "http://localhost");
+  if (request.method === "POST") {
+    let body = "";
+    for await (const part of request) body += part;
+    response.end();
+    saved(JSON.parse(body));
+    return;
+  }
+  try {
+    const file = find(decodeURIComponent(pathname));
+    const bytes = await readFile(file);
+    response.setHeader("Content-Type", TYPES[path.extname(file)] ?? "application/octet-stream");
+    response.end(bytes);
+  } catch {
+    response.statusCode = 404;
+    response.end();
+  }
+});
+await new Promise((resolve) => server.listen(picture ? 0 : 8000, "127.0.0.1", resolve));
+const address = `http://127.0.0.1:${server.address().port}/`;
+
+if (!picture) {
+  console.log(address);
+} else {
+  const profile = await mkdtemp(path.join(tmpdir(), "luthier-three-"));
+  const flags = ["--headless=new", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-first-run", `--user-data-dir=${profile}`];
+  // The sandbox of Chromium does not start as root.
+  if (process.getuid?.() === 0) flags.push("--no-sandbox");
+  const browser = spawn(process.env.CHROMIUM ?? "chromium", [...flags, `${address}?save`], { stdio: "ignore" });
+  const failed = new Promise((_, reject) => {
+    browser.on("error", reject);
+    browser.on("exit", (code) => reject(new Error(`the browser ended with ${code} before there was a picture`)));
+    setTimeout(() => reject(new Error(`no picture after ${TIMEOUT_MS / 1000} s`)), TIMEOUT_MS).unref();
+  });
+  try {
+    const { picture: data, driver, error } = await Promise.race([answer, failed]);
+    if (error) throw new Error(error);
+    await writeFile(picture, Buffer.from(data.split(",")[1], "base64"));
+    console.error(driver);
+  } catch (error) {
+    console.error(`error: ${error.message}`);
+    process.exitCode = 1;
+  } finally {
+    failed.catch(() => {});
+    if (browser.exitCode === null && browser.pid) {
+      const ended = new Promise((resolve) => browser.once("exit", resolve));
+      browser.kill();
+      await ended;
+    }
+    server.closeAllConnections();
+    server.close();
+    await rm(profile, { recursive: true, force: true, maxRetries: 5, retryDelay: 200 });
+  }
+}

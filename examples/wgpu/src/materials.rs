@@ -1,0 +1,111 @@
+//! Group 0 of the shader, bound as the manifest says.
+
+use anyhow::{Context, Result, bail};
+use wgpu::util::{BufferInitDescriptor, DeviceExt, TextureDataOrder};
+
+use crate::bake::{Bake, Binding, Texels};
+
+/// The tables, the sampler and the material buffer on a device.
+pub struct Materials {
+    pub layout: wgpu::BindGroupLayout,
+    pub group: wgpu::BindGroup,
+}
+
+enum Resource {
+    Table(wgpu::TextureView),
+    Sampler(wgpu::Sampler),
+    Buffer(wgpu::Buffer),
+}
+
+impl Materials {
+    pub fn upload(device: &wgpu::Device, queue: &wgpu::Queue, bake: &Bake) -> Result<Self> {
+        let mut resources = Vec::new();
+        for binding in bake.bindings()? {
+            resources.push((binding.number, upload(device, queue, bake, &binding)?));
+        }
+        let layout_entries: Vec<_> =
+            resources.iter().map(|(number, resource)| layout_entry(*number, resource)).collect();
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("luthier"),
+            entries: &layout_entries,
+        });
+        let entries: Vec<_> = resources.iter().map(|(number, resource)| group_entry(*number, resource)).collect();
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("luthier"),
+            layout: &layout,
+            entries: &entries,
+        });
+        Ok(Self { layout, group })
+    }
+}
+
+fn upload(device: &wgpu::Device, queue: &wgpu::Queue, bake: &Bake, binding: &Binding) -> Result<Resource> {
+    match binding.resource.as_str() {
+        "texture_2d<f32>" => {
+            let kind = binding.name.strip_prefix("luthier_").context("a table without its prefix")?;
+            Ok(Resource::Table(upload_table(device, queue, kind, &bake.table(kind)?)?))
+        }
+        // Clamped to the edge and without mipmaps, which are the defaults.
+        "sampler" => Ok(Resource::Sampler(device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some(&binding.name),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        }))),
+        "buffer" => Ok(Resource::Buffer(device.create_buffer_init(&BufferInitDescriptor {
+            label: Some(&binding.name),
+            contents: &bake.material_buffer()?,
+            usage: wgpu::BufferUsages::STORAGE,
+        }))),
+        other => bail!("a binding of unknown kind `{other}`"),
+    }
+}
+
+fn upload_table(device: &wgpu::Device, queue: &wgpu::Queue, kind: &str, texels: &Texels) -> Result<wgpu::TextureView> {
+    let format = match texels.format.as_str() {
+        "r16float" => wgpu::TextureFormat::R16Float,
+        "rg16float" => wgpu::TextureFormat::Rg16Float,
+        "rgba16float" => wgpu::TextureFormat::Rgba16Float,
+        "rgba8unorm" => wgpu::TextureFormat::Rgba8Unorm,
+        // Not filterable without a feature of the device.
+        other => bail!("this program does not upload `{other}`"),
+    };
+    let descriptor = wgpu::TextureDescriptor {
+        label: Some(kind),
+        size: wgpu::Extent3d { width: texels.width, height: texels.height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    };
+    let texture = device.create_texture_with_data(queue, &descriptor, TextureDataOrder::LayerMajor, &texels.bytes);
+    Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+}
+
+fn layout_entry(binding: u32, resource: &Resource) -> wgpu::BindGroupLayoutEntry {
+    let ty = match resource {
+        Resource::Table(_) => wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
+        Resource::Sampler(_) => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+        Resource::Buffer(_) => wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Storage { read_only: true },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+    };
+    wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None }
+}
+
+fn group_entry(binding: u32, resource: &Resource) -> wgpu::BindGroupEntry<'_> {
+    let resource = match resource {
+        Resource::Table(view) => wgpu::BindingResource::TextureView(view),
+        Resource::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
+        Resource::Buffer(buffer) => buffer.as_entire_binding(),
+    };
+    wgpu::BindGroupEntry { binding, resource }
+}
