@@ -9,7 +9,8 @@ use luthier_material::Material;
 use crate::BakeError;
 use crate::constants::constants;
 use crate::graph::{Observer, Results};
-use crate::plan::{ImageReader, Plan, Tiles, color_mode, shading_model};
+use crate::maps::{MaterialMap, maps};
+use crate::plan::{ImageReader, Plan, PlannedLayers, Tiles, color_mode, shading_model};
 use crate::settings::Settings;
 
 /// What a set of materials needs at run time.
@@ -32,6 +33,8 @@ pub struct BakedMaterial {
     pub constants: MaterialConstants,
     /// Its layers from the top down, with the tiles that serve them.
     pub records: Vec<LayerRecord>,
+    /// Its maps: layers from the top down, then effects.
+    pub maps: Vec<MaterialMap>,
 }
 
 /// What a bake would consist of.
@@ -89,12 +92,13 @@ fn used(tiles: &[Tiles; TableKind::ALL.len()]) -> impl Iterator<Item = (TableKin
     TableKind::ALL.into_iter().zip(tiles).filter(|(_, tiles)| !tiles.tiles.is_empty())
 }
 
-fn baked_materials(materials: &[Material], records: Vec<Vec<LayerRecord>>) -> Vec<BakedMaterial> {
-    let baked = |(m, records): (&Material, Vec<LayerRecord>)| BakedMaterial {
+fn baked_materials(materials: &[Material], records: Vec<PlannedLayers>) -> Vec<BakedMaterial> {
+    let baked = |(m, planned): (&Material, PlannedLayers)| BakedMaterial {
         model: shading_model(m),
         color: color_mode(m),
-        constants: constants(m),
-        records,
+        constants: constants(m, planned.bare),
+        records: planned.layers,
+        maps: maps(m),
     };
     materials.iter().zip(records).map(baked).collect()
 }

@@ -2,15 +2,15 @@
 
 use luthier_layers::monochrome::{Monochrome, in_color};
 use luthier_layers::phong::Coefficients;
-use luthier_lut::{FlakesRecord, MaterialConstants, PatinaRecord};
-use luthier_material::{Effects, FlakeSource, Material};
+use luthier_lut::{FlakesRecord, GlitterRecord, LayerRecord, MaterialConstants, PatinaRecord};
+use luthier_material::{Effects, FlakeSource, Glitter, Material};
 use luthier_optics::stack::Stack;
 
 use crate::plan::{color, is_statistical, shading_model};
 use crate::veil::veil;
 
-/// The constants of a material.
-pub(crate) fn constants(material: &Material) -> MaterialConstants {
+/// The constants of a material; `bare` is the layer below its patina.
+pub(crate) fn constants(material: &Material, bare: Option<LayerRecord>) -> MaterialConstants {
     let (stack, color) = (&material.stack, color(material));
     let (internal_reflectance, upward_loss) =
         if is_statistical(shading_model(material)) { veil(stack, &color) } else { ([0.0; 3], 0.0) };
@@ -21,7 +21,8 @@ pub(crate) fn constants(material: &Material) -> MaterialConstants {
         internal_reflectance,
         upward_loss,
         flakes: flakes(&material.effects),
-        patina: patina(&material.effects),
+        patina: bare.and_then(|bare| patina(&material.effects, bare)),
+        glitter: glitter(&material.effects),
     }
 }
 
@@ -30,15 +31,22 @@ fn exponent(stack: &Stack, [_, green_nm, _]: [f64; 3]) -> f64 {
     Coefficients::of(&Monochrome::new(stack, green_nm, 1)).exponent
 }
 
-/// Flakes that are a grid of cells; those of a normal map are the map's.
 fn flakes(effects: &Effects) -> Option<FlakesRecord> {
     let flakes = effects.flakes.as_ref()?;
-    let FlakeSource::Cells { seed, count, spread } = flakes.source else { return None };
+    let (seed, count, spread) = match flakes.source {
+        FlakeSource::Cells { seed, count, spread } => (seed, count, spread),
+        FlakeSource::NormalMap { .. } => (0, 0, 0.0),
+    };
     let (tiling, scale, fade_start) = (flakes.tiling, flakes.scale, flakes.fade_start);
     Some(FlakesRecord { seed, count, tiling, spread, scale, fade_start })
 }
 
-fn patina(effects: &Effects) -> Option<PatinaRecord> {
+fn glitter(effects: &Effects) -> Option<GlitterRecord> {
+    let &Glitter { seed, frequency, filled, tilt } = effects.glitter.as_ref()?;
+    Some(GlitterRecord { seed, frequency, filled, tilt })
+}
+
+fn patina(effects: &Effects, bare: LayerRecord) -> Option<PatinaRecord> {
     let patina = effects.patina.as_ref()?;
     Some(PatinaRecord {
         extent: patina.extent,
@@ -46,5 +54,6 @@ fn patina(effects: &Effects) -> Option<PatinaRecord> {
         diffuse_albedo: patina.diffuse_albedo,
         base_alpha: patina.base_alpha,
         tarnish: patina.tarnish,
+        bare,
     })
 }

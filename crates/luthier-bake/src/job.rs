@@ -12,6 +12,7 @@ use crate::distribution::DistributionJob;
 use crate::escape::EscapeJob;
 use crate::facet_grid::{CrossedGrid, CrossedJob, FacetGrid, FacetGridJob};
 use crate::fgd::FgdJob;
+use crate::film::FilmJob;
 use crate::fresnel::FresnelJob;
 use crate::graph::Inputs;
 use crate::phase::PhaseJob;
@@ -54,6 +55,8 @@ pub enum JobKind {
     Phase,
     /// One thickness texture.
     Thickness,
+    /// One film tile.
+    Film,
     /// One escape tile.
     Escape,
 }
@@ -69,6 +72,7 @@ impl JobKind {
             Self::Fgd => "fgd",
             Self::Phase => "phase",
             Self::Thickness => "thickness",
+            Self::Film => "film",
             Self::Escape => "escape",
         }
     }
@@ -84,6 +88,7 @@ pub(crate) enum Job {
     Fgd(FgdJob),
     Phase(PhaseJob),
     Thickness(ThicknessJob),
+    Film(FilmJob),
     Escape(EscapeJob),
 }
 
@@ -97,6 +102,7 @@ impl Job {
             Self::Fgd(_) => JobKind::Fgd,
             Self::Phase(_) => JobKind::Phase,
             Self::Thickness(_) => JobKind::Thickness,
+            Self::Film(_) => JobKind::Film,
             Self::Escape(_) => JobKind::Escape,
         }
     }
@@ -110,6 +116,7 @@ impl Job {
             Self::Fgd(job) => job.inputs(),
             Self::Phase(job) => job.inputs(),
             Self::Thickness(job) => job.inputs(),
+            Self::Film(job) => job.inputs(),
             Self::Escape(job) => job.inputs(),
         };
         Key::of(self.kind(), &inputs)
@@ -132,6 +139,7 @@ impl Job {
             Self::Fgd(job) => Artefact::Tile(job.run(inputs)),
             Self::Phase(job) => Artefact::Tile(job.run()),
             Self::Thickness(job) => Artefact::Tile(job.run()),
+            Self::Film(job) => Artefact::Tile(job.run()),
             Self::Escape(job) => Artefact::Tile(job.run()),
         }
     }

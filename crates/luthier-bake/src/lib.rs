@@ -5,7 +5,8 @@
 //! equal interfaces of different materials share a tile, and the bytes depend on nothing else: not on threads, build
 //! profile or platform.
 //!
-//! Simplifications: interfaces are tabulated at the nominal thickness of their films; anisotropic surfaces enter with the
+//! Simplifications: albedos are tabulated at the nominal thickness of films, reflectances over all of their thickness where it
+//! varies; anisotropic surfaces enter with the
 //! geometric mean of their slope parameters.
 //!
 //! Out of scope: reading material files, encoding textures, shaders, the command line.
@@ -18,13 +19,16 @@ mod error;
 mod escape;
 mod facet_grid;
 mod fgd;
+mod film;
 mod fresnel;
 mod graph;
 mod job;
 mod json;
+mod maps;
 mod phase;
 mod plan;
 mod records;
+mod relief;
 mod settings;
 mod smooth;
 mod thickness;
@@ -34,4 +38,5 @@ pub use assemble::{Bake, BakedMaterial, Outline, bake, outline};
 pub use error::BakeError;
 pub use graph::{Observer, Silent};
 pub use job::{JobKind, Key};
+pub use maps::{MapSource, MaterialMap};
 pub use plan::ImageReader;

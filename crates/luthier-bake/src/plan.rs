@@ -1,22 +1,24 @@
 //! From materials to jobs: which tile serves which layer.
 
 use luthier_lut::{ColorMode, Image, LayerRecord, ShadingModel, TableKind};
-use luthier_material::{ColorSetting, FilmVariation, Material, ModelSetting, VariationSource};
+use luthier_material::{ColorSetting, FilmVariation, LayerExtras, Material, ModelSetting};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
-use luthier_optics::stack::{Base, Film, Layer};
+use luthier_optics::stack::{Base, Film, FilmThickness, Layer, Stack};
 
 use crate::BakeError;
 use crate::distribution::DistributionJob;
 use crate::escape::EscapeJob;
 use crate::fgd::FgdJob;
+use crate::film::FilmJob;
 use crate::fresnel::FresnelJob;
 use crate::graph::Graph;
 use crate::job::{Job, Key};
 use crate::phase::PhaseJob;
 use crate::records::records;
+use crate::relief::Relief;
 use crate::settings::Settings;
-use crate::thickness::{Relief, ThicknessJob};
+use crate::thickness::ThicknessJob;
 
 /// The tiles of one kind, in the order of their first use.
 #[derive(Debug, Default)]
@@ -42,7 +44,15 @@ pub(crate) struct Plan {
     /// One per table kind, in binding order.
     pub(crate) tiles: [Tiles; TableKind::ALL.len()],
     /// Layer records per material, tiles filled in.
-    pub(crate) records: Vec<Vec<LayerRecord>>,
+    pub(crate) records: Vec<PlannedLayers>,
+}
+
+/// The records of a material.
+#[derive(Debug)]
+pub(crate) struct PlannedLayers {
+    pub(crate) layers: Vec<LayerRecord>,
+    /// The layer below a patina where none has grown.
+    pub(crate) bare: Option<LayerRecord>,
 }
 
 /// The colour that the tables of a material hold.
@@ -86,24 +96,61 @@ impl Plan {
         Ok(plan)
     }
 
-    fn material(&mut self, material: &Material, read: ImageReader<'_>) -> Result<Vec<LayerRecord>, BakeError> {
+    fn material(&mut self, material: &Material, read: ImageReader<'_>) -> Result<PlannedLayers, BakeError> {
+        let layers = self.layers(material, &material.stack, material.layers.as_slice(), "", read)?;
+        let bare = match &material.effects.patina {
+            Some(_) if material.stack.layers.len() > 1 => {
+                let stack =
+                    Stack { exterior: material.stack.exterior.clone(), layers: vec![material.stack.layers[1].clone()] };
+                self.layers(material, &stack, &material.layers[1..2], "bare-", read)?.into_iter().next()
+            }
+            _ => None,
+        };
+        Ok(PlannedLayers { layers, bare })
+    }
+
+    /// The records of a stack of a material; names of tiles are the material's and `label`, then the layer's number.
+    fn layers(
+        &mut self,
+        material: &Material,
+        stack: &Stack,
+        extras: &[LayerExtras],
+        label: &str,
+        read: ImageReader<'_>,
+    ) -> Result<Vec<LayerRecord>, BakeError> {
         let wavelengths_nm = material.bake.wavelengths_nm();
         let color = color(material);
-        let mut records = records(&material.stack, wavelengths_nm);
-        for (i, (record, layer)) in records.iter_mut().zip(&material.stack.layers).enumerate() {
-            let Some(interface) = Interface::of(&material.stack, i) else { continue };
-            let name = || format!("{}/{i}", material.name);
-            self.interface(record, layer, interface, color, &name);
-            if is_statistical(shading_model(material)) && Interface::of(&material.stack, i + 1).is_some() {
+        let mut records = records(stack, wavelengths_nm);
+        for (i, (record, layer)) in records.iter_mut().zip(&stack.layers).enumerate() {
+            let Some(interface) = Interface::of(stack, i) else { continue };
+            let name = || format!("{}/{label}{i}", material.name);
+            self.interface(record, layer, interface.clone(), color, &name);
+            if is_statistical(shading_model(material)) && Interface::of(stack, i + 1).is_some() {
                 self.escape(record, &name);
             }
             let Some(film) = layer.films.first() else { continue };
             self.phase(record, film, wavelengths_nm, &name);
-            if let Some(variation) = material.layers.get(i).and_then(|l| l.film_variation.as_ref()) {
+            if record.varies() {
+                self.film(record, interface, film.thickness, color, &name);
+            }
+            if let Some(variation) = extras.get(i).and_then(|l| l.film_variation.as_ref()) {
                 self.thickness(record, film, variation, material, read, &name)?;
             }
         }
         Ok(records)
+    }
+
+    fn film(
+        &mut self,
+        record: &mut LayerRecord,
+        interface: Interface,
+        thickness: FilmThickness,
+        color: Color,
+        name: &dyn Fn() -> String,
+    ) {
+        let (axes, format) = self.settings.film.clone();
+        let job = FilmJob { interface, thickness, color, axes, format };
+        record.film_tile = Some(self.add(TableKind::Film, Job::Film(job), name));
     }
 
     fn interface(
@@ -155,19 +202,10 @@ impl Plan {
         read: ImageReader<'_>,
         name: &dyn Fn() -> String,
     ) -> Result<(), BakeError> {
-        let relief = match &variation.source {
-            VariationSource::Noise { seed, frequency, octaves } => {
-                Relief::Noise { seed: *seed, frequency: *frequency, octaves: *octaves }
-            }
-            VariationSource::Image { path } => {
-                let image = read(&material.source, path).map_err(|reason| BakeError::Map {
-                    material: material.source.clone(),
-                    path: path.clone(),
-                    reason,
-                })?;
-                Relief::Image(image)
-            }
-        };
+        let relief = Relief::of(&variation.source, |path| {
+            let map = |reason| BakeError::Map { material: material.source.clone(), path: path.to_owned(), reason };
+            read(&material.source, path).map_err(map)
+        })?;
         let (axes, format) = self.settings.thickness.clone();
         let job = ThicknessJob {
             relief,

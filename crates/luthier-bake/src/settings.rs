@@ -79,7 +79,7 @@ impl Settings {
         );
         let film = (
             [
-                axis("cos_theta", "", [0.0, 1.0], 64, Mapping::Linear),
+                axis("cos_theta", "", [0.0, 1.0], 64, Mapping::Power { exponent: 2.0 }),
                 axis("fraction", "", [0.0, 1.0], 256, Mapping::Linear),
             ],
             TexelFormat::Rgba16Float,

@@ -1,9 +1,11 @@
 //! A bake as files: textures, truth, pictures, shaders, manifest.
 
-use luthier_bake::Bake;
+use std::path::Path;
+
+use luthier_bake::{Bake, MapSource};
 use luthier_lut::{
-    Atlas, AtlasLayout, Axis, FileEntry, Image, MANIFEST_SCHEMA, Manifest, Mapping, MaterialEntry, ShaderEntry,
-    TableEntry, TableKind, material_buffer,
+    Atlas, AtlasLayout, Axis, FileEntry, Image, MANIFEST_SCHEMA, Manifest, MapEntry, Mapping, MaterialEntry,
+    ShaderEntry, TableEntry, TableKind, material_buffer,
 };
 use luthier_material::Material;
 use luthier_shader::{Form, MaterialSet, Target};
@@ -58,7 +60,7 @@ impl BakeFiles {
         let mut manifest = Manifest {
             schema: MANIFEST_SCHEMA,
             generator: GENERATOR.to_owned(),
-            materials: material_entries(materials, &bake.materials),
+            materials: material_entries(materials, &bake.materials, &mut files)?,
             tables,
             shaders: Vec::new(),
             bindings: Vec::new(),
@@ -83,23 +85,60 @@ impl BakeFiles {
     }
 }
 
-/// What the manifest says of each material.
-pub(crate) fn material_entries(materials: &[Material], baked: &[luthier_bake::BakedMaterial]) -> Vec<MaterialEntry> {
-    materials
-        .iter()
-        .zip(baked)
-        .map(|(material, baked)| MaterialEntry {
+/// What the manifest says of each material; the maps are added to `files`.
+pub(crate) fn material_entries(
+    materials: &[Material],
+    baked: &[luthier_bake::BakedMaterial],
+    files: &mut Vec<(String, Vec<u8>)>,
+) -> Outcome<Vec<MaterialEntry>> {
+    let mut entries = Vec::with_capacity(materials.len());
+    for (material, baked) in materials.iter().zip(baked) {
+        entries.push(MaterialEntry {
             name: material.name.clone(),
             source: material.source.clone(),
-            source_hash: sha256(material.text.as_bytes()),
+            source_hash: source_hash(material)?,
             class: material.class.letter().to_string(),
             model: baked.model,
             color: baked.color,
             wavelengths_nm: material.bake.wavelengths_nm(),
             constants: baked.constants.clone(),
             layers: baked.records.clone(),
-        })
-        .collect()
+            maps: baked.maps.iter().map(|map| self::map(material, map, files)).collect::<Outcome<_>>()?,
+        });
+    }
+    Ok(entries)
+}
+
+/// A map as it ships: an image as it is, noise as a grey PNG.
+fn map(material: &Material, map: &luthier_bake::MaterialMap, files: &mut Vec<(String, Vec<u8>)>) -> Outcome<MapEntry> {
+    let label = map.source.label();
+    let unusable = |error: anyhow::Error| Failure::Input(error.context(format!("{}: map {label}", material.source)));
+    let bytes = match &map.source {
+        MapSource::File(path) => named_file(material, path)?,
+        MapSource::Noise { .. } => {
+            let texels = map.source.texels().unwrap_or_else(|| Image::zeros(1, 1, 1));
+            png::encode_gray(&texels).map_err(|source| unusable(source.into()))?
+        }
+    };
+    let Image { width, height, .. } = png::decode(&bytes).map_err(|source| unusable(source.into()))?;
+    let layer = map.layer.map_or_else(String::new, |layer| format!("-{layer}"));
+    let file = add(files, format!("maps/{}-{}{layer}.png", material.name, map.slot.name()), bytes);
+    Ok(MapEntry { slot: map.slot, layer: map.layer, source: label, file, width, height })
+}
+
+/// A file that a material names.
+fn named_file(material: &Material, path: &str) -> Outcome<Vec<u8>> {
+    let path = Path::new(&material.source).parent().unwrap_or(Path::new("")).join(path);
+    std::fs::read(&path).map_err(crate::failure::files(&path, "read"))
+}
+
+/// The hash of a material file and of all that it names: of its text, followed by the hash of each file, if it names any.
+pub(crate) fn source_hash(material: &Material) -> Outcome<String> {
+    let mut text = material.text.clone();
+    for path in &material.files {
+        text.push_str(&sha256(&named_file(material, path)?));
+    }
+    Ok(sha256(text.as_bytes()))
 }
 
 /// SHA-256 in hex.

@@ -57,5 +57,7 @@ pub(crate) fn bake(materials: &[Material]) -> Outcome<Artefacts> {
             Some(WgslShader { form: s.form.clone(), wgsl: String::from_utf8_lossy(bytes).into_owned() })
         })
         .collect();
-    Artefacts::from_parts(made.manifest.clone(), tables, shaders).map_err(device)
+    let artefacts = Artefacts::from_parts(made.manifest.clone(), tables, shaders).map_err(device)?;
+    let file = |path: &str| made.files.iter().find(|(name, _)| name == path).map(|(_, bytes)| bytes.clone());
+    artefacts.with_maps(|entry| Ok(file(&entry.file.path).unwrap_or_default())).map_err(device)
 }

@@ -1,7 +1,7 @@
 use std::path::{Component, Path, PathBuf};
 
-use luthier_lut::{AtlasLayout, FileEntry, Manifest, TableEntry, TableKind, TexelFormat};
-use luthier_texture::ktx2;
+use luthier_lut::{AtlasLayout, FileEntry, Image, Manifest, MapEntry, MapSlot, TableEntry, TableKind, TexelFormat};
+use luthier_texture::{ktx2, png};
 use sha2::{Digest, Sha256};
 
 use crate::GpuError;
@@ -16,6 +16,21 @@ pub struct Artefacts {
     pub tables: Vec<TableTexels>,
     /// The WGSL shaders, one per form.
     pub shaders: Vec<WgslShader>,
+    /// Maps of the materials; a surface without them is the same everywhere.
+    pub maps: Vec<MapTexels>,
+}
+
+/// A map of a material.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapTexels {
+    /// Number of the material.
+    pub material: u32,
+    /// What it says.
+    pub slot: MapSlot,
+    /// The layer that it is of; `None` for those of the whole surface.
+    pub layer: Option<u32>,
+    /// RGBA, linear.
+    pub image: Image,
 }
 
 /// The texels of a table as they ship.
@@ -43,7 +58,7 @@ pub struct WgslShader {
 }
 
 impl Artefacts {
-    /// Loads a bake from its folder: `manifest.json`, then the textures and WGSL shaders that it names. The hash of
+    /// Loads a bake from its folder: `manifest.json`, then the textures, WGSL shaders and maps that it names. The hash of
     /// every file is checked against the manifest.
     ///
     /// # Errors
@@ -72,10 +87,27 @@ impl Artefacts {
             let wgsl = String::from_utf8(bytes).map_err(|_| GpuError::ShaderText { path })?;
             shaders.push(WgslShader { form: entry.form.clone(), wgsl });
         }
-        Self::from_parts(manifest, tables, shaders)
+        Self::from_parts(manifest, tables, shaders)?.with_maps(|entry| Ok(read(folder, &entry.file)?.1))
     }
 
-    /// The same from memory. Tables may come in any order.
+    /// The same with the maps that the manifest lists; `read` gives the bytes of their files, PNG.
+    ///
+    /// # Errors
+    /// Those of `read`, and [`GpuError::Texture`].
+    pub fn with_maps(mut self, read: impl Fn(&MapEntry) -> Result<Vec<u8>, GpuError>) -> Result<Self, GpuError> {
+        self.maps.clear();
+        for (material, entry) in self.manifest.materials.iter().enumerate() {
+            for map in &entry.maps {
+                let path = PathBuf::from(&map.file.path);
+                let image = png::decode(&read(map)?).map_err(|source| GpuError::Texture { path, source })?;
+                let (slot, layer) = (map.slot, map.layer);
+                self.maps.push(MapTexels { material: material as u32, slot, layer, image });
+            }
+        }
+        Ok(self)
+    }
+
+    /// The same from memory, without maps. Tables may come in any order.
     ///
     /// # Errors
     /// When a table of the manifest has no texels or others than its entry says, and when there is nothing to shade.
@@ -97,7 +129,7 @@ impl Artefacts {
             check(entry, &table)?;
             ordered.push(table);
         }
-        Ok(Self { manifest, tables: ordered, shaders })
+        Ok(Self { manifest, tables: ordered, shaders, maps: Vec::new() })
     }
 
     /// The texels of a table, if the bake has it.

@@ -29,6 +29,7 @@ mod evaluate;
 mod gpu;
 mod light;
 mod lookup;
+mod maps;
 mod panorama;
 mod prefilter;
 mod render;
@@ -38,7 +39,7 @@ mod sky;
 mod tone;
 mod vector;
 
-pub use artefacts::{Artefacts, TableTexels, WgslShader};
+pub use artefacts::{Artefacts, MapTexels, TableTexels, WgslShader};
 pub use environment::{Blur, Environment};
 pub use error::GpuError;
 pub use gpu::Gpu;

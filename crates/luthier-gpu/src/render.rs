@@ -4,6 +4,7 @@ use luthier_lut::{Image, LayerKind, LayerRecord, MaterialEntry, TableKind, mater
 
 use crate::context::Pass;
 use crate::environment::{Blur, Environment};
+use crate::maps::MAP_WORDS;
 use crate::prefilter::ALPHAS;
 use crate::sky::setting;
 use crate::{Camera, GpuError, Light, Scene, Shape, Sky};
@@ -128,7 +129,15 @@ impl Scene {
 
     /// The material buffer: all materials as they are, then all again with slopes widened by the lights.
     fn widened_words(&self, angular_radius: f32) -> Vec<[f32; 4]> {
-        let widen = |m: &MaterialEntry| MaterialEntry { layers: widened(&m.layers, angular_radius), ..m.clone() };
+        let widen = |m: &MaterialEntry| {
+            let mut entry = MaterialEntry { layers: widened(&m.layers, angular_radius), ..m.clone() };
+            if let Some(patina) = &mut entry.constants.patina {
+                let bare = widened(std::slice::from_ref(&patina.bare), angular_radius);
+                patina.bare = bare.into_iter().next().unwrap_or_default();
+                patina.base_alpha = patina.base_alpha.map(|alpha| wider(alpha, angular_radius));
+            }
+            entry
+        };
         let mut materials = self.manifest.materials.clone();
         materials.extend(self.manifest.materials.iter().map(widen));
         material_buffer(&materials)
@@ -139,9 +148,11 @@ impl Scene {
         let body = |kind, call| if self.reads(kind) { call } else { "vec3<f32>(0.0)" };
         let fresnel = body(TableKind::Fresnel, "luthier_lookup_fresnel(tile, cos_theta)");
         let fgd = body(TableKind::Fgd, "luthier_lookup_fgd(tile, cos_theta, alpha).rgb");
+        let film = body(TableKind::Film, "luthier_lookup_film(tile, cos_theta, fraction)");
         let lookups = format!(
             "fn shading_fresnel(tile: f32, cos_theta: f32) -> vec3<f32> {{\n    return {fresnel};\n}}\n\
-             fn shading_fgd(tile: f32, cos_theta: f32, alpha: f32) -> vec3<f32> {{\n    return {fgd};\n}}\n"
+             fn shading_fgd(tile: f32, cos_theta: f32, alpha: f32) -> vec3<f32> {{\n    return {fgd};\n}}\n\
+             fn shading_film(tile: f32, cos_theta: f32, fraction: f32) -> vec3<f32> {{\n    return {film};\n}}\n"
         );
         [
             include_str!("wgsl/shape.wgsl"),
@@ -149,6 +160,7 @@ impl Scene {
             include_str!("wgsl/shading.wgsl"),
             include_str!("wgsl/render.wgsl"),
             &lookups,
+            &self.surface_functions(),
         ]
         .join("\n")
     }
@@ -170,10 +182,16 @@ impl Scene {
         let mut first = headers + entries.len();
         for entry in entries {
             words.push([first as u32, entry.layers.len() as u32, 0, 0]);
-            first += entry.layers.len() * 4;
+            first += entry.records().count() * 4;
         }
-        for layer in entries.iter().flat_map(|entry| &entry.layers) {
+        for layer in entries.iter().flat_map(MaterialEntry::records) {
             words.extend(layer_words(layer, chain_of(layer)).map(bits));
+        }
+        for (i, entry) in entries.iter().enumerate() {
+            let first = words.len();
+            words[headers + i][2] = first as u32;
+            let used = materials.contains(&(i as u32));
+            words.extend(if used { self.map_words(i, entry, first) } else { vec![[0; 4]; MAP_WORDS] });
         }
 
         let prefiltered = settings.environment_samples == 0;
@@ -221,7 +239,8 @@ impl Scene {
 
     /// The slope distributions of all layers, in the order of their chains.
     fn blurs(&self) -> Vec<Blur> {
-        let layers = || self.manifest.materials.iter().flat_map(|m| &m.layers).filter(|l| l.kind != LayerKind::Diffuse);
+        let layers =
+            || self.manifest.materials.iter().flat_map(MaterialEntry::records).filter(|l| l.kind != LayerKind::Diffuse);
         [Blur::Ggx, Blur::Beckmann].into_iter().filter(|blur| layers().any(|l| blur_of(l) == *blur)).collect()
     }
 }
@@ -242,10 +261,11 @@ fn layer_words(layer: &LayerRecord, chain: f32) -> [[f32; 4]; 4] {
         LayerKind::Diffuse => 2.0,
     };
     let tile = |tile: Option<u32>| tile.map_or(-1.0, |t| t as f32);
+    let film_fraction = layer.film_thickness_nm / layer.film_thickness_max_nm.max(1e-30);
     let rgb = |[r, g, b]: [f64; 3]| [r as f32, g as f32, b as f32, 0.0];
     [
         [kind, layer.alpha as f32, layer.eta as f32, chain],
-        [tile(layer.fresnel_tile), tile(layer.fgd_tile), 0.0, 0.0],
+        [tile(layer.fresnel_tile), tile(layer.fgd_tile), tile(layer.film_tile), film_fraction as f32],
         rgb(layer.optical_depth),
         rgb(layer.albedo),
     ]
@@ -253,14 +273,17 @@ fn layer_words(layer: &LayerRecord, chain: f32) -> [[f32; 4]; 4] {
 
 /// Layers with slopes widened by a light of this angular radius: the half vector turns by half of what the light does.
 fn widened(layers: &[LayerRecord], angular_radius: f32) -> Vec<LayerRecord> {
-    let spread = 0.5 * f64::from(angular_radius);
-    let wider = |alpha: f64| libm::sqrt(alpha * alpha + spread * spread).min(1.0);
     let widen = |layer: &LayerRecord| LayerRecord {
-        alpha: wider(layer.alpha),
-        alpha_xy: layer.alpha_xy.map(wider),
+        alpha: wider(layer.alpha, angular_radius),
+        alpha_xy: layer.alpha_xy.map(|alpha| wider(alpha, angular_radius)),
         ..layer.clone()
     };
     layers.iter().map(widen).collect()
+}
+
+fn wider(alpha: f64, angular_radius: f32) -> f64 {
+    let spread = 0.5 * f64::from(angular_radius);
+    libm::sqrt(alpha * alpha + spread * spread).min(1.0)
 }
 
 impl RenderSettings {

@@ -4,13 +4,14 @@ use luthier_lut::{LayerRecord, Manifest, TableKind};
 
 use crate::bindings::{ShaderBindings, kernel_layout, material_words};
 use crate::context::Context;
-use crate::{Artefacts, GpuError, evaluate};
+use crate::{Artefacts, GpuError, MapTexels, evaluate};
 
 /// A bake on a device, ready to evaluate, to look up and to render.
 #[derive(Debug)]
 pub struct Scene {
     pub(crate) context: Context,
     pub(crate) manifest: Manifest,
+    pub(crate) maps: Vec<MapTexels>,
     form: String,
     wgsl: String,
     pub(crate) bindings: ShaderBindings,
@@ -39,6 +40,7 @@ impl Scene {
         Ok(Self {
             context,
             manifest: artefacts.manifest.clone(),
+            maps: artefacts.maps.clone(),
             form: form.to_owned(),
             wgsl: shader.wgsl.clone(),
             bindings,
@@ -65,6 +67,11 @@ impl Scene {
     /// Whether the shader reads a table.
     pub(crate) fn reads(&self, kind: TableKind) -> bool {
         self.wgsl.contains(&format!("fn luthier_lookup_{}(", kind.name()))
+    }
+
+    /// Whether the shader has a function or a member of a structure.
+    pub(crate) fn has(&self, declaration: &str) -> bool {
+        self.wgsl.contains(declaration)
     }
 
     /// The pipeline in `cell`, compiled at its first use.

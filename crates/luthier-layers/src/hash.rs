@@ -1,21 +1,21 @@
-//! Random numbers as a function of a place.
+//! Random numbers as a function of a place. 32 bits at a time, so that shaders compute the same.
 
-/// A well-mixed word for a lattice cell: the finaliser of SplitMix64 (Steele, Lea and Flood 2014) over the coordinates.
-pub(crate) fn cell(seed: u32, x: i64, y: i64) -> u64 {
-    let start = mix(u64::from(seed) ^ 0x9e37_79b9_7f4a_7c15);
-    mix(mix(start ^ x.cast_unsigned()).wrapping_add(y.cast_unsigned()))
+/// A well-mixed word for a lattice cell. Coordinates count modulo 2^32.
+pub(crate) fn cell(seed: u32, x: i64, y: i64) -> u32 {
+    mix(mix(mix(seed).wrapping_add(x as u32)).wrapping_add(y as u32))
 }
 
-/// The number `index` of a cell, in 0..1.
-pub(crate) fn unit(cell: u64, index: u64) -> f64 {
-    let word = mix(cell.wrapping_add((index + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15)));
-    (word >> 11) as f64 / (1u64 << 53) as f64
+/// The number `index` of a cell: a multiple of 2^-24 in 0..1, which f32 holds exactly.
+pub(crate) fn unit(cell: u32, index: u32) -> f64 {
+    let word = mix(cell.wrapping_add(index.wrapping_mul(0x9e37_79b9)));
+    f64::from(word >> 8) / f64::from(1u32 << 24)
 }
 
-fn mix(mut z: u64) -> u64 {
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
+/// PCG's output function after one step (Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 2020, section 2).
+fn mix(x: u32) -> u32 {
+    let state = x.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+    let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
+    (word >> 22) ^ word
 }
 
 /// The lattice coordinate below `x`; saturates far out, 0 for what is not a number.

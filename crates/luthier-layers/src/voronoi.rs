@@ -18,12 +18,12 @@ pub struct Voronoi {
 pub struct Cell {
     /// Its point.
     pub site: DVec2,
-    word: u64,
+    word: u32,
 }
 
 impl Cell {
     /// Random numbers of the cell by index, each in 0..1.
-    pub fn number(&self, index: u64) -> f64 {
+    pub fn number(&self, index: u32) -> f64 {
         hash::unit(self.word, index.wrapping_add(2))
     }
 }

@@ -1,5 +1,7 @@
 use serde::{Deserialize, Serialize};
 
+use crate::LayerRecord;
+
 /// What a shader needs of a whole surface, beside its layers; what a model does not use is zero.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MaterialConstants {
@@ -18,14 +20,16 @@ pub struct MaterialConstants {
     pub flakes: Option<FlakesRecord>,
     /// Patina: the first layer has grown over the others in places.
     pub patina: Option<PatinaRecord>,
+    /// Cells of the surface that glitter.
+    pub glitter: Option<GlitterRecord>,
 }
 
-/// Flakes, one per cell of a grid (Elek 2010, section 4.1).
+/// Flakes, one per cell of a grid or as a normal map has them (Elek 2010, section 4.1).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FlakesRecord {
     /// Which flakes.
     pub seed: u32,
-    /// Cells along one repeat.
+    /// Cells along one repeat; 0 where the flakes are those of a normal map.
     pub count: u32,
     /// Repeats per unit of texture coordinate.
     pub tiling: f64,
@@ -38,7 +42,7 @@ pub struct FlakesRecord {
 }
 
 /// Patina (Elek 2010, section 4.2): its amount is `clamp(1/2 + (extent - map) / (2 transition), 0, 1)`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PatinaRecord {
     /// How far it has developed.
     pub extent: f64,
@@ -50,11 +54,26 @@ pub struct PatinaRecord {
     pub base_alpha: Option<f64>,
     /// Factor on the reflection of the layer below where patina has grown, RGB.
     pub tarnish: [f64; 3],
+    /// The layer below the first as it is where no patina has grown: against the medium above the surface.
+    pub bare: LayerRecord,
+}
+
+/// Glitter (Weidlich and Wilkie 2009, section 5.2.1): a share of the Voronoi cells of the surface is tilted.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct GlitterRecord {
+    /// Which cells.
+    pub seed: u32,
+    /// Cells per unit of texture coordinate.
+    pub frequency: f64,
+    /// Share of the cells that glitter, 0..=1.
+    pub filled: f64,
+    /// Largest tilt of a glittering cell, radians; tilts are uniform in solid angle.
+    pub tilt: f64,
 }
 
 impl MaterialConstants {
     /// `vec4` words of the constants in the material buffer.
-    pub const WORDS: usize = 8;
+    pub const WORDS: usize = 10;
 
     /// The words, in the order that the shader unpacks them.
     ///
@@ -68,14 +87,16 @@ impl MaterialConstants {
     /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; all 0 without patina |
     /// | 7 | patina: diffuse albedo RGB, 0 |
     /// | 8 | patina: tarnish RGB, 0 |
+    /// | 9 | glitter: low and high 16 bits of the seed, frequency, filled; all 0 without glitter |
+    /// | 10 | glitter: 1 - cos tilt, 0, 0, 0 |
     pub fn words(&self) -> [[f32; 4]; Self::WORDS] {
         let with = |[r, g, b]: [f64; 3], w: f64| [r as f32, g as f32, b as f32, w as f32];
         let mut words = [[0.0; 4]; Self::WORDS];
         words[0] = with(self.phong_diffuse, self.phong_exponent);
         words[1] = with(self.phong_specular, 0.0);
         words[2] = with(self.internal_reflectance, self.upward_loss);
+        let half = |bits: u32| (bits & 0xffff) as f32;
         if let Some(f) = &self.flakes {
-            let half = |bits: u32| (bits & 0xffff) as f32;
             words[3] = [half(f.seed), half(f.seed >> 16), f.count as f32, f.tiling as f32];
             words[4] = with([f.spread, f.scale, f.fade_start], 0.0);
         }
@@ -83,6 +104,10 @@ impl MaterialConstants {
             words[5] = with([p.extent, p.transition, p.base_alpha.unwrap_or(-1.0)], 1.0);
             words[6] = with(p.diffuse_albedo, 0.0);
             words[7] = with(p.tarnish, 0.0);
+        }
+        if let Some(g) = &self.glitter {
+            words[8] = [half(g.seed), half(g.seed >> 16), g.frequency as f32, g.filled as f32];
+            words[9] = with([1.0 - libm::cos(g.tilt), 0.0, 0.0], 0.0);
         }
         words
     }
@@ -103,7 +128,10 @@ mod tests {
             diffuse_albedo: [11.0, 12.0, 13.0],
             base_alpha: None,
             tarnish: [14.0, 15.0, 16.0],
+            bare: LayerRecord::default(),
         };
+        let glitter =
+            GlitterRecord { seed: 0x0005_0004, frequency: 30.0, filled: 0.25, tilt: std::f64::consts::FRAC_PI_2 };
         let constants = MaterialConstants {
             phong_diffuse: [20.0, 21.0, 22.0],
             phong_specular: [23.0, 24.0, 25.0],
@@ -112,6 +140,7 @@ mod tests {
             upward_loss: 30.0,
             flakes: Some(flakes),
             patina: Some(patina),
+            glitter: Some(glitter),
         };
         assert_eq!(
             constants.words(),
@@ -124,6 +153,8 @@ mod tests {
                 [9.0, 10.0, -1.0, 1.0],
                 [11.0, 12.0, 13.0, 0.0],
                 [14.0, 15.0, 16.0, 0.0],
+                [4.0, 5.0, 30.0, 0.25],
+                [1.0, 0.0, 0.0, 0.0],
             ]
         );
         assert_eq!(MaterialConstants::default().words(), [[0.0; 4]; MaterialConstants::WORDS]);

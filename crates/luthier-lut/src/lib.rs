@@ -24,13 +24,14 @@ mod shading;
 
 pub use atlas::{Atlas, AtlasLayout, TableKind, Tile};
 pub use axis::{Axis, Mapping};
-pub use constants::{FlakesRecord, MaterialConstants, PatinaRecord};
+pub use constants::{FlakesRecord, GlitterRecord, MaterialConstants, PatinaRecord};
 pub use encoding::Encoding;
 pub use error::LutError;
 pub use format::TexelFormat;
 pub use image::Image;
 pub use manifest::{
-    BindingEntry, ColorMode, FileEntry, MANIFEST_SCHEMA, Manifest, MaterialEntry, ShaderEntry, TableEntry,
+    BindingEntry, ColorMode, FileEntry, MANIFEST_SCHEMA, Manifest, MapEntry, MapSlot, MaterialEntry, ShaderEntry,
+    TableEntry,
 };
 pub use measure::{Comparison, ErrorStats, Scan, Worst, measure, measure_scan};
 pub use record::{LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, material_buffer};

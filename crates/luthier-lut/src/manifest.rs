@@ -42,7 +42,7 @@ pub struct MaterialEntry {
     pub name: String,
     /// The file it came from, as it was named on the command line.
     pub source: String,
-    /// SHA-256 of that file, hex.
+    /// SHA-256, hex, of that file; of the file and, in the order of their names, the hashes of the files that it names, if any.
     pub source_hash: String,
     /// Surface class a-h of Weidlich and Wilkie 2009, chapter 4.
     pub class: String,
@@ -56,6 +56,55 @@ pub struct MaterialEntry {
     pub constants: MaterialConstants,
     /// The layers from the top down.
     pub layers: Vec<LayerRecord>,
+    /// Textures that vary the surface from place to place.
+    pub maps: Vec<MapEntry>,
+}
+
+/// What a map says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MapSlot {
+    /// Tangent-space normal: RGB is (normal + 1) / 2.
+    Normal,
+    /// Factor on the roughness: on the slope parameters its square.
+    Roughness,
+    /// Factor on the thickness of the slab below the layer.
+    Thickness,
+    /// Order in which patina develops; dark places come first.
+    Patina,
+    /// Normals of flakes, RGB as for [`MapSlot::Normal`], to be read without filtering.
+    FlakeNormal,
+}
+
+impl MapSlot {
+    /// The name in files and manifests.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Normal => "normal",
+            Self::Roughness => "roughness",
+            Self::Thickness => "thickness",
+            Self::Patina => "patina",
+            Self::FlakeNormal => "flake-normal",
+        }
+    }
+}
+
+/// A map of a material: PNG, linear values in 0..=1, which repeats in both texture coordinates. Texel centres are at
+/// (i + 1/2) / size, the first row is at v = 0.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MapEntry {
+    /// What it says.
+    pub slot: MapSlot,
+    /// The layer that it is of, from the top; null for maps of the whole surface.
+    pub layer: Option<u32>,
+    /// Where it came from: the path in the material file, or the noise that it was made of.
+    pub source: String,
+    /// The file.
+    pub file: FileEntry,
+    /// Texels across.
+    pub width: u32,
+    /// Texels down.
+    pub height: u32,
 }
 
 /// One table: a texture and its truth.
@@ -113,9 +162,14 @@ pub struct BindingEntry {
 impl MaterialEntry {
     /// Whether textures make the surface differ from place to place.
     pub fn varies(&self) -> bool {
-        self.constants.flakes.is_some()
-            || self.constants.patina.is_some()
-            || self.layers.iter().any(LayerRecord::varies)
+        let MaterialConstants { flakes, patina, glitter, .. } = &self.constants;
+        let has_effect = flakes.is_some() || patina.is_some() || glitter.is_some();
+        has_effect || !self.maps.is_empty() || self.layers.iter().any(LayerRecord::varies)
+    }
+
+    /// The layers, then the bare layer of a patina: what the material buffer holds.
+    pub fn records(&self) -> impl Iterator<Item = &LayerRecord> {
+        self.layers.iter().chain(self.constants.patina.as_ref().map(|patina| &patina.bare))
     }
 }
 
@@ -162,7 +216,7 @@ impl Manifest {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Axis, ErrorStats, LayerKind, Mapping, Worst};
+    use crate::{Axis, ErrorStats, FlakesRecord, GlitterRecord, LayerKind, Mapping, PatinaRecord, Worst};
 
     fn manifest() -> Manifest {
         let file = |path: &str| FileEntry { path: path.into(), sha256: "00ff".repeat(16) };
@@ -224,8 +278,45 @@ mod tests {
                 model: ShadingModel::Belcour,
                 color: ColorMode::Spectral,
                 wavelengths_nm: [645.0, 525.0, 445.0],
-                constants: MaterialConstants::default(),
+                constants: MaterialConstants {
+                    flakes: Some(FlakesRecord {
+                        seed: u32::MAX,
+                        count: 0,
+                        tiling: 3.0,
+                        spread: 0.0,
+                        scale: 0.7,
+                        fade_start: 2.0,
+                    }),
+                    patina: Some(PatinaRecord {
+                        extent: 0.3,
+                        transition: 0.1,
+                        diffuse_albedo: [0.1, 0.2, 0.3],
+                        base_alpha: Some(0.4),
+                        tarnish: [0.9, 0.8, 0.7],
+                        bare: layer.clone(),
+                    }),
+                    glitter: Some(GlitterRecord { seed: 7, frequency: 30.0, filled: 0.1, tilt: 0.3 }),
+                    ..MaterialConstants::default()
+                },
                 layers: vec![layer],
+                maps: vec![
+                    MapEntry {
+                        slot: MapSlot::FlakeNormal,
+                        layer: None,
+                        source: "maps/flakes.png".into(),
+                        file: file("maps/red-lacquer-flake-normal.png"),
+                        width: 64,
+                        height: 32,
+                    },
+                    MapEntry {
+                        slot: MapSlot::Roughness,
+                        layer: Some(1),
+                        source: "scratches.png".into(),
+                        file: file("maps/red-lacquer-roughness-1.png"),
+                        width: 1,
+                        height: 1,
+                    },
+                ],
             }],
             tables: vec![
                 table(TableKind::Distribution, Mapping::Power { exponent: 8.0 }),
@@ -261,6 +352,8 @@ mod tests {
         let value: serde_json::Value = serde_json::from_str(&manifest().to_json().unwrap()).unwrap();
         assert_eq!(value["materials"][0]["color"], "spectral");
         assert_eq!(value["materials"][0]["model"], "belcour");
+        assert_eq!(value["materials"][0]["maps"][0]["slot"], "flake-normal");
+        assert_eq!(value["materials"][0]["maps"][1]["layer"], 1);
         assert_eq!(value["tables"][0]["kind"], "distribution");
         assert_eq!(value["tables"][0]["format"], "r16float");
         assert_eq!(value["tables"][0]["layout"]["x"]["mapping"]["kind"], "power");

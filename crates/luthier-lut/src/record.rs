@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 use crate::{MaterialConstants, MaterialEntry};
 
 /// `vec4` words of a material's header in the material buffer.
-pub const MATERIAL_WORDS: usize = 9;
+pub const MATERIAL_WORDS: usize = 11;
 /// `vec4` words of a layer in the material buffer.
 pub const LAYER_WORDS: usize = 10;
 
@@ -124,21 +124,22 @@ impl LayerRecord {
     }
 }
 
-/// The material buffer: [`MATERIAL_WORDS`] header words per material, then [`LAYER_WORDS`] words per layer, in order.
+/// The material buffer: [`MATERIAL_WORDS`] header words per material, then [`LAYER_WORDS`] words per layer, in order; after the
+/// layers of a material with patina, the layer of [`crate::PatinaRecord::bare`].
 ///
 /// | header word | x, y, z, w |
 /// |---|---|
 /// | 0 | index of its first layer's first word, number of layers, number of the model, 0 |
-/// | 1-8 | see [`MaterialConstants::words`] |
+/// | 1-10 | see [`MaterialConstants::words`] |
 pub fn material_buffer(materials: &[MaterialEntry]) -> Vec<[f32; 4]> {
     let mut words = Vec::new();
     let mut first = materials.len() * MATERIAL_WORDS;
     for material in materials {
         words.push([first as f32, material.layers.len() as f32, material.model.number() as f32, 0.0]);
         words.extend(material.constants.words());
-        first += material.layers.len() * LAYER_WORDS;
+        first += material.records().count() * LAYER_WORDS;
     }
-    for layer in materials.iter().flat_map(|material| &material.layers) {
+    for layer in materials.iter().flat_map(MaterialEntry::records) {
         words.extend(layer.words());
     }
     words
@@ -149,7 +150,7 @@ const _: () = assert!(MATERIAL_WORDS == 1 + MaterialConstants::WORDS, "one word,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ShadingModel;
+    use crate::{PatinaRecord, ShadingModel};
 
     fn numbered(kind: LayerKind) -> LayerRecord {
         LayerRecord {
@@ -214,7 +215,7 @@ mod tests {
         ];
         let buffer = material_buffer(&materials);
         let headers: Vec<[f32; 4]> = buffer[..3 * MATERIAL_WORDS].iter().step_by(MATERIAL_WORDS).copied().collect();
-        assert_eq!(headers, [[27.0, 2.0, 0.0, 0.0], [47.0, 0.0, 5.0, 0.0], [47.0, 1.0, 6.0, 0.0]]);
+        assert_eq!(headers, [[33.0, 2.0, 0.0, 0.0], [53.0, 0.0, 5.0, 0.0], [53.0, 1.0, 6.0, 0.0]]);
         assert_eq!(buffer.len(), 3 * MATERIAL_WORDS + 3 * LAYER_WORDS);
         for (header, material) in headers.iter().zip(&materials) {
             let first = header[0] as usize;
@@ -222,5 +223,27 @@ mod tests {
             assert_eq!(buffer[first..first + words.len()], words);
         }
         assert!(material_buffer(&[]).is_empty());
+    }
+
+    #[test]
+    fn the_bare_layer_of_a_patina_follows_the_others() {
+        let [top, base, bare] = [LayerKind::Dielectric, LayerKind::Conductor, LayerKind::Diffuse].map(numbered);
+        let patina = PatinaRecord {
+            extent: 0.5,
+            transition: 0.5,
+            diffuse_albedo: [0.0; 3],
+            base_alpha: None,
+            tarnish: [1.0; 3],
+            bare: bare.clone(),
+        };
+        let constants = MaterialConstants { patina: Some(patina), ..MaterialConstants::default() };
+        let grown = MaterialEntry { layers: vec![top.clone(), base], constants, ..MaterialEntry::default() };
+        let plain = MaterialEntry { layers: vec![top.clone()], ..MaterialEntry::default() };
+        let buffer = material_buffer(&[grown, plain]);
+        let first = 2 * MATERIAL_WORDS;
+        assert_eq!(buffer[0][..2], [first as f32, 2.0]);
+        assert_eq!(buffer[first + 2 * LAYER_WORDS..][..LAYER_WORDS], bare.words());
+        assert_eq!(buffer[MATERIAL_WORDS][0], (first + 3 * LAYER_WORDS) as f32);
+        assert_eq!(buffer[first + 3 * LAYER_WORDS..], top.words());
     }
 }

@@ -9,13 +9,16 @@ mod ior;
 mod layers;
 mod surface;
 
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::Stack;
 
 use crate::class::SurfaceClass;
 use crate::diagnostic::Sink;
 use crate::doubt::{self, Sources};
-use crate::material::Material;
+use crate::material::{LayerExtras, Material};
 use crate::section::Section;
 
 /// Reads a file that a material refers to, by its path relative to the material file.
@@ -27,6 +30,11 @@ const TRANSPARENT_K: f64 = 1e-4;
 /// Decodes a document, with its doubts.
 pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read<'_>, sink: &mut Sink<'_>) -> Material {
     let mut sources = Sources::default();
+    let named = RefCell::new(BTreeSet::new());
+    let read: Read<'_> = &|path| {
+        named.borrow_mut().insert(path.to_owned());
+        read(path)
+    };
     let exterior = exterior(document, read, sink, &mut sources);
     let (layers, extras) = layers::decode(document, read, sink, &mut sources);
     let stack = Stack { exterior, layers };
@@ -35,10 +43,13 @@ pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read
     if !sink.has_errors() {
         doubt::report(&stack, &bake, &sources, sink);
     }
+    let mut files = named.into_inner();
+    files.extend(extras.iter().flat_map(LayerExtras::images).chain(effects.images()).map(str::to_owned));
     Material {
         name: document.text("name").unwrap_or_default().to_owned(),
         source: label.to_owned(),
         text: text.to_owned(),
+        files: files.into_iter().collect(),
         description: document.text("description").unwrap_or_default().to_owned(),
         references: document.texts("references"),
         class: SurfaceClass::of(&stack),

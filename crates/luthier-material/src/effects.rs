@@ -9,6 +9,32 @@ pub struct Effects {
     pub flakes: Option<Flakes>,
     /// Growth of the first layer over the rest.
     pub patina: Option<Patina>,
+    /// Particles of the surface that are tilted.
+    pub glitter: Option<Glitter>,
+}
+
+impl Effects {
+    /// The images that they name.
+    pub(crate) fn images(&self) -> impl Iterator<Item = &str> {
+        let flakes = self.flakes.as_ref().and_then(|flakes| match &flakes.source {
+            FlakeSource::NormalMap { path } => Some(path.as_str()),
+            FlakeSource::Cells { .. } => None,
+        });
+        flakes.into_iter().chain(self.patina.as_ref().and_then(|patina| patina.map.image()))
+    }
+}
+
+/// Glitter: a share of the Voronoi cells of the surface, each tilted its own way (Weidlich and Wilkie 2009, section 5.2.1).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Glitter {
+    /// Seed.
+    pub seed: u32,
+    /// Cells per unit of texture coordinate.
+    pub frequency: f64,
+    /// Share of the cells that glitter, 0..=1.
+    pub filled: f64,
+    /// Largest tilt, in radians.
+    pub tilt: f64,
 }
 
 /// Metal flakes: normals that are perturbed below the first interface only (Elek 2010, section 4.1).

@@ -13,6 +13,8 @@ pub struct Material {
     pub source: String,
     /// Text of that file.
     pub text: String,
+    /// The files that it names, by their paths relative to itself: indices and images, each once, sorted.
+    pub files: Vec<String>,
     /// One or two sentences; empty when the file has none.
     pub description: String,
     /// Sources of the numbers.
@@ -49,6 +51,15 @@ pub struct Maps {
     pub thickness: Option<String>,
 }
 
+impl LayerExtras {
+    /// The images that it names.
+    pub(crate) fn images(&self) -> impl Iterator<Item = &str> {
+        let Maps { normal, roughness, thickness } = &self.maps;
+        let film = self.film_variation.as_ref().and_then(|variation| variation.source.image());
+        [normal, roughness, thickness].into_iter().flatten().map(String::as_str).chain(film)
+    }
+}
+
 /// How the thickness of a film varies between its extremes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmVariation {
@@ -75,4 +86,14 @@ pub enum VariationSource {
         /// Path relative to the material file.
         path: String,
     },
+}
+
+impl VariationSource {
+    /// The image that it names, if it is one.
+    pub(crate) fn image(&self) -> Option<&str> {
+        match self {
+            Self::Image { path } => Some(path),
+            Self::Noise { .. } => None,
+        }
+    }
 }

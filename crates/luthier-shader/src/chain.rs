@@ -12,9 +12,13 @@ use crate::wgsl::function;
 pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, features: &Features) -> String {
     let name = function(model);
     let layers: Vec<_> = set.materials.iter().filter(|m| m.model == model).map(|m| m.layers.as_slice()).collect();
+    let has_patina = features.has("patina");
+    let (name, bare) =
+        if has_patina { (name.replace("luthier_eval", "luthier_stack"), " is_bare: bool,") } else { (name, "") };
+    let without = if has_patina { "; where it is bare, without the first layer" } else { "" };
     let mut out = format!(
-        "/// f cos_theta_i of the model `{}`, both directions above the horizon.\n\
-         fn {name}($place_parameter material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n",
+        "/// f cos_theta_i of the model `{}`, both directions above the horizon{without}.\n\
+         fn {name}($place_parameter material: u32,{bare} wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n",
         model.name()
     );
     let is_diffuse = |layer: &luthier_lut::LayerRecord| layer.kind == LayerKind::Diffuse;
@@ -22,21 +26,31 @@ pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, 
         let diffuse =
             if features.has("oren_nayar") { "luthier_diffuse(layer, wi, wo)" } else { "luthier_diffuse(layer)" };
         let _ = writeln!(out, "    let layer = $layer(material, 0u);\n    return wi.z * {diffuse};\n}}");
-        return out;
+        return out + &patina(model, features);
     }
     let depth = layers.iter().map(|layers| layers.len()).max().unwrap_or(0);
     if depth > 1 {
         out.push_str("    let count = luthier_layer_count(material);\n");
     }
-    out.push_str("    var path = LuthierPath(wi, wo, wi.xy + wo.xy, vec3<f32>(wi.z), vec3<f32>(0.0), 0.0, true);\n");
+    let below = match (features.has("flakes"), has_patina) {
+        (false, _) => "",
+        (true, false) => ", place.flake_normal",
+        (true, true) => ", select(place.flake_normal, vec3<f32>(0.0, 0.0, 1.0), is_bare)",
+    };
+    let _ = writeln!(
+        out,
+        "    var path = LuthierPath(wi, wo, wi.xy + wo.xy, vec3<f32>(wi.z), vec3<f32>(0.0), 0.0, true{below});"
+    );
     for i in 0..depth {
         let here = || layers.iter().filter_map(|layers| layers.get(i));
-        let add = |function: &str| format!("path = {function}(path, $layer(material, {i}u));");
+        // What lies below patina has a record of its own for where it is bare.
+        let index = if has_patina && i == 1 { "select(1u, count, is_bare)".to_owned() } else { format!("{i}u") };
+        let add = |function: &str| format!("path = {function}(path, $layer(material, {index}));");
         let step = match (here().any(is_diffuse), here().all(is_diffuse)) {
             (false, _) => vec![add(interface)],
             (true, true) => vec![add("luthier_add_diffuse")],
             (true, false) => vec![
-                format!("let layer_{i} = $layer(material, {i}u);"),
+                format!("let layer_{i} = $layer(material, {index});"),
                 format!("if layer_{i}.kind == LUTHIER_DIFFUSE {{"),
                 format!("    path = luthier_add_diffuse(path, layer_{i});"),
                 "} else {".to_owned(),
@@ -44,13 +58,38 @@ pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, 
                 "}".to_owned(),
             ],
         };
-        let indent = if i == 0 { "    " } else { "        " };
+        let indent = if i == 0 && !has_patina { "    " } else { "        " };
         let step: String = step.iter().map(|line| format!("{indent}{line}\n")).collect();
         let _ = match i {
+            0 if has_patina => write!(out, "    if !is_bare {{\n{step}    }}\n"),
             0 => write!(out, "{step}"),
             _ => write!(out, "    if path.open & (count > {i}u) {{\n{step}    }}\n"),
         };
     }
     out.push_str("    return path.reflected;\n}\n");
-    out
+    out + &patina(model, features)
+}
+
+/// The function of a model where a material of the set has patina: with and without the first layer, blended.
+fn patina(model: ShadingModel, features: &Features) -> String {
+    if !features.has("patina") {
+        return String::new();
+    }
+    let name = function(model);
+    let stack = name.replace("luthier_eval", "luthier_stack");
+    format!(
+        "\n/// f cos_theta_i of the model `{}` with patina (Elek 2010, section 4.2).\n\
+         fn {name}(place: LuthierPlace, material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n    \
+             var value = luthier_patina_diffuse(place, material, wi, wo);\n    \
+             let grown = select(1.0, place.patina, place.patina >= 0.0);\n    \
+             if grown < 1.0 {{\n        \
+                 value += (1.0 - grown) * {stack}(place, material, true, wi, wo);\n    \
+             }}\n    \
+             if grown > 0.0 {{\n        \
+                 value += grown * {stack}(place, material, false, wi, wo);\n    \
+             }}\n    \
+             return value;\n\
+         }}\n",
+        model.name()
+    )
 }

@@ -11,7 +11,7 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is, for the check that modules name no other.
     #[cfg(test)]
-    pub(crate) const ALL: [&'static str; 37] = [
+    pub(crate) const ALL: [&'static str; 40] = [
         "absorption",
         "anisotropic",
         "bare",
@@ -27,9 +27,11 @@ impl Features {
         "fgd",
         "film",
         "film_table",
+        "flakes",
         "fresnel",
         "full",
         "ggx",
+        "glitter",
         "granier",
         "granier_bare",
         "granier_base",
@@ -39,6 +41,7 @@ impl Features {
         "microfacet_diffuse",
         "mixed",
         "oren_nayar",
+        "patina",
         "phase",
         "phong",
         "place",
@@ -57,6 +60,9 @@ impl Features {
             names.extend(of_model(material));
             if material.varies() {
                 names.insert("place");
+            }
+            if material.constants.glitter.is_some() {
+                names.insert("glitter");
             }
         }
         if set.models().any(|model| is_mixed(set, model)) {
@@ -103,7 +109,9 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
             material.layers.as_slice()
         }
     };
-    for layer in layers {
+    let is_chain = matches!(material.model, ShadingModel::Elek | ShadingModel::WeidlichWilkie);
+    let bare = material.constants.patina.as_ref().filter(|_| is_chain).map(|patina| &patina.bare);
+    for layer in layers.iter().chain(bare) {
         if is_diffuse(layer) && material.model == ShadingModel::GranierHeidrich {
             continue;
         }
@@ -137,12 +145,21 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
     match material.model {
         ShadingModel::Microfacet if has_interface => names.insert("smith"),
         ShadingModel::Microfacet => names.insert("microfacet_diffuse"),
-        ShadingModel::Elek | ShadingModel::WeidlichWilkie if has_interface => {
+        // Beside a coat it is a step of the chain; alone in its set it needs none.
+        ShadingModel::Elek | ShadingModel::WeidlichWilkie if !has_interface => names.insert("chain_diffuse"),
+        ShadingModel::Elek | ShadingModel::WeidlichWilkie => {
             if has_diffuse {
                 names.insert("chain_diffuse");
             }
             if material.model == ShadingModel::Elek {
                 names.insert("clamped");
+            }
+            // Other models have no layer below the first interface that flakes could tilt or patina cover.
+            if material.constants.flakes.is_some() && names.contains("below") {
+                names.insert("flakes");
+            }
+            if material.constants.patina.is_some() {
+                names.insert("patina");
             }
             names.insert("chain")
         }

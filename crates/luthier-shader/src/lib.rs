@@ -5,11 +5,16 @@
 //! paste: `luthier_eval` and its helpers, no entry point, group 0 for [`bindings`]. [`complete`] puts a small fragment shader
 //! around it. [`emit_spirv`] and [`complete_spirv`] give the same as SPIR-V: a library to link, and a shader.
 //!
-//! There are no loops in the emitted functions: `luthier_eval` has one step for every layer that a material of the set may
-//! have. They are finite for all unit directions and slope parameters from 0.001 to 1. GLSL, HLSL and MSL are naga's
+//! `luthier_eval` has no loops, but one step for every layer that a material of the set may have. The functions are finite for all unit directions and slope parameters from 0.001 to 1. GLSL, HLSL and MSL are naga's
 //! output with our names and comments put back.
 //!
-//! Simplifications: bindings are in group 0; materials are isotropic; the full form knows one film per interface.
+//! Effects: flakes tilt what lies below the first interface, and patina covers it, in the models `elek` and `weidlich-wilkie`;
+//! models without such a layer (`granier-heidrich`, `phong`, `microfacet`) or that mix all layers into a few lobes (`belcour`,
+//! `yamaguchi`) leave both out. Glitter turns the whole surface, for any model. A shader fills a `LuthierPlace` with
+//! `luthier_flake_normal`, `luthier_patina_amount`, `luthier_glitter_normal` and `luthier_film_place`, and calls
+//! `luthier_eval_at`.
+//!
+//! Simplifications: bindings are in group 0; the full form knows one film per interface.
 //!
 //! Out of scope: texels and files (`luthier-lut`, `luthier-texture`), devices (`luthier-gpu`).
 

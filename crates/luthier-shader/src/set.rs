@@ -41,9 +41,9 @@ impl<'a> MaterialSet<'a> {
         Self { materials: &manifest.materials, tables: manifest.tables.iter().map(face).collect() }
     }
 
-    /// All layers of all materials, from the top down.
+    /// All records of all materials, in the order of the buffer.
     pub(crate) fn layers(&self) -> impl Iterator<Item = &LayerRecord> {
-        self.materials.iter().flat_map(|m| &m.layers)
+        self.materials.iter().flat_map(MaterialEntry::records)
     }
 
     /// The models in use, in the order of their numbers.
@@ -88,7 +88,7 @@ impl<'a> MaterialSet<'a> {
             if material.layers.is_empty() {
                 return Err(ShaderError::NoLayers(material.name.clone()));
             }
-            for (i, layer) in material.layers.iter().enumerate() {
+            for (i, layer) in material.records().enumerate() {
                 self.check_layer(form, material, i, layer)?;
             }
         }

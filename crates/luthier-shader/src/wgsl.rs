@@ -33,9 +33,13 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     let facets = has("chain") || has("smith");
     let modules = [
         (has("bilinear"), include_str!("wgsl/bilinear.wgsl")),
-        (has("interface") || has("phong") || has("granier_base"), include_str!("wgsl/pi.wgsl")),
+        (["interface", "phong", "granier_base", "glitter"].into_iter().any(has), include_str!("wgsl/pi.wgsl")),
         (true, include_str!("wgsl/layer.wgsl")),
         (has("place"), include_str!("wgsl/place.wgsl")),
+        (has("flakes") || has("glitter"), include_str!("wgsl/hash.wgsl")),
+        (has("flakes"), include_str!("wgsl/flakes.wgsl")),
+        (has("patina"), include_str!("wgsl/patina.wgsl")),
+        (has("glitter"), include_str!("wgsl/glitter.wgsl")),
         (has("phong") || has("granier") && has("interface"), include_str!("wgsl/lobe.wgsl")),
         (has("oren_nayar"), include_str!("wgsl/oren_nayar.wgsl")),
         (has("diffuse") && !has("oren_nayar"), include_str!("wgsl/lambert.wgsl")),

@@ -41,6 +41,20 @@ pub fn encode_image(image: &Image) -> Result<Vec<u8>, TextureError> {
     encode_rgb(image.width, image.height, &srgb::rgb8(image))
 }
 
+/// A PNG of a map: one channel, linear values clipped to 0..=1, as 8 bits of grey, which every engine filters.
+///
+/// # Errors
+/// [`TextureError::Size`], [`TextureError::Channels`], [`TextureError::Length`], [`TextureError::PngEncode`].
+pub fn encode_gray(map: &Image) -> Result<Vec<u8>, TextureError> {
+    check_image(map)?;
+    let gray: Vec<u8> = map.texels().map(|texel| (texel[0].clamp(0.0, 1.0) * 255.0 + 0.5) as u8).collect();
+    let mut file = Vec::new();
+    PngEncoder::new_with_quality(&mut file, CompressionType::Best, FilterType::Adaptive)
+        .write_image(&gray, map.width, map.height, ExtendedColorType::L8)
+        .map_err(TextureError::PngEncode)?;
+    Ok(file)
+}
+
 /// A map: one channel in 0..=1, the stored values over their maximum (8 or 16 bits), not linearised. Alpha is ignored;
 /// a colour image will do if it is grey throughout.
 ///

@@ -8,6 +8,8 @@ mod albedo;
 #[path = "../../../luthier-optics/tests/optics/brute_force.rs"]
 mod brute_force;
 mod closed_forms;
+mod effects;
+mod film_table;
 mod films;
 mod materials;
 mod sharing;

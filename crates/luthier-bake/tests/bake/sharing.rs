@@ -40,7 +40,14 @@ fn threads_do_not_matter() {
     let (one, two) = (with(1), with(2));
     assert_eq!(one, two);
     assert_eq!(bits(&one), bits(&two));
-    let kinds = [TableKind::Fresnel, TableKind::Distribution, TableKind::Fgd, TableKind::Phase, TableKind::Thickness];
+    let kinds = [
+        TableKind::Fresnel,
+        TableKind::Distribution,
+        TableKind::Fgd,
+        TableKind::Phase,
+        TableKind::Thickness,
+        TableKind::Film,
+    ];
     assert_eq!(one.atlases.iter().map(|a| a.kind).collect::<Vec<_>>(), kinds);
 }
 

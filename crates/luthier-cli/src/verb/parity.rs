@@ -30,7 +30,7 @@ pub(crate) fn run(options: &ParityOptions) -> Outcome {
     let baking = Bar::new("baking");
     let bake = luthier_bake::bake(&all, &read_image, &Silent).map_err(Failure::input)?;
     drop(baking);
-    let entries = material_entries(&all, &bake.materials);
+    let entries = material_entries(&all, &bake.materials, &mut Vec::new())?;
     let bar = Bar::new("comparing");
     let gpu = open(options.adapter.as_deref())?;
     let total = models.len() * materials.len();

@@ -1,11 +1,12 @@
 use std::path::Path;
 
 use luthier_lut::Manifest;
+use luthier_material::Parsed;
 use luthier_optics::stack::Stack;
 use luthier_report::{Device, Report, Settings, Subject, judge};
 
 use crate::artefacts::{manifest, textures};
-use crate::bake_files::{GENERATOR, REPORT_FILES, sha256};
+use crate::bake_files::{GENERATOR, REPORT_FILES, source_hash};
 use crate::cli::ReportOptions;
 use crate::failure::{Failure, Outcome};
 use crate::materials::read_one;
@@ -57,19 +58,20 @@ fn stacks(manifest: &Manifest) -> Outcome<Vec<Stack>> {
                 ))),
                 other => other,
             })?;
-            if sha256(source.text.as_bytes()) != entry.source_hash {
-                let text = format!("{} has changed since it was baked; bake again", entry.source);
-                return Err(Failure::Input(anyhow::anyhow!(text)));
+            let Ok(Parsed { material, .. }) = &source.parsed else {
+                return Err(changed(&entry.source));
+            };
+            if source_hash(material)? != entry.source_hash {
+                return Err(changed(&entry.source));
             }
-            match source.parsed {
-                Ok(parsed) => Ok(parsed.material.stack),
-                Err(_) => {
-                    source.print_diagnostics();
-                    Err(Failure::Verdict)
-                }
-            }
+            Ok(material.stack.clone())
         })
         .collect()
+}
+
+fn changed(source: &str) -> Failure {
+    let text = format!("{source} has changed since it was baked, or a file that it names; bake again");
+    Failure::Input(anyhow::anyhow!(text))
 }
 
 #[cfg(feature = "gpu")]

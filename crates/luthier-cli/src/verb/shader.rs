@@ -10,7 +10,7 @@ use crate::output::print_bytes;
 pub(crate) fn run(options: &ShaderOptions) -> Outcome {
     let materials = shaded(valid(read(&options.sources.paths)?, false)?, &options.shading);
     let outline = luthier_bake::outline(&materials, &read_image).map_err(Failure::input)?;
-    let entries = material_entries(&materials, &outline.materials);
+    let entries = material_entries(&materials, &outline.materials, &mut Vec::new())?;
     let tables = outline.tables.into_iter().map(|(kind, layout, format)| TableFace { kind, layout, format }).collect();
     let set = MaterialSet { materials: &entries, tables };
     let (form, target) = (options.form.into(), options.target.into());

@@ -58,7 +58,7 @@ fn a_bake_is_what_its_manifest_says() {
         let source = workshop.text(material["source"].as_str().unwrap());
         assert_eq!(material["source_hash"], sha256(source.as_bytes()));
     }
-    let kinds = ["fresnel", "distribution", "fgd", "phase", "thickness"];
+    let kinds = ["fresnel", "distribution", "fgd", "phase", "thickness", "film"];
     assert_eq!(names(&manifest["tables"], "kind"), kinds, "in binding order");
     assert!(kinds.iter().all(|kind| run.stdout.contains(kind)), "{}", run.stdout);
     Manifest::from_json(&workshop.text("out/manifest.json")).unwrap();
@@ -85,7 +85,7 @@ fn containers_are_what_they_are_called() {
     let magic: [(&str, &[u8]); 3] =
         [("ktx2", b"\xabKTX 20\xbb\r\n\x1a\n"), ("exr", &[0x76, 0x2f, 0x31, 0x01]), ("png", b"\x89PNG\r\n\x1a\n")];
     let tables = workshop.tree("out/tables");
-    assert_eq!(tables.len(), 15);
+    assert_eq!(tables.len(), 18);
     for (path, bytes) in tables {
         let (_, start) = magic.iter().find(|(extension, _)| path.ends_with(extension)).unwrap();
         assert!(bytes.starts_with(start), "{path}");

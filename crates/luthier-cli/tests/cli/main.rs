@@ -14,6 +14,7 @@ mod fluorescence;
 mod gallery;
 mod help;
 mod ior;
+mod maps;
 mod material_texts;
 mod model_judge;
 mod models;

@@ -26,7 +26,7 @@ fn tables_are_judged_without_a_device() {
     assert_eq!(report["device"], Value::Null);
     assert_eq!(report["pairs_per_set"], 64);
     let kinds: Vec<&str> = report["tables"].as_array().unwrap().iter().map(|t| t["kind"].as_str().unwrap()).collect();
-    assert_eq!(kinds, ["fresnel", "distribution", "fgd", "phase", "thickness"]);
+    assert_eq!(kinds, ["fresnel", "distribution", "fgd", "phase", "thickness", "film"]);
     for table in report["tables"].as_array().unwrap() {
         for tile in table["tiles"].as_array().unwrap() {
             assert!(tile["baker"]["max_abs_err"].as_f64().is_some_and(f64::is_finite), "{tile}");

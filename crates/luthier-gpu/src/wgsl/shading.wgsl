@@ -1,7 +1,7 @@
 // What a place sends to the eye.
 
 // One layer, in words: kind (0 dielectric, 1 conductor, 2 diffuse base), alpha, eta, first blurred map;
-// Fresnel tile, FGD tile; optical depth; albedo.
+// Fresnel tile, FGD tile, film tile, fraction of the film's greatest thickness; optical depth; albedo.
 struct ShadingLayer {
     kind: f32,
     alpha: f32,
@@ -9,6 +9,8 @@ struct ShadingLayer {
     chain: f32,
     fresnel_tile: f32,
     fgd_tile: f32,
+    film_tile: f32,
+    film_fraction: f32,
     optical_depth: vec3<f32>,
     albedo: vec3<f32>,
 }
@@ -18,9 +20,78 @@ const SHADING_LAYER_WORDS: u32 = 4u;
 // Mean cosine of light that reaches a patch evenly from its hemisphere.
 const SHADING_MEAN_COSINE: f32 = 2.0 / 3.0;
 
-// The emitted shader, called here and nowhere else. `place` is for what varies over the surface.
-fn shading_eval(material: u32, place: Place, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
-    return luthier_eval(material, wi, wo);
+// What the maps of a material say about a place.
+struct ShadingMaps {
+    uv: vec2<f32>,
+    // Unit, in the frame of the shape.
+    normal: vec3<f32>,
+    roughness: f32,
+    thickness: f32,
+    patina: f32,
+    flake: vec3<f32>,
+    has_flakes: bool,
+}
+
+// The same as the blurred environment takes it.
+struct ShadingFactors {
+    normal: vec3<f32>,
+    alpha: f32,
+    slab: f32,
+    film: f32,
+    // Normal below the first interface, in the frame of `normal`.
+    below: vec3<f32>,
+    // Below 0: none.
+    patina: f32,
+}
+
+// Texel of a map that repeats. `header`: word offset, columns, rows.
+fn shading_texel(header: vec4<u32>, at: vec2<f32>) -> vec4<f32> {
+    let size = vec2<f32>(header.yz);
+    let wrapped = vec2<u32>(clamp(at - floor(at / size) * size, vec2<f32>(0.0), size - 1.0));
+    return kernel_inputs.words[header.x + wrapped.y * header.y + wrapped.x];
+}
+
+fn shading_bilinear(header: vec4<u32>, uv: vec2<f32>) -> vec4<f32> {
+    let position = fract(uv) * vec2<f32>(header.yz) - 0.5;
+    let corner = floor(position);
+    let weight = position - corner;
+    let above = mix(shading_texel(header, corner), shading_texel(header, corner + vec2<f32>(1.0, 0.0)), weight.x);
+    let below = mix(shading_texel(header, corner + vec2<f32>(0.0, 1.0)), shading_texel(header, corner + 1.0), weight.x);
+    return mix(above, below, weight.y);
+}
+
+fn shading_map_header(material: u32, slot: u32) -> vec4<u32> {
+    let maps = bitcast<u32>(kernel_inputs.words[kernel_inputs.materials + material].z);
+    return bitcast<vec4<u32>>(kernel_inputs.words[maps + slot]);
+}
+
+// The maps at a texture coordinate: filtered, but those of flakes are not.
+fn shading_maps(material: u32, uv: vec2<f32>) -> ShadingMaps {
+    var maps = ShadingMaps(uv, vec3<f32>(0.0, 0.0, 1.0), 1.0, 1.0, 0.5, vec3<f32>(0.0), false);
+    let normal = shading_map_header(material, 0u);
+    if normal.y > 0u {
+        let n = 2.0 * shading_bilinear(normal, uv).xyz - 1.0;
+        maps.normal = normalize(vec3<f32>(n.xy, max(n.z, 1e-3)));
+    }
+    let roughness = shading_map_header(material, 1u);
+    if roughness.y > 0u {
+        maps.roughness = shading_bilinear(roughness, uv).x;
+    }
+    let thickness = shading_map_header(material, 2u);
+    if thickness.y > 0u {
+        maps.thickness = shading_bilinear(thickness, uv).x;
+    }
+    let patina = shading_map_header(material, 3u);
+    if patina.y > 0u {
+        maps.patina = shading_bilinear(patina, uv).x;
+    }
+    let flakes = shading_map_header(material, 4u);
+    if flakes.y > 0u {
+        let tiling = luthier_materials[luthier_header(material) + 4u].w;
+        maps.flake = 2.0 * shading_texel(flakes, floor(fract(uv * tiling) * vec2<f32>(flakes.yz))).xyz - 1.0;
+        maps.has_flakes = true;
+    }
+    return maps;
 }
 
 fn shading_layer_count(material: u32) -> u32 {
@@ -34,7 +105,7 @@ fn shading_layer(material: u32, index: u32) -> ShadingLayer {
     let tiles = kernel_inputs.words[at + 1u];
     let slab = kernel_inputs.words[at + 2u];
     let base = kernel_inputs.words[at + 3u];
-    return ShadingLayer(head.x, head.y, head.z, head.w, tiles.x, tiles.y, slab.xyz, base.xyz);
+    return ShadingLayer(head.x, head.y, head.z, head.w, tiles.x, tiles.y, tiles.z, tiles.w, slab.xyz, base.xyz);
 }
 
 // Cosine below an interface for one above it; 0 when nothing is refracted.
@@ -46,43 +117,102 @@ fn shading_refract(cos_theta: f32, eta: f32) -> f32 {
 // environment around the mirrored direction, a diffuse base its albedo times irradiance over pi. Layers attenuate as in
 // luthier_eval, with the cosine of wo for light that comes mirrored and the mean cosine for light from everywhere. Seen
 // from outside, slopes below an interface are steeper by its eta.
-fn shading_prefiltered(material: u32, normal: vec3<f32>, wo: vec3<f32>, cos_theta_o: f32) -> vec3<f32> {
-    let mirrored = reflect(-wo, normal);
+fn shading_prefiltered(
+    material: u32, factors: ShadingFactors, is_bare: bool, frame: mat3x3<f32>, wo: vec3<f32>,
+) -> vec3<f32> {
+    let normal = frame[2];
+    let patina_diffuse = bitcast<vec4<f32>>(shading_map_header(material, 5u));
+    var tarnish = vec3<f32>(1.0);
+    if factors.patina >= 0.0 {
+        tarnish = mix(tarnish, bitcast<vec4<f32>>(shading_map_header(material, 6u)).rgb, factors.patina);
+    }
+    var mirrored = frame * vec3<f32>(-wo.xy, wo.z);
     var leaving = vec3<f32>(1.0);
     var entering = vec3<f32>(1.0);
-    var cos_out = cos_theta_o;
+    var cos_out = clamp(wo.z, 1e-4, 1.0);
     var cos_in = SHADING_MEAN_COSINE;
     var alpha = 0.0;
     var spread = 1.0;
     var total = vec3<f32>(0.0);
-    for (var i = 0u; i < shading_layer_count(material); i++) {
-        let layer = shading_layer(material, i);
+    let count = shading_layer_count(material);
+    for (var i = select(0u, 1u, is_bare); i < count; i++) {
+        var layer = shading_layer(material, select(i, count, is_bare && i == 1u));
         if layer.kind == 2.0 {
             total += leaving * entering * layer.albedo * environment_diffuse(normal);
             break;
         }
+        layer.alpha = min(layer.alpha * factors.alpha, 1.0);
+        if i == 1u && factors.patina >= 0.0 && patina_diffuse.w >= 0.0 {
+            layer.alpha = mix(layer.alpha, patina_diffuse.w, factors.patina);
+        }
         alpha = max(alpha, layer.alpha);
-        let reflected_out = shading_fresnel(layer.fresnel_tile, cos_out);
+        var reflected_out = shading_fresnel(layer.fresnel_tile, cos_out);
+        var reflected_in = shading_fresnel(layer.fresnel_tile, cos_in);
         var albedo = reflected_out;
-        if layer.fgd_tile >= 0.0 {
+        if layer.film_tile >= 0.0 {
+            // Albedos are tabulated for one thickness.
+            let fraction = layer.film_fraction * select(1.0, factors.film, i == 0u);
+            reflected_out = shading_film(layer.film_tile, cos_out, fraction);
+            reflected_in = shading_film(layer.film_tile, cos_in, fraction);
+            albedo = reflected_out;
+        } else if layer.fgd_tile >= 0.0 {
             albedo = shading_fgd(layer.fgd_tile, cos_out, alpha);
+        }
+        if i > 0u {
+            albedo *= tarnish;
         }
         let light = environment_mirrored(u32(layer.chain), min(alpha * spread, 1.0), mirrored);
         total += leaving * leaving * albedo * light;
+        if i == 0u && factors.patina > 0.0 {
+            let scattered = (1.0 - reflected_out) * (1.0 - reflected_in) * patina_diffuse.rgb;
+            total += scattered * environment_diffuse(normal);
+        }
         if layer.kind == 1.0 {
             break;
         }
-        let reflected_in = shading_fresnel(layer.fresnel_tile, cos_in);
+        let outside = cos_out;
         cos_out = shading_refract(cos_out, layer.eta);
         cos_in = shading_refract(cos_in, layer.eta);
         if min(cos_out, cos_in) <= 0.0 {
             break;
         }
-        leaving *= (1.0 - reflected_out) * exp(-layer.optical_depth / cos_out);
-        entering *= (1.0 - reflected_in) * exp(-layer.optical_depth / cos_in);
+        if i == 0u && factors.below.z < 1.0 {
+            // What a tilted mirror below the interface shows.
+            let down = vec3<f32>(wo.xy / layer.eta, cos_out);
+            let up = reflect(-down, factors.below);
+            let across_sq = dot(up.xy, up.xy) * layer.eta * layer.eta;
+            cos_out = dot(down, factors.below);
+            if min(cos_out, up.z) <= 0.0 || across_sq >= 1.0 {
+                break;
+            }
+            mirrored = frame * vec3<f32>(up.xy * layer.eta, sqrt(1.0 - across_sq));
+        }
+        let depth = layer.optical_depth * select(1.0, factors.slab, i == 0u);
+        leaving *= (1.0 - reflected_out) * exp(-depth / cos_out);
+        entering *= (1.0 - reflected_in) * exp(-depth / cos_in);
         spread *= layer.eta;
     }
     return total;
+}
+
+// The same with and without the first layer where patina has grown in part.
+fn shading_environment(material: u32, factors: ShadingFactors, frame: mat3x3<f32>, wo: vec3<f32>) -> vec3<f32> {
+    let grown = select(1.0, factors.patina, factors.patina >= 0.0);
+    var total = vec3<f32>(0.0);
+    if grown < 1.0 {
+        total += (1.0 - grown) * shading_prefiltered(material, factors, true, frame, wo);
+    }
+    if grown > 0.0 {
+        total += grown * shading_prefiltered(material, factors, false, frame, wo);
+    }
+    return total;
+}
+
+// The frame whose +z is `n` (unit, in the frame): turned the shortest way, as luthier_eval_at does.
+fn shading_turned_frame(frame: mat3x3<f32>, n: vec3<f32>) -> mat3x3<f32> {
+    let a = 1.0 / (1.0 + max(n.z, 0.0));
+    let shear = -n.x * n.y * a;
+    return frame * mat3x3<f32>(vec3<f32>(1.0 - n.x * n.x * a, shear, -n.x), vec3<f32>(shear, 1.0 - n.y * n.y * a, -n.y), n);
 }
 
 // Slope parameter of the lobe of an interface, seen from outside; 0 for what is no interface.
@@ -136,7 +266,7 @@ fn shading_unit(x: u32) -> f32 {
 
 // The environment through luthier_eval: the same number of directions for each interface and for the cosine, Hammersley
 // points shifted by the seed, weighed by the balance heuristic (Veach 1997, eq. 9.8).
-fn shading_sampled(material: u32, place: Place, frame: mat3x3<f32>, wo: vec3<f32>, seed: u32) -> vec3<f32> {
+fn shading_sampled(material: u32, surface: ShadingSurface, frame: mat3x3<f32>, wo: vec3<f32>, seed: u32) -> vec3<f32> {
     let lobes = shading_layer_count(material) + 1u;
     let count = kernel_inputs.environment_samples;
     var total = vec3<f32>(0.0);
@@ -163,7 +293,7 @@ fn shading_sampled(material: u32, place: Place, frame: mat3x3<f32>, wo: vec3<f32
                     density += shading_density(other_alpha, wi, wo);
                 }
             }
-            let f_cos = shading_eval(material, place, wi, wo);
+            let f_cos = shading_eval(material, surface, wi, wo);
             total += f_cos * environment_radiance(frame * wi) / (density * f32(count));
         }
     }
@@ -176,6 +306,7 @@ fn shading_radiance(part: u32, place: Place, wo_world: vec3<f32>, seed: u32) -> 
     let normal = place.normal;
     let frame = mat3x3<f32>(place.tangent, cross(normal, place.tangent), normal);
     let wo = wo_world * frame;
+    let surface = shading_surface(material, shading_maps(material, place.uv), length(kernel_inputs.eye - place.position));
     var total = vec3<f32>(0.0);
     for (var i = 0u; i < kernel_inputs.light_count; i++) {
         let light = kernel_inputs.words[kernel_inputs.lights + 2u * i];
@@ -185,10 +316,12 @@ fn shading_radiance(part: u32, place: Place, wo_world: vec3<f32>, seed: u32) -> 
         let distance_sq = dot(to_light, to_light);
         let wi = (to_light * inverseSqrt(distance_sq)) * frame;
         // The second half of the materials has its slopes widened by the size of the lights.
-        total += shading_eval(material + kernel_inputs.material_count, place, wi, wo) * color / distance_sq;
+        total += shading_eval(material + kernel_inputs.material_count, surface, wi, wo) * color / distance_sq;
     }
     if kernel_inputs.environment_samples > 0u {
-        return total + shading_sampled(material, place, frame, wo, seed);
+        return total + shading_sampled(material, surface, frame, wo, seed);
     }
-    return total + shading_prefiltered(material, normal, wo_world, clamp(wo.z, 1e-4, 1.0));
+    let factors = shading_factors(surface);
+    let turned = shading_turned_frame(frame, factors.normal);
+    return total + shading_environment(material, factors, turned, wo_world * turned);
 }

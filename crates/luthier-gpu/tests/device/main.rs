@@ -5,6 +5,7 @@
 
 mod adapter;
 mod bake_by_hand;
+mod effects;
 mod environment;
 mod evaluate;
 mod loading;

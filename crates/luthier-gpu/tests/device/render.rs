@@ -33,7 +33,7 @@ pub(crate) fn dark() -> RenderSettings {
     }
 }
 
-fn sun(direction: [f32; 3], irradiance: [f32; 3]) -> Vec<Light> {
+pub(crate) fn sun(direction: [f32; 3], irradiance: [f32; 3]) -> Vec<Light> {
     vec![Light::Directional { direction, irradiance }]
 }
 

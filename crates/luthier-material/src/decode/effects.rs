@@ -2,7 +2,7 @@ use luthier_optics::stack::Stack;
 
 use super::films;
 use crate::diagnostic::Sink;
-use crate::effects::{Effects, FlakeSource, Flakes, Patina};
+use crate::effects::{Effects, FlakeSource, Flakes, Glitter, Patina};
 use crate::section::Section;
 use crate::suggest::short;
 
@@ -18,6 +18,16 @@ pub(super) fn decode(document: &Section<'_>, stack: &Stack, sink: &mut Sink<'_>)
     Effects {
         flakes: at.section("flakes").and_then(|at| flakes(&at)),
         patina: at.section("patina").and_then(|at| patina(&at, sink)),
+        glitter: at.section("glitter").map(|at| glitter(&at)),
+    }
+}
+
+fn glitter(at: &Section<'_>) -> Glitter {
+    Glitter {
+        seed: at.integer("seed").unwrap_or(0),
+        frequency: at.number("frequency").unwrap_or(200.0),
+        filled: at.number("filled").unwrap_or(0.1),
+        tilt: at.number("tilt_deg").unwrap_or(15.0).to_radians(),
     }
 }
 

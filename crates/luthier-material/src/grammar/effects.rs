@@ -10,6 +10,22 @@ pub(super) static EFFECTS: Table = Table {
     keys: &[
         Key::optional("flakes", Kind::Table(&FLAKES), "Glints of metal flakes below the first interface."),
         Key::optional("patina", Kind::Table(&PATINA), "Growth of the first layer over the rest."),
+        Key::optional("glitter", Kind::Table(&GLITTER), "Particles of the surface that are tilted."),
+    ],
+    exactly_one: None,
+};
+
+/// Tilts of particles that still face the eye.
+const TILT_DEG: Range = Range { min: 0.0, max: 45.0, above: true };
+
+static GLITTER: Table = Table {
+    name: "glitter",
+    doc: "A share of the Voronoi cells of the surface, each tilted its own way (Weidlich and Wilkie 2009, section 5.2.1).",
+    keys: &[
+        Key::with_default("seed", Kind::Integer(0, u32::MAX as i64), "0", "Seed."),
+        Key::with_default("frequency", Kind::Number(POSITIVE), "200", "Cells per unit of texture coordinate."),
+        Key::with_default("filled", Kind::Number(UNIT), "0.1", "Share of the cells that glitter."),
+        Key::with_default("tilt_deg", Kind::Number(TILT_DEG), "15", "Largest tilt of a glittering cell in degrees."),
     ],
     exactly_one: None,
 };

@@ -1,7 +1,7 @@
 const LUTHIER_DIELECTRIC: u32 = 0u; //? below|granier, conductor|granier
 const LUTHIER_CONDUCTOR: u32 = 1u; //? granier_bare
 const LUTHIER_DIFFUSE: u32 = 2u; //? mixed|granier_base
-const LUTHIER_MATERIAL_WORDS: u32 = 9u;
+const LUTHIER_MATERIAL_WORDS: u32 = 11u;
 const LUTHIER_LAYER_WORDS: u32 = 10u;
 
 /// One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
@@ -52,6 +52,8 @@ struct LuthierLayer {
     alpha_xy: vec2<f32>, //? anisotropic
     /// Cosine and sine of the angle from the surface's tangent to the layer's. //? anisotropic
     rotation: vec2<f32>, //? anisotropic
+    /// Factor on its reflectance, RGB: tarnish under patina. //? patina
+    tarnish: vec3<f32>, //? patina
 }
 
 /// Index of the first word of a material in the buffer.
@@ -97,5 +99,6 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     layer.film_waves = luthier_materials[first + 8u].xyz; //? full|granier, film
     layer.alpha_xy = luthier_materials[first + 9u].xy; //? anisotropic
     layer.rotation = luthier_materials[first + 9u].zw; //? anisotropic
+    layer.tarnish = vec3<f32>(1.0); //? patina
     return layer;
 }

@@ -14,6 +14,8 @@ struct LuthierPath {
     alpha: f32,
     /// Whether any light reaches the next layer.
     open: bool,
+    /// Normal below the next interface, in its frame: that of the flakes. //? flakes
+    normal_below: vec3<f32>, //? flakes
 }
 
 /// Adds what a diffuse base reflects. It ends the stack. //? chain_diffuse
@@ -39,7 +41,8 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
         return next;
     }
     let cos_theta_d = min(0.5 * sqrt(length_sq), 1.0);
-    let fresnel = luthier_fresnel_term(layer, cos_theta_d);
+    let fresnel = luthier_fresnel_term(layer, cos_theta_d); //? !patina
+    let fresnel = layer.tarnish * luthier_fresnel_term(layer, cos_theta_d); //? patina
     // G of V-cavities is min(1, cavity * low); G / (low * high) is formed without the product, which may underflow.
     let cavity = 2.0 * bisector.z / (sqrt(length_sq) * cos_theta_d);
     let low = min(path.wi.z, path.wo.z);
@@ -60,13 +63,21 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     next.wi = vec3<f32>(path.wi.xy / layer.eta, refracted.x); //? below
     next.wo = vec3<f32>(path.wo.xy / layer.eta, refracted.y); //? below
     next.across = path.across / layer.eta; //? below
+    // Flakes tilt all that lies below, the paths through the slab included. //? flakes
+    next.wi = luthier_turned(path.normal_below, next.wi); //? flakes
+    next.wo = luthier_turned(path.normal_below, next.wo); //? flakes
+    next.across = next.wi.xy + next.wo.xy; //? flakes
+    next.normal_below = vec3<f32>(0.0, 0.0, 1.0); //? flakes
+    if min(next.wi.z, next.wo.z) <= 0.0 { //? flakes
+        return next; //? flakes
+    } //? flakes
     next.open = true; //? below
     // (1 - F) down, (1 - F) up, and part of what the cavities block comes back. //? below
     let masking = min(cavity * low, 1.0); //? below
     let crossed = 1.0 - fresnel; //? below
     let kept = crossed * (1.0 - masking + crossed * masking); //? below
     next.throughput = path.throughput * kept; //? below, !absorption
-    let absorbed = exp(-layer.optical_depth * (1.0 / refracted.x + 1.0 / refracted.y)); //? below, absorption
+    let absorbed = exp(-layer.optical_depth * (1.0 / next.wi.z + 1.0 / next.wo.z)); //? below, absorption
     next.throughput = path.throughput * kept * absorbed; //? below, absorption
     return next;
 }

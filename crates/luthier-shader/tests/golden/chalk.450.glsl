@@ -2,7 +2,7 @@
 // Fresnel reflectance and slope distribution are read from tables.
 //
 // Bindings, group 0:
-//   6 luthier_materials: storage block LuthierMaterials (std430), 19 vec4
+//   6 luthier_materials: storage block LuthierMaterials (std430), 21 vec4
 //
 // Materials:
 //   0 chalk, elek, 1 layer
@@ -16,7 +16,7 @@ struct LuthierLayer {
 };
 
 const uint LUTHIER_MATERIAL_CHALK = 0u;
-const uint LUTHIER_MATERIAL_WORDS = 9u;
+const uint LUTHIER_MATERIAL_WORDS = 11u;
 const uint LUTHIER_LAYER_WORDS = 10u;
 
 layout(std430, binding = 6) readonly buffer LuthierMaterials { vec4 luthier_materials[]; };

@@ -3,7 +3,7 @@
 // Needs `precision highp float;` and `precision highp int;` above.
 //
 // Bindings, by name:
-//   luthier_materials: uniform block LuthierMaterials (std140), 19 vec4
+//   luthier_materials: uniform block LuthierMaterials (std140), 21 vec4
 //
 // Materials:
 //   0 chalk, elek, 1 layer
@@ -17,10 +17,10 @@ struct LuthierLayer {
 };
 
 const uint LUTHIER_MATERIAL_CHALK = 0u;
-const uint LUTHIER_MATERIAL_WORDS = 9u;
+const uint LUTHIER_MATERIAL_WORDS = 11u;
 const uint LUTHIER_LAYER_WORDS = 10u;
 
-layout(std140) uniform LuthierMaterials { vec4 luthier_materials[19]; };
+layout(std140) uniform LuthierMaterials { vec4 luthier_materials[21]; };
 
 // Index of the first word of a material in the buffer.
 uint luthier_header(uint material) {

@@ -3,7 +3,7 @@
 // Shader model 5.1. Checked by glslang, not by a compiler of Direct3D.
 //
 // Registers, space0:
-//   t6 luthier_materials: ByteAddressBuffer, 19 float4
+//   t6 luthier_materials: ByteAddressBuffer, 21 float4
 //
 // Materials:
 //   0 chalk, elek, 1 layer
@@ -17,7 +17,7 @@ struct LuthierLayer {
 };
 
 static const uint LUTHIER_MATERIAL_CHALK = 0u;
-static const uint LUTHIER_MATERIAL_WORDS = 9u;
+static const uint LUTHIER_MATERIAL_WORDS = 11u;
 static const uint LUTHIER_LAYER_WORDS = 10u;
 
 ByteAddressBuffer luthier_materials : register(t6);

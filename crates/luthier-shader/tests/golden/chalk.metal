@@ -4,7 +4,7 @@
 //
 // Bindings, by argument index of a complete shader. A function takes those that it reads, in this order, as its last
 // arguments:
-//   buffer(6) luthier_materials: constant LuthierMaterials&, 19 float4
+//   buffer(6) luthier_materials: constant LuthierMaterials&, 21 float4
 //
 // Materials:
 //   0 chalk, elek, 1 layer
@@ -15,7 +15,7 @@
 using metal::uint;
 
 struct LuthierMaterials {
-    metal::float4 inner[19];
+    metal::float4 inner[21];
 };
 
 // One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
@@ -28,7 +28,7 @@ struct LuthierLayer {
 };
 
 constant uint LUTHIER_MATERIAL_CHALK = 0u;
-constant uint LUTHIER_MATERIAL_WORDS = 9u;
+constant uint LUTHIER_MATERIAL_WORDS = 11u;
 constant uint LUTHIER_LAYER_WORDS = 10u;
 
 // Index of the first word of a material in the buffer.

@@ -2,7 +2,7 @@
 // Fresnel reflectance and slope distribution are read from tables.
 //
 // Bindings, group 0:
-//   6 luthier_materials: storage buffer, 19 vec4
+//   6 luthier_materials: storage buffer, 21 vec4
 //
 // Materials:
 //   0 chalk, elek, 1 layer
@@ -11,7 +11,7 @@ const LUTHIER_MATERIAL_CHALK: u32 = 0u;
 
 @group(0) @binding(6) var<storage, read> luthier_materials: array<vec4<f32>>;
 
-const LUTHIER_MATERIAL_WORDS: u32 = 9u;
+const LUTHIER_MATERIAL_WORDS: u32 = 11u;
 const LUTHIER_LAYER_WORDS: u32 = 10u;
 
 /// One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.

@@ -9,7 +9,7 @@
 //   0 luthier_fresnel: sampler2D
 //   1 luthier_distribution: sampler2D
 //   each texture filtered linearly, clamped to its edge
-//   6 luthier_materials: storage block LuthierMaterials (std430), 29 vec4
+//   6 luthier_materials: storage block LuthierMaterials (std430), 31 vec4
 //
 // Materials:
 //   0 varnished-gold, elek, 2 layers
@@ -52,7 +52,7 @@ const vec2 LUTHIER_DISTRIBUTION_SIZE = vec2(512.0, 1024.0);
 const vec2 LUTHIER_DISTRIBUTION_TILE = vec2(512.0, 512.0);
 const float LUTHIER_PI = 3.1415927;
 const uint LUTHIER_DIELECTRIC = 0u;
-const uint LUTHIER_MATERIAL_WORDS = 9u;
+const uint LUTHIER_MATERIAL_WORDS = 11u;
 const uint LUTHIER_LAYER_WORDS = 10u;
 
 layout(binding = 0) uniform sampler2D luthier_fresnel;

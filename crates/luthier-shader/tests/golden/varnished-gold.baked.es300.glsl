@@ -10,7 +10,7 @@
 //   luthier_fresnel: sampler2D
 //   luthier_distribution: sampler2D
 //   each texture filtered linearly, clamped to its edge
-//   luthier_materials: uniform block LuthierMaterials (std140), 29 vec4
+//   luthier_materials: uniform block LuthierMaterials (std140), 31 vec4
 //
 // Materials:
 //   0 varnished-gold, elek, 2 layers
@@ -53,13 +53,13 @@ const vec2 LUTHIER_DISTRIBUTION_SIZE = vec2(512.0, 1024.0);
 const vec2 LUTHIER_DISTRIBUTION_TILE = vec2(512.0, 512.0);
 const float LUTHIER_PI = 3.1415927;
 const uint LUTHIER_DIELECTRIC = 0u;
-const uint LUTHIER_MATERIAL_WORDS = 9u;
+const uint LUTHIER_MATERIAL_WORDS = 11u;
 const uint LUTHIER_LAYER_WORDS = 10u;
 
 uniform highp sampler2D luthier_fresnel;
 uniform highp sampler2D luthier_distribution;
 
-layout(std140) uniform LuthierMaterials { vec4 luthier_materials[29]; };
+layout(std140) uniform LuthierMaterials { vec4 luthier_materials[31]; };
 
 // Fresnel reflectance of an interface, RGB.
 vec3 luthier_lookup_fresnel(float tile, float cos_theta) {

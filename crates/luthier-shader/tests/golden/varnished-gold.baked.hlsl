@@ -10,7 +10,7 @@
 //   t0 luthier_fresnel: Texture2D<float4>
 //   t1 luthier_distribution: Texture2D<float4>
 //   s5 luthier_sampler: SamplerState, linear, clamp to edge
-//   t6 luthier_materials: ByteAddressBuffer, 29 float4
+//   t6 luthier_materials: ByteAddressBuffer, 31 float4
 //
 // Materials:
 //   0 varnished-gold, elek, 2 layers
@@ -53,7 +53,7 @@ static const float2 LUTHIER_DISTRIBUTION_SIZE = float2(512.0, 1024.0);
 static const float2 LUTHIER_DISTRIBUTION_TILE = float2(512.0, 512.0);
 static const float LUTHIER_PI = 3.1415927;
 static const uint LUTHIER_DIELECTRIC = 0u;
-static const uint LUTHIER_MATERIAL_WORDS = 9u;
+static const uint LUTHIER_MATERIAL_WORDS = 11u;
 static const uint LUTHIER_LAYER_WORDS = 10u;
 
 Texture2D<float4> luthier_fresnel : register(t0);

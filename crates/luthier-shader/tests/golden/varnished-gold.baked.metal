@@ -11,7 +11,7 @@
 //   texture(0) luthier_fresnel: texture2d<float>
 //   texture(1) luthier_distribution: texture2d<float>
 //   sampler(5) luthier_sampler: sampler, linear, clamp to edge
-//   buffer(6) luthier_materials: constant LuthierMaterials&, 29 float4
+//   buffer(6) luthier_materials: constant LuthierMaterials&, 31 float4
 //
 // Materials:
 //   0 varnished-gold, elek, 2 layers
@@ -22,7 +22,7 @@
 using metal::uint;
 
 struct LuthierMaterials {
-    metal::float4 inner[29];
+    metal::float4 inner[31];
 };
 
 // One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
@@ -64,7 +64,7 @@ constant metal::float2 LUTHIER_DISTRIBUTION_SIZE = metal::float2(512.0, 1024.0);
 constant metal::float2 LUTHIER_DISTRIBUTION_TILE = metal::float2(512.0, 512.0);
 constant float LUTHIER_PI = 3.1415927;
 constant uint LUTHIER_DIELECTRIC = 0u;
-constant uint LUTHIER_MATERIAL_WORDS = 9u;
+constant uint LUTHIER_MATERIAL_WORDS = 11u;
 constant uint LUTHIER_LAYER_WORDS = 10u;
 
 // Fresnel reflectance of an interface, RGB.

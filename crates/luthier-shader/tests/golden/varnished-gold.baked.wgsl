@@ -9,7 +9,7 @@
 //   0 luthier_fresnel: texture
 //   1 luthier_distribution: texture
 //   5 luthier_sampler: sampler, linear, clamp to edge
-//   6 luthier_materials: storage buffer, 29 vec4
+//   6 luthier_materials: storage buffer, 31 vec4
 //
 // Materials:
 //   0 varnished-gold, elek, 2 layers
@@ -52,7 +52,7 @@ fn luthier_lookup_distribution(tile: f32, cos_theta_h: f32, sin_theta_h_sq: f32,
 const LUTHIER_PI: f32 = 3.14159265;
 
 const LUTHIER_DIELECTRIC: u32 = 0u;
-const LUTHIER_MATERIAL_WORDS: u32 = 9u;
+const LUTHIER_MATERIAL_WORDS: u32 = 11u;
 const LUTHIER_LAYER_WORDS: u32 = 10u;
 
 /// One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.

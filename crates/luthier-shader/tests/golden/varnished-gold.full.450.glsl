@@ -2,7 +2,7 @@
 // No tables: Fresnel equations at three wavelengths, closed forms of D.
 //
 // Bindings, group 0:
-//   6 luthier_materials: storage block LuthierMaterials (std430), 29 vec4
+//   6 luthier_materials: storage block LuthierMaterials (std430), 31 vec4
 //
 // Materials:
 //   0 varnished-gold, elek, 2 layers
@@ -50,7 +50,7 @@ struct LuthierPath {
 const uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
 const float LUTHIER_PI = 3.1415927;
 const uint LUTHIER_DIELECTRIC = 0u;
-const uint LUTHIER_MATERIAL_WORDS = 9u;
+const uint LUTHIER_MATERIAL_WORDS = 11u;
 const uint LUTHIER_LAYER_WORDS = 10u;
 
 layout(std430, binding = 6) readonly buffer LuthierMaterials { vec4 luthier_materials[]; };

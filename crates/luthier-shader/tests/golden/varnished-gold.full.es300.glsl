@@ -3,7 +3,7 @@
 // Needs `precision highp float;` and `precision highp int;` above.
 //
 // Bindings, by name:
-//   luthier_materials: uniform block LuthierMaterials (std140), 29 vec4
+//   luthier_materials: uniform block LuthierMaterials (std140), 31 vec4
 //
 // Materials:
 //   0 varnished-gold, elek, 2 layers
@@ -51,10 +51,10 @@ struct LuthierPath {
 const uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
 const float LUTHIER_PI = 3.1415927;
 const uint LUTHIER_DIELECTRIC = 0u;
-const uint LUTHIER_MATERIAL_WORDS = 9u;
+const uint LUTHIER_MATERIAL_WORDS = 11u;
 const uint LUTHIER_LAYER_WORDS = 10u;
 
-layout(std140) uniform LuthierMaterials { vec4 luthier_materials[29]; };
+layout(std140) uniform LuthierMaterials { vec4 luthier_materials[31]; };
 
 // Index of the first word of a material in the buffer.
 uint luthier_header(uint material) {

@@ -3,7 +3,7 @@
 // Shader model 5.1. Checked by glslang, not by a compiler of Direct3D.
 //
 // Registers, space0:
-//   t6 luthier_materials: ByteAddressBuffer, 29 float4
+//   t6 luthier_materials: ByteAddressBuffer, 31 float4
 //
 // Materials:
 //   0 varnished-gold, elek, 2 layers
@@ -51,7 +51,7 @@ struct LuthierPath {
 static const uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
 static const float LUTHIER_PI = 3.1415927;
 static const uint LUTHIER_DIELECTRIC = 0u;
-static const uint LUTHIER_MATERIAL_WORDS = 9u;
+static const uint LUTHIER_MATERIAL_WORDS = 11u;
 static const uint LUTHIER_LAYER_WORDS = 10u;
 
 ByteAddressBuffer luthier_materials : register(t6);

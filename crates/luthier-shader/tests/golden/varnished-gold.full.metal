@@ -4,7 +4,7 @@
 //
 // Bindings, by argument index of a complete shader. A function takes those that it reads, in this order, as its last
 // arguments:
-//   buffer(6) luthier_materials: constant LuthierMaterials&, 29 float4
+//   buffer(6) luthier_materials: constant LuthierMaterials&, 31 float4
 //
 // Materials:
 //   0 varnished-gold, elek, 2 layers
@@ -15,7 +15,7 @@
 using metal::uint;
 
 struct LuthierMaterials {
-    metal::float4 inner[29];
+    metal::float4 inner[31];
 };
 
 // One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
@@ -62,7 +62,7 @@ struct LuthierPath {
 constant uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
 constant float LUTHIER_PI = 3.1415927;
 constant uint LUTHIER_DIELECTRIC = 0u;
-constant uint LUTHIER_MATERIAL_WORDS = 9u;
+constant uint LUTHIER_MATERIAL_WORDS = 11u;
 constant uint LUTHIER_LAYER_WORDS = 10u;
 
 // Index of the first word of a material in the buffer.

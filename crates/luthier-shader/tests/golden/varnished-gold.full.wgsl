@@ -2,7 +2,7 @@
 // No tables: Fresnel equations at three wavelengths, closed forms of D.
 //
 // Bindings, group 0:
-//   6 luthier_materials: storage buffer, 29 vec4
+//   6 luthier_materials: storage buffer, 31 vec4
 //
 // Materials:
 //   0 varnished-gold, elek, 2 layers
@@ -14,7 +14,7 @@ const LUTHIER_MATERIAL_VARNISHED_GOLD: u32 = 0u;
 const LUTHIER_PI: f32 = 3.14159265;
 
 const LUTHIER_DIELECTRIC: u32 = 0u;
-const LUTHIER_MATERIAL_WORDS: u32 = 9u;
+const LUTHIER_MATERIAL_WORDS: u32 = 11u;
 const LUTHIER_LAYER_WORDS: u32 = 10u;
 
 /// One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.

@@ -73,6 +73,13 @@ pub(crate) struct Machine {
     textures: BTreeMap<String, Image>,
 }
 
+/// Where to go on after a statement.
+enum Flow {
+    Next,
+    Break,
+    Return(Option<Value>),
+}
+
 struct Frame<'f> {
     function: &'f Function,
     arguments: Vec<Value>,
@@ -98,10 +105,13 @@ impl Machine {
             let value = local.init.map_or_else(|| self.zero(local.ty), |init| self.get(&mut frame, init));
             frame.locals.insert(handle, value);
         }
-        self.block(&mut frame, &function.body).expect("shipped functions return a value")
+        let Flow::Return(Some(value)) = self.block(&mut frame, &function.body) else {
+            panic!("functions return a value")
+        };
+        value
     }
 
-    fn block(&self, frame: &mut Frame<'_>, block: &naga::Block) -> Option<Value> {
+    fn block(&self, frame: &mut Frame<'_>, block: &naga::Block) -> Flow {
         for statement in block.iter() {
             match statement {
                 Statement::Emit(range) => {
@@ -110,18 +120,27 @@ impl Machine {
                         frame.values.insert(handle, value);
                     }
                 }
-                Statement::Block(inner) => {
-                    if let Some(value) = self.block(frame, inner) {
-                        return Some(value);
-                    }
-                }
+                Statement::Block(inner) => match self.block(frame, inner) {
+                    Flow::Next => {}
+                    other => return other,
+                },
                 Statement::If { condition, accept, reject } => {
                     let is_met = self.get(frame, *condition) == B(true);
-                    if let Some(value) = self.block(frame, if is_met { accept } else { reject }) {
-                        return Some(value);
+                    match self.block(frame, if is_met { accept } else { reject }) {
+                        Flow::Next => {}
+                        other => return other,
                     }
                 }
-                Statement::Return { value } => return value.map(|v| self.get(frame, v)),
+                Statement::Loop { body, continuing, break_if: None } => loop {
+                    match self.block(frame, body) {
+                        Flow::Next => {}
+                        Flow::Break => break,
+                        Flow::Return(value) => return Flow::Return(value),
+                    }
+                    self.block(frame, continuing);
+                },
+                Statement::Break => return Flow::Break,
+                Statement::Return { value } => return Flow::Return(value.map(|v| self.get(frame, v))),
                 Statement::Store { pointer, value } => {
                     let value = self.get(frame, *value);
                     let Place(Root::Local(local), path) = self.get(frame, *pointer) else {
@@ -137,7 +156,7 @@ impl Machine {
                 other => panic!("no {other:?} here"),
             }
         }
-        None
+        Flow::Next
     }
 
     fn get(&self, frame: &mut Frame<'_>, handle: Handle<Expression>) -> Value {
@@ -291,7 +310,9 @@ fn cast(kind: ScalarKind, value: &Value) -> Value {
         (ScalarKind::Uint, F(v)) => U(*v as u32),
         (ScalarKind::Sint, F(v)) => I(*v as i32),
         (ScalarKind::Sint, U(v)) => I(*v as i32),
+        (ScalarKind::Uint, I(v)) => U(v.cast_unsigned()),
         (ScalarKind::Float, U(v)) => F(*v as f32),
+        (ScalarKind::Float, I(v)) => F(*v as f32),
         other => panic!("no cast {other:?} here"),
     }
 }
@@ -303,9 +324,14 @@ fn binary(op: BinaryOperator, left: &Value, right: &Value) -> Value {
         (Op::Subtract, F(a), F(b)) => F(a - b),
         (Op::Multiply, F(a), F(b)) => F(a * b),
         (Op::Divide, F(a), F(b)) => F(a / b),
-        (Op::Add, U(a), U(b)) => U(a + b),
-        (Op::Multiply, U(a), U(b)) => U(a * b),
+        (Op::Add, U(a), U(b)) => U(a.wrapping_add(*b)),
+        (Op::Multiply, U(a), U(b)) => U(a.wrapping_mul(*b)),
+        (Op::ShiftRight, U(a), U(b)) => U(a >> b),
+        (Op::ExclusiveOr, U(a), U(b)) => U(a ^ b),
         (Op::Add, I(a), I(b)) => I(a + b),
+        (Op::Divide, I(a), I(b)) => I(a / b),
+        (Op::Modulo, I(a), I(b)) => I(a % b),
+        (Op::Less, I(a), I(b)) => B(a < b),
         (Op::Subtract, I(a), I(b)) => I(a - b),
         (Op::Less, F(a), F(b)) => B(a < b),
         (Op::LessEqual, F(a), F(b)) => B(a <= b),
@@ -350,7 +376,9 @@ fn math(fun: MathFunction, operands: &[Value]) -> Value {
             M::Fract => a - a.floor(),
             M::Round => a.round_ties_even(),
             M::Exp => a.exp(),
+            M::Log => a.ln(),
             M::Log2 => a.log2(),
+            M::InverseSqrt => 1.0 / a.sqrt(),
             M::Pow => a.powf(b()),
             M::Sqrt => a.sqrt(),
             M::Mix => a * (1.0 - v[2].float()) + b() * v[2].float(),

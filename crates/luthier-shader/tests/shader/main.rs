@@ -3,6 +3,7 @@
 #![expect(clippy::disallowed_methods, reason = "an oracle decides no bytes")]
 
 mod arithmetic;
+mod effects;
 mod emission;
 mod golden;
 mod judges;

@@ -1,7 +1,8 @@
 //! Material sets for the tests: small, with one material for every kind of layer.
 
 use luthier_lut::{
-    AtlasLayout, Axis, LayerKind, LayerRecord, Mapping, MaterialEntry, ShadingModel, TableKind, TexelFormat,
+    AtlasLayout, Axis, FlakesRecord, GlitterRecord, LayerKind, LayerRecord, Mapping, MaterialConstants, MaterialEntry,
+    PatinaRecord, ShadingModel, TableKind, TexelFormat,
 };
 use luthier_shader::TableFace;
 
@@ -92,6 +93,47 @@ pub(crate) fn material(name: &str, layers: &[LayerRecord]) -> MaterialEntry {
     }
 }
 
+pub(crate) const FLAKES: FlakesRecord =
+    FlakesRecord { seed: 0xfedc_ba98, count: 64, tiling: 10.0, spread: 0.25, scale: 0.8, fade_start: 2.0 };
+
+pub(crate) const GLITTER: GlitterRecord = GlitterRecord { seed: 0x8000_0001, frequency: 20.0, filled: 0.3, tilt: 0.35 };
+
+/// A tinted coat with flakes over gold.
+pub(crate) fn flaked() -> MaterialEntry {
+    let constants = MaterialConstants { flakes: Some(FLAKES), ..MaterialConstants::default() };
+    MaterialEntry { constants, ..material("flakes", &[achromatic(), conductor()]) }
+}
+
+/// A coat of one index for all channels.
+fn achromatic() -> LayerRecord {
+    LayerRecord { ior_n: [1.5; 3], ..dielectric() }
+}
+
+/// A coat that has grown over gold.
+pub(crate) fn patina() -> MaterialEntry {
+    let base = LayerRecord {
+        ior_n: conductor().ior_n.map(|n| n / 1.5),
+        ior_k: conductor().ior_k.map(|k| k / 1.5),
+        ..conductor()
+    };
+    let patina = PatinaRecord {
+        extent: 0.4,
+        transition: 0.2,
+        diffuse_albedo: [0.3, 0.5, 0.2],
+        base_alpha: Some(0.5),
+        tarnish: [0.9, 0.5, 0.3],
+        bare: conductor(),
+    };
+    let constants = MaterialConstants { patina: Some(patina), ..MaterialConstants::default() };
+    MaterialEntry { constants, ..material("patina", &[LayerRecord { alpha: 0.2, ..achromatic() }, base]) }
+}
+
+/// Gold in cells, some of them tilted.
+pub(crate) fn glitter() -> MaterialEntry {
+    let constants = MaterialConstants { glitter: Some(GLITTER), ..MaterialConstants::default() };
+    MaterialEntry { constants, ..material("glitter", &[conductor()]) }
+}
+
 /// A film on a coat on gold.
 fn oiled() -> MaterialEntry {
     material("oiled-varnish", &[with_escape(filmed()), conductor()])
@@ -127,8 +169,14 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
         ("lacquer", vec![lacquer()]),
         ("varnish", vec![material("varnish", &[clear(), conductor()])]),
         ("soap", vec![material("soap", &[filmed()])]),
+        ("flakes", vec![flaked()]),
+        ("patina", vec![patina(), lacquer()]),
+        ("glitter", vec![glitter()]),
+        ("effects", vec![of(ShadingModel::WeidlichWilkie, patina()), flaked(), glitter(), house(), oil()]),
+        ("effects-without-layers", [flaked(), patina()].map(|m| of(ShadingModel::Microfacet, m)).into()),
         ("mixed-depths", vec![gold(), lacquer(), house()]),
         ("mixed-tops", vec![chalk(), lacquer()]),
+        ("chalk-and-metal", vec![chalk(), gold()]),
         (
             "weidlich-wilkie",
             vec![of(ShadingModel::WeidlichWilkie, house()), of(ShadingModel::WeidlichWilkie, brushed())],

@@ -1,0 +1,97 @@
+//! Film tiles: reflectance of an interface over the angle and the thickness of its top film.
+
+use luthier_lut::{Axis, Comparison, Image, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use luthier_optics::interface::{Interface, Sampled};
+use luthier_optics::stack::FilmThickness;
+use serde_json::{Value, json};
+
+use crate::job::{TileData, color_in_words, lone_tile};
+use crate::json;
+
+/// Points of the error scan per texel interval along each axis.
+const PER_CELL: u32 = 2;
+
+/// Airy's reflectance over (cos_theta, d / d_max), integrated as the colour says: where Granier and Heidrich's phase row has two
+/// beams at three wavelengths, this has all beams at all of them.
+#[derive(Debug, Clone)]
+pub(crate) struct FilmJob {
+    pub(crate) interface: Interface,
+    /// Thinnest and thickest of the top film; the thickest is at fraction 1.
+    pub(crate) thickness: FilmThickness,
+    pub(crate) color: Color,
+    pub(crate) axes: [Axis; 2],
+    pub(crate) format: TexelFormat,
+}
+
+impl FilmJob {
+    pub(crate) fn inputs(&self) -> Value {
+        json!({
+            "interface": json::interface(&self.thickest()),
+            "least": self.least(),
+            "color": json::color(&self.color),
+            "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
+            "format": self.format.name(),
+        })
+    }
+
+    /// The interface where the top film is thickest.
+    fn thickest(&self) -> Interface {
+        let mut interface = self.interface.clone();
+        if let Some(film) = interface.films.first_mut() {
+            film.thickness.min_nm = self.thickness.max_nm;
+            film.thickness.max_nm = self.thickness.max_nm;
+        }
+        interface
+    }
+
+    /// The least fraction that the film has. The tile goes on to 0, for films that a shader thins further; its error is stated from
+    /// here on. At 0 and grazing angles the function is not continuous: no film reflects nothing where any film reflects all.
+    fn least(&self) -> f64 {
+        self.thickness.min_nm / self.thickness.max_nm
+    }
+
+    pub(crate) fn run(&self) -> TileData {
+        let thickest = self.thickest().sampled(&self.color);
+        let [x, y] = &self.axes;
+        let mut truth = Image::zeros(x.size, y.size, 3);
+        for j in 0..y.size {
+            let here = at_fraction(&thickest, y.node(j));
+            for i in 0..x.size {
+                truth.texel_mut(i, j).copy_from_slice(&here.rgb(x.node(i)).map(|c| c as f32));
+            }
+        }
+        let atlas = lone_tile(TableKind::Film, &[x, y], self.format, &truth);
+        let whole = Scan::whole([x.intervals(), y.intervals()], [PER_CELL; 2]);
+        let error = measure_scan(
+            &Scan { from: [0.0, y.encode(self.least())], ..whole },
+            |u| {
+                let values = [x.decode(u[0]), y.decode(u[1])];
+                let [r, g, b]: Rgb = at_fraction(&thickest, values[1]).rgb(values[0]);
+                let read = atlas.sample(0, values, WeightBits::Fixed(8));
+                Comparison { expected: [r, g, b, 0.0], sampled: [read[0], read[1], read[2], 0.0] }
+            },
+            |u| vec![x.decode(u[0]), y.decode(u[1])],
+        );
+        TileData {
+            model: format!(
+                "films, Airy, over d/{} nm of the top one; {}",
+                self.thickness.max_nm,
+                color_in_words(&self.color)
+            ),
+            truth,
+            texels: atlas.texels,
+            error,
+        }
+    }
+}
+
+/// The interface where the top film has a fraction of its greatest thickness.
+fn at_fraction(thickest: &Sampled, fraction: f64) -> Sampled {
+    let mut here = thickest.clone();
+    for film in here.nodes.iter_mut().filter_map(|(_, interface)| interface.films.first_mut()) {
+        film.waves *= fraction;
+    }
+    here
+}

@@ -1,0 +1,120 @@
+//! Scalar fields over a surface, from noise or images.
+
+use std::f64::consts::PI;
+
+use luthier_lut::Image;
+use luthier_material::VariationSource;
+use noise::{NoiseFn, Perlin};
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+
+/// Where a field comes from.
+#[derive(Debug, Clone)]
+pub(crate) enum Relief {
+    /// Fractal Perlin noise on a torus.
+    Noise { seed: u32, frequency: f64, octaves: u32 },
+    /// An image with one channel in 0..1, which repeats.
+    Image(Image),
+}
+
+impl Relief {
+    /// What a material says, with `read` to fetch images.
+    pub(crate) fn of(
+        source: &VariationSource,
+        read: impl FnOnce(&str) -> Result<Image, crate::BakeError>,
+    ) -> Result<Self, crate::BakeError> {
+        Ok(match source {
+            VariationSource::Noise { seed, frequency, octaves } => {
+                Self::Noise { seed: *seed, frequency: *frequency, octaves: *octaves }
+            }
+            VariationSource::Image { path } => Self::Image(read(path)?),
+        })
+    }
+
+    pub(crate) fn inputs(&self) -> Value {
+        match self {
+            Self::Noise { seed, frequency, octaves } => json!({"perlin": [seed, frequency, octaves]}),
+            Self::Image(image) => {
+                let mut hash = Sha256::new();
+                image.data.iter().for_each(|v| hash.update(v.to_le_bytes()));
+                let digest: String = hash.finalize().iter().map(|b| format!("{b:02x}")).collect();
+                json!({"image": [image.width, image.height, digest]})
+            }
+        }
+    }
+}
+
+/// A relief with values in 0..1. Noise is stretched to them over the points (i/width, j/height).
+pub(crate) struct Field<'a> {
+    relief: &'a Relief,
+    octaves: Vec<Perlin>,
+    /// Lowest and highest value of the relief: stretched to 0..1.
+    range: [f64; 2],
+}
+
+impl<'a> Field<'a> {
+    pub(crate) fn new(relief: &'a Relief, [width, height]: [u32; 2]) -> Self {
+        let octaves = match relief {
+            Relief::Noise { seed, octaves, .. } => (0..*octaves).map(|i| Perlin::new(seed.wrapping_add(i))).collect(),
+            Relief::Image(_) => Vec::new(),
+        };
+        let mut field = Self { relief, octaves, range: [0.0, 1.0] };
+        if let Relief::Noise { .. } = relief {
+            let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+            for j in 0..height {
+                for i in 0..width {
+                    let value = field.raw([f64::from(i) / f64::from(width), f64::from(j) / f64::from(height)]);
+                    range = [range[0].min(value), range[1].max(value)];
+                }
+            }
+            field.range = range;
+        }
+        field
+    }
+
+    /// The field at a point; both coordinates repeat after 1.
+    pub(crate) fn unit(&self, uv: [f64; 2]) -> f64 {
+        let [low, high] = self.range;
+        if high > low { ((self.raw(uv) - low) / (high - low)).clamp(0.0, 1.0) } else { 0.5 }
+    }
+
+    fn raw(&self, [u, v]: [f64; 2]) -> f64 {
+        match self.relief {
+            Relief::Image(image) => periodic(image, [u, v]),
+            Relief::Noise { frequency, .. } => {
+                // A square that repeats is a torus in four dimensions.
+                let (cu, su) = (libm::cos(2.0 * PI * u), libm::sin(2.0 * PI * u));
+                let (cv, sv) = (libm::cos(2.0 * PI * v), libm::sin(2.0 * PI * v));
+                let mut radius = frequency / (2.0 * PI);
+                let mut weight = 1.0;
+                let mut sum = 0.0;
+                for octave in &self.octaves {
+                    sum += weight * octave.get([radius * cu, radius * su, radius * cv, radius * sv]);
+                    radius *= 2.0;
+                    weight *= 0.5;
+                }
+                sum
+            }
+        }
+    }
+}
+
+/// Bilinear in an image that repeats; texel centres at (i + 1/2) / size.
+fn periodic(image: &Image, uv: [f64; 2]) -> f64 {
+    let wrap = |t: f64| t - libm::floor(t);
+    let (w, h) = (f64::from(image.width), f64::from(image.height));
+    let (x, y) = (wrap(uv[0]) * w, wrap(uv[1]) * h);
+    let base = [libm::floor(x - 0.5), libm::floor(y - 0.5)];
+    let fraction = [x - 0.5 - base[0], y - 0.5 - base[1]];
+    let texel = |i: f64, j: f64| {
+        let i = (i + w) as u32 % image.width;
+        let j = (j + h) as u32 % image.height;
+        f64::from(image.texel(i, j)[0])
+    };
+    let row = |j: f64| {
+        let (a, b) = (texel(base[0], j), texel(base[0] + 1.0, j));
+        a + (b - a) * fraction[0]
+    };
+    let (top, bottom) = (row(base[1]), row(base[1] + 1.0));
+    top + (bottom - top) * fraction[1]
+}

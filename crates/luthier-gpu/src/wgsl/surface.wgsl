@@ -1,0 +1,22 @@
+// A surface that varies.
+alias ShadingSurface = LuthierPlace;
+
+// The place of the emitted shader, filled from the maps here and nowhere else.
+fn shading_surface(material: u32, maps: ShadingMaps, distance: f32) -> ShadingSurface {
+    var surface = luthier_place();
+    surface.normal = maps.normal;
+    surface.alpha_factor = maps.roughness * maps.roughness;
+    surface.slab_factor = maps.thickness;
+    $fill
+    return surface;
+}
+
+fn shading_factors(surface: ShadingSurface) -> ShadingFactors {
+    return ShadingFactors(
+        surface.normal, surface.alpha_factor, surface.slab_factor, surface.film_factor, $below, $patina,
+    );
+}
+
+fn shading_eval(material: u32, surface: ShadingSurface, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
+    return luthier_eval_at(surface, material, wi, wo);
+}

@@ -1,0 +1,15 @@
+// A surface that is the same everywhere.
+alias ShadingSurface = f32;
+
+fn shading_surface(material: u32, maps: ShadingMaps, distance: f32) -> ShadingSurface {
+    return 0.0;
+}
+
+fn shading_factors(surface: ShadingSurface) -> ShadingFactors {
+    let up = vec3<f32>(0.0, 0.0, 1.0);
+    return ShadingFactors(up, 1.0, 1.0, 1.0, up, -1.0);
+}
+
+fn shading_eval(material: u32, surface: ShadingSurface, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
+    return luthier_eval(material, wi, wo);
+}

@@ -1,0 +1,301 @@
+//! Flakes, patina and glitter in f32, run without a GPU, against their f64 twins in luthier-layers.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use glam::{DVec2, DVec3};
+use luthier_layers::flakes::Flakes;
+use luthier_layers::heterogeneous::Map;
+use luthier_layers::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
+use luthier_layers::patina::Patina;
+use luthier_layers::voronoi::Voronoi;
+use luthier_lut::{LayerRecord, MaterialEntry, material_buffer};
+use luthier_optics::stack::{Distribution, Surface};
+use luthier_shader::{Form, MaterialSet, Target, emit};
+use num_complex::Complex64;
+
+use crate::machine::{Machine, Value, vector};
+use crate::scenes::{FLAKES, GLITTER, conductor, dielectric, flaked, glitter, material, patina, tables};
+
+/// Sines, logarithms and square roots of f32, a few operations deep.
+const NORMAL_TOLERANCE: f64 = 2e-6;
+
+/// Of f cos_theta_i: directions in f32 are off by 6e-8, 3e-6 of the width of the narrowest lobe, plus rounding; tilted normals add
+/// [`NORMAL_TOLERANCE`] over that width.
+const EVAL_TOLERANCE: f64 = 3e-4;
+const FLOOR: f64 = 1e-3;
+
+/// Members of `LuthierPlace` in a set without Granier's model.
+const FLAKE_NORMAL: usize = 4;
+const PATINA: usize = 4;
+
+fn machine(materials: &[MaterialEntry]) -> Machine {
+    let set = MaterialSet { materials, tables: Vec::new() };
+    Machine::new(&emit(&set, Form::Full, Target::Wgsl).unwrap(), &material_buffer(materials), BTreeMap::new())
+}
+
+/// Points that fill the unit square evenly (R2 sequence), as f32 holds them.
+fn points(count: u32) -> impl Iterator<Item = DVec2> {
+    (0..count).map(|i| {
+        let at = |a: f64| f64::from((0.5 + a * f64::from(i)).fract() as f32);
+        DVec2::new(at(0.754_877_666_246_692_7), at(0.569_840_290_998_053_3))
+    })
+}
+
+/// Pairs of directions as f32 holds them, half of them near mirror directions.
+fn directions(count: u32) -> impl Iterator<Item = (DVec3, DVec3)> {
+    points(count).zip(points(2 * count).skip(count as usize)).enumerate().map(|(i, (a, b))| {
+        let wi = direction(0.05 + 0.95 * a.x, TAU * a.y);
+        let near = (0.05 + 0.95 * a.x + 0.1 * (b.x - 0.5)).clamp(0.05, 1.0);
+        let wo = if i % 2 == 0 { direction(0.05 + 0.95 * b.x, TAU * b.y) } else { direction(near, TAU * (a.y + 0.5)) };
+        (wi, wo)
+    })
+}
+
+fn direction(cos_theta: f64, phi: f64) -> DVec3 {
+    let sin = (1.0 - cos_theta * cos_theta).sqrt();
+    DVec3::new(sin * phi.cos(), sin * phi.sin(), cos_theta).as_vec3().as_dvec3().normalize()
+}
+
+fn single(v: DVec3) -> Value {
+    vector(&v.as_vec3().to_array())
+}
+
+fn pair(v: DVec2) -> Value {
+    vector(&v.as_vec2().to_array())
+}
+
+fn vec3(value: &Value) -> DVec3 {
+    DVec3::from_slice(&value.floats().iter().map(|&v| f64::from(v)).collect::<Vec<_>>())
+}
+
+fn flakes() -> Flakes {
+    let luthier_lut::FlakesRecord { seed, count, tiling, spread, scale, fade_start } = FLAKES;
+    Flakes { seed, count, tiling, spread, scale, fade_start }
+}
+
+/// Whether a coordinate is far enough from the edges of the cells that f32 finds the same cell.
+fn is_inside(x: f64, cells: f64) -> bool {
+    let t = (x * cells).fract();
+    (0.01..0.99).contains(&t)
+}
+
+fn places() -> impl Iterator<Item = DVec2> {
+    let cells = FLAKES.tiling * f64::from(FLAKES.count);
+    points(4000).filter(move |uv| is_inside(uv.x, cells) && is_inside(uv.y, cells))
+}
+
+#[test]
+fn flakes_are_those_of_f64() {
+    let machine = machine(&[flaked()]);
+    let mut worst = 0.0f64;
+    for uv in places() {
+        let found = vec3(&machine.call("luthier_flake", vec![Value::U(0), pair(uv)]));
+        worst = worst.max((found - flakes().flake(uv)).length());
+        for distance in [0.0, 1.5, 3.0, 100.0f32] {
+            let arguments = vec![Value::U(0), pair(uv), Value::F(distance)];
+            let found = vec3(&machine.call("luthier_flake_normal", arguments));
+            worst = worst.max((found - flakes().normal(uv, f64::from(distance))).length());
+        }
+    }
+    assert!(worst < NORMAL_TOLERANCE, "{worst}");
+    // Negative coordinates repeat.
+    let uv = DVec2::new(-0.734_2, -2.116_7);
+    let found = vec3(&machine.call("luthier_flake", vec![Value::U(0), pair(uv)]));
+    assert!((found - flakes().flake(uv)).length() < NORMAL_TOLERANCE);
+}
+
+#[test]
+fn materials_without_an_effect_stay_as_they_are() {
+    let materials = [flaked(), patina(), glitter()];
+    let machine = machine(&materials);
+    for uv in points(50) {
+        let arguments = vec![Value::U(1), pair(uv), Value::F(1.0)];
+        assert_eq!(vec3(&machine.call("luthier_flake_normal", arguments)), DVec3::Z);
+        let arguments = vec![Value::U(1), single(DVec3::X), Value::F(1.0)];
+        assert_eq!(vec3(&machine.call("luthier_flake_tilt", arguments)), DVec3::Z);
+        assert_eq!(vec3(&machine.call("luthier_glitter_normal", vec![Value::U(0), pair(uv)])), DVec3::Z);
+    }
+    let amount = machine.call("luthier_patina_amount", vec![Value::U(0), Value::F(0.0)]);
+    assert_eq!(amount, Value::F(-1.0));
+}
+
+/// The numbers of a cell follow from an integer hash: they are equal, not near.
+#[test]
+fn cells_and_their_numbers_are_exactly_those_of_f64() {
+    let machine = machine(&[glitter()]);
+    let mut compared = 0;
+    for seed in [0, 1, 77, u32::MAX] {
+        let map = Voronoi { seed, frequency: 1.0 };
+        for p in points(300).map(|p| (20.0 * p - 10.0).as_vec2().as_dvec2()) {
+            let cell = map.cell(p);
+            // Where two points are as near in f32, either will do.
+            let near = |d: DVec2| map.cell(p + d) == cell;
+            if ![DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y].iter().all(|&d| near(1e-4 * d)) {
+                continue;
+            }
+            compared += 1;
+            let Value::U(word) = machine.call("luthier_voronoi", vec![Value::U(seed), pair(p)]) else { panic!() };
+            for index in 0..4 {
+                let found = machine.call("luthier_unit", vec![Value::U(word), Value::U(index + 2)]);
+                assert_eq!(found, Value::F(cell.number(index) as f32), "{seed} {p}");
+                assert_eq!(f64::from(cell.number(index) as f32), cell.number(index));
+            }
+        }
+    }
+    assert!(compared > 1100, "{compared}");
+}
+
+#[test]
+fn glitter_is_that_of_f64() {
+    let machine = machine(&[glitter()]);
+    let cells = Voronoi { seed: GLITTER.seed, frequency: GLITTER.frequency };
+    let map = Map::Glitter {
+        cells,
+        stacks: vec![1],
+        filled: GLITTER.filled,
+        tilt: GLITTER.tilt,
+        under: Box::new(Map::Uniform(0)),
+    };
+    let mut tilted = 0;
+    for uv in points(1500) {
+        let apart = |d: DVec2| cells.cell(uv + 1e-5 * d) == cells.cell(uv);
+        if ![DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y].iter().all(|&d| apart(d)) {
+            continue;
+        }
+        let pick = map.pick(uv);
+        tilted += pick.stack;
+        let found = vec3(&machine.call("luthier_glitter_normal", vec![Value::U(0), pair(uv)]));
+        assert!((found - pick.normal).length() < NORMAL_TOLERANCE, "{uv}: {found} {}", pick.normal);
+    }
+    assert!((300..600).contains(&tilted), "{tilted}");
+}
+
+/// The layers at one of the three wavelengths. Every coat has one index.
+fn monochrome(layers: &[LayerRecord], channel: usize) -> Monochrome {
+    let mut above = 1.0;
+    let layers = layers
+        .iter()
+        .map(|record| {
+            let distribution = if record.distribution == "ggx" { Distribution::Ggx } else { Distribution::Beckmann };
+            let surface = Surface::isotropic(distribution, record.alpha);
+            let ior = above * Complex64::new(record.ior_n[channel], record.ior_k[channel]);
+            let below = match record.kind {
+                luthier_lut::LayerKind::Dielectric => MonochromeBelow::Dielectric {
+                    ior: ior.re,
+                    complex_ior: ior,
+                    optical_depth: record.optical_depth[channel],
+                },
+                _ => MonochromeBelow::Conductor { ior },
+            };
+            let layer = MonochromeLayer { surface, above, films: Vec::new(), below };
+            above = ior.re;
+            layer
+        })
+        .collect();
+    Monochrome { exterior: 1.0, layers }
+}
+
+fn with(place: &Value, member: usize, value: Value) -> Value {
+    let Value::Many(mut members) = place.clone() else { panic!("a place has members") };
+    members[member] = value;
+    Value::Many(members)
+}
+
+fn error(found: &Value, expected: [f64; 3]) -> f64 {
+    let found = found.floats();
+    (0..3).map(|c| (f64::from(found[c]) - expected[c]).abs() / expected[c].max(FLOOR)).fold(0.0, f64::max)
+}
+
+#[test]
+fn flakes_tilt_what_is_below_as_in_f64() {
+    let material = flaked();
+    let machine = machine(std::slice::from_ref(&material));
+    let neutral = machine.call("luthier_place", Vec::new());
+    let (mut worst, mut changed) = (0.0f64, 0);
+    for (uv, (wi, wo)) in places().zip(directions(3000)) {
+        let normal = machine.call("luthier_flake_normal", vec![Value::U(0), pair(uv), Value::F(3.0)]);
+        let place = with(&neutral, FLAKE_NORMAL, normal);
+        let call =
+            |place: &Value| machine.call("luthier_eval_at", vec![place.clone(), Value::U(0), single(wi), single(wo)]);
+        let found = call(&place);
+        let expected = [0, 1, 2].map(|c| flakes().eval(&monochrome(&material.layers, c), uv, 3.0, wi, wo));
+        worst = worst.max(error(&found, expected));
+        changed += usize::from(error(&call(&neutral), expected) > 0.05);
+    }
+    assert!(worst < EVAL_TOLERANCE, "{worst}");
+    assert!(changed > 500, "{changed}");
+}
+
+#[test]
+fn patina_is_that_of_f64() {
+    let material = patina();
+    let machine = machine(&[material.clone(), flaked()]);
+    let neutral = machine.call("luthier_place", Vec::new());
+    let record = material.constants.patina.clone().unwrap();
+    let twin = |c: usize| Patina {
+        extent: record.extent,
+        transition: record.transition,
+        diffuse_albedo: record.diffuse_albedo[c],
+        base_alpha: record.base_alpha,
+        tarnish: record.tarnish[c],
+    };
+    let mut worst = 0.0f64;
+    for (i, (wi, wo)) in directions(600).enumerate() {
+        let map = f64::from((i % 9) as f32 / 8.0);
+        let amount = machine.call("luthier_patina_amount", vec![Value::U(0), Value::F(map as f32)]);
+        assert!((f64::from(amount.floats()[0]) - twin(0).amount(map)).abs() < 1e-6);
+        // The set has flakes too: patina comes after their normal.
+        let place = with(&neutral, PATINA + 1, amount);
+        let found = machine.call("luthier_eval_at", vec![place, Value::U(0), single(wi), single(wo)]);
+        let expected = [0, 1, 2].map(|c| twin(c).eval(&monochrome(&material.layers, c), map, wi, wo));
+        worst = worst.max(error(&found, expected));
+    }
+    assert!(worst < EVAL_TOLERANCE, "{worst}");
+}
+
+/// A step at transition 0, on either side and on its edge.
+#[test]
+fn patina_without_transition_is_a_step() {
+    let mut material = patina();
+    let record = material.constants.patina.as_mut().unwrap();
+    (record.extent, record.transition) = (0.5, 0.0);
+    let machine = machine(&[material]);
+    for (map, expected) in [(0.0, 1.0), (0.5, 1.0), (0.500_001, 0.0), (1.0, 0.0f32)] {
+        assert_eq!(machine.call("luthier_patina_amount", vec![Value::U(0), Value::F(map)]), Value::F(expected));
+    }
+}
+
+/// At a place without textures a material with effects is its layers.
+#[test]
+fn without_textures_only_the_layers_are_left() {
+    for material in [flaked(), patina(), glitter()] {
+        let plain = MaterialEntry { constants: luthier_lut::MaterialConstants::default(), ..material.clone() };
+        let [machine, plain] = [[material], [plain]].map(|m| machine(&m));
+        for (wi, wo) in directions(200) {
+            let eval = |machine: &Machine| machine.call("luthier_eval", vec![Value::U(0), single(wi), single(wo)]);
+            assert_eq!(eval(&machine), eval(&plain));
+        }
+    }
+}
+
+#[test]
+fn sets_without_effects_carry_no_word_of_them() {
+    let words = ["flake", "patina", "glitter", "voronoi", "luthier_mix", "tarnish", "is_bare", "normal_below"];
+    let text = |materials: &[MaterialEntry], form| {
+        emit(&MaterialSet { materials, tables: tables() }, form, Target::Wgsl).unwrap()
+    };
+    for form in Form::ALL {
+        let plain = text(&[material("coated", &[dielectric(), conductor()])], form);
+        let [flakes, patina, glitter] = [flaked(), patina(), glitter()].map(|m| text(&[m], form));
+        for word in words {
+            assert!(!plain.contains(word), "{word}");
+        }
+        for (one, others) in [(&flakes, ["patina(", "glitter_"]), (&patina, ["flake_", "glitter_"])] {
+            for word in others {
+                assert!(!one.contains(word), "{word} in\n{one}");
+            }
+        }
+        assert!(!glitter.contains("flake_") && !glitter.contains("luthier_patina"));
+    }
+}
