@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui::{
-    Align2, Area, CentralPanel, ColorImage, Context, Frame, Id, Panel, PointerButton, Rect, RichText, Sense,
+    Align2, Area, CentralPanel, ColorImage, Context, Frame, Id, Margin, Panel, PointerButton, Rect, RichText, Sense,
     TextureHandle, TextureOptions, Theme, Ui, ViewportCommand, pos2,
 };
 use luthier_gpu::{Artefacts, Gpu, RenderSettings, Shape};
@@ -30,6 +30,9 @@ pub(crate) const SHAPES: [(Shape, &str); 3] =
 
 /// Points of the wheel's smooth motion that make a notch.
 const POINTS_PER_NOTCH: f32 = 40.0;
+
+/// Width of the panel in points.
+const PANEL: f32 = 340.0;
 
 /// A screenshot on its way: its number, whether the command line asked for it, its pixels.
 type Taken = (u32, bool, Arc<ColorImage>);
@@ -410,7 +413,12 @@ impl eframe::App for App {
         for action in actions {
             self.act(action, &context);
         }
-        Panel::right("panel").exact_size(332.0).resizable(false).show(ui, |ui| crate::panel::show(self, ui));
+        let frame = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(12, 8));
+        Panel::right("panel")
+            .exact_size(PANEL)
+            .resizable(false)
+            .frame(frame)
+            .show(ui, |ui| crate::panel::show(self, ui));
         Panel::bottom("status").show(ui, |ui| crate::panel::status(self, ui));
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| self.picture(ui));
         crate::panel::help(self, &context);

@@ -24,9 +24,7 @@ const TONES: [(ToneMapping, &str); 4] = [
 
 /// The panel.
 pub(crate) fn show(app: &mut App, ui: &mut Ui) {
-    ui.add_space(8.0);
     title(app, ui);
-    ui.add_space(4.0);
     choices(app, ui);
     ui.separator();
     ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {

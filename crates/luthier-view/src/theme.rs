@@ -32,7 +32,7 @@ pub(crate) fn apply(context: &Context) {
     }
     context.all_styles_mut(|style| {
         style.spacing.item_spacing = Vec2::new(8.0, 5.0);
-        style.spacing.slider_width = 128.0;
+        style.spacing.slider_width = 120.0;
         style.spacing.interact_size.y = 20.0;
         style.spacing.combo_width = 150.0;
         style.interaction.selectable_labels = false;

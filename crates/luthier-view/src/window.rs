@@ -65,10 +65,27 @@ pub fn run(host: Arc<dyn Host>, gpu: Gpu, options: Options) -> Result<(), ViewEr
             Ok(error) => *error,
             Err(other) => ViewError::Display(other.to_string()),
         },
-        other => ViewError::Display(other.to_string()),
+        other => ViewError::Display(cause(&other.to_string())),
     })?;
     match failure.lock().unwrap_or_else(PoisonError::into_inner).take() {
         Some(message) => Err(ViewError::Screenshot(message)),
         None => Ok(()),
+    }
+}
+
+/// The cause behind an error of the window system, which names places in its own source.
+fn cause(message: &str) -> String {
+    let (_, cause) = message.rsplit_once(".rs:").unwrap_or(("", message));
+    cause.trim_start_matches(|c: char| c.is_ascii_digit() || c == ':' || c == ' ').trim_end_matches('.').to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::cause;
+
+    #[test]
+    fn causes_have_no_places_in_source() {
+        assert_eq!(cause("EventLoopError: os error at /a/winit-0.30/src/linux/mod.rs:765: no DISPLAY."), "no DISPLAY");
+        assert_eq!(cause("no adapter"), "no adapter");
     }
 }
