@@ -359,6 +359,7 @@ impl App {
             .pivot(Align2::LEFT_BOTTOM)
             .fixed_pos(rect.left_bottom() + eframe::egui::vec2(12.0, -12.0))
             .constrain_to(rect)
+            .fade_in(false)
             .show(ui.ctx(), |ui| {
                 frame.show(ui, |ui| {
                     ui.set_max_width(rect.width() - 48.0);
@@ -381,6 +382,7 @@ impl App {
         let painting = self.paint_order.map_or(0, |(version, ..)| version);
         match () {
             () if !self.files_seen => "reading",
+            () if self.material().is_none() => "no material",
             () if ordered != self.baked && self.form == Form::Baked => "baking",
             () if ordered != self.baked => "preparing",
             () if painting != self.painted || !self.finished => "rendering",
@@ -420,7 +422,7 @@ impl eframe::App for App {
             .frame(frame)
             .show(ui, |ui| crate::panel::show(self, ui));
         Panel::bottom("status").show(ui, |ui| crate::panel::status(self, ui));
-        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| self.picture(ui));
+        CentralPanel::default().frame(Frame::NONE.fill(ui.visuals().panel_fill)).show(ui, |ui| self.picture(ui));
         crate::panel::help(self, &context);
 
         let settled = self.settled();
