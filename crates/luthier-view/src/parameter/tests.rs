@@ -57,7 +57,7 @@ fn what_there_is_to_edit() {
     let everything = material(EVERYTHING);
     let titles: Vec<String> = groups(&everything).into_iter().map(|group| group.title).collect();
     assert_eq!(titles, ["1 · dielectric", "2 · conductor", "patina", "flakes", "glitter"]);
-    assert_eq!(all(&everything).len(), 8 + 7 + 3 + 4 + 3);
+    assert_eq!(all(&everything).len(), 9 + 7 + 3 + 4 + 3);
     assert_eq!(all(&material(MATTE)).len(), 4);
 }
 
