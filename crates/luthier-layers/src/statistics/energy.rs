@@ -1,12 +1,15 @@
 //! The energies that the statistics are given: FGD-infinity and total reflection, computed or read.
 
+use std::array::from_fn;
 use std::sync::Arc;
 
 use luthier_optics::albedo::{ALPHA_MIN, Effort, FacetStatistics, ReflectanceCurves, crossed_albedo};
-use luthier_optics::interface::{self, Interface};
+use luthier_optics::color::Color;
+use luthier_optics::interface::{self, Interface, Sampled};
 use luthier_optics::microsurface::TransparentFacets;
-use luthier_optics::stack::{Distribution, Stack};
+use luthier_optics::stack::{Base, Distribution, Stack, Surface};
 
+use super::layers::Layers;
 use super::total_reflection::escaping_share;
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 
@@ -65,7 +68,7 @@ pub struct ExactEnergy {
 struct LayerEnergy {
     interface: MonochromeLayer,
     /// FGD-infinity per node, less the reflectance of the smooth interface for nearly smooth surfaces; empty for smooth ones.
-    nodes: Vec<f64>,
+    nodes: Vec<[f64; 1]>,
 }
 
 impl ExactEnergy {
@@ -83,6 +86,63 @@ impl ExactEnergy {
 impl Energy<1> for ExactEnergy {
     fn fgd(&self, layer: usize, cos_theta_i: f64, _alpha: f64) -> [f64; 1] {
         [self.layers.get(layer).map_or(0.0, |l| l.fgd(cos_theta_i.clamp(0.0, 1.0)))]
+    }
+}
+
+/// FGD-infinity of every interface of a stack in colour: [`ExactEnergy`] at every wavelength of a colour mode, summed. Slope
+/// parameters are those of shaders ([`Layers::rgb`]).
+#[derive(Debug, Clone)]
+pub struct ColorEnergy {
+    layers: Vec<Option<ColorLayer>>,
+}
+
+#[derive(Debug, Clone)]
+struct ColorLayer {
+    interface: Sampled,
+    nearly_smooth: bool,
+    nodes: Vec<[f64; 3]>,
+}
+
+impl ColorEnergy {
+    /// The energies of a stack: up to some seconds for spectra of films.
+    pub fn new(stack: &Stack, color: Color) -> Self {
+        let mut facets = FacetCache::default();
+        let shader = Layers::rgb(stack);
+        let layer = |i: usize| {
+            let interface = Interface::of(stack, i)?.sampled(&color);
+            let transparent = matches!(stack.layers[i].base, Base::Dielectric { .. });
+            Some(ColorLayer::new(interface, transparent, &shader.layers[i].surface, &mut facets))
+        };
+        Self { layers: (0..stack.layers.len()).map(layer).collect() }
+    }
+}
+
+impl ColorLayer {
+    fn new(interface: Sampled, transparent: bool, surface: &Surface, facets: &mut FacetCache) -> Self {
+        let curves = ReflectanceCurves::new(interface.nodes.len(), |k, cos| interface.nodes[k].1.reflectance(cos));
+        let eta = |one: &interface::Monochrome| transparent.then(|| one.below.re / one.above.re);
+        let etas: Vec<Option<f64>> = interface.nodes.iter().map(|(_, one)| eta(one)).collect();
+        let nearly_smooth = surface.alpha_isotropic() < NEARLY_SMOOTH;
+        let nodes = albedo_nodes(surface, &curves, &etas, facets)
+            .map(|(cos, albedos)| {
+                let smooth = if nearly_smooth { interface.rgb(cos) } else { [0.0; 3] };
+                [0, 1, 2].map(|c: usize| {
+                    let sum: f64 = interface.nodes.iter().zip(&albedos).map(|((w, _), albedo)| w[c] * albedo).sum();
+                    sum - smooth[c]
+                })
+            })
+            .collect();
+        Self { interface, nearly_smooth, nodes }
+    }
+}
+
+impl Energy<3> for ColorEnergy {
+    fn fgd(&self, layer: usize, cos_theta_i: f64, _alpha: f64) -> [f64; 3] {
+        let Some(Some(layer)) = self.layers.get(layer) else { return [0.0; 3] };
+        let cos_theta_i = cos_theta_i.clamp(0.0, 1.0);
+        let smooth = if layer.nearly_smooth { layer.interface.rgb(cos_theta_i) } else { [0.0; 3] };
+        let between = between_nodes(&layer.nodes, cos_theta_i);
+        [0, 1, 2].map(|c: usize| between[c] + smooth[c])
     }
 }
 
@@ -124,24 +184,11 @@ impl LayerEnergy {
         if alpha < ALPHA_MIN || matches!(layer.below, MonochromeBelow::Diffuse { .. }) {
             return Self { interface, nodes: Vec::new() };
         }
-        let distribution = layer.surface.distribution;
-        let eta = layer.eta();
+        let etas = [matches!(layer.below, MonochromeBelow::Dielectric { .. }).then(|| layer.eta())];
         let curve = ReflectanceCurves::new(1, |_, cos| layer.reflectance(cos));
-        let facets = facets.nodes(distribution, alpha, eta < 1.0);
-        let nodes = facets.iter().enumerate().map(|(i, statistics)| {
-            let cos = node(i, facets.len());
-            let never_crossed: f64 = statistics.albedo(&curve).iter().sum();
-            let crossed = match layer.below {
-                MonochromeBelow::Dielectric { .. } => {
-                    let transparent = TransparentFacets { eta, from_above: &curve, curve: 0 };
-                    let walks = if eta < 1.0 { KINKED_CROSSED_WALKS } else { CROSSED_WALKS };
-                    crossed_albedo(distribution, alpha, transparent, cos, walks, 1)
-                }
-                MonochromeBelow::Conductor { .. } | MonochromeBelow::Diffuse { .. } => 0.0,
-            };
-            never_crossed + crossed - smooth_part(layer, cos)
-        });
-        let nodes = nodes.collect();
+        let nodes = albedo_nodes(&layer.surface, &curve, &etas, facets)
+            .map(|(cos, albedo)| [albedo[0] - smooth_part(layer, cos)])
+            .collect();
         Self { interface, nodes }
     }
 
@@ -149,20 +196,49 @@ impl LayerEnergy {
         if self.nodes.is_empty() {
             return self.interface.reflectance(cos_theta_i);
         }
-        let intervals = self.nodes.len() - 1;
-        let at = cos_theta_i.sqrt() * intervals as f64;
-        let first = (at as usize).clamp(1, intervals - 2) - 1;
-        let t = at - first as f64;
-        // Lagrange's cubic through four nodes.
-        let weights = [
-            -(t - 1.0) * (t - 2.0) * (t - 3.0) / 6.0,
-            t * (t - 2.0) * (t - 3.0) / 2.0,
-            -t * (t - 1.0) * (t - 3.0) / 2.0,
-            t * (t - 1.0) * (t - 2.0) / 6.0,
-        ];
-        let between: f64 = weights.iter().zip(&self.nodes[first..]).map(|(w, value)| w * value).sum();
+        let [between] = between_nodes(&self.nodes, cos_theta_i);
         (between + smooth_part(&self.interface, cos_theta_i)).clamp(0.0, 1.0)
     }
+}
+
+/// Cosine and FGD-infinity, per curve, at every node of a rough surface. `etas` are the indices below over above of the curves of a
+/// transparent interface.
+fn albedo_nodes(
+    surface: &Surface,
+    curves: &ReflectanceCurves,
+    etas: &[Option<f64>],
+    facets: &mut FacetCache,
+) -> impl Iterator<Item = (f64, Vec<f64>)> {
+    let (distribution, alpha) = (surface.distribution, surface.alpha_isotropic());
+    let kinked = etas.iter().flatten().any(|&eta| eta < 1.0);
+    let walks = if kinked { KINKED_CROSSED_WALKS } else { CROSSED_WALKS };
+    let facets = facets.nodes(distribution, alpha, kinked);
+    (0..facets.len()).map(move |i| {
+        let cos = node(i, facets.len());
+        let mut albedos = facets[i].albedo(curves);
+        for (curve, (albedo, eta)) in albedos.iter_mut().zip(etas).enumerate() {
+            if let Some(eta) = *eta {
+                let transparent = TransparentFacets { eta, from_above: curves, curve };
+                *albedo += crossed_albedo(distribution, alpha, transparent, cos, walks, 1);
+            }
+        }
+        (cos, albedos)
+    })
+}
+
+/// Lagrange's cubic through the four nodes around a cosine in 0..=1.
+fn between_nodes<const C: usize>(nodes: &[[f64; C]], cos_theta_i: f64) -> [f64; C] {
+    let intervals = nodes.len() - 1;
+    let at = cos_theta_i.sqrt() * intervals as f64;
+    let first = (at as usize).clamp(1, intervals - 2) - 1;
+    let t = at - first as f64;
+    let weights = [
+        -(t - 1.0) * (t - 2.0) * (t - 3.0) / 6.0,
+        t * (t - 2.0) * (t - 3.0) / 2.0,
+        -t * (t - 1.0) * (t - 3.0) / 2.0,
+        t * (t - 1.0) * (t - 2.0) / 6.0,
+    ];
+    from_fn(|c| weights.iter().zip(&nodes[first..]).map(|(w, value)| w * value[c]).sum())
 }
 
 /// What is not tabulated of an interface.
