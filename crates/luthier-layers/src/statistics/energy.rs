@@ -33,27 +33,38 @@ impl<F: Fn(usize, f64, f64) -> f64> Energy<1> for F {
     }
 }
 
-/// Intervals over the cosine at which FGD-infinity is computed; between them it is a cubic.
-const INTERVALS: usize = 32;
-
-/// The same where total reflection puts a kink into the reflectance.
-const KINKED_INTERVALS: usize = 96;
-
 /// Of surfaces smoother than this the difference to a smooth interface is tabulated, which vanishes with alpha; of rougher ones
 /// FGD-infinity itself, which has lost the kinks and fringes of the reflectance.
 const NEARLY_SMOOTH: f64 = 0.025;
 
-/// Effort of the quadrature and the walks at a node.
-const EFFORT: Effort = Effort { first: 24, later: 20 };
+/// How finely FGD-infinity is computed, and the same where total reflection puts a kink into the reflectance.
+#[derive(Debug, Clone, Copy)]
+struct Detail {
+    /// Intervals over the cosine; between their ends FGD-infinity is a cubic.
+    intervals: [usize; 2],
+    /// Effort of the quadrature and the walks at a node.
+    effort: [Effort; 2],
+    /// Walks per node of the light that crosses the interface and comes back, shared among wavelengths.
+    crossed_walks: [u32; 2],
+    /// Least such walks of a wavelength.
+    crossed_walks_min: u32,
+}
 
-/// The same with total reflection.
-const KINKED_EFFORT: Effort = Effort { first: 64, later: 32 };
+/// For models that are evaluated wavelength by wavelength: within 2e-3, see [`ExactEnergy`].
+const QUICK: Detail = Detail {
+    intervals: [32, 96],
+    effort: [Effort { first: 24, later: 20 }, Effort { first: 64, later: 32 }],
+    crossed_walks: [128, 512],
+    crossed_walks_min: 128,
+};
 
-/// Walks per node of the light that crosses the interface and comes back.
-const CROSSED_WALKS: u32 = 128;
-
-/// The same with total reflection.
-const KINKED_CROSSED_WALKS: u32 = 512;
+/// For what tables are held against.
+const FINE: Detail = Detail {
+    intervals: [64, 96],
+    effort: [Effort { first: 48, later: 64 }, Effort { first: 64, later: 64 }],
+    crossed_walks: [4096, 4096],
+    crossed_walks_min: 256,
+};
 
 /// FGD-infinity of every interface of a stack at one wavelength, computed from the micro-surface.
 ///
@@ -106,7 +117,7 @@ struct ColorLayer {
 impl ColorEnergy {
     /// The energies of a stack: up to some seconds for spectra of films.
     pub fn new(stack: &Stack, color: Color) -> Self {
-        let mut facets = FacetCache::default();
+        let mut facets = FacetCache { detail: FINE, surfaces: Vec::new() };
         let shader = Layers::rgb(stack);
         let layer = |i: usize| {
             let interface = Interface::of(stack, i)?.sampled(&color);
@@ -211,7 +222,8 @@ fn albedo_nodes(
 ) -> impl Iterator<Item = (f64, Vec<f64>)> {
     let (distribution, alpha) = (surface.distribution, surface.alpha_isotropic());
     let kinked = etas.iter().flatten().any(|&eta| eta < 1.0);
-    let walks = if kinked { KINKED_CROSSED_WALKS } else { CROSSED_WALKS };
+    let Detail { crossed_walks, crossed_walks_min, .. } = facets.detail;
+    let walks = (crossed_walks[usize::from(kinked)] / etas.len() as u32).max(crossed_walks_min);
     let facets = facets.nodes(distribution, alpha, kinked);
     (0..facets.len()).map(move |i| {
         let cos = node(i, facets.len());
@@ -253,9 +265,16 @@ fn node(i: usize, count: usize) -> f64 {
 }
 
 /// How light meets micro-surfaces at all nodes: what the energies of any interface on them are computed from.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct FacetCache {
+    detail: Detail,
     surfaces: Vec<FacetNodes>,
+}
+
+impl Default for FacetCache {
+    fn default() -> Self {
+        Self { detail: QUICK, surfaces: Vec::new() }
+    }
 }
 
 #[derive(Debug, Clone)]
@@ -272,7 +291,8 @@ impl FacetCache {
         if let Some(known) = self.surfaces.iter().find(same) {
             return Arc::clone(&known.nodes);
         }
-        let (effort, intervals) = if kinked { (KINKED_EFFORT, KINKED_INTERVALS) } else { (EFFORT, INTERVALS) };
+        let Detail { effort, intervals, .. } = self.detail;
+        let (effort, intervals) = (effort[usize::from(kinked)], intervals[usize::from(kinked)]);
         let at = |i| FacetStatistics::new(distribution, alpha, node(i, intervals + 1), effort, 0);
         let nodes: Arc<[FacetStatistics]> = (0..=intervals).map(at).collect();
         self.surfaces.push(FacetNodes { distribution, alpha, kinked, nodes: Arc::clone(&nodes) });

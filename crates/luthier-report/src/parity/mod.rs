@@ -198,7 +198,9 @@ fn compare(
     case: &ParityCase,
     pairs_per_set: u32,
 ) -> Result<[ParityRow; 2], ReportError> {
-    let numbers: Vec<u32> = std::iter::once(case.material).chain(case.polished.iter().copied()).collect();
+    let mut numbers: Vec<u32> = std::iter::once(case.material).chain(case.polished.iter().copied()).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
     // Energies of rough interfaces take seconds, and are prepared when they are first asked for: here, all at once.
     let prepared: Vec<(u32, References)> = numbers
         .into_par_iter()
