@@ -61,7 +61,7 @@ const QUICK: Detail = Detail {
 /// For what tables are held against.
 const FINE: Detail = Detail {
     intervals: [64, 96],
-    effort: [Effort { first: 48, later: 64 }, Effort { first: 64, later: 64 }],
+    effort: [Effort { first: 48, later: 64 }, Effort { first: 64, later: 48 }],
     crossed_walks: [4096, 4096],
     crossed_walks_min: 256,
 };
@@ -102,6 +102,9 @@ impl Energy<1> for ExactEnergy {
 
 /// FGD-infinity of every interface of a stack in colour: [`ExactEnergy`] at every wavelength of a colour mode, summed. Slope
 /// parameters are those of shaders ([`Layers::rgb`]).
+///
+/// Computed at 65 cosines (97 from the denser side), within 5e-4 of a direct computation from above, and within 2e-2 from the denser
+/// side.
 #[derive(Debug, Clone)]
 pub struct ColorEnergy {
     layers: Vec<Option<ColorLayer>>,
@@ -303,7 +306,8 @@ impl FacetCache {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use luthier_optics::stack::Surface;
+    use luthier_optics::ior::Ior;
+    use luthier_optics::stack;
     use num_complex::Complex64;
 
     fn interface(alpha: f64, above: f64, below: MonochromeBelow) -> Monochrome {
@@ -346,6 +350,59 @@ mod tests {
                 let expected = statistics.albedo(&curve)[0] + crossed;
                 let [got] = energy.fgd(0, cos, alpha);
                 assert!((got - expected).abs() < tolerance, "{alpha} {above} {cos}: {got} against {expected}");
+            }
+        }
+    }
+
+    /// Oracle: twice the points for the first bounce, five times the crossing walks, other seeds, at cosines off the nodes.
+    #[test]
+    fn colour_energies_agree_with_direct_walks() {
+        const TOLERANCE: f64 = 5e-4;
+        let layer = |alpha, base| {
+            let surface = Surface::isotropic(Distribution::Ggx, alpha);
+            stack::Layer { films: Vec::new(), surface, base }
+        };
+        let slab = stack::Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
+        let glass = || Base::Dielectric { ior: Ior::constant(1.5, 0.0).unwrap(), slab };
+        let metal = || Base::Conductor { ior: Ior::constant(0.2, 3.0).unwrap() };
+        for base in [glass(), metal()] {
+            for alpha in [0.01, 0.12, 0.5, 1.0] {
+                let stack = Stack { exterior: Ior::vacuum(), layers: vec![layer(alpha, base.clone())] };
+                let energy = ColorEnergy::new(&stack, Color::Spectral);
+                let one = Monochrome::new(&stack, 550.0, 1);
+                let curve = ReflectanceCurves::new(1, |_, cos| one.layers[0].reflectance(cos));
+                for cos in [0.003, 0.02, 0.11, 0.37, 0.74, 0.93] {
+                    let effort = Effort { first: 96, later: 56 };
+                    let mut expected = FacetStatistics::new(Distribution::Ggx, alpha, cos, effort, 7).albedo(&curve)[0];
+                    if matches!(stack.layers[0].base, Base::Dielectric { .. }) {
+                        let facets = TransparentFacets { eta: 1.5, from_above: &curve, curve: 0 };
+                        expected += crossed_albedo(Distribution::Ggx, alpha, facets, cos, 20_000, 9);
+                    }
+                    let [_, got, _] = energy.fgd(0, cos, alpha);
+                    let error = (got - expected).abs();
+                    eprintln!("{alpha} {cos}: {error:.1e}");
+                    assert!(error < TOLERANCE, "{alpha} {cos}: {got} against {expected}");
+                }
+            }
+        }
+    }
+
+    /// The roughest surfaces take the most walks, seen from the denser side too: they must not outnumber their random numbers.
+    #[test]
+    fn the_roughest_surfaces_can_be_prepared() {
+        let slab = stack::Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
+        for distribution in [Distribution::Beckmann, Distribution::Ggx] {
+            let surface = Surface::isotropic(distribution, 1.0);
+            let layer = |n| stack::Layer {
+                films: Vec::new(),
+                surface,
+                base: Base::Dielectric { ior: Ior::constant(n, 0.0).unwrap(), slab },
+            };
+            let stack = Stack { exterior: Ior::vacuum(), layers: vec![layer(1.5), layer(1.1)] };
+            let energy = ColorEnergy::new(&stack, Color::Spectral);
+            for cos in [0.0, 0.3, 1.0] {
+                let [above, below] = [0, 1].map(|l| energy.fgd(l, cos, 1.0)[0]);
+                assert!(above > 0.0 && above < below && below < 1.0, "{distribution:?} {cos}: {above} {below}");
             }
         }
     }

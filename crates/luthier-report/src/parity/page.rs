@@ -43,7 +43,7 @@ each of five sets. An error is relative to max(brightest channel of the referenc
 channel is a sample.
 
 The reference of `baked` is the material's colour, spectral or at three wavelengths; that of `full` is three wavelengths. Of `belcour` and \
-`yamaguchi` the reference of `baked` computes directional albedos from the micro-surface (to some 3e-4) and total reflection by integration; \
+`yamaguchi` the reference of `baked` computes directional albedos from the micro-surface (to 5e-4) and total reflection by integration; \
 that of `full` takes facets as level, as the form does, and what covers a diffuse base from the material's record. *Table* is f64 \
 arithmetic on the texels that ship against the reference; *arithmetic* is the device against that, or, where there is no table, \
 against the reference; *total* is the device against the reference.
