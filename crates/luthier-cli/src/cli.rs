@@ -54,6 +54,9 @@ pub(crate) enum Verb {
     /// Render a material with two shaders and compare the pictures
     #[cfg(feature = "gpu")]
     Compare(CompareOptions),
+    /// Make the figures of the papers anew
+    #[cfg(feature = "gpu")]
+    Figures(FiguresOptions),
     /// Print the shader of some materials, or write it to a file
     Shader(ShaderOptions),
     /// List the reflectance models
@@ -172,7 +175,11 @@ pub(crate) struct ParityOptions {
 }
 
 #[cfg(feature = "gpu")]
+mod figures;
+#[cfg(feature = "gpu")]
 mod render;
+#[cfg(feature = "gpu")]
+pub(crate) use figures::FiguresOptions;
 #[cfg(feature = "gpu")]
 pub(crate) use render::{CompareOptions, GalleryOptions, Look, PreviewOptions, ShaderChoice, ShapeName};
 

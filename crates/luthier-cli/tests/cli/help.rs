@@ -1,7 +1,10 @@
 use crate::workshop::Workshop;
 
 const VERBS: &[&str] = if cfg!(feature = "gpu") {
-    &["bake", "check", "report", "preview", "gallery", "compare", "shader", "models", "eval", "ior", "schema"]
+    &[
+        "bake", "check", "report", "preview", "gallery", "compare", "figures", "shader", "models", "eval", "ior",
+        "schema",
+    ]
 } else {
     &["bake", "check", "report", "shader", "models", "eval", "ior", "schema"]
 };

@@ -1,0 +1,253 @@
+//! Figures of Elek 2010 about the model and its tables.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
+
+use luthier_gpu::{Camera, Environment, Light, RenderSettings, Shape, Sky};
+use luthier_lut::{Image, WeightBits, bilinear};
+use luthier_material::{
+    AlphaMapping, BakeSettings, DistributionMapping, Format, FresnelMapping, Material, ModelSetting,
+};
+use luthier_report::{Curve, Plot, PlotAxis};
+
+use super::figure::{Figure, Made, compared};
+use super::studio::{Studio, material, shaded};
+use crate::device::device;
+use crate::failure::Outcome;
+
+pub(crate) const FIGURES: [Figure; 3] = [
+    Figure {
+        name: "elek-2",
+        title: "the roughness clamp",
+        source: "O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010, figure 2",
+        caption: "CAPTION",
+        make: clamp,
+    },
+    Figure {
+        name: "elek-4",
+        title: "the mapping of the slope distribution",
+        source: "Elek 2010, figure 4",
+        caption: "CAPTION",
+        make: mapping,
+    },
+    Figure {
+        name: "elek-5",
+        title: "full evaluation against tables",
+        source: "Elek 2010, figure 5",
+        caption: "CAPTION",
+        make: tables,
+    },
+];
+
+/// Chromium of Elek's appendix A under a red coat; the coat is ours.
+fn coated(name: &str, alphas: [f64; 2]) -> Outcome<Material> {
+    let [coat, base] = alphas;
+    let text = format!(
+        "schema = 1\nname = \"{name}\"\n\
+         [[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = {coat}\ndistribution = \"beckmann\"\n\
+         thickness_um = 1\nabsorption_per_um = [0.03, 0.45, 0.6]\n\
+         [[layer]]\ntype = \"conductor\"\nalpha = {base}\ndistribution = \"beckmann\"\n\
+         ior = {{ n = [3.84, 3.18, 1.99], k = [4.37, 4.41, 4.22], wavelengths_nm = [690, 550, 450] }}\n\
+         [bake]\ncolor = \"three-wavelengths\"\nwavelengths_nm = [690, 550, 450]\n"
+    );
+    material(name, &text)
+}
+
+fn clamp(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let series = [0.01, 0.1, 0.2, 0.4];
+    let (clamped, bare) = (ModelSetting::Elek, ModelSetting::WeidlichWilkie);
+    let mut materials = Vec::new();
+    let mut labels = Vec::new();
+    for (i, alpha) in series.into_iter().enumerate() {
+        materials.push(shaded(&coated("coated", [alpha, 0.3])?, &format!("series-{i}"), clamped));
+        labels.push(format!("m1 {alpha}, m2 0.3"));
+    }
+    let odd = coated("odd", [0.4, 0.05])?;
+    materials.push(shaded(&odd, "clamped", clamped));
+    materials.push(shaded(&odd, "bare", bare));
+    labels.extend(["m2 0.05, clamp", "m2 0.05, none"].map(str::to_owned));
+    let pictures = studio.pictures(&materials, "baked", Shape::Torus, |_, _| {})?;
+    if let [.., with, without] = pictures.as_slice() {
+        let apart = compared(with, without)?;
+        made.measure("tori m1 0.4, m2 0.05, with against without the clamp: mean FLIP", apart.flip_mean);
+    }
+    made.sheet("elek-2", labels.into_iter().zip(pictures).collect(), 6);
+
+    let reference = studio.ball(&odd, "layered-mc")?;
+    let mut balls = vec![("simulation".to_owned(), reference.image.clone())];
+    made.measure("simulation: noise, in units of the RMSE", reference.noise);
+    for (label, model) in
+        [("clamp", "elek"), ("no clamp", "weidlich-wilkie"), ("corrected", "weidlich-wilkie-corrected")]
+    {
+        let ball = studio.ball(&odd, model)?.image;
+        let apart = compared(&ball, &reference.image)?;
+        made.measure(format!("ball, {label}, against simulation: RMSE"), apart.rms_err);
+        made.measure(format!("ball, {label}, against simulation: mean FLIP"), apart.flip_mean);
+        balls.push((label.to_owned(), ball));
+    }
+    made.sheet("elek-2-simulation", balls, 4);
+    Ok(made)
+}
+
+/// Slope parameter of the highlight in figure 4.
+const SHARP: f64 = 0.01;
+
+/// How the eye looks at the middle of the ball: half the side of the picture, distance.
+const ZOOM: [f32; 2] = [0.033, 7.0];
+
+fn mapping(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let mut metal = coated("sharp", [SHARP, SHARP])?;
+    metal.stack.layers.remove(0);
+    metal.layers.remove(0);
+    let dark = Arc::new(Environment::sky(&Sky::uniform([0.0; 3])).map_err(device)?);
+    let look = |_: usize, settings: &mut RenderSettings| {
+        settings.camera = Camera { eye: [0.0, 0.0, ZOOM[1]], target: [0.0; 3], half_extent: ZOOM[0] };
+        settings.lights = vec![Light::Directional { direction: [0.0, 0.0, 1.0], irradiance: [1.0; 3] }];
+        settings.light_angular_radius = 0.0;
+        settings.environment = dark.clone();
+        settings.environment_samples = 0;
+        settings.samples = 1;
+        // The peak is F D / 4 with D = 1 / (pi m^2): to about 1.
+        settings.exposure = (8.0 * PI * SHARP * SHARP) as f32;
+    };
+    let render = |form: &str, angle: Option<DistributionMapping>| -> Outcome<Image> {
+        let mut variant = metal.clone();
+        if let Some(angle) = angle {
+            elek_tables(&mut variant.bake, angle);
+        }
+        studio.pictures(&[variant], form, Shape::Sphere, look)?.pop().ok_or_else(nothing)
+    };
+    let full = render_zoomed_full(studio, &metal, look)?;
+    let linear = render("baked", Some(DistributionMapping::Linear))?;
+    let power = render("baked", Some(DistributionMapping::Power))?;
+    let ours = render("baked", None)?;
+    let peak = full.data.iter().copied().fold(0.0, f32::max);
+    let mipped = mipped(&full, f64::from(peak));
+    let pictures = [
+        ("linear angle", linear),
+        ("u^8, linear m", power),
+        ("u^8, log m", ours),
+        ("full", full.clone()),
+        ("MIP level 3", mipped),
+    ];
+    let mut curves = Vec::new();
+    for (label, image) in &pictures {
+        let apart = image.data.iter().zip(&full.data).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        if *label != "full" {
+            made.measure(format!("{label}: largest error over the peak"), f64::from(apart / peak));
+        }
+        if *label != "MIP level 3" {
+            curves.push(Curve { name: (*label).to_owned(), points: profile(image, peak) });
+        }
+    }
+    made.sheet("elek-4", pictures.map(|(label, image)| (label.to_owned(), image)).to_vec(), 5);
+    let axis = |label: &str, range, step| PlotAxis { label: label.to_owned(), range, step };
+    made.plot(
+        "elek-4-profile",
+        Plot {
+            title: "The highlight of figure 4 along the middle row of the pictures".to_owned(),
+            x: axis("angle of the half vector to the normal, degrees (m = 0.01)", [0.0, 1.6], 0.2),
+            y: axis("radiance over the peak of the full evaluation", [0.0, 1.2], 0.2),
+            curves,
+        },
+    );
+    Ok(made)
+}
+
+fn nothing() -> crate::failure::Failure {
+    crate::failure::Failure::Input(anyhow::anyhow!("no picture"))
+}
+
+/// The shader without tables; the split environment needs the other form, and there is no environment.
+fn render_zoomed_full(studio: &Studio, metal: &Material, look: impl Fn(usize, &mut RenderSettings)) -> Outcome<Image> {
+    let with_samples = |n: usize, settings: &mut RenderSettings| {
+        look(n, settings);
+        settings.environment_samples = 1;
+    };
+    studio.pictures(&[metal.clone()], "full", Shape::Sphere, with_samples)?.pop().ok_or_else(nothing)
+}
+
+/// The tables of Elek's section 3.1: rows of 128 texels of 8 bits, 512 x 512 half floats.
+fn elek_tables(bake: &mut BakeSettings, angle: DistributionMapping) {
+    bake.fresnel.size = Some(128);
+    bake.fresnel.format = Some(Format::Rgba8Unorm);
+    bake.fresnel.mapping = Some(FresnelMapping::Theta);
+    bake.distribution.size = Some([512, 512]);
+    bake.distribution.format = Some(Format::R16Float);
+    bake.distribution.mapping = Some(angle);
+    bake.distribution.alpha_mapping = Some(AlphaMapping::Linear);
+}
+
+/// Angle of the half vector to the normal at a pixel of the zoomed ball; light and eye both at +z.
+fn half_angle(x: u32, y: u32, size: u32) -> f64 {
+    let at = |i: u32| (2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0) * f64::from(ZOOM[0]);
+    // Angle of the ray at the eye, then of the normal, by the law of sines.
+    let distance = f64::from(ZOOM[1]);
+    let ray = libm::atan(libm::hypot(at(x), at(y)) / distance);
+    let normal = libm::asin((distance * libm::sin(ray)).min(1.0)) - ray;
+    // The half vector lies between the light (angle 0) and the eye, which is on the other side of it.
+    normal + 0.5 * ray
+}
+
+/// Green along the right half of the middle row, over the peak: (degrees, value).
+fn profile(image: &Image, peak: f32) -> Vec<[f64; 2]> {
+    let (size, y) = (image.width, image.height / 2);
+    let point = |x: u32| [half_angle(x, y, size).to_degrees(), f64::from(image.texel(x, y)[1] / peak)];
+    (size / 2..size).map(point).collect()
+}
+
+/// The highlight with D from level 3 of the MIP chain of Elek's table (D itself, linear m): each texel the mean of 8 x 8.
+fn mipped(full: &Image, peak: f64) -> Image {
+    const SIDE: u32 = 512;
+    const BLOCK: u32 = 8;
+    const LARGEST_HALF: f64 = 65504.0;
+    let beckmann = |theta: f64, m: f64| {
+        let (tan, cos) = (libm::tan(theta), libm::cos(theta));
+        libm::exp(-tan * tan / (m * m)) / (PI * m * m * cos * cos * cos * cos)
+    };
+    let mut table = Image::zeros(SIDE / BLOCK, SIDE / BLOCK, 1);
+    for j in 0..SIDE {
+        for i in 0..SIDE {
+            let [u, m] = [i, j].map(|i| (f64::from(i) + 0.5) / f64::from(SIDE));
+            let value = beckmann(FRAC_PI_2 * libm::pow(u, 8.0), m).min(LARGEST_HALF);
+            table.texel_mut(i / BLOCK, j / BLOCK)[0] += (value / f64::from(BLOCK * BLOCK)) as f32;
+        }
+    }
+    let mut image = full.clone();
+    let texels = f64::from(SIDE / BLOCK);
+    for y in 0..image.height {
+        for x in 0..image.width {
+            let u = libm::pow(half_angle(x, y, image.width) / FRAC_PI_2, 0.125);
+            let read = bilinear(&table, [u * texels, SHARP * texels], WeightBits::Fixed(8))[0];
+            let ratio = peak * read / beckmann(0.0, SHARP);
+            image.texel_mut(x, y).fill(ratio as f32);
+        }
+    }
+    image
+}
+
+fn tables(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let ours = shaded(&coated("coated", [0.08, 0.3])?, "coated", ModelSetting::Elek);
+    let mut his = ours.clone();
+    elek_tables(&mut his.bake, DistributionMapping::Power);
+    let one = |material: &Material, form| -> Outcome<Image> {
+        studio.pictures(&[material.clone()], form, Shape::Torus, |_, _| {})?.pop().ok_or_else(nothing)
+    };
+    let full = one(&ours, "full")?;
+    let (his, ours) = (one(&his, "baked")?, one(&ours, "baked")?);
+    let his_difference = made.compare("tables of the paper against full", &his, &full)?;
+    let our_difference = made.compare("default tables against full", &ours, &full)?;
+    let shown = |label: &str, image: Image| (label.to_owned(), super::figure::TONE.image(image));
+    let pictures = vec![
+        shown("full", full),
+        shown("paper's tables", his),
+        his_difference,
+        shown("default tables", ours),
+        our_difference,
+    ];
+    made.shown("elek-5", pictures, 5);
+    Ok(made)
+}

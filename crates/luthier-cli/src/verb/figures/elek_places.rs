@@ -1,0 +1,128 @@
+//! Figures of Elek 2010 about surfaces that vary.
+
+use luthier_gpu::Shape;
+use luthier_lut::{Image, MapSlot};
+use luthier_material::{Material, ModelSetting};
+use luthier_optics::color::luminance;
+
+use super::figure::{Figure, Made};
+use super::studio::{Studio, bake, material, shaded};
+use crate::failure::{Failure, Outcome};
+use crate::memory_bake;
+
+pub(crate) const FIGURES: [Figure; 2] = [
+    Figure {
+        name: "elek-7",
+        title: "metal flakes with distance",
+        source: "Elek 2010, figure 7",
+        caption: "CAPTION",
+        make: flakes,
+    },
+    Figure {
+        name: "elek-8",
+        title: "a growing patina",
+        source: "Elek 2010, figure 8",
+        caption: "CAPTION",
+        make: patina,
+    },
+];
+
+const CAR_PAINT: &str = include_str!("../../../../../materials/chromium-car-paint.toml");
+const PATINA: &str = include_str!("../../../../../materials/copper-patina.toml");
+
+/// Distances of the eye; in the first the flakes begin to fade.
+const DISTANCES: [f32; 4] = [4.0, 8.0, 16.0, 32.0];
+
+fn flakes(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let paint = material("chromium-car-paint.toml", CAR_PAINT)?;
+    let with_fade = |name: &str, fade_start: f64| -> Outcome<Material> {
+        let mut paint = shaded(&paint, name, ModelSetting::Elek);
+        let missing = || Failure::Input(anyhow::anyhow!("chromium-car-paint.toml has no flakes"));
+        paint.effects.flakes.as_mut().ok_or_else(missing)?.fade_start = fade_start;
+        Ok(paint)
+    };
+    let materials = [with_fade("fading", f64::from(DISTANCES[0]))?, with_fade("not-fading", 1e6)?];
+    let artefacts = memory_bake::bake(&materials)?;
+    let mut rows = [Vec::new(), Vec::new()];
+    for (step, distance) in DISTANCES.into_iter().enumerate() {
+        // A pixel is always as wide at the eye; what is far away is smaller, and enlarged.
+        let size = (studio.size >> step).max(8);
+        let pictures = studio.rendered(&artefacts, "baked", Shape::Sphere, |_, settings| {
+            settings.camera.eye = [0.0, 0.0, distance];
+            settings.camera.half_extent = 1.25;
+            settings.size = size;
+            settings.samples = 1;
+            settings.environment_samples = 0;
+        })?;
+        for ((row, image), what) in rows.iter_mut().zip(pictures).zip(["with the scaling", "without"]) {
+            made.measure(format!("{what}, distance {distance}: contrast of neighbouring pixels"), contrast(&image));
+            row.push((format!("{what:.7} {distance}"), enlarged(&image, studio.size)));
+        }
+    }
+    let [with, without] = rows;
+    made.sheet("elek-7", [with, without].concat(), DISTANCES.len() as u32);
+    Ok(made)
+}
+
+/// Root mean square of the difference of neighbours in a row, over the mean of both, within the middle half of the ball.
+fn contrast(image: &Image) -> f64 {
+    let (mut squares, mut sum, mut count) = (0.0, 0.0, 0u32);
+    let value = |x: u32, y: u32| {
+        let texel = image.texel(x, y);
+        luminance([0, 1, 2].map(|c| f64::from(texel[c])))
+    };
+    let middle = image.width * 3 / 10..image.width * 7 / 10;
+    for y in middle.clone() {
+        for x in middle.clone() {
+            let (a, b) = (value(x, y), value(x + 1, y));
+            squares += (a - b) * (a - b);
+            sum += a;
+            count += 1;
+        }
+    }
+    let n = f64::from(count.max(1));
+    (squares / n).sqrt() / (sum / n).max(1e-12)
+}
+
+/// Every pixel repeated.
+fn enlarged(image: &Image, size: u32) -> Image {
+    let mut large = Image::zeros(size, size, 3);
+    for y in 0..size {
+        for x in 0..size {
+            large.texel_mut(x, y).copy_from_slice(image.texel(x * image.width / size, y * image.height / size));
+        }
+    }
+    large
+}
+
+/// The stages of figure 8, and its transition.
+const EXTENTS: [f64; 6] = [-0.65, -0.05, 0.15, 0.45, 0.75, 1.65];
+const TRANSITION: f64 = 0.65;
+
+fn patina(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let copper = material("copper-patina.toml", PATINA)?;
+    let mut materials = Vec::new();
+    for (i, extent) in EXTENTS.into_iter().enumerate() {
+        let mut stage = shaded(&copper, &format!("stage-{i}"), ModelSetting::Elek);
+        let missing = || Failure::Input(anyhow::anyhow!("copper-patina.toml has no patina"));
+        let patina = stage.effects.patina.as_mut().ok_or_else(missing)?;
+        (patina.extent, patina.transition) = (extent, TRANSITION);
+        materials.push(stage);
+    }
+    let artefacts = bake(&materials)?;
+    let map = artefacts.maps.iter().find(|map| map.slot == MapSlot::Patina).map(|map| &map.image);
+    for extent in EXTENTS {
+        let amounts = map
+            .into_iter()
+            .flat_map(Image::texels)
+            .map(|texel| (0.5 + (extent - f64::from(texel[0])) / (2.0 * TRANSITION)).clamp(0.0, 1.0));
+        let count = map.map_or(1, Image::texel_count);
+        made.measure(format!("extent {extent}: mean amount of patina"), amounts.sum::<f64>() / count as f64);
+    }
+    let pictures = studio.rendered(&artefacts, "baked", Shape::Torus, |_, _| {})?;
+    let labels = EXTENTS.iter().map(|extent| format!("extent {extent}"));
+    made.sheet("elek-8", labels.zip(pictures).collect(), 6);
+    Ok(made)
+}

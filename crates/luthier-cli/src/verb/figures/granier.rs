@@ -1,0 +1,296 @@
+//! Figures of Granier and Heidrich 2003.
+
+use glam::DVec3;
+use luthier_gpu::Shape;
+use luthier_layers::granier_heidrich::Film;
+use luthier_layers::monochrome::Monochrome;
+use luthier_lut::Image;
+use luthier_material::{Material, ModelSetting};
+use luthier_report::{Curve, Plot, PlotAxis};
+
+use super::figure::{Figure, Made, TONE};
+use super::studio::{Studio, material, shaded};
+use crate::failure::Outcome;
+
+pub(crate) const FIGURES: [Figure; 4] = [
+    Figure {
+        name: "granier-3",
+        title: "the diffuse part under a layer of varying thickness",
+        source: "X. Granier and W. Heidrich, A Simple Layered RGB BRDF Model, Graphical Models 65 (2003), figure 3",
+        caption: "CAPTION",
+        make: diffuse,
+    },
+    Figure {
+        name: "granier-4",
+        title: "boundaries that are not parallel",
+        source: "Granier and Heidrich 2003, figure 4",
+        caption: "CAPTION",
+        make: deviation,
+    },
+    Figure {
+        name: "granier-5",
+        title: "normals that follow the thickness",
+        source: "Granier and Heidrich 2003, figure 5",
+        caption: "CAPTION",
+        make: correlated,
+    },
+    Figure {
+        name: "granier-6",
+        title: "specular and diffuse part together",
+        source: "Granier and Heidrich 2003, figure 6",
+        caption: "CAPTION",
+        make: combined,
+    },
+];
+
+/// The wavelengths of the paper.
+const WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
+
+/// Slope of the inner boundary at the constant deviation of figure 6, 14 degrees.
+const TILT: f32 = 0.249_328;
+
+/// Width of one repeat of the thickness map: so wide that the boundary is flat, or so narrow that it is hilly.
+const FLAT_UM: f64 = 2e4;
+const HILLY_UM: f64 = 12.0;
+
+/// A film on an object.
+struct Coating {
+    name: &'static str,
+    /// Of the film, for R, G and B.
+    ior: [f64; 3],
+    thickness_nm: [f64; 2],
+    /// Phong's exponent of both boundaries.
+    exponent: f64,
+    /// Weight of the diffuse part.
+    diffuse: f64,
+    extent_um: f64,
+    /// Cells of the noise along one repeat.
+    frequency: u32,
+}
+
+impl Coating {
+    /// The material. The object's index is not in the paper: 2 keeps indices rising, which its formula needs.
+    fn material(&self) -> Outcome<Material> {
+        let Self { name, ior: [r, g, b], thickness_nm: [min, max], exponent, diffuse, extent_um, frequency } = self;
+        let alpha = (2.0 / (exponent + 2.0)).sqrt();
+        let text = format!(
+            "schema = 1\nname = \"{name}\"\n\
+             [[layer]]\ntype = \"thin-film\"\nior = {{ n = [{r}, {g}, {b}], wavelengths_nm = [645, 525, 445] }}\n\
+             [layer.thickness_nm]\nmin = {min}\nmax = {max}\nextent_um = {extent_um}\n\
+             map = {{ noise = {{ seed = 7, frequency = {frequency}, octaves = 4 }} }}\n\
+             [[layer]]\ntype = \"dielectric\"\nior = 2.0\nalpha = {alpha}\ndistribution = \"beckmann\"\n\
+             [[layer]]\ntype = \"diffuse\"\nalbedo = {diffuse}\n\
+             [bake]\ncolor = \"three-wavelengths\"\nwavelengths_nm = [645, 525, 445]\n"
+        );
+        Ok(shaded(&material(name, &text)?, name, ModelSetting::GranierHeidrich))
+    }
+}
+
+fn materials(coatings: &[Coating]) -> Outcome<Vec<Material>> {
+    coatings.iter().map(Coating::material).collect()
+}
+
+fn diffuse(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let coating = |name, thickness_nm, diffuse| {
+        let (ior, exponent, extent_um, frequency) = ([1.5, 1.6, 1.8], 130.0, FLAT_UM, 6);
+        Coating { name, ior, thickness_nm, exponent, diffuse, extent_um, frequency }
+    };
+    let ranges = [("old metal", [150.0, 190.0]), ("coloured", [200.0, 700.0]), ("clay", [70.0, 130.0])];
+    let names = [["metal", "metal-0"], ["coloured", "coloured-0"], ["clay", "clay-0"]];
+    let pairs = ranges
+        .iter()
+        .zip(names)
+        .flat_map(|((_, range), [lit, unlit])| [coating(lit, *range, 0.6), coating(unlit, *range, 0.0)]);
+    let pictures = studio.pictures(&materials(&pairs.collect::<Vec<_>>())?, "baked", Shape::Sphere, |_, _| {})?;
+    let mut shown = Vec::new();
+    for ((name, [min, max]), pair) in ranges.iter().zip(pictures.chunks_exact(2)) {
+        // The specular part is the same in both: what is left is the diffuse one.
+        if let [lit, unlit] = pair {
+            let mut image = lit.clone();
+            image.data.iter_mut().zip(&unlit.data).for_each(|(a, b)| *a = (*a - b).max(0.0));
+            made.measure(format!("{name}, {min} to {max} nm: spread of the channels"), spread(&image));
+            shown.push((format!("{min}-{max} nm"), image));
+        }
+    }
+    made.sheet("granier-3", shown, 3);
+
+    let mut curves = Vec::new();
+    for (channel, (nm, ior)) in ["R", "G", "B"].iter().zip(WAVELENGTHS_NM.iter().zip([1.5, 1.6, 1.8])) {
+        let point = |i: u32| {
+            let d = f64::from(i) * 2.0;
+            [d, film(ior, d / nm, 0.0).diffuse()]
+        };
+        curves.push(Curve { name: format!("{channel}: {nm} nm, index {ior}"), points: (0..=350).map(point).collect() });
+    }
+    made.plot(
+        "granier-3-thickness",
+        Plot {
+            title: "Diffuse coefficient against the thickness of the film".to_owned(),
+            x: axis("thickness of the film, nm", [0.0, 700.0], 100.0),
+            y: axis("diffuse coefficient (eq. 18)", [0.0, 2.0], 0.5),
+            curves,
+        },
+    );
+    Ok(made)
+}
+
+fn deviation(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let coating = |name, ior| Coating {
+        name,
+        ior,
+        thickness_nm: [66.0, 76.0],
+        exponent: 90.0,
+        diffuse: 0.7,
+        extent_um: FLAT_UM,
+        frequency: 4,
+    };
+    let rising = [1.4, 1.45, 1.6];
+    let coatings = [coating("parallel", rising), coating("deviated", rising), coating("no-dispersion", [1.45; 3])];
+    let pictures = studio.pictures(&materials(&coatings)?, "baked", Shape::Sphere, |n, settings| {
+        settings.film_tilt = [if n == 0 { 0.0 } else { TILT }, 0.0];
+    })?;
+    let labels = ["parallel", "14 degrees", "one index"];
+    for (label, picture) in labels.iter().zip(&pictures) {
+        made.measure(format!("{label}: spread of the channels"), spread(picture));
+    }
+    made.sheet("granier-4", labels.map(str::to_owned).into_iter().zip(pictures).collect(), 3);
+    Ok(made)
+}
+
+fn correlated(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let coating = |name, extent_um, thickness_nm| Coating {
+        name,
+        ior: [1.4, 1.45, 1.6],
+        thickness_nm,
+        exponent: 90.0,
+        diffuse: 0.0,
+        extent_um,
+        frequency: 4,
+    };
+    let coatings = [
+        coating("flat", FLAT_UM, [100.0, 400.0]),
+        coating("hilly", HILLY_UM, [100.0, 400.0]),
+        coating("flat-oil", FLAT_UM, [200.0, 900.0]),
+        coating("hilly-oil", 2.0 * HILLY_UM, [200.0, 900.0]),
+    ];
+    let pictures = studio.pictures(&materials(&coatings)?, "baked", Shape::Sphere, |_, _| {})?;
+    let labels = ["100-400 flat", "100-400 bumps", "200-900 flat", "200-900 bumps"];
+    for (label, picture) in labels.iter().zip(&pictures) {
+        made.measure(format!("{label}: spread of the channels"), spread(picture));
+    }
+    made.sheet("granier-5", labels.map(str::to_owned).into_iter().zip(pictures).collect(), 4);
+    Ok(made)
+}
+
+/// Of figure 6.
+const COMBINED_IOR: [f64; 3] = [1.5, 1.6, 1.8];
+
+fn combined(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let ranges = [("a", [60.0, 80.0]), ("b", [110.0, 140.0]), ("c", [160.0, 200.0]), ("d", [200.0, 600.0])];
+    let coatings = ranges.map(|(name, thickness_nm)| Coating {
+        name,
+        ior: COMBINED_IOR,
+        thickness_nm,
+        exponent: 130.0,
+        diffuse: 0.5,
+        extent_um: FLAT_UM,
+        frequency: 4,
+    });
+    let pictures = studio.pictures(&materials(&coatings)?, "baked", Shape::Sphere, |_, settings| {
+        settings.film_tilt = [TILT, 0.0];
+    })?;
+    let mut shown = Vec::new();
+    for ((_, [min, max]), picture) in ranges.iter().zip(pictures) {
+        made.measure(format!("{min} to {max} nm: spread of the channels"), spread(&picture));
+        shown.push((format!("{min}-{max} nm"), picture));
+    }
+    made.sheet("granier-6", shown, 4);
+
+    let green = Coating {
+        name: "green",
+        ior: [1.6; 3],
+        thickness_nm: [100.0, 100.0],
+        exponent: 130.0,
+        diffuse: 0.0,
+        extent_um: FLAT_UM,
+        frequency: 1,
+    };
+    let stack = green.material()?.stack;
+    let exact = |thickness_nm: f64, cos_theta: f64| {
+        let mut here = Monochrome::new(&stack, WAVELENGTHS_NM[1], 1);
+        here.layers
+            .iter_mut()
+            .flat_map(|layer| &mut layer.films)
+            .for_each(|film| film.waves = thickness_nm / WAVELENGTHS_NM[1]);
+        here.layers.first().map_or(0.0, |layer| layer.reflectance(cos_theta))
+    };
+    let two_beams = |thickness_nm: f64, theta: f64| {
+        let (sin, cos) = libm::sincos(theta);
+        film(1.6, thickness_nm / WAVELENGTHS_NM[1], 130.0)
+            .specular(DVec3::new(sin, 0.0, cos), DVec3::new(-sin, 0.0, cos))
+    };
+    let curves = |point: &dyn Fn(u32) -> (f64, f64, f64), last: u32| {
+        let curve = |name: &str, value: &dyn Fn(f64, f64) -> f64| {
+            let points = (0..=last).map(|i| {
+                let (x, thickness, theta) = point(i);
+                [x, value(thickness, theta)]
+            });
+            Curve { name: name.to_owned(), points: points.collect() }
+        };
+        vec![
+            curve("two beams (eq. 5), lobes of height one", &two_beams),
+            curve("exact, film of index 1.6 on an object of index 2", &|d, theta| exact(d, libm::cos(theta))),
+        ]
+    };
+    let over_thickness = curves(&|i| (f64::from(i) * 2.0, f64::from(i) * 2.0, 0.0), 350);
+    let over_angle = curves(&|i| (f64::from(i) * 0.5, 100.0, (f64::from(i) * 0.5).to_radians()), 178);
+    for (what, curves) in [("at the normal, over thickness", &over_thickness), ("at 100 nm, over angle", &over_angle)] {
+        for curve in curves {
+            let largest = curve.points.iter().map(|p| p[1]).fold(0.0, f64::max);
+            made.measure(format!("525 nm, {what}, {}: largest", curve.name), largest);
+        }
+    }
+    let y = || axis("reflectance in the mirror direction, 525 nm", [0.0, 2.0], 0.5);
+    made.plot(
+        "granier-6-thickness",
+        Plot {
+            title: "Reflectance at the normal against the thickness of the film".to_owned(),
+            x: axis("thickness of the film, nm", [0.0, 700.0], 100.0),
+            y: y(),
+            curves: over_thickness,
+        },
+    );
+    made.plot(
+        "granier-6-angle",
+        Plot {
+            title: "Reflectance in the mirror direction against the angle, film of 100 nm".to_owned(),
+            x: axis("angle to the normal, degrees", [0.0, 90.0], 15.0),
+            y: y(),
+            curves: over_angle,
+        },
+    );
+    Ok(made)
+}
+
+/// A film in air, `waves` wavelengths of vacuum thick.
+fn film(ior: f64, waves: f64, exponent: f64) -> Film {
+    Film { eta: ior, waves_inside: Some(ior * waves), inner_normal: DVec3::Z, exponents: [exponent; 2] }
+}
+
+fn axis(label: &str, range: [f64; 2], step: f64) -> PlotAxis {
+    PlotAxis { label: label.to_owned(), range, step }
+}
+
+/// Largest channel less the smallest, as a display shows them, mean over the picture.
+fn spread(image: &Image) -> f64 {
+    let one = |texel: &[f32]| {
+        let (low, high) =
+            texel.iter().map(|v| TONE.value(*v)).fold((f32::INFINITY, 0.0_f32), |(a, b), v| (a.min(v), b.max(v)));
+        f64::from(high - low)
+    };
+    image.texels().map(one).sum::<f64>() / image.texel_count() as f64
+}
