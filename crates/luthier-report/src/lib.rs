@@ -42,7 +42,7 @@ mod subject;
 mod table_terms;
 
 pub use ball::{BallPicture, DistantLight, render_ball};
-pub use chart::{Curve, Plot, PlotAxis};
+pub use chart::{Curve, Plot, PlotAxis, PlotColor};
 pub use device::{Device, Form};
 pub use directions::{DirectionSet, Pair};
 pub use error::ReportError;

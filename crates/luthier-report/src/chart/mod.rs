@@ -8,5 +8,5 @@ mod tables;
 
 pub(crate) use errors::{by_angle, exceedance, max_by_material, series};
 pub(crate) use frame::legend;
-pub use plot::{Curve, Plot, PlotAxis};
+pub use plot::{Curve, Plot, PlotAxis, PlotColor};
 pub(crate) use tables::{bytes_by_table, error_by_alpha, reflectance};

@@ -3,7 +3,7 @@
 use luthier_gpu::Shape;
 use luthier_lut::Image;
 use luthier_material::{Material, ModelSetting};
-use luthier_report::{Curve, Plot, PlotAxis, lightness_chroma_hue};
+use luthier_report::{Curve, Plot, PlotAxis, PlotColor, lightness_chroma_hue};
 
 use super::figure::{Figure, Made, compared};
 use super::studio::{Studio, bake, material, shaded};
@@ -85,8 +85,8 @@ fn varnish(studio: &Studio) -> Outcome<Made> {
         materials.push(shaded(&varnished(thickness)?, &format!("varnish-{i}"), ModelSetting::WeidlichWilkie));
     }
     let pictures = studio.pictures(&materials, "baked", Shape::Sphere, |_, _| {})?;
-    let mut curves =
-        ["lightness L*", "chroma C*", "hue, degrees"].map(|name| Curve { name: name.to_owned(), points: Vec::new() });
+    let names = [("lightness L*", PlotColor::Ink), ("chroma C*", PlotColor::Red), ("hue, degrees", PlotColor::Blue)];
+    let mut curves = names.map(|(name, color)| Curve { name: name.to_owned(), color, points: Vec::new() });
     for (thickness, picture) in THICKNESSES.into_iter().zip(&pictures) {
         let values = lightness_chroma_hue(middle(picture));
         for (curve, value) in curves.iter_mut().zip(values) {

@@ -8,7 +8,7 @@ use luthier_lut::{Image, WeightBits, bilinear};
 use luthier_material::{
     AlphaMapping, BakeSettings, DistributionMapping, Format, FresnelMapping, Material, ModelSetting,
 };
-use luthier_report::{Curve, Plot, PlotAxis};
+use luthier_report::{Curve, Plot, PlotAxis, PlotColor};
 
 use super::figure::{Figure, Made, compared};
 use super::studio::{Studio, material, shaded};
@@ -84,89 +84,108 @@ fn clamp(studio: &Studio) -> Outcome<Made> {
         let apart = compared(&ball, &reference.image)?;
         made.measure(format!("ball, {label}, against simulation: RMSE"), apart.rms_err);
         made.measure(format!("ball, {label}, against simulation: mean FLIP"), apart.flip_mean);
+        let energy = light(&ball) / light(&reference.image);
+        made.measure(format!("ball, {label}: mean radiance over that of the simulation"), energy);
         balls.push((label.to_owned(), ball));
     }
     made.sheet("elek-2-simulation", balls, 4);
     Ok(made)
 }
 
-/// Slope parameter of the highlight in figure 4.
-const SHARP: f64 = 0.01;
+/// Slope parameters at which tables are compared, and which of them is that of figure 4.
+const SHARP: [f64; 6] = [0.05, 0.02, 0.01, 0.005, 0.0025, 0.00125];
+const SHOWN: usize = 2;
 
-/// How the eye looks at the middle of the ball: half the side of the picture, distance.
-const ZOOM: [f32; 2] = [0.033, 7.0];
+/// Half the side of the picture over the slope parameter, and distance of the eye.
+const ZOOM: [f64; 2] = [3.3, 7.0];
+
+/// Metal alone, one for each slope parameter.
+fn sharp() -> Outcome<Vec<Material>> {
+    let one = |(i, alpha): (usize, f64)| {
+        let mut metal = coated("sharp", [alpha, alpha])?;
+        metal.stack.layers.remove(0);
+        metal.layers.remove(0);
+        Ok(shaded(&metal, &format!("sharp-{i}"), ModelSetting::Elek))
+    };
+    SHARP.into_iter().enumerate().map(one).collect()
+}
 
 fn mapping(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
-    let mut metal = coated("sharp", [SHARP, SHARP])?;
-    metal.stack.layers.remove(0);
-    metal.layers.remove(0);
+    let metals = sharp()?;
     let dark = Arc::new(Environment::sky(&Sky::uniform([0.0; 3])).map_err(device)?);
-    let look = |_: usize, settings: &mut RenderSettings| {
-        settings.camera = Camera { eye: [0.0, 0.0, ZOOM[1]], target: [0.0; 3], half_extent: ZOOM[0] };
+    let look = |n: usize, settings: &mut RenderSettings| {
+        let alpha = SHARP[n];
+        let [extent, distance] = [ZOOM[0] * alpha, ZOOM[1]].map(|v| v as f32);
+        settings.camera = Camera { eye: [0.0, 0.0, distance], target: [0.0; 3], half_extent: extent };
         settings.lights = vec![Light::Directional { direction: [0.0, 0.0, 1.0], irradiance: [1.0; 3] }];
         settings.light_angular_radius = 0.0;
         settings.environment = dark.clone();
-        settings.environment_samples = 0;
+        settings.environment_samples = 1;
         settings.samples = 1;
         // The peak is F D / 4 with D = 1 / (pi m^2): to about 1.
-        settings.exposure = (8.0 * PI * SHARP * SHARP) as f32;
+        settings.exposure = (8.0 * PI * alpha * alpha) as f32;
     };
-    let render = |form: &str, angle: Option<DistributionMapping>| -> Outcome<Image> {
-        let mut variant = metal.clone();
-        if let Some(angle) = angle {
-            elek_tables(&mut variant.bake, angle);
+    let render = |form: &str, angle: Option<DistributionMapping>| {
+        let mut variants = metals.clone();
+        for variant in &mut variants {
+            if let Some(angle) = angle {
+                elek_tables(&mut variant.bake, angle);
+            }
         }
-        studio.pictures(&[variant], form, Shape::Sphere, look)?.pop().ok_or_else(nothing)
+        studio.pictures(&variants, form, Shape::Sphere, look)
     };
-    let full = render_zoomed_full(studio, &metal, look)?;
-    let linear = render("baked", Some(DistributionMapping::Linear))?;
-    let power = render("baked", Some(DistributionMapping::Power))?;
-    let ours = render("baked", None)?;
-    let peak = full.data.iter().copied().fold(0.0, f32::max);
-    let mipped = mipped(&full, f64::from(peak));
-    let pictures = [
-        ("linear angle", linear),
-        ("u^8, linear m", power),
-        ("u^8, log m", ours),
-        ("full", full.clone()),
-        ("MIP level 3", mipped),
+    let full = render("full", None)?;
+    let tables = [
+        ("linear angle", PlotColor::Red, render("baked", Some(DistributionMapping::Linear))?),
+        ("u^8, linear m", PlotColor::Blue, render("baked", Some(DistributionMapping::Power))?),
+        ("u^8, log m", PlotColor::Ink, render("baked", None)?),
     ];
     let mut curves = Vec::new();
-    for (label, image) in &pictures {
-        let apart = image.data.iter().zip(&full.data).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-        if *label != "full" {
-            made.measure(format!("{label}: largest error over the peak"), f64::from(apart / peak));
+    let mut shown = Vec::new();
+    for (label, color, pictures) in &tables {
+        let errors =
+            SHARP.iter().zip(pictures.iter().zip(&full)).map(|(alpha, (image, full))| [*alpha, error(image, full)]);
+        let points: Vec<[f64; 2]> = errors.collect();
+        for [alpha, error] in &points {
+            made.measure(format!("{label}, m = {alpha}: largest error over the peak"), *error);
         }
-        if *label != "MIP level 3" {
-            curves.push(Curve { name: (*label).to_owned(), points: profile(image, peak) });
-        }
+        curves.push(Curve { name: (*label).to_owned(), color: *color, points });
+        shown.push(((*label).to_owned(), pictures[SHOWN].clone()));
     }
-    made.sheet("elek-4", pictures.map(|(label, image)| (label.to_owned(), image)).to_vec(), 5);
-    let axis = |label: &str, range, step| PlotAxis { label: label.to_owned(), range, step };
+    let mipped = mipped(&full[SHOWN], SHARP[SHOWN]);
+    made.measure("MIP level 3, m = 0.01: largest error over the peak", error(&mipped, &full[SHOWN]));
+    shown.push(("full".to_owned(), full[SHOWN].clone()));
+    shown.push(("MIP level 3".to_owned(), mipped));
+    made.sheet("elek-4", shown, 5);
+    let axis = |label: &str| PlotAxis { label: label.to_owned(), range: [0.0, 1.0], step: 0.0 };
     made.plot(
-        "elek-4-profile",
+        "elek-4-error",
         Plot {
-            title: "The highlight of figure 4 along the middle row of the pictures".to_owned(),
-            x: axis("angle of the half vector to the normal, degrees (m = 0.01)", [0.0, 1.6], 0.2),
-            y: axis("radiance over the peak of the full evaluation", [0.0, 1.2], 0.2),
+            title: "Error of the table of D against the slope parameter".to_owned(),
+            x: axis("slope parameter m"),
+            y: axis("largest error of a highlight over its peak"),
             curves,
         },
     );
     Ok(made)
 }
 
-fn nothing() -> crate::failure::Failure {
-    crate::failure::Failure::Input(anyhow::anyhow!("no picture"))
+/// Largest difference of the green channel, over its peak.
+fn error(image: &Image, full: &Image) -> f64 {
+    let green = |image: &Image| image.texels().map(|texel| texel[1]).collect::<Vec<f32>>();
+    let (image, full) = (green(image), green(full));
+    let peak = full.iter().copied().fold(0.0, f32::max);
+    f64::from(image.iter().zip(&full).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max) / peak)
 }
 
-/// The shader without tables; the split environment needs the other form, and there is no environment.
-fn render_zoomed_full(studio: &Studio, metal: &Material, look: impl Fn(usize, &mut RenderSettings)) -> Outcome<Image> {
-    let with_samples = |n: usize, settings: &mut RenderSettings| {
-        look(n, settings);
-        settings.environment_samples = 1;
-    };
-    studio.pictures(&[metal.clone()], "full", Shape::Sphere, with_samples)?.pop().ok_or_else(nothing)
+/// Sum over all pixels and channels.
+fn light(image: &Image) -> f64 {
+    image.data.iter().map(|v| f64::from(*v)).sum()
+}
+
+fn nothing() -> crate::failure::Failure {
+    crate::failure::Failure::Input(anyhow::anyhow!("no picture"))
 }
 
 /// The tables of Elek's section 3.1: rows of 128 texels of 8 bits, 512 x 512 half floats.
@@ -181,25 +200,18 @@ fn elek_tables(bake: &mut BakeSettings, angle: DistributionMapping) {
 }
 
 /// Angle of the half vector to the normal at a pixel of the zoomed ball; light and eye both at +z.
-fn half_angle(x: u32, y: u32, size: u32) -> f64 {
-    let at = |i: u32| (2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0) * f64::from(ZOOM[0]);
+fn half_angle(x: u32, y: u32, size: u32, alpha: f64) -> f64 {
+    let [extent, distance] = [ZOOM[0] * alpha, ZOOM[1]];
+    let at = |i: u32| (2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0) * extent;
     // Angle of the ray at the eye, then of the normal, by the law of sines.
-    let distance = f64::from(ZOOM[1]);
     let ray = libm::atan(libm::hypot(at(x), at(y)) / distance);
     let normal = libm::asin((distance * libm::sin(ray)).min(1.0)) - ray;
-    // The half vector lies between the light (angle 0) and the eye, which is on the other side of it.
+    // Light and eye differ by the angle of the ray: the half vector lies between.
     normal + 0.5 * ray
 }
 
-/// Green along the right half of the middle row, over the peak: (degrees, value).
-fn profile(image: &Image, peak: f32) -> Vec<[f64; 2]> {
-    let (size, y) = (image.width, image.height / 2);
-    let point = |x: u32| [half_angle(x, y, size).to_degrees(), f64::from(image.texel(x, y)[1] / peak)];
-    (size / 2..size).map(point).collect()
-}
-
 /// The highlight with D from level 3 of the MIP chain of Elek's table (D itself, linear m): each texel the mean of 8 x 8.
-fn mipped(full: &Image, peak: f64) -> Image {
+fn mipped(full: &Image, alpha: f64) -> Image {
     const SIDE: u32 = 512;
     const BLOCK: u32 = 8;
     const LARGEST_HALF: f64 = 65504.0;
@@ -215,14 +227,15 @@ fn mipped(full: &Image, peak: f64) -> Image {
             table.texel_mut(i / BLOCK, j / BLOCK)[0] += (value / f64::from(BLOCK * BLOCK)) as f32;
         }
     }
+    let peaks = [0, 1, 2].map(|c: usize| full.texels().map(|texel| texel[c]).fold(0.0, f32::max));
     let mut image = full.clone();
     let texels = f64::from(SIDE / BLOCK);
     for y in 0..image.height {
         for x in 0..image.width {
-            let u = libm::pow(half_angle(x, y, image.width) / FRAC_PI_2, 0.125);
-            let read = bilinear(&table, [u * texels, SHARP * texels], WeightBits::Fixed(8))[0];
-            let ratio = peak * read / beckmann(0.0, SHARP);
-            image.texel_mut(x, y).fill(ratio as f32);
+            let u = libm::pow(half_angle(x, y, image.width, alpha) / FRAC_PI_2, 0.125);
+            let read = bilinear(&table, [u * texels, alpha * texels], WeightBits::Fixed(8))[0];
+            let ratio = (read / beckmann(0.0, alpha)) as f32;
+            image.texel_mut(x, y).copy_from_slice(&peaks.map(|peak| peak * ratio));
         }
     }
     image

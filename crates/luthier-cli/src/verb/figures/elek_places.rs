@@ -36,28 +36,31 @@ const DISTANCES: [f32; 4] = [4.0, 8.0, 16.0, 32.0];
 fn flakes(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let paint = material("chromium-car-paint.toml", CAR_PAINT)?;
-    let with_fade = |name: &str, fade_start: f64| -> Outcome<Material> {
+    let variant = |name: &str, fade_start: f64, scale: f64| -> Outcome<Material> {
         let mut paint = shaded(&paint, name, ModelSetting::Elek);
         let missing = || Failure::Input(anyhow::anyhow!("chromium-car-paint.toml has no flakes"));
-        paint.effects.flakes.as_mut().ok_or_else(missing)?.fade_start = fade_start;
+        let flakes = paint.effects.flakes.as_mut().ok_or_else(missing)?;
+        (flakes.fade_start, flakes.scale) = (fade_start, scale);
         Ok(paint)
     };
-    let materials = [with_fade("fading", f64::from(DISTANCES[0]))?, with_fade("not-fading", 1e6)?];
+    let near = f64::from(DISTANCES[0]);
+    let materials = [variant("fading", near, 1.0)?, variant("not-fading", 1e6, 1.0)?, variant("smooth", near, 0.0)?];
     let artefacts = memory_bake::bake(&materials)?;
     let mut rows = [Vec::new(), Vec::new()];
     for (step, distance) in DISTANCES.into_iter().enumerate() {
         // A pixel is always as wide at the eye; what is far away is smaller, and enlarged.
         let size = (studio.size >> step).max(8);
-        let pictures = studio.rendered(&artefacts, "baked", Shape::Sphere, |_, settings| {
+        let mut pictures = studio.rendered(&artefacts, "baked", Shape::Sphere, |_, settings| {
             settings.camera.eye = [0.0, 0.0, distance];
             settings.camera.half_extent = 1.25;
             settings.size = size;
             settings.samples = 1;
             settings.environment_samples = 0;
         })?;
-        for ((row, image), what) in rows.iter_mut().zip(pictures).zip(["with the scaling", "without"]) {
-            made.measure(format!("{what}, distance {distance}: contrast of neighbouring pixels"), contrast(&image));
-            row.push((format!("{what:.7} {distance}"), enlarged(&image, studio.size)));
+        let smooth = pictures.pop().unwrap_or_else(|| Image::zeros(size, size, 3));
+        for ((row, image), what) in rows.iter_mut().zip(pictures).zip(["scaled", "not scaled"]) {
+            made.measure(format!("{what}, distance {distance}: noise of the flakes"), noise(&image, &smooth));
+            row.push((format!("{what}, {distance}"), enlarged(&image, studio.size)));
         }
     }
     let [with, without] = rows;
@@ -65,24 +68,24 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
     Ok(made)
 }
 
-/// Root mean square of the difference of neighbours in a row, over the mean of both, within the middle half of the ball.
-fn contrast(image: &Image) -> f64 {
-    let (mut squares, mut sum, mut count) = (0.0, 0.0, 0u32);
-    let value = |x: u32, y: u32| {
+/// Root mean square of what flakes do to the luminance of the middle half of a picture, over its mean.
+fn noise(image: &Image, smooth: &Image) -> f64 {
+    let value = |image: &Image, x: u32, y: u32| {
         let texel = image.texel(x, y);
         luminance([0, 1, 2].map(|c| f64::from(texel[c])))
     };
-    let middle = image.width * 3 / 10..image.width * 7 / 10;
+    let middle = image.width / 4..image.width * 3 / 4;
+    let count = f64::from((middle.end - middle.start).max(1));
+    let (mut squares, mut sum) = (0.0, 0.0);
     for y in middle.clone() {
         for x in middle.clone() {
-            let (a, b) = (value(x, y), value(x + 1, y));
-            squares += (a - b) * (a - b);
-            sum += a;
-            count += 1;
+            let (here, bare) = (value(image, x, y), value(smooth, x, y));
+            squares += (here - bare) * (here - bare);
+            sum += bare;
         }
     }
-    let n = f64::from(count.max(1));
-    (squares / n).sqrt() / (sum / n).max(1e-12)
+    // Both are sums over as many pixels.
+    squares.sqrt() * count / sum.max(1e-12)
 }
 
 /// Every pixel repeated.

@@ -1,12 +1,12 @@
 //! Figures of Granier and Heidrich 2003.
 
 use glam::DVec3;
-use luthier_gpu::Shape;
+use luthier_gpu::{RenderSettings, Shape};
 use luthier_layers::granier_heidrich::Film;
 use luthier_layers::monochrome::Monochrome;
 use luthier_lut::Image;
 use luthier_material::{Material, ModelSetting};
-use luthier_report::{Curve, Plot, PlotAxis};
+use luthier_report::{Curve, Plot, PlotAxis, PlotColor};
 
 use super::figure::{Figure, Made, TONE};
 use super::studio::{Studio, material, shaded};
@@ -53,6 +53,12 @@ const TILT: f32 = 0.249_328;
 const FLAT_UM: f64 = 2e4;
 const HILLY_UM: f64 = 12.0;
 
+/// The transmitted lobe is no lobe of a mirror, so its sampling needs more directions; and the model is brighter than white.
+fn look(settings: &mut RenderSettings) {
+    settings.environment_samples = 64;
+    settings.exposure = 0.8;
+}
+
 /// A film on an object.
 struct Coating {
     name: &'static str,
@@ -93,16 +99,18 @@ fn materials(coatings: &[Coating]) -> Outcome<Vec<Material>> {
 fn diffuse(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let coating = |name, thickness_nm, diffuse| {
-        let (ior, exponent, extent_um, frequency) = ([1.5, 1.6, 1.8], 130.0, FLAT_UM, 6);
+        let (ior, exponent, extent_um, frequency) = (COMBINED_IOR, 130.0, FLAT_UM, 6);
         Coating { name, ior, thickness_nm, exponent, diffuse, extent_um, frequency }
     };
-    let ranges = [("old metal", [150.0, 190.0]), ("coloured", [200.0, 700.0]), ("clay", [70.0, 130.0])];
+    let ranges = [("old metal", [52.0, 84.0]), ("coloured", [200.0, 700.0]), ("clay", [40.0, 58.0])];
     let names = [["metal", "metal-0"], ["coloured", "coloured-0"], ["clay", "clay-0"]];
     let pairs = ranges
         .iter()
         .zip(names)
         .flat_map(|((_, range), [lit, unlit])| [coating(lit, *range, 0.6), coating(unlit, *range, 0.0)]);
-    let pictures = studio.pictures(&materials(&pairs.collect::<Vec<_>>())?, "baked", Shape::Sphere, |_, _| {})?;
+    let pictures =
+        studio
+            .pictures(&materials(&pairs.collect::<Vec<_>>())?, "baked", Shape::Sphere, |_, settings| look(settings))?;
     let mut shown = Vec::new();
     for ((name, [min, max]), pair) in ranges.iter().zip(pictures.chunks_exact(2)) {
         // The specular part is the same in both: what is left is the diffuse one.
@@ -116,12 +124,14 @@ fn diffuse(studio: &Studio) -> Outcome<Made> {
     made.sheet("granier-3", shown, 3);
 
     let mut curves = Vec::new();
-    for (channel, (nm, ior)) in ["R", "G", "B"].iter().zip(WAVELENGTHS_NM.iter().zip([1.5, 1.6, 1.8])) {
+    let channels = [("R", PlotColor::Red), ("G", PlotColor::Green), ("B", PlotColor::Blue)];
+    for ((channel, color), (nm, ior)) in channels.into_iter().zip(WAVELENGTHS_NM.iter().zip(COMBINED_IOR)) {
         let point = |i: u32| {
             let d = f64::from(i) * 2.0;
             [d, film(ior, d / nm, 0.0).diffuse()]
         };
-        curves.push(Curve { name: format!("{channel}: {nm} nm, index {ior}"), points: (0..=350).map(point).collect() });
+        let name = format!("{channel}: {nm} nm, index {ior}");
+        curves.push(Curve { name, color, points: (0..=350).map(point).collect() });
     }
     made.plot(
         "granier-3-thickness",
@@ -149,6 +159,7 @@ fn deviation(studio: &Studio) -> Outcome<Made> {
     let rising = [1.4, 1.45, 1.6];
     let coatings = [coating("parallel", rising), coating("deviated", rising), coating("no-dispersion", [1.45; 3])];
     let pictures = studio.pictures(&materials(&coatings)?, "baked", Shape::Sphere, |n, settings| {
+        look(settings);
         settings.film_tilt = [if n == 0 { 0.0 } else { TILT }, 0.0];
     })?;
     let labels = ["parallel", "14 degrees", "one index"];
@@ -176,7 +187,7 @@ fn correlated(studio: &Studio) -> Outcome<Made> {
         coating("flat-oil", FLAT_UM, [200.0, 900.0]),
         coating("hilly-oil", 2.0 * HILLY_UM, [200.0, 900.0]),
     ];
-    let pictures = studio.pictures(&materials(&coatings)?, "baked", Shape::Sphere, |_, _| {})?;
+    let pictures = studio.pictures(&materials(&coatings)?, "baked", Shape::Sphere, |_, settings| look(settings))?;
     let labels = ["100-400 flat", "100-400 bumps", "200-900 flat", "200-900 bumps"];
     for (label, picture) in labels.iter().zip(&pictures) {
         made.measure(format!("{label}: spread of the channels"), spread(picture));
@@ -185,12 +196,15 @@ fn correlated(studio: &Studio) -> Outcome<Made> {
     Ok(made)
 }
 
-/// Of figure 6.
+/// Thickness at which the beams of a film of index 1.6 are in phase at 80 degrees and 525 nm: 525 / (2 1.6 0.788).
+const IN_PHASE_NM: f64 = 208.0;
+
+/// Of figure 6, and for want of others of figure 3.
 const COMBINED_IOR: [f64; 3] = [1.5, 1.6, 1.8];
 
 fn combined(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
-    let ranges = [("a", [60.0, 80.0]), ("b", [110.0, 140.0]), ("c", [160.0, 200.0]), ("d", [200.0, 600.0])];
+    let ranges = [("a", [50.0, 70.0]), ("b", [110.0, 140.0]), ("c", [160.0, 200.0]), ("d", [200.0, 600.0])];
     let coatings = ranges.map(|(name, thickness_nm)| Coating {
         name,
         ior: COMBINED_IOR,
@@ -201,6 +215,7 @@ fn combined(studio: &Studio) -> Outcome<Made> {
         frequency: 4,
     });
     let pictures = studio.pictures(&materials(&coatings)?, "baked", Shape::Sphere, |_, settings| {
+        look(settings);
         settings.film_tilt = [TILT, 0.0];
     })?;
     let mut shown = Vec::new();
@@ -234,21 +249,23 @@ fn combined(studio: &Studio) -> Outcome<Made> {
             .specular(DVec3::new(sin, 0.0, cos), DVec3::new(-sin, 0.0, cos))
     };
     let curves = |point: &dyn Fn(u32) -> (f64, f64, f64), last: u32| {
-        let curve = |name: &str, value: &dyn Fn(f64, f64) -> f64| {
+        let curve = |name: &str, color, value: &dyn Fn(f64, f64) -> f64| {
             let points = (0..=last).map(|i| {
                 let (x, thickness, theta) = point(i);
                 [x, value(thickness, theta)]
             });
-            Curve { name: name.to_owned(), points: points.collect() }
+            Curve { name: name.to_owned(), color, points: points.collect() }
         };
         vec![
-            curve("two beams (eq. 5), lobes of height one", &two_beams),
-            curve("exact, film of index 1.6 on an object of index 2", &|d, theta| exact(d, libm::cos(theta))),
+            curve("two beams (eq. 5), lobes of height one", PlotColor::Ink, &two_beams),
+            curve("exact, film of index 1.6 on an object of index 2", PlotColor::Red, &|d, theta| {
+                exact(d, libm::cos(theta))
+            }),
         ]
     };
     let over_thickness = curves(&|i| (f64::from(i) * 2.0, f64::from(i) * 2.0, 0.0), 350);
-    let over_angle = curves(&|i| (f64::from(i) * 0.5, 100.0, (f64::from(i) * 0.5).to_radians()), 178);
-    for (what, curves) in [("at the normal, over thickness", &over_thickness), ("at 100 nm, over angle", &over_angle)] {
+    let over_angle = curves(&|i| (f64::from(i) * 0.5, IN_PHASE_NM, (f64::from(i) * 0.5).to_radians()), 178);
+    for (what, curves) in [("at the normal, over thickness", &over_thickness), ("at 208 nm, over angle", &over_angle)] {
         for curve in curves {
             let largest = curve.points.iter().map(|p| p[1]).fold(0.0, f64::max);
             made.measure(format!("525 nm, {what}, {}: largest", curve.name), largest);
@@ -267,7 +284,7 @@ fn combined(studio: &Studio) -> Outcome<Made> {
     made.plot(
         "granier-6-angle",
         Plot {
-            title: "Reflectance in the mirror direction against the angle, film of 100 nm".to_owned(),
+            title: "Reflectance in the mirror direction against the angle, film of 208 nm".to_owned(),
             x: axis("angle to the normal, degrees", [0.0, 90.0], 15.0),
             y: y(),
             curves: over_angle,

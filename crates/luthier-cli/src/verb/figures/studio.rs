@@ -17,8 +17,8 @@ use crate::device::{device, open};
 use crate::failure::{Failure, Outcome};
 use crate::memory_bake;
 
-/// Directions of the environment per lobe and sample: with four samples to a pixel, 64 per lobe.
-const ENVIRONMENT_SAMPLES: u32 = 16;
+/// Directions of the environment per lobe and sample: with four samples to a pixel, 128 per lobe.
+const ENVIRONMENT_SAMPLES: u32 = 32;
 
 /// Side of tables of albedos where no shader reads them; their bake takes seconds.
 const UNUSED_ALBEDO_SIZE: u32 = 4;
