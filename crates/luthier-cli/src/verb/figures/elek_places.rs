@@ -15,14 +15,21 @@ pub(crate) const FIGURES: [Figure; 2] = [
         name: "elek-7",
         title: "metal flakes with distance",
         source: "Elek 2010, figure 7",
-        caption: "CAPTION",
+        caption: "Chromium flakes under a red coat from four distances, one ray to a pixel and no filtering; what is far away covers \
+                  fewer pixels, which are enlarged. Top: the normal is weighted by the distance, as in the paper, from distance 4 on, \
+                  and the paint becomes smooth. Bottom: without that, the ball stays as noisy at any distance, down to single dark and \
+                  bright pixels. The number is what flakes do to the luminance of a pixel, over the mean, in the middle of the picture; \
+                  at distance 32 that is a square of 8 pixels by default.",
         make: flakes,
     },
     Figure {
         name: "elek-8",
         title: "a growing patina",
         source: "Elek 2010, figure 8",
-        caption: "CAPTION",
+        caption: "Copper under cuprite at the six stages and the transition of the paper. Patina comes first where the map is dark; with \
+                  so wide a transition there is no edge, the copper pales, turns green in patches and ends as a matt green with the \
+                  tarnish below. Number: the mean of the amount of patina over the map. The map, the green and the tarnish are ours, see \
+                  `materials/copper-patina.toml`.",
         make: patina,
     },
 ];
