@@ -34,28 +34,28 @@ pub(crate) const FIGURES: [Figure; 2] = [
     },
 ];
 
-macro_rules! text {
-    ($name:literal) => {
-        ($name, include_str!(concat!("../../../../../materials/", $name, ".toml")))
+macro_rules! of_class {
+    ($name:literal, $label:literal) => {
+        ($name, $label, include_str!(concat!("../../../../../materials/", $name, ".toml")))
     };
 }
 
-/// A material of the course for each class, a to h.
-const CLASSES: [(&str, &str); 8] = [
-    text!("ceramic-glaze"),
-    text!("red-lacquer"),
-    text!("latex"),
-    text!("brass-foil"),
-    text!("car-paint"),
-    text!("blue-metallic-paint"),
-    text!("silver-paint"),
-    text!("house-paint"),
+/// A material of the course for each class, a to h: name, label, text.
+const CLASSES: [(&str, &str, &str); 8] = [
+    of_class!("ceramic-glaze", "glaze"),
+    of_class!("red-lacquer", "lacquer"),
+    of_class!("latex", "latex"),
+    of_class!("brass-foil", "foil"),
+    of_class!("car-paint", "car paint"),
+    of_class!("blue-metallic-paint", "metallic"),
+    of_class!("silver-paint", "silver"),
+    of_class!("house-paint", "house"),
 ];
 
 fn classes(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let mut materials = Vec::new();
-    for (name, text) in CLASSES {
+    for (name, _, text) in CLASSES {
         materials.push(shaded(&material(name, text)?, name, ModelSetting::WeidlichWilkie));
     }
     let artefacts = bake(&materials)?;
@@ -65,8 +65,9 @@ fn classes(studio: &Studio) -> Outcome<Made> {
         let flip = compared(baked, full)?.flip_mean;
         made.measure(format!("{} {}, tables against full: mean FLIP", material.class, material.name), flip);
     }
-    let label = |material: &Material| format!("{} {}", material.class.letter(), material.name);
-    made.sheet("course-classes", materials.iter().map(label).zip(baked).collect(), 4);
+    let label =
+        |(material, (_, label, _)): (&Material, &(&str, &str, &str))| format!("{} {label}", material.class.letter());
+    made.sheet("course-classes", materials.iter().zip(&CLASSES).map(label).zip(baked).collect(), 4);
     Ok(made)
 }
 

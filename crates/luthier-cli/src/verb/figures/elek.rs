@@ -21,7 +21,7 @@ pub(crate) const FIGURES: [Figure; 3] = [
         title: "the roughness clamp",
         source: "O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010, figure 2",
         caption: "Elek clamps the lower layer's m2 to at least the upper layer's m1, because a model that cannot sample does not blur \
-                  light on its way through the coat. First sheet: the highlight of the metal widens with m1 while the coat's own fades \
+                  light on its way through the coat. First sheet (m1 / m2): the highlight of the metal widens with m1 while the coat's own fades \
                   (m1 0.01 to 0.4); then m1 0.4 over m2 0.05 with the clamp, which looks like m2 0.4, and without, where the metal \
                   mirrors as sharply as if the coat were smooth (Weidlich and Wilkie's model is the same without the clamp). Second \
                   sheet, not in the paper: that last material in f64 under two lights. Simulation lies between: softer than without the \
@@ -37,10 +37,9 @@ pub(crate) const FIGURES: [Figure; 3] = [
         source: "Elek 2010, figure 4",
         caption: "A highlight of m = 0.01 seen through a magnifying glass, light from the eye. D from a table that is linear in the \
                   angle is a cone of straight pieces, seen as faint rings; u^8 as in the paper, and the default table (u^8, logarithmic \
-                  m, two half floats), cannot be told from the full evaluation. With MIP maps on, rows of other m are mixed in: a hot \
+                  m, two half floats), cannot be told from the full evaluation (`even m` is equal steps of m). With MIP maps on, rows of other m are mixed in: a hot \
                   core in a wide veil. The chart measures what the paper says in words, that a linear angle begins to fail below m = \
-                  0.02. It also shows what the paper does not say: m = 0.01 happens to lie near a row of its table, and below that its \
-                  linear m axis is as bad as the linear angle, where the logarithmic one stays flat.",
+                  0.02. It also shows what the paper does not say: m = 0.01 happens to lie near a row of its table, and below that its linear m axis gets nearly as bad as the linear angle, where the logarithmic one stays flat.",
         make: mapping,
     },
     Figure {
@@ -48,8 +47,7 @@ pub(crate) const FIGURES: [Figure; 3] = [
         title: "full evaluation against tables",
         source: "Elek 2010, figure 5",
         caption: "Full evaluation, the tables of the paper's section 3.1 (Fresnel rows of 128 texels of 8 bits, D in 512 x 512 half \
-                  floats) and the default tables. The three look the same. The difference is in the highlights: rings of D and, over the \
-                  whole torus, the 8-bit steps of the Fresnel rows. The paper found up to 6% with its material; here both pictures of \
+                  floats) and the default tables. The three look the same. The differences lie around the highlights, where all terms are large. The paper found up to 6% with its material; here both pictures of \
                   tables stay far below that. Mind the factors under the differences.",
         make: tables,
     },
@@ -77,12 +75,12 @@ fn clamp(studio: &Studio) -> Outcome<Made> {
     let mut labels = Vec::new();
     for (i, alpha) in series.into_iter().enumerate() {
         materials.push(shaded(&coated("coated", [alpha, 0.3])?, &format!("series-{i}"), clamped));
-        labels.push(format!("m1 {alpha}, m2 0.3"));
+        labels.push(format!("{alpha} / 0.3"));
     }
     let odd = coated("odd", [0.4, 0.05])?;
     materials.push(shaded(&odd, "clamped", clamped));
     materials.push(shaded(&odd, "bare", bare));
-    labels.extend(["m2 0.05, clamp", "m2 0.05, none"].map(str::to_owned));
+    labels.extend(["clamped", "not clamped"].map(str::to_owned));
     let pictures = studio.pictures(&materials, "baked", Shape::Torus, |_, _| {})?;
     if let [.., with, without] = pictures.as_slice() {
         let apart = compared(with, without)?;
@@ -154,7 +152,7 @@ fn mapping(studio: &Studio) -> Outcome<Made> {
     let full = render("full", None)?;
     let tables = [
         ("linear angle", PlotColor::Red, render("baked", Some(DistributionMapping::Linear))?),
-        ("u^8, linear m", PlotColor::Blue, render("baked", Some(DistributionMapping::Power))?),
+        ("u^8, even m", PlotColor::Blue, render("baked", Some(DistributionMapping::Power))?),
         ("u^8, log m", PlotColor::Ink, render("baked", None)?),
     ];
     let mut curves = Vec::new();
@@ -263,20 +261,15 @@ fn tables(studio: &Studio) -> Outcome<Made> {
     let mut his = ours.clone();
     elek_tables(&mut his.bake, DistributionMapping::Power);
     let one = |material: &Material, form| -> Outcome<Image> {
-        studio.pictures(&[material.clone()], form, Shape::Torus, |_, _| {})?.pop().ok_or_else(nothing)
+        studio.pictures(std::slice::from_ref(material), form, Shape::Torus, |_, _| {})?.pop().ok_or_else(nothing)
     };
     let full = one(&ours, "full")?;
     let (his, ours) = (one(&his, "baked")?, one(&ours, "baked")?);
     let his_difference = made.compare("tables of the paper against full", &his, &full)?;
     let our_difference = made.compare("default tables against full", &ours, &full)?;
     let shown = |label: &str, image: Image| (label.to_owned(), super::figure::TONE.image(image));
-    let pictures = vec![
-        shown("full", full),
-        shown("paper's tables", his),
-        his_difference,
-        shown("default tables", ours),
-        our_difference,
-    ];
+    let pictures =
+        vec![shown("full", full), shown("its tables", his), his_difference, shown("our tables", ours), our_difference];
     made.shown("elek-5", pictures, 5);
     Ok(made)
 }

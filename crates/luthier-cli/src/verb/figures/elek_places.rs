@@ -17,7 +17,7 @@ pub(crate) const FIGURES: [Figure; 2] = [
         source: "Elek 2010, figure 7",
         caption: "Chromium flakes under a red coat from four distances, one ray to a pixel and no filtering; what is far away covers \
                   fewer pixels, which are enlarged. Top: the normal is weighted by the distance, as in the paper, from distance 4 on, \
-                  and the paint becomes smooth. Bottom: without that, the ball stays as noisy at any distance, down to single dark and \
+                  and the paint becomes smooth. Bottom: without that, the ball stays about as noisy at any distance, down to single dark and \
                   bright pixels. The number is what flakes do to the luminance of a pixel, over the mean, in the middle of the picture; \
                   at distance 32 that is a square of 8 pixels by default.",
         make: flakes,
@@ -27,7 +27,7 @@ pub(crate) const FIGURES: [Figure; 2] = [
         title: "a growing patina",
         source: "Elek 2010, figure 8",
         caption: "Copper under cuprite at the six stages and the transition of the paper. Patina comes first where the map is dark; with \
-                  so wide a transition there is no edge, the copper pales, turns green in patches and ends as a matt green with the \
+                  so wide a transition there is no edge, the copper pales, turns green unevenly and ends as a matt green with the \
                   tarnish below. Number: the mean of the amount of patina over the map. The map, the green and the tarnish are ours, see \
                   `materials/copper-patina.toml`.",
         make: patina,
@@ -65,7 +65,7 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
             settings.environment_samples = 0;
         })?;
         let smooth = pictures.pop().unwrap_or_else(|| Image::zeros(size, size, 3));
-        for ((row, image), what) in rows.iter_mut().zip(pictures).zip(["scaled", "not scaled"]) {
+        for ((row, image), what) in rows.iter_mut().zip(pictures).zip(["scaled", "plain"]) {
             made.measure(format!("{what}, distance {distance}: noise of the flakes"), noise(&image, &smooth));
             row.push((format!("{what}, {distance}"), enlarged(&image, studio.size)));
         }

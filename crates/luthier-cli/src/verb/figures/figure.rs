@@ -74,7 +74,7 @@ impl Made {
         let (shown, gain) = difference(a, b, TONE);
         let largest = shown.data.iter().copied().fold(0.0, f32::max) / gain as f32;
         self.measure(format!("{what}: largest difference of what a display shows"), f64::from(largest));
-        Ok((format!("difference x{gain}"), shown))
+        Ok((format!("diff. x{gain}"), shown))
     }
 }
 

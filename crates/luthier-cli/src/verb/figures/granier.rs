@@ -201,7 +201,7 @@ fn correlated(studio: &Studio) -> Outcome<Made> {
         coating("hilly-oil", 2.0 * HILLY_UM, [200.0, 900.0]),
     ];
     let pictures = studio.pictures(&materials(&coatings)?, "baked", Shape::Sphere, |_, settings| look(settings))?;
-    let labels = ["100-400 flat", "100-400 bumps", "200-900 flat", "200-900 bumps"];
+    let labels = ["flat 100-400", "bump 100-400", "flat 200-900", "bump 200-900"];
     for (label, picture) in labels.iter().zip(&pictures) {
         made.measure(format!("{label}: spread of the channels"), spread(picture));
     }

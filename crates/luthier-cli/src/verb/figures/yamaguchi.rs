@@ -16,8 +16,7 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
     caption: "A coat of index 1.49 on gold (figure 1 (e)) under two lights, in f64: simulation, Yamaguchi's model, its difference, \
                   Belcour's model, its difference. Yamaguchi's highlights have the shapes of the simulated ones: round, stretched along \
                   the brushing, and crossed where the coat is brushed across. Belcour's are round whatever the brushing. Both miss \
-                  brightness around the highlights and towards the rim, where the paper finds its errors too. Where the brushings cross, \
-                  Belcour's RMSE is the smaller one by chance: Yamaguchi's band across the ball is right in shape and too faint. The \
+                  brightness around the highlights and towards the rim, where the paper finds its errors too. Where the brushings cross, Belcour's RMSE is the smaller one all the same: Yamaguchi's band across the ball has the right shape and is too faint. The \
                   slopes are ours (the paper's are in a supplement that we lack), so its RMSE values cannot be compared.",
     make: simulation,
 }];
@@ -32,7 +31,7 @@ struct Brushing {
 /// As their names say; the paper's numbers are in a supplement that we do not have.
 const BRUSHINGS: [Brushing; 3] = [
     Brushing { name: "isotropic", coat: [0.1, 0.1, 0.0], base: [0.3, 0.3, 0.0] },
-    Brushing { name: "one direction", coat: [0.25, 0.06, 0.0], base: [0.45, 0.12, 0.0] },
+    Brushing { name: "one way", coat: [0.25, 0.06, 0.0], base: [0.45, 0.12, 0.0] },
     Brushing { name: "crossed", coat: [0.25, 0.06, 90.0], base: [0.45, 0.12, 0.0] },
 ];
 
@@ -71,7 +70,7 @@ fn simulation(studio: &Studio) -> Outcome<Made> {
             made.measure(format!("{}, {model} against simulation: RMSE less the noise", brushing.name), own);
             pictures.push(shown(model, &image));
             let (apart, gain) = difference(&image, &reference.image, TONE);
-            pictures.push((format!("difference x{gain}"), apart));
+            pictures.push((format!("diff. x{gain}"), apart));
         }
     }
     made.shown("yamaguchi-4", pictures, 5);
