@@ -57,6 +57,9 @@ pub(crate) enum Verb {
     /// Open a window: turn, light and edit materials, and see them change with their files
     #[cfg(feature = "view")]
     View(ViewOptions),
+    /// Make the figures of the papers anew
+    #[cfg(feature = "gpu")]
+    Figures(FiguresOptions),
     /// Print the shader of some materials, or write it to a file
     Shader(ShaderOptions),
     /// List the reflectance models
@@ -175,7 +178,11 @@ pub(crate) struct ParityOptions {
 }
 
 #[cfg(feature = "gpu")]
+mod figures;
+#[cfg(feature = "gpu")]
 mod render;
+#[cfg(feature = "gpu")]
+pub(crate) use figures::FiguresOptions;
 #[cfg(feature = "gpu")]
 pub(crate) use render::{CompareOptions, GalleryOptions, Look, PreviewOptions, ShaderChoice, ShapeName};
 

@@ -47,6 +47,8 @@ fn main() -> ExitCode {
         Verb::Compare(options) => verb::compare::run(options),
         #[cfg(feature = "view")]
         Verb::View(options) => verb::view::run(options),
+        #[cfg(feature = "gpu")]
+        Verb::Figures(options) => verb::figures::run(options),
         Verb::Shader(options) => verb::shader::run(options),
         Verb::Models(options) => verb::models::run(options),
         Verb::Eval(options) => verb::eval::run(options),

@@ -52,6 +52,10 @@ pub struct RenderSettings {
     /// 0 reads maps that were blurred beforehand. Above, up to 4096: the environment goes through `luthier_eval` for that
     /// many directions per lobe of the material and sample of the pixel, which is slow and noisy and has no other error.
     pub environment_samples: u32,
+    /// Slopes, along the tangent and the bitangent, of the inner boundary of films against the outer one, on top of those
+    /// that follow from a varying thickness (Granier and Heidrich 2003, section 7.2). Models without a second boundary, and
+    /// sets of materials in which nothing varies, know nothing of it.
+    pub film_tilt: [f32; 2],
     /// Behind the shape.
     pub backdrop: Backdrop,
     /// Factor on the whole picture. At 1 and with the default lights, the brightest part of a white Lambertian ball is
@@ -74,6 +78,7 @@ impl RenderSettings {
             light_angular_radius: 0.05,
             environment: Arc::new(Environment::sky(&Sky::default())?),
             environment_samples: 0,
+            film_tilt: [0.0; 2],
             backdrop: Backdrop::Plain([0.13, 0.13, 0.133]),
             exposure: 1.0,
         })
@@ -263,7 +268,7 @@ impl Scene {
             [r, g, b, settings.size],
             [settings.samples, 0, settings.shape.number(), settings.environment_samples],
             [settings.lights.len() as u32, self.manifest.materials.len() as u32, 0, lights],
-            [headers, maps, 0, 0],
+            [headers, maps, settings.film_tilt[0].to_bits(), settings.film_tilt[1].to_bits()],
         ];
         header.to_vec()
     }
@@ -330,6 +335,9 @@ impl RenderSettings {
         }
         if self.environment_samples > 4096 {
             return Err(setting("environment_samples", self.environment_samples.to_string(), "0 to 4096"));
+        }
+        if !self.film_tilt.iter().all(|slope| slope.is_finite()) {
+            return Err(setting("film_tilt", format!("{:?}", self.film_tilt), "finite slopes"));
         }
         if self.lights.len() > 64 {
             return Err(setting("lights", self.lights.len().to_string(), "at most 64"));

@@ -189,6 +189,7 @@ impl Worker {
             environment_samples: stage.environment_samples,
             backdrop: if view.look.background { Backdrop::Environment } else { Backdrop::Plain(view.backdrop) },
             exposure: libm::exp2f(view.look.exposure_stops),
+            film_tilt: [0.0; 2],
         }
     }
 

@@ -6,6 +6,8 @@ pub(crate) mod check;
 pub(crate) mod compare;
 pub(crate) mod eval;
 #[cfg(feature = "gpu")]
+pub(crate) mod figures;
+#[cfg(feature = "gpu")]
 pub(crate) mod gallery;
 pub(crate) mod ior;
 pub(crate) mod models;

@@ -9,6 +9,8 @@ mod crate_graph;
 mod eval;
 mod eval_furnace;
 mod eval_inputs;
+#[cfg(feature = "gpu")]
+mod figures;
 mod fluorescence;
 #[cfg(feature = "gpu")]
 mod gallery;
