@@ -93,7 +93,7 @@ mod tests {
             let mut orbit = Orbit::of(Shape::Torus);
             orbit.drag(0.3, down);
             let [x, y, z] = orbit.camera(Shape::Torus, 1.0).eye;
-            assert!(x.hypot(z) > 0.1 && f64::from(y) * down > 0.0, "{x} {y} {z}");
+            assert!(libm::hypotf(x, z) > 0.1 && f64::from(y) * down > 0.0, "{x} {y} {z}");
         }
     }
 
