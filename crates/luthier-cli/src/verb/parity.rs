@@ -169,7 +169,7 @@ impl Compiled {
 }
 
 /// What the manifest says of a table that is in memory.
-fn table(atlas: &Atlas) -> TableEntry {
+pub(crate) fn table(atlas: &Atlas) -> TableEntry {
     let [width, height] = atlas.layout.size();
     TableEntry {
         kind: atlas.kind,
