@@ -43,7 +43,7 @@ pub(super) fn write(out: &mut String, report: &Report) {
     out.push_str(
         "<p><b>Tables</b> are scanned from the shipped texels: Fresnel rows at eight points a cell and 256 grazing \
          cosines against every interface that reads them, distributions at one point in every cell, phase rows at \
-         eight points a cell against the closed form, shares that escape total reflection at four points in every cell, albedos at some dozen points against an estimate of their own. \
+         eight points a cell against the closed form, shares that escape total reflection on a grid over the same domain as albedos, albedos at some dozen points against an estimate of their own. \
          Formats that a sampler filters are read with 8-bit weights; others exactly, as shaders fetch them. Values and \
          weights are otherwise f64.</p><p><b>Exceptions.</b> For a pair that misses the target, the f64 model is \
          evaluated again with exact terms but for one, which is read from the tables: the Fresnel term, the \

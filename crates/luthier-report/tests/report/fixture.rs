@@ -1,5 +1,7 @@
 //! A small bake made here, from the exact terms and the layout rules, and devices with planted errors.
 
+use std::sync::OnceLock;
+
 use glam::DVec3;
 use luthier_layers::elek::{self, Below, Terms};
 use luthier_layers::monochrome::Monochrome;
@@ -108,28 +110,25 @@ impl Bake {
         let mut bake = Self::new();
         let alpha_axis = axis("alpha", 0.0, 1.0, 6, Mapping::Power { exponent: 3.0 });
         let x = axis("cos_theta", 0.0, 1.0, 16, Mapping::Power { exponent: 2.0 });
-        let mut tiles: Vec<Vec<[f64; 3]>> = Vec::new();
-        for (material, stack) in bake.manifest.materials.iter_mut().zip(&bake.stacks) {
+        // The same for every model, and some seconds of work.
+        static TILES: OnceLock<Vec<Vec<[f64; 3]>>> = OnceLock::new();
+        let tiles = TILES.get_or_init(|| {
+            let mut tiles = Vec::new();
+            for stack in &bake.stacks {
+                for l in (0..stack.layers.len()).filter(|&l| !matches!(stack.layers[l].base, Base::Diffuse(_))) {
+                    let alphas = (0..alpha_axis.size).map(|j| alpha_axis.node(j));
+                    tiles.push(alphas.flat_map(|alpha| albedos(stack, l, alpha, &x)).collect());
+                }
+            }
+            tiles
+        });
+        let mut tile = 0..;
+        for material in &mut bake.manifest.materials {
             material.model = model;
-            for (l, record) in material.layers.iter_mut().enumerate().filter(|(_, r)| r.kind != LayerKind::Diffuse) {
-                record.fgd_tile = Some(tiles.len() as u32);
+            for record in material.layers.iter_mut().filter(|r| r.kind != LayerKind::Diffuse) {
+                record.fgd_tile = tile.next();
                 let is_above_metal = record.kind == LayerKind::Dielectric && material.name == "lacquered-copper";
                 record.escape_tile = is_above_metal.then_some(0);
-                let rows = (0..alpha_axis.size).map(|j| {
-                    let alpha = alpha_axis.node(j);
-                    let mut stack = stack.clone();
-                    stack.layers[l].surface = Surface::isotropic(stack.layers[l].surface.distribution, alpha);
-                    let mut facets = FacetCache::default();
-                    let energies = [0, 1, 2].map(|c: usize| {
-                        ExactEnergy::with_facets(&Monochrome::new(&stack, WAVELENGTHS_NM[c], c), &mut facets)
-                    });
-                    (energies, alpha)
-                });
-                let texels = rows.flat_map(|(energies, alpha)| {
-                    let x = &x;
-                    (0..x.size).map(move |i| energies.each_ref().map(|energy| energy.fgd(l, x.node(i), alpha)[0]))
-                });
-                tiles.push(texels.collect());
             }
             material.color = ColorMode::ThreeWavelengths;
             material.constants.internal_reflectance = [0.6; 3];
@@ -175,6 +174,17 @@ impl Bake {
     pub(crate) fn device<S: Fn(Form, u32, usize, [f32; 3]) -> [f32; 3]>(&self, spoil: S) -> FakeDevice<'_, S> {
         FakeDevice { subject: self.subject(), spoil, baked_reads_tables: true }
     }
+}
+
+/// Albedos of an interface of a stack at three wavelengths, of another slope parameter, at the nodes over the cosine.
+fn albedos(stack: &Stack, layer: usize, alpha: f64, cosines: &Axis) -> Vec<[f64; 3]> {
+    let mut stack = stack.clone();
+    stack.layers[layer].surface = Surface::isotropic(stack.layers[layer].surface.distribution, alpha);
+    let mut facets = FacetCache::default();
+    let energies =
+        [0, 1, 2].map(|c: usize| ExactEnergy::with_facets(&Monochrome::new(&stack, WAVELENGTHS_NM[c], c), &mut facets));
+    let at = |i| energies.each_ref().map(|energy| energy.fgd(layer, cosines.node(i), alpha)[0]);
+    (0..cosines.size).map(at).collect()
 }
 
 /// Texels of an atlas of one column: RGB of tile, column and row.
