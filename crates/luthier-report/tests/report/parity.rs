@@ -68,10 +68,13 @@ fn errors_of_tables_and_of_arithmetic_are_told_apart() {
     }
 }
 
+/// Puts something wrong into a bake.
+type Spoil = fn(&mut Bake);
+
 /// A spoilt texel of a table, or a wrong constant, is named as the cause.
 #[test]
 fn what_statistical_models_read_wrong_is_named() {
-    let spoil: [(Factor, fn(&mut Bake)); 3] = [
+    let spoil: [(Factor, Spoil); 3] = [
         (Factor::Fgd, |bake| bake.texels(TableKind::Fgd).iter_mut().for_each(|v| *v *= 0.8)),
         (Factor::Escape, |bake| bake.texels(TableKind::Escape).iter_mut().for_each(|v| *v *= 0.5)),
         (Factor::Veil, |bake| bake.manifest.materials[0].constants.internal_reflectance = [0.9; 3]),
