@@ -132,7 +132,8 @@ fn layout(kind: TableKind, tiles: &Tiles, settings: &Settings) -> AtlasLayout {
     let (x, y) = axes(kind, settings);
     let apron = u32::from(kind == TableKind::Thickness);
     let count = tiles.tiles.len() as u32;
-    let mut layout = AtlasLayout { x: x.clone(), y: y.cloned(), apron, columns: 1, tiles: count };
+    let mut layout =
+        AtlasLayout { x: x.clone(), y: y.cloned(), apron, columns: 1, tiles: count, base: luthier_lut::RowBase::Zero };
     let [width, height] = layout.tile_size();
     let rows = (MAX_SIDE / height).max(1);
     layout.columns = count.div_ceil(rows).min((MAX_SIDE / width).max(1));

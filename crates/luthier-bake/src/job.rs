@@ -171,6 +171,7 @@ pub(crate) fn lone_tile(kind: TableKind, axes: &[&Axis], format: TexelFormat, tr
         apron: u32::from(periodic),
         columns: 1,
         tiles: 1,
+        base: luthier_lut::RowBase::Zero,
     };
     let tiles: Vec<Tile> = Vec::new();
     Atlas { kind, layout, format, tiles, texels: balance::texels(kind, format, truth), truth: truth.clone() }
