@@ -11,7 +11,8 @@ use serde_json::{Value, json};
 
 use crate::facet_grid::{CrossedJob, DOMAIN_ALPHA, DOMAIN_COS_THETA, FacetGrid, FacetGridJob};
 use crate::graph::Inputs;
-use crate::job::{Job, TileData, color_in_words, lone_tile};
+use crate::grid::resampled;
+use crate::job::{Job, Probes, TileData, color_in_words, lone_tile};
 use crate::json;
 use crate::smooth::savitzky_golay;
 
@@ -37,7 +38,9 @@ pub(crate) struct FgdJob {
     pub(crate) transparent: bool,
     pub(crate) distribution: Distribution,
     pub(crate) color: Color,
-    /// cos_theta and alpha.
+    /// cos_theta and alpha where it is computed.
+    pub(crate) grid: [Axis; 2],
+    /// cos_theta and alpha of the tile; other nodes than those of the grid are interpolated.
     pub(crate) axes: [Axis; 2],
     pub(crate) format: TexelFormat,
 }
@@ -49,6 +52,7 @@ impl FgdJob {
             "transparent": self.transparent,
             "distribution": self.distribution.name(),
             "color": json::color(&self.color),
+            "grid": self.grid.iter().map(json::axis).collect::<Vec<_>>(),
             "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
             "format": self.format.name(),
         })
@@ -66,7 +70,7 @@ impl FgdJob {
                 let at = self.interface.at(node.wavelength_nm);
                 at.below.re < at.above.re
             });
-        Job::FacetGrid(FacetGridJob { distribution: self.distribution, kinked, axes: self.axes.clone() })
+        Job::FacetGrid(FacetGridJob { distribution: self.distribution, kinked, axes: self.grid.clone() })
     }
 
     fn crossed(&self) -> Option<Job> {
@@ -75,13 +79,13 @@ impl FgdJob {
                 interface: self.interface.clone(),
                 color: self.color,
                 distribution: self.distribution,
-                axes: self.axes.clone(),
+                axes: self.grid.clone(),
             })
         })
     }
 
     pub(crate) fn run(&self, inputs: &Inputs<'_>) -> TileData {
-        let [x, y] = &self.axes;
+        let [x, y] = &self.grid;
         let grid = inputs.facet_grid(&self.facet_grid());
         let crossed = self.crossed().map(|job| inputs.crossed(&job));
         let curves = Curves::new(&self.interface, &self.color);
@@ -101,14 +105,22 @@ impl FgdJob {
             truth.texel_mut(column, row).copy_from_slice(&[r, g, b, luminance(never_crossed) as f32]);
         }
 
-        let atlas = lone_tile(TableKind::Fgd, &[x, y], self.format, &truth);
-        let probes: Vec<[f64; 4]> = grid
-            .probes
-            .par_iter()
-            .map(|statistics| {
-                let b = curves.bounces(statistics);
-                let [r, g, b] = [0, 1, 2].map(|c: usize| b.first[c] + statistics.remaining() * b.later_share[c]);
-                [r, g, b, luminance([r, g, b])]
+        if self.axes != self.grid {
+            truth = resampled(&truth, &self.grid, &self.axes);
+        }
+        let atlas = lone_tile(TableKind::Fgd, &[&self.axes[0], &self.axes[1]], self.format, &truth);
+        let at_probe = |u: [f64; 2]| [x.decode(u[0]), y.decode(u[1])];
+        let [columns, rows] = grid.scan.points;
+        let points: Vec<([f64; 2], [f64; 4])> = (0..columns * rows)
+            .into_par_iter()
+            .map(|point| {
+                let u = grid.scan.coordinate([point % columns, point / columns]);
+                let statistics = &grid.probes[point as usize];
+                let (b, back) = (curves.bounces(statistics), crossed_at(u));
+                let never_crossed: Rgb =
+                    [0, 1, 2].map(|c: usize| b.first[c] + statistics.remaining() * b.later_share[c]);
+                let [r, g, b] = [0, 1, 2].map(|c: usize| never_crossed[c] + back[c]);
+                (at_probe(u), [r, g, b, luminance(never_crossed)])
             })
             .collect();
         let probe_at = |u: [f64; 2]| {
@@ -116,27 +128,23 @@ impl FgdJob {
                 let t = (u[k] - grid.scan.from[k]) / (grid.scan.to[k] - grid.scan.from[k]);
                 (t * f64::from(grid.scan.points[k])) as usize
             });
-            probes[j * grid.scan.points[0] as usize + i]
+            points[j * columns as usize + i].1
         };
         let mut error = measure_scan(
             &grid.scan,
-            |u| {
-                let [r, g, b, a] = probe_at(u);
-                let back = crossed_at(u);
-                let sampled = atlas.sample(0, [x.decode(u[0]), y.decode(u[1])], WeightBits::Fixed(8));
-                Comparison { expected: [r + back[0], g + back[1], b + back[2], a], sampled }
-            },
-            |u| vec![x.decode(u[0]), y.decode(u[1])],
+            |u| Comparison { expected: probe_at(u), sampled: atlas.sample(0, at_probe(u), WeightBits::Fixed(8)) },
+            |u| at_probe(u).to_vec(),
         );
         // The crossed part and the wavelengths left out have errors of their own; the worst of all may meet.
-        error.max_abs_err += crossed.map_or(0.0, |c| c.max_abs_err) + curves.spectrum_error(grid);
+        let slack = crossed.map_or(0.0, |c| c.max_abs_err) + curves.spectrum_error(grid);
+        error.max_abs_err += slack;
         let model = format!(
             "directional albedo with all bounces, height-correlated Smith, {}; {}; errors for cos_theta >= {DOMAIN_COS_THETA}, \
              alpha >= {DOMAIN_ALPHA}",
             self.distribution.name(),
             color_in_words(&self.color)
         );
-        TileData { model, truth, texels: atlas.texels, error }
+        TileData { model, truth, texels: atlas.texels, error, probes: Probes { points, slack } }
     }
 }
 

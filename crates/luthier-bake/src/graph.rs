@@ -52,12 +52,31 @@ impl Graph {
         key
     }
 
-    /// Runs everything on the rayon pool. Kinds run in their order, which puts dependencies first; jobs of one kind run side
-    /// by side.
-    pub(crate) fn run(self, observer: &dyn Observer) -> Results {
+    /// The same jobs of some kinds only, with all that they need.
+    pub(crate) fn only(&self, kinds: &[JobKind]) -> Self {
+        let mut some = Self::default();
+        for job in kinds.iter().flat_map(|&kind| self.of_kind(kind)) {
+            some.add(job.clone());
+        }
+        some
+    }
+
+    /// The jobs of a kind, in the order of their keys.
+    pub(crate) fn of_kind(&self, kind: JobKind) -> impl Iterator<Item = &Job> {
+        self.jobs.get(&kind).into_iter().flat_map(BTreeMap::values)
+    }
+
+    /// Runs everything that has no result yet on the rayon pool. Kinds run in their order, which puts dependencies first; jobs of one
+    /// kind run side by side.
+    pub(crate) fn run(mut self, observer: &dyn Observer, mut results: Results) -> Results {
+        for jobs in self.jobs.values_mut() {
+            jobs.retain(|key, _| !results.0.contains_key(key));
+        }
         observer.planned(self.jobs.values().map(BTreeMap::len).sum());
-        let mut results = Results::default();
         for (kind, jobs) in self.jobs {
+            if jobs.is_empty() {
+                continue;
+            }
             observer.batch(kind, true);
             let done: Vec<(Key, Artefact)> = jobs
                 .into_par_iter()
@@ -80,6 +99,16 @@ impl Results {
         match self.0.get(&key) {
             Some(Artefact::Tile(tile)) => tile,
             _ => unreachable!("every planned tile job has run"),
+        }
+    }
+}
+
+impl Results {
+    /// The tile of a job, if it has run.
+    pub(crate) fn find(&self, key: Key) -> Option<&TileData> {
+        match self.0.get(&key) {
+            Some(Artefact::Tile(tile)) => Some(tile),
+            _ => None,
         }
     }
 }

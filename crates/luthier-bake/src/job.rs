@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use luthier_lut::{Atlas, AtlasLayout, Axis, ErrorStats, Image, TableKind, TexelFormat, Tile};
+use luthier_lut::{Atlas, AtlasLayout, Axis, ErrorStats, Image, RowBase, TableKind, TexelFormat, Tile};
 use luthier_optics::color::Color;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -19,7 +19,7 @@ use crate::phase::PhaseJob;
 use crate::thickness::ThicknessJob;
 
 /// Changes whenever the same inputs give other bytes than before; part of every key.
-const REVISION: u32 = 3;
+const REVISION: u32 = 4;
 
 /// SHA-256 of a job's inputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -160,6 +160,17 @@ pub(crate) struct TileData {
     pub(crate) truth: Image,
     pub(crate) texels: Image,
     pub(crate) error: ErrorStats,
+    /// Values of the function at points off the nodes, where they are costly.
+    pub(crate) probes: Probes,
+}
+
+/// Points of a function that a search can compare other tables with.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Probes {
+    /// Axis values, and the function there.
+    pub(crate) points: Vec<([f64; 2], [f64; 4])>,
+    /// What the points themselves may be off, to be added to every error.
+    pub(crate) slack: f64,
 }
 
 /// A single tile as an atlas of its own, to be sampled and measured.
@@ -171,7 +182,7 @@ pub(crate) fn lone_tile(kind: TableKind, axes: &[&Axis], format: TexelFormat, tr
         apron: u32::from(periodic),
         columns: 1,
         tiles: 1,
-        base: luthier_lut::RowBase::Zero,
+        base: RowBase::Zero,
     };
     let tiles: Vec<Tile> = Vec::new();
     Atlas { kind, layout, format, tiles, texels: balance::texels(kind, format, truth), truth: truth.clone() }

@@ -124,7 +124,7 @@ impl<'a> TableTerms<'a> {
             weights,
         };
         for (layer, kind) in read_by(entry) {
-            let is_computed = kind == TableKind::Distribution && terms.distribution.is_none();
+            let is_computed = matches!(kind, TableKind::Distribution | TableKind::Phase) && terms.table(kind).is_none();
             if !is_computed && terms.tile(kind, layer).is_none() {
                 return Err(ReportError::MissingTile { material: entry.name.clone(), layer, kind });
             }
