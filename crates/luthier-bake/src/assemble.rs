@@ -181,12 +181,7 @@ fn plan(
         for (kind, &choice) in found.iter_mut().zip(&chosen) {
             let tiles = &plan.tiles[kind.kind as usize].tiles;
             let exact = tiles.iter().filter_map(|(_, key)| results.find(*key)).map(|t| t.error.max_abs_err);
-            let candidate = &mut kind.candidates[choice];
-            let exact = exact.fold(0.0, f64::max);
-            if exact > candidate.error.max_abs {
-                candidate.error.max_abs = exact;
-                is_confirmed = false;
-            }
+            is_confirmed &= kind.confirm(choice, exact.fold(0.0, f64::max));
         }
         if is_confirmed {
             break;

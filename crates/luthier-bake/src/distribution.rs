@@ -5,7 +5,7 @@ use luthier_optics::microfacet::scaled_distribution;
 use luthier_optics::stack::Distribution;
 use serde_json::{Value, json};
 
-use crate::job::{Probes, TileData, lone_tile};
+use crate::job::{TileData, lone_tile};
 use crate::json;
 
 /// Points of the error scan per texel interval, along each axis.
@@ -47,7 +47,7 @@ impl DistributionJob {
             |u| vec![angle.decode(u[0]), slope.decode(u[1])],
         );
         let model = format!("pi alpha^2 D, {}; errors are relative to the peak of D", self.distribution.name());
-        TileData { model, truth, texels: atlas.texels, error, probes: Probes::default() }
+        TileData { model, truth, texels: atlas.texels, error }
     }
 
     fn value(&self, angle: f64, alpha: f64) -> f64 {

@@ -5,7 +5,7 @@ use luthier_lut::{Axis, Comparison, Image, Scan, TableKind, TexelFormat, WeightB
 use serde_json::{Value, json};
 
 use crate::facet_grid::{DOMAIN_ALPHA, DOMAIN_COS_THETA};
-use crate::job::{Probes, TileData, lone_tile};
+use crate::job::{TileData, lone_tile};
 use crate::json;
 
 /// Points of the error scan along each axis.
@@ -59,7 +59,7 @@ impl EscapeJob {
              {DOMAIN_ALPHA}",
             self.eta
         );
-        TileData { model, truth, texels: atlas.texels, error, probes: Probes::default() }
+        TileData { model, truth, texels: atlas.texels, error }
     }
 
     /// The share of the lobe around the direction into which light at `cos_theta` outside is refracted.

@@ -8,11 +8,11 @@ use luthier_optics::stack::FilmThickness;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use crate::job::{Probes, TileData, color_in_words, lone_tile};
+use crate::job::{TileData, color_in_words, lone_tile};
 use crate::json;
 
-/// Points of the error scan per texel interval along each axis.
-const PER_CELL: u32 = 2;
+/// Points of the error scan along each axis; the search from the worst of them finds what lies between.
+const SCAN: u32 = 128;
 
 /// Steps of the sequence of points in the unit square.
 const R2: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
@@ -90,9 +90,9 @@ impl FilmJob {
         let [x, y] = &self.axes;
         let truth = self.truth();
         let atlas = lone_tile(TableKind::Film, &[x, y], self.format, &truth);
-        let whole = Scan::whole([x.intervals(), y.intervals()], [PER_CELL; 2]);
+        let from = [0.0, y.encode(self.least())];
         let error = measure_scan(
-            &Scan { from: [0.0, y.encode(self.least())], ..whole },
+            &Scan { points: [SCAN; 2], from, to: [1.0; 2], refinements: Scan::REFINEMENTS },
             |u| {
                 let values = [x.decode(u[0]), y.decode(u[1])];
                 let [r, g, b]: Rgb = at_fraction(&thickest, values[1]).rgb(values[0]);
@@ -110,7 +110,6 @@ impl FilmJob {
             truth,
             texels: atlas.texels,
             error,
-            probes: Probes::default(),
         }
     }
 }

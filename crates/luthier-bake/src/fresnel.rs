@@ -10,7 +10,7 @@ use luthier_optics::interface::Interface;
 use serde_json::{Value, json};
 
 use crate::balance;
-use crate::job::{Probes, TileData, color_in_words, lone_tile};
+use crate::job::{TileData, color_in_words, lone_tile};
 use crate::json;
 
 /// Points of the error scan per texel interval.
@@ -69,7 +69,6 @@ impl FresnelJob {
             truth,
             texels: atlas.texels,
             error,
-            probes: Probes::default(),
         }
     }
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use crate::facet_grid::{CrossedGrid, FacetGrid};
+use crate::fgd::FgdTruth;
 use crate::job::{Artefact, Job, JobKind, Key, TileData};
 
 /// Told what happens, from any thread. It cannot change what is computed.
@@ -104,6 +105,14 @@ impl Results {
 }
 
 impl Results {
+    /// The values of an FGD tile.
+    pub(crate) fn fgd_truth(&self, job: &Job) -> &FgdTruth {
+        match self.0.get(&job.key()) {
+            Some(Artefact::FgdTruth(truth)) => truth,
+            _ => unreachable!("values run before the tiles that hold them"),
+        }
+    }
+
     /// The tile of a job, if it has run.
     pub(crate) fn find(&self, key: Key) -> Option<&TileData> {
         match self.0.get(&key) {
@@ -119,6 +128,10 @@ impl<'a> Inputs<'a> {
             Some(Artefact::FacetGrid(grid)) => grid,
             _ => unreachable!("facet grids run before the tiles that need them"),
         }
+    }
+
+    pub(crate) fn fgd_truth(self, job: &Job) -> &'a FgdTruth {
+        self.0.fgd_truth(job)
     }
 
     pub(crate) fn crossed(self, job: &Job) -> &'a CrossedGrid {

@@ -6,7 +6,7 @@ use luthier_lut::{Axis, Comparison, Image, Scan, TableKind, TexelFormat, WeightB
 use luthier_optics::ior::Ior;
 use serde_json::{Value, json};
 
-use crate::job::{Probes, TileData, lone_tile};
+use crate::job::{TileData, lone_tile};
 use crate::json;
 
 /// Points of the error scan per texel interval.
@@ -56,7 +56,6 @@ impl PhaseJob {
             truth,
             texels: atlas.texels,
             error,
-            probes: Probes::default(),
         }
     }
 }

@@ -9,7 +9,7 @@ use luthier_optics::stack::{Base, Film, FilmThickness, Layer, Stack};
 use crate::BakeError;
 use crate::distribution::DistributionJob;
 use crate::escape::EscapeJob;
-use crate::fgd::FgdJob;
+use crate::fgd::{FgdJob, FgdTruthJob};
 use crate::film::FilmJob;
 use crate::fresnel::FresnelJob;
 use crate::graph::Graph;
@@ -177,7 +177,8 @@ impl Plan {
         let (axes, format) = self.settings.fgd.clone();
         let transparent = matches!(layer.base, Base::Dielectric { .. });
         let grid = self.settings.fgd_grid.clone();
-        let job = FgdJob { interface, transparent, distribution, color, grid, axes, format };
+        let truth = FgdTruthJob { interface, transparent, distribution, color, grid };
+        let job = FgdJob { truth, axes, format };
         record.fgd_tile = Some(self.add(TableKind::Fgd, Job::Fgd(job), name));
     }
 

@@ -36,10 +36,37 @@ pub(crate) struct Found {
     /// Cost of the fixed default.
     pub(crate) fixed_cost: f64,
     pub(crate) candidates: Vec<Candidate>,
+    /// Which of them the bake itself has measured.
+    pub(crate) confirmed: Vec<bool>,
 }
 
-/// The jobs whose results [`candidates`] reads.
-pub(crate) const READ: [JobKind; 3] = [JobKind::FacetGrid, JobKind::Crossed, JobKind::Fgd];
+/// Errors of film tiles are steep ridges along grazing angles, which points of a search miss by about the same factor in all candidates.
+const RIDGES: [TableKind; 1] = [TableKind::Film];
+
+impl Found {
+    pub(crate) fn new(kind: TableKind, fixed_cost: f64, candidates: Vec<Candidate>) -> Self {
+        let confirmed = vec![false; candidates.len()];
+        Self { kind, fixed_cost, candidates, confirmed }
+    }
+
+    /// Whether the bake's own measurement of a candidate is no worse than that of the search; the worse counts from now on.
+    pub(crate) fn confirm(&mut self, choice: usize, exact: f64) -> bool {
+        let found = self.candidates[choice].error.max_abs;
+        let is_new = !std::mem::replace(&mut self.confirmed[choice], true);
+        if exact <= found {
+            return true;
+        }
+        self.candidates[choice].error.max_abs = exact;
+        if RIDGES.contains(&self.kind) && is_new && found > 0.0 {
+            let others = self.candidates.iter_mut().zip(&self.confirmed).filter(|(_, confirmed)| !**confirmed);
+            others.for_each(|(candidate, _)| candidate.error.max_abs *= exact / found);
+        }
+        false
+    }
+}
+
+/// Kinds of the jobs whose results [`candidates`] reads.
+pub(crate) const READ: [JobKind; 1] = [JobKind::FgdTruth];
 
 /// Measures the candidates of the kinds that a plan has; without a budget only what shaders read for every interface and needs no
 /// costly truth. `results` has those of [`READ`] if there is a budget.

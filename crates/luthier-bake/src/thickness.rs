@@ -3,7 +3,7 @@
 use luthier_lut::{Axis, Comparison, Image, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
 use serde_json::{Value, json};
 
-use crate::job::{Probes, TileData, lone_tile};
+use crate::job::{TileData, lone_tile};
 use crate::json;
 use crate::relief::{Field, Relief};
 
@@ -57,7 +57,6 @@ impl ThicknessJob {
             truth,
             texels: atlas.texels,
             error,
-            probes: Probes::default(),
         }
     }
 }

@@ -193,7 +193,7 @@ mod tests {
 
     fn kind(candidates: &[(u64, f64, f64)]) -> Found {
         let candidates = candidates.iter().map(|&(b, c, e)| candidate(b, c, e)).collect();
-        Found { kind: TableKind::Fresnel, fixed_cost: 0.0, candidates }
+        Found::new(TableKind::Fresnel, 0.0, candidates)
     }
 
     #[test]

@@ -54,11 +54,7 @@ pub(super) fn candidates(plan: &Plan) -> Option<Found> {
         let error = MeasuredError { max_abs: error, max_rel: error, delta_e: None };
         Candidate { bytes: form.bytes(jobs.len() as u32), cost: price, error, form }
     }));
-    Some(Found {
-        kind: TableKind::Distribution,
-        fixed_cost: price(&axes(8.0, 512), TexelFormat::Rg16Float),
-        candidates,
-    })
+    Some(Found::new(TableKind::Distribution, price(&axes(8.0, 512), TexelFormat::Rg16Float), candidates))
 }
 
 fn axes(exponent: f64, side: u32) -> [Axis; 2] {

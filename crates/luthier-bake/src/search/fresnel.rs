@@ -146,5 +146,5 @@ pub(super) fn candidates(plan: &Plan, colors: bool) -> Option<Found> {
         format: TexelFormat::Rgba16Float,
         base: RowBase::Zero,
     };
-    Some(Found { kind: TableKind::Fresnel, fixed_cost: price(&fixed), candidates: measured.concat() })
+    Some(Found::new(TableKind::Fresnel, price(&fixed), measured.concat()))
 }

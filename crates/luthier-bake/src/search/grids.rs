@@ -4,10 +4,11 @@ use luthier_lut::{Axis, Candidate, CandidateForm, Image, Mapping, RowBase, Table
 use rayon::prelude::*;
 
 use super::{Found, WEIGHTS, cost, measured};
+use crate::fgd::FgdTruth;
 use crate::film::FilmJob;
 use crate::graph::Results;
 use crate::grid::resampled;
-use crate::job::{Job, JobKind, Probes, lone_tile};
+use crate::job::{Job, JobKind, lone_tile};
 use crate::plan::Plan;
 use crate::settings::axis;
 
@@ -29,7 +30,10 @@ const FILM_PROBES: u32 = 4096;
 struct Fine {
     grid: [Axis; 2],
     image: Image,
-    probes: Probes,
+    /// Axis values, and the function there.
+    probes: Vec<([f64; 2], [f64; 4])>,
+    /// What the function may be off itself.
+    slack: f64,
 }
 
 pub(super) fn fgd(plan: &Plan, results: &Results, colors: bool) -> Option<Found> {
@@ -37,10 +41,10 @@ pub(super) fn fgd(plan: &Plan, results: &Results, colors: bool) -> Option<Found>
     let ([x, y], format) = &plan.settings.fgd;
     let tiles: Vec<Fine> = plan
         .graph
-        .of_kind(JobKind::Fgd)
+        .of_kind(JobKind::FgdTruth)
         .map(|job| {
-            let tile = results.tile(job.key());
-            Fine { grid: [x.clone(), y.clone()], image: tile.truth.clone(), probes: tile.probes.clone() }
+            let FgdTruth { image, probes, slack, .. } = results.fgd_truth(job).clone();
+            Fine { grid: [x.clone(), y.clone()], image, probes, slack }
         })
         .collect();
     if tiles.is_empty() || asked.fgd_size && asked.fgd_format {
@@ -65,11 +69,8 @@ pub(super) fn fgd(plan: &Plan, results: &Results, colors: bool) -> Option<Found>
         }
     }
     let fixed_cost = price(&[x.clone(), y.clone()], TexelFormat::Rgba16Float);
-    Some(Found {
-        kind: TableKind::Fgd,
-        fixed_cost,
-        candidates: candidates(TableKind::Fgd, &tiles, axes, &formats, 4, colors),
-    })
+    let candidates = candidates(TableKind::Fgd, &tiles, axes, &formats, 4, colors);
+    Some(Found::new(TableKind::Fgd, fixed_cost, candidates))
 }
 
 pub(super) fn film(plan: &Plan, colors: bool) -> Option<Found> {
@@ -87,7 +88,8 @@ pub(super) fn film(plan: &Plan, colors: bool) -> Option<Found> {
         .map(|job| Fine {
             image: FilmJob { axes: grid.clone(), ..job.clone() }.truth(),
             grid: grid.clone(),
-            probes: Probes { points: job.probes(FILM_PROBES), slack: 0.0 },
+            probes: job.probes(FILM_PROBES),
+            slack: 0.0,
         })
         .collect();
     if tiles.is_empty() {
@@ -104,7 +106,7 @@ pub(super) fn film(plan: &Plan, colors: bool) -> Option<Found> {
     }
     let fixed_cost = price(&finest(2.0), TexelFormat::Rgba16Float);
     let candidates = candidates(TableKind::Film, &tiles, axes, &FILM_FORMATS, 3, colors);
-    Some(Found { kind: TableKind::Film, fixed_cost, candidates })
+    Some(Found::new(TableKind::Film, fixed_cost, candidates))
 }
 
 fn candidates(
@@ -125,8 +127,8 @@ fn candidates(
             let with = |&format| {
                 let errors = tiles.iter().zip(&images).map(|(tile, image)| {
                     let atlas = lone_tile(kind, &[&axes[0], &axes[1]], format, image);
-                    let points = tile.probes.points.iter().map(|(at, value)| (at, *value));
-                    measured(points, channels, colors, tile.probes.slack, |at| atlas.sample(0, at, WEIGHTS))
+                    let points = tile.probes.iter().map(|(at, value)| (at, *value));
+                    measured(points, channels, colors, tile.slack, |at| atlas.sample(0, at, WEIGHTS))
                 });
                 let error = errors.reduce(|a, b| a.max(&b)).unwrap_or_default();
                 let [x, y] = axes.clone();

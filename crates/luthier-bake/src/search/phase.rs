@@ -45,5 +45,5 @@ pub(super) fn candidates(plan: &Plan) -> Option<Found> {
         let error = MeasuredError { max_abs: error, max_rel: 0.5 * error, delta_e: None };
         Candidate { bytes: form.bytes(jobs.len() as u32), cost: price(format), error, form }
     }));
-    Some(Found { kind: TableKind::Phase, fixed_cost: price(TexelFormat::Rgba16Float), candidates })
+    Some(Found::new(TableKind::Phase, price(TexelFormat::Rgba16Float), candidates))
 }
