@@ -14,7 +14,7 @@ use crate::job::{TileData, color_in_words, lone_tile};
 use crate::json;
 
 /// Points of the error scan per texel interval.
-const PER_CELL: u32 = 4;
+const PER_CELL: u32 = 16;
 
 /// Cosines at which the coefficient of the dip is fitted: squares of equal steps.
 const FIT_POINTS: u32 = 64;

@@ -42,4 +42,4 @@ pub use graph::{Observer, Silent};
 pub use job::{JobKind, Key};
 pub use maps::{MapSource, MaterialMap};
 pub use plan::ImageReader;
-pub use search::DEFAULT_BUDGET;
+pub use search::{DEFAULT_BUDGET, goals};

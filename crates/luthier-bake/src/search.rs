@@ -10,6 +10,7 @@ mod choice;
 mod delta_e;
 mod distribution;
 mod fresnel;
+pub mod goals;
 mod grids;
 mod phase;
 

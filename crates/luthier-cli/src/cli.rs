@@ -38,6 +38,8 @@ pub(crate) struct Cli {
 pub(crate) enum Verb {
     /// Bake materials: textures, manifest and shaders
     Bake(BakeOptions),
+    /// Measure what searches for tables reach against fixed ones: a page in Markdown
+    Budgets(BudgetsOptions),
     /// Validate material files and print the class of each surface
     Check(CheckOptions),
     /// Judge a bake: tables and shaders against the full evaluation in f64
@@ -107,6 +109,16 @@ pub(crate) struct BakeOptions {
     /// Print errors only
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  luthier budgets materials -o docs/budgets.md")]
+pub(crate) struct BudgetsOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// File to write instead of standard output
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
 }
 
 /// Limits on tables, each in place of those in the files' [budget]: the cheapest tables that hold them are taken (docs/budgets.md).

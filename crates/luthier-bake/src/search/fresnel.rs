@@ -20,7 +20,7 @@ const SIZES: [u32; 33] = [
 const EXPONENTS: [f64; 7] = [1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0];
 
 /// Texel formats of plain rows and of rows over Schlick's form.
-const FORMATS: [(RowBase, TexelFormat); 7] = [
+pub(super) const FORMATS: [(RowBase, TexelFormat); 7] = [
     (RowBase::Zero, TexelFormat::Rgba8Unorm),
     (RowBase::Zero, TexelFormat::Rgb10a2Unorm),
     (RowBase::Zero, TexelFormat::Rg11b10Ufloat),

@@ -1,6 +1,6 @@
 //! Tables of two axes whose values are costly: one fine grid of each tile is computed, and coarser ones are interpolated from it.
 
-use luthier_lut::{Axis, Candidate, CandidateForm, Image, Mapping, RowBase, TableKind, TexelFormat};
+use luthier_lut::{Axis, Candidate, CandidateForm, Image, Mapping, MeasuredError, RowBase, TableKind, TexelFormat};
 use rayon::prelude::*;
 
 use super::{Found, WEIGHTS, cost, measured};
@@ -139,6 +139,13 @@ fn candidates(
         })
         .collect();
     measured.concat()
+}
+
+/// The error of a tile on the grid where it is computed, without what the function may be off itself.
+pub(super) fn sampled_error(truth: &FgdTruth, grid: &[Axis; 2], format: TexelFormat) -> MeasuredError {
+    let atlas = lone_tile(TableKind::Fgd, &[&grid[0], &grid[1]], format, &truth.image);
+    let points = truth.probes.iter().map(|(at, value)| (at, *value));
+    measured(points, 4, false, 0.0, |at| atlas.sample(0, at, WEIGHTS))
 }
 
 fn price(axes: &[Axis; 2], format: TexelFormat) -> f64 {
