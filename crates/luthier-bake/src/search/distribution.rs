@@ -12,7 +12,7 @@ use crate::job::{Job, JobKind};
 use crate::plan::Plan;
 use crate::settings::axis;
 
-const SIDES: [u32; 4] = [32, 64, 128, 256];
+const SIDES: [u32; 3] = [32, 64, 128];
 const EXPONENTS: [f64; 2] = [4.0, 8.0];
 const FORMATS: [TexelFormat; 2] = [TexelFormat::R16Float, TexelFormat::Rg16Float];
 

@@ -41,7 +41,7 @@ the nearest is taken if none holds. `--no-search` takes the fixed defaults: 128 
 | kind | searched |
 |---|---|
 | fresnel | 2 to 512 nodes; cosine, and u^p with p 1.25 to 4; rgba8unorm, rgb10a2unorm, rg11b10ufloat, rgba16float, rgba32float; plain, or over Schlick's form |
-| distribution | closed form; u^4 and u^8, log alpha, 32 to 256 a side, r16float, split roots |
+| distribution | closed form; u^4 and u^8, log alpha, 32 to 128 a side, r16float, split roots |
 | fgd | 8 to 64 nodes along each axis, four pairs of exponents, rgba8unorm, rgba16float, rgba32float |
 | film | 16 to 96 by 32 to 384 nodes, u^2 to u^4, four formats |
 | phase | closed form; 16 to 512 nodes, rgba16float, rgba32float |
