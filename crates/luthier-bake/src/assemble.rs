@@ -9,7 +9,7 @@ use luthier_material::{BudgetSettings, Material};
 use crate::constants::constants;
 use crate::fresnel::RowShape;
 use crate::graph::{Observer, Results, Silent};
-use crate::job::JobKind;
+use crate::job::{JobKind, Key};
 use crate::maps::{MaterialMap, maps};
 use crate::plan::{ImageReader, Plan, PlannedLayers, Tiles, color_mode, shading_model};
 use crate::search;
@@ -47,6 +47,8 @@ pub struct BakedMaterial {
 pub struct Outline {
     /// Kind, layout and texel format of each table, in binding order.
     pub tables: Vec<(TableKind, AtlasLayout, TexelFormat)>,
+    /// The job of each tile, table by table: where these and `tables` are the same, so are the texels.
+    pub keys: Vec<Vec<Key>>,
     /// Each material, in the order given.
     pub materials: Vec<BakedMaterial>,
 }
@@ -81,7 +83,8 @@ pub fn outline(materials: &[Material], read_image: ImageReader<'_>) -> Result<Ou
     let tables = used(&tiles)
         .filter_map(|(kind, tiles)| Some((kind, layout(kind, tiles, &settings)?, shape(kind, &settings)?.format)))
         .collect();
-    Ok(Outline { tables, materials: baked_materials(materials, records) })
+    let keys = used(&tiles).map(|(_, tiles)| tiles.tiles.iter().map(|(_, key)| *key).collect()).collect();
+    Ok(Outline { tables, keys, materials: baked_materials(materials, records) })
 }
 
 /// Bakes all tables of a set of materials. `read_image` fetches thickness maps.

@@ -12,6 +12,9 @@ use crate::{Camera, GpuError, Light, Scene, Shape, Sky};
 /// Evaluations per submission: about a second on a software adapter.
 const EVALUATIONS_PER_PASS: u32 = 1 << 21;
 
+/// The same where someone waits for the pass to end.
+const EVALUATIONS_PER_SHORT_PASS: u32 = 1 << 18;
+
 /// Side of a workgroup, pixels.
 const WORKGROUP: u32 = 8;
 
@@ -95,6 +98,31 @@ impl Scene {
     /// [`GpuError::Prefiltered`] for another form than `baked` without samples, [`GpuError::Setting`],
     /// [`GpuError::NoMaterial`], and whatever the device reports.
     pub fn render(&self, materials: &[u32], settings: &RenderSettings) -> Result<Image, GpuError> {
+        let image = self.render_passes(materials, settings, &|| false, EVALUATIONS_PER_PASS)?;
+        Ok(image.expect("nobody stops it"))
+    }
+
+    /// The same for someone who may change their mind: `stop` is asked before every pass, of which each takes a fraction of a
+    /// second on a software adapter. `None` when it said so.
+    ///
+    /// # Errors
+    /// As [`Scene::render`].
+    pub fn render_unless(
+        &self,
+        materials: &[u32],
+        settings: &RenderSettings,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<Image>, GpuError> {
+        self.render_passes(materials, settings, stop, EVALUATIONS_PER_SHORT_PASS)
+    }
+
+    fn render_passes(
+        &self,
+        materials: &[u32],
+        settings: &RenderSettings,
+        stop: &dyn Fn() -> bool,
+        evaluations: u32,
+    ) -> Result<Option<Image>, GpuError> {
         settings.check(materials)?;
         for &material in materials {
             self.layers(material)?;
@@ -109,9 +137,12 @@ impl Scene {
         let size = settings.size;
         let lobes = 1 + self.manifest.materials.iter().map(|m| m.layers.len()).max().unwrap_or(0) as u32;
         let per_pixel = settings.samples * settings.samples * (1 + settings.environment_samples * lobes);
-        let rows = (EVALUATIONS_PER_PASS / (size * per_pixel).max(1)).clamp(1, size);
+        let rows = (evaluations / size.saturating_mul(per_pixel).max(1)).clamp(1, size);
         let mut data = Vec::with_capacity((size * size * 3) as usize);
         for row in (0..size).step_by(rows as usize) {
+            if stop() {
+                return Ok(None);
+            }
             let rows = rows.min(size - row);
             inputs[5][1] = row;
             let pixels = self.context.run(&Pass {
@@ -124,7 +155,7 @@ impl Scene {
             })?;
             data.extend(pixels.iter().flat_map(|pixel| &pixel[..3]));
         }
-        Ok(Image { width: size, height: size, channels: 3, data })
+        Ok(Some(Image { width: size, height: size, channels: 3, data }))
     }
 
     /// The material buffer: all materials as they are, then all again with slopes widened by the lights.

@@ -17,3 +17,5 @@ pub(crate) mod preview;
 pub(crate) mod report;
 pub(crate) mod schema;
 pub(crate) mod shader;
+#[cfg(feature = "view")]
+pub(crate) mod view;

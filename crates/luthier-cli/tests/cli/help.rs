@@ -1,6 +1,8 @@
 use crate::workshop::Workshop;
 
-const VERBS: &[&str] = if cfg!(feature = "gpu") {
+const VERBS: &[&str] = if cfg!(feature = "view") {
+    &["bake", "check", "report", "preview", "gallery", "compare", "view", "shader", "models", "eval", "ior", "schema"]
+} else if cfg!(feature = "gpu") {
     &["bake", "check", "report", "preview", "gallery", "compare", "shader", "models", "eval", "ior", "schema"]
 } else {
     &["bake", "check", "report", "shader", "models", "eval", "ior", "schema"]

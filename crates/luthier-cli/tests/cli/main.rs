@@ -28,4 +28,6 @@ mod report;
 mod schema;
 mod shader;
 mod thickness_map;
+#[cfg(feature = "view")]
+mod view;
 mod workshop;

@@ -53,6 +53,13 @@ const PHASE_TABLE: Tolerance = Tolerance {
     reason: "Between the 256 nodes of a phase row a cosine is a straight line, and its texels are half floats of up to 2.",
 };
 
+const ENERGY_TABLE: Tolerance = Tolerance {
+    name: "ENERGY_TABLE",
+    limit: 2.5e-3,
+    reason: "A lobe is a closed form times its energy, a product of reads of the albedo and escape tables; these have 64 nodes along each axis, \
+             and what is off by 1e-3 in one is off by that in the lobe.",
+};
+
 const NO_TABLE: Tolerance = Tolerance { name: "NO_TABLE", limit: 0.0, reason: "Nothing is read from a table." };
 
 const LOBE_READ: Tolerance = Tolerance {
@@ -75,6 +82,13 @@ const BEAMS_IN_F32: Tolerance = Tolerance {
     reason: "As one layer; the exponents of the lobes reach 2e6, but what they are applied to is formed without cancellation.",
 };
 
+const STATISTICS_IN_F32: Tolerance = Tolerance {
+    name: "STATISTICS_IN_F32",
+    limit: 2e-5,
+    reason: "Some tens of roundings of 6e-8 for every layer, and two powers on the way from a slope parameter to a variance and back; no \
+             exponential, and the tables hold what they mean.",
+};
+
 const PHONG_IN_F32: Tolerance = Tolerance {
     name: "PHONG_IN_F32",
     limit: 1e-5,
@@ -88,9 +102,11 @@ pub fn tolerance(model: ShadingModel, form: Form, share: Share) -> Tolerance {
         (Share::Table, ShadingModel::Phong) => NO_TABLE,
         (Share::Table, _) if form == Form::Full => NO_TABLE,
         (Share::Table, ShadingModel::GranierHeidrich) => PHASE_TABLE,
+        (Share::Table, ShadingModel::Belcour | ShadingModel::Yamaguchi) => ENERGY_TABLE,
         (Share::Table, _) => LOBE_TABLE,
         (Share::Arithmetic, ShadingModel::Phong) => PHONG_IN_F32,
         (Share::Arithmetic, ShadingModel::GranierHeidrich) => BEAMS_IN_F32,
+        (Share::Arithmetic, ShadingModel::Belcour | ShadingModel::Yamaguchi) => STATISTICS_IN_F32,
         (Share::Arithmetic, _) if form == Form::Baked => LOBE_READ,
         (Share::Arithmetic, _) => LAYERS_IN_F32,
     }
@@ -114,7 +130,7 @@ pub struct Known {
 }
 
 /// What is known.
-pub const KNOWN: [Known; 3] = [
+pub const KNOWN: [Known; 5] = [
     Known {
         name: "FRESNEL_UNDER_A_COAT",
         models: &[ShadingModel::Elek, ShadingModel::WeidlichWilkie],
@@ -141,6 +157,24 @@ pub const KNOWN: [Known; 3] = [
         limit: 2e-2,
         reason: "The reflectance of a free film falls from 1 within the last interval of its row (cos θ < 1/127), which is a straight \
                  line there.",
+    },
+    Known {
+        name: "ESCAPE_OF_NARROW_LOBES",
+        models: &[ShadingModel::Belcour, ShadingModel::Yamaguchi],
+        share: Share::Table,
+        factor: Factor::Escape,
+        limit: 1e-2,
+        reason: "Beyond some 80° light goes down close to the critical angle of the way back, and of a polished base's narrow lobe a share turns \
+                 back that rises from 0 within a tenth of the cosine outside: six of the table's 64 nodes, which are spaced evenly.",
+    },
+    Known {
+        name: "ALBEDO_AT_GRAZING",
+        models: &[ShadingModel::Belcour, ShadingModel::Yamaguchi],
+        share: Share::Table,
+        factor: Factor::Fgd,
+        limit: 2e-2,
+        reason: "Beyond 89.3° (cos θ below 0.012), 5e-4 of what a smooth interface sends back is several thousandths of the rest, which goes on to \
+                 the layers below; the albedo of a free film bends more there than the tile's first intervals follow.",
     },
 ];
 

@@ -274,7 +274,10 @@ fn without_textures_only_the_layers_are_left() {
         let [machine, plain] = [[material], [plain]].map(|m| machine(&m));
         for (wi, wo) in directions(200) {
             let eval = |machine: &Machine| machine.call("luthier_eval", vec![Value::U(0), single(wi), single(wo)]);
-            assert_eq!(eval(&machine), eval(&plain));
+            let expected = eval(&plain).floats();
+            let expected = [0, 1, 2].map(|c| f64::from(expected[c]));
+            // Sums in another order: a few roundings.
+            assert!(error(&eval(&machine), expected) < 1e-6, "{expected:?}");
         }
     }
 }
