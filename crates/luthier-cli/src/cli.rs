@@ -14,7 +14,7 @@ use crate::model_inputs::ModelInputs;
 const AFTER_HELP: &str = "\
 Exit codes:
   0  success
-  1  an input is invalid, or a budget is exceeded
+  1  an input is invalid, or a budget is exceeded or cannot be met
   2  the command line is wrong
   3  a file cannot be read or written
   4  no usable graphics adapter or display, or it failed
@@ -38,6 +38,8 @@ pub(crate) struct Cli {
 pub(crate) enum Verb {
     /// Bake materials: textures, manifest and shaders
     Bake(BakeOptions),
+    /// Measure what searches for tables reach against fixed ones: a page in Markdown
+    Budgets(BudgetsOptions),
     /// Validate material files and print the class of each surface
     Check(CheckOptions),
     /// Judge a bake: tables and shaders against the full evaluation in f64
@@ -91,13 +93,16 @@ pub(crate) struct Shading {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  luthier bake materials\n  luthier bake a.toml b.toml --out build/luts --threads 1 --json"
+    after_help = "Examples:\n  luthier bake materials\n  luthier bake a.toml b.toml --out build/luts --threads 1 --json\n  \
+                  luthier bake a.toml --max-abs 1e-3 --max-cost 200"
 )]
 pub(crate) struct BakeOptions {
     #[command(flatten)]
     pub(crate) sources: Sources,
     #[command(flatten)]
     pub(crate) shading: Shading,
+    #[command(flatten)]
+    pub(crate) limits: Limits,
     /// Folder to write to
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(crate) out: PathBuf,
@@ -110,6 +115,48 @@ pub(crate) struct BakeOptions {
     /// Print errors only
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  luthier budgets materials -o docs/budgets.md")]
+pub(crate) struct BudgetsOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// File to write instead of standard output
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+/// Limits on tables, each in place of those in the files' [budget]: the cheapest tables that hold them are taken (docs/budgets.md).
+#[derive(Debug, Args)]
+pub(crate) struct Limits {
+    /// Largest absolute error of a sampled table; of D, relative to its peak
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) max_abs: Option<f64>,
+    /// Largest error relative to the value, or to 0.01 where it is less
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) max_rel: Option<f64>,
+    /// Largest CIEDE2000 difference of tabulated reflectances under D65
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) delta_e: Option<f64>,
+    /// Bytes of the texels of all tables
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
+    pub(crate) max_bytes: Option<u64>,
+    /// Estimated cost of one read of every table, in operations
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) max_cost: Option<f64>,
+    /// Take fixed sizes, mappings and formats, whatever the budget
+    #[arg(long, conflicts_with_all = ["max_abs", "max_rel", "delta_e", "max_bytes", "max_cost"])]
+    pub(crate) no_search: bool,
+}
+
+impl Limits {
+    /// As the baker takes them.
+    pub(crate) fn options(&self) -> luthier_bake::Options {
+        let &Self { max_abs, max_rel, delta_e, max_bytes, max_cost, no_search } = self;
+        let budget = luthier_lut::Budget { max_abs, max_rel, delta_e, max_bytes, max_cost };
+        luthier_bake::Options { budget, search: !no_search }
+    }
 }
 
 #[derive(Debug, Args)]

@@ -35,6 +35,7 @@ fn main() -> ExitCode {
     let cli = Cli::parse();
     let outcome = match &cli.verb {
         Verb::Bake(options) => verb::bake::run(options),
+        Verb::Budgets(options) => verb::budgets::run(options),
         Verb::Check(options) => verb::check::run(options),
         Verb::Report(options) => verb::report::run(options),
         #[cfg(feature = "gpu")]

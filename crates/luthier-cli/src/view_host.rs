@@ -87,6 +87,7 @@ impl ViewHost {
             generator: GENERATOR.to_owned(),
             materials: entries,
             tables: atlases.iter().map(table).collect(),
+            searches: Vec::new(),
             shaders: Vec::new(),
             bindings,
             material_buffer: FileEntry::default(),

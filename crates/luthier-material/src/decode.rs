@@ -57,6 +57,7 @@ pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read
         layers: extras,
         effects,
         bake,
+        budget: bake::budget(document),
     }
 }
 

@@ -4,10 +4,9 @@ use luthier_layers::elek::Terms;
 use luthier_layers::statistics::diffuse_base::Veil;
 use luthier_layers::statistics::energy::Energy;
 use luthier_layers::terms::ShaderTerms;
-use luthier_lut::{
-    Encoding, LayerKind, LayerRecord, MaterialEntry, ShadingModel, TableKind, TexelFormat, WeightBits, bilinear,
-};
+use luthier_lut::{LayerKind, LayerRecord, MaterialEntry, ShadingModel, TableKind, TexelFormat, WeightBits, read};
 use luthier_optics::Rgb;
+use luthier_optics::microfacet::scaled_distribution;
 use luthier_optics::stack::Distribution;
 use serde::{Deserialize, Serialize};
 
@@ -37,9 +36,8 @@ impl Weights {
 impl Table<'_> {
     /// A sampled read of a tile.
     pub(crate) fn read(&self, tile: u32, values: [f64; 2], weights: Weights) -> [f64; 4] {
-        let position = self.entry.layout.position(tile, values);
-        let texel = bilinear(self.texels, position, weights.bits(self.entry.format));
-        Encoding::of(self.entry.kind, self.entry.format).decode(texel)
+        let entry = self.entry;
+        read(entry.kind, &entry.layout, entry.format, self.texels, tile, values, weights.bits(entry.format))
     }
 }
 
@@ -135,7 +133,8 @@ impl<'a> TableTerms<'a> {
             weights,
         };
         for (layer, kind) in read_by(entry) {
-            if terms.tile(kind, layer).is_none() {
+            let is_computed = matches!(kind, TableKind::Distribution | TableKind::Phase) && terms.table(kind).is_none();
+            if !is_computed && terms.tile(kind, layer).is_none() {
                 return Err(ReportError::MissingTile { material: entry.name.clone(), layer, kind });
             }
         }
@@ -251,12 +250,14 @@ impl Terms for TableTerms<'_> {
         [r, g, b]
     }
 
-    fn distribution(&self, layer: usize, _: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
+    /// Read where there is a table; the closed form where the bake has none.
+    fn distribution(&self, layer: usize, form: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
         match (self.distribution, self.tile(TableKind::Distribution, layer)) {
             (Some((table, angle)), Some(tile)) => {
                 table.read(tile, [angle.value(cos_theta_h, sin_theta_h_sq), alpha], self.weights)[0]
             }
-            _ => f64::NAN,
+            (None, _) => scaled_distribution(form, alpha, cos_theta_h, sin_theta_h_sq),
+            (Some(_), None) => f64::NAN,
         }
     }
 

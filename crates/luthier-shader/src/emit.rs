@@ -1,6 +1,6 @@
 use std::fmt::Write as _;
 
-use luthier_lut::{Axis, Mapping, ShadingModel};
+use luthier_lut::{Axis, Mapping, ShadingModel, TableKind};
 
 use crate::binding_lines::binding_lines;
 use crate::wgsl::{Buffer, compose};
@@ -79,7 +79,16 @@ fn header(set: &MaterialSet<'_>, form: Form, target: Target) -> String {
     let models: Vec<&str> = set.models().map(ShadingModel::title).collect();
     let _ = writeln!(out, "// Model{}: {}.", if models.len() == 1 { "" } else { "s" }, models.join("; "));
     let _ = match form {
-        Form::Baked => writeln!(out, "// Fresnel reflectance and slope distribution are read from tables."),
+        Form::Baked => {
+            let reads = |kind| set.tables_read(form).any(|t| t.kind == kind);
+            match (reads(TableKind::Fresnel), reads(TableKind::Distribution)) {
+                (true, false) => writeln!(
+                    out,
+                    "// Fresnel reflectance is read from a table; the slope distribution is a closed form."
+                ),
+                _ => writeln!(out, "// Fresnel reflectance and slope distribution are read from tables."),
+            }
+        }
         Form::Full => writeln!(out, "// No tables: Fresnel equations at three wavelengths, closed forms of D."),
     };
     if set.models().any(|model| matches!(model, ShadingModel::Belcour | ShadingModel::Yamaguchi)) {

@@ -11,7 +11,7 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is, for the check that modules name no other.
     #[cfg(test)]
-    pub(crate) const ALL: [&'static str; 40] = [
+    pub(crate) const ALL: [&'static str; 42] = [
         "absorption",
         "anisotropic",
         "bare",
@@ -20,6 +20,7 @@ impl Features {
         "chain",
         "chain_diffuse",
         "clamped",
+        "computed_distribution",
         "conductor",
         "diffuse",
         "distribution",
@@ -45,6 +46,7 @@ impl Features {
         "phase",
         "phong",
         "place",
+        "schlick_base",
         "smith",
         "split_root",
         "statistics",
@@ -77,6 +79,11 @@ impl Features {
             if !table.format.is_filterable() {
                 names.insert("bilinear");
             }
+        }
+        // Without a table, D is computed.
+        let has_facets = names.contains("smith") || names.contains("chain") && names.contains("interface");
+        if form == Form::Baked && has_facets && !names.contains("distribution") {
+            names.insert("computed_distribution");
         }
         Self(names)
     }

@@ -104,7 +104,11 @@ impl<'a> MaterialSet<'a> {
     ) -> Result<(), ShaderError> {
         let needed: &[TableKind] = match material.model {
             ShadingModel::Belcour | ShadingModel::Yamaguchi => &[TableKind::Fgd],
-            _ => &[TableKind::Fresnel, TableKind::Distribution],
+            // Without a table of it, D is computed; a set has one or has none.
+            _ if self.layers().any(|layer| layer.distribution_tile.is_some()) => {
+                &[TableKind::Fresnel, TableKind::Distribution]
+            }
+            _ => &[TableKind::Fresnel],
         };
         let (material, is_interface) = (material.name.clone(), layer.kind != LayerKind::Diffuse);
         if is_interface && !matches!(layer.distribution.as_str(), "beckmann" | "ggx") {

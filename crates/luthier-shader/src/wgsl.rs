@@ -31,6 +31,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     }
     // D is a function of the layers' own slope parameters; the statistics have lobes of others.
     let facets = has("chain") || has("smith");
+    let computes = has("full") || has("computed_distribution");
     let modules = [
         (has("bilinear"), include_str!("wgsl/bilinear.wgsl")),
         (["interface", "phong", "granier_base", "glitter"].into_iter().any(has), include_str!("wgsl/pi.wgsl")),
@@ -46,8 +47,8 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         (has("full") && has("interface"), include_str!("wgsl/complex.wgsl")),
         (has("full") && has("bare"), include_str!("wgsl/fresnel.wgsl")),
         (has("full") && has("film"), include_str!("wgsl/film.wgsl")),
-        (has("full") && has("beckmann") && facets, include_str!("wgsl/beckmann.wgsl")),
-        (has("full") && has("ggx") && facets, include_str!("wgsl/ggx.wgsl")),
+        (computes && has("beckmann") && facets, include_str!("wgsl/beckmann.wgsl")),
+        (computes && has("ggx") && facets, include_str!("wgsl/ggx.wgsl")),
         (has("full") && has("interface"), include_str!("wgsl/terms_full.wgsl")),
         (!has("full") && (facets || has("granier_bare")), include_str!("wgsl/terms_baked.wgsl")),
         (has("smith") || has("chain"), include_str!("wgsl/slopes.wgsl")),

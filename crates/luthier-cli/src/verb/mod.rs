@@ -1,6 +1,7 @@
 //! One module per verb.
 
 pub(crate) mod bake;
+pub(crate) mod budgets;
 pub(crate) mod check;
 #[cfg(feature = "gpu")]
 pub(crate) mod compare;

@@ -139,6 +139,7 @@ impl Compiled {
             generator: GENERATOR.to_owned(),
             materials: entries.to_vec(),
             tables: atlases.iter().map(table).collect(),
+            searches: Vec::new(),
             shaders: Vec::new(),
             bindings: Vec::new(),
             material_buffer: FileEntry::default(),

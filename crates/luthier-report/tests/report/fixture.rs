@@ -81,7 +81,14 @@ impl Bake {
                 ..MaterialEntry::default()
             });
         }
-        let layout = AtlasLayout { x: fresnel_axis, y: None, apron: 0, columns: 1, tiles: rows.len() as u32 };
+        let layout = AtlasLayout {
+            x: fresnel_axis,
+            y: None,
+            apron: 0,
+            columns: 1,
+            tiles: rows.len() as u32,
+            base: luthier_lut::RowBase::Zero,
+        };
         let mut fresnel = Image::zeros(128, rows.len() as u32, 4);
         for (y, (_, row)) in (0..).zip(&rows) {
             for (x, rgb) in (0..).zip(row) {
@@ -96,6 +103,7 @@ impl Bake {
             generator: "fixture 1".to_owned(),
             materials,
             tables: vec![fresnel_table, distribution_table],
+            searches: Vec::new(),
             shaders: Vec::new(),
             bindings: Vec::new(),
             material_buffer: FileEntry::default(),
@@ -133,7 +141,14 @@ impl Bake {
             material.color = ColorMode::ThreeWavelengths;
             material.constants.internal_reflectance = [0.6; 3];
         }
-        let layout = AtlasLayout { x, y: Some(alpha_axis), apron: 0, columns: 1, tiles: tiles.len() as u32 };
+        let layout = AtlasLayout {
+            x,
+            y: Some(alpha_axis),
+            apron: 0,
+            columns: 1,
+            tiles: tiles.len() as u32,
+            base: luthier_lut::RowBase::Zero,
+        };
         let image = filled(&layout, |tile, i, j| tiles[tile as usize][(j * layout.x.size + i) as usize]);
         bake.push(TableKind::Fgd, layout, &image);
         let layout = AtlasLayout {
@@ -142,6 +157,7 @@ impl Bake {
             apron: 0,
             columns: 1,
             tiles: 1,
+            base: luthier_lut::RowBase::Zero,
         };
         let alpha_axis = layout.y.clone().unwrap();
         let image = filled(&layout, |_, i, j| {
@@ -242,7 +258,8 @@ fn distribution() -> (TableEntry, Image) {
     let half_pi = std::f64::consts::FRAC_PI_2;
     let x = axis("theta_h", 0.0, half_pi, 512, Mapping::Power { exponent: 8.0 });
     let y = axis("alpha", 1e-3, 1.0, 512, Mapping::Logarithmic);
-    let layout = AtlasLayout { x, y: Some(y.clone()), apron: 0, columns: 2, tiles: 2 };
+    let layout =
+        AtlasLayout { x, y: Some(y.clone()), apron: 0, columns: 2, tiles: 2, base: luthier_lut::RowBase::Zero };
     let mut image = Image::zeros(1024, 512, 1);
     for j in 0..512 {
         let alpha = y.node(j);

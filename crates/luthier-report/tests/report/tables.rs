@@ -71,6 +71,7 @@ fn albedos_of_a_perfect_mirror_and_of_nothing_at_all() {
         apron: 0,
         columns: 1,
         tiles: 3,
+        base: luthier_lut::RowBase::Zero,
     };
     // The second table is a sixteenth too high; nobody reads the third.
     bake.add(TableKind::Fgd, layout, |tile, _, _| if tile == 0 { [1.0; 4] } else { [0.0625; 4] });
@@ -95,10 +96,14 @@ fn phases_follow_the_closed_form() {
     bake.manifest.materials[1].layers[0].phase_tile = Some(0);
     let nodes = [[2.0, 2.0, 2.0], [0.0, -2.0, 0.0], [-2.0, 2.0, -2.0], [0.0, -2.0, 0.0], [2.0, 2.0, 2.0]];
     let x = axis("s", 0.0, 1.0, 5, Mapping::Linear);
-    bake.add(TableKind::Phase, AtlasLayout { x, y: None, apron: 0, columns: 1, tiles: 1 }, |_, x, _| {
-        let [r, g, b] = nodes[x as usize];
-        [r, g, b, 1.0]
-    });
+    bake.add(
+        TableKind::Phase,
+        AtlasLayout { x, y: None, apron: 0, columns: 1, tiles: 1, base: luthier_lut::RowBase::Zero },
+        |_, x, _| {
+            let [r, g, b] = nodes[x as usize];
+            [r, g, b, 1.0]
+        },
+    );
     let report = judged(&bake);
     let judge = tiles(&report, TableKind::Phase)[0].judge.as_ref().unwrap();
     // Three quarters of a wave between nodes: |2 cos x - 2 + 4x/(3 pi)| is largest, 2.7119, where sin x = 2/(3 pi).
@@ -116,7 +121,7 @@ fn thickness_maps_are_held_to_their_film() {
         let mut bake = Bake::new();
         film(&mut bake, FilmThickness { min_nm: 100.0, max_nm: 300.0 });
         let [x, y] = ["u", "v"].map(|name| axis(name, 0.0, 1.0, 4, Mapping::Periodic));
-        let layout = AtlasLayout { x, y: Some(y), apron: 1, columns: 1, tiles: 1 };
+        let layout = AtlasLayout { x, y: Some(y), apron: 1, columns: 1, tiles: 1, base: luthier_lut::RowBase::Zero };
         bake.add(TableKind::Thickness, layout, |_, x, _| if x == 2 { texel } else { [0.25, 0.0, 0.0, 1.0] });
         let findings = judged(&bake).findings;
         findings.into_iter().filter(|f| f.starts_with("thickness")).collect::<Vec<_>>()

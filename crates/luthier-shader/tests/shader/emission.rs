@@ -1,7 +1,7 @@
 //! Everything that can be emitted passes naga; what a set does not need is not in its text.
 
 use crate::scenes::{clear, conductor, dielectric, diffuse, filmed, material, sets, tables};
-use luthier_lut::{LayerKind, Mapping, TableKind, TexelFormat};
+use luthier_lut::{LayerKind, Mapping, RowBase, TableKind, TexelFormat};
 use luthier_shader::{
     Form, MaterialSet, ShaderError, TableFace, Target, bindings, complete, complete_spirv, emit, emit_spirv, validate,
 };
@@ -35,10 +35,33 @@ fn every_format_passes() {
         let tables: Vec<_> = tables().into_iter().map(|t| TableFace { format, ..t }).collect();
         emit_all(&richest(), &tables);
     }
+    // Rows over Schlick's form, side by side or not; and D computed.
+    for format in [TexelFormat::Rgba8Unorm, TexelFormat::Rgb10a2Unorm] {
+        for columns in [1, 3] {
+            let mut tables = tables();
+            (tables[0].format, tables[0].layout.base, tables[0].layout.columns) = (format, RowBase::Schlick, columns);
+            emit_all(&richest(), &tables);
+        }
+    }
     // One table filtered, one not.
     let mut mixed = tables();
     mixed[1].format = TexelFormat::R32Float;
     emit_all(&richest(), &mixed);
+}
+
+/// A bake without a table of D has materials without tiles of it.
+#[test]
+fn without_a_table_d_is_computed() {
+    for (name, mut materials) in sets() {
+        let records = materials
+            .iter_mut()
+            .flat_map(|m| m.layers.iter_mut().chain(m.constants.patina.as_mut().map(|patina| &mut patina.bare)));
+        records.for_each(|layer| layer.distribution_tile = None);
+        let tables: Vec<_> = tables().into_iter().filter(|t| t.kind != TableKind::Distribution).collect();
+        emit_all(&materials, &tables);
+        let text = emit(&MaterialSet { materials: &materials, tables }, Form::Baked, Target::Wgsl).unwrap();
+        assert!(!text.contains("distribution_tile") && !text.contains("luthier_lookup_distribution"), "{name}");
+    }
 }
 
 #[test]
