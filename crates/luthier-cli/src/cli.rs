@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use luthier_cost::Family;
 use luthier_material::ModelSetting;
 use luthier_shader::{Form, Target};
 
@@ -17,7 +18,7 @@ Exit codes:
   1  an input is invalid, or a budget is exceeded
   2  the command line is wrong
   3  a file cannot be read or written
-  4  no usable graphics adapter, or it failed
+  4  no usable graphics adapter or driver, or it failed
 
 Examples:
   luthier bake materials            tables, manifest and shaders into out/
@@ -54,6 +55,15 @@ pub(crate) enum Verb {
     /// Render a material with two shaders and compare the pictures
     #[cfg(feature = "gpu")]
     Compare(CompareOptions),
+    /// What every shader of every material costs on real GPUs, which need not be here: a page in Markdown
+    Cost(CostOptions),
+    /// Compile the kernels of standard input on the null device that the environment names
+    #[command(hide = true)]
+    CostProbe {
+        /// Machine code instead of counts
+        #[arg(long)]
+        assembly: bool,
+    },
     /// Print the shader of some materials, or write it to a file
     Shader(ShaderOptions),
     /// List the reflectance models
@@ -175,6 +185,53 @@ pub(crate) struct ParityOptions {
 mod render;
 #[cfg(feature = "gpu")]
 pub(crate) use render::{CompareOptions, GalleryOptions, Look, PreviewOptions, ShaderChoice, ShapeName};
+
+const COST_EXAMPLES: &str = "\
+Mesa's RADV driver compiles for these GPUs without having one; where it is missing, the exit code is 4. What reading directions \
+and writing the value costs is subtracted.
+
+Examples:
+  luthier cost materials -o docs/cost.md
+  luthier cost mine.toml --model elek --model phong --family rdna2 --json
+  luthier cost materials --set --form baked
+  luthier cost mine.toml --model elek --form baked --family rdna2 --assembly";
+
+#[derive(Debug, Args)]
+#[command(after_help = COST_EXAMPLES)]
+pub(crate) struct CostOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Model to compile; may be given again. By default all
+    #[arg(long, value_name = "NAME", value_parser = shading_model())]
+    pub(crate) model: Vec<ModelSetting>,
+    /// Form to compile; may be given again. By default both
+    #[arg(long, value_enum, value_name = "FORM")]
+    pub(crate) form: Vec<FormName>,
+    /// Instruction set: gcn5, rdna2 or rdna3; may be given again. By default all
+    #[arg(long, value_name = "NAME", value_parser = family())]
+    pub(crate) family: Vec<FamilyName>,
+    /// All materials in one shader, as a bake of them has it, instead of each in its own
+    #[arg(long)]
+    pub(crate) set: bool,
+    /// Print the machine code of one kernel
+    #[arg(long, conflicts_with_all = ["json", "output"])]
+    pub(crate) assembly: bool,
+    /// JSON instead of Markdown
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// File to write instead of standard output
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+/// A family of GPUs by its name.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FamilyName(pub(crate) Family);
+
+fn family() -> impl TypedValueParser<Value = FamilyName> {
+    PossibleValuesParser::new(Family::ALL.map(Family::name))
+        .try_map(|name| Family::from_name(&name).map(FamilyName).ok_or_else(|| format!("no family `{name}`")))
+}
 
 #[derive(Debug, Args)]
 #[command(

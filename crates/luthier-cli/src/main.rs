@@ -3,6 +3,7 @@
 mod artefacts;
 mod bake_files;
 mod cli;
+mod cost_page;
 #[cfg(feature = "gpu")]
 mod device;
 mod directions;
@@ -43,6 +44,8 @@ fn main() -> ExitCode {
         Verb::Gallery(options) => verb::gallery::run(options),
         #[cfg(feature = "gpu")]
         Verb::Compare(options) => verb::compare::run(options),
+        Verb::Cost(options) => verb::cost::run(options),
+        Verb::CostProbe { assembly } => verb::cost::probe(*assembly),
         Verb::Shader(options) => verb::shader::run(options),
         Verb::Models(options) => verb::models::run(options),
         Verb::Eval(options) => verb::eval::run(options),

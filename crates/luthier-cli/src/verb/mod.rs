@@ -4,6 +4,7 @@ pub(crate) mod bake;
 pub(crate) mod check;
 #[cfg(feature = "gpu")]
 pub(crate) mod compare;
+pub(crate) mod cost;
 pub(crate) mod eval;
 #[cfg(feature = "gpu")]
 pub(crate) mod gallery;
