@@ -60,6 +60,8 @@ pub(crate) enum Verb {
     /// Compile the kernels of standard input on the null device that the environment names
     #[command(hide = true)]
     CostProbe {
+        #[arg(value_parser = family())]
+        family: FamilyName,
         /// Machine code instead of counts
         #[arg(long)]
         assembly: bool,
@@ -187,14 +189,15 @@ mod render;
 pub(crate) use render::{CompareOptions, GalleryOptions, Look, PreviewOptions, ShaderChoice, ShapeName};
 
 const COST_EXAMPLES: &str = "\
-Mesa's RADV driver compiles for these GPUs without having one; where it is missing, the exit code is 4. What reading directions \
-and writing the value costs is subtracted.
+Mesa's RADV driver compiles for these GPUs without having one; where it is missing, the exit code is 4. What making directions \
+and writing the value costs is subtracted. Every shader comes with its material in a buffer and as constants of the code, and the \
+form `baked` with D from its table and in closed form, unless named.
 
 Examples:
   luthier cost materials -o docs/cost.md
   luthier cost mine.toml --model elek --model phong --family rdna2 --json
   luthier cost materials --set --form baked
-  luthier cost mine.toml --model elek --form baked --family rdna2 --assembly";
+  luthier cost mine.toml --model elek --form baked --closed --constant --family rdna2 --assembly";
 
 #[derive(Debug, Args)]
 #[command(after_help = COST_EXAMPLES)]
@@ -213,6 +216,12 @@ pub(crate) struct CostOptions {
     /// All materials in one shader, as a bake of them has it, instead of each in its own
     #[arg(long)]
     pub(crate) set: bool,
+    /// Only shaders whose D is a closed form
+    #[arg(long)]
+    pub(crate) closed: bool,
+    /// Only shaders whose material is constants of the code
+    #[arg(long, conflicts_with = "set")]
+    pub(crate) constant: bool,
     /// Print the machine code of one kernel
     #[arg(long, conflicts_with_all = ["json", "output"])]
     pub(crate) assembly: bool,
@@ -248,6 +257,12 @@ pub(crate) struct ShaderOptions {
     /// Reads the tables, or evaluates everything in ALU
     #[arg(long, value_enum, default_value_t = FormName::Baked)]
     pub(crate) form: FormName,
+    /// D in closed form instead of from its table
+    #[arg(long)]
+    pub(crate) closed: bool,
+    /// The numbers of one material as constants of the code instead of a buffer
+    #[arg(long, conflicts_with = "complete")]
+    pub(crate) constant: bool,
     /// A complete small fragment shader instead of functions to paste (SPIR-V: instead of a library to link)
     #[arg(long)]
     pub(crate) complete: bool,

@@ -4,6 +4,7 @@ mod artefacts;
 mod bake_files;
 mod cli;
 mod cost_page;
+mod cost_papers;
 #[cfg(feature = "gpu")]
 mod device;
 mod directions;
@@ -45,7 +46,7 @@ fn main() -> ExitCode {
         #[cfg(feature = "gpu")]
         Verb::Compare(options) => verb::compare::run(options),
         Verb::Cost(options) => verb::cost::run(options),
-        Verb::CostProbe { assembly } => verb::cost::probe(*assembly),
+        Verb::CostProbe { family, assembly } => verb::cost::probe(family.0, *assembly),
         Verb::Shader(options) => verb::shader::run(options),
         Verb::Models(options) => verb::models::run(options),
         Verb::Eval(options) => verb::eval::run(options),

@@ -5,11 +5,15 @@ use serde::{Deserialize, Serialize};
 pub struct Counts {
     /// Instructions, of all branches.
     pub instructions: i64,
-    /// Cycles per wave that the compiler's model of the pipeline allows with all its waves in flight: those of the busiest unit, or
-    /// the latency over the number of waves, whichever is more.
+    /// Cycles per wave by the compiler's model of the pipeline with all its waves in flight: those of the busiest unit, or the latency
+    /// over the number of waves, whichever is more. What lies under a branch counts three quarters where threads may differ, and half
+    /// where they agree.
     pub inverse_throughput: i64,
     /// Cycles from the first instruction to the last for one wave alone, memory at the compiler's fixed estimate.
     pub latency: i64,
+    /// Cycles of one SIMD that the vector instructions of all branches take to issue: no branch is guessed to be skipped, and no
+    /// latency is in it.
+    pub issue_cycles: i64,
     /// Vector registers.
     pub vgprs: i64,
     /// Waves that fit on one SIMD.
@@ -33,6 +37,7 @@ impl Counts {
             instructions: self.instructions - harness.instructions,
             inverse_throughput: self.inverse_throughput - harness.inverse_throughput,
             latency: self.latency - harness.latency,
+            issue_cycles: self.issue_cycles - harness.issue_cycles,
             code_bytes: self.code_bytes - harness.code_bytes,
             texture_reads: self.texture_reads - harness.texture_reads,
             buffer_reads: self.buffer_reads - harness.buffer_reads,

@@ -36,6 +36,15 @@ impl Family {
         }
     }
 
+    /// Cycles that one SIMD takes to issue the vector instructions of a wave of 64: plain ones, and quarter-rate ones (reciprocals,
+    /// roots, exponentials, logarithms, wide integer products), which have a unit of their own from RDNA on.
+    pub fn issue_cycles(self, plain: i64, quarter_rate: i64) -> i64 {
+        match self {
+            Self::Gcn5 => 4 * plain + 16 * quarter_rate,
+            Self::Rdna2 | Self::Rdna3 => (2 * (plain + quarter_rate)).max(8 * quarter_rate),
+        }
+    }
+
     /// The family of a name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|family| family.name() == name)

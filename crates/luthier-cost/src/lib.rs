@@ -8,10 +8,11 @@
 //! [`Family::environment`], one per family.
 //!
 //! Simplifications: a texture read counts as issued, without cache misses; all branches of a kernel count, the taken and the others, so
-//! that a set of several models costs the sum of them.
+//! that a set of several models costs the sum of them; uniform registers and interpolation are free.
 //!
 //! Out of scope: starting processes, files, time on a real device (`luthier-gpu`).
 
+mod code;
 mod counts;
 mod error;
 mod family;
@@ -21,5 +22,5 @@ mod radv;
 pub use counts::{Compiled, Counts};
 pub use error::CostError;
 pub use family::{FOREIGN_VARIABLES, Family};
-pub use kernel::{Binding, Kernel, Resource};
+pub use kernel::{Binding, Harness, Kernel, Resource, Style, shader_text};
 pub use radv::{assembly, compile};

@@ -7,16 +7,17 @@ use std::ffi::{CStr, c_char};
 use ash::khr::pipeline_executable_properties as executables;
 use ash::vk;
 
-use crate::{Compiled, CostError, Counts, Kernel, Resource};
+use crate::code::Code;
+use crate::{Compiled, CostError, Counts, Family, Kernel, Resource};
 
 /// Compiles kernels on the null device that the environment of this process asks for; see
-/// [`Family::environment`](crate::Family::environment).
+/// [`Family::environment`].
 ///
 /// # Errors
 /// [`CostError::NoDriver`] where there is no loader or no RADV; [`CostError::Vulkan`] when the driver refuses a kernel.
-pub fn compile(kernels: &[Kernel]) -> Result<Compiled, CostError> {
+pub fn compile(family: Family, kernels: &[Kernel]) -> Result<Compiled, CostError> {
     let device = NullDevice::open()?;
-    let counts = kernels.iter().map(|kernel| device.pipeline(kernel)?.counts()).collect::<Result<_, _>>()?;
+    let counts = kernels.iter().map(|kernel| device.pipeline(kernel)?.counts(family)).collect::<Result<_, _>>()?;
     Ok(Compiled { driver: device.driver.clone(), device: device.name.clone(), counts })
 }
 
@@ -168,7 +169,7 @@ struct Pipeline<'a> {
 }
 
 impl Pipeline<'_> {
-    fn counts(&self) -> Result<Counts, CostError> {
+    fn counts(&self, family: Family) -> Result<Counts, CostError> {
         let executable = vk::PipelineExecutableInfoKHR::default().pipeline(self.pipeline);
         // SAFETY: the pipeline lives and was made with the flag for statistics; a compute pipeline has one executable.
         let found = unsafe { self.of.executables.get_pipeline_executable_statistics(&executable) };
@@ -178,21 +179,18 @@ impl Pipeline<'_> {
             let known = || statistics.keys().cloned().collect::<Vec<_>>().join(", ");
             statistics.get(name).copied().ok_or_else(|| CostError::NoStatistic { name, known: known() })
         };
-        let assembly = self.assembly()?;
-        let reads = |prefixes: &[&str]| {
-            let is_one = |line: &&str| prefixes.iter().any(|prefix| line.trim_start().starts_with(prefix));
-            assembly.lines().filter(is_one).count() as i64
-        };
+        let code = Code::of(&self.assembly()?);
         Ok(Counts {
             instructions: get("Instructions")?,
             inverse_throughput: get("Inverse Throughput")?,
             latency: get("Latency")?,
+            issue_cycles: code.issue_cycles(family),
             vgprs: get("VGPRs")?,
             waves: get("Subgroups per SIMD")?,
             code_bytes: get("Code size")?,
             spills: get("Spilled VGPRs")? + get("Spilled SGPRs")?,
-            texture_reads: reads(&["image_sample", "image_load", "image_gather"]),
-            buffer_reads: reads(&["s_buffer_load", "buffer_load", "global_load"]),
+            texture_reads: code.texture_reads,
+            buffer_reads: code.buffer_reads,
             branches: get("Branches")?,
         })
     }

@@ -11,7 +11,7 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is, for the check that modules name no other.
     #[cfg(test)]
-    pub(crate) const ALL: [&'static str; 40] = [
+    pub(crate) const ALL: [&'static str; 41] = [
         "absorption",
         "anisotropic",
         "bare",
@@ -20,6 +20,7 @@ impl Features {
         "chain",
         "chain_diffuse",
         "clamped",
+        "closed",
         "conductor",
         "diffuse",
         "distribution",
@@ -70,6 +71,10 @@ impl Features {
         }
         if form == Form::Full {
             names.insert("full");
+        }
+        let facets = names.contains("chain") || names.contains("smith");
+        if form == Form::Full || facets && !set.has(TableKind::Distribution) {
+            names.insert("closed");
         }
         for table in set.tables_read(form) {
             // `film` is whether any layer has one.

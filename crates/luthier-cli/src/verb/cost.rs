@@ -3,14 +3,15 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use luthier_cost::{Compiled, FOREIGN_VARIABLES, Family, Kernel};
-use luthier_lut::{MaterialEntry, ShadingModel};
+use luthier_cost::{Compiled, FOREIGN_VARIABLES, Family, Harness, Kernel, Style};
+use luthier_lut::{MaterialEntry, ShadingModel, TableKind};
 use luthier_material::{Material, ModelSetting};
 use luthier_shader::{Form, MaterialSet, TableFace};
 
 use crate::bake_files::{GENERATOR, material_entries};
 use crate::cli::CostOptions;
 use crate::cost_page::{CostReport, CostRow, FamilyCost};
+use crate::cost_papers;
 use crate::failure::{Failure, Outcome, files};
 use crate::materials::{read, read_image, valid};
 use crate::output::print;
@@ -26,26 +27,29 @@ const DRIVER_FOLDERS: [&str; 4] =
 pub(crate) fn run(options: &CostOptions) -> Outcome {
     let materials = valid(read(&options.sources.paths)?, true)?;
     let variants = variants(options, &materials)?;
-    let mut kernels = vec![Kernel::empty().map_err(Failure::input)?];
-    kernels.extend(variants.iter().map(|v| v.kernel.clone()));
     if options.assembly {
-        return match (kernels.as_slice(), options.family.as_slice()) {
-            ([_, kernel], [family]) => print(&started(family.0, true, std::slice::from_ref(kernel))?),
+        return match (variants.as_slice(), options.family.as_slice()) {
+            ([variant], [family]) => print(&started(family.0, true, std::slice::from_ref(&variant.kernel))?),
             _ => Err(Failure::Usage(anyhow::anyhow!(
-                "--assembly prints one kernel: name one material, --model, --form and --family"
+                "--assembly prints one kernel, not {}: name one material, --model, --form, --closed, --constant and --family",
+                variants.len()
             ))),
         };
     }
-    let mut report =
-        CostReport { generator: GENERATOR.to_owned(), driver: String::new(), families: Vec::new(), rows: Vec::new() };
+    let papers = if options.json { Vec::new() } else { cost_papers::cases(&materials)? };
+    let mut kernels = vec![empty(Harness::Bare)?, empty(Harness::NormalMapped)?];
+    kernels.extend(variants.iter().map(|v| v.kernel.clone()));
+    kernels.extend(papers.iter().flat_map(|case| case.variants.iter()).flat_map(|v| v.kernels.clone()));
     let families: Vec<Family> =
         if options.family.is_empty() { Family::ALL.to_vec() } else { options.family.iter().map(|f| f.0).collect() };
+    let mut report = CostReport { generator: GENERATOR.to_owned(), ..CostReport::default() };
+    let mut paper_counts = Vec::new();
     for family in families {
-        let answer = started(family, false, &kernels)?;
-        let compiled: Compiled = serde_json::from_str(&answer).map_err(Failure::input)?;
-        let [harness, counts @ ..] = compiled.counts.as_slice() else {
+        let compiled: Compiled = serde_json::from_str(&started(family, false, &kernels)?).map_err(Failure::input)?;
+        let [harness, framed, counts @ ..] = compiled.counts.as_slice() else {
             return Err(Failure::Device(anyhow::anyhow!("the probe gave no counts")));
         };
+        let (own, others) = counts.split_at(variants.len());
         report.driver = compiled.driver;
         report.families.push(FamilyCost {
             family,
@@ -53,18 +57,22 @@ pub(crate) fn run(options: &CostOptions) -> Outcome {
             device: compiled.device,
             harness: *harness,
         });
-        report.rows.extend(variants.iter().zip(counts).map(|(variant, counts)| CostRow {
+        report.rows.extend(variants.iter().zip(own).map(|(variant, counts)| CostRow {
             material: variant.material.clone(),
             model: variant.model,
-            form: variant.form.name().to_owned(),
+            form: variant.style.form.name().to_owned(),
+            closed: variant.closed,
+            constant: variant.style.constant,
             family,
             counts: counts.beyond(harness),
         }));
+        paper_counts.push((family, *harness, *framed, others.to_vec()));
     }
     let text = if options.json {
         format!("{:#}\n", serde_json::to_value(&report).map_err(Failure::input)?)
     } else {
-        report.to_markdown(&command(options))
+        let papers = cost_papers::to_markdown(&papers, &paper_counts);
+        report.to_markdown(&command(options), &papers)
     };
     match &options.output {
         Some(path) => std::fs::write(path, text).map_err(files(path, "write")),
@@ -72,15 +80,21 @@ pub(crate) fn run(options: &CostOptions) -> Outcome {
     }
 }
 
+fn empty(harness: Harness) -> Outcome<Kernel> {
+    Kernel::empty(harness).map_err(Failure::input)
+}
+
 /// One shader to compile.
 struct Variant {
     material: String,
     model: ShadingModel,
-    form: Form,
+    style: Style,
+    /// Whether D is a closed form.
+    closed: bool,
     kernel: Kernel,
 }
 
-/// Every material (or all as one set) in every model and form asked for.
+/// Every material (or all as one set) in every model, form and style asked for.
 fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Variant>> {
     let models: Vec<ShadingModel> = if options.model.is_empty() {
         ShadingModel::ALL.to_vec()
@@ -102,18 +116,43 @@ fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Varian
         };
         for (name, group) in groups {
             let (entries, tables) = outline(group)?;
-            let set = MaterialSet { materials: &entries, tables };
             for &form in &forms {
-                let kernel = Kernel::of_set(&set, form).map_err(Failure::input)?;
-                variants.push(Variant { material: name.clone(), model, form, kernel });
+                for (closed, constant) in styles(options) {
+                    // What reads no table of D has it in closed form, or has none, either way.
+                    let reads_d = form == Form::Baked && tables.iter().any(|t| t.kind == TableKind::Distribution);
+                    if closed && !reads_d && !options.closed {
+                        continue;
+                    }
+                    let set = MaterialSet { materials: &entries, tables: without_d(&tables, closed) };
+                    let style = Style { form, constant, approximate: false };
+                    let kernel = Kernel::of_set(&set, style, Harness::Bare).map_err(Failure::input)?;
+                    let closed = closed || !reads_d;
+                    variants.push(Variant { material: name.clone(), model, style, closed, kernel });
+                }
             }
         }
     }
     Ok(variants)
 }
 
+/// Whether D is a closed form, and whether the material is constants.
+fn styles(options: &CostOptions) -> Vec<(bool, bool)> {
+    let all = [(false, false), (true, false), (false, true), (true, true)];
+    let wanted = |&(closed, constant): &(bool, bool)| {
+        (closed || !options.closed) && (constant || !options.constant) && !(constant && options.set)
+    };
+    // One kernel was asked for where its machine code is.
+    let exact = |style: &(bool, bool)| !options.assembly || *style == (options.closed, options.constant);
+    all.into_iter().filter(wanted).filter(exact).collect()
+}
+
+/// The tables, without that of D where it is a closed form.
+pub(crate) fn without_d(tables: &[TableFace], closed: bool) -> Vec<TableFace> {
+    tables.iter().filter(|table| !(closed && table.kind == TableKind::Distribution)).cloned().collect()
+}
+
 /// What a bake of these materials would look like.
-fn outline(materials: &[Material]) -> Outcome<(Vec<MaterialEntry>, Vec<TableFace>)> {
+pub(crate) fn outline(materials: &[Material]) -> Outcome<(Vec<MaterialEntry>, Vec<TableFace>)> {
     let outline = luthier_bake::outline(materials, &read_image).map_err(Failure::input)?;
     let entries = material_entries(materials, &outline.materials, &mut Vec::new())?;
     let tables = outline.tables.into_iter().map(|(kind, layout, format)| TableFace { kind, layout, format }).collect();
@@ -126,7 +165,7 @@ fn started(family: Family, assembly: bool, kernels: &[Kernel]) -> Outcome<String
         |what: &str, source: std::io::Error| Failure::Device(anyhow::Error::new(source).context(what.to_owned()));
     let program = std::env::current_exe().map_err(|source| lost("cannot find this program", source))?;
     let mut command = Command::new(program);
-    command.arg(PROBE).args(assembly.then_some("--assembly")).envs(family.environment());
+    command.args([PROBE, family.name()]).args(assembly.then_some("--assembly")).envs(family.environment());
     for variable in FOREIGN_VARIABLES {
         command.env_remove(variable);
     }
@@ -172,7 +211,7 @@ fn drivers() -> Option<OsString> {
 }
 
 /// Reads kernels from standard input, compiles them on the null device of this process and prints what came of it.
-pub(crate) fn probe(assembly: bool) -> Outcome {
+pub(crate) fn probe(family: Family, assembly: bool) -> Outcome {
     let kernels: Vec<Kernel> = serde_json::from_reader(std::io::stdin().lock()).map_err(Failure::input)?;
     let device = |source: luthier_cost::CostError| Failure::Device(source.into());
     if assembly {
@@ -180,7 +219,7 @@ pub(crate) fn probe(assembly: bool) -> Outcome {
             kernels.iter().map(luthier_cost::assembly).collect::<Result<_, _>>().map_err(device)?;
         return print(&texts.join("\n"));
     }
-    let compiled = luthier_cost::compile(&kernels).map_err(device)?;
+    let compiled = luthier_cost::compile(family, &kernels).map_err(device)?;
     print(&serde_json::to_string(&compiled).map_err(Failure::input)?)
 }
 
@@ -191,7 +230,8 @@ fn command(options: &CostOptions) -> String {
     words.extend(options.model.iter().map(|model| format!("--model {}", model.name())));
     words.extend(options.form.iter().map(|&form| format!("--form {}", Form::from(form).name())));
     words.extend(options.family.iter().map(|family| format!("--family {}", family.0)));
-    words.extend(options.set.then(|| "--set".to_owned()));
+    let flags = [("--set", options.set), ("--closed", options.closed), ("--constant", options.constant)];
+    words.extend(flags.iter().filter(|(_, is_set)| *is_set).map(|(flag, _)| (*flag).to_owned()));
     words.extend(options.output.iter().map(|path| format!("-o {}", path.display())));
     words.join(" ")
 }

@@ -105,11 +105,12 @@ fn luthier_distribution_term(layer: LuthierLayer, alpha: f32, cos_theta_h: f32, 
 
 /// D of a layer at the half vector along `bisector`, whose squared length is `length_sq`.
 fn luthier_density(layer: LuthierLayer, bisector: vec3<f32>, length_sq: f32) -> f32 {
-    let cos_theta_h = bisector.z / sqrt(length_sq);
-    let across_sq = dot(bisector.xy, bisector.xy);
+    let inverse_length = inverseSqrt(length_sq);
+    let cos_theta_h = bisector.z * inverse_length;
+    let sin_theta_h_sq = dot(bisector.xy, bisector.xy) * inverse_length * inverse_length;
     let area = layer.alpha * layer.alpha;
     let alpha = layer.alpha;
-    return luthier_distribution_term(layer, alpha, cos_theta_h, across_sq / length_sq) / (LUTHIER_PI * area);
+    return luthier_distribution_term(layer, alpha, cos_theta_h, sin_theta_h_sq) / LUTHIER_PI / area;
 }
 
 /// What the light has met on its way down and back up: directions, and sums over the layers so far.
@@ -142,13 +143,15 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     if length_sq < 1e-24 {
         return next;
     }
-    let cos_theta_d = min(0.5 * sqrt(length_sq), 1.0);
+    let inverse_length = inverseSqrt(length_sq);
+    let cos_theta_d = min(0.5 * length_sq * inverse_length, 1.0);
     let fresnel = luthier_fresnel_term(layer, cos_theta_d);
-    // G of V-cavities is min(1, cavity * low); G / (low * high) is formed without the product, which may underflow.
-    let cavity = 2.0 * bisector.z / (sqrt(length_sq) * cos_theta_d);
+    // G of V-cavities is min(1, cavity * low). G / (low * high) has the product, which may underflow, only where both are alike.
+    let cavity = 4.0 * bisector.z * inverse_length * inverse_length;
     let low = min(path.wi.z, path.wo.z);
     let high = max(path.wi.z, path.wo.z);
-    let shape = luthier_density(layer, bisector, length_sq) * min(cavity, 1.0 / low) / (4.0 * high);
+    let blocks = cavity * low < 1.0;
+    let shape = luthier_density(layer, bisector, length_sq) * select(1.0, cavity, blocks) / (4.0 * high * select(low, 1.0, blocks));
     next.reflected = path.reflected + path.throughput * fresnel * shape;
 
     if layer.kind != LUTHIER_DIELECTRIC {
@@ -156,14 +159,16 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     }
     // Refracted at the normal; the squared cosine is written so that it does not cancel for an index near 1.
     let cosines = vec2<f32>(path.wi.z, path.wo.z);
-    let cosines_sq = (cosines * cosines + (layer.eta - 1.0) * (layer.eta + 1.0)) / (layer.eta * layer.eta);
+    let inverse_eta = 1.0 / layer.eta;
+    let cosines_sq = (cosines * cosines + (layer.eta - 1.0) * (layer.eta + 1.0)) * (inverse_eta * inverse_eta);
     if min(cosines_sq.x, cosines_sq.y) <= 0.0 {
         return next;
     }
-    let refracted = sqrt(cosines_sq);
-    next.wi = vec3<f32>(path.wi.xy / layer.eta, refracted.x);
-    next.wo = vec3<f32>(path.wo.xy / layer.eta, refracted.y);
-    next.across = path.across / layer.eta;
+    let secants = inverseSqrt(cosines_sq);
+    let refracted = cosines_sq * secants;
+    next.wi = vec3<f32>(path.wi.xy * inverse_eta, refracted.x);
+    next.wo = vec3<f32>(path.wo.xy * inverse_eta, refracted.y);
+    next.across = path.across * inverse_eta;
     next.open = true;
     // (1 - F) down, (1 - F) up, and part of what the cavities block comes back.
     let masking = min(cavity * low, 1.0);
