@@ -119,7 +119,10 @@ fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Varian
             for &form in &forms {
                 for (closed, constant) in styles(options) {
                     // What reads no table of D has it in closed form, or has none, either way.
-                    let reads_d = form == Form::Baked && tables.iter().any(|t| t.kind == TableKind::Distribution);
+                    let is_of_d =
+                        matches!(model, ShadingModel::Elek | ShadingModel::WeidlichWilkie | ShadingModel::Microfacet);
+                    let has_d = tables.iter().any(|t| t.kind == TableKind::Distribution);
+                    let reads_d = form == Form::Baked && is_of_d && has_d;
                     if closed && !reads_d && !options.closed {
                         continue;
                     }

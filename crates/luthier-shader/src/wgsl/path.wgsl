@@ -36,7 +36,7 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
 
     // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
     let bisector = vec3<f32>(path.across, path.wi.z + path.wo.z);
-    let length_sq = dot(bisector, bisector);
+    let length_sq = dot(bisector.xy, bisector.xy) + bisector.z * bisector.z;
     if length_sq < 1e-24 {
         return next;
     }
@@ -44,12 +44,10 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     let cos_theta_d = min(0.5 * length_sq * inverse_length, 1.0);
     let fresnel = luthier_fresnel_term(layer, cos_theta_d); //? !patina
     let fresnel = layer.tarnish * luthier_fresnel_term(layer, cos_theta_d); //? patina
-    // G of V-cavities is min(1, cavity * low). G / (low * high) has the product, which may underflow, only where both are alike.
-    let cavity = 4.0 * bisector.z * inverse_length * inverse_length;
-    let low = min(path.wi.z, path.wo.z);
-    let high = max(path.wi.z, path.wo.z);
-    let blocks = cavity * low < 1.0;
-    let shape = luthier_density(layer, bisector, length_sq) * select(1.0, cavity, blocks) / (4.0 * high * select(low, 1.0, blocks));
+    // G of V-cavities: 2 cos_theta_h / cos_theta_d times the lower cosine, at most 1. The product of both cosines may underflow.
+    let cavity = 4.0 * (bisector.z * inverse_length) * inverse_length;
+    let masking = min(cavity * min(path.wi.z, path.wo.z), 1.0);
+    let shape = luthier_density(layer, bisector, length_sq) * masking / max(4.0 * path.wi.z * path.wo.z, 1e-36);
     next.reflected = path.reflected + path.throughput * fresnel * shape;
 
     if layer.kind != LUTHIER_DIELECTRIC { //? below, conductor
@@ -77,11 +75,10 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     } //? flakes
     next.open = true; //? below
     // (1 - F) down, (1 - F) up, and part of what the cavities block comes back. //? below
-    let masking = min(cavity * low, 1.0); //? below
     let crossed = 1.0 - fresnel; //? below
     let kept = crossed * (1.0 - masking + crossed * masking); //? below
     next.throughput = path.throughput * kept; //? below, !absorption
-    let absorbed = exp(-layer.optical_depth * (secants.x + secants.y)); //? below, absorption, !flakes
+    let absorbed = exp2(-layer.optical_depth * (1.44269504 * (secants.x + secants.y))); //? below, absorption, !flakes
     let absorbed = exp(-layer.optical_depth * (1.0 / next.wi.z + 1.0 / next.wo.z)); //? below, absorption, flakes
     next.throughput = path.throughput * kept * absorbed; //? below, absorption
     return next;
