@@ -57,6 +57,9 @@ pub(crate) enum Verb {
     Compare(CompareOptions),
     /// What every shader of every material costs on real GPUs, which need not be here: a page in Markdown
     Cost(CostOptions),
+    /// Time every shader of every material on the graphics adapter at hand
+    #[cfg(feature = "gpu")]
+    Bench(BenchOptions),
     /// Compile the kernels of standard input on the null device that the environment names
     #[command(hide = true)]
     CostProbe {
@@ -232,6 +235,41 @@ pub(crate) struct CostOptions {
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
 }
+
+#[cfg(feature = "gpu")]
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Shaders take turns; what is printed are nanoseconds per evaluation. A software adapter is timed like any other, and named as one.\n\nExamples:\n  luthier bench materials/car-paint.toml\n  luthier bench mine.toml --model elek --repeats 100 --json -o bench.json"
+)]
+pub(crate) struct BenchOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Model to time besides Phong's; may be given again. By default all
+    #[arg(long, value_name = "NAME", value_parser = shading_model())]
+    pub(crate) model: Vec<ModelSetting>,
+    /// Evaluations of one run, at least
+    #[arg(long, value_name = "N", default_value_t = 1 << 20, value_parser = clap::value_parser!(u32).range(1..=60_000_000))]
+    pub(crate) evaluations: u32,
+    /// Runs of each shader that do not count
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub(crate) warm_up: u32,
+    /// Runs of each shader that count
+    #[arg(long, value_name = "N", default_value_t = BENCH_REPEATS)]
+    pub(crate) repeats: NonZeroU32,
+    /// Use the graphics adapter whose name contains this
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+    /// JSON instead of a table
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// File to write instead of standard output
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+/// Runs that count: the median is then safe from fourteen outliers.
+#[cfg(feature = "gpu")]
+const BENCH_REPEATS: NonZeroU32 = NonZeroU32::new(30).expect("not zero");
 
 /// A family of GPUs by its name.
 #[derive(Debug, Clone, Copy)]

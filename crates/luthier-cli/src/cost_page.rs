@@ -41,9 +41,14 @@ pub(crate) struct CostRow {
     pub(crate) counts: Counts,
 }
 
+/// Whether shaders of a model read D from a table.
+pub(crate) fn reads_d(model: ShadingModel) -> bool {
+    matches!(model, ShadingModel::Elek | ShadingModel::WeidlichWilkie | ShadingModel::Microfacet)
+}
+
 /// How a row of the page is called.
-pub(crate) fn label(form: &str, closed: bool, constant: bool) -> String {
-    let d = if form == "baked" && closed { ", closed D" } else { "" };
+pub(crate) fn label(model: ShadingModel, form: &str, closed: bool, constant: bool) -> String {
+    let d = if form == "baked" && closed && reads_d(model) { ", closed D" } else { "" };
     let numbers = if constant { ", constants" } else { "" };
     format!("{form}{d}{numbers}")
 }
@@ -115,7 +120,7 @@ impl CostReport {
                 out,
                 "| {} | {} | {} | {} | {} | {} |",
                 row.model.name(),
-                label(&row.form, row.closed, row.constant),
+                label(row.model, &row.form, row.closed, row.constant),
                 range(&|c| c.inverse_throughput),
                 range(&|c| c.issue_cycles),
                 range(&|c| c.vgprs),

@@ -45,6 +45,8 @@ fn main() -> ExitCode {
         Verb::Gallery(options) => verb::gallery::run(options),
         #[cfg(feature = "gpu")]
         Verb::Compare(options) => verb::compare::run(options),
+        #[cfg(feature = "gpu")]
+        Verb::Bench(options) => verb::bench::run(options),
         Verb::Cost(options) => verb::cost::run(options),
         Verb::CostProbe { family, assembly } => verb::cost::probe(family.0, *assembly),
         Verb::Shader(options) => verb::shader::run(options),

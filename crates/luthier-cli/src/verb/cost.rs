@@ -10,7 +10,7 @@ use luthier_shader::{Form, MaterialSet, TableFace};
 
 use crate::bake_files::{GENERATOR, material_entries};
 use crate::cli::CostOptions;
-use crate::cost_page::{CostReport, CostRow, FamilyCost};
+use crate::cost_page::{CostReport, CostRow, FamilyCost, reads_d};
 use crate::cost_papers;
 use crate::failure::{Failure, Outcome, files};
 use crate::materials::{read, read_image, valid};
@@ -119,17 +119,15 @@ fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Varian
             for &form in &forms {
                 for (closed, constant) in styles(options) {
                     // What reads no table of D has it in closed form, or has none, either way.
-                    let is_of_d =
-                        matches!(model, ShadingModel::Elek | ShadingModel::WeidlichWilkie | ShadingModel::Microfacet);
                     let has_d = tables.iter().any(|t| t.kind == TableKind::Distribution);
-                    let reads_d = form == Form::Baked && is_of_d && has_d;
-                    if closed && !reads_d && !options.closed {
+                    let has_table = form == Form::Baked && reads_d(model) && has_d;
+                    if closed && !has_table && !options.closed {
                         continue;
                     }
                     let set = MaterialSet { materials: &entries, tables: without_d(&tables, closed) };
                     let style = Style { form, constant, approximate: false };
                     let kernel = Kernel::of_set(&set, style, Harness::Bare).map_err(Failure::input)?;
-                    let closed = closed || !reads_d;
+                    let closed = closed || !has_table;
                     variants.push(Variant { material: name.clone(), model, style, closed, kernel });
                 }
             }

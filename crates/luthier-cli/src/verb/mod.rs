@@ -1,6 +1,8 @@
 //! One module per verb.
 
 pub(crate) mod bake;
+#[cfg(feature = "gpu")]
+pub(crate) mod bench;
 pub(crate) mod check;
 #[cfg(feature = "gpu")]
 pub(crate) mod compare;

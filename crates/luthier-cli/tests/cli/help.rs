@@ -1,9 +1,12 @@
 use crate::workshop::Workshop;
 
 const VERBS: &[&str] = if cfg!(feature = "gpu") {
-    &["bake", "check", "report", "preview", "gallery", "compare", "shader", "models", "eval", "ior", "schema"]
+    &[
+        "bake", "check", "report", "preview", "gallery", "compare", "bench", "cost", "shader", "models", "eval", "ior",
+        "schema",
+    ]
 } else {
-    &["bake", "check", "report", "shader", "models", "eval", "ior", "schema"]
+    &["bake", "check", "report", "cost", "shader", "models", "eval", "ior", "schema"]
 };
 
 #[test]

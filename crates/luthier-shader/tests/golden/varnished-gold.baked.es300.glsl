@@ -52,7 +52,6 @@ const vec2 LUTHIER_FRESNEL_SIZE = vec2(128.0, 3.0);
 const vec2 LUTHIER_DISTRIBUTION_SIZE = vec2(512.0, 1024.0);
 const vec2 LUTHIER_DISTRIBUTION_TILE = vec2(512.0, 512.0);
 const float LUTHIER_PI = 3.1415927;
-const uint LUTHIER_DIELECTRIC = 0u;
 const uint LUTHIER_MATERIAL_WORDS = 11u;
 const uint LUTHIER_LAYER_WORDS = 10u;
 
@@ -132,22 +131,17 @@ LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     LuthierPath next = path;
     next.open = false;
     vec3 bisector = vec3(path.across, path.wi.z + path.wo.z);
-    float length_sq = dot(bisector, bisector);
+    float length_sq = dot(bisector.xy, bisector.xy) + (bisector.z * bisector.z);
     if (length_sq < 1e-24) {
         return next;
     }
     float inverse_length = inversesqrt(length_sq);
     float cos_theta_d = min((0.5 * length_sq) * inverse_length, 1.0);
     vec3 fresnel = luthier_fresnel_term(layer, cos_theta_d);
-    float cavity = ((4.0 * bisector.z) * inverse_length) * inverse_length;
-    float low = min(path.wi.z, path.wo.z);
-    float high = max(path.wi.z, path.wo.z);
-    bool blocks = (cavity * low) < 1.0;
-    float shape = (luthier_density(layer, bisector, length_sq) * (blocks ? cavity : 1.0)) / ((4.0 * high) * (blocks ? 1.0 : low));
+    float cavity = (4.0 * (bisector.z * inverse_length)) * inverse_length;
+    float masking = min(cavity * min(path.wi.z, path.wo.z), 1.0);
+    float shape = (luthier_density(layer, bisector, length_sq) * masking) / max((4.0 * path.wi.z) * path.wo.z, 1e-36);
     next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
-    if (layer.kind != LUTHIER_DIELECTRIC) {
-        return next;
-    }
     vec2 cosines = vec2(path.wi.z, path.wo.z);
     float inverse_eta = 1.0 / layer.eta;
     vec2 cosines_sq = ((cosines * cosines) + vec2((layer.eta - 1.0) * (layer.eta + 1.0))) * (inverse_eta * inverse_eta);
@@ -160,7 +154,6 @@ LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     next.wo = vec3(path.wo.xy * inverse_eta, refracted.y);
     next.across = path.across * inverse_eta;
     next.open = true;
-    float masking = min(cavity * low, 1.0);
     vec3 crossed = vec3(1.0) - fresnel;
     vec3 kept = crossed * (vec3(1.0 - masking) + (crossed * masking));
     next.throughput = path.throughput * kept;
@@ -178,10 +171,9 @@ LuthierPath luthier_elek_interface(LuthierPath path, LuthierLayer layer) {
 
 // f cos_theta_i of the model `elek`, both directions above the horizon.
 vec3 luthier_eval_elek(uint material, vec3 wi, vec3 wo) {
-    uint count = luthier_layer_count(material);
     LuthierPath path = LuthierPath(wi, wo, wi.xy + wo.xy, vec3(wi.z), vec3(0.0), 0.0, true);
     path = luthier_elek_interface(path, luthier_layer(material, 0u));
-    if (path.open && (count > 1u)) {
+    if (path.open) {
         path = luthier_elek_interface(path, luthier_layer(material, 1u));
     }
     return path.reflected;

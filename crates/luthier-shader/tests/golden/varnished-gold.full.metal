@@ -61,7 +61,6 @@ struct LuthierPath {
 
 constant uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
 constant float LUTHIER_PI = 3.1415927;
-constant uint LUTHIER_DIELECTRIC = 0u;
 constant uint LUTHIER_MATERIAL_WORDS = 11u;
 constant uint LUTHIER_LAYER_WORDS = 10u;
 
@@ -166,22 +165,17 @@ LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     LuthierPath next = path;
     next.open = false;
     metal::float3 bisector = metal::float3(path.across, path.wi.z + path.wo.z);
-    float length_sq = metal::dot(bisector, bisector);
+    float length_sq = metal::dot(bisector.xy, bisector.xy) + (bisector.z * bisector.z);
     if (length_sq < 0.000000000000000000000001) {
         return next;
     }
     float inverse_length = metal::rsqrt(length_sq);
     float cos_theta_d = metal::min((0.5 * length_sq) * inverse_length, 1.0);
     metal::float3 fresnel = luthier_fresnel_term(layer, cos_theta_d);
-    float cavity = ((4.0 * bisector.z) * inverse_length) * inverse_length;
-    float low = metal::min(path.wi.z, path.wo.z);
-    float high = metal::max(path.wi.z, path.wo.z);
-    bool blocks = (cavity * low) < 1.0;
-    float shape = (luthier_density(layer, bisector, length_sq) * (blocks ? cavity : 1.0)) / ((4.0 * high) * (blocks ? 1.0 : low));
+    float cavity = (4.0 * (bisector.z * inverse_length)) * inverse_length;
+    float masking = metal::min(cavity * metal::min(path.wi.z, path.wo.z), 1.0);
+    float shape = (luthier_density(layer, bisector, length_sq) * masking) / metal::max((4.0 * path.wi.z) * path.wo.z, 0.000000000000000000000000000000000001);
     next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
-    if (layer.kind != LUTHIER_DIELECTRIC) {
-        return next;
-    }
     metal::float2 cosines = metal::float2(path.wi.z, path.wo.z);
     float inverse_eta = 1.0 / layer.eta;
     metal::float2 cosines_sq = ((cosines * cosines) + metal::float2((layer.eta - 1.0) * (layer.eta + 1.0))) * (inverse_eta * inverse_eta);
@@ -194,7 +188,6 @@ LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     next.wo = metal::float3(path.wo.xy * inverse_eta, refracted.y);
     next.across = path.across * inverse_eta;
     next.open = true;
-    float masking = metal::min(cavity * low, 1.0);
     metal::float3 crossed = metal::float3(1.0) - fresnel;
     metal::float3 kept = crossed * (metal::float3(1.0 - masking) + (crossed * masking));
     next.throughput = path.throughput * kept;
@@ -217,10 +210,9 @@ metal::float3 luthier_eval_elek(
     metal::float3 wo,
     constant LuthierMaterials& luthier_materials
 ) {
-    uint count = luthier_layer_count(material, luthier_materials);
     LuthierPath path = LuthierPath {wi, wo, wi.xy + wo.xy, {}, metal::float3(wi.z), metal::float3(0.0), 0.0, true};
     path = luthier_elek_interface(path, luthier_layer(material, 0u, luthier_materials));
-    if (path.open & (count > 1u)) {
+    if (path.open) {
         path = luthier_elek_interface(path, luthier_layer(material, 1u, luthier_materials));
     }
     return path.reflected;

@@ -13,7 +13,6 @@ const LUTHIER_MATERIAL_VARNISHED_GOLD: u32 = 0u;
 
 const LUTHIER_PI: f32 = 3.14159265;
 
-const LUTHIER_DIELECTRIC: u32 = 0u;
 const LUTHIER_MATERIAL_WORDS: u32 = 11u;
 const LUTHIER_LAYER_WORDS: u32 = 10u;
 
@@ -156,24 +155,19 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
 
     // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
     let bisector = vec3<f32>(path.across, path.wi.z + path.wo.z);
-    let length_sq = dot(bisector, bisector);
+    let length_sq = dot(bisector.xy, bisector.xy) + bisector.z * bisector.z;
     if length_sq < 1e-24 {
         return next;
     }
     let inverse_length = inverseSqrt(length_sq);
     let cos_theta_d = min(0.5 * length_sq * inverse_length, 1.0);
     let fresnel = luthier_fresnel_term(layer, cos_theta_d);
-    // G of V-cavities is min(1, cavity * low). G / (low * high) has the product, which may underflow, only where both are alike.
-    let cavity = 4.0 * bisector.z * inverse_length * inverse_length;
-    let low = min(path.wi.z, path.wo.z);
-    let high = max(path.wi.z, path.wo.z);
-    let blocks = cavity * low < 1.0;
-    let shape = luthier_density(layer, bisector, length_sq) * select(1.0, cavity, blocks) / (4.0 * high * select(low, 1.0, blocks));
+    // G of V-cavities: 2 cos_theta_h / cos_theta_d times the lower cosine, at most 1. The product of both cosines may underflow.
+    let cavity = 4.0 * (bisector.z * inverse_length) * inverse_length;
+    let masking = min(cavity * min(path.wi.z, path.wo.z), 1.0);
+    let shape = luthier_density(layer, bisector, length_sq) * masking / max(4.0 * path.wi.z * path.wo.z, 1e-36);
     next.reflected = path.reflected + path.throughput * fresnel * shape;
 
-    if layer.kind != LUTHIER_DIELECTRIC {
-        return next;
-    }
     // Refracted at the normal; the squared cosine is written so that it does not cancel for an index near 1.
     let cosines = vec2<f32>(path.wi.z, path.wo.z);
     let inverse_eta = 1.0 / layer.eta;
@@ -188,7 +182,6 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     next.across = path.across * inverse_eta;
     next.open = true;
     // (1 - F) down, (1 - F) up, and part of what the cavities block comes back.
-    let masking = min(cavity * low, 1.0);
     let crossed = 1.0 - fresnel;
     let kept = crossed * (1.0 - masking + crossed * masking);
     next.throughput = path.throughput * kept;
@@ -206,10 +199,9 @@ fn luthier_elek_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath
 
 /// f cos_theta_i of the model `elek`, both directions above the horizon.
 fn luthier_eval_elek(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
-    let count = luthier_layer_count(material);
     var path = LuthierPath(wi, wo, wi.xy + wo.xy, vec3<f32>(wi.z), vec3<f32>(0.0), 0.0, true);
     path = luthier_elek_interface(path, luthier_layer(material, 0u));
-    if path.open & (count > 1u) {
+    if path.open {
         path = luthier_elek_interface(path, luthier_layer(material, 1u));
     }
     return path.reflected;

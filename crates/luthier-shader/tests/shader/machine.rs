@@ -376,6 +376,7 @@ fn math(fun: MathFunction, operands: &[Value]) -> Value {
             M::Fract => a - a.floor(),
             M::Round => a.round_ties_even(),
             M::Exp => a.exp(),
+            M::Exp2 => a.exp2(),
             M::Log => a.ln(),
             M::Log2 => a.log2(),
             M::InverseSqrt => 1.0 / a.sqrt(),
