@@ -6,8 +6,11 @@ use luthier_cost::{Counts, Family};
 use luthier_lut::ShadingModel;
 use serde::Serialize;
 
+/// Version of the JSON.
+const SCHEMA: u32 = 1;
+
 /// All that was counted. The JSON of it is described in docs/measurements/README.md.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Default)]
 pub(crate) struct CostReport {
     pub(crate) generator: String,
     /// Driver and version.
@@ -54,6 +57,20 @@ pub(crate) fn label(model: ShadingModel, form: &str, closed: bool, constant: boo
 }
 
 impl CostReport {
+    /// JSON, a row of it per line.
+    pub(crate) fn to_json(&self) -> Result<String, serde_json::Error> {
+        let lines = |values: Vec<String>| format!("[\n    {}\n  ]", values.join(",\n    "));
+        let families = self.families.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
+        let rows = self.rows.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
+        Ok(format!(
+            "{{\n  \"schema\": {SCHEMA},\n  \"generator\": {},\n  \"driver\": {},\n  \"families\": {},\n  \"rows\": {}\n}}\n",
+            serde_json::to_string(&self.generator)?,
+            serde_json::to_string(&self.driver)?,
+            lines(families),
+            lines(rows),
+        ))
+    }
+
     pub(crate) fn to_markdown(&self, command: &str, papers: &str) -> String {
         let chips: Vec<String> = self
             .families

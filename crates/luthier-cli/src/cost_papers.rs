@@ -145,6 +145,26 @@ fn errors(_: &Material, texts: &[String]) -> Outcome<Vec<Option<f64>>> {
     Ok(vec![None; texts.len()])
 }
 
+/// What the machine code says of the figures above.
+const WHY: &str = "
+**What costs, and what the goal asks for**
+
+- The table of D is dearer than D. Its coordinate is an eighth root of an angle: an arc tangent, three roots and two quotients stand \
+against one exponential and one quotient of Beckmann's closed form, which has no error and no texels. Elek's table pays where \
+a chip has slow exponentials; these have none. `luthier shader --closed` emits the closed form.
+- The table of F pays over metals: complex roots at three wavelengths go. Below a clear coat over a diffuse base there is one \
+Fresnel term only, and with constants for its index the compiler reduces that to little more than the fetch: the share of \
+full then approaches 1.
+- Without Fresnel and D an interface still has the half vector, the masking, a quotient by both cosines, and on the way down two \
+refracted cosines and three exponentials of the absorption. The model `microfacet`, one interface, is already above twice Phong in the tables below. So \
+1.5 of Phong is out of reach of any shader that evaluates two interfaces, and is reached or nearly so only where the normal map and the \
+environment are counted on both sides, as the papers did. It would need one lobe fitted to the stack.
+- A lower share of full needs cheaper shares of what both forms have in common; what could be shared (one reciprocal root per half vector, one \
+quotient per interface, reciprocal roots for refraction) is. Each such saving lowers both forms.
+- Constants save instructions (*issue*) in every row. In the model's inverse throughput some rows rise: a branch that the constants decide is gone, \
+and with it the discount for what lies under it.
+";
+
 /// What is compared.
 struct Measure {
     title: &'static str,
@@ -214,6 +234,7 @@ pub(crate) fn to_markdown(cases: &[PaperCase], counts: &[FamilyCounts]) -> Strin
         }
         verdict(&mut out, case, here, counts);
     }
+    out.push_str(WHY);
     out
 }
 

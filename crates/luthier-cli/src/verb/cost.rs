@@ -69,7 +69,7 @@ pub(crate) fn run(options: &CostOptions) -> Outcome {
         paper_counts.push((family, *harness, *framed, others.to_vec()));
     }
     let text = if options.json {
-        format!("{:#}\n", serde_json::to_value(&report).map_err(Failure::input)?)
+        report.to_json().map_err(Failure::input)?
     } else {
         let papers = cost_papers::to_markdown(&papers, &paper_counts);
         report.to_markdown(&command(options), &papers)

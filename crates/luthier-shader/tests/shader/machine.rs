@@ -325,6 +325,7 @@ fn binary(op: BinaryOperator, left: &Value, right: &Value) -> Value {
         (Op::Multiply, F(a), F(b)) => F(a * b),
         (Op::Divide, F(a), F(b)) => F(a / b),
         (Op::Add, U(a), U(b)) => U(a.wrapping_add(*b)),
+        (Op::Subtract, U(a), U(b)) => U(a.wrapping_sub(*b)),
         (Op::Multiply, U(a), U(b)) => U(a.wrapping_mul(*b)),
         (Op::ShiftRight, U(a), U(b)) => U(a >> b),
         (Op::ExclusiveOr, U(a), U(b)) => U(a ^ b),
