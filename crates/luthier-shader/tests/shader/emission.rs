@@ -213,7 +213,8 @@ fn sets_that_cannot_be_emitted_say_why() {
 #[test]
 fn one_material_can_be_constants() {
     for layers in [vec![clear(), conductor()], vec![filmed(), dielectric(), diffuse(0.4)], vec![conductor()]] {
-        for model in luthier_lut::ShadingModel::ALL {
+        use luthier_lut::ShadingModel::{Elek, GranierHeidrich, Microfacet, Phong, WeidlichWilkie};
+        for model in [Elek, WeidlichWilkie, GranierHeidrich, Phong, Microfacet] {
             let materials = [luthier_lut::MaterialEntry { model, ..material("sample", &layers) }];
             let set = MaterialSet { materials: &materials, tables: tables() };
             for form in Form::ALL {
