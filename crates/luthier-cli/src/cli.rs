@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use luthier_cost::Family;
 use luthier_material::ModelSetting;
 use luthier_shader::{Form, Target};
 
@@ -17,7 +18,7 @@ Exit codes:
   1  an input is invalid, or a budget is exceeded or cannot be met
   2  the command line is wrong
   3  a file cannot be read or written
-  4  no usable graphics adapter or display, or it failed
+  4  no usable graphics adapter, driver or display, or it failed
 
 Examples:
   luthier bake materials            tables, manifest and shaders into out/
@@ -62,6 +63,20 @@ pub(crate) enum Verb {
     /// Make the figures of the papers anew
     #[cfg(feature = "gpu")]
     Figures(FiguresOptions),
+    /// What every shader of every material costs on real GPUs, which need not be here: a page in Markdown
+    Cost(CostOptions),
+    /// Time every shader of every material on the graphics adapter at hand
+    #[cfg(feature = "gpu")]
+    Bench(BenchOptions),
+    /// Compile the kernels of standard input on the null device that the environment names
+    #[command(hide = true)]
+    CostProbe {
+        #[arg(value_parser = family())]
+        family: FamilyName,
+        /// Machine code instead of counts
+        #[arg(long)]
+        assembly: bool,
+    },
     /// Print the shader of some materials, or write it to a file
     Shader(ShaderOptions),
     /// List the reflectance models
@@ -238,6 +253,95 @@ mod view;
 #[cfg(feature = "view")]
 pub(crate) use view::{ThemeName, ViewOptions};
 
+const COST_EXAMPLES: &str = "\
+Mesa's RADV driver compiles for these GPUs without having one; where it is missing, the exit code is 4. What making directions \
+and writing the value costs is subtracted. Every shader comes with its material in a buffer and as constants of the code, and the \
+form `baked` with D from its table and in closed form, unless named.
+
+Examples:
+  luthier cost materials -o docs/cost.md
+  luthier cost mine.toml --model elek --model phong --family rdna2 --json
+  luthier cost materials --set --form baked
+  luthier cost mine.toml --model elek --form baked --closed --constant --family rdna2 --assembly";
+
+#[derive(Debug, Args)]
+#[command(after_help = COST_EXAMPLES)]
+pub(crate) struct CostOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Model to compile; may be given again. By default all
+    #[arg(long, value_name = "NAME", value_parser = shading_model())]
+    pub(crate) model: Vec<ModelSetting>,
+    /// Form to compile; may be given again. By default both
+    #[arg(long, value_enum, value_name = "FORM")]
+    pub(crate) form: Vec<FormName>,
+    /// Instruction set: gcn5, rdna2 or rdna3; may be given again. By default all
+    #[arg(long, value_name = "NAME", value_parser = family())]
+    pub(crate) family: Vec<FamilyName>,
+    /// All materials in one shader, as a bake of them has it, instead of each in its own
+    #[arg(long)]
+    pub(crate) set: bool,
+    /// Only shaders whose D is a closed form
+    #[arg(long)]
+    pub(crate) closed: bool,
+    /// Only shaders whose material is constants of the code
+    #[arg(long, conflicts_with = "set")]
+    pub(crate) constant: bool,
+    /// Print the machine code of one kernel
+    #[arg(long, conflicts_with_all = ["json", "output"])]
+    pub(crate) assembly: bool,
+    /// JSON instead of Markdown
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// File to write instead of standard output
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+#[cfg(feature = "gpu")]
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Shaders take turns; what is printed are nanoseconds per evaluation. A software adapter is timed like any other, and named as one.\n\nExamples:\n  luthier bench materials/car-paint.toml\n  luthier bench mine.toml --model elek --repeats 100 --json -o bench.json"
+)]
+pub(crate) struct BenchOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Model to time besides Phong's; may be given again. By default all
+    #[arg(long, value_name = "NAME", value_parser = shading_model())]
+    pub(crate) model: Vec<ModelSetting>,
+    /// Evaluations of one run, at least
+    #[arg(long, value_name = "N", default_value_t = 1 << 20, value_parser = clap::value_parser!(u32).range(1..=60_000_000))]
+    pub(crate) evaluations: u32,
+    /// Runs of each shader that do not count
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub(crate) warm_up: u32,
+    /// Runs of each shader that count
+    #[arg(long, value_name = "N", default_value_t = BENCH_REPEATS)]
+    pub(crate) repeats: NonZeroU32,
+    /// Use the graphics adapter whose name contains this
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+    /// JSON instead of a table
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// File to write instead of standard output
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+/// Runs that count: the median is then safe from fourteen outliers.
+#[cfg(feature = "gpu")]
+const BENCH_REPEATS: NonZeroU32 = NonZeroU32::new(30).expect("not zero");
+
+/// A family of GPUs by its name.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FamilyName(pub(crate) Family);
+
+fn family() -> impl TypedValueParser<Value = FamilyName> {
+    PossibleValuesParser::new(Family::ALL.map(Family::name))
+        .try_map(|name| Family::from_name(&name).map(FamilyName).ok_or_else(|| format!("no family `{name}`")))
+}
+
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples:\n  luthier shader materials\n  luthier shader mine.toml --target glsl-es300 --form full --complete\n  luthier shader mine.toml --target spirv --complete -o mine.spv"
@@ -253,6 +357,12 @@ pub(crate) struct ShaderOptions {
     /// Reads the tables, or evaluates everything in ALU
     #[arg(long, value_enum, default_value_t = FormName::Baked)]
     pub(crate) form: FormName,
+    /// D in closed form instead of from its table
+    #[arg(long)]
+    pub(crate) closed: bool,
+    /// The numbers of one material as constants of the code instead of a buffer
+    #[arg(long, conflicts_with = "complete")]
+    pub(crate) constant: bool,
     /// A complete small fragment shader instead of functions to paste (SPIR-V: instead of a library to link)
     #[arg(long)]
     pub(crate) complete: bool,

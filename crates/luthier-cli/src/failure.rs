@@ -17,8 +17,7 @@ pub(crate) enum Failure {
     Usage(anyhow::Error),
     /// Exit code 3: a file cannot be read or written.
     Files(anyhow::Error),
-    /// Exit code 4: no usable graphics adapter, or it failed.
-    #[cfg(feature = "gpu")]
+    /// Exit code 4: no usable graphics adapter or driver, or it failed.
     Device(anyhow::Error),
     /// Exit code 0: whoever reads our output has had enough.
     BrokenPipe,
@@ -55,7 +54,6 @@ impl Failure {
             Self::Input(error) => (1, Some(error)),
             Self::Usage(error) => (2, Some(error)),
             Self::Files(error) => (3, Some(error)),
-            #[cfg(feature = "gpu")]
             Self::Device(error) => (4, Some(error)),
         };
         if let Some(error) = error {

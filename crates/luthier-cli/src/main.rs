@@ -3,6 +3,8 @@
 mod artefacts;
 mod bake_files;
 mod cli;
+mod cost_page;
+mod cost_papers;
 #[cfg(feature = "gpu")]
 mod device;
 mod directions;
@@ -50,6 +52,10 @@ fn main() -> ExitCode {
         Verb::View(options) => verb::view::run(options),
         #[cfg(feature = "gpu")]
         Verb::Figures(options) => verb::figures::run(options),
+        #[cfg(feature = "gpu")]
+        Verb::Bench(options) => verb::bench::run(options),
+        Verb::Cost(options) => verb::cost::run(options),
+        Verb::CostProbe { family, assembly } => verb::cost::probe(family.0, *assembly),
         Verb::Shader(options) => verb::shader::run(options),
         Verb::Models(options) => verb::models::run(options),
         Verb::Eval(options) => verb::eval::run(options),

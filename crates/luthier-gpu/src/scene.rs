@@ -101,6 +101,11 @@ impl Scene {
         self.wgsl.contains(declaration)
     }
 
+    /// The pipeline of a kernel.
+    pub(crate) fn compile(&self, kernel: &str) -> Result<wgpu::ComputePipeline, GpuError> {
+        compile(&self.context, &self.kernels, &self.form, &self.wgsl, kernel)
+    }
+
     /// The pipeline in `cell`, compiled at its first use.
     pub(crate) fn pipeline<'a>(
         &self,
@@ -110,7 +115,7 @@ impl Scene {
         match cell.get() {
             Some(pipeline) => Ok(pipeline),
             None => {
-                let pipeline = compile(&self.context, &self.kernels, &self.form, &self.wgsl, kernel)?;
+                let pipeline = self.compile(kernel)?;
                 Ok(cell.get_or_init(|| pipeline))
             }
         }

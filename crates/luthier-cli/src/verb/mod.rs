@@ -1,10 +1,13 @@
 //! One module per verb.
 
 pub(crate) mod bake;
+#[cfg(feature = "gpu")]
+pub(crate) mod bench;
 pub(crate) mod budgets;
 pub(crate) mod check;
 #[cfg(feature = "gpu")]
 pub(crate) mod compare;
+pub(crate) mod cost;
 pub(crate) mod eval;
 #[cfg(feature = "gpu")]
 pub(crate) mod figures;

@@ -2,9 +2,12 @@
 
 mod bake;
 mod bake_refusals;
+#[cfg(feature = "gpu")]
+mod bench;
 mod check;
 #[cfg(feature = "gpu")]
 mod compare;
+mod cost;
 mod crate_graph;
 mod eval;
 mod eval_furnace;
