@@ -46,7 +46,7 @@ else
 fi
 
 step "unit and integration tests"
-cargo test --workspace --locked
+cargo test --workspace --locked --features luthier-cli/view
 
 step "the lean build has no wgpu"
 cargo check --locked -p luthier-cli --no-default-features
