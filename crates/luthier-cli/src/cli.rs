@@ -18,7 +18,7 @@ Exit codes:
   1  an input is invalid, or a budget is exceeded
   2  the command line is wrong
   3  a file cannot be read or written
-  4  no usable graphics adapter or driver, or it failed
+  4  no usable graphics adapter, driver or display, or it failed
 
 Examples:
   luthier bake materials            tables, manifest and shaders into out/
@@ -69,6 +69,12 @@ pub(crate) enum Verb {
         #[arg(long)]
         assembly: bool,
     },
+    /// Open a window: turn, light and edit materials, and see them change with their files
+    #[cfg(feature = "view")]
+    View(ViewOptions),
+    /// Make the figures of the papers anew
+    #[cfg(feature = "gpu")]
+    Figures(FiguresOptions),
     /// Print the shader of some materials, or write it to a file
     Shader(ShaderOptions),
     /// List the reflectance models
@@ -187,7 +193,11 @@ pub(crate) struct ParityOptions {
 }
 
 #[cfg(feature = "gpu")]
+mod figures;
+#[cfg(feature = "gpu")]
 mod render;
+#[cfg(feature = "gpu")]
+pub(crate) use figures::FiguresOptions;
 #[cfg(feature = "gpu")]
 pub(crate) use render::{CompareOptions, GalleryOptions, Look, PreviewOptions, ShaderChoice, ShapeName};
 
@@ -279,6 +289,11 @@ fn family() -> impl TypedValueParser<Value = FamilyName> {
     PossibleValuesParser::new(Family::ALL.map(Family::name))
         .try_map(|name| Family::from_name(&name).map(FamilyName).ok_or_else(|| format!("no family `{name}`")))
 }
+
+#[cfg(feature = "view")]
+mod view;
+#[cfg(feature = "view")]
+pub(crate) use view::{ThemeName, ViewOptions};
 
 #[derive(Debug, Args)]
 #[command(

@@ -24,6 +24,8 @@ mod reradiation;
 mod sheet;
 mod staging;
 mod verb;
+#[cfg(feature = "view")]
+mod view_host;
 
 use std::process::ExitCode;
 
@@ -49,6 +51,10 @@ fn main() -> ExitCode {
         Verb::Bench(options) => verb::bench::run(options),
         Verb::Cost(options) => verb::cost::run(options),
         Verb::CostProbe { family, assembly } => verb::cost::probe(family.0, *assembly),
+        #[cfg(feature = "view")]
+        Verb::View(options) => verb::view::run(options),
+        #[cfg(feature = "gpu")]
+        Verb::Figures(options) => verb::figures::run(options),
         Verb::Shader(options) => verb::shader::run(options),
         Verb::Models(options) => verb::models::run(options),
         Verb::Eval(options) => verb::eval::run(options),

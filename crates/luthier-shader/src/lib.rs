@@ -5,8 +5,9 @@
 //! paste: `luthier_eval` and its helpers, no entry point, group 0 for [`bindings`]. [`complete`] puts a small fragment shader
 //! around it. [`emit_spirv`] and [`complete_spirv`] give the same as SPIR-V: a library to link, and a shader.
 //!
-//! `luthier_eval` has no loops, but one step for every layer that a material of the set may have. The functions are finite for all unit directions and slope parameters from 0.001 to 1. GLSL, HLSL and MSL are naga's
-//! output with our names and comments put back.
+//! `luthier_eval` has no loops, but one step for every layer that a material of the set may have. The functions are finite for all
+//! unit directions and slope parameters from 0.001 to 1. GLSL, HLSL and MSL are naga's output with our names and comments put back;
+//! nothing on Linux can check MSL, and the snippet says so.
 //!
 //! Effects: flakes tilt what lies below the first interface, and patina covers it, in the models `elek` and `weidlich-wilkie`;
 //! models without such a layer (`granier-heidrich`, `phong`, `microfacet`) or that mix all layers into a few lobes (`belcour`,

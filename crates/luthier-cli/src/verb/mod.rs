@@ -9,6 +9,8 @@ pub(crate) mod compare;
 pub(crate) mod cost;
 pub(crate) mod eval;
 #[cfg(feature = "gpu")]
+pub(crate) mod figures;
+#[cfg(feature = "gpu")]
 pub(crate) mod gallery;
 pub(crate) mod ior;
 pub(crate) mod models;
@@ -19,3 +21,5 @@ pub(crate) mod preview;
 pub(crate) mod report;
 pub(crate) mod schema;
 pub(crate) mod shader;
+#[cfg(feature = "view")]
+pub(crate) mod view;

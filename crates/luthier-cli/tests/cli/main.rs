@@ -12,6 +12,8 @@ mod crate_graph;
 mod eval;
 mod eval_furnace;
 mod eval_inputs;
+#[cfg(feature = "gpu")]
+mod figures;
 mod fluorescence;
 #[cfg(feature = "gpu")]
 mod gallery;
@@ -31,4 +33,6 @@ mod report;
 mod schema;
 mod shader;
 mod thickness_map;
+#[cfg(feature = "view")]
+mod view;
 mod workshop;
