@@ -57,12 +57,6 @@ pub(crate) enum Verb {
     /// Render a material with two shaders and compare the pictures
     #[cfg(feature = "gpu")]
     Compare(CompareOptions),
-    /// Open a window: turn, light and edit materials, and see them change with their files
-    #[cfg(feature = "view")]
-    View(ViewOptions),
-    /// Make the figures of the papers anew
-    #[cfg(feature = "gpu")]
-    Figures(FiguresOptions),
     /// What every shader of every material costs on real GPUs, which need not be here: a page in Markdown
     Cost(CostOptions),
     /// Time every shader of every material on the graphics adapter at hand
@@ -77,6 +71,12 @@ pub(crate) enum Verb {
         #[arg(long)]
         assembly: bool,
     },
+    /// Open a window: turn, light and edit materials, and see them change with their files
+    #[cfg(feature = "view")]
+    View(ViewOptions),
+    /// Make the figures of the papers anew
+    #[cfg(feature = "gpu")]
+    Figures(FiguresOptions),
     /// Print the shader of some materials, or write it to a file
     Shader(ShaderOptions),
     /// List the reflectance models
@@ -248,11 +248,6 @@ pub(crate) use figures::FiguresOptions;
 #[cfg(feature = "gpu")]
 pub(crate) use render::{CompareOptions, GalleryOptions, Look, PreviewOptions, ShaderChoice, ShapeName};
 
-#[cfg(feature = "view")]
-mod view;
-#[cfg(feature = "view")]
-pub(crate) use view::{ThemeName, ViewOptions};
-
 const COST_EXAMPLES: &str = "\
 Mesa's RADV driver compiles for these GPUs without having one; where it is missing, the exit code is 4. What making directions \
 and writing the value costs is subtracted. Every shader comes with its material in a buffer and as constants of the code, and the \
@@ -341,6 +336,11 @@ fn family() -> impl TypedValueParser<Value = FamilyName> {
     PossibleValuesParser::new(Family::ALL.map(Family::name))
         .try_map(|name| Family::from_name(&name).map(FamilyName).ok_or_else(|| format!("no family `{name}`")))
 }
+
+#[cfg(feature = "view")]
+mod view;
+#[cfg(feature = "view")]
+pub(crate) use view::{ThemeName, ViewOptions};
 
 #[derive(Debug, Args)]
 #[command(
