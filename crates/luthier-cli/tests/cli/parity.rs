@@ -5,7 +5,10 @@ use crate::workshop::{Workshop, lacks_adapter};
 
 #[test]
 fn every_shader_is_compared_with_its_twin() {
-    let workshop = Workshop::with(&[("m/lacquer.toml", &fine_lacquer("lacquer")), ("gold.toml", &gold("gold"))]);
+    // With all tables of the default size: the statistical models read albedos.
+    let lacquer = fine_lacquer("lacquer");
+    let lacquer = lacquer.split("\n[bake]").next().unwrap();
+    let workshop = Workshop::with(&[("m/lacquer.toml", lacquer), ("gold.toml", &gold("gold"))]);
     let run = workshop.run(&["parity", "m", "--pairs", "60", "--json"]);
     if lacks_adapter(&run) {
         return;
