@@ -38,6 +38,8 @@ fn main() -> ExitCode {
         #[cfg(feature = "gpu")]
         Verb::Parity(options) => verb::parity::run(options),
         #[cfg(feature = "gpu")]
+        Verb::Stability(options) => verb::stability::run(options),
+        #[cfg(feature = "gpu")]
         Verb::Preview(options) => verb::preview::run(options),
         #[cfg(feature = "gpu")]
         Verb::Gallery(options) => verb::gallery::run(options),

@@ -16,3 +16,5 @@ pub(crate) mod preview;
 pub(crate) mod report;
 pub(crate) mod schema;
 pub(crate) mod shader;
+#[cfg(feature = "gpu")]
+pub(crate) mod stability;
