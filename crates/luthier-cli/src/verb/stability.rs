@@ -25,7 +25,7 @@ pub(crate) fn run(options: &StabilityOptions) -> Outcome {
     });
     drop(bar);
     let materials: Vec<Material> =
-        ShadingModel::ALL.iter().flat_map(|model| cases.iter().map(|case| material(case, *model))).collect();
+        ShadingModel::ALL.iter().flat_map(|model| (0..).zip(&cases).map(|(n, case)| material(n, case, *model))).collect();
     let baking = Bar::new("baking");
     let bake = luthier_bake::bake(&materials, &read_image, &Silent).map_err(Failure::input)?;
     drop(baking);
@@ -76,11 +76,11 @@ pub(crate) fn run(options: &StabilityOptions) -> Outcome {
     if report.holds() { Ok(()) } else { Err(Failure::Verdict) }
 }
 
-/// A case as a material that the baker takes.
-fn material(case: &StressCase, model: ShadingModel) -> Material {
+/// The n-th case as a material that the baker takes.
+fn material(n: u32, case: &StressCase, model: ShadingModel) -> Material {
     let color = if case.is_spectral { ColorSetting::Spectral } else { ColorSetting::ThreeWavelengths };
     Material {
-        name: format!("{}-{}", case.id, model.name()),
+        name: format!("case-{n}-{}", model.name()),
         source: String::new(),
         text: String::new(),
         files: Vec::new(),

@@ -1,60 +1,11 @@
 //! The stacks that methods are stressed on.
 
+use luthier_layers::domain::Quantity;
 use luthier_optics::Rgb;
 use luthier_optics::constants::dataset;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Film, FilmThickness, Layer, Slab, Stack, Surface};
-use serde::{Deserialize, Serialize};
-
 use super::aim::Aim;
-
-/// What a sweep varies; the domain of a method is a range of each.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Quantity {
-    /// Index of a coat over that above it.
-    Index,
-    /// Slope parameter.
-    Alpha,
-    /// Thickness of a film, nm.
-    FilmNm,
-    /// Number of layers.
-    Layers,
-    /// Optical depth of a slab.
-    OpticalDepth,
-    /// Extinction coefficient of a metal.
-    MetalK,
-}
-
-impl Quantity {
-    /// All, in the order of the page.
-    pub const ALL: [Self; 6] =
-        [Self::Index, Self::Alpha, Self::FilmNm, Self::Layers, Self::OpticalDepth, Self::MetalK];
-
-    /// The name in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Index => "index of the coat",
-            Self::Alpha => "alpha",
-            Self::FilmNm => "film (nm)",
-            Self::Layers => "layers",
-            Self::OpticalDepth => "optical depth",
-            Self::MetalK => "k of the metal",
-        }
-    }
-
-    /// The value of an ordinary material, from which a domain is followed to both sides.
-    pub fn ordinary(self) -> f64 {
-        match self {
-            Self::Index => 1.5,
-            Self::Alpha => 0.1,
-            Self::FilmNm => 300.0,
-            Self::Layers => 2.0,
-            Self::OpticalDepth => 0.1,
-            Self::MetalK => 3.0,
-        }
-    }
-}
 
 /// A stack, where it is looked at, and which promise of a method it puts to the test.
 #[derive(Debug, Clone)]
@@ -163,7 +114,7 @@ fn sweeps(cases: &mut Cases) {
     cases.sweep(Quantity::FilmNm, &films, "film of index 1.4 on metal of alpha 0.1, three wavelengths, nm", |nm| {
         in_air(vec![filmed(1.4, nm, metal(0.1, 1.0, 6.69))])
     });
-    let counts = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
+    let counts = [1.0, 2.0, 4.0, 8.0, 32.0];
     cases.sweep(Quantity::Layers, &counts, "coats of alpha 0.05 and indices 1.3 and 1.5 in turn, over white; layers", |count| {
         let index = |i: usize| if i.is_multiple_of(2) { 1.3 } else { 1.5 };
         let coats = (0..count as usize - 1).map(|i| coat(0.05, index(i), 0.0));

@@ -1,9 +1,10 @@
 //! Domains, derived from verdicts.
 
+use luthier_layers::domain::Quantity;
 use luthier_lut::ShadingModel;
 use serde::{Deserialize, Serialize};
 
-use super::case::{Quantity, StressCase};
+use super::case::StressCase;
 use super::{Cell, Verdict};
 
 /// The range of a quantity over which a model may be used.
@@ -11,8 +12,8 @@ use super::{Cell, Verdict};
 pub struct DomainRange {
     /// Name of the model.
     pub model: String,
-    /// The quantity.
-    pub quantity: Quantity,
+    /// Name of the quantity.
+    pub quantity: String,
     /// Smallest and largest value that was tried and, with all between it and the ordinary value, did not fail at any level; `None` if
     /// the ordinary one failed.
     pub usable: Option<[f64; 2]>,
@@ -39,7 +40,7 @@ pub fn derived(cases: &[StressCase], cells: &[Cell]) -> Vec<DomainRange> {
             let (Some(first), Some(last)) = (swept.first(), swept.last()) else { continue };
             out.push(DomainRange {
                 model: model.name().to_owned(),
-                quantity,
+                quantity: quantity.name().to_owned(),
                 usable: range(&swept, quantity.ordinary(), Verdict::Degrades),
                 holds: range(&swept, quantity.ordinary(), Verdict::Holds),
                 tried: [first.0, last.0],

@@ -35,16 +35,18 @@ use serde::{Deserialize, Serialize};
 use crate::{ReportError, json};
 
 pub use aim::Aim;
-pub use case::{Quantity, StressCase, cases};
+pub use case::{StressCase, cases};
 pub use domains::{DomainRange, derived};
 pub use formulas::{FormulaResult, SECTION_C, formulas};
 pub use models::model_cells;
 pub use shaders::shader_cells;
 pub use svg::heat_map_svg;
 
-/// Albedo error (absolute), or error of a shader (relative, see [`crate::FLOOR`]) up to which a method holds: for shaders the goal of
-/// 1%; of albedos what is just seen beside each other.
+/// Error of a shader (relative, see [`crate::FLOOR`]) up to which it holds: the goal of 1%.
 pub const HOLDS: f64 = 0.01;
+
+/// Error of an albedo (absolute) up to which a model holds: what is just seen of two surfaces beside each other.
+pub const HOLDS_ALBEDO: f64 = 0.02;
 
 /// Error of a shader beyond which it no longer shows its model, and of an albedo beyond which the surface adds more light than falls on it.
 pub const FAILS: f64 = 1.0;
@@ -90,7 +92,7 @@ impl Level {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, PartialOrd, Ord)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// Within [`HOLDS`].
+    /// Within [`HOLDS`] or [`HOLDS_ALBEDO`].
     Holds,
     /// Within [`FAILS`].
     Degrades,
@@ -159,9 +161,10 @@ pub struct Cell {
 
 impl Cell {
     fn new(level: Level, method: &str, case: &str, fault: Option<Fault>, error: f64) -> Self {
+        let holds = if level == Level::F64 { HOLDS_ALBEDO } else { HOLDS };
         let (verdict, fault) = match fault {
             Some(fault) => (Verdict::Fails, Some(fault)),
-            None if error <= HOLDS => (Verdict::Holds, None),
+            None if error <= holds => (Verdict::Holds, None),
             None if error <= FAILS => (Verdict::Degrades, Some(Fault::Wrong)),
             None => (Verdict::Fails, Some(Fault::Wrong)),
         };
@@ -185,8 +188,8 @@ pub struct CaseInfo {
     pub id: String,
     /// What it is.
     pub title: String,
-    /// The quantity that it sweeps, and its value.
-    pub swept: Option<(Quantity, f64)>,
+    /// Name of the quantity that it sweeps, and its value.
+    pub swept: Option<(String, f64)>,
     /// What albedos are compared with.
     pub truth: String,
 }
@@ -216,7 +219,7 @@ impl Stability {
         let info = |case: &StressCase| CaseInfo {
             id: case.id.clone(),
             title: case.title.clone(),
-            swept: case.swept,
+            swept: case.swept.map(|(quantity, value)| (quantity.name().to_owned(), value)),
             truth: models::truth_name(case).to_owned(),
         };
         let cases = all.iter().map(info).collect();

@@ -1,14 +1,16 @@
 //! The models in f64.
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use glam::DVec3;
 use luthier_layers::closed_form::ClosedForm;
-use luthier_layers::directional_albedo::directional_albedo;
 use luthier_layers::elek;
 use luthier_layers::inputs::Inputs;
 use luthier_layers::layered_mc::{Estimate, InterfaceMode, LayeredMc};
 use luthier_layers::model::{Estimator, Kind, Model, ModelInfo};
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
 use luthier_layers::registry::models;
+use luthier_optics::quadrature::gauss_legendre;
 use luthier_optics::stack::Base;
 use rayon::prelude::*;
 
@@ -122,12 +124,12 @@ fn cell(model: &dyn Model, case: &StressCase, stack: &Monochrome, pairs: &[Pair]
     let mut worst = law_error;
     if has_albedo(&info) {
         for (&theta, truth) in case.aim.thetas_deg().iter().zip(truths) {
-            let found = directional_albedo(model, stack, eye(theta));
-            let noise = SIGMAS * (truth.std_err + if found.is_estimate { found.error } else { 0.0 });
+            let found = albedo(model, stack, eye(theta));
+            let noise = SIGMAS * truth.std_err + found.error;
             if !found.value.is_finite() {
                 return Cell::new(Level::F64, info.name, &case.id, Some(Fault::NotFinite), 0.0);
             }
-            let gain = found.value - 1.0 - noise - QUADRATURE - found.error;
+            let gain = found.value - 1.0 - noise - QUADRATURE;
             if info.claims.conserves_energy && gain > 0.0 {
                 return Cell::new(Level::F64, info.name, &case.id, Some(Fault::Gains), found.value - 1.0);
             }
@@ -135,6 +137,58 @@ fn cell(model: &dyn Model, case: &StressCase, stack: &Monochrome, pairs: &[Pair]
         }
     }
     Cell::new(Level::F64, info.name, &case.id, None, worst.max(0.0))
+}
+
+/// A directional albedo, and how far it may be off.
+struct Albedo {
+    value: f64,
+    error: f64,
+}
+
+/// Directional albedo by the model's own estimate (its error four times the standard error), or by quadrature, whose error is what fewer points
+/// change. One rule for all: sharp enough for 1% on the smoothest lobe, and a hundredth of the work of
+/// `luthier_layers::directional_albedo`.
+fn albedo(model: &dyn Model, stack: &Monochrome, wo: DVec3) -> Albedo {
+    if let Some(estimator) = model.estimator() {
+        let own = estimator.albedo_with_error(stack, wo);
+        return Albedo { value: own.mean, error: SIGMAS * own.std_err };
+    }
+    let [coarse, fine] = POINTS.map(|points| integral(model, stack, wo, points));
+    Albedo { value: fine, error: (fine - coarse).abs() }
+}
+
+/// Points on each side of the mirror direction.
+const POINTS: [usize; 2] = [20, 28];
+
+/// The integral of `f cos_theta_i`; the eye is at azimuth 0. Points crowd at the mirror direction. Isotropic stacks are integrated over one
+/// half.
+fn integral(model: &dyn Model, stack: &Monochrome, wo: DVec3, points: usize) -> f64 {
+    let rule = gauss_legendre(points);
+    let crowded = |start: f64, length: f64| {
+        let node = move |&(t, weight): &(f64, f64)| {
+            let t4 = t * t * t * t;
+            (start + length * t4 * t, 5.0 * t4 * weight * length.abs())
+        };
+        rule.iter().map(node).collect::<Vec<_>>()
+    };
+    let theta_o = libm::atan2(wo.x, wo.z);
+    let is_isotropic = stack.layers.iter().all(|layer| layer.surface.alpha_x == layer.surface.alpha_y);
+    let mut phis = crowded(PI, -PI);
+    if is_isotropic {
+        phis.iter_mut().for_each(|(_, weight)| *weight *= 2.0);
+    } else {
+        phis.extend(crowded(PI, PI));
+    }
+    let mut sum = 0.0;
+    for (theta, d_theta) in crowded(theta_o, -theta_o).into_iter().chain(crowded(theta_o, FRAC_PI_2 - theta_o)) {
+        let (sin_theta, cos_theta) = libm::sincos(theta);
+        for &(phi, d_phi) in &phis {
+            let (sin_phi, cos_phi) = libm::sincos(phi);
+            let wi = DVec3::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta);
+            sum += d_theta * sin_theta * d_phi * model.eval(stack, wi, wo);
+        }
+    }
+    sum
 }
 
 /// The first law that is broken, and by how much.
