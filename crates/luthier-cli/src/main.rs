@@ -6,6 +6,7 @@ mod cli;
 #[cfg(feature = "gpu")]
 mod device;
 mod directions;
+mod domain;
 mod failure;
 #[cfg(feature = "gpu")]
 mod grid;

@@ -7,7 +7,7 @@
 
 use luthier_optics::stack::{Base, Stack};
 
-use crate::elek::{ALPHA_MIN, MODEL, REFRACTION_WAVELENGTH_NM};
+use crate::elek::{MODEL, REFRACTION_WAVELENGTH_NM};
 
 /// What a domain is a range of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -111,20 +111,34 @@ const COMMON: &[Limit] = &[
     },
 ];
 
-const BRIGHT: &str = "the model lacks 1/n^2: what lies below is shown n^2 times too bright";
-const DEPTHS: [f64; 2] = [0.0, f64::INFINITY];
+/// Indices of [`domain`]: 1.8 is the last that the suite tried before the albedo of a coated metal is off by more than 1.
+const BRIGHT: Limit = limit(
+    Quantity::Index,
+    0.25,
+    1.8,
+    "the model lacks 1/n^2: what lies below is up to n^2 times too bright, by more light than falls on it",
+);
 
-/// The domain of a model, by name; nothing for one without a shader. Slope parameters below [`ALPHA_MIN`] are raised to it by all.
+/// Beams return all light, and the diffuse term of a base comes on top of them.
+const ONE_SURFACE: Limit = limit(
+    Quantity::Layers,
+    1.0,
+    1.0,
+    "the model adds the whole diffuse light of a base to beams that return all light, and leaves out absorption",
+);
+
+/// The domain of a model, by name, beside what holds for all; nothing for one that fails nowhere, and for one without a shader. Slope
+/// parameters below [`crate::elek::ALPHA_MIN`] are raised to it by all.
 pub fn domain(model: &str) -> &'static [Limit] {
     match model {
-        MODEL | "weidlich-wilkie" => const { &[limit(Quantity::Index, 0.25, 1.8, BRIGHT)] },
+        MODEL | "weidlich-wilkie" => &[BRIGHT],
+        "granier-heidrich" => &[ONE_SURFACE],
         _ => &[],
     }
 }
 
 /// All that lies outside the domain of a model.
 pub fn outside(model: &str, stack: &Stack) -> Vec<Outside> {
-    let _ = (ALPHA_MIN, DEPTHS);
     let mut out = Vec::new();
     let mut above = stack.exterior.at(REFRACTION_WAVELENGTH_NM).re;
     for (layer, here) in stack.layers.iter().enumerate() {
@@ -160,4 +174,54 @@ pub fn outside(model: &str, stack: &Stack) -> Vec<Outside> {
         }
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use luthier_optics::ior::Ior;
+    use luthier_optics::stack::{Diffuse, Film, FilmThickness, Layer, Slab, Surface};
+
+    use super::*;
+
+    fn coat(n: f64, film_nm: Option<f64>) -> Layer {
+        let thickness = |nm| FilmThickness { min_nm: 0.0, max_nm: nm };
+        let film = |nm| Film { ior: Ior::constant(1.4, 0.0).unwrap(), thickness: thickness(nm) };
+        let slab = Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
+        let base = Base::Dielectric { ior: Ior::constant(n, 0.0).unwrap(), slab };
+        Layer { films: film_nm.map(film).into_iter().collect(), surface: Surface::smooth(), base }
+    }
+
+    fn on_white(coats: Vec<Layer>) -> Stack {
+        let white = Layer {
+            films: Vec::new(),
+            surface: Surface::smooth(),
+            base: Base::Diffuse(Diffuse { albedo: [0.8; 3], sigma: 0.0 }),
+        };
+        Stack { exterior: Ior::vacuum(), layers: coats.into_iter().chain([white]).collect() }
+    }
+
+    #[test]
+    fn what_is_outside_is_named_once_and_where_it_is() {
+        let found = outside(MODEL, &on_white(vec![coat(1.5, None), coat(3.9, None)]));
+        assert_eq!(found.len(), 1);
+        assert_eq!((found[0].layer, found[0].limit.quantity, found[0].nearest()), (1, Quantity::Index, 1.8));
+        assert!((found[0].value - 2.6).abs() < 1e-12 && !found[0].limit.refuses);
+        assert!(outside("belcour", &on_white(vec![coat(3.9, None)])).is_empty());
+        let found = outside("granier-heidrich", &on_white(vec![coat(1.5, None), coat(1.4, None)]));
+        assert_eq!(found.iter().map(|o| o.layer).collect::<Vec<_>>(), [1]);
+    }
+
+    /// The last dielectric has nothing below it that could be too bright.
+    #[test]
+    fn an_end_without_a_base_has_no_index_to_warn_of() {
+        let stack = Stack { exterior: Ior::vacuum(), layers: vec![coat(3.9, None)] };
+        assert!(outside(MODEL, &stack).is_empty());
+    }
+
+    #[test]
+    fn a_millimetre_is_no_film() {
+        let found = outside("phong", &on_white(vec![coat(1.5, Some(2e6))]));
+        assert!(found.len() == 1 && found[0].limit.refuses, "{found:?}");
+        assert!(outside("phong", &on_white(vec![coat(1.5, Some(2e4))])).is_empty());
+    }
 }
