@@ -17,7 +17,8 @@ pub(crate) fn check(sources: &mut [Source], asked: Option<ModelSetting>) {
         parsed.warnings.extend(found);
         parsed.warnings.sort_by_key(|d| (d.span.start, d.span.end));
         if parsed.warnings.iter().any(|d| d.severity == Severity::Error) {
-            source.parsed = Err(std::mem::take(&mut parsed.warnings));
+            let all = std::mem::take(&mut parsed.warnings);
+            source.parsed = Err(all.into_iter().filter(|d| d.severity == Severity::Error).collect());
         }
     }
 }

@@ -5,6 +5,7 @@
 //!
 //! What a model leaves out within its domain (bounces, blur, 1/n^2) is no matter of the domain: `docs/models.md` has its size.
 
+use luthier_optics::interface::Interface;
 use luthier_optics::stack::{Base, Stack};
 
 use crate::elek::{MODEL, REFRACTION_WAVELENGTH_NM};
@@ -28,8 +29,7 @@ pub enum Quantity {
 
 impl Quantity {
     /// All, in the order of pages.
-    pub const ALL: [Self; 6] =
-        [Self::Index, Self::Alpha, Self::FilmNm, Self::Layers, Self::OpticalDepth, Self::MetalK];
+    pub const ALL: [Self; 6] = [Self::Index, Self::Alpha, Self::FilmNm, Self::Layers, Self::OpticalDepth, Self::MetalK];
 
     /// The name in reports and messages.
     pub fn name(self) -> &'static str {
@@ -111,11 +111,11 @@ const COMMON: &[Limit] = &[
     },
 ];
 
-/// Indices of [`domain`]: 1.8 is the last that the suite tried before the albedo of a coated metal is off by more than 1.
+/// Of metal, of which 0.92 comes back: 2 is the last that the suite tried before the albedo of a coated metal is off by more than 1.
 const BRIGHT: Limit = limit(
     Quantity::Index,
     0.25,
-    1.8,
+    2.0,
     "the model lacks 1/n^2: what lies below is up to n^2 times too bright, by more light than falls on it",
 );
 
@@ -137,6 +137,28 @@ pub fn domain(model: &str) -> &'static [Limit] {
     }
 }
 
+/// Share of the light that comes back through a coat from what lies below it up to which its index is no matter: the excess of the models
+/// is a multiple of it, and the metal of the suite, of which 0.92 comes back, is off by 1 at an index of 2.
+const DIM: f64 = 0.5;
+
+/// What comes back at normal incidence from below the dielectric of a layer, once, in the channel that absorbs least: `(1 - F)^2 e^(-2
+/// depth) R`; R counts as 1 where the next layer is transparent.
+fn returned(stack: &Stack, layer: usize) -> f64 {
+    let mirrored = |layer| {
+        Interface::of(stack, layer).map_or(0.0, |interface| interface.at(REFRACTION_WAVELENGTH_NM).reflectance(1.0))
+    };
+    let Some(Base::Dielectric { slab, .. }) = stack.layers.get(layer).map(|here| &here.base) else { return 0.0 };
+    let below = match stack.layers.get(layer + 1).map(|next| &next.base) {
+        Some(Base::Conductor { .. }) => mirrored(layer + 1),
+        Some(Base::Diffuse(diffuse)) => diffuse.albedo.into_iter().fold(0.0, f64::max),
+        Some(Base::Dielectric { .. }) => 1.0,
+        None => 0.0,
+    };
+    let crossed = 1.0 - mirrored(layer);
+    let depth = slab.optical_depth().into_iter().fold(f64::INFINITY, f64::min);
+    crossed * crossed * libm::exp(-2.0 * depth) * below
+}
+
 /// All that lies outside the domain of a model.
 pub fn outside(model: &str, stack: &Stack) -> Vec<Outside> {
     let mut out = Vec::new();
@@ -148,7 +170,9 @@ pub fn outside(model: &str, stack: &Stack) -> Vec<Outside> {
             Base::Dielectric { ior, slab } => {
                 let index = ior.at(REFRACTION_WAVELENGTH_NM).re;
                 if layer + 1 < stack.layers.len() {
-                    found.push((Quantity::Index, index / above));
+                    if returned(stack, layer) > DIM {
+                        found.push((Quantity::Index, index / above));
+                    }
                     found.push((Quantity::OpticalDepth, slab.optical_depth().into_iter().fold(0.0, f64::max)));
                 }
                 above = index;
@@ -167,7 +191,10 @@ pub fn outside(model: &str, stack: &Stack) -> Vec<Outside> {
             for limit in limits.filter(|limit| !(limit.least..=limit.most).contains(&value)) {
                 let new = Outside { layer, limit: *limit, value };
                 // One word for a stack with too many layers, and for both slope parameters.
-                if !out.iter().any(|o: &Outside| o.limit == *limit && (quantity == Quantity::Layers || o.layer == layer)) {
+                if !out
+                    .iter()
+                    .any(|o: &Outside| o.limit == *limit && (quantity == Quantity::Layers || o.layer == layer))
+                {
                     out.push(new);
                 }
             }
@@ -204,9 +231,13 @@ mod tests {
     fn what_is_outside_is_named_once_and_where_it_is() {
         let found = outside(MODEL, &on_white(vec![coat(1.5, None), coat(3.9, None)]));
         assert_eq!(found.len(), 1);
-        assert_eq!((found[0].layer, found[0].limit.quantity, found[0].nearest()), (1, Quantity::Index, 1.8));
+        assert_eq!((found[0].layer, found[0].limit.quantity, found[0].nearest()), (1, Quantity::Index, 2.0));
         assert!((found[0].value - 2.6).abs() < 1e-12 && !found[0].limit.refuses);
         assert!(outside("belcour", &on_white(vec![coat(3.9, None)])).is_empty());
+        // The same coat over a dim base: what is too bright is little light.
+        let mut dim = on_white(vec![coat(1.5, None), coat(3.9, None)]);
+        dim.layers[2].base = Base::Diffuse(Diffuse { albedo: [0.3; 3], sigma: 0.0 });
+        assert!(outside(MODEL, &dim).is_empty());
         let found = outside("granier-heidrich", &on_white(vec![coat(1.5, None), coat(1.4, None)]));
         assert_eq!(found.iter().map(|o| o.layer).collect::<Vec<_>>(), [1]);
     }

@@ -24,8 +24,10 @@ pub(crate) fn run(options: &StabilityOptions) -> Outcome {
         bar.set(done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1, count);
     });
     drop(bar);
-    let materials: Vec<Material> =
-        ShadingModel::ALL.iter().flat_map(|model| (0..).zip(&cases).map(|(n, case)| material(n, case, *model))).collect();
+    let materials: Vec<Material> = ShadingModel::ALL
+        .iter()
+        .flat_map(|model| (0..).zip(&cases).map(|(n, case)| material(n, case, *model)))
+        .collect();
     let baking = Bar::new("baking");
     let bake = luthier_bake::bake(&materials, &read_image, &Silent).map_err(Failure::input)?;
     drop(baking);
@@ -45,9 +47,7 @@ pub(crate) fn run(options: &StabilityOptions) -> Outcome {
             done += 1;
             bar.set(done, materials.len() as u64);
         };
-        cells.extend(
-            shader_cells(&subject, Some(&compiled.shaders), &cases, &mut progress).map_err(Failure::input)?,
-        );
+        cells.extend(shader_cells(&subject, Some(&compiled.shaders), &cases, &mut progress).map_err(Failure::input)?);
     }
     drop(bar);
     let report = Stability::new(GENERATOR, Some(adapter), cells);

@@ -27,5 +27,7 @@ mod preview;
 mod report;
 mod schema;
 mod shader;
+#[cfg(feature = "gpu")]
+mod stability;
 mod thickness_map;
 mod workshop;

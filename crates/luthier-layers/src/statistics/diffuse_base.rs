@@ -183,7 +183,10 @@ mod tests {
             stack.layers[1].above = ior;
             let veil = Veil::new(&Layers::from(&stack), &fresnel(&stack)).unwrap();
             // An interface between equal media returns nothing; that of a thinner medium some, by refraction inwards.
-            assert!((0.0..0.5).contains(&veil.internal[0]) && (ior < 1.0 || veil.internal[0] < 1e-12), "{ior}: {veil:?}");
+            assert!(
+                (0.0..0.5).contains(&veil.internal[0]) && (ior < 1.0 || veil.internal[0] < 1e-12),
+                "{ior}: {veil:?}"
+            );
         }
     }
 

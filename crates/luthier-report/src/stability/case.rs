@@ -1,11 +1,11 @@
 //! The stacks that methods are stressed on.
 
+use super::aim::Aim;
 use luthier_layers::domain::Quantity;
 use luthier_optics::Rgb;
 use luthier_optics::constants::dataset;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Film, FilmThickness, Layer, Slab, Stack, Surface};
-use super::aim::Aim;
 
 /// A stack, where it is looked at, and which promise of a method it puts to the test.
 #[derive(Debug, Clone)]
@@ -71,7 +71,8 @@ struct Cases(Vec<StressCase>);
 impl Cases {
     fn add(&mut self, id: &str, title: &str, stack: Stack) -> &mut StressCase {
         let aim = Aim::Ordinary;
-        let case = StressCase { id: id.to_owned(), title: title.to_owned(), swept: None, aim, is_spectral: false, stack };
+        let case =
+            StressCase { id: id.to_owned(), title: title.to_owned(), swept: None, aim, is_spectral: false, stack };
         self.0.push(case);
         let last = self.0.len() - 1;
         &mut self.0[last]
@@ -104,7 +105,7 @@ pub fn cases() -> Vec<StressCase> {
 }
 
 fn sweeps(cases: &mut Cases) {
-    let indices = [0.25, 0.5, 0.667, 0.9, 1.01, 1.33, 1.5, 1.8, 2.5, 4.0];
+    let indices = [0.25, 0.5, 0.667, 0.9, 1.01, 1.33, 1.5, 1.8, 2.0, 2.5, 4.0];
     cases.sweep(Quantity::Index, &indices, "coat of alpha 0.1 over metal of alpha 0.2, index", |n| {
         in_air(vec![coat(0.1, n, 0.0), bright(0.2)])
     });
@@ -115,11 +116,16 @@ fn sweeps(cases: &mut Cases) {
         in_air(vec![filmed(1.4, nm, metal(0.1, 1.0, 6.69))])
     });
     let counts = [1.0, 2.0, 4.0, 8.0, 32.0];
-    cases.sweep(Quantity::Layers, &counts, "coats of alpha 0.05 and indices 1.3 and 1.5 in turn, over white; layers", |count| {
-        let index = |i: usize| if i.is_multiple_of(2) { 1.3 } else { 1.5 };
-        let coats = (0..count as usize - 1).map(|i| coat(0.05, index(i), 0.0));
-        in_air(coats.chain([diffuse([0.8; 3], 0.0)]).collect())
-    });
+    cases.sweep(
+        Quantity::Layers,
+        &counts,
+        "coats of alpha 0.05 and indices 1.3 and 1.5 in turn, over white; layers",
+        |count| {
+            let index = |i: usize| if i.is_multiple_of(2) { 1.3 } else { 1.5 };
+            let coats = (0..count as usize - 1).map(|i| coat(0.05, index(i), 0.0));
+            in_air(coats.chain([diffuse([0.8; 3], 0.0)]).collect())
+        },
+    );
     let depths = [0.0, 1e-310, 0.1, 1.0, 10.0, 1e6, 1e300];
     cases.sweep(Quantity::OpticalDepth, &depths, "coat of alpha 0.1, index 1.5, over white; optical depth", |depth| {
         in_air(vec![coat(0.1, 1.5, depth), diffuse([0.8; 3], 0.0)])
@@ -147,14 +153,23 @@ fn singular(cases: &mut Cases) {
         Aim::Grazing;
     for (top, base) in [(0.4, 0.05), (0.2, 0.2), (0.3, 0.01)] {
         let stack = in_air(vec![coat(top, 1.5, 0.0), mirror(base)]);
-        cases.add(&format!("frosted-{top}-{base}"), &format!("coat of alpha {top} over a mirror of alpha {base}"), stack);
+        cases.add(
+            &format!("frosted-{top}-{base}"),
+            &format!("coat of alpha {top} over a mirror of alpha {base}"),
+            stack,
+        );
     }
     let high = in_air(vec![coat(0.8, 2.4, 0.0), metal(0.8, 3.2, 3.3)]);
-    cases.add("rough-high", "coat of alpha 0.8 and index 2.4 over chromium of alpha 0.8, at grazing angles", high).aim =
-        Aim::Grazing;
+    cases
+        .add("rough-high", "coat of alpha 0.8 and index 2.4 over chromium of alpha 0.8, at grazing angles", high)
+        .aim = Aim::Grazing;
     let brushed = Surface { distribution: Distribution::Ggx, alpha_x: 1e-3, alpha_y: 1.0, rotation: 0.5 };
     let base = bright(0.0).base;
-    cases.add("brushed", "metal of alpha 0.001 along and 1 across", in_air(vec![Layer { films: Vec::new(), surface: brushed, base }]));
+    cases.add(
+        "brushed",
+        "metal of alpha 0.001 along and 1 across",
+        in_air(vec![Layer { films: Vec::new(), surface: brushed, base }]),
+    );
     for alpha in [1e-3, 1.0] {
         let mut layer = bright(alpha);
         layer.surface.distribution = Distribution::Beckmann;
@@ -162,14 +177,19 @@ fn singular(cases: &mut Cases) {
     }
     let sigma = std::f64::consts::FRAC_PI_2;
     cases.add("oren-nayar", "white Oren-Nayar base, sigma 90 degrees", in_air(vec![diffuse([1.0; 3], sigma)]));
-    cases.add("from-inside", "from index 1.5 through a gap of index 1 onto white", Stack {
-        exterior: constant(1.5, 0.0),
-        layers: vec![coat(0.1, 1.0, 0.0), diffuse([0.8; 3], 0.0)],
-    });
-    cases.add("tunnel", "100 nm of air between glass and glass: frustrated total reflection", Stack {
-        exterior: constant(1.5, 0.0),
-        layers: vec![filmed(1.0, 100.0, coat(0.01, 1.5, 0.0)), diffuse([0.0; 3], 0.0)],
-    });
+    cases.add(
+        "from-inside",
+        "from index 1.5 through a gap of index 1 onto white",
+        Stack { exterior: constant(1.5, 0.0), layers: vec![coat(0.1, 1.0, 0.0), diffuse([0.8; 3], 0.0)] },
+    );
+    cases.add(
+        "tunnel",
+        "100 nm of air between glass and glass: frustrated total reflection",
+        Stack {
+            exterior: constant(1.5, 0.0),
+            layers: vec![filmed(1.0, 100.0, coat(0.01, 1.5, 0.0)), diffuse([0.0; 3], 0.0)],
+        },
+    );
 }
 
 /// Colours that leave the gamut, and waves that three wavelengths miss.
@@ -180,7 +200,8 @@ fn colours(cases: &mut Cases) {
     }
     for (nm, what) in [(380.0, "out of the gamut"), (20_000.0, "fringes finer than the eye's curves")] {
         let stack = in_air(vec![filmed(2.4, nm, metal(0.1, 1.0, 6.69))]);
-        let case = cases.add(&format!("film-spectral-{nm}"), &format!("film of index 2.4, {nm} nm, spectral: {what}"), stack);
+        let case =
+            cases.add(&format!("film-spectral-{nm}"), &format!("film of index 2.4, {nm} nm, spectral: {what}"), stack);
         case.is_spectral = true;
     }
     let soap = in_air(vec![filmed(1.33, 400.0, coat(1e-3, 1.0, 0.0)), diffuse([0.0; 3], 0.0)]);

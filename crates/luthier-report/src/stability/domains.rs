@@ -69,7 +69,8 @@ mod tests {
     #[test]
     fn a_range_ends_before_the_first_failure_on_either_side() {
         use Verdict::{Degrades, Fails, Holds};
-        let swept = [(1.0, Holds), (2.0, Fails), (3.0, Degrades), (4.0, Holds), (5.0, Holds), (6.0, Degrades), (7.0, Fails)];
+        let swept =
+            [(1.0, Holds), (2.0, Fails), (3.0, Degrades), (4.0, Holds), (5.0, Holds), (6.0, Degrades), (7.0, Fails)];
         assert_eq!(range(&swept, 4.0, Degrades), Some([3.0, 6.0]));
         assert_eq!(range(&swept, 4.0, Holds), Some([4.0, 5.0]));
         assert_eq!(range(&swept, 2.0, Degrades), None);

@@ -94,7 +94,16 @@ impl Collector {
     }
 
     #[expect(clippy::too_many_arguments, reason = "the fields of a line of a table")]
-    fn push(&mut self, row: &str, formulation: &str, ships: bool, measure: &str, error: f64, tolerance: f64, reason: &str) {
+    fn push(
+        &mut self,
+        row: &str,
+        formulation: &str,
+        ships: bool,
+        measure: &str,
+        error: f64,
+        tolerance: f64,
+        reason: &str,
+    ) {
         self.0.push(FormulaResult {
             row: row.to_owned(),
             formulation: formulation.to_owned(),
@@ -161,13 +170,25 @@ fn storage_of_d(out: &mut Collector) {
     let peak = |scale: f64| f16(scale) / scale - 1.0;
     let truth = "peak of Beckmann at m = 0.001, relative to f64";
     let row = SECTION_C[0].0;
-    out.rejected(row, "1/(pi m^2) in a half float", truth, peak(1.0 / (PI * m * m)).abs(), "It overflows below m = 0.0022.");
+    out.rejected(
+        row,
+        "1/(pi m^2) in a half float",
+        truth,
+        peak(1.0 / (PI * m * m)).abs(),
+        "It overflows below m = 0.0022.",
+    );
     out.rejected(row, "m of row i is i/511", truth, f64::NAN, "Row 0 is 0/0, row 1 overflows.");
     let ours = largest((0..1000).map(|i| {
         let value = beckmann(1.0, FRAC_PI_2 * f64::from(i) / 1000.0);
         (libm::pow(f16(libm::pow(value, 0.0625)), 16.0) - value).abs()
     }));
-    out.ours(row, "(pi m^2 D)^(1/16) in a half float", "all angles at m = 1, of the largest peak 4/e", ours / 1.4715, 8e-3);
+    out.ours(
+        row,
+        "(pi m^2 D)^(1/16) in a half float",
+        "all angles at m = 1, of the largest peak 4/e",
+        ours / 1.4715,
+        8e-3,
+    );
 
     for m in [0.02, 0.005] {
         let truth = format!("row of 512 texels at m = {m}, of the peak, against D");
@@ -219,7 +240,13 @@ fn rows_of_fresnel(out: &mut Collector) {
     for n in [1.01, 1.5] {
         let truth = format!("128 texels, n = {n}, absolute, against Fresnel's formulas");
         let theta = interpolation(128, |u| reflectance(1.0, n, libm::cos(FRAC_PI_2 * u)));
-        out.rejected(SECTION_C[6].0, "theta", &truth, theta, "Steep at grazing; used only where a material asks for it.");
+        out.rejected(
+            SECTION_C[6].0,
+            "theta",
+            &truth,
+            theta,
+            "Steep at grazing; used only where a material asks for it.",
+        );
         out.ours(SECTION_C[6].0, "cosine", &truth, interpolation(128, |u| reflectance(1.0, n, u)), 6e-3);
     }
     let critical = (1.0 - 1.0 / 2.25_f64).sqrt();
@@ -228,7 +255,13 @@ fn rows_of_fresnel(out: &mut Collector) {
     let reason = "It misses the kink at the critical angle. Rows of materials are seen from above: where that is the denser side, check warns.";
     out.rejected(SECTION_C[7].0, "cosine over 0..1", truth, plain, reason);
     let knot = interpolation(64, |u| reflectance(1.5, 1.0, critical + (1.0 - critical) * u * u));
-    out.rejected(SECTION_C[7].0, "knot at the critical angle, u^2 beyond", truth, knot, "Holds; no material needs it so far.");
+    out.rejected(
+        SECTION_C[7].0,
+        "knot at the critical angle, u^2 beyond",
+        truth,
+        knot,
+        "Holds; no material needs it so far.",
+    );
 
     let metals = [("copper", 0.213, 4.05), ("aluminium", 1.0, 6.69), ("chromium", 3.18, 4.41), ("1.01", 1.01, 0.0)];
     for (name, n, k) in metals {
@@ -244,7 +277,13 @@ fn rows_of_fresnel(out: &mut Collector) {
         out.rejected(SECTION_C[8].0, "Schlick with complex F0", &truth, error, "Not the 5% that is claimed for it.");
         let lazanyi = Lazanyi::fit(1.0, below);
         let error = worst(&|cos| lazanyi.eval(cos));
-        out.rejected(SECTION_C[8].0, "with Lazanyi's correction", &truth, error, "Better, and still no formula of Fresnel's.");
+        out.rejected(
+            SECTION_C[8].0,
+            "with Lazanyi's correction",
+            &truth,
+            error,
+            "Better, and still no formula of Fresnel's.",
+        );
         let row = interpolation(128, |cos| interface(Complex64::ONE, below, cos).unpolarised());
         out.ours(SECTION_C[8].0, "row of 128 texels", &truth, row, 6e-3);
     }
@@ -295,14 +334,21 @@ fn energies(out: &mut Collector) {
     let mirror = ReflectanceCurves::new(1, |_, _| 1.0);
     let truth = "mirror of GGX, alpha 1, normal incidence, against 1";
     let single = 1.0 - statistics.single_scattering(&mirror)[0];
-    out.rejected("single-scatter microfacets", "one bounce", truth, single, "What shaders evaluate: it lacks ln 2 here.");
+    out.rejected(
+        "single-scatter microfacets",
+        "one bounce",
+        truth,
+        single,
+        "What shaders evaluate: it lacks ln 2 here.",
+    );
     let all = (1.0 - statistics.albedo(&mirror)[0]).abs();
     out.ours("single-scatter microfacets", "FGD with all bounces", truth, all, 1e-6);
 
     let row = "rough coat over smooth base";
     for (coat, base) in [(0.4, 0.05), (0.3, 0.01)] {
         let seen = median_alpha(coat, base);
-        let truth = format!("alpha of the base seen, coat {coat}, base {base}, n = 1.5, relative to 20000 walks ({seen:.3})");
+        let truth =
+            format!("alpha of the base seen, coat {coat}, base {base}, n = 1.5, relative to 20000 walks ({seen:.3})");
         let variance = {
             // One pass at normal incidence: refraction adds h(alpha (1 - 1/n) / 2) below and as much above, times j (Belcour 2018).
             let (entering, leaving) = (0.5 * coat * (1.0 / 3.0), 0.5 * coat * 0.5);
@@ -311,12 +357,24 @@ fn energies(out: &mut Collector) {
         let belcour = spread::alpha(variance);
         let error = (belcour / seen - 1.0).abs();
         out.push(row, "Belcour's sum of variances", true, &truth, error, 0.1, "");
-        out.rejected(row, "Elek's clamp", &truth, (coat / seen - 1.0).abs(), "The paper's; check warns of a base smoother than its coat.");
+        out.rejected(
+            row,
+            "Elek's clamp",
+            &truth,
+            (coat / seen - 1.0).abs(),
+            "The paper's; check warns of a base smoother than its coat.",
+        );
     }
 
     let naive = |f: f64| f + (1.0 - f) * (1.0 - f) / (1.0 - f);
     let truth = "coat and base that reflect everything, against 1";
-    out.rejected("q -> 0", "F + (1-F)^2/(1-F)", truth, naive(1.0) - 1.0, "0/0; models and shaders stop where nothing comes through.");
+    out.rejected(
+        "q -> 0",
+        "F + (1-F)^2/(1-F)",
+        truth,
+        naive(1.0) - 1.0,
+        "0/0; models and shaders stop where nothing comes through.",
+    );
     let gold = F0_TABLE.iter().find(|entry| entry.name == "Gold").and_then(|entry| entry.computed());
     let red = gold.map_or(f64::NAN, |rgb| rgb[0]);
     let truth = "red of gold at normal incidence, against 1.0376 of its spectrum";
@@ -365,7 +423,8 @@ fn films(out: &mut Collector) {
     let error = largest((1..=100).map(|i| {
         let cos = f64::from(i) / 100.0;
         let film = [FilmLayer { ior: glass, waves: 0.01 / 690.0 }];
-        (coated(Complex64::ONE, &film, base, cos).unpolarised() - interface(Complex64::ONE, base, cos).unpolarised()).abs()
+        (coated(Complex64::ONE, &film, base, cos).unpolarised() - interface(Complex64::ONE, base, cos).unpolarised())
+            .abs()
     }));
     out.ours("film d -> 0", "Airy's formula, complex", truth, error, 1e-3);
 }
@@ -382,8 +441,7 @@ fn filtering(out: &mut Collector) {
 }
 
 /// Values from the smallest denormal to the largest number.
-const EXTREME: [f64; 12] =
-    [0.0, 5e-324, 1e-310, 1e-150, 1e-30, 1e-7, 1e-3, 1.0, 10.0, 1e30, 1e150, f64::MAX];
+const EXTREME: [f64; 12] = [0.0, 5e-324, 1e-310, 1e-150, 1e-30, 1e-7, 1e-3, 1.0, 10.0, 1e30, 1e150, f64::MAX];
 
 /// By how far a share is out of 0..=1; NaN for what is none.
 fn beyond_unit(value: f64) -> f64 {
@@ -407,11 +465,19 @@ fn extremes(out: &mut Collector) {
             .filter(usable)
             .flat_map(|ior| cosines().map(move |cos| beyond_unit(interface(Complex64::ONE, ior, cos).unpolarised()))),
     );
-    out.ours(EXTREMES, "Fresnel, interface()", "moduli from 1e-75 to 1e75, cosines to 0: distance from 0..=1", bare, 0.0);
+    out.ours(
+        EXTREMES,
+        "Fresnel, interface()",
+        "moduli from 1e-75 to 1e75, cosines to 0: distance from 0..=1",
+        bare,
+        0.0,
+    );
     let film = largest(indices().filter(|ior| (1e-3..1e4).contains(&ior.l1_norm())).flat_map(|ior| {
         let films = [0.0, 1e-310, 1e-3, 1.0, 36.0].map(|waves| FilmLayer { ior, waves });
         films.into_iter().flat_map(|film| {
-            cosines().map(move |cos| beyond_unit(coated(Complex64::ONE, &[film], Complex64::new(1.5, 2.0), cos).unpolarised()))
+            cosines().map(move |cos| {
+                beyond_unit(coated(Complex64::ONE, &[film], Complex64::new(1.5, 2.0), cos).unpolarised())
+            })
         })
     }));
     out.ours(EXTREMES, "films, coated()", "film moduli from 1e-3 to 1e4, up to 20 um: distance from 0..=1", film, 0.0);
@@ -419,7 +485,13 @@ fn extremes(out: &mut Collector) {
         let d = largest(alphas().filter(|a| *a >= 1e-30).flat_map(|alpha| {
             cosines().map(move |cos| beyond_zero(scaled_distribution(kind, alpha, cos, 1.0 - cos * cos)))
         }));
-        out.ours(EXTREMES, &format!("pi alpha^2 D, {}", kind.name()), "alphas from 1e-30: distance from a number", d, 0.0);
+        out.ours(
+            EXTREMES,
+            &format!("pi alpha^2 D, {}", kind.name()),
+            "alphas from 1e-30: distance from a number",
+            d,
+            0.0,
+        );
         let g = largest(alphas().filter(|a| *a >= 1e-30).flat_map(|alpha| {
             cosines().flat_map(move |a| {
                 cosines().map(move |b| {
@@ -444,18 +516,31 @@ fn extremes(out: &mut Collector) {
         [0.0, 0.5, 10.0].into_iter().flat_map(move |k| {
             let below = Complex64::new(n, k);
             cosines().map(move |cos| {
-                let values = [complex_f0(1.0, below, cos), Lazanyi::fit(1.0, below).eval(cos), F82::of(1.0, below).eval(cos)];
+                let values =
+                    [complex_f0(1.0, below, cos), Lazanyi::fit(1.0, below).eval(cos), F82::of(1.0, below).eval(cos)];
                 largest(values.into_iter().map(|v| if v.is_finite() { 0.0 } else { f64::NAN }))
             })
         })
     }));
-    out.push(EXTREMES, "Schlick's forms (complex F0, Lazanyi, F82)", false, "finite", approximations, 0.0, "Not finite.");
+    out.push(
+        EXTREMES,
+        "Schlick's forms (complex F0, Lazanyi, F82)",
+        false,
+        "finite",
+        approximations,
+        0.0,
+        "Not finite.",
+    );
     let average = largest([1.0 + 1e-3, 1.01, 1.5, 4.0, 100.0].into_iter().map(|n| beyond_unit(dielectric_average(n))));
     out.ours(EXTREMES, "mean reflectance, closed form", "indices from 1.001 to 100: distance from 0..=1", average, 0.0);
     let escape = largest(cosines().flat_map(|cos| {
-        alphas().flat_map(move |alpha| [1e-7, 0.25, 0.667, 0.999_999, 1.0, 4.0].map(|eta| beyond_unit(escaping_share(cos, alpha, eta))))
+        alphas().flat_map(move |alpha| {
+            [1e-7, 0.25, 0.667, 0.999_999, 1.0, 4.0].map(|eta| beyond_unit(escaping_share(cos, alpha, eta)))
+        })
     }));
     out.ours(EXTREMES, "share that escapes total reflection", range, escape, 0.0);
-    let round_trip = largest([1e-4, 1e-3, 0.1, 0.9].into_iter().map(|alpha| (spread::alpha(spread::variance(alpha)) / alpha - 1.0).abs()));
+    let round_trip = largest(
+        [1e-4, 1e-3, 0.1, 0.9].into_iter().map(|alpha| (spread::alpha(spread::variance(alpha)) / alpha - 1.0).abs()),
+    );
     out.ours(EXTREMES, "variance of a lobe and back", "alphas from 1e-4 to 0.9, relative", round_trip, 1e-9);
 }

@@ -55,7 +55,10 @@ pub fn model_cells(cases: &[StressCase], progress: &(dyn Fn() + Sync)) -> Vec<Ce
         .collect();
     let cells: Vec<Cell> = rows.into_iter().flatten().collect();
     // In the order of the registry, then of the cases.
-    models.iter().flat_map(|m| cells.iter().filter(|c| c.method == m.info().name).cloned().collect::<Vec<_>>()).collect()
+    models
+        .iter()
+        .flat_map(|m| cells.iter().filter(|c| c.method == m.info().name).cloned().collect::<Vec<_>>())
+        .collect()
 }
 
 fn eye(theta_deg: f64) -> DVec3 {
@@ -192,7 +195,13 @@ fn integral(model: &dyn Model, stack: &Monochrome, wo: DVec3, points: usize) -> 
 }
 
 /// The first law that is broken, and by how much.
-fn laws(model: &dyn Model, info: &ModelInfo, stack: &Monochrome, pairs: &[Pair], stride: usize) -> (Option<Fault>, f64) {
+fn laws(
+    model: &dyn Model,
+    info: &ModelInfo,
+    stack: &Monochrome,
+    pairs: &[Pair],
+    stride: usize,
+) -> (Option<Fault>, f64) {
     let wide = |w: [f32; 3]| DVec3::from(w.map(f64::from)).normalize();
     let mut asymmetry = 0.0_f64;
     for &(wi, wo) in pairs.iter().step_by(stride) {

@@ -93,7 +93,8 @@ fn domains(out: &mut String, stability: &Stability) {
         let _ = write!(out, "| {model} |");
         for quantity in Quantity::ALL {
             let domain = stability.domains.iter().find(|d| d.model == model && d.quantity == quantity.name());
-            let range = |r: Option<[f64; 2]>| r.map_or("none".to_owned(), |[a, b]| format!("{} to {}", number(a), number(b)));
+            let range =
+                |r: Option<[f64; 2]>| r.map_or("none".to_owned(), |[a, b]| format!("{} to {}", number(a), number(b)));
             let _ = match domain {
                 Some(domain) => write!(out, " {} ({}) |", range(domain.usable), range(domain.holds)),
                 None => write!(out, " – |"),
