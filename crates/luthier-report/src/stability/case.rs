@@ -111,7 +111,7 @@ fn sweeps(cases: &mut Cases) {
     });
     let alphas = [1e-310, 1e-4, 1e-3, 0.01, 0.1, 0.3, 0.6, 1.0];
     cases.sweep(Quantity::Alpha, &alphas, "bare metal, GGX, alpha", |alpha| in_air(vec![bright(alpha)]));
-    let films = [0.0, 1e-3, 100.0, 300.0, 1000.0, 5000.0, 20_000.0];
+    let films = [1e-6, 1e-3, 100.0, 300.0, 1000.0, 5000.0, 20_000.0];
     cases.sweep(Quantity::FilmNm, &films, "film of index 1.4 on metal of alpha 0.1, three wavelengths, nm", |nm| {
         in_air(vec![filmed(1.4, nm, metal(0.1, 1.0, 6.69))])
     });

@@ -40,7 +40,7 @@ pub const SECTION_C: [(&str, &[&str]); 24] = [
     ("single-scatter microfacets", &["furnace-1"]),
     ("q -> 0", &["q-zero"]),
     ("film with total reflection", &["tunnel"]),
-    ("film d -> 0", &["film-0e0", "film-1e-3"]),
+    ("film d -> 0", &["film-1e-6", "film-1e-3"]),
     ("Belcour/Yamaguchi at high alpha with high index, at grazing angles", &["rough-high"]),
     ("gold F0 red", &["gold"]),
     ("hardware bilinear filtering", &[]),

@@ -6,7 +6,7 @@ use luthier_layers::model::Model;
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::real_time::Twin;
 use luthier_layers::registry::model;
-use luthier_layers::statistics::diffuse_base::DiffuseBase;
+use luthier_layers::statistics::diffuse_base::{DiffuseBase, Veil};
 use luthier_layers::statistics::energy::FresnelEnergy;
 use luthier_layers::statistics::evaluate::{Follow, evaluate};
 use luthier_layers::statistics::layers::Layers;
@@ -84,10 +84,10 @@ fn truth(entry: &MaterialEntry, stack: &Stack, form: Form, pairs: &[Pair]) -> Ve
         return at(pairs, |wi, wo| twin.eval(&exact, wi, wo));
     }
     match (form, entry.model) {
-        (Form::Full, ShadingModel::Yamaguchi) => level_facets(stack, wavelengths, |layers, energy, base, wi, wo| {
+        (Form::Full, ShadingModel::Yamaguchi) => level_facets(entry, stack, |layers, energy, base, wi, wo| {
             evaluate::<Covariance, 3>(layers, energy, base, Follow::Eye, wi, wo)
         })(pairs),
-        (Form::Full, _) => level_facets(stack, wavelengths, |layers, energy, base, wi, wo| {
+        (Form::Full, _) => level_facets(entry, stack, |layers, energy, base, wi, wo| {
             evaluate::<f64, 3>(layers, energy, base, Follow::Eye, wi, wo)
         })(pairs),
         (Form::Baked, _) => by_wavelength(entry.model.name(), stack, shown, pairs),
@@ -96,10 +96,13 @@ fn truth(entry: &MaterialEntry, stack: &Stack, form: Form, pairs: &[Pair]) -> Ve
 
 type Evaluate = fn(&Layers<3>, &FresnelEnergy, Option<&DiffuseBase<3>>, DVec3, DVec3) -> Rgb;
 
-/// The statistics with facets that count as level: what the form without tables evaluates.
-fn level_facets(stack: &Stack, wavelengths_nm: [f64; 3], eval: Evaluate) -> impl Fn(&[Pair]) -> Vec<Rgb> {
-    let (layers, energy) = (Layers::rgb(stack), FresnelEnergy::new(stack, wavelengths_nm));
-    let base = DiffuseBase::new(&layers, &energy);
+/// The statistics with facets that count as level: what the form without tables evaluates. What the layers do to the light of a diffuse base
+/// is a constant of the material in both forms, with facets as they are.
+fn level_facets(entry: &MaterialEntry, stack: &Stack, eval: Evaluate) -> impl Fn(&[Pair]) -> Vec<Rgb> {
+    let (layers, energy) = (Layers::rgb(stack), FresnelEnergy::new(stack, entry.wavelengths_nm));
+    let constants = &entry.constants;
+    let veil = Veil { internal: constants.internal_reflectance, upward: [1.0 - constants.upward_loss; 3] };
+    let base = DiffuseBase::veiled(&layers, veil);
     move |pairs| at(pairs, |wi, wo| eval(&layers, &energy, base.as_ref(), wi, wo))
 }
 
