@@ -1,4 +1,4 @@
-use luthier_layers::domain::outside;
+use luthier_layers::domain::{Quantity, domain, outside};
 use luthier_lut::ShadingModel;
 use luthier_report::stability::{Fault, Level, SECTION_C, Stability, Verdict, cases};
 
@@ -28,6 +28,12 @@ fn nothing_that_ships_is_nan_and_no_cell_is_unexplained() {
         let is_covered = |case: &&str| report.cells.iter().any(|c| c.case == **case);
         let has_formulas = report.formulas.iter().any(|f| f.row == row);
         assert!(named.iter().all(|case| is_covered(&case)) && (has_formulas || !named.is_empty()), "{row}");
+    }
+    // Where the index ends is the one limit that the sweep gives to the digit.
+    for model in ["elek", "weidlich-wilkie"] {
+        let limit = domain(model).iter().find(|limit| limit.quantity == Quantity::Index).unwrap();
+        let derived = report.domains.iter().find(|d| d.model == model && d.quantity == Quantity::Index.name()).unwrap();
+        assert_eq!(derived.usable, Some([limit.least, limit.most]), "{model}");
     }
     for case in cases().iter().filter(|case| case.swept.is_some()) {
         for model in ShadingModel::ALL {

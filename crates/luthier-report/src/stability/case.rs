@@ -105,7 +105,7 @@ pub fn cases() -> Vec<StressCase> {
 }
 
 fn sweeps(cases: &mut Cases) {
-    let indices = [0.25, 0.5, 0.667, 0.9, 1.01, 1.33, 1.5, 1.8, 2.0, 2.5, 4.0];
+    let indices = [0.25, 0.5, 0.667, 0.9, 1.01, 1.33, 1.5, 1.9, 2.0, 2.5, 4.0];
     cases.sweep(Quantity::Index, &indices, "coat of alpha 0.1 over metal of alpha 0.2, index", |n| {
         in_air(vec![coat(0.1, n, 0.0), bright(0.2)])
     });

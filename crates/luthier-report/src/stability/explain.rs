@@ -24,6 +24,15 @@ pub struct Explanation {
 /// All reasons; the first that fits counts.
 pub const EXPLANATIONS: &[Explanation] = &[
     Explanation {
+        name: "INDEX_STORED_AS_10000",
+        levels: &[Level::F32],
+        methods: &["elek", "weidlich-wilkie"],
+        cases: &["index-huge"],
+        faults: &[Fault::Wrong],
+        limit: 0.03,
+        reason: "An index of 1e30 is stored as 10000, which single precision can square twice: 4e-4 of the light goes through, where nothing should.",
+    },
+    Explanation {
         name: "KINK_AT_THE_CRITICAL_ANGLE",
         levels: &[Level::Table, Level::Device],
         methods: &["elek", "weidlich-wilkie", "microfacet", "belcour", "yamaguchi"],
