@@ -1,17 +1,20 @@
 //! From tiles to atlases.
 
 use luthier_lut::{
-    Atlas, AtlasLayout, Axis, ColorMode, Image, LayerRecord, MaterialConstants, ShadingModel, TableKind, TexelFormat,
-    Tile,
+    Atlas, AtlasLayout, Axis, Budget, ColorMode, Image, LayerRecord, MaterialConstants, RowBase, Search, ShadingModel,
+    TableKind, TexelFormat, Tile,
 };
-use luthier_material::Material;
+use luthier_material::{BudgetSettings, Material};
 
-use crate::BakeError;
 use crate::constants::constants;
-use crate::graph::{Observer, Results};
+use crate::fresnel::RowShape;
+use crate::graph::{Observer, Results, Silent};
+use crate::job::{JobKind, Key};
 use crate::maps::{MaterialMap, maps};
 use crate::plan::{ImageReader, Plan, PlannedLayers, Tiles, color_mode, shading_model};
+use crate::search;
 use crate::settings::Settings;
+use crate::{BakeError, DEFAULT_BUDGET};
 
 /// What a set of materials needs at run time.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,6 +23,8 @@ pub struct Bake {
     pub atlases: Vec<Atlas>,
     /// Each material, in the order given.
     pub materials: Vec<BakedMaterial>,
+    /// How the tables came by their sizes, mappings and formats, where these were searched for.
+    pub searches: Vec<Search>,
 }
 
 /// One material of a bake.
@@ -42,6 +47,8 @@ pub struct BakedMaterial {
 pub struct Outline {
     /// Kind, layout and texel format of each table, in binding order.
     pub tables: Vec<(TableKind, AtlasLayout, TexelFormat)>,
+    /// The job of each tile, table by table: where these and `tables` are the same, so are the texels.
+    pub keys: Vec<Vec<Key>>,
     /// Each material, in the order given.
     pub materials: Vec<BakedMaterial>,
 }
@@ -49,16 +56,35 @@ pub struct Outline {
 /// Longest side that textures are laid out for while tiles fit: any device of the last decade has it.
 const MAX_SIDE: u32 = 2048;
 
-/// What a bake of these materials would consist of, without computing it: each material with the tiles that serve it, and the
-/// layout and texel format of each table, in binding order.
+/// How a bake is to be made, beside what the materials say.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Limits, each in place of those that materials state.
+    pub budget: Budget,
+    /// Whether sizes, mappings and formats that no material decides are searched for; otherwise they are fixed defaults, and budgets
+    /// are not looked at.
+    pub search: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { budget: Budget::default(), search: true }
+    }
+}
+
+/// What a bake of these materials would consist of: each material with the tiles that serve it, and the layout and texel format of each
+/// table, in binding order. Little is computed for it, unless a material has a budget: what holds that must be measured.
 ///
 /// # Errors
 /// See [`BakeError`].
 pub fn outline(materials: &[Material], read_image: ImageReader<'_>) -> Result<Outline, BakeError> {
-    let Plan { settings, tiles, records, .. } = plan(materials, read_image)?;
-    let tables =
-        used(&tiles).map(|(kind, tiles)| (kind, layout(kind, tiles, &settings), format(kind, &settings))).collect();
-    Ok(Outline { tables, materials: baked_materials(materials, records) })
+    let planned = plan(materials, &Options::default(), read_image, &Silent)?;
+    let Plan { settings, tiles, records, .. } = planned.plan;
+    let tables = used(&tiles)
+        .filter_map(|(kind, tiles)| Some((kind, layout(kind, tiles, &settings)?, shape(kind, &settings)?.format)))
+        .collect();
+    let keys = used(&tiles).map(|(_, tiles)| tiles.tiles.iter().map(|(_, key)| *key).collect()).collect();
+    Ok(Outline { tables, keys, materials: baked_materials(materials, records) })
 }
 
 /// Bakes all tables of a set of materials. `read_image` fetches thickness maps.
@@ -66,13 +92,42 @@ pub fn outline(materials: &[Material], read_image: ImageReader<'_>) -> Result<Ou
 /// # Errors
 /// See [`BakeError`]. Nothing depends on the number of threads of the current rayon pool but the time it takes.
 pub fn bake(materials: &[Material], read_image: ImageReader<'_>, observer: &dyn Observer) -> Result<Bake, BakeError> {
-    let Plan { settings, graph, tiles, records } = plan(materials, read_image)?;
-    let results = graph.run(observer);
-    let atlases = used(&tiles).map(|(kind, tiles)| atlas(kind, tiles, &settings, &results)).collect();
-    Ok(Bake { atlases, materials: baked_materials(materials, records) })
+    bake_with(materials, &Options::default(), read_image, observer)
 }
 
-fn plan(materials: &[Material], read_image: ImageReader<'_>) -> Result<Plan, BakeError> {
+/// The same with options.
+///
+/// # Errors
+/// See [`BakeError`].
+pub fn bake_with(
+    materials: &[Material],
+    options: &Options,
+    read_image: ImageReader<'_>,
+    observer: &dyn Observer,
+) -> Result<Bake, BakeError> {
+    let Planned { plan, results, searches } = plan(materials, options, read_image, observer)?;
+    let Plan { settings, graph, tiles, records } = plan;
+    let results = graph.run(observer, results);
+    let atlases = used(&tiles).filter_map(|(kind, tiles)| atlas(kind, tiles, &settings, &results)).collect();
+    Ok(Bake { atlases, materials: baked_materials(materials, records), searches })
+}
+
+/// A plan whose settings are final, results that were needed to find them, and what the search found.
+struct Planned {
+    plan: Plan,
+    results: Results,
+    searches: Vec<Search>,
+}
+
+/// Often enough for the error of every choice to be confirmed or refuted by the exact measurement.
+const ROUNDS: usize = 24;
+
+fn plan(
+    materials: &[Material],
+    options: &Options,
+    read_image: ImageReader<'_>,
+    observer: &dyn Observer,
+) -> Result<Planned, BakeError> {
     if materials.is_empty() {
         return Err(BakeError::Empty);
     }
@@ -85,7 +140,92 @@ fn plan(materials: &[Material], read_image: ImageReader<'_>) -> Result<Plan, Bak
             });
         }
     }
-    Plan::new(materials, read_image)
+    let settings = Settings::of(materials)?;
+    let fixed = Plan::new(materials, settings.clone(), read_image)?;
+    if !options.search {
+        return Ok(Planned { plan: fixed, results: Results::default(), searches: Vec::new() });
+    }
+    let asked = budget(materials, &options.budget)?;
+    let is_asked = !asked.is_empty();
+    let budget = if is_asked { asked } else { DEFAULT_BUDGET };
+    // Costly tables are made once; candidates are compared with them.
+    let mut results = Results::default();
+    if is_asked {
+        results = fixed.graph.only(&search::READ).run(observer, results);
+    }
+    let mut found = search::candidates(&fixed, &results, &budget, is_asked);
+    if !is_asked {
+        found.iter_mut().for_each(affordable);
+    }
+    let searched: Vec<TableKind> = found.iter().map(|f| f.kind).collect();
+    let fixed_bytes = used(&fixed.tiles)
+        .filter(|(kind, _)| !searched.contains(kind))
+        .filter_map(|(kind, tiles)| {
+            let [width, height] = layout(kind, tiles, &settings)?.size();
+            let texel = shape(kind, &settings)?.format.texel_bytes();
+            Some(u64::from(width) * u64::from(height) * u64::from(texel))
+        })
+        .sum();
+    let kinds = [JobKind::Fresnel, JobKind::Distribution, JobKind::Phase, JobKind::Fgd, JobKind::Film];
+    let mut plan = fixed;
+    let mut chosen = Vec::new();
+    for _ in 0..ROUNDS {
+        chosen =
+            if is_asked { search::choose(&found, &budget, fixed_bytes)? } else { search::best_effort(&found, &budget) };
+        let mut settings = settings.clone();
+        for (kind, &choice) in found.iter().zip(&chosen) {
+            search::apply(&mut settings, kind.kind, &kind.candidates[choice].form);
+        }
+        plan = Plan::new(materials, settings, read_image)?;
+        // The measurement of the bake itself climbs to the worst points; it has the last word.
+        let exact = plan.graph.only(if is_asked { &kinds } else { &kinds[..1] });
+        results = exact.run(observer, results);
+        let mut is_confirmed = true;
+        for (kind, &choice) in found.iter_mut().zip(&chosen) {
+            let tiles = &plan.tiles[kind.kind as usize].tiles;
+            let exact = tiles.iter().filter_map(|(_, key)| results.find(*key)).map(|t| t.error.max_abs_err);
+            is_confirmed &= kind.confirm(choice, exact.fold(0.0, f64::max));
+        }
+        if is_confirmed {
+            break;
+        }
+    }
+    let searches = found.iter().zip(&chosen).map(|(f, &choice)| search::report(f, choice, &budget)).collect();
+    Ok(Planned { plan, results, searches })
+}
+
+/// Where nobody asks for less, a read costs at most half as much again as one of the fixed default.
+fn affordable(found: &mut search::Found) {
+    let most = 1.5 * found.fixed_cost;
+    found.candidates.retain(|c| c.cost <= most);
+}
+
+/// The limits of the materials, the tightest of each; those of the options in their place.
+fn budget(materials: &[Material], given: &Budget) -> Result<Budget, BakeError> {
+    let of = |material: &Material| {
+        let BudgetSettings { max_abs, max_rel, delta_e, max_bytes, max_cost } = material.budget;
+        Budget { max_abs, max_rel, delta_e, max_bytes, max_cost }
+    };
+    let stated = materials.iter().map(of).fold(Budget::default(), |a, b| a.tighter(&b));
+    let budget = Budget {
+        max_abs: given.max_abs.or(stated.max_abs),
+        max_rel: given.max_rel.or(stated.max_rel),
+        delta_e: given.delta_e.or(stated.delta_e),
+        max_bytes: given.max_bytes.or(stated.max_bytes),
+        max_cost: given.max_cost.or(stated.max_cost),
+    };
+    for (name, value, example) in [
+        ("max_abs", budget.max_abs, "1e-3"),
+        ("max_rel", budget.max_rel, "1e-2"),
+        ("delta_e", budget.delta_e, "0.5"),
+        ("max_bytes", budget.max_bytes.map(|bytes| bytes as f64), "65536"),
+        ("max_cost", budget.max_cost, "200"),
+    ] {
+        if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
+            return Err(BakeError::BudgetValue { name, value, example });
+        }
+    }
+    Ok(budget)
 }
 
 fn used(tiles: &[Tiles; TableKind::ALL.len()]) -> impl Iterator<Item = (TableKind, &Tiles)> {
@@ -103,45 +243,49 @@ fn baked_materials(materials: &[Material], records: Vec<PlannedLayers>) -> Vec<B
     materials.iter().zip(records).map(baked).collect()
 }
 
-fn axes(kind: TableKind, settings: &Settings) -> (&Axis, Option<&Axis>) {
-    match kind {
-        TableKind::Fresnel => (&settings.fresnel.0, None),
-        TableKind::Distribution => (&settings.distribution.0[0], Some(&settings.distribution.0[1])),
-        TableKind::Fgd => (&settings.fgd.0[0], Some(&settings.fgd.0[1])),
-        TableKind::Phase => (&settings.phase.0, None),
-        TableKind::Thickness => (&settings.thickness.0[0], Some(&settings.thickness.0[1])),
-        TableKind::Film => (&settings.film.0[0], Some(&settings.film.0[1])),
-        TableKind::Escape => (&settings.escape.0[0], Some(&settings.escape.0[1])),
-    }
+/// What one kind of table looks like.
+struct Shape<'a> {
+    x: &'a Axis,
+    y: Option<&'a Axis>,
+    format: TexelFormat,
+    base: RowBase,
 }
 
-fn format(kind: TableKind, settings: &Settings) -> TexelFormat {
-    match kind {
-        TableKind::Fresnel => settings.fresnel.1,
-        TableKind::Distribution => settings.distribution.1,
-        TableKind::Fgd => settings.fgd.1,
-        TableKind::Phase => settings.phase.1,
-        TableKind::Thickness => settings.thickness.1,
-        TableKind::Film => settings.film.1,
-        TableKind::Escape => settings.escape.1,
-    }
+/// The shape of a kind; none where its values are computed.
+fn shape(kind: TableKind, settings: &Settings) -> Option<Shape<'_>> {
+    let ([x, y], format) = match kind {
+        TableKind::Fresnel => {
+            let RowShape { axis, format, base } = &settings.fresnel;
+            return Some(Shape { x: axis, y: None, format: *format, base: *base });
+        }
+        TableKind::Phase => {
+            let (x, format) = settings.phase.as_ref()?;
+            return Some(Shape { x, y: None, format: *format, base: RowBase::Zero });
+        }
+        TableKind::Distribution => settings.distribution.as_ref()?,
+        TableKind::Fgd => &settings.fgd,
+        TableKind::Thickness => &settings.thickness,
+        TableKind::Film => &settings.film,
+        TableKind::Escape => &settings.escape,
+    };
+    Some(Shape { x, y: Some(y), format: *format, base: RowBase::Zero })
 }
 
 /// Tiles in one column while they fit, else in as many as it takes.
-fn layout(kind: TableKind, tiles: &Tiles, settings: &Settings) -> AtlasLayout {
-    let (x, y) = axes(kind, settings);
+fn layout(kind: TableKind, tiles: &Tiles, settings: &Settings) -> Option<AtlasLayout> {
+    let Shape { x, y, base, .. } = shape(kind, settings)?;
     let apron = u32::from(kind == TableKind::Thickness);
     let count = tiles.tiles.len() as u32;
-    let mut layout = AtlasLayout { x: x.clone(), y: y.cloned(), apron, columns: 1, tiles: count };
+    let mut layout = AtlasLayout { x: x.clone(), y: y.cloned(), apron, columns: 1, tiles: count, base };
     let [width, height] = layout.tile_size();
     let rows = (MAX_SIDE / height).max(1);
     layout.columns = count.div_ceil(rows).min((MAX_SIDE / width).max(1));
-    layout
+    Some(layout)
 }
 
-fn atlas(kind: TableKind, tiles: &Tiles, settings: &Settings, results: &Results) -> Atlas {
-    let layout = layout(kind, tiles, settings);
-    let format = format(kind, settings);
+fn atlas(kind: TableKind, tiles: &Tiles, settings: &Settings, results: &Results) -> Option<Atlas> {
+    let layout = layout(kind, tiles, settings)?;
+    let format = shape(kind, settings)?.format;
     let channels = tiles.tiles.first().map_or(1, |(_, key)| results.tile(*key).truth.channels);
     let [width, height] = layout.size();
     let mut truth = Image::zeros(width, height, channels);
@@ -159,7 +303,7 @@ fn atlas(kind: TableKind, tiles: &Tiles, settings: &Settings, results: &Results)
             error: data.error.clone(),
         });
     }
-    Atlas { kind, layout, format, tiles: entries, truth, texels }
+    Some(Atlas { kind, layout, format, tiles: entries, truth, texels })
 }
 
 /// Copies a tile into an atlas.

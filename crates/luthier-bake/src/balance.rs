@@ -21,7 +21,7 @@ pub(crate) fn texels(kind: TableKind, format: TexelFormat, truth: &Image) -> Ima
 }
 
 /// Nodes that are not below `floor` are not moved below it.
-fn balance(image: &Image, floor: f64) -> Image {
+pub(crate) fn balance(image: &Image, floor: f64) -> Image {
     let mut out = image.clone();
     let at = |x: u32, y: u32, c: usize| f64::from(image.texel(x, y)[c]);
     for y in 0..image.height {

@@ -1,6 +1,6 @@
 //! Tiles of the slope distribution, `pi alpha^2 D`, which is 1 at the normal for every alpha.
 
-use luthier_lut::{Axis, Comparison, Image, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
+use luthier_lut::{Atlas, Axis, Comparison, Image, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
 use luthier_optics::microfacet::scaled_distribution;
 use luthier_optics::stack::Distribution;
 use serde_json::{Value, json};
@@ -27,7 +27,8 @@ impl DistributionJob {
         })
     }
 
-    pub(crate) fn run(&self) -> TileData {
+    /// The tile as an atlas of its own.
+    pub(crate) fn atlas(&self) -> Atlas {
         let [angle, slope] = &self.axes;
         let mut truth = Image::zeros(angle.size, slope.size, 1);
         for j in 0..slope.size {
@@ -35,7 +36,12 @@ impl DistributionJob {
                 truth.texel_mut(i, j)[0] = self.value(angle.node(i), slope.node(j)) as f32;
             }
         }
-        let atlas = lone_tile(TableKind::Distribution, &[angle, slope], self.format, &truth);
+        lone_tile(TableKind::Distribution, &[angle, slope], self.format, &truth)
+    }
+
+    pub(crate) fn run(&self) -> TileData {
+        let [angle, slope] = &self.axes;
+        let atlas = self.atlas();
         let error = measure_scan(
             &Scan::whole([angle.intervals(), slope.intervals()], PER_CELL),
             |u| {
@@ -47,7 +53,7 @@ impl DistributionJob {
             |u| vec![angle.decode(u[0]), slope.decode(u[1])],
         );
         let model = format!("pi alpha^2 D, {}; errors are relative to the peak of D", self.distribution.name());
-        TileData { model, truth, texels: atlas.texels, error }
+        TileData { model, truth: atlas.truth, texels: atlas.texels, error }
     }
 
     fn value(&self, angle: f64, alpha: f64) -> f64 {

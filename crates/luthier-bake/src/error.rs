@@ -34,6 +34,24 @@ pub enum BakeError {
         /// What that one asks.
         second_value: String,
     },
+    /// No tables hold the budget.
+    #[error("the budget cannot be met: {reason}; `{hint}` would do")]
+    Budget {
+        /// What comes nearest.
+        reason: String,
+        /// The limit that would be met.
+        hint: String,
+    },
+    /// A limit that means nothing.
+    #[error("a budget of {name} = {value} means nothing: write a positive number, such as `{name} = {example}`")]
+    BudgetValue {
+        /// The limit.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+        /// One that could be met.
+        example: &'static str,
+    },
     /// An image that a material names cannot be used.
     #[error("{material}: cannot use the thickness map {path}: {reason}")]
     Map {

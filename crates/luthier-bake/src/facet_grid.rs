@@ -17,7 +17,7 @@ use crate::json;
 use crate::smooth::savitzky_golay;
 
 /// Effort at the nodes, where neighbours share their noise, and at the points of the error scan.
-const EFFORT: [Effort; 2] = [Effort { first: 20, later: 26 }, Effort { first: 24, later: 48 }];
+const EFFORT: [Effort; 2] = [Effort { first: 20, later: 40 }, Effort { first: 28, later: 72 }];
 
 /// The same for reflectances with a kink, which quadratures resolve slowly. The walks of a point stay below the 65536 that the sequence of
 /// their random numbers has.

@@ -1,6 +1,6 @@
 //! FGD-infinity tiles: the energy that one rough interface sends back, all bounces of its micro-surface included.
 
-use luthier_lut::{Axis, Comparison, Image, TableKind, TexelFormat, WeightBits, measure_scan};
+use luthier_lut::{Axis, Comparison, Image, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
 use luthier_optics::Rgb;
 use luthier_optics::albedo::{FacetStatistics, ReflectanceCurves};
 use luthier_optics::color::{Color, WavelengthNode, luminance};
@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 
 use crate::facet_grid::{CrossedJob, DOMAIN_ALPHA, DOMAIN_COS_THETA, FacetGrid, FacetGridJob};
 use crate::graph::Inputs;
+use crate::grid::resampled;
 use crate::job::{Job, TileData, color_in_words, lone_tile};
 use crate::json;
 use crate::smooth::savitzky_golay;
@@ -30,27 +31,38 @@ const SPECTRUM_POWERS: i32 = 3;
 /// Every so many points of the error scan, along each axis, all wavelengths are taken.
 const SPECTRUM_PROBES: usize = 5;
 
+/// The values of a tile on the grid where they are computed: what its table settings do not enter.
 #[derive(Debug, Clone)]
-pub(crate) struct FgdJob {
+pub(crate) struct FgdTruthJob {
     pub(crate) interface: Interface,
     /// Whether light can cross: false for conductors.
     pub(crate) transparent: bool,
     pub(crate) distribution: Distribution,
     pub(crate) color: Color,
     /// cos_theta and alpha.
-    pub(crate) axes: [Axis; 2],
-    pub(crate) format: TexelFormat,
+    pub(crate) grid: [Axis; 2],
 }
 
-impl FgdJob {
+/// Values at the nodes of a grid, RGB and never-crossed luminance, and at points off them.
+#[derive(Debug, Clone)]
+pub(crate) struct FgdTruth {
+    pub(crate) image: Image,
+    /// Where the points are, on the grid.
+    pub(crate) scan: Scan,
+    /// Axis values, and the function there, row by row.
+    pub(crate) probes: Vec<([f64; 2], [f64; 4])>,
+    /// What the function may be off itself: light that crossed, and wavelengths left out. The worst of all may meet.
+    pub(crate) slack: f64,
+}
+
+impl FgdTruthJob {
     pub(crate) fn inputs(&self) -> Value {
         json!({
             "interface": json::interface(&self.interface),
             "transparent": self.transparent,
             "distribution": self.distribution.name(),
             "color": json::color(&self.color),
-            "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
-            "format": self.format.name(),
+            "grid": self.grid.iter().map(json::axis).collect::<Vec<_>>(),
         })
     }
 
@@ -66,7 +78,7 @@ impl FgdJob {
                 let at = self.interface.at(node.wavelength_nm);
                 at.below.re < at.above.re
             });
-        Job::FacetGrid(FacetGridJob { distribution: self.distribution, kinked, axes: self.axes.clone() })
+        Job::FacetGrid(FacetGridJob { distribution: self.distribution, kinked, axes: self.grid.clone() })
     }
 
     fn crossed(&self) -> Option<Job> {
@@ -75,13 +87,13 @@ impl FgdJob {
                 interface: self.interface.clone(),
                 color: self.color,
                 distribution: self.distribution,
-                axes: self.axes.clone(),
+                axes: self.grid.clone(),
             })
         })
     }
 
-    pub(crate) fn run(&self, inputs: &Inputs<'_>) -> TileData {
-        let [x, y] = &self.axes;
+    pub(crate) fn run(&self, inputs: &Inputs<'_>) -> FgdTruth {
+        let [x, y] = &self.grid;
         let grid = inputs.facet_grid(&self.facet_grid());
         let crossed = self.crossed().map(|job| inputs.crossed(&job));
         let curves = Curves::new(&self.interface, &self.color);
@@ -92,49 +104,81 @@ impl FgdJob {
         for channel in &mut later {
             savitzky_golay(channel, x.size as usize, y.size as usize);
         }
-        let mut truth = Image::zeros(x.size, y.size, 4);
+        let mut image = Image::zeros(x.size, y.size, 4);
         for (i, (statistics, b)) in grid.nodes.iter().zip(&bounces).enumerate() {
             let never_crossed: Rgb = [0, 1, 2].map(|c: usize| b.first[c] + statistics.remaining() * later[c][i]);
             let (column, row) = (i as u32 % x.size, i as u32 / x.size);
             let back = crossed_at([x.node_coordinate(f64::from(column)), y.node_coordinate(f64::from(row))]);
             let [r, g, b] = [0, 1, 2].map(|c: usize| (never_crossed[c] + back[c]) as f32);
-            truth.texel_mut(column, row).copy_from_slice(&[r, g, b, luminance(never_crossed) as f32]);
+            image.texel_mut(column, row).copy_from_slice(&[r, g, b, luminance(never_crossed) as f32]);
         }
 
-        let atlas = lone_tile(TableKind::Fgd, &[x, y], self.format, &truth);
-        let probes: Vec<[f64; 4]> = grid
+        let columns = grid.scan.points[0] as usize;
+        let probes = grid
             .probes
             .par_iter()
-            .map(|statistics| {
-                let b = curves.bounces(statistics);
-                let [r, g, b] = [0, 1, 2].map(|c: usize| b.first[c] + statistics.remaining() * b.later_share[c]);
-                [r, g, b, luminance([r, g, b])]
+            .enumerate()
+            .map(|(point, statistics)| {
+                let u = grid.scan.coordinate([(point % columns) as u32, (point / columns) as u32]);
+                let (b, back) = (curves.bounces(statistics), crossed_at(u));
+                let never_crossed: Rgb =
+                    [0, 1, 2].map(|c: usize| b.first[c] + statistics.remaining() * b.later_share[c]);
+                let [r, g, b] = [0, 1, 2].map(|c: usize| never_crossed[c] + back[c]);
+                ([x.decode(u[0]), y.decode(u[1])], [r, g, b, luminance(never_crossed)])
             })
             .collect();
-        let probe_at = |u: [f64; 2]| {
+        let slack = crossed.map_or(0.0, |c| c.max_abs_err) + curves.spectrum_error(grid);
+        FgdTruth { image, scan: grid.scan, probes, slack }
+    }
+}
+
+/// A tile of albedos.
+#[derive(Debug, Clone)]
+pub(crate) struct FgdJob {
+    pub(crate) truth: FgdTruthJob,
+    /// cos_theta and alpha of the tile; other nodes than those of the grid are interpolated.
+    pub(crate) axes: [Axis; 2],
+    pub(crate) format: TexelFormat,
+}
+
+impl FgdJob {
+    pub(crate) fn inputs(&self) -> Value {
+        json!({
+            "truth": self.truth.inputs(),
+            "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
+            "format": self.format.name(),
+        })
+    }
+
+    pub(crate) fn dependencies(&self) -> Vec<Job> {
+        vec![Job::FgdTruth(self.truth.clone())]
+    }
+
+    pub(crate) fn run(&self, inputs: &Inputs<'_>) -> TileData {
+        let FgdTruth { image, scan, probes, slack } = inputs.fgd_truth(&Job::FgdTruth(self.truth.clone()));
+        let ([x, y], [from_x, from_y]) = (&self.axes, &self.truth.grid);
+        let truth =
+            if self.axes == self.truth.grid { image.clone() } else { resampled(image, &self.truth.grid, &self.axes) };
+        let atlas = lone_tile(TableKind::Fgd, &[x, y], self.format, &truth);
+        let at = |u: [f64; 2]| [from_x.decode(u[0]), from_y.decode(u[1])];
+        let probe = |u: [f64; 2]| {
             let [i, j] = [0, 1].map(|k: usize| {
-                let t = (u[k] - grid.scan.from[k]) / (grid.scan.to[k] - grid.scan.from[k]);
-                (t * f64::from(grid.scan.points[k])) as usize
+                let t = (u[k] - scan.from[k]) / (scan.to[k] - scan.from[k]);
+                (t * f64::from(scan.points[k])) as usize
             });
-            probes[j * grid.scan.points[0] as usize + i]
+            probes[j * scan.points[0] as usize + i].1
         };
         let mut error = measure_scan(
-            &grid.scan,
-            |u| {
-                let [r, g, b, a] = probe_at(u);
-                let back = crossed_at(u);
-                let sampled = atlas.sample(0, [x.decode(u[0]), y.decode(u[1])], WeightBits::Fixed(8));
-                Comparison { expected: [r + back[0], g + back[1], b + back[2], a], sampled }
-            },
-            |u| vec![x.decode(u[0]), y.decode(u[1])],
+            scan,
+            |u| Comparison { expected: probe(u), sampled: atlas.sample(0, at(u), WeightBits::Fixed(8)) },
+            |u| at(u).to_vec(),
         );
-        // The crossed part and the wavelengths left out have errors of their own; the worst of all may meet.
-        error.max_abs_err += crossed.map_or(0.0, |c| c.max_abs_err) + curves.spectrum_error(grid);
+        error.max_abs_err += slack;
         let model = format!(
             "directional albedo with all bounces, height-correlated Smith, {}; {}; errors for cos_theta >= {DOMAIN_COS_THETA}, \
              alpha >= {DOMAIN_ALPHA}",
-            self.distribution.name(),
-            color_in_words(&self.color)
+            self.truth.distribution.name(),
+            color_in_words(&self.truth.color)
         );
         TileData { model, truth, texels: atlas.texels, error }
     }

@@ -5,13 +5,17 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::{Interface, Sampled};
 use luthier_optics::stack::FilmThickness;
+use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use crate::job::{TileData, color_in_words, lone_tile};
 use crate::json;
 
-/// Points of the error scan per texel interval along each axis.
-const PER_CELL: u32 = 2;
+/// Points of the error scan along each axis; the search from the worst of them finds what lies between.
+const SCAN: u32 = 128;
+
+/// Steps of the sequence of points in the unit square.
+const R2: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
 
 /// Airy's reflectance over (cos_theta, d / d_max), integrated as the colour says: where Granier and Heidrich's phase row has two
 /// beams at three wavelengths, this has all beams at all of them.
@@ -52,20 +56,43 @@ impl FilmJob {
         self.thickness.min_nm / self.thickness.max_nm
     }
 
+    /// The tile's values at its nodes.
+    pub(crate) fn truth(&self) -> Image {
+        let thickest = self.thickest().sampled(&self.color);
+        let [x, y] = &self.axes;
+        let rows: Vec<Vec<f32>> = (0..y.size)
+            .into_par_iter()
+            .map(|j| {
+                let here = at_fraction(&thickest, y.node(j));
+                (0..x.size).flat_map(|i| here.rgb(x.node(i)).map(|c| c as f32)).collect()
+            })
+            .collect();
+        Image { width: x.size, height: y.size, channels: 3, data: rows.concat() }
+    }
+
+    /// The function at so many places where the film is: cosines are squares of a sequence of low discrepancy (Roberts 2018).
+    pub(crate) fn probes(&self, count: u32) -> Vec<([f64; 2], [f64; 4])> {
+        let thickest = self.thickest().sampled(&self.color);
+        let least = self.least();
+        (0..count)
+            .into_par_iter()
+            .map(|i| {
+                let [a, b] = R2.map(|r| (0.5 + f64::from(i) * r).fract());
+                let (cos_theta, fraction) = (a * a, least + (1.0 - least) * b);
+                let [r, g, b] = at_fraction(&thickest, fraction).rgb(cos_theta);
+                ([cos_theta, fraction], [r, g, b, 1.0])
+            })
+            .collect()
+    }
+
     pub(crate) fn run(&self) -> TileData {
         let thickest = self.thickest().sampled(&self.color);
         let [x, y] = &self.axes;
-        let mut truth = Image::zeros(x.size, y.size, 3);
-        for j in 0..y.size {
-            let here = at_fraction(&thickest, y.node(j));
-            for i in 0..x.size {
-                truth.texel_mut(i, j).copy_from_slice(&here.rgb(x.node(i)).map(|c| c as f32));
-            }
-        }
+        let truth = self.truth();
         let atlas = lone_tile(TableKind::Film, &[x, y], self.format, &truth);
-        let whole = Scan::whole([x.intervals(), y.intervals()], [PER_CELL; 2]);
+        let from = [0.0, y.encode(self.least())];
         let error = measure_scan(
-            &Scan { from: [0.0, y.encode(self.least())], ..whole },
+            &Scan { points: [SCAN; 2], from, to: [1.0; 2], refinements: Scan::REFINEMENTS },
             |u| {
                 let values = [x.decode(u[0]), y.decode(u[1])];
                 let [r, g, b]: Rgb = at_fraction(&thickest, values[1]).rgb(values[0]);

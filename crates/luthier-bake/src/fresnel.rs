@@ -1,22 +1,40 @@
 //! Fresnel rows: exact reflectance of one interface over the angle.
 
-use luthier_lut::{Axis, Comparison, Image, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
+use luthier_lut::{
+    Atlas, AtlasLayout, Axis, Comparison, Image, RowBase, Scan, SchlickBase, TableKind, TexelFormat, WeightBits,
+    measure_scan,
+};
+use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use serde_json::{Value, json};
 
+use crate::balance;
 use crate::job::{TileData, color_in_words, lone_tile};
 use crate::json;
 
 /// Points of the error scan per texel interval.
-const PER_CELL: u32 = 4;
+const PER_CELL: u32 = 16;
+
+/// Cosines at which the coefficient of the dip is fitted: squares of equal steps.
+const FIT_POINTS: u32 = 64;
+
+/// Steps of the search for that coefficient; each takes a third off the range of 32.
+const FIT_STEPS: u32 = 32;
+
+/// How a Fresnel row is laid out.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct RowShape {
+    pub(crate) axis: Axis,
+    pub(crate) format: TexelFormat,
+    pub(crate) base: RowBase,
+}
 
 #[derive(Debug, Clone)]
 pub(crate) struct FresnelJob {
     pub(crate) interface: Interface,
     pub(crate) color: Color,
-    pub(crate) axis: Axis,
-    pub(crate) format: TexelFormat,
+    pub(crate) shape: RowShape,
 }
 
 impl FresnelJob {
@@ -24,29 +42,26 @@ impl FresnelJob {
         json!({
             "interface": json::interface(&self.interface),
             "color": json::color(&self.color),
-            "axis": json::axis(&self.axis),
-            "format": self.format.name(),
+            "axis": json::axis(&self.shape.axis),
+            "format": self.shape.format.name(),
+            "base": self.shape.base,
         })
     }
 
     pub(crate) fn run(&self) -> TileData {
         let sampled = self.interface.sampled(&self.color);
-        let reflectance = |value: f64| sampled.rgb(self.cos_theta(value));
-        let mut truth = Image::zeros(self.axis.size, 1, 3);
-        for i in 0..self.axis.size {
-            let rgb = reflectance(self.axis.node(i));
-            truth.texel_mut(i, 0).copy_from_slice(&rgb.map(|c| c as f32));
-        }
-        let atlas = lone_tile(TableKind::Fresnel, &[&self.axis], self.format, &truth);
+        let reflectance = |cos_theta: f64| sampled.rgb(cos_theta);
+        let axis = &self.shape.axis;
+        let (atlas, truth) = self.shape.row(&reflectance, &SchlickBase::fit(&reflectance));
         let error = measure_scan(
-            &Scan::whole([self.axis.intervals(), 0], [PER_CELL, 0]),
+            &Scan::whole([axis.intervals(), 0], [PER_CELL, 0]),
             |u| {
-                let value = self.axis.decode(u[0]);
-                let [r, g, b] = reflectance(value);
+                let value = axis.decode(u[0]);
+                let [r, g, b] = reflectance(cos_theta(axis, value));
                 let read = atlas.sample(0, [value, 0.0], WeightBits::Fixed(8));
                 Comparison { expected: [r, g, b, 0.0], sampled: [read[0], read[1], read[2], 0.0] }
             },
-            |u| vec![self.axis.decode(u[0])],
+            |u| vec![axis.decode(u[0])],
         );
         let films = if self.interface.films.is_empty() { "bare interface" } else { "films, Airy" };
         TileData {
@@ -56,8 +71,154 @@ impl FresnelJob {
             error,
         }
     }
+}
 
-    fn cos_theta(&self, value: f64) -> f64 {
-        if self.axis.quantity == "theta" { libm::cos(value).max(0.0) } else { value }
+/// The cosine at a value of the axis of a row.
+pub(crate) fn cos_theta(axis: &Axis, value: f64) -> f64 {
+    if axis.quantity == "theta" { libm::cos(value).max(0.0) } else { value }
+}
+
+impl RowShape {
+    /// A row of a reflectance over the cosine, as an atlas of its own, and its values at the nodes.
+    pub(crate) fn row(&self, reflectance: &dyn Fn(f64) -> Rgb, base: &SchlickBase) -> (Atlas, Image) {
+        let mut truth = Image::zeros(self.axis.size, 1, 3);
+        for i in 0..self.axis.size {
+            let rgb = reflectance(cos_theta(&self.axis, self.axis.node(i)));
+            truth.texel_mut(i, 0).copy_from_slice(&rgb.map(|c| c as f32));
+        }
+        let atlas = match self.base {
+            RowBase::Zero => lone_tile(TableKind::Fresnel, &[&self.axis], self.format, &truth),
+            RowBase::Schlick => self.over_schlick(&truth, base),
+        };
+        (atlas, truth)
+    }
+
+    /// The row of what Schlick's form misses, and the coefficients behind it.
+    fn over_schlick(&self, truth: &Image, base: &SchlickBase) -> Atlas {
+        let size = self.axis.size;
+        let rounded = base.quantised(self.format);
+        let mut missed = truth.clone();
+        for i in 0..size {
+            let closed_form = rounded.closed_form(self.axis.node(i));
+            for (c, value) in missed.texel_mut(i, 0).iter_mut().enumerate() {
+                *value = (f64::from(*value) - closed_form[c]) as f32;
+            }
+        }
+        let missed = balance::balance(&missed, f64::NEG_INFINITY);
+        let max = self.format.unorm_max().unwrap_or(1.0);
+        let span = SchlickBase::span(self.format);
+        // The next code above, so that every remainder is within reach of the texels; below half a code of it there is none.
+        let scale = [0, 1, 2].map(|c: usize| {
+            let largest = missed.texels().map(|t| f64::from(t[c]).abs()).fold(0.0, f64::max);
+            let codes = largest / (span - 1.0) * max;
+            if codes < 0.5 { 0.0 } else { (libm::ceil(codes) / max).min(1.0) }
+        });
+        let header = SchlickBase { scale, ..*base };
+        let mut texels = Image::zeros(size + SchlickBase::TEXELS, 1, 4);
+        for i in 0..size {
+            let texel = texels.texel_mut(i, 0);
+            for c in 0..3 {
+                let share = if scale[c] > 0.0 { f64::from(missed.texel(i, 0)[c]) / scale[c] } else { 0.0 };
+                texel[c] = ((share + 1.0) / span) as f32;
+            }
+            texel[3] = 1.0;
+        }
+        for (k, texel) in header.texels().iter().enumerate() {
+            texels.texel_mut(size + k as u32, 0).copy_from_slice(texel);
+        }
+        let layout =
+            AtlasLayout { x: self.axis.clone(), y: None, apron: 0, columns: 1, tiles: 1, base: RowBase::Schlick };
+        Atlas {
+            kind: TableKind::Fresnel,
+            layout,
+            format: self.format,
+            tiles: Vec::new(),
+            truth: truth.clone(),
+            texels: self.format.quantise(&texels),
+        }
+    }
+}
+
+/// Fits of [`SchlickBase`].
+pub(crate) trait Fit {
+    /// The closed form with the reflectance at normal and at grazing incidence, whose largest error over the cosine is least. `scale` is
+    /// left at 1.
+    fn fit(reflectance: &dyn Fn(f64) -> Rgb) -> Self;
+}
+
+impl Fit for SchlickBase {
+    fn fit(reflectance: &dyn Fn(f64) -> Rgb) -> Self {
+        let f0 = reflectance(1.0).map(|f| f.clamp(0.0, Self::F0_MAX));
+        // An interface between equal indices reflects nothing at any angle.
+        let f90 = if reflectance(0.0)[1] > 0.5 { 1.0 } else { 0.0 };
+        let without = Self { f0, f90, edge: [0.0; 3], scale: [1.0; 3] };
+        let points: Vec<(f64, Rgb)> = (1..FIT_POINTS)
+            .map(|i| {
+                let u = f64::from(i) / f64::from(FIT_POINTS);
+                let (cos_theta, away) = (u * u, 1.0 - u * u);
+                let (exact, schlick) = (reflectance(cos_theta), without.closed_form(cos_theta));
+                let dip = cos_theta * libm::pow(away, 6.0);
+                (dip, [0, 1, 2].map(|c: usize| schlick[c] - exact[c]))
+            })
+            .collect();
+        let edge = [0, 1, 2].map(|c: usize| {
+            let worst =
+                |edge: f64| points.iter().map(|(dip, missed)| (missed[c] - edge * dip).abs()).fold(0.0, f64::max);
+            // The largest error is convex in the coefficient.
+            let (mut low, mut high) = (-Self::EDGE_MAX, Self::EDGE_MAX);
+            for _ in 0..FIT_STEPS {
+                let third = (high - low) / 3.0;
+                if worst(low + third) <= worst(high - third) { high -= third } else { low += third }
+            }
+            0.5 * (low + high)
+        });
+        Self { edge, ..without }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use luthier_lut::Mapping;
+
+    use super::*;
+
+    fn shape(base: RowBase, format: TexelFormat) -> RowShape {
+        let axis = Axis {
+            quantity: "cos_theta".into(),
+            unit: String::new(),
+            min: 0.0,
+            max: 1.0,
+            size: 24,
+            mapping: Mapping::Power { exponent: 2.0 },
+        };
+        RowShape { axis, format, base }
+    }
+
+    /// What is Schlick's form with its dip is read exactly but for the rounding of its coefficients, which the texels make up for.
+    #[test]
+    fn a_row_of_the_form_itself_is_read_to_the_last_codes() {
+        let exact = SchlickBase { f0: [0.04, 0.3, 0.9], f90: 1.0, edge: [0.5, -1.0, 3.0], scale: [1.0; 3] };
+        let reflectance = |cos_theta: f64| exact.closed_form(cos_theta);
+        let (atlas, _) =
+            shape(RowBase::Schlick, TexelFormat::Rgb10a2Unorm).row(&reflectance, &SchlickBase::fit(&reflectance));
+        for i in 0..=1000 {
+            let cos_theta = f64::from(i) / 1000.0;
+            let read = atlas.sample(0, [cos_theta, 0.0], WeightBits::Fixed(8));
+            let expected = reflectance(cos_theta);
+            // Rounding errors of f0 are below 1.25/2046, and what is left of them is rounded to a code of itself.
+            assert!((0..3).all(|c| (read[c] - expected[c]).abs() < 5e-5), "{cos_theta} {read:?} {expected:?}");
+        }
+        let grazing = atlas.sample(0, [0.0, 0.0], WeightBits::Fixed(8));
+        assert!(grazing[..3].iter().all(|f| (f - 1.0).abs() < 1e-6), "{grazing:?}");
+    }
+
+    #[test]
+    fn no_interface_reflects_nothing() {
+        let (atlas, _) =
+            shape(RowBase::Schlick, TexelFormat::Rgb10a2Unorm).row(&|_| [0.0; 3], &SchlickBase::fit(&|_| [0.0; 3]));
+        for i in 0..=100 {
+            let read = atlas.sample(0, [f64::from(i) / 100.0, 0.0], WeightBits::Fixed(8));
+            assert!(read[..3].iter().all(|f| f.abs() < 5e-5), "{read:?}");
+        }
     }
 }

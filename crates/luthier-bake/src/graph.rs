@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use crate::facet_grid::{CrossedGrid, FacetGrid};
+use crate::fgd::FgdTruth;
 use crate::job::{Artefact, Job, JobKind, Key, TileData};
 
 /// Told what happens, from any thread. It cannot change what is computed.
@@ -52,12 +53,31 @@ impl Graph {
         key
     }
 
-    /// Runs everything on the rayon pool. Kinds run in their order, which puts dependencies first; jobs of one kind run side
-    /// by side.
-    pub(crate) fn run(self, observer: &dyn Observer) -> Results {
+    /// The same jobs of some kinds only, with all that they need.
+    pub(crate) fn only(&self, kinds: &[JobKind]) -> Self {
+        let mut some = Self::default();
+        for job in kinds.iter().flat_map(|&kind| self.of_kind(kind)) {
+            some.add(job.clone());
+        }
+        some
+    }
+
+    /// The jobs of a kind, in the order of their keys.
+    pub(crate) fn of_kind(&self, kind: JobKind) -> impl Iterator<Item = &Job> {
+        self.jobs.get(&kind).into_iter().flat_map(BTreeMap::values)
+    }
+
+    /// Runs everything that has no result yet on the rayon pool. Kinds run in their order, which puts dependencies first; jobs of one
+    /// kind run side by side.
+    pub(crate) fn run(mut self, observer: &dyn Observer, mut results: Results) -> Results {
+        for jobs in self.jobs.values_mut() {
+            jobs.retain(|key, _| !results.0.contains_key(key));
+        }
         observer.planned(self.jobs.values().map(BTreeMap::len).sum());
-        let mut results = Results::default();
         for (kind, jobs) in self.jobs {
+            if jobs.is_empty() {
+                continue;
+            }
             observer.batch(kind, true);
             let done: Vec<(Key, Artefact)> = jobs
                 .into_par_iter()
@@ -84,12 +104,34 @@ impl Results {
     }
 }
 
+impl Results {
+    /// The values of an FGD tile.
+    pub(crate) fn fgd_truth(&self, job: &Job) -> &FgdTruth {
+        match self.0.get(&job.key()) {
+            Some(Artefact::FgdTruth(truth)) => truth,
+            _ => unreachable!("values run before the tiles that hold them"),
+        }
+    }
+
+    /// The tile of a job, if it has run.
+    pub(crate) fn find(&self, key: Key) -> Option<&TileData> {
+        match self.0.get(&key) {
+            Some(Artefact::Tile(tile)) => Some(tile),
+            _ => None,
+        }
+    }
+}
+
 impl<'a> Inputs<'a> {
     pub(crate) fn facet_grid(self, job: &Job) -> &'a FacetGrid {
         match self.0.0.get(&job.key()) {
             Some(Artefact::FacetGrid(grid)) => grid,
             _ => unreachable!("facet grids run before the tiles that need them"),
         }
+    }
+
+    pub(crate) fn fgd_truth(self, job: &Job) -> &'a FgdTruth {
+        self.0.fgd_truth(job)
     }
 
     pub(crate) fn crossed(self, job: &Job) -> &'a CrossedGrid {

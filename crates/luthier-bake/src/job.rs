@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use luthier_lut::{Atlas, AtlasLayout, Axis, ErrorStats, Image, TableKind, TexelFormat, Tile};
+use luthier_lut::{Atlas, AtlasLayout, Axis, ErrorStats, Image, RowBase, TableKind, TexelFormat, Tile};
 use luthier_optics::color::Color;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -11,7 +11,7 @@ use crate::balance;
 use crate::distribution::DistributionJob;
 use crate::escape::EscapeJob;
 use crate::facet_grid::{CrossedGrid, CrossedJob, FacetGrid, FacetGridJob};
-use crate::fgd::FgdJob;
+use crate::fgd::{FgdJob, FgdTruth, FgdTruthJob};
 use crate::film::FilmJob;
 use crate::fresnel::FresnelJob;
 use crate::graph::Inputs;
@@ -19,7 +19,7 @@ use crate::phase::PhaseJob;
 use crate::thickness::ThicknessJob;
 
 /// Changes whenever the same inputs give other bytes than before; part of every key.
-const REVISION: u32 = 3;
+const REVISION: u32 = 4;
 
 /// SHA-256 of a job's inputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -49,6 +49,8 @@ pub enum JobKind {
     FacetGrid,
     /// Light that crosses a dielectric and comes back.
     Crossed,
+    /// The values of one FGD tile, before they become texels.
+    FgdTruth,
     /// One FGD tile.
     Fgd,
     /// One phase row.
@@ -69,6 +71,7 @@ impl JobKind {
             Self::Distribution => "distribution",
             Self::FacetGrid => "facet-grid",
             Self::Crossed => "crossed",
+            Self::FgdTruth => "fgd-truth",
             Self::Fgd => "fgd",
             Self::Phase => "phase",
             Self::Thickness => "thickness",
@@ -85,6 +88,7 @@ pub(crate) enum Job {
     Distribution(DistributionJob),
     FacetGrid(FacetGridJob),
     Crossed(CrossedJob),
+    FgdTruth(FgdTruthJob),
     Fgd(FgdJob),
     Phase(PhaseJob),
     Thickness(ThicknessJob),
@@ -99,6 +103,7 @@ impl Job {
             Self::Distribution(_) => JobKind::Distribution,
             Self::FacetGrid(_) => JobKind::FacetGrid,
             Self::Crossed(_) => JobKind::Crossed,
+            Self::FgdTruth(_) => JobKind::FgdTruth,
             Self::Fgd(_) => JobKind::Fgd,
             Self::Phase(_) => JobKind::Phase,
             Self::Thickness(_) => JobKind::Thickness,
@@ -113,6 +118,7 @@ impl Job {
             Self::Distribution(job) => job.inputs(),
             Self::FacetGrid(job) => job.inputs(),
             Self::Crossed(job) => job.inputs(),
+            Self::FgdTruth(job) => job.inputs(),
             Self::Fgd(job) => job.inputs(),
             Self::Phase(job) => job.inputs(),
             Self::Thickness(job) => job.inputs(),
@@ -125,6 +131,7 @@ impl Job {
     /// Jobs whose results this one needs.
     pub(crate) fn dependencies(&self) -> Vec<Job> {
         match self {
+            Self::FgdTruth(job) => job.dependencies(),
             Self::Fgd(job) => job.dependencies(),
             _ => Vec::new(),
         }
@@ -136,6 +143,7 @@ impl Job {
             Self::Distribution(job) => Artefact::Tile(job.run()),
             Self::FacetGrid(job) => Artefact::FacetGrid(job.run()),
             Self::Crossed(job) => Artefact::Crossed(job.run()),
+            Self::FgdTruth(job) => Artefact::FgdTruth(job.run(inputs)),
             Self::Fgd(job) => Artefact::Tile(job.run(inputs)),
             Self::Phase(job) => Artefact::Tile(job.run()),
             Self::Thickness(job) => Artefact::Tile(job.run()),
@@ -151,6 +159,7 @@ pub(crate) enum Artefact {
     Tile(TileData),
     FacetGrid(FacetGrid),
     Crossed(CrossedGrid),
+    FgdTruth(FgdTruth),
 }
 
 /// One tile, apron included: its values, its texels, and its error as sampled.
@@ -171,6 +180,7 @@ pub(crate) fn lone_tile(kind: TableKind, axes: &[&Axis], format: TexelFormat, tr
         apron: u32::from(periodic),
         columns: 1,
         tiles: 1,
+        base: RowBase::Zero,
     };
     let tiles: Vec<Tile> = Vec::new();
     Atlas { kind, layout, format, tiles, texels: balance::texels(kind, format, truth), truth: truth.clone() }

@@ -9,7 +9,7 @@ use luthier_optics::stack::{Base, Film, FilmThickness, Layer, Stack};
 use crate::BakeError;
 use crate::distribution::DistributionJob;
 use crate::escape::EscapeJob;
-use crate::fgd::FgdJob;
+use crate::fgd::{FgdJob, FgdTruthJob};
 use crate::film::FilmJob;
 use crate::fresnel::FresnelJob;
 use crate::graph::Graph;
@@ -86,8 +86,11 @@ pub(crate) fn is_statistical(model: ShadingModel) -> bool {
 pub type ImageReader<'a> = &'a dyn Fn(&str, &str) -> Result<Image, String>;
 
 impl Plan {
-    pub(crate) fn new(materials: &[Material], read_image: ImageReader<'_>) -> Result<Self, BakeError> {
-        let settings = Settings::of(materials)?;
+    pub(crate) fn new(
+        materials: &[Material],
+        settings: Settings,
+        read_image: ImageReader<'_>,
+    ) -> Result<Self, BakeError> {
         let mut plan = Self { settings, graph: Graph::default(), tiles: Default::default(), records: Vec::new() };
         for material in materials {
             let records = plan.material(material, read_image)?;
@@ -161,19 +164,21 @@ impl Plan {
         color: Color,
         name: &dyn Fn() -> String,
     ) {
-        let (axis, format) = self.settings.fresnel.clone();
-        let job = FresnelJob { interface: interface.clone(), color, axis, format };
+        let job = FresnelJob { interface: interface.clone(), color, shape: self.settings.fresnel.clone() };
         record.fresnel_tile = Some(self.add(TableKind::Fresnel, Job::Fresnel(job), name));
 
         let distribution = layer.surface.distribution;
-        let (axes, format) = self.settings.distribution.clone();
-        let job = Job::Distribution(DistributionJob { distribution, axes, format });
-        let tile = self.add(TableKind::Distribution, job, &|| distribution.name().to_owned());
-        record.distribution_tile = Some(tile);
+        if let Some((axes, format)) = self.settings.distribution.clone() {
+            let job = Job::Distribution(DistributionJob { distribution, axes, format });
+            let tile = self.add(TableKind::Distribution, job, &|| distribution.name().to_owned());
+            record.distribution_tile = Some(tile);
+        }
 
         let (axes, format) = self.settings.fgd.clone();
         let transparent = matches!(layer.base, Base::Dielectric { .. });
-        let job = FgdJob { interface, transparent, distribution, color, axes, format };
+        let grid = self.settings.fgd_grid.clone();
+        let truth = FgdTruthJob { interface, transparent, distribution, color, grid };
+        let job = FgdJob { truth, axes, format };
         record.fgd_tile = Some(self.add(TableKind::Fgd, Job::Fgd(job), name));
     }
 
@@ -187,7 +192,7 @@ impl Plan {
     }
 
     fn phase(&mut self, record: &mut LayerRecord, film: &Film, wavelengths_nm: [f64; 3], name: &dyn Fn() -> String) {
-        let (axis, format) = self.settings.phase.clone();
+        let Some((axis, format)) = self.settings.phase.clone() else { return };
         let thickness_max_nm = film.thickness.max_nm;
         let job = PhaseJob { film: film.ior.clone(), thickness_max_nm, wavelengths_nm, axis, format };
         record.phase_tile = Some(self.add(TableKind::Phase, Job::Phase(job), name));

@@ -4,25 +4,46 @@ use std::f64::consts::FRAC_PI_2;
 use std::fmt::Debug;
 
 use luthier_layers::elek;
-use luthier_lut::{Axis, Mapping, TexelFormat};
-use luthier_material::{AlphaMapping, BakeSettings, DistributionMapping, Format, FresnelMapping, Material};
+use luthier_lut::{Axis, Mapping, RowBase, TexelFormat};
+use luthier_material::{
+    AlphaMapping, BakeSettings, DistributionMapping, DistributionSettings, Format, FresnelMapping, Material,
+};
 
 use crate::BakeError;
+use crate::fresnel::RowShape;
 
-/// Axes and formats of every table kind, after defaults.
+/// Axes and formats of every table kind.
 #[derive(Debug, Clone)]
 pub(crate) struct Settings {
-    pub(crate) fresnel: (Axis, TexelFormat),
-    pub(crate) distribution: ([Axis; 2], TexelFormat),
+    pub(crate) fresnel: RowShape,
+    /// Without them D is computed.
+    pub(crate) distribution: Option<([Axis; 2], TexelFormat)>,
     pub(crate) fgd: ([Axis; 2], TexelFormat),
-    pub(crate) phase: (Axis, TexelFormat),
+    /// Axes at which FGD is computed; those of its tiles unless these were searched for.
+    pub(crate) fgd_grid: [Axis; 2],
+    /// Without it phases are computed.
+    pub(crate) phase: Option<(Axis, TexelFormat)>,
     pub(crate) thickness: ([Axis; 2], TexelFormat),
     pub(crate) film: ([Axis; 2], TexelFormat),
     pub(crate) escape: ([Axis; 2], TexelFormat),
+    pub(crate) asked: Asked,
+}
+
+/// What the materials decide themselves: no search touches it.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Asked {
+    pub(crate) fresnel_size: bool,
+    pub(crate) fresnel_mapping: bool,
+    pub(crate) fresnel_format: bool,
+    pub(crate) distribution: bool,
+    pub(crate) fgd_size: bool,
+    pub(crate) fgd_format: bool,
+    pub(crate) phase_size: bool,
+    pub(crate) phase_format: bool,
 }
 
 impl Settings {
-    /// What the materials ask for, where they agree.
+    /// What the materials ask for, where they agree, and fixed defaults for the rest.
     ///
     /// # Errors
     /// [`BakeError::Conflict`] where they do not.
@@ -35,7 +56,8 @@ impl Settings {
             FresnelMapping::SqrtCosine => axis("cos_theta", "", [0.0, 1.0], size, Mapping::Power { exponent: 2.0 }),
             FresnelMapping::Theta => axis("theta", "rad", [0.0, FRAC_PI_2], size, Mapping::Linear),
         };
-        let fresnel = (row, ask.format("bake.fresnel.format", |b| b.fresnel.format, TexelFormat::Rgba16Float)?);
+        let format = ask.format("bake.fresnel.format", |b| b.fresnel.format, TexelFormat::Rgba16Float)?;
+        let fresnel = RowShape { axis: row, format, base: RowBase::Zero };
 
         let size = ask.one("bake.distribution.size", |b| b.distribution.size)?.unwrap_or([512, 512]);
         let exponent = ask.one("bake.distribution.exponent", |b| b.distribution.exponent)?.unwrap_or(8.0);
@@ -55,7 +77,7 @@ impl Settings {
             AlphaMapping::Linear => axis("alpha", "", [0.0, 1.0], size[1], Mapping::Linear),
         };
         let format = ask.format("bake.distribution.format", |b| b.distribution.format, TexelFormat::Rg16Float)?;
-        let distribution = ([angle, slope], format);
+        let distribution = Some(([angle, slope], format));
 
         let size = ask.one("bake.fgd.size", |b| b.fgd.size)?.unwrap_or([64, 64]);
         let fgd = (
@@ -67,10 +89,10 @@ impl Settings {
         );
 
         let size = ask.one("bake.phase.size", |b| b.phase.size)?.unwrap_or(256);
-        let phase = (
+        let phase = Some((
             axis("s", "", [0.0, 1.0], size, Mapping::Linear),
             ask.format("bake.phase.format", |b| b.phase.format, TexelFormat::Rgba16Float)?,
-        );
+        ));
 
         let size = ask.one("bake.thickness.size", |b| b.thickness.size)?.unwrap_or(256);
         let thickness = (
@@ -91,11 +113,23 @@ impl Settings {
             ],
             TexelFormat::R16Float,
         );
-        Ok(Self { fresnel, distribution, fgd, phase, thickness, film, escape })
+        let any = |has: fn(&BakeSettings) -> bool| materials.iter().any(|m| has(&m.bake));
+        let asked = Asked {
+            fresnel_size: any(|b| b.fresnel.size.is_some()),
+            fresnel_mapping: any(|b| b.fresnel.mapping.is_some()),
+            fresnel_format: any(|b| b.fresnel.format.is_some()),
+            distribution: any(|b| b.distribution != DistributionSettings::default()),
+            fgd_size: any(|b| b.fgd.size.is_some()),
+            fgd_format: any(|b| b.fgd.format.is_some()),
+            phase_size: any(|b| b.phase.size.is_some()),
+            phase_format: any(|b| b.phase.format.is_some()),
+        };
+        let fgd_grid = fgd.0.clone();
+        Ok(Self { fresnel, distribution, fgd, fgd_grid, phase, thickness, film, escape, asked })
     }
 }
 
-fn axis(quantity: &str, unit: &str, [min, max]: [f64; 2], size: u32, mapping: Mapping) -> Axis {
+pub(crate) fn axis(quantity: &str, unit: &str, [min, max]: [f64; 2], size: u32, mapping: Mapping) -> Axis {
     Axis { quantity: quantity.to_owned(), unit: unit.to_owned(), min, max, size, mapping }
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use luthier_bake::{Bake, MapSource};
 use luthier_lut::{
-    Atlas, AtlasLayout, Axis, FileEntry, Image, MANIFEST_SCHEMA, Manifest, MapEntry, Mapping, MaterialEntry,
+    Atlas, AtlasLayout, Axis, FileEntry, Image, MANIFEST_SCHEMA, Manifest, MapEntry, Mapping, MaterialEntry, RowBase,
     ShaderEntry, TableEntry, TableKind, material_buffer,
 };
 use luthier_material::Material;
@@ -62,6 +62,7 @@ impl BakeFiles {
             generator: GENERATOR.to_owned(),
             materials: material_entries(materials, &bake.materials, &mut files)?,
             tables,
+            searches: bake.searches.clone(),
             shaders: Vec::new(),
             bindings: Vec::new(),
             material_buffer: FileEntry::default(),
@@ -172,7 +173,7 @@ fn encode(atlas: &Atlas) -> Outcome<EncodedTable> {
 
 /// What every container of a table says about itself.
 fn metadata(atlas: &Atlas) -> Metadata {
-    let AtlasLayout { x, y, apron, columns, tiles } = &atlas.layout;
+    let AtlasLayout { x, y, apron, columns, tiles, base } = &atlas.layout;
     let joined = |f: &dyn Fn(&luthier_lut::Tile) -> String| atlas.tiles.iter().map(f).collect::<Vec<_>>().join("\n");
     let hashes = joined(&|t| t.input_hash.clone());
     let mut pairs = vec![
@@ -189,6 +190,9 @@ fn metadata(atlas: &Atlas) -> Metadata {
     ];
     if let Some(y) = y {
         pairs.push(("axis.y", axis(y)));
+    }
+    if *base == RowBase::Schlick {
+        pairs.push(("row.base", "schlick".to_owned()));
     }
     pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use luthier_cost::Family;
 use luthier_material::ModelSetting;
 use luthier_shader::{Form, Target};
 
@@ -14,10 +15,10 @@ use crate::model_inputs::ModelInputs;
 const AFTER_HELP: &str = "\
 Exit codes:
   0  success
-  1  an input is invalid, or a budget is exceeded
+  1  an input is invalid, or a budget is exceeded or cannot be met
   2  the command line is wrong
   3  a file cannot be read or written
-  4  no usable graphics adapter, or it failed
+  4  no usable graphics adapter, driver or display, or it failed
 
 Examples:
   luthier bake materials            tables, manifest and shaders into out/
@@ -38,6 +39,8 @@ pub(crate) struct Cli {
 pub(crate) enum Verb {
     /// Bake materials: textures, manifest and shaders
     Bake(BakeOptions),
+    /// Measure what searches for tables reach against fixed ones: a page in Markdown
+    Budgets(BudgetsOptions),
     /// Validate material files and print the class of each surface
     Check(CheckOptions),
     /// Judge a bake: tables and shaders against the full evaluation in f64
@@ -57,6 +60,26 @@ pub(crate) enum Verb {
     /// Render a material with two shaders and compare the pictures
     #[cfg(feature = "gpu")]
     Compare(CompareOptions),
+    /// What every shader of every material costs on real GPUs, which need not be here: a page in Markdown
+    Cost(CostOptions),
+    /// Time every shader of every material on the graphics adapter at hand
+    #[cfg(feature = "gpu")]
+    Bench(BenchOptions),
+    /// Compile the kernels of standard input on the null device that the environment names
+    #[command(hide = true)]
+    CostProbe {
+        #[arg(value_parser = family())]
+        family: FamilyName,
+        /// Machine code instead of counts
+        #[arg(long)]
+        assembly: bool,
+    },
+    /// Open a window: turn, light and edit materials, and see them change with their files
+    #[cfg(feature = "view")]
+    View(ViewOptions),
+    /// Make the figures of the papers anew
+    #[cfg(feature = "gpu")]
+    Figures(FiguresOptions),
     /// Print the shader of some materials, or write it to a file
     Shader(ShaderOptions),
     /// List the reflectance models
@@ -88,13 +111,16 @@ pub(crate) struct Shading {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  luthier bake materials\n  luthier bake a.toml b.toml --out build/luts --threads 1 --json"
+    after_help = "Examples:\n  luthier bake materials\n  luthier bake a.toml b.toml --out build/luts --threads 1 --json\n  \
+                  luthier bake a.toml --max-abs 1e-3 --max-cost 200"
 )]
 pub(crate) struct BakeOptions {
     #[command(flatten)]
     pub(crate) sources: Sources,
     #[command(flatten)]
     pub(crate) shading: Shading,
+    #[command(flatten)]
+    pub(crate) limits: Limits,
     /// Folder to write to
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(crate) out: PathBuf,
@@ -107,6 +133,48 @@ pub(crate) struct BakeOptions {
     /// Print errors only
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  luthier budgets materials -o docs/budgets.md")]
+pub(crate) struct BudgetsOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// File to write instead of standard output
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+/// Limits on tables, each in place of those in the files' [budget]: the cheapest tables that hold them are taken (docs/budgets.md).
+#[derive(Debug, Args)]
+pub(crate) struct Limits {
+    /// Largest absolute error of a sampled table; of D, relative to its peak
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) max_abs: Option<f64>,
+    /// Largest error relative to the value, or to 0.01 where it is less
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) max_rel: Option<f64>,
+    /// Largest CIEDE2000 difference of tabulated reflectances under D65
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) delta_e: Option<f64>,
+    /// Bytes of the texels of all tables
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
+    pub(crate) max_bytes: Option<u64>,
+    /// Estimated cost of one read of every table, in operations
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) max_cost: Option<f64>,
+    /// Take fixed sizes, mappings and formats, whatever the budget
+    #[arg(long, conflicts_with_all = ["max_abs", "max_rel", "delta_e", "max_bytes", "max_cost"])]
+    pub(crate) no_search: bool,
+}
+
+impl Limits {
+    /// As the baker takes them.
+    pub(crate) fn options(&self) -> luthier_bake::Options {
+        let &Self { max_abs, max_rel, delta_e, max_bytes, max_cost, no_search } = self;
+        let budget = luthier_lut::Budget { max_abs, max_rel, delta_e, max_bytes, max_cost };
+        luthier_bake::Options { budget, search: !no_search }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -192,9 +260,107 @@ pub(crate) struct StabilityOptions {
 }
 
 #[cfg(feature = "gpu")]
+mod figures;
+#[cfg(feature = "gpu")]
 mod render;
 #[cfg(feature = "gpu")]
+pub(crate) use figures::FiguresOptions;
+#[cfg(feature = "gpu")]
 pub(crate) use render::{CompareOptions, GalleryOptions, Look, PreviewOptions, ShaderChoice, ShapeName};
+
+const COST_EXAMPLES: &str = "\
+Mesa's RADV driver compiles for these GPUs without having one; where it is missing, the exit code is 4. What making directions \
+and writing the value costs is subtracted. Every shader comes with its material in a buffer and as constants of the code, and the \
+form `baked` with D from its table and in closed form, unless named.
+
+Examples:
+  luthier cost materials -o docs/cost.md
+  luthier cost mine.toml --model elek --model phong --family rdna2 --json
+  luthier cost materials --set --form baked
+  luthier cost mine.toml --model elek --form baked --closed --constant --family rdna2 --assembly";
+
+#[derive(Debug, Args)]
+#[command(after_help = COST_EXAMPLES)]
+pub(crate) struct CostOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Model to compile; may be given again. By default all
+    #[arg(long, value_name = "NAME", value_parser = shading_model())]
+    pub(crate) model: Vec<ModelSetting>,
+    /// Form to compile; may be given again. By default both
+    #[arg(long, value_enum, value_name = "FORM")]
+    pub(crate) form: Vec<FormName>,
+    /// Instruction set: gcn5, rdna2 or rdna3; may be given again. By default all
+    #[arg(long, value_name = "NAME", value_parser = family())]
+    pub(crate) family: Vec<FamilyName>,
+    /// All materials in one shader, as a bake of them has it, instead of each in its own
+    #[arg(long)]
+    pub(crate) set: bool,
+    /// Only shaders whose D is a closed form
+    #[arg(long)]
+    pub(crate) closed: bool,
+    /// Only shaders whose material is constants of the code
+    #[arg(long, conflicts_with = "set")]
+    pub(crate) constant: bool,
+    /// Print the machine code of one kernel
+    #[arg(long, conflicts_with_all = ["json", "output"])]
+    pub(crate) assembly: bool,
+    /// JSON instead of Markdown
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// File to write instead of standard output
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+#[cfg(feature = "gpu")]
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Shaders take turns; what is printed are nanoseconds per evaluation. A software adapter is timed like any other, and named as one.\n\nExamples:\n  luthier bench materials/car-paint.toml\n  luthier bench mine.toml --model elek --repeats 100 --json -o bench.json"
+)]
+pub(crate) struct BenchOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Model to time besides Phong's; may be given again. By default all
+    #[arg(long, value_name = "NAME", value_parser = shading_model())]
+    pub(crate) model: Vec<ModelSetting>,
+    /// Evaluations of one run, at least
+    #[arg(long, value_name = "N", default_value_t = 1 << 20, value_parser = clap::value_parser!(u32).range(1..=60_000_000))]
+    pub(crate) evaluations: u32,
+    /// Runs of each shader that do not count
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub(crate) warm_up: u32,
+    /// Runs of each shader that count
+    #[arg(long, value_name = "N", default_value_t = BENCH_REPEATS)]
+    pub(crate) repeats: NonZeroU32,
+    /// Use the graphics adapter whose name contains this
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+    /// JSON instead of a table
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// File to write instead of standard output
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+/// Runs that count: the median is then safe from fourteen outliers.
+#[cfg(feature = "gpu")]
+const BENCH_REPEATS: NonZeroU32 = NonZeroU32::new(30).expect("not zero");
+
+/// A family of GPUs by its name.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FamilyName(pub(crate) Family);
+
+fn family() -> impl TypedValueParser<Value = FamilyName> {
+    PossibleValuesParser::new(Family::ALL.map(Family::name))
+        .try_map(|name| Family::from_name(&name).map(FamilyName).ok_or_else(|| format!("no family `{name}`")))
+}
+
+#[cfg(feature = "view")]
+mod view;
+#[cfg(feature = "view")]
+pub(crate) use view::{ThemeName, ViewOptions};
 
 #[derive(Debug, Args)]
 #[command(
@@ -211,6 +377,12 @@ pub(crate) struct ShaderOptions {
     /// Reads the tables, or evaluates everything in ALU
     #[arg(long, value_enum, default_value_t = FormName::Baked)]
     pub(crate) form: FormName,
+    /// D in closed form instead of from its table
+    #[arg(long)]
+    pub(crate) closed: bool,
+    /// The numbers of one material as constants of the code instead of a buffer
+    #[arg(long, conflicts_with = "complete")]
+    pub(crate) constant: bool,
     /// A complete small fragment shader instead of functions to paste (SPIR-V: instead of a library to link)
     #[arg(long)]
     pub(crate) complete: bool,

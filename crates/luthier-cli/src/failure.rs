@@ -17,8 +17,7 @@ pub(crate) enum Failure {
     Usage(anyhow::Error),
     /// Exit code 3: a file cannot be read or written.
     Files(anyhow::Error),
-    /// Exit code 4: no usable graphics adapter, or it failed.
-    #[cfg(feature = "gpu")]
+    /// Exit code 4: no usable graphics adapter or driver, or it failed.
     Device(anyhow::Error),
     /// Exit code 0: whoever reads our output has had enough.
     BrokenPipe,
@@ -39,6 +38,15 @@ impl Failure {
         Self::Usage(anyhow::anyhow!("no {what} `{name}`; {hint}known: {}", known.join(", ")))
     }
 
+    /// What it is, for people.
+    #[cfg(feature = "view")]
+    pub(crate) fn sentence(&self) -> String {
+        match self {
+            Self::Input(error) | Self::Usage(error) | Self::Files(error) | Self::Device(error) => sentence(error),
+            Self::Verdict | Self::BrokenPipe => self.to_string(),
+        }
+    }
+
     pub(crate) fn exit(&self) -> ExitCode {
         let (code, error) = match self {
             Self::BrokenPipe => (0, None),
@@ -46,7 +54,6 @@ impl Failure {
             Self::Input(error) => (1, Some(error)),
             Self::Usage(error) => (2, Some(error)),
             Self::Files(error) => (3, Some(error)),
-            #[cfg(feature = "gpu")]
             Self::Device(error) => (4, Some(error)),
         };
         if let Some(error) = error {

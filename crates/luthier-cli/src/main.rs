@@ -3,6 +3,8 @@
 mod artefacts;
 mod bake_files;
 mod cli;
+mod cost_page;
+mod cost_papers;
 #[cfg(feature = "gpu")]
 mod device;
 mod directions;
@@ -23,6 +25,8 @@ mod reradiation;
 mod sheet;
 mod staging;
 mod verb;
+#[cfg(feature = "view")]
+mod view_host;
 
 use std::process::ExitCode;
 
@@ -34,6 +38,7 @@ fn main() -> ExitCode {
     let cli = Cli::parse();
     let outcome = match &cli.verb {
         Verb::Bake(options) => verb::bake::run(options),
+        Verb::Budgets(options) => verb::budgets::run(options),
         Verb::Check(options) => verb::check::run(options),
         Verb::Report(options) => verb::report::run(options),
         #[cfg(feature = "gpu")]
@@ -46,6 +51,14 @@ fn main() -> ExitCode {
         Verb::Gallery(options) => verb::gallery::run(options),
         #[cfg(feature = "gpu")]
         Verb::Compare(options) => verb::compare::run(options),
+        #[cfg(feature = "gpu")]
+        Verb::Bench(options) => verb::bench::run(options),
+        Verb::Cost(options) => verb::cost::run(options),
+        Verb::CostProbe { family, assembly } => verb::cost::probe(family.0, *assembly),
+        #[cfg(feature = "view")]
+        Verb::View(options) => verb::view::run(options),
+        #[cfg(feature = "gpu")]
+        Verb::Figures(options) => verb::figures::run(options),
         Verb::Shader(options) => verb::shader::run(options),
         Verb::Models(options) => verb::models::run(options),
         Verb::Eval(options) => verb::eval::run(options),

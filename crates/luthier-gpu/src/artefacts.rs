@@ -191,7 +191,8 @@ fn checked_size(layout: &AtlasLayout) -> Option<[u32; 2]> {
     if layout.columns == 0 || layout.tiles == 0 || sizes.iter().flatten().any(|&size| size < 2) {
         return None;
     }
-    let width = layout.x.size.checked_add(apron)?.checked_mul(layout.columns)?;
+    let header = layout.base.header_texels();
+    let width = layout.x.size.checked_add(apron)?.checked_add(header)?.checked_mul(layout.columns)?;
     let tile_height = layout.y.as_ref().map_or(Some(1), |y| y.size.checked_add(apron))?;
     let height = tile_height.checked_mul(layout.tiles.div_ceil(layout.columns))?;
     Some([width, height])

@@ -160,6 +160,8 @@ fn texture_format(format: TexelFormat) -> wgpu::TextureFormat {
         TexelFormat::R16Float => wgpu::TextureFormat::R16Float,
         TexelFormat::R32Float => wgpu::TextureFormat::R32Float,
         TexelFormat::Rgba8Unorm => wgpu::TextureFormat::Rgba8Unorm,
+        TexelFormat::Rgb10a2Unorm => wgpu::TextureFormat::Rgb10a2Unorm,
+        TexelFormat::Rg11b10Ufloat => wgpu::TextureFormat::Rg11b10Ufloat,
         TexelFormat::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
         TexelFormat::Rgba32Float => wgpu::TextureFormat::Rgba32Float,
     }

@@ -102,8 +102,18 @@ impl Context {
         let bytes = (pass.output_words * size_of::<[f32; 4]>()) as u64;
         let (readback, submission) = self.guarded(pass.what, || self.submit(pass, bytes))?;
 
+        self.read(pass.what, &readback, submission)
+    }
+
+    /// Waits for a submission and reads a buffer that it filled.
+    fn read<T: bytemuck::Pod>(
+        &self,
+        what: &str,
+        readback: &wgpu::Buffer,
+        submission: wgpu::SubmissionIndex,
+    ) -> Result<Vec<T>, GpuError> {
         let (sender, receiver) = mpsc::channel();
-        self.guarded(pass.what, || {
+        self.guarded(what, || {
             readback.map_async(wgpu::MapMode::Read, .., move |result| {
                 // The receiver lives until the answer is there or no longer wanted.
                 let _ = sender.send(result);
@@ -113,17 +123,17 @@ impl Context {
         match self.device.poll(wait) {
             Ok(_) => {}
             Err(wgpu::PollError::Timeout) => return Err(GpuError::Timeout { seconds: TIMEOUT.as_secs() }),
-            Err(error) => return Err(GpuError::Refused { what: pass.what.to_owned(), message: error.to_string() }),
+            Err(error) => return Err(GpuError::Refused { what: what.to_owned(), message: error.to_string() }),
         }
-        self.check(pass.what)?;
-        let refused = |message: String| GpuError::Refused { what: pass.what.to_owned(), message };
+        self.check(what)?;
+        let refused = |message: String| GpuError::Refused { what: what.to_owned(), message };
         match receiver.try_recv() {
             Ok(Ok(())) => {}
             Ok(Err(error)) => return Err(refused(error.to_string())),
             Err(_) => return Err(refused("the result was never mapped".to_owned())),
         }
         let view = readback.get_mapped_range(..).map_err(|error| refused(error.to_string()))?;
-        let words = bytemuck::pod_collect_to_vec::<u8, [f32; 4]>(&view);
+        let words = bytemuck::pod_collect_to_vec::<u8, T>(&view);
         drop(view);
         readback.unmap();
         Ok(words)
@@ -162,6 +172,110 @@ impl Context {
         encoder.copy_buffer_to_buffer(&outputs, 0, &readback, 0, bytes);
         let submission = self.queue.submit([encoder.finish()]);
         (readback, submission)
+    }
+}
+
+/// Buffers of a pass that is run to be timed; what it writes is not read.
+#[derive(Debug)]
+pub(crate) struct TimedPass {
+    group: wgpu::BindGroup,
+    /// A pair of timestamps, the buffer that they are resolved to, and one to read; where the device has timestamps.
+    clock: Option<(wgpu::QuerySet, wgpu::Buffer, wgpu::Buffer)>,
+    /// The last word of the outputs, to wait for where it has none.
+    outputs: wgpu::Buffer,
+    last: wgpu::Buffer,
+}
+
+impl TimedPass {
+    pub(crate) fn has_timestamps(&self) -> bool {
+        self.clock.is_some()
+    }
+}
+
+/// Bytes of a pair of timestamps.
+const STAMPS: u64 = 16;
+
+impl Context {
+    pub(crate) fn timed_pass(
+        &self,
+        pipeline: &wgpu::ComputePipeline,
+        inputs: &[u8],
+        output_words: usize,
+    ) -> Result<TimedPass, GpuError> {
+        self.guarded("timing", || {
+            let buffer = |label, size, usage| {
+                self.device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some(label),
+                    size,
+                    usage,
+                    mapped_at_creation: false,
+                })
+            };
+            let inputs = self.upload("kernel_inputs", inputs);
+            let bytes = (output_words * size_of::<[f32; 4]>()) as u64;
+            let outputs = buffer("kernel_outputs", bytes, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
+            let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("kernel"),
+                layout: &pipeline.get_bind_group_layout(1),
+                entries: &[
+                    wgpu::BindGroupEntry { binding: 0, resource: inputs.as_entire_binding() },
+                    wgpu::BindGroupEntry { binding: 1, resource: outputs.as_entire_binding() },
+                ],
+            });
+            let readable = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+            let clock = self.device.features().contains(wgpu::Features::TIMESTAMP_QUERY).then(|| {
+                let queries = self.device.create_query_set(&wgpu::QuerySetDescriptor {
+                    label: Some("clock"),
+                    ty: wgpu::QueryType::Timestamp,
+                    count: 2,
+                });
+                let resolved =
+                    buffer("clock", STAMPS, wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC);
+                (queries, resolved, buffer("clock readback", STAMPS, readable))
+            });
+            let last = buffer("readback", STAMPS, readable);
+            TimedPass { group, clock, outputs, last }
+        })
+    }
+
+    /// Runs a pass and waits for it: its nanoseconds by the device's clock, if that has one.
+    pub(crate) fn run_timed(
+        &self,
+        pass: &TimedPass,
+        pipeline: &wgpu::ComputePipeline,
+        shader_group: &wgpu::BindGroup,
+        workgroups: u32,
+    ) -> Result<Option<f64>, GpuError> {
+        let submission = self.guarded("timing", || {
+            let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            {
+                let timestamp_writes = pass.clock.as_ref().map(|(queries, ..)| wgpu::ComputePassTimestampWrites {
+                    query_set: queries,
+                    beginning_of_pass_write_index: Some(0),
+                    end_of_pass_write_index: Some(1),
+                });
+                let mut compute =
+                    encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("timed"), timestamp_writes });
+                compute.set_pipeline(pipeline);
+                compute.set_bind_group(0, shader_group, &[]);
+                compute.set_bind_group(1, &pass.group, &[]);
+                compute.dispatch_workgroups(workgroups, 1, 1);
+            }
+            match &pass.clock {
+                Some((queries, resolved, readback)) => {
+                    encoder.resolve_query_set(queries, 0..2, resolved, 0);
+                    encoder.copy_buffer_to_buffer(resolved, 0, readback, 0, STAMPS);
+                }
+                None => encoder.copy_buffer_to_buffer(&pass.outputs, 0, &pass.last, 0, STAMPS),
+            }
+            self.queue.submit([encoder.finish()])
+        })?;
+        let Some((_, _, readback)) = &pass.clock else {
+            return self.read::<f32>("timing", &pass.last, submission).map(|_| None);
+        };
+        let stamps: Vec<u64> = self.read("timing", readback, submission)?;
+        let ticks = stamps.last().copied().unwrap_or(0).wrapping_sub(stamps.first().copied().unwrap_or(0));
+        Ok(Some(ticks as f64 * f64::from(self.queue.get_timestamp_period())))
     }
 }
 

@@ -36,6 +36,7 @@ mod render;
 mod scene;
 mod shape;
 mod sky;
+mod time;
 mod tone;
 mod vector;
 
@@ -48,4 +49,5 @@ pub use render::{Backdrop, RenderSettings};
 pub use scene::Scene;
 pub use shape::{Camera, GRID_SIDE, Shape};
 pub use sky::{Sky, SoftLight};
+pub use time::Stopwatch;
 pub use tone::ToneMapping;

@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use crate::{Axis, Encoding, ErrorStats, Image, TexelFormat, WeightBits, bilinear};
+use crate::{Axis, Encoding, ErrorStats, Image, RowBase, SchlickBase, TexelFormat, WeightBits, bilinear};
 
 /// What a table holds. One texture of each kind serves any number of materials.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -69,12 +69,16 @@ pub struct AtlasLayout {
     pub columns: u32,
     /// Number of tiles, at least 1.
     pub tiles: u32,
+    /// What a look-up adds; absent from files when it is nothing.
+    #[serde(default, skip_serializing_if = "RowBase::is_zero")]
+    pub base: RowBase,
 }
 
 impl AtlasLayout {
-    /// Texels of one tile, apron included.
+    /// Texels of one tile, apron and coefficients included.
     pub fn tile_size(&self) -> [u32; 2] {
-        [self.x.size + 2 * self.apron, self.y.as_ref().map_or(1, |y| y.size + 2 * self.apron)]
+        let header = self.base.header_texels();
+        [self.x.size + 2 * self.apron + header, self.y.as_ref().map_or(1, |y| y.size + 2 * self.apron)]
     }
 
     /// Texels of the whole texture.
@@ -87,6 +91,12 @@ impl AtlasLayout {
     pub fn origin(&self, tile: u32) -> [u32; 2] {
         let [w, h] = self.tile_size();
         [tile % self.columns * w, tile / self.columns * h]
+    }
+
+    /// First texel of the coefficients of a tile, behind its nodes.
+    pub fn header(&self, tile: u32) -> [u32; 2] {
+        let [x, y] = self.origin(tile);
+        [x + self.x.size + 2 * self.apron, y]
     }
 
     /// The position in texels (centres at `i + 0.5`) that a look-up of these axis values reads; `values[1]` is
@@ -134,8 +144,32 @@ pub struct Atlas {
 impl Atlas {
     /// Reads the quantised texels as the hardware and the shader would.
     pub fn sample(&self, tile: u32, values: [f64; 2], weights: WeightBits) -> [f64; 4] {
-        let texel = bilinear(&self.texels, self.layout.position(tile, values), weights);
-        Encoding::of(self.kind, self.format).decode(texel)
+        read(self.kind, &self.layout, self.format, &self.texels, tile, values, weights)
+    }
+}
+
+/// What a look-up gives for axis values. Formats that core WebGPU does not filter are weighed in the shader: exactly, whatever
+/// `weights` says.
+pub fn read(
+    kind: TableKind,
+    layout: &AtlasLayout,
+    format: TexelFormat,
+    texels: &Image,
+    tile: u32,
+    values: [f64; 2],
+    weights: WeightBits,
+) -> [f64; 4] {
+    let weights = if format.is_filterable() { weights } else { WeightBits::Exact };
+    let texel = bilinear(texels, layout.position(tile, values), weights);
+    match layout.base {
+        RowBase::Zero => Encoding::of(kind, format).decode(texel),
+        RowBase::Schlick => {
+            let base = SchlickBase::read(texels, layout.header(tile));
+            let closed_form = base.closed_form(values[0].clamp(0.0, 1.0));
+            let span = SchlickBase::span(format);
+            let [r, g, b] = [0, 1, 2].map(|c: usize| closed_form[c] + base.scale[c] * (span * texel[c] - 1.0));
+            [r, g, b, 1.0]
+        }
     }
 }
 
@@ -154,16 +188,20 @@ mod tests {
         let mapping =
             prop_oneof![Just(Mapping::Linear), Just(Mapping::Power { exponent: 8.0 }), Just(Mapping::Logarithmic),];
         let sizes = (2..40u32, prop::option::of(2..40u32));
-        (sizes, mapping, any::<bool>(), 1..5u32, 1..12u32).prop_map(|((w, h), mapping, periodic, columns, tiles)| {
-            let mapping = if periodic { Mapping::Periodic } else { mapping };
-            AtlasLayout {
-                x: axis(w, mapping),
-                y: h.map(|h| axis(h, mapping)),
-                apron: u32::from(periodic),
-                columns,
-                tiles,
-            }
-        })
+        let base = prop_oneof![Just(RowBase::Zero), Just(RowBase::Schlick)];
+        (sizes, mapping, any::<bool>(), 1..5u32, 1..12u32, base).prop_map(
+            |((w, h), mapping, periodic, columns, tiles, base)| {
+                let mapping = if periodic { Mapping::Periodic } else { mapping };
+                AtlasLayout {
+                    x: axis(w, mapping),
+                    y: h.map(|h| axis(h, mapping)),
+                    apron: u32::from(periodic),
+                    columns,
+                    tiles,
+                    base: if h.is_none() && !periodic { base } else { RowBase::Zero },
+                }
+            },
+        )
     }
 
     proptest! {
@@ -196,6 +234,7 @@ mod tests {
             apron: 1,
             columns: 3,
             tiles: 7,
+            base: RowBase::Zero,
         };
         assert_eq!(layout.tile_size(), [10, 6]);
         assert_eq!(layout.size(), [30, 18]);
@@ -204,7 +243,8 @@ mod tests {
 
     #[test]
     fn the_outermost_nodes_are_texel_centres() {
-        let layout = AtlasLayout { x: axis(128, Mapping::Linear), y: None, apron: 0, columns: 2, tiles: 3 };
+        let layout =
+            AtlasLayout { x: axis(128, Mapping::Linear), y: None, apron: 0, columns: 2, tiles: 3, base: RowBase::Zero };
         assert_eq!(layout.position(1, [0.5, f64::NAN]), [128.5, 0.5]);
         assert_eq!(layout.position(2, [2.0, 0.0]), [127.5, 1.5]);
     }

@@ -24,6 +24,8 @@ pub enum LutError {
         expected: usize,
     },
     /// A texel format that does not exist.
-    #[error("unknown texel format `{0}`; known: r16float, rg16float, r32float, rgba8unorm, rgba16float, rgba32float")]
+    #[error(
+        "unknown texel format `{0}`; known: r16float, rg16float, r32float, rgba8unorm, rgb10a2unorm, rg11b10ufloat, rgba16float, rgba32float"
+    )]
     UnknownFormat(String),
 }

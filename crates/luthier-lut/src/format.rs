@@ -18,6 +18,10 @@ pub enum TexelFormat {
     R32Float,
     /// Four unsigned normalised bytes, linear.
     Rgba8Unorm,
+    /// Three unsigned normalised values of ten bits and one of two, in 32 bits.
+    Rgb10a2Unorm,
+    /// Floats without sign in 32 bits: two of eleven bits and one of ten, six and five bits of them mantissa.
+    Rg11b10Ufloat,
     /// Four half floats.
     Rgba16Float,
     /// Four floats. Not filterable in core WebGPU.
@@ -26,8 +30,16 @@ pub enum TexelFormat {
 
 impl TexelFormat {
     /// All formats, for listings and tests.
-    pub const ALL: [Self; 6] =
-        [Self::R16Float, Self::Rg16Float, Self::R32Float, Self::Rgba8Unorm, Self::Rgba16Float, Self::Rgba32Float];
+    pub const ALL: [Self; 8] = [
+        Self::R16Float,
+        Self::Rg16Float,
+        Self::R32Float,
+        Self::Rgba8Unorm,
+        Self::Rgb10a2Unorm,
+        Self::Rg11b10Ufloat,
+        Self::Rgba16Float,
+        Self::Rgba32Float,
+    ];
 
     /// The WebGPU name.
     pub fn name(self) -> &'static str {
@@ -36,6 +48,8 @@ impl TexelFormat {
             Self::Rg16Float => "rg16float",
             Self::R32Float => "r32float",
             Self::Rgba8Unorm => "rgba8unorm",
+            Self::Rgb10a2Unorm => "rgb10a2unorm",
+            Self::Rg11b10Ufloat => "rg11b10ufloat",
             Self::Rgba16Float => "rgba16float",
             Self::Rgba32Float => "rgba32float",
         }
@@ -46,43 +60,67 @@ impl TexelFormat {
         match self {
             Self::R16Float | Self::R32Float => 1,
             Self::Rg16Float => 2,
-            Self::Rgba8Unorm | Self::Rgba16Float | Self::Rgba32Float => 4,
+            Self::Rg11b10Ufloat => 3,
+            Self::Rgba8Unorm | Self::Rgb10a2Unorm | Self::Rgba16Float | Self::Rgba32Float => 4,
         }
     }
 
-    /// Bytes per channel.
+    /// Bytes per channel; of formats whose channels share a word, bytes of the word.
     pub fn channel_bytes(self) -> u32 {
         match self {
             Self::Rgba8Unorm => 1,
             Self::R16Float | Self::Rg16Float | Self::Rgba16Float => 2,
-            Self::R32Float | Self::Rgba32Float => 4,
+            Self::R32Float | Self::Rgb10a2Unorm | Self::Rg11b10Ufloat | Self::Rgba32Float => 4,
         }
     }
 
     /// Bytes per texel.
     pub fn texel_bytes(self) -> u32 {
-        self.channels() * self.channel_bytes()
+        match self {
+            Self::Rgb10a2Unorm | Self::Rg11b10Ufloat => 4,
+            _ => self.channels() * self.channel_bytes(),
+        }
     }
 
     /// Whether a filtering sampler may read it in core WebGPU.
     pub fn is_filterable(self) -> bool {
-        self.channel_bytes() < 4
+        !matches!(self, Self::R32Float | Self::Rgba32Float)
+    }
+
+    /// The largest code of its first three channels where they are unsigned and normalised.
+    pub fn unorm_max(self) -> Option<f64> {
+        match self {
+            Self::Rgba8Unorm => Some(255.0),
+            Self::Rgb10a2Unorm => Some(1023.0),
+            _ => None,
+        }
     }
 
     /// The texels of an image as little-endian bytes, rounded to nearest. Channels the image lacks are 0, and 1 for
-    /// alpha; surplus channels are dropped. Unorm clamps to 0..1; half clamps to its finite range.
+    /// alpha; surplus channels are dropped. Unorm clamps to 0..1; floats of less than 32 bits clamp to their finite range.
     pub fn encode(self, image: &Image) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(image.texel_count() * self.texel_bytes() as usize);
         for texel in image.texels() {
-            for c in 0..self.channels() as usize {
-                let v = texel.get(c).copied().unwrap_or(if c == 3 { 1.0 } else { 0.0 });
-                match self.channel_bytes() {
-                    1 => bytes.push((v.clamp(0.0, 1.0) * 255.0).round() as u8),
-                    2 => {
-                        let finite = v.clamp(-f16::MAX.to_f32(), f16::MAX.to_f32());
+            let channel = |c: usize| texel.get(c).copied().unwrap_or(if c == 3 { 1.0 } else { 0.0 });
+            let unorm = |c: usize, max: f32| (channel(c).clamp(0.0, 1.0) * max).round() as u32;
+            match self {
+                Self::Rgba8Unorm => bytes.extend((0..4).map(|c| unorm(c, 255.0) as u8)),
+                Self::Rgb10a2Unorm => {
+                    let [r, g, b] = [0, 1, 2].map(|c| unorm(c, 1023.0));
+                    bytes.extend_from_slice(&(r | g << 10 | b << 20 | unorm(3, 3.0) << 30).to_le_bytes());
+                }
+                Self::Rg11b10Ufloat => {
+                    let [r, g, b] = [(0, 6), (1, 6), (2, 5)].map(|(c, mantissa)| ufloat(channel(c), mantissa));
+                    bytes.extend_from_slice(&(r | g << 11 | b << 22).to_le_bytes());
+                }
+                Self::R16Float | Self::Rg16Float | Self::Rgba16Float => {
+                    for c in 0..self.channels() as usize {
+                        let finite = channel(c).clamp(-f16::MAX.to_f32(), f16::MAX.to_f32());
                         bytes.extend_from_slice(&f16::from_f32(finite).to_le_bytes());
                     }
-                    _ => bytes.extend_from_slice(&v.to_le_bytes()),
+                }
+                Self::R32Float | Self::Rgba32Float => {
+                    (0..self.channels() as usize).for_each(|c| bytes.extend_from_slice(&channel(c).to_le_bytes()));
                 }
             }
         }
@@ -108,12 +146,41 @@ impl TexelFormat {
     }
 
     fn values(self, bytes: &[u8]) -> Vec<f32> {
-        match self.channel_bytes() {
-            1 => bytes.iter().map(|&b| f32::from(b) / 255.0).collect(),
-            2 => bytes.chunks_exact(2).map(|b| f16::from_le_bytes([b[0], b[1]]).to_f32()).collect(),
-            _ => bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect(),
+        let words = || bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+        match self {
+            Self::Rgba8Unorm => bytes.iter().map(|&b| f32::from(b) / 255.0).collect(),
+            Self::Rgb10a2Unorm => words()
+                .flat_map(|w| {
+                    let [r, g, b] = [0, 10, 20].map(|shift| (w >> shift & 1023) as f32 / 1023.0);
+                    [r, g, b, (w >> 30) as f32 / 3.0]
+                })
+                .collect(),
+            Self::Rg11b10Ufloat => words()
+                .flat_map(|w| {
+                    // A half float without its sign, the last bits of its mantissa 0.
+                    [(w & 2047) << 4, (w >> 11 & 2047) << 4, w >> 22 << 5]
+                        .map(|bits| f16::from_bits(bits as u16).to_f32())
+                })
+                .collect(),
+            Self::R16Float | Self::Rg16Float | Self::Rgba16Float => {
+                bytes.chunks_exact(2).map(|b| f16::from_le_bytes([b[0], b[1]]).to_f32()).collect()
+            }
+            Self::R32Float | Self::Rgba32Float => words().map(f32::from_bits).collect(),
         }
     }
+}
+
+/// The bits of a float without sign, of five bits of exponent as a half float has, rounded to nearest even.
+fn ufloat(value: f32, mantissa: u32) -> u32 {
+    let dropped = 10 - mantissa;
+    let max = f16::from_bits(0x7bff >> dropped << dropped).to_f32();
+    // Not a number is 0.
+    let finite = if value > 0.0 { value.min(max) } else { 0.0 };
+    // The exponent of the value, that of subnormal numbers at least.
+    let exponent = ((finite.to_bits() >> 23) as i32 - 127).max(-14);
+    let step = f32::from_bits(((exponent - mantissa as i32 + 127) as u32) << 23);
+    let rounded = (finite / step).round_ties_even() * step;
+    u32::from(f16::from_f32(rounded).to_bits()) >> dropped
 }
 
 impl fmt::Display for TexelFormat {
@@ -176,6 +243,19 @@ mod tests {
         assert_eq!(bytes, [0, 255, 128, 127, 0, 1, 0, 255, 0, 254, 51, 204]);
     }
 
+    /// Bit patterns worked out by hand: exponents are biased by 15, mantissas have six and five bits.
+    #[test]
+    fn packed_formats_lay_red_in_the_lowest_bits() {
+        let word =
+            |format: TexelFormat, rgb: [f32; 3]| u32::from_le_bytes(format.encode(&row(3, &rgb)).try_into().unwrap());
+        assert_eq!(word(TexelFormat::Rgb10a2Unorm, [1.0, 0.0, 0.5]), 3 << 30 | 512 << 20 | 1023);
+        assert_eq!(word(TexelFormat::Rg11b10Ufloat, [1.0, 0.0, 0.0]), 15 << 6);
+        assert_eq!(word(TexelFormat::Rg11b10Ufloat, [0.0, 1.5, 0.0]), (15 << 6 | 32) << 11);
+        assert_eq!(word(TexelFormat::Rg11b10Ufloat, [-1.0, f32::NAN, 2.0]), 16 << 5 << 22);
+        // Halfway between 1 and 1 + 2^-6: to even; beyond the range: the largest there is.
+        assert_eq!(word(TexelFormat::Rg11b10Ufloat, [1.0 + 1.0 / 128.0, 1e9, 0.0]), (30 << 6 | 63) << 11 | 15 << 6);
+    }
+
     #[test]
     fn missing_channels_are_black_and_opaque_surplus_ones_go() {
         let image = row(1, &[0.25]);
@@ -198,7 +278,8 @@ mod tests {
     #[test]
     fn sizes_are_those_of_webgpu() {
         let sizes = TexelFormat::ALL.map(|format| (format.texel_bytes(), format.is_filterable()));
-        assert_eq!(sizes, [(2, true), (4, true), (4, false), (4, true), (8, true), (16, false)]);
+        let expected = [(2, true), (4, true), (4, false), (4, true), (4, true), (4, true), (8, true), (16, false)];
+        assert_eq!(sizes, expected);
     }
 
     #[test]
@@ -217,7 +298,7 @@ mod tests {
                 let width = 48 / format.texel_bytes();
                 let image = format.decode(width, 1, &bytes).unwrap();
                 // Half floats that are not finite are clamped, by contract; floats that are not numbers keep their bits.
-                if format.channel_bytes() == 2 && image.data.iter().any(|v| !v.is_finite()) {
+                if format != TexelFormat::R32Float && format != TexelFormat::Rgba32Float && image.data.iter().any(|v| !v.is_finite()) {
                     continue;
                 }
                 prop_assert_eq!(&format.encode(&image), &bytes);
@@ -227,10 +308,19 @@ mod tests {
         #[test]
         fn rounding_is_within_half_a_step(values in prop::collection::vec(0.0..1.0f32, 8)) {
             // Half steps below 1: 2^-12 for half floats, 1/510 for unorm (and the rounding of f32 itself).
-            for (format, half_step) in [(TexelFormat::Rgba16Float, 1.0 / 4096.0), (TexelFormat::Rgba8Unorm, 1.0 / 509.99)] {
-                let found = format.decode(2, 1, &format.encode(&row(4, &values))).unwrap();
-                for (a, b) in found.data.iter().zip(&values) {
-                    prop_assert!((a - b).abs() <= half_step, "{format}: {b} became {a}");
+            for (format, half_steps) in [
+                (TexelFormat::Rgba16Float, [1.0 / 4096.0; 4]),
+                (TexelFormat::Rgba8Unorm, [1.0 / 509.99; 4]),
+                (TexelFormat::Rgb10a2Unorm, [1.0 / 2045.9, 1.0 / 2045.9, 1.0 / 2045.9, 1.0 / 5.99]),
+                (TexelFormat::Rg11b10Ufloat, [1.0 / 256.0, 1.0 / 256.0, 1.0 / 128.0, 0.0]),
+            ] {
+                let channels = format.channels() as usize;
+                let image = format.decode(2, 1, &format.encode(&row(4, &values))).unwrap();
+                for (found, texel) in image.texels().zip(values.chunks(4)) {
+                    for c in 0..channels {
+                        let (a, b) = (found[c], texel[c]);
+                        prop_assert!((a - b).abs() <= half_steps[c], "{format}: {b} became {a}");
+                    }
                 }
             }
         }

@@ -11,6 +11,7 @@
 
 mod atlas;
 mod axis;
+mod base;
 mod constants;
 mod encoding;
 mod error;
@@ -20,10 +21,12 @@ mod manifest;
 mod measure;
 mod record;
 mod sampler;
+mod search;
 mod shading;
 
-pub use atlas::{Atlas, AtlasLayout, TableKind, Tile};
+pub use atlas::{Atlas, AtlasLayout, TableKind, Tile, read};
 pub use axis::{Axis, Mapping};
+pub use base::{RowBase, SchlickBase};
 pub use constants::{FlakesRecord, GlitterRecord, MaterialConstants, PatinaRecord};
 pub use encoding::Encoding;
 pub use error::LutError;
@@ -36,4 +39,5 @@ pub use manifest::{
 pub use measure::{Comparison, ErrorStats, Scan, Worst, measure, measure_scan};
 pub use record::{LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, material_buffer};
 pub use sampler::{WeightBits, bilinear};
+pub use search::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR, Search};
 pub use shading::ShadingModel;

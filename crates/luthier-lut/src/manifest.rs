@@ -1,6 +1,8 @@
 use serde::{Deserialize, Serialize};
 
-use crate::{AtlasLayout, LayerRecord, LutError, MaterialConstants, ShadingModel, TableKind, TexelFormat, Tile};
+use crate::{
+    AtlasLayout, LayerRecord, LutError, MaterialConstants, Search, ShadingModel, TableKind, TexelFormat, Tile,
+};
 
 /// Version of the manifest's shape. A reader refuses any other.
 pub const MANIFEST_SCHEMA: u32 = 2;
@@ -16,6 +18,9 @@ pub struct Manifest {
     pub materials: Vec<MaterialEntry>,
     /// The tables, at most one of each kind, in binding order.
     pub tables: Vec<TableEntry>,
+    /// How the tables came by their sizes, mappings and formats, where these were searched for.
+    #[serde(default)]
+    pub searches: Vec<Search>,
     /// The emitted shaders.
     pub shaders: Vec<ShaderEntry>,
     /// What to bind where, in group 0.
@@ -216,7 +221,10 @@ impl Manifest {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Axis, ErrorStats, FlakesRecord, GlitterRecord, LayerKind, Mapping, PatinaRecord, Worst};
+    use crate::{
+        Axis, Budget, Candidate, CandidateForm, ErrorStats, FlakesRecord, GlitterRecord, LayerKind, Mapping,
+        MeasuredError, PatinaRecord, Worst,
+    };
 
     fn manifest() -> Manifest {
         let file = |path: &str| FileEntry { path: path.into(), sha256: "00ff".repeat(16) };
@@ -254,6 +262,7 @@ mod tests {
                 apron: 0,
                 columns: 1,
                 tiles: 1,
+                base: crate::RowBase::Zero,
             },
             format: TexelFormat::R16Float,
             texel_bytes: 524_288,
@@ -322,6 +331,18 @@ mod tests {
                 table(TableKind::Distribution, Mapping::Power { exponent: 8.0 }),
                 table(TableKind::Thickness, Mapping::Periodic),
             ],
+            searches: vec![Search {
+                kind: TableKind::Fresnel,
+                budget: Budget { max_abs: Some(1e-3), ..Budget::default() },
+                chosen: 0,
+                front: vec![Candidate {
+                    form: CandidateForm::ClosedForm,
+                    bytes: 0,
+                    cost: 12.0,
+                    error: MeasuredError { max_abs: 1.0 / 3.0, max_rel: 0.1, delta_e: None },
+                }],
+                measured: 12,
+            }],
             shaders: vec![ShaderEntry {
                 target: "wgsl".into(),
                 form: "baked".into(),

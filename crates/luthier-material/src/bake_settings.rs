@@ -113,6 +113,21 @@ impl BakeSettings {
     }
 }
 
+/// Limits on the tables that serve a material; the baker looks for the cheapest that hold them.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct BudgetSettings {
+    /// Largest absolute error of a sampled read.
+    pub max_abs: Option<f64>,
+    /// Largest relative error, with a floor.
+    pub max_rel: Option<f64>,
+    /// Largest CIEDE2000 difference.
+    pub delta_e: Option<f64>,
+    /// Bytes of all tables of the bake.
+    pub max_bytes: Option<u64>,
+    /// Estimated cost of one read of every table.
+    pub max_cost: Option<f64>,
+}
+
 /// Settings of the Fresnel rows.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FresnelSettings {

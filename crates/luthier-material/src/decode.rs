@@ -63,6 +63,7 @@ pub(crate) fn decode(
         layers: extras,
         effects,
         bake,
+        budget: bake::budget(document),
     };
     (material, sources.layers)
 }

@@ -26,8 +26,8 @@ mod section;
 mod suggest;
 
 pub use bake_settings::{
-    AlphaMapping, BakeSettings, ColorSetting, DEFAULT_WAVELENGTHS_NM, DistributionMapping, DistributionSettings,
-    Format, FresnelMapping, FresnelSettings, GridSettings, ModelSetting, RowSettings,
+    AlphaMapping, BakeSettings, BudgetSettings, ColorSetting, DEFAULT_WAVELENGTHS_NM, DistributionMapping,
+    DistributionSettings, Format, FresnelMapping, FresnelSettings, GridSettings, ModelSetting, RowSettings,
 };
 pub use class::{SMOOTH_SLOPE_DEG, SurfaceClass};
 pub use diagnostic::{Diagnostic, Severity};

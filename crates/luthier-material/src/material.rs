@@ -1,6 +1,6 @@
 use luthier_optics::stack::Stack;
 
-use crate::bake_settings::BakeSettings;
+use crate::bake_settings::{BakeSettings, BudgetSettings};
 use crate::class::SurfaceClass;
 use crate::effects::Effects;
 
@@ -27,6 +27,8 @@ pub struct Material {
     pub effects: Effects,
     /// What the file asks of its tables.
     pub bake: BakeSettings,
+    /// What its tables may err, weigh and cost.
+    pub budget: BudgetSettings,
     /// Class of the surface.
     pub class: SurfaceClass,
 }

@@ -50,7 +50,8 @@ impl Subject<'_> {
         // In 64 bits: a manifest from elsewhere may hold numbers whose product does not fit 32.
         let apron = 2 * u64::from(layout.apron);
         let rows = u64::from(layout.tiles.div_ceil(layout.columns));
-        let width = (u64::from(layout.x.size) + apron).checked_mul(u64::from(layout.columns));
+        let header = u64::from(layout.base.header_texels());
+        let width = (u64::from(layout.x.size) + apron + header).checked_mul(u64::from(layout.columns));
         let tile_height = layout.y.as_ref().map_or(1, |y| u64::from(y.size) + apron);
         let (Some(width), Some(height)) = (width, tile_height.checked_mul(rows)) else {
             return refuse("it is larger than any texture");

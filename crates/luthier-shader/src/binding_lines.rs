@@ -3,7 +3,7 @@ use std::fmt::Write as _;
 use crate::{Form, MaterialSet, Target, bindings};
 
 /// What to bind and where, in the words of a language: lines of the header comment.
-pub(crate) fn binding_lines(set: &MaterialSet<'_>, form: Form, target: Target) -> String {
+pub(crate) fn binding_lines(set: &MaterialSet<'_>, form: Form, target: Target, is_constant: bool) -> String {
     let mut out = String::from("//\n");
     out.push_str(match target {
         Target::Wgsl | Target::Glsl450 | Target::SpirV => "// Bindings, group 0:\n",
@@ -15,7 +15,7 @@ pub(crate) fn binding_lines(set: &MaterialSet<'_>, form: Form, target: Target) -
     });
     let is_glsl = matches!(target, Target::Glsl450 | Target::GlslEs300);
     let words = set.words();
-    for entry in bindings(set, form) {
+    for entry in bindings(set, form).iter().filter(|entry| !(is_constant && entry.resource == "buffer")) {
         let (number, name) = (entry.binding, &entry.name);
         if is_glsl && entry.resource == "sampler" {
             out.push_str("//   each texture filtered linearly, clamped to its edge\n");

@@ -29,7 +29,8 @@ pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, 
         return out + &patina(model, features);
     }
     let depth = layers.iter().map(|layers| layers.len()).max().unwrap_or(0);
-    if depth > 1 {
+    let least = layers.iter().map(|layers| layers.len()).min().unwrap_or(0);
+    if least < depth || depth > 1 && has_patina {
         out.push_str("    let count = luthier_layer_count(material);\n");
     }
     let below = match (features.has("flakes"), has_patina) {
@@ -63,6 +64,7 @@ pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, 
         let _ = match i {
             0 if has_patina => write!(out, "    if !is_bare {{\n{step}    }}\n"),
             0 => write!(out, "{step}"),
+            _ if i < least => write!(out, "    if path.open {{\n{step}    }}\n"),
             _ => write!(out, "    if path.open & (count > {i}u) {{\n{step}    }}\n"),
         };
     }

@@ -1,6 +1,6 @@
 use std::fmt::Write as _;
 
-use luthier_lut::{Axis, Mapping, ShadingModel};
+use luthier_lut::{Axis, Mapping, ShadingModel, TableKind};
 
 use crate::binding_lines::binding_lines;
 use crate::wgsl::{Buffer, compose};
@@ -18,7 +18,19 @@ pub(crate) const FRAGMENT: &str = include_str!("wgsl/fragment.wgsl");
 /// # Errors
 /// See [`ShaderError`]: materials that no shader can be emitted for, a defect found by naga, or SPIR-V, which is no text.
 pub fn emit(set: &MaterialSet<'_>, form: Form, target: Target) -> Result<String, ShaderError> {
-    text(set, form, target, "")
+    text(set, form, target, "", None)
+}
+
+/// The snippet for one material, whose numbers are constants of the code: it binds no buffer, and what depends on them alone is
+/// computed when the shader is compiled. Same functions; the number of the material is not looked at.
+///
+/// # Errors
+/// As [`emit`], and [`ShaderError::NotOne`] for sets of any other length than 1.
+pub fn emit_constant(set: &MaterialSet<'_>, form: Form, target: Target) -> Result<String, ShaderError> {
+    if set.materials.len() != 1 {
+        return Err(ShaderError::NotOne(set.materials.len()));
+    }
+    text(set, form, target, "", Some(Buffer::Constant))
 }
 
 /// A complete fragment shader around the snippet: `luthier_eval` for interpolated directions and a flat material number.
@@ -28,7 +40,7 @@ pub fn emit(set: &MaterialSet<'_>, form: Form, target: Target) -> Result<String,
 /// As [`emit`].
 pub fn complete(set: &MaterialSet<'_>, form: Form, target: Target) -> Result<String, ShaderError> {
     Ok(match target {
-        Target::Wgsl | Target::Hlsl | Target::Msl | Target::SpirV => text(set, form, target, FRAGMENT)?,
+        Target::Wgsl | Target::Hlsl | Target::Msl | Target::SpirV => text(set, form, target, FRAGMENT, None)?,
         Target::Glsl450 => {
             let snippet = emit(set, form, target)?;
             format!("#version 450 core\n{snippet}\n{}", include_str!("glsl/fragment_450.glsl"))
@@ -41,9 +53,16 @@ pub fn complete(set: &MaterialSet<'_>, form: Form, target: Target) -> Result<Str
     })
 }
 
-/// A snippet and what WGSL is to follow it, in a language of text.
-fn text(set: &MaterialSet<'_>, form: Form, target: Target, more: &str) -> Result<String, ShaderError> {
-    let wgsl = body(set, form, target, more)?;
+/// A snippet and what WGSL is to follow it, in a language of text; the buffer where the language has it, unless given.
+fn text(
+    set: &MaterialSet<'_>,
+    form: Form,
+    target: Target,
+    more: &str,
+    buffer: Option<Buffer>,
+) -> Result<String, ShaderError> {
+    let is_constant = buffer == Some(Buffer::Constant);
+    let wgsl = if is_constant { compose(set, form, Buffer::Constant)? } else { body(set, form, target, more)? };
     let body = match target {
         Target::Wgsl => {
             validate(&wgsl)?;
@@ -54,7 +73,7 @@ fn text(set: &MaterialSet<'_>, form: Form, target: Target, more: &str) -> Result
         Target::Msl => msl::from_wgsl(&wgsl, set, form)?,
         Target::SpirV => return Err(ShaderError::NotText),
     };
-    Ok(format!("{}\n{body}", header(set, form, target)))
+    Ok(format!("{}\n{body}", header(set, form, target, is_constant)))
 }
 
 /// The WGSL that a target is made from, and what WGSL is to follow it.
@@ -69,7 +88,7 @@ pub(crate) fn body(set: &MaterialSet<'_>, form: Form, target: Target, more: &str
 }
 
 /// The comment at the top: what this is, what it reads, what to bind.
-fn header(set: &MaterialSet<'_>, form: Form, target: Target) -> String {
+fn header(set: &MaterialSet<'_>, form: Form, target: Target, is_constant: bool) -> String {
     let mut out = String::new();
     let _ = writeln!(
         out,
@@ -78,10 +97,15 @@ fn header(set: &MaterialSet<'_>, form: Form, target: Target) -> String {
     );
     let models: Vec<&str> = set.models().map(ShadingModel::title).collect();
     let _ = writeln!(out, "// Model{}: {}.", if models.len() == 1 { "" } else { "s" }, models.join("; "));
-    let _ = match form {
-        Form::Baked => writeln!(out, "// Fresnel reflectance and slope distribution are read from tables."),
-        Form::Full => writeln!(out, "// No tables: Fresnel equations at three wavelengths, closed forms of D."),
-    };
+    let reads = |kind| set.tables_read(form).any(|table| table.kind == kind);
+    out.push_str(match form {
+        Form::Full => "// No tables: Fresnel equations at three wavelengths, closed forms of D.\n",
+        Form::Baked if !reads(TableKind::Fresnel) => "",
+        Form::Baked if reads(TableKind::Distribution) => {
+            "// Fresnel reflectance and slope distribution are read from tables.\n"
+        }
+        Form::Baked => "// Fresnel reflectance is read from tables; closed forms of D.\n",
+    });
     if set.models().any(|model| matches!(model, ShadingModel::Belcour | ShadingModel::Yamaguchi)) {
         out.push_str(match form {
             Form::Baked => {
@@ -115,7 +139,7 @@ fn header(set: &MaterialSet<'_>, form: Form, target: Target) -> String {
             );
         }
     }
-    out.push_str(&binding_lines(set, form, target));
+    out.push_str(&binding_lines(set, form, target, is_constant));
     out.push_str("//\n// Materials:\n");
     for (i, material) in set.materials.iter().enumerate() {
         let layers = material.layers.len();

@@ -10,6 +10,9 @@ pub enum ShaderError {
     /// The set has no materials.
     #[error("no materials: a shader needs at least one")]
     NoMaterials,
+    /// Constants are those of one material.
+    #[error("{0} materials: only one can be made of constants")]
+    NotOne(usize),
     /// A material has no layers.
     #[error("material `{0}` has no layers")]
     NoLayers(String),

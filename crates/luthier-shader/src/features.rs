@@ -11,7 +11,7 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is, for the check that modules name no other.
     #[cfg(test)]
-    pub(crate) const ALL: [&'static str; 40] = [
+    pub(crate) const ALL: [&'static str; 42] = [
         "absorption",
         "anisotropic",
         "bare",
@@ -20,6 +20,7 @@ impl Features {
         "chain",
         "chain_diffuse",
         "clamped",
+        "closed",
         "conductor",
         "diffuse",
         "distribution",
@@ -45,6 +46,7 @@ impl Features {
         "phase",
         "phong",
         "place",
+        "schlick_base",
         "smith",
         "split_root",
         "statistics",
@@ -68,6 +70,9 @@ impl Features {
         if set.models().any(|model| is_mixed(set, model)) {
             names.insert("mixed");
         }
+        if [ShadingModel::Elek, ShadingModel::WeidlichWilkie].into_iter().any(|model| ends_early(set, model)) {
+            names.insert("conductor");
+        }
         if form == Form::Full {
             names.insert("full");
         }
@@ -77,6 +82,11 @@ impl Features {
             if !table.format.is_filterable() {
                 names.insert("bilinear");
             }
+        }
+        // Without a table, D is computed.
+        let has_facets = names.contains("smith") || names.contains("chain") && names.contains("interface");
+        if form == Form::Full || has_facets && !names.contains("distribution") {
+            names.insert("closed");
         }
         Self(names)
     }
@@ -125,7 +135,7 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
         names.insert("interface");
         names.insert(if layer.distribution == "ggx" { "ggx" } else { "beckmann" });
         names.insert(if layer.film_ior_n[0] > 0.0 { "film" } else { "bare" });
-        if layer.kind == LayerKind::Conductor {
+        if layer.kind == LayerKind::Conductor && !is_chain {
             names.insert("conductor");
         }
         let is_isotropic = matches!(material.model, ShadingModel::Elek | ShadingModel::Belcour);
@@ -189,6 +199,14 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
         _ => false,
     };
     names
+}
+
+/// Whether a conductor of a chain lies where another stack goes on: elsewhere what would follow it is not there.
+fn ends_early(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
+    let materials = || set.materials.iter().filter(|m| m.model == model);
+    let depth = materials().map(|m| m.layers.len()).max().unwrap_or(0);
+    let is_conductor = |layer: &LayerRecord| layer.kind == LayerKind::Conductor;
+    materials().any(|m| m.layers.iter().take(depth.saturating_sub(1)).any(is_conductor))
 }
 
 /// Whether the layers at some depth of the materials of a model are diffuse bases and interfaces.

@@ -37,9 +37,9 @@ mod text;
 mod validate;
 mod wgsl;
 
-pub use emit::{complete, emit};
+pub use emit::{complete, emit, emit_constant};
 pub use error::ShaderError;
 pub use set::{MaterialSet, TableFace, bindings};
-pub use spirv::{complete_spirv, emit_spirv};
+pub use spirv::{complete_spirv, emit_spirv, spirv_words};
 pub use target::{Form, Target};
 pub use validate::validate;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use luthier_lut::{Axis, Encoding, Mapping, TableKind};
+use luthier_lut::{Axis, Encoding, Mapping, RowBase, SchlickBase, TableKind};
 
 use crate::features::Features;
 use crate::module::prune;
@@ -43,10 +43,18 @@ pub(crate) fn lookup(table: &TableFace, features: &Features) -> Result<String, S
         return Err(fail("a periodic axis needs an apron".to_owned()));
     }
 
+    let has_base = layout.base == RowBase::Schlick;
+    if has_base
+        && (kind != TableKind::Fresnel || layout.x.quantity != "cos_theta" || table.format.unorm_max().is_none())
+    {
+        return Err(fail("only unorm rows of reflectance over cos_theta are added to Schlick's form".to_owned()));
+    }
+
     let has_angle = layout.x.quantity.starts_with("theta");
     let mut out = constants(table);
     let is_split = Encoding::of(kind, table.format) == Encoding::SplitSixteenthRoot;
     let features = features.with("theta_axis", has_angle).with("split_root", is_split);
+    let features = features.with("schlick_base", has_base);
     for line in prune(module, &features).lines() {
         if let Some(value) = place(line, "let x = $x(") {
             node_index(&mut out, "x", &layout.x, value);
@@ -55,6 +63,8 @@ pub(crate) fn lookup(table: &TableFace, features: &Features) -> Result<String, S
         } else if line.contains("$position") {
             position(&mut out, table);
         } else {
+            let line = line.replace("$nodes", &layout.x.size.to_string());
+            let line = line.replace("$span", &float(SchlickBase::span(table.format)));
             let _ = writeln!(out, "{}", line.replace("$read", &read(table)));
         }
     }

@@ -34,8 +34,7 @@ pub(crate) fn from_wgsl(wgsl: &str, set: &MaterialSet<'_>, form: Form) -> Result
     let text = without_end_padding(&text.replace(", metal::access::sample>", ">"));
     let text = rename(text.trim_start_matches(|c| c != '#'), helper);
     let buffer = text.split_once("& luthier_materials").and_then(|(before, _)| before.rsplit(' ').next());
-    let buffer = buffer.ok_or_else(|| refused(&"no material buffer"))?.to_owned();
-    let body = rename(&text, |word| (word == buffer).then_some(BUFFER));
+    let body = rename(&text, |word| (Some(word) == buffer).then_some(BUFFER));
     if body.to_ascii_lowercase().contains("naga") {
         return Err(refused(&"a name of naga's is left"));
     }

@@ -30,7 +30,8 @@ pub struct TableFace {
 pub struct MaterialSet<'a> {
     /// The materials.
     pub materials: &'a [MaterialEntry],
-    /// The tables, at most one of a kind; of several the first counts.
+    /// The tables, at most one of a kind; of several the first counts. Without a distribution table the `baked` form evaluates D in
+    /// closed form.
     pub tables: Vec<TableFace>,
 }
 
@@ -54,6 +55,11 @@ impl<'a> MaterialSet<'a> {
     /// Words of the material buffer.
     pub(crate) fn words(&self) -> usize {
         self.materials.len() * MATERIAL_WORDS + self.layers().count() * LAYER_WORDS
+    }
+
+    /// Whether the set has a table.
+    pub(crate) fn has(&self, kind: TableKind) -> bool {
+        self.tables.iter().any(|table| table.kind == kind)
     }
 
     /// The tables that a form reads, in binding order.
@@ -104,7 +110,11 @@ impl<'a> MaterialSet<'a> {
     ) -> Result<(), ShaderError> {
         let needed: &[TableKind] = match material.model {
             ShadingModel::Belcour | ShadingModel::Yamaguchi => &[TableKind::Fgd],
-            _ => &[TableKind::Fresnel, TableKind::Distribution],
+            // Without a table of it, D is computed; a set has one or has none.
+            _ if self.layers().any(|layer| layer.distribution_tile.is_some()) => {
+                &[TableKind::Fresnel, TableKind::Distribution]
+            }
+            _ => &[TableKind::Fresnel],
         };
         let (material, is_interface) = (material.name.clone(), layer.kind != LayerKind::Diffuse);
         if is_interface && !matches!(layer.distribution.as_str(), "beckmann" | "ggx") {
@@ -115,6 +125,9 @@ impl<'a> MaterialSet<'a> {
             return Ok(());
         }
         for table in TableKind::ALL {
+            if table == TableKind::Distribution && !self.has(table) {
+                continue;
+            }
             let tiles = self.tables.iter().find(|t| t.kind == table).map_or(0, |t| t.layout.tiles);
             match tile(layer, table) {
                 None if is_interface && needed.contains(&table) => {

@@ -24,7 +24,7 @@ const HEADER_WORDS: usize = 5;
 /// # Errors
 /// As [`emit`](crate::emit).
 pub fn emit_spirv(set: &MaterialSet<'_>, form: Form) -> Result<Vec<u8>, ShaderError> {
-    Ok(bytes(&with_exports(&words(&body(set, form, Target::SpirV, "")?)?)))
+    Ok(bytes(&with_exports(&spirv_words(&body(set, form, Target::SpirV, "")?)?)))
 }
 
 /// A complete fragment shader in SPIR-V 1.3 (Vulkan 1.1), little endian, with the entry point `main`.
@@ -32,10 +32,14 @@ pub fn emit_spirv(set: &MaterialSet<'_>, form: Form) -> Result<Vec<u8>, ShaderEr
 /// # Errors
 /// As [`emit`](crate::emit).
 pub fn complete_spirv(set: &MaterialSet<'_>, form: Form) -> Result<Vec<u8>, ShaderError> {
-    Ok(bytes(&words(&body(set, form, Target::SpirV, FRAGMENT)?)?))
+    Ok(bytes(&spirv_words(&body(set, form, Target::SpirV, FRAGMENT)?)?))
 }
 
-fn words(wgsl: &str) -> Result<Vec<u32>, ShaderError> {
+/// SPIR-V 1.3 of any WGSL module, in words: for kernels around a snippet.
+///
+/// # Errors
+/// When naga refuses the module.
+pub fn spirv_words(wgsl: &str) -> Result<Vec<u32>, ShaderError> {
     let (module, info) = module(wgsl)?;
     let options = Options {
         lang_version: (1, 3),

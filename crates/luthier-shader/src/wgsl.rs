@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use luthier_lut::ShadingModel;
+use luthier_lut::{ShadingModel, material_buffer};
 
 use crate::chain;
 use crate::features::Features;
@@ -18,6 +18,8 @@ pub(crate) enum Buffer {
     Storage,
     /// Uniform, as long as it must be.
     Uniform,
+    /// No buffer: the numbers of one material are constants.
+    Constant,
 }
 
 /// WGSL of a set, without the header comment.
@@ -46,9 +48,10 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         (has("full") && has("interface"), include_str!("wgsl/complex.wgsl")),
         (has("full") && has("bare"), include_str!("wgsl/fresnel.wgsl")),
         (has("full") && has("film"), include_str!("wgsl/film.wgsl")),
-        (has("full") && has("beckmann") && facets, include_str!("wgsl/beckmann.wgsl")),
-        (has("full") && has("ggx") && facets, include_str!("wgsl/ggx.wgsl")),
+        (has("closed") && has("beckmann") && facets, include_str!("wgsl/beckmann.wgsl")),
+        (has("closed") && has("ggx") && facets, include_str!("wgsl/ggx.wgsl")),
         (has("full") && has("interface"), include_str!("wgsl/terms_full.wgsl")),
+        (has("closed") && facets, include_str!("wgsl/terms_closed.wgsl")),
         (!has("full") && (facets || has("granier_bare")), include_str!("wgsl/terms_baked.wgsl")),
         (has("smith") || has("chain"), include_str!("wgsl/slopes.wgsl")),
         (has("smith"), include_str!("wgsl/smith.wgsl")),
@@ -61,7 +64,11 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     }
     parts.push(eval(set, &features));
     parts.retain(|part| !part.is_empty());
-    Ok(parts.join("\n"))
+    let wgsl = parts.join("\n");
+    Ok(match buffer {
+        Buffer::Constant => wgsl.replace("    return material * LUTHIER_MATERIAL_WORDS;\n", "    return 0u;\n"),
+        Buffer::Storage | Buffer::Uniform => wgsl,
+    })
 }
 
 /// The lines of a module that a set keeps. Models take a `LuthierPlace` where a material of the set varies over its surface:
@@ -106,11 +113,26 @@ fn declarations(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> String {
     for entry in bindings(set, form) {
         let (space, resource) = match (entry.resource.as_str(), buffer) {
             ("buffer", Buffer::Storage) => ("<storage, read>", "array<vec4<f32>>".to_owned()),
+            ("buffer", Buffer::Constant) => {
+                out.push_str(&numbers(set));
+                continue;
+            }
             ("buffer", Buffer::Uniform) => ("<uniform>", format!("array<vec4<f32>, {}>", set.words())),
             _ => ("", entry.resource),
         };
         let _ = writeln!(out, "@group(0) @binding({}) var{space} {}: {resource};", entry.binding, entry.name);
     }
+    out
+}
+
+/// The words of the material buffer as a constant.
+fn numbers(set: &MaterialSet<'_>) -> String {
+    let words = material_buffer(set.materials);
+    let mut out = format!("const luthier_materials = array<vec4<f32>, {}>(\n", words.len());
+    for [x, y, z, w] in words {
+        let _ = writeln!(out, "    vec4<f32>({x:?}, {y:?}, {z:?}, {w:?}),");
+    }
+    out.push_str(");\n");
     out
 }
 

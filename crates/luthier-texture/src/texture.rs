@@ -52,7 +52,7 @@ mod tests {
             size: 3,
             mapping: Mapping::Linear,
         };
-        let layout = AtlasLayout { x: axis, y: None, apron: 0, columns: 1, tiles: 1 };
+        let layout = AtlasLayout { x: axis, y: None, apron: 0, columns: 1, tiles: 1, base: luthier_lut::RowBase::Zero };
         // Quarters and halves are exact in f16; 0 and 1 are the only exact ones in unorm.
         let values = vec![0.25, 0.5, 2.0, 1.0, 0.0, 1.0, 0.75, 1.0, 1.5, 3.0, 4.0, 1.0];
         let texels = Image { width: 3, height: 1, channels: 4, data: values };

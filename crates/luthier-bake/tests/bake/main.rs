@@ -7,6 +7,7 @@ mod albedo;
 #[expect(dead_code, reason = "the tests of the optics use all of it")]
 #[path = "../../../luthier-optics/tests/optics/brute_force.rs"]
 mod brute_force;
+mod budgets;
 mod closed_forms;
 mod effects;
 mod film_table;

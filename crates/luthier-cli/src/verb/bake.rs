@@ -1,8 +1,8 @@
 use std::path::{Component, Path};
 use std::time::Instant;
 
-use luthier_bake::Silent;
-use luthier_lut::Manifest;
+use luthier_bake::{Observer, Silent};
+use luthier_lut::{CandidateForm, Manifest};
 use serde_json::{Value, json};
 
 use crate::bake_files::{BakeFiles, MANIFEST, REPORT_FILES, REPORT_FOLDER};
@@ -26,11 +26,8 @@ pub(crate) fn run(options: &BakeOptions) -> Outcome {
         .build()
         .map_err(|source| Failure::Files(anyhow::Error::new(source).context("cannot start threads")))?;
     let made = pool.install(|| {
-        let bake = if options.quiet {
-            luthier_bake::bake(&materials, &read_image, &Silent)
-        } else {
-            luthier_bake::bake(&materials, &read_image, &progress)
-        };
+        let observer: &dyn Observer = if options.quiet { &Silent } else { &progress };
+        let bake = luthier_bake::bake_with(&materials, &options.limits.options(), &read_image, observer);
         BakeFiles::new(&materials, &bake.map_err(Failure::input)?)
     })?;
     publish(options, &made)?;
@@ -118,6 +115,18 @@ fn text(options: &BakeOptions, manifest: &Manifest, progress: &BakeProgress, sta
             bytes(table.texel_bytes),
         ));
     }
+    if !manifest.searches.is_empty() {
+        out.push_str("\nsearched\n");
+    }
+    for search in &manifest.searches {
+        let chosen = &search.front[search.chosen];
+        let what = match &chosen.form {
+            CandidateForm::ClosedForm => "computed, no table".to_owned(),
+            CandidateForm::Table { .. } => format!("{} bytes, error {:.1e}", chosen.bytes, chosen.error.max_abs),
+        };
+        let (kind, front, measured) = (search.kind.name(), search.front.len(), search.measured);
+        out.push_str(&format!("{kind:<13} {what}; cost {:.0}; {front} on the front of {measured}\n", chosen.cost));
+    }
     let jobs: Vec<String> = progress.seconds().iter().map(|(kind, s)| format!("{} {s:.2}", kind.name())).collect();
     out.push_str(&format!("\nseconds: {}; all {:.2}\n", jobs.join(", "), start.elapsed().as_secs_f64()));
     out.push_str(&format!("wrote {}\n", options.out.join(MANIFEST).display()));
@@ -145,6 +154,7 @@ fn summary(options: &BakeOptions, manifest: &Manifest, progress: &BakeProgress, 
         "manifest": options.out.join(MANIFEST).to_string_lossy(),
         "materials": manifest.materials.iter().map(|m| &m.name).collect::<Vec<_>>(),
         "tables": tables,
+        "searches": &manifest.searches,
         "seconds": seconds,
         "seconds_all": start.elapsed().as_secs_f64(),
     })

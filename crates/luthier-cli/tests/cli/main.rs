@@ -2,13 +2,18 @@
 
 mod bake;
 mod bake_refusals;
+#[cfg(feature = "gpu")]
+mod bench;
 mod check;
 #[cfg(feature = "gpu")]
 mod compare;
+mod cost;
 mod crate_graph;
 mod eval;
 mod eval_furnace;
 mod eval_inputs;
+#[cfg(feature = "gpu")]
+mod figures;
 mod fluorescence;
 #[cfg(feature = "gpu")]
 mod gallery;
@@ -30,4 +35,6 @@ mod shader;
 #[cfg(feature = "gpu")]
 mod stability;
 mod thickness_map;
+#[cfg(feature = "view")]
+mod view;
 mod workshop;

@@ -118,6 +118,7 @@ pub(crate) fn manifest(materials: Vec<Vec<LayerRecord>>, tables: &[Table]) -> Ma
         generator: "by hand".to_owned(),
         materials,
         tables,
+        searches: Vec::new(),
         shaders: Vec::new(),
         bindings: Vec::new(),
         material_buffer: no_file(),

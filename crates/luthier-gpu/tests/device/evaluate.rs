@@ -204,7 +204,14 @@ impl Terms for TableTerms<'_> {
 #[test]
 fn the_baked_form_equals_f64_on_the_same_tables() {
     let Some(gpu) = gpu() else { return };
-    let row = AtlasLayout { x: axis("cos_theta", 1.0, 128, Mapping::Linear), y: None, apron: 0, columns: 1, tiles: 2 };
+    let row = AtlasLayout {
+        x: axis("cos_theta", 1.0, 128, Mapping::Linear),
+        y: None,
+        apron: 0,
+        columns: 1,
+        tiles: 2,
+        base: luthier_lut::RowBase::Zero,
+    };
     let fresnel = Table::new(TableKind::Fresnel, row.clone(), TexelFormat::Rgba32Float, |tile, [cos, _]| {
         let below = if tile == 0 { Complex64::new(1.5, 0.0) } else { Complex64::new(0.35, 1.6) };
         [reflectance(below, 0.0, below, cos) as f32; 4]

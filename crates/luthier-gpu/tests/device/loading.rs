@@ -13,8 +13,14 @@ use crate::bake_by_hand::{Table, axis, diffuse, manifest, texels};
 const WGSL: &str = "fn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> { return wi; }";
 
 fn table() -> Table {
-    let layout =
-        AtlasLayout { x: axis("cos_theta", 1.0, 16, Mapping::Linear), y: None, apron: 0, columns: 1, tiles: 2 };
+    let layout = AtlasLayout {
+        x: axis("cos_theta", 1.0, 16, Mapping::Linear),
+        y: None,
+        apron: 0,
+        columns: 1,
+        tiles: 2,
+        base: luthier_lut::RowBase::Zero,
+    };
     Table::new(TableKind::Fresnel, layout, TexelFormat::Rgba16Float, |tile, [x, _]| [x as f32, tile as f32, 0.5, 1.0])
 }
 

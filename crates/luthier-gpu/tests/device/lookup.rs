@@ -41,7 +41,14 @@ fn layers(tables: &[Table]) -> Vec<Vec<LayerRecord>> {
 
 /// The two tables that every interface needs.
 fn plain_tables() -> [Table; 2] {
-    let row = AtlasLayout { x: axis("cos_theta", 1.0, 8, Mapping::Linear), y: None, apron: 0, columns: 1, tiles: 1 };
+    let row = AtlasLayout {
+        x: axis("cos_theta", 1.0, 8, Mapping::Linear),
+        y: None,
+        apron: 0,
+        columns: 1,
+        tiles: 1,
+        base: luthier_lut::RowBase::Zero,
+    };
     let square = AtlasLayout {
         x: axis("theta_h", 1.5, 8, Mapping::Linear),
         y: Some(axis("alpha", 1.0, 8, Mapping::Linear)),
@@ -149,7 +156,7 @@ fn fresnel_rows_in_every_format_and_mapping() {
             ("cos_theta", Mapping::Power { exponent: 0.5 }, 3),
         ] {
             let x = axis(quantity, 1.0, 33, mapping);
-            let layout = AtlasLayout { x, y: None, apron: 0, columns, tiles: 5 };
+            let layout = AtlasLayout { x, y: None, apron: 0, columns, tiles: 5, base: luthier_lut::RowBase::Zero };
             compare(&Table::new(TableKind::Fresnel, layout, format, ramp));
         }
     }
@@ -167,6 +174,7 @@ fn distribution_tiles_in_every_format_and_mapping() {
                 apron: 0,
                 columns: 2,
                 tiles: 3,
+                base: luthier_lut::RowBase::Zero,
             };
             compare(&Table::new(TableKind::Distribution, layout, format, ramp));
         }
@@ -182,6 +190,7 @@ fn fgd_tiles_in_every_format() {
             apron: 0,
             columns: 3,
             tiles: 4,
+            base: luthier_lut::RowBase::Zero,
         };
         compare(&Table::new(TableKind::Fgd, layout, format, ramp));
     }
@@ -190,7 +199,14 @@ fn fgd_tiles_in_every_format() {
 #[test]
 fn phase_rows_in_every_format() {
     for format in COLOR_FORMATS {
-        let layout = AtlasLayout { x: axis("s", 1.0, 64, Mapping::Linear), y: None, apron: 0, columns: 1, tiles: 3 };
+        let layout = AtlasLayout {
+            x: axis("s", 1.0, 64, Mapping::Linear),
+            y: None,
+            apron: 0,
+            columns: 1,
+            tiles: 3,
+            base: luthier_lut::RowBase::Zero,
+        };
         compare(&Table::new(TableKind::Phase, layout, format, ramp));
     }
 }
@@ -204,6 +220,7 @@ fn thickness_tiles_repeat() {
             apron: 1,
             columns: 2,
             tiles: 3,
+            base: luthier_lut::RowBase::Zero,
         };
         let wave = |tile: u32, [u, v]: [f64; 2]| {
             let (u, v) = (std::f64::consts::TAU * u, std::f64::consts::TAU * v);
@@ -221,8 +238,14 @@ fn tiles_do_not_bleed() {
     let Some(gpu) = gpu() else { return };
     let loud = |tile: u32, _: [f64; 2]| [if tile.is_multiple_of(2) { 0.0 } else { 1000.0 }; 4];
     for format in [TexelFormat::Rgba16Float, TexelFormat::Rgba32Float] {
-        let rows =
-            AtlasLayout { x: axis("cos_theta", 1.0, 128, Mapping::Linear), y: None, apron: 0, columns: 1, tiles: 33 };
+        let rows = AtlasLayout {
+            x: axis("cos_theta", 1.0, 128, Mapping::Linear),
+            y: None,
+            apron: 0,
+            columns: 1,
+            tiles: 33,
+            base: luthier_lut::RowBase::Zero,
+        };
         let squares =
             AtlasLayout { y: Some(axis("alpha", 1.0, 32, Mapping::Linear)), columns: 3, tiles: 5, ..rows.clone() };
         let tables = with(Table::new(TableKind::Fresnel, rows, format, loud));

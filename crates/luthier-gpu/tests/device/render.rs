@@ -39,7 +39,14 @@ pub(crate) fn sun(direction: [f32; 3], irradiance: [f32; 3]) -> Vec<Light> {
 
 /// Constant tables: reflectance `fresnel`, albedo `fgd`.
 pub(crate) fn tables(fresnel: f32, fgd: f32) -> Vec<Table> {
-    let row = AtlasLayout { x: axis("cos_theta", 1.0, 8, Mapping::Linear), y: None, apron: 0, columns: 1, tiles: 1 };
+    let row = AtlasLayout {
+        x: axis("cos_theta", 1.0, 8, Mapping::Linear),
+        y: None,
+        apron: 0,
+        columns: 1,
+        tiles: 1,
+        base: luthier_lut::RowBase::Zero,
+    };
     let square = |x: &str| AtlasLayout {
         x: axis(x, 1.5, 8, Mapping::Linear),
         y: Some(axis("alpha", 1.0, 8, Mapping::Linear)),

@@ -1,6 +1,6 @@
 use crate::bake_settings::{
-    AlphaMapping, BakeSettings, ColorSetting, DistributionMapping, DistributionSettings, Format, FresnelMapping,
-    FresnelSettings, GridSettings, ModelSetting, RowSettings,
+    AlphaMapping, BakeSettings, BudgetSettings, ColorSetting, DistributionMapping, DistributionSettings, Format,
+    FresnelMapping, FresnelSettings, GridSettings, ModelSetting, RowSettings,
 };
 use crate::diagnostic::Sink;
 use crate::section::Section;
@@ -18,6 +18,18 @@ pub(super) fn decode(document: &Section<'_>, sink: &mut Sink<'_>) -> BakeSetting
         fgd: at.section("fgd").map(|at| grid(&at)).unwrap_or_default(),
         phase: at.section("phase").map(|at| row(&at)).unwrap_or_default(),
         thickness: at.section("thickness").map(|at| row(&at)).unwrap_or_default(),
+    }
+}
+
+/// What the file allows its tables.
+pub(super) fn budget(document: &Section<'_>) -> BudgetSettings {
+    let Some(at) = document.section("budget") else { return BudgetSettings::default() };
+    BudgetSettings {
+        max_abs: at.number("max_abs"),
+        max_rel: at.number("max_rel"),
+        delta_e: at.number("delta_e"),
+        max_bytes: at.number("max_bytes").map(|bytes| bytes as u64),
+        max_cost: at.number("max_cost"),
     }
 }
 

@@ -1,4 +1,4 @@
-use super::{Key, Kind, Range, Table};
+use super::{Key, Kind, POSITIVE, Range, Table};
 use crate::bake_settings::{AlphaMapping, ColorSetting, DistributionMapping, FresnelMapping, ModelSetting};
 
 /// Wavelengths that the colour matching functions cover.
@@ -44,6 +44,27 @@ pub(super) static BAKE: Table = Table {
         Key::optional("fgd", Kind::Table(&FGD), "Energy of the rough interface, all bounces."),
         Key::optional("phase", Kind::Table(&PHASE), "Phase rows of films."),
         Key::optional("thickness", Kind::Table(&THICKNESS), "Thickness textures of films."),
+    ],
+    exactly_one: None,
+};
+
+pub(super) static BUDGET: Table = Table {
+    name: "budget",
+    doc: "Limits on the tables: the baker takes the cheapest that hold them, and refuses what none holds.",
+    keys: &[
+        Key::optional("max_abs", Kind::Number(POSITIVE), "Largest absolute error of a sampled table."),
+        Key::optional(
+            "max_rel",
+            Kind::Number(POSITIVE),
+            "Largest error relative to the value, or to 0.01 where it is less.",
+        ),
+        Key::optional(
+            "delta_e",
+            Kind::Number(POSITIVE),
+            "Largest CIEDE2000 difference of tabulated reflectances under D65.",
+        ),
+        Key::optional("max_bytes", Kind::Integer(1, i64::MAX), "Bytes of the texels of all tables of a bake."),
+        Key::optional("max_cost", Kind::Number(POSITIVE), "Estimated cost of one read of every table, in operations."),
     ],
     exactly_one: None,
 };

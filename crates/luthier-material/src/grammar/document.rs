@@ -1,4 +1,4 @@
-use super::bake::BAKE;
+use super::bake::{BAKE, BUDGET};
 use super::effects::EFFECTS;
 use super::layers::{CONDUCTOR, DIELECTRIC, DIFFUSE, IOR, THIN_FILM};
 use super::{Key, Kind, SCHEMA_VERSION, Table, TextForm};
@@ -24,6 +24,7 @@ pub(crate) static DOCUMENT: Table = Table {
         ),
         Key::optional("effects", Kind::Table(&EFFECTS), "Effects on top of the layered model."),
         Key::optional("bake", Kind::Table(&BAKE), "How the tables of this material are to be baked."),
+        Key::optional("budget", Kind::Table(&BUDGET), "What its tables may err, weigh and cost."),
     ],
     exactly_one: None,
 };

@@ -61,7 +61,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
     },
     Explanation {
         name: "SHARE_CLIPPED_AT_ONE",
-        levels: &[Level::Device],
+        levels: &[Level::Table, Level::Device],
         methods: &["belcour", "yamaguchi"],
         cases: &["gold"],
         faults: &[Fault::Wrong],
@@ -70,7 +70,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
     },
     Explanation {
         name: "TABLES_ADD_UP",
-        levels: &[Level::Device],
+        levels: &[Level::Table, Level::Device],
         methods: &["belcour", "yamaguchi"],
         cases: &["layers-3.2e1"],
         faults: &[Fault::Wrong],

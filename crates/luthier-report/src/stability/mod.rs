@@ -6,7 +6,7 @@
 //! - *f64*: all registered models. Laws first: finite, not negative, 0 at and below the horizon, reciprocal and conserving where that is
 //!   claimed. Then the directional albedo against the truth: the closed form where all interfaces are smooth, the paths of `layered-mc`
 //!   elsewhere (its standard error is given to the model four times).
-//! - *table*: f64 arithmetic on the texels that ship, against exact terms; for the models that have a twin that reads tables.
+//! - *table*: f64 arithmetic on the texels that ship, against exact terms.
 //! - *f32*: the form `full` of the shader on the adapter: all of it is arithmetic in single precision.
 //! - *device*: the form `baked` on the adapter: arithmetic and texture fetches.
 //!

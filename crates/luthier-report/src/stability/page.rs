@@ -38,8 +38,7 @@ on {device}, by {}. What runs where:
 
 - **f64**: all registered models. First the laws: values are finite, not negative, 0 at and below the horizon; reciprocal and conserving where \
 `luthier models` says so. Then the directional albedo at two angles against the truth of the case, at 525 nm.
-- **table**: f64 arithmetic on the texels that ship (weights of 8 bits), against exact terms. Belcour and Yamaguchi have no twin that reads \
-tables; theirs are judged on the device.
+- **table**: f64 arithmetic on the texels that ship (weights of 8 bits), against exact terms.
 - **f32**: the shader without tables (`full`) on the adapter.
 - **device**: the shader with tables (`baked`) on the adapter.
 

@@ -8,7 +8,10 @@ use crate::format::{error, escape};
 /// Side of a cell, and room for the names, in SVG user units.
 const SIDE: f64 = 13.0;
 const NAMES: f64 = 190.0;
-const HEADS: f64 = 150.0;
+const HEADS: f64 = 130.0;
+
+/// What the slanted head of the last column takes on the right.
+const SLANT: f64 = 70.0;
 
 /// The heat map as one SVG: a block of rows for each level, a row for each method, a column for each case. Text and frames are of the
 /// current colour; the fills are the custom properties `--stability-holds`, `-degrades` and `-fails` of the page, with colours that serve on
@@ -17,7 +20,7 @@ pub fn heat_map_svg(stability: &Stability) -> String {
     let levels: Vec<(Level, Vec<&str>)> =
         Level::ALL.into_iter().map(|level| (level, stability.methods(level))).filter(|(_, m)| !m.is_empty()).collect();
     let rows: usize = levels.iter().map(|(_, methods)| methods.len() + 1).sum();
-    let width = NAMES + SIDE * stability.cases.len() as f64 + 4.0;
+    let width = NAMES + SIDE * stability.cases.len() as f64 + SLANT;
     let height = HEADS + SIDE * rows as f64 + 4.0;
     let mut out = format!(
         "<svg class=\"stability\" role=\"img\" aria-label=\"Stability: methods by cases\" viewBox=\"0 0 {width:.0} {height:.0}\" \
@@ -28,7 +31,7 @@ pub fn heat_map_svg(stability: &Stability) -> String {
         let y = HEADS - 5.0;
         let _ = write!(
             out,
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" transform=\"rotate(-60 {x:.1} {y:.1})\">{}<title>{}</title></text>",
+            "<text x=\"{x:.1}\" y=\"{y:.1}\" transform=\"rotate(-55 {x:.1} {y:.1})\">{}<title>{}</title></text>",
             escape(&case.id),
             escape(&case.title)
         );

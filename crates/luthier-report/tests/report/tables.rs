@@ -2,7 +2,7 @@
 
 use luthier_layers::elek::Terms;
 use luthier_layers::terms::Exact;
-use luthier_lut::{AtlasLayout, Image, Mapping, TableKind, TexelFormat};
+use luthier_lut::{AtlasLayout, Image, Mapping, ShadingModel, TableKind, TexelFormat};
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Film, FilmThickness, Slab};
@@ -41,6 +41,21 @@ impl Bake {
     }
 }
 
+/// Half floats at 32 x 16 nodes, and the same with one texel of the middle a tenth too low.
+#[test]
+fn escape_tiles_are_measured() {
+    let worst = |spoil: f32| {
+        let mut bake = Bake::statistical(ShadingModel::Belcour);
+        bake.texels(TableKind::Escape)[(8 * 32 + 16) * 4] -= spoil;
+        let report = judged(&bake);
+        let tile = &tiles(&report, TableKind::Escape)[0];
+        assert_eq!(tile.users, ["lacquered-copper/0"]);
+        tile.judge.as_ref().unwrap().max_abs_err
+    };
+    let (good, bad) = (worst(0.0), worst(0.1));
+    assert!(good < 0.04 && bad > 0.06 && bad < 0.11, "{good} {bad}");
+}
+
 #[test]
 fn albedos_of_a_perfect_mirror_and_of_nothing_at_all() {
     let mut bake = Bake::new();
@@ -56,6 +71,7 @@ fn albedos_of_a_perfect_mirror_and_of_nothing_at_all() {
         apron: 0,
         columns: 1,
         tiles: 3,
+        base: luthier_lut::RowBase::Zero,
     };
     // The second table is a sixteenth too high; nobody reads the third.
     bake.add(TableKind::Fgd, layout, |tile, _, _| if tile == 0 { [1.0; 4] } else { [0.0625; 4] });
@@ -80,10 +96,14 @@ fn phases_follow_the_closed_form() {
     bake.manifest.materials[1].layers[0].phase_tile = Some(0);
     let nodes = [[2.0, 2.0, 2.0], [0.0, -2.0, 0.0], [-2.0, 2.0, -2.0], [0.0, -2.0, 0.0], [2.0, 2.0, 2.0]];
     let x = axis("s", 0.0, 1.0, 5, Mapping::Linear);
-    bake.add(TableKind::Phase, AtlasLayout { x, y: None, apron: 0, columns: 1, tiles: 1 }, |_, x, _| {
-        let [r, g, b] = nodes[x as usize];
-        [r, g, b, 1.0]
-    });
+    bake.add(
+        TableKind::Phase,
+        AtlasLayout { x, y: None, apron: 0, columns: 1, tiles: 1, base: luthier_lut::RowBase::Zero },
+        |_, x, _| {
+            let [r, g, b] = nodes[x as usize];
+            [r, g, b, 1.0]
+        },
+    );
     let report = judged(&bake);
     let judge = tiles(&report, TableKind::Phase)[0].judge.as_ref().unwrap();
     // Three quarters of a wave between nodes: |2 cos x - 2 + 4x/(3 pi)| is largest, 2.7119, where sin x = 2/(3 pi).
@@ -101,7 +121,7 @@ fn thickness_maps_are_held_to_their_film() {
         let mut bake = Bake::new();
         film(&mut bake, FilmThickness { min_nm: 100.0, max_nm: 300.0 });
         let [x, y] = ["u", "v"].map(|name| axis(name, 0.0, 1.0, 4, Mapping::Periodic));
-        let layout = AtlasLayout { x, y: Some(y), apron: 1, columns: 1, tiles: 1 };
+        let layout = AtlasLayout { x, y: Some(y), apron: 1, columns: 1, tiles: 1, base: luthier_lut::RowBase::Zero };
         bake.add(TableKind::Thickness, layout, |_, x, _| if x == 2 { texel } else { [0.25, 0.0, 0.0, 1.0] });
         let findings = judged(&bake).findings;
         findings.into_iter().filter(|f| f.starts_with("thickness")).collect::<Vec<_>>()

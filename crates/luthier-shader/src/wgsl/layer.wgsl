@@ -36,8 +36,8 @@ struct LuthierLayer {
     film_thickness_nm: f32, //? phase|thickness|film_table
     /// Greatest thickness of the film, nm; 0 without a film. //? phase|thickness|film_table
     film_thickness_max_nm: f32, //? phase|thickness|film_table
-    /// Slope distribution: 0 Beckmann, 1 GGX. //? full|smith, beckmann, ggx
-    distribution: f32, //? full|smith, beckmann, ggx
+    /// Slope distribution: 0 Beckmann, 1 GGX. //? closed|smith, beckmann, ggx
+    distribution: f32, //? closed|smith, beckmann, ggx
     /// Real part of the index below, at three wavelengths. //? full|granier, interface
     ior_n: vec3<f32>, //? full|granier, interface
     /// Imaginary part of it. //? full|granier, interface
@@ -72,7 +72,7 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     let head = luthier_materials[first];
     let tiles = luthier_materials[first + 1u]; //? fresnel|distribution|fgd|phase
     let slab = luthier_materials[first + 2u]; //? absorption|thickness
-    let base = luthier_materials[first + 3u]; //? diffuse|full|smith|granier_base, diffuse|beckmann|granier_base, diffuse|ggx|granier_base
+    let base = luthier_materials[first + 3u]; //? diffuse|closed|smith|granier_base, diffuse|beckmann|granier_base, diffuse|ggx|granier_base
     let real_part = luthier_materials[first + 4u]; //? full|granier|phase|thickness|film_table, interface|phase|thickness|film_table
     let imaginary_part = luthier_materials[first + 5u]; //? full|granier|phase|thickness|film_table, interface|phase|thickness|film_table
     var layer: LuthierLayer;
@@ -91,7 +91,7 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     layer.escape_tile = luthier_materials[first + 8u].w; //? escape
     layer.film_thickness_nm = real_part.w; //? phase|thickness|film_table
     layer.film_thickness_max_nm = imaginary_part.w; //? phase|thickness|film_table
-    layer.distribution = base.w; //? full|smith, beckmann, ggx
+    layer.distribution = base.w; //? closed|smith, beckmann, ggx
     layer.ior_n = real_part.xyz; //? full|granier, interface
     layer.ior_k = imaginary_part.xyz; //? full|granier, interface
     layer.film_ior_n = luthier_materials[first + 6u].xyz; //? full|granier, film

@@ -36,18 +36,18 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
 
     // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
     let bisector = vec3<f32>(path.across, path.wi.z + path.wo.z);
-    let length_sq = dot(bisector, bisector);
+    let length_sq = dot(bisector.xy, bisector.xy) + bisector.z * bisector.z;
     if length_sq < 1e-24 {
         return next;
     }
-    let cos_theta_d = min(0.5 * sqrt(length_sq), 1.0);
+    let inverse_length = inverseSqrt(length_sq);
+    let cos_theta_d = min(0.5 * length_sq * inverse_length, 1.0);
     let fresnel = luthier_fresnel_term(layer, cos_theta_d); //? !patina
     let fresnel = layer.tarnish * luthier_fresnel_term(layer, cos_theta_d); //? patina
-    // G of V-cavities is min(1, cavity * low); G / (low * high) is formed without the product, which may underflow.
-    let cavity = 2.0 * bisector.z / (sqrt(length_sq) * cos_theta_d);
-    let low = min(path.wi.z, path.wo.z);
-    let high = max(path.wi.z, path.wo.z);
-    let shape = luthier_density(layer, bisector, length_sq) * min(cavity, 1.0 / low) / (4.0 * high);
+    // G of V-cavities: 2 cos_theta_h / cos_theta_d times the lower cosine, at most 1. The product of both cosines may underflow.
+    let cavity = 4.0 * (bisector.z * inverse_length) * inverse_length;
+    let masking = min(cavity * min(path.wi.z, path.wo.z), 1.0);
+    let shape = luthier_density(layer, bisector, length_sq) * masking / max(4.0 * path.wi.z * path.wo.z, 1e-36);
     next.reflected = path.reflected + path.throughput * fresnel * shape;
 
     if layer.kind != LUTHIER_DIELECTRIC { //? below, conductor
@@ -55,29 +55,31 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     } //? below, conductor
     // Refracted at the normal; the squared cosine is written so that it does not cancel for an index near 1. //? below
     let cosines = vec2<f32>(path.wi.z, path.wo.z); //? below
-    let cosines_sq = (cosines * cosines + (layer.eta - 1.0) * (layer.eta + 1.0)) / (layer.eta * layer.eta); //? below
+    let inverse_eta = 1.0 / layer.eta; //? below
+    let cosines_sq = (cosines * cosines + (layer.eta - 1.0) * (layer.eta + 1.0)) * (inverse_eta * inverse_eta); //? below
     if min(cosines_sq.x, cosines_sq.y) <= 0.0 { //? below
         return next; //? below
     } //? below
-    let refracted = sqrt(cosines_sq); //? below
-    next.wi = vec3<f32>(path.wi.xy / layer.eta, refracted.x); //? below
-    next.wo = vec3<f32>(path.wo.xy / layer.eta, refracted.y); //? below
-    next.across = path.across / layer.eta; //? below
+    let secants = inverseSqrt(cosines_sq); //? below
+    let refracted = cosines_sq * secants; //? below
+    next.wi = vec3<f32>(path.wi.xy * inverse_eta, refracted.x); //? below
+    next.wo = vec3<f32>(path.wo.xy * inverse_eta, refracted.y); //? below
+    next.across = path.across * inverse_eta; //? below
     // Flakes tilt all that lies below, the paths through the slab included. //? flakes
     next.wi = luthier_turned(path.normal_below, next.wi); //? flakes
     next.wo = luthier_turned(path.normal_below, next.wo); //? flakes
-    next.across = next.wi.xy + next.wo.xy; //? flakes
+    next.across = luthier_turned(path.normal_below, vec3<f32>(next.across, refracted.x + refracted.y)).xy; //? flakes
     next.normal_below = vec3<f32>(0.0, 0.0, 1.0); //? flakes
     if min(next.wi.z, next.wo.z) <= 0.0 { //? flakes
         return next; //? flakes
     } //? flakes
     next.open = true; //? below
     // (1 - F) down, (1 - F) up, and part of what the cavities block comes back. //? below
-    let masking = min(cavity * low, 1.0); //? below
     let crossed = 1.0 - fresnel; //? below
     let kept = crossed * (1.0 - masking + crossed * masking); //? below
     next.throughput = path.throughput * kept; //? below, !absorption
-    let absorbed = exp(-layer.optical_depth * (1.0 / next.wi.z + 1.0 / next.wo.z)); //? below, absorption
+    let absorbed = exp2(-layer.optical_depth * (1.44269504 * (secants.x + secants.y))); //? below, absorption, !flakes
+    let absorbed = exp(-layer.optical_depth * (1.0 / next.wi.z + 1.0 / next.wo.z)); //? below, absorption, flakes
     next.throughput = path.throughput * kept * absorbed; //? below, absorption
     return next;
 }

@@ -7,7 +7,7 @@ fn luthier_fresnel_term(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
     return luthier_lookup_fresnel(layer.fresnel_tile, cos_theta_d);
 }
 
-/// pi alpha^2 D of a layer, from the table. //? chain|smith
-fn luthier_distribution_term(layer: LuthierLayer, alpha: f32, cos_theta_h: f32, sin_theta_h_sq: f32) -> f32 { //? chain|smith
-    return luthier_lookup_distribution(layer.distribution_tile, cos_theta_h, sin_theta_h_sq, alpha); //? chain|smith
-} //? chain|smith
+/// pi alpha^2 D of a layer, from the table. //? chain|smith, !closed
+fn luthier_distribution_term(layer: LuthierLayer, alpha: f32, cos_theta_h: f32, sin_theta_h_sq: f32) -> f32 { //? chain|smith, !closed
+    return luthier_lookup_distribution(layer.distribution_tile, cos_theta_h, sin_theta_h_sq, alpha); //? chain|smith, !closed
+} //? chain|smith, !closed

@@ -52,7 +52,6 @@ const vec2 LUTHIER_FRESNEL_SIZE = vec2(128.0, 3.0);
 const vec2 LUTHIER_DISTRIBUTION_SIZE = vec2(512.0, 1024.0);
 const vec2 LUTHIER_DISTRIBUTION_TILE = vec2(512.0, 512.0);
 const float LUTHIER_PI = 3.1415927;
-const uint LUTHIER_DIELECTRIC = 0u;
 const uint LUTHIER_MATERIAL_WORDS = 11u;
 const uint LUTHIER_LAYER_WORDS = 10u;
 
@@ -118,11 +117,12 @@ float luthier_distribution_term(LuthierLayer layer, float alpha, float cos_theta
 
 // D of a layer at the half vector along `bisector`, whose squared length is `length_sq`.
 float luthier_density(LuthierLayer layer, vec3 bisector, float length_sq) {
-    float cos_theta_h = bisector.z / sqrt(length_sq);
-    float across_sq = dot(bisector.xy, bisector.xy);
+    float inverse_length = inversesqrt(length_sq);
+    float cos_theta_h = bisector.z * inverse_length;
+    float sin_theta_h_sq = (dot(bisector.xy, bisector.xy) * inverse_length) * inverse_length;
     float area = layer.alpha * layer.alpha;
     float alpha = layer.alpha;
-    return luthier_distribution_term(layer, alpha, cos_theta_h, across_sq / length_sq) / (LUTHIER_PI * area);
+    return (luthier_distribution_term(layer, alpha, cos_theta_h, sin_theta_h_sq) / LUTHIER_PI) / area;
 }
 
 // Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
@@ -131,31 +131,29 @@ LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     LuthierPath next = path;
     next.open = false;
     vec3 bisector = vec3(path.across, path.wi.z + path.wo.z);
-    float length_sq = dot(bisector, bisector);
+    float length_sq = dot(bisector.xy, bisector.xy) + (bisector.z * bisector.z);
     if (length_sq < 1e-24) {
         return next;
     }
-    float cos_theta_d = min(0.5 * sqrt(length_sq), 1.0);
+    float inverse_length = inversesqrt(length_sq);
+    float cos_theta_d = min((0.5 * length_sq) * inverse_length, 1.0);
     vec3 fresnel = luthier_fresnel_term(layer, cos_theta_d);
-    float cavity = (2.0 * bisector.z) / (sqrt(length_sq) * cos_theta_d);
-    float low = min(path.wi.z, path.wo.z);
-    float high = max(path.wi.z, path.wo.z);
-    float shape = (luthier_density(layer, bisector, length_sq) * min(cavity, 1.0 / low)) / (4.0 * high);
+    float cavity = (4.0 * (bisector.z * inverse_length)) * inverse_length;
+    float masking = min(cavity * min(path.wi.z, path.wo.z), 1.0);
+    float shape = (luthier_density(layer, bisector, length_sq) * masking) / max((4.0 * path.wi.z) * path.wo.z, 1e-36);
     next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
-    if (layer.kind != LUTHIER_DIELECTRIC) {
-        return next;
-    }
     vec2 cosines = vec2(path.wi.z, path.wo.z);
-    vec2 cosines_sq = ((cosines * cosines) + vec2((layer.eta - 1.0) * (layer.eta + 1.0))) / vec2(layer.eta * layer.eta);
+    float inverse_eta = 1.0 / layer.eta;
+    vec2 cosines_sq = ((cosines * cosines) + vec2((layer.eta - 1.0) * (layer.eta + 1.0))) * (inverse_eta * inverse_eta);
     if (min(cosines_sq.x, cosines_sq.y) <= 0.0) {
         return next;
     }
-    vec2 refracted = sqrt(cosines_sq);
-    next.wi = vec3(path.wi.xy / vec2(layer.eta), refracted.x);
-    next.wo = vec3(path.wo.xy / vec2(layer.eta), refracted.y);
-    next.across = path.across / vec2(layer.eta);
+    vec2 secants = inversesqrt(cosines_sq);
+    vec2 refracted = cosines_sq * secants;
+    next.wi = vec3(path.wi.xy * inverse_eta, refracted.x);
+    next.wo = vec3(path.wo.xy * inverse_eta, refracted.y);
+    next.across = path.across * inverse_eta;
     next.open = true;
-    float masking = min(cavity * low, 1.0);
     vec3 crossed = vec3(1.0) - fresnel;
     vec3 kept = crossed * (vec3(1.0 - masking) + (crossed * masking));
     next.throughput = path.throughput * kept;
@@ -173,10 +171,9 @@ LuthierPath luthier_elek_interface(LuthierPath path, LuthierLayer layer) {
 
 // f cos_theta_i of the model `elek`, both directions above the horizon.
 vec3 luthier_eval_elek(uint material, vec3 wi, vec3 wo) {
-    uint count = luthier_layer_count(material);
     LuthierPath path = LuthierPath(wi, wo, wi.xy + wo.xy, vec3(wi.z), vec3(0.0), 0.0, true);
     path = luthier_elek_interface(path, luthier_layer(material, 0u));
-    if (path.open && (count > 1u)) {
+    if (path.open) {
         path = luthier_elek_interface(path, luthier_layer(material, 1u));
     }
     return path.reflected;

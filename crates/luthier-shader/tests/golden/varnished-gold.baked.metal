@@ -63,7 +63,6 @@ constant metal::float2 LUTHIER_FRESNEL_SIZE = metal::float2(128.0, 3.0);
 constant metal::float2 LUTHIER_DISTRIBUTION_SIZE = metal::float2(512.0, 1024.0);
 constant metal::float2 LUTHIER_DISTRIBUTION_TILE = metal::float2(512.0, 512.0);
 constant float LUTHIER_PI = 3.1415927;
-constant uint LUTHIER_DIELECTRIC = 0u;
 constant uint LUTHIER_MATERIAL_WORDS = 11u;
 constant uint LUTHIER_LAYER_WORDS = 10u;
 
@@ -158,11 +157,12 @@ float luthier_density(
     metal::texture2d<float> luthier_distribution,
     metal::sampler luthier_sampler
 ) {
-    float cos_theta_h = bisector.z / metal::sqrt(length_sq);
-    float across_sq = metal::dot(bisector.xy, bisector.xy);
+    float inverse_length = metal::rsqrt(length_sq);
+    float cos_theta_h = bisector.z * inverse_length;
+    float sin_theta_h_sq = (metal::dot(bisector.xy, bisector.xy) * inverse_length) * inverse_length;
     float area = layer.alpha * layer.alpha;
     float alpha = layer.alpha;
-    return luthier_distribution_term(layer, alpha, cos_theta_h, across_sq / length_sq, luthier_distribution, luthier_sampler) / (LUTHIER_PI * area);
+    return (luthier_distribution_term(layer, alpha, cos_theta_h, sin_theta_h_sq, luthier_distribution, luthier_sampler) / LUTHIER_PI) / area;
 }
 
 // Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
@@ -177,31 +177,29 @@ LuthierPath luthier_add_interface(
     LuthierPath next = path;
     next.open = false;
     metal::float3 bisector = metal::float3(path.across, path.wi.z + path.wo.z);
-    float length_sq = metal::dot(bisector, bisector);
+    float length_sq = metal::dot(bisector.xy, bisector.xy) + (bisector.z * bisector.z);
     if (length_sq < 0.000000000000000000000001) {
         return next;
     }
-    float cos_theta_d = metal::min(0.5 * metal::sqrt(length_sq), 1.0);
+    float inverse_length = metal::rsqrt(length_sq);
+    float cos_theta_d = metal::min((0.5 * length_sq) * inverse_length, 1.0);
     metal::float3 fresnel = luthier_fresnel_term(layer, cos_theta_d, luthier_fresnel, luthier_sampler);
-    float cavity = (2.0 * bisector.z) / (metal::sqrt(length_sq) * cos_theta_d);
-    float low = metal::min(path.wi.z, path.wo.z);
-    float high = metal::max(path.wi.z, path.wo.z);
-    float shape = (luthier_density(layer, bisector, length_sq, luthier_distribution, luthier_sampler) * metal::min(cavity, 1.0 / low)) / (4.0 * high);
+    float cavity = (4.0 * (bisector.z * inverse_length)) * inverse_length;
+    float masking = metal::min(cavity * metal::min(path.wi.z, path.wo.z), 1.0);
+    float shape = (luthier_density(layer, bisector, length_sq, luthier_distribution, luthier_sampler) * masking) / metal::max((4.0 * path.wi.z) * path.wo.z, 0.000000000000000000000000000000000001);
     next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
-    if (layer.kind != LUTHIER_DIELECTRIC) {
-        return next;
-    }
     metal::float2 cosines = metal::float2(path.wi.z, path.wo.z);
-    metal::float2 cosines_sq = ((cosines * cosines) + metal::float2((layer.eta - 1.0) * (layer.eta + 1.0))) / metal::float2(layer.eta * layer.eta);
+    float inverse_eta = 1.0 / layer.eta;
+    metal::float2 cosines_sq = ((cosines * cosines) + metal::float2((layer.eta - 1.0) * (layer.eta + 1.0))) * (inverse_eta * inverse_eta);
     if (metal::min(cosines_sq.x, cosines_sq.y) <= 0.0) {
         return next;
     }
-    metal::float2 refracted = metal::sqrt(cosines_sq);
-    next.wi = metal::float3(path.wi.xy / metal::float2(layer.eta), refracted.x);
-    next.wo = metal::float3(path.wo.xy / metal::float2(layer.eta), refracted.y);
-    next.across = path.across / metal::float2(layer.eta);
+    metal::float2 secants = metal::rsqrt(cosines_sq);
+    metal::float2 refracted = cosines_sq * secants;
+    next.wi = metal::float3(path.wi.xy * inverse_eta, refracted.x);
+    next.wo = metal::float3(path.wo.xy * inverse_eta, refracted.y);
+    next.across = path.across * inverse_eta;
     next.open = true;
-    float masking = metal::min(cavity * low, 1.0);
     metal::float3 crossed = metal::float3(1.0) - fresnel;
     metal::float3 kept = crossed * (metal::float3(1.0 - masking) + (crossed * masking));
     next.throughput = path.throughput * kept;
@@ -233,10 +231,9 @@ metal::float3 luthier_eval_elek(
     metal::sampler luthier_sampler,
     constant LuthierMaterials& luthier_materials
 ) {
-    uint count = luthier_layer_count(material, luthier_materials);
     LuthierPath path = LuthierPath {wi, wo, wi.xy + wo.xy, {}, metal::float3(wi.z), metal::float3(0.0), 0.0, true};
     path = luthier_elek_interface(path, luthier_layer(material, 0u, luthier_materials), luthier_fresnel, luthier_distribution, luthier_sampler);
-    if (path.open & (count > 1u)) {
+    if (path.open) {
         path = luthier_elek_interface(path, luthier_layer(material, 1u, luthier_materials), luthier_fresnel, luthier_distribution, luthier_sampler);
     }
     return path.reflected;

@@ -51,7 +51,6 @@ fn luthier_lookup_distribution(tile: f32, cos_theta_h: f32, sin_theta_h_sq: f32,
 
 const LUTHIER_PI: f32 = 3.14159265;
 
-const LUTHIER_DIELECTRIC: u32 = 0u;
 const LUTHIER_MATERIAL_WORDS: u32 = 11u;
 const LUTHIER_LAYER_WORDS: u32 = 10u;
 
@@ -105,11 +104,12 @@ fn luthier_distribution_term(layer: LuthierLayer, alpha: f32, cos_theta_h: f32, 
 
 /// D of a layer at the half vector along `bisector`, whose squared length is `length_sq`.
 fn luthier_density(layer: LuthierLayer, bisector: vec3<f32>, length_sq: f32) -> f32 {
-    let cos_theta_h = bisector.z / sqrt(length_sq);
-    let across_sq = dot(bisector.xy, bisector.xy);
+    let inverse_length = inverseSqrt(length_sq);
+    let cos_theta_h = bisector.z * inverse_length;
+    let sin_theta_h_sq = dot(bisector.xy, bisector.xy) * inverse_length * inverse_length;
     let area = layer.alpha * layer.alpha;
     let alpha = layer.alpha;
-    return luthier_distribution_term(layer, alpha, cos_theta_h, across_sq / length_sq) / (LUTHIER_PI * area);
+    return luthier_distribution_term(layer, alpha, cos_theta_h, sin_theta_h_sq) / LUTHIER_PI / area;
 }
 
 /// What the light has met on its way down and back up: directions, and sums over the layers so far.
@@ -138,35 +138,33 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
 
     // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
     let bisector = vec3<f32>(path.across, path.wi.z + path.wo.z);
-    let length_sq = dot(bisector, bisector);
+    let length_sq = dot(bisector.xy, bisector.xy) + bisector.z * bisector.z;
     if length_sq < 1e-24 {
         return next;
     }
-    let cos_theta_d = min(0.5 * sqrt(length_sq), 1.0);
+    let inverse_length = inverseSqrt(length_sq);
+    let cos_theta_d = min(0.5 * length_sq * inverse_length, 1.0);
     let fresnel = luthier_fresnel_term(layer, cos_theta_d);
-    // G of V-cavities is min(1, cavity * low); G / (low * high) is formed without the product, which may underflow.
-    let cavity = 2.0 * bisector.z / (sqrt(length_sq) * cos_theta_d);
-    let low = min(path.wi.z, path.wo.z);
-    let high = max(path.wi.z, path.wo.z);
-    let shape = luthier_density(layer, bisector, length_sq) * min(cavity, 1.0 / low) / (4.0 * high);
+    // G of V-cavities: 2 cos_theta_h / cos_theta_d times the lower cosine, at most 1. The product of both cosines may underflow.
+    let cavity = 4.0 * (bisector.z * inverse_length) * inverse_length;
+    let masking = min(cavity * min(path.wi.z, path.wo.z), 1.0);
+    let shape = luthier_density(layer, bisector, length_sq) * masking / max(4.0 * path.wi.z * path.wo.z, 1e-36);
     next.reflected = path.reflected + path.throughput * fresnel * shape;
 
-    if layer.kind != LUTHIER_DIELECTRIC {
-        return next;
-    }
     // Refracted at the normal; the squared cosine is written so that it does not cancel for an index near 1.
     let cosines = vec2<f32>(path.wi.z, path.wo.z);
-    let cosines_sq = (cosines * cosines + (layer.eta - 1.0) * (layer.eta + 1.0)) / (layer.eta * layer.eta);
+    let inverse_eta = 1.0 / layer.eta;
+    let cosines_sq = (cosines * cosines + (layer.eta - 1.0) * (layer.eta + 1.0)) * (inverse_eta * inverse_eta);
     if min(cosines_sq.x, cosines_sq.y) <= 0.0 {
         return next;
     }
-    let refracted = sqrt(cosines_sq);
-    next.wi = vec3<f32>(path.wi.xy / layer.eta, refracted.x);
-    next.wo = vec3<f32>(path.wo.xy / layer.eta, refracted.y);
-    next.across = path.across / layer.eta;
+    let secants = inverseSqrt(cosines_sq);
+    let refracted = cosines_sq * secants;
+    next.wi = vec3<f32>(path.wi.xy * inverse_eta, refracted.x);
+    next.wo = vec3<f32>(path.wo.xy * inverse_eta, refracted.y);
+    next.across = path.across * inverse_eta;
     next.open = true;
     // (1 - F) down, (1 - F) up, and part of what the cavities block comes back.
-    let masking = min(cavity * low, 1.0);
     let crossed = 1.0 - fresnel;
     let kept = crossed * (1.0 - masking + crossed * masking);
     next.throughput = path.throughput * kept;
@@ -184,10 +182,9 @@ fn luthier_elek_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath
 
 /// f cos_theta_i of the model `elek`, both directions above the horizon.
 fn luthier_eval_elek(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
-    let count = luthier_layer_count(material);
     var path = LuthierPath(wi, wo, wi.xy + wo.xy, vec3<f32>(wi.z), vec3<f32>(0.0), 0.0, true);
     path = luthier_elek_interface(path, luthier_layer(material, 0u));
-    if path.open & (count > 1u) {
+    if path.open {
         path = luthier_elek_interface(path, luthier_layer(material, 1u));
     }
     return path.reflected;

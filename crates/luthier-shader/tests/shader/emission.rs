@@ -1,9 +1,12 @@
 //! Everything that can be emitted passes naga; what a set does not need is not in its text.
 
+use crate::arithmetic::{directions, eval, full};
+use crate::machine::Machine;
 use crate::scenes::{clear, conductor, dielectric, diffuse, filmed, material, sets, tables};
-use luthier_lut::{LayerKind, Mapping, TableKind, TexelFormat};
+use luthier_lut::{LayerKind, Mapping, RowBase, TableKind, TexelFormat};
 use luthier_shader::{
-    Form, MaterialSet, ShaderError, TableFace, Target, bindings, complete, complete_spirv, emit, emit_spirv, validate,
+    Form, MaterialSet, ShaderError, TableFace, Target, bindings, complete, complete_spirv, emit, emit_constant,
+    emit_spirv, validate,
 };
 
 /// Emits in all forms and languages; each is validated on the way.
@@ -35,10 +38,33 @@ fn every_format_passes() {
         let tables: Vec<_> = tables().into_iter().map(|t| TableFace { format, ..t }).collect();
         emit_all(&richest(), &tables);
     }
+    // Rows over Schlick's form, side by side or not; and D computed.
+    for format in [TexelFormat::Rgba8Unorm, TexelFormat::Rgb10a2Unorm] {
+        for columns in [1, 3] {
+            let mut tables = tables();
+            (tables[0].format, tables[0].layout.base, tables[0].layout.columns) = (format, RowBase::Schlick, columns);
+            emit_all(&richest(), &tables);
+        }
+    }
     // One table filtered, one not.
     let mut mixed = tables();
     mixed[1].format = TexelFormat::R32Float;
     emit_all(&richest(), &mixed);
+}
+
+/// A bake without a table of D has materials without tiles of it.
+#[test]
+fn without_a_table_d_is_computed() {
+    for (name, mut materials) in sets() {
+        let records = materials
+            .iter_mut()
+            .flat_map(|m| m.layers.iter_mut().chain(m.constants.patina.as_mut().map(|patina| &mut patina.bare)));
+        records.for_each(|layer| layer.distribution_tile = None);
+        let tables: Vec<_> = tables().into_iter().filter(|t| t.kind != TableKind::Distribution).collect();
+        emit_all(&materials, &tables);
+        let text = emit(&MaterialSet { materials: &materials, tables }, Form::Baked, Target::Wgsl).unwrap();
+        assert!(!text.contains("distribution_tile") && !text.contains("luthier_lookup_distribution"), "{name}");
+    }
 }
 
 #[test]
@@ -204,6 +230,53 @@ fn sets_that_cannot_be_emitted_say_why() {
     let error = attempt(&many, tables(), Target::GlslEs300);
     assert!(matches!(error, ShaderError::UniformBlockTooLarge { words: 2520, limit: 1024 }), "{error}");
     assert!(emit(&MaterialSet { materials: &many, tables: tables() }, Form::Baked, Target::Glsl450).is_ok());
+}
+
+/// Constants in the place of the buffer pass in every language, bind none, and give the same values to the last bit.
+#[test]
+fn one_material_can_be_constants() {
+    for layers in [vec![clear(), conductor()], vec![filmed(), dielectric(), diffuse(0.4)], vec![conductor()]] {
+        use luthier_lut::ShadingModel::{Elek, GranierHeidrich, Microfacet, Phong, WeidlichWilkie};
+        for model in [Elek, WeidlichWilkie, GranierHeidrich, Phong, Microfacet] {
+            let materials = [luthier_lut::MaterialEntry { model, ..material("sample", &layers) }];
+            let set = MaterialSet { materials: &materials, tables: tables() };
+            for form in Form::ALL {
+                for target in Target::TEXT {
+                    let text = emit_constant(&set, form, target).unwrap_or_else(|e| panic!("{form} {target}: {e}"));
+                    let is_buffer =
+                        |line: &&str| line.contains("luthier_materials") && !line.trim_start().starts_with("//");
+                    let declared: Vec<&str> = text.lines().filter(is_buffer).collect();
+                    for word in ["binding", "buffer", "register", "uniform", "&"] {
+                        assert!(declared.iter().all(|line| !line.contains(word)), "{form} {target}: {declared:?}");
+                    }
+                }
+            }
+            let text = emit_constant(&set, Form::Full, Target::Wgsl).unwrap();
+            let constant = Machine::new(&text, &[], std::collections::BTreeMap::new());
+            let buffer = full(&materials);
+            for (wi, wo) in directions(100) {
+                assert_eq!(eval(&constant, 7, wi, wo), eval(&buffer, 0, wi, wo), "{}", model.name());
+            }
+        }
+    }
+    let two = [material("a", &[conductor()]), material("b", &[conductor()])];
+    let set = MaterialSet { materials: &two, tables: tables() };
+    assert!(matches!(emit_constant(&set, Form::Baked, Target::Wgsl), Err(ShaderError::NotOne(2))));
+}
+
+/// Without a table of D the form `baked` has the functions of `full` for it, and reads the others as before.
+#[test]
+fn without_its_table_d_is_a_closed_form() {
+    let closed: Vec<TableFace> = tables().into_iter().filter(|t| t.kind != TableKind::Distribution).collect();
+    for (_, materials) in sets() {
+        emit_all(&materials, &closed);
+    }
+    let materials = [material("sample", &[clear(), conductor()])];
+    let set = MaterialSet { materials: &materials, tables: closed };
+    let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
+    assert!(!text.contains("luthier_lookup_distribution") && text.contains("fn luthier_beckmann("), "{text}");
+    assert!(text.contains("luthier_lookup_fresnel(layer"), "{text}");
+    assert!(bindings(&set, Form::Baked).iter().all(|b| b.name != "luthier_distribution"));
 }
 
 #[test]

@@ -230,7 +230,7 @@ pub(crate) fn tables() -> Vec<TableFace> {
     let half_pi = std::f64::consts::FRAC_PI_2;
     let face = |kind, x, y, apron, columns, tiles, format| TableFace {
         kind,
-        layout: AtlasLayout { x, y, apron, columns, tiles },
+        layout: AtlasLayout { x, y, apron, columns, tiles, base: luthier_lut::RowBase::Zero },
         format,
     };
     vec![

@@ -1,0 +1,182 @@
+//! The search for the cheapest tables that hold a budget.
+//!
+//! Every kind of table has candidates: sizes, axis mappings, texel formats, a closed form to add, or a closed form alone. All are
+//! measured as a device samples them, against one fine truth per tile, in the same order whatever the budget: a tighter budget chooses
+//! among fewer, so never fewer bytes. Of those that hold, the fewest bytes win, then the lowest cost.
+//!
+//! Not searched: thickness textures, which are pictures, and escape tiles.
+
+mod choice;
+mod delta_e;
+mod distribution;
+mod fresnel;
+pub mod goals;
+mod grids;
+mod phase;
+
+use luthier_lut::{
+    Axis, Budget, Candidate, CandidateForm, Mapping, MeasuredError, REL_FLOOR, RowBase, Search, TableKind,
+};
+use luthier_lut::{TexelFormat, WeightBits};
+
+pub(crate) use choice::{best_effort, choose, front};
+
+use crate::graph::Results;
+use crate::job::JobKind;
+use crate::plan::Plan;
+use crate::settings::Settings;
+
+/// What is asked of tables when nobody asks: errors that a fixed row of 128 half floats has too.
+pub const DEFAULT_BUDGET: Budget =
+    Budget { max_abs: Some(5e-4), max_rel: None, delta_e: None, max_bytes: None, max_cost: None };
+
+/// The candidates for one kind.
+#[derive(Debug, Clone)]
+pub(crate) struct Found {
+    pub(crate) kind: TableKind,
+    /// Cost of the fixed default.
+    pub(crate) fixed_cost: f64,
+    pub(crate) candidates: Vec<Candidate>,
+    /// Which of them the bake itself has measured.
+    pub(crate) confirmed: Vec<bool>,
+}
+
+/// Errors of film tiles are steep ridges along grazing angles, which points of a search miss by about the same factor in all candidates.
+const RIDGES: [TableKind; 1] = [TableKind::Film];
+
+impl Found {
+    pub(crate) fn new(kind: TableKind, fixed_cost: f64, candidates: Vec<Candidate>) -> Self {
+        let confirmed = vec![false; candidates.len()];
+        Self { kind, fixed_cost, candidates, confirmed }
+    }
+
+    /// Whether the bake's own measurement of a candidate is no worse than that of the search; the worse counts from now on.
+    pub(crate) fn confirm(&mut self, choice: usize, exact: f64) -> bool {
+        let found = self.candidates[choice].error.max_abs;
+        let is_new = !std::mem::replace(&mut self.confirmed[choice], true);
+        if exact <= found {
+            return true;
+        }
+        self.candidates[choice].error.max_abs = exact;
+        if RIDGES.contains(&self.kind) && is_new && found > 0.0 {
+            let others = self.candidates.iter_mut().zip(&self.confirmed).filter(|(_, confirmed)| !**confirmed);
+            others.for_each(|(candidate, _)| candidate.error.max_abs *= exact / found);
+        }
+        false
+    }
+}
+
+/// Kinds of the jobs whose results [`candidates`] reads.
+pub(crate) const READ: [JobKind; 1] = [JobKind::FgdTruth];
+
+/// Measures the candidates of the kinds that a plan has; without a budget only what shaders read for every interface and needs no
+/// costly truth. `results` has those of [`READ`] if there is a budget.
+pub(crate) fn candidates(plan: &Plan, results: &Results, budget: &Budget, thorough: bool) -> Vec<Found> {
+    let colors = budget.delta_e.is_some();
+    let mut found = vec![fresnel::candidates(plan, colors), distribution::candidates(plan)];
+    if thorough {
+        found.push(phase::candidates(plan));
+        found.push(grids::fgd(plan, results, colors));
+        found.push(grids::film(plan, colors));
+    }
+    found.into_iter().flatten().filter(|f: &Found| !f.candidates.is_empty()).collect()
+}
+
+/// Puts a candidate into the settings.
+pub(crate) fn apply(settings: &mut Settings, kind: TableKind, form: &CandidateForm) {
+    let table = match form.clone() {
+        CandidateForm::ClosedForm => None,
+        CandidateForm::Table { x, y, format, base } => Some((x, y, format, base)),
+    };
+    match (kind, table) {
+        (TableKind::Fresnel, Some((axis, _, format, base))) => {
+            settings.fresnel = crate::fresnel::RowShape { axis, format, base };
+        }
+        (TableKind::Distribution, None) => settings.distribution = None,
+        (TableKind::Distribution, Some((x, Some(y), format, _))) => settings.distribution = Some(([x, y], format)),
+        (TableKind::Phase, None) => settings.phase = None,
+        (TableKind::Phase, Some((axis, _, format, _))) => settings.phase = Some((axis, format)),
+        (TableKind::Fgd, Some((x, Some(y), format, _))) => settings.fgd = ([x, y], format),
+        (TableKind::Film, Some((x, Some(y), format, _))) => settings.film = ([x, y], format),
+        _ => {}
+    }
+}
+
+/// The report of a search.
+pub(crate) fn report(found: &Found, chosen: usize, budget: &Budget) -> Search {
+    let keep = front(&found.candidates);
+    let mut front: Vec<(usize, &Candidate)> = keep.iter().map(|&i| (i, &found.candidates[i])).collect();
+    if !keep.contains(&chosen) {
+        front.push((chosen, &found.candidates[chosen]));
+    }
+    let key = |c: &Candidate| (c.bytes, c.cost, c.error.max_abs);
+    front.sort_by(|(_, a), (_, b)| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
+    Search {
+        kind: found.kind,
+        budget: *budget,
+        chosen: front.iter().position(|(i, _)| *i == chosen).unwrap_or(0),
+        measured: found.candidates.len() as u32,
+        front: front.into_iter().map(|(_, c)| c.clone()).collect(),
+    }
+}
+
+/// Estimated costs, in operations on one number: see [`Candidate::cost`].
+pub(crate) mod cost {
+    use super::{Axis, Mapping, TexelFormat};
+
+    /// A root, logarithm, exponential, division, sine.
+    pub(crate) const QUARTER_RATE: f64 = 4.0;
+    /// Fetch of 4 bytes.
+    pub(crate) const FETCH: f64 = 16.0;
+
+    /// From a value to a node index.
+    pub(crate) fn axis(axis: &Axis) -> f64 {
+        let offset = if axis.min == 0.0 { 0.0 } else { 1.0 };
+        offset
+            + match axis.mapping {
+                Mapping::Linear | Mapping::Periodic => 2.0,
+                Mapping::Power { exponent: 2.0 } => 2.0 + QUARTER_RATE,
+                Mapping::Power { exponent: 4.0 } => 2.0 + 2.0 * QUARTER_RATE,
+                Mapping::Power { exponent: 8.0 } => 2.0 + 3.0 * QUARTER_RATE,
+                Mapping::Power { .. } => 3.0 + 2.0 * QUARTER_RATE,
+                Mapping::Logarithmic => 3.0 + QUARTER_RATE,
+            }
+    }
+
+    /// A filtered read; what is not filtered takes four fetches and is weighed by hand.
+    pub(crate) fn read(format: TexelFormat) -> f64 {
+        let fetch = FETCH * f64::from(format.texel_bytes().max(4)) / 4.0;
+        if format.is_filterable() { 4.0 + fetch } else { 4.0 * fetch + 12.0 + 9.0 * f64::from(format.channels()) }
+    }
+}
+
+/// Largest errors at points: `read` against the function. `slack` is added to absolute errors.
+pub(crate) fn measured<'p>(
+    points: impl Iterator<Item = (&'p [f64; 2], [f64; 4])>,
+    channels: usize,
+    colors: bool,
+    slack: f64,
+    mut read: impl FnMut([f64; 2]) -> [f64; 4],
+) -> MeasuredError {
+    let mut error = MeasuredError { delta_e: colors.then_some(0.0), ..MeasuredError::default() };
+    for (at, expected) in points {
+        let found = read(*at);
+        let largest = (0..channels).map(|c| (found[c] - expected[c]).abs()).fold(0.0, f64::max) + slack;
+        let brightest = expected[..channels.min(3)].iter().copied().fold(REL_FLOOR, f64::max);
+        error.max_abs = error.max_abs.max(largest);
+        error.max_rel = error.max_rel.max(largest / brightest);
+        if let Some(worst) = &mut error.delta_e {
+            let rgb = |v: [f64; 4]| [v[0], v[1], v[2]];
+            *worst = worst.max(delta_e::ciede2000(delta_e::lab(rgb(found)), delta_e::lab(rgb(expected))));
+        }
+    }
+    error
+}
+
+/// A table of one row.
+fn row_form(x: Axis, format: TexelFormat, base: RowBase) -> CandidateForm {
+    CandidateForm::Table { x, y: None, format, base }
+}
+
+/// How devices weigh texels.
+const WEIGHTS: WeightBits = WeightBits::Fixed(8);

@@ -1,0 +1,227 @@
+//! The choice among candidates.
+
+use std::cmp::Ordering;
+
+use luthier_lut::{Budget, Candidate, CandidateForm};
+
+use super::Found;
+use crate::BakeError;
+
+/// The candidates that no other beats or equals in bytes, cost and absolute error at once; of equals the first.
+pub(crate) fn front(candidates: &[Candidate]) -> Vec<usize> {
+    let beats =
+        |a: &Candidate, b: &Candidate| a.bytes <= b.bytes && a.cost <= b.cost && a.error.max_abs <= b.error.max_abs;
+    let is_equal = |a: &Candidate, b: &Candidate| beats(a, b) && beats(b, a);
+    let is_beaten = |i: usize| {
+        candidates
+            .iter()
+            .enumerate()
+            .any(|(j, other)| j != i && beats(other, &candidates[i]) && (j < i || !is_equal(other, &candidates[i])))
+    };
+    (0..candidates.len()).filter(|&i| !is_beaten(i)).collect()
+}
+
+/// Bytes first, then cost, then error.
+fn cheaper(a: &Candidate, b: &Candidate) -> Ordering {
+    let rest = || a.cost.total_cmp(&b.cost).then(a.error.max_abs.total_cmp(&b.error.max_abs));
+    a.bytes.cmp(&b.bytes).then_with(rest)
+}
+
+/// One candidate for each kind: together of the fewest bytes, then the lowest cost, among those that hold. `fixed_bytes` are those of
+/// the tables that are not searched.
+///
+/// Where errors are not limited, the least absolute error that bytes and cost allow is the limit.
+///
+/// # Errors
+/// [`BakeError::Budget`] when none holds: what comes nearest, and what would do.
+pub(crate) fn choose(found: &[Found], budget: &Budget, fixed_bytes: u64) -> Result<Vec<usize>, BakeError> {
+    if budget.limits_errors() {
+        let holds = |c: &Candidate| budget.excess(&c.error) <= 1.0;
+        return match cheapest(found, budget, fixed_bytes, &holds) {
+            Some(chosen) => Ok(chosen),
+            None => Err(nearest(found, budget, fixed_bytes)),
+        };
+    }
+    let mut limits: Vec<f64> = found.iter().flat_map(|f| f.candidates.iter().map(|c| c.error.max_abs)).collect();
+    limits.sort_by(f64::total_cmp);
+    limits.dedup();
+    // The smallest limit that works: every larger one works too.
+    let works = |limit: f64| cheapest(found, budget, fixed_bytes, &|c: &Candidate| c.error.max_abs <= limit);
+    let first = limits.partition_point(|&limit| works(limit).is_none());
+    limits.get(first).and_then(|&limit| works(limit)).ok_or_else(|| nearest(found, budget, fixed_bytes))
+}
+
+/// Of each kind the cheapest that holds; where none does, the one of the least excess.
+pub(crate) fn best_effort(found: &[Found], budget: &Budget) -> Vec<usize> {
+    let excess = |c: &Candidate| budget.excess(&c.error).max(1.0);
+    let of = |f: &Found| {
+        let best = |&i: &usize, &j: &usize| {
+            let (a, b) = (&f.candidates[i], &f.candidates[j]);
+            excess(a).total_cmp(&excess(b)).then(cheaper(a, b))
+        };
+        (0..f.candidates.len()).min_by(best).unwrap_or_default()
+    };
+    found.iter().map(of).collect()
+}
+
+/// The cheapest combination of candidates that hold, within bytes and cost.
+fn cheapest(
+    found: &[Found],
+    budget: &Budget,
+    fixed_bytes: u64,
+    holds: &dyn Fn(&Candidate) -> bool,
+) -> Option<Vec<usize>> {
+    // Of each kind, those that no other beats in both bytes and cost, by bytes.
+    let mut partial: Vec<(u64, f64, Vec<usize>)> = vec![(fixed_bytes, 0.0, Vec::new())];
+    for kind in found {
+        let mut order: Vec<usize> = (0..kind.candidates.len()).filter(|&i| holds(&kind.candidates[i])).collect();
+        order.sort_by(|&a, &b| cheaper(&kind.candidates[a], &kind.candidates[b]));
+        let mut least = f64::INFINITY;
+        order.retain(|&i| {
+            let cost = kind.candidates[i].cost;
+            let is_less = cost < least;
+            least = least.min(cost);
+            is_less
+        });
+        let combined = partial.iter().flat_map(|(bytes, cost, chosen)| {
+            order.iter().map(move |&i| {
+                let c = &kind.candidates[i];
+                (bytes + c.bytes, cost + c.cost, [chosen.as_slice(), &[i]].concat())
+            })
+        });
+        let mut combined: Vec<_> = combined.collect();
+        combined.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        let mut least = f64::INFINITY;
+        combined.retain(|(_, cost, _)| {
+            let is_less = *cost < least;
+            least = least.min(*cost);
+            is_less
+        });
+        partial = combined;
+    }
+    let within = |(bytes, cost, _): &&(u64, f64, Vec<usize>)| {
+        budget.max_bytes.is_none_or(|max| *bytes <= max) && budget.max_cost.is_none_or(|max| *cost <= max)
+    };
+    partial.iter().find(within).map(|(_, _, chosen)| chosen.clone())
+}
+
+/// Why nothing holds, what comes nearest, and what would do.
+fn nearest(found: &[Found], budget: &Budget, fixed_bytes: u64) -> BakeError {
+    // A kind of which no candidate is good enough, whatever it weighs or costs.
+    for kind in found {
+        let excess = |c: &Candidate| budget.excess(&c.error);
+        let best = kind.candidates.iter().min_by(|a, b| excess(a).total_cmp(&excess(b)).then(cheaper(a, b)));
+        if let Some(best) = best.filter(|c| excess(c) > 1.0) {
+            let mut would = Vec::new();
+            let mut limit = |name, limit: Option<f64>, error: Option<f64>| {
+                if let (Some(limit), Some(error)) = (limit, error)
+                    && error > limit
+                {
+                    would.push(format!("{name} = {}", above(error)));
+                }
+            };
+            limit("max_abs", budget.max_abs, Some(best.error.max_abs));
+            limit("max_rel", budget.max_rel, Some(best.error.max_rel));
+            limit("delta_e", budget.delta_e, best.error.delta_e);
+            return BakeError::Budget {
+                reason: format!(
+                    "no {} table is good enough; nearest: {}, {} bytes, error {:.2e}",
+                    kind.kind.name(),
+                    in_words(&best.form),
+                    best.bytes,
+                    best.error.max_abs
+                ),
+                hint: would.join(" and "),
+            };
+        }
+    }
+    // Good enough, but not within bytes and cost: the fewest bytes, or the lowest cost.
+    let errors = Budget { max_bytes: None, max_cost: None, ..*budget };
+    let holds = |c: &Candidate| errors.excess(&c.error) <= 1.0;
+    let least_cost: f64 = found
+        .iter()
+        .map(|f| f.candidates.iter().filter(|c| holds(c)).map(|c| c.cost).fold(f64::INFINITY, f64::min))
+        .sum();
+    if let Some(max) = budget.max_cost.filter(|max| least_cost > *max) {
+        return BakeError::Budget {
+            reason: format!("look-ups cost at least {least_cost:.0}, more than {max:.0}"),
+            hint: format!("max_cost = {}", libm::ceil(least_cost)),
+        };
+    }
+    let within_cost = Budget { max_bytes: None, ..*budget };
+    let least = cheapest(found, &within_cost, fixed_bytes, &holds).map_or(fixed_bytes, |chosen| {
+        fixed_bytes + found.iter().zip(chosen).map(|(f, i)| f.candidates[i].bytes).sum::<u64>()
+    });
+    let kept = if fixed_bytes > 0 {
+        format!(", {fixed_bytes} of them in tables that are not searched")
+    } else {
+        String::new()
+    };
+    BakeError::Budget {
+        reason: format!("tables take at least {least} bytes{kept}, more than {}", budget.max_bytes.unwrap_or_default()),
+        hint: format!("max_bytes = {least}"),
+    }
+}
+
+/// A round number that is not less.
+fn above(value: f64) -> String {
+    let step = libm::pow(10.0, libm::floor(libm::log10(value)) - 1.0);
+    format!("{:.1e}", libm::ceil(value / step * (1.0 - 1e-9)) * step)
+}
+
+/// A candidate, for messages.
+fn in_words(form: &CandidateForm) -> String {
+    match form {
+        CandidateForm::ClosedForm => "closed form".to_owned(),
+        CandidateForm::Table { x, y, format, .. } => {
+            let rows = y.as_ref().map_or(1, |y| y.size);
+            format!("{} x {rows} {format}", x.size)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use luthier_lut::{MeasuredError, TableKind};
+
+    use super::*;
+
+    fn candidate(bytes: u64, cost: f64, max_abs: f64) -> Candidate {
+        let error = MeasuredError { max_abs, max_rel: max_abs, delta_e: None };
+        Candidate { form: CandidateForm::ClosedForm, bytes, cost, error }
+    }
+
+    fn kind(candidates: &[(u64, f64, f64)]) -> Found {
+        let candidates = candidates.iter().map(|&(b, c, e)| candidate(b, c, e)).collect();
+        Found::new(TableKind::Fresnel, 0.0, candidates)
+    }
+
+    #[test]
+    fn the_front_holds_what_nothing_beats() {
+        let candidates =
+            kind(&[(10, 1.0, 0.5), (20, 1.0, 0.5), (20, 1.0, 0.1), (5, 9.0, 0.5), (20, 1.0, 0.1)]).candidates;
+        assert_eq!(front(&candidates), [0, 2, 3]);
+    }
+
+    #[test]
+    fn bytes_come_before_cost_and_limits_hold_together() {
+        let found = [kind(&[(10, 9.0, 0.1), (20, 1.0, 0.1), (1, 1.0, 0.9)]), kind(&[(10, 9.0, 0.1), (30, 1.0, 0.01)])];
+        let errors = Budget { max_abs: Some(0.2), ..Budget::default() };
+        assert_eq!(choose(&found, &errors, 0).unwrap(), [0, 0]);
+        assert_eq!(choose(&found, &Budget { max_cost: Some(10.0), ..errors }, 0).unwrap(), [1, 0]);
+        assert_eq!(choose(&found, &Budget { max_cost: Some(2.0), ..errors }, 0).unwrap(), [1, 1]);
+        let message = |budget: &Budget, fixed| choose(&found, budget, fixed).unwrap_err().to_string();
+        assert!(message(&Budget { max_cost: Some(1.0), ..errors }, 0).contains("max_cost = 2"));
+        assert!(message(&Budget { max_bytes: Some(15), ..errors }, 4).contains("max_bytes = 24"));
+        assert!(message(&Budget { max_abs: Some(0.03), ..errors }, 0).contains("max_abs = 1.0e-1"));
+    }
+
+    #[test]
+    fn bytes_alone_buy_the_least_error() {
+        let found = [kind(&[(10, 1.0, 0.1), (20, 1.0, 0.05)]), kind(&[(10, 1.0, 0.2), (30, 1.0, 0.01)])];
+        let bytes = |max| choose(&found, &Budget { max_bytes: Some(max), ..Budget::default() }, 0).unwrap();
+        assert_eq!(bytes(20), [0, 0]);
+        assert_eq!(bytes(40), [0, 1]);
+        assert_eq!(bytes(50), [1, 1]);
+    }
+}

@@ -1,0 +1,269 @@
+//! What searches reach against the fixed tables of the literature, for `docs/budgets.md`.
+
+use std::f64::consts::FRAC_PI_2;
+
+use luthier_layers::elek::ALPHA_MIN;
+use luthier_lut::{
+    Atlas, AtlasLayout, Axis, Budget, Candidate, Encoding, Image, Mapping, MeasuredError, RowBase, TableKind,
+    TexelFormat, WeightBits, bilinear,
+};
+use luthier_material::Material;
+use luthier_optics::microfacet::scaled_distribution;
+use luthier_optics::stack::Distribution;
+use rayon::prelude::*;
+
+use super::fresnel::{self, FORMATS, Truth};
+use super::{Found, WEIGHTS, choose, grids, measured};
+use crate::BakeError;
+use crate::distribution::DistributionJob;
+use crate::fresnel::{FresnelJob, RowShape};
+use crate::graph::{Results, Silent};
+use crate::job::{Job, JobKind};
+use crate::plan::{ImageReader, Plan};
+use crate::settings::{Settings, axis};
+
+/// Bytes of Elek's rows: 128 texels of three bytes.
+pub const ROW_BYTES: u64 = 384;
+
+/// Largest errors of one interface's row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RowGoal {
+    /// Name of the tile.
+    pub name: String,
+    /// Elek's: 128 texels, uniform in the cosine, RGB of 8 bits, values as they are at the nodes.
+    pub elek: f64,
+    /// The row of [`Goals::row`].
+    pub found: f64,
+}
+
+/// The least gain of a family of rows within [`ROW_BYTES`], at its best mapping.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Family {
+    /// What lies below the texels.
+    pub base: RowBase,
+    /// Their format.
+    pub format: TexelFormat,
+    /// The axis of the best.
+    pub axis: Axis,
+    /// Elek's error over this row's, the least of all interfaces that reflect anything.
+    pub least_gain: f64,
+}
+
+/// Errors of one albedo tile of 64 x 64 half floats.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AlbedoGoal {
+    /// Name of the tile.
+    pub name: String,
+    /// As sampled, against the function at the points of the scan.
+    pub sampled: f64,
+    /// What the function itself may be off: light that crossed, wavelengths left out.
+    pub uncertainty: f64,
+}
+
+/// A way to have D, and its largest error over the peak, Beckmann and GGX, for m in 0.001..1 and all angles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DistributionGoal {
+    /// What it is.
+    pub name: &'static str,
+    /// Bytes for one distribution.
+    pub bytes: u64,
+    /// Beckmann, GGX.
+    pub errors: [f64; 2],
+}
+
+/// What a budget on Fresnel rows alone chooses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// `max_abs`.
+    pub max_abs: f64,
+    /// What it chooses, or what is nearest.
+    pub chosen: Result<Candidate, String>,
+}
+
+/// All of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Goals {
+    /// The rows within [`ROW_BYTES`] whose least gain is largest.
+    pub row: Family,
+    /// Its errors.
+    pub rows: Vec<RowGoal>,
+    /// The best of each base and format.
+    pub families: Vec<Family>,
+    /// Budgets on rows.
+    pub steps: Vec<Step>,
+    /// Albedo tiles.
+    pub albedos: Vec<AlbedoGoal>,
+    /// Ways to have D.
+    pub distributions: Vec<DistributionGoal>,
+}
+
+/// Measures the goals for a set of materials.
+///
+/// # Errors
+/// See [`BakeError`].
+pub fn goals(materials: &[Material], read_image: ImageReader<'_>) -> Result<Goals, BakeError> {
+    let plan = Plan::new(materials, Settings::of(materials)?, read_image)?;
+    let names = |kind: TableKind| plan.tiles[kind as usize].tiles.clone();
+    let rows: Vec<(String, Truth)> = names(TableKind::Fresnel)
+        .into_par_iter()
+        .filter_map(|(name, key)| {
+            let is_it = |job: &&Job| job.key() == key;
+            let Some(Job::Fresnel(job)) = plan.graph.of_kind(JobKind::Fresnel).find(is_it) else { return None };
+            Some((name, Truth::new(job)))
+        })
+        .collect();
+    let elek: Vec<f64> = rows.par_iter().map(|(_, truth)| elek_error(truth)).collect();
+    let families: Vec<Family> = FORMATS
+        .into_par_iter()
+        .filter_map(|(base, format)| {
+            let size = (ROW_BYTES / u64::from(format.texel_bytes())) as u32 - base.header_texels();
+            let family = |exponent: f64| {
+                let mapping = Mapping::Power { exponent };
+                let shape = RowShape { axis: axis("cos_theta", "", [0.0, 1.0], size, mapping), format, base };
+                let gains = rows.iter().zip(&elek).filter(|(_, elek)| **elek > 0.0);
+                let gains = gains.map(|((_, truth), elek)| elek / truth.error(&shape, false).max_abs);
+                Family { base, format, least_gain: gains.fold(f64::INFINITY, f64::min), axis: shape.axis }
+            };
+            // Exponents in twentieths from 1 to 4: the fitted map.
+            (20..=80)
+                .map(|e| family(f64::from(e) / 20.0))
+                .reduce(|a, b| if b.least_gain > a.least_gain { b } else { a })
+        })
+        .collect();
+    let best = families.iter().cloned().reduce(|a, b| if b.least_gain > a.least_gain { b } else { a });
+    let Some(row) = best else { return Err(BakeError::Empty) };
+    let shape = RowShape { axis: row.axis.clone(), format: row.format, base: row.base };
+    let exact = plan.graph.of_kind(JobKind::Fresnel).collect::<Vec<_>>();
+    let found: Vec<RowGoal> = names(TableKind::Fresnel)
+        .iter()
+        .zip(&elek)
+        .filter_map(|((name, key), &elek)| {
+            // As the bake would measure it.
+            let Some(Job::Fresnel(job)) = exact.iter().find(|job| job.key() == *key) else { return None };
+            let found = FresnelJob { shape: shape.clone(), ..job.clone() }.run().error.max_abs_err;
+            Some(RowGoal { name: name.clone(), elek, found })
+        })
+        .collect();
+    let only_rows = fresnel::candidates(&plan, false);
+    let steps = [1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4].map(|max_abs| step(only_rows.as_ref(), max_abs)).to_vec();
+    Ok(Goals { row, rows: found, families, steps, albedos: albedos(&plan), distributions: distributions() })
+}
+
+fn step(found: Option<&Found>, max_abs: f64) -> Step {
+    let budget = Budget { max_abs: Some(max_abs), ..Budget::default() };
+    let found: Vec<Found> = found.into_iter().cloned().collect();
+    let chosen = match choose(&found, &budget, 0) {
+        Ok(chosen) => Ok(found[0].candidates[chosen[0]].clone()),
+        Err(error) => Err(error.to_string()),
+    };
+    Step { max_abs, chosen }
+}
+
+/// Elek's row: the values at the nodes, rounded.
+fn elek_error(truth: &Truth) -> f64 {
+    let x = axis("cos_theta", "", [0.0, 1.0], 128, Mapping::Linear);
+    let mut image = Image::zeros(x.size, 1, 3);
+    for i in 0..x.size {
+        image.texel_mut(i, 0).copy_from_slice(&truth.at(x.node(i)).map(|v| v as f32));
+    }
+    let layout = AtlasLayout { x: x.clone(), y: None, apron: 0, columns: 1, tiles: 1, base: RowBase::Zero };
+    let format = TexelFormat::Rgba8Unorm;
+    let texels = format.quantise(&image);
+    let atlas = Atlas { kind: TableKind::Fresnel, layout, format, tiles: Vec::new(), truth: image, texels };
+    // Half the points towards grazing angles.
+    let points: Vec<([f64; 2], [f64; 4])> = (0..=4096)
+        .flat_map(|i| [f64::from(i) / 4096.0, libm::pow(f64::from(i) / 4096.0, 4.0)])
+        .map(|c| {
+            let [r, g, b] = truth.at(c);
+            ([c, 0.0], [r, g, b, 1.0])
+        })
+        .collect();
+    measured(points.iter().map(|(at, rgb)| (at, *rgb)), 3, false, 0.0, |at| atlas.sample(0, at, WEIGHTS)).max_abs
+}
+
+fn albedos(plan: &Plan) -> Vec<AlbedoGoal> {
+    let results = plan.graph.only(&[JobKind::FgdTruth]).run(&Silent, Results::default());
+    let goals = plan.tiles[TableKind::Fgd as usize].tiles.iter().filter_map(|(name, key)| {
+        let is_it = |job: &&Job| job.key() == *key;
+        let Some(Job::Fgd(job)) = plan.graph.of_kind(JobKind::Fgd).find(is_it) else { return None };
+        let truth = results.fgd_truth(&Job::FgdTruth(job.truth.clone()));
+        let MeasuredError { max_abs, .. } = grids::sampled_error(truth, &job.truth.grid, TexelFormat::Rgba16Float);
+        Some(AlbedoGoal { name: name.clone(), sampled: max_abs, uncertainty: truth.slack })
+    });
+    goals.collect()
+}
+
+fn distributions() -> Vec<DistributionGoal> {
+    let angle = |exponent, size| axis("theta_h", "rad", [0.0, FRAC_PI_2], size, Mapping::Power { exponent });
+    let log = |size| axis("alpha", "", [ALPHA_MIN, 1.0], size, Mapping::Logarithmic);
+    let linear = axis("alpha", "", [0.0, 1.0], 512, Mapping::Linear);
+    let of = |name, axes: [Axis; 2], format: TexelFormat| {
+        let bytes = u64::from(axes[0].size) * u64::from(axes[1].size) * u64::from(format.texel_bytes());
+        let error = |distribution| table_error(&DistributionJob { distribution, axes: axes.clone(), format });
+        DistributionGoal { name, bytes, errors: [error(Distribution::Beckmann), error(Distribution::Ggx)] }
+    };
+    let slopes = |name, size: u32| DistributionGoal {
+        name,
+        bytes: 4 * u64::from(size),
+        errors: [Distribution::Beckmann, Distribution::Ggx].map(|d| slope_row_error(d, size)),
+    };
+    vec![
+        of("u^8, linear m, 512 x 512 halves (Elek)", [angle(8.0, 512), linear], TexelFormat::R16Float),
+        of("u^8, log m, 512 x 512 split roots (fixed default)", [angle(8.0, 512), log(512)], TexelFormat::Rg16Float),
+        of("u^8, log m, 128 x 128 split roots", [angle(8.0, 128), log(128)], TexelFormat::Rg16Float),
+        of("u^4, log m, 128 x 128 split roots", [angle(4.0, 128), log(128)], TexelFormat::Rg16Float),
+        slopes("row over tan/(m + tan), 256 split roots", 256),
+        slopes("row over tan/(m + tan), 4096 split roots", 4096),
+        DistributionGoal { name: "closed form (chosen)", bytes: 0, errors: [0.0; 2] },
+    ]
+}
+
+/// Angles and logarithms of m at which tables of D are compared with it.
+const GRID: u32 = 768;
+
+/// Largest error over the peak of D for m in 0.001..1.
+fn peak_error(distribution: Distribution, read: impl Fn(f64, f64) -> f64 + Sync) -> f64 {
+    let errors: Vec<f64> = (0..GRID)
+        .into_par_iter()
+        .map(|j| {
+            let m = ALPHA_MIN * libm::pow(1.0 / ALPHA_MIN, (f64::from(j) + 0.37) / f64::from(GRID));
+            let (mut peak, mut worst) = (1.0_f64, 0.0_f64);
+            for i in 0..GRID {
+                let theta = FRAC_PI_2 * libm::pow((f64::from(i) + 0.61) / f64::from(GRID), 8.0);
+                let (sin, cos) = libm::sincos(theta);
+                let exact = scaled_distribution(distribution, m, cos, sin * sin);
+                peak = peak.max(exact);
+                worst = worst.max((read(theta, m) - exact).abs());
+            }
+            worst / peak
+        })
+        .collect();
+    errors.into_iter().fold(0.0, f64::max)
+}
+
+fn table_error(job: &DistributionJob) -> f64 {
+    let atlas = job.atlas();
+    peak_error(job.distribution, |theta, m| atlas.sample(0, [theta, m], WEIGHTS)[0])
+}
+
+/// D scales: `pi m^2 D cos^4` depends on tan/m alone. A row of its sixteenth root, and the division by `cos^4` in the shader.
+fn slope_row_error(distribution: Distribution, size: u32) -> f64 {
+    let encoding = Encoding::SplitSixteenthRoot;
+    let mut row = Image::zeros(size, 1, 1);
+    for i in 0..size {
+        let u = f64::from(i) / f64::from(size - 1);
+        let slope = u / (1.0 - u);
+        row.texel_mut(i, 0)[0] = match distribution {
+            _ if i + 1 == size => 0.0,
+            Distribution::Ggx => libm::pow(1.0 + slope * slope, -2.0) as f32,
+            Distribution::Beckmann => libm::exp(-slope * slope) as f32,
+        };
+    }
+    let texels = TexelFormat::Rg16Float.quantise(&encoding.split(&encoding.to_root(&row)));
+    peak_error(distribution, |theta, m| {
+        let (sin, cos) = libm::sincos(theta);
+        let u = sin / (sin + m * cos);
+        let texel = bilinear(&texels, [u * f64::from(size - 1) + 0.5, 0.5], WeightBits::Fixed(8));
+        encoding.decode(texel)[0] / (cos * cos * cos * cos)
+    })
+}

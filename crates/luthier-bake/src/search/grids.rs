@@ -1,0 +1,153 @@
+//! Tables of two axes whose values are costly: one fine grid of each tile is computed, and coarser ones are interpolated from it.
+
+use luthier_lut::{Axis, Candidate, CandidateForm, Image, Mapping, MeasuredError, RowBase, TableKind, TexelFormat};
+use rayon::prelude::*;
+
+use super::{Found, WEIGHTS, cost, measured};
+use crate::fgd::FgdTruth;
+use crate::film::FilmJob;
+use crate::graph::Results;
+use crate::grid::resampled;
+use crate::job::{Job, JobKind, lone_tile};
+use crate::plan::Plan;
+use crate::settings::axis;
+
+/// Sides of albedo tiles.
+const FGD_SIDES: [u32; 9] = [8, 12, 16, 20, 24, 32, 40, 48, 64];
+/// Exponents of its axes, cosine and alpha.
+const FGD_EXPONENTS: [[f64; 2]; 4] = [[2.0, 3.0], [2.0, 2.0], [3.0, 3.0], [3.0, 2.0]];
+const FGD_FORMATS: [TexelFormat; 3] = [TexelFormat::Rgba8Unorm, TexelFormat::Rgba16Float, TexelFormat::Rgba32Float];
+
+const FILM_COLUMNS: [u32; 5] = [16, 32, 48, 64, 96];
+const FILM_ROWS: [u32; 5] = [32, 64, 128, 256, 384];
+const FILM_EXPONENTS: [f64; 3] = [2.0, 3.0, 4.0];
+const FILM_FORMATS: [TexelFormat; 4] =
+    [TexelFormat::Rgba8Unorm, TexelFormat::Rgb10a2Unorm, TexelFormat::Rgba16Float, TexelFormat::Rgba32Float];
+/// Points at which film tiles are compared with the function.
+const FILM_PROBES: u32 = 4096;
+
+/// A tile on its fine grid, and points off it.
+struct Fine {
+    grid: [Axis; 2],
+    image: Image,
+    /// Axis values, and the function there.
+    probes: Vec<([f64; 2], [f64; 4])>,
+    /// What the function may be off itself.
+    slack: f64,
+}
+
+pub(super) fn fgd(plan: &Plan, results: &Results, colors: bool) -> Option<Found> {
+    let asked = plan.settings.asked;
+    let ([x, y], format) = &plan.settings.fgd;
+    let tiles: Vec<Fine> = plan
+        .graph
+        .of_kind(JobKind::FgdTruth)
+        .map(|job| {
+            let FgdTruth { image, probes, slack, .. } = results.fgd_truth(job).clone();
+            Fine { grid: [x.clone(), y.clone()], image, probes, slack }
+        })
+        .collect();
+    if tiles.is_empty() || asked.fgd_size && asked.fgd_format {
+        return None;
+    }
+    let formats = if asked.fgd_format { vec![*format] } else { FGD_FORMATS.to_vec() };
+    let mut axes = Vec::new();
+    if asked.fgd_size {
+        axes.push([x.clone(), y.clone()]);
+    } else {
+        for [p, q] in FGD_EXPONENTS {
+            for columns in FGD_SIDES {
+                for rows in FGD_SIDES {
+                    let power = |axis: &Axis, size, exponent| Axis {
+                        size,
+                        mapping: Mapping::Power { exponent },
+                        ..axis.clone()
+                    };
+                    axes.push([power(x, columns, p), power(y, rows, q)]);
+                }
+            }
+        }
+    }
+    let fixed_cost = price(&[x.clone(), y.clone()], TexelFormat::Rgba16Float);
+    let candidates = candidates(TableKind::Fgd, &tiles, axes, &formats, 4, colors);
+    Some(Found::new(TableKind::Fgd, fixed_cost, candidates))
+}
+
+pub(super) fn film(plan: &Plan, colors: bool) -> Option<Found> {
+    let finest = |exponent| {
+        [
+            axis("cos_theta", "", [0.0, 1.0], 96, Mapping::Power { exponent }),
+            axis("fraction", "", [0.0, 1.0], 384, Mapping::Linear),
+        ]
+    };
+    let grid = finest(3.0);
+    let tiles: Vec<Fine> = plan
+        .graph
+        .of_kind(JobKind::Film)
+        .filter_map(|job| if let Job::Film(job) = job { Some(job) } else { None })
+        .map(|job| Fine {
+            image: FilmJob { axes: grid.clone(), ..job.clone() }.truth(),
+            grid: grid.clone(),
+            probes: job.probes(FILM_PROBES),
+            slack: 0.0,
+        })
+        .collect();
+    if tiles.is_empty() {
+        return None;
+    }
+    let mut axes = Vec::new();
+    for exponent in FILM_EXPONENTS {
+        for columns in FILM_COLUMNS {
+            for rows in FILM_ROWS {
+                let [x, y] = finest(exponent);
+                axes.push([Axis { size: columns, ..x }, Axis { size: rows, ..y }]);
+            }
+        }
+    }
+    let fixed_cost = price(&finest(2.0), TexelFormat::Rgba16Float);
+    let candidates = candidates(TableKind::Film, &tiles, axes, &FILM_FORMATS, 3, colors);
+    Some(Found::new(TableKind::Film, fixed_cost, candidates))
+}
+
+fn candidates(
+    kind: TableKind,
+    tiles: &[Fine],
+    axes: Vec<[Axis; 2]>,
+    formats: &[TexelFormat],
+    channels: usize,
+    colors: bool,
+) -> Vec<Candidate> {
+    let measured: Vec<Vec<Candidate>> = axes
+        .into_par_iter()
+        .map(|axes| {
+            let images: Vec<Image> = tiles
+                .iter()
+                .map(|t| if axes == t.grid { t.image.clone() } else { resampled(&t.image, &t.grid, &axes) })
+                .collect();
+            let with = |&format| {
+                let errors = tiles.iter().zip(&images).map(|(tile, image)| {
+                    let atlas = lone_tile(kind, &[&axes[0], &axes[1]], format, image);
+                    let points = tile.probes.iter().map(|(at, value)| (at, *value));
+                    measured(points, channels, colors, tile.slack, |at| atlas.sample(0, at, WEIGHTS))
+                });
+                let error = errors.reduce(|a, b| a.max(&b)).unwrap_or_default();
+                let [x, y] = axes.clone();
+                let form = CandidateForm::Table { x, y: Some(y), format, base: RowBase::Zero };
+                Candidate { bytes: form.bytes(tiles.len() as u32), cost: price(&axes, format), error, form }
+            };
+            formats.iter().map(with).collect()
+        })
+        .collect();
+    measured.concat()
+}
+
+/// The error of a tile on the grid where it is computed, without what the function may be off itself.
+pub(super) fn sampled_error(truth: &FgdTruth, grid: &[Axis; 2], format: TexelFormat) -> MeasuredError {
+    let atlas = lone_tile(TableKind::Fgd, &[&grid[0], &grid[1]], format, &truth.image);
+    let points = truth.probes.iter().map(|(at, value)| (at, *value));
+    measured(points, 4, false, 0.0, |at| atlas.sample(0, at, WEIGHTS))
+}
+
+fn price(axes: &[Axis; 2], format: TexelFormat) -> f64 {
+    axes.iter().map(cost::axis).sum::<f64>() + cost::read(format)
+}

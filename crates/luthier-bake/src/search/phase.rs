@@ -1,0 +1,49 @@
+//! Phase rows of films, and the cosines that they hold.
+
+use luthier_lut::{Candidate, CandidateForm, Mapping, MeasuredError, RowBase, TableKind, TexelFormat};
+use rayon::prelude::*;
+
+use super::{Found, cost, row_form};
+use crate::job::{Job, JobKind};
+use crate::phase::PhaseJob;
+use crate::plan::Plan;
+use crate::settings::axis;
+
+const SIZES: [u32; 8] = [16, 32, 64, 128, 192, 256, 384, 512];
+const FORMATS: [TexelFormat; 2] = [TexelFormat::Rgba16Float, TexelFormat::Rgba32Float];
+
+/// Cosines of three phases, whole cycles taken off first.
+const CLOSED_FORM: f64 = 3.0 * (cost::QUARTER_RATE + 6.0);
+
+pub(super) fn candidates(plan: &Plan) -> Option<Found> {
+    let asked = plan.settings.asked;
+    let jobs: Vec<&PhaseJob> = plan
+        .graph
+        .of_kind(JobKind::Phase)
+        .filter_map(|job| if let Job::Phase(job) = job { Some(job) } else { None })
+        .collect();
+    if jobs.is_empty() || asked.phase_size || asked.phase_format {
+        return None;
+    }
+    let shapes: Vec<(u32, TexelFormat)> = SIZES.iter().flat_map(|&size| FORMATS.map(|format| (size, format))).collect();
+    // Three look-ups, one for the cosine of each channel.
+    let price = |format| 3.0 * (2.0 + cost::read(format));
+    let mut candidates = vec![Candidate {
+        form: CandidateForm::ClosedForm,
+        bytes: 0,
+        cost: CLOSED_FORM,
+        error: MeasuredError::default(),
+    }];
+    candidates.par_extend(shapes.into_par_iter().map(|(size, format)| {
+        let axis = axis("s", "", [0.0, 1.0], size, Mapping::Linear);
+        let error = jobs
+            .iter()
+            .map(|job| PhaseJob { axis: axis.clone(), format, ..(*job).clone() }.run().error.max_abs_err)
+            .fold(0.0, f64::max);
+        let form = row_form(axis, format, RowBase::Zero);
+        // A swing of 2 either way passes through 0: relative errors are those to its reach.
+        let error = MeasuredError { max_abs: error, max_rel: 0.5 * error, delta_e: None };
+        Candidate { bytes: form.bytes(jobs.len() as u32), cost: price(format), error, form }
+    }));
+    Some(Found::new(TableKind::Phase, price(TexelFormat::Rgba16Float), candidates))
+}

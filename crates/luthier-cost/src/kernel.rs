@@ -1,0 +1,126 @@
+use luthier_shader::{Form, MaterialSet, Target, bindings, emit, emit_constant, spirv_words};
+use serde::{Deserialize, Serialize};
+
+use crate::CostError;
+
+/// Stands in for a shader: all that is left is the harness.
+const EMPTY: &str =
+    "fn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {\n    return wi * wo;\n}\n";
+
+/// Schlick's form with the reflectance at normal incidence of a complex index (Elek 2010, `FresnelTermNP`), in the place of the
+/// exact equations.
+const APPROXIMATE_FRESNEL: &str = include_str!("wgsl/approximate_fresnel.wgsl");
+
+/// What surrounds the evaluation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Harness {
+    /// Two directions in, a value out.
+    Bare,
+    /// What Elek's pixel shaders have around theirs: a normal map and a reflected environment.
+    NormalMapped,
+}
+
+/// How the shader of a set is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Style {
+    /// Form of the shader.
+    pub form: Form,
+    /// The numbers of the one material are constants of the code.
+    pub constant: bool,
+    /// Fresnel reflectance of bare interfaces is approximated; of the form `full`.
+    pub approximate: bool,
+}
+
+/// A compute kernel to compile, with what it binds.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Kernel {
+    /// SPIR-V words; one entry point.
+    pub spirv: Vec<u32>,
+    /// All that it may name.
+    pub bindings: Vec<Binding>,
+}
+
+/// One binding of a kernel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Binding {
+    /// Descriptor set.
+    pub group: u32,
+    /// Number in it.
+    pub binding: u32,
+    /// What is bound.
+    pub resource: Resource,
+}
+
+/// What a kernel may bind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Resource {
+    /// A sampled image.
+    Texture,
+    /// A sampler.
+    Sampler,
+    /// A storage buffer.
+    Storage,
+    /// A uniform buffer.
+    Uniform,
+}
+
+impl Kernel {
+    /// The evaluation of the shader of a set, in a harness. The material's number comes from a uniform buffer, as a draw call would
+    /// give it.
+    ///
+    /// # Errors
+    /// Those of [`emit`] and [`emit_constant`].
+    pub fn of_set(set: &MaterialSet<'_>, style: Style, harness: Harness) -> Result<Self, CostError> {
+        let resource = |kind: &str| match kind {
+            "buffer" => Resource::Storage,
+            "sampler" => Resource::Sampler,
+            _ => Resource::Texture,
+        };
+        let face = bindings(set, style.form);
+        let face = face.iter().filter(|entry| !(style.constant && entry.resource == "buffer"));
+        let shader = face.map(|e| Binding { group: 0, binding: e.binding, resource: resource(&e.resource) });
+        Self::new(&shader_text(set, style)?, shader, harness)
+    }
+
+    /// The harness alone. The two directions are multiplied, so that both are read: three instructions that are not in the
+    /// others.
+    ///
+    /// # Errors
+    /// A defect of the harness.
+    pub fn empty(harness: Harness) -> Result<Self, CostError> {
+        Self::new(EMPTY, std::iter::empty(), harness)
+    }
+
+    fn new(shader: &str, bindings: impl Iterator<Item = Binding>, harness: Harness) -> Result<Self, CostError> {
+        let (text, resources): (_, &[Resource]) = match harness {
+            Harness::Bare => (include_str!("wgsl/harness.wgsl"), &[Resource::Storage, Resource::Uniform]),
+            Harness::NormalMapped => (
+                include_str!("wgsl/harness_normal_mapped.wgsl"),
+                &[Resource::Storage, Resource::Uniform, Resource::Texture, Resource::Texture, Resource::Sampler],
+            ),
+        };
+        let own = (0..).zip(resources).map(|(binding, &resource)| Binding { group: 1, binding, resource });
+        let spirv = spirv_words(&format!("{shader}\n{text}"))?;
+        Ok(Self { spirv, bindings: bindings.chain(own).collect() })
+    }
+}
+
+/// WGSL of a shader in a style.
+///
+/// # Errors
+/// Those of [`emit`] and [`emit_constant`].
+pub fn shader_text(set: &MaterialSet<'_>, style: Style) -> Result<String, CostError> {
+    let text = match style.constant {
+        true => emit_constant(set, style.form, Target::Wgsl)?,
+        false => emit(set, style.form, Target::Wgsl)?,
+    };
+    Ok(if style.approximate { approximated(&text) } else { text })
+}
+
+/// The text with the approximation in the place of the exact function, where it has that.
+fn approximated(text: &str) -> String {
+    let Some((before, rest)) = text.split_once("fn luthier_fresnel(") else { return text.to_owned() };
+    let after = rest.split_once("\n}\n").map_or("", |(_, after)| after);
+    format!("{before}{APPROXIMATE_FRESNEL}{after}")
+}

@@ -1,0 +1,26 @@
+//! What a shader costs on real GPU instruction sets, without a GPU.
+//!
+//! Mesa's RADV driver makes a device without hardware when it is told a family of chips; its compiler then runs in full, and reports
+//! instructions, registers, and cycles by its own model of the pipeline ([`Counts`]). The numbers depend on the kernels and the version
+//! of the driver only. Nothing can run on such a device.
+//!
+//! The driver reads its environment once, when the Vulkan loader loads: [`compile`] is for a process that was started with
+//! [`Family::environment`], one per family.
+//!
+//! Simplifications: a texture read counts as issued, without cache misses; all branches of a kernel count, the taken and the others, so
+//! that a set of several models costs the sum of them; uniform registers and interpolation are free.
+//!
+//! Out of scope: starting processes, files, time on a real device (`luthier-gpu`).
+
+mod code;
+mod counts;
+mod error;
+mod family;
+mod kernel;
+mod radv;
+
+pub use counts::{Compiled, Counts};
+pub use error::CostError;
+pub use family::{FOREIGN_VARIABLES, Family};
+pub use kernel::{Binding, Harness, Kernel, Resource, Style, shader_text};
+pub use radv::{assembly, compile};

@@ -1,0 +1,73 @@
+use std::time::Instant;
+
+use crate::context::TimedPass;
+use crate::evaluate::WORKGROUP;
+use crate::{GpuError, Scene};
+
+const KERNEL: &str = include_str!("wgsl/time.wgsl");
+
+/// Evaluations of one thread, as in the kernel.
+const PER_THREAD: u32 = 16;
+
+/// An evaluation of one scene to time again and again.
+#[derive(Debug)]
+pub struct Stopwatch<'a> {
+    scene: &'a Scene,
+    pipeline: wgpu::ComputePipeline,
+    pass: TimedPass,
+    workgroups: u32,
+}
+
+impl Scene {
+    /// Prepares timing of `luthier_eval` for pairs `(wi, wo)` of a material, or of all but `luthier_eval` where `is_empty`. The pairs
+    /// are gone through until there are at least `evaluations`.
+    ///
+    /// # Errors
+    /// [`GpuError::NoMaterial`], and whatever the device reports.
+    pub fn stopwatch(
+        &self,
+        material: u32,
+        pairs: &[([f32; 3], [f32; 3])],
+        evaluations: u32,
+        is_empty: bool,
+    ) -> Result<Stopwatch<'_>, GpuError> {
+        self.layers(material)?;
+        let kernel = if is_empty { KERNEL.replace("+= luthier_eval(", "+= kernel_empty(") } else { KERNEL.to_owned() };
+        let pipeline = self.compile(&kernel)?;
+        let words: Vec<[u32; 8]> = pairs
+            .iter()
+            .map(|(wi, wo)| {
+                let ([ix, iy, iz], [ox, oy, oz]) = (wi.map(f32::to_bits), wo.map(f32::to_bits));
+                [ix, iy, iz, material, ox, oy, oz, 0]
+            })
+            .collect();
+        let workgroups = evaluations.div_ceil(PER_THREAD * WORKGROUP as u32).clamp(1, 65_535);
+        let outputs = workgroups as usize * WORKGROUP;
+        let pass = self.context.timed_pass(&pipeline, bytemuck::cast_slice(&words), outputs)?;
+        Ok(Stopwatch { scene: self, pipeline, pass, workgroups })
+    }
+}
+
+impl Stopwatch<'_> {
+    /// Evaluations of one run.
+    pub fn evaluations(&self) -> u32 {
+        self.workgroups * WORKGROUP as u32 * PER_THREAD
+    }
+
+    /// Whether runs are timed by the device's own clock; otherwise by that of the host, submission and waiting included.
+    pub fn has_timestamps(&self) -> bool {
+        self.pass.has_timestamps()
+    }
+
+    /// Runs once and waits: nanoseconds per evaluation.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn run(&self) -> Result<f64, GpuError> {
+        let start = Instant::now();
+        let nanoseconds =
+            self.scene.context.run_timed(&self.pass, &self.pipeline, &self.scene.group, self.workgroups)?;
+        let nanoseconds = nanoseconds.unwrap_or_else(|| start.elapsed().as_secs_f64() * 1e9);
+        Ok(nanoseconds / f64::from(self.evaluations()))
+    }
+}

@@ -1,0 +1,162 @@
+use serde::{Deserialize, Serialize};
+
+use crate::{AtlasLayout, Axis, RowBase, TableKind, TexelFormat};
+
+/// Limits on tables; what is absent is unlimited.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Budget {
+    /// Largest absolute error of a sampled read, any channel.
+    pub max_abs: Option<f64>,
+    /// Largest error relative to the brightest channel, or to [`REL_FLOOR`] where that is larger.
+    pub max_rel: Option<f64>,
+    /// Largest CIEDE2000 difference of reflectances seen under D65.
+    pub delta_e: Option<f64>,
+    /// Bytes of the texels of all tables together.
+    pub max_bytes: Option<u64>,
+    /// Estimated cost of one read of every table, see [`Candidate::cost`].
+    pub max_cost: Option<f64>,
+}
+
+/// Values below this count as this in relative errors.
+pub const REL_FLOOR: f64 = 0.01;
+
+impl Budget {
+    /// Whether nothing is limited.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Whether errors are limited.
+    pub fn limits_errors(&self) -> bool {
+        self.max_abs.is_some() || self.max_rel.is_some() || self.delta_e.is_some()
+    }
+
+    /// The tighter of two budgets, limit by limit.
+    #[must_use]
+    pub fn tighter(&self, other: &Self) -> Self {
+        let least = |a: Option<f64>, b: Option<f64>| a.into_iter().chain(b).reduce(f64::min);
+        Self {
+            max_abs: least(self.max_abs, other.max_abs),
+            max_rel: least(self.max_rel, other.max_rel),
+            delta_e: least(self.delta_e, other.delta_e),
+            max_bytes: self.max_bytes.into_iter().chain(other.max_bytes).min(),
+            max_cost: least(self.max_cost, other.max_cost),
+        }
+    }
+
+    /// Error over limit, the largest of those limited: a budget holds where this is at most 1.
+    pub fn excess(&self, error: &MeasuredError) -> f64 {
+        let ratio = |limit: Option<f64>, error: Option<f64>| limit.zip(error).map_or(0.0, |(limit, e)| e / limit);
+        ratio(self.max_abs, Some(error.max_abs))
+            .max(ratio(self.max_rel, Some(error.max_rel)))
+            .max(ratio(self.delta_e, error.delta_e))
+    }
+}
+
+/// Largest errors of a kind of table, as sampled with 8-bit weights, over all its tiles.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct MeasuredError {
+    /// Absolute.
+    pub max_abs: f64,
+    /// Relative to the brightest channel or [`REL_FLOOR`].
+    pub max_rel: f64,
+    /// CIEDE2000 under D65; absent where it was not asked for, or where values are no colours.
+    pub delta_e: Option<f64>,
+}
+
+impl MeasuredError {
+    /// The larger of each.
+    #[must_use]
+    pub fn max(&self, other: &Self) -> Self {
+        Self {
+            max_abs: self.max_abs.max(other.max_abs),
+            max_rel: self.max_rel.max(other.max_rel),
+            delta_e: self.delta_e.into_iter().chain(other.delta_e).reduce(f64::max),
+        }
+    }
+}
+
+/// A way to have the values of a kind of table at run time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Candidate {
+    /// `table`, or `closed-form`: computed by the shader, no texels.
+    pub form: CandidateForm,
+    /// Bytes of its texels, all tiles.
+    pub bytes: u64,
+    /// Estimated cost of one look-up, address arithmetic included: an operation on one number 1, a root, logarithm, exponential,
+    /// division or sine 4, a fetch 16 for each 4 bytes of its texel.
+    pub cost: f64,
+    /// As measured by the search.
+    pub error: MeasuredError,
+}
+
+/// What a [`Candidate`] is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum CandidateForm {
+    /// Computed.
+    ClosedForm,
+    /// Read.
+    Table {
+        /// Axis across a tile.
+        x: Axis,
+        /// Axis down a tile.
+        y: Option<Axis>,
+        /// Texel format.
+        format: TexelFormat,
+        /// What a look-up adds to the texels.
+        base: RowBase,
+    },
+}
+
+impl CandidateForm {
+    /// Bytes of so many tiles.
+    pub fn bytes(&self, tiles: u32) -> u64 {
+        match self {
+            Self::ClosedForm => 0,
+            Self::Table { x, y, format, base } => {
+                let layout = AtlasLayout { x: x.clone(), y: y.clone(), apron: 0, columns: 1, tiles, base: *base };
+                let [width, height] = layout.size();
+                u64::from(width) * u64::from(height) * u64::from(format.texel_bytes())
+            }
+        }
+    }
+}
+
+/// What a search for one kind of table found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Search {
+    /// The kind.
+    pub kind: TableKind,
+    /// What was asked of it.
+    pub budget: Budget,
+    /// The candidate that ships: its place in `front`.
+    pub chosen: usize,
+    /// Candidates that no other beats in bytes, cost and error at once, cheapest first; and the one that ships.
+    pub front: Vec<Candidate>,
+    /// How many were measured.
+    pub measured: u32,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_tighter_budget_has_the_smaller_limits() {
+        let one = Budget { max_abs: Some(1e-3), max_bytes: Some(100), ..Budget::default() };
+        let two = Budget { max_abs: Some(2e-3), max_bytes: Some(50), delta_e: Some(1.0), ..Budget::default() };
+        let both = Budget { max_abs: Some(1e-3), max_bytes: Some(50), delta_e: Some(1.0), ..Budget::default() };
+        assert_eq!(one.tighter(&two), both);
+        assert_eq!(two.tighter(&one), both);
+        assert_eq!(one.tighter(&Budget::default()), one);
+    }
+
+    #[test]
+    fn excess_is_that_of_the_tightest_limit() {
+        let budget = Budget { max_abs: Some(1e-3), max_rel: Some(1e-2), ..Budget::default() };
+        let error = MeasuredError { max_abs: 5e-4, max_rel: 2e-2, delta_e: Some(9.0) };
+        assert_eq!(budget.excess(&error), 2.0);
+        assert_eq!(Budget::default().excess(&error), 0.0);
+    }
+}
