@@ -1,10 +1,25 @@
 //! Layer records: what a shader needs of each layer.
 
+use luthier_layers::domain::INDEX_MAX;
 use luthier_layers::elek::{self, ALPHA_MIN, Below};
 use luthier_lut::{LayerKind, LayerRecord};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::stack::Stack;
+use num_complex::Complex64;
+
+/// Least modulus of a relative index: at normal incidence on a lesser one Fresnel's formulas in single precision are 0/0.
+const INDEX_MIN: f64 = 1e-3;
+
+/// A relative index that single precision can square twice: both parts at most [`INDEX_MAX`], and not next to nothing. What reflects all
+/// the light does so still, within 4e-3.
+fn storable(ior: Complex64) -> (f64, f64) {
+    let (n, k) = (ior.re.min(INDEX_MAX), ior.im.min(INDEX_MAX));
+    (if n.max(k) < INDEX_MIN { INDEX_MIN } else { n }, k)
+}
+
+/// Optical depth beyond which nothing comes through, in any precision; without it a shader would meet infinities.
+const DEPTH_MAX: f64 = 1e4;
 
 /// The records of a stack, without tiles.
 pub(crate) fn records(stack: &Stack, wavelengths_nm: [f64; 3]) -> Vec<LayerRecord> {
@@ -27,8 +42,8 @@ pub(crate) fn records(stack: &Stack, wavelengths_nm: [f64; 3]) -> Vec<LayerRecor
             match layer.below {
                 Below::Dielectric { eta, optical_depth } => {
                     record.kind = LayerKind::Dielectric;
-                    record.eta = eta;
-                    record.optical_depth = optical_depth;
+                    record.eta = eta.clamp(1.0 / INDEX_MAX, INDEX_MAX);
+                    record.optical_depth = optical_depth.map(|depth| depth.min(DEPTH_MAX));
                 }
                 Below::Conductor => {}
                 Below::Diffuse(diffuse) => {
@@ -41,10 +56,10 @@ pub(crate) fn records(stack: &Stack, wavelengths_nm: [f64; 3]) -> Vec<LayerRecor
                 for (c, node) in nodes.iter().enumerate() {
                     let here = interface.at(node.wavelength_nm);
                     let below = here.below / here.above;
-                    (record.ior_n[c], record.ior_k[c]) = (below.re, below.im);
+                    (record.ior_n[c], record.ior_k[c]) = storable(below);
                     if let Some(film) = here.films.first() {
                         let relative = film.ior / here.above;
-                        (record.film_ior_n[c], record.film_ior_k[c]) = (relative.re, relative.im);
+                        (record.film_ior_n[c], record.film_ior_k[c]) = storable(relative);
                         record.film_thickness_waves[c] = film.waves * here.above.re;
                     }
                 }
@@ -56,4 +71,40 @@ pub(crate) fn records(stack: &Stack, wavelengths_nm: [f64; 3]) -> Vec<LayerRecor
             record
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Fresnel's formulas as the shader has them, in single precision.
+    fn fresnel(n: f32, k: f32, cos: f32) -> f32 {
+        let square = (n - 1.0) * (n + 1.0) - k * k + cos * cos;
+        let product = n * k;
+        let modulus = (square * square + 4.0 * product * product).sqrt();
+        let large = 0.5 * (modulus + square.abs());
+        let small = product * product / large.max(1e-30);
+        let (re_sq, im_sq) = if square >= 0.0 { (large, small) } else { (small, large) };
+        let (re, sin_sq) = (re_sq.sqrt(), 1.0 - cos * cos);
+        let refl_s = ((re - cos) * (re - cos) + im_sq) / ((re + cos) * (re + cos) + im_sq);
+        let (along, across) = (re * cos, im_sq * cos * cos);
+        let ratio = ((along - sin_sq) * (along - sin_sq) + across) / ((along + sin_sq) * (along + sin_sq) + across);
+        0.5 * refl_s * (1.0 + ratio)
+    }
+
+    /// Indices from nothing to the largest double reflect a share of the light in single precision; as they are, they do not.
+    #[test]
+    fn stored_indices_can_be_evaluated_in_single_precision() {
+        assert!(fresnel(0.0, 0.0, 1.0).is_nan() && fresnel(1.5, 1e15, 0.5).is_nan());
+        let values = [0.0, 5e-324, 1e-30, 1e-3, 1.0, 1e3, 1e15, 1e150, f64::MAX];
+        for n in values {
+            for k in values {
+                let (n, k) = storable(Complex64::new(n, k));
+                for cos in [1e-7f32, 1e-3, 0.5, 0.999_999_9, 1.0] {
+                    let found = fresnel(n as f32, k as f32, cos);
+                    assert!((0.0..=1.0 + 1e-6).contains(&found), "{n} {k} {cos}: {found}");
+                }
+            }
+        }
+    }
 }

@@ -48,6 +48,9 @@ pub(crate) enum Verb {
     /// Compare every shader of every material with its f64 twin: a page in Markdown
     #[cfg(feature = "gpu")]
     Parity(ParityOptions),
+    /// Run every method where methods fail, and say where each may be used: a page in Markdown
+    #[cfg(feature = "gpu")]
+    Stability(StabilityOptions),
     /// Render a material off screen
     #[cfg(feature = "gpu")]
     Preview(PreviewOptions),
@@ -228,6 +231,23 @@ pub(crate) struct ParityOptions {
     /// Pairs of directions in each of the five sets of every material
     #[arg(long, value_name = "N", default_value_t = PARITY_PAIRS, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) pairs: u32,
+    /// Use the graphics adapter whose name contains this
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+    /// File to write instead of standard output
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// JSON instead of Markdown
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[cfg(feature = "gpu")]
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Exits with 1 when a shader is NaN or infinite somewhere, or when nobody can explain why a method does not hold.\n\nExamples:\n  luthier stability\n  luthier stability -o docs/stability.md\n  luthier stability --json"
+)]
+pub(crate) struct StabilityOptions {
     /// Use the graphics adapter whose name contains this
     #[arg(long, value_name = "NAME")]
     pub(crate) adapter: Option<String>,

@@ -8,6 +8,7 @@ mod cost_papers;
 #[cfg(feature = "gpu")]
 mod device;
 mod directions;
+mod domain;
 mod failure;
 #[cfg(feature = "gpu")]
 mod grid;
@@ -42,6 +43,8 @@ fn main() -> ExitCode {
         Verb::Report(options) => verb::report::run(options),
         #[cfg(feature = "gpu")]
         Verb::Parity(options) => verb::parity::run(options),
+        #[cfg(feature = "gpu")]
+        Verb::Stability(options) => verb::stability::run(options),
         #[cfg(feature = "gpu")]
         Verb::Preview(options) => verb::preview::run(options),
         #[cfg(feature = "gpu")]

@@ -14,6 +14,7 @@ pub mod closed_form;
 pub mod densities;
 pub mod diffuse;
 pub mod directional_albedo;
+pub mod domain;
 pub mod elek;
 pub mod elek_model;
 pub mod facets;

@@ -17,7 +17,7 @@ use luthier_optics::stack::Stack;
 
 use crate::class::SurfaceClass;
 use crate::diagnostic::Sink;
-use crate::doubt::{self, Sources};
+use crate::doubt::{self, LayerSource, Sources};
 use crate::material::{LayerExtras, Material};
 use crate::section::Section;
 
@@ -27,8 +27,14 @@ pub(crate) type Read<'r> = &'r dyn Fn(&str) -> std::io::Result<String>;
 /// k up to which a medium passes for transparent: 0.2 % over a path of one wavelength.
 const TRANSPARENT_K: f64 = 1e-4;
 
-/// Decodes a document, with its doubts.
-pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read<'_>, sink: &mut Sink<'_>) -> Material {
+/// Decodes a document, with its doubts, and says where its layers stand.
+pub(crate) fn decode(
+    label: &str,
+    text: &str,
+    document: &Section<'_>,
+    read: Read<'_>,
+    sink: &mut Sink<'_>,
+) -> (Material, Vec<LayerSource>) {
     let mut sources = Sources::default();
     let named = RefCell::new(BTreeSet::new());
     let read: Read<'_> = &|path| {
@@ -45,7 +51,7 @@ pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read
     }
     let mut files = named.into_inner();
     files.extend(extras.iter().flat_map(LayerExtras::images).chain(effects.images()).map(str::to_owned));
-    Material {
+    let material = Material {
         name: document.text("name").unwrap_or_default().to_owned(),
         source: label.to_owned(),
         text: text.to_owned(),
@@ -58,7 +64,8 @@ pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read
         effects,
         bake,
         budget: bake::budget(document),
-    }
+    };
+    (material, sources.layers)
 }
 
 /// The exterior medium. A trace of absorption in a data set is dropped; real absorption is an error.

@@ -105,6 +105,20 @@ impl<'t> Sink<'t> {
         diagnostics
     }
 
+    /// One diagnostic of a text.
+    pub(crate) fn one(
+        label: &'t str,
+        text: &'t str,
+        severity: Severity,
+        span: Range<usize>,
+        message: String,
+        hint: Option<String>,
+    ) -> Diagnostic {
+        let mut sink = Self::new(label, text);
+        sink.push(severity, span, message, hint);
+        sink.diagnostics.remove(0)
+    }
+
     fn push(&mut self, severity: Severity, span: Range<usize>, message: String, hint: Option<String>) {
         let span = clamp_to_text(self.text, span);
         let before = &self.text[..span.start];

@@ -36,7 +36,21 @@ pub(crate) struct Sources {
     pub(crate) layers: Vec<LayerSource>,
 }
 
+/// A part of a layer that a diagnostic can point at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LayerPart {
+    /// Its slope parameters.
+    Surface,
+    /// Its index.
+    Index,
+    /// What its slab absorbs.
+    Slab,
+    /// The thickness of its first film.
+    Film,
+}
+
 /// Places in one layer.
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct LayerSource {
     surface_key: &'static str,
     surface: Span<usize>,
@@ -57,6 +71,16 @@ impl LayerSource {
             thickness: at.value_span("thickness_um"),
             absorption: at.value_span("absorption_per_um"),
             films,
+        }
+    }
+
+    /// Where a part of the layer is described.
+    pub(crate) fn span(&self, part: LayerPart) -> Span<usize> {
+        match part {
+            LayerPart::Surface => self.surface.clone(),
+            LayerPart::Index => self.ior.clone(),
+            LayerPart::Slab => self.absorption.clone(),
+            LayerPart::Film => self.films.first().unwrap_or(&self.ior).clone(),
         }
     }
 

@@ -31,6 +31,7 @@ pub use bake_settings::{
 };
 pub use class::{SMOOTH_SLOPE_DEG, SurfaceClass};
 pub use diagnostic::{Diagnostic, Severity};
+pub use doubt::LayerPart;
 pub use effects::{Effects, FlakeSource, Flakes, Glitter, Patina};
 pub use material::{FilmVariation, LayerExtras, Maps, Material, VariationSource};
 pub use parse::{Parsed, parse};

@@ -2,7 +2,8 @@ use toml::de::DeTable;
 
 use crate::check::check_table;
 use crate::decode::decode;
-use crate::diagnostic::{Diagnostic, Sink};
+use crate::diagnostic::{Diagnostic, Severity, Sink};
+use crate::doubt::{LayerPart, LayerSource};
 use crate::grammar::DOCUMENT;
 use crate::material::Material;
 use crate::section::Section;
@@ -14,6 +15,23 @@ pub struct Parsed {
     pub material: Material,
     /// Warnings in the order of the text.
     pub warnings: Vec<Diagnostic>,
+    places: Vec<LayerSource>,
+}
+
+impl Parsed {
+    /// A diagnostic about a part of a layer (counted as in the stack) by someone who knows more of physics than this crate; about the
+    /// whole file if there is no such layer.
+    pub fn diagnostic(
+        &self,
+        severity: Severity,
+        layer: usize,
+        part: LayerPart,
+        message: impl Into<String>,
+        hint: Option<String>,
+    ) -> Diagnostic {
+        let span = self.places.get(layer).map_or(0..0, |place| place.span(part));
+        Sink::one(&self.material.source, &self.material.text, severity, span, message.into(), hint)
+    }
 }
 
 /// Reads a material file.
@@ -66,8 +84,8 @@ pub fn parse(
         // A file of another version has other rules: only that is worth saying.
         return Err(sink.into_diagnostics().into_iter().filter(|d| d.span == version).collect());
     }
-    let material = decode(label, text, &document, read, &mut sink);
+    let (material, places) = decode(label, text, &document, read, &mut sink);
     let failed = sink.has_errors();
     let diagnostics = sink.into_diagnostics();
-    if failed { Err(diagnostics) } else { Ok(Parsed { material, warnings: diagnostics }) }
+    if failed { Err(diagnostics) } else { Ok(Parsed { material, warnings: diagnostics, places }) }
 }

@@ -89,7 +89,15 @@ pub fn coated(above: Complex64, films: &[FilmLayer], below: Complex64, cos_theta
 
 /// a / b, and 0 for 0/0: an index-matched interface at grazing incidence reflects nothing.
 fn ratio(a: Complex64, b: Complex64) -> Complex64 {
-    if b == Complex64::ZERO { Complex64::ZERO } else { a / b }
+    if b == Complex64::ZERO {
+        return Complex64::ZERO;
+    }
+    // The squared modulus that division needs is no number below 1e-154 and above 1e154.
+    if b.norm_sqr().is_normal() {
+        return a / b;
+    }
+    let scale = b.re.abs().max(b.im.abs());
+    (a / scale) / (b / scale)
 }
 
 /// Principal square root, real part not negative; for the arguments here, Im >= 0, the imaginary part is not negative
@@ -197,6 +205,17 @@ mod tests {
     fn index_matched_reflects_nothing_even_at_grazing() {
         for mu in [0.0, 1e-7, 0.5, 1.0] {
             assert_eq!(interface(c(1.3, 0.0), c(1.3, 0.0), mu).unpolarised(), 0.0);
+        }
+    }
+
+    /// Squares overflow and vanish there: an ideal metal reflects everything, and so does a medium that is next to nothing.
+    #[test]
+    fn huge_and_tiny_indices_reflect_everything() {
+        for below in [c(1.5, 1e10), c(1.5, 1e100), c(1.5, 1e150), c(1e100, 0.0), c(1e-160, 1e-160)] {
+            for mu in [1e-3, 0.5, 1.0] {
+                let Polarised { refl_s, refl_p } = interface(c(1.0, 0.0), below, mu);
+                assert!((refl_s - 1.0).abs() < 1e-8 && (refl_p - 1.0).abs() < 1e-8, "{below} {mu}: {refl_s} {refl_p}");
+            }
         }
     }
 

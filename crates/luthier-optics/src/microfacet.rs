@@ -21,7 +21,11 @@ pub fn scaled_distribution(distribution: Distribution, alpha: f64, cos_theta_h: 
     let cos_sq = cos_theta_h * cos_theta_h;
     let alpha_sq = alpha * alpha;
     match distribution {
-        Distribution::Beckmann => libm::exp(-sin_theta_h_sq / (cos_sq * alpha_sq)) / (cos_sq * cos_sq),
+        Distribution::Beckmann => {
+            // At the horizon the exponential is 0 long before the cosine is; 0/0 where both are.
+            let fall = libm::exp(-sin_theta_h_sq / (cos_sq * alpha_sq));
+            if fall == 0.0 { 0.0 } else { fall / (cos_sq * cos_sq) }
+        }
         Distribution::Ggx => {
             let ratio = alpha_sq / (cos_sq * alpha_sq + sin_theta_h_sq);
             ratio * ratio
@@ -99,6 +103,16 @@ mod tests {
                     distribution(d, alpha, libm::cos(t), s * s) * libm::cos(t)
                 });
                 assert!((area - 1.0).abs() < 1e-6, "{d:?} {alpha}: {area}");
+            }
+        }
+    }
+
+    #[test]
+    fn distributions_are_numbers_down_to_the_horizon() {
+        for d in BOTH {
+            for cos in [f64::MIN_POSITIVE, 1e-310, 1e-100, 1e-40, 1e-7] {
+                let value = scaled_distribution(d, 0.3, cos, 1.0);
+                assert!((0.0..=1.0).contains(&value), "{d:?} {cos}: {value}");
             }
         }
     }

@@ -13,6 +13,7 @@
 //! [`parity`] compares the shaders of all models with their f64 twins. [`compare_pictures`] compares two rendered pictures,
 //! [`render_ball`] makes one in f64, [`Plot`] draws curves.
 //! [`judge_models`] is the judge of what the bake stands on: every reflectance model against the Monte Carlo of whole stacks.
+//! [`stability`] runs every method where methods fail, and says where each may be used.
 //!
 //! Simplifications: of thickness maps only what follows from the stack is checked (range, normalisation), because their
 //! truth is a noise function or an image that only the baker has; the albedo's estimate shares its walks and quadrature with
@@ -37,6 +38,7 @@ mod picture;
 mod profile;
 mod report;
 mod scan;
+pub mod stability;
 mod statistics;
 mod subject;
 mod table_terms;

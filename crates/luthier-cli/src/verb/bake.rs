@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use crate::bake_files::{BakeFiles, MANIFEST, REPORT_FILES, REPORT_FOLDER};
 use crate::cli::BakeOptions;
+use crate::domain;
 use crate::failure::{Failure, Outcome, files};
 use crate::materials::{read, read_image, shaded, valid};
 use crate::output::{bytes, print};
@@ -16,7 +17,9 @@ use crate::staging::Staging;
 /// Bakes files into a folder. The folder changes only once everything is made.
 pub(crate) fn run(options: &BakeOptions) -> Outcome {
     let start = Instant::now();
-    let materials = shaded(valid(read(&options.sources.paths)?, options.quiet)?, &options.shading);
+    let mut sources = read(&options.sources.paths)?;
+    domain::check(&mut sources, options.shading.model);
+    let materials = shaded(valid(sources, options.quiet)?, &options.shading);
     let progress = BakeProgress::new();
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads.map_or(0, usize::from))

@@ -2,13 +2,15 @@ use luthier_material::Diagnostic;
 use serde_json::{Value, json};
 
 use crate::cli::CheckOptions;
+use crate::domain;
 use crate::failure::{Failure, Outcome};
 use crate::materials::{Source, read};
 use crate::output::print;
 
 /// Validates files; diagnostics go to standard error, one line per file to standard output.
 pub(crate) fn run(options: &CheckOptions) -> Outcome {
-    let sources = read(&options.sources.paths)?;
+    let mut sources = read(&options.sources.paths)?;
+    domain::check(&mut sources, None);
     if options.json {
         print(&format!("{:#}", Value::from_iter(sources.iter().map(entry))))?;
     } else {

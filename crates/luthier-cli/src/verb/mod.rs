@@ -22,5 +22,7 @@ pub(crate) mod preview;
 pub(crate) mod report;
 pub(crate) mod schema;
 pub(crate) mod shader;
+#[cfg(feature = "gpu")]
+pub(crate) mod stability;
 #[cfg(feature = "view")]
 pub(crate) mod view;

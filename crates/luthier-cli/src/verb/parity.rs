@@ -125,15 +125,15 @@ fn case(n: u32, material: &Material) -> ParityCase {
 }
 
 /// The shaders of some materials of a bake, on the device.
-struct Compiled {
-    manifest: Manifest,
-    textures: Vec<(TableKind, Image)>,
-    stacks: Vec<Stack>,
-    shaders: Shaders,
+pub(crate) struct Compiled {
+    pub(crate) manifest: Manifest,
+    pub(crate) textures: Vec<(TableKind, Image)>,
+    pub(crate) stacks: Vec<Stack>,
+    pub(crate) shaders: Shaders,
 }
 
 impl Compiled {
-    fn new(gpu: &Gpu, atlases: &[Atlas], entries: &[MaterialEntry], stacks: Vec<Stack>) -> Outcome<Self> {
+    pub(crate) fn new(gpu: &Gpu, atlases: &[Atlas], entries: &[MaterialEntry], stacks: Vec<Stack>) -> Outcome<Self> {
         let mut manifest = Manifest {
             schema: MANIFEST_SCHEMA,
             generator: GENERATOR.to_owned(),

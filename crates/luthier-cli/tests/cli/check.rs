@@ -139,3 +139,53 @@ fn an_index_from_a_file_beside_the_material() {
     workshop.write("m/data/metal.csv", "wavelength_nm,n,k\n360,0.5,two\n");
     workshop.run(&["check", "m"]).exits(1).says(&["m/metal.toml:6:7", "data/metal.csv"]);
 }
+
+fn coated(ior: f64, bake: &str) -> String {
+    format!(
+        "schema = 1\nname = \"coated\"\n\n[[layer]]\ntype = \"dielectric\"\nior = {ior:?}\nalpha = 0.1\n\n[[layer]]\ntype = \
+         \"conductor\"\nior = \"au\"\nalpha = 0.2\n{bake}"
+    )
+}
+
+/// The model of the file, or of the command line, has a domain; `luthier stability` derives it.
+#[test]
+fn materials_outside_the_domain_of_their_model_are_told() {
+    let granier = "\n[bake]\nmodel = \"granier-heidrich\"\n";
+    let workshop = Workshop::with(&[
+        ("diamond.toml", &coated(2.42, "")),
+        ("glass.toml", &coated(1.5, "")),
+        ("belcour.toml", &coated(2.42, "\n[bake]\nmodel = \"belcour\"\n")),
+        ("granier.toml", &coated(1.5, granier)),
+    ]);
+    let words = |file: &str| workshop.run(&["check", file]).exits(0).stderr;
+    let found = words("diamond.toml");
+    for part in ["2.42 is outside the domain of `elek`", "diamond.toml:6:7", "write `[bake] model = \"belcour\"`"] {
+        assert!(found.contains(part), "{part}: {found}");
+    }
+    assert_eq!(words("glass.toml"), "");
+    assert_eq!(words("belcour.toml"), "");
+    assert!(words("granier.toml").contains("number of layers 2 is outside the domain of `granier-heidrich`"));
+
+    let other = workshop.run(&["bake", "glass.toml", "--model", "granier-heidrich", "--out", "o"]).exits(0);
+    assert!(other.stderr.contains("outside the domain of `granier-heidrich`"), "{}", other.stderr);
+}
+
+/// A film of a millimetre is refused, and nothing is written.
+#[test]
+fn what_would_be_wrong_beyond_use_is_refused() {
+    let film = "[[layer]]\ntype = \"thin-film\"\nior = 1.4\nthickness_nm = 2e6\n\n[[layer]]\ntype = \"dielectric\"";
+    let text = coated(1.5, "").replace("[[layer]]\ntype = \"dielectric\"", film);
+    let workshop = Workshop::with(&[("film.toml", &text)]);
+    for verb in ["check", "bake"] {
+        let run = workshop.run(&[verb, "film.toml"]).exits(1);
+        assert!(run.stderr.contains("error: film thickness (nm) 2e6 is outside the domain"), "{}", run.stderr);
+        assert!(run.stderr.contains("film.toml:7:16"), "{}", run.stderr);
+    }
+    assert!(!workshop.path("out").exists());
+}
+
+#[test]
+fn the_materials_of_this_repository_are_inside_their_domains() {
+    let run = run_in(&root(), &["check", "materials"]).exits(0);
+    assert!(!run.stderr.contains("outside the domain"), "{}", run.stderr);
+}

@@ -32,6 +32,8 @@ mod preview;
 mod report;
 mod schema;
 mod shader;
+#[cfg(feature = "gpu")]
+mod stability;
 mod thickness_map;
 #[cfg(feature = "view")]
 mod view;

@@ -54,7 +54,8 @@ impl<const C: usize> Veil<C> {
         let (mut sum, mut up, mut down) = ([0.0; C], [0.0; C], [0.0; C]);
         for (x, weight) in gauss_legendre(POINTS) {
             let beyond = critical * x;
-            for c in 0..C {
+            // Below a medium that is no denser than the exterior nothing is beyond: 0/0 without absorption.
+            for c in (0..C).filter(|_| beyond > 0.0) {
                 sum[c] += weight * critical * 2.0 * beyond * libm::exp(-2.0 * depth[c] / beyond);
             }
             // Squared away from the critical angle, where reflectances start like square roots.
@@ -169,6 +170,23 @@ mod tests {
             assert!((albedo(1.0) - normal).abs() < 1e-7, "{rho}: {}", albedo(1.0));
             let mean: f64 = gauss_legendre(64).iter().map(|(x, w)| w * 2.0 * x * 2.0 * x * x * albedo(x * x)).sum();
             assert!((mean - hemispherical).abs() < 1e-7, "{rho}: {mean}");
+        }
+    }
+
+    /// A free film, or a gap, above the base: the medium on it is no denser than the exterior, so that there is no critical angle.
+    #[test]
+    fn a_base_below_air_has_no_light_beyond_a_critical_angle() {
+        for ior in [1.0, 0.7] {
+            let mut stack = coated(0.5, 0.0);
+            stack.layers[0].below =
+                MonochromeBelow::Dielectric { ior, complex_ior: Complex64::new(ior, 0.0), optical_depth: 0.0 };
+            stack.layers[1].above = ior;
+            let veil = Veil::new(&Layers::from(&stack), &fresnel(&stack)).unwrap();
+            // An interface between equal media returns nothing; that of a thinner medium some, by refraction inwards.
+            assert!(
+                (0.0..0.5).contains(&veil.internal[0]) && (ior < 1.0 || veil.internal[0] < 1e-12),
+                "{ior}: {veil:?}"
+            );
         }
     }
 

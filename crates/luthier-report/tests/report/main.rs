@@ -6,4 +6,5 @@ mod judgement;
 mod page;
 mod parity;
 mod schema;
+mod stability;
 mod tables;

@@ -1,0 +1,266 @@
+//! Where the models of the shaders may be used: ranges of the quantities that a stack is made of.
+//!
+//! The ranges are those over which no level (f64, tables, f32, device) of the stability suite fails: `luthier stability` derives them
+//! anew, and a test of luthier-report compares. Between the values that the suite tries, the last that did not fail counts.
+//!
+//! What a model leaves out within its domain (bounces, blur, 1/n^2) is no matter of the domain: `docs/models.md` has its size.
+
+use luthier_optics::interface::Interface;
+use luthier_optics::stack::{Base, Stack};
+
+use crate::elek::{MODEL, REFRACTION_WAVELENGTH_NM};
+
+/// What a domain is a range of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Quantity {
+    /// Index of a coat over that above it, at the wavelength that bends directions.
+    Index,
+    /// Slope parameter of an interface that is not smooth.
+    Alpha,
+    /// Largest thickness of a film, nm.
+    FilmNm,
+    /// Number of layers.
+    Layers,
+    /// Optical depth of a slab, of the channel that absorbs most.
+    OpticalDepth,
+    /// Largest extinction coefficient of a metal.
+    MetalK,
+}
+
+impl Quantity {
+    /// All, in the order of pages.
+    pub const ALL: [Self; 6] = [Self::Index, Self::Alpha, Self::FilmNm, Self::Layers, Self::OpticalDepth, Self::MetalK];
+
+    /// The name in reports and messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Index => "index ratio of the coat",
+            Self::Alpha => "alpha",
+            Self::FilmNm => "film thickness (nm)",
+            Self::Layers => "number of layers",
+            Self::OpticalDepth => "optical depth",
+            Self::MetalK => "k of the metal",
+        }
+    }
+
+    /// The value of an ordinary material, from which a domain is followed to both sides.
+    pub fn ordinary(self) -> f64 {
+        match self {
+            Self::Index => 1.5,
+            Self::Alpha => 0.1,
+            Self::FilmNm => 300.0,
+            Self::Layers => 2.0,
+            Self::OpticalDepth => 0.1,
+            Self::MetalK => 3.0,
+        }
+    }
+}
+
+/// A range of a quantity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limit {
+    /// The quantity.
+    pub quantity: Quantity,
+    /// Smallest value.
+    pub least: f64,
+    /// Largest value.
+    pub most: f64,
+    /// Whether what is outside is wrong beyond use, not merely in doubt.
+    pub refuses: bool,
+    /// What goes wrong outside.
+    pub reason: &'static str,
+}
+
+/// Something outside the domain of a model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outside {
+    /// Number of the layer, from the top.
+    pub layer: usize,
+    /// What is outside.
+    pub limit: Limit,
+    /// Its value.
+    pub value: f64,
+}
+
+impl Outside {
+    /// The nearest value inside.
+    pub fn nearest(&self) -> f64 {
+        self.value.clamp(self.limit.least, self.limit.most)
+    }
+}
+
+const fn limit(quantity: Quantity, least: f64, most: f64, reason: &'static str) -> Limit {
+    Limit { quantity, least, most, refuses: false, reason }
+}
+
+/// Real part and k of an index that records hold; beyond it single precision has no fourth power.
+pub const INDEX_MAX: f64 = 1e4;
+
+/// Thickest film whose phase single precision resolves at all: 1 mm is 4000 waves, a phase error of 1e-3 turns.
+const FILM_BEYOND_USE_NM: f64 = 1e6;
+
+/// What holds for all models.
+const COMMON: &[Limit] = &[
+    limit(Quantity::MetalK, 0.0, INDEX_MAX, "it is stored as 10000, which reflects within 1e-4 of it"),
+    Limit {
+        quantity: Quantity::FilmNm,
+        least: 0.0,
+        most: FILM_BEYOND_USE_NM,
+        refuses: true,
+        reason: "its phase has no digits left in single precision, and no light is coherent over it",
+    },
+];
+
+/// Of metal, of which 0.92 comes back: 1.9 is the last that the suite tried before the albedo of a coated metal is off by more than 1.
+const BRIGHT: Limit = limit(
+    Quantity::Index,
+    0.25,
+    1.9,
+    "the model lacks 1/n^2: what lies below is up to n^2 times too bright, by more light than falls on it",
+);
+
+/// Beams return all light, and the diffuse term of a base comes on top of them.
+const ONE_SURFACE: Limit = limit(
+    Quantity::Layers,
+    1.0,
+    1.0,
+    "the model adds the whole diffuse light of a base to beams that return all light, and leaves out absorption",
+);
+
+/// Fringes of a film on a row of phases.
+const FEW_NODES: Limit = limit(
+    Quantity::FilmNm,
+    0.0,
+    5000.0,
+    "the 256 nodes of its phase row are too few for the fringes: off by 0.57 at 20 um",
+);
+
+/// The domain of a model, by name, beside what holds for all; nothing for one that fails nowhere, and for one without a shader. Slope
+/// parameters below [`crate::elek::ALPHA_MIN`] are raised to it by all.
+pub fn domain(model: &str) -> &'static [Limit] {
+    match model {
+        MODEL | "weidlich-wilkie" => &[BRIGHT],
+        "granier-heidrich" => &[ONE_SURFACE, FEW_NODES],
+        _ => &[],
+    }
+}
+
+/// Share of the light that comes back through a coat from what lies below it up to which its index is no matter: the excess of the models
+/// is a multiple of it, and the metal of the suite, of which 0.92 comes back, is off by 1 at an index of 2.
+const DIM: f64 = 0.5;
+
+/// What comes back at normal incidence from below the dielectric of a layer, once, in the channel that absorbs least: `(1 - F)^2 e^(-2
+/// depth) R`; R counts as 1 where the next layer is transparent.
+fn returned(stack: &Stack, layer: usize) -> f64 {
+    let mirrored = |layer| {
+        Interface::of(stack, layer).map_or(0.0, |interface| interface.at(REFRACTION_WAVELENGTH_NM).reflectance(1.0))
+    };
+    let Some(Base::Dielectric { slab, .. }) = stack.layers.get(layer).map(|here| &here.base) else { return 0.0 };
+    let below = match stack.layers.get(layer + 1).map(|next| &next.base) {
+        Some(Base::Conductor { .. }) => mirrored(layer + 1),
+        Some(Base::Diffuse(diffuse)) => diffuse.albedo.into_iter().fold(0.0, f64::max),
+        Some(Base::Dielectric { .. }) => 1.0,
+        None => 0.0,
+    };
+    let crossed = 1.0 - mirrored(layer);
+    let depth = slab.optical_depth().into_iter().fold(f64::INFINITY, f64::min);
+    crossed * crossed * libm::exp(-2.0 * depth) * below
+}
+
+/// All that lies outside the domain of a model.
+pub fn outside(model: &str, stack: &Stack) -> Vec<Outside> {
+    let mut out = Vec::new();
+    let mut above = stack.exterior.at(REFRACTION_WAVELENGTH_NM).re;
+    for (layer, here) in stack.layers.iter().enumerate() {
+        let mut found: Vec<(Quantity, f64)> = vec![(Quantity::Layers, (layer + 1) as f64)];
+        found.extend(here.films.iter().map(|film| (Quantity::FilmNm, film.thickness.max_nm)));
+        match &here.base {
+            Base::Dielectric { ior, slab } => {
+                let index = ior.at(REFRACTION_WAVELENGTH_NM).re;
+                if layer + 1 < stack.layers.len() {
+                    if returned(stack, layer) > DIM {
+                        found.push((Quantity::Index, index / above));
+                    }
+                    found.push((Quantity::OpticalDepth, slab.optical_depth().into_iter().fold(0.0, f64::max)));
+                }
+                above = index;
+            }
+            Base::Conductor { ior } => {
+                found.push((Quantity::MetalK, ior.samples().iter().fold(0.0, |k: f64, s| k.max(s.k))));
+            }
+            Base::Diffuse(_) => {}
+        }
+        if !matches!(here.base, Base::Diffuse(_)) && !here.surface.is_smooth() {
+            let surface = here.surface;
+            found.extend([surface.alpha_x, surface.alpha_y].map(|alpha| (Quantity::Alpha, alpha)));
+        }
+        for (quantity, value) in found {
+            let limits = COMMON.iter().chain(domain(model)).filter(|limit| limit.quantity == quantity);
+            for limit in limits.filter(|limit| !(limit.least..=limit.most).contains(&value)) {
+                let new = Outside { layer, limit: *limit, value };
+                // One word for a stack with too many layers, and for both slope parameters.
+                if !out
+                    .iter()
+                    .any(|o: &Outside| o.limit == *limit && (quantity == Quantity::Layers || o.layer == layer))
+                {
+                    out.push(new);
+                }
+            }
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use luthier_optics::ior::Ior;
+    use luthier_optics::stack::{Diffuse, Film, FilmThickness, Layer, Slab, Surface};
+
+    use super::*;
+
+    fn coat(n: f64, film_nm: Option<f64>) -> Layer {
+        let thickness = |nm| FilmThickness { min_nm: 0.0, max_nm: nm };
+        let film = |nm| Film { ior: Ior::constant(1.4, 0.0).unwrap(), thickness: thickness(nm) };
+        let slab = Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
+        let base = Base::Dielectric { ior: Ior::constant(n, 0.0).unwrap(), slab };
+        Layer { films: film_nm.map(film).into_iter().collect(), surface: Surface::smooth(), base }
+    }
+
+    fn on_white(coats: Vec<Layer>) -> Stack {
+        let white = Layer {
+            films: Vec::new(),
+            surface: Surface::smooth(),
+            base: Base::Diffuse(Diffuse { albedo: [0.8; 3], sigma: 0.0 }),
+        };
+        Stack { exterior: Ior::vacuum(), layers: coats.into_iter().chain([white]).collect() }
+    }
+
+    #[test]
+    fn what_is_outside_is_named_once_and_where_it_is() {
+        let found = outside(MODEL, &on_white(vec![coat(1.5, None), coat(3.9, None)]));
+        assert_eq!(found.len(), 1);
+        assert_eq!((found[0].layer, found[0].limit.quantity, found[0].nearest()), (1, Quantity::Index, 1.9));
+        assert!((found[0].value - 2.6).abs() < 1e-12 && !found[0].limit.refuses);
+        assert!(outside("belcour", &on_white(vec![coat(3.9, None)])).is_empty());
+        // The same coat over a dim base: what is too bright is little light.
+        let mut dim = on_white(vec![coat(1.5, None), coat(3.9, None)]);
+        dim.layers[2].base = Base::Diffuse(Diffuse { albedo: [0.3; 3], sigma: 0.0 });
+        assert!(outside(MODEL, &dim).is_empty());
+        let found = outside("granier-heidrich", &on_white(vec![coat(1.5, None), coat(1.4, None)]));
+        assert_eq!(found.iter().map(|o| o.layer).collect::<Vec<_>>(), [1]);
+    }
+
+    /// The last dielectric has nothing below it that could be too bright.
+    #[test]
+    fn an_end_without_a_base_has_no_index_to_warn_of() {
+        let stack = Stack { exterior: Ior::vacuum(), layers: vec![coat(3.9, None)] };
+        assert!(outside(MODEL, &stack).is_empty());
+    }
+
+    #[test]
+    fn a_millimetre_is_no_film() {
+        let found = outside("phong", &on_white(vec![coat(1.5, Some(2e6))]));
+        assert!(found.len() == 1 && found[0].limit.refuses, "{found:?}");
+        assert!(outside("phong", &on_white(vec![coat(1.5, Some(2e4))])).is_empty());
+    }
+}

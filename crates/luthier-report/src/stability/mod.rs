@@ -1,0 +1,278 @@
+//! Stability: every method where methods fail.
+//!
+//! A *case* is a stack and directions at which some formula divides by little, overflows or stops being true ([`cases`]).
+//! A *method* is a reflectance model or the shader of one; it is run on every case at four levels:
+//!
+//! - *f64*: all registered models. Laws first: finite, not negative, 0 at and below the horizon, reciprocal and conserving where that is
+//!   claimed. Then the directional albedo against the truth: the closed form where all interfaces are smooth, the paths of `layered-mc`
+//!   elsewhere (its standard error is given to the model four times).
+//! - *table*: f64 arithmetic on the texels that ship, against exact terms.
+//! - *f32*: the form `full` of the shader on the adapter: all of it is arithmetic in single precision.
+//! - *device*: the form `baked` on the adapter: arithmetic and texture fetches.
+//!
+//! f32 and device are against the same model in f64 with exact terms. On a software adapter both are IEEE single precision on the CPU;
+//! on a GPU the same WGSL has fused and reordered operations, and coarser reciprocals and sines, within what WGSL allows.
+//!
+//! Beside the cases stand *formulations* ([`formulas`]): ways to write or to store one function, those that ship and those that were
+//! rejected, with the error of each against a truth that is named.
+//!
+//! Everything that does not hold has an [`explain::Explanation`], with a limit: an error beyond it is unexplained.
+//!
+//! Out of scope: maps and places (flakes, patina and glitter as shaders), whose inner normals no case tilts.
+
+mod aim;
+mod case;
+mod domains;
+pub mod explain;
+mod formulas;
+mod models;
+mod page;
+mod shaders;
+mod svg;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{ReportError, json};
+
+pub use aim::Aim;
+pub use case::{StressCase, cases};
+pub use domains::{DomainRange, derived};
+pub use formulas::{FormulaResult, SECTION_C, formulas};
+pub use models::model_cells;
+pub use shaders::shader_cells;
+pub use svg::heat_map_svg;
+
+/// Error of a shader (relative, see [`crate::FLOOR`]) up to which it holds: the goal of 1%.
+pub const HOLDS: f64 = 0.01;
+
+/// Error of an albedo (absolute) up to which a model holds: what is just seen of two surfaces beside each other.
+pub const HOLDS_ALBEDO: f64 = 0.02;
+
+/// Error of a shader beyond which it no longer shows its model, and of an albedo beyond which the surface adds more light than falls on it.
+pub const FAILS: f64 = 1.0;
+
+/// Relative difference between a BRDF and that of the exchanged directions that rounding makes; beyond it reciprocity is lost.
+pub const RECIPROCITY: f64 = 1e-6;
+
+/// Where a method runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, PartialOrd, Ord)]
+#[serde(rename_all = "kebab-case")]
+pub enum Level {
+    /// A model in double precision.
+    F64,
+    /// The tables of a shader, read in double precision.
+    Table,
+    /// The shader without tables on the adapter.
+    F32,
+    /// The shader with tables on the adapter.
+    Device,
+}
+
+impl Level {
+    /// All, in the order of the page.
+    pub const ALL: [Self; 4] = [Self::F64, Self::Table, Self::F32, Self::Device];
+
+    /// The name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::F64 => "f64",
+            Self::Table => "table",
+            Self::F32 => "f32",
+            Self::Device => "device",
+        }
+    }
+
+    /// Whether what runs there is shipped.
+    pub fn ships(self) -> bool {
+        self != Self::F64
+    }
+}
+
+/// What became of a method on a case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, PartialOrd, Ord)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// Within [`HOLDS`] or [`HOLDS_ALBEDO`].
+    Holds,
+    /// Within [`FAILS`].
+    Degrades,
+    /// A law is broken, or the value is beyond use.
+    Fails,
+}
+
+impl Verdict {
+    /// The name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Degrades => "degrades",
+            Self::Fails => "fails",
+        }
+    }
+}
+
+/// How a method fails or degrades.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, PartialOrd, Ord)]
+#[serde(rename_all = "kebab-case")]
+pub enum Fault {
+    /// A value is NaN or infinite.
+    NotFinite,
+    /// A value is negative where the truth is not, or there is light at or below the horizon.
+    Negative,
+    /// The albedo is above 1, though the method claims that it never is.
+    Gains,
+    /// The BRDF changes when directions are exchanged, though the method claims that it does not.
+    NotReciprocal,
+    /// Too bright or too dark.
+    Wrong,
+}
+
+impl Fault {
+    /// The name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NotFinite => "not finite",
+            Self::Negative => "negative",
+            Self::Gains => "gains energy",
+            Self::NotReciprocal => "not reciprocal",
+            Self::Wrong => "wrong",
+        }
+    }
+}
+
+/// One method on one case.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Cell {
+    /// Where it runs.
+    pub level: Level,
+    /// Name of the model.
+    pub method: String,
+    /// Identifier of the case.
+    pub case: String,
+    /// What became of it.
+    pub verdict: Verdict,
+    /// How, unless it holds.
+    pub fault: Option<Fault>,
+    /// By how much: what the fault counts, or the largest error; 0 for values that are not finite, and for a case that compares none.
+    pub error: f64,
+    /// Name of the explanation, unless it holds; `None` then is a cell that nobody can explain.
+    pub explanation: Option<String>,
+}
+
+impl Cell {
+    fn new(level: Level, method: &str, case: &str, fault: Option<Fault>, error: f64) -> Self {
+        let holds = if level == Level::F64 { HOLDS_ALBEDO } else { HOLDS };
+        let (verdict, fault) = match fault {
+            Some(fault) => (Verdict::Fails, Some(fault)),
+            None if error <= holds => (Verdict::Holds, None),
+            None if error <= FAILS => (Verdict::Degrades, Some(Fault::Wrong)),
+            None => (Verdict::Fails, Some(Fault::Wrong)),
+        };
+        let error = if error.is_finite() { error } else { 0.0 };
+        let mut cell =
+            Self { level, method: method.to_owned(), case: case.to_owned(), verdict, fault, error, explanation: None };
+        cell.explanation = explain::explanation(&cell).map(|e| e.name.to_owned());
+        cell
+    }
+
+    /// Whether it holds, or the reason why not is known.
+    pub fn is_explained(&self) -> bool {
+        self.verdict == Verdict::Holds || self.explanation.is_some()
+    }
+}
+
+/// What a reader needs to know of a case.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CaseInfo {
+    /// Identifier.
+    pub id: String,
+    /// What it is.
+    pub title: String,
+    /// Name of the quantity that it sweeps, and its value.
+    pub swept: Option<(String, f64)>,
+    /// What albedos are compared with.
+    pub truth: String,
+}
+
+/// A run of the suite.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Stability {
+    /// Program and version.
+    pub generator: String,
+    /// The adapter; nothing without one.
+    pub device: Option<String>,
+    /// The cases.
+    pub cases: Vec<CaseInfo>,
+    /// Every method on every case that it is for.
+    pub cells: Vec<Cell>,
+    /// Ways to write or to store one function.
+    pub formulas: Vec<FormulaResult>,
+    /// Where each model may be used.
+    pub domains: Vec<DomainRange>,
+}
+
+impl Stability {
+    /// A run of some cells.
+    pub fn new(generator: &str, device: Option<String>, cells: Vec<Cell>) -> Self {
+        let all = cases();
+        let domains = derived(&all, &cells);
+        let info = |case: &StressCase| CaseInfo {
+            id: case.id.clone(),
+            title: case.title.clone(),
+            swept: case.swept.map(|(quantity, value)| (quantity.name().to_owned(), value)),
+            truth: models::truth_name(case).to_owned(),
+        };
+        let cases = all.iter().map(info).collect();
+        Self { generator: generator.to_owned(), device, cases, cells, formulas: formulas(), domains }
+    }
+
+    /// Cells whose reason nobody knows.
+    pub fn unexplained(&self) -> impl Iterator<Item = &Cell> {
+        self.cells.iter().filter(|cell| !cell.is_explained())
+    }
+
+    /// Cells of what ships that are NaN or infinite somewhere.
+    pub fn not_finite(&self) -> impl Iterator<Item = &Cell> {
+        self.cells.iter().filter(|cell| cell.level.ships() && cell.fault == Some(Fault::NotFinite))
+    }
+
+    /// Formulations that ship and do not hold, or that have no explanation.
+    pub fn broken_formulas(&self) -> impl Iterator<Item = &FormulaResult> {
+        self.formulas.iter().filter(|formula| !formula.is_as_expected())
+    }
+
+    /// Whether what ships is finite everywhere and every cell is explained.
+    pub fn holds(&self) -> bool {
+        self.unexplained().next().is_none()
+            && self.not_finite().next().is_none()
+            && self.broken_formulas().next().is_none()
+    }
+
+    /// JSON, objects indented and arrays in a line, with a final newline.
+    ///
+    /// # Errors
+    /// [`ReportError::Json`], should the writer fail.
+    pub fn to_json(&self) -> Result<String, ReportError> {
+        json::to_string(self)
+    }
+
+    /// A page in Markdown; `command` is the command line that makes it.
+    pub fn to_markdown(&self, command: &str) -> String {
+        page::markdown(self, command)
+    }
+
+    fn cell(&self, level: Level, method: &str, case: &str) -> Option<&Cell> {
+        self.cells.iter().find(|c| c.level == level && c.method == method && c.case == case)
+    }
+
+    /// Methods of a level, in the order of the cells.
+    fn methods(&self, level: Level) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for cell in self.cells.iter().filter(|c| c.level == level) {
+            if !names.contains(&cell.method.as_str()) {
+                names.push(&cell.method);
+            }
+        }
+        names
+    }
+}

@@ -1,0 +1,90 @@
+//! The shaders: tables in f64, and both forms on the adapter.
+
+use luthier_layers::elek;
+use luthier_optics::Rgb;
+use rayon::prelude::*;
+
+use super::case::StressCase;
+use super::{Cell, Fault, Level};
+use crate::judge::{References, evaluate, run};
+use crate::statistics::{brightest, relative_error};
+use crate::{Device, FLOOR, Form, Pair, ReportError, Subject, TableTerms, Weights};
+
+/// Below this a negative channel is rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// What f64 makes of a case: exact terms for the form with tables and for the one without, and the tables.
+struct Expected {
+    pairs: Vec<Pair>,
+    baked: Vec<Rgb>,
+    full: Vec<Rgb>,
+    tables: Vec<Rgb>,
+}
+
+/// The shaders of a model on all cases. The materials of the subject are the cases, in order. Without a device, tables alone.
+///
+/// # Errors
+/// See [`ReportError`].
+pub fn shader_cells(
+    subject: &Subject<'_>,
+    device: Option<&dyn Device>,
+    cases: &[StressCase],
+    progress: &mut dyn FnMut(),
+) -> Result<Vec<Cell>, ReportError> {
+    subject.check()?;
+    let expected: Vec<Expected> = (0..cases.len().min(subject.manifest.materials.len()))
+        .into_par_iter()
+        .map(|number| {
+            let (stack, entry) = (&cases[number].stack, &subject.manifest.materials[number]);
+            let pairs = cases[number].aim.pairs(&elek::layers(stack));
+            let references = References::new(stack, entry)?;
+            let twin = &references.twin;
+            let terms = TableTerms::new(subject, number, Weights::EightBit)?;
+            let (baked, full) = (evaluate(twin, references.baked(), &pairs), evaluate(twin, references.full(), &pairs));
+            let tables = evaluate(twin, &terms, &pairs);
+            Ok(Expected { pairs, baked, full, tables })
+        })
+        .collect::<Result<_, ReportError>>()?;
+    let mut cells = Vec::new();
+    for (number, (case, expected)) in cases.iter().zip(&expected).enumerate() {
+        let Expected { pairs, baked, full, tables } = expected;
+        let method = subject.manifest.materials[number].model.name();
+        let of = |level, found: &[Rgb], truth: &[Rgb]| cell(level, method, case, pairs, found, truth);
+        cells.push(of(Level::Table, tables, baked));
+        if let Some(device) = device {
+            cells.push(of(Level::F32, &run(device, Form::Full, number as u32, pairs)?, full));
+            cells.push(of(Level::Device, &run(device, Form::Baked, number as u32, pairs)?, baked));
+        }
+        progress();
+    }
+    Ok(cells)
+}
+
+fn cell(level: Level, method: &str, case: &StressCase, pairs: &[Pair], found: &[Rgb], truth: &[Rgb]) -> Cell {
+    let mut worst = 0.0_f64;
+    let mut below = 0.0_f64;
+    for ((&(wi, wo), found), truth) in pairs.iter().zip(found).zip(truth) {
+        if found.iter().any(|value| !value.is_finite()) {
+            return Cell::new(level, method, &case.id, Some(Fault::NotFinite), 0.0);
+        }
+        let is_lit = wi[2] > 0.0 && wo[2] > 0.0;
+        let bright = brightest(truth);
+        for (value, expected) in found.iter().zip(truth) {
+            if !is_lit {
+                below = below.max(value.abs());
+            } else if *value < -ROUNDING && *expected >= 0.0 {
+                below = below.max(-value);
+            }
+            let error = relative_error(*value, *expected, bright, FLOOR);
+            // A truth that is no number proves nothing.
+            worst = if error.is_nan() { f64::INFINITY } else { worst.max(error) };
+        }
+    }
+    let fault = (below > ROUNDING * bright_floor(truth)).then_some(Fault::Negative);
+    Cell::new(level, method, &case.id, fault, if fault.is_some() { below } else { worst })
+}
+
+/// What rounding is relative to: the brightest value, at least 1.
+fn bright_floor(values: &[Rgb]) -> f64 {
+    values.iter().map(brightest).fold(1.0, f64::max)
+}
