@@ -11,6 +11,7 @@
 //! - directional albedos (FGD) are estimated anew, wavelength by wavelength, with the uncertainty of the estimate.
 //!
 //! [`parity`] compares the shaders of all models with their f64 twins. [`compare_pictures`] compares two rendered pictures.
+//! [`audit()`] judges a table that anybody made against what it is said to hold.
 //! [`judge_models`] is the judge of what the bake stands on: every reflectance model against the Monte Carlo of whole stacks.
 //!
 //! Simplifications: of thickness maps only what follows from the stack is checked (range, normalisation), because their
@@ -19,6 +20,7 @@
 //!
 //! Out of scope: baking, decoding containers, running shaders, files. The judge never uses the baker.
 
+mod audit;
 mod chart;
 mod device;
 mod directions;
@@ -39,6 +41,10 @@ mod statistics;
 mod subject;
 mod table_terms;
 
+pub use audit::{
+    Audit, AuditError, AuditVerdict, AxisSpec, Candidate, Layout, Mistake, Model, Nodes, Quantity as AxisQuantity,
+    Statement, Term, audit,
+};
 pub use device::{Device, Form};
 pub use directions::{DirectionSet, Pair};
 pub use error::ReportError;
