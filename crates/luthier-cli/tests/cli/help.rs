@@ -1,9 +1,9 @@
 use crate::workshop::Workshop;
 
 const VERBS: &[&str] = if cfg!(feature = "gpu") {
-    &["bake", "check", "report", "preview", "gallery", "compare", "shader", "models", "eval", "ior", "schema"]
+    &["bake", "check", "report", "audit", "preview", "gallery", "compare", "shader", "models", "eval", "ior", "schema"]
 } else {
-    &["bake", "check", "report", "shader", "models", "eval", "ior", "schema"]
+    &["bake", "check", "report", "audit", "shader", "models", "eval", "ior", "schema"]
 };
 
 #[test]

@@ -143,7 +143,10 @@ impl Audit {
 /// [`AuditError`] when the statement does not suit the file.
 pub fn audit(image: &Image, statement: &Statement) -> Result<Audit, AuditError> {
     check(image, statement)?;
-    let truth = Truth::new(&statement.model);
+    Ok(against(image, statement, &Truth::new(&statement.model)))
+}
+
+fn against(image: &Image, statement: &Statement, truth: &Truth) -> Audit {
     let stated = Hypothesis {
         layout: statement.layout,
         variant: truth.stated,
@@ -154,7 +157,7 @@ pub fn audit(image: &Image, statement: &Statement) -> Result<Audit, AuditError> 
     // Rounding is even over a step.
     let rounding = statement.step / 12.0f64.sqrt();
     let subject = Subject { image, channels: &statement.channels, rounding };
-    let fits = search(&subject, &stated, &truth);
+    let fits = search(&subject, &stated, truth);
     let best = &fits[0];
     let verdict = if best.rms > NO_FIT {
         AuditVerdict::FitsNothing
@@ -164,21 +167,21 @@ pub fn audit(image: &Image, statement: &Statement) -> Result<Audit, AuditError> 
         AuditVerdict::FitsBetterAs
     };
     let values = || image.texels().flat_map(|texel| statement.channels.iter().map(|&c| texel[c]));
-    Ok(Audit {
+    Audit {
         size: [image.width, image.height],
         verdict,
-        stated: sampled(&subject, statement, &truth, &stated),
+        stated: sampled(&subject, statement, truth, &stated),
         remaining: (verdict == AuditVerdict::FitsBetterAs)
-            .then(|| sampled(&subject, statement, &truth, &best.hypothesis)),
+            .then(|| sampled(&subject, statement, truth, &best.hypothesis)),
         candidates: fits
             .iter()
-            .map(|fit| Candidate { mistakes: fit.hypothesis.mistakes(&stated, &truth), rms: fit.rms })
+            .map(|fit| Candidate { mistakes: fit.hypothesis.mistakes(&stated, truth), rms: fit.rms })
             .collect(),
         not_finite: values().filter(|v| !v.is_finite()).count() as u64,
         negative: values().filter(|v| *v < 0.0).count() as u64,
         min_cos: statement.min_cos,
         min_alpha: statement.min_alpha,
-    })
+    }
 }
 
 fn check(image: &Image, statement: &Statement) -> Result<(), AuditError> {
