@@ -87,8 +87,12 @@ impl Hypothesis {
                     format!("{is} where {should} was stated")
                 };
                 add("quantity", text);
-            } else if found.min != stated.min {
-                add("range", format!("{} from {} on, not {}", found.quantity.name(), found.min, stated.min));
+            }
+            // A quantity that was not stated is supposed to begin at 0.
+            let same = found.quantity == stated.quantity && found.mapping == stated.mapping;
+            let min = if same { stated.min } else { 0.0 };
+            if found.min != min {
+                add("range", format!("{} from {} on, not {min}", found.quantity.name(), found.min));
             }
             if found.floor != stated.floor {
                 add("range", format!("{} never below {}", found.quantity.name(), found.floor));

@@ -28,7 +28,7 @@ pub use truth::{Model, Term};
 /// Fraction bits of the sampler's weights.
 const WEIGHTS: WeightBits = WeightBits::Fixed(8);
 /// Above this root mean square, no hypothesis is taken for what the table holds.
-const NO_FIT: f64 = 0.08;
+const NO_FIT: f64 = 0.03;
 
 /// Why no audit was made.
 #[derive(Debug, Error)]

@@ -240,7 +240,8 @@ fn neighbours(h: &Hypothesis, stated: &Hypothesis) -> Vec<Hypothesis> {
                 add(Layout { slope: Some(AxisSpec { min: value, ..slope }), ..layout });
             }
         }
-        let plain = stated.layout.slope.map_or(0.0, |s| s.min);
+        let same = stated.layout.slope.filter(|s| s.quantity == slope.quantity && s.mapping == slope.mapping);
+        let plain = same.map_or(0.0, |s| s.min);
         add(Layout { slope: Some(AxisSpec { floor: 0.0, min: plain, ..slope }), ..layout });
     }
     all

@@ -1,5 +1,6 @@
 use std::f64::consts::PI;
 
+use luthier_optics::Rgb;
 use luthier_optics::albedo::{Effort, FacetStatistics, ReflectanceCurves};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
@@ -123,6 +124,8 @@ pub(super) struct Truth<'a> {
     pub(super) variants: Vec<String>,
     /// The one that is stated.
     pub(super) stated: usize,
+    /// Reflectance at each wavelength of an albedo, with the wavelength's weight in RGB.
+    spectrum: Option<(Vec<Rgb>, ReflectanceCurves)>,
     grid: Option<Grid>,
 }
 
@@ -147,7 +150,15 @@ impl<'a> Truth<'a> {
             ),
             Model::Albedo { .. } => (vec!["all bounces".into(), "the first bounce only".into()], 0),
         };
-        let mut truth = Self { model, variants, stated, grid: None };
+        let spectrum = match model {
+            Model::Albedo { interface, .. } => {
+                let nodes = interface.sampled(&Color::Spectral).nodes;
+                let curves = ReflectanceCurves::new(nodes.len(), |k, cos| nodes[k].1.reflectance(cos));
+                Some((nodes.into_iter().map(|(weight, _)| weight).collect(), curves))
+            }
+            _ => None,
+        };
+        let mut truth = Self { model, variants, stated, spectrum, grid: None };
         let size = match model {
             Model::SplitSum { .. } => Some([81, 49]),
             Model::Density { .. } => None,
@@ -177,18 +188,17 @@ impl<'a> Truth<'a> {
                 let three = WAVELENGTHS.map(|nm| interface.at(nm).reflectance(cos));
                 vec![sampled.rgb(cos), f0.map(|f0| schlick(f0, cos)), three]
             }
-            Model::Albedo { distribution, interface } => {
-                let sampled = interface.sampled(&Color::Spectral);
-                let curves = ReflectanceCurves::new(sampled.nodes.len(), |k, cos| sampled.nodes[k].1.reflectance(cos));
+            Model::Albedo { distribution, .. } => {
+                let Some((weights, curves)) = &self.spectrum else { return vec![[0.0; 3]; 2] };
                 let facets = FacetStatistics::new(*distribution, alpha, cos, EFFORT, 1);
                 let rgb = |albedos: Vec<f64>| {
                     let mut rgb = [0.0; 3];
-                    for ((weight, _), albedo) in sampled.nodes.iter().zip(albedos) {
+                    for (weight, albedo) in weights.iter().zip(albedos) {
                         (0..3).for_each(|c| rgb[c] += weight[c] * albedo);
                     }
                     rgb
                 };
-                vec![rgb(facets.albedo(&curves)), rgb(facets.single_scattering(&curves))]
+                vec![rgb(facets.albedo(curves)), rgb(facets.single_scattering(curves))]
             }
         }
     }
