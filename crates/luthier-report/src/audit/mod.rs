@@ -228,7 +228,7 @@ fn sampled(subject: &Subject, statement: &Statement, truth: &Truth, h: &Hypothes
     let compare = |u: [f64; 2]| {
         let at = canonical(u);
         let texel = bilinear(subject.image, h.layout.position(size, at), WEIGHTS);
-        let components = truth.exact_all(at)[h.variant];
+        let components = truth.exact(h.variant, at);
         let mut result = Comparison { expected: [0.0; 4], sampled: [0.0; 4] };
         for (c, &channel) in subject.channels.iter().enumerate().take(4) {
             result.expected[c] = h.terms[c].of(components);

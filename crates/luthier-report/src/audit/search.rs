@@ -174,7 +174,7 @@ fn judge(
     let mut squares = 0.0;
     for (texel, values) in texels {
         let at = h.layout.at_texel(subject.size(), *texel);
-        let components = if exact { truth.exact_all(at)[h.variant] } else { truth.fast(h.variant, at) };
+        let components = if exact { truth.exact(h.variant, at) } else { truth.fast(h.variant, at) };
         squares += squared_errors(&h, values, components, at[1]);
     }
     fit(subject, stated, truth, h, squares, texels.len())
