@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# All tests. On Debian and its relatives it installs what they need (the software Vulkan driver, the shader validators, and
-# Tint from npm); elsewhere it says what is missing. Needs nothing but a Rust toolchain otherwise.
+# All tests. On Debian and its relatives it installs what they need (the software Vulkan driver, the shader validators, a
+# display without a screen, and Tint from npm); elsewhere it says what is missing. Needs nothing but a Rust toolchain otherwise.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-packages=(mesa-vulkan-drivers libvulkan1 glslang-tools spirv-tools)
+packages=(mesa-vulkan-drivers libvulkan1 glslang-tools spirv-tools xvfb libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0)
 
 step() { printf '\n== %s\n' "$1"; }
 
@@ -14,6 +14,10 @@ missing() {
   ldconfig -p 2>/dev/null | grep 'libvulkan\.so' >/dev/null || echo 'the Vulkan loader'
   compgen -G '/usr/share/vulkan/icd.d/*.json' >/dev/null || compgen -G '/etc/vulkan/icd.d/*.json' >/dev/null ||
     echo 'a Vulkan driver'
+  command -v Xvfb >/dev/null || echo Xvfb
+  for library in libX11-xcb libXcursor libXi libxkbcommon-x11; do
+    ldconfig -p 2>/dev/null | grep "$library\.so" >/dev/null || echo "$library"
+  done
 }
 
 need=$(missing || true)

@@ -9,6 +9,7 @@ use luthier_material::Material;
 use crate::BakeError;
 use crate::constants::constants;
 use crate::graph::{Observer, Results};
+use crate::job::Key;
 use crate::maps::{MaterialMap, maps};
 use crate::plan::{ImageReader, Plan, PlannedLayers, Tiles, color_mode, shading_model};
 use crate::settings::Settings;
@@ -42,6 +43,8 @@ pub struct BakedMaterial {
 pub struct Outline {
     /// Kind, layout and texel format of each table, in binding order.
     pub tables: Vec<(TableKind, AtlasLayout, TexelFormat)>,
+    /// The job of each tile, table by table: where these and `tables` are the same, so are the texels.
+    pub keys: Vec<Vec<Key>>,
     /// Each material, in the order given.
     pub materials: Vec<BakedMaterial>,
 }
@@ -58,7 +61,8 @@ pub fn outline(materials: &[Material], read_image: ImageReader<'_>) -> Result<Ou
     let Plan { settings, tiles, records, .. } = plan(materials, read_image)?;
     let tables =
         used(&tiles).map(|(kind, tiles)| (kind, layout(kind, tiles, &settings), format(kind, &settings))).collect();
-    Ok(Outline { tables, materials: baked_materials(materials, records) })
+    let keys = used(&tiles).map(|(_, tiles)| tiles.tiles.iter().map(|(_, key)| *key).collect()).collect();
+    Ok(Outline { tables, keys, materials: baked_materials(materials, records) })
 }
 
 /// Bakes all tables of a set of materials. `read_image` fetches thickness maps.

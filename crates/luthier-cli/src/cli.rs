@@ -17,7 +17,7 @@ Exit codes:
   1  an input is invalid, or a budget is exceeded
   2  the command line is wrong
   3  a file cannot be read or written
-  4  no usable graphics adapter, or it failed
+  4  no usable graphics adapter or display, or it failed
 
 Examples:
   luthier bake materials            tables, manifest and shaders into out/
@@ -56,6 +56,12 @@ pub(crate) enum Verb {
     /// Render a material with two shaders and compare the pictures
     #[cfg(feature = "gpu")]
     Compare(CompareOptions),
+    /// Open a window: turn, light and edit materials, and see them change with their files
+    #[cfg(feature = "view")]
+    View(ViewOptions),
+    /// Make the figures of the papers anew
+    #[cfg(feature = "gpu")]
+    Figures(FiguresOptions),
     /// Print the shader of some materials, or write it to a file
     Shader(ShaderOptions),
     /// List the reflectance models
@@ -177,9 +183,18 @@ mod audit;
 pub(crate) use audit::{AuditOptions, NodesName, PresetName, SamplesName};
 
 #[cfg(feature = "gpu")]
+mod figures;
+#[cfg(feature = "gpu")]
 mod render;
 #[cfg(feature = "gpu")]
+pub(crate) use figures::FiguresOptions;
+#[cfg(feature = "gpu")]
 pub(crate) use render::{CompareOptions, GalleryOptions, Look, PreviewOptions, ShaderChoice, ShapeName};
+
+#[cfg(feature = "view")]
+mod view;
+#[cfg(feature = "view")]
+pub(crate) use view::{ThemeName, ViewOptions};
 
 #[derive(Debug, Args)]
 #[command(

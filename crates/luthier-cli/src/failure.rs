@@ -39,6 +39,15 @@ impl Failure {
         Self::Usage(anyhow::anyhow!("no {what} `{name}`; {hint}known: {}", known.join(", ")))
     }
 
+    /// What it is, for people.
+    #[cfg(feature = "view")]
+    pub(crate) fn sentence(&self) -> String {
+        match self {
+            Self::Input(error) | Self::Usage(error) | Self::Files(error) | Self::Device(error) => sentence(error),
+            Self::Verdict | Self::BrokenPipe => self.to_string(),
+        }
+    }
+
     pub(crate) fn exit(&self) -> ExitCode {
         let (code, error) = match self {
             Self::BrokenPipe => (0, None),

@@ -22,6 +22,8 @@ mod reradiation;
 mod sheet;
 mod staging;
 mod verb;
+#[cfg(feature = "view")]
+mod view_host;
 
 use std::process::ExitCode;
 
@@ -44,6 +46,10 @@ fn main() -> ExitCode {
         Verb::Gallery(options) => verb::gallery::run(options),
         #[cfg(feature = "gpu")]
         Verb::Compare(options) => verb::compare::run(options),
+        #[cfg(feature = "view")]
+        Verb::View(options) => verb::view::run(options),
+        #[cfg(feature = "gpu")]
+        Verb::Figures(options) => verb::figures::run(options),
         Verb::Shader(options) => verb::shader::run(options),
         Verb::Models(options) => verb::models::run(options),
         Verb::Eval(options) => verb::eval::run(options),

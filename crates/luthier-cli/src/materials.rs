@@ -42,6 +42,11 @@ impl Source {
 
 /// Reads files, and the `*.toml` of folders, each once, in the order given and by name within a folder.
 pub(crate) fn read(paths: &[PathBuf]) -> Outcome<Vec<Source>> {
+    find(paths)?.iter().map(|path| read_one(path)).collect()
+}
+
+/// The files that [`read`] reads.
+pub(crate) fn find(paths: &[PathBuf]) -> Outcome<Vec<PathBuf>> {
     let mut seen = BTreeSet::new();
     let mut found = Vec::new();
     for path in paths {
@@ -51,7 +56,7 @@ pub(crate) fn read(paths: &[PathBuf]) -> Outcome<Vec<Source>> {
         }
         found.extend(here.into_iter().filter(|p| seen.insert(p.canonicalize().unwrap_or_else(|_| p.clone()))));
     }
-    found.iter().map(|path| read_one(path)).collect()
+    Ok(found)
 }
 
 /// Reads and validates one file.

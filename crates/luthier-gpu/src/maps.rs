@@ -39,6 +39,11 @@ impl Scene {
         let lines = [
             (self.has("fn luthier_film_place("), "surface = luthier_film_place(surface, material, maps.uv);"),
             (
+                self.has("inner_normal: vec3"),
+                "surface.inner_normal = normalize(surface.inner_normal \
+                 + vec3<f32>(kernel_inputs.film_tilt, 0.0) * surface.inner_normal.z);",
+            ),
+            (
                 self.has("fn luthier_flake_normal("),
                 "surface.flake_normal = luthier_flake_normal(material, maps.uv, distance);\n    \
                  if maps.has_flakes {\n        \

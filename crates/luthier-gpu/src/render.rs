@@ -12,6 +12,9 @@ use crate::{Camera, GpuError, Light, Scene, Shape, Sky};
 /// Evaluations per submission: about a second on a software adapter.
 const EVALUATIONS_PER_PASS: u32 = 1 << 21;
 
+/// The same where someone waits for the pass to end.
+const EVALUATIONS_PER_SHORT_PASS: u32 = 1 << 18;
+
 /// Side of a workgroup, pixels.
 const WORKGROUP: u32 = 8;
 
@@ -49,6 +52,10 @@ pub struct RenderSettings {
     /// 0 reads maps that were blurred beforehand. Above, up to 4096: the environment goes through `luthier_eval` for that
     /// many directions per lobe of the material and sample of the pixel, which is slow and noisy and has no other error.
     pub environment_samples: u32,
+    /// Slopes, along the tangent and the bitangent, of the inner boundary of films against the outer one, on top of those
+    /// that follow from a varying thickness (Granier and Heidrich 2003, section 7.2). Models without a second boundary, and
+    /// sets of materials in which nothing varies, know nothing of it.
+    pub film_tilt: [f32; 2],
     /// Behind the shape.
     pub backdrop: Backdrop,
     /// Factor on the whole picture. At 1 and with the default lights, the brightest part of a white Lambertian ball is
@@ -71,6 +78,7 @@ impl RenderSettings {
             light_angular_radius: 0.05,
             environment: Arc::new(Environment::sky(&Sky::default())?),
             environment_samples: 0,
+            film_tilt: [0.0; 2],
             backdrop: Backdrop::Plain([0.13, 0.13, 0.133]),
             exposure: 1.0,
         })
@@ -95,6 +103,31 @@ impl Scene {
     /// [`GpuError::Prefiltered`] for another form than `baked` without samples, [`GpuError::Setting`],
     /// [`GpuError::NoMaterial`], and whatever the device reports.
     pub fn render(&self, materials: &[u32], settings: &RenderSettings) -> Result<Image, GpuError> {
+        let image = self.render_passes(materials, settings, &|| false, EVALUATIONS_PER_PASS)?;
+        Ok(image.expect("nobody stops it"))
+    }
+
+    /// The same for someone who may change their mind: `stop` is asked before every pass, of which each takes a fraction of a
+    /// second on a software adapter. `None` when it said so.
+    ///
+    /// # Errors
+    /// As [`Scene::render`].
+    pub fn render_unless(
+        &self,
+        materials: &[u32],
+        settings: &RenderSettings,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<Image>, GpuError> {
+        self.render_passes(materials, settings, stop, EVALUATIONS_PER_SHORT_PASS)
+    }
+
+    fn render_passes(
+        &self,
+        materials: &[u32],
+        settings: &RenderSettings,
+        stop: &dyn Fn() -> bool,
+        evaluations: u32,
+    ) -> Result<Option<Image>, GpuError> {
         settings.check(materials)?;
         for &material in materials {
             self.layers(material)?;
@@ -109,9 +142,12 @@ impl Scene {
         let size = settings.size;
         let lobes = 1 + self.manifest.materials.iter().map(|m| m.layers.len()).max().unwrap_or(0) as u32;
         let per_pixel = settings.samples * settings.samples * (1 + settings.environment_samples * lobes);
-        let rows = (EVALUATIONS_PER_PASS / (size * per_pixel).max(1)).clamp(1, size);
+        let rows = (evaluations / size.saturating_mul(per_pixel).max(1)).clamp(1, size);
         let mut data = Vec::with_capacity((size * size * 3) as usize);
         for row in (0..size).step_by(rows as usize) {
+            if stop() {
+                return Ok(None);
+            }
             let rows = rows.min(size - row);
             inputs[5][1] = row;
             let pixels = self.context.run(&Pass {
@@ -124,7 +160,7 @@ impl Scene {
             })?;
             data.extend(pixels.iter().flat_map(|pixel| &pixel[..3]));
         }
-        Ok(Image { width: size, height: size, channels: 3, data })
+        Ok(Some(Image { width: size, height: size, channels: 3, data }))
     }
 
     /// The material buffer: all materials as they are, then all again with slopes widened by the lights.
@@ -232,7 +268,7 @@ impl Scene {
             [r, g, b, settings.size],
             [settings.samples, 0, settings.shape.number(), settings.environment_samples],
             [settings.lights.len() as u32, self.manifest.materials.len() as u32, 0, lights],
-            [headers, maps, 0, 0],
+            [headers, maps, settings.film_tilt[0].to_bits(), settings.film_tilt[1].to_bits()],
         ];
         header.to_vec()
     }
@@ -299,6 +335,9 @@ impl RenderSettings {
         }
         if self.environment_samples > 4096 {
             return Err(setting("environment_samples", self.environment_samples.to_string(), "0 to 4096"));
+        }
+        if !self.film_tilt.iter().all(|slope| slope.is_finite()) {
+            return Err(setting("film_tilt", format!("{:?}", self.film_tilt), "finite slopes"));
         }
         if self.lights.len() > 64 {
             return Err(setting("lights", self.lights.len().to_string(), "at most 64"));

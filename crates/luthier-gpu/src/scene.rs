@@ -52,6 +52,33 @@ impl Scene {
         })
     }
 
+    /// The same shader with other materials, tables and maps: nothing is compiled. `None` where the shader of these artefacts
+    /// is another one.
+    ///
+    /// # Errors
+    /// [`GpuError::NoShader`], and as [`Gpu::scene`](crate::Gpu::scene) for the tables.
+    pub fn rebound(&self, artefacts: &Artefacts) -> Result<Option<Self>, GpuError> {
+        if artefacts.shader(&self.form)?.wgsl != self.wgsl {
+            return Ok(None);
+        }
+        // Layouts with the same entries are the same to the device, so the pipelines take the new groups.
+        let bindings = ShaderBindings::new(&self.context, artefacts, &self.wgsl)?;
+        let group = bindings.group(&self.context, &material_words(artefacts))?;
+        Ok(Some(Self {
+            context: self.context.clone(),
+            manifest: artefacts.manifest.clone(),
+            maps: artefacts.maps.clone(),
+            form: self.form.clone(),
+            wgsl: self.wgsl.clone(),
+            bindings,
+            group,
+            kernels: self.kernels.clone(),
+            evaluate: self.evaluate.clone(),
+            lookups: self.lookups.clone(),
+            render: self.render.clone(),
+        }))
+    }
+
     /// Which form of the shader runs here: `baked` or `full`.
     pub fn form(&self) -> &str {
         &self.form

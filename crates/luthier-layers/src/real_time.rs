@@ -4,7 +4,7 @@
 //! No model is written here: a twin evaluates the model of its module, channel by channel, with what is particular to shaders: one
 //! set of slope parameters, at least [`ALPHA_MIN`]; one index at [`REFRACTION_WAVELENGTH_NM`] that bends the directions of all
 //! channels, except in Granier and Heidrich's model, which bends each by the index of its own wavelength; reflectances from
-//! [`Terms`].
+//! [`Terms`]. Belcour's and Yamaguchi's models have one spread for all three channels, too.
 
 use std::cell::RefCell;
 
@@ -18,6 +18,11 @@ use crate::granier_heidrich::GranierHeidrich;
 use crate::microfacet::{Components, Microfacet};
 use crate::monochrome::{Monochrome, MonochromeBelow, Optics, in_color};
 use crate::phong::Coefficients;
+use crate::statistics::diffuse_base::DiffuseBase;
+use crate::statistics::evaluate::{Follow, evaluate};
+use crate::statistics::layers::Layers;
+use crate::statistics::spread::{Covariance, Spread};
+use crate::terms::ShaderTerms;
 use crate::weidlich_wilkie::WeidlichWilkie;
 
 /// The twin of a shader, for one surface.
@@ -31,11 +36,14 @@ enum Kind {
     GranierHeidrich([Monochrome; 3]),
     Phong([Coefficients; 3]),
     Microfacet(Box<(Microfacet, [Monochrome; 3])>),
+    Belcour(Layers<3>),
+    Yamaguchi(Layers<3>),
 }
 
 impl Twin {
     /// Names of the models that have a twin.
-    pub const MODELS: [&str; 5] = [elek::MODEL, "weidlich-wilkie", "granier-heidrich", "phong", "microfacet"];
+    pub const MODELS: [&str; 7] =
+        [elek::MODEL, "weidlich-wilkie", "granier-heidrich", "belcour", "yamaguchi", "phong", "microfacet"];
 
     /// The twin of the shader of a model, by the model's name; `None` for a model that has none. `wavelengths_nm` are those of the
     /// three channels. `color` says how Phong's coefficients come by their colour, which both forms of the shader read from the
@@ -51,6 +59,8 @@ impl Twin {
             "weidlich-wilkie" => Kind::WeidlichWilkie(channels()),
             "granier-heidrich" => Kind::GranierHeidrich(granier_channels(stack, wavelengths_nm)),
             "phong" => Kind::Phong(coefficients(stack, wavelengths_nm, color)),
+            "belcour" => Kind::Belcour(Layers::rgb(stack)),
+            "yamaguchi" => Kind::Yamaguchi(Layers::rgb(stack)),
             "microfacet" => Kind::Microfacet(Box::new((Microfacet::new(Components::PLAIN), channels()))),
             _ => return None,
         }))
@@ -58,7 +68,7 @@ impl Twin {
 
     /// `f cos_theta_i`, RGB. Zero when either direction is at or below the horizon. Terms are asked once for every value, however many
     /// channels need it.
-    pub fn eval(&self, terms: &impl Terms, wi: DVec3, wo: DVec3) -> Rgb {
+    pub fn eval(&self, terms: &impl ShaderTerms, wi: DVec3, wo: DVec3) -> Rgb {
         match &self.0 {
             Kind::Elek(layers) => elek::eval(layers, terms, wi, wo),
             Kind::WeidlichWilkie(stacks) => {
@@ -67,10 +77,18 @@ impl Twin {
             Kind::GranierHeidrich(stacks) => {
                 each(terms, stacks, |stack, optics| GranierHeidrich::default().eval_with(stack, optics, wi, wo))
             }
+            Kind::Belcour(layers) => statistical::<f64>(layers, terms, wi, wo),
+            Kind::Yamaguchi(layers) => statistical::<Covariance>(layers, terms, wi, wo),
             Kind::Phong(channels) => channels.map(|coefficients| coefficients.eval(wi, wo)),
             Kind::Microfacet(one) => each(terms, &one.1, |stack, optics| one.0.eval_with(stack, optics, wi, wo)),
         }
     }
+}
+
+/// Belcour's or Yamaguchi's model: three channels that share directions and spreads, as their shader has them.
+fn statistical<S: Spread>(layers: &Layers<3>, terms: &impl ShaderTerms, wi: DVec3, wo: DVec3) -> Rgb {
+    let base = DiffuseBase::veiled(layers, terms.veil());
+    evaluate::<S, 3>(layers, terms, base.as_ref(), Follow::Eye, wi, wo)
 }
 
 /// A model at each channel's wavelength.
@@ -201,6 +219,41 @@ mod tests {
     fn directions() -> [(DVec3, DVec3); 2] {
         let unit = |x, y, z| DVec3::new(x, y, z).normalize();
         [(unit(0.3, 0.1, 0.7), unit(-0.2, 0.2, 0.9)), (unit(0.9, 0.0, 0.1), unit(-0.8, 0.3, 0.2))]
+    }
+
+    /// Oracle: the model at each wavelength alone. Coats and metals are grey, because the shaders' channels share their spreads.
+    #[test]
+    fn exact_twins_of_the_statistical_models_are_the_models() {
+        let grey = Ior::constant(1.5, 0.0).unwrap();
+        let metal = |distribution| {
+            let surface = Surface { distribution, alpha_x: 0.05, alpha_y: 0.2, rotation: -0.3 };
+            layer(surface, Base::Conductor { ior: Ior::constant(0.2, 3.0).unwrap() })
+        };
+        let base = layer(Surface::smooth(), Base::Diffuse(Diffuse { albedo: [0.5; 3], sigma: 0.3 }));
+        let slab = Slab { thickness_um: 1.0, absorption_per_um: [0.1; 3] };
+        let rough = layer(
+            Surface { distribution: Distribution::Ggx, alpha_x: 0.3, alpha_y: 0.1, rotation: 0.4 },
+            Base::Dielectric { ior: grey, slab },
+        );
+        for layers in
+            [vec![rough.clone(), metal(Distribution::Ggx)], vec![metal(Distribution::Beckmann)], vec![rough, base]]
+        {
+            let stack = Stack { exterior: Ior::vacuum(), layers };
+            let color = Color::ThreeWavelengths(WAVELENGTHS_NM);
+            let exact = Exact::new(&stack, color);
+            for name in ["belcour", "yamaguchi"] {
+                let twin = Twin::new(name, &stack, WAVELENGTHS_NM, color).unwrap();
+                let model = registry::model(name).unwrap();
+                for (wi, wo) in directions() {
+                    let found = twin.eval(&exact, wi, wo);
+                    for (c, nm) in WAVELENGTHS_NM.into_iter().enumerate() {
+                        let expected = model.eval(&Monochrome::new(&stack, nm, c), wi, wo);
+                        assert!(expected > 1e-6, "{name}: {expected}");
+                        assert!((found[c] / expected - 1.0).abs() < 1e-9, "{name}, {c}: {} for {expected}", found[c]);
+                    }
+                }
+            }
+        }
     }
 
     /// Oracle: the model at each wavelength alone. Where nothing disperses, bending all channels alike changes nothing.

@@ -5,7 +5,10 @@ use std::cell::RefCell;
 use glam::DVec3;
 use luthier_layers::elek::Terms;
 use luthier_layers::real_time::Twin;
-use luthier_layers::terms::Exact;
+use luthier_layers::statistics::diffuse_base::Veil;
+use luthier_layers::statistics::energy::Energy;
+use luthier_layers::terms::{Exact, ShaderTerms};
+use luthier_lut::TableKind;
 use luthier_optics::Rgb;
 use luthier_optics::stack::Distribution;
 use rayon::prelude::*;
@@ -53,8 +56,20 @@ pub enum Factor {
     Distribution,
     /// A phase row.
     Phase,
+    /// A tile of the albedo table.
+    Fgd,
+    /// A tile of the escape table.
+    Escape,
+    /// What the material's record says of the layers above a diffuse base.
+    Veil,
     /// f32 arithmetic: what is left when f64 reads the same tables.
     Arithmetic,
+}
+
+impl Factor {
+    /// All of them.
+    pub(crate) const ALL: [Self; 7] =
+        [Self::Fresnel, Self::Distribution, Self::Phase, Self::Fgd, Self::Escape, Self::Veil, Self::Arithmetic];
 }
 
 /// What one factor adds to an error, all others being exact.
@@ -105,6 +120,43 @@ pub enum Cause {
         /// Sum of the cosines in the film.
         cosines: f64,
     },
+    /// A tile of the albedo table.
+    Fgd {
+        /// Layer, from 0.
+        layer: u32,
+        /// Name of the tile.
+        tile: String,
+        /// Slope parameter of the look-up.
+        alpha: f64,
+        /// Cosine of the look-up.
+        cos_theta: f64,
+        /// Share of the light that the interface sends back there, in the channel of the worst pair.
+        expected: f64,
+        /// What the tile gives.
+        sampled: f64,
+    },
+    /// A tile of the escape table.
+    Escape {
+        /// Layer, from 0.
+        layer: u32,
+        /// Name of the tile.
+        tile: String,
+        /// Slope parameter of the look-up.
+        alpha: f64,
+        /// Cosine of the look-up, in the medium below the layer.
+        cos_theta: f64,
+        /// Share of the lobe that is not totally reflected.
+        expected: f64,
+        /// What the tile gives.
+        sampled: f64,
+    },
+    /// What the material's record says of the layers above a diffuse base.
+    Veil {
+        /// Internal reflectance, in the channel of the worst pair.
+        expected: f64,
+        /// What the record says.
+        sampled: f64,
+    },
     /// f32 arithmetic.
     Arithmetic,
 }
@@ -116,6 +168,9 @@ impl Cause {
             Self::Fresnel { .. } => Factor::Fresnel,
             Self::Distribution { .. } => Factor::Distribution,
             Self::Phase { .. } => Factor::Phase,
+            Self::Fgd { .. } => Factor::Fgd,
+            Self::Escape { .. } => Factor::Escape,
+            Self::Veil { .. } => Factor::Veil,
             Self::Arithmetic => Factor::Arithmetic,
         }
     }
@@ -209,7 +264,7 @@ pub(crate) fn exception(
     let taken: Vec<&Miss> = misses.iter().step_by(stride).collect();
     let causes: Vec<Option<Factor>> =
         taken.par_iter().map(|miss| factors.parts(miss).first().map(|part| part.cause.factor())).collect();
-    let mut tally: Vec<(Factor, u64)> = [Factor::Fresnel, Factor::Distribution, Factor::Phase, Factor::Arithmetic]
+    let mut tally: Vec<(Factor, u64)> = Factor::ALL
         .map(|factor| (factor, causes.iter().filter(|c| **c == Some(factor)).count() as u64))
         .into_iter()
         .filter(|(_, count)| *count > 0)
@@ -281,6 +336,9 @@ enum Term {
     Fresnel { cos_theta_d: f64, expected: Rgb, sampled: Rgb },
     Distribution { alpha: f64, theta_h: f64, expected: f64, sampled: f64 },
     Phase { cosines: f64 },
+    Fgd { alpha: f64, cos_theta: f64, expected: Rgb, sampled: Rgb },
+    Escape { alpha: f64, cos_theta: f64, expected: f64, sampled: f64 },
+    Veil { expected: Rgb, sampled: Rgb },
 }
 
 impl<'a> Mixed<'a> {
@@ -324,12 +382,36 @@ impl Terms for Mixed<'_> {
     }
 }
 
+impl Energy<3> for Mixed<'_> {
+    fn fgd(&self, layer: usize, cos_theta: f64, alpha: f64) -> Rgb {
+        let [expected, sampled] = [self.exact.fgd(layer, cos_theta, alpha), self.tables.fgd(layer, cos_theta, alpha)];
+        self.record(layer, Term::Fgd { alpha, cos_theta, expected, sampled }, expected, sampled)
+    }
+
+    fn escaping(&self, layer: usize, cos_theta: f64, alpha: f64, eta: f64) -> f64 {
+        let expected = self.exact.escaping(layer, cos_theta, alpha, eta);
+        let sampled = self.tables.escaping(layer, cos_theta, alpha, eta);
+        self.record(layer, Term::Escape { alpha, cos_theta, expected, sampled }, expected, sampled)
+    }
+}
+
+impl ShaderTerms for Mixed<'_> {
+    fn veil(&self) -> Veil<3> {
+        let [expected, sampled] = [self.exact.veil(), self.tables.veil()];
+        let term = Term::Veil { expected: expected.internal, sampled: sampled.internal };
+        self.record(0, term, expected, sampled)
+    }
+}
+
 impl Read {
     fn factor(&self) -> Factor {
         match self.term {
             Term::Fresnel { .. } => Factor::Fresnel,
             Term::Distribution { .. } => Factor::Distribution,
             Term::Phase { .. } => Factor::Phase,
+            Term::Fgd { .. } => Factor::Fgd,
+            Term::Escape { .. } => Factor::Escape,
+            Term::Veil { .. } => Factor::Veil,
         }
     }
 
@@ -345,13 +427,26 @@ impl Read {
             },
             Term::Distribution { alpha, theta_h, expected, sampled } => Cause::Distribution {
                 layer,
-                tile: tables.distribution_name(self.layer).to_owned(),
+                tile: tables.name(TableKind::Distribution, self.layer).to_owned(),
                 alpha,
                 theta_h_deg: theta_h.to_degrees(),
                 expected,
                 sampled,
             },
             Term::Phase { cosines } => Cause::Phase { layer, cosines },
+            Term::Fgd { alpha, cos_theta, expected, sampled } => Cause::Fgd {
+                layer,
+                tile: tables.name(TableKind::Fgd, self.layer).to_owned(),
+                alpha,
+                cos_theta,
+                expected: expected[channel],
+                sampled: sampled[channel],
+            },
+            Term::Escape { alpha, cos_theta, expected, sampled } => {
+                let tile = tables.name(TableKind::Escape, self.layer).to_owned();
+                Cause::Escape { layer, tile, alpha, cos_theta, expected, sampled }
+            }
+            Term::Veil { expected, sampled } => Cause::Veil { expected: expected[channel], sampled: sampled[channel] },
         }
     }
 }

@@ -11,6 +11,7 @@ use luthier_lut::Image;
 mod color;
 mod filter;
 
+pub use color::lightness_chroma_hue;
 use color::{clipped_rgb, hunt_lab, hyab, opponent};
 use filter::{Kernel, convolved};
 

@@ -1,9 +1,9 @@
 use std::fmt;
 
 use glam::DVec3;
-use luthier_layers::elek::{self, Layer, Terms};
+use luthier_layers::elek::{self, Layer};
 use luthier_layers::real_time::Twin;
-use luthier_layers::terms::Exact;
+use luthier_layers::terms::{Exact, ShaderTerms};
 use luthier_lut::{ColorMode, LayerKind, LayerRecord, Manifest, MaterialEntry, ShadingModel};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use crate::exceptions::{Factors, Miss, exception};
 use crate::report::{Compared, Comparison, MaterialReport, REPORT_SCHEMA, Report, TableReport};
 use crate::statistics::{brightest, relative_error};
-use crate::table_terms::{TableTerms, Weights};
+use crate::table_terms::{TableTerms, Weights, is_statistical, recorded_veil};
 use crate::{
     AngleProfile, Device, DirectionSet, Exceedance, FLOOR, Form, Pair, ReportError, Statistics, Subject,
     TARGET_MAX_REL_ERR, format, scan, statistics,
@@ -126,7 +126,8 @@ pub fn judge(
             gathered.add(Compared::ThreeWavelengths, set, &pairs, &three, &spectral);
             if let Some(device) = device {
                 let found = run(device, Form::Full, index as u32, &pairs)?;
-                gathered.add(Compared::FullDevice, set, &pairs, &found, &three);
+                let level = references.level.as_ref().map(|level| evaluate(&references.twin, level, &pairs));
+                gathered.add(Compared::FullDevice, set, &pairs, &found, level.as_ref().unwrap_or(&three));
                 let found = run(device, Form::Baked, index as u32, &pairs)?;
                 gathered.add(Compared::BakedDevice, set, &pairs, &found, baked_reference);
                 weights.add(&found, &tables_8, &tables_exact);
@@ -201,6 +202,8 @@ pub(crate) struct References {
     pub(crate) twin: Twin,
     pub(crate) spectral: Exact,
     pub(crate) three: Exact,
+    /// What the form without tables is given, where that is not `three`.
+    pub(crate) level: Option<Exact>,
     color: ColorMode,
 }
 
@@ -218,8 +221,14 @@ impl References {
             twin: twin.ok_or_else(|| ReportError::Model { material: material.name.clone(), model })?,
             spectral: Exact::new(stack, Color::Spectral),
             three: Exact::new(stack, three),
+            level: is_statistical(model).then(|| Exact::level(stack, three, recorded_veil(material))),
             color: material.color,
         })
+    }
+
+    /// What the form without tables stands for.
+    pub(crate) fn full(&self) -> &Exact {
+        self.level.as_ref().unwrap_or(&self.three)
     }
 
     /// What the tables stand for.
@@ -232,7 +241,7 @@ impl References {
 }
 
 /// The model in f64 at exactly the f32 directions that the device gets.
-pub(crate) fn evaluate(twin: &Twin, terms: &(impl Terms + Sync), pairs: &[Pair]) -> Vec<Rgb> {
+pub(crate) fn evaluate(twin: &Twin, terms: &(impl ShaderTerms + Sync), pairs: &[Pair]) -> Vec<Rgb> {
     let wide = |w: [f32; 3]| DVec3::from(w.map(f64::from));
     pairs.par_iter().map(|&(wi, wo)| twin.eval(terms, wide(wi), wide(wo))).collect()
 }

@@ -1,6 +1,9 @@
 //! The model's terms as a shader reads them: from texels.
 
 use luthier_layers::elek::Terms;
+use luthier_layers::statistics::diffuse_base::Veil;
+use luthier_layers::statistics::energy::Energy;
+use luthier_layers::terms::ShaderTerms;
 use luthier_lut::{
     Encoding, LayerKind, LayerRecord, MaterialEntry, ShadingModel, TableKind, TexelFormat, WeightBits, bilinear,
 };
@@ -97,6 +100,9 @@ pub struct TableTerms<'a> {
     distribution: Option<(Table<'a>, AngleAxis)>,
     phase: Option<Table<'a>>,
     film: Option<Table<'a>>,
+    fgd: Option<(Table<'a>, AngleAxis)>,
+    escape: Option<Table<'a>>,
+    veil: Veil<3>,
     records: &'a [LayerRecord],
     weights: Weights,
 }
@@ -122,6 +128,9 @@ impl<'a> TableTerms<'a> {
             distribution: with_angle(TableKind::Distribution)?,
             phase: subject.table(TableKind::Phase)?,
             film: subject.table(TableKind::Film)?,
+            fgd: with_angle(TableKind::Fgd)?,
+            escape: subject.table(TableKind::Escape)?,
+            veil: recorded_veil(entry),
             records: &entry.layers,
             weights,
         };
@@ -139,7 +148,9 @@ impl<'a> TableTerms<'a> {
             TableKind::Distribution => self.distribution.map(|(table, _)| table),
             TableKind::Phase => self.phase,
             TableKind::Film => self.film,
-            TableKind::Fgd | TableKind::Thickness | TableKind::Escape => None,
+            TableKind::Fgd => self.fgd.map(|(table, _)| table),
+            TableKind::Escape => self.escape,
+            TableKind::Thickness => None,
         }
     }
 
@@ -151,7 +162,9 @@ impl<'a> TableTerms<'a> {
             TableKind::Distribution => record.distribution_tile,
             TableKind::Phase => record.phase_tile,
             TableKind::Film => record.film_tile,
-            TableKind::Fgd | TableKind::Thickness | TableKind::Escape => None,
+            TableKind::Fgd => record.fgd_tile,
+            TableKind::Escape => record.escape_tile,
+            TableKind::Thickness => None,
         };
         let tiles = self.table(kind)?.entry.layout.tiles;
         tile.filter(|tile| *tile < tiles)
@@ -163,15 +176,22 @@ impl<'a> TableTerms<'a> {
         self.name(kind, layer)
     }
 
-    /// Name of the distribution tile that a layer reads; empty when there is none.
-    pub(crate) fn distribution_name(&self, layer: usize) -> &str {
-        self.name(TableKind::Distribution, layer)
-    }
-
-    fn name(&self, kind: TableKind, layer: usize) -> &str {
+    /// Name of the tile of a kind that a layer reads; empty when there is none.
+    pub(crate) fn name(&self, kind: TableKind, layer: usize) -> &str {
         let tile = self.table(kind).zip(self.tile(kind, layer));
         tile.and_then(|(table, tile)| table.entry.tiles.get(tile as usize)).map_or("", |tile| &tile.name)
     }
+}
+
+/// Whether a model follows the statistics of light.
+pub(crate) fn is_statistical(model: ShadingModel) -> bool {
+    matches!(model, ShadingModel::Belcour | ShadingModel::Yamaguchi)
+}
+
+/// What the shaders of the statistical models are told of the layers above a diffuse base.
+pub(crate) fn recorded_veil(entry: &MaterialEntry) -> Veil<3> {
+    let constants = &entry.constants;
+    Veil { internal: constants.internal_reflectance, upward: [1.0 - constants.upward_loss; 3] }
 }
 
 /// Layers and tables without which the shader of a material cannot be evaluated.
@@ -194,6 +214,18 @@ fn read_by(entry: &MaterialEntry) -> Vec<(usize, TableKind)> {
                 _ if has_film => out.push((layer, TableKind::Phase)),
                 LayerKind::Conductor => out.push((layer, TableKind::Fresnel)),
                 LayerKind::Dielectric | LayerKind::Diffuse => {}
+            }
+            continue;
+        }
+        if is_statistical(entry.model) {
+            out.push((layer, TableKind::Fgd));
+            // An interface below a denser medium: part of its lobe is totally reflected.
+            let next = entry.layers.get(layer + 1).is_some_and(|next| next.kind != LayerKind::Diffuse);
+            if next && record.kind == LayerKind::Dielectric && record.eta > 1.0 {
+                out.push((layer, TableKind::Escape));
+            }
+            if record.kind == LayerKind::Conductor {
+                break;
             }
             continue;
         }
@@ -234,5 +266,34 @@ impl Terms for TableTerms<'_> {
         let record = &self.records[layer];
         let s = 0.5 * cosines * record.film_thickness_nm / record.film_thickness_max_nm;
         Some(table.read(tile, [s, 0.0], self.weights)[channel])
+    }
+}
+
+impl Energy<3> for TableTerms<'_> {
+    fn fgd(&self, layer: usize, cos_theta_i: f64, alpha: f64) -> Rgb {
+        match (self.fgd, self.tile(TableKind::Fgd, layer)) {
+            (Some((table, angle)), Some(tile)) => {
+                let [r, g, b, _] = table.read(tile, [angle.value_at(cos_theta_i), alpha], self.weights);
+                [r, g, b]
+            }
+            _ => [f64::NAN; 3],
+        }
+    }
+
+    /// The table is over the cosine outside, of the direction that is refracted to `cos_theta_i`.
+    fn escaping(&self, layer: usize, cos_theta_i: f64, alpha: f64, eta: f64) -> f64 {
+        match (self.escape, self.tile(TableKind::Escape, layer)) {
+            (Some(table), Some(tile)) => {
+                let sin_sq = (1.0 - cos_theta_i) * (1.0 + cos_theta_i) / (eta * eta);
+                table.read(tile, [(1.0 - sin_sq).max(0.0).sqrt(), alpha], self.weights)[0]
+            }
+            _ => f64::NAN,
+        }
+    }
+}
+
+impl ShaderTerms for TableTerms<'_> {
+    fn veil(&self) -> Veil<3> {
+        self.veil
     }
 }

@@ -84,7 +84,7 @@ impl<'a> Subject<'a> {
 }
 
 /// Absolute difference of what a display shows, brightened by the largest power of two that keeps it within 1.
-fn difference(a: &Image, b: &Image, tone: ToneMapping) -> (Image, u32) {
+pub(crate) fn difference(a: &Image, b: &Image, tone: ToneMapping) -> (Image, u32) {
     let shown = |v: f32| tone.value(v).min(1.0);
     let mut image = a.clone();
     image.data.iter_mut().zip(&b.data).for_each(|(a, b)| *a = (shown(*a) - shown(*b)).abs());

@@ -7,6 +7,8 @@ pub(crate) mod check;
 pub(crate) mod compare;
 pub(crate) mod eval;
 #[cfg(feature = "gpu")]
+pub(crate) mod figures;
+#[cfg(feature = "gpu")]
 pub(crate) mod gallery;
 pub(crate) mod ior;
 pub(crate) mod models;
@@ -17,3 +19,5 @@ pub(crate) mod preview;
 pub(crate) mod report;
 pub(crate) mod schema;
 pub(crate) mod shader;
+#[cfg(feature = "view")]
+pub(crate) mod view;

@@ -1,6 +1,5 @@
 use luthier_bake::Silent;
 use luthier_gpu::{Artefacts, Gpu, TableTexels, WgslShader};
-use luthier_layers::real_time::Twin;
 use luthier_lut::{
     Atlas, FileEntry, Image, MANIFEST_SCHEMA, Manifest, MaterialEntry, ShadingModel, TableEntry, TableKind,
     material_buffer,
@@ -78,15 +77,11 @@ pub(crate) fn run(options: &ParityOptions) -> Outcome {
     if report.holds() { Ok(()) } else { Err(Failure::Verdict) }
 }
 
-/// The models to compare: those that have a twin, unless named.
+/// The models to compare: all, unless named.
 fn models(options: &ParityOptions) -> Vec<ShadingModel> {
     let named: Vec<ShadingModel> =
         options.model.iter().filter_map(|setting| ShadingModel::from_name(setting.name())).collect();
-    if named.is_empty() {
-        ShadingModel::ALL.into_iter().filter(|model| Twin::MODELS.contains(&model.name())).collect()
-    } else {
-        named
-    }
+    if named.is_empty() { ShadingModel::ALL.to_vec() } else { named }
 }
 
 /// A material shaded by a model, and its polished variants; names are unique over all models.
@@ -174,7 +169,7 @@ impl Compiled {
 }
 
 /// What the manifest says of a table that is in memory.
-fn table(atlas: &Atlas) -> TableEntry {
+pub(crate) fn table(atlas: &Atlas) -> TableEntry {
     let [width, height] = atlas.layout.size();
     TableEntry {
         kind: atlas.kind,

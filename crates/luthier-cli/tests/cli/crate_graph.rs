@@ -11,10 +11,11 @@ use crate::workshop::root;
 type Edges = BTreeMap<String, BTreeSet<String>>;
 
 /// Crates that only one of ours may depend on, tests aside.
-const OWNERS: [(&str, &str); 8] = [
+const OWNERS: [(&str, &str); 9] = [
     ("toml", "luthier-material"),
     ("naga", "luthier-shader"),
     ("wgpu", "luthier-gpu"),
+    ("eframe", "luthier-view"),
     ("exr", "luthier-texture"),
     ("image", "luthier-texture"),
     ("ktx2", "luthier-texture"),

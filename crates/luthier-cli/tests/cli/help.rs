@@ -1,16 +1,17 @@
 use crate::workshop::Workshop;
 
-const VERBS: &[&str] = if cfg!(feature = "gpu") {
-    &["bake", "check", "report", "audit", "preview", "gallery", "compare", "shader", "models", "eval", "ior", "schema"]
-} else {
-    &["bake", "check", "report", "audit", "shader", "models", "eval", "ior", "schema"]
-};
+/// What `--help` lists: in every build, with a device, and with a window.
+fn verbs() -> impl Iterator<Item = &'static str> {
+    let always = ["bake", "check", "report", "audit", "shader", "models", "eval", "ior", "schema"];
+    let gpu = ["parity", "preview", "gallery", "compare", "figures"].into_iter().filter(|_| cfg!(feature = "gpu"));
+    always.into_iter().chain(gpu).chain(cfg!(feature = "view").then_some("view"))
+}
 
 #[test]
 fn the_command_explains_itself() {
     let workshop = Workshop::new();
     let text = workshop.run(&["--help"]).exits(0).stdout;
-    for verb in VERBS {
+    for verb in verbs() {
         assert!(text.lines().any(|line| line.trim_start().starts_with(&format!("{verb} "))), "{verb}");
     }
     for code in 0..=4 {
@@ -24,7 +25,7 @@ fn the_command_explains_itself() {
 #[test]
 fn every_verb_shows_an_example() {
     let workshop = Workshop::new();
-    for verb in VERBS {
+    for verb in verbs() {
         for args in [["help", verb], [verb, "--help"]] {
             let text = workshop.run(&args).exits(0).stdout;
             let (_, examples) = text.split_once("Examples:\n").unwrap_or_else(|| panic!("{verb} has no example"));

@@ -10,6 +10,8 @@ mod crate_graph;
 mod eval;
 mod eval_furnace;
 mod eval_inputs;
+#[cfg(feature = "gpu")]
+mod figures;
 mod fluorescence;
 #[cfg(feature = "gpu")]
 mod gallery;
@@ -29,4 +31,6 @@ mod report;
 mod schema;
 mod shader;
 mod thickness_map;
+#[cfg(feature = "view")]
+mod view;
 mod workshop;

@@ -13,7 +13,7 @@ fn every_shader_is_compared_with_its_twin() {
     let report: Value = serde_json::from_str(&run.exits(0).stdout).unwrap();
     let rows = report["rows"].as_array().unwrap();
     let of = |model: &str| rows.iter().filter(|row| row["model"] == model).count();
-    for model in ["elek", "weidlich-wilkie", "granier-heidrich", "phong", "microfacet"] {
+    for model in ["elek", "weidlich-wilkie", "granier-heidrich", "belcour", "yamaguchi", "phong", "microfacet"] {
         assert_eq!(of(model), 2, "{model}: two forms");
     }
     for row in rows {

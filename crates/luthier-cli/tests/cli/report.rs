@@ -42,6 +42,20 @@ fn tables_are_judged_without_a_device() {
     }
 }
 
+/// Statistical models are judged as any other: their tables have references of their own.
+#[test]
+fn bakes_of_statistical_models_are_judged() {
+    let workshop = Workshop::with(&[("m/lacquer.toml", &lacquer("lacquer")), ("m/gold.toml", &gold("gold"))]);
+    for model in ["belcour", "yamaguchi"] {
+        workshop.run(&["bake", "m", "-q", "--model", model]).exits(0);
+        workshop.run(&TABLES_ONLY).exits(0);
+        let report = workshop.json("out/report/report.json");
+        assert_eq!(report["model"], model);
+        let error = report["max_error"].as_f64().unwrap();
+        assert!(error > 1e-6 && error < 1.0, "{model}: {error}");
+    }
+}
+
 #[test]
 fn json_goes_to_both_places() {
     let workshop = baked();

@@ -92,6 +92,12 @@ pub(crate) struct Run {
 }
 
 impl Run {
+    /// One that was started by other means, and said nothing on standard output.
+    #[cfg(feature = "view")]
+    pub(crate) fn ended(command: &str, code: Option<i32>, stderr: String) -> Self {
+        Self { command: command.to_owned(), code, stdout: String::new(), stderr }
+    }
+
     /// Exit code as expected.
     #[track_caller]
     pub(crate) fn exits(self, code: i32) -> Self {

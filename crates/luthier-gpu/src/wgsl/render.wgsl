@@ -24,6 +24,8 @@ struct Render {
     lights: u32,
     materials: u32,
     maps: u32,
+    // Slopes of the inner boundary of films against the outer one, beside those of a thickness table.
+    film_tilt: vec2<f32>,
     words: array<vec4<f32>>,
 }
 

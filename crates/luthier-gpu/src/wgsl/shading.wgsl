@@ -215,7 +215,8 @@ fn shading_turned_frame(frame: mat3x3<f32>, n: vec3<f32>) -> mat3x3<f32> {
     return frame * mat3x3<f32>(vec3<f32>(1.0 - n.x * n.x * a, shear, -n.x), vec3<f32>(shear, 1.0 - n.y * n.y * a, -n.y), n);
 }
 
-// Slope parameter of the lobe of an interface, seen from outside; 0 for what is no interface.
+// Slope parameter of the lobe of an interface, seen from outside; 0 for what is no interface. Models that make a base as rough as
+// its coat are sampled for the coat as well.
 fn shading_lobe(material: u32, index: u32) -> f32 {
     var alpha = 0.0;
     var spread = 1.0;
@@ -224,7 +225,7 @@ fn shading_lobe(material: u32, index: u32) -> f32 {
         if layer.kind == 2.0 {
             return 0.0;
         }
-        alpha = max(alpha, layer.alpha);
+        alpha = layer.alpha;
         if i < index {
             spread *= layer.eta;
         }

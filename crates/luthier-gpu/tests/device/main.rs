@@ -13,3 +13,4 @@ mod lookup;
 mod record_terms;
 mod refusal;
 mod render;
+mod reuse;

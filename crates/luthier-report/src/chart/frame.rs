@@ -139,6 +139,11 @@ impl Frame {
         }
     }
 
+    /// A piece of a line between two pixels of a row, for a legend.
+    pub(crate) fn key(&mut self, class: &str, [x0, x1]: [f64; 2], y: f64) {
+        let _ = write!(self.body, "<path class=\"line {class}\" d=\"M{x0:.1} {y:.1}H{x1:.1}\"/>");
+    }
+
     /// A bar from the left edge of the plot to a value of x, `height` pixels about pixel `y`.
     pub(crate) fn bar(&mut self, class: &str, value: f64, y: f64, height: f64) {
         let (left, right) = (self.margin.left, self.px(value));

@@ -2,9 +2,11 @@
 
 mod errors;
 mod frame;
+mod plot;
 mod scale;
 mod tables;
 
 pub(crate) use errors::{by_angle, exceedance, max_by_material, series};
 pub(crate) use frame::legend;
+pub use plot::{Curve, Plot, PlotAxis, PlotColor};
 pub(crate) use tables::{bytes_by_table, error_by_alpha, reflectance};

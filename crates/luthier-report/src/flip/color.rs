@@ -38,13 +38,26 @@ pub(super) fn clipped_rgb([luma, cx, cz]: [f64; 3]) -> [f64; 3] {
     product(&FROM_XYZ, xyz).map(|v| v.clamp(0.0, 1.0))
 }
 
-/// CIE L*a*b* with the chroma scaled by lightness, after Hunt: colours fade in the dark (sec. 4.1).
-pub(super) fn hunt_lab(rgb: [f64; 3]) -> [f64; 3] {
+/// CIE 1976 L*a*b* of linear RGB, white (1, 1, 1).
+fn lab(rgb: [f64; 3]) -> [f64; 3] {
     const DELTA: f64 = 6.0 / 29.0;
     let root = |t: f64| if t > DELTA * DELTA * DELTA { libm::cbrt(t) } else { t / (3.0 * DELTA * DELTA) + 4.0 / 29.0 };
     let [x, y, z] = relative_xyz(rgb).map(root);
-    let lightness = 116.0 * y - 16.0;
-    [lightness, 0.01 * lightness * 500.0 * (x - y), 0.01 * lightness * 200.0 * (y - z)]
+    [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+}
+
+/// L*a*b* with the chroma scaled by lightness, after Hunt: colours fade in the dark (sec. 4.1).
+pub(super) fn hunt_lab(rgb: [f64; 3]) -> [f64; 3] {
+    let [lightness, a, b] = lab(rgb);
+    [lightness, 0.01 * lightness * a, 0.01 * lightness * b]
+}
+
+/// Lightness L*, chroma C*ab and hue hab in degrees, 0 to 360, of a linear Rec.709 colour (CIE 1976, D65 white). Hue says nothing
+/// where there is no chroma.
+pub fn lightness_chroma_hue(rgb: [f64; 3]) -> [f64; 3] {
+    let [lightness, a, b] = lab(rgb);
+    let hue = libm::atan2(b, a).to_degrees();
+    [lightness, libm::hypot(a, b), if hue < 0.0 { hue + 360.0 } else { hue }]
 }
 
 /// City blocks in lightness, Euclid in chroma (Abasi et al. 2020).
@@ -56,6 +69,16 @@ pub(super) fn hyab(a: [f64; 3], b: [f64; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Red of Rec.709, as every table of it has: L* 53.24, C* 104.55, h 40.0.
+    #[test]
+    fn red_has_its_place_in_lab() {
+        let found = lightness_chroma_hue([1.0, 0.0, 0.0]);
+        for (value, expected) in found.iter().zip([53.24, 104.55, 40.0]) {
+            assert!((value - expected).abs() < 0.05, "{found:?}");
+        }
+        assert!(lightness_chroma_hue([0.5; 3])[1] < 1e-9);
+    }
 
     #[test]
     fn opponent_colours_come_back() {

@@ -101,6 +101,19 @@ pub(crate) fn cause(cause: &Cause) -> String {
         Cause::Phase { layer, cosines } => {
             format!("phase row of layer {layer} at a sum of cosines of {}", number(rounded(*cosines, 3)))
         }
+        Cause::Fgd { tile, alpha, cos_theta, expected, sampled, .. } => format!(
+            "albedo table {tile} at α {}, cos θ {}: {}",
+            number(rounded(*alpha, 3)),
+            number(rounded(*cos_theta, 3)),
+            off(*expected, *sampled)
+        ),
+        Cause::Escape { tile, alpha, cos_theta, expected, sampled, .. } => format!(
+            "escape table {tile} at α {}, cos θ {}: {}",
+            number(rounded(*alpha, 3)),
+            number(rounded(*cos_theta, 3)),
+            off(*expected, *sampled)
+        ),
+        Cause::Veil { expected, sampled } => format!("internal reflectance: {}", off(*expected, *sampled)),
         Cause::Arithmetic => "f32 arithmetic".to_owned(),
     }
 }
@@ -122,6 +135,9 @@ fn short(part: &Part) -> String {
         Cause::Fresnel { layer, .. } => format!("Fresnel of layer {layer}"),
         Cause::Distribution { layer, .. } => format!("distribution of layer {layer}"),
         Cause::Phase { layer, .. } => format!("phase of layer {layer}"),
+        Cause::Fgd { layer, .. } => format!("albedo of layer {layer}"),
+        Cause::Escape { layer, .. } => format!("escape from layer {layer}"),
+        Cause::Veil { .. } => "internal reflectance".to_owned(),
         Cause::Arithmetic => "arithmetic".to_owned(),
     }
 }
@@ -132,6 +148,9 @@ fn tally(tally: &[(Factor, u64)]) -> String {
         Factor::Fresnel => "Fresnel",
         Factor::Distribution => "distribution",
         Factor::Phase => "phase",
+        Factor::Fgd => "albedo",
+        Factor::Escape => "escape",
+        Factor::Veil => "internal reflectance",
         Factor::Arithmetic => "arithmetic",
     };
     let total: u64 = tally.iter().map(|(_, count)| count).sum();

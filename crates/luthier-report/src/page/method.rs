@@ -11,11 +11,11 @@ pub(super) fn write(out: &mut String, report: &Report) {
     out.push_str("<h2 id=\"method\">Method</h2>");
     let _ = write!(
         out,
-        "<p><b>Reference.</b> The model <code>{}</code> in f64 with exact Fresnel and distribution terms, at \
-         exactly the f32 directions that the shader gets. The baked shader and the tables are compared with terms \
+        "<p><b>Reference.</b> The model <code>{}</code> in f64 with exact Fresnel and distribution terms (of statistical models: directional \
+         albedos from the micro-surface, and total reflection), at exactly the f32 directions that the shader gets. The baked shader and the tables are compared with terms \
          integrated over the spectrum (CIE 1931 2° observer, D65, to linear Rec.709), or taken at the material's three \
          wavelengths where its file asks for that; the full shader with terms at the material's three wavelengths, because that is what it \
-         evaluates. The errors are those of tables and arithmetic, not of the model.</p>",
+         evaluates, and, of statistical models, with facets that count as level. The errors are those of tables and arithmetic, not of the model.</p>",
         escape(&report.model)
     );
     comparisons(out, report);
@@ -43,11 +43,11 @@ pub(super) fn write(out: &mut String, report: &Report) {
     out.push_str(
         "<p><b>Tables</b> are scanned from the shipped texels: Fresnel rows at eight points a cell and 256 grazing \
          cosines against every interface that reads them, distributions at one point in every cell, phase rows at \
-         eight points a cell against the closed form, albedos at some dozen points against an estimate of their own. \
+         eight points a cell against the closed form, shares that escape total reflection on a grid over the same domain as albedos, albedos at some dozen points against an estimate of their own. \
          Formats that a sampler filters are read with 8-bit weights; others exactly, as shaders fetch them. Values and \
          weights are otherwise f64.</p><p><b>Exceptions.</b> For a pair that misses the target, the f64 model is \
-         evaluated again with exact terms but for one, which is read from the tables: the Fresnel term or the \
-         distribution of each layer in turn. What the device adds to f64 on the same tables is f32 arithmetic. The \
+         evaluated again with exact terms but for one, which is read from the tables: the Fresnel term, the \
+         distribution and so on of each layer in turn. What the device adds to f64 on the same tables is f32 arithmetic. The \
          largest of these is the cause.</p><p><b>Not judged here:</b> the model against nature; pairs below the \
          horizon; film thickness maps, which the reference takes at their nominal value.</p>\n",
     );

@@ -5,13 +5,15 @@ mod sets;
 mod tolerances;
 
 use luthier_layers::real_time::Twin;
+use luthier_layers::terms::ShaderTerms;
 use luthier_lut::{ColorMode, ShadingModel};
 use luthier_optics::Rgb;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::exceptions::{Factor, Factors, Miss, Part};
 use crate::judge::{References, WeightsVote, evaluate, run};
-use crate::table_terms::TableTerms;
+use crate::table_terms::{TableTerms, is_statistical};
 use crate::{
     Device, ErrorSummary, FLOOR, Form, Pair, ReportError, Statistics, Subject, Weights, WorstPair, json, statistics,
 };
@@ -174,7 +176,7 @@ struct Block {
     material: usize,
     pairs: Vec<Pair>,
     reference: Vec<Rgb>,
-    three: Vec<Rgb>,
+    full_reference: Vec<Rgb>,
     /// f64 on the tables, with 8-bit and with exact weights.
     tables: [Vec<Rgb>; 2],
     baked: Vec<Rgb>,
@@ -196,6 +198,21 @@ fn compare(
     case: &ParityCase,
     pairs_per_set: u32,
 ) -> Result<[ParityRow; 2], ReportError> {
+    let mut numbers: Vec<u32> = std::iter::once(case.material).chain(case.polished.iter().copied()).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    // Energies of rough interfaces take seconds, and are prepared when they are first asked for: here, all at once.
+    let prepared: Vec<(u32, References)> = numbers
+        .into_par_iter()
+        .map(|number| {
+            let references = references(subject, number as usize)?;
+            if is_statistical(subject.manifest.materials[number as usize].model) {
+                references.baked().veil();
+            }
+            Ok((number, references))
+        })
+        .collect::<Result<_, ReportError>>()?;
+    let of = |number| prepared.iter().find(|(n, _)| *n == number).map(|(_, references)| references);
     let mut blocks = Vec::new();
     let mut vote = WeightsVote::default();
     for set in ParitySet::ALL {
@@ -204,8 +221,8 @@ fn compare(
         let count = pairs_per_set.div_ceil(materials.len().max(1) as u32);
         for &number in materials {
             let material = number as usize;
-            let references = references(subject, material)?;
-            let References { layers, twin, three, .. } = &references;
+            let Some(references) = of(number) else { continue };
+            let References { layers, twin, .. } = references;
             let pairs = set.pairs(count, layers);
             let tables =
                 |weights| Ok::<_, ReportError>(evaluate(twin, &TableTerms::new(subject, material, weights)?, &pairs));
@@ -213,7 +230,7 @@ fn compare(
                 set,
                 material,
                 reference: evaluate(twin, references.baked(), &pairs),
-                three: evaluate(twin, three, &pairs),
+                full_reference: evaluate(twin, references.full(), &pairs),
                 tables: [tables(Weights::EightBit)?, tables(Weights::Exact)?],
                 baked: run(device, Form::Baked, number, &pairs)?,
                 full: run(device, Form::Full, number, &pairs)?,
@@ -246,8 +263,8 @@ fn compare(
     };
     let mut baked =
         row(Form::Baked, Compared::new(&blocks, |b| &b.baked, |b| &b.reference, Some(weights)), Some(weights));
-    baked.parts = parts(subject, &blocks, weights, &baked)?;
-    let full = row(Form::Full, Compared::new(&blocks, |b| &b.full, |b| &b.three, None), None);
+    baked.parts = parts(subject, &blocks, weights, &baked, of)?;
+    let full = row(Form::Full, Compared::new(&blocks, |b| &b.full, |b| &b.full_reference, None), None);
     Ok([baked, full])
 }
 
@@ -256,13 +273,19 @@ fn references(subject: &Subject<'_>, material: usize) -> Result<References, Repo
 }
 
 /// What makes the largest table error.
-fn parts(subject: &Subject<'_>, blocks: &[Block], weights: Weights, row: &ParityRow) -> Result<Vec<Part>, ReportError> {
+fn parts<'a>(
+    subject: &Subject<'_>,
+    blocks: &[Block],
+    weights: Weights,
+    row: &ParityRow,
+    of: impl Fn(u32) -> Option<&'a References>,
+) -> Result<Vec<Part>, ReportError> {
     let Some((set, worst)) = &row.worst_table else { return Ok(Vec::new()) };
     let at = blocks.iter().filter(|block| block.set == *set).find_map(|block| {
         block.pairs.iter().position(|pair| *pair == (worst.wi, worst.wo)).map(|index| (block, index))
     });
     let Some((block, index)) = at else { return Ok(Vec::new()) };
-    let references = references(subject, block.material)?;
+    let Some(references) = of(block.material as u32) else { return Ok(Vec::new()) };
     let tables = TableTerms::new(subject, block.material, weights)?;
     let twin: &Twin = &references.twin;
     let factors = Factors { twin, exact: references.baked(), tables: Some(&tables), on_device: false };

@@ -2,7 +2,6 @@
 
 use std::fmt::Write;
 
-use luthier_layers::real_time::Twin;
 use luthier_lut::ShadingModel;
 
 use super::tolerances::{KNOWN, Tolerance, tolerance};
@@ -43,7 +42,9 @@ on {device}, by {generator}. Compared is f cos θᵢ at {pairs} pairs of directi
 each of five sets. An error is relative to max(brightest channel of the reference, {}), a tenth of what a white diffuser gives; every \
 channel is a sample.
 
-The reference of `baked` is the material's colour, spectral or at three wavelengths; that of `full` is three wavelengths. *Table* is f64 \
+The reference of `baked` is the material's colour, spectral or at three wavelengths; that of `full` is three wavelengths. Of `belcour` and \
+`yamaguchi` the reference of `baked` computes directional albedos from the micro-surface (to 5e-4) and total reflection by integration; \
+that of `full` takes facets as level, as the form does, and what covers a diffuse base from the material's record. *Table* is f64 \
 arithmetic on the texels that ship against the reference; *arithmetic* is the device against that, or, where there is no table, \
 against the reference; *total* is the device against the reference.
 
@@ -54,11 +55,6 @@ against the reference; *total* is the device against the reference.
     );
     for set in ParitySet::ALL {
         let _ = writeln!(out, "| {} | {} |", set.name(), set.description());
-    }
-    let missing = ShadingModel::ALL.into_iter().map(ShadingModel::name).filter(|name| !Twin::MODELS.contains(name));
-    let missing: Vec<&str> = missing.collect();
-    if !missing.is_empty() {
-        let _ = writeln!(out, "\nNot compared, for want of a twin that reads tables: {}.", missing.join(", "));
     }
     out
 }

@@ -2,6 +2,7 @@
 
 mod albedo;
 mod distribution;
+mod escape;
 mod fresnel;
 mod phase;
 mod thickness;
@@ -45,7 +46,8 @@ pub(crate) fn scan(
                 TableKind::Distribution => distribution::scan(&table, number, &users, subject)?,
                 TableKind::Fgd => albedo.as_mut().and_then(|tiles| tiles[number as usize].take()),
                 TableKind::Phase => phase::scan(&table, number, &users, subject),
-                TableKind::Film | TableKind::Escape => None,
+                TableKind::Escape => escape::scan(&table, number, &users, subject),
+                TableKind::Film => None,
                 TableKind::Thickness => {
                     findings.extend(thickness::doubts(&table, number, &users, subject));
                     None

@@ -1,12 +1,18 @@
 //! A small bake made here, from the exact terms and the layout rules, and devices with planted errors.
 
+use std::sync::OnceLock;
+
 use glam::DVec3;
 use luthier_layers::elek::{self, Below, Terms};
+use luthier_layers::monochrome::Monochrome;
 use luthier_layers::real_time::Twin;
+use luthier_layers::statistics::diffuse_base::Veil;
+use luthier_layers::statistics::energy::{Energy, ExactEnergy, FacetCache};
+use luthier_layers::statistics::total_reflection::escaping_share;
 use luthier_layers::terms::Exact;
 use luthier_lut::{
-    AtlasLayout, Axis, ErrorStats, FileEntry, Image, LayerKind, LayerRecord, MANIFEST_SCHEMA, Manifest, Mapping,
-    MaterialEntry, TableEntry, TableKind, TexelFormat, Tile, Worst,
+    AtlasLayout, Axis, ColorMode, ErrorStats, FileEntry, Image, LayerKind, LayerRecord, MANIFEST_SCHEMA, Manifest,
+    Mapping, MaterialEntry, ShadingModel, TableEntry, TableKind, TexelFormat, Tile, Worst,
 };
 use luthier_optics::color::Color;
 use luthier_optics::ior::{Ior, IorSample};
@@ -98,6 +104,67 @@ impl Bake {
         Self { manifest, textures, stacks: named.into_iter().map(|(_, stack)| stack).collect() }
     }
 
+    /// The same with tables that statistical models read: albedos at 16 x 6 nodes, one tile for each of the surfaces in turn, and shares
+    /// that escape through a coat of n = 1.5.
+    pub(crate) fn statistical(model: ShadingModel) -> Self {
+        let mut bake = Self::new();
+        let alpha_axis = axis("alpha", 0.0, 1.0, 6, Mapping::Power { exponent: 3.0 });
+        let x = axis("cos_theta", 0.0, 1.0, 16, Mapping::Power { exponent: 2.0 });
+        // The same for every model, and some seconds of work.
+        static TILES: OnceLock<Vec<Vec<[f64; 3]>>> = OnceLock::new();
+        let tiles = TILES.get_or_init(|| {
+            let mut tiles = Vec::new();
+            for stack in &bake.stacks {
+                for l in (0..stack.layers.len()).filter(|&l| !matches!(stack.layers[l].base, Base::Diffuse(_))) {
+                    let alphas = (0..alpha_axis.size).map(|j| alpha_axis.node(j));
+                    tiles.push(alphas.flat_map(|alpha| albedos(stack, l, alpha, &x)).collect());
+                }
+            }
+            tiles
+        });
+        let mut tile = 0..;
+        for material in &mut bake.manifest.materials {
+            material.model = model;
+            for record in material.layers.iter_mut().filter(|r| r.kind != LayerKind::Diffuse) {
+                record.fgd_tile = tile.next();
+                let is_above_metal = record.kind == LayerKind::Dielectric && material.name == "lacquered-copper";
+                record.escape_tile = is_above_metal.then_some(0);
+            }
+            material.color = ColorMode::ThreeWavelengths;
+            material.constants.internal_reflectance = [0.6; 3];
+        }
+        let layout = AtlasLayout { x, y: Some(alpha_axis), apron: 0, columns: 1, tiles: tiles.len() as u32 };
+        let image = filled(&layout, |tile, i, j| tiles[tile as usize][(j * layout.x.size + i) as usize]);
+        bake.push(TableKind::Fgd, layout, &image);
+        let layout = AtlasLayout {
+            x: axis("cos_theta", 0.0, 1.0, 32, Mapping::Linear),
+            y: Some(axis("alpha", 0.0, 1.0, 16, Mapping::Power { exponent: 2.0 })),
+            apron: 0,
+            columns: 1,
+            tiles: 1,
+        };
+        let alpha_axis = layout.y.clone().unwrap();
+        let image = filled(&layout, |_, i, j| {
+            let cos = layout.x.node(i);
+            let inside = (1.0 - (1.0 - cos * cos) / 2.25).sqrt();
+            [escaping_share(inside, alpha_axis.node(j), 1.0 / 1.5); 3]
+        });
+        bake.push(TableKind::Escape, layout, &image);
+        bake
+    }
+
+    /// The texels of a table.
+    pub(crate) fn texels(&mut self, kind: TableKind) -> &mut [f32] {
+        &mut self.textures.iter_mut().find(|(k, _)| *k == kind).unwrap().1.data
+    }
+
+    fn push(&mut self, kind: TableKind, layout: AtlasLayout, truth: &Image) {
+        let names = (0..layout.tiles).map(|tile| format!("{}-{tile}", kind.name())).collect();
+        let (entry, texels) = table(kind, layout, TexelFormat::Rgba16Float, names, truth);
+        self.manifest.tables.push(entry);
+        self.textures.push((kind, texels));
+    }
+
     pub(crate) fn subject(&self) -> Subject<'_> {
         Subject { manifest: &self.manifest, textures: self.textures.clone(), stacks: self.stacks.clone() }
     }
@@ -107,6 +174,29 @@ impl Bake {
     pub(crate) fn device<S: Fn(Form, u32, usize, [f32; 3]) -> [f32; 3]>(&self, spoil: S) -> FakeDevice<'_, S> {
         FakeDevice { subject: self.subject(), spoil, baked_reads_tables: true }
     }
+}
+
+/// Albedos of an interface of a stack at three wavelengths, of another slope parameter, at the nodes over the cosine.
+fn albedos(stack: &Stack, layer: usize, alpha: f64, cosines: &Axis) -> Vec<[f64; 3]> {
+    let mut stack = stack.clone();
+    stack.layers[layer].surface = Surface::isotropic(stack.layers[layer].surface.distribution, alpha);
+    let mut facets = FacetCache::default();
+    let energies =
+        [0, 1, 2].map(|c: usize| ExactEnergy::with_facets(&Monochrome::new(&stack, WAVELENGTHS_NM[c], c), &mut facets));
+    let at = |i| energies.each_ref().map(|energy| energy.fgd(layer, cosines.node(i), alpha)[0]);
+    (0..cosines.size).map(at).collect()
+}
+
+/// Texels of an atlas of one column: RGB of tile, column and row.
+fn filled(layout: &AtlasLayout, texel: impl Fn(u32, u32, u32) -> [f64; 3]) -> Image {
+    let [width, height] = layout.size();
+    let [_, tile_height] = layout.tile_size();
+    let mut image = Image::zeros(width, height, 4);
+    for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+        let [r, g, b] = texel(y / tile_height, x, y % tile_height).map(|v| v as f32);
+        image.texel_mut(x, y).copy_from_slice(&[r, g, b, 1.0]);
+    }
+    image
 }
 
 pub(crate) struct FakeDevice<'a, S> {
@@ -123,11 +213,13 @@ impl<S: Fn(Form, u32, usize, [f32; 3]) -> [f32; 3]> Device for FakeDevice<'_, S>
 
     fn evaluate(&self, form: Form, material: u32, pairs: &[Pair]) -> Result<Vec<[f32; 3]>, String> {
         let stack = &self.subject.stacks[material as usize];
-        let model = self.subject.manifest.materials[material as usize].model.name();
+        let entry = &self.subject.manifest.materials[material as usize];
+        let (model, constants) = (entry.model.name(), &entry.constants);
         let twin = Twin::new(model, stack, WAVELENGTHS_NM, Color::Spectral).ok_or("no twin")?;
         let tables = TableTerms::new(&self.subject, material as usize, Weights::Exact).map_err(|e| e.to_string())?;
         let spectral = Exact::new(stack, Color::Spectral);
-        let three = Exact::new(stack, Color::ThreeWavelengths(WAVELENGTHS_NM));
+        let veil = Veil { internal: constants.internal_reflectance, upward: [1.0 - constants.upward_loss; 3] };
+        let three = Exact::level(stack, Color::ThreeWavelengths(WAVELENGTHS_NM), veil);
         let wide = |w: [f32; 3]| DVec3::from(w.map(f64::from));
         let value = |(n, &(wi, wo)): (usize, &Pair)| {
             let value = match form {

@@ -157,7 +157,10 @@ fn what_does_not_fit_together_is_refused() {
         refused(&|b| b.manifest.materials[0].layers[0].fresnel_tile = Some(99)),
         ReportError::MissingTile { layer: 0, kind: TableKind::Fresnel, .. }
     ));
-    assert!(matches!(refused(&|b| b.manifest.materials[0].model = ShadingModel::Belcour), ReportError::Model { .. }));
+    assert!(matches!(
+        refused(&|b| b.manifest.materials[0].model = ShadingModel::Belcour),
+        ReportError::MissingTile { layer: 0, kind: TableKind::Fgd, .. }
+    ));
     let none = Settings { pairs_per_set: 0, ..Settings::default() };
     assert!(matches!(judge(&bake.subject(), None, &none).unwrap_err(), ReportError::NoPairs));
     let nothing = Subject { textures: Vec::new(), ..bake.subject() };

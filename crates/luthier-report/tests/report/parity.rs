@@ -1,21 +1,27 @@
 //! The parity run against devices whose errors are known.
 
-use luthier_lut::ShadingModel;
+use luthier_lut::{ShadingModel, TableKind};
 use luthier_report::{
-    Form, POLISHED_ALPHAS, Parity, ParityCase, ParityRow, ParitySet, Settings, Share, Verdict, judge, parity,
+    Factor, Form, POLISHED_ALPHAS, Parity, ParityCase, ParityRow, ParitySet, ReportError, Settings, Share, Verdict,
+    judge, parity,
 };
 
 use crate::fixture::Bake;
 
-const MODELS: [ShadingModel; 5] = [
+const MODELS: [ShadingModel; 7] = [
     ShadingModel::Elek,
     ShadingModel::WeidlichWilkie,
     ShadingModel::GranierHeidrich,
+    ShadingModel::Belcour,
+    ShadingModel::Yamaguchi,
     ShadingModel::Phong,
     ShadingModel::Microfacet,
 ];
 
 fn shaded(model: ShadingModel) -> Bake {
+    if matches!(model, ShadingModel::Belcour | ShadingModel::Yamaguchi) {
+        return Bake::statistical(model);
+    }
     let mut bake = Bake::new();
     bake.manifest.materials.iter_mut().for_each(|material| material.model = model);
     bake
@@ -59,6 +65,38 @@ fn errors_of_tables_and_of_arithmetic_are_told_apart() {
                 assert_eq!(row.max(Share::Table), 0.0);
             }
         }
+    }
+}
+
+/// A spoilt texel of a table, or a wrong constant, is named as the cause.
+#[test]
+fn what_statistical_models_read_wrong_is_named() {
+    let spoil: [(Factor, fn(&mut Bake)); 3] = [
+        (Factor::Fgd, |bake| bake.texels(TableKind::Fgd).iter_mut().for_each(|v| *v *= 0.8)),
+        (Factor::Escape, |bake| bake.texels(TableKind::Escape).iter_mut().for_each(|v| *v *= 0.5)),
+        (Factor::Veil, |bake| bake.manifest.materials[0].constants.internal_reflectance = [0.9; 3]),
+    ];
+    for (factor, spoil) in spoil {
+        let mut bake = shaded(ShadingModel::Yamaguchi);
+        spoil(&mut bake);
+        let found = rows(&bake, |_, _, _, value| value);
+        let of = if factor == Factor::Veil { "red-lacquer" } else { "lacquered-copper" };
+        let row = found.iter().find(|row| row.material == of && row.form == Form::Baked).unwrap();
+        assert_eq!(row.parts[0].cause.factor(), factor, "{:?}", row.parts);
+        assert!(row.max(Share::Table) > 0.05 && row.arithmetic.max < 1.2e-7, "{factor:?}: {}", row.max(Share::Table));
+    }
+}
+
+/// Without its tile there is nothing to judge a statistical model by.
+#[test]
+fn a_missing_tile_is_refused() {
+    for kind in [TableKind::Fgd, TableKind::Escape] {
+        let mut bake = shaded(ShadingModel::Belcour);
+        let record = &mut bake.manifest.materials[1].layers[0];
+        *(if kind == TableKind::Fgd { &mut record.fgd_tile } else { &mut record.escape_tile }) = None;
+        let refusal = judge(&bake.subject(), None, &Settings { pairs_per_set: 8, ..Settings::default() }).unwrap_err();
+        let expected = ReportError::MissingTile { material: "lacquered-copper".to_owned(), layer: 0, kind };
+        assert_eq!(refusal.to_string(), expected.to_string());
     }
 }
 

@@ -2,7 +2,7 @@
 
 use luthier_layers::elek::Terms;
 use luthier_layers::terms::Exact;
-use luthier_lut::{AtlasLayout, Image, Mapping, TableKind, TexelFormat};
+use luthier_lut::{AtlasLayout, Image, Mapping, ShadingModel, TableKind, TexelFormat};
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Film, FilmThickness, Slab};
@@ -39,6 +39,21 @@ impl Bake {
         self.manifest.tables.push(entry);
         self.textures.push((kind, texels));
     }
+}
+
+/// Half floats at 32 x 16 nodes, and the same with one texel of the middle a tenth too low.
+#[test]
+fn escape_tiles_are_measured() {
+    let worst = |spoil: f32| {
+        let mut bake = Bake::statistical(ShadingModel::Belcour);
+        bake.texels(TableKind::Escape)[(8 * 32 + 16) * 4] -= spoil;
+        let report = judged(&bake);
+        let tile = &tiles(&report, TableKind::Escape)[0];
+        assert_eq!(tile.users, ["lacquered-copper/0"]);
+        tile.judge.as_ref().unwrap().max_abs_err
+    };
+    let (good, bad) = (worst(0.0), worst(0.1));
+    assert!(good < 0.04 && bad > 0.06 && bad < 0.11, "{good} {bad}");
 }
 
 #[test]

@@ -66,7 +66,7 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     // Flakes tilt all that lies below, the paths through the slab included. //? flakes
     next.wi = luthier_turned(path.normal_below, next.wi); //? flakes
     next.wo = luthier_turned(path.normal_below, next.wo); //? flakes
-    next.across = next.wi.xy + next.wo.xy; //? flakes
+    next.across = luthier_turned(path.normal_below, vec3<f32>(next.across, refracted.x + refracted.y)).xy; //? flakes
     next.normal_below = vec3<f32>(0.0, 0.0, 1.0); //? flakes
     if min(next.wi.z, next.wo.z) <= 0.0 { //? flakes
         return next; //? flakes

@@ -1,0 +1,49 @@
+use std::sync::Arc;
+
+use luthier_gpu::Shape;
+use luthier_view::{Form, Options, Shots, ViewError};
+
+use crate::cli::{FormName, ShapeName, ThemeName, ViewOptions};
+use crate::device::{device, open};
+use crate::failure::{Failure, Outcome};
+use crate::materials::read;
+use crate::picture::{Format, settings};
+use crate::view_host::ViewHost;
+
+/// Opens the window, and returns when it is closed.
+pub(crate) fn run(options: &ViewOptions) -> Outcome {
+    if options.shape == ShapeName::Grid {
+        return Err(Failure::Input(anyhow::anyhow!("a window shows one material; the grid has 25 of its own")));
+    }
+    if let Some(path) = &options.screenshot
+        && Format::of(path)? != Format::Png
+    {
+        return Err(Failure::Input(anyhow::anyhow!("cannot write {}: screenshots are .png", path.display())));
+    }
+    // A path that is none is a mistake of the command line; what is in the files is shown in the window.
+    read(&options.sources.paths)?;
+    let shape = Shape::from(options.shape);
+    let look = &options.look;
+    let settings = settings(look, shape, 1)?;
+    let gpu = open(look.adapter.as_deref())?;
+    let window = Options {
+        settings,
+        environment_is_file: look.environment.is_some(),
+        tone: look.tone.into(),
+        shape,
+        form: match options.form {
+            FormName::Baked => Form::Baked,
+            FormName::Full => Form::Full,
+        },
+        model: options.shading.model,
+        size: options.window.0.map(f32::from),
+        dark: options.theme.map(|theme| theme == ThemeName::Dark),
+        shots: options.screenshot.is_some().then_some(Shots { frames: options.frames, count: options.shots }),
+    };
+    let host = ViewHost::new(options.sources.paths.clone(), options.screenshot.clone());
+    luthier_view::run(Arc::new(host), gpu, window).map_err(|error| match error {
+        ViewError::Renderer(source) => device(source),
+        ViewError::Screenshot(_) => Failure::Files(error.into()),
+        _ => Failure::Device(error.into()),
+    })
+}

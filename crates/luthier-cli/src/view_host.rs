@@ -1,0 +1,283 @@
+//! Files, bakes and screenshots for the window.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::SystemTime;
+
+use luthier_bake::{Bake, Key, Outline, Silent};
+use luthier_gpu::{Artefacts, TableTexels, WgslShader};
+use luthier_lut::{Atlas, FileEntry, MANIFEST_SCHEMA, Manifest};
+use luthier_material::Material;
+use luthier_shader::{MaterialSet, TableFace, Target};
+use luthier_texture::png;
+use luthier_view::{Form, Host, MaterialFile, Screenshot};
+
+use crate::bake_files::{GENERATOR, material_entries};
+use crate::device::device;
+use crate::failure::{Failure, Outcome};
+use crate::materials::{Source, find, read_image, read_one};
+use crate::verb::parity::table;
+
+/// Time of the last change and length of each file that matters; `None` where it cannot be read.
+type Stamps = BTreeMap<PathBuf, Option<(SystemTime, u64)>>;
+
+/// The command, as the window sees it.
+pub(crate) struct ViewHost {
+    paths: Vec<PathBuf>,
+    screenshot: Option<PathBuf>,
+    seen: Mutex<Option<(Stamps, Vec<MaterialFile>)>>,
+    tables: Mutex<Option<Tables>>,
+}
+
+/// Tables of the last bake, and what they are of.
+struct Tables {
+    keys: Vec<Vec<Key>>,
+    atlases: Vec<Atlas>,
+}
+
+impl ViewHost {
+    pub(crate) fn new(paths: Vec<PathBuf>, screenshot: Option<PathBuf>) -> Self {
+        Self { paths, screenshot, seen: Mutex::new(None), tables: Mutex::new(None) }
+    }
+
+    /// The tables of a material: those of the last bake, where only numbers in the material buffer changed.
+    fn atlases(&self, material: &Material, outline: &Outline) -> Outcome<Vec<Atlas>> {
+        let mut last = lock(&self.tables);
+        if let Some(Tables { keys, atlases }) = &*last
+            && *keys == outline.keys
+            && atlases.iter().map(|a| (a.kind, &a.layout, a.format)).eq(outline.tables.iter().map(|t| (t.0, &t.1, t.2)))
+        {
+            return Ok(atlases.clone());
+        }
+        let materials = std::slice::from_ref(material);
+        let Bake { atlases, .. } = luthier_bake::bake(materials, &read_image, &Silent).map_err(Failure::input)?;
+        *last = Some(Tables { keys: outline.keys.clone(), atlases: atlases.clone() });
+        Ok(atlases)
+    }
+
+    fn artefacts(&self, material: &Material, form: Form) -> Outcome<Artefacts> {
+        let materials = std::slice::from_ref(material);
+        let outline = luthier_bake::outline(materials, &read_image).map_err(Failure::input)?;
+        let atlases = match form {
+            Form::Baked => self.atlases(material, &outline)?,
+            Form::Full => Vec::new(),
+        };
+        let mut files = Vec::new();
+        let entries = material_entries(materials, &outline.materials, &mut files)?;
+        let tables =
+            outline.tables.into_iter().map(|(kind, layout, format)| TableFace { kind, layout, format }).collect();
+        let set = MaterialSet { materials: &entries, tables };
+        let emitted = match form {
+            Form::Baked => luthier_shader::Form::Baked,
+            Form::Full => luthier_shader::Form::Full,
+        };
+        let wgsl = luthier_shader::emit(&set, emitted, Target::Wgsl).map_err(Failure::input)?;
+        let bindings = luthier_shader::bindings(&set, emitted);
+        let texels = atlases.iter().map(|atlas| TableTexels {
+            kind: atlas.kind,
+            format: atlas.format,
+            width: atlas.texels.width,
+            height: atlas.texels.height,
+            bytes: atlas.format.encode(&atlas.texels),
+        });
+        let manifest = Manifest {
+            schema: MANIFEST_SCHEMA,
+            generator: GENERATOR.to_owned(),
+            materials: entries,
+            tables: atlases.iter().map(table).collect(),
+            shaders: Vec::new(),
+            bindings,
+            material_buffer: FileEntry::default(),
+        };
+        let shaders = vec![WgslShader { form: form.name().to_owned(), wgsl }];
+        let artefacts = Artefacts::from_parts(manifest, texels.collect(), shaders).map_err(device)?;
+        let file = |path: &str| files.iter().find(|(name, _)| name == path).map(|(_, bytes)| bytes.clone());
+        artefacts.with_maps(|entry| Ok(file(&entry.file.path).unwrap_or_default())).map_err(device)
+    }
+}
+
+impl Host for ViewHost {
+    fn changed(&self) -> Option<Vec<MaterialFile>> {
+        let mut seen = lock(&self.seen);
+        let last_files = seen.as_ref().map_or(&[][..], |(_, files)| files);
+        let stamps = stamps(&self.paths, last_files);
+        if seen.as_ref().is_some_and(|(last, _)| *last == stamps) {
+            return None;
+        }
+        let files: Vec<MaterialFile> = match find(&self.paths) {
+            Ok(paths) => paths.iter().map(|path| file(path)).collect(),
+            // A folder that is being replaced: what was there is missing for now.
+            Err(_) => last_files.iter().map(|file| self::file(Path::new(&file.label))).collect(),
+        };
+        let is_new = seen.as_ref().is_none_or(|(_, last)| *last != files);
+        // Names of files may have changed, and with them what to look at.
+        *seen = Some((self::stamps(&self.paths, &files), files.clone()));
+        is_new.then_some(files)
+    }
+
+    fn bake(&self, material: &Material, form: Form) -> Result<Artefacts, String> {
+        self.artefacts(material, form).map_err(|failure| failure.sentence())
+    }
+
+    fn save(&self, screenshot: &Screenshot, number: u32, asked: bool) -> Result<String, String> {
+        let path = match &self.screenshot {
+            Some(path) if asked => numbered(path, number),
+            _ => free(),
+        };
+        let bytes =
+            png::encode_rgb(screenshot.width, screenshot.height, &screenshot.rgb8).map_err(|e| e.to_string())?;
+        // Whoever waits for the file finds all of it.
+        let part = path.with_extension("png.part");
+        let written = std::fs::write(&part, bytes).and_then(|()| std::fs::rename(&part, &path));
+        match written {
+            Ok(()) => Ok(path.display().to_string()),
+            Err(source) => Err(format!("cannot write {}: {source}", path.display())),
+        }
+    }
+}
+
+/// A material file as it is now.
+fn file(path: &Path) -> MaterialFile {
+    let Source { label, text, parsed } = match read_one(path) {
+        Ok(source) => source,
+        Err(failure) => {
+            let label = path.to_string_lossy().into_owned();
+            return MaterialFile { label, material: Err(failure.sentence()), revision: 0 };
+        }
+    };
+    match parsed {
+        Ok(parsed) => {
+            let revision = revision(&parsed.material);
+            MaterialFile { label, material: Ok(parsed.material), revision }
+        }
+        Err(diagnostics) => {
+            let texts: Vec<String> = diagnostics.iter().map(|diagnostic| diagnostic.render(&text)).collect();
+            MaterialFile { label, material: Err(texts.join("\n\n")), revision: 0 }
+        }
+    }
+}
+
+/// What may change the materials: they, what they name, and what lies beside them.
+fn stamps(paths: &[PathBuf], files: &[MaterialFile]) -> Stamps {
+    let mut watched: BTreeSet<PathBuf> = find(paths).unwrap_or_default().into_iter().collect();
+    watched.extend(files.iter().map(|file| PathBuf::from(&file.label)));
+    watched.extend(files.iter().filter_map(|file| file.material.as_ref().ok()).flat_map(named));
+    let folders: BTreeSet<PathBuf> = watched.iter().map(|path| folder(path)).collect();
+    for folder in folders {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        watched.extend(entries.map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "csv")));
+    }
+    let stamped = |path: PathBuf| {
+        let stamp = stamp(&path);
+        (path, stamp)
+    };
+    watched.into_iter().map(stamped).collect()
+}
+
+fn stamp(path: &Path) -> Option<(SystemTime, u64)> {
+    let metadata = std::fs::metadata(path).ok()?;
+    Some((metadata.modified().ok()?, metadata.len()))
+}
+
+/// The files that a material names.
+fn named(material: &Material) -> impl Iterator<Item = PathBuf> {
+    let folder = folder(Path::new(&material.source));
+    material.files.iter().map(move |name| folder.join(name))
+}
+
+fn folder(path: &Path) -> PathBuf {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
+        _ => PathBuf::from("."),
+    }
+}
+
+fn revision(material: &Material) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    named(material).for_each(|path| stamp(&path).hash(&mut hasher));
+    hasher.finish()
+}
+
+/// `window.png`, `window-2.png`, ...
+fn numbered(path: &Path, number: u32) -> PathBuf {
+    if number == 1 {
+        return path.to_owned();
+    }
+    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    path.with_file_name(format!("{stem}-{number}.png"))
+}
+
+/// A name in the current folder that nothing has yet.
+fn free() -> PathBuf {
+    let name = |i: u32| PathBuf::from(format!("luthier-view-{i}.png"));
+    (1..).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(0))
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn screenshots_are_numbered_from_the_second_on() {
+        let path = Path::new("a/window.png");
+        assert_eq!(numbered(path, 1), path);
+        assert_eq!(numbered(path, 3), Path::new("a/window-3.png"));
+    }
+
+    #[test]
+    fn a_change_is_told_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("m.toml");
+        let write = |albedo: &str| {
+            let text = format!("schema = 1\nname = \"m\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = {albedo}\n");
+            std::fs::write(&path, text).unwrap();
+        };
+        write("0.5");
+        let host = ViewHost::new(vec![folder.path().to_owned()], None);
+        assert!(host.changed().unwrap()[0].material.is_ok());
+        assert!(host.changed().is_none());
+        write("0.25");
+        assert!(host.changed().unwrap()[0].material.is_ok());
+        assert!(host.changed().is_none());
+        write("25.0");
+        let problem = host.changed().unwrap()[0].material.clone().unwrap_err();
+        assert!(problem.contains("m.toml:5:10") && problem.contains("help"), "{problem}");
+        std::fs::remove_file(&path).unwrap();
+        assert!(host.changed().unwrap()[0].material.as_ref().unwrap_err().contains("m.toml"));
+        assert!(host.changed().is_none());
+        write("0.25");
+        assert!(host.changed().unwrap()[0].material.is_ok());
+        // What does not matter.
+        std::fs::write(folder.path().join("note.txt"), "x").unwrap();
+        assert!(host.changed().is_none());
+    }
+
+    /// Only what tables depend on bakes again.
+    #[test]
+    fn tables_are_kept_while_they_serve() {
+        let text = "schema = 1\nname = \"m\"\n[[layer]]\ntype = \"conductor\"\nior = { n = 0.2, k = 3 }\nalpha = 0.2\n\
+                    [bake]\nfgd = { size = [8, 8] }\ndistribution = { size = [16, 16] }\ncolor = \"three-wavelengths\"\n";
+        let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+        let mut material = luthier_material::parse("m.toml", text, &no_files).unwrap().material;
+        let host = ViewHost::new(Vec::new(), None);
+        let first = host.bake(&material, Form::Baked).unwrap();
+        luthier_view::Handle::Alpha(0).set(&mut material, 0.4);
+        // Marked, to tell whether these are the tables that come back.
+        lock(&host.tables).as_mut().unwrap().atlases[0].tiles[0].name = "marked".to_owned();
+        let rougher = host.bake(&material, Form::Baked).unwrap();
+        assert_eq!(rougher.manifest.tables[0].tiles[0].name, "marked");
+        assert_eq!(rougher.tables, first.tables);
+        assert_eq!(rougher.manifest.materials[0].layers[0].alpha, 0.4);
+        luthier_view::Handle::IorN(0).set(&mut material, 1.2);
+        let other = host.bake(&material, Form::Baked).unwrap();
+        assert!(other.tables != first.tables);
+        let full = host.bake(&material, Form::Full).unwrap();
+        assert!(full.tables.is_empty() && full.shader("full").is_ok());
+    }
+}

@@ -1,0 +1,163 @@
+//! Pictures in f64, for models that no shader has.
+
+use glam::DVec3;
+use luthier_layers::layered_mc::Estimate;
+use luthier_layers::model::Model;
+use luthier_layers::monochrome::Monochrome;
+use luthier_lut::Image;
+use luthier_optics::Rgb;
+use luthier_optics::stack::Stack;
+use rayon::prelude::*;
+
+/// Distance of the eye from the centre, and half the side of what the picture shows there: a long lens from +z.
+const EYE: f64 = 7.0;
+const HALF_EXTENT: f64 = 1.22;
+
+/// A light that is far away. World: +y is up, +z to the eye.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DistantLight {
+    /// To the light; need not be unit.
+    pub direction: [f64; 3],
+    /// What it gives to a patch that faces it, linear RGB.
+    pub irradiance: Rgb,
+}
+
+/// A picture and how noisy it is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BallPicture {
+    /// Radiance, linear RGB; black around the ball.
+    pub image: Image,
+    /// Root of the mean squared standard error over all pixels and channels; 0 for models without noise.
+    pub noise: f64,
+}
+
+/// The unit ball of a material under some lights, `size` pixels square, seen from (0, 0, 7): one ray through the middle of each
+/// pixel, the model at three wavelengths (nm) taken as R, G and B. Tangents follow the parallels, as in `luthier preview`.
+pub fn render_ball(
+    model: &dyn Model,
+    stack: &Stack,
+    wavelengths_nm: [f64; 3],
+    lights: &[DistantLight],
+    size: u32,
+) -> BallPicture {
+    let stacks = [0, 1, 2].map(|c: usize| Monochrome::new(stack, wavelengths_nm[c], c));
+    let mut image = Image::zeros(size, size, 3);
+    let rows: Vec<f64> = image
+        .data
+        .par_chunks_mut(3 * size as usize)
+        .enumerate()
+        .map(|(y, row)| {
+            let mut variance = 0.0;
+            for (x, texel) in row.chunks_exact_mut(3).enumerate() {
+                let at = |i: usize| 2.0 * (i as f64 + 0.5) / f64::from(size) - 1.0;
+                let Some(place) = Place::hit([at(x), -at(y)]) else { continue };
+                for (channel, (stack, value)) in stacks.iter().zip(texel).enumerate() {
+                    let seen = place.seen(model, stack, lights, channel);
+                    *value = seen.mean as f32;
+                    variance += seen.std_err * seen.std_err;
+                }
+            }
+            variance
+        })
+        .collect();
+    let noise = (rows.iter().sum::<f64>() / image.data.len().max(1) as f64).sqrt();
+    BallPicture { image, noise }
+}
+
+/// A point of the ball.
+struct Place {
+    /// Tangent, bitangent, normal.
+    frame: [DVec3; 3],
+    /// To the eye, unit.
+    to_eye: DVec3,
+}
+
+impl Place {
+    /// Where the ray through a point of the picture, -1 to 1 in both coordinates, meets the ball.
+    fn hit([x, y]: [f64; 2]) -> Option<Self> {
+        let eye = DVec3::new(0.0, 0.0, EYE);
+        let ray = (DVec3::new(x * HALF_EXTENT, y * HALF_EXTENT, 0.0) - eye).normalize();
+        let along = -eye.dot(ray);
+        let depth_sq = 1.0 - (eye + along * ray).length_squared();
+        if depth_sq <= 0.0 {
+            return None;
+        }
+        let n = (eye + (along - depth_sq.sqrt()) * ray).normalize();
+        let across = DVec3::new(n.z, 0.0, -n.x);
+        let t = if across.length_squared() > 0.0 { across.normalize() } else { DVec3::X };
+        Some(Self { frame: [t, n.cross(t), n], to_eye: -ray })
+    }
+
+    fn local(&self, w: DVec3) -> DVec3 {
+        let [t, b, n] = self.frame;
+        DVec3::new(w.dot(t), w.dot(b), w.dot(n))
+    }
+
+    fn seen(&self, model: &dyn Model, stack: &Monochrome, lights: &[DistantLight], channel: usize) -> Estimate {
+        let wo = self.local(self.to_eye);
+        let (mut mean, mut variance) = (0.0, 0.0);
+        for light in lights {
+            let wi = self.local(DVec3::from_array(light.direction).normalize());
+            let one = match model.estimator() {
+                Some(estimator) => estimator.eval_with_error(stack, wi, wo),
+                None => Estimate::exact(model.eval(stack, wi, wo)),
+            };
+            let irradiance = light.irradiance[channel];
+            mean += irradiance * one.mean;
+            variance += irradiance * irradiance * one.std_err * one.std_err;
+        }
+        Estimate { mean, std_err: variance.sqrt() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use luthier_layers::diffuse::Lambert;
+    use luthier_layers::layered_mc::{InterfaceMode, LayeredMc};
+    use luthier_optics::ior::Ior;
+    use luthier_optics::stack::{Base, Diffuse, Layer, Surface};
+
+    use super::*;
+
+    fn white() -> Stack {
+        let base = Base::Diffuse(Diffuse { albedo: [1.0, 0.5, 0.25], sigma: 0.0 });
+        let layer = Layer { films: Vec::new(), surface: Surface::smooth(), base };
+        Stack { exterior: Ior::vacuum(), layers: vec![layer] }
+    }
+
+    const WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
+
+    /// Lambert's ball under a light from the eye: cos theta / pi in the middle, nothing around.
+    #[test]
+    fn a_white_ball_is_as_bright_as_its_cosine() {
+        let lights = [DistantLight { direction: [0.0, 0.0, 1.0], irradiance: [std::f64::consts::PI; 3] }];
+        let seen = render_ball(&Lambert, &white(), WAVELENGTHS_NM, &lights, 33);
+        let middle = seen.image.texel(16, 16);
+        for (value, expected) in middle.iter().zip([1.0, 0.5, 0.25]) {
+            assert!((value - expected).abs() < 1e-6, "{middle:?}");
+        }
+        assert_eq!((seen.image.texel(0, 0), seen.noise), (&[0.0; 3][..], 0.0));
+    }
+
+    /// The same ball by simulation: as far away as its stated noise says, and the same at every run.
+    #[test]
+    fn noise_is_what_it_says() {
+        let lights = [DistantLight { direction: [0.3, 0.5, 1.0], irradiance: [1.0; 3] }];
+        let mut stack = white();
+        let coat = Surface::isotropic(luthier_optics::stack::Distribution::Ggx, 0.4);
+        let slab = luthier_optics::stack::Slab { thickness_um: 1.0, absorption_per_um: [0.0; 3] };
+        let base = Base::Dielectric { ior: Ior::constant(1.5, 0.0).unwrap(), slab };
+        stack.layers.insert(0, Layer { films: Vec::new(), surface: coat, base });
+        let render = |samples, seed| {
+            let model = LayeredMc { samples, seed, ..LayeredMc::new(InterfaceMode::SmithWalk) };
+            render_ball(&model, &stack, WAVELENGTHS_NM, &lights, 16)
+        };
+        let (a, b) = (render(64, 0), render(64, 1));
+        assert_eq!(a, render(64, 0));
+        let squares = a.image.data.iter().zip(&b.image.data).map(|(a, b)| f64::from(a - b) * f64::from(a - b));
+        let apart = (squares.sum::<f64>() / a.image.data.len() as f64).sqrt();
+        let expected = (a.noise * a.noise + b.noise * b.noise).sqrt();
+        // 16 x 16 x 3 values of which half are lit: the ratio of two deviations scatters by some percent.
+        assert!((apart / expected - 1.0).abs() < 0.25, "{apart} {expected}");
+    }
+}

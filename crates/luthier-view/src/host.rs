@@ -1,0 +1,65 @@
+use luthier_gpu::Artefacts;
+use luthier_material::Material;
+
+/// What the window asks of the program around it. Called from several threads.
+pub trait Host: Send + Sync {
+    /// All material files, when any of them, or any file that they name, changed since the last call; at first always.
+    fn changed(&self) -> Option<Vec<MaterialFile>>;
+
+    /// What the renderer needs for one material in one form.
+    ///
+    /// # Errors
+    /// A message for people.
+    fn bake(&self, material: &Material, form: Form) -> Result<Artefacts, String>;
+
+    /// Writes a screenshot. `number` counts from 1; `asked` says that it is one of those that the command line asks for, not
+    /// one that somebody took by hand. Gives the path.
+    ///
+    /// # Errors
+    /// A message for people.
+    fn save(&self, screenshot: &Screenshot, number: u32, asked: bool) -> Result<String, String>;
+}
+
+/// A material file as it is now.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MaterialFile {
+    /// The file, as messages name it.
+    pub label: String,
+    /// The material; or what is wrong with it, with file, line and hint.
+    pub material: Result<Material, String>,
+    /// Another number when a file that the material names changed.
+    pub revision: u64,
+}
+
+/// Which shader is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// Reads tables; some edits bake anew.
+    Baked,
+    /// Evaluates everything; edits need no tables.
+    Full,
+}
+
+impl Form {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Baked, Self::Full];
+
+    /// The name in manifests.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Baked => "baked",
+            Self::Full => "full",
+        }
+    }
+}
+
+/// What a window shows.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Screenshot {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// sRGB, three bytes per pixel, row by row from the top.
+    pub rgb8: Vec<u8>,
+}

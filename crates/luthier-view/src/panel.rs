@@ -1,0 +1,225 @@
+//! The panel beside the picture, the line below it, and the help.
+
+use eframe::egui::{
+    Align, Align2, CollapsingHeader, ComboBox, Context, Grid, Layout, RichText, ScrollArea, Slider, SliderClamping, Ui,
+    Window, vec2,
+};
+use luthier_gpu::ToneMapping;
+use luthier_material::ModelSetting;
+
+use crate::app::{App, SHAPES};
+use crate::host::Form;
+use crate::keys::{KEYS, MOUSE};
+use crate::parameter::{Parameter, groups};
+
+/// Below this, a logarithmic slider is linear.
+const SMALLEST: f64 = 1e-3;
+
+const TONES: [(ToneMapping, &str); 4] = [
+    (ToneMapping::Shoulder, "shoulder"),
+    (ToneMapping::None, "none"),
+    (ToneMapping::Reinhard, "Reinhard"),
+    (ToneMapping::Aces, "ACES"),
+];
+
+/// The panel.
+pub(crate) fn show(app: &mut App, ui: &mut Ui) {
+    title(app, ui);
+    choices(app, ui);
+    ui.separator();
+    ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        layers(app, ui);
+        light(app, ui);
+        ui.add_space(8.0);
+    });
+}
+
+fn title(app: &mut App, ui: &mut Ui) {
+    let Some(entry) = app.files.selected() else {
+        ui.label(RichText::new("no material").heading());
+        return;
+    };
+    let (name, label) = (entry.name().to_owned(), entry.label.clone());
+    let mut chosen = app.files.selected;
+    ComboBox::from_id_salt("material")
+        .width(ui.available_width())
+        .selected_text(RichText::new(name).strong().size(16.0))
+        .show_ui(ui, |ui| {
+            for (i, entry) in app.files.entries.iter().enumerate() {
+                let broken = if entry.problem.is_some() { " (broken)" } else { "" };
+                ui.selectable_value(&mut chosen, i, format!("{}{broken}", entry.name()));
+            }
+        });
+    app.files.selected = chosen;
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(label).weak().size(11.5));
+        if app.is_edited() {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                if ui.small_button("reset").on_hover_text("as in its file (R)").clicked() {
+                    app.reset_edits();
+                }
+                ui.label(RichText::new("edited").color(ui.visuals().hyperlink_color).size(11.5));
+            });
+        }
+    });
+    if let Some(material) = app.material() {
+        ui.label(RichText::new(&material.description).size(12.5));
+    }
+}
+
+fn choices(app: &mut App, ui: &mut Ui) {
+    let own = app.material().and_then(|material| material.bake.model).map_or("elek", ModelSetting::name);
+    Grid::new("choices").num_columns(2).show(ui, |ui| {
+        ui.label("model");
+        let text = app.model.map_or_else(|| format!("{own} (its own)"), |model| model.name().to_owned());
+        ComboBox::from_id_salt("model").width(190.0).selected_text(text).show_ui(ui, |ui| {
+            ui.selectable_value(&mut app.model, None, format!("{own} (its own)"));
+            for name in ModelSetting::NAMES {
+                ui.selectable_value(&mut app.model, ModelSetting::from_name(name), *name);
+            }
+        });
+        ui.end_row();
+        ui.label("form");
+        ui.horizontal(|ui| {
+            for form in Form::ALL {
+                let hint = match form {
+                    Form::Baked => "reads tables; indices and films bake anew",
+                    Form::Full => "evaluates everything; edits need no tables",
+                };
+                ui.selectable_value(&mut app.form, form, form.name()).on_hover_text(hint);
+            }
+        });
+        ui.end_row();
+        ui.label("shape");
+        ui.horizontal(|ui| {
+            for (shape, name) in SHAPES {
+                if ui.selectable_label(app.shape == shape, name).clicked() {
+                    app.set_shape(shape);
+                }
+            }
+        });
+        ui.end_row();
+    });
+}
+
+/// One section per layer and effect.
+fn layers(app: &mut App, ui: &mut Ui) {
+    let Some(material) = app.material() else { return };
+    let before = material.clone();
+    let mut edited = before.clone();
+    for (i, group) in groups(&before).into_iter().enumerate() {
+        if group.parameters.is_empty() {
+            continue;
+        }
+        section(ui, (&before.name, i), &group.title, |ui| {
+            for parameter in &group.parameters {
+                let Some(mut value) = parameter.handle.get(&before) else { continue };
+                if number(ui, parameter, &mut value) {
+                    parameter.handle.set(&mut edited, value);
+                }
+            }
+        });
+    }
+    if edited != before {
+        app.edit(edited);
+    }
+}
+
+fn section(ui: &mut Ui, id: impl std::hash::Hash + std::fmt::Debug, title: &str, contents: impl FnOnce(&mut Ui)) {
+    CollapsingHeader::new(RichText::new(title).strong()).id_salt(&id).default_open(true).show(ui, |ui| {
+        Grid::new(("grid", &id)).num_columns(2).min_col_width(84.0).show(ui, contents);
+    });
+}
+
+fn number(ui: &mut Ui, parameter: &Parameter, value: &mut f64) -> bool {
+    ui.label(parameter.label);
+    let slider = Slider::new(value, parameter.range.clone())
+        .suffix(parameter.unit)
+        .logarithmic(parameter.logarithmic)
+        .smallest_positive(SMALLEST)
+        .max_decimals(3)
+        .clamping(SliderClamping::Edits);
+    let changed = ui.add(slider).changed();
+    ui.end_row();
+    changed
+}
+
+fn light(app: &mut App, ui: &mut Ui) {
+    section(ui, "light", "light", |ui| {
+        let slider = |ui: &mut Ui, label: &str, value: &mut f32, range, unit: &str| {
+            ui.label(label);
+            ui.add(Slider::new(value, range).suffix(unit).max_decimals(2).clamping(SliderClamping::Edits));
+            ui.end_row();
+        };
+        let look = &mut app.look;
+        slider(ui, "exposure", &mut look.exposure_stops, -8.0..=8.0, " EV");
+        slider(ui, "light", &mut look.strength, 0.0..=8.0, "");
+        slider(ui, "azimuth", &mut look.azimuth_deg, -180.0..=180.0, "°");
+        slider(ui, "elevation", &mut look.elevation_deg, -90.0..=90.0, "°");
+        ui.label("surroundings");
+        let chosen = app.surroundings.0.get(look.surroundings).map_or("", |(name, _)| name);
+        ComboBox::from_id_salt("surroundings").selected_text(chosen).show_ui(ui, |ui| {
+            for (i, (name, _)) in app.surroundings.0.iter().enumerate() {
+                ui.selectable_value(&mut look.surroundings, i, *name);
+            }
+        });
+        ui.end_row();
+        ui.label("");
+        ui.checkbox(&mut look.background, "seen behind");
+        ui.end_row();
+        ui.label("tone curve");
+        let chosen = TONES.iter().find(|(tone, _)| *tone == look.tone).map_or("", |(_, name)| name);
+        ComboBox::from_id_salt("tone").selected_text(chosen).show_ui(ui, |ui| {
+            for (tone, name) in TONES {
+                ui.selectable_value(&mut look.tone, tone, name);
+            }
+        });
+        ui.end_row();
+    });
+    ui.horizontal(|ui| {
+        if ui.button("reset light").clicked() {
+            app.reset_look();
+        }
+        if ui.button("reset camera").clicked() {
+            app.reset_camera();
+        }
+    });
+}
+
+/// The line below the picture.
+pub(crate) fn status(app: &App, ui: &mut Ui) {
+    let small = |text: &str| RichText::new(text).size(11.5);
+    ui.horizontal(|ui| {
+        ui.label(small(app.state()).strong());
+        ui.label(small(&app.status).weak());
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.label(small("H help").weak());
+            ui.label(small(&app.adapter).weak());
+        });
+    });
+}
+
+/// Keys and mouse.
+pub(crate) fn help(app: &mut App, context: &Context) {
+    let mut open = app.help;
+    Window::new("Keys")
+        .open(&mut open)
+        .resizable(false)
+        .collapsible(false)
+        .anchor(Align2::CENTER_CENTER, vec2(0.0, 0.0))
+        .show(context, |ui| {
+            Grid::new("keys").num_columns(2).spacing([24.0, 4.0]).show(ui, |ui| {
+                for (_, name, _, what) in KEYS {
+                    ui.label(RichText::new(name).monospace().strong());
+                    ui.label(what);
+                    ui.end_row();
+                }
+                for (gesture, what) in MOUSE {
+                    ui.label(RichText::new(gesture).monospace().strong());
+                    ui.label(what);
+                    ui.end_row();
+                }
+            });
+        });
+    app.help = open;
+}

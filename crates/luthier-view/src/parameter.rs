@@ -1,0 +1,349 @@
+//! The numbers of a material that can be edited.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::ops::RangeInclusive;
+
+use luthier_material::{FlakeSource, Material, SurfaceClass};
+use luthier_optics::ior::Ior;
+use luthier_optics::stack::{Base, Surface};
+
+/// One number of a material. Layers count from the top; a handle that a material does not have reads as `None`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Handle {
+    /// Both slope parameters of an isotropic surface.
+    Alpha(usize),
+    /// Slope parameter along the tangent.
+    AlphaX(usize),
+    /// Slope parameter along the bitangent.
+    AlphaY(usize),
+    /// Turn of the tangent in degrees.
+    Rotation(usize),
+    /// Real part of a constant index below an interface.
+    IorN(usize),
+    /// Imaginary part of a constant index of a conductor.
+    IorK(usize),
+    /// Thickness of a slab in um: what absorbs.
+    SlabThickness(usize),
+    /// Absorption of a slab in 1/um: red, green or blue.
+    Absorption(usize, usize),
+    /// Albedo of a diffuse base: red, green or blue.
+    Albedo(usize, usize),
+    /// Standard deviation of the facets' angle of a diffuse base, in radians.
+    Sigma(usize),
+    /// Thickness in nm of an even film: layer, film.
+    FilmThickness(usize, usize),
+    /// Thinnest place of a film, in nm.
+    FilmMin(usize, usize),
+    /// Thickest place of a film, in nm.
+    FilmMax(usize, usize),
+    /// Constant index of a film.
+    FilmIor(usize, usize),
+    /// How far the patina has developed.
+    PatinaExtent,
+    /// Softness of its boundary.
+    PatinaTransition,
+    /// Slope parameter of the layer below it.
+    PatinaBaseAlpha,
+    /// Share of the cells that glitter.
+    GlitterFilled,
+    /// Cells per unit of texture coordinate.
+    GlitterFrequency,
+    /// Largest tilt in degrees.
+    GlitterTilt,
+    /// Weight of the flakes.
+    FlakeScale,
+    /// Repeats of the flakes per unit of texture coordinate.
+    FlakeTiling,
+    /// Distance up to which flakes keep their weight.
+    FlakeFadeStart,
+    /// Standard deviation of the flakes' angle in degrees.
+    FlakeSpread,
+}
+
+/// How a number is shown and what it may be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameter {
+    /// Which one.
+    pub handle: Handle,
+    /// Its name in the window.
+    pub label: &'static str,
+    /// Its unit, if any, as it follows the number.
+    pub unit: &'static str,
+    /// What it may be.
+    pub range: RangeInclusive<f64>,
+    /// Whether a slider over it is logarithmic.
+    pub logarithmic: bool,
+}
+
+/// Parameters that belong together: a layer, or an effect.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Group {
+    /// Its title.
+    pub title: String,
+    /// In the order in which they are shown.
+    pub parameters: Vec<Parameter>,
+}
+
+/// Films as thin as a few atoms, up to those that only a spectrometer sees.
+const FILM_NM: RangeInclusive<f64> = 1.0..=2000.0;
+
+/// A film that varies does so by this at least, in nm: an even one has other tables.
+const FILM_LEAST_VARIATION_NM: f64 = 1.0;
+
+/// Dense gases to germanium.
+const DIELECTRIC_N: RangeInclusive<f64> = 1.01..=4.0;
+
+/// Everything that can be edited, from the top down. Data sets and indices that depend on the wavelength are left alone.
+pub fn groups(material: &Material) -> Vec<Group> {
+    let mut groups: Vec<Group> = (0..material.stack.layers.len()).map(|i| layer(material, i)).collect();
+    groups.extend(effects(material));
+    groups
+}
+
+fn plain(handle: Handle, label: &'static str, unit: &'static str, range: RangeInclusive<f64>) -> Parameter {
+    Parameter { handle, label, unit, range, logarithmic: false }
+}
+
+fn logarithmic(handle: Handle, label: &'static str, unit: &'static str, range: RangeInclusive<f64>) -> Parameter {
+    Parameter { handle, label, unit, range, logarithmic: true }
+}
+
+fn layer(material: &Material, i: usize) -> Group {
+    let layer = &material.stack.layers[i];
+    let mut parameters = Vec::new();
+    for (j, film) in layer.films.iter().enumerate() {
+        if film.thickness.min_nm == film.thickness.max_nm {
+            parameters.push(plain(Handle::FilmThickness(i, j), "film", " nm", FILM_NM));
+        } else {
+            parameters.push(plain(Handle::FilmMin(i, j), "film, thinnest", " nm", FILM_NM));
+            parameters.push(plain(Handle::FilmMax(i, j), "film, thickest", " nm", FILM_NM));
+        }
+        if film.ior.is_constant() {
+            parameters.push(plain(Handle::FilmIor(i, j), "film index", "", DIELECTRIC_N));
+        }
+    }
+    let kind = match &layer.base {
+        Base::Dielectric { ior, .. } => {
+            if ior.is_constant() {
+                parameters.push(plain(Handle::IorN(i), "index", "", DIELECTRIC_N));
+            }
+            "dielectric"
+        }
+        Base::Conductor { ior } => {
+            if ior.is_constant() {
+                parameters.push(logarithmic(Handle::IorN(i), "index n", "", 0.02..=8.0));
+                parameters.push(plain(Handle::IorK(i), "index k", "", 0.0..=10.0));
+            }
+            "conductor"
+        }
+        Base::Diffuse(_) => "diffuse",
+    };
+    if !matches!(layer.base, Base::Diffuse(_)) {
+        let Surface { alpha_x, alpha_y, .. } = layer.surface;
+        if alpha_x == alpha_y {
+            parameters.push(plain(Handle::Alpha(i), "alpha", "", 0.0..=1.0));
+        } else {
+            parameters.push(logarithmic(Handle::AlphaX(i), "alpha x", "", 0.001..=1.0));
+            parameters.push(logarithmic(Handle::AlphaY(i), "alpha y", "", 0.001..=1.0));
+            parameters.push(plain(Handle::Rotation(i), "rotation", "°", -180.0..=180.0));
+        }
+    }
+    match &layer.base {
+        // What enters the last dielectric is lost: its slab is of no consequence.
+        Base::Dielectric { .. } if i + 1 < material.stack.layers.len() => {
+            parameters.push(logarithmic(Handle::SlabThickness(i), "thickness", " µm", 0.0..=1000.0));
+            for (c, label) in ["absorption r", "absorption g", "absorption b"].into_iter().enumerate() {
+                parameters.push(logarithmic(Handle::Absorption(i, c), label, " /µm", 0.0..=10.0));
+            }
+        }
+        Base::Diffuse(_) => {
+            for (c, label) in ["albedo r", "albedo g", "albedo b"].into_iter().enumerate() {
+                parameters.push(plain(Handle::Albedo(i, c), label, "", 0.0..=1.0));
+            }
+            parameters.push(plain(Handle::Sigma(i), "facet angle", " rad", 0.0..=FRAC_PI_2));
+        }
+        _ => {}
+    }
+    Group { title: format!("{} · {kind}", i + 1), parameters }
+}
+
+fn effects(material: &Material) -> Vec<Group> {
+    let effects = &material.effects;
+    let mut groups = Vec::new();
+    if let Some(patina) = &effects.patina {
+        let mut parameters = vec![
+            plain(Handle::PatinaExtent, "extent", "", -patina.transition..=1.0 + patina.transition),
+            plain(Handle::PatinaTransition, "transition", "", 0.0..=1.0),
+        ];
+        if patina.base_alpha.is_some() {
+            parameters.push(plain(Handle::PatinaBaseAlpha, "alpha below", "", 0.0..=1.0));
+        }
+        groups.push(Group { title: "patina".to_owned(), parameters });
+    }
+    if let Some(flakes) = &effects.flakes {
+        let mut parameters = vec![
+            plain(Handle::FlakeScale, "weight", "", 0.0..=4.0),
+            logarithmic(Handle::FlakeTiling, "tiling", "", 1.0..=10_000.0),
+            logarithmic(Handle::FlakeFadeStart, "fade start", "", 0.1..=100.0),
+        ];
+        if matches!(flakes.source, FlakeSource::Cells { .. }) {
+            parameters.push(plain(Handle::FlakeSpread, "spread", "°", 0.1..=45.0));
+        }
+        groups.push(Group { title: "flakes".to_owned(), parameters });
+    }
+    if effects.glitter.is_some() {
+        let parameters = vec![
+            plain(Handle::GlitterFilled, "filled", "", 0.0..=1.0),
+            logarithmic(Handle::GlitterFrequency, "frequency", "", 1.0..=10_000.0),
+            plain(Handle::GlitterTilt, "tilt", "°", 0.1..=45.0),
+        ];
+        groups.push(Group { title: "glitter".to_owned(), parameters });
+    }
+    groups
+}
+
+/// A number behind a handle, and the number as the window shows it over the number as the material holds it.
+type Place<'a> = (&'a mut f64, f64);
+
+/// Degrees per radian.
+const DEGREES: f64 = 180.0 / PI;
+
+impl Handle {
+    /// The number as the window shows it.
+    pub fn get(self, material: &Material) -> Option<f64> {
+        match self {
+            Self::IorN(i) => Some(constant_ior(base_ior(material, i)?)?[0]),
+            Self::IorK(i) => Some(constant_ior(base_ior(material, i)?)?[1]),
+            Self::FilmIor(i, j) => Some(constant_ior(&material.stack.layers.get(i)?.films.get(j)?.ior)?[0]),
+            // Everything else is a number that lies somewhere in the material.
+            _ => self.place(&mut material.clone()).map(|(number, scale)| *number * scale),
+        }
+    }
+
+    /// Changes the number, as far as its range and its neighbours allow; and the class of the surface with it. Values that
+    /// are not finite change nothing.
+    pub fn set(self, material: &mut Material, value: f64) {
+        let known = groups(material).into_iter().flat_map(|group| group.parameters).find(|p| p.handle == self);
+        let Some(parameter) = known.filter(|_| value.is_finite()) else { return };
+        let value = value.clamp(*parameter.range.start(), *parameter.range.end());
+        match self {
+            Self::IorN(_) | Self::IorK(_) | Self::FilmIor(..) => self.set_ior(material, value),
+            _ => {
+                if let Some((number, scale)) = self.place(material) {
+                    *number = value / scale;
+                }
+            }
+        }
+        self.agree(material);
+        material.class = SurfaceClass::of(&material.stack);
+    }
+
+    /// Moves what may not stay where it is beside a new value.
+    fn agree(self, material: &mut Material) {
+        match self {
+            Self::Alpha(i) => {
+                let surface = &mut material.stack.layers[i].surface;
+                surface.alpha_y = surface.alpha_x;
+            }
+            Self::FilmThickness(i, j) => {
+                let thickness = &mut material.stack.layers[i].films[j].thickness;
+                thickness.max_nm = thickness.min_nm;
+            }
+            Self::FilmMin(i, j) => {
+                let thickness = &mut material.stack.layers[i].films[j].thickness;
+                thickness.min_nm = thickness.min_nm.min(*FILM_NM.end() - FILM_LEAST_VARIATION_NM);
+                thickness.max_nm = thickness.max_nm.max(thickness.min_nm + FILM_LEAST_VARIATION_NM);
+            }
+            Self::FilmMax(i, j) => {
+                let thickness = &mut material.stack.layers[i].films[j].thickness;
+                thickness.max_nm = thickness.max_nm.max(*FILM_NM.start() + FILM_LEAST_VARIATION_NM);
+                thickness.min_nm = thickness.min_nm.min(thickness.max_nm - FILM_LEAST_VARIATION_NM);
+            }
+            Self::PatinaTransition => {
+                if let Some(patina) = &mut material.effects.patina {
+                    patina.extent = patina.extent.clamp(-patina.transition, 1.0 + patina.transition);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn set_ior(self, material: &mut Material, value: f64) {
+        let ior = match self {
+            Self::FilmIor(i, j) => {
+                material.stack.layers.get_mut(i).and_then(|l| l.films.get_mut(j)).map(|f| &mut f.ior)
+            }
+            Self::IorN(i) | Self::IorK(i) => material.stack.layers.get_mut(i).and_then(|l| match &mut l.base {
+                Base::Dielectric { ior, .. } | Base::Conductor { ior } => Some(ior),
+                Base::Diffuse(_) => None,
+            }),
+            _ => None,
+        };
+        let Some(ior) = ior else { return };
+        let Some([n, k]) = constant_ior(ior) else { return };
+        let [n, k] = if matches!(self, Self::IorK(_)) { [n, value] } else { [value, k] };
+        if let Ok(changed) = Ior::constant(n, k) {
+            *ior = changed;
+        }
+    }
+
+    fn place(self, material: &mut Material) -> Option<Place<'_>> {
+        let effects = &mut material.effects;
+        let layers = &mut material.stack.layers;
+        Some(match self {
+            Self::Alpha(i) | Self::AlphaX(i) => (&mut layers.get_mut(i)?.surface.alpha_x, 1.0),
+            Self::AlphaY(i) => (&mut layers.get_mut(i)?.surface.alpha_y, 1.0),
+            Self::Rotation(i) => (&mut layers.get_mut(i)?.surface.rotation, DEGREES),
+            Self::SlabThickness(i) => match &mut layers.get_mut(i)?.base {
+                Base::Dielectric { slab, .. } => (&mut slab.thickness_um, 1.0),
+                _ => return None,
+            },
+            Self::Absorption(i, c) => match &mut layers.get_mut(i)?.base {
+                Base::Dielectric { slab, .. } => (slab.absorption_per_um.get_mut(c)?, 1.0),
+                _ => return None,
+            },
+            Self::Albedo(i, c) => match &mut layers.get_mut(i)?.base {
+                Base::Diffuse(diffuse) => (diffuse.albedo.get_mut(c)?, 1.0),
+                _ => return None,
+            },
+            Self::Sigma(i) => match &mut layers.get_mut(i)?.base {
+                Base::Diffuse(diffuse) => (&mut diffuse.sigma, 1.0),
+                _ => return None,
+            },
+            Self::FilmThickness(i, j) | Self::FilmMin(i, j) => {
+                (&mut layers.get_mut(i)?.films.get_mut(j)?.thickness.min_nm, 1.0)
+            }
+            Self::FilmMax(i, j) => (&mut layers.get_mut(i)?.films.get_mut(j)?.thickness.max_nm, 1.0),
+            Self::IorN(_) | Self::IorK(_) | Self::FilmIor(..) => return None,
+            Self::PatinaExtent => (&mut effects.patina.as_mut()?.extent, 1.0),
+            Self::PatinaTransition => (&mut effects.patina.as_mut()?.transition, 1.0),
+            Self::PatinaBaseAlpha => (effects.patina.as_mut()?.base_alpha.as_mut()?, 1.0),
+            Self::GlitterFilled => (&mut effects.glitter.as_mut()?.filled, 1.0),
+            Self::GlitterFrequency => (&mut effects.glitter.as_mut()?.frequency, 1.0),
+            Self::GlitterTilt => (&mut effects.glitter.as_mut()?.tilt, DEGREES),
+            Self::FlakeScale => (&mut effects.flakes.as_mut()?.scale, 1.0),
+            Self::FlakeTiling => (&mut effects.flakes.as_mut()?.tiling, 1.0),
+            Self::FlakeFadeStart => (&mut effects.flakes.as_mut()?.fade_start, 1.0),
+            Self::FlakeSpread => match &mut effects.flakes.as_mut()?.source {
+                FlakeSource::Cells { spread, .. } => (spread, DEGREES),
+                FlakeSource::NormalMap { .. } => return None,
+            },
+        })
+    }
+}
+
+fn base_ior(material: &Material, layer: usize) -> Option<&Ior> {
+    match &material.stack.layers.get(layer)?.base {
+        Base::Dielectric { ior, .. } | Base::Conductor { ior } => Some(ior),
+        Base::Diffuse(_) => None,
+    }
+}
+
+/// n and k of an index that is the same at all wavelengths.
+fn constant_ior(ior: &Ior) -> Option<[f64; 2]> {
+    let sample = ior.samples().first().filter(|_| ior.is_constant())?;
+    Some([sample.n, sample.k])
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,44 @@
+//! The thread that looks whether files changed.
+
+use std::sync::Arc;
+use std::thread;
+use std::time::Duration;
+
+use eframe::egui;
+
+use crate::error::ViewError;
+use crate::host::{Host, MaterialFile};
+use crate::latest::Latest;
+
+/// Between two looks: editors save less often, and nobody notices a tenth of a second.
+const INTERVAL: Duration = Duration::from_millis(150);
+
+/// The thread, and the slot from it.
+#[derive(Debug)]
+pub(crate) struct Watcher {
+    pub(crate) files: Arc<Latest<Vec<MaterialFile>>>,
+}
+
+impl Watcher {
+    pub(crate) fn start(host: Arc<dyn Host>, context: egui::Context) -> Result<Self, ViewError> {
+        let files = Arc::new(Latest::default());
+        let slot = Arc::clone(&files);
+        let work = move || {
+            while !slot.is_closed() {
+                if let Some(changed) = host.changed() {
+                    slot.put(changed);
+                    context.request_repaint();
+                }
+                thread::sleep(INTERVAL);
+            }
+        };
+        thread::Builder::new().name("luthier watcher".to_owned()).spawn(work).map_err(ViewError::Thread)?;
+        Ok(Self { files })
+    }
+}
+
+impl Drop for Watcher {
+    fn drop(&mut self) {
+        self.files.close();
+    }
+}
