@@ -45,6 +45,8 @@ pub(crate) enum Verb {
     Check(CheckOptions),
     /// Judge a bake: tables and shaders against the full evaluation in f64
     Report(ReportOptions),
+    /// Judge a table that anybody made, and find the mistake in it
+    Audit(Box<AuditOptions>),
     /// Compare every shader of every material with its f64 twin: a page in Markdown
     #[cfg(feature = "gpu")]
     Parity(ParityOptions),
@@ -241,6 +243,9 @@ pub(crate) struct ParityOptions {
     #[arg(long)]
     pub(crate) json: bool,
 }
+
+mod audit;
+pub(crate) use audit::{AuditOptions, NodesName, PresetName, SamplesName};
 
 #[cfg(feature = "gpu")]
 #[derive(Debug, Args)]

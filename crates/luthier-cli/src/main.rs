@@ -41,6 +41,7 @@ fn main() -> ExitCode {
         Verb::Budgets(options) => verb::budgets::run(options),
         Verb::Check(options) => verb::check::run(options),
         Verb::Report(options) => verb::report::run(options),
+        Verb::Audit(options) => verb::audit::run(options),
         #[cfg(feature = "gpu")]
         Verb::Parity(options) => verb::parity::run(options),
         #[cfg(feature = "gpu")]

@@ -25,6 +25,7 @@ pub mod ndf;
 pub mod quadrature;
 pub mod sampling;
 pub mod schlick;
+pub mod split_sum;
 pub mod stack;
 pub mod visible_normals;
 

@@ -10,6 +10,7 @@
 //! - whatever misses [`TARGET_MAX_REL_ERR`] is listed with the factor that makes it miss;
 //! - directional albedos (FGD) are estimated anew, wavelength by wavelength, with the uncertainty of the estimate.
 //!
+//! [`audit()`] judges a table that anybody made against what it is said to hold.
 //! [`parity`] compares the shaders of all models with their f64 twins. [`compare_pictures`] compares two rendered pictures,
 //! [`render_ball`] makes one in f64, [`Plot`] draws curves.
 //! [`judge_models`] is the judge of what the bake stands on: every reflectance model against the Monte Carlo of whole stacks.
@@ -21,6 +22,7 @@
 //!
 //! Out of scope: baking, decoding containers, running shaders, files. The judge never uses the baker.
 
+mod audit;
 mod ball;
 mod chart;
 mod device;
@@ -43,6 +45,10 @@ mod statistics;
 mod subject;
 mod table_terms;
 
+pub use audit::{
+    Audit, AuditError, AuditVerdict, AxisSpec, Candidate, Layout, Mistake, Model, Nodes, Quantity as AxisQuantity,
+    Statement, Term, audit,
+};
 pub use ball::{BallPicture, DistantLight, render_ball};
 pub use chart::{Curve, Plot, PlotAxis, PlotColor};
 pub use device::{Device, Form};

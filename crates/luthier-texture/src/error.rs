@@ -17,6 +17,8 @@ pub enum Container {
     Png,
     /// Radiance RGBE.
     Hdr,
+    /// DirectDraw Surface.
+    Dds,
 }
 
 impl fmt::Display for Container {
@@ -26,6 +28,7 @@ impl fmt::Display for Container {
             Self::Exr => "EXR",
             Self::Png => "PNG",
             Self::Hdr => "Radiance HDR",
+            Self::Dds => "DDS",
         })
     }
 }
@@ -69,6 +72,9 @@ pub enum TextureError {
         /// What is wrong.
         reason: Cow<'static, str>,
     },
+    /// None of the formats that tables are read from.
+    #[error("neither DDS, KTX2, EXR, PNG nor Radiance HDR")]
+    UnknownContainer,
     /// A valid file that holds more than luthier reads.
     #[error("{container} file with {what}, which luthier does not read")]
     Unsupported {

@@ -2,12 +2,13 @@
 
 use ::ktx2::dfd::{Basic, Block};
 use ::ktx2::{Format, Header, Index, LevelIndex, ParseError, SupercompressionScheme};
-use luthier_lut::TexelFormat;
+use luthier_lut::{Image, TexelFormat};
 
 use crate::error::Container;
 use crate::limits::checked_bytes;
 use crate::metadata::is_reserved;
-use crate::{Metadata, Texture, TextureError, metadata, zstd};
+use crate::texels::TexelLayout;
+use crate::{Metadata, Samples, Texture, TextureError, metadata, zstd};
 
 /// Value of the `KTXwriter` entry.
 const WRITER: &str = concat!("luthier ", env!("CARGO_PKG_VERSION"));
@@ -73,15 +74,7 @@ pub fn encode(texture: &Texture) -> Result<Vec<u8>, TextureError> {
 /// [`TextureError::Malformed`] and [`TextureError::Zstd`] for damaged files, [`TextureError::Unsupported`] for other
 /// formats and shapes, [`TextureError::Size`].
 pub fn decode(file: &[u8]) -> Result<Texture, TextureError> {
-    let fixed = file.first_chunk().ok_or_else(|| malformed("it ends within the header"))?;
-    let header = Header::from_bytes(fixed).map_err(|error| {
-        malformed(match error {
-            ParseError::BadMagic => "it does not begin with the KTX 2.0 identifier",
-            ParseError::ZeroWidth => "the width is 0",
-            ParseError::ZeroFaceCount => "there are 0 faces",
-            _ => "the header does not parse",
-        })
-    })?;
+    let header = header(file)?;
     let format = texel_format(&header)?;
     check_shape(&header)?;
     let expected = checked_bytes(header.pixel_width, header.pixel_height, format.texel_bytes())?;
@@ -96,19 +89,85 @@ pub fn decode(file: &[u8]) -> Result<Texture, TextureError> {
     }
     let metadata = read_key_values(section(file, index.kvd_byte_offset.into(), index.kvd_byte_length.into())?)?;
 
+    let bytes = first_level(file, &header, expected)?;
+    Ok(Texture { format, width: header.pixel_width, height: header.pixel_height, bytes, metadata })
+}
+
+/// Reads the largest level of a two-dimensional KTX2 file of uncompressed texels by any maker, with zstd or no supercompression. The
+/// format is taken from the header: the descriptor is not looked at, because some writers get it wrong.
+///
+/// # Errors
+/// As [`decode`].
+pub(crate) fn decode_table(file: &[u8]) -> Result<(TexelLayout, Image), TextureError> {
+    let header = header(file)?;
+    let layout = header.format.and_then(table_layout).ok_or_else(|| match header.format {
+        Some(format) => unsupported(format!("{format:?} texels")),
+        None => unsupported("texels of undefined format"),
+    })?;
+    let Header { pixel_width, pixel_height, pixel_depth, layer_count, face_count, .. } = header;
+    if pixel_depth != 0 || layer_count > 1 || face_count != 1 {
+        return Err(unsupported("a texture that is not two-dimensional, or several layers or faces"));
+    }
+    // A texture of one dimension states no height.
+    let height = pixel_height.max(1);
+    let expected = checked_bytes(pixel_width, height, layout.texel_bytes())?;
+    let bytes = first_level(file, &header, expected)?;
+    Ok((layout, layout.image(pixel_width, height, &bytes)))
+}
+
+fn table_layout(format: Format) -> Option<TexelLayout> {
+    let of = |samples, channels| Some(TexelLayout::of(samples, channels));
+    match format {
+        Format::R8_UNORM => of(Samples::Unorm8, 1),
+        Format::R8G8_UNORM => of(Samples::Unorm8, 2),
+        Format::R8G8B8_UNORM => of(Samples::Unorm8, 3),
+        Format::R8G8B8A8_UNORM => of(Samples::Unorm8, 4),
+        Format::R8G8B8A8_SRGB => Some(TexelLayout { srgb: true, ..TexelLayout::of(Samples::Unorm8, 4) }),
+        Format::R8G8B8_SRGB => Some(TexelLayout { srgb: true, ..TexelLayout::of(Samples::Unorm8, 3) }),
+        Format::B8G8R8A8_UNORM => Some(TexelLayout { bgr: true, ..TexelLayout::of(Samples::Unorm8, 4) }),
+        Format::A2B10G10R10_UNORM_PACK32 => of(Samples::Unorm10, 4),
+        Format::R16_UNORM => of(Samples::Unorm16, 1),
+        Format::R16G16_UNORM => of(Samples::Unorm16, 2),
+        Format::R16G16B16_UNORM => of(Samples::Unorm16, 3),
+        Format::R16G16B16A16_UNORM => of(Samples::Unorm16, 4),
+        Format::R16_SFLOAT => of(Samples::Half, 1),
+        Format::R16G16_SFLOAT => of(Samples::Half, 2),
+        Format::R16G16B16_SFLOAT => of(Samples::Half, 3),
+        Format::R16G16B16A16_SFLOAT => of(Samples::Half, 4),
+        Format::R32_SFLOAT => of(Samples::Float, 1),
+        Format::R32G32_SFLOAT => of(Samples::Float, 2),
+        Format::R32G32B32_SFLOAT => of(Samples::Float, 3),
+        Format::R32G32B32A32_SFLOAT => of(Samples::Float, 4),
+        _ => None,
+    }
+}
+
+fn header(file: &[u8]) -> Result<Header, TextureError> {
+    let fixed = file.first_chunk().ok_or_else(|| malformed("it ends within the header"))?;
+    Header::from_bytes(fixed).map_err(|error| {
+        malformed(match error {
+            ParseError::BadMagic => "it does not begin with the KTX 2.0 identifier",
+            ParseError::ZeroWidth => "the width is 0",
+            ParseError::ZeroFaceCount => "there are 0 faces",
+            _ => "the header does not parse",
+        })
+    })
+}
+
+/// The texels of the first level, which is the largest.
+fn first_level(file: &[u8], header: &Header, expected: usize) -> Result<Vec<u8>, TextureError> {
     let level = section(file, Header::LENGTH as u64, LevelIndex::LENGTH as u64)?;
     let level = LevelIndex::from_bytes(level.first_chunk().ok_or_else(|| malformed("the level index is missing"))?);
     if level.uncompressed_byte_length != expected as u64 {
         return Err(malformed("the level has another length than its size and format need"));
     }
     let stored = section(file, level.byte_offset, level.byte_length)?;
-    let bytes = match header.supercompression_scheme {
-        None if stored.len() == expected => stored.to_vec(),
-        None => return Err(malformed("the level has another length than its size and format need")),
-        Some(SupercompressionScheme::Zstandard) => zstd::decompress(stored, expected)?,
-        Some(other) => return Err(unsupported(format!("{other:?} supercompression"))),
-    };
-    Ok(Texture { format, width: header.pixel_width, height: header.pixel_height, bytes, metadata })
+    match header.supercompression_scheme {
+        None if stored.len() == expected => Ok(stored.to_vec()),
+        None => Err(malformed("the level has another length than its size and format need")),
+        Some(SupercompressionScheme::Zstandard) => zstd::decompress(stored, expected),
+        Some(other) => Err(unsupported(format!("{other:?} supercompression"))),
+    }
 }
 
 fn malformed(reason: &'static str) -> TextureError {

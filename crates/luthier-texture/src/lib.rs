@@ -1,5 +1,5 @@
-//! Containers: KTX2 for the texels that ship, EXR for the unquantised truth, PNG to look at; and pictures of radiance that
-//! others made, EXR or Radiance HDR, to read. The bytes of a file depend
+//! Containers: KTX2 for the texels that ship, EXR for the unquantised truth, PNG to look at; and, to read, what others made: pictures
+//! of radiance ([`radiance`]) and tables ([`table`]: DDS, KTX2, EXR, PNG, raw). The bytes of a file depend
 //! on its content only; nothing here reads a clock or starts a thread.
 //!
 //! Every reader takes untrusted bytes: sizes are checked against [`MAX_SIDE`] and [`MAX_BYTES`] before anything is
@@ -7,11 +7,12 @@
 //!
 //! The codecs are those of the `ktx2`, `ruzstd`, `exr` and `image` crates.
 //!
-//! Simplifications: textures are two-dimensional with one level, one layer and one face; EXR files are single-part
-//! scan-line images of 32-bit floats.
+//! Simplifications: textures that are written are two-dimensional with one level, one layer and one face; EXR files are
+//! single-part scan-line images of 32-bit floats.
 //!
-//! Out of scope: paths and files (callers hand over and receive bytes), block compression, other people's tables in EXR.
+//! Out of scope: paths and files (callers hand over and receive bytes), block compression.
 
+mod dds;
 mod error;
 pub mod exr;
 pub mod ktx2;
@@ -20,10 +21,13 @@ mod metadata;
 pub mod png;
 pub mod radiance;
 mod srgb;
+pub mod table;
+mod texels;
 mod texture;
 mod zstd;
 
 pub use error::{Container, TextureError};
 pub use limits::{MAX_BYTES, MAX_SIDE};
 pub use metadata::Metadata;
+pub use texels::Samples;
 pub use texture::Texture;

@@ -61,7 +61,7 @@ pub fn encode_gray(map: &Image) -> Result<Vec<u8>, TextureError> {
 /// # Errors
 /// As [`decode`], and [`TextureError::NotGrey`].
 pub fn decode_gray(file: &[u8]) -> Result<Image, TextureError> {
-    let Pixels { width, height, channels, values } = read(file, 1)?;
+    let Pixels { width, height, channels, values, .. } = read(file, 1)?;
     let mut data = Vec::with_capacity(values.len() / channels);
     for (i, pixel) in values.chunks_exact(channels).enumerate() {
         if channels >= 3 && (pixel[0] != pixel[1] || pixel[1] != pixel[2]) {
@@ -79,7 +79,7 @@ pub fn decode_gray(file: &[u8]) -> Result<Image, TextureError> {
 /// # Errors
 /// [`TextureError::Malformed`] and [`TextureError::PngDecode`] for damaged files, [`TextureError::Size`].
 pub fn decode(file: &[u8]) -> Result<Image, TextureError> {
-    let Pixels { width, height, channels, values } = read(file, 4)?;
+    let Pixels { width, height, channels, values, .. } = read(file, 4)?;
     let rgba = |pixel: &[f32]| match *pixel {
         [y] => [y, y, y, 1.0],
         [y, a] => [y, y, y, a],
@@ -91,11 +91,22 @@ pub fn decode(file: &[u8]) -> Result<Image, TextureError> {
     Ok(Image { width, height, channels: 4, data })
 }
 
+/// A table with as many channels as the file has (a grey one has 1), values over their maximum, and its bits per value.
+///
+/// # Errors
+/// As [`decode`].
+pub(crate) fn decode_table(file: &[u8]) -> Result<(Image, u32), TextureError> {
+    let Pixels { width, height, channels, bits, values } = read(file, 1)?;
+    Ok((Image { width, height, channels: channels as u32, data: values }, bits))
+}
+
 struct Pixels {
     width: u32,
     height: u32,
     /// 1 grey, 2 grey and alpha, 3 RGB, 4 RGBA.
     channels: usize,
+    /// 8 or 16.
+    bits: u32,
     values: Vec<f32>,
 }
 
@@ -116,12 +127,13 @@ fn read(file: &[u8], channels_wanted: u32) -> Result<Pixels, TextureError> {
     let size = usize::try_from(decoder.total_bytes()).map_err(|_| TextureError::Size { width, height })?;
     let mut bytes = vec![0; size];
     decoder.read_image(&mut bytes).map_err(TextureError::PngDecode)?;
-    let values = if color.bytes_per_pixel() == channels {
+    let bits = 8 * u32::from(color.bytes_per_pixel() / channels);
+    let values = if bits == 8 {
         bytes.iter().map(|&b| f32::from(b) / 255.0).collect()
     } else {
         bytes.as_chunks().0.iter().map(|&b| f32::from(u16::from_ne_bytes(b)) / 65535.0).collect()
     };
-    Ok(Pixels { width, height, channels: channels.into(), values })
+    Ok(Pixels { width, height, channels: channels.into(), bits, values })
 }
 
 #[cfg(test)]

@@ -68,7 +68,7 @@ fn decode_hdr(file: &[u8]) -> Result<Image, TextureError> {
     Ok(Image { width, height, channels: 3, data })
 }
 
-fn read_error(error: ::exr::error::Error) -> TextureError {
+pub(crate) fn read_error(error: ::exr::error::Error) -> TextureError {
     match error {
         ::exr::error::Error::NotSupported(what) => TextureError::unsupported(Container::Exr, what),
         error => TextureError::ExrDecode(error),

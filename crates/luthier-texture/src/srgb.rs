@@ -7,6 +7,12 @@ pub(crate) fn encode(linear: f32) -> u8 {
     (encoded * 255.0).round() as u8
 }
 
+/// The inverse transfer function of a value in 0..=1.
+pub(crate) fn decode(encoded: f32) -> f32 {
+    let v = f64::from(encoded);
+    (if v <= 0.040_45 { v / 12.92 } else { libm::pow((v + 0.055) / 1.055, 2.4) }) as f32
+}
+
 /// Pixels to look at, three bytes each: one and two channels as grey, alpha left out.
 pub(crate) fn rgb8(image: &Image) -> Vec<u8> {
     let place = |channel| if image.channels < 3 { 0 } else { channel };

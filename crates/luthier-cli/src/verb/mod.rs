@@ -1,5 +1,6 @@
 //! One module per verb.
 
+pub(crate) mod audit;
 pub(crate) mod bake;
 #[cfg(feature = "gpu")]
 pub(crate) mod bench;

@@ -1,5 +1,6 @@
 //! The `luthier` command as a stranger meets it: every verb through the binary, judged by files, streams and exit codes.
 
+mod audit;
 mod bake;
 mod bake_refusals;
 #[cfg(feature = "gpu")]

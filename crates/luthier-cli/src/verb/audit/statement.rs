@@ -1,0 +1,134 @@
+use luthier_optics::constants::{dataset, datasets};
+use luthier_optics::interface::Interface;
+use luthier_optics::ior::Ior;
+use luthier_optics::split_sum::Masking;
+use luthier_optics::stack::Distribution;
+use luthier_report::{Layout, Model, Nodes, Statement, Term};
+use luthier_texture::table::Table;
+
+use crate::cli::{AuditOptions, NodesName, PresetName};
+use crate::failure::{Failure, Outcome};
+
+/// What an engine's tables hold.
+struct Preset {
+    model: &'static str,
+    axes: &'static str,
+    nodes: NodesName,
+    values: &'static [Term],
+}
+
+/// Conventions, each as its source says; docs/audit.md cites them.
+fn preset(name: PresetName) -> Preset {
+    use NodesName::{Centres, Ends};
+    let (model, axes, nodes, values): (_, _, _, &[Term]) = match name {
+        // libs/ibl/src/CubemapIBL.cpp, DFG() and DFV_Multiscatter(): rows fall from roughness 1.
+        PresetName::Filament => ("ggx-correlated", "cos_theta,-roughness", Centres, &[Term::Bias, Term::Albedo]),
+        // SystemTextures.cpp, PreintegratedGF.
+        PresetName::Unreal => ("ggx-joint-approx", "cos_theta,roughness", Centres, &[Term::Scale, Term::Bias]),
+        // lib/source/shaders/filter.frag, LUT().
+        PresetName::Gltf => ("ggx-correlated", "cos_theta,roughness", Centres, &[Term::Scale, Term::Bias]),
+        // preIntegratedFGD_GGXDisneyDiffuse.shader.
+        PresetName::Hdrp => ("ggx-correlated", "sqrt_cos_theta,roughness", Ends, &[Term::Bias, Term::Albedo]),
+    };
+    Preset { model, axes, nodes, values }
+}
+
+/// The statement that the options make about a file, and the same in words.
+pub(super) fn statement(options: &AuditOptions, table: &Table) -> Outcome<(Statement, String)> {
+    let preset = options.preset.map(preset);
+    let name = options.model.as_deref().or(preset.as_ref().map(|p| p.model)).unwrap_or("ggx-correlated");
+    let model = model(name, options.ior.as_deref())?;
+    let default_axes = if model.has_slope() { "cos_theta,roughness" } else { "cos_theta" };
+    let axes = options.axes.as_deref().or(preset.as_ref().map(|p| p.axes)).unwrap_or(default_axes);
+    let (nodes, nodes_name) = match options.nodes.or(preset.as_ref().map(|p| p.nodes)).unwrap_or(NodesName::Centres) {
+        NodesName::Centres => (Nodes::CENTRES, "centres"),
+        NodesName::Ends => (Nodes::Ends, "ends"),
+    };
+    let layout = Layout::parse(axes, nodes).map_err(|source| Failure::Usage(source.into()))?;
+    let terms = match (&options.values, &preset) {
+        (Some(names), _) => names.iter().map(|name| term(name, &model)).collect::<Outcome<Vec<Term>>>()?,
+        (None, Some(preset)) => preset.values.to_vec(),
+        (None, None) => terms(&model, options.channel.as_ref().map_or(table.image.channels as usize, Vec::len)),
+    };
+    let channels = options
+        .channel
+        .as_ref()
+        .map_or_else(|| (0..terms.len()).collect(), |names| names.iter().map(|&name| name as usize).collect());
+    let values = terms.iter().map(|t| t.name()).collect::<Vec<_>>().join(",");
+    let words = format!("{name}, axes {axes}, nodes at {nodes_name}, values {values}");
+    let statement = Statement {
+        model,
+        layout,
+        channels,
+        terms,
+        min_cos: options.min_cos,
+        min_alpha: options.min_alpha,
+        step: table.samples.step(),
+    };
+    Ok((statement, words))
+}
+
+/// What channels hold where nobody says.
+fn terms(model: &Model, channels: usize) -> Vec<Term> {
+    match (model, channels) {
+        (Model::SplitSum { .. }, 1) => vec![Term::Albedo],
+        (Model::SplitSum { .. }, _) => vec![Term::Scale, Term::Bias],
+        (Model::Density { .. }, _) => vec![Term::ScaledDensity],
+        (Model::Reflectance { .. } | Model::Albedo { .. }, n) => model.terms()[..n.clamp(1, 3)].to_vec(),
+    }
+}
+
+fn term(name: &str, model: &Model) -> Outcome<Term> {
+    let known: Vec<&str> = model.terms().iter().map(|t| t.name()).collect();
+    let found = Term::NAMES.iter().find(|(term, known)| *known == name && model.terms().contains(term));
+    found.map(|(term, _)| *term).ok_or_else(|| Failure::unknown("value of this model", name, &known))
+}
+
+fn model(name: &str, ior: Option<&str>) -> Outcome<Model> {
+    let known = || -> Vec<String> {
+        let kinds: Vec<&str> = Masking::ALL.iter().map(|m| m.name()).chain(["ndf", "all-bounces"]).collect();
+        let of = |d: &str| kinds.iter().map(|kind| format!("{d}-{kind}")).collect::<Vec<_>>();
+        ["ggx", "beckmann"].into_iter().flat_map(of).chain(["fresnel".to_owned()]).collect()
+    };
+    let unknown = || {
+        let known = known();
+        Failure::unknown("model", name, &known.iter().map(String::as_str).collect::<Vec<_>>())
+    };
+    if name == "fresnel" {
+        return Ok(Model::Reflectance { interface: interface(name, ior)? });
+    }
+    let (distribution, kind) = match name.split_once('-') {
+        Some(("ggx", kind)) => (Distribution::Ggx, kind),
+        Some(("beckmann", kind)) => (Distribution::Beckmann, kind),
+        _ => return Err(unknown()),
+    };
+    match kind {
+        "ndf" => Ok(Model::Density { distribution }),
+        "all-bounces" => Ok(Model::Albedo { distribution, interface: interface(name, ior)? }),
+        _ => {
+            let masking = Masking::ALL.into_iter().find(|m| m.name() == kind).ok_or_else(unknown)?;
+            Ok(Model::SplitSum { distribution, masking })
+        }
+    }
+}
+
+/// The interface from vacuum to the index that is named.
+fn interface(model: &str, ior: Option<&str>) -> Outcome<Interface> {
+    let Some(text) = ior else {
+        let text = format!("the model {model} needs the index of a medium: --ior au, --ior 1.5 or --ior 0.27,2.9");
+        return Err(Failure::Usage(anyhow::anyhow!(text)));
+    };
+    let numbers: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    let below = match numbers.as_deref() {
+        Some([n]) => Ior::constant(*n, 0.0).map_err(|source| Failure::Usage(source.into()))?,
+        Some([n, k]) => Ior::constant(*n, *k).map_err(|source| Failure::Usage(source.into()))?,
+        _ => {
+            let unknown = || {
+                let known: Vec<&str> = datasets().iter().map(|d| d.id).collect();
+                Failure::unknown("data set", text, &known)
+            };
+            dataset(text).ok_or_else(unknown)?.ior.clone()
+        }
+    };
+    Ok(Interface { above: Ior::vacuum(), films: Vec::new(), below })
+}

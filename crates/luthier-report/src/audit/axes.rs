@@ -1,0 +1,308 @@
+use std::f64::consts::FRAC_PI_2;
+use std::str::FromStr;
+
+use luthier_lut::{Axis, Mapping};
+use serde::Serialize;
+
+use super::AuditError;
+
+/// What an axis of a table holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Cosine against the normal.
+    CosTheta,
+    /// Its square.
+    CosThetaSq,
+    /// Its square root.
+    SqrtCosTheta,
+    /// Angle against the normal, radians.
+    Theta,
+    /// The artist's roughness, alpha = roughness^2.
+    Roughness,
+    /// The slope parameter.
+    Alpha,
+    /// Its square.
+    AlphaSq,
+    /// The root of the roughness, alpha = its fourth power.
+    SqrtRoughness,
+}
+
+impl Quantity {
+    /// Those of the direction.
+    pub const ANGLES: [Self; 4] = [Self::CosTheta, Self::Theta, Self::CosThetaSq, Self::SqrtCosTheta];
+    /// Those of the micro-surface.
+    pub const SLOPES: [Self; 4] = [Self::Roughness, Self::Alpha, Self::AlphaSq, Self::SqrtRoughness];
+
+    /// Its name in an axis; those of the half vector's angle may also end in `_h`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::CosTheta => "cos_theta",
+            Self::CosThetaSq => "cos_theta_sq",
+            Self::SqrtCosTheta => "sqrt_cos_theta",
+            Self::Theta => "theta",
+            Self::Roughness => "roughness",
+            Self::Alpha => "alpha",
+            Self::AlphaSq => "alpha_sq",
+            Self::SqrtRoughness => "sqrt_roughness",
+        }
+    }
+
+    /// Whether it is of the direction.
+    pub fn is_angle(self) -> bool {
+        Self::ANGLES.contains(&self)
+    }
+
+    fn from_name(name: &str) -> Option<Self> {
+        let name = name.strip_suffix("_h").unwrap_or(name);
+        Self::ANGLES.into_iter().chain(Self::SLOPES).find(|quantity| quantity.name() == name)
+    }
+
+    /// Theta or alpha of a value.
+    fn to_canonical(self, value: f64) -> f64 {
+        let angle = |cos: f64| libm::acos(cos.clamp(0.0, 1.0));
+        let value = value.max(0.0);
+        match self {
+            Self::CosTheta => angle(value),
+            Self::CosThetaSq => angle(value.sqrt()),
+            Self::SqrtCosTheta => angle(value * value),
+            Self::Theta => value.min(FRAC_PI_2),
+            Self::Roughness => value * value,
+            Self::Alpha => value,
+            Self::AlphaSq => value.sqrt(),
+            Self::SqrtRoughness => (value * value) * (value * value),
+        }
+    }
+
+    /// The value of a theta or an alpha.
+    pub(super) fn of_canonical(self, canonical: f64) -> f64 {
+        match self {
+            Self::CosTheta => libm::cos(canonical),
+            Self::CosThetaSq => libm::cos(canonical) * libm::cos(canonical),
+            Self::SqrtCosTheta => libm::cos(canonical).max(0.0).sqrt(),
+            Self::Theta => canonical,
+            Self::Roughness => canonical.sqrt(),
+            Self::Alpha => canonical,
+            Self::AlphaSq => canonical * canonical,
+            Self::SqrtRoughness => canonical.sqrt().sqrt(),
+        }
+    }
+}
+
+/// Where the nodes of an axis lie: the coordinate of texel `i` of `n`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Nodes {
+    /// `i / (n - 1)`: the first and the last texel hold both ends of the axis, and a look-up maps 0..1 to their centres.
+    Ends,
+    /// `(i + offset) / n`, clamped to 0..1: texel centres at 0.5, which a look-up reads without more ado.
+    Offset(f64),
+}
+
+impl Nodes {
+    /// Texel centres.
+    pub const CENTRES: Self = Self::Offset(0.5);
+    /// What mistakes make of the others: half a texel off to both sides, and a whole one.
+    pub(super) const ALL: [Self; 6] =
+        [Self::CENTRES, Self::Ends, Self::Offset(0.0), Self::Offset(1.0), Self::Offset(1.5), Self::Offset(-0.5)];
+
+    fn coordinate(self, texel: u32, size: u32) -> f64 {
+        let (i, n) = (f64::from(texel), f64::from(size));
+        match self {
+            Self::Ends if size < 2 => 0.5,
+            Self::Ends => i / (n - 1.0),
+            Self::Offset(offset) => ((i + offset) / n).clamp(0.0, 1.0),
+        }
+    }
+
+    fn position(self, u: f64, size: u32) -> f64 {
+        let n = f64::from(size);
+        match self {
+            Self::Ends => 0.5 + u * (n - 1.0),
+            Self::Offset(offset) => u * n - offset + 0.5,
+        }
+    }
+}
+
+/// One axis of a table, as stated or supposed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AxisSpec {
+    /// What it holds.
+    pub quantity: Quantity,
+    /// Value at coordinate 0, before it is turned around.
+    pub min: f64,
+    /// Value at coordinate 1.
+    pub max: f64,
+    /// From the coordinate to the value.
+    pub mapping: Mapping,
+    /// Whether values fall from the first texel to the last.
+    pub descending: bool,
+    /// Where its nodes lie.
+    pub nodes: Nodes,
+    /// Lowest value: lower ones are evaluated as this one.
+    pub floor: f64,
+}
+
+impl AxisSpec {
+    /// The whole range of a quantity, linear and ascending.
+    pub fn whole(quantity: Quantity, nodes: Nodes) -> Self {
+        let max = if quantity == Quantity::Theta { FRAC_PI_2 } else { 1.0 };
+        Self { quantity, min: 0.0, max, mapping: Mapping::Linear, descending: false, nodes, floor: 0.0 }
+    }
+
+    fn axis(&self) -> Axis {
+        let Self { min, max, mapping, .. } = *self;
+        Axis { quantity: String::new(), unit: String::new(), min, max, size: 2, mapping }
+    }
+
+    fn canonical_at(&self, u: f64) -> f64 {
+        let u = if self.descending { 1.0 - u } else { u };
+        self.quantity.to_canonical(self.axis().decode(u).max(self.floor))
+    }
+
+    pub(super) fn canonical(&self, texel: u32, size: u32) -> f64 {
+        self.canonical_at(self.nodes.coordinate(texel, size))
+    }
+
+    pub(super) fn position(&self, canonical: f64, size: u32) -> f64 {
+        let u = self.axis().encode(self.quantity.of_canonical(canonical));
+        self.nodes.position(if self.descending { 1.0 - u } else { u }, size)
+    }
+
+    /// The value as it reads in the axis' own words, and the coordinate of a theta or alpha, ascending or not.
+    pub(super) fn coordinate(&self, canonical: f64) -> f64 {
+        self.axis().encode(self.quantity.of_canonical(canonical))
+    }
+
+    pub(super) fn canonical_of_coordinate(&self, u: f64) -> f64 {
+        self.quantity.to_canonical(self.axis().decode(u))
+    }
+}
+
+impl FromStr for AxisSpec {
+    type Err = AuditError;
+
+    /// `[-]QUANTITY[=MIN..MAX][^EXPONENT|@log]`: `cos_theta`, `-roughness`, `theta_h=0..1.5707963^8`, `alpha=0.01..1@log`.
+    fn from_str(text: &str) -> Result<Self, AuditError> {
+        let bad = || AuditError::Axis(text.to_owned());
+        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|v| v.is_finite()).ok_or_else(bad);
+        let rest = text.trim();
+        let (descending, rest) = rest.strip_prefix('-').map_or((false, rest), |rest| (true, rest));
+        let (rest, mapping) = if let Some((rest, exponent)) = rest.split_once('^') {
+            (rest, Mapping::Power { exponent: number(exponent)? })
+        } else if let Some(rest) = rest.strip_suffix("@log") {
+            (rest, Mapping::Logarithmic)
+        } else {
+            (rest, Mapping::Linear)
+        };
+        let (name, range) = rest.split_once('=').map_or((rest, None), |(name, range)| (name, Some(range)));
+        let mut spec = Self::whole(Quantity::from_name(name.trim()).ok_or_else(bad)?, Nodes::CENTRES);
+        if let Some(range) = range {
+            let (min, max) = range.split_once("..").ok_or_else(bad)?;
+            (spec.min, spec.max) = (number(min)?, number(max)?);
+        }
+        (spec.mapping, spec.descending) = (mapping, descending);
+        let limit = if spec.quantity == Quantity::Theta { FRAC_PI_2 + 1e-6 } else { 1.0 };
+        let exponent_ok = !matches!(mapping, Mapping::Power { exponent } if exponent <= 0.0);
+        let range_ok = 0.0 <= spec.min && spec.min < spec.max && spec.max <= limit;
+        let logarithmic_ok = mapping != Mapping::Logarithmic || spec.min > 0.0;
+        if exponent_ok && range_ok && logarithmic_ok { Ok(spec) } else { Err(bad()) }
+    }
+}
+
+/// Where a table holds what.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Layout {
+    /// The axis of the direction.
+    pub angle: AxisSpec,
+    /// The axis of the micro-surface; absent in a table of one row or column.
+    pub slope: Option<AxisSpec>,
+    /// Whether the direction runs down and the micro-surface across.
+    pub transposed: bool,
+}
+
+impl Layout {
+    /// From `--axes`: one or two axes, across first, separated by a comma.
+    ///
+    /// # Errors
+    /// [`AuditError::Axis`] for an axis that does not parse, [`AuditError::Axes`] unless there is one of the direction and at most one
+    /// of the micro-surface.
+    pub fn parse(text: &str, nodes: Nodes) -> Result<Self, AuditError> {
+        let axes: Vec<AxisSpec> = text.split(',').map(str::parse).collect::<Result<_, _>>()?;
+        let with = |axis: AxisSpec| AxisSpec { nodes, ..axis };
+        match *axes.as_slice() {
+            [angle] if angle.quantity.is_angle() => Ok(Self { angle: with(angle), slope: None, transposed: false }),
+            [x, y] if x.quantity.is_angle() && !y.quantity.is_angle() => {
+                Ok(Self { angle: with(x), slope: Some(with(y)), transposed: false })
+            }
+            [x, y] if y.quantity.is_angle() && !x.quantity.is_angle() => {
+                Ok(Self { angle: with(y), slope: Some(with(x)), transposed: true })
+            }
+            _ => Err(AuditError::Axes(text.to_owned())),
+        }
+    }
+
+    /// Theta and alpha of a texel; alpha is 0 where there is no such axis.
+    pub(super) fn at_texel(&self, size: [u32; 2], texel: [u32; 2]) -> [f64; 2] {
+        let [a, s] = self.order();
+        let slope = self.slope.map_or(0.0, |axis| axis.canonical(texel[s], size[s]));
+        [self.angle.canonical(texel[a], size[a]), slope]
+    }
+
+    /// Where a shader that knows this layout reads, in texels.
+    pub(super) fn position(&self, size: [u32; 2], [theta, alpha]: [f64; 2]) -> [f64; 2] {
+        let [a, s] = self.order();
+        let mut position = [0.5; 2];
+        position[a] = self.angle.position(theta, size[a]);
+        if let Some(axis) = self.slope {
+            position[s] = axis.position(alpha, size[s]);
+        }
+        position
+    }
+
+    /// The image axes of direction and micro-surface.
+    pub(super) fn order(&self) -> [usize; 2] {
+        if self.transposed { [1, 0] } else { [0, 1] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_parse_as_documented() {
+        let axis: AxisSpec = "theta_h=0..1.5707963^8".parse().unwrap();
+        assert_eq!((axis.quantity, axis.mapping), (Quantity::Theta, Mapping::Power { exponent: 8.0 }));
+        let axis: AxisSpec = "-alpha=0.01..1@log".parse().unwrap();
+        assert!(axis.descending && axis.min == 0.01);
+        for bad in ["", "cosine", "alpha=1..0", "alpha@log", "cos_theta=0..2", "roughness^0", "alpha=nan..1", "alpha=0"]
+        {
+            assert!(bad.parse::<AxisSpec>().is_err(), "{bad}");
+        }
+        assert!(Layout::parse("roughness,cos_theta", Nodes::CENTRES).unwrap().transposed);
+        for bad in ["roughness", "cos_theta,theta", "cos_theta,alpha,alpha"] {
+            assert!(Layout::parse(bad, Nodes::CENTRES).is_err(), "{bad}");
+        }
+    }
+
+    /// A shader reads texel `i` exactly, centre on centre, where it looks for what the layout says is there.
+    #[test]
+    fn positions_invert_texels() {
+        for nodes in [Nodes::CENTRES, Nodes::Ends, Nodes::Offset(0.0)] {
+            for text in [
+                "cos_theta,roughness",
+                "alpha,-theta",
+                "-sqrt_cos_theta,alpha_sq",
+                "cos_theta_sq^2,sqrt_roughness=0.1..1",
+            ] {
+                let layout = Layout::parse(text, nodes).unwrap();
+                for texel in [[1, 1], [3, 2], [6, 4]] {
+                    let [x, y] = layout.position([8, 6], layout.at_texel([8, 6], texel));
+                    let off = (x - f64::from(texel[0]) - 0.5).abs().max((y - f64::from(texel[1]) - 0.5).abs());
+                    assert!(off < 1e-6, "{text} {nodes:?} {texel:?}: {x} {y}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! The audit of a table that anybody made: how far it is, as a shader reads it, from the model that it is said to hold; and whether
+//! it fits another statement better. [`audit`] tells flips, swaps, shifted nodes, mistaken axes and channels, encodings and masking
+//! terms apart by comparing texels with quadrature under every combination of them.
+//!
+//! Simplifications: a mistake that changes less than the table's noise is not found. Mistakes that cancel are not found either.
+//! Angle and alpha of a one-row table are not looked for across rows.
+
+mod axes;
+mod hypothesis;
+mod page;
+mod search;
+mod truth;
+
+#[cfg(test)]
+mod tests;
+
+use luthier_lut::{Comparison, ErrorStats, Image, Scan, WeightBits, bilinear, measure_scan};
+use serde::Serialize;
+use thiserror::Error;
+
+pub use axes::{AxisSpec, Layout, Nodes, Quantity};
+pub use hypothesis::Mistake;
+use hypothesis::{Encoding, Hypothesis};
+use search::{Subject, search};
+use truth::Truth;
+pub use truth::{Model, Term};
+
+/// Fraction bits of the sampler's weights.
+const WEIGHTS: WeightBits = WeightBits::Fixed(8);
+/// Above this root mean square, no hypothesis is taken for what the table holds.
+const NO_FIT: f64 = 0.03;
+
+/// Why no audit was made.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum AuditError {
+    /// An axis that does not parse.
+    #[error(
+        "`{0}` is no axis; write [-]QUANTITY[=MIN..MAX][^EXPONENT|@log] with cos_theta, theta, cos_theta_sq, sqrt_cos_theta, roughness, alpha, alpha_sq or sqrt_roughness"
+    )]
+    Axis(String),
+    /// Not one axis of the direction and at most one of the micro-surface.
+    #[error(
+        "`{0}`: a table has an axis of the angle and at most one of the roughness, such as \"cos_theta,roughness\""
+    )]
+    Axes(String),
+    /// A channel that the file does not have.
+    #[error("there is no channel {channel}: the file has {found}")]
+    Channel {
+        /// Asked for, from 0.
+        channel: usize,
+        /// In the file.
+        found: u32,
+    },
+    /// Channels and their meanings differ in number, or a term does not belong to the model.
+    #[error("{channels} channels are read and {terms} values are named; name one for each, of: {known}")]
+    Terms {
+        /// Channels read.
+        channels: usize,
+        /// Terms named.
+        terms: usize,
+        /// What the model has.
+        known: String,
+    },
+    /// The number of axes does not suit the model or the size of the table.
+    #[error("{0}")]
+    Shape(&'static str),
+}
+
+/// What a table is said to hold and where.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Statement {
+    /// The function.
+    pub model: Model,
+    /// The axes.
+    pub layout: Layout,
+    /// Channels of the file, from 0.
+    pub channels: Vec<usize>,
+    /// What each of them holds.
+    pub terms: Vec<Term>,
+    /// Lowest cosine that counts.
+    pub min_cos: f64,
+    /// Lowest alpha that counts.
+    pub min_alpha: f64,
+    /// Distance of neighbouring values next to 1 in the file's format.
+    pub step: f64,
+}
+
+/// One line of the table of hypotheses.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Candidate {
+    /// What differs from the statement; nothing for the statement itself.
+    pub mistakes: Vec<Mistake>,
+    /// Root mean square of texels against quadrature; errors above a quarter count as a quarter.
+    pub rms: f64,
+}
+
+/// What the table is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AuditVerdict {
+    /// No other hypothesis fits better.
+    AsStated,
+    /// Another one does: the first candidate.
+    FitsBetterAs,
+    /// None fits.
+    FitsNothing,
+}
+
+/// The outcome.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Audit {
+    /// Texels across and down.
+    pub size: [u32; 2],
+    /// What was found.
+    pub verdict: AuditVerdict,
+    /// Error as sampled under the statement; places are `cos_theta` and `alpha`.
+    pub stated: ErrorStats,
+    /// The same under the best hypothesis, where that is another one.
+    pub remaining: Option<ErrorStats>,
+    /// The best hypotheses, the best first; the statement is among them.
+    pub candidates: Vec<Candidate>,
+    /// Texel values in the read channels that are not finite.
+    pub not_finite: u64,
+    /// Those below 0.
+    pub negative: u64,
+    /// Lowest cosine that counted in the errors.
+    pub min_cos: f64,
+    /// Lowest alpha.
+    pub min_alpha: f64,
+}
+
+impl Audit {
+    /// Whether the table is as stated and its largest sampled error within a budget.
+    pub fn is_within(&self, max_error: f64) -> bool {
+        self.verdict == AuditVerdict::AsStated && self.stated.max_abs_err <= max_error && self.not_finite == 0
+    }
+}
+
+/// Judges a table. Deterministic, whatever the number of threads.
+///
+/// # Errors
+/// [`AuditError`] when the statement does not suit the file.
+pub fn audit(image: &Image, statement: &Statement) -> Result<Audit, AuditError> {
+    check(image, statement)?;
+    Ok(against(image, statement, &Truth::new(&statement.model)))
+}
+
+fn against(image: &Image, statement: &Statement, truth: &Truth) -> Audit {
+    let stated = Hypothesis {
+        layout: statement.layout,
+        variant: truth.stated,
+        terms: statement.terms.clone(),
+        encoding: Encoding::Linear,
+        clamped: false,
+    };
+    // Rounding is even over a step.
+    let rounding = statement.step / 12.0f64.sqrt();
+    let subject = Subject { image, channels: &statement.channels, rounding };
+    let fits = search(&subject, &stated, truth);
+    let best = &fits[0];
+    let verdict = if best.rms > NO_FIT {
+        AuditVerdict::FitsNothing
+    } else if best.hypothesis == stated {
+        AuditVerdict::AsStated
+    } else {
+        AuditVerdict::FitsBetterAs
+    };
+    let values = || image.texels().flat_map(|texel| statement.channels.iter().map(|&c| texel[c]));
+    Audit {
+        size: [image.width, image.height],
+        verdict,
+        stated: sampled(&subject, statement, truth, &stated),
+        remaining: (verdict == AuditVerdict::FitsBetterAs)
+            .then(|| sampled(&subject, statement, truth, &best.hypothesis)),
+        candidates: fits
+            .iter()
+            .map(|fit| Candidate { mistakes: fit.hypothesis.mistakes(&stated, truth), rms: fit.rms })
+            .collect(),
+        not_finite: values().filter(|v| !v.is_finite()).count() as u64,
+        negative: values().filter(|v| *v < 0.0).count() as u64,
+        min_cos: statement.min_cos,
+        min_alpha: statement.min_alpha,
+    }
+}
+
+fn check(image: &Image, statement: &Statement) -> Result<(), AuditError> {
+    let Statement { model, layout, channels, terms, .. } = statement;
+    if let Some(&channel) = channels.iter().find(|&&c| c >= image.channels as usize) {
+        return Err(AuditError::Channel { channel, found: image.channels });
+    }
+    if channels.is_empty() || channels.len() != terms.len() || terms.iter().any(|term| !model.terms().contains(term)) {
+        let known = model.terms().iter().map(|t| t.name()).collect::<Vec<_>>().join(", ");
+        return Err(AuditError::Terms { channels: channels.len(), terms: terms.len(), known });
+    }
+    let long = [image.width, image.height].iter().filter(|side| **side > 1).count();
+    match (layout.slope.is_some(), model.has_slope()) {
+        (true, false) => {
+            Err(AuditError::Shape("a smooth interface has no axis of roughness: name the angle alone in --axes"))
+        }
+        (false, true) => {
+            Err(AuditError::Shape("this model needs an axis of roughness or alpha beside the angle in --axes"))
+        }
+        (true, true) if long < 2 => Err(AuditError::Shape("a table over two axes has at least two texels along both")),
+        (false, false) if image.width < 2 => {
+            Err(AuditError::Shape("a table over the angle alone has at least two texels across"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The error of reads through a sampler, at points off the nodes, with the climb of [`measure_scan`] to the worst.
+fn sampled(subject: &Subject, statement: &Statement, truth: &Truth, h: &Hypothesis) -> ErrorStats {
+    // Coordinates of the scan are the statement's, whatever the hypothesis: both are asked at the same places.
+    let (angle, slope) = (statement.layout.angle, statement.layout.slope);
+    let (points, refinements) = truth.scan();
+    let ends = |a: f64, b: f64| (a.min(b), a.max(b));
+    let (from, to) = ends(angle.coordinate(0.0), angle.coordinate(libm::acos(statement.min_cos.clamp(0.0, 1.0))));
+    let mut scan = Scan { points: [points * points, 1], from: [from, 0.5], to: [to, 0.5], refinements };
+    if let Some(slope) = slope {
+        let (from, to) = ends(slope.coordinate(statement.min_alpha), slope.coordinate(1.0));
+        (scan.points, scan.from[1], scan.to[1]) = ([points; 2], from, to);
+    }
+    let canonical = |u: [f64; 2]| {
+        [angle.canonical_of_coordinate(u[0]), slope.map_or(0.0, |slope| slope.canonical_of_coordinate(u[1]))]
+    };
+    let size = [subject.image.width, subject.image.height];
+    let compare = |u: [f64; 2]| {
+        let at = canonical(u);
+        let texel = bilinear(subject.image, h.layout.position(size, at), WEIGHTS);
+        let components = truth.exact(h.variant, at);
+        let mut result = Comparison { expected: [0.0; 4], sampled: [0.0; 4] };
+        for (c, &channel) in subject.channels.iter().enumerate().take(4) {
+            result.expected[c] = h.terms[c].of(components);
+            result.sampled[c] = h.comparable(c, texel[channel], at[1]);
+        }
+        result
+    };
+    let axis_values = |u: [f64; 2]| {
+        let [theta, alpha] = canonical(u);
+        if slope.is_some() { vec![libm::cos(theta), alpha] } else { vec![libm::cos(theta)] }
+    };
+    measure_scan(&scan, compare, axis_values)
+}
