@@ -90,7 +90,7 @@ fn material(n: u32, case: &StressCase, model: ShadingModel) -> Material {
         layers: vec![LayerExtras::default(); case.stack.layers.len()],
         stack: case.stack.clone(),
         effects: luthier_material::Effects::default(),
-        budget: luthier_material::Budget::default(),
+        budget: luthier_material::BudgetSettings::default(),
         bake: BakeSettings {
             model: ModelSetting::from_name(model.name()),
             color: Some(color),

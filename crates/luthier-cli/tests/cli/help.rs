@@ -2,9 +2,10 @@ use crate::workshop::Workshop;
 
 /// What `--help` lists: in every build, with a device, and with a window.
 fn verbs() -> impl Iterator<Item = &'static str> {
-    let always = ["bake", "check", "report", "audit", "cost", "shader", "models", "eval", "ior", "schema"];
-    let gpu =
-        ["parity", "preview", "gallery", "compare", "figures", "bench"].into_iter().filter(|_| cfg!(feature = "gpu"));
+    let always = ["bake", "budgets", "check", "report", "audit", "cost", "shader", "models", "eval", "ior", "schema"];
+    let gpu = ["parity", "stability", "preview", "gallery", "compare", "figures", "bench"]
+        .into_iter()
+        .filter(|_| cfg!(feature = "gpu"));
     always.into_iter().chain(gpu).chain(cfg!(feature = "view").then_some("view"))
 }
 
