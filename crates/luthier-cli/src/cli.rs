@@ -229,7 +229,7 @@ pub(crate) struct ReportOptions {
     pub(crate) stability: Option<PathBuf>,
     /// Side of the pictures in pixels; 0 makes none
     #[cfg(feature = "gpu")]
-    #[arg(long, value_name = "N", default_value_t = 160, value_parser = clap::value_parser!(u32).range(0..=512))]
+    #[arg(long, value_name = "N", default_value_t = 144, value_parser = clap::value_parser!(u32).range(0..=512))]
     pub(crate) picture_size: u32,
     /// Pairs of directions in every set of every material
     #[arg(long, value_name = "N", default_value_t = 4096, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]

@@ -15,6 +15,8 @@ pub(crate) struct Choice {
     pub(crate) error: f64,
     /// What it is, in words.
     pub(crate) tip: String,
+    /// A word beside its mark, if there is room for it.
+    pub(crate) label: &'static str,
     /// How it is drawn.
     pub(crate) series: Series,
     /// Whether it was chosen.
@@ -60,9 +62,12 @@ pub(crate) fn pareto(
     for choice in &finite {
         let (x, y) = (frame.px(choice.price), frame.py(choice.error));
         frame.mark(choice.series, x, y, &choice.tip);
-        if choice.is_chosen {
-            frame.ring(x, y);
+        if !choice.label.is_empty() {
+            frame.text(x + 8.0, y - 6.0, "start", "tick", choice.label);
         }
+    }
+    for choice in finite.iter().filter(|c| c.is_chosen) {
+        frame.ring(frame.px(choice.price), frame.py(choice.error));
     }
     frame.finish(label)
 }
@@ -87,7 +92,7 @@ mod tests {
 
     fn choice(price: f64, error: f64) -> Choice {
         let series = Series { class: "s-tables", name: "", mark: Mark::Circle };
-        Choice { price, error, tip: format!("{price}"), series, is_chosen: price == 2.0 }
+        Choice { price, error, tip: format!("{price}"), label: "", series, is_chosen: price == 2.0 }
     }
 
     #[test]

@@ -102,6 +102,9 @@ pub fn judge_shading_models(subject: &ModelSubject, settings: ModelSettings) -> 
     shading.into_iter().zip(errors).map(|(model, errors)| AgainstReference::of(model, &errors)).collect()
 }
 
+/// Stands for the lobe error of a model that reflects light where the reference reflects none, which no JSON holds.
+const MOST: f64 = 1e6;
+
 impl AgainstReference {
     fn of(model: ShadingModel, errors: &ModelErrors) -> Self {
         let at = |theta_deg: f64| errors.views.iter().filter(move |view| view.theta_deg == theta_deg);
@@ -112,13 +115,13 @@ impl AgainstReference {
         let delta_e = |theta_deg| {
             ciede2000(color(theta_deg, |view| view.albedo_model), color(theta_deg, |view| view.albedo_reference))
         };
-        let lobe = |theta_deg| at(theta_deg).map(|view| view.lobe.error).fold(0.0, f64::max);
+        let lobe = |theta_deg| at(theta_deg).map(|view| view.lobe.error.min(MOST)).fold(0.0, f64::max);
         Self {
             model,
             albedo_err: errors.albedo.quantity.error,
             albedo_std_err: errors.albedo.quantity.std_err,
-            lobe_err: errors.lobe.quantity.error,
-            lobe_noise: errors.lobe.floor,
+            lobe_err: errors.lobe.quantity.error.min(MOST),
+            lobe_noise: errors.lobe.floor.min(MOST),
             worst_theta_deg: errors.lobe.theta_deg,
             worst_wavelength_nm: errors.lobe.wavelength_nm,
             delta_e: THETAS_DEG.into_iter().map(delta_e).fold(0.0, f64::max),
@@ -282,7 +285,7 @@ mod tests {
         }
     }
 
-    /// A bare mirror is what Belcour's model shows; Phong's lobe is of another size and another colour.
+    /// A bare mirror is what Belcour's model shows; Phong's reflects a little too much at grazing angles.
     #[test]
     fn shading_models_are_judged_as_the_others() {
         let settings = ModelSettings { samples: NonZeroU32::new(2000).unwrap(), seed: 1 };
@@ -296,7 +299,8 @@ mod tests {
             assert_eq!(of(model).by_angle.iter().map(|p| p.1).fold(0.0, f64::max), of(model).lobe_err);
         }
         assert!(of(ShadingModel::Belcour).delta_e < 0.2, "{judged:?}");
-        assert!(of(ShadingModel::Phong).lobe_err > 0.1, "{judged:?}");
+        // Schlick's form instead of Fresnel's, at 80 degrees.
+        assert!(of(ShadingModel::Phong).delta_e > 0.3 && of(ShadingModel::Phong).worst_theta_deg == 80.0, "{judged:?}");
     }
 
     #[test]

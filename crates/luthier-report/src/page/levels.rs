@@ -16,7 +16,10 @@ pub(super) fn write(out: &mut String, report: &Report) {
     let mut row = |level: &str, what: &str, unit: &str, found: Option<(f64, String)>, missing: &str| {
         let (value, place) = found.map_or(("–".to_owned(), missing.to_owned()), |(v, p)| (error(v), p));
         let (place, value) = (escape(&place), cell(&value));
-        let _ = write!(out, "<tr><th>{level}</th><td>{what}</td><td>{unit}</td>{value}<td>{place}</td></tr>");
+        let _ = write!(
+            out,
+            "<tr><th class=\"level\">{level}</th><td>{what}</td><td>{unit}</td>{value}<td>{place}</td></tr>"
+        );
     };
     let table = report.worst_table().map(|(error, kind, tile)| (error, format!("{}, {tile}", kind.name())));
     let texels = "a sampled read of a shipped table against its function";

@@ -114,10 +114,10 @@
     map.addEventListener("pointerleave", () => (tip.hidden = true));
   }
 
-  // Paper has nothing to click on.
+  // Paper has nothing to click on; long lists stay away from it.
   let opened = [];
   addEventListener("beforeprint", () => {
-    opened = all("details:not([open])");
+    opened = all("details:not([open]):not(.long)");
     opened.forEach(details => (details.open = true));
   });
   addEventListener("afterprint", () => opened.forEach(details => (details.open = false)));

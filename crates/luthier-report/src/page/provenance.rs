@@ -24,7 +24,7 @@ pub(super) fn write(out: &mut String, report: &Report) {
     row(["tables, “by the baker”; searches", &report.generator, host, "fixed by texel and sample number"]);
     row(["shaders, colour differences", "this run", device, "Halton sequence of directions, the same in every run"]);
     if report.materials.iter().any(|m| m.picture.is_some()) {
-        row(["pictures, FLIP", "this run", device, "directions of the environment: 64 a lobe, the same in every run"]);
+        row(["pictures, FLIP", "this run", device, "directions of the environment, the same in every run"]);
     }
     if let Some(paths) = report.reference {
         let random = format!("{} paths a view and wavelength, seed {}", paths.paths, paths.seed);

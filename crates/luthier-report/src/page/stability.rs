@@ -31,7 +31,7 @@ pub(super) fn write(out: &mut String, report: &Report, exhibits: &Exhibits) {
         escape(summary.device.as_deref().unwrap_or("no adapter"))
     );
     out.push_str(
-        "<p class=\"legend\"><span class=\"heat holds\">holds</span><span class=\"heat degrades\">+ degrades</span><span class=\"heat \
+        "<p class=\"legend\"><span class=\"heat holds\">holds</span><span class=\"heat degrades\">· degrades</span><span class=\"heat \
          fails\">× fails</span>Rows are methods by level, columns cases; hover for what it is and why.</p><figure class=\"heat-map\">",
     );
     out.push_str(&heat_map_svg(suite));

@@ -59,7 +59,7 @@ fn kind(out: &mut String, report: &Report, search: &Search) {
     charts(out, search, shipped(report, search.kind, &|_| true), &format!("{name}, all materials"));
     let _ = write!(
         out,
-        "<details><summary>All {} of the front</summary><div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>candidate</th><th \
+        "<details class=\"long\"><summary>All {} of the front</summary><div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>candidate</th><th \
          class=\"n\">bytes</th><th class=\"n\">cost</th><th class=\"n\">max abs</th><th class=\"n\">max rel</th><th \
          class=\"n\">CIEDE2000</th><th>chosen</th></tr></thead><tbody>",
         search.front.len()
@@ -98,13 +98,14 @@ fn charts(out: &mut String, search: &Search, ships: Option<(f64, f64)>, of: &str
                 number(candidate.cost),
                 error(candidate.error.max_abs)
             ),
+            label: "",
             series: CANDIDATE,
             is_chosen: i == search.chosen,
         };
         let mut choices: Vec<Choice> = search.front.iter().enumerate().map(of_candidate).collect();
         if let (Price::Bytes, Some((size, found))) = (price, ships) {
             let tip = format!("what ships: {}, error measured here {}", bytes(size as u64), error(found));
-            choices.push(Choice { price: size, error: found, tip, series: SHIPS, is_chosen: false });
+            choices.push(Choice { price: size, error: found, tip, label: "", series: SHIPS, is_chosen: false });
         }
         let label = format!("{of}: {by} against error");
         let _ = write!(
@@ -207,10 +208,10 @@ fn models(out: &mut String, material: &MaterialReport, shaders: &[Shader<'_>]) {
         let row = shader.row;
         let found = if has_reference { against(row).map(|a| a.lobe_err) } else { own(row) }?;
         let is_chosen = row.model == material.model && row.form == "baked";
-        let series = if row.form == "full" { FULL } else { BAKED };
+        let (series, label) = if row.form == "full" { (FULL, "") } else { (BAKED, row.model.name()) };
         let tip =
             format!("{}, {}: {} cycles, error {}", row.model.name(), row.form, row.inverse_throughput, error(found));
-        Some(Choice { price: row.inverse_throughput as f64, error: found, tip, series, is_chosen })
+        Some(Choice { price: row.inverse_throughput as f64, error: found, tip, label, series, is_chosen })
     };
     let choices: Vec<Choice> = shaders.iter().filter_map(choice).collect();
     let (title, note) = if has_reference {

@@ -12,7 +12,7 @@ use crate::progress::Bar;
 use crate::verb::compare::difference;
 
 /// Directions of the environment for each lobe and sample: the form without tables has no albedo to weigh blurred maps with.
-const ENVIRONMENT_SAMPLES: u32 = 64;
+const ENVIRONMENT_SAMPLES: u32 = 16;
 
 /// Samples along each side of a pixel.
 const SAMPLES: u32 = 2;
