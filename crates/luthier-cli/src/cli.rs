@@ -193,7 +193,7 @@ pub(crate) struct CheckOptions {
 #[command(
     after_help = "Exits with 1 when a limit is broken: of the command line, or a budget of a material file.\n\nExamples:\n  luthier report\n  \
                   luthier report --out build/luts --max-error 1e-3 --max-delta-e 1\n  luthier report --no-device --json\n  luthier report \
-                  --reference --cost docs/measurements/gpu-cost.json --stability docs/measurements/stability.json"
+                  --reference --cost cost.json --stability suite.json"
 )]
 pub(crate) struct ReportOptions {
     /// Folder of the bake; the report goes into its folder report/
