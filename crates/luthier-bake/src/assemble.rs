@@ -66,11 +66,13 @@ pub struct Options {
     /// Whether sizes, mappings and formats that no material decides are searched for; otherwise they are fixed defaults, and budgets
     /// are not looked at.
     pub search: bool,
+    /// Fresnel rows of this form, of the size and axis that materials ask for or that are fixed, in place of those of a search.
+    pub rows: Option<(RowBase, TexelFormat)>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { budget: Budget::default(), search: true }
+        Self { budget: Budget::default(), search: true, rows: None }
     }
 }
 
@@ -142,7 +144,10 @@ fn plan(
             });
         }
     }
-    let settings = Settings::of(materials)?;
+    let mut settings = Settings::of(materials)?;
+    if let Some(rows) = options.rows {
+        settings.take_rows(rows);
+    }
     let fixed = Plan::new(materials, settings.clone(), read_image)?;
     if !options.search {
         return Ok(Planned { plan: fixed, results: Results::default(), searches: Vec::new() });
@@ -158,6 +163,7 @@ fn plan(
     let mut found = search::candidates(&fixed, &results, &budget, is_asked);
     if !is_asked {
         found.iter_mut().for_each(affordable);
+        found.retain(|found| found.comes_near(&budget));
     }
     let searched: Vec<TableKind> = found.iter().map(|f| f.kind).collect();
     let fixed_bytes = used(&fixed.tiles)
