@@ -6,6 +6,9 @@ use super::scale::Scale;
 /// Errors below this share the end of an axis.
 const SMALLEST: f64 = 1e-9;
 
+/// Room for a label, across and down; what is nearer to another has its tip alone.
+const LABEL: [f64; 2] = [100.0, 13.0];
+
 /// A thing that could be chosen.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Choice {
@@ -62,11 +65,17 @@ pub(crate) fn pareto(
     for choice in &finite {
         let (x, y) = (frame.px(choice.price), frame.py(choice.error));
         frame.mark(choice.series, x, y, &choice.tip);
-        if !choice.label.is_empty() {
-            frame.text(x + 8.0, y - 6.0, "start", "tick", choice.label);
+    }
+    let mut labels: Vec<[f64; 2]> = Vec::new();
+    let (chosen, others): (Vec<&Choice>, Vec<&Choice>) = finite.iter().partition(|c| c.is_chosen);
+    for choice in chosen.iter().chain(&others).filter(|c| !c.label.is_empty()) {
+        let at = [frame.px(choice.price), frame.py(choice.error)];
+        if labels.iter().all(|l| (l[0] - at[0]).abs() > LABEL[0] || (l[1] - at[1]).abs() > LABEL[1]) {
+            frame.text(at[0] + 8.0, at[1] - 8.0, "start", "tick", choice.label);
+            labels.push(at);
         }
     }
-    for choice in finite.iter().filter(|c| c.is_chosen) {
+    for choice in chosen {
         frame.ring(frame.px(choice.price), frame.py(choice.error));
     }
     frame.finish(label)

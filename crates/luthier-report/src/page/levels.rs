@@ -61,7 +61,11 @@ pub(super) fn write(out: &mut String, report: &Report) {
     row("3 · model", &what, "albedo, absolute", albedo.max_by(|a, b| a.0.total_cmp(&b.0)), missing);
     let seen = shipped().map(|(m, a)| (a.delta_e, m.name.clone())).max_by(|a, b| a.0.total_cmp(&b.0));
     row("3 · model, seen", &what, "CIEDE2000 of albedos, D65", seen, missing);
-    out.push_str("</tbody></table></div>\n");
+    out.push_str(
+        "</tbody></table></div><p class=\"note\">CIEDE2000 is of colours as a display shows them: each channel clipped to 0..1 after the \
+         light, “daylight” being that which makes a white diffuser white. In highlights of saturated colour, far brighter than white, a \
+         small relative error can move a dark channel from one end to the other; how rare that is stands with each material.</p>\n",
+    );
     limits(out, report);
 }
 
