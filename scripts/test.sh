@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # All tests. On Debian and its relatives it installs what they need (the software Vulkan driver, the shader validators, a
-# display without a screen, and Tint from npm); elsewhere it says what is missing. Needs nothing but a Rust toolchain otherwise.
+# display without a screen, a browser, and Tint from npm); elsewhere it says what is missing. Needs nothing but a Rust toolchain otherwise.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-packages=(mesa-vulkan-drivers libvulkan1 glslang-tools spirv-tools xvfb libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0)
+packages=(mesa-vulkan-drivers libvulkan1 glslang-tools spirv-tools xvfb libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0 chromium)
 
 step() { printf '\n== %s\n' "$1"; }
 
@@ -15,6 +15,7 @@ missing() {
   compgen -G '/usr/share/vulkan/icd.d/*.json' >/dev/null || compgen -G '/etc/vulkan/icd.d/*.json' >/dev/null ||
     echo 'a Vulkan driver'
   command -v Xvfb >/dev/null || echo Xvfb
+  command -v chromium chromium-browser google-chrome >/dev/null || echo Chromium
   for library in libX11-xcb libXcursor libXi libxkbcommon-x11; do
     ldconfig -p 2>/dev/null | grep "$library\.so" >/dev/null || echo "$library"
   done

@@ -51,6 +51,8 @@ pub struct Outline {
     pub keys: Vec<Vec<Key>>,
     /// Each material, in the order given.
     pub materials: Vec<BakedMaterial>,
+    /// What the search for tables found.
+    pub searches: Vec<Search>,
 }
 
 /// Longest side that textures are laid out for while tiles fit: any device of the last decade has it.
@@ -86,7 +88,7 @@ pub fn outline(materials: &[Material], read_image: ImageReader<'_>) -> Result<Ou
         .filter_map(|(kind, tiles)| Some((kind, layout(kind, tiles, &settings)?, shape(kind, &settings)?.format)))
         .collect();
     let keys = used(&tiles).map(|(_, tiles)| tiles.tiles.iter().map(|(_, key)| *key).collect()).collect();
-    Ok(Outline { tables, keys, materials: baked_materials(materials, records) })
+    Ok(Outline { tables, keys, materials: baked_materials(materials, records), searches: planned.searches })
 }
 
 /// Bakes all tables of a set of materials. `read_image` fetches thickness maps.

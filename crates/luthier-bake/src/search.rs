@@ -7,7 +7,6 @@
 //! Not searched: thickness textures, which are pictures, and escape tiles.
 
 mod choice;
-mod delta_e;
 mod distribution;
 mod fresnel;
 pub mod goals;
@@ -18,6 +17,7 @@ use luthier_lut::{
     Axis, Budget, Candidate, CandidateForm, Mapping, MeasuredError, REL_FLOOR, RowBase, Search, TableKind,
 };
 use luthier_lut::{TexelFormat, WeightBits};
+use luthier_optics::color_difference::{ciede2000, lab};
 
 pub(crate) use choice::{best_effort, choose, front};
 
@@ -176,7 +176,7 @@ pub(crate) fn measured<'p>(
         error.max_rel = error.max_rel.max(largest / brightest);
         if let Some(worst) = &mut error.delta_e {
             let rgb = |v: [f64; 4]| [v[0], v[1], v[2]];
-            *worst = worst.max(delta_e::ciede2000(delta_e::lab(rgb(found)), delta_e::lab(rgb(expected))));
+            *worst = worst.max(ciede2000(lab(rgb(found)), lab(rgb(expected))));
         }
     }
     error

@@ -27,8 +27,8 @@ pub(crate) const MANIFEST: &str = "manifest.json";
 /// Folder of the report beside the manifest.
 pub(crate) const REPORT_FOLDER: &str = "report";
 
-/// The report: for programs, and for people.
-pub(crate) const REPORT_FILES: [&str; 2] = ["report/report.json", "report/index.html"];
+/// The report: for programs, for pull requests, and for people.
+pub(crate) const REPORT_FILES: [&str; 3] = ["report/report.json", "report/report.md", "report/index.html"];
 
 /// All files of a bake but the manifest, with their paths relative to it.
 pub(crate) struct BakeFiles {

@@ -191,7 +191,9 @@ pub(crate) struct CheckOptions {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  luthier report\n  luthier report --out build/luts --max-error 1e-3\n  luthier report --no-device --json"
+    after_help = "Exits with 1 when a limit is broken: of the command line, or a budget of a material file.\n\nExamples:\n  luthier report\n  \
+                  luthier report --out build/luts --max-error 1e-3 --max-delta-e 1\n  luthier report --no-device --json\n  luthier report \
+                  --reference --cost cost.json --stability suite.json"
 )]
 pub(crate) struct ReportOptions {
     /// Folder of the bake; the report goes into its folder report/
@@ -200,6 +202,35 @@ pub(crate) struct ReportOptions {
     /// Exit with 1 when the largest relative error of a shader exceeds this
     #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) max_error: Option<f64>,
+    /// Exit with 1 when the absolute error of a table exceeds this, as measured here
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) max_abs: Option<f64>,
+    /// Exit with 1 when a colour difference (CIEDE2000, daylight) of a shader exceeds this
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) max_delta_e: Option<f64>,
+    /// Exit with 1 when the mean FLIP of a material's pictures exceeds this
+    #[cfg(feature = "gpu")]
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true, conflicts_with = "no_device")]
+    pub(crate) max_flip: Option<f64>,
+    /// Exit with 1 when the texels of all tables take more bytes than this
+    #[arg(long, value_name = "N")]
+    pub(crate) max_bytes: Option<u64>,
+    /// Exit with 1 when the lobe error of a model that ships, against the reference, exceeds this
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true, requires = "reference")]
+    pub(crate) max_lobe: Option<f64>,
+    /// Compare the models with simulated paths, this many a view
+    #[arg(long, value_name = "PATHS", num_args = 0..=1, default_missing_value = "1000", require_equals = true)]
+    pub(crate) reference: Option<std::num::NonZeroU32>,
+    /// Costs of shaders: what `luthier cost --json` printed for these materials
+    #[arg(long, value_name = "FILE")]
+    pub(crate) cost: Option<PathBuf>,
+    /// The stability suite: what `luthier stability --json` printed
+    #[arg(long, value_name = "FILE")]
+    pub(crate) stability: Option<PathBuf>,
+    /// Side of the pictures in pixels; 0 makes none
+    #[cfg(feature = "gpu")]
+    #[arg(long, value_name = "N", default_value_t = 144, value_parser = clap::value_parser!(u32).range(0..=512))]
+    pub(crate) picture_size: u32,
     /// Pairs of directions in every set of every material
     #[arg(long, value_name = "N", default_value_t = 4096, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) pairs: u32,

@@ -20,17 +20,23 @@ impl Shaders {
     }
 }
 
+impl Shaders {
+    /// The pipelines of a form.
+    pub(crate) fn scene(&self, form: Form) -> &Scene {
+        match form {
+            Form::Baked => &self.baked,
+            Form::Full => &self.full,
+        }
+    }
+}
+
 impl Device for Shaders {
     fn name(&self) -> String {
         self.name.clone()
     }
 
     fn evaluate(&self, form: Form, material: u32, pairs: &[luthier_report::Pair]) -> Result<Vec<[f32; 3]>, String> {
-        let scene = match form {
-            Form::Baked => &self.baked,
-            Form::Full => &self.full,
-        };
-        scene.evaluate(material, pairs).map_err(|source| source.to_string())
+        self.scene(form).evaluate(material, pairs).map_err(|source| source.to_string())
     }
 }
 

@@ -12,6 +12,7 @@
 
 pub mod albedo;
 pub mod color;
+pub mod color_difference;
 pub mod constants;
 pub mod f0_table;
 pub mod film_color;

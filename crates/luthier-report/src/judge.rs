@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use crate::exceptions::{Factors, Miss, exception};
 use crate::report::{Compared, Comparison, MaterialReport, REPORT_SCHEMA, Report, TableReport};
+use crate::seen::SeenBy;
 use crate::statistics::{brightest, relative_error};
 use crate::table_terms::{TableTerms, Weights, is_statistical, recorded_veil};
 use crate::{
@@ -146,14 +147,23 @@ pub fn judge(
         if let Some(weights) = device_weights {
             gathered.split_arithmetic(weights);
         }
+        for (comparison, (_, seen)) in gathered.comparisons.iter_mut().zip(gathered.seen) {
+            comparison.seen = seen.finish();
+        }
         gathered.comparisons.sort_by_key(|c| c.compared);
         let material = MaterialReport {
             name: entry.name.clone(),
             source: entry.source.clone(),
+            source_hash: entry.source_hash.clone(),
             class: entry.class.clone(),
+            model: entry.model,
             color: entry.color,
             layers: entry.layers.iter().map(format::layer).collect(),
             comparisons: gathered.comparisons,
+            against_reference: Vec::new(),
+            alone: Vec::new(),
+            picture: None,
+            choice: None,
         };
         let read = TableTerms::new(subject, index, device_weights.unwrap_or(Weights::EightBit))?;
         for (compared, misses) in gathered.misses {
@@ -184,6 +194,11 @@ pub fn judge(
         findings,
         target_max_rel_err: TARGET_MAX_REL_ERR,
         exceptions,
+        limits: Vec::new(),
+        searches: manifest.searches.clone(),
+        costs: None,
+        reference: None,
+        stability: None,
         tables,
         materials,
     })
@@ -263,13 +278,15 @@ struct Gathered {
     with_device: bool,
     comparisons: Vec<Comparison>,
     device: Vec<DeviceRun>,
+    /// Colour differences, of comparisons as they come in.
+    seen: Vec<(Compared, SeenBy)>,
     /// Pairs that miss the target, of the comparisons that are judged.
     misses: Vec<(Compared, Vec<Miss>)>,
 }
 
 impl Gathered {
     fn new(with_device: bool) -> Self {
-        Self { with_device, comparisons: Vec::new(), device: Vec::new(), misses: Vec::new() }
+        Self { with_device, comparisons: Vec::new(), device: Vec::new(), seen: Vec::new(), misses: Vec::new() }
     }
 
     fn add(&mut self, compared: Compared, set: DirectionSet, pairs: &[Pair], found: &[Rgb], expected: &[Rgb]) {
@@ -279,13 +296,16 @@ impl Gathered {
                 sets: Vec::new(),
                 by_angle: AngleProfile::new(),
                 exceedance: Exceedance::new(),
+                seen: Vec::new(),
             });
+            self.seen.push((compared, SeenBy::default()));
             self.comparisons.len() - 1
         });
         let comparison = &mut self.comparisons[at];
         comparison.sets.push((set, statistics(pairs, found, expected)));
         comparison.by_angle.add(pairs, found, expected);
         comparison.exceedance.add(found, expected);
+        self.seen[at].1.add(pairs, found, expected);
         if compared.is_judged(self.with_device) {
             let misses = Miss::among(pairs, found, expected);
             match self.misses.iter_mut().find(|(c, _)| *c == compared) {

@@ -7,12 +7,15 @@
 //! - shaders are compared with `luthier_layers::real_time` over deterministic sets of directions;
 //! - the error of the baked shader is split into what the tables do and what f32 arithmetic does;
 //! - the difference between three wavelengths and the spectrum is shown apart, so that nobody takes it for an error;
+//! - colour differences say what of it is seen under which light ([`Seen`]);
 //! - whatever misses [`TARGET_MAX_REL_ERR`] is listed with the factor that makes it miss;
 //! - directional albedos (FGD) are estimated anew, wavelength by wavelength, with the uncertainty of the estimate.
 //!
 //! [`audit()`] judges a table that anybody made against what it is said to hold.
 //! [`parity`] compares the shaders of all models with their f64 twins. [`compare_pictures`] compares two rendered pictures,
 //! [`render_ball`] makes one in f64, [`Plot`] draws curves.
+//! What else a page shows (searches, costs, pictures, models against the reference) is put into the report by its caller: [`Costs`],
+//! [`Exhibits`], [`judge_shading_models`]. [`limits()`] holds the report against budgets.
 //! [`judge_models`] is the judge of what the bake stands on: every reflectance model against the Monte Carlo of whole stacks.
 //! [`stability`] runs every method where methods fail, and says where each may be used.
 //!
@@ -28,11 +31,13 @@ mod chart;
 mod device;
 mod directions;
 mod error;
+mod evidence;
 mod exceptions;
 mod flip;
 mod format;
 mod json;
 mod judge;
+mod limits;
 mod models;
 mod page;
 mod parity;
@@ -40,9 +45,11 @@ mod picture;
 mod profile;
 mod report;
 mod scan;
+mod seen;
 pub mod stability;
 mod statistics;
 mod subject;
+mod summary;
 mod table_terms;
 
 pub use audit::{
@@ -54,11 +61,16 @@ pub use chart::{Curve, Plot, PlotAxis, PlotColor};
 pub use device::{Device, Form};
 pub use directions::{DirectionSet, Pair};
 pub use error::ReportError;
+pub use evidence::{
+    AgainstReference, Costs, Exhibit, Exhibits, PictureErrors, ReferencePaths, ShaderCost, StabilitySummary,
+};
 pub use exceptions::{Cause, Exception, Factor, Part};
 pub use flip::lightness_chroma_hue;
 pub use judge::{Progress, Settings, judge};
+pub use limits::{Asked, FileBudget, Limit, limits};
 pub use models::{
     MaterialModels, ModelErrors, ModelSettings, ModelSubject, ModelsReport, Quantity, ViewError, Worst, judge_models,
+    judge_shading_models,
 };
 pub use parity::{
     KNOWN, Known, POLISHED_ALPHAS, Parity, ParityCase, ParityRow, ParitySet, Share, Tolerance, Verdict, parity,
@@ -70,6 +82,7 @@ pub use report::{
     AlphaPoint, Compared, Comparison, Curves, MaterialReport, REPORT_SCHEMA, ReflectanceCurve, Report, TableReport,
     TileReport, WorstCase,
 };
+pub use seen::{Seen, SeenLight, picture_color_difference};
 pub use statistics::{
     DIM_FLOOR, ErrorSummary, FLOOR, PEAK_FRACTION, Statistics, TARGET_MAX_REL_ERR, WorstPair, statistics,
 };

@@ -1,13 +1,16 @@
 //! What a judgement consists of, as data.
 
-use luthier_lut::{AtlasLayout, ColorMode, ErrorStats, TableKind, TexelFormat};
+use luthier_lut::{AtlasLayout, ColorMode, ErrorStats, Search, ShadingModel, TableKind, TexelFormat};
 use serde::{Deserialize, Serialize};
 
+use crate::evidence::{AgainstReference, Costs, Exhibits, PictureErrors, ReferencePaths, StabilitySummary};
 use crate::exceptions::Exception;
-use crate::{AngleProfile, DirectionSet, Exceedance, ReportError, Statistics, Weights, json, page};
+use crate::limits::Limit;
+use crate::seen::Seen;
+use crate::{AngleProfile, DirectionSet, Exceedance, ReportError, Statistics, Weights, json, page, summary};
 
 /// Version of the report's shape.
-pub const REPORT_SCHEMA: u32 = 2;
+pub const REPORT_SCHEMA: u32 = 3;
 
 /// The judgement of a bake: `report.json`, whose shape is `docs/report.schema.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -37,6 +40,16 @@ pub struct Report {
     /// Every material and shader that misses the target somewhere (without a device: every material whose tables, read
     /// with 8-bit weights, do), in the order of the materials. Samples that are not finite are findings instead.
     pub exceptions: Vec<Exception>,
+    /// Limits other than [`Report::budget`], and what they were compared with.
+    pub limits: Vec<Limit>,
+    /// How the tables came by their sizes, mappings and formats: what the baker searched, by its own figures.
+    pub searches: Vec<Search>,
+    /// Costs of shaders, if they were given.
+    pub costs: Option<Costs>,
+    /// What the models were compared with, if they were.
+    pub reference: Option<ReferencePaths>,
+    /// A run of the stability suite, if one was given.
+    pub stability: Option<StabilitySummary>,
     /// The tables, in binding order.
     pub tables: Vec<TableReport>,
     /// The materials, in the order of the manifest.
@@ -122,14 +135,26 @@ pub struct MaterialReport {
     pub name: String,
     /// The file it was described in.
     pub source: String,
+    /// SHA-256 of it, hex, and of what it names.
+    pub source_hash: String,
     /// Surface class a-h.
     pub class: String,
+    /// The reflectance model that its shaders evaluate.
+    pub model: ShadingModel,
     /// How its tables came by their colour, and so what the baked shader is compared with.
     pub color: ColorMode,
     /// The layers from the top down, in words.
     pub layers: Vec<String>,
     /// What was compared with what.
     pub comparisons: Vec<Comparison>,
+    /// The models of shaders against the reference of whole stacks; empty where that was not asked for.
+    pub against_reference: Vec<AgainstReference>,
+    /// What the search finds for this material alone, by the baker's figures.
+    pub alone: Vec<Search>,
+    /// Its pictures, compared.
+    pub picture: Option<PictureErrors>,
+    /// Why its model was chosen: what a bake of a scene says in its manifest.
+    pub choice: Option<serde_json::Value>,
 }
 
 /// What is compared with what; always `f cos_theta_i`.
@@ -184,6 +209,8 @@ pub struct Comparison {
     pub by_angle: AngleProfile,
     /// How many errors exceed what, over all sets.
     pub exceedance: Exceedance,
+    /// Colour differences, over all sets, a light each.
+    pub seen: Vec<Seen>,
 }
 
 impl Comparison {
@@ -252,9 +279,36 @@ impl Report {
         self.device.as_ref().map(|_| self.materials.iter().map(arithmetic).fold(0.0, f64::max))
     }
 
-    /// Whether [`Report::max_error`] is within the budget; nothing without a budget.
+    /// Whether [`Report::max_error`] is within the budget and every limit is held; nothing without any.
     pub fn is_within_budget(&self) -> Option<bool> {
-        self.budget.map(|budget| self.max_error() <= budget)
+        let budget = self.budget.map(|budget| self.max_error() <= budget);
+        let limits = self.limits.iter().map(|limit| limit.is_held);
+        budget.into_iter().chain(limits).reduce(|a, b| a && b)
+    }
+
+    /// The largest error of tables against their functions, as measured here: the table and the tile besides.
+    pub fn worst_table(&self) -> Option<(f64, TableKind, &str)> {
+        let tiles = self.tables.iter().flat_map(|t| t.tiles.iter().map(move |tile| (t.kind, tile)));
+        let measured =
+            tiles.filter_map(|(kind, tile)| Some((tile.judge.as_ref()?.max_abs_err, kind, tile.name.as_str())));
+        measured.max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// The largest colour difference of what [`Report::max_error`] covers, under a light: the material besides.
+    pub fn worst_seen(&self, light: crate::SeenLight) -> Option<(f64, &str)> {
+        let judged = |c: &&Comparison| c.compared.is_judged(self.device.is_some());
+        let seen = |m: &MaterialReport| {
+            let all = m.comparisons.iter().filter(judged).flat_map(|c| &c.seen).filter(|s| s.light == light);
+            all.map(|s| s.max).fold(0.0, f64::max)
+        };
+        self.materials.iter().map(|m| (seen(m), m.name.as_str())).max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// The largest error of the models that ship against the reference: lobe error, the material and all of that comparison.
+    pub fn worst_model(&self) -> Option<(&str, &AgainstReference)> {
+        let shipped = |m: &MaterialReport| m.against_reference.iter().position(|a| a.model == m.model);
+        let all = self.materials.iter().filter_map(|m| Some((m.name.as_str(), &m.against_reference[shipped(m)?])));
+        all.max_by(|a, b| a.1.lobe_err.total_cmp(&b.1.lobe_err))
     }
 
     /// JSON, objects indented and arrays in a line, with a final newline. Besides the fields it has `max_error`, `max_arithmetic_error` (null when
@@ -287,9 +341,14 @@ impl Report {
         Ok(serde_json::from_str(json)?)
     }
 
-    /// A self-contained page: charts are inline SVG, no script, no external resource; light, dark and print. It is
-    /// well-formed XML too.
-    pub fn to_html(&self) -> String {
-        page::html(self)
+    /// A self-contained page: charts are inline SVG, pictures are in it, no external resource; light, dark and print. It can be read
+    /// without its script, which sorts, filters and reads out values. It is well-formed XML too.
+    pub fn to_html(&self, exhibits: &Exhibits) -> String {
+        page::html(self, exhibits)
+    }
+
+    /// A summary in Markdown, as for a pull request.
+    pub fn to_markdown(&self) -> String {
+        summary::markdown(self)
     }
 }

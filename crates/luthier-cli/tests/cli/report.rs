@@ -20,7 +20,7 @@ fn tables_are_judged_without_a_device() {
     let run = workshop.run(&TABLES_ONLY).exits(0);
     assert_eq!(run.stderr, "");
     assert!(run.stdout.contains("3 materials judged, tables only"), "{}", run.stdout);
-    assert_eq!(workshop.files("out/report"), ["index.html", "report.json"]);
+    assert_eq!(workshop.files("out/report"), ["index.html", "report.json", "report.md"]);
 
     let report = workshop.json("out/report/report.json");
     assert_eq!(report["device"], Value::Null);
@@ -37,7 +37,7 @@ fn tables_are_judged_without_a_device() {
         assert!(page.contains(name), "{name}");
     }
     assert!(page.contains("<svg"));
-    for external in ["<script", "<link", "src=", "@import", "url("] {
+    for external in ["<link", "src=\"http", "@import", "url(", "fetch("] {
         assert!(!page.contains(external), "the page is self-contained: {external}");
     }
 }
@@ -86,6 +86,66 @@ fn the_budget_is_the_printed_error() {
         assert_eq!(run.stderr, "", "the verdict is no error of the command");
         assert_eq!(workshop.json("out/report/report.json")["within_budget"], code == 0);
     }
+}
+
+/// Limits of the command line and of material files; what was not measured breaks its limit.
+#[test]
+fn limits_decide_the_exit_code() {
+    let workshop = baked();
+    let run = |more: &[&str]| workshop.run(&[&TABLES_ONLY[..], more].concat());
+    run(&["--max-abs", "1", "--max-bytes", "100000000"]).exits(0);
+    let broken = run(&["--max-abs", "1", "--max-bytes", "1"]).exits(1);
+    assert!(broken.stdout.contains("bytes of all tables, limit 1e0 of command line"), "{}", broken.stdout);
+    assert!(workshop.text("out/report/report.md").contains("**A limit is broken.**"));
+    let limits = workshop.json("out/report/report.json")["limits"].as_array().unwrap().clone();
+    assert_eq!(limits.iter().map(|l| l["is_held"] == true).collect::<Vec<_>>(), [true, false]);
+    run(&["--max-delta-e", "1e-9"]).exits(1);
+    assert!(run(&["--max-lobe", "1"]).exits(2).stderr.contains("--reference"));
+
+    // A file's budget: what the bake held with its own figures, the judge holds with his.
+    let text = format!("{}\n[budget]\nmax_abs = 0.02\n", lacquer("lacquer"));
+    let workshop = Workshop::with(&[("m/lacquer.toml", &text)]);
+    workshop.run(&["bake", "m", "-q"]).exits(0);
+    let held = workshop.run(&TABLES_ONLY).exits(0);
+    assert!(held.stdout.contains("limit 2e-2 of m/lacquer.toml"), "{}", held.stdout);
+    assert_eq!(workshop.json("out/report/report.json")["within_budget"], true);
+}
+
+/// Models against the reference come with the option only, with all that shaders evaluate.
+#[test]
+fn models_are_compared_with_paths_when_asked() {
+    let workshop = Workshop::with(&[("m/gold.toml", &gold("gold"))]);
+    workshop.run(&["bake", "m", "-q"]).exits(0);
+    let material = || workshop.json("out/report/report.json")["materials"][0].clone();
+    workshop.run(&TABLES_ONLY).exits(0);
+    assert_eq!(material()["against_reference"], Value::Array(Vec::new()));
+    workshop.run(&[&TABLES_ONLY[..], &["--reference=200"]].concat()).exits(0);
+    assert_eq!(material()["against_reference"].as_array().unwrap().len(), 7);
+    assert_eq!(workshop.json("out/report/report.json")["reference"]["paths"], 200);
+}
+
+/// Files that are not what they should be.
+#[test]
+fn foreign_evidence_is_refused() {
+    let workshop = baked();
+    workshop.write("wrong.json", "{}");
+    for option in ["--cost", "--stability"] {
+        let words = [&TABLES_ONLY[..], &[option, "wrong.json"]].concat();
+        workshop.run(&words).fails(1, &["wrong.json", "--json` prints"]);
+        workshop.run(&[&TABLES_ONLY[..], &[option, "none.json"]].concat()).fails(3, &["none.json"]);
+    }
+}
+
+/// Whether reports have to do without a device here.
+#[cfg(feature = "gpu")]
+pub(crate) fn has_no_adapter(workshop: &Workshop) -> bool {
+    crate::workshop::lacks_adapter(&workshop.run(&["report", "--pairs", "1", "--picture-size", "0"]))
+}
+
+/// There is no code for one.
+#[cfg(not(feature = "gpu"))]
+pub(crate) fn has_no_adapter(_: &Workshop) -> bool {
+    true
 }
 
 #[test]

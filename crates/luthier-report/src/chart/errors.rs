@@ -38,6 +38,7 @@ pub(crate) fn max_by_material(report: &Report, compared: &[Compared]) -> String 
     frame.rule_x(limit, &format!("{named} {}", error(limit)));
     for (row, material) in report.materials.iter().enumerate() {
         let y = margin.top + ROW * (row as f64 + 0.5);
+        frame.begin(&material.name);
         frame.text(margin.left - 12.0, y + 4.0, "end", "label", &material.name);
         // An error of zero has no place on a logarithmic axis.
         let made = compared.iter().filter_map(|c| material.comparison(*c));
@@ -55,6 +56,7 @@ pub(crate) fn max_by_material(report: &Report, compared: &[Compared]) -> String 
         let largest = judged.map(|c| c.max_error()).fold(0.0, f64::max);
         let over = report.budget.is_some_and(|budget| largest > budget);
         frame.text(992.0, y + 4.0, "end", if over { "value over" } else { "value" }, &error(largest));
+        frame.end();
     }
     frame.finish("Largest relative error of every material, a mark per comparison")
 }
@@ -80,7 +82,7 @@ pub(crate) fn exceedance(report: &Report, compared: &[Compared]) -> String {
         frame.rule_x(budget, "");
     }
     for (compared, shares) in &curves {
-        frame.line(series(*compared).class, shares.iter().copied().map(Some));
+        frame.line(series(*compared).class, compared.name(), shares.iter().copied().map(Some));
     }
     frame.finish("Share of samples that exceed an error")
 }
@@ -101,7 +103,7 @@ pub(crate) fn by_angle(material: &MaterialReport, compared: &[Compared], budget:
     for comparison in found {
         let points = comparison.by_angle.max.iter().enumerate();
         let points = points.map(|(bin, max)| max.map(|max| ((bin as f64 + 0.5) * width, max)));
-        frame.line(series(comparison.compared).class, points);
+        frame.line(series(comparison.compared).class, comparison.compared.name(), points);
     }
     frame.finish(&format!("{}: largest relative error by angle", material.name))
 }

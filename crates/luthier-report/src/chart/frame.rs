@@ -123,8 +123,8 @@ impl Frame {
         self.text(right, y - 4.0, "end", "ruled", label);
     }
 
-    /// A line through points of values; a gap where there is nothing.
-    pub(crate) fn line(&mut self, class: &str, points: impl Iterator<Item = Option<(f64, f64)>>) {
+    /// A line through points of values; a gap where there is nothing. The page's script reads `name` out, where there is one.
+    pub(crate) fn line(&mut self, class: &str, name: &str, points: impl Iterator<Item = Option<(f64, f64)>>) {
         let mut path = String::new();
         let mut pen_down = false;
         for point in points {
@@ -135,7 +135,8 @@ impl Frame {
             pen_down = point.is_some();
         }
         if !path.is_empty() {
-            let _ = write!(self.body, "<path class=\"line {class}\" d=\"{path}\"/>");
+            let name = if name.is_empty() { String::new() } else { format!(" data-name=\"{}\"", escape(name)) };
+            let _ = write!(self.body, "<path class=\"line {class}\"{name} d=\"{path}\"/>");
         }
     }
 
@@ -176,10 +177,38 @@ impl Frame {
         );
     }
 
-    /// The SVG element; `label` says to a screen reader what the chart shows.
+    /// Opens a group of what belongs to a material, for the page's filter; [`Frame::end`] closes it.
+    pub(crate) fn begin(&mut self, material: &str) {
+        let _ = write!(self.body, "<g data-material=\"{}\">", escape(material));
+    }
+
+    /// Closes a group.
+    pub(crate) fn end(&mut self) {
+        self.body.push_str("</g>");
+    }
+
+    /// A ring about pixel coordinates.
+    pub(crate) fn ring(&mut self, x: f64, y: f64) {
+        let _ = write!(self.body, "<circle class=\"chosen\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"9\"/>");
+    }
+
+    /// The SVG element; `label` says to a screen reader what the chart shows. It carries its scales for the page's script.
     pub(crate) fn finish(self, label: &str) -> String {
+        let (x, y) = (self.x.describe(), self.y.describe());
+        let ends = [self.px_fraction(0.0), self.px_fraction(1.0), self.py_fraction(0.0), self.py_fraction(1.0)];
+        let [left, right, bottom, top] = ends;
+        let scales = format!(" data-x=\"{x} {left:.1} {right:.1}\" data-y=\"{y} {bottom:.1} {top:.1}\"");
+        self.element(label, &scales)
+    }
+
+    /// The same for a file of its own, which has no script.
+    pub(crate) fn finish_still(self, label: &str) -> String {
+        self.element(label, "")
+    }
+
+    fn element(self, label: &str, scales: &str) -> String {
         format!(
-            "<svg class=\"chart\" role=\"img\" aria-label=\"{}\" viewBox=\"0 0 {:.0} {:.0}\">{}</svg>",
+            "<svg class=\"chart\" role=\"img\" aria-label=\"{}\"{scales} viewBox=\"0 0 {:.0} {:.0}\">{}</svg>",
             escape(label),
             self.width,
             self.height,

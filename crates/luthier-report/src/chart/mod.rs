@@ -2,11 +2,13 @@
 
 mod errors;
 mod frame;
+mod pareto;
 mod plot;
 mod scale;
 mod tables;
 
 pub(crate) use errors::{by_angle, exceedance, max_by_material, series};
-pub(crate) use frame::legend;
+pub(crate) use frame::{Mark, Series, legend};
+pub(crate) use pareto::{Choice, Price, pareto};
 pub use plot::{Curve, Plot, PlotAxis, PlotColor};
 pub(crate) use tables::{bytes_by_table, error_by_alpha, reflectance};

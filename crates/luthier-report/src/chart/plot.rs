@@ -91,9 +91,9 @@ impl Plot {
             let y = 26.0 + LEGEND * i as f64;
             frame.key(class, [margin.left, margin.left + 30.0], y);
             frame.text(margin.left + 38.0, y + 4.0, "start", "name", &curve.name);
-            frame.line(class, curve.points.iter().map(|&[x, y]| Some((x, y))));
+            frame.line(class, "", curve.points.iter().map(|&[x, y]| Some((x, y))));
         }
-        let chart = frame.finish(&self.title);
+        let chart = frame.finish_still(&self.title);
         let head = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\"");
         let style = format!("<style>{}</style>", include_str!("plot.css"));
         let chart = chart.replacen("<svg", &head, 1);

@@ -16,6 +16,21 @@ impl Scale {
         Self { min, max, log: false, step }
     }
 
+    /// From 0 to a round number that holds all values, with at most six ticks.
+    pub(crate) fn round(values: impl Iterator<Item = f64>) -> Self {
+        let largest = values.filter(|v| v.is_finite()).fold(0.0, f64::max);
+        let largest = if largest > 0.0 { largest } else { 1.0 };
+        let power = libm::pow(10.0, libm::floor(libm::log10(largest / 5.0)));
+        let steps = [1.0, 2.0, 5.0, 10.0].map(|digit| digit * power);
+        let step = steps.into_iter().find(|step| largest / step <= 5.0 + 1e-9).unwrap_or(10.0 * power);
+        Self::linear(0.0, step * libm::ceil(largest / step - 1e-9), step)
+    }
+
+    /// For the page's script: kind and ends, those of a logarithmic scale as powers of ten.
+    pub(crate) fn describe(&self) -> String {
+        format!("{} {} {}", if self.log { "log" } else { "lin" }, self.min, self.max)
+    }
+
     /// Logarithmic over whole decades that hold all positive values; at least one decade, none below `smallest`.
     pub(crate) fn decades(values: impl Iterator<Item = f64>, smallest: f64) -> Self {
         let mut range: Option<(f64, f64)> = None;
@@ -81,6 +96,14 @@ mod tests {
     #[test]
     fn an_empty_scale_is_still_a_scale() {
         assert_eq!(Scale::decades(std::iter::empty(), 1e-9).ticks().len(), 2);
+    }
+
+    #[test]
+    fn round_scales_hold_their_values() {
+        for (largest, end, ticks) in [(113.0, 150.0, 4), (0.42, 0.5, 6), (1000.0, 1000.0, 6), (0.0, 1.0, 6)] {
+            let s = Scale::round([largest, f64::NAN].into_iter());
+            assert!((s.max - end).abs() < 1e-9 && s.ticks().len() == ticks, "{largest}: {s:?}");
+        }
     }
 
     #[test]

@@ -16,7 +16,7 @@ pub(crate) fn reflectance(name: &str, curve: &ReflectanceCurve) -> String {
     for (channel, class) in ["c-blue", "c-green", "c-red"].into_iter().enumerate() {
         let channel = 2 - channel;
         let points = (0..).zip(&curve.rgb).map(|(n, rgb): (u32, _)| (curve.step_deg * f64::from(n), rgb[channel]));
-        frame.line(class, points.map(Some));
+        frame.line(class, ["R", "G", "B"][channel], points.map(Some));
     }
     frame.finish(&format!("Reflectance of {name} over the angle, 0 to 90 degrees"))
 }
@@ -35,7 +35,7 @@ pub(crate) fn error_by_alpha(curves: &[(&str, &[AlphaPoint])]) -> String {
     frame.y_axis("largest error over the angle / peak at that alpha");
     for (i, (name, points)) in curves.iter().enumerate() {
         let class = DISTRIBUTION_CLASSES[i % DISTRIBUTION_CLASSES.len()];
-        frame.line(class, points.iter().map(|p| Some((p.alpha, p.max_err_of_peak))));
+        frame.line(class, name, points.iter().map(|p| Some((p.alpha, p.max_err_of_peak))));
         if let Some(last) = points.last() {
             let (x, y) = (frame.px(last.alpha), frame.py(last.max_err_of_peak));
             frame.text(x + 6.0, y + 4.0, "start", &format!("name {class}"), name);

@@ -33,8 +33,12 @@ use luthier_layers::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_layers::model::{Kind, Model, ModelInfo};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::registry::models;
+use luthier_lut::ShadingModel;
+use luthier_optics::color_difference::{ciede2000, lab};
 use luthier_optics::stack::Stack;
 use rayon::prelude::*;
+
+use crate::evidence::AgainstReference;
 
 use cells::Cells;
 use compare::compare;
@@ -83,6 +87,47 @@ pub fn judge_models(
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> ModelsReport {
     judge_rows(rows, subjects, settings, progress)
+}
+
+/// Judges the models that shaders evaluate on one material, in the order of [`ShadingModel::ALL`]. With the settings of
+/// [`judge_models`], its figures.
+pub fn judge_shading_models(subject: &ModelSubject, settings: ModelSettings) -> Vec<AgainstReference> {
+    let named = |shading: ShadingModel| {
+        let model = models().into_iter().find(|model| model.info().name == shading.name());
+        model.map(|model| (shading, Row::Model(model)))
+    };
+    let (shading, rows): (Vec<ShadingModel>, Vec<Row>) = ShadingModel::ALL.into_iter().filter_map(named).unzip();
+    let judged = judge_material(&rows, subject, settings);
+    let errors = rows.iter().zip(judged).map(|(row, views)| ModelErrors::new(row, views));
+    shading.into_iter().zip(errors).map(|(model, errors)| AgainstReference::of(model, &errors)).collect()
+}
+
+/// Stands for the lobe error of a model that reflects light where the reference reflects none, which no JSON holds.
+const MOST: f64 = 1e6;
+
+impl AgainstReference {
+    fn of(model: ShadingModel, errors: &ModelErrors) -> Self {
+        let at = |theta_deg: f64| errors.views.iter().filter(move |view| view.theta_deg == theta_deg);
+        let color = |theta_deg: f64, of: fn(&ViewError) -> f64| {
+            let mut values = at(theta_deg).map(of);
+            lab([0; 3].map(|_| values.next().unwrap_or(0.0)))
+        };
+        let delta_e = |theta_deg| {
+            ciede2000(color(theta_deg, |view| view.albedo_model), color(theta_deg, |view| view.albedo_reference))
+        };
+        let lobe = |theta_deg| at(theta_deg).map(|view| view.lobe.error.min(MOST)).fold(0.0, f64::max);
+        Self {
+            model,
+            albedo_err: errors.albedo.quantity.error,
+            albedo_std_err: errors.albedo.quantity.std_err,
+            lobe_err: errors.lobe.quantity.error.min(MOST),
+            lobe_noise: errors.lobe.floor.min(MOST),
+            worst_theta_deg: errors.lobe.theta_deg,
+            worst_wavelength_nm: errors.lobe.wavelength_nm,
+            delta_e: THETAS_DEG.into_iter().map(delta_e).fold(0.0, f64::max),
+            by_angle: THETAS_DEG.into_iter().map(|theta_deg| (theta_deg, lobe(theta_deg))).collect(),
+        }
+    }
 }
 
 /// `rows` makes the rows for one material: what models remember of a stack is of no use to other materials.
@@ -238,6 +283,24 @@ mod tests {
                 "{view:?}"
             );
         }
+    }
+
+    /// A bare mirror is what Belcour's model shows; Phong's reflects a little too much at grazing angles.
+    #[test]
+    fn shading_models_are_judged_as_the_others() {
+        let settings = ModelSettings { samples: NonZeroU32::new(2000).unwrap(), seed: 1 };
+        let judged = judge_shading_models(&subjects()[1], settings);
+        assert_eq!(judged.iter().map(|j| j.model).collect::<Vec<_>>(), ShadingModel::ALL);
+        let of = |model| judged.iter().find(|j| j.model == model).unwrap();
+        let all = super::tests::judged(2000, 1);
+        for (model, name) in [(ShadingModel::Belcour, "belcour"), (ShadingModel::Phong, "phong")] {
+            let same = all.materials[1].models.iter().find(|m| m.name == name).unwrap();
+            assert_eq!(of(model).lobe_err, same.lobe.quantity.error, "{name}");
+            assert_eq!(of(model).by_angle.iter().map(|p| p.1).fold(0.0, f64::max), of(model).lobe_err);
+        }
+        assert!(of(ShadingModel::Belcour).delta_e < 0.2, "{judged:?}");
+        // Schlick's form instead of Fresnel's, at 80 degrees.
+        assert!(of(ShadingModel::Phong).delta_e > 0.3 && of(ShadingModel::Phong).worst_theta_deg == 80.0, "{judged:?}");
     }
 
     #[test]

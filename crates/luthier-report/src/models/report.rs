@@ -133,7 +133,7 @@ impl ModelsReport {
 }
 
 impl ModelErrors {
-    fn new(row: &Row, views: Vec<ViewError>) -> Self {
+    pub(super) fn new(row: &Row, views: Vec<ViewError>) -> Self {
         let worst = |of: fn(&ViewError) -> Worst| {
             // There are always views: the list of angles is not empty.
             views.iter().map(of).max_by(|a, b| a.quantity.error.total_cmp(&b.quantity.error)).unwrap_or_default()

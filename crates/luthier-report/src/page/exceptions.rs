@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::materials::{angles, number_deg};
-use super::{anchor, cell};
+use super::{anchor, cell, of_material};
 use crate::exceptions::{Cause, Exception, Factor, Part};
 use crate::format::{error, escape, number, rounded, value};
 use crate::report::{Compared, Report};
@@ -34,7 +34,7 @@ pub(super) fn write(out: &mut String, report: &Report) {
         share(above, samples)
     );
     out.push_str(
-        "<div class=\"scroll\"><table class=\"exceptions\"><thead><tr><th>material</th><th class=\"n\">max</th><th \
+        "<div class=\"scroll\"><table class=\"exceptions sortable\"><thead><tr><th>material</th><th class=\"n\">max</th><th \
          class=\"n\">above target</th><th>worst pair</th><th>cause</th></tr></thead><tbody>",
     );
     for exception in &report.exceptions {
@@ -53,7 +53,8 @@ fn row(out: &mut String, report: &Report, exception: &Exception) {
     let index = report.materials.iter().position(|m| m.name == *material).unwrap_or_default();
     let _ = write!(
         out,
-        "<tr><th><a href=\"#{}\">{}</a><small>{}</small></th>",
+        "<tr{}><th><a href=\"#{}\">{}</a><small>{}</small></th>",
+        of_material(material),
         anchor(index),
         escape(material),
         compared.name()

@@ -3,13 +3,13 @@
 use luthier_lut::ColorMode;
 use std::fmt::Write;
 
-use super::{anchor, cell, summary};
+use super::{anchor, cell, of_material, pictures, summary, trade};
 use crate::chart::{self, legend};
 use crate::format::{error, escape, number, value};
 use crate::report::{Compared, MaterialReport, Report};
-use crate::{DirectionSet, ErrorSummary, Statistics};
+use crate::{DirectionSet, ErrorSummary, Exhibits, Statistics};
 
-pub(super) fn write(out: &mut String, report: &Report) {
+pub(super) fn write(out: &mut String, report: &Report, exhibits: &Exhibits) {
     out.push_str(
         "<h2 id=\"materials\">Materials</h2><p>Largest relative error of f cos θᵢ in each set of directions, and \
          below it the 99th percentile and the root mean square. The sets and floors are defined under <a \
@@ -23,14 +23,19 @@ pub(super) fn write(out: &mut String, report: &Report) {
     for (index, material) in report.materials.iter().enumerate() {
         let _ = write!(
             out,
-            "<article id=\"{}\"><h3>{}</h3><p class=\"sub\">class {} · {} · <code>{}</code><br/>{}</p>",
+            "<article id=\"{}\"{}><h3>{}</h3><p class=\"sub\">class {} · model {} · {} · <code>{}</code> · SHA-256 \
+             <code>{}</code><br/>{}</p>",
             anchor(index),
+            of_material(&material.name),
             escape(&material.name),
             escape(&material.class),
+            material.model.name(),
             color(material.color),
             escape(&material.source),
+            escape(material.source_hash.get(..12).unwrap_or(&material.source_hash)),
             escape(&material.layers.join(" / "))
         );
+        pictures::write(out, material, exhibits.pictures.get(index).map_or(&[], Vec::as_slice));
         out.push_str("<div class=\"split\"><figure>");
         if report.device.is_some() {
             out.push_str(&legend(&series));
@@ -39,6 +44,8 @@ pub(super) fn write(out: &mut String, report: &Report) {
         out.push_str("</figure><div>");
         sets(out, material, report.budget);
         out.push_str("</div></div>");
+        trade::of_material(out, report, material);
+        seen(out, material);
         worst(out, material, report.device.is_some());
         out.push_str("</article>\n");
     }
@@ -66,12 +73,37 @@ fn sets(out: &mut String, material: &MaterialReport, budget: Option<f64>) {
     out.push_str("</tbody></table></div>");
 }
 
+/// Colour differences by light.
+fn seen(out: &mut String, material: &MaterialReport) {
+    out.push_str(
+        "<details><summary>Colour differences (CIEDE2000)</summary><div class=\"scroll\"><table><thead><tr><th></th><th>light</th><th \
+         class=\"n\">max</th><th class=\"n\">99%</th><th class=\"n\">mean</th><th class=\"n\">above 1</th><th>worst \
+         pair</th></tr></thead><tbody>",
+    );
+    for comparison in &material.comparisons {
+        for (i, seen) in comparison.seen.iter().enumerate() {
+            out.push_str("<tr>");
+            if i == 0 {
+                let _ = write!(out, "<th rowspan=\"{}\">{}</th>", comparison.seen.len(), comparison.compared.name());
+            }
+            let _ = write!(out, "<td>{}</td>", seen.light.name());
+            for value in [seen.max, seen.p99, seen.mean] {
+                out.push_str(&cell(&error(value)));
+            }
+            out.push_str(&cell(&format!("{:.2} %", 100.0 * seen.above_one)));
+            let at = seen.worst.map_or_else(|| "–".to_owned(), |(wi, wo)| angles(wi, wo));
+            let _ = write!(out, "<td>{at}</td></tr>");
+        }
+    }
+    out.push_str("</tbody></table></div></details>");
+}
+
 /// Other floors, and the worst pairs, of what is judged.
 fn worst(out: &mut String, material: &MaterialReport, with_device: bool) {
     let shown =
         if with_device { &[Compared::BakedDevice, Compared::FullDevice][..] } else { &[Compared::TablesEightBit] };
     out.push_str(
-        "<div class=\"scroll\"><table><thead><tr><th></th><th>set</th><th class=\"n\">peak</th><th class=\"n\">max, \
+        "<details><summary>Other floors and worst directions</summary><div class=\"scroll\"><table><thead><tr><th></th><th>set</th><th class=\"n\">peak</th><th class=\"n\">max, \
          floor white/10</th>",
     );
     out.push_str(
@@ -91,7 +123,7 @@ fn worst(out: &mut String, material: &MaterialReport, with_device: bool) {
             let _ = write!(out, "<td>{}</td></tr>", pair(s));
         }
     }
-    out.push_str("</tbody></table></div>");
+    out.push_str("</tbody></table></div></details>");
 }
 
 fn pair(statistics: &Statistics) -> String {

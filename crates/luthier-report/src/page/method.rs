@@ -51,13 +51,6 @@ pub(super) fn write(out: &mut String, report: &Report) {
          largest of these is the cause.</p><p><b>Not judged here:</b> the model against nature; pairs below the \
          horizon; film thickness maps, which the reference takes at their nominal value.</p>\n",
     );
-    if !report.provenance.is_empty() {
-        out.push_str("<h2 id=\"provenance\">Provenance</h2><table><tbody>");
-        for (name, value) in &report.provenance {
-            let _ = write!(out, "<tr><th>{}</th><td>{}</td></tr>", escape(name), escape(value));
-        }
-        out.push_str("</tbody></table>\n");
-    }
 }
 
 fn comparisons(out: &mut String, report: &Report) {

@@ -6,7 +6,7 @@ use crate::chart::{self, legend};
 use crate::format::{bytes, error, escape, number, value};
 use crate::report::{Compared, Report, WorstCase};
 
-use super::{anchor, cell};
+use super::{anchor, cell, of_material};
 
 /// What the overview draws and lists.
 pub(super) fn shown(report: &Report) -> &'static [Compared] {
@@ -25,20 +25,24 @@ pub(super) fn head(out: &mut String, report: &Report) {
         Some(device) => format!("run on {}", escape(device)),
         None => "no shader was run".to_owned(),
     });
-    facts.extend(report.provenance.iter().map(|(name, value)| format!("{}: {}", escape(name), escape(value))));
     out.push_str(&facts.join(" · "));
-    out.push_str("</p><nav><a href=\"#exceptions\">Exceptions</a><a href=\"#materials-at-a-glance\">Overview</a>");
     out.push_str(
-        "<a href=\"#tables\">Tables</a><a href=\"#materials\">Materials</a><a \
-         href=\"#method\">Method</a></nav></header>\n",
+        "</p><nav><a href=\"#levels\">Errors</a><a href=\"#materials-at-a-glance\">Overview</a><a href=\"#trade\">Cost and \
+         bytes</a><a href=\"#exceptions\">Exceptions</a><a href=\"#materials\">Materials</a><a href=\"#tables\">Tables</a><a \
+         href=\"#stability\">Stability</a><a href=\"#method\">Method</a><a href=\"#provenance\">Provenance</a><label id=\"filter\" \
+         hidden=\"\">Material <input type=\"search\"/></label></nav></header>\n",
     );
     verdict(out, report);
     figures(out, report);
 }
 
 fn verdict(out: &mut String, report: &Report) {
+    if let Some((class, words)) = broken_limits(report) {
+        let _ = writeln!(out, "<section class=\"verdict{class}\"><p class=\"figure\">{words}</p></section>");
+    }
     let max = report.max_error();
-    let (class, words) = match (report.is_within_budget(), report.budget) {
+    let within = report.budget.map(|budget| max <= budget);
+    let (class, words) = match (within, report.budget) {
         (Some(true), Some(budget)) => (" good", format!("Within budget: {} of {}", error(max), error(budget))),
         (Some(false), Some(budget)) if max.is_finite() => {
             (" bad", format!("Over budget: {}, limit {}", error(max), error(budget)))
@@ -61,6 +65,16 @@ fn verdict(out: &mut String, report: &Report) {
         number(report.floor),
         report.worst().map_or(String::new(), |worst| at(&worst))
     );
+}
+
+/// Which of the other limits are broken; nothing without any.
+fn broken_limits(report: &Report) -> Option<(&'static str, String)> {
+    let broken: Vec<String> = report.limits.iter().filter(|l| !l.is_held).map(|l| escape(&l.quantity)).collect();
+    match (report.limits.len(), broken.len()) {
+        (0, _) => None,
+        (all, 0) => Some((" good", format!("All {all} limits are held"))),
+        (all, _) => Some((" bad", format!("{} of {all} limits are broken: {}", broken.len(), broken.join("; ")))),
+    }
 }
 
 /// Where the worst is, in words.
@@ -148,7 +162,7 @@ fn rows(out: &mut String, report: &Report, shown: &[Compared]) {
         columns.push(Compared::Arithmetic);
     }
     columns.push(Compared::ThreeWavelengths);
-    out.push_str("<div class=\"scroll\"><table><thead><tr><th>material</th><th>class</th><th>layers</th>");
+    out.push_str("<div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>material</th><th>class</th><th class=\"n\">layers</th>");
     for compared in &columns {
         let _ = write!(out, "<th class=\"n\">{}</th>", compared.name());
     }
@@ -156,7 +170,8 @@ fn rows(out: &mut String, report: &Report, shown: &[Compared]) {
     for (index, material) in report.materials.iter().enumerate() {
         let _ = write!(
             out,
-            "<tr><th><a href=\"#{}\">{}</a></th><td>{}</td><td>{}</td>",
+            "<tr{}><th><a href=\"#{}\">{}</a></th><td>{}</td><td class=\"n\">{}</td>",
+            of_material(&material.name),
             anchor(index),
             escape(&material.name),
             escape(&material.class),

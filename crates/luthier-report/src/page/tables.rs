@@ -18,7 +18,7 @@ pub(super) fn write(out: &mut String, report: &Report) {
         return;
     }
     out.push_str(
-        "<div class=\"scroll\"><table><thead><tr><th>table</th><th class=\"n\">texels</th><th>format</th><th \
+        "<div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>table</th><th class=\"n\">texels</th><th>format</th><th \
          class=\"n\">bytes</th>",
     );
     out.push_str("<th class=\"n\">tiles</th><th>axes</th><th>file</th></tr></thead><tbody>");
@@ -32,12 +32,13 @@ pub(super) fn write(out: &mut String, report: &Report) {
         let _ = write!(
             out,
             "<tr><th><a href=\"#table-{0}\">{0}</a></th><td class=\"n\">{width} × {height}</td><td>{1}</td><td \
-             class=\"n\">{2}</td><td class=\"n\">{3}</td><td>{axes}</td><td><code>{4}</code></td></tr>",
+             class=\"n\" data-v=\"{5}\">{2}</td><td class=\"n\">{3}</td><td>{axes}</td><td><code>{4}</code></td></tr>",
             table.kind.name(),
             table.format,
             bytes(table.texel_bytes),
             table.tiles.len(),
-            escape(&table.path)
+            escape(&table.path),
+            table.texel_bytes
         );
     }
     out.push_str("</tbody></table></div>\n");

@@ -256,6 +256,14 @@ impl Stability {
         json::to_string(self)
     }
 
+    /// Reads what [`Stability::to_json`] wrote.
+    ///
+    /// # Errors
+    /// [`ReportError::Json`] for other JSON.
+    pub fn from_json(json: &str) -> Result<Self, ReportError> {
+        Ok(serde_json::from_str(json)?)
+    }
+
     /// A page in Markdown; `command` is the command line that makes it.
     pub fn to_markdown(&self, command: &str) -> String {
         page::markdown(self, command)

@@ -48,7 +48,11 @@ fn a_device_without_errors_has_no_exceptions() {
     device.baked_reads_tables = false;
     let report = judge(&bake.subject(), Some(&device), &settings()).unwrap();
     assert_eq!(report.exceptions, []);
-    assert!(report.to_html().contains("None: no finite sample of the 8 materials × shaders"));
+    assert!(
+        report
+            .to_html(&luthier_report::Exhibits::default())
+            .contains("None: no finite sample of the 8 materials × shaders")
+    );
 }
 
 #[test]

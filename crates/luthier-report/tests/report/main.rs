@@ -3,6 +3,7 @@
 mod exceptions;
 mod fixture;
 mod judgement;
+mod limits;
 mod page;
 mod parity;
 mod schema;

@@ -1,6 +1,12 @@
 use std::path::PathBuf;
 
-use luthier_report::{Settings, judge};
+use luthier_lut::{
+    Axis, Budget, Candidate, CandidateForm, Mapping, MeasuredError, RowBase, Search, ShadingModel, TableKind,
+    TexelFormat,
+};
+use luthier_report::{
+    AgainstReference, Costs, Exhibit, Exhibits, PictureErrors, ReferencePaths, Report, Settings, ShaderCost, judge,
+};
 
 use crate::fixture::Bake;
 
@@ -14,12 +20,94 @@ fn pages() -> Vec<(&'static str, String)> {
     let provenance = vec![("commit".to_owned(), "<unknown> & \"quoted\"".to_owned())];
     let settings = Settings { pairs_per_set: 1000, budget: Some(1e-3), provenance, progress: None };
     let broken = bake.device(|_, _, n, value| if n == 3 { [f32::NAN; 3] } else { value });
-    let run = |device, settings: &Settings<'_>| judge(&bake.subject(), device, settings).unwrap().to_html();
+    let run = |device, settings: &Settings<'_>| page(judge(&bake.subject(), device, settings).unwrap());
     vec![
         ("device", run(Some(&device), &settings)),
         ("tables-only", run(None, &Settings { budget: None, ..settings.clone() })),
         ("not-finite", run(Some(&broken), &settings)),
     ]
+}
+
+/// A page with all that a caller can put into it.
+fn page(mut report: Report) -> String {
+    let exhibits = filled(&mut report);
+    report.to_html(&exhibits)
+}
+
+/// Puts evidence of every sort into a report.
+pub(crate) fn filled(report: &mut Report) -> Exhibits {
+    let candidate = |size: u32, bytes: u64, max_abs: f64| {
+        let (quantity, unit) = ("cos_theta".to_owned(), String::new());
+        let x = Axis { quantity, unit, min: 0.0, max: 1.0, size, mapping: Mapping::Power { exponent: 2.0 } };
+        let (format, base) = (TexelFormat::Rgba16Float, RowBase::Schlick);
+        let error = MeasuredError { max_abs, max_rel: 2.0 * max_abs, delta_e: Some(0.1) };
+        Candidate { form: CandidateForm::Table { x, y: None, format, base }, bytes, cost: 40.0 + bytes as f64, error }
+    };
+    let closed = CandidateForm::ClosedForm;
+    let search = Search {
+        kind: TableKind::Fresnel,
+        budget: Budget { max_abs: Some(1e-3), ..Budget::default() },
+        chosen: 1,
+        front: vec![
+            Candidate {
+                form: closed,
+                bytes: 0,
+                cost: 9.0,
+                error: MeasuredError { max_abs: 0.2, max_rel: 0.4, delta_e: None },
+            },
+            candidate(32, 256, 5e-4),
+            candidate(64, 512, 1e-4),
+        ],
+        measured: 7,
+    };
+    report.searches = vec![search.clone()];
+    let cost = |material: &str, model, form: &str, cycles| ShaderCost {
+        material: material.to_owned(),
+        model,
+        form: form.to_owned(),
+        closed: form == "full",
+        constant: false,
+        family: "rdna2".to_owned(),
+        inverse_throughput: cycles,
+        vgprs: 12,
+        texture_reads: 2,
+    };
+    let mut rows = Vec::new();
+    let mut pictures = Vec::new();
+    for (n, material) in (0..).zip(&mut report.materials) {
+        material.alone = vec![search.clone()];
+        material.choice = Some(serde_json::json!({"why": "the <cheapest> that holds", "next_cheaper": {"error": 0.1}}));
+        for (model, cycles) in [(ShadingModel::Phong, 40), (ShadingModel::Elek, 120)] {
+            rows.push(cost(&material.name, model, "baked", cycles));
+            rows.push(cost(&material.name, model, "full", 2 * cycles));
+            material.against_reference.push(AgainstReference {
+                model,
+                albedo_err: 0.1,
+                albedo_std_err: 1e-3,
+                lobe_err: 20.0 / f64::from(n + 1) / cycles as f64,
+                lobe_noise: 0.01,
+                worst_theta_deg: 80.0,
+                worst_wavelength_nm: 445.0,
+                delta_e: 3.0,
+                by_angle: vec![(0.0, 0.1), (80.0, 0.2)],
+            });
+        }
+        material.picture = Some(PictureErrors {
+            size: 1,
+            rms_err: 0.1,
+            max_abs_err: 0.2,
+            flip_mean: 0.05,
+            flip_max: 0.3,
+            delta_e_mean: 1.0,
+            delta_e_max: 4.0,
+            gain: 8,
+        });
+        // The test looks at the markup, a browser's picture is made of a bake.
+        pictures.push(vec![Exhibit { caption: "baked & <lit>".to_owned(), png: vec![0x89, b'P', b'N', b'G'] }]);
+    }
+    report.costs = Some(Costs { generator: "luthier 0".to_owned(), driver: "radv <1>".to_owned(), rows });
+    report.reference = Some(ReferencePaths { paths: 10, seed: 1 });
+    Exhibits { pictures, stability: None }
 }
 
 #[test]
@@ -31,15 +119,23 @@ fn pages_are_well_formed_and_self_contained() {
         let options = roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() };
         let document = roxmltree::Document::parse_with_options(&html, options).unwrap();
         for node in document.descendants().filter(roxmltree::Node::is_element) {
-            assert!(!["script", "link", "img", "iframe"].contains(&node.tag_name().name()), "{name}");
+            assert!(!["link", "iframe", "object"].contains(&node.tag_name().name()), "{name}");
             let within = |a: roxmltree::Attribute<'_, '_>| {
-                a.name() != "src" && (a.name() != "href" || a.value().starts_with('#'))
+                let is_inside = match a.name() {
+                    "src" => a.value().starts_with("data:image/png;base64,"),
+                    "href" => a.value().starts_with('#'),
+                    _ => true,
+                };
+                is_inside && !a.name().starts_with("on")
             };
             assert!(node.attributes().all(within), "{name}: {:?}", node.tag_name());
             // Every link has a target.
             if let Some(href) = node.attribute("href") {
                 assert!(document.descendants().any(|n| n.attribute("id") == href.strip_prefix('#')), "{name}: {href}");
             }
+        }
+        for network in ["fetch(", "XMLHttpRequest", "import(", "http:", "https:"] {
+            assert!(!html.contains(network), "{name}: {network}");
         }
         assert!(!html.contains("url(") && !html.contains("@import"), "{name}");
         // No number went wrong on its way into a drawing.
@@ -57,4 +153,46 @@ fn the_page_says_what_was_found() {
     assert!(pages[0].1.contains("Fake &amp; Sons &lt;f64&gt;"));
     assert!(pages[1].1.contains("no shader was run"));
     assert!(pages[2].1.contains("Over budget: some values are not finite"));
+}
+
+/// The chosen point is ringed in every chart of what is paid and what is got.
+#[test]
+fn charts_mark_what_was_chosen() {
+    let bake = Bake::new();
+    let device = bake.device(|_, _, _, value| value);
+    let mut report =
+        judge(&bake.subject(), Some(&device), &Settings { pairs_per_set: 100, ..Settings::default() }).unwrap();
+    let exhibits = filled(&mut report);
+    let html = report.to_html(&exhibits);
+    let materials = report.materials.len();
+    let charts: Vec<&str> = html
+        .split("<svg ")
+        .filter(|c| c.contains("against error\""))
+        .map(|c| c.split("</svg>").next().unwrap())
+        .collect();
+    // Bytes and cost of the table, of the table for each material alone, and the models of each material.
+    assert_eq!(charts.len(), 2 + 3 * materials);
+    for chart in charts {
+        assert_eq!(chart.matches("class=\"chosen\"").count(), 1, "{chart}");
+    }
+    assert!(html.contains("the &lt;cheapest&gt; that holds"));
+    assert_eq!(html.matches("data:image/png;base64,iVBORw==").count(), materials);
+}
+
+/// The summary says what the page says, in tables that Markdown reads: as many cells in every row as in the head.
+#[test]
+fn the_summary_is_a_table_for_each_question() {
+    let bake = Bake::new();
+    let settings = Settings { pairs_per_set: 100, budget: Some(1e-9), ..Settings::default() };
+    let mut report = judge(&bake.subject(), None, &settings).unwrap();
+    filled(&mut report);
+    let text = report.to_markdown();
+    assert!(text.contains("**A limit is broken.**") && text.contains("| **broken** |"), "{text}");
+    for material in &report.materials {
+        assert!(text.contains(&format!("\n| {} | elek |", material.name)), "{}", material.name);
+    }
+    for block in text.split("\n\n").filter(|b| b.starts_with('|')) {
+        let cells: Vec<usize> = block.lines().map(|line| line.matches('|').count()).collect();
+        assert!(cells.iter().all(|n| *n == cells[0]), "{block}");
+    }
 }

@@ -1,0 +1,107 @@
+//! What a report shows beside the judgement: searches of materials alone, models against paths, costs, stability, choices.
+
+use std::path::Path;
+
+use luthier_lut::Manifest;
+use luthier_material::Material;
+use luthier_report::stability::Stability;
+use luthier_report::{
+    Costs, ModelSettings, ModelSubject, ReferencePaths, Report, StabilitySummary, judge_shading_models,
+};
+use rayon::prelude::*;
+use serde_json::Value;
+
+use crate::bake_files::{GENERATOR, MANIFEST, sha256};
+use crate::cli::ReportOptions;
+use crate::failure::{Failure, Outcome, files};
+use crate::materials::read_image;
+
+/// Of the paths: the first family of random numbers.
+const SEED: u64 = 1;
+
+/// What files say that the command line names.
+pub(super) struct Given {
+    costs: Option<Costs>,
+    pub(super) stability: Option<Stability>,
+    /// What they are, for the provenance.
+    pub(super) files: Vec<(String, String)>,
+}
+
+/// Reads the files.
+pub(super) fn given(options: &ReportOptions) -> Outcome<Given> {
+    let mut out = Given { costs: None, stability: None, files: Vec::new() };
+    if let Some(path) = &options.cost {
+        let text = read(path, "costs", &mut out.files)?;
+        out.costs = Some(serde_json::from_str(&text).map_err(|source| unusable(path, "luthier cost", source.into()))?);
+    }
+    if let Some(path) = &options.stability {
+        let text = read(path, "stability", &mut out.files)?;
+        let suite = Stability::from_json(&text);
+        out.stability = Some(suite.map_err(|source| unusable(path, "luthier stability", source.into()))?);
+    }
+    Ok(out)
+}
+
+fn read(path: &Path, what: &str, names: &mut Vec<(String, String)>) -> Outcome<String> {
+    let text = std::fs::read_to_string(path).map_err(files(path, "read"))?;
+    names.push((what.to_owned(), format!("{}, SHA-256 {}", path.display(), sha256(text.as_bytes()))));
+    Ok(text)
+}
+
+fn unusable(path: &Path, command: &str, source: anyhow::Error) -> Failure {
+    Failure::Input(source.context(format!("{} is not what `{command} --json` prints", path.display())))
+}
+
+/// Puts it all into the report.
+pub(super) fn add(
+    report: &mut Report,
+    given: &Given,
+    options: &ReportOptions,
+    manifest: &Manifest,
+    materials: &[Material],
+) -> Outcome {
+    if let Some(costs) = &given.costs {
+        let mut costs = costs.clone();
+        costs.rows.retain(|row| !row.constant && report.materials.iter().any(|m| m.name == row.material));
+        report.costs = Some(costs);
+    }
+    report.stability = given.stability.as_ref().map(StabilitySummary::of);
+    // Fixed defaults were not searched for, whatever a search would find.
+    if !manifest.searches.is_empty() && manifest.generator == GENERATOR {
+        let alone: Vec<_> = materials
+            .par_iter()
+            .map(|material| luthier_bake::outline(std::slice::from_ref(material), &read_image))
+            .collect::<Result<_, _>>()
+            .map_err(Failure::input)?;
+        for (material, outline) in report.materials.iter_mut().zip(alone) {
+            material.alone = outline.searches;
+        }
+    }
+    choices(report, &options.out)?;
+    if let Some(samples) = options.reference {
+        let settings = ModelSettings { samples, seed: SEED };
+        let subjects = materials.iter().zip(&manifest.materials).map(|(material, entry)| ModelSubject {
+            name: entry.name.clone(),
+            stack: material.stack.clone(),
+            wavelengths_nm: entry.wavelengths_nm,
+        });
+        let subjects: Vec<ModelSubject> = subjects.collect();
+        let judged: Vec<_> = subjects.par_iter().map(|subject| judge_shading_models(subject, settings)).collect();
+        for (material, judged) in report.materials.iter_mut().zip(judged) {
+            material.against_reference = judged;
+        }
+        report.reference = Some(ReferencePaths { paths: samples.get(), seed: SEED });
+    }
+    Ok(())
+}
+
+/// What the manifest says of why each model was chosen: a bake of a scene does.
+fn choices(report: &mut Report, out: &Path) -> Outcome {
+    let path = out.join(MANIFEST);
+    let bytes = std::fs::read(&path).map_err(files(&path, "read"))?;
+    let manifest: Value = serde_json::from_slice(&bytes).map_err(|source| Failure::Input(source.into()))?;
+    for (index, material) in report.materials.iter_mut().enumerate() {
+        material.choice = manifest["materials"][index].get("choice").filter(|choice| !choice.is_null()).cloned();
+    }
+    Ok(())
+}

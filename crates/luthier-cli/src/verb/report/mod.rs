@@ -1,0 +1,226 @@
+mod evidence;
+#[cfg(feature = "gpu")]
+mod pictures;
+
+use std::path::Path;
+
+use luthier_lut::Manifest;
+use luthier_material::{Material, Parsed};
+use luthier_report::{Asked, Device, Exhibits, FileBudget, Report, Settings, Subject, judge, limits};
+
+use crate::artefacts::{manifest, textures};
+use crate::bake_files::{GENERATOR, MANIFEST, REPORT_FILES, sha256, source_hash};
+use crate::cli::ReportOptions;
+use crate::failure::{Failure, Outcome, files};
+use crate::materials::read_one;
+use crate::output::print;
+use crate::progress::Bar;
+use crate::staging::Staging;
+
+/// Judges a bake and writes the report beside it.
+pub(crate) fn run(options: &ReportOptions) -> Outcome {
+    let manifest = manifest(&options.out)?;
+    let textures = textures(&options.out, &manifest)?;
+    let materials = materials(&manifest)?;
+    let given = evidence::given(options)?;
+    let device = device(options)?;
+    let stacks = materials.iter().map(|m| m.stack.clone()).collect();
+    let subject = Subject { manifest: &manifest, textures, stacks };
+    let bar = Bar::new("judging");
+    let settings = Settings {
+        pairs_per_set: options.pairs,
+        budget: options.max_error,
+        provenance: provenance(options, &given)?,
+        progress: Some(&|p| bar.set(p.done, p.total)),
+    };
+    let judging = device.as_ref().map(|d| d as &dyn Device);
+    let mut report = judge(&subject, judging, &settings).map_err(Failure::input)?;
+    drop(bar);
+
+    evidence::add(&mut report, &given, options, &manifest, &materials)?;
+    let pictures = pictures(&mut report, device.as_ref(), options)?;
+    let budgets: Vec<FileBudget> =
+        (0..).zip(&materials).map(|(material, m)| FileBudget { material, budget: budget(m) }).collect();
+    report.limits = limits(&report, &budgets, &asked(options));
+    let exhibits = Exhibits { pictures, stability: given.stability };
+
+    let json = report.to_json().map_err(Failure::input)?;
+    let mut staging = Staging::for_folder(&options.out)?;
+    let [data, summary, page] = REPORT_FILES;
+    staging.write(data, json.as_bytes())?;
+    staging.write(summary, report.to_markdown().as_bytes())?;
+    staging.write(page, report.to_html(&exhibits).as_bytes())?;
+    staging.publish()?;
+
+    print(&if options.json { json } else { text(&report, &options.out) })?;
+    if report.is_within_budget() == Some(false) { Err(Failure::Verdict) } else { Ok(()) }
+}
+
+/// What identifies the run.
+fn provenance(options: &ReportOptions, given: &evidence::Given) -> Outcome<Vec<(String, String)>> {
+    let path = options.out.join(MANIFEST);
+    let bytes = std::fs::read(&path).map_err(files(&path, "read"))?;
+    let mut out = vec![
+        ("judged by".to_owned(), GENERATOR.to_owned()),
+        ("command".to_owned(), command(options)),
+        ("bake".to_owned(), options.out.display().to_string()),
+        ("manifest SHA-256".to_owned(), sha256(&bytes)),
+    ];
+    out.extend(given.files.iter().cloned());
+    Ok(out)
+}
+
+/// The command line that makes the report.
+fn command(options: &ReportOptions) -> String {
+    let mut words = vec![format!("luthier report --out {} --pairs {}", options.out.display(), options.pairs)];
+    let limit = |name: &str, limit: Option<String>| limit.map(|l| format!("--{name} {l}"));
+    let float = |value: Option<f64>| value.map(|v| format!("{v:e}"));
+    words.extend(limit("max-error", float(options.max_error)));
+    words.extend(limit("max-abs", float(options.max_abs)));
+    words.extend(limit("max-delta-e", float(options.max_delta_e)));
+    words.extend(limit("max-bytes", options.max_bytes.map(|b| b.to_string())));
+    words.extend(limit("max-lobe", float(options.max_lobe)));
+    words.extend(options.reference.map(|paths| format!("--reference={paths}")));
+    words.extend(limit("cost", options.cost.as_ref().map(|p| p.display().to_string())));
+    words.extend(limit("stability", options.stability.as_ref().map(|p| p.display().to_string())));
+    words.extend(options.no_device.then(|| "--no-device".to_owned()));
+    #[cfg(feature = "gpu")]
+    {
+        words.extend(limit("max-flip", float(options.max_flip)));
+        words.extend(limit("adapter", options.adapter.clone()));
+        words.push(format!("--picture-size {}", options.picture_size));
+    }
+    words.join(" ")
+}
+
+fn asked(options: &ReportOptions) -> Asked {
+    Asked {
+        max_abs: options.max_abs,
+        delta_e: options.max_delta_e,
+        max_bytes: options.max_bytes,
+        lobe: options.max_lobe,
+        #[cfg(feature = "gpu")]
+        flip: options.max_flip,
+        #[cfg(not(feature = "gpu"))]
+        flip: None,
+    }
+}
+
+/// What a material file asks of its tables.
+fn budget(material: &Material) -> luthier_lut::Budget {
+    let luthier_material::BudgetSettings { max_abs, max_rel, delta_e, max_bytes, max_cost } = material.budget;
+    luthier_lut::Budget { max_abs, max_rel, delta_e, max_bytes, max_cost }
+}
+
+/// The materials of a bake, read again from their files: the judge takes nothing on trust.
+fn materials(manifest: &Manifest) -> Outcome<Vec<Material>> {
+    manifest
+        .materials
+        .iter()
+        .map(|entry| {
+            let source = read_one(Path::new(&entry.source)).map_err(|failure| match failure {
+                Failure::Files(error) => Failure::Files(error.context(format!(
+                    "the bake was made from {}, which the judge reads again; run the report where the bake ran",
+                    entry.source
+                ))),
+                other => other,
+            })?;
+            let Ok(Parsed { material, .. }) = source.parsed else {
+                return Err(changed(&entry.source));
+            };
+            if source_hash(&material)? != entry.source_hash {
+                return Err(changed(&entry.source));
+            }
+            Ok(material)
+        })
+        .collect()
+}
+
+fn changed(source: &str) -> Failure {
+    let text = format!("{source} has changed since it was baked, or a file that it names; bake again");
+    Failure::Input(anyhow::anyhow!(text))
+}
+
+#[cfg(feature = "gpu")]
+type Runner = crate::device::Shaders;
+
+/// Nothing runs shaders.
+#[cfg(not(feature = "gpu"))]
+type Runner = NoShaders;
+
+#[cfg(feature = "gpu")]
+fn device(options: &ReportOptions) -> Outcome<Option<Runner>> {
+    use crate::device::{Shaders, device, open};
+    use luthier_gpu::Artefacts;
+
+    if options.no_device {
+        return Ok(None);
+    }
+    let artefacts = Artefacts::load(&options.out).map_err(device)?;
+    let gpu = open(options.adapter.as_deref())?;
+    Ok(Some(Shaders::new(&gpu, &artefacts)?))
+}
+
+#[cfg(feature = "gpu")]
+use pictures::pictures;
+
+#[cfg(not(feature = "gpu"))]
+enum NoShaders {}
+
+#[cfg(not(feature = "gpu"))]
+impl Device for NoShaders {
+    fn name(&self) -> String {
+        match *self {}
+    }
+
+    fn evaluate(&self, _: luthier_report::Form, _: u32, _: &[luthier_report::Pair]) -> Result<Vec<[f32; 3]>, String> {
+        match *self {}
+    }
+}
+
+#[cfg(not(feature = "gpu"))]
+fn device(options: &ReportOptions) -> Outcome<Option<Runner>> {
+    if options.no_device {
+        return Ok(None);
+    }
+    let text = "this luthier was built without the feature `gpu` and cannot run shaders; judge the tables alone with --no-device";
+    Err(Failure::Input(anyhow::anyhow!(text)))
+}
+
+#[cfg(not(feature = "gpu"))]
+fn pictures(_: &mut Report, _: Option<&Runner>, _: &ReportOptions) -> Outcome<Vec<Vec<luthier_report::Exhibit>>> {
+    Ok(Vec::new())
+}
+
+fn text(report: &Report, folder: &Path) -> String {
+    let mut out = format!(
+        "{} materials judged{}\n",
+        report.materials.len(),
+        report.device.as_ref().map_or_else(|| ", tables only".to_owned(), |name| format!(" on {name}")),
+    );
+    out.push_str(&format!("largest relative error: {:.2e}\n", report.max_error()));
+    if let Some(arithmetic) = report.max_arithmetic_error() {
+        out.push_str(&format!("of it, arithmetic: {arithmetic:.2e}\n"));
+    }
+    if let Some(budget) = report.budget {
+        let is_held = report.max_error() <= budget;
+        out.push_str(&format!("budget {budget:e}: {}\n", verdict(is_held)));
+    }
+    for limit in &report.limits {
+        let found = limit.found.map_or_else(|| "not measured".to_owned(), |found| format!("{found:.2e}"));
+        out.push_str(&format!(
+            "{}, limit {:e} of {}: {found}, {}\n",
+            limit.quantity,
+            limit.limit,
+            limit.stated_by,
+            verdict(limit.is_held)
+        ));
+    }
+    let [_, summary, page] = REPORT_FILES.map(|file| folder.join(file).display().to_string());
+    out.push_str(&format!("wrote {page} and {summary}\n"));
+    out
+}
+
+fn verdict(is_held: bool) -> &'static str {
+    if is_held { "held" } else { "exceeded" }
+}

@@ -1,0 +1,67 @@
+//! Pictures of every material with both shaders.
+
+use luthier_gpu::{RenderSettings, Shape, ToneMapping};
+use luthier_lut::Image;
+use luthier_report::{Exhibit, Form, PictureErrors, Report, compare_pictures, picture_color_difference};
+use luthier_texture::png;
+
+use crate::cli::ReportOptions;
+use crate::device::{Shaders, device};
+use crate::failure::{Failure, Outcome};
+use crate::progress::Bar;
+use crate::verb::compare::difference;
+
+/// Directions of the environment for each lobe and sample: the form without tables has no albedo to weigh blurred maps with.
+const ENVIRONMENT_SAMPLES: u32 = 16;
+
+/// Samples along each side of a pixel.
+const SAMPLES: u32 = 2;
+
+/// Renders every material with both shaders, compares them, and puts the figures into the report.
+pub(super) fn pictures(
+    report: &mut Report,
+    shaders: Option<&Shaders>,
+    options: &ReportOptions,
+) -> Outcome<Vec<Vec<Exhibit>>> {
+    let Some(shaders) = shaders.filter(|_| options.picture_size > 0) else { return Ok(Vec::new()) };
+    let settings = RenderSettings {
+        size: options.picture_size,
+        samples: SAMPLES,
+        environment_samples: ENVIRONMENT_SAMPLES,
+        ..RenderSettings::new(Shape::Sphere).map_err(device)?
+    };
+    let tone = ToneMapping::default();
+    let bar = Bar::new("pictures");
+    let count = report.materials.len() as u64;
+    let mut out = Vec::new();
+    for (number, material) in (0..).zip(&mut report.materials) {
+        let render = |form| shaders.scene(form).render(&[number], &settings).map_err(device);
+        let (full, baked) = (render(Form::Full)?, render(Form::Baked)?);
+        let compared = compare_pictures(&baked, &full, |v| tone.value(v)).map_err(Failure::input)?;
+        let [delta_e_mean, delta_e_max] = picture_color_difference(&baked, &full, |v| tone.value(v));
+        let (apart, gain) = difference(&baked, &full, tone);
+        material.picture = Some(PictureErrors {
+            size: settings.size,
+            rms_err: compared.rms_err,
+            max_abs_err: compared.max_abs_err,
+            flip_mean: compared.flip_mean,
+            flip_max: compared.flip_max,
+            delta_e_mean,
+            delta_e_max,
+            gain,
+        });
+        out.push(vec![
+            exhibit("full", full, tone)?,
+            exhibit("baked", baked, tone)?,
+            exhibit(&format!("difference × {gain}"), apart, ToneMapping::None)?,
+            exhibit(&format!("FLIP, mean {:.4}", compared.flip_mean), compared.flip, ToneMapping::None)?,
+        ]);
+        bar.set(u64::from(number) + 1, count);
+    }
+    Ok(out)
+}
+
+fn exhibit(caption: &str, image: Image, tone: ToneMapping) -> Outcome<Exhibit> {
+    let png = png::encode_image(&tone.image(image)).map_err(Failure::input)?;
+    Ok(Exhibit { caption: caption.to_owned(), png })
+}

@@ -1,0 +1,149 @@
+//! What a report shows beside the judgement of a bake, and where it came from.
+
+use luthier_lut::ShadingModel;
+use serde::{Deserialize, Serialize};
+
+use crate::stability::{Stability, Verdict};
+
+/// Costs of shaders on GPUs: what `luthier cost --json` prints, as far as a report needs it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Costs {
+    /// Program and version.
+    pub generator: String,
+    /// Driver and version.
+    pub driver: String,
+    /// One for each shader and instruction set.
+    pub rows: Vec<ShaderCost>,
+}
+
+/// The cost of one shader.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ShaderCost {
+    /// Name of the material.
+    pub material: String,
+    /// Its model.
+    pub model: ShadingModel,
+    /// `baked` or `full`.
+    pub form: String,
+    /// Whether D is a closed form, or there is none.
+    pub closed: bool,
+    /// Whether the numbers of the material are in the code.
+    pub constant: bool,
+    /// Instruction set.
+    pub family: String,
+    /// Cycles per wave of 64, all waves in flight, without the harness.
+    pub inverse_throughput: i64,
+    /// Vector registers.
+    pub vgprs: i64,
+    /// Texture reads as issued.
+    pub texture_reads: i64,
+}
+
+/// A model against the reference of whole stacks: the largest errors over the views of [`crate::judge_models`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AgainstReference {
+    /// The model.
+    pub model: ShadingModel,
+    /// Of the directional albedo, absolute.
+    pub albedo_err: f64,
+    /// Standard error of the reference there.
+    pub albedo_std_err: f64,
+    /// Share of the reflected light that has to move, appear or vanish.
+    pub lobe_err: f64,
+    /// What noise alone makes of it there.
+    pub lobe_noise: f64,
+    /// Angle of the eye at the largest lobe error, degrees.
+    pub worst_theta_deg: f64,
+    /// Wavelength there.
+    pub worst_wavelength_nm: f64,
+    /// Largest CIEDE2000 difference of the albedos at three wavelengths taken as R, G and B, under D65.
+    pub delta_e: f64,
+    /// By angle of the eye, degrees: the largest lobe error over the wavelengths.
+    pub by_angle: Vec<(f64, f64)>,
+}
+
+/// The paths of a reference.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ReferencePaths {
+    /// Per view and wavelength.
+    pub paths: u32,
+    /// Of the random numbers.
+    pub seed: u64,
+}
+
+/// The pictures of a material, compared: the form `baked` with the form `full`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PictureErrors {
+    /// Side in pixels.
+    pub size: u32,
+    /// Root mean square of the difference, in linear radiance.
+    pub rms_err: f64,
+    /// Largest difference.
+    pub max_abs_err: f64,
+    /// Mean of FLIP, 0 to 1.
+    pub flip_mean: f64,
+    /// Its largest value.
+    pub flip_max: f64,
+    /// Mean CIEDE2000 difference of the pixels.
+    pub delta_e_mean: f64,
+    /// The largest.
+    pub delta_e_max: f64,
+    /// Factor on the difference picture.
+    pub gain: u32,
+}
+
+/// What became of the cells of the stability suite.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StabilitySummary {
+    /// Program and version.
+    pub generator: String,
+    /// The adapter.
+    pub device: Option<String>,
+    /// Cells: a method on a case at a level.
+    pub cells: u64,
+    /// Those that hold.
+    pub holds: u64,
+    /// Those that degrade.
+    pub degrades: u64,
+    /// Those that fail.
+    pub fails: u64,
+    /// Those that do not hold and have no explanation.
+    pub unexplained: u64,
+    /// Those of what ships that are NaN or infinite somewhere.
+    pub not_finite: u64,
+}
+
+impl StabilitySummary {
+    /// Counts cells.
+    pub fn of(suite: &Stability) -> Self {
+        let count = |verdict| suite.cells.iter().filter(|c| c.verdict == verdict).count() as u64;
+        Self {
+            generator: suite.generator.clone(),
+            device: suite.device.clone(),
+            cells: suite.cells.len() as u64,
+            holds: count(Verdict::Holds),
+            degrades: count(Verdict::Degrades),
+            fails: count(Verdict::Fails),
+            unexplained: suite.unexplained().count() as u64,
+            not_finite: suite.not_finite().count() as u64,
+        }
+    }
+}
+
+/// What a page shows and no JSON holds.
+#[derive(Debug, Clone, Default)]
+pub struct Exhibits {
+    /// Pictures, a list for each material in the order of the report; empty lists show nothing.
+    pub pictures: Vec<Vec<Exhibit>>,
+    /// A run of the stability suite.
+    pub stability: Option<Stability>,
+}
+
+/// A picture.
+#[derive(Debug, Clone)]
+pub struct Exhibit {
+    /// What it shows.
+    pub caption: String,
+    /// A PNG file.
+    pub png: Vec<u8>,
+}

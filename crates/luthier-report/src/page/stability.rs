@@ -1,0 +1,39 @@
+//! The heat map of the stability suite.
+
+use std::fmt::Write;
+
+use crate::Exhibits;
+use crate::format::escape;
+use crate::report::Report;
+use crate::stability::{FAILS, HOLDS, HOLDS_ALBEDO, heat_map_svg};
+
+pub(super) fn write(out: &mut String, report: &Report, exhibits: &Exhibits) {
+    out.push_str("<h2 id=\"stability\">Stability</h2>");
+    let Some((suite, summary)) = exhibits.stability.as_ref().zip(report.stability.as_ref()) else {
+        out.push_str(
+            "<p>Not in this report: <code>luthier stability --json -o stability.json</code> runs the suite, <code>luthier report \
+             --stability stability.json</code> shows it.</p>\n",
+        );
+        return;
+    };
+    let _ = write!(
+        out,
+        "<p>Every method on stacks and directions at which formulas divide by little, overflow or stop being true: {} cells, of which {} \
+         hold, {} degrade and {} fail. {} have no explanation; {} of what ships are not finite. A shader holds up to a relative error of \
+         {HOLDS}, an albedo up to {HOLDS_ALBEDO}; beyond {FAILS} they fail. Made by {} on {}.</p>",
+        summary.cells,
+        summary.holds,
+        summary.degrades,
+        summary.fails,
+        summary.unexplained,
+        summary.not_finite,
+        escape(&summary.generator),
+        escape(summary.device.as_deref().unwrap_or("no adapter"))
+    );
+    out.push_str(
+        "<p class=\"legend\"><span class=\"heat holds\">holds</span><span class=\"heat degrades\">· degrades</span><span class=\"heat \
+         fails\">× fails</span>Rows are methods by level, columns cases; hover for what it is and why.</p><figure class=\"heat-map\">",
+    );
+    out.push_str(&heat_map_svg(suite));
+    out.push_str("</figure>\n");
+}
