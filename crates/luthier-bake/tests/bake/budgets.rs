@@ -1,7 +1,7 @@
 //! Searches: budgets hold as an independent scan sees it, tighter ones never take fewer bytes, and what cannot be met is refused.
 
 use luthier_bake::{Bake, BakeError, Options, Silent, bake_with};
-use luthier_lut::{Budget, CandidateForm, RowBase, Search, TableKind, WeightBits};
+use luthier_lut::{Budget, CandidateForm, RowBase, Search, TableKind, TexelFormat, WeightBits};
 use luthier_material::Material;
 use luthier_optics::interface::Interface;
 
@@ -200,4 +200,20 @@ fn the_tightest_of_the_files_counts_and_options_replace_it() {
     ];
     assert_eq!(search(&with(&set, Budget::default()).unwrap(), TableKind::Fresnel).budget, max_abs(1e-3));
     assert_eq!(search(&with(&set, max_abs(5e-3)).unwrap(), TableKind::Fresnel).budget, max_abs(5e-3));
+}
+
+/// A kink at a critical angle, which no row holds, does not choose the rows of others; asked rows are taken as they are.
+#[test]
+fn an_interface_that_no_row_serves_leaves_the_rows_fixed() {
+    let kink = material("kink", &(dielectric("0.5", 0.1) + &conductor("{ n = 0.2, k = 3.5 }", 0.3)), FIXED_ALBEDO);
+    let bake = with(&[kink.clone(), set().remove(1)], Budget::default()).unwrap();
+    let rows = atlas(&bake, TableKind::Fresnel);
+    assert_eq!((rows.format, rows.layout.x.size), (TexelFormat::Rgba16Float, 128));
+    assert!(bake.searches.iter().all(|s| s.kind != TableKind::Fresnel));
+
+    let rows = Some((RowBase::Schlick, TexelFormat::Rgb10a2Unorm));
+    let no_images = |_: &str, _: &str| Err("no images here".to_owned());
+    let bake = bake_with(&[kink], &Options { rows, ..Options::default() }, &no_images, &Silent).unwrap();
+    let atlas = atlas(&bake, TableKind::Fresnel);
+    assert_eq!((atlas.layout.base, atlas.format), rows.unwrap());
 }

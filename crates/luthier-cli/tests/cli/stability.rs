@@ -41,7 +41,7 @@ fn nothing_that_ships_is_nan_and_no_cell_is_unexplained() {
     for (row, named) in SECTION_C {
         let is_covered = |case: &&str| report.cells.iter().any(|c| c.case == **case);
         let has_formulas = report.formulas.iter().any(|f| f.row == row);
-        assert!(named.iter().all(|case| is_covered(&case)) && (has_formulas || !named.is_empty()), "{row}");
+        assert!(named.iter().all(is_covered) && (has_formulas || !named.is_empty()), "{row}");
     }
     // Where the index ends is the one limit that the sweep gives to the digit.
     for model in ["elek", "weidlich-wilkie"] {

@@ -60,15 +60,6 @@ pub const EXPLANATIONS: &[Explanation] = &[
         reason: "The phase row has 256 nodes between no phase and that of the thickest film: at 20 um and 445 nm a period is 2.0 nodes, at an index of 2.4 1.2, so that what is read has nothing to do with the cosine. Outside the domain from 5 um on.",
     },
     Explanation {
-        name: "SHARE_CLIPPED_AT_ONE",
-        levels: &[Level::Table, Level::Device],
-        methods: &["belcour", "yamaguchi"],
-        cases: &["gold"],
-        faults: &[Fault::Wrong],
-        limit: 0.04,
-        reason: "The red of gold is 1.0376, out of the gamut of Rec.709. The table holds it; the statistics take it as a share of energy and clip it at 1, because the series of bounces needs one.",
-    },
-    Explanation {
         name: "TABLES_ADD_UP",
         levels: &[Level::Table, Level::Device],
         methods: &["belcour", "yamaguchi"],
