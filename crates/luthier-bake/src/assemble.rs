@@ -64,11 +64,14 @@ pub struct Options {
     /// Whether sizes, mappings and formats that no material decides are searched for; otherwise they are fixed defaults, and budgets
     /// are not looked at.
     pub search: bool,
+    /// Whether a material has tiles only in the tables that the `baked` shader of its model reads. Otherwise it has one in every kind,
+    /// for whoever lights it with an environment.
+    pub lean: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { budget: Budget::default(), search: true }
+        Self { budget: Budget::default(), search: true, lean: false }
     }
 }
 
@@ -140,7 +143,7 @@ fn plan(
             });
         }
     }
-    let settings = Settings::of(materials)?;
+    let settings = Settings { lean: options.lean, ..Settings::of(materials)? };
     let fixed = Plan::new(materials, settings.clone(), read_image)?;
     if !options.search {
         return Ok(Planned { plan: fixed, results: Results::default(), searches: Vec::new() });

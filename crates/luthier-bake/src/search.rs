@@ -7,7 +7,6 @@
 //! Not searched: thickness textures, which are pictures, and escape tiles.
 
 mod choice;
-mod delta_e;
 mod distribution;
 mod fresnel;
 pub mod goals;
@@ -18,6 +17,7 @@ use luthier_lut::{
     Axis, Budget, Candidate, CandidateForm, Mapping, MeasuredError, REL_FLOOR, RowBase, Search, TableKind,
 };
 use luthier_lut::{TexelFormat, WeightBits};
+use luthier_optics::delta_e;
 
 pub(crate) use choice::{best_effort, choose, front};
 

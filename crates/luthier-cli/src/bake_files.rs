@@ -63,6 +63,7 @@ impl BakeFiles {
             materials: material_entries(materials, &bake.materials, &mut files)?,
             tables,
             searches: bake.searches.clone(),
+            choice: None,
             shaders: Vec::new(),
             bindings: Vec::new(),
             material_buffer: FileEntry::default(),

@@ -13,6 +13,7 @@
 pub mod albedo;
 pub mod color;
 pub mod constants;
+pub mod delta_e;
 pub mod f0_table;
 pub mod film_color;
 pub mod fresnel;

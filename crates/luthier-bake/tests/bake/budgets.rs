@@ -26,7 +26,7 @@ fn set() -> Vec<Material> {
 
 fn with(materials: &[Material], budget: Budget) -> Result<Bake, BakeError> {
     let no_images = |_: &str, _: &str| Err("no images here".to_owned());
-    bake_with(materials, &Options { budget, search: true }, &no_images, &Silent)
+    bake_with(materials, &Options { budget, ..Options::default() }, &no_images, &Silent)
 }
 
 fn max_abs(limit: f64) -> Budget {

@@ -2,13 +2,13 @@
 
 use std::f64::consts::{PI, TAU};
 
-use luthier_optics::Rgb;
+use crate::Rgb;
 
 /// Linear Rec.709 to XYZ over the white of D65, rows X, Y, Z (IEC 61966-2-1); each row sums to 1.
 const TO_XYZ: [[f64; 3]; 3] = [[0.4339, 0.3762, 0.1899], [0.2126, 0.7152, 0.0722], [0.0178, 0.1094, 0.8728]];
 
 /// CIE 1976 L*a*b* of a linear Rec.709 colour; what is below black is black.
-pub(super) fn lab(rgb: Rgb) -> [f64; 3] {
+pub fn lab(rgb: Rgb) -> [f64; 3] {
     let f = |row: [f64; 3]| {
         let t = (row[0] * rgb[0] + row[1] * rgb[1] + row[2] * rgb[2]).max(0.0);
         if t > 216.0 / 24389.0 { libm::cbrt(t) } else { (24389.0 / 27.0 * t + 16.0) / 116.0 }
@@ -18,7 +18,7 @@ pub(super) fn lab(rgb: Rgb) -> [f64; 3] {
 }
 
 /// CIEDE2000 with unit weights (Sharma, Wu and Dalal 2005).
-pub(super) fn ciede2000([l1, a1, b1]: [f64; 3], [l2, a2, b2]: [f64; 3]) -> f64 {
+pub fn ciede2000([l1, a1, b1]: [f64; 3], [l2, a2, b2]: [f64; 3]) -> f64 {
     let seventh = |c: f64| {
         let c7 = libm::pow(c, 7.0);
         (c7 / (c7 + 6_103_515_625.0)).sqrt()
