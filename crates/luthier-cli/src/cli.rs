@@ -91,7 +91,9 @@ pub(crate) enum Verb {
     /// List the built-in optical constants, or show one set
     Ior(IorOptions),
     /// Print the JSON Schema of material files, or of scenes
-    #[command(after_help = "Examples:\n  luthier schema > material.schema.json\n  luthier schema --scene > scene.schema.json")]
+    #[command(
+        after_help = "Examples:\n  luthier schema > material.schema.json\n  luthier schema --scene > scene.schema.json"
+    )]
     Schema {
         /// That of scene files
         #[arg(long)]

@@ -95,8 +95,7 @@ impl Judge {
         let exact = candidate.values(&self.probes, self.footprint_deg);
         let found = candidate.values_with(terms, &self.probes, self.footprint_deg);
         let known = |rgb| Value { rgb, std_err: [0.0; 3] };
-        let misses: Vec<Miss> =
-            found.iter().zip(exact).map(|(f, e)| Miss::of(*f, &known(*e), with_delta_e)).collect();
+        let misses: Vec<Miss> = found.iter().zip(exact).map(|(f, e)| Miss::of(*f, &known(*e), with_delta_e)).collect();
         largest(&misses)
     }
 
