@@ -9,8 +9,14 @@ use crate::probe::{Probe, footprint, probes};
 use crate::reference::Reference;
 use crate::simplify::LeaveOut;
 
-/// Samples of the reference for one material, at most: some twenty seconds of one core.
-pub const MAX_SAMPLES: u64 = 4_000_000;
+/// Samples of the reference for one material, at most: about a minute of one core.
+pub const MAX_SAMPLES: u64 = 16_000_000;
+
+/// Relative noise that every direction begins with, for errors of candidates that fail to mean something.
+const NOISE_AT_FIRST: f64 = 0.02;
+
+/// Samples that this may take.
+const SAMPLES_AT_FIRST: u64 = 2_000_000;
 
 /// What of every limit is the model's.
 pub const MODEL_SHARE: f64 = 0.75;
@@ -35,10 +41,21 @@ impl Judge {
         let stack = footprint(&material.stack, view.footprint_deg);
         let probes = probes(&stack, lights, view);
         let color = color_of(own_color(material), material);
+        let mut reference = Reference::new(&stack, color, probes.clone());
+        let noisy = |reference: &Reference| -> Vec<usize> {
+            let values = reference.values();
+            (0..values.len()).filter(|&i| values[i].noise() > NOISE_AT_FIRST).collect()
+        };
+        loop {
+            let open = noisy(&reference);
+            if open.is_empty() || reference.samples() > SAMPLES_AT_FIRST || !reference.refine(&open) {
+                break;
+            }
+        }
         Self {
             name: material.name.clone(),
             candidates: Candidate::all(material, form, costs),
-            reference: Reference::new(&stack, color, probes.clone()),
+            reference,
             probes,
             footprint_deg: view.footprint_deg,
         }

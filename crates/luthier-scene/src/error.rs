@@ -22,6 +22,18 @@ pub struct Value {
     pub std_err: Rgb,
 }
 
+impl Value {
+    /// What errors are relative to.
+    fn scale(&self) -> f64 {
+        self.rgb.iter().fold(FLOOR, |a, b| a.max(*b))
+    }
+
+    /// Standard error, relative.
+    pub(crate) fn noise(&self) -> f64 {
+        self.std_err.iter().fold(0.0_f64, |a, b| a.max(*b)) / self.scale()
+    }
+}
+
 /// How a value compares with a budget.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Standing {
@@ -47,7 +59,7 @@ impl Miss {
             let miss = if miss.is_finite() { miss } else { f64::MAX };
             abs = [abs[0].max(miss), abs[1].max(reference.std_err[c])];
         }
-        let scale = reference.rgb.iter().fold(FLOOR, |a, b| a.max(*b));
+        let scale = reference.scale();
         let delta_e = with_delta_e.then(|| {
             let seen = |rgb: Rgb| lab(rgb.map(|v| (PI * v).clamp(0.0, 1.0)));
             let here = seen(reference.rgb);

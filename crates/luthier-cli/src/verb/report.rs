@@ -4,6 +4,7 @@ use luthier_lut::Manifest;
 use luthier_material::Parsed;
 use luthier_optics::stack::Stack;
 use luthier_report::{Device, Report, Settings, Subject, judge};
+use luthier_scene::{LeaveOut, simplified};
 
 use crate::artefacts::{manifest, textures};
 use crate::bake_files::{GENERATOR, REPORT_FILES, source_hash};
@@ -50,7 +51,8 @@ fn stacks(manifest: &Manifest) -> Outcome<Vec<Stack>> {
     manifest
         .materials
         .iter()
-        .map(|entry| {
+        .enumerate()
+        .map(|(number, entry)| {
             let source = read_one(Path::new(&entry.source)).map_err(|failure| match failure {
                 Failure::Files(error) => Failure::Files(error.context(format!(
                     "the bake was made from {}, which the judge reads again; run the report where the bake ran",
@@ -64,7 +66,13 @@ fn stacks(manifest: &Manifest) -> Outcome<Vec<Stack>> {
             if source_hash(material)? != entry.source_hash {
                 return Err(changed(&entry.source));
             }
-            Ok(material.stack.clone())
+            // A scene may have left out parts of a material: the tables are of what is left.
+            let choice = manifest.choice.as_ref().and_then(|choice| choice.materials.get(number));
+            let left_out =
+                choice.and_then(|c| c.tried.get(c.chosen)).map(|c| c.left_out.as_slice()).unwrap_or_default();
+            let parts: Option<Vec<LeaveOut>> = left_out.iter().map(|name| LeaveOut::from_name(name)).collect();
+            let rest = parts.and_then(|parts| simplified(material, &parts));
+            Ok(rest.ok_or_else(|| changed(&entry.source))?.stack)
         })
         .collect()
 }

@@ -31,6 +31,7 @@ mod pipes;
 #[cfg(feature = "gpu")]
 mod preview;
 mod report;
+mod scenes;
 mod schema;
 mod shader;
 #[cfg(feature = "gpu")]
