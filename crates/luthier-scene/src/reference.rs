@@ -18,7 +18,7 @@ use crate::probe::Probe;
 const FIRST: u64 = 256;
 
 /// Samples at each wavelength of one probe, at most.
-const MOST: u64 = 1 << 17;
+const MOST: u64 = 1 << 20;
 
 /// What leaving out wavelengths may change of a reflectance.
 const SPECTRUM_TOLERANCE: f64 = 1e-3;
