@@ -233,6 +233,13 @@ mod tests {
         assert!(is_scene(SHELF) && !is_scene("schema = 1\nname = \"a\"\n[[layer]]\ntype = \"diffuse\"\n"));
     }
 
+    #[test]
+    fn a_scene_is_no_material() {
+        let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+        let found = crate::parse("shelf.toml", SHELF, &no_files).unwrap_err();
+        assert_eq!((found.len(), found[0].line, found[0].message.as_str()), (1, 1, "this is a scene, not a material"));
+    }
+
     /// Each mistake has one message, at its place, with a way out.
     #[test]
     fn mistakes_are_pointed_at() {

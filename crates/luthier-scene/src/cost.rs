@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use crate::candidate::Form;
 use crate::shape::{distance, shape_of};
 
-/// What `luthier cost materials --shapes -o crates/luthier-scene/data/cost.json` found, with the version of the driver in it.
+/// What `luthier cost materials materials/scenes/still-life --shapes` found, with the version of the driver in it.
 pub const COST_DATA: &str = include_str!("../data/cost.json");
 
 /// Costs of shaders by model, form and shape of the surface.

@@ -53,11 +53,11 @@ pub(crate) struct Miss {
 impl Miss {
     pub(crate) fn of(found: Rgb, reference: &Value, with_delta_e: bool) -> Self {
         let mut abs = [0.0_f64; 2];
-        for c in 0..3 {
-            let miss = (found[c] - reference.rgb[c]).abs();
+        for ((found, expected), std_err) in found.iter().zip(&reference.rgb).zip(&reference.std_err) {
+            let miss = (found - expected).abs();
             // What is not finite is as wrong as can be, and stays comparable.
             let miss = if miss.is_finite() { miss } else { f64::MAX };
-            abs = [abs[0].max(miss), abs[1].max(reference.std_err[c])];
+            abs = [abs[0].max(miss), abs[1].max(*std_err)];
         }
         let scale = reference.scale();
         let delta_e = with_delta_e.then(|| {

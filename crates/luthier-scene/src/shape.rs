@@ -49,10 +49,11 @@ fn code(layer: &Layer, has_slab: bool) -> String {
     if let Some(film) = layer.films.first() {
         code.push(if film.thickness.min_nm == film.thickness.max_nm { 'f' } else { 'v' });
     }
-    if let Base::Dielectric { slab, .. } = &layer.base {
-        if has_slab && slab.optical_depth() != [0.0; 3] {
-            code.push('x');
-        }
+    if let Base::Dielectric { slab, .. } = &layer.base
+        && has_slab
+        && slab.optical_depth() != [0.0; 3]
+    {
+        code.push('x');
     }
     code
 }

@@ -59,7 +59,7 @@ fn intro(command: &str) -> String {
          model cheaper. Which models have light between layers, and bounces between facets, is their own affair: `belcour` and \
          `yamaguchi` have both, the others neither.\n\
          - *Cost*: cycles per wave of 64 ({driver}, {family}) from `crates/luthier-scene/data/cost.json`, made by `luthier cost materials \
-         --shapes`: by model, form and shape of the stack. A stack whose shape was not measured has the cost of the most similar one (`~`).\n\
+         materials/scenes/still-life --shapes`: by model, form and shape of the stack. A stack whose shape was not measured has the cost of the most similar one (`~`).\n\
          - *Verdict*: the cheapest candidate whose largest error, plus two standard errors of the reference, is inside {model:.0} % of each limit; \
          the standard error must be below a quarter of that. Samples are doubled where a decision is open, up to {samples} million for a \
          material; what is open then is `undecided`, and not taken. Tables have the other {rest:.0} %: the loosest are taken whose \
@@ -69,7 +69,7 @@ fn intro(command: &str) -> String {
          Not searched: other indices, roughnesses or film thicknesses than the file's; films that vary, but for their nominal \
          thickness; effects (flakes, patina, glitter) and maps, which stay as they are and are not judged; constants in the code in place of the \
          buffer; different forms in one scene; formats of tables, but as a reason to go without. Single precision is a matter of \
-         `docs/parity.md`.\n\n"
+         `docs/parity.md`. `luthier report` judges the tables of a scene with `--no-device`: on a device it wants both forms, and a scene has one.\n\n"
     )
 }
 
