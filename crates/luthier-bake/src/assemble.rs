@@ -67,11 +67,13 @@ pub struct Options {
     /// Whether a material has tiles only in the tables that the `baked` shader of its model reads. Otherwise it has one in every kind,
     /// for whoever lights it with an environment.
     pub lean: bool,
+    /// Fresnel rows of this form, of the size and axis that materials ask for or that are fixed, in place of those of a search.
+    pub rows: Option<(RowBase, TexelFormat)>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { budget: Budget::default(), search: true, lean: false }
+        Self { budget: Budget::default(), search: true, lean: false, rows: None }
     }
 }
 
@@ -143,7 +145,10 @@ fn plan(
             });
         }
     }
-    let settings = Settings { lean: options.lean, ..Settings::of(materials)? };
+    let mut settings = Settings { lean: options.lean, ..Settings::of(materials)? };
+    if let Some(rows) = options.rows {
+        settings.take_rows(rows);
+    }
     let fixed = Plan::new(materials, settings.clone(), read_image)?;
     if !options.search {
         return Ok(Planned { plan: fixed, results: Results::default(), searches: Vec::new() });
@@ -159,6 +164,7 @@ fn plan(
     let mut found = search::candidates(&fixed, &results, &budget, is_asked);
     if !is_asked {
         found.iter_mut().for_each(affordable);
+        found.retain(|found| found.comes_near(&budget));
     }
     let searched: Vec<TableKind> = found.iter().map(|f| f.kind).collect();
     let fixed_bytes = used(&fixed.tiles)

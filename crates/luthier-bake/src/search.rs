@@ -44,7 +44,16 @@ pub(crate) struct Found {
 /// Errors of film tiles are steep ridges along grazing angles, which points of a search miss by about the same factor in all candidates.
 const RIDGES: [TableKind; 1] = [TableKind::Film];
 
+/// Budgets that nobody stated may be missed by this factor: four times 5e-4 is half a step of eight bits. Beyond it some interface is one
+/// that no table serves (a kink at a critical angle, the fringes of a thick film), and the choice would be the best for it alone.
+const NEAR: f64 = 4.0;
+
 impl Found {
+    /// Whether some candidate holds a budget, or nearly.
+    pub(crate) fn comes_near(&self, budget: &Budget) -> bool {
+        self.candidates.iter().any(|c| budget.excess(&c.error) <= NEAR)
+    }
+
     pub(crate) fn new(kind: TableKind, fixed_cost: f64, candidates: Vec<Candidate>) -> Self {
         let confirmed = vec![false; candidates.len()];
         Self { kind, fixed_cost, candidates, confirmed }

@@ -129,6 +129,13 @@ impl Settings {
         let fgd_grid = fgd.0.clone();
         Ok(Self { fresnel, distribution, fgd, fgd_grid, phase, thickness, film, escape, asked, lean: false })
     }
+
+    /// Rows of this form: nothing is left to search for.
+    pub(crate) fn take_rows(&mut self, (base, format): (RowBase, TexelFormat)) {
+        (self.fresnel.base, self.fresnel.format) = (base, format);
+        let asked = &mut self.asked;
+        (asked.fresnel_size, asked.fresnel_mapping, asked.fresnel_format) = (true, true, true);
+    }
 }
 
 pub(crate) fn axis(quantity: &str, unit: &str, [min, max]: [f64; 2], size: u32, mapping: Mapping) -> Axis {

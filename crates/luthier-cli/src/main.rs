@@ -3,6 +3,7 @@
 mod artefacts;
 mod bake_files;
 mod cli;
+mod command_line;
 mod cost_page;
 mod cost_papers;
 #[cfg(feature = "gpu")]
@@ -30,12 +31,10 @@ mod view_host;
 
 use std::process::ExitCode;
 
-use clap::Parser;
-
-use crate::cli::{Cli, Verb};
+use crate::cli::Verb;
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = command_line::parse();
     let outcome = match &cli.verb {
         Verb::Bake(options) => verb::bake::run(options),
         Verb::Budgets(options) => verb::budgets::run(options),

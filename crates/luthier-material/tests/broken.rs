@@ -1,6 +1,6 @@
 //! Each broken file under `tests/broken/` gives exactly the messages in the `.expected` file beside it.
 //!
-//! `LUTHIER_BLESS=1 cargo test -p luthier-material --test broken` writes the expectations anew: read the difference.
+//! `LUTHIER_ACCEPT=1 cargo test -p luthier-material --test broken` writes the expectations anew: read the difference.
 
 use std::fs;
 use std::io;
@@ -48,7 +48,7 @@ fn messages_are_as_expected() {
     for case in &cases {
         let found = rendered(case);
         let path = case.with_extension("expected");
-        if std::env::var_os("LUTHIER_BLESS").is_some() {
+        if std::env::var_os("LUTHIER_ACCEPT").is_some() {
             fs::write(&path, &found).unwrap();
         }
         let expected = fs::read_to_string(&path).unwrap_or_default().replace("\r\n", "\n");

@@ -1,8 +1,11 @@
-use luthier_bake::Silent;
-use luthier_lut::ShadingModel;
-use luthier_material::{BakeSettings, ColorSetting, LayerExtras, Material, ModelSetting, SurfaceClass};
+use luthier_bake::{Options, Silent};
+use luthier_gpu::Gpu;
+use luthier_lut::{Budget, RowBase, ShadingModel, TexelFormat};
+use luthier_material::{
+    BakeSettings, ColorSetting, Format, GridSettings, LayerExtras, Material, ModelSetting, SurfaceClass,
+};
 use luthier_report::Subject;
-use luthier_report::stability::{Stability, StressCase, cases, model_cells, shader_cells};
+use luthier_report::stability::{Cell, Stability, StressCase, cases, model_cells, shader_cells};
 
 use crate::bake_files::{GENERATOR, material_entries};
 use crate::cli::StabilityOptions;
@@ -24,32 +27,7 @@ pub(crate) fn run(options: &StabilityOptions) -> Outcome {
         bar.set(done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1, count);
     });
     drop(bar);
-    let materials: Vec<Material> = ShadingModel::ALL
-        .iter()
-        .flat_map(|model| (0..).zip(&cases).map(|(n, case)| material(n, case, *model)))
-        .collect();
-    let baking = Bar::new("baking");
-    let bake = luthier_bake::bake(&materials, &read_image, &Silent).map_err(Failure::input)?;
-    drop(baking);
-    let entries = material_entries(&materials, &bake.materials, &mut Vec::new())?;
-    let bar = Bar::new("shaders");
-    let (mut adapter, mut done) = (String::new(), 0);
-    for entries in entries.chunks(cases.len()) {
-        let stacks = cases.iter().map(|case| case.stack.clone()).collect();
-        let compiled = Compiled::new(&gpu, &bake.atlases, entries, stacks)?;
-        adapter = luthier_report::Device::name(&compiled.shaders);
-        let subject = Subject {
-            manifest: &compiled.manifest,
-            textures: compiled.textures.clone(),
-            stacks: compiled.stacks.clone(),
-        };
-        let mut progress = || {
-            done += 1;
-            bar.set(done, materials.len() as u64);
-        };
-        cells.extend(shader_cells(&subject, Some(&compiled.shaders), &cases, &mut progress).map_err(Failure::input)?);
-    }
-    drop(bar);
+    let adapter = gpu_cells(&gpu, &cases, &mut cells)?;
     let report = Stability::new(GENERATOR, Some(adapter), cells);
     let text =
         if options.json { report.to_json().map_err(Failure::input)? } else { report.to_markdown(&command(options)) };
@@ -74,6 +52,76 @@ pub(crate) fn run(options: &StabilityOptions) -> Outcome {
         complain(&format!("{}: {}: not as listed", formula.row, formula.formulation));
     }
     if report.holds() { Ok(()) } else { Err(Failure::Verdict) }
+}
+
+/// Tables that a bake may have.
+struct Tables {
+    /// What they are called; nothing for those that ship where nobody asks for others.
+    name: Option<&'static str>,
+    /// How they are asked for.
+    options: Options,
+    /// Models that are run with them.
+    models: &'static [ShadingModel],
+}
+
+/// What ships by default, for all models; and what settings and budgets can choose in its place, for the models that read all of it: rows
+/// of every family, D from a table, computed phases.
+fn tables() -> Vec<Tables> {
+    let default = Options::default();
+    let models: &[ShadingModel] = &[ShadingModel::Elek, ShadingModel::GranierHeidrich];
+    let of =
+        |name, options, rows| Tables { name: Some(name), options: Options { rows: Some(rows), ..options }, models };
+    let fixed = Options { search: false, ..default };
+    // The fewest bytes for what is not fixed: D and phases are computed.
+    let budget = Options { budget: Budget { max_bytes: Some(1 << 20), ..Budget::default() }, ..default };
+    let (plain, schlick) = (RowBase::Zero, RowBase::Schlick);
+    vec![
+        Tables { name: None, options: default, models: &ShadingModel::ALL },
+        of("rows of rgba8unorm, table of D", fixed, (plain, TexelFormat::Rgba8Unorm)),
+        of("rows of rg11b10ufloat, computed phases", budget, (plain, TexelFormat::Rg11b10Ufloat)),
+        of("rows of rgb10a2unorm", default, (plain, TexelFormat::Rgb10a2Unorm)),
+        of("Schlick rows of rgba8unorm", default, (schlick, TexelFormat::Rgba8Unorm)),
+        of("Schlick rows of rgb10a2unorm", default, (schlick, TexelFormat::Rgb10a2Unorm)),
+    ]
+}
+
+/// Albedo tables of models that do not read them: as small as can be.
+fn no_albedos() -> GridSettings {
+    GridSettings { size: Some([2, 2]), format: Some(Format::Rgba16Float) }
+}
+
+/// Appends the cells of shaders and tables; the name of the adapter.
+fn gpu_cells(gpu: &Gpu, cases: &[StressCase], cells: &mut Vec<Cell>) -> Outcome<String> {
+    let all = tables();
+    let total: usize = all.iter().map(|tables| tables.models.len() * cases.len()).sum();
+    let bar = Bar::new("shaders");
+    let (mut adapter, mut done) = (String::new(), 0);
+    for Tables { name, options, models } in &all {
+        let mut materials: Vec<Material> =
+            models.iter().flat_map(|model| (0..).zip(cases).map(|(n, case)| material(n, case, *model))).collect();
+        if name.is_some() {
+            materials.iter_mut().for_each(|material| material.bake.fgd = no_albedos());
+        }
+        let bake = luthier_bake::bake_with(&materials, options, &read_image, &Silent).map_err(Failure::input)?;
+        let entries = material_entries(&materials, &bake.materials, &mut Vec::new())?;
+        for entries in entries.chunks(cases.len()) {
+            let stacks = cases.iter().map(|case| case.stack.clone()).collect();
+            let compiled = Compiled::new(gpu, &bake.atlases, entries, stacks)?;
+            adapter = luthier_report::Device::name(&compiled.shaders);
+            let subject = Subject {
+                manifest: &compiled.manifest,
+                textures: compiled.textures.clone(),
+                stacks: compiled.stacks.clone(),
+            };
+            let mut progress = || {
+                done += 1;
+                bar.set(done, total as u64);
+            };
+            let found = shader_cells(&subject, Some(&compiled.shaders), cases, *name, &mut progress);
+            cells.extend(found.map_err(Failure::input)?);
+        }
+    }
+    Ok(adapter)
 }
 
 /// The n-th case as a material that the baker takes.

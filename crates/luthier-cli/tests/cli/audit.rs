@@ -86,7 +86,7 @@ fn each_container_and_its_mistake() {
 #[test]
 fn tables_of_a_bake_are_as_stated() {
     let workshop = Workshop::with(&[("gold.toml", &gold("gold"))]);
-    workshop.run(&["bake", "gold.toml", "-q"]).exits(0);
+    workshop.run(&["bake", "gold.toml", "--no-search", "-q"]).exits(0);
     let manifest = workshop.json("out/manifest.json");
     let exponent = |kind: &str, axis: &str| {
         let tables = manifest["tables"].as_array().unwrap();

@@ -42,6 +42,13 @@ fn every_verb_shows_an_example() {
 fn wrong_command_lines() {
     let workshop = Workshop::new();
     workshop.run(&["varnish"]).fails(2, &["varnish"]);
+    for (verb, feature, is_there) in
+        [("view", "view", cfg!(feature = "view")), ("preview", "gpu", cfg!(feature = "gpu"))]
+    {
+        if !is_there {
+            workshop.run(&[verb]).fails(2, &[&format!("--features {feature}")]);
+        }
+    }
     workshop.run(&["bake", "--ouch"]).fails(2, &["--ouch"]);
     workshop.run(&["schema", "extra"]).fails(2, &["extra"]);
     let run = workshop.run(&[]).exits(2);

@@ -24,6 +24,20 @@ fn nothing_that_ships_is_nan_and_no_cell_is_unexplained() {
             assert_eq!(count, report.cases.len(), "{} {}", level.name(), model.name());
         }
     }
+    // What settings and budgets choose instead of the default.
+    for tables in [
+        "rows of rgba8unorm, table of D",
+        "rows of rg11b10ufloat, computed phases",
+        "rows of rgb10a2unorm",
+        "Schlick rows of rgba8unorm",
+        "Schlick rows of rgb10a2unorm",
+    ] {
+        for level in [Level::Table, Level::Device] {
+            let method = format!("elek, {tables}");
+            let count = report.cells.iter().filter(|c| c.level == level && c.method == method).count();
+            assert_eq!(count, report.cases.len(), "{} {method}", level.name());
+        }
+    }
     for (row, named) in SECTION_C {
         let is_covered = |case: &&str| report.cells.iter().any(|c| c.case == **case);
         let has_formulas = report.formulas.iter().any(|f| f.row == row);

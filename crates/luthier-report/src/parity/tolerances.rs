@@ -43,8 +43,9 @@ pub struct Tolerance {
 const LOBE_TABLE: Tolerance = Tolerance {
     name: "LOBE_TABLE",
     limit: 2.5e-3,
-    reason: "The distribution is interpolated between 512 slope parameters from 0.001 to 1, a ratio of 1.014 from one to the next; at \
-             the foot of a lobe a value that is a few thousandths off is still bright over the floor.",
+    reason: "A Fresnel row is within 5e-4, and what lies below is seen through its complement twice. Where a material asks for a table \
+             of the distribution, that is interpolated between slope parameters; at the foot of a lobe a value that is a few \
+             thousandths off is still bright over the floor.",
 };
 
 const PHASE_TABLE: Tolerance = Tolerance {
@@ -65,8 +66,8 @@ const NO_TABLE: Tolerance = Tolerance { name: "NO_TABLE", limit: 0.0, reason: "N
 const LOBE_READ: Tolerance = Tolerance {
     name: "LOBE_READ",
     limit: 2e-4,
-    reason: "The distribution's texel is its sixteenth root: a rounding error of the coordinate or of the filter comes out sixteen \
-             times as large.",
+    reason: "As `LAYERS_IN_F32`; but a texel of a distribution table, where a material asks for one, is a sixteenth root: a rounding \
+             error of the coordinate or of the filter comes out sixteen times as large.",
 };
 
 const LAYERS_IN_F32: Tolerance = Tolerance {

@@ -42,6 +42,10 @@ on {device}, by {}. What runs where:
 - **f32**: the shader without tables (`full`) on the adapter.
 - **device**: the shader with tables (`baked`) on the adapter.
 
+Rows named by a model alone are what ships where nobody asks for other tables: D is computed. Settings and budgets can choose rows of other \
+formats, over Schlick's form or not, D from a table and computed phases: rows named by a model and its tables, of fixed sizes, for two models \
+that read them. No other model and no albedo or film table is run in other formats.
+
 f32 and device are against the same model in f64 with exact terms, slope parameters raised to 0.001 as all shaders do. On a software adapter \
 (llvmpipe) both are IEEE single precision, so that f32 is what a correctly rounding CPU gives; a GPU fuses and reorders operations, and has coarser \
 reciprocals and sines, within what WGSL allows.

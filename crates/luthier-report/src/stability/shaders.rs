@@ -18,10 +18,12 @@ struct Expected {
     pairs: Vec<Pair>,
     baked: Vec<Rgb>,
     full: Vec<Rgb>,
-    tables: Vec<Rgb>,
+    read: Vec<Rgb>,
 }
 
 /// The shaders of a model on all cases. The materials of the subject are the cases, in order. Without a device, tables alone.
+///
+/// `tables` says what is special about the tables; methods have it behind the name of the model, and the form without tables is left out.
 ///
 /// # Errors
 /// See [`ReportError`].
@@ -29,6 +31,7 @@ pub fn shader_cells(
     subject: &Subject<'_>,
     device: Option<&dyn Device>,
     cases: &[StressCase],
+    tables: Option<&str>,
     progress: &mut dyn FnMut(),
 ) -> Result<Vec<Cell>, ReportError> {
     subject.check()?;
@@ -41,18 +44,21 @@ pub fn shader_cells(
             let twin = &references.twin;
             let terms = TableTerms::new(subject, number, Weights::EightBit)?;
             let (baked, full) = (evaluate(twin, references.baked(), &pairs), evaluate(twin, references.full(), &pairs));
-            let tables = evaluate(twin, &terms, &pairs);
-            Ok(Expected { pairs, baked, full, tables })
+            let read = evaluate(twin, &terms, &pairs);
+            Ok(Expected { pairs, baked, full, read })
         })
         .collect::<Result<_, ReportError>>()?;
     let mut cells = Vec::new();
     for (number, (case, expected)) in cases.iter().zip(&expected).enumerate() {
-        let Expected { pairs, baked, full, tables } = expected;
-        let method = subject.manifest.materials[number].model.name();
-        let of = |level, found: &[Rgb], truth: &[Rgb]| cell(level, method, case, pairs, found, truth);
-        cells.push(of(Level::Table, tables, baked));
+        let Expected { pairs, baked, full, read } = expected;
+        let model = subject.manifest.materials[number].model.name();
+        let method = tables.map_or(model.to_owned(), |tables| format!("{model}, {tables}"));
+        let of = |level, found: &[Rgb], truth: &[Rgb]| cell(level, &method, case, pairs, found, truth);
+        cells.push(of(Level::Table, read, baked));
         if let Some(device) = device {
-            cells.push(of(Level::F32, &run(device, Form::Full, number as u32, pairs)?, full));
+            if tables.is_none() {
+                cells.push(of(Level::F32, &run(device, Form::Full, number as u32, pairs)?, full));
+            }
             cells.push(of(Level::Device, &run(device, Form::Baked, number as u32, pairs)?, baked));
         }
         progress();

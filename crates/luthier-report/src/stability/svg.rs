@@ -7,7 +7,7 @@ use crate::format::{error, escape};
 
 /// Side of a cell, and room for the names, in SVG user units.
 const SIDE: f64 = 13.0;
-const NAMES: f64 = 190.0;
+const NAMES: f64 = 260.0;
 const HEADS: f64 = 130.0;
 
 /// What the slanted head of the last column takes on the right.

@@ -1,5 +1,4 @@
 // Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
-// Fresnel reflectance and slope distribution are read from tables.
 //
 // Bindings, group 0:
 //   6 luthier_materials: storage block LuthierMaterials (std430), 21 vec4

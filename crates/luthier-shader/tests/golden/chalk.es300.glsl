@@ -1,5 +1,4 @@
 // Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
-// Fresnel reflectance and slope distribution are read from tables.
 // Needs `precision highp float;` and `precision highp int;` above.
 //
 // Bindings, by name:

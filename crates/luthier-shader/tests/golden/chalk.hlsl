@@ -1,5 +1,4 @@
 // Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
-// Fresnel reflectance and slope distribution are read from tables.
 // Shader model 5.1. Checked by glslang, not by a compiler of Direct3D.
 //
 // Registers, space0:

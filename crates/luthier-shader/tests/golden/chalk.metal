@@ -1,5 +1,4 @@
 // Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
-// Fresnel reflectance and slope distribution are read from tables.
 // Metal 2.0. Not checked by a Metal compiler.
 //
 // Bindings, by argument index of a complete shader. A function takes those that it reads, in this order, as its last

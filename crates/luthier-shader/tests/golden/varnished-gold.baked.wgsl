@@ -145,14 +145,15 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     let inverse_length = inverseSqrt(length_sq);
     let cos_theta_d = min(0.5 * length_sq * inverse_length, 1.0);
     let fresnel = luthier_fresnel_term(layer, cos_theta_d);
-    // G of V-cavities: 2 cos_theta_h / cos_theta_d times the lower cosine, at most 1. The product of both cosines may underflow.
+    // G of V-cavities: 2 cos_theta_h / cos_theta_d times the lower cosine, at most 1. Below 1e-18 that cosine cancels, and
+    // the product of both would underflow.
     let cavity = 4.0 * (bisector.z * inverse_length) * inverse_length;
-    let masking = min(cavity * min(path.wi.z, path.wo.z), 1.0);
-    let shape = luthier_density(layer, bisector, length_sq) * masking / max(4.0 * path.wi.z * path.wo.z, 1e-36);
+    let cosines = max(vec2<f32>(path.wi.z, path.wo.z), vec2<f32>(1e-18));
+    let masking = min(cavity * min(cosines.x, cosines.y), 1.0);
+    let shape = luthier_density(layer, bisector, length_sq) * masking / (4.0 * cosines.x * cosines.y);
     next.reflected = path.reflected + path.throughput * fresnel * shape;
 
     // Refracted at the normal; the squared cosine is written so that it does not cancel for an index near 1.
-    let cosines = vec2<f32>(path.wi.z, path.wo.z);
     let inverse_eta = 1.0 / layer.eta;
     let cosines_sq = (cosines * cosines + (layer.eta - 1.0) * (layer.eta + 1.0)) * (inverse_eta * inverse_eta);
     if min(cosines_sq.x, cosines_sq.y) <= 0.0 {

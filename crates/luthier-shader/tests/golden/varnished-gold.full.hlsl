@@ -171,10 +171,10 @@ LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     float cos_theta_d = min((0.5 * length_sq) * inverse_length, 1.0);
     float3 fresnel = luthier_fresnel_term(layer, cos_theta_d);
     float cavity = (4.0 * (bisector.z * inverse_length)) * inverse_length;
-    float masking = min(cavity * min(path.wi.z, path.wo.z), 1.0);
-    float shape = (luthier_density(layer, bisector, length_sq) * masking) / max((4.0 * path.wi.z) * path.wo.z, 1e-36);
+    float2 cosines = max(float2(path.wi.z, path.wo.z), (1e-18).xx);
+    float masking = min(cavity * min(cosines.x, cosines.y), 1.0);
+    float shape = (luthier_density(layer, bisector, length_sq) * masking) / ((4.0 * cosines.x) * cosines.y);
     next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
-    float2 cosines = float2(path.wi.z, path.wo.z);
     float inverse_eta = 1.0 / layer.eta;
     float2 cosines_sq = ((cosines * cosines) + ((layer.eta - 1.0) * (layer.eta + 1.0)).xx) * (inverse_eta * inverse_eta);
     if (min(cosines_sq.x, cosines_sq.y) <= 0.0) {

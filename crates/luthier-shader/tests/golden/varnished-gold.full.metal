@@ -173,10 +173,10 @@ LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     float cos_theta_d = metal::min((0.5 * length_sq) * inverse_length, 1.0);
     metal::float3 fresnel = luthier_fresnel_term(layer, cos_theta_d);
     float cavity = (4.0 * (bisector.z * inverse_length)) * inverse_length;
-    float masking = metal::min(cavity * metal::min(path.wi.z, path.wo.z), 1.0);
-    float shape = (luthier_density(layer, bisector, length_sq) * masking) / metal::max((4.0 * path.wi.z) * path.wo.z, 0.000000000000000000000000000000000001);
+    metal::float2 cosines = metal::max(metal::float2(path.wi.z, path.wo.z), metal::float2(0.000000000000000001));
+    float masking = metal::min(cavity * metal::min(cosines.x, cosines.y), 1.0);
+    float shape = (luthier_density(layer, bisector, length_sq) * masking) / ((4.0 * cosines.x) * cosines.y);
     next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
-    metal::float2 cosines = metal::float2(path.wi.z, path.wo.z);
     float inverse_eta = 1.0 / layer.eta;
     metal::float2 cosines_sq = ((cosines * cosines) + metal::float2((layer.eta - 1.0) * (layer.eta + 1.0))) * (inverse_eta * inverse_eta);
     if (metal::min(cosines_sq.x, cosines_sq.y) <= 0.0) {

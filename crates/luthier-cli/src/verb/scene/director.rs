@@ -176,7 +176,8 @@ fn tables(
     levels.reverse();
     let mut nearest = String::new();
     while let Some(level) = levels.pop() {
-        let options = Options { budget: Budget { max_abs: level, ..Budget::default() }, search: true, lean: true };
+        let options =
+            Options { budget: Budget { max_abs: level, ..Budget::default() }, lean: true, ..Options::default() };
         let bake = match luthier_bake::bake_with(materials, &options, &read_image, &Silent) {
             // Tighter ones cannot be held either.
             Err(BakeError::Budget { .. }) if level.is_some() => {
