@@ -57,12 +57,13 @@ fn intro(command: &str) -> String {
          - *Candidates*: seven models; spectral colour and, where the material is spectral, three wavelengths; the whole stack, and the stack without \
          absorption, films, slopes of the diffuse base, anisotropy, one transparent layer, and any of these together, where that makes the \
          model cheaper. Which models have light between layers, and bounces between facets, is their own affair: `belcour` and \
-         `yamaguchi` have both, the others neither.\n\
+         `yamaguchi` have both in their energies, the others neither.\n\
          - *Cost*: cycles per wave of 64 ({driver}, {family}) from `crates/luthier-scene/data/cost.json`, made by `luthier cost materials \
          materials/scenes/still-life --shapes`: by model, form and shape of the stack. A stack whose shape was not measured has the cost of the most similar one (`~`).\n\
          - *Verdict*: the cheapest candidate whose largest error, plus two standard errors of the reference, is inside {model:.0} % of each limit; \
          the standard error must be below a quarter of that. Samples are doubled where a decision is open, up to {samples} million for a \
-         material; what is open then is `undecided`, and not taken. Tables have the other {rest:.0} %: the loosest are taken whose \
+         material; what is open then is `undecided`, and not taken. Tables have the other {rest:.0} %: of the limits 1e-2, 3e-3, 1e-3, 3e-4, \
+         1e-4 and 3e-5 on their absolute error (docs/budgets.md), from a fifth of the tightest relative share down, the first is taken with which their \
          error, measured at the same directions, is inside it. The two errors are never added up.\n\
          - *Form*: one for all materials of a scene. `full` is tried where tables do not fit the target: no model's full form is \
          cheaper than its baked form (a test keeps that true).\n\n\
