@@ -66,13 +66,16 @@ pub struct Options {
     /// Whether sizes, mappings and formats that no material decides are searched for; otherwise they are fixed defaults, and budgets
     /// are not looked at.
     pub search: bool,
+    /// Whether a material has tiles only in the tables that the `baked` shader of its model reads. Otherwise it has one in every kind,
+    /// for whoever lights it with an environment.
+    pub lean: bool,
     /// Fresnel rows of this form, of the size and axis that materials ask for or that are fixed, in place of those of a search.
     pub rows: Option<(RowBase, TexelFormat)>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { budget: Budget::default(), search: true, rows: None }
+        Self { budget: Budget::default(), search: true, lean: false, rows: None }
     }
 }
 
@@ -144,7 +147,7 @@ fn plan(
             });
         }
     }
-    let mut settings = Settings::of(materials)?;
+    let mut settings = Settings { lean: options.lean, ..Settings::of(materials)? };
     if let Some(rows) = options.rows {
         settings.take_rows(rows);
     }

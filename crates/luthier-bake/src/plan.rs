@@ -82,6 +82,42 @@ pub(crate) fn is_statistical(model: ShadingModel) -> bool {
     matches!(model, ShadingModel::Belcour | ShadingModel::Yamaguchi)
 }
 
+/// Which tables a layer needs tiles of.
+#[derive(Debug, Clone, Copy)]
+struct Reads {
+    /// And reflectances of a film that varies.
+    fresnel: bool,
+    distribution: bool,
+    fgd: bool,
+    phase: bool,
+}
+
+impl Reads {
+    const ALL: Self = Self { fresnel: true, distribution: true, fgd: true, phase: true };
+    const NONE: Self = Self { fresnel: false, distribution: false, fgd: false, phase: false };
+
+    /// What the shader of a model reads for a layer, by its number.
+    fn of(model: ShadingModel, number: usize, layer: &Layer) -> Self {
+        match model {
+            ShadingModel::Microfacet | ShadingModel::GranierHeidrich if number > 0 => Self::NONE,
+            ShadingModel::Phong => Self::NONE,
+            ShadingModel::Elek | ShadingModel::WeidlichWilkie | ShadingModel::Microfacet => {
+                Self { fresnel: true, distribution: true, ..Self::NONE }
+            }
+            ShadingModel::Belcour | ShadingModel::Yamaguchi => Self { fgd: true, ..Self::NONE },
+            // Transparent interfaces without a film are Schlick's form.
+            ShadingModel::GranierHeidrich if !layer.films.is_empty() => Self { phase: true, ..Self::NONE },
+            ShadingModel::GranierHeidrich => {
+                Self { fresnel: matches!(layer.base, Base::Conductor { .. }), ..Self::NONE }
+            }
+        }
+    }
+
+    fn any(self) -> bool {
+        self.fresnel || self.distribution || self.fgd || self.phase
+    }
+}
+
 /// Reads an image that a material names: material file, path as written there.
 pub type ImageReader<'a> = &'a dyn Fn(&str, &str) -> Result<Image, String>;
 
@@ -127,13 +163,16 @@ impl Plan {
         for (i, (record, layer)) in records.iter_mut().zip(&stack.layers).enumerate() {
             let Some(interface) = Interface::of(stack, i) else { continue };
             let name = || format!("{}/{label}{i}", material.name);
-            self.interface(record, layer, interface.clone(), color, &name);
+            let reads = if self.settings.lean { Reads::of(shading_model(material), i, layer) } else { Reads::ALL };
+            self.interface(record, layer, interface.clone(), color, reads, &name);
             if is_statistical(shading_model(material)) && Interface::of(stack, i + 1).is_some() {
                 self.escape(record, &name);
             }
-            let Some(film) = layer.films.first() else { continue };
-            self.phase(record, film, wavelengths_nm, &name);
-            if record.varies() {
+            let Some(film) = layer.films.first().filter(|_| reads.any()) else { continue };
+            if reads.phase {
+                self.phase(record, film, wavelengths_nm, &name);
+            }
+            if record.varies() && reads.fresnel {
                 self.film(record, interface, film.thickness, color, &name);
             }
             if let Some(variation) = extras.get(i).and_then(|l| l.film_variation.as_ref()) {
@@ -162,18 +201,22 @@ impl Plan {
         layer: &Layer,
         interface: Interface,
         color: Color,
+        reads: Reads,
         name: &dyn Fn() -> String,
     ) {
-        let job = FresnelJob { interface: interface.clone(), color, shape: self.settings.fresnel.clone() };
-        record.fresnel_tile = Some(self.add(TableKind::Fresnel, Job::Fresnel(job), name));
-
+        if reads.fresnel {
+            let job = FresnelJob { interface: interface.clone(), color, shape: self.settings.fresnel.clone() };
+            record.fresnel_tile = Some(self.add(TableKind::Fresnel, Job::Fresnel(job), name));
+        }
         let distribution = layer.surface.distribution;
-        if let Some((axes, format)) = self.settings.distribution.clone() {
+        if let Some((axes, format)) = self.settings.distribution.clone().filter(|_| reads.distribution) {
             let job = Job::Distribution(DistributionJob { distribution, axes, format });
             let tile = self.add(TableKind::Distribution, job, &|| distribution.name().to_owned());
             record.distribution_tile = Some(tile);
         }
-
+        if !reads.fgd {
+            return;
+        }
         let (axes, format) = self.settings.fgd.clone();
         let transparent = matches!(layer.base, Base::Dielectric { .. });
         let grid = self.settings.fgd_grid.clone();

@@ -27,6 +27,8 @@ pub(crate) struct Settings {
     pub(crate) film: ([Axis; 2], TexelFormat),
     pub(crate) escape: ([Axis; 2], TexelFormat),
     pub(crate) asked: Asked,
+    /// See [`crate::Options::lean`].
+    pub(crate) lean: bool,
 }
 
 /// What the materials decide themselves: no search touches it.
@@ -125,7 +127,7 @@ impl Settings {
             phase_format: any(|b| b.phase.format.is_some()),
         };
         let fgd_grid = fgd.0.clone();
-        Ok(Self { fresnel, distribution, fgd, fgd_grid, phase, thickness, film, escape, asked })
+        Ok(Self { fresnel, distribution, fgd, fgd_grid, phase, thickness, film, escape, asked, lean: false })
     }
 
     /// Rows of this form: nothing is left to search for.

@@ -39,6 +39,11 @@ pub(crate) struct BakeFiles {
 impl BakeFiles {
     /// Encodes tables, emits and validates shaders, and describes it all in the manifest.
     pub(crate) fn new(materials: &[Material], bake: &Bake) -> Outcome<Self> {
+        Self::with_forms(materials, bake, &Form::ALL)
+    }
+
+    /// The same with shaders of some forms only; the bindings are those of the first.
+    pub(crate) fn with_forms(materials: &[Material], bake: &Bake, forms: &[Form]) -> Outcome<Self> {
         let mut files = Vec::new();
         let mut tables = Vec::new();
         let encoded: Vec<EncodedTable> = bake.atlases.par_iter().map(encode).collect::<Outcome<_>>()?;
@@ -63,6 +68,7 @@ impl BakeFiles {
             materials: material_entries(materials, &bake.materials, &mut files)?,
             tables,
             searches: bake.searches.clone(),
+            choice: None,
             shaders: Vec::new(),
             bindings: Vec::new(),
             material_buffer: FileEntry::default(),
@@ -72,7 +78,7 @@ impl BakeFiles {
         manifest.material_buffer = add(&mut files, "materials.bin".to_owned(), bytes);
         let set = MaterialSet::from_manifest(&manifest);
         let mut shaders = Vec::new();
-        for form in Form::ALL {
+        for &form in forms {
             for target in TARGETS {
                 let text = luthier_shader::emit(&set, form, target).map_err(Failure::input)?;
                 let path = format!("shaders/{}.{}", form.name(), target.extension());
@@ -80,7 +86,7 @@ impl BakeFiles {
                 shaders.push(ShaderEntry { target: target.name().to_owned(), form: form.name().to_owned(), file });
             }
         }
-        let bindings = luthier_shader::bindings(&set, Form::Baked);
+        let bindings = luthier_shader::bindings(&set, forms.first().copied().unwrap_or(Form::Baked));
         (manifest.shaders, manifest.bindings) = (shaders, bindings);
         Ok(Self { manifest, files })
     }

@@ -90,9 +90,15 @@ pub(crate) enum Verb {
     Eval(Box<EvalOptions>),
     /// List the built-in optical constants, or show one set
     Ior(IorOptions),
-    /// Print the JSON Schema of material files
-    #[command(after_help = "Examples:\n  luthier schema > material.schema.json")]
-    Schema,
+    /// Print the JSON Schema of material files, or of scenes
+    #[command(
+        after_help = "Examples:\n  luthier schema > material.schema.json\n  luthier schema --scene > scene.schema.json"
+    )]
+    Schema {
+        /// That of scene files
+        #[arg(long)]
+        scene: bool,
+    },
 }
 
 /// Files to work on.
@@ -114,7 +120,8 @@ pub(crate) struct Shading {
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples:\n  luthier bake materials\n  luthier bake a.toml b.toml --out build/luts --threads 1 --json\n  \
-                  luthier bake a.toml --max-abs 1e-3 --max-cost 200"
+                  luthier bake a.toml --max-abs 1e-3 --max-cost 200\n  \
+                  luthier bake materials/scenes/showroom.toml\n  luthier bake materials/scenes/still-life.toml --budgets 0.3,0.1,0.03"
 )]
 pub(crate) struct BakeOptions {
     #[command(flatten)]
@@ -123,6 +130,12 @@ pub(crate) struct BakeOptions {
     pub(crate) shading: Shading,
     #[command(flatten)]
     pub(crate) limits: Limits,
+    /// Of a scene: where no model holds the budget, take the most accurate
+    #[arg(long)]
+    pub(crate) allow_miss: bool,
+    /// Of scenes: print what would be chosen under each of these limits on the relative error, as a page in Markdown; nothing is written
+    #[arg(long, value_name = "X,...", value_delimiter = ',', value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) budgets: Vec<f64>,
     /// Folder to write to
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(crate) out: PathBuf,
@@ -175,7 +188,7 @@ impl Limits {
     pub(crate) fn options(&self) -> luthier_bake::Options {
         let &Self { max_abs, max_rel, delta_e, max_bytes, max_cost, no_search } = self;
         let budget = luthier_lut::Budget { max_abs, max_rel, delta_e, max_bytes, max_cost };
-        luthier_bake::Options { budget, search: !no_search, rows: None }
+        luthier_bake::Options { budget, search: !no_search, lean: false, rows: None }
     }
 }
 
@@ -341,6 +354,9 @@ pub(crate) struct CostOptions {
     /// Print the machine code of one kernel
     #[arg(long, conflicts_with_all = ["json", "output"])]
     pub(crate) assembly: bool,
+    /// The table by which scenes choose models: every shape of the materials, and of what is left of them without some of their parts,     /// on RDNA2, as JSON
+    #[arg(long, conflicts_with_all = ["json", "assembly", "set", "closed", "constant", "model", "form", "family"])]
+    pub(crate) shapes: bool,
     /// JSON instead of Markdown
     #[arg(long)]
     pub(crate) json: bool,

@@ -63,7 +63,7 @@ fn main() -> ExitCode {
         Verb::Models(options) => verb::models::run(options),
         Verb::Eval(options) => verb::eval::run(options),
         Verb::Ior(options) => verb::ior::run(options),
-        Verb::Schema => verb::schema::run(),
+        Verb::Schema { scene } => verb::schema::run(*scene),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

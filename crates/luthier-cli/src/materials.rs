@@ -130,7 +130,7 @@ pub(crate) fn read_image(material: &str, path: &str) -> Result<Image, String> {
 }
 
 /// A path as messages and manifests have it: with forward slashes everywhere.
-fn label(path: &Path) -> String {
+pub(crate) fn label(path: &Path) -> String {
     path.to_string_lossy().replace(MAIN_SEPARATOR, "/")
 }
 

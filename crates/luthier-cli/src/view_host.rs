@@ -88,6 +88,7 @@ impl ViewHost {
             materials: entries,
             tables: atlases.iter().map(table).collect(),
             searches: Vec::new(),
+            choice: None,
             shaders: Vec::new(),
             bindings,
             material_buffer: FileEntry::default(),

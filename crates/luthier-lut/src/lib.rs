@@ -12,6 +12,7 @@
 mod atlas;
 mod axis;
 mod base;
+mod choice;
 mod constants;
 mod encoding;
 mod error;
@@ -27,6 +28,7 @@ mod shading;
 pub use atlas::{Atlas, AtlasLayout, TableKind, Tile, read};
 pub use axis::{Axis, Mapping};
 pub use base::{RowBase, SchlickBase};
+pub use choice::{MaterialChoice, SceneBudget, SceneCandidate, SceneChoice, SceneError, Verdict};
 pub use constants::{FlakesRecord, GlitterRecord, MaterialConstants, PatinaRecord};
 pub use encoding::Encoding;
 pub use error::LutError;

@@ -1,7 +1,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    AtlasLayout, LayerRecord, LutError, MaterialConstants, Search, ShadingModel, TableKind, TexelFormat, Tile,
+    AtlasLayout, LayerRecord, LutError, MaterialConstants, SceneChoice, Search, ShadingModel, TableKind, TexelFormat,
+    Tile,
 };
 
 /// Version of the manifest's shape. A reader refuses any other.
@@ -21,6 +22,9 @@ pub struct Manifest {
     /// How the tables came by their sizes, mappings and formats, where these were searched for.
     #[serde(default)]
     pub searches: Vec<Search>,
+    /// How the models came from a scene, for a bake of one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub choice: Option<SceneChoice>,
     /// The emitted shaders.
     pub shaders: Vec<ShaderEntry>,
     /// What to bind where, in group 0.
@@ -343,6 +347,7 @@ mod tests {
                 }],
                 measured: 12,
             }],
+            choice: None,
             shaders: vec![ShaderEntry {
                 target: "wgsl".into(),
                 form: "baked".into(),

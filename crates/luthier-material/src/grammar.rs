@@ -5,8 +5,10 @@ mod bake;
 mod document;
 mod effects;
 mod layers;
+mod scene;
 
 pub(crate) use document::DOCUMENT;
+pub(crate) use scene::SCENE;
 
 /// Version of the grammar that this crate reads.
 pub(crate) const SCHEMA_VERSION: i64 = 1;
@@ -178,6 +180,7 @@ mod tests {
     fn tables_are_consistent() {
         let mut seen = Vec::new();
         visit(&DOCUMENT, &mut seen);
+        visit(&SCENE, &mut seen);
         assert!(seen.len() >= 15, "{seen:?}");
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! [`parse`] reads one file. A declarative grammar (keys, types, ranges, alternatives) checks it first, a decoder then
 //! builds the [`Stack`](luthier_optics::stack::Stack); both report as much as they can in one run. [`schema`] is the same
-//! grammar as JSON Schema.
+//! grammar as JSON Schema. [`parse_scene`] and [`scene_schema`] do the same for scenes, which name materials.
 //!
 //! Physical nonsense is an error, doubtful physics a warning. This crate crosses the units of files (degrees, artist's
 //! roughness) into those of the optics (radians, slope parameters), once.
@@ -21,6 +21,7 @@ mod grammar;
 mod material;
 mod named;
 mod parse;
+mod scene;
 mod schema;
 mod section;
 mod suggest;
@@ -35,5 +36,6 @@ pub use doubt::LayerPart;
 pub use effects::{Effects, FlakeSource, Flakes, Glitter, Patina};
 pub use material::{FilmVariation, LayerExtras, Maps, Material, VariationSource};
 pub use parse::{Parsed, parse};
-pub use schema::schema;
+pub use scene::{Light, ModelBudget, Scene, SceneMaterial, Target, View, is_scene, parse_scene};
+pub use schema::{scene_schema, schema};
 pub use suggest::did_you_mean;

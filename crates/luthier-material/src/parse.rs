@@ -78,6 +78,11 @@ pub fn parse(
     }
     // The span of a document is all of it; what is missing from it is missing at its start.
     let document = Section { table: document.get_ref(), span: 0..0 };
+    if document.has("scene") && !document.has("schema") {
+        let hint = Some("bake it: `luthier bake SCENE.toml`; it names its materials itself".to_owned());
+        sink.error(document.key_span("scene"), "this is a scene, not a material", hint);
+        return Err(sink.into_diagnostics());
+    }
     check_table(&DOCUMENT, &[], &document, &mut sink);
     let version = document.value_span("schema");
     if document.has("schema") && sink.has_error_in(&version) {

@@ -4,19 +4,28 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
-use crate::grammar::{DOCUMENT, Kind, Table, TextForm};
+use crate::grammar::{DOCUMENT, Kind, SCENE, Table, TextForm};
 
 /// The grammar of material files as JSON Schema (draft 2020-12), generated from the tables that files are checked against.
 ///
 /// What holds between values, such as a conductor being the last layer, is beyond it.
 pub fn schema() -> Value {
+    document(&DOCUMENT, "luthier material")
+}
+
+/// The same of scene files.
+pub fn scene_schema() -> Value {
+    document(&SCENE, "luthier scene")
+}
+
+fn document(of: &'static Table, title: &str) -> Value {
     let mut definitions = BTreeMap::new();
-    let mut root = match table(&DOCUMENT, &mut definitions) {
+    let mut root = match table(of, &mut definitions) {
         Value::Object(root) => root,
         _ => Map::new(),
     };
     root.insert("$schema".to_owned(), json!("https://json-schema.org/draft/2020-12/schema"));
-    root.insert("title".to_owned(), json!("luthier material"));
+    root.insert("title".to_owned(), json!(title));
     root.insert("$defs".to_owned(), definitions.into_iter().collect::<Map<_, _>>().into());
     Value::Object(root)
 }
@@ -124,8 +133,9 @@ mod tests {
                 _ => {}
             }
         }
-        let schema = schema();
-        visit(&schema, &schema);
+        for schema in [schema(), scene_schema()] {
+            visit(&schema, &schema);
+        }
     }
 
     #[test]

@@ -109,6 +109,12 @@ impl<'a> MaterialSet<'a> {
         layer: &LayerRecord,
     ) -> Result<(), ShaderError> {
         let needed: &[TableKind] = match material.model {
+            ShadingModel::Phong => &[],
+            // They look at the first layer alone.
+            ShadingModel::Microfacet | ShadingModel::GranierHeidrich if i > 0 => &[],
+            // Films are phases, and bare transparent interfaces Schlick's form.
+            ShadingModel::GranierHeidrich if layer.kind != LayerKind::Conductor || layer.film_ior_n[0] > 0.0 => &[],
+            ShadingModel::GranierHeidrich => &[TableKind::Fresnel],
             ShadingModel::Belcour | ShadingModel::Yamaguchi => &[TableKind::Fgd],
             // Without a table of it, D is computed; a set has one or has none.
             _ if self.layers().any(|layer| layer.distribution_tile.is_some()) => {

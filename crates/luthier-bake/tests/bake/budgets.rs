@@ -211,9 +211,9 @@ fn an_interface_that_no_row_serves_leaves_the_rows_fixed() {
     assert_eq!((rows.format, rows.layout.x.size), (TexelFormat::Rgba16Float, 128));
     assert!(bake.searches.iter().all(|s| s.kind != TableKind::Fresnel));
 
-    let rows = Some((RowBase::Schlick, TexelFormat::Rgb10a2Unorm));
+    let asked = (RowBase::Schlick, TexelFormat::Rgb10a2Unorm);
     let no_images = |_: &str, _: &str| Err("no images here".to_owned());
-    let bake = bake_with(&[kink], &Options { rows, ..Options::default() }, &no_images, &Silent).unwrap();
+    let bake = bake_with(&[kink], &Options { rows: Some(asked), ..Options::default() }, &no_images, &Silent).unwrap();
     let atlas = atlas(&bake, TableKind::Fresnel);
-    assert_eq!((atlas.layout.base, atlas.format), rows.unwrap());
+    assert_eq!((atlas.layout.base, atlas.format), asked);
 }

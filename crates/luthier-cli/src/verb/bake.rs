@@ -13,10 +13,17 @@ use crate::materials::{read, read_image, shaded, valid};
 use crate::output::{bytes, print};
 use crate::progress::BakeProgress;
 use crate::staging::Staging;
+use crate::verb::scene;
 
 /// Bakes files into a folder. The folder changes only once everything is made.
 pub(crate) fn run(options: &BakeOptions) -> Outcome {
     let start = Instant::now();
+    if let Some(scenes) = scene::find(&options.sources.paths)? {
+        return scene::run(options, &scenes);
+    }
+    if options.allow_miss || !options.budgets.is_empty() {
+        return Err(Failure::Usage(anyhow::anyhow!("--allow-miss and --budgets are for scenes (docs/scenes.md)")));
+    }
     let mut sources = read(&options.sources.paths)?;
     domain::check(&mut sources, options.shading.model);
     let materials = shaded(valid(sources, options.quiet)?, &options.shading);
@@ -43,7 +50,7 @@ pub(crate) fn run(options: &BakeOptions) -> Outcome {
 
 /// Moves everything into place, the manifest last, and removes what an earlier bake left and this one does not have; the
 /// report on another bake too.
-fn publish(options: &BakeOptions, made: &BakeFiles) -> Outcome {
+pub(super) fn publish(options: &BakeOptions, made: &BakeFiles) -> Outcome {
     let manifest = made.manifest.to_json().map_err(Failure::input)?;
     // Unreadable is as good as none: what it named, nobody knows.
     let old = std::fs::read_to_string(options.out.join(MANIFEST)).unwrap_or_default();

@@ -26,6 +26,9 @@ const DRIVER_FOLDERS: [&str; 4] =
 /// Compiles shaders for GPUs that are not here, and prints what they cost.
 pub(crate) fn run(options: &CostOptions) -> Outcome {
     let materials = valid(read(&options.sources.paths)?, true)?;
+    if options.shapes {
+        return shapes(options, &materials);
+    }
     let variants = variants(options, &materials)?;
     if options.assembly {
         return match (variants.as_slice(), options.family.as_slice()) {
@@ -74,6 +77,52 @@ pub(crate) fn run(options: &CostOptions) -> Outcome {
         let papers = cost_papers::to_markdown(&papers, &paper_counts);
         report.to_markdown(&command(options), &papers)
     };
+    match &options.output {
+        Some(path) => std::fs::write(path, text).map_err(files(path, "write")),
+        None => print(&text),
+    }
+}
+
+/// Costs of every shape that the materials have, whole or without some of their parts: what scenes choose by.
+fn shapes(options: &CostOptions, materials: &[Material]) -> Outcome {
+    let family = Family::Rdna2;
+    let simpler = || materials.iter().flat_map(luthier_scene::variants).map(|(_, material)| material);
+    let mut keys: Vec<(ShadingModel, luthier_scene::Form, String)> = Vec::new();
+    let mut kernels = vec![empty(Harness::Bare)?];
+    for model in ShadingModel::ALL {
+        for mut material in simpler() {
+            material.bake.model = ModelSetting::from_name(model.name());
+            let shape = luthier_scene::shape_of(model, &luthier_scene::shape(&material.stack));
+            // What is no matter of shape, and what would make two materials of one shape differ.
+            material.effects = Default::default();
+            material.bake.distribution = Default::default();
+            if keys.iter().any(|(known, _, s)| (*known, s) == (model, &shape)) {
+                continue;
+            }
+            let (entries, tables) = outline(std::slice::from_ref(&material))?;
+            let set = MaterialSet { materials: &entries, tables };
+            for (form, key) in [(Form::Baked, luthier_scene::Form::Baked), (Form::Full, luthier_scene::Form::Full)] {
+                let style = Style { form, constant: false, approximate: false };
+                kernels.push(Kernel::of_set(&set, style, Harness::Bare).map_err(Failure::input)?);
+                keys.push((model, key, shape.clone()));
+            }
+        }
+    }
+    let compiled: Compiled = serde_json::from_str(&started(family, false, &kernels)?).map_err(Failure::input)?;
+    let [harness, counts @ ..] = compiled.counts.as_slice() else {
+        return Err(Failure::Device(anyhow::anyhow!("the probe gave no counts")));
+    };
+    let mut rows: Vec<String> = Vec::new();
+    keys.iter().zip(counts).for_each(|((model, form, shape), counts)| {
+        let (model, form, cycles) = (model.name(), form.name(), counts.beyond(harness).inverse_throughput);
+        rows.push(format!(r#"    {{"model":"{model}","form":"{form}","shape":"{shape}","cycles":{cycles}}}"#));
+    });
+    let text = format!(
+        "{{\n  \"driver\": {},\n  \"family\": \"{}\",\n  \"rows\": [\n{}\n  ]\n}}\n",
+        serde_json::json!(compiled.driver),
+        family.name(),
+        rows.join(",\n")
+    );
     match &options.output {
         Some(path) => std::fs::write(path, text).map_err(files(path, "write")),
         None => print(&text),

@@ -21,6 +21,7 @@ pub(crate) mod parity;
 #[cfg(feature = "gpu")]
 pub(crate) mod preview;
 pub(crate) mod report;
+pub(crate) mod scene;
 pub(crate) mod schema;
 pub(crate) mod shader;
 #[cfg(feature = "gpu")]

@@ -140,6 +140,7 @@ impl Compiled {
             materials: entries.to_vec(),
             tables: atlases.iter().map(table).collect(),
             searches: Vec::new(),
+            choice: None,
             shaders: Vec::new(),
             bindings: Vec::new(),
             material_buffer: FileEntry::default(),

@@ -46,7 +46,7 @@ fn wrong_command_lines() {
         [("view", "view", cfg!(feature = "view")), ("preview", "gpu", cfg!(feature = "gpu"))]
     {
         if !is_there {
-            workshop.run(&[verb]).fails(2, &[&format!("--features {feature}")]);
+            workshop.run(&[verb]).fails(2, &["leaves"]).says(&[&format!("--features {feature}")]);
         }
     }
     workshop.run(&["bake", "--ouch"]).fails(2, &["--ouch"]);

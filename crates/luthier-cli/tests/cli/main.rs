@@ -32,6 +32,7 @@ mod pipes;
 mod preview;
 mod report;
 mod report_page;
+mod scenes;
 mod schema;
 mod shader;
 #[cfg(feature = "gpu")]

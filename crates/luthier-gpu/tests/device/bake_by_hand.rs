@@ -119,6 +119,7 @@ pub(crate) fn manifest(materials: Vec<Vec<LayerRecord>>, tables: &[Table]) -> Ma
         materials,
         tables,
         searches: Vec::new(),
+        choice: None,
         shaders: Vec::new(),
         bindings: Vec::new(),
         material_buffer: no_file(),

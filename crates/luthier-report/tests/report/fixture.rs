@@ -104,6 +104,7 @@ impl Bake {
             materials,
             tables: vec![fresnel_table, distribution_table],
             searches: Vec::new(),
+            choice: None,
             shaders: Vec::new(),
             bindings: Vec::new(),
             material_buffer: FileEntry::default(),

@@ -7,6 +7,7 @@ use std::path::Path;
 use luthier_lut::Manifest;
 use luthier_material::{Material, Parsed};
 use luthier_report::{Asked, Device, Exhibits, FileBudget, Report, Settings, Subject, judge, limits};
+use luthier_scene::{LeaveOut, simplified};
 
 use crate::artefacts::{manifest, textures};
 use crate::bake_files::{GENERATOR, MANIFEST, REPORT_FILES, sha256, source_hash};
@@ -117,7 +118,8 @@ fn materials(manifest: &Manifest) -> Outcome<Vec<Material>> {
     manifest
         .materials
         .iter()
-        .map(|entry| {
+        .enumerate()
+        .map(|(number, entry)| {
             let source = read_one(Path::new(&entry.source)).map_err(|failure| match failure {
                 Failure::Files(error) => Failure::Files(error.context(format!(
                     "the bake was made from {}, which the judge reads again; run the report where the bake ran",
@@ -131,7 +133,12 @@ fn materials(manifest: &Manifest) -> Outcome<Vec<Material>> {
             if source_hash(&material)? != entry.source_hash {
                 return Err(changed(&entry.source));
             }
-            Ok(material)
+            // A scene may have left out parts of a material: the tables are of what is left.
+            let choice = manifest.choice.as_ref().and_then(|choice| choice.materials.get(number));
+            let left_out =
+                choice.and_then(|c| c.tried.get(c.chosen)).map(|c| c.left_out.as_slice()).unwrap_or_default();
+            let parts: Option<Vec<LeaveOut>> = left_out.iter().map(|name| LeaveOut::from_name(name)).collect();
+            parts.and_then(|parts| simplified(&material, &parts)).ok_or_else(|| changed(&entry.source))
         })
         .collect()
 }

@@ -1,0 +1,257 @@
+use luthier_bake::{Bake, BakeError, Options, Silent};
+use luthier_lut::{Budget, LayerRecord, MaterialChoice, SceneBudget, SceneChoice, SceneError};
+use luthier_material::{Material, ModelBudget, Scene};
+use luthier_report::{Subject, TableTerms, Weights};
+use luthier_scene::{CostTable, Form, Judge, TABLE_SHARE, label};
+
+use crate::bake_files::{BakeFiles, sha256};
+use crate::failure::{Failure, Outcome};
+use crate::materials::read_image;
+
+/// Limits on the absolute error of tables that are tried, loosest first.
+const TABLE_LEVELS: [f64; 6] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5];
+
+/// Reflectances are about this: a relative limit times it is where the search for tables begins.
+const REFLECTANCE: f64 = 0.2;
+
+/// A scene at work. What one step computes serves the next.
+pub(super) struct Director<'a> {
+    scene: &'a Scene,
+    materials: &'a [Material],
+    costs: CostTable,
+    baked: Option<Vec<Judge>>,
+    full: Option<Vec<Judge>>,
+}
+
+/// A bake of a scene.
+pub(super) struct Made {
+    pub(super) choice: SceneChoice,
+    pub(super) files: BakeFiles,
+}
+
+impl Made {
+    /// Bytes of all texels.
+    pub(super) fn bytes(&self) -> u64 {
+        self.files.manifest.tables.iter().map(|table| table.texel_bytes).sum()
+    }
+
+    /// Cycles of all materials together.
+    pub(super) fn cycles(&self) -> f64 {
+        self.choice.materials.iter().map(|choice| choice.candidate().cost).sum()
+    }
+
+    /// The largest error of a model, relative.
+    pub(super) fn max_rel(&self) -> f64 {
+        self.choice.materials.iter().map(|choice| choice.candidate().error.max_rel).fold(0.0, f64::max)
+    }
+
+    /// The largest error of tables, relative.
+    pub(super) fn table_max_rel(&self) -> f64 {
+        self.choice.materials.iter().filter_map(|c| c.table_error).map(|error| error.max_rel).fold(0.0, f64::max)
+    }
+}
+
+/// Why a form will not do.
+enum Refusal {
+    /// No model holds.
+    Model(String),
+    /// Tables are too large, too coarse or of the wrong format: without tables it may do.
+    Tables(String),
+}
+
+impl<'a> Director<'a> {
+    pub(super) fn new(scene: &'a Scene, materials: &'a [Material]) -> Self {
+        Self { scene, materials, costs: CostTable::shipped(), baked: None, full: None }
+    }
+
+    /// Chooses and bakes, under another limit on the relative error if one is given: with tables, or, where these do not fit the target,
+    /// without.
+    pub(super) fn step(&mut self, max_rel: Option<f64>, allow_miss: bool) -> Outcome<Made> {
+        let budgets: Vec<SceneBudget> = self.scene.materials.iter().map(|m| self.budget(&m.budget, max_rel)).collect();
+        let mut reasons = Vec::new();
+        for form in [Form::Baked, Form::Full] {
+            match self.attempt(form, &budgets, allow_miss)? {
+                Ok(made) => return Ok(made),
+                Err(Refusal::Tables(reason)) => reasons.push(format!("{}: {reason}", form.name())),
+                Err(Refusal::Model(reason)) => {
+                    reasons.push(format!("{}: {reason}", form.name()));
+                    break;
+                }
+            }
+        }
+        let hint = if allow_miss { "" } else { "\nloosen the budget, or take what comes nearest with --allow-miss" };
+        Err(Failure::Input(anyhow::anyhow!("the scene cannot be held. {}{hint}", reasons.join("\n"))))
+    }
+
+    /// The limits of a material.
+    fn budget(&self, own: &ModelBudget, max_rel: Option<f64>) -> SceneBudget {
+        let budget = |from: &ModelBudget| {
+            let &ModelBudget { max_rel, max_abs, delta_e } = from;
+            SceneBudget { max_rel, max_abs, delta_e }
+        };
+        let given = SceneBudget { max_rel, ..SceneBudget::default() };
+        given.or(&budget(own)).or(&budget(&self.scene.budget))
+    }
+
+    fn attempt(&mut self, form: Form, budgets: &[SceneBudget], allow_miss: bool) -> Outcome<Result<Made, Refusal>> {
+        let judges = match form {
+            Form::Baked => &mut self.baked,
+            Form::Full => &mut self.full,
+        };
+        let (scene, costs) = (self.scene, &self.costs);
+        let judges = judges.get_or_insert_with(|| {
+            let judge = |material| Judge::new(material, form, &scene.lights, &scene.view, costs);
+            self.materials.iter().map(judge).collect()
+        });
+        let mut choices: Vec<MaterialChoice> = Vec::with_capacity(judges.len());
+        let mut misses = Vec::new();
+        for (judge, (budget, material)) in judges.iter_mut().zip(budgets.iter().zip(self.materials)) {
+            let Some(choice) = judge.choose(budget, scene.target.max_cost) else {
+                let least = judge.candidates().first().map_or(0.0, |candidate| candidate.cost);
+                let most = scene.target.max_cost.unwrap_or_default();
+                let text =
+                    format!("{}: the cheapest model takes {least:.0} cycles, more than {most:.0}", material.name);
+                return Ok(Err(Refusal::Model(text)));
+            };
+            if !choice.holds() {
+                misses.push(format!("{}: {}", choice.name, choice.reason));
+            }
+            choices.push(choice);
+        }
+        if !misses.is_empty() && !allow_miss {
+            return Ok(Err(Refusal::Model(format!("no model holds the budget\n{}", misses.join("\n")))));
+        }
+        let materials: Vec<Material> = judges
+            .iter()
+            .zip(&choices)
+            .map(|(judge, choice)| judge.candidates()[choice.chosen].material.clone())
+            .collect();
+        let files = match form {
+            Form::Full => without_tables(&materials)?,
+            Form::Baked => match tables(&materials, judges, &mut choices, budgets, allow_miss)? {
+                Ok(files) => files,
+                Err(reason) => return Ok(Err(Refusal::Tables(reason))),
+            },
+        };
+        let choice = SceneChoice {
+            scene: scene.name.clone(),
+            source: scene.source.clone(),
+            source_hash: sha256(scene.text.as_bytes()),
+            form: form.name().to_owned(),
+            materials: choices,
+        };
+        let mut made = Made { choice, files };
+        made.files.manifest.choice = Some(made.choice.clone());
+        Ok(match unfit(scene, &made) {
+            Some(reason) => Err(Refusal::Tables(reason)),
+            None => Ok(made),
+        })
+    }
+}
+
+/// What of the tables the target has no room for.
+fn unfit(scene: &Scene, made: &Made) -> Option<String> {
+    let bytes = made.bytes();
+    if let Some(most) = scene.target.max_bytes.filter(|most| bytes > *most) {
+        return Some(format!("tables take {bytes} bytes, more than {most}"));
+    }
+    let formats = scene.target.formats.as_ref()?;
+    let foreign = made.files.manifest.tables.iter().find(|table| !formats.iter().any(|f| f == table.format.name()))?;
+    Some(format!("the {} table is {}, which the target does not have", foreign.kind.name(), foreign.format.name()))
+}
+
+/// The loosest tables whose errors, under the light of the scene, stay inside what models leave of the budgets.
+fn tables(
+    materials: &[Material],
+    judges: &[Judge],
+    choices: &mut [MaterialChoice],
+    budgets: &[SceneBudget],
+    allow_miss: bool,
+) -> Outcome<Result<BakeFiles, String>> {
+    let limits: Vec<SceneBudget> = budgets.iter().map(|budget| budget.scaled(TABLE_SHARE)).collect();
+    let tightest = limits.iter().filter_map(|limit| limit.max_rel).fold(f64::INFINITY, f64::min);
+    let levels = TABLE_LEVELS.into_iter().filter(|level| *level <= REFLECTANCE * tightest);
+    // Last what a bake without any budget has.
+    let mut levels: Vec<Option<f64>> = levels.map(Some).chain([None]).collect();
+    levels.reverse();
+    let mut nearest = String::new();
+    while let Some(level) = levels.pop() {
+        let options =
+            Options { budget: Budget { max_abs: level, ..Budget::default() }, lean: true, ..Options::default() };
+        let bake = match luthier_bake::bake_with(materials, &options, &read_image, &Silent) {
+            // Tighter ones cannot be held either.
+            Err(BakeError::Budget { .. }) if level.is_some() => {
+                levels = vec![None];
+                continue;
+            }
+            bake => bake.map_err(Failure::input)?,
+        };
+        let files = BakeFiles::with_forms(materials, &bake, &[luthier_shader::Form::Baked])?;
+        let errors = table_errors(&files, materials, judges, choices, budgets)?;
+        choices.iter_mut().zip(&errors).for_each(|(choice, error)| choice.table_error = Some(*error));
+        let worst = (0..errors.len())
+            .map(|i| (i, limits[i].excess(&errors[i])))
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+            .filter(|(_, excess)| *excess > 1.0);
+        let Some((number, excess)) = worst else { return Ok(Ok(files)) };
+        if levels.is_empty() && allow_miss {
+            return Ok(Ok(files));
+        }
+        nearest = format!(
+            "tables for {} ({}) err {excess:.2} times what is theirs of the budget",
+            choices[number].name,
+            label(choices[number].candidate())
+        );
+    }
+    Ok(Err(nearest))
+}
+
+/// Errors of the tables of every material at the directions of the scene.
+fn table_errors(
+    files: &BakeFiles,
+    materials: &[Material],
+    judges: &[Judge],
+    choices: &[MaterialChoice],
+    budgets: &[SceneBudget],
+) -> Outcome<Vec<SceneError>> {
+    let manifest = &files.manifest;
+    let textures = manifest
+        .tables
+        .iter()
+        .map(|table| {
+            let bytes =
+                files.files.iter().find(|(path, _)| *path == table.texture.path).map(|(_, bytes)| bytes.as_slice());
+            let image = luthier_texture::ktx2::decode(bytes.unwrap_or_default()).and_then(|texture| texture.image());
+            Ok((table.kind, image.map_err(Failure::input)?))
+        })
+        .collect::<Outcome<Vec<_>>>()?;
+    let stacks = materials.iter().map(|material| material.stack.clone()).collect();
+    let subject = Subject { manifest, textures, stacks };
+    let error = |number: usize| {
+        let terms = TableTerms::new(&subject, number, Weights::EightBit).map_err(Failure::input)?;
+        Ok(judges[number].table_error(choices[number].chosen, &terms, budgets[number].delta_e.is_some()))
+    };
+    (0..materials.len()).map(error).collect()
+}
+
+/// A bake of the form `full`: nothing to read but the material buffer.
+fn without_tables(materials: &[Material]) -> Outcome<BakeFiles> {
+    let mut outline = luthier_bake::outline(materials, &read_image).map_err(Failure::input)?;
+    for material in &mut outline.materials {
+        let bare = material.constants.patina.as_mut().map(|patina| &mut patina.bare);
+        for record in material.records.iter_mut().chain(bare) {
+            *record = LayerRecord {
+                fresnel_tile: None,
+                distribution_tile: None,
+                fgd_tile: None,
+                phase_tile: None,
+                thickness_tile: None,
+                film_tile: None,
+                escape_tile: None,
+                ..record.clone()
+            };
+        }
+    }
+    let bake = Bake { atlases: Vec::new(), materials: outline.materials, searches: Vec::new() };
+    BakeFiles::with_forms(materials, &bake, &[luthier_shader::Form::Full])
+}

@@ -1,0 +1,169 @@
+//! Bakes of scenes: a model for each material, and only the code and the tables that these models need.
+
+mod director;
+mod page;
+
+use std::io::IsTerminal;
+use std::path::{Component, Path, PathBuf};
+
+use luthier_lut::{MaterialChoice, SceneChoice};
+use luthier_material::{Diagnostic, Material, Scene, is_scene, parse_scene};
+use luthier_scene::label as candidate_label;
+use serde_json::json;
+
+use crate::cli::BakeOptions;
+use crate::domain;
+use crate::failure::{Failure, Outcome, files};
+use crate::materials::{find as find_files, label, read_one, valid};
+use crate::output::{bytes, complain, print};
+use crate::verb::bake::publish;
+use director::{Director, Made};
+
+/// The scenes among the files; `None` where there is none, and files are materials.
+pub(super) fn find(paths: &[PathBuf]) -> Outcome<Option<Vec<PathBuf>>> {
+    let mut scenes = Vec::new();
+    let mut others = Vec::new();
+    for path in find_files(paths)? {
+        // What is no text is left to whoever reads materials.
+        let text = std::fs::read(&path).map_err(files(&path, "read"))?;
+        if is_scene(&String::from_utf8_lossy(&text)) { scenes.push(path) } else { others.push(path) }
+    }
+    match (scenes.first(), others.first()) {
+        (None, _) => Ok(None),
+        (Some(_), None) => Ok(Some(scenes)),
+        (Some(scene), Some(other)) => Err(Failure::Usage(anyhow::anyhow!(
+            "{} is a scene and {} is not: a scene names its materials itself",
+            scene.display(),
+            other.display()
+        ))),
+    }
+}
+
+/// Bakes a scene, or prints what budgets would choose for some.
+pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
+    let limits = options.limits.options();
+    if options.shading.model.is_some() || !limits.search || !limits.budget.is_empty() {
+        let text = "a scene has its limits in its [budget] and [target], and its models are chosen: leave out --model, --no-search \
+                    and limits on tables";
+        return Err(Failure::Usage(anyhow::anyhow!(text)));
+    }
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(options.threads.map_or(0, usize::from))
+        .build()
+        .map_err(|source| Failure::Files(anyhow::Error::new(source).context("cannot start threads")))?;
+    if !options.budgets.is_empty() {
+        return pool.install(|| tighten(options, scenes));
+    }
+    let [path] = scenes else {
+        let text = "one scene at a time is baked into a folder; several are for --budgets";
+        return Err(Failure::Usage(anyhow::anyhow!(text)));
+    };
+    let (scene, materials) = read(path, options.quiet)?;
+    let made = pool.install(|| Director::new(&scene, &materials).step(None, options.allow_miss))?;
+    publish(options, &made.files)?;
+    if options.json {
+        let manifest = options.out.join(crate::bake_files::MANIFEST);
+        let (bytes, cycles) = (made.bytes(), made.cycles());
+        let summary = json!({
+            "manifest": manifest.to_string_lossy(), "texel_bytes": bytes, "cycles": cycles, "choice": made.choice,
+        });
+        print(&format!("{summary:#}"))
+    } else if options.quiet {
+        Ok(())
+    } else {
+        print(&text(options, &made))
+    }
+}
+
+/// The steps of every scene, loosest budget first, as a page or as JSON.
+fn tighten(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
+    let mut budgets = options.budgets.clone();
+    budgets.sort_by(|a, b| b.total_cmp(a));
+    let mut tightened = Vec::new();
+    for path in scenes {
+        let (scene, materials) = read(path, options.quiet)?;
+        let mut director = Director::new(&scene, &materials);
+        let steps: Vec<Made> =
+            budgets.iter().map(|&limit| director.step(Some(limit), options.allow_miss)).collect::<Outcome<_>>()?;
+        tightened.push((scene, steps));
+    }
+    if options.json {
+        let step = |made: &Made| json!({ "texel_bytes": made.bytes(), "cycles": made.cycles(), "choice": made.choice });
+        let scenes: Vec<_> = tightened.iter().map(|(_, steps)| steps.iter().map(step).collect::<Vec<_>>()).collect();
+        return print(&format!("{:#}", json!({ "budgets": budgets, "scenes": scenes })));
+    }
+    print(&page::markdown(&command(options), &budgets, &tightened))
+}
+
+/// A scene and its materials; or all diagnostics and a failure.
+fn read(path: &Path, quiet: bool) -> Outcome<(Scene, Vec<Material>)> {
+    let content = std::fs::read(path).map_err(files(path, "read"))?;
+    let text = String::from_utf8_lossy(&content).into_owned();
+    let scene = parse_scene(&label(path), &text).map_err(|diagnostics| {
+        diagnostics.iter().for_each(|diagnostic| show(diagnostic, &text));
+        Failure::Input(anyhow::anyhow!("{} cannot be used; nothing was written", path.display()))
+    })?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut sources = Vec::with_capacity(scene.materials.len());
+    for material in &scene.materials {
+        let file = plain(&folder.join(&material.file));
+        sources.push(read_one(&file).map_err(|failure| match failure {
+            Failure::Files(error) => Failure::Files(error.context(format!("{} names it", path.display()))),
+            other => other,
+        })?);
+    }
+    domain::check(&mut sources, None);
+    Ok((scene, valid(sources, quiet)?))
+}
+
+fn show(diagnostic: &Diagnostic, text: &str) {
+    let is_terminal = std::io::stderr().is_terminal();
+    let rendered = if is_terminal { diagnostic.render_coloured(text) } else { diagnostic.render(text) };
+    complain(&format!("{rendered}\n"));
+}
+
+/// A path without the folders that `..` leaves again.
+fn plain(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        let leaves =
+            part == Component::ParentDir && matches!(plain.components().next_back(), Some(Component::Normal(_)));
+        if leaves {
+            plain.pop();
+        } else {
+            plain.push(part);
+        }
+    }
+    plain
+}
+
+fn text(options: &BakeOptions, made: &Made) -> String {
+    let SceneChoice { scene, form, materials, .. } = &made.choice;
+    let mut out = format!(
+        "{scene}: {} materials, form {form}, {} of tables, {:.0} cycles in all\n\n",
+        materials.len(),
+        bytes(made.bytes()),
+        made.cycles()
+    );
+    for MaterialChoice { name, reason, .. } in materials {
+        out.push_str(&format!("{name}: {reason}\n"));
+    }
+    let models: Vec<String> = materials.iter().map(|choice| candidate_label(choice.candidate())).collect();
+    let tables: Vec<&str> = made.files.manifest.tables.iter().map(|table| table.kind.name()).collect();
+    out.push_str(&format!("\nmodels: {}\n", models.join("; ")));
+    out.push_str(&format!("tables: {}\n", if tables.is_empty() { "none".to_owned() } else { tables.join(", ") }));
+    out.push_str(&format!("wrote {}\n", options.out.join(crate::bake_files::MANIFEST).display()));
+    out
+}
+
+/// The command line that makes the page.
+fn command(options: &BakeOptions) -> String {
+    let mut words = vec!["luthier bake".to_owned()];
+    words.extend(options.sources.paths.iter().map(|path| label(path)));
+    let budgets: Vec<String> = options.budgets.iter().map(f64::to_string).collect();
+    words.push(format!("--budgets {}", budgets.join(",")));
+    if options.allow_miss {
+        words.push("--allow-miss".to_owned());
+    }
+    words.join(" ")
+}

@@ -1,0 +1,138 @@
+use serde::{Deserialize, Serialize};
+
+use crate::{ColorMode, ShadingModel};
+
+/// Limits on the error of a model against the reference under the light of a scene; what is absent is unlimited.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct SceneBudget {
+    /// Largest absolute error of `f cos theta_i` (of albedo over pi, where light comes from everywhere), any channel.
+    pub max_abs: Option<f64>,
+    /// Largest error over the brightest channel of the reference, or over 0.1/pi where that is darker.
+    pub max_rel: Option<f64>,
+    /// Largest CIEDE2000 difference of pi times the value, clipped to white.
+    pub delta_e: Option<f64>,
+}
+
+/// Largest errors of a model over the directions of a scene.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct SceneError {
+    /// As [`SceneBudget::max_abs`].
+    pub max_abs: f64,
+    /// As [`SceneBudget::max_rel`].
+    pub max_rel: f64,
+    /// As [`SceneBudget::delta_e`]; absent where the budget does not limit it.
+    pub delta_e: Option<f64>,
+    /// Standard error of the reference at the direction with the largest relative error, as a relative error.
+    pub std_err_rel: f64,
+}
+
+impl SceneBudget {
+    /// The same with the limits of another in place of its own.
+    #[must_use]
+    pub fn or(&self, other: &Self) -> Self {
+        Self {
+            max_abs: self.max_abs.or(other.max_abs),
+            max_rel: self.max_rel.or(other.max_rel),
+            delta_e: self.delta_e.or(other.delta_e),
+        }
+    }
+
+    /// All limits times a factor.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let scaled = |limit: Option<f64>| limit.map(|limit| factor * limit);
+        Self { max_abs: scaled(self.max_abs), max_rel: scaled(self.max_rel), delta_e: scaled(self.delta_e) }
+    }
+
+    /// Error over limit, the largest of those limited: a budget holds where this is at most 1.
+    pub fn excess(&self, error: &SceneError) -> f64 {
+        let ratio = |limit: Option<f64>, error: Option<f64>| limit.zip(error).map_or(0.0, |(limit, e)| e / limit);
+        ratio(self.max_abs, Some(error.max_abs))
+            .max(ratio(self.max_rel, Some(error.max_rel)))
+            .max(ratio(self.delta_e, error.delta_e))
+    }
+}
+
+/// What became of a candidate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// Its error is inside the budget, noise of the reference included.
+    Holds,
+    /// Its error is outside.
+    Fails,
+    /// The noise of the reference leaves it open at the greatest number of samples; it is not taken.
+    Undecided,
+    /// It costs more than the scene allows.
+    TooDear,
+}
+
+/// A way to shade a material, and how far it is from the reference.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SceneCandidate {
+    /// The model.
+    pub model: ShadingModel,
+    /// Colour of its Fresnel terms.
+    pub color: ColorMode,
+    /// What was left out of the stack, by name; empty for the whole stack.
+    pub left_out: Vec<String>,
+    /// Inverse throughput in cycles per wave of 64 on RDNA2.
+    pub cost: f64,
+    /// Whether the cost is that of the most similar surface of the measured ones, and not of this very one.
+    pub cost_is_of_similar: bool,
+    /// Error of the model against the reference; tables and single precision are not in it.
+    pub error: SceneError,
+    /// What became of it.
+    pub verdict: Verdict,
+}
+
+/// What was chosen for a material, and why.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MaterialChoice {
+    /// Name of the material.
+    pub name: String,
+    /// The limits of its model: three quarters of those of the scene, whose rest is for tables.
+    pub budget: SceneBudget,
+    /// What ships: its place in `tried`.
+    pub chosen: usize,
+    /// The dearest of the candidates that cost less: its place in `tried`, if there is any.
+    pub next_cheaper: Option<usize>,
+    /// In a sentence.
+    pub reason: String,
+    /// All candidates that were judged, cheapest first.
+    pub tried: Vec<SceneCandidate>,
+    /// Pairs of directions, and directions of view under light from everywhere.
+    pub probes: u32,
+    /// Samples of the reference, all directions and wavelengths.
+    pub samples: u64,
+    /// Errors of the shipped tables under the same directions: the model in f64 on texels, read with weights of 8 bits, against the model
+    /// in f64 without tables. Absent in the form without tables.
+    pub table_error: Option<SceneError>,
+}
+
+impl MaterialChoice {
+    /// What ships.
+    pub fn candidate(&self) -> &SceneCandidate {
+        &self.tried[self.chosen]
+    }
+
+    /// Whether what ships holds the budget.
+    pub fn holds(&self) -> bool {
+        self.candidate().verdict == Verdict::Holds
+    }
+}
+
+/// How the models of a bake came from a scene.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SceneChoice {
+    /// Name of the scene.
+    pub scene: String,
+    /// The scene file.
+    pub source: String,
+    /// SHA-256 of that file, hex.
+    pub source_hash: String,
+    /// The form of all shaders: `baked` or `full`.
+    pub form: String,
+    /// One per material, in the order of the manifest.
+    pub materials: Vec<MaterialChoice>,
+}

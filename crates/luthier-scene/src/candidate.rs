@@ -1,0 +1,155 @@
+use std::f64::consts::FRAC_1_PI;
+use std::sync::OnceLock;
+
+use luthier_layers::real_time::Twin;
+use luthier_layers::terms::{Exact, ShaderTerms};
+use luthier_lut::{ColorMode, ShadingModel};
+use luthier_material::{ColorSetting, Material, ModelSetting};
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::cost::CostTable;
+use crate::probe::{Probe, footprint, hemisphere};
+use crate::shape::shape;
+use crate::simplify::{LeaveOut, variants};
+
+/// A form of shaders.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Form {
+    /// Reads tables.
+    Baked,
+    /// Evaluates everything, at three wavelengths.
+    Full,
+}
+
+impl Form {
+    /// The name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Baked => "baked",
+            Self::Full => "full",
+        }
+    }
+}
+
+/// A way to shade a material.
+#[derive(Debug)]
+pub struct Candidate {
+    /// The model.
+    pub model: ShadingModel,
+    /// The form.
+    pub form: Form,
+    /// Colour of its Fresnel terms.
+    pub color: ColorMode,
+    /// What is left out.
+    pub left_out: Vec<LeaveOut>,
+    /// The material without that, with model and colour as settings: what is baked if it is chosen.
+    pub material: Material,
+    /// Cycles per wave of 64 on RDNA2.
+    pub cost: f64,
+    /// Whether the cost is that of a similar surface.
+    pub cost_is_of_similar: bool,
+    values: OnceLock<Vec<Rgb>>,
+}
+
+/// How a material comes by its colour: spectrally, unless its file asks otherwise.
+pub(crate) fn own_color(material: &Material) -> ColorMode {
+    match material.bake.color {
+        Some(ColorSetting::ThreeWavelengths) => ColorMode::ThreeWavelengths,
+        Some(ColorSetting::Spectral) | None => ColorMode::Spectral,
+    }
+}
+
+/// The colour of a mode.
+pub(crate) fn color_of(mode: ColorMode, material: &Material) -> Color {
+    match mode {
+        ColorMode::Spectral => Color::Spectral,
+        ColorMode::ThreeWavelengths => Color::ThreeWavelengths(material.bake.wavelengths_nm()),
+    }
+}
+
+impl Candidate {
+    /// The candidates for a material, cheapest first; of equal cost those that leave out less first, then the material's own colour.
+    ///
+    /// What is left out must make a model cheaper. Only models of chains of layers have flakes and patina.
+    pub fn all(material: &Material, form: Form, costs: &CostTable) -> Vec<Self> {
+        let own = own_color(material);
+        let colors: &[ColorMode] = match (form, own) {
+            (Form::Baked, ColorMode::Spectral) => &[ColorMode::Spectral, ColorMode::ThreeWavelengths],
+            _ => &[ColorMode::ThreeWavelengths],
+        };
+        let is_chain = |model| matches!(model, ShadingModel::Elek | ShadingModel::WeidlichWilkie);
+        let needs_chain = material.effects.flakes.is_some() || material.effects.patina.is_some();
+        let mut found: Vec<Self> = Vec::new();
+        for model in ShadingModel::ALL.into_iter().filter(|&model| !needs_chain || is_chain(model)) {
+            let whole = costs.cost(model, form, &shape(&material.stack)).map_or(f64::INFINITY, |(cost, _)| cost);
+            for (left_out, simple) in variants(material) {
+                let Some((cost, is_of_similar)) = costs.cost(model, form, &shape(&simple.stack)) else { continue };
+                if !left_out.is_empty() && cost >= whole {
+                    continue;
+                }
+                for &color in colors {
+                    let mut material = simple.clone();
+                    material.bake.model = ModelSetting::from_name(model.name());
+                    material.bake.color = ColorSetting::from_name(match color {
+                        ColorMode::Spectral => "spectral",
+                        ColorMode::ThreeWavelengths => "three-wavelengths",
+                    });
+                    let cost_is_of_similar = is_of_similar;
+                    let (left_out, values) = (left_out.clone(), OnceLock::new());
+                    found.push(Self { model, form, color, left_out, material, cost, cost_is_of_similar, values });
+                }
+            }
+        }
+        let key = |c: &Self| (c.left_out.len(), usize::from(c.color != own));
+        found.sort_by(|a, b| a.cost.total_cmp(&b.cost).then(key(a).cmp(&key(b))));
+        found
+    }
+
+    /// Its values at probes, computed once.
+    pub(crate) fn values(&self, probes: &[Probe], footprint_deg: f64) -> &[Rgb] {
+        self.values.get_or_init(|| self.values_with(&self.exact(footprint_deg), probes, footprint_deg))
+    }
+
+    /// The same on other terms.
+    pub(crate) fn values_with(
+        &self,
+        terms: &(impl ShaderTerms + Sync),
+        probes: &[Probe],
+        footprint_deg: f64,
+    ) -> Vec<Rgb> {
+        let stack = footprint(&self.material.stack, footprint_deg);
+        let color = color_of(self.color, &self.material);
+        let twin = Twin::new(self.model.name(), &stack, self.material.bake.wavelengths_nm(), color);
+        // Every model that ships has a twin; one that had none would be as wrong as can be.
+        let evaluate = |wi, wo| twin.as_ref().map_or([f64::NAN; 3], |twin| twin.eval(terms, wi, wo));
+        let value = |probe: &Probe| match *probe {
+            Probe::Pair { wi, wo } => evaluate(wi, wo),
+            Probe::Sky { wo } => {
+                let mut sum = [0.0; 3];
+                for (wi, weight) in hemisphere(wo) {
+                    let value = evaluate(wi, wo);
+                    (0..3).for_each(|c| sum[c] += FRAC_1_PI * weight * value[c]);
+                }
+                sum
+            }
+        };
+        probes.par_iter().map(value).collect()
+    }
+
+    /// What its tables stand for, or what its form computes.
+    fn exact(&self, footprint_deg: f64) -> Exact {
+        let stack = footprint(&self.material.stack, footprint_deg);
+        let exact = Exact::new(&stack, color_of(self.color, &self.material));
+        let is_statistical = matches!(self.model, ShadingModel::Belcour | ShadingModel::Yamaguchi);
+        if self.form == Form::Full && is_statistical {
+            let three = Color::ThreeWavelengths(self.material.bake.wavelengths_nm());
+            Exact::level(&stack, three, exact.veil())
+        } else {
+            exact
+        }
+    }
+}

@@ -1,0 +1,85 @@
+use luthier_lut::ShadingModel;
+use serde::{Deserialize, Serialize};
+
+use crate::candidate::Form;
+use crate::shape::{distance, shape_of};
+
+/// What `luthier cost materials materials/scenes/still-life --shapes` found, with the version of the driver in it.
+pub const COST_DATA: &str = include_str!("../data/cost.json");
+
+/// Costs of shaders by model, form and shape of the surface.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CostTable {
+    /// Driver and version.
+    pub driver: String,
+    /// Family of GPUs.
+    pub family: String,
+    /// One per model, form and shape, in this order.
+    pub rows: Vec<CostRow>,
+}
+
+/// What one shader costs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CostRow {
+    /// The model.
+    pub model: ShadingModel,
+    /// The form.
+    pub form: Form,
+    /// The shape that the model sees, see [`shape_of`].
+    pub shape: String,
+    /// Inverse throughput, cycles per wave of 64.
+    pub cycles: u32,
+}
+
+impl CostTable {
+    /// The table that ships, [`COST_DATA`].
+    pub fn shipped() -> Self {
+        // A test reads it; should it be broken all the same, nothing has a cost and nothing is chosen by it.
+        serde_json::from_str(COST_DATA).unwrap_or_else(|_| Self {
+            driver: String::new(),
+            family: String::new(),
+            rows: Vec::new(),
+        })
+    }
+
+    /// Cost of a shader for a surface of some [`shape`](crate::shape), and whether that is of a similar surface, because this one was
+    /// not measured; of several that are as similar, the dearest.
+    pub fn cost(&self, model: ShadingModel, form: Form, shape: &str) -> Option<(f64, bool)> {
+        let wanted = shape_of(model, shape);
+        let rows = self.rows.iter().filter(|row| row.model == model && row.form == form);
+        let near = rows.map(|row| (distance(&row.shape, &wanted), row.cycles));
+        let (distance, cycles) = near.min_by_key(|&(distance, cycles)| (distance, std::cmp::Reverse(cycles)))?;
+        Some((f64::from(cycles), distance > 0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shipped_table_is_whole() {
+        let table: CostTable = serde_json::from_str(COST_DATA).unwrap();
+        for model in ShadingModel::ALL {
+            for form in [Form::Baked, Form::Full] {
+                let (cost, is_of_similar) = table.cost(model, form, "dbx/cb").unwrap();
+                assert!(cost > 0.0 && !is_of_similar, "{model:?} {form:?}");
+            }
+        }
+        let mut keys: Vec<_> = table.rows.iter().map(|row| (row.model.name(), row.form, &row.shape)).collect();
+        let count = keys.len();
+        keys.sort();
+        keys.dedup();
+        assert_eq!(keys.len(), count);
+    }
+
+    /// Why the form `full` is only looked at where tables have no room.
+    #[test]
+    fn no_full_form_is_cheaper_than_its_baked_form() {
+        let table = CostTable::shipped();
+        for row in table.rows.iter().filter(|row| row.form == Form::Full) {
+            let baked = table.rows.iter().find(|r| (r.model, r.form, &r.shape) == (row.model, Form::Baked, &row.shape));
+            assert!(baked.is_some_and(|baked| baked.cycles <= row.cycles), "{row:?} {baked:?}");
+        }
+    }
+}

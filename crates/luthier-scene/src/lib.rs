@@ -1,0 +1,29 @@
+//! The cheapest model of each material of a scene whose error against the reference stays inside a budget.
+//!
+//! [`Judge`] holds one material: its candidates (model, colour, what is left out of the stack) in the order of their cost, the
+//! directions of the scene, and the reference there. [`Judge::choose`] takes the first candidate that holds.
+//!
+//! Errors here are those of models against `layered-mc`, the Monte Carlo of the whole stack. Tables and single precision are other
+//! matters, with budgets of their own. Costs are looked up in data that `luthier cost --shapes` made: no driver is needed.
+//!
+//! Simplifications: lights are one direction, a range of directions, or equal from everywhere; effects and maps are not judged;
+//! films that vary are judged at their nominal thickness; a pixel's footprint counts as slopes of every interface.
+//!
+//! Out of scope: reading scene files, tables, shaders.
+
+mod candidate;
+mod choice;
+mod cost;
+mod error;
+mod probe;
+mod reference;
+mod shape;
+mod simplify;
+
+pub use candidate::{Candidate, Form};
+pub use choice::{Judge, MAX_SAMPLES, MODEL_SHARE, TABLE_SHARE, label};
+pub use cost::{COST_DATA, CostRow, CostTable};
+pub use error::{FLOOR, Value};
+pub use probe::{Probe, footprint, probes};
+pub use shape::{shape, shape_of};
+pub use simplify::{LeaveOut, simplified, variants};

@@ -1,0 +1,215 @@
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use luthier_layers::elek::ALPHA_MIN;
+use luthier_material::{Light, View};
+use luthier_optics::stack::{Base, Stack};
+
+/// Where a model is compared with the reference.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Probe {
+    /// `f cos theta_i` for a pair of directions.
+    Pair {
+        /// To the light.
+        wi: DVec3,
+        /// To the eye.
+        wo: DVec3,
+    },
+    /// Directional albedo over pi: light of radiance 1/pi from everywhere.
+    Sky {
+        /// To the eye.
+        wo: DVec3,
+    },
+}
+
+/// Azimuth of the eye in the surface's frame: neither along nor across what is anisotropic.
+const AZIMUTH_DEG: f64 = 30.0;
+/// Steps over the range of view angles, and of a point light's angles to the eye.
+const STEPS: [f64; 3] = [0.0, 0.5, 1.0];
+/// Azimuths about the eye, from that of the light: where the normal leans.
+const LEANS_DEG: [f64; 3] = [0.0, 90.0, 180.0];
+/// Slopes away from the half vector over the slope parameter: top, flank and foot of a highlight.
+const FLANKS: [f64; 4] = [0.0, 0.5, 1.0, 2.0];
+/// The light stays this far above the horizon (cosine).
+const COS_THETA_MIN: f64 = 0.05;
+
+/// The directions of a scene.
+///
+/// A curved thing shows every normal in the range of view angles. For each light, at three view angles and three azimuths about the
+/// eye, normals are set up and both directions brought into their frames; and where the normal is the half vector or leans from it by 1/2,
+/// 1 and 2 times each slope parameter, the highlights. Light from everywhere is seen at the three view angles.
+pub fn probes(stack: &Stack, lights: &[Light], view: &View) -> Vec<Probe> {
+    let [least, most] = view.angles_deg;
+    let at = |step: f64| (least + step * (most - least)).to_radians();
+    let mut found = Vec::new();
+    for light in lights {
+        let apart: Vec<f64> = match *light {
+            Light::Directional { from_eye_deg } => vec![from_eye_deg.to_radians()],
+            Light::Point { from_eye_deg: [near, far] } => {
+                STEPS.iter().map(|step| (near + step * (far - near)).to_radians()).collect()
+            }
+            Light::Environment => {
+                found
+                    .extend(STEPS.iter().map(|step| Probe::Sky { wo: direction(at(*step), AZIMUTH_DEG.to_radians()) }));
+                continue;
+            }
+        };
+        for apart in apart {
+            for step in STEPS {
+                for lean in LEANS_DEG {
+                    found.extend(pair(apart, at(step), lean.to_radians()));
+                    if at(step) == 0.0 {
+                        break;
+                    }
+                }
+            }
+            // The normal of the highlight, if it is in view.
+            if (at(0.0)..=at(1.0)).contains(&(0.5 * apart)) {
+                for (i, alpha) in alphas(stack).into_iter().enumerate() {
+                    // Its top is the same for all.
+                    for flank in FLANKS.into_iter().skip(usize::from(i > 0)) {
+                        found.extend(beside(apart, libm::atan(flank * alpha)));
+                    }
+                }
+            }
+        }
+    }
+    found.dedup();
+    found
+}
+
+/// The stack as a pixel sees it: its footprint is added to the slopes of every interface, and what is smoother than the smallest slope
+/// parameter of the models has that one. Light mirrored by smooth interfaces is then a lobe, in the models as in the reference.
+pub fn footprint(stack: &Stack, footprint_deg: f64) -> Stack {
+    let slope = libm::tan(footprint_deg.to_radians());
+    let mut stack = stack.clone();
+    for layer in stack.layers.iter_mut().filter(|layer| !matches!(layer.base, Base::Diffuse(_))) {
+        let wider = |alpha: f64| libm::hypot(alpha, slope).clamp(ALPHA_MIN, 1.0);
+        (layer.surface.alpha_x, layer.surface.alpha_y) = (wider(layer.surface.alpha_x), wider(layer.surface.alpha_y));
+    }
+    stack
+}
+
+/// The slope parameters of a stack, each once, from the top down.
+fn alphas(stack: &Stack) -> Vec<f64> {
+    let mut found: Vec<f64> = Vec::new();
+    for layer in stack.layers.iter().filter(|layer| !matches!(layer.base, Base::Diffuse(_))) {
+        let alpha = layer.surface.alpha_isotropic();
+        if !found.contains(&alpha) {
+            found.push(alpha);
+        }
+    }
+    found
+}
+
+/// Eye at +z, light `apart` from it; the normal leans from the eye by `theta` at azimuth `lean` from the light's.
+fn pair(apart: f64, theta: f64, lean: f64) -> Option<Probe> {
+    in_frame(direction(apart, 0.0), direction(theta, lean))
+}
+
+/// The normal leans from the half vector by `tilt`, across the plane of eye and light.
+fn beside(apart: f64, tilt: f64) -> Option<Probe> {
+    let half = direction(0.5 * apart, 0.0);
+    in_frame(direction(apart, 0.0), half * libm::cos(tilt) + DVec3::Y * libm::sin(tilt))
+}
+
+/// Eye and light in the frame of a normal; `None` where the light is at or below the horizon.
+fn in_frame(light: DVec3, normal: DVec3) -> Option<Probe> {
+    let eye = DVec3::Z;
+    let along = eye - normal * eye.dot(normal);
+    // Seen along the normal, any tangent will do; the light's is as good as another.
+    let along = if along.length() > 1e-9 { along } else { DVec3::X - normal * normal.x };
+    let (x, z) = (along.normalize(), normal);
+    let y = z.cross(x);
+    let (sin, cos) = (libm::sin(AZIMUTH_DEG.to_radians()), libm::cos(AZIMUTH_DEG.to_radians()));
+    let local = |w: DVec3| {
+        let (a, b) = (w.dot(x), w.dot(y));
+        DVec3::new(cos * a - sin * b, sin * a + cos * b, w.dot(z)).normalize()
+    };
+    let (wi, wo) = (local(light), local(eye));
+    (wi.z >= COS_THETA_MIN && wo.z >= COS_THETA_MIN).then_some(Probe::Pair { wi, wo })
+}
+
+fn direction(theta: f64, phi: f64) -> DVec3 {
+    let (sin, cos) = (libm::sin(theta), libm::cos(theta));
+    DVec3::new(sin * libm::cos(phi), sin * libm::sin(phi), cos)
+}
+
+/// Points along each of four parts of the hemisphere.
+const POINTS: usize = 24;
+
+/// Directions over the hemisphere and their weights for the integral over solid angle; they crowd at the mirror direction of `wo`.
+pub(crate) fn hemisphere(wo: DVec3) -> Vec<(DVec3, f64)> {
+    let rule = luthier_optics::quadrature::gauss_legendre(POINTS);
+    let theta_o = libm::acos(wo.z.clamp(0.0, 1.0));
+    let mirror = libm::atan2(-wo.y, -wo.x);
+    // The third power crowds at the start.
+    let part = |start: f64, span: f64| {
+        rule.iter()
+            .map(move |&(u, weight)| (start + span * u * u * u, 3.0 * u * u * weight * span.abs()))
+            .collect::<Vec<_>>()
+    };
+    let thetas: Vec<_> = part(theta_o, -theta_o).into_iter().chain(part(theta_o, 0.5 * PI - theta_o)).collect();
+    let phis: Vec<_> = part(mirror, PI).into_iter().chain(part(mirror, -PI)).collect();
+    let mut found = Vec::with_capacity(thetas.len() * phis.len());
+    for &(theta, theta_weight) in &thetas {
+        for &(phi, phi_weight) in &phis {
+            found.push((direction(theta, phi), theta_weight * phi_weight * libm::sin(theta)));
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use luthier_optics::ior::Ior;
+    use luthier_optics::stack::{Distribution, Layer, Surface};
+
+    use super::*;
+
+    fn gold(alpha: f64) -> Stack {
+        let surface = Surface::isotropic(Distribution::Ggx, alpha);
+        let base = Base::Conductor { ior: Ior::constant(0.2, 3.0).unwrap() };
+        Stack { exterior: Ior::vacuum(), layers: vec![Layer { films: Vec::new(), surface, base }] }
+    }
+
+    #[test]
+    fn lights_keep_their_angle_to_the_eye_and_views_their_range() {
+        let view = View { angles_deg: [10.0, 70.0], footprint_deg: 0.0 };
+        let found = probes(&gold(0.1), &[Light::Directional { from_eye_deg: 50.0 }, Light::Environment], &view);
+        let mut seen = Vec::new();
+        for probe in &found {
+            let wo = match *probe {
+                Probe::Pair { wi, wo } => {
+                    assert!((wi.dot(wo) - libm::cos(50_f64.to_radians())).abs() < 1e-12);
+                    assert!(wi.z > 0.0 && (wi.length() - 1.0).abs() < 1e-12);
+                    wo
+                }
+                Probe::Sky { wo } => wo,
+            };
+            let theta = libm::acos(wo.z).to_degrees();
+            assert!((9.99..71.0).contains(&theta), "{theta}");
+            seen.push(theta);
+        }
+        // The highlight: normal and half vector agree, where both lean by 25 degrees.
+        let top = found.iter().any(|p| matches!(p, Probe::Pair { wi, wo } if (*wi + *wo).normalize().z > 1.0 - 1e-12));
+        assert!(top && seen.iter().any(|t| (t - 25.0).abs() < 1e-6), "{seen:?}");
+    }
+
+    #[test]
+    fn the_hemisphere_is_whole() {
+        for theta in [0.0, 0.5, 1.3] {
+            let points = hemisphere(direction(theta, 0.4));
+            let solid: f64 = points.iter().map(|(_, weight)| weight).sum();
+            let cosine: f64 = points.iter().map(|(w, weight)| w.z * weight).sum();
+            assert!((solid - 2.0 * PI).abs() < 1e-9 && (cosine - PI).abs() < 1e-9, "{solid} {cosine}");
+        }
+    }
+
+    #[test]
+    fn a_footprint_adds_slopes() {
+        let wide = footprint(&gold(0.03), libm::atan(0.04_f64).to_degrees());
+        assert!((wide.layers[0].surface.alpha_x - 0.05).abs() < 1e-12);
+        assert_eq!(footprint(&gold(0.0), 0.0).layers[0].surface.alpha_x, ALPHA_MIN);
+    }
+}

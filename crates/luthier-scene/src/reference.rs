@@ -1,0 +1,222 @@
+//! The reference at the directions of a scene, with as many samples as a decision takes.
+
+use std::f64::consts::FRAC_1_PI;
+
+use luthier_layers::layered_mc::{Estimate, InterfaceMode, LayeredMc};
+use luthier_layers::model::Estimator;
+use luthier_layers::monochrome::Monochrome;
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use luthier_optics::interface::Interface;
+use luthier_optics::stack::Stack;
+use rayon::prelude::*;
+
+use crate::error::Value;
+use crate::probe::Probe;
+
+/// Samples at each wavelength to begin with; every refinement doubles them.
+const FIRST: u64 = 256;
+
+/// Samples at each wavelength of one probe, at most.
+const MOST: u64 = 1 << 20;
+
+/// What leaving out wavelengths may change of a reflectance.
+const SPECTRUM_TOLERANCE: f64 = 1e-3;
+
+/// Where spectra are compared to decide which wavelengths are left out.
+const SPECTRUM_COS_THETA: [f64; 3] = [1.0, 0.6, 0.2];
+
+/// `layered-mc` in colour at some probes. The same calls give the same numbers.
+#[derive(Debug)]
+pub(crate) struct Reference {
+    /// The stack at each wavelength, and what it adds to each channel.
+    spectrum: Vec<(Monochrome, Rgb)>,
+    probes: Vec<(Probe, Tallies)>,
+}
+
+#[derive(Debug)]
+struct Tallies {
+    /// One per wavelength.
+    tallies: Vec<Tally>,
+    batches: u64,
+}
+
+/// Count, mean and squared deviations of samples.
+#[derive(Debug, Clone, Copy, Default)]
+struct Tally {
+    count: f64,
+    mean: f64,
+    squares: f64,
+}
+
+impl Tally {
+    /// With other samples (Chan, Golub and LeVeque 1983).
+    fn with(self, estimate: Estimate, count: u64) -> Self {
+        let n = count as f64;
+        let squares = estimate.std_err * estimate.std_err * n * (n - 1.0);
+        let (all, step) = (self.count + n, estimate.mean - self.mean);
+        Self {
+            count: all,
+            mean: self.mean + step * n / all,
+            squares: self.squares + squares + step * step * self.count * n / all,
+        }
+    }
+
+    fn variance(self) -> f64 {
+        self.squares / (self.count * (self.count - 1.0))
+    }
+}
+
+impl Reference {
+    /// The reference of a stack at some probes, with a first few samples.
+    pub(crate) fn new(stack: &Stack, color: Color, probes: Vec<Probe>) -> Self {
+        let spectrum = spectrum(stack, color);
+        let empty = Tallies { tallies: vec![Tally::default(); spectrum.len()], batches: 0 };
+        let probes = probes
+            .into_par_iter()
+            .map(|probe| {
+                let tallies = Tallies { tallies: empty.tallies.clone(), ..empty };
+                (probe, more(&spectrum, &probe, tallies))
+            })
+            .collect();
+        Self { spectrum, probes }
+    }
+
+    /// The values at all probes.
+    pub(crate) fn values(&self) -> Vec<Value> {
+        self.probes.iter().map(|(_, tallies)| self.value(tallies)).collect()
+    }
+
+    fn value(&self, tallies: &Tallies) -> Value {
+        let (mut rgb, mut variance) = ([0.0; 3], [0.0; 3]);
+        for ((_, weight), tally) in self.spectrum.iter().zip(&tallies.tallies) {
+            for c in 0..3 {
+                rgb[c] += weight[c] * tally.mean;
+                variance[c] += weight[c] * weight[c] * tally.variance();
+            }
+        }
+        Value { rgb, std_err: variance.map(f64::sqrt) }
+    }
+
+    /// Doubles the samples of some probes; `false` if one of them has as many as it may have.
+    pub(crate) fn refine(&mut self, numbers: &[usize]) -> bool {
+        let is_open = |number: &usize| samples(self.probes[*number].1.batches + 1) <= MOST;
+        if !numbers.iter().all(is_open) {
+            return false;
+        }
+        let spectrum = &self.spectrum;
+        self.probes.par_iter_mut().enumerate().filter(|(i, _)| numbers.contains(i)).for_each(
+            |(_, (probe, tallies))| {
+                let own = std::mem::replace(tallies, Tallies { tallies: Vec::new(), batches: 0 });
+                *tallies = more(spectrum, probe, own);
+            },
+        );
+        true
+    }
+
+    /// Samples at all probes and wavelengths.
+    pub(crate) fn samples(&self) -> u64 {
+        let each = self.spectrum.len() as u64;
+        self.probes.iter().map(|(_, tallies)| each * samples(tallies.batches)).sum()
+    }
+}
+
+/// Samples after so many batches: each batch after the first doubles them.
+fn samples(batches: u64) -> u64 {
+    if batches == 0 { 0 } else { FIRST << (batches - 1) }
+}
+
+fn more(spectrum: &[(Monochrome, Rgb)], probe: &Probe, mut tallies: Tallies) -> Tallies {
+    let count = samples(tallies.batches + 1) - samples(tallies.batches);
+    let reference = LayeredMc { mode: InterfaceMode::SmithWalk, samples: count, seed: tallies.batches };
+    for ((stack, _), tally) in spectrum.iter().zip(&mut tallies.tallies) {
+        let estimate = match *probe {
+            Probe::Pair { wi, wo } => reference.eval_with_error(stack, wi, wo),
+            Probe::Sky { wo } => {
+                let Estimate { mean, std_err } = reference.albedo_with_error(stack, wo);
+                Estimate { mean: FRAC_1_PI * mean, std_err: FRAC_1_PI * std_err }
+            }
+        };
+        *tally = tally.with(estimate, count);
+    }
+    tallies.batches += 1;
+    tallies
+}
+
+/// The wavelengths that a stack needs, one for all channels that do not differ there.
+fn spectrum(stack: &Stack, color: Color) -> Vec<(Monochrome, Rgb)> {
+    let nodes = color.nodes();
+    let interfaces: Vec<Interface> = (0..stack.layers.len()).filter_map(|i| Interface::of(stack, i)).collect();
+    let mut spectra = Vec::new();
+    for interface in &interfaces {
+        for cos in SPECTRUM_COS_THETA {
+            spectra.push(nodes.iter().map(|n| interface.at(n.wavelength_nm).reflectance(cos)).collect());
+        }
+    }
+    let mut found: Vec<(Monochrome, Rgb)> = Vec::new();
+    for node in color.sparse_nodes(&spectra, SPECTRUM_TOLERANCE) {
+        for channel in 0..3 {
+            if node.weight[channel] == 0.0 {
+                continue;
+            }
+            let one = Monochrome::new(stack, node.wavelength_nm, channel);
+            match found.iter_mut().find(|(known, _)| *known == one) {
+                Some((_, weight)) => weight[channel] += node.weight[channel],
+                None => {
+                    let mut weight = [0.0; 3];
+                    weight[channel] = node.weight[channel];
+                    found.push((one, weight));
+                }
+            }
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+    use luthier_optics::ior::Ior;
+    use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Slab, Surface};
+
+    use super::*;
+
+    fn lacquer() -> Stack {
+        let surface = Surface::isotropic(Distribution::Ggx, 0.2);
+        let slab = Slab { thickness_um: 1.0, absorption_per_um: [0.1, 0.5, 0.5] };
+        let coat = Base::Dielectric { ior: Ior::constant(1.5, 0.0).unwrap(), slab };
+        let base = Base::Diffuse(Diffuse { albedo: [0.5; 3], sigma: 0.0 });
+        let layer = |base| Layer { films: Vec::new(), surface, base };
+        Stack { exterior: Ior::vacuum(), layers: vec![layer(coat), layer(base)] }
+    }
+
+    #[test]
+    fn channels_that_are_equal_are_walked_once() {
+        let found = spectrum(&lacquer(), Color::Spectral);
+        // Two ends of the spectrum, whose indices are equal: one stack for red, one for green and blue.
+        assert_eq!(found.len(), 2, "{found:?}");
+        let sums = [0, 1, 2].map(|c| found.iter().map(|(_, w)| w[c]).sum::<f64>());
+        assert!(sums.iter().all(|sum| (sum - 1.0).abs() < 1e-12), "{sums:?}");
+    }
+
+    /// Refined in steps it is the mean of all samples, and noise falls as it should.
+    #[test]
+    fn refining_lowers_the_noise() {
+        let w = DVec3::new(0.3, 0.1, 0.9).normalize();
+        let probes = vec![Probe::Pair { wi: w, wo: w }, Probe::Sky { wo: w }];
+        let mut reference = Reference::new(&lacquer(), Color::Spectral, probes);
+        let first = reference.values();
+        for _ in 0..4 {
+            assert!(reference.refine(&[0, 1]));
+        }
+        for (a, b) in first.iter().zip(reference.values()) {
+            for c in 0..3 {
+                // 16 times the samples: a quarter of the noise, within half of that.
+                let ratio = b.std_err[c] / a.std_err[c];
+                assert!((0.125..0.5).contains(&ratio), "{ratio}");
+                assert!((a.rgb[c] - b.rgb[c]).abs() < 5.0 * a.std_err[c]);
+            }
+        }
+        assert_eq!(reference.samples(), 2 * 2 * 16 * FIRST);
+    }
+}

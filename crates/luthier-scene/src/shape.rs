@@ -1,0 +1,91 @@
+use luthier_lut::ShadingModel;
+use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Stack};
+
+/// What of a stack decides which code its shader has, layer by layer from the top, joined by `/`.
+///
+/// | letter | says |
+/// |---|---|
+/// | `d`, `c`, `l`, `o` | dielectric, conductor, Lambert's base, Oren and Nayar's base |
+/// | `b`, `g` | Beckmann's or GGX slopes |
+/// | `a` | anisotropic |
+/// | `f`, `v` | has a film; a film whose thickness varies |
+/// | `x` | the slab below absorbs |
+pub fn shape(stack: &Stack) -> String {
+    let last = stack.layers.len().saturating_sub(1);
+    let codes: Vec<String> = stack.layers.iter().enumerate().map(|(i, layer)| code(layer, i < last)).collect();
+    codes.join("/")
+}
+
+/// The part of a shape that a model looks at.
+pub fn shape_of(model: ShadingModel, shape: &str) -> String {
+    let first = || shape.split('/').next().unwrap_or_default().replace('x', "");
+    match model {
+        ShadingModel::Phong => String::new(),
+        ShadingModel::Microfacet => first(),
+        ShadingModel::GranierHeidrich => {
+            let base = shape.rsplit('/').next().filter(|base| base.starts_with(['l', 'o']));
+            [Some(first().replace('a', "")), base.map(|_| "l".to_owned())]
+                .into_iter()
+                .flatten()
+                .collect::<Vec<_>>()
+                .join("/")
+        }
+        // Isotropic models.
+        ShadingModel::Elek | ShadingModel::Belcour => shape.replace('a', ""),
+        ShadingModel::WeidlichWilkie | ShadingModel::Yamaguchi => shape.to_owned(),
+    }
+}
+
+fn code(layer: &Layer, has_slab: bool) -> String {
+    if let Base::Diffuse(Diffuse { sigma, .. }) = layer.base {
+        return if sigma == 0.0 { "l" } else { "o" }.to_owned();
+    }
+    let mut code = String::new();
+    code.push(if matches!(layer.base, Base::Conductor { .. }) { 'c' } else { 'd' });
+    code.push(if layer.surface.distribution == Distribution::Ggx { 'g' } else { 'b' });
+    if layer.surface.alpha_x != layer.surface.alpha_y {
+        code.push('a');
+    }
+    if let Some(film) = layer.films.first() {
+        code.push(if film.thickness.min_nm == film.thickness.max_nm { 'f' } else { 'v' });
+    }
+    if let Base::Dielectric { slab, .. } = &layer.base
+        && has_slab
+        && slab.optical_depth() != [0.0; 3]
+    {
+        code.push('x');
+    }
+    code
+}
+
+/// How unlike two shapes are: letters that only one of them has, layer by layer from the bottom; a layer more or less weighs ten.
+pub(crate) fn distance(a: &str, b: &str) -> usize {
+    let layers = |shape: &str| shape.split('/').rev().map(str::to_owned).collect::<Vec<_>>();
+    let (a, b) = (layers(a), layers(b));
+    let only = |a: &str, b: &str| a.chars().filter(|c| !b.contains(*c)).count();
+    let unlike: usize = a.iter().zip(&b).map(|(a, b)| only(a, b) + only(b, a)).sum();
+    unlike + 10 * a.len().abs_diff(b.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn models_see_what_they_use() {
+        let shape = "dgax/cbf";
+        assert_eq!(shape_of(ShadingModel::Phong, shape), "");
+        assert_eq!(shape_of(ShadingModel::Microfacet, shape), "dga");
+        assert_eq!(shape_of(ShadingModel::Elek, shape), "dgx/cbf");
+        assert_eq!(shape_of(ShadingModel::Yamaguchi, shape), shape);
+        assert_eq!(shape_of(ShadingModel::GranierHeidrich, "dgax/o"), "dg/l");
+    }
+
+    #[test]
+    fn distance_is_least_for_the_same() {
+        assert_eq!(distance("dgx/cb", "dgx/cb"), 0);
+        assert_eq!(distance("dgx/cb", "dg/cb"), 1);
+        assert_eq!(distance("dgx/cb", "dbx/cb"), 2);
+        assert_eq!(distance("dgx/cb", "cb"), 10);
+    }
+}
