@@ -160,7 +160,7 @@ pub(crate) struct BudgetsOptions {
     pub(crate) output: Option<PathBuf>,
 }
 
-/// Limits on tables, each in place of those in the files' [budget]: the cheapest tables that hold them are taken (docs/budgets.md).
+/// Limits on tables, each in place of those in the files' `[budget]`: the cheapest tables that hold them are taken (docs/budgets.md).
 #[derive(Debug, Args)]
 pub(crate) struct Limits {
     /// Largest absolute error of a sampled table; of D, relative to its peak
