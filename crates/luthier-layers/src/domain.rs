@@ -145,9 +145,10 @@ pub fn domain(model: &str) -> &'static [Limit] {
     }
 }
 
-/// Share of the light that comes back through a coat from what lies below it up to which its index is no matter: the excess of the models
-/// is a multiple of it, and the metal of the suite, of which 0.92 comes back, is off by 1 at an index of 2.
-const DIM: f64 = 0.5;
+/// What comes back through a coat from what lies below it, times the ratio of indices, up to which that ratio is no matter: the excess
+/// of the models is about such a multiple. The metal of the suite is off by 1.0, 1.24 and 1.35 at ratios of 2, 2.5 and 4, where this
+/// is 1.45, 1.53 and 1.50.
+const DIM: f64 = 1.0;
 
 /// What comes back at normal incidence from below the dielectric of a layer, once, in the channel that absorbs least: `(1 - F)^2 e^(-2
 /// depth) R`; R counts as 1 where the next layer is transparent.
@@ -178,8 +179,9 @@ pub fn outside(model: &str, stack: &Stack) -> Vec<Outside> {
             Base::Dielectric { ior, slab } => {
                 let index = ior.at(REFRACTION_WAVELENGTH_NM).re;
                 if layer + 1 < stack.layers.len() {
-                    if returned(stack, layer) > DIM {
-                        found.push((Quantity::Index, index / above));
+                    let ratio = index / above;
+                    if ratio.max(1.0 / ratio) * returned(stack, layer) > DIM {
+                        found.push((Quantity::Index, ratio));
                     }
                     found.push((Quantity::OpticalDepth, slab.optical_depth().into_iter().fold(0.0, f64::max)));
                 }

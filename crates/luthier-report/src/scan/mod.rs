@@ -8,7 +8,7 @@ mod phase;
 mod thickness;
 
 use luthier_layers::terms::Exact;
-use luthier_lut::{ErrorStats, TableKind, Worst};
+use luthier_lut::{ErrorStats, LayerRecord, TableKind, Worst};
 
 use crate::report::{Curves, TableReport, TileReport};
 use crate::statistics::summarise;
@@ -59,7 +59,7 @@ pub(crate) fn scan(
             tiles.push(TileReport {
                 name: tile.name.clone(),
                 model: tile.model.clone(),
-                users: users.iter().map(|u| format!("{}/{}", subject.manifest.materials[u.0].name, u.1)).collect(),
+                users: names(subject, kind, number, &users),
                 baker: tile.error.clone(),
                 uncertainty: uncertainty.filter(|_| judge.is_some()),
                 judge,
@@ -86,22 +86,35 @@ type User = (usize, usize);
 fn users(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<User> {
     let mut out = Vec::new();
     for (m, material) in subject.manifest.materials.iter().enumerate() {
-        for (l, record) in material.layers.iter().enumerate() {
-            let used = match kind {
-                TableKind::Fresnel => record.fresnel_tile,
-                TableKind::Distribution => record.distribution_tile,
-                TableKind::Fgd => record.fgd_tile,
-                TableKind::Phase => record.phase_tile,
-                TableKind::Thickness => record.thickness_tile,
-                TableKind::Film => record.film_tile,
-                TableKind::Escape => record.escape_tile,
-            };
-            if used == Some(tile) {
-                out.push((m, l));
-            }
-        }
+        let reads = |l: &usize| tile_of(&material.layers[*l], kind) == Some(tile);
+        out.extend((0..material.layers.len()).filter(reads).map(|l| (m, l)));
     }
     out
+}
+
+/// Names of those that read a tile: the layers, and what lies bare where no patina has grown.
+fn names(subject: &Subject<'_>, kind: TableKind, tile: u32, users: &[User]) -> Vec<String> {
+    let materials = &subject.manifest.materials;
+    let bare = materials
+        .iter()
+        .filter(|m| m.constants.patina.as_ref().is_some_and(|patina| tile_of(&patina.bare, kind) == Some(tile)));
+    users
+        .iter()
+        .map(|&(m, l)| format!("{}/{l}", materials[m].name))
+        .chain(bare.map(|m| format!("{}/bare", m.name)))
+        .collect()
+}
+
+fn tile_of(record: &LayerRecord, kind: TableKind) -> Option<u32> {
+    match kind {
+        TableKind::Fresnel => record.fresnel_tile,
+        TableKind::Distribution => record.distribution_tile,
+        TableKind::Fgd => record.fgd_tile,
+        TableKind::Phase => record.phase_tile,
+        TableKind::Thickness => record.thickness_tile,
+        TableKind::Film => record.film_tile,
+        TableKind::Escape => record.escape_tile,
+    }
 }
 
 /// What a tile was found to hold.
