@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use luthier_cost::{Counts, Family, Harness, Kernel, Style};
 use luthier_lut::ShadingModel;
-use luthier_material::{Material, ModelSetting};
+use luthier_material::{ColorSetting, Format, FresnelMapping, FresnelSettings, Material, ModelSetting};
 use luthier_shader::{Form, MaterialSet};
 
 use crate::failure::{Failure, Outcome};
@@ -65,7 +65,14 @@ fn case(material: &Material) -> Outcome<PaperCase> {
         let mut material = material.clone();
         material.bake.model = ModelSetting::from_name(model.name());
         // Both forms are to mean the same.
-        material.bake.color = Some(luthier_material::ColorSetting::ThreeWavelengths);
+        material.bake.color = Some(ColorSetting::ThreeWavelengths);
+        // Elek's tables (section 3.1): rows over the cosine, D over an angle and the slope parameter.
+        material.bake.fresnel = FresnelSettings {
+            size: Some(128),
+            format: Some(Format::Rgba16Float),
+            mapping: Some(FresnelMapping::Cosine),
+        };
+        material.bake.distribution.size = Some([512, 512]);
         material
     };
     let (elek, phong) = (with(ShadingModel::Elek), with(ShadingModel::Phong));
@@ -206,7 +213,8 @@ pub(crate) fn to_markdown(cases: &[PaperCase], counts: &[FamilyCounts]) -> Strin
          Below the model `elek` of luthier: each cell is cycles, then the share of *full* and of *Phong* of the same kind (with or without \
          constants). The error is the largest of f cos theta_i against *full* over the five sets of directions of `docs/parity.md` on the \
          device at hand, relative to the brightest channel or, where that is darker, to 0.1/pi. The approximated Fresnel term is Schlick's \
-         with the complex index at normal incidence (Elek's listing).\n",
+         with the complex index at normal incidence (Elek's listing). *Precomputed* reads Fresnel rows of 128 half floats over the cosine and \
+         a table of D of 512 x 512, Elek's sizes.\n",
     );
     let mut offset = 0;
     for case in cases {
