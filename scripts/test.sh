@@ -60,7 +60,8 @@ step "same bytes for 1 and 2 threads, debug and release"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cargo build --locked --release -p luthier-cli
-cargo build --locked -p luthier-cli
+# As the tests built it, so that nothing is built twice.
+cargo build --locked --workspace --features luthier-cli/view
 bake() { "./target/$1/luthier" bake materials --out "$work/$1-$2" --threads "$2" --quiet 2>/dev/null; }
 bake release 1
 bake release 2
