@@ -148,7 +148,7 @@ pub(crate) mod cost {
                 Mapping::Power { exponent: 4.0 } => 2.0 + 2.0 * QUARTER_RATE,
                 Mapping::Power { exponent: 8.0 } => 2.0 + 3.0 * QUARTER_RATE,
                 Mapping::Power { .. } => 3.0 + 2.0 * QUARTER_RATE,
-                Mapping::Logarithmic => 3.0 + QUARTER_RATE,
+                Mapping::Rational { .. } | Mapping::Logarithmic => 3.0 + QUARTER_RATE,
             }
     }
 

@@ -208,6 +208,7 @@ fn axis(axis: &Axis) -> String {
     let mapping = match mapping {
         Mapping::Linear => "linear".to_owned(),
         Mapping::Power { exponent } => format!("power {exponent}"),
+        Mapping::Rational { bend } => format!("rational {bend}"),
         Mapping::Logarithmic => "logarithmic".to_owned(),
         Mapping::Periodic => "periodic".to_owned(),
     };

@@ -11,6 +11,11 @@ pub enum Mapping {
         /// Exponent of u; 8 for Elek's angle axis, 2 for a square-root axis.
         exponent: f64,
     },
+    /// `value = min + (max - min) bend u / (1 + bend - u)`: nodes crowd at `min`, the more the smaller the bend. One quotient both ways.
+    Rational {
+        /// Above 0.
+        bend: f64,
+    },
     /// `value = min (max/min)^u`; both ends positive.
     Logarithmic,
     /// Linear and repeating: node `i` lies at `i/size`, and `u` is taken modulo 1.
@@ -41,6 +46,7 @@ impl Axis {
         match self.mapping {
             Mapping::Linear | Mapping::Periodic => self.min + (self.max - self.min) * u,
             Mapping::Power { exponent } => self.min + (self.max - self.min) * libm::pow(u, exponent),
+            Mapping::Rational { bend } => self.min + (self.max - self.min) * (bend * u / (1.0 + bend - u)),
             Mapping::Logarithmic => self.min * libm::pow(self.max / self.min, u),
         }
     }
@@ -56,6 +62,10 @@ impl Axis {
                 if wrapped < 1.0 { wrapped } else { 0.0 }
             }
             Mapping::Power { exponent } => libm::pow(t.clamp(0.0, 1.0), 1.0 / exponent),
+            Mapping::Rational { bend } => {
+                let t = t.clamp(0.0, 1.0);
+                (1.0 + bend) * t / (t + bend)
+            }
             Mapping::Logarithmic => {
                 let v = value.clamp(self.min, self.max);
                 (libm::log(v / self.min) / libm::log(self.max / self.min)).clamp(0.0, 1.0)
@@ -107,6 +117,7 @@ mod tests {
         let mapping = prop_oneof![
             Just(Mapping::Linear),
             (0.25..8.0).prop_map(|exponent| Mapping::Power { exponent }),
+            (0.02..2.0).prop_map(|bend| Mapping::Rational { bend }),
             Just(Mapping::Logarithmic),
         ];
         (mapping, 1e-3..1.0, 1.5..100.0, 2..2000u32).prop_map(|(mapping, min, ratio, size)| {

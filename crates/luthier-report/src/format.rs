@@ -81,6 +81,7 @@ pub(crate) fn axis(axis: &Axis) -> String {
     let mapping = match axis.mapping {
         Mapping::Linear => "linear".to_owned(),
         Mapping::Power { exponent } => format!("u^{}", number(exponent)),
+        Mapping::Rational { bend } => format!("bent by {}", number(bend)),
         Mapping::Logarithmic => "logarithmic".to_owned(),
         Mapping::Periodic => "periodic".to_owned(),
     };

@@ -159,6 +159,7 @@ fn axis(axis: &Axis) -> String {
     let mapping = match axis.mapping {
         Mapping::Linear => String::new(),
         Mapping::Power { exponent } => format!(" as u^{exponent}"),
+        Mapping::Rational { bend } => format!(" bent by {bend}"),
         Mapping::Logarithmic => " logarithmic".to_owned(),
         Mapping::Periodic => " repeating".to_owned(),
     };

@@ -85,6 +85,7 @@ fn check_axis(axis: &Axis, names: &[&str], table: TableKind) -> Result<(), Shade
     let is_mapped = match axis.mapping {
         Mapping::Linear | Mapping::Periodic => true,
         Mapping::Power { exponent } => exponent.is_finite() && exponent > 0.0,
+        Mapping::Rational { bend } => bend.is_finite() && bend > 0.0,
         Mapping::Logarithmic => axis.min > 0.0,
     };
     if axis.size < 2 || !is_range || !is_mapped {
@@ -152,6 +153,16 @@ fn node_index(out: &mut String, name: &str, axis: &Axis, value: &str) {
         Mapping::Logarithmic => {
             let scale = libm::log2(axis.max / axis.min);
             format!("saturate(log2(max({value}, {min}) / {min}) / {})", float(scale), min = float(axis.min))
+        }
+        Mapping::Rational { bend } => {
+            let _ = writeln!(out, "    let {name}_t = saturate({t});");
+            let _ = writeln!(
+                out,
+                "    let {name} = {name}_t / ({name}_t + {}) * {};",
+                float(bend),
+                float((1.0 + bend) * f64::from(axis.intervals()))
+            );
+            return;
         }
         Mapping::Power { exponent } => {
             if let Some(roots) = halvings(exponent) {

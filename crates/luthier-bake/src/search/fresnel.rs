@@ -17,7 +17,21 @@ const SIZES: [u32; 33] = [
     304, 362, 431, 512,
 ];
 
-const EXPONENTS: [f64; 7] = [1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0];
+const MAPPINGS: [Mapping; 13] = [
+    Mapping::Linear,
+    Mapping::Power { exponent: 1.25 },
+    Mapping::Power { exponent: 1.5 },
+    Mapping::Power { exponent: 2.0 },
+    Mapping::Power { exponent: 2.5 },
+    Mapping::Power { exponent: 3.0 },
+    Mapping::Power { exponent: 4.0 },
+    Mapping::Rational { bend: 0.025 },
+    Mapping::Rational { bend: 0.05 },
+    Mapping::Rational { bend: 0.1 },
+    Mapping::Rational { bend: 0.2 },
+    Mapping::Rational { bend: 0.4 },
+    Mapping::Rational { bend: 0.8 },
+];
 
 /// Texel formats of plain rows and of rows over Schlick's form.
 pub(super) const FORMATS: [(RowBase, TexelFormat); 7] = [
@@ -112,8 +126,7 @@ pub(super) fn candidates(plan: &Plan, colors: bool) -> Option<Found> {
     let mappings: Vec<Axis> = if asked.fresnel_mapping {
         vec![given.axis.clone()]
     } else {
-        let mapping = |exponent| if exponent == 1.0 { Mapping::Linear } else { Mapping::Power { exponent } };
-        EXPONENTS.map(|e| axis("cos_theta", "", [0.0, 1.0], given.axis.size, mapping(e))).to_vec()
+        MAPPINGS.map(|mapping| axis("cos_theta", "", [0.0, 1.0], given.axis.size, mapping)).to_vec()
     };
     let formats: Vec<(RowBase, TexelFormat)> =
         if asked.fresnel_format { vec![(RowBase::Zero, given.format)] } else { FORMATS.to_vec() };

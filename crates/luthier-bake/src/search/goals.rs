@@ -117,17 +117,16 @@ pub fn goals(materials: &[Material], read_image: ImageReader<'_>) -> Result<Goal
         .into_par_iter()
         .filter_map(|(base, format)| {
             let size = (ROW_BYTES / u64::from(format.texel_bytes())) as u32 - base.header_texels();
-            let family = |exponent: f64| {
-                let mapping = Mapping::Power { exponent };
+            let family = |mapping: Mapping| {
                 let shape = RowShape { axis: axis("cos_theta", "", [0.0, 1.0], size, mapping), format, base };
                 let gains = rows.iter().zip(&elek).filter(|(_, elek)| **elek > 0.0);
                 let gains = gains.map(|((_, truth), elek)| elek / truth.error(&shape, false).max_abs);
                 Family { base, format, least_gain: gains.fold(f64::INFINITY, f64::min), axis: shape.axis }
             };
-            // Exponents in twentieths from 1 to 4: the fitted map.
-            (20..=80)
-                .map(|e| family(f64::from(e) / 20.0))
-                .reduce(|a, b| if b.least_gain > a.least_gain { b } else { a })
+            // The fitted maps: exponents in twentieths from 1 to 4, bends in twentieths to 1.
+            let powers = (20..=80).map(|e| Mapping::Power { exponent: f64::from(e) / 20.0 });
+            let bends = (1..=20).map(|b| Mapping::Rational { bend: f64::from(b) / 20.0 });
+            powers.chain(bends).map(family).reduce(|a, b| if b.least_gain > a.least_gain { b } else { a })
         })
         .collect();
     let best = families.iter().cloned().reduce(|a, b| if b.least_gain > a.least_gain { b } else { a });

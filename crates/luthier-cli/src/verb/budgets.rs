@@ -40,7 +40,7 @@ the nearest is taken if none holds. `--no-search` takes the fixed defaults: 128 
 
 | kind | searched |
 |---|---|
-| fresnel | 2 to 512 nodes; cosine, and u^p with p 1.25 to 4; rgba8unorm, rgb10a2unorm, rg11b10ufloat, rgba16float, rgba32float; plain, or over Schlick's form |
+| fresnel | 2 to 512 nodes; cosine, u^p with p 1.25 to 4, and the rational map b u / (1 + b - u) with b 0.025 to 0.8; rgba8unorm, rgb10a2unorm, rg11b10ufloat, rgba16float, rgba32float; plain, or over Schlick's form |
 | distribution | closed form; u^4 and u^8, log alpha, 32 to 128 a side, r16float, split roots |
 | fgd | 8 to 64 nodes along each axis, four pairs of exponents, rgba8unorm, rgba16float, rgba32float |
 | film | 16 to 96 by 32 to 384 nodes, u^2 to u^4, four formats |
@@ -60,7 +60,7 @@ Not among the candidates:
 - The course's three-dimensional table over (angle, n, k): three reads, one for each channel, for values at three wavelengths that the
   form `full` computes without any table and without error. Spectral colours and films have no (n, k). At 64^3 bytes it would take 680
   interfaces to weigh less than rows of 384 bytes.
-- A fitted monotone map as a table of knots: it is another fetch. What is fitted is the exponent.
+- A fitted monotone map as a table of knots: it is another fetch. What is fitted is one number, the exponent or the bend.
 ";
 
 /// Measures what searches reach, as a page.
@@ -181,6 +181,7 @@ fn over(base: RowBase) -> &'static str {
 fn mapping(axis: &Axis) -> String {
     match axis.mapping {
         Mapping::Power { exponent } if exponent != 1.0 => format!(", cosine u^{exponent}"),
+        Mapping::Rational { bend } => format!(", cosine bent by {bend}"),
         _ => ", cosine".to_owned(),
     }
 }

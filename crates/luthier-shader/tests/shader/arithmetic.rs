@@ -245,6 +245,7 @@ fn rulers(table: &TableFace) -> Image {
 fn look_ups_read_where_the_layout_says() {
     let exponents = [0.125, 0.5, 1.7, 2.0, 4.0, 8.0];
     let mut mappings: Vec<Mapping> = exponents.iter().map(|&exponent| Mapping::Power { exponent }).collect();
+    mappings.extend([0.025, 0.8].map(|bend| Mapping::Rational { bend }));
     mappings.extend([Mapping::Linear, Mapping::Logarithmic, Mapping::Periodic]);
     for mapping in mappings {
         for (columns, format) in [(1, TexelFormat::Rgba16Float), (3, TexelFormat::Rgba32Float)] {

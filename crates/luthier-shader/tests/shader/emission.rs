@@ -71,6 +71,7 @@ fn without_a_table_d_is_computed() {
 fn every_mapping_passes() {
     let exponents = [0.125, 0.25, 0.5, 1.0, 1.7, 2.0, 3.0, 4.0, 8.0, 16.0];
     let mut mappings = vec![Mapping::Linear, Mapping::Logarithmic, Mapping::Periodic];
+    mappings.extend([0.05, 0.5].map(|bend| Mapping::Rational { bend }));
     mappings.extend(exponents.map(|exponent| Mapping::Power { exponent }));
     for mapping in mappings {
         let mut tables = tables();
