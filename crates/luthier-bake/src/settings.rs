@@ -183,6 +183,7 @@ impl Ask<'_> {
             Format::Rg16Float => TexelFormat::Rg16Float,
             Format::R32Float => TexelFormat::R32Float,
             Format::Rgba8Unorm => TexelFormat::Rgba8Unorm,
+            Format::Rgba16Unorm => TexelFormat::Rgba16Unorm,
             Format::Rgba16Float => TexelFormat::Rgba16Float,
             Format::Rgba32Float => TexelFormat::Rgba32Float,
         }))

@@ -100,6 +100,10 @@ fn table(context: &Context, artefacts: &Artefacts, kind: TableKind) -> Result<Re
     if width > limit || height > limit {
         return Err(GpuError::TextureTooLarge { kind, width, height, limit });
     }
+    let norm16 = wgpu::Features::TEXTURE_FORMAT_16BIT_NORM;
+    if texels.format == TexelFormat::Rgba16Unorm && !context.device.features().contains(norm16) {
+        return Err(GpuError::NoSuchFormat { kind, format: texels.format });
+    }
     let view = context.guarded(kind.name(), || {
         let texture = context.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(kind.name()),
@@ -162,6 +166,7 @@ fn texture_format(format: TexelFormat) -> wgpu::TextureFormat {
         TexelFormat::Rgba8Unorm => wgpu::TextureFormat::Rgba8Unorm,
         TexelFormat::Rgb10a2Unorm => wgpu::TextureFormat::Rgb10a2Unorm,
         TexelFormat::Rg11b10Ufloat => wgpu::TextureFormat::Rg11b10Ufloat,
+        TexelFormat::Rgba16Unorm => wgpu::TextureFormat::Rgba16Unorm,
         TexelFormat::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
         TexelFormat::Rgba32Float => wgpu::TextureFormat::Rgba32Float,
     }

@@ -126,6 +126,14 @@ pub enum GpuError {
         /// What the driver says.
         source: wgpu::RequestDeviceError,
     },
+    /// A texel format that the device lacks.
+    #[error("the {} table is {format}, which this device does not have; bake it as rgba16float", kind.name())]
+    NoSuchFormat {
+        /// The table.
+        kind: TableKind,
+        /// Its format.
+        format: TexelFormat,
+    },
     /// A texture larger than the device takes.
     #[error("the {} table is {width} x {height} texels; this device takes {limit} along a side", kind.name())]
     TextureTooLarge {

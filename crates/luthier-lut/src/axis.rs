@@ -46,7 +46,7 @@ impl Axis {
         match self.mapping {
             Mapping::Linear | Mapping::Periodic => self.min + (self.max - self.min) * u,
             Mapping::Power { exponent } => self.min + (self.max - self.min) * libm::pow(u, exponent),
-            Mapping::Rational { bend } => self.min + (self.max - self.min) * (bend * u / (1.0 + bend - u)),
+            Mapping::Rational { bend } => self.min + (self.max - self.min) * (bend * u / (bend + (1.0 - u))),
             Mapping::Logarithmic => self.min * libm::pow(self.max / self.min, u),
         }
     }

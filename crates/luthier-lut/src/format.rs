@@ -22,6 +22,8 @@ pub enum TexelFormat {
     Rgb10a2Unorm,
     /// Floats without sign in 32 bits: two of eleven bits and one of ten, six and five bits of them mantissa.
     Rg11b10Ufloat,
+    /// Four unsigned normalised values of 16 bits. Not in core WebGPU: the feature `TEXTURE_FORMAT_16BIT_NORM` of wgpu.
+    Rgba16Unorm,
     /// Four half floats.
     Rgba16Float,
     /// Four floats. Not filterable in core WebGPU.
@@ -30,13 +32,14 @@ pub enum TexelFormat {
 
 impl TexelFormat {
     /// All formats, for listings and tests.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::R16Float,
         Self::Rg16Float,
         Self::R32Float,
         Self::Rgba8Unorm,
         Self::Rgb10a2Unorm,
         Self::Rg11b10Ufloat,
+        Self::Rgba16Unorm,
         Self::Rgba16Float,
         Self::Rgba32Float,
     ];
@@ -50,6 +53,7 @@ impl TexelFormat {
             Self::Rgba8Unorm => "rgba8unorm",
             Self::Rgb10a2Unorm => "rgb10a2unorm",
             Self::Rg11b10Ufloat => "rg11b10ufloat",
+            Self::Rgba16Unorm => "rgba16unorm",
             Self::Rgba16Float => "rgba16float",
             Self::Rgba32Float => "rgba32float",
         }
@@ -61,7 +65,7 @@ impl TexelFormat {
             Self::R16Float | Self::R32Float => 1,
             Self::Rg16Float => 2,
             Self::Rg11b10Ufloat => 3,
-            Self::Rgba8Unorm | Self::Rgb10a2Unorm | Self::Rgba16Float | Self::Rgba32Float => 4,
+            Self::Rgba8Unorm | Self::Rgb10a2Unorm | Self::Rgba16Unorm | Self::Rgba16Float | Self::Rgba32Float => 4,
         }
     }
 
@@ -69,7 +73,7 @@ impl TexelFormat {
     pub fn channel_bytes(self) -> u32 {
         match self {
             Self::Rgba8Unorm => 1,
-            Self::R16Float | Self::Rg16Float | Self::Rgba16Float => 2,
+            Self::R16Float | Self::Rg16Float | Self::Rgba16Unorm | Self::Rgba16Float => 2,
             Self::R32Float | Self::Rgb10a2Unorm | Self::Rg11b10Ufloat | Self::Rgba32Float => 4,
         }
     }
@@ -92,6 +96,7 @@ impl TexelFormat {
         match self {
             Self::Rgba8Unorm => Some(255.0),
             Self::Rgb10a2Unorm => Some(1023.0),
+            Self::Rgba16Unorm => Some(65535.0),
             _ => None,
         }
     }
@@ -108,6 +113,9 @@ impl TexelFormat {
                 Self::Rgb10a2Unorm => {
                     let [r, g, b] = [0, 1, 2].map(|c| unorm(c, 1023.0));
                     bytes.extend_from_slice(&(r | g << 10 | b << 20 | unorm(3, 3.0) << 30).to_le_bytes());
+                }
+                Self::Rgba16Unorm => {
+                    (0..4).for_each(|c| bytes.extend_from_slice(&(unorm(c, 65535.0) as u16).to_le_bytes()));
                 }
                 Self::Rg11b10Ufloat => {
                     let [r, g, b] = [(0, 6), (1, 6), (2, 5)].map(|(c, mantissa)| ufloat(channel(c), mantissa));
@@ -155,6 +163,9 @@ impl TexelFormat {
                     [r, g, b, (w >> 30) as f32 / 3.0]
                 })
                 .collect(),
+            Self::Rgba16Unorm => {
+                bytes.chunks_exact(2).map(|b| f32::from(u16::from_le_bytes([b[0], b[1]])) / 65535.0).collect()
+            }
             Self::Rg11b10Ufloat => words()
                 .flat_map(|w| {
                     // A half float without its sign, the last bits of its mantissa 0.
@@ -278,7 +289,8 @@ mod tests {
     #[test]
     fn sizes_are_those_of_webgpu() {
         let sizes = TexelFormat::ALL.map(|format| (format.texel_bytes(), format.is_filterable()));
-        let expected = [(2, true), (4, true), (4, false), (4, true), (4, true), (4, true), (8, true), (16, false)];
+        let expected =
+            [(2, true), (4, true), (4, false), (4, true), (4, true), (4, true), (8, true), (8, true), (16, false)];
         assert_eq!(sizes, expected);
     }
 
@@ -311,6 +323,7 @@ mod tests {
             for (format, half_steps) in [
                 (TexelFormat::Rgba16Float, [1.0 / 4096.0; 4]),
                 (TexelFormat::Rgba8Unorm, [1.0 / 509.99; 4]),
+                (TexelFormat::Rgba16Unorm, [1.0 / 131_000.0; 4]),
                 (TexelFormat::Rgb10a2Unorm, [1.0 / 2045.9, 1.0 / 2045.9, 1.0 / 2045.9, 1.0 / 5.99]),
                 (TexelFormat::Rg11b10Ufloat, [1.0 / 256.0, 1.0 / 256.0, 1.0 / 128.0, 0.0]),
             ] {

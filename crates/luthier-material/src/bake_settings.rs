@@ -44,6 +44,8 @@ named! {
         R32Float = "r32float",
         /// Four unsigned normalised bytes.
         Rgba8Unorm = "rgba8unorm",
+        /// Four unsigned normalised values of 16 bits; not in core WebGPU.
+        Rgba16Unorm = "rgba16unorm",
         /// Four half floats.
         Rgba16Float = "rgba16float",
         /// Four floats.

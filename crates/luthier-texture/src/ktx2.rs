@@ -186,6 +186,7 @@ fn vulkan_format(format: TexelFormat) -> Format {
         TexelFormat::Rgba8Unorm => Format::R8G8B8A8_UNORM,
         TexelFormat::Rgb10a2Unorm => Format::A2B10G10R10_UNORM_PACK32,
         TexelFormat::Rg11b10Ufloat => Format::B10G11R11_UFLOAT_PACK32,
+        TexelFormat::Rgba16Unorm => Format::R16G16B16A16_UNORM,
         TexelFormat::Rgba16Float => Format::R16G16B16A16_SFLOAT,
         TexelFormat::Rgba32Float => Format::R32G32B32A32_SFLOAT,
     }

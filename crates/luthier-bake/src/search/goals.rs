@@ -25,6 +25,10 @@ use crate::settings::{Settings, axis};
 /// Bytes of Elek's rows: 128 texels of three bytes.
 pub const ROW_BYTES: u64 = 384;
 
+/// What devices of core WebGPU need not have, for comparison: a material may ask for it, no search takes it.
+const BEYOND_CORE: [(RowBase, TexelFormat); 2] =
+    [(RowBase::Zero, TexelFormat::Rgba16Unorm), (RowBase::Schlick, TexelFormat::Rgba16Unorm)];
+
 /// Largest errors of one interface's row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RowGoal {
@@ -113,7 +117,8 @@ pub fn goals(materials: &[Material], read_image: ImageReader<'_>) -> Result<Goal
         })
         .collect();
     let elek: Vec<f64> = rows.par_iter().map(|(_, truth)| elek_error(truth)).collect();
-    let families: Vec<Family> = FORMATS
+    let families: Vec<Family> = [FORMATS.as_slice(), &BEYOND_CORE]
+        .concat()
         .into_par_iter()
         .filter_map(|(base, format)| {
             let size = (ROW_BYTES / u64::from(format.texel_bytes())) as u32 - base.header_texels();
@@ -129,7 +134,9 @@ pub fn goals(materials: &[Material], read_image: ImageReader<'_>) -> Result<Goal
             powers.chain(bends).map(family).reduce(|a, b| if b.least_gain > a.least_gain { b } else { a })
         })
         .collect();
-    let best = families.iter().cloned().reduce(|a, b| if b.least_gain > a.least_gain { b } else { a });
+    // What ships is of core WebGPU.
+    let core = families.iter().filter(|f| !BEYOND_CORE.contains(&(f.base, f.format)));
+    let best = core.cloned().reduce(|a, b| if b.least_gain > a.least_gain { b } else { a });
     let Some(row) = best else { return Err(BakeError::Empty) };
     let shape = RowShape { axis: row.axis.clone(), format: row.format, base: row.base };
     let exact = plan.graph.of_kind(JobKind::Fresnel).collect::<Vec<_>>();

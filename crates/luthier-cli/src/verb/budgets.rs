@@ -56,7 +56,7 @@ Not among the candidates:
 
 - BC6H: a feature that devices need not have; its blocks are 4 x 4 texels, so that four rows of unrelated interfaces would share
   endpoints; and its half floats err by more than the rows here are allowed.
-- r16unorm: not in core WebGPU nor in GLSL ES 3.00. Ten bits over a closed form hold more than 16 bits of a plain value need here.
+- rgba16unorm: not in core WebGPU nor in GLSL ES 3.00, so that no search takes it; a material may ask for it. Measured below.
 - The course's three-dimensional table over (angle, n, k): three reads, one for each channel, for values at three wavelengths that the
   form `full` computes without any table and without error. Spectral colours and films have no (n, k). At 64^3 bytes it would take 680
   interfaces to weigh less than rows of 384 bytes.

@@ -11,7 +11,7 @@ const EXPONENT: Range = Range { min: 1.0, max: 64.0, above: false };
 const SIDE: Kind = Kind::Integer(2, 8192);
 const SIDES: Kind = Kind::List { item: &SIDE, min: 2, max: 2 };
 
-const COLOR_FORMATS: Kind = Kind::Choice(&["rgba8unorm", "rgba16float", "rgba32float"]);
+const COLOR_FORMATS: Kind = Kind::Choice(&["rgba8unorm", "rgba16unorm", "rgba16float", "rgba32float"]);
 const FLOAT_FORMATS: Kind = Kind::Choice(&["rgba16float", "rgba32float"]);
 const SCALAR_FORMATS: Kind = Kind::Choice(&["r16float", "rg16float", "r32float"]);
 

@@ -116,8 +116,17 @@ static TARGET: Table = Table {
 };
 
 /// Formats that tables come in.
-const FORMATS: &[&str] =
-    &["r16float", "rg16float", "r32float", "rgba8unorm", "rgb10a2unorm", "rg11b10ufloat", "rgba16float", "rgba32float"];
+const FORMATS: &[&str] = &[
+    "r16float",
+    "rg16float",
+    "r32float",
+    "rgba8unorm",
+    "rgb10a2unorm",
+    "rg11b10ufloat",
+    "rgba16unorm",
+    "rgba16float",
+    "rgba32float",
+];
 
 static SCENE_BUDGET: Table = Table {
     name: "scene-budget",
