@@ -179,10 +179,23 @@ fn plan(
         .sum();
     let kinds = [JobKind::Fresnel, JobKind::Distribution, JobKind::Phase, JobKind::Fgd, JobKind::Film];
     let mut plan = fixed;
-    let mut chosen = Vec::new();
+    let (mut chosen, mut refusal) = (Vec::new(), None);
     for _ in 0..ROUNDS {
-        chosen =
-            if is_asked { search::choose(&found, &budget, fixed_bytes)? } else { search::best_effort(&found, &budget) };
+        // What a refusal says would do is confirmed too, before it is said.
+        refusal = None;
+        chosen = if is_asked {
+            match search::choose(&found, &budget, fixed_bytes) {
+                Ok(chosen) => chosen,
+                Err(error) => {
+                    let unlimited = Budget { max_bytes: None, max_cost: None, ..budget };
+                    let Ok(would) = search::choose(&found, &unlimited, fixed_bytes) else { return Err(error) };
+                    refusal = Some(error);
+                    would
+                }
+            }
+        } else {
+            search::best_effort(&found, &budget)
+        };
         let mut settings = settings.clone();
         for (kind, &choice) in found.iter().zip(&chosen) {
             search::apply(&mut settings, kind.kind, &kind.candidates[choice].form);
@@ -200,6 +213,9 @@ fn plan(
         if is_confirmed {
             break;
         }
+    }
+    if let Some(error) = refusal {
+        return Err(error);
     }
     let searches = found.iter().zip(&chosen).map(|(f, &choice)| search::report(f, choice, &budget)).collect();
     Ok(Planned { plan, results, searches })
