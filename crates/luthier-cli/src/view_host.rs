@@ -69,12 +69,8 @@ impl ViewHost {
         let tables =
             outline.tables.into_iter().map(|(kind, layout, format)| TableFace { kind, layout, format }).collect();
         let set = MaterialSet { materials: &entries, tables };
-        let emitted = match form {
-            Form::Baked => luthier_shader::Form::Baked,
-            Form::Full => luthier_shader::Form::Full,
-        };
-        let wgsl = luthier_shader::emit(&set, emitted, Target::Wgsl).map_err(Failure::input)?;
-        let bindings = luthier_shader::bindings(&set, emitted);
+        let wgsl = luthier_shader::emit(&set, form, Target::Wgsl).map_err(Failure::input)?;
+        let bindings = luthier_shader::bindings(&set, form);
         let texels = atlases.iter().map(|atlas| TableTexels {
             kind: atlas.kind,
             format: atlas.format,

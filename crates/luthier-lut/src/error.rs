@@ -1,5 +1,7 @@
 use thiserror::Error;
 
+use crate::{Form, TexelFormat};
+
 /// Why a table or a manifest is not usable.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -24,8 +26,9 @@ pub enum LutError {
         expected: usize,
     },
     /// A texel format that does not exist.
-    #[error(
-        "unknown texel format `{0}`; known: r16float, rg16float, r32float, rgba8unorm, rgb10a2unorm, rg11b10ufloat, rgba16float, rgba32float"
-    )]
+    #[error("unknown texel format `{0}`; known: {known}", known = TexelFormat::ALL.map(TexelFormat::name).join(", "))]
     UnknownFormat(String),
+    /// A form of shaders that does not exist.
+    #[error("unknown shader form `{0}`; known: {known}", known = Form::ALL.map(Form::name).join(", "))]
+    UnknownForm(String),
 }

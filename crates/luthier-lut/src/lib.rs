@@ -16,6 +16,7 @@ mod choice;
 mod constants;
 mod encoding;
 mod error;
+mod form;
 mod format;
 mod image;
 mod manifest;
@@ -32,6 +33,7 @@ pub use choice::{MaterialChoice, SceneBudget, SceneCandidate, SceneChoice, Scene
 pub use constants::{FlakesRecord, GlitterRecord, MaterialConstants, PatinaRecord};
 pub use encoding::Encoding;
 pub use error::LutError;
+pub use form::Form;
 pub use format::TexelFormat;
 pub use image::Image;
 pub use manifest::{

@@ -58,7 +58,7 @@ pub use audit::{
 };
 pub use ball::{BallPicture, DistantLight, render_ball};
 pub use chart::{Curve, Plot, PlotAxis, PlotColor};
-pub use device::{Device, Form};
+pub use device::Device;
 pub use directions::{DirectionSet, Pair};
 pub use error::ReportError;
 pub use evidence::{
@@ -68,6 +68,7 @@ pub use exceptions::{Cause, Exception, Factor, Part};
 pub use flip::lightness_chroma_hue;
 pub use judge::{Progress, Settings, judge};
 pub use limits::{Asked, FileBudget, Limit, limits};
+pub use luthier_lut::Form;
 pub use models::{
     MaterialModels, ModelErrors, ModelSettings, ModelSubject, ModelsReport, Quantity, ViewError, Worst, judge_models,
     judge_shading_models,

@@ -3,37 +3,16 @@ use std::sync::OnceLock;
 
 use luthier_layers::real_time::Twin;
 use luthier_layers::terms::{Exact, ShaderTerms};
-use luthier_lut::{ColorMode, ShadingModel};
+use luthier_lut::{ColorMode, Form, ShadingModel};
 use luthier_material::{ColorSetting, Material, ModelSetting};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
 use crate::cost::CostTable;
 use crate::probe::{Probe, footprint, hemisphere};
 use crate::shape::shape;
 use crate::simplify::{LeaveOut, variants};
-
-/// A form of shaders.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Form {
-    /// Reads tables.
-    Baked,
-    /// Evaluates everything, at three wavelengths.
-    Full,
-}
-
-impl Form {
-    /// The name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Baked => "baked",
-            Self::Full => "full",
-        }
-    }
-}
 
 /// A way to shade a material.
 #[derive(Debug)]

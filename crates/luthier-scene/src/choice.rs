@@ -1,8 +1,8 @@
 use luthier_layers::terms::ShaderTerms;
-use luthier_lut::{ColorMode, MaterialChoice, SceneBudget, SceneCandidate, SceneError, Verdict};
+use luthier_lut::{ColorMode, Form, MaterialChoice, SceneBudget, SceneCandidate, SceneError, Verdict};
 use luthier_material::{Light, Material, View};
 
-use crate::candidate::{Candidate, Form, color_of, own_color};
+use crate::candidate::{Candidate, color_of, own_color};
 use crate::cost::CostTable;
 use crate::error::{Miss, Standing, Value, largest};
 use crate::probe::{Probe, footprint, probes};

@@ -1,7 +1,6 @@
-use luthier_lut::ShadingModel;
+use luthier_lut::{Form, ShadingModel};
 use serde::{Deserialize, Serialize};
 
-use crate::candidate::Form;
 use crate::shape::{distance, shape_of};
 
 /// What `luthier cost materials materials/scenes/still-life --shapes` found, with the version of the driver in it.

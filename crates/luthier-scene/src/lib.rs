@@ -20,10 +20,11 @@ mod reference;
 mod shape;
 mod simplify;
 
-pub use candidate::{Candidate, Form};
+pub use candidate::Candidate;
 pub use choice::{Judge, MAX_SAMPLES, MODEL_SHARE, TABLE_SHARE, label};
 pub use cost::{COST_DATA, CostRow, CostTable};
 pub use error::{FLOOR, Value};
+pub use luthier_lut::Form;
 pub use probe::{Probe, footprint, probes};
 pub use shape::{shape, shape_of};
 pub use simplify::{LeaveOut, simplified, variants};

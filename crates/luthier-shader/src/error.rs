@@ -95,9 +95,6 @@ pub enum ShaderError {
     /// SPIR-V was asked for as text.
     #[error("SPIR-V is no text")]
     NotText,
-    /// A form that does not exist.
-    #[error("unknown shader form `{0}`; known: baked, full")]
-    UnknownForm(String),
     /// A target that does not exist.
     #[error("unknown shader target `{0}`; known: wgsl, glsl450, glsl-es300, hlsl, msl, spirv")]
     UnknownTarget(String),

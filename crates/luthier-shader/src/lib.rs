@@ -39,7 +39,8 @@ mod wgsl;
 
 pub use emit::{complete, emit, emit_constant};
 pub use error::ShaderError;
+pub use luthier_lut::Form;
 pub use set::{MaterialSet, TableFace, bindings};
 pub use spirv::{complete_spirv, emit_spirv, spirv_words};
-pub use target::{Form, Target};
+pub use target::Target;
 pub use validate::validate;

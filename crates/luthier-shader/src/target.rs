@@ -3,42 +3,6 @@ use std::str::FromStr;
 
 use crate::ShaderError;
 
-/// How the emitted shader evaluates a material.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Form {
-    /// Reads the baked tables.
-    Baked,
-    /// Computes everything; binds the material buffer only.
-    Full,
-}
-
-impl Form {
-    /// Both forms.
-    pub const ALL: [Self; 2] = [Self::Baked, Self::Full];
-
-    /// The name in files and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Baked => "baked",
-            Self::Full => "full",
-        }
-    }
-}
-
-impl fmt::Display for Form {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Form {
-    type Err = ShaderError;
-
-    fn from_str(s: &str) -> Result<Self, ShaderError> {
-        Self::ALL.into_iter().find(|form| form.name() == s).ok_or_else(|| ShaderError::UnknownForm(s.to_owned()))
-    }
-}
-
 /// The language of an emitted shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Target {

@@ -8,12 +8,13 @@ use eframe::egui::{
     TextureHandle, TextureOptions, Theme, Ui, ViewportCommand, pos2,
 };
 use luthier_gpu::{Artefacts, Gpu, RenderSettings, Shape};
+use luthier_lut::Form;
 use luthier_material::{Material, ModelSetting};
 
 use crate::baker::{BakeOrder, Baker};
 use crate::error::ViewError;
 use crate::files::Files;
-use crate::host::{Form, Host, Screenshot};
+use crate::host::{Host, Screenshot};
 use crate::keys::{Action, actions};
 use crate::latest::Latest;
 use crate::look::{Look, Surroundings};

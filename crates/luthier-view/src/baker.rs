@@ -5,10 +5,11 @@ use std::thread;
 
 use eframe::egui;
 use luthier_gpu::Artefacts;
+use luthier_lut::Form;
 use luthier_material::Material;
 
 use crate::error::ViewError;
-use crate::host::{Form, Host};
+use crate::host::Host;
 use crate::latest::Latest;
 
 /// What is to be shown.

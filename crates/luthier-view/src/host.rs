@@ -1,4 +1,5 @@
 use luthier_gpu::Artefacts;
+use luthier_lut::Form;
 use luthier_material::Material;
 
 /// What the window asks of the program around it. Called from several threads.
@@ -29,28 +30,6 @@ pub struct MaterialFile {
     pub material: Result<Material, String>,
     /// Another number when a file that the material names changed.
     pub revision: u64,
-}
-
-/// Which shader is shown.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Form {
-    /// Reads tables; some edits bake anew.
-    Baked,
-    /// Evaluates everything; edits need no tables.
-    Full,
-}
-
-impl Form {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Baked, Self::Full];
-
-    /// The name in manifests.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Baked => "baked",
-            Self::Full => "full",
-        }
-    }
 }
 
 /// What a window shows.

@@ -31,8 +31,9 @@ mod watcher;
 mod window;
 
 pub use error::ViewError;
-pub use host::{Form, Host, MaterialFile, Screenshot};
+pub use host::{Host, MaterialFile, Screenshot};
 pub use look::Look;
+pub use luthier_lut::Form;
 pub use orbit::Orbit;
 pub use parameter::{Group, Handle, Parameter, groups};
 pub use shots::Shots;

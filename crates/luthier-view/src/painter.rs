@@ -6,10 +6,9 @@ use std::time::Instant;
 
 use eframe::egui::{self, ecolor};
 use luthier_gpu::{Artefacts, Backdrop, Environment, Gpu, GpuError, RenderSettings, Scene, Shape, ToneMapping};
-use luthier_lut::Image;
+use luthier_lut::{Form, Image};
 
 use crate::error::ViewError;
-use crate::host::Form;
 use crate::latest::Latest;
 use crate::look::Look;
 use crate::orbit::Orbit;

@@ -5,10 +5,10 @@ use eframe::egui::{
     Window, vec2,
 };
 use luthier_gpu::ToneMapping;
+use luthier_lut::Form;
 use luthier_material::ModelSetting;
 
 use crate::app::{App, SHAPES};
-use crate::host::Form;
 use crate::keys::{KEYS, MOUSE};
 use crate::parameter::{Parameter, groups};
 

@@ -2,11 +2,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui::{ThemePreference, ViewportBuilder};
 use luthier_gpu::{Gpu, RenderSettings, Shape, ToneMapping};
+use luthier_lut::Form;
 use luthier_material::ModelSetting;
 
 use crate::app::App;
 use crate::error::ViewError;
-use crate::host::{Form, Host};
+use crate::host::Host;
 use crate::look::{Look, Surroundings};
 use crate::shots::Shots;
 

@@ -1,9 +1,9 @@
 use std::sync::Arc;
 
 use luthier_gpu::Shape;
-use luthier_view::{Form, Options, Shots, ViewError};
+use luthier_view::{Options, Shots, ViewError};
 
-use crate::cli::{FormName, ShapeName, ThemeName, ViewOptions};
+use crate::cli::{ShapeName, ThemeName, ViewOptions};
 use crate::device::{device, open};
 use crate::failure::{Failure, Outcome};
 use crate::materials::read;
@@ -31,10 +31,7 @@ pub(crate) fn run(options: &ViewOptions) -> Outcome {
         environment_is_file: look.environment.is_some(),
         tone: look.tone.into(),
         shape,
-        form: match options.form {
-            FormName::Baked => Form::Baked,
-            FormName::Full => Form::Full,
-        },
+        form: options.form.into(),
         model: options.shading.model,
         size: options.window.0.map(f32::from),
         dark: options.theme.map(|theme| theme == ThemeName::Dark),

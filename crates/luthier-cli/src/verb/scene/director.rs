@@ -186,7 +186,7 @@ fn tables(
             }
             bake => bake.map_err(Failure::input)?,
         };
-        let files = BakeFiles::with_forms(materials, &bake, &[luthier_shader::Form::Baked])?;
+        let files = BakeFiles::with_forms(materials, &bake, &[Form::Baked])?;
         let errors = table_errors(&files, materials, judges, choices, budgets)?;
         choices.iter_mut().zip(&errors).for_each(|(choice, error)| choice.table_error = Some(*error));
         let worst = (0..errors.len())
@@ -253,5 +253,5 @@ fn without_tables(materials: &[Material]) -> Outcome<BakeFiles> {
         }
     }
     let bake = Bake { atlases: Vec::new(), materials: outline.materials, searches: Vec::new() };
-    BakeFiles::with_forms(materials, &bake, &[luthier_shader::Form::Full])
+    BakeFiles::with_forms(materials, &bake, &[Form::Full])
 }
