@@ -50,29 +50,10 @@ impl BakeFiles {
         for (atlas, table) in bake.atlases.iter().zip(encoded) {
             let [texture, truth, picture] = [("ktx2", table.texture), ("exr", table.truth), ("png", table.picture)]
                 .map(|(extension, bytes)| add(&mut files, format!("tables/{}.{extension}", atlas.kind.name()), bytes));
-            let [width, height] = atlas.layout.size();
-            tables.push(TableEntry {
-                kind: atlas.kind,
-                layout: atlas.layout.clone(),
-                format: atlas.format,
-                texel_bytes: u64::from(width) * u64::from(height) * u64::from(atlas.format.texel_bytes()),
-                texture,
-                truth,
-                picture,
-                tiles: atlas.tiles.clone(),
-            });
+            tables.push(TableEntry { texture, truth, picture, ..table_entry(atlas) });
         }
-        let mut manifest = Manifest {
-            schema: MANIFEST_SCHEMA,
-            generator: GENERATOR.to_owned(),
-            materials: material_entries(materials, &bake.materials, &mut files)?,
-            tables,
-            searches: bake.searches.clone(),
-            choice: None,
-            shaders: Vec::new(),
-            bindings: Vec::new(),
-            material_buffer: FileEntry::default(),
-        };
+        let entries = material_entries(materials, &bake.materials, &mut files)?;
+        let mut manifest = Manifest { searches: bake.searches.clone(), ..manifest(entries, tables) };
         let words = material_buffer(&manifest.materials);
         let bytes = words.as_flattened().iter().flat_map(|value| value.to_le_bytes()).collect();
         manifest.material_buffer = add(&mut files, "materials.bin".to_owned(), bytes);
@@ -89,6 +70,36 @@ impl BakeFiles {
         let bindings = luthier_shader::bindings(&set, forms.first().copied().unwrap_or(Form::Baked));
         (manifest.shaders, manifest.bindings) = (shaders, bindings);
         Ok(Self { manifest, files })
+    }
+}
+
+/// A manifest without shaders and files.
+pub(crate) fn manifest(materials: Vec<MaterialEntry>, tables: Vec<TableEntry>) -> Manifest {
+    Manifest {
+        schema: MANIFEST_SCHEMA,
+        generator: GENERATOR.to_owned(),
+        materials,
+        tables,
+        searches: Vec::new(),
+        choice: None,
+        shaders: Vec::new(),
+        bindings: Vec::new(),
+        material_buffer: FileEntry::default(),
+    }
+}
+
+/// What the manifest says of a table, but for its files.
+pub(crate) fn table_entry(atlas: &Atlas) -> TableEntry {
+    let [width, height] = atlas.layout.size();
+    TableEntry {
+        kind: atlas.kind,
+        layout: atlas.layout.clone(),
+        format: atlas.format,
+        texel_bytes: u64::from(width) * u64::from(height) * u64::from(atlas.format.texel_bytes()),
+        texture: FileEntry::default(),
+        truth: FileEntry::default(),
+        picture: FileEntry::default(),
+        tiles: atlas.tiles.clone(),
     }
 }
 

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use luthier_bake::Silent;
 use luthier_gpu::{Artefacts, TableTexels, WgslShader};
+use luthier_lut::Atlas;
 use luthier_material::Material;
 
 use crate::artefacts::manifest;
@@ -36,17 +37,6 @@ pub(crate) fn find(material: &str, shading: &Shading, out: &Path) -> Outcome<(Ar
 pub(crate) fn bake(materials: &[Material]) -> Outcome<Artefacts> {
     let bake = luthier_bake::bake(materials, &read_image, &Silent).map_err(Failure::input)?;
     let made = BakeFiles::new(materials, &bake)?;
-    let tables = bake
-        .atlases
-        .iter()
-        .map(|atlas| TableTexels {
-            kind: atlas.kind,
-            format: atlas.format,
-            width: atlas.texels.width,
-            height: atlas.texels.height,
-            bytes: atlas.format.encode(&atlas.texels),
-        })
-        .collect();
     let shaders = made
         .manifest
         .shaders
@@ -57,7 +47,20 @@ pub(crate) fn bake(materials: &[Material]) -> Outcome<Artefacts> {
             Some(WgslShader { form: s.form.clone(), wgsl: String::from_utf8_lossy(bytes).into_owned() })
         })
         .collect();
-    let artefacts = Artefacts::from_parts(made.manifest.clone(), tables, shaders).map_err(device)?;
+    let artefacts =
+        Artefacts::from_parts(made.manifest.clone(), table_texels(&bake.atlases), shaders).map_err(device)?;
     let file = |path: &str| made.files.iter().find(|(name, _)| name == path).map(|(_, bytes)| bytes.clone());
     artefacts.with_maps(|entry| Ok(file(&entry.file.path).unwrap_or_default())).map_err(device)
+}
+
+/// The tables as a device gets them.
+pub(crate) fn table_texels(atlases: &[Atlas]) -> Vec<TableTexels> {
+    let table = |atlas: &Atlas| TableTexels {
+        kind: atlas.kind,
+        format: atlas.format,
+        width: atlas.texels.width,
+        height: atlas.texels.height,
+        bytes: atlas.format.encode(&atlas.texels),
+    };
+    atlases.iter().map(table).collect()
 }

@@ -7,18 +7,18 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::SystemTime;
 
 use luthier_bake::{Bake, Key, Outline, Silent};
-use luthier_gpu::{Artefacts, TableTexels, WgslShader};
-use luthier_lut::{Atlas, FileEntry, MANIFEST_SCHEMA, Manifest};
+use luthier_gpu::{Artefacts, WgslShader};
+use luthier_lut::{Atlas, Manifest};
 use luthier_material::Material;
 use luthier_shader::{MaterialSet, TableFace, Target};
 use luthier_texture::png;
 use luthier_view::{Form, Host, MaterialFile, Screenshot};
 
-use crate::bake_files::{GENERATOR, material_entries};
+use crate::bake_files::{manifest, material_entries, table_entry};
 use crate::device::device;
 use crate::failure::{Failure, Outcome};
 use crate::materials::{Source, find, read_image, read_one};
-use crate::verb::parity::table;
+use crate::memory_bake::table_texels;
 
 /// Time of the last change and length of each file that matters; `None` where it cannot be read.
 type Stamps = BTreeMap<PathBuf, Option<(SystemTime, u64)>>;
@@ -71,26 +71,9 @@ impl ViewHost {
         let set = MaterialSet { materials: &entries, tables };
         let wgsl = luthier_shader::emit(&set, form, Target::Wgsl).map_err(Failure::input)?;
         let bindings = luthier_shader::bindings(&set, form);
-        let texels = atlases.iter().map(|atlas| TableTexels {
-            kind: atlas.kind,
-            format: atlas.format,
-            width: atlas.texels.width,
-            height: atlas.texels.height,
-            bytes: atlas.format.encode(&atlas.texels),
-        });
-        let manifest = Manifest {
-            schema: MANIFEST_SCHEMA,
-            generator: GENERATOR.to_owned(),
-            materials: entries,
-            tables: atlases.iter().map(table).collect(),
-            searches: Vec::new(),
-            choice: None,
-            shaders: Vec::new(),
-            bindings,
-            material_buffer: FileEntry::default(),
-        };
+        let manifest = Manifest { bindings, ..manifest(entries, atlases.iter().map(table_entry).collect()) };
         let shaders = vec![WgslShader { form: form.name().to_owned(), wgsl }];
-        let artefacts = Artefacts::from_parts(manifest, texels.collect(), shaders).map_err(device)?;
+        let artefacts = Artefacts::from_parts(manifest, table_texels(&atlases), shaders).map_err(device)?;
         let file = |path: &str| files.iter().find(|(name, _)| name == path).map(|(_, bytes)| bytes.clone());
         artefacts.with_maps(|entry| Ok(file(&entry.file.path).unwrap_or_default())).map_err(device)
     }

@@ -1,19 +1,17 @@
 use luthier_bake::Silent;
-use luthier_gpu::{Artefacts, Gpu, TableTexels, WgslShader};
-use luthier_lut::{
-    Atlas, FileEntry, Image, MANIFEST_SCHEMA, Manifest, MaterialEntry, ShadingModel, TableEntry, TableKind,
-    material_buffer,
-};
+use luthier_gpu::{Artefacts, Gpu, WgslShader};
+use luthier_lut::{Atlas, Image, Manifest, MaterialEntry, ShadingModel, TableKind, material_buffer};
 use luthier_material::{Material, ModelSetting};
 use luthier_optics::stack::{Base, Layer, Stack};
 use luthier_report::{POLISHED_ALPHAS, Parity, ParityCase, Share, Subject, Verdict, parity};
 use luthier_shader::{Form, MaterialSet, Target};
 
-use crate::bake_files::{GENERATOR, material_entries, sha256};
+use crate::bake_files::{GENERATOR, manifest, material_entries, sha256, table_entry};
 use crate::cli::ParityOptions;
 use crate::device::{Shaders, device, open};
 use crate::failure::{Failure, Outcome, files};
 use crate::materials::{read, read_image, valid};
+use crate::memory_bake::table_texels;
 use crate::output::{complain, print};
 use crate::progress::Bar;
 
@@ -134,17 +132,7 @@ pub(crate) struct Compiled {
 
 impl Compiled {
     pub(crate) fn new(gpu: &Gpu, atlases: &[Atlas], entries: &[MaterialEntry], stacks: Vec<Stack>) -> Outcome<Self> {
-        let mut manifest = Manifest {
-            schema: MANIFEST_SCHEMA,
-            generator: GENERATOR.to_owned(),
-            materials: entries.to_vec(),
-            tables: atlases.iter().map(table).collect(),
-            searches: Vec::new(),
-            choice: None,
-            shaders: Vec::new(),
-            bindings: Vec::new(),
-            material_buffer: FileEntry::default(),
-        };
+        let mut manifest = manifest(entries.to_vec(), atlases.iter().map(table_entry).collect());
         let words = material_buffer(&manifest.materials);
         let bytes: Vec<u8> = words.as_flattened().iter().flat_map(|value| value.to_le_bytes()).collect();
         manifest.material_buffer.sha256 = sha256(&bytes);
@@ -156,32 +144,10 @@ impl Compiled {
         let shaders = Form::ALL.into_iter().map(shader).collect::<Outcome<Vec<_>>>()?;
         let bindings = luthier_shader::bindings(&set, Form::Baked);
         manifest.bindings = bindings;
-        let texels = atlases.iter().map(|atlas| TableTexels {
-            kind: atlas.kind,
-            format: atlas.format,
-            width: atlas.texels.width,
-            height: atlas.texels.height,
-            bytes: atlas.format.encode(&atlas.texels),
-        });
-        let artefacts = Artefacts::from_parts(manifest.clone(), texels.collect(), shaders).map_err(device)?;
+        let artefacts = Artefacts::from_parts(manifest.clone(), table_texels(atlases), shaders).map_err(device)?;
         let shaders = Shaders::new(gpu, &artefacts)?;
         let textures = atlases.iter().map(|atlas| (atlas.kind, atlas.texels.clone())).collect();
         Ok(Self { manifest, textures, stacks, shaders })
-    }
-}
-
-/// What the manifest says of a table that is in memory.
-pub(crate) fn table(atlas: &Atlas) -> TableEntry {
-    let [width, height] = atlas.layout.size();
-    TableEntry {
-        kind: atlas.kind,
-        layout: atlas.layout.clone(),
-        format: atlas.format,
-        texel_bytes: u64::from(width) * u64::from(height) * u64::from(atlas.format.texel_bytes()),
-        texture: FileEntry::default(),
-        truth: FileEntry::default(),
-        picture: FileEntry::default(),
-        tiles: atlas.tiles.clone(),
     }
 }
 
