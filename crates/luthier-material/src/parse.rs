@@ -1,12 +1,10 @@
-use toml::de::DeTable;
-
 use crate::check::check_table;
 use crate::decode::decode;
 use crate::diagnostic::{Diagnostic, Severity, Sink};
 use crate::doubt::{LayerPart, LayerSource};
 use crate::grammar::DOCUMENT;
 use crate::material::Material;
-use crate::section::Section;
+use crate::section::{Section, parse_toml};
 
 /// A material, and what to doubt about it.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,17 +65,8 @@ pub fn parse(
     read: &dyn Fn(&str) -> std::io::Result<String>,
 ) -> Result<Parsed, Vec<Diagnostic>> {
     let mut sink = Sink::new(label, text);
-    let (document, errors) = DeTable::parse_recoverable(text);
-    for error in &errors {
-        let hint = error.message().contains("duplicate key").then(|| "keep one of the two".to_owned());
-        sink.error(error.span().unwrap_or(0..0), format!("not TOML: {}", error.message()), hint);
-    }
-    // What could be recovered from broken TOML is not what was meant: its other mistakes would mislead.
-    if sink.has_errors() {
-        return Err(sink.into_diagnostics());
-    }
-    // The span of a document is all of it; what is missing from it is missing at its start.
-    let document = Section { table: document.get_ref(), span: 0..0 };
+    let Some(document) = parse_toml(text, &mut sink) else { return Err(sink.into_diagnostics()) };
+    let document = Section::document(&document);
     if document.has("scene") && !document.has("schema") {
         let hint = Some("bake it: `luthier bake SCENE.toml`; it names its materials itself".to_owned());
         sink.error(document.key_span("scene"), "this is a scene, not a material", hint);

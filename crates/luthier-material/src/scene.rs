@@ -5,7 +5,7 @@ use toml::de::DeTable;
 use crate::check::check_table;
 use crate::diagnostic::{Diagnostic, Sink};
 use crate::grammar::SCENE;
-use crate::section::{Numbers, Section};
+use crate::section::{Numbers, Section, parse_toml};
 
 /// A validated scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -125,15 +125,8 @@ pub fn is_scene(text: &str) -> bool {
 /// All diagnostics, in the order of the text.
 pub fn parse_scene(label: &str, text: &str) -> Result<Scene, Vec<Diagnostic>> {
     let mut sink = Sink::new(label, text);
-    let (document, errors) = DeTable::parse_recoverable(text);
-    for error in &errors {
-        let hint = error.message().contains("duplicate key").then(|| "keep one of the two".to_owned());
-        sink.error(error.span().unwrap_or(0..0), format!("not TOML: {}", error.message()), hint);
-    }
-    if sink.has_errors() {
-        return Err(sink.into_diagnostics());
-    }
-    let document = Section { table: document.get_ref(), span: 0..0 };
+    let Some(document) = parse_toml(text, &mut sink) else { return Err(sink.into_diagnostics()) };
+    let document = Section::document(&document);
     check_table(&SCENE, &[], &document, &mut sink);
     if sink.has_errors() {
         return Err(sink.into_diagnostics());

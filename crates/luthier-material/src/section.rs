@@ -3,6 +3,19 @@ use std::ops::Range as Span;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
+use crate::diagnostic::Sink;
+
+/// The document of a text; what is wrong with its TOML goes to the sink. What could be recovered from broken TOML is not what was
+/// meant, and its other mistakes would mislead: there is no document then.
+pub(crate) fn parse_toml<'t>(text: &'t str, sink: &mut Sink<'_>) -> Option<Spanned<DeTable<'t>>> {
+    let (document, errors) = DeTable::parse_recoverable(text);
+    for error in &errors {
+        let hint = error.message().contains("duplicate key").then(|| "keep one of the two".to_owned());
+        sink.error(error.span().unwrap_or(0..0), format!("not TOML: {}", error.message()), hint);
+    }
+    errors.is_empty().then_some(document)
+}
+
 /// A table of the document and where it stands, read by key. A value of another type reads as absent: the checker has
 /// reported it.
 #[derive(Clone)]
@@ -12,6 +25,11 @@ pub(crate) struct Section<'t> {
 }
 
 impl<'t> Section<'t> {
+    /// The whole of a document. Its span is all of the text; what is missing from it is missing at its start.
+    pub(crate) fn document(document: &'t Spanned<DeTable<'t>>) -> Self {
+        Self { table: document.get_ref(), span: 0..0 }
+    }
+
     pub(crate) fn value(&self, key: &str) -> Option<&'t Spanned<DeValue<'t>>> {
         self.table.get(key)
     }
