@@ -9,6 +9,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
+use crate::interpolation::cubic_stencil;
 use crate::microfacet::lambda;
 use crate::microsurface::{TransparentFacets, Walk, crossed_and_returned, walk_after_first_facet};
 use crate::quadrature::gauss_legendre;
@@ -69,7 +70,7 @@ impl ReflectanceCurves {
             if cos_theta < CUBIC_COS_THETA {
                 return true;
             }
-            let (base, weights) = cubic(cos_theta);
+            let (base, weights) = cubic_stencil(cos_theta, FIRST_NODES);
             let fine = &self.values[i * self.count..(i + 1) * self.count];
             fine.iter().enumerate().all(|(k, value)| {
                 let at = weights.iter().enumerate().map(|(j, w)| w * self.at_first_node(base + j)[k]).sum::<f64>();
@@ -255,24 +256,10 @@ pub fn crossed_albedo(
 
 /// Spreads a weight over four neighbouring nodes so that cubics integrate exactly.
 fn spread(first: &mut [f64], cos_theta: f64, weight: f64) {
-    let (base, weights) = cubic(cos_theta);
+    let (base, weights) = cubic_stencil(cos_theta, FIRST_NODES);
     for (k, l) in weights.into_iter().enumerate() {
         first[base + k] += weight * l;
     }
-}
-
-/// The first of the four coarse nodes around a cosine, and the weights of Lagrange's cubic.
-fn cubic(cos_theta: f64) -> (usize, [f64; 4]) {
-    let p = cos_theta.clamp(0.0, 1.0) * (FIRST_NODES - 1) as f64;
-    let base = (p as usize).clamp(1, FIRST_NODES - 3) - 1;
-    let t = p - base as f64;
-    let weights = [
-        -(t - 1.0) * (t - 2.0) * (t - 3.0) / 6.0,
-        t * (t - 2.0) * (t - 3.0) / 2.0,
-        -t * (t - 1.0) * (t - 3.0) / 2.0,
-        t * (t - 1.0) * (t - 2.0) / 6.0,
-    ];
-    (base, weights)
 }
 
 /// Spreads a weight over the two finer nodes around a cosine.

@@ -18,6 +18,7 @@ pub mod f0_table;
 pub mod film_color;
 pub mod fresnel;
 pub mod interface;
+pub mod interpolation;
 pub mod ior;
 pub mod masking;
 pub mod microfacet;

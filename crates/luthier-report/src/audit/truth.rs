@@ -4,6 +4,7 @@ use luthier_optics::Rgb;
 use luthier_optics::albedo::{Effort, FacetStatistics, ReflectanceCurves};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
+use luthier_optics::interpolation::cubic_stencil;
 use luthier_optics::microfacet::scaled_distribution;
 use luthier_optics::schlick::schlick;
 use luthier_optics::split_sum::{Masking, split_sum, split_sums};
@@ -256,8 +257,8 @@ impl Grid {
     }
 
     fn at(&self, variant: usize, [theta, alpha]: [f64; 2]) -> [f64; 3] {
-        let (x, wx) = stencil(libm::cos(theta).clamp(0.0, 1.0).sqrt(), self.size[0]);
-        let (y, wy) = stencil(alpha.clamp(0.0, 1.0).sqrt(), self.size[1]);
+        let (x, wx) = cubic_stencil(libm::cos(theta).clamp(0.0, 1.0).sqrt(), self.size[0]);
+        let (y, wy) = cubic_stencil(alpha.clamp(0.0, 1.0).sqrt(), self.size[1]);
         let mut out = [0.0; 3];
         for (j, wy) in wy.into_iter().enumerate().filter(|(_, w)| *w != 0.0) {
             for (i, wx) in wx.into_iter().enumerate().filter(|(_, w)| *w != 0.0) {
@@ -267,23 +268,6 @@ impl Grid {
         }
         out
     }
-}
-
-/// First of four nodes around a coordinate, and the weights of Lagrange's cubic.
-fn stencil(u: f64, nodes: usize) -> (usize, [f64; 4]) {
-    if nodes < 4 {
-        return (0, [1.0, 0.0, 0.0, 0.0]);
-    }
-    let p = u * (nodes - 1) as f64;
-    let base = (p as usize).clamp(1, nodes - 3) - 1;
-    let t = p - base as f64;
-    let weights = [
-        -(t - 1.0) * (t - 2.0) * (t - 3.0) / 6.0,
-        t * (t - 2.0) * (t - 3.0) / 2.0,
-        -t * (t - 1.0) * (t - 3.0) / 2.0,
-        t * (t - 1.0) * (t - 2.0) / 6.0,
-    ];
-    (base, weights)
 }
 
 #[cfg(test)]
