@@ -36,3 +36,24 @@ fn left_out(error: &clap::Error) -> Option<(&'static str, &'static str)> {
     let is_verb = error.kind() == ErrorKind::InvalidSubcommand;
     OF_FEATURES.into_iter().find(|(verb, _)| is_verb && verb == name)
 }
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    /// The table of features and the attributes of the verbs say the same.
+    #[test]
+    fn a_verb_is_there_where_its_feature_is() {
+        let command = Cli::command();
+        for (verb, feature) in OF_FEATURES {
+            let is_on = match feature {
+                "gpu" => cfg!(feature = "gpu"),
+                "view" => cfg!(feature = "view"),
+                other => panic!("no feature `{other}`"),
+            };
+            assert_eq!(command.find_subcommand(verb).is_some(), is_on, "{verb}");
+        }
+    }
+}
