@@ -180,6 +180,10 @@ mod tests {
         let ends = |axis: &Axis| (axis.index(axis.min), axis.index(axis.max));
         assert_eq!(ends(&angle), (0.0, 511.0));
         assert_eq!(ends(&alpha), (0.0, 2.0));
+        // b u / (1 + b - u) by hand: (1/8) / (3/4) and (3/16) / (1/2).
+        let bent = axis(Mapping::Rational { bend: 0.25 }, 0.0, 1.0, 5);
+        assert_eq!([0, 2, 3, 4].map(|i| bent.node(i)), [0.0, 1.0 / 6.0, 0.375, 1.0]);
+        assert!((bent.encode(1.0 / 6.0) - 0.5).abs() < 1e-15);
         // Four nodes at 0, 1/4, 1/2, 3/4 of the period.
         let turn = axis(Mapping::Periodic, 0.0, 1.0, 4);
         assert_eq!([0, 1, 2, 3].map(|i| turn.node(i)), [0.0, 0.25, 0.5, 0.75]);

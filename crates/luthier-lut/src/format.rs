@@ -252,6 +252,9 @@ mod tests {
             [0.0, 1.0, 0.5, 127.0 / 255.0, 0.499 / 255.0, 0.501 / 255.0, -1.0, 3.0, f32::NAN, 254.4 / 255.0, 0.2, 0.8];
         let bytes = TexelFormat::Rgba8Unorm.encode(&row(4, &values));
         assert_eq!(bytes, [0, 255, 128, 127, 0, 1, 0, 255, 0, 254, 51, 204]);
+        // 65535, 32768 (a half up), 0, and the opaque fourth channel; low bytes first.
+        let wide = TexelFormat::Rgba16Unorm.encode(&row(3, &[1.0, 0.5, 0.0]));
+        assert_eq!(wide, [0xff, 0xff, 0x00, 0x80, 0, 0, 0xff, 0xff]);
     }
 
     /// Bit patterns worked out by hand: exponents are biased by 15, mantissas have six and five bits.

@@ -56,6 +56,22 @@ fn bakes_of_statistical_models_are_judged() {
     }
 }
 
+/// The tables of a patina's bare surface belong to no layer, and are read all the same.
+#[test]
+fn bare_surfaces_have_readers() {
+    let coat = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.2\n\n[[layer]]";
+    let effects = format!("\n[effects.patina]\nextent = 0.5\ntransition = 0.5\nmap = {NOISE}\n\n[bake]");
+    let patina = gold("weathered").replacen("[[layer]]", coat, 1).replacen("\n[bake]", &effects, 1);
+    let workshop = Workshop::with(&[("m/weathered.toml", &patina)]);
+    workshop.run(&["bake", "m", "-q"]).exits(0);
+    workshop.run(&TABLES_ONLY).exits(0);
+    let report = workshop.json("out/report/report.json");
+    let tiles = report["tables"].as_array().unwrap().iter().flat_map(|table| table["tiles"].as_array().unwrap());
+    assert!(tiles.clone().any(|tile| tile["users"].to_string().contains("bare")));
+    let findings = report["findings"].as_array().unwrap();
+    assert!(!findings.iter().any(|finding| finding.to_string().contains("no layer reads it")), "{findings:?}");
+}
+
 #[test]
 fn json_goes_to_both_places() {
     let workshop = baked();

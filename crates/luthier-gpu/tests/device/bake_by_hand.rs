@@ -4,7 +4,7 @@
 use luthier_gpu::{Artefacts, TableTexels, WgslShader};
 use luthier_lut::{
     AtlasLayout, Axis, BindingEntry, ColorMode, FileEntry, Image, LayerKind, LayerRecord, MANIFEST_SCHEMA, Manifest,
-    Mapping, MaterialEntry, TableEntry, TableKind, TexelFormat,
+    Mapping, MaterialEntry, RowBase, TableEntry, TableKind, TexelFormat,
 };
 use luthier_shader::{Form, MaterialSet, Target};
 
@@ -61,6 +61,23 @@ pub(crate) fn axis(quantity: &str, max: f64, size: u32, mapping: Mapping) -> Axi
 }
 
 /// A layer that all records are variations of: a smooth glass.
+/// One row over the cosine.
+pub(crate) fn row_layout() -> AtlasLayout {
+    AtlasLayout {
+        x: axis("cos_theta", 1.0, 8, Mapping::Linear),
+        y: None,
+        apron: 0,
+        columns: 1,
+        tiles: 1,
+        base: RowBase::Zero,
+    }
+}
+
+/// One tile over `x`, to 1.5, and alpha.
+pub(crate) fn square_layout(x: &str) -> AtlasLayout {
+    AtlasLayout { x: axis(x, 1.5, 8, Mapping::Linear), y: Some(axis("alpha", 1.0, 8, Mapping::Linear)), ..row_layout() }
+}
+
 pub(crate) fn dielectric(alpha: f64, n: f64) -> LayerRecord {
     LayerRecord {
         kind: LayerKind::Dielectric,

@@ -5,7 +5,7 @@ use luthier_lut::{AtlasLayout, LayerRecord, Mapping, TableKind, TexelFormat, Wei
 use luthier_shader::Form;
 
 use crate::adapter::gpu;
-use crate::bake_by_hand::{Table, artefacts, axis, dielectric, diffuse};
+use crate::bake_by_hand::{Table, artefacts, axis, dielectric, diffuse, row_layout, square_layout};
 
 /// Error of a texel coordinate, in texels: filtering hardware keeps 8 fractional bits of a weight, so half a step of
 /// them; the rest is f32 arithmetic and the f32 roots of the mappings.
@@ -41,22 +41,9 @@ fn layers(tables: &[Table]) -> Vec<Vec<LayerRecord>> {
 
 /// The two tables that every interface needs.
 fn plain_tables() -> [Table; 2] {
-    let row = AtlasLayout {
-        x: axis("cos_theta", 1.0, 8, Mapping::Linear),
-        y: None,
-        apron: 0,
-        columns: 1,
-        tiles: 1,
-        base: luthier_lut::RowBase::Zero,
-    };
-    let square = AtlasLayout {
-        x: axis("theta_h", 1.5, 8, Mapping::Linear),
-        y: Some(axis("alpha", 1.0, 8, Mapping::Linear)),
-        ..row.clone()
-    };
     [
-        Table::new(TableKind::Fresnel, row, TexelFormat::Rgba16Float, |_, _| [0.5; 4]),
-        Table::new(TableKind::Distribution, square, TexelFormat::R16Float, |_, _| [0.5; 4]),
+        Table::new(TableKind::Fresnel, row_layout(), TexelFormat::Rgba16Float, |_, _| [0.5; 4]),
+        Table::new(TableKind::Distribution, square_layout("theta_h"), TexelFormat::R16Float, |_, _| [0.5; 4]),
     ]
 }
 

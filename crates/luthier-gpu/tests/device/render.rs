@@ -7,7 +7,7 @@ use luthier_lut::{AtlasLayout, Image, LayerRecord, Mapping, TableKind, TexelForm
 use luthier_shader::Form;
 
 use crate::adapter::gpu;
-use crate::bake_by_hand::{Table, artefacts, axis, conductor, dielectric, diffuse};
+use crate::bake_by_hand::{Table, artefacts, axis, conductor, dielectric, diffuse, row_layout, square_layout};
 
 pub(crate) const SIZE: u32 = 65;
 
@@ -39,23 +39,10 @@ pub(crate) fn sun(direction: [f32; 3], irradiance: [f32; 3]) -> Vec<Light> {
 
 /// Constant tables: reflectance `fresnel`, albedo `fgd`.
 pub(crate) fn tables(fresnel: f32, fgd: f32) -> Vec<Table> {
-    let row = AtlasLayout {
-        x: axis("cos_theta", 1.0, 8, Mapping::Linear),
-        y: None,
-        apron: 0,
-        columns: 1,
-        tiles: 1,
-        base: luthier_lut::RowBase::Zero,
-    };
-    let square = |x: &str| AtlasLayout {
-        x: axis(x, 1.5, 8, Mapping::Linear),
-        y: Some(axis("alpha", 1.0, 8, Mapping::Linear)),
-        ..row.clone()
-    };
     vec![
-        Table::new(TableKind::Fresnel, row.clone(), TexelFormat::Rgba16Float, |_, _| [fresnel; 4]),
-        Table::new(TableKind::Distribution, square("theta_h"), TexelFormat::R16Float, |_, _| [1.0; 4]),
-        Table::new(TableKind::Fgd, square("cos_theta"), TexelFormat::Rgba16Float, |_, _| [fgd; 4]),
+        Table::new(TableKind::Fresnel, row_layout(), TexelFormat::Rgba16Float, |_, _| [fresnel; 4]),
+        Table::new(TableKind::Distribution, square_layout("theta_h"), TexelFormat::R16Float, |_, _| [1.0; 4]),
+        Table::new(TableKind::Fgd, square_layout("cos_theta"), TexelFormat::Rgba16Float, |_, _| [fgd; 4]),
     ]
 }
 
