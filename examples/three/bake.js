@@ -7,7 +7,7 @@ export class Bake {
   /** Reads the manifest of the folder at `url` (which ends in a slash), and the shader, the tables and the materials it names. */
   static async open(url, renderer) {
     const manifest = await (await get(new URL("manifest.json", url))).json();
-    if (manifest.schema !== 2) throw new Error(`this program reads schema 2 of the manifest, not ${manifest.schema}`);
+    if (manifest.schema !== 3) throw new Error(`this program reads schema 3 of the manifest, not ${manifest.schema}`);
     const bake = new Bake();
     bake.materials = manifest.materials.map((material) => material.name);
 

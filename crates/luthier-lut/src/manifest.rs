@@ -6,7 +6,7 @@ use crate::{
 };
 
 /// Version of the manifest's shape. A reader refuses any other.
-pub const MANIFEST_SCHEMA: u32 = 2;
+pub const MANIFEST_SCHEMA: u32 = 3;
 
 /// `manifest.json`: everything a bake made and how it hangs together. Paths are relative to the manifest.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -390,9 +390,9 @@ mod tests {
 
     #[test]
     fn another_schema_is_refused_before_its_shape_is_looked_at() {
-        let refused = Manifest::from_json(r#"{"schema": 3, "future": true}"#);
-        assert!(matches!(refused, Err(LutError::ManifestSchema { found: 3, expected: MANIFEST_SCHEMA })));
-        for other in ["", "{}", "[]", r#"{"schema": "1"}"#, r#"{"schema": 2}"#, r#"{"schema": -1}"#] {
+        let refused = Manifest::from_json(r#"{"schema": 4, "future": true}"#);
+        assert!(matches!(refused, Err(LutError::ManifestSchema { found: 4, expected: MANIFEST_SCHEMA })));
+        for other in ["", "{}", "[]", r#"{"schema": "1"}"#, r#"{"schema": 3}"#, r#"{"schema": -1}"#] {
             assert!(matches!(Manifest::from_json(other), Err(LutError::Manifest(_))), "{other}");
         }
     }

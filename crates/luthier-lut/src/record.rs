@@ -1,3 +1,5 @@
+use std::f64::consts::{FRAC_1_PI, LOG2_E};
+
 use serde::{Deserialize, Serialize};
 
 use crate::{MaterialConstants, MaterialEntry};
@@ -5,7 +7,7 @@ use crate::{MaterialConstants, MaterialEntry};
 /// `vec4` words of a material's header in the material buffer.
 pub const MATERIAL_WORDS: usize = 11;
 /// `vec4` words of a layer in the material buffer.
-pub const LAYER_WORDS: usize = 10;
+pub const LAYER_WORDS: usize = 11;
 
 /// What a layer is to the shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -85,30 +87,44 @@ impl LayerRecord {
     ///
     /// | word | x, y, z, w |
     /// |---|---|
-    /// | 0 | kind (0 dielectric, 1 conductor, 2 diffuse), alpha, eta, sigma |
+    /// | 0 | falloff, peak, 1 / eta, 1 - 1 / eta^2 |
     /// | 1 | Fresnel tile, distribution tile, FGD tile, phase tile |
-    /// | 2 | optical depth RGB, thickness tile |
-    /// | 3 | albedo RGB, distribution (0 beckmann, 1 ggx) |
+    /// | 2 | optical depth RGB over ln 2, thickness tile |
+    /// | 3 | albedo RGB over pi, distribution (0 beckmann, 1 ggx) |
     /// | 4 | ior_n RGB, film thickness nm |
     /// | 5 | ior_k RGB, film thickness max nm |
     /// | 6 | film_ior_n RGB, film tile |
     /// | 7 | film_ior_k RGB, 0 |
     /// | 8 | film thickness in waves RGB, escape tile |
     /// | 9 | alpha_x, alpha_y, cosine and sine of the rotation |
+    /// | 10 | kind (0 dielectric, 1 conductor, 2 diffuse), alpha, eta, sigma |
+    ///
+    /// The falloff of D with the squared slope is 1 / alpha^2, over ln 2 for Beckmann, whose D is a power of two then; its peak,
+    /// 1 / (4 pi alpha^2), is a quarter of the greatest D, as every lobe has it. A reciprocal of 0 is 0: what has no slopes, or lets
+    /// nothing through, has no use for it.
     pub fn words(&self) -> [[f32; 4]; LAYER_WORDS] {
         let kind = match self.kind {
-            LayerKind::Dielectric => 0.0,
-            LayerKind::Conductor => 1.0,
-            LayerKind::Diffuse => 2.0,
+            LayerKind::Dielectric => 0,
+            LayerKind::Conductor => 1,
+            LayerKind::Diffuse => 2,
         };
-        let distribution = if self.distribution == "ggx" { 1.0 } else { 0.0 };
+        let is_ggx = self.distribution == "ggx";
+        let distribution = if is_ggx { 1.0 } else { 0.0 };
         let tile = |t: Option<u32>| t.map_or(-1.0, |t| t as f32);
+        let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
+        let (sharpness, unit) = (inverse(self.alpha * self.alpha), if is_ggx { 1.0 } else { LOG2_E });
+        let grazing_cos_sq = (self.eta - 1.0) * (self.eta + 1.0) / (self.eta * self.eta).max(f64::MIN_POSITIVE);
         let rgbw = |rgb: [f64; 3], w: f32| [rgb[0] as f32, rgb[1] as f32, rgb[2] as f32, w];
         [
-            [kind, self.alpha as f32, self.eta as f32, self.sigma as f32],
+            [
+                (sharpness * unit) as f32,
+                (sharpness * 0.25 * FRAC_1_PI) as f32,
+                inverse(self.eta) as f32,
+                grazing_cos_sq as f32,
+            ],
             [tile(self.fresnel_tile), tile(self.distribution_tile), tile(self.fgd_tile), tile(self.phase_tile)],
-            rgbw(self.optical_depth, tile(self.thickness_tile)),
-            rgbw(self.albedo, distribution),
+            rgbw(self.optical_depth.map(|depth| depth * LOG2_E), tile(self.thickness_tile)),
+            rgbw(self.albedo.map(|albedo| albedo * FRAC_1_PI), distribution),
             rgbw(self.ior_n, self.film_thickness_nm as f32),
             rgbw(self.ior_k, self.film_thickness_max_nm as f32),
             rgbw(self.film_ior_n, tile(self.film_tile)),
@@ -120,12 +136,16 @@ impl LayerRecord {
                 libm::cos(self.rotation) as f32,
                 libm::sin(self.rotation) as f32,
             ],
+            [whole(kind), self.alpha as f32, self.eta as f32, self.sigma as f32],
         ]
     }
 }
 
 /// The material buffer: [`MATERIAL_WORDS`] header words per material, then [`LAYER_WORDS`] words per layer, in order; after the
 /// layers of a material with patina, the layer of [`crate::PatinaRecord::bare`].
+///
+/// Whole numbers n that shaders count with, here and the kind of a layer, are 2^23 + n: the low 23 bits of such an f32 are n, and no
+/// conversion is needed.
 ///
 /// | header word | x, y, z, w |
 /// |---|---|
@@ -135,7 +155,7 @@ pub fn material_buffer(materials: &[MaterialEntry]) -> Vec<[f32; 4]> {
     let mut words = Vec::new();
     let mut first = materials.len() * MATERIAL_WORDS;
     for material in materials {
-        words.push([first as f32, material.layers.len() as f32, material.model.number() as f32, 0.0]);
+        words.push([whole(first), whole(material.layers.len()), whole(material.model.number() as usize), 0.0]);
         words.extend(material.constants.words());
         first += material.records().count() * LAYER_WORDS;
     }
@@ -143,6 +163,11 @@ pub fn material_buffer(materials: &[MaterialEntry]) -> Vec<[f32; 4]> {
         words.extend(layer.words());
     }
     words
+}
+
+/// A whole number below 2^23 as the buffer has it.
+fn whole(n: usize) -> f32 {
+    ((1 << 23) + n) as f32
 }
 
 const _: () = assert!(MATERIAL_WORDS == 1 + MaterialConstants::WORDS, "one word, and the constants");
@@ -156,7 +181,7 @@ mod tests {
         LayerRecord {
             kind,
             distribution: "ggx".into(),
-            alpha: 1.0,
+            alpha: 2.0,
             alpha_xy: [30.0, 31.0],
             rotation: 0.0,
             eta: 2.0,
@@ -186,22 +211,23 @@ mod tests {
         assert_eq!(
             numbered(LayerKind::Conductor).words(),
             [
-                [1.0, 1.0, 2.0, 9.0],
+                [0.25, 0.019_894_367, 0.5, 0.75],
                 [27.0, 28.0, -1.0, 0.0],
-                [3.0, 4.0, 5.0, -1.0],
-                [6.0, 7.0, 8.0, 1.0],
+                [4.328_085, 5.770_78, 7.213_475, -1.0],
+                [1.909_859_3, 2.228_169_2, 2.546_479, 1.0],
                 [10.0, 11.0, 12.0, 25.0],
                 [13.0, 14.0, 15.0, 26.0],
                 [16.0, 17.0, 18.0, 33.0],
                 [19.0, 20.0, 21.0, 0.0],
                 [22.0, 23.0, 24.0, 34.0],
                 [30.0, 31.0, 1.0, 0.0],
+                [8_388_609.0, 2.0, 2.0, 9.0],
             ]
         );
-        assert_eq!(numbered(LayerKind::Dielectric).words()[0][0], 0.0);
-        assert_eq!(numbered(LayerKind::Diffuse).words()[0][0], 2.0);
+        assert_eq!(numbered(LayerKind::Dielectric).words()[10][0], 8_388_608.0);
+        assert_eq!(numbered(LayerKind::Diffuse).words()[10][0], 8_388_610.0);
         let beckmann = LayerRecord { distribution: "beckmann".into(), ..numbered(LayerKind::Diffuse) };
-        assert_eq!(beckmann.words()[3][3], 0.0);
+        assert_eq!((beckmann.words()[3][3], beckmann.words()[0][0]), (0.0, 0.360_673_76));
     }
 
     #[test]
@@ -215,9 +241,11 @@ mod tests {
         ];
         let buffer = material_buffer(&materials);
         let headers: Vec<[f32; 4]> = buffer[..3 * MATERIAL_WORDS].iter().step_by(MATERIAL_WORDS).copied().collect();
-        assert_eq!(headers, [[33.0, 2.0, 0.0, 0.0], [53.0, 0.0, 5.0, 0.0], [53.0, 1.0, 6.0, 0.0]]);
+        let whole = |word: f32| word.to_bits() & 0x7f_ffff;
+        let numbers: Vec<[u32; 3]> = headers.iter().map(|[x, y, z, _]| [x, y, z].map(|word| whole(*word))).collect();
+        assert_eq!(numbers, [[33, 2, 0], [55, 0, 5], [55, 1, 6]]);
         assert_eq!(buffer.len(), 3 * MATERIAL_WORDS + 3 * LAYER_WORDS);
-        for (header, material) in headers.iter().zip(&materials) {
+        for (header, material) in numbers.iter().zip(&materials) {
             let first = header[0] as usize;
             let words: Vec<[f32; 4]> = material.layers.iter().flat_map(LayerRecord::words).collect();
             assert_eq!(buffer[first..first + words.len()], words);
@@ -241,9 +269,9 @@ mod tests {
         let plain = MaterialEntry { layers: vec![top.clone()], ..MaterialEntry::default() };
         let buffer = material_buffer(&[grown, plain]);
         let first = 2 * MATERIAL_WORDS;
-        assert_eq!(buffer[0][..2], [first as f32, 2.0]);
+        assert_eq!(buffer[0][..2], [first, 2].map(whole));
         assert_eq!(buffer[first + 2 * LAYER_WORDS..][..LAYER_WORDS], bare.words());
-        assert_eq!(buffer[MATERIAL_WORDS][0], (first + 3 * LAYER_WORDS) as f32);
+        assert_eq!(buffer[MATERIAL_WORDS][0], whole(first + 3 * LAYER_WORDS));
         assert_eq!(buffer[first + 3 * LAYER_WORDS..], top.words());
     }
 }

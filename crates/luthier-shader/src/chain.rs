@@ -38,9 +38,13 @@ pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, 
         (true, false) => ", place.flake_normal",
         (true, true) => ", select(place.flake_normal, vec3<f32>(0.0, 0.0, 1.0), is_bare)",
     };
+    let alpha = if features.has("clamped") { "0.0, " } else { "" };
     let _ = writeln!(
         out,
-        "    var path = LuthierPath(wi, wo, wi.xy + wo.xy, vec3<f32>(wi.z), vec3<f32>(0.0), 0.0, true{below});"
+        "    // Products of lower cosines would underflow; the outer one stays as it is.\n    \
+             let down = vec3<f32>(wi.xy, max(wi.z, 1e-16));\n    \
+             let up = vec3<f32>(wo.xy, max(wo.z, 1e-16));\n    \
+             var path = LuthierPath(down, up, wi.xy + wo.xy, vec3<f32>(1.0), vec3<f32>(0.0), {alpha}true{below});"
     );
     for i in 0..depth {
         let here = || layers.iter().filter_map(|layers| layers.get(i));
@@ -68,7 +72,7 @@ pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, 
             _ => write!(out, "    if path.open & (count > {i}u) {{\n{step}    }}\n"),
         };
     }
-    out.push_str("    return path.reflected;\n}\n");
+    out.push_str("    return wi.z * path.reflected;\n}\n");
     out + &patina(model, features)
 }
 

@@ -88,6 +88,11 @@ impl Features {
         if form == Form::Full || has_facets && !names.contains("distribution") {
             names.insert("closed");
         }
+        // Slope parameters that vary may come in any order; those along two axes are one for Elek's model.
+        let has_elek = set.models().any(|model| model == ShadingModel::Elek);
+        if has_elek && names.contains("chain") && ["place", "anisotropic"].iter().any(|name| names.contains(name)) {
+            names.insert("clamped");
+        }
         Self(names)
     }
 
@@ -161,7 +166,7 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
             if has_diffuse {
                 names.insert("chain_diffuse");
             }
-            if material.model == ShadingModel::Elek {
+            if material.model == ShadingModel::Elek && gets_smoother(layers) {
                 names.insert("clamped");
             }
             // Other models have no layer below the first interface that flakes could tilt or patina cover.
@@ -199,6 +204,12 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
         _ => false,
     };
     names
+}
+
+/// Whether an interface is smoother than one above it.
+fn gets_smoother(layers: &[LayerRecord]) -> bool {
+    let interfaces = || layers.iter().filter(|layer| layer.kind != LayerKind::Diffuse);
+    interfaces().zip(interfaces().skip(1)).any(|(above, below)| below.alpha < above.alpha)
 }
 
 /// Whether a conductor of a chain lies where another stack goes on: elsewhere what would follow it is not there.

@@ -51,15 +51,15 @@ pub(crate) fn lookup(table: &TableFace, features: &Features) -> Result<String, S
     }
 
     let has_angle = layout.x.quantity.starts_with("theta");
-    let mut out = constants(table);
+    let mut out = String::new();
     let is_split = Encoding::of(kind, table.format) == Encoding::SplitSixteenthRoot;
     let features = features.with("theta_axis", has_angle).with("split_root", is_split);
     let features = features.with("schlick_base", has_base);
     for line in prune(module, &features).lines() {
         if let Some(value) = place(line, "let x = $x(") {
-            node_index(&mut out, "x", &layout.x, value);
+            node_index(&mut out, "x", &layout.x, value, unit(table)[0]);
         } else if let (Some(value), Some(y)) = (place(line, "let y = $y("), &layout.y) {
-            node_index(&mut out, "y", y, value);
+            node_index(&mut out, "y", y, value, unit(table)[1]);
         } else if line.contains("$position") {
             position(&mut out, table);
         } else {
@@ -94,55 +94,49 @@ fn check_axis(axis: &Axis, names: &[&str], table: TableKind) -> Result<(), Shade
     Ok(())
 }
 
-/// Sizes of the atlas, with a line that says what they are.
-fn constants(table: &TableFace) -> String {
-    let upper = table.kind.name().to_ascii_uppercase();
-    let layout = &table.layout;
-    let ([width, height], [tile_width, tile_height]) = (layout.size(), layout.tile_size());
-    let mut out = String::new();
-    let _ = writeln!(out, "const LUTHIER_{upper}_SIZE: vec2<f32> = vec2<f32>({width}.0, {height}.0);");
-    if layout.tiles > 1 && (layout.columns > 1 || layout.y.is_some()) {
-        let _ = writeln!(out, "const LUTHIER_{upper}_TILE: vec2<f32> = vec2<f32>({tile_width}.0, {tile_height}.0);");
-        if layout.columns > 1 {
-            let _ = writeln!(out, "const LUTHIER_{upper}_COLUMNS: f32 = {}.0;", layout.columns);
-        }
-    }
-    out.push('\n');
-    out
+/// What coordinates of the atlas count, as parts of a texel: all of it is 1 wide and 1 high where the sampler filters, texels are
+/// where nodes are also read one by one.
+fn unit(table: &TableFace) -> [f64; 2] {
+    let is_whole = table.format.is_filterable() && table.layout.base == RowBase::Zero;
+    if is_whole { table.layout.size().map(|size| 1.0 / f64::from(size)) } else { [1.0; 2] }
 }
 
-/// `let position = ...;`: the texel position of node (x, y) of a tile.
+/// `let position = ...;`: where node (x, y) of a tile is in the atlas; x and y count as [`unit`] says.
 fn position(out: &mut String, table: &TableFace) {
-    let (upper, layout) = (table.kind.name().to_ascii_uppercase(), &table.layout);
-    let apron = f64::from(layout.apron) + 0.5;
-    let x = format!("x + {}", float(apron));
-    let y = if layout.y.is_some() { format!("y + {}", float(apron)) } else { "0.5".to_owned() };
+    let (layout, unit) = (&table.layout, unit(table));
+    let [half_x, half_y] = unit.map(|unit| (f64::from(layout.apron) + 0.5) * unit);
+    let [tile_width, tile_height] = layout.tile_size();
+    let [width, height] = [f64::from(tile_width) * unit[0], f64::from(tile_height) * unit[1]].map(float);
+    let x = format!("x + {}", float(half_x));
+    let y = if layout.y.is_some() { format!("y + {}", float(half_y)) } else { float(0.5 * unit[1]) };
     let _ = match (layout.tiles, layout.columns) {
         (1, _) => writeln!(out, "    let position = vec2<f32>({x}, {y});"),
-        (_, 1) if layout.y.is_none() => writeln!(out, "    let position = vec2<f32>({x}, tile + {y});"),
-        (_, 1) => writeln!(out, "    let position = vec2<f32>({x}, tile * LUTHIER_{upper}_TILE.y + {y});"),
-        _ => writeln!(
+        (_, 1) if layout.y.is_none() => writeln!(out, "    let position = vec2<f32>({x}, (tile + 0.5) * {height});"),
+        (_, 1) => writeln!(out, "    let position = vec2<f32>({x}, tile * {height} + {y});"),
+        (_, columns) => writeln!(
             out,
-            "    let row = floor((tile + 0.5) / LUTHIER_{upper}_COLUMNS);\n    \
-             let column = tile - row * LUTHIER_{upper}_COLUMNS;\n    \
-             let position = vec2<f32>(column, row) * LUTHIER_{upper}_TILE + vec2<f32>({x}, {y});"
+            "    let row = floor((tile + 0.5) / {columns}.0);\n    \
+             let column = tile - row * {columns}.0;\n    \
+             let position = vec2<f32>(column * {width} + {x}, row * {height} + {y});"
         ),
     };
 }
 
 fn read(table: &TableFace) -> String {
     let name = table.kind.name();
-    if table.format.is_filterable() {
-        let upper = name.to_ascii_uppercase();
-        format!("textureSampleLevel(luthier_{name}, luthier_sampler, position / LUTHIER_{upper}_SIZE, 0.0)")
-    } else {
-        format!("luthier_bilinear(luthier_{name}, position)")
+    let [width, height] = table.layout.size();
+    match (table.format.is_filterable(), table.layout.base) {
+        (true, RowBase::Zero) => format!("textureSampleLevel(luthier_{name}, luthier_sampler, position, 0.0)"),
+        (true, RowBase::Schlick) => format!(
+            "textureSampleLevel(luthier_{name}, luthier_sampler, position / vec2<f32>({width}.0, {height}.0), 0.0)"
+        ),
+        (false, _) => format!("luthier_bilinear(luthier_{name}, position)"),
     }
 }
 
-/// `let NAME = ...;`: the fractional node index of a value, the WGSL of [`Axis::index`].
-fn node_index(out: &mut String, name: &str, axis: &Axis, value: &str) {
-    let steps = float(f64::from(axis.intervals()));
+/// `let NAME = ...;`: the fractional node index of a value, the WGSL of [`Axis::index`], times `unit`.
+fn node_index(out: &mut String, name: &str, axis: &Axis, value: &str, unit: f64) {
+    let steps = f64::from(axis.intervals()) * unit;
     let range = axis.max - axis.min;
     let shifted = if axis.min == 0.0 { value.to_owned() } else { format!("({value} - {})", float(axis.min)) };
     let t = if range == 1.0 { shifted } else { format!("{shifted} / {}", float(range)) };
@@ -160,7 +154,7 @@ fn node_index(out: &mut String, name: &str, axis: &Axis, value: &str) {
                 out,
                 "    let {name} = {name}_t / ({name}_t + {}) * {};",
                 float(bend),
-                float((1.0 + bend) * f64::from(axis.intervals()))
+                float((1.0 + bend) * steps)
             );
             return;
         }
@@ -178,7 +172,7 @@ fn node_index(out: &mut String, name: &str, axis: &Axis, value: &str) {
             }
         }
     };
-    let _ = writeln!(out, "    let {name} = {index} * {steps};");
+    let _ = writeln!(out, "    let {name} = {index} * {};", float(steps));
 }
 
 /// How often a power of two above 1 (up to 2^8) is halved to give 1.

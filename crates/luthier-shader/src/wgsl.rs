@@ -35,7 +35,6 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     let facets = has("chain") || has("smith");
     let modules = [
         (has("bilinear"), include_str!("wgsl/bilinear.wgsl")),
-        (["interface", "phong", "granier_base", "glitter"].into_iter().any(has), include_str!("wgsl/pi.wgsl")),
         (true, include_str!("wgsl/layer.wgsl")),
         (has("place"), include_str!("wgsl/place.wgsl")),
         (has("flakes") || has("glitter"), include_str!("wgsl/hash.wgsl")),
@@ -63,6 +62,9 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         parts.extend(self::model(set, model, &features));
     }
     parts.push(eval(set, &features));
+    if parts.iter().any(|part| part.contains("LUTHIER_PI")) {
+        parts.insert(2, include_str!("wgsl/pi.wgsl").to_owned());
+    }
     parts.retain(|part| !part.is_empty());
     let wgsl = parts.join("\n");
     Ok(match buffer {
@@ -89,7 +91,12 @@ fn model(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec
     match model {
         ShadingModel::Elek => vec![
             if features.has("clamped") { module(include_str!("wgsl/elek.wgsl")) } else { String::new() },
-            module(&chain::eval(set, model, "luthier_elek_interface", features)),
+            module(&chain::eval(
+                set,
+                model,
+                if features.has("clamped") { "luthier_elek_interface" } else { "luthier_add_interface" },
+                features,
+            )),
         ],
         ShadingModel::WeidlichWilkie => vec![module(&chain::eval(set, model, "luthier_add_interface", features))],
         ShadingModel::GranierHeidrich => vec![module(include_str!("wgsl/granier_heidrich.wgsl"))],
@@ -155,7 +162,7 @@ fn eval(set: &MaterialSet<'_>, features: &Features) -> String {
     let models: Vec<ShadingModel> = set.models().collect();
     if let [first, others @ ..] = models.as_slice() {
         if !others.is_empty() {
-            body.push_str("    let model = u32(luthier_materials[luthier_header(material)].z);\n");
+            body.push_str("    let model = luthier_whole(luthier_materials[luthier_header(material)].z);\n");
         }
         for &other in others {
             let (number, call) = (other.number(), call(other));

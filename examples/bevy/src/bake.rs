@@ -60,8 +60,8 @@ impl BakedMaterial {
         shaders: &mut Assets<Shader>,
     ) -> Result<Self> {
         let manifest: Value = serde_json::from_str(&fs::read_to_string(folder.join("manifest.json"))?)?;
-        if manifest["schema"] != 2 {
-            return Err(format!("this program reads schema 2 of the manifest, not {}", manifest["schema"]).into());
+        if manifest["schema"] != 3 {
+            return Err(format!("this program reads schema 3 of the manifest, not {}", manifest["schema"]).into());
         }
         let material = entries(&manifest["materials"])?.iter().position(|material| material["name"] == name);
         let material = material.ok_or_else(|| format!("no material `{name}` in the bake"))? as u32;

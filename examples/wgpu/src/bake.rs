@@ -36,7 +36,7 @@ impl Bake {
         let path = folder.join("manifest.json");
         let text = fs::read_to_string(&path).with_context(|| format!("{}: bake first", path.display()))?;
         let manifest: Value = serde_json::from_str(&text)?;
-        ensure!(manifest["schema"] == 2, "this program reads schema 2 of the manifest, not {}", manifest["schema"]);
+        ensure!(manifest["schema"] == 3, "this program reads schema 3 of the manifest, not {}", manifest["schema"]);
         Ok(Self { folder: folder.to_owned(), manifest })
     }
 

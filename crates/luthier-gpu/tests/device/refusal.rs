@@ -41,7 +41,8 @@ fn bad_shaders_are_errors_and_the_device_lives_on() {
 
     let scene = gpu.scene(&bake(GOOD, materials, "buffer"), "full").unwrap();
     assert_eq!(scene.form(), "full");
-    // The header word of material 0: its layers begin behind its header, and there is one.
-    let got = scene.evaluate(0, &[([0.0, 0.0, 1.0], [0.5, 0.0, 0.0])]).unwrap();
-    assert_eq!(got, [[luthier_lut::MATERIAL_WORDS as f32 + 0.5, 1.0, 1.0]]);
+    // The header word of material 0: its layers begin behind its header, and there is one; whole numbers lie above 2^23.
+    let got = scene.evaluate(0, &[([0.0, 0.0, 1.0], [2.0, 0.0, 0.0])]).unwrap();
+    let whole = |n: usize| ((1 << 23) + n) as f32;
+    assert_eq!(got, [[whole(luthier_lut::MATERIAL_WORDS + 2), whole(1), whole(1)]]);
 }

@@ -90,7 +90,7 @@ fn luthier_eval_granier_heidrich($place_parameter material: u32, wi: vec3<f32>, 
     } //? granier_bare
     let last = luthier_layer(material, luthier_layer_count(material) - 1u); //? granier_base
     if last.kind == LUTHIER_DIFFUSE { //? granier_base
-        specular += diffuse * last.albedo * (wi.z / LUTHIER_PI); //? granier_base
+        specular += diffuse * last.lambert * wi.z; //? granier_base
     } //? granier_base
     return specular;
 }

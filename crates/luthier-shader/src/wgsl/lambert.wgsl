@@ -1,4 +1,4 @@
 /// BRDF of a Lambertian base.
 fn luthier_diffuse(layer: LuthierLayer) -> vec3<f32> {
-    return layer.albedo * 0.318309886;
+    return layer.lambert;
 }

@@ -2,7 +2,7 @@ const LUTHIER_DIELECTRIC: u32 = 0u; //? below|granier, conductor|granier
 const LUTHIER_CONDUCTOR: u32 = 1u; //? granier_bare
 const LUTHIER_DIFFUSE: u32 = 2u; //? mixed|granier_base
 const LUTHIER_MATERIAL_WORDS: u32 = 11u;
-const LUTHIER_LAYER_WORDS: u32 = 10u;
+const LUTHIER_LAYER_WORDS: u32 = 11u;
 
 /// One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
 struct LuthierLayer {
@@ -10,12 +10,20 @@ struct LuthierLayer {
     kind: u32,
     /// Slope parameter of the micro-surface. //? interface
     alpha: f32, //? interface
-    /// Index below over index above, for the refracted directions. //? below
-    eta: f32, //? below
-    /// Absorption times thickness of the slab below the interface, RGB. //? absorption
-    optical_depth: vec3<f32>, //? absorption
-    /// Diffuse albedo, RGB. //? diffuse|granier_base
-    albedo: vec3<f32>, //? diffuse|granier_base
+    /// How fast D falls with the squared slope: 1 / alpha^2, over ln 2 for Beckmann. //? interface, chain|smith
+    falloff: f32, //? interface, chain|smith
+    /// A quarter of the greatest D, 1 / (4 pi alpha^2). //? interface, chain|smith
+    peak: f32, //? interface, chain|smith
+    /// Index below over index above, for the refracted directions. //? below, statistics
+    eta: f32, //? below, statistics
+    /// Index above over index below, for the refracted directions. //? below, chain
+    inverse_eta: f32, //? below, chain
+    /// Squared cosine of a refracted grazing direction, 1 - 1 / eta^2. //? below, chain
+    grazing_cos_sq: f32, //? below, chain
+    /// How many times the slab below the interface halves light that goes straight through, RGB. //? absorption
+    halvings: vec3<f32>, //? absorption
+    /// BRDF of a Lambertian base, albedo over pi, RGB. //? diffuse|granier_base
+    lambert: vec3<f32>, //? diffuse|granier_base
     /// Oren-Nayar slope deviation in radians; 0 is Lambert. //? oren_nayar
     sigma: f32, //? oren_nayar
     /// Tile of the Fresnel table. //? fresnel
@@ -56,6 +64,11 @@ struct LuthierLayer {
     tarnish: vec3<f32>, //? patina
 }
 
+/// A whole number n, which the buffer holds as 2^23 + n: its low bits are n.
+fn luthier_whole(word: f32) -> u32 {
+    return bitcast<u32>(word) & 0x7fffffu;
+}
+
 /// Index of the first word of a material in the buffer.
 fn luthier_header(material: u32) -> u32 {
     return material * LUTHIER_MATERIAL_WORDS;
@@ -63,25 +76,30 @@ fn luthier_header(material: u32) -> u32 {
 
 /// Number of layers of a material.
 fn luthier_layer_count(material: u32) -> u32 {
-    return u32(luthier_materials[luthier_header(material)].y);
+    return luthier_whole(luthier_materials[luthier_header(material)].y);
 }
 
 /// A layer of a material, counted from the top.
 fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
-    let first = u32(luthier_materials[luthier_header(material)].x) + index * LUTHIER_LAYER_WORDS;
-    let head = luthier_materials[first];
+    let first = luthier_whole(luthier_materials[luthier_header(material)].x) + index * LUTHIER_LAYER_WORDS;
+    let head = luthier_materials[first]; //? interface, chain|smith
     let tiles = luthier_materials[first + 1u]; //? fresnel|distribution|fgd|phase
     let slab = luthier_materials[first + 2u]; //? absorption|thickness
     let base = luthier_materials[first + 3u]; //? diffuse|closed|smith|granier_base, diffuse|beckmann|granier_base, diffuse|ggx|granier_base
     let real_part = luthier_materials[first + 4u]; //? full|granier|phase|thickness|film_table, interface|phase|thickness|film_table
     let imaginary_part = luthier_materials[first + 5u]; //? full|granier|phase|thickness|film_table, interface|phase|thickness|film_table
+    let numbers = luthier_materials[first + 10u];
     var layer: LuthierLayer;
-    layer.kind = u32(head.x);
-    layer.alpha = head.y; //? interface
-    layer.eta = head.z; //? below
-    layer.optical_depth = slab.xyz; //? absorption
-    layer.albedo = base.xyz; //? diffuse|granier_base
-    layer.sigma = head.w; //? oren_nayar
+    layer.kind = luthier_whole(numbers.x);
+    layer.alpha = numbers.y; //? interface
+    layer.falloff = head.x; //? interface, chain|smith
+    layer.peak = head.y; //? interface, chain|smith
+    layer.eta = numbers.z; //? below, statistics
+    layer.inverse_eta = head.z; //? below, chain
+    layer.grazing_cos_sq = head.w; //? below, chain
+    layer.halvings = slab.xyz; //? absorption
+    layer.lambert = base.xyz; //? diffuse|granier_base
+    layer.sigma = numbers.w; //? oren_nayar
     layer.fresnel_tile = tiles.x; //? fresnel
     layer.distribution_tile = tiles.y; //? distribution
     layer.fgd_tile = tiles.z; //? fgd
@@ -102,3 +120,13 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     layer.tarnish = vec3<f32>(1.0); //? patina
     return layer;
 }
+
+/// A layer of another slope parameter. //? place|clamped, interface
+fn luthier_with_alpha(layer: LuthierLayer, alpha: f32) -> LuthierLayer { //? place|clamped, interface
+    var next = layer; //? place|clamped, interface
+    let sharper = layer.alpha / alpha; //? place|clamped, interface, chain|smith
+    next.alpha = alpha; //? place|clamped, interface
+    next.falloff = layer.falloff * (sharper * sharper); //? place|clamped, interface, chain|smith
+    next.peak = layer.peak * (sharper * sharper); //? place|clamped, interface, chain|smith
+    return next; //? place|clamped, interface
+} //? place|clamped, interface

@@ -20,5 +20,5 @@ fn luthier_diffuse(layer: LuthierLayer, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f3
     let side = 0.125 * sigma_sq / (sigma_sq + 0.09) * cross_angle * cross_angle * (1.0 - abs(cos_phi)) * tan_mean;
     let direct = flat_part + forward + side;
     let bounced = 0.17 * sigma_sq / (sigma_sq + 0.13) * (1.0 - cos_phi * back * back);
-    return 0.318309886 * max(layer.albedo * (direct + layer.albedo * bounced), vec3<f32>(0.0));
+    return max(layer.lambert * (direct + LUTHIER_PI * layer.lambert * bounced), vec3<f32>(0.0));
 }

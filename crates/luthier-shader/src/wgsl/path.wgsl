@@ -6,12 +6,12 @@ struct LuthierPath {
     wo: vec3<f32>,
     /// Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
     across: vec2<f32>,
-    /// Share of the light that comes down to the next layer and back out, times the outer cos_theta_i.
+    /// Share of the light that comes down to the next layer and back out.
     throughput: vec3<f32>,
-    /// Reflected by the layers so far: f cos_theta_i.
+    /// f of the layers so far.
     reflected: vec3<f32>,
-    /// Greatest slope parameter so far: a layer is never smoother than those above it.
-    alpha: f32,
+    /// Greatest slope parameter so far: a layer is never smoother than those above it. //? clamped
+    alpha: f32, //? clamped
     /// Whether any light reaches the next layer.
     open: bool,
     /// Normal below the next interface, in its frame: that of the flakes. //? flakes
@@ -34,53 +34,42 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     var next = path;
     next.open = false;
 
-    // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
-    let bisector = vec3<f32>(path.across, path.wi.z + path.wo.z);
+    let cosines = vec2<f32>(path.wi.z, path.wo.z);
+    let bisector = vec3<f32>(path.across, cosines.x + cosines.y);
     let length_sq = dot(bisector.xy, bisector.xy) + bisector.z * bisector.z;
-    if length_sq < 1e-24 {
-        return next;
-    }
-    let inverse_length = inverseSqrt(length_sq);
-    let cos_theta_d = min(0.5 * length_sq * inverse_length, 1.0);
+    // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
+    let secant_d = 2.0 * inverseSqrt(length_sq);
+    let cos_theta_d = min(0.25 * length_sq * secant_d, 1.0);
     let fresnel = luthier_fresnel_term(layer, cos_theta_d); //? !patina
     let fresnel = layer.tarnish * luthier_fresnel_term(layer, cos_theta_d); //? patina
-    // G of V-cavities: 2 cos_theta_h / cos_theta_d times the lower cosine, at most 1. Below 1e-18 that cosine cancels, and
-    // the product of both would underflow.
-    let cavity = 4.0 * (bisector.z * inverse_length) * inverse_length;
-    let cosines = max(vec2<f32>(path.wi.z, path.wo.z), vec2<f32>(1e-18));
-    let masking = min(cavity * min(cosines.x, cosines.y), 1.0);
-    let shape = luthier_density(layer, bisector, length_sq) * masking / (4.0 * cosines.x * cosines.y);
+    // G of V-cavities: 2 cos_theta_h / cos_theta_d times the lower cosine, at most 1.
+    let masking = min(bisector.z * min(cosines.x, cosines.y) * (secant_d * secant_d), 1.0);
+    let shape = luthier_quarter_density(layer, bisector) * masking / (cosines.x * cosines.y);
     next.reflected = path.reflected + path.throughput * fresnel * shape;
 
     if layer.kind != LUTHIER_DIELECTRIC { //? below, conductor
         return next; //? below, conductor
     } //? below, conductor
-    // Refracted at the normal; the squared cosine is written so that it does not cancel for an index near 1. //? below
-    let inverse_eta = 1.0 / layer.eta; //? below
-    let cosines_sq = (cosines * cosines + (layer.eta - 1.0) * (layer.eta + 1.0)) * (inverse_eta * inverse_eta); //? below
-    if min(cosines_sq.x, cosines_sq.y) <= 0.0 { //? below
-        return next; //? below
-    } //? below
+    // Refracted at the normal; the squared cosine does not cancel for an index near 1. //? below
+    let bent = cosines * layer.inverse_eta; //? below
+    let cosines_sq = bent * bent + layer.grazing_cos_sq; //? below
     let secants = inverseSqrt(cosines_sq); //? below
     let refracted = cosines_sq * secants; //? below
-    next.wi = vec3<f32>(path.wi.xy * inverse_eta, refracted.x); //? below
-    next.wo = vec3<f32>(path.wo.xy * inverse_eta, refracted.y); //? below
-    next.across = path.across * inverse_eta; //? below
+    next.wi = vec3<f32>(path.wi.xy * layer.inverse_eta, refracted.x); //? below
+    next.wo = vec3<f32>(path.wo.xy * layer.inverse_eta, refracted.y); //? below
+    next.across = path.across * layer.inverse_eta; //? below
     // Flakes tilt all that lies below, the paths through the slab included. //? flakes
     next.wi = luthier_turned(path.normal_below, next.wi); //? flakes
     next.wo = luthier_turned(path.normal_below, next.wo); //? flakes
     next.across = luthier_turned(path.normal_below, vec3<f32>(next.across, refracted.x + refracted.y)).xy; //? flakes
     next.normal_below = vec3<f32>(0.0, 0.0, 1.0); //? flakes
-    if min(next.wi.z, next.wo.z) <= 0.0 { //? flakes
-        return next; //? flakes
-    } //? flakes
-    next.open = true; //? below
-    // (1 - F) down, (1 - F) up, and part of what the cavities block comes back. //? below
-    let crossed = 1.0 - fresnel; //? below
-    let kept = crossed * (1.0 - masking + crossed * masking); //? below
-    next.throughput = path.throughput * kept; //? below, !absorption
-    let absorbed = exp2(-layer.optical_depth * (1.44269504 * (secants.x + secants.y))); //? below, absorption, !flakes
-    let absorbed = exp(-layer.optical_depth * (1.0 / next.wi.z + 1.0 / next.wo.z)); //? below, absorption, flakes
-    next.throughput = path.throughput * kept * absorbed; //? below, absorption
+    next.open = min(cosines_sq.x, cosines_sq.y) > 0.0; //? below, !flakes
+    next.open = min(cosines_sq.x, cosines_sq.y) > 0.0 && min(next.wi.z, next.wo.z) > 0.0; //? below, flakes
+    // (1 - F) down, (1 - F) up, and part of what the cavities block comes back: (1 - F) (1 - G + (1 - F) G). //? below
+    let returned = 1.0 - masking * fresnel; //? below
+    next.throughput = path.throughput * (1.0 - fresnel) * returned; //? below, !absorption
+    let absorbed = exp2(-layer.halvings * (secants.x + secants.y)); //? below, absorption, !flakes
+    let absorbed = exp2(-layer.halvings * (1.0 / next.wi.z + 1.0 / next.wo.z)); //? below, absorption, flakes
+    next.throughput = path.throughput * (absorbed - absorbed * fresnel) * returned; //? below, absorption
     return next;
 }

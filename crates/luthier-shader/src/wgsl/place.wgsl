@@ -32,10 +32,10 @@ fn luthier_place() -> LuthierPlace {
 /// A layer of a material, counted from the top, as it is at a place.
 fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLayer {
     var layer = luthier_layer(material, index);
-    layer.alpha = clamp(layer.alpha * place.alpha_factor, 0.001, 1.0); //? interface
+    layer = luthier_with_alpha(layer, clamp(layer.alpha * place.alpha_factor, 0.001, 1.0)); //? interface
     layer.alpha_xy = clamp(layer.alpha_xy * place.alpha_factor, vec2<f32>(0.001), vec2<f32>(1.0)); //? anisotropic
     if index == 0u { //? absorption|film
-        layer.optical_depth *= place.slab_factor; //? absorption
+        layer.halvings *= place.slab_factor; //? absorption
         layer.film_waves *= place.film_factor; //? full|granier, film
         layer.film_thickness_nm *= place.film_factor; //? phase|thickness|film_table
     } //? absorption|film
@@ -43,7 +43,7 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
         let count = luthier_layer_count(material); //? patina
         let base_alpha = luthier_materials[luthier_header(material) + 6u].z; //? patina
         if base_alpha >= 0.0 && (index == 1u || index == count) { //? patina
-            layer.alpha = max(mix(layer.alpha, base_alpha, place.patina), 0.001); //? patina
+            layer = luthier_with_alpha(layer, max(mix(layer.alpha, base_alpha, place.patina), 0.001)); //? patina
             layer.alpha_xy = max(mix(layer.alpha_xy, vec2<f32>(base_alpha), place.patina), vec2<f32>(0.001)); //? patina, anisotropic
         } //? patina
         let tarnish = luthier_materials[luthier_header(material) + 8u].xyz; //? patina

@@ -4,20 +4,15 @@ fn luthier_scaled(layer: LuthierLayer, scale: vec2<f32>, w: vec3<f32>) -> vec2<f
     return scale * vec2<f32>(turn.x * w.x + turn.y * w.y, turn.x * w.y - turn.y * w.x); //? anisotropic
 } //? anisotropic
 
-/// D of a layer at the half vector along `bisector`, whose squared length is `length_sq`.
-fn luthier_density(layer: LuthierLayer, bisector: vec3<f32>, length_sq: f32) -> f32 {
-    let inverse_length = inverseSqrt(length_sq);
-    let cos_theta_h = bisector.z * inverse_length;
-    let sin_theta_h_sq = dot(bisector.xy, bisector.xy) * inverse_length * inverse_length; //? !anisotropic
-    let across_sq = dot(bisector.xy, bisector.xy); //? anisotropic
-    let sin_theta_h_sq = across_sq * inverse_length * inverse_length; //? anisotropic
+/// D / 4 of a layer at the half vector along `bisector`, above the horizon.
+fn luthier_quarter_density(layer: LuthierLayer, bisector: vec3<f32>) -> f32 {
+    let z_sq = bisector.z * bisector.z;
+    let across_sq = dot(bisector.xy, bisector.xy);
     // An anisotropic surface is, along one azimuth, an isotropic one of another slope parameter. //? anisotropic
     let area = layer.alpha_xy.x * layer.alpha_xy.y; //? anisotropic
     let crossed = luthier_scaled(layer, layer.alpha_xy.yx, bisector); //? anisotropic
-    let crossed_sq = dot(crossed, crossed); //? anisotropic
-    let along = area * sqrt(across_sq / max(crossed_sq, 1e-30)); //? anisotropic
-    let alpha = select(layer.alpha, along, crossed_sq > 1e-30); //? anisotropic
-    let area = layer.alpha * layer.alpha; //? !anisotropic
-    let alpha = layer.alpha; //? !anisotropic
-    return luthier_distribution_term(layer, alpha, cos_theta_h, sin_theta_h_sq) / LUTHIER_PI / area;
+    let ratio = layer.alpha * layer.alpha * dot(crossed, crossed) / (area * area * max(across_sq, 1e-30)); //? anisotropic
+    let sharper = select(1.0, ratio, across_sq > 1e-30); //? anisotropic
+    return luthier_distribution_term(layer, sharper, z_sq, across_sq) / (4.0 * LUTHIER_PI * area); //? anisotropic
+    return luthier_distribution_term(layer, z_sq, across_sq) * layer.peak; //? !anisotropic
 }

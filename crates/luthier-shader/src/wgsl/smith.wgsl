@@ -27,11 +27,11 @@ fn luthier_lambda(layer: LuthierLayer, w: vec3<f32>) -> f32 {
 /// The lobe of a layer, with height-correlated masking 1 / (1 + Lambda_i + Lambda_o) (Heitz 2014, eq. 99).
 fn luthier_smith_lobe(layer: LuthierLayer, wi: vec3<f32>, wo: vec3<f32>) -> LuthierLobe {
     // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
-    let bisector = wi + wo;
+    let bisector = vec3<f32>(wi.xy + wo.xy, max(wi.z + wo.z, 1e-16));
     let length_sq = dot(bisector, bisector);
     if length_sq < 1e-24 {
         return LuthierLobe(0.0, 0.0);
     }
     let masking = 1.0 / (1.0 + luthier_lambda(layer, wi) + luthier_lambda(layer, wo));
-    return LuthierLobe(min(0.5 * sqrt(length_sq), 1.0), luthier_density(layer, bisector, length_sq) * (masking / (4.0 * wo.z)));
+    return LuthierLobe(min(0.5 * sqrt(length_sq), 1.0), luthier_quarter_density(layer, bisector) * (masking / wo.z));
 }

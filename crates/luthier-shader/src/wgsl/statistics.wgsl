@@ -38,7 +38,7 @@ fn luthier_ggx_lobe(alpha: vec2<f32>, axis: vec2<f32>, wi: vec3<f32>, wo: vec3<f
 /// what comes down along both directions, these directions above the base, and the index there over that outside. //? statistics_base
 fn luthier_base(material: u32, layer: LuthierLayer, down: vec3<f32>, wi: vec3<f32>, wo: vec3<f32>, eta: f32) -> vec3<f32> { //? statistics_base
     let veil = luthier_materials[luthier_header(material) + 3u]; //? statistics_base
-    let lost = max(1.0 - layer.albedo * veil.rgb, vec3<f32>(1e-6)); //? statistics_base
+    let lost = max(1.0 - LUTHIER_PI * layer.lambert * veil.rgb, vec3<f32>(1e-6)); //? statistics_base
     let brdf = luthier_diffuse(layer, wi, wo); //? statistics_base, oren_nayar
     let brdf = luthier_diffuse(layer); //? statistics_base, !oren_nayar
     return down * brdf * ((1.0 - veil.w) / (eta * eta)) / lost; //? statistics_base

@@ -107,7 +107,7 @@ fn $add(path: $Path, layer: LuthierLayer) -> $Path {
     next.ti0 = (1.0 - r21) * upward; //? below
     next.ri0 = reflected; //? below
     next.escape_tile = layer.escape_tile; //? escape
-    let slab = exp(-layer.optical_depth / next.cos_theta); //? below, absorption
+    let slab = exp2(-layer.halvings / next.cos_theta); //? below, absorption
     next.slab = slab; //? absorption, escape
     next.t0i *= slab; //? below, absorption
     next.ti0 *= slab; //? below, absorption

@@ -7,7 +7,13 @@ fn luthier_fresnel_term(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
     return luthier_lookup_fresnel(layer.fresnel_tile, cos_theta_d);
 }
 
-/// pi alpha^2 D of a layer, from the table. //? chain|smith, !closed
-fn luthier_distribution_term(layer: LuthierLayer, alpha: f32, cos_theta_h: f32, sin_theta_h_sq: f32) -> f32 { //? chain|smith, !closed
-    return luthier_lookup_distribution(layer.distribution_tile, cos_theta_h, sin_theta_h_sq, alpha); //? chain|smith, !closed
+/// pi alpha^2 D of a layer, from the table and squares of the half vector. //? chain|smith, !closed, !anisotropic
+/// pi alpha^2 D of a layer whose falloff is `sharper` times its own, from the table and squares of the half vector. //? chain|smith, !closed, anisotropic
+fn luthier_distribution_term(layer: LuthierLayer, z_sq: f32, across_sq: f32) -> f32 { //? chain|smith, !closed, !anisotropic
+    let alpha = layer.alpha; //? chain|smith, !closed, !anisotropic
+fn luthier_distribution_term(layer: LuthierLayer, sharper: f32, z_sq: f32, across_sq: f32) -> f32 { //? chain|smith, !closed, anisotropic
+    let alpha = layer.alpha * inverseSqrt(sharper); //? chain|smith, !closed, anisotropic
+    let inverse_length_sq = 1.0 / (z_sq + across_sq); //? chain|smith, !closed
+    let cos_theta_h = sqrt(z_sq * inverse_length_sq); //? chain|smith, !closed
+    return luthier_lookup_distribution(layer.distribution_tile, cos_theta_h, across_sq * inverse_length_sq, alpha); //? chain|smith, !closed
 } //? chain|smith, !closed

@@ -1,7 +1,7 @@
 // Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
 //
 // Bindings, group 0:
-//   6 luthier_materials: storage block LuthierMaterials (std430), 21 vec4
+//   6 luthier_materials: storage block LuthierMaterials (std430), 22 vec4
 //
 // Materials:
 //   0 chalk, elek, 1 layer
@@ -16,9 +16,14 @@ struct LuthierLayer {
 
 const uint LUTHIER_MATERIAL_CHALK = 0u;
 const uint LUTHIER_MATERIAL_WORDS = 11u;
-const uint LUTHIER_LAYER_WORDS = 10u;
+const uint LUTHIER_LAYER_WORDS = 11u;
 
 layout(std430, binding = 6) readonly buffer LuthierMaterials { vec4 luthier_materials[]; };
+
+// A whole number n, which the buffer holds as 2^23 + n: its low bits are n.
+uint luthier_whole(float word) {
+    return floatBitsToUint(word) & 8388607u;
+}
 
 // Index of the first word of a material in the buffer.
 uint luthier_header(uint material) {
@@ -27,16 +32,16 @@ uint luthier_header(uint material) {
 
 // Number of layers of a material.
 uint luthier_layer_count(uint material) {
-    return uint(luthier_materials[luthier_header(material)].y);
+    return luthier_whole(luthier_materials[luthier_header(material)].y);
 }
 
 // A layer of a material, counted from the top.
 LuthierLayer luthier_layer(uint material, uint index) {
     LuthierLayer layer = LuthierLayer(0u, vec3(0.0));
-    uint first = uint(luthier_materials[luthier_header(material)].x) + (index * LUTHIER_LAYER_WORDS);
-    vec4 head = luthier_materials[first];
+    uint first = luthier_whole(luthier_materials[luthier_header(material)].x) + (index * LUTHIER_LAYER_WORDS);
     vec4 base = luthier_materials[first + 3u];
-    layer.kind = uint(head.x);
+    vec4 numbers = luthier_materials[first + 10u];
+    layer.kind = luthier_whole(numbers.x);
     layer.albedo = base.xyz;
     return layer;
 }

@@ -2,7 +2,7 @@
 // Shader model 5.1. Checked by glslang, not by a compiler of Direct3D.
 //
 // Registers, space0:
-//   t6 luthier_materials: ByteAddressBuffer, 21 float4
+//   t6 luthier_materials: ByteAddressBuffer, 22 float4
 //
 // Materials:
 //   0 chalk, elek, 1 layer
@@ -17,31 +17,32 @@ struct LuthierLayer {
 
 static const uint LUTHIER_MATERIAL_CHALK = 0u;
 static const uint LUTHIER_MATERIAL_WORDS = 11u;
-static const uint LUTHIER_LAYER_WORDS = 10u;
+static const uint LUTHIER_LAYER_WORDS = 11u;
 
 ByteAddressBuffer luthier_materials : register(t6);
+
+// A whole number n, which the buffer holds as 2^23 + n: its low bits are n.
+uint luthier_whole(float word) {
+    return asuint(word) & 8388607u;
+}
 
 // Index of the first word of a material in the buffer.
 uint luthier_header(uint material) {
     return material * LUTHIER_MATERIAL_WORDS;
 }
 
-uint luthier_wgsl_f2u32(float value) {
-    return uint(clamp(value, 0.0, 4294967000.0));
-}
-
 // Number of layers of a material.
 uint luthier_layer_count(uint material) {
-    return luthier_wgsl_f2u32(asfloat(luthier_materials.Load(4+luthier_header(material)*16)));
+    return luthier_whole(asfloat(luthier_materials.Load(4+luthier_header(material)*16)));
 }
 
 // A layer of a material, counted from the top.
 LuthierLayer luthier_layer(uint material, uint index) {
     LuthierLayer layer = (LuthierLayer)0;
-    uint first = luthier_wgsl_f2u32(asfloat(luthier_materials.Load(0+luthier_header(material)*16))) + (index * LUTHIER_LAYER_WORDS);
-    float4 head = asfloat(luthier_materials.Load4(first*16));
+    uint first = luthier_whole(asfloat(luthier_materials.Load(0+luthier_header(material)*16))) + (index * LUTHIER_LAYER_WORDS);
     float4 base = asfloat(luthier_materials.Load4((first + 3u)*16));
-    layer.kind = luthier_wgsl_f2u32(head.x);
+    float4 numbers = asfloat(luthier_materials.Load4((first + 10u)*16));
+    layer.kind = luthier_whole(numbers.x);
     layer.albedo = base.xyz;
     return layer;
 }

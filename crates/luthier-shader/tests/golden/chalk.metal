@@ -3,7 +3,7 @@
 //
 // Bindings, by argument index of a complete shader. A function takes those that it reads, in this order, as its last
 // arguments:
-//   buffer(6) luthier_materials: constant LuthierMaterials&, 21 float4
+//   buffer(6) luthier_materials: constant LuthierMaterials&, 22 float4
 //
 // Materials:
 //   0 chalk, elek, 1 layer
@@ -14,7 +14,7 @@
 using metal::uint;
 
 struct LuthierMaterials {
-    metal::float4 inner[21];
+    metal::float4 inner[22];
 };
 
 // One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
@@ -28,29 +28,30 @@ struct LuthierLayer {
 
 constant uint LUTHIER_MATERIAL_CHALK = 0u;
 constant uint LUTHIER_MATERIAL_WORDS = 11u;
-constant uint LUTHIER_LAYER_WORDS = 10u;
+constant uint LUTHIER_LAYER_WORDS = 11u;
+
+// A whole number n, which the buffer holds as 2^23 + n: its low bits are n.
+uint luthier_whole(float word) {
+    return as_type<uint>(word) & 8388607u;
+}
 
 // Index of the first word of a material in the buffer.
 uint luthier_header(uint material) {
     return material * LUTHIER_MATERIAL_WORDS;
 }
 
-uint luthier_wgsl_f2u32(float value) {
-    return static_cast<uint>(metal::clamp(value, 0.0, 4294967000.0));
-}
-
 // Number of layers of a material.
 uint luthier_layer_count(uint material, constant LuthierMaterials& luthier_materials) {
-    return luthier_wgsl_f2u32(luthier_materials.inner[luthier_header(material)].y);
+    return luthier_whole(luthier_materials.inner[luthier_header(material)].y);
 }
 
 // A layer of a material, counted from the top.
 LuthierLayer luthier_layer(uint material, uint index, constant LuthierMaterials& luthier_materials) {
     LuthierLayer layer = {};
-    uint first = luthier_wgsl_f2u32(luthier_materials.inner[luthier_header(material)].x) + (index * LUTHIER_LAYER_WORDS);
-    metal::float4 head = luthier_materials.inner[first];
+    uint first = luthier_whole(luthier_materials.inner[luthier_header(material)].x) + (index * LUTHIER_LAYER_WORDS);
     metal::float4 base = luthier_materials.inner[first + 3u];
-    layer.kind = luthier_wgsl_f2u32(head.x);
+    metal::float4 numbers = luthier_materials.inner[first + 10u];
+    layer.kind = luthier_whole(numbers.x);
     layer.albedo = base.xyz;
     return layer;
 }

@@ -1,7 +1,7 @@
 // Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
 //
 // Bindings, group 0:
-//   6 luthier_materials: storage buffer, 21 vec4
+//   6 luthier_materials: storage buffer, 22 vec4
 //
 // Materials:
 //   0 chalk, elek, 1 layer
@@ -11,7 +11,7 @@ const LUTHIER_MATERIAL_CHALK: u32 = 0u;
 @group(0) @binding(6) var<storage, read> luthier_materials: array<vec4<f32>>;
 
 const LUTHIER_MATERIAL_WORDS: u32 = 11u;
-const LUTHIER_LAYER_WORDS: u32 = 10u;
+const LUTHIER_LAYER_WORDS: u32 = 11u;
 
 /// One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
 struct LuthierLayer {
@@ -21,6 +21,11 @@ struct LuthierLayer {
     albedo: vec3<f32>,
 }
 
+/// A whole number n, which the buffer holds as 2^23 + n: its low bits are n.
+fn luthier_whole(word: f32) -> u32 {
+    return bitcast<u32>(word) & 0x7fffffu;
+}
+
 /// Index of the first word of a material in the buffer.
 fn luthier_header(material: u32) -> u32 {
     return material * LUTHIER_MATERIAL_WORDS;
@@ -28,16 +33,16 @@ fn luthier_header(material: u32) -> u32 {
 
 /// Number of layers of a material.
 fn luthier_layer_count(material: u32) -> u32 {
-    return u32(luthier_materials[luthier_header(material)].y);
+    return luthier_whole(luthier_materials[luthier_header(material)].y);
 }
 
 /// A layer of a material, counted from the top.
 fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
-    let first = u32(luthier_materials[luthier_header(material)].x) + index * LUTHIER_LAYER_WORDS;
-    let head = luthier_materials[first];
+    let first = luthier_whole(luthier_materials[luthier_header(material)].x) + index * LUTHIER_LAYER_WORDS;
     let base = luthier_materials[first + 3u];
+    let numbers = luthier_materials[first + 10u];
     var layer: LuthierLayer;
-    layer.kind = u32(head.x);
+    layer.kind = luthier_whole(numbers.x);
     layer.albedo = base.xyz;
     return layer;
 }

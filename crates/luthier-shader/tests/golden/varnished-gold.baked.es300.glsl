@@ -10,7 +10,7 @@
 //   luthier_fresnel: sampler2D
 //   luthier_distribution: sampler2D
 //   each texture filtered linearly, clamped to its edge
-//   luthier_materials: uniform block LuthierMaterials (std140), 31 vec4
+//   luthier_materials: uniform block LuthierMaterials (std140), 33 vec4
 //
 // Materials:
 //   0 varnished-gold, elek, 2 layers
@@ -21,8 +21,14 @@ struct LuthierLayer {
     uint kind;
     // Slope parameter of the micro-surface.
     float alpha;
-    // Index below over index above, for the refracted directions.
-    float eta;
+    // How fast D falls with the squared slope: 1 / alpha^2, over ln 2 for Beckmann.
+    float falloff;
+    // A quarter of the greatest D, 1 / (4 pi alpha^2).
+    float peak;
+    // Index above over index below, for the refracted directions.
+    float inverse_eta;
+    // Squared cosine of a refracted grazing direction, 1 - 1 / eta^2.
+    float grazing_cos_sq;
     // Tile of the Fresnel table.
     float fresnel_tile;
     // Tile of the distribution table.
@@ -37,34 +43,29 @@ struct LuthierPath {
     vec3 wo;
     // Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
     vec2 across;
-    // Share of the light that comes down to the next layer and back out, times the outer cos_theta_i.
+    // Share of the light that comes down to the next layer and back out.
     vec3 throughput;
-    // Reflected by the layers so far: f cos_theta_i.
+    // f of the layers so far.
     vec3 reflected;
-    // Greatest slope parameter so far: a layer is never smoother than those above it.
-    float alpha;
     // Whether any light reaches the next layer.
     bool open;
 };
 
 const uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
-const vec2 LUTHIER_FRESNEL_SIZE = vec2(128.0, 3.0);
-const vec2 LUTHIER_DISTRIBUTION_SIZE = vec2(512.0, 1024.0);
-const vec2 LUTHIER_DISTRIBUTION_TILE = vec2(512.0, 512.0);
 const float LUTHIER_PI = 3.1415927;
 const uint LUTHIER_MATERIAL_WORDS = 11u;
-const uint LUTHIER_LAYER_WORDS = 10u;
+const uint LUTHIER_LAYER_WORDS = 11u;
 
 uniform highp sampler2D luthier_fresnel;
 uniform highp sampler2D luthier_distribution;
 
-layout(std140) uniform LuthierMaterials { vec4 luthier_materials[31]; };
+layout(std140) uniform LuthierMaterials { vec4 luthier_materials[33]; };
 
 // Fresnel reflectance of an interface, RGB.
 vec3 luthier_lookup_fresnel(float tile, float cos_theta) {
-    float x = clamp(cos_theta, 0.0, 1.0) * 127.0;
-    vec2 position = vec2(x + 0.5, tile + 0.5);
-    return textureLod(luthier_fresnel, vec2(position / LUTHIER_FRESNEL_SIZE), 0.0).xyz;
+    float x = clamp(cos_theta, 0.0, 1.0) * 0.9921875;
+    vec2 position = vec2(x + 0.00390625, (tile + 0.5) * 0.33333334);
+    return textureLod(luthier_fresnel, vec2(position), 0.0).xyz;
 }
 
 // pi alpha^2 D of a slope distribution, for the angle between half vector and normal: D is this over pi alpha^2.
@@ -75,10 +76,15 @@ float luthier_lookup_distribution(float tile, float cos_theta_h, float sin_theta
     float t_sq = t * t;
     float series = t_sq * (-0.3333295 + (t_sq * (0.19977711 + (t_sq * (-0.13877685 + (t_sq * 0.08053744))))));
     float theta_h = 2.0 * (((is_wide ? 0.7853982 : 0.0) + t) + (t * series));
-    float x = sqrt(sqrt(sqrt(clamp(theta_h / 1.5707964, 0.0, 1.0)))) * 511.0;
-    float y = clamp(log2(max(alpha, 0.001) / 0.001) / 9.965784, 0.0, 1.0) * 511.0;
-    vec2 position = vec2(x + 0.5, ((tile * 512.0) + y) + 0.5);
-    return textureLod(luthier_distribution, vec2(position / LUTHIER_DISTRIBUTION_SIZE), 0.0).x;
+    float x = sqrt(sqrt(sqrt(clamp(theta_h / 1.5707964, 0.0, 1.0)))) * 0.9980469;
+    float y = clamp(log2(max(alpha, 0.001) / 0.001) / 9.965784, 0.0, 1.0) * 0.49902344;
+    vec2 position = vec2(x + 0.0009765625, ((tile * 0.5) + y) + 0.00048828125);
+    return textureLod(luthier_distribution, vec2(position), 0.0).x;
+}
+
+// A whole number n, which the buffer holds as 2^23 + n: its low bits are n.
+uint luthier_whole(float word) {
+    return floatBitsToUint(word) & 8388607u;
 }
 
 // Index of the first word of a material in the buffer.
@@ -88,18 +94,22 @@ uint luthier_header(uint material) {
 
 // Number of layers of a material.
 uint luthier_layer_count(uint material) {
-    return uint(luthier_materials[luthier_header(material)].y);
+    return luthier_whole(luthier_materials[luthier_header(material)].y);
 }
 
 // A layer of a material, counted from the top.
 LuthierLayer luthier_layer(uint material, uint index) {
-    LuthierLayer layer = LuthierLayer(0u, 0.0, 0.0, 0.0, 0.0);
-    uint first = uint(luthier_materials[luthier_header(material)].x) + (index * LUTHIER_LAYER_WORDS);
+    LuthierLayer layer = LuthierLayer(0u, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    uint first = luthier_whole(luthier_materials[luthier_header(material)].x) + (index * LUTHIER_LAYER_WORDS);
     vec4 head = luthier_materials[first];
     vec4 tiles = luthier_materials[first + 1u];
-    layer.kind = uint(head.x);
-    layer.alpha = head.y;
-    layer.eta = head.z;
+    vec4 numbers = luthier_materials[first + 10u];
+    layer.kind = luthier_whole(numbers.x);
+    layer.alpha = numbers.y;
+    layer.falloff = head.x;
+    layer.peak = head.y;
+    layer.inverse_eta = head.z;
+    layer.grazing_cos_sq = head.w;
     layer.fresnel_tile = tiles.x;
     layer.distribution_tile = tiles.y;
     return layer;
@@ -110,19 +120,19 @@ vec3 luthier_fresnel_term(LuthierLayer layer, float cos_theta_d) {
     return luthier_lookup_fresnel(layer.fresnel_tile, cos_theta_d);
 }
 
-// pi alpha^2 D of a layer, from the table.
-float luthier_distribution_term(LuthierLayer layer, float alpha, float cos_theta_h, float sin_theta_h_sq) {
-    return luthier_lookup_distribution(layer.distribution_tile, cos_theta_h, sin_theta_h_sq, alpha);
+// pi alpha^2 D of a layer, from the table and squares of the half vector.
+float luthier_distribution_term(LuthierLayer layer, float z_sq, float across_sq) {
+    float alpha = layer.alpha;
+    float inverse_length_sq = 1.0 / (z_sq + across_sq);
+    float cos_theta_h = sqrt(z_sq * inverse_length_sq);
+    return luthier_lookup_distribution(layer.distribution_tile, cos_theta_h, across_sq * inverse_length_sq, alpha);
 }
 
-// D of a layer at the half vector along `bisector`, whose squared length is `length_sq`.
-float luthier_density(LuthierLayer layer, vec3 bisector, float length_sq) {
-    float inverse_length = inversesqrt(length_sq);
-    float cos_theta_h = bisector.z * inverse_length;
-    float sin_theta_h_sq = (dot(bisector.xy, bisector.xy) * inverse_length) * inverse_length;
-    float area = layer.alpha * layer.alpha;
-    float alpha = layer.alpha;
-    return (luthier_distribution_term(layer, alpha, cos_theta_h, sin_theta_h_sq) / LUTHIER_PI) / area;
+// D / 4 of a layer at the half vector along `bisector`, above the horizon.
+float luthier_quarter_density(LuthierLayer layer, vec3 bisector) {
+    float z_sq = bisector.z * bisector.z;
+    float across_sq = dot(bisector.xy, bisector.xy);
+    return luthier_distribution_term(layer, z_sq, across_sq) * layer.peak;
 }
 
 // Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
@@ -130,53 +140,38 @@ float luthier_density(LuthierLayer layer, vec3 bisector, float length_sq) {
 LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     LuthierPath next = path;
     next.open = false;
-    vec3 bisector = vec3(path.across, path.wi.z + path.wo.z);
+    vec2 cosines = vec2(path.wi.z, path.wo.z);
+    vec3 bisector = vec3(path.across, cosines.x + cosines.y);
     float length_sq = dot(bisector.xy, bisector.xy) + (bisector.z * bisector.z);
-    if (length_sq < 1e-24) {
-        return next;
-    }
-    float inverse_length = inversesqrt(length_sq);
-    float cos_theta_d = min((0.5 * length_sq) * inverse_length, 1.0);
+    float secant_d = 2.0 * inversesqrt(length_sq);
+    float cos_theta_d = min((0.25 * length_sq) * secant_d, 1.0);
     vec3 fresnel = luthier_fresnel_term(layer, cos_theta_d);
-    float cavity = (4.0 * (bisector.z * inverse_length)) * inverse_length;
-    vec2 cosines = max(vec2(path.wi.z, path.wo.z), vec2(1e-18));
-    float masking = min(cavity * min(cosines.x, cosines.y), 1.0);
-    float shape = (luthier_density(layer, bisector, length_sq) * masking) / ((4.0 * cosines.x) * cosines.y);
+    float masking = min((bisector.z * min(cosines.x, cosines.y)) * (secant_d * secant_d), 1.0);
+    float shape = (luthier_quarter_density(layer, bisector) * masking) / (cosines.x * cosines.y);
     next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
-    float inverse_eta = 1.0 / layer.eta;
-    vec2 cosines_sq = ((cosines * cosines) + vec2((layer.eta - 1.0) * (layer.eta + 1.0))) * (inverse_eta * inverse_eta);
-    if (min(cosines_sq.x, cosines_sq.y) <= 0.0) {
-        return next;
-    }
+    vec2 bent = cosines * layer.inverse_eta;
+    vec2 cosines_sq = (bent * bent) + vec2(layer.grazing_cos_sq);
     vec2 secants = inversesqrt(cosines_sq);
     vec2 refracted = cosines_sq * secants;
-    next.wi = vec3(path.wi.xy * inverse_eta, refracted.x);
-    next.wo = vec3(path.wo.xy * inverse_eta, refracted.y);
-    next.across = path.across * inverse_eta;
-    next.open = true;
-    vec3 crossed = vec3(1.0) - fresnel;
-    vec3 kept = crossed * (vec3(1.0 - masking) + (crossed * masking));
-    next.throughput = path.throughput * kept;
-    return next;
-}
-
-// Adds an interface, which is never smoother than those above it.
-LuthierPath luthier_elek_interface(LuthierPath path, LuthierLayer layer) {
-    LuthierLayer rougher = layer;
-    rougher.alpha = max(path.alpha, layer.alpha);
-    LuthierPath next = luthier_add_interface(path, rougher);
-    next.alpha = rougher.alpha;
+    next.wi = vec3(path.wi.xy * layer.inverse_eta, refracted.x);
+    next.wo = vec3(path.wo.xy * layer.inverse_eta, refracted.y);
+    next.across = path.across * layer.inverse_eta;
+    next.open = min(cosines_sq.x, cosines_sq.y) > 0.0;
+    vec3 returned = vec3(1.0) - (masking * fresnel);
+    next.throughput = (path.throughput * (vec3(1.0) - fresnel)) * returned;
     return next;
 }
 
 // f cos_theta_i of the model `elek`, both directions above the horizon.
 vec3 luthier_eval_elek(uint material, vec3 wi, vec3 wo) {
-    LuthierPath path = LuthierPath(wi, wo, wi.xy + wo.xy, vec3(wi.z), vec3(0.0), 0.0, true);
-    path = luthier_elek_interface(path, luthier_layer(material, 0u));
+    vec3 down = vec3(wi.xy, max(wi.z, 1e-16));
+    vec3 up = vec3(wo.xy, max(wo.z, 1e-16));
+    LuthierPath path = LuthierPath(down, up, wi.xy + wo.xy, vec3(1.0), vec3(0.0), true);
+    path = luthier_add_interface(path, luthier_layer(material, 0u));
     if (path.open) {
-        path = luthier_elek_interface(path, luthier_layer(material, 1u));
+        path = luthier_add_interface(path, luthier_layer(material, 1u));
     }
-    return path.reflected;
+    return wi.z * path.reflected;
 }
 
 // f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away

@@ -10,7 +10,7 @@
 //   t0 luthier_fresnel: Texture2D<float4>
 //   t1 luthier_distribution: Texture2D<float4>
 //   s5 luthier_sampler: SamplerState, linear, clamp to edge
-//   t6 luthier_materials: ByteAddressBuffer, 31 float4
+//   t6 luthier_materials: ByteAddressBuffer, 33 float4
 //
 // Materials:
 //   0 varnished-gold, elek, 2 layers
@@ -21,8 +21,14 @@ struct LuthierLayer {
     uint kind;
     // Slope parameter of the micro-surface.
     float alpha;
-    // Index below over index above, for the refracted directions.
-    float eta;
+    // How fast D falls with the squared slope: 1 / alpha^2, over ln 2 for Beckmann.
+    float falloff;
+    // A quarter of the greatest D, 1 / (4 pi alpha^2).
+    float peak;
+    // Index above over index below, for the refracted directions.
+    float inverse_eta;
+    // Squared cosine of a refracted grazing direction, 1 - 1 / eta^2.
+    float grazing_cos_sq;
     // Tile of the Fresnel table.
     float fresnel_tile;
     // Tile of the distribution table.
@@ -37,23 +43,18 @@ struct LuthierPath {
     float3 wo;
     // Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
     float2 across;
-    // Share of the light that comes down to the next layer and back out, times the outer cos_theta_i.
+    // Share of the light that comes down to the next layer and back out.
     float3 throughput;
-    // Reflected by the layers so far: f cos_theta_i.
+    // f of the layers so far.
     float3 reflected;
-    // Greatest slope parameter so far: a layer is never smoother than those above it.
-    float alpha;
     // Whether any light reaches the next layer.
     bool open;
 };
 
 static const uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
-static const float2 LUTHIER_FRESNEL_SIZE = float2(128.0, 3.0);
-static const float2 LUTHIER_DISTRIBUTION_SIZE = float2(512.0, 1024.0);
-static const float2 LUTHIER_DISTRIBUTION_TILE = float2(512.0, 512.0);
 static const float LUTHIER_PI = 3.1415927;
 static const uint LUTHIER_MATERIAL_WORDS = 11u;
-static const uint LUTHIER_LAYER_WORDS = 10u;
+static const uint LUTHIER_LAYER_WORDS = 11u;
 
 Texture2D<float4> luthier_fresnel : register(t0);
 Texture2D<float4> luthier_distribution : register(t1);
@@ -62,9 +63,9 @@ ByteAddressBuffer luthier_materials : register(t6);
 
 // Fresnel reflectance of an interface, RGB.
 float3 luthier_lookup_fresnel(float tile, float cos_theta) {
-    float x = saturate(cos_theta) * 127.0;
-    float2 position = float2(x + 0.5, tile + 0.5);
-    return luthier_fresnel.SampleLevel(luthier_sampler, position / LUTHIER_FRESNEL_SIZE, 0.0).xyz;
+    float x = saturate(cos_theta) * 0.9921875;
+    float2 position = float2(x + 0.00390625, (tile + 0.5) * 0.33333334);
+    return luthier_fresnel.SampleLevel(luthier_sampler, position, 0.0).xyz;
 }
 
 // pi alpha^2 D of a slope distribution, for the angle between half vector and normal: D is this over pi alpha^2.
@@ -75,10 +76,15 @@ float luthier_lookup_distribution(float tile, float cos_theta_h, float sin_theta
     float t_sq = t * t;
     float series = t_sq * (-0.3333295 + (t_sq * (0.19977711 + (t_sq * (-0.13877685 + (t_sq * 0.08053744))))));
     float theta_h = 2.0 * (((is_wide ? 0.7853982 : 0.0) + t) + (t * series));
-    float x = sqrt(sqrt(sqrt(saturate(theta_h / 1.5707964)))) * 511.0;
-    float y = saturate(log2(max(alpha, 0.001) / 0.001) / 9.965784) * 511.0;
-    float2 position = float2(x + 0.5, ((tile * 512.0) + y) + 0.5);
-    return luthier_distribution.SampleLevel(luthier_sampler, position / LUTHIER_DISTRIBUTION_SIZE, 0.0).x;
+    float x = sqrt(sqrt(sqrt(saturate(theta_h / 1.5707964)))) * 0.9980469;
+    float y = saturate(log2(max(alpha, 0.001) / 0.001) / 9.965784) * 0.49902344;
+    float2 position = float2(x + 0.0009765625, ((tile * 0.5) + y) + 0.00048828125);
+    return luthier_distribution.SampleLevel(luthier_sampler, position, 0.0).x;
+}
+
+// A whole number n, which the buffer holds as 2^23 + n: its low bits are n.
+uint luthier_whole(float word) {
+    return asuint(word) & 8388607u;
 }
 
 // Index of the first word of a material in the buffer.
@@ -86,24 +92,24 @@ uint luthier_header(uint material) {
     return material * LUTHIER_MATERIAL_WORDS;
 }
 
-uint luthier_wgsl_f2u32(float value) {
-    return uint(clamp(value, 0.0, 4294967000.0));
-}
-
 // Number of layers of a material.
 uint luthier_layer_count(uint material) {
-    return luthier_wgsl_f2u32(asfloat(luthier_materials.Load(4+luthier_header(material)*16)));
+    return luthier_whole(asfloat(luthier_materials.Load(4+luthier_header(material)*16)));
 }
 
 // A layer of a material, counted from the top.
 LuthierLayer luthier_layer(uint material, uint index) {
     LuthierLayer layer = (LuthierLayer)0;
-    uint first = luthier_wgsl_f2u32(asfloat(luthier_materials.Load(0+luthier_header(material)*16))) + (index * LUTHIER_LAYER_WORDS);
+    uint first = luthier_whole(asfloat(luthier_materials.Load(0+luthier_header(material)*16))) + (index * LUTHIER_LAYER_WORDS);
     float4 head = asfloat(luthier_materials.Load4(first*16));
     float4 tiles = asfloat(luthier_materials.Load4((first + 1u)*16));
-    layer.kind = luthier_wgsl_f2u32(head.x);
-    layer.alpha = head.y;
-    layer.eta = head.z;
+    float4 numbers = asfloat(luthier_materials.Load4((first + 10u)*16));
+    layer.kind = luthier_whole(numbers.x);
+    layer.alpha = numbers.y;
+    layer.falloff = head.x;
+    layer.peak = head.y;
+    layer.inverse_eta = head.z;
+    layer.grazing_cos_sq = head.w;
     layer.fresnel_tile = tiles.x;
     layer.distribution_tile = tiles.y;
     return layer;
@@ -114,19 +120,19 @@ float3 luthier_fresnel_term(LuthierLayer layer, float cos_theta_d) {
     return luthier_lookup_fresnel(layer.fresnel_tile, cos_theta_d);
 }
 
-// pi alpha^2 D of a layer, from the table.
-float luthier_distribution_term(LuthierLayer layer, float alpha, float cos_theta_h, float sin_theta_h_sq) {
-    return luthier_lookup_distribution(layer.distribution_tile, cos_theta_h, sin_theta_h_sq, alpha);
+// pi alpha^2 D of a layer, from the table and squares of the half vector.
+float luthier_distribution_term(LuthierLayer layer, float z_sq, float across_sq) {
+    float alpha = layer.alpha;
+    float inverse_length_sq = 1.0 / (z_sq + across_sq);
+    float cos_theta_h = sqrt(z_sq * inverse_length_sq);
+    return luthier_lookup_distribution(layer.distribution_tile, cos_theta_h, across_sq * inverse_length_sq, alpha);
 }
 
-// D of a layer at the half vector along `bisector`, whose squared length is `length_sq`.
-float luthier_density(LuthierLayer layer, float3 bisector, float length_sq) {
-    float inverse_length = rsqrt(length_sq);
-    float cos_theta_h = bisector.z * inverse_length;
-    float sin_theta_h_sq = (dot(bisector.xy, bisector.xy) * inverse_length) * inverse_length;
-    float area = layer.alpha * layer.alpha;
-    float alpha = layer.alpha;
-    return (luthier_distribution_term(layer, alpha, cos_theta_h, sin_theta_h_sq) / LUTHIER_PI) / area;
+// D / 4 of a layer at the half vector along `bisector`, above the horizon.
+float luthier_quarter_density(LuthierLayer layer, float3 bisector) {
+    float z_sq = bisector.z * bisector.z;
+    float across_sq = dot(bisector.xy, bisector.xy);
+    return luthier_distribution_term(layer, z_sq, across_sq) * layer.peak;
 }
 
 // Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
@@ -134,65 +140,49 @@ float luthier_density(LuthierLayer layer, float3 bisector, float length_sq) {
 LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     LuthierPath next = path;
     next.open = false;
-    float3 bisector = float3(path.across, path.wi.z + path.wo.z);
+    float2 cosines = float2(path.wi.z, path.wo.z);
+    float3 bisector = float3(path.across, cosines.x + cosines.y);
     float length_sq = dot(bisector.xy, bisector.xy) + (bisector.z * bisector.z);
-    if (length_sq < 1e-24) {
-        return next;
-    }
-    float inverse_length = rsqrt(length_sq);
-    float cos_theta_d = min((0.5 * length_sq) * inverse_length, 1.0);
+    float secant_d = 2.0 * rsqrt(length_sq);
+    float cos_theta_d = min((0.25 * length_sq) * secant_d, 1.0);
     float3 fresnel = luthier_fresnel_term(layer, cos_theta_d);
-    float cavity = (4.0 * (bisector.z * inverse_length)) * inverse_length;
-    float2 cosines = max(float2(path.wi.z, path.wo.z), (1e-18).xx);
-    float masking = min(cavity * min(cosines.x, cosines.y), 1.0);
-    float shape = (luthier_density(layer, bisector, length_sq) * masking) / ((4.0 * cosines.x) * cosines.y);
+    float masking = min((bisector.z * min(cosines.x, cosines.y)) * (secant_d * secant_d), 1.0);
+    float shape = (luthier_quarter_density(layer, bisector) * masking) / (cosines.x * cosines.y);
     next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
-    float inverse_eta = 1.0 / layer.eta;
-    float2 cosines_sq = ((cosines * cosines) + ((layer.eta - 1.0) * (layer.eta + 1.0)).xx) * (inverse_eta * inverse_eta);
-    if (min(cosines_sq.x, cosines_sq.y) <= 0.0) {
-        return next;
-    }
+    float2 bent = cosines * layer.inverse_eta;
+    float2 cosines_sq = (bent * bent) + (layer.grazing_cos_sq).xx;
     float2 secants = rsqrt(cosines_sq);
     float2 refracted = cosines_sq * secants;
-    next.wi = float3(path.wi.xy * inverse_eta, refracted.x);
-    next.wo = float3(path.wo.xy * inverse_eta, refracted.y);
-    next.across = path.across * inverse_eta;
-    next.open = true;
-    float3 crossed = (1.0).xxx - fresnel;
-    float3 kept = crossed * ((1.0 - masking).xxx + (crossed * masking));
-    next.throughput = path.throughput * kept;
+    next.wi = float3(path.wi.xy * layer.inverse_eta, refracted.x);
+    next.wo = float3(path.wo.xy * layer.inverse_eta, refracted.y);
+    next.across = path.across * layer.inverse_eta;
+    next.open = min(cosines_sq.x, cosines_sq.y) > 0.0;
+    float3 returned = (1.0).xxx - (masking * fresnel);
+    next.throughput = (path.throughput * ((1.0).xxx - fresnel)) * returned;
     return next;
 }
 
-// Adds an interface, which is never smoother than those above it.
-LuthierPath luthier_elek_interface(LuthierPath path, LuthierLayer layer) {
-    LuthierLayer rougher = layer;
-    rougher.alpha = max(path.alpha, layer.alpha);
-    LuthierPath next = luthier_add_interface(path, rougher);
-    next.alpha = rougher.alpha;
-    return next;
-}
-
-LuthierPath ConstructLuthierPath(float3 arg0, float3 arg1, float2 arg2, float3 arg3, float3 arg4, float arg5, bool arg6) {
+LuthierPath ConstructLuthierPath(float3 arg0, float3 arg1, float2 arg2, float3 arg3, float3 arg4, bool arg5) {
     LuthierPath ret = (LuthierPath)0;
     ret.wi = arg0;
     ret.wo = arg1;
     ret.across = arg2;
     ret.throughput = arg3;
     ret.reflected = arg4;
-    ret.alpha = arg5;
-    ret.open = arg6;
+    ret.open = arg5;
     return ret;
 }
 
 // f cos_theta_i of the model `elek`, both directions above the horizon.
 float3 luthier_eval_elek(uint material, float3 wi, float3 wo) {
-    LuthierPath path = ConstructLuthierPath(wi, wo, wi.xy + wo.xy, (wi.z).xxx, (0.0).xxx, 0.0, true);
-    path = luthier_elek_interface(path, luthier_layer(material, 0u));
+    float3 down = float3(wi.xy, max(wi.z, 1e-16));
+    float3 up = float3(wo.xy, max(wo.z, 1e-16));
+    LuthierPath path = ConstructLuthierPath(down, up, wi.xy + wo.xy, (1.0).xxx, (0.0).xxx, true);
+    path = luthier_add_interface(path, luthier_layer(material, 0u));
     if (path.open) {
-        path = luthier_elek_interface(path, luthier_layer(material, 1u));
+        path = luthier_add_interface(path, luthier_layer(material, 1u));
     }
-    return path.reflected;
+    return wi.z * path.reflected;
 }
 
 // f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away

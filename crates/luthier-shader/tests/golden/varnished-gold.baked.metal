@@ -11,7 +11,7 @@
 //   texture(0) luthier_fresnel: texture2d<float>
 //   texture(1) luthier_distribution: texture2d<float>
 //   sampler(5) luthier_sampler: sampler, linear, clamp to edge
-//   buffer(6) luthier_materials: constant LuthierMaterials&, 31 float4
+//   buffer(6) luthier_materials: constant LuthierMaterials&, 33 float4
 //
 // Materials:
 //   0 varnished-gold, elek, 2 layers
@@ -22,7 +22,7 @@
 using metal::uint;
 
 struct LuthierMaterials {
-    metal::float4 inner[31];
+    metal::float4 inner[33];
 };
 
 // One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
@@ -31,8 +31,14 @@ struct LuthierLayer {
     uint kind;
     // Slope parameter of the micro-surface.
     float alpha;
-    // Index below over index above, for the refracted directions.
-    float eta;
+    // How fast D falls with the squared slope: 1 / alpha^2, over ln 2 for Beckmann.
+    float falloff;
+    // A quarter of the greatest D, 1 / (4 pi alpha^2).
+    float peak;
+    // Index above over index below, for the refracted directions.
+    float inverse_eta;
+    // Squared cosine of a refracted grazing direction, 1 - 1 / eta^2.
+    float grazing_cos_sq;
     // Tile of the Fresnel table.
     float fresnel_tile;
     // Tile of the distribution table.
@@ -48,23 +54,18 @@ struct LuthierPath {
     // Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
     metal::float2 across;
     char _pad3[8];
-    // Share of the light that comes down to the next layer and back out, times the outer cos_theta_i.
+    // Share of the light that comes down to the next layer and back out.
     metal::float3 throughput;
-    // Reflected by the layers so far: f cos_theta_i.
+    // f of the layers so far.
     metal::packed_float3 reflected;
-    // Greatest slope parameter so far: a layer is never smoother than those above it.
-    float alpha;
     // Whether any light reaches the next layer.
     bool open;
 };
 
 constant uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
-constant metal::float2 LUTHIER_FRESNEL_SIZE = metal::float2(128.0, 3.0);
-constant metal::float2 LUTHIER_DISTRIBUTION_SIZE = metal::float2(512.0, 1024.0);
-constant metal::float2 LUTHIER_DISTRIBUTION_TILE = metal::float2(512.0, 512.0);
 constant float LUTHIER_PI = 3.1415927;
 constant uint LUTHIER_MATERIAL_WORDS = 11u;
-constant uint LUTHIER_LAYER_WORDS = 10u;
+constant uint LUTHIER_LAYER_WORDS = 11u;
 
 // Fresnel reflectance of an interface, RGB.
 metal::float3 luthier_lookup_fresnel(
@@ -73,9 +74,9 @@ metal::float3 luthier_lookup_fresnel(
     metal::texture2d<float> luthier_fresnel,
     metal::sampler luthier_sampler
 ) {
-    float x = metal::saturate(cos_theta) * 127.0;
-    metal::float2 position = metal::float2(x + 0.5, tile + 0.5);
-    return luthier_fresnel.sample(luthier_sampler, position / LUTHIER_FRESNEL_SIZE, metal::level(0.0)).xyz;
+    float x = metal::saturate(cos_theta) * 0.9921875;
+    metal::float2 position = metal::float2(x + 0.00390625, (tile + 0.5) * 0.33333334);
+    return luthier_fresnel.sample(luthier_sampler, position, metal::level(0.0)).xyz;
 }
 
 // pi alpha^2 D of a slope distribution, for the angle between half vector and normal: D is this over pi alpha^2.
@@ -93,10 +94,15 @@ float luthier_lookup_distribution(
     float t_sq = t * t;
     float series = t_sq * (-0.3333295 + (t_sq * (0.19977711 + (t_sq * (-0.13877685 + (t_sq * 0.08053744))))));
     float theta_h = 2.0 * (((is_wide ? 0.7853982 : 0.0) + t) + (t * series));
-    float x = metal::sqrt(metal::sqrt(metal::sqrt(metal::saturate(theta_h / 1.5707964)))) * 511.0;
-    float y = metal::saturate(metal::log2(metal::max(alpha, 0.001) / 0.001) / 9.965784) * 511.0;
-    metal::float2 position = metal::float2(x + 0.5, ((tile * 512.0) + y) + 0.5);
-    return luthier_distribution.sample(luthier_sampler, position / LUTHIER_DISTRIBUTION_SIZE, metal::level(0.0)).x;
+    float x = metal::sqrt(metal::sqrt(metal::sqrt(metal::saturate(theta_h / 1.5707964)))) * 0.9980469;
+    float y = metal::saturate(metal::log2(metal::max(alpha, 0.001) / 0.001) / 9.965784) * 0.49902344;
+    metal::float2 position = metal::float2(x + 0.0009765625, ((tile * 0.5) + y) + 0.00048828125);
+    return luthier_distribution.sample(luthier_sampler, position, metal::level(0.0)).x;
+}
+
+// A whole number n, which the buffer holds as 2^23 + n: its low bits are n.
+uint luthier_whole(float word) {
+    return as_type<uint>(word) & 8388607u;
 }
 
 // Index of the first word of a material in the buffer.
@@ -104,24 +110,24 @@ uint luthier_header(uint material) {
     return material * LUTHIER_MATERIAL_WORDS;
 }
 
-uint luthier_wgsl_f2u32(float value) {
-    return static_cast<uint>(metal::clamp(value, 0.0, 4294967000.0));
-}
-
 // Number of layers of a material.
 uint luthier_layer_count(uint material, constant LuthierMaterials& luthier_materials) {
-    return luthier_wgsl_f2u32(luthier_materials.inner[luthier_header(material)].y);
+    return luthier_whole(luthier_materials.inner[luthier_header(material)].y);
 }
 
 // A layer of a material, counted from the top.
 LuthierLayer luthier_layer(uint material, uint index, constant LuthierMaterials& luthier_materials) {
     LuthierLayer layer = {};
-    uint first = luthier_wgsl_f2u32(luthier_materials.inner[luthier_header(material)].x) + (index * LUTHIER_LAYER_WORDS);
+    uint first = luthier_whole(luthier_materials.inner[luthier_header(material)].x) + (index * LUTHIER_LAYER_WORDS);
     metal::float4 head = luthier_materials.inner[first];
     metal::float4 tiles = luthier_materials.inner[first + 1u];
-    layer.kind = luthier_wgsl_f2u32(head.x);
-    layer.alpha = head.y;
-    layer.eta = head.z;
+    metal::float4 numbers = luthier_materials.inner[first + 10u];
+    layer.kind = luthier_whole(numbers.x);
+    layer.alpha = numbers.y;
+    layer.falloff = head.x;
+    layer.peak = head.y;
+    layer.inverse_eta = head.z;
+    layer.grazing_cos_sq = head.w;
     layer.fresnel_tile = tiles.x;
     layer.distribution_tile = tiles.y;
     return layer;
@@ -137,32 +143,30 @@ metal::float3 luthier_fresnel_term(
     return luthier_lookup_fresnel(layer.fresnel_tile, cos_theta_d, luthier_fresnel, luthier_sampler);
 }
 
-// pi alpha^2 D of a layer, from the table.
+// pi alpha^2 D of a layer, from the table and squares of the half vector.
 float luthier_distribution_term(
     LuthierLayer layer,
-    float alpha,
-    float cos_theta_h,
-    float sin_theta_h_sq,
+    float z_sq,
+    float across_sq,
     metal::texture2d<float> luthier_distribution,
     metal::sampler luthier_sampler
 ) {
-    return luthier_lookup_distribution(layer.distribution_tile, cos_theta_h, sin_theta_h_sq, alpha, luthier_distribution, luthier_sampler);
+    float alpha = layer.alpha;
+    float inverse_length_sq = 1.0 / (z_sq + across_sq);
+    float cos_theta_h = metal::sqrt(z_sq * inverse_length_sq);
+    return luthier_lookup_distribution(layer.distribution_tile, cos_theta_h, across_sq * inverse_length_sq, alpha, luthier_distribution, luthier_sampler);
 }
 
-// D of a layer at the half vector along `bisector`, whose squared length is `length_sq`.
-float luthier_density(
+// D / 4 of a layer at the half vector along `bisector`, above the horizon.
+float luthier_quarter_density(
     LuthierLayer layer,
     metal::float3 bisector,
-    float length_sq,
     metal::texture2d<float> luthier_distribution,
     metal::sampler luthier_sampler
 ) {
-    float inverse_length = metal::rsqrt(length_sq);
-    float cos_theta_h = bisector.z * inverse_length;
-    float sin_theta_h_sq = (metal::dot(bisector.xy, bisector.xy) * inverse_length) * inverse_length;
-    float area = layer.alpha * layer.alpha;
-    float alpha = layer.alpha;
-    return (luthier_distribution_term(layer, alpha, cos_theta_h, sin_theta_h_sq, luthier_distribution, luthier_sampler) / LUTHIER_PI) / area;
+    float z_sq = bisector.z * bisector.z;
+    float across_sq = metal::dot(bisector.xy, bisector.xy);
+    return luthier_distribution_term(layer, z_sq, across_sq, luthier_distribution, luthier_sampler) * layer.peak;
 }
 
 // Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
@@ -176,48 +180,25 @@ LuthierPath luthier_add_interface(
 ) {
     LuthierPath next = path;
     next.open = false;
-    metal::float3 bisector = metal::float3(path.across, path.wi.z + path.wo.z);
+    metal::float2 cosines = metal::float2(path.wi.z, path.wo.z);
+    metal::float3 bisector = metal::float3(path.across, cosines.x + cosines.y);
     float length_sq = metal::dot(bisector.xy, bisector.xy) + (bisector.z * bisector.z);
-    if (length_sq < 0.000000000000000000000001) {
-        return next;
-    }
-    float inverse_length = metal::rsqrt(length_sq);
-    float cos_theta_d = metal::min((0.5 * length_sq) * inverse_length, 1.0);
+    float secant_d = 2.0 * metal::rsqrt(length_sq);
+    float cos_theta_d = metal::min((0.25 * length_sq) * secant_d, 1.0);
     metal::float3 fresnel = luthier_fresnel_term(layer, cos_theta_d, luthier_fresnel, luthier_sampler);
-    float cavity = (4.0 * (bisector.z * inverse_length)) * inverse_length;
-    metal::float2 cosines = metal::max(metal::float2(path.wi.z, path.wo.z), metal::float2(0.000000000000000001));
-    float masking = metal::min(cavity * metal::min(cosines.x, cosines.y), 1.0);
-    float shape = (luthier_density(layer, bisector, length_sq, luthier_distribution, luthier_sampler) * masking) / ((4.0 * cosines.x) * cosines.y);
+    float masking = metal::min((bisector.z * metal::min(cosines.x, cosines.y)) * (secant_d * secant_d), 1.0);
+    float shape = (luthier_quarter_density(layer, bisector, luthier_distribution, luthier_sampler) * masking) / (cosines.x * cosines.y);
     next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
-    float inverse_eta = 1.0 / layer.eta;
-    metal::float2 cosines_sq = ((cosines * cosines) + metal::float2((layer.eta - 1.0) * (layer.eta + 1.0))) * (inverse_eta * inverse_eta);
-    if (metal::min(cosines_sq.x, cosines_sq.y) <= 0.0) {
-        return next;
-    }
+    metal::float2 bent = cosines * layer.inverse_eta;
+    metal::float2 cosines_sq = (bent * bent) + metal::float2(layer.grazing_cos_sq);
     metal::float2 secants = metal::rsqrt(cosines_sq);
     metal::float2 refracted = cosines_sq * secants;
-    next.wi = metal::float3(path.wi.xy * inverse_eta, refracted.x);
-    next.wo = metal::float3(path.wo.xy * inverse_eta, refracted.y);
-    next.across = path.across * inverse_eta;
-    next.open = true;
-    metal::float3 crossed = metal::float3(1.0) - fresnel;
-    metal::float3 kept = crossed * (metal::float3(1.0 - masking) + (crossed * masking));
-    next.throughput = path.throughput * kept;
-    return next;
-}
-
-// Adds an interface, which is never smoother than those above it.
-LuthierPath luthier_elek_interface(
-    LuthierPath path,
-    LuthierLayer layer,
-    metal::texture2d<float> luthier_fresnel,
-    metal::texture2d<float> luthier_distribution,
-    metal::sampler luthier_sampler
-) {
-    LuthierLayer rougher = layer;
-    rougher.alpha = metal::max(path.alpha, layer.alpha);
-    LuthierPath next = luthier_add_interface(path, rougher, luthier_fresnel, luthier_distribution, luthier_sampler);
-    next.alpha = rougher.alpha;
+    next.wi = metal::float3(path.wi.xy * layer.inverse_eta, refracted.x);
+    next.wo = metal::float3(path.wo.xy * layer.inverse_eta, refracted.y);
+    next.across = path.across * layer.inverse_eta;
+    next.open = metal::min(cosines_sq.x, cosines_sq.y) > 0.0;
+    metal::float3 returned = metal::float3(1.0) - (masking * fresnel);
+    next.throughput = (path.throughput * (metal::float3(1.0) - fresnel)) * returned;
     return next;
 }
 
@@ -231,12 +212,14 @@ metal::float3 luthier_eval_elek(
     metal::sampler luthier_sampler,
     constant LuthierMaterials& luthier_materials
 ) {
-    LuthierPath path = LuthierPath {wi, wo, wi.xy + wo.xy, {}, metal::float3(wi.z), metal::float3(0.0), 0.0, true};
-    path = luthier_elek_interface(path, luthier_layer(material, 0u, luthier_materials), luthier_fresnel, luthier_distribution, luthier_sampler);
+    metal::float3 down = metal::float3(wi.xy, metal::max(wi.z, 0.0000000000000001));
+    metal::float3 up = metal::float3(wo.xy, metal::max(wo.z, 0.0000000000000001));
+    LuthierPath path = LuthierPath {down, up, wi.xy + wo.xy, {}, metal::float3(1.0), metal::float3(0.0), true};
+    path = luthier_add_interface(path, luthier_layer(material, 0u, luthier_materials), luthier_fresnel, luthier_distribution, luthier_sampler);
     if (path.open) {
-        path = luthier_elek_interface(path, luthier_layer(material, 1u, luthier_materials), luthier_fresnel, luthier_distribution, luthier_sampler);
+        path = luthier_add_interface(path, luthier_layer(material, 1u, luthier_materials), luthier_fresnel, luthier_distribution, luthier_sampler);
     }
-    return path.reflected;
+    return wi.z * path.reflected;
 }
 
 // f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away

@@ -4,7 +4,7 @@
 //
 // Bindings, by argument index of a complete shader. A function takes those that it reads, in this order, as its last
 // arguments:
-//   buffer(6) luthier_materials: constant LuthierMaterials&, 31 float4
+//   buffer(6) luthier_materials: constant LuthierMaterials&, 33 float4
 //
 // Materials:
 //   0 varnished-gold, elek, 2 layers
@@ -15,7 +15,7 @@
 using metal::uint;
 
 struct LuthierMaterials {
-    metal::float4 inner[31];
+    metal::float4 inner[33];
 };
 
 // One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
@@ -24,10 +24,17 @@ struct LuthierLayer {
     uint kind;
     // Slope parameter of the micro-surface.
     float alpha;
-    // Index below over index above, for the refracted directions.
-    float eta;
+    // How fast D falls with the squared slope: 1 / alpha^2, over ln 2 for Beckmann.
+    float falloff;
+    // A quarter of the greatest D, 1 / (4 pi alpha^2).
+    float peak;
+    // Index above over index below, for the refracted directions.
+    float inverse_eta;
+    // Squared cosine of a refracted grazing direction, 1 - 1 / eta^2.
+    float grazing_cos_sq;
     // Slope distribution: 0 Beckmann, 1 GGX.
     float distribution;
+    char _pad7[4];
     // Real part of the index below, at three wavelengths.
     metal::float3 ior_n;
     // Imaginary part of it.
@@ -49,12 +56,10 @@ struct LuthierPath {
     // Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
     metal::float2 across;
     char _pad3[8];
-    // Share of the light that comes down to the next layer and back out, times the outer cos_theta_i.
+    // Share of the light that comes down to the next layer and back out.
     metal::float3 throughput;
-    // Reflected by the layers so far: f cos_theta_i.
+    // f of the layers so far.
     metal::packed_float3 reflected;
-    // Greatest slope parameter so far: a layer is never smoother than those above it.
-    float alpha;
     // Whether any light reaches the next layer.
     bool open;
 };
@@ -62,33 +67,38 @@ struct LuthierPath {
 constant uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
 constant float LUTHIER_PI = 3.1415927;
 constant uint LUTHIER_MATERIAL_WORDS = 11u;
-constant uint LUTHIER_LAYER_WORDS = 10u;
+constant uint LUTHIER_LAYER_WORDS = 11u;
+
+// A whole number n, which the buffer holds as 2^23 + n: its low bits are n.
+uint luthier_whole(float word) {
+    return as_type<uint>(word) & 8388607u;
+}
 
 // Index of the first word of a material in the buffer.
 uint luthier_header(uint material) {
     return material * LUTHIER_MATERIAL_WORDS;
 }
 
-uint luthier_wgsl_f2u32(float value) {
-    return static_cast<uint>(metal::clamp(value, 0.0, 4294967000.0));
-}
-
 // Number of layers of a material.
 uint luthier_layer_count(uint material, constant LuthierMaterials& luthier_materials) {
-    return luthier_wgsl_f2u32(luthier_materials.inner[luthier_header(material)].y);
+    return luthier_whole(luthier_materials.inner[luthier_header(material)].y);
 }
 
 // A layer of a material, counted from the top.
 LuthierLayer luthier_layer(uint material, uint index, constant LuthierMaterials& luthier_materials) {
     LuthierLayer layer = {};
-    uint first = luthier_wgsl_f2u32(luthier_materials.inner[luthier_header(material)].x) + (index * LUTHIER_LAYER_WORDS);
+    uint first = luthier_whole(luthier_materials.inner[luthier_header(material)].x) + (index * LUTHIER_LAYER_WORDS);
     metal::float4 head = luthier_materials.inner[first];
     metal::float4 base = luthier_materials.inner[first + 3u];
     metal::float4 real_part = luthier_materials.inner[first + 4u];
     metal::float4 imaginary_part = luthier_materials.inner[first + 5u];
-    layer.kind = luthier_wgsl_f2u32(head.x);
-    layer.alpha = head.y;
-    layer.eta = head.z;
+    metal::float4 numbers = luthier_materials.inner[first + 10u];
+    layer.kind = luthier_whole(numbers.x);
+    layer.alpha = numbers.y;
+    layer.falloff = head.x;
+    layer.peak = head.y;
+    layer.inverse_eta = head.z;
+    layer.grazing_cos_sq = head.w;
     layer.distribution = base.w;
     layer.ior_n = real_part.xyz;
     layer.ior_k = imaginary_part.xyz;
@@ -123,16 +133,16 @@ metal::float3 luthier_fresnel(metal::float3 ior_n, metal::float3 ior_k, float co
     return (0.5 * refl_s) * (metal::float3(1.0) + refl_ratio);
 }
 
-// pi alpha^2 D of Beckmann. Below a cosine of 0.1 it is zero in f32 for any alpha <= 1.
-float luthier_beckmann(float alpha, float cos_theta_h, float sin_theta_h_sq) {
-    float secant_sq = 1.0 / metal::max(cos_theta_h * cos_theta_h, 0.01);
-    return metal::exp((-(sin_theta_h_sq) * secant_sq) / (alpha * alpha)) * (secant_sq * secant_sq);
+// pi alpha^2 D of Beckmann, from squares of a half vector of any length. Beyond a slope of 10 it is zero in f32 for any alpha <= 1.
+float luthier_beckmann(float falloff, float z_sq, float across_sq) {
+    float slope_sq = metal::min(across_sq / z_sq, 100.0);
+    float secant_sq = 1.0 + slope_sq;
+    return metal::exp2(-(slope_sq) * falloff) * (secant_sq * secant_sq);
 }
 
-// pi alpha^2 D of GGX (Trowbridge-Reitz).
-float luthier_ggx(float alpha, float cos_theta_h, float sin_theta_h_sq) {
-    float alpha_sq = alpha * alpha;
-    float ratio = alpha_sq / (((alpha_sq * cos_theta_h) * cos_theta_h) + sin_theta_h_sq);
+// pi alpha^2 D of GGX (Trowbridge-Reitz), from squares of a half vector of any length.
+float luthier_ggx(float falloff, float z_sq, float across_sq) {
+    float ratio = (z_sq + across_sq) / (z_sq + (across_sq * falloff));
     return ratio * ratio;
 }
 
@@ -141,22 +151,20 @@ metal::float3 luthier_fresnel_term(LuthierLayer layer, float cos_theta_d) {
     return luthier_fresnel(layer.ior_n, layer.ior_k, cos_theta_d);
 }
 
-// pi alpha^2 D of a layer, in closed form.
-float luthier_distribution_term(LuthierLayer layer, float alpha, float cos_theta_h, float sin_theta_h_sq) {
+// pi alpha^2 D of a layer, in closed form, from squares of the half vector.
+float luthier_distribution_term(LuthierLayer layer, float z_sq, float across_sq) {
+    float falloff = layer.falloff;
     if (layer.distribution > 0.5) {
-        return luthier_ggx(alpha, cos_theta_h, sin_theta_h_sq);
+        return luthier_ggx(falloff, z_sq, across_sq);
     }
-    return luthier_beckmann(alpha, cos_theta_h, sin_theta_h_sq);
+    return luthier_beckmann(falloff, z_sq, across_sq);
 }
 
-// D of a layer at the half vector along `bisector`, whose squared length is `length_sq`.
-float luthier_density(LuthierLayer layer, metal::float3 bisector, float length_sq) {
-    float inverse_length = metal::rsqrt(length_sq);
-    float cos_theta_h = bisector.z * inverse_length;
-    float sin_theta_h_sq = (metal::dot(bisector.xy, bisector.xy) * inverse_length) * inverse_length;
-    float area = layer.alpha * layer.alpha;
-    float alpha = layer.alpha;
-    return (luthier_distribution_term(layer, alpha, cos_theta_h, sin_theta_h_sq) / LUTHIER_PI) / area;
+// D / 4 of a layer at the half vector along `bisector`, above the horizon.
+float luthier_quarter_density(LuthierLayer layer, metal::float3 bisector) {
+    float z_sq = bisector.z * bisector.z;
+    float across_sq = metal::dot(bisector.xy, bisector.xy);
+    return luthier_distribution_term(layer, z_sq, across_sq) * layer.peak;
 }
 
 // Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
@@ -164,42 +172,25 @@ float luthier_density(LuthierLayer layer, metal::float3 bisector, float length_s
 LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     LuthierPath next = path;
     next.open = false;
-    metal::float3 bisector = metal::float3(path.across, path.wi.z + path.wo.z);
+    metal::float2 cosines = metal::float2(path.wi.z, path.wo.z);
+    metal::float3 bisector = metal::float3(path.across, cosines.x + cosines.y);
     float length_sq = metal::dot(bisector.xy, bisector.xy) + (bisector.z * bisector.z);
-    if (length_sq < 0.000000000000000000000001) {
-        return next;
-    }
-    float inverse_length = metal::rsqrt(length_sq);
-    float cos_theta_d = metal::min((0.5 * length_sq) * inverse_length, 1.0);
+    float secant_d = 2.0 * metal::rsqrt(length_sq);
+    float cos_theta_d = metal::min((0.25 * length_sq) * secant_d, 1.0);
     metal::float3 fresnel = luthier_fresnel_term(layer, cos_theta_d);
-    float cavity = (4.0 * (bisector.z * inverse_length)) * inverse_length;
-    metal::float2 cosines = metal::max(metal::float2(path.wi.z, path.wo.z), metal::float2(0.000000000000000001));
-    float masking = metal::min(cavity * metal::min(cosines.x, cosines.y), 1.0);
-    float shape = (luthier_density(layer, bisector, length_sq) * masking) / ((4.0 * cosines.x) * cosines.y);
+    float masking = metal::min((bisector.z * metal::min(cosines.x, cosines.y)) * (secant_d * secant_d), 1.0);
+    float shape = (luthier_quarter_density(layer, bisector) * masking) / (cosines.x * cosines.y);
     next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
-    float inverse_eta = 1.0 / layer.eta;
-    metal::float2 cosines_sq = ((cosines * cosines) + metal::float2((layer.eta - 1.0) * (layer.eta + 1.0))) * (inverse_eta * inverse_eta);
-    if (metal::min(cosines_sq.x, cosines_sq.y) <= 0.0) {
-        return next;
-    }
+    metal::float2 bent = cosines * layer.inverse_eta;
+    metal::float2 cosines_sq = (bent * bent) + metal::float2(layer.grazing_cos_sq);
     metal::float2 secants = metal::rsqrt(cosines_sq);
     metal::float2 refracted = cosines_sq * secants;
-    next.wi = metal::float3(path.wi.xy * inverse_eta, refracted.x);
-    next.wo = metal::float3(path.wo.xy * inverse_eta, refracted.y);
-    next.across = path.across * inverse_eta;
-    next.open = true;
-    metal::float3 crossed = metal::float3(1.0) - fresnel;
-    metal::float3 kept = crossed * (metal::float3(1.0 - masking) + (crossed * masking));
-    next.throughput = path.throughput * kept;
-    return next;
-}
-
-// Adds an interface, which is never smoother than those above it.
-LuthierPath luthier_elek_interface(LuthierPath path, LuthierLayer layer) {
-    LuthierLayer rougher = layer;
-    rougher.alpha = metal::max(path.alpha, layer.alpha);
-    LuthierPath next = luthier_add_interface(path, rougher);
-    next.alpha = rougher.alpha;
+    next.wi = metal::float3(path.wi.xy * layer.inverse_eta, refracted.x);
+    next.wo = metal::float3(path.wo.xy * layer.inverse_eta, refracted.y);
+    next.across = path.across * layer.inverse_eta;
+    next.open = metal::min(cosines_sq.x, cosines_sq.y) > 0.0;
+    metal::float3 returned = metal::float3(1.0) - (masking * fresnel);
+    next.throughput = (path.throughput * (metal::float3(1.0) - fresnel)) * returned;
     return next;
 }
 
@@ -210,12 +201,14 @@ metal::float3 luthier_eval_elek(
     metal::float3 wo,
     constant LuthierMaterials& luthier_materials
 ) {
-    LuthierPath path = LuthierPath {wi, wo, wi.xy + wo.xy, {}, metal::float3(wi.z), metal::float3(0.0), 0.0, true};
-    path = luthier_elek_interface(path, luthier_layer(material, 0u, luthier_materials));
+    metal::float3 down = metal::float3(wi.xy, metal::max(wi.z, 0.0000000000000001));
+    metal::float3 up = metal::float3(wo.xy, metal::max(wo.z, 0.0000000000000001));
+    LuthierPath path = LuthierPath {down, up, wi.xy + wo.xy, {}, metal::float3(1.0), metal::float3(0.0), true};
+    path = luthier_add_interface(path, luthier_layer(material, 0u, luthier_materials));
     if (path.open) {
-        path = luthier_elek_interface(path, luthier_layer(material, 1u, luthier_materials));
+        path = luthier_add_interface(path, luthier_layer(material, 1u, luthier_materials));
     }
-    return path.reflected;
+    return wi.z * path.reflected;
 }
 
 // f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away

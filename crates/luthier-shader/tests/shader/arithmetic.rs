@@ -173,7 +173,9 @@ fn fresnel_agrees_with_complex_amplitudes() {
 
 #[test]
 fn distributions_are_normalised() {
-    for (name, layer) in [("luthier_ggx", conductor()), ("luthier_beckmann", dielectric())] {
+    let [ggx, beckmann] =
+        [("luthier_ggx", conductor(), 1.0), ("luthier_beckmann", dielectric(), std::f64::consts::LOG2_E)];
+    for (name, layer, unit) in [ggx, beckmann] {
         let machine = full(&[material("sample", &[layer])]);
         for alpha in [1e-3, 0.02, 0.3, 1.0f64] {
             // The integral of D cos over the hemisphere, with tan^2 = alpha^2 s / (1 - s) as variable.
@@ -182,8 +184,9 @@ fn distributions_are_normalised() {
             for i in 0..STEPS {
                 let s = (f64::from(i) + 0.5) / f64::from(STEPS);
                 let tan_sq = alpha * alpha * s / (1.0 - s);
-                let (cos, sin_sq) = (1.0 / (1.0 + tan_sq).sqrt(), tan_sq / (1.0 + tan_sq));
-                let arguments = [alpha, cos, sin_sq].map(|v| Value::F(v as f32)).to_vec();
+                // Squares of a half vector of length 2.
+                let [z_sq, across_sq] = [4.0, 4.0 * tan_sq].map(|square| square / (1.0 + tan_sq));
+                let arguments = [unit / (alpha * alpha), z_sq, across_sq].map(|v| Value::F(v as f32)).to_vec();
                 let value = f64::from(machine.call(name, arguments).floats()[0]);
                 sum += value / ((1.0 + tan_sq) * (1.0 - s)).powi(2) / f64::from(STEPS);
             }

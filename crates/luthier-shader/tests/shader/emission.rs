@@ -229,7 +229,7 @@ fn sets_that_cannot_be_emitted_say_why() {
     assert!(matches!(attempt(&lone(conductor()), tables(), Target::SpirV), ShaderError::NotText));
     let many: Vec<_> = (0..120).map(|i| material(&format!("m{i}"), &[conductor()])).collect();
     let error = attempt(&many, tables(), Target::GlslEs300);
-    assert!(matches!(error, ShaderError::UniformBlockTooLarge { words: 2520, limit: 1024 }), "{error}");
+    assert!(matches!(error, ShaderError::UniformBlockTooLarge { words: 2640, limit: 1024 }), "{error}");
     assert!(emit(&MaterialSet { materials: &many, tables: tables() }, Form::Baked, Target::Glsl450).is_ok());
 }
 

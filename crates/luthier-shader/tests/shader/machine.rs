@@ -212,7 +212,10 @@ impl Machine {
                     [Some(arg), arg1, arg2].into_iter().flatten().map(|h| self.get(frame, h)).collect();
                 math(fun, &operands)
             }
-            Expression::As { expr, kind, .. } => each(&[self.get(frame, expr)], &|v| cast(kind, &v[0])),
+            Expression::As { expr, kind, convert: Some(_) } => each(&[self.get(frame, expr)], &|v| cast(kind, &v[0])),
+            Expression::As { expr, kind: ScalarKind::Uint, convert: None } => each(&[self.get(frame, expr)], &|v| {
+                if let F(v) = v[0] { U(v.to_bits()) } else { panic!("no bits of {v:?}") }
+            }),
             Expression::ImageSample { image, coordinate, .. } => {
                 let (image, at) = (self.image(frame, image), self.get(frame, coordinate).floats());
                 let position = [f64::from(at[0]) * f64::from(image.width), f64::from(at[1]) * f64::from(image.height)];
@@ -329,6 +332,7 @@ fn binary(op: BinaryOperator, left: &Value, right: &Value) -> Value {
         (Op::Multiply, U(a), U(b)) => U(a.wrapping_mul(*b)),
         (Op::ShiftRight, U(a), U(b)) => U(a >> b),
         (Op::ExclusiveOr, U(a), U(b)) => U(a ^ b),
+        (Op::And, U(a), U(b)) => U(a & b),
         (Op::Add, I(a), I(b)) => I(a + b),
         (Op::Divide, I(a), I(b)) => I(a / b),
         (Op::Modulo, I(a), I(b)) => I(a % b),
