@@ -1,8 +1,8 @@
 //! From tiles to atlases.
 
 use luthier_lut::{
-    Atlas, AtlasLayout, Axis, Budget, ColorMode, Image, LayerRecord, MaterialConstants, RowBase, Search, ShadingModel,
-    TableKind, TexelFormat, Tile,
+    Atlas, AtlasLayout, Axis, Budget, ColorMode, FormatSet, Image, LayerRecord, MaterialConstants, RowBase, Search,
+    ShadingModel, TableKind, TexelFormat, Tile,
 };
 use luthier_material::{BudgetSettings, Material};
 
@@ -71,11 +71,13 @@ pub struct Options {
     pub lean: bool,
     /// Fresnel rows of this form, of the size and axis that materials ask for or that are fixed, in place of those of a search.
     pub rows: Option<(RowBase, TexelFormat)>,
+    /// Texel formats that a search may take; those of core WebGPU unless the target is known.
+    pub formats: FormatSet,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { budget: Budget::default(), search: true, lean: false, rows: None }
+        Self { budget: Budget::default(), search: true, lean: false, rows: None, formats: FormatSet::CORE }
     }
 }
 
@@ -147,7 +149,7 @@ fn plan(
             });
         }
     }
-    let mut settings = Settings { lean: options.lean, ..Settings::of(materials)? };
+    let mut settings = Settings { lean: options.lean, formats: options.formats, ..Settings::of(materials)? };
     if let Some(rows) = options.rows {
         settings.take_rows(rows);
     }
@@ -317,12 +319,14 @@ fn atlas(kind: TableKind, tiles: &Tiles, settings: &Settings, results: &Results)
     let [width, height] = layout.size();
     let mut truth = Image::zeros(width, height, channels);
     let mut texels = Image::zeros(width, height, format.channels());
+    let mut bytes = vec![0; (width * height * format.texel_bytes()) as usize];
     let mut entries = Vec::with_capacity(tiles.tiles.len());
     for (index, (name, key)) in tiles.tiles.iter().enumerate() {
         let data = results.tile(*key);
         let origin = layout.origin(index as u32);
         place(&mut truth, origin, &data.truth);
         place(&mut texels, origin, &data.texels);
+        place_bytes(&mut bytes, width, format, origin, &data.texels, &data.bytes);
         entries.push(Tile {
             name: name.clone(),
             model: data.model.clone(),
@@ -330,7 +334,16 @@ fn atlas(kind: TableKind, tiles: &Tiles, settings: &Settings, results: &Results)
             error: data.error.clone(),
         });
     }
-    Some(Atlas { kind, layout, format, tiles: entries, truth, texels })
+    Some(Atlas { kind, layout, format, tiles: entries, truth, texels, bytes })
+}
+
+/// Copies the bytes of a tile into those of an atlas of this width, a row of texels or blocks at a time.
+fn place_bytes(atlas: &mut [u8], width: u32, format: TexelFormat, [x, y]: [u32; 2], tile: &Image, bytes: &[u8]) {
+    let [row, pitch, left] = [tile.width, width, x].map(|texels| format.row_bytes(texels) as usize);
+    let top = (y / format.block_side()) as usize;
+    for (j, source) in (top..).zip(bytes.chunks_exact(row)) {
+        atlas[j * pitch + left..][..row].copy_from_slice(source);
+    }
 }
 
 /// Copies a tile into an atlas.

@@ -1,3 +1,4 @@
+use luthier_lut::TexelFormat;
 use thiserror::Error;
 
 /// Why a set of materials cannot be baked.
@@ -33,6 +34,16 @@ pub enum BakeError {
         second: String,
         /// What that one asks.
         second_value: String,
+    },
+    /// A side that blocks of texels do not fill.
+    #[error("{setting} {side} with format {format}: write a multiple of {}", format.block_side())]
+    Blocks {
+        /// The key, as in the file.
+        setting: &'static str,
+        /// The format whose blocks they are.
+        format: TexelFormat,
+        /// The side.
+        side: u32,
     },
     /// No tables hold the budget.
     #[error("the budget cannot be met: {reason}; `{hint}` would do")]

@@ -59,7 +59,7 @@ impl EscapeJob {
              {DOMAIN_ALPHA}",
             self.eta
         );
-        TileData { model, truth, texels: atlas.texels, error }
+        TileData { model, truth, texels: atlas.texels, bytes: atlas.bytes, error }
     }
 
     /// The share of the lobe around the direction into which light at `cos_theta` outside is refracted.

@@ -170,7 +170,14 @@ impl FgdJob {
         };
         let mut error = measure_scan(
             scan,
-            |u| Comparison { expected: probe(u), sampled: atlas.sample(0, at(u), WeightBits::Fixed(8)) },
+            |u| {
+                let (expected, mut sampled) = (probe(u), atlas.sample(0, at(u), WeightBits::Fixed(8)));
+                // Formats without a fourth channel hold reflected light alone.
+                if self.format.channels() < 4 {
+                    sampled[3] = expected[3];
+                }
+                Comparison { expected, sampled }
+            },
             |u| at(u).to_vec(),
         );
         error.max_abs_err += slack;
@@ -180,7 +187,7 @@ impl FgdJob {
             self.truth.distribution.name(),
             color_in_words(&self.truth.color)
         );
-        TileData { model, truth, texels: atlas.texels, error }
+        TileData { model, truth, texels: atlas.texels, bytes: atlas.bytes, error }
     }
 }
 

@@ -109,6 +109,7 @@ impl FilmJob {
             ),
             truth,
             texels: atlas.texels,
+            bytes: atlas.bytes,
             error,
         }
     }

@@ -68,6 +68,7 @@ impl FresnelJob {
             model: format!("exact complex Fresnel, unpolarised; {films}; {}", color_in_words(&self.color)),
             truth,
             texels: atlas.texels,
+            bytes: atlas.bytes,
             error,
         }
     }
@@ -128,13 +129,15 @@ impl RowShape {
         }
         let layout =
             AtlasLayout { x: self.axis.clone(), y: None, apron: 0, columns: 1, tiles: 1, base: RowBase::Schlick };
+        let (bytes, texels) = self.format.texels(&texels);
         Atlas {
             kind: TableKind::Fresnel,
             layout,
             format: self.format,
             tiles: Vec::new(),
             truth: truth.clone(),
-            texels: self.format.quantise(&texels),
+            texels,
+            bytes,
         }
     }
 }

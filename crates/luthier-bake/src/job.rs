@@ -168,6 +168,7 @@ pub(crate) struct TileData {
     pub(crate) model: String,
     pub(crate) truth: Image,
     pub(crate) texels: Image,
+    pub(crate) bytes: Vec<u8>,
     pub(crate) error: ErrorStats,
 }
 
@@ -183,7 +184,8 @@ pub(crate) fn lone_tile(kind: TableKind, axes: &[&Axis], format: TexelFormat, tr
         base: RowBase::Zero,
     };
     let tiles: Vec<Tile> = Vec::new();
-    Atlas { kind, layout, format, tiles, texels: balance::texels(kind, format, truth), truth: truth.clone() }
+    let (bytes, texels) = balance::texels(kind, format, truth);
+    Atlas { kind, layout, format, tiles, truth: truth.clone(), texels, bytes }
 }
 
 /// How the colour of a tile was made, for its description.

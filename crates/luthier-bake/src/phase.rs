@@ -55,6 +55,7 @@ impl PhaseJob {
             model: format!("2 cos(2 Phi) at {r}, {g} and {b} nm, Granier and Heidrich 2003 eq. 19"),
             truth,
             texels: atlas.texels,
+            bytes: atlas.bytes,
             error,
         }
     }

@@ -6,12 +6,14 @@
 //!
 //! Not searched: thickness textures, which are pictures, and escape tiles.
 
+mod blocks;
 mod choice;
 mod distribution;
 mod fresnel;
 pub mod goals;
 mod grids;
 mod phase;
+mod shared;
 
 use luthier_lut::{
     Axis, Budget, Candidate, CandidateForm, Mapping, MeasuredError, REL_FLOOR, RowBase, Search, TableKind,

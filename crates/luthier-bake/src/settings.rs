@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::fmt::Debug;
 
 use luthier_layers::elek;
-use luthier_lut::{Axis, Mapping, RowBase, TexelFormat};
+use luthier_lut::{Axis, FormatSet, Mapping, RowBase, TexelFormat};
 use luthier_material::{
     AlphaMapping, BakeSettings, DistributionMapping, DistributionSettings, Format, FresnelMapping, Material,
 };
@@ -29,6 +29,8 @@ pub(crate) struct Settings {
     pub(crate) asked: Asked,
     /// See [`crate::Options::lean`].
     pub(crate) lean: bool,
+    /// See [`crate::Options::formats`].
+    pub(crate) formats: FormatSet,
 }
 
 /// What the materials decide themselves: no search touches it.
@@ -89,6 +91,9 @@ impl Settings {
             ],
             ask.format("bake.fgd.format", |b| b.fgd.format, TexelFormat::Rgba16Float)?,
         );
+        if let Some(&side) = size.iter().find(|side| !side.is_multiple_of(fgd.1.block_side())) {
+            return Err(BakeError::Blocks { setting: "bake.fgd.size", format: fgd.1, side });
+        }
 
         let size = ask.one("bake.phase.size", |b| b.phase.size)?.unwrap_or(256);
         let phase = Some((
@@ -127,7 +132,19 @@ impl Settings {
             phase_format: any(|b| b.phase.format.is_some()),
         };
         let fgd_grid = fgd.0.clone();
-        Ok(Self { fresnel, distribution, fgd, fgd_grid, phase, thickness, film, escape, asked, lean: false })
+        Ok(Self {
+            fresnel,
+            distribution,
+            fgd,
+            fgd_grid,
+            phase,
+            thickness,
+            film,
+            escape,
+            asked,
+            lean: false,
+            formats: FormatSet::CORE,
+        })
     }
 
     /// Rows of this form: nothing is left to search for.
@@ -184,6 +201,7 @@ impl Ask<'_> {
             Format::R32Float => TexelFormat::R32Float,
             Format::Rgba8Unorm => TexelFormat::Rgba8Unorm,
             Format::Rgba16Unorm => TexelFormat::Rgba16Unorm,
+            Format::Bc6hRgbUfloat => TexelFormat::Bc6hRgbUfloat,
             Format::Rgba16Float => TexelFormat::Rgba16Float,
             Format::Rgba32Float => TexelFormat::Rgba32Float,
         }))

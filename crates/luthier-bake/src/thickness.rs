@@ -56,6 +56,7 @@ impl ThicknessJob {
             model: "d/(2 d_max), slopes dd/dx and dd/dy, sqrt(1 + slopes^2); Granier and Heidrich 2003 sec. 6".into(),
             truth,
             texels: atlas.texels,
+            bytes: atlas.bytes,
             error,
         }
     }

@@ -188,7 +188,7 @@ impl Limits {
     pub(crate) fn options(&self) -> luthier_bake::Options {
         let &Self { max_abs, max_rel, delta_e, max_bytes, max_cost, no_search } = self;
         let budget = luthier_lut::Budget { max_abs, max_rel, delta_e, max_bytes, max_cost };
-        luthier_bake::Options { budget, search: !no_search, lean: false, rows: None }
+        luthier_bake::Options { budget, search: !no_search, ..luthier_bake::Options::default() }
     }
 }
 

@@ -60,7 +60,7 @@ pub(crate) fn table_texels(atlases: &[Atlas]) -> Vec<TableTexels> {
         format: atlas.format,
         width: atlas.texels.width,
         height: atlas.texels.height,
-        bytes: atlas.format.encode(&atlas.texels),
+        bytes: atlas.bytes.clone(),
     };
     atlases.iter().map(table).collect()
 }

@@ -100,8 +100,8 @@ fn table(context: &Context, artefacts: &Artefacts, kind: TableKind) -> Result<Re
     if width > limit || height > limit {
         return Err(GpuError::TextureTooLarge { kind, width, height, limit });
     }
-    let norm16 = wgpu::Features::TEXTURE_FORMAT_16BIT_NORM;
-    if texels.format == TexelFormat::Rgba16Unorm && !context.device.features().contains(norm16) {
+    let format = texture_format(texels.format);
+    if !context.device.features().contains(format.required_features()) {
         return Err(GpuError::NoSuchFormat { kind, format: texels.format });
     }
     let view = context.guarded(kind.name(), || {
@@ -111,11 +111,11 @@ fn table(context: &Context, artefacts: &Artefacts, kind: TableKind) -> Result<Re
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: texture_format(texels.format),
+            format,
             usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
             view_formats: &[],
         });
-        context.upload_texels(&texture, &texels.bytes, width * texels.format.texel_bytes());
+        context.upload_texels(&texture, &texels.bytes, texels.format.row_bytes(width));
         texture.create_view(&wgpu::TextureViewDescriptor::default())
     })?;
     Ok(Resource::Table(view, texels.format))
@@ -167,6 +167,7 @@ fn texture_format(format: TexelFormat) -> wgpu::TextureFormat {
         TexelFormat::Rgb10a2Unorm => wgpu::TextureFormat::Rgb10a2Unorm,
         TexelFormat::Rg11b10Ufloat => wgpu::TextureFormat::Rg11b10Ufloat,
         TexelFormat::Rgba16Unorm => wgpu::TextureFormat::Rgba16Unorm,
+        TexelFormat::Bc6hRgbUfloat => wgpu::TextureFormat::Bc6hRgbUfloat,
         TexelFormat::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
         TexelFormat::Rgba32Float => wgpu::TextureFormat::Rgba32Float,
     }

@@ -139,6 +139,8 @@ pub struct Atlas {
     pub truth: Image,
     /// What ships: texels of `format`, as the shader reads them.
     pub texels: Image,
+    /// The same as a device takes them.
+    pub bytes: Vec<u8>,
 }
 
 impl Atlas {

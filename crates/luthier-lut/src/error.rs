@@ -25,6 +25,9 @@ pub enum LutError {
         /// Width x height x bytes per texel.
         expected: usize,
     },
+    /// Blocks that only part of the image fills, or that are not fitted as here.
+    #[error("blocks of texels that were not baked here")]
+    Blocks,
     /// A texel format that does not exist.
     #[error("unknown texel format `{0}`; known: {known}", known = TexelFormat::ALL.map(TexelFormat::name).join(", "))]
     UnknownFormat(String),

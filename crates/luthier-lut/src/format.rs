@@ -4,7 +4,7 @@ use std::str::FromStr;
 use half::f16;
 use serde::{Deserialize, Serialize};
 
-use crate::{Image, LutError};
+use crate::{Image, LutError, bc6h};
 
 /// Texel formats, named as WebGPU names them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -24,6 +24,9 @@ pub enum TexelFormat {
     Rg11b10Ufloat,
     /// Four unsigned normalised values of 16 bits. Not in core WebGPU: the feature `TEXTURE_FORMAT_16BIT_NORM` of wgpu.
     Rgba16Unorm,
+    /// Three half floats without sign in blocks of 4 x 4 texels, 16 bytes each (BC6H). Not in core WebGPU: the feature `TEXTURE_COMPRESSION_BC`.
+    #[serde(rename = "bc6h-rgb-ufloat")]
+    Bc6hRgbUfloat,
     /// Four half floats.
     Rgba16Float,
     /// Four floats. Not filterable in core WebGPU.
@@ -32,7 +35,7 @@ pub enum TexelFormat {
 
 impl TexelFormat {
     /// All formats, for listings and tests.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::R16Float,
         Self::Rg16Float,
         Self::R32Float,
@@ -40,6 +43,7 @@ impl TexelFormat {
         Self::Rgb10a2Unorm,
         Self::Rg11b10Ufloat,
         Self::Rgba16Unorm,
+        Self::Bc6hRgbUfloat,
         Self::Rgba16Float,
         Self::Rgba32Float,
     ];
@@ -54,6 +58,7 @@ impl TexelFormat {
             Self::Rgb10a2Unorm => "rgb10a2unorm",
             Self::Rg11b10Ufloat => "rg11b10ufloat",
             Self::Rgba16Unorm => "rgba16unorm",
+            Self::Bc6hRgbUfloat => "bc6h-rgb-ufloat",
             Self::Rgba16Float => "rgba16float",
             Self::Rgba32Float => "rgba32float",
         }
@@ -64,24 +69,40 @@ impl TexelFormat {
         match self {
             Self::R16Float | Self::R32Float => 1,
             Self::Rg16Float => 2,
-            Self::Rg11b10Ufloat => 3,
+            Self::Rg11b10Ufloat | Self::Bc6hRgbUfloat => 3,
             Self::Rgba8Unorm | Self::Rgb10a2Unorm | Self::Rgba16Unorm | Self::Rgba16Float | Self::Rgba32Float => 4,
         }
     }
 
-    /// Bytes per channel; of formats whose channels share a word, bytes of the word.
+    /// Texels along a side of a block; 1 where every texel is by itself. Sides of images, and of the tiles of an atlas, are multiples of it.
+    pub fn block_side(self) -> u32 {
+        if self == Self::Bc6hRgbUfloat { bc6h::SIDE } else { 1 }
+    }
+
+    /// Bytes of a row of texels or blocks.
+    pub fn row_bytes(self, width: u32) -> u32 {
+        width * self.block_side() * self.texel_bytes()
+    }
+
+    /// Whether core WebGPU has it.
+    pub const fn is_core(self) -> bool {
+        !matches!(self, Self::Rgba16Unorm | Self::Bc6hRgbUfloat)
+    }
+
+    /// Bytes per channel; of formats whose channels share a word, bytes of the word; of blocks 1.
     pub fn channel_bytes(self) -> u32 {
         match self {
-            Self::Rgba8Unorm => 1,
+            Self::Rgba8Unorm | Self::Bc6hRgbUfloat => 1,
             Self::R16Float | Self::Rg16Float | Self::Rgba16Unorm | Self::Rgba16Float => 2,
             Self::R32Float | Self::Rgb10a2Unorm | Self::Rg11b10Ufloat | Self::Rgba32Float => 4,
         }
     }
 
-    /// Bytes per texel.
+    /// Bytes per texel; of a block, its share.
     pub fn texel_bytes(self) -> u32 {
         match self {
             Self::Rgb10a2Unorm | Self::Rg11b10Ufloat => 4,
+            Self::Bc6hRgbUfloat => 1,
             _ => self.channels() * self.channel_bytes(),
         }
     }
@@ -102,8 +123,15 @@ impl TexelFormat {
     }
 
     /// The texels of an image as little-endian bytes, rounded to nearest. Channels the image lacks are 0, and 1 for
-    /// alpha; surplus channels are dropped. Unorm clamps to 0..1; floats of less than 32 bits clamp to their finite range.
+    /// alpha; surplus channels are dropped. Unorm clamps to 0..1; floats of less than 32 bits clamp to their finite range. Blocks are
+    /// fitted to their texels, and what was read from them need not give the same bytes again.
+    ///
+    /// # Panics
+    /// Where a side is no multiple of [`Self::block_side`].
     pub fn encode(self, image: &Image) -> Vec<u8> {
+        if self == Self::Bc6hRgbUfloat {
+            return bc6h::encode(image);
+        }
         let mut bytes = Vec::with_capacity(image.texel_count() * self.texel_bytes() as usize);
         for texel in image.texels() {
             let channel = |c: usize| texel.get(c).copied().unwrap_or(if c == 3 { 1.0 } else { 0.0 });
@@ -121,6 +149,7 @@ impl TexelFormat {
                     let [r, g, b] = [(0, 6), (1, 6), (2, 5)].map(|(c, mantissa)| ufloat(channel(c), mantissa));
                     bytes.extend_from_slice(&(r | g << 11 | b << 22).to_le_bytes());
                 }
+                Self::Bc6hRgbUfloat => {}
                 Self::R16Float | Self::Rg16Float | Self::Rgba16Float => {
                     for c in 0..self.channels() as usize {
                         let finite = channel(c).clamp(-f16::MAX.to_f32(), f16::MAX.to_f32());
@@ -137,26 +166,38 @@ impl TexelFormat {
 
     /// The image that a shader reads once these texels have been encoded.
     pub fn quantise(self, image: &Image) -> Image {
-        let data = self.encode(image);
-        Image { width: image.width, height: image.height, channels: self.channels(), data: self.values(&data) }
+        self.texels(image).1
+    }
+
+    /// The same behind the bytes.
+    pub fn texels(self, image: &Image) -> (Vec<u8>, Image) {
+        let (bytes, [width, height]) = (self.encode(image), [image.width, image.height]);
+        let data = self.values(width, height, &bytes);
+        (bytes, Image { width, height, channels: self.channels(), data })
     }
 
     /// The image that a shader reads from these bytes.
     ///
     /// # Errors
-    /// [`LutError::TexelBytes`] when the length does not fit.
+    /// [`LutError::TexelBytes`] when the length does not fit, [`LutError::Blocks`] for parts of blocks and for modes of BC6H that
+    /// [`Self::encode`] does not write.
     pub fn decode(self, width: u32, height: u32, bytes: &[u8]) -> Result<Image, LutError> {
         let expected = (width as usize).saturating_mul(height as usize).saturating_mul(self.texel_bytes() as usize);
         if bytes.len() != expected {
             return Err(LutError::TexelBytes { found: bytes.len(), expected });
         }
-        Ok(Image { width, height, channels: self.channels(), data: self.values(bytes) })
+        let side = self.block_side();
+        if !width.is_multiple_of(side) || !height.is_multiple_of(side) || side > 1 && !bc6h::is_known(bytes) {
+            return Err(LutError::Blocks);
+        }
+        Ok(Image { width, height, channels: self.channels(), data: self.values(width, height, bytes) })
     }
 
-    fn values(self, bytes: &[u8]) -> Vec<f32> {
+    fn values(self, width: u32, height: u32, bytes: &[u8]) -> Vec<f32> {
         let words = || bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
         match self {
             Self::Rgba8Unorm => bytes.iter().map(|&b| f32::from(b) / 255.0).collect(),
+            Self::Bc6hRgbUfloat => bc6h::decode(width, height, bytes),
             Self::Rgb10a2Unorm => words()
                 .flat_map(|w| {
                     let [r, g, b] = [0, 10, 20].map(|shift| (w >> shift & 1023) as f32 / 1023.0);
@@ -178,6 +219,33 @@ impl TexelFormat {
             }
             Self::R32Float | Self::Rgba32Float => words().map(f32::from_bits).collect(),
         }
+    }
+}
+
+/// Some of the formats.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FormatSet(u16);
+
+impl FormatSet {
+    /// Those of core WebGPU.
+    pub const CORE: Self = {
+        let (mut set, mut i) = (0, 0);
+        while i < TexelFormat::ALL.len() {
+            set |= (TexelFormat::ALL[i].is_core() as u16) << TexelFormat::ALL[i] as u16;
+            i += 1;
+        }
+        Self(set)
+    };
+
+    /// Whether it has a format.
+    pub fn has(self, format: TexelFormat) -> bool {
+        self.0 >> format as u16 & 1 == 1
+    }
+}
+
+impl FromIterator<TexelFormat> for FormatSet {
+    fn from_iter<I: IntoIterator<Item = TexelFormat>>(formats: I) -> Self {
+        Self(formats.into_iter().fold(0, |set, format| set | 1 << format as u16))
     }
 }
 
@@ -292,9 +360,42 @@ mod tests {
     #[test]
     fn sizes_are_those_of_webgpu() {
         let sizes = TexelFormat::ALL.map(|format| (format.texel_bytes(), format.is_filterable()));
-        let expected =
-            [(2, true), (4, true), (4, false), (4, true), (4, true), (4, true), (8, true), (8, true), (16, false)];
+        let expected = [
+            (2, true),
+            (4, true),
+            (4, false),
+            (4, true),
+            (4, true),
+            (4, true),
+            (8, true),
+            (1, true),
+            (8, true),
+            (16, false),
+        ];
         assert_eq!(sizes, expected);
+        // A row of blocks is four rows of texels.
+        let rows = [TexelFormat::Rgba8Unorm, TexelFormat::Bc6hRgbUfloat].map(|format| format.row_bytes(64));
+        assert_eq!(rows, [256, 256]);
+    }
+
+    #[test]
+    fn sets_hold_what_they_were_made_of() {
+        for format in TexelFormat::ALL {
+            assert_eq!(FormatSet::CORE.has(format), format.is_core(), "{format}");
+            let one: FormatSet = [format].into_iter().collect();
+            assert_eq!(TexelFormat::ALL.into_iter().filter(|f| one.has(*f)).collect::<Vec<_>>(), [format]);
+        }
+    }
+
+    #[test]
+    fn blocks_are_whole_and_of_known_modes() {
+        let format = TexelFormat::Bc6hRgbUfloat;
+        let (bytes, read) = format.texels(&Image { data: vec![0.25; 8 * 4 * 3], ..Image::zeros(8, 4, 3) });
+        assert_eq!((bytes.len(), read.channels), (32, 3));
+        assert!(read.data.iter().all(|v| *v == 0.25));
+        assert_eq!(format.decode(8, 4, &bytes).unwrap(), read);
+        assert!(matches!(format.decode(16, 2, &bytes), Err(LutError::Blocks)));
+        assert!(matches!(format.decode(8, 4, &[2; 32]), Err(LutError::Blocks)));
     }
 
     #[test]
@@ -309,7 +410,7 @@ mod tests {
     proptest! {
         #[test]
         fn what_was_decoded_encodes_to_the_same_bytes(bytes in prop::collection::vec(any::<u8>(), 48)) {
-            for format in TexelFormat::ALL {
+            for format in TexelFormat::ALL.into_iter().filter(|format| format.block_side() == 1) {
                 let width = 48 / format.texel_bytes();
                 let image = format.decode(width, 1, &bytes).unwrap();
                 // Half floats that are not finite are clamped, by contract; floats that are not numbers keep their bits.

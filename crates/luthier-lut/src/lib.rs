@@ -12,6 +12,7 @@
 mod atlas;
 mod axis;
 mod base;
+mod bc6h;
 mod choice;
 mod constants;
 mod encoding;
@@ -34,7 +35,7 @@ pub use constants::{FlakesRecord, GlitterRecord, MaterialConstants, PatinaRecord
 pub use encoding::Encoding;
 pub use error::LutError;
 pub use form::Form;
-pub use format::TexelFormat;
+pub use format::{FormatSet, TexelFormat};
 pub use image::Image;
 pub use manifest::{
     BindingEntry, ColorMode, FileEntry, MANIFEST_SCHEMA, Manifest, MapEntry, MapSlot, MaterialEntry, ShaderEntry,

@@ -46,6 +46,8 @@ named! {
         Rgba8Unorm = "rgba8unorm",
         /// Four unsigned normalised values of 16 bits; not in core WebGPU.
         Rgba16Unorm = "rgba16unorm",
+        /// Three half floats without sign in blocks of 4 x 4 texels; not in core WebGPU.
+        Bc6hRgbUfloat = "bc6h-rgb-ufloat",
         /// Four half floats.
         Rgba16Float = "rgba16float",
         /// Four floats.

@@ -25,7 +25,7 @@ const FREE_DFD_BYTES: [std::ops::Range<usize>; 3] = [13..14, 15..16, 20..28];
 /// # Errors
 /// [`TextureError::Size`], [`TextureError::Lut`] when the bytes do not fit the size, [`TextureError::Metadata`].
 pub fn encode(texture: &Texture) -> Result<Vec<u8>, TextureError> {
-    let expected = checked_bytes(texture.width, texture.height, texture.format.texel_bytes())?;
+    let expected = level_bytes(texture.format, texture.width, texture.height)?;
     if texture.bytes.len() != expected {
         return Err(TextureError::Length { found: texture.bytes.len(), expected });
     }
@@ -77,7 +77,7 @@ pub fn decode(file: &[u8]) -> Result<Texture, TextureError> {
     let header = header(file)?;
     let format = texel_format(&header)?;
     check_shape(&header)?;
-    let expected = checked_bytes(header.pixel_width, header.pixel_height, format.texel_bytes())?;
+    let expected = level_bytes(format, header.pixel_width, header.pixel_height)?;
 
     let index = header.index;
     let descriptor = section(file, index.dfd_byte_offset.into(), index.dfd_byte_length.into())?;
@@ -113,6 +113,15 @@ pub(crate) fn decode_table(file: &[u8]) -> Result<(TexelLayout, Image), TextureE
     let expected = checked_bytes(pixel_width, height, layout.texel_bytes())?;
     let bytes = first_level(file, &header, expected)?;
     Ok((layout, layout.image(pixel_width, height, &bytes)))
+}
+
+/// The bytes of a level of whole blocks.
+fn level_bytes(format: TexelFormat, width: u32, height: u32) -> Result<usize, TextureError> {
+    let side = format.block_side();
+    if !width.is_multiple_of(side) || !height.is_multiple_of(side) {
+        return Err(TextureError::Size { width, height });
+    }
+    checked_bytes(width, height, format.texel_bytes())
 }
 
 fn table_layout(format: Format) -> Option<TexelLayout> {
@@ -187,6 +196,7 @@ fn vulkan_format(format: TexelFormat) -> Format {
         TexelFormat::Rgb10a2Unorm => Format::A2B10G10R10_UNORM_PACK32,
         TexelFormat::Rg11b10Ufloat => Format::B10G11R11_UFLOAT_PACK32,
         TexelFormat::Rgba16Unorm => Format::R16G16B16A16_UNORM,
+        TexelFormat::Bc6hRgbUfloat => Format::BC6H_UFLOAT_BLOCK,
         TexelFormat::Rgba16Float => Format::R16G16B16A16_SFLOAT,
         TexelFormat::Rgba32Float => Format::R32G32B32A32_SFLOAT,
     }

@@ -19,10 +19,10 @@ pub struct Texture {
 }
 
 impl Texture {
-    /// The texels of an atlas in its format. They are quantised already, so nothing is lost.
+    /// The texels of an atlas in its format.
     pub fn from_atlas(atlas: &Atlas, metadata: Metadata) -> Self {
         let Image { width, height, .. } = atlas.texels;
-        Self { format: atlas.format, width, height, bytes: atlas.format.encode(&atlas.texels), metadata }
+        Self { format: atlas.format, width, height, bytes: atlas.bytes.clone(), metadata }
     }
 
     /// The values that a shader reads.
@@ -64,6 +64,7 @@ mod tests {
                 tiles: Vec::new(),
                 truth: texels.clone(),
                 texels: texels.clone(),
+                bytes: format.encode(&texels),
             };
             let texture = Texture::from_atlas(&atlas, Metadata::new());
             assert_eq!((texture.width, texture.height), (3, 1));

@@ -31,9 +31,11 @@ pub(super) fn candidates(plan: &Plan) -> Option<Found> {
     if jobs.is_empty() || plan.settings.asked.distribution {
         return None;
     }
+    let formats = FORMATS.iter().filter(|format| plan.settings.formats.has(**format));
     let tables: Vec<(f64, u32, TexelFormat)> = EXPONENTS
         .iter()
-        .flat_map(|&e| SIDES.iter().flat_map(move |&side| FORMATS.iter().map(move |&format| (e, side, format))))
+        .flat_map(|&e| SIDES.iter().map(move |&side| (e, side)))
+        .flat_map(|(e, side)| formats.clone().map(move |&format| (e, side, format)))
         .collect();
     let mut candidates = vec![Candidate {
         form: CandidateForm::ClosedForm,

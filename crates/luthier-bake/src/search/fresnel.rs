@@ -12,7 +12,7 @@ use crate::plan::Plan;
 use crate::settings::axis;
 
 /// Nodes of a row: four to the octave, and those that make 384 bytes of texels of 4 and 8 bytes.
-const SIZES: [u32; 33] = [
+pub(super) const SIZES: [u32; 33] = [
     2, 3, 4, 5, 6, 7, 8, 10, 11, 13, 16, 19, 23, 27, 32, 38, 45, 48, 54, 64, 76, 93, 96, 108, 128, 152, 181, 215, 256,
     304, 362, 431, 512,
 ];
@@ -53,7 +53,7 @@ const STALLED: f64 = 0.9;
 /// The exact reflectance of one interface, from nodes at cubes of equal steps.
 pub(crate) struct Truth {
     nodes: Vec<Rgb>,
-    fit: SchlickBase,
+    pub(crate) fit: SchlickBase,
 }
 
 impl Truth {
@@ -109,7 +109,7 @@ pub(crate) fn candidate(shape: &RowShape, truths: &[Truth], colors: bool) -> Can
 }
 
 /// The cost of a look-up.
-fn price(shape: &RowShape) -> f64 {
+pub(super) fn price(shape: &RowShape) -> f64 {
     let angle = if shape.axis.quantity == "theta" { 6.0 * cost::QUARTER_RATE } else { 0.0 };
     let header = f64::from(shape.base.header_texels());
     // Three fetches, a power, and for each channel a handful of products.
@@ -128,8 +128,11 @@ pub(super) fn candidates(plan: &Plan, colors: bool) -> Option<Found> {
     } else {
         MAPPINGS.map(|mapping| axis("cos_theta", "", [0.0, 1.0], given.axis.size, mapping)).to_vec()
     };
-    let formats: Vec<(RowBase, TexelFormat)> =
-        if asked.fresnel_format { vec![(RowBase::Zero, given.format)] } else { FORMATS.to_vec() };
+    let formats: Vec<(RowBase, TexelFormat)> = if asked.fresnel_format {
+        vec![(RowBase::Zero, given.format)]
+    } else {
+        FORMATS.into_iter().filter(|(_, format)| plan.settings.formats.has(*format)).collect()
+    };
     let families: Vec<(RowBase, TexelFormat, &Axis)> = formats
         .iter()
         .flat_map(|&(base, format)| mappings.iter().map(move |axis| (base, format, axis)))

@@ -7,13 +7,17 @@ use luthier_lut::{
     Atlas, AtlasLayout, Axis, Budget, Candidate, Encoding, Image, Mapping, MeasuredError, RowBase, TableKind,
     TexelFormat, WeightBits, bilinear,
 };
-use luthier_material::Material;
+use luthier_material::{DEFAULT_WAVELENGTHS_NM, Material};
+use luthier_optics::color::Color;
 use luthier_optics::microfacet::scaled_distribution;
 use luthier_optics::stack::Distribution;
 use rayon::prelude::*;
 
+pub use super::blocks::{BlockStep, RowBlocks};
 use super::fresnel::{self, FORMATS, Truth};
-use super::{Found, WEIGHTS, choose, grids, measured};
+use super::shared::{Bare, shared_tables};
+pub use super::shared::{OneChannel, Parameters, SharedTable};
+use super::{Found, WEIGHTS, blocks, choose, grids, measured};
 use crate::BakeError;
 use crate::distribution::DistributionJob;
 use crate::fresnel::{FresnelJob, RowShape};
@@ -99,6 +103,23 @@ pub struct Goals {
     pub albedos: Vec<AlbedoGoal>,
     /// Ways to have D.
     pub distributions: Vec<DistributionGoal>,
+    /// Tiles in blocks of texels.
+    pub blocks: Vec<BlockStep>,
+    /// Rows in blocks of texels, and the fewest bytes of one of those that a search may take.
+    pub row_blocks: Vec<(RowBlocks, Option<u32>)>,
+    /// Tables of three axes in place of rows.
+    pub shared: Vec<SharedGoal>,
+    /// Interfaces that such a table could serve: those without films that reflect anything.
+    pub bare: u32,
+}
+
+/// A table of three axes, beside rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SharedGoal {
+    /// The table.
+    pub table: SharedTable,
+    /// The fewest bytes of a row whose error at three wavelengths, and whose cost, is no larger.
+    pub row_bytes: Option<u32>,
 }
 
 /// Measures the goals for a set of materials.
@@ -106,7 +127,7 @@ pub struct Goals {
 /// # Errors
 /// See [`BakeError`].
 pub fn goals(materials: &[Material], read_image: ImageReader<'_>) -> Result<Goals, BakeError> {
-    let plan = Plan::new(materials, Settings::of(materials)?, read_image)?;
+    let mut plan = Plan::new(materials, Settings::of(materials)?, read_image)?;
     let names = |kind: TableKind| plan.tiles[kind as usize].tiles.clone();
     let rows: Vec<(String, Truth)> = names(TableKind::Fresnel)
         .into_par_iter()
@@ -152,7 +173,73 @@ pub fn goals(materials: &[Material], read_image: ImageReader<'_>) -> Result<Goal
         .collect();
     let only_rows = fresnel::candidates(&plan, false);
     let steps = [1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4].map(|max_abs| step(only_rows.as_ref(), max_abs)).to_vec();
-    Ok(Goals { row, rows: found, families, steps, albedos: albedos(&plan), distributions: distributions() })
+    let truths: Vec<&Truth> = rows.iter().map(|(_, truth)| truth).collect();
+    let colors = row_shapes(&truths);
+    let row_blocks =
+        blocks::rows(&truths).into_iter().map(|r| (r.clone(), blocks::least_row(&colors, r.max_abs, f64::INFINITY)));
+    let row_blocks = row_blocks.collect();
+    let (shared, bare) = shared_goals(&plan);
+    let results = plan.graph.only(&[JobKind::FgdTruth]).run(&Silent, Results::default());
+    let albedos = albedos(&plan, &results);
+    plan.settings.formats = TexelFormat::ALL.into_iter().collect();
+    let blocks = blocks::tiles(&plan, &results);
+    let distributions = distributions();
+    Ok(Goals { row, rows: found, families, steps, albedos, distributions, blocks, row_blocks, shared, bare })
+}
+
+/// Rows for comparison, and their largest errors: all sizes and formats of the search, four mappings.
+fn row_shapes(truths: &[&Truth]) -> Vec<(RowShape, f64)> {
+    let mut shapes = Vec::new();
+    for (base, format) in FORMATS {
+        for exponent in [1.0, 2.0, 3.0, 4.0] {
+            shapes.extend(fresnel::SIZES.map(|size| RowShape {
+                axis: axis("cos_theta", "", [0.0, 1.0], size, Mapping::Power { exponent }),
+                format,
+                base,
+            }));
+        }
+    }
+    let error = |shape: &RowShape| truths.iter().map(|t| t.error(shape, false).max_abs).fold(0.0, f64::max);
+    shapes.into_par_iter().map(|shape| (shape.clone(), error(&shape))).collect()
+}
+
+/// Points at which tables of three axes are compared with the function: squares of equal steps in the cosine.
+const SHARED_POINTS: u32 = 256;
+
+fn shared_goals(plan: &Plan) -> (Vec<SharedGoal>, u32) {
+    let bare = |job: &Job| match job {
+        Job::Fresnel(job) if job.interface.films.is_empty() && job.interface.above != job.interface.below => {
+            Some(job.clone())
+        }
+        _ => None,
+    };
+    let jobs: Vec<FresnelJob> = plan.graph.of_kind(JobKind::Fresnel).filter_map(bare).collect();
+    let wavelengths = |job: &FresnelJob| match job.color {
+        Color::Spectral => DEFAULT_WAVELENGTHS_NM,
+        Color::ThreeWavelengths(nm) => nm,
+    };
+    let interfaces: Vec<Bare> = jobs
+        .par_iter()
+        .map(|job| {
+            let at = wavelengths(job).map(|nm| job.interface.at(nm));
+            let sampled = job.interface.sampled(&job.color);
+            let points = (0..=SHARED_POINTS).map(|i| f64::from(i) / f64::from(SHARED_POINTS)).map(|u| u * u);
+            Bare {
+                etas: [0, 1, 2].map(|c: usize| at[c].below / at[c].above),
+                points: points.map(|c| (c, [[0, 1, 2].map(|k: usize| at[k].reflectance(c)), sampled.rgb(c)])).collect(),
+            }
+        })
+        .collect();
+    let three = jobs.iter().map(|job| FresnelJob { color: Color::ThreeWavelengths(wavelengths(job)), ..job.clone() });
+    let truths: Vec<Truth> = three.map(|job| Truth::new(&job)).collect();
+    let rows = row_shapes(&truths.iter().collect::<Vec<_>>());
+    let tables = shared_tables(&interfaces).into_iter();
+    let goal = |table: SharedTable| SharedGoal {
+        row_bytes: blocks::least_row(&rows, table.three_wavelengths, table.cost),
+        table,
+    };
+    let goals = tables.map(goal);
+    (goals.collect(), jobs.len() as u32)
 }
 
 fn step(found: Option<&Found>, max_abs: f64) -> Step {
@@ -174,8 +261,8 @@ fn elek_error(truth: &Truth) -> f64 {
     }
     let layout = AtlasLayout { x: x.clone(), y: None, apron: 0, columns: 1, tiles: 1, base: RowBase::Zero };
     let format = TexelFormat::Rgba8Unorm;
-    let texels = format.quantise(&image);
-    let atlas = Atlas { kind: TableKind::Fresnel, layout, format, tiles: Vec::new(), truth: image, texels };
+    let (bytes, texels) = format.texels(&image);
+    let atlas = Atlas { kind: TableKind::Fresnel, layout, format, tiles: Vec::new(), truth: image, texels, bytes };
     // Half the points towards grazing angles.
     let points: Vec<([f64; 2], [f64; 4])> = (0..=4096)
         .flat_map(|i| [f64::from(i) / 4096.0, libm::pow(f64::from(i) / 4096.0, 4.0)])
@@ -187,8 +274,7 @@ fn elek_error(truth: &Truth) -> f64 {
     measured(points.iter().map(|(at, rgb)| (at, *rgb)), 3, false, 0.0, |at| atlas.sample(0, at, WEIGHTS)).max_abs
 }
 
-fn albedos(plan: &Plan) -> Vec<AlbedoGoal> {
-    let results = plan.graph.only(&[JobKind::FgdTruth]).run(&Silent, Results::default());
+fn albedos(plan: &Plan, results: &Results) -> Vec<AlbedoGoal> {
     let goals = plan.tiles[TableKind::Fgd as usize].tiles.iter().filter_map(|(name, key)| {
         let is_it = |job: &&Job| job.key() == *key;
         let Some(Job::Fgd(job)) = plan.graph.of_kind(JobKind::Fgd).find(is_it) else { return None };

@@ -16,13 +16,19 @@ use crate::settings::axis;
 const FGD_SIDES: [u32; 9] = [8, 12, 16, 20, 24, 32, 40, 48, 64];
 /// Exponents of its axes, cosine and alpha.
 const FGD_EXPONENTS: [[f64; 2]; 4] = [[2.0, 3.0], [2.0, 2.0], [3.0, 3.0], [3.0, 2.0]];
-const FGD_FORMATS: [TexelFormat; 3] = [TexelFormat::Rgba8Unorm, TexelFormat::Rgba16Float, TexelFormat::Rgba32Float];
+const FGD_FORMATS: [TexelFormat; 4] =
+    [TexelFormat::Bc6hRgbUfloat, TexelFormat::Rgba8Unorm, TexelFormat::Rgba16Float, TexelFormat::Rgba32Float];
 
 const FILM_COLUMNS: [u32; 5] = [16, 32, 48, 64, 96];
 const FILM_ROWS: [u32; 5] = [32, 64, 128, 256, 384];
 const FILM_EXPONENTS: [f64; 3] = [2.0, 3.0, 4.0];
-const FILM_FORMATS: [TexelFormat; 4] =
-    [TexelFormat::Rgba8Unorm, TexelFormat::Rgb10a2Unorm, TexelFormat::Rgba16Float, TexelFormat::Rgba32Float];
+const FILM_FORMATS: [TexelFormat; 5] = [
+    TexelFormat::Bc6hRgbUfloat,
+    TexelFormat::Rgba8Unorm,
+    TexelFormat::Rgb10a2Unorm,
+    TexelFormat::Rgba16Float,
+    TexelFormat::Rgba32Float,
+];
 /// Points at which film tiles are compared with the function.
 const FILM_PROBES: u32 = 4096;
 
@@ -36,53 +42,89 @@ struct Fine {
     slack: f64,
 }
 
-pub(super) fn fgd(plan: &Plan, results: &Results, colors: bool) -> Option<Found> {
-    let asked = plan.settings.asked;
-    let ([x, y], format) = &plan.settings.fgd;
-    let tiles: Vec<Fine> = plan
-        .graph
-        .of_kind(JobKind::FgdTruth)
-        .map(|job| {
-            let FgdTruth { image, probes, slack, .. } = results.fgd_truth(job).clone();
-            Fine { grid: [x.clone(), y.clone()], image, probes, slack }
-        })
-        .collect();
-    if tiles.is_empty() || asked.fgd_size && asked.fgd_format {
-        return None;
+/// Tiles that are measured together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Group {
+    BareAlbedo,
+    FilmAlbedo,
+    Film,
+}
+
+impl Group {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::BareAlbedo => "albedo of bare interfaces",
+            Self::FilmAlbedo => "albedo of films",
+            Self::Film => "films that vary",
+        }
     }
-    let formats = if asked.fgd_format { vec![*format] } else { FGD_FORMATS.to_vec() };
+}
+
+/// The candidates for a group of tiles, without what functions may be off themselves.
+pub(super) fn of_group(plan: &Plan, results: &Results, group: Group) -> Vec<Candidate> {
+    match group {
+        Group::Film => {
+            candidates(TableKind::Film, &film_tiles(plan), film_axes(), &allowed(&FILM_FORMATS, plan), 3, false)
+        }
+        Group::BareAlbedo | Group::FilmAlbedo => {
+            let is_film = |job: &&Job| matches!(job, Job::FgdTruth(job) if !job.interface.films.is_empty());
+            let jobs = plan.graph.of_kind(JobKind::FgdTruth).filter(|job| is_film(job) == (group == Group::FilmAlbedo));
+            let mut tiles = fgd_tiles(plan, results, jobs);
+            tiles.iter_mut().for_each(|tile| tile.slack = 0.0);
+            candidates(TableKind::Fgd, &tiles, fgd_axes(plan), &allowed(&FGD_FORMATS, plan), 4, false)
+        }
+    }
+}
+
+fn fgd_tiles<'a>(plan: &Plan, results: &Results, jobs: impl Iterator<Item = &'a Job>) -> Vec<Fine> {
+    let tile = |job: &Job| {
+        let FgdTruth { image, probes, slack, .. } = results.fgd_truth(job).clone();
+        Fine { grid: plan.settings.fgd.0.clone(), image, probes, slack }
+    };
+    jobs.map(tile).collect()
+}
+
+fn fgd_axes(plan: &Plan) -> Vec<[Axis; 2]> {
+    let [x, y] = &plan.settings.fgd.0;
+    if plan.settings.asked.fgd_size {
+        return vec![[x.clone(), y.clone()]];
+    }
+    let power = |axis: &Axis, size, exponent| Axis { size, mapping: Mapping::Power { exponent }, ..axis.clone() };
     let mut axes = Vec::new();
-    if asked.fgd_size {
-        axes.push([x.clone(), y.clone()]);
-    } else {
-        for [p, q] in FGD_EXPONENTS {
-            for columns in FGD_SIDES {
-                for rows in FGD_SIDES {
-                    let power = |axis: &Axis, size, exponent| Axis {
-                        size,
-                        mapping: Mapping::Power { exponent },
-                        ..axis.clone()
-                    };
-                    axes.push([power(x, columns, p), power(y, rows, q)]);
-                }
+    for [p, q] in FGD_EXPONENTS {
+        for columns in FGD_SIDES {
+            for rows in FGD_SIDES {
+                axes.push([power(x, columns, p), power(y, rows, q)]);
             }
         }
     }
-    let fixed_cost = price(&[x.clone(), y.clone()], TexelFormat::Rgba16Float);
-    let candidates = candidates(TableKind::Fgd, &tiles, axes, &formats, 4, colors);
+    axes
+}
+
+pub(super) fn fgd(plan: &Plan, results: &Results, colors: bool) -> Option<Found> {
+    let asked = plan.settings.asked;
+    let (axes, format) = &plan.settings.fgd;
+    let tiles = fgd_tiles(plan, results, plan.graph.of_kind(JobKind::FgdTruth));
+    if tiles.is_empty() || asked.fgd_size && asked.fgd_format {
+        return None;
+    }
+    let formats = if asked.fgd_format { vec![*format] } else { allowed(&FGD_FORMATS, plan) };
+    let fixed_cost = price(axes, TexelFormat::Rgba16Float);
+    let candidates = candidates(TableKind::Fgd, &tiles, fgd_axes(plan), &formats, 4, colors);
     Some(Found::new(TableKind::Fgd, fixed_cost, candidates))
 }
 
-pub(super) fn film(plan: &Plan, colors: bool) -> Option<Found> {
-    let finest = |exponent| {
-        [
-            axis("cos_theta", "", [0.0, 1.0], 96, Mapping::Power { exponent }),
-            axis("fraction", "", [0.0, 1.0], 384, Mapping::Linear),
-        ]
-    };
+/// The finest film tiles that are tried.
+fn finest(exponent: f64) -> [Axis; 2] {
+    [
+        axis("cos_theta", "", [0.0, 1.0], 96, Mapping::Power { exponent }),
+        axis("fraction", "", [0.0, 1.0], 384, Mapping::Linear),
+    ]
+}
+
+fn film_tiles(plan: &Plan) -> Vec<Fine> {
     let grid = finest(3.0);
-    let tiles: Vec<Fine> = plan
-        .graph
+    plan.graph
         .of_kind(JobKind::Film)
         .filter_map(|job| if let Job::Film(job) = job { Some(job) } else { None })
         .map(|job| Fine {
@@ -91,10 +133,10 @@ pub(super) fn film(plan: &Plan, colors: bool) -> Option<Found> {
             probes: job.probes(FILM_PROBES),
             slack: 0.0,
         })
-        .collect();
-    if tiles.is_empty() {
-        return None;
-    }
+        .collect()
+}
+
+fn film_axes() -> Vec<[Axis; 2]> {
     let mut axes = Vec::new();
     for exponent in FILM_EXPONENTS {
         for columns in FILM_COLUMNS {
@@ -104,9 +146,22 @@ pub(super) fn film(plan: &Plan, colors: bool) -> Option<Found> {
             }
         }
     }
+    axes
+}
+
+pub(super) fn film(plan: &Plan, colors: bool) -> Option<Found> {
+    let tiles = film_tiles(plan);
+    if tiles.is_empty() {
+        return None;
+    }
     let fixed_cost = price(&finest(2.0), TexelFormat::Rgba16Float);
-    let candidates = candidates(TableKind::Film, &tiles, axes, &FILM_FORMATS, 3, colors);
+    let candidates = candidates(TableKind::Film, &tiles, film_axes(), &allowed(&FILM_FORMATS, plan), 3, colors);
     Some(Found::new(TableKind::Film, fixed_cost, candidates))
+}
+
+/// Those of some formats that the search may take.
+fn allowed(formats: &[TexelFormat], plan: &Plan) -> Vec<TexelFormat> {
+    formats.iter().copied().filter(|format| plan.settings.formats.has(*format)).collect()
 }
 
 fn candidates(
@@ -124,7 +179,10 @@ fn candidates(
                 .iter()
                 .map(|t| if axes == t.grid { t.image.clone() } else { resampled(&t.image, &t.grid, &axes) })
                 .collect();
-            let with = |&format| {
+            let is_whole =
+                |format: &&TexelFormat| axes.iter().all(|axis| axis.size.is_multiple_of(format.block_side()));
+            let with = |&format: &TexelFormat| {
+                let channels = channels.min(format.channels() as usize);
                 let errors = tiles.iter().zip(&images).map(|(tile, image)| {
                     let atlas = lone_tile(kind, &[&axes[0], &axes[1]], format, image);
                     let points = tile.probes.iter().map(|(at, value)| (at, *value));
@@ -135,7 +193,7 @@ fn candidates(
                 let form = CandidateForm::Table { x, y: Some(y), format, base: RowBase::Zero };
                 Candidate { bytes: form.bytes(tiles.len() as u32), cost: price(&axes, format), error, form }
             };
-            formats.iter().map(with).collect()
+            formats.iter().filter(is_whole).map(with).collect()
         })
         .collect();
     measured.concat()

@@ -25,7 +25,9 @@ pub(super) fn candidates(plan: &Plan) -> Option<Found> {
     if jobs.is_empty() || asked.phase_size || asked.phase_format {
         return None;
     }
-    let shapes: Vec<(u32, TexelFormat)> = SIZES.iter().flat_map(|&size| FORMATS.map(|format| (size, format))).collect();
+    let formats = FORMATS.into_iter().filter(|format| plan.settings.formats.has(*format));
+    let shapes: Vec<(u32, TexelFormat)> =
+        SIZES.iter().flat_map(|&size| formats.clone().map(move |format| (size, format))).collect();
     // Three look-ups, one for the cosine of each channel.
     let price = |format| 3.0 * (2.0 + cost::read(format));
     let mut candidates = vec![Candidate {

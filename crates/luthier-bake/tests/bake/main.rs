@@ -3,6 +3,7 @@
 #![expect(clippy::disallowed_methods, reason = "oracles: nothing that ships depends on them")]
 
 mod albedo;
+mod blocks;
 // The oracle of the optics, which uses nothing of the workspace.
 #[expect(dead_code, reason = "the tests of the optics use all of it")]
 #[path = "../../../luthier-optics/tests/optics/brute_force.rs"]

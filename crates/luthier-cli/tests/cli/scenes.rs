@@ -119,6 +119,23 @@ fn a_target_without_textures_gets_the_full_form() {
     assert_eq!(workshop.json("out/manifest.json")["choice"]["form"], "full");
 }
 
+/// Formats that the target lacks are not searched, and the tables that ship have one that it has.
+#[test]
+fn a_target_keeps_the_search_to_its_formats() {
+    let workshop = shelf();
+    let formats = |workshop: &Workshop| -> Vec<String> {
+        workshop.run(&["bake", "shelf.toml", "-q"]).exits(0);
+        let manifest = workshop.json("out/manifest.json");
+        assert_eq!(manifest["choice"]["form"], "baked");
+        let tables = manifest["tables"].as_array().unwrap();
+        tables.iter().map(|table| table["format"].as_str().unwrap().to_owned()).collect()
+    };
+    let free = formats(&workshop);
+    assert!(!free.is_empty() && free.iter().all(|format| format != "rgba16float"), "{free:?}");
+    workshop.edit("shelf.toml", |text| format!("{text}\n[target]\nformats = [\"rgba16float\"]\n"));
+    assert_eq!(formats(&workshop), vec!["rgba16float"; free.len()]);
+}
+
 #[test]
 fn mistakes_name_the_place_and_a_way_out() {
     let workshop = shelf();

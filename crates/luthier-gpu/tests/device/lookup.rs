@@ -183,6 +183,28 @@ fn fgd_tiles_in_every_format() {
     }
 }
 
+/// The driver decodes blocks by itself.
+#[test]
+fn fgd_tiles_in_blocks() {
+    let Some(gpu) = gpu() else { return };
+    let layout = AtlasLayout {
+        x: axis("cos_theta", 1.0, 32, Mapping::Power { exponent: 2.0 }),
+        y: Some(axis("alpha", 1.0, 16, Mapping::Power { exponent: 2.0 })),
+        apron: 0,
+        columns: 3,
+        tiles: 4,
+        base: luthier_lut::RowBase::Zero,
+    };
+    let table = Table::new(TableKind::Fgd, layout, TexelFormat::Bc6hRgbUfloat, ramp);
+    let tables = with(table.clone());
+    match gpu.scene(&artefacts(Form::Baked, layers(&tables), &tables), "baked") {
+        Err(GpuError::NoSuchFormat { kind, format }) => {
+            assert_eq!((kind, format), (TableKind::Fgd, TexelFormat::Bc6hRgbUfloat));
+        }
+        _ => compare(&table),
+    }
+}
+
 #[test]
 fn phase_rows_in_every_format() {
     for format in COLOR_FORMATS {

@@ -12,6 +12,7 @@ const SIDE: Kind = Kind::Integer(2, 8192);
 const SIDES: Kind = Kind::List { item: &SIDE, min: 2, max: 2 };
 
 const COLOR_FORMATS: Kind = Kind::Choice(&["rgba8unorm", "rgba16unorm", "rgba16float", "rgba32float"]);
+const ALBEDO_FORMATS: Kind = Kind::Choice(&["bc6h-rgb-ufloat", "rgba16float", "rgba32float"]);
 const FLOAT_FORMATS: Kind = Kind::Choice(&["rgba16float", "rgba32float"]);
 const SCALAR_FORMATS: Kind = Kind::Choice(&["r16float", "rg16float", "r32float"]);
 
@@ -98,7 +99,7 @@ static FGD: Table = Table {
     doc: "Energy reflected by the rough interface, over cosine and alpha.",
     keys: &[
         Key::optional("size", SIDES, "Texels along the cosine and along alpha."),
-        Key::optional("format", FLOAT_FORMATS, FORMAT_DOC),
+        Key::optional("format", ALBEDO_FORMATS, FORMAT_DOC),
     ],
     exactly_one: None,
 };

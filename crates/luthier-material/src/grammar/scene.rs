@@ -124,6 +124,7 @@ const FORMATS: &[&str] = &[
     "rgb10a2unorm",
     "rg11b10ufloat",
     "rgba16unorm",
+    "bc6h-rgb-ufloat",
     "rgba16float",
     "rgba32float",
 ];

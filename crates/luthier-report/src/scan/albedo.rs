@@ -70,7 +70,7 @@ pub(super) fn scan(
             for (reader, estimate) in readers.iter().zip(estimates) {
                 let Measured { scan, uncertainty, .. } = measured[reader.tile as usize].get_or_insert_default();
                 let sampled = table.read(reader.tile, point.values, Weights::EightBit);
-                for (channel, &sampled) in sampled.iter().enumerate() {
+                for (channel, &sampled) in sampled.iter().enumerate().take(table.entry.format.channels() as usize) {
                     if scan.add(&point.values, channel, estimate.mean[channel], sampled) {
                         *uncertainty = Some(estimate.standard_error[channel]);
                     }

@@ -13,7 +13,8 @@ fn texture(format: TexelFormat, width: u32, height: u32) -> Texture {
 fn every_format_survives() {
     for format in TexelFormat::ALL {
         for (width, height) in [(1, 1), (128, 1), (5, 3), (300, 200)] {
-            let texture = texture(format, width, height);
+            let side = format.block_side();
+            let texture = texture(format, side * width, side * height);
             assert_eq!(decode(&encode(&texture).unwrap()).unwrap(), texture, "{format} {width}x{height}");
         }
     }
@@ -23,15 +24,21 @@ fn every_format_survives() {
 #[test]
 fn another_reader_finds_everything() {
     for format in TexelFormat::ALL {
-        let texture = texture(format, 6, 2);
+        let side = format.block_side();
+        let texture = texture(format, 6 * side, 2 * side);
         let file = encode(&texture).unwrap();
         let reader = ::ktx2::Reader::new(file.as_slice()).unwrap();
         assert_eq!(reader.writer().unwrap().trim_end_matches('\0'), WRITER);
         assert_eq!(reader.transfer_function(), Some(::ktx2::TransferFunction::Linear));
-        assert_eq!(reader.color_model(), Some(::ktx2::ColorModel::RGBSDA));
         let basic = reader.basic_dfd().unwrap();
-        assert_eq!(basic.sample_information.len(), format.channels() as usize);
-        assert_eq!(u32::from(basic.bytes_planes[0]), format.texel_bytes());
+        // A block is one sample of the descriptor, whose model says what is in it; its dimensions are stored less 1.
+        let (model, samples) = match side {
+            1 => (::ktx2::ColorModel::RGBSDA, format.channels() as usize),
+            _ => (::ktx2::ColorModel::BC6H, 1),
+        };
+        assert_eq!((reader.color_model(), basic.sample_information.len()), (Some(model), samples));
+        assert_eq!(u32::from(basic.bytes_planes[0]), side * format.row_bytes(1));
+        assert_eq!(file[120..122], [side as u8 - 1; 2], "{format}");
         assert_eq!(reader.header().type_size, format.channel_bytes());
         let keys: Vec<_> = reader.key_value_data().map(|(key, _)| key).collect();
         assert_eq!(keys, ["KTXwriter", "axis.x", "model"]);

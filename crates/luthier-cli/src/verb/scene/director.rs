@@ -1,5 +1,5 @@
 use luthier_bake::{Bake, BakeError, Options, Silent};
-use luthier_lut::{Budget, LayerRecord, MaterialChoice, SceneBudget, SceneChoice, SceneError};
+use luthier_lut::{Budget, FormatSet, LayerRecord, MaterialChoice, SceneBudget, SceneChoice, SceneError};
 use luthier_material::{Material, ModelBudget, Scene};
 use luthier_report::{Subject, TableTerms, Weights};
 use luthier_scene::{CostTable, Form, Judge, TABLE_SHARE, label};
@@ -128,7 +128,7 @@ impl<'a> Director<'a> {
             .collect();
         let files = match form {
             Form::Full => without_tables(&materials)?,
-            Form::Baked => match tables(&materials, judges, &mut choices, budgets, allow_miss)? {
+            Form::Baked => match tables(&materials, formats(scene), judges, &mut choices, budgets, allow_miss)? {
                 Ok(files) => files,
                 Err(reason) => return Ok(Err(Refusal::Tables(reason))),
             },
@@ -155,14 +155,21 @@ fn unfit(scene: &Scene, made: &Made) -> Option<String> {
     if let Some(most) = scene.target.max_bytes.filter(|most| bytes > *most) {
         return Some(format!("tables take {bytes} bytes, more than {most}"));
     }
-    let formats = scene.target.formats.as_ref()?;
-    let foreign = made.files.manifest.tables.iter().find(|table| !formats.iter().any(|f| f == table.format.name()))?;
+    let formats = formats(scene)?;
+    let foreign = made.files.manifest.tables.iter().find(|table| !formats.has(table.format))?;
     Some(format!("the {} table is {}, which the target does not have", foreign.kind.name(), foreign.format.name()))
+}
+
+/// Texel formats that tables may have, if the target says so.
+fn formats(scene: &Scene) -> Option<FormatSet> {
+    let named = |formats: &Vec<String>| formats.iter().filter_map(|name| name.parse().ok()).collect();
+    scene.target.formats.as_ref().map(named)
 }
 
 /// The loosest tables whose errors, under the light of the scene, stay inside what models leave of the budgets.
 fn tables(
     materials: &[Material],
+    formats: Option<FormatSet>,
     judges: &[Judge],
     choices: &mut [MaterialChoice],
     budgets: &[SceneBudget],
@@ -176,8 +183,12 @@ fn tables(
     levels.reverse();
     let mut nearest = String::new();
     while let Some(level) = levels.pop() {
-        let options =
-            Options { budget: Budget { max_abs: level, ..Budget::default() }, lean: true, ..Options::default() };
+        let options = Options {
+            budget: Budget { max_abs: level, ..Budget::default() },
+            lean: true,
+            formats: formats.unwrap_or(FormatSet::CORE),
+            ..Options::default()
+        };
         let bake = match luthier_bake::bake_with(materials, &options, &read_image, &Silent) {
             // Tighter ones cannot be held either.
             Err(BakeError::Budget { .. }) if level.is_some() => {

@@ -63,13 +63,13 @@ fn intro(command: &str) -> String {
          - *Verdict*: the cheapest candidate whose largest error, plus two standard errors of the reference, is inside {model:.0} % of each limit; \
          the standard error must be below a quarter of that. Samples are doubled where a decision is open, up to {samples} million for a \
          material; what is open then is `undecided`, and not taken. Tables have the other {rest:.0} %: of the limits 1e-2, 3e-3, 1e-3, 3e-4, \
-         1e-4 and 3e-5 on their absolute error (docs/budgets.md), from a fifth of the tightest relative share down, the first is taken with which their \
+         1e-4 and 3e-5 on their absolute error (docs/budgets.md), in formats that the target has, from a fifth of the tightest relative share down, the first is taken with which their \
          error, measured at the same directions, is inside it. The two errors are never added up.\n\
          - *Form*: one for all materials of a scene. `full` is tried where tables do not fit the target: no model's full form is \
          cheaper than its baked form (a test keeps that true).\n\n\
          Not searched: other indices, roughnesses or film thicknesses than the file's; films that vary, but for their nominal \
          thickness; effects (flakes, patina, glitter) and maps, which stay as they are and are not judged; constants in the code in place of the \
-         buffer; different forms in one scene; formats of tables, but as a reason to go without. Single precision is a matter of \
+         buffer; different forms in one scene. Single precision is a matter of \
          `docs/parity.md`. `luthier report` judges the tables of a scene with `--no-device`: on a device it wants both forms, and a scene has one.\n\n"
     )
 }

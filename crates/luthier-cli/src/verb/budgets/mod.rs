@@ -1,3 +1,5 @@
+mod alternatives;
+
 use std::fmt::Write as _;
 
 use luthier_bake::goals::{Family, Goals, ROW_BYTES, goals};
@@ -42,8 +44,8 @@ the nearest is taken if none holds. `--no-search` takes the fixed defaults: 128 
 |---|---|
 | fresnel | 2 to 512 nodes; cosine, u^p with p 1.25 to 4, and the rational map b u / (1 + b - u) with b 0.025 to 0.8; rgba8unorm, rgb10a2unorm, rg11b10ufloat, rgba16float, rgba32float; plain, or over Schlick's form |
 | distribution | closed form; u^4 and u^8, log alpha, 32 to 128 a side, r16float, split roots |
-| fgd | 8 to 64 nodes along each axis, four pairs of exponents, rgba8unorm, rgba16float, rgba32float |
-| film | 16 to 96 by 32 to 384 nodes, u^2 to u^4, four formats |
+| fgd | 8 to 64 nodes along each axis, four pairs of exponents, rgba8unorm, rgba16float, rgba32float, bc6h-rgb-ufloat |
+| film | 16 to 96 by 32 to 384 nodes, u^2 to u^4, the same and rgb10a2unorm |
 | phase | closed form; 16 to 512 nodes, rgba16float, rgba32float |
 
 Fgd, film and phase are searched under a budget only: what they hold is costly, and `luthier shader` promises an answer at once without
@@ -52,14 +54,15 @@ one. Thickness textures are pictures; escape tiles keep their size.
 Costs are estimates: an operation on one number 1; a root, logarithm, exponential, division or sine 4; a fetch 16 for each 4 bytes of its
 texel, and four fetches where core WebGPU does not filter.
 
+Formats that core WebGPU lacks (bc6h-rgb-ufloat) are searched only where a scene's target lists them in `formats`; such a list also keeps the
+search to what it names. A material may ask for `bc6h-rgb-ufloat` in `[bake.fgd]`, with sides that are multiples of 4.
+
 Not among the candidates:
 
-- BC6H: a feature that devices need not have; its blocks are 4 x 4 texels, so that four rows of unrelated interfaces would share
-  endpoints; and its half floats err by more than the rows here are allowed.
+- BC6H for Fresnel rows: measured below, and never smaller. Phase rows have a closed form of no bytes and no error; escape tiles hold one
+  number, not three.
 - rgba16unorm: not in core WebGPU nor in GLSL ES 3.00, so that no search takes it; a material may ask for it. Measured below.
-- The course's three-dimensional table over (angle, n, k): three reads, one for each channel, for values at three wavelengths that the
-  form `full` computes without any table and without error. Spectral colours and films have no (n, k). At 64^3 bytes it would take 680
-  interfaces to weigh less than rows of 384 bytes.
+- The course's table of three axes (angle, n, k): measured below.
 - A fitted monotone map as a table of knots: it is another fetch. What is fitted is one number, the exponent or the bend.
 ";
 
@@ -78,6 +81,8 @@ fn page(goals: &Goals) -> String {
     fresnel(&mut out, goals);
     albedo(&mut out, goals);
     distribution(&mut out, goals);
+    alternatives::blocks(&mut out, goals);
+    alternatives::shared(&mut out, goals);
     out
 }
 
