@@ -163,12 +163,13 @@ a chip has slow exponentials; these have none. `luthier shader --closed` emits t
 Fresnel term only, and with constants for its index the compiler reduces that to little more than the fetch: the share of \
 full then approaches 1.
 - Without Fresnel and D an interface still has the half vector, the masking, a quotient by both cosines, and on the way down two \
-refracted cosines and three exponentials of the absorption. The model `microfacet`, one interface, is already above twice Phong in the tables below. So \
-1.5 of Phong is out of reach of any shader that evaluates two interfaces, and is reached or nearly so only where the normal map and the \
-environment are counted on both sides, as the papers did. It would need one lobe fitted to the stack.
-- A lower share of full needs cheaper shares of what both forms have in common; what could be shared (one reciprocal root per half vector, one \
-quotient per interface, reciprocal roots for refraction) is. Each such saving lowers both forms.
-- Constants save instructions (*issue*) in every row. In the model's inverse throughput some rows rise: a branch that the constants decide is gone, \
+refracted cosines and three exponentials of the absorption. The model `microfacet`, one interface and nothing below it, takes 1.5 of Phong \
+or nearly so in the tables below. So 1.5 of Phong alone is out of reach of shaders that evaluate two interfaces; it can be reached where the \
+normal map and the environment are counted on both sides, as the papers did. Alone it would need one lobe fitted to the stack.
+- What both forms have in common hides what tables save, and is short: 1 / alpha^2, the peak of D, 1 / eta and their like are in the material \
+buffer, half vectors keep their length, whole numbers need no conversion, a position in an atlas is one product and one sum.
+- Constants save where a form computes with numbers of the material, Fresnel terms above all; with tables they save next to nothing, because \
+a number from the buffer costs no instruction either. In the model's inverse throughput some rows rise: a branch that the constants decide is gone, \
 and with it the discount for what lies under it.
 ";
 
