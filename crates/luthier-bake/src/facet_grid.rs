@@ -6,6 +6,7 @@ use luthier_optics::Rgb;
 use luthier_optics::albedo::{Effort, FacetStatistics, crossed_albedo};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
+use luthier_optics::interpolation::cubic_stencil;
 use luthier_optics::ior::Ior;
 use luthier_optics::microsurface::TransparentFacets;
 use luthier_optics::stack::Distribution;
@@ -195,17 +196,15 @@ impl CrossedJob {
 }
 
 impl CrossedGrid {
-    /// Bilinear between the coarse nodes, per channel.
+    /// Cubic between the coarse nodes, per channel.
     pub(crate) fn at(&self, u: [f64; 2]) -> Rgb {
-        let last = self.side - 1;
-        let [x, y] = u.map(|u| u.clamp(0.0, 1.0) * last as f64);
-        let (i, j) = ((x as usize).min(last - 1), (y as usize).min(last - 1));
-        let (s, t) = (x - i as f64, y - j as f64);
-        [0, 1, 2].map(|c: usize| {
-            let node = |i: usize, j: usize| self.values[c][j * self.side + i];
-            let top = node(i, j) * (1.0 - s) + node(i + 1, j) * s;
-            let bottom = node(i, j + 1) * (1.0 - s) + node(i + 1, j + 1) * s;
-            top * (1.0 - t) + bottom * t
-        })
+        let [(i, x), (j, y)] = u.map(|u| cubic_stencil(u, self.side));
+        let mut rgb = [0.0; 3];
+        for (row, y) in (j..).zip(y) {
+            for (column, x) in (i..).zip(x) {
+                (0..3).for_each(|c| rgb[c] += x * y * self.values[c][row * self.side + column]);
+            }
+        }
+        rgb
     }
 }

@@ -57,9 +57,10 @@ pub(crate) fn lookup(table: &TableFace, features: &Features) -> Result<String, S
     let features = features.with("schlick_base", has_base);
     for line in prune(module, &features).lines() {
         if let Some(value) = place(line, "let x = $x(") {
-            node_index(&mut out, "x", &layout.x, value, unit(table)[0]);
+            let unit = if is_whole(table) { 1.0 / f64::from(layout.size()[0]) } else { 1.0 };
+            node_index(&mut out, "x", &layout.x, value, unit);
         } else if let (Some(value), Some(y)) = (place(line, "let y = $y("), &layout.y) {
-            node_index(&mut out, "y", y, value, unit(table)[1]);
+            node_index(&mut out, "y", y, value, 1.0);
         } else if line.contains("$position") {
             position(&mut out, table);
         } else {
@@ -94,30 +95,37 @@ fn check_axis(axis: &Axis, names: &[&str], table: TableKind) -> Result<(), Shade
     Ok(())
 }
 
-/// What coordinates of the atlas count, as parts of a texel: all of it is 1 wide and 1 high where the sampler filters, texels are
-/// where nodes are also read one by one.
-fn unit(table: &TableFace) -> [f64; 2] {
-    let is_whole = table.format.is_filterable() && table.layout.base == RowBase::Zero;
-    if is_whole { table.layout.size().map(|size| 1.0 / f64::from(size)) } else { [1.0; 2] }
+/// Whether positions of a table are parts of the atlas, as samplers want them, from the start: one product and one sum across. Down the
+/// atlas they are quotients all the same, and across where it has columns: a quotient times its divisor is mostly exact, and
+/// tiles of unlike content do not bleed into each other by a rounding error. Other positions are texels: nodes are also read one
+/// by one.
+fn is_whole(table: &TableFace) -> bool {
+    table.format.is_filterable() && table.layout.base == RowBase::Zero && table.layout.columns == 1
 }
 
-/// `let position = ...;`: where node (x, y) of a tile is in the atlas; x and y count as [`unit`] says.
+/// `let position = ...;`: where node (x, y) of a tile is in the atlas; x counts as [`is_whole`] says.
 fn position(out: &mut String, table: &TableFace) {
-    let (layout, unit) = (&table.layout, unit(table));
-    let [half_x, half_y] = unit.map(|unit| (f64::from(layout.apron) + 0.5) * unit);
-    let [tile_width, tile_height] = layout.tile_size();
-    let [width, height] = [f64::from(tile_width) * unit[0], f64::from(tile_height) * unit[1]].map(float);
-    let x = format!("x + {}", float(half_x));
-    let y = if layout.y.is_some() { format!("y + {}", float(half_y)) } else { float(0.5 * unit[1]) };
-    let _ = match (layout.tiles, layout.columns) {
-        (1, _) => writeln!(out, "    let position = vec2<f32>({x}, {y});"),
-        (_, 1) if layout.y.is_none() => writeln!(out, "    let position = vec2<f32>({x}, (tile + 0.5) * {height});"),
-        (_, 1) => writeln!(out, "    let position = vec2<f32>({x}, tile * {height} + {y});"),
-        (_, columns) => writeln!(
+    let layout = &table.layout;
+    let half = f64::from(layout.apron) + 0.5;
+    let [[width, height], [tile_width, tile_height]] = [layout.size(), layout.tile_size()];
+    let y = if layout.y.is_some() { format!("y + {}", float(half)) } else { "0.5".to_owned() };
+    let down = match (layout.tiles, &layout.y) {
+        (1, _) => y.clone(),
+        (_, None) => "tile + 0.5".to_owned(),
+        _ => format!("tile * {tile_height}.0 + {y}"),
+    };
+    let _ = match (is_whole(table), layout.columns) {
+        (true, _) => {
+            let down = if height == 1 { down } else { format!("({down}) / {height}.0") };
+            writeln!(out, "    let position = vec2<f32>(x + {}, {down});", float(half / f64::from(width)))
+        }
+        (false, 1) => writeln!(out, "    let position = vec2<f32>(x + {}, {down});", float(half)),
+        (false, columns) => writeln!(
             out,
             "    let row = floor((tile + 0.5) / {columns}.0);\n    \
              let column = tile - row * {columns}.0;\n    \
-             let position = vec2<f32>(column * {width} + {x}, row * {height} + {y});"
+             let position = vec2<f32>(column * {tile_width}.0 + x + {}, row * {tile_height}.0 + {y});",
+            float(half)
         ),
     };
 }
@@ -125,9 +133,9 @@ fn position(out: &mut String, table: &TableFace) {
 fn read(table: &TableFace) -> String {
     let name = table.kind.name();
     let [width, height] = table.layout.size();
-    match (table.format.is_filterable(), table.layout.base) {
-        (true, RowBase::Zero) => format!("textureSampleLevel(luthier_{name}, luthier_sampler, position, 0.0)"),
-        (true, RowBase::Schlick) => format!(
+    match (table.format.is_filterable(), is_whole(table)) {
+        (true, true) => format!("textureSampleLevel(luthier_{name}, luthier_sampler, position, 0.0)"),
+        (true, false) => format!(
             "textureSampleLevel(luthier_{name}, luthier_sampler, position / vec2<f32>({width}.0, {height}.0), 0.0)"
         ),
         (false, _) => format!("luthier_bilinear(luthier_{name}, position)"),

@@ -266,9 +266,9 @@ fn tiles_do_not_bleed() {
             for tile in 0..table.layout.tiles {
                 let expected = loud(tile, [0.0; 2])[0];
                 for (got, at) in scene.lookup(table.kind, tile, &values).unwrap().iter().zip(&values) {
-                    // A coordinate comes of six numbers up to 1, each good to 2^-25, over 99 texels, times 1000.
+                    // 33 rows: a coordinate is good to 33 * 2^-24 rows, times 1000.
                     assert!(
-                        (got[0] - expected).abs() < 2e-2,
+                        (got[0] - expected).abs() < 5e-3,
                         "{:?} {format} tile {tile} at {at:?}: {}",
                         table.kind,
                         got[0]

@@ -10,8 +10,8 @@
 struct LuthierLayer {
     // 0 dielectric, 1 conductor, 2 diffuse base.
     uint kind;
-    // Diffuse albedo, RGB.
-    vec3 albedo;
+    // BRDF of a Lambertian base, albedo over pi, RGB.
+    vec3 lambert;
 };
 
 const uint LUTHIER_MATERIAL_CHALK = 0u;
@@ -42,13 +42,13 @@ LuthierLayer luthier_layer(uint material, uint index) {
     vec4 base = luthier_materials[first + 3u];
     vec4 numbers = luthier_materials[first + 10u];
     layer.kind = luthier_whole(numbers.x);
-    layer.albedo = base.xyz;
+    layer.lambert = base.xyz;
     return layer;
 }
 
 // BRDF of a Lambertian base.
 vec3 luthier_diffuse(LuthierLayer layer) {
-    return layer.albedo * 0.31830987;
+    return layer.lambert;
 }
 
 // f cos_theta_i of the model `elek`, both directions above the horizon.

@@ -11,8 +11,8 @@
 struct LuthierLayer {
     // 0 dielectric, 1 conductor, 2 diffuse base.
     uint kind;
-    // Diffuse albedo, RGB.
-    float3 albedo;
+    // BRDF of a Lambertian base, albedo over pi, RGB.
+    float3 lambert;
 };
 
 static const uint LUTHIER_MATERIAL_CHALK = 0u;
@@ -43,13 +43,13 @@ LuthierLayer luthier_layer(uint material, uint index) {
     float4 base = asfloat(luthier_materials.Load4((first + 3u)*16));
     float4 numbers = asfloat(luthier_materials.Load4((first + 10u)*16));
     layer.kind = luthier_whole(numbers.x);
-    layer.albedo = base.xyz;
+    layer.lambert = base.xyz;
     return layer;
 }
 
 // BRDF of a Lambertian base.
 float3 luthier_diffuse(LuthierLayer layer) {
-    return layer.albedo * 0.31830987;
+    return layer.lambert;
 }
 
 // f cos_theta_i of the model `elek`, both directions above the horizon.

@@ -22,8 +22,8 @@ struct LuthierLayer {
     // 0 dielectric, 1 conductor, 2 diffuse base.
     uint kind;
     char _pad1[12];
-    // Diffuse albedo, RGB.
-    metal::float3 albedo;
+    // BRDF of a Lambertian base, albedo over pi, RGB.
+    metal::float3 lambert;
 };
 
 constant uint LUTHIER_MATERIAL_CHALK = 0u;
@@ -52,13 +52,13 @@ LuthierLayer luthier_layer(uint material, uint index, constant LuthierMaterials&
     metal::float4 base = luthier_materials.inner[first + 3u];
     metal::float4 numbers = luthier_materials.inner[first + 10u];
     layer.kind = luthier_whole(numbers.x);
-    layer.albedo = base.xyz;
+    layer.lambert = base.xyz;
     return layer;
 }
 
 // BRDF of a Lambertian base.
 metal::float3 luthier_diffuse(LuthierLayer layer) {
-    return layer.albedo * 0.31830987;
+    return layer.lambert;
 }
 
 // f cos_theta_i of the model `elek`, both directions above the horizon.

@@ -17,8 +17,8 @@ const LUTHIER_LAYER_WORDS: u32 = 11u;
 struct LuthierLayer {
     /// 0 dielectric, 1 conductor, 2 diffuse base.
     kind: u32,
-    /// Diffuse albedo, RGB.
-    albedo: vec3<f32>,
+    /// BRDF of a Lambertian base, albedo over pi, RGB.
+    lambert: vec3<f32>,
 }
 
 /// A whole number n, which the buffer holds as 2^23 + n: its low bits are n.
@@ -43,13 +43,13 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     let numbers = luthier_materials[first + 10u];
     var layer: LuthierLayer;
     layer.kind = luthier_whole(numbers.x);
-    layer.albedo = base.xyz;
+    layer.lambert = base.xyz;
     return layer;
 }
 
 /// BRDF of a Lambertian base.
 fn luthier_diffuse(layer: LuthierLayer) -> vec3<f32> {
-    return layer.albedo * 0.318309886;
+    return layer.lambert;
 }
 
 /// f cos_theta_i of the model `elek`, both directions above the horizon.

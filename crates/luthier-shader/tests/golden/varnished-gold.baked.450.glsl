@@ -51,7 +51,6 @@ struct LuthierPath {
 };
 
 const uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
-const float LUTHIER_PI = 3.1415927;
 const uint LUTHIER_MATERIAL_WORDS = 11u;
 const uint LUTHIER_LAYER_WORDS = 11u;
 
@@ -62,7 +61,7 @@ layout(std430, binding = 6) readonly buffer LuthierMaterials { vec4 luthier_mate
 // Fresnel reflectance of an interface, RGB.
 vec3 luthier_lookup_fresnel(float tile, float cos_theta) {
     float x = clamp(cos_theta, 0.0, 1.0) * 0.9921875;
-    vec2 position = vec2(x + 0.00390625, (tile + 0.5) * 0.33333334);
+    vec2 position = vec2(x + 0.00390625, (tile + 0.5) / 3.0);
     return textureLod(luthier_fresnel, vec2(position), 0.0).xyz;
 }
 
@@ -75,8 +74,8 @@ float luthier_lookup_distribution(float tile, float cos_theta_h, float sin_theta
     float series = t_sq * (-0.3333295 + (t_sq * (0.19977711 + (t_sq * (-0.13877685 + (t_sq * 0.08053744))))));
     float theta_h = 2.0 * (((is_wide ? 0.7853982 : 0.0) + t) + (t * series));
     float x = sqrt(sqrt(sqrt(clamp(theta_h / 1.5707964, 0.0, 1.0)))) * 0.9980469;
-    float y = clamp(log2(max(alpha, 0.001) / 0.001) / 9.965784, 0.0, 1.0) * 0.49902344;
-    vec2 position = vec2(x + 0.0009765625, ((tile * 0.5) + y) + 0.00048828125);
+    float y = clamp(log2(max(alpha, 0.001) / 0.001) / 9.965784, 0.0, 1.0) * 511.0;
+    vec2 position = vec2(x + 0.0009765625, (((tile * 512.0) + y) + 0.5) / 1024.0);
     return textureLod(luthier_distribution, vec2(position), 0.0).x;
 }
 

@@ -52,7 +52,6 @@ struct LuthierPath {
 };
 
 static const uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
-static const float LUTHIER_PI = 3.1415927;
 static const uint LUTHIER_MATERIAL_WORDS = 11u;
 static const uint LUTHIER_LAYER_WORDS = 11u;
 
@@ -64,7 +63,7 @@ ByteAddressBuffer luthier_materials : register(t6);
 // Fresnel reflectance of an interface, RGB.
 float3 luthier_lookup_fresnel(float tile, float cos_theta) {
     float x = saturate(cos_theta) * 0.9921875;
-    float2 position = float2(x + 0.00390625, (tile + 0.5) * 0.33333334);
+    float2 position = float2(x + 0.00390625, (tile + 0.5) / 3.0);
     return luthier_fresnel.SampleLevel(luthier_sampler, position, 0.0).xyz;
 }
 
@@ -77,8 +76,8 @@ float luthier_lookup_distribution(float tile, float cos_theta_h, float sin_theta
     float series = t_sq * (-0.3333295 + (t_sq * (0.19977711 + (t_sq * (-0.13877685 + (t_sq * 0.08053744))))));
     float theta_h = 2.0 * (((is_wide ? 0.7853982 : 0.0) + t) + (t * series));
     float x = sqrt(sqrt(sqrt(saturate(theta_h / 1.5707964)))) * 0.9980469;
-    float y = saturate(log2(max(alpha, 0.001) / 0.001) / 9.965784) * 0.49902344;
-    float2 position = float2(x + 0.0009765625, ((tile * 0.5) + y) + 0.00048828125);
+    float y = saturate(log2(max(alpha, 0.001) / 0.001) / 9.965784) * 511.0;
+    float2 position = float2(x + 0.0009765625, (((tile * 512.0) + y) + 0.5) / 1024.0);
     return luthier_distribution.SampleLevel(luthier_sampler, position, 0.0).x;
 }
 

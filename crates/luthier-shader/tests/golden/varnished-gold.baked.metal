@@ -63,7 +63,6 @@ struct LuthierPath {
 };
 
 constant uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
-constant float LUTHIER_PI = 3.1415927;
 constant uint LUTHIER_MATERIAL_WORDS = 11u;
 constant uint LUTHIER_LAYER_WORDS = 11u;
 
@@ -75,7 +74,7 @@ metal::float3 luthier_lookup_fresnel(
     metal::sampler luthier_sampler
 ) {
     float x = metal::saturate(cos_theta) * 0.9921875;
-    metal::float2 position = metal::float2(x + 0.00390625, (tile + 0.5) * 0.33333334);
+    metal::float2 position = metal::float2(x + 0.00390625, (tile + 0.5) / 3.0);
     return luthier_fresnel.sample(luthier_sampler, position, metal::level(0.0)).xyz;
 }
 
@@ -95,8 +94,8 @@ float luthier_lookup_distribution(
     float series = t_sq * (-0.3333295 + (t_sq * (0.19977711 + (t_sq * (-0.13877685 + (t_sq * 0.08053744))))));
     float theta_h = 2.0 * (((is_wide ? 0.7853982 : 0.0) + t) + (t * series));
     float x = metal::sqrt(metal::sqrt(metal::sqrt(metal::saturate(theta_h / 1.5707964)))) * 0.9980469;
-    float y = metal::saturate(metal::log2(metal::max(alpha, 0.001) / 0.001) / 9.965784) * 0.49902344;
-    metal::float2 position = metal::float2(x + 0.0009765625, ((tile * 0.5) + y) + 0.00048828125);
+    float y = metal::saturate(metal::log2(metal::max(alpha, 0.001) / 0.001) / 9.965784) * 511.0;
+    metal::float2 position = metal::float2(x + 0.0009765625, (((tile * 512.0) + y) + 0.5) / 1024.0);
     return luthier_distribution.sample(luthier_sampler, position, metal::level(0.0)).x;
 }
 

@@ -24,7 +24,7 @@ const LUTHIER_MATERIAL_VARNISHED_GOLD: u32 = 0u;
 /// Fresnel reflectance of an interface, RGB.
 fn luthier_lookup_fresnel(tile: f32, cos_theta: f32) -> vec3<f32> {
     let x = saturate(cos_theta) * 0.9921875;
-    let position = vec2<f32>(x + 0.00390625, (tile + 0.5) * 0.33333334);
+    let position = vec2<f32>(x + 0.00390625, (tile + 0.5) / 3.0);
     return textureSampleLevel(luthier_fresnel, luthier_sampler, position, 0.0).rgb;
 }
 
@@ -39,12 +39,10 @@ fn luthier_lookup_distribution(tile: f32, cos_theta_h: f32, sin_theta_h_sq: f32,
     let series = t_sq * (-0.33332949 + t_sq * (0.19977711 + t_sq * (-0.13877686 + t_sq * 0.08053744)));
     let theta_h = 2.0 * (select(0.0, 0.78539816, is_wide) + t + t * series);
     let x = sqrt(sqrt(sqrt(saturate(theta_h / 1.5707964)))) * 0.9980469;
-    let y = saturate(log2(max(alpha, 0.001) / 0.001) / 9.965784) * 0.49902344;
-    let position = vec2<f32>(x + 0.0009765625, tile * 0.5 + y + 0.00048828125);
+    let y = saturate(log2(max(alpha, 0.001) / 0.001) / 9.965784) * 511.0;
+    let position = vec2<f32>(x + 0.0009765625, (tile * 512.0 + y + 0.5) / 1024.0);
     return textureSampleLevel(luthier_distribution, luthier_sampler, position, 0.0).r;
 }
-
-const LUTHIER_PI: f32 = 3.14159265;
 
 const LUTHIER_MATERIAL_WORDS: u32 = 11u;
 const LUTHIER_LAYER_WORDS: u32 = 11u;
@@ -173,7 +171,7 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
 
 /// f cos_theta_i of the model `elek`, both directions above the horizon.
 fn luthier_eval_elek(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
-    // Lower cosines change nothing that a number could show, and their products would underflow.
+    // Products of lower cosines would underflow; the outer one stays as it is.
     let down = vec3<f32>(wi.xy, max(wi.z, 1e-16));
     let up = vec3<f32>(wo.xy, max(wo.z, 1e-16));
     var path = LuthierPath(down, up, wi.xy + wo.xy, vec3<f32>(1.0), vec3<f32>(0.0), true);

@@ -53,7 +53,6 @@ struct LuthierPath {
 };
 
 const uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
-const float LUTHIER_PI = 3.1415927;
 const uint LUTHIER_MATERIAL_WORDS = 11u;
 const uint LUTHIER_LAYER_WORDS = 11u;
 

@@ -53,7 +53,6 @@ struct LuthierPath {
 };
 
 static const uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
-static const float LUTHIER_PI = 3.1415927;
 static const uint LUTHIER_MATERIAL_WORDS = 11u;
 static const uint LUTHIER_LAYER_WORDS = 11u;
 

@@ -65,7 +65,6 @@ struct LuthierPath {
 };
 
 constant uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
-constant float LUTHIER_PI = 3.1415927;
 constant uint LUTHIER_MATERIAL_WORDS = 11u;
 constant uint LUTHIER_LAYER_WORDS = 11u;
 

@@ -11,8 +11,6 @@ const LUTHIER_MATERIAL_VARNISHED_GOLD: u32 = 0u;
 
 @group(0) @binding(6) var<storage, read> luthier_materials: array<vec4<f32>>;
 
-const LUTHIER_PI: f32 = 3.14159265;
-
 const LUTHIER_MATERIAL_WORDS: u32 = 11u;
 const LUTHIER_LAYER_WORDS: u32 = 11u;
 
@@ -193,7 +191,7 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
 
 /// f cos_theta_i of the model `elek`, both directions above the horizon.
 fn luthier_eval_elek(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
-    // Lower cosines change nothing that a number could show, and their products would underflow.
+    // Products of lower cosines would underflow; the outer one stays as it is.
     let down = vec3<f32>(wi.xy, max(wi.z, 1e-16));
     let up = vec3<f32>(wo.xy, max(wo.z, 1e-16));
     var path = LuthierPath(down, up, wi.xy + wo.xy, vec3<f32>(1.0), vec3<f32>(0.0), true);
