@@ -198,7 +198,7 @@ impl CrossedJob {
 impl CrossedGrid {
     /// Cubic between the coarse nodes, per channel.
     pub(crate) fn at(&self, u: [f64; 2]) -> Rgb {
-        let [(i, x), (j, y)] = u.map(|u| cubic_stencil(u, self.side));
+        let [(i, x), (j, y)] = u.map(|u| cubic_stencil(u * (self.side - 1) as f64, self.side));
         let mut rgb = [0.0; 3];
         for (row, y) in (j..).zip(y) {
             for (column, x) in (i..).zip(x) {

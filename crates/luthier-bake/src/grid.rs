@@ -1,6 +1,7 @@
 //! Functions on a grid, between its nodes.
 
 use luthier_lut::{Axis, Image};
+use luthier_optics::interpolation::cubic_stencil;
 
 /// The image of a function at other nodes: cubic between those of a grid.
 pub(crate) fn resampled(image: &Image, grid: &[Axis; 2], axes: &[Axis; 2]) -> Image {
@@ -17,32 +18,19 @@ pub(crate) fn resampled(image: &Image, grid: &[Axis; 2], axes: &[Axis; 2]) -> Im
 
 /// Cubics through the four nearest nodes along each axis (Lagrange); on a node its value.
 pub(crate) fn cubic(image: &Image, grid: &[Axis; 2], values: [f64; 2]) -> [f64; 4] {
-    let [(i, x), (j, y)] = [0, 1].map(|k: usize| weights(grid[k].index(values[k]), grid[k].size));
+    let [(i, x), (j, y)] = [0, 1].map(|k: usize| cubic_stencil(grid[k].index(values[k]), grid[k].size as usize));
     let mut out = [0.0; 4];
     for (row, y) in (j..).zip(y) {
         for (column, x) in (i..).zip(x) {
             if x * y == 0.0 {
                 continue;
             }
-            for (sum, value) in out.iter_mut().zip(image.texel(column, row)) {
+            for (sum, value) in out.iter_mut().zip(image.texel(column as u32, row as u32)) {
                 *sum += x * y * f64::from(*value);
             }
         }
     }
     out
-}
-
-/// The first of four nodes, and their weights at a fractional index. Grids of fewer nodes are interpolated linearly.
-pub(crate) fn weights(index: f64, size: u32) -> (u32, [f64; 4]) {
-    if size < 4 {
-        let first = (index as u32).min(size - 2);
-        let t = index - f64::from(first);
-        return (first, [1.0 - t, t, 0.0, 0.0]);
-    }
-    let first = (index as u32).saturating_sub(1).min(size - 4);
-    let t = index - f64::from(first);
-    let [a, b, c, d] = [t, t - 1.0, t - 2.0, t - 3.0];
-    (first, [-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0])
 }
 
 #[cfg(test)]

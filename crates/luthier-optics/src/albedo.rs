@@ -70,7 +70,7 @@ impl ReflectanceCurves {
             if cos_theta < CUBIC_COS_THETA {
                 return true;
             }
-            let (base, weights) = cubic_stencil(cos_theta, FIRST_NODES);
+            let (base, weights) = cubic_stencil(cos_theta * (FIRST_NODES - 1) as f64, FIRST_NODES);
             let fine = &self.values[i * self.count..(i + 1) * self.count];
             fine.iter().enumerate().all(|(k, value)| {
                 let at = weights.iter().enumerate().map(|(j, w)| w * self.at_first_node(base + j)[k]).sum::<f64>();
@@ -256,7 +256,7 @@ pub fn crossed_albedo(
 
 /// Spreads a weight over four neighbouring nodes so that cubics integrate exactly.
 fn spread(first: &mut [f64], cos_theta: f64, weight: f64) {
-    let (base, weights) = cubic_stencil(cos_theta, FIRST_NODES);
+    let (base, weights) = cubic_stencil(cos_theta * (FIRST_NODES - 1) as f64, FIRST_NODES);
     for (k, l) in weights.into_iter().enumerate() {
         first[base + k] += weight * l;
     }

@@ -2,11 +2,11 @@
 
 use luthier_lut::{Axis, Candidate, Mapping, MeasuredError, RowBase, SchlickBase, TableKind, TexelFormat};
 use luthier_optics::Rgb;
+use luthier_optics::interpolation::cubic_stencil;
 use rayon::prelude::*;
 
 use super::{Found, WEIGHTS, cost, measured, row_form};
 use crate::fresnel::{Fit, FresnelJob, RowShape, cos_theta};
-use crate::grid::weights;
 use crate::job::{Job, JobKind};
 use crate::plan::Plan;
 use crate::settings::axis;
@@ -68,9 +68,9 @@ impl Truth {
 
     pub(crate) fn at(&self, cos_theta: f64) -> Rgb {
         let index = libm::cbrt(cos_theta.clamp(0.0, 1.0)) * f64::from(Self::NODES - 1);
-        let (first, weights) = weights(index, Self::NODES);
+        let (first, weights) = cubic_stencil(index, Self::NODES as usize);
         let mut rgb = [0.0; 3];
-        for (node, weight) in self.nodes[first as usize..].iter().zip(weights) {
+        for (node, weight) in self.nodes[first..].iter().zip(weights) {
             (0..3).for_each(|c| rgb[c] += weight * node[c]);
         }
         rgb

@@ -93,7 +93,7 @@ fn only_what_was_chosen_is_written() {
 #[test]
 fn what_nothing_holds_is_refused_or_said() {
     let workshop = shelf();
-    workshop.edit("shelf.toml", |text| text.replace("max_rel = 0.3", "max_rel = 1e-4\n[target]\nmax_cost = 60"));
+    workshop.edit("shelf.toml", |text| text.replace("max_rel = 0.3", "max_rel = 1e-4\n[target]\nmax_cost = 55"));
     let run = workshop.run(&["bake", "shelf.toml"]).fails(1, &["no model holds the budget"]);
     assert!(run.stderr.contains("metal: phong") && run.stderr.contains("comes nearest"), "{}", run.stderr);
     assert!(!workshop.path("out").exists());

@@ -257,8 +257,9 @@ impl Grid {
     }
 
     fn at(&self, variant: usize, [theta, alpha]: [f64; 2]) -> [f64; 3] {
-        let (x, wx) = cubic_stencil(libm::cos(theta).clamp(0.0, 1.0).sqrt(), self.size[0]);
-        let (y, wy) = cubic_stencil(alpha.clamp(0.0, 1.0).sqrt(), self.size[1]);
+        let at = |value: f64, nodes: usize| cubic_stencil(value.clamp(0.0, 1.0).sqrt() * (nodes - 1) as f64, nodes);
+        let (x, wx) = at(libm::cos(theta), self.size[0]);
+        let (y, wy) = at(alpha, self.size[1]);
         let mut out = [0.0; 3];
         for (j, wy) in wy.into_iter().enumerate().filter(|(_, w)| *w != 0.0) {
             for (i, wx) in wx.into_iter().enumerate().filter(|(_, w)| *w != 0.0) {
