@@ -99,7 +99,7 @@ fn what_nothing_holds_is_refused_or_said() {
     assert!(!workshop.path("out").exists());
     let run = workshop.run(&["bake", "shelf.toml", "--allow-miss"]).exits(0);
     assert!(run.stdout.contains("none holds; this comes nearest"), "{}", run.stdout);
-    workshop.edit("shelf.toml", |text| text.replace("max_cost = 60", "max_cost = 2"));
+    workshop.edit("shelf.toml", |text| text.replace("max_cost = 55", "max_cost = 2"));
     workshop.run(&["bake", "shelf.toml"]).fails(1, &["cycles, more than 2"]);
 }
 
