@@ -4,8 +4,8 @@ use std::path::Path;
 
 use luthier_bake::{Bake, MapSource};
 use luthier_lut::{
-    Atlas, AtlasLayout, Axis, FileEntry, Image, MANIFEST_SCHEMA, Manifest, MapEntry, Mapping, MaterialEntry, RowBase,
-    ShaderEntry, TableEntry, TableKind, material_buffer,
+    Atlas, AtlasLayout, Axis, FileEntry, Image, Manifest, MapEntry, Mapping, MaterialEntry, RowBase, ShaderEntry,
+    TableEntry, TableKind, material_buffer,
 };
 use luthier_material::Material;
 use luthier_shader::{Form, MaterialSet, Target};
@@ -53,7 +53,7 @@ impl BakeFiles {
             tables.push(TableEntry { texture, truth, picture, ..table_entry(atlas) });
         }
         let entries = material_entries(materials, &bake.materials, &mut files)?;
-        let mut manifest = Manifest { searches: bake.searches.clone(), ..manifest(entries, tables) };
+        let mut manifest = Manifest { searches: bake.searches.clone(), ..Manifest::new(GENERATOR, entries, tables) };
         let words = material_buffer(&manifest.materials);
         let bytes = words.as_flattened().iter().flat_map(|value| value.to_le_bytes()).collect();
         manifest.material_buffer = add(&mut files, "materials.bin".to_owned(), bytes);
@@ -70,21 +70,6 @@ impl BakeFiles {
         let bindings = luthier_shader::bindings(&set, forms.first().copied().unwrap_or(Form::Baked));
         (manifest.shaders, manifest.bindings) = (shaders, bindings);
         Ok(Self { manifest, files })
-    }
-}
-
-/// A manifest without shaders and files.
-pub(crate) fn manifest(materials: Vec<MaterialEntry>, tables: Vec<TableEntry>) -> Manifest {
-    Manifest {
-        schema: MANIFEST_SCHEMA,
-        generator: GENERATOR.to_owned(),
-        materials,
-        tables,
-        searches: Vec::new(),
-        choice: None,
-        shaders: Vec::new(),
-        bindings: Vec::new(),
-        material_buffer: FileEntry::default(),
     }
 }
 

@@ -14,7 +14,7 @@ use luthier_shader::{MaterialSet, TableFace, Target};
 use luthier_texture::png;
 use luthier_view::{Form, Host, MaterialFile, Screenshot};
 
-use crate::bake_files::{manifest, material_entries, table_entry};
+use crate::bake_files::{GENERATOR, material_entries, table_entry};
 use crate::device::device;
 use crate::failure::{Failure, Outcome};
 use crate::materials::{Source, find, read_image, read_one};
@@ -71,7 +71,8 @@ impl ViewHost {
         let set = MaterialSet { materials: &entries, tables };
         let wgsl = luthier_shader::emit(&set, form, Target::Wgsl).map_err(Failure::input)?;
         let bindings = luthier_shader::bindings(&set, form);
-        let manifest = Manifest { bindings, ..manifest(entries, atlases.iter().map(table_entry).collect()) };
+        let manifest =
+            Manifest { bindings, ..Manifest::new(GENERATOR, entries, atlases.iter().map(table_entry).collect()) };
         let shaders = vec![WgslShader { form: form.name().to_owned(), wgsl }];
         let artefacts = Artefacts::from_parts(manifest, table_texels(&atlases), shaders).map_err(device)?;
         let file = |path: &str| files.iter().find(|(name, _)| name == path).map(|(_, bytes)| bytes.clone());

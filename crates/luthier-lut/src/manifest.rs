@@ -195,6 +195,21 @@ impl Manifest {
         Ok(json)
     }
 
+    /// A manifest of materials and tables, without shaders and files.
+    pub fn new(generator: &str, materials: Vec<MaterialEntry>, tables: Vec<TableEntry>) -> Self {
+        Self {
+            schema: MANIFEST_SCHEMA,
+            generator: generator.to_owned(),
+            materials,
+            tables,
+            searches: Vec::new(),
+            choice: None,
+            shaders: Vec::new(),
+            bindings: Vec::new(),
+            material_buffer: FileEntry::default(),
+        }
+    }
+
     /// Reads what [`Manifest::to_json`] wrote.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use luthier_optics::stack::{Base, Layer, Stack};
 use luthier_report::{POLISHED_ALPHAS, Parity, ParityCase, Share, Subject, Verdict, parity};
 use luthier_shader::{Form, MaterialSet, Target};
 
-use crate::bake_files::{GENERATOR, manifest, material_entries, sha256, table_entry};
+use crate::bake_files::{GENERATOR, material_entries, sha256, table_entry};
 use crate::cli::ParityOptions;
 use crate::device::{Shaders, device, open};
 use crate::failure::{Failure, Outcome, files};
@@ -132,7 +132,7 @@ pub(crate) struct Compiled {
 
 impl Compiled {
     pub(crate) fn new(gpu: &Gpu, atlases: &[Atlas], entries: &[MaterialEntry], stacks: Vec<Stack>) -> Outcome<Self> {
-        let mut manifest = manifest(entries.to_vec(), atlases.iter().map(table_entry).collect());
+        let mut manifest = Manifest::new(GENERATOR, entries.to_vec(), atlases.iter().map(table_entry).collect());
         let words = material_buffer(&manifest.materials);
         let bytes: Vec<u8> = words.as_flattened().iter().flat_map(|value| value.to_le_bytes()).collect();
         manifest.material_buffer.sha256 = sha256(&bytes);

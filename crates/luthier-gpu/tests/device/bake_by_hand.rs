@@ -3,8 +3,8 @@
 
 use luthier_gpu::{Artefacts, TableTexels, WgslShader};
 use luthier_lut::{
-    AtlasLayout, Axis, BindingEntry, ColorMode, FileEntry, Image, LayerKind, LayerRecord, MANIFEST_SCHEMA, Manifest,
-    Mapping, MaterialEntry, RowBase, TableEntry, TableKind, TexelFormat,
+    AtlasLayout, Axis, BindingEntry, ColorMode, FileEntry, Image, LayerKind, LayerRecord, Manifest, Mapping,
+    MaterialEntry, RowBase, TableEntry, TableKind, TexelFormat,
 };
 use luthier_shader::{Form, MaterialSet, Target};
 
@@ -130,17 +130,7 @@ pub(crate) fn manifest(materials: Vec<Vec<LayerRecord>>, tables: &[Table]) -> Ma
             tiles: Vec::new(),
         })
         .collect();
-    Manifest {
-        schema: MANIFEST_SCHEMA,
-        generator: "by hand".to_owned(),
-        materials,
-        tables,
-        searches: Vec::new(),
-        choice: None,
-        shaders: Vec::new(),
-        bindings: Vec::new(),
-        material_buffer: no_file(),
-    }
+    Manifest::new("by hand", materials, tables)
 }
 
 /// A bake with the emitter's shader of one form.
