@@ -60,7 +60,7 @@ step "same bytes for 1 and 2 threads, debug and release"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cargo build --locked --release -p luthier-cli
-# The test below this build knows every verb; here one is left out.
+# The tests ran with every verb; this build leaves one out, and says which feature brings it.
 said=$(./target/release/luthier view 2>&1) && exit 1
 grep -q -- '--features view' <<<"$said"
 # As the tests built it, so that nothing is built twice.

@@ -89,16 +89,14 @@ pub(crate) fn text(module: &str, features: &Features) -> String {
 fn model(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec<String> {
     let module = |text| self::text(text, features);
     match model {
-        ShadingModel::Elek => vec![
-            if features.has("clamped") { module(include_str!("wgsl/elek.wgsl")) } else { String::new() },
-            module(&chain::eval(
-                set,
-                model,
-                if features.has("clamped") { "luthier_elek_interface" } else { "luthier_add_interface" },
-                features,
-            )),
+        ShadingModel::Elek if features.has("clamped") => vec![
+            module(include_str!("wgsl/elek.wgsl")),
+            module(&chain::eval(set, model, "luthier_elek_interface", features)),
         ],
-        ShadingModel::WeidlichWilkie => vec![module(&chain::eval(set, model, "luthier_add_interface", features))],
+        // Elek's model is the same chain where no interface is smoother than one above it.
+        ShadingModel::Elek | ShadingModel::WeidlichWilkie => {
+            vec![module(&chain::eval(set, model, "luthier_add_interface", features))]
+        }
         ShadingModel::GranierHeidrich => vec![module(include_str!("wgsl/granier_heidrich.wgsl"))],
         ShadingModel::Phong => vec![module(include_str!("wgsl/phong.wgsl"))],
         ShadingModel::Microfacet => vec![module(include_str!("wgsl/microfacet.wgsl"))],

@@ -168,18 +168,21 @@ fn distribution_tiles_in_every_format_and_mapping() {
     }
 }
 
+fn fgd_layout() -> AtlasLayout {
+    AtlasLayout {
+        x: axis("cos_theta", 1.0, 32, Mapping::Power { exponent: 2.0 }),
+        y: Some(axis("alpha", 1.0, 16, Mapping::Power { exponent: 2.0 })),
+        apron: 0,
+        columns: 3,
+        tiles: 4,
+        base: luthier_lut::RowBase::Zero,
+    }
+}
+
 #[test]
 fn fgd_tiles_in_every_format() {
     for format in COLOR_FORMATS {
-        let layout = AtlasLayout {
-            x: axis("cos_theta", 1.0, 32, Mapping::Power { exponent: 2.0 }),
-            y: Some(axis("alpha", 1.0, 16, Mapping::Power { exponent: 2.0 })),
-            apron: 0,
-            columns: 3,
-            tiles: 4,
-            base: luthier_lut::RowBase::Zero,
-        };
-        compare(&Table::new(TableKind::Fgd, layout, format, ramp));
+        compare(&Table::new(TableKind::Fgd, fgd_layout(), format, ramp));
     }
 }
 
@@ -187,15 +190,7 @@ fn fgd_tiles_in_every_format() {
 #[test]
 fn fgd_tiles_in_blocks() {
     let Some(gpu) = gpu() else { return };
-    let layout = AtlasLayout {
-        x: axis("cos_theta", 1.0, 32, Mapping::Power { exponent: 2.0 }),
-        y: Some(axis("alpha", 1.0, 16, Mapping::Power { exponent: 2.0 })),
-        apron: 0,
-        columns: 3,
-        tiles: 4,
-        base: luthier_lut::RowBase::Zero,
-    };
-    let table = Table::new(TableKind::Fgd, layout, TexelFormat::Bc6hRgbUfloat, ramp);
+    let table = Table::new(TableKind::Fgd, fgd_layout(), TexelFormat::Bc6hRgbUfloat, ramp);
     let tables = with(table.clone());
     match gpu.scene(&artefacts(Form::Baked, layers(&tables), &tables), "baked") {
         Err(GpuError::NoSuchFormat { kind, format }) => {
