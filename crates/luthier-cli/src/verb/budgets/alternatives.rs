@@ -16,7 +16,7 @@ pub(super) fn blocks(out: &mut String, goals: &Goals) {
          | tiles | max_abs | core WebGPU | bytes | bc6h-rgb-ufloat | bytes | share |\n|---|---|---|---|---|---|---|\n",
     );
     for step in &goals.blocks {
-        let bytes = |c: &Option<Candidate>| c.as_ref().map(|c| tile_bytes(&c.form));
+        let bytes = |c: &Option<Candidate>| c.as_ref().map(|c| c.form.bytes(1));
         let (texels, blocks) = (bytes(&step.texels), bytes(&step.blocks));
         let share = texels.zip(blocks).map_or("-".to_owned(), |(t, b)| format!("{:.2}", b as f64 / t as f64));
         let in_words = |c: &Option<Candidate>| c.as_ref().map_or("none".to_owned(), |c| shape(&c.form));
@@ -58,10 +58,6 @@ fn shape(form: &CandidateForm) -> String {
     let [rows, down] =
         y.as_ref().map_or(["1".to_owned(), "-".to_owned()], |y| [y.size.to_string(), exponent(&y.mapping)]);
     format!("{} x {rows} {format}, {}, {down}", x.size, exponent(&x.mapping))
-}
-
-fn tile_bytes(form: &CandidateForm) -> u64 {
-    form.bytes(1)
 }
 
 /// The table over angle, n and k.
