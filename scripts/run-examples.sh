@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Bakes materials/, renders the ball of examples/scene.json with wgpu and with three.js, and compares the pictures.
+# Bakes materials/, renders the ball of examples/scene.json with wgpu, with three.js and in plain WebGL 2, and compares the pictures.
 # With --bevy also with Bevy, whose first build takes a while. Needs a Vulkan driver, npm and Chromium; on Debian
-# apt-get install mesa-vulkan-drivers npm chromium. Pictures are left in target/examples/.
+# apt-get install mesa-vulkan-drivers npm chromium. Pictures are left in target/examples/. The environment variable LUTHIER names
+# the program that bakes; by default cargo builds it.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -11,26 +12,46 @@ limit=0.25
 
 out=target/examples
 bake=$out/bake
-scene=examples/scene.json
+plain=$out/plain
 mkdir -p "$out"
 
 step() { printf '\n== %s\n' "$1"; }
+luthier() { if [ -n "${LUTHIER-}" ]; then "$LUTHIER" "$@"; else cargo run --locked --quiet -p luthier-cli --bin luthier -- "$@"; fi; }
 # The target folder is shared with the workspace: most of wgpu is built there already.
 example() { cargo run --locked --quiet --manifest-path examples/wgpu/Cargo.toml --target-dir target --bin "$@"; }
+# The scene with another material.
+scene() { sed "s/\"material\": \"[a-z-]*\"/\"material\": \"$1\"/" examples/scene.json >"$out/$1.json"; echo "$out/$1.json"; }
 
 step "bake"
-cargo run --locked --quiet -p luthier-cli -- bake materials --out "$bake" --quiet
+luthier bake materials --out "$bake" --quiet
+luthier bake materials --out "$plain" --no-zstd --quiet
 
+# What all four programs show, and materials that read the other tables.
 step "wgpu"
-example luthier-example-wgpu "$bake" "$scene" "$out/wgpu.png"
+materials=(car-paint soap-film granier-film yamaguchi-brushed copper-patina)
+for name in "${materials[@]}"; do example luthier-example-wgpu "$bake" "$(scene "$name")" "$out/wgpu-$name.png"; done
+
+step "plain WebGL 2"
+for name in "${materials[@]}"; do
+  node examples/browser.mjs examples/plain-webgl "$plain" "$(scene "$name")" "$out/plain-$name.png"
+  example difference "$out/wgpu-$name.png" "$out/plain-$name.png" "$limit"
+done
 
 step "three.js"
 npm ci --prefix examples/three --ignore-scripts --no-audit --no-fund --silent
-node examples/three/render.mjs "$bake" "$scene" "$out/three.png"
-example difference "$out/wgpu.png" "$out/three.png" "$limit"
+node examples/browser.mjs examples/three "$bake" "$(scene car-paint)" "$out/three.png"
+example difference "$out/wgpu-car-paint.png" "$out/three.png" "$limit"
+
+# Among others the records of the material lie beyond the first row of the material texture, and its rows elsewhere in the tables.
+step "the same material in a library"
+cargo run --locked --quiet -p luthier-cli --example library -- 60 "$out/library"
+luthier bake "$out/library" materials --out "$out/many" --target wgsl,glsl-es300 --form baked --quiet
+example luthier-example-wgpu "$out/many" "$(scene car-paint)" "$out/many-wgpu.png"
+node examples/browser.mjs examples/three "$out/many" "$(scene car-paint)" "$out/many-three.png"
+example difference "$out/many-wgpu.png" "$out/many-three.png" "$limit"
 
 if [ "${1-}" = --bevy ]; then
   step "Bevy"
-  cargo run --locked --quiet --manifest-path examples/bevy/Cargo.toml -- "$bake" "$scene" "$out/bevy.png"
-  example difference "$out/wgpu.png" "$out/bevy.png" "$limit"
+  cargo run --locked --quiet --manifest-path examples/bevy/Cargo.toml -- "$bake" "$(scene car-paint)" "$out/bevy.png"
+  example difference "$out/wgpu-car-paint.png" "$out/bevy.png" "$limit"
 fi

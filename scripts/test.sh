@@ -79,3 +79,13 @@ if [ -n "$(missing)" ]; then
 else
   ./target/release/luthier report --out "$work/release-1" --max-error 2e-2
 fi
+
+step "examples, in a browser too"
+if [ -z "$(missing)" ] && command -v npm >/dev/null; then
+  LUTHIER=$PWD/target/release/luthier ./scripts/run-examples.sh
+elif [ -n "${CI-}" ]; then
+  echo "error: the examples need $(missing) npm"
+  exit 1
+else
+  echo "skipped: the examples need a Vulkan driver, Chromium and npm"
+fi

@@ -27,12 +27,12 @@ export class Bake {
       bake.uniforms[name] = { value: texture };
     }
 
-    // A typed array is copied as it is, which is what std140 asks of an array of vec4.
-    const words = await (await get(new URL(manifest.material_buffer.path, url))).arrayBuffer();
-    bake.block = new THREE.UniformsGroup();
-    bake.block.setName("LuthierMaterials");
-    bake.block.setUsage(THREE.StaticDrawUsage);
-    bake.block.add(new THREE.Uniform(new Float32Array(words)));
+    // GLSL ES 3.00 has no storage buffers: the material buffer is a texture, read texel by texel.
+    const words = new Float32Array(await (await get(new URL(manifest.material_buffer.path, url))).arrayBuffer());
+    const { width, height } = manifest.material_texture;
+    const texture = new THREE.DataTexture(words, width, height, THREE.RGBAFormat, THREE.FloatType);
+    texture.needsUpdate = true;
+    bake.uniforms.luthier_materials = { value: texture };
     return bake;
   }
 

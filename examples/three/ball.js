@@ -1,4 +1,4 @@
-// A ball of a baked material. `?save` sends the picture to the server that `render.mjs` runs.
+// A ball of a baked material. `?save` sends the picture to the server that `examples/browser.mjs` runs.
 
 import * as THREE from "three";
 import { Bake } from "./bake.js";
@@ -57,7 +57,7 @@ void main() {
 
 /** A material that evaluates `bake`, lit by `lights` of scene.json. */
 function bakedMaterial(bake, name, lights) {
-  const material = new THREE.RawShaderMaterial({
+  return new THREE.RawShaderMaterial({
     glslVersion: THREE.GLSL3,
     vertexShader: VERTEX,
     fragmentShader: fragment(bake.glsl, lights.length),
@@ -72,8 +72,6 @@ function bakedMaterial(bake, name, lights) {
       },
     },
   });
-  material.uniformsGroups = [bake.block];
-  return material;
 }
 
 async function main() {

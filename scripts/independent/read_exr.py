@@ -47,7 +47,8 @@ class Table:
         path = folder / entry["truth"]["path"]
         part = OpenEXR.File(str(path), separate_channels=True)
         planes = part.channels()
-        names = {1: "Y", 2: "YA", 3: "RGB", 4: "RGBA"}[len(planes)]
+        colour = [name for name in "RGBY" if name in planes]
+        names = colour + sorted(set(planes) - set(colour))
         self.values = np.stack([planes[name].pixels for name in names], axis=-1)
         self.metadata = json.loads(part.header().get("luthier", "{}"))
 

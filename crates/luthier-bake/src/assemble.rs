@@ -1,20 +1,24 @@
 //! From tiles to atlases.
 
+use std::collections::BTreeMap;
+
 use luthier_lut::{
-    Atlas, AtlasLayout, Axis, Budget, ColorMode, FormatSet, Image, LayerRecord, MaterialConstants, RowBase, Search,
-    ShadingModel, TableKind, TexelFormat, Tile,
+    Atlas, AtlasLayout, Axis, Budget, CandidateForm, ColorMode, FormatSet, Image, LayerRecord, MaterialConstants,
+    RowBase, Search, ShadingModel, TableKind, TexelFormat, Tile,
 };
 use luthier_material::{BudgetSettings, Material};
+use luthier_optics::interface::Interface;
 
 use crate::constants::constants;
 use crate::fresnel::RowShape;
 use crate::graph::{Observer, Results, Silent};
 use crate::job::{JobKind, Key};
+use crate::limits;
 use crate::maps::{MaterialMap, maps};
-use crate::plan::{ImageReader, Plan, PlannedLayers, Tiles, color_mode, shading_model};
+use crate::plan::{ImageReader, Plan, PlannedLayers, Tiles, color, color_mode, shading_model};
 use crate::search;
 use crate::settings::Settings;
-use crate::{BakeError, DEFAULT_BUDGET};
+use crate::{AIM, BakeError, DEFAULT_BUDGET};
 
 /// What a set of materials needs at run time.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,9 +59,6 @@ pub struct Outline {
     pub searches: Vec<Search>,
 }
 
-/// Longest side that textures are laid out for while tiles fit: any device of the last decade has it.
-const MAX_SIDE: u32 = 2048;
-
 /// How a bake is to be made, beside what the materials say.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
@@ -66,9 +67,6 @@ pub struct Options {
     /// Whether sizes, mappings and formats that no material decides are searched for; otherwise they are fixed defaults, and budgets
     /// are not looked at.
     pub search: bool,
-    /// Whether a material has tiles only in the tables that the `baked` shader of its model reads. Otherwise it has one in every kind,
-    /// for whoever lights it with an environment.
-    pub lean: bool,
     /// Fresnel rows of this form, of the size and axis that materials ask for or that are fixed, in place of those of a search.
     pub rows: Option<(RowBase, TexelFormat)>,
     /// Texel formats that a search may take; those of core WebGPU unless the target is known.
@@ -77,7 +75,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { budget: Budget::default(), search: true, lean: false, rows: None, formats: FormatSet::CORE }
+        Self { budget: Budget::default(), search: true, rows: None, formats: FormatSet::CORE }
     }
 }
 
@@ -87,13 +85,71 @@ impl Default for Options {
 /// # Errors
 /// See [`BakeError`].
 pub fn outline(materials: &[Material], read_image: ImageReader<'_>) -> Result<Outline, BakeError> {
-    let planned = plan(materials, &Options::default(), read_image, &Silent)?;
-    let Plan { settings, tiles, records, .. } = planned.plan;
-    let tables = used(&tiles)
-        .filter_map(|(kind, tiles)| Some((kind, layout(kind, tiles, &settings)?, shape(kind, &settings)?.format)))
-        .collect();
+    outline_with(materials, &Options::default(), read_image)
+}
+
+/// [`outline`] with options; without a search nothing is computed.
+///
+/// # Errors
+/// See [`BakeError`].
+pub fn outline_with(
+    materials: &[Material],
+    options: &Options,
+    read_image: ImageReader<'_>,
+) -> Result<Outline, BakeError> {
+    let planned = plan(materials, options, read_image, &Silent)?;
+    let tables = layouts(&planned.plan)?;
+    let Plan { tiles, records, .. } = planned.plan;
     let keys = used(&tiles).map(|(_, tiles)| tiles.tiles.iter().map(|(_, key)| *key).collect()).collect();
     Ok(Outline { tables, keys, materials: baked_materials(materials, records), searches: planned.searches })
+}
+
+/// The layers whose Fresnel rows would miss [`AIM`] in a bake of this material alone, and by how much they are off: those of interfaces that reflect
+/// totally what arrives flat, and of which no row over any cosine is smooth. Others are not looked at.
+///
+/// # Errors
+/// See [`BakeError`].
+pub fn kinked_rows(material: &Material, read_image: ImageReader<'_>) -> Result<Vec<(usize, f64)>, BakeError> {
+    let is_kinked = |layer: usize| Interface::of(&material.stack, layer).is_some_and(|i| i.has_kink(&color(material)));
+    let layers: Vec<usize> = (0..material.stack.layers.len()).filter(|&layer| is_kinked(layer)).collect();
+    let materials = std::slice::from_ref(material);
+    if layers.is_empty() || !budget(materials, &Budget::default())?.is_empty() {
+        return Ok(Vec::new());
+    }
+    let Planned { plan, results, .. } = plan(materials, &Options::default(), read_image, &Silent)?;
+    if !plan.settings.asked.leaves(TableKind::Fresnel) {
+        return Ok(Vec::new());
+    }
+    let results = plan.graph.only(&[JobKind::Fresnel]).run(&Silent, results);
+    let rows = &plan.tiles[TableKind::Fresnel as usize].tiles;
+    let error = |layer: usize| {
+        let (_, key) = rows.get(plan.records[0].layers[layer].fresnel_tile? as usize)?;
+        Some((layer, results.find(*key)?.error.max_abs_err))
+    };
+    Ok(layers.into_iter().filter_map(error).filter(|(_, error)| *error > AIM).collect())
+}
+
+/// Refuses a set of materials for its names, settings and limits before anything is computed. Images are not read.
+///
+/// # Errors
+/// All that is wrong, at least one.
+pub fn check(materials: &[Material], options: &Options) -> Result<(), Vec<BakeError>> {
+    let mut errors = Vec::new();
+    if materials.is_empty() {
+        errors.push(BakeError::Empty);
+    }
+    let mut named: BTreeMap<&str, &Material> = BTreeMap::new();
+    for (number, material) in materials.iter().enumerate() {
+        if let Some(first) = named.get(material.name.as_str()) {
+            let (name, first, second) = (material.name.clone(), first.place("name"), material.place("name"));
+            errors.push(BakeError::DuplicateName { material: number, name, first, second });
+        } else {
+            named.insert(&material.name, material);
+        }
+    }
+    errors.extend(Settings::of(materials).err());
+    errors.extend(budget(materials, &options.budget).err());
+    if errors.is_empty() { Ok(()) } else { Err(errors) }
 }
 
 /// Bakes all tables of a set of materials. `read_image` fetches thickness maps.
@@ -104,7 +160,7 @@ pub fn bake(materials: &[Material], read_image: ImageReader<'_>, observer: &dyn 
     bake_with(materials, &Options::default(), read_image, observer)
 }
 
-/// The same with options.
+/// [`bake`] with options.
 ///
 /// # Errors
 /// See [`BakeError`].
@@ -115,9 +171,13 @@ pub fn bake_with(
     observer: &dyn Observer,
 ) -> Result<Bake, BakeError> {
     let Planned { plan, results, searches } = plan(materials, options, read_image, observer)?;
+    let layouts = layouts(&plan)?;
     let Plan { settings, graph, tiles, records } = plan;
     let results = graph.run(observer, results);
-    let atlases = used(&tiles).filter_map(|(kind, tiles)| atlas(kind, tiles, &settings, &results)).collect();
+    let is_asked = !options.search || !budget(materials, &options.budget)?.is_empty();
+    let aim = |kind: TableKind| (!is_asked && settings.asked.leaves(kind)).then_some(AIM);
+    let atlas = |(kind, layout, format)| atlas(kind, layout, format, &tiles[kind as usize], &results, aim(kind));
+    let atlases = layouts.into_iter().map(atlas).collect();
     Ok(Bake { atlases, materials: baked_materials(materials, records), searches })
 }
 
@@ -137,23 +197,13 @@ fn plan(
     read_image: ImageReader<'_>,
     observer: &dyn Observer,
 ) -> Result<Planned, BakeError> {
-    if materials.is_empty() {
-        return Err(BakeError::Empty);
-    }
-    for (i, second) in materials.iter().enumerate() {
-        if let Some(first) = materials[..i].iter().find(|m| m.name == second.name) {
-            return Err(BakeError::DuplicateName {
-                name: second.name.clone(),
-                first: first.source.clone(),
-                second: second.source.clone(),
-            });
-        }
-    }
-    let mut settings = Settings { lean: options.lean, formats: options.formats, ..Settings::of(materials)? };
+    check(materials, options).map_err(|mut errors| errors.swap_remove(0))?;
+    let mut settings = Settings { formats: options.formats, ..Settings::of(materials)? };
     if let Some(rows) = options.rows {
         settings.take_rows(rows);
     }
     let fixed = Plan::new(materials, settings.clone(), read_image)?;
+    let fixed_layouts = layouts(&fixed)?;
     if !options.search {
         return Ok(Planned { plan: fixed, results: Results::default(), searches: Vec::new() });
     }
@@ -165,18 +215,16 @@ fn plan(
     if is_asked {
         results = fixed.graph.only(&search::READ).run(observer, results);
     }
-    let mut found = search::candidates(&fixed, &results, &budget, is_asked);
-    if !is_asked {
-        found.iter_mut().for_each(affordable);
-        found.retain(|found| found.comes_near(&budget));
-    }
+    let mut found = if is_asked { search::candidates(&fixed, &results, &budget) } else { search::by_default(&fixed) };
+    found.iter_mut().for_each(|found| fitting(found, &fixed));
+    found.retain(|found| !found.candidates.is_empty());
     let searched: Vec<TableKind> = found.iter().map(|f| f.kind).collect();
-    let fixed_bytes = used(&fixed.tiles)
-        .filter(|(kind, _)| !searched.contains(kind))
-        .filter_map(|(kind, tiles)| {
-            let [width, height] = layout(kind, tiles, &settings)?.size();
-            let texel = shape(kind, &settings)?.format.texel_bytes();
-            Some(u64::from(width) * u64::from(height) * u64::from(texel))
+    let fixed_bytes = fixed_layouts
+        .iter()
+        .filter(|(kind, ..)| !searched.contains(kind))
+        .map(|(_, layout, format)| {
+            let [width, height] = layout.size();
+            u64::from(width) * u64::from(height) * u64::from(format.texel_bytes())
         })
         .sum();
     let kinds = [JobKind::Fresnel, JobKind::Distribution, JobKind::Phase, JobKind::Fgd, JobKind::Film];
@@ -208,8 +256,9 @@ fn plan(
         results = exact.run(observer, results);
         let mut is_confirmed = true;
         for (kind, &choice) in found.iter_mut().zip(&chosen) {
-            let tiles = &plan.tiles[kind.kind as usize].tiles;
-            let exact = tiles.iter().filter_map(|(_, key)| results.find(*key)).map(|t| t.error.max_abs_err);
+            let tiles = plan.tiles[kind.kind as usize].tiles.iter().enumerate();
+            let counted = tiles.filter(|(tile, _)| !kind.left_out.contains(tile)).map(|(_, (_, key))| *key);
+            let exact = counted.filter_map(|key| results.find(key)).map(|t| t.error.max_abs_err);
             is_confirmed &= kind.confirm(choice, exact.fold(0.0, f64::max));
         }
         if is_confirmed {
@@ -223,10 +272,16 @@ fn plan(
     Ok(Planned { plan, results, searches })
 }
 
-/// Where nobody asks for less, a read costs at most half as much again as one of the fixed default.
-fn affordable(found: &mut search::Found) {
-    let most = 1.5 * found.fixed_cost;
-    found.candidates.retain(|c| c.cost <= most);
+/// Without the tables that no texture holds.
+fn fitting(found: &mut search::Found, plan: &Plan) {
+    let tiles = plan.tiles[found.kind as usize].tiles.len() as u32;
+    found.candidates.retain(|candidate| match &candidate.form {
+        CandidateForm::ClosedForm => true,
+        CandidateForm::Table { x, y, base, .. } => {
+            let layout = AtlasLayout { x: x.clone(), y: y.clone(), apron: 0, columns: 1, tiles, base: *base };
+            limits::columns(&layout).is_some()
+        }
+    });
 }
 
 /// The limits of the materials, the tightest of each; those of the options in their place.
@@ -300,26 +355,33 @@ fn shape(kind: TableKind, settings: &Settings) -> Option<Shape<'_>> {
     Some(Shape { x, y: Some(y), format: *format, base: RowBase::Zero })
 }
 
-/// Tiles in one column while they fit, else in as many as it takes.
-fn layout(kind: TableKind, tiles: &Tiles, settings: &Settings) -> Option<AtlasLayout> {
-    let Shape { x, y, base, .. } = shape(kind, settings)?;
-    let apron = u32::from(kind == TableKind::Thickness);
-    let count = tiles.tiles.len() as u32;
-    let mut layout = AtlasLayout { x: x.clone(), y: y.cloned(), apron, columns: 1, tiles: count, base };
-    let [width, height] = layout.tile_size();
-    let rows = (MAX_SIDE / height).max(1);
-    layout.columns = count.div_ceil(rows).min((MAX_SIDE / width).max(1));
-    Some(layout)
+/// Kind, layout and texel format of each table of a plan, in binding order.
+fn layouts(plan: &Plan) -> Result<Vec<(TableKind, AtlasLayout, TexelFormat)>, BakeError> {
+    let layout = |(kind, tiles): (TableKind, &Tiles)| {
+        let Shape { x, y, base, format } = shape(kind, &plan.settings)?;
+        let (apron, tiles) = (u32::from(kind == TableKind::Thickness), tiles.tiles.len() as u32);
+        let layout = AtlasLayout { x: x.clone(), y: y.cloned(), apron, columns: 1, tiles, base };
+        Some(match limits::columns(&layout) {
+            Some(columns) => Ok((kind, AtlasLayout { columns, ..layout }, format)),
+            None => Err(limits::too_many_tiles(kind, &layout)),
+        })
+    };
+    used(&plan.tiles).filter_map(layout).collect()
 }
 
-fn atlas(kind: TableKind, tiles: &Tiles, settings: &Settings, results: &Results) -> Option<Atlas> {
-    let layout = layout(kind, tiles, settings)?;
-    let format = shape(kind, settings)?.format;
+fn atlas(
+    kind: TableKind,
+    layout: AtlasLayout,
+    format: TexelFormat,
+    tiles: &Tiles,
+    results: &Results,
+    aim: Option<f64>,
+) -> Atlas {
     let channels = tiles.tiles.first().map_or(1, |(_, key)| results.tile(*key).truth.channels);
     let [width, height] = layout.size();
     let mut truth = Image::zeros(width, height, channels);
     let mut texels = Image::zeros(width, height, format.channels());
-    let mut bytes = vec![0; (width * height * format.texel_bytes()) as usize];
+    let mut bytes = vec![0; width as usize * height as usize * format.texel_bytes() as usize];
     let mut entries = Vec::with_capacity(tiles.tiles.len());
     for (index, (name, key)) in tiles.tiles.iter().enumerate() {
         let data = results.tile(*key);
@@ -332,9 +394,10 @@ fn atlas(kind: TableKind, tiles: &Tiles, settings: &Settings, results: &Results)
             model: data.model.clone(),
             input_hash: key.to_string(),
             error: data.error.clone(),
+            aim,
         });
     }
-    Some(Atlas { kind, layout, format, tiles: entries, truth, texels, bytes })
+    Atlas { kind, layout, format, tiles: entries, truth, texels, bytes }
 }
 
 /// Copies the bytes of a tile into those of an atlas of this width, a row of texels or blocks at a time.

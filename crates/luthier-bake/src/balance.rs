@@ -4,10 +4,10 @@ use luthier_lut::{Encoding, Image, TableKind, TexelFormat};
 
 /// The texels that ship for the values of one tile: encoded, balanced, quantised; as bytes, and as read from these.
 ///
-/// Between nodes that lie on a curve of second derivative f'', linear interpolation is off by up to h^2 f''/8, always to
-/// the same side. Nodes moved towards the chord by half of that, `h^2 f''/16`, spread the error evenly to both sides and
-/// halve its maximum (the usual minimax argument for broken lines). Second differences stand for h^2 f''; nodes at the
-/// border stay where they are, and what is not negative stays so: at the foot of a lobe a second difference says little.
+/// Between nodes that lie on a curve of second derivative f'', linear interpolation is too large by up to h^2 f''/8. Nodes
+/// moved by half of that the other way, `-h^2 f''/16`, spread the error evenly to both sides and halve its maximum (the
+/// usual minimax argument for broken lines). Second differences stand for h^2 f''; along an axis on whose border they lie
+/// nodes are not moved, and what is not negative stays so: at the foot of a lobe a second difference says little.
 pub(crate) fn texels(kind: TableKind, format: TexelFormat, truth: &Image) -> (Vec<u8>, Image) {
     let roots = Encoding::of(kind, format).to_root(truth);
     let balanced = match kind {

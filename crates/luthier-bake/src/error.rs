@@ -1,4 +1,4 @@
-use luthier_lut::TexelFormat;
+use luthier_lut::{BUFFER_WORDS_MAX, SIDE_MAX, TableKind, TexelFormat};
 use thiserror::Error;
 
 /// Why a set of materials cannot be baked.
@@ -11,11 +11,13 @@ pub enum BakeError {
     /// Two materials of one name.
     #[error("two materials are named `{name}`: {first} and {second}; names must be unique in a bake")]
     DuplicateName {
+        /// Number of the second material.
+        material: usize,
         /// The name.
         name: String,
-        /// One file.
+        /// File and line of the first.
         first: String,
-        /// The other.
+        /// File and line of the second.
         second: String,
     },
     /// Two materials ask for different tables where the set shares one.
@@ -24,13 +26,15 @@ pub enum BakeError {
          each kind; make them agree, or bake them into different folders"
     )]
     Conflict {
+        /// Number of the second material.
+        material: usize,
         /// The key, as in the file.
         setting: &'static str,
-        /// One file.
+        /// File and line of the first.
         first: String,
         /// What it asks.
         first_value: String,
-        /// The other file.
+        /// File and line of the second.
         second: String,
         /// What that one asks.
         second_value: String,
@@ -38,12 +42,45 @@ pub enum BakeError {
     /// A side that blocks of texels do not fill.
     #[error("{setting} {side} with format {format}: write a multiple of {}", format.block_side())]
     Blocks {
+        /// Number of the material that asks for the side or for the format.
+        material: usize,
         /// The key, as in the file.
         setting: &'static str,
         /// The format whose blocks they are.
         format: TexelFormat,
         /// The side.
         side: u32,
+    },
+    /// More tiles of one kind than a texture holds.
+    #[error(
+        "{tiles} tiles of {} x {} texels in the {} table: a texture of {SIDE_MAX} x {SIDE_MAX}, the largest of core WebGPU, holds \
+         {most}; {hint}",
+        tile[0], tile[1], kind.name()
+    )]
+    TooManyTiles {
+        /// The table.
+        kind: TableKind,
+        /// Tiles needed.
+        tiles: u32,
+        /// Texels of one.
+        tile: [u32; 2],
+        /// Tiles that the largest texture holds.
+        most: u32,
+        /// What to do.
+        hint: String,
+    },
+    /// More layers than the material buffer holds.
+    #[error(
+        "{materials} materials of {layers} layers together take {words} words of the material buffer, which holds \
+         {BUFFER_WORDS_MAX}; bake them into several folders"
+    )]
+    TooManyLayers {
+        /// Materials.
+        materials: usize,
+        /// Their layers.
+        layers: usize,
+        /// Words of 16 bytes that these take.
+        words: usize,
     },
     /// No tables hold the budget.
     #[error("the budget cannot be met: {reason}; `{hint}` would do")]
@@ -70,7 +107,25 @@ pub enum BakeError {
         material: String,
         /// The image.
         path: String,
-        /// What is wrong with it.
+        /// Why it cannot be used.
         reason: String,
     },
+}
+
+impl BakeError {
+    /// The material, by its number, and the key of its file that the error is about, as in [`luthier_material::Places`].
+    pub fn place(&self) -> Option<(usize, &str)> {
+        match self {
+            Self::DuplicateName { material, .. } => Some((*material, "name")),
+            Self::Conflict { material, setting, .. } | Self::Blocks { material, setting, .. } => {
+                Some((*material, setting))
+            }
+            Self::Empty
+            | Self::TooManyTiles { .. }
+            | Self::TooManyLayers { .. }
+            | Self::Budget { .. }
+            | Self::BudgetValue { .. }
+            | Self::Map { .. } => None,
+        }
+    }
 }

@@ -42,6 +42,7 @@ impl EscapeJob {
             points: [PROBES, PROBES],
             from: [x.encode(DOMAIN_COS_THETA), y.encode(DOMAIN_ALPHA)],
             to: [1.0, 1.0],
+            nodes: [x.intervals(), y.intervals()],
             refinements: 0,
         };
         let error = measure_scan(

@@ -20,12 +20,15 @@ use crate::smooth::savitzky_golay;
 /// Effort at the nodes, where neighbours share their noise, and at the points of the error scan.
 const EFFORT: [Effort; 2] = [Effort { first: 20, later: 40 }, Effort { first: 28, later: 72 }];
 
-/// The same for reflectances with a kink, which quadratures resolve slowly. The walks of a point stay below the 65536 that the sequence of
+/// Effort for reflectances with a kink, which quadratures resolve slowly. The walks of a point stay below the 65536 that the sequence of
 /// their random numbers has.
 const KINKED_EFFORT: [Effort; 2] = [Effort { first: 64, later: 40 }, Effort { first: 128, later: 72 }];
 
-/// Points of the error scan along each axis.
+/// Points of the error scan between nodes, along each axis.
 const PROBES: u32 = 16;
+
+/// Most intervals along each axis between the nodes that the error scan has too, the last ones among them.
+const PROBED_INTERVALS: u32 = 9;
 
 /// Where errors are measured: directions up to 89.5 degrees.
 pub(crate) const DOMAIN_COS_THETA: f64 = 0.0087;
@@ -46,8 +49,8 @@ pub(crate) struct FacetGridJob {
 #[derive(Debug)]
 pub(crate) struct FacetGrid {
     pub(crate) nodes: Vec<FacetStatistics>,
-    pub(crate) scan: Scan,
-    pub(crate) probes: Vec<FacetStatistics>,
+    /// Coordinates, and the statistics there.
+    pub(crate) probes: Vec<([f64; 2], FacetStatistics)>,
 }
 
 impl FacetGridJob {
@@ -61,28 +64,43 @@ impl FacetGridJob {
 
     pub(crate) fn run(&self) -> FacetGrid {
         let [x, y] = &self.axes;
-        let [node_effort, probe_effort] = if self.kinked { KINKED_EFFORT } else { EFFORT };
         let nodes = (0..x.size * y.size)
             .into_par_iter()
-            .map(|texel| self.at(x.node(texel % x.size), y.node(texel / x.size), node_effort, seed(texel)))
+            .map(|texel| {
+                let u = [x.node_coordinate(f64::from(texel % x.size)), y.node_coordinate(f64::from(texel / x.size))];
+                self.at(u, self.efforts()[0], seed(texel))
+            })
             .collect();
+        let probed = |axis: &Axis| {
+            let intervals = axis.intervals();
+            (1..=PROBED_INTERVALS).rev().find(|n| intervals.is_multiple_of(*n)).unwrap_or(1)
+        };
         let scan = Scan {
             points: [PROBES, PROBES],
             from: [x.encode(DOMAIN_COS_THETA), y.encode(DOMAIN_ALPHA)],
             to: [1.0, 1.0],
+            nodes: [probed(x), probed(y)],
             refinements: 0,
         };
-        let probes = (0..PROBES * PROBES)
-            .into_par_iter()
-            .map(|point| {
-                let u = scan.coordinate([point % PROBES, point / PROBES]);
-                self.at(x.decode(u[0]), y.decode(u[1]), probe_effort, seed(!point))
-            })
-            .collect();
-        FacetGrid { nodes, scan, probes }
+        FacetGrid { nodes, probes: self.probes(scan.coordinates()) }
     }
 
-    fn at(&self, cos_theta: f64, alpha: f64, effort: Effort, seed: u32) -> FacetStatistics {
+    /// Statistics at some coordinates, as exact as those that a table is compared with.
+    pub(crate) fn probes(&self, at: impl IntoIterator<Item = [f64; 2]>) -> Vec<([f64; 2], FacetStatistics)> {
+        let at: Vec<[f64; 2]> = at.into_iter().collect();
+        (0..at.len() as u32)
+            .into_par_iter()
+            .map(|point| (at[point as usize], self.at(at[point as usize], self.efforts()[1], seed(!point))))
+            .collect()
+    }
+
+    /// At the nodes, and at the points of the error scan.
+    fn efforts(&self) -> [Effort; 2] {
+        if self.kinked { KINKED_EFFORT } else { EFFORT }
+    }
+
+    fn at(&self, u: [f64; 2], effort: Effort, seed: u32) -> FacetStatistics {
+        let [cos_theta, alpha] = [0, 1].map(|k: usize| self.axes[k].decode(u[k]));
         FacetStatistics::new(self.distribution, alpha, cos_theta, effort, seed)
     }
 }
@@ -109,17 +127,24 @@ pub(crate) struct CrossedJob {
 /// Nodes of the coarse grid along each axis.
 const CROSSED_NODES: u32 = 16;
 
-/// The same for films, which may reflect next to nothing but at grazing angles.
+/// Nodes for films, which may reflect next to nothing but at grazing angles.
 const CROSSED_NODES_FILM: u32 = 32;
 
 /// Walks per node.
 const CROSSED_WALKS: u32 = 256;
 
-/// The same for films, per wavelength.
+/// Walks per node of films, per wavelength.
 const CROSSED_WALKS_FILM: u32 = 64;
 
-/// Points along each axis at which the grid is compared with four times the walks.
-const CROSSED_PROBES: u32 = 4;
+/// Walks per node from the denser side, from which far more of the light crosses and comes back.
+const CROSSED_WALKS_DENSE: u32 = 1024;
+
+/// Intervals along each axis at whose ends, the borders of the table among them, the grid is compared with the mean of some families
+/// of walks.
+const CROSSED_PROBES: u32 = 6;
+
+/// How many families; each has the walks of a node.
+const CROSSED_FAMILIES: u32 = 4;
 
 /// Wavelength whose refraction stands for all: dispersion changes this small part by a few percent of itself.
 const REFRACTION_WAVELENGTH_NM: f64 = 589.3;
@@ -129,8 +154,10 @@ const REFRACTION_WAVELENGTH_NM: f64 = 589.3;
 pub(crate) struct CrossedGrid {
     side: usize,
     values: [Vec<f64>; 3],
-    /// Largest difference found at a few points off the nodes.
+    /// Largest difference found, and the uncertainty of what it was found against.
     pub(crate) max_abs_err: f64,
+    /// Root mean square of the differences found, with the uncertainty.
+    pub(crate) rms_err: f64,
 }
 
 impl CrossedJob {
@@ -146,6 +173,7 @@ impl CrossedJob {
     pub(crate) fn run(&self) -> CrossedGrid {
         let crossing = self.crossing();
         let (side, walks) = match self.interface.films.len() {
+            0 if self.eta() < 1.0 => (CROSSED_NODES, CROSSED_WALKS_DENSE),
             0 => (CROSSED_NODES, CROSSED_WALKS),
             _ => (CROSSED_NODES_FILM, CROSSED_WALKS_FILM),
         };
@@ -162,25 +190,32 @@ impl CrossedJob {
                 channel.iter_mut().for_each(|v| *v = v.max(0.0));
             }
         }
-        let mut grid = CrossedGrid { side: side as usize, values, max_abs_err: 0.0 };
-        let errors: Vec<f64> = (0..CROSSED_PROBES * CROSSED_PROBES)
+        let mut grid = CrossedGrid { side: side as usize, values, max_abs_err: 0.0, rms_err: 0.0 };
+        let count = CROSSED_PROBES + 1;
+        let errors: Vec<f64> = (0..count * count)
             .into_par_iter()
             .map(|point| {
-                let u = [point % CROSSED_PROBES, point / CROSSED_PROBES]
-                    .map(|i| (f64::from(i) + 0.5) / f64::from(CROSSED_PROBES));
-                let (truth, read) = (crossing(u, 4 * walks, seed(!point)), grid.at(u));
-                (0..3).map(|c| (truth[c] - read[c]).abs()).fold(0.0, f64::max)
+                let u = [point % count, point / count].map(|i| f64::from(i) / f64::from(CROSSED_PROBES));
+                let family = |n: u32| crossing(u, walks, seed(!(point * CROSSED_FAMILIES + n)));
+                let (families, read): (Vec<Rgb>, Rgb) = ((0..CROSSED_FAMILIES).map(family).collect(), grid.at(u));
+                (0..3).map(|c| off(families.iter().map(|rgb| rgb[c]), read[c])).fold(0.0, f64::max)
             })
             .collect();
-        grid.max_abs_err = errors.into_iter().fold(0.0, f64::max);
+        grid.max_abs_err = errors.iter().copied().fold(0.0, f64::max);
+        grid.rms_err = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
         grid
+    }
+
+    /// Index below over index above.
+    fn eta(&self) -> f64 {
+        let index = |ior: &Ior| ior.at(REFRACTION_WAVELENGTH_NM).re;
+        index(&self.interface.below) / index(&self.interface.above)
     }
 
     /// The crossed part as a function of coordinates, number of walks and seed.
     fn crossing(&self) -> impl Fn([f64; 2], u32, u32) -> Rgb + Sync {
         let weighted = crossed_curves(&self.interface, &self.color);
-        let index = |ior: &Ior| ior.at(REFRACTION_WAVELENGTH_NM).re;
-        let eta = index(&self.interface.below) / index(&self.interface.above);
+        let eta = self.eta();
         move |u, walks, seed| {
             let [x, y] = &self.axes;
             let (cos_theta, alpha) = (x.decode(u[0]), y.decode(u[1]));
@@ -193,6 +228,14 @@ impl CrossedJob {
             weighted.rgb(&albedos)
         }
     }
+}
+
+/// How far a value may be off the mean of independent estimates: the difference, and the standard error of the mean.
+fn off(estimates: impl ExactSizeIterator<Item = f64> + Clone, value: f64) -> f64 {
+    let count = estimates.len() as f64;
+    let mean = estimates.clone().sum::<f64>() / count;
+    let squares: f64 = estimates.map(|estimate| (estimate - mean) * (estimate - mean)).sum();
+    (mean - value).abs() + (squares / (count * (count - 1.0))).sqrt()
 }
 
 impl CrossedGrid {

@@ -1,6 +1,6 @@
 //! FGD-infinity tiles: the energy that one rough interface sends back, all bounces of its micro-surface included.
 
-use luthier_lut::{Axis, Comparison, Image, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
+use luthier_lut::{Axis, Comparison, Image, TableKind, TexelFormat, WeightBits, measure_at};
 use luthier_optics::Rgb;
 use luthier_optics::albedo::{FacetStatistics, ReflectanceCurves};
 use luthier_optics::color::{Color, WavelengthNode, luminance};
@@ -28,8 +28,14 @@ const SPECTRUM_COS_THETA: [f64; 5] = [1.0, 0.6, 0.3, 0.15, 0.05];
 /// Powers of the reflectance that are compared: as many reflections.
 const SPECTRUM_POWERS: i32 = 3;
 
-/// Every so many points of the error scan, along each axis, all wavelengths are taken.
-const SPECTRUM_PROBES: usize = 5;
+/// At every so many points of the error scan all wavelengths are taken; 16 columns and 10 of nodes are no multiples of it.
+const SPECTRUM_PROBES: usize = 23;
+
+/// Points of the error scan in a cell that has a critical angle, along the cosine.
+const KINK_POINTS: u32 = 8;
+
+/// The alphas there: roughness wears the kink away.
+const KINK_ALPHAS: [f64; 4] = [DOMAIN_ALPHA, 0.03, 0.1, 0.3];
 
 /// The values of a tile on the grid where they are computed: what its table settings do not enter.
 #[derive(Debug, Clone)]
@@ -43,16 +49,18 @@ pub(crate) struct FgdTruthJob {
     pub(crate) grid: [Axis; 2],
 }
 
-/// Values at the nodes of a grid, RGB and never-crossed luminance, and at points off them.
+/// Values at the nodes of a grid, RGB and never-crossed luminance, and at the points of an error scan.
 #[derive(Debug, Clone)]
 pub(crate) struct FgdTruth {
     pub(crate) image: Image,
-    /// Where the points are, on the grid.
-    pub(crate) scan: Scan,
-    /// Axis values, and the function there, row by row.
+    /// Axis values, and the function there.
     pub(crate) probes: Vec<([f64; 2], [f64; 4])>,
+    /// The same around critical angles.
+    pub(crate) kinks: Vec<([f64; 2], [f64; 4])>,
     /// What the function may be off itself: light that crossed, and wavelengths left out. The worst of all may meet.
     pub(crate) slack: f64,
+    /// The same in the root mean square.
+    pub(crate) slack_rms: f64,
 }
 
 impl FgdTruthJob {
@@ -67,18 +75,40 @@ impl FgdTruthJob {
     }
 
     pub(crate) fn dependencies(&self) -> Vec<Job> {
-        let mut jobs = vec![self.facet_grid()];
+        let mut jobs = vec![Job::FacetGrid(self.facet_grid())];
         jobs.extend(self.crossed());
         jobs
     }
 
-    fn facet_grid(&self) -> Job {
-        let kinked = self.transparent
-            && self.color.nodes().iter().any(|node| {
-                let at = self.interface.at(node.wavelength_nm);
-                at.below.re < at.above.re
-            });
-        Job::FacetGrid(FacetGridJob { distribution: self.distribution, kinked, axes: self.grid.clone() })
+    fn facet_grid(&self) -> FacetGridJob {
+        let kinked = self.transparent && !self.critical_cosines().is_empty();
+        FacetGridJob { distribution: self.distribution, kinked, axes: self.grid.clone() }
+    }
+
+    /// The cosines below which all light is totally reflected, at the wavelengths that have one.
+    fn critical_cosines(&self) -> Vec<f64> {
+        let critical = |node: &WavelengthNode| {
+            let at = self.interface.at(node.wavelength_nm);
+            let eta = at.below.re / at.above.re;
+            (eta < 1.0).then(|| ((1.0 - eta) * (1.0 + eta)).sqrt())
+        };
+        self.color.nodes().iter().filter_map(critical).collect()
+    }
+
+    /// Coordinates around the critical angles, where smooth tables are worst: in every cell that has one, and beside it.
+    fn kinks(&self) -> Vec<[f64; 2]> {
+        let [x, y] = &self.grid;
+        let critical = self.critical_cosines();
+        let (least, most) = critical.iter().fold((1.0, 0.0), |(a, b), &c| (f64::min(a, c), f64::max(b, c)));
+        if least > most {
+            return Vec::new();
+        }
+        let last = f64::from(x.intervals());
+        let (from, to) = (libm::floor(x.index(least)), libm::floor(x.index(most)) + 1.0);
+        let count = ((to - from) as u32 + 1) * KINK_POINTS;
+        let cosines = (0..count).map(|i| from + (to + 1.0 - from) * f64::from(i) / f64::from(count));
+        let columns: Vec<f64> = cosines.filter(|index| *index <= last).map(|index| index / last).collect();
+        KINK_ALPHAS.iter().flat_map(|&alpha| columns.iter().map(move |&u| [u, y.encode(alpha)])).collect()
     }
 
     fn crossed(&self) -> Option<Job> {
@@ -94,7 +124,9 @@ impl FgdTruthJob {
 
     pub(crate) fn run(&self, inputs: &Inputs<'_>) -> FgdTruth {
         let [x, y] = &self.grid;
-        let grid = inputs.facet_grid(&self.facet_grid());
+        let facets = self.facet_grid();
+        let kinks = facets.probes(if facets.kinked { self.kinks() } else { Vec::new() });
+        let grid = inputs.facet_grid(&Job::FacetGrid(facets));
         let crossed = self.crossed().map(|job| inputs.crossed(&job));
         let curves = Curves::new(&self.interface, &self.color);
         let crossed_at = |u| crossed.map_or([0.0; 3], |c| c.at(u));
@@ -113,22 +145,16 @@ impl FgdTruthJob {
             image.texel_mut(column, row).copy_from_slice(&[r, g, b, luminance(never_crossed) as f32]);
         }
 
-        let columns = grid.scan.points[0] as usize;
-        let probes = grid
-            .probes
-            .par_iter()
-            .enumerate()
-            .map(|(point, statistics)| {
-                let u = grid.scan.coordinate([(point % columns) as u32, (point / columns) as u32]);
-                let (b, back) = (curves.bounces(statistics), crossed_at(u));
-                let never_crossed: Rgb =
-                    [0, 1, 2].map(|c: usize| b.first[c] + statistics.remaining() * b.later_share[c]);
-                let [r, g, b] = [0, 1, 2].map(|c: usize| never_crossed[c] + back[c]);
-                ([x.decode(u[0]), y.decode(u[1])], [r, g, b, luminance(never_crossed)])
-            })
-            .collect();
-        let slack = crossed.map_or(0.0, |c| c.max_abs_err) + curves.spectrum_error(grid);
-        FgdTruth { image, scan: grid.scan, probes, slack }
+        let value = |(u, statistics): &([f64; 2], FacetStatistics)| {
+            let (b, back) = (curves.bounces(statistics), crossed_at(*u));
+            let never_crossed: Rgb = [0, 1, 2].map(|c: usize| b.first[c] + statistics.remaining() * b.later_share[c]);
+            let [r, g, b] = [0, 1, 2].map(|c: usize| never_crossed[c] + back[c]);
+            ([x.decode(u[0]), y.decode(u[1])], [r, g, b, luminance(never_crossed)])
+        };
+        let [probes, kinks] = [&grid.probes, &kinks].map(|points| points.par_iter().map(value).collect());
+        let ([spectrum, spectrum_rms], [back, back_rms]) =
+            (curves.spectrum_error(grid), crossed.map_or([0.0; 2], |c| [c.max_abs_err, c.rms_err]));
+        FgdTruth { image, probes, kinks, slack: back + spectrum, slack_rms: libm::hypot(back_rms, spectrum_rms) }
     }
 }
 
@@ -155,32 +181,21 @@ impl FgdJob {
     }
 
     pub(crate) fn run(&self, inputs: &Inputs<'_>) -> TileData {
-        let FgdTruth { image, scan, probes, slack } = inputs.fgd_truth(&Job::FgdTruth(self.truth.clone()));
-        let ([x, y], [from_x, from_y]) = (&self.axes, &self.truth.grid);
+        let FgdTruth { image, probes, kinks, slack, slack_rms } = inputs.fgd_truth(&Job::FgdTruth(self.truth.clone()));
+        let [x, y] = &self.axes;
         let truth =
             if self.axes == self.truth.grid { image.clone() } else { resampled(image, &self.truth.grid, &self.axes) };
         let atlas = lone_tile(TableKind::Fgd, &[x, y], self.format, &truth);
-        let at = |u: [f64; 2]| [from_x.decode(u[0]), from_y.decode(u[1])];
-        let probe = |u: [f64; 2]| {
-            let [i, j] = [0, 1].map(|k: usize| {
-                let t = (u[k] - scan.from[k]) / (scan.to[k] - scan.from[k]);
-                (t * f64::from(scan.points[k])) as usize
-            });
-            probes[j * scan.points[0] as usize + i].1
+        let compared = |&(at, expected): &([f64; 2], [f64; 4])| {
+            let mut sampled = atlas.sample(0, at, WeightBits::Fixed(8));
+            // Formats without a fourth channel hold reflected light alone.
+            if self.format.channels() < 4 {
+                sampled[3] = expected[3];
+            }
+            (at.to_vec(), Comparison { expected, sampled })
         };
-        let mut error = measure_scan(
-            scan,
-            |u| {
-                let (expected, mut sampled) = (probe(u), atlas.sample(0, at(u), WeightBits::Fixed(8)));
-                // Formats without a fourth channel hold reflected light alone.
-                if self.format.channels() < 4 {
-                    sampled[3] = expected[3];
-                }
-                Comparison { expected, sampled }
-            },
-            |u| at(u).to_vec(),
-        );
-        error.max_abs_err += slack;
+        let [error, worst] = [probes, kinks].map(|points| measure_at(points.iter().map(compared)));
+        let error = error.with_worst_of(worst).with_slack(*slack, *slack_rms);
         let model = format!(
             "directional albedo with all bounces, height-correlated Smith, {}; {}; errors for cos_theta >= {DOMAIN_COS_THETA}, \
              alpha >= {DOMAIN_ALPHA}",
@@ -216,22 +231,20 @@ impl Curves {
         }
     }
 
-    /// Largest change of an albedo by all wavelengths in place of the sparse ones, at some points of the error scan.
-    fn spectrum_error(&self, grid: &FacetGrid) -> f64 {
-        let [width, height] = grid.scan.points.map(|n| n as usize);
-        let start = SPECTRUM_PROBES / 2;
-        let rows = (start..height).step_by(SPECTRUM_PROBES);
-        let points = rows.flat_map(|j| (start..width).step_by(SPECTRUM_PROBES).map(move |i| j * width + i));
-        let errors: Vec<f64> = points
-            .collect::<Vec<_>>()
-            .into_par_iter()
-            .map(|point| {
-                let statistics = &grid.probes[point];
+    /// Largest change of an albedo by all wavelengths in place of the sparse ones, at some points of the error scan, and that in the root
+    /// mean square.
+    fn spectrum_error(&self, grid: &FacetGrid) -> [f64; 2] {
+        let errors: Vec<f64> = grid
+            .probes
+            .par_iter()
+            .step_by(SPECTRUM_PROBES)
+            .map(|(_, statistics)| {
                 let [a, b] = [&self.all, &self.later].map(|c| c.rgb(&statistics.later_share(&c.curves)));
                 (0..3).map(|c| statistics.remaining() * (a[c] - b[c]).abs()).fold(0.0, f64::max)
             })
             .collect();
-        errors.into_iter().fold(0.0, f64::max)
+        let squares = errors.iter().map(|e| e * e).sum::<f64>();
+        [errors.iter().copied().fold(0.0, f64::max), (squares / errors.len() as f64).sqrt()]
     }
 }
 

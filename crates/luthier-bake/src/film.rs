@@ -1,6 +1,6 @@
 //! Film tiles: reflectance of an interface over the angle and the thickness of its top film.
 
-use luthier_lut::{Axis, Comparison, Image, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
+use luthier_lut::{Axis, Comparison, Image, Scan, TableKind, TexelFormat, WeightBits, incident_cosine, measure_scan};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::{Interface, Sampled};
@@ -18,7 +18,8 @@ const SCAN: u32 = 128;
 const R2: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
 
 /// Airy's reflectance over (cos_theta, d / d_max), integrated as the colour says: where Granier and Heidrich's phase row has two
-/// beams at three wavelengths, this has all beams at all of them.
+/// beams at three wavelengths, this has all beams at all of them. Where light is totally reflected the cosine is that of the refracted
+/// direction.
 #[derive(Debug, Clone)]
 pub(crate) struct FilmJob {
     pub(crate) interface: Interface,
@@ -59,12 +60,13 @@ impl FilmJob {
     /// The tile's values at its nodes.
     pub(crate) fn truth(&self) -> Image {
         let thickest = self.thickest().sampled(&self.color);
+        let cot_sq = thickest.critical_cot_sq();
         let [x, y] = &self.axes;
         let rows: Vec<Vec<f32>> = (0..y.size)
             .into_par_iter()
             .map(|j| {
                 let here = at_fraction(&thickest, y.node(j));
-                (0..x.size).flat_map(|i| here.rgb(x.node(i)).map(|c| c as f32)).collect()
+                (0..x.size).flat_map(|i| here.rgb(incident_cosine(cot_sq, x.node(i))).map(|c| c as f32)).collect()
             })
             .collect();
         Image { width: x.size, height: y.size, channels: 3, data: rows.concat() }
@@ -73,13 +75,13 @@ impl FilmJob {
     /// The function at so many places where the film is: cosines are squares of a sequence of low discrepancy (Roberts 2018).
     pub(crate) fn probes(&self, count: u32) -> Vec<([f64; 2], [f64; 4])> {
         let thickest = self.thickest().sampled(&self.color);
-        let least = self.least();
+        let (least, cot_sq) = (self.least(), thickest.critical_cot_sq());
         (0..count)
             .into_par_iter()
             .map(|i| {
                 let [a, b] = R2.map(|r| (0.5 + f64::from(i) * r).fract());
                 let (cos_theta, fraction) = (a * a, least + (1.0 - least) * b);
-                let [r, g, b] = at_fraction(&thickest, fraction).rgb(cos_theta);
+                let [r, g, b] = at_fraction(&thickest, fraction).rgb(incident_cosine(cot_sq, cos_theta));
                 ([cos_theta, fraction], [r, g, b, 1.0])
             })
             .collect()
@@ -87,15 +89,22 @@ impl FilmJob {
 
     pub(crate) fn run(&self) -> TileData {
         let thickest = self.thickest().sampled(&self.color);
+        let cot_sq = thickest.critical_cot_sq();
         let [x, y] = &self.axes;
         let truth = self.truth();
         let atlas = lone_tile(TableKind::Film, &[x, y], self.format, &truth);
         let from = [0.0, y.encode(self.least())];
         let error = measure_scan(
-            &Scan { points: [SCAN; 2], from, to: [1.0; 2], refinements: Scan::REFINEMENTS },
+            &Scan {
+                points: [SCAN; 2],
+                from,
+                to: [1.0; 2],
+                nodes: [x.intervals(), y.intervals()],
+                refinements: Scan::REFINEMENTS,
+            },
             |u| {
                 let values = [x.decode(u[0]), y.decode(u[1])];
-                let [r, g, b]: Rgb = at_fraction(&thickest, values[1]).rgb(values[0]);
+                let [r, g, b]: Rgb = at_fraction(&thickest, values[1]).rgb(incident_cosine(cot_sq, values[0]));
                 let read = atlas.sample(0, values, WeightBits::Fixed(8));
                 Comparison { expected: [r, g, b, 0.0], sampled: [read[0], read[1], read[2], 0.0] }
             },

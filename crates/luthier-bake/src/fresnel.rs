@@ -2,11 +2,11 @@
 
 use luthier_lut::{
     Atlas, AtlasLayout, Axis, Comparison, Image, RowBase, Scan, SchlickBase, TableKind, TexelFormat, WeightBits,
-    measure_scan,
+    incident_cosine, measure_scan,
 };
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
-use luthier_optics::interface::Interface;
+use luthier_optics::interface::{Interface, Sampled};
 use serde_json::{Value, json};
 
 use crate::balance;
@@ -15,6 +15,9 @@ use crate::json;
 
 /// Points of the error scan per texel interval.
 const PER_CELL: u32 = 16;
+
+/// One for so many points of the scan is added where all light is totally reflected.
+const BEYOND: u32 = 8;
 
 /// Cosines at which the coefficient of the dip is fitted: squares of equal steps.
 const FIT_POINTS: u32 = 64;
@@ -49,28 +52,61 @@ impl FresnelJob {
     }
 
     pub(crate) fn run(&self) -> TileData {
-        let sampled = self.interface.sampled(&self.color);
-        let reflectance = |cos_theta: f64| sampled.rgb(cos_theta);
+        let curve = RowCurve::new(&self.interface, &self.color);
+        let reflectance = |cos_theta: f64| curve.at(cos_theta);
         let axis = &self.shape.axis;
         let (atlas, truth) = self.shape.row(&reflectance, &SchlickBase::fit(&reflectance));
+        let mut scan = Scan::whole([axis.intervals(), 0], [PER_CELL, 0]);
+        if curve.critical_cot_sq > 0.0 {
+            // Coordinates below 0 are angles that are totally reflected, from the critical one to grazing.
+            let beyond = f64::from(scan.points[0] / BEYOND) / f64::from(scan.points[0]);
+            scan.points[0] += scan.points[0] / BEYOND;
+            scan.from[0] = -beyond;
+        }
+        let flattest = if axis.quantity == "theta" { axis.max } else { axis.min };
+        let value = |u: f64| if u < 0.0 { flattest } else { axis.decode(u) };
+        let incident = |u: f64| {
+            let at = incident_cosine(curve.critical_cot_sq, cos_theta(axis, value(u)));
+            if u < 0.0 { at * (1.0 - u / scan.from[0]) } else { at }
+        };
         let error = measure_scan(
-            &Scan::whole([axis.intervals(), 0], [PER_CELL, 0]),
+            &scan,
             |u| {
-                let value = axis.decode(u[0]);
-                let [r, g, b] = reflectance(cos_theta(axis, value));
-                let read = atlas.sample(0, [value, 0.0], WeightBits::Fixed(8));
+                let [r, g, b] = curve.sampled.rgb(incident(u[0]));
+                let read = atlas.sample(0, [value(u[0]), 0.0], WeightBits::Fixed(8));
                 Comparison { expected: [r, g, b, 0.0], sampled: [read[0], read[1], read[2], 0.0] }
             },
-            |u| vec![axis.decode(u[0])],
+            |u| vec![value(u[0])],
         );
         let films = if self.interface.films.is_empty() { "bare interface" } else { "films, Airy" };
+        let over = if curve.critical_cot_sq > 0.0 { ", over the cosine of the refracted direction" } else { "" };
         TileData {
-            model: format!("exact complex Fresnel, unpolarised; {films}; {}", color_in_words(&self.color)),
+            model: format!("exact complex Fresnel, unpolarised; {films}{over}; {}", color_in_words(&self.color)),
             truth,
             texels: atlas.texels,
             bytes: atlas.bytes,
             error,
         }
+    }
+}
+
+/// What a row holds: the reflectance over the cosine of incidence, or where light is totally reflected over that of the refracted
+/// direction.
+pub(crate) struct RowCurve {
+    sampled: Sampled,
+    /// 0 over the cosine of incidence.
+    pub(crate) critical_cot_sq: f64,
+}
+
+impl RowCurve {
+    pub(crate) fn new(interface: &Interface, color: &Color) -> Self {
+        let sampled = interface.sampled(color);
+        Self { critical_cot_sq: sampled.critical_cot_sq(), sampled }
+    }
+
+    /// The reflectance at a cosine of the row.
+    pub(crate) fn at(&self, cos_theta: f64) -> Rgb {
+        self.sampled.rgb(incident_cosine(self.critical_cot_sq, cos_theta))
     }
 }
 

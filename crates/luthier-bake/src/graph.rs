@@ -67,6 +67,11 @@ impl Graph {
         self.jobs.get(&kind).into_iter().flat_map(BTreeMap::values)
     }
 
+    /// A job by its key.
+    pub(crate) fn get(&self, kind: JobKind, key: Key) -> Option<&Job> {
+        self.jobs.get(&kind)?.get(&key)
+    }
+
     /// Runs everything that has no result yet on the rayon pool. Kinds run in their order, which puts dependencies first; jobs of one
     /// kind run side by side.
     pub(crate) fn run(mut self, observer: &dyn Observer, mut results: Results) -> Results {

@@ -19,7 +19,7 @@ use crate::phase::PhaseJob;
 use crate::thickness::ThicknessJob;
 
 /// Changes whenever the same inputs give other bytes than before; part of every key.
-const REVISION: u32 = 4;
+const REVISION: u32 = 5;
 
 /// SHA-256 of a job's inputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -1,7 +1,9 @@
 //! From materials to jobs: which tile serves which layer.
 
+use std::collections::BTreeMap;
+
 use luthier_lut::{ColorMode, Image, LayerRecord, ShadingModel, TableKind};
-use luthier_material::{ColorSetting, FilmVariation, LayerExtras, Material, ModelSetting};
+use luthier_material::{ColorSetting, FilmVariation, LayerExtras, Material, ModelSetting, TableSetting};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::stack::{Base, Film, FilmThickness, Layer, Stack};
@@ -14,6 +16,7 @@ use crate::film::FilmJob;
 use crate::fresnel::FresnelJob;
 use crate::graph::Graph;
 use crate::job::{Job, Key};
+use crate::limits;
 use crate::phase::PhaseJob;
 use crate::records::records;
 use crate::relief::Relief;
@@ -24,15 +27,15 @@ use crate::thickness::ThicknessJob;
 #[derive(Debug, Default)]
 pub(crate) struct Tiles {
     pub(crate) tiles: Vec<(String, Key)>,
+    numbers: BTreeMap<Key, u32>,
 }
 
 impl Tiles {
     fn tile(&mut self, key: Key, name: impl FnOnce() -> String) -> u32 {
-        let index = self.tiles.iter().position(|(_, k)| *k == key).unwrap_or_else(|| {
+        *self.numbers.entry(key).or_insert_with(|| {
             self.tiles.push((name(), key));
-            self.tiles.len() - 1
-        });
-        index as u32
+            self.tiles.len() as u32 - 1
+        })
     }
 }
 
@@ -82,40 +85,37 @@ pub(crate) fn is_statistical(model: ShadingModel) -> bool {
     matches!(model, ShadingModel::Belcour | ShadingModel::Yamaguchi)
 }
 
-/// Which tables a layer needs tiles of.
-#[derive(Debug, Clone, Copy)]
-struct Reads {
-    /// And reflectances of a film that varies.
-    fresnel: bool,
-    distribution: bool,
-    fgd: bool,
-    phase: bool,
+/// Whether the `baked` shader of a model reads a kind of table for a layer of a stack, by its number.
+fn reads(model: ShadingModel, kind: TableKind, stack: &Stack, number: usize, record: &LayerRecord) -> bool {
+    let has_film = !stack.layers[number].films.is_empty();
+    match model {
+        ShadingModel::Phong => false,
+        // They look at the first layer alone.
+        ShadingModel::Microfacet | ShadingModel::GranierHeidrich if number > 0 => false,
+        ShadingModel::Elek | ShadingModel::WeidlichWilkie | ShadingModel::Microfacet => match kind {
+            TableKind::Fresnel => !record.varies(),
+            TableKind::Film => record.varies(),
+            TableKind::Thickness => record.varies() && number == 0,
+            TableKind::Distribution => true,
+            TableKind::Fgd | TableKind::Phase | TableKind::Escape => false,
+        },
+        ShadingModel::Belcour | ShadingModel::Yamaguchi => match kind {
+            TableKind::Fgd => true,
+            TableKind::Escape => Interface::of(stack, number + 1).is_some(),
+            _ => false,
+        },
+        // Transparent interfaces without a film are Schlick's form.
+        ShadingModel::GranierHeidrich => match kind {
+            TableKind::Phase | TableKind::Thickness => has_film,
+            TableKind::Fresnel => !has_film && matches!(stack.layers[number].base, Base::Conductor { .. }),
+            _ => false,
+        },
+    }
 }
 
-impl Reads {
-    const ALL: Self = Self { fresnel: true, distribution: true, fgd: true, phase: true };
-    const NONE: Self = Self { fresnel: false, distribution: false, fgd: false, phase: false };
-
-    /// What the shader of a model reads for a layer, by its number.
-    fn of(model: ShadingModel, number: usize, layer: &Layer) -> Self {
-        match model {
-            ShadingModel::Microfacet | ShadingModel::GranierHeidrich if number > 0 => Self::NONE,
-            ShadingModel::Phong => Self::NONE,
-            ShadingModel::Elek | ShadingModel::WeidlichWilkie | ShadingModel::Microfacet => {
-                Self { fresnel: true, distribution: true, ..Self::NONE }
-            }
-            ShadingModel::Belcour | ShadingModel::Yamaguchi => Self { fgd: true, ..Self::NONE },
-            // Transparent interfaces without a film are Schlick's form.
-            ShadingModel::GranierHeidrich if !layer.films.is_empty() => Self { phase: true, ..Self::NONE },
-            ShadingModel::GranierHeidrich => {
-                Self { fresnel: matches!(layer.base, Base::Conductor { .. }), ..Self::NONE }
-            }
-        }
-    }
-
-    fn any(self) -> bool {
-        self.fresnel || self.distribution || self.fgd || self.phase
-    }
+/// Whether the file of a material, or whoever bakes it, asks for a kind of table.
+pub(crate) fn asks_for(material: &Material, kind: TableKind) -> bool {
+    TableSetting::from_name(kind.name()).is_some_and(|kind| material.bake.asks_for(kind))
 }
 
 /// Reads an image that a material names: material file, path as written there.
@@ -132,6 +132,7 @@ impl Plan {
             let records = plan.material(material, read_image)?;
             plan.records.push(records);
         }
+        limits::check_buffer(&plan.records)?;
         Ok(plan)
     }
 
@@ -158,24 +159,41 @@ impl Plan {
         read: ImageReader<'_>,
     ) -> Result<Vec<LayerRecord>, BakeError> {
         let wavelengths_nm = material.bake.wavelengths_nm();
-        let color = color(material);
+        let (color, model) = (color(material), shading_model(material));
         let mut records = records(stack, wavelengths_nm);
         for (i, (record, layer)) in records.iter_mut().zip(&stack.layers).enumerate() {
             let Some(interface) = Interface::of(stack, i) else { continue };
             let name = || format!("{}/{label}{i}", material.name);
-            let reads = if self.settings.lean { Reads::of(shading_model(material), i, layer) } else { Reads::ALL };
-            self.interface(record, layer, interface.clone(), color, reads, &name);
-            if is_statistical(shading_model(material)) && Interface::of(stack, i + 1).is_some() {
+            let wanted = TableKind::ALL.map(|kind| {
+                // Where some materials ask for D as a table, it is computed for the others.
+                let is_offered = kind != TableKind::Distribution || !self.settings.asked.distribution;
+                asks_for(material, kind) || is_offered && reads(model, kind, stack, i, record)
+            });
+            let wants = |kind: TableKind| wanted[kind as usize];
+            if wants(TableKind::Fresnel) || wants(TableKind::Film) {
+                record.critical_cot_sq = interface.sampled(&color).critical_cot_sq();
+            }
+            if wants(TableKind::Fresnel) {
+                self.fresnel(record, interface.clone(), color, &name);
+            }
+            if wants(TableKind::Distribution) {
+                self.distribution(record, layer);
+            }
+            if wants(TableKind::Fgd) {
+                self.fgd(record, layer, interface.clone(), color, &name);
+            }
+            if wants(TableKind::Escape) {
                 self.escape(record, &name);
             }
-            let Some(film) = layer.films.first().filter(|_| reads.any()) else { continue };
-            if reads.phase {
+            let Some(film) = layer.films.first() else { continue };
+            if wants(TableKind::Phase) {
                 self.phase(record, film, wavelengths_nm, &name);
             }
-            if record.varies() && reads.fresnel {
+            if record.varies() && wants(TableKind::Film) {
                 self.film(record, interface, film.thickness, color, &name);
             }
-            if let Some(variation) = extras.get(i).and_then(|l| l.film_variation.as_ref()) {
+            let variation = extras.get(i).and_then(|l| l.film_variation.as_ref());
+            if let Some(variation) = variation.filter(|_| wants(TableKind::Thickness)) {
                 self.thickness(record, film, variation, material, read, &name)?;
             }
         }
@@ -195,31 +213,30 @@ impl Plan {
         record.film_tile = Some(self.add(TableKind::Film, Job::Film(job), name));
     }
 
-    fn interface(
+    fn fresnel(&mut self, record: &mut LayerRecord, interface: Interface, color: Color, name: &dyn Fn() -> String) {
+        let job = FresnelJob { interface, color, shape: self.settings.fresnel.clone() };
+        record.fresnel_tile = Some(self.add(TableKind::Fresnel, Job::Fresnel(job), name));
+    }
+
+    fn distribution(&mut self, record: &mut LayerRecord, layer: &Layer) {
+        let Some((axes, format)) = self.settings.distribution.clone() else { return };
+        let distribution = layer.surface.distribution;
+        let job = Job::Distribution(DistributionJob { distribution, axes, format });
+        let tile = self.add(TableKind::Distribution, job, &|| distribution.name().to_owned());
+        record.distribution_tile = Some(tile);
+    }
+
+    fn fgd(
         &mut self,
         record: &mut LayerRecord,
         layer: &Layer,
         interface: Interface,
         color: Color,
-        reads: Reads,
         name: &dyn Fn() -> String,
     ) {
-        if reads.fresnel {
-            let job = FresnelJob { interface: interface.clone(), color, shape: self.settings.fresnel.clone() };
-            record.fresnel_tile = Some(self.add(TableKind::Fresnel, Job::Fresnel(job), name));
-        }
-        let distribution = layer.surface.distribution;
-        if let Some((axes, format)) = self.settings.distribution.clone().filter(|_| reads.distribution) {
-            let job = Job::Distribution(DistributionJob { distribution, axes, format });
-            let tile = self.add(TableKind::Distribution, job, &|| distribution.name().to_owned());
-            record.distribution_tile = Some(tile);
-        }
-        if !reads.fgd {
-            return;
-        }
         let (axes, format) = self.settings.fgd.clone();
         let transparent = matches!(layer.base, Base::Dielectric { .. });
-        let grid = self.settings.fgd_grid.clone();
+        let (distribution, grid) = (layer.surface.distribution, self.settings.fgd_grid.clone());
         let truth = FgdTruthJob { interface, transparent, distribution, color, grid };
         let job = FgdJob { truth, axes, format };
         record.fgd_tile = Some(self.add(TableKind::Fgd, Job::Fgd(job), name));

@@ -41,14 +41,18 @@ pub(crate) struct Found {
     pub(crate) candidates: Vec<Candidate>,
     /// Which of them the bake itself has measured.
     pub(crate) confirmed: Vec<bool>,
+    /// Tiles, by number, that no candidate serves and that the others do not wait for.
+    pub(crate) left_out: Vec<usize>,
+    /// Whether they were measured at all that the bake measures; otherwise what is missed is missed by about the same factor in all.
+    pub(crate) is_whole: bool,
 }
 
-/// Errors of film tiles are steep ridges along grazing angles, which points of a search miss by about the same factor in all candidates.
-const RIDGES: [TableKind; 1] = [TableKind::Film];
-
 /// Budgets that nobody stated may be missed by this factor: four times 5e-4 is half a step of eight bits. Beyond it some interface is one
-/// that no table serves (a kink at a critical angle, the fringes of a thick film), and the choice would be the best for it alone.
+/// that no table serves (the fringes of a thick film, total reflection by what absorbs), and the choice would be the best for it alone.
 const NEAR: f64 = 4.0;
+
+/// The error that tables are to hold when nobody asks; a tile beyond it is named by the bake.
+pub const AIM: f64 = NEAR * 5e-4;
 
 impl Found {
     /// Whether some candidate holds a budget, or nearly.
@@ -58,7 +62,17 @@ impl Found {
 
     pub(crate) fn new(kind: TableKind, fixed_cost: f64, candidates: Vec<Candidate>) -> Self {
         let confirmed = vec![false; candidates.len()];
-        Self { kind, fixed_cost, candidates, confirmed }
+        // Errors of film tiles are steep ridges along grazing angles, between the points of a search.
+        let is_whole = kind != TableKind::Film;
+        Self { kind, fixed_cost, candidates, confirmed, left_out: Vec::new(), is_whole }
+    }
+
+    /// Where nobody asks for less, a read costs at most half as much again as one of the fixed default.
+    fn affordable(mut self) -> Self {
+        let most = 1.5 * self.fixed_cost;
+        self.candidates.retain(|c| c.cost <= most);
+        self.confirmed.truncate(self.candidates.len());
+        self
     }
 
     /// Whether the bake's own measurement of a candidate is no worse than that of the search; the worse counts from now on.
@@ -69,7 +83,7 @@ impl Found {
             return true;
         }
         self.candidates[choice].error.max_abs = exact;
-        if RIDGES.contains(&self.kind) && is_new && found > 0.0 {
+        if !self.is_whole && is_new && found > 0.0 {
             let others = self.candidates.iter_mut().zip(&self.confirmed).filter(|(_, confirmed)| !**confirmed);
             others.for_each(|(candidate, _)| candidate.error.max_abs *= exact / found);
         }
@@ -80,16 +94,23 @@ impl Found {
 /// Kinds of the jobs whose results [`candidates`] reads.
 pub(crate) const READ: [JobKind; 1] = [JobKind::FgdTruth];
 
-/// Measures the candidates of the kinds that a plan has; without a budget only what shaders read for every interface and needs no
-/// costly truth. `results` has those of [`READ`] if there is a budget.
-pub(crate) fn candidates(plan: &Plan, results: &Results, budget: &Budget, thorough: bool) -> Vec<Found> {
+/// The candidates that come near what is asked of tables when nobody asks: only those of what shaders read for every interface and needs no
+/// costly truth. A row that none serves does not count.
+pub(crate) fn by_default(plan: &Plan) -> Vec<Found> {
+    let found = [fresnel::served(plan), distribution::candidates(plan).map(Found::affordable)];
+    found.into_iter().flatten().filter(|f| f.comes_near(&DEFAULT_BUDGET)).collect()
+}
+
+/// Measures the candidates of the kinds that a plan has. `results` has those of [`READ`].
+pub(crate) fn candidates(plan: &Plan, results: &Results, budget: &Budget) -> Vec<Found> {
     let colors = budget.delta_e.is_some();
-    let mut found = vec![fresnel::candidates(plan, colors), distribution::candidates(plan)];
-    if thorough {
-        found.push(phase::candidates(plan));
-        found.push(grids::fgd(plan, results, colors));
-        found.push(grids::film(plan, colors));
-    }
+    let found = [
+        fresnel::candidates(plan, colors),
+        distribution::candidates(plan),
+        phase::candidates(plan),
+        grids::fgd(plan, results, colors),
+        grids::film(plan, colors),
+    ];
     found.into_iter().flatten().filter(|f: &Found| !f.candidates.is_empty()).collect()
 }
 

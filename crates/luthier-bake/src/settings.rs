@@ -4,13 +4,14 @@ use std::f64::consts::FRAC_PI_2;
 use std::fmt::Debug;
 
 use luthier_layers::elek;
-use luthier_lut::{Axis, FormatSet, Mapping, RowBase, TexelFormat};
+use luthier_lut::{Axis, FormatSet, Mapping, RowBase, ShadingModel, TableKind, TexelFormat};
 use luthier_material::{
-    AlphaMapping, BakeSettings, DistributionMapping, DistributionSettings, Format, FresnelMapping, Material,
+    AlphaMapping, BakeSettings, DistributionMapping, Format, FresnelMapping, Material, TableSetting,
 };
 
 use crate::BakeError;
 use crate::fresnel::RowShape;
+use crate::plan::{asks_for, shading_model};
 
 /// Axes and formats of every table kind.
 #[derive(Debug, Clone)]
@@ -27,8 +28,6 @@ pub(crate) struct Settings {
     pub(crate) film: ([Axis; 2], TexelFormat),
     pub(crate) escape: ([Axis; 2], TexelFormat),
     pub(crate) asked: Asked,
-    /// See [`crate::Options::lean`].
-    pub(crate) lean: bool,
     /// See [`crate::Options::formats`].
     pub(crate) formats: FormatSet,
 }
@@ -42,8 +41,18 @@ pub(crate) struct Asked {
     pub(crate) distribution: bool,
     pub(crate) fgd_size: bool,
     pub(crate) fgd_format: bool,
-    pub(crate) phase_size: bool,
-    pub(crate) phase_format: bool,
+    pub(crate) phase: bool,
+}
+
+impl Asked {
+    /// Whether the shape of the tables of a kind that interfaces share is left to the bake, which then aims at an error of its own.
+    pub(crate) fn leaves(self, kind: TableKind) -> bool {
+        match kind {
+            TableKind::Fresnel => !(self.fresnel_size || self.fresnel_mapping || self.fresnel_format),
+            TableKind::Fgd => !(self.fgd_size || self.fgd_format),
+            _ => false,
+        }
+    }
 }
 
 impl Settings {
@@ -92,7 +101,12 @@ impl Settings {
             ask.format("bake.fgd.format", |b| b.fgd.format, TexelFormat::Rgba16Float)?,
         );
         if let Some(&side) = size.iter().find(|side| !side.is_multiple_of(fgd.1.block_side())) {
-            return Err(BakeError::Blocks { setting: "bake.fgd.size", format: fgd.1, side });
+            let asks = |has: fn(&BakeSettings) -> bool| materials.iter().position(|m| has(&m.bake));
+            let sized = asks(|bake| bake.fgd.size.is_some()).map(|material| (material, "bake.fgd.size"));
+            let (material, setting) = sized
+                .or_else(|| Some((asks(|bake| bake.fgd.format.is_some())?, "bake.fgd.format")))
+                .unwrap_or((0, "bake.fgd.size"));
+            return Err(BakeError::Blocks { material, setting, format: fgd.1, side });
         }
 
         let size = ask.one("bake.phase.size", |b| b.phase.size)?.unwrap_or(256);
@@ -104,7 +118,7 @@ impl Settings {
         let size = ask.one("bake.thickness.size", |b| b.thickness.size)?.unwrap_or(256);
         let thickness = (
             ["u", "v"].map(|name| axis(name, "", [0.0, 1.0], size, Mapping::Periodic)),
-            ask.format("bake.thickness.format", |b| b.thickness.format, TexelFormat::Rgba16Float)?,
+            ask.format("bake.thickness.format", |b| b.thickness.format, thickness_format(materials))?,
         );
         let film = (
             [
@@ -125,11 +139,10 @@ impl Settings {
             fresnel_size: any(|b| b.fresnel.size.is_some()),
             fresnel_mapping: any(|b| b.fresnel.mapping.is_some()),
             fresnel_format: any(|b| b.fresnel.format.is_some()),
-            distribution: any(|b| b.distribution != DistributionSettings::default()),
+            distribution: any(|b| b.asks_for(TableSetting::Distribution)),
             fgd_size: any(|b| b.fgd.size.is_some()),
             fgd_format: any(|b| b.fgd.format.is_some()),
-            phase_size: any(|b| b.phase.size.is_some()),
-            phase_format: any(|b| b.phase.format.is_some()),
+            phase: any(|b| b.asks_for(TableSetting::Phase)),
         };
         let fgd_grid = fgd.0.clone();
         Ok(Self {
@@ -142,7 +155,6 @@ impl Settings {
             film,
             escape,
             asked,
-            lean: false,
             formats: FormatSet::CORE,
         })
     }
@@ -153,6 +165,14 @@ impl Settings {
         let asked = &mut self.asked;
         (asked.fresnel_size, asked.fresnel_mapping, asked.fresnel_format) = (true, true, true);
     }
+}
+
+/// Four channels where someone reads slopes: Granier and Heidrich's model, or who asks for the table; else the thickness alone.
+fn thickness_format(materials: &[Material]) -> TexelFormat {
+    let reads_slopes = |material: &Material| {
+        shading_model(material) == ShadingModel::GranierHeidrich || asks_for(material, TableKind::Thickness)
+    };
+    if materials.iter().any(reads_slopes) { TexelFormat::Rgba16Float } else { TexelFormat::R16Float }
 }
 
 pub(crate) fn axis(quantity: &str, unit: &str, [min, max]: [f64; 2], size: u32, mapping: Mapping) -> Axis {
@@ -170,16 +190,17 @@ impl Ask<'_> {
         get: impl Fn(&BakeSettings) -> Option<T>,
     ) -> Result<Option<T>, BakeError> {
         let mut first: Option<(&Material, T)> = None;
-        for material in self.0 {
+        for (number, material) in self.0.iter().enumerate() {
             let Some(value) = get(&material.bake) else { continue };
             match &first {
                 None => first = Some((material, value)),
                 Some((other, expected)) if *expected != value => {
                     return Err(BakeError::Conflict {
+                        material: number,
                         setting,
-                        first: other.source.clone(),
+                        first: other.place(setting),
                         first_value: format!("{expected:?}"),
-                        second: material.source.clone(),
+                        second: material.place(setting),
                         second_value: format!("{value:?}"),
                     });
                 }

@@ -1,6 +1,7 @@
 //! Thickness textures of films: Granier and Heidrich 2003, section 6.
 
 use luthier_lut::{Axis, Comparison, Image, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
+use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use crate::job::{TileData, lone_tile};
@@ -37,23 +38,33 @@ impl ThicknessJob {
     pub(crate) fn run(&self) -> TileData {
         let [x, y] = &self.axes;
         let surface = Surface::new(self);
-        let mut truth = Image::zeros(x.size + 2 * APRON, y.size + 2 * APRON, 4);
-        for j in 0..truth.height {
-            for i in 0..truth.width {
-                // The apron repeats the opposite edge, so that filtering wraps around.
-                let u = x.node((i + x.size - APRON) % x.size);
-                let v = y.node((j + y.size - APRON) % y.size);
-                truth.texel_mut(i, j).copy_from_slice(&surface.record([u, v]).map(|c| c as f32));
+        let channels = self.format.channels();
+        let mut truth = Image::zeros(x.size + 2 * APRON, y.size + 2 * APRON, channels);
+        // The apron repeats the opposite edge, so that filtering wraps around.
+        let node = |axis: &Axis, texel: usize| axis.node((texel as u32 + axis.size - APRON) % axis.size);
+        let row = (truth.width * channels) as usize;
+        truth.data.par_chunks_mut(row).enumerate().for_each(|(j, row)| {
+            for (i, texel) in row.chunks_mut(channels as usize).enumerate() {
+                let record = surface.record([node(x, i), node(y, j)]).map(|c| c as f32);
+                texel.copy_from_slice(&record[..channels as usize]);
             }
-        }
+        });
         let atlas = lone_tile(TableKind::Thickness, &[x, y], self.format, &truth);
         let error = measure_scan(
             &Scan::whole([x.intervals(), y.intervals()], [1, 1]),
-            |u| Comparison { expected: surface.record(u), sampled: atlas.sample(0, u, WeightBits::Fixed(8)) },
+            |u| {
+                let mut both = [surface.record(u), atlas.sample(0, u, WeightBits::Fixed(8))];
+                both.iter_mut().for_each(|record| record[channels as usize..].fill(0.0));
+                let [expected, sampled] = both;
+                Comparison { expected, sampled }
+            },
             |u| u.to_vec(),
         );
         TileData {
-            model: "d/(2 d_max), slopes dd/dx and dd/dy, sqrt(1 + slopes^2); Granier and Heidrich 2003 sec. 6".into(),
+            model: match channels {
+                1 => "d/(2 d_max); Granier and Heidrich 2003 sec. 6".into(),
+                _ => "d/(2 d_max), slopes dd/dx and dd/dy, sqrt(1 + slopes^2); Granier and Heidrich 2003 sec. 6".into(),
+            },
             truth,
             texels: atlas.texels,
             bytes: atlas.bytes,

@@ -1,11 +1,9 @@
 //! A bake as files: textures, truth, pictures, shaders, manifest.
 
-use std::path::Path;
-
-use luthier_bake::{Bake, MapSource};
+use luthier_bake::{Bake, MapSource, Options};
 use luthier_lut::{
-    Atlas, AtlasLayout, Axis, FileEntry, Image, Manifest, MapEntry, Mapping, MaterialEntry, RowBase, ShaderEntry,
-    TableEntry, TableKind, material_buffer,
+    Atlas, AtlasLayout, Axis, FileEntry, Image, LayerRecord, Manifest, MapEntry, Mapping, MaterialEntry,
+    MaterialTexture, RowBase, ShaderEntry, TableEntry, TableKind, material_buffer,
 };
 use luthier_material::Material;
 use luthier_shader::{Form, MaterialSet, Target};
@@ -14,15 +12,26 @@ use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
 use crate::failure::{Failure, Outcome};
+use crate::input;
+use crate::materials::{beside, read_image};
+
+pub(crate) use luthier_texture::MANIFEST;
 
 /// Program and version, as files and reports name it.
 pub(crate) const GENERATOR: &str = concat!("luthier ", env!("CARGO_PKG_VERSION"));
 
-/// The languages that a bake writes; `luthier shader` knows more.
-const TARGETS: [Target; 3] = [Target::Wgsl, Target::Glsl450, Target::GlslEs300];
+/// The shaders that a bake writes.
+#[derive(Debug, Clone)]
+pub(crate) struct Shaders {
+    pub(crate) targets: Vec<Target>,
+    pub(crate) forms: Vec<Form>,
+}
 
-/// File name of the manifest.
-pub(crate) const MANIFEST: &str = "manifest.json";
+impl Default for Shaders {
+    fn default() -> Self {
+        Self { targets: vec![Target::Wgsl, Target::Glsl450, Target::GlslEs300], forms: Form::ALL.to_vec() }
+    }
+}
 
 /// Folder of the report beside the manifest.
 pub(crate) const REPORT_FOLDER: &str = "report";
@@ -37,13 +46,8 @@ pub(crate) struct BakeFiles {
 }
 
 impl BakeFiles {
-    /// Encodes tables, emits and validates shaders, and describes it all in the manifest.
-    pub(crate) fn new(materials: &[Material], bake: &Bake) -> Outcome<Self> {
-        Self::with_forms(materials, bake, &Form::ALL)
-    }
-
-    /// The same with shaders of some forms only; the bindings are those of the first.
-    pub(crate) fn with_forms(materials: &[Material], bake: &Bake, forms: &[Form]) -> Outcome<Self> {
+    /// Encodes tables, emits and validates shaders, and describes it all in the manifest. The bindings are those of the first form.
+    pub(crate) fn new(materials: &[Material], bake: &Bake, shaders: &Shaders) -> Outcome<Self> {
         let mut files = Vec::new();
         let mut tables = Vec::new();
         let encoded: Vec<EncodedTable> = bake.atlases.par_iter().map(encode).collect::<Outcome<_>>()?;
@@ -54,21 +58,69 @@ impl BakeFiles {
         }
         let entries = material_entries(materials, &bake.materials, &mut files)?;
         let mut manifest = Manifest { searches: bake.searches.clone(), ..Manifest::new(GENERATOR, entries, tables) };
-        let words = material_buffer(&manifest.materials);
+        let mut words = material_buffer(&manifest.materials);
+        manifest.material_texture = MaterialTexture::of(words.len());
+        words.resize(manifest.material_texture.words(), [0.0; 4]);
         let bytes = words.as_flattened().iter().flat_map(|value| value.to_le_bytes()).collect();
         manifest.material_buffer = add(&mut files, "materials.bin".to_owned(), bytes);
         let set = MaterialSet::from_manifest(&manifest);
-        let mut shaders = Vec::new();
-        for &form in forms {
-            for target in TARGETS {
-                let text = luthier_shader::emit(&set, form, target).map_err(Failure::input)?;
-                let path = format!("shaders/{}.{}", form.name(), target.extension());
-                let file = add(&mut files, path, text.into_bytes());
-                shaders.push(ShaderEntry { target: target.name().to_owned(), form: form.name().to_owned(), file });
+        let wanted = shaders.forms.iter().flat_map(|&form| shaders.targets.iter().map(move |&target| (form, target)));
+        let emitted: Vec<(Form, Target, Vec<u8>)> = wanted
+            .collect::<Vec<_>>()
+            .into_par_iter()
+            .map(|(form, target)| {
+                let bytes = match target {
+                    Target::SpirV => luthier_shader::emit_spirv(&set, form),
+                    _ => luthier_shader::emit(&set, form, target).map(String::into_bytes),
+                };
+                Ok((form, target, bytes.map_err(Failure::input)?))
+            })
+            .collect::<Outcome<_>>()?;
+        let mut entries = Vec::with_capacity(emitted.len());
+        for (form, target, bytes) in emitted {
+            let file = add(&mut files, format!("shaders/{}.{}", form.name(), target.extension()), bytes);
+            entries.push(ShaderEntry { target: target.name().to_owned(), form: form.name().to_owned(), file });
+        }
+        let bindings = luthier_shader::bindings(&set, shaders.forms.first().copied().unwrap_or(Form::Baked));
+        (manifest.shaders, manifest.bindings) = (entries, bindings);
+        Ok(Self { manifest, files })
+    }
+
+    /// The same without tables, for the form `full`: nothing to read but the material buffer.
+    pub(crate) fn without_tables(materials: &[Material], shaders: &Shaders) -> Outcome<Self> {
+        let options = Options { search: false, ..Options::default() };
+        let mut outline = luthier_bake::outline_with(materials, &options, &read_image).map_err(Failure::input)?;
+        for material in &mut outline.materials {
+            let bare = material.constants.patina.as_mut().map(|patina| &mut patina.bare);
+            for record in material.records.iter_mut().chain(bare) {
+                *record = LayerRecord {
+                    fresnel_tile: None,
+                    distribution_tile: None,
+                    fgd_tile: None,
+                    phase_tile: None,
+                    thickness_tile: None,
+                    film_tile: None,
+                    escape_tile: None,
+                    ..record.clone()
+                };
             }
         }
-        let bindings = luthier_shader::bindings(&set, forms.first().copied().unwrap_or(Form::Baked));
-        (manifest.shaders, manifest.bindings) = (shaders, bindings);
+        let bake = Bake { atlases: Vec::new(), materials: outline.materials, searches: Vec::new() };
+        Self::new(materials, &bake, shaders)
+    }
+}
+
+impl BakeFiles {
+    /// The same with the texels of the textures uncompressed.
+    pub(crate) fn without_zstd(&self) -> Outcome<Self> {
+        let (mut manifest, mut files) = (self.manifest.clone(), self.files.clone());
+        for texture in manifest.tables.iter_mut().map(|table| &mut table.texture) {
+            for (_, bytes) in files.iter_mut().filter(|(path, _)| *path == texture.path) {
+                let decoded = ktx2::decode(bytes).map_err(Failure::input)?;
+                *bytes = ktx2::encode_plain(&decoded).map_err(Failure::input)?;
+                texture.sha256 = sha256(bytes);
+            }
+        }
         Ok(Self { manifest, files })
     }
 }
@@ -131,8 +183,8 @@ fn map(material: &Material, map: &luthier_bake::MaterialMap, files: &mut Vec<(St
 
 /// A file that a material names.
 fn named_file(material: &Material, path: &str) -> Outcome<Vec<u8>> {
-    let path = Path::new(&material.source).parent().unwrap_or(Path::new("")).join(path);
-    std::fs::read(&path).map_err(crate::failure::files(&path, "read"))
+    let path = beside(&material.source, path);
+    input::image(&path).map_err(crate::failure::files(&path, "read"))
 }
 
 /// The hash of a material file and of all that it names: of its text, followed by the hash of each file, if it names any.
@@ -162,18 +214,19 @@ struct EncodedTable {
 }
 
 fn encode(atlas: &Atlas) -> Outcome<EncodedTable> {
-    let metadata = metadata(atlas);
+    // Thickness without slopes is one channel of the kind's four.
+    let channels = if atlas.truth.channels == 1 { &["Y"] } else { atlas.kind.channels() };
     let encoded = || {
         Ok::<_, luthier_texture::TextureError>(EncodedTable {
-            texture: ktx2::encode(&Texture::from_atlas(atlas, metadata.clone()))?,
-            truth: exr::encode(&atlas.truth, &metadata)?,
+            texture: ktx2::encode(&Texture::from_atlas(atlas))?,
+            truth: exr::encode(&atlas.truth, channels, &metadata(atlas))?,
             picture: png::encode_image(&picture(atlas))?,
         })
     };
     encoded().map_err(Failure::input)
 }
 
-/// What every container of a table says about itself.
+/// What the unquantised values of a table say about themselves.
 fn metadata(atlas: &Atlas) -> Metadata {
     let AtlasLayout { x, y, apron, columns, tiles, base } = &atlas.layout;
     let joined = |f: &dyn Fn(&luthier_lut::Tile) -> String| atlas.tiles.iter().map(f).collect::<Vec<_>>().join("\n");

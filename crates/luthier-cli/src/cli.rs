@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use luthier_cost::Family;
-use luthier_material::ModelSetting;
+use luthier_material::{ModelSetting, TableSetting};
 use luthier_shader::{Form, Target};
 
 use crate::directions::Angles;
@@ -19,6 +19,10 @@ Exit codes:
   2  the command line is wrong
   3  a file cannot be read or written
   4  no usable graphics adapter, driver or display, or it failed
+
+With --json a failure is one JSON object on standard output, besides the sentence on standard error:
+  {\"error\": {\"code\": 1, \"kind\": \"input\", \"message\": \"...\", \"diagnostics\": []}}
+The kinds are input (1), usage (2), files (3) and device (4); diagnostics are those of `luthier check --json`.
 
 Examples:
   luthier bake materials            tables, manifest and shaders into out/
@@ -41,7 +45,7 @@ pub(crate) enum Verb {
     Bake(BakeOptions),
     /// Measure what searches for tables reach against fixed ones: a page in Markdown
     Budgets(BudgetsOptions),
-    /// Validate material files and print the class of each surface
+    /// Validate materials and scenes as `bake` would, without baking, and print the class of each surface
     Check(CheckOptions),
     /// Judge a bake: tables and shaders against the full evaluation in f64
     Report(ReportOptions),
@@ -109,18 +113,23 @@ pub(crate) struct Sources {
     pub(crate) paths: Vec<PathBuf>,
 }
 
-/// The model of the shaders.
-#[derive(Debug, Args)]
+/// The model of the shaders, and the tables beside them.
+#[derive(Debug, Default, Args)]
 pub(crate) struct Shading {
     /// Reflectance model of the shader; by default the one that each material file asks for
     #[arg(long, value_name = "NAME", value_parser = shading_model())]
     pub(crate) model: Option<ModelSetting>,
+    /// Kinds of tables to bake and bind for every material, beside those that its shader reads
+    #[arg(long, value_name = "KIND,...", value_delimiter = ',', value_parser = table_kind())]
+    pub(crate) tables: Vec<TableSetting>,
 }
 
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples:\n  luthier bake materials\n  luthier bake a.toml b.toml --out build/luts --threads 1 --json\n  \
                   luthier bake a.toml --max-abs 1e-3 --max-cost 200\n  \
+                  luthier bake materials --target wgsl,msl --form baked\n  \
+                  luthier bake a.toml --tables fgd,fresnel\n  \
                   luthier bake materials/scenes/showroom.toml\n  luthier bake materials/scenes/still-life.toml --budgets 0.3,0.1,0.03"
 )]
 pub(crate) struct BakeOptions {
@@ -130,6 +139,8 @@ pub(crate) struct BakeOptions {
     pub(crate) shading: Shading,
     #[command(flatten)]
     pub(crate) limits: Limits,
+    #[command(flatten)]
+    pub(crate) emission: Emission,
     /// Of a scene: where no model holds the budget, take the most accurate
     #[arg(long)]
     pub(crate) allow_miss: bool,
@@ -139,6 +150,9 @@ pub(crate) struct BakeOptions {
     /// Folder to write to
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(crate) out: PathBuf,
+    /// Leave the texels of the textures uncompressed, for programs that decode no zstd
+    #[arg(long)]
+    pub(crate) no_zstd: bool,
     /// Threads to use; by default all. The bytes do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
@@ -148,6 +162,17 @@ pub(crate) struct BakeOptions {
     /// Print errors only
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+/// The shaders to write.
+#[derive(Debug, Args)]
+pub(crate) struct Emission {
+    /// Languages of the shaders; by default wgsl, glsl450 and glsl-es300
+    #[arg(long, value_enum, value_name = "NAME,...", value_delimiter = ',')]
+    pub(crate) target: Vec<TargetName>,
+    /// Forms of the shaders; by default both
+    #[arg(long, value_enum, value_name = "NAME,...", value_delimiter = ',')]
+    pub(crate) form: Vec<FormName>,
 }
 
 #[derive(Debug, Args)]
@@ -197,6 +222,8 @@ impl Limits {
 pub(crate) struct CheckOptions {
     #[command(flatten)]
     pub(crate) sources: Sources,
+    #[command(flatten)]
+    pub(crate) shading: Shading,
     /// Print the diagnostics as JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -212,7 +239,7 @@ pub(crate) struct ReportOptions {
     /// Folder of the bake; the report goes into its folder report/
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(crate) out: PathBuf,
-    /// Exit with 1 when the largest relative error of a shader exceeds this
+    /// Exit with 1 when the largest relative error of a shader exceeds this, or the error of a table that misses what its bake aimed at
     #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) max_error: Option<f64>,
     /// Exit with 1 when the absolute error of a table exceeds this, as measured here
@@ -354,7 +381,8 @@ pub(crate) struct CostOptions {
     /// Print the machine code of one kernel
     #[arg(long, conflicts_with_all = ["json", "output"])]
     pub(crate) assembly: bool,
-    /// The table by which scenes choose models: every shape of the materials, and of what is left of them without some of their parts,     /// on RDNA2, as JSON
+    /// The table by which scenes choose models: every shape of the materials, and of what is left of them without some of their parts,
+    /// on RDNA2, as JSON
     #[arg(long, conflicts_with_all = ["json", "assembly", "set", "closed", "constant", "model", "form", "family"])]
     pub(crate) shapes: bool,
     /// JSON instead of Markdown
@@ -461,7 +489,16 @@ pub(crate) struct ModelsOptions {
 }
 
 const EVAL_EXAMPLES: &str = "\
-Prints f cos theta_i in linear Rec.709, spectral by default. Estimates come with their standard error.
+Prints f cos theta_i in linear Rec.709, spectral by default. Models with a shader (elek, weidlich-wilkie, granier-heidrich, belcour, \
+yamaguchi, phong, microfacet) are its f64 twin: one index at 589.3 nm bends the directions of all channels, colours are those of \
+each term. --three-wavelengths stands for the `full` form, spectral colour for the `baked` one.
+
+Effects of the file count at the place of --uv and --distance: flakes and patina for elek and weidlich-wilkie, glitter for all; JSON says \
+what is there. That is `luthier_eval_at`; --no-effects is `luthier_eval`. Other maps of the file do not count: the options on textures \
+say what they hold.
+
+Estimates come with their standard error. It is `not-settled`, in JSON null beside `settled` false, where rare paths carry the light and too \
+few of them were met to know it; more --samples settle it.
 
 Furnace: the surface without loss (no absorption, conductors and diffuse bases that reflect everything, a white base below a \
 last medium; for models of one interface a mirror below it) under light of radiance 1 from everywhere. What a model shows \
@@ -476,20 +513,24 @@ Examples:
   luthier eval materials/car-paint.toml --model elek --directions pairs.csv --three-wavelengths
   luthier eval materials/car-paint.toml --model elek --directions - --json
   luthier eval materials/car-paint.toml --model elek --albedo
+  luthier eval materials/car-paint.toml --model elek --albedo --angles 0,60 --normal 10,0
+  luthier eval materials/copper-patina.toml --model elek --uv 0.2,0.7 --wi 30,0 --wo 45,180
+  luthier eval film.toml --polarised --angles 0,60 --wavelength 550
   luthier eval materials/car-paint.toml --model weidlich-wilkie --furnace
   luthier eval materials/car-paint.toml --model flakes --uv 0.2,0.7 --wi 30,0 --wo 45,180
   luthier eval a.toml --model fluorescence --matrix m.csv --excitation 530 --wavelength 600 --albedo";
 
 #[derive(Debug, Args)]
 #[command(after_help = EVAL_EXAMPLES)]
-#[command(group = ArgGroup::new("what").required(true).args(["wi", "directions", "albedo", "furnace", "environment"]))]
+#[command(group = ArgGroup::new("what").required(true).args(["wi", "directions", "albedo", "furnace", "environment", "polarised"]))]
+#[command(group = ArgGroup::new("against_angle").args(["albedo", "furnace", "environment", "polarised"]))]
 pub(crate) struct EvalOptions {
     /// A material file
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
     /// Name of a model; `luthier models` lists them
-    #[arg(long, value_name = "NAME")]
-    pub(crate) model: String,
+    #[arg(long, value_name = "NAME", required_unless_present = "polarised")]
+    pub(crate) model: Option<String>,
     /// Direction to the light, in degrees: theta from the normal (0 to 90), phi around it
     #[arg(long, value_name = "THETA,PHI", allow_hyphen_values = true, requires = "wo")]
     pub(crate) wi: Option<Angles>,
@@ -508,14 +549,24 @@ pub(crate) struct EvalOptions {
     /// What the first interface mirrors of an environment of radiance 1, against angle (elek)
     #[arg(long)]
     pub(crate) environment: bool,
-    /// Spectral colour, the default
-    #[arg(long, conflicts_with_all = ["albedo", "furnace", "environment"])]
+    /// Reflectance of light polarised normal to the plane of incidence (s) and in it (p), against angle: one smooth interface, bare or
+    /// under films
+    #[arg(long, conflicts_with = "model")]
+    pub(crate) polarised: bool,
+    /// Angles from the normal instead of 0 to 85 degrees in steps of 5
+    #[arg(long, value_name = "DEG,...", value_delimiter = ',', value_parser = angle, requires = "against_angle")]
+    pub(crate) angles: Vec<f64>,
+    /// Azimuth of the eye, in degrees, of what is tabulated against angle
+    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_hyphen_values = true, requires = "against_angle")]
+    pub(crate) azimuth: f64,
+    /// Spectral colour: the default for values, for tables against angle instead of one wavelength
+    #[arg(long, conflicts_with_all = ["furnace", "environment"])]
     pub(crate) rgb: bool,
     /// One wavelength, 360 to 830 nm. Absorption and diffuse albedo are those of the channel nearest to it (645, 525, 445 nm)
     #[arg(long, value_name = "NM", value_parser = wavelength, conflicts_with_all = ["rgb", "three_wavelengths"])]
     pub(crate) wavelength: Option<f64>,
     /// The material's three wavelengths taken as R, G, B instead of spectral colour
-    #[arg(long, conflicts_with_all = ["rgb", "albedo", "furnace", "environment"])]
+    #[arg(long, conflicts_with_all = ["rgb", "furnace", "environment"])]
     pub(crate) three_wavelengths: bool,
     /// Print as JSON
     #[arg(long)]
@@ -587,9 +638,21 @@ pub(crate) fn wavelength(text: &str) -> Result<f64, String> {
     }
 }
 
+fn angle(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if (0.0..=90.0).contains(&value) => Ok(value),
+        _ => Err("expected an angle from 0 to 90 degrees".to_owned()),
+    }
+}
+
 fn shading_model() -> impl TypedValueParser<Value = ModelSetting> {
     PossibleValuesParser::new(ModelSetting::NAMES.iter().copied())
         .try_map(|name| ModelSetting::from_name(&name).ok_or_else(|| format!("no model `{name}`")))
+}
+
+fn table_kind() -> impl TypedValueParser<Value = TableSetting> {
+    PossibleValuesParser::new(TableSetting::NAMES.iter().copied())
+        .try_map(|name| TableSetting::from_name(&name).ok_or_else(|| format!("no table `{name}`")))
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -2,10 +2,12 @@
 
 use std::process::exit;
 
-use clap::Parser;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{ColorChoice, CommandFactory, FromArgMatches};
 
 use crate::cli::Cli;
+use crate::failure::print_json;
+use crate::output::has_colour;
 
 /// Verbs that a cargo feature brings, and the feature.
 const OF_FEATURES: [(&str, &str); 8] = [
@@ -21,12 +23,25 @@ const OF_FEATURES: [(&str, &str); 8] = [
 
 /// The command line of this process; exits where it asks for help or is wrong.
 pub(crate) fn parse() -> Cli {
-    Cli::try_parse().unwrap_or_else(|error| match left_out(&error) {
+    // The parser's own rule colours a dumb terminal of a build server.
+    let colour = if has_colour() { ColorChoice::Auto } else { ColorChoice::Never };
+    let matches = Cli::command().color(colour).try_get_matches();
+    let cli = matches.and_then(|matches| Cli::from_arg_matches(&matches));
+    cli.unwrap_or_else(|error| match left_out(&error) {
         Some((verb, feature)) => {
+            print_json(2, "usage", &format!("this build leaves `{verb}` out"), &[]);
             eprintln!("error: this build leaves `{verb}` out\nhint: build with `--features {feature}`");
             exit(2)
         }
-        None => error.exit(),
+        None => {
+            // Help and versions are errors to this parser.
+            if error.use_stderr() {
+                let text = error.render().to_string();
+                let sentence = text.lines().next().unwrap_or_default();
+                print_json(2, "usage", sentence.trim_start_matches("error: "), &[]);
+            }
+            error.exit()
+        }
     })
 }
 
@@ -39,8 +54,6 @@ fn left_out(error: &clap::Error) -> Option<(&'static str, &'static str)> {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
-
     use super::*;
 
     /// The table of features and the attributes of the verbs say the same.

@@ -3,6 +3,7 @@
 use luthier_gpu::{Artefacts, Gpu, GpuError, Scene};
 use luthier_report::{Device, Form};
 
+use crate::artefacts::unusable;
 use crate::failure::{Failure, Outcome};
 
 /// Both shaders of a bake, ready to run.
@@ -48,17 +49,12 @@ pub(crate) fn open(name: Option<&str>) -> Outcome<Gpu> {
 /// An error of the runtime: what is wrong with the bake is not the adapter's fault.
 pub(crate) fn device(source: GpuError) -> Failure {
     match source {
-        GpuError::Read { .. } => Failure::Files(source.into()),
-        GpuError::Manifest { .. }
-        | GpuError::OutsideFolder { .. }
-        | GpuError::Hash { .. }
-        | GpuError::Texture { .. }
-        | GpuError::ShaderText { .. }
-        | GpuError::Layout { .. }
-        | GpuError::TableMismatch { .. }
+        GpuError::Folder(source) => unusable(source),
+        GpuError::Table(_)
         | GpuError::MissingTexels { .. }
         | GpuError::NoMaterials
         | GpuError::NoLayers { .. }
+        | GpuError::NoReflectance { .. }
         | GpuError::NoShader { .. }
         | GpuError::Binding { .. } => Failure::Input(source.into()),
         _ => Failure::Device(source.into()),

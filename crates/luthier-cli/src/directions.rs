@@ -1,12 +1,12 @@
 //! Directions as the command line and lists have them: degrees.
 
-use std::io::Read;
 use std::path::Path;
 use std::str::FromStr;
 
 use glam::DVec3;
 
-use crate::failure::{Failure, Outcome, files};
+use crate::failure::{Failure, Outcome};
+use crate::input;
 
 /// Angle from the normal and around it, in degrees.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,13 +51,10 @@ impl FromStr for Angles {
 
 /// Pairs (wi, wo) of a CSV file, or of standard input for `-`. Empty lines and lines that begin with `#` do not count.
 pub(crate) fn read(path: &Path) -> Outcome<Vec<[Angles; 2]>> {
-    let mut text = String::new();
-    let label = if path == Path::new("-") {
-        std::io::stdin().read_to_string(&mut text).map_err(files(Path::new("standard input"), "read"))?;
-        "standard input".to_owned()
+    let (text, label) = if path == Path::new("-") {
+        (input::standard()?, "standard input".to_owned())
     } else {
-        text = std::fs::read_to_string(path).map_err(files(path, "read"))?;
-        path.display().to_string()
+        (input::named_text(path)?, path.display().to_string())
     };
     let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty() && !line.trim().starts_with('#'));
     let pairs: Vec<_> = lines

@@ -2,9 +2,10 @@ use std::fmt;
 use std::io;
 use std::process::ExitCode;
 
-use luthier_material::did_you_mean;
+use luthier_material::{Diagnostic, did_you_mean};
+use serde_json::{Value, json};
 
-use crate::output::complain;
+use crate::output::{complain, print};
 
 /// Why a command ends with another code than 0. The codes are documented in `luthier --help`.
 #[derive(Debug)]
@@ -39,7 +40,6 @@ impl Failure {
     }
 
     /// What it is, for people.
-    #[cfg(feature = "view")]
     pub(crate) fn sentence(&self) -> String {
         match self {
             Self::Input(error) | Self::Usage(error) | Self::Files(error) | Self::Device(error) => sentence(error),
@@ -47,21 +47,61 @@ impl Failure {
         }
     }
 
+    /// Says what it is, in JSON too if that was asked for, and gives the exit code.
     pub(crate) fn exit(&self) -> ExitCode {
-        let (code, error) = match self {
-            Self::BrokenPipe => (0, None),
-            Self::Verdict => (1, None),
-            Self::Input(error) => (1, Some(error)),
-            Self::Usage(error) => (2, Some(error)),
-            Self::Files(error) => (3, Some(error)),
-            Self::Device(error) => (4, Some(error)),
+        let (code, kind, error) = match self {
+            Self::BrokenPipe => return ExitCode::SUCCESS,
+            Self::Verdict => return ExitCode::from(1),
+            Self::Input(error) => (1, "input", error),
+            Self::Usage(error) => (2, "usage", error),
+            Self::Files(error) => (3, "files", error),
+            Self::Device(error) => (4, "device", error),
         };
-        if let Some(error) = error {
-            complain(&format!("error: {}", sentence(error)));
-        }
+        let diagnostics = error.downcast_ref::<Broken>().map_or(&[][..], |broken| &broken.diagnostics);
+        print_json(code, kind, &sentence(error), diagnostics);
+        complain(&format!("error: {}", sentence(error)));
         ExitCode::from(code)
     }
 }
+
+/// Writes a failure to standard output as JSON where the command line asks for JSON. A reader that is gone hears nothing.
+pub(crate) fn print_json(code: u8, kind: &str, message: &str, diagnostics: &[Diagnostic]) {
+    if std::env::args_os().skip(1).take_while(|word| word != "--").any(|word| word == "--json") {
+        let diagnostics: Vec<Value> = diagnostics.iter().map(diagnostic).collect();
+        let error = json!({"code": code, "kind": kind, "message": message, "diagnostics": diagnostics});
+        let _ = print(&format!("{:#}", json!({ "error": error })));
+    }
+}
+
+/// A diagnostic for programs.
+pub(crate) fn diagnostic(d: &Diagnostic) -> Value {
+    json!({
+        "file": d.label,
+        "severity": d.severity.name(),
+        "line": d.line,
+        "column": d.column,
+        "span": [d.span.start, d.span.end],
+        "message": d.message,
+        "hint": d.hint,
+    })
+}
+
+/// Files that cannot be used, and what is wrong with each.
+#[derive(Debug)]
+pub(crate) struct Broken {
+    /// How many of how many.
+    pub(crate) sentence: String,
+    /// What has been said on standard error.
+    pub(crate) diagnostics: Vec<Diagnostic>,
+}
+
+impl fmt::Display for Broken {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.sentence)
+    }
+}
+
+impl std::error::Error for Broken {}
 
 /// An error and its causes. Many errors quote their cause already; what was said is not said again.
 fn sentence(error: &anyhow::Error) -> String {

@@ -9,18 +9,21 @@ mod cost_papers;
 #[cfg(feature = "gpu")]
 mod device;
 mod directions;
-mod domain;
+mod doubts;
 mod failure;
 #[cfg(feature = "gpu")]
 mod grid;
+mod input;
 mod materials;
 #[cfg(feature = "gpu")]
 mod memory_bake;
+mod misses;
 mod model_inputs;
 mod output;
 #[cfg(feature = "gpu")]
 mod picture;
 mod progress;
+mod refusals;
 mod reradiation;
 #[cfg(feature = "gpu")]
 mod sheet;

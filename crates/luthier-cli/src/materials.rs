@@ -1,16 +1,18 @@
 //! Material files on disk.
 
 use std::collections::BTreeSet;
-use std::io::{self, ErrorKind, IsTerminal};
 use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 use std::string::FromUtf8Error;
 
 use luthier_lut::Image;
-use luthier_material::{Diagnostic, Material, Parsed, Severity, parse};
+use luthier_material::{Diagnostic, Material, Parsed, Severity, TableSetting, parse};
 
 use crate::cli::Shading;
-use crate::failure::{Failure, Outcome, files};
-use crate::output::complain;
+use crate::doubts;
+use crate::failure::{Broken, Failure, Outcome, files};
+use crate::input;
+use crate::output::{complain, has_colour};
+use crate::refusals;
 
 /// A file that was read, and what became of it.
 pub(crate) struct Source {
@@ -32,11 +34,16 @@ impl Source {
 
     /// Prints all diagnostics to standard error.
     pub(crate) fn print_diagnostics(&self) {
-        let colour = std::io::stderr().is_terminal();
-        for diagnostic in self.diagnostics() {
-            let text = if colour { diagnostic.render_coloured(&self.text) } else { diagnostic.render(&self.text) };
-            complain(&format!("{text}\n"));
-        }
+        print_diagnostics(self.diagnostics(), &self.text);
+    }
+}
+
+/// Prints diagnostics of a text to standard error.
+pub(crate) fn print_diagnostics<'d>(diagnostics: impl IntoIterator<Item = &'d Diagnostic>, text: &str) {
+    let colour = has_colour();
+    for diagnostic in diagnostics {
+        let rendered = if colour { diagnostic.render_coloured(text) } else { diagnostic.render(text) };
+        complain(&format!("{rendered}\n"));
     }
 }
 
@@ -61,14 +68,14 @@ pub(crate) fn find(paths: &[PathBuf]) -> Outcome<Vec<PathBuf>> {
 
 /// Reads and validates one file.
 pub(crate) fn read_one(path: &Path) -> Outcome<Source> {
-    let bytes = std::fs::read(path).map_err(files(path, "read"))?;
+    let bytes = input::bytes(path).map_err(files(path, "read"))?;
     let label = label(path);
     let text = match String::from_utf8(bytes) {
         Ok(text) => text,
         Err(source) => return Ok(not_utf8(label, &source)),
     };
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    let parsed = parse(&label, &text, &|name| std::fs::read_to_string(folder.join(name)).map_err(plainly));
+    let parsed = parse(&label, &text, &|name| input::text(&folder.join(name)));
     Ok(Source { label, text, parsed })
 }
 
@@ -85,26 +92,20 @@ fn not_utf8(label: String, source: &FromUtf8Error) -> Source {
         span: start..start + char::REPLACEMENT_CHARACTER.len_utf8(),
         message: "the file is not UTF-8".to_owned(),
         hint: Some("save it as UTF-8".to_owned()),
+        count: 1,
     };
     Source { label, text, parsed: Err(vec![diagnostic]) }
-}
-
-/// The commonest error in words that do not depend on the system.
-fn plainly(error: io::Error) -> io::Error {
-    if error.kind() == ErrorKind::NotFound { io::Error::new(ErrorKind::NotFound, "no such file") } else { error }
 }
 
 /// The materials of all files; or, when any is invalid, its diagnostics and a failure.
 pub(crate) fn valid(sources: Vec<Source>, quiet: bool) -> Outcome<Vec<Material>> {
     let broken = sources.iter().filter(|s| s.parsed.is_err()).count();
     if broken > 0 {
-        for source in sources.iter().filter(|s| s.parsed.is_err()) {
-            source.print_diagnostics();
-        }
-        let total = sources.len();
-        return Err(Failure::Input(anyhow::anyhow!(
-            "{broken} of {total} material files cannot be used; nothing was written"
-        )));
+        let broken_sources = || sources.iter().filter(|s| s.parsed.is_err());
+        broken_sources().for_each(Source::print_diagnostics);
+        let sentence = format!("{broken} of {} material files cannot be used; nothing was written", sources.len());
+        let diagnostics = broken_sources().flat_map(Source::diagnostics).cloned().collect();
+        return Err(Failure::input(Broken { sentence, diagnostics }));
     }
     if !quiet {
         for source in &sources {
@@ -114,19 +115,36 @@ pub(crate) fn valid(sources: Vec<Source>, quiet: bool) -> Outcome<Vec<Material>>
     Ok(sources.into_iter().filter_map(|s| s.parsed.ok()).map(|parsed| parsed.material).collect())
 }
 
-/// The materials, shaded by the model that the command line asks for.
+/// The materials that can be baked, shaded by the model that the command line asks for; or, when anything is refused, its diagnostics
+/// and a failure.
+pub(crate) fn bakeable(mut sources: Vec<Source>, shading: &Shading, quiet: bool) -> Outcome<Vec<Material>> {
+    refusals::find(&mut sources, |material| doubts::of_model(material, shading.model));
+    Ok(shaded(valid(sources, quiet)?, shading))
+}
+
+/// The materials, shaded by the model that the command line asks for, with its tables.
 pub(crate) fn shaded(mut materials: Vec<Material>, shading: &Shading) -> Vec<Material> {
     if shading.model.is_some() {
         materials.iter_mut().for_each(|material| material.bake.model = shading.model);
     }
+    with_tables(materials, &shading.tables)
+}
+
+/// The materials, each asking for some kinds of tables beside its own.
+pub(crate) fn with_tables(mut materials: Vec<Material>, tables: &[TableSetting]) -> Vec<Material> {
+    materials.iter_mut().for_each(|material| material.bake.tables.extend(tables));
     materials
 }
 
 /// Reads an image that a material names, relative to the material's file.
 pub(crate) fn read_image(material: &str, path: &str) -> Result<Image, String> {
-    let path = Path::new(material).parent().unwrap_or(Path::new("")).join(path);
-    let bytes = std::fs::read(&path).map_err(|source| plainly(source).to_string())?;
+    let bytes = input::image(&beside(material, path)).map_err(|source| source.to_string())?;
     luthier_texture::png::decode_gray(&bytes).map_err(|source| source.to_string())
+}
+
+/// The path of a file that a material names.
+pub(crate) fn beside(material: &str, path: &str) -> PathBuf {
+    Path::new(material).parent().unwrap_or(Path::new("")).join(path)
 }
 
 /// A path as messages and manifests have it: with forward slashes everywhere.

@@ -4,11 +4,12 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::Args;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use luthier_layers::inputs::{Input, Inputs};
 use luthier_layers::model::Model;
 use luthier_layers::registry::models;
 use luthier_layers::textured::{TextureSample, Textured};
+use luthier_material::Effects;
 
 use crate::directions::Angles;
 use crate::failure::{Failure, Outcome};
@@ -16,18 +17,21 @@ use crate::failure::{Failure, Outcome};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Options of some models")]
 pub(crate) struct ModelInputs {
-    /// Texture coordinate of the place (flakes, heterogeneous and its kind)
+    /// Texture coordinate of the place; 0,0 for effects of the file (flakes, heterogeneous and its kind)
     #[arg(long, value_name = "U,V", allow_hyphen_values = true)]
     uv: Option<Uv>,
-    /// Distance of the eye, in scene units (flakes)
+    /// Distance of the eye, in scene units; 0 for flakes of the file (flakes)
     #[arg(long, value_name = "X", value_parser = not_negative, allow_hyphen_values = true)]
     distance: Option<f64>,
-    /// How far the patina has developed: below 0 not at all, above 1 everywhere (patina)
+    /// How far the patina has developed, in place of what the file says: below 0 not at all, above 1 everywhere (patina)
     #[arg(long, value_name = "X", value_parser = number, allow_hyphen_values = true)]
     extent: Option<f64>,
-    /// Value of the patina's map at the place, 0 to 1; dark places come first (patina)
+    /// Value of the patina's map at the place in place of the map's, 0 to 1; dark places come first (patina)
     #[arg(long, value_name = "X", value_parser = share, allow_hyphen_values = true)]
     map: Option<f64>,
+    /// Leave out what the file says under `effects`, as `luthier_eval` of the shaders does without a place
+    #[arg(long)]
+    no_effects: bool,
     /// Normal of the inner boundary of the film (granier-heidrich)
     #[arg(long, value_name = "THETA,PHI", allow_hyphen_values = true)]
     inner_normal: Option<Angles>,
@@ -57,7 +61,7 @@ pub(crate) struct ModelInputs {
 #[command(next_help_heading = "Textures at the place, for every model")]
 struct Textures {
     /// Normal of the place
-    #[arg(long, value_name = "THETA,PHI", allow_hyphen_values = true, conflicts_with_all = ["albedo", "furnace", "environment"])]
+    #[arg(long, value_name = "THETA,PHI", allow_hyphen_values = true, conflicts_with_all = ["furnace", "environment"])]
     normal: Option<Angles>,
     /// Factor on the slope parameters of all layers
     #[arg(long, value_name = "X", value_parser = not_negative, allow_hyphen_values = true)]
@@ -82,8 +86,61 @@ impl Textures {
 }
 
 impl ModelInputs {
-    /// Refuses options that the model does not take.
-    pub(crate) fn check(&self, model: &dyn Model, environment: bool) -> Outcome {
+    pub(crate) fn uv(&self) -> Option<DVec2> {
+        self.uv.map(|Uv(uv)| uv)
+    }
+
+    pub(crate) fn distance(&self) -> Option<f64> {
+        self.distance
+    }
+
+    pub(crate) fn extent(&self) -> Option<f64> {
+        self.extent
+    }
+
+    pub(crate) fn map(&self) -> Option<f64> {
+        self.map
+    }
+
+    pub(crate) fn inner_normal(&self) -> Option<DVec3> {
+        self.inner_normal.map(Angles::direction)
+    }
+
+    pub(crate) fn has_normal(&self) -> bool {
+        self.textures.normal.is_some()
+    }
+
+    /// What textures say about the place.
+    pub(crate) fn sample(&self) -> TextureSample {
+        self.textures.sample()
+    }
+
+    /// The effects of a file that a model shows, and the names of those that it does not.
+    pub(crate) fn shown(&self, effects: &Effects, model: &dyn Model) -> (Effects, Vec<&'static str>) {
+        if self.no_effects {
+            return Default::default();
+        }
+        // As in the shaders: what lies below the first interface is theirs, and a particle's normal is anybody's.
+        let is_chain = ["elek", "weidlich-wilkie"].contains(&model.info().name);
+        let below = [("flakes", effects.flakes.is_some()), ("patina", effects.patina.is_some())];
+        let dropped = below.into_iter().filter(|(_, is_there)| *is_there && !is_chain).map(|(name, _)| name).collect();
+        let shown = Effects {
+            flakes: effects.flakes.clone().filter(|_| is_chain),
+            patina: effects.patina.clone().filter(|_| is_chain),
+            glitter: effects.glitter,
+        };
+        (shown, dropped)
+    }
+
+    /// Refuses options that neither the model nor the effects that it shows take.
+    pub(crate) fn check(&self, model: &dyn Model, shown: &Effects, environment: bool) -> Outcome {
+        let (flakes, patina) = (shown.flakes.is_some(), shown.patina.is_some());
+        let by_effects = |input: Input| match input {
+            Input::Uv => flakes || patina || shown.glitter.is_some(),
+            Input::Distance => flakes,
+            Input::Extent | Input::Map => patina,
+            _ => false,
+        };
         let given = [
             (Input::Uv, self.uv.is_some()),
             (Input::Distance, self.distance.is_some()),
@@ -98,12 +155,22 @@ impl ModelInputs {
             (Input::Seed, self.seed.is_some()),
         ];
         let info = model.info();
-        let refused = given.into_iter().find(|(input, is_given)| *is_given && !info.inputs.contains(input));
+        let refused = given
+            .into_iter()
+            .find(|(input, is_given)| *is_given && !info.inputs.contains(input) && !by_effects(*input));
         let Some((input, _)) = refused else { return Ok(()) };
         let infos = models().into_iter().map(|model| model.info());
         let takers: Vec<&str> = infos.filter(|i| i.inputs.contains(&input)).map(|i| i.name).collect();
+        let effects = match input {
+            Input::Uv => {
+                "; and `elek` and `weidlich-wilkie` for a file with flakes or patina, any model for one with glitter"
+            }
+            Input::Distance => "; and `elek` and `weidlich-wilkie` for a file with flakes",
+            Input::Extent | Input::Map => "; and `elek` and `weidlich-wilkie` for a file with patina",
+            _ => "",
+        };
         Err(Failure::Usage(anyhow::anyhow!(
-            "model `{}` does not take --{}; those that do: {}",
+            "model `{}` does not take --{}; those that do: {}{effects}",
             info.name,
             input.name(),
             takers.join(", ")
@@ -113,11 +180,11 @@ impl ModelInputs {
     /// The model with its inputs.
     pub(crate) fn give(&self, model: Box<dyn Model>) -> Box<dyn Model> {
         let inputs = Inputs {
-            uv: self.uv.map(|Uv(uv)| uv),
+            uv: self.uv(),
             distance: self.distance,
             extent: self.extent,
             map: self.map,
-            inner_normal: self.inner_normal.map(Angles::direction),
+            inner_normal: self.inner_normal(),
             samples: self.samples,
             seed: self.seed,
         };
@@ -125,8 +192,7 @@ impl ModelInputs {
     }
 
     /// The model as textures show it.
-    pub(crate) fn textured(&self, model: Box<dyn Model>) -> Box<dyn Model> {
-        let sample = self.textures.sample();
+    pub(crate) fn textured(sample: TextureSample, model: Box<dyn Model>) -> Box<dyn Model> {
         if sample == TextureSample::NONE { model } else { Box::new(Textured { sample, model }) }
     }
 }

@@ -31,6 +31,16 @@ pub(crate) fn complain(line: &str) {
     let _ = writeln!(io::stderr().lock(), "{line}");
 }
 
+/// Whether standard error is a terminal that can move its cursor, for progress bars.
+pub(crate) fn has_cursor() -> bool {
+    io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
+}
+
+/// Whether standard error takes colours: where `NO_COLOR` has a value, it does not (no-color.org).
+pub(crate) fn has_colour() -> bool {
+    has_cursor() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
+}
+
 /// Bytes for people.
 pub(crate) fn bytes(count: u64) -> String {
     match count {

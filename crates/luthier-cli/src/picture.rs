@@ -10,6 +10,7 @@ use luthier_texture::{Metadata, exr, png, radiance};
 use crate::cli::Look;
 use crate::device::device;
 use crate::failure::{Failure, Outcome, files};
+use crate::input;
 
 /// The settings that options ask for.
 pub(crate) fn settings(look: &Look, shape: Shape, size: u32) -> Outcome<RenderSettings> {
@@ -38,7 +39,7 @@ pub(crate) fn settings(look: &Look, shape: Shape, size: u32) -> Outcome<RenderSe
 }
 
 fn environment(path: &Path) -> Outcome<Environment> {
-    let bytes = std::fs::read(path).map_err(files(path, "read"))?;
+    let bytes = input::image(path).map_err(files(path, "read"))?;
     let unusable = |source: anyhow::Error| Failure::Input(source.context(path.display().to_string()));
     let mut map = radiance::decode(&bytes).map_err(|source| unusable(source.into()))?;
     // Resampling leaves small negative values in many maps.
@@ -71,7 +72,7 @@ impl Format {
     pub(crate) fn write(self, path: &Path, image: Image, tone: ToneMapping) -> Outcome {
         let bytes = match self {
             Self::Png => png::encode_image(&tone.image(image)),
-            Self::Exr => exr::encode(&image, &Metadata::new()),
+            Self::Exr => exr::encode(&image, &exr::RGB, &Metadata::new()),
         };
         std::fs::write(path, bytes.map_err(Failure::input)?).map_err(files(path, "write"))
     }

@@ -1,17 +1,18 @@
 //! Progress on a terminal, and the time that each kind of job took.
 
 use std::collections::BTreeMap;
-use std::io::IsTerminal;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use luthier_bake::{JobKind, Observer};
 
+use crate::output::has_cursor;
+
 /// Work shorter than this shows no bar.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// A bar on standard error that appears when work takes longer than a second, and never when that is not a terminal.
+/// A bar on standard error that appears when work takes longer than a second, and never when that is no terminal, or one that cannot move its cursor.
 pub(crate) struct Bar {
     bar: ProgressBar,
     started: Instant,
@@ -30,7 +31,7 @@ impl Bar {
     pub(crate) fn set(&self, done: u64, total: u64) {
         self.bar.set_length(total);
         self.bar.set_position(done);
-        if self.bar.is_hidden() && self.started.elapsed() > PATIENCE && std::io::stderr().is_terminal() {
+        if self.bar.is_hidden() && self.started.elapsed() > PATIENCE && has_cursor() {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }
     }

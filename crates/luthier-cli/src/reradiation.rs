@@ -10,7 +10,8 @@ use std::path::Path;
 use luthier_layers::fluorescence::{Fluorescent, Reradiated};
 use luthier_layers::monochrome::Monochrome;
 
-use crate::failure::{Failure, Outcome, files};
+use crate::failure::{Failure, Outcome};
+use crate::input;
 
 /// A matrix and the wavelengths of its bins.
 #[derive(Debug, PartialEq)]
@@ -23,7 +24,7 @@ pub(crate) struct Reradiation {
 
 impl Reradiation {
     pub(crate) fn read(path: &Path) -> Outcome<Self> {
-        let text = std::fs::read_to_string(path).map_err(files(path, "read"))?;
+        let text = input::named_text(path)?;
         let label = path.display().to_string();
         Self::parse(&text, label.clone()).map_err(|what| Failure::Input(anyhow::anyhow!("{label}{what}")))
     }

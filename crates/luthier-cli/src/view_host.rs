@@ -18,7 +18,7 @@ use crate::bake_files::{GENERATOR, material_entries, table_entry};
 use crate::device::device;
 use crate::failure::{Failure, Outcome};
 use crate::materials::{Source, find, read_image, read_one};
-use crate::memory_bake::table_texels;
+use crate::memory_bake::{self, table_texels, with_maps};
 
 /// Time of the last change and length of each file that matters; `None` where it cannot be read.
 type Stamps = BTreeMap<PathBuf, Option<(SystemTime, u64)>>;
@@ -43,7 +43,7 @@ impl ViewHost {
     }
 
     /// The tables of a material: those of the last bake, where only numbers in the material buffer changed.
-    fn atlases(&self, material: &Material, outline: &Outline) -> Outcome<Vec<Atlas>> {
+    fn atlases(&self, materials: &[Material], outline: &Outline) -> Outcome<Vec<Atlas>> {
         let mut last = lock(&self.tables);
         if let Some(Tables { keys, atlases }) = &*last
             && *keys == outline.keys
@@ -51,17 +51,17 @@ impl ViewHost {
         {
             return Ok(atlases.clone());
         }
-        let materials = std::slice::from_ref(material);
         let Bake { atlases, .. } = luthier_bake::bake(materials, &read_image, &Silent).map_err(Failure::input)?;
         *last = Some(Tables { keys: outline.keys.clone(), atlases: atlases.clone() });
         Ok(atlases)
     }
 
     fn artefacts(&self, material: &Material, form: Form) -> Outcome<Artefacts> {
-        let materials = std::slice::from_ref(material);
+        let lit = memory_bake::lit(std::slice::from_ref(material));
+        let materials = lit.as_slice();
         let outline = luthier_bake::outline(materials, &read_image).map_err(Failure::input)?;
         let atlases = match form {
-            Form::Baked => self.atlases(material, &outline)?,
+            Form::Baked => self.atlases(materials, &outline)?,
             Form::Full => Vec::new(),
         };
         let mut files = Vec::new();
@@ -75,8 +75,7 @@ impl ViewHost {
             Manifest { bindings, ..Manifest::new(GENERATOR, entries, atlases.iter().map(table_entry).collect()) };
         let shaders = vec![WgslShader { form: form.name().to_owned(), wgsl }];
         let artefacts = Artefacts::from_parts(manifest, table_texels(&atlases), shaders).map_err(device)?;
-        let file = |path: &str| files.iter().find(|(name, _)| name == path).map(|(_, bytes)| bytes.clone());
-        artefacts.with_maps(|entry| Ok(file(&entry.file.path).unwrap_or_default())).map_err(device)
+        with_maps(artefacts, &files)
     }
 }
 

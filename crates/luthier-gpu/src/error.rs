@@ -1,78 +1,17 @@
-use std::path::PathBuf;
-
 use luthier_lut::{LutError, TableKind, TexelFormat};
-use luthier_texture::TextureError;
+use luthier_texture::FolderError;
 use thiserror::Error;
 
 /// Why artefacts cannot be loaded, bound or run.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum GpuError {
-    /// A file of the bake cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
-    /// The manifest is not one.
-    #[error("{}: {source}", path.display())]
-    Manifest {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        source: LutError,
-    },
-    /// The manifest names a file outside its own folder.
-    #[error("the manifest names `{path}`, which is not a path inside its folder")]
-    OutsideFolder {
-        /// As in the manifest.
-        path: String,
-    },
-    /// A file is not the one that the manifest describes.
-    #[error(
-        "{} is not the file that the manifest describes (SHA-256 {found}, manifest {expected}); bake again",
-        path.display()
-    )]
-    Hash {
-        /// The file.
-        path: PathBuf,
-        /// Hash of its bytes, hex.
-        found: String,
-        /// Hash in the manifest, hex.
-        expected: String,
-    },
-    /// A texture cannot be decoded.
-    #[error("{}: {source}", path.display())]
-    Texture {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        source: TextureError,
-    },
-    /// A shader is not UTF-8.
-    #[error("{} is not UTF-8 text", path.display())]
-    ShaderText {
-        /// The file.
-        path: PathBuf,
-    },
-    /// The layout of a table in the manifest is impossible.
-    #[error("the manifest gives the {} table an impossible layout", kind.name())]
-    Layout {
-        /// The table.
-        kind: TableKind,
-    },
-    /// A table has texels that differ from its entry in the manifest.
-    #[error("the {} table is {found}; the manifest says {expected}", kind.name())]
-    TableMismatch {
-        /// The table.
-        kind: TableKind,
-        /// Size, format and bytes at hand.
-        found: String,
-        /// Size, format and bytes according to the manifest.
-        expected: String,
-    },
+    /// A bake cannot be read from its folder.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    /// The manifest and the texels at hand contradict each other.
+    #[error(transparent)]
+    Table(#[from] LutError),
     /// The manifest lists a table whose texels were not given.
     #[error("no texels for the {} table", kind.name())]
     MissingTexels {
@@ -201,6 +140,15 @@ pub enum GpuError {
         /// Form of the shader.
         form: String,
     },
+    /// Blurred maps of the environment need the reflectance of every interface.
+    #[error(
+        "without samples of the environment every interface needs a Fresnel tile, and `{material}` has one without: bake the kinds \
+         fresnel and fgd too, or sample the environment"
+    )]
+    NoReflectance {
+        /// Name of the material.
+        material: String,
+    },
     /// A setting of the renderer out of range.
     #[error("render setting {name} = {value}; {allowed}")]
     Setting {
@@ -211,9 +159,4 @@ pub enum GpuError {
         /// What is allowed.
         allowed: &'static str,
     },
-}
-
-/// Size, format and byte count of a table, in words.
-pub(crate) fn describe(size: [u32; 2], format: TexelFormat, bytes: u64) -> String {
-    format!("{} x {} {format}, {bytes} bytes", size[0], size[1])
 }

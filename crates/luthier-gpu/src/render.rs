@@ -100,11 +100,27 @@ impl Scene {
     /// (Weidlich and Wilkie's eq. 3.1 lacks 1 / eta^2), where this way keeps to the energy that came in.
     ///
     /// # Errors
-    /// [`GpuError::Prefiltered`] for another form than `baked` without samples, [`GpuError::Setting`],
-    /// [`GpuError::NoMaterial`], and whatever the device reports.
+    /// [`GpuError::Prefiltered`] for another form than `baked` without samples, [`GpuError::NoReflectance`] for a material without
+    /// the tables that this takes, [`GpuError::Setting`], [`GpuError::NoMaterial`], and whatever the device reports.
     pub fn render(&self, materials: &[u32], settings: &RenderSettings) -> Result<Image, GpuError> {
         let image = self.render_passes(materials, settings, &|| false, EVALUATIONS_PER_PASS)?;
         Ok(image.expect("nobody stops it"))
+    }
+
+    /// Whether [`Scene::render`] knows the albedo of every interface of a material without samples of the environment: bakes have these
+    /// tables where a shader reads them or someone asked for them.
+    ///
+    /// # Errors
+    /// [`GpuError::NoMaterial`].
+    pub fn has_albedo(&self, material: u32) -> Result<bool, GpuError> {
+        self.layers(material)?;
+        let is_known = |layer: &LayerRecord| layer.fgd_tile.is_some() || layer.film_tile.is_some();
+        Ok(self.interfaces(material).all(|layer| has_reflectance(layer) && is_known(layer)))
+    }
+
+    fn interfaces(&self, material: u32) -> impl Iterator<Item = &LayerRecord> {
+        let entry = self.manifest.materials.get(material as usize);
+        entry.into_iter().flat_map(MaterialEntry::records).filter(|layer| layer.kind != LayerKind::Diffuse)
     }
 
     /// The same for someone who may change their mind: `stop` is asked before every pass, of which each takes a fraction of a
@@ -134,6 +150,11 @@ impl Scene {
         }
         if self.form() != "baked" && settings.environment_samples == 0 {
             return Err(GpuError::Prefiltered { form: self.form().to_owned() });
+        }
+        let lacks = |material: &&u32| !self.interfaces(**material).all(has_reflectance);
+        if let Some(&material) = materials.iter().find(lacks).filter(|_| settings.environment_samples == 0) {
+            let material = self.manifest.materials[material as usize].name.clone();
+            return Err(GpuError::NoReflectance { material });
         }
         let group = self.bindings.group(&self.context, &self.widened_words(settings.light_angular_radius))?;
         let pipeline = self.pipeline(&self.render, &self.render_kernel())?;
@@ -281,6 +302,10 @@ impl Scene {
     }
 }
 
+fn has_reflectance(layer: &LayerRecord) -> bool {
+    layer.fresnel_tile.is_some() || layer.film_tile.is_some()
+}
+
 fn blur_of(layer: &LayerRecord) -> Blur {
     if layer.distribution == "ggx" { Blur::Ggx } else { Blur::Beckmann }
 }
@@ -298,12 +323,12 @@ fn layer_words(layer: &LayerRecord, chain: f32) -> [[f32; 4]; 4] {
     };
     let tile = |tile: Option<u32>| tile.map_or(-1.0, |t| t as f32);
     let film_fraction = layer.film_thickness_nm / layer.film_thickness_max_nm.max(1e-30);
-    let rgb = |[r, g, b]: [f64; 3]| [r as f32, g as f32, b as f32, 0.0];
+    let rgbw = |[r, g, b]: [f64; 3], w: f64| [r as f32, g as f32, b as f32, w as f32];
     [
         [kind, layer.alpha as f32, layer.eta as f32, chain],
         [tile(layer.fresnel_tile), tile(layer.fgd_tile), tile(layer.film_tile), film_fraction as f32],
-        rgb(layer.optical_depth),
-        rgb(layer.albedo),
+        rgbw(layer.optical_depth, layer.critical_cot_sq),
+        rgbw(layer.albedo, 0.0),
     ]
 }
 

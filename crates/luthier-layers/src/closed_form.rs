@@ -33,6 +33,14 @@ impl ClosedForm {
         Self { rule: gauss_legendre(POINTS) }
     }
 
+    /// Cosines and weights, on both sides of the one from which all azimuths are above the plane with the normal `up`.
+    fn nodes(&self, up: DVec3) -> impl Iterator<Item = (f64, f64)> {
+        let kink = libm::hypot(up.x, up.y).min(1.0);
+        let pieces = [(0.0, kink), (kink, 1.0 - kink)];
+        let piece = move |(from, length)| self.rule.iter().map(move |&(x, w)| (from + length * x, length * w));
+        pieces.into_iter().filter(|(_, length)| *length > 0.0).flat_map(piece)
+    }
+
     /// For a stack of at least one layer.
     fn parts<'a>(&self, stack: &'a Monochrome) -> Option<Parts<'a>> {
         let coats = stack.layers.len().checked_sub(1)?;
@@ -49,6 +57,15 @@ impl Default for ClosedForm {
     fn default() -> Self {
         Self::new()
     }
+}
+
+/// The share of the azimuths at a cosine that is above the plane with the normal `up`.
+fn share_above(up: DVec3, cos_theta: f64) -> f64 {
+    let across = libm::sqrt((1.0 - cos_theta * cos_theta).max(0.0)) * libm::hypot(up.x, up.y);
+    if across == 0.0 {
+        return 1.0;
+    }
+    libm::acos((-cos_theta * up.z / across).clamp(-1.0, 1.0)) * FRAC_1_PI
 }
 
 /// What is the same for all directions.
@@ -128,15 +145,19 @@ impl Estimator for ClosedForm {
         }))
     }
 
-    fn albedo_with_error(&self, stack: &Monochrome, wo: DVec3) -> Estimate {
+    fn albedo_with_error(&self, stack: &Monochrome, wo: DVec3, up: DVec3) -> Estimate {
         let parts = if wo.z > 0.0 { self.parts(stack) } else { None };
         Estimate::exact(parts.map_or(0.0, |parts| {
             let cos_theta = wo.z.min(1.0);
-            let mirrored = parts.mirrored(cos_theta);
+            let leaves = DVec3::new(-wo.x, -wo.y, wo.z).dot(up) > 0.0;
+            let mirrored = if leaves { parts.mirrored(cos_theta) } else { 0.0 };
             if parts.diffuse == 0.0 {
                 return mirrored;
             }
-            let lit: f64 = self.rule.iter().map(|&(mu, weight)| 2.0 * weight * mu * parts.transmittance(mu)).sum();
+            let lit: f64 = self
+                .nodes(up)
+                .map(|(mu, weight)| 2.0 * weight * mu * share_above(up, mu) * parts.transmittance(mu))
+                .sum();
             mirrored + parts.transmittance(cos_theta) * parts.diffuse * lit * parts.spread()
         }))
     }
@@ -164,7 +185,7 @@ mod tests {
     fn coated_lambert() {
         for (albedo, expected) in [(0.18, 0.11813908), (0.5, 0.31607089), (0.8, 0.63283341), (1.0, 1.0)] {
             let stack = coated(1.5, 0.0, MonochromeBelow::Diffuse { albedo, sigma: 0.0 });
-            let found = ClosedForm::new().albedo_with_error(&stack, DVec3::Z).mean;
+            let found = ClosedForm::new().albedo_with_error(&stack, DVec3::Z, DVec3::Z).mean;
             assert!((found - expected).abs() < 1e-6, "{albedo}: {found}");
         }
     }
@@ -174,7 +195,9 @@ mod tests {
     fn coated_mirror() {
         let mirror = MonochromeBelow::Conductor { ior: Complex64::new(0.0, 1.0) };
         for (depth, expected) in [(0.1, 0.7992518131), (1.0, 0.1441269347)] {
-            let found = ClosedForm::new().albedo_with_error(&coated(1.5, depth, mirror), towards(libm::sqrt(0.5))).mean;
+            let found = ClosedForm::new()
+                .albedo_with_error(&coated(1.5, depth, mirror), towards(libm::sqrt(0.5)), DVec3::Z)
+                .mean;
             assert!((found - expected).abs() < 1e-9, "{depth}: {found}");
         }
         assert_eq!(ClosedForm::new().eval(&coated(1.5, 0.1, mirror), DVec3::Z, DVec3::Z), 0.0);
@@ -190,7 +213,7 @@ mod tests {
         let layer = |above, below| MonochromeLayer { surface: Surface::smooth(), above, films: Vec::new(), below };
         let layers = vec![layer(1.5, matched), layer(1.5, air), layer(1.0, base)];
         let stack = Monochrome { exterior: 1.5, layers };
-        let found = ClosedForm::new().albedo_with_error(&stack, towards(0.5)).mean;
+        let found = ClosedForm::new().albedo_with_error(&stack, towards(0.5), DVec3::Z).mean;
         assert!((found - libm::exp(-2.0 * 0.3 / 0.5)).abs() < 1e-12, "{found}");
         assert_eq!(ClosedForm::new().eval(&stack, towards(0.5), DVec3::Z), 0.0);
     }
@@ -207,7 +230,7 @@ mod tests {
             .sum();
         // F at cosine 0.6 from vacuum to 1.4.
         let mirrored = stack.layers[0].reflectance(0.6);
-        let found = reference.albedo_with_error(&stack, wo).mean;
+        let found = reference.albedo_with_error(&stack, wo, DVec3::Z).mean;
         assert!((found - mirrored - sum).abs() < 1e-9, "{found} {mirrored} {sum}");
     }
 }

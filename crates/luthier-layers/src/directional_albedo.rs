@@ -27,48 +27,55 @@ pub struct DirectionalAlbedo {
 
 /// Directional albedo seen from `wo` (unit, above the surface; 0 below): the integral of `f cos_theta_i` over the light.
 ///
-/// Models that are functions are integrated with Gauss-Legendre points along theta and phi, which crowd at the mirror
-/// direction so that sharp lobes are resolved, and are doubled until nothing changes by more than 1e-4. Light mirrored by
-/// smooth interfaces is no function and is left out.
+/// Models that are functions are integrated, see [`over_hemisphere`]. Light mirrored by smooth interfaces is no function and is left out.
 pub fn directional_albedo(model: &dyn Model, stack: &Monochrome, wo: DVec3) -> DirectionalAlbedo {
     if wo.z <= 0.0 {
         return DirectionalAlbedo { value: 0.0, error: 0.0, is_estimate: false };
     }
     if let Some(estimator) = model.estimator() {
-        let own = estimator.albedo_with_error(stack, wo);
+        let own = estimator.albedo_with_error(stack, wo, DVec3::Z);
         return DirectionalAlbedo { value: own.mean, error: own.std_err, is_estimate: true };
     }
+    let ([value], [error]) = over_hemisphere(DVec3::new(-wo.x, -wo.y, wo.z), |wi| [model.eval(stack, wi, wo)]);
+    DirectionalAlbedo { value, error, is_estimate: false }
+}
+
+/// Integrals of some functions over the directions above the surface, and what the last doubling of the points has changed of each.
+/// `peak` (unit) is about where the functions are greatest.
+///
+/// Gauss-Legendre points along theta and phi, which crowd at the peak so that sharp lobes are resolved, are doubled until
+/// nothing changes by more than 1e-4.
+pub fn over_hemisphere<const C: usize>(peak: DVec3, f: impl Fn(DVec3) -> [f64; C]) -> ([f64; C], [f64; C]) {
     let [mut points, most] = POINTS;
-    let mut value = integral(model, stack, wo, points);
+    let mut value = integral(&f, peak, points);
     loop {
         points *= 2;
-        let finer = integral(model, stack, wo, points);
-        let error = (finer - value).abs();
-        if error <= CONTENT || points >= most {
-            return DirectionalAlbedo { value: finer, error, is_estimate: false };
+        let finer = integral(&f, peak, points);
+        let error = std::array::from_fn(|c| f64::abs(finer[c] - value[c]));
+        if points >= most || error.iter().all(|change| *change <= CONTENT) {
+            return (finer, error);
         }
         value = finer;
     }
 }
 
-/// With `points` on each side of the mirror direction in theta and in phi.
-fn integral(model: &dyn Model, stack: &Monochrome, wo: DVec3, points: usize) -> f64 {
+/// With `points` on each side of the peak in theta and in phi.
+fn integral<const C: usize>(f: &impl Fn(DVec3) -> [f64; C], peak: DVec3, points: usize) -> [f64; C] {
     let rule = gauss_legendre(points);
-    let theta_o = libm::atan2(libm::hypot(wo.x, wo.y), wo.z);
-    let phi_mirror = libm::atan2(-wo.y, -wo.x);
+    let theta_peak = libm::atan2(libm::hypot(peak.x, peak.y), peak.z).min(FRAC_PI_2);
+    let phi_peak = libm::atan2(peak.y, peak.x);
     let thetas: Vec<(f64, f64)> =
-        crowded(&rule, theta_o, -theta_o).chain(crowded(&rule, theta_o, FRAC_PI_2 - theta_o)).collect();
-    let phis: Vec<(f64, f64)> = crowded(&rule, phi_mirror, -PI).chain(crowded(&rule, phi_mirror, PI)).collect();
-    let mut sum = 0.0;
+        crowded(&rule, theta_peak, -theta_peak).chain(crowded(&rule, theta_peak, FRAC_PI_2 - theta_peak)).collect();
+    let phis: Vec<(f64, f64)> = crowded(&rule, phi_peak, -PI).chain(crowded(&rule, phi_peak, PI)).collect();
+    let mut sum = [0.0; C];
     for &(theta, d_theta) in &thetas {
         let (sin_theta, cos_theta) = libm::sincos(theta);
-        let mut ring = 0.0;
         for &(phi, d_phi) in &phis {
             let (sin_phi, cos_phi) = libm::sincos(phi);
-            let wi = DVec3::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta);
-            ring += d_phi * model.eval(stack, wi, wo);
+            let value = f(DVec3::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta));
+            let weight = d_theta * sin_theta * d_phi;
+            sum.iter_mut().zip(value).for_each(|(sum, value)| *sum += weight * value);
         }
-        sum += d_theta * sin_theta * ring;
     }
     sum
 }

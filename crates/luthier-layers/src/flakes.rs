@@ -50,8 +50,13 @@ impl Flakes {
     /// The first z is the surface's normal, to which the paper's code adds the two others (`N += ...`), though its text speaks of
     /// those two alone: at scale 1 a flake tilted by a small angle tilts the lobe below by a third of it, not by half.
     pub fn normal(&self, uv: DVec2, distance: f64) -> DVec3 {
+        self.tilted(self.flake(uv), distance)
+    }
+
+    /// [`Self::normal`] of a flake whose own normal is known.
+    pub fn tilted(&self, flake: DVec3, distance: f64) -> DVec3 {
         let weight = 1.0 + (distance / self.fade_start).max(1.0);
-        (DVec3::new(0.0, 0.0, weight) + self.scale * self.flake(uv)).normalize_or(DVec3::Z)
+        (DVec3::new(0.0, 0.0, weight) + self.scale * flake).normalize_or(DVec3::Z)
     }
 
     /// `f cos_theta_i` of Elek's model with the flakes at a texture coordinate, seen from a distance. The flake tilts what lies

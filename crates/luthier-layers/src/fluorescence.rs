@@ -151,7 +151,8 @@ impl Model for Fluorescence {
             claims: Claims::BOTH,
             source: "Wilkie et al. 2006; Weidlich and Wilkie 2009, section 5.2.2",
             domain: "one transparent coat over a diffuse base with a re-radiation matrix, by default its albedo; exact for a smooth \
-                     coat; alpha from 1e-4",
+                     coat; alpha from 1e-4; returns up to 1.003 of the light where a rough coat reflects more than the smooth one that \
+                     transmits",
             leaves_out: "blur by refraction; bounces inside the coat's micro-surface; the base's roughness",
             inputs: &[Input::Matrix, Input::Excitation],
         }

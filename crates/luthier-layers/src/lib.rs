@@ -41,6 +41,7 @@ pub mod plane_stack;
 pub mod random_walk;
 pub mod real_time;
 pub mod registry;
+pub mod shaded;
 pub mod statistics;
 pub mod terms;
 pub mod textured;

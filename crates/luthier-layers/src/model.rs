@@ -63,7 +63,7 @@ impl Kind {
 pub struct Claims {
     /// `f(wi, wo) = f(wo, wi)`, f without the cosine.
     pub reciprocal: bool,
-    /// The directional albedo is at most 1.
+    /// The directional albedo is at most 1, but for a few thousandths that `domain` states.
     pub conserves_energy: bool,
 }
 
@@ -120,7 +120,7 @@ pub trait Estimator: Sync {
     /// As [`Model::eval`], with its standard error.
     fn eval_with_error(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> Estimate;
 
-    /// Directional albedo: the share of the light from `wo` that leaves upward, light mirrored by smooth interfaces
-    /// included.
-    fn albedo_with_error(&self, stack: &Monochrome, wo: DVec3) -> Estimate;
+    /// Directional albedo: the share of the light from `wo` that leaves upward and above the plane with the normal `up` (+z but for a
+    /// surface that is tilted), light mirrored by smooth interfaces included.
+    fn albedo_with_error(&self, stack: &Monochrome, wo: DVec3, up: DVec3) -> Estimate;
 }

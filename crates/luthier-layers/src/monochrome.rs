@@ -2,7 +2,7 @@
 
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
-use luthier_optics::fresnel::{FilmLayer, coated};
+use luthier_optics::fresnel::{FilmLayer, Polarised, coated};
 use luthier_optics::microfacet;
 use luthier_optics::stack::{Base, Stack, Surface};
 use num_complex::Complex64;
@@ -121,12 +121,17 @@ impl Optics for Monochrome {
 impl MonochromeLayer {
     /// Unpolarised reflectance of the interface for light from above; 0 for a diffuse base, which has none.
     pub fn reflectance(&self, cos_theta_i: f64) -> f64 {
+        self.polarised(cos_theta_i).map_or(0.0, |powers| powers.unpolarised())
+    }
+
+    /// Reflectance of either polarisation; `None` for a diffuse base, which has no interface.
+    pub fn polarised(&self, cos_theta_i: f64) -> Option<Polarised> {
         let below = match self.below {
             MonochromeBelow::Dielectric { complex_ior, .. } => complex_ior,
             MonochromeBelow::Conductor { ior } => ior,
-            MonochromeBelow::Diffuse { .. } => return 0.0,
+            MonochromeBelow::Diffuse { .. } => return None,
         };
-        coated(Complex64::new(self.above, 0.0), &self.films, below, cos_theta_i).unpolarised()
+        Some(coated(Complex64::new(self.above, 0.0), &self.films, below, cos_theta_i))
     }
 
     /// Index below over index above; 1 where nothing is transmitted.

@@ -45,18 +45,21 @@ impl RandomWalk {
     /// Shares of the light from a side that leave on the same side and on the other, over all directions: what they
     /// lack to 1 is absorbed.
     pub fn albedo(&self, layer: &MonochromeLayer, side: Side, direction: DVec3) -> (Estimate, Estimate) {
+        let share = |wanted| self.share(layer, (side, direction), wanted, DVec3::Z);
+        (share(side), share(side.other()))
+    }
+
+    /// Share of the light from `a` that leaves on a side, above the plane with the normal `up` in the frame of that side.
+    fn share(&self, layer: &MonochromeLayer, (side, direction): (Side, DVec3), wanted: Side, up: DVec3) -> Estimate {
         if direction.z <= 0.0 {
-            return (Estimate::exact(0.0), Estimate::exact(0.0));
+            return Estimate::exact(0.0);
         }
         let interface = Interface::new(layer, InterfaceMode::SmithWalk);
         let a = Sided { side, direction };
-        let share = |wanted: Side| {
-            Estimate::of(self.samples, |i| match interface.scatter(&mut Stream::new(self.seed, i), a) {
-                Some((b, weight)) if b.side == wanted => weight,
-                _ => 0.0,
-            })
-        };
-        (share(side), share(side.other()))
+        Estimate::of(self.samples, |i| match interface.scatter(&mut Stream::new(self.seed, i), a) {
+            Some((b, weight)) if b.side == wanted && b.direction.dot(up) > 0.0 => weight,
+            _ => 0.0,
+        })
     }
 }
 
@@ -104,9 +107,9 @@ impl Estimator for RandomWalk {
         walks.density(top, (Side::Above, wo), (Side::Above, wi))
     }
 
-    fn albedo_with_error(&self, stack: &Monochrome, wo: DVec3) -> Estimate {
+    fn albedo_with_error(&self, stack: &Monochrome, wo: DVec3, up: DVec3) -> Estimate {
         let Some(top) = stack.layers.first() else { return Estimate::exact(0.0) };
         let walks = Self { seed: mixed_seed(self.seed, stack, wo, wo), ..*self };
-        walks.albedo(top, Side::Above, wo).0
+        walks.share(top, (Side::Above, wo), Side::Above, up)
     }
 }

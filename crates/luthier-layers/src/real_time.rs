@@ -25,6 +25,20 @@ use crate::statistics::spread::{Covariance, Spread};
 use crate::terms::ShaderTerms;
 use crate::weidlich_wilkie::WeidlichWilkie;
 
+/// Normals below the first interface of a surface: those of `LuthierPlace`, each unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Under {
+    /// Normal of the flakes, which all that lies below is turned by; for `elek` and `weidlich-wilkie`.
+    pub flake_normal: DVec3,
+    /// Normal of the lower boundary of the film; for `granier-heidrich`.
+    pub inner_normal: DVec3,
+}
+
+impl Under {
+    /// Those of the surface.
+    pub const NONE: Self = Self { flake_normal: DVec3::Z, inner_normal: DVec3::Z };
+}
+
 /// The twin of a shader, for one surface.
 #[derive(Debug)]
 pub struct Twin(Kind);
@@ -69,13 +83,20 @@ impl Twin {
     /// `f cos_theta_i`, RGB. Zero when either direction is at or below the horizon. Terms are asked once for every value, however many
     /// channels need it.
     pub fn eval(&self, terms: &impl ShaderTerms, wi: DVec3, wo: DVec3) -> Rgb {
+        self.eval_over(terms, &Under::NONE, wi, wo)
+    }
+
+    /// [`Twin::eval`] with other normals below the first interface.
+    pub fn eval_over(&self, terms: &impl ShaderTerms, under: &Under, wi: DVec3, wo: DVec3) -> Rgb {
+        let &Under { flake_normal, inner_normal } = under;
         match &self.0 {
-            Kind::Elek(layers) => elek::eval(layers, terms, wi, wo),
-            Kind::WeidlichWilkie(stacks) => {
-                each(terms, stacks, |stack, optics| WeidlichWilkie::default().eval_with(stack, optics, wi, wo))
-            }
+            Kind::Elek(layers) => elek::eval_below(layers, terms, wi, wo, flake_normal),
+            Kind::WeidlichWilkie(stacks) => each(terms, stacks, |stack, optics| {
+                WeidlichWilkie::default().eval_below(stack, optics, wi, wo, flake_normal)
+            }),
             Kind::GranierHeidrich(stacks) => {
-                each(terms, stacks, |stack, optics| GranierHeidrich::default().eval_with(stack, optics, wi, wo))
+                let model = GranierHeidrich { inner_normal, ..GranierHeidrich::default() };
+                each(terms, stacks, |stack, optics| model.eval_with(stack, optics, wi, wo))
             }
             Kind::Belcour(layers) => statistical::<f64>(layers, terms, wi, wo),
             Kind::Yamaguchi(layers) => statistical::<Covariance>(layers, terms, wi, wo),

@@ -90,7 +90,6 @@ impl Model for Textured {
     }
 }
 
-/// Of an estimator; the albedo is what leaves the tilted surface upward, whether or not the flat one hides it.
 impl Estimator for Textured {
     fn eval_with_error(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> Estimate {
         match self.model.estimator() {
@@ -102,9 +101,10 @@ impl Estimator for Textured {
         }
     }
 
-    fn albedo_with_error(&self, stack: &Monochrome, wo: DVec3) -> Estimate {
-        let wo = frame::local(self.sample.normal, wo);
-        self.model.estimator().map_or(Estimate::exact(0.0), |own| own.albedo_with_error(&self.sample.apply(stack), wo))
+    fn albedo_with_error(&self, stack: &Monochrome, wo: DVec3, up: DVec3) -> Estimate {
+        let [wo, up] = [wo, up].map(|w| frame::local(self.sample.normal, w));
+        let own = self.model.estimator();
+        own.map_or(Estimate::exact(0.0), |own| own.albedo_with_error(&self.sample.apply(stack), wo, up))
     }
 }
 
@@ -163,7 +163,7 @@ mod tests {
         let textured = Textured { sample, model: Box::new(reference) };
         let estimator = textured.estimator().unwrap();
         assert_eq!(estimator.eval_with_error(&stack, wi, wo), reference.eval_with_error(&here, wi, wo));
-        assert_eq!(estimator.albedo_with_error(&stack, wo), reference.albedo_with_error(&here, wo));
+        assert_eq!(estimator.albedo_with_error(&stack, wo, DVec3::Z), reference.albedo_with_error(&here, wo, DVec3::Z));
         assert_eq!(textured.eval(&stack, wi, wo), reference.eval(&here, wi, wo));
 
         let prefiltered = || Microfacet::new(Components { fresnel: Fresnel::BelcourBarla, ..Components::PLAIN });

@@ -20,6 +20,7 @@ use glam::DVec3;
 
 use crate::elek::refract;
 use crate::facets::{Facets, Masking};
+use crate::frame;
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow, Optics};
 use crate::oren_nayar;
@@ -104,6 +105,18 @@ impl Model for WeidlichWilkie {
 impl WeidlichWilkie {
     /// [`Model::eval`] with optical terms that may come from elsewhere.
     pub fn eval_with(self, stack: &Monochrome, optics: &impl Optics, wi: DVec3, wo: DVec3) -> f64 {
+        self.eval_below(stack, optics, wi, wo, DVec3::Z)
+    }
+
+    /// [`Self::eval_with`] with another normal below the first interface, see [`eval_below`](crate::elek::eval_below).
+    pub(crate) fn eval_below(
+        self,
+        stack: &Monochrome,
+        optics: &impl Optics,
+        wi: DVec3,
+        wo: DVec3,
+        normal_below: DVec3,
+    ) -> f64 {
         if wi.z <= 0.0 || wo.z <= 0.0 {
             return 0.0;
         }
@@ -121,7 +134,13 @@ impl WeidlichWilkie {
             total += throughput * cosines * reflected * lobe.value;
 
             let MonochromeBelow::Dielectric { optical_depth, .. } = layer.below else { break };
-            let Some((wi_below, wo_below)) = self.below(layer.eta(), wi_local, wo_local) else { break };
+            let Some((mut wi_below, mut wo_below)) = self.below(layer.eta(), wi_local, wo_local) else { break };
+            if i == 0 && normal_below != DVec3::Z {
+                (wi_below, wo_below) = (frame::local(normal_below, wi_below), frame::local(normal_below, wo_below));
+                if wi_below.z <= 0.0 || wo_below.z <= 0.0 {
+                    break;
+                }
+            }
             let passed = match self.transmission {
                 Transmission::HalfVector => {
                     let transmitted = 1.0 - reflected;

@@ -55,7 +55,8 @@ impl Model for WeidlichWilkieCorrected {
             kind: Kind::Layered,
             claims: Claims::BOTH,
             source: "Weidlich and Wilkie 2009, eq. 3.1-3.2, with 1/n^2 and the geometric series of inner bounces",
-            domain: "any stack; exact for smooth interfaces over a mirror or Lambert's surface; alpha from 1e-4",
+            domain: "any stack; exact for smooth interfaces over a mirror or Lambert's surface; alpha from 1e-4; returns \
+                     up to 1.0023 of the light where a rough coat reflects more than the smooth one that transmits",
             leaves_out: "blur by refraction and by inner bounces; interfaces transmit and return as if smooth",
             inputs: &[],
         }

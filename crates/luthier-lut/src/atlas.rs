@@ -42,8 +42,19 @@ impl TableKind {
         }
     }
 
+    /// The channels of its unquantised values by name: those of a colour by letter, what is no colour by what it is. None is called A,
+    /// which viewers take for transparency.
+    pub fn channels(self) -> &'static [&'static str] {
+        match self {
+            Self::Fresnel | Self::Phase | Self::Film => &["R", "G", "B"],
+            Self::Distribution | Self::Escape => &["Y"],
+            Self::Fgd => &["R", "G", "B", "never_crossed.Y"],
+            Self::Thickness => &["R", "G", "B", "normalisation.Y"],
+        }
+    }
+
     /// Binding number of its texture. 5 is the sampler, 6 the material buffer.
-    pub fn binding(self) -> u32 {
+    pub const fn binding(self) -> u32 {
         match self {
             Self::Fresnel => 0,
             Self::Distribution => 1,
@@ -87,6 +98,20 @@ impl AtlasLayout {
         [w * self.columns, h * self.tiles.div_ceil(self.columns)]
     }
 
+    /// [`AtlasLayout::size`] of a layout that may be nonsense: `None` where that would overflow, and where an axis has no interval.
+    pub fn checked_size(&self) -> Option<[u32; 2]> {
+        let apron = self.apron.checked_mul(2)?;
+        let sizes = [Some(self.x.size), self.y.as_ref().map(|y| y.size)];
+        if self.columns == 0 || self.tiles == 0 || sizes.iter().flatten().any(|&size| size < 2) {
+            return None;
+        }
+        let header = self.base.header_texels();
+        let width = self.x.size.checked_add(apron)?.checked_add(header)?.checked_mul(self.columns)?;
+        let tile_height = self.y.as_ref().map_or(Some(1), |y| y.size.checked_add(apron))?;
+        let height = tile_height.checked_mul(self.tiles.div_ceil(self.columns))?;
+        Some([width, height])
+    }
+
     /// First texel of a tile, apron included.
     pub fn origin(&self, tile: u32) -> [u32; 2] {
         let [w, h] = self.tile_size();
@@ -122,6 +147,17 @@ pub struct Tile {
     pub input_hash: String,
     /// Error of a sampled read against the function, as measured by the baker.
     pub error: ErrorStats,
+    /// The error that it was to hold, as sampled: absent where a budget, or the size or format that a material asks for, decides instead.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub aim: Option<f64>,
+}
+
+impl Tile {
+    /// How far it is off as sampled, and what it was to hold, where it does not hold that.
+    pub fn miss(&self) -> Option<(f64, f64)> {
+        let difference = (self.error.worst.expected - self.error.worst.sampled).abs();
+        self.aim.filter(|aim| difference > *aim).map(|aim| (difference, aim))
+    }
 }
 
 /// A baked texture: layout, tiles, the truth in f32, and the texels that ship.

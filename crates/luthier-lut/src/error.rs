@@ -1,6 +1,6 @@
 use thiserror::Error;
 
-use crate::{Form, TexelFormat};
+use crate::{Form, TableKind, TexelFormat};
 
 /// Why a table or a manifest is not usable.
 #[derive(Debug, Error)]
@@ -24,6 +24,19 @@ pub enum LutError {
         found: usize,
         /// Width x height x bytes per texel.
         expected: usize,
+    },
+    /// The layout of a table in the manifest is impossible.
+    #[error("the manifest gives the {} table an impossible layout", .0.name())]
+    Layout(TableKind),
+    /// A table has texels that differ from its entry in the manifest.
+    #[error("the {} table is {found}; the manifest says {expected}", kind.name())]
+    TableMismatch {
+        /// The table.
+        kind: TableKind,
+        /// Size, format and bytes at hand.
+        found: String,
+        /// Size, format and bytes according to the manifest.
+        expected: String,
     },
     /// Blocks that only part of the image fills, or that are not fitted as here.
     #[error("blocks of texels that were not baked here")]

@@ -15,11 +15,14 @@ mod base;
 mod bc6h;
 mod choice;
 mod constants;
+mod critical;
 mod encoding;
 mod error;
+mod feature;
 mod form;
 mod format;
 mod image;
+mod limits;
 mod manifest;
 mod measure;
 mod record;
@@ -32,16 +35,19 @@ pub use axis::{Axis, Mapping};
 pub use base::{RowBase, SchlickBase};
 pub use choice::{MaterialChoice, SceneBudget, SceneCandidate, SceneChoice, SceneError, Verdict};
 pub use constants::{FlakesRecord, GlitterRecord, MaterialConstants, PatinaRecord};
+pub use critical::{incident_cosine, refracted_cosine};
 pub use encoding::Encoding;
 pub use error::LutError;
+pub use feature::Feature;
 pub use form::Form;
 pub use format::{FormatSet, TexelFormat};
 pub use image::Image;
+pub use limits::{BUFFER_WORDS_MAX, MaterialTexture, SIDE, SIDE_MAX};
 pub use manifest::{
     BindingEntry, ColorMode, FileEntry, MANIFEST_SCHEMA, Manifest, MapEntry, MapSlot, MaterialEntry, ShaderEntry,
     TableEntry,
 };
-pub use measure::{Comparison, ErrorStats, Scan, Worst, measure, measure_scan};
+pub use measure::{Comparison, ErrorStats, Scan, Worst, measure, measure_at, measure_scan};
 pub use record::{LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, material_buffer};
 pub use sampler::{WeightBits, bilinear};
 pub use search::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR, Search};

@@ -1,8 +1,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    AtlasLayout, LayerRecord, LutError, MaterialConstants, SceneChoice, Search, ShadingModel, TableKind, TexelFormat,
-    Tile,
+    AtlasLayout, LayerRecord, LutError, MaterialConstants, MaterialTexture, SceneChoice, Search, ShadingModel,
+    TableKind, TexelFormat, Tile,
 };
 
 /// Version of the manifest's shape. A reader refuses any other.
@@ -31,6 +31,9 @@ pub struct Manifest {
     pub bindings: Vec<BindingEntry>,
     /// The material buffer: little-endian `vec4<f32>` words, see [`crate::material_buffer`].
     pub material_buffer: FileEntry,
+    /// The size of the same words as a texture of RGBA32F, which they fill; absent from earlier bakes.
+    #[serde(default)]
+    pub material_texture: MaterialTexture,
 }
 
 /// How spectra became colour channels.
@@ -149,7 +152,7 @@ pub struct FileEntry {
 /// An emitted shader.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ShaderEntry {
-    /// `wgsl`, `glsl450` or `glsl-es300`.
+    /// `wgsl`, `glsl450`, `glsl-es300`, `hlsl`, `msl` or `spirv`.
     pub target: String,
     /// `baked` reads the tables; `full` evaluates in ALU.
     pub form: String,
@@ -182,6 +185,22 @@ impl MaterialEntry {
     }
 }
 
+impl TableEntry {
+    /// Checks that texels are those of the entry: its layout, its format, its bytes.
+    ///
+    /// # Errors
+    /// [`LutError::Layout`], [`LutError::TableMismatch`].
+    pub fn check(&self, size: [u32; 2], format: TexelFormat, bytes: usize) -> Result<(), LutError> {
+        let stated = self.layout.checked_size().ok_or(LutError::Layout(self.kind))?;
+        let texels = u128::from(stated[0]) * u128::from(stated[1]);
+        let texel_bytes = texels * u128::from(self.format.texel_bytes());
+        let describe = |size: [u32; 2], format, bytes| format!("{} x {} {format}, {bytes} bytes", size[0], size[1]);
+        let found = describe(size, format, bytes as u128);
+        let expected = describe(stated, self.format, texel_bytes);
+        if found == expected { Ok(()) } else { Err(LutError::TableMismatch { kind: self.kind, found, expected }) }
+    }
+}
+
 impl Manifest {
     /// JSON, indented, with a final newline.
     ///
@@ -207,6 +226,7 @@ impl Manifest {
             shaders: Vec::new(),
             bindings: Vec::new(),
             material_buffer: FileEntry::default(),
+            material_texture: MaterialTexture::default(),
         }
     }
 
@@ -259,6 +279,7 @@ mod tests {
             max_abs_err: 0.1 + 0.2,
             rms_err: 1.234_567_890_123_456_7e-5,
             p99_abs_err: 4.9e-324,
+            slack: 0.1,
             worst: Worst { at: vec![1.0 / 3.0, 2.0 / 3.0], channel: 2, expected: 0.7, sampled: 1e300 },
             points: u64::MAX,
         };
@@ -293,6 +314,7 @@ mod tests {
                 model: "pi alpha^2 D, Beckmann".into(),
                 input_hash: "ab".repeat(32),
                 error: error.clone(),
+                aim: Some(2e-3),
             }],
         };
         Manifest {
@@ -374,6 +396,7 @@ mod tests {
                 resource: "texture_2d<f32>".into(),
             }],
             material_buffer: file("materials.bin"),
+            material_texture: MaterialTexture { width: 33, height: 1 },
         }
     }
 

@@ -1,3 +1,4 @@
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// The function and a sampled read of its table at one point.
@@ -25,16 +26,43 @@ pub struct Worst {
 /// Measured absolute error of a sampled table against the function it stands for, over all channels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ErrorStats {
-    /// Largest, after local refinement around the worst point of the scan.
+    /// Largest: the difference at `worst`, after local refinement around the worst points of the scan, and `slack`.
     pub max_abs_err: f64,
-    /// Root mean square over the scan.
+    /// Root mean square over the scan, and in quadrature that of what the function may be off itself.
     pub rms_err: f64,
-    /// 99th percentile over the scan.
+    /// 99th percentile over the scan, and `slack`.
     pub p99_abs_err: f64,
-    /// Where the largest is.
+    /// What the function that reads were compared with may be off itself; 0 for closed forms.
+    #[serde(default)]
+    pub slack: f64,
+    /// Where the largest difference is.
     pub worst: Worst,
-    /// Points of the scan, all off the nodes.
+    /// Points of the scan, at nodes and between them.
     pub points: u64,
+}
+
+impl ErrorStats {
+    /// The error if some more points, chosen because the error is large there, were looked at too: they count in the largest alone.
+    #[must_use]
+    pub fn with_worst_of(self, more: Self) -> Self {
+        let points = self.points + more.points;
+        if more.max_abs_err > self.max_abs_err {
+            return Self { max_abs_err: more.max_abs_err, worst: more.worst, points, ..self };
+        }
+        Self { points, ..self }
+    }
+
+    /// The error if the function may be off itself, by `largest` at most and by `rms` in the root mean square.
+    #[must_use]
+    pub fn with_slack(self, largest: f64, rms: f64) -> Self {
+        Self {
+            max_abs_err: self.max_abs_err + largest,
+            rms_err: libm::hypot(self.rms_err, rms),
+            p99_abs_err: self.p99_abs_err + largest,
+            slack: self.slack + largest,
+            ..self
+        }
+    }
 }
 
 /// Where to compare a table with its function.
@@ -46,6 +74,9 @@ pub struct Scan {
     pub from: [f64; 2],
     /// Highest coordinate `u` along each axis; equal to `from` along an axis that the table lacks.
     pub to: [f64; 2],
+    /// Intervals of equal `u` along each axis, whose ends are points too: the nodes of a table, which balancing moves. 0 for none, and
+    /// along an axis that the table lacks.
+    pub nodes: [u32; 2],
     /// Halvings of the search radius around the worst point.
     pub refinements: u32,
 }
@@ -54,7 +85,7 @@ impl Scan {
     /// Halvings that functions in closed form can afford.
     pub const REFINEMENTS: u32 = 12;
 
-    /// The whole table: `per_cell[k]` points in each of `cells[k]` intervals between nodes; a one-axis table has
+    /// The whole table: its nodes, and `per_cell[k]` points in each of `cells[k]` intervals between them; a one-axis table has
     /// `cells[1] == 0`.
     pub fn whole(cells: [u32; 2], per_cell: [u32; 2]) -> Self {
         let has = |k: usize| cells[k] > 0;
@@ -62,11 +93,30 @@ impl Scan {
             points: [0, 1].map(|k: usize| (cells[k] * per_cell[k]).max(1)),
             from: [0, 1].map(|k: usize| if has(k) { 0.0 } else { 0.5 }),
             to: [0, 1].map(|k: usize| if has(k) { 1.0 } else { 0.5 }),
+            nodes: cells,
             refinements: Self::REFINEMENTS,
         }
     }
 
-    /// Coordinate of a point of the scan.
+    /// All coordinates of the scan: the points between nodes row by row, then the nodes likewise.
+    pub fn coordinates(&self) -> impl Iterator<Item = [f64; 2]> {
+        let [width, height] = self.points.map(|n| n.max(1));
+        let between = (0..height).flat_map(move |j| (0..width).map(move |i| self.coordinate([i, j])));
+        let [columns, rows] = [0, 1].map(|k: usize| self.node_coordinates(k));
+        between.chain(rows.into_iter().flat_map(move |v| columns.clone().into_iter().map(move |u| [u, v])))
+    }
+
+    /// Coordinates of the nodes along an axis; none at all if either axis of two is without.
+    fn node_coordinates(&self, axis: usize) -> Vec<f64> {
+        let (from, to, count) = (self.from[axis], self.to[axis], self.nodes[axis]);
+        match count {
+            0 if self.nodes == [0, 0] || from < to => Vec::new(),
+            0 => vec![from],
+            _ => (0..=count).map(|i| f64::from(i) / f64::from(count)).filter(|u| (from..=to).contains(u)).collect(),
+        }
+    }
+
+    /// Coordinate of a point between nodes.
     pub fn coordinate(&self, point: [u32; 2]) -> [f64; 2] {
         [0, 1].map(|k: usize| {
             let t = (f64::from(point[k]) + 0.5) / f64::from(self.points[k].max(1));
@@ -82,7 +132,7 @@ const CLIMBS: usize = 12;
 pub fn measure(
     cells: [u32; 2],
     per_cell: [u32; 2],
-    compare: impl Fn([f64; 2]) -> Comparison,
+    compare: impl Fn([f64; 2]) -> Comparison + Sync,
     axis_values: impl Fn([f64; 2]) -> Vec<f64>,
 ) -> ErrorStats {
     measure_scan(&Scan::whole(cells, per_cell), compare, axis_values)
@@ -92,46 +142,81 @@ pub fn measure(
 /// halving the step whenever no neighbour is worse. Quantised texels and weights make the error a saw: one climb would stop
 /// at the nearest tooth.
 ///
-/// `compare` receives coordinates `u` in 0..=1; `axis_values` turns the worst `u` into what is reported. The scan
-/// is sequential and sums in a fixed order: the result does not depend on threads.
+/// `compare` receives coordinates `u` in 0..=1; `axis_values` turns the worst `u` into what is reported. Points are compared
+/// side by side and added up in a fixed order: the result does not depend on threads.
 pub fn measure_scan(
     scan: &Scan,
-    compare: impl Fn([f64; 2]) -> Comparison,
+    compare: impl Fn([f64; 2]) -> Comparison + Sync,
     axis_values: impl Fn([f64; 2]) -> Vec<f64>,
 ) -> ErrorStats {
-    let counts = scan.points.map(|n| n.max(1));
-    let mut errors = Vec::with_capacity(counts[0] as usize * counts[1] as usize);
-    let mut sum_of_squares = 0.0;
-    let mut starts: Vec<Candidate> = Vec::with_capacity(CLIMBS + 1);
-    for j in 0..counts[1] {
-        for i in 0..counts[0] {
-            let candidate = Candidate::at(scan.coordinate([i, j]), &compare);
-            sum_of_squares += candidate.error * candidate.error;
-            errors.push(candidate.error);
-            // The worst first; of equals the first.
-            let place = starts.partition_point(|s| s.error >= candidate.error);
-            starts.insert(place, candidate);
-            starts.truncate(CLIMBS);
+    let mut errors = Errors::default();
+    // The worst points between nodes and the worst nodes are climbed from, so that neither crowd out the other.
+    let between: usize = scan.points.map(|n| n.max(1) as usize).into_iter().product();
+    let mut starts = Vec::with_capacity(2 * CLIMBS);
+    let points: Vec<[f64; 2]> = scan.coordinates().collect();
+    let compared: Vec<Candidate> = points.into_par_iter().map(|u| Candidate::at(u, &compare(u))).collect();
+    for (i, candidate) in compared.into_iter().enumerate() {
+        if i == between {
+            starts.append(&mut errors.worst);
         }
+        errors.add(candidate);
     }
-    let nothing = Candidate { u: [0.5, 0.5], channel: 0, error: -1.0 };
-    let worst = starts.into_iter().map(|start| climb(scan, start, &compare)).fold(nothing, Candidate::max);
+    starts.append(&mut errors.worst);
+    let climbed: Vec<Candidate> = starts.into_par_iter().map(|start| climb(scan, start, &compare)).collect();
+    let worst = climbed.into_iter().fold(NOWHERE, Candidate::max);
+    errors.stats(worst, &compare(worst.u), axis_values(worst.u))
+}
 
-    let points = errors.len();
-    errors.sort_by(f64::total_cmp);
-    let rank = (points * 99).div_ceil(100).clamp(1, points) - 1;
-    let at_worst = compare(worst.u);
-    ErrorStats {
-        max_abs_err: worst.error,
-        rms_err: (sum_of_squares / points as f64).sqrt(),
-        p99_abs_err: errors[rank],
-        worst: Worst {
-            at: axis_values(worst.u),
-            channel: worst.channel as u32,
-            expected: at_worst.expected[worst.channel],
-            sampled: at_worst.sampled[worst.channel],
-        },
-        points: points as u64,
+/// The error at given points and no others: axis values, and the comparison there.
+pub fn measure_at(points: impl IntoIterator<Item = (Vec<f64>, Comparison)>) -> ErrorStats {
+    let mut errors = Errors::default();
+    let points: Vec<(Vec<f64>, Comparison)> = points.into_iter().collect();
+    let candidate = |i: usize| Candidate::at([i as f64, 0.0], &points[i].1);
+    (0..points.len()).for_each(|i| errors.add(candidate(i)));
+    let worst = errors.worst.first().copied().unwrap_or(NOWHERE);
+    let nothing = (Vec::new(), Comparison { expected: [0.0; 4], sampled: [0.0; 4] });
+    let (at, there) = points.into_iter().nth(worst.u[0] as usize).unwrap_or(nothing);
+    errors.stats(worst, &there, at)
+}
+
+/// What is worse than no point at all.
+const NOWHERE: Candidate = Candidate { u: [0.5, 0.5], channel: 0, error: -1.0 };
+
+/// Errors as they come in.
+#[derive(Default)]
+struct Errors {
+    all: Vec<f64>,
+    sum_of_squares: f64,
+    /// The worst first; of equals the first.
+    worst: Vec<Candidate>,
+}
+
+impl Errors {
+    fn add(&mut self, candidate: Candidate) {
+        self.sum_of_squares += candidate.error * candidate.error;
+        self.all.push(candidate.error);
+        let place = self.worst.partition_point(|s| s.error >= candidate.error);
+        self.worst.insert(place, candidate);
+        self.worst.truncate(CLIMBS);
+    }
+
+    fn stats(mut self, worst: Candidate, there: &Comparison, at: Vec<f64>) -> ErrorStats {
+        self.all.sort_by(f64::total_cmp);
+        let points = self.all.len().max(1);
+        let rank = (points * 99).div_ceil(100) - 1;
+        ErrorStats {
+            max_abs_err: worst.error.max(0.0),
+            rms_err: (self.sum_of_squares / points as f64).sqrt(),
+            p99_abs_err: self.all.get(rank).copied().unwrap_or_default(),
+            slack: 0.0,
+            worst: Worst {
+                at,
+                channel: worst.channel as u32,
+                expected: there.expected[worst.channel],
+                sampled: there.sampled[worst.channel],
+            },
+            points: self.all.len() as u64,
+        }
     }
 }
 
@@ -147,7 +232,7 @@ fn climb(scan: &Scan, start: Candidate, compare: &impl Fn([f64; 2]) -> Compariso
             for sign in [-1.0, 1.0] {
                 let mut u = worst.u;
                 u[axis] = (u[axis] + sign * step[axis]).clamp(scan.from[axis], scan.to[axis]);
-                worst = worst.max(Candidate::at(u, compare));
+                worst = worst.max(Candidate::at(u, &compare(u)));
             }
         }
         if worst.error <= before {
@@ -166,8 +251,7 @@ struct Candidate {
 }
 
 impl Candidate {
-    fn at(u: [f64; 2], compare: &impl Fn([f64; 2]) -> Comparison) -> Self {
-        let c = compare(u);
+    fn at(u: [f64; 2], c: &Comparison) -> Self {
         let mut best = Self { u, channel: 0, error: -1.0 };
         for channel in 0..4 {
             let difference = (c.expected[channel] - c.sampled[channel]).abs();
@@ -215,7 +299,8 @@ mod tests {
     /// The error |u| has rms 1/sqrt(3) and a 99th percentile of 0.99; the midpoint rule over 1000 points is good to 1e-6.
     #[test]
     fn statistics_of_a_ramp() {
-        let stats = measure([100, 0], [10, 0], |u| only(2, -u[0]), |u| vec![u[0]]);
+        let scan = Scan { nodes: [0, 0], ..Scan::whole([100, 0], [10, 0]) };
+        let stats = measure_scan(&scan, |u| only(2, -u[0]), |u| vec![u[0]]);
         assert_eq!(stats.points, 1000);
         assert!((stats.rms_err - (1.0f64 / 3.0).sqrt()).abs() < 1e-6);
         assert!((stats.p99_abs_err - 0.9895).abs() < 1e-9, "{}", stats.p99_abs_err);
@@ -223,23 +308,52 @@ mod tests {
         assert_eq!((stats.worst.at.len(), stats.worst.channel), (1, 2));
     }
 
+    /// Every node of the table is a point, and so are points all between them.
     #[test]
-    fn no_point_of_the_scan_is_a_node() {
+    fn a_scan_has_all_nodes_and_points_between() {
         let (cells, per_cell) = ([7, 3], [4, 5]);
-        let scanned = std::cell::RefCell::new(Vec::new());
-        let compare = |u: [f64; 2]| {
-            scanned.borrow_mut().push(u);
-            only(0, 0.0)
-        };
-        let stats = measure(cells, per_cell, compare, |u| u.to_vec());
-        assert_eq!(stats.points, 7 * 4 * 3 * 5);
-        for u in &scanned.borrow()[..stats.points as usize] {
-            for axis in 0..2 {
-                // The nearest points lie half a step from a node: a tenth of a cell at five points per cell.
-                let node = u[axis] * f64::from(cells[axis]);
-                assert!((node - node.round()).abs() > 0.099, "{u:?}");
-            }
+        let scanned: Vec<[f64; 2]> = Scan::whole(cells, per_cell).coordinates().collect();
+        assert_eq!(scanned.len(), 7 * 4 * 3 * 5 + 8 * 4);
+        let places = |u: &[f64; 2]| [0, 1].map(|k: usize| u[k] * f64::from(cells[k]));
+        let (between, nodes) = scanned.split_at(7 * 4 * 3 * 5);
+        // The nearest points lie half a step from a node: a tenth of a cell at five points per cell.
+        assert!(between.iter().flat_map(places).all(|place| (place - place.round()).abs() > 0.099));
+        for (n, u) in nodes.iter().enumerate() {
+            let [i, j] = places(u);
+            assert!((i - (n % 8) as f64).abs() < 1e-12 && (j - (n / 8) as f64).abs() < 1e-12, "{u:?}");
         }
+    }
+
+    /// A table that errs at its nodes alone, as a balanced one does where its function has a kink.
+    #[test]
+    fn an_error_at_a_node_is_found() {
+        let spike = |u: [f64; 2]| only(1, (1.0 - 1e5 * (u[0] - 0.3).abs()).max(0.0));
+        let stats = measure([10, 0], [16, 0], spike, |u| vec![u[0]]);
+        assert!((stats.max_abs_err - 1.0).abs() < 1e-9 && (stats.worst.at[0] - 0.3).abs() < 1e-9, "{stats:?}");
+    }
+
+    #[test]
+    fn slack_is_named_and_counts_in_every_figure() {
+        let stats = measure([100, 0], [10, 0], |u| only(2, 0.3 * u[0]), |u| vec![u[0]]);
+        let with = stats.clone().with_slack(0.5, 0.4);
+        let difference = (with.worst.expected - with.worst.sampled).abs();
+        assert_eq!((with.slack, with.max_abs_err), (0.5, difference + 0.5));
+        assert_eq!(with.p99_abs_err, stats.p99_abs_err + 0.5);
+        assert!((with.rms_err * with.rms_err - stats.rms_err * stats.rms_err - 0.16).abs() < 1e-12);
+    }
+
+    #[test]
+    fn points_by_themselves_are_measured_alone() {
+        let points = [0.1, -0.4, 0.2].map(|error| (vec![10.0 * error], only(3, error)));
+        let stats = measure_at(points);
+        assert!((stats.max_abs_err - 0.4).abs() < 1e-15 && stats.worst.channel == 3 && stats.points == 3);
+        assert_eq!(stats.worst.at, [-4.0]);
+        assert!((stats.rms_err - 0.07f64.sqrt()).abs() < 1e-12);
+        assert_eq!(measure_at([]).max_abs_err, 0.0);
+        let more = measure_at([(vec![9.0], only(0, 2.0))]);
+        let both = stats.clone().with_worst_of(more);
+        assert_eq!((both.max_abs_err, both.rms_err, both.points, both.worst.at[0]), (2.0, stats.rms_err, 4, 9.0));
+        assert_eq!(stats.clone().with_worst_of(measure_at([])), stats);
     }
 
     #[test]
@@ -252,13 +366,13 @@ mod tests {
 
     #[test]
     fn a_partial_scan_stays_inside() {
-        let scan = Scan { points: [10, 0], from: [0.25, 0.5], to: [0.5, 0.5], refinements: 8 };
+        let scan = Scan { points: [10, 0], from: [0.25, 0.5], to: [0.5, 0.5], nodes: [8, 0], refinements: 8 };
         let compare = |u: [f64; 2]| {
             assert!((0.25..=0.5).contains(&u[0]) && u[1] == 0.5, "{u:?}");
             only(3, u[0])
         };
         let stats = measure_scan(&scan, compare, |u| vec![u[0]]);
-        assert_eq!(stats.points, 10);
+        assert_eq!(stats.points, 10 + 3, "nodes at 2, 3 and 4 eighths");
         // The climb goes to the border, where the error is largest.
         assert!((stats.max_abs_err - 0.5).abs() < 1e-3);
     }

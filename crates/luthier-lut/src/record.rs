@@ -2,7 +2,7 @@ use std::f64::consts::{FRAC_1_PI, LOG2_E};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{MaterialConstants, MaterialEntry};
+use crate::{MaterialConstants, MaterialEntry, refracted_cosine};
 
 /// `vec4` words of a material's header in the material buffer.
 pub const MATERIAL_WORDS: usize = 11;
@@ -60,6 +60,10 @@ pub struct LayerRecord {
     pub film_thickness_nm: f64,
     /// Thickest the film gets; 0 without a film.
     pub film_thickness_max_nm: f64,
+    /// Squared cotangent of the critical angle where the Fresnel row and the film tile are over the cosine of the refracted direction, as
+    /// those of interfaces with total reflection are; else 0.
+    #[serde(default)]
+    pub critical_cot_sq: f64,
     /// Tile of the Fresnel atlas.
     pub fresnel_tile: Option<u32>,
     /// Tile of the distribution atlas.
@@ -83,6 +87,11 @@ impl LayerRecord {
         self.film_thickness_max_nm > self.film_thickness_nm
     }
 
+    /// The cosine at which the Fresnel row and the film tile are read for light that meets the interface at another.
+    pub fn row_cosine(&self, cos_theta: f64) -> f64 {
+        refracted_cosine(self.critical_cot_sq, cos_theta)
+    }
+
     /// The words of the material buffer, in the order that the shader unpacks them. Tiles are numbers, -1 for none.
     ///
     /// | word | x, y, z, w |
@@ -94,7 +103,7 @@ impl LayerRecord {
     /// | 4 | ior_n RGB, film thickness nm |
     /// | 5 | ior_k RGB, film thickness max nm |
     /// | 6 | film_ior_n RGB, film tile |
-    /// | 7 | film_ior_k RGB, 0 |
+    /// | 7 | film_ior_k RGB, squared cotangent of the critical angle |
     /// | 8 | film thickness in waves RGB, escape tile |
     /// | 9 | alpha_x, alpha_y, cosine and sine of the rotation |
     /// | 10 | kind (0 dielectric, 1 conductor, 2 diffuse), alpha, eta, sigma |
@@ -128,7 +137,7 @@ impl LayerRecord {
             rgbw(self.ior_n, self.film_thickness_nm as f32),
             rgbw(self.ior_k, self.film_thickness_max_nm as f32),
             rgbw(self.film_ior_n, tile(self.film_tile)),
-            rgbw(self.film_ior_k, 0.0),
+            rgbw(self.film_ior_k, self.critical_cot_sq as f32),
             rgbw(self.film_thickness_waves, tile(self.escape_tile)),
             [
                 self.alpha_xy[0] as f32,
@@ -195,6 +204,7 @@ mod tests {
             film_thickness_waves: [22.0, 23.0, 24.0],
             film_thickness_nm: 25.0,
             film_thickness_max_nm: 26.0,
+            critical_cot_sq: 35.0,
             fresnel_tile: Some(27),
             distribution_tile: Some(28),
             fgd_tile: None,
@@ -218,7 +228,7 @@ mod tests {
                 [10.0, 11.0, 12.0, 25.0],
                 [13.0, 14.0, 15.0, 26.0],
                 [16.0, 17.0, 18.0, 33.0],
-                [19.0, 20.0, 21.0, 0.0],
+                [19.0, 20.0, 21.0, 35.0],
                 [22.0, 23.0, 24.0, 34.0],
                 [30.0, 31.0, 1.0, 0.0],
                 [8_388_609.0, 2.0, 2.0, 9.0],

@@ -34,6 +34,26 @@ named! {
 }
 
 named! {
+    /// Kinds of tables.
+    pub enum TableSetting {
+        /// Fresnel reflectance of interfaces.
+        Fresnel = "fresnel",
+        /// Slope distributions.
+        Distribution = "distribution",
+        /// Energy of rough interfaces, all bounces included.
+        Fgd = "fgd",
+        /// Interference of films.
+        Phase = "phase",
+        /// Thickness of films that vary over the surface.
+        Thickness = "thickness",
+        /// Reflectance of interfaces whose film varies.
+        Film = "film",
+        /// What is not totally reflected inside a denser medium.
+        Escape = "escape",
+    }
+}
+
+named! {
     /// Texel formats, named as WebGPU names them.
     pub enum Format {
         /// One half float.
@@ -94,6 +114,8 @@ named! {
 pub struct BakeSettings {
     /// The reflectance model of the shader.
     pub model: Option<ModelSetting>,
+    /// Kinds of tables to bake beside those that the shader reads.
+    pub tables: Vec<TableSetting>,
     /// Spectral or at three wavelengths.
     pub color: Option<ColorSetting>,
     /// Wavelengths taken as R, G and B, in nm.
@@ -114,6 +136,20 @@ impl BakeSettings {
     /// The three wavelengths, by default [`DEFAULT_WAVELENGTHS_NM`].
     pub fn wavelengths_nm(&self) -> [f64; 3] {
         self.wavelengths_nm.unwrap_or(DEFAULT_WAVELENGTHS_NM)
+    }
+
+    /// Whether tables of a kind are to be baked whether or not the shader reads them: `tables` names the kind, or it has settings of its
+    /// own.
+    pub fn asks_for(&self, kind: TableSetting) -> bool {
+        let is_set = match kind {
+            TableSetting::Fresnel => self.fresnel != FresnelSettings::default(),
+            TableSetting::Distribution => self.distribution != DistributionSettings::default(),
+            TableSetting::Fgd => self.fgd != GridSettings::default(),
+            TableSetting::Phase => self.phase != RowSettings::default(),
+            TableSetting::Thickness => self.thickness != RowSettings::default(),
+            TableSetting::Film | TableSetting::Escape => false,
+        };
+        is_set || self.tables.contains(&kind)
     }
 }
 

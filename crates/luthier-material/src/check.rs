@@ -7,7 +7,7 @@ use toml::de::DeValue;
 
 use crate::correct::corrected;
 use crate::diagnostic::Sink;
-use crate::grammar::{Key, Kind, Range, Table, TextForm};
+use crate::grammar::{Key, Kind, NAME_MAX, PATH_MAX, Range, Table, TextForm};
 use crate::section::{Section, integer, number, section};
 use crate::suggest::{did_you_mean, one_of, short};
 
@@ -27,6 +27,13 @@ pub(crate) fn check_table(table: &'static Table, siblings: &[&'static Table], at
         sink.error(at.span.clone(), format!("`{}` is missing from this {}", key.name, table.name), Some(add(key)));
     }
     check_alternatives(table, at, &present, sink);
+}
+
+/// Checks one key of a table alone, if it is there.
+pub(crate) fn check_key(table: &'static Table, name: &str, at: &Section<'_>, sink: &mut Sink<'_>) {
+    if let (Some(key), Some(value)) = (table.key(name), at.value(name)) {
+        check_value(key.name, &key.kind, value, false, sink);
+    }
 }
 
 fn check_alternatives(table: &'static Table, at: &Section<'_>, present: &dyn Fn(&str) -> bool, sink: &mut Sink<'_>) {
@@ -65,6 +72,10 @@ fn unknown_key(
     span: std::ops::Range<usize>,
     sink: &mut Sink<'_>,
 ) -> Option<&'static str> {
+    if sink.is_full() {
+        sink.error(span, "", None);
+        return None;
+    }
     let nearest = did_you_mean(name, table.keys.iter().map(|k| k.name)).or_else(|| synonym(table, name));
     let owners: Vec<&str> = siblings.iter().filter(|t| t.key(name).is_some()).map(|t| t.name).collect();
     if !owners.is_empty() {
@@ -124,7 +135,7 @@ fn check_value(
         (Kind::Number(range), found @ (DeValue::Float(_) | DeValue::Integer(_))) => match number(found) {
             Some(v) if range.contains(v) => {}
             Some(v) => {
-                let message = format!("`{name}` must be {}, found {}", bounds(*range), short(v));
+                let message = format!("`{name}` must be {}, found {}", bounds(*range, v), short(v));
                 sink.error(span, message, corrected(name, *range, v, in_list));
             }
             None => sink.error(span, format!("`{name}` is too large a number"), None),
@@ -149,7 +160,11 @@ fn check_value(
             if !names.contains(&&**text) {
                 let hint = did_you_mean(text, names.iter().copied()).map_or_else(
                     || format!("write {}", one_of(names)),
-                    |nearest| format!("did you mean `{name} = \"{nearest}\"`?"),
+                    |nearest| {
+                        let value = format!("\"{nearest}\"");
+                        let written = if in_list { value } else { format!("{name} = {value}") };
+                        format!("did you mean `{written}`?")
+                    },
                 );
                 sink.error(span, format!("`{text}` is no value of `{name}`"), Some(hint));
             }
@@ -169,11 +184,15 @@ fn check_value(
                 check_table(table, &[], &at, sink);
             }
         }
-        (Kind::Tagged { tag, variants }, DeValue::Array(array)) => {
+        (Kind::Tagged { tag, variants, max }, DeValue::Array(array)) => {
             if array.is_empty() {
                 sink.error(span, format!("there is no `{name}`"), Some(format!("add a [[{name}]]")));
             }
-            for value in array {
+            if let Some(first) = array.get(*max) {
+                let hint = Some(format!("leave {} of them out", array.len() - max));
+                sink.error(first.span(), format!("{} times [[{name}]]: at most {max} are read", array.len()), hint);
+            }
+            for value in array.iter().take(*max) {
                 check_tagged(name, tag, variants, value, sink);
             }
         }
@@ -217,8 +236,22 @@ fn check_tagged(
 fn check_text(name: &str, form: TextForm, text: &str, span: std::ops::Range<usize>, sink: &mut Sink<'_>) {
     match form {
         TextForm::Prose => {}
-        TextForm::Path if !text.is_empty() => {}
-        TextForm::Path => sink.error(span, format!("`{name}` is empty"), None),
+        TextForm::Path if text.is_empty() => sink.error(span, format!("`{name}` is empty"), None),
+        TextForm::Path => {
+            let longest = text.split(['/', '\\']).map(str::len).max().unwrap_or(0);
+            for (bytes, most) in [longest, text.len()].into_iter().zip(PATH_MAX) {
+                if bytes > most {
+                    let hint = Some("give the file a shorter name".to_owned());
+                    sink.error(span, format!("`{name}` names a file by {bytes} bytes: file systems take {most}"), hint);
+                    return;
+                }
+            }
+        }
+        TextForm::Name if text.len() > NAME_MAX => {
+            let message =
+                format!("`{name}` has {} characters: files and shaders are named after it", text.chars().count());
+            sink.error(span, message, Some(format!("at most {NAME_MAX} are allowed")));
+        }
         TextForm::Name => {
             let plain = |c: char| c.is_ascii_alphanumeric() || c == '-';
             if text.is_empty() || text.starts_with('-') || !text.chars().all(plain) {
@@ -292,8 +325,11 @@ fn describe(kind: &Kind) -> String {
     }
 }
 
-fn bounds(range: Range) -> String {
-    match (range.min.is_finite(), range.max.is_finite()) {
+/// Upper bounds from here on go without saying where a value does not break them.
+const FAR: f64 = 1e6;
+
+fn bounds(range: Range, found: f64) -> String {
+    match (range.min.is_finite(), range.max < FAR || found > range.max) {
         (true, true) if range.above => format!("above {} and at most {}", short(range.min), short(range.max)),
         (true, true) => format!("from {} to {}", short(range.min), short(range.max)),
         (true, false) if range.above => format!("above {}", short(range.min)),

@@ -5,7 +5,12 @@ use crate::suggest::short;
 
 /// A hint with the corrected value of `name`, which is outside `range`. In a list the value stands alone.
 pub(crate) fn corrected(name: &str, range: Range, value: f64, in_list: bool) -> Option<String> {
-    let write = |v: f64| if in_list { format!("`{}`", short(v)) } else { format!("`{name} = {}`", short(v)) };
+    let write = |v: f64| {
+        // Five digits may round out of the range.
+        let short = short(v);
+        let text = if short.parse().is_ok_and(|v| range.contains(v)) { short } else { format!("{v}") };
+        if in_list { format!("`{text}`") } else { format!("`{name} = {text}`") }
+    };
     if !value.is_finite() {
         return None;
     }
@@ -14,7 +19,7 @@ pub(crate) fn corrected(name: &str, range: Range, value: f64, in_list: bool) -> 
         return Some(format!("{why}write {}", write(-value)));
     }
     match name {
-        "n" | "ior" => return Some(format!("vacuum has {}", write(1.0))),
+        "n" | "ior" if value <= range.min => return Some(format!("vacuum has {}", write(1.0))),
         "alpha" | "alpha_x" | "alpha_y" if value > 1.0 && value <= 45.0 => {
             let slope = short(libm::tan(value.to_radians()));
             return Some(format!("alpha is a slope, not an angle: {} degrees is `{name} = {slope}`", short(value)));
@@ -29,7 +34,7 @@ pub(crate) fn corrected(name: &str, range: Range, value: f64, in_list: bool) -> 
             let linear = write(srgb_to_linear(value / 255.0));
             return Some(format!("linear reflectance is wanted: the 8-bit sRGB value {} is {linear}", short(value)));
         }
-        "wavelengths_nm" if value > 0.0 && value < 20.0 => {
+        "wavelengths_nm" if value < 20.0 && range.contains(value * 1000.0) => {
             return Some(format!("wavelengths are in nm: {} um is {}", short(value), write(value * 1000.0)));
         }
         _ => {}
@@ -64,6 +69,10 @@ mod tests {
         assert!(hint("alpha", UNIT, 12.0).contains("`alpha = 0.21256`"));
         // Oracle: sRGB 188 is the code value of linear 0.5029.
         assert!(hint("albedo", UNIT, 188.0).contains("`albedo = 0.50289`"));
+        assert!(hint("n", Range { max: 1e6, ..POSITIVE }, 1e300).contains("`n = 1000000`"));
+        // Rounded to five digits it would be above the range.
+        let below = std::f64::consts::FRAC_PI_2;
+        assert!(hint("sigma", Range { max: below, ..UNIT }, 100.0).contains(&format!("`sigma = {below}`")));
         assert_eq!(corrected("alpha", UNIT, f64::NAN, false), None);
         assert_eq!(corrected("albedo", UNIT, 1.2, true).as_deref(), Some("the nearest allowed is `1`"));
     }

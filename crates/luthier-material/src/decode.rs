@@ -17,8 +17,8 @@ use luthier_optics::stack::Stack;
 
 use crate::class::SurfaceClass;
 use crate::diagnostic::Sink;
-use crate::doubt::{self, LayerSource, Sources};
-use crate::material::{LayerExtras, Material};
+use crate::doubt::{self, Sources};
+use crate::material::Material;
 use crate::section::Section;
 
 /// Reads a file that a material refers to, by its path relative to the material file.
@@ -27,14 +27,8 @@ pub(crate) type Read<'r> = &'r dyn Fn(&str) -> std::io::Result<String>;
 /// k up to which a medium passes for transparent: 0.2 % over a path of one wavelength.
 const TRANSPARENT_K: f64 = 1e-4;
 
-/// Decodes a document, with its doubts, and says where its layers stand.
-pub(crate) fn decode(
-    label: &str,
-    text: &str,
-    document: &Section<'_>,
-    read: Read<'_>,
-    sink: &mut Sink<'_>,
-) -> (Material, Vec<LayerSource>) {
+/// Decodes a document, with its doubts.
+pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read<'_>, sink: &mut Sink<'_>) -> Material {
     let mut sources = Sources::default();
     let named = RefCell::new(BTreeSet::new());
     let read: Read<'_> = &|path| {
@@ -43,19 +37,20 @@ pub(crate) fn decode(
     };
     let exterior = exterior(document, read, sink, &mut sources);
     let (layers, extras) = layers::decode(document, read, sink, &mut sources);
+    if !sink.has_errors() {
+        sources.places.add("", document);
+    }
     let stack = Stack { exterior, layers };
     let bake = bake::decode(document, sink);
     let effects = effects::decode(document, &stack, sink);
     if !sink.has_errors() {
         doubt::report(&stack, &bake, &sources, sink);
     }
-    let mut files = named.into_inner();
-    files.extend(extras.iter().flat_map(LayerExtras::images).chain(effects.images()).map(str::to_owned));
-    let material = Material {
+    let mut material = Material {
         name: document.text("name").unwrap_or_default().to_owned(),
         source: label.to_owned(),
         text: text.to_owned(),
-        files: files.into_iter().collect(),
+        files: Vec::new(),
         description: document.text("description").unwrap_or_default().to_owned(),
         references: document.texts("references"),
         class: SurfaceClass::of(&stack),
@@ -64,8 +59,12 @@ pub(crate) fn decode(
         effects,
         bake,
         budget: bake::budget(document),
+        places: sources.places,
     };
-    (material, sources.layers)
+    let mut files = named.into_inner();
+    files.extend(material.images().iter().map(|image| image.path.to_owned()));
+    material.files = files.into_iter().collect();
+    material
 }
 
 /// The exterior medium. A trace of absorption in a data set is dropped; real absorption is an error.

@@ -38,7 +38,15 @@ pub struct Diagnostic {
     pub message: String,
     /// What to do about it.
     pub hint: Option<String>,
+    /// How many it stands for: 1, but for the last of a file that has too many to list.
+    pub count: usize,
 }
+
+/// Errors, and warnings, of a file that are listed. A file with more of them is no file of ours with mistakes in it.
+const LISTED: usize = 20;
+
+/// Characters of a message or a hint: what they quote may be as long as the file.
+const MESSAGE_CHARS: usize = 600;
 
 impl Diagnostic {
     /// The diagnostic with the lines that it is about, as plain text. `text` is what was parsed.
@@ -72,11 +80,13 @@ pub(crate) struct Sink<'t> {
     label: &'t str,
     text: &'t str,
     diagnostics: Vec<Diagnostic>,
+    /// Errors and warnings so far, listed or not.
+    counts: [usize; 2],
 }
 
 impl<'t> Sink<'t> {
     pub(crate) fn new(label: &'t str, text: &'t str) -> Self {
-        Self { label, text, diagnostics: Vec::new() }
+        Self { label, text, diagnostics: Vec::new(), counts: [0; 2] }
     }
 
     pub(crate) fn error(&mut self, span: Range<usize>, message: impl Into<String>, hint: Option<String>) {
@@ -88,7 +98,12 @@ impl<'t> Sink<'t> {
     }
 
     pub(crate) fn has_errors(&self) -> bool {
-        self.diagnostics.iter().any(|d| d.severity == Severity::Error)
+        self.counts[Severity::Error as usize] > 0
+    }
+
+    /// Whether another error is counted, but no longer listed: its words are not needed.
+    pub(crate) fn is_full(&self) -> bool {
+        self.counts[Severity::Error as usize] >= LISTED
     }
 
     /// Whether an error about a part of the span has been said already.
@@ -98,10 +113,20 @@ impl<'t> Sink<'t> {
             .any(|d| d.severity == Severity::Error && span.start <= d.span.start && d.span.end <= span.end)
     }
 
-    /// All diagnostics in the order of the text.
-    pub(crate) fn into_diagnostics(self) -> Vec<Diagnostic> {
-        let mut diagnostics = self.diagnostics;
+    /// The diagnostics in the order of the text, and how many more there are.
+    pub(crate) fn into_diagnostics(mut self) -> Vec<Diagnostic> {
+        let mut diagnostics = std::mem::take(&mut self.diagnostics);
         diagnostics.sort_by_key(|d| (d.span.start, d.span.end));
+        let end = self.text.len();
+        for severity in [Severity::Error, Severity::Warning] {
+            let more = self.counts[severity as usize].saturating_sub(LISTED);
+            if more > 0 {
+                let (message, hint) =
+                    (format!("and {more} more {}s", severity.name()), "mend those above first".to_owned());
+                let last = self.diagnostic(severity, end..end, message, Some(hint));
+                diagnostics.push(Diagnostic { count: more, ..last });
+            }
+        }
         diagnostics
     }
 
@@ -114,24 +139,39 @@ impl<'t> Sink<'t> {
         message: String,
         hint: Option<String>,
     ) -> Diagnostic {
-        let mut sink = Self::new(label, text);
-        sink.push(severity, span, message, hint);
-        sink.diagnostics.remove(0)
+        Self::new(label, text).diagnostic(severity, span, message, hint)
     }
 
     fn push(&mut self, severity: Severity, span: Range<usize>, message: String, hint: Option<String>) {
+        let count = &mut self.counts[severity as usize];
+        *count += 1;
+        if *count <= LISTED {
+            let diagnostic = self.diagnostic(severity, span, message, hint);
+            self.diagnostics.push(diagnostic);
+        }
+    }
+
+    fn diagnostic(&self, severity: Severity, span: Range<usize>, message: String, hint: Option<String>) -> Diagnostic {
         let span = clamp_to_text(self.text, span);
         let before = &self.text[..span.start];
         let line_start = before.rfind('\n').map_or(0, |i| i + 1);
-        self.diagnostics.push(Diagnostic {
+        Diagnostic {
             severity,
             label: self.label.to_owned(),
             line: before.matches('\n').count() + 1,
             column: before[line_start..].chars().count() + 1,
             span,
-            message,
-            hint,
-        });
+            message: clipped(message),
+            hint: hint.map(clipped),
+            count: 1,
+        }
+    }
+}
+
+fn clipped(text: String) -> String {
+    match text.char_indices().nth(MESSAGE_CHARS) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text,
     }
 }
 

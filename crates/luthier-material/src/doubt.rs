@@ -6,16 +6,16 @@ use std::ops::Range as Span;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Layer, Slab, Stack};
 
-use crate::bake_settings::{BakeSettings, ColorSetting};
+use crate::bake_settings::{BakeSettings, ColorSetting, ModelSetting, TableSetting};
 use crate::diagnostic::Sink;
-use crate::section::Section;
+use crate::places::Places;
 use crate::suggest::short;
 
 /// The line at which a single index is usually quoted.
 pub(crate) const SODIUM_D_NM: f64 = 589.3;
 
 /// What the colour integral needs.
-const VISIBLE_NM: (f64, f64) = (360.0, 830.0);
+pub(crate) const VISIBLE_NM: (f64, f64) = (360.0, 830.0);
 
 /// Smallest slope parameter that the real-time models tell from a smooth surface.
 const ALPHA_MIN: f64 = 1e-3;
@@ -30,63 +30,40 @@ const SAME_INDEX: f64 = 2e-4;
 /// Places in the text that doubts point at.
 #[derive(Default)]
 pub(crate) struct Sources {
-    /// Sampled spectra from data sets and files: name, range in nm, place.
+    /// Sampled spectra that may be too short: name, range in nm, place.
     pub(crate) spectra: Vec<(String, (f64, f64), Span<usize>)>,
-    /// Parallel to the layers of the stack.
-    pub(crate) layers: Vec<LayerSource>,
+    /// Where values stand; only of a file without errors.
+    pub(crate) places: Places,
 }
 
-/// A part of a layer that a diagnostic can point at.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LayerPart {
-    /// Its slope parameters.
-    Surface,
-    /// Its index.
-    Index,
-    /// What its slab absorbs.
-    Slab,
-    /// The thickness of its first film.
-    Film,
+/// Where the values of one layer stand.
+struct At<'s> {
+    places: &'s Places,
+    layer: usize,
 }
 
-/// Places in one layer.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct LayerSource {
-    surface_key: &'static str,
-    surface: Span<usize>,
-    ior: Span<usize>,
-    thickness: Span<usize>,
-    absorption: Span<usize>,
-    films: Vec<Span<usize>>,
-}
-
-impl LayerSource {
-    pub(crate) fn of(at: &Section<'_>, films: Vec<Span<usize>>) -> Self {
-        let keys = ["roughness", "alpha", "slope_deg", "smooth", "alpha_x"];
-        let surface_key = keys.into_iter().find(|k| at.has(k)).unwrap_or("alpha");
-        Self {
-            surface_key,
-            surface: at.value_span(surface_key),
-            ior: at.value_span("ior"),
-            thickness: at.value_span("thickness_um"),
-            absorption: at.value_span("absorption_per_um"),
-            films,
-        }
+impl At<'_> {
+    fn has(&self, key: &str) -> bool {
+        self.places.has(&format!("layer.{}.{key}", self.layer))
     }
 
-    /// Where a part of the layer is described.
-    pub(crate) fn span(&self, part: LayerPart) -> Span<usize> {
-        match part {
-            LayerPart::Surface => self.surface.clone(),
-            LayerPart::Index => self.ior.clone(),
-            LayerPart::Slab => self.absorption.clone(),
-            LayerPart::Film => self.films.first().unwrap_or(&self.ior).clone(),
-        }
+    fn span(&self, key: &str) -> Span<usize> {
+        self.places.span(&format!("layer.{}.{key}", self.layer))
+    }
+
+    /// The key that gives the layer's surface.
+    fn surface_key(&self) -> &'static str {
+        let keys = ["roughness", "alpha", "slope_deg", "smooth", "alpha_x"];
+        keys.into_iter().find(|key| self.has(key)).unwrap_or("alpha")
+    }
+
+    fn surface(&self) -> Span<usize> {
+        self.span(self.surface_key())
     }
 
     /// An isotropic slope parameter in the terms of this layer's surface.
     fn in_its_terms(&self, alpha: f64) -> String {
-        match self.surface_key {
+        match self.surface_key() {
             "roughness" => format!("`roughness = {}`", short(alpha.sqrt())),
             "slope_deg" => format!("`slope_deg = {}`", short(libm::atan(alpha).to_degrees())),
             _ => format!("`alpha = {}`", short(alpha)),
@@ -97,11 +74,14 @@ impl LayerSource {
 /// Reports every doubt about a valid stack.
 pub(crate) fn report(stack: &Stack, bake: &BakeSettings, sources: &Sources, sink: &mut Sink<'_>) {
     clamped_spectra(bake, sources, sink);
+    empty_tables(stack, bake, sources, sink);
     let mut above = &stack.exterior;
     let mut roughest: f64 = 0.0;
-    for (i, (layer, at)) in stack.layers.iter().zip(&sources.layers).enumerate() {
+    for (i, layer) in stack.layers.iter().enumerate() {
+        let at = &At { places: &sources.places, layer: i };
         let is_last = i + 1 == stack.layers.len();
-        surface(layer, roughest, at, sink);
+        surface(layer, at, sink);
+        smoother_than_above(layer, roughest, bake.model, at, sink);
         films(layer, at, sink);
         match &layer.base {
             Base::Dielectric { ior, slab } => {
@@ -112,7 +92,7 @@ pub(crate) fn report(stack: &Stack, bake: &BakeSettings, sources: &Sources, sink
             }
             Base::Conductor { ior } if ior.samples().iter().all(|s| s.k == 0.0) => {
                 let hint = "metals have k above 1; was a dielectric meant?".to_owned();
-                sink.warn(at.ior.clone(), "this conductor has k = 0 at every wavelength", Some(hint));
+                sink.warn(at.span("ior"), "this conductor has k = 0 at every wavelength", Some(hint));
             }
             _ => {}
         }
@@ -138,7 +118,36 @@ fn clamped_spectra(bake: &BakeSettings, sources: &Sources, sink: &mut Sink<'_>) 
     }
 }
 
-fn surface(layer: &Layer, roughest: f64, at: &LayerSource, sink: &mut Sink<'_>) {
+/// Kinds of tables that nothing in the stack could fill.
+fn empty_tables(stack: &Stack, bake: &BakeSettings, sources: &Sources, sink: &mut Sink<'_>) {
+    if !sources.places.has("bake.tables") {
+        return;
+    }
+    let at = sources.places.span("bake.tables");
+    let has = |is: fn(&Layer) -> bool| stack.layers.iter().any(is);
+    for kind in &bake.tables {
+        let (is_some, reason) = match kind {
+            TableSetting::Fresnel | TableSetting::Distribution | TableSetting::Fgd => {
+                (has(|layer| !matches!(layer.base, Base::Diffuse(_))), "no layer is an interface")
+            }
+            TableSetting::Escape => {
+                (has(|layer| matches!(layer.base, Base::Dielectric { .. })), "no layer is transparent")
+            }
+            TableSetting::Phase => (has(|layer| !layer.films.is_empty()), "no layer has a film"),
+            TableSetting::Thickness | TableSetting::Film => (
+                has(|layer| layer.films.iter().any(|film| film.thickness.max_nm > film.thickness.min_nm)),
+                "no film varies in thickness",
+            ),
+        };
+        if !is_some {
+            let name = kind.name();
+            let hint = format!("leave `\"{name}\"` out");
+            sink.warn(at.clone(), format!("`{name}` tables would be empty: {reason}"), Some(hint));
+        }
+    }
+}
+
+fn surface(layer: &Layer, at: &At<'_>, sink: &mut Sink<'_>) {
     if matches!(layer.base, Base::Diffuse(_)) {
         return;
     }
@@ -146,60 +155,77 @@ fn surface(layer: &Layer, roughest: f64, at: &LayerSource, sink: &mut Sink<'_>) 
     if alpha > 0.0 && alpha < ALPHA_MIN {
         let message = format!("alpha = {} is below {ALPHA_MIN}, which the real-time models use instead", short(alpha));
         let hint = format!("write `smooth = true`, or {}", at.in_its_terms(ALPHA_MIN));
-        sink.warn(at.surface.clone(), message, Some(hint));
-    }
-    if alpha < roughest {
-        let message = format!(
-            "this layer (alpha {}) is smoother than one above it (alpha {}): the real-time model raises it",
-            short(alpha),
-            short(roughest)
-        );
-        let hint = format!("what it will use is {}", at.in_its_terms(roughest));
-        sink.warn(at.surface.clone(), message, Some(hint));
+        sink.warn(at.surface(), message, Some(hint));
     }
 }
 
-fn films(layer: &Layer, at: &LayerSource, sink: &mut Sink<'_>) {
-    for (film, span) in layer.films.iter().zip(&at.films) {
+/// Warns where a rough layer blurs what lies below, and the model blurs it too much or not at all.
+fn smoother_than_above(layer: &Layer, roughest: f64, model: Option<ModelSetting>, at: &At<'_>, sink: &mut Sink<'_>) {
+    let alpha = layer.surface.alpha_isotropic();
+    if matches!(layer.base, Base::Diffuse(_)) || alpha >= roughest {
+        return;
+    }
+    let (effect, hint) = match model {
+        None | Some(ModelSetting::Elek) => {
+            ("the model `elek` raises it", format!("the model will use {}", at.in_its_terms(roughest)))
+        }
+        Some(ModelSetting::WeidlichWilkie) => (
+            "the model `weidlich-wilkie` shows it as sharp as if it were bare",
+            "`belcour` follows the light through the rougher layer: write `[bake] model = \"belcour\"`".to_owned(),
+        ),
+        _ => return,
+    };
+    let (alpha, above) = (short(alpha), short(roughest));
+    let message = format!("this layer (alpha {alpha}) is smoother than one above it (alpha {above}): {effect}");
+    sink.warn(at.surface(), message, Some(hint));
+}
+
+fn films(layer: &Layer, at: &At<'_>, sink: &mut Sink<'_>) {
+    for (i, film) in layer.films.iter().enumerate() {
         if film.thickness.max_nm > FILM_MAX_NM {
             let hint = "was a dielectric layer with `thickness_um` meant?".to_owned();
             let message = format!("a film of {} nm is too thick for coherent colours", short(film.thickness.max_nm));
-            sink.warn(span.clone(), message, Some(hint));
+            sink.warn(at.span(&format!("film.{i}.thickness_nm")), message, Some(hint));
         }
     }
 }
 
-fn dielectric(above: &Ior, layer: &Layer, ior: &Ior, at: &LayerSource, sink: &mut Sink<'_>) {
+fn dielectric(above: &Ior, layer: &Layer, ior: &Ior, at: &At<'_>, sink: &mut Sink<'_>) {
     let same = |nm: f64| (ior.at(nm) - above.at(nm)).norm_sqr() < SAME_INDEX * SAME_INDEX;
     if layer.films.is_empty() && [450.0, 550.0, 650.0].into_iter().all(same) {
         let hint = "the index is relative to nothing: give it as tables do, against vacuum".to_owned();
         sink.warn(
-            at.ior.clone(),
+            at.span("ior"),
             "this interface has the index of the medium above it: it reflects nothing",
             Some(hint),
         );
     }
 }
 
-fn slab(ior: &Ior, slab: &Slab, is_last: bool, bake: &BakeSettings, at: &LayerSource, sink: &mut Sink<'_>) {
+fn slab(ior: &Ior, slab: &Slab, is_last: bool, bake: &BakeSettings, at: &At<'_>, sink: &mut Sink<'_>) {
     let absorbs = slab.absorption_per_um.iter().any(|&a| a > 0.0);
+    if at.has("maps.thickness") && (is_last || slab.optical_depth() == [0.0; 3]) {
+        let hint = "leave it out, or give `absorption_per_um`, `thickness_um` and a layer below".to_owned();
+        let message = "the thickness of a slab that absorbs nothing is of no consequence, nor is this map of it";
+        sink.warn(at.span("maps.thickness"), message, Some(hint));
+    }
     if is_last {
         if slab.thickness_um > 0.0 {
             let hint = "add the layer below it, or leave `thickness_um` out".to_owned();
             let message = "the last dielectric has no bottom: its thickness is of no consequence";
-            sink.warn(at.thickness.clone(), message, Some(hint));
+            sink.warn(at.span("thickness_um"), message, Some(hint));
         }
         return;
     }
     if absorbs && slab.thickness_um == 0.0 {
         let hint = "add `thickness_um = ...`".to_owned();
-        sink.warn(at.absorption.clone(), "a slab without thickness absorbs nothing", Some(hint));
+        sink.warn(at.span("absorption_per_um"), "a slab without thickness absorbs nothing", Some(hint));
     }
     // k shapes the reflection only; what the slab absorbs is said by absorption_per_um.
     let per_um = bake.wavelengths_nm().map(|nm| 4e3 * PI * ior.at(nm).im / nm);
     if !absorbs && slab.thickness_um > 0.0 && per_um.iter().any(|a| a * slab.thickness_um > 0.01) {
         let [r, g, b] = per_um.map(short);
         let hint = format!("its k absorbs like `absorption_per_um = [{r}, {g}, {b}]`");
-        sink.warn(at.ior.clone(), "the index absorbs, but the slab has no `absorption_per_um`", Some(hint));
+        sink.warn(at.span("ior"), "the index absorbs, but the slab has no `absorption_per_um`", Some(hint));
     }
 }

@@ -13,17 +13,6 @@ pub struct Effects {
     pub glitter: Option<Glitter>,
 }
 
-impl Effects {
-    /// The images that they name.
-    pub(crate) fn images(&self) -> impl Iterator<Item = &str> {
-        let flakes = self.flakes.as_ref().and_then(|flakes| match &flakes.source {
-            FlakeSource::NormalMap { path } => Some(path.as_str()),
-            FlakeSource::Cells { .. } => None,
-        });
-        flakes.into_iter().chain(self.patina.as_ref().and_then(|patina| patina.map.image()))
-    }
-}
-
 /// Glitter: a share of the Voronoi cells of the surface, each tilted its own way (Weidlich and Wilkie 2009, section 5.2.1).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Glitter {

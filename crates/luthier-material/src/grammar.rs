@@ -8,6 +8,7 @@ mod layers;
 mod scene;
 
 pub(crate) use document::DOCUMENT;
+pub(crate) use layers::{INDEX, SAMPLED_NM};
 pub(crate) use scene::SCENE;
 
 /// Version of the grammar that this crate reads.
@@ -61,11 +62,24 @@ pub(crate) enum Kind {
     List { item: &'static Kind, min: usize, max: usize },
     /// A table.
     Table(&'static Table),
-    /// An array of tables that say in `tag` what they are.
-    Tagged { tag: &'static str, variants: &'static [&'static Table] },
+    /// An array of at most so many tables that say in `tag` what they are.
+    Tagged { tag: &'static str, variants: &'static [&'static Table], max: usize },
     /// One of several kinds; no two share a TOML type.
     OneOf(&'static [Kind]),
 }
+
+/// Layers and films of a material, and lights of a scene.
+pub(crate) const LAYERS_MAX: usize = 64;
+
+/// Materials of a scene.
+pub(crate) const SCENE_MATERIALS_MAX: usize = 4096;
+
+/// Characters of a name. Files of a bake are named after materials, with up to 30 characters more, and shaders have constants of such
+/// names; file systems take 255 bytes.
+pub(crate) const NAME_MAX: usize = 100;
+
+/// Bytes of each name in a path, and of the path: what file systems take.
+pub(crate) const PATH_MAX: [usize; 2] = [255, 4095];
 
 /// What a string must look like.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -94,8 +108,11 @@ impl Range {
 }
 
 pub(crate) const ANY: Range = Range { min: f64::NEG_INFINITY, max: f64::INFINITY, above: false };
-pub(crate) const POSITIVE: Range = Range { min: 0.0, max: f64::INFINITY, above: true };
-pub(crate) const NOT_NEGATIVE: Range = Range { min: 0.0, max: f64::INFINITY, above: false };
+/// More than any quantity here is, in any unit; its square is a number in single precision still.
+const VAST: f64 = 1e12;
+
+pub(crate) const POSITIVE: Range = Range { min: 0.0, max: VAST, above: true };
+pub(crate) const NOT_NEGATIVE: Range = Range { min: 0.0, max: VAST, above: false };
 pub(crate) const UNIT: Range = Range { min: 0.0, max: 1.0, above: false };
 pub(crate) const UNIT_ABOVE_ZERO: Range = Range { min: 0.0, max: 1.0, above: true };
 
@@ -149,7 +166,7 @@ mod tests {
     fn visit_kind(kind: &'static Kind, seen: &mut Vec<&'static str>) {
         match kind {
             Kind::Table(table) => visit(table, seen),
-            Kind::Tagged { tag, variants } => {
+            Kind::Tagged { tag, variants, .. } => {
                 for variant in *variants {
                     assert!(variant.key(tag).is_some(), "{}", variant.name);
                     visit(variant, seen);

@@ -21,6 +21,7 @@ mod grammar;
 mod material;
 mod named;
 mod parse;
+mod places;
 mod scene;
 mod schema;
 mod section;
@@ -29,13 +30,14 @@ mod suggest;
 pub use bake_settings::{
     AlphaMapping, BakeSettings, BudgetSettings, ColorSetting, DEFAULT_WAVELENGTHS_NM, DistributionMapping,
     DistributionSettings, Format, FresnelMapping, FresnelSettings, GridSettings, ModelSetting, RowSettings,
+    TableSetting,
 };
 pub use class::{SMOOTH_SLOPE_DEG, SurfaceClass};
 pub use diagnostic::{Diagnostic, Severity};
-pub use doubt::LayerPart;
 pub use effects::{Effects, FlakeSource, Flakes, Glitter, Patina};
-pub use material::{FilmVariation, LayerExtras, Maps, Material, VariationSource};
+pub use material::{FilmVariation, LayerExtras, Maps, Material, NamedImage, VariationSource};
 pub use parse::{Parsed, parse};
+pub use places::Places;
 pub use scene::{Light, ModelBudget, Scene, SceneMaterial, Target, View, is_scene, parse_scene};
 pub use schema::{scene_schema, schema};
 pub use suggest::did_you_mean;

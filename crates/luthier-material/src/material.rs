@@ -2,7 +2,9 @@ use luthier_optics::stack::Stack;
 
 use crate::bake_settings::{BakeSettings, BudgetSettings};
 use crate::class::SurfaceClass;
-use crate::effects::Effects;
+use crate::diagnostic::{Diagnostic, Severity, Sink};
+use crate::effects::{Effects, FlakeSource};
+use crate::places::Places;
 
 /// A validated material.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +23,7 @@ pub struct Material {
     pub references: Vec<String>,
     /// The physics: interfaces from the top down.
     pub stack: Stack,
-    /// What each layer has beyond physics; parallel to `stack.layers`.
+    /// What each layer has beyond physics; parallel to `stack.layers`. Only the first has any of it.
     pub layers: Vec<LayerExtras>,
     /// Effects on top of the layered model.
     pub effects: Effects,
@@ -31,6 +33,57 @@ pub struct Material {
     pub budget: BudgetSettings,
     /// Class of the surface.
     pub class: SurfaceClass,
+    /// Where its values stand in the text.
+    pub places: Places,
+}
+
+/// An image that a material names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NamedImage<'m> {
+    /// The key that names it, as in [`Places`].
+    pub key: &'static str,
+    /// Path relative to the material file.
+    pub path: &'m str,
+}
+
+impl Material {
+    /// A diagnostic about a value of the file, by someone who knows more than this crate; see [`Places`] for keys.
+    pub fn diagnostic(
+        &self,
+        severity: Severity,
+        key: &str,
+        message: impl Into<String>,
+        hint: Option<String>,
+    ) -> Diagnostic {
+        Sink::one(&self.source, &self.text, severity, self.places.span(key), message.into(), hint)
+    }
+
+    /// File and line of a value: `gilding.toml:8`.
+    pub fn place(&self, key: &str) -> String {
+        let Diagnostic { label, line, .. } = self.diagnostic(Severity::Error, key, "", None);
+        format!("{label}:{line}")
+    }
+
+    /// The images that it names: of the first layer, then of effects.
+    pub fn images(&self) -> Vec<NamedImage<'_>> {
+        let mut found: Vec<(&'static str, Option<&str>)> = Vec::new();
+        if let Some(LayerExtras { film_variation, maps }) = self.layers.first() {
+            let film = film_variation.as_ref().and_then(|variation| variation.source.image());
+            found.extend([
+                ("layer.0.maps.normal", maps.normal.as_deref()),
+                ("layer.0.maps.roughness", maps.roughness.as_deref()),
+                ("layer.0.maps.thickness", maps.thickness.as_deref()),
+                ("layer.0.film.0.thickness_nm.map.image", film),
+            ]);
+        }
+        let flakes = self.effects.flakes.as_ref().and_then(|flakes| match &flakes.source {
+            FlakeSource::NormalMap { path } => Some(path.as_str()),
+            FlakeSource::Cells { .. } => None,
+        });
+        let patina = self.effects.patina.as_ref().and_then(|patina| patina.map.image());
+        found.extend([("effects.flakes.normal_map", flakes), ("effects.patina.map.image", patina)]);
+        found.into_iter().filter_map(|(key, path)| Some(NamedImage { key, path: path? })).collect()
+    }
 }
 
 /// What a layer has beyond its physics.
@@ -51,15 +104,6 @@ pub struct Maps {
     pub roughness: Option<String>,
     /// Multiplies the slab's thickness.
     pub thickness: Option<String>,
-}
-
-impl LayerExtras {
-    /// The images that it names.
-    pub(crate) fn images(&self) -> impl Iterator<Item = &str> {
-        let Maps { normal, roughness, thickness } = &self.maps;
-        let film = self.film_variation.as_ref().and_then(|variation| variation.source.image());
-        [normal, roughness, thickness].into_iter().flatten().map(String::as_str).chain(film)
-    }
 }
 
 /// How the thickness of a film varies between its extremes.

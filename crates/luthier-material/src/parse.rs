@@ -1,7 +1,6 @@
-use crate::check::check_table;
+use crate::check::{check_key, check_table};
 use crate::decode::decode;
-use crate::diagnostic::{Diagnostic, Severity, Sink};
-use crate::doubt::{LayerPart, LayerSource};
+use crate::diagnostic::{Diagnostic, Sink};
 use crate::grammar::DOCUMENT;
 use crate::material::Material;
 use crate::section::{Section, parse_toml};
@@ -13,23 +12,6 @@ pub struct Parsed {
     pub material: Material,
     /// Warnings in the order of the text.
     pub warnings: Vec<Diagnostic>,
-    places: Vec<LayerSource>,
-}
-
-impl Parsed {
-    /// A diagnostic about a part of a layer (counted as in the stack) by someone who knows more of physics than this crate; about the
-    /// whole file if there is no such layer.
-    pub fn diagnostic(
-        &self,
-        severity: Severity,
-        layer: usize,
-        part: LayerPart,
-        message: impl Into<String>,
-        hint: Option<String>,
-    ) -> Diagnostic {
-        let span = self.places.get(layer).map_or(0..0, |place| place.span(part));
-        Sink::one(&self.material.source, &self.material.text, severity, span, message.into(), hint)
-    }
 }
 
 /// Reads a material file.
@@ -72,14 +54,14 @@ pub fn parse(
         sink.error(document.key_span("scene"), "this is a scene, not a material", hint);
         return Err(sink.into_diagnostics());
     }
-    check_table(&DOCUMENT, &[], &document, &mut sink);
-    let version = document.value_span("schema");
-    if document.has("schema") && sink.has_error_in(&version) {
+    check_key(&DOCUMENT, "schema", &document, &mut sink);
+    if sink.has_errors() {
         // A file of another version has other rules: only that is worth saying.
-        return Err(sink.into_diagnostics().into_iter().filter(|d| d.span == version).collect());
+        return Err(sink.into_diagnostics());
     }
-    let (material, places) = decode(label, text, &document, read, &mut sink);
+    check_table(&DOCUMENT, &[], &document, &mut sink);
+    let material = decode(label, text, &document, read, &mut sink);
     let failed = sink.has_errors();
     let diagnostics = sink.into_diagnostics();
-    if failed { Err(diagnostics) } else { Ok(Parsed { material, warnings: diagnostics, places }) }
+    if failed { Err(diagnostics) } else { Ok(Parsed { material, warnings: diagnostics }) }
 }

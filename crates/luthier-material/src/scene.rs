@@ -1,9 +1,11 @@
 //! Scene files: which materials are seen, in what light and from where, and what their models may err and cost.
 
+use std::ops::Range;
+
 use toml::de::DeTable;
 
 use crate::check::check_table;
-use crate::diagnostic::{Diagnostic, Sink};
+use crate::diagnostic::{Diagnostic, Severity, Sink};
 use crate::grammar::SCENE;
 use crate::section::{Numbers, Section, parse_toml};
 
@@ -37,6 +39,16 @@ pub struct SceneMaterial {
     pub file: String,
     /// Limits in place of the scene's.
     pub budget: ModelBudget,
+    /// Bytes of the text that name the file.
+    pub span: Range<usize>,
+}
+
+impl Scene {
+    /// An error about a material that the scene names.
+    pub fn diagnostic(&self, material: &SceneMaterial, message: impl Into<String>) -> Diagnostic {
+        let hint = Some("the path is relative to the scene file".to_owned());
+        Sink::one(&self.source, &self.text, Severity::Error, material.span.clone(), message.into(), hint)
+    }
 }
 
 /// A light.
@@ -150,6 +162,7 @@ fn decode(label: &str, text: &str, document: &Section<'_>, sink: &mut Sink<'_>) 
         .map(|at| SceneMaterial {
             file: at.text("file").unwrap_or_default().to_owned(),
             budget: at.section("budget").map(|at| self::budget(&at)).unwrap_or_default(),
+            span: at.value_span("file"),
         })
         .collect();
     let is_limited = |own: &ModelBudget| *own != ModelBudget::default();

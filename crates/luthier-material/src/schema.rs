@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
-use crate::grammar::{DOCUMENT, Kind, SCENE, Table, TextForm};
+use crate::grammar::{DOCUMENT, Kind, NAME_MAX, SCENE, Table, TextForm};
 
 /// The grammar of material files as JSON Schema (draft 2020-12), generated from the tables that files are checked against.
 ///
@@ -85,7 +85,9 @@ fn kind(of: &'static Kind, definitions: &mut Definitions) -> Value {
         Kind::Integer(min, max) => json!({ "type": "integer", "minimum": min, "maximum": max }),
         Kind::Text(TextForm::Prose) => json!({ "type": "string" }),
         Kind::Text(TextForm::Path) => json!({ "type": "string", "minLength": 1 }),
-        Kind::Text(TextForm::Name) => json!({ "type": "string", "pattern": "^[A-Za-z0-9][A-Za-z0-9-]*$" }),
+        Kind::Text(TextForm::Name) => {
+            json!({ "type": "string", "pattern": "^[A-Za-z0-9][A-Za-z0-9-]*$", "maxLength": NAME_MAX })
+        }
         Kind::Choice([one]) => json!({ "const": one }),
         Kind::Choice(names) => json!({ "enum": names }),
         Kind::List { item, min, max } => {
@@ -96,9 +98,9 @@ fn kind(of: &'static Kind, definitions: &mut Definitions) -> Value {
             schema
         }
         Kind::Table(table) => reference(table, definitions),
-        Kind::Tagged { variants, .. } => {
+        Kind::Tagged { variants, max, .. } => {
             let variants: Vec<Value> = variants.iter().map(|v| reference(v, definitions)).collect();
-            json!({ "type": "array", "minItems": 1, "items": { "oneOf": variants } })
+            json!({ "type": "array", "minItems": 1, "maxItems": max, "items": { "oneOf": variants } })
         }
         Kind::OneOf(kinds) => json!({ "oneOf": kinds.iter().map(|k| kind(k, definitions)).collect::<Vec<_>>() }),
     }

@@ -1,6 +1,12 @@
+/// Characters of the longest word that can be a misspelt one of ours.
+const WORD_MAX: usize = 64;
+
 /// The candidate that a misspelt word most likely stands for, if one is close enough: a few edits away, or the word
 /// continued (`thickness` for `thickness_um`).
 pub fn did_you_mean<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
+    if word.len() > WORD_MAX {
+        return None;
+    }
     let word = word.to_lowercase().replace('-', "_");
     let distance = |candidate: &str| {
         let candidate = candidate.to_lowercase().replace('-', "_");
@@ -17,15 +23,21 @@ pub fn did_you_mean<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str
     (nearest.0 <= allowed).then_some(nearest.1)
 }
 
-/// A number as a person would write it: at most five significant digits, no trailing zeros.
+/// A number as a person would write it: at most five significant digits, no trailing zeros. TOML reads it.
 pub(crate) fn short(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }
     let magnitude = libm::floor(libm::log10(value.abs()));
+    let trimmed = |text: &str| text.trim_end_matches('0').trim_end_matches('.').to_owned();
+    if !(-5.0..9.0).contains(&magnitude) {
+        let text = format!("{value:.4e}");
+        let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+        return format!("{}e{exponent}", trimmed(digits));
+    }
     let decimals = (4.0 - magnitude).clamp(0.0, 12.0) as usize;
     let text = format!("{value:.decimals$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    if text.contains('.') { trimmed(&text) } else { text }
 }
 
 /// Names in backquotes: "`a`, `b` or `c`".
@@ -66,6 +78,8 @@ mod tests {
             (0.0, "0"),
             (-2.4, "-2.4"),
             (1e-5, "0.00001"),
+            (1e300, "1e300"),
+            (-1.25e-12, "-1.25e-12"),
         ] {
             assert_eq!(short(value), text);
         }

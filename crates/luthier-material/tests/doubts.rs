@@ -51,6 +51,10 @@ fn a_base_smoother_than_its_coat() {
     assert!(warnings(&stack("alpha = 0.25", "roughness = 0.3")).contains("`roughness = 0.5`"));
     assert_eq!(warnings(&stack("alpha = 0.2", "alpha = 0.2")), "");
     assert_eq!(warnings(&(layer("dielectric", "ior = 1.5\nalpha = 0.5") + DIFFUSE)), "");
+    let by = |model: &str| warnings(&(stack("alpha = 0.3", "alpha = 0.1") + "[bake]\nmodel = \"" + model + "\"\n"));
+    assert!(by("elek").contains("`elek` raises it"));
+    assert!(by("weidlich-wilkie").contains("as sharp as if it were bare"));
+    assert_eq!(by("belcour"), "");
 }
 
 #[test]
@@ -100,4 +104,21 @@ fn an_exponent_on_a_linear_axis() {
     let bake = |mapping: &str| format!("{COAT}{DIFFUSE}[bake.distribution]\nmapping = \"{mapping}\"\nexponent = 8\n");
     assert!(warnings(&bake("linear")).contains("no exponent"));
     assert_eq!(warnings(&bake("power")), "");
+}
+
+/// A map of a thickness that nothing depends on.
+#[test]
+fn a_thickness_map_of_a_clear_slab() {
+    let mapped = |rest: &str| format!("{COAT}{rest}maps = {{ thickness = \"t.png\" }}\n{DIFFUSE}");
+    assert!(warnings(&mapped("thickness_um = 1\n")).contains("nor is this map of it"));
+    assert_eq!(warnings(&mapped("thickness_um = 1\nabsorption_per_um = 1\n")), "");
+}
+
+/// Three samples at red, green and blue stand for the whole range; samples beside its middle do not.
+#[test]
+fn samples_beside_the_middle_of_the_visible() {
+    let metal =
+        |nm: &str| layer("conductor", &format!("ior = {{ n = 1, k = [3, 4], wavelengths_nm = {nm} }}\nalpha = 0.2"));
+    assert_eq!(warnings(&metal("[690, 450]")), "");
+    assert!(warnings(&metal("[900, 700]")).contains("`ior` covers 700-900 nm only"));
 }

@@ -168,3 +168,31 @@ fn a_file_of_another_version_says_only_that() {
     assert_eq!(diagnostics.len(), 1);
     assert_eq!(diagnostics[0].message, "`schema` must be 1, found 2");
 }
+
+/// A place of a surface has one normal and one factor: shaders read those of the first layer. Each other is refused where it stands.
+#[test]
+fn maps_belong_to_the_first_layer() {
+    let coat = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\nthickness_um = 1\nabsorption_per_um = 1\n";
+    let metal = "[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.2\n";
+    let maps = |names: &[&str]| {
+        let named: Vec<String> = names.iter().map(|name| format!("{name} = \"{name}.png\"")).collect();
+        format!("maps = {{ {} }}\n", named.join(", "))
+    };
+    material(&format!("{coat}{}{metal}", maps(&["normal", "roughness", "thickness"])));
+    let body = format!("{coat}{coat}{}{metal}{}", maps(&["thickness"]), maps(&["normal", "roughness"]));
+    let found = parse("x.toml", &format!("schema = 1\nname = \"x\"\n{body}"), &read).unwrap_err();
+    let places: Vec<(usize, String)> = found.iter().map(|d| (d.line, d.message.clone())).collect();
+    let expected = [(15, "thickness"), (20, "normal"), (20, "roughness")].map(|(line, name)| {
+        (line, format!("a {name} map belongs to the first layer: shaders read none of a layer below it"))
+    });
+    assert_eq!(places, expected);
+    assert!(found[1].hint.as_deref().is_some_and(|hint| hint.contains("move it to the first layer")), "{found:?}");
+    let film = "[[layer]]\ntype = \"thin-film\"\nior = 1.4\n\
+                thickness_nm = { min = 10, max = 30, extent_um = 5, map = { noise = {} } }\n";
+    material(&format!("{film}{coat}{metal}"));
+    let found = errors(&format!("{coat}{film}{metal}"));
+    assert!(
+        found.contains("only the film of the first layer may vary") && found.contains("`thickness_nm = 20`"),
+        "{found}"
+    );
+}

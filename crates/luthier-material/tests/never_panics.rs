@@ -4,7 +4,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use luthier_material::parse;
+use luthier_material::{Diagnostic, parse};
 use luthier_optics::stack::Base;
 use proptest::prelude::*;
 
@@ -26,13 +26,26 @@ fn check(text: &str) {
         }
         Err(diagnostics) => {
             assert!(!diagnostics.is_empty());
+            // Twenty errors and twenty warnings, and how many more there are of each.
+            assert!(diagnostics.len() <= 42);
             for d in diagnostics {
+                assert!(
+                    d.message.chars().count() < 700 && !offers_nonsense(d.hint.as_deref().unwrap_or_default()),
+                    "{d:?}"
+                );
                 assert!(text.get(d.span.clone()).is_some());
                 assert!(d.line >= 1 && d.column >= 1 && d.line <= text.matches('\n').count() + 1);
                 assert!(!d.render(text).is_empty() && !d.render_coloured(text).is_empty());
             }
         }
     }
+}
+
+/// Whether a hint has a value in backquotes that is no number of TOML that a key could have.
+fn offers_nonsense(hint: &str) -> bool {
+    let quoted = hint.split('`').skip(1).step_by(2);
+    let mut values = quoted.filter_map(|code| code.rsplit_once('=')).map(|(_, value)| value.trim());
+    values.any(|value| value.parse::<f64>().is_ok_and(|number| !number.is_finite()))
 }
 
 /// The shipped materials: text in which a few changes get far into the decoder.
@@ -77,6 +90,16 @@ fn edit() -> impl Strategy<Value = (prop::sample::Index, usize, String)> {
             "#",
             "1979-05-27",
             "9223372036854775808",
+            "1e19",
+            "inf",
+            "1e300",
+            "-1e-300",
+            "[1e300, nan, inf]",
+            "{ n = [1, 2], wavelengths_nm = [1000, 2000] }",
+            "extent = nan",
+            "thickness_nm = { min = inf, max = 1, extent_um = 1, map = { noise = { frequency = 1e19 } } }",
+            "maps = { normal = \"n.png\" }",
+            "a.b.c = 1",
             "é",
             "\t",
             "\r\n",
@@ -132,5 +155,111 @@ proptest! {
             }
         }
         check(&lines.join("\n"));
+    }
+}
+
+const COAT: &str = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nsmooth = true\n";
+const BASE: &str = "[[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\n";
+
+fn document(body: &str) -> String {
+    format!("schema = 1\nname = \"x\"\n{body}")
+}
+
+fn errors(text: &str) -> Vec<Diagnostic> {
+    check(text);
+    parse("p.toml", text, &|_| Err(io::Error::other("none"))).unwrap_err()
+}
+
+/// A file full of mistakes: the first are told with all that belongs to them, the others are counted.
+#[test]
+fn many_mistakes_are_counted_not_told() {
+    let unknown: String = (0..100_000).map(|i| format!("kye_{i} = 0\n")).collect();
+    let layers = |count: usize| COAT.repeat(count - 1) + BASE;
+    let wrong = format!("references = [{}]\n", "1, ".repeat(50_000));
+    for (text, expected) in [
+        (document(&(unknown + &layers(2))), 100_000),
+        (document(&(wrong + &layers(2))), 50_000),
+        (document(&layers(2).replace("smooth = true\n", &"smooth = true\n".repeat(30))), 1),
+    ] {
+        let found = errors(&text);
+        let total: usize = found.iter().map(|d| d.count).sum();
+        assert!(total >= expected, "{total} of {expected}");
+        assert!(found.len() <= 42);
+        if let (true, Some(last)) = (total > 20, found.last()) {
+            assert_eq!((last.count, last.message.clone()), (total - 20, format!("and {} more errors", total - 20)));
+        }
+    }
+}
+
+#[test]
+fn layers_are_counted() {
+    let layers = |count: usize| document(&(COAT.repeat(count - 1) + BASE));
+    check(&layers(64));
+    assert!(parse("p.toml", &layers(64), &|_| Err(io::Error::other("none"))).is_ok());
+    for count in [65, 20_000] {
+        let found = errors(&layers(count));
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert_eq!(found[0].message, format!("{count} times [[layer]]: at most 64 are read"));
+        assert_eq!(found[0].line, 3 + 64 * 4);
+    }
+}
+
+/// One value far outside what there is, and what is said of it.
+#[test]
+fn values_beyond_all_use_are_refused() {
+    let film = |nm: &str| format!("[[layer]]\ntype = \"thin-film\"\nior = 1.4\nthickness_nm = {nm}\n{COAT}{BASE}");
+    let patina = |rest: &str| format!("{COAT}{BASE}[effects.patina]\nmap = {{ noise = {{}} }}\n{rest}\n");
+    let ior = |ior: &str| format!("{}{BASE}", COAT.replace("1.5", ior));
+    for (body, message, hint) in [
+        (
+            film("{ min = 1, max = 9, extent_um = 1, map = { noise = { frequency = 1e19 } } }"),
+            "at most 65536",
+            "`frequency = 65536`",
+        ),
+        (film("{ min = inf, max = 9, extent_um = 1, map = { noise = {} } }"), "`min` must be", ""),
+        (ior("1e300"), "at most 1000000, found 1e300", "`ior = 1000000`"),
+        (ior("{ n = 1.5, k = 1e300 }"), "found 1e300", "`k = 1000000`"),
+        (ior("{ n = [1, 2], wavelengths_nm = [1000, 2000] }"), "no sample of this index is visible", "360 to 830"),
+        (ior("{ n = [1, 2], wavelengths_nm = [200, 300] }"), "no sample of this index is visible", "360 to 830"),
+        (patina("extent = nan\ntransition = 0.5"), "`extent` must be a finite number", ""),
+        (patina("extent = 0.5\ntransition = nan"), "`transition` must be", ""),
+        (patina("extent = 1e300\ntransition = 0.5"), "`extent` runs from", "`extent = 1.5`"),
+        (format!("{COAT}thickness_um = 1e300\n{BASE}"), "from 0 to 1e12", "`thickness_um = 1e12`"),
+    ] {
+        let found = errors(&document(&body));
+        assert_eq!(found.len(), 1, "{body}\n{found:?}");
+        assert!(found[0].message.contains(message), "{found:?}");
+        assert!(found[0].hint.clone().unwrap_or_default().contains(hint), "{found:?}");
+    }
+}
+
+/// Files and shaders are named after materials: file systems take names of 255 bytes.
+#[test]
+fn names_and_paths_have_a_length() {
+    let named = |name: &str| format!("schema = 1\nname = \"{name}\"\n{COAT}{BASE}");
+    check(&named(&"n".repeat(100)));
+    assert!(parse("p.toml", &named(&"n".repeat(100)), &|_| Err(io::Error::other("none"))).is_ok());
+    let found = errors(&named(&"n".repeat(101)));
+    assert!(found.len() == 1 && found[0].message.contains("101 characters"), "{found:?}");
+    assert!(found[0].hint.as_deref().is_some_and(|hint| hint.contains("100")), "{found:?}");
+    let mapped = |path: &str| document(&format!("{COAT}maps = {{ normal = \"{path}\" }}\n{BASE}"));
+    let found = errors(&mapped(&format!("maps/{}.png", "n".repeat(252))));
+    assert!(found.len() == 1 && found[0].message.contains("256 bytes"), "{found:?}");
+    assert!(
+        parse("p.toml", &mapped(&format!("maps/{}.png", "n".repeat(251))), &|_| Err(io::Error::other("none"))).is_ok()
+    );
+    errors(&mapped(&"m/".repeat(5000)));
+}
+
+/// Texts that would take a parser's stack.
+#[test]
+fn deep_texts_end() {
+    for text in [
+        "[".repeat(100_000),
+        "a = ".to_owned() + &"[".repeat(100_000),
+        format!("a{} = 1", ".a".repeat(100_000)),
+        "{".repeat(100_000),
+    ] {
+        errors(&text);
     }
 }

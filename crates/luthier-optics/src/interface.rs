@@ -48,6 +48,16 @@ impl Interface {
         }
     }
 
+    /// Whether some wavelength of a colour mode is totally reflected from an angle on that is not that of all, or where media absorb: the
+    /// reflectance then has kinks over the cosine of incidence and over that of the refracted direction.
+    pub fn has_kink(&self, color: &Color) -> bool {
+        let sampled = self.sampled(color);
+        let clear = || sampled.nodes.iter().map(|(_, at)| at).filter(|at| at.below.im <= NO_KINK);
+        let etas = || clear().map(|at| at.below.re / at.above.re);
+        let (least, most) = etas().fold((f64::INFINITY, 0.0), |(a, b), eta| (f64::min(a, eta), f64::max(b, eta)));
+        least < 1.0 && (least < most || sampled.critical_cot_sq() == 0.0)
+    }
+
     /// Whether the reflectance is the same at every wavelength.
     pub fn is_achromatic(&self) -> bool {
         self.films.is_empty() && self.above.is_constant() && self.below.is_constant()
@@ -92,7 +102,23 @@ pub struct Sampled {
     pub nodes: Vec<(Rgb, Monochrome)>,
 }
 
+/// Media that absorb as much reflect smoothly at all angles.
+const NO_KINK: f64 = 1e-2;
+
+/// Absorption that does not count: what data sets of clear glass and water have in the visible.
+const TRACE_OF_ABSORPTION: f64 = 1e-6;
+
 impl Sampled {
+    /// Squared cotangent of the critical angle, `1 / eta^2 - 1`, at the wavelength of the largest index below over that above: all light
+    /// flatter than that is totally reflected. 0 where some wavelength never is, and where films or the medium below absorb.
+    pub fn critical_cot_sq(&self) -> f64 {
+        let is_clear = |index: Complex64| index.im <= TRACE_OF_ABSORPTION;
+        let is_total = |at: &Monochrome| is_clear(at.below) && at.films.iter().all(|film| is_clear(film.ior));
+        let interfaces = || self.nodes.iter().map(|(_, at)| at);
+        let eta = interfaces().map(|at| at.below.re / at.above.re).fold(0.0, f64::max);
+        if eta > 0.0 && eta < 1.0 && interfaces().all(is_total) { 1.0 / (eta * eta) - 1.0 } else { 0.0 }
+    }
+
     /// Unpolarised reflectance per channel.
     pub fn rgb(&self, cos_theta_i: f64) -> Rgb {
         self.sum(|interface| interface.reflectance(cos_theta_i))

@@ -54,7 +54,7 @@ pub fn render_ball(
                 for (channel, (stack, value)) in stacks.iter().zip(texel).enumerate() {
                     let seen = place.seen(model, stack, lights, channel);
                     *value = seen.mean as f32;
-                    variance += seen.std_err * seen.std_err;
+                    variance += seen.variance();
                 }
             }
             variance
@@ -95,18 +95,14 @@ impl Place {
 
     fn seen(&self, model: &dyn Model, stack: &Monochrome, lights: &[DistantLight], channel: usize) -> Estimate {
         let wo = self.local(self.to_eye);
-        let (mut mean, mut variance) = (0.0, 0.0);
-        for light in lights {
+        Estimate::sum(lights.iter().map(|light| {
             let wi = self.local(DVec3::from_array(light.direction).normalize());
             let one = match model.estimator() {
                 Some(estimator) => estimator.eval_with_error(stack, wi, wo),
                 None => Estimate::exact(model.eval(stack, wi, wo)),
             };
-            let irradiance = light.irradiance[channel];
-            mean += irradiance * one.mean;
-            variance += irradiance * irradiance * one.std_err * one.std_err;
-        }
-        Estimate { mean, std_err: variance.sqrt() }
+            (light.irradiance[channel], one)
+        }))
     }
 }
 

@@ -25,7 +25,7 @@ use crate::{
 const BAKER_MARGIN: f64 = 1.05;
 
 /// Standard errors by which an estimated table error has to exceed the baker's besides.
-const UNCERTAINTY_MARGIN: f64 = 4.0;
+pub(crate) const UNCERTAINTY_MARGIN: f64 = 4.0;
 
 /// How to judge.
 #[derive(Clone)]
@@ -387,6 +387,10 @@ fn table_findings(tables: &[TableReport], findings: &mut Vec<String>) {
             let name = format!("{} tile {}", table.kind.name(), tile.name);
             if tile.not_finite > 0 {
                 findings.push(format!("{name}: {} reads are not finite.", tile.not_finite));
+            }
+            if let Some((found, aim)) = tile.miss() {
+                let (found, aim) = (format::error(found), format::error(aim));
+                findings.push(format!("{name}: off by up to {found} as sampled, where the bake aimed at {aim}."));
             }
             if tile.users.is_empty() {
                 findings.push(format!("{name}: no layer reads it."));

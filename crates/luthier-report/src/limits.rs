@@ -51,6 +51,8 @@ const HERE: &str = "measured here";
 const BAKER: &str = "stated by the baker";
 const BOTH: &str = "measured here; of tables that are not, stated by the baker";
 
+const LARGER: &str = "measured here or stated by the baker, whichever is larger";
+
 /// Holds a report against the budgets of its materials and those asked for. What was not measured holds no limit.
 pub fn limits(report: &Report, files: &[FileBudget], asked: &Asked) -> Vec<Limit> {
     let mut out = Vec::new();
@@ -77,6 +79,13 @@ pub fn limits(report: &Report, files: &[FileBudget], asked: &Asked) -> Vec<Limit
         let cost = report.searches.iter().filter_map(|s| s.front.get(s.chosen)).map(|c| c.cost).sum();
         let cost = Some(cost).filter(|_| !report.searches.is_empty());
         add("estimated cost of one read of every searched table", budget.max_cost, cost, BAKER);
+    }
+    // Random directions may pass by what a tile misses.
+    let missed = report.tables.iter().flat_map(|table| table.tiles.iter().map(|tile| (table.kind.name(), tile)));
+    let missed = missed.filter_map(|(kind, tile)| Some((tile.miss()?.0, kind, &tile.name)));
+    if let Some((found, kind, tile)) = missed.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        let quantity = format!("tables: absolute error of {kind} tile {tile}, which misses what the bake aimed at");
+        out.extend(report.budget.map(|limit| made("command line", &quantity, limit, Some(found), LARGER)));
     }
     let mut add = |quantity: &str, limit: Option<f64>, found: Option<f64>| {
         out.extend(limit.map(|limit| made("command line", quantity, limit, found, HERE)));

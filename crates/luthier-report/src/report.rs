@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::evidence::{AgainstReference, Costs, Exhibits, PictureErrors, ReferencePaths, StabilitySummary};
 use crate::exceptions::Exception;
+use crate::judge::UNCERTAINTY_MARGIN;
 use crate::limits::Limit;
 use crate::seen::Seen;
 use crate::{AngleProfile, DirectionSet, Exceedance, ReportError, Statistics, Weights, json, page, summary};
@@ -91,10 +92,24 @@ pub struct TileReport {
     pub judge: Option<ErrorStats>,
     /// Standard error of the reference at the worst point of `judge`, where the reference is an estimate itself.
     pub uncertainty: Option<f64>,
+    /// The error that the baker aimed at as sampled, where nobody asked for another.
+    #[serde(default)]
+    pub aim: Option<f64>,
     /// Reads that were not finite; they are not part of `judge`.
     pub not_finite: u64,
     /// What is drawn of it.
     pub curves: Curves,
+}
+
+impl TileReport {
+    /// How far the tile is off as sampled, and what the bake aimed at, where it does not hold that: by what was measured here or what the
+    /// baker states, whichever is more.
+    pub fn miss(&self) -> Option<(f64, f64)> {
+        let stated = (self.baker.worst.expected - self.baker.worst.sampled).abs();
+        let doubt = UNCERTAINTY_MARGIN * self.uncertainty.unwrap_or(0.0);
+        let found = self.judge.as_ref().map_or(0.0, |judge| judge.max_abs_err - doubt).max(stated);
+        self.aim.filter(|aim| found > *aim).map(|aim| (found, aim))
+    }
 }
 
 /// Curves of a tile, in four significant digits: for drawing.

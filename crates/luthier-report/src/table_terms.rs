@@ -229,7 +229,10 @@ fn read_by(entry: &MaterialEntry) -> Vec<(usize, TableKind)> {
             continue;
         }
         out.push((layer, if record.film_tile.is_some() { TableKind::Film } else { TableKind::Fresnel }));
-        out.push((layer, TableKind::Distribution));
+        // A layer without a tile has D computed.
+        if record.distribution_tile.is_some() {
+            out.push((layer, TableKind::Distribution));
+        }
         if record.kind == LayerKind::Conductor {
             break;
         }
@@ -239,6 +242,7 @@ fn read_by(entry: &MaterialEntry) -> Vec<(usize, TableKind)> {
 
 impl Terms for TableTerms<'_> {
     fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
+        let cos_theta_d = self.records[layer].row_cosine(cos_theta_d);
         let [r, g, b, _] = if let (Some(table), Some(tile)) = (self.film, self.tile(TableKind::Film, layer)) {
             let record = &self.records[layer];
             table.read(tile, [cos_theta_d, record.film_thickness_nm / record.film_thickness_max_nm], self.weights)
@@ -250,14 +254,13 @@ impl Terms for TableTerms<'_> {
         [r, g, b]
     }
 
-    /// Read where there is a table; the closed form where the bake has none.
+    /// Read where the layer has a tile; else the closed form.
     fn distribution(&self, layer: usize, form: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
         match (self.distribution, self.tile(TableKind::Distribution, layer)) {
             (Some((table, angle)), Some(tile)) => {
                 table.read(tile, [angle.value(cos_theta_h, sin_theta_h_sq), alpha], self.weights)[0]
             }
-            (None, _) => scaled_distribution(form, alpha, cos_theta_h, sin_theta_h_sq),
-            (Some(_), None) => f64::NAN,
+            _ => scaled_distribution(form, alpha, cos_theta_h, sin_theta_h_sq),
         }
     }
 

@@ -3,7 +3,7 @@ use std::sync::OnceLock;
 
 use luthier_layers::real_time::Twin;
 use luthier_layers::terms::{Exact, ShaderTerms};
-use luthier_lut::{ColorMode, Form, ShadingModel};
+use luthier_lut::{ColorMode, Feature, Form, ShadingModel};
 use luthier_material::{ColorSetting, Material, ModelSetting};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
@@ -53,17 +53,21 @@ pub(crate) fn color_of(mode: ColorMode, material: &Material) -> Color {
 impl Candidate {
     /// The candidates for a material, cheapest first; of equal cost those that leave out less first, then the material's own colour.
     ///
-    /// What is left out must make a model cheaper. Only models of chains of layers have flakes and patina.
+    /// What is left out must make a model cheaper. Models without the flakes or the patina of a material are none of them.
     pub fn all(material: &Material, form: Form, costs: &CostTable) -> Vec<Self> {
         let own = own_color(material);
         let colors: &[ColorMode] = match (form, own) {
             (Form::Baked, ColorMode::Spectral) => &[ColorMode::Spectral, ColorMode::ThreeWavelengths],
             _ => &[ColorMode::ThreeWavelengths],
         };
-        let is_chain = |model| matches!(model, ShadingModel::Elek | ShadingModel::WeidlichWilkie);
-        let needs_chain = material.effects.flakes.is_some() || material.effects.patina.is_some();
+        // The reference has no effects: a model that leaves one out is not judged by what it lacks.
+        let effects = [
+            (Feature::Flakes, material.effects.flakes.is_some()),
+            (Feature::Patina, material.effects.patina.is_some()),
+        ];
+        let shows = |model: ShadingModel| effects.iter().all(|&(effect, has)| !has || model.honours(effect, form));
         let mut found: Vec<Self> = Vec::new();
-        for model in ShadingModel::ALL.into_iter().filter(|&model| !needs_chain || is_chain(model)) {
+        for model in ShadingModel::ALL.into_iter().filter(|&model| shows(model)) {
             let whole = costs.cost(model, form, &shape(&material.stack)).map_or(f64::INFINITY, |(cost, _)| cost);
             for (left_out, simple) in variants(material) {
                 let Some((cost, is_of_similar)) = costs.cost(model, form, &shape(&simple.stack)) else { continue };

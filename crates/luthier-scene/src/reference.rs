@@ -2,6 +2,7 @@
 
 use std::f64::consts::FRAC_1_PI;
 
+use glam::DVec3;
 use luthier_layers::layered_mc::{Estimate, InterfaceMode, LayeredMc};
 use luthier_layers::model::Estimator;
 use luthier_layers::monochrome::Monochrome;
@@ -53,7 +54,7 @@ impl Tally {
     /// With other samples (Chan, Golub and LeVeque 1983).
     fn with(self, estimate: Estimate, count: u64) -> Self {
         let n = count as f64;
-        let squares = estimate.std_err * estimate.std_err * n * (n - 1.0);
+        let squares = estimate.variance() * n * (n - 1.0);
         let (all, step) = (self.count + n, estimate.mean - self.mean);
         Self {
             count: all,
@@ -132,10 +133,7 @@ fn more(spectrum: &[(Monochrome, Rgb)], probe: &Probe, mut tallies: Tallies) -> 
     for ((stack, _), tally) in spectrum.iter().zip(&mut tallies.tallies) {
         let estimate = match *probe {
             Probe::Pair { wi, wo } => reference.eval_with_error(stack, wi, wo),
-            Probe::Sky { wo } => {
-                let Estimate { mean, std_err } = reference.albedo_with_error(stack, wo);
-                Estimate { mean: FRAC_1_PI * mean, std_err: FRAC_1_PI * std_err }
-            }
+            Probe::Sky { wo } => Estimate::sum([(FRAC_1_PI, reference.albedo_with_error(stack, wo, DVec3::Z))]),
         };
         *tally = tally.with(estimate, count);
     }

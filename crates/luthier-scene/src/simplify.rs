@@ -1,39 +1,38 @@
-use luthier_material::Material;
-use luthier_optics::stack::{Base, Slab, Surface};
+use luthier_lut::Feature;
+use luthier_material::{Maps, Material};
+use luthier_optics::stack::{Base, Distribution, FilmThickness, Slab, Surface};
 
-/// Something that a stack can do without.
+/// Something that a material can do without.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum LeaveOut {
-    /// What slabs absorb.
-    Absorption,
-    /// All films.
-    Films,
-    /// Slopes of a diffuse base: Lambert's in place of Oren and Nayar's.
-    DiffuseSlopes,
-    /// Anisotropy: both slope parameters become their geometric mean.
-    Anisotropy,
+    /// A feature, wherever the material has it. Films go altogether; of anisotropic surfaces the geometric mean of both slope parameters
+    /// is left.
+    Feature(Feature),
     /// A transparent layer, by its number from the top; what is below it comes up.
     Layer(usize),
 }
 
 impl LeaveOut {
-    const PARTS: [Self; 4] = [Self::Absorption, Self::Films, Self::DiffuseSlopes, Self::Anisotropy];
+    /// What makes models cheaper.
+    const CHEAPER: [Self; 4] = [
+        Self::Feature(Feature::Absorption),
+        Self::Feature(Feature::Films),
+        Self::Feature(Feature::DiffuseSlopes),
+        Self::Feature(Feature::Anisotropy),
+    ];
 
     /// The name in manifests and reports.
     pub fn name(self) -> String {
         match self {
-            Self::Absorption => "absorption".to_owned(),
-            Self::Films => "films".to_owned(),
-            Self::DiffuseSlopes => "diffuse slopes".to_owned(),
-            Self::Anisotropy => "anisotropy".to_owned(),
+            Self::Feature(feature) => feature.name().to_owned(),
             Self::Layer(layer) => format!("layer {layer}"),
         }
     }
 
     /// What has this name.
     pub fn from_name(name: &str) -> Option<Self> {
-        let part = Self::PARTS.into_iter().find(|part| part.name() == name);
-        part.or_else(|| Some(Self::Layer(name.strip_prefix("layer ")?.parse().ok()?)))
+        let feature = Feature::ALL.into_iter().find(|feature| feature.name() == name);
+        feature.map(Self::Feature).or_else(|| Some(Self::Layer(name.strip_prefix("layer ")?.parse().ok()?)))
     }
 }
 
@@ -49,10 +48,31 @@ pub fn simplified(material: &Material, left_out: &[LeaveOut]) -> Option<Material
 }
 
 fn leave_out(material: &mut Material, part: LeaveOut) -> bool {
-    let layers = &mut material.stack.layers;
-    let mut found = false;
     match part {
-        LeaveOut::Absorption => {
+        LeaveOut::Feature(feature) => leave_out_feature(material, feature),
+        LeaveOut::Layer(index) => {
+            let layers = &mut material.stack.layers;
+            let is_coat = layers.get(index).is_some_and(|layer| matches!(layer.base, Base::Dielectric { .. }));
+            // Flakes, patina and maps belong to layers by number.
+            let effects = &material.effects;
+            let stays = effects.flakes.is_some() || effects.patina.is_some();
+            let found = is_coat && index + 1 < layers.len() && !stays;
+            if found {
+                layers.remove(index);
+                material.layers.remove(index);
+            }
+            found
+        }
+    }
+}
+
+/// Takes a feature away; whether it was there. Layers are left out one by one, by [`LeaveOut::Layer`].
+fn leave_out_feature(material: &mut Material, feature: Feature) -> bool {
+    let (layers, effects) = (&mut material.stack.layers, &mut material.effects);
+    let mut found = false;
+    match feature {
+        Feature::InnerInterface | Feature::Base => {}
+        Feature::Absorption | Feature::BaseAbsorption => {
             for layer in layers {
                 if let Base::Dielectric { slab, .. } = &mut layer.base {
                     found |= slab.optical_depth() != [0.0; 3];
@@ -60,14 +80,29 @@ fn leave_out(material: &mut Material, part: LeaveOut) -> bool {
                 }
             }
         }
-        LeaveOut::Films => {
+        Feature::Films => {
             for (layer, extras) in layers.iter_mut().zip(&mut material.layers) {
                 found |= !layer.films.is_empty();
                 layer.films.clear();
                 extras.film_variation = None;
             }
         }
-        LeaveOut::DiffuseSlopes => {
+        Feature::InnerFilms => {
+            for layer in layers {
+                found |= layer.films.len() > 1;
+                layer.films.truncate(1);
+            }
+        }
+        Feature::FilmVariation => {
+            for (layer, extras) in layers.iter_mut().zip(&mut material.layers) {
+                found |= extras.film_variation.take().is_some();
+                for FilmThickness { min_nm, max_nm } in layer.films.iter_mut().map(|film| &mut film.thickness) {
+                    let nominal_nm = 0.5 * (*min_nm + *max_nm);
+                    (*min_nm, *max_nm) = (nominal_nm, nominal_nm);
+                }
+            }
+        }
+        Feature::DiffuseSlopes => {
             for layer in layers {
                 if let Base::Diffuse(diffuse) = &mut layer.base {
                     found |= diffuse.sigma != 0.0;
@@ -75,24 +110,34 @@ fn leave_out(material: &mut Material, part: LeaveOut) -> bool {
                 }
             }
         }
-        LeaveOut::Anisotropy => {
+        Feature::Anisotropy => {
             for layer in layers {
                 let Surface { distribution, alpha_x, alpha_y, .. } = layer.surface;
                 found |= alpha_x != alpha_y;
                 layer.surface = Surface::isotropic(distribution, (alpha_x * alpha_y).sqrt());
             }
         }
-        LeaveOut::Layer(index) => {
-            let is_coat = layers.get(index).is_some_and(|layer| matches!(layer.base, Base::Dielectric { .. }));
-            // Flakes, patina and maps belong to layers by number.
-            let effects = &material.effects;
-            let stays = effects.flakes.is_some() || effects.patina.is_some();
-            if is_coat && index + 1 < layers.len() && !stays {
-                layers.remove(index);
-                material.layers.remove(index);
-                found = true;
+        Feature::Beckmann => {
+            for surface in layers.iter_mut().map(|layer| &mut layer.surface) {
+                found |= surface.distribution == Distribution::Beckmann && !surface.is_smooth();
+                surface.distribution = Distribution::Ggx;
             }
         }
+        Feature::NormalMap | Feature::RoughnessMap | Feature::ThicknessMap => {
+            let Some(Maps { normal, roughness, thickness }) = material.layers.first_mut().map(|first| &mut first.maps)
+            else {
+                return false;
+            };
+            let map = match feature {
+                Feature::NormalMap => normal,
+                Feature::RoughnessMap => roughness,
+                _ => thickness,
+            };
+            found = map.take().is_some();
+        }
+        Feature::Flakes => found = effects.flakes.take().is_some(),
+        Feature::Patina => found = effects.patina.take().is_some(),
+        Feature::Glitter => found = effects.glitter.take().is_some(),
     }
     found
 }
@@ -102,9 +147,9 @@ pub fn variants(material: &Material) -> Vec<(Vec<LeaveOut>, Material)> {
     let mut found: Vec<(Vec<LeaveOut>, Material)> = Vec::new();
     let layers = (0..material.stack.layers.len()).map(|layer| Some(LeaveOut::Layer(layer)));
     for layer in std::iter::once(None).chain(layers) {
-        for bits in 0..1_u32 << LeaveOut::PARTS.len() {
+        for bits in 0..1_u32 << LeaveOut::CHEAPER.len() {
             let parts =
-                LeaveOut::PARTS.into_iter().enumerate().filter(|(i, _)| bits >> i & 1 == 1).map(|(_, part)| part);
+                LeaveOut::CHEAPER.into_iter().enumerate().filter(|(i, _)| bits >> i & 1 == 1).map(|(_, part)| part);
             let left_out: Vec<LeaveOut> = layer.into_iter().chain(parts).collect();
             if let Some(simple) = simplified(material, &left_out) {
                 found.push((left_out, simple));

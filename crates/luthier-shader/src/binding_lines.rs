@@ -1,5 +1,7 @@
 use std::fmt::Write as _;
 
+use luthier_lut::MaterialTexture;
+
 use crate::{Form, MaterialSet, Target, bindings};
 
 /// What to bind and where, in the words of a language: lines of the header comment.
@@ -18,7 +20,7 @@ pub(crate) fn binding_lines(set: &MaterialSet<'_>, form: Form, target: Target, i
     for entry in bindings(set, form).iter().filter(|entry| !(is_constant && entry.resource == "buffer")) {
         let (number, name) = (entry.binding, &entry.name);
         if is_glsl && entry.resource == "sampler" {
-            out.push_str("//   each texture filtered linearly, clamped to its edge\n");
+            out.push_str("//   each table filtered linearly, clamped to its edge\n");
             continue;
         }
         let _ = match (entry.resource.as_str(), target) {
@@ -29,11 +31,12 @@ pub(crate) fn binding_lines(set: &MaterialSet<'_>, form: Form, target: Target, i
                 writeln!(out, "//   {number} {name}: storage block LuthierMaterials (std430), {words} vec4")
             }
             ("buffer", Target::GlslEs300) => {
-                writeln!(out, "//   {name}: uniform block LuthierMaterials (std140), {words} vec4")
+                let MaterialTexture { width, height } = MaterialTexture::of(words);
+                writeln!(out, "//   {name}: sampler2D, RGBA32F, {width} x {height}, not filtered")
             }
             ("buffer", Target::Hlsl) => writeln!(out, "//   t{number} {name}: ByteAddressBuffer, {words} float4"),
             ("buffer", Target::Msl) => {
-                writeln!(out, "//   buffer({number}) {name}: constant LuthierMaterials&, {words} float4")
+                writeln!(out, "//   buffer({number}) {name}: device LuthierMaterials const&, {words} float4")
             }
             ("sampler", Target::Hlsl) => writeln!(out, "//   s{number} {name}: SamplerState, linear, clamp to edge"),
             ("sampler", Target::Msl) => writeln!(out, "//   sampler({number}) {name}: sampler, linear, clamp to edge"),

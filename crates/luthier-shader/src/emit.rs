@@ -6,9 +6,6 @@ use crate::binding_lines::binding_lines;
 use crate::wgsl::{Buffer, compose};
 use crate::{Form, MaterialSet, ShaderError, Target, glsl, hlsl, msl, validate};
 
-/// Words of the smallest uniform block that GLSL ES 3.00 guarantees (16 KiB).
-const UNIFORM_WORDS: usize = 1024;
-
 /// The entry point of a complete shader, in WGSL.
 pub(crate) const FRAGMENT: &str = include_str!("wgsl/fragment.wgsl");
 
@@ -78,12 +75,13 @@ fn text(
 
 /// The WGSL that a target is made from, and what WGSL is to follow it.
 pub(crate) fn body(set: &MaterialSet<'_>, form: Form, target: Target, more: &str) -> Result<String, ShaderError> {
-    let buffer = if matches!(target, Target::GlslEs300 | Target::Msl) { Buffer::Uniform } else { Buffer::Storage };
+    let buffer = match target {
+        Target::GlslEs300 => Buffer::Texture,
+        // Arrays of any length would want a table of lengths as one more argument.
+        Target::Msl => Buffer::Sized,
+        Target::Wgsl | Target::Glsl450 | Target::Hlsl | Target::SpirV => Buffer::Storage,
+    };
     let wgsl = compose(set, form, buffer)?;
-    let words = set.words();
-    if target == Target::GlslEs300 && words > UNIFORM_WORDS {
-        return Err(ShaderError::UniformBlockTooLarge { words, limit: UNIFORM_WORDS });
-    }
     Ok(if more.is_empty() { wgsl } else { format!("{wgsl}\n{more}") })
 }
 

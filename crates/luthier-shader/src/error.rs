@@ -71,14 +71,12 @@ pub enum ShaderError {
         /// What is wrong with it.
         reason: String,
     },
-    /// More material data than a uniform block holds in GLSL ES 3.00.
-    #[error(
-        "the materials take {words} vec4 words; a GLSL ES 3.00 uniform block is only guaranteed to hold {limit}; emit fewer materials"
-    )]
-    UniformBlockTooLarge {
+    /// More material data than shaders can count.
+    #[error("the materials take {words} vec4 words of the material buffer, which holds {limit}; emit fewer materials")]
+    BufferTooLarge {
         /// Words needed.
         words: usize,
-        /// Words that every implementation holds.
+        /// [`luthier_lut::BUFFER_WORDS_MAX`].
         limit: usize,
     },
     /// The text is not valid WGSL. The message shows the place.

@@ -11,7 +11,7 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is, for the check that modules name no other.
     #[cfg(test)]
-    pub(crate) const ALL: [&'static str; 42] = [
+    pub(crate) const ALL: [&'static str; 43] = [
         "absorption",
         "anisotropic",
         "bare",
@@ -53,6 +53,7 @@ impl Features {
         "statistics_base",
         "theta_axis",
         "thickness",
+        "total_reflection",
         "bilinear",
     ];
 
@@ -66,6 +67,9 @@ impl Features {
             if material.constants.glitter.is_some() {
                 names.insert("glitter");
             }
+        }
+        if [ShadingModel::Belcour, ShadingModel::Yamaguchi].into_iter().any(|model| has_base(set, model)) {
+            names.insert("statistics_base");
         }
         if set.models().any(|model| is_mixed(set, model)) {
             names.insert("mixed");
@@ -83,7 +87,7 @@ impl Features {
                 names.insert("bilinear");
             }
         }
-        // Without a table, D is computed.
+        // Without a table, D is computed; so it is for layers without a tile.
         let has_facets = names.contains("smith") || names.contains("chain") && names.contains("interface");
         if form == Form::Full || has_facets && !names.contains("distribution") {
             names.insert("closed");
@@ -140,6 +144,12 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
         names.insert("interface");
         names.insert(if layer.distribution == "ggx" { "ggx" } else { "beckmann" });
         names.insert(if layer.film_ior_n[0] > 0.0 { "film" } else { "bare" });
+        if layer.critical_cot_sq > 0.0 {
+            names.insert("total_reflection");
+        }
+        if (is_chain || material.model == ShadingModel::Microfacet) && layer.distribution_tile.is_none() {
+            names.insert("closed");
+        }
         if layer.kind == LayerKind::Conductor && !is_chain {
             names.insert("conductor");
         }
@@ -178,12 +188,7 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
             }
             names.insert("chain")
         }
-        ShadingModel::Belcour | ShadingModel::Yamaguchi if has_interface => {
-            if has_diffuse {
-                names.insert("statistics_base");
-            }
-            names.insert("statistics")
-        }
+        ShadingModel::Belcour | ShadingModel::Yamaguchi if has_interface => names.insert("statistics"),
         ShadingModel::GranierHeidrich => {
             let first = &material.layers[0];
             let has_film = first.film_ior_n[0] > 0.0;
@@ -218,6 +223,13 @@ fn ends_early(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
     let depth = materials().map(|m| m.layers.len()).max().unwrap_or(0);
     let is_conductor = |layer: &LayerRecord| layer.kind == LayerKind::Conductor;
     materials().any(|m| m.layers.iter().take(depth.saturating_sub(1)).any(is_conductor))
+}
+
+/// Whether a model of statistics meets diffuse bases, those of materials without an interface too, in a set that has interfaces.
+fn has_base(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
+    let layers = || set.materials.iter().filter(|m| m.model == model).flat_map(|m| &m.layers);
+    let is_diffuse = |layer: &LayerRecord| layer.kind == LayerKind::Diffuse;
+    layers().any(is_diffuse) && !layers().all(is_diffuse)
 }
 
 /// Whether the layers at some depth of the materials of a model are diffuse bases and interfaces.

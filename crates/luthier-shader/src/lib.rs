@@ -17,6 +17,9 @@
 //!
 //! Simplifications: bindings are in group 0; the full form knows one film per interface.
 //!
+//! Sums of `luthier_eval` over lights go through `luthier_bounded` where they are written. Numbers of group 0 from
+//! [`RESERVED_BINDINGS`] up are the caller's.
+//!
 //! Out of scope: texels and files (`luthier-lut`, `luthier-texture`), devices (`luthier-gpu`).
 
 mod binding_lines;
@@ -40,7 +43,7 @@ mod wgsl;
 pub use emit::{complete, emit, emit_constant};
 pub use error::ShaderError;
 pub use luthier_lut::Form;
-pub use set::{MaterialSet, TableFace, bindings};
+pub use set::{MaterialSet, RESERVED_BINDINGS, TableFace, bindings, identifier};
 pub use spirv::{complete_spirv, emit_spirv, spirv_words};
 pub use target::Target;
 pub use validate::validate;

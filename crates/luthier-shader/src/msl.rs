@@ -33,7 +33,7 @@ pub(crate) fn from_wgsl(wgsl: &str, set: &MaterialSet<'_>, form: Form) -> Result
     }
     let text = without_end_padding(&text.replace(", metal::access::sample>", ">"));
     let text = rename(text.trim_start_matches(|c| c != '#'), helper);
-    let buffer = text.split_once("& luthier_materials").and_then(|(before, _)| before.rsplit(' ').next());
+    let buffer = text.split_once(" const& luthier_materials").and_then(|(before, _)| before.rsplit(' ').next());
     let body = rename(&text, |word| (Some(word) == buffer).then_some(BUFFER));
     if body.to_ascii_lowercase().contains("naga") {
         return Err(refused(&"a name of naga's is left"));

@@ -1,16 +1,28 @@
 use std::collections::BTreeMap;
 
 use luthier_lut::{
-    AtlasLayout, BindingEntry, LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, Manifest, MaterialEntry,
-    ShadingModel, TableKind, TexelFormat,
+    AtlasLayout, BUFFER_WORDS_MAX, BindingEntry, LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, Manifest,
+    MaterialEntry, ShadingModel, TableKind, TexelFormat,
 };
 
 use crate::{Form, ShaderError};
+
+/// Binding numbers that luthier keeps for itself. What a caller puts into the same group, where an engine leaves him no other, goes
+/// to this number and above.
+pub const RESERVED_BINDINGS: u32 = 16;
 
 /// Binding of the sampler.
 const SAMPLER_BINDING: u32 = 5;
 /// Binding of the material buffer.
 const MATERIALS_BINDING: u32 = 6;
+
+const _: () = {
+    let mut i = 0;
+    while i < TableKind::ALL.len() {
+        assert!(TableKind::ALL[i].binding() < RESERVED_BINDINGS, "a binding beyond those that are kept for luthier");
+        i += 1;
+    }
+};
 
 /// What the emitter must know of a table: not its texels.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,8 +42,8 @@ pub struct TableFace {
 pub struct MaterialSet<'a> {
     /// The materials.
     pub materials: &'a [MaterialEntry],
-    /// The tables, at most one of a kind; of several the first counts. Without a distribution table the `baked` form evaluates D in
-    /// closed form.
+    /// The tables, at most one of a kind; of several the first counts. The `baked` form evaluates D in closed form for layers without a
+    /// tile of a distribution table.
     pub tables: Vec<TableFace>,
 }
 
@@ -75,7 +87,7 @@ impl<'a> MaterialSet<'a> {
         let mut seen: BTreeMap<String, &str> = BTreeMap::new();
         let mut constants = Vec::with_capacity(self.materials.len());
         for material in self.materials {
-            let constant = constant(&material.name)?;
+            let constant = identifier(&material.name)?;
             if let Some(first) = seen.insert(constant.clone(), &material.name) {
                 let (first, second) = (first.to_owned(), material.name.clone());
                 return Err(ShaderError::NameClash { first, second, constant });
@@ -90,12 +102,17 @@ impl<'a> MaterialSet<'a> {
         if self.materials.is_empty() {
             return Err(ShaderError::NoMaterials);
         }
+        let words = self.words();
+        if words > BUFFER_WORDS_MAX {
+            return Err(ShaderError::BufferTooLarge { words, limit: BUFFER_WORDS_MAX });
+        }
+        let has_phases = self.layers().any(|layer| layer.phase_tile.is_some());
         for material in self.materials {
             if material.layers.is_empty() {
                 return Err(ShaderError::NoLayers(material.name.clone()));
             }
             for (i, layer) in material.records().enumerate() {
-                self.check_layer(form, material, i, layer)?;
+                self.check_layer(form, material, i, layer, has_phases)?;
             }
         }
         Ok(())
@@ -107,40 +124,47 @@ impl<'a> MaterialSet<'a> {
         material: &MaterialEntry,
         i: usize,
         layer: &LayerRecord,
+        has_phases: bool,
     ) -> Result<(), ShaderError> {
         let needed: &[TableKind] = match material.model {
             ShadingModel::Phong => &[],
             // They look at the first layer alone.
             ShadingModel::Microfacet | ShadingModel::GranierHeidrich if i > 0 => &[],
-            // Films are phases, and bare transparent interfaces Schlick's form.
-            ShadingModel::GranierHeidrich if layer.kind != LayerKind::Conductor || layer.film_ior_n[0] > 0.0 => &[],
+            // Films are phases, which are computed where the set has no table of them.
+            ShadingModel::GranierHeidrich if layer.film_ior_n[0] > 0.0 => {
+                if has_phases {
+                    &[TableKind::Phase]
+                } else {
+                    &[]
+                }
+            }
+            // Bare transparent interfaces are Schlick's form.
+            ShadingModel::GranierHeidrich if layer.kind != LayerKind::Conductor => &[],
             ShadingModel::GranierHeidrich => &[TableKind::Fresnel],
             ShadingModel::Belcour | ShadingModel::Yamaguchi => &[TableKind::Fgd],
-            // Without a table of it, D is computed; a set has one or has none.
-            _ if self.layers().any(|layer| layer.distribution_tile.is_some()) => {
-                &[TableKind::Fresnel, TableKind::Distribution]
-            }
+            // A layer without a tile of D has it computed.
+            _ if layer.film_tile.is_some() => &[],
             _ => &[TableKind::Fresnel],
         };
-        let (material, is_interface) = (material.name.clone(), layer.kind != LayerKind::Diffuse);
+        let (material, is_interface) = (|| material.name.clone(), layer.kind != LayerKind::Diffuse);
         if is_interface && !matches!(layer.distribution.as_str(), "beckmann" | "ggx") {
             let distribution = layer.distribution.clone();
-            return Err(ShaderError::Distribution { material, layer: i, distribution });
+            return Err(ShaderError::Distribution { material: material(), layer: i, distribution });
         }
         if form == Form::Full {
             return Ok(());
         }
         for table in TableKind::ALL {
-            if table == TableKind::Distribution && !self.has(table) {
+            if matches!(table, TableKind::Distribution | TableKind::Phase) && !self.has(table) {
                 continue;
             }
             let tiles = self.tables.iter().find(|t| t.kind == table).map_or(0, |t| t.layout.tiles);
             match tile(layer, table) {
                 None if is_interface && needed.contains(&table) => {
-                    return Err(ShaderError::NoTile { material, layer: i, table });
+                    return Err(ShaderError::NoTile { material: material(), layer: i, table });
                 }
                 Some(tile) if tile >= tiles => {
-                    return Err(ShaderError::TileOutOfRange { material, layer: i, table, tile, tiles });
+                    return Err(ShaderError::TileOutOfRange { material: material(), layer: i, table, tile, tiles });
                 }
                 _ => {}
             }
@@ -179,8 +203,12 @@ fn tile(layer: &LayerRecord, kind: TableKind) -> Option<u32> {
     }
 }
 
-/// `red-lacquer` to `LUTHIER_MATERIAL_RED_LACQUER`. A last digit is followed by `_ID`: names end in a letter.
-fn constant(name: &str) -> Result<String, ShaderError> {
+/// The constant that shaders have for a material of this name: for `red-lacquer` it is `LUTHIER_MATERIAL_RED_LACQUER`. A last digit is
+/// followed by `_ID`: names end in a letter.
+///
+/// # Errors
+/// [`ShaderError::Name`] for a name of other characters than letters, digits and hyphens.
+pub fn identifier(name: &str) -> Result<String, ShaderError> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     let words: Vec<&str> = name.split(['-', '_']).filter(|word| !word.is_empty()).collect();
     if words.is_empty() || !name.chars().all(is_plain) {
@@ -204,10 +232,10 @@ mod tests {
             ("granier-film-2", "LUTHIER_MATERIAL_GRANIER_FILM_2_ID"),
             ("a--b-", "LUTHIER_MATERIAL_A_B"),
         ] {
-            assert_eq!(constant(name).unwrap(), expected);
+            assert_eq!(identifier(name).unwrap(), expected);
         }
         for name in ["", "-", "sp ace", "émail", "a;b"] {
-            assert!(matches!(constant(name), Err(ShaderError::Name(_))), "{name}");
+            assert!(matches!(identifier(name), Err(ShaderError::Name(_))), "{name}");
         }
     }
 }

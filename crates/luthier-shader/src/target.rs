@@ -10,11 +10,11 @@ pub enum Target {
     Wgsl,
     /// Desktop GLSL 4.50; the material buffer is a std430 storage block.
     Glsl450,
-    /// GLSL ES 3.00 (WebGL 2); the material buffer is a std140 uniform block.
+    /// GLSL ES 3.00 (WebGL 2); the material buffer is a texture.
     GlslEs300,
     /// HLSL, shader model 5.1; the material buffer is a `ByteAddressBuffer`.
     Hlsl,
-    /// Metal Shading Language 2.0; textures, sampler and material buffer (`constant`) are arguments of the functions.
+    /// Metal Shading Language 2.0; textures, sampler and material buffer (`device`) are arguments of the functions.
     Msl,
     /// SPIR-V 1.3, in bytes.
     SpirV,

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use luthier_lut::{ShadingModel, material_buffer};
+use luthier_lut::{MaterialTexture, SIDE, ShadingModel, material_buffer};
 
 use crate::chain;
 use crate::features::Features;
@@ -16,8 +16,10 @@ use crate::{Form, MaterialSet, ShaderError, bindings};
 pub(crate) enum Buffer {
     /// Storage, of any length.
     Storage,
-    /// Uniform, as long as it must be.
-    Uniform,
+    /// Storage of the length of the set, for a language that wants it stated.
+    Sized,
+    /// A texture of whole words, for a language without storage.
+    Texture,
     /// No buffer: the numbers of one material are constants.
     Constant,
 }
@@ -62,6 +64,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         parts.extend(self::model(set, model, &features));
     }
     parts.push(eval(set, &features));
+    parts.push(include_str!("wgsl/bounded.wgsl").to_owned());
     if parts.iter().any(|part| part.contains("LUTHIER_PI")) {
         parts.insert(2, include_str!("wgsl/pi.wgsl").to_owned());
     }
@@ -69,7 +72,8 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     let wgsl = parts.join("\n");
     Ok(match buffer {
         Buffer::Constant => wgsl.replace("    return material * LUTHIER_MATERIAL_WORDS;\n", "    return 0u;\n"),
-        Buffer::Storage | Buffer::Uniform => wgsl,
+        Buffer::Texture => read_from_texture(&wgsl),
+        Buffer::Storage | Buffer::Sized => wgsl,
     })
 }
 
@@ -122,12 +126,42 @@ fn declarations(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> String {
                 out.push_str(&numbers(set));
                 continue;
             }
-            ("buffer", Buffer::Uniform) => ("<uniform>", format!("array<vec4<f32>, {}>", set.words())),
+            ("buffer", Buffer::Sized) => ("<storage, read>", format!("array<vec4<f32>, {}>", set.words())),
+            ("buffer", Buffer::Texture) => ("", "texture_2d<f32>".to_owned()),
             _ => ("", entry.resource),
         };
         let _ = writeln!(out, "@group(0) @binding({}) var{space} {}: {resource};", entry.binding, entry.name);
     }
+    if buffer == Buffer::Texture {
+        out.push_str(&word(set));
+    }
     out
+}
+
+/// The function that reads a word where the material buffer is a texture.
+fn word(set: &MaterialSet<'_>) -> String {
+    let texel = match MaterialTexture::of(set.words()).height {
+        1 => "i32(index), 0".to_owned(),
+        _ => format!("i32(index & {}u), i32(index >> {}u)", SIDE - 1, SIDE.ilog2()),
+    };
+    format!(
+        "\n/// A word of the material buffer, which is a texture.\nfn luthier_word(index: u32) -> vec4<f32> {{\n    \
+         return textureLoad(luthier_materials, vec2<i32>({texel}), 0);\n}}\n"
+    )
+}
+
+/// The modules, which index the material buffer, with calls of [`word`] instead.
+fn read_from_texture(wgsl: &str) -> String {
+    let mut out = String::with_capacity(wgsl.len());
+    let mut rest = wgsl;
+    // No index holds another.
+    while let Some((before, (index, after))) =
+        rest.split_once("luthier_materials[").and_then(|(before, rest)| Some((before, rest.split_once(']')?)))
+    {
+        out.push_str(&format!("{before}luthier_word({index})"));
+        rest = after;
+    }
+    out + rest
 }
 
 /// The words of the material buffer as a constant.
@@ -144,7 +178,7 @@ fn numbers(set: &MaterialSet<'_>) -> String {
 /// The functions that choose the model of a material: `luthier_eval`, and `luthier_eval_at` where surfaces vary.
 fn eval(set: &MaterialSet<'_>, features: &Features) -> String {
     const SUMMARY: &str = "/// f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away\n\
-         /// from the surface. Zero when either is not above the horizon.\n";
+         /// from the surface. Zero when either is not above the horizon. See `luthier_bounded` for the range.\n";
     let guard = "    if min(wi.z, wo.z) <= 0.0 {\n        return vec3<f32>(0.0);\n    }\n";
     let mut body = String::from(guard);
     let turned = features.has("place");

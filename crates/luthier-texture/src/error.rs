@@ -56,7 +56,7 @@ pub enum TextureError {
     /// An image with no channels or more than four.
     #[error("{0} channels; an image has 1 to 4")]
     Channels(u32),
-    /// A metadata entry that not every container can hold.
+    /// A metadata entry that the container cannot hold.
     #[error("metadata `{key}`: {reason}")]
     Metadata {
         /// The key at fault.

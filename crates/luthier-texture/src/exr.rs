@@ -27,18 +27,24 @@ const ATTRIBUTE: &str = "luthier";
 /// Key whose value is also written to the standard attribute `software`.
 const GENERATOR: &str = "generator";
 
-/// An EXR file of an image, bit-exact. Channels are named by their count: Y; Y, A; R, G, B; R, G, B, A. Metadata become
+/// Names of the channels of a picture.
+pub const RGB: [&str; 3] = ["R", "G", "B"];
+
+/// An EXR file of an image, bit-exact, with a name for each of its channels. Metadata become
 /// the JSON object described above; the value of `generator` is also the standard attribute `software`.
 ///
 /// # Errors
-/// [`TextureError::Size`], [`TextureError::Channels`], [`TextureError::Length`], [`TextureError::Metadata`],
-/// [`TextureError::ExrEncode`].
-pub fn encode(image: &Image, metadata: &Metadata) -> Result<Vec<u8>, TextureError> {
+/// [`TextureError::Size`], [`TextureError::Channels`] where names and channels are not as many, [`TextureError::Length`],
+/// [`TextureError::Metadata`], [`TextureError::ExrEncode`].
+pub fn encode(image: &Image, names: &[&str], metadata: &Metadata) -> Result<Vec<u8>, TextureError> {
     check_image(image)?;
     metadata::check(metadata)?;
     let channels = image.channels as usize;
+    if names.len() != channels {
+        return Err(TextureError::Channels(image.channels));
+    }
     let plane = |c: usize| FlatSamples::F32(image.data.iter().skip(c).step_by(channels).copied().collect());
-    let planes = channel_names(channels).iter().enumerate().map(|(c, &name)| AnyChannel::new(name, plane(c)));
+    let planes = names.iter().enumerate().map(|(c, &name)| AnyChannel::new(name, plane(c)));
 
     let mut attributes = LayerAttributes::default();
     if !metadata.is_empty() {
@@ -58,8 +64,9 @@ pub fn encode(image: &Image, metadata: &Metadata) -> Result<Vec<u8>, TextureErro
     Ok(file.into_inner())
 }
 
-/// Reads an EXR file of the shape that [`encode`] writes: one part, scan lines from the top, 32-bit float channels named
-/// as there, uncompressed or ZIP. The metadata are sorted by key, and empty in files of other makers.
+/// Reads an EXR file of the shape that [`encode`] writes: one part, scan lines from the top, one to four channels of 32-bit float,
+/// uncompressed or ZIP. Channels come in the order R, G, B, A, X, Y, Z, V, then the others by name. The metadata are sorted by key, and
+/// empty in files of other makers.
 ///
 /// # Errors
 /// [`TextureError::Malformed`] and [`TextureError::ExrDecode`] for damaged files, [`TextureError::Unsupported`] for
@@ -111,29 +118,24 @@ fn append_rows(data: &mut Vec<f32>, meta: &MetaData, block: &UncompressedBlock, 
     }
 }
 
-/// Channel names in the order of the image.
-fn channel_names(channels: usize) -> &'static [&'static str] {
-    match channels {
-        1 => &["Y"],
-        2 => &["Y", "A"],
-        3 => &["R", "G", "B"],
-        _ => &["R", "G", "B", "A"],
-    }
+/// Where a channel stands among those of its image, by name.
+pub(crate) fn rank(name: &str) -> (usize, String) {
+    let known = "RGBAXYZV".find(name).filter(|_| name.len() == 1);
+    (known.unwrap_or(usize::MAX), name.to_owned())
 }
 
 /// For each channel of the file, its place in a texel.
 fn channel_places(channels: &ChannelList) -> Result<SmallVec<[usize; 4]>, TextureError> {
-    let wanted = channel_names(channels.list.len());
-    let place = |name: &Text| wanted.iter().position(|w| name.as_slice() == w.as_bytes());
-    let places: SmallVec<[usize; 4]> = channels.list.iter().filter_map(|channel| place(&channel.name)).collect();
-    // The crate has checked that names are distinct.
-    if channels.list.len() != wanted.len() || places.len() != wanted.len() {
-        return Err(unsupported("channels other than Y, YA, RGB or RGBA"));
+    let count = u32::try_from(channels.list.len()).unwrap_or(u32::MAX);
+    if !(1..=4).contains(&count) {
+        return Err(TextureError::Channels(count));
     }
     if channels.list.iter().any(|channel| channel.sample_type != SampleType::F32 || channel.sampling != Vec2(1, 1)) {
         return Err(unsupported("channels that are subsampled or not 32-bit float"));
     }
-    Ok(places)
+    // The crate has checked that names are distinct.
+    let ranks: Vec<_> = channels.list.iter().map(|channel| rank(&channel.name.to_string())).collect();
+    Ok(ranks.iter().map(|rank| ranks.iter().filter(|other| *other < rank).count()).collect())
 }
 
 fn check_shape(header: &Header) -> Result<(), TextureError> {

@@ -1,4 +1,7 @@
-//! KTX2 (Khronos KTX file format 2.0): one level, zstd-supercompressed, with a basic data format descriptor.
+//! KTX2 (Khronos KTX file format 2.0): one level, zstd-supercompressed or plain, with a basic data format descriptor.
+//!
+//! `KTXwriter` is the only key that is written: Khronos' validator warns about every key that the specification does not list,
+//! whatever its prefix, so that a file with one would not pass `ktx validate --warnings-as-errors`.
 
 use ::ktx2::dfd::{Basic, Block};
 use ::ktx2::{Format, Header, Index, LevelIndex, ParseError, SupercompressionScheme};
@@ -6,40 +9,51 @@ use luthier_lut::{Image, TexelFormat};
 
 use crate::error::Container;
 use crate::limits::checked_bytes;
-use crate::metadata::is_reserved;
 use crate::texels::TexelLayout;
-use crate::{Metadata, Samples, Texture, TextureError, metadata, zstd};
+use crate::{Samples, Texture, TextureError, zstd};
 
 /// Value of the `KTXwriter` entry.
 const WRITER: &str = concat!("luthier ", env!("CARGO_PKG_VERSION"));
-
-/// Most bytes of key/value data that are read.
-const MAX_METADATA_BYTES: u32 = 16 << 20;
 
 /// Bytes of the descriptor section that may differ from ours without changing what the texels mean: colour primaries,
 /// alpha flags, and the plane sizes, which some writers leave 0 under supercompression.
 const FREE_DFD_BYTES: [std::ops::Range<usize>; 3] = [13..14, 15..16, 20..28];
 
-/// A KTX2 file of a texture: header, level index, descriptor, key/value data sorted by key, zstd texels.
+/// A KTX2 file of a texture: header, level index, descriptor, the writer's name, zstd texels.
 ///
 /// # Errors
-/// [`TextureError::Size`], [`TextureError::Lut`] when the bytes do not fit the size, [`TextureError::Metadata`].
+/// [`TextureError::Size`], [`TextureError::Length`] when the bytes do not fit the size.
 pub fn encode(texture: &Texture) -> Result<Vec<u8>, TextureError> {
+    write(texture, Some(SupercompressionScheme::Zstandard))
+}
+
+/// The same with the texels as they are, for readers without a decoder of zstd.
+///
+/// # Errors
+/// As [`encode`].
+pub fn encode_plain(texture: &Texture) -> Result<Vec<u8>, TextureError> {
+    write(texture, None)
+}
+
+fn write(texture: &Texture, scheme: Option<SupercompressionScheme>) -> Result<Vec<u8>, TextureError> {
     let expected = level_bytes(texture.format, texture.width, texture.height)?;
     if texture.bytes.len() != expected {
         return Err(TextureError::Length { found: texture.bytes.len(), expected });
     }
-    metadata::check(&texture.metadata)?;
 
     let (descriptor, type_size) = descriptor_section(texture.format)?;
-    let key_values = key_value_section(&texture.metadata)?;
-    let texels = zstd::compress(&texture.bytes)?;
+    let key_values = key_value_section();
+    let (texels, alignment) = match scheme {
+        Some(_) => (zstd::compress(&texture.bytes)?, 1),
+        None => (texture.bytes.clone(), block_bytes(texture.format)),
+    };
 
-    // Sections follow each other without gaps: descriptor and key/value entries are multiples of 4 bytes, and
-    // supercompressed levels need no alignment.
+    // Descriptor and key/value entries are multiples of 4 bytes. Levels lie at multiples of 4 and of the bytes of a block of texels,
+    // but for supercompressed ones, which need no alignment.
     let descriptor_at = Header::LENGTH + LevelIndex::LENGTH;
     let key_values_at = descriptor_at + descriptor.len();
-    let texels_at = key_values_at + key_values.len();
+    let key_values_end = key_values_at + key_values.len();
+    let texels_at = key_values_end.next_multiple_of(alignment);
     let header = Header {
         format: Some(vulkan_format(texture.format)),
         type_size,
@@ -49,7 +63,7 @@ pub fn encode(texture: &Texture) -> Result<Vec<u8>, TextureError> {
         layer_count: 0,
         face_count: 1,
         level_count: 1,
-        supercompression_scheme: Some(SupercompressionScheme::Zstandard),
+        supercompression_scheme: scheme,
         index: Index {
             dfd_byte_offset: descriptor_at as u32,
             dfd_byte_length: descriptor.len() as u32,
@@ -64,11 +78,12 @@ pub fn encode(texture: &Texture) -> Result<Vec<u8>, TextureError> {
         byte_length: texels.len() as u64,
         uncompressed_byte_length: texture.bytes.len() as u64,
     };
-    Ok([&header.as_bytes(), level.as_bytes().as_slice(), &descriptor, &key_values, &texels].concat())
+    let padding = vec![0; texels_at - key_values_end];
+    Ok([&header.as_bytes(), level.as_bytes().as_slice(), &descriptor, &key_values, &padding, &texels].concat())
 }
 
-/// Reads a KTX2 file of the shape that [`encode`] writes, with zstd or no supercompression. Keys that the KTX
-/// specification reserves (`KTXwriter`) are left out of the metadata.
+/// Reads a KTX2 file of the shape that [`encode`] writes, with zstd or no supercompression. Of the key/value data only the orientation
+/// is looked at.
 ///
 /// # Errors
 /// [`TextureError::Malformed`] and [`TextureError::Zstd`] for damaged files, [`TextureError::Unsupported`] for other
@@ -84,13 +99,10 @@ pub fn decode(file: &[u8]) -> Result<Texture, TextureError> {
     if !describes(descriptor, &descriptor_section(format)?.0) {
         return Err(malformed("the data format descriptor contradicts the format"));
     }
-    if index.kvd_byte_length > MAX_METADATA_BYTES {
-        return Err(malformed("the key/value data are too long"));
-    }
-    let metadata = read_key_values(section(file, index.kvd_byte_offset.into(), index.kvd_byte_length.into())?)?;
+    check_orientation(section(file, index.kvd_byte_offset.into(), index.kvd_byte_length.into())?)?;
 
     let bytes = first_level(file, &header, expected)?;
-    Ok(Texture { format, width: header.pixel_width, height: header.pixel_height, bytes, metadata })
+    Ok(Texture { format, width: header.pixel_width, height: header.pixel_height, bytes })
 }
 
 /// Reads the largest level of a two-dimensional KTX2 file of uncompressed texels by any maker, with zstd or no supercompression. The
@@ -122,6 +134,12 @@ fn level_bytes(format: TexelFormat, width: u32, height: u32) -> Result<usize, Te
         return Err(TextureError::Size { width, height });
     }
     checked_bytes(width, height, format.texel_bytes())
+}
+
+/// Bytes of a texel, or of a block of them.
+fn block_bytes(format: TexelFormat) -> usize {
+    let side = format.block_side();
+    (side * side * format.texel_bytes()) as usize
 }
 
 fn table_layout(format: Format) -> Option<TexelLayout> {
@@ -236,49 +254,27 @@ fn describes(found: &[u8], expected: &[u8]) -> bool {
     found.len() == expected.len() && found.iter().zip(expected).enumerate().all(|(i, (a, b))| a == b || free(i))
 }
 
-/// Entries in the order of their keys' code points, as section 3.11 of the specification demands: length, key, NUL,
-/// value, NUL, padding to 4 bytes.
-fn key_value_section(metadata: &Metadata) -> Result<Vec<u8>, TextureError> {
-    let mut entries: Vec<(&str, &str)> = metadata.iter().map(|(key, value)| (key.as_str(), value.as_str())).collect();
-    entries.push(("KTXwriter", WRITER));
-    entries.sort_unstable();
-    let mut section = Vec::new();
-    for (key, value) in entries {
-        section.extend_from_slice(&((key.len() + value.len() + 2) as u32).to_le_bytes());
-        for text in [key, value] {
-            section.extend_from_slice(text.as_bytes());
-            section.push(0);
-        }
-        section.resize(section.len().next_multiple_of(4), 0);
-    }
-    if section.len() <= MAX_METADATA_BYTES as usize {
-        Ok(section)
-    } else {
-        Err(TextureError::Metadata { key: "KTXwriter".into(), reason: "all entries together take more than 16 MiB" })
-    }
+/// One entry by section 3.11 of the specification: length, key, NUL, value, NUL, padding to 4 bytes.
+fn key_value_section() -> Vec<u8> {
+    let entry = ["KTXwriter", "\0", WRITER, "\0"].concat();
+    let mut section = [&(entry.len() as u32).to_le_bytes(), entry.as_bytes()].concat();
+    section.resize(section.len().next_multiple_of(4), 0);
+    section
 }
 
-fn read_key_values(mut section: &[u8]) -> Result<Metadata, TextureError> {
+/// Whether the key/value data hold whole entries, and rows go from the top down, which is what a file without a word of it means.
+fn check_orientation(mut section: &[u8]) -> Result<(), TextureError> {
     let cut = || malformed("a key/value entry is cut off");
-    let mut metadata = Metadata::new();
     while let Some((length, rest)) = section.split_first_chunk() {
         let length = u32::from_le_bytes(*length) as usize;
         let entry = rest.get(..length).ok_or_else(cut)?;
         section = rest.get(length.next_multiple_of(4)..).unwrap_or_default();
-
         let key_end = entry.iter().position(|&b| b == 0).ok_or_else(|| malformed("a key does not end"))?;
-        let text = |bytes| std::str::from_utf8(bytes).map_err(|_| malformed("a key or value is not UTF-8"));
-        let key = text(&entry[..key_end])?;
-        let value = &entry[key_end + 1..];
-        if key == "KTXorientation" && !value.starts_with(b"rd") {
+        if &entry[..key_end] == b"KTXorientation" && !entry[key_end + 1..].starts_with(b"rd") {
             return Err(unsupported("rows from the bottom or columns from the right"));
         }
-        if !is_reserved(key) {
-            let value = text(value.strip_suffix(&[0]).unwrap_or(value))?;
-            metadata.push((key.to_owned(), value.to_owned()));
-        }
     }
-    if section.is_empty() { Ok(metadata) } else { Err(cut()) }
+    if section.is_empty() { Ok(()) } else { Err(cut()) }
 }
 
 fn section(file: &[u8], offset: u64, length: u64) -> Result<&[u8], TextureError> {

@@ -1,17 +1,11 @@
 use crate::TextureError;
 
-/// What a KTX2 or EXR file says about itself: key and value. Both sort the entries by key. The same entries can be
-/// written to both, so keys are 1 to 64 ASCII letters, digits, `.`, `_` and `-`, distinct, and do not begin with `KTX` or
-/// `ktx`; values hold no NUL and are at most 1 MiB.
+/// What an EXR file says about itself: key and value, sorted by key in the file. Keys are 1 to 64 ASCII letters, digits, `.`, `_` and
+/// `-`, and distinct; values hold no NUL and are at most 1 MiB.
 pub type Metadata = Vec<(String, String)>;
 
 const MAX_KEY_BYTES: usize = 64;
 const MAX_VALUE_BYTES: usize = 1 << 20;
-
-/// Whether a key belongs to the KTX specification (section 3.11.1 reserves the prefix).
-pub(crate) fn is_reserved(key: &str) -> bool {
-    key.starts_with("KTX") || key.starts_with("ktx")
-}
 
 /// Checks the rules of [`Metadata`].
 pub(crate) fn check(metadata: &[(String, String)]) -> Result<(), TextureError> {
@@ -19,8 +13,6 @@ pub(crate) fn check(metadata: &[(String, String)]) -> Result<(), TextureError> {
     for (i, (key, value)) in metadata.iter().enumerate() {
         let reason = if key.is_empty() || key.len() > MAX_KEY_BYTES || !plain(key) {
             "a key is 1 to 64 ASCII letters, digits, `.`, `_` or `-`"
-        } else if is_reserved(key) {
-            "keys that begin with KTX are reserved by that format"
         } else if metadata[..i].iter().any(|(earlier, _)| earlier == key) {
             "the key appears twice"
         } else if value.contains('\0') {
@@ -40,10 +32,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn entries_that_some_container_cannot_hold_are_refused() {
+    fn entries_that_the_container_cannot_hold_are_refused() {
         let entry = |key: &str, value: &str| (key.to_owned(), value.to_owned());
         assert!(check(&[entry("model", "Smith, α = 0.5"), entry("input-hash", "")]).is_ok());
-        for key in ["", "two words", "größe", "KTXwriter", "ktxfoo", &"x".repeat(65)] {
+        for key in ["", "two words", "größe", &"x".repeat(65)] {
             assert!(check(&[entry(key, "v")]).is_err(), "{key}");
         }
         assert!(check(&[entry("a", "1"), entry("a", "2")]).is_err());

@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn our_own_exr() {
         let image = Image { width: 3, height: 2, channels: 3, data: (0..18).map(|i| i as f32 * 0.5).collect() };
-        let file = crate::exr::encode(&image, &crate::Metadata::new()).unwrap();
+        let file = crate::exr::encode(&image, &crate::exr::RGB, &crate::Metadata::new()).unwrap();
         assert_eq!(decode(&file).unwrap(), image);
     }
 

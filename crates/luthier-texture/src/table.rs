@@ -12,7 +12,7 @@ use luthier_lut::Image;
 use crate::error::Container;
 use crate::limits::checked_bytes;
 use crate::texels::{Samples, TexelLayout};
-use crate::{TextureError, dds, ktx2, png, radiance};
+use crate::{TextureError, dds, exr, ktx2, png, radiance};
 
 /// A table as it is in a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -93,8 +93,7 @@ fn exr_table(file: &[u8]) -> Result<Table, TextureError> {
     let layer = image.layer_data;
     let (width, height) = (layer.size.0 as u32, layer.size.1 as u32);
     let mut planes: Vec<_> = layer.channel_data.list.into_iter().collect();
-    let rank = |name: &str| "RGBAXYZV".find(name).filter(|_| name.len() == 1).unwrap_or(usize::MAX);
-    planes.sort_by_cached_key(|plane| (rank(&plane.name.to_string()), plane.name.to_string()));
+    planes.sort_by_cached_key(|plane| exr::rank(&plane.name.to_string()));
     let (channels, texels) = (planes.len(), width as usize * height as usize);
     let half = planes.iter().all(|plane| matches!(plane.sample_data, FlatSamples::F16(_)));
     let mut data = vec![0.0; channels * texels];
@@ -107,7 +106,8 @@ fn exr_table(file: &[u8]) -> Result<Table, TextureError> {
     }
     let samples = if half { Samples::Half } else { Samples::Float };
     let names: Vec<String> = planes.iter().map(|plane| plane.name.to_string()).collect();
-    let format = format!("EXR {}, {}", names.join(""), if half { "half" } else { "float" });
+    let separator = if names.iter().all(|name| name.len() == 1) { "" } else { " " };
+    let format = format!("EXR {}, {}", names.join(separator), if half { "half" } else { "float" });
     Ok(Table { image: Image { width, height, channels: channels as u32, data }, samples, format })
 }
 

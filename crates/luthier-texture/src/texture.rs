@@ -1,9 +1,9 @@
 use luthier_lut::{Atlas, Image, TexelFormat};
 
+use crate::TextureError;
 use crate::limits::checked_bytes;
-use crate::{Metadata, TextureError};
 
-/// Texels as a device takes them, and what is known about them.
+/// Texels as a device takes them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
     /// Format of the texels.
@@ -14,15 +14,13 @@ pub struct Texture {
     pub height: u32,
     /// The texels, row by row from the top, tightly packed, little-endian.
     pub bytes: Vec<u8>,
-    /// Key and value pairs to keep with them.
-    pub metadata: Metadata,
 }
 
 impl Texture {
     /// The texels of an atlas in its format.
-    pub fn from_atlas(atlas: &Atlas, metadata: Metadata) -> Self {
+    pub fn from_atlas(atlas: &Atlas) -> Self {
         let Image { width, height, .. } = atlas.texels;
-        Self { format: atlas.format, width, height, bytes: atlas.bytes.clone(), metadata }
+        Self { format: atlas.format, width, height, bytes: atlas.bytes.clone() }
     }
 
     /// The values that a shader reads.
@@ -66,7 +64,7 @@ mod tests {
                 texels: texels.clone(),
                 bytes: format.encode(&texels),
             };
-            let texture = Texture::from_atlas(&atlas, Metadata::new());
+            let texture = Texture::from_atlas(&atlas);
             assert_eq!((texture.width, texture.height), (3, 1));
             assert_eq!(texture.image().unwrap(), texels);
         }
@@ -74,13 +72,7 @@ mod tests {
 
     #[test]
     fn bytes_that_do_not_fit_are_an_error() {
-        let texture = Texture {
-            format: TexelFormat::R16Float,
-            width: 2,
-            height: 2,
-            bytes: vec![0; 7],
-            metadata: Metadata::new(),
-        };
+        let texture = Texture { format: TexelFormat::R16Float, width: 2, height: 2, bytes: vec![0; 7] };
         assert!(matches!(texture.image(), Err(TextureError::Lut(_))));
         let texture = Texture { width: u32::MAX, height: u32::MAX, ..texture };
         assert!(matches!(texture.image(), Err(TextureError::Size { .. })));

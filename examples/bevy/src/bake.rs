@@ -29,10 +29,14 @@ pub struct BakedMaterial {
     phase: Option<Handle<Image>>,
     #[texture(4)]
     thickness: Option<Handle<Image>>,
+    #[texture(7)]
+    film: Option<Handle<Image>>,
+    #[texture(8)]
+    escape: Option<Handle<Image>>,
     #[storage(6, read_only)]
     materials: Handle<ShaderBuffer>,
-    /// Number of the material in the bake.
-    #[uniform(7)]
+    /// Number of the material in the bake. Bindings of a program's own start at 16.
+    #[uniform(16)]
     material: u32,
 }
 
@@ -96,6 +100,8 @@ impl BakedMaterial {
             fgd: table("fgd")?,
             phase: table("phase")?,
             thickness: table("thickness")?,
+            film: table("film")?,
+            escape: table("escape")?,
             materials: buffers.add(ShaderBuffer::new(&words, RenderAssetUsages::RENDER_WORLD)),
             material,
         })

@@ -3,7 +3,7 @@
 #import bevy_pbr::forward_io::VertexOutput
 #import bevy_pbr::mesh_view_bindings::{lights, view}
 
-@group(#{MATERIAL_BIND_GROUP}) @binding(7) var<uniform> material: u32;
+@group(#{MATERIAL_BIND_GROUP}) @binding(16) var<uniform> material: u32;
 
 @fragment
 fn fragment(in: VertexOutput) -> @location(0) vec4<f32> {
@@ -20,5 +20,6 @@ fn fragment(in: VertexOutput) -> @location(0) vec4<f32> {
         let wi = lights.directional_lights[i].direction_to_light * frame;
         radiance += lights.directional_lights[i].color.rgb * luthier_eval(material, wi, wo);
     }
-    return vec4<f32>(radiance * view.exposure, 1.0);
+    // Bevy's picture is of half floats.
+    return vec4<f32>(luthier_bounded(radiance * view.exposure), 1.0);
 }

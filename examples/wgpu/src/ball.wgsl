@@ -46,5 +46,5 @@ fn ball_fragment(in: Varying) -> @location(0) vec4<f32> {
         let wi = scene.lights[i].direction.xyz * frame;
         radiance += scene.lights[i].irradiance.rgb * luthier_eval(scene.material, wi, wo);
     }
-    return vec4<f32>(radiance, 1.0);
+    return vec4<f32>(luthier_bounded(radiance), 1.0);
 }

@@ -67,7 +67,9 @@ fn upload_table(device: &wgpu::Device, queue: &wgpu::Queue, kind: &str, texels: 
         "rg16float" => wgpu::TextureFormat::Rg16Float,
         "rgba16float" => wgpu::TextureFormat::Rgba16Float,
         "rgba8unorm" => wgpu::TextureFormat::Rgba8Unorm,
-        // Not filterable without a feature of the device.
+        "rgb10a2unorm" => wgpu::TextureFormat::Rgb10a2Unorm,
+        "rg11b10ufloat" => wgpu::TextureFormat::Rg11b10Ufloat,
+        // Floats of 32 bits are not filtered, and the others need a feature of the device. A bake has them only where it is asked for them.
         other => bail!("this program does not upload `{other}`"),
     };
     let descriptor = wgpu::TextureDescriptor {

@@ -5,8 +5,8 @@ use luthier_optics::Rgb;
 use luthier_optics::interpolation::cubic_stencil;
 use rayon::prelude::*;
 
-use super::{Found, WEIGHTS, cost, measured, row_form};
-use crate::fresnel::{Fit, FresnelJob, RowShape, cos_theta};
+use super::{DEFAULT_BUDGET, Found, WEIGHTS, cost, measured, row_form};
+use crate::fresnel::{Fit, FresnelJob, RowCurve, RowShape, cos_theta};
 use crate::job::{Job, JobKind};
 use crate::plan::Plan;
 use crate::settings::axis;
@@ -50,7 +50,7 @@ const PER_CELL: u32 = 5;
 /// More texels are tried while the error falls by a tenth within an octave.
 const STALLED: f64 = 0.9;
 
-/// The exact reflectance of one interface, from nodes at cubes of equal steps.
+/// What the row of one interface holds, from nodes at cubes of equal steps.
 pub(crate) struct Truth {
     nodes: Vec<Rgb>,
     pub(crate) fit: SchlickBase,
@@ -60,10 +60,10 @@ impl Truth {
     const NODES: u32 = 2049;
 
     pub(crate) fn new(job: &FresnelJob) -> Self {
-        let sampled = job.interface.sampled(&job.color);
+        let curve = RowCurve::new(&job.interface, &job.color);
         let last = f64::from(Self::NODES - 1);
-        let nodes = (0..Self::NODES).map(|i| f64::from(i) / last).map(|u| sampled.rgb(u * u * u)).collect();
-        Self { nodes, fit: SchlickBase::fit(&|cos_theta| sampled.rgb(cos_theta)) }
+        let nodes = (0..Self::NODES).map(|i| f64::from(i) / last).map(|u| curve.at(u * u * u)).collect();
+        Self { nodes, fit: SchlickBase::fit(&|cos_theta| curve.at(cos_theta)) }
     }
 
     pub(crate) fn at(&self, cos_theta: f64) -> Rgb {
@@ -91,21 +91,52 @@ impl Truth {
     }
 }
 
-/// The truth of every row of a plan.
-pub(crate) fn truths(plan: &Plan) -> Vec<Truth> {
-    let jobs: Vec<&FresnelJob> = plan
-        .graph
-        .of_kind(JobKind::Fresnel)
-        .filter_map(|job| if let Job::Fresnel(job) = job { Some(job) } else { None })
-        .collect();
-    jobs.into_par_iter().map(Truth::new).collect()
+/// Rows that candidates are measured on, the hardest of a plan: enough for the worst to be among them.
+const HARDEST: usize = 64;
+
+/// Equal steps of the root of the cosine by which rows are compared.
+const STEPS: u32 = 64;
+
+/// How much linear interpolation between [`STEPS`] misses.
+fn hardness(job: &FresnelJob) -> f64 {
+    let curve = RowCurve::new(&job.interface, &job.color);
+    let at = |half: u32| {
+        let u = f64::from(half) / f64::from(2 * STEPS);
+        curve.at(u * u)
+    };
+    let missed = |step: u32| {
+        let [a, middle, b] = [0, 1, 2].map(|half| at(2 * step + half));
+        (0..3).map(|c| (0.5 * (a[c] + b[c]) - middle[c]).abs()).fold(0.0, f64::max)
+    };
+    (0..STEPS).map(missed).fold(0.0, f64::max)
+}
+
+/// The rows of a plan by the numbers of their tiles; where they are many, the hardest first.
+fn rows(plan: &Plan) -> Vec<(usize, &FresnelJob)> {
+    let tiles = plan.tiles[TableKind::Fresnel as usize].tiles.iter().enumerate();
+    let job = |(tile, (_, key)): (usize, &(String, _))| match plan.graph.get(JobKind::Fresnel, *key) {
+        Some(Job::Fresnel(job)) => Some((tile, job)),
+        _ => None,
+    };
+    let rows: Vec<(usize, &FresnelJob)> = tiles.filter_map(job).collect();
+    if rows.len() <= HARDEST {
+        return rows;
+    }
+    let mut ranked: Vec<_> = rows.into_par_iter().map(|row| (hardness(row.1), row)).collect();
+    ranked.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+    ranked.into_iter().map(|(_, row)| row).collect()
+}
+
+/// The truths of the hardest of some rows.
+fn truths(rows: &[(usize, &FresnelJob)]) -> Vec<Truth> {
+    rows.par_iter().take(HARDEST).map(|(_, job)| Truth::new(job)).collect()
 }
 
 /// A candidate of some shape.
-pub(crate) fn candidate(shape: &RowShape, truths: &[Truth], colors: bool) -> Candidate {
+pub(crate) fn candidate(shape: &RowShape, truths: &[&Truth], rows: usize, colors: bool) -> Candidate {
     let error = truths.iter().map(|t| t.error(shape, colors)).reduce(|a, b| a.max(&b)).unwrap_or_default();
     let form = row_form(shape.axis.clone(), shape.format, shape.base);
-    Candidate { bytes: form.bytes(truths.len() as u32), cost: price(shape), error, form }
+    Candidate { bytes: form.bytes(rows as u32), cost: price(shape), error, form }
 }
 
 /// The cost of a look-up.
@@ -118,8 +149,36 @@ pub(super) fn price(shape: &RowShape) -> f64 {
 }
 
 pub(super) fn candidates(plan: &Plan, colors: bool) -> Option<Found> {
+    let rows = rows(plan);
+    of_rows(plan, &truths(&rows).iter().collect::<Vec<_>>(), rows.len(), colors)
+}
+
+/// The affordable candidates for the rows that are served by some of them, and which rows are not.
+pub(super) fn served(plan: &Plan) -> Option<Found> {
+    let rows = rows(plan);
+    let of = |truths: &[&Truth]| of_rows(plan, truths, rows.len(), false).map(Found::affordable);
+    let all = of(&truths(&rows).iter().collect::<Vec<_>>())?;
+    if all.comes_near(&DEFAULT_BUDGET) {
+        return Some(all);
+    }
+    let (mut served, mut left_out) = (Vec::new(), Vec::new());
+    for (tile, job) in &rows {
+        let truth = Truth::new(job);
+        if !of(&[&truth]).is_some_and(|found| found.comes_near(&DEFAULT_BUDGET)) {
+            left_out.push(*tile);
+        } else if served.len() + 1 < HARDEST {
+            served.push(truth);
+        } else {
+            break;
+        }
+    }
+    let found = of(&served.iter().collect::<Vec<_>>()).unwrap_or(all);
+    Some(Found { left_out, is_whole: rows.len() <= HARDEST, ..found })
+}
+
+/// The candidates of all `rows`, measured on these.
+fn of_rows(plan: &Plan, truths: &[&Truth], rows: usize, colors: bool) -> Option<Found> {
     let (asked, given) = (plan.settings.asked, &plan.settings.fresnel);
-    let truths = truths(plan);
     if truths.is_empty() || asked.fresnel_size && asked.fresnel_format && asked.fresnel_mapping {
         return None;
     }
@@ -143,11 +202,11 @@ pub(super) fn candidates(plan: &Plan, colors: bool) -> Option<Found> {
         .map(|(base, format, mapping)| {
             let shape = |size| RowShape { axis: Axis { size, ..mapping.clone() }, format, base };
             if asked.fresnel_size {
-                return vec![candidate(&shape(given.axis.size), &truths, colors)];
+                return vec![candidate(&shape(given.axis.size), truths, rows, colors)];
             }
             let mut family: Vec<Candidate> = Vec::new();
             for size in SIZES {
-                family.push(candidate(&shape(size), &truths, colors));
+                family.push(candidate(&shape(size), truths, rows, colors));
                 let earlier = family.len().checked_sub(5).map(|i| family[i].error.max_abs);
                 let best = family.iter().map(|c| c.error.max_abs).fold(f64::INFINITY, f64::min);
                 if size >= 16 && earlier.is_some_and(|earlier| best > STALLED * earlier) {
@@ -162,5 +221,6 @@ pub(super) fn candidates(plan: &Plan, colors: bool) -> Option<Found> {
         format: TexelFormat::Rgba16Float,
         base: RowBase::Zero,
     };
-    Some(Found::new(TableKind::Fresnel, price(&fixed), measured.concat()))
+    let is_whole = truths.len() == rows;
+    Some(Found { is_whole, ..Found::new(TableKind::Fresnel, price(&fixed), measured.concat()) })
 }

@@ -78,7 +78,8 @@ pub(super) fn of_group(plan: &Plan, results: &Results, group: Group) -> Vec<Cand
 
 fn fgd_tiles<'a>(plan: &Plan, results: &Results, jobs: impl Iterator<Item = &'a Job>) -> Vec<Fine> {
     let tile = |job: &Job| {
-        let FgdTruth { image, probes, slack, .. } = results.fgd_truth(job).clone();
+        let FgdTruth { image, mut probes, kinks, slack, .. } = results.fgd_truth(job).clone();
+        probes.extend(kinks);
         Fine { grid: plan.settings.fgd.0.clone(), image, probes, slack }
     };
     jobs.map(tile).collect()

@@ -16,13 +16,12 @@ const FORMATS: [TexelFormat; 2] = [TexelFormat::Rgba16Float, TexelFormat::Rgba32
 const CLOSED_FORM: f64 = 3.0 * (cost::QUARTER_RATE + 6.0);
 
 pub(super) fn candidates(plan: &Plan) -> Option<Found> {
-    let asked = plan.settings.asked;
     let jobs: Vec<&PhaseJob> = plan
         .graph
         .of_kind(JobKind::Phase)
         .filter_map(|job| if let Job::Phase(job) = job { Some(job) } else { None })
         .collect();
-    if jobs.is_empty() || asked.phase_size || asked.phase_format {
+    if jobs.is_empty() || plan.settings.asked.phase {
         return None;
     }
     let formats = FORMATS.into_iter().filter(|format| plan.settings.formats.has(*format));

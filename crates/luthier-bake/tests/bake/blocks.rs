@@ -8,13 +8,16 @@ use crate::materials::{atlas, bake_all, conductor, dielectric, material, try_bak
 
 const BLOCKS: TexelFormat = TexelFormat::Bc6hRgbUfloat;
 
+/// Albedos of every material.
+const ASKED: &str = "[bake]\ntables = [\"fgd\"]\n";
+
 const SMALL_BLOCKS: &str = "[bake.fgd]\nsize = [8, 12]\nformat = \"bc6h-rgb-ufloat\"\n";
 
 fn set(settings: &str) -> Vec<Material> {
     vec![
-        material("glass", &dielectric("1.5", 0.3), settings),
-        material("gold", &conductor("\"au\"", 0.2), ""),
-        material("chromium", &conductor("{ n = 3.2, k = 4.4 }", 0.3), ""),
+        material("glass", &dielectric("1.5", 0.3), &(ASKED.to_owned() + settings)),
+        material("gold", &conductor("\"au\"", 0.2), ASKED),
+        material("chromium", &conductor("{ n = 3.2, k = 4.4 }", 0.3), ASKED),
     ]
 }
 

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use luthier_lut::{Atlas, TableKind, WeightBits};
 
 use crate::brute_force;
-use crate::materials::{atlas, bake_all, conductor, dielectric, material};
+use crate::materials::{ASKED, atlas, bake_all, conductor, dielectric, material};
 
 /// Largest error over a grid of `u` much denser than the baker's.
 fn rescan(atlas: &Atlas, tile: u32, steps: [u32; 2], expected: impl Fn([f64; 2]) -> f64) -> f64 {
@@ -62,7 +62,7 @@ fn errors_of_slope_distributions_are_as_stated() {
         let tables = format!("[bake.distribution]\nsize = [96, 64]\n{settings}\n[bake.fgd]\nsize = [4, 4]\n");
         let baked = bake_all(&[
             material("ggx", &dielectric("1.5", 0.1), &tables),
-            material("beckmann", &(dielectric("1.5", 0.1) + "distribution = \"beckmann\"\n"), ""),
+            material("beckmann", &(dielectric("1.5", 0.1) + "distribution = \"beckmann\"\n"), ASKED),
         ]);
         let table = atlas(&baked, TableKind::Distribution);
         for (tile, entry) in table.tiles.iter().enumerate() {
@@ -80,7 +80,7 @@ fn slope_distributions_are_numbers_everywhere() {
         let tables = format!("[bake.distribution]\nsize = [64, 64]\n{settings}\n[bake.fgd]\nsize = [4, 4]\n");
         let baked = bake_all(&[
             material("ggx", &dielectric("1.5", 0.1), &tables),
-            material("beckmann", &(dielectric("1.5", 0.1) + "distribution = \"beckmann\"\n"), ""),
+            material("beckmann", &(dielectric("1.5", 0.1) + "distribution = \"beckmann\"\n"), ASKED),
         ]);
         let table = atlas(&baked, TableKind::Distribution);
         let normal = if settings.contains("cos-power") { 1.0 } else { 0.0 };

@@ -44,19 +44,17 @@ fn noise_becomes_a_map_that_fills_its_range_and_repeats() {
 #[test]
 fn maps_are_listed_by_layer_and_slot() {
     let maps = "maps = { normal = \"n.png\", roughness = \"r.png\", thickness = \"t.png\" }\n";
-    let base = "maps = { roughness = \"b.png\" }\n";
     let flakes = "[effects.flakes]\nnormal_map = \"f.png\"\ntiling = 7\nfade_start = 3\n\
                   [effects.glitter]\nfrequency = 30\nfilled = 0.2\ntilt_deg = 10\n";
-    let layers = dielectric("1.5", 0.2) + maps + &conductor("{ n = 0.3, k = 3.0 }", 0.1) + base + flakes;
+    let layers = dielectric("1.5", 0.2) + maps + &conductor("{ n = 0.3, k = 3.0 }", 0.1) + flakes;
     let material = material("mapped", &layers, SMALL);
-    assert_eq!(material.files, ["b.png", "f.png", "n.png", "r.png", "t.png"]);
+    assert_eq!(material.files, ["f.png", "n.png", "r.png", "t.png"]);
     let bake = bake_all(&[material]);
     let found: Vec<_> = bake.materials[0].maps.iter().map(|m| (m.slot, m.layer, m.source.label())).collect();
     let expected = [
         (MapSlot::Normal, Some(0), "n.png"),
         (MapSlot::Roughness, Some(0), "r.png"),
         (MapSlot::Thickness, Some(0), "t.png"),
-        (MapSlot::Roughness, Some(1), "b.png"),
         (MapSlot::FlakeNormal, None, "f.png"),
     ];
     assert_eq!(found, expected.map(|(slot, layer, path)| (slot, layer, path.to_owned())));

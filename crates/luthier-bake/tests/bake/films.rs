@@ -38,6 +38,30 @@ fn phase_rows_are_two_cosines() {
     }
 }
 
+/// Nodes are moved to halve the error between them, which makes theirs as large: the largest is stated all the same.
+#[test]
+fn phase_rows_err_no_more_than_is_stated_at_nodes_and_between() {
+    let water = "[[layer]]\ntype = \"thin-film\"\nior = \"water\"\n[layer.thickness_nm]\nmin = 100\nmax = 600\nextent_um = 50000\n\
+                 map = { noise = { seed = 3, frequency = 2, octaves = 5 } }\n";
+    let layers = water.to_owned() + &dielectric("1.0", 0.0);
+    let small = "[bake.fgd]\nsize = [4, 4]\n[bake.thickness]\nsize = 8\n";
+    let soap = material("soap", &layers, &(small.to_owned() + "[bake.phase]\nsize = 256\n"));
+    let waves = [645.0, 525.0, 445.0].map(|nm| 2.0 * 600.0 * soap.stack.layers[0].films[0].ior.at(nm).re / nm);
+    let baked = bake_all(&[soap]);
+    let table = atlas(&baked, TableKind::Phase);
+    let stated = table.tiles[0].error.max_abs_err;
+    let error = |s: f64| {
+        let read = table.sample(0, [s, 0.0], WeightBits::Fixed(8));
+        let exact = waves.map(|waves: f64| 2.0 * (2.0 * PI * waves * s).cos());
+        (0..3).map(|c| (read[c] - exact[c]).abs()).fold(0.0, f64::max)
+    };
+    let nodes = (0..256).map(|i| error(f64::from(i) / 255.0)).fold(0.0, f64::max);
+    let between = (0..=255 * 64).map(|i| error(f64::from(i) / (255.0 * 64.0))).fold(0.0, f64::max);
+    eprintln!("phase: nodes {nodes:.3e}, between {between:.3e}, stated {stated:.3e}");
+    // Points between those of the bake's own scan may be a little worse.
+    assert!(nodes <= stated * (1.0 + 1e-9) && between <= 1.02 * stated, "{nodes} {between} {stated}");
+}
+
 #[test]
 fn thickness_textures_repeat_without_a_seam() {
     let settings = SMALL.replace("size = 16\n", "size = 128\n") + "format = \"rgba32float\"\n";
@@ -112,4 +136,24 @@ fn images_become_thickness() {
         let found = table.sample(0, uv, WeightBits::Exact)[0] * 2.0 * MAX_NM;
         assert!((found - nm).abs() < 1e-3, "{uv:?}: {found} {nm}");
     }
+}
+
+/// Of films on films, a record has the first, and so has all that shaders compute; tables are made of all. `Feature::InnerFilms` says so.
+#[test]
+fn records_have_one_film_and_tables_have_all() {
+    let film = |ior: f64, nm: f64| format!("[[layer]]\ntype = \"thin-film\"\nior = {ior}\nthickness_nm = {nm}\n");
+    let coat = dielectric("1.5", 0.3);
+    let one = material("one", &(film(1.9, 140.0) + &coat), SMALL);
+    let two = material("two", &(film(1.9, 140.0) + &film(1.4, 90.0) + &coat), SMALL);
+    let outline = luthier_bake::outline(&[one, two], &|_, _| Err("no images here".to_owned())).unwrap();
+    let [one, two] = [0, 1].map(|i| outline.materials[i].records[0].clone());
+    assert_ne!(one.fresnel_tile, two.fresnel_tile);
+    assert_ne!(one.fgd_tile, two.fgd_tile);
+    let tiles = |record: &luthier_lut::LayerRecord| luthier_lut::LayerRecord {
+        fresnel_tile: None,
+        fgd_tile: None,
+        phase_tile: None,
+        ..record.clone()
+    };
+    assert_eq!(tiles(&one), tiles(&two));
 }

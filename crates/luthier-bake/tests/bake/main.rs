@@ -13,6 +13,12 @@ mod closed_forms;
 mod effects;
 mod film_table;
 mod films;
+mod lean;
+// Materials by number, which the tests of the command bake too.
+#[path = "../../../luthier-cli/tests/cli/library.rs"]
+mod library;
+mod many;
 mod materials;
 mod sharing;
 mod statistics;
+mod total_reflection;

@@ -18,6 +18,9 @@ size = 32
 size = 16
 ";
 
+/// Every kind of table that an interface without a film has.
+pub(crate) const ASKED: &str = "[bake]\ntables = [\"fresnel\", \"distribution\", \"fgd\"]\n";
+
 /// A material of that name with these layers (TOML) and settings.
 pub(crate) fn material(name: &str, layers: &str, settings: &str) -> Material {
     let text = format!("schema = 1\nname = \"{name}\"\n{layers}\n{settings}\n");

@@ -3,7 +3,7 @@
 use luthier_bake::{Bake, BakeError};
 use luthier_lut::TableKind;
 
-use crate::materials::{SMALL, atlas, bake_all, conductor, dielectric, material, try_bake};
+use crate::materials::{ASKED, SMALL, atlas, bake_all, conductor, dielectric, material, try_bake};
 
 const FILM: &str = "
 [[layer]]
@@ -28,10 +28,11 @@ fn bits(bake: &Bake) -> Vec<u32> {
 
 #[test]
 fn threads_do_not_matter() {
+    let every_kind = "[bake]\ntables = [\"fresnel\", \"distribution\", \"fgd\", \"phase\", \"thickness\"]\n";
     let set = [
         material("coated", &(dielectric("1.5", 0.1) + &conductor("\"au\"", 0.3)), SMALL),
-        material("filmed", &(FILM.to_owned() + &dielectric("1.5", 0.2)), ""),
-        material("other", &(conductor("{ n = 3.2, k = 3.3 }", 0.3) + "distribution = \"beckmann\"\n"), ""),
+        material("filmed", &(FILM.to_owned() + &dielectric("1.5", 0.2)), every_kind),
+        material("other", &(conductor("{ n = 3.2, k = 3.3 }", 0.3) + "distribution = \"beckmann\"\n"), ASKED),
     ];
     let with = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -55,9 +56,9 @@ fn threads_do_not_matter() {
 fn equal_interfaces_share_their_tiles() {
     let set = [
         material("one", &dielectric("1.5", 0.1), SMALL),
-        material("two", &dielectric("1.5", 0.7), ""),
-        material("three", &dielectric("1.6", 0.1), ""),
-        material("four", &(dielectric("1.5", 0.1) + "distribution = \"beckmann\"\n"), ""),
+        material("two", &dielectric("1.5", 0.7), ASKED),
+        material("three", &dielectric("1.6", 0.1), ASKED),
+        material("four", &(dielectric("1.5", 0.1) + "distribution = \"beckmann\"\n"), ASKED),
     ];
     let baked = bake_all(&set);
     let [one, two, three, four] = [0, 1, 2, 3].map(|i: usize| &baked.materials[i].records[0]);
@@ -75,7 +76,7 @@ fn equal_interfaces_share_their_tiles() {
 fn a_tile_does_not_depend_on_its_neighbours() {
     let gold = || material("gold", &conductor("\"au\"", 0.3), SMALL);
     let alone = bake_all(&[gold()]);
-    let set = bake_all(&[material("one", &dielectric("1.5", 0.1), ""), gold()]);
+    let set = bake_all(&[material("one", &dielectric("1.5", 0.1), ASKED), gold()]);
     for kind in [TableKind::Fresnel, TableKind::Distribution, TableKind::Fgd] {
         let (a, b) = (atlas(&alone, kind), atlas(&set, kind));
         let tile = b.tiles.len() as u32 - 1;
@@ -99,9 +100,22 @@ fn sets_that_cannot_be_baked() {
 
     let sizes = try_bake(&[plain("a", "[bake.fresnel]\nsize = 64\n"), plain("b", ""), plain("c", SMALL)]);
     match sizes {
-        Err(BakeError::Conflict { setting, first, first_value, second, second_value }) => {
-            assert_eq!((setting, first.as_str(), second.as_str()), ("bake.fresnel.size", "a.toml", "c.toml"));
+        Err(BakeError::Conflict { material, setting, first, first_value, second, second_value }) => {
+            assert_eq!((material, setting), (2, "bake.fresnel.size"));
+            assert_eq!((first.as_str(), second.as_str()), ("a.toml:9", "c.toml:10"));
             assert_eq!((first_value.as_str(), second_value.as_str()), ("64", "24"));
+        }
+        other => panic!("{other:?}"),
+    }
+
+    // A texture of 8,192 x 8,192 holds four of them; a fifth is one too many, which no job has to find out.
+    let large = "[bake]\nmodel = \"belcour\"\n[bake.fgd]\nsize = [4096, 4096]\n";
+    let set: Vec<_> =
+        (0..5).map(|i| material(&format!("m{i}"), &dielectric(&format!("1.{}", i + 3), 0.1), large)).collect();
+    match try_bake(&set) {
+        Err(BakeError::TooManyTiles { kind, tiles, tile, most, hint }) => {
+            assert_eq!((kind, tiles, tile, most), (TableKind::Fgd, 5, [4096; 2], 4));
+            assert!(hint.contains("[bake.fgd]") && hint.contains("several folders"), "{hint}");
         }
         other => panic!("{other:?}"),
     }

@@ -35,7 +35,8 @@ pub(crate) struct Look {
     /// Light from all around: an equirectangular EXR or Radiance HDR file, up is its top. By default a built-in studio
     #[arg(long, value_name = "FILE")]
     pub(crate) environment: Option<PathBuf>,
-    /// Directions per sample and lobe in which the shader is asked for the environment; 0 reads blurred maps instead
+    /// Directions per sample and lobe in which the shader is asked for the environment; 0, the default, reads blurred maps and tables
+    /// of albedos instead. Of a bake without these tables (`bake --tables fresnel,fgd,film` makes them) 64 is the default
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=4096))]
     pub(crate) environment_samples: Option<u32>,
     /// Show the environment behind

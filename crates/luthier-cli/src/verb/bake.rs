@@ -1,18 +1,24 @@
+use std::collections::BTreeSet;
 use std::path::{Component, Path};
 use std::time::Instant;
 
 use luthier_bake::{Observer, Silent};
 use luthier_lut::{CandidateForm, Manifest};
+use luthier_material::Diagnostic;
+use luthier_shader::{Form, Target};
 use serde_json::{Value, json};
 
-use crate::bake_files::{BakeFiles, MANIFEST, REPORT_FILES, REPORT_FOLDER};
-use crate::cli::BakeOptions;
-use crate::domain;
+use crate::bake_files::{BakeFiles, MANIFEST, REPORT_FILES, REPORT_FOLDER, Shaders};
+use crate::cli::{BakeOptions, Emission};
+use crate::doubts;
 use crate::failure::{Failure, Outcome, files};
-use crate::materials::{read, read_image, shaded, valid};
+use crate::materials::{Source, read, read_image, shaded, valid};
+use crate::misses;
 use crate::output::{bytes, print};
 use crate::progress::BakeProgress;
+use crate::refusals;
 use crate::staging::Staging;
+use crate::verb::check::diagnostics;
 use crate::verb::scene;
 
 /// Bakes files into a folder. The folder changes only once everything is made.
@@ -25,8 +31,16 @@ pub(crate) fn run(options: &BakeOptions) -> Outcome {
         return Err(Failure::Usage(anyhow::anyhow!("--allow-miss and --budgets are for scenes (docs/scenes.md)")));
     }
     let mut sources = read(&options.sources.paths)?;
-    domain::check(&mut sources, options.shading.model);
+    refusals::find(&mut sources, |material| doubts::of_model(material, options.shading.model));
+    let mut told: Vec<Diagnostic> = sources.iter().flat_map(Source::diagnostics).cloned().collect();
     let materials = shaded(valid(sources, options.quiet)?, &options.shading);
+    let shaders = options.emission.shaders();
+    let limits = options.limits.options();
+    if shaders.forms == [Form::Full] && !limits.budget.is_empty() {
+        return Err(Failure::Usage(anyhow::anyhow!(
+            "limits are those of tables, and a bake of --form full has no tables"
+        )));
+    }
     let progress = BakeProgress::new();
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads.map_or(0, usize::from))
@@ -34,13 +48,20 @@ pub(crate) fn run(options: &BakeOptions) -> Outcome {
         .map_err(|source| Failure::Files(anyhow::Error::new(source).context("cannot start threads")))?;
     let made = pool.install(|| {
         let observer: &dyn Observer = if options.quiet { &Silent } else { &progress };
-        let bake = luthier_bake::bake_with(&materials, &options.limits.options(), &read_image, observer);
-        BakeFiles::new(&materials, &bake.map_err(Failure::input)?)
+        // Without a shader that reads them, there are no tables.
+        if shaders.forms == [Form::Full] {
+            return BakeFiles::without_tables(&materials, &shaders);
+        }
+        let bake = luthier_bake::bake_with(&materials, &limits, &read_image, observer);
+        BakeFiles::new(&materials, &bake.map_err(Failure::input)?, &shaders)
     })?;
     publish(options, &made)?;
+    told.extend(misses::name(&made.manifest, options.quiet)?);
 
     if options.json {
-        print(&format!("{:#}", summary(options, &made.manifest, &progress, start)))
+        let mut summary = summary(options, &made.manifest, &progress, start);
+        summary["diagnostics"] = diagnostics(&told);
+        print(&format!("{summary:#}"))
     } else if options.quiet {
         Ok(())
     } else {
@@ -48,9 +69,24 @@ pub(crate) fn run(options: &BakeOptions) -> Outcome {
     }
 }
 
+impl Emission {
+    /// The shaders to write, each once.
+    pub(super) fn shaders(&self) -> Shaders {
+        let all = Shaders::default();
+        let targets: BTreeSet<Target> = self.target.iter().map(|&name| name.into()).collect();
+        let forms: BTreeSet<Form> = self.form.iter().map(|&name| name.into()).collect();
+        Shaders {
+            targets: if targets.is_empty() { all.targets } else { targets.into_iter().collect() },
+            forms: if forms.is_empty() { all.forms } else { forms.into_iter().collect() },
+        }
+    }
+}
+
 /// Moves everything into place, the manifest last, and removes what an earlier bake left and this one does not have; the
 /// report on another bake too.
 pub(super) fn publish(options: &BakeOptions, made: &BakeFiles) -> Outcome {
+    let plain = if options.no_zstd { Some(made.without_zstd()?) } else { None };
+    let made = plain.as_ref().unwrap_or(made);
     let manifest = made.manifest.to_json().map_err(Failure::input)?;
     // Unreadable is as good as none: what it named, nobody knows.
     let old = std::fs::read_to_string(options.out.join(MANIFEST)).unwrap_or_default();
@@ -61,9 +97,9 @@ pub(super) fn publish(options: &BakeOptions, made: &BakeFiles) -> Outcome {
     }
     staging.write(MANIFEST, manifest.as_bytes())?;
     staging.publish()?;
-    let current: Vec<&Path> =
+    let current: BTreeSet<&Path> =
         made.files.iter().map(|(path, _)| path.as_str()).chain([MANIFEST]).map(Path::new).collect();
-    for path in stale.iter().filter(|p| !current.contains(&Path::new(p))) {
+    for path in stale.iter().filter(|p| !current.contains(Path::new(p))) {
         let path = options.out.join(path);
         if path.is_file() {
             std::fs::remove_file(&path).map_err(files(&path, "remove"))?;

@@ -1,40 +1,76 @@
-use luthier_material::Diagnostic;
+use luthier_material::{Diagnostic, is_scene};
 use serde_json::{Value, json};
 
 use crate::cli::CheckOptions;
-use crate::domain;
-use crate::failure::{Failure, Outcome};
-use crate::materials::{Source, read};
+use crate::doubts;
+use crate::failure::{Failure, Outcome, diagnostic, files};
+use crate::input;
+use crate::materials::{Source, find, read_one};
+use crate::misses;
 use crate::output::print;
+use crate::refusals;
+use crate::verb::scene::SceneSource;
 
-/// Validates files; diagnostics go to standard error, one line per file to standard output.
+/// Validates files, materials as one set; diagnostics go to standard error, one line per file to standard output.
 pub(crate) fn run(options: &CheckOptions) -> Outcome {
-    let mut sources = read(&options.sources.paths)?;
-    domain::check(&mut sources, None);
+    let (mut sources, mut scenes) = (Vec::new(), Vec::new());
+    for path in find(&options.sources.paths)? {
+        let bytes = input::bytes(&path).map_err(files(&path, "read"))?;
+        if is_scene(&String::from_utf8_lossy(&bytes)) {
+            scenes.push(SceneSource::read(&path)?);
+        } else {
+            sources.push(read_one(&path)?);
+        }
+    }
+    refusals::find(&mut sources, |material| doubts::of_model(material, options.shading.model));
+    refusals::find_too_many(&mut sources, &options.shading);
+    misses::foresee(&mut sources);
+    let all = || sources.iter().chain(scenes.iter().flat_map(|scene| &scene.materials));
     if options.json {
-        print(&format!("{:#}", Value::from_iter(sources.iter().map(entry))))?;
+        let entries = scenes.iter().map(scene_entry).chain(all().map(entry));
+        print(&format!("{:#}", Value::from_iter(entries)))?;
     } else {
         let mut lines = String::new();
-        for source in &sources {
+        for scene in &scenes {
+            scene.print_diagnostics();
+            lines.push_str(&scene_line(scene));
+        }
+        for source in all() {
             source.print_diagnostics();
             lines.push_str(&line(source));
         }
         print(&lines)?;
     }
-    if sources.iter().any(|s| s.parsed.is_err()) { Err(Failure::Verdict) } else { Ok(()) }
+    let is_usable = sources.iter().all(|s| s.parsed.is_ok()) && scenes.iter().all(SceneSource::is_usable);
+    if is_usable { Ok(()) } else { Err(Failure::Verdict) }
+}
+
+fn count(diagnostics: &[Diagnostic], what: &str) -> String {
+    let n: usize = diagnostics.iter().map(|d| d.count).sum();
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
 fn line(source: &Source) -> String {
-    let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     match &source.parsed {
-        Err(errors) => format!("{}: {}\n", source.label, count(errors.len(), "error")),
+        Err(errors) => format!("{}: {}\n", source.label, count(errors, "error")),
         Ok(parsed) => {
             let class = parsed.material.class;
-            let warnings = match parsed.warnings.len() {
-                0 => String::new(),
-                n => format!(", {}", count(n, "warning")),
+            let warnings = match parsed.warnings.as_slice() {
+                [] => String::new(),
+                warnings => format!(", {}", count(warnings, "warning")),
             };
             format!("{}: ok, class {} ({}){warnings}\n", source.label, class.letter(), class.name())
+        }
+    }
+}
+
+fn scene_line(scene: &SceneSource) -> String {
+    match &scene.parsed {
+        Err(errors) => format!("{}: {}\n", scene.label, count(errors, "error")),
+        Ok(parsed) => {
+            let broken = scene.materials.iter().filter(|source| source.parsed.is_err()).count();
+            let verdict = if broken == 0 { "ok".to_owned() } else { format!("{broken} broken") };
+            format!("{}: {verdict}, scene of {} materials\n", scene.label, parsed.materials.len())
         }
     }
 }
@@ -44,17 +80,17 @@ fn entry(source: &Source) -> Value {
         let m = &parsed.material;
         json!({"name": m.name, "class": m.class.letter().to_string(), "class_name": m.class.name()})
     });
-    let diagnostics: Vec<Value> = source.diagnostics().iter().map(diagnostic).collect();
-    json!({"file": source.label, "material": material, "diagnostics": diagnostics})
+    json!({"file": source.label, "material": material, "diagnostics": diagnostics(source.diagnostics())})
 }
 
-fn diagnostic(d: &Diagnostic) -> Value {
-    json!({
-        "severity": d.severity.name(),
-        "line": d.line,
-        "column": d.column,
-        "span": [d.span.start, d.span.end],
-        "message": d.message,
-        "hint": d.hint,
-    })
+fn scene_entry(scene: &SceneSource) -> Value {
+    let (parsed, errors) = (scene.parsed.as_ref().ok(), scene.parsed.as_ref().err());
+    let named = parsed
+        .map(|s| json!({"name": s.name, "materials": scene.materials.iter().map(|m| &m.label).collect::<Vec<_>>()}));
+    json!({"file": scene.label, "scene": named, "diagnostics": diagnostics(errors.map(Vec::as_slice).unwrap_or_default())})
+}
+
+/// Diagnostics for programs.
+pub(crate) fn diagnostics<'d>(all: impl IntoIterator<Item = &'d Diagnostic>) -> Value {
+    all.into_iter().map(diagnostic).collect()
 }

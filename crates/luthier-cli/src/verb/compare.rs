@@ -13,7 +13,7 @@ use crate::output::print;
 use crate::picture::{Format, settings};
 
 /// Directions of the environment where none are asked for.
-const ENVIRONMENT_SAMPLES: u32 = 64;
+pub(crate) const ENVIRONMENT_SAMPLES: u32 = 64;
 
 /// Renders a material with two shaders, under the same light with the same samples.
 pub(crate) fn run(options: &CompareOptions) -> Outcome {
@@ -76,7 +76,7 @@ impl<'a> Subject<'a> {
                 "the bake has its models already; name a .toml file to choose one"
             )));
         }
-        let shading = Shading { model: choice.model };
+        let shading = Shading { model: choice.model, ..Shading::default() };
         let (artefacts, material) = memory_bake::find(&options.material, &shading, &options.out)?;
         artefacts.shader(&choice.form).map_err(device)?;
         Ok(Self { artefacts, material, form: &choice.form })

@@ -15,7 +15,7 @@ pub(crate) fn run(options: &GalleryOptions) -> Outcome {
         )));
     }
     let materials = shaded(valid(read(&options.sources.paths)?, false)?, &options.shading);
-    let artefacts = memory_bake::bake(&materials)?;
+    let artefacts = memory_bake::bake_lit(&materials)?;
     let look = &options.look;
     let settings = settings(look, options.shape.into(), options.size)?;
     let gpu = open(look.adapter.as_deref())?;

@@ -4,6 +4,7 @@ use crate::cli::{PreviewOptions, ShapeName};
 use crate::device::{device, open};
 use crate::failure::{Failure, Outcome};
 use crate::picture::{Format, settings};
+use crate::verb::compare::ENVIRONMENT_SAMPLES;
 use crate::{grid, memory_bake};
 
 /// Renders one material, or the grid.
@@ -11,7 +12,7 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
     let format = Format::of(&options.output)?;
     let (artefacts, parts) = match (&options.material, options.shape) {
         (None, ShapeName::Grid) => {
-            let artefacts = memory_bake::bake(&grid::materials()?)?;
+            let artefacts = memory_bake::bake_lit(&grid::materials()?)?;
             let parts = (0..Shape::Grid.materials() as u32).collect();
             (artefacts, parts)
         }
@@ -25,9 +26,15 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
         }
     };
     let look = &options.look;
-    let settings = settings(look, options.shape.into(), options.size)?;
+    let mut settings = settings(look, options.shape.into(), options.size)?;
     let gpu = open(look.adapter.as_deref())?;
     let scene = gpu.scene(&artefacts, "baked").map_err(device)?;
+    for &part in &parts {
+        // A bake on disk has albedos only where a shader reads them, or where they were asked for.
+        if look.environment_samples.is_none() && !scene.has_albedo(part).map_err(device)? {
+            settings.environment_samples = ENVIRONMENT_SAMPLES;
+        }
+    }
     let image = scene.render(&parts, &settings).map_err(device)?;
     format.write(&options.output, image, look.tone.into())
 }

@@ -2,13 +2,13 @@ use luthier_shader::{MaterialSet, Target, complete, complete_spirv, emit, emit_c
 
 use crate::cli::ShaderOptions;
 use crate::failure::{Failure, Outcome, files};
-use crate::materials::{read, shaded, valid};
+use crate::materials::{bakeable, read};
 use crate::output::print_bytes;
 use crate::verb::cost::{outline, without_d};
 
 /// Prints or writes the shader of some materials, without baking them.
 pub(crate) fn run(options: &ShaderOptions) -> Outcome {
-    let materials = shaded(valid(read(&options.sources.paths)?, false)?, &options.shading);
+    let materials = bakeable(read(&options.sources.paths)?, &options.shading, false)?;
     let (entries, tables) = outline(&materials)?;
     let set = MaterialSet { materials: &entries, tables: without_d(&tables, options.closed) };
     let (form, target) = (options.form.into(), options.target.into());

@@ -1,9 +1,7 @@
 use luthier_bake::{Options, Silent};
 use luthier_gpu::Gpu;
 use luthier_lut::{Budget, RowBase, ShadingModel, TexelFormat};
-use luthier_material::{
-    BakeSettings, ColorSetting, Format, GridSettings, LayerExtras, Material, ModelSetting, SurfaceClass,
-};
+use luthier_material::{BakeSettings, ColorSetting, LayerExtras, Material, ModelSetting, SurfaceClass};
 use luthier_report::Subject;
 use luthier_report::stability::{Cell, Stability, StressCase, cases, model_cells, shader_cells};
 
@@ -85,11 +83,6 @@ fn tables() -> Vec<Tables> {
     ]
 }
 
-/// Albedo tables of models that do not read them: as small as can be.
-fn no_albedos() -> GridSettings {
-    GridSettings { size: Some([2, 2]), format: Some(Format::Rgba16Float) }
-}
-
 /// Appends the cells of shaders and tables; the name of the adapter.
 fn gpu_cells(gpu: &Gpu, cases: &[StressCase], cells: &mut Vec<Cell>) -> Outcome<String> {
     let all = tables();
@@ -97,11 +90,8 @@ fn gpu_cells(gpu: &Gpu, cases: &[StressCase], cells: &mut Vec<Cell>) -> Outcome<
     let bar = Bar::new("shaders");
     let (mut adapter, mut done) = (String::new(), 0);
     for Tables { name, options, models } in &all {
-        let mut materials: Vec<Material> =
+        let materials: Vec<Material> =
             models.iter().flat_map(|model| (0..).zip(cases).map(|(n, case)| material(n, case, *model))).collect();
-        if name.is_some() {
-            materials.iter_mut().for_each(|material| material.bake.fgd = no_albedos());
-        }
         let bake = luthier_bake::bake_with(&materials, options, &read_image, &Silent).map_err(Failure::input)?;
         let entries = material_entries(&materials, &bake.materials, &mut Vec::new())?;
         for entries in entries.chunks(cases.len()) {
@@ -139,6 +129,7 @@ fn material(n: u32, case: &StressCase, model: ShadingModel) -> Material {
         stack: case.stack.clone(),
         effects: luthier_material::Effects::default(),
         budget: luthier_material::BudgetSettings::default(),
+        places: luthier_material::Places::default(),
         bake: BakeSettings {
             model: ModelSetting::from_name(model.name()),
             color: Some(color),

@@ -46,11 +46,10 @@ fn each_container_and_its_mistake() {
         width: SIZE,
         height: SIZE,
         bytes: TexelFormat::Rg16Float.encode(&alpha),
-        metadata: Metadata::new(),
     };
     workshop.write("alpha.ktx2", ktx2::encode(&texture).unwrap());
     let separable = table(SmithSeparable, 3, |u, v| (u, v * v));
-    workshop.write("separable.exr", exr::encode(&separable, &Metadata::new()).unwrap());
+    workshop.write("separable.exr", exr::encode(&separable, &exr::RGB, &Metadata::new()).unwrap());
     // PNG of sRGB pixels: what an image library makes of a table that it takes for a picture.
     workshop.write("picture.png", png::encode_image(&table(SmithCorrelated, 3, |u, v| (u, v * v))).unwrap());
     let swapped = table(SmithCorrelated, 3, |u, v| (v, u * u));

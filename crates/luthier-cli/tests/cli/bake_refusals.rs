@@ -45,7 +45,8 @@ fn names_are_unique() {
     let workshop = baked();
     workshop.write("other.toml", matte("matte"));
     let before = workshop.tree("");
-    workshop.run(&["bake", "matte.toml", "other.toml"]).fails(1, &["`matte`", "matte.toml and other.toml"]);
+    let run = workshop.run(&["bake", "matte.toml", "other.toml"]).exits(1);
+    run.says(&["`matte`: matte.toml:2 and other.toml:2", "other.toml:2:8"]);
     assert!(workshop.tree("") == before);
 }
 
@@ -55,7 +56,8 @@ fn settings_of_one_table_agree() {
     workshop.write("a.toml", lacquer("a"));
     workshop.write("b.toml", lacquer("b").replace("[8, 8]", "[8, 16]"));
     let before = workshop.tree("");
-    workshop.run(&["bake", "a.toml", "b.toml"]).fails(1, &["bake.fgd.size", "[8, 8] in a.toml", "[8, 16] in b.toml"]);
+    let run = workshop.run(&["bake", "a.toml", "b.toml"]).exits(1);
+    run.says(&["bake.fgd.size is [8, 8] in a.toml:18 but [8, 16] in b.toml:18", "b.toml:18:16"]);
     assert!(workshop.tree("") == before);
 }
 
@@ -118,11 +120,12 @@ fn thread_counts() {
 fn maps_that_cannot_be_read() {
     let workshop = Workshop::new();
     workshop.write("m/a.toml", film("a", "{ image = \"maps/none.png\" }"));
-    workshop.run(&["bake", "m"]).fails(1, &["m/a.toml", "maps/none.png", "no such file"]);
+    let place = "m/a.toml:12:17";
+    workshop.run(&["bake", "m"]).exits(1).says(&[place, "maps/none.png", "no such file"]);
     workshop.write("m/maps/none.png", "this is not a picture");
-    workshop.run(&["bake", "m"]).fails(1, &["m/a.toml", "maps/none.png"]);
+    workshop.run(&["bake", "m"]).exits(1).says(&[place, "maps/none.png"]);
     image::RgbImage::from_pixel(4, 4, image::Rgb([200, 10, 10])).save(workshop.path("m/maps/none.png")).unwrap();
-    workshop.run(&["bake", "m"]).fails(1, &["m/a.toml", "maps/none.png", "equal red, green and blue"]);
+    workshop.run(&["bake", "m"]).exits(1).says(&[place, "maps/none.png", "equal red, green and blue"]);
     assert!(!workshop.path("out").exists());
     workshop.write("m/a.toml", film("a", NOISE).replace("seed = 3", "seed = -3"));
     workshop.run(&["bake", "m"]).exits(1).says(&["m/a.toml:12:", "seed"]);

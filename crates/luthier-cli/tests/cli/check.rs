@@ -184,8 +184,57 @@ fn what_would_be_wrong_beyond_use_is_refused() {
     assert!(!workshop.path("out").exists());
 }
 
+/// But for the film of Granier and Heidrich over a diffuse body, which is their figure, and every model shows what its material describes.
 #[test]
 fn the_materials_of_this_repository_are_inside_their_domains() {
     let run = run_in(&root(), &["check", "materials"]).exits(0);
-    assert!(!run.stderr.contains("outside the domain"), "{}", run.stderr);
+    let lines: Vec<&str> = run.stderr.lines().collect();
+    let outside: Vec<&str> = lines
+        .windows(2)
+        .filter(|pair| pair[0].contains("outside the domain"))
+        .map(|pair| pair[1].trim_start_matches([' ', '-', '>']).split(':').next().unwrap_or_default())
+        .collect();
+    assert_eq!(outside, ["materials/granier-film.toml"], "{}", run.stderr);
+    assert!(!run.stderr.contains("warning: the model"), "{}", run.stderr);
+}
+
+/// Brushed metal: Elek's model has one slope parameter, and says so wherever materials are read; Weidlich and Wilkie's has two.
+#[test]
+fn what_a_model_leaves_out_is_told() {
+    let metal = "[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha_x = 0.1\nalpha_y = 0.4\n";
+    let bake = "\n[bake]\nfresnel = { size = 64 }\ndistribution = { size = [32, 32] }\nfgd = { size = [8, 8] }\n";
+    let brushed = |name: &str, bake: &str| format!("schema = 1\nname = \"{name}\"\n\n{metal}{bake}");
+    let modelled = bake.replace("[bake]", "[bake]\nmodel = \"weidlich-wilkie\"");
+    let workshop =
+        Workshop::with(&[("brushed.toml", &brushed("brushed", bake)), ("known.toml", &brushed("known", &modelled))]);
+    let told = [
+        "warning: the model `elek` leaves out anisotropy",
+        "brushed.toml:7:11",
+        "shown by `weidlich-wilkie`, `yamaguchi`, `microfacet`: write `[bake] model = ...`",
+    ];
+    workshop.run(&["check", "brushed.toml"]).exits(0).says(&told);
+    workshop.run(&["bake", "brushed.toml"]).exits(0).says(&told);
+    workshop.run(&["shader", "brushed.toml"]).exits(0).says(&told);
+    assert_eq!(workshop.run(&["check", "known.toml"]).exits(0).stderr, "");
+    assert_eq!(workshop.run(&["check", "brushed.toml", "--model", "yamaguchi"]).exits(0).stderr, "");
+    let asked = workshop.run(&["check", "known.toml", "--model", "phong"]).exits(0).stderr;
+    assert!(asked.contains("the model `phong` leaves out anisotropy"), "{asked}");
+    for (arguments, path) in [
+        (["check", "brushed.toml", "--json"], "/0/diagnostics/0"),
+        (["bake", "brushed.toml", "--json"], "/diagnostics/0"),
+    ] {
+        let json = workshop.run(&arguments).exits(0).json();
+        let told = json.pointer(path).unwrap();
+        assert_eq!(
+            (&told["severity"], &told["line"], &told["file"]),
+            (&"warning".into(), &7.into(), &"brushed.toml".into())
+        );
+        assert_eq!(told["message"], "the model `elek` leaves out anisotropy");
+    }
+    // A scene chooses a model by what it leaves out.
+    workshop.write(
+        "scene.toml",
+        "scene = 1\nname = \"s\"\n[[material]]\nfile = \"brushed.toml\"\n[[light]]\ntype = \"environment\"\n[budget]\nmax_rel = 1\n",
+    );
+    assert_eq!(workshop.run(&["check", "scene.toml"]).exits(0).stderr, "");
 }

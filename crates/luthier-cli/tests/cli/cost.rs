@@ -106,7 +106,8 @@ fn a_missing_driver_is_named() {
         .unwrap();
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(4), "{said}");
-    assert!(output.stdout.is_empty());
+    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(told["error"]["code"], 4, "{told}");
     assert!(said.contains("RADV") && said.contains("apt-get install mesa-vulkan-drivers"), "{said}");
 }
 

@@ -168,7 +168,7 @@ fn what_models_do_not_take_is_refused() {
     refuses("patina", &["--extent", "nan"], &["expected a number"]);
     refuses("elek", &["--alpha-factor=-1"], &["from 0 up"]);
     refuses("elek", &["--normal", "95,0"], &["0 to 90"]);
-    let tilted_albedo = ["eval", "f.toml", "--model", "elek", "--albedo", "--normal", "10,0"];
+    let tilted_albedo = ["eval", "f.toml", "--model", "elek", "--furnace", "--normal", "10,0"];
     workshop.run(&tilted_albedo).fails(2, &["--normal"]);
     let missing = ["eval", "g.toml", "--model", "heterogeneous", "--other", "no.toml"];
     workshop.run(&[&missing[..], &PAIR].concat()).fails(3, &["no.toml"]);

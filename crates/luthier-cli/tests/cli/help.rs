@@ -1,7 +1,7 @@
 use crate::workshop::Workshop;
 
 /// What `--help` lists: in every build, with a device, and with a window.
-fn verbs() -> impl Iterator<Item = &'static str> {
+pub(crate) fn verbs() -> impl Iterator<Item = &'static str> {
     let always = ["bake", "budgets", "check", "report", "audit", "cost", "shader", "models", "eval", "ior", "schema"];
     let gpu = ["parity", "stability", "preview", "gallery", "compare", "figures", "bench"]
         .into_iter()
@@ -30,6 +30,7 @@ fn every_verb_shows_an_example() {
     for verb in verbs() {
         for args in [["help", verb], [verb, "--help"]] {
             let text = workshop.run(&args).exits(0).stdout;
+            assert!(!text.contains("///"), "{verb}: a comment's slashes");
             let (_, examples) = text.split_once("Examples:\n").unwrap_or_else(|| panic!("{verb} has no example"));
             let commands: Vec<&str> = examples.lines().filter(|line| !line.is_empty()).collect();
             assert!(!commands.is_empty(), "{verb}");

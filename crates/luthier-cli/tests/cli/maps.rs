@@ -70,6 +70,6 @@ fn the_judge_notices_another_map_and_another_index() {
 fn a_map_that_is_no_picture_is_refused() {
     let workshop = mapped();
     workshop.write("m/maps/rough.png", "not a picture");
-    workshop.run(&["bake", "m"]).fails(1, &["m/mapped.toml", "maps/rough.png"]);
+    workshop.run(&["bake", "m"]).exits(1).says(&["m/mapped.toml:8:22", "maps/rough.png"]);
     assert!(!workshop.path("out").exists());
 }

@@ -31,7 +31,7 @@ const ARTEFACTS: [Case; 7] = [
         code: 1,
         parts: &["out/manifest.json", "not a luthier manifest"],
     },
-    Case { spoil: |w| w.write("out/manifest.json", b"\xff"), code: 1, parts: &["out/manifest.json", "utf-8"] },
+    Case { spoil: |w| w.write("out/manifest.json", b"\xff"), code: 1, parts: &["out/manifest.json", "UTF-8"] },
     Case {
         spoil: |w| {
             let mut bytes = fs::read(w.path("out/tables/fgd.ktx2")).unwrap();

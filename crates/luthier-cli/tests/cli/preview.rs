@@ -42,6 +42,30 @@ fn a_ball_by_name_and_by_file() {
     assert_eq!(workshop.files("out"), baked().files("out"), "a preview leaves the bake alone");
 }
 
+/// A bake has no albedos that its shaders do not read; its pictures ask the shader for the environment then.
+#[test]
+fn a_bake_without_albedos_is_sampled() {
+    let workshop = Workshop::new();
+    let text = lacquer("lean");
+    workshop.write("lean.toml", text.split_once("[bake]").unwrap().0);
+    workshop.run(&["bake", "lean.toml", "-q"]).exits(0);
+    assert!(!workshop.path("out/tables/fgd.ktx2").exists());
+    let Some(by_name) = preview(&workshop, "lean", "name.png", &[]) else { return };
+    let sampled = preview(&workshop, "lean", "sampled.png", &["--environment-samples", "64"]).unwrap();
+    assert!(by_name == sampled);
+    // By file, tables of albedos are baked in memory: the same ball but for what the two ways leave out.
+    let by_file = preview(&workshop, "lean.toml", "file.png", &[]).unwrap();
+    let middle = [16, 16, 16, 16];
+    let [sampled, split] = [&sampled, &by_file].map(|picture| mean(picture, middle));
+    assert!((sampled / split - 1.0).abs() < 0.1, "{sampled} {split}");
+
+    // Where not even reflectances are there, blurred maps are refused.
+    workshop.run(&["bake", "lean.toml", "--model", "phong", "-q"]).exits(0);
+    let blurred = ["preview", "lean", "-o", "ball.png", "--size", "8", "--environment-samples", "0"];
+    let run = workshop.run(&blurred);
+    assert!(run.code != Some(0) && run.stderr.contains("fresnel"), "{}", run.stderr);
+}
+
 #[test]
 fn a_material_needs_no_bake() {
     let workshop = Workshop::with(&[("gold.toml", &gold("gold")), ("matte.toml", &matte("matte"))]);

@@ -18,11 +18,15 @@ const LISTEN: &str =
 /// Uses the page as a reader does, and writes down what came of it.
 const USE: &str = r#"<script>
 const all = (selector, root = document) => [...root.querySelectorAll(selector)];
+const link = document.querySelector('figure.field svg a');
+link.dispatchEvent(new MouseEvent('click', { bubbles: true, cancelable: true }));
+const led = all('details[open]').map(details => '#' + details.id).join() === link.getAttribute('href');
+for (const details of all('details')) details.open = true;
 const rows = all('table.sortable').find(t => t.tHead.textContent.includes('baked shader') || t.tHead.textContent.includes('tables, 8-bit'));
 const column = [...rows.tHead.rows[0].cells].findIndex(c => c.textContent.startsWith('tables, 8-bit'));
 const values = () => [...rows.tBodies[0].rows].map(r => Number(r.cells[column].textContent));
 const click = () => rows.tHead.rows[0].cells[column].click();
-const found = { charts: all('svg.chart').length, ringed: all('svg.chart .chosen').length, cells: all('svg.stability rect').length };
+const found = { led, charts: all('svg.chart').length, ringed: all('svg.chart .chosen').length, cells: all('svg.stability rect').length };
 click(); found.up = values(); found.sorted = rows.tHead.rows[0].cells[column].getAttribute('aria-sort');
 click(); found.down = values();
 const shown = () => all('article').filter(a => a.offsetHeight > 0).map(a => a.querySelector('h3').textContent);
@@ -49,6 +53,46 @@ found.mistakes = mistakes;
 const pre = document.createElement('pre'); pre.id = 'found'; pre.textContent = JSON.stringify(found); document.body.append(pre);
 </script></body>"#;
 
+/// The page in frames of a screen's and of a telephone's size, looked at and used.
+const FRAMES: &str = r#"<!DOCTYPE html><html><body><script>
+const text = $page;
+const frame = width => new Promise(done => {
+  const f = document.createElement('iframe');
+  f.style.cssText = `width: ${width}px; height: 800px; border: 0`;
+  f.onload = () => done(f);
+  f.srcdoc = text;
+  document.body.append(f);
+});
+const beyond = d => d.documentElement.scrollWidth - d.documentElement.clientWidth;
+(async () => {
+  const found = {};
+  const wide = await frame(1280), d = wide.contentDocument, w = wide.contentWindow;
+  const all = selector => [...d.querySelectorAll(selector)];
+  const bottom = selector => { const e = d.querySelector(selector); return e && e.getBoundingClientRect().bottom; };
+  found.folded = d.documentElement.scrollHeight;
+  found.bottoms = ['.verdict', '.glance', 'figure.field svg.chart', '.thumbs'].map(bottom);
+  found.marks = all('figure.field svg a').length;
+  found.open = all('details[open]').length;
+  found.beyond = [beyond(d)];
+  const link = d.querySelector('figure.field svg a');
+  link.focus();
+  const tip = d.getElementById('tip');
+  found.tip = tip.hidden ? null : tip.textContent;
+  found.reached = d.activeElement === link;
+  w.dispatchEvent(new w.Event('beforeprint'));
+  found.printed = all('details:not([open])').length;
+  found.unfolded = d.documentElement.scrollHeight;
+  found.beyond.push(beyond(d));
+  w.dispatchEvent(new w.Event('afterprint'));
+  found.after = all('details[open]').length;
+  const narrow = await frame(390), n = narrow.contentDocument;
+  found.beyond.push(beyond(n));
+  for (const details of n.querySelectorAll('details')) details.open = true;
+  found.beyond.push(beyond(n));
+  const pre = document.createElement('pre'); pre.id = 'found'; pre.textContent = JSON.stringify(found); document.body.append(pre);
+})();
+</script></body></html>"#;
+
 fn browser() -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     let files = std::env::split_paths(&path).flat_map(|folder| BROWSERS.map(|name| folder.join(name)));
@@ -68,6 +112,12 @@ fn run(browser: &Path, arguments: &[String]) -> (String, String) {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     (text(&output.stdout), text(&output.stderr))
+}
+
+/// What a script has written down in a page.
+fn found_in(dom: &str) -> Value {
+    let found = dom.split("<pre id=\"found\">").nth(1).and_then(|rest| rest.split("</pre>").next()).unwrap();
+    serde_json::from_str(&found.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")).unwrap()
 }
 
 /// A bake of two materials, and a report on it with costs, models and stability.
@@ -109,12 +159,11 @@ fn the_page_works_in_a_browser() {
     let url = |file: &str| format!("file://{}", workshop.path(file).display());
     let (dom, log) = run(&browser, &["--dump-dom".to_owned(), url("used.html")]);
     assert!(!log.contains("CONSOLE"), "{log}");
-    let found = dom.split("<pre id=\"found\">").nth(1).and_then(|rest| rest.split("</pre>").next()).unwrap();
-    let found: Value =
-        serde_json::from_str(&found.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")).unwrap();
+    let found = found_in(&dom);
 
     assert_eq!(found["mistakes"], json!([]));
     assert_eq!(found["requests"], json!([]), "the page asks for nothing");
+    assert_eq!(found["led"], true, "a mark leads to its material, and opens it: {found}");
     // Overview (3), each material: error by angle, models; the searched tables come on top.
     assert!(found["charts"].as_u64().unwrap() >= 3 + 2 * 2, "{found}");
     assert!(found["ringed"].as_u64().unwrap() >= 2, "{found}");
@@ -132,6 +181,27 @@ fn the_page_works_in_a_browser() {
     assert!(found["line"].as_str().is_some_and(|tip| tip.contains(" at ")), "{found}");
     assert!(found["chosen"].as_str().is_some_and(|tip| tip.contains("error")), "{found}");
     assert!(found["pictures"].as_array().unwrap().iter().all(|loaded| loaded == true), "{found}");
+
+    // The first screen answers both questions; the rest folds, and everything can be reached, on any width and on paper.
+    let text = serde_json::to_string(&page).unwrap().replace("</", "<\\/");
+    workshop.write("frames.html", FRAMES.replace("$page", &text));
+    let (dom, log) = run(&browser, &["--dump-dom".to_owned(), url("frames.html")]);
+    assert!(!log.contains("CONSOLE"), "{log}");
+    let found = found_in(&dom);
+    let bottoms = found["bottoms"].as_array().unwrap();
+    let has_pictures = page.contains("data:image/png");
+    assert_eq!(bottoms[3].is_number(), has_pictures, "{found}");
+    assert!(bottoms.iter().filter_map(Value::as_f64).all(|bottom| bottom > 0.0 && bottom <= 800.0), "{found}");
+    assert!(found["marks"].as_u64().unwrap() >= 2 && found["open"] == 0, "{found}");
+    let height = |name: &str| found[name].as_f64().unwrap();
+    assert!(height("folded") < 2500.0 && height("unfolded") > 2.0 * height("folded"), "{found}");
+    assert!(found["beyond"].as_array().unwrap().iter().all(|pixels| pixels == 0), "scrolls sideways: {found}");
+    assert!(found["tip"].as_str().is_some_and(|tip| tip.contains("error")) && found["reached"] == true, "{found}");
+    assert_eq!(
+        (&found["printed"], &found["after"]),
+        (&json!(0), &json!(0)),
+        "folded on paper, open behind it: {found}"
+    );
 
     // On paper: nothing that was folded away is lost, so that there are several pages.
     let paper = workshop.path("page.pdf");

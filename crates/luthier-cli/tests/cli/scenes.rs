@@ -26,6 +26,11 @@ fn models(choice: &Value) -> Vec<&str> {
     materials.iter().map(|m| m["tried"][chosen(m)]["model"].as_str().unwrap()).collect()
 }
 
+#[test]
+fn the_form_of_a_scene_is_chosen() {
+    shelf().run(&["bake", "shelf.toml", "--form", "full"]).fails(2, &["leave out --form"]);
+}
+
 /// The second criterion of budgets: tighter costs no less, weighs no less and errs no more, and something changes on the way.
 #[test]
 fn a_tightened_budget_is_monotone() {
@@ -143,7 +148,7 @@ fn mistakes_name_the_place_and_a_way_out() {
     let run = workshop.run(&["bake", "shelf.toml"]).exits(1);
     run.says(&["shelf.toml:12:1", "unknown key `from_eye`", "did you mean `from_eye_deg`?", "nothing was written"]);
     workshop.write("shelf.toml", SCENE.replace("metal.toml", "mettle.toml"));
-    workshop.run(&["bake", "shelf.toml"]).fails(3, &["mettle.toml", "shelf.toml names it"]);
+    workshop.run(&["bake", "shelf.toml"]).exits(1).says(&["mettle.toml", "no such file", "shelf.toml:"]);
     workshop.write("shelf.toml", SCENE);
     workshop.run(&["bake", "shelf.toml", "parts/clay.toml"]).fails(2, &["is a scene"]);
     workshop.run(&["bake", "shelf.toml", "--model", "elek"]).fails(2, &["--model"]);

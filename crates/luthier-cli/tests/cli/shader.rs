@@ -169,7 +169,7 @@ fn refusals() {
     workshop.write("bad.toml", matte("bad").replace("albedo", "albeddo"));
     workshop.run(&["shader", "bad.toml"]).exits(1).says(&["bad.toml:6:1"]);
     workshop.run(&["shader", "nowhere.toml"]).fails(3, &["nowhere.toml"]);
-    workshop.run(&["shader", "all", "gold"]).fails(1, &["`gold`", "all/gold.toml", "gold/gold.toml"]);
+    workshop.run(&["shader", "all", "gold"]).exits(1).says(&["`gold`: all/gold.toml:2 and gold/gold.toml:2"]);
     workshop.run(&["shader", "all", "--target", "cg"]).fails(2, &["cg", "--target"]).says(&["glsl450", "spirv"]);
     workshop.run(&["shader", "all", "--form", "half"]).fails(2, &["half", "--form"]);
 }

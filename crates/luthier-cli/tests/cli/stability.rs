@@ -1,10 +1,10 @@
 use luthier_layers::domain::{Quantity, domain, outside};
 use luthier_lut::ShadingModel;
-use luthier_report::stability::{Fault, Level, SECTION_C, Stability, Verdict, cases};
+use luthier_report::stability::{Fault, Level, PITFALLS, Stability, Verdict, cases};
 
 use crate::workshop::{Workshop, lacks_adapter};
 
-/// The whole suite on the adapter: nothing that ships is NaN or infinite, nothing is unexplained, section C is covered, and the domains of
+/// The whole suite on the adapter: nothing that ships is NaN or infinite, nothing is unexplained, every pitfall is covered, and the domains of
 /// `bake` and `check` are those that the verdicts give.
 #[test]
 fn nothing_that_ships_is_nan_and_no_cell_is_unexplained() {
@@ -38,7 +38,7 @@ fn nothing_that_ships_is_nan_and_no_cell_is_unexplained() {
             assert_eq!(count, report.cases.len(), "{} {method}", level.name());
         }
     }
-    for (row, named) in SECTION_C {
+    for (row, named) in PITFALLS {
         let is_covered = |case: &&str| report.cells.iter().any(|c| c.case == **case);
         let has_formulas = report.formulas.iter().any(|f| f.row == row);
         assert!(named.iter().all(is_covered) && (has_formulas || !named.is_empty()), "{row}");

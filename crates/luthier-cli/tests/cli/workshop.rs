@@ -11,7 +11,7 @@ use sha2::{Digest, Sha256};
 use tempfile::TempDir;
 
 /// Far more than anything here takes on a busy machine; a hang becomes a failure.
-const PATIENCE: Duration = Duration::from_secs(300);
+const PATIENCE: Duration = Duration::from_secs(900);
 
 /// An empty folder that goes away with the test.
 pub(crate) struct Workshop(TempDir);

@@ -1,7 +1,8 @@
 // What a place sends to the eye.
 
 // One layer, in words: kind (0 dielectric, 1 conductor, 2 diffuse base), alpha, eta, first blurred map;
-// Fresnel tile, FGD tile, film tile, fraction of the film's greatest thickness; optical depth; albedo.
+// Fresnel tile, FGD tile, film tile, fraction of the film's greatest thickness; optical depth, squared cotangent of the critical angle;
+// albedo.
 struct ShadingLayer {
     kind: f32,
     alpha: f32,
@@ -12,6 +13,7 @@ struct ShadingLayer {
     film_tile: f32,
     film_fraction: f32,
     optical_depth: vec3<f32>,
+    critical_cot_sq: f32,
     albedo: vec3<f32>,
 }
 
@@ -105,7 +107,13 @@ fn shading_layer(material: u32, index: u32) -> ShadingLayer {
     let tiles = kernel_inputs.words[at + 1u];
     let slab = kernel_inputs.words[at + 2u];
     let base = kernel_inputs.words[at + 3u];
-    return ShadingLayer(head.x, head.y, head.z, head.w, tiles.x, tiles.y, tiles.z, tiles.w, slab.xyz, base.xyz);
+    return ShadingLayer(head.x, head.y, head.z, head.w, tiles.x, tiles.y, tiles.z, tiles.w, slab.xyz, slab.w, base.xyz);
+}
+
+// Cosine at which the Fresnel row and the film tile of a layer are read.
+fn shading_row_cosine(layer: ShadingLayer, cos_theta: f32) -> f32 {
+    let sin_theta_sq = (1.0 - cos_theta) * (1.0 + cos_theta);
+    return sqrt(max(cos_theta * cos_theta - layer.critical_cot_sq * sin_theta_sq, 0.0));
 }
 
 // Cosine below an interface for one above it; 0 when nothing is refracted.
@@ -146,14 +154,16 @@ fn shading_prefiltered(
             layer.alpha = mix(layer.alpha, patina_diffuse.w, factors.patina);
         }
         alpha = max(alpha, layer.alpha);
-        var reflected_out = shading_fresnel(layer.fresnel_tile, cos_out);
-        var reflected_in = shading_fresnel(layer.fresnel_tile, cos_in);
+        let row_out = shading_row_cosine(layer, cos_out);
+        let row_in = shading_row_cosine(layer, cos_in);
+        var reflected_out = shading_fresnel(layer.fresnel_tile, row_out);
+        var reflected_in = shading_fresnel(layer.fresnel_tile, row_in);
         var albedo = reflected_out;
         if layer.film_tile >= 0.0 {
             // Albedos are tabulated for one thickness.
             let fraction = layer.film_fraction * select(1.0, factors.film, i == 0u);
-            reflected_out = shading_film(layer.film_tile, cos_out, fraction);
-            reflected_in = shading_film(layer.film_tile, cos_in, fraction);
+            reflected_out = shading_film(layer.film_tile, row_out, fraction);
+            reflected_in = shading_film(layer.film_tile, row_in, fraction);
             albedo = reflected_out;
         } else if layer.fgd_tile >= 0.0 {
             albedo = shading_fgd(layer.fgd_tile, cos_out, alpha);

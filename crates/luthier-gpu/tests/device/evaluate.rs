@@ -180,6 +180,7 @@ impl Terms for TableTerms<'_> {
     fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
         let (table, texels) = &self.fresnel;
         let tile = self.records[layer].fresnel_tile.unwrap();
+        let cos_theta_d = self.records[layer].row_cosine(cos_theta_d);
         let [r, g, b, _] = bilinear(texels, table.layout.position(tile, [cos_theta_d, 0.0]), WeightBits::Exact);
         [r, g, b]
     }
@@ -236,6 +237,11 @@ fn the_baked_form_equals_f64_on_the_same_tables() {
     let materials = vec![
         vec![tiled(dielectric(0.03, 1.5), 0), diffuse([0.8, 0.4, 0.2], 0.3)],
         vec![tiled(beckmann, 0), tiled(conductor(0.25, [0.35; 3], [1.6; 3]), 1)],
+        // Down in index, over the cosine of the refracted direction, the row is that of the other side.
+        vec![
+            tiled(LayerRecord { critical_cot_sq: 1.25, ..dielectric(0.1, 1.0 / 1.5) }, 0),
+            tiled(conductor(0.25, [0.35; 3], [1.6; 3]), 1),
+        ],
     ];
     let scene = gpu.scene(&artefacts(Form::Baked, materials.clone(), &tables), "baked").unwrap();
     let pairs: Vec<Pair> = pairs(11).into_iter().chain(corners()).collect();

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use luthier_gpu::{Artefacts, GpuError, TableTexels};
-use luthier_lut::{AtlasLayout, FileEntry, Manifest, Mapping, ShaderEntry, TableKind, TexelFormat};
-use luthier_texture::{Texture, ktx2};
+use luthier_lut::{AtlasLayout, FileEntry, LutError, Manifest, Mapping, ShaderEntry, TableKind, TexelFormat};
+use luthier_texture::{FolderError, Texture, ktx2};
 use sha2::{Digest, Sha256};
 use tempfile::TempDir;
 
@@ -36,7 +36,7 @@ fn bake(change: impl FnOnce(&mut Manifest)) -> TempDir {
     let table = table();
     let mut manifest = manifest(vec![vec![diffuse([0.5; 3], 0.0)]], std::slice::from_ref(&table));
     let TableTexels { format, width, height, bytes, .. } = texels(std::slice::from_ref(&table)).remove(0);
-    let texture = ktx2::encode(&Texture { format, width, height, bytes, metadata: Vec::new() }).unwrap();
+    let texture = ktx2::encode(&Texture { format, width, height, bytes }).unwrap();
     manifest.tables[0].texture = write(folder.path(), "tables/fresnel.ktx2", &texture);
     let shader = |target: &str, file| ShaderEntry { target: target.to_owned(), form: "baked".to_owned(), file };
     let missing = FileEntry { path: "shaders/none.glsl".to_owned(), sha256: String::new() };
@@ -71,11 +71,11 @@ fn files_that_are_not_the_manifests_are_refused() {
         *bytes.last_mut().unwrap() ^= 1;
         std::fs::write(&path, bytes).unwrap();
         let error = Artefacts::load(folder.path()).unwrap_err();
-        assert!(matches!(&error, GpuError::Hash { path: named, .. } if *named == path), "{error}");
+        assert!(matches!(&error, GpuError::Folder(FolderError::Hash { path: named, .. }) if *named == path), "{error}");
 
         std::fs::remove_file(&path).unwrap();
         let error = Artefacts::load(folder.path()).unwrap_err();
-        assert!(matches!(&error, GpuError::Read { path: named, .. } if *named == path), "{error}");
+        assert!(matches!(&error, GpuError::Folder(FolderError::Read { path: named, .. }) if *named == path), "{error}");
     }
 }
 
@@ -83,39 +83,48 @@ fn files_that_are_not_the_manifests_are_refused() {
 fn paths_stay_inside_the_folder() {
     for path in ["../fresnel.ktx2", "/etc/hostname", "", "tables/../../x"] {
         let error = refusal(|m| m.tables[0].texture.path = path.to_owned());
-        assert!(matches!(error, GpuError::OutsideFolder { .. }), "{path}: {error}");
+        assert!(matches!(error, GpuError::Folder(FolderError::Outside { .. })), "{path}: {error}");
     }
 }
 
 #[test]
 fn a_file_that_is_no_texture_is_refused() {
     let error = refusal(|m| m.tables[0].texture = m.shaders[1].file.clone());
-    assert!(matches!(error, GpuError::Texture { .. }), "{error}");
+    assert!(matches!(error, GpuError::Folder(FolderError::Texture { .. })), "{error}");
 }
 
 #[test]
 fn contradictions_are_refused() {
-    assert!(matches!(refusal(|m| m.tables[0].format = TexelFormat::Rgba8Unorm), GpuError::TableMismatch { .. }));
-    assert!(matches!(refusal(|m| m.tables[0].layout.tiles = 3), GpuError::TableMismatch { .. }));
+    let table = |error: GpuError| match error {
+        GpuError::Folder(FolderError::Manifest { source, .. }) => source,
+        other => panic!("{other}"),
+    };
+    let format = table(refusal(|m| m.tables[0].format = TexelFormat::Rgba8Unorm));
+    assert!(matches!(format, LutError::TableMismatch { .. }), "{format}");
+    let tiles = table(refusal(|m| m.tables[0].layout.tiles = 3));
+    assert!(matches!(tiles, LutError::TableMismatch { .. }), "{tiles}");
     for nonsense in [0, u32::MAX] {
-        let error = refusal(|m| m.tables[0].layout.columns = nonsense);
-        assert!(matches!(error, GpuError::Layout { .. }), "{nonsense}: {error}");
-        let error = refusal(|m| m.tables[0].layout.x.size = nonsense);
-        assert!(matches!(error, GpuError::Layout { .. } | GpuError::TableMismatch { .. }), "{nonsense}: {error}");
+        let error = table(refusal(|m| m.tables[0].layout.columns = nonsense));
+        assert!(matches!(error, LutError::Layout { .. }), "{nonsense}: {error}");
+        let error = table(refusal(|m| m.tables[0].layout.x.size = nonsense));
+        assert!(matches!(error, LutError::Layout { .. } | LutError::TableMismatch { .. }), "{nonsense}: {error}");
     }
-    assert!(matches!(refusal(|m| m.tables[0].layout.apron = u32::MAX), GpuError::Layout { .. }));
+    assert!(matches!(table(refusal(|m| m.tables[0].layout.apron = u32::MAX)), LutError::Layout { .. }));
     assert!(matches!(refusal(|m| m.materials.clear()), GpuError::NoMaterials));
     assert!(matches!(refusal(|m| m.materials[0].layers.clear()), GpuError::NoLayers { .. }));
-    assert!(matches!(refusal(|m| m.schema = 99), GpuError::Manifest { .. }));
+    assert!(matches!(refusal(|m| m.schema = 99), GpuError::Folder(FolderError::Manifest { .. })));
 }
 
 #[test]
 fn no_bake_at_all_names_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let error = Artefacts::load(folder.path()).unwrap_err();
-    assert!(matches!(&error, GpuError::Read { path, .. } if path.ends_with("manifest.json")), "{error}");
+    assert!(
+        matches!(&error, GpuError::Folder(FolderError::NoBake { folder: named }) if named == folder.path()),
+        "{error}"
+    );
     std::fs::write(folder.path().join("manifest.json"), "{]").unwrap();
-    assert!(matches!(Artefacts::load(folder.path()), Err(GpuError::Manifest { .. })));
+    assert!(matches!(Artefacts::load(folder.path()), Err(GpuError::Folder(FolderError::Manifest { .. }))));
 }
 
 #[test]

@@ -10,6 +10,7 @@ mod environment;
 mod evaluate;
 mod loading;
 mod lookup;
+mod many;
 mod record_terms;
 mod refusal;
 mod render;

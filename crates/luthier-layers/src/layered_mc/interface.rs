@@ -59,6 +59,17 @@ impl Interface {
         matches!(self.kind, Kind::Smooth(_))
     }
 
+    /// Its facets, where it has them.
+    #[cfg(test)]
+    pub(crate) fn rough(&self) -> Option<&Rough> {
+        if let Kind::Rough(rough) = &self.kind { Some(rough) } else { None }
+    }
+
+    /// Whether it is a diffuse base that reflects nothing.
+    pub(crate) fn is_black(&self) -> bool {
+        matches!(&self.kind, Kind::Diffuse(diffuse) if diffuse.albedo == [0.0; 3])
+    }
+
     /// Index of the medium on a side; `None` at a diffuse base, which does not know it.
     pub(crate) fn index(&self, side: Side) -> Option<f64> {
         match &self.kind {

@@ -18,6 +18,8 @@ mod one_facet;
 mod optics;
 mod path;
 mod random;
+#[cfg(test)]
+mod rare_paths;
 mod rough;
 mod walk;
 
@@ -74,6 +76,9 @@ impl LayeredMc {
             return Estimate::exact(0.0);
         }
         let interfaces = Interfaces::new(stack, self.mode);
+        if !interfaces.scatter() {
+            return Estimate::exact(0.0);
+        }
         let mut scratch = Scratch::default();
         Estimate::of(self.samples, |i| {
             let mut stream = Stream::new(self.seed, i);
@@ -84,13 +89,19 @@ impl LayeredMc {
     /// Share of the light from `wo` that leaves upward, in any direction: the directional albedo, mirrored light
     /// included. Zero unless `wo` is above the surface. Takes the number of paths in place of [`Self::samples`].
     pub fn albedo(&self, stack: &Monochrome, wo: DVec3, paths: u64) -> Estimate {
+        self.albedo_above(stack, wo, DVec3::Z, paths)
+    }
+
+    /// [`Self::albedo`] of the light that leaves above the plane with the normal `up` alone.
+    fn albedo_above(&self, stack: &Monochrome, wo: DVec3, up: DVec3, paths: u64) -> Estimate {
         if wo.z <= 0.0 {
             return Estimate::exact(0.0);
         }
         let interfaces = Interfaces::new(stack, self.mode);
         Estimate::of(paths, |i| {
             let mut stream = Stream::new(self.seed, i);
-            interfaces.trace::<false>(&mut stream, wo, |_| {}).map_or(0.0, |(_, weight)| weight)
+            let left = interfaces.trace::<false>(&mut stream, wo, |_| {}).filter(|(wi, _)| wi.dot(up) > 0.0);
+            left.map_or(0.0, |(_, weight)| weight)
         })
     }
 
@@ -151,8 +162,8 @@ impl Estimator for LayeredMc {
         Self { seed: mixed_seed(self.seed, stack, wi, wo), ..*self }.estimate(stack, wi, wo)
     }
 
-    fn albedo_with_error(&self, stack: &Monochrome, wo: DVec3) -> Estimate {
-        Self { seed: mixed_seed(self.seed, stack, wo, wo), ..*self }.albedo(stack, wo, self.samples)
+    fn albedo_with_error(&self, stack: &Monochrome, wo: DVec3, up: DVec3) -> Estimate {
+        Self { seed: mixed_seed(self.seed, stack, wo, wo), ..*self }.albedo_above(stack, wo, up, self.samples)
     }
 }
 

@@ -59,6 +59,11 @@ impl Interfaces {
         }
     }
 
+    /// Whether any interface sends light elsewhere than the smooth ones do.
+    pub(crate) fn scatter(&self) -> bool {
+        self.interfaces.iter().any(|interface| !interface.is_smooth() && !interface.is_black())
+    }
+
     pub(crate) fn get(&self, interface: usize) -> &Interface {
         &self.interfaces[interface]
     }

@@ -20,6 +20,10 @@ const SURVIVAL: f64 = 0.8;
 /// Light fainter than this survives by chance too.
 const FAINT: f64 = 0.1;
 
+/// Probability with which a ray of [`kernel`] meets another facet, at least: what few rays bring comes in smaller parts from more of
+/// them.
+const MEETS_MIN: f64 = 1.0 / 16.0;
+
 /// Depth of a facet below the top, as its side counts it.
 #[derive(Clone, Copy)]
 enum Depth {
@@ -97,9 +101,10 @@ impl Walker {
         Self { side: a.side, depth: Depth::Drawn { u: 1.0 - stream.uniform(), rate }, view, weight: 1.0 }
     }
 
-    /// Leaves the facet for the next, or for good.
+    /// Leaves the facet for the next, or for good. `MORE` says whether it goes to the next at least as often as [`MEETS_MIN`], with the
+    /// weight that makes up for it; what leaves then has no weight that could be used.
     #[inline(always)]
-    fn scatter(&mut self, rough: &Rough, stream: &mut Stream, facet: u32) -> Next {
+    fn scatter<const MORE: bool>(&mut self, rough: &Rough, stream: &mut Stream, facet: u32) -> Next {
         let (next, kept) = rough.scatter(stream, self.side, &self.view);
         let crossed = next.side != self.side;
         self.side = next.side;
@@ -119,6 +124,16 @@ impl Walker {
         let up = next.direction.z;
         let v = 1.0 - stream.uniform();
         let rate = self.view.area / up.abs();
+        if MORE && up > 0.0 && rate > 0.0 && v > 1.0 - MEETS_MIN {
+            let depth = if crossed { self.depth.flipped() } else { self.depth.value() };
+            let meets = -libm::expm1(-rate * depth);
+            if meets < MEETS_MIN {
+                self.weight *= meets / MEETS_MIN;
+                let free_path = -libm::log1p(-meets * ((1.0 - v) / MEETS_MIN)) / rate;
+                self.depth = Depth::Known((depth - free_path).max(0.0));
+                return Next::Facet;
+            }
+        }
         if up > 0.0 && (rate <= 0.0 || self.depth.surely_leaves(rate, crossed, v)) {
             return Next::Left(next);
         }
@@ -142,7 +157,7 @@ pub(crate) fn scatter(rough: &Rough, stream: &mut Stream, a: Sided) -> Option<(S
     let mut walker = Walker::enter(rough, stream, a);
     let mut facet = 0;
     loop {
-        match walker.scatter(rough, stream, facet) {
+        match walker.scatter::<false>(rough, stream, facet) {
             Next::Facet => facet += 1,
             Next::Left(b) => return Some((b, walker.weight)),
             Next::Died => return None,
@@ -152,21 +167,66 @@ pub(crate) fn scatter(rough: &Rough, stream: &mut Stream, a: Sided) -> Option<(S
 
 /// An unbiased estimate of the density per solid angle of the light from `a` that leaves along `b`: a walk whose
 /// every facet adds what it sends straight to `b`.
+///
+/// The walk may as well come from `b`, against the light. A path over several facets is drawn from either end but for the facet next to
+/// the other, which is evaluated: where that facet mirrors most of what it gets just there, few walks find it and each is worth
+/// much, as with grazing light that goes from facet to facet. Either end starts half of the walks, and balanced weights (Veach 1997) give
+/// each path to the end that finds it more often. What meets one facet alone needs none.
 pub(crate) fn kernel(rough: &Rough, stream: &mut Stream, a: Sided, b: Sided) -> f64 {
+    let reach = |d: Sided| rough.optics.index(d.side) * rough.optics.index(d.side) * d.direction.z;
+    // Reciprocity: the density from b to a over that from a to b.
+    let turned = reach(a) / reach(b);
+    if stream.uniform() < 0.5 {
+        from_one_end(rough, stream, a, b, turned)
+    } else {
+        from_one_end(rough, stream, b, a, 1.0 / turned) / turned
+    }
+}
+
+/// The walk of [`kernel`] that begins at `a`.
+fn from_one_end(rough: &Rough, stream: &mut Stream, a: Sided, b: Sided, turned: f64) -> f64 {
     let lambda = rough.facets.lambda(b.direction);
     let mut walker = Walker::enter(rough, stream, a);
-    let mut value = 0.0;
-    let mut facet = 0;
-    loop {
-        let phase = rough.phase(walker.side, &walker.view, b);
-        if phase > 0.0 {
-            value += walker.weight * phase * walker.depth.leaving(lambda, walker.side != b.side);
+    let entered = walker.depth;
+    let mut value = sent(rough, &walker, b, lambda);
+    let mut next = walker.scatter::<true>(rough, stream, 0);
+    let Next::Facet = next else { return value };
+    // What a walk from b would find at the facet that is the first here and its last.
+    let back = Sided { side: walker.side, direction: -walker.view.direction };
+    let depth_of_a = libm::exp(-rough.facets.lambda(a.direction) * entered.value());
+    let found_from_b = rough.phase(back.side, &rough.facets.view(back.direction), a) * depth_of_a;
+    let mut facet = 1;
+    while let Next::Facet = next {
+        let found = sent(rough, &walker, b, lambda);
+        if found > 0.0 {
+            value += 2.0 * walker.weight * found * (found_from_b / (found_from_b + turned * found));
         }
-        match walker.scatter(rough, stream, facet) {
+        next = walker.scatter::<true>(rough, stream, facet);
+        facet += 1;
+    }
+    value
+}
+
+/// [`kernel`] without weights between the ends: for tests.
+#[cfg(test)]
+pub(crate) fn one_ended(rough: &Rough, stream: &mut Stream, a: Sided, b: Sided) -> f64 {
+    let lambda = rough.facets.lambda(b.direction);
+    let mut walker = Walker::enter(rough, stream, a);
+    let (mut value, mut facet) = (0.0, 0);
+    loop {
+        value += walker.weight * sent(rough, &walker, b, lambda);
+        match walker.scatter::<false>(rough, stream, facet) {
             Next::Facet => facet += 1,
             Next::Left(_) | Next::Died => return value,
         }
     }
+}
+
+/// What the walker's facet sends straight to `b`, whose Lambda is `lambda`, of a unit of light.
+#[inline(always)]
+fn sent(rough: &Rough, walker: &Walker, b: Sided, lambda: f64) -> f64 {
+    let phase = rough.phase(walker.side, &walker.view, b);
+    if phase > 0.0 { phase * walker.depth.leaving(lambda, walker.side != b.side) } else { 0.0 }
 }
 
 /// A guess at the density along `b` of what meets more than one facet, for weights between strategies only:

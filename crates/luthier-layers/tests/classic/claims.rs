@@ -10,8 +10,8 @@ use luthier_layers::inputs::Inputs;
 use luthier_layers::model::{Kind, Model};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::registry::models;
+use luthier_optics::stack::Distribution;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 use crate::random::{Losses, smooth_white, stack as random_stack, upward};
 use crate::sphere::{at, furnace};
@@ -116,14 +116,14 @@ const TABLE: &[Claims] = &[
     row("weidlich-wilkie", Kept, Gains(CoatedMirror(0.02), 0.0, 2.108), Furnace::SmoothMirror, [[1.3183, 0.9913, 1.0536], [0.9579, 0.9807, 1.1934]]),
     row("weidlich-wilkie-directions", Kept, Gains(CoatedMirror(0.02), 0.0, 2.107), Furnace::SmoothMirror, [[1.2769, 0.9324, 0.5979], [0.9069, 0.8962, 0.6283]]),
     row("weidlich-wilkie-facet", Kept, Gains(CoatedLambert(0.3), 85.0, 1.193), Furnace::SmoothMirror, [[0.7838, 0.4576, 0.4384], [0.9579, 0.9807, 1.1934]]),
-    // A rough coat reflects a little more than the smooth one that transmits in its place: 1.00087 was the most of 600 random stacks.
-    row("weidlich-wilkie-corrected", Kept, AtMost(1.001), Furnace::Smooth, [[0.6102, 0.4770, 0.4350], [0.9950, 0.9798, 0.6638]]),
+    // A rough coat reflects a little more than the smooth one that transmits in its place: `rough_coats_gain_a_few_thousandths`.
+    row("weidlich-wilkie-corrected", Kept, AtMost(1.0023), Furnace::Smooth, [[0.6102, 0.4770, 0.4350], [0.9950, 0.9798, 0.6638]]),
     row("granier-heidrich", Broken(0.576), Gains(CoatedLambert(0.3), 0.0, 1.958), Furnace::SmoothMirror, [[0.9581, 0.6892, 0.6717], [1.9581, 1.6892, 1.6717]]),
     row("belcour", Broken(0.339), AtMost(1.0), Furnace::Smooth, [[0.6030, 0.5606, 0.7993], [0.9955, 0.9883, 0.9834]]),
     row("belcour-half-vector", Kept, Gains(GlossyOverSatin, 89.0, 1.1536), Furnace::Smooth, [[0.5861, 0.5702, 0.7866], [0.9963, 0.9807, 0.9111]]),
     row("yamaguchi", Broken(0.339), AtMost(1.0), Furnace::Smooth, [[0.6030, 0.5606, 0.7993], [0.9955, 0.9883, 0.9834]]),
     row("yamaguchi-half-vector", Kept, Gains(GlossyOverSatin, 89.0, 1.1536), Furnace::Smooth, [[0.5861, 0.5702, 0.7866], [0.9963, 0.9807, 0.9111]]),
-    row("fluorescence", Kept, AtMost(1.0), Furnace::No, [[0.0; 3], [0.9956, 0.9718, 0.5417]]),
+    row("fluorescence", Kept, AtMost(1.003), Furnace::No, [[0.0; 3], [0.9956, 0.9718, 0.5417]]),
     row("heterogeneous", Kept, Gains(CoatedMirror(0.02), 0.0, 2.108), Furnace::No, [[1.3183, 0.9913, 1.0536], [0.9579, 0.9807, 1.1934]]),
     row("heterogeneous-glitter", Broken(0.957), Gains(CoatedMirror(0.02), 0.0, 2.108), Furnace::No, [[1.3183, 0.9913, 1.0536], [0.9579, 0.9807, 1.1934]]),
     row("heterogeneous-switch", Kept, Gains(CoatedMirror(0.02), 0.0, 2.108), Furnace::No, [[1.3183, 0.9913, 1.0536], [0.9579, 0.9807, 1.1934]]),
@@ -194,6 +194,20 @@ fn models_that_gain_do_so_by_the_measured_amount() {
     assert!(wrong.is_empty(), "found:\n{wrong}");
 }
 
+/// The most over a white base of a grid of both distributions, indices 1.1 to 3.5, alpha 0.05 to 0.4 and angles to 70 degrees: a
+/// Beckmann coat of index 1.4 and alpha 0.2, seen at 50 degrees.
+#[test]
+fn rough_coats_gain_a_few_thousandths() {
+    let mut white = stack(&[(ggx(0.2), dielectric(1.4, 0.0)), (ggx(0.02), lambert(1.0))]);
+    white.layers[0].surface.distribution = Distribution::Beckmann;
+    for (name, expected) in [("weidlich-wilkie-corrected", 1.00223), ("fluorescence", 1.00294)] {
+        let (model, row) = claimed().find(|(_, row)| row.name == name).unwrap();
+        let found = directional_albedo(&*model, &white, at(50.0));
+        assert!((found.value - expected).abs() <= 1e-4, "{name}: {found:?}");
+        assert!(matches!(row.energy, AtMost(most) if most > expected), "{name}");
+    }
+}
+
 #[test]
 fn models_that_are_not_reciprocal_miss_by_the_measured_amount() {
     let stack = CoatedMirror(0.3).stack();
@@ -218,9 +232,8 @@ fn models_that_are_not_reciprocal_miss_by_the_measured_amount() {
     assert!(wrong.is_empty(), "found:\n{wrong}");
 }
 
-/// The seed is fixed: among random ones, estimates miss any number of standard errors some day.
 fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig { cases, rng_seed: RngSeed::Fixed(1), failure_persistence: None, ..ProptestConfig::default() }
+    ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() }
 }
 
 proptest! {

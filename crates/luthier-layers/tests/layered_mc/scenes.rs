@@ -56,7 +56,7 @@ pub(crate) fn mc(mode: InterfaceMode, samples: u64) -> LayeredMc {
 /// Within four standard errors, which are at most `sigma`; a few units of rounding where there is no spread.
 #[track_caller]
 pub(crate) fn assert_agrees(estimate: Estimate, expected: f64, sigma: f64, what: &str) {
-    let Estimate { mean, std_err } = estimate;
+    let Estimate { mean, std_err, .. } = estimate;
     assert!(std_err <= sigma, "{what}: standard error {std_err}");
     let off = (mean - expected).abs();
     assert!(off <= 4.0 * std_err + 1e-9, "{what}: {mean} +- {std_err} against {expected}");
@@ -67,7 +67,7 @@ pub(crate) fn mean_of(values: &[f64]) -> Estimate {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
     let squares: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
-    Estimate { mean, std_err: (squares / (n * (n - 1.0))).sqrt() }
+    Estimate::known(mean, (squares / (n * (n - 1.0))).sqrt())
 }
 
 /// The i-th of a sequence of points that fill the unit square evenly (Roberts 2018, the plastic number).

@@ -1,6 +1,6 @@
 use crate::bake_settings::{
     AlphaMapping, BakeSettings, BudgetSettings, ColorSetting, DistributionMapping, DistributionSettings, Format,
-    FresnelMapping, FresnelSettings, GridSettings, ModelSetting, RowSettings,
+    FresnelMapping, FresnelSettings, GridSettings, ModelSetting, RowSettings, TableSetting,
 };
 use crate::diagnostic::Sink;
 use crate::section::Section;
@@ -11,6 +11,7 @@ pub(super) fn decode(document: &Section<'_>, sink: &mut Sink<'_>) -> BakeSetting
     let wavelengths_nm = at.rgb("wavelengths_nm").filter(|w| distinct(w, &at, sink));
     BakeSettings {
         model: at.text("model").and_then(ModelSetting::from_name),
+        tables: at.texts("tables").iter().filter_map(|name| TableSetting::from_name(name)).collect(),
         color: at.text("color").and_then(ColorSetting::from_name),
         wavelengths_nm,
         fresnel: at.section("fresnel").map(|at| fresnel(&at)).unwrap_or_default(),

@@ -3,6 +3,7 @@ use luthier_optics::stack::Stack;
 use super::films;
 use crate::diagnostic::Sink;
 use crate::effects::{Effects, FlakeSource, Flakes, Glitter, Patina};
+use crate::grammar::UNIT;
 use crate::section::Section;
 use crate::suggest::short;
 
@@ -54,10 +55,11 @@ fn flakes(at: &Section<'_>) -> Option<Flakes> {
 fn patina(at: &Section<'_>, sink: &mut Sink<'_>) -> Option<Patina> {
     let (extent, transition) = (at.number("extent")?, at.number("transition")?);
     let (least, most) = (-transition, 1.0 + transition);
-    if !(least..=most).contains(&extent) && !sink.has_error_in(&at.span) {
+    // What is no number, or no softness, has been reported by itself.
+    if !(least..=most).contains(&extent) && extent.is_finite() && UNIT.contains(transition) {
         let message =
             format!("`extent` runs from -transition to 1 + transition, {} to {} here", short(least), short(most));
-        let hint = format!("the nearest allowed is `extent = {}`", short(extent.clamp(least.min(most), most)));
+        let hint = format!("the nearest allowed is `extent = {}`", short(extent.clamp(least, most)));
         sink.error(at.value_span("extent"), message, Some(hint));
     }
     Some(Patina {

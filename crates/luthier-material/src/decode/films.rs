@@ -6,12 +6,15 @@ use luthier_optics::stack::{Film, FilmThickness};
 use super::Read;
 use crate::diagnostic::Sink;
 use crate::doubt::Sources;
+use crate::grammar::{NOT_NEGATIVE, POSITIVE};
 use crate::material::{FilmVariation, VariationSource};
 use crate::section::Section;
 use crate::suggest::short;
 
 /// A film that waits for the layer that it coats.
-pub(super) struct Pending {
+pub(super) struct Pending<'t> {
+    /// Its table.
+    pub(super) at: Section<'t>,
     pub(super) film: Film,
     pub(super) variation: Option<FilmVariation>,
     /// Of its `type`.
@@ -21,8 +24,8 @@ pub(super) struct Pending {
 }
 
 /// One `thin-film` layer.
-pub(super) fn decode(at: &Section<'_>, read: Read<'_>, sink: &mut Sink<'_>, sources: &mut Sources) -> Pending {
-    let ior = super::ior::decode(at, "ior", read, sink, sources).unwrap_or_else(Ior::vacuum);
+pub(super) fn decode<'t>(at: Section<'t>, read: Read<'_>, sink: &mut Sink<'_>, sources: &mut Sources) -> Pending<'t> {
+    let ior = super::ior::decode(&at, "ior", read, sink, sources).unwrap_or_else(Ior::vacuum);
     let (thickness, variation) = match at.section("thickness_nm") {
         Some(range) => varying(&range, sink),
         None => {
@@ -35,12 +38,23 @@ pub(super) fn decode(at: &Section<'_>, read: Read<'_>, sink: &mut Sink<'_>, sour
         variation,
         span: at.value_span("type"),
         thickness_span: at.value_span("thickness_nm"),
+        at,
+    }
+}
+
+impl Pending<'_> {
+    /// How the file would say that the film is even.
+    pub(super) fn evened(&self) -> Option<String> {
+        let nm = self.film.thickness.nominal_nm();
+        POSITIVE.contains(nm).then(|| format!("write `thickness_nm = {}`", short(nm)))
     }
 }
 
 fn varying(at: &Section<'_>, sink: &mut Sink<'_>) -> (FilmThickness, Option<FilmVariation>) {
-    let (min_nm, max_nm) = (at.number("min").unwrap_or(0.0), at.number("max").unwrap_or(f64::MAX));
-    if min_nm > max_nm && !sink.has_error_in(&at.span) {
+    let min_nm = at.number("min").unwrap_or(0.0);
+    let max_nm = at.number("max").unwrap_or(min_nm);
+    // What is no number, or beyond all of them, has been reported by itself.
+    if min_nm > max_nm && [min_nm, max_nm].into_iter().all(|nm| NOT_NEGATIVE.contains(nm)) {
         let hint = format!("write `min = {}, max = {}`", short(max_nm), short(min_nm));
         let message = format!("the range is upside down: min {} is above max {}", short(min_nm), short(max_nm));
         sink.error(at.span.clone(), message, Some(hint));

@@ -2,10 +2,13 @@ use std::ops::Range as Span;
 
 use luthier_optics::constants::{dataset, datasets, parse_csv};
 use luthier_optics::ior::{Ior, IorSample};
+use toml::Spanned;
+use toml::de::DeValue;
 
 use super::Read;
 use crate::diagnostic::Sink;
-use crate::doubt::Sources;
+use crate::doubt::{Sources, VISIBLE_NM};
+use crate::grammar::{INDEX, SAMPLED_NM};
 use crate::section::{Numbers, Section, section};
 use crate::suggest::{did_you_mean, short};
 
@@ -18,6 +21,29 @@ pub(super) fn decode(
     sources: &mut Sources,
 ) -> Option<Ior> {
     let value = at.value(key)?;
+    let ior = of_any_form(value, at, key, read, sink, sources)?;
+    let (first, last) = (ior.samples().first()?.wavelength_nm, ior.samples().last()?.wavelength_nm);
+    let (low, high) = VISIBLE_NM;
+    if last < low || first > high {
+        let message =
+            format!("no sample of this index is visible: they lie from {} to {} nm", short(first), short(last));
+        let hint = format!("give samples from {low} to {high} nm; a single index is written `{key} = 1.5`");
+        sink.error(value.span(), message, Some(hint));
+    }
+    Some(ior)
+}
+
+/// The samples of a range this wide around the middle of the visible one stand for all of it.
+const MIDDLE_NM: (f64, f64) = (500.0, 600.0);
+
+fn of_any_form(
+    value: &Spanned<DeValue<'_>>,
+    at: &Section<'_>,
+    key: &str,
+    read: Read<'_>,
+    sink: &mut Sink<'_>,
+    sources: &mut Sources,
+) -> Option<Ior> {
     if let Some(number) = at.number(key) {
         return Ior::constant(number, 0.0).ok();
     }
@@ -28,7 +54,11 @@ pub(super) fn decode(
         }
         return Some(ior);
     }
-    sampled(&section(value)?, sink)
+    let ior = sampled(&section(value)?, sink)?;
+    if let Some(range) = ior.range_nm().filter(|(first, last)| *first > MIDDLE_NM.0 || *last < MIDDLE_NM.1) {
+        sources.spectra.push((key.to_owned(), range, value.span()));
+    }
+    Some(ior)
 }
 
 /// `{ n, k, wavelengths_nm }`.
@@ -93,12 +123,27 @@ fn as_many(
     }
 }
 
+/// Whether a sample is within the bounds of those that stand in material files.
+fn is_sample(sample: &IorSample) -> bool {
+    SAMPLED_NM.contains(sample.wavelength_nm) && [sample.n, sample.k].into_iter().all(|value| value <= INDEX.max)
+}
+
 /// A CSV file, or a built-in data set.
 fn by_name(name: &str, span: Span<usize>, read: Read<'_>, sink: &mut Sink<'_>) -> Option<Ior> {
     if name.to_ascii_lowercase().ends_with(".csv") {
         return match read(name) {
             Ok(text) => match parse_csv(&text) {
-                Ok(ior) => Some(ior),
+                Ok(ior) => match ior.samples().iter().find(|s| !is_sample(s)) {
+                    None => Some(ior),
+                    Some(IorSample { wavelength_nm, n, k }) => {
+                        let [nm, n, k] = [*wavelength_nm, *n, *k].map(short);
+                        let message = format!("`{name}`: the index {n} + {k}i at {nm} nm is that of no medium");
+                        let [from, to, most] = [SAMPLED_NM.min, SAMPLED_NM.max, INDEX.max].map(short);
+                        let hint = format!("wavelengths are in nm, {from} to {to}; n and k are at most {most}");
+                        sink.error(span, message, Some(hint));
+                        None
+                    }
+                },
                 Err(error) => {
                     sink.error(span, format!("`{name}`: {error}"), None);
                     None

@@ -3,7 +3,8 @@ use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Surface};
 
 use super::{Read, films, ior, surface};
 use crate::diagnostic::Sink;
-use crate::doubt::{LayerSource, Sources};
+use crate::doubt::Sources;
+use crate::grammar::LAYERS_MAX;
 use crate::material::{LayerExtras, Maps};
 use crate::section::Section;
 
@@ -14,15 +15,16 @@ pub(super) fn decode(
     sink: &mut Sink<'_>,
     sources: &mut Sources,
 ) -> (Vec<Layer>, Vec<LayerExtras>) {
-    let sections = document.sections("layer");
+    let mut sections = document.sections("layer");
+    sections.truncate(LAYERS_MAX);
     let mut layers = Vec::new();
     let mut extras = Vec::new();
-    let mut pending: Vec<films::Pending> = Vec::new();
+    let mut pending: Vec<films::Pending<'_>> = Vec::new();
 
     for (i, at) in sections.iter().enumerate() {
         let kind = at.text("type").unwrap_or_default();
         if kind == "thin-film" {
-            pending.push(films::decode(at, read, sink, sources));
+            pending.push(films::decode(at.clone(), read, sink, sources));
             continue;
         }
         let opaque = matches!(kind, "conductor" | "diffuse");
@@ -51,8 +53,17 @@ pub(super) fn decode(
             uncoatable(&films, sink);
         }
         let surface = if kind == "diffuse" { Surface::smooth() } else { surface::decode(at, sink) };
-        sources.layers.push(LayerSource::of(at, films.iter().map(|f| f.thickness_span.clone()).collect()));
-        extras.push(LayerExtras { film_variation: variation(&films, sink), maps: maps(at) });
+        let number = layers.len();
+        let key = format!("layer.{number}");
+        if !sink.has_errors() {
+            sources.places.add(&key, at);
+            films.iter().enumerate().for_each(|(i, film)| sources.places.add(&format!("{key}.film.{i}"), &film.at));
+        }
+        let extra = LayerExtras { film_variation: variation(&films, sink), maps: maps(at) };
+        if number > 0 {
+            only_the_first_varies(at, &films, sink);
+        }
+        extras.push(extra);
         layers.push(Layer { films: films.into_iter().map(|f| f.film).collect(), surface, base });
     }
     if let Some(last) = pending.last() {
@@ -69,7 +80,7 @@ fn slab(at: &Section<'_>) -> Slab {
     }
 }
 
-fn uncoatable(films: &[films::Pending], sink: &mut Sink<'_>) {
+fn uncoatable(films: &[films::Pending<'_>], sink: &mut Sink<'_>) {
     for film in films {
         let hint = "put a dielectric between them".to_owned();
         sink.error(film.span.clone(), "a diffuse base has no interface that a film could coat", Some(hint));
@@ -77,13 +88,32 @@ fn uncoatable(films: &[films::Pending], sink: &mut Sink<'_>) {
 }
 
 /// The variation of the top film; those below it must be even.
-fn variation(films: &[films::Pending], sink: &mut Sink<'_>) -> Option<crate::material::FilmVariation> {
+fn variation(films: &[films::Pending<'_>], sink: &mut Sink<'_>) -> Option<crate::material::FilmVariation> {
     let (top, below) = films.split_first()?;
     for film in below.iter().filter(|f| f.variation.is_some()) {
-        let hint = format!("write `thickness_nm = {}`", crate::suggest::short(film.film.thickness.nominal_nm()));
-        sink.error(film.thickness_span.clone(), "only the top film of an interface may vary in thickness", Some(hint));
+        let message = "only the top film of an interface may vary in thickness";
+        sink.error(film.thickness_span.clone(), message, film.evened());
     }
     top.variation.clone()
+}
+
+/// A place of a surface has one normal, one factor on all roughnesses and one on a thickness: shaders read those of the first layer.
+fn only_the_first_varies(at: &Section<'_>, films: &[films::Pending<'_>], sink: &mut Sink<'_>) {
+    let maps = at.section("maps");
+    for name in ["normal", "roughness", "thickness"] {
+        let Some(maps) = maps.as_ref().filter(|maps| maps.has(name)) else { continue };
+        let message = format!("a {name} map belongs to the first layer: shaders read none of a layer below it");
+        let hint = match name {
+            "normal" => "leave it out, or move it to the first layer, where it tilts the whole surface",
+            "roughness" => "leave it out, or move it to the first layer, where it scales the roughness of all layers",
+            _ => "leave it out: only the first slab varies in thickness",
+        };
+        sink.error(maps.value_span(name), message, Some(hint.to_owned()));
+    }
+    if let Some(film) = films.first().filter(|film| film.variation.is_some()) {
+        let message = "only the film of the first layer may vary in thickness: shaders read no map of another";
+        sink.error(film.thickness_span.clone(), message, film.evened());
+    }
 }
 
 fn maps(at: &Section<'_>) -> Maps {

@@ -1,5 +1,7 @@
 use super::{Key, Kind, POSITIVE, Range, Table};
-use crate::bake_settings::{AlphaMapping, ColorSetting, DistributionMapping, FresnelMapping, ModelSetting};
+use crate::bake_settings::{
+    AlphaMapping, ColorSetting, DistributionMapping, FresnelMapping, ModelSetting, TableSetting,
+};
 
 /// Wavelengths that the colour matching functions cover.
 const VISIBLE_NM: Range = Range { min: 360.0, max: 830.0, above: false };
@@ -28,6 +30,11 @@ pub(super) static BAKE: Table = Table {
             Kind::Choice(ModelSetting::NAMES),
             "\"elek\"",
             "The reflectance model that the shader evaluates.",
+        ),
+        Key::optional(
+            "tables",
+            Kind::List { item: &Kind::Choice(TableSetting::NAMES), min: 1, max: TableSetting::NAMES.len() },
+            "Kinds of tables to bake beside those that the shader reads; settings of a kind ask for it too.",
         ),
         Key::optional(
             "color",

@@ -4,10 +4,17 @@ use super::{
 };
 
 /// Wavelengths that samples of an index may have: far wider than what is seen, narrow enough to notice micrometres.
-const SAMPLED_NM: Range = Range { min: 100.0, max: 30_000.0, above: false };
+pub(crate) const SAMPLED_NM: Range = Range { min: 100.0, max: 30_000.0, above: false };
 
 /// Mean slopes of which the slope parameter, the tangent, stays within its domain.
 const SLOPE_DEG: Range = Range { min: 0.0, max: 45.0, above: false };
+
+/// Real part and extinction coefficient of an index: those of real media stay below 10, in the far infrared below 1000.
+pub(crate) const INDEX: Range = Range { min: 0.0, max: 1e6, above: true };
+const EXTINCTION: Range = Range { above: false, ..INDEX };
+
+/// Cells along one repeat, of the first of up to twelve octaves: the finest still has coordinates of whole numbers.
+const NOISE_FREQUENCY: Range = Range { min: 0.0, max: 65536.0, above: true };
 
 const SIGMA: Range = Range { min: 0.0, max: std::f64::consts::FRAC_PI_2, above: false };
 
@@ -15,7 +22,7 @@ const SIGMA: Range = Range { min: 0.0, max: std::f64::consts::FRAC_PI_2, above: 
 const SAMPLES_MAX: usize = 1024;
 
 pub(super) const IOR: Kind = Kind::OneOf(&[
-    Kind::Number(POSITIVE),
+    Kind::Number(INDEX),
     Kind::Table(&IOR_TABLE),
     // The name of a data set or the path of a CSV file; the decoder looks it up.
     Kind::Text(TextForm::Path),
@@ -27,17 +34,14 @@ static IOR_TABLE: Table = Table {
     keys: &[
         Key::required(
             "n",
-            Kind::OneOf(&[
-                Kind::Number(POSITIVE),
-                Kind::List { item: &Kind::Number(POSITIVE), min: 1, max: SAMPLES_MAX },
-            ]),
+            Kind::OneOf(&[Kind::Number(INDEX), Kind::List { item: &Kind::Number(INDEX), min: 1, max: SAMPLES_MAX }]),
             "Real part: a number, or one for each wavelength.",
         ),
         Key::with_default(
             "k",
             Kind::OneOf(&[
-                Kind::Number(NOT_NEGATIVE),
-                Kind::List { item: &Kind::Number(NOT_NEGATIVE), min: 1, max: SAMPLES_MAX },
+                Kind::Number(EXTINCTION),
+                Kind::List { item: &Kind::Number(EXTINCTION), min: 1, max: SAMPLES_MAX },
             ]),
             "0",
             "Extinction coefficient: a number, or one for each wavelength.",
@@ -210,7 +214,7 @@ static NOISE: Table = Table {
         Key::with_default("seed", Kind::Integer(0, u32::MAX as i64), "0", "Seed."),
         Key::with_default(
             "frequency",
-            Kind::Number(POSITIVE),
+            Kind::Number(NOISE_FREQUENCY),
             "4",
             "Lattice cells of the first octave along one repeat.",
         ),

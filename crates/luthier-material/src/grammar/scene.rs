@@ -1,4 +1,4 @@
-use super::{Key, Kind, POSITIVE, Range, Table, TextForm};
+use super::{Key, Kind, LAYERS_MAX, POSITIVE, Range, SCENE_MATERIALS_MAX, Table, TextForm};
 
 /// Version of the grammar of scenes.
 const SCENE_VERSION: i64 = 1;
@@ -20,12 +20,12 @@ pub(crate) static SCENE: Table = Table {
         Key::optional("description", Kind::Text(TextForm::Prose), "What it is, in a sentence or two."),
         Key::required(
             "material",
-            Kind::List { item: &Kind::Table(&MATERIAL), min: 1, max: usize::MAX },
+            Kind::List { item: &Kind::Table(&MATERIAL), min: 1, max: SCENE_MATERIALS_MAX },
             "The materials that are seen.",
         ),
         Key::required(
             "light",
-            Kind::Tagged { tag: "type", variants: &[&DIRECTIONAL, &POINT, &ENVIRONMENT] },
+            Kind::Tagged { tag: "type", variants: &[&DIRECTIONAL, &POINT, &ENVIRONMENT], max: LAYERS_MAX },
             "The lights.",
         ),
         Key::optional("view", Kind::Table(&VIEW), "From where surfaces are seen."),

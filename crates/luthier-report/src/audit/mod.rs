@@ -216,7 +216,7 @@ fn sampled(subject: &Subject, statement: &Statement, truth: &Truth, h: &Hypothes
     let (points, refinements) = truth.scan();
     let ends = |a: f64, b: f64| (a.min(b), a.max(b));
     let (from, to) = ends(angle.coordinate(0.0), angle.coordinate(libm::acos(statement.min_cos.clamp(0.0, 1.0))));
-    let mut scan = Scan { points: [points * points, 1], from: [from, 0.5], to: [to, 0.5], refinements };
+    let mut scan = Scan { points: [points * points, 1], from: [from, 0.5], to: [to, 0.5], nodes: [0, 0], refinements };
     if let Some(slope) = slope {
         let (from, to) = ends(slope.coordinate(statement.min_alpha), slope.coordinate(1.0));
         (scan.points, scan.from[1], scan.to[1]) = ([points; 2], from, to);

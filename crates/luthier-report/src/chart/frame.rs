@@ -187,6 +187,16 @@ impl Frame {
         self.body.push_str("</g>");
     }
 
+    /// Opens a link to what the page says of a material; [`Frame::end_link`] closes it.
+    pub(crate) fn begin_link(&mut self, anchor: &str, material: &str) {
+        let _ = write!(self.body, "<a href=\"#{}\" data-material=\"{}\">", escape(anchor), escape(material));
+    }
+
+    /// Closes a link.
+    pub(crate) fn end_link(&mut self) {
+        self.body.push_str("</a>");
+    }
+
     /// A ring about pixel coordinates.
     pub(crate) fn ring(&mut self, x: f64, y: f64) {
         let _ = write!(self.body, "<circle class=\"chosen\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"9\"/>");

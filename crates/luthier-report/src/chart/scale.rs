@@ -6,7 +6,7 @@ pub(crate) struct Scale {
     min: f64,
     max: f64,
     log: bool,
-    /// Distance of labelled ticks on a linear scale.
+    /// Distance of labelled ticks on a linear scale; on a logarithmic one, decades, or 0 for ticks at 1, 2 and 5 of each.
     step: f64,
 }
 
@@ -44,6 +44,18 @@ impl Scale {
         Self { min: first, max: last, log: true, step: 1.0 }
     }
 
+    /// Logarithmic from the last 1, 2 or 5 of a decade before all positive values to the first behind them, labelled there.
+    pub(crate) fn fine(values: impl Iterator<Item = f64>) -> Self {
+        let logs = values.filter(|v| *v > 0.0 && v.is_finite()).map(libm::log10);
+        let range = logs
+            .fold(None, |range: Option<(f64, f64)>, v| Some(range.map_or((v, v), |(lo, hi)| (lo.min(v), hi.max(v)))));
+        let (lo, hi) = range.unwrap_or((0.0, 1.0));
+        let ticks: Vec<f64> = fine_ticks(lo - 1.0, hi + 1.0).map(|(v, _)| v).collect();
+        let min = ticks.iter().copied().filter(|v| *v <= lo - 0.02).fold(lo - 1.0, f64::max);
+        let max = ticks.iter().copied().filter(|v| *v >= hi + 0.02).fold(hi + 1.0, f64::min);
+        Self { min, max, log: true, step: 0.0 }
+    }
+
     /// Position in 0..1; values beyond the ends, and zero on a logarithmic scale, sit at the end.
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         let v = match (self.log, value > 0.0) {
@@ -57,6 +69,10 @@ impl Scale {
     /// Position in 0..1 and label of every tick; on a logarithmic scale at most eight.
     pub(crate) fn ticks(&self) -> Vec<(f64, String)> {
         let span = self.max - self.min;
+        if self.log && self.step == 0.0 {
+            let ticks = fine_ticks(self.min - 1e-9, self.max + 1e-9);
+            return ticks.map(|(v, label)| ((v - self.min) / span, label)).collect();
+        }
         let step = if self.log { libm::ceil(span / 7.0) } else { self.step };
         let count = libm::floor(span / step + 1e-9) as u32;
         let tick = |i: u32| {
@@ -66,6 +82,23 @@ impl Scale {
         };
         (0..=count).map(tick).collect()
     }
+}
+
+/// Logarithms of 1, 2 and 5 of every decade within two others, and the numbers.
+fn fine_ticks(min: f64, max: f64) -> impl Iterator<Item = (f64, String)> {
+    let decades = libm::floor(min) as i32..=libm::ceil(max) as i32;
+    let ticks = decades.flat_map(|decade| [1.0, 2.0, 5.0].map(|digit| (digit, decade)));
+    ticks.filter_map(move |(digit, decade)| {
+        let v = f64::from(decade) + libm::log10(digit);
+        let (unit, shift) = match decade {
+            6.. => ("M", 6),
+            4 | 5 => ("k", 3),
+            _ => ("", 0),
+        };
+        let scaled = digit * libm::pow(10.0, f64::from(decade - shift));
+        let label = crate::format::number(crate::format::rounded(scaled, 3)) + unit;
+        (min..=max).contains(&v).then_some((v, label))
+    })
 }
 
 /// `10⁻⁴`.
@@ -104,6 +137,18 @@ mod tests {
             let s = Scale::round([largest, f64::NAN].into_iter());
             assert!((s.max - end).abs() < 1e-9 && s.ticks().len() == ticks, "{largest}: {s:?}");
         }
+    }
+
+    #[test]
+    fn fine_scales_end_at_round_numbers() {
+        let s = Scale::fine([26.0, 413.0, 0.0, f64::INFINITY].into_iter());
+        assert_eq!(s.ticks().into_iter().map(|t| t.1).collect::<Vec<_>>(), ["20", "50", "100", "200", "500"]);
+        assert!((s.fraction(100.0) - 0.5).abs() < 1e-12, "20 and 500 are as far from 100");
+        assert_eq!(s.fraction(0.0), 0.0);
+        let s = Scale::fine([15_000.0, 4.2e6].into_iter());
+        let labels: Vec<String> = s.ticks().into_iter().map(|t| t.1).collect();
+        assert_eq!(labels, ["10k", "20k", "50k", "100k", "200k", "500k", "1M", "2M", "5M"]);
+        assert!(Scale::fine(std::iter::empty()).ticks().len() > 3);
     }
 
     #[test]

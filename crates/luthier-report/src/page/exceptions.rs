@@ -9,7 +9,17 @@ use crate::format::{error, escape, number, rounded, value};
 use crate::report::{Compared, Report};
 
 pub(super) fn write(out: &mut String, report: &Report) {
-    out.push_str("<h2 id=\"exceptions\">Exceptions</h2>");
+    let target = number(report.target_max_rel_err);
+    let says = match report.exceptions.len() {
+        0 => format!("none: nothing misses the target of {target}"),
+        count => format!("{count} cases miss the target of {target}, each with its cause"),
+    };
+    super::fold(out, "exceptions", "Exceptions", &says);
+    list(out, report);
+    super::end_fold(out);
+}
+
+fn list(out: &mut String, report: &Report) {
     let judged = |compared: &Compared| compared.is_judged(report.device.is_some());
     let comparisons = || report.materials.iter().flat_map(|m| &m.comparisons).filter(|c| judged(&c.compared));
     let target = number(report.target_max_rel_err);

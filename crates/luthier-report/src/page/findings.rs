@@ -4,7 +4,16 @@ use crate::Report;
 use crate::format::escape;
 
 pub(super) fn write(out: &mut String, report: &Report) {
-    out.push_str("<h2 id=\"findings\">Findings</h2>");
+    let says = match report.findings.len() {
+        0 => "none".to_owned(),
+        count => format!("{count} that a reader should know before trusting the rest"),
+    };
+    super::fold(out, "findings", "Findings", &says);
+    list(out, report);
+    super::end_fold(out);
+}
+
+fn list(out: &mut String, report: &Report) {
     if report.findings.is_empty() {
         out.push_str(
             "<p>None: every value is finite, the layer records are those of the material files, and no table is \

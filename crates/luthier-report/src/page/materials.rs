@@ -3,7 +3,7 @@
 use luthier_lut::ColorMode;
 use std::fmt::Write;
 
-use super::{anchor, cell, of_material, pictures, summary, trade};
+use super::{anchor, cell, glance, of_material, pictures, summary, trade};
 use crate::chart::{self, legend};
 use crate::format::{error, escape, number, value};
 use crate::report::{Compared, MaterialReport, Report};
@@ -11,9 +11,9 @@ use crate::{DirectionSet, ErrorSummary, Exhibits, Statistics};
 
 pub(super) fn write(out: &mut String, report: &Report, exhibits: &Exhibits) {
     out.push_str(
-        "<h2 id=\"materials\">Materials</h2><p>Largest relative error of f cos θᵢ in each set of directions, and \
-         below it the 99th percentile and the root mean square. The sets and floors are defined under <a \
-         href=\"#method\">method</a>.</p>",
+        "<h2 id=\"materials\">Materials</h2><p class=\"sub\">Each opens to its pictures, the largest relative error of f cos θᵢ in each set of \
+         directions (below it the 99th percentile and the root mean square), costs, colour differences and worst pairs. The sets and floors \
+         are defined under <a href=\"#method\">method</a>.</p>",
     );
     let mut drawn = summary::shown(report).to_vec();
     if report.device.is_some() {
@@ -23,13 +23,15 @@ pub(super) fn write(out: &mut String, report: &Report, exhibits: &Exhibits) {
     for (index, material) in report.materials.iter().enumerate() {
         let _ = write!(
             out,
-            "<article id=\"{}\"{}><h3>{}</h3><p class=\"sub\">class {} · model {} · {} · <code>{}</code> · SHA-256 \
+            "<article{}><details class=\"fold\" id=\"{}\"><summary><h3>{}</h3><span class=\"sub\">class {}, {}</span><span \
+             class=\"sub figures\">{}</span></summary><p class=\"sub\">{} · <code>{}</code> · SHA-256 \
              <code>{}</code><br/>{}</p>",
-            anchor(index),
             of_material(&material.name),
+            anchor(index),
             escape(&material.name),
             escape(&material.class),
             material.model.name(),
+            escape(&glance::line(report, material)),
             color(material.color),
             escape(&material.source),
             escape(material.source_hash.get(..12).unwrap_or(&material.source_hash)),
@@ -47,7 +49,7 @@ pub(super) fn write(out: &mut String, report: &Report, exhibits: &Exhibits) {
         trade::of_material(out, report, material);
         seen(out, material);
         worst(out, material, report.device.is_some());
-        out.push_str("</article>\n");
+        out.push_str("</details></article>\n");
     }
 }
 

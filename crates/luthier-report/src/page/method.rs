@@ -8,7 +8,12 @@ use crate::table_terms::Weights;
 use crate::{DIM_FLOOR, DirectionSet, PEAK_FRACTION};
 
 pub(super) fn write(out: &mut String, report: &Report) {
-    out.push_str("<h2 id=\"method\">Method</h2>");
+    super::fold(
+        out,
+        "method",
+        "Method",
+        "references, directions and floors: what the figures say, and what they do not",
+    );
     let _ = write!(
         out,
         "<p><b>Reference.</b> The model <code>{}</code> in f64 with exact Fresnel and distribution terms (of statistical models: directional \
@@ -33,13 +38,13 @@ pub(super) fn write(out: &mut String, report: &Report) {
     let _ = write!(
         out,
         "<p><b>Directions.</b> {} pairs in every set, from a Halton sequence; a later run draws the \
-         same.</p><table><tbody>",
+         same.</p><div class=\"scroll\"><table><tbody>",
         report.pairs_per_set
     );
     for set in DirectionSet::ALL {
         let _ = write!(out, "<tr><th>{}</th><td>{}</td></tr>", set.name(), escape(set.description()));
     }
-    out.push_str("</tbody></table>");
+    out.push_str("</tbody></table></div>");
     out.push_str(
         "<p><b>Tables</b> are scanned from the shipped texels: Fresnel rows at eight points a cell and 256 grazing \
          cosines against every interface that reads them, distributions at one point in every cell, phase rows at \
@@ -51,6 +56,7 @@ pub(super) fn write(out: &mut String, report: &Report) {
          largest of these is the cause.</p><p><b>Not judged here:</b> the model against nature; pairs below the \
          horizon; film thickness maps, which the reference takes at their nominal value.</p>\n",
     );
+    super::end_fold(out);
 }
 
 fn comparisons(out: &mut String, report: &Report) {
@@ -61,7 +67,7 @@ fn comparisons(out: &mut String, report: &Report) {
     };
     let made: Vec<Compared> =
         report.materials.first().map_or(Vec::new(), |m| m.comparisons.iter().map(|c| c.compared).collect());
-    out.push_str("<table><tbody>");
+    out.push_str("<div class=\"scroll\"><table><tbody>");
     for compared in made {
         let words = match compared {
             Compared::BakedDevice => "the table-reading shader on the device, against exact terms".to_owned(),
@@ -83,5 +89,5 @@ fn comparisons(out: &mut String, report: &Report) {
         };
         let _ = write!(out, "<tr><th>{}</th><td>{words}</td></tr>", compared.name());
     }
-    out.push_str("</tbody></table>");
+    out.push_str("</tbody></table></div>");
 }

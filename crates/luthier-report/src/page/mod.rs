@@ -2,6 +2,7 @@
 
 mod exceptions;
 mod findings;
+mod glance;
 mod levels;
 mod materials;
 mod method;
@@ -15,6 +16,8 @@ mod trade;
 pub(crate) use exceptions::cause;
 pub(crate) use materials::angles;
 
+use std::fmt::Write;
+
 use crate::format::escape;
 use crate::{Exhibits, Report};
 
@@ -27,12 +30,13 @@ pub(crate) fn html(report: &Report, exhibits: &Exhibits) -> String {
     out.push_str(include_str!("style.css"));
     out.push_str("</style></head>\n<body><main>\n");
     summary::head(&mut out, report);
+    glance::write(&mut out, report, exhibits);
     levels::write(&mut out, report);
+    findings::write(&mut out, report);
+    materials::write(&mut out, report, exhibits);
     summary::overview(&mut out, report);
     trade::write(&mut out, report);
     exceptions::write(&mut out, report);
-    findings::write(&mut out, report);
-    materials::write(&mut out, report, exhibits);
     tables::write(&mut out, report);
     stability::write(&mut out, report, exhibits);
     method::write(&mut out, report);
@@ -42,6 +46,20 @@ pub(crate) fn html(report: &Report, exhibits: &Exhibits) -> String {
     out.push_str(include_str!("page.js"));
     out.push_str("//]]></script></body></html>\n");
     out
+}
+
+/// Opens a section that folds: its title, and what it says in a line. [`end_fold`] closes it.
+fn fold(out: &mut String, id: &str, title: &str, says: &str) {
+    let _ = write!(
+        out,
+        "<details class=\"fold\" id=\"{id}\"><summary><h2>{title}</h2><span class=\"sub\">{}</span></summary>",
+        escape(says)
+    );
+}
+
+/// Closes a section that folds.
+fn end_fold(out: &mut String) {
+    out.push_str("</details>\n");
 }
 
 /// A table cell with a number.

@@ -55,11 +55,11 @@
   tip.id = "tip";
   tip.hidden = true;
   document.body.append(tip);
-  const show = (event, text) => {
+  const show = ({ clientX, clientY }, text) => {
     tip.textContent = text;
     tip.hidden = false;
-    tip.style.left = Math.min(event.clientX + 14, innerWidth - tip.offsetWidth - 8) + "px";
-    tip.style.top = Math.min(event.clientY + 14, innerHeight - tip.offsetHeight - 8) + "px";
+    tip.style.left = Math.max(8, Math.min(clientX + 14, innerWidth - tip.offsetWidth - 8)) + "px";
+    tip.style.top = Math.min(clientY + 14, innerHeight - tip.offsetHeight - 8) + "px";
   };
   // Browsers show titles late and beside the tip.
   for (const title of all("svg title")) {
@@ -105,7 +105,7 @@
     });
     chart.addEventListener("pointerleave", () => (tip.hidden = true));
   }
-  for (const map of all("svg.stability")) {
+  for (const map of all("svg.stability, .thumbs")) {
     map.addEventListener("pointermove", event => {
       const marked = event.target.closest("[data-tip]");
       if (marked) show(event, marked.dataset.tip);
@@ -113,11 +113,31 @@
     });
     map.addEventListener("pointerleave", () => (tip.hidden = true));
   }
+  // What the keyboard has reached says as much as what the pointer is over.
+  document.addEventListener("focusin", event => {
+    const marked = event.target.closest("svg a, .thumbs a");
+    const owner = marked && (marked.querySelector("[data-tip]") || marked);
+    if (!owner) return void (tip.hidden = true);
+    const box = marked.getBoundingClientRect();
+    show({ clientX: box.right, clientY: box.bottom }, owner.dataset.tip);
+  });
 
-  // Paper has nothing to click on; long lists stay away from it.
+  // Links lead to what may be folded.
+  const unfold = hash => {
+    const target = hash && document.getElementById(hash.slice(1));
+    if (!target) return;
+    for (let at = target; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true;
+    target.scrollIntoView();
+  };
+  addEventListener("hashchange", () => unfold(location.hash));
+  // A second click on a link changes nothing in the address.
+  for (const link of all("a[href^='#']")) link.addEventListener("click", () => unfold(link.getAttribute("href")));
+  unfold(location.hash);
+
+  // Paper has nothing to click on.
   let opened = [];
   addEventListener("beforeprint", () => {
-    opened = all("details:not([open]):not(.long)");
+    opened = all("details:not([open])");
     opened.forEach(details => (details.open = true));
   });
   addEventListener("afterprint", () => opened.forEach(details => (details.open = false)));

@@ -6,7 +6,8 @@ use crate::format::escape;
 use crate::report::Report;
 
 pub(super) fn write(out: &mut String, report: &Report) {
-    out.push_str("<h2 id=\"provenance\">Provenance</h2><div class=\"scroll\"><table><tbody>");
+    super::fold(out, "provenance", "Provenance", "the command, and where every figure came from");
+    out.push_str("<div class=\"scroll\"><table><tbody>");
     for (name, value) in &report.provenance {
         let _ = write!(out, "<tr><th>{}</th><td>{}</td></tr>", escape(name), escape(value));
     }
@@ -38,7 +39,7 @@ pub(super) fn write(out: &mut String, report: &Report) {
         row(["stability", &stability.generator, adapter, "fixed by case"]);
     }
     out.push_str(
-        "</tbody></table></div><details><summary>Sources</summary><table class=\"sortable\"><thead><tr><th>material</th><th>file</th><th>SHA-256 of it \
+        "</tbody></table></div><details><summary>Sources</summary><div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>material</th><th>file</th><th>SHA-256 of it \
          and of what it names</th></tr></thead><tbody>",
     );
     for m in &report.materials {
@@ -49,5 +50,6 @@ pub(super) fn write(out: &mut String, report: &Report) {
             "<tr{of}><th>{name}</th><td><code>{source}</code></td><td><code class=\"hash\">{hash}</code></td></tr>"
         );
     }
-    out.push_str("</tbody></table></details>\n");
+    out.push_str("</tbody></table></div></details>\n");
+    super::end_fold(out);
 }

@@ -8,7 +8,16 @@ use crate::report::Report;
 use crate::stability::{FAILS, HOLDS, HOLDS_ALBEDO, heat_map_svg};
 
 pub(super) fn write(out: &mut String, report: &Report, exhibits: &Exhibits) {
-    out.push_str("<h2 id=\"stability\">Stability</h2>");
+    let says = report.stability.as_ref().map_or_else(
+        || "not in this report".to_owned(),
+        |s| format!("{} of {} cells hold, {} degrade, {} fail", s.holds, s.cells, s.degrades, s.fails),
+    );
+    super::fold(out, "stability", "Stability", &says);
+    map(out, report, exhibits);
+    super::end_fold(out);
+}
+
+fn map(out: &mut String, report: &Report, exhibits: &Exhibits) {
     let Some((suite, summary)) = exhibits.stability.as_ref().zip(report.stability.as_ref()) else {
         out.push_str(
             "<p>Not in this report: <code>luthier stability --json -o stability.json</code> runs the suite, <code>luthier report \

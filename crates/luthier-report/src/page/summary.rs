@@ -1,9 +1,9 @@
-//! Verdict, key figures, and all materials at one glance.
+//! Verdict, and the errors of all materials side by side.
 
 use std::fmt::Write;
 
 use crate::chart::{self, legend};
-use crate::format::{bytes, error, escape, number, value};
+use crate::format::{error, escape, number, value};
 use crate::report::{Compared, Report, WorstCase};
 
 use super::{anchor, cell, of_material};
@@ -17,7 +17,7 @@ pub(super) fn shown(report: &Report) -> &'static [Compared] {
     }
 }
 
-/// Title, verdict and key figures.
+/// Title and verdict.
 pub(super) fn head(out: &mut String, report: &Report) {
     out.push_str("<header><h1>Error report</h1><p class=\"sub\">");
     let mut facts = vec![format!("Baked by {}", escape(&report.generator))];
@@ -27,13 +27,12 @@ pub(super) fn head(out: &mut String, report: &Report) {
     });
     out.push_str(&facts.join(" · "));
     out.push_str(
-        "</p><nav><a href=\"#levels\">Errors</a><a href=\"#materials-at-a-glance\">Overview</a><a href=\"#trade\">Cost and \
+        "</p><nav><a href=\"#levels\">Errors</a><a href=\"#materials-at-a-glance\">Side by side</a><a href=\"#trade\">Cost and \
          bytes</a><a href=\"#exceptions\">Exceptions</a><a href=\"#materials\">Materials</a><a href=\"#tables\">Tables</a><a \
          href=\"#stability\">Stability</a><a href=\"#method\">Method</a><a href=\"#provenance\">Provenance</a><label id=\"filter\" \
          hidden=\"\">Material <input type=\"search\"/></label></nav></header>\n",
     );
     verdict(out, report);
-    figures(out, report);
 }
 
 fn verdict(out: &mut String, report: &Report) {
@@ -58,9 +57,8 @@ fn verdict(out: &mut String, report: &Report) {
     };
     let _ = writeln!(
         out,
-        "<section class=\"verdict{class}\"><p class=\"figure\">{}</p><p>The figure is the largest error of f cos θᵢ \
-         over all materials, directions and channels, of {judged}; relative to max(brightest channel of the reference, {}), a tenth of a \
-         white diffuser.{}</p></section>",
+        "<section class=\"verdict{class}\"><p class=\"figure\">{}</p><p>The largest error of f cos θᵢ over all materials, directions and \
+         channels, of {judged}; relative to max(brightest channel of the reference, {}).{}</p></section>",
         escape(&words),
         number(report.floor),
         report.worst().map_or(String::new(), |worst| at(&worst))
@@ -96,22 +94,11 @@ fn at(worst: &WorstCase<'_>) -> String {
 }
 
 fn figures(out: &mut String, report: &Report) {
-    let total_bytes: u64 = report.tables.iter().map(|t| t.texel_bytes).sum();
     let judged: Vec<Compared> = match report.device {
         Some(_) => vec![Compared::BakedDevice, Compared::FullDevice],
         None => vec![Compared::TablesEightBit],
     };
-    let statistics =
-        || report.materials.iter().flat_map(|m| judged.iter().filter_map(|c| m.comparison(*c))).flat_map(|c| &c.sets);
-    let samples: u64 = statistics().map(|(_, s)| 3 * s.pairs).sum();
-    let not_finite: u64 = statistics().map(|(_, s)| s.not_finite).sum();
-    let mut facts = vec![
-        ("materials", report.materials.len().to_string()),
-        ("tables", report.tables.len().to_string()),
-        ("texel bytes", bytes(total_bytes)),
-        ("values judged", samples.to_string()),
-        ("not finite", not_finite.to_string()),
-    ];
+    let mut facts = Vec::new();
     for compared in judged {
         let max =
             report.materials.iter().filter_map(|m| m.comparison(compared)).map(|c| c.max_error()).fold(0.0, f64::max);
@@ -127,11 +114,18 @@ fn figures(out: &mut String, report: &Report) {
     out.push_str("</dl>\n");
 }
 
-/// All materials at one glance.
+/// The errors of all materials side by side.
 pub(super) fn overview(out: &mut String, report: &Report) {
     let shown = shown(report);
     let series: Vec<_> = shown.iter().map(|c| chart::series(*c)).collect();
-    out.push_str("<h2 id=\"materials-at-a-glance\">Materials at a glance</h2><figure>");
+    super::fold(
+        out,
+        "materials-at-a-glance",
+        "Errors side by side",
+        "every comparison, how rare large errors are, bytes of each table",
+    );
+    figures(out, report);
+    out.push_str("<figure>");
     out.push_str(&legend(&series));
     out.push_str(&chart::max_by_material(report, shown));
     out.push_str(if report.device.is_some() {
@@ -154,6 +148,7 @@ pub(super) fn overview(out: &mut String, report: &Report) {
          together.</figcaption></figure></div>\n",
     );
     rows(out, report, shown);
+    super::end_fold(out);
 }
 
 fn rows(out: &mut String, report: &Report, shown: &[Compared]) {

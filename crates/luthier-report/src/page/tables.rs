@@ -12,7 +12,14 @@ use crate::report::{AlphaPoint, Curves, Report, TableReport, TileReport};
 use crate::scan::{DOMAIN_ALPHA, DOMAIN_COS_THETA, REPEATS, points};
 
 pub(super) fn write(out: &mut String, report: &Report) {
-    out.push_str("<h2 id=\"tables\">Tables</h2>");
+    let total: u64 = report.tables.iter().map(|t| t.texel_bytes).sum();
+    let says = format!("{} of {}, and the error of every tile", report.tables.len(), bytes(total));
+    super::fold(out, "tables", "Tables", &says);
+    list(out, report);
+    super::end_fold(out);
+}
+
+fn list(out: &mut String, report: &Report) {
     if report.tables.is_empty() {
         out.push_str("<p>None: no material of this bake needs one.</p>\n");
         return;
@@ -78,8 +85,8 @@ fn section(out: &mut String, table: &TableReport, points: u32) {
     }
     let _ = writeln!(
         out,
-        "</tbody></table></div><p class=\"note\">Absolute errors of a sampled read: quantised texels, bilinear, off the \
-         nodes. {}</p>",
+        "</tbody></table></div><p class=\"note\">Absolute errors of a sampled read: quantised texels, bilinear, at nodes \
+         and between them. {}</p>",
         escape(&how(table, points))
     );
 }
@@ -158,11 +165,15 @@ fn stats(out: &mut String, by: &str, stats: &ErrorStats, uncertainty: Option<f64
     };
     let _ = write!(
         out,
-        "<td>{}{channel}: {}, read {}</td>",
+        "<td>{}{channel}: {}, read {}",
         escape(&at.join(", ")),
         number(stats.worst.expected),
         number(stats.worst.sampled)
     );
+    if stats.slack > 0.0 {
+        let _ = write!(out, "<small>of the error, slack of the function itself: {}</small>", error(stats.slack));
+    }
+    out.push_str("</td>");
 }
 
 fn reflectances(out: &mut String, table: &TableReport) {

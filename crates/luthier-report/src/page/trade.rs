@@ -11,7 +11,7 @@ use crate::format::{axis, bytes, error, escape, number};
 use crate::report::{Compared, MaterialReport, Report};
 
 /// The instruction set that charts show; tables have all.
-const FAMILY: &str = "rdna2";
+pub(super) const FAMILY: &str = "rdna2";
 
 const CANDIDATE: Series = Series { class: "s-tables", name: "candidate of the search", mark: Mark::Diamond };
 const SHIPS: Series = Series { class: "s-baked", name: "what ships, as measured here", mark: Mark::Circle };
@@ -20,9 +20,18 @@ const FULL: Series = Series { class: "s-full", name: "model, full", mark: Mark::
 
 /// All kinds of tables.
 pub(super) fn write(out: &mut String, report: &Report) {
-    out.push_str("<h2 id=\"trade\">Cost and bytes against error</h2>");
+    let says = match report.searches.len() {
+        0 => "nothing was searched for".to_owned(),
+        count => format!("what the search found for {count} kinds of tables, and what it took"),
+    };
+    super::fold(out, "trade", "Cost and bytes against error", &says);
+    searches(out, report);
+    super::end_fold(out);
+}
+
+fn searches(out: &mut String, report: &Report) {
     if report.searches.is_empty() {
-        out.push_str("<p>Nothing was searched for: sizes and formats of this bake are fixed defaults, or stated in its files.</p>\n");
+        out.push_str("<p>Sizes and formats of this bake are fixed defaults, or stated in its files.</p>\n");
         return;
     }
     out.push_str(
@@ -171,13 +180,13 @@ fn choice_rows(out: &mut String, choice: &serde_json::Value) {
 }
 
 /// The shader of a model and form, with its cycles per instruction set.
-struct Shader<'a> {
-    row: &'a ShaderCost,
+pub(super) struct Shader<'a> {
+    pub(super) row: &'a ShaderCost,
     cycles: Vec<(&'a str, i64)>,
 }
 
 /// Shaders of a material whose numbers come from the buffer, with D as this bake has it.
-fn of_shaders<'a>(report: &Report, material: &MaterialReport, costs: &'a Costs) -> Vec<Shader<'a>> {
+pub(super) fn of_shaders<'a>(report: &Report, material: &MaterialReport, costs: &'a Costs) -> Vec<Shader<'a>> {
     let reads_d = report.tables.iter().any(|t| t.kind == TableKind::Distribution);
     let rows = || costs.rows.iter().filter(|r| r.material == material.name && !r.constant);
     // Shaders that read no table of D are listed as closed whatever the bake has.

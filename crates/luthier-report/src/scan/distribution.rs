@@ -11,7 +11,7 @@ use crate::{ReportError, Subject};
 /// Bands of alpha that a distribution's error is shown for.
 const ALPHA_BANDS: u32 = 64;
 
-/// A distribution tile over its whole domain, one point a cell.
+/// A distribution tile over its whole domain, one point a cell, and at its nodes.
 pub(super) fn scan(
     table: &Table<'_>,
     tile: u32,
@@ -43,6 +43,13 @@ pub(super) fn scan(
         let band = (u64::from(j) * u64::from(bands) / u64::from(rows)) as usize;
         if peak > 0.0 {
             worst_of_peak[band] = worst_of_peak[band].max(max_err / peak);
+        }
+    }
+    for alpha in (0..y.size).map(|j| y.node(j)) {
+        for value in (0..x.size).map(|i| x.node(i)) {
+            let (cos_theta_h, sin_theta_h_sq) = angle.cos_and_sin_sq(value);
+            let expected = scaled_distribution(distribution, alpha, cos_theta_h, sin_theta_h_sq);
+            scan.add(&[value, alpha], 0, expected, table.read(tile, [value, alpha], Weights::EightBit)[0]);
         }
     }
     let points = (0..bands).map(|b| AlphaPoint {

@@ -1,7 +1,8 @@
 use luthier_layers::statistics::total_reflection::escaping_share;
+use luthier_lut::Axis;
 use rayon::prelude::*;
 
-use super::{DOMAIN_ALPHA, DOMAIN_COS_THETA, Measured, Scan, User, coordinate};
+use super::{DOMAIN_ALPHA, DOMAIN_COS_THETA, Measured, Scan, User, coordinates};
 use crate::Subject;
 use crate::report::Curves;
 use crate::subject::Table;
@@ -15,16 +16,22 @@ const POINTS_PER_CELL: u32 = 2;
 pub(super) fn scan(table: &Table<'_>, tile: u32, users: &[User], subject: &Subject<'_>) -> Option<Measured> {
     let layout = &table.entry.layout;
     let (x, y) = (&layout.x, layout.y.as_ref()?);
-    let [columns, rows] = [x, y].map(|axis| axis.intervals() * POINTS_PER_CELL);
-    let [from_x, from_y] = [x.encode(DOMAIN_COS_THETA), y.encode(DOMAIN_ALPHA)];
-    let within = |from: f64, n: u32, count: u32| from + (1.0 - from) * coordinate(n, count);
+    // In the domain; nodes below it are left out.
+    let along = |axis: &Axis, least: f64| {
+        let from = axis.encode(least);
+        let all = coordinates(axis, POINTS_PER_CELL);
+        let (between, nodes) = all.split_at((axis.intervals() * POINTS_PER_CELL) as usize);
+        let between = between.iter().map(|u| from + (1.0 - from) * u);
+        between.chain(nodes.iter().copied().filter(|u| *u >= from)).map(|u| axis.decode(u)).collect::<Vec<f64>>()
+    };
+    let (cosines, alphas) = (along(x, DOMAIN_COS_THETA), along(y, DOMAIN_ALPHA));
     let mut scan = Scan::default();
     for &(material, layer) in users {
         let eta = 1.0 / subject.manifest.materials[material].layers[layer].eta;
-        let points: Vec<([f64; 2], f64)> = (0..rows * columns)
+        let points: Vec<([f64; 2], f64)> = (0..alphas.len() * cosines.len())
             .into_par_iter()
             .map(|n| {
-                let at = [x.decode(within(from_x, n % columns, columns)), y.decode(within(from_y, n / columns, rows))];
+                let at = [cosines[n % cosines.len()], alphas[n / cosines.len()]];
                 let sin_sq = (1.0 - at[0]) * (1.0 + at[0]) * eta * eta;
                 (at, escaping_share((1.0 - sin_sq).max(0.0).sqrt(), at[1], eta))
             })

@@ -8,7 +8,7 @@ mod phase;
 mod thickness;
 
 use luthier_layers::terms::Exact;
-use luthier_lut::{ErrorStats, LayerRecord, TableKind, Worst};
+use luthier_lut::{Axis, ErrorStats, LayerRecord, TableKind, Worst};
 
 use crate::report::{Curves, TableReport, TileReport};
 use crate::statistics::summarise;
@@ -42,7 +42,7 @@ pub(crate) fn scan(
         for (number, tile) in (0..entry.layout.tiles).zip(&entry.tiles) {
             let users = users(subject, kind, number);
             let measured = match kind {
-                TableKind::Fresnel => Some(fresnel::scan(&table, number, &users, exact)?),
+                TableKind::Fresnel => Some(fresnel::scan(&table, number, &users, subject, exact)?),
                 TableKind::Distribution => distribution::scan(&table, number, &users, subject)?,
                 TableKind::Fgd => albedo.as_mut().and_then(|tiles| tiles[number as usize].take()),
                 TableKind::Phase => phase::scan(&table, number, &users, subject),
@@ -61,6 +61,7 @@ pub(crate) fn scan(
                 model: tile.model.clone(),
                 users: names(subject, kind, number, &users),
                 baker: tile.error.clone(),
+                aim: tile.aim,
                 uncertainty: uncertainty.filter(|_| judge.is_some()),
                 judge,
                 not_finite,
@@ -153,8 +154,16 @@ impl Scan {
         let (_, worst) = self.worst?;
         let points = self.errors.len() as u64;
         let summary = summarise(self.errors);
-        Some(ErrorStats { max_abs_err: summary.max, rms_err: summary.rms, p99_abs_err: summary.p99, worst, points })
+        let (max_abs_err, rms_err, p99_abs_err) = (summary.max, summary.rms, summary.p99);
+        Some(ErrorStats { max_abs_err, rms_err, p99_abs_err, slack: 0.0, worst, points })
     }
+}
+
+/// Coordinates of a scan along an axis: so many stratified points in every cell, never on a node; then the nodes, which balancing moves.
+fn coordinates(axis: &Axis, points_per_cell: u32) -> Vec<f64> {
+    let count = axis.intervals() * points_per_cell;
+    let nodes = (0..axis.size).map(|i| axis.node_coordinate(f64::from(i)));
+    (0..count).map(|n| coordinate(n, count)).chain(nodes).collect()
 }
 
 /// Coordinate of scan point `n` of `count` along an axis: stratified, never on a node.

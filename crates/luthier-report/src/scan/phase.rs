@@ -1,6 +1,6 @@
 use std::f64::consts::TAU;
 
-use super::{Measured, Scan, User, coordinate};
+use super::{Measured, Scan, User, coordinates};
 use crate::Subject;
 use crate::report::Curves;
 use crate::subject::Table;
@@ -13,13 +13,12 @@ const POINTS_PER_CELL: u32 = 8;
 /// at the three wavelengths of its material.
 pub(super) fn scan(table: &Table<'_>, tile: u32, users: &[User], subject: &Subject<'_>) -> Option<Measured> {
     let axis = &table.entry.layout.x;
-    let count = axis.intervals() * POINTS_PER_CELL;
     let mut scan = Scan::default();
     for &(material, layer) in users {
         let film = subject.stacks[material].layers.get(layer).and_then(|l| l.films.first())?;
         let wavelengths_nm = subject.manifest.materials[material].wavelengths_nm;
         let waves = wavelengths_nm.map(|nm| 2.0 * film.thickness.max_nm * film.ior.at(nm).re / nm);
-        for s in (0..count).map(|n| axis.decode(coordinate(n, count))) {
+        for s in coordinates(axis, POINTS_PER_CELL).into_iter().map(|u| axis.decode(u)) {
             let sampled = table.read(tile, [s, 0.0], Weights::EightBit);
             for channel in 0..3 {
                 scan.add(&[s], channel, 2.0 * libm::cos(TAU * waves[channel] * s), sampled[channel]);

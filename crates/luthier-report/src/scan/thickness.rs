@@ -8,28 +8,30 @@ use crate::subject::Table;
 const HALF_FLOAT: f64 = 1e-3;
 
 /// What a thickness texture holds that cannot be: a thickness outside the range of its film, or a normalisation factor that
-/// is not `sqrt(1 + dx^2 + dy^2)` of its slopes. The map itself is the material file's and unknown here.
+/// is not `sqrt(1 + dx^2 + dy^2)` of its slopes, where it has these. The map itself is the material file's and unknown here.
 pub(super) fn doubts(table: &Table<'_>, tile: u32, users: &[User], subject: &Subject<'_>) -> Vec<String> {
     let mut doubts = Vec::new();
     let [x0, y0] = table.entry.layout.origin(tile);
     let [width, height] = table.entry.layout.tile_size();
     let name = &table.entry.tiles[tile as usize].name;
-    if table.texels.channels < 4 {
-        return vec![format!("thickness tile {name}: it has fewer than four channels.")];
-    }
+    let has_slopes = match table.texels.channels {
+        1 => false,
+        4 => true,
+        channels => return vec![format!("thickness tile {name}: it has {channels} channels, not one or four.")],
+    };
     let (mut low, mut high, mut tilted) = (f64::INFINITY, f64::NEG_INFINITY, 0_u64);
     for (x, y) in (y0..y0 + height).flat_map(|y| (x0..x0 + width).map(move |x| (x, y))) {
         let texel = table.texels.texel(x, y);
-        let [d, dx, dy, n] = [0, 1, 2, 3].map(|c: usize| f64::from(texel[c]));
+        let at = |c: usize| f64::from(texel[c]);
+        let d = at(0);
         (low, high) = (low.min(d), high.max(d));
-        let expected = libm::sqrt(1.0 + dx * dx + dy * dy);
         // Written so that a value that is not a number is a doubt.
-        let agrees = d.is_finite() && (n - expected).abs() <= HALF_FLOAT * expected;
+        let agrees = d.is_finite() && (!has_slopes || is_norm([at(1), at(2)], at(3)));
         tilted += u64::from(!agrees);
     }
     if tilted > 0 {
         doubts.push(format!(
-            "thickness tile {name}: in {tilted} texels the normalisation factor is not that of the slopes."
+            "thickness tile {name}: in {tilted} texels the thickness or the normalisation factor of its slopes is wrong."
         ));
     }
     for &(material, layer) in users {
@@ -48,4 +50,10 @@ pub(super) fn doubts(table: &Table<'_>, tile: u32, users: &[User], subject: &Sub
         }
     }
     doubts
+}
+
+/// Whether a factor is `sqrt(1 + dx^2 + dy^2)`, as half floats have it.
+fn is_norm([dx, dy]: [f64; 2], factor: f64) -> bool {
+    let expected = libm::sqrt(1.0 + dx * dx + dy * dy);
+    (factor - expected).abs() <= HALF_FLOAT * expected
 }

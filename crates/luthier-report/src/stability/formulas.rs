@@ -18,8 +18,8 @@ use luthier_optics::stack::{Distribution, Surface};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
-/// Section C of the physics reference, row by row, and the cases that stand for a row; a row without cases has formulations.
-pub const SECTION_C: [(&str, &[&str]); 24] = [
+/// Known pitfalls of layered models and of their tables, and the cases that stand for one; a pitfall without cases has formulations.
+pub const PITFALLS: [(&str, &[&str]); 24] = [
     ("D in f16", &[]),
     ("D table, alpha axis linear, 512", &[]),
     ("reading u^8 as (N.H)^8", &[]),
@@ -46,13 +46,13 @@ pub const SECTION_C: [(&str, &[&str]); 24] = [
     ("hardware bilinear filtering", &[]),
 ];
 
-/// Row of formulations that belong to no row of section C.
+/// Row of formulations that belong to none of the [`PITFALLS`].
 const EXTREMES: &str = "denormal and huge arguments";
 
 /// One way to write or to store a function.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FormulaResult {
-    /// Row of section C, or what else it is about.
+    /// Which of the [`PITFALLS`], or what else it is about.
     pub row: String,
     /// How it is written, in which precision.
     pub formulation: String,
@@ -169,7 +169,7 @@ fn storage_of_d(out: &mut Collector) {
     let m = 1e-3;
     let peak = |scale: f64| f16(scale) / scale - 1.0;
     let truth = "peak of Beckmann at m = 0.001, relative to f64";
-    let row = SECTION_C[0].0;
+    let row = PITFALLS[0].0;
     out.rejected(
         row,
         "1/(pi m^2) in a half float",
@@ -193,32 +193,32 @@ fn storage_of_d(out: &mut Collector) {
     for m in [0.02, 0.005] {
         let truth = format!("row of 512 texels at m = {m}, of the peak, against D");
         let linear = interpolation(512, |u| beckmann(m, FRAC_PI_2 * u));
-        out.rejected(SECTION_C[1].0, "angle linear", &truth, linear, "Lobes are narrower than its texels.");
+        out.rejected(PITFALLS[1].0, "angle linear", &truth, linear, "Lobes are narrower than its texels.");
         let eighth = interpolation(512, |u| beckmann(m, FRAC_PI_2 * libm::pow(u, 8.0)));
-        out.ours(SECTION_C[1].0, "angle = (pi/2) u^8", &truth, eighth, 2e-4);
+        out.ours(PITFALLS[1].0, "angle = (pi/2) u^8", &truth, eighth, 2e-4);
         let cosine = interpolation(512, |u| beckmann(m, libm::acos(libm::pow(u, 0.125))));
-        out.rejected(SECTION_C[2].0, "cosine = u^(1/8)", &truth, cosine, "Nodes are too far apart beside the normal.");
-        out.ours(SECTION_C[2].0, "angle = (pi/2) u^8", &truth, eighth, 2e-4);
+        out.rejected(PITFALLS[2].0, "cosine = u^(1/8)", &truth, cosine, "Nodes are too far apart beside the normal.");
+        out.ours(PITFALLS[2].0, "angle = (pi/2) u^8", &truth, eighth, 2e-4);
         let row = libm::floor(m * 511.0);
         let truth = format!("peak between the rows at m = {m}");
         let [low, high] = [row, row + 1.0].map(|i| 1.0 / (i * i));
         let middle = 1.0 / ((row + 0.5) * (row + 0.5));
         let error = 0.5 * (low + high) / middle - 1.0;
-        out.rejected(SECTION_C[3].0, "D over m, linear, 512 rows", &truth, error, "1/m^2 is no straight line.");
+        out.rejected(PITFALLS[3].0, "D over m, linear, 512 rows", &truth, error, "1/m^2 is no straight line.");
         // The rows that ship are a ratio of 1000^(1/511) apart; half the slope of a lobe is its error.
         let ratio = libm::pow(1000.0, 0.5 / 511.0);
         let error = largest((0..400).map(|i| {
             let theta = 4.0 * m * f64::from(i) / 400.0;
             (0.5 * (beckmann(m * ratio, theta) + beckmann(m / ratio, theta)) - beckmann(m, theta)).abs()
         }));
-        out.ours(SECTION_C[3].0, "pi m^2 D over log m, 512 rows", &truth.replace("peak", "lobe"), error, 1e-3);
+        out.ours(PITFALLS[3].0, "pi m^2 D over log m, 512 rows", &truth.replace("peak", "lobe"), error, 1e-3);
     }
     let rows = || (0..16).map(|i| (0.02 * 511.0 - 7.5 + f64::from(i)) / 511.0);
     let mean = rows().map(|m| 1.0 / (m * m)).sum::<f64>() / 16.0 * 4e-4;
     let truth = "mean of 16 rows about m = 0.02 against the row";
-    out.rejected(SECTION_C[4].0, "mip maps of D", truth, mean - 1.0, "The mean of 1/m^2 over a..b is 1/(ab).");
+    out.rejected(PITFALLS[4].0, "mip maps of D", truth, mean - 1.0, "The mean of 1/m^2 over a..b is 1/(ab).");
     let ours = rows().map(|m| beckmann(m, 0.0)).sum::<f64>() / 16.0;
-    out.ours(SECTION_C[4].0, "one level of pi m^2 D", truth, (ours - 1.0).abs(), 1e-12);
+    out.ours(PITFALLS[4].0, "one level of pi m^2 D", truth, (ours - 1.0).abs(), 1e-12);
 }
 
 fn reflectance(above: f64, below: f64, cos: f64) -> f64 {
@@ -230,33 +230,33 @@ fn rows_of_fresnel(out: &mut Collector) {
         let f0 = reflectance(1.0, n, 1.0);
         let truth = format!("half a step of F0 at n = {n}, relative");
         let reason = "A tenth of water's highlight is a step.";
-        out.rejected(SECTION_C[5].0, "unorm8", &truth, 0.5 / 255.0 / f0, reason);
+        out.rejected(PITFALLS[5].0, "unorm8", &truth, 0.5 / 255.0 / f0, reason);
         let half = largest((0..=100).map(|i| {
             let value = reflectance(1.0, n, f64::from(i) / 100.0);
             (f16(value) / value - 1.0).abs()
         }));
-        out.ours(SECTION_C[5].0, "half float", &truth, half, 5e-4);
+        out.ours(PITFALLS[5].0, "half float", &truth, half, 5e-4);
     }
     for n in [1.01, 1.5] {
         let truth = format!("128 texels, n = {n}, absolute, against Fresnel's formulas");
         let theta = interpolation(128, |u| reflectance(1.0, n, libm::cos(FRAC_PI_2 * u)));
         out.rejected(
-            SECTION_C[6].0,
+            PITFALLS[6].0,
             "theta",
             &truth,
             theta,
             "Steep at grazing; used only where a material asks for it.",
         );
-        out.ours(SECTION_C[6].0, "cosine", &truth, interpolation(128, |u| reflectance(1.0, n, u)), 6e-3);
+        out.ours(PITFALLS[6].0, "cosine", &truth, interpolation(128, |u| reflectance(1.0, n, u)), 6e-3);
     }
     let critical = (1.0 - 1.0 / 2.25_f64).sqrt();
     let truth = "128 texels from 1.5 into 1, absolute, against Fresnel's formulas";
     let plain = interpolation(128, |u| reflectance(1.5, 1.0, u));
     let reason = "It misses the kink at the critical angle. Rows of materials are seen from above: where that is the denser side, check warns.";
-    out.rejected(SECTION_C[7].0, "cosine over 0..1", truth, plain, reason);
+    out.rejected(PITFALLS[7].0, "cosine over 0..1", truth, plain, reason);
     let knot = interpolation(64, |u| reflectance(1.5, 1.0, critical + (1.0 - critical) * u * u));
     out.rejected(
-        SECTION_C[7].0,
+        PITFALLS[7].0,
         "knot at the critical angle, u^2 beyond",
         truth,
         knot,
@@ -274,18 +274,18 @@ fn rows_of_fresnel(out: &mut Collector) {
             }))
         };
         let error = worst(&|cos| complex_f0(1.0, below, cos));
-        out.rejected(SECTION_C[8].0, "Schlick with complex F0", &truth, error, "Not the 5% that is claimed for it.");
+        out.rejected(PITFALLS[8].0, "Schlick with complex F0", &truth, error, "Not the 5% that is claimed for it.");
         let lazanyi = Lazanyi::fit(1.0, below);
         let error = worst(&|cos| lazanyi.eval(cos));
         out.rejected(
-            SECTION_C[8].0,
+            PITFALLS[8].0,
             "with Lazanyi's correction",
             &truth,
             error,
             "Better, and still no formula of Fresnel's.",
         );
         let row = interpolation(128, |cos| interface(Complex64::ONE, below, cos).unpolarised());
-        out.ours(SECTION_C[8].0, "row of 128 texels", &truth, row, 6e-3);
+        out.ours(PITFALLS[8].0, "row of 128 texels", &truth, row, 6e-3);
     }
 }
 
@@ -306,8 +306,8 @@ fn single_precision(out: &mut Collector) {
             bad = if error > bad || error.is_nan() { error } else { bad };
             good = good.max((value(from_sine) / exact - 1.0).abs());
         }
-        out.rejected(SECTION_C[9].0, "from the cosine, f32", &truth, bad, "1 - cos^2 has no digits left.");
-        out.ours(SECTION_C[9].0, "from the squared sine, f32", &truth, good, 2e-6);
+        out.rejected(PITFALLS[9].0, "from the cosine, f32", &truth, bad, "1 - cos^2 has no digits left.");
+        out.ours(PITFALLS[9].0, "from the squared sine, f32", &truth, good, 2e-6);
     }
     let (n, k) = (0.01_f64, 10.0_f64);
     let exact = 4.0 * n / ((n + 1.0) * (n + 1.0) + k * k);
@@ -318,15 +318,15 @@ fn single_precision(out: &mut Collector) {
     let a = (0.5 * (modulus + t0)).max(0.0).sqrt();
     let usual = 1.0 - f64::from((modulus + 1.0 - 2.0 * a) / (modulus + 1.0 + 2.0 * a));
     let error = (usual / exact - 1.0).abs();
-    out.rejected(SECTION_C[10].0, "the usual form, f32", truth, error, "Squares of k cancel; tables are baked in f64.");
+    out.rejected(PITFALLS[10].0, "the usual form, f32", truth, error, "Squares of k cancel; tables are baked in f64.");
     let ours = 1.0 - interface(Complex64::ONE, Complex64::new(n, k), 1.0).unpolarised();
-    out.ours(SECTION_C[10].0, "interface(), f64", truth, (ours / exact - 1.0).abs(), 1e-11);
+    out.ours(PITFALLS[10].0, "interface(), f64", truth, (ours / exact - 1.0).abs(), 1e-11);
     let truth = "alpha^2 for alpha from 0.001 to 0.0078, relative";
     let alphas = || (0..200).map(|i| 1e-3 + 6.8e-3 * f64::from(i) / 200.0);
     let half = largest(alphas().map(|a| (f16(a * a) / (a * a) - 1.0).abs()));
-    out.rejected(SECTION_C[11].0, "half float", truth, half, "It is below the smallest normal number.");
+    out.rejected(PITFALLS[11].0, "half float", truth, half, "It is below the smallest normal number.");
     let single = largest(alphas().map(|a| (f64::from((a as f32) * (a as f32)) / (a * a) - 1.0).abs()));
-    out.ours(SECTION_C[11].0, "f32", truth, single, 3e-7);
+    out.ours(PITFALLS[11].0, "f32", truth, single, 3e-7);
 }
 
 fn energies(out: &mut Collector) {

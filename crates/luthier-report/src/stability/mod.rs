@@ -37,7 +37,7 @@ use crate::{ReportError, json};
 pub use aim::Aim;
 pub use case::{StressCase, cases};
 pub use domains::{DomainRange, derived};
-pub use formulas::{FormulaResult, SECTION_C, formulas};
+pub use formulas::{FormulaResult, PITFALLS, formulas};
 pub use models::model_cells;
 pub use shaders::shader_cells;
 pub use svg::heat_map_svg;

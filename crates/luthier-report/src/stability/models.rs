@@ -97,7 +97,7 @@ fn truth(stack: &Monochrome, wo: DVec3) -> Estimate {
     }
     let stack = &stack;
     if is_smooth(stack) {
-        ClosedForm::new().albedo_with_error(stack, wo)
+        ClosedForm::new().albedo_with_error(stack, wo, DVec3::Z)
     } else {
         LayeredMc::new(InterfaceMode::SmithWalk).albedo(stack, wo, PATHS)
     }
@@ -165,7 +165,7 @@ struct Albedo {
 /// `luthier_layers::directional_albedo`.
 fn albedo(model: &dyn Model, stack: &Monochrome, wo: DVec3) -> Albedo {
     if let Some(estimator) = model.estimator() {
-        let own = estimator.albedo_with_error(stack, wo);
+        let own = estimator.albedo_with_error(stack, wo, DVec3::Z);
         return Albedo { value: own.mean, error: SIGMAS * own.std_err };
     }
     let [coarse, fine] = POINTS.map(|points| integral(model, stack, wo, points));

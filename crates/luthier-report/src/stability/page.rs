@@ -5,7 +5,7 @@ use std::fmt::Write;
 use luthier_layers::domain::Quantity;
 
 use super::explain::EXPLANATIONS;
-use super::{Cell, FAILS, HOLDS, HOLDS_ALBEDO, Level, SECTION_C, Stability, Verdict};
+use super::{Cell, FAILS, HOLDS, HOLDS_ALBEDO, Level, PITFALLS, Stability, Verdict};
 use crate::format::{error, number};
 
 /// Cases side by side in a table.
@@ -183,8 +183,8 @@ fn explanations(out: &mut String, stability: &Stability) {
 
 fn formulas(out: &mut String, stability: &Stability) {
     out.push_str(
-        "\n## Ways to write and to store a function\n\nSection C of the physics reference, row by row: what ships, and what was rejected, with the error of each.\n\n\
-         | row | formulation | ships | error of | error | verdict | |\n|---|---|---|---|--:|---|---|\n",
+        "\n## Ways to write and to store a function\n\nKnown pitfalls of layered models and of their tables: for each what ships, and what was rejected, with the error.\n\n\
+         | pitfall | formulation | ships | error of | error | verdict | |\n|---|---|---|---|--:|---|---|\n",
     );
     for formula in &stability.formulas {
         let verdict = if formula.holds() { "holds" } else { "fails" };
@@ -199,8 +199,8 @@ fn formulas(out: &mut String, stability: &Stability) {
             if formula.holds() { "" } else { &formula.reason }
         );
     }
-    out.push_str("\nRows that are cases of the heat maps:\n\n");
-    for (row, cases) in SECTION_C.iter().filter(|(_, cases)| !cases.is_empty()) {
+    out.push_str("\nPitfalls that are cases of the heat maps:\n\n");
+    for (row, cases) in PITFALLS.iter().filter(|(_, cases)| !cases.is_empty()) {
         let _ = writeln!(out, "- {row}: {}", cases.join(", "));
     }
 }

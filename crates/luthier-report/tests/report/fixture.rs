@@ -108,6 +108,7 @@ impl Bake {
             shaders: Vec::new(),
             bindings: Vec::new(),
             material_buffer: FileEntry::default(),
+            material_texture: luthier_lut::MaterialTexture::default(),
         };
         let textures = vec![(TableKind::Fresnel, fresnel), (TableKind::Distribution, distribution)];
         Self { manifest, textures, stacks: named.into_iter().map(|(_, stack)| stack).collect() }
@@ -300,9 +301,11 @@ pub(crate) fn table(
             max_abs_err: 0.5,
             rms_err: 0.1,
             p99_abs_err: 0.2,
+            slack: 0.0,
             worst: Worst { at: at.clone(), channel: 0, expected: 0.5, sampled: 1.0 },
             points: 1,
         },
+        aim: None,
     };
     let entry = TableEntry {
         kind,

@@ -35,6 +35,29 @@ fn a_limit_is_held_up_to_what_was_found() {
     assert_eq!(report.is_within_budget(), None);
 }
 
+/// What the bake aimed at and missed counts against the limit on the shaders' error, though directions may pass it by.
+#[test]
+fn a_tile_that_misses_its_aim_breaks_the_limit() {
+    let mut bake = Bake::new();
+    let settings = Settings { pairs_per_set: 200, budget: Some(10.0), ..Settings::default() };
+    let mut report = judge(&bake.subject(), None, &settings).unwrap();
+    report.limits = limits(&report, &[], &Asked::default());
+    assert_eq!((report.is_within_budget(), report.limits.len()), (Some(true), 0));
+    let settings = Settings { budget: Some(0.4), ..settings };
+    // The fixture's baker states a difference of 1/2 for every tile.
+    bake.manifest.tables[0].tiles[0].aim = Some(2e-3);
+    let mut report = judge(&bake.subject(), None, &settings).unwrap();
+    report.limits = limits(&report, &[], &Asked::default());
+    let limit = &report.limits[0];
+    assert!(!limit.is_held && limit.found == Some(0.5) && limit.limit == 0.4, "{limit:?}");
+    let name = &report.tables[0].tiles[0].name;
+    assert!(limit.quantity.contains(name) && report.findings.iter().any(|f| f.contains(name)), "{:?}", report.findings);
+    bake.manifest.tables[0].tiles[0].aim = Some(0.6);
+    let mut report = judge(&bake.subject(), None, &settings).unwrap();
+    report.limits = limits(&report, &[], &Asked::default());
+    assert!(report.limits.is_empty());
+}
+
 /// The budget of a file is held against the tables that its material reads, and no others.
 #[test]
 fn files_answer_for_their_own_tables() {

@@ -176,7 +176,36 @@ fn charts_mark_what_was_chosen() {
         assert_eq!(chart.matches("class=\"chosen\"").count(), 1, "{chart}");
     }
     assert!(html.contains("the &lt;cheapest&gt; that holds"));
-    assert_eq!(html.matches("data:image/png;base64,iVBORw==").count(), materials);
+    // Once with the material, once at the top.
+    assert_eq!(html.matches("data:image/png;base64,iVBORw==").count(), 2 * materials);
+}
+
+/// The first thing behind the verdict: a mark for each material and form, by cost where costs were given, by bytes otherwise.
+#[test]
+fn all_materials_are_in_one_chart() {
+    let bake = Bake::new();
+    let device = bake.device(|_, _, _, value| value.map(|v| 1.01 * v));
+    let mut report =
+        judge(&bake.subject(), Some(&device), &Settings { pairs_per_set: 100, ..Settings::default() }).unwrap();
+    let chart = |html: &str| -> String {
+        let (_, rest) = html.split_once("<figure class=\"field\">").unwrap();
+        rest.split_once("</figure>").unwrap().0.to_owned()
+    };
+    let materials = report.materials.len();
+    let bytes = chart(&report.to_html(&Exhibits::default()));
+    assert_eq!(bytes.matches("<a href=\"#material-").count(), materials);
+    assert!(bytes.contains("No cost of shaders was given") && bytes.contains("bytes of the tables"), "{bytes}");
+    // Of the fixture's tables each material reads some.
+    assert!(bytes.contains("KiB of tables") || bytes.contains(" B of tables"), "{bytes}");
+    let exhibits = filled(&mut report);
+    let html = report.to_html(&exhibits);
+    let costs = chart(&html);
+    assert_eq!(costs.matches("<a href=\"#material-").count(), 2 * materials, "baked and full");
+    assert!(costs.contains("120 cycles, ") && costs.contains("240 cycles, no table"), "{costs}");
+    let position = |text: &str| html.find(text).unwrap();
+    assert!(position("how fast") < position("<figure class=\"field\">"));
+    assert!(position("<figure class=\"field\">") < position("id=\"levels\""));
+    assert!(html.contains("<dd>120 cycles</dd>"), "the median of what ships");
 }
 
 /// The summary says what the page says, in tables that Markdown reads: as many cells in every row as in the head.

@@ -1,10 +1,10 @@
 //! The stability suite without a device: its cases, formulations, explanations and drawings.
 
 use luthier_report::stability::{
-    Cell, Fault, Level, SECTION_C, Stability, Verdict, cases, explain, formulas, heat_map_svg, model_cells,
+    Cell, Fault, Level, PITFALLS, Stability, Verdict, cases, explain, formulas, heat_map_svg, model_cells,
 };
 
-/// Rows of section C of the physics reference, in its words.
+/// The pitfalls, by name.
 const ROWS: [&str; 24] = [
     "D in f16",
     "D table, alpha axis linear, 512",
@@ -33,11 +33,11 @@ const ROWS: [&str; 24] = [
 ];
 
 #[test]
-fn every_row_of_section_c_has_cases_or_formulations() {
-    assert_eq!(SECTION_C.map(|(row, _)| row), ROWS);
+fn every_pitfall_has_cases_or_formulations() {
+    assert_eq!(PITFALLS.map(|(row, _)| row), ROWS);
     let ids: Vec<String> = cases().into_iter().map(|case| case.id).collect();
     let formulas = formulas();
-    for (row, named) in SECTION_C {
+    for (row, named) in PITFALLS {
         let measured = formulas.iter().filter(|f| f.row == row).count();
         assert!(measured > 0 || !named.is_empty(), "{row}");
         for id in named {

@@ -4,5 +4,5 @@ flat in uint material_number;
 layout(location = 0) out vec4 color;
 
 void main() {
-    color = vec4(luthier_eval(material_number, normalize(to_light), normalize(to_eye)), 1.0);
+    color = vec4(luthier_bounded(luthier_eval(material_number, normalize(to_light), normalize(to_eye))), 1.0);
 }

@@ -26,6 +26,8 @@ struct LuthierLayer {
     lambert: vec3<f32>, //? diffuse|granier_base
     /// Oren-Nayar slope deviation in radians; 0 is Lambert. //? oren_nayar
     sigma: f32, //? oren_nayar
+    /// Squared cotangent of the critical angle; 0 where nothing is totally reflected. //? total_reflection, fresnel|film_table
+    critical_cot_sq: f32, //? total_reflection, fresnel|film_table
     /// Tile of the Fresnel table. //? fresnel
     fresnel_tile: f32, //? fresnel
     /// Tile of the distribution table. //? distribution
@@ -100,6 +102,7 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     layer.halvings = slab.xyz; //? absorption
     layer.lambert = base.xyz; //? diffuse|granier_base
     layer.sigma = numbers.w; //? oren_nayar
+    layer.critical_cot_sq = luthier_materials[first + 7u].w; //? total_reflection, fresnel|film_table
     layer.fresnel_tile = tiles.x; //? fresnel
     layer.distribution_tile = tiles.y; //? distribution
     layer.fgd_tile = tiles.z; //? fgd

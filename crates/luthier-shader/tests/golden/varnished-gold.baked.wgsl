@@ -183,10 +183,16 @@ fn luthier_eval_elek(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
 }
 
 /// f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away
-/// from the surface. Zero when either is not above the horizon.
+/// from the surface. Zero when either is not above the horizon. See `luthier_bounded` for the range.
 fn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
     if min(wi.z, wo.z) <= 0.0 {
         return vec3<f32>(0.0);
     }
     return luthier_eval_elek(material, wi, wo);
+}
+
+/// What a picture of half floats holds of a sum over lights, 0 to 65504. Highlights at grazing angles go beyond, and colours outside
+/// of Rec.709 have channels below 0: bound the sum, not its terms.
+fn luthier_bounded(radiance: vec3<f32>) -> vec3<f32> {
+    return clamp(radiance, vec3<f32>(0.0), vec3<f32>(65504.0));
 }

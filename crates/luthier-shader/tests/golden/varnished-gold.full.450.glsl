@@ -195,10 +195,16 @@ vec3 luthier_eval_elek(uint material, vec3 wi, vec3 wo) {
 }
 
 // f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away
-// from the surface. Zero when either is not above the horizon.
+// from the surface. Zero when either is not above the horizon. See `luthier_bounded` for the range.
 vec3 luthier_eval(uint material, vec3 wi, vec3 wo) {
     if (min(wi.z, wo.z) <= 0.0) {
         return vec3(0.0);
     }
     return luthier_eval_elek(material, wi, wo);
+}
+
+// What a picture of half floats holds of a sum over lights, 0 to 65504. Highlights at grazing angles go beyond, and colours outside
+// of Rec.709 have channels below 0: bound the sum, not its terms.
+vec3 luthier_bounded(vec3 radiance) {
+    return clamp(radiance, vec3(0.0), vec3(65504.0));
 }

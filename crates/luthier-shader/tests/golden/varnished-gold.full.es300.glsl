@@ -3,7 +3,7 @@
 // Needs `precision highp float;` and `precision highp int;` above.
 //
 // Bindings, by name:
-//   luthier_materials: uniform block LuthierMaterials (std140), 33 vec4
+//   luthier_materials: sampler2D, RGBA32F, 33 x 1, not filtered
 //
 // Materials:
 //   0 varnished-gold, elek, 2 layers
@@ -56,7 +56,12 @@ const uint LUTHIER_MATERIAL_VARNISHED_GOLD = 0u;
 const uint LUTHIER_MATERIAL_WORDS = 11u;
 const uint LUTHIER_LAYER_WORDS = 11u;
 
-layout(std140) uniform LuthierMaterials { vec4 luthier_materials[33]; };
+uniform highp sampler2D luthier_materials;
+
+// A word of the material buffer, which is a texture.
+vec4 luthier_word(uint index) {
+    return texelFetch(luthier_materials, ivec2(int(index), 0), 0);
+}
 
 // A whole number n, which the buffer holds as 2^23 + n: its low bits are n.
 uint luthier_whole(float word) {
@@ -70,18 +75,18 @@ uint luthier_header(uint material) {
 
 // Number of layers of a material.
 uint luthier_layer_count(uint material) {
-    return luthier_whole(luthier_materials[luthier_header(material)].y);
+    return luthier_whole(luthier_word(luthier_header(material)).y);
 }
 
 // A layer of a material, counted from the top.
 LuthierLayer luthier_layer(uint material, uint index) {
     LuthierLayer layer = LuthierLayer(0u, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec3(0.0), vec3(0.0));
-    uint first = luthier_whole(luthier_materials[luthier_header(material)].x) + (index * LUTHIER_LAYER_WORDS);
-    vec4 head = luthier_materials[first];
-    vec4 base = luthier_materials[first + 3u];
-    vec4 real_part = luthier_materials[first + 4u];
-    vec4 imaginary_part = luthier_materials[first + 5u];
-    vec4 numbers = luthier_materials[first + 10u];
+    uint first = luthier_whole(luthier_word(luthier_header(material)).x) + (index * LUTHIER_LAYER_WORDS);
+    vec4 head = luthier_word(first);
+    vec4 base = luthier_word(first + 3u);
+    vec4 real_part = luthier_word(first + 4u);
+    vec4 imaginary_part = luthier_word(first + 5u);
+    vec4 numbers = luthier_word(first + 10u);
     layer.kind = luthier_whole(numbers.x);
     layer.alpha = numbers.y;
     layer.falloff = head.x;
@@ -196,10 +201,16 @@ vec3 luthier_eval_elek(uint material, vec3 wi, vec3 wo) {
 }
 
 // f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away
-// from the surface. Zero when either is not above the horizon.
+// from the surface. Zero when either is not above the horizon. See `luthier_bounded` for the range.
 vec3 luthier_eval(uint material, vec3 wi, vec3 wo) {
     if (min(wi.z, wo.z) <= 0.0) {
         return vec3(0.0);
     }
     return luthier_eval_elek(material, wi, wo);
+}
+
+// What a picture of half floats holds of a sum over lights, 0 to 65504. Highlights at grazing angles go beyond, and colours outside
+// of Rec.709 have channels below 0: bound the sum, not its terms.
+vec3 luthier_bounded(vec3 radiance) {
+    return clamp(radiance, vec3(0.0), vec3(65504.0));
 }

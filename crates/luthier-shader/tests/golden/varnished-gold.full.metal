@@ -4,7 +4,7 @@
 //
 // Bindings, by argument index of a complete shader. A function takes those that it reads, in this order, as its last
 // arguments:
-//   buffer(6) luthier_materials: constant LuthierMaterials&, 33 float4
+//   buffer(6) luthier_materials: device LuthierMaterials const&, 33 float4
 //
 // Materials:
 //   0 varnished-gold, elek, 2 layers
@@ -79,12 +79,12 @@ uint luthier_header(uint material) {
 }
 
 // Number of layers of a material.
-uint luthier_layer_count(uint material, constant LuthierMaterials& luthier_materials) {
+uint luthier_layer_count(uint material, device LuthierMaterials const& luthier_materials) {
     return luthier_whole(luthier_materials.inner[luthier_header(material)].y);
 }
 
 // A layer of a material, counted from the top.
-LuthierLayer luthier_layer(uint material, uint index, constant LuthierMaterials& luthier_materials) {
+LuthierLayer luthier_layer(uint material, uint index, device LuthierMaterials const& luthier_materials) {
     LuthierLayer layer = {};
     uint first = luthier_whole(luthier_materials.inner[luthier_header(material)].x) + (index * LUTHIER_LAYER_WORDS);
     metal::float4 head = luthier_materials.inner[first];
@@ -198,7 +198,7 @@ metal::float3 luthier_eval_elek(
     uint material,
     metal::float3 wi,
     metal::float3 wo,
-    constant LuthierMaterials& luthier_materials
+    device LuthierMaterials const& luthier_materials
 ) {
     metal::float3 down = metal::float3(wi.xy, metal::max(wi.z, 0.0000000000000001));
     metal::float3 up = metal::float3(wo.xy, metal::max(wo.z, 0.0000000000000001));
@@ -211,15 +211,21 @@ metal::float3 luthier_eval_elek(
 }
 
 // f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away
-// from the surface. Zero when either is not above the horizon.
+// from the surface. Zero when either is not above the horizon. See `luthier_bounded` for the range.
 metal::float3 luthier_eval(
     uint material,
     metal::float3 wi,
     metal::float3 wo,
-    constant LuthierMaterials& luthier_materials
+    device LuthierMaterials const& luthier_materials
 ) {
     if (metal::min(wi.z, wo.z) <= 0.0) {
         return metal::float3(0.0);
     }
     return luthier_eval_elek(material, wi, wo, luthier_materials);
+}
+
+// What a picture of half floats holds of a sum over lights, 0 to 65504. Highlights at grazing angles go beyond, and colours outside
+// of Rec.709 have channels below 0: bound the sum, not its terms.
+metal::float3 luthier_bounded(metal::float3 radiance) {
+    return metal::clamp(radiance, metal::float3(0.0), metal::float3(65504.0));
 }

@@ -1,7 +1,7 @@
 //! The shipped functions, run in f32 without a GPU, against f64 from the papers and against printed values.
 
 use std::collections::BTreeMap;
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::machine::{Machine, Value, vector};
 use crate::paper;
@@ -93,6 +93,34 @@ fn narrow_lobes_keep_their_shape() {
             }
         }
     }
+}
+
+/// Oracle: the closed form of a mirror direction, F D / (4 cos_theta) with D = 1 / (pi alpha^2), and the range of half floats.
+#[test]
+fn sums_are_bounded_for_half_floats_and_values_are_not() {
+    let largest = half_max();
+    let materials = [material("mirror", &[LayerRecord { alpha: 1e-3, alpha_xy: [1e-3; 2], ..conductor() }])];
+    let machine = full(&materials);
+    let bounded = |radiance: &[f32]| machine.call("luthier_bounded", vec![vector(radiance)]).floats();
+    for degrees in [0.0_f64, 60.0, 89.9, 89.999] {
+        let cos_theta = degrees.to_radians().cos();
+        let (wi, wo) = (direction(cos_theta, 0.0), direction(cos_theta, TAU / 2.0));
+        let layer = machine.call("luthier_layer", vec![Value::U(0), Value::U(0)]);
+        let fresnel = machine.call("luthier_fresnel_term", vec![layer, Value::F(cos_theta as f32)]).floats();
+        let found = eval(&machine, 0, wi, wo);
+        for (found, fresnel) in found.iter().zip(fresnel) {
+            let expected = f64::from(fresnel) / (4.0 * PI * 1e-6 * wo[2]);
+            assert!((f64::from(*found) / expected - 1.0).abs() < 1e-5, "{degrees}: {found}, not {expected}");
+        }
+        assert_eq!(bounded(&found), found.iter().map(|value| value.min(largest)).collect::<Vec<_>>());
+    }
+    assert_eq!(bounded(&[-0.31, 0.5, 4.6e9]), [0.0, 0.5, largest]);
+    assert_eq!(bounded(&[f32::INFINITY, f32::NEG_INFINITY, largest]), [largest, 0.0, largest]);
+}
+
+/// The largest half float: eleven bits of ones, the first of them 2^15.
+fn half_max() -> f32 {
+    (0..11).map(|bit| f32::from(1_u16 << (15 - bit))).sum()
 }
 
 /// Reflectance of the first layer of a one-layer material.

@@ -3,7 +3,7 @@
 use crate::arithmetic::{directions, eval, full};
 use crate::machine::Machine;
 use crate::scenes::{clear, conductor, dielectric, diffuse, filmed, material, sets, tables};
-use luthier_lut::{LayerKind, Mapping, RowBase, TableKind, TexelFormat};
+use luthier_lut::{BUFFER_WORDS_MAX, LAYER_WORDS, LayerKind, Mapping, RowBase, TableKind, TexelFormat};
 use luthier_shader::{
     Form, MaterialSet, ShaderError, TableFace, Target, bindings, complete, complete_spirv, emit, emit_constant,
     emit_spirv, validate,
@@ -181,8 +181,15 @@ fn functions_of_the_face_are_documented_in_every_language() {
     for target in Target::TEXT {
         let text = emit(&set, Form::Baked, target).unwrap();
         let lines: Vec<&str> = text.lines().collect();
-        for name in ["eval", "lookup_fresnel", "lookup_distribution", "lookup_fgd", "lookup_phase", "lookup_thickness"]
-        {
+        for name in [
+            "eval",
+            "bounded",
+            "lookup_fresnel",
+            "lookup_distribution",
+            "lookup_fgd",
+            "lookup_phase",
+            "lookup_thickness",
+        ] {
             let at =
                 lines.iter().position(|l| l.contains(&format!(" luthier_{name}(")) && l.ends_with(['{', '('])).unwrap();
             assert!(lines[at - 1].starts_with("//"), "{target} {name}");
@@ -227,10 +234,32 @@ fn sets_that_cannot_be_emitted_say_why() {
     odd[0].layout.x.quantity = "wavelength".to_owned();
     assert!(matches!(attempt(&lone(conductor()), odd, Target::Wgsl), ShaderError::Layout { .. }));
     assert!(matches!(attempt(&lone(conductor()), tables(), Target::SpirV), ShaderError::NotText));
-    let many: Vec<_> = (0..120).map(|i| material(&format!("m{i}"), &[conductor()])).collect();
-    let error = attempt(&many, tables(), Target::GlslEs300);
-    assert!(matches!(error, ShaderError::UniformBlockTooLarge { words: 2640, limit: 1024 }), "{error}");
-    assert!(emit(&MaterialSet { materials: &many, tables: tables() }, Form::Baked, Target::Glsl450).is_ok());
+    // One layer more than the words that shaders count.
+    let layers = vec![conductor(); BUFFER_WORDS_MAX / LAYER_WORDS];
+    let error = attempt(&[material("deep", &layers)], tables(), Target::Wgsl);
+    assert!(matches!(error, ShaderError::BufferTooLarge { words: 8_388_611, limit: 8_388_608 }), "{error}");
+}
+
+/// A set that no uniform block of GLSL ES 3.00 holds; 33 materials of two layers take 1,089 words, and 63 more than one row of texels.
+#[test]
+fn any_number_of_materials_is_emitted() {
+    let layers = [clear(), conductor()];
+    for (count, width, height, coordinates) in
+        [(33, 1089, 1, "ivec2(int(index), 0)"), (63, 2048, 2, "ivec2(int(index & 2047u), int(index >> 11u))")]
+    {
+        let materials: Vec<_> = (0..count).map(|i| material(&format!("m-{i}"), &layers)).collect();
+        emit_all(&materials, &tables());
+        let set = MaterialSet { materials: &materials, tables: tables() };
+        let text = emit(&set, Form::Baked, Target::GlslEs300).unwrap();
+        for part in [
+            format!("luthier_materials: sampler2D, RGBA32F, {width} x {height}, not filtered"),
+            "uniform highp sampler2D luthier_materials;".to_owned(),
+            format!("return texelFetch(luthier_materials, {coordinates}, 0);"),
+        ] {
+            assert!(text.contains(&part), "`{part}` is not in\n{text}");
+        }
+        assert!(!text.contains("luthier_materials["), "{text}");
+    }
 }
 
 /// Constants in the place of the buffer pass in every language, bind none, and give the same values to the last bit.
@@ -278,6 +307,21 @@ fn without_its_table_d_is_a_closed_form() {
     assert!(!text.contains("luthier_lookup_distribution") && text.contains("fn luthier_beckmann("), "{text}");
     assert!(text.contains("luthier_lookup_fresnel(layer"), "{text}");
     assert!(bindings(&set, Form::Baked).iter().all(|b| b.name != "luthier_distribution"));
+}
+
+/// Sets in which light is totally reflected read their rows at the cosine of the refracted direction; others have no word of it.
+#[test]
+fn only_total_reflection_pays_for_its_rows() {
+    let inward = luthier_lut::LayerRecord { eta: 1.0 / 1.5, critical_cot_sq: 1.25, ..clear() };
+    let materials = [material("wine-glass", &[clear(), inward, filmed(), conductor()])];
+    emit_all(&materials, &tables());
+    let text = |layers: &[luthier_lut::LayerRecord], form| {
+        let materials = [material("sample", layers)];
+        emit(&MaterialSet { materials: &materials, tables: tables() }, form, Target::Wgsl).unwrap()
+    };
+    assert!(text(&materials[0].layers, Form::Baked).contains("layer.critical_cot_sq * sin_theta_i_sq"));
+    assert!(!text(&materials[0].layers, Form::Full).contains("critical_cot_sq"));
+    assert!(!text(&[clear(), filmed(), conductor()], Form::Baked).contains("critical_cot_sq"));
 }
 
 #[test]

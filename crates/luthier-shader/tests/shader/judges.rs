@@ -9,7 +9,8 @@ use luthier_lut::MaterialEntry;
 use luthier_shader::{Form, MaterialSet, Target, complete, complete_spirv, emit, emit_spirv};
 use tempfile::TempDir;
 
-use crate::scenes::{sets, tables};
+use crate::examples;
+use crate::scenes::{clear, conductor, material, sets, tables};
 
 /// What SPIR-V emitted here is for.
 const VULKAN: &str = "vulkan1.1";
@@ -70,11 +71,42 @@ fn khronos_tools_accept_complete_glsl() {
             let module = compile(&text, folder, what, &[client]);
             validate_spirv(&module, environment, what, &text);
         }
-        // GLSL ES 3.00 has no locations for what the vertex shader hands over, so it makes no SPIR-V.
-        let (text, source) = (complete(set, form, Target::GlslEs300).unwrap(), folder.join("shader.frag"));
-        fs::write(&source, &text).unwrap();
-        expect_success(&Command::new("glslangValidator").arg(&source).output().unwrap(), what, &text);
+        accept_glsl_es(what, &complete(set, form, Target::GlslEs300).unwrap(), folder);
     });
+}
+
+/// Has glslang read a fragment shader. GLSL ES 3.00 has no locations for what the vertex shader hands over, so it makes no SPIR-V.
+fn accept_glsl_es(what: &str, text: &str, folder: &Path) {
+    let source = folder.join("shader.frag");
+    fs::write(&source, text).unwrap();
+    expect_success(&Command::new("glslangValidator").arg(&source).output().unwrap(), what, text);
+}
+
+#[test]
+fn khronos_tools_accept_the_glsl_of_the_examples() {
+    if !is_installed("glslangValidator", "glslang-tools") {
+        return;
+    }
+    let folder = TempDir::new().unwrap();
+    for (what, text) in examples::composed(Target::GlslEs300) {
+        accept_glsl_es(&what, &text, folder.path());
+    }
+}
+
+/// More than a uniform block holds, and more than a row of texels.
+#[test]
+fn khronos_tools_accept_glsl_of_many_materials() {
+    if !is_installed("glslangValidator", "glslang-tools") {
+        return;
+    }
+    let folder = TempDir::new().unwrap();
+    for count in [33, 63, 1000] {
+        let materials: Vec<_> = (0..count).map(|i| material(&format!("m-{i}"), &[clear(), conductor()])).collect();
+        for form in Form::ALL {
+            let text = complete(&set(&materials), form, Target::GlslEs300).unwrap();
+            accept_glsl_es(&format!("{count} materials, {form}"), &text, folder.path());
+        }
+    }
 }
 
 #[test]
@@ -138,18 +170,32 @@ fn tint() -> Option<PathBuf> {
 
 #[test]
 fn tint_accepts_wgsl() {
-    let Some(script) = tint() else { return };
-    let folder = TempDir::new().unwrap();
-    let mut files = Vec::new();
+    let mut texts = Vec::new();
     each(|what, set, form, _| {
         for (part, text) in
             [("snippet", emit(set, form, Target::Wgsl)), ("complete", complete(set, form, Target::Wgsl))]
         {
-            let file = folder.path().join(format!("{what} {part}.wgsl"));
-            fs::write(&file, text.unwrap()).unwrap();
-            files.push(file);
+            texts.push((format!("{what} {part}"), text.unwrap()));
         }
     });
+    accept_wgsl(&texts);
+}
+
+#[test]
+fn tint_accepts_the_wgsl_of_the_examples() {
+    accept_wgsl(&examples::composed(Target::Wgsl));
+}
+
+/// Has Tint compile texts, each with a name.
+fn accept_wgsl(texts: &[(String, String)]) {
+    let Some(script) = tint() else { return };
+    let folder = TempDir::new().unwrap();
+    let mut files = Vec::new();
+    for (what, text) in texts {
+        let file = folder.path().join(format!("{}.wgsl", what.replace('/', "-")));
+        fs::write(&file, text).unwrap();
+        files.push(file);
+    }
     let output = Command::new("node").arg(&script).args(&files).output().unwrap();
     expect_success(&output, "tint", "");
     let verdict = String::from_utf8_lossy(&output.stdout).into_owned();

@@ -5,9 +5,12 @@
 mod arithmetic;
 mod effects;
 mod emission;
+mod examples;
+mod features;
 mod golden;
 mod judges;
 mod machine;
+mod pages;
 mod paper;
 mod scenes;
 mod statistics;

@@ -75,7 +75,7 @@ fn ktx2_of_other_makers() {
 #[test]
 fn exr_of_two_channels_png_and_raw() {
     let image = Image { width: 2, height: 2, channels: 3, data: (0..12).map(|i| i as f32 / 16.0).collect() };
-    let table = read(&crate::exr::encode(&image, &Metadata::new()).unwrap()).unwrap();
+    let table = read(&crate::exr::encode(&image, &crate::exr::RGB, &Metadata::new()).unwrap()).unwrap();
     assert_eq!((table.image, table.format.as_str(), table.samples), (image, "EXR RGB, float", Samples::Float));
     let grey = Image { width: 3, height: 1, channels: 1, data: vec![0.0, 0.2, 1.0] };
     let table = read(&png::encode_gray(&grey).unwrap()).unwrap();
@@ -104,12 +104,11 @@ proptest! {
             width: 9,
             height: 5,
             bytes: luthier_lut::TexelFormat::Rgba16Float.encode(&image),
-            metadata: Metadata::new(),
         };
         let files = [
             [dx10(9, 5, 34), vec![1; 180]].concat(),
             crate::ktx2::encode(&texture).unwrap(),
-            crate::exr::encode(&image, &Metadata::new()).unwrap(),
+            crate::exr::encode(&image, &crate::exr::RGB, &Metadata::new()).unwrap(),
             png::encode_image(&image).unwrap(),
         ];
         for mut file in files {

@@ -12,11 +12,12 @@ use serde_json::json;
 use self::statement::statement;
 use crate::cli::{AuditOptions, SamplesName};
 use crate::failure::{Failure, Outcome, files};
+use crate::input;
 use crate::output::print;
 
 /// Reads the table, judges it and prints the verdict.
 pub(crate) fn run(options: &AuditOptions) -> Outcome {
-    let bytes = std::fs::read(&options.file).map_err(files(&options.file, "read"))?;
+    let bytes = input::image(&options.file).map_err(files(&options.file, "read"))?;
     let mut table = read(options, &bytes)?;
     if let Some(crop) = &options.crop {
         table.image = cropped(&table.image, crop)?;

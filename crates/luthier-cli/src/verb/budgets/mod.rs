@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use luthier_bake::goals::{Family, Goals, ROW_BYTES, goals};
 use luthier_lut::{Axis, CandidateForm, Mapping, RowBase};
+use luthier_material::{BakeSettings, Material, TableSetting};
 
 use crate::cli::BudgetsOptions;
 use crate::failure::{Failure, Outcome, files};
@@ -66,9 +67,17 @@ Not among the candidates:
 - A fitted monotone map as a table of knots: it is another fetch. What is fitted is one number, the exponent or the bend.
 ";
 
+/// A material with rows and albedos of every interface, whatever its shader reads, of which its file decides nothing.
+fn open(mut material: Material) -> Material {
+    let BakeSettings { model, color, wavelengths_nm, .. } = material.bake;
+    let tables = vec![TableSetting::Fresnel, TableSetting::Fgd];
+    material.bake = BakeSettings { model, color, wavelengths_nm, tables, ..BakeSettings::default() };
+    material
+}
+
 /// Measures what searches reach, as a page.
 pub(crate) fn run(options: &BudgetsOptions) -> Outcome {
-    let materials = valid(read(&options.sources.paths)?, false)?;
+    let materials: Vec<Material> = valid(read(&options.sources.paths)?, false)?.into_iter().map(open).collect();
     let page = page(&goals(&materials, &read_image).map_err(Failure::input)?);
     match &options.output {
         Some(path) => std::fs::write(path, page).map_err(files(path, "write")),
@@ -133,7 +142,7 @@ fn fresnel(out: &mut String, goals: &Goals) {
 fn albedo(out: &mut String, goals: &Goals) {
     out.push_str(
         "\n## Albedo, 64 x 64 half floats\n\n\
-         Goal: 5e-4 as sampled for alpha from 0.01 and angles to 89.5 degrees. `sampled` is the read against the function at 16 x 16 points; \
+         Goal: 5e-4 as sampled for alpha from 0.01 and angles to 89.5 degrees. `sampled` is the read against the function at 16 x 16 points and some nodes; \
          `function` is what the function itself may be off, because walks that crossed the interface are random and some wavelengths are \
          left out after the first bounce. The manifest states their sum.\n\n\
          | interface | sampled | function | sum | goal |\n|---|---|---|---|---|\n",

@@ -1,36 +1,78 @@
+mod function;
+mod place;
+mod polarised;
 mod sweep;
 mod values;
 
+use luthier_layers::layered_mc::Estimate;
 use luthier_layers::model::Model;
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::registry::{model, models};
+use luthier_layers::shaded::Place;
 use luthier_material::Material;
-use luthier_optics::color::GRANIER_WAVELENGTHS_NM;
+use luthier_optics::color::{Color, GRANIER_WAVELENGTHS_NM};
 use luthier_optics::stack::Stack;
+use serde_json::{Value, json};
 
 use crate::cli::EvalOptions;
 use crate::directions;
 use crate::failure::{Failure, Outcome};
 use crate::materials::{read_one, valid};
+use crate::model_inputs::ModelInputs;
+use crate::output::complain;
 use crate::reradiation::Reradiation;
+use function::Kind;
+use place::place;
 use sweep::{Sweep, sweep};
-use values::{Kind, values};
+use values::values;
+
+/// Wavelength of what is tabulated against the angle, unless another is given.
+const WAVELENGTH_NM: f64 = 550.0;
 
 /// What is evaluated: a model, with all that it takes, of a material.
 struct Subject {
     model: Box<dyn Model>,
     material: Material,
+    place: Place,
+    /// Whether effects of the file are in the place.
+    has_effects: bool,
     /// Wavelengths of the light and of what is seen, where these are two.
     bins_nm: Option<[f64; 2]>,
 }
 
+impl Subject {
+    /// The head of what is printed as JSON.
+    fn head(&self) -> Value {
+        let mut head = json!({"model": self.model.info().name, "material": self.material.name});
+        if self.has_effects {
+            head["place"] = json!({
+                "normal": self.place.sample.normal.to_array(),
+                "flake_normal": self.place.under.flake_normal.to_array(),
+                "patina": self.place.patina.map(|patina| patina.amount),
+            });
+        }
+        head
+    }
+}
+
 /// Evaluates a model of a material.
 pub(crate) fn run(options: &EvalOptions) -> Outcome {
-    let subject = subject(options)?;
+    let Some(name) = &options.model else {
+        // The command line asks for a model wherever one is needed.
+        let material = valid(vec![read_one(&options.file)?], false)?.swap_remove(0);
+        let kind = match options.wavelength {
+            None if options.three_wavelengths => Kind::Color(Color::ThreeWavelengths(material.bake.wavelengths_nm())),
+            None if options.rgb => Kind::Color(Color::Spectral),
+            nm => Kind::Wavelength(nm.unwrap_or(WAVELENGTH_NM)),
+        };
+        return polarised::polarised(&material, &kind, &sweep::thetas_deg(options), options.json);
+    };
+    let subject = subject(options, name)?;
     let asked =
         [(options.albedo, Sweep::Albedo), (options.furnace, Sweep::Furnace), (options.environment, Sweep::Environment)];
     if let Some((_, what)) = asked.into_iter().find(|(is_asked, _)| *is_asked) {
-        return sweep(&subject, what, options.wavelength, options.json);
+        let kind = Kind::asked(options, &subject).unwrap_or(Kind::Wavelength(WAVELENGTH_NM));
+        return sweep(&subject, what, &kind, options);
     }
     let pairs = match (&options.directions, options.wi, options.wo) {
         (Some(path), ..) => directions::read(path)?,
@@ -38,23 +80,28 @@ pub(crate) fn run(options: &EvalOptions) -> Outcome {
         // The command line asks for one or the other.
         (None, ..) => Vec::new(),
     };
-    values(&subject, Kind::of(options, &subject), &pairs, options.json)
+    values(&subject, Kind::asked(options, &subject).unwrap_or(Kind::Color(Color::Spectral)), &pairs, options.json)
 }
 
-fn subject(options: &EvalOptions) -> Outcome<Subject> {
-    let known = model(&options.model).ok_or_else(|| {
+fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
+    let known = model(name).ok_or_else(|| {
         let names: Vec<&str> = models().iter().map(|model| model.info().name).collect();
-        Failure::unknown("model", &options.model, &names)
+        Failure::unknown("model", name, &names)
     })?;
     let inputs = &options.inputs;
-    inputs.check(known.as_ref(), options.environment)?;
-    let mut model = inputs.give(known);
-
     let files = std::iter::once(&options.file).chain(&inputs.other);
     let mut materials = valid(files.map(|file| read_one(file)).collect::<Outcome<_>>()?, false)?;
+    let (shown, dropped) = inputs.shown(&materials[0].effects, known.as_ref());
+    inputs.check(known.as_ref(), &shown, options.environment)?;
+    let mut model = inputs.give(known);
+
     // Without another material, the first is everywhere.
     let index = model.stack_index().min(materials.len() - 1);
     let material = materials.swap_remove(index);
+    if !dropped.is_empty() {
+        let (names, file) = (dropped.join(" and "), &material.source);
+        complain(&format!("note: model `{name}` does not show the {names} of {file}; `elek` and `weidlich-wilkie` do"));
+    }
 
     let mut bins_nm = None;
     if let (Some(path), Some(excitation), Some(seen)) = (&inputs.matrix, inputs.excitation, options.wavelength) {
@@ -62,17 +109,28 @@ fn subject(options: &EvalOptions) -> Outcome<Subject> {
         let (reradiated, bins) = matrix.between(excitation, seen, |nm| at(&material.stack, nm))?;
         (model, bins_nm) = (Box::new(reradiated), Some(bins));
     }
-    Ok(Subject { model: inputs.textured(model), material, bins_nm })
+    let place = place(&material, inputs, &shown)?;
+    let has_effects = shown != luthier_material::Effects::default();
+    Ok(Subject { model: ModelInputs::textured(place.sample, model), material, place, has_effects, bins_nm })
+}
+
+/// The channel whose absorption and albedo are those at a wavelength.
+fn nearest_channel(wavelength_nm: f64) -> usize {
+    let distance = |channel: &usize| (GRANIER_WAVELENGTHS_NM[*channel] - wavelength_nm).abs();
+    (0..3).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(1)
 }
 
 /// The stack at a wavelength, for the nearest channel.
 fn at(stack: &Stack, wavelength_nm: f64) -> Monochrome {
-    let distance = |channel: &usize| (GRANIER_WAVELENGTHS_NM[*channel] - wavelength_nm).abs();
-    let channel = (0..3).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(1);
-    Monochrome::new(stack, wavelength_nm, channel)
+    Monochrome::new(stack, wavelength_nm, nearest_channel(wavelength_nm))
 }
 
 /// Seven digits.
 fn significant(value: f64) -> String {
     format!("{value:.6e}")
+}
+
+/// The standard error of an estimate as lists have it.
+fn error(estimate: &Estimate) -> String {
+    if estimate.is_settled() { significant(estimate.std_err) } else { "not-settled".to_owned() }
 }

@@ -1,22 +1,22 @@
 //! Tables against the angle of the eye.
 
-use luthier_layers::directional_albedo::{DirectionalAlbedo, directional_albedo};
+use luthier_layers::directional_albedo::DirectionalAlbedo;
 use luthier_layers::elek_model::environment;
 use luthier_layers::furnace::furnace;
+use luthier_layers::layered_mc::Estimate;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use super::{Subject, at, significant};
+use super::function::{Albedo, Function, Kind};
+use super::{Subject, WAVELENGTH_NM, at, error, significant};
+use crate::cli::EvalOptions;
 use crate::directions::Angles;
 use crate::failure::Outcome;
 use crate::output::print;
 
-/// Angles, in degrees.
+/// Angles, in degrees, unless others are given.
 const THETAS_DEG: [f64; 18] =
     [0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0, 65.0, 70.0, 75.0, 80.0, 85.0];
-
-/// Wavelength, unless another is given.
-const WAVELENGTH_NM: f64 = 550.0;
 
 /// What is tabulated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,67 +36,107 @@ impl Sweep {
     }
 }
 
+/// The angles to tabulate.
+pub(crate) fn thetas_deg(options: &EvalOptions) -> Vec<f64> {
+    if options.angles.is_empty() { THETAS_DEG.to_vec() } else { options.angles.clone() }
+}
+
 /// Prints a table.
-pub(crate) fn sweep(subject: &Subject, what: Sweep, wavelength_nm: Option<f64>, json: bool) -> Outcome {
-    let wavelength_nm = subject.bins_nm.map(|[_, seen]| seen).or(wavelength_nm).unwrap_or(WAVELENGTH_NM);
+pub(crate) fn sweep(subject: &Subject, what: Sweep, kind: &Kind, options: &EvalOptions) -> Outcome {
+    let wavelength_nm = match kind {
+        Kind::Wavelength(nm) | Kind::Reradiated([_, nm]) => *nm,
+        Kind::Color(_) => WAVELENGTH_NM,
+    };
     let stack = at(&subject.material.stack, wavelength_nm);
     let model = subject.model.as_ref();
-    let rows: Vec<(f64, DirectionalAlbedo)> = THETAS_DEG
+    let function = (what == Sweep::Albedo).then(|| Function::new(subject, kind));
+    let single = |row: DirectionalAlbedo| Albedo {
+        values: vec![if row.is_estimate { Estimate::known(row.value, row.error) } else { Estimate::exact(row.value) }],
+        changes: (!row.is_estimate).then(|| vec![row.error]),
+    };
+    let rows: Vec<(f64, Albedo)> = thetas_deg(options)
         .par_iter()
         .map(|&theta_deg| {
-            let wo = Angles { theta_deg, phi_deg: 0.0 }.direction();
-            let row = match what {
-                Sweep::Albedo => directional_albedo(model, &stack, wo),
-                Sweep::Furnace => furnace(model, &stack, wo),
-                Sweep::Environment => {
-                    DirectionalAlbedo { value: environment(&stack, wo, |_| 1.0), error: 0.0, is_estimate: false }
+            let wo = Angles { theta_deg, phi_deg: options.azimuth }.direction();
+            let row = match (what, &function) {
+                (Sweep::Albedo, Some(function)) => function.albedo(wo),
+                (Sweep::Albedo | Sweep::Furnace, _) => single(furnace(model, &stack, wo)),
+                (Sweep::Environment, _) => {
+                    Albedo { values: vec![Estimate::exact(environment(&stack, wo, |_| 1.0))], changes: Some(vec![0.0]) }
                 }
             };
             (theta_deg, row)
         })
         .collect();
-    if json {
+    let columns = kind.columns(if what == Sweep::Furnace { "radiance" } else { what.name() });
+    if options.json {
         let entries: Value = rows.iter().map(|(theta_deg, row)| entry(what, *theta_deg, row)).collect();
-        let mut head = json!({
-            "model": model.info().name,
-            "material": subject.material.name,
-            "wavelength_nm": wavelength_nm,
-        });
+        let mut head = subject.head();
+        match kind {
+            Kind::Color(_) => head["color"] = kind.describe(),
+            Kind::Wavelength(_) | Kind::Reradiated(_) => head["wavelength_nm"] = json!(wavelength_nm),
+        }
         if let Some([excitation_nm, _]) = subject.bins_nm {
             head["excitation_nm"] = json!(excitation_nm);
         }
         head[what.name()] = entries;
         return print(&format!("{head:#}"));
     }
-    let error = if rows.iter().any(|(_, row)| row.is_estimate) { "std_err" } else { "change_on_doubling" };
-    let mut text = match what {
-        Sweep::Albedo => format!("theta_o,albedo,{error}"),
-        Sweep::Furnace => format!("theta_o,radiance,deviation,{error}"),
-        Sweep::Environment => "theta_o,environment".to_owned(),
-    };
-    for (theta_deg, DirectionalAlbedo { value, error, .. }) in &rows {
-        let numbers = match what {
-            Sweep::Albedo => vec![*value, *error],
-            Sweep::Furnace => vec![*value, value - 1.0, *error],
-            Sweep::Environment => vec![*value],
+    let error_name = if rows.iter().any(|(_, row)| row.changes.is_none()) { "std_err" } else { "change_on_doubling" };
+    let error_names = columns.iter().map(|column| match columns.len() {
+        1 => error_name.to_owned(),
+        _ => format!("{error_name}_{column}"),
+    });
+    let mut names: Vec<String> =
+        std::iter::once("theta_o".to_owned()).chain(columns.iter().map(|c| (*c).to_owned())).collect();
+    match what {
+        Sweep::Albedo => names.extend(error_names),
+        Sweep::Furnace => names.extend(std::iter::once("deviation".to_owned()).chain(error_names)),
+        Sweep::Environment => {}
+    }
+    let mut text = names.join(",");
+    for (theta_deg, Albedo { values, changes }) in &rows {
+        let means = values.iter().map(|value| significant(value.mean));
+        let errors = || -> Vec<String> {
+            match changes {
+                Some(changes) => changes.iter().map(|change| significant(*change)).collect(),
+                None => values.iter().map(error).collect(),
+            }
         };
-        let fields: Vec<String> = numbers.into_iter().map(significant).collect();
+        let fields: Vec<String> = match what {
+            Sweep::Albedo => means.chain(errors()).collect(),
+            Sweep::Furnace => means.chain(values.iter().map(|v| significant(v.mean - 1.0))).chain(errors()).collect(),
+            Sweep::Environment => means.collect(),
+        };
         text.push_str(&format!("\n{theta_deg},{}", fields.join(",")));
     }
     print(&text)
 }
 
-fn entry(what: Sweep, theta_deg: f64, row: &DirectionalAlbedo) -> Value {
-    let method = if row.is_estimate { "estimate" } else { "quadrature" };
+fn entry(what: Sweep, theta_deg: f64, Albedo { values, changes }: &Albedo) -> Value {
+    // One number is no list.
+    let listed = |numbers: Vec<Value>| match <[Value; 1]>::try_from(numbers) {
+        Ok([only]) => only,
+        Err(all) => Value::Array(all),
+    };
+    let means = listed(values.iter().map(|value| json!(value.mean)).collect());
+    let errors = listed(match changes {
+        Some(changes) => changes.iter().map(|change| json!(change)).collect(),
+        None => values.iter().map(|value| json!(value.is_settled().then_some(value.std_err))).collect(),
+    });
+    let method = if changes.is_none() { "estimate" } else { "quadrature" };
+    let mut row = json!({"theta_o_deg": theta_deg});
     match what {
-        Sweep::Albedo => json!({"theta_o_deg": theta_deg, "albedo": row.value, "error": row.error, "method": method}),
-        Sweep::Furnace => json!({
-            "theta_o_deg": theta_deg,
-            "radiance": row.value,
-            "deviation": row.value - 1.0,
-            "error": row.error,
-            "method": method,
-        }),
-        Sweep::Environment => json!({"theta_o_deg": theta_deg, "environment": row.value}),
+        Sweep::Albedo => row["albedo"] = means,
+        Sweep::Furnace => {
+            row["deviation"] = json!(values[0].mean - 1.0);
+            row["radiance"] = means;
+        }
+        Sweep::Environment => {
+            row["environment"] = means;
+            return row;
+        }
     }
+    (row["error"], row["method"]) = (errors, json!(method));
+    row
 }

@@ -6,8 +6,9 @@ use luthier_material::{Material, ModelSetting};
 use luthier_report::{Curve, Plot, PlotAxis, PlotColor, lightness_chroma_hue};
 
 use super::figure::{Figure, Made, compared};
-use super::studio::{Studio, bake, material, shaded};
+use super::studio::{Studio, material, shaded};
 use crate::failure::Outcome;
+use crate::memory_bake;
 
 pub(crate) const FIGURES: [Figure; 2] = [
     Figure {
@@ -58,7 +59,7 @@ fn classes(studio: &Studio) -> Outcome<Made> {
     for (name, _, text) in CLASSES {
         materials.push(shaded(&material(name, text)?, name, ModelSetting::WeidlichWilkie));
     }
-    let artefacts = bake(&materials)?;
+    let artefacts = memory_bake::bake(&materials)?;
     let baked = studio.rendered(&artefacts, "baked", Shape::Sphere, |_, _| {})?;
     let full = studio.rendered(&artefacts, "full", Shape::Sphere, |_, _| {})?;
     for ((material, baked), full) in materials.iter().zip(&baked).zip(&full) {

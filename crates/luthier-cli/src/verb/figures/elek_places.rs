@@ -6,7 +6,7 @@ use luthier_material::{Material, ModelSetting};
 use luthier_optics::color::luminance;
 
 use super::figure::{Figure, Made};
-use super::studio::{Studio, bake, material, shaded};
+use super::studio::{Studio, material, shaded};
 use crate::failure::{Failure, Outcome};
 use crate::memory_bake;
 
@@ -52,7 +52,7 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
     };
     let near = f64::from(DISTANCES[0]);
     let materials = [variant("fading", near, 1.0)?, variant("not-fading", 1e6, 1.0)?, variant("smooth", near, 0.0)?];
-    let artefacts = memory_bake::bake(&materials)?;
+    let artefacts = memory_bake::bake_lit(&materials)?;
     let mut rows = [Vec::new(), Vec::new()];
     for (step, distance) in DISTANCES.into_iter().enumerate() {
         // A pixel is always as wide at the eye; what is far away is smaller, and enlarged.
@@ -121,7 +121,7 @@ fn patina(studio: &Studio) -> Outcome<Made> {
         (patina.extent, patina.transition) = (extent, TRANSITION);
         materials.push(stage);
     }
-    let artefacts = bake(&materials)?;
+    let artefacts = memory_bake::bake(&materials)?;
     let map = artefacts.maps.iter().find(|map| map.slot == MapSlot::Patina).map(|map| &map.image);
     for extent in EXTENTS {
         let amounts = map

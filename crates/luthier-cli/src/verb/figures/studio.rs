@@ -20,9 +20,6 @@ use crate::memory_bake;
 /// Directions of the environment per lobe and sample: with four samples to a pixel, 128 per lobe.
 const ENVIRONMENT_SAMPLES: u32 = 32;
 
-/// Side of tables of albedos where no shader reads them; their bake takes seconds.
-const UNUSED_ALBEDO_SIZE: u32 = 4;
-
 /// A key from the upper left and a dimmer one from behind on the right: of no paper.
 const LIGHTS: [DistantLight; 2] = [
     DistantLight { direction: [-0.45, 0.7, 0.6], irradiance: [1.75, 1.7, 1.62] },
@@ -76,7 +73,7 @@ impl Studio {
         shape: Shape,
         adjust: impl Fn(usize, &mut RenderSettings),
     ) -> Outcome<Vec<Image>> {
-        self.rendered(&bake(materials)?, form, shape, adjust)
+        self.rendered(&memory_bake::bake(materials)?, form, shape, adjust)
     }
 
     /// The same of what is baked.
@@ -107,13 +104,6 @@ impl Studio {
         let inputs = Inputs { samples: Some(self.paths), ..Inputs::default() };
         Ok(model.with_inputs(&inputs).unwrap_or(model))
     }
-}
-
-/// Bakes materials for shaders that read no albedos.
-pub(crate) fn bake(materials: &[Material]) -> Outcome<Artefacts> {
-    let mut materials = materials.to_vec();
-    materials.iter_mut().for_each(|material| material.bake.fgd.size = Some([UNUSED_ALBEDO_SIZE; 2]));
-    memory_bake::bake(&materials)
 }
 
 /// The material of a text.

@@ -9,11 +9,12 @@ use luthier_report::{
     Costs, ModelSettings, ModelSubject, ReferencePaths, Report, StabilitySummary, judge_shading_models,
 };
 use rayon::prelude::*;
-use serde_json::Value;
+use serde_json::json;
 
-use crate::bake_files::{GENERATOR, MANIFEST, sha256};
+use crate::bake_files::{GENERATOR, sha256};
 use crate::cli::ReportOptions;
-use crate::failure::{Failure, Outcome, files};
+use crate::failure::{Failure, Outcome};
+use crate::input;
 use crate::materials::read_image;
 
 /// Of the paths: the first family of random numbers.
@@ -43,7 +44,7 @@ pub(super) fn given(options: &ReportOptions) -> Outcome<Given> {
 }
 
 fn read(path: &Path, what: &str, names: &mut Vec<(String, String)>) -> Outcome<String> {
-    let text = std::fs::read_to_string(path).map_err(files(path, "read"))?;
+    let text = input::named_text(path)?;
     names.push((what.to_owned(), format!("{}, SHA-256 {}", path.display(), sha256(text.as_bytes()))));
     Ok(text)
 }
@@ -77,7 +78,7 @@ pub(super) fn add(
             material.alone = outline.searches;
         }
     }
-    choices(report, &options.out)?;
+    choices(report, manifest);
     if let Some(samples) = options.reference {
         let settings = ModelSettings { samples, seed: SEED };
         let subjects = materials.iter().zip(&manifest.materials).map(|(material, entry)| ModelSubject {
@@ -96,12 +97,12 @@ pub(super) fn add(
 }
 
 /// What the manifest says of why each model was chosen: a bake of a scene does.
-fn choices(report: &mut Report, out: &Path) -> Outcome {
-    let path = out.join(MANIFEST);
-    let bytes = std::fs::read(&path).map_err(files(&path, "read"))?;
-    let manifest: Value = serde_json::from_slice(&bytes).map_err(|source| Failure::Input(source.into()))?;
-    for (index, material) in report.materials.iter_mut().enumerate() {
-        material.choice = manifest["materials"][index].get("choice").filter(|choice| !choice.is_null()).cloned();
+fn choices(report: &mut Report, manifest: &Manifest) {
+    let Some(choice) = &manifest.choice else { return };
+    for (material, choice) in report.materials.iter_mut().zip(&choice.materials) {
+        let shipped = choice.tried.get(choice.chosen);
+        let next = choice.next_cheaper.and_then(|place| choice.tried.get(place));
+        material.choice =
+            Some(json!({"why": choice.reason, "budget": choice.budget, "shipped": shipped, "next_cheaper": next}));
     }
-    Ok(())
 }

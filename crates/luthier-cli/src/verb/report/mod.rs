@@ -8,11 +8,12 @@ use luthier_lut::Manifest;
 use luthier_material::{Material, Parsed};
 use luthier_report::{Asked, Device, Exhibits, FileBudget, Report, Settings, Subject, judge, limits};
 use luthier_scene::{LeaveOut, simplified};
+use luthier_texture::BakeFolder;
 
-use crate::artefacts::{manifest, textures};
-use crate::bake_files::{GENERATOR, MANIFEST, REPORT_FILES, sha256, source_hash};
+use crate::artefacts::{open, textures};
+use crate::bake_files::{GENERATOR, REPORT_FILES, source_hash};
 use crate::cli::ReportOptions;
-use crate::failure::{Failure, Outcome, files};
+use crate::failure::{Failure, Outcome};
 use crate::materials::read_one;
 use crate::output::print;
 use crate::progress::Bar;
@@ -20,25 +21,26 @@ use crate::staging::Staging;
 
 /// Judges a bake and writes the report beside it.
 pub(crate) fn run(options: &ReportOptions) -> Outcome {
-    let manifest = manifest(&options.out)?;
-    let textures = textures(&options.out, &manifest)?;
-    let materials = materials(&manifest)?;
+    let folder = open(&options.out)?;
+    let manifest = folder.manifest();
+    let textures = textures(&folder)?;
+    let materials = materials(manifest)?;
     let given = evidence::given(options)?;
-    let device = device(options)?;
+    let device = device(&folder, options)?;
     let stacks = materials.iter().map(|m| m.stack.clone()).collect();
-    let subject = Subject { manifest: &manifest, textures, stacks };
+    let subject = Subject { manifest, textures, stacks };
     let bar = Bar::new("judging");
     let settings = Settings {
         pairs_per_set: options.pairs,
         budget: options.max_error,
-        provenance: provenance(options, &given)?,
+        provenance: provenance(&folder, options, &given),
         progress: Some(&|p| bar.set(p.done, p.total)),
     };
     let judging = device.as_ref().map(|d| d as &dyn Device);
     let mut report = judge(&subject, judging, &settings).map_err(Failure::input)?;
     drop(bar);
 
-    evidence::add(&mut report, &given, options, &manifest, &materials)?;
+    evidence::add(&mut report, &given, options, manifest, &materials)?;
     let pictures = pictures(&mut report, device.as_ref(), options)?;
     let budgets: Vec<FileBudget> =
         (0..).zip(&materials).map(|(material, m)| FileBudget { material, budget: budget(m) }).collect();
@@ -58,17 +60,15 @@ pub(crate) fn run(options: &ReportOptions) -> Outcome {
 }
 
 /// What identifies the run.
-fn provenance(options: &ReportOptions, given: &evidence::Given) -> Outcome<Vec<(String, String)>> {
-    let path = options.out.join(MANIFEST);
-    let bytes = std::fs::read(&path).map_err(files(&path, "read"))?;
+fn provenance(folder: &BakeFolder, options: &ReportOptions, given: &evidence::Given) -> Vec<(String, String)> {
     let mut out = vec![
         ("judged by".to_owned(), GENERATOR.to_owned()),
         ("command".to_owned(), command(options)),
         ("bake".to_owned(), options.out.display().to_string()),
-        ("manifest SHA-256".to_owned(), sha256(&bytes)),
+        ("manifest SHA-256".to_owned(), folder.sha256().to_owned()),
     ];
     out.extend(given.files.iter().cloned());
-    Ok(out)
+    out
 }
 
 /// The command line that makes the report.
@@ -156,14 +156,14 @@ type Runner = crate::device::Shaders;
 type Runner = NoShaders;
 
 #[cfg(feature = "gpu")]
-fn device(options: &ReportOptions) -> Outcome<Option<Runner>> {
+fn device(folder: &BakeFolder, options: &ReportOptions) -> Outcome<Option<Runner>> {
     use crate::device::{Shaders, device, open};
     use luthier_gpu::Artefacts;
 
     if options.no_device {
         return Ok(None);
     }
-    let artefacts = Artefacts::load(&options.out).map_err(device)?;
+    let artefacts = Artefacts::read(folder).map_err(device)?;
     let gpu = open(options.adapter.as_deref())?;
     Ok(Some(Shaders::new(&gpu, &artefacts)?))
 }
@@ -186,7 +186,7 @@ impl Device for NoShaders {
 }
 
 #[cfg(not(feature = "gpu"))]
-fn device(options: &ReportOptions) -> Outcome<Option<Runner>> {
+fn device(_: &BakeFolder, options: &ReportOptions) -> Outcome<Option<Runner>> {
     if options.no_device {
         return Ok(None);
     }

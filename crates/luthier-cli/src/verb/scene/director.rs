@@ -1,10 +1,10 @@
-use luthier_bake::{Bake, BakeError, Options, Silent};
-use luthier_lut::{Budget, FormatSet, LayerRecord, MaterialChoice, SceneBudget, SceneChoice, SceneError};
+use luthier_bake::{BakeError, Options, Silent};
+use luthier_lut::{Budget, FormatSet, MaterialChoice, SceneBudget, SceneChoice, SceneError};
 use luthier_material::{Material, ModelBudget, Scene};
 use luthier_report::{Subject, TableTerms, Weights};
 use luthier_scene::{CostTable, Form, Judge, TABLE_SHARE, label};
 
-use crate::bake_files::{BakeFiles, sha256};
+use crate::bake_files::{BakeFiles, Shaders, sha256};
 use crate::failure::{Failure, Outcome};
 use crate::materials::read_image;
 
@@ -18,6 +18,7 @@ const REFLECTANCE: f64 = 0.2;
 pub(super) struct Director<'a> {
     scene: &'a Scene,
     materials: &'a [Material],
+    shaders: Shaders,
     costs: CostTable,
     baked: Option<Vec<Judge>>,
     full: Option<Vec<Judge>>,
@@ -60,8 +61,9 @@ enum Refusal {
 }
 
 impl<'a> Director<'a> {
-    pub(super) fn new(scene: &'a Scene, materials: &'a [Material]) -> Self {
-        Self { scene, materials, costs: CostTable::shipped(), baked: None, full: None }
+    /// The languages are those of `shaders`; the form is chosen.
+    pub(super) fn new(scene: &'a Scene, materials: &'a [Material], shaders: Shaders) -> Self {
+        Self { scene, materials, shaders, costs: CostTable::shipped(), baked: None, full: None }
     }
 
     /// Chooses and bakes, under another limit on the relative error if one is given: with tables, or, where these do not fit the target,
@@ -126,12 +128,15 @@ impl<'a> Director<'a> {
             .zip(&choices)
             .map(|(judge, choice)| judge.candidates()[choice.chosen].material.clone())
             .collect();
+        let shaders = Shaders { forms: vec![form], ..self.shaders.clone() };
         let files = match form {
-            Form::Full => without_tables(&materials)?,
-            Form::Baked => match tables(&materials, formats(scene), judges, &mut choices, budgets, allow_miss)? {
-                Ok(files) => files,
-                Err(reason) => return Ok(Err(Refusal::Tables(reason))),
-            },
+            Form::Full => BakeFiles::without_tables(&materials, &shaders)?,
+            Form::Baked => {
+                match tables(&materials, &shaders, formats(scene), judges, &mut choices, budgets, allow_miss)? {
+                    Ok(files) => files,
+                    Err(reason) => return Ok(Err(Refusal::Tables(reason))),
+                }
+            }
         };
         let choice = SceneChoice {
             scene: scene.name.clone(),
@@ -169,6 +174,7 @@ fn formats(scene: &Scene) -> Option<FormatSet> {
 /// The loosest tables whose errors, under the light of the scene, stay inside what models leave of the budgets.
 fn tables(
     materials: &[Material],
+    shaders: &Shaders,
     formats: Option<FormatSet>,
     judges: &[Judge],
     choices: &mut [MaterialChoice],
@@ -185,7 +191,6 @@ fn tables(
     while let Some(level) = levels.pop() {
         let options = Options {
             budget: Budget { max_abs: level, ..Budget::default() },
-            lean: true,
             formats: formats.unwrap_or(FormatSet::CORE),
             ..Options::default()
         };
@@ -197,7 +202,7 @@ fn tables(
             }
             bake => bake.map_err(Failure::input)?,
         };
-        let files = BakeFiles::with_forms(materials, &bake, &[Form::Baked])?;
+        let files = BakeFiles::new(materials, &bake, shaders)?;
         let errors = table_errors(&files, materials, judges, choices, budgets)?;
         choices.iter_mut().zip(&errors).for_each(|(choice, error)| choice.table_error = Some(*error));
         let worst = (0..errors.len())
@@ -243,26 +248,4 @@ fn table_errors(
         Ok(judges[number].table_error(choices[number].chosen, &terms, budgets[number].delta_e.is_some()))
     };
     (0..materials.len()).map(error).collect()
-}
-
-/// A bake of the form `full`: nothing to read but the material buffer.
-fn without_tables(materials: &[Material]) -> Outcome<BakeFiles> {
-    let mut outline = luthier_bake::outline(materials, &read_image).map_err(Failure::input)?;
-    for material in &mut outline.materials {
-        let bare = material.constants.patina.as_mut().map(|patina| &mut patina.bare);
-        for record in material.records.iter_mut().chain(bare) {
-            *record = LayerRecord {
-                fresnel_tile: None,
-                distribution_tile: None,
-                fgd_tile: None,
-                phase_tile: None,
-                thickness_tile: None,
-                film_tile: None,
-                escape_tile: None,
-                ..record.clone()
-            };
-        }
-    }
-    let bake = Bake { atlases: Vec::new(), materials: outline.materials, searches: Vec::new() };
-    BakeFiles::with_forms(materials, &bake, &[Form::Full])
 }

@@ -3,7 +3,6 @@
 mod director;
 mod page;
 
-use std::io::IsTerminal;
 use std::path::{Component, Path, PathBuf};
 
 use luthier_lut::{MaterialChoice, SceneChoice};
@@ -12,11 +11,15 @@ use luthier_scene::label as candidate_label;
 use serde_json::json;
 
 use crate::cli::BakeOptions;
-use crate::domain;
-use crate::failure::{Failure, Outcome, files};
-use crate::materials::{find as find_files, label, read_one, valid};
-use crate::output::{bytes, complain, print};
+use crate::doubts;
+use crate::failure::{Broken, Failure, Outcome, files};
+use crate::input;
+use crate::materials::{Source, find as find_files, label, print_diagnostics, read_one, valid};
+use crate::misses;
+use crate::output::{bytes, print};
+use crate::refusals;
 use crate::verb::bake::publish;
+use crate::verb::check::diagnostics;
 use director::{Director, Made};
 
 /// The scenes among the files; `None` where there is none, and files are materials.
@@ -25,7 +28,7 @@ pub(super) fn find(paths: &[PathBuf]) -> Outcome<Option<Vec<PathBuf>>> {
     let mut others = Vec::new();
     for path in find_files(paths)? {
         // What is no text is left to whoever reads materials.
-        let text = std::fs::read(&path).map_err(files(&path, "read"))?;
+        let text = input::bytes(&path).map_err(files(&path, "read"))?;
         if is_scene(&String::from_utf8_lossy(&text)) { scenes.push(path) } else { others.push(path) }
     }
     match (scenes.first(), others.first()) {
@@ -42,9 +45,16 @@ pub(super) fn find(paths: &[PathBuf]) -> Outcome<Option<Vec<PathBuf>>> {
 /// Bakes a scene, or prints what budgets would choose for some.
 pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
     let limits = options.limits.options();
-    if options.shading.model.is_some() || !limits.search || !limits.budget.is_empty() {
-        let text = "a scene has its limits in its [budget] and [target], and its models are chosen: leave out --model, --no-search \
-                    and limits on tables";
+    if !options.emission.form.is_empty() {
+        return Err(Failure::Usage(anyhow::anyhow!(
+            "the form of a scene's shaders is chosen with its models: leave out --form"
+        )));
+    }
+    let shaders = options.emission.shaders();
+    let shading = &options.shading;
+    if shading.model.is_some() || !shading.tables.is_empty() || !limits.search || !limits.budget.is_empty() {
+        let text = "a scene has its limits in its [budget] and [target], and its models are chosen: leave out --model, --tables, \
+                    --no-search and limits on tables";
         return Err(Failure::Usage(anyhow::anyhow!(text)));
     }
     let pool = rayon::ThreadPoolBuilder::new()
@@ -59,13 +69,15 @@ pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
         return Err(Failure::Usage(anyhow::anyhow!(text)));
     };
     let (scene, materials) = read(path, options.quiet)?;
-    let made = pool.install(|| Director::new(&scene, &materials).step(None, options.allow_miss))?;
+    let made = pool.install(|| Director::new(&scene, &materials, shaders).step(None, options.allow_miss))?;
     publish(options, &made.files)?;
+    let missed = misses::name(&made.files.manifest, options.quiet)?;
     if options.json {
         let manifest = options.out.join(crate::bake_files::MANIFEST);
         let (bytes, cycles) = (made.bytes(), made.cycles());
         let summary = json!({
             "manifest": manifest.to_string_lossy(), "texel_bytes": bytes, "cycles": cycles, "choice": made.choice,
+            "diagnostics": diagnostics(&missed),
         });
         print(&format!("{summary:#}"))
     } else if options.quiet {
@@ -82,7 +94,7 @@ fn tighten(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
     let mut tightened = Vec::new();
     for path in scenes {
         let (scene, materials) = read(path, options.quiet)?;
-        let mut director = Director::new(&scene, &materials);
+        let mut director = Director::new(&scene, &materials, options.emission.shaders());
         let steps: Vec<Made> =
             budgets.iter().map(|&limit| director.step(Some(limit), options.allow_miss)).collect::<Outcome<_>>()?;
         tightened.push((scene, steps));
@@ -95,31 +107,62 @@ fn tighten(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
     print(&page::markdown(&command(options), &budgets, &tightened))
 }
 
-/// A scene and its materials; or all diagnostics and a failure.
-fn read(path: &Path, quiet: bool) -> Outcome<(Scene, Vec<Material>)> {
-    let content = std::fs::read(path).map_err(files(path, "read"))?;
-    let text = String::from_utf8_lossy(&content).into_owned();
-    let scene = parse_scene(&label(path), &text).map_err(|diagnostics| {
-        diagnostics.iter().for_each(|diagnostic| show(diagnostic, &text));
-        Failure::Input(anyhow::anyhow!("{} cannot be used; nothing was written", path.display()))
-    })?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let mut sources = Vec::with_capacity(scene.materials.len());
-    for material in &scene.materials {
-        let file = plain(&folder.join(&material.file));
-        sources.push(read_one(&file).map_err(|failure| match failure {
-            Failure::Files(error) => Failure::Files(error.context(format!("{} names it", path.display()))),
-            other => other,
-        })?);
-    }
-    domain::check(&mut sources, None);
-    Ok((scene, valid(sources, quiet)?))
+/// A scene file that was read, and the files that it names.
+pub(crate) struct SceneSource {
+    /// The file, as it was named or found.
+    pub(crate) label: String,
+    pub(crate) text: String,
+    /// The scene, or why it is none.
+    pub(crate) parsed: Result<Scene, Vec<Diagnostic>>,
+    /// Its materials, in its order, with what is refused of them.
+    pub(crate) materials: Vec<Source>,
 }
 
-fn show(diagnostic: &Diagnostic, text: &str) {
-    let is_terminal = std::io::stderr().is_terminal();
-    let rendered = if is_terminal { diagnostic.render_coloured(text) } else { diagnostic.render(text) };
-    complain(&format!("{rendered}\n"));
+impl SceneSource {
+    /// Reads a scene and its materials, and finds out all that can be known before work begins.
+    pub(crate) fn read(path: &Path) -> Outcome<Self> {
+        let content = input::bytes(path).map_err(files(path, "read"))?;
+        let (label, text) = (label(path), String::from_utf8_lossy(&content).into_owned());
+        let mut parsed = parse_scene(&label, &text);
+        let mut materials = Vec::new();
+        if let Ok(scene) = &parsed {
+            let folder = path.parent().unwrap_or(Path::new(""));
+            let mut missing = Vec::new();
+            for named in &scene.materials {
+                match read_one(&plain(&folder.join(&named.file))) {
+                    Ok(source) => materials.push(source),
+                    Err(failure) => missing.push(scene.diagnostic(named, failure.sentence())),
+                }
+            }
+            if missing.is_empty() {
+                refusals::find(&mut materials, |material| doubts::of_domain(material, None));
+            } else {
+                parsed = Err(missing);
+            }
+        }
+        Ok(Self { label, text, parsed, materials })
+    }
+
+    /// Whether it can be baked.
+    pub(crate) fn is_usable(&self) -> bool {
+        self.parsed.is_ok() && self.materials.iter().all(|source| source.parsed.is_ok())
+    }
+
+    /// Prints what is wrong with the scene to standard error; its materials have diagnostics of their own.
+    pub(crate) fn print_diagnostics(&self) {
+        print_diagnostics(self.parsed.as_ref().err().into_iter().flatten(), &self.text);
+    }
+}
+
+/// A scene and its materials; or all diagnostics and a failure.
+fn read(path: &Path, quiet: bool) -> Outcome<(Scene, Vec<Material>)> {
+    let source = SceneSource::read(path)?;
+    source.print_diagnostics();
+    let scene = source.parsed.map_err(|diagnostics| {
+        let sentence = format!("{} cannot be used; nothing was written", path.display());
+        Failure::input(Broken { sentence, diagnostics })
+    })?;
+    Ok((scene, valid(source.materials, quiet)?))
 }
 
 /// A path without the folders that `..` leaves again.

@@ -1,5 +1,5 @@
-// Renders the page in a Chromium without a window: node render.mjs BAKE SCENE PNG
-// Without PNG it serves the page until it is stopped, for a browser with a window.
+// Renders the page of an example in a Chromium without a window: node browser.mjs PAGE BAKE SCENE PNG
+// PAGE is the folder of the example. Without PNG it serves the page until it is stopped, for a browser with a window.
 // The environment variable CHROMIUM names the program.
 
 import { spawn } from "node:child_process";
@@ -7,26 +7,23 @@ import { mkdtemp, readFile, rm, writeFile } from "node:fs/promises";
 import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import path from "node:path";
-import { fileURLToPath } from "node:url";
 
 const TIMEOUT_MS = 120_000;
 const TYPES = { ".html": "text/html", ".js": "text/javascript", ".json": "application/json", ".wasm": "application/wasm" };
 
-const [bake, scene, picture] = process.argv.slice(2);
+const [page, bake, scene, picture] = process.argv.slice(2);
 if (!scene) {
-  console.error("usage: node render.mjs BAKE SCENE [PNG]");
+  console.error("usage: node browser.mjs PAGE BAKE SCENE [PNG]");
   process.exit(2);
 }
-const here = path.dirname(fileURLToPath(import.meta.url));
 const folders = [
-  ["/three/", path.join(here, "node_modules/three")],
   ["/bake/", path.resolve(bake)],
-  ["/", here],
+  ["/", path.resolve(page)],
 ];
 
 /** File behind a path of the page. */
 function find(url) {
-  if (url === "/") return path.join(here, "index.html");
+  if (url === "/") return path.resolve(page, "index.html");
   if (url === "/scene.json") return path.resolve(scene);
   const [prefix, folder] = folders.find(([prefix]) => url.startsWith(prefix));
   const file = path.resolve(folder, url.slice(prefix.length));
@@ -61,7 +58,7 @@ const address = `http://127.0.0.1:${server.address().port}/`;
 if (!picture) {
   console.log(address);
 } else {
-  const profile = await mkdtemp(path.join(tmpdir(), "luthier-three-"));
+  const profile = await mkdtemp(path.join(tmpdir(), "luthier-browser-"));
   const flags = ["--headless=new", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-first-run", `--user-data-dir=${profile}`];
   // The sandbox of Chromium does not start as root.
   if (process.getuid?.() === 0) flags.push("--no-sandbox");

@@ -1,0 +1,79 @@
+//! What the model that shades a material makes of it: parts that it leaves out, quantities outside its domain.
+
+use luthier_layers::domain::{Outside, Quantity, outside};
+use luthier_lut::{Form, ShadingModel};
+use luthier_material::{Diagnostic, Material, ModelSetting, Severity};
+use luthier_scene::{LeftOut, left_out};
+
+/// Warnings, and an error for what would be wrong beyond use. `asked` is the model of the command line.
+pub(crate) fn of_model(material: &Material, asked: Option<ModelSetting>) -> Vec<Diagnostic> {
+    let model = model(material, asked);
+    let dropped = left_out(material, model);
+    let mut doubts = of_domain(material, asked);
+    doubts.extend(dropped.iter().map(|part| dropped_part(material, model, part)));
+    doubts
+}
+
+/// Of a material of a scene, whose model is chosen by what it leaves out: only what lies outside its domain.
+pub(crate) fn of_domain(material: &Material, asked: Option<ModelSetting>) -> Vec<Diagnostic> {
+    let model = model(material, asked);
+    outside(model.name(), &material.stack).iter().map(|outside| domain(material, model, outside)).collect()
+}
+
+fn model(material: &Material, asked: Option<ModelSetting>) -> ShadingModel {
+    let name = asked.or(material.bake.model).map(ModelSetting::name);
+    name.and_then(ShadingModel::from_name).unwrap_or_default()
+}
+
+fn dropped_part(material: &Material, model: ShadingModel, part: &LeftOut) -> Diagnostic {
+    let LeftOut { feature, key, forms } = part;
+    let shown_by = |other: &ShadingModel| forms.iter().all(|&form| other.honours(*feature, form));
+    let is_whole = |other: &ShadingModel| left_out(material, *other).is_empty();
+    let able: Vec<ShadingModel> = ShadingModel::ALL.into_iter().filter(shown_by).collect();
+    let whole: Vec<ShadingModel> = able.iter().copied().filter(is_whole).collect();
+    let listed = if whole.is_empty() { able } else { whole };
+    let names: Vec<String> = listed.iter().map(|other| format!("`{}`", other.name())).collect();
+    let other_form = Form::ALL.into_iter().find(|form| !forms.contains(form));
+    let here = match forms.as_slice() {
+        [form] => format!(" in its `{form}` form"),
+        _ => String::new(),
+    };
+    let hint = match (names.as_slice(), other_form) {
+        ([], Some(form)) => format!("read the `{form}` form"),
+        ([], None) => "no model shows it: leave it out".to_owned(),
+        (names, form) => {
+            let form = form.map_or_else(String::new, |form| format!(", or read the `{form}` form"));
+            format!("shown by {}: write `[bake] model = ...`{form}", names.join(", "))
+        }
+    };
+    let message = format!("the model `{}` leaves out {}{here}", model.name(), feature.name());
+    material.diagnostic(Severity::Warning, key, message, Some(hint))
+}
+
+fn domain(material: &Material, model: ShadingModel, outside: &Outside) -> Diagnostic {
+    let Outside { layer, limit, value } = outside;
+    let model = model.name();
+    let severity = if limit.refuses { Severity::Error } else { Severity::Warning };
+    let key = match limit.quantity {
+        Quantity::Alpha => {
+            let keys = ["roughness", "alpha", "slope_deg", "alpha_x"];
+            keys.into_iter().find(|key| material.places.has(&format!("layer.{layer}.{key}"))).unwrap_or("type")
+        }
+        Quantity::FilmNm => "film.0.thickness_nm",
+        Quantity::OpticalDepth => "absorption_per_um",
+        Quantity::Index | Quantity::MetalK | Quantity::Layers => "ior",
+    };
+    let name = limit.quantity.name();
+    let message = format!("{name} {} is outside the domain of `{model}`: {}", short(*value), limit.reason);
+    let hint = match limit.quantity {
+        Quantity::Index | Quantity::Layers => "write `[bake] model = \"belcour\"`, which has it".to_owned(),
+        _ => format!("`{model}` may be used from {} to {}", short(limit.least), short(limit.most)),
+    };
+    material.diagnostic(severity, &format!("layer.{layer}.{key}"), message, Some(hint))
+}
+
+/// A number in four digits, without trailing zeros.
+fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+    if (1e-3..1e6).contains(&rounded.abs()) || rounded == 0.0 { format!("{rounded}") } else { format!("{rounded:e}") }
+}

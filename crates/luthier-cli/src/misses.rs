@@ -1,0 +1,58 @@
+//! Interfaces whose tables miss what a bake aims at.
+
+use std::path::Path;
+
+use luthier_lut::{LayerRecord, Manifest, TableKind};
+use luthier_material::{Diagnostic, Material, Severity};
+
+use crate::failure::Outcome;
+use crate::materials::{Source, read_image, read_one};
+use crate::output::complain;
+
+/// A warning for every layer that reads a tile which misses its aim, at its line of its file; unless quiet, they are printed.
+pub(crate) fn name(manifest: &Manifest, quiet: bool) -> Outcome<Vec<Diagnostic>> {
+    let mut warnings = Vec::new();
+    for table in &manifest.tables {
+        let tile = |record: &LayerRecord| match table.kind {
+            TableKind::Fresnel => record.fresnel_tile,
+            TableKind::Fgd => record.fgd_tile,
+            _ => None,
+        };
+        for material in &manifest.materials {
+            for (layer, record) in material.layers.iter().enumerate() {
+                let Some(tile) = tile(record).and_then(|tile| table.tiles.get(tile as usize)) else { continue };
+                let Some((error, aim)) = tile.miss() else { continue };
+                let source = read_one(Path::new(&material.source))?;
+                let Ok(parsed) = &source.parsed else { continue };
+                let warning = diagnostic(&parsed.material, layer, table.kind, error, aim);
+                if !quiet {
+                    complain(&format!("{}\n", warning.render(&source.text)));
+                }
+                warnings.push(warning);
+            }
+        }
+    }
+    Ok(warnings)
+}
+
+/// Adds a warning for every layer whose row would miss, as far as that can be said without a bake.
+pub(crate) fn foresee(sources: &mut [Source]) {
+    for source in sources {
+        let Ok(parsed) = &mut source.parsed else { continue };
+        // What keeps a material from being baked is for others to say.
+        let rows = luthier_bake::kinked_rows(&parsed.material, &read_image).unwrap_or_default();
+        for (layer, error) in rows {
+            let warning = diagnostic(&parsed.material, layer, TableKind::Fresnel, error, luthier_bake::AIM);
+            parsed.warnings.push(warning);
+        }
+    }
+}
+
+fn diagnostic(material: &Material, layer: usize, kind: TableKind, error: f64, aim: f64) -> Diagnostic {
+    let name = kind.name();
+    let message =
+        format!("the {name} table of layer {layer} is off by up to {error:.1e}, where a bake aims at {aim:.1e}");
+    let hint =
+        "shaders of the form `full` read no tables; `max_abs` under `[budget]` limits the error of tables".to_owned();
+    material.diagnostic(Severity::Warning, &format!("layer.{layer}.ior"), message, Some(hint))
+}

@@ -1,0 +1,108 @@
+//! All that is known of materials before any work begins: what `bake` refuses, and so does `check`, and what is doubtful.
+
+use std::collections::BTreeMap;
+
+use luthier_bake::BakeError;
+use luthier_material::{Diagnostic, Material, NamedImage, Severity};
+
+use crate::cli::Shading;
+use crate::input;
+use crate::materials::{Source, beside, read_image, shaded};
+
+/// The key of the film's map, which is read for its grey; the others are pictures of any kind.
+const FILM_MAP: &str = "layer.0.film.0.thickness_nm.map.image";
+
+/// Adds `doubts`, and makes files unusable that cannot be baked: one by one, then, where each is usable, as a set.
+pub(crate) fn find(sources: &mut [Source], doubts: impl Fn(&Material) -> Vec<Diagnostic>) {
+    for source in sources.iter_mut() {
+        let Ok(parsed) = &source.parsed else { continue };
+        let mut found = doubts(&parsed.material);
+        found.extend(parsed.material.images().iter().filter_map(|image| unreadable(&parsed.material, image)));
+        add(source, found);
+    }
+    let Some(materials) = usable(sources) else { return };
+    for (number, diagnostic) in of_set(&materials) {
+        add(&mut sources[number], vec![diagnostic]);
+    }
+}
+
+/// Makes the first file unusable where the material buffer or a texture cannot hold all of them. A bake plans its tables, and says so itself.
+pub(crate) fn find_too_many(sources: &mut [Source], shading: &Shading) {
+    let Some(materials) = usable(sources) else { return };
+    let materials = shaded(materials, shading);
+    let options = luthier_bake::Options { search: false, ..luthier_bake::Options::default() };
+    match luthier_bake::outline_with(&materials, &options, &read_image) {
+        Err(error @ (BakeError::TooManyTiles { .. } | BakeError::TooManyLayers { .. })) => {
+            let diagnostic = materials[0].diagnostic(Severity::Error, "name", error.to_string(), None);
+            add(&mut sources[0], vec![diagnostic]);
+        }
+        // Anything else has been told.
+        Ok(_) | Err(_) => {}
+    }
+}
+
+/// The materials, if each file has one.
+fn usable(sources: &[Source]) -> Option<Vec<Material>> {
+    sources.iter().map(|source| source.parsed.as_ref().ok().map(|parsed| parsed.material.clone())).collect()
+}
+
+fn add(source: &mut Source, found: Vec<Diagnostic>) {
+    let is_error = |d: &Diagnostic| d.severity == Severity::Error;
+    match &mut source.parsed {
+        Ok(parsed) => {
+            parsed.warnings.extend(found);
+            parsed.warnings.sort_by_key(|d| (d.span.start, d.span.end));
+            if parsed.warnings.iter().any(is_error) {
+                let all = std::mem::take(&mut parsed.warnings);
+                source.parsed = Err(all.into_iter().filter(is_error).collect());
+            }
+        }
+        Err(errors) => errors.extend(found),
+    }
+}
+
+/// What is wrong with an image that a material names.
+fn unreadable(material: &Material, image: &NamedImage<'_>) -> Option<Diagnostic> {
+    let NamedImage { key, path } = image;
+    let decoded = if *key == FILM_MAP {
+        read_image(&material.source, path).map(drop)
+    } else {
+        let bytes = input::image(&beside(&material.source, path)).map_err(|source| source.to_string());
+        bytes.and_then(|bytes| luthier_texture::png::decode(&bytes).map(drop).map_err(|source| source.to_string()))
+    };
+    let reason = decoded.err()?;
+    let hint = "name a PNG file by its path relative to the material file".to_owned();
+    Some(material.diagnostic(Severity::Error, key, format!("cannot use the map `{path}`: {reason}"), Some(hint)))
+}
+
+/// What is wrong with materials together, each with the number of the one that it is said of.
+fn of_set(materials: &[Material]) -> Vec<(usize, Diagnostic)> {
+    let mut found = Vec::new();
+    let mut tell = |number: usize, key: &str, message: String| {
+        found.extend(materials.get(number).map(|m| (number, m.diagnostic(Severity::Error, key, message, None))));
+    };
+    for error in luthier_bake::check(materials, &luthier_bake::Options::default()).err().unwrap_or_default() {
+        let (number, key) = error.place().unwrap_or((0, "name"));
+        tell(number, key, error.to_string());
+    }
+    let mut named: BTreeMap<String, &Material> = BTreeMap::new();
+    for (number, material) in materials.iter().enumerate() {
+        let identifier = match luthier_shader::identifier(&material.name) {
+            Ok(identifier) => identifier,
+            Err(error) => {
+                tell(number, "name", error.to_string());
+                continue;
+            }
+        };
+        match named.get(&identifier) {
+            // Equal names have been told.
+            Some(first) if first.name != material.name => {
+                let (name, other, place) = (&material.name, &first.name, first.place("name"));
+                tell(number, "name", format!("`{name}` and `{other}` of {place} are both `{identifier}` in a shader"));
+            }
+            Some(_) => {}
+            None => drop(named.insert(identifier, material)),
+        }
+    }
+    found
+}

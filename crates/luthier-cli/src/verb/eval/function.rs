@@ -1,0 +1,195 @@
+//! What is evaluated, in the columns that are asked for.
+
+use glam::DVec3;
+use luthier_layers::directional_albedo::over_hemisphere;
+use luthier_layers::layered_mc::Estimate;
+use luthier_layers::model::{Estimator, Model};
+use luthier_layers::monochrome::Monochrome;
+use luthier_layers::shaded::{Shaded, at_wavelength};
+use luthier_material::ColorSetting;
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use luthier_optics::stack::Stack;
+use serde_json::{Value, json};
+
+use super::{Subject, nearest_channel};
+use crate::cli::EvalOptions;
+
+/// What the numbers of a value are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Kind {
+    Wavelength(f64),
+    /// Light of one wavelength seen at another.
+    Reradiated([f64; 2]),
+    Color(Color),
+}
+
+impl Kind {
+    /// As the command line has it; `None` where it asks for nothing particular.
+    pub(crate) fn asked(options: &EvalOptions, subject: &Subject) -> Option<Self> {
+        match (subject.bins_nm, options.wavelength) {
+            (Some(bins_nm), _) => Some(Self::Reradiated(bins_nm)),
+            (None, Some(nm)) => Some(Self::Wavelength(nm)),
+            (None, None) if options.three_wavelengths => {
+                Some(Self::Color(Color::ThreeWavelengths(subject.material.bake.wavelengths_nm())))
+            }
+            (None, None) => options.rgb.then_some(Self::Color(Color::Spectral)),
+        }
+    }
+
+    /// Names of the columns, the only one by `single`.
+    pub(crate) fn columns(&self, single: &'static str) -> Vec<&'static str> {
+        match self {
+            Self::Wavelength(_) | Self::Reradiated(_) => vec![single],
+            Self::Color(_) => vec!["r", "g", "b"],
+        }
+    }
+
+    pub(crate) fn describe(&self) -> Value {
+        match self {
+            Self::Wavelength(nm) => json!({"wavelength_nm": nm}),
+            Self::Reradiated([light, seen]) => json!({"excitation_nm": light, "wavelength_nm": seen}),
+            Self::Color(Color::Spectral) => json!("spectral"),
+            Self::Color(Color::ThreeWavelengths(nm)) => json!({"three_wavelengths_nm": nm}),
+        }
+    }
+
+    /// The wavelengths and channels that the columns are sums of, and the weight of each in each; stacks that are equal are one.
+    pub(crate) fn parts(&self, stack: &Stack) -> Vec<(Monochrome, Rgb)> {
+        let color = match self {
+            Self::Wavelength(nm) | Self::Reradiated([_, nm]) => {
+                return vec![(Monochrome::new(stack, *nm, nearest_channel(*nm)), [1.0, 0.0, 0.0])];
+            }
+            Self::Color(color) => color,
+        };
+        let mut parts: Vec<(Monochrome, Rgb)> = Vec::new();
+        for node in color.nodes() {
+            for channel in (0..3).filter(|&c| node.weight[c] != 0.0) {
+                let one = Monochrome::new(stack, node.wavelength_nm, channel);
+                let known = parts.iter().position(|(other, _)| *other == one).unwrap_or_else(|| {
+                    parts.push((one, [0.0; 3]));
+                    parts.len() - 1
+                });
+                parts[known].1[channel] += node.weight[channel];
+            }
+        }
+        parts
+    }
+}
+
+/// A directional albedo in the columns.
+pub(crate) struct Albedo {
+    pub(crate) values: Vec<Estimate>,
+    /// Of a quadrature the change on the last doubling of its points.
+    pub(crate) changes: Option<Vec<f64>>,
+}
+
+/// The function of two directions.
+pub(crate) struct Function<'a> {
+    model: &'a dyn Model,
+    columns: usize,
+    normal: DVec3,
+    how: How,
+}
+
+enum How {
+    /// The twin of the model's shader, and the channel of a single column.
+    Shader(Box<Shaded>, usize),
+    /// A sum over wavelengths.
+    Sum(Vec<(Monochrome, Rgb)>),
+    /// The model's own colour.
+    Own(Box<[(f64, Monochrome); 3]>),
+}
+
+impl<'a> Function<'a> {
+    pub(crate) fn new(subject: &'a Subject, kind: &Kind) -> Self {
+        let (model, material) = (subject.model.as_ref(), &subject.material);
+        let wavelengths_nm = material.bake.wavelengths_nm();
+        let how = shaded(subject, kind).unwrap_or_else(|| {
+            let channels = [0, 1, 2].map(|c: usize| {
+                let nm = wavelengths_nm[c];
+                (nm, Monochrome::new(&material.stack, nm, c))
+            });
+            let is_own =
+                *kind == Kind::Color(Color::Spectral) && model.eval_rgb(&channels, DVec3::Z, DVec3::Z).is_some();
+            if is_own { How::Own(Box::new(channels)) } else { How::Sum(kind.parts(&material.stack)) }
+        });
+        Self { model, columns: kind.columns("").len(), normal: subject.place.sample.normal, how }
+    }
+
+    /// Whether values are means of random samples.
+    pub(crate) fn estimator(&self) -> Option<&dyn Estimator> {
+        self.model.estimator().filter(|_| matches!(self.how, How::Sum(_)))
+    }
+
+    /// One estimate per column.
+    pub(crate) fn values(&self, wi: DVec3, wo: DVec3) -> Vec<Estimate> {
+        match (&self.how, self.estimator()) {
+            (How::Sum(parts), Some(estimator)) => self.summed(parts, |stack| estimator.eval_with_error(stack, wi, wo)),
+            _ => self.eval(wi, wo)[..self.columns].iter().map(|&value| Estimate::exact(value)).collect(),
+        }
+    }
+
+    /// The share of the light from each direction above the surface that `wo` sees.
+    pub(crate) fn albedo(&self, wo: DVec3) -> Albedo {
+        if let (How::Sum(parts), Some(estimator)) = (&self.how, self.estimator()) {
+            let values = self.summed(parts, |stack| estimator.albedo_with_error(stack, wo, DVec3::Z));
+            return Albedo { values, changes: None };
+        }
+        if wo.z <= 0.0 {
+            return Albedo { values: vec![Estimate::exact(0.0); self.columns], changes: Some(vec![0.0; self.columns]) };
+        }
+        let mirrored = 2.0 * self.normal.dot(wo) * self.normal - wo;
+        let (values, changes) = over_hemisphere(mirrored, |wi| self.eval(wi, wo));
+        let values = values[..self.columns].iter().map(|&value| Estimate::exact(value)).collect();
+        Albedo { values, changes: Some(changes[..self.columns].to_vec()) }
+    }
+
+    fn summed(&self, parts: &[(Monochrome, Rgb)], f: impl Fn(&Monochrome) -> Estimate) -> Vec<Estimate> {
+        let found: Vec<Estimate> = parts.iter().map(|(stack, _)| f(stack)).collect();
+        let column = |c: usize| Estimate::sum(parts.iter().zip(&found).map(|((_, weight), one)| (weight[c], *one)));
+        (0..self.columns).map(column).collect()
+    }
+
+    /// The values of a model that is a function; one alone is the first.
+    fn eval(&self, wi: DVec3, wo: DVec3) -> Rgb {
+        match &self.how {
+            How::Shader(shaded, channel) if self.columns == 1 => [shaded.eval(wi, wo)[*channel], 0.0, 0.0],
+            How::Shader(shaded, _) => shaded.eval(wi, wo),
+            How::Own(channels) => self.model.eval_rgb(channels, wi, wo).unwrap_or([0.0; 3]),
+            How::Sum(parts) => {
+                let mut sum = [0.0; 3];
+                for (stack, weight) in parts {
+                    let value = self.model.eval(stack, wi, wo);
+                    (0..3).for_each(|c| sum[c] += weight[c] * value);
+                }
+                sum
+            }
+        }
+    }
+}
+
+/// The twin of the model's shader, where it has one. At one wavelength the models of Belcour and Yamaguchi are evaluated by themselves: their
+/// energies take seconds in colour, and effects are none of theirs.
+fn shaded(subject: &Subject, kind: &Kind) -> Option<How> {
+    let (stack, name, place) = (&subject.material.stack, subject.model.info().name, &subject.place);
+    match *kind {
+        Kind::Reradiated(_) => None,
+        Kind::Wavelength(_) if ["belcour", "yamaguchi"].contains(&name) => None,
+        Kind::Wavelength(nm) => {
+            let color = Color::ThreeWavelengths([nm; 3]);
+            let shaded = Shaded::new(name, &at_wavelength(stack, nm), [nm; 3], color, place)?;
+            Some(How::Shader(Box::new(shaded), nearest_channel(nm)))
+        }
+        Kind::Color(color) => {
+            let wavelengths_nm = subject.material.bake.wavelengths_nm();
+            // Phong's coefficients are in the material's colour, in both forms of its shader.
+            let color = match subject.material.bake.color {
+                _ if name != "phong" => color,
+                Some(ColorSetting::ThreeWavelengths) => Color::ThreeWavelengths(wavelengths_nm),
+                Some(ColorSetting::Spectral) | None => Color::Spectral,
+            };
+            Some(How::Shader(Box::new(Shaded::new(name, stack, wavelengths_nm, color, place)?), 0))
+        }
+    }
+}

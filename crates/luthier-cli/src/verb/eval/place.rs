@@ -1,0 +1,112 @@
+//! The place of a surface that is evaluated: what options say of it, and the effects of the material file there.
+
+use std::path::Path;
+
+use glam::{DVec2, DVec3};
+use luthier_bake::MapSource;
+use luthier_layers::flakes::Flakes;
+use luthier_layers::heterogeneous::Map;
+use luthier_layers::patina::Patina;
+use luthier_layers::shaded::{Growth, Place};
+use luthier_layers::voronoi::Voronoi;
+use luthier_lut::Image;
+use luthier_material::{Effects, FlakeSource, Glitter, Material, VariationSource};
+
+use crate::failure::{Failure, Outcome, files};
+use crate::model_inputs::ModelInputs;
+
+/// The place; `shows` are the effects that count.
+pub(crate) fn place(material: &Material, inputs: &ModelInputs, shows: &Effects) -> Outcome<Place> {
+    let uv = inputs.uv().unwrap_or(DVec2::ZERO);
+    let mut place = Place { sample: inputs.sample(), ..Place::NONE };
+    if let Some(normal) = inputs.inner_normal() {
+        place.under.inner_normal = normal;
+    }
+    if let (Some(glitter), false) = (&shows.glitter, inputs.has_normal()) {
+        place.sample.normal = particle(glitter, uv);
+    }
+    if let Some(flakes) = &shows.flakes {
+        let (seed, count, spread) = match flakes.source {
+            FlakeSource::Cells { seed, count, spread } => (seed, count, spread),
+            FlakeSource::NormalMap { .. } => (0, 1, 0.0),
+        };
+        let (tiling, scale, fade_start) = (flakes.tiling, flakes.scale, flakes.fade_start);
+        let all = Flakes { seed, count, tiling, spread, scale, fade_start };
+        let flake = match &flakes.source {
+            FlakeSource::Cells { .. } => all.flake(uv),
+            FlakeSource::NormalMap { path } => texel(&image(material, path)?, uv * tiling),
+        };
+        place.under.flake_normal = all.tilted(flake, inputs.distance().unwrap_or(0.0));
+    }
+    if let Some(patina) = &shows.patina {
+        let map = match (inputs.map(), &patina.map) {
+            (Some(map), _) => map,
+            (None, VariationSource::Image { path }) => filtered(&image(material, path)?, uv),
+            (None, &VariationSource::Noise { seed, frequency, octaves }) => {
+                let noise = MapSource::Noise { seed, frequency, octaves }.texels();
+                noise.map_or(0.5, |noise| filtered(&noise, uv))
+            }
+        };
+        let extent = inputs.extent().unwrap_or(patina.extent);
+        let (transition, base_alpha) = (patina.transition, patina.base_alpha);
+        let grown = Patina { extent, transition, diffuse_albedo: 0.0, base_alpha, tarnish: 1.0 };
+        let (diffuse_albedo, tarnish) = (patina.diffuse_albedo, patina.tarnish);
+        place.patina = Some(Growth { amount: grown.amount(map), diffuse_albedo, base_alpha, tarnish });
+    }
+    Ok(place)
+}
+
+/// The normal of the particle of a glittering surface.
+fn particle(&Glitter { seed, frequency, filled, tilt }: &Glitter, uv: DVec2) -> DVec3 {
+    let cells = Voronoi { seed, frequency };
+    Map::Glitter { cells, stacks: vec![0], filled, tilt, under: Box::new(Map::Uniform(0)) }.pick(uv).normal
+}
+
+fn image(material: &Material, path: &str) -> Outcome<Image> {
+    let path = Path::new(&material.source).parent().unwrap_or(Path::new("")).join(path);
+    let bytes = std::fs::read(&path).map_err(files(&path, "read"))?;
+    luthier_texture::png::decode(&bytes)
+        .map_err(|source| Failure::Input(anyhow::anyhow!("{}: {source}", path.display())))
+}
+
+/// The texel of a map of normals that repeats, unfiltered.
+fn texel(map: &Image, uv: DVec2) -> DVec3 {
+    let at = |x: f64, size: u32| (((x - x.floor()) * f64::from(size)) as u32).min(size - 1);
+    let texel = map.texel(at(uv.x, map.width), at(uv.y, map.height));
+    DVec3::from([0, 1, 2].map(|c| 2.0 * f64::from(texel[c]) - 1.0))
+}
+
+/// The first channel of a map that repeats, filtered as samplers do; centres of texels are at (i + 1/2) / size.
+fn filtered(map: &Image, uv: DVec2) -> f64 {
+    let axis = |x: f64, size: u32| {
+        let at = (x - x.floor()) * f64::from(size) - 0.5;
+        let low = at.floor();
+        let index = |i: f64| i.rem_euclid(f64::from(size)) as u32;
+        ([index(low), index(low + 1.0)], at - low)
+    };
+    let ([left, right], s) = axis(uv.x, map.width);
+    let ([top, bottom], t) = axis(uv.y, map.height);
+    let row = |y: u32| {
+        let [a, b] = [left, right].map(|x| f64::from(map.texel(x, y)[0]));
+        a + (b - a) * s
+    };
+    row(top) + (row(bottom) - row(top)) * t
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn maps_repeat_and_are_filtered() {
+        let mut map = Image::zeros(4, 2, 1);
+        map.data = vec![0.0, 1.0, 0.5, 0.25, 1.0, 1.0, 1.0, 1.0];
+        let centre = |i: f64, j: f64| DVec2::new((i + 0.5) / 4.0, (j + 0.5) / 2.0);
+        assert_eq!(filtered(&map, centre(1.0, 0.0)), 1.0);
+        assert_eq!(filtered(&map, centre(2.0, 0.0) + DVec2::new(3.0, -2.0)), 0.5);
+        assert_eq!(filtered(&map, centre(1.5, 0.0)), 0.75);
+        // Across the edge: the last column and the first.
+        assert_eq!(filtered(&map, DVec2::new(0.0, 0.25)), 0.125);
+        assert_eq!(filtered(&map, centre(0.0, 0.5)), 0.5);
+    }
+}

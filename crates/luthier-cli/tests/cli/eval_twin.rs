@@ -1,0 +1,218 @@
+//! `eval` is the f64 twin of the emitted shaders: every shipped material on the device.
+
+use std::f64::consts::TAU;
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use luthier_gpu::{Artefacts, Gpu, GpuError, WgslShader};
+use luthier_layers::shaded::{Place, Shaded};
+use luthier_lut::{Manifest, MaterialEntry};
+use luthier_material::{ColorSetting, Material, ModelSetting, parse};
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use luthier_shader::{Form, MaterialSet, TableFace, Target};
+
+use crate::workshop::Workshop;
+
+/// What the device and `eval` may differ by, relative to the larger of the value and a tenth of a white Lambert surface's BRDF.
+const TOLERANCE: f64 = 1e-4;
+const FLOOR: f64 = 0.1 * std::f64::consts::FRAC_1_PI;
+
+/// The models whose `full` form is `eval`'s at three wavelengths. That of `belcour` and `yamaguchi` takes facets as level, and nothing
+/// as totally reflected, because it has no tables of energies; its header says so.
+const MODELS: [&str; 5] = ["elek", "weidlich-wilkie", "granier-heidrich", "phong", "microfacet"];
+
+/// Pairs of directions of each kind.
+const PAIRS: u32 = 150;
+
+type Pair = ([f32; 3], [f32; 3]);
+
+fn gpu() -> Option<Gpu> {
+    match Gpu::open() {
+        Ok(gpu) => Some(gpu),
+        Err(error @ GpuError::NoAdapter) if std::env::var_os("CI").is_none() => {
+            eprintln!("skipped: {error}");
+            None
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../materials")
+}
+
+/// Every shipped material, shaded by a model.
+fn shipped(model: &str) -> Vec<Material> {
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
+    paths.sort();
+    let material = |path: &PathBuf| {
+        let text = std::fs::read_to_string(path).unwrap();
+        let read = |name: &str| std::fs::read_to_string(folder().join(name));
+        let mut material = parse(&path.display().to_string(), &text, &read).unwrap().material;
+        material.bake.model = ModelSetting::from_name(model);
+        material
+    };
+    paths.iter().map(material).collect()
+}
+
+fn no_image(_: &str, path: &str) -> Result<luthier_lut::Image, String> {
+    Err(format!("{path}: not for this test"))
+}
+
+/// The `full` form of some materials with another body of `luthier_eval`, if there is one, over the emitted functions.
+fn scene(gpu: &Gpu, materials: &[Material], body: Option<&str>) -> luthier_gpu::Scene {
+    let outline = luthier_bake::outline(materials, &no_image).unwrap();
+    let entry = |(material, baked): (&Material, luthier_bake::BakedMaterial)| MaterialEntry {
+        name: material.name.clone(),
+        source: material.source.clone(),
+        source_hash: String::new(),
+        class: material.class.letter().to_string(),
+        model: baked.model,
+        color: baked.color,
+        wavelengths_nm: material.bake.wavelengths_nm(),
+        constants: baked.constants,
+        layers: baked.records,
+        maps: Vec::new(),
+    };
+    let entries: Vec<MaterialEntry> = materials.iter().zip(outline.materials).map(entry).collect();
+    let tables: Vec<TableFace> =
+        outline.tables.into_iter().map(|(kind, layout, format)| TableFace { kind, layout, format }).collect();
+    let set = MaterialSet { materials: &entries, tables };
+    let mut wgsl = luthier_shader::emit(&set, Form::Full, Target::Wgsl).unwrap();
+    if let Some(body) = body {
+        wgsl = wgsl.replace("fn luthier_eval(", "fn emitted_eval(");
+        wgsl +=
+            &format!("\nfn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n{body}\n}}\n");
+    }
+    let bindings = luthier_shader::bindings(&set, Form::Full);
+    let manifest = Manifest { bindings, ..Manifest::new("by hand", entries.clone(), Vec::new()) };
+    let shaders = vec![WgslShader { form: "full".to_owned(), wgsl }];
+    gpu.scene(&Artefacts::from_parts(manifest, Vec::new(), shaders).unwrap(), "full").unwrap()
+}
+
+fn unit(z: f64, phi: f64) -> DVec3 {
+    let sin = libm::sqrt((1.0 - z * z).max(0.0));
+    DVec3::new(sin * libm::cos(phi), sin * libm::sin(phi), z)
+}
+
+/// Directions over the hemisphere, and near the mirror direction by 0.1 to 20 degrees; as a device has them.
+fn pairs() -> Vec<Pair> {
+    let part = |i: u32, step: f64| (f64::from(i) * step).fract();
+    let narrow = |w: DVec3| w.as_vec3().to_array();
+    let one = |i: u32| {
+        let wi = unit(0.02 + 0.97 * part(i, 0.754_877_666), TAU * part(i, 0.569_840_291));
+        let anywhere = unit(0.02 + 0.97 * part(i, 0.819_172_513), TAU * part(i, 0.671_043_606));
+        let spread = libm::pow(10.0, -2.75 + 2.3 * part(i, 0.549_700_478));
+        let mirrored = DVec3::new(-wi.x, -wi.y, wi.z);
+        let near = (mirrored + spread * unit(0.0, TAU * part(i, 0.321_928_095))).normalize();
+        [
+            (narrow(wi), narrow(anywhere)),
+            (narrow(wi), narrow(DVec3::new(near.x, near.y, near.z.abs().max(0.01)).normalize())),
+        ]
+    };
+    (1..=PAIRS).flat_map(one).collect()
+}
+
+fn wide(w: [f32; 3]) -> DVec3 {
+    DVec3::from(w.map(f64::from))
+}
+
+fn error(found: [f32; 3], expected: Rgb) -> f64 {
+    let brightest = expected.iter().fold(FLOOR, |most, value| most.max(*value));
+    let apart = |c: usize| (f64::from(found[c]) - expected[c]).abs() / brightest;
+    (0..3).map(apart).fold(0.0, f64::max)
+}
+
+/// The function that `eval --three-wavelengths --no-effects` prints, against `luthier_eval`.
+#[test]
+fn every_shipped_material_agrees_with_its_full_shaders() {
+    let Some(gpu) = gpu() else { return };
+    let pairs = pairs();
+    let mut compared = 0;
+    for model in MODELS {
+        let materials = shipped(model);
+        let scene = scene(&gpu, &materials, None);
+        let mut worst = (0.0, "");
+        for (number, material) in materials.iter().enumerate() {
+            let wavelengths_nm = material.bake.wavelengths_nm();
+            let color = Color::ThreeWavelengths(wavelengths_nm);
+            // Phong's coefficients are in the material's own colour in both forms.
+            let is_spectral = material.bake.color != Some(ColorSetting::ThreeWavelengths);
+            let color = if model == "phong" && is_spectral { Color::Spectral } else { color };
+            let twin = Shaded::new(model, &material.stack, wavelengths_nm, color, &Place::NONE).unwrap();
+            let found = scene.evaluate(number as u32, &pairs).unwrap();
+            for (&(wi, wo), found) in pairs.iter().zip(found) {
+                let expected = twin.eval(wide(wi), wide(wo));
+                let error = error(found, expected);
+                assert!(error < TOLERANCE, "{model}, {}: {wi:?} {wo:?}: {found:?}, eval {expected:?}", material.name);
+                compared += usize::from(expected.iter().any(|value| *value > FLOOR));
+                if error > worst.0 {
+                    worst = (error, &material.name);
+                }
+            }
+        }
+        eprintln!("{model}: at most {:.1e}, {}", worst.0, worst.1);
+    }
+    assert!(compared > 5000, "{compared}");
+}
+
+/// The command with the effects of the files, against `luthier_eval_at` with the place that the shader makes.
+#[test]
+fn effects_of_the_file_are_those_of_the_shader() {
+    let Some(gpu) = gpu() else { return };
+    let workshop = Workshop::new();
+    let angles: Vec<[f64; 4]> = (0..300u32)
+        .map(|i| {
+            let part = |step: f64| (f64::from(i + 1) * step).fract();
+            [88.0 * part(0.7549), 360.0 * part(0.5698), 88.0 * part(0.8191), 360.0 * part(0.671)]
+        })
+        .collect();
+    let list: Vec<String> = angles.iter().map(|a| a.map(|angle| angle.to_string()).join(",")).collect();
+    workshop.write("pairs.csv", list.join("\n"));
+    let direction = |theta: f64, phi: f64| unit(libm::cos(theta.to_radians()), phi.to_radians());
+    let pairs: Vec<Pair> = angles
+        .iter()
+        .map(|&[a, b, c, d]| (direction(a, b).as_vec3().to_array(), direction(c, d).as_vec3().to_array()))
+        .collect();
+    for model in ["elek", "weidlich-wilkie"] {
+        for material in shipped(model) {
+            let effects = &material.effects;
+            let (flakes, patina) = (effects.flakes.is_some(), effects.patina.is_some());
+            // What the device makes of the place, and how the command is told: the middle of a cell of flakes; a value of the map.
+            let uv = "0.00132,0.00223";
+            let (make, more): (&str, &[&str]) = match (flakes, patina) {
+                (true, _) => (
+                    "place.flake_normal = luthier_flake_normal(material, vec2<f32>(0.00132, 0.00223), 0.5);",
+                    &["--uv", uv, "--distance", "0.5"],
+                ),
+                (_, true) => ("place.patina = luthier_patina_amount(material, 0.375);", &["--map", "0.375"]),
+                _ => continue,
+            };
+            let body =
+                format!("var place = luthier_place();\n{make}\nreturn luthier_eval_at(place, material, wi, wo);");
+            let found = scene(&gpu, std::slice::from_ref(&material), Some(&body)).evaluate(0, &pairs).unwrap();
+            let base = [
+                "eval",
+                &material.source,
+                "--model",
+                model,
+                "--three-wavelengths",
+                "--json",
+                "--directions",
+                "pairs.csv",
+            ];
+            let of = |more: &[&str]| -> Vec<Rgb> {
+                let json = workshop.run(&[&base, more].concat()).exits(0).json();
+                let rows = json["values"].as_array().unwrap();
+                rows.iter().map(|row| [0, 1, 2].map(|c: usize| row["value"][c].as_f64().unwrap())).collect()
+            };
+            let (with, without) = (of(more), of(&["--no-effects"]));
+            let worst = found.iter().zip(&with).map(|(f, e)| error(*f, *e)).fold(0.0, f64::max);
+            let ignored = found.iter().zip(&without).map(|(f, e)| error(*f, *e)).fold(0.0, f64::max);
+            eprintln!("{model}, {}: {worst:.1e}; without effects {ignored:.1e}", material.name);
+            assert!(worst < TOLERANCE && ignored > 100.0 * TOLERANCE, "{model}, {}: {worst} {ignored}", material.name);
+        }
+    }
+}

@@ -1,0 +1,109 @@
+use crate::{Form, ShadingModel};
+
+/// Something that a material file can ask for and a model can leave out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Feature {
+    /// Dielectrics and conductors below the first layer.
+    InnerInterface,
+    /// The diffuse base below the first layer.
+    Base,
+    /// What slabs absorb of the light of interfaces below.
+    Absorption,
+    /// What slabs absorb of the light of the diffuse base.
+    BaseAbsorption,
+    /// The first film of an interface.
+    Films,
+    /// Films below the first one of an interface.
+    InnerFilms,
+    /// A film whose thickness varies over the surface.
+    FilmVariation,
+    /// Slopes of a diffuse base: Oren and Nayar's model in place of Lambert's.
+    DiffuseSlopes,
+    /// Different slope parameters along two axes, and where these point.
+    Anisotropy,
+    /// Beckmann's distribution of slopes in place of GGX.
+    Beckmann,
+    /// A normal map.
+    NormalMap,
+    /// A roughness map.
+    RoughnessMap,
+    /// A map of the thickness of the first slab.
+    ThicknessMap,
+    /// Flakes below the first interface.
+    Flakes,
+    /// Patina: a first layer that covers the others in places only.
+    Patina,
+    /// Glitter: particles that are tilted.
+    Glitter,
+}
+
+impl Feature {
+    /// All features.
+    pub const ALL: [Self; 16] = [
+        Self::InnerInterface,
+        Self::Base,
+        Self::Absorption,
+        Self::BaseAbsorption,
+        Self::Films,
+        Self::InnerFilms,
+        Self::FilmVariation,
+        Self::DiffuseSlopes,
+        Self::Anisotropy,
+        Self::Beckmann,
+        Self::NormalMap,
+        Self::RoughnessMap,
+        Self::ThicknessMap,
+        Self::Flakes,
+        Self::Patina,
+        Self::Glitter,
+    ];
+
+    /// The name in messages and manifests.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::InnerInterface => "layers below the first",
+            Self::Base => "the diffuse base",
+            Self::Absorption => "absorption",
+            Self::BaseAbsorption => "absorption above the diffuse base",
+            Self::Films => "films",
+            Self::InnerFilms => "films below the first of an interface",
+            Self::FilmVariation => "variation of a film's thickness",
+            Self::DiffuseSlopes => "diffuse slopes",
+            Self::Anisotropy => "anisotropy",
+            Self::Beckmann => "Beckmann's distribution",
+            Self::NormalMap => "the normal map",
+            Self::RoughnessMap => "the roughness map",
+            Self::ThicknessMap => "the thickness map",
+            Self::Flakes => "flakes",
+            Self::Patina => "patina",
+            Self::Glitter => "glitter",
+        }
+    }
+}
+
+impl ShadingModel {
+    /// Whether the shader of a form of this model shows a feature where a material has it. Tests of luthier-shader and luthier-scene
+    /// compare every entry with what shaders and their f64 twins do.
+    ///
+    /// Phong's coefficients are computed from the stack at normal incidence: what changes these is not left out.
+    pub fn honours(self, feature: Feature, form: Form) -> bool {
+        let is_chain = matches!(self, Self::Elek | Self::WeidlichWilkie);
+        let is_statistical = matches!(self, Self::Belcour | Self::Yamaguchi);
+        match feature {
+            Feature::NormalMap | Feature::RoughnessMap | Feature::Glitter | Feature::Films => true,
+            Feature::InnerInterface | Feature::Absorption => is_chain || is_statistical || self == Self::Phong,
+            // Phong's diffuse coefficient is the base's albedo, less what interfaces reflect.
+            Feature::BaseAbsorption => is_chain || is_statistical,
+            Feature::Base => self != Self::Microfacet,
+            // Records have one film of an interface; tables and Phong's coefficients are made of all.
+            Feature::InnerFilms => self == Self::Phong || form == Form::Baked && self != Self::GranierHeidrich,
+            // Albedos are tabulated at the nominal thickness.
+            Feature::FilmVariation => self != Self::Phong && !(is_statistical && form == Form::Baked),
+            Feature::DiffuseSlopes => is_chain || is_statistical || self == Self::Microfacet,
+            Feature::Anisotropy => matches!(self, Self::WeidlichWilkie | Self::Yamaguchi | Self::Microfacet),
+            Feature::Beckmann => is_chain || self == Self::Microfacet,
+            Feature::ThicknessMap => is_chain || is_statistical,
+            Feature::Flakes | Feature::Patina => is_chain,
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! The first screen: how accurate, how fast and how large, all materials in one chart, and their pictures.
+
+use std::fmt::Write;
+
+use super::pictures::base64;
+use super::summary::shown;
+use super::trade::{FAMILY, of_shaders};
+use super::{anchor, of_material};
+use crate::Exhibits;
+use crate::chart::{self, Spot, field, legend};
+use crate::format::{bytes, error, escape, number};
+use crate::report::{Compared, MaterialReport, Report};
+
+pub(super) fn write(out: &mut String, report: &Report, exhibits: &Exhibits) {
+    facts(out, report);
+    chart(out, report);
+    thumbnails(out, report, exhibits);
+}
+
+/// Error and cost of a material in a line.
+pub(super) fn line(report: &Report, material: &MaterialReport) -> String {
+    let found = material.comparison(judged(report)).map_or_else(|| "–".to_owned(), |c| error(c.max_error()));
+    let paid = match cycles(report, material, "baked") {
+        Some(cycles) => format!("{} cycles", number(cycles)),
+        None => bytes(table_bytes(report, material) as u64),
+    };
+    format!("{found} · {paid}")
+}
+
+/// What stands for the error of a material: the baked shader, or, when none was run, its tables.
+fn judged(report: &Report) -> Compared {
+    shown(report)[0]
+}
+
+/// Cycles of the shader that ships, in a form, if costs were given.
+fn cycles(report: &Report, material: &MaterialReport, form: &str) -> Option<f64> {
+    let shaders = of_shaders(report, material, report.costs.as_ref()?);
+    let ships = shaders.iter().find(|s| s.row.model == material.model && s.row.form == form)?;
+    Some(ships.row.inverse_throughput.max(1) as f64)
+}
+
+/// Bytes of the tiles that a material reads.
+fn table_bytes(report: &Report, material: &MaterialReport) -> f64 {
+    let reads = |user: &String| user.split('/').next() == Some(material.name.as_str());
+    let of = |table: &crate::TableReport| {
+        let read = table.tiles.iter().filter(|tile| tile.users.iter().any(reads)).count();
+        table.texel_bytes as f64 * read as f64 / table.tiles.len().max(1) as f64
+    };
+    report.tables.iter().map(of).sum()
+}
+
+/// Least, median and largest.
+fn spread(mut values: Vec<f64>) -> Option<[f64; 3]> {
+    values.sort_by(f64::total_cmp);
+    Some([*values.first()?, values[values.len() / 2], *values.last()?])
+}
+
+fn facts(out: &mut String, report: &Report) {
+    let all = || report.materials.iter();
+    let errors = all().filter_map(|m| m.comparison(judged(report))).map(|c| c.max_error()).collect();
+    let of = |form| spread(all().filter_map(|m| cycles(report, m, form)).collect());
+    let total: u64 = report.tables.iter().map(|t| t.texel_bytes).sum();
+    let accurate = spread(errors).map_or(("–".to_owned(), "no material".to_owned()), |[least, median, largest]| {
+        let most = format!("median of the largest errors; {} to {}", error(least), error(largest));
+        (error(median), most)
+    });
+    let fast = of("baked").map_or_else(
+        || ("not measured".to_owned(), "luthier cost --json, then report --cost FILE".to_owned()),
+        |[least, median, most]| {
+            let full = of("full").map_or_else(String::new, |[_, full, _]| format!("; full form {}", number(full)));
+            let family = FAMILY.to_uppercase();
+            let range = format!("{} to {}, per wave of 64 on {family}{full}", number(least), number(most));
+            (format!("{} cycles", number(median)), range)
+        },
+    );
+    let (samples, not_finite) = samples(report);
+    let large = format!("{} tables for {} materials", report.tables.len(), report.materials.len());
+    let boxes = [
+        ("how accurate", accurate),
+        ("how fast", fast),
+        ("how large", (bytes(total), large)),
+        ("values judged", (samples.to_string(), format!("{not_finite} not finite"))),
+    ];
+    out.push_str("<dl class=\"facts glance\">");
+    for (name, (figure, note)) in boxes {
+        let [figure, note] = [figure, note].map(|text| escape(&text));
+        let _ = write!(out, "<div><dt>{name}</dt><dd>{figure}</dd><dd class=\"sub\">{note}</dd></div>");
+    }
+    out.push_str("</dl>\n");
+}
+
+/// How many values were compared, and how many of them are not finite.
+pub(super) fn samples(report: &Report) -> (u64, u64) {
+    let judged = |c: &&crate::Comparison| c.compared.is_judged(report.device.is_some());
+    let sets = report.materials.iter().flat_map(|m| m.comparisons.iter().filter(judged)).flat_map(|c| &c.sets);
+    sets.fold((0, 0), |(all, bad), (_, s)| (all + 3 * s.pairs, bad + s.not_finite))
+}
+
+fn chart(out: &mut String, report: &Report) {
+    let has_costs = report.materials.iter().any(|m| cycles(report, m, "baked").is_some());
+    let mut drawn = vec![(judged(report), "baked")];
+    if report.device.is_some() && has_costs {
+        drawn.push((Compared::FullDevice, "full"));
+    }
+    let mut spots = Vec::new();
+    for (place, &(compared, form)) in drawn.iter().enumerate() {
+        for (index, material) in report.materials.iter().enumerate() {
+            let size = table_bytes(report, material);
+            let price = if has_costs { cycles(report, material, form) } else { Some(size) };
+            let found = material.comparison(compared).map(|c| c.max_error()).filter(|e| e.is_finite());
+            let (Some(price), Some(found)) = (price, found) else { continue };
+            let paid = if has_costs { format!("{} cycles, ", number(price)) } else { String::new() };
+            let tables =
+                if form == "full" { "no table".to_owned() } else { format!("{} of tables", bytes(size as u64)) };
+            let tip = format!("{}, {}: error {}, {paid}{tables}", material.name, compared.name(), error(found));
+            let (name, anchor, series) = (material.name.clone(), anchor(index), chart::series(compared));
+            spots.push(Spot { material: name, anchor, price, error: found, tip, series, is_named: place == 0 });
+        }
+    }
+    let limit = report.budget.map_or((report.target_max_rel_err, "target"), |budget| (budget, "budget"));
+    let (x_title, note) = if has_costs {
+        (
+            format!("cycles per wave of 64, {}, inverse throughput; compiled, not timed", FAMILY.to_uppercase()),
+            "Cost against largest error: better is left and below.",
+        )
+    } else {
+        (
+            "bytes of the tables that a material reads".to_owned(),
+            "Better is left and below. No cost of shaders was given (luthier report --cost), and no time is measured here.",
+        )
+    };
+    out.push_str("<figure class=\"field\">");
+    out.push_str(&legend(&drawn.iter().map(|(compared, _)| chart::series(*compared)).collect::<Vec<_>>()));
+    let title = format!("All materials: error by {}", if has_costs { "cost" } else { "bytes" });
+    let _ = writeln!(
+        out,
+        "<div class=\"scroll\">{}</div><figcaption>{} Each mark has its figures, and leads to its \
+         material.</figcaption></figure>",
+        field(&title, &x_title, &spots, limit),
+        escape(note)
+    );
+}
+
+/// A small picture of each material, which leads to what the page says of it.
+fn thumbnails(out: &mut String, report: &Report, exhibits: &Exhibits) {
+    let baked = |index: usize| {
+        let all = exhibits.pictures.get(index)?;
+        all.iter().find(|e| e.caption == "baked").or(all.first())
+    };
+    let seen =
+        report.materials.iter().enumerate().filter_map(|(index, material)| Some((index, material, baked(index)?)));
+    let mut links = String::new();
+    for (index, material, picture) in seen {
+        let _ = write!(
+            links,
+            "<a href=\"#{}\"{} data-tip=\"{name}: {}\"><img alt=\"{name}\" src=\"data:image/png;base64,{}\"/></a>",
+            anchor(index),
+            of_material(&material.name),
+            escape(&line(report, material)),
+            base64(&picture.png),
+            name = escape(&material.name)
+        );
+    }
+    if !links.is_empty() {
+        let _ = writeln!(out, "<div class=\"thumbs\">{links}</div>");
+    }
+}

@@ -1,0 +1,84 @@
+use luthier_lut::{Feature, Form, ShadingModel};
+use luthier_material::Material;
+use luthier_optics::stack::{Base, Distribution};
+
+/// Something that a material asks for and its model does not show.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LeftOut {
+    /// What is not shown.
+    pub feature: Feature,
+    /// The key that asks for it, as in [`luthier_material::Places`].
+    pub key: String,
+    /// The forms of the shader that leave it out; at least one.
+    pub forms: Vec<Form>,
+}
+
+/// What of a material a model leaves out, layers from the top down, then effects. Of a layer that is left out nothing else is told.
+pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
+    let mut found = Vec::new();
+    let missing =
+        |feature| -> Vec<Form> { Form::ALL.into_iter().filter(|&form| !model.honours(feature, form)).collect() };
+    let mut tell = |feature: Feature, key: String| {
+        let forms = missing(feature);
+        if !forms.is_empty() {
+            found.push(LeftOut { feature, key, forms });
+        }
+    };
+    let layers = &material.stack.layers;
+    let of_layer = |number: usize| match layers[number].base {
+        Base::Diffuse(_) => Feature::Base,
+        _ => Feature::InnerInterface,
+    };
+    let is_read = |number: usize| number == 0 || number < layers.len() && missing(of_layer(number)).is_empty();
+    // Whether light of such a layer comes up through a slab.
+    let lights = |slab: usize, kind| (slab + 1..layers.len()).any(|below| of_layer(below) == kind && is_read(below));
+    let mut is_told = false;
+    for (number, layer) in layers.iter().enumerate() {
+        let key = |name: &str| format!("layer.{number}.{name}");
+        if !is_read(number) {
+            if !is_told {
+                tell(of_layer(number), key("type"));
+            }
+            is_told = true;
+            continue;
+        }
+        let film = layer.films.first();
+        let varies = film.is_some_and(|film| film.thickness.min_nm < film.thickness.max_nm);
+        let slopes = layer.surface;
+        let (absorbs, deviates, is_facetted) = match &layer.base {
+            Base::Dielectric { slab, .. } => (slab.optical_depth() != [0.0; 3], false, true),
+            Base::Conductor { .. } => (false, false, true),
+            Base::Diffuse(diffuse) => (false, diffuse.sigma != 0.0, false),
+        };
+        let is_rough = is_facetted && !slopes.is_smooth();
+        for (asked, feature, name) in [
+            (film.is_some(), Feature::Films, "film.0.type"),
+            (varies, Feature::FilmVariation, "film.0.thickness_nm"),
+            (layer.films.len() > 1, Feature::InnerFilms, "film.1.type"),
+            (is_rough && slopes.alpha_x != slopes.alpha_y, Feature::Anisotropy, "alpha_x"),
+            (is_rough && slopes.distribution == Distribution::Beckmann, Feature::Beckmann, "distribution"),
+            (absorbs && lights(number, Feature::InnerInterface), Feature::Absorption, "absorption_per_um"),
+            (absorbs && lights(number, Feature::Base), Feature::BaseAbsorption, "absorption_per_um"),
+            (deviates, Feature::DiffuseSlopes, "sigma"),
+        ] {
+            if asked {
+                tell(feature, key(name));
+            }
+        }
+    }
+    let maps = material.layers.first().map(|first| &first.maps);
+    let effects = &material.effects;
+    for (asked, feature, key) in [
+        (maps.is_some_and(|maps| maps.normal.is_some()), Feature::NormalMap, "layer.0.maps.normal"),
+        (maps.is_some_and(|maps| maps.roughness.is_some()), Feature::RoughnessMap, "layer.0.maps.roughness"),
+        (maps.is_some_and(|maps| maps.thickness.is_some()), Feature::ThicknessMap, "layer.0.maps.thickness"),
+        (effects.flakes.is_some(), Feature::Flakes, "effects.flakes"),
+        (effects.patina.is_some(), Feature::Patina, "effects.patina"),
+        (effects.glitter.is_some(), Feature::Glitter, "effects.glitter"),
+    ] {
+        if asked {
+            tell(feature, key.to_owned());
+        }
+    }
+    found
+}

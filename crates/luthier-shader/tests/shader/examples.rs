@@ -1,0 +1,103 @@
+//! The shaders of `examples/`, around the texts that they paste: as found on disk, put together as each program does it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::scenes::{sets, tables};
+use luthier_shader::{Form, MaterialSet, Target, emit, validate};
+
+/// A shader of an example, with a place for the text of the bake.
+struct Shader {
+    file: String,
+    language: Target,
+    text: String,
+}
+
+/// Where a template of JavaScript starts that holds GLSL.
+const TEMPLATE: &str = "/* glsl */ `";
+/// Where it pastes the text of the bake.
+const PASTE: &str = "${glsl}";
+
+/// What Bevy's modules declare, as far as shaders use it here.
+const BEVY: &str = include_str!("bevy.wgsl");
+/// The group of a material in Bevy.
+const BEVY_GROUP: &str = "#{MATERIAL_BIND_GROUP}";
+
+/// The shaders that call `luthier_eval`, of every folder of `examples/`.
+fn shaders() -> Vec<Shader> {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    let mut shaders = Vec::new();
+    for example in fs::read_dir(&examples).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()) {
+        let mut found = Vec::new();
+        for path in files(&example) {
+            let name = path.strip_prefix(&examples).unwrap().display().to_string();
+            let is = |extension: &str| path.extension().is_some_and(|e| e == extension);
+            let shader = |language, text| Shader { file: name.clone(), language, text };
+            if is("wgsl") {
+                found.push(shader(Target::Wgsl, fs::read_to_string(&path).unwrap()));
+            } else if is("js") {
+                let text = fs::read_to_string(&path).unwrap();
+                let templates = text.split(TEMPLATE).skip(1).filter_map(|rest| rest.split('`').next());
+                found.extend(templates.map(|template| shader(Target::GlslEs300, template.to_owned())));
+            }
+        }
+        found.retain(|shader| shader.text.contains("luthier_eval("));
+        assert!(!found.is_empty(), "{} has no shader that calls luthier_eval", example.display());
+        shaders.extend(found);
+    }
+    shaders
+}
+
+/// The files of an example, those of packages left out.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+        match path.is_dir() {
+            true if path.ends_with("node_modules") || path.ends_with("target") => {}
+            true => found.extend(files(&path)),
+            false => found.push(path),
+        }
+    }
+    found.sort();
+    found
+}
+
+/// The shader with the text of a bake, as the example puts them together.
+fn paste(shader: &Shader, bake: &str) -> String {
+    let Shader { text, language, .. } = shader;
+    if *language == Target::GlslEs300 {
+        let text = text.replace(PASTE, bake).replace("${lights}", "2");
+        // three.js writes the version itself.
+        let version = if text.starts_with("#version") { "" } else { "#version 300 es\n" };
+        return format!("{version}{text}");
+    }
+    if !text.contains(BEVY_GROUP) {
+        return format!("{bake}\n{text}");
+    }
+    let (bake, own) = (bake.replace("@group(0)", &format!("@group({BEVY_GROUP})")), text.as_str());
+    let is_import = |line: &&str| line.starts_with("#import ");
+    let own = own.lines().filter(|line| !is_import(line)).collect::<Vec<_>>().join("\n");
+    format!("{BEVY}\n{own}\n{bake}").replace(BEVY_GROUP, "3")
+}
+
+/// Every shader of the examples in a language, around the text of every set of materials, with what it is.
+pub(crate) fn composed(language: Target) -> Vec<(String, String)> {
+    let shaders: Vec<Shader> = shaders().into_iter().filter(|shader| shader.language == language).collect();
+    assert!(!shaders.is_empty(), "no example is in {language}");
+    let mut texts = Vec::new();
+    for (name, materials) in sets() {
+        let set = MaterialSet { materials: &materials, tables: tables() };
+        for form in Form::ALL {
+            let bake = emit(&set, form, language).unwrap();
+            texts.extend(shaders.iter().map(|shader| (format!("{} {name} {form}", shader.file), paste(shader, &bake))));
+        }
+    }
+    texts
+}
+
+#[test]
+fn naga_accepts_the_wgsl_of_the_examples() {
+    for (what, text) in composed(Target::Wgsl) {
+        validate(&text).unwrap_or_else(|error| panic!("{what}: {error}"));
+    }
+}

@@ -1,0 +1,228 @@
+//! The table of what models show, against what their shaders do: a feature is shown where values move when it is taken away.
+
+use std::collections::BTreeMap;
+
+use luthier_lut::{
+    Feature, FileEntry, Image, LayerRecord, MapEntry, MapSlot, MaterialConstants, MaterialEntry, ShadingModel,
+    TableKind, material_buffer,
+};
+use luthier_shader::{Form, MaterialSet, TableFace, Target, emit};
+
+use crate::arithmetic::directions;
+use crate::machine::{Machine, Value, vector};
+use crate::scenes::{FLAKES, GLITTER, clear, conductor, dielectric, diffuse, filmed, material, patina, tables};
+
+/// What is shown moves values by more than this; what is not shown moves none.
+const SHOWN: f32 = 0.02;
+
+/// A shader of one material, and a place of its surface.
+struct Shader {
+    machine: Machine,
+    wgsl: String,
+    place: Option<Vec<Value>>,
+}
+
+/// D is computed: a table of it would hide which distribution a record names.
+fn faces() -> Vec<TableFace> {
+    tables().into_iter().filter(|face| face.kind != TableKind::Distribution).collect()
+}
+
+/// Tables whose values rise along both axes.
+fn textures() -> BTreeMap<String, Image> {
+    let texture = |face: &TableFace| {
+        let [width, height] = face.layout.size();
+        let mut image = Image::zeros(width, height, 4);
+        for y in 0..height {
+            for x in 0..width {
+                let value = 0.1 + 0.4 * x as f32 / width as f32 + 0.4 * y as f32 / height as f32;
+                image.texel_mut(x, y).fill(value);
+            }
+        }
+        (format!("luthier_{}", face.kind.name()), image)
+    };
+    faces().iter().map(texture).collect()
+}
+
+impl Shader {
+    fn new(material: MaterialEntry, form: Form) -> Self {
+        let materials = [material];
+        let set = MaterialSet { materials: &materials, tables: faces() };
+        let wgsl = emit(&set, form, Target::Wgsl).unwrap();
+        let machine = Machine::new(&wgsl, &material_buffer(&materials), textures());
+        let has_place = wgsl.contains("fn luthier_place(");
+        let place = has_place.then(|| match machine.call("luthier_place", Vec::new()) {
+            Value::Many(members) => members,
+            other => panic!("{other:?}"),
+        });
+        Self { machine, wgsl, place }
+    }
+
+    /// Sets a member of the place, if shaders of the set have it.
+    fn at(mut self, member: &str, value: Value) -> Self {
+        let text = self.wgsl.split("struct LuthierPlace {").nth(1).unwrap().split('}').next().unwrap();
+        let mut names = text.lines().filter_map(|line| line.trim().split_once(": ")).map(|(name, _)| name);
+        let names: Vec<&str> = names.by_ref().filter(|name| !name.starts_with("//")).collect();
+        if let (Some(index), Some(place)) = (names.iter().position(|name| *name == member), &mut self.place) {
+            place[index] = value;
+        }
+        self
+    }
+
+    fn values(&self) -> Vec<f32> {
+        let value = |(wi, wo): ([f64; 3], [f64; 3])| {
+            let [wi, wo] = [wi, wo].map(|w| vector(&w.map(|v| v as f32)));
+            match &self.place {
+                Some(place) => {
+                    let arguments = vec![Value::Many(place.clone()), Value::U(0), wi, wo];
+                    self.machine.call("luthier_eval_at", arguments).floats()
+                }
+                None => self.machine.call("luthier_eval", vec![Value::U(0), wi, wo]).floats(),
+            }
+        };
+        directions(120).flat_map(value).collect()
+    }
+}
+
+/// The largest change of a value, relative to it; values below a thousandth of the largest do not count.
+fn moved(with: &Shader, without: &Shader) -> f32 {
+    let (with, without) = (with.values(), without.values());
+    let floor = 1e-3 * with.iter().chain(&without).fold(0.0f32, |a, b| a.max(b.abs()));
+    let change = |(a, b): (&f32, &f32)| (a - b).abs() / a.abs().max(b.abs()).max(floor);
+    with.iter().zip(&without).map(change).fold(0.0, f32::max)
+}
+
+fn rough(layer: LayerRecord, alpha: f64) -> LayerRecord {
+    LayerRecord { alpha, alpha_xy: [alpha; 2], distribution_tile: None, ..layer }
+}
+
+fn coat() -> LayerRecord {
+    rough(LayerRecord { distribution: "ggx".to_owned(), ..dielectric() }, 0.3)
+}
+
+fn gold() -> LayerRecord {
+    rough(conductor(), 0.4)
+}
+
+fn of(model: ShadingModel, layers: &[LayerRecord]) -> MaterialEntry {
+    let layers: Vec<LayerRecord> = layers
+        .iter()
+        .map(|layer| LayerRecord { fgd_tile: layer.fgd_tile.or(Some(2)), distribution_tile: None, ..layer.clone() })
+        .collect();
+    let constants = MaterialConstants {
+        phong_diffuse: [0.2; 3],
+        phong_specular: [0.3; 3],
+        phong_exponent: 5.0,
+        ..MaterialConstants::default()
+    };
+    MaterialEntry { model, constants, ..material("sample", &layers) }
+}
+
+/// A material whose surface varies.
+fn mapped(material: MaterialEntry) -> MaterialEntry {
+    let file = FileEntry::default();
+    let map = MapEntry { slot: MapSlot::Normal, layer: Some(0), source: String::new(), file, width: 1, height: 1 };
+    MaterialEntry { maps: vec![map], ..material }
+}
+
+/// By how much values move when a feature is taken away; `None` where the shader is not where it is taken away.
+fn change(model: ShadingModel, feature: Feature, form: Form) -> Option<f32> {
+    let shader = |layers: &[LayerRecord]| Shader::new(of(model, layers), form);
+    let tilted = || vector(&[0.28, 0.0, 0.96]);
+    // Phong's coefficients are the baker's; what the twin in f64 makes of stacks is tested in luthier-scene.
+    let is_coefficient = model == ShadingModel::Phong;
+    Some(match feature {
+        Feature::InnerInterface | Feature::Base | Feature::Absorption | Feature::BaseAbsorption | Feature::Films
+            if is_coefficient =>
+        {
+            return None;
+        }
+        // In the baked form, tables hold them; records have no more than one film.
+        Feature::Films if form == Form::Baked => return None,
+        Feature::InnerFilms => return None,
+        Feature::InnerInterface => moved(&shader(&[rough(clear(), 0.3), gold()]), &shader(&[rough(clear(), 0.3)])),
+        Feature::Base => moved(&shader(&[coat(), diffuse(0.0)]), &shader(&[coat()])),
+        Feature::Absorption | Feature::BaseAbsorption => {
+            let without = LayerRecord { optical_depth: [0.0; 3], ..coat() };
+            let below = if feature == Feature::Absorption { gold() } else { diffuse(0.0) };
+            moved(&shader(&[coat(), below.clone()]), &shader(&[without, below]))
+        }
+        Feature::Films => {
+            let film = LayerRecord { film_thickness_max_nm: 300.0, ..rough(filmed(), 0.3) };
+            let without = LayerRecord { film_ior_n: [0.0; 3], phase_tile: None, film_tile: None, ..film.clone() };
+            moved(&shader(&[film, gold()]), &shader(&[without, gold()]))
+        }
+        Feature::FilmVariation => {
+            let material = || of(model, &[rough(filmed(), 0.3)]);
+            let thicker = Shader::new(material(), form).at("film_factor", Value::F(1.3));
+            moved(&thicker, &Shader::new(material(), form))
+        }
+        // A model of the first layer has the base as its first layer.
+        Feature::DiffuseSlopes if model == ShadingModel::Microfacet => {
+            moved(&shader(&[diffuse(0.6)]), &shader(&[diffuse(0.0)]))
+        }
+        Feature::DiffuseSlopes => moved(&shader(&[coat(), diffuse(0.6)]), &shader(&[coat(), diffuse(0.0)])),
+        Feature::Anisotropy => {
+            let brushed = LayerRecord { alpha_xy: [0.1, 0.9], rotation: 0.5, ..rough(conductor(), 0.3) };
+            moved(&shader(&[brushed]), &shader(&[rough(conductor(), 0.3)]))
+        }
+        Feature::Beckmann => {
+            let beckmann = LayerRecord { distribution: "beckmann".to_owned(), ..gold() };
+            moved(&shader(&[beckmann]), &shader(&[gold()]))
+        }
+        Feature::NormalMap | Feature::RoughnessMap | Feature::ThicknessMap => {
+            let (member, value) = match feature {
+                Feature::NormalMap => ("normal", tilted()),
+                Feature::RoughnessMap => ("alpha_factor", Value::F(0.5)),
+                _ => ("slab_factor", Value::F(3.0)),
+            };
+            let material = || mapped(of(model, &[coat(), diffuse(0.0)]));
+            moved(&Shader::new(material(), form).at(member, value), &Shader::new(material(), form))
+        }
+        Feature::Flakes | Feature::Patina | Feature::Glitter => {
+            let plain = || of(model, &[coat(), gold()]);
+            let patina = || LayerRecord { fgd_tile: Some(2), ..gold() };
+            let constants = match feature {
+                Feature::Flakes => MaterialConstants { flakes: Some(FLAKES), ..plain().constants },
+                Feature::Glitter => MaterialConstants { glitter: Some(GLITTER), ..plain().constants },
+                _ => {
+                    let record = self::patina().constants.patina.unwrap();
+                    let record = luthier_lut::PatinaRecord { bare: patina(), ..record };
+                    MaterialConstants { patina: Some(record), ..plain().constants }
+                }
+            };
+            let shader = || Shader::new(MaterialEntry { constants: constants.clone(), ..plain() }, form);
+            let with = match feature {
+                Feature::Flakes => shader().at("flake_normal", tilted()),
+                Feature::Glitter => {
+                    let shader = shader();
+                    let uv = |i: u32| vector(&[0.618 * i as f32 % 1.0, 0.414 * i as f32 % 1.0]);
+                    let normal = |i| shader.machine.call("luthier_glitter_normal", vec![Value::U(0), uv(i)]);
+                    let normal = (0..200).map(normal).find(|normal| normal.floats()[2] < 0.99).unwrap();
+                    shader.at("normal", normal)
+                }
+                _ => shader().at("patina", Value::F(0.6)),
+            };
+            moved(&with, &shader())
+        }
+    })
+}
+
+#[test]
+fn models_show_what_the_table_says() {
+    let mut wrong = Vec::new();
+    let mut tried = 0;
+    for model in ShadingModel::ALL {
+        for feature in Feature::ALL {
+            for form in Form::ALL {
+                let Some(change) = change(model, feature, form) else { continue };
+                tried += 1;
+                let (says, does) = (model.honours(feature, form), change > SHOWN);
+                if says != does || !does && change > 1e-5 {
+                    wrong.push(format!("{} {feature:?} {form}: {says} in the table, moved by {change}", model.name()));
+                }
+            }
+        }
+    }
+    assert!(tried > 150, "{tried}");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

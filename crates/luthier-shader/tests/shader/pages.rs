@@ -1,0 +1,94 @@
+//! The parts of the written pages that are made from the code. To write them anew, run with `LUTHIER_ACCEPT=1`.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::scenes::{sets, tables};
+use luthier_lut::TableKind;
+use luthier_shader::{Form, MaterialSet, RESERVED_BINDINGS, bindings};
+
+/// Around a part that is made here.
+const BEGIN: &str = "<!-- made by: LUTHIER_ACCEPT=1 cargo test -p luthier-shader pages -->\n";
+const END: &str = "<!-- end -->\n";
+
+/// Every number that a bake may bind.
+fn numbers() -> String {
+    let mut all = BTreeMap::new();
+    for (_, materials) in sets() {
+        let set = MaterialSet { materials: &materials, tables: tables() };
+        all.extend(bindings(&set, Form::Baked).into_iter().map(|entry| (entry.binding, entry)));
+    }
+    assert_eq!(all.len(), TableKind::ALL.len() + 2, "sets that read every table, the sampler and the buffer");
+    let mut out = String::from("| number | name | what |\n|---|---|---|\n");
+    for (number, entry) in all {
+        let what = match entry.resource.as_str() {
+            "buffer" => "the materials: `array<vec4<f32>>`",
+            "sampler" => "linear, clamp to edge, no mipmaps",
+            _ => "table",
+        };
+        let _ = writeln!(out, "| {number} | `{}` | {what} |", entry.name);
+    }
+    let _ = writeln!(out, "| {RESERVED_BINDINGS} and above | yours | |");
+    out
+}
+
+/// The pages of a repository that have such parts, and the parts.
+fn parts() -> [(&'static str, String); 1] {
+    [("docs/bindings.md", numbers())]
+}
+
+#[test]
+fn pages_say_what_the_code_says() {
+    for (page, part) in parts() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(page);
+        let text = fs::read_to_string(&path).unwrap().replace("\r\n", "\n");
+        let (before, rest) = text.split_once(BEGIN).unwrap_or_else(|| panic!("{page} has no line {BEGIN}"));
+        let (found, after) = rest.split_once(END).unwrap_or_else(|| panic!("{page} has no line {END}"));
+        if std::env::var_os("LUTHIER_ACCEPT").is_some() {
+            fs::write(&path, format!("{before}{BEGIN}{part}{END}{after}")).unwrap();
+        } else {
+            assert!(found == part, "{page} is out of date; it should have\n{part}");
+        }
+    }
+}
+
+/// The pages that people write and read: those in the root, in `docs/` and of the examples.
+fn pages(root: &Path) -> Vec<PathBuf> {
+    let mut folders = vec![root.to_owned(), root.join("docs"), root.join("docs/measurements")];
+    folders.extend(fs::read_dir(root.join("examples")).unwrap().map(|entry| entry.unwrap().path()));
+    let files = folders.iter().filter(|folder| folder.is_dir()).flat_map(|folder| fs::read_dir(folder).unwrap());
+    files.map(|entry| entry.unwrap().path()).filter(|path| path.extension().is_some_and(|e| e == "md")).collect()
+}
+
+/// What a page names in backquotes or links to, and looks like a file of the repository: not what a bake writes.
+fn named(text: &str) -> Vec<&str> {
+    let quoted = text.split('`').skip(1).step_by(2);
+    let is_ours = |path: &&str| {
+        let first = path.split('/').next().unwrap_or_default();
+        let is_made = ["out", "target", "tables", "shaders", "maps", "build"].contains(&first);
+        path.contains('/') && !path.contains(char::is_whitespace) && !is_made && Path::new(path).extension().is_some()
+    };
+    let links = text.split("](").skip(1).filter_map(|rest| rest.split([')', '#']).next());
+    quoted.filter(is_ours).chain(links.filter(|link| !link.is_empty() && !link.contains("://"))).collect()
+}
+
+#[test]
+fn files_that_pages_name_exist() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let crates = fs::read_dir(root.join("crates")).unwrap().map(|entry| entry.unwrap().path());
+    let mut bases: Vec<PathBuf> = crates.collect();
+    bases.extend([root.clone(), root.join("crates")]);
+    let mut count = 0;
+    for page in pages(&root) {
+        let text = fs::read_to_string(&page).unwrap();
+        let own = page.parent().unwrap().to_owned();
+        for name in named(&text) {
+            count += 1;
+            let exists = bases.iter().chain([&own]).any(|base| base.join(name).exists());
+            assert!(exists, "{}: there is no {name}", page.display());
+        }
+    }
+    assert!(count > 50, "{count} files are named");
+}
