@@ -1,4 +1,4 @@
-//! From tiles to atlases.
+//! Assembly of tiles into atlases.
 
 use std::collections::BTreeMap;
 
@@ -20,10 +20,10 @@ use crate::search;
 use crate::settings::Settings;
 use crate::{AIM, BakeError, DEFAULT_BUDGET};
 
-/// What a set of materials needs at run time.
+/// Tables, records and maps that a set of materials needs at run time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bake {
-    /// At most one atlas of each kind, in binding order.
+    /// Atlases in binding order, at most one of each kind.
     pub atlases: Vec<Atlas>,
     /// Each material, in the order given.
     pub materials: Vec<BakedMaterial>,
@@ -38,7 +38,7 @@ pub struct BakedMaterial {
     pub model: ShadingModel,
     /// How its tables came by their colour.
     pub color: ColorMode,
-    /// What belongs to the whole surface.
+    /// Constants of the whole surface.
     pub constants: MaterialConstants,
     /// Its layers from the top down, with the tiles that serve them.
     pub records: Vec<LayerRecord>,
@@ -46,7 +46,7 @@ pub struct BakedMaterial {
     pub maps: Vec<MaterialMap>,
 }
 
-/// What a bake would consist of.
+/// Outline of a bake: its tables, tiles and materials, without texels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outline {
     /// Kind, layout and texel format of each table, in binding order.
@@ -55,7 +55,7 @@ pub struct Outline {
     pub keys: Vec<Vec<Key>>,
     /// Each material, in the order given.
     pub materials: Vec<BakedMaterial>,
-    /// What the search for tables found.
+    /// Reports of the searches for tables.
     pub searches: Vec<Search>,
 }
 
@@ -79,8 +79,8 @@ impl Default for Options {
     }
 }
 
-/// What a bake of these materials would consist of: each material with the tiles that serve it, and the layout and texel format of each
-/// table, in binding order. Little is computed for it, unless a material has a budget: what holds that must be measured.
+/// The outline of a bake of these materials: each material with the tiles that serve it, and the layout and texel format of each table, in
+/// binding order. The outline takes little computing, unless a material has a budget: the candidates that may hold it must be measured.
 ///
 /// # Errors
 /// See [`BakeError`].
@@ -272,7 +272,7 @@ fn plan(
     Ok(Planned { plan, results, searches })
 }
 
-/// Without the tables that no texture holds.
+/// Drops the candidates whose table no texture holds.
 fn fitting(found: &mut search::Found, plan: &Plan) {
     let tiles = plan.tiles[found.kind as usize].tiles.len() as u32;
     found.candidates.retain(|candidate| match &candidate.form {
@@ -327,7 +327,7 @@ fn baked_materials(materials: &[Material], records: Vec<PlannedLayers>) -> Vec<B
     materials.iter().zip(records).map(baked).collect()
 }
 
-/// What one kind of table looks like.
+/// Axes, format and base of one kind of table.
 struct Shape<'a> {
     x: &'a Axis,
     y: Option<&'a Axis>,

@@ -1,4 +1,4 @@
-//! What shaders need of a whole surface.
+//! Constants of a whole surface for shaders.
 
 use luthier_layers::monochrome::{Monochrome, in_color};
 use luthier_layers::phong::Coefficients;

@@ -5,7 +5,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum BakeError {
-    /// Nothing to do.
+    /// A bake without materials.
     #[error("no materials to bake")]
     Empty,
     /// Two materials of one name.
@@ -32,11 +32,11 @@ pub enum BakeError {
         setting: &'static str,
         /// File and line of the first.
         first: String,
-        /// What it asks.
+        /// Value that the first material asks for.
         first_value: String,
         /// File and line of the second.
         second: String,
-        /// What that one asks.
+        /// Value that the second material asks for.
         second_value: String,
     },
     /// A side that blocks of texels do not fill.
@@ -66,7 +66,7 @@ pub enum BakeError {
         tile: [u32; 2],
         /// Tiles that the largest texture holds.
         most: u32,
-        /// What to do.
+        /// Advice to the user.
         hint: String,
     },
     /// More layers than the material buffer holds.
@@ -77,15 +77,15 @@ pub enum BakeError {
     TooManyLayers {
         /// Materials.
         materials: usize,
-        /// Their layers.
+        /// Layers of these materials together.
         layers: usize,
         /// Words of 16 bytes that these take.
         words: usize,
     },
-    /// No tables hold the budget.
+    /// A budget that no tables hold.
     #[error("the budget cannot be met: {reason}; `{hint}` would do")]
     Budget {
-        /// What comes nearest.
+        /// Words on the candidate that comes nearest.
         reason: String,
         /// The limit that would be met.
         hint: String,
@@ -95,9 +95,9 @@ pub enum BakeError {
     BudgetValue {
         /// The limit.
         name: &'static str,
-        /// What was given.
+        /// Value given for the limit.
         value: f64,
-        /// One that could be met.
+        /// Value that could be met, as text.
         example: &'static str,
     },
     /// An image that a material names cannot be used.

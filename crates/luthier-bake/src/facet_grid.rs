@@ -94,7 +94,7 @@ impl FacetGridJob {
             .collect()
     }
 
-    /// At the nodes, and at the points of the error scan.
+    /// Efforts at the nodes and at the points of the error scan.
     fn efforts(&self) -> [Effort; 2] {
         if self.kinked { KINKED_EFFORT } else { EFFORT }
     }
@@ -143,7 +143,7 @@ const CROSSED_WALKS_DENSE: u32 = 1024;
 /// of walks.
 const CROSSED_PROBES: u32 = 6;
 
-/// How many families; each has the walks of a node.
+/// Number of families of walks that the grid is compared with; each has the walks of a node.
 const CROSSED_FAMILIES: u32 = 4;
 
 /// Wavelength whose refraction stands for all: dispersion changes this small part by a few percent of itself.

@@ -16,10 +16,10 @@ use crate::job::{Job, TileData, color_in_words, lone_tile};
 use crate::json;
 use crate::smooth::savitzky_golay;
 
-/// What leaving out wavelengths may change in the share of the light after the first bounce; that bounce has all.
+/// Largest change of the share of the light after the first bounce by wavelengths that are left out; the first bounce has all.
 const SPECTRUM_TOLERANCE: f64 = 4e-4;
 
-/// The same for the crossed part of films, which is a fraction of the light.
+/// Largest change of the crossed part of films by wavelengths that are left out; that part is a fraction of the light.
 const CROSSED_SPECTRUM_TOLERANCE: f64 = 2e-2;
 
 /// Where spectra are compared to decide which wavelengths are left out.
@@ -28,7 +28,7 @@ const SPECTRUM_COS_THETA: [f64; 5] = [1.0, 0.6, 0.3, 0.15, 0.05];
 /// Powers of the reflectance that are compared: as many reflections.
 const SPECTRUM_POWERS: i32 = 3;
 
-/// At every so many points of the error scan all wavelengths are taken; 16 columns and 10 of nodes are no multiples of it.
+/// Step between the points of the error scan that take all wavelengths; 16 columns and 10 of nodes are no multiples of it.
 const SPECTRUM_PROBES: usize = 23;
 
 /// Points of the error scan in a cell that has a critical angle, along the cosine.
@@ -55,11 +55,11 @@ pub(crate) struct FgdTruth {
     pub(crate) image: Image,
     /// Axis values, and the function there.
     pub(crate) probes: Vec<([f64; 2], [f64; 4])>,
-    /// The same around critical angles.
+    /// Axis values around critical angles, and the function there.
     pub(crate) kinks: Vec<([f64; 2], [f64; 4])>,
-    /// What the function may be off itself: light that crossed, and wavelengths left out. The worst of all may meet.
+    /// Error of the function itself: light that crossed, and wavelengths left out. The worst of all may meet.
     pub(crate) slack: f64,
-    /// The same in the root mean square.
+    /// Root mean square of the error of the function itself.
     pub(crate) slack_rms: f64,
 }
 

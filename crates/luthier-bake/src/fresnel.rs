@@ -16,7 +16,7 @@ use crate::json;
 /// Points of the error scan per texel interval.
 const PER_CELL: u32 = 16;
 
-/// One for so many points of the scan is added where all light is totally reflected.
+/// Points of the scan for each point that is added where all light is totally reflected.
 const BEYOND: u32 = 8;
 
 /// Cosines at which the coefficient of the dip is fitted: squares of equal steps.
@@ -90,8 +90,7 @@ impl FresnelJob {
     }
 }
 
-/// What a row holds: the reflectance over the cosine of incidence, or where light is totally reflected over that of the refracted
-/// direction.
+/// Curve of a row: the reflectance over the cosine of incidence, or where light is totally reflected over that of the refracted direction.
 pub(crate) struct RowCurve {
     sampled: Sampled,
     /// 0 over the cosine of incidence.
@@ -233,7 +232,7 @@ mod tests {
         RowShape { axis, format, base }
     }
 
-    /// What is Schlick's form with its dip is read exactly but for the rounding of its coefficients, which the texels make up for.
+    /// A row of Schlick's form with its dip is read exactly but for the rounding of its coefficients, which the texels make up for.
     #[test]
     fn a_row_of_the_form_itself_is_read_to_the_last_codes() {
         let exact = SchlickBase { f0: [0.04, 0.3, 0.9], f90: 1.0, edge: [0.5, -1.0, 3.0], scale: [1.0; 3] };

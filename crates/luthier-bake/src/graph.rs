@@ -53,7 +53,7 @@ impl Graph {
         key
     }
 
-    /// The same jobs of some kinds only, with all that they need.
+    /// The graph of the jobs of some kinds, with all that these need.
     pub(crate) fn only(&self, kinds: &[JobKind]) -> Self {
         let mut some = Self::default();
         for job in kinds.iter().flat_map(|&kind| self.of_kind(kind)) {

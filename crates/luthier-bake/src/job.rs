@@ -81,7 +81,7 @@ impl JobKind {
     }
 }
 
-/// Something to compute, with everything that decides the result.
+/// A computation, with everything that decides the result.
 #[derive(Debug, Clone)]
 pub(crate) enum Job {
     Fresnel(FresnelJob),
@@ -153,7 +153,7 @@ impl Job {
     }
 }
 
-/// What a job makes.
+/// Result of a job.
 #[derive(Debug)]
 pub(crate) enum Artefact {
     Tile(TileData),

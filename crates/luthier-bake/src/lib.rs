@@ -1,4 +1,4 @@
-//! From materials to tables: a graph of pure jobs.
+//! Bakes materials into tables, by a graph of pure jobs.
 //!
 //! [`bake`] plans one job per distinct table tile, runs the graph on the rayon pool, and assembles one atlas per kind with
 //! the layer records that refer to its tiles. A job is a pure function of its inputs; its [`Key`] is the hash of these, so

@@ -1,4 +1,4 @@
-//! What one bake cannot hold, said before anything is computed.
+//! Limits of one bake, checked before anything is computed.
 
 use luthier_lut::{AtlasLayout, BUFFER_WORDS_MAX, LAYER_WORDS, MATERIAL_WORDS, SIDE, SIDE_MAX, TableKind};
 
@@ -12,7 +12,7 @@ pub(crate) fn check_buffer(records: &[PlannedLayers]) -> Result<(), BakeError> {
     if words > BUFFER_WORDS_MAX { Err(BakeError::TooManyLayers { materials, layers, words }) } else { Ok(()) }
 }
 
-/// How many tiles of a size a texture holds side by side and one below the other, if its sides are at most so long.
+/// Number of tiles of a size that a texture holds side by side and one below the other, if its sides are at most so long.
 fn grid(tile: [u32; 2], side: u32) -> [u32; 2] {
     tile.map(|texels| side / texels)
 }

@@ -11,7 +11,7 @@ const NOISE_SIDE: u32 = 256;
 /// A map of a material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaterialMap {
-    /// What it says.
+    /// Quantity that the map varies.
     pub slot: MapSlot,
     /// The layer that it is of; `None` for those of the whole surface.
     pub layer: Option<u32>,
@@ -26,7 +26,7 @@ pub enum MapSource {
     File(String),
     /// Fractal gradient noise.
     Noise {
-        /// Seed.
+        /// Seed of the noise.
         seed: u32,
         /// Lattice cells of the first octave along one repeat.
         frequency: f64,
@@ -36,7 +36,7 @@ pub enum MapSource {
 }
 
 impl MapSource {
-    /// In words, for manifests.
+    /// The source in words, for manifests.
     pub fn label(&self) -> String {
         match self {
             Self::File(path) => path.clone(),

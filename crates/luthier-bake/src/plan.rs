@@ -1,4 +1,4 @@
-//! From materials to jobs: which tile serves which layer.
+//! Plan from materials to jobs: which tile serves which layer.
 
 use std::collections::BTreeMap;
 
@@ -242,7 +242,7 @@ impl Plan {
         record.fgd_tile = Some(self.add(TableKind::Fgd, Job::Fgd(job), name));
     }
 
-    /// What of the lobes of an interface below is totally reflected here, where anything is.
+    /// Adds the escape tile of a layer that totally reflects some of the lobes of an interface below; other layers need none.
     fn escape(&mut self, record: &mut LayerRecord, name: &dyn Fn() -> String) {
         if record.eta > 1.0 {
             let (axes, format) = self.settings.escape.clone();

@@ -18,7 +18,7 @@ pub(crate) enum Relief {
 }
 
 impl Relief {
-    /// What a material says, with `read` to fetch images.
+    /// The relief that a material describes, with `read` to fetch images.
     pub(crate) fn of(
         source: &VariationSource,
         read: impl FnOnce(&str) -> Result<Image, crate::BakeError>,

@@ -28,7 +28,7 @@ use crate::job::JobKind;
 use crate::plan::Plan;
 use crate::settings::Settings;
 
-/// What is asked of tables when nobody asks: errors that a fixed row of 128 half floats has too.
+/// Budget of tables for which none is stated: errors that a fixed row of 128 half floats has too.
 pub const DEFAULT_BUDGET: Budget =
     Budget { max_abs: Some(5e-4), max_rel: None, delta_e: None, max_bytes: None, max_cost: None };
 
@@ -39,7 +39,7 @@ pub(crate) struct Found {
     /// Cost of the fixed default.
     pub(crate) fixed_cost: f64,
     pub(crate) candidates: Vec<Candidate>,
-    /// Which of them the bake itself has measured.
+    /// Whether the bake itself has measured each of the candidates.
     pub(crate) confirmed: Vec<bool>,
     /// Tiles, by number, that no candidate serves and that the others do not wait for.
     pub(crate) left_out: Vec<usize>,
@@ -47,11 +47,12 @@ pub(crate) struct Found {
     pub(crate) is_whole: bool,
 }
 
-/// Budgets that nobody stated may be missed by this factor: four times 5e-4 is half a step of eight bits. Beyond it some interface is one
-/// that no table serves (the fringes of a thick film, total reflection by what absorbs), and the choice would be the best for it alone.
+/// Budgets that no file or option states may be missed by this factor: four times 5e-4 is half a step of eight bits. Beyond it some
+/// interface is one that no table serves (the fringes of a thick film, total reflection by what absorbs), and the choice would be the best
+/// for it alone.
 const NEAR: f64 = 4.0;
 
-/// The error that tables are to hold when nobody asks; a tile beyond it is named by the bake.
+/// The error that tables are to hold where no budget is stated; a tile beyond it is named by the bake.
 pub const AIM: f64 = NEAR * 5e-4;
 
 impl Found {
@@ -67,7 +68,7 @@ impl Found {
         Self { kind, fixed_cost, candidates, confirmed, left_out: Vec::new(), is_whole }
     }
 
-    /// Where nobody asks for less, a read costs at most half as much again as one of the fixed default.
+    /// Keeps the candidates whose read costs at most half as much again as one of the fixed default, for bakes without a stated budget.
     fn affordable(mut self) -> Self {
         let most = 1.5 * self.fixed_cost;
         self.candidates.retain(|c| c.cost <= most);
@@ -94,8 +95,8 @@ impl Found {
 /// Kinds of the jobs whose results [`candidates`] reads.
 pub(crate) const READ: [JobKind; 1] = [JobKind::FgdTruth];
 
-/// The candidates that come near what is asked of tables when nobody asks: only those of what shaders read for every interface and needs no
-/// costly truth. A row that none serves does not count.
+/// The candidates that come near the default budget: only those of what shaders read for every interface and needs no costly truth. A row
+/// that none serves does not count.
 pub(crate) fn by_default(plan: &Plan) -> Vec<Found> {
     let found = [fresnel::served(plan), distribution::candidates(plan).map(Found::affordable)];
     found.into_iter().flatten().filter(|f| f.comes_near(&DEFAULT_BUDGET)).collect()
@@ -161,7 +162,7 @@ pub(crate) mod cost {
     /// Fetch of 4 bytes.
     pub(crate) const FETCH: f64 = 16.0;
 
-    /// From a value to a node index.
+    /// Cost of the way from a value to a node index.
     pub(crate) fn axis(axis: &Axis) -> f64 {
         let offset = if axis.min == 0.0 { 0.0 } else { 1.0 };
         offset

@@ -17,22 +17,22 @@ use crate::plan::{asks_for, shading_model};
 #[derive(Debug, Clone)]
 pub(crate) struct Settings {
     pub(crate) fresnel: RowShape,
-    /// Without them D is computed.
+    /// Axes and format of the tables of D; without them D is computed.
     pub(crate) distribution: Option<([Axis; 2], TexelFormat)>,
     pub(crate) fgd: ([Axis; 2], TexelFormat),
     /// Axes at which FGD is computed; those of its tiles unless these were searched for.
     pub(crate) fgd_grid: [Axis; 2],
-    /// Without it phases are computed.
+    /// Axis and format of phase rows; without them phases are computed.
     pub(crate) phase: Option<(Axis, TexelFormat)>,
     pub(crate) thickness: ([Axis; 2], TexelFormat),
     pub(crate) film: ([Axis; 2], TexelFormat),
     pub(crate) escape: ([Axis; 2], TexelFormat),
     pub(crate) asked: Asked,
-    /// See [`crate::Options::formats`].
+    /// Formats that tables may have, see [`crate::Options::formats`].
     pub(crate) formats: FormatSet,
 }
 
-/// What the materials decide themselves: no search touches it.
+/// Settings that the materials decide themselves: no search touches them.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Asked {
     pub(crate) fresnel_size: bool,
@@ -56,7 +56,7 @@ impl Asked {
 }
 
 impl Settings {
-    /// What the materials ask for, where they agree, and fixed defaults for the rest.
+    /// The settings that the materials ask for, where they agree, and fixed defaults for the rest.
     ///
     /// # Errors
     /// [`BakeError::Conflict`] where they do not.

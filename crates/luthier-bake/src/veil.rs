@@ -1,4 +1,4 @@
-//! What layers do to the light of a diffuse base below them, for the models that follow it (`belcour`, `yamaguchi`).
+//! Effect of layers on the light of a diffuse base below them, for the models that follow it (`belcour`, `yamaguchi`).
 
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
 use luthier_layers::statistics::evaluate::Memory;
@@ -7,7 +7,7 @@ use luthier_optics::color::{Color, WavelengthNode, luminance};
 use luthier_optics::interface::Interface;
 use luthier_optics::stack::{Base, Stack};
 
-/// What leaving out wavelengths may change, as a share of the light.
+/// Largest change by wavelengths that are left out, as a share of the light.
 const SPECTRUM_TOLERANCE: f64 = 1e-3;
 
 /// Where spectra are compared to decide which wavelengths are left out.

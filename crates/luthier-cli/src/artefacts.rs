@@ -20,7 +20,7 @@ pub(crate) fn textures(folder: &BakeFolder) -> Outcome<Vec<(TableKind, Image)>> 
         .collect()
 }
 
-/// What is missing is a matter of files; all else is wrong with the bake.
+/// The failure of a bake that cannot be read: a missing file is a matter of files, all else is wrong with the bake.
 pub(crate) fn unusable(source: FolderError) -> Failure {
     match source {
         FolderError::NoBake { .. } | FolderError::Read { .. } => Failure::Files(source.into()),

@@ -86,7 +86,7 @@ impl BakeFiles {
         Ok(Self { manifest, files })
     }
 
-    /// The same without tables, for the form `full`: nothing to read but the material buffer.
+    /// The files of a bake without tables, for the form `full`: nothing to read but the material buffer.
     pub(crate) fn without_tables(materials: &[Material], shaders: &Shaders) -> Outcome<Self> {
         let options = Options { search: false, ..Options::default() };
         let mut outline = luthier_bake::outline_with(materials, &options, &read_image).map_err(Failure::input)?;
@@ -111,7 +111,7 @@ impl BakeFiles {
 }
 
 impl BakeFiles {
-    /// The same with the texels of the textures uncompressed.
+    /// The files with the texels of the textures uncompressed.
     pub(crate) fn without_zstd(&self) -> Outcome<Self> {
         let (mut manifest, mut files) = (self.manifest.clone(), self.files.clone());
         for texture in manifest.tables.iter_mut().map(|table| &mut table.texture) {
@@ -125,7 +125,7 @@ impl BakeFiles {
     }
 }
 
-/// What the manifest says of a table, but for its files.
+/// The manifest's entry of a table, but for its files.
 pub(crate) fn table_entry(atlas: &Atlas) -> TableEntry {
     let [width, height] = atlas.layout.size();
     TableEntry {
@@ -140,7 +140,7 @@ pub(crate) fn table_entry(atlas: &Atlas) -> TableEntry {
     }
 }
 
-/// What the manifest says of each material; the maps are added to `files`.
+/// The manifest's entries of the materials; the maps are added to `files`.
 pub(crate) fn material_entries(
     materials: &[Material],
     baked: &[luthier_bake::BakedMaterial],
@@ -226,7 +226,7 @@ fn encode(atlas: &Atlas) -> Outcome<EncodedTable> {
     encoded().map_err(Failure::input)
 }
 
-/// What the unquantised values of a table say about themselves.
+/// Metadata of the unquantised values of a table.
 fn metadata(atlas: &Atlas) -> Metadata {
     let AtlasLayout { x, y, apron, columns, tiles, base } = &atlas.layout;
     let joined = |f: &dyn Fn(&luthier_lut::Tile) -> String| atlas.tiles.iter().map(f).collect::<Vec<_>>().join("\n");

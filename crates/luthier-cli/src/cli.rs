@@ -209,7 +209,7 @@ pub(crate) struct Limits {
 }
 
 impl Limits {
-    /// As the baker takes them.
+    /// The options of the baker under these limits.
     pub(crate) fn options(&self) -> luthier_bake::Options {
         let &Self { max_abs, max_rel, delta_e, max_bytes, max_cost, no_search } = self;
         let budget = luthier_lut::Budget { max_abs, max_rel, delta_e, max_bytes, max_cost };

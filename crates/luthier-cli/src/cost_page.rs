@@ -1,4 +1,4 @@
-//! What `luthier cost` found, as JSON and as Markdown.
+//! Results of `luthier cost`, as JSON and as Markdown.
 
 use std::fmt::Write as _;
 
@@ -25,7 +25,7 @@ pub(crate) struct FamilyCost {
     pub(crate) family: Family,
     pub(crate) chip: String,
     pub(crate) device: String,
-    /// What is subtracted from every row.
+    /// Counts of the harness, subtracted from every row.
     pub(crate) harness: Counts,
 }
 

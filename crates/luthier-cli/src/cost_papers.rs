@@ -23,14 +23,14 @@ pub(crate) struct PaperCase {
     pub(crate) variants: Vec<PaperVariant>,
 }
 
-/// One row.
+/// One row of the page: a variant of the tables.
 pub(crate) struct PaperVariant {
     name: &'static str,
     role: Role,
     constant: bool,
     /// Largest error against the form `full`; `None` for another model, or without a device.
     error: Option<f64>,
-    /// In the bare harness, and with a normal map and an environment.
+    /// Kernels in the bare harness, and with a normal map and an environment.
     pub(crate) kernels: [Kernel; 2],
 }
 
@@ -152,7 +152,7 @@ fn errors(_: &Material, texts: &[String]) -> Outcome<Vec<Option<f64>>> {
     Ok(vec![None; texts.len()])
 }
 
-/// What the machine code says of the figures above.
+/// Text on the figures above, from the machine code.
 const WHY: &str = "
 **What costs, and what the goal asks for**
 
@@ -173,7 +173,7 @@ a number from the buffer costs no instruction either. In the model's inverse thr
 and with it the discount for what lies under it.
 ";
 
-/// What is compared.
+/// A count that is compared between variants.
 struct Measure {
     title: &'static str,
     /// Kernel of a variant.

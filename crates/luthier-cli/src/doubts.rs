@@ -1,4 +1,4 @@
-//! What the model that shades a material makes of it: parts that it leaves out, quantities outside its domain.
+//! Doubts about the model that shades a material: parts that it leaves out, quantities outside its domain.
 
 use luthier_layers::domain::{Outside, Quantity, outside};
 use luthier_lut::{Form, ShadingModel};
@@ -14,7 +14,7 @@ pub(crate) fn of_model(material: &Material, asked: Option<ModelSetting>) -> Vec<
     doubts
 }
 
-/// Of a material of a scene, whose model is chosen by what it leaves out: only what lies outside its domain.
+/// Doubts about a material of a scene, whose model is chosen by what it leaves out: only quantities outside its domain.
 pub(crate) fn of_domain(material: &Material, asked: Option<ModelSetting>) -> Vec<Diagnostic> {
     let model = model(material, asked);
     outside(model.name(), &material.stack).iter().map(|outside| domain(material, model, outside)).collect()

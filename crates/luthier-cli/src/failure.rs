@@ -24,7 +24,7 @@ pub(crate) enum Failure {
     BrokenPipe,
 }
 
-/// What verbs return.
+/// Result of a verb.
 pub(crate) type Outcome<T = ()> = Result<T, Failure>;
 
 impl Failure {
@@ -39,7 +39,7 @@ impl Failure {
         Self::Usage(anyhow::anyhow!("no {what} `{name}`; {hint}known: {}", known.join(", ")))
     }
 
-    /// What it is, for people.
+    /// The failure in a sentence, for people.
     pub(crate) fn sentence(&self) -> String {
         match self {
             Self::Input(error) | Self::Usage(error) | Self::Files(error) | Self::Device(error) => sentence(error),
@@ -89,9 +89,9 @@ pub(crate) fn diagnostic(d: &Diagnostic) -> Value {
 /// Files that cannot be used, and what is wrong with each.
 #[derive(Debug)]
 pub(crate) struct Broken {
-    /// How many of how many.
+    /// Sentence that says how many files of how many cannot be used.
     pub(crate) sentence: String,
-    /// What has been said on standard error.
+    /// Diagnostics that standard error has had.
     pub(crate) diagnostics: Vec<Diagnostic>,
 }
 

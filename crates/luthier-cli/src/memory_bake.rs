@@ -16,7 +16,7 @@ use crate::device::device;
 use crate::failure::{Failure, Outcome};
 use crate::materials::{bakeable, read_image, read_one, with_tables};
 
-/// What the environment of pictures reads beside the shader: reflectance and albedo of every interface.
+/// Tables that the environment of pictures reads beside the shader: reflectance and albedo of every interface.
 const ENVIRONMENT_TABLES: [TableSetting; 3] = [TableSetting::Fresnel, TableSetting::Fgd, TableSetting::Film];
 
 /// A material by file, which is baked for pictures, or by its name in a bake on disk, shaded as that was; and its number.
@@ -66,7 +66,7 @@ pub(crate) fn bake(materials: &[Material]) -> Outcome<Artefacts> {
     with_maps(artefacts, &made.files)
 }
 
-/// The same with the maps that are among some files.
+/// The artefacts with the maps that are among some files.
 pub(crate) fn with_maps(artefacts: Artefacts, files: &[(String, Vec<u8>)]) -> Outcome<Artefacts> {
     let image = |map: &MapEntry| {
         let bytes = files.iter().find(|(name, _)| *name == map.file.path).map_or(&[][..], |(_, bytes)| bytes);

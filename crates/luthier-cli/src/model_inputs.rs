@@ -110,7 +110,7 @@ impl ModelInputs {
         self.textures.normal.is_some()
     }
 
-    /// What textures say about the place.
+    /// The values of the textures at the place.
     pub(crate) fn sample(&self) -> TextureSample {
         self.textures.sample()
     }

@@ -47,7 +47,7 @@ fn environment(path: &Path) -> Outcome<Environment> {
     Environment::new(map).map_err(|source| unusable(source.into()))
 }
 
-/// What a picture is written as.
+/// File format of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Format {
     Png,
@@ -55,7 +55,7 @@ pub(crate) enum Format {
 }
 
 impl Format {
-    /// By the extension of a file.
+    /// The format by the extension of a file.
     pub(crate) fn of(path: &Path) -> Outcome<Self> {
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
         match extension.as_deref() {

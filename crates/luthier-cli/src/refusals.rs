@@ -61,7 +61,7 @@ fn add(source: &mut Source, found: Vec<Diagnostic>) {
     }
 }
 
-/// What is wrong with an image that a material names.
+/// The diagnostic of an image that a material names, if it cannot be used.
 fn unreadable(material: &Material, image: &NamedImage<'_>) -> Option<Diagnostic> {
     let NamedImage { key, path } = image;
     let decoded = if *key == FILM_MAP {
@@ -75,7 +75,7 @@ fn unreadable(material: &Material, image: &NamedImage<'_>) -> Option<Diagnostic>
     Some(material.diagnostic(Severity::Error, key, format!("cannot use the map `{path}`: {reason}"), Some(hint)))
 }
 
-/// What is wrong with materials together, each with the number of the one that it is said of.
+/// Diagnostics of materials together, each with the number of the material that it is said of.
 fn of_set(materials: &[Material]) -> Vec<(usize, Diagnostic)> {
     let mut found = Vec::new();
     let mut tell = |number: usize, key: &str, message: String| {

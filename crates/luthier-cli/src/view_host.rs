@@ -140,7 +140,7 @@ fn file(path: &Path) -> MaterialFile {
     }
 }
 
-/// What may change the materials: they, what they name, and what lies beside them.
+/// Stamps of the files that may change the materials: the material files, the files that they name, and the CSV files beside these.
 fn stamps(paths: &[PathBuf], files: &[MaterialFile]) -> Stamps {
     let mut watched: BTreeSet<PathBuf> = find(paths).unwrap_or_default().into_iter().collect();
     watched.extend(files.iter().map(|file| PathBuf::from(&file.label)));

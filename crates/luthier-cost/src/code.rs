@@ -17,7 +17,7 @@ const QUARTER_RATE: [&str; 11] = [
     "v_mad_u64_u32",
 ];
 
-/// What the text of a kernel says of it.
+/// Counts from the text of a kernel.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(crate) struct Code {
     /// Vector instructions at full rate.

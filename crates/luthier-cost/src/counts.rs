@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-/// What RADV's compiler (ACO) reports of one kernel, for one wave of 64.
+/// Counts that RADV's compiler (ACO) reports of one kernel, for one wave of 64.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Counts {
     /// Instructions, of all branches.
@@ -31,7 +31,7 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// What is left of each count beyond those of another kernel. Registers, waves and spills are of the whole kernel and stay.
+    /// The rest of each count beyond that of another kernel. Registers, waves and spills are of the whole kernel and stay.
     pub fn beyond(&self, harness: &Self) -> Self {
         Self {
             instructions: self.instructions - harness.instructions,
@@ -47,7 +47,7 @@ impl Counts {
     }
 }
 
-/// What a driver made of some kernels.
+/// Counts of some kernels, as a driver compiled them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Compiled {
     /// Name of the driver and its version, as it gives them.

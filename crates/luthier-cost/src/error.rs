@@ -5,7 +5,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CostError {
-    /// No driver, or not the one needed.
+    /// A driver that is missing, or not the one needed.
     #[error(
         "Mesa's RADV driver is needed to compile for these GPUs, and {0}; no GPU is (Debian and Ubuntu: apt-get install \
          mesa-vulkan-drivers libvulkan1)"
@@ -14,7 +14,7 @@ pub enum CostError {
     /// A call of Vulkan failed.
     #[error("{what}: {result}")]
     Vulkan {
-        /// What was being done.
+        /// Action that failed.
         what: String,
         /// The code that came back.
         result: ash::vk::Result,
@@ -22,9 +22,9 @@ pub enum CostError {
     /// The driver reports no such statistic.
     #[error("the driver does not report `{name}`; it reports: {known}")]
     NoStatistic {
-        /// As RADV names it.
+        /// Name of the statistic, as RADV has it.
         name: &'static str,
-        /// Those reported, comma-separated.
+        /// Names of the reported statistics, comma-separated.
         known: String,
     },
     /// A shader that cannot be emitted.

@@ -11,12 +11,12 @@ const EMPTY: &str =
 /// exact equations.
 const APPROXIMATE_FRESNEL: &str = include_str!("wgsl/approximate_fresnel.wgsl");
 
-/// What surrounds the evaluation.
+/// Code that surrounds the evaluation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Harness {
-    /// Two directions in, a value out.
+    /// No surroundings: two directions in, a value out.
     Bare,
-    /// What Elek's pixel shaders have around theirs: a normal map and a reflected environment.
+    /// The surroundings in Elek's pixel shaders: a normal map and a reflected environment.
     NormalMapped,
 }
 
@@ -47,11 +47,11 @@ pub struct Binding {
     pub group: u32,
     /// Number in it.
     pub binding: u32,
-    /// What is bound.
+    /// Resource that is bound.
     pub resource: Resource,
 }
 
-/// What a kernel may bind.
+/// Resource that a kernel may bind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Resource {

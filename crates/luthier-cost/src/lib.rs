@@ -1,4 +1,4 @@
-//! What a shader costs on real GPU instruction sets, without a GPU.
+//! Costs of shaders on real GPU instruction sets, without a GPU.
 //!
 //! Mesa's RADV driver makes a device without hardware when it is told a family of chips; its compiler then runs in full, and reports
 //! instructions, registers, and cycles by its own model of the pipeline ([`Counts`]). The numbers depend on the kernels and the version

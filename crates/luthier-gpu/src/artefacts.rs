@@ -5,10 +5,10 @@ use luthier_texture::BakeFolder;
 
 use crate::GpuError;
 
-/// What the runtime needs of a bake: the manifest, the texels of its tables, the text of its WGSL shaders.
+/// Parts of a bake that the runtime needs: the manifest, the texels of its tables, the text of its WGSL shaders.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Artefacts {
-    /// What the bake made.
+    /// Manifest of the bake.
     pub manifest: Manifest,
     /// One entry per table of the manifest, in its order.
     pub tables: Vec<TableTexels>,
@@ -23,7 +23,7 @@ pub struct Artefacts {
 pub struct MapTexels {
     /// Number of the material.
     pub material: u32,
-    /// What it says.
+    /// Quantity that the map varies.
     pub slot: MapSlot,
     /// The layer that it is of; `None` for those of the whole surface.
     pub layer: Option<u32>,
@@ -34,7 +34,7 @@ pub struct MapTexels {
 /// The texels of a table as they ship.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TableTexels {
-    /// Which table.
+    /// Kind of the table.
     pub kind: TableKind,
     /// Texel format.
     pub format: TexelFormat,
@@ -64,7 +64,7 @@ impl Artefacts {
         Self::read(&BakeFolder::open(folder)?)
     }
 
-    /// The same of a folder whose manifest has been read.
+    /// Loads a bake from a folder whose manifest has been read.
     ///
     /// # Errors
     /// As [`Artefacts::load`].
@@ -82,7 +82,7 @@ impl Artefacts {
         Self::from_parts(manifest.clone(), tables, shaders)?.with_maps(|map| Ok(folder.map(map)?))
     }
 
-    /// The same with the maps that the manifest lists; `image` gives one, RGBA.
+    /// The artefacts with the maps that the manifest lists; `image` gives one, RGBA.
     ///
     /// # Errors
     /// Those of `image`.
@@ -97,7 +97,7 @@ impl Artefacts {
         Ok(self)
     }
 
-    /// The same from memory, without maps. Tables may come in any order.
+    /// Artefacts from parts in memory, without maps. Tables may come in any order.
     ///
     /// # Errors
     /// When a table of the manifest has no texels or others than its entry says, and when there is nothing to shade.

@@ -93,7 +93,7 @@ impl Environment {
         bilinear(self.irradiance_map(), coordinates(normal))
     }
 
-    /// What a rough mirror with slope parameter `alpha` shows around the mirrored direction, over its albedo: see
+    /// Radiance that a rough mirror with slope parameter `alpha` shows around the mirrored direction, over its albedo: see
     /// [`crate::Scene::render`].
     pub fn mirrored(&self, blur: Blur, alpha: f64, direction: [f64; 3]) -> [f64; 3] {
         let at = coordinates(direction);

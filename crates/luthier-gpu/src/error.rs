@@ -18,7 +18,7 @@ pub enum GpuError {
         /// The table.
         kind: TableKind,
     },
-    /// No material at all.
+    /// A bake without materials.
     #[error("the bake holds no material")]
     NoMaterials,
     /// A material without layers.
@@ -62,7 +62,7 @@ pub enum GpuError {
     Open {
         /// Name of the adapter.
         adapter: String,
-        /// What the driver says.
+        /// Error of the driver.
         source: wgpu::RequestDeviceError,
     },
     /// A texel format that the device lacks.
@@ -88,15 +88,15 @@ pub enum GpuError {
     /// The device or the shader compiler refuses.
     #[error("{what}: {message}")]
     Refused {
-        /// What was being done.
+        /// Action that was refused.
         what: String,
-        /// What the device says.
+        /// Message of the device.
         message: String,
     },
     /// The device ran out of memory.
     #[error("{what}: the device is out of memory")]
     OutOfMemory {
-        /// What was being done.
+        /// Action that took the memory.
         what: String,
     },
     /// The device is gone: driver reset, removal.
@@ -113,7 +113,7 @@ pub enum GpuError {
     NoMaterial {
         /// Asked for, from 0.
         material: u32,
-        /// How many there are.
+        /// Number of materials.
         count: usize,
     },
     /// A table that the bake, or this form of the shader, does not have.
@@ -131,7 +131,7 @@ pub enum GpuError {
         kind: TableKind,
         /// Asked for, from 0.
         tile: u32,
-        /// How many there are.
+        /// Number of tiles.
         count: u32,
     },
     /// Blurred maps of the environment need the table look-ups.
@@ -156,7 +156,7 @@ pub enum GpuError {
         name: &'static str,
         /// Its value.
         value: String,
-        /// What is allowed.
+        /// Values that are allowed.
         allowed: &'static str,
     },
 }

@@ -6,16 +6,16 @@ use crate::sky::{check_direction, setting};
 pub enum Light {
     /// Far away.
     Directional {
-        /// To the light; need not be unit.
+        /// Direction to the light; need not be unit.
         direction: [f32; 3],
-        /// What it gives to a patch that faces it.
+        /// Irradiance that the light gives to a patch that faces it.
         irradiance: [f32; 3],
     },
     /// Near: irradiance falls with the square of the distance.
     Point {
         /// Where it is.
         position: [f32; 3],
-        /// What it gives to a patch that faces it at distance 1.
+        /// Irradiance that the light gives to a patch that faces it at distance 1.
         intensity: [f32; 3],
     },
 }

@@ -61,7 +61,7 @@ fn call(kind: TableKind) -> &'static str {
     }
 }
 
-/// What the kernel reads as `at`.
+/// The argument `at` of the kernel.
 fn arguments(kind: TableKind, tile: u32, [x, y]: [f32; 2]) -> [f32; 4] {
     match kind {
         TableKind::Distribution => {

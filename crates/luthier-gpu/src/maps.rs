@@ -1,4 +1,4 @@
-//! What varies over a surface, for the renderer.
+//! Maps that vary a surface, for the renderer.
 
 use luthier_lut::{MapSlot, MaterialEntry};
 

@@ -49,8 +49,8 @@ pub(crate) fn place(alpha: f64) -> (usize, f64) {
     (1 + octaves.floor() as usize, octaves - octaves.floor())
 }
 
-/// What a surface at normal incidence (n = v = r) does to the light: the facets that mirror it towards the eye, weighed by
-/// the cavities' masking min(1, 2 cos_theta_i), as in `luthier_eval`. Weights sum to 1.
+/// Facets of a surface at normal incidence (n = v = r) that mirror the light towards the eye, weighed by the cavities' masking min(1, 2
+/// cos_theta_i), as in `luthier_eval`. Weights sum to 1.
 pub(crate) struct Lobe {
     pub(crate) samples: Vec<Sample>,
 }

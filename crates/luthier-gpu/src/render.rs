@@ -12,7 +12,7 @@ use crate::{Camera, GpuError, Light, Scene, Shape, Sky};
 /// Evaluations per submission: about a second on a software adapter.
 const EVALUATIONS_PER_PASS: u32 = 1 << 21;
 
-/// The same where someone waits for the pass to end.
+/// Evaluations per submission where someone waits for the pass to end.
 const EVALUATIONS_PER_SHORT_PASS: u32 = 1 << 18;
 
 /// Side of a workgroup, pixels.
@@ -21,7 +21,7 @@ const WORKGROUP: u32 = 8;
 /// `vec4` words before `words` in `render.wgsl`.
 const HEADER_WORDS: usize = 8;
 
-/// What is behind the shape. It takes no part in the light.
+/// Background behind the shape. It takes no part in the light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Backdrop {
     /// A colour in the middle that darkens towards the corners.
@@ -38,9 +38,9 @@ pub struct RenderSettings {
     pub size: u32,
     /// Samples along each side of a pixel, 1 to 16: the middles of equal squares.
     pub samples: u32,
-    /// What is rendered.
+    /// Shape that is rendered.
     pub shape: Shape,
-    /// From where.
+    /// Camera that sees the shape.
     pub camera: Camera,
     /// Lights without a body, at most 64. Nothing casts a shadow.
     pub lights: Vec<Light>,
@@ -123,8 +123,8 @@ impl Scene {
         entry.into_iter().flat_map(MaterialEntry::records).filter(|layer| layer.kind != LayerKind::Diffuse)
     }
 
-    /// The same for someone who may change their mind: `stop` is asked before every pass, of which each takes a fraction of a
-    /// second on a software adapter. `None` when it said so.
+    /// Renders as [`Scene::render`] does, for someone who may change their mind: `stop` is asked before every pass, of which each takes a
+    /// fraction of a second on a software adapter. The result is `None` when `stop` said so.
     ///
     /// # Errors
     /// As [`Scene::render`].

@@ -52,7 +52,7 @@ impl Scene {
         })
     }
 
-    /// The same shader with other materials, tables and maps: nothing is compiled. `None` where the shader of these artefacts
+    /// The scene with the same shader and other materials, tables and maps: nothing is compiled. `None` where the shader of these artefacts
     /// is another one.
     ///
     /// # Errors
@@ -79,7 +79,7 @@ impl Scene {
         }))
     }
 
-    /// Which form of the shader runs here: `baked` or `full`.
+    /// Form of the shader that runs here: `baked` or `full`.
     pub fn form(&self) -> &str {
         &self.form
     }

@@ -2,7 +2,7 @@ use crate::GpuError;
 use crate::sky::setting;
 use crate::vector::{cross, unit};
 
-/// What is looked at. All shapes are about the origin, +y is up.
+/// Shape that is looked at. All shapes are about the origin, +y is up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
     /// The unit sphere. Tangents follow the parallels.
@@ -23,14 +23,14 @@ pub const GRID_SIDE: u32 = 5;
 pub struct Camera {
     /// The eye.
     pub eye: [f32; 3],
-    /// What it looks at; +y of the world is up in the picture.
+    /// Point that the camera looks at; +y of the world is up in the picture.
     pub target: [f32; 3],
     /// Half the side of what the picture shows at the distance of the target.
     pub half_extent: f32,
 }
 
 impl Shape {
-    /// How many materials it takes.
+    /// Number of materials that the shape takes.
     pub fn materials(self) -> usize {
         match self {
             Self::Grid => (GRID_SIDE * GRID_SIDE) as usize,

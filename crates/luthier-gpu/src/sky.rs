@@ -9,7 +9,7 @@ use crate::vector::{dot, unit};
 pub struct Sky {
     /// Straight down.
     pub ground: [f32; 3],
-    /// At the horizon.
+    /// Radiance at the horizon.
     pub horizon: [f32; 3],
     /// Straight up.
     pub zenith: [f32; 3],
@@ -20,16 +20,16 @@ pub struct Sky {
 /// A light with a soft edge: radiance `radiance exp(sharpness (cos - 1))` at an angle to its centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SoftLight {
-    /// To its centre; need not be unit.
+    /// Direction to the centre of the light; need not be unit.
     pub direction: [f32; 3],
     /// Concentration, 1 to 1e4; about `1 / spread^2` with the spread in radians.
     pub sharpness: f32,
-    /// At its centre.
+    /// Radiance at the centre of the light.
     pub radiance: [f32; 3],
 }
 
 impl Sky {
-    /// The same radiance from everywhere: the white furnace.
+    /// A sky of equal radiance from everywhere: the white furnace.
     pub fn uniform(radiance: [f32; 3]) -> Self {
         let dark = SoftLight { direction: [0.0, 1.0, 0.0], sharpness: 1.0, radiance: [0.0; 3] };
         Self { ground: radiance, horizon: radiance, zenith: radiance, lights: [dark; 2] }

@@ -4,10 +4,10 @@ use luthier_lut::Image;
 /// clips what is above 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ToneMapping {
-    /// As it is.
+    /// Values as they are.
     None,
-    /// As it is to 0.8, then bent smoothly towards 1: `0.8 + 0.2 e / (1 + e)` with `e = (x - 0.8) / 0.2`. The default,
-    /// because colours of a well exposed picture stay what they are.
+    /// Values as they are to 0.8, then bent smoothly towards 1: `0.8 + 0.2 e / (1 + e)` with `e = (x - 0.8) / 0.2`. The default, because
+    /// colours of a well exposed picture stay what they are.
     #[default]
     Shoulder,
     /// `x / (1 + x)` (Reinhard et al. 2002, eq. 3).
@@ -21,7 +21,7 @@ pub enum ToneMapping {
 const SHOULDER: f32 = 0.8;
 
 impl ToneMapping {
-    /// One value. Negative ones become 0.
+    /// One value under the curve. Negative ones become 0.
     pub fn value(self, x: f32) -> f32 {
         let x = x.max(0.0);
         match self {

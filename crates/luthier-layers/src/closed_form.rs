@@ -41,7 +41,7 @@ impl ClosedForm {
         pieces.into_iter().filter(|(_, length)| *length > 0.0).flat_map(piece)
     }
 
-    /// For a stack of at least one layer.
+    /// The quantities that all directions share, of a stack of at least one layer.
     fn parts<'a>(&self, stack: &'a Monochrome) -> Option<Parts<'a>> {
         let coats = stack.layers.len().checked_sub(1)?;
         let MonochromeBelow::Diffuse { albedo, .. } = stack.layers[coats].below else {
@@ -68,7 +68,7 @@ fn share_above(up: DVec3, cos_theta: f64) -> f64 {
     libm::acos((-cos_theta * up.z / across).clamp(-1.0, 1.0)) * FRAC_1_PI
 }
 
-/// What is the same for all directions.
+/// Quantities that all directions share.
 struct Parts<'a> {
     stack: &'a Monochrome,
     coats: usize,
@@ -218,7 +218,7 @@ mod tests {
         assert_eq!(ClosedForm::new().eval(&stack, towards(0.5), DVec3::Z), 0.0);
     }
 
-    /// What is seen from a direction is the integral of f cos_theta_i, less the mirrored light.
+    /// The light seen from a direction is the integral of f cos_theta_i, less the mirrored light.
     #[test]
     fn albedo_is_the_integral() {
         let stack = coated(1.4, 0.2, MonochromeBelow::Diffuse { albedo: 0.7, sigma: 0.0 });

@@ -24,12 +24,12 @@ pub enum Density {
     Mixture,
     /// The local method of Weidlich and Wilkie: one direction for all layers.
     LocalLayers,
-    /// Their global method: one proposal for each layer; the sum of the layers' densities.
+    /// The global method of Weidlich and Wilkie: one proposal for each layer; the sum of the layers' densities.
     GlobalLayers,
 }
 
 impl Density {
-    /// All of them, in the order of listings.
+    /// All methods, in the order of listings.
     pub const ALL: [Self; 5] =
         [Self::Cosine, Self::VisibleNormals, Self::Mixture, Self::LocalLayers, Self::GlobalLayers];
 }

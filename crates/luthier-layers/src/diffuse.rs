@@ -88,8 +88,8 @@ mod tests {
         Monochrome { exterior: 1.0, layers: vec![layer(1.0, coat), layer(1.5, last)] }
     }
 
-    /// By hand: albedo cos / pi; and Oren and Nayar's C1 + C3-free value at the normal, 1 - 0.5 s/(s + 0.33) + 0.17 rho s/(s + 0.13), s
-    /// being sigma squared.
+    /// Values by hand: albedo cos / pi; and Oren and Nayar's C1 + C3-free value at the normal, 1 - 0.5 s/(s + 0.33) + 0.17 rho s/(s +
+    /// 0.13), s being sigma squared.
     #[test]
     fn the_base_alone_is_seen() {
         let base = stack(MonochromeBelow::Diffuse { albedo: 0.6, sigma: 0.5 });

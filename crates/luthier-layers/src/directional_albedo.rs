@@ -59,7 +59,7 @@ pub fn over_hemisphere<const C: usize>(peak: DVec3, f: impl Fn(DVec3) -> [f64; C
     }
 }
 
-/// With `points` on each side of the peak in theta and in phi.
+/// The integral over the hemisphere, with `points` on each side of the peak in theta and in phi.
 fn integral<const C: usize>(f: &impl Fn(DVec3) -> [f64; C], peak: DVec3, points: usize) -> [f64; C] {
     let rule = gauss_legendre(points);
     let theta_peak = libm::atan2(libm::hypot(peak.x, peak.y), peak.z).min(FRAC_PI_2);

@@ -10,7 +10,7 @@ use luthier_optics::stack::{Base, Stack};
 
 use crate::elek::{MODEL, REFRACTION_WAVELENGTH_NM};
 
-/// What a domain is a range of.
+/// Quantity that a domain is a range of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Quantity {
     /// Index of a coat over that above it, at the wavelength that bends directions.
@@ -67,16 +67,16 @@ pub struct Limit {
     pub most: f64,
     /// Whether what is outside is wrong beyond use, not merely in doubt.
     pub refuses: bool,
-    /// What goes wrong outside.
+    /// Fault outside the range, in words.
     pub reason: &'static str,
 }
 
-/// Something outside the domain of a model.
+/// A quantity outside the domain of a model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outside {
     /// Number of the layer, from the top.
     pub layer: usize,
-    /// What is outside.
+    /// Limit that the quantity breaks.
     pub limit: Limit,
     /// Its value.
     pub value: f64,
@@ -99,7 +99,7 @@ pub const INDEX_MAX: f64 = 1e4;
 /// Thickest film whose phase single precision resolves at all: 1 mm is 4000 waves, a phase error of 1e-3 turns.
 const FILM_BEYOND_USE_NM: f64 = 1e6;
 
-/// What holds for all models.
+/// Limits of all models.
 const COMMON: &[Limit] = &[
     limit(Quantity::MetalK, 0.0, INDEX_MAX, "it is stored as 10000, which reflects within 1e-4 of it"),
     Limit {
@@ -111,7 +111,8 @@ const COMMON: &[Limit] = &[
     },
 ];
 
-/// Of metal, of which 0.92 comes back: 1.9 is the last that the suite tried before the albedo of a coated metal is off by more than 1.
+/// Limit of the index of a coat over metal, of which 0.92 comes back: 1.9 is the last that the suite tried before the albedo of a coated
+/// metal is off by more than 1.
 const BRIGHT: Limit = limit(
     Quantity::Index,
     0.25,
@@ -145,13 +146,13 @@ pub fn domain(model: &str) -> &'static [Limit] {
     }
 }
 
-/// What comes back through a coat from what lies below it, times the ratio of indices, up to which that ratio is no matter: the excess
-/// of the models is about such a multiple. The metal of the suite is off by 1.0, 1.24 and 1.35 at ratios of 2, 2.5 and 4, where this
-/// is 1.45, 1.53 and 1.50.
+/// Light that comes back through a coat from below it, times the ratio of indices, up to which that ratio is no matter: the excess of the
+/// models is about such a multiple. The metal of the suite is off by 1.0, 1.24 and 1.35 at ratios of 2, 2.5 and 4, where this is 1.45, 1.53
+/// and 1.50.
 const DIM: f64 = 1.0;
 
-/// What comes back at normal incidence from below the dielectric of a layer, once, in the channel that absorbs least: `(1 - F)^2 e^(-2
-/// depth) R`; R counts as 1 where the next layer is transparent.
+/// Light that comes back at normal incidence from below the dielectric of a layer, once, in the channel that absorbs least: `(1 - F)^2
+/// e^(-2 depth) R`; R counts as 1 where the next layer is transparent.
 fn returned(stack: &Stack, layer: usize) -> f64 {
     let mirrored = |layer| {
         Interface::of(stack, layer).map_or(0.0, |interface| interface.at(REFRACTION_WAVELENGTH_NM).reflectance(1.0))

@@ -40,11 +40,11 @@ pub struct Layer {
     pub distribution: Distribution,
     /// Isotropic slope parameter, at least [`ALPHA_MIN`].
     pub alpha: f64,
-    /// What the interface does with light that it does not reflect.
+    /// Material below the interface.
     pub below: Below,
 }
 
-/// What follows below an interface.
+/// Material that follows below an interface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Below {
     /// A transparent medium: real index below over index above, and the optical depth of the slab.
@@ -54,7 +54,7 @@ pub enum Below {
         /// Optical depth along the normal.
         optical_depth: Rgb,
     },
-    /// Nothing: a conductor.
+    /// A conductor: nothing lies below.
     Conductor,
     /// The layer is a diffuse base, without an interface of its own.
     Diffuse(Diffuse),

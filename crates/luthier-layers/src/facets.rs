@@ -18,7 +18,7 @@ use crate::monochrome::Optics;
 /// way to show a mirror.
 pub const ALPHA_MIN: f64 = 1e-4;
 
-/// Which masking and shadowing; see [`luthier_optics::masking`].
+/// Masking and shadowing function; see [`luthier_optics::masking`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Masking {
     /// Smith's, height-correlated: `1 / (1 + Lambda_i + Lambda_o)` (Heitz 2014, eq. 99).
@@ -31,7 +31,7 @@ pub enum Masking {
     Kelemen,
     /// Schlick's fit to Smith's (1994), of the isotropic slope parameter.
     SchlickSmith,
-    /// The one that cancels the denominator: `cos_theta_i cos_theta_o` (Hoffman 2013).
+    /// The masking that cancels the denominator: `cos_theta_i cos_theta_o` (Hoffman 2013).
     Implicit,
 }
 

@@ -13,7 +13,7 @@ use crate::monochrome::Monochrome;
 /// Flakes below the first interface, one per cell of a grid, each with a normal of its own (Elek 2010, section 4.1).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flakes {
-    /// Which flakes.
+    /// Seed of the flakes.
     pub seed: u32,
     /// Cells along one repeat.
     pub count: u32,
@@ -71,7 +71,7 @@ impl Flakes {
 pub struct FlakeMean {
     /// The flakes.
     pub flakes: Flakes,
-    /// How many of them.
+    /// Number of flakes.
     pub samples: u32,
     /// Distance of the eye.
     pub distance: f64,

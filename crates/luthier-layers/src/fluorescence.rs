@@ -69,9 +69,9 @@ pub struct Fluorescent {
 }
 
 impl Fluorescent {
-    /// From one stack per wavelength bin (a coat over a diffuse base, whose albedo the matrix replaces) and the re-radiation
-    /// matrix: entry `to * bins + from` is the share of the power that falls in at bin `from` and comes out, diffusely, at bin
-    /// `to`; the diagonal is ordinary reflection.
+    /// The model of one stack per wavelength bin (a coat over a diffuse base, whose albedo the matrix replaces) and the re-radiation
+    /// matrix: entry `to * bins + from` is the share of the power that falls in at bin `from` and comes out, diffusely, at bin `to`; the
+    /// diagonal is ordinary reflection.
     ///
     /// # Errors
     ///
@@ -110,7 +110,7 @@ impl Fluorescent {
         Ok(Self { coats, inner: with_bounces(matrix, &held) })
     }
 
-    /// How many wavelength bins there are.
+    /// Number of wavelength bins.
     pub fn bins(&self) -> usize {
         self.coats.len()
     }

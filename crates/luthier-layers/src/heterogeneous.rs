@@ -16,7 +16,7 @@ use crate::perlin::Perlin;
 use crate::voronoi::Voronoi;
 use crate::weidlich_wilkie::WeidlichWilkie;
 
-/// What is at a place: a stack by number, and its normal.
+/// Contents of a place: a stack by number, and its normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pick {
     /// Index into the stacks.
@@ -28,7 +28,7 @@ pub struct Pick {
 /// How stacks are spread over a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Map {
-    /// The same stack everywhere.
+    /// One stack everywhere.
     Uniform(usize),
     /// A surface map: each Voronoi cell one of the stacks, all as likely.
     Cells {
@@ -47,7 +47,7 @@ pub enum Map {
         filled: f64,
         /// Largest tilt of a glittering cell, radians, below a right angle; tilts are uniform in solid angle.
         tilt: f64,
-        /// What shows through the other cells.
+        /// Map that shows through the other cells.
         under: Box<Map>,
     },
     /// A switch by noise: the map below the threshold, or the one above.
@@ -64,7 +64,7 @@ pub enum Map {
 }
 
 impl Map {
-    /// What is at a place.
+    /// The stack and the normal at a place.
     pub fn pick(&self, uv: DVec2) -> Pick {
         match self {
             Self::Uniform(stack) => Pick { stack: *stack, normal: DVec3::Z },
@@ -123,7 +123,7 @@ pub enum Pattern {
 }
 
 impl Pattern {
-    /// All of them, in the order of listings.
+    /// All patterns, in the order of listings.
     pub const ALL: [Self; 3] = [Self::Cells, Self::Glitter, Self::Switch];
 
     fn map(self) -> Map {
@@ -151,7 +151,7 @@ pub struct Heterogeneous {
 }
 
 impl Heterogeneous {
-    /// At a texture coordinate.
+    /// The model at a texture coordinate.
     pub fn new(pattern: Pattern, uv: DVec2) -> Self {
         Self { pattern, pick: pattern.map().pick(uv) }
     }

@@ -1,8 +1,8 @@
-//! What models take besides a stack and two directions.
+//! Inputs that models take besides a stack and two directions.
 
 use glam::{DVec2, DVec3};
 
-/// Something that a model takes, for listings and for telling who takes what.
+/// An input that a model takes, for listings and for telling which model takes which.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Input {
     /// [`Inputs::uv`].
@@ -63,6 +63,6 @@ pub struct Inputs {
     pub inner_normal: Option<DVec3>,
     /// Random samples per value of an estimate.
     pub samples: Option<u64>,
-    /// Which random numbers an estimate is made of.
+    /// Seed of the random numbers of an estimate.
     pub seed: Option<u64>,
 }

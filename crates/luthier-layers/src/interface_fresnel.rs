@@ -9,13 +9,13 @@ use crate::memo::Memo;
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 use crate::transfer_matrix::transfer_matrix;
 
-/// Which reflectance. All but [`Fresnel::Exact`] and [`Fresnel::TransferMatrix`] are approximations; their errors are in
-/// [`luthier_optics::schlick`] and [`luthier_optics::film_color`].
+/// Formula for the reflectance of an interface. All but [`Fresnel::Exact`] and [`Fresnel::TransferMatrix`] are approximations; their errors
+/// are in [`luthier_optics::schlick`] and [`luthier_optics::film_color`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fresnel {
     /// Fresnel's formulas for any complex index; films by Airy's formula, applied from the bottom up.
     Exact,
-    /// The same, films by characteristic matrices.
+    /// Fresnel's formulas for any complex index; films by characteristic matrices.
     TransferMatrix,
     /// Schlick 1994, from the interface's own reflectance at normal incidence, films included.
     Schlick,
@@ -122,7 +122,7 @@ mod tests {
         MonochromeLayer { surface: Surface::smooth(), above: 1.0, films, below: MonochromeBelow::Conductor { ior } }
     }
 
-    /// Without films all agree at normal incidence: |(n - 1)/(n + 1)|^2, by hand.
+    /// All formulas agree at normal incidence without films: |(n - 1)/(n + 1)|^2, by hand.
     #[test]
     fn all_agree_at_normal_incidence_without_films() {
         let (n, k) = (1.04, 2.583);

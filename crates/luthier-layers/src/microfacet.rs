@@ -13,7 +13,7 @@ use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer, Optics};
 use crate::normals::{Normals, NormalsMemo};
 use crate::oren_nayar;
 
-/// What a microfacet model is made of.
+/// Parts of a microfacet model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Components {
     /// Distribution of facet normals.

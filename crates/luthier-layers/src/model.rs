@@ -8,12 +8,12 @@ use crate::inputs::{Input, Inputs};
 use crate::layered_mc::Estimate;
 use crate::monochrome::Monochrome;
 
-/// What a model is, for listings and reports.
+/// Description of a model, for listings and reports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ModelInfo {
     /// The name by which `luthier eval --model` reaches it.
     pub name: &'static str,
-    /// What sort of model.
+    /// Kind of model.
     pub kind: Kind,
     /// Laws that it keeps.
     pub claims: Claims,
@@ -21,9 +21,9 @@ pub struct ModelInfo {
     pub source: &'static str,
     /// Stacks and parameters for which it is valid.
     pub domain: &'static str,
-    /// What it leaves out.
+    /// Effects that the model leaves out.
     pub leaves_out: &'static str,
-    /// What it takes besides a stack and two directions.
+    /// Inputs that the model takes besides a stack and two directions.
     pub inputs: &'static [Input],
 }
 
@@ -43,7 +43,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All of them, in the order of listings.
+    /// All kinds, in the order of listings.
     pub const ALL: [Self; 5] = [Self::Surface, Self::Layered, Self::Place, Self::Density, Self::Reference];
 
     /// The name in files.
@@ -68,19 +68,19 @@ pub struct Claims {
 }
 
 impl Claims {
-    /// Both.
+    /// Reciprocity and energy.
     pub const BOTH: Self = Self { reciprocal: true, conserves_energy: true };
     /// Reciprocity alone.
     pub const RECIPROCAL: Self = Self { reciprocal: true, conserves_energy: false };
     /// Energy alone.
     pub const ENERGY: Self = Self { reciprocal: false, conserves_energy: true };
-    /// Neither.
+    /// Neither reciprocity nor energy.
     pub const NONE: Self = Self { reciprocal: false, conserves_energy: false };
 }
 
 /// A reflectance model that evaluates at one wavelength.
 pub trait Model: Sync {
-    /// What it is.
+    /// Description of the model.
     fn info(&self) -> ModelInfo;
 
     /// `f cos_theta_i` for light from `wi` seen from `wo`: unit, in the local frame, away from the surface. Zero when either
@@ -104,7 +104,7 @@ pub trait Model: Sync {
         None
     }
 
-    /// Which of several stacks the model evaluates, for one that spreads them over places.
+    /// Index of the stack that the model evaluates, for a model that spreads several over places.
     fn stack_index(&self) -> usize {
         0
     }
@@ -117,7 +117,7 @@ pub trait Model: Sync {
 
 /// A model whose values are means of random samples. The same arguments give the same numbers.
 pub trait Estimator: Sync {
-    /// As [`Model::eval`], with its standard error.
+    /// [`Model::eval`] with its standard error.
     fn eval_with_error(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> Estimate;
 
     /// Directional albedo: the share of the light from `wo` that leaves upward and above the plane with the normal `up` (+z but for a

@@ -43,11 +43,11 @@ pub struct MonochromeLayer {
     pub above: f64,
     /// Coherent films from the top down.
     pub films: Vec<FilmLayer>,
-    /// What lies below.
+    /// Material below the interface.
     pub below: MonochromeBelow,
 }
 
-/// What lies below an interface, at one wavelength.
+/// Material below an interface, at one wavelength.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MonochromeBelow {
     /// A transparent medium: real index, and optical depth of the slab along the normal. Last in the stack: half-infinite.

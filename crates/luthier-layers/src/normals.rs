@@ -8,7 +8,7 @@ use luthier_optics::stack::{Distribution, Surface};
 use crate::facets::{ALPHA_MIN, Facets, Lobe, Masking};
 use crate::memo::Memo;
 
-/// Which distribution.
+/// Distribution of facet normals.
 ///
 /// The last three are isotropic and have parameters of their own, which follow from alpha, the geometric mean of the surface's
 /// slope parameters. Their Smith masking is computed by quadrature ([`smith_g1_of`]).
@@ -29,10 +29,10 @@ pub enum Normals {
 /// Least exponent of Blinn-Phong: alpha = 1 has 0.
 const EXPONENT_MIN: f64 = 1e-9;
 
-/// What [`Normals`] costs to compute.
+/// Memo of the parts of [`Normals`] that are slow to compute.
 #[derive(Debug)]
 pub(crate) struct NormalsMemo {
-    /// By alpha.
+    /// Distributions by alpha.
     distributions: Memo<u64, Option<Isotropic>>,
     /// Smith's Lambda by alpha and cosine.
     lambdas: Memo<[u64; 2], f64>,

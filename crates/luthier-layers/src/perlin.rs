@@ -6,11 +6,11 @@ use noise::NoiseFn;
 /// Perlin's noise, summed over octaves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Perlin {
-    /// Which noise.
+    /// Seed of the noise.
     pub seed: u32,
     /// Lattice cells per unit of length in the first octave; each octave doubles it and halves the amplitude.
     pub frequency: f64,
-    /// How many octaves.
+    /// Number of octaves.
     pub octaves: u32,
 }
 

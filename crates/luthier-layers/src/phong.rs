@@ -37,7 +37,7 @@ pub struct Coefficients {
 }
 
 impl Coefficients {
-    /// What stands for a stack.
+    /// The coefficients that stand for a stack.
     pub fn of(stack: &Monochrome) -> Self {
         let (mut diffuse, mut specular, mut most, mut alpha) = (0.0, 0.0, -1.0, 1.0);
         for (k, layer) in stack.layers.iter().enumerate() {

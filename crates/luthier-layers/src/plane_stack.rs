@@ -15,7 +15,7 @@ pub struct Powers {
     pub below: f64,
 }
 
-/// Nothing: all passes.
+/// Powers of no interface: all light passes.
 const CLEAR: Powers = Powers { transmittance: 1.0, above: 0.0, below: 0.0 };
 
 /// Cosine below an interface, from the cosine above and the ratio of indices, or `None` under total reflection.
@@ -51,8 +51,8 @@ pub fn seen_from_below(stack: &Monochrome, count: usize, cos_theta: f64) -> Powe
     (first..layers.len()).fold(start, |powers, i| add(powers, &layers[i], [cosines[i], cosines[i + 1]]))
 }
 
-/// As [`seen_from_below`], for the direction that makes `cos_theta` with the normal in the exterior; and the cosine below.
-/// `None` when it is totally reflected on the way.
+/// Powers as of [`seen_from_below`], for the direction that makes `cos_theta` with the normal in the exterior; and the cosine below. `None`
+/// when it is totally reflected on the way.
 pub fn seen_from_above(stack: &Monochrome, count: usize, cos_theta: f64) -> Option<(Powers, f64)> {
     let mut powers = CLEAR;
     let mut cos = cos_theta;

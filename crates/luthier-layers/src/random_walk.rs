@@ -17,7 +17,7 @@ use crate::monochrome::{Monochrome, MonochromeLayer};
 pub struct RandomWalk {
     /// Walks per value.
     pub samples: u64,
-    /// Which family of random numbers.
+    /// Family of random numbers.
     pub seed: u64,
 }
 

@@ -35,7 +35,7 @@ pub struct Under {
 }
 
 impl Under {
-    /// Those of the surface.
+    /// Normals of the surface itself.
     pub const NONE: Self = Self { flake_normal: DVec3::Z, inner_normal: DVec3::Z };
 }
 
@@ -130,7 +130,7 @@ fn channels(stack: &Stack, wavelengths_nm: [f64; 3]) -> [Monochrome; 3] {
     })
 }
 
-/// The same with isotropic surfaces, whose slope parameter is clamped after the mean is taken.
+/// Stacks of the channels with isotropic surfaces, whose slope parameter is clamped after the mean is taken.
 fn granier_channels(stack: &Stack, wavelengths_nm: [f64; 3]) -> [Monochrome; 3] {
     let mut channels = channels(stack, wavelengths_nm);
     for one in &mut channels {
@@ -164,7 +164,7 @@ fn coefficients(stack: &Stack, wavelengths_nm: [f64; 3], color: Color) -> [Coeff
     [0, 1, 2].map(|c| Coefficients { diffuse: diffuse[c], specular: specular[c], exponent })
 }
 
-/// What terms have said during one evaluation, by layer and arguments.
+/// Values of terms during one evaluation, by layer and arguments.
 #[derive(Debug, Default)]
 struct Memory {
     reflectances: RefCell<Vec<(usize, f64, Rgb)>>,

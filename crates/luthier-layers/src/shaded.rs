@@ -16,7 +16,7 @@ use crate::statistics::energy::Energy;
 use crate::terms::{Exact, ShaderTerms};
 use crate::textured::TextureSample;
 
-/// What textures and effects say about one place of a surface: `LuthierPlace` of the shaders.
+/// Values of textures and effects at one place of a surface: `LuthierPlace` of the shaders.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
     /// Normal and factors.

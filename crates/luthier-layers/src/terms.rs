@@ -16,7 +16,7 @@ use crate::statistics::layers::Layers;
 /// All that the shaders of any model are given: what [`Terms`] are, and for `belcour` and `yamaguchi` energies, and what layers do
 /// to the light of a diffuse base.
 pub trait ShaderTerms: Terms + Energy<3> {
-    /// What the layers above a diffuse base do to its light; anything where there is none.
+    /// Effect of the layers above a diffuse base on its light; anything where there is no such base.
     fn veil(&self) -> Veil<3>;
 }
 
@@ -42,8 +42,8 @@ impl Exact {
         Self::with(stack, color, Energies::Facets(OnceLock::new()))
     }
 
-    /// The same with the energies of shaders without tables: facets count as level, and nothing of a lobe is totally reflected. `veil`
-    /// is what those shaders are told of the layers above a diffuse base.
+    /// The terms of a stack with the energies of shaders without tables: facets count as level, and nothing of a lobe is totally reflected.
+    /// `veil` is what those shaders are told of the layers above a diffuse base.
     pub fn level(stack: &Stack, color: Color, veil: Veil<3>) -> Self {
         Self::with(stack, color, Energies::Level(veil))
     }

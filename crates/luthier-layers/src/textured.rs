@@ -8,7 +8,7 @@ use crate::layered_mc::Estimate;
 use crate::model::{Estimator, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 
-/// What normal, roughness and thickness textures say about one place (Elek 2010, Algorithm 1, line 2, and section 3).
+/// Values of normal, roughness and thickness textures at one place (Elek 2010, Algorithm 1, line 2, and section 3).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TextureSample {
     /// Normal, unit, in the surface's frame.
@@ -22,7 +22,7 @@ pub struct TextureSample {
 }
 
 impl TextureSample {
-    /// No texture.
+    /// The sample where there is no texture.
     pub const NONE: Self = Self { normal: DVec3::Z, alpha_factor: 1.0, slab_factor: 1.0, film_factor: 1.0 };
 
     /// The stack as it is at the place.
@@ -55,7 +55,7 @@ impl TextureSample {
 
 /// A model at a place with textures.
 pub struct Textured {
-    /// What the textures say there.
+    /// Values of the textures at the place.
     pub sample: TextureSample,
     /// The model.
     pub model: Box<dyn Model>,
@@ -150,7 +150,7 @@ mod tests {
         assert!((turned.eval(&Elek, &stack, back(wi), back(wo)) / expected - 1.0).abs() < 1e-12);
     }
 
-    /// As a model it is the same, estimators keep their error, and colour of its own is that of the film at the place.
+    /// A textured model is the model at the place: estimators keep their error, and colour of its own is that of the film at the place.
     #[test]
     fn a_textured_model_is_the_model_at_the_place() {
         use crate::interface_fresnel::Fresnel;

@@ -7,7 +7,7 @@ use crate::hash;
 /// Voronoi cells of one random point per square of a lattice (Worley 1996).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Voronoi {
-    /// Which points.
+    /// Seed of the points.
     pub seed: u32,
     /// Squares per unit of length.
     pub frequency: f64,

@@ -25,7 +25,7 @@ use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow, Optics};
 use crate::oren_nayar;
 
-/// At which normal both directions are refracted.
+/// Normal at which both directions are refracted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Refraction {
     /// The surface's, as in Elek's form of the model and in the sampling of this crate.
@@ -36,10 +36,10 @@ pub enum Refraction {
     Facet,
 }
 
-/// At which angles the transmission coefficients are taken.
+/// Angles at which the transmission coefficients are taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Transmission {
-    /// Both at the half vector, as in the course's shader.
+    /// Both coefficients at the half vector, as in the course's shader.
     #[default]
     HalfVector,
     /// T_12 at the angle of `wi`, T_21 at that of `wo`, each with the normal, and `t = T_21`: the physics of a smooth
@@ -50,9 +50,9 @@ pub enum Transmission {
 /// The recursive model, faithful to the course.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct WeidlichWilkie {
-    /// At which normal directions are refracted.
+    /// Normal at which directions are refracted.
     pub refraction: Refraction,
-    /// At which angles T_12 and T_21 are taken.
+    /// Angles at which T_12 and T_21 are taken.
     pub transmission: Transmission,
 }
 

@@ -21,7 +21,7 @@ use crate::plane_stack::seen_from_above;
 /// A proposed direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Proposal {
-    /// Which layer proposed it.
+    /// Layer that proposed the direction.
     pub layer: usize,
     /// The direction.
     pub wi: DVec3,
@@ -48,7 +48,7 @@ struct Sampled {
 }
 
 impl Sampler {
-    /// For a direction above the horizon; without layers, and so without samples, for others.
+    /// The sampler for a direction above the horizon; without layers, and so without samples, for others.
     ///
     /// The weights of the mixture are what smooth layers would send to `wo`: power passed by the interfaces above, both
     /// ways, times the reflectance.
@@ -81,7 +81,7 @@ impl Sampler {
         Self { layers }
     }
 
-    /// How many layers there are to sample.
+    /// Number of layers to sample.
     pub fn count(&self) -> usize {
         self.layers.len()
     }

@@ -2,7 +2,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Axis, Encoding, ErrorStats, Image, RowBase, SchlickBase, TexelFormat, WeightBits, bilinear};
 
-/// What a table holds. One texture of each kind serves any number of materials.
+/// Kind of a table, by its contents. One texture of each kind serves any number of materials.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TableKind {
@@ -80,7 +80,7 @@ pub struct AtlasLayout {
     pub columns: u32,
     /// Number of tiles, at least 1.
     pub tiles: u32,
-    /// What a look-up adds; absent from files when it is nothing.
+    /// Base that a look-up adds; absent from files when it is nothing.
     #[serde(default, skip_serializing_if = "RowBase::is_zero")]
     pub base: RowBase,
 }
@@ -141,7 +141,7 @@ impl AtlasLayout {
 pub struct Tile {
     /// Readable name: `red-lacquer/0`, `beckmann`.
     pub name: String,
-    /// What was tabulated, in words that name the model.
+    /// Function that was tabulated, in words that name the model.
     pub model: String,
     /// SHA-256 of the inputs of the job that made it, hex.
     pub input_hash: String,
@@ -163,19 +163,19 @@ impl Tile {
 /// A baked texture: layout, tiles, the truth in f32, and the texels that ship.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Atlas {
-    /// What it holds.
+    /// Kind of the table.
     pub kind: TableKind,
     /// Where it lies.
     pub layout: AtlasLayout,
-    /// What ships.
+    /// Format of the texels that ship.
     pub format: TexelFormat,
     /// One entry per tile.
     pub tiles: Vec<Tile>,
     /// Unquantised values.
     pub truth: Image,
-    /// What ships: texels of `format`, as the shader reads them.
+    /// Texels that ship, of `format`, as the shader reads them.
     pub texels: Image,
-    /// The same as a device takes them.
+    /// Bytes that ship, as a device takes them.
     pub bytes: Vec<u8>,
 }
 
@@ -186,7 +186,7 @@ impl Atlas {
     }
 }
 
-/// What a look-up gives for axis values. Formats that core WebGPU does not filter are weighed in the shader: exactly, whatever
+/// The values that a look-up gives for axis values. Formats that core WebGPU does not filter are weighed in the shader: exactly, whatever
 /// `weights` says.
 pub fn read(
     kind: TableKind,
@@ -243,7 +243,7 @@ mod tests {
     }
 
     proptest! {
-        /// The other tiles hold a value that would show however little it weighed.
+        /// A read touches no other tile: these hold a value that would show however little it weighed.
         #[test]
         fn reads_never_touch_another_tile(layout in any_layout(), tile: u32, values in [-5.0..5.0f64, -5.0..5.0f64], ends: [bool; 2]) {
             let tile = tile % layout.tiles;

@@ -36,7 +36,7 @@ pub struct Axis {
     pub max: f64,
     /// Number of nodes, at least 2.
     pub size: u32,
-    /// From u to the value.
+    /// Mapping from u to the value.
     pub mapping: Mapping,
 }
 

@@ -2,7 +2,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Image, TexelFormat};
 
-/// What a look-up adds to what it reads between the nodes of a row.
+/// Base that a look-up adds to what it reads between the nodes of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RowBase {

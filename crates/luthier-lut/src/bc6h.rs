@@ -194,7 +194,7 @@ fn line(colors: &Texels) -> [[f64; 3]; 2] {
     ends.map(|place| [0, 1, 2].map(|c: usize| mean[c] + place * axis[c]))
 }
 
-/// The one colour that is least far from all texels, as both ends of the finest mode, which has every half float.
+/// The ends of the one colour that is least far from all texels, in the finest mode, which has every half float.
 fn flat(texels: &Texels) -> Ends {
     let middle = |c: usize| {
         let values = texels.map(|texel| texel[c]);

@@ -16,18 +16,18 @@ pub struct SceneBudget {
 /// Largest errors of a model over the directions of a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct SceneError {
-    /// As [`SceneBudget::max_abs`].
+    /// Largest absolute error, as limited by [`SceneBudget::max_abs`].
     pub max_abs: f64,
-    /// As [`SceneBudget::max_rel`].
+    /// Largest relative error, as limited by [`SceneBudget::max_rel`].
     pub max_rel: f64,
-    /// As [`SceneBudget::delta_e`]; absent where the budget does not limit it.
+    /// Largest colour difference, as limited by [`SceneBudget::delta_e`]; absent where the budget does not limit it.
     pub delta_e: Option<f64>,
     /// Standard error of the reference at the direction with the largest relative error, as a relative error.
     pub std_err_rel: f64,
 }
 
 impl SceneBudget {
-    /// The same with the limits of another in place of its own.
+    /// The budget with the limits of another where it has none of its own.
     #[must_use]
     pub fn or(&self, other: &Self) -> Self {
         Self {
@@ -53,17 +53,17 @@ impl SceneBudget {
     }
 }
 
-/// What became of a candidate.
+/// Verdict on a candidate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// Its error is inside the budget, noise of the reference included.
     Holds,
-    /// Its error is outside.
+    /// Its error is outside the budget.
     Fails,
     /// The noise of the reference leaves it open at the greatest number of samples; it is not taken.
     Undecided,
-    /// It costs more than the scene allows.
+    /// Its cost is more than the scene allows.
     TooDear,
 }
 
@@ -74,7 +74,7 @@ pub struct SceneCandidate {
     pub model: ShadingModel,
     /// Colour of its Fresnel terms.
     pub color: ColorMode,
-    /// What was left out of the stack, by name; empty for the whole stack.
+    /// Names of the parts that were left out of the stack; empty for the whole stack.
     pub left_out: Vec<String>,
     /// Inverse throughput in cycles per wave of 64 on RDNA2.
     pub cost: f64,
@@ -82,22 +82,22 @@ pub struct SceneCandidate {
     pub cost_is_of_similar: bool,
     /// Error of the model against the reference; tables and single precision are not in it.
     pub error: SceneError,
-    /// What became of it.
+    /// Verdict on the candidate.
     pub verdict: Verdict,
 }
 
-/// What was chosen for a material, and why.
+/// Choice for a material, and its reason.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MaterialChoice {
     /// Name of the material.
     pub name: String,
     /// The limits of its model: three quarters of those of the scene, whose rest is for tables.
     pub budget: SceneBudget,
-    /// What ships: its place in `tried`.
+    /// Place in `tried` of the candidate that ships.
     pub chosen: usize,
     /// The dearest of the candidates that cost less: its place in `tried`, if there is any.
     pub next_cheaper: Option<usize>,
-    /// In a sentence.
+    /// Reason of the choice, in a sentence.
     pub reason: String,
     /// All candidates that were judged, cheapest first.
     pub tried: Vec<SceneCandidate>,
@@ -111,7 +111,7 @@ pub struct MaterialChoice {
 }
 
 impl MaterialChoice {
-    /// What ships.
+    /// The candidate that ships.
     pub fn candidate(&self) -> &SceneCandidate {
         &self.tried[self.chosen]
     }

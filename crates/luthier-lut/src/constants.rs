@@ -2,7 +2,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::LayerRecord;
 
-/// What a shader needs of a whole surface, beside its layers; what a model does not use is zero.
+/// Constants of a whole surface that a shader needs beside its layers; those that a model does not use are zero.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MaterialConstants {
     /// Diffuse coefficient of Phong's model, RGB.
@@ -13,7 +13,7 @@ pub struct MaterialConstants {
     pub phong_exponent: f64,
     /// Cosine-weighted share of the light from a diffuse base that the layers above send back to it, RGB.
     pub internal_reflectance: [f64; 3],
-    /// What layers keep of diffuse light from below beyond what they keep of it from above: 1 - Ti0/T0i of the statistics; 0 for
+    /// Share of diffuse light from below that layers keep beyond the share that they keep from above: 1 - Ti0/T0i of the statistics; 0 for
     /// smooth ones.
     pub upward_loss: f64,
     /// Flakes in the coat.
@@ -27,7 +27,7 @@ pub struct MaterialConstants {
 /// Flakes, one per cell of a grid or as a normal map has them (Elek 2010, section 4.1).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FlakesRecord {
-    /// Which flakes.
+    /// Seed of the flakes.
     pub seed: u32,
     /// Cells along one repeat; 0 where the flakes are those of a normal map.
     pub count: u32,
@@ -61,7 +61,7 @@ pub struct PatinaRecord {
 /// Glitter (Weidlich and Wilkie 2009, section 5.2.1): a share of the Voronoi cells of the surface is tilted.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct GlitterRecord {
-    /// Which cells.
+    /// Seed of the cells.
     pub seed: u32,
     /// Cells per unit of texture coordinate.
     pub frequency: f64,

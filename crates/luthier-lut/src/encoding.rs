@@ -3,7 +3,7 @@ use crate::{Image, TableKind, TexelFormat};
 /// How values become texels, beyond the rounding of the texel format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Encoding {
-    /// As they are.
+    /// Values as they are.
     Plain,
     /// One value as its sixteenth root, split in two halves: `root = r + g / 1024`.
     ///

@@ -12,9 +12,9 @@ pub enum LutError {
     /// The manifest was written by another version of the format.
     #[error("manifest schema {found}, this program reads schema {expected}; bake again with this version")]
     ManifestSchema {
-        /// In the file.
+        /// Version in the file.
         found: u32,
-        /// Understood here.
+        /// Version understood here.
         expected: u32,
     },
     /// Texel bytes that do not fit the layout.

@@ -1,15 +1,15 @@
 use crate::{Form, ShadingModel};
 
-/// Something that a material file can ask for and a model can leave out.
+/// A feature that a material file can ask for and a model can leave out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Feature {
     /// Dielectrics and conductors below the first layer.
     InnerInterface,
     /// The diffuse base below the first layer.
     Base,
-    /// What slabs absorb of the light of interfaces below.
+    /// Absorption by slabs of the light of interfaces below.
     Absorption,
-    /// What slabs absorb of the light of the diffuse base.
+    /// Absorption by slabs of the light of the diffuse base.
     BaseAbsorption,
     /// The first film of an interface.
     Films,

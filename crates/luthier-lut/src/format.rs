@@ -170,7 +170,7 @@ impl TexelFormat {
         self.texels(image).1
     }
 
-    /// The same behind the bytes.
+    /// The bytes of an image's texels, and the image that a shader reads from them.
     pub fn texels(self, image: &Image) -> (Vec<u8>, Image) {
         let (bytes, [width, height]) = (self.encode(image), [image.width, image.height]);
         let data = self.values(width, height, &bytes);
@@ -228,7 +228,7 @@ impl TexelFormat {
 pub struct FormatSet(u16);
 
 impl FormatSet {
-    /// Those of core WebGPU.
+    /// The formats of core WebGPU.
     pub const CORE: Self = {
         let (mut set, mut i) = (0, 0);
         while i < TexelFormat::ALL.len() {

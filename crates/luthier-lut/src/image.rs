@@ -12,7 +12,7 @@ pub struct Image {
 }
 
 impl Image {
-    /// All zero.
+    /// An image of zeros.
     pub fn zeros(width: u32, height: u32, channels: u32) -> Self {
         Self { width, height, channels, data: vec![0.0; width as usize * height as usize * channels as usize] }
     }

@@ -27,7 +27,7 @@ pub struct Manifest {
     pub choice: Option<SceneChoice>,
     /// The emitted shaders.
     pub shaders: Vec<ShaderEntry>,
-    /// What to bind where, in group 0.
+    /// Resources of group 0, and where to bind them.
     pub bindings: Vec<BindingEntry>,
     /// The material buffer: little-endian `vec4<f32>` words, see [`crate::material_buffer`].
     pub material_buffer: FileEntry,
@@ -64,7 +64,7 @@ pub struct MaterialEntry {
     pub color: ColorMode,
     /// The three wavelengths of the full (table-free) shader, RGB order.
     pub wavelengths_nm: [f64; 3],
-    /// What belongs to the whole surface.
+    /// Constants of the whole surface.
     pub constants: MaterialConstants,
     /// The layers from the top down.
     pub layers: Vec<LayerRecord>,
@@ -72,7 +72,7 @@ pub struct MaterialEntry {
     pub maps: Vec<MapEntry>,
 }
 
-/// What a map says.
+/// Quantity that a map varies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MapSlot {
@@ -105,7 +105,7 @@ impl MapSlot {
 /// (i + 1/2) / size, the first row is at v = 0.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MapEntry {
-    /// What it says.
+    /// Quantity that the map varies.
     pub slot: MapSlot,
     /// The layer that it is of, from the top; null for maps of the whole surface.
     pub layer: Option<u32>,
@@ -122,7 +122,7 @@ pub struct MapEntry {
 /// One table: a texture and its truth.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TableEntry {
-    /// What it holds.
+    /// Kind of the table.
     pub kind: TableKind,
     /// Where its texels lie.
     pub layout: AtlasLayout,

@@ -19,7 +19,7 @@ pub struct Worst {
     pub channel: u32,
     /// The function there.
     pub expected: f64,
-    /// What a sampled read gives.
+    /// Value of a sampled read.
     pub sampled: f64,
 }
 
@@ -32,7 +32,7 @@ pub struct ErrorStats {
     pub rms_err: f64,
     /// 99th percentile over the scan, and `slack`.
     pub p99_abs_err: f64,
-    /// What the function that reads were compared with may be off itself; 0 for closed forms.
+    /// Error of the function itself that reads were compared with; 0 for closed forms.
     #[serde(default)]
     pub slack: f64,
     /// Where the largest difference is.
@@ -179,7 +179,7 @@ pub fn measure_at(points: impl IntoIterator<Item = (Vec<f64>, Comparison)>) -> E
     errors.stats(worst, &there, at)
 }
 
-/// What is worse than no point at all.
+/// A candidate that is worse than any point.
 const NOWHERE: Candidate = Candidate { u: [0.5, 0.5], channel: 0, error: -1.0 };
 
 /// Errors as they come in.
@@ -220,7 +220,7 @@ impl Errors {
     }
 }
 
-/// From a point to a local maximum of the error.
+/// Climbs from a point to a local maximum of the error.
 fn climb(scan: &Scan, start: Candidate, compare: &impl Fn([f64; 2]) -> Comparison) -> Candidate {
     let mut worst = start;
     let axes = [0, 1].into_iter().filter(|&k: &usize| scan.to[k] > scan.from[k]);

@@ -9,7 +9,7 @@ pub const MATERIAL_WORDS: usize = 11;
 /// `vec4` words of a layer in the material buffer.
 pub const LAYER_WORDS: usize = 11;
 
-/// What a layer is to the shader.
+/// Kind of a layer, to the shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LayerKind {
@@ -28,7 +28,7 @@ pub enum LayerKind {
 /// wavelengths.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct LayerRecord {
-    /// What the layer is.
+    /// Kind of the layer.
     pub kind: LayerKind,
     /// Slope distribution, by name: `beckmann` or `ggx`.
     pub distribution: String,
@@ -36,7 +36,7 @@ pub struct LayerRecord {
     pub alpha: f64,
     /// Slope parameters along the layer's tangent and bitangent, clamped alike.
     pub alpha_xy: [f64; 2],
-    /// From the surface's tangent to the layer's, counter-clockwise, in radians.
+    /// Angle from the surface's tangent to the layer's, counter-clockwise, in radians.
     pub rotation: f64,
     /// Real index below over index above at 589.3 nm, which bends the refracted directions; 1 for opaque bases.
     pub eta: f64,

@@ -3,7 +3,7 @@ use crate::Image;
 /// Precision of the interpolation weights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WeightBits {
-    /// As precise as the arithmetic (software rasterisers).
+    /// Weights as precise as the arithmetic (software rasterisers).
     Exact,
     /// Weights rounded to this many fractional bits: 8 on most hardware.
     Fixed(u32),

@@ -65,7 +65,7 @@ pub struct MeasuredError {
 }
 
 impl MeasuredError {
-    /// The larger of each.
+    /// The larger of each error.
     #[must_use]
     pub fn max(&self, other: &Self) -> Self {
         Self {
@@ -86,11 +86,11 @@ pub struct Candidate {
     /// Estimated cost of one look-up, address arithmetic included: an operation on one number 1, a root, logarithm, exponential,
     /// division or sine 4, a fetch 16 for each 4 bytes of its texel.
     pub cost: f64,
-    /// As measured by the search.
+    /// Error as measured by the search.
     pub error: MeasuredError,
 }
 
-/// What a [`Candidate`] is.
+/// Form of a [`Candidate`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum CandidateForm {
@@ -104,7 +104,7 @@ pub enum CandidateForm {
         y: Option<Axis>,
         /// Texel format.
         format: TexelFormat,
-        /// What a look-up adds to the texels.
+        /// Base that a look-up adds to the texels.
         base: RowBase,
     },
 }
@@ -123,18 +123,18 @@ impl CandidateForm {
     }
 }
 
-/// What a search for one kind of table found.
+/// Result of a search for one kind of table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Search {
     /// The kind.
     pub kind: TableKind,
-    /// What was asked of it.
+    /// Budget of the kind.
     pub budget: Budget,
     /// The candidate that ships: its place in `front`.
     pub chosen: usize,
     /// Candidates that no other beats in bytes, cost and error at once, cheapest first; and the one that ships.
     pub front: Vec<Candidate>,
-    /// How many were measured.
+    /// Number of candidates that were measured.
     pub measured: u32,
 }
 

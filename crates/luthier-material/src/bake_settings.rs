@@ -4,7 +4,7 @@ use crate::named::named;
 pub const DEFAULT_WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
 
 named! {
-    /// What the channels of a table are.
+    /// Colour mode of the channels of a table.
     pub enum ColorSetting {
         /// Spectra, integrated against the CIE 1931 observer under D65.
         Spectral = "spectral",
@@ -48,7 +48,7 @@ named! {
         Thickness = "thickness",
         /// Reflectance of interfaces whose film varies.
         Film = "film",
-        /// What is not totally reflected inside a denser medium.
+        /// Share of light that is not totally reflected inside a denser medium.
         Escape = "escape",
     }
 }
@@ -109,7 +109,7 @@ named! {
     }
 }
 
-/// What a material asks of its tables; `None` leaves the choice to the baker.
+/// Settings that a material asks of its tables; `None` leaves the choice to the baker.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct BakeSettings {
     /// The reflectance model of the shader.

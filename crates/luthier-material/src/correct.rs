@@ -1,4 +1,4 @@
-//! What a number outside its range was probably meant to be.
+//! Guesses at the number that one outside its range was probably meant to be.
 
 use crate::grammar::Range;
 use crate::suggest::short;

@@ -21,7 +21,7 @@ impl Severity {
     }
 }
 
-/// Something to say about a place in a material file.
+/// A message about a place in a material file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostic {
     /// How bad it is.
@@ -34,11 +34,11 @@ pub struct Diagnostic {
     pub column: usize,
     /// Bytes of the text that it is about.
     pub span: Range<usize>,
-    /// What is wrong.
+    /// Description of the problem.
     pub message: String,
-    /// What to do about it.
+    /// Advice on the problem.
     pub hint: Option<String>,
-    /// How many it stands for: 1, but for the last of a file that has too many to list.
+    /// Number of diagnostics that this one stands for: 1, but for the last of a file that has too many to list.
     pub count: usize,
 }
 
@@ -54,7 +54,7 @@ impl Diagnostic {
         self.render_with(text, &Renderer::plain())
     }
 
-    /// As [`render`](Self::render), with the ANSI escapes of a colour terminal.
+    /// The text of [`render`](Self::render) with the ANSI escapes of a colour terminal.
     pub fn render_coloured(&self, text: &str) -> String {
         self.render_with(text, &Renderer::styled())
     }

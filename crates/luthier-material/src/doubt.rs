@@ -14,7 +14,7 @@ use crate::suggest::short;
 /// The line at which a single index is usually quoted.
 pub(crate) const SODIUM_D_NM: f64 = 589.3;
 
-/// What the colour integral needs.
+/// Wavelengths that the colour integral needs.
 pub(crate) const VISIBLE_NM: (f64, f64) = (360.0, 830.0);
 
 /// Smallest slope parameter that the real-time models tell from a smooth surface.

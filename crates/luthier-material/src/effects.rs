@@ -16,7 +16,7 @@ pub struct Effects {
 /// Glitter: a share of the Voronoi cells of the surface, each tilted its own way (Weidlich and Wilkie 2009, section 5.2.1).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Glitter {
-    /// Seed.
+    /// Seed of the cells.
     pub seed: u32,
     /// Cells per unit of texture coordinate.
     pub frequency: f64,
@@ -49,7 +49,7 @@ pub enum FlakeSource {
     },
     /// One random normal per cell of a grid.
     Cells {
-        /// Seed.
+        /// Seed of the cells.
         seed: u32,
         /// Cells along one repeat.
         count: u32,

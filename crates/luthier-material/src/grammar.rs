@@ -18,7 +18,7 @@ pub(crate) const SCHEMA_VERSION: i64 = 1;
 pub(crate) struct Table {
     /// Name, for messages and for the schema.
     pub(crate) name: &'static str,
-    /// What it describes.
+    /// Description of the table.
     pub(crate) doc: &'static str,
     /// Its keys.
     pub(crate) keys: &'static [Key],
@@ -28,7 +28,7 @@ pub(crate) struct Table {
 
 /// Ways to say the same thing, of which a table takes exactly one.
 pub(crate) struct Alternatives {
-    /// What is said, with its article.
+    /// Name of the alternatives, with its article.
     pub(crate) what: &'static str,
     /// Each way is one or more keys that go together.
     pub(crate) forms: &'static [&'static [&'static str]],
@@ -46,7 +46,7 @@ pub(crate) struct Key {
     pub(crate) default: &'static str,
 }
 
-/// What a value may be.
+/// Kind of a value.
 pub(crate) enum Kind {
     /// `true` only.
     True,
@@ -81,14 +81,14 @@ pub(crate) const NAME_MAX: usize = 100;
 /// Bytes of each name in a path, and of the path: what file systems take.
 pub(crate) const PATH_MAX: [usize; 2] = [255, 4095];
 
-/// What a string must look like.
+/// Form of a string.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum TextForm {
     /// Anything.
     Prose,
     /// Letters, digits and hyphens; the first is no hyphen.
     Name,
-    /// Not empty.
+    /// A string that is not empty.
     Path,
 }
 

@@ -23,13 +23,13 @@ pub struct Material {
     pub references: Vec<String>,
     /// The physics: interfaces from the top down.
     pub stack: Stack,
-    /// What each layer has beyond physics; parallel to `stack.layers`. Only the first has any of it.
+    /// Properties of each layer beyond physics; parallel to `stack.layers`. Only the first has any.
     pub layers: Vec<LayerExtras>,
     /// Effects on top of the layered model.
     pub effects: Effects,
-    /// What the file asks of its tables.
+    /// Settings that the file asks of its tables.
     pub bake: BakeSettings,
-    /// What its tables may err, weigh and cost.
+    /// Limits on the error, bytes and cost of its tables.
     pub budget: BudgetSettings,
     /// Class of the surface.
     pub class: SurfaceClass,
@@ -86,7 +86,7 @@ impl Material {
     }
 }
 
-/// What a layer has beyond its physics.
+/// Properties of a layer beyond its physics.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct LayerExtras {
     /// How the thickness of the top film varies over the surface.
@@ -120,7 +120,7 @@ pub struct FilmVariation {
 pub enum VariationSource {
     /// Fractal gradient noise that repeats.
     Noise {
-        /// Seed.
+        /// Seed of the noise.
         seed: u32,
         /// Lattice cells of the first octave along one repeat.
         frequency: f64,

@@ -24,11 +24,11 @@ pub struct Scene {
     pub materials: Vec<SceneMaterial>,
     /// The lights; at least one.
     pub lights: Vec<Light>,
-    /// From where surfaces are seen.
+    /// Angles under which surfaces are seen.
     pub view: View,
-    /// What the target has room and time for.
+    /// Room and time of the target.
     pub target: Target,
-    /// What models may err, unless a material has limits of its own.
+    /// Limits on the errors of models, unless a material has limits of its own.
     pub budget: ModelBudget,
 }
 
@@ -54,21 +54,21 @@ impl Scene {
 /// A light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Light {
-    /// From one direction.
+    /// A light from one direction.
     Directional {
         /// Angle between light and eye.
         from_eye_deg: f64,
     },
-    /// From nearby: surfaces see it under different angles to the eye.
+    /// A light from nearby: surfaces see it under different angles to the eye.
     Point {
         /// Least and largest angle between light and eye.
         from_eye_deg: [f64; 2],
     },
-    /// Of equal radiance from everywhere.
+    /// A light of equal radiance from everywhere.
     Environment,
 }
 
-/// From where surfaces are seen.
+/// Angles under which surfaces are seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
     /// Least and largest angle between normal and eye, 0 to 85.
@@ -77,7 +77,7 @@ pub struct View {
     pub footprint_deg: f64,
 }
 
-/// What a target has room and time for.
+/// Room and time of a target.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Target {
     /// Bytes of the texels of all tables.

@@ -13,7 +13,7 @@ pub fn schema() -> Value {
     document(&DOCUMENT, "luthier material")
 }
 
-/// The same of scene files.
+/// The grammar of scene files as JSON Schema (draft 2020-12).
 pub fn scene_schema() -> Value {
     document(&SCENE, "luthier scene")
 }

@@ -1,4 +1,4 @@
-//! What the grammar accepts, and what it means.
+//! Forms that the grammar accepts, and their meaning.
 
 use std::io;
 

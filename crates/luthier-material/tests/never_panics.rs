@@ -1,4 +1,4 @@
-//! Whatever the text, `parse` returns: a material that keeps its promises, or errors that can be shown.
+//! `parse` returns whatever the text: a material that keeps its promises, or errors that can be shown.
 
 use std::fs;
 use std::io;

@@ -108,10 +108,10 @@ impl ReflectanceCurves {
 /// Accuracy of [`FacetStatistics`]: Gauss-Legendre points per direction of each smooth piece of an integral.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Effort {
-    /// For the first bounce.
+    /// Points for the first bounce.
     pub first: usize,
-    /// For the first facets of the walks that make the later bounces, when these carry a quarter of the light; fewer when
-    /// they carry less.
+    /// Points for the first facets of the walks that make the later bounces, when these carry a quarter of the light; fewer when they carry
+    /// less.
     pub later: usize,
 }
 
@@ -128,9 +128,9 @@ impl Effort {
 pub struct FacetStatistics {
     /// Weight of the first bounce per cosine node; the sum is the single-scattering albedo for F = 1.
     first: Vec<f64>,
-    /// The same over the finer nodes, by straight lines.
+    /// Weight of the first bounce over the finer nodes, by straight lines.
     first_fine: Vec<f32>,
-    /// What the first bounce leaves of the light.
+    /// Light that the first bounce leaves.
     remaining: f64,
     /// Facets of all walks, one after the other: cosine, and light that leaves there. The sign of the latter marks the end of
     /// a walk.
@@ -209,8 +209,8 @@ impl FacetStatistics {
         self.remaining
     }
 
-    /// What becomes of that fraction, per curve: the share of it that facets of reflectance `f` send out in the end, their
-    /// first reflection included. A smooth function of direction and alpha, estimated with a little noise.
+    /// Share of the light left by the first bounce, per curve, that facets of reflectance `f` send out in the end, their first reflection
+    /// included. A smooth function of direction and alpha, estimated with a little noise.
     pub fn later_share(&self, f: &ReflectanceCurves) -> Vec<f64> {
         let mut sums = vec![0.0; f.count];
         let mut throughput = vec![1.0; f.count];
@@ -298,7 +298,7 @@ struct FirstFacet {
     reflected: DVec3,
 }
 
-/// Which first facets: those that reflect above the horizon, or below.
+/// First facets that reflect above the horizon, or below.
 #[derive(Clone, Copy, PartialEq)]
 enum Horizon {
     Above,
@@ -405,7 +405,7 @@ pub(crate) fn reflecting_facets(
     });
 }
 
-/// Gaussian slopes end here.
+/// Radius at which Gaussian slopes end.
 const BECKMANN_RADIUS: f64 = 6.0;
 
 /// Integration coordinate of a slope radius (in units of alpha): the radius itself for Beckmann, its arc tangent for GGX.

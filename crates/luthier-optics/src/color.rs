@@ -1,4 +1,4 @@
-//! From spectra to colour: wavelengths with a weight per channel.
+//! Colour from spectra: wavelengths with a weight per channel.
 
 use std::sync::OnceLock;
 
@@ -145,7 +145,7 @@ pub(crate) fn multiply(m: &Matrix, v: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|r: usize| m[r][0] * v[0] + m[r][1] * v[1] + m[r][2] * v[2])
 }
 
-/// From XYZ to linear RGB with the Rec.709 primaries and the given white (SMPTE RP 177-1993).
+/// Matrix from XYZ to linear RGB with the Rec.709 primaries and the given white (SMPTE RP 177-1993).
 pub(crate) fn xyz_to_rec709(white: [f64; 3]) -> Matrix {
     let primaries = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]];
     let xyz = primaries.map(|[x, y]: [f64; 2]| [x / y, 1.0, (1.0 - x - y) / y]);

@@ -151,7 +151,7 @@ macro_rules! files {
     };
 }
 
-/// In alphabetical order.
+/// Data sets in alphabetical order.
 const FILES: &[(&str, &str)] = files![
     "acrylic_lacquer",
     "ag",

@@ -15,9 +15,9 @@ use crate::ior::Ior;
 pub struct F0Entry {
     /// Name as printed.
     pub name: &'static str,
-    /// As printed: linear, Rec.709 primaries. Gold's red is above 1: out of gamut.
+    /// F0 as printed: linear, Rec.709 primaries. Gold's red is above 1: out of gamut.
     pub linear: Rgb,
-    /// As printed: sRGB-encoded, eight bits.
+    /// F0 as printed: sRGB-encoded, eight bits.
     pub srgb: [u8; 3],
     /// Built-in data set to compare with.
     pub dataset: &'static str,
@@ -64,7 +64,7 @@ pub struct DielectricF0 {
     pub name: &'static str,
     /// Least and greatest F0, linear; equal where one number is printed.
     pub linear: [f64; 2],
-    /// The same, sRGB-encoded, eight bits, as printed.
+    /// Least and greatest F0 as printed: sRGB-encoded, eight bits.
     pub srgb: [u8; 2],
 }
 

@@ -43,7 +43,7 @@ impl BelcourBarla {
         [0, 1, 2].map(|c: usize| rgb[c] / white[c])
     }
 
-    /// As the shaders have it that apply the D65 Rec.709 matrix to the oscillating terms and not to the constant one: a constant
+    /// The colour of the shaders that apply the D65 Rec.709 matrix to the oscillating terms and not to the constant one: a constant
     /// spectrum is white, its oscillation tinted by (1.205, .948, .909).
     pub fn rgb_tinted(&self, cos_theta_i: f64) -> Rgb {
         let constant = self.mean(cos_theta_i, |_, order, _| if order == 0.0 { [1.0; 3] } else { [0.0; 3] });
@@ -123,7 +123,7 @@ const GAUSSIANS: [[f64; 3]; 3] =
 /// Second lobe of x.
 const SECOND_X: [f64; 3] = [9.7470e-14, 2.2399e6, 4.5282e9];
 
-/// What the authors divide by so that y integrates to 1.
+/// Divisor of the authors, by which y integrates to 1.
 const NORM: f64 = 1.0685e-7;
 
 /// XYZ of cos(2 pi path/wavelength + shift) under equal energy.

@@ -18,7 +18,7 @@ pub struct IorSample {
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum IorError {
-    /// No sample at all.
+    /// An index without samples.
     #[error("an index needs at least one sample")]
     Empty,
     /// A wavelength repeats or descends.
@@ -52,7 +52,7 @@ impl Ior {
         Self { samples: vec![IorSample { wavelength_nm: 550.0, n: 1.0, k: 0.0 }] }
     }
 
-    /// The same index at every wavelength.
+    /// An index that is equal at every wavelength.
     ///
     /// # Errors
     /// [`IorError::NotPhysical`] unless `n > 0`, `k >= 0` and both are finite.

@@ -17,7 +17,7 @@ use crate::quadrature::gauss_legendre;
 pub enum Correlation {
     /// The product of both G1.
     Separable,
-    /// By height: 1/(1 + Lambda_i + Lambda_o) (Ross, Dion and Potvin 2005; Heitz 2014, eq. 99).
+    /// Correlation by height: 1/(1 + Lambda_i + Lambda_o) (Ross, Dion and Potvin 2005; Heitz 2014, eq. 99).
     Height,
 }
 
@@ -31,7 +31,7 @@ pub fn smith(correlation: Correlation, lambda_i: f64, lambda_o: f64) -> f64 {
     }
 }
 
-/// No masking but the one that cancels the denominator: G = cos_theta_i cos_theta_o (Hoffman 2013, "implicit").
+/// Masking that only cancels the denominator: G = cos_theta_i cos_theta_o (Hoffman 2013, "implicit").
 pub fn implicit(cos_theta_i: f64, cos_theta_o: f64) -> f64 {
     if cos_theta_i <= 0.0 || cos_theta_o <= 0.0 { 0.0 } else { cos_theta_i * cos_theta_o }
 }
@@ -77,7 +77,7 @@ pub fn schlick_smith(alpha: f64, cos_theta_i: f64, cos_theta_o: f64) -> f64 {
 /// Gauss-Legendre points per piece of [`smith_g1_of`].
 const NODES: usize = 128;
 
-/// Their rule, made once.
+/// The rule of [`NODES`] points, made once.
 fn rule() -> &'static [(f64, f64)] {
     static RULE: OnceLock<Vec<(f64, f64)>> = OnceLock::new();
     RULE.get_or_init(|| gauss_legendre(NODES))
@@ -180,8 +180,8 @@ mod tests {
         }
     }
 
-    /// Those that do not conserve it, and what they show of the area at alpha 0.5, cosine 0.3. By hand: Smith's G1 is 0.8968,
-    /// Schlick's 0.5179, the implicit one 0.3.
+    /// Masking functions that do not conserve the visible area, and what they show of it at alpha 0.5, cosine 0.3. By hand: Smith's G1 is
+    /// 0.8968, Schlick's 0.5179, the implicit one 0.3.
     #[test]
     fn the_others_do_not() {
         let cos = 0.3;

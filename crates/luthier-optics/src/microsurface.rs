@@ -16,18 +16,18 @@ use crate::visible_normals;
 /// this makes in a reflectance is below half of it.
 const REMAINDER: f64 = 1e-3;
 
-/// No walk has more facets than this.
+/// Largest number of facets of a walk.
 const MAX_FACETS: u32 = 64;
 
 /// Sets of four Sobol dimensions that there are.
 const SETS: u32 = 64;
 
-/// Which walk: its numbers are a function of this and nothing else.
+/// Identity of a walk: its numbers are a function of this and nothing else.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Walk {
-    /// Which family of walks; families are independent of each other.
+    /// Family of the walk; families are independent of each other.
     pub seed: u32,
-    /// Which walk of the family; families are low-discrepancy in it (Owen-scrambled Sobol).
+    /// Number of the walk in its family; families are low-discrepancy in it (Owen-scrambled Sobol).
     pub index: u32,
 }
 
@@ -124,7 +124,7 @@ pub struct TransparentFacets<'a> {
     /// Reflectances from above, films included. From below they are the same at the refracted angle (no absorption), and 1
     /// under total reflection.
     pub from_above: &'a ReflectanceCurves,
-    /// Which of the curves.
+    /// Number of the curve.
     pub curve: usize,
 }
 
@@ -235,7 +235,7 @@ fn drop_in(distribution: Distribution, alpha: f64, ray: DVec3, depth: f64, u: f6
     depth - libm::log(1.0 - u) / (1.0 + lambda(distribution, alpha, -ray.z))
 }
 
-/// The same place in the frame of the other side: from `-ln c` to `-ln(1 - c)`.
+/// The depth of a place in the frame of the other side: from `-ln c` to `-ln(1 - c)`.
 fn flipped(depth: f64) -> f64 {
     -libm::log((-libm::expm1(-depth)).max(f64::MIN_POSITIVE))
 }

@@ -1,4 +1,4 @@
-//! What a layered surface is made of: the description that every model evaluates.
+//! Parts of a layered surface: the description that every model evaluates.
 //!
 //! A [`Stack`] is read from the top down. Each [`Layer`] is one interface (its micro-surface, the thin
 //! films that coat it, the medium or base below it). A dielectric base continues into a [`Slab`] and
@@ -24,11 +24,11 @@ pub struct Layer {
     pub films: Vec<Film>,
     /// The micro-surface. Ignored by a diffuse base.
     pub surface: Surface,
-    /// What is below.
+    /// Material below the interface.
     pub base: Base,
 }
 
-/// What lies below an interface.
+/// Material below an interface.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Base {
     /// A transparent or absorbing medium, and the slab of it down to the next layer.

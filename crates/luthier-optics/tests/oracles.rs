@@ -101,7 +101,7 @@ fn ggx_single_scattering_at_the_normal_to_ten_digits() {
     }
 }
 
-/// The same at a cosine of one half, with height-correlated masking: over the direction of the light.
+/// One bounce off GGX facets at a cosine of one half, with height-correlated masking: over the direction of the light.
 #[test]
 fn ggx_single_scattering_at_60_degrees_to_the_digits_given() {
     let wo = DVec3::new(0.75f64.sqrt(), 0.0, 0.5);
@@ -145,7 +145,7 @@ fn smith_lambda_is_its_closed_form() {
     }
 }
 
-/// Of facets drawn for light from the normal, half are flatter than alpha (GGX) or alpha sqrt(ln 2) (Beckmann).
+/// Half of the facets drawn for light from the normal are flatter than alpha (GGX) or alpha sqrt(ln 2) (Beckmann).
 #[test]
 fn the_median_slope_of_samples_is_alpha_for_ggx_and_less_for_beckmann() {
     for (kind, factor) in [(Distribution::Ggx, 1.0), (Distribution::Beckmann, LN_2.sqrt())] {

@@ -16,9 +16,9 @@ const HALF_EXTENT: f64 = 1.22;
 /// A light that is far away. World: +y is up, +z to the eye.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DistantLight {
-    /// To the light; need not be unit.
+    /// Direction to the light; need not be unit.
     pub direction: [f64; 3],
-    /// What it gives to a patch that faces it, linear RGB.
+    /// Irradiance that the light gives to a patch that faces it, linear RGB.
     pub irradiance: Rgb,
 }
 
@@ -68,7 +68,7 @@ pub fn render_ball(
 struct Place {
     /// Tangent, bitangent, normal.
     frame: [DVec3; 3],
-    /// To the eye, unit.
+    /// Direction to the eye, unit.
     to_eye: DVec3,
 }
 
@@ -135,7 +135,7 @@ mod tests {
         assert_eq!((seen.image.texel(0, 0), seen.noise), (&[0.0; 3][..], 0.0));
     }
 
-    /// The same ball by simulation: as far away as its stated noise says, and the same at every run.
+    /// Simulations of a ball are as far apart as their stated noise says, and equal at every run.
     #[test]
     fn noise_is_what_it_says() {
         let lights = [DistantLight { direction: [0.3, 0.5, 1.0], irradiance: [1.0; 3] }];

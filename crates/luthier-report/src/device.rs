@@ -2,7 +2,7 @@ use luthier_lut::Form;
 
 use crate::Pair;
 
-/// Something that runs the emitted shaders.
+/// A runner of the emitted shaders.
 pub trait Device {
     /// Name of the adapter, as the report shows it.
     fn name(&self) -> String;

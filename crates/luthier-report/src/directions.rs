@@ -48,7 +48,7 @@ impl DirectionSet {
         }
     }
 
-    /// What is in it, for a reader.
+    /// Description of the set, for a reader.
     pub fn description(self) -> &'static str {
         match self {
             Self::Random => "Both directions uniform over the hemisphere.",

@@ -10,7 +10,7 @@ pub enum ReportError {
     /// The stacks are not those of the manifest.
     #[error("the manifest has {manifest} materials, {stacks} stacks were given; bake and report from the same files")]
     MaterialCount {
-        /// In the manifest.
+        /// Number of materials in the manifest.
         manifest: usize,
         /// Given.
         stacks: usize,
@@ -31,7 +31,7 @@ pub enum ReportError {
     /// Texels that do not fit the layout.
     #[error("the {} table is {found_width} x {found_height}, its layout needs {width} x {height}", .kind.name())]
     TextureSize {
-        /// Which table.
+        /// Kind of the table.
         kind: TableKind,
         /// Width needed.
         width: u64,
@@ -45,9 +45,9 @@ pub enum ReportError {
     /// A layout that describes no texture: no tile, no column, an axis with fewer than two nodes or without extent.
     #[error("the layout of the {} table is not usable: {reason}", .kind.name())]
     Layout {
-        /// Which table.
+        /// Kind of the table.
         kind: TableKind,
-        /// What is wrong with it.
+        /// Fault of the layout.
         reason: &'static str,
     },
     /// A layer that needs a table has no tile in it.
@@ -57,7 +57,7 @@ pub enum ReportError {
         material: String,
         /// Layer, from 0.
         layer: usize,
-        /// Which table.
+        /// Kind of the table.
         kind: TableKind,
     },
     /// A material is shaded by a model that the judge has no reference for.
@@ -74,17 +74,17 @@ pub enum ReportError {
     /// The device refused.
     #[error("the {form} shader failed on material {material}: {message}")]
     Device {
-        /// Which shader.
+        /// Form of the shader.
         form: Form,
         /// Number of the material.
         material: u32,
-        /// What the device said.
+        /// Message of the device.
         message: String,
     },
     /// The device answered with another number of values than it was asked for.
     #[error("the {form} shader gave {found} values for {asked} pairs of directions of material {material}")]
     DeviceCount {
-        /// Which shader.
+        /// Form of the shader.
         form: Form,
         /// Number of the material.
         material: u32,

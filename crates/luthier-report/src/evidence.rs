@@ -1,4 +1,4 @@
-//! What a report shows beside the judgement of a bake, and where it came from.
+//! Evidence that a report shows beside the judgement of a bake, and its origin.
 
 use luthier_lut::ShadingModel;
 use serde::{Deserialize, Serialize};
@@ -44,13 +44,13 @@ pub struct ShaderCost {
 pub struct AgainstReference {
     /// The model.
     pub model: ShadingModel,
-    /// Of the directional albedo, absolute.
+    /// Largest error of the directional albedo, absolute.
     pub albedo_err: f64,
     /// Standard error of the reference there.
     pub albedo_std_err: f64,
     /// Share of the reflected light that has to move, appear or vanish.
     pub lobe_err: f64,
-    /// What noise alone makes of it there.
+    /// Lobe error that noise alone makes there.
     pub lobe_noise: f64,
     /// Angle of the eye at the largest lobe error, degrees.
     pub worst_theta_deg: f64,
@@ -58,7 +58,7 @@ pub struct AgainstReference {
     pub worst_wavelength_nm: f64,
     /// Largest CIEDE2000 difference of the albedos at three wavelengths taken as R, G and B, under D65.
     pub delta_e: f64,
-    /// By angle of the eye, degrees: the largest lobe error over the wavelengths.
+    /// Largest lobe error over the wavelengths, by angle of the eye in degrees.
     pub by_angle: Vec<(f64, f64)>,
 }
 
@@ -67,7 +67,7 @@ pub struct AgainstReference {
 pub struct ReferencePaths {
     /// Per view and wavelength.
     pub paths: u32,
-    /// Of the random numbers.
+    /// Seed of the random numbers.
     pub seed: u64,
 }
 
@@ -92,7 +92,7 @@ pub struct PictureErrors {
     pub gain: u32,
 }
 
-/// What became of the cells of the stability suite.
+/// Verdicts on the cells of the stability suite, counted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StabilitySummary {
     /// Program and version.
@@ -101,15 +101,15 @@ pub struct StabilitySummary {
     pub device: Option<String>,
     /// Cells: a method on a case at a level.
     pub cells: u64,
-    /// Those that hold.
+    /// Cells that hold.
     pub holds: u64,
-    /// Those that degrade.
+    /// Cells that degrade.
     pub degrades: u64,
-    /// Those that fail.
+    /// Cells that fail.
     pub fails: u64,
-    /// Those that do not hold and have no explanation.
+    /// Cells that do not hold and have no explanation.
     pub unexplained: u64,
-    /// Those of what ships that are NaN or infinite somewhere.
+    /// Cells of what ships that are NaN or infinite somewhere.
     pub not_finite: u64,
 }
 
@@ -130,7 +130,7 @@ impl StabilitySummary {
     }
 }
 
-/// What a page shows and no JSON holds.
+/// Exhibits that a page shows and no JSON holds.
 #[derive(Debug, Clone, Default)]
 pub struct Exhibits {
     /// Pictures, a list for each material in the order of the report; empty lists show nothing.
@@ -142,7 +142,7 @@ pub struct Exhibits {
 /// A picture.
 #[derive(Debug, Clone)]
 pub struct Exhibit {
-    /// What it shows.
+    /// Caption of the picture.
     pub caption: String,
     /// A PNG file.
     pub png: Vec<u8>,

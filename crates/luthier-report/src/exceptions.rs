@@ -27,11 +27,11 @@ const ATTRIBUTED_MAX: usize = 512;
 pub struct Exception {
     /// Name of the material.
     pub material: String,
-    /// Which shader: what was compared.
+    /// Comparison that the shader is part of.
     pub compared: Compared,
     /// Finite samples, over all sets.
     pub samples: u64,
-    /// Of these, those that miss the target.
+    /// Samples of these that miss the target.
     pub samples_above: u64,
     /// The larger angle to the normal, degrees, of the pair that misses at the steepest.
     pub least_angle_deg: f64,
@@ -39,7 +39,7 @@ pub struct Exception {
     pub set: DirectionSet,
     /// The worst pair.
     pub worst: WorstPair,
-    /// What the error of the worst pair is made of, largest first.
+    /// Parts of the error of the worst pair, largest first.
     pub parts: Vec<Part>,
     /// How often each factor is the largest part, over the pairs that were looked at: all that miss, or some hundred evenly
     /// taken from them. Most frequent first.
@@ -60,24 +60,24 @@ pub enum Factor {
     Fgd,
     /// A tile of the escape table.
     Escape,
-    /// What the material's record says of the layers above a diffuse base.
+    /// The material's record of the layers above a diffuse base.
     Veil,
     /// f32 arithmetic: what is left when f64 reads the same tables.
     Arithmetic,
 }
 
 impl Factor {
-    /// All of them.
+    /// All factors.
     pub(crate) const ALL: [Self; 7] =
         [Self::Fresnel, Self::Distribution, Self::Phase, Self::Fgd, Self::Escape, Self::Veil, Self::Arithmetic];
 }
 
-/// What one factor adds to an error, all others being exact.
+/// Part of an error that one factor adds, all others being exact.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Part {
     /// Signed change of the worst channel, relative to max(brightest channel of the reference, [`FLOOR`]).
     pub rel_err: f64,
-    /// What changes it.
+    /// Cause of the change.
     pub cause: Cause,
 }
 
@@ -95,7 +95,7 @@ pub enum Cause {
         cos_theta_d: f64,
         /// Reflectance there, in the channel of the worst pair.
         expected: f64,
-        /// What the row gives.
+        /// Value that the row gives.
         sampled: f64,
     },
     /// A distribution tile.
@@ -110,7 +110,7 @@ pub enum Cause {
         theta_h_deg: f64,
         /// `pi alpha^2 D` there.
         expected: f64,
-        /// What the tile gives.
+        /// Value that the tile gives.
         sampled: f64,
     },
     /// A phase row, in the channel of the worst pair.
@@ -132,7 +132,7 @@ pub enum Cause {
         cos_theta: f64,
         /// Share of the light that the interface sends back there, in the channel of the worst pair.
         expected: f64,
-        /// What the tile gives.
+        /// Value that the tile gives.
         sampled: f64,
     },
     /// A tile of the escape table.
@@ -147,14 +147,14 @@ pub enum Cause {
         cos_theta: f64,
         /// Share of the lobe that is not totally reflected.
         expected: f64,
-        /// What the tile gives.
+        /// Value that the tile gives.
         sampled: f64,
     },
-    /// What the material's record says of the layers above a diffuse base.
+    /// The material's record of the layers above a diffuse base.
     Veil {
         /// Internal reflectance, in the channel of the worst pair.
         expected: f64,
-        /// What the record says.
+        /// Value that the record gives.
         sampled: f64,
     },
     /// f32 arithmetic.
@@ -183,7 +183,7 @@ pub(crate) struct Miss {
     channel: usize,
     found: f64,
     expected: f64,
-    /// What errors are relative to.
+    /// Divisor of errors.
     scale: f64,
 }
 
@@ -231,7 +231,7 @@ impl Miss {
     }
 }
 
-/// What is needed to take an error apart.
+/// Terms that are needed to take an error apart.
 pub(crate) struct Factors<'a> {
     pub(crate) twin: &'a Twin,
     pub(crate) exact: &'a Exact,
@@ -285,8 +285,8 @@ pub(crate) fn exception(
 }
 
 impl Factors<'_> {
-    /// What an error is made of, largest first: each factor of each layer read from the tables while all others are exact,
-    /// and f32 arithmetic against f64 on the same tables. Products of errors, of second order, are nobody's.
+    /// The parts of an error, largest first: each factor of each layer read from the tables while all others are exact, and f32 arithmetic
+    /// against f64 on the same tables. Products of errors, of second order, belong to no part.
     pub(crate) fn parts(&self, miss: &Miss) -> Vec<Part> {
         let [wi, wo] = [miss.pair.0, miss.pair.1].map(|w| DVec3::from(w.map(f64::from)));
         let mut parts = Vec::new();

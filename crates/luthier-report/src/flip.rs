@@ -43,7 +43,7 @@ pub(crate) fn flip(reference: &Image, test: &Image, pixels_per_degree: f64) -> I
     Image { width: reference.width, height: reference.height, channels: 1, data }
 }
 
-/// What is compared of one picture.
+/// Features of one picture that are compared.
 struct Seen {
     /// Filtered by the contrast sensitivity, in Hunt-adjusted L*a*b*.
     lab: Vec<[f64; 3]>,
@@ -103,7 +103,7 @@ fn sensed(plane: &[f64], size: [usize; 2], terms: Terms, pixels_per_degree: f64)
     total
 }
 
-/// Between green and blue (sec. 4.1).
+/// Colour difference between green and blue (sec. 4.1).
 fn largest_color_difference() -> f64 {
     libm::pow(hyab(hunt_lab([0.0, 1.0, 0.0]), hunt_lab([0.0, 0.0, 1.0])), COLOR_EXPONENT)
 }

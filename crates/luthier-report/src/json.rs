@@ -9,7 +9,7 @@ use serde_json::ser::Formatter;
 
 use crate::ReportError;
 
-/// With a final newline.
+/// The JSON of a value, with a final newline.
 ///
 /// # Errors
 /// [`ReportError::Json`], should the writer fail.

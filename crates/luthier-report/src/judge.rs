@@ -35,7 +35,7 @@ pub struct Settings<'a> {
     pub pairs_per_set: u32,
     /// Limit on [`Report::max_error`].
     pub budget: Option<f64>,
-    /// What the caller knows about the run: shown and stored as given.
+    /// Facts that the caller knows about the run: shown and stored as given.
     pub provenance: Vec<(String, String)>,
     /// Called after every part of the table scan and every set of every material.
     pub progress: Option<&'a dyn Fn(Progress<'_>)>,
@@ -217,7 +217,7 @@ pub(crate) struct References {
     pub(crate) twin: Twin,
     pub(crate) spectral: Exact,
     pub(crate) three: Exact,
-    /// What the form without tables is given, where that is not `three`.
+    /// Exact terms of the form without tables, where these are not `three`.
     pub(crate) level: Option<Exact>,
     color: ColorMode,
 }
@@ -241,12 +241,12 @@ impl References {
         })
     }
 
-    /// What the form without tables stands for.
+    /// The exact terms of the form without tables.
     pub(crate) fn full(&self) -> &Exact {
         self.level.as_ref().unwrap_or(&self.three)
     }
 
-    /// What the tables stand for.
+    /// The exact terms that the tables stand for.
     pub(crate) fn baked(&self) -> &Exact {
         match self.color {
             ColorMode::Spectral => &self.spectral,
@@ -327,7 +327,7 @@ impl Gathered {
     }
 }
 
-/// Which weights explain a device: the smaller sum of squared relative errors over all materials.
+/// Vote on the weights that explain a device: the smaller sum of squared relative errors over all materials.
 #[derive(Default)]
 pub(crate) struct WeightsVote {
     eight_bit: f64,

@@ -11,13 +11,13 @@ use crate::seen::SeenLight;
 pub struct Limit {
     /// Who states it: a material file, or the command line.
     pub stated_by: String,
-    /// What is limited, in words.
+    /// Quantity that is limited, in words.
     pub quantity: String,
     /// The limit.
     pub limit: f64,
-    /// What was found; `None` where it is not finite, or where nothing was found that it could be compared with.
+    /// Value that was found; `None` where it is not finite, or where nothing was found that it could be compared with.
     pub found: Option<f64>,
-    /// By whom: measured here, or stated by the baker.
+    /// Source of the value: measured here, or stated by the baker.
     pub found_by: String,
     /// Whether what was found is at most the limit.
     pub is_held: bool,
@@ -35,15 +35,15 @@ pub struct FileBudget {
 /// Limits of the command line.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Asked {
-    /// On the absolute error of every table, as measured here.
+    /// Limit on the absolute error of every table, as measured here.
     pub max_abs: Option<f64>,
-    /// On the colour difference of the shaders (without a device, of the tables) under [`SeenLight::Daylight`].
+    /// Limit on the colour difference of the shaders (without a device, of the tables) under [`SeenLight::Daylight`].
     pub delta_e: Option<f64>,
-    /// On the mean FLIP of the pictures.
+    /// Limit on the mean FLIP of the pictures.
     pub flip: Option<f64>,
-    /// On the texel bytes of all tables.
+    /// Limit on the texel bytes of all tables.
     pub max_bytes: Option<u64>,
-    /// On the lobe error of the models that ship against the reference.
+    /// Limit on the lobe error of the models that ship against the reference.
     pub lobe: Option<f64>,
 }
 

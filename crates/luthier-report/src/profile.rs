@@ -1,4 +1,4 @@
-//! What charts are drawn from: errors by angle, and how many exceed what.
+//! Profiles that charts are drawn from: errors by angle, and counts of errors above thresholds.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,12 +12,12 @@ pub const ANGLE_BINS: usize = 30;
 /// Largest relative error (floor [`FLOOR`]) by the larger of the two angles to the normal.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AngleProfile {
-    /// From 0 to 90 degrees in equal bins, in four significant digits; nothing where no pair fell.
+    /// Largest errors from 0 to 90 degrees in equal bins, in four significant digits; nothing where no pair fell.
     pub max: Vec<Option<f64>>,
 }
 
 impl AngleProfile {
-    /// No pair yet.
+    /// A profile without pairs.
     pub(crate) fn new() -> Self {
         Self { max: vec![None; ANGLE_BINS] }
     }
@@ -53,7 +53,7 @@ impl Exceedance {
     const PER_DECADE: usize = 4;
     const DECADES: usize = 10;
 
-    /// No sample yet.
+    /// An exceedance without samples.
     pub(crate) fn new() -> Self {
         Self { counts: vec![0; Self::PER_DECADE * Self::DECADES + 2] }
     }

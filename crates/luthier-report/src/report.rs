@@ -1,4 +1,4 @@
-//! What a judgement consists of, as data.
+//! Data of a judgement.
 
 use luthier_lut::{AtlasLayout, ColorMode, ErrorStats, Search, ShadingModel, TableKind, TexelFormat};
 use serde::{Deserialize, Serialize};
@@ -22,7 +22,7 @@ pub struct Report {
     pub generator: String,
     /// The reflectance model of shaders and reference.
     pub model: String,
-    /// Whatever the caller knows about the run, in the caller's order.
+    /// Facts that the caller knows about the run, in the caller's order.
     pub provenance: Vec<(String, String)>,
     /// The adapter; absent when no shader was run.
     pub device: Option<String>,
@@ -47,7 +47,7 @@ pub struct Report {
     pub searches: Vec<Search>,
     /// Costs of shaders, if they were given.
     pub costs: Option<Costs>,
-    /// What the models were compared with, if they were.
+    /// Reference that the models were compared with, if they were.
     pub reference: Option<ReferencePaths>,
     /// A run of the stability suite, if one was given.
     pub stability: Option<StabilitySummary>,
@@ -60,7 +60,7 @@ pub struct Report {
 /// One table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TableReport {
-    /// What it holds.
+    /// Kind of the table.
     pub kind: TableKind,
     /// Texels of the texture.
     pub size: [u32; 2],
@@ -81,7 +81,7 @@ pub struct TableReport {
 pub struct TileReport {
     /// Its name.
     pub name: String,
-    /// What was tabulated.
+    /// Function that was tabulated.
     pub model: String,
     /// The layers that read it, as `material/layer`.
     pub users: Vec<String>,
@@ -92,12 +92,12 @@ pub struct TileReport {
     pub judge: Option<ErrorStats>,
     /// Standard error of the reference at the worst point of `judge`, where the reference is an estimate itself.
     pub uncertainty: Option<f64>,
-    /// The error that the baker aimed at as sampled, where nobody asked for another.
+    /// The error that the baker aimed at as sampled, where no other was asked for.
     #[serde(default)]
     pub aim: Option<f64>,
     /// Reads that were not finite; they are not part of `judge`.
     pub not_finite: u64,
-    /// What is drawn of it.
+    /// Curves that are drawn of the tile.
     pub curves: Curves,
 }
 
@@ -116,7 +116,7 @@ impl TileReport {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Curves {
-    /// Nothing is drawn.
+    /// No curves.
     #[default]
     None,
     /// A Fresnel row, as read.
@@ -160,11 +160,11 @@ pub struct MaterialReport {
     pub color: ColorMode,
     /// The layers from the top down, in words.
     pub layers: Vec<String>,
-    /// What was compared with what.
+    /// Comparisons, each over all sets of directions.
     pub comparisons: Vec<Comparison>,
     /// The models of shaders against the reference of whole stacks; empty where that was not asked for.
     pub against_reference: Vec<AgainstReference>,
-    /// What the search finds for this material alone, by the baker's figures.
+    /// Searches for this material alone, by the baker's figures.
     pub alone: Vec<Search>,
     /// Its pictures, compared.
     pub picture: Option<PictureErrors>,
@@ -172,7 +172,7 @@ pub struct MaterialReport {
     pub choice: Option<serde_json::Value>,
 }
 
-/// What is compared with what; always `f cos_theta_i`.
+/// Two sides of a comparison; always `f cos_theta_i`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Compared {
@@ -186,7 +186,7 @@ pub enum Compared {
     Arithmetic,
     /// The table-free shader on the device, against exact terms at its three wavelengths in f64.
     FullDevice,
-    /// No error but a difference of models: three wavelengths against the spectrum, both in f64.
+    /// Three wavelengths against the spectrum, both in f64: no error but a difference of models.
     ThreeWavelengths,
 }
 
@@ -216,13 +216,13 @@ impl Compared {
 /// A comparison over all sets of directions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
-    /// What with what.
+    /// Two sides of the comparison.
     pub compared: Compared,
     /// Statistics per set, in the order of [`DirectionSet::ALL`].
     pub sets: Vec<(DirectionSet, Statistics)>,
     /// Largest error by angle, over all sets.
     pub by_angle: AngleProfile,
-    /// How many errors exceed what, over all sets.
+    /// Counts of errors above thresholds, over all sets.
     pub exceedance: Exceedance,
     /// Colour differences, over all sets, a light each.
     pub seen: Vec<Seen>,
@@ -247,9 +247,9 @@ impl MaterialReport {
 pub struct WorstCase<'a> {
     /// Name of the material.
     pub material: &'a str,
-    /// What was compared.
+    /// Two sides of the comparison.
     pub compared: Compared,
-    /// In which set.
+    /// Set of directions.
     pub set: DirectionSet,
     /// The statistics of that set; the pair is its `worst`, or `not_finite_at` when that is given.
     pub statistics: &'a Statistics,

@@ -1,4 +1,4 @@
-//! What errors look like: colour differences as a person with a display sees them.
+//! Appearance of errors: colour differences as a person with a display sees them.
 
 use luthier_lut::Image;
 use luthier_optics::Rgb;
@@ -14,7 +14,7 @@ use crate::Pair;
 pub enum SeenLight {
     /// D65, as bright as makes a white diffuser that is lit along its normal the white of the display.
     Daylight,
-    /// The same 16 times brighter (four stops): what is dark above, with highlights clipped.
+    /// Light 16 times as bright as `Daylight` (four stops): shows the parts that are dark there, with highlights clipped.
     BrightDaylight,
     /// CIE illuminant A of the luminance of `Daylight`.
     Incandescent,
@@ -56,7 +56,7 @@ impl SeenLight {
 pub struct Seen {
     /// The light.
     pub light: SeenLight,
-    /// Largest.
+    /// Largest difference.
     pub max: f64,
     /// 99th percentile, by nearest rank.
     pub p99: f64,

@@ -28,7 +28,7 @@ pub const TARGET_MAX_REL_ERR: f64 = 1e-3;
 /// Order statistics of errors.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ErrorSummary {
-    /// Largest.
+    /// Largest error.
     pub max: f64,
     /// 99th percentile, by nearest rank.
     pub p99: f64,
@@ -47,7 +47,7 @@ pub struct WorstPair {
     pub channel: u32,
     /// Reference there.
     pub expected: f64,
-    /// What was judged.
+    /// Value that was judged.
     pub found: f64,
     /// Error relative to max(brightest channel of the reference, [`FLOOR`]).
     pub error: f64,
@@ -93,8 +93,8 @@ pub(crate) fn relative_error(found: f64, expected: f64, brightest: f64, floor: f
     if expected.is_finite() { error } else { f64::NAN }
 }
 
-/// What a channel's error is relative to: the brightest channel of the colour. A channel that interference or absorption
-/// extinguishes is seen beside the others, not alone.
+/// The divisor of a channel's error: the brightest channel of the colour. A channel that interference or absorption extinguishes is seen
+/// beside the others, not alone.
 pub(crate) fn brightest(expected: &Rgb) -> f64 {
     expected.iter().fold(0.0, |sum: f64, c| sum.max(c.abs()))
 }

@@ -4,7 +4,7 @@ use luthier_optics::stack::Stack;
 
 use crate::ReportError;
 
-/// What is judged: a bake as its users get it, and what it was made from.
+/// Subject of a judgement: a bake as its users get it, and the surfaces that it was made from.
 #[derive(Debug, Clone)]
 pub struct Subject<'a> {
     /// The manifest of the bake.

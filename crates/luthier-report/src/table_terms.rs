@@ -20,7 +20,7 @@ use crate::{ReportError, Subject};
 pub enum Weights {
     /// 8 fractional bits: most hardware.
     EightBit,
-    /// As precise as the arithmetic: software rasterisers.
+    /// Weights as precise as the arithmetic: software rasterisers.
     Exact,
 }
 
@@ -41,7 +41,7 @@ impl Table<'_> {
     }
 }
 
-/// What the x axis of a table over an angle is.
+/// Quantity of the x axis of a table over an angle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum AngleAxis {
     Theta,
@@ -49,7 +49,7 @@ pub(crate) enum AngleAxis {
 }
 
 impl AngleAxis {
-    /// Of a Fresnel, distribution or FGD table.
+    /// The quantity of a Fresnel, distribution or FGD table.
     ///
     /// # Errors
     /// [`ReportError::Layout`] when the axes are not those of such a table.
@@ -187,7 +187,7 @@ pub(crate) fn is_statistical(model: ShadingModel) -> bool {
     matches!(model, ShadingModel::Belcour | ShadingModel::Yamaguchi)
 }
 
-/// What the shaders of the statistical models are told of the layers above a diffuse base.
+/// The veil of the layers above a diffuse base that shaders of the statistical models are told.
 pub(crate) fn recorded_veil(entry: &MaterialEntry) -> Veil<3> {
     let constants = &entry.constants;
     Veil { internal: constants.internal_reflectance, upward: [1.0 - constants.upward_loss; 3] }
@@ -264,7 +264,7 @@ impl Terms for TableTerms<'_> {
         }
     }
 
-    /// From the row over s, the sum of the cosines times d / (2 d_max) (Granier and Heidrich 2003, eq. 19).
+    /// The swing from the row over s, the sum of the cosines times d / (2 d_max) (Granier and Heidrich 2003, eq. 19).
     fn swing(&self, layer: usize, channel: usize, cosines: f64) -> Option<f64> {
         let (table, tile) = (self.phase?, self.tile(TableKind::Phase, layer)?);
         let record = &self.records[layer];

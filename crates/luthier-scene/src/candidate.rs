@@ -23,7 +23,7 @@ pub struct Candidate {
     pub form: Form,
     /// Colour of its Fresnel terms.
     pub color: ColorMode,
-    /// What is left out.
+    /// Parts that are left out.
     pub left_out: Vec<LeaveOut>,
     /// The material without that, with model and colour as settings: what is baked if it is chosen.
     pub material: Material,
@@ -92,12 +92,12 @@ impl Candidate {
         found
     }
 
-    /// Its values at probes, computed once.
+    /// The candidate's values at probes, computed once.
     pub(crate) fn values(&self, probes: &[Probe], footprint_deg: f64) -> &[Rgb] {
         self.values.get_or_init(|| self.values_with(&self.exact(footprint_deg), probes, footprint_deg))
     }
 
-    /// The same on other terms.
+    /// The candidate's values at probes, on other terms.
     pub(crate) fn values_with(
         &self,
         terms: &(impl ShaderTerms + Sync),
@@ -123,7 +123,7 @@ impl Candidate {
         probes.par_iter().map(value).collect()
     }
 
-    /// What its tables stand for, or what its form computes.
+    /// The exact terms that the candidate's tables stand for, or that its form computes.
     fn exact(&self, footprint_deg: f64) -> Exact {
         let stack = footprint(&self.material.stack, footprint_deg);
         let exact = Exact::new(&stack, color_of(self.color, &self.material));

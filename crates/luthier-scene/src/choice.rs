@@ -18,10 +18,10 @@ const NOISE_AT_FIRST: f64 = 0.02;
 /// Samples that this may take.
 const SAMPLES_AT_FIRST: u64 = 2_000_000;
 
-/// What of every limit is the model's.
+/// Share of every limit that is the model's.
 pub const MODEL_SHARE: f64 = 0.75;
 
-/// What is left for tables.
+/// Share of every limit that is left for tables.
 pub const TABLE_SHARE: f64 = 1.0 - MODEL_SHARE;
 
 /// One material of a scene: its candidates, and the reference at the directions of the scene. What was computed serves the next
@@ -36,7 +36,7 @@ pub struct Judge {
 }
 
 impl Judge {
-    /// For a material under some lights; candidates are of one form.
+    /// A judge of a material under some lights; candidates are of one form.
     pub fn new(material: &Material, form: Form, lights: &[Light], view: &View, costs: &CostTable) -> Self {
         let stack = footprint(&material.stack, view.footprint_deg);
         let probes = probes(&stack, lights, view);

@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::shape::{distance, shape_of};
 
-/// What `luthier cost materials materials/scenes/still-life --shapes` found, with the version of the driver in it.
+/// Output of `luthier cost materials materials/scenes/still-life --shapes`, with the version of the driver in it.
 pub const COST_DATA: &str = include_str!("../data/cost.json");
 
 /// Costs of shaders by model, form and shape of the surface.
@@ -17,7 +17,7 @@ pub struct CostTable {
     pub rows: Vec<CostRow>,
 }
 
-/// What one shader costs.
+/// Cost of one shader.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CostRow {
     /// The model.

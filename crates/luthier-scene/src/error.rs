@@ -23,7 +23,7 @@ pub struct Value {
 }
 
 impl Value {
-    /// What errors are relative to.
+    /// The divisor of errors.
     fn scale(&self) -> f64 {
         self.rgb.iter().fold(FLOOR, |a, b| a.max(*b))
     }

@@ -2,10 +2,10 @@ use luthier_lut::{Feature, Form, ShadingModel};
 use luthier_material::Material;
 use luthier_optics::stack::{Base, Distribution};
 
-/// Something that a material asks for and its model does not show.
+/// A feature that a material asks for and its model does not show.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LeftOut {
-    /// What is not shown.
+    /// Feature that is not shown.
     pub feature: Feature,
     /// The key that asks for it, as in [`luthier_material::Places`].
     pub key: String,
@@ -13,7 +13,8 @@ pub struct LeftOut {
     pub forms: Vec<Form>,
 }
 
-/// What of a material a model leaves out, layers from the top down, then effects. Of a layer that is left out nothing else is told.
+/// The features of a material that a model leaves out, layers from the top down, then effects. Of a layer that is left out nothing else is
+/// told.
 pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
     let mut found = Vec::new();
     let missing =

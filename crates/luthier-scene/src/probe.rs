@@ -10,14 +10,14 @@ use luthier_optics::stack::{Base, Stack};
 pub enum Probe {
     /// `f cos theta_i` for a pair of directions.
     Pair {
-        /// To the light.
+        /// Direction to the light.
         wi: DVec3,
-        /// To the eye.
+        /// Direction to the eye.
         wo: DVec3,
     },
     /// Directional albedo over pi: light of radiance 1/pi from everywhere.
     Sky {
-        /// To the eye.
+        /// Direction to the eye.
         wo: DVec3,
     },
 }

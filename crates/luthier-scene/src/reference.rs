@@ -21,7 +21,7 @@ const FIRST: u64 = 256;
 /// Samples at each wavelength of one probe, at most.
 const MOST: u64 = 1 << 20;
 
-/// What leaving out wavelengths may change of a reflectance.
+/// Largest change of a reflectance by wavelengths that are left out.
 const SPECTRUM_TOLERANCE: f64 = 1e-3;
 
 /// Where spectra are compared to decide which wavelengths are left out.
@@ -51,7 +51,7 @@ struct Tally {
 }
 
 impl Tally {
-    /// With other samples (Chan, Golub and LeVeque 1983).
+    /// The tally with other samples (Chan, Golub and LeVeque 1983).
     fn with(self, estimate: Estimate, count: u64) -> Self {
         let n = count as f64;
         let squares = estimate.variance() * n * (n - 1.0);

@@ -1,7 +1,7 @@
 use luthier_lut::ShadingModel;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Stack};
 
-/// What of a stack decides which code its shader has, layer by layer from the top, joined by `/`.
+/// The properties of a stack that decide which code its shader has, layer by layer from the top, joined by `/`.
 ///
 /// | letter | says |
 /// |---|---|

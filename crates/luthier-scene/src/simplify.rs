@@ -2,7 +2,7 @@ use luthier_lut::Feature;
 use luthier_material::{Maps, Material};
 use luthier_optics::stack::{Base, Distribution, FilmThickness, Slab, Surface};
 
-/// Something that a material can do without.
+/// A part that a material can do without.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum LeaveOut {
     /// A feature, wherever the material has it. Films go altogether; of anisotropic surfaces the geometric mean of both slope parameters
@@ -13,7 +13,7 @@ pub enum LeaveOut {
 }
 
 impl LeaveOut {
-    /// What makes models cheaper.
+    /// Parts whose absence makes models cheaper.
     const CHEAPER: [Self; 4] = [
         Self::Feature(Feature::Absorption),
         Self::Feature(Feature::Films),
@@ -29,7 +29,7 @@ impl LeaveOut {
         }
     }
 
-    /// What has this name.
+    /// The part of this name.
     pub fn from_name(name: &str) -> Option<Self> {
         let feature = Feature::ALL.into_iter().find(|feature| feature.name() == name);
         feature.map(Self::Feature).or_else(|| Some(Self::Layer(name.strip_prefix("layer ")?.parse().ok()?)))

@@ -13,7 +13,7 @@ use luthier_material::{Material, parse};
 use luthier_optics::color::Color;
 use luthier_scene::{LeaveOut, left_out, simplified};
 
-/// What is shown moves values by more than this; what is not shown moves none.
+/// Change of values that a shown feature exceeds; a feature that is not shown moves none.
 const SHOWN: f64 = 0.02;
 
 fn material(body: &str) -> Material {
@@ -78,7 +78,8 @@ fn example(feature: Feature, model: ShadingModel) -> Option<(Material, &'static 
     Some((material(&body), line))
 }
 
-/// Of the `baked` form, whose tables are of exact terms; the shaders themselves are run in tests of luthier-shader.
+/// Twins of the `baked` form, whose tables are of exact terms, show what the table says; the shaders themselves are run in tests of
+/// luthier-shader.
 #[test]
 fn twins_show_what_the_table_says() {
     let (mut wrong, mut tried) = (Vec::new(), 0);

@@ -4,7 +4,7 @@ use luthier_lut::MaterialTexture;
 
 use crate::{Form, MaterialSet, Target, bindings};
 
-/// What to bind and where, in the words of a language: lines of the header comment.
+/// Lines of the header comment that say what to bind and where, in the words of a language.
 pub(crate) fn binding_lines(set: &MaterialSet<'_>, form: Form, target: Target, is_constant: bool) -> String {
     let mut out = String::from("//\n");
     out.push_str(match target {

@@ -68,7 +68,7 @@ pub enum ShaderError {
     Layout {
         /// The table.
         table: TableKind,
-        /// What is wrong with it.
+        /// Fault of the layout.
         reason: String,
     },
     /// More material data than shaders can count.
@@ -87,7 +87,7 @@ pub enum ShaderError {
     Untranslatable {
         /// The language.
         target: Target,
-        /// What stands in the way.
+        /// Obstacle in the way.
         reason: String,
     },
     /// SPIR-V was asked for as text.

@@ -4,7 +4,7 @@ use luthier_lut::{LayerKind, LayerRecord, MaterialEntry, ShadingModel, TableKind
 
 use crate::{Form, MaterialSet};
 
-/// What the materials of a set make use of: the words that conditions in the modules may name.
+/// Features that the materials of a set use: the words that conditions in the modules may name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Features(BTreeSet<&'static str>);
 
@@ -104,7 +104,7 @@ impl Features {
         self.0.contains(name)
     }
 
-    /// The same, and a word that holds for one module only.
+    /// The features, and a word that holds for one module only.
     pub(crate) fn with(&self, name: &'static str, holds: bool) -> Self {
         let mut names = self.0.clone();
         if holds {
@@ -114,7 +114,7 @@ impl Features {
     }
 }
 
-/// What the layers that a material's model reads make use of.
+/// The features of the layers that a material's model reads.
 fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
     let mut names = BTreeSet::new();
     let is_diffuse = |layer: &LayerRecord| layer.kind == LayerKind::Diffuse;

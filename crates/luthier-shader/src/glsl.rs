@@ -60,7 +60,7 @@ fn entry_point(set: &MaterialSet<'_>, form: Form) -> String {
     out
 }
 
-/// From naga's names of bindings and blocks to ours.
+/// Map from naga's names of bindings and blocks to ours.
 fn names(module: &Module, reflection: &ReflectionInfo) -> BTreeMap<String, String> {
     let global = |handle: Handle<GlobalVariable>| module.global_variables[handle].name.clone().unwrap_or_default();
     let mut names = BTreeMap::new();
@@ -76,7 +76,7 @@ fn names(module: &Module, reflection: &ReflectionInfo) -> BTreeMap<String, Strin
     names
 }
 
-/// What lies between the precision statements and the entry point.
+/// The text between the precision statements and the entry point.
 fn body(text: &str) -> Option<&str> {
     let end = text.find("\nvoid main()")?;
     let mut start = 0;

@@ -46,8 +46,8 @@ fn plain_sampler(text: &str, set: &MaterialSet<'_>, form: Form) -> String {
     out
 }
 
-/// Without the padding of structures that no buffer holds, `const` before temporaries, and names for values that are
-/// returned at once.
+/// The text without the padding of structures that no buffer holds, `const` before temporaries, and names for values that are returned at
+/// once.
 fn without_ceremony(text: &str) -> String {
     let is_padding = |line: &str| {
         let name = line.strip_prefix("    ").and_then(|l| l.strip_suffix(';')).and_then(|l| l.rsplit(' ').next());

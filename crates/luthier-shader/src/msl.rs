@@ -52,7 +52,7 @@ fn slot(entry: &luthier_lut::BindingEntry) -> (ResourceBinding, BindTarget) {
     (ResourceBinding { group: 0, binding: entry.binding }, target)
 }
 
-/// Without padding at the end of structures: no buffer holds them, and no initialiser names it.
+/// The text without padding at the end of structures: no buffer holds them, and no initialiser names it.
 fn without_end_padding(text: &str) -> String {
     let lines: Vec<&str> = text.lines().collect();
     let is_end_padding = |i: usize| lines[i].starts_with("    char _pad") && lines.get(i + 1) == Some(&"};");

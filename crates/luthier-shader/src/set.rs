@@ -24,14 +24,14 @@ const _: () = {
     }
 };
 
-/// What the emitter must know of a table: not its texels.
+/// Description of a table for the emitter: not its texels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TableFace {
-    /// What it holds.
+    /// Kind of the table.
     pub kind: TableKind,
     /// Where its texels lie.
     pub layout: AtlasLayout,
-    /// What its texels are.
+    /// Format of its texels.
     pub format: TexelFormat,
 }
 
@@ -173,8 +173,8 @@ impl<'a> MaterialSet<'a> {
     }
 }
 
-/// What to bind in group 0 for a form of the shader: textures that are read, the sampler if any of them is
-/// filtered, the material buffer.
+/// Resources to bind in group 0 for a form of the shader: textures that are read, the sampler if any of them is filtered, the material
+/// buffer.
 pub fn bindings(set: &MaterialSet<'_>, form: Form) -> Vec<BindingEntry> {
     let entry = |binding, name: String, resource: &str| BindingEntry { binding, name, resource: resource.to_owned() };
     let mut bindings = Vec::new();

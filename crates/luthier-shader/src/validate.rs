@@ -11,7 +11,7 @@ pub fn validate(wgsl: &str) -> Result<(), ShaderError> {
     module(wgsl).map(|_| ())
 }
 
-/// The same, giving the module.
+/// Parses WGSL, validates it for core WebGPU and gives the module.
 pub(crate) fn module(wgsl: &str) -> Result<(Module, ModuleInfo), ShaderError> {
     let module = naga::front::wgsl::parse_str(wgsl).map_err(|e| ShaderError::Invalid(e.emit_to_string(wgsl)))?;
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());

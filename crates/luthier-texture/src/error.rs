@@ -61,15 +61,15 @@ pub enum TextureError {
     Metadata {
         /// The key at fault.
         key: String,
-        /// What is wrong.
+        /// Fault of the metadata.
         reason: &'static str,
     },
-    /// Not a file of this format, or a damaged one.
+    /// A file of another format, or a damaged one.
     #[error("not a valid {container} file: {reason}")]
     Malformed {
         /// The format that was expected.
         container: Container,
-        /// What is wrong.
+        /// Fault of the file.
         reason: Cow<'static, str>,
     },
     /// None of the formats that tables are read from.
@@ -80,7 +80,7 @@ pub enum TextureError {
     Unsupported {
         /// The format.
         container: Container,
-        /// What it holds.
+        /// Content that is not supported.
         what: Cow<'static, str>,
     },
     /// Zstandard data of a KTX2 file that does not decompress.

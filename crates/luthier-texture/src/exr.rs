@@ -124,7 +124,7 @@ pub(crate) fn rank(name: &str) -> (usize, String) {
     (known.unwrap_or(usize::MAX), name.to_owned())
 }
 
-/// For each channel of the file, its place in a texel.
+/// The place in a texel of each channel of the file.
 fn channel_places(channels: &ChannelList) -> Result<SmallVec<[usize; 4]>, TextureError> {
     let count = u32::try_from(channels.list.len()).unwrap_or(u32::MAX);
     if !(1..=4).contains(&count) {

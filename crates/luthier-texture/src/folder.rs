@@ -18,9 +18,9 @@ pub const MAX_FILE_BYTES: u64 = 2 * MAX_BYTES;
 /// folder, their sizes and hashes, and that texels are those that the manifest describes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BakeFolder {
-    /// Without links, so that a file's place can be compared with it.
+    /// Path without links, so that a file's place can be compared with it.
     root: PathBuf,
-    /// As it was named, for messages.
+    /// Path as it was named, for messages.
     named: PathBuf,
     manifest: Manifest,
     sha256: String,
@@ -30,7 +30,7 @@ pub struct BakeFolder {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum FolderError {
-    /// There is no manifest.
+    /// A folder without a manifest.
     #[error("no bake in {}: run `luthier bake` first", folder.display())]
     NoBake {
         /// The folder.
@@ -41,13 +41,13 @@ pub enum FolderError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: io::Error,
     },
     /// The manifest names a file outside its own folder.
     #[error("the manifest names `{path}`, which is not a path inside its folder")]
     Outside {
-        /// As in the manifest.
+        /// Path as in the manifest.
         path: String,
     },
     /// A folder, a pipe or a device where a file is expected.
@@ -80,7 +80,7 @@ pub enum FolderError {
     Manifest {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Fault of the manifest.
         source: LutError,
     },
     /// A texture or a map cannot be decoded.
@@ -88,7 +88,7 @@ pub enum FolderError {
     Texture {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Fault of the texture or map.
         source: TextureError,
     },
     /// A map of another size than the manifest says.
@@ -96,9 +96,9 @@ pub enum FolderError {
     MapSize {
         /// The file.
         path: PathBuf,
-        /// Of the image.
+        /// Size of the image.
         found: [u32; 2],
-        /// In the manifest.
+        /// Size in the manifest.
         expected: [u32; 2],
     },
     /// A text is not UTF-8.
@@ -128,7 +128,7 @@ impl BakeFolder {
         Ok(Self { root, named, manifest, sha256: hex(&bytes) })
     }
 
-    /// What the bake made.
+    /// The manifest of the bake.
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
     }

@@ -27,7 +27,7 @@ pub fn encode(texture: &Texture) -> Result<Vec<u8>, TextureError> {
     write(texture, Some(SupercompressionScheme::Zstandard))
 }
 
-/// The same with the texels as they are, for readers without a decoder of zstd.
+/// A KTX2 file of a texture with the texels as they are, for readers without a decoder of zstd.
 ///
 /// # Errors
 /// As [`encode`].

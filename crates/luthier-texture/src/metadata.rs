@@ -1,6 +1,6 @@
 use crate::TextureError;
 
-/// What an EXR file says about itself: key and value, sorted by key in the file. Keys are 1 to 64 ASCII letters, digits, `.`, `_` and
+/// Statements of an EXR file about itself: key and value, sorted by key in the file. Keys are 1 to 64 ASCII letters, digits, `.`, `_` and
 /// `-`, and distinct; values hold no NUL and are at most 1 MiB.
 pub type Metadata = Vec<(String, String)>;
 

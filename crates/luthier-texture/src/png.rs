@@ -13,7 +13,7 @@ use crate::{TextureError, srgb};
 /// Deflate expands by at most 1032 (RFC 1951: a match of 258 bytes in two bits); a file that promises more is damaged.
 const MAX_EXPANSION: u64 = 1032;
 
-/// What the decoder may allocate beside the pixels: rows, and the chunks that it keeps.
+/// Bytes that the decoder may allocate beside the pixels: rows, and the chunks that it keeps.
 const MAX_DECODER_BYTES: u64 = 16 << 20;
 
 /// A PNG of sRGB pixels, three bytes each, row by row from the top. It holds no metadata: it is only to look at.

@@ -88,7 +88,7 @@ mod tests {
         assert_eq!(decode(&file).unwrap(), image);
     }
 
-    /// What cameras and renderers write: half floats, wavelet compression.
+    /// Half floats and wavelet compression, which cameras and renderers write.
     #[test]
     fn half_floats_and_piz() {
         let value = |x: usize, y: usize| (x * 7 + y * 3) as f32 * 0.25;

@@ -345,7 +345,7 @@ impl App {
         }
     }
 
-    /// What is wrong, over the picture, which stays.
+    /// Shows the problems over the picture, which stays.
     fn problem(&self, ui: &Ui, rect: Rect) {
         let of_file = self.files.selected().and_then(|entry| entry.problem.as_ref());
         let problems: Vec<&String> =
@@ -374,7 +374,7 @@ impl App {
             });
     }
 
-    /// What the threads are at.
+    /// State of the threads.
     pub(crate) fn state(&self) -> &str {
         if let Some(message) = &self.message {
             return message;

@@ -12,17 +12,17 @@ use crate::error::ViewError;
 use crate::host::Host;
 use crate::latest::Latest;
 
-/// What is to be shown.
+/// Order of a material that is to be shown.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct BakeOrder {
     pub(crate) version: u64,
     pub(crate) material: Material,
     pub(crate) form: Form,
-    /// Of the files that the material names.
+    /// Revision of the files that the material names.
     pub(crate) revision: u64,
 }
 
-/// What became of an order.
+/// Result of an order.
 #[derive(Debug)]
 pub(crate) struct Baked {
     pub(crate) version: u64,

@@ -10,9 +10,9 @@ pub(crate) struct Entry {
     pub(crate) label: String,
     /// Kept while the file is broken.
     pub(crate) material: Option<Material>,
-    /// What is wrong with the file now.
+    /// Problem of the file now.
     pub(crate) problem: Option<String>,
-    /// Of the files that it names.
+    /// Revision of the files that the material names.
     pub(crate) revision: u64,
 }
 

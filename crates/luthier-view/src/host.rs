@@ -2,12 +2,12 @@ use luthier_gpu::Artefacts;
 use luthier_lut::Form;
 use luthier_material::Material;
 
-/// What the window asks of the program around it. Called from several threads.
+/// Services that the window asks of the program around it. Called from several threads.
 pub trait Host: Send + Sync {
     /// All material files, when any of them, or any file that they name, changed since the last call; at first always.
     fn changed(&self) -> Option<Vec<MaterialFile>>;
 
-    /// What the renderer needs for one material in one form.
+    /// The artefacts that the renderer needs for one material in one form.
     ///
     /// # Errors
     /// A message for people.
@@ -32,7 +32,7 @@ pub struct MaterialFile {
     pub revision: u64,
 }
 
-/// What a window shows.
+/// Contents of a window.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Screenshot {
     /// Pixels across.

@@ -1,8 +1,8 @@
-//! What keys do.
+//! Actions of keys.
 
 use eframe::egui::{Context, Key};
 
-/// Something that a key does.
+/// An action of a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Action {
     Next,
@@ -35,11 +35,11 @@ pub(crate) const KEYS: [(Key, &str, Action, &str); 12] = [
     (Key::Q, "Q", Action::Quit, "quit"),
 ];
 
-/// What the mouse does.
+/// Gestures of the mouse, and their effects.
 pub(crate) const MOUSE: [(&str, &str); 3] =
     [("drag", "turn the shape"), ("right drag", "turn the light"), ("wheel", "zoom")];
 
-/// What was asked for since the last frame; nothing while somebody types a number.
+/// The actions that were asked for since the last frame; none while a number is being typed.
 pub(crate) fn actions(context: &Context) -> Vec<Action> {
     if context.text_edit_focused() {
         return Vec::new();

@@ -27,7 +27,7 @@ pub struct Look {
 const IRRADIANCE: [f32; 3] = [1.75, 1.7, 1.62];
 
 impl Look {
-    /// What the settings show: their first directional light, their environment as the first of the surroundings.
+    /// The look of the settings: their first directional light, their environment as the first of the surroundings.
     pub fn of(settings: &RenderSettings, tone: ToneMapping) -> Self {
         let light = settings.lights.iter().find_map(|light| match light {
             Light::Directional { direction, irradiance } => Some((*direction, *irradiance)),
@@ -45,7 +45,7 @@ impl Look {
         }
     }
 
-    /// To the light.
+    /// The direction to the light.
     pub fn direction(&self) -> [f32; 3] {
         let (sin_azimuth, cos_azimuth) = libm::sincosf(self.azimuth_deg.to_radians());
         let (sin_elevation, cos_elevation) = libm::sincosf(self.elevation_deg.to_radians());
@@ -71,7 +71,7 @@ impl Look {
 pub(crate) struct Surroundings(pub(crate) Vec<(&'static str, Arc<Environment>)>);
 
 impl Surroundings {
-    /// That of the settings first, then the built-in ones.
+    /// The environment of the settings first, then the built-in ones.
     pub(crate) fn new(settings: &RenderSettings, is_file: bool) -> Result<Self, GpuError> {
         let studio = Sky::default();
         let dark = Sky::uniform([0.0; 3]);

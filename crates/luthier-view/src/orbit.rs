@@ -19,12 +19,12 @@ pub struct Orbit {
 const STEEPEST: f64 = FRAC_PI_2 - 0.02;
 
 impl Orbit {
-    /// A third of the usual size.
+    /// Smallest magnification: a third of the usual size.
     pub const ZOOM_MIN: f64 = 1.0 / 3.0;
-    /// Close enough to tell flakes apart.
+    /// Largest magnification: close enough to tell flakes apart.
     pub const ZOOM_MAX: f64 = 40.0;
 
-    /// Where [`Shape::camera`] is.
+    /// The orbit at which [`Shape::camera`] is.
     pub fn of(shape: Shape) -> Self {
         let [x, y, z] = shape.camera().eye.map(f64::from);
         Self { azimuth: libm::atan2(x, z), elevation: libm::atan2(y, libm::hypot(x, z)), zoom: 1.0 }

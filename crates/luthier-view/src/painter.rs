@@ -20,7 +20,7 @@ const SIDE_MAX: u32 = 2048;
 /// Seconds per evaluation before any was measured: those of a software adapter.
 const SECONDS_AT_FIRST: f64 = 5e-7;
 
-/// What is seen, and from where.
+/// View that is seen: the shape, its light, and the place of the eye.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct View {
     pub(crate) shape: Shape,
@@ -51,12 +51,12 @@ pub(crate) struct PaintOrder {
 /// A picture.
 #[derive(Debug)]
 pub(crate) struct Picture {
-    /// Of the order.
+    /// Version of the order.
     pub(crate) version: u64,
-    /// The last of its order, or what went wrong.
+    /// Whether the picture is the last of its order, or an error.
     pub(crate) finished: bool,
     pub(crate) pixels: Result<Pixels, String>,
-    /// What it took.
+    /// Time that the picture took.
     pub(crate) seconds: f64,
 }
 
@@ -205,7 +205,7 @@ const FULL_FORM_DIRECTIONS: u32 = 16;
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Window {
     side: u32,
-    /// Of the window over `side`.
+    /// Sides of the window over the longer one.
     share: [f64; 2],
 }
 

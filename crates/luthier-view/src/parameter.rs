@@ -63,13 +63,13 @@ pub enum Handle {
 /// How a number is shown and what it may be.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameter {
-    /// Which one.
+    /// Number of the material.
     pub handle: Handle,
     /// Its name in the window.
     pub label: &'static str,
     /// Its unit, if any, as it follows the number.
     pub unit: &'static str,
-    /// What it may be.
+    /// Range of the number.
     pub range: RangeInclusive<f64>,
     /// Whether a slider over it is logarithmic.
     pub logarithmic: bool,
@@ -80,7 +80,7 @@ pub struct Parameter {
 pub struct Group {
     /// Its title.
     pub title: String,
-    /// In the order in which they are shown.
+    /// Parameters in the order in which they are shown.
     pub parameters: Vec<Parameter>,
 }
 

@@ -5,11 +5,11 @@
 pub struct Shots {
     /// Frames to show before each, at least 1.
     pub frames: u32,
-    /// How many; the window closes after the last.
+    /// Number of screenshots; the window closes after the last.
     pub count: u32,
 }
 
-/// How far that is.
+/// State of the screenshots of [`Shots`].
 #[derive(Debug)]
 pub(crate) struct Schedule {
     shots: Shots,

@@ -11,7 +11,7 @@ pub(crate) struct Stage {
     pub(crate) environment_samples: u32,
 }
 
-/// What a view is to become.
+/// Quality that a view is to reach.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Goal {
     /// Side of the square rendering, in pixels of the window.

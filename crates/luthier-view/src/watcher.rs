@@ -10,7 +10,7 @@ use crate::error::ViewError;
 use crate::host::{Host, MaterialFile};
 use crate::latest::Latest;
 
-/// Between two looks: editors save less often, and nobody notices a tenth of a second.
+/// Time between two looks: editors save less often, and a tenth of a second goes unnoticed.
 const INTERVAL: Duration = Duration::from_millis(150);
 
 /// The thread, and the slot from it.

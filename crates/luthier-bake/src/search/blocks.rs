@@ -22,9 +22,9 @@ pub struct BlockStep {
     pub group: &'static str,
     /// Largest absolute error as sampled, not counting what the function may be off itself.
     pub max_abs: f64,
-    /// Of formats of core WebGPU.
+    /// Candidate in a format of core WebGPU.
     pub texels: Option<Candidate>,
-    /// In blocks.
+    /// Candidate in blocks of texels.
     pub blocks: Option<Candidate>,
 }
 
@@ -92,7 +92,7 @@ pub(crate) fn rows(truths: &[&Truth]) -> Vec<RowBlocks> {
 struct Row<'a> {
     truth: &'a Truth,
     texels: Image,
-    /// What a texel of 1 adds to the closed form, and one of 0 takes off; none without the closed form.
+    /// Correction that a texel of 1 adds to the closed form, and that one of 0 takes off; none without the closed form.
     scale: Option<Rgb>,
 }
 

@@ -51,7 +51,7 @@ pub(crate) fn choose(found: &[Found], budget: &Budget, fixed_bytes: u64) -> Resu
     limits.get(first).and_then(|&limit| works(limit)).ok_or_else(|| nearest(found, budget, fixed_bytes))
 }
 
-/// Of each kind the cheapest that holds; where none does, the one of the least excess.
+/// The cheapest candidate of each kind that holds; where none does, the one of the least excess.
 pub(crate) fn best_effort(found: &[Found], budget: &Budget) -> Vec<usize> {
     let excess = |c: &Candidate| budget.excess(&c.error).max(1.0);
     let of = |f: &Found| {

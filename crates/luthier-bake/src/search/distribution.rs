@@ -19,7 +19,7 @@ const FORMATS: [TexelFormat; 2] = [TexelFormat::R16Float, TexelFormat::Rg16Float
 /// Cost of the closed form: of Beckmann, the dearer (an exponential, two divisions, six products).
 const CLOSED_FORM: f64 = 3.0 * cost::QUARTER_RATE + 6.0;
 
-/// From cosine and sine to the angle: a root, two divisions, a polynomial.
+/// Cost of the angle from cosine and sine: a root, two divisions, a polynomial.
 const ANGLE: f64 = 3.0 * cost::QUARTER_RATE + 12.0;
 
 pub(super) fn candidates(plan: &Plan) -> Option<Found> {

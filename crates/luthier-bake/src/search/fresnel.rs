@@ -50,7 +50,7 @@ const PER_CELL: u32 = 5;
 /// More texels are tried while the error falls by a tenth within an octave.
 const STALLED: f64 = 0.9;
 
-/// What the row of one interface holds, from nodes at cubes of equal steps.
+/// Function that the row of one interface holds, from nodes at cubes of equal steps.
 pub(crate) struct Truth {
     nodes: Vec<Rgb>,
     pub(crate) fit: SchlickBase,

@@ -1,4 +1,4 @@
-//! What searches reach against the fixed tables of the literature, for `docs/budgets.md`.
+//! Errors and sizes that searches reach against the fixed tables of the literature, for `docs/budgets.md`.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -29,7 +29,7 @@ use crate::settings::{Settings, axis};
 /// Bytes of Elek's rows: 128 texels of three bytes.
 pub const ROW_BYTES: u64 = 384;
 
-/// What devices of core WebGPU need not have, for comparison: a material may ask for it, no search takes it.
+/// Rows in a format that devices of core WebGPU may lack, for comparison: a material may ask for it, no search takes it.
 const BEYOND_CORE: [(RowBase, TexelFormat); 2] =
     [(RowBase::Zero, TexelFormat::Rgba16Unorm), (RowBase::Schlick, TexelFormat::Rgba16Unorm)];
 
@@ -47,9 +47,9 @@ pub struct RowGoal {
 /// The least gain of a family of rows within [`ROW_BYTES`], at its best mapping.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Family {
-    /// What lies below the texels.
+    /// Base below the texels.
     pub base: RowBase,
-    /// Their format.
+    /// Format of the texels.
     pub format: TexelFormat,
     /// The axis of the best.
     pub axis: Axis,
@@ -62,16 +62,16 @@ pub struct Family {
 pub struct AlbedoGoal {
     /// Name of the tile.
     pub name: String,
-    /// As sampled, against the function at the points of the scan.
+    /// Error as sampled, against the function at the points of the scan.
     pub sampled: f64,
-    /// What the function itself may be off: light that crossed, wavelengths left out.
+    /// Error of the function itself: light that crossed, wavelengths left out.
     pub uncertainty: f64,
 }
 
 /// A way to have D, and its largest error over the peak, Beckmann and GGX, for m in 0.001..1 and all angles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DistributionGoal {
-    /// What it is.
+    /// Name of the way.
     pub name: &'static str,
     /// Bytes for one distribution.
     pub bytes: u64,
@@ -79,21 +79,21 @@ pub struct DistributionGoal {
     pub errors: [f64; 2],
 }
 
-/// What a budget on Fresnel rows alone chooses.
+/// Candidate that a budget on Fresnel rows alone chooses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
     /// `max_abs`.
     pub max_abs: f64,
-    /// What it chooses, or what is nearest.
+    /// Candidate that the budget chooses, or words on the nearest.
     pub chosen: Result<Candidate, String>,
 }
 
-/// All of it.
+/// All goals of `docs/budgets.md`, as measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Goals {
     /// The rows within [`ROW_BYTES`] whose least gain is largest.
     pub row: Family,
-    /// Its errors.
+    /// Errors of these rows.
     pub rows: Vec<RowGoal>,
     /// The best of each base and format.
     pub families: Vec<Family>,

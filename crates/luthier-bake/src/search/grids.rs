@@ -38,7 +38,7 @@ struct Fine {
     image: Image,
     /// Axis values, and the function there.
     probes: Vec<([f64; 2], [f64; 4])>,
-    /// What the function may be off itself.
+    /// Error of the function itself.
     slack: f64,
 }
 
@@ -160,7 +160,7 @@ pub(super) fn film(plan: &Plan, colors: bool) -> Option<Found> {
     Some(Found::new(TableKind::Film, fixed_cost, candidates))
 }
 
-/// Those of some formats that the search may take.
+/// The formats of a list that the search may take.
 fn allowed(formats: &[TexelFormat], plan: &Plan) -> Vec<TexelFormat> {
     formats.iter().copied().filter(|format| plan.settings.formats.has(*format)).collect()
 }

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use super::cost;
 use crate::settings::axis;
 
-/// What the axes beside the cosine are.
+/// Axes of a shared table beside the cosine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Parameters {
     /// n and k, uniform.
@@ -25,7 +25,7 @@ pub enum Parameters {
 }
 
 impl Parameters {
-    /// Of an index below over that above.
+    /// The parameters of an index below over that above.
     fn of(self, eta: Complex64) -> [f64; 2] {
         match self {
             Self::Index => [eta.re, eta.im],
@@ -73,7 +73,7 @@ pub enum OneChannel {
 }
 
 impl OneChannel {
-    /// All.
+    /// All formats of one channel.
     const ALL: [Self; 3] = [Self::R8Unorm, Self::R16Unorm, Self::R16Float];
 
     /// The WebGPU name.
@@ -110,7 +110,7 @@ pub(crate) struct Bare {
 /// A shared table, measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SharedTable {
-    /// What its axes are.
+    /// Axes beside the cosine.
     pub parameters: Parameters,
     /// The exponent of the cosine's mapping: of those tried the one whose largest error is least.
     pub exponent: f64,

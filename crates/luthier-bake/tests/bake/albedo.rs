@@ -64,8 +64,9 @@ fn a_dielectric_as_brute_force_has_it() {
     check(atlas(&baked, TableKind::Fgd), Slopes::Gaussian, Facets::Dielectric { n: 1.5 }, 1 << 19);
 }
 
-/// What is stated of a tile bounds what brute force finds, seen from the denser side too, where much of the light crosses and comes back: at
-/// nodes of the roughest row, which no neighbours support, and between. Root mean square and percentile count what the function is off.
+/// The errors stated of a tile bound those that brute force finds, seen from the denser side too, where much of the light crosses and comes
+/// back: at nodes of the roughest row, which no neighbours support, and between. Root mean square and percentile count what the function is
+/// off.
 #[test]
 fn what_is_stated_bounds_what_brute_force_finds() {
     let layers = "exterior = 1.5\n".to_owned() + &dielectric("1.0", 0.1);

@@ -22,7 +22,7 @@ fn rescan(atlas: &Atlas, tile: u32, steps: [u32; 2], expected: impl Fn([f64; 2])
     worst
 }
 
-/// What a denser scan may find beyond the error stated, and how much of it it must find.
+/// Asserts that a denser scan finds little more than the error stated, and most of it.
 fn assert_confirmed(what: &str, stated: f64, found: f64) {
     assert!(found <= 1.02 * stated && found >= 0.7 * stated, "{what}: {found} found, {stated} stated");
 }
@@ -73,7 +73,7 @@ fn errors_of_slope_distributions_are_as_stated() {
     }
 }
 
-/// For every m in (0, 1] and every angle: a number, not negative, at most the peak; and D/D(0) of 1 at the normal.
+/// Slope distributions are numbers for every m in (0, 1] and every angle, not negative and at most the peak; D/D(0) is 1 at the normal.
 #[test]
 fn slope_distributions_are_numbers_everywhere() {
     for settings in ["", "alpha_mapping = \"linear\"", "format = \"r16float\"", "mapping = \"cos-power\""] {

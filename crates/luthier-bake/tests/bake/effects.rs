@@ -1,4 +1,4 @@
-//! What effects become: records, and maps.
+//! Effects become records and maps.
 
 use luthier_bake::{MapSource, MaterialMap};
 use luthier_lut::{LayerKind, MapSlot, MaterialConstants};

@@ -138,7 +138,7 @@ fn images_become_thickness() {
     }
 }
 
-/// Of films on films, a record has the first, and so has all that shaders compute; tables are made of all. `Feature::InnerFilms` says so.
+/// A record has the first of films on films, and so has all that shaders compute; tables are made of all. `Feature::InnerFilms` says so.
 #[test]
 fn records_have_one_film_and_tables_have_all() {
     let film = |ior: f64, nm: f64| format!("[[layer]]\ntype = \"thin-film\"\nior = {ior}\nthickness_nm = {nm}\n");

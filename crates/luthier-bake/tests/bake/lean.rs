@@ -1,4 +1,4 @@
-//! What is baked because a shader reads it, and what because someone asks.
+//! Tables are baked because a shader reads them, or because a material asks for them.
 
 use luthier_lut::{LayerRecord, TableKind, TexelFormat};
 
@@ -47,7 +47,7 @@ fn every_kind_can_be_asked_for() {
     }
 }
 
-/// Of two materials the one that asks for D reads it; for the other it is computed.
+/// The one of two materials that asks for D reads it; for the other it is computed.
 #[test]
 fn d_is_a_table_for_those_who_ask() {
     let ask = "[bake]\ndistribution = { size = [16, 8] }\n";

@@ -1,4 +1,4 @@
-//! What the models `belcour` and `yamaguchi` read: total reflection, and what covers a diffuse base.
+//! Inputs of the models `belcour` and `yamaguchi`: total reflection, and the layers that cover a diffuse base.
 
 use glam::DVec3;
 use luthier_bake::Bake;

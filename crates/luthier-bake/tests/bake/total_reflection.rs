@@ -11,7 +11,7 @@ use crate::materials::{atlas, bake_all, conductor, dielectric, material};
 /// Albedos that no search touches.
 const FIXED_ALBEDO: &str = "[bake.fgd]\nsize = [8, 8]\nformat = \"rgba16float\"\n";
 
-/// What the row of an interface that goes down in index may be off, as sampled.
+/// Largest error, as sampled, of the row of an interface that goes down in index.
 const HELD: f64 = 1e-3;
 
 /// Points between those of the bake's own scan may be this much worse.

@@ -201,7 +201,7 @@ pub(crate) fn without_d(tables: &[TableFace], closed: bool) -> Vec<TableFace> {
     tables.iter().filter(|table| !(closed && table.kind == TableKind::Distribution)).cloned().collect()
 }
 
-/// What a bake of these materials would look like.
+/// The materials and tables that a bake would have.
 pub(crate) fn outline(materials: &[Material]) -> Outcome<(Vec<MaterialEntry>, Vec<TableFace>)> {
     let outline = luthier_bake::outline(materials, &read_image).map_err(Failure::input)?;
     let entries = material_entries(materials, &outline.materials, &mut Vec::new())?;

@@ -54,7 +54,7 @@ pub(crate) fn run(options: &StabilityOptions) -> Outcome {
 
 /// Tables that a bake may have.
 struct Tables {
-    /// What they are called; nothing for those that ship where nobody asks for others.
+    /// Name of the tables; `None` for those that ship by default.
     name: Option<&'static str>,
     /// How they are asked for.
     options: Options,
@@ -62,8 +62,8 @@ struct Tables {
     models: &'static [ShadingModel],
 }
 
-/// What ships by default, for all models; and what settings and budgets can choose in its place, for the models that read all of it: rows
-/// of every family, D from a table, computed phases.
+/// The tables that ship by default, for all models; and those that settings and budgets can choose in their place, for the models that read
+/// all of them: rows of every family, D from a table, computed phases.
 fn tables() -> Vec<Tables> {
     let default = Options::default();
     let models: &[ShadingModel] = &[ShadingModel::Elek, ShadingModel::GranierHeidrich];

@@ -1,4 +1,4 @@
-//! What `bake` refuses, and that it leaves everything as it was.
+//! Refusals of `bake`, which leave everything as it was.
 
 use std::fs;
 

@@ -184,7 +184,8 @@ fn what_would_be_wrong_beyond_use_is_refused() {
     assert!(!workshop.path("out").exists());
 }
 
-/// But for the film of Granier and Heidrich over a diffuse body, which is their figure, and every model shows what its material describes.
+/// All materials of this repository are inside the domains of their models, but for the film of Granier and Heidrich over a diffuse body,
+/// which is their figure; and every model shows what its material describes.
 #[test]
 fn the_materials_of_this_repository_are_inside_their_domains() {
     let run = run_in(&root(), &["check", "materials"]).exits(0);

@@ -1,4 +1,4 @@
-//! What some models take, and what they refuse.
+//! Inputs that some models take, and inputs that they refuse.
 
 use crate::material_texts::{filmed, gold, lacquer, matte};
 use crate::workshop::Workshop;
@@ -36,7 +36,7 @@ fn eval(workshop: &Workshop, file: &str, model: &str, more: &[&str]) -> (f64, St
     (json["values"][0]["value"][0].as_f64().unwrap(), json["material"].as_str().unwrap().to_owned())
 }
 
-/// Without a flake's tilt flakes are Elek's model: a flake that nobody sees any more, from far away.
+/// Flakes seen from far away are Elek's model: the tilt of a single flake no longer shows.
 #[test]
 fn flakes_at_a_place_and_a_distance() {
     let workshop = workshop();

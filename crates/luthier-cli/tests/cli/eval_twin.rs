@@ -14,7 +14,7 @@ use luthier_shader::{Form, MaterialSet, TableFace, Target};
 
 use crate::workshop::Workshop;
 
-/// What the device and `eval` may differ by, relative to the larger of the value and a tenth of a white Lambert surface's BRDF.
+/// Largest difference between the device and `eval`, relative to the larger of the value and a tenth of a white Lambert surface's BRDF.
 const TOLERANCE: f64 = 1e-4;
 const FLOOR: f64 = 0.1 * std::f64::consts::FRAC_1_PI;
 

@@ -9,7 +9,7 @@ use crate::help::verbs;
 use crate::material_texts::gold;
 use crate::workshop::{Workshop, is_installed};
 
-/// The one object on standard output, and the sentence on standard error.
+/// The error in the one object on standard output; the sentence on standard error contains its message.
 #[track_caller]
 fn error(workshop: &Workshop, args: &[&str], code: i32, kind: &str) -> Value {
     let run = workshop.run(args).exits(code);

@@ -20,7 +20,7 @@ fn eval(workshop: &Workshop, more: &[&str]) -> f64 {
     json["values"][0]["value"][0].as_f64().unwrap()
 }
 
-/// By hand: a smooth coat of 1.5 holds R = 0.5963457597 of diffuse light back. Green stays green after 1/(1 - 0.1 R) bounces; orange
+/// Values by hand: a smooth coat of 1.5 holds R = 0.5963457597 of diffuse light back. Green stays green after 1/(1 - 0.1 R) bounces; orange
 /// comes of it after 0.7/((1 - 0.1 R)(1 - 0.2 R)). Off the mirror direction, T(0) = 0.96 and T(60) = 1 - 0.0891867128 pass, and radiance
 /// spreads by 1/2.25.
 #[test]

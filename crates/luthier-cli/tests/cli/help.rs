@@ -1,6 +1,6 @@
 use crate::workshop::Workshop;
 
-/// What `--help` lists: in every build, with a device, and with a window.
+/// The verbs that `--help` lists: in every build, with a device, and with a window.
 pub(crate) fn verbs() -> impl Iterator<Item = &'static str> {
     let always = ["bake", "budgets", "check", "report", "audit", "cost", "shader", "models", "eval", "ior", "schema"];
     let gpu = ["parity", "stability", "preview", "gallery", "compare", "figures", "bench"]

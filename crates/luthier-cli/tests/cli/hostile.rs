@@ -6,7 +6,7 @@ use std::fs;
 use crate::material_texts::{film, gold, matte};
 use crate::workshop::Workshop;
 
-/// What stands where a file is expected: names, and what is said of them.
+/// Odd things where a file is expected: their names, and the words of the message.
 #[cfg(unix)]
 const ODD: [(&str, &str); 3] =
     [("pipe", "a pipe or a device"), ("zero", "a pipe or a device"), ("folder", "it is a folder")];

@@ -9,7 +9,7 @@ const METALS: [&str; 12] = ["ag", "al", "au", "brass_70_30", "co", "cr", "cu", "
 /// distributions.
 pub(crate) struct Library {
     pub(crate) seed: u64,
-    /// How many indices coats have, and films thicknesses. Materials share interfaces where it is small.
+    /// Number of indices that coats have, and of thicknesses that films have. Materials share interfaces where it is small.
     pub(crate) variety: u32,
 }
 
@@ -52,7 +52,7 @@ impl Library {
         }
     }
 
-    /// On one interface of six, a film.
+    /// Adds a film to one interface of six.
     fn film(&self, random: &mut Random, out: &mut String) {
         if random.below(6) == 0 {
             let thickness = 80.0 + 500.0 * self.step(random);

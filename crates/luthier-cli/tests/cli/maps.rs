@@ -65,7 +65,7 @@ fn the_judge_notices_another_map_and_another_index() {
     workshop.run(&REPORT).fails(1, &["m/mapped.toml has changed", "bake again"]);
 }
 
-/// What is no PNG is refused before anything is written.
+/// A map that is no PNG is refused before anything is written.
 #[test]
 fn a_map_that_is_no_picture_is_refused() {
     let workshop = mapped();

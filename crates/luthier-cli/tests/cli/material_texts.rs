@@ -10,7 +10,7 @@ phase = { size = 32 }
 thickness = { size = 16 }
 ";
 
-/// No table at all.
+/// A material without any table.
 pub(crate) fn matte(name: &str) -> String {
     format!("schema = 1\nname = \"{name}\"\n\n[[layer]]\ntype = \"diffuse\"\nalbedo = [0.6, 0.3, 0.1]\n")
 }
@@ -20,7 +20,7 @@ pub(crate) fn lacquer(name: &str) -> String {
     format!("schema = 1\nname = \"{name}\"\n{LACQUER}{SMALL}")
 }
 
-/// As [`lacquer`], but with the default Fresnel and distribution tables.
+/// [`lacquer`] with the default Fresnel and distribution tables.
 #[cfg(feature = "gpu")]
 pub(crate) fn fine_lacquer(name: &str) -> String {
     format!("schema = 1\nname = \"{name}\"\n{LACQUER}\n[bake]\nfgd = {{ size = [8, 8] }}\n")
@@ -39,7 +39,7 @@ type = \"diffuse\"
 albedo = [0.8, 0.2, 0.2]
 ";
 
-/// The same tables with other content: rough gold.
+/// Rough gold: the tables of [`lacquer`] with other content.
 pub(crate) fn gold(name: &str) -> String {
     format!("schema = 1\nname = \"{name}\"\n\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nroughness = 0.5\n{SMALL}")
 }

@@ -13,7 +13,7 @@ struct Case {
     parts: &'static [&'static str],
 }
 
-/// What both verbs notice.
+/// Damage to a bake that `report` and `preview` notice.
 const ARTEFACTS: [Case; 7] = [
     Case { spoil: |w| fs::remove_dir_all(w.path("out")).unwrap(), code: 3, parts: &["no bake in out", "luthier bake"] },
     Case {
@@ -49,7 +49,7 @@ const ARTEFACTS: [Case; 7] = [
     },
 ];
 
-/// What the judge notices, who reads the materials again.
+/// Changes of the materials that the judge notices, which reads them again.
 const MATERIALS: [Case; 3] = [
     Case {
         spoil: |w| w.edit("m/lacquer.toml", |text| text.replace("ior = 1.5", "ior = 1.6")),

@@ -158,7 +158,7 @@ pub(crate) fn has_no_adapter(workshop: &Workshop) -> bool {
     crate::workshop::lacks_adapter(&workshop.run(&["report", "--pairs", "1", "--picture-size", "0"]))
 }
 
-/// There is no code for one.
+/// Whether reports have to do without a device: always, as this build has no code for one.
 #[cfg(not(feature = "gpu"))]
 pub(crate) fn has_no_adapter(_: &Workshop) -> bool {
     true

@@ -114,7 +114,7 @@ fn run(browser: &Path, arguments: &[String]) -> (String, String) {
     (text(&output.stdout), text(&output.stderr))
 }
 
-/// What a script has written down in a page.
+/// The value that a script has written down in a page.
 fn found_in(dom: &str) -> Value {
     let found = dom.split("<pre id=\"found\">").nth(1).and_then(|rest| rest.split("</pre>").next()).unwrap();
     serde_json::from_str(&found.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")).unwrap()

@@ -8,7 +8,7 @@ use crate::workshop::{Workshop, material_files, root};
 const METAL: &str = "schema = 1\nname = \"metal\"\n\n[[layer]]\ntype = \"conductor\"\nior = { n = 0.2, k = 3.0 }\n\
                      alpha_x = 0.09\nalpha_y = 0.11\n";
 
-/// Its slopes are hardly seen.
+/// A diffuse base whose slopes are hardly seen.
 const CLAY: &str =
     "schema = 1\nname = \"clay\"\n\n[[layer]]\ntype = \"diffuse\"\nalbedo = [0.5, 0.3, 0.2]\nsigma = 0.25\n";
 

@@ -7,7 +7,7 @@ use crate::workshop::{Workshop, is_installed, root};
 
 const FORMS: [&str; 2] = ["baked", "full"];
 
-/// What a bake writes: names on the command line, and endings.
+/// Targets that a bake writes: names on the command line, and endings.
 const BAKED: [(&str, &str); 3] = [("wgsl", "wgsl"), ("glsl450", "450.glsl"), ("glsl-es300", "es300.glsl")];
 
 fn sets() -> Workshop {

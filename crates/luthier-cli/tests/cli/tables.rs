@@ -11,10 +11,10 @@ use crate::workshop::{Workshop, root};
 
 const KINDS: [&str; 7] = ["fresnel", "distribution", "fgd", "phase", "thickness", "film", "escape"];
 
-/// What a caller calls to shade.
+/// Functions that a caller calls to shade.
 const ENTRIES: [&str; 3] = ["luthier_eval", "luthier_eval_at", "luthier_film_place"];
 
-/// It has no interface, so that it asks for nothing; tables of its set have these sizes, and are baked in a moment.
+/// A material without an interface, so that it asks for nothing; tables of its set have these sizes, and are baked in a moment.
 const FRAME: &str = "schema = 1\nname = \"frame\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\n\
                      [bake]\nfgd = { size = [8, 8] }\nthickness = { size = 16 }\n";
 
@@ -110,7 +110,7 @@ fn any_kind_is_baked_and_bound_on_request() {
     assert!(run.stderr.contains("no layer has a film"), "{}", run.stderr);
 }
 
-/// Tables that nobody reads take no part of a budget.
+/// Tables that no shader reads take no part of a budget.
 #[test]
 fn bytes_count_what_ships() {
     let workshop = set();

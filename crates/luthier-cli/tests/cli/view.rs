@@ -14,7 +14,7 @@ use crate::workshop::{Run, Workshop, lacks_adapter};
 const PATIENCE: Duration = Duration::from_secs(240);
 
 const WINDOW: [u32; 2] = [700, 480];
-/// Of the panel at the right and of the line at the bottom, in pixels.
+/// Width of the panel at the right and, in [`STATUS`], height of the line at the bottom, in pixels.
 const PANEL: u32 = 340;
 const STATUS: u32 = 28;
 

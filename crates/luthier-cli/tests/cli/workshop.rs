@@ -83,7 +83,7 @@ fn collect(folder: &Path, prefix: &str, found: &mut BTreeMap<String, Vec<u8>>) {
     }
 }
 
-/// What a command said, and how it ended.
+/// Output of a command, and how it ended.
 pub(crate) struct Run {
     command: String,
     pub(crate) code: Option<i32>,
@@ -92,7 +92,7 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    /// One that was started by other means, and said nothing on standard output.
+    /// A run that was started by other means, and said nothing on standard output.
     #[cfg(feature = "view")]
     pub(crate) fn ended(command: &str, code: Option<i32>, stderr: String) -> Self {
         Self { command: command.to_owned(), code, stdout: String::new(), stderr }

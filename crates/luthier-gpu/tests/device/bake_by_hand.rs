@@ -41,7 +41,7 @@ impl Table {
         Self { kind, layout, format, truth }
     }
 
-    /// What the shader reads: rounded to the format.
+    /// The texels that the shader reads: rounded to the format.
     pub(crate) fn texels(&self) -> Image {
         self.format.decode(self.truth.width, self.truth.height, &self.format.encode(&self.truth)).unwrap()
     }

@@ -19,7 +19,7 @@ use crate::render::{check, dark, dot, sun};
 /// Sines, cosines and logarithms of devices are less precise than those of hosts: WGSL allows 2^-11 for a sine.
 const NORMAL_TOLERANCE: f64 = 1e-3;
 
-/// Of f cos_theta_i over the brightest of the lobe: a normal off by [`NORMAL_TOLERANCE`] under a lobe 0.3 wide.
+/// Tolerance of f cos_theta_i over the brightest of the lobe: a normal off by [`NORMAL_TOLERANCE`] under a lobe 0.3 wide.
 const EVAL_TOLERANCE: f64 = 1e-2;
 
 const FLAKES: FlakesRecord =

@@ -45,7 +45,7 @@ struct Agreement {
     energy: f64,
 }
 
-/// Of the metal of each alpha.
+/// Agreement of environment and highlight on the metal of each alpha.
 fn agreement(scene: &Scene, environment_samples: u32) -> Vec<Agreement> {
     let (environment, light) = bright_texel();
     // Nothing is blurred for a sampled environment.
@@ -87,9 +87,9 @@ fn sampled_environment_and_highlight_agree() {
     }
 }
 
-/// What the split costs, per alpha: root mean square over the peak, and energy over that of the highlight. The lobe does not
-/// stretch towards grazing angles, which shows from alpha 0.5 on; and the albedo of these tables is 1, while `luthier_eval`
-/// loses what its cavities block, which is the energy of alpha 1.
+/// Errors of the split, per alpha: root mean square over the peak, and energy over that of the highlight. The lobe does not stretch towards
+/// grazing angles, which shows from alpha 0.5 on; and the albedo of these tables is 1, while `luthier_eval` loses what its cavities block,
+/// which is the energy of alpha 1.
 const SPLIT: [(f64, [f64; 2]); 5] =
     [(0.01, [0.95, 1.05]), (0.01, [0.95, 1.05]), (0.03, [0.92, 1.08]), (0.2, [0.9, 1.15]), (0.6, [1.0, 1.3])];
 

@@ -44,7 +44,7 @@ fn pairs() -> Vec<([f32; 3], [f32; 3])> {
     cosines.map(|c| (direction(c, 0.3), direction(1.02 - c, 3.3))).collect()
 }
 
-/// Without tables nothing but the buffer is read: the same bits.
+/// A material among many has the bits that it has alone: without tables, only the buffer is read.
 #[test]
 fn a_large_number_finds_its_own_layers() {
     let Some(gpu) = gpu() else { return };

@@ -1,4 +1,4 @@
-//! What the device refuses comes back as an error, and leaves the device usable.
+//! A refusal of the device comes back as an error, and leaves the device usable.
 
 use luthier_gpu::{Artefacts, GpuError, WgslShader};
 use luthier_lut::BindingEntry;

@@ -46,7 +46,7 @@ pub(crate) fn tables(fresnel: f32, fgd: f32) -> Vec<Table> {
     ]
 }
 
-/// The same with pi alpha^2 D of GGX.
+/// The tables of [`tables`] with pi alpha^2 D of GGX.
 pub(crate) fn ggx_tables(fresnel: f32, fgd: f32) -> Vec<Table> {
     let mut plain = tables(fresnel, fgd);
     let layout = AtlasLayout {
@@ -329,7 +329,7 @@ fn settings_out_of_range_are_errors() {
     check(&full.render(&[0], &sampled).unwrap(), 1e-5, |_, _| [1.0; 3]);
 }
 
-/// What the documentation of the exposure promises.
+/// A white ball is exposed just below one, as the documentation of the exposure promises.
 #[test]
 fn a_white_ball_is_exposed_just_below_one() {
     let Some(scene) = scene_of(vec![vec![diffuse([1.0; 3], 0.0)]], &[]) else { return };

@@ -1,4 +1,4 @@
-//! What a window needs: scenes with other materials without compiling, and renderings that are given up.
+//! Operations that a window needs: scenes with other materials without compiling, and renderings that are given up.
 
 use std::cell::Cell;
 

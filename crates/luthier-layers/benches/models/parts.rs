@@ -1,4 +1,4 @@
-//! What has no name in the registry: models of places, sampling, colour forms, and preparations.
+//! Benchmarks of parts that have no name in the registry: models of places, sampling, colour forms, and preparations.
 
 use std::f64::consts::FRAC_PI_3;
 

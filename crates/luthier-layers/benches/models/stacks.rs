@@ -1,4 +1,4 @@
-//! What the models are evaluated on.
+//! Stacks that the models are evaluated on.
 
 use luthier_layers::monochrome::Monochrome;
 use luthier_optics::constants::dataset;
@@ -15,7 +15,7 @@ pub(crate) fn coated_conductor() -> Stack {
     stack(vec![coat(Vec::new()), gold()])
 }
 
-/// The same coat with a film on it, over a rough diffuse base.
+/// The coat of [`coated_conductor`] with a film on it, over a rough diffuse base.
 pub(crate) fn film_slab_diffuse() -> Stack {
     let film = Film { ior: index(1.38), thickness: FilmThickness { min_nm: 150.0, max_nm: 150.0 } };
     let base = Base::Diffuse(Diffuse { albedo: [0.7, 0.5, 0.3], sigma: 0.3 });

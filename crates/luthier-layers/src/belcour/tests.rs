@@ -125,8 +125,9 @@ impl Energy<1> for Plain<'_> {
     }
 }
 
-/// What the paper's code does differently: one m for all channels. Slopes of the base's lobe against that for the mean of m, by the
-/// two-layer formula; gold at 690, 550 and 450 nm below a coat of n = 1.5, both of alpha 0.2.
+/// The bounces of each wavelength differ little from their mean, the one m for all channels that the paper's code takes. Slopes of the
+/// base's lobe against that for the mean of m, by the two-layer formula; gold at 690, 550 and 450 nm below a coat of n = 1.5, both of alpha
+/// 0.2.
 #[test]
 fn bounces_by_wavelength_differ_little_from_their_mean() {
     for (cos_i, expected) in

@@ -19,7 +19,7 @@ pub struct Estimate {
     pub std_err: f64,
     /// Variance of the mean, as it was seen.
     variance: f64,
-    /// How many samples the variance rests on.
+    /// Number of samples that the variance rests on.
     support: f64,
 }
 
@@ -88,7 +88,7 @@ impl Estimate {
         Self::new(mean, variance, support)
     }
 
-    /// The same with an error of another origin besides.
+    /// The estimate with an error of another origin besides.
     pub fn loosened(self, std_err: f64) -> Self {
         Self::sum([(1.0, self), (1.0, Self::known(0.0, std_err))])
     }

@@ -26,7 +26,7 @@ pub(crate) struct Facets {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct View {
     pub(crate) direction: DVec3,
-    /// In the frame where slopes have unit scale; its length.
+    /// Direction in the frame where slopes have unit scale; `length` is its length.
     stretched: DVec3,
     length: f64,
     /// [`Facets::visible_area`].
@@ -62,7 +62,7 @@ impl Facets {
         }
     }
 
-    /// What a direction sees.
+    /// The facets as a direction sees them.
     #[inline(always)]
     pub(crate) fn view(&self, direction: DVec3) -> View {
         let (x, y, z) = (self.alpha_x * direction.x, self.alpha_y * direction.y, direction.z);

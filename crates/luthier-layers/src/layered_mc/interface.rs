@@ -59,7 +59,7 @@ impl Interface {
         matches!(self.kind, Kind::Smooth(_))
     }
 
-    /// Its facets, where it has them.
+    /// The facets of the interface, where it has them.
     #[cfg(test)]
     pub(crate) fn rough(&self) -> Option<&Rough> {
         if let Kind::Rough(rough) = &self.kind { Some(rough) } else { None }
@@ -136,7 +136,7 @@ impl Interface {
         (forth.max(f64::MIN_POSITIVE), back.max(f64::MIN_POSITIVE))
     }
 
-    /// From the stack's frame to the interface's.
+    /// Turns a direction from the stack's frame to the interface's.
     fn turned(&self, d: Sided) -> Sided {
         self.rotation.map_or(d, |(cos, sin)| rotated(d, cos, -sin))
     }

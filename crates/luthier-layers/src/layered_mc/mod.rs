@@ -39,7 +39,7 @@ use crate::monochrome::{Monochrome, MonochromeBelow};
 use connect::Scratch;
 use path::Interfaces;
 
-/// What happens at a rough interface.
+/// Treatment of light at a rough interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum InterfaceMode {
     /// A walk between facets until the light leaves: no energy is lost.
@@ -53,11 +53,11 @@ pub enum InterfaceMode {
 /// Position-free Monte Carlo of a stack. The same fields give the same numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LayeredMc {
-    /// What happens at rough interfaces.
+    /// Treatment of light at rough interfaces.
     pub mode: InterfaceMode,
     /// Samples per value.
     pub samples: u64,
-    /// Which family of random numbers.
+    /// Family of random numbers.
     pub seed: u64,
 }
 

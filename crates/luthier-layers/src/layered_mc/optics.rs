@@ -1,11 +1,11 @@
-//! What one facet, or a smooth interface, does with light: the shares that go back and through, from both sides.
+//! Split of light at one facet, or at a smooth interface: the shares that go back and through, from both sides.
 
 use std::f64::consts::PI;
 
 use luthier_optics::fresnel::{FilmLayer, coated};
 use num_complex::Complex64;
 
-/// Which side of an interface.
+/// Side of an interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
     /// The side of the exterior.
@@ -15,7 +15,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// The other one.
+    /// The opposite side.
     pub fn other(self) -> Self {
         match self {
             Self::Above => Self::Below,
@@ -36,7 +36,7 @@ pub(crate) struct Split {
 }
 
 impl Split {
-    /// Nothing goes through.
+    /// The split of a facet that lets nothing through.
     fn opaque(reflectance: f64, cos_theta: f64) -> Self {
         Self { reflectance, transmittance: 0.0, cos_theta, cos_theta_t: 0.0 }
     }

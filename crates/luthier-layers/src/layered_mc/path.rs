@@ -10,14 +10,13 @@ use super::random::Stream;
 use super::rough::Sided;
 use crate::monochrome::{Monochrome, MonochromeBelow};
 
-/// From this event on, a path survives by chance: late, because light that a lossless stack holds back would make
-/// noise.
+/// Event from which on a path survives by chance: late, because light that a lossless stack holds back would make noise.
 const EVENTS_SURE: usize = 4096;
 
-/// The same for paths that are to be connected, at a cost that grows with the square of their length.
+/// Event from which on a path that is to be connected survives by chance: the cost grows with the square of its length.
 const EVENTS_SURE_CONNECTED: usize = 64;
 
-/// With this probability per event.
+/// Probability per event with which a path survives.
 const SURVIVAL: f64 = 0.9;
 
 /// Light fainter than this survives by chance too.
@@ -39,7 +38,7 @@ pub(crate) struct Arrival {
     pub(crate) interface: usize,
     /// Where the light comes from.
     pub(crate) from: Sided,
-    /// What is left of it.
+    /// Weight that is left of the light.
     pub(crate) weight: f64,
     /// Sum over the earlier events of the density of the strategies that connect there, over the density of the one
     /// that connects here, but for the density of this event (Veach 1997, sec. 10.2, as a recursion).

@@ -17,7 +17,7 @@ use crate::random_walk::RandomWalk;
 /// An error is false where the truth is farther off than this many of it.
 const SIGMAS: f64 = 5.0;
 
-/// What rounding makes of a value from either end: D and Lambda of Beckmann's surface far out.
+/// Relative difference that rounding makes to a value from either end: D and Lambda of Beckmann's surface far out.
 const ROUNDING: f64 = 1e-9;
 
 /// Samples of a value: the number that models are registered with.
@@ -47,7 +47,7 @@ fn plain(rough: &Rough, wi: DVec3, wo: DVec3, samples: u64, seed: u64) -> Estima
     Estimate::of(samples, |i| one_ended(rough, &mut Stream::new(seed, i), above(wo), above(wi)))
 }
 
-/// How many errors of a sweep are believed, and how many of those are false.
+/// Number of errors of a sweep, of those that are believed, and of those of them that are false.
 #[derive(Default)]
 struct Count {
     all: u32,

@@ -11,10 +11,10 @@ use super::optics::Side;
 use super::random::Stream;
 use super::rough::{Rough, Sided};
 
-/// From this facet on, a walk survives by chance.
+/// Facet from which on a walk survives by chance.
 const FACETS_SURE: u32 = 256;
 
-/// With this probability per facet.
+/// Probability per facet with which a walk survives.
 const SURVIVAL: f64 = 0.8;
 
 /// Light fainter than this survives by chance too.
@@ -85,7 +85,7 @@ struct Walker {
     weight: f64,
 }
 
-/// What a facet makes of it.
+/// Next step of light at a facet.
 enum Next {
     Facet,
     Left(Sided),
@@ -93,7 +93,7 @@ enum Next {
 }
 
 impl Walker {
-    /// At the first facet, coming from `a`.
+    /// The walker at its first facet, coming from `a`.
     #[inline(always)]
     fn enter(rough: &Rough, stream: &mut Stream, a: Sided) -> Self {
         let view = rough.facets.view(a.direction);
@@ -222,7 +222,7 @@ pub(crate) fn one_ended(rough: &Rough, stream: &mut Stream, a: Sided, b: Sided) 
     }
 }
 
-/// What the walker's facet sends straight to `b`, whose Lambda is `lambda`, of a unit of light.
+/// Light that the walker's facet sends straight to `b`, whose Lambda is `lambda`, of a unit of light.
 #[inline(always)]
 fn sent(rough: &Rough, walker: &Walker, b: Sided, lambda: f64) -> f64 {
     let phase = rough.phase(walker.side, &walker.view, b);

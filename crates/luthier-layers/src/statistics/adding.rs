@@ -21,7 +21,7 @@ pub struct Lobe<S, const C: usize> {
     pub spread: S,
 }
 
-/// What becomes of light from one direction, in `C` channels.
+/// Lobes and transmitted parts of light from one direction, in `C` channels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transport<S, const C: usize> {
     /// One lobe per interface that light reaches, from the top.

@@ -23,20 +23,20 @@ pub struct DiffuseBase<const C: usize> {
     veil: Veil<C>,
 }
 
-/// What the layers above a diffuse base do to diffuse light, whatever the direction.
+/// Effect of the layers above a diffuse base on diffuse light, whatever the direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Veil<const C: usize> {
     /// Part of the base's cosine-weighted light that the layers send back down to it.
     pub internal: [f64; C],
-    /// What of such light the layers let up, over what they let down: 1 for smooth ones.
+    /// Share of such light that the layers let up, over the share that they let down: 1 for smooth ones.
     pub upward: [f64; C],
 }
 
 impl<const C: usize> Veil<C> {
-    /// Nothing above the base.
+    /// The veil of a base without layers above.
     pub const NONE: Self = Self { internal: [0.0; C], upward: [1.0; C] };
 
-    /// Of the layers above the base of a stack, or `None` if it has no diffuse one.
+    /// The veil of the layers above the base of a stack, or `None` if it has no diffuse one.
     ///
     /// Light of the base beyond the critical angle of the exterior is totally reflected; it crosses the lowest slab only.
     pub fn new(stack: &Layers<C>, energy: &impl Energy<C>) -> Option<Self> {
@@ -82,7 +82,7 @@ impl<const C: usize> DiffuseBase<C> {
         Self::veiled(stack, Veil::new(stack, energy)?)
     }
 
-    /// The same where it is known what the layers do to diffuse light.
+    /// The base of a stack below a known veil, or `None` if it has no diffuse one.
     pub fn veiled(stack: &Layers<C>, veil: Veil<C>) -> Option<Self> {
         let (base, albedo, sigma) = stack.base()?;
         Some(Self { albedo, sigma, eta: stack.layers[base].above / stack.exterior, veil })
@@ -114,7 +114,7 @@ impl<const C: usize> DiffuseBase<C> {
         })
     }
 
-    /// What the layers above do to its light.
+    /// Effect of the layers above on the light of the base.
     pub fn veil(&self) -> Veil<C> {
         self.veil
     }

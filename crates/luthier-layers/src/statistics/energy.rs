@@ -33,8 +33,8 @@ impl<F: Fn(usize, f64, f64) -> f64> Energy<1> for F {
     }
 }
 
-/// Of surfaces smoother than this the difference to a smooth interface is tabulated, which vanishes with alpha; of rougher ones
-/// FGD-infinity itself, which has lost the kinks and fringes of the reflectance.
+/// Alpha below which the difference to a smooth interface is tabulated, which vanishes with alpha; of rougher surfaces FGD-infinity itself
+/// is, which has lost the kinks and fringes of the reflectance.
 const NEARLY_SMOOTH: f64 = 0.025;
 
 /// How finely FGD-infinity is computed, and the same where total reflection puts a kink into the reflectance.
@@ -50,7 +50,7 @@ struct Detail {
     crossed_walks_min: u32,
 }
 
-/// For models that are evaluated wavelength by wavelength: within 2e-3, see [`ExactEnergy`].
+/// Detail for models that are evaluated wavelength by wavelength: within 2e-3, see [`ExactEnergy`].
 const QUICK: Detail = Detail {
     intervals: [32, 96],
     effort: [Effort { first: 24, later: 20 }, Effort { first: 64, later: 32 }],
@@ -58,7 +58,7 @@ const QUICK: Detail = Detail {
     crossed_walks_min: 128,
 };
 
-/// For what tables are held against.
+/// Detail for the energies that tables are held against.
 const FINE: Detail = Detail {
     intervals: [64, 96],
     effort: [Effort { first: 48, later: 64 }, Effort { first: 64, later: 48 }],
@@ -88,7 +88,7 @@ impl ExactEnergy {
         Self::with_facets(stack, &mut FacetCache::default())
     }
 
-    /// The same, sharing what depends on the micro-surface alone with other stacks (the other wavelengths).
+    /// The energies of a stack, sharing all that depends on the micro-surface alone with other stacks (the other wavelengths).
     pub fn with_facets(stack: &Monochrome, facets: &mut FacetCache) -> Self {
         Self { layers: stack.layers.iter().map(|layer| LayerEnergy::new(layer, facets)).collect() }
     }
@@ -256,7 +256,7 @@ fn between_nodes<const C: usize>(nodes: &[[f64; C]], cos_theta_i: f64) -> [f64; 
     from_fn(|c| weights.iter().zip(&nodes[first..]).map(|(w, value)| w * value[c]).sum())
 }
 
-/// What is not tabulated of an interface.
+/// Part of the energy of an interface that is not tabulated: the reflectance of a nearly smooth one.
 fn smooth_part(interface: &MonochromeLayer, cos_theta_i: f64) -> f64 {
     if interface.surface.alpha_isotropic() < NEARLY_SMOOTH { interface.reflectance(cos_theta_i) } else { 0.0 }
 }

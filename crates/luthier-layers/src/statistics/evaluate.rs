@@ -1,4 +1,4 @@
-//! From energies and spreads to a BRDF.
+//! Evaluation of a BRDF from energies and spreads.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -85,7 +85,7 @@ impl Prepared {
         &self.layers
     }
 
-    /// What the layers do to the light of a diffuse base.
+    /// Effect of the layers on the light of a diffuse base, if there is one.
     pub fn veil(&self) -> Option<Veil<1>> {
         self.base.as_ref().map(DiffuseBase::veil)
     }

@@ -21,11 +21,11 @@ pub struct Layer<const C: usize> {
     pub surface: Surface,
     /// Real index above.
     pub above: f64,
-    /// What lies below.
+    /// Material below the interface.
     pub below: Below<C>,
 }
 
-/// What lies below an interface.
+/// Material below an interface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Below<const C: usize> {
     /// A transparent medium: real index, and optical depth of the slab along the normal.
@@ -35,7 +35,7 @@ pub enum Below<const C: usize> {
         /// Optical depth along the normal.
         optical_depth: [f64; C],
     },
-    /// Nothing: a conductor.
+    /// A conductor: nothing lies below.
     Conductor,
     /// A diffuse base without an interface of its own.
     Diffuse {

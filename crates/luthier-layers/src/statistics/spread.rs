@@ -26,18 +26,18 @@ pub fn alpha(variance: f64) -> f64 {
     if variance <= 0.0 { 0.0 } else { libm::pow(1.0 / (1.0 + 1.0 / variance), 1.0 / EXPONENT) }
 }
 
-/// What the statistics need of a spread. Spreads of independent events add up.
+/// Operations on spreads that the statistics need. Spreads of independent events add up.
 pub trait Spread: Copy + Add<Output = Self> + Mul<f64, Output = Self> {
     /// No spread: a ray.
     const ZERO: Self;
 
-    /// What a surface adds when its slope parameters are multiplied by `scale` (1 for reflection).
+    /// The spread that a surface adds when its slope parameters are multiplied by `scale` (1 for reflection).
     fn of(surface: &Surface, scale: f64) -> Self;
 
     /// Slope parameter of the isotropic surface of the same mean variance.
     fn mean_alpha(self) -> f64;
 
-    /// The same, with variances that are beyond any surface held finite.
+    /// The spread, with variances that are beyond any surface held finite.
     fn limited(self) -> Self;
 
     /// The GGX surface that spreads light this way.

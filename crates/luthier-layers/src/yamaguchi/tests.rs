@@ -96,7 +96,7 @@ fn isotropic_surfaces_give_belcour() {
     }
 }
 
-/// As registered, energies and total reflection included.
+/// Isotropic stacks give `belcour` as models are registered, energies and total reflection included.
 #[test]
 fn isotropic_stacks_give_belcour_as_models() {
     let stack = coated(surface(0.2, 0.2, 0.9), surface(0.3, 0.3, -0.2));

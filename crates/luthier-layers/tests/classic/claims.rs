@@ -1,5 +1,5 @@
-//! What models of layers keep and what they break, in one table, and tests that hold them to it: claims on random stacks, breaches
-//! by their measured amount. Models of one surface are in `everywhere`.
+//! Laws that models of layers keep and laws that they break, in one table, and tests that hold them to it: claims on random stacks,
+//! breaches by their measured amount. Models of one surface are in `everywhere`.
 //!
 //! A model of layers without a row fails `every_model_of_layers_has_a_row`. To add one, write a row with zeros and run the tests:
 //! their messages print what was found.
@@ -37,7 +37,7 @@ enum Energy {
     Gains(Scene, f64, f64),
 }
 
-/// Which stacks without absorption return everything.
+/// Stacks without absorption that return everything.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Furnace {
     /// All.
@@ -55,9 +55,9 @@ enum Furnace {
 /// White stacks: GGX coats of index 1.5.
 #[derive(Debug, Clone, Copy)]
 enum Scene {
-    /// Over a mirror of the same alpha.
+    /// A coat over a mirror of the same alpha.
     CoatedMirror(f64),
-    /// Over Lambert's surface.
+    /// A coat over Lambert's surface.
     CoatedLambert(f64),
     /// Alpha 0.05 over a mirror of alpha 0.3.
     GlossyOverSatin,
@@ -141,7 +141,7 @@ fn claimed() -> impl Iterator<Item = (Box<dyn Model>, Claims)> {
     })
 }
 
-/// What a directional albedo may be off by: four standard errors of an estimate, the quadrature's own error otherwise.
+/// Tolerance of a directional albedo: four standard errors of an estimate, the quadrature's own error otherwise, and 1e-3.
 fn slack(albedo: DirectionalAlbedo) -> f64 {
     if albedo.is_estimate { 4.0 * albedo.error + 1e-3 } else { albedo.error + 1e-3 }
 }

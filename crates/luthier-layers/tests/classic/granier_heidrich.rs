@@ -71,7 +71,7 @@ fn a_deviated_inner_normal_disperses() {
     }
 }
 
-/// No transmitted beam when the inner boundary faces away (eq. 11).
+/// Inner boundaries that face away transmit no beam (eq. 11).
 #[test]
 fn boundaries_that_face_away_transmit_nothing() {
     let tilted = Film { inner_normal: at(60.0), ..film(1.5, Some(0.3)) };
@@ -93,9 +93,9 @@ fn parameters_come_from_the_stack() {
     close(diffuse.eval(&granier, wi, at(10.0)), 0.7 * film.diffuse() / PI * wi.z, 1e-12);
 }
 
-/// What an eye sees of a white sky by narrow lobes. Without interference it is the coefficients of the two beams, `F + T_i T_o`, T_o
-/// at the angle inside (eq. 10). Beams in phase add `2 sqrt(F T_i T_o)` at the peaks and less around them, because the transmitted
-/// lobe is wider outside, n across and n cos_t/cos_i along the plane of incidence. Oracle: Schlick's formula, and the overlap
+/// Light of a white sky that an eye sees by narrow lobes. Without interference it is the coefficients of the two beams, `F + T_i T_o`, T_o
+/// at the angle inside (eq. 10). Beams in phase add `2 sqrt(F T_i T_o)` at the peaks and less around them, because the transmitted lobe is
+/// wider outside, n across and n cos_t/cos_i along the plane of incidence. Oracle: Schlick's formula, and the overlap
 /// `sqrt(2 a / (1 + a^2))` per axis of Gaussians of relative width a.
 #[test]
 fn narrow_lobes_carry_their_coefficients() {
@@ -119,7 +119,7 @@ fn narrow_lobes_carry_their_coefficients() {
     }
 }
 
-/// On a white object that scatters, all that enters comes back twice: mirrored, and diffuse.
+/// A white object that scatters returns all that enters twice: mirrored, and diffuse.
 #[test]
 fn the_diffuse_term_comes_on_top() {
     let coated = stack(&[(ggx(0.1), dielectric(1.5, 0.0)), (ggx(0.0), lambert(1.0))]);

@@ -11,12 +11,12 @@ use proptest::prelude::*;
 
 use crate::stacks::{WHITE, dielectric, lambert};
 
-/// Which stacks.
+/// Losses of a random stack.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Losses {
     /// Slabs absorb, bases too, or there is none.
     Any,
-    /// Nothing does: a white mirror or white Lambert base below clear slabs.
+    /// No losses: a white mirror or white Lambert base below clear slabs.
     None,
 }
 

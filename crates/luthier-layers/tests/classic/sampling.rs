@@ -132,7 +132,7 @@ fn proposals_of_each_layer_follow_their_density() {
     }
 }
 
-/// Both methods give the model's own integral.
+/// Both sampling methods give the model's own integral.
 #[test]
 fn both_methods_estimate_the_albedo() {
     let model = WeidlichWilkie::default();

@@ -63,7 +63,7 @@ pub(crate) fn albedo(model: &dyn Model, stack: &Monochrome, wi: DVec3) -> f64 {
     integral(mirrored(wi), FINE.0, FINE.1, |wo| model.eval(stack, wi, wo) * wo.z / wi.z)
 }
 
-/// The same of light that `wo` sees from a white sky; equal for a reciprocal model.
+/// The light that `wo` sees from a white sky; equal to [`albedo`] for a reciprocal model.
 pub(crate) fn furnace(model: &dyn Model, stack: &Monochrome, wo: DVec3) -> f64 {
     integral(mirrored(wo), FINE.0, FINE.1, |wi| model.eval(stack, wi, wo))
 }

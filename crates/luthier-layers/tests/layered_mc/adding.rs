@@ -40,7 +40,7 @@ fn dielectric_reflectance(cos: f64, eta: f64) -> f64 {
     0.5 * outer * outer * (1.0 + inner * inner)
 }
 
-/// Of a conductor of relative index `n + ik`, in real numbers (Born and Wolf, ch. 14.2).
+/// Reflectance of a conductor of relative index `n + ik`, in real numbers (Born and Wolf, ch. 14.2).
 fn conductor_reflectance(cos: f64, n: f64, k: f64) -> f64 {
     let (cos_sq, sin_sq) = (cos * cos, 1.0 - cos * cos);
     let shifted = n * n - k * k - sin_sq;
@@ -274,7 +274,7 @@ impl Resolution {
     }
 }
 
-/// What the last doubling of all points may change.
+/// Largest change by the last doubling of all points.
 const QUADRATURE: f64 = 1e-4;
 
 /// Standard errors of the estimates, at most.

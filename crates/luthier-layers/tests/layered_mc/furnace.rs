@@ -1,4 +1,4 @@
-//! Nothing is lost where nothing absorbs.
+//! Stacks that absorb nothing lose nothing.
 
 use luthier_layers::layered_mc::{Estimate, InterfaceMode};
 use luthier_optics::stack::{Distribution, Surface};

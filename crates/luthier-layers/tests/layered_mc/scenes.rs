@@ -53,7 +53,7 @@ pub(crate) fn mc(mode: InterfaceMode, samples: u64) -> LayeredMc {
     LayeredMc { mode, samples, seed: 11 }
 }
 
-/// Within four standard errors, which are at most `sigma`; a few units of rounding where there is no spread.
+/// Asserts that an estimate is within four standard errors, which are at most `sigma`; a few units of rounding where there is no spread.
 #[track_caller]
 pub(crate) fn assert_agrees(estimate: Estimate, expected: f64, sigma: f64, what: &str) {
     let Estimate { mean, std_err, .. } = estimate;

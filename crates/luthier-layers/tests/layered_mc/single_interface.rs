@@ -12,7 +12,7 @@ use crate::scenes::{BOTH, assert_agrees, at, conductor, cosine, dielectric, even
 
 const EFFORT: Effort = Effort { first: 32, later: 48 };
 
-/// The other formulation is good to about this.
+/// Accuracy of the other formulation, about.
 const SLACK: f64 = 2e-4;
 
 fn curve(ior: Complex64) -> ReflectanceCurves {

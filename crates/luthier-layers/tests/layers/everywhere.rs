@@ -1,4 +1,4 @@
-//! What holds for every stack and every pair of directions.
+//! Laws of every stack and every pair of directions.
 
 use glam::DVec3;
 use luthier_layers::elek;

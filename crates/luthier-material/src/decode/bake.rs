@@ -5,7 +5,7 @@ use crate::bake_settings::{
 use crate::diagnostic::Sink;
 use crate::section::Section;
 
-/// What the file asks of its tables.
+/// The settings that the file asks of its tables.
 pub(super) fn decode(document: &Section<'_>, sink: &mut Sink<'_>) -> BakeSettings {
     let Some(at) = document.section("bake") else { return BakeSettings::default() };
     let wavelengths_nm = at.rgb("wavelengths_nm").filter(|w| distinct(w, &at, sink));
@@ -22,7 +22,7 @@ pub(super) fn decode(document: &Section<'_>, sink: &mut Sink<'_>) -> BakeSetting
     }
 }
 
-/// What the file allows its tables.
+/// The budget that the file allows its tables.
 pub(super) fn budget(document: &Section<'_>) -> BudgetSettings {
     let Some(at) = document.section("budget") else { return BudgetSettings::default() };
     BudgetSettings {

@@ -17,9 +17,9 @@ pub(super) struct Pending<'t> {
     pub(super) at: Section<'t>,
     pub(super) film: Film,
     pub(super) variation: Option<FilmVariation>,
-    /// Of its `type`.
+    /// Span of the `type` of the film.
     pub(super) span: Span<usize>,
-    /// Of its thickness.
+    /// Span of the thickness of the film.
     pub(super) thickness_span: Span<usize>,
 }
 

@@ -6,7 +6,7 @@ use crate::bake_settings::{
 /// Wavelengths that the colour matching functions cover.
 const VISIBLE_NM: Range = Range { min: 360.0, max: 830.0, above: false };
 
-/// From no mapping at all to far steeper than any lobe needs.
+/// Range of exponents, from no mapping at all to far steeper than any lobe needs.
 const EXPONENT: Range = Range { min: 1.0, max: 64.0, above: false };
 
 /// Texels along a side: interpolation needs two; beyond 8192 devices need not follow.

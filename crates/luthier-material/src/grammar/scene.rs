@@ -3,9 +3,9 @@ use super::{Key, Kind, LAYERS_MAX, POSITIVE, Range, SCENE_MATERIALS_MAX, Table, 
 /// Version of the grammar of scenes.
 const SCENE_VERSION: i64 = 1;
 
-/// From the normal; at the horizon nothing is seen.
+/// Angle of the eye from the normal; at the horizon nothing is seen.
 const VIEW_DEG: Range = Range { min: 0.0, max: 85.0, above: false };
-/// Between eye and light.
+/// Angle between eye and light.
 const APART_DEG: Range = Range { min: 0.0, max: 170.0, above: false };
 /// Beyond this the slopes of a pixel are no small addition to those of the surface.
 const FOOTPRINT_DEG: Range = Range { min: 0.0, max: 20.0, above: false };

@@ -1,18 +1,18 @@
-//! What the evaluations are called with: fixed pseudo-random directions, one after the other, so that neither branches nor
-//! cached results are foreseen.
+//! Inputs of the evaluations: fixed pseudo-random directions, one after the other, so that neither branches nor cached results are
+//! foreseen.
 
 use std::f64::consts::PI;
 
 use divan::{Bencher, black_box};
 use glam::DVec3;
 
-/// How many inputs there are; a sample of an evaluation of some nanoseconds goes through them once.
+/// Number of inputs; a sample of an evaluation of some nanoseconds goes through them once.
 pub(crate) const INPUTS: u32 = 1024;
 
 /// Size of a sample of slower evaluations: long for the clock, short for the scheduler of the machine.
 pub(crate) const SOME: u32 = 64;
 
-/// How many of these samples go through the inputs eight times.
+/// Number of samples of slower evaluations, which go through the inputs eight times.
 pub(crate) const SAMPLES: u32 = 8 * INPUTS / SOME;
 
 /// Light, eye, and three numbers in 0..1.
@@ -23,7 +23,7 @@ pub(crate) struct Draw {
     pub(crate) u: [f64; 3],
 }
 
-/// Both directions uniform on the hemisphere and independent.
+/// Inputs whose directions are both uniform on the hemisphere and independent.
 pub(crate) fn draws() -> Vec<Draw> {
     (0..INPUTS)
         .map(|i| {

@@ -23,7 +23,7 @@ fn fresnel_dielectric(bencher: Bencher<'_, '_>) {
     against_cosine(bencher, |cos| interface(Complex64::ONE, GLASS, cos).unpolarised());
 }
 
-/// From the denser side, total reflection included.
+/// Reflectance from the denser side, total reflection included.
 #[divan::bench(sample_size = INPUTS)]
 fn fresnel_dielectric_inside(bencher: Bencher<'_, '_>) {
     against_cosine(bencher, |cos| interface(Complex64::ONE, AIR_IN_GLASS, cos).unpolarised());

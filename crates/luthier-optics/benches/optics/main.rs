@@ -15,7 +15,7 @@ fn main() {
     divan::main();
 }
 
-/// What all rows contain: fetching an input and keeping the result.
+/// The cost that all rows contain: fetching an input and keeping the result.
 #[divan::bench(name = "loop", sample_size = inputs::INPUTS)]
 fn empty(bencher: Bencher<'_, '_>) {
     inputs::each(bencher, &inputs::draws(), |draw| draw.wi.z);

@@ -20,13 +20,13 @@ fn smith_lambda_anisotropic(bencher: Bencher<'_, '_>, kind: Distribution) {
     each(bencher, &draws(), |draw| ndf.lambda(draw.wo));
 }
 
-/// Both Lambdas included.
+/// Smith's separable masking, both Lambdas included.
 #[divan::bench(args = [Beckmann, Ggx], sample_size = INPUTS)]
 fn smith_separable(bencher: Bencher<'_, '_>, kind: Distribution) {
     smith(bencher, kind, Correlation::Separable);
 }
 
-/// Both Lambdas included.
+/// Smith's height-correlated masking, both Lambdas included.
 #[divan::bench(args = [Beckmann, Ggx], sample_size = INPUTS)]
 fn smith_height_correlated(bencher: Bencher<'_, '_>, kind: Distribution) {
     smith(bencher, kind, Correlation::Height);

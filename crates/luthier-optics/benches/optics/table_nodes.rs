@@ -1,4 +1,4 @@
-//! What a node of a table costs the baker.
+//! Costs of a node of a table to the baker.
 
 use crate::inputs::{draws, each};
 use divan::Bencher;
@@ -8,7 +8,7 @@ use luthier_optics::stack::Distribution;
 use luthier_optics::stack::Distribution::{Beckmann, Ggx};
 use num_complex::Complex64;
 
-/// The baker's.
+/// Effort of the baker.
 const EFFORT: Effort = Effort { first: 20, later: 26 };
 
 /// One node of an FGD table.

@@ -32,7 +32,7 @@ pub enum NdfError {
     /// A parameter that must be positive and finite is not.
     #[error("`{name}` must be positive and finite, not {value}")]
     NotPositive {
-        /// Which.
+        /// Name of the parameter.
         name: &'static str,
         /// Value given.
         value: f64,

@@ -8,13 +8,13 @@ use crate::brute_force::{Facets, Heights, Slopes, Surface, conductor, dielectric
 /// Standard error of a share of one half: 7e-4.
 const WALKS: u32 = 1 << 19;
 
-/// What the baker spends on the points of its error scan.
+/// Effort of the baker on the points of its error scan.
 const EFFORT: Effort = Effort { first: 24, later: 48 };
 
 /// Estimates that are averaged; their spread is the standard error of the mean.
 const SEEDS: u32 = 4;
 
-/// What walks that are cut short, and curves in nodes, may add to the noise.
+/// Noise that walks that are cut short, and curves in nodes, may add.
 const BIAS: f64 = 2e-4;
 
 /// (alpha, cos_theta), from nearly smooth to the roughest, from the normal to grazing.

@@ -21,13 +21,13 @@ pub(crate) enum Slopes {
 /// Distribution of heights. Results must not depend on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Heights {
-    /// Of unit variance.
+    /// Gaussian heights of unit variance.
     Gaussian,
-    /// On -1..1.
+    /// Uniform heights on -1..1.
     Uniform,
 }
 
-/// What facets do with light. Indices are relative to the medium above.
+/// Treatment of light by facets. Indices are relative to the medium above.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Facets {
     /// Reflect everything.
@@ -55,7 +55,7 @@ pub(crate) struct Surface {
     pub(crate) facets: Facets,
 }
 
-/// What became of the walks, as shares of all.
+/// Fates of the walks, as shares of all.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Shares {
     pub(crate) walks: u32,

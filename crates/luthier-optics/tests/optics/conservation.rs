@@ -1,4 +1,4 @@
-//! What must hold for every interface: energy, reciprocity, limits.
+//! Laws of every interface: energy, reciprocity, limits.
 
 use luthier_optics::fresnel::{FilmLayer, coated, interface};
 use proptest::prelude::*;

@@ -107,7 +107,7 @@ fn reflections_at_ggx_normals_follow_their_density() {
     check_normals(Distribution::Ggx);
 }
 
-/// Over equal cells of (cosine, azimuth) of the hemisphere.
+/// Checks a sampler over equal cells of (cosine, azimuth) of the hemisphere.
 fn check_hemisphere(sampler: &dyn Sampler, wo: DVec3, seed: u64) {
     let mut expected = vec![0.0; CELLS[0] * CELLS[1]];
     let steps = CELLS.map(|n| n * POINTS);

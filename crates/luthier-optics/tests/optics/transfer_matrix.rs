@@ -78,7 +78,7 @@ proptest! {
     }
 }
 
-/// At its critical angle a film's wave does not advance along the normal, and both roads divide zero by zero. In the limit the
+/// The wave of a film at its critical angle does not advance along the normal, and both roads divide zero by zero. In the limit the
 /// matrices are [1, -i 2 pi d/lambda; 0, 1] for s and [1, 0; -i n^2 2 pi d/lambda, 1] for p.
 #[test]
 fn a_film_at_its_critical_angle() {

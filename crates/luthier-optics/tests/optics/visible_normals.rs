@@ -96,7 +96,7 @@ pub(crate) fn chi_square(expected: &[f64], observed: &[u32]) -> (f64, f64) {
     (sum, cells - 1.0)
 }
 
-/// How many standard deviations above its mean a chi-square is (Wilson and Hilferty 1931): its cube root is normal.
+/// Number of standard deviations by which a chi-square is above its mean (Wilson and Hilferty 1931): its cube root is normal.
 pub(crate) fn deviations(chi_square: f64, freedom: f64) -> f64 {
     let variance = 2.0 / (9.0 * freedom);
     ((chi_square / freedom).cbrt() - (1.0 - variance)) / variance.sqrt()

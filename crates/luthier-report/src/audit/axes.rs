@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::AuditError;
 
-/// What an axis of a table holds.
+/// Quantity of an axis of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
@@ -29,9 +29,9 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// Those of the direction.
+    /// Quantities of the direction.
     pub const ANGLES: [Self; 4] = [Self::CosTheta, Self::Theta, Self::CosThetaSq, Self::SqrtCosTheta];
-    /// Those of the micro-surface.
+    /// Quantities of the micro-surface.
     pub const SLOPES: [Self; 4] = [Self::Roughness, Self::Alpha, Self::AlphaSq, Self::SqrtRoughness];
 
     /// Its name in an axis; those of the half vector's angle may also end in `_h`.
@@ -102,7 +102,7 @@ pub enum Nodes {
 impl Nodes {
     /// Texel centres.
     pub const CENTRES: Self = Self::Offset(0.5);
-    /// What mistakes make of the others: half a texel off to both sides, and a whole one.
+    /// Texel centres and ends, and what mistakes make of them: half a texel off to both sides, and a whole one.
     pub(super) const ALL: [Self; 6] =
         [Self::CENTRES, Self::Ends, Self::Offset(0.0), Self::Offset(1.0), Self::Offset(1.5), Self::Offset(-0.5)];
 
@@ -127,13 +127,13 @@ impl Nodes {
 /// One axis of a table, as stated or supposed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisSpec {
-    /// What it holds.
+    /// Quantity of the axis.
     pub quantity: Quantity,
     /// Value at coordinate 0, before it is turned around.
     pub min: f64,
     /// Value at coordinate 1.
     pub max: f64,
-    /// From the coordinate to the value.
+    /// Mapping from the coordinate to the value.
     pub mapping: Mapping,
     /// Whether values fall from the first texel to the last.
     pub descending: bool,
@@ -222,7 +222,7 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// From `--axes`: one or two axes, across first, separated by a comma.
+    /// The layout of `--axes`: one or two axes, across first, separated by a comma.
     ///
     /// # Errors
     /// [`AuditError::Axis`] for an axis that does not parse, [`AuditError::Axes`] unless there is one of the direction and at most one

@@ -7,9 +7,9 @@ use super::truth::{Term, Truth};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Encoding {
     Linear,
-    /// By the sRGB transfer function, as colours are.
+    /// Values encoded by the sRGB transfer function, as colours are.
     Srgb,
-    /// By its inverse: linear values taken for sRGB ones.
+    /// Values encoded by the inverse of the sRGB transfer function: linear values taken for sRGB ones.
     Linearised,
 }
 
@@ -33,11 +33,11 @@ impl Encoding {
 pub struct Mistake {
     /// Its kind, for programs: `axes`, `flip`, `nodes`, `quantity`, `range`, `model`, `channels`, `encoding`, `clamp`.
     pub kind: &'static str,
-    /// In words; what follows `fits better as`.
+    /// Words that follow `fits better as`.
     pub text: String,
 }
 
-/// What a table might hold.
+/// A guess at the contents of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Hypothesis {
     pub(super) layout: Layout,

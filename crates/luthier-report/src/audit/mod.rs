@@ -39,7 +39,7 @@ pub enum AuditError {
         "`{0}` is no axis; write [-]QUANTITY[=MIN..MAX][^EXPONENT|@log] with cos_theta, theta, cos_theta_sq, sqrt_cos_theta, roughness, alpha, alpha_sq or sqrt_roughness"
     )]
     Axis(String),
-    /// Not one axis of the direction and at most one of the micro-surface.
+    /// Axes other than one of the direction and at most one of the micro-surface.
     #[error(
         "`{0}`: a table has an axis of the angle and at most one of the roughness, such as \"cos_theta,roughness\""
     )]
@@ -49,7 +49,7 @@ pub enum AuditError {
     Channel {
         /// Asked for, from 0.
         channel: usize,
-        /// In the file.
+        /// Channels in the file.
         found: u32,
     },
     /// Channels and their meanings differ in number, or a term does not belong to the model.
@@ -59,7 +59,7 @@ pub enum AuditError {
         channels: usize,
         /// Terms named.
         terms: usize,
-        /// What the model has.
+        /// Terms that the model has.
         known: String,
     },
     /// The number of axes does not suit the model or the size of the table.
@@ -67,7 +67,7 @@ pub enum AuditError {
     Shape(&'static str),
 }
 
-/// What a table is said to hold and where.
+/// Statement of the contents and the layout of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Statement {
     /// The function.
@@ -76,7 +76,7 @@ pub struct Statement {
     pub layout: Layout,
     /// Channels of the file, from 0.
     pub channels: Vec<usize>,
-    /// What each of them holds.
+    /// Term that each of these channels holds.
     pub terms: Vec<Term>,
     /// Lowest cosine that counts.
     pub min_cos: f64,
@@ -89,13 +89,13 @@ pub struct Statement {
 /// One line of the table of hypotheses.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Candidate {
-    /// What differs from the statement; nothing for the statement itself.
+    /// Differences from the statement; none for the statement itself.
     pub mistakes: Vec<Mistake>,
     /// Root mean square of texels against quadrature; errors above a quarter count as a quarter.
     pub rms: f64,
 }
 
-/// What the table is.
+/// Verdict on a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AuditVerdict {
@@ -112,17 +112,17 @@ pub enum AuditVerdict {
 pub struct Audit {
     /// Texels across and down.
     pub size: [u32; 2],
-    /// What was found.
+    /// Verdict on the table.
     pub verdict: AuditVerdict,
     /// Error as sampled under the statement; places are `cos_theta` and `alpha`.
     pub stated: ErrorStats,
-    /// The same under the best hypothesis, where that is another one.
+    /// Error as sampled under the best hypothesis, where that is not the statement.
     pub remaining: Option<ErrorStats>,
     /// The best hypotheses, the best first; the statement is among them.
     pub candidates: Vec<Candidate>,
     /// Texel values in the read channels that are not finite.
     pub not_finite: u64,
-    /// Those below 0.
+    /// Texel values in the read channels that are below 0.
     pub negative: u64,
     /// Lowest cosine that counted in the errors.
     pub min_cos: f64,

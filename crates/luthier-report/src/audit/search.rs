@@ -7,7 +7,7 @@ use super::axes::{AxisSpec, Layout, Nodes, Quantity};
 use super::hypothesis::{Encoding, Hypothesis, arrangements};
 use super::truth::Truth;
 
-/// No value counts for more than this in a fit: what is wildly wrong in a corner does not decide about the rest.
+/// Most that a value counts in a fit: a value that is wildly wrong in a corner does not decide about the rest.
 const CAP: f64 = 0.25;
 /// A hypothesis with one mistake more must fit this much better to be preferred.
 const PENALTY: f64 = 1.25;

@@ -8,7 +8,7 @@ use luthier_optics::stack::Distribution;
 
 use super::*;
 
-/// What to plant.
+/// A table with a planted mistake.
 #[derive(Clone, Copy)]
 struct Plant {
     size: u32,

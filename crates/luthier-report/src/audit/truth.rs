@@ -11,7 +11,7 @@ use luthier_optics::split_sum::{Masking, split_sum, split_sums};
 use luthier_optics::stack::Distribution;
 use rayon::prelude::*;
 
-/// What a table is said to hold.
+/// Function that a table is said to hold.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Model {
     /// The split sum of image-based lighting: scale, bias, or albedo under Schlick's Fresnel.
@@ -23,7 +23,7 @@ pub enum Model {
     },
     /// A slope distribution over the angle of the half vector.
     Density {
-        /// Which.
+        /// Slope distribution.
         distribution: Distribution,
     },
     /// Reflectance of a smooth interface over the cosine, RGB under D65.
@@ -40,14 +40,14 @@ pub enum Model {
     },
 }
 
-/// What one channel of a table is said to hold.
+/// Term that one channel of a table is said to hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Term {
     /// Factor of f0.
     Scale,
-    /// What is added to it.
+    /// Summand beside the factor of f0.
     Bias,
-    /// Their sum.
+    /// Sum of scale and bias.
     Albedo,
     /// Linear Rec.709.
     Red,
@@ -89,7 +89,7 @@ impl Term {
         }
     }
 
-    /// What a file's value is multiplied with to be compared: densities are compared as pi alpha^2 D, which has no poles.
+    /// Factor on a file's value before it is compared: densities are compared as pi alpha^2 D, which has no poles.
     pub(super) fn scale(self, alpha: f64) -> f64 {
         if self == Self::Density { PI * alpha * alpha } else { 1.0 }
     }
@@ -113,7 +113,7 @@ impl Model {
 
 /// Gauss-Legendre points of split sums.
 const POINTS: usize = 24;
-/// Of albedos with all bounces: what is left is the noise of the walks.
+/// Effort of albedos with all bounces: only the noise of the walks is left.
 const EFFORT: Effort = Effort { first: 24, later: 24 };
 /// Wavelengths of the three-wavelength values, nm: CONVENTIONS.md.
 const WAVELENGTHS: [f64; 3] = [645.0, 525.0, 445.0];
@@ -121,9 +121,9 @@ const WAVELENGTHS: [f64; 3] = [645.0, 525.0, 445.0];
 /// The stated model and those that a table might hold instead, exact and fast.
 pub(super) struct Truth<'a> {
     model: &'a Model,
-    /// Their names; what follows `fits better as`.
+    /// Names of the models, which follow `fits better as`.
     pub(super) variants: Vec<String>,
-    /// The one that is stated.
+    /// Index of the stated model.
     pub(super) stated: usize,
     /// Reflectance at each wavelength of an albedo, with the wavelength's weight in RGB.
     spectrum: Option<(Vec<Rgb>, ReflectanceCurves)>,
@@ -204,7 +204,7 @@ impl<'a> Truth<'a> {
         }
     }
 
-    /// One of them.
+    /// One variant at theta and alpha.
     pub(super) fn exact(&self, variant: usize, at: [f64; 2]) -> [f64; 3] {
         match self.model {
             Model::SplitSum { distribution, .. } => {
@@ -224,7 +224,7 @@ impl<'a> Truth<'a> {
         }
     }
 
-    /// What its channels may hold.
+    /// The terms that the channels may hold.
     pub(super) fn terms(&self) -> &'static [Term] {
         self.model.terms()
     }
@@ -275,8 +275,8 @@ impl Grid {
 mod tests {
     use super::*;
 
-    /// What cubics between nodes miss, root mean square: far below the differences that hypotheses are told apart by, which are decided
-    /// by quadrature in the end.
+    /// Cubics between nodes miss far less, root mean square, than the differences that hypotheses are told apart by, which are decided by
+    /// quadrature in the end.
     #[test]
     fn the_grid_follows_quadrature() {
         let model = Model::SplitSum { distribution: Distribution::Ggx, masking: Masking::SmithCorrelated };

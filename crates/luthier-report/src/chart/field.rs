@@ -26,7 +26,7 @@ pub(crate) struct Spot {
     pub(crate) price: f64,
     /// Largest relative error.
     pub(crate) error: f64,
-    /// What it is, in words.
+    /// Description of the spot.
     pub(crate) tip: String,
     /// How it is drawn.
     pub(crate) series: Series,

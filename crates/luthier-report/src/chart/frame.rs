@@ -211,7 +211,7 @@ impl Frame {
         self.element(label, &scales)
     }
 
-    /// The same for a file of its own, which has no script.
+    /// The SVG element for a file of its own, which has no script.
     pub(crate) fn finish_still(self, label: &str) -> String {
         self.element(label, "")
     }

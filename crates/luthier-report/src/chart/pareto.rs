@@ -1,4 +1,4 @@
-//! What is paid against what is got: cost or bytes against error.
+//! Chart of price against error: cost or bytes.
 
 use super::frame::{Frame, Margin, Series};
 use super::scale::Scale;
@@ -12,11 +12,11 @@ const LABEL: [f64; 2] = [100.0, 13.0];
 /// A thing that could be chosen.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Choice {
-    /// What it costs.
+    /// Cost or bytes of the choice.
     pub(crate) price: f64,
     /// Its error.
     pub(crate) error: f64,
-    /// What it is, in words.
+    /// Description of the choice.
     pub(crate) tip: String,
     /// A word beside its mark, if there is room for it.
     pub(crate) label: &'static str,
@@ -81,7 +81,7 @@ pub(crate) fn pareto(
     frame.finish(label)
 }
 
-/// Those that no other beats in price and error, cheapest first.
+/// The choices that no other beats in price and error, cheapest first.
 fn front<'a>(choices: &[&'a Choice]) -> Vec<&'a Choice> {
     let mut sorted: Vec<&Choice> = choices.to_vec();
     sorted.sort_by(|a, b| a.price.total_cmp(&b.price).then(a.error.total_cmp(&b.error)));

@@ -6,11 +6,11 @@ use super::scale::Scale;
 /// Curves over one quantity: an SVG file that stands alone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plot {
-    /// What the picture shows, for screen readers.
+    /// Description of the picture, for screen readers.
     pub title: String,
     /// The quantity.
     pub x: PlotAxis,
-    /// What the curves say of it.
+    /// The quantity of the curves.
     pub y: PlotAxis,
     /// The curves.
     pub curves: Vec<Curve>,
@@ -23,7 +23,7 @@ pub struct PlotAxis {
     pub label: String,
     /// Ends. Of no consequence on a logarithmic axis, which takes the decades of the values.
     pub range: [f64; 2],
-    /// From one labelled tick to the next; 0 makes the axis logarithmic.
+    /// Step from one labelled tick to the next; 0 makes the axis logarithmic.
     pub step: f64,
 }
 

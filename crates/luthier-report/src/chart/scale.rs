@@ -1,4 +1,4 @@
-//! From values to pixels, and the ticks between.
+//! Scales from values to pixels, and their ticks.
 
 /// One axis of a chart.
 #[derive(Debug, Clone, Copy)]
@@ -16,7 +16,7 @@ impl Scale {
         Self { min, max, log: false, step }
     }
 
-    /// From 0 to a round number that holds all values, with at most six ticks.
+    /// A scale from 0 to a round number that holds all values, with at most six ticks.
     pub(crate) fn round(values: impl Iterator<Item = f64>) -> Self {
         let largest = values.filter(|v| v.is_finite()).fold(0.0, f64::max);
         let largest = if largest > 0.0 { largest } else { 1.0 };
@@ -26,7 +26,7 @@ impl Scale {
         Self::linear(0.0, step * libm::ceil(largest / step - 1e-9), step)
     }
 
-    /// For the page's script: kind and ends, those of a logarithmic scale as powers of ten.
+    /// The scale for the page's script: kind and ends, those of a logarithmic scale as powers of ten.
     pub(crate) fn describe(&self) -> String {
         format!("{} {} {}", if self.log { "log" } else { "lin" }, self.min, self.max)
     }

@@ -48,7 +48,7 @@ fn values_of_the_authors_implementation() {
     }
 }
 
-/// Same source: 0.967400730.
+/// Black against white, by the source of the pictures above: 0.967400730.
 #[test]
 fn black_and_white() {
     let [black, white] = [0.0, 1.0].map(|v| Image { data: vec![v; 300], ..Image::zeros(10, 10, 3) });

@@ -18,15 +18,15 @@ const CONTENT: f64 = 5e-4;
 #[derive(Debug, Clone)]
 pub(super) struct Energies {
     pub(super) energies: Vec<f64>,
-    /// Of a quadrature: change of the albedo, and half the change of all cells, on the last doubling of its points.
+    /// Changes of a quadrature on the last doubling of its points: of the albedo, and half the change of all cells.
     pub(super) change: [f64; 2],
-    /// Of paths: their histogram.
+    /// Histogram of paths, where paths were traced.
     pub(super) noise: Option<Histogram>,
 }
 
 impl Energies {
-    /// Of a model that is a function: Gauss-Legendre quadrature of `f cos_theta_i` over every patch. Points are doubled, where they
-    /// change most, until half the changes of all patches are 5e-4 or less in all.
+    /// The energies of a model that is a function: Gauss-Legendre quadrature of `f cos_theta_i` over every patch. Points are doubled, where
+    /// they change most, until half the changes of all patches are 5e-4 or less in all.
     pub(super) fn of(model: &dyn Model, stack: &Monochrome, cells: &Cells) -> Self {
         let mut rules = Vec::new();
         let mut points = POINTS[0];

@@ -63,7 +63,7 @@ pub(crate) const FEWER: u32 = 4;
 pub struct ModelSubject {
     /// Its name.
     pub name: String,
-    /// What it is.
+    /// Stack of the material.
     pub stack: Stack,
     /// Its wavelengths, one for each colour channel of its absorption and diffuse albedo.
     pub wavelengths_nm: [f64; 3],
@@ -74,7 +74,7 @@ pub struct ModelSubject {
 pub struct ModelSettings {
     /// Paths of the reference per view.
     pub samples: NonZeroU32,
-    /// Which family of random numbers.
+    /// Family of random numbers.
     pub seed: u64,
 }
 
@@ -149,7 +149,7 @@ fn judge_rows(
     ModelsReport::new(subjects, settings, &rows(), judged)
 }
 
-/// What is compared with the reference.
+/// Row that is compared with the reference.
 enum Row {
     Model(Box<dyn Model>),
     /// Paths, in a mode, from another family of random numbers than the reference's.

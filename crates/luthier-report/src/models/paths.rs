@@ -17,7 +17,7 @@ pub(super) struct Histogram {
 }
 
 impl Histogram {
-    /// As many paths as the estimator has samples.
+    /// The histogram of as many paths as the estimator has samples.
     pub(super) fn trace(estimator: LayeredMc, stack: &Monochrome, cells: &Cells) -> Self {
         let (mut energies, mut squares) = (vec![0.0; CELLS], vec![0.0; CELLS]);
         for (wi, weight) in estimator.paths(stack, cells.wo).flatten() {

@@ -9,7 +9,7 @@ use crate::{ReportError, json};
 pub struct ModelsReport {
     /// Paths of the reference per view.
     pub samples: u32,
-    /// Which family of random numbers.
+    /// Family of random numbers.
     pub seed: u64,
     /// Angles of the eye against the normal.
     pub thetas_deg: Vec<f64>,
@@ -52,7 +52,7 @@ pub struct Quantity {
     pub error: f64,
     /// Its standard error, from the noise of the reference.
     pub std_err: f64,
-    /// By how much the model's quadrature changed when its points were last doubled.
+    /// Change of the model's quadrature when its points were last doubled.
     pub quadrature_change: f64,
 }
 
@@ -69,11 +69,11 @@ pub struct Worst {
     /// The error.
     #[serde(flatten)]
     pub quantity: Quantity,
-    /// Of a lobe error: see [`ViewError::lobe_floor`]. Of an albedo error, 0.
+    /// Floor of a lobe error: see [`ViewError::lobe_floor`]. For an albedo error, 0.
     pub floor: f64,
-    /// At this wavelength,
+    /// Wavelength of the error.
     pub wavelength_nm: f64,
-    /// seen at this angle.
+    /// Angle at which the error is seen.
     pub theta_deg: f64,
 }
 
@@ -97,7 +97,7 @@ pub struct ViewError {
 }
 
 impl ModelsReport {
-    /// From the views per subject and row.
+    /// A report from the views per subject and row.
     pub(super) fn new(
         subjects: &[ModelSubject],
         settings: ModelSettings,
@@ -118,7 +118,7 @@ impl ModelsReport {
         }
     }
 
-    /// As JSON. Errors that are infinite, because the reference is black, are null.
+    /// The report as JSON. Errors that are infinite, because the reference is black, are null.
     ///
     /// # Errors
     /// [`ReportError::Json`], should serialisation fail.
@@ -126,7 +126,7 @@ impl ModelsReport {
         json::to_string(self)
     }
 
-    /// As a page in Markdown; `command` is what made it.
+    /// The report as a page in Markdown; `command` is what made it.
     pub fn to_markdown(&self, command: &str) -> String {
         page::page(self, command)
     }

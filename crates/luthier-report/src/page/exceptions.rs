@@ -1,4 +1,4 @@
-//! What misses the target, and why.
+//! Samples that miss the target, and their causes.
 
 use std::fmt::Write;
 
@@ -129,7 +129,7 @@ pub(crate) fn cause(cause: &Cause) -> String {
     }
 }
 
-/// What a read gives and what it should.
+/// Words on the value that a read gives and the value that it should give.
 fn off(expected: f64, sampled: f64) -> String {
     let percent = 100.0 * (sampled - expected) / expected.abs();
     let sign = if percent < 0.0 { "−" } else { "+" };

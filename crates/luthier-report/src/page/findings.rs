@@ -1,4 +1,4 @@
-//! What a reader should know before trusting the rest.
+//! Findings that a reader should know before trusting the rest.
 
 use crate::Report;
 use crate::format::escape;

@@ -27,7 +27,7 @@ pub(super) fn line(report: &Report, material: &MaterialReport) -> String {
     format!("{found} · {paid}")
 }
 
-/// What stands for the error of a material: the baked shader, or, when none was run, its tables.
+/// The comparison that stands for the error of a material: the baked shader, or, when none was run, its tables.
 fn judged(report: &Report) -> Compared {
     shown(report)[0]
 }
@@ -89,7 +89,7 @@ fn facts(out: &mut String, report: &Report) {
     out.push_str("</dl>\n");
 }
 
-/// How many values were compared, and how many of them are not finite.
+/// Number of values that were compared, and of those that are not finite.
 pub(super) fn samples(report: &Report) -> (u64, u64) {
     let judged = |c: &&crate::Comparison| c.compared.is_judged(report.device.is_some());
     let sets = report.materials.iter().flat_map(|m| m.comparisons.iter().filter(judged)).flat_map(|c| &c.sets);

@@ -67,7 +67,7 @@ fn cell(text: &str) -> String {
     format!("<td class=\"n\">{}</td>", escape(text))
 }
 
-/// Which material the page's filter takes an element for.
+/// The attribute by which the page's filter takes an element for a material's.
 fn of_material(name: &str) -> String {
     format!(" data-material=\"{}\"", escape(name))
 }

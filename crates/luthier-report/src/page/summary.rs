@@ -8,7 +8,7 @@ use crate::report::{Compared, Report, WorstCase};
 
 use super::{anchor, cell, of_material};
 
-/// What the overview draws and lists.
+/// The comparisons that the overview draws and lists.
 pub(super) fn shown(report: &Report) -> &'static [Compared] {
     if report.device.is_some() {
         &[Compared::BakedDevice, Compared::TablesEightBit, Compared::FullDevice]
@@ -65,7 +65,7 @@ fn verdict(out: &mut String, report: &Report) {
     );
 }
 
-/// Which of the other limits are broken; nothing without any.
+/// Words on the other limits that are broken; nothing without any.
 fn broken_limits(report: &Report) -> Option<(&'static str, String)> {
     let broken: Vec<String> = report.limits.iter().filter(|l| !l.is_held).map(|l| escape(&l.quantity)).collect();
     match (report.limits.len(), broken.len()) {

@@ -1,4 +1,4 @@
-//! What is paid and what is got: bytes and cost against error, by kind of table and by material.
+//! Charts of price against error: bytes and cost, by kind of table and by material.
 
 use std::fmt::Write;
 

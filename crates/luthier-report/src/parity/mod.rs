@@ -43,7 +43,7 @@ pub struct Parity {
     pub device: String,
     /// Pairs of directions in each of the five sets.
     pub pairs_per_set: u32,
-    /// What errors are relative to: max(brightest channel of the reference, this).
+    /// Floor of relative errors, which are over max(brightest channel of the reference, this).
     pub floor: f64,
     /// One per model, material and form.
     pub rows: Vec<ParityRow>,
@@ -58,7 +58,7 @@ pub struct ParityRow {
     pub form: Form,
     /// Name of the material.
     pub material: String,
-    /// What the reference is: spectral or at three wavelengths.
+    /// Colour mode of the reference: spectral or at three wavelengths.
     pub color: ColorMode,
     /// Pairs compared; three samples each.
     pub pairs: u64,
@@ -78,18 +78,18 @@ pub struct ParityRow {
     pub worst_table: Option<(ParitySet, WorstPair)>,
     /// The pair with the largest arithmetic error.
     pub worst_arithmetic: Option<(ParitySet, WorstPair)>,
-    /// What the error of the shader is made of at the pair with the largest table error, largest first.
+    /// Parts of the error of the shader at the pair with the largest table error, largest first.
     pub parts: Vec<Part>,
 }
 
 /// Whether an error keeps its tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Verdict {
-    /// It does.
+    /// The error keeps its tolerance.
     Met,
-    /// It does not, for a reason that is known and listed.
+    /// The error breaks its tolerance, for a reason that is known and listed.
     Explained(&'static Known),
-    /// It does not.
+    /// The error breaks its tolerance.
     Broken,
 }
 
@@ -272,7 +272,7 @@ fn references(subject: &Subject<'_>, material: usize) -> Result<References, Repo
     References::new(&subject.stacks[material], &subject.manifest.materials[material])
 }
 
-/// What makes the largest table error.
+/// The parts of the largest table error.
 fn parts<'a>(
     subject: &Subject<'_>,
     blocks: &[Block],

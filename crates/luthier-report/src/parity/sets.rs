@@ -45,7 +45,7 @@ impl ParitySet {
         }
     }
 
-    /// What is in it, for a reader.
+    /// Description of the set, for a reader.
     pub fn description(self) -> &'static str {
         match self {
             Self::Uniform => "Both directions uniform over the hemisphere.",

@@ -10,14 +10,14 @@ use crate::exceptions::Factor;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Share {
-    /// What reading tables does.
+    /// The error of reading tables.
     Table,
-    /// What f32 does.
+    /// The error of f32 arithmetic.
     Arithmetic,
 }
 
 impl Share {
-    /// Both.
+    /// Both shares.
     pub const ALL: [Self; 2] = [Self::Table, Self::Arithmetic];
 
     /// The name in reports.
@@ -122,7 +122,7 @@ pub struct Known {
     pub models: &'static [ShadingModel],
     /// The share.
     pub share: Share,
-    /// What has to be at fault.
+    /// Factor that has to be at fault.
     pub factor: Factor,
     /// How far it goes.
     pub limit: f64,
@@ -130,7 +130,7 @@ pub struct Known {
     pub reason: &'static str,
 }
 
-/// What is known.
+/// All known reasons.
 pub const KNOWN: [Known; 5] = [
     Known {
         name: "FRESNEL_UNDER_A_COAT",
@@ -183,7 +183,7 @@ pub const KNOWN: [Known; 5] = [
     },
 ];
 
-/// What is known of a share of the error of a model that a factor is at fault for.
+/// The known reason for a share of the error of a model that a factor is at fault for.
 pub(super) fn known(model: ShadingModel, share: Share, factor: Factor) -> Option<&'static Known> {
     KNOWN.iter().find(|k| k.models.contains(&model) && k.share == share && k.factor == factor)
 }

@@ -33,7 +33,7 @@ const EFFORT: Effort = Effort { first: 32, later: 64 };
 const CROSSED_WALKS: u32 = 4096;
 /// Walks for each wavelength at least.
 const CROSSED_WALKS_MIN: u32 = 128;
-/// What leaving out wavelengths may change in a product of reflectances, for the light that crosses and returns.
+/// Largest change of a product of reflectances by wavelengths that are left out, for the light that crosses and returns.
 const CROSSED_TOLERANCE: f64 = 1e-3;
 /// Where spectra are compared to decide that: cosines.
 const CROSSED_COS_THETA: [f64; 5] = [1.0, 0.6, 0.3, 0.15, 0.05];
@@ -88,7 +88,7 @@ struct Point {
     number: u32,
     cos_theta: f64,
     alpha: f64,
-    /// On the axes of the table.
+    /// Values on the axes of the table.
     values: [f64; 2],
 }
 

@@ -118,7 +118,7 @@ fn tile_of(record: &LayerRecord, kind: TableKind) -> Option<u32> {
     }
 }
 
-/// What a tile was found to hold.
+/// Findings of the scan of a tile.
 #[derive(Default)]
 struct Measured {
     scan: Scan,

@@ -7,8 +7,8 @@ use crate::subject::Table;
 /// relative to itself.
 const HALF_FLOAT: f64 = 1e-3;
 
-/// What a thickness texture holds that cannot be: a thickness outside the range of its film, or a normalisation factor that
-/// is not `sqrt(1 + dx^2 + dy^2)` of its slopes, where it has these. The map itself is the material file's and unknown here.
+/// Contents of a thickness texture that cannot be: a thickness outside the range of its film, or a normalisation factor that is not
+/// `sqrt(1 + dx^2 + dy^2)` of its slopes, where it has these. The map itself is the material file's and unknown here.
 pub(super) fn doubts(table: &Table<'_>, tile: u32, users: &[User], subject: &Subject<'_>) -> Vec<String> {
     let mut doubts = Vec::new();
     let [x0, y0] = table.entry.layout.origin(tile);

@@ -39,7 +39,7 @@ impl Aim {
         }
     }
 
-    /// What it is, for a reader.
+    /// Description of the aim, for a reader.
     pub fn title(self) -> &'static str {
         match self {
             Self::Ordinary => "uniform directions and highlights",

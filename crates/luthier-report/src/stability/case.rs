@@ -12,7 +12,7 @@ use luthier_optics::stack::{Base, Diffuse, Distribution, Film, FilmThickness, La
 pub struct StressCase {
     /// Name, unique.
     pub id: String,
-    /// What it is, for a reader.
+    /// Description of the case, for a reader.
     pub title: String,
     /// The quantity that is swept, and its value.
     pub swept: Option<(Quantity, f64)>,
@@ -20,7 +20,7 @@ pub struct StressCase {
     pub aim: Aim,
     /// Whether its colour is spectral; else three wavelengths.
     pub is_spectral: bool,
-    /// What it is.
+    /// Stack of the case.
     pub stack: Stack,
 }
 

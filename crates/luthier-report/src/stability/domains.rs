@@ -17,7 +17,7 @@ pub struct DomainRange {
     /// Smallest and largest value that was tried and, with all between it and the ordinary value, did not fail at any level; `None` if
     /// the ordinary one failed.
     pub usable: Option<[f64; 2]>,
-    /// The same for values that hold at all levels.
+    /// Smallest and largest value as in `usable`, for values that hold at all levels.
     pub holds: Option<[f64; 2]>,
     /// Smallest and largest value that was tried.
     pub tried: [f64; 2],

@@ -38,7 +38,7 @@ const COATS: &[&str] = &[
     "mirror-*",
 ];
 
-/// One interface.
+/// Cases of one interface.
 const METALS: &[&str] = &[
     "alpha-*",
     "film-*",
@@ -296,7 +296,7 @@ fn matches_method(patterns: &[&str], method: &str) -> bool {
     matches(patterns, method) || matches(patterns, model)
 }
 
-/// The reason for a cell; `None` for a cell that holds, and for one that nobody can explain.
+/// The reason for a cell; `None` for a cell that holds, and for one without an explanation.
 pub fn explanation(cell: &Cell) -> Option<&'static Explanation> {
     if cell.verdict == Verdict::Holds || (cell.level.ships() && cell.fault == Some(Fault::NotFinite)) {
         return None;

@@ -52,19 +52,19 @@ const EXTREMES: &str = "denormal and huge arguments";
 /// One way to write or to store a function.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FormulaResult {
-    /// Which of the [`PITFALLS`], or what else it is about.
+    /// Entry of the [`PITFALLS`], or another subject of the formulation.
     pub row: String,
     /// How it is written, in which precision.
     pub formulation: String,
     /// Whether it ships.
     pub ships: bool,
-    /// What the error is of, and against which truth.
+    /// Quantity that the error is of, and the truth that it is against.
     pub measure: String,
     /// The error; `None` where values are not finite.
     pub error: Option<f64>,
     /// Largest error with which it holds.
     pub tolerance: f64,
-    /// For one that does not hold: why it is not used, or what is used.
+    /// Reason why a formulation that does not hold is not used, or the one that is used.
     pub reason: String,
 }
 
@@ -83,12 +83,12 @@ impl FormulaResult {
 struct Collector(Vec<FormulaResult>);
 
 impl Collector {
-    /// One that ships.
+    /// Adds a formulation that ships.
     fn ours(&mut self, row: &str, formulation: &str, measure: &str, error: f64, tolerance: f64) {
         self.push(row, formulation, true, measure, error, tolerance, "");
     }
 
-    /// One that does not; the reason is why.
+    /// Adds a formulation that does not ship, with the reason.
     fn rejected(&mut self, row: &str, formulation: &str, measure: &str, error: f64, reason: &str) {
         self.push(row, formulation, false, measure, error, super::HOLDS, reason);
     }
@@ -443,7 +443,7 @@ fn filtering(out: &mut Collector) {
 /// Values from the smallest denormal to the largest number.
 const EXTREME: [f64; 12] = [0.0, 5e-324, 1e-310, 1e-150, 1e-30, 1e-7, 1e-3, 1.0, 10.0, 1e30, 1e150, f64::MAX];
 
-/// By how far a share is out of 0..=1; NaN for what is none.
+/// Excess of a share over 0..=1; NaN for a value that is none.
 fn beyond_unit(value: f64) -> f64 {
     if value.is_finite() { (value - 1.0).max(-value).max(0.0) } else { f64::NAN }
 }

@@ -88,13 +88,13 @@ impl Level {
     }
 }
 
-/// What became of a method on a case.
+/// Verdict on a method on a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, PartialOrd, Ord)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// Within [`HOLDS`] or [`HOLDS_ALBEDO`].
+    /// The error is within [`HOLDS`] or [`HOLDS_ALBEDO`].
     Holds,
-    /// Within [`FAILS`].
+    /// The error is within [`FAILS`].
     Degrades,
     /// A law is broken, or the value is beyond use.
     Fails,
@@ -149,13 +149,13 @@ pub struct Cell {
     pub method: String,
     /// Identifier of the case.
     pub case: String,
-    /// What became of it.
+    /// Verdict on the method.
     pub verdict: Verdict,
-    /// How, unless it holds.
+    /// Fault of the method, unless it holds.
     pub fault: Option<Fault>,
-    /// By how much: what the fault counts, or the largest error; 0 for values that are not finite, and for a case that compares none.
+    /// Size of the fault: what it counts, or the largest error; 0 for values that are not finite, and for a case that compares none.
     pub error: f64,
-    /// Name of the explanation, unless it holds; `None` then is a cell that nobody can explain.
+    /// Name of the explanation, unless it holds; `None` then is a cell without an explanation.
     pub explanation: Option<String>,
 }
 
@@ -181,16 +181,16 @@ impl Cell {
     }
 }
 
-/// What a reader needs to know of a case.
+/// Description of a case for a reader.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CaseInfo {
     /// Identifier.
     pub id: String,
-    /// What it is.
+    /// Description of the case.
     pub title: String,
     /// Name of the quantity that it sweeps, and its value.
     pub swept: Option<(String, f64)>,
-    /// What albedos are compared with.
+    /// Truth that albedos are compared with.
     pub truth: String,
 }
 
@@ -226,7 +226,7 @@ impl Stability {
         Self { generator: generator.to_owned(), device, cases, cells, formulas: formulas(), domains }
     }
 
-    /// Cells whose reason nobody knows.
+    /// Cells whose reason is unknown.
     pub fn unexplained(&self) -> impl Iterator<Item = &Cell> {
         self.cells.iter().filter(|cell| !cell.is_explained())
     }

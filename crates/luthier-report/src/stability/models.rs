@@ -66,7 +66,7 @@ fn eye(theta_deg: f64) -> DVec3 {
     DVec3::new(sin, 0.0, cos)
 }
 
-/// What albedos are compared with.
+/// Name of the truth that albedos are compared with.
 pub(super) fn truth_name(case: &StressCase) -> &'static str {
     if case.aim.thetas_deg().is_empty() {
         "laws only"

@@ -13,7 +13,7 @@ use crate::{Device, FLOOR, Form, Pair, ReportError, Subject, TableTerms, Weights
 /// Below this a negative channel is rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// What f64 makes of a case: exact terms for the form with tables and for the one without, and the tables.
+/// Values of a case in f64: exact terms for the form with tables and for the one without, and the tables.
 struct Expected {
     pairs: Vec<Pair>,
     baked: Vec<Rgb>,
@@ -90,7 +90,7 @@ fn cell(level: Level, method: &str, case: &StressCase, pairs: &[Pair], found: &[
     Cell::new(level, method, &case.id, fault, if fault.is_some() { below } else { worst })
 }
 
-/// What rounding is relative to: the brightest value, at least 1.
+/// The divisor of rounding errors: the brightest value, at least 1.
 fn bright_floor(values: &[Rgb]) -> f64 {
     values.iter().map(brightest).fold(1.0, f64::max)
 }

@@ -10,7 +10,7 @@ const SIDE: f64 = 13.0;
 const NAMES: f64 = 260.0;
 const HEADS: f64 = 130.0;
 
-/// What the slanted head of the last column takes on the right.
+/// Width that the slanted head of the last column takes on the right.
 const SLANT: f64 = 70.0;
 
 /// The heat map as one SVG: a block of rows for each level, a row for each method, a column for each case. Text and frames are of the

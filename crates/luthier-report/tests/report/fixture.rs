@@ -114,8 +114,8 @@ impl Bake {
         Self { manifest, textures, stacks: named.into_iter().map(|(_, stack)| stack).collect() }
     }
 
-    /// The same with tables that statistical models read: albedos at 16 x 6 nodes, one tile for each of the surfaces in turn, and shares
-    /// that escape through a coat of n = 1.5.
+    /// A bake with tables that statistical models read: albedos at 16 x 6 nodes, one tile for each of the surfaces in turn, and shares that
+    /// escape through a coat of n = 1.5.
     pub(crate) fn statistical(model: ShadingModel) -> Self {
         let mut bake = Self::new();
         let alpha_axis = axis("alpha", 0.0, 1.0, 6, Mapping::Power { exponent: 3.0 });
@@ -220,7 +220,7 @@ fn filled(layout: &AtlasLayout, texel: impl Fn(u32, u32, u32) -> [f64; 3]) -> Im
 pub(crate) struct FakeDevice<'a, S> {
     subject: Subject<'a>,
     spoil: S,
-    /// Otherwise the baked form evaluates the exact spectral terms: a device without table error.
+    /// Whether the baked form reads tables; otherwise it evaluates the exact spectral terms: a device without table error.
     pub(crate) baked_reads_tables: bool,
 }
 

@@ -35,7 +35,7 @@ fn a_limit_is_held_up_to_what_was_found() {
     assert_eq!(report.is_within_budget(), None);
 }
 
-/// What the bake aimed at and missed counts against the limit on the shaders' error, though directions may pass it by.
+/// A tile that misses the aim of the bake counts against the limit on the shaders' error, though directions may pass it by.
 #[test]
 fn a_tile_that_misses_its_aim_breaks_the_limit() {
     let mut bake = Bake::new();
@@ -73,7 +73,7 @@ fn files_answer_for_their_own_tables() {
     assert!(report.limits.iter().all(|l| l.stated_by.starts_with("materials/")));
 }
 
-/// What was not measured cannot be within a limit.
+/// A quantity that was not measured cannot be within a limit.
 #[test]
 fn nothing_to_compare_holds_no_limit() {
     let bake = Bake::new();

@@ -90,7 +90,7 @@ fn what_statistical_models_read_wrong_is_named() {
     }
 }
 
-/// Without its tile there is nothing to judge a statistical model by.
+/// A statistical model cannot be judged without its tile.
 #[test]
 fn a_missing_tile_is_refused() {
     for kind in [TableKind::Fgd, TableKind::Escape] {

@@ -50,7 +50,7 @@ fn every_pitfall_has_cases_or_formulations() {
     assert_eq!(unique.len(), ids.len());
 }
 
-/// What ships is within its tolerance; what was rejected is worse than that, or says what else is against it.
+/// Formulations that ship are within their tolerance; those that were rejected are worse than that, or say what else is against them.
 #[test]
 fn formulations_that_ship_hold_and_those_rejected_say_why() {
     let formulas = formulas();

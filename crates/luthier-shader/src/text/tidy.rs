@@ -194,7 +194,7 @@ fn declared_late(mut lines: Vec<String>) -> Vec<String> {
     lines
 }
 
-/// For a declaration in line `i`: the line that could declare instead, and how.
+/// The line that could declare in place of a declaration in line `i`, and its new text.
 fn late_declaration(lines: &[String], i: usize) -> Option<(usize, String)> {
     let (declared, _) = lines[i].strip_suffix(';')?.split_once(" = ")?;
     let (kind, name) = declared.trim_start().split_once(' ')?;

@@ -20,8 +20,8 @@ use crate::scenes::{FLAKES, GLITTER, conductor, dielectric, flaked, glitter, mat
 /// Sines, logarithms and square roots of f32, a few operations deep.
 const NORMAL_TOLERANCE: f64 = 2e-6;
 
-/// Of f cos_theta_i: directions in f32 are off by 6e-8, 3e-6 of the width of the narrowest lobe, plus rounding; tilted normals add
-/// [`NORMAL_TOLERANCE`] over that width.
+/// Tolerance of f cos_theta_i: directions in f32 are off by 6e-8, 3e-6 of the width of the narrowest lobe, plus rounding; tilted normals
+/// add [`NORMAL_TOLERANCE`] over that width.
 const EVAL_TOLERANCE: f64 = 3e-4;
 const FLOOR: f64 = 1e-3;
 
@@ -266,7 +266,7 @@ fn patina_without_transition_is_a_step() {
     }
 }
 
-/// At a place without textures a material with effects is its layers.
+/// A material with effects is its layers at a place without textures.
 #[test]
 fn without_textures_only_the_layers_are_left() {
     for material in [flaked(), patina(), glitter()] {

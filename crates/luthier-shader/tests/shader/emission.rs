@@ -294,7 +294,7 @@ fn one_material_can_be_constants() {
     assert!(matches!(emit_constant(&set, Form::Baked, Target::Wgsl), Err(ShaderError::NotOne(2))));
 }
 
-/// Without a table of D the form `baked` has the functions of `full` for it, and reads the others as before.
+/// The form `baked` without a table of D has the functions of `full` for it, and reads the others as before.
 #[test]
 fn without_its_table_d_is_a_closed_form() {
     let closed: Vec<TableFace> = tables().into_iter().filter(|t| t.kind != TableKind::Distribution).collect();

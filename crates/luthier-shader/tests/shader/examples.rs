@@ -18,7 +18,7 @@ const TEMPLATE: &str = "/* glsl */ `";
 /// Where it pastes the text of the bake.
 const PASTE: &str = "${glsl}";
 
-/// What Bevy's modules declare, as far as shaders use it here.
+/// Declarations of Bevy's modules, as far as shaders use them here.
 const BEVY: &str = include_str!("bevy.wgsl");
 /// The group of a material in Bevy.
 const BEVY_GROUP: &str = "#{MATERIAL_BIND_GROUP}";

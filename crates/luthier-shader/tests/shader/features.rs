@@ -12,7 +12,7 @@ use crate::arithmetic::directions;
 use crate::machine::{Machine, Value, vector};
 use crate::scenes::{FLAKES, GLITTER, clear, conductor, dielectric, diffuse, filmed, material, patina, tables};
 
-/// What is shown moves values by more than this; what is not shown moves none.
+/// Change of values that a shown feature exceeds; a feature that is not shown moves none.
 const SHOWN: f32 = 0.02;
 
 /// A shader of one material, and a place of its surface.
@@ -124,7 +124,7 @@ fn mapped(material: MaterialEntry) -> MaterialEntry {
     MaterialEntry { maps: vec![map], ..material }
 }
 
-/// By how much values move when a feature is taken away; `None` where the shader is not where it is taken away.
+/// Change of values when a feature is taken away; `None` where the shader is not where it is taken away.
 fn change(model: ShadingModel, feature: Feature, form: Form) -> Option<f32> {
     let shader = |layers: &[LayerRecord]| Shader::new(of(model, layers), form);
     let tilted = || vector(&[0.28, 0.0, 0.96]);

@@ -12,7 +12,7 @@ use tempfile::TempDir;
 use crate::examples;
 use crate::scenes::{clear, conductor, material, sets, tables};
 
-/// What SPIR-V emitted here is for.
+/// Environment that SPIR-V emitted here is for.
 const VULKAN: &str = "vulkan1.1";
 
 /// Whether a program can be started. On a build server it must be.

@@ -62,7 +62,7 @@ fn pages(root: &Path) -> Vec<PathBuf> {
     files.map(|entry| entry.unwrap().path()).filter(|path| path.extension().is_some_and(|e| e == "md")).collect()
 }
 
-/// What a page names in backquotes or links to, and looks like a file of the repository: not what a bake writes.
+/// Paths that a page names in backquotes or links to, and that look like files of the repository: not those that a bake writes.
 fn named(text: &str) -> Vec<&str> {
     let quoted = text.split('`').skip(1).step_by(2);
     let is_ours = |path: &&str| {

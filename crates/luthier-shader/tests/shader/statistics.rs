@@ -157,7 +157,7 @@ fn materials() -> Vec<MaterialEntry> {
     materials
 }
 
-/// Also at grazing angles, up to 89.9 degrees.
+/// Pairs of directions, also at grazing angles, up to 89.9 degrees.
 fn all_directions() -> Vec<([f64; 3], [f64; 3])> {
     let grazing = (0..120).map(|i| {
         let cos = |k: u32| 0.0017 * 1.6f64.powi(((i * k) % 12) as i32);
@@ -273,7 +273,7 @@ fn narrow_lobes_keep_their_shape() {
     }
 }
 
-/// What all lobes carry together, on its way through f32.
+/// All lobes together carry no more than arrives, and all of it on a white base, on its way through f32.
 #[test]
 fn lobes_carry_no_more_than_arrives_and_all_of_it_on_a_white_base() {
     let white = || LayerRecord { fgd_tile: Some(4), ..conductor() };
@@ -315,7 +315,7 @@ fn lobes_carry_no_more_than_arrives_and_all_of_it_on_a_white_base() {
     }
 }
 
-/// What textures say of a place is what another material would say of itself.
+/// Factors of textures at a place change slopes, slabs and films to those of another material.
 #[test]
 fn places_change_slopes_slabs_and_films() {
     let probe = "fn probe(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> { var place = luthier_place(); \

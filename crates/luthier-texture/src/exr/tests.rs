@@ -2,8 +2,8 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// By the reference library (OpenEXR 3.5.3 for Python): 8 x 40, ZIP, row + column / 8 + 10 * channel, the string
-/// attributes `luthier` and `other`.
+/// A file by the reference library (OpenEXR 3.5.3 for Python): 8 x 40, ZIP, row + column / 8 + 10 * channel, the string attributes
+/// `luthier` and `other`.
 const OPENEXR: &[u8] = include_bytes!("tests/openexr.exr");
 
 const NAMES: [&str; 4] = ["R", "G", "B", "A"];
@@ -37,7 +37,7 @@ fn every_channel_count_survives() {
     }
 }
 
-/// What comes after the offset table, by the file layout of openexr.org: row number, length, channels by name. A block so
+/// The part of the file after the offset table follows the file layout of openexr.org: row number, length, channels by name. A block so
 /// small does not shrink, so it is stored as it is.
 #[test]
 fn the_file_is_by_the_book() {

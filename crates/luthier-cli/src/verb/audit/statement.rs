@@ -9,7 +9,7 @@ use luthier_texture::table::Table;
 use crate::cli::{AuditOptions, NodesName, PresetName};
 use crate::failure::{Failure, Outcome};
 
-/// What an engine's tables hold.
+/// Contents of an engine's tables.
 struct Preset {
     model: &'static str,
     axes: &'static str,
@@ -68,7 +68,7 @@ pub(super) fn statement(options: &AuditOptions, table: &Table) -> Outcome<(State
     Ok((statement, words))
 }
 
-/// What channels hold where nobody says.
+/// Terms of the channels where the command line states none.
 fn terms(model: &Model, channels: usize) -> Vec<Term> {
     match (model, channels) {
         (Model::SplitSum { .. }, 1) => vec![Term::Albedo],

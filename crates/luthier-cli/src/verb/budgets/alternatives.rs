@@ -1,4 +1,4 @@
-//! What no search takes unless a target is known, and what none takes at all.
+//! Tables that no search takes unless a target is known, and tables that none takes at all.
 
 use std::fmt::Write as _;
 

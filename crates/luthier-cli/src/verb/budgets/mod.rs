@@ -11,7 +11,7 @@ use crate::failure::{Failure, Outcome, files};
 use crate::materials::{read, read_image, valid};
 use crate::output::print;
 
-/// What does not depend on the materials.
+/// Text of the page that does not depend on the materials.
 const INTRODUCTION: &str = "\
 # Budgets
 

@@ -1,4 +1,4 @@
-//! What is evaluated, in the columns that are asked for.
+//! The function that is evaluated, in the columns that are asked for.
 
 use glam::DVec3;
 use luthier_layers::directional_albedo::over_hemisphere;
@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 use super::{Subject, nearest_channel};
 use crate::cli::EvalOptions;
 
-/// What the numbers of a value are.
+/// Meaning of the numbers of a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Kind {
     Wavelength(f64),
@@ -25,7 +25,7 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    /// As the command line has it; `None` where it asks for nothing particular.
+    /// The kind that the command line asks for; `None` where it asks for nothing particular.
     pub(crate) fn asked(options: &EvalOptions, subject: &Subject) -> Option<Self> {
         match (subject.bins_nm, options.wavelength) {
             (Some(bins_nm), _) => Some(Self::Reradiated(bins_nm)),
@@ -80,7 +80,7 @@ impl Kind {
 /// A directional albedo in the columns.
 pub(crate) struct Albedo {
     pub(crate) values: Vec<Estimate>,
-    /// Of a quadrature the change on the last doubling of its points.
+    /// Change of a quadrature on the last doubling of its points.
     pub(crate) changes: Option<Vec<f64>>,
 }
 

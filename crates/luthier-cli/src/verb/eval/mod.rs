@@ -29,7 +29,7 @@ use values::values;
 /// Wavelength of what is tabulated against the angle, unless another is given.
 const WAVELENGTH_NM: f64 = 550.0;
 
-/// What is evaluated: a model, with all that it takes, of a material.
+/// Subject of an evaluation: a model, with all that it takes, of a material.
 struct Subject {
     model: Box<dyn Model>,
     material: Material,

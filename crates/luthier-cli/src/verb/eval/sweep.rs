@@ -18,7 +18,7 @@ use crate::output::print;
 const THETAS_DEG: [f64; 18] =
     [0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0, 65.0, 70.0, 75.0, 80.0, 85.0];
 
-/// What is tabulated.
+/// Quantity that is tabulated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Sweep {
     Albedo,

@@ -1,4 +1,4 @@
-//! What a figure is.
+//! Definition of a figure, and its results.
 
 use luthier_gpu::ToneMapping;
 use luthier_lut::Image;
@@ -16,12 +16,12 @@ pub(crate) struct Figure {
     pub(crate) title: &'static str,
     /// Paper and number there.
     pub(crate) source: &'static str,
-    /// What the paper shows, what differs here, what to see.
+    /// Text below the figure: what the paper shows, what differs here, what to see.
     pub(crate) caption: &'static str,
     pub(crate) make: fn(&Studio) -> Outcome<Made>,
 }
 
-/// What came of it.
+/// Results of a figure.
 #[derive(Default)]
 pub(crate) struct Made {
     pub(crate) files: Vec<(String, Content)>,
@@ -29,7 +29,7 @@ pub(crate) struct Made {
 }
 
 pub(crate) enum Content {
-    /// As a display shows it, before its transfer function.
+    /// A picture as a display shows it, before its transfer function.
     Picture(Image),
     Plot(Plot),
 }

@@ -75,7 +75,7 @@ fn look(settings: &mut RenderSettings) {
 /// A film on an object.
 struct Coating {
     name: &'static str,
-    /// Of the film, for R, G and B.
+    /// Index of the film, for R, G and B.
     ior: [f64; 3],
     thickness_nm: [f64; 2],
     /// Phong's exponent of both boundaries.
@@ -212,7 +212,7 @@ fn correlated(studio: &Studio) -> Outcome<Made> {
 /// Thickness at which the beams of a film of index 1.6 are in phase at 80 degrees and 525 nm: 525 / (2 1.6 0.788).
 const IN_PHASE_NM: f64 = 208.0;
 
-/// Of figure 6, and for want of others of figure 3.
+/// Index of the film of figure 6, and for want of others of figure 3.
 const COMBINED_IOR: [f64; 3] = [1.5, 1.6, 1.8];
 
 fn combined(studio: &Studio) -> Outcome<Made> {

@@ -19,7 +19,7 @@ use crate::progress::Bar;
 use figure::{Content, Figure, Made};
 use studio::Studio;
 
-/// All of them, in the order of the page.
+/// All figures, in the order of the page.
 fn figures() -> Vec<Figure> {
     [elek::FIGURES.as_slice(), &elek_places::FIGURES, &granier::FIGURES, &yamaguchi::FIGURES, &course::FIGURES].concat()
 }

@@ -1,4 +1,4 @@
-//! What is written about figures.
+//! Texts about figures.
 
 use std::fmt::Write;
 use std::path::Path;

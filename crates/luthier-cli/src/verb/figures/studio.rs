@@ -76,7 +76,7 @@ impl Studio {
         self.rendered(&memory_bake::bake(materials)?, form, shape, adjust)
     }
 
-    /// The same of what is baked.
+    /// Renders each material of a bake, linear.
     pub(crate) fn rendered(
         &self,
         artefacts: &Artefacts,

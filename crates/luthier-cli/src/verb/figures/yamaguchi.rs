@@ -28,7 +28,7 @@ struct Brushing {
     base: [f64; 3],
 }
 
-/// As their names say; the paper's numbers are in a supplement that we do not have.
+/// Brushings as their names say; the paper's numbers are in a supplement that we do not have.
 const BRUSHINGS: [Brushing; 3] = [
     Brushing { name: "isotropic", coat: [0.1, 0.1, 0.0], base: [0.3, 0.3, 0.0] },
     Brushing { name: "one way", coat: [0.25, 0.06, 0.0], base: [0.45, 0.12, 0.0] },

@@ -1,4 +1,4 @@
-//! What a report shows beside the judgement: searches of materials alone, models against paths, costs, stability, choices.
+//! Evidence that a report shows beside the judgement: searches of materials alone, models against paths, costs, stability, choices.
 
 use std::path::Path;
 
@@ -17,14 +17,14 @@ use crate::failure::{Failure, Outcome};
 use crate::input;
 use crate::materials::read_image;
 
-/// Of the paths: the first family of random numbers.
+/// First family of random numbers of the paths.
 const SEED: u64 = 1;
 
-/// What files say that the command line names.
+/// Contents of the files that the command line names.
 pub(super) struct Given {
     costs: Option<Costs>,
     pub(super) stability: Option<Stability>,
-    /// What they are, for the provenance.
+    /// Names and descriptions of the files, for the provenance.
     pub(super) files: Vec<(String, String)>,
 }
 
@@ -96,7 +96,7 @@ pub(super) fn add(
     Ok(())
 }
 
-/// What the manifest says of why each model was chosen: a bake of a scene does.
+/// Adds the manifest's reasons for the choice of each model, which a bake of a scene has.
 fn choices(report: &mut Report, manifest: &Manifest) {
     let Some(choice) = &manifest.choice else { return };
     for (material, choice) in report.materials.iter_mut().zip(&choice.materials) {

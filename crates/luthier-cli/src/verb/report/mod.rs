@@ -59,7 +59,7 @@ pub(crate) fn run(options: &ReportOptions) -> Outcome {
     if report.is_within_budget() == Some(false) { Err(Failure::Verdict) } else { Ok(()) }
 }
 
-/// What identifies the run.
+/// Facts that identify the run.
 fn provenance(folder: &BakeFolder, options: &ReportOptions, given: &evidence::Given) -> Vec<(String, String)> {
     let mut out = vec![
         ("judged by".to_owned(), GENERATOR.to_owned()),
@@ -107,7 +107,7 @@ fn asked(options: &ReportOptions) -> Asked {
     }
 }
 
-/// What a material file asks of its tables.
+/// The budget that a material file states for its tables.
 fn budget(material: &Material) -> luthier_lut::Budget {
     let luthier_material::BudgetSettings { max_abs, max_rel, delta_e, max_bytes, max_cost } = material.budget;
     luthier_lut::Budget { max_abs, max_rel, delta_e, max_bytes, max_cost }
@@ -151,7 +151,7 @@ fn changed(source: &str) -> Failure {
 #[cfg(feature = "gpu")]
 type Runner = crate::device::Shaders;
 
-/// Nothing runs shaders.
+/// The runner of a build that runs no shaders.
 #[cfg(not(feature = "gpu"))]
 type Runner = NoShaders;
 

@@ -54,7 +54,7 @@ impl Made {
 
 /// Why a form will not do.
 enum Refusal {
-    /// No model holds.
+    /// No model holds the budget.
     Model(String),
     /// Tables are too large, too coarse or of the wrong format: without tables it may do.
     Tables(String),
@@ -154,7 +154,7 @@ impl<'a> Director<'a> {
     }
 }
 
-/// What of the tables the target has no room for.
+/// Words on the tables that the target has no room for.
 fn unfit(scene: &Scene, made: &Made) -> Option<String> {
     let bytes = made.bytes();
     if let Some(most) = scene.target.max_bytes.filter(|most| bytes > *most) {

@@ -1,4 +1,4 @@
-//! What the numbers say, in words and by model. Every sentence is made from them.
+//! Findings from the numbers, in words and by model. Every sentence is made from them.
 
 use super::tables::{Kind, number, table};
 use crate::models::{CONTROL, MaterialModels, ModelErrors, ModelsReport};
@@ -6,7 +6,7 @@ use crate::models::{CONTROL, MaterialModels, ModelErrors, ModelsReport};
 /// An albedo this much above 1 is no matter of noise or quadrature.
 const GAIN: f64 = 0.005;
 
-/// What counts as close, for either error.
+/// Largest error that counts as close, of either kind.
 const CLOSE: f64 = 0.05;
 
 /// Errors of one model over all materials.

@@ -14,7 +14,7 @@ const FAMILIES: [(&str, &[&str]); 5] = [
 /// The title for models of no family.
 const OTHERS: &str = "Others";
 
-/// Which error.
+/// Kind of error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Albedo,
