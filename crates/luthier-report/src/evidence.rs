@@ -39,6 +39,17 @@ pub struct ShaderCost {
     pub texture_reads: i64,
 }
 
+/// The cost of a shader that was compiled for a surface of layers of the same kinds: inverse throughput on RDNA 2, in cycles per wave of 64.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ShapeCost {
+    /// Cycles of the table-reading form.
+    pub baked: u32,
+    /// Cycles of the table-free form.
+    pub full: u32,
+    /// Whether the surface is only similar, because none of these layers was compiled.
+    pub is_of_similar: bool,
+}
+
 /// A model against the reference of whole stacks: the largest errors over the views of [`crate::judge_models`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AgainstReference {

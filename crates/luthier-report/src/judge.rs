@@ -163,6 +163,7 @@ pub fn judge(
             against_reference: Vec::new(),
             alone: Vec::new(),
             picture: None,
+            shape_cost: None,
             choice: None,
         };
         let read = TableTerms::new(subject, index, device_weights.unwrap_or(Weights::EightBit))?;

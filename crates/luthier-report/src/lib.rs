@@ -62,7 +62,7 @@ pub use device::Device;
 pub use directions::{DirectionSet, Pair};
 pub use error::ReportError;
 pub use evidence::{
-    AgainstReference, Costs, Exhibit, Exhibits, PictureErrors, ReferencePaths, ShaderCost, StabilitySummary,
+    AgainstReference, Costs, Exhibit, Exhibits, PictureErrors, ReferencePaths, ShaderCost, ShapeCost, StabilitySummary,
 };
 pub use exceptions::{Cause, Exception, Factor, Part};
 pub use flip::lightness_chroma_hue;

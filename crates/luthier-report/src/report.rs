@@ -3,7 +3,7 @@
 use luthier_lut::{AtlasLayout, ColorMode, ErrorStats, Search, ShadingModel, TableKind, TexelFormat};
 use serde::{Deserialize, Serialize};
 
-use crate::evidence::{AgainstReference, Costs, Exhibits, PictureErrors, ReferencePaths, StabilitySummary};
+use crate::evidence::{AgainstReference, Costs, Exhibits, PictureErrors, ReferencePaths, ShapeCost, StabilitySummary};
 use crate::exceptions::Exception;
 use crate::judge::UNCERTAINTY_MARGIN;
 use crate::limits::Limit;
@@ -168,6 +168,8 @@ pub struct MaterialReport {
     pub alone: Vec<Search>,
     /// Its pictures, compared.
     pub picture: Option<PictureErrors>,
+    /// The cost of its shader, by the kinds of its layers; `None` where the caller does not know it.
+    pub shape_cost: Option<ShapeCost>,
     /// Why its model was chosen: what a bake of a scene says in its manifest.
     pub choice: Option<serde_json::Value>,
 }

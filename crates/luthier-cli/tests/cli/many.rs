@@ -91,7 +91,7 @@ fn what_no_texture_holds_is_refused_before_any_work() {
     run.fails(1, &[table, "8192 x 8192", "holds 4", "`size` in [bake.fgd]", "several folders"]);
     let check = workshop.run(&["check", "m", "--model", "belcour"]).exits(1);
     check.says(&["m/0.toml:2", table, "holds 4"]);
-    workshop.run(&["check", "m"]).exits(0);
+    workshop.run(&["check", "m/0.toml", "m/1.toml", "m/2.toml", "m/3.toml", "--model", "belcour"]).exits(0);
     // One such tile takes minutes.
     assert!(start.elapsed().as_secs() < 60);
     assert!(!workshop.path("out").exists());

@@ -32,9 +32,13 @@ fn judged(report: &Report) -> Compared {
     shown(report)[0]
 }
 
-/// Cycles of the shader that ships, in a form, if costs were given.
+/// Cycles of the shader that ships, in a form: of this shader if costs were given, else of one for layers of the same kinds.
 fn cycles(report: &Report, material: &MaterialReport, form: &str) -> Option<f64> {
-    let shaders = of_shaders(report, material, report.costs.as_ref()?);
+    let Some(costs) = &report.costs else {
+        let cost = material.shape_cost?;
+        return Some(f64::from(if form == "full" { cost.full } else { cost.baked }));
+    };
+    let shaders = of_shaders(report, material, costs);
     let ships = shaders.iter().find(|s| s.row.model == material.model && s.row.form == form)?;
     Some(ships.row.inverse_throughput.max(1) as f64)
 }
@@ -121,7 +125,13 @@ fn chart(out: &mut String, report: &Report) {
     let (x_title, note) = if has_costs {
         (
             format!("cycles per wave of 64, {}, inverse throughput; compiled, not timed", FAMILY.to_uppercase()),
-            "Cost against largest error: better is left and below.",
+            match &report.costs {
+                Some(_) => "Cost against largest error: better is left and below.",
+                None => {
+                    "Cost against largest error: better is left and below. The cost is that of a shader for layers of the same kinds with D in closed form, which \
+                     comes with luthier; that of these shaders is measured by luthier cost --json and shown by luthier report --cost."
+                }
+            },
         )
     } else {
         (

@@ -5,7 +5,8 @@ use luthier_lut::{
     TexelFormat,
 };
 use luthier_report::{
-    AgainstReference, Costs, Exhibit, Exhibits, PictureErrors, ReferencePaths, Report, Settings, ShaderCost, judge,
+    AgainstReference, Costs, Exhibit, Exhibits, PictureErrors, ReferencePaths, Report, Settings, ShaderCost, ShapeCost,
+    judge,
 };
 
 use crate::fixture::Bake;
@@ -197,6 +198,12 @@ fn all_materials_are_in_one_chart() {
     assert!(bytes.contains("No cost of shaders was given") && bytes.contains("bytes of the tables"), "{bytes}");
     // Of the fixture's tables each material reads some.
     assert!(bytes.contains("KiB of tables") || bytes.contains(" B of tables"), "{bytes}");
+    for material in &mut report.materials {
+        material.shape_cost = Some(ShapeCost { baked: 77, full: 212, is_of_similar: false });
+    }
+    let kinds = chart(&report.to_html(&Exhibits::default()));
+    assert_eq!(kinds.matches("<a href=\"#material-").count(), 2 * materials, "baked and full");
+    assert!(kinds.contains("77 cycles, ") && kinds.contains("for layers of the same kinds"), "{kinds}");
     let exhibits = filled(&mut report);
     let html = report.to_html(&exhibits);
     let costs = chart(&html);

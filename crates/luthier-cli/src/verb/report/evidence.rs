@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use luthier_lut::Manifest;
+use luthier_lut::{Form, Manifest, ShadingModel};
 use luthier_material::Material;
 use luthier_report::stability::Stability;
 use luthier_report::{
-    Costs, ModelSettings, ModelSubject, ReferencePaths, Report, StabilitySummary, judge_shading_models,
+    Costs, ModelSettings, ModelSubject, ReferencePaths, Report, ShapeCost, StabilitySummary, judge_shading_models,
 };
+use luthier_scene::CostTable;
 use rayon::prelude::*;
 use serde_json::json;
 
@@ -66,6 +67,10 @@ pub(super) fn add(
         costs.rows.retain(|row| !row.constant && report.materials.iter().any(|m| m.name == row.material));
         report.costs = Some(costs);
     }
+    let costs = CostTable::shipped();
+    for (judged, material) in report.materials.iter_mut().zip(materials) {
+        judged.shape_cost = shape_cost(&costs, judged.model, material);
+    }
     report.stability = given.stability.as_ref().map(StabilitySummary::of);
     // Fixed defaults were not searched for, whatever a search would find.
     if !manifest.searches.is_empty() && manifest.generator == GENERATOR {
@@ -94,6 +99,14 @@ pub(super) fn add(
         report.reference = Some(ReferencePaths { paths: samples.get(), seed: SEED });
     }
     Ok(())
+}
+
+/// What the table that scenes choose by says of the shader of a material.
+fn shape_cost(costs: &CostTable, model: ShadingModel, material: &Material) -> Option<ShapeCost> {
+    let shape = luthier_scene::shape(&material.stack);
+    let (baked, is_of_similar) = costs.cost(model, Form::Baked, &shape)?;
+    let (full, _) = costs.cost(model, Form::Full, &shape)?;
+    Some(ShapeCost { baked: baked as u32, full: full as u32, is_of_similar })
 }
 
 /// Adds the manifest's reasons for the choice of each model, which a bake of a scene has.
