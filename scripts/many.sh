@@ -21,7 +21,7 @@ mega() { awk -v bytes="$1" 'BEGIN { printf "%.1f", bytes / 1e6 }'; }
 {
   echo "# Many materials"
   echo
-  echo "Made by \`scripts/many.sh\`: libraries of generated materials (\`crates/luthier-cli/examples/library.rs\`, seed 1) of one to four"
+  echo "Made by \`scripts/many.sh\`: libraries of generated materials (\`crates/luthier-material/examples/library\`, seed 1) of one to four"
   echo "layers, baked by \`luthier bake FOLDER\` with \`$(nproc)\` cores. Time is that of the whole command, memory its largest resident set; tables"
   echo "are the KTX2 files, as they ship. Sizes are in MB of 10^6 bytes. Limits are in [manifest.md](manifest.md)."
   echo
@@ -31,7 +31,7 @@ mega() { awk -v bytes="$1" 'BEGIN { printf "%.1f", bytes / 1e6 }'; }
 
 for count in "${sizes[@]}"; do
   rm -rf "$out/$count" && mkdir -p "$out/$count"
-  cargo run --locked --quiet -p luthier-cli --example library -- "$count" "$out/$count/materials"
+  cargo run --locked --quiet -p luthier-material --example library -- "$count" "$out/$count/materials"
   layers=$(cat "$out/$count/materials/"*.toml | grep -c '^type = "\(dielectric\|conductor\|diffuse\)"')
   /usr/bin/time -f '%e %U %S %M' -o "$out/$count/time" "$luthier" bake "$out/$count/materials" --out "$out/$count/out" --quiet 2>/dev/null
   read -r elapsed user system kib <"$out/$count/time"

@@ -46,6 +46,10 @@ pub fn interface(above: Complex64, below: Complex64, cos_theta_i: f64) -> Polari
 /// e^{i delta}) with delta = 4 pi n cos d / lambda (Born and Wolf sec. 7.6; Parratt 1954). Exact for absorbing films
 /// and bases and under (frustrated) total reflection; continuous as a thickness goes to zero.
 pub fn coated(above: Complex64, films: &[FilmLayer], below: Complex64, cos_theta_i: f64) -> Polarised {
+    // A film of the index of a clear medium above it has no upper boundary: it delays the wave. At grazing incidence its q is 0 too.
+    let matched = films.iter().take_while(|film| above.im == 0.0 && film.ior == above).count();
+    let films = &films[matched..];
+
     // Along the normal, in units of the vacuum wavenumber: q = n cos theta, q^2 = n^2 - (n_above sin theta_above)^2; written
     // so that nothing cancels between nearly equal indices.
     let q_above = above * cos_theta_i;
@@ -205,6 +209,18 @@ mod tests {
     fn index_matched_reflects_nothing_even_at_grazing() {
         for mu in [0.0, 1e-7, 0.5, 1.0] {
             assert_eq!(interface(c(1.3, 0.0), c(1.3, 0.0), mu).unpolarised(), 0.0);
+            let film = [FilmLayer { ior: c(1.3, 0.0), waves: 0.7 }];
+            assert_eq!(coated(c(1.3, 0.0), &film, c(1.3, 0.0), mu).unpolarised(), 0.0);
+        }
+    }
+
+    /// A film of the index above it delays the wave, and another below it acts as it does alone.
+    #[test]
+    fn a_matched_film_changes_nothing() {
+        let [matched, film] = [c(1.3, 0.0), c(1.7, 0.01)].map(|ior| FilmLayer { ior, waves: 0.4 });
+        for mu in [0.0, 1e-7, 0.1, 0.5, 1.0] {
+            let alone = coated(c(1.3, 0.0), &[film], c(2.4, 1.1), mu);
+            assert_eq!(coated(c(1.3, 0.0), &[matched, film], c(2.4, 1.1), mu), alone);
         }
     }
 

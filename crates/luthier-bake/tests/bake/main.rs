@@ -15,7 +15,7 @@ mod film_table;
 mod films;
 mod lean;
 // Materials by number, which the tests of the command bake too.
-#[path = "../../../luthier-cli/tests/cli/library.rs"]
+#[path = "../../../luthier-material/examples/library/library.rs"]
 mod library;
 mod many;
 mod materials;

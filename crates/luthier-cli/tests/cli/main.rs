@@ -27,6 +27,7 @@ mod gallery;
 mod help;
 mod hostile;
 mod ior;
+#[path = "../../../luthier-material/examples/library/library.rs"]
 mod library;
 mod many;
 // Runs shaders without a GPU.

@@ -1,6 +1,5 @@
 //! Writes a library of plausible materials: `cargo run --example library -- COUNT FOLDER [SEED]`.
 
-#[path = "../tests/cli/library.rs"]
 mod library;
 
 use anyhow::{Context, Result};
