@@ -31,13 +31,12 @@ pub(crate) fn find_too_many(sources: &mut [Source], shading: &Shading) {
     let Some(materials) = usable(sources) else { return };
     let materials = shaded(materials, shading);
     let options = luthier_bake::Options { search: false, ..luthier_bake::Options::default() };
-    match luthier_bake::outline_with(&materials, &options, &read_image) {
-        Err(error @ (BakeError::TooManyTiles { .. } | BakeError::TooManyLayers { .. })) => {
-            let diagnostic = materials[0].diagnostic(Severity::Error, "name", error.to_string(), None);
-            add(&mut sources[0], vec![diagnostic]);
-        }
-        // Anything else has been told.
-        Ok(_) | Err(_) => {}
+    // Anything else has been told.
+    if let Err(error @ (BakeError::TooManyTiles { .. } | BakeError::TooManyLayers { .. })) =
+        luthier_bake::outline_with(&materials, &options, &read_image)
+    {
+        let diagnostic = materials[0].diagnostic(Severity::Error, "name", error.to_string(), None);
+        add(&mut sources[0], vec![diagnostic]);
     }
 }
 
