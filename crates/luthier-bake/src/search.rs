@@ -58,12 +58,7 @@ pub const AIM: f64 = NEAR * 5e-4;
 impl Found {
     /// Whether some candidate holds a budget, or nearly.
     pub(crate) fn comes_near(&self, budget: &Budget) -> bool {
-        self.candidates.iter().any(|c| is_near(budget, c))
-    }
-
-    /// The candidates that come near a budget.
-    fn near(self, budget: &Budget) -> Vec<CandidateForm> {
-        self.candidates.into_iter().filter(|c| is_near(budget, c)).map(|c| c.form).collect()
+        self.candidates.iter().any(|c| budget.excess(&c.error) <= NEAR)
     }
 
     pub(crate) fn new(kind: TableKind, fixed_cost: f64, candidates: Vec<Candidate>) -> Self {
@@ -76,14 +71,9 @@ impl Found {
     /// Keeps the candidates whose read costs at most half as much again as one of the fixed default, for bakes without a stated budget.
     fn affordable(mut self) -> Self {
         let most = 1.5 * self.fixed_cost;
-        self.retain(|c| c.cost <= most);
-        self
-    }
-
-    /// Drops candidates, none of which the bake has measured yet.
-    fn retain(&mut self, is_kept: impl Fn(&Candidate) -> bool) {
-        self.candidates.retain(is_kept);
+        self.candidates.retain(|c| c.cost <= most);
         self.confirmed.truncate(self.candidates.len());
+        self
     }
 
     /// Whether the bake's own measurement of a candidate is no worse than that of the search; the worse counts from now on.
@@ -219,10 +209,6 @@ pub(crate) fn measured<'p>(
 /// A table of one row.
 fn row_form(x: Axis, format: TexelFormat, base: RowBase) -> CandidateForm {
     CandidateForm::Table { x, y: None, format, base }
-}
-
-fn is_near(budget: &Budget, candidate: &Candidate) -> bool {
-    budget.excess(&candidate.error) <= NEAR
 }
 
 /// How devices weigh texels.

@@ -1,8 +1,6 @@
 //! Fresnel rows: plain or over Schlick's form, in every format, mapping and size.
 
-use luthier_lut::{
-    Axis, Candidate, CandidateForm, Mapping, MeasuredError, RowBase, SchlickBase, TableKind, TexelFormat,
-};
+use luthier_lut::{Axis, Candidate, Mapping, MeasuredError, RowBase, SchlickBase, TableKind, TexelFormat};
 use luthier_optics::Rgb;
 use luthier_optics::interpolation::cubic_stencil;
 use rayon::prelude::*;
@@ -96,9 +94,6 @@ impl Truth {
 /// Rows that candidates are measured on, the hardest of a plan: enough for the worst to be among them.
 const HARDEST: usize = 64;
 
-/// Most texels of a row in a plan of more rows than [`HARDEST`]: what a few rows take beyond it, every row would have.
-const LONGEST: u32 = 128;
-
 /// Equal steps of the root of the cosine by which rows are compared.
 const STEPS: u32 = 64;
 
@@ -158,47 +153,26 @@ pub(super) fn candidates(plan: &Plan, colors: bool) -> Option<Found> {
     of_rows(plan, &truths(&rows).iter().collect::<Vec<_>>(), rows.len(), colors)
 }
 
-/// The affordable candidates for the rows that one of them serves together, the most that one does, and which rows it does not; for many
-/// rows the candidates of at most [`LONGEST`] texels.
+/// The affordable candidates for the rows that are served by some of them, and which rows are not.
 pub(super) fn served(plan: &Plan) -> Option<Found> {
     let rows = rows(plan);
-    let of = |truths: &[&Truth]| {
-        let mut found = of_rows(plan, truths, rows.len(), false)?.affordable();
-        if rows.len() > HARDEST {
-            found.retain(|c| matches!(&c.form, CandidateForm::Table { x, .. } if x.size <= LONGEST));
-        }
-        Some(found)
-    };
+    let of = |truths: &[&Truth]| of_rows(plan, truths, rows.len(), false).map(Found::affordable);
     let all = of(&truths(&rows).iter().collect::<Vec<_>>())?;
     if all.comes_near(&DEFAULT_BUDGET) {
         return Some(all);
     }
-    // The rows that some candidate serves, and for each candidate which of them.
-    let (mut able, mut left_out) = (Vec::new(), Vec::new());
-    let mut serves: Vec<(CandidateForm, Vec<usize>)> = Vec::new();
+    let (mut served, mut left_out) = (Vec::new(), Vec::new());
     for (tile, job) in &rows {
         let truth = Truth::new(job);
-        let near = of(&[&truth]).map_or_else(Vec::new, |found| found.near(&DEFAULT_BUDGET));
-        if near.is_empty() {
+        if !of(&[&truth]).is_some_and(|found| found.comes_near(&DEFAULT_BUDGET)) {
             left_out.push(*tile);
-        } else if able.len() + 1 < HARDEST {
-            for form in near {
-                match serves.iter_mut().find(|(other, _)| *other == form) {
-                    Some((_, rows)) => rows.push(able.len()),
-                    None => serves.push((form, vec![able.len()])),
-                }
-            }
-            able.push((*tile, truth));
+        } else if served.len() + 1 < HARDEST {
+            served.push(truth);
         } else {
             break;
         }
     }
-    // What most are served by.
-    let most = serves.into_iter().map(|(_, rows)| rows).reduce(|a, b| if b.len() > a.len() { b } else { a });
-    let most = most.unwrap_or_default();
-    left_out.extend(able.iter().enumerate().filter(|(i, _)| !most.contains(i)).map(|(_, (tile, _))| *tile));
-    let served: Vec<&Truth> = most.iter().map(|&i| &able[i].1).collect();
-    let found = of(&served).unwrap_or(all);
+    let found = of(&served.iter().collect::<Vec<_>>()).unwrap_or(all);
     Some(Found { left_out, is_whole: rows.len() <= HARDEST, ..found })
 }
 

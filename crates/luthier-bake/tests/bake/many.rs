@@ -25,20 +25,6 @@ fn bake(materials: &[Material]) -> Bake {
     bake_with(materials, &options, &|_, _| Err("no images here".to_owned()), &Silent).unwrap()
 }
 
-/// Rows of a library disagree about their axis, and the fringes of a thick film take more texels than others would have without them:
-/// the search takes what serves most rows, and states the misses.
-#[test]
-fn few_rows_do_not_cost_the_others() {
-    let baked = luthier_bake::bake(&materials(0..70), &|_, _| Err("no images here".to_owned()), &Silent).unwrap();
-    let rows = atlas(&baked, TableKind::Fresnel);
-    assert!(rows.tiles.len() > 64, "{}", rows.tiles.len());
-    assert!(rows.layout.x.size <= 128, "{:?}", rows.layout.x);
-    let missed = rows.tiles.iter().filter(|tile| tile.miss().is_some()).count();
-    assert!(50 * missed <= rows.tiles.len(), "{missed} of {}", rows.tiles.len());
-    let over = |tile: &&luthier_lut::Tile| tile.error.max_abs_err - tile.error.slack > 2e-3;
-    assert_eq!(rows.tiles.iter().filter(over).count(), missed);
-}
-
 /// The texels of a tile.
 fn texels(atlas: &Atlas, tile: u32) -> Vec<&[f32]> {
     let ([x, y], [width, height]) = (atlas.layout.origin(tile), atlas.layout.tile_size());
