@@ -17,7 +17,7 @@
 //! of their coefficients. [`GranierHeidrich`] scales them so that each carries its coefficient, the transmitted one in the film,
 //! where its directions are.
 //!
-//! What is then wrong with it is the paper's, and measured in the tests:
+//! The errors that remain are the paper's, and the tests measure them:
 //!
 //! - both beams are added at full strength: where they are in phase the specular part returns `F + T^2 + 2 sqrt(F) T`, for n = 1.5
 //!   1.346 at the normal and 1.939 at 80 degrees, at the peaks (an eye under a white sky sees 1.316 and 1.483, because the

@@ -11,7 +11,7 @@
 //! f_2 is again a layered surface; T_12 = T_21 = 1 - F at the half vector (the course's shader takes both there, see
 //! [`Transmission`]); G is of V-cavities. Of the distributions the course leaves free, each surface brings its own.
 //!
-//! What is wrong with it, and measured in the tests: radiance is not compressed by 1/n^2 on its way out, so that a smooth
+//! The model errs in two ways, which the tests measure: radiance is not compressed by 1/n^2 on its way out, so that a smooth
 //! coat over a white base returns about twice what it receives; and light that comes back from the underside of an
 //! interface is lost or, by `t`, made up for where facets hide each other. [`crate::weidlich_wilkie_corrected`] mends
 //! both.

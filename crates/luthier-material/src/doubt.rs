@@ -166,7 +166,8 @@ fn smoother_than_above(layer: &Layer, roughest: f64, model: Option<ModelSetting>
         return;
     }
     let (effect, hint) = match model {
-        None | Some(ModelSetting::Elek) => {
+        None => ("the default model, `elek`, raises it", format!("that model will use {}", at.in_its_terms(roughest))),
+        Some(ModelSetting::Elek) => {
             ("the model `elek` raises it", format!("the model will use {}", at.in_its_terms(roughest)))
         }
         Some(ModelSetting::WeidlichWilkie) => (

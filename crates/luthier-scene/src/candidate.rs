@@ -53,7 +53,7 @@ pub(crate) fn color_of(mode: ColorMode, material: &Material) -> Color {
 impl Candidate {
     /// The candidates for a material, cheapest first; of equal cost those that leave out less first, then the material's own colour.
     ///
-    /// What is left out must make a model cheaper. Models without the flakes or the patina of a material are none of them.
+    /// A candidate leaves out a part of the material only if that makes it cheaper. No candidate leaves out flakes or a patina.
     pub fn all(material: &Material, form: Form, costs: &CostTable) -> Vec<Self> {
         let own = own_color(material);
         let colors: &[ColorMode] = match (form, own) {

@@ -206,7 +206,7 @@ fn eval(set: &MaterialSet<'_>, features: &Features) -> String {
     if turned {
         format!(
             "{SUMMARY}fn luthier_eval_at(place: LuthierPlace, {parameters}) -> vec3<f32> {{\n{body}}}\n\n\
-             /// The same at a place without textures.\n\
+             /// f cos_theta_i of a material, RGB, at a place without textures: `luthier_eval_at` there.\n\
              fn luthier_eval({parameters}) -> vec3<f32> {{\n    return luthier_eval_at(luthier_place(), material, wi, wo);\n}}\n"
         )
     } else {

@@ -35,6 +35,9 @@ pub(super) fn given(options: &ReportOptions) -> Outcome<Given> {
     if let Some(path) = &options.cost {
         let text = read(path, "costs", &mut out.files)?;
         out.costs = Some(serde_json::from_str(&text).map_err(|source| unusable(path, "luthier cost", source.into()))?);
+    } else {
+        let driver = CostTable::shipped().driver;
+        out.files.push(("costs".to_owned(), format!("shaders for layers of the same kinds; {driver}")));
     }
     if let Some(path) = &options.stability {
         let text = read(path, "stability", &mut out.files)?;
