@@ -73,6 +73,9 @@ for other in release-2 debug-2; do
   diff -r "$work/release-1" "$work/$other" && echo "release-1 = $other"
 done
 
+step "same bytes as in tests/golden.sha256"
+./scripts/golden.sh
+
 step "judging the bake"
 if [ -n "$(missing)" ]; then
   ./target/release/luthier report --out "$work/release-1" --no-device --max-error 2e-2

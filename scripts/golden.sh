@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Compares everything that a bake of `materials` and of each scene writes with tests/golden.sha256; `--update` writes that list anew.
+# Text shaders count without comments and blank lines, the manifest without their hashes: what a shader says of itself may change.
+# Takes half a minute of baking in release.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+list=tests/golden.sha256
+luthier=${LUTHIER:-./target/release/luthier}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+"$luthier" bake materials --out "$work/materials" --quiet 2>/dev/null
+for scene in materials/scenes/*.toml; do
+  "$luthier" bake "$scene" --out "$work/$(basename "$scene" .toml)" --quiet 2>/dev/null
+done
+
+# What of a file counts.
+content() {
+  case $1 in
+    */shaders/*) sed -E 's,[[:space:]]*//.*$,,' "$1" | grep -v '^[[:space:]]*$' ;;
+    */manifest.json) sed '/"path": "shaders\//{n;d;}' "$1" ;;
+    *) cat "$1" ;;
+  esac
+}
+
+(cd "$work" && find . -type f ! -path '*/.*/*' ! -name '.*' | sort) | sed 's,^\./,,' | while read -r file; do
+  printf '%s  %s\n' "$(content "$work/$file" | sha256sum | cut -d' ' -f1)" "$file"
+done >"$work/.list"
+
+if [ "${1-}" = --update ]; then
+  cp "$work/.list" "$list"
+elif ! diff "$list" "$work/.list"; then
+  echo "error: bakes differ from $list; if they should, say why in the commit and run scripts/golden.sh --update"
+  exit 1
+else
+  echo "$(wc -l <"$list") files are as in $list"
+fi
