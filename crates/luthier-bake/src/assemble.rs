@@ -2,11 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use luthier_lut::{
-    Atlas, AtlasLayout, Axis, Budget, CandidateForm, ColorMode, FormatSet, Image, LayerRecord, MaterialConstants,
-    RowBase, Search, ShadingModel, TableKind, TexelFormat, Tile,
-};
-use luthier_material::{BudgetSettings, Material};
+use luthier_lut::{Atlas, AtlasLayout, Axis, FormatSet, Image, RowBase, TableKind, TexelFormat, Tile};
+use luthier_manifest::{Budget, CandidateForm, ColorMode, LayerRecord, MaterialConstants, Search, ShadingModel};
+use luthier_material::Material;
 use luthier_optics::interface::Interface;
 
 use crate::constants::constants;
@@ -286,11 +284,7 @@ fn fitting(found: &mut search::Found, plan: &Plan) {
 
 /// The limits of the materials, the tightest of each; those of the options in their place.
 fn budget(materials: &[Material], given: &Budget) -> Result<Budget, BakeError> {
-    let of = |material: &Material| {
-        let BudgetSettings { max_abs, max_rel, delta_e, max_bytes, max_cost } = material.budget;
-        Budget { max_abs, max_rel, delta_e, max_bytes, max_cost }
-    };
-    let stated = materials.iter().map(of).fold(Budget::default(), |a, b| a.tighter(&b));
+    let stated = materials.iter().map(|material| material.budget).fold(Budget::default(), |a, b| a.tighter(&b));
     let budget = Budget {
         max_abs: given.max_abs.or(stated.max_abs),
         max_rel: given.max_rel.or(stated.max_rel),

@@ -2,7 +2,7 @@
 
 use luthier_layers::monochrome::{Monochrome, in_color};
 use luthier_layers::phong::Coefficients;
-use luthier_lut::{FlakesRecord, GlitterRecord, LayerRecord, MaterialConstants, PatinaRecord};
+use luthier_manifest::{FlakesRecord, GlitterRecord, LayerRecord, MaterialConstants, PatinaRecord};
 use luthier_material::{Effects, FlakeSource, Glitter, Material};
 use luthier_optics::stack::Stack;
 

@@ -1,4 +1,5 @@
-use luthier_lut::{BUFFER_WORDS_MAX, SIDE_MAX, TableKind, TexelFormat};
+use luthier_lut::{TableKind, TexelFormat};
+use luthier_manifest::{BUFFER_WORDS_MAX, SIDE_MAX};
 use thiserror::Error;
 
 /// Why a set of materials cannot be baked.

@@ -1,6 +1,7 @@
 //! Limits of one bake, checked before anything is computed.
 
-use luthier_lut::{AtlasLayout, BUFFER_WORDS_MAX, LAYER_WORDS, MATERIAL_WORDS, SIDE, SIDE_MAX, TableKind};
+use luthier_lut::{AtlasLayout, TableKind};
+use luthier_manifest::{BUFFER_WORDS_MAX, LAYER_WORDS, MATERIAL_WORDS, SIDE, SIDE_MAX};
 
 use crate::BakeError;
 use crate::plan::PlannedLayers;

@@ -1,6 +1,7 @@
 //! Maps that vary a surface from place to place.
 
-use luthier_lut::{Image, MapSlot};
+use luthier_lut::Image;
+use luthier_manifest::MapSlot;
 use luthier_material::{FlakeSource, Material, VariationSource};
 
 use crate::relief::{Field, Relief};

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use luthier_lut::{ColorMode, Image, LayerRecord, ShadingModel, TableKind};
-use luthier_material::{ColorSetting, FilmVariation, LayerExtras, Material, ModelSetting, TableSetting};
+use luthier_lut::{Image, TableKind};
+use luthier_manifest::{ColorMode, LayerRecord, ShadingModel};
+use luthier_material::{FilmVariation, LayerExtras, Material};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::stack::{Base, Film, FilmThickness, Layer, Stack};
@@ -68,16 +69,12 @@ pub(crate) fn color(material: &Material) -> Color {
 
 /// How the tables of a material come by their colour: spectrally, unless its file asks otherwise.
 pub(crate) fn color_mode(material: &Material) -> ColorMode {
-    match material.bake.color {
-        Some(ColorSetting::ThreeWavelengths) => ColorMode::ThreeWavelengths,
-        Some(ColorSetting::Spectral) | None => ColorMode::Spectral,
-    }
+    material.bake.color.unwrap_or_default()
 }
 
 /// The model that shades a material: Elek's, unless its file asks for another.
 pub(crate) fn shading_model(material: &Material) -> ShadingModel {
-    let name = material.bake.model.map(ModelSetting::name);
-    name.and_then(ShadingModel::from_name).unwrap_or_default()
+    material.bake.model.unwrap_or_default()
 }
 
 /// Whether a model follows light through the layers as statistics, and reads what they send back downward.
@@ -115,7 +112,7 @@ fn reads(model: ShadingModel, kind: TableKind, stack: &Stack, number: usize, rec
 
 /// Whether the file of a material, or whoever bakes it, asks for a kind of table.
 pub(crate) fn asks_for(material: &Material, kind: TableKind) -> bool {
-    TableSetting::from_name(kind.name()).is_some_and(|kind| material.bake.asks_for(kind))
+    material.bake.asks_for(kind)
 }
 
 /// Reads an image that a material names: material file, path as written there.

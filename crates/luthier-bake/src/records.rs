@@ -2,7 +2,7 @@
 
 use luthier_layers::domain::INDEX_MAX;
 use luthier_layers::elek::{self, ALPHA_MIN, Below};
-use luthier_lut::{LayerKind, LayerRecord};
+use luthier_manifest::{LayerKind, LayerRecord};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::stack::Stack;
@@ -31,7 +31,7 @@ pub(crate) fn records(stack: &Stack, wavelengths_nm: [f64; 3]) -> Vec<LayerRecor
             let surface = &stack.layers[i].surface;
             let mut record = LayerRecord {
                 kind: LayerKind::Conductor,
-                distribution: layer.distribution.name().to_owned(),
+                distribution: layer.distribution,
                 alpha: layer.alpha,
                 alpha_xy: [surface.alpha_x, surface.alpha_y].map(|alpha| alpha.clamp(ALPHA_MIN, 1.0)),
                 rotation: surface.rotation,

@@ -15,10 +15,8 @@ mod grids;
 mod phase;
 mod shared;
 
-use luthier_lut::{
-    Axis, Budget, Candidate, CandidateForm, Mapping, MeasuredError, REL_FLOOR, RowBase, Search, TableKind,
-};
-use luthier_lut::{TexelFormat, WeightBits};
+use luthier_lut::{Axis, Mapping, RowBase, TableKind, TexelFormat, WeightBits};
+use luthier_manifest::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR, Search};
 use luthier_optics::color_difference::{ciede2000, lab};
 
 pub(crate) use choice::{best_effort, choose, front};

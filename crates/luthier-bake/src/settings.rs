@@ -4,10 +4,9 @@ use std::f64::consts::FRAC_PI_2;
 use std::fmt::Debug;
 
 use luthier_layers::elek;
-use luthier_lut::{Axis, FormatSet, Mapping, RowBase, ShadingModel, TableKind, TexelFormat};
-use luthier_material::{
-    AlphaMapping, BakeSettings, DistributionMapping, Format, FresnelMapping, Material, TableSetting,
-};
+use luthier_lut::{Axis, FormatSet, Mapping, RowBase, TableKind, TexelFormat};
+use luthier_manifest::ShadingModel;
+use luthier_material::{AlphaMapping, BakeSettings, DistributionMapping, FresnelMapping, Material};
 
 use crate::BakeError;
 use crate::fresnel::RowShape;
@@ -139,10 +138,10 @@ impl Settings {
             fresnel_size: any(|b| b.fresnel.size.is_some()),
             fresnel_mapping: any(|b| b.fresnel.mapping.is_some()),
             fresnel_format: any(|b| b.fresnel.format.is_some()),
-            distribution: any(|b| b.asks_for(TableSetting::Distribution)),
+            distribution: any(|b| b.asks_for(TableKind::Distribution)),
             fgd_size: any(|b| b.fgd.size.is_some()),
             fgd_format: any(|b| b.fgd.format.is_some()),
-            phase: any(|b| b.asks_for(TableSetting::Phase)),
+            phase: any(|b| b.asks_for(TableKind::Phase)),
         };
         let fgd_grid = fgd.0.clone();
         Ok(Self {
@@ -213,18 +212,9 @@ impl Ask<'_> {
     fn format(
         &self,
         setting: &'static str,
-        get: impl Fn(&BakeSettings) -> Option<Format>,
+        get: impl Fn(&BakeSettings) -> Option<TexelFormat>,
         default: TexelFormat,
     ) -> Result<TexelFormat, BakeError> {
-        Ok(self.one(setting, get)?.map_or(default, |format| match format {
-            Format::R16Float => TexelFormat::R16Float,
-            Format::Rg16Float => TexelFormat::Rg16Float,
-            Format::R32Float => TexelFormat::R32Float,
-            Format::Rgba8Unorm => TexelFormat::Rgba8Unorm,
-            Format::Rgba16Unorm => TexelFormat::Rgba16Unorm,
-            Format::Bc6hRgbUfloat => TexelFormat::Bc6hRgbUfloat,
-            Format::Rgba16Float => TexelFormat::Rgba16Float,
-            Format::Rgba32Float => TexelFormat::Rgba32Float,
-        }))
+        Ok(self.one(setting, get)?.unwrap_or(default))
     }
 }

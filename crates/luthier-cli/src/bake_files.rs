@@ -1,9 +1,10 @@
 //! A bake as files: textures, truth, pictures, shaders, manifest.
 
 use luthier_bake::{Bake, MapSource, Options};
-use luthier_lut::{
-    Atlas, AtlasLayout, Axis, FileEntry, Image, LayerRecord, Manifest, MapEntry, Mapping, MaterialEntry,
-    MaterialTexture, RowBase, ShaderEntry, TableEntry, TableKind, material_buffer,
+use luthier_lut::{Atlas, AtlasLayout, Axis, Image, Mapping, RowBase, TableKind};
+use luthier_manifest::{
+    FileEntry, LayerRecord, Manifest, MapEntry, MaterialEntry, MaterialTexture, ShaderEntry, TableEntry,
+    material_buffer,
 };
 use luthier_material::Material;
 use luthier_shader::{Form, MaterialSet, Target};
@@ -79,7 +80,7 @@ impl BakeFiles {
         let mut entries = Vec::with_capacity(emitted.len());
         for (form, target, bytes) in emitted {
             let file = add(&mut files, format!("shaders/{}.{}", form.name(), target.extension()), bytes);
-            entries.push(ShaderEntry { target: target.name().to_owned(), form: form.name().to_owned(), file });
+            entries.push(ShaderEntry { target, form, file });
         }
         let bindings = luthier_shader::bindings(&set, shaders.forms.first().copied().unwrap_or(Form::Baked));
         (manifest.shaders, manifest.bindings) = (entries, bindings);

@@ -2,12 +2,13 @@
 
 use std::num::NonZeroU32;
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Parser, Subcommand};
 use luthier_cost::Family;
-use luthier_material::{ModelSetting, TableSetting};
-use luthier_shader::{Form, Target};
+use luthier_lut::{TableKind, UnknownName};
+use luthier_manifest::{Form, ShadingModel, Target};
 
 use crate::directions::Angles;
 use crate::model_inputs::ModelInputs;
@@ -117,11 +118,11 @@ pub(crate) struct Sources {
 #[derive(Debug, Default, Args)]
 pub(crate) struct Shading {
     /// Reflectance model of the shader; by default the one that each material file asks for
-    #[arg(long, value_name = "NAME", value_parser = shading_model())]
-    pub(crate) model: Option<ModelSetting>,
+    #[arg(long, value_name = "NAME", value_parser = named::<ShadingModel>(ShadingModel::NAMES))]
+    pub(crate) model: Option<ShadingModel>,
     /// Kinds of tables to bake and bind for every material, beside those that its shader reads
-    #[arg(long, value_name = "KIND,...", value_delimiter = ',', value_parser = table_kind())]
-    pub(crate) tables: Vec<TableSetting>,
+    #[arg(long, value_name = "KIND,...", value_delimiter = ',', value_parser = named::<TableKind>(TableKind::NAMES))]
+    pub(crate) tables: Vec<TableKind>,
 }
 
 #[derive(Debug, Args)]
@@ -168,11 +169,11 @@ pub(crate) struct BakeOptions {
 #[derive(Debug, Args)]
 pub(crate) struct Emission {
     /// Languages of the shaders; by default wgsl, glsl450 and glsl-es300
-    #[arg(long, value_enum, value_name = "NAME,...", value_delimiter = ',')]
-    pub(crate) target: Vec<TargetName>,
+    #[arg(long, value_parser = named::<Target>(Target::NAMES), value_name = "NAME,...", value_delimiter = ',')]
+    pub(crate) target: Vec<Target>,
     /// Forms of the shaders; by default both
-    #[arg(long, value_enum, value_name = "NAME,...", value_delimiter = ',')]
-    pub(crate) form: Vec<FormName>,
+    #[arg(long, value_parser = named::<Form>(Form::NAMES), value_name = "NAME,...", value_delimiter = ',')]
+    pub(crate) form: Vec<Form>,
 }
 
 #[derive(Debug, Args)]
@@ -212,7 +213,7 @@ impl Limits {
     /// The options of the baker under these limits.
     pub(crate) fn options(&self) -> luthier_bake::Options {
         let &Self { max_abs, max_rel, delta_e, max_bytes, max_cost, no_search } = self;
-        let budget = luthier_lut::Budget { max_abs, max_rel, delta_e, max_bytes, max_cost };
+        let budget = luthier_manifest::Budget { max_abs, max_rel, delta_e, max_bytes, max_cost };
         luthier_bake::Options { budget, search: !no_search, ..luthier_bake::Options::default() }
     }
 }
@@ -299,8 +300,8 @@ pub(crate) struct ParityOptions {
     #[command(flatten)]
     pub(crate) sources: Sources,
     /// Model to compare; may be given again. By default all that have a twin
-    #[arg(long, value_name = "NAME", value_parser = shading_model())]
-    pub(crate) model: Vec<ModelSetting>,
+    #[arg(long, value_name = "NAME", value_parser = named::<ShadingModel>(ShadingModel::NAMES))]
+    pub(crate) model: Vec<ShadingModel>,
     /// Pairs of directions in each of the five sets of every material
     #[arg(long, value_name = "N", default_value_t = PARITY_PAIRS, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) pairs: u32,
@@ -361,11 +362,11 @@ pub(crate) struct CostOptions {
     #[command(flatten)]
     pub(crate) sources: Sources,
     /// Model to compile; may be given again. By default all
-    #[arg(long, value_name = "NAME", value_parser = shading_model())]
-    pub(crate) model: Vec<ModelSetting>,
+    #[arg(long, value_name = "NAME", value_parser = named::<ShadingModel>(ShadingModel::NAMES))]
+    pub(crate) model: Vec<ShadingModel>,
     /// Form to compile; may be given again. By default both
-    #[arg(long, value_enum, value_name = "FORM")]
-    pub(crate) form: Vec<FormName>,
+    #[arg(long, value_parser = named::<Form>(Form::NAMES), value_name = "FORM")]
+    pub(crate) form: Vec<Form>,
     /// Instruction set: gcn5, rdna2 or rdna3; may be given again. By default all
     #[arg(long, value_name = "NAME", value_parser = family())]
     pub(crate) family: Vec<FamilyName>,
@@ -402,8 +403,8 @@ pub(crate) struct BenchOptions {
     #[command(flatten)]
     pub(crate) sources: Sources,
     /// Model to time besides Phong's; may be given again. By default all
-    #[arg(long, value_name = "NAME", value_parser = shading_model())]
-    pub(crate) model: Vec<ModelSetting>,
+    #[arg(long, value_name = "NAME", value_parser = named::<ShadingModel>(ShadingModel::NAMES))]
+    pub(crate) model: Vec<ShadingModel>,
     /// Evaluations of one run, at least
     #[arg(long, value_name = "N", default_value_t = 1 << 20, value_parser = clap::value_parser!(u32).range(1..=60_000_000))]
     pub(crate) evaluations: u32,
@@ -452,11 +453,11 @@ pub(crate) struct ShaderOptions {
     #[command(flatten)]
     pub(crate) shading: Shading,
     /// Language
-    #[arg(long, value_enum, default_value_t = TargetName::Wgsl)]
-    pub(crate) target: TargetName,
+    #[arg(long, value_parser = named::<Target>(Target::NAMES), default_value_t = Target::Wgsl)]
+    pub(crate) target: Target,
     /// Reads the tables, or evaluates everything in ALU
-    #[arg(long, value_enum, default_value_t = FormName::Baked)]
-    pub(crate) form: FormName,
+    #[arg(long, value_parser = named::<Form>(Form::NAMES), default_value_t = Form::Baked)]
+    pub(crate) form: Form,
     /// D in closed form instead of from its table
     #[arg(long)]
     pub(crate) closed: bool,
@@ -591,46 +592,6 @@ pub(crate) struct IorOptions {
     pub(crate) json: bool,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(crate) enum TargetName {
-    Wgsl,
-    Glsl450,
-    GlslEs300,
-    Hlsl,
-    Msl,
-    /// Bytes: not to a terminal
-    #[value(name = "spirv")]
-    SpirV,
-}
-
-impl From<TargetName> for Target {
-    fn from(name: TargetName) -> Self {
-        match name {
-            TargetName::Wgsl => Self::Wgsl,
-            TargetName::Glsl450 => Self::Glsl450,
-            TargetName::GlslEs300 => Self::GlslEs300,
-            TargetName::Hlsl => Self::Hlsl,
-            TargetName::Msl => Self::Msl,
-            TargetName::SpirV => Self::SpirV,
-        }
-    }
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(crate) enum FormName {
-    Baked,
-    Full,
-}
-
-impl From<FormName> for Form {
-    fn from(name: FormName) -> Self {
-        match name {
-            FormName::Baked => Self::Baked,
-            FormName::Full => Self::Full,
-        }
-    }
-}
-
 pub(crate) fn wavelength(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if (360.0..=830.0).contains(&value) => Ok(value),
@@ -645,14 +606,12 @@ fn angle(text: &str) -> Result<f64, String> {
     }
 }
 
-fn shading_model() -> impl TypedValueParser<Value = ModelSetting> {
-    PossibleValuesParser::new(ModelSetting::NAMES.iter().copied())
-        .try_map(|name| ModelSetting::from_name(&name).ok_or_else(|| format!("no model `{name}`")))
-}
-
-fn table_kind() -> impl TypedValueParser<Value = TableSetting> {
-    PossibleValuesParser::new(TableSetting::NAMES.iter().copied())
-        .try_map(|name| TableSetting::from_name(&name).ok_or_else(|| format!("no table `{name}`")))
+/// A value by its name, one of those listed.
+pub(crate) fn named<T>(names: &'static [&'static str]) -> impl TypedValueParser<Value = T>
+where
+    T: FromStr<Err = UnknownName> + Clone + Send + Sync + 'static,
+{
+    PossibleValuesParser::new(names).try_map(|name| name.parse::<T>())
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use luthier_cost::{Counts, Family};
-use luthier_lut::ShadingModel;
+use luthier_manifest::ShadingModel;
 use serde::Serialize;
 
 /// Version of the JSON.

@@ -3,8 +3,9 @@
 use std::fmt::Write as _;
 
 use luthier_cost::{Counts, Family, Harness, Kernel, Style};
-use luthier_lut::ShadingModel;
-use luthier_material::{ColorSetting, Format, FresnelMapping, FresnelSettings, Material, ModelSetting};
+use luthier_lut::TexelFormat;
+use luthier_manifest::{ColorMode, ShadingModel};
+use luthier_material::{FresnelMapping, FresnelSettings, Material};
 use luthier_shader::{Form, MaterialSet};
 
 use crate::failure::{Failure, Outcome};
@@ -63,13 +64,13 @@ pub(crate) fn cases(materials: &[Material]) -> Outcome<Vec<PaperCase>> {
 fn case(material: &Material) -> Outcome<PaperCase> {
     let with = |model: ShadingModel| {
         let mut material = material.clone();
-        material.bake.model = ModelSetting::from_name(model.name());
+        material.bake.model = Some(model);
         // Both forms are to mean the same.
-        material.bake.color = Some(ColorSetting::ThreeWavelengths);
+        material.bake.color = Some(ColorMode::ThreeWavelengths);
         // Elek's tables (section 3.1): rows over the cosine, D over an angle and the slope parameter.
         material.bake.fresnel = FresnelSettings {
             size: Some(128),
-            format: Some(Format::Rgba16Float),
+            format: Some(TexelFormat::Rgba16Float),
             mapping: Some(FresnelMapping::Cosine),
         };
         material.bake.distribution.size = Some([512, 512]);
@@ -119,21 +120,20 @@ fn errors(material: &Material, texts: &[String]) -> Outcome<Vec<Option<f64>>> {
     let mut artefacts = crate::memory_bake::bake(std::slice::from_ref(material))?;
     // Phong's shader would read another buffer.
     let is_elek = |text: &&String| text.contains("fn luthier_eval_elek");
-    let shaders = texts.iter().enumerate().filter(|(_, text)| is_elek(text));
-    artefacts.shaders = shaders.map(|(i, text)| WgslShader { form: i.to_string(), wgsl: text.clone() }).collect();
     let pairs: Vec<luthier_report::Pair> = ParitySet::ALL
         .iter()
         .flat_map(|set| set.pairs(PAIRS, &luthier_layers::elek::layers(&material.stack)))
         .collect();
-    let values = |i: usize| {
-        let scene = gpu.scene(&artefacts, &i.to_string()).map_err(device)?;
+    let mut values = |text: &String| {
+        artefacts.shaders = vec![WgslShader { form: Form::Baked, wgsl: text.clone() }];
+        let scene = gpu.scene(&artefacts, Form::Baked).map_err(device)?;
         scene.evaluate(0, &pairs).map_err(device)
     };
-    let exact = values(0)?;
+    let exact = values(&texts[0])?;
     let mut errors = Vec::with_capacity(texts.len());
-    for (i, text) in texts.iter().enumerate() {
+    for text in texts {
         errors.push(if is_elek(&text) {
-            let found = values(i)?;
+            let found = values(text)?;
             let error = |(found, exact): (&[f32; 3], &[f32; 3])| {
                 let scale = exact.iter().fold(FLOOR, |scale, &channel| scale.max(f64::from(channel)));
                 let apart = found.iter().zip(exact).map(|(a, b)| (f64::from(*a) - f64::from(*b)).abs());

@@ -17,7 +17,7 @@ impl Shaders {
     pub(crate) fn new(gpu: &Gpu, artefacts: &Artefacts) -> Outcome<Self> {
         let scene = |form| gpu.scene(artefacts, form).map_err(device);
         let name = format!("{} ({}, {})", gpu.adapter_name(), gpu.backend(), gpu.driver());
-        Ok(Self { name, baked: scene("baked")?, full: scene("full")? })
+        Ok(Self { name, baked: scene(Form::Baked)?, full: scene(Form::Full)? })
     }
 }
 

@@ -1,12 +1,12 @@
 //! Doubts about the model that shades a material: parts that it leaves out, quantities outside its domain.
 
 use luthier_layers::domain::{Outside, Quantity, outside};
-use luthier_lut::{Form, ShadingModel};
-use luthier_material::{Diagnostic, Material, ModelSetting, Severity};
+use luthier_manifest::{Form, ShadingModel};
+use luthier_material::{Diagnostic, Material, Severity};
 use luthier_scene::{LeftOut, left_out};
 
 /// Warnings, and an error for what would be wrong beyond use. `asked` is the model of the command line.
-pub(crate) fn of_model(material: &Material, asked: Option<ModelSetting>) -> Vec<Diagnostic> {
+pub(crate) fn of_model(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {
     let model = model(material, asked);
     let dropped = left_out(material, model);
     let mut doubts = of_domain(material, asked);
@@ -15,14 +15,13 @@ pub(crate) fn of_model(material: &Material, asked: Option<ModelSetting>) -> Vec<
 }
 
 /// Doubts about a material of a scene, whose model is chosen by what it leaves out: only quantities outside its domain.
-pub(crate) fn of_domain(material: &Material, asked: Option<ModelSetting>) -> Vec<Diagnostic> {
+pub(crate) fn of_domain(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {
     let model = model(material, asked);
     outside(model.name(), &material.stack).iter().map(|outside| domain(material, model, outside)).collect()
 }
 
-fn model(material: &Material, asked: Option<ModelSetting>) -> ShadingModel {
-    let name = asked.or(material.bake.model).map(ModelSetting::name);
-    name.and_then(ShadingModel::from_name).unwrap_or_default()
+fn model(material: &Material, asked: Option<ShadingModel>) -> ShadingModel {
+    asked.or(material.bake.model).unwrap_or_default()
 }
 
 fn dropped_part(material: &Material, model: ShadingModel, part: &LeftOut) -> Diagnostic {

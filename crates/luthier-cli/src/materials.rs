@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 use std::string::FromUtf8Error;
 
-use luthier_lut::Image;
-use luthier_material::{Diagnostic, Material, Parsed, Severity, TableSetting, parse};
+use luthier_lut::{Image, TableKind};
+use luthier_material::{Diagnostic, Material, Parsed, Severity, parse};
 
 use crate::cli::Shading;
 use crate::doubts;
@@ -131,7 +131,7 @@ pub(crate) fn shaded(mut materials: Vec<Material>, shading: &Shading) -> Vec<Mat
 }
 
 /// The materials, each asking for some kinds of tables beside its own.
-pub(crate) fn with_tables(mut materials: Vec<Material>, tables: &[TableSetting]) -> Vec<Material> {
+pub(crate) fn with_tables(mut materials: Vec<Material>, tables: &[TableKind]) -> Vec<Material> {
     materials.iter_mut().for_each(|material| material.bake.tables.extend(tables));
     materials
 }

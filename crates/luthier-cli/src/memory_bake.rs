@@ -4,8 +4,9 @@ use std::path::Path;
 
 use luthier_bake::Silent;
 use luthier_gpu::{Artefacts, TableTexels, WgslShader};
-use luthier_lut::{Atlas, MapEntry};
-use luthier_material::{Material, TableSetting};
+use luthier_lut::{Atlas, TableKind};
+use luthier_manifest::MapEntry;
+use luthier_material::Material;
 use luthier_shader::Target;
 use luthier_texture::{FolderError, png};
 
@@ -17,7 +18,7 @@ use crate::failure::{Failure, Outcome};
 use crate::materials::{bakeable, read_image, read_one, with_tables};
 
 /// Tables that the environment of pictures reads beside the shader: reflectance and albedo of every interface.
-const ENVIRONMENT_TABLES: [TableSetting; 3] = [TableSetting::Fresnel, TableSetting::Fgd, TableSetting::Film];
+const ENVIRONMENT_TABLES: [TableKind; 3] = [TableKind::Fresnel, TableKind::Fgd, TableKind::Film];
 
 /// A material by file, which is baked for pictures, or by its name in a bake on disk, shaded as that was; and its number.
 pub(crate) fn find(material: &str, shading: &Shading, out: &Path) -> Outcome<(Artefacts, u32)> {
@@ -58,7 +59,7 @@ pub(crate) fn bake(materials: &[Material]) -> Outcome<Artefacts> {
         .iter()
         .filter_map(|s| {
             let (_, bytes) = made.files.iter().find(|(path, _)| *path == s.file.path)?;
-            Some(WgslShader { form: s.form.clone(), wgsl: String::from_utf8_lossy(bytes).into_owned() })
+            Some(WgslShader { form: s.form, wgsl: String::from_utf8_lossy(bytes).into_owned() })
         })
         .collect();
     let artefacts =

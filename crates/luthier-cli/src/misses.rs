@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use luthier_lut::{LayerRecord, Manifest, TableKind};
+use luthier_lut::TableKind;
+use luthier_manifest::{LayerRecord, Manifest};
 use luthier_material::{Diagnostic, Material, Severity};
 
 use crate::failure::Outcome;

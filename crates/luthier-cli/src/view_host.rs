@@ -8,7 +8,8 @@ use std::time::SystemTime;
 
 use luthier_bake::{Bake, Key, Outline, Silent};
 use luthier_gpu::{Artefacts, WgslShader};
-use luthier_lut::{Atlas, Manifest};
+use luthier_lut::Atlas;
+use luthier_manifest::Manifest;
 use luthier_material::Material;
 use luthier_shader::{MaterialSet, TableFace, Target};
 use luthier_texture::png;
@@ -73,7 +74,7 @@ impl ViewHost {
         let bindings = luthier_shader::bindings(&set, form);
         let manifest =
             Manifest { bindings, ..Manifest::new(GENERATOR, entries, atlases.iter().map(table_entry).collect()) };
-        let shaders = vec![WgslShader { form: form.name().to_owned(), wgsl }];
+        let shaders = vec![WgslShader { form, wgsl }];
         let artefacts = Artefacts::from_parts(manifest, table_texels(&atlases), shaders).map_err(device)?;
         with_maps(artefacts, &files)
     }
@@ -259,6 +260,6 @@ mod tests {
         let other = host.bake(&material, Form::Baked).unwrap();
         assert!(other.tables != first.tables);
         let full = host.bake(&material, Form::Full).unwrap();
-        assert!(full.tables.is_empty() && full.shader("full").is_ok());
+        assert!(full.tables.is_empty() && full.shader(Form::Full).is_ok());
     }
 }

@@ -1,6 +1,7 @@
 use std::path::Path;
 
-use luthier_lut::{Image, Manifest, MapEntry, MapSlot, TableKind, TexelFormat};
+use luthier_lut::{Image, TableKind, TexelFormat};
+use luthier_manifest::{Form, Manifest, MapEntry, MapSlot, Target};
 use luthier_texture::BakeFolder;
 
 use crate::GpuError;
@@ -49,8 +50,8 @@ pub struct TableTexels {
 /// An emitted shader: functions only, no entry point.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WgslShader {
-    /// `baked` or `full`.
-    pub form: String,
+    /// How it evaluates a material.
+    pub form: Form,
     /// The text.
     pub wgsl: String,
 }
@@ -76,8 +77,8 @@ impl Artefacts {
             tables.push(TableTexels { kind: entry.kind, format, width, height, bytes });
         }
         let mut shaders = Vec::new();
-        for entry in manifest.shaders.iter().filter(|s| s.target == "wgsl") {
-            shaders.push(WgslShader { form: entry.form.clone(), wgsl: folder.text(&entry.file)? });
+        for entry in manifest.shaders.iter().filter(|s| s.target == Target::Wgsl) {
+            shaders.push(WgslShader { form: entry.form, wgsl: folder.text(&entry.file)? });
         }
         Self::from_parts(manifest.clone(), tables, shaders)?.with_maps(|map| Ok(folder.map(map)?))
     }
@@ -131,10 +132,10 @@ impl Artefacts {
     ///
     /// # Errors
     /// [`GpuError::NoShader`].
-    pub fn shader(&self, form: &str) -> Result<&WgslShader, GpuError> {
+    pub fn shader(&self, form: Form) -> Result<&WgslShader, GpuError> {
         self.shaders.iter().find(|s| s.form == form).ok_or_else(|| GpuError::NoShader {
-            form: form.to_owned(),
-            known: self.shaders.iter().map(|s| s.form.as_str()).collect::<Vec<_>>().join(", "),
+            form,
+            known: self.shaders.iter().map(|s| s.form.name()).collect::<Vec<_>>().join(", "),
         })
     }
 }

@@ -1,6 +1,7 @@
 //! Group 0, as the manifest lists it.
 
-use luthier_lut::{BindingEntry, TableKind, TexelFormat, material_buffer};
+use luthier_lut::{TableKind, TexelFormat};
+use luthier_manifest::{BindingEntry, material_buffer};
 use wgpu::{BindGroupLayoutEntry, BindingType, ShaderStages};
 
 use crate::context::Context;

@@ -1,4 +1,5 @@
-use luthier_lut::{LutError, TableKind, TexelFormat};
+use luthier_lut::{TableKind, TexelFormat};
+use luthier_manifest::{Form, ManifestError};
 use luthier_texture::FolderError;
 use thiserror::Error;
 
@@ -11,7 +12,7 @@ pub enum GpuError {
     Folder(#[from] FolderError),
     /// The manifest and the texels at hand contradict each other.
     #[error(transparent)]
-    Table(#[from] LutError),
+    Table(#[from] ManifestError),
     /// The manifest lists a table whose texels were not given.
     #[error("no texels for the {} table", kind.name())]
     MissingTexels {
@@ -31,7 +32,7 @@ pub enum GpuError {
     #[error("the bake holds no WGSL shader of the form `{form}`; it has: {known}")]
     NoShader {
         /// Asked for.
-        form: String,
+        form: Form,
         /// Forms at hand, comma-separated.
         known: String,
     },
@@ -122,7 +123,7 @@ pub enum GpuError {
         /// Asked for.
         kind: TableKind,
         /// Form of the shader.
-        form: String,
+        form: Form,
     },
     /// A tile that the table does not have.
     #[error("tile {tile} of {count} in the {} table", kind.name())]
@@ -138,7 +139,7 @@ pub enum GpuError {
     #[error("without samples of the environment only the `baked` shader can be rendered; this scene runs `{form}`")]
     Prefiltered {
         /// Form of the shader.
-        form: String,
+        form: Form,
     },
     /// Blurred maps of the environment need the reflectance of every interface.
     #[error(

@@ -1,3 +1,4 @@
+use luthier_manifest::Form;
 use wgpu::{DeviceType, DownlevelFlags};
 
 use crate::context::Context;
@@ -84,11 +85,11 @@ impl Gpu {
         self.info.device_type == DeviceType::Cpu
     }
 
-    /// Uploads the tables and materials and compiles the shader of a form: `baked` or `full`.
+    /// Uploads the tables and materials and compiles the shader of a form.
     ///
     /// # Errors
     /// When the bake has no such shader, a table is too large, or the device refuses the shader or its bindings.
-    pub fn scene(&self, artefacts: &Artefacts, form: &str) -> Result<Scene, GpuError> {
+    pub fn scene(&self, artefacts: &Artefacts, form: Form) -> Result<Scene, GpuError> {
         Scene::new(self.context.clone(), artefacts, form)
     }
 }

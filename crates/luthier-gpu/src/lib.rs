@@ -5,7 +5,7 @@
 //! # fn main() -> Result<(), luthier_gpu::GpuError> {
 //! let artefacts = luthier_gpu::Artefacts::load(std::path::Path::new("out"))?;
 //! let gpu = luthier_gpu::Gpu::open()?;
-//! let scene = gpu.scene(&artefacts, "baked")?;
+//! let scene = gpu.scene(&artefacts, Form::Baked)?;
 //! let up = [0.0, 0.0, 1.0];
 //! let rgb = scene.evaluate(0, &[(up, up)])?;
 //! # Ok(()) }

@@ -23,7 +23,7 @@ impl Scene {
     /// # Errors
     /// [`GpuError::NoTable`], [`GpuError::NoTile`], and whatever the device reports.
     pub fn lookup(&self, kind: TableKind, tile: u32, values: &[[f32; 2]]) -> Result<Vec<[f32; 4]>, GpuError> {
-        let missing = || GpuError::NoTable { kind, form: self.form().to_owned() };
+        let missing = || GpuError::NoTable { kind, form: self.form() };
         let table = self.manifest.table(kind).filter(|_| self.reads(kind)).ok_or_else(missing)?;
         let count = table.layout.tiles;
         if tile >= count {

@@ -1,6 +1,6 @@
 //! Maps that vary a surface, for the renderer.
 
-use luthier_lut::{MapSlot, MaterialEntry};
+use luthier_manifest::{MapSlot, MaterialEntry};
 
 use crate::Scene;
 

@@ -1,6 +1,8 @@
+use luthier_manifest::{Distribution, Form};
 use std::sync::Arc;
 
-use luthier_lut::{Image, LayerKind, LayerRecord, MaterialEntry, TableKind, material_buffer};
+use luthier_lut::{Image, TableKind};
+use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry, material_buffer};
 
 use crate::context::Pass;
 use crate::environment::{Blur, Environment};
@@ -148,8 +150,8 @@ impl Scene {
         for &material in materials {
             self.layers(material)?;
         }
-        if self.form() != "baked" && settings.environment_samples == 0 {
-            return Err(GpuError::Prefiltered { form: self.form().to_owned() });
+        if self.form() != Form::Baked && settings.environment_samples == 0 {
+            return Err(GpuError::Prefiltered { form: self.form() });
         }
         let lacks = |material: &&u32| !self.interfaces(**material).all(has_reflectance);
         if let Some(&material) = materials.iter().find(lacks).filter(|_| settings.environment_samples == 0) {
@@ -307,7 +309,7 @@ fn has_reflectance(layer: &LayerRecord) -> bool {
 }
 
 fn blur_of(layer: &LayerRecord) -> Blur {
-    if layer.distribution == "ggx" { Blur::Ggx } else { Blur::Beckmann }
+    if layer.distribution == Distribution::Ggx { Blur::Ggx } else { Blur::Beckmann }
 }
 
 fn bits(word: [f32; 4]) -> [u32; 4] {

@@ -1,6 +1,7 @@
 use std::sync::OnceLock;
 
-use luthier_lut::{LayerRecord, Manifest, TableKind};
+use luthier_lut::TableKind;
+use luthier_manifest::{Form, LayerRecord, Manifest};
 
 use crate::bindings::{ShaderBindings, kernel_layout, material_words};
 use crate::context::Context;
@@ -12,7 +13,7 @@ pub struct Scene {
     pub(crate) context: Context,
     pub(crate) manifest: Manifest,
     pub(crate) maps: Vec<MapTexels>,
-    form: String,
+    form: Form,
     wgsl: String,
     pub(crate) bindings: ShaderBindings,
     /// Group 0 with the materials as baked.
@@ -24,7 +25,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    pub(crate) fn new(context: Context, artefacts: &Artefacts, form: &str) -> Result<Self, GpuError> {
+    pub(crate) fn new(context: Context, artefacts: &Artefacts, form: Form) -> Result<Self, GpuError> {
         let shader = artefacts.shader(form)?;
         let bindings = ShaderBindings::new(&context, artefacts, &shader.wgsl)?;
         let group = bindings.group(&context, &material_words(artefacts))?;
@@ -41,7 +42,7 @@ impl Scene {
             context,
             manifest: artefacts.manifest.clone(),
             maps: artefacts.maps.clone(),
-            form: form.to_owned(),
+            form,
             wgsl: shader.wgsl.clone(),
             bindings,
             group,
@@ -58,7 +59,7 @@ impl Scene {
     /// # Errors
     /// [`GpuError::NoShader`], and as [`Gpu::scene`](crate::Gpu::scene) for the tables.
     pub fn rebound(&self, artefacts: &Artefacts) -> Result<Option<Self>, GpuError> {
-        if artefacts.shader(&self.form)?.wgsl != self.wgsl {
+        if artefacts.shader(self.form)?.wgsl != self.wgsl {
             return Ok(None);
         }
         // Layouts with the same entries are the same to the device, so the pipelines take the new groups.
@@ -68,7 +69,7 @@ impl Scene {
             context: self.context.clone(),
             manifest: artefacts.manifest.clone(),
             maps: artefacts.maps.clone(),
-            form: self.form.clone(),
+            form: self.form,
             wgsl: self.wgsl.clone(),
             bindings,
             group,
@@ -80,8 +81,8 @@ impl Scene {
     }
 
     /// Form of the shader that runs here: `baked` or `full`.
-    pub fn form(&self) -> &str {
-        &self.form
+    pub fn form(&self) -> Form {
+        self.form
     }
 
     /// The layers of a material.
@@ -103,7 +104,7 @@ impl Scene {
 
     /// The pipeline of a kernel.
     pub(crate) fn compile(&self, kernel: &str) -> Result<wgpu::ComputePipeline, GpuError> {
-        compile(&self.context, &self.kernels, &self.form, &self.wgsl, kernel)
+        compile(&self.context, &self.kernels, self.form, &self.wgsl, kernel)
     }
 
     /// The pipeline in `cell`, compiled at its first use.
@@ -126,20 +127,20 @@ impl Scene {
 fn compile(
     context: &Context,
     layout: &wgpu::PipelineLayout,
-    form: &str,
+    form: Form,
     wgsl: &str,
     kernel: &str,
 ) -> Result<wgpu::ComputePipeline, GpuError> {
     let what = format!("the `{form}` shader");
     let module = context.guarded(&what, || {
         context.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(form),
+            label: Some(form.name()),
             source: wgpu::ShaderSource::Wgsl(format!("{wgsl}\n{kernel}").into()),
         })
     })?;
     context.guarded(&what, || {
         context.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(form),
+            label: Some(form.name()),
             layout: Some(layout),
             module: &module,
             entry_point: None,

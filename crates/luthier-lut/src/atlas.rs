@@ -2,46 +2,31 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Axis, Encoding, ErrorStats, Image, RowBase, SchlickBase, TexelFormat, WeightBits, bilinear};
 
-/// Kind of a table, by its contents. One texture of each kind serves any number of materials.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum TableKind {
-    /// Fresnel reflectance over the cosine, RGB; one row per interface.
-    Fresnel,
-    /// `pi alpha^2 D` over angle and alpha; one tile per slope distribution.
-    Distribution,
-    /// Directional albedo with all microsurface bounces over (cos_theta, alpha), RGB, and in A the luminance of
-    /// the part that never crossed the interface; one tile per interface.
-    Fgd,
-    /// Granier's `2 cos(2 Phi)` over normalised thickness, RGB; one row per film.
-    Phase,
-    /// Granier's T_d over (u, v): normalised thickness, slopes, normalisation factor; one tile per varying film.
-    Thickness,
-    /// Reflectance of an interface over the cosine and the thickness of its film, RGB; one tile per interface whose film varies.
-    Film,
-    /// Share of a lobe inside a medium that is not totally reflected at its surface, over (cos_theta, alpha), the cosine being that of the
-    /// refracted direction outside; one tile per index.
-    Escape,
+crate::named! {
+    /// Kind of a table, by its contents. One texture of each kind serves any number of materials.
+    #[derive(Serialize, Deserialize)]
+    #[serde(into = "&'static str", try_from = "String")]
+    pub enum TableKind("table") {
+        /// Fresnel reflectance over the cosine, RGB; one row per interface.
+        Fresnel = "fresnel",
+        /// `pi alpha^2 D` over angle and alpha; one tile per slope distribution.
+        Distribution = "distribution",
+        /// Directional albedo with all microsurface bounces over (cos_theta, alpha), RGB, and in A the luminance of
+        /// the part that never crossed the interface; one tile per interface.
+        Fgd = "fgd",
+        /// Granier's `2 cos(2 Phi)` over normalised thickness, RGB; one row per film.
+        Phase = "phase",
+        /// Granier's T_d over (u, v): normalised thickness, slopes, normalisation factor; one tile per varying film.
+        Thickness = "thickness",
+        /// Reflectance of an interface over the cosine and the thickness of its film, RGB; one tile per interface whose film varies.
+        Film = "film",
+        /// Share of a lobe inside a medium that is not totally reflected at its surface, over (cos_theta, alpha), the cosine being that of the
+        /// refracted direction outside; one tile per index.
+        Escape = "escape",
+    }
 }
 
 impl TableKind {
-    /// All kinds, in binding order.
-    pub const ALL: [Self; 7] =
-        [Self::Fresnel, Self::Distribution, Self::Fgd, Self::Phase, Self::Thickness, Self::Film, Self::Escape];
-
-    /// The name in files, manifest and shaders.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Fresnel => "fresnel",
-            Self::Distribution => "distribution",
-            Self::Fgd => "fgd",
-            Self::Phase => "phase",
-            Self::Thickness => "thickness",
-            Self::Film => "film",
-            Self::Escape => "escape",
-        }
-    }
-
     /// The channels of its unquantised values by name: those of a colour by letter, what is no colour by what it is. None is called A,
     /// which viewers take for transparency.
     pub fn channels(self) -> &'static [&'static str] {

@@ -1,83 +1,14 @@
-use crate::named::named;
+//! Settings that a material file asks of its tables.
+
+use luthier_lut::{TableKind, TexelFormat, named};
+use luthier_manifest::{ColorMode, ShadingModel};
 
 /// The three wavelengths of a material that names none, as R, G and B (Granier and Heidrich 2003).
 pub const DEFAULT_WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
 
 named! {
-    /// Colour mode of the channels of a table.
-    pub enum ColorSetting {
-        /// Spectra, integrated against the CIE 1931 observer under D65.
-        Spectral = "spectral",
-        /// The function at three wavelengths, taken as R, G and B.
-        ThreeWavelengths = "three-wavelengths",
-    }
-}
-
-named! {
-    /// Models that shaders evaluate.
-    pub enum ModelSetting {
-        /// Elek 2010.
-        Elek = "elek",
-        /// Weidlich and Wilkie 2007.
-        WeidlichWilkie = "weidlich-wilkie",
-        /// Granier and Heidrich 2003.
-        GranierHeidrich = "granier-heidrich",
-        /// Belcour 2018.
-        Belcour = "belcour",
-        /// Yamaguchi et al. 2019.
-        Yamaguchi = "yamaguchi",
-        /// One Phong lobe over one diffuse term.
-        Phong = "phong",
-        /// The first interface alone.
-        Microfacet = "microfacet",
-    }
-}
-
-named! {
-    /// Kinds of tables.
-    pub enum TableSetting {
-        /// Fresnel reflectance of interfaces.
-        Fresnel = "fresnel",
-        /// Slope distributions.
-        Distribution = "distribution",
-        /// Energy of rough interfaces, all bounces included.
-        Fgd = "fgd",
-        /// Interference of films.
-        Phase = "phase",
-        /// Thickness of films that vary over the surface.
-        Thickness = "thickness",
-        /// Reflectance of interfaces whose film varies.
-        Film = "film",
-        /// Share of light that is not totally reflected inside a denser medium.
-        Escape = "escape",
-    }
-}
-
-named! {
-    /// Texel formats, named as WebGPU names them.
-    pub enum Format {
-        /// One half float.
-        R16Float = "r16float",
-        /// Two half floats, which hold the sixteenth root of one value.
-        Rg16Float = "rg16float",
-        /// One float.
-        R32Float = "r32float",
-        /// Four unsigned normalised bytes.
-        Rgba8Unorm = "rgba8unorm",
-        /// Four unsigned normalised values of 16 bits; not in core WebGPU.
-        Rgba16Unorm = "rgba16unorm",
-        /// Three half floats without sign in blocks of 4 x 4 texels; not in core WebGPU.
-        Bc6hRgbUfloat = "bc6h-rgb-ufloat",
-        /// Four half floats.
-        Rgba16Float = "rgba16float",
-        /// Four floats.
-        Rgba32Float = "rgba32float",
-    }
-}
-
-named! {
     /// Axis of a Fresnel row.
-    pub enum FresnelMapping {
+    pub enum FresnelMapping("mapping") {
         /// Linear in cos theta.
         Cosine = "cosine",
         /// Linear in the square root of cos theta.
@@ -89,7 +20,7 @@ named! {
 
 named! {
     /// Angle axis of the table of slope distributions.
-    pub enum DistributionMapping {
+    pub enum DistributionMapping("mapping") {
         /// theta_h = (pi/2) u^exponent (Elek 2010, section 3.1).
         Power = "power",
         /// theta_h = (pi/2) u.
@@ -101,7 +32,7 @@ named! {
 
 named! {
     /// Slope axis of the table of slope distributions.
-    pub enum AlphaMapping {
+    pub enum AlphaMapping("mapping") {
         /// Equal ratios.
         Log = "log",
         /// Equal steps.
@@ -113,11 +44,11 @@ named! {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct BakeSettings {
     /// The reflectance model of the shader.
-    pub model: Option<ModelSetting>,
+    pub model: Option<ShadingModel>,
     /// Kinds of tables to bake beside those that the shader reads.
-    pub tables: Vec<TableSetting>,
+    pub tables: Vec<TableKind>,
     /// Spectral or at three wavelengths.
-    pub color: Option<ColorSetting>,
+    pub color: Option<ColorMode>,
     /// Wavelengths taken as R, G and B, in nm.
     pub wavelengths_nm: Option<[f64; 3]>,
     /// Fresnel rows.
@@ -140,32 +71,17 @@ impl BakeSettings {
 
     /// Whether tables of a kind are to be baked whether or not the shader reads them: `tables` names the kind, or it has settings of its
     /// own.
-    pub fn asks_for(&self, kind: TableSetting) -> bool {
+    pub fn asks_for(&self, kind: TableKind) -> bool {
         let is_set = match kind {
-            TableSetting::Fresnel => self.fresnel != FresnelSettings::default(),
-            TableSetting::Distribution => self.distribution != DistributionSettings::default(),
-            TableSetting::Fgd => self.fgd != GridSettings::default(),
-            TableSetting::Phase => self.phase != RowSettings::default(),
-            TableSetting::Thickness => self.thickness != RowSettings::default(),
-            TableSetting::Film | TableSetting::Escape => false,
+            TableKind::Fresnel => self.fresnel != FresnelSettings::default(),
+            TableKind::Distribution => self.distribution != DistributionSettings::default(),
+            TableKind::Fgd => self.fgd != GridSettings::default(),
+            TableKind::Phase => self.phase != RowSettings::default(),
+            TableKind::Thickness => self.thickness != RowSettings::default(),
+            TableKind::Film | TableKind::Escape => false,
         };
         is_set || self.tables.contains(&kind)
     }
-}
-
-/// Limits on the tables that serve a material; the baker looks for the cheapest that hold them.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct BudgetSettings {
-    /// Largest absolute error of a sampled read.
-    pub max_abs: Option<f64>,
-    /// Largest relative error, with a floor.
-    pub max_rel: Option<f64>,
-    /// Largest CIEDE2000 difference.
-    pub delta_e: Option<f64>,
-    /// Bytes of all tables of the bake.
-    pub max_bytes: Option<u64>,
-    /// Estimated cost of one read of every table.
-    pub max_cost: Option<f64>,
 }
 
 /// Settings of the Fresnel rows.
@@ -174,7 +90,7 @@ pub struct FresnelSettings {
     /// Texels of a row.
     pub size: Option<u32>,
     /// Texel format.
-    pub format: Option<Format>,
+    pub format: Option<TexelFormat>,
     /// Axis.
     pub mapping: Option<FresnelMapping>,
 }
@@ -185,7 +101,7 @@ pub struct DistributionSettings {
     /// Texels along the angle and along alpha.
     pub size: Option<[u32; 2]>,
     /// Texel format.
-    pub format: Option<Format>,
+    pub format: Option<TexelFormat>,
     /// Angle axis.
     pub mapping: Option<DistributionMapping>,
     /// Exponent of the angle axis.
@@ -200,7 +116,7 @@ pub struct GridSettings {
     /// Texels along x and y.
     pub size: Option<[u32; 2]>,
     /// Texel format.
-    pub format: Option<Format>,
+    pub format: Option<TexelFormat>,
 }
 
 /// Settings of a row or of a square texture.
@@ -209,5 +125,5 @@ pub struct RowSettings {
     /// Texels along a side.
     pub size: Option<u32>,
     /// Texel format.
-    pub format: Option<Format>,
+    pub format: Option<TexelFormat>,
 }

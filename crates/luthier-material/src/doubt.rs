@@ -6,7 +6,10 @@ use std::ops::Range as Span;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Layer, Slab, Stack};
 
-use crate::bake_settings::{BakeSettings, ColorSetting, ModelSetting, TableSetting};
+use luthier_lut::TableKind;
+use luthier_manifest::{ColorMode, ShadingModel};
+
+use crate::bake_settings::BakeSettings;
 use crate::diagnostic::Sink;
 use crate::places::Places;
 use crate::suggest::short;
@@ -102,7 +105,7 @@ pub(crate) fn report(stack: &Stack, bake: &BakeSettings, sources: &Sources, sink
 /// Spectra that do not reach as far as the bake asks for them.
 fn clamped_spectra(bake: &BakeSettings, sources: &Sources, sink: &mut Sink<'_>) {
     let (low, high) = match bake.color {
-        Some(ColorSetting::ThreeWavelengths) => {
+        Some(ColorMode::ThreeWavelengths) => {
             let [r, _, b] = bake.wavelengths_nm();
             (b, r)
         }
@@ -127,14 +130,14 @@ fn empty_tables(stack: &Stack, bake: &BakeSettings, sources: &Sources, sink: &mu
     let has = |is: fn(&Layer) -> bool| stack.layers.iter().any(is);
     for kind in &bake.tables {
         let (is_some, reason) = match kind {
-            TableSetting::Fresnel | TableSetting::Distribution | TableSetting::Fgd => {
+            TableKind::Fresnel | TableKind::Distribution | TableKind::Fgd => {
                 (has(|layer| !matches!(layer.base, Base::Diffuse(_))), "no layer is an interface")
             }
-            TableSetting::Escape => {
+            TableKind::Escape => {
                 (has(|layer| matches!(layer.base, Base::Dielectric { .. })), "no layer is transparent")
             }
-            TableSetting::Phase => (has(|layer| !layer.films.is_empty()), "no layer has a film"),
-            TableSetting::Thickness | TableSetting::Film => (
+            TableKind::Phase => (has(|layer| !layer.films.is_empty()), "no layer has a film"),
+            TableKind::Thickness | TableKind::Film => (
                 has(|layer| layer.films.iter().any(|film| film.thickness.max_nm > film.thickness.min_nm)),
                 "no film varies in thickness",
             ),
@@ -160,17 +163,17 @@ fn surface(layer: &Layer, at: &At<'_>, sink: &mut Sink<'_>) {
 }
 
 /// Warns where a rough layer blurs what lies below, and the model blurs it too much or not at all.
-fn smoother_than_above(layer: &Layer, roughest: f64, model: Option<ModelSetting>, at: &At<'_>, sink: &mut Sink<'_>) {
+fn smoother_than_above(layer: &Layer, roughest: f64, model: Option<ShadingModel>, at: &At<'_>, sink: &mut Sink<'_>) {
     let alpha = layer.surface.alpha_isotropic();
     if matches!(layer.base, Base::Diffuse(_)) || alpha >= roughest {
         return;
     }
     let (effect, hint) = match model {
         None => ("the default model, `elek`, raises it", format!("that model will use {}", at.in_its_terms(roughest))),
-        Some(ModelSetting::Elek) => {
+        Some(ShadingModel::Elek) => {
             ("the model `elek` raises it", format!("the model will use {}", at.in_its_terms(roughest)))
         }
-        Some(ModelSetting::WeidlichWilkie) => (
+        Some(ShadingModel::WeidlichWilkie) => (
             "the model `weidlich-wilkie` shows it as sharp as if it were bare",
             "`belcour` follows the light through the rougher layer: write `[bake] model = \"belcour\"`".to_owned(),
         ),

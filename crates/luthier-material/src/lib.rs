@@ -19,7 +19,6 @@ mod doubt;
 mod effects;
 mod grammar;
 mod material;
-mod named;
 mod parse;
 mod places;
 mod scene;
@@ -28,9 +27,8 @@ mod section;
 mod suggest;
 
 pub use bake_settings::{
-    AlphaMapping, BakeSettings, BudgetSettings, ColorSetting, DEFAULT_WAVELENGTHS_NM, DistributionMapping,
-    DistributionSettings, Format, FresnelMapping, FresnelSettings, GridSettings, ModelSetting, RowSettings,
-    TableSetting,
+    AlphaMapping, BakeSettings, DEFAULT_WAVELENGTHS_NM, DistributionMapping, DistributionSettings, FresnelMapping,
+    FresnelSettings, GridSettings, RowSettings,
 };
 pub use class::{SMOOTH_SLOPE_DEG, SurfaceClass};
 pub use diagnostic::{Diagnostic, Severity};
@@ -38,6 +36,6 @@ pub use effects::{Effects, FlakeSource, Flakes, Glitter, Patina};
 pub use material::{FilmVariation, LayerExtras, Maps, Material, NamedImage, VariationSource};
 pub use parse::{Parsed, parse};
 pub use places::Places;
-pub use scene::{Light, ModelBudget, Scene, SceneMaterial, Target, View, is_scene, parse_scene};
+pub use scene::{Light, Scene, SceneMaterial, SceneTarget, View, is_scene, parse_scene};
 pub use schema::{scene_schema, schema};
 pub use suggest::did_you_mean;

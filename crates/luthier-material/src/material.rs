@@ -1,6 +1,8 @@
 use luthier_optics::stack::Stack;
 
-use crate::bake_settings::{BakeSettings, BudgetSettings};
+use luthier_manifest::Budget;
+
+use crate::bake_settings::BakeSettings;
 use crate::class::SurfaceClass;
 use crate::diagnostic::{Diagnostic, Severity, Sink};
 use crate::effects::{Effects, FlakeSource};
@@ -30,7 +32,7 @@ pub struct Material {
     /// Settings that the file asks of its tables.
     pub bake: BakeSettings,
     /// Limits on the error, bytes and cost of its tables.
-    pub budget: BudgetSettings,
+    pub budget: Budget,
     /// Class of the surface.
     pub class: SurfaceClass,
     /// Where its values stand in the text.

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use luthier_lut::{FormatSet, TexelFormat};
+use luthier_manifest::SceneBudget;
 use toml::de::DeTable;
 
 use crate::check::check_table;
@@ -27,9 +29,9 @@ pub struct Scene {
     /// Angles under which surfaces are seen.
     pub view: View,
     /// Room and time of the target.
-    pub target: Target,
+    pub target: SceneTarget,
     /// Limits on the errors of models, unless a material has limits of its own.
-    pub budget: ModelBudget,
+    pub budget: SceneBudget,
 }
 
 /// A material of a scene.
@@ -38,7 +40,7 @@ pub struct SceneMaterial {
     /// The material file, relative to the scene's.
     pub file: String,
     /// Limits in place of the scene's.
-    pub budget: ModelBudget,
+    pub budget: SceneBudget,
     /// Bytes of the text that name the file.
     pub span: Range<usize>,
 }
@@ -79,24 +81,13 @@ pub struct View {
 
 /// Room and time of a target.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Target {
+pub struct SceneTarget {
     /// Bytes of the texels of all tables.
     pub max_bytes: Option<u64>,
     /// Cycles per wave of 64 on RDNA2 of one evaluation.
     pub max_cost: Option<f64>,
-    /// Texel formats that tables may have, by their WebGPU names.
-    pub formats: Option<Vec<String>>,
-}
-
-/// Limits on the error of a model against the reference.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct ModelBudget {
-    /// Largest error over the brightest channel, or over 0.1/pi where that is darker.
-    pub max_rel: Option<f64>,
-    /// Largest absolute error of `f cos theta_i`.
-    pub max_abs: Option<f64>,
-    /// Largest CIEDE2000 difference.
-    pub delta_e: Option<f64>,
+    /// Texel formats that tables may have.
+    pub formats: Option<FormatSet>,
 }
 
 /// Whether a text is meant to be a scene: it has the key `scene` of scene files, or their lights, and no layers.
@@ -165,7 +156,7 @@ fn decode(label: &str, text: &str, document: &Section<'_>, sink: &mut Sink<'_>) 
             span: at.value_span("file"),
         })
         .collect();
-    let is_limited = |own: &ModelBudget| *own != ModelBudget::default();
+    let is_limited = |own: &SceneBudget| *own != SceneBudget::default();
     if !is_limited(&budget) && !scene_materials.iter().all(|material| is_limited(&material.budget)) {
         let hint = Some("add `max_rel = 0.1` to [budget]".to_owned());
         sink.error(document.value_span("budget"), "the budget limits nothing", hint);
@@ -187,15 +178,17 @@ fn decode(label: &str, text: &str, document: &Section<'_>, sink: &mut Sink<'_>) 
     }
 }
 
-fn budget(at: &Section<'_>) -> ModelBudget {
-    ModelBudget { max_rel: at.number("max_rel"), max_abs: at.number("max_abs"), delta_e: at.number("delta_e") }
+fn budget(at: &Section<'_>) -> SceneBudget {
+    SceneBudget { max_rel: at.number("max_rel"), max_abs: at.number("max_abs"), delta_e: at.number("delta_e") }
 }
 
-fn target(at: &Section<'_>) -> Target {
-    Target {
+fn target(at: &Section<'_>) -> SceneTarget {
+    SceneTarget {
         max_bytes: at.number("max_bytes").map(|bytes| bytes as u64),
         max_cost: at.number("max_cost"),
-        formats: at.has("formats").then(|| at.texts("formats")),
+        formats: at
+            .has("formats")
+            .then(|| at.texts("formats").iter().filter_map(|name| TexelFormat::from_name(name)).collect()),
     }
 }
 
@@ -234,7 +227,7 @@ mod tests {
         assert_eq!(scene.lights, [Light::Point { from_eye_deg: [20.0, 60.0] }, Light::Environment]);
         assert_eq!(scene.view, View { angles_deg: [0.0, 60.0], footprint_deg: 0.5 });
         assert_eq!((scene.target.max_bytes, scene.target.max_cost), (Some(4096), Some(200.0)));
-        assert_eq!(scene.target.formats, Some(vec!["rgba8unorm".to_owned()]));
+        assert_eq!(scene.target.formats, Some([TexelFormat::Rgba8Unorm].into_iter().collect()));
         assert_eq!(scene.budget.max_rel, Some(0.1));
         assert!(is_scene(SHELF) && !is_scene("schema = 1\nname = \"a\"\n[[layer]]\ntype = \"diffuse\"\n"));
     }

@@ -2,9 +2,9 @@
 
 use std::io;
 
-use luthier_material::{
-    ColorSetting, DistributionMapping, FlakeSource, Format, Material, Parsed, VariationSource, parse,
-};
+use luthier_lut::TexelFormat;
+use luthier_manifest::ColorMode;
+use luthier_material::{DistributionMapping, FlakeSource, Material, Parsed, VariationSource, parse};
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Distribution, Surface};
 
@@ -123,8 +123,8 @@ fn effects_maps_and_bake_are_read() {
     assert_eq!(patina.map, VariationSource::Noise { seed: u32::MAX, frequency: 4.0, octaves: 4 });
     assert_eq!((patina.extent, patina.base_alpha, patina.tarnish), (-0.5, Some(0.4), [1.0; 3]));
     let bake = &material.bake;
-    assert_eq!((bake.color, bake.wavelengths_nm()), (Some(ColorSetting::ThreeWavelengths), [650.0, 550.0, 450.0]));
-    assert_eq!((bake.fresnel.size, bake.fresnel.format), (Some(64), Some(Format::Rgba8Unorm)));
+    assert_eq!((bake.color, bake.wavelengths_nm()), (Some(ColorMode::ThreeWavelengths), [650.0, 550.0, 450.0]));
+    assert_eq!((bake.fresnel.size, bake.fresnel.format), (Some(64), Some(TexelFormat::Rgba8Unorm)));
     assert_eq!(
         (bake.distribution.size, bake.distribution.mapping),
         (Some([512, 256]), Some(DistributionMapping::CosPower))

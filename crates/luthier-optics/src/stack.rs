@@ -98,11 +98,12 @@ impl FilmThickness {
 }
 
 /// Slope distribution of a micro-surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub enum Distribution {
     /// Beckmann and Spizzichino 1963: Gaussian slopes.
     Beckmann,
     /// Trowbridge and Reitz 1975; "GGX" in Walter et al. 2007.
+    #[default]
     Ggx,
 }
 
@@ -113,6 +114,11 @@ impl Distribution {
             Self::Beckmann => "beckmann",
             Self::Ggx => "ggx",
         }
+    }
+
+    /// The distribution of a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        [Self::Beckmann, Self::Ggx].into_iter().find(|distribution| distribution.name() == name)
     }
 }
 

@@ -1,4 +1,4 @@
-use luthier_lut::Form;
+use luthier_manifest::Form;
 
 use crate::Pair;
 

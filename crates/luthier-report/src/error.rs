@@ -1,4 +1,5 @@
-use luthier_lut::{ShadingModel, TableKind};
+use luthier_lut::TableKind;
+use luthier_manifest::ShadingModel;
 use thiserror::Error;
 
 use crate::Form;

@@ -1,6 +1,6 @@
 //! Evidence that a report shows beside the judgement of a bake, and its origin.
 
-use luthier_lut::ShadingModel;
+use luthier_manifest::ShadingModel;
 use serde::{Deserialize, Serialize};
 
 use crate::stability::{Stability, Verdict};

@@ -1,6 +1,7 @@
 //! Numbers and names as a reader wants them.
 
-use luthier_lut::{Axis, LayerKind, LayerRecord, Mapping};
+use luthier_lut::{Axis, Mapping};
+use luthier_manifest::{LayerKind, LayerRecord};
 
 /// An error in three significant digits: `1.23e-4`; plain from a hundredth to a hundred.
 pub(crate) fn error(value: f64) -> String {
@@ -67,7 +68,7 @@ pub(crate) fn layer(record: &LayerRecord) -> String {
     } else {
         String::new()
     };
-    let surface = format!("{} alpha {}", record.distribution, number(record.alpha));
+    let surface = format!("{} alpha {}", record.distribution.name(), number(record.alpha));
     match record.kind {
         LayerKind::Dielectric => format!("dielectric, index ratio {}, {surface}{film}", number(record.eta)),
         LayerKind::Conductor => format!("conductor, {surface}{film}"),

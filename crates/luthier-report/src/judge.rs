@@ -4,7 +4,7 @@ use glam::DVec3;
 use luthier_layers::elek::{self, Layer};
 use luthier_layers::real_time::Twin;
 use luthier_layers::terms::{Exact, ShaderTerms};
-use luthier_lut::{ColorMode, LayerKind, LayerRecord, Manifest, MaterialEntry, ShadingModel};
+use luthier_manifest::{ColorMode, LayerKind, LayerRecord, Manifest, MaterialEntry, ShadingModel};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;

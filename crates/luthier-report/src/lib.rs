@@ -68,7 +68,7 @@ pub use exceptions::{Cause, Exception, Factor, Part};
 pub use flip::lightness_chroma_hue;
 pub use judge::{Progress, Settings, judge};
 pub use limits::{Asked, FileBudget, Limit, limits};
-pub use luthier_lut::Form;
+pub use luthier_manifest::Form;
 pub use models::{
     MaterialModels, ModelErrors, ModelSettings, ModelSubject, ModelsReport, Quantity, ViewError, Worst, judge_models,
     judge_shading_models,

@@ -1,6 +1,7 @@
 //! Limits that a report is held against.
 
-use luthier_lut::{Budget, TableKind};
+use luthier_lut::TableKind;
+use luthier_manifest::Budget;
 use serde::{Deserialize, Serialize};
 
 use crate::Report;
@@ -70,7 +71,7 @@ pub fn limits(report: &Report, files: &[FileBudget], asked: &Asked) -> Vec<Limit
         let measured = read().map(|tile| tile.judge.as_ref().unwrap_or(&tile.baker).max_abs_err);
         let by = if read().all(|tile| tile.judge.is_some()) { HERE } else { BOTH };
         add("tables: largest absolute error", budget.max_abs, Some(measured.fold(0.0, f64::max)), by);
-        let searched = |of: fn(&luthier_lut::Candidate) -> Option<f64>| {
+        let searched = |of: fn(&luthier_manifest::Candidate) -> Option<f64>| {
             report.searches.iter().filter_map(|s| of(s.front.get(s.chosen)?)).reduce(f64::max)
         };
         add("tables: largest relative error", budget.max_rel, searched(|c| Some(c.error.max_rel)), BAKER);

@@ -1,6 +1,7 @@
 //! Data of a judgement.
 
-use luthier_lut::{AtlasLayout, ColorMode, ErrorStats, Search, ShadingModel, TableKind, TexelFormat};
+use luthier_lut::{AtlasLayout, ErrorStats, TableKind, TexelFormat};
+use luthier_manifest::{ColorMode, Search, ShadingModel};
 use serde::{Deserialize, Serialize};
 
 use crate::evidence::{AgainstReference, Costs, Exhibits, PictureErrors, ReferencePaths, ShapeCost, StabilitySummary};

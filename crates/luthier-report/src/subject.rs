@@ -1,5 +1,6 @@
 use luthier_layers::elek::{self, Below};
-use luthier_lut::{Image, LayerKind, LayerRecord, Manifest, TableEntry, TableKind};
+use luthier_lut::{Image, TableKind};
+use luthier_manifest::{LayerKind, LayerRecord, Manifest, TableEntry};
 use luthier_optics::stack::Stack;
 
 use crate::ReportError;
@@ -91,7 +92,7 @@ impl Subject<'_> {
 }
 
 fn same_kind(layer: &elek::Layer, record: &LayerRecord) -> bool {
-    let named = record.distribution == layer.distribution.name();
+    let named = record.distribution == layer.distribution;
     match layer.below {
         Below::Dielectric { .. } => record.kind == LayerKind::Dielectric && named,
         Below::Conductor => record.kind == LayerKind::Conductor && named,

@@ -3,8 +3,8 @@ use std::sync::OnceLock;
 
 use luthier_layers::real_time::Twin;
 use luthier_layers::terms::{Exact, ShaderTerms};
-use luthier_lut::{ColorMode, Feature, Form, ShadingModel};
-use luthier_material::{ColorSetting, Material, ModelSetting};
+use luthier_manifest::{ColorMode, Feature, Form, ShadingModel};
+use luthier_material::Material;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use rayon::prelude::*;
@@ -34,14 +34,6 @@ pub struct Candidate {
     values: OnceLock<Vec<Rgb>>,
 }
 
-/// How a material comes by its colour: spectrally, unless its file asks otherwise.
-pub(crate) fn own_color(material: &Material) -> ColorMode {
-    match material.bake.color {
-        Some(ColorSetting::ThreeWavelengths) => ColorMode::ThreeWavelengths,
-        Some(ColorSetting::Spectral) | None => ColorMode::Spectral,
-    }
-}
-
 /// The colour of a mode.
 pub(crate) fn color_of(mode: ColorMode, material: &Material) -> Color {
     match mode {
@@ -55,7 +47,7 @@ impl Candidate {
     ///
     /// A candidate leaves out a part of the material only if that makes it cheaper. No candidate leaves out flakes or a patina.
     pub fn all(material: &Material, form: Form, costs: &CostTable) -> Vec<Self> {
-        let own = own_color(material);
+        let own = material.bake.color.unwrap_or_default();
         let colors: &[ColorMode] = match (form, own) {
             (Form::Baked, ColorMode::Spectral) => &[ColorMode::Spectral, ColorMode::ThreeWavelengths],
             _ => &[ColorMode::ThreeWavelengths],
@@ -76,11 +68,8 @@ impl Candidate {
                 }
                 for &color in colors {
                     let mut material = simple.clone();
-                    material.bake.model = ModelSetting::from_name(model.name());
-                    material.bake.color = ColorSetting::from_name(match color {
-                        ColorMode::Spectral => "spectral",
-                        ColorMode::ThreeWavelengths => "three-wavelengths",
-                    });
+                    material.bake.model = Some(model);
+                    material.bake.color = Some(color);
                     let cost_is_of_similar = is_of_similar;
                     let (left_out, values) = (left_out.clone(), OnceLock::new());
                     found.push(Self { model, form, color, left_out, material, cost, cost_is_of_similar, values });

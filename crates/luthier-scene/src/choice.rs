@@ -1,8 +1,8 @@
 use luthier_layers::terms::ShaderTerms;
-use luthier_lut::{ColorMode, Form, MaterialChoice, SceneBudget, SceneCandidate, SceneError, Verdict};
+use luthier_manifest::{ColorMode, Form, MaterialChoice, SceneBudget, SceneCandidate, SceneError, Verdict};
 use luthier_material::{Light, Material, View};
 
-use crate::candidate::{Candidate, color_of, own_color};
+use crate::candidate::{Candidate, color_of};
 use crate::cost::CostTable;
 use crate::error::{Miss, Standing, Value, largest};
 use crate::probe::{Probe, footprint, probes};
@@ -40,7 +40,7 @@ impl Judge {
     pub fn new(material: &Material, form: Form, lights: &[Light], view: &View, costs: &CostTable) -> Self {
         let stack = footprint(&material.stack, view.footprint_deg);
         let probes = probes(&stack, lights, view);
-        let color = color_of(own_color(material), material);
+        let color = color_of(material.bake.color.unwrap_or_default(), material);
         let mut reference = Reference::new(&stack, color, probes.clone());
         let noisy = |reference: &Reference| -> Vec<usize> {
             let values = reference.values();

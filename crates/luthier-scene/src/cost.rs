@@ -1,4 +1,4 @@
-use luthier_lut::{Form, ShadingModel};
+use luthier_manifest::{Form, ShadingModel};
 use serde::{Deserialize, Serialize};
 
 use crate::shape::{distance, shape_of};

@@ -1,6 +1,6 @@
 use std::f64::consts::{FRAC_1_PI, PI};
 
-use luthier_lut::{SceneBudget, SceneError};
+use luthier_manifest::{SceneBudget, SceneError};
 use luthier_optics::Rgb;
 use luthier_optics::color_difference::{ciede2000, lab};
 

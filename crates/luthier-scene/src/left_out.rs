@@ -1,4 +1,4 @@
-use luthier_lut::{Feature, Form, ShadingModel};
+use luthier_manifest::{Feature, Form, ShadingModel};
 use luthier_material::Material;
 use luthier_optics::stack::{Base, Distribution};
 

@@ -26,7 +26,7 @@ pub use choice::{Judge, MAX_SAMPLES, MODEL_SHARE, TABLE_SHARE, label};
 pub use cost::{COST_DATA, CostRow, CostTable};
 pub use error::{FLOOR, Value};
 pub use left_out::{LeftOut, left_out};
-pub use luthier_lut::Form;
+pub use luthier_manifest::Form;
 pub use probe::{Probe, footprint, probes};
 pub use shape::{shape, shape_of};
 pub use simplify::{LeaveOut, simplified, variants};

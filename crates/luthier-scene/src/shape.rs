@@ -1,4 +1,4 @@
-use luthier_lut::ShadingModel;
+use luthier_manifest::ShadingModel;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Stack};
 
 /// The properties of a stack that decide which code its shader has, layer by layer from the top, joined by `/`.

@@ -1,4 +1,4 @@
-use luthier_lut::Feature;
+use luthier_manifest::Feature;
 use luthier_material::{Maps, Material};
 use luthier_optics::stack::{Base, Distribution, FilmThickness, Slab, Surface};
 

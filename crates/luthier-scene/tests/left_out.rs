@@ -8,7 +8,7 @@ use std::io;
 use glam::DVec3;
 use luthier_layers::real_time::Twin;
 use luthier_layers::terms::Exact;
-use luthier_lut::{Feature, Form, ShadingModel};
+use luthier_manifest::{Feature, Form, ShadingModel};
 use luthier_material::{Material, parse};
 use luthier_optics::color::Color;
 use luthier_scene::{LeaveOut, left_out, simplified};

@@ -1,6 +1,6 @@
 use std::fmt::Write as _;
 
-use luthier_lut::MaterialTexture;
+use luthier_manifest::MaterialTexture;
 
 use crate::{Form, MaterialSet, Target, bindings};
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use luthier_lut::{LayerKind, ShadingModel};
+use luthier_manifest::{LayerKind, ShadingModel};
 
 use crate::MaterialSet;
 use crate::features::Features;
@@ -21,7 +21,7 @@ pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, 
          fn {name}($place_parameter material: u32,{bare} wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n",
         model.name()
     );
-    let is_diffuse = |layer: &luthier_lut::LayerRecord| layer.kind == LayerKind::Diffuse;
+    let is_diffuse = |layer: &luthier_manifest::LayerRecord| layer.kind == LayerKind::Diffuse;
     if layers.iter().all(|layers| layers.first().is_some_and(is_diffuse)) {
         let diffuse =
             if features.has("oren_nayar") { "luthier_diffuse(layer, wi, wo)" } else { "luthier_diffuse(layer)" };

@@ -1,6 +1,7 @@
 use std::fmt::Write as _;
 
-use luthier_lut::{Axis, Mapping, ShadingModel, TableKind};
+use luthier_lut::{Axis, Mapping, TableKind};
+use luthier_manifest::ShadingModel;
 
 use crate::binding_lines::binding_lines;
 use crate::wgsl::{Buffer, compose};

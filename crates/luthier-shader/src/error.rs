@@ -29,16 +29,6 @@ pub enum ShaderError {
         /// The identifier.
         constant: String,
     },
-    /// A slope distribution that the shader does not know.
-    #[error("layer {layer} of `{material}`: unknown slope distribution `{distribution}`; known: beckmann, ggx")]
-    Distribution {
-        /// The material.
-        material: String,
-        /// The layer, 0 at the top.
-        layer: usize,
-        /// The name given.
-        distribution: String,
-    },
     /// The baked form needs a tile that the layer does not have.
     #[error("layer {layer} of `{material}` has no tile of the {} table, which the baked form reads", table.name())]
     NoTile {
@@ -76,7 +66,7 @@ pub enum ShaderError {
     BufferTooLarge {
         /// Words needed.
         words: usize,
-        /// [`luthier_lut::BUFFER_WORDS_MAX`].
+        /// [`luthier_manifest::BUFFER_WORDS_MAX`].
         limit: usize,
     },
     /// The text is not valid WGSL. The message shows the place.
@@ -93,9 +83,6 @@ pub enum ShaderError {
     /// SPIR-V was asked for as text.
     #[error("SPIR-V is no text")]
     NotText,
-    /// A target that does not exist.
-    #[error("unknown shader target `{0}`; known: wgsl, glsl450, glsl-es300, hlsl, msl, spirv")]
-    UnknownTarget(String),
 }
 
 impl ShaderError {

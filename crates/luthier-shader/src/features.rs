@@ -1,6 +1,7 @@
 use std::collections::BTreeSet;
 
-use luthier_lut::{LayerKind, LayerRecord, MaterialEntry, ShadingModel, TableKind};
+use luthier_lut::TableKind;
+use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry, ShadingModel};
 
 use crate::{Form, MaterialSet};
 
@@ -142,7 +143,7 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
             continue;
         }
         names.insert("interface");
-        names.insert(if layer.distribution == "ggx" { "ggx" } else { "beckmann" });
+        names.insert(layer.distribution.name());
         names.insert(if layer.film_ior_n[0] > 0.0 { "film" } else { "bare" });
         if layer.critical_cot_sq > 0.0 {
             names.insert("total_reflection");

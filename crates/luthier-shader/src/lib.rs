@@ -35,15 +35,13 @@ mod msl;
 mod set;
 mod spirv;
 mod statistics;
-mod target;
 mod text;
 mod validate;
 mod wgsl;
 
 pub use emit::{complete, emit, emit_constant};
 pub use error::ShaderError;
-pub use luthier_lut::Form;
+pub use luthier_manifest::{Form, Target};
 pub use set::{MaterialSet, RESERVED_BINDINGS, TableFace, bindings, identifier};
 pub use spirv::{complete_spirv, emit_spirv, spirv_words};
-pub use target::Target;
 pub use validate::validate;

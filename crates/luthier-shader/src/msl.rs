@@ -42,7 +42,7 @@ pub(crate) fn from_wgsl(wgsl: &str, set: &MaterialSet<'_>, form: Form) -> Result
 }
 
 /// Where an entry point finds a binding.
-fn slot(entry: &luthier_lut::BindingEntry) -> (ResourceBinding, BindTarget) {
+fn slot(entry: &luthier_manifest::BindingEntry) -> (ResourceBinding, BindTarget) {
     let at = entry.binding as u8;
     let target = match entry.resource.as_str() {
         "buffer" => BindTarget { buffer: Some(at), ..BindTarget::default() },

@@ -1,8 +1,9 @@
 use std::collections::BTreeMap;
 
-use luthier_lut::{
-    AtlasLayout, BUFFER_WORDS_MAX, BindingEntry, LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, Manifest,
-    MaterialEntry, ShadingModel, TableKind, TexelFormat,
+use luthier_lut::{AtlasLayout, TableKind, TexelFormat};
+use luthier_manifest::{
+    BUFFER_WORDS_MAX, BindingEntry, LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, Manifest, MaterialEntry,
+    ShadingModel,
 };
 
 use crate::{Form, ShaderError};
@@ -50,7 +51,8 @@ pub struct MaterialSet<'a> {
 impl<'a> MaterialSet<'a> {
     /// All materials and tables of a bake.
     pub fn from_manifest(manifest: &'a Manifest) -> Self {
-        let face = |t: &luthier_lut::TableEntry| TableFace { kind: t.kind, layout: t.layout.clone(), format: t.format };
+        let face =
+            |t: &luthier_manifest::TableEntry| TableFace { kind: t.kind, layout: t.layout.clone(), format: t.format };
         Self { materials: &manifest.materials, tables: manifest.tables.iter().map(face).collect() }
     }
 
@@ -147,10 +149,6 @@ impl<'a> MaterialSet<'a> {
             _ => &[TableKind::Fresnel],
         };
         let (material, is_interface) = (|| material.name.clone(), layer.kind != LayerKind::Diffuse);
-        if is_interface && !matches!(layer.distribution.as_str(), "beckmann" | "ggx") {
-            let distribution = layer.distribution.clone();
-            return Err(ShaderError::Distribution { material: material(), layer: i, distribution });
-        }
         if form == Form::Full {
             return Ok(());
         }

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use luthier_lut::{LayerKind, LayerRecord, ShadingModel};
+use luthier_manifest::{LayerKind, LayerRecord, ShadingModel};
 
 use crate::MaterialSet;
 use crate::features::Features;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use luthier_lut::{MaterialTexture, SIDE, ShadingModel, material_buffer};
+use luthier_manifest::{MaterialTexture, SIDE, ShadingModel, material_buffer};
 
 use crate::chain;
 use crate::features::Features;

@@ -2,7 +2,8 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 
-use luthier_lut::{FileEntry, Image, LutError, Manifest, MapEntry, TableEntry};
+use luthier_lut::Image;
+use luthier_manifest::{FileEntry, Manifest, ManifestError, MapEntry, TableEntry};
 use sha2::{Digest, Sha256};
 use thiserror::Error;
 
@@ -81,7 +82,7 @@ pub enum FolderError {
         /// The file.
         path: PathBuf,
         /// Fault of the manifest.
-        source: LutError,
+        source: ManifestError,
     },
     /// A texture or a map cannot be decoded.
     #[error("{}: {source}", path.display())]

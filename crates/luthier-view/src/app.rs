@@ -8,8 +8,8 @@ use eframe::egui::{
     TextureHandle, TextureOptions, Theme, Ui, ViewportCommand, pos2,
 };
 use luthier_gpu::{Artefacts, Gpu, RenderSettings, Shape};
-use luthier_lut::Form;
-use luthier_material::{Material, ModelSetting};
+use luthier_manifest::{Form, ShadingModel};
+use luthier_material::Material;
 
 use crate::baker::{BakeOrder, Baker};
 use crate::error::ViewError;
@@ -44,7 +44,7 @@ pub(crate) struct App {
     pub(crate) files: Files,
     /// Materials that were edited, by the labels of their files.
     pub(crate) edits: BTreeMap<String, Material>,
-    pub(crate) model: Option<ModelSetting>,
+    pub(crate) model: Option<ShadingModel>,
     pub(crate) form: Form,
     pub(crate) shape: Shape,
     pub(crate) orbit: Orbit,
@@ -249,10 +249,10 @@ impl App {
             Action::Previous => self.files.step(-1),
             Action::Form => self.form = if self.form == Form::Baked { Form::Full } else { Form::Baked },
             Action::Model => {
-                let names = ModelSetting::NAMES;
+                let names = ShadingModel::NAMES;
                 let place = self.model.and_then(|model| names.iter().position(|name| *name == model.name()));
                 let next = place.map_or(0, |place| place + 1);
-                self.model = names.get(next).and_then(|name| ModelSetting::from_name(name));
+                self.model = names.get(next).and_then(|name| ShadingModel::from_name(name));
             }
             Action::Shape => {
                 let place = SHAPES.iter().position(|(shape, _)| *shape == self.shape).unwrap_or(0);

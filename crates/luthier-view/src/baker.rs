@@ -5,7 +5,7 @@ use std::thread;
 
 use eframe::egui;
 use luthier_gpu::Artefacts;
-use luthier_lut::Form;
+use luthier_manifest::Form;
 use luthier_material::Material;
 
 use crate::error::ViewError;

@@ -1,5 +1,5 @@
 use luthier_gpu::Artefacts;
-use luthier_lut::Form;
+use luthier_manifest::Form;
 use luthier_material::Material;
 
 /// Services that the window asks of the program around it. Called from several threads.

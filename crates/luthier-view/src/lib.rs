@@ -33,7 +33,7 @@ mod window;
 pub use error::ViewError;
 pub use host::{Host, MaterialFile, Screenshot};
 pub use look::Look;
-pub use luthier_lut::Form;
+pub use luthier_manifest::Form;
 pub use orbit::Orbit;
 pub use parameter::{Group, Handle, Parameter, groups};
 pub use shots::Shots;

@@ -6,7 +6,8 @@ use std::time::Instant;
 
 use eframe::egui::{self, ecolor};
 use luthier_gpu::{Artefacts, Backdrop, Environment, Gpu, GpuError, RenderSettings, Scene, Shape, ToneMapping};
-use luthier_lut::{Form, Image};
+use luthier_lut::Image;
+use luthier_manifest::Form;
 
 use crate::error::ViewError;
 use crate::latest::Latest;
@@ -157,16 +158,16 @@ impl Worker {
     /// The scene of an order: the one at hand where it serves, else with other materials, else compiled.
     fn scene(&mut self, order: &PaintOrder) -> Result<Scene, GpuError> {
         match self.scene.take() {
-            Some((artefacts, scene)) if scene.form() == order.form.name() => {
+            Some((artefacts, scene)) if scene.form() == order.form => {
                 if Arc::ptr_eq(&artefacts, &order.artefacts) {
                     return Ok(scene);
                 }
                 match scene.rebound(&order.artefacts)? {
                     Some(scene) => Ok(scene),
-                    None => self.gpu.scene(&order.artefacts, order.form.name()),
+                    None => self.gpu.scene(&order.artefacts, order.form),
                 }
             }
-            _ => self.gpu.scene(&order.artefacts, order.form.name()),
+            _ => self.gpu.scene(&order.artefacts, order.form),
         }
     }
 

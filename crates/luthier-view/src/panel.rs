@@ -5,8 +5,7 @@ use eframe::egui::{
     Window, vec2,
 };
 use luthier_gpu::ToneMapping;
-use luthier_lut::Form;
-use luthier_material::ModelSetting;
+use luthier_manifest::{Form, ShadingModel};
 
 use crate::app::{App, SHAPES};
 use crate::keys::{KEYS, MOUSE};
@@ -68,14 +67,14 @@ fn title(app: &mut App, ui: &mut Ui) {
 }
 
 fn choices(app: &mut App, ui: &mut Ui) {
-    let own = app.material().and_then(|material| material.bake.model).map_or("elek", ModelSetting::name);
+    let own = app.material().and_then(|material| material.bake.model).map_or("elek", ShadingModel::name);
     Grid::new("choices").num_columns(2).show(ui, |ui| {
         ui.label("model");
         let text = app.model.map_or_else(|| format!("{own} (its own)"), |model| model.name().to_owned());
         ComboBox::from_id_salt("model").width(190.0).selected_text(text).show_ui(ui, |ui| {
             ui.selectable_value(&mut app.model, None, format!("{own} (its own)"));
-            for name in ModelSetting::NAMES {
-                ui.selectable_value(&mut app.model, ModelSetting::from_name(name), *name);
+            for name in ShadingModel::NAMES {
+                ui.selectable_value(&mut app.model, ShadingModel::from_name(name), *name);
             }
         });
         ui.end_row();

@@ -2,8 +2,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui::{ThemePreference, ViewportBuilder};
 use luthier_gpu::{Gpu, RenderSettings, Shape, ToneMapping};
-use luthier_lut::Form;
-use luthier_material::ModelSetting;
+use luthier_manifest::{Form, ShadingModel};
 
 use crate::app::App;
 use crate::error::ViewError;
@@ -26,7 +25,7 @@ pub struct Options {
     /// Form.
     pub form: Form,
     /// Model; `None` is what each file asks for.
-    pub model: Option<ModelSetting>,
+    pub model: Option<ShadingModel>,
     /// Inner size of the window in points.
     pub size: [f32; 2],
     /// Dark; `None` is what the desktop says, or else dark.

@@ -1,6 +1,7 @@
 //! Blocks of 4 x 4 texels beside texels by themselves, for `docs/budgets.md`.
 
-use luthier_lut::{Axis, Candidate, CandidateForm, Image, Mapping, SchlickBase, TexelFormat, WeightBits, bilinear};
+use luthier_lut::{Axis, Image, Mapping, SchlickBase, TexelFormat, WeightBits, bilinear};
+use luthier_manifest::{Candidate, CandidateForm};
 use luthier_optics::Rgb;
 use rayon::prelude::*;
 

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use luthier_lut::{Budget, Candidate, CandidateForm};
+use luthier_manifest::{Budget, Candidate, CandidateForm};
 
 use super::Found;
 use crate::BakeError;
@@ -182,7 +182,8 @@ fn in_words(form: &CandidateForm) -> String {
 
 #[cfg(test)]
 mod tests {
-    use luthier_lut::{MeasuredError, TableKind};
+    use luthier_lut::TableKind;
+    use luthier_manifest::MeasuredError;
 
     use super::*;
 

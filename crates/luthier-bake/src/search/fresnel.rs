@@ -1,6 +1,7 @@
 //! Fresnel rows: plain or over Schlick's form, in every format, mapping and size.
 
-use luthier_lut::{Axis, Candidate, Mapping, MeasuredError, RowBase, SchlickBase, TableKind, TexelFormat};
+use luthier_lut::{Axis, Mapping, RowBase, SchlickBase, TableKind, TexelFormat};
+use luthier_manifest::{Candidate, MeasuredError};
 use luthier_optics::Rgb;
 use luthier_optics::interpolation::cubic_stencil;
 use rayon::prelude::*;

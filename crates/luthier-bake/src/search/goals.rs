@@ -4,9 +4,9 @@ use std::f64::consts::FRAC_PI_2;
 
 use luthier_layers::elek::ALPHA_MIN;
 use luthier_lut::{
-    Atlas, AtlasLayout, Axis, Budget, Candidate, Encoding, Image, Mapping, MeasuredError, RowBase, TableKind,
-    TexelFormat, WeightBits, bilinear,
+    Atlas, AtlasLayout, Axis, Encoding, Image, Mapping, RowBase, TableKind, TexelFormat, WeightBits, bilinear,
 };
+use luthier_manifest::{Budget, Candidate, MeasuredError};
 use luthier_material::{DEFAULT_WAVELENGTHS_NM, Material};
 use luthier_optics::color::Color;
 use luthier_optics::microfacet::scaled_distribution;

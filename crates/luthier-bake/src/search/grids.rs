@@ -1,6 +1,7 @@
 //! Tables of two axes whose values are costly: one fine grid of each tile is computed, and coarser ones are interpolated from it.
 
-use luthier_lut::{Axis, Candidate, CandidateForm, Image, Mapping, MeasuredError, RowBase, TableKind, TexelFormat};
+use luthier_lut::{Axis, Image, Mapping, RowBase, TableKind, TexelFormat};
+use luthier_manifest::{Candidate, CandidateForm, MeasuredError};
 use rayon::prelude::*;
 
 use super::{Found, WEIGHTS, cost, measured};

@@ -1,6 +1,7 @@
 //! Phase rows of films, and the cosines that they hold.
 
-use luthier_lut::{Candidate, CandidateForm, Mapping, MeasuredError, RowBase, TableKind, TexelFormat};
+use luthier_lut::{Mapping, RowBase, TableKind, TexelFormat};
+use luthier_manifest::{Candidate, CandidateForm, MeasuredError};
 use rayon::prelude::*;
 
 use super::{Found, cost, row_form};

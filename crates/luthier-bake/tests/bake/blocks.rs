@@ -1,7 +1,8 @@
 //! Albedo tiles in blocks of texels: asked for by a material, or taken by a search whose target has them.
 
 use luthier_bake::{Bake, BakeError, Options, Silent, bake_with};
-use luthier_lut::{Budget, FormatSet, TableKind, TexelFormat};
+use luthier_lut::{FormatSet, TableKind, TexelFormat};
+use luthier_manifest::Budget;
 use luthier_material::Material;
 
 use crate::materials::{atlas, bake_all, conductor, dielectric, material, try_bake};

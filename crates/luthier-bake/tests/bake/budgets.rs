@@ -1,7 +1,8 @@
 //! Searches: budgets hold as an independent scan sees it, tighter ones never take fewer bytes, and what cannot be met is refused.
 
 use luthier_bake::{Bake, BakeError, Options, Silent, bake_with};
-use luthier_lut::{Budget, CandidateForm, RowBase, Search, TableKind, TexelFormat, WeightBits};
+use luthier_lut::{RowBase, TableKind, TexelFormat, WeightBits};
+use luthier_manifest::{Budget, CandidateForm, Search};
 use luthier_material::Material;
 use luthier_optics::interface::Interface;
 
@@ -37,7 +38,7 @@ fn search(bake: &Bake, kind: TableKind) -> &Search {
     bake.searches.iter().find(|s| s.kind == kind).unwrap()
 }
 
-fn chosen(bake: &Bake, kind: TableKind) -> &luthier_lut::Candidate {
+fn chosen(bake: &Bake, kind: TableKind) -> &luthier_manifest::Candidate {
     let search = search(bake, kind);
     &search.front[search.chosen]
 }

@@ -1,7 +1,7 @@
 //! Effects become records and maps.
 
 use luthier_bake::{MapSource, MaterialMap};
-use luthier_lut::{LayerKind, MapSlot, MaterialConstants};
+use luthier_manifest::{LayerKind, MapSlot, MaterialConstants};
 
 use crate::materials::{SMALL, bake_all, conductor, dielectric, material};
 

@@ -1,7 +1,8 @@
 //! Film tiles against the spectral reflectance, beside the phase rows of the same films.
 
 use luthier_bake::Bake;
-use luthier_lut::{LayerRecord, TableKind, WeightBits};
+use luthier_lut::{TableKind, WeightBits};
+use luthier_manifest::LayerRecord;
 use luthier_material::Material;
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;

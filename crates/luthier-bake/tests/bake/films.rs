@@ -149,7 +149,7 @@ fn records_have_one_film_and_tables_have_all() {
     let [one, two] = [0, 1].map(|i| outline.materials[i].records[0].clone());
     assert_ne!(one.fresnel_tile, two.fresnel_tile);
     assert_ne!(one.fgd_tile, two.fgd_tile);
-    let tiles = |record: &luthier_lut::LayerRecord| luthier_lut::LayerRecord {
+    let tiles = |record: &luthier_manifest::LayerRecord| luthier_manifest::LayerRecord {
         fresnel_tile: None,
         fgd_tile: None,
         phase_tile: None,

@@ -1,6 +1,7 @@
 //! Tables are baked because a shader reads them, or because a material asks for them.
 
-use luthier_lut::{LayerRecord, TableKind, TexelFormat};
+use luthier_lut::{TableKind, TexelFormat};
+use luthier_manifest::LayerRecord;
 
 use crate::materials::{SMALL, atlas, bake_all, conductor, dielectric, material};
 

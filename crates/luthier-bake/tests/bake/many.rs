@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use luthier_bake::{Bake, Options, Silent, bake_with};
-use luthier_lut::{Atlas, SIDE_MAX, TableKind};
+use luthier_lut::{Atlas, TableKind};
+use luthier_manifest::SIDE_MAX;
 use luthier_material::{Material, parse};
 
 use crate::library::Library;

@@ -6,7 +6,8 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 use luthier_gpu::{Shape, ToneMapping};
-use luthier_material::ModelSetting;
+use luthier_lut::UnknownName;
+use luthier_manifest::{Form, ShadingModel};
 
 use super::{Shading, Sources};
 
@@ -146,32 +147,36 @@ pub(crate) struct CompareOptions {
 /// A shader to compare: what is left out is the material's model, or the baked form.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct ShaderChoice {
-    pub(crate) model: Option<ModelSetting>,
-    pub(crate) form: String,
+    pub(crate) model: Option<ShadingModel>,
+    pub(crate) form: Form,
 }
 
 impl FromStr for ShaderChoice {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        if let Some(model) = ModelSetting::from_name(text) {
-            return Ok(Self { model: Some(model), form: "baked".to_owned() });
+        if let Some(model) = ShadingModel::from_name(text) {
+            return Ok(Self { model: Some(model), form: Form::Baked });
         }
         let Some((name, form)) = text.split_once('/') else {
-            return Ok(Self { model: None, form: text.to_owned() });
+            return Ok(Self { model: None, form: form(text)? });
         };
-        match ModelSetting::from_name(name) {
-            Some(model) => Ok(Self { model: Some(model), form: form.to_owned() }),
-            None => Err(format!("no model `{name}`; known: {}", ModelSetting::NAMES.join(", "))),
+        match ShadingModel::from_name(name) {
+            Some(model) => Ok(Self { model: Some(model), form: self::form(form)? }),
+            None => Err(format!("no model `{name}`; known: {}", ShadingModel::NAMES.join(", "))),
         }
     }
+}
+
+fn form(name: &str) -> Result<Form, String> {
+    name.parse().map_err(|unknown: UnknownName| unknown.to_string())
 }
 
 impl fmt::Display for ShaderChoice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.model {
-            Some(model) => write!(f, "{}/{}", model.name(), self.form),
-            None => f.write_str(&self.form),
+            Some(model) => write!(f, "{model}/{}", self.form),
+            None => f.write_str(self.form.name()),
         }
     }
 }

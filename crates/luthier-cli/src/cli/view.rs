@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{FormName, Look, Shading, ShapeName, Sources};
+use luthier_manifest::Form;
+
+use super::{Look, Shading, ShapeName, Sources, named};
 
 const VIEW_EXAMPLES: &str = "\
 Drag turns the shape, a drag with the right button the light, the wheel zooms; H lists the keys. Files are read again when they
@@ -26,8 +28,8 @@ pub(crate) struct ViewOptions {
     #[command(flatten)]
     pub(crate) shading: Shading,
     /// Reads the tables, or evaluates everything in ALU
-    #[arg(long, value_enum, default_value_t = FormName::Baked)]
-    pub(crate) form: FormName,
+    #[arg(long, value_parser = named::<Form>(Form::NAMES), default_value_t = Form::Baked)]
+    pub(crate) form: Form,
     /// What to show: sphere, torus or plane
     #[arg(long, value_enum, default_value_t = ShapeName::Sphere)]
     pub(crate) shape: ShapeName,

@@ -3,7 +3,7 @@ use std::path::{Component, Path};
 use std::time::Instant;
 
 use luthier_bake::{Observer, Silent};
-use luthier_lut::{CandidateForm, Manifest};
+use luthier_manifest::{CandidateForm, Manifest};
 use luthier_material::Diagnostic;
 use luthier_shader::{Form, Target};
 use serde_json::{Value, json};
@@ -73,8 +73,8 @@ impl Emission {
     /// The shaders to write, each once.
     pub(super) fn shaders(&self) -> Shaders {
         let all = Shaders::default();
-        let targets: BTreeSet<Target> = self.target.iter().map(|&name| name.into()).collect();
-        let forms: BTreeSet<Form> = self.form.iter().map(|&name| name.into()).collect();
+        let targets: BTreeSet<Target> = self.target.iter().copied().collect();
+        let forms: BTreeSet<Form> = self.form.iter().copied().collect();
         Shaders {
             targets: if targets.is_empty() { all.targets } else { targets.into_iter().collect() },
             forms: if forms.is_empty() { all.forms } else { forms.into_iter().collect() },

@@ -1,6 +1,6 @@
 use luthier_gpu::{Artefacts, Gpu, Scene, Stopwatch, WgslShader};
-use luthier_lut::ShadingModel;
-use luthier_material::{Material, ModelSetting};
+use luthier_manifest::ShadingModel;
+use luthier_material::Material;
 use luthier_report::ParitySet;
 use luthier_shader::{Form, MaterialSet, Target};
 use serde::Serialize;
@@ -138,7 +138,7 @@ fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -> Outcome<V
     let mut subjects = Vec::new();
     for model in models {
         let mut shaded = material.clone();
-        shaded.bake.model = ModelSetting::from_name(model.name());
+        shaded.bake.model = Some(model);
         let mut artefacts = bake(std::slice::from_ref(&shaded))?;
         let reads_d = reads_d(model);
         let styles = [(Form::Full, true), (Form::Baked, !reads_d), (Form::Baked, true)];
@@ -148,7 +148,7 @@ fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -> Outcome<V
             if form == Form::Baked && closed && reads_d {
                 artefacts = with_closed(artefacts)?;
             }
-            let scene = gpu.scene(&artefacts, form.name()).map_err(device)?;
+            let scene = gpu.scene(&artefacts, form).map_err(device)?;
             subjects.push(Subject { model, form, closed, scene });
         }
     }
@@ -160,7 +160,7 @@ fn with_closed(mut artefacts: Artefacts) -> Outcome<Artefacts> {
     let mut set = MaterialSet::from_manifest(&artefacts.manifest);
     set.tables.retain(|table| table.kind != luthier_lut::TableKind::Distribution);
     let wgsl = luthier_shader::emit(&set, Form::Baked, Target::Wgsl).map_err(Failure::input)?;
-    artefacts.shaders = vec![WgslShader { form: Form::Baked.name().to_owned(), wgsl }];
+    artefacts.shaders = vec![WgslShader { form: Form::Baked, wgsl }];
     Ok(artefacts)
 }
 

@@ -1,3 +1,4 @@
+use luthier_manifest::Form;
 use std::path::Path;
 
 use luthier_gpu::{Artefacts, GpuError, ToneMapping};
@@ -26,7 +27,7 @@ pub(crate) fn run(options: &CompareOptions) -> Outcome {
     let mut settings = settings(look, options.shape.into(), options.size)?;
     settings.environment_samples = look.environment_samples.unwrap_or(ENVIRONMENT_SAMPLES);
     let gpu = open(look.adapter.as_deref())?;
-    let render = |subject: &Subject<'_>| -> Result<Image, GpuError> {
+    let render = |subject: &Subject| -> Result<Image, GpuError> {
         gpu.scene(&subject.artefacts, subject.form)?.render(&[subject.material], &settings)
     };
     let a = render(&a).map_err(device)?;
@@ -62,14 +63,14 @@ pub(crate) fn run(options: &CompareOptions) -> Outcome {
 }
 
 /// One side of the comparison.
-struct Subject<'a> {
+struct Subject {
     artefacts: Artefacts,
     material: u32,
-    form: &'a str,
+    form: Form,
 }
 
-impl<'a> Subject<'a> {
-    fn of(options: &CompareOptions, choice: &'a ShaderChoice) -> Outcome<Self> {
+impl Subject {
+    fn of(options: &CompareOptions, choice: &ShaderChoice) -> Outcome<Self> {
         let is_file = Path::new(&options.material).extension().is_some_and(|e| e == "toml");
         if choice.model.is_some() && !is_file {
             return Err(Failure::Input(anyhow::anyhow!(
@@ -78,8 +79,8 @@ impl<'a> Subject<'a> {
         }
         let shading = Shading { model: choice.model, ..Shading::default() };
         let (artefacts, material) = memory_bake::find(&options.material, &shading, &options.out)?;
-        artefacts.shader(&choice.form).map_err(device)?;
-        Ok(Self { artefacts, material, form: &choice.form })
+        artefacts.shader(choice.form).map_err(device)?;
+        Ok(Self { artefacts, material, form: choice.form })
     }
 }
 

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use luthier_cost::{Compiled, FOREIGN_VARIABLES, Family, Harness, Kernel, Style};
-use luthier_lut::{MaterialEntry, ShadingModel, TableKind};
-use luthier_material::{Material, ModelSetting};
+use luthier_lut::TableKind;
+use luthier_manifest::{MaterialEntry, ShadingModel};
+use luthier_material::Material;
 use luthier_shader::{Form, MaterialSet, TableFace};
 
 use crate::bake_files::{GENERATOR, material_entries};
@@ -91,7 +92,7 @@ fn shapes(options: &CostOptions, materials: &[Material]) -> Outcome {
     let mut kernels = vec![empty(Harness::Bare)?];
     for model in ShadingModel::ALL {
         for mut material in simpler() {
-            material.bake.model = ModelSetting::from_name(model.name());
+            material.bake.model = Some(model);
             let shape = luthier_scene::shape_of(model, &luthier_scene::shape(&material.stack));
             // What is no matter of shape, and what would make two materials of one shape differ.
             material.effects = Default::default();
@@ -150,13 +151,12 @@ fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Varian
     } else {
         options.model.iter().filter_map(|setting| ShadingModel::from_name(setting.name())).collect()
     };
-    let forms: Vec<Form> =
-        if options.form.is_empty() { Form::ALL.to_vec() } else { options.form.iter().map(|&f| f.into()).collect() };
+    let forms: Vec<Form> = if options.form.is_empty() { Form::ALL.to_vec() } else { options.form.clone() };
     let mut variants = Vec::new();
     for model in models {
         let mut shaded = materials.to_vec();
         for material in &mut shaded {
-            material.bake.model = ModelSetting::from_name(model.name());
+            material.bake.model = Some(model);
         }
         let groups: Vec<(String, &[Material])> = if options.set {
             vec![(format!("set of {}", shaded.len()), shaded.as_slice())]
@@ -278,7 +278,7 @@ fn command(options: &CostOptions) -> String {
     let mut words = vec!["luthier cost".to_owned()];
     words.extend(options.sources.paths.iter().map(|path| path.display().to_string()));
     words.extend(options.model.iter().map(|model| format!("--model {}", model.name())));
-    words.extend(options.form.iter().map(|&form| format!("--form {}", Form::from(form).name())));
+    words.extend(options.form.iter().map(|&form| format!("--form {}", form.name())));
     words.extend(options.family.iter().map(|family| format!("--family {}", family.0)));
     let flags = [("--set", options.set), ("--closed", options.closed), ("--constant", options.constant)];
     words.extend(flags.iter().filter(|(_, is_set)| *is_set).map(|(flag, _)| (*flag).to_owned()));

@@ -5,6 +5,7 @@ use crate::materials::{read, shaded, valid};
 use crate::memory_bake;
 use crate::picture::{Format, settings};
 use crate::sheet::sheet;
+use luthier_manifest::Form;
 
 /// Renders many materials side by side.
 pub(crate) fn run(options: &GalleryOptions) -> Outcome {
@@ -19,7 +20,7 @@ pub(crate) fn run(options: &GalleryOptions) -> Outcome {
     let look = &options.look;
     let settings = settings(look, options.shape.into(), options.size)?;
     let gpu = open(look.adapter.as_deref())?;
-    let scene = gpu.scene(&artefacts, "baked").map_err(device)?;
+    let scene = gpu.scene(&artefacts, Form::Baked).map_err(device)?;
     let mut pictures = Vec::with_capacity(materials.len());
     for (i, material) in materials.iter().enumerate() {
         pictures.push((material.name.clone(), scene.render(&[i as u32], &settings).map_err(device)?));

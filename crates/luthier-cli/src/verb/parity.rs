@@ -1,7 +1,8 @@
 use luthier_bake::Silent;
 use luthier_gpu::{Artefacts, Gpu, WgslShader};
-use luthier_lut::{Atlas, Image, Manifest, MaterialEntry, ShadingModel, TableKind, material_buffer};
-use luthier_material::{Material, ModelSetting};
+use luthier_lut::{Atlas, Image, TableKind};
+use luthier_manifest::{Manifest, MaterialEntry, ShadingModel, material_buffer};
+use luthier_material::Material;
 use luthier_optics::stack::{Base, Layer, Stack};
 use luthier_report::{POLISHED_ALPHAS, Parity, ParityCase, Share, Subject, Verdict, parity};
 use luthier_shader::{Form, MaterialSet, Target};
@@ -85,7 +86,7 @@ fn models(options: &ParityOptions) -> Vec<ShadingModel> {
 /// A material shaded by a model, and its polished variants; names are unique over all models.
 fn variants(material: &Material, model: ShadingModel) -> Vec<Material> {
     let mut base = material.clone();
-    base.bake.model = ModelSetting::from_name(model.name());
+    base.bake.model = Some(model);
     base.name = format!("{}-{}", material.name, model.name());
     let polished = POLISHED_ALPHAS.iter().enumerate().map(|(i, &alpha)| {
         let mut polished = base.clone();
@@ -139,7 +140,7 @@ impl Compiled {
         let set = MaterialSet::from_manifest(&manifest);
         let shader = |form: Form| {
             let wgsl = luthier_shader::emit(&set, form, Target::Wgsl).map_err(Failure::input)?;
-            Ok::<_, Failure>(WgslShader { form: form.name().to_owned(), wgsl })
+            Ok::<_, Failure>(WgslShader { form, wgsl })
         };
         let shaders = Form::ALL.into_iter().map(shader).collect::<Outcome<Vec<_>>>()?;
         let bindings = luthier_shader::bindings(&set, Form::Baked);

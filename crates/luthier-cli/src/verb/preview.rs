@@ -1,4 +1,5 @@
 use luthier_gpu::Shape;
+use luthier_manifest::Form;
 
 use crate::cli::{PreviewOptions, ShapeName};
 use crate::device::{device, open};
@@ -28,7 +29,7 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
     let look = &options.look;
     let mut settings = settings(look, options.shape.into(), options.size)?;
     let gpu = open(look.adapter.as_deref())?;
-    let scene = gpu.scene(&artefacts, "baked").map_err(device)?;
+    let scene = gpu.scene(&artefacts, Form::Baked).map_err(device)?;
     for &part in &parts {
         // A bake on disk has albedos only where a shader reads them, or where they were asked for.
         if look.environment_samples.is_none() && !scene.has_albedo(part).map_err(device)? {

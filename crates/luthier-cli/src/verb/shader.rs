@@ -11,7 +11,7 @@ pub(crate) fn run(options: &ShaderOptions) -> Outcome {
     let materials = bakeable(read(&options.sources.paths)?, &options.shading, false)?;
     let (entries, tables) = outline(&materials)?;
     let set = MaterialSet { materials: &entries, tables: without_d(&tables, options.closed) };
-    let (form, target) = (options.form.into(), options.target.into());
+    let (form, target) = (options.form, options.target);
     let bytes = match (target, options.complete) {
         (Target::SpirV, true) => complete_spirv(&set, form),
         (Target::SpirV, false) if options.constant => {

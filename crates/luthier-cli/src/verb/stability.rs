@@ -1,7 +1,8 @@
 use luthier_bake::{Options, Silent};
 use luthier_gpu::Gpu;
-use luthier_lut::{Budget, RowBase, ShadingModel, TexelFormat};
-use luthier_material::{BakeSettings, ColorSetting, LayerExtras, Material, ModelSetting, SurfaceClass};
+use luthier_lut::{RowBase, TexelFormat};
+use luthier_manifest::{Budget, ColorMode, ShadingModel};
+use luthier_material::{BakeSettings, LayerExtras, Material, SurfaceClass};
 use luthier_report::Subject;
 use luthier_report::stability::{Cell, Stability, StressCase, cases, model_cells, shader_cells};
 
@@ -116,7 +117,7 @@ fn gpu_cells(gpu: &Gpu, cases: &[StressCase], cells: &mut Vec<Cell>) -> Outcome<
 
 /// The n-th case as a material that the baker takes.
 fn material(n: u32, case: &StressCase, model: ShadingModel) -> Material {
-    let color = if case.is_spectral { ColorSetting::Spectral } else { ColorSetting::ThreeWavelengths };
+    let color = if case.is_spectral { ColorMode::Spectral } else { ColorMode::ThreeWavelengths };
     Material {
         name: format!("case-{n}-{}", model.name()),
         source: String::new(),
@@ -128,13 +129,9 @@ fn material(n: u32, case: &StressCase, model: ShadingModel) -> Material {
         layers: vec![LayerExtras::default(); case.stack.layers.len()],
         stack: case.stack.clone(),
         effects: luthier_material::Effects::default(),
-        budget: luthier_material::BudgetSettings::default(),
+        budget: luthier_manifest::Budget::default(),
         places: luthier_material::Places::default(),
-        bake: BakeSettings {
-            model: ModelSetting::from_name(model.name()),
-            color: Some(color),
-            ..BakeSettings::default()
-        },
+        bake: BakeSettings { model: Some(model), color: Some(color), ..BakeSettings::default() },
     }
 }
 

@@ -31,7 +31,7 @@ pub(crate) fn run(options: &ViewOptions) -> Outcome {
         environment_is_file: look.environment.is_some(),
         tone: look.tone.into(),
         shape,
-        form: options.form.into(),
+        form: options.form,
         model: options.shading.model,
         size: options.window.0.map(f32::from),
         dark: options.theme.map(|theme| theme == ThemeName::Dark),

@@ -1,6 +1,6 @@
 use std::collections::BTreeSet;
 
-use luthier_lut::Manifest;
+use luthier_manifest::Manifest;
 use serde_json::Value;
 
 use crate::material_texts::{NOISE, doubtful, film, gold, lacquer, matte};

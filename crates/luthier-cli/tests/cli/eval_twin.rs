@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 use luthier_gpu::{Artefacts, Gpu, GpuError, WgslShader};
 use luthier_layers::shaded::{Place, Shaded};
-use luthier_lut::{Manifest, MaterialEntry};
-use luthier_material::{ColorSetting, Material, ModelSetting, parse};
+use luthier_manifest::{ColorMode, Manifest, MaterialEntry, ShadingModel};
+use luthier_material::{Material, parse};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_shader::{Form, MaterialSet, TableFace, Target};
@@ -51,7 +51,7 @@ fn shipped(model: &str) -> Vec<Material> {
         let text = std::fs::read_to_string(path).unwrap();
         let read = |name: &str| std::fs::read_to_string(folder().join(name));
         let mut material = parse(&path.display().to_string(), &text, &read).unwrap().material;
-        material.bake.model = ModelSetting::from_name(model);
+        material.bake.model = ShadingModel::from_name(model);
         material
     };
     paths.iter().map(material).collect()
@@ -88,8 +88,8 @@ fn scene(gpu: &Gpu, materials: &[Material], body: Option<&str>) -> luthier_gpu::
     }
     let bindings = luthier_shader::bindings(&set, Form::Full);
     let manifest = Manifest { bindings, ..Manifest::new("by hand", entries.clone(), Vec::new()) };
-    let shaders = vec![WgslShader { form: "full".to_owned(), wgsl }];
-    gpu.scene(&Artefacts::from_parts(manifest, Vec::new(), shaders).unwrap(), "full").unwrap()
+    let shaders = vec![WgslShader { form: Form::Full, wgsl }];
+    gpu.scene(&Artefacts::from_parts(manifest, Vec::new(), shaders).unwrap(), Form::Full).unwrap()
 }
 
 fn unit(z: f64, phi: f64) -> DVec3 {
@@ -139,7 +139,7 @@ fn every_shipped_material_agrees_with_its_full_shaders() {
             let wavelengths_nm = material.bake.wavelengths_nm();
             let color = Color::ThreeWavelengths(wavelengths_nm);
             // Phong's coefficients are in the material's own colour in both forms.
-            let is_spectral = material.bake.color != Some(ColorSetting::ThreeWavelengths);
+            let is_spectral = material.bake.color != Some(ColorMode::ThreeWavelengths);
             let color = if model == "phong" && is_spectral { Color::Spectral } else { color };
             let twin = Shaded::new(model, &material.stack, wavelengths_nm, color, &Place::NONE).unwrap();
             let found = scene.evaluate(number as u32, &pairs).unwrap();

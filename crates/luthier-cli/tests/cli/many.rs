@@ -3,7 +3,7 @@
 use std::fs;
 use std::process::Command;
 
-use luthier_lut::{LAYER_WORDS, MATERIAL_WORDS, Manifest, MaterialTexture, SIDE};
+use luthier_manifest::{LAYER_WORDS, MATERIAL_WORDS, Manifest, MaterialTexture, SIDE};
 use serde_json::Value;
 
 use crate::library::Library;

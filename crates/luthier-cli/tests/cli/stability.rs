@@ -1,5 +1,5 @@
 use luthier_layers::domain::{Quantity, domain, outside};
-use luthier_lut::ShadingModel;
+use luthier_manifest::ShadingModel;
 use luthier_report::stability::{Fault, Level, PITFALLS, Stability, Verdict, cases};
 
 use crate::workshop::{Workshop, lacks_adapter};

@@ -2,9 +2,9 @@
 //! them.
 
 use luthier_gpu::{Artefacts, TableTexels, WgslShader};
-use luthier_lut::{
-    AtlasLayout, Axis, BindingEntry, ColorMode, FileEntry, Image, LayerKind, LayerRecord, Manifest, Mapping,
-    MaterialEntry, RowBase, TableEntry, TableKind, TexelFormat,
+use luthier_lut::{AtlasLayout, Axis, Image, Mapping, RowBase, TableKind, TexelFormat};
+use luthier_manifest::{
+    BindingEntry, ColorMode, Distribution, FileEntry, LayerKind, LayerRecord, Manifest, MaterialEntry, TableEntry,
 };
 use luthier_shader::{Form, MaterialSet, Target};
 
@@ -81,7 +81,7 @@ pub(crate) fn square_layout(x: &str) -> AtlasLayout {
 pub(crate) fn dielectric(alpha: f64, n: f64) -> LayerRecord {
     LayerRecord {
         kind: LayerKind::Dielectric,
-        distribution: "ggx".to_owned(),
+        distribution: Distribution::Ggx,
         alpha,
         eta: n,
         alpha_xy: [alpha; 2],
@@ -140,7 +140,7 @@ pub(crate) fn artefacts(form: Form, materials: Vec<Vec<LayerRecord>>, tables: &[
     let wgsl = luthier_shader::emit(&set, form, Target::Wgsl).unwrap();
     let bindings: Vec<BindingEntry> = luthier_shader::bindings(&set, form);
     manifest.bindings = bindings;
-    let shaders = vec![WgslShader { form: form.name().to_owned(), wgsl }];
+    let shaders = vec![WgslShader { form, wgsl }];
     Artefacts::from_parts(manifest, texels(tables), shaders).unwrap()
 }
 

@@ -6,8 +6,9 @@ use luthier_layers::elek;
 use luthier_layers::flakes::Flakes;
 use luthier_layers::heterogeneous::Map;
 use luthier_layers::voronoi::Voronoi;
-use luthier_lut::{
-    FileEntry, FlakesRecord, GlitterRecord, Image, LayerRecord, MapEntry, MapSlot, MaterialConstants, PatinaRecord,
+use luthier_lut::Image;
+use luthier_manifest::{
+    FileEntry, FlakesRecord, GlitterRecord, LayerRecord, MapEntry, MapSlot, MaterialConstants, PatinaRecord,
 };
 use luthier_shader::{Form, MaterialSet, Target};
 
@@ -57,9 +58,9 @@ fn scene_with(body: &str) -> Option<Scene> {
     let wgsl = luthier_shader::emit(&set, Form::Full, Target::Wgsl).unwrap();
     let wgsl = wgsl.replace("fn luthier_eval(", "fn emitted_eval(")
         + &format!("\nfn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n{body}\n}}\n");
-    let shaders = vec![WgslShader { form: "full".to_owned(), wgsl }];
+    let shaders = vec![WgslShader { form: Form::Full, wgsl }];
     let made = Artefacts::from_parts(made.manifest, Vec::new(), shaders).unwrap();
-    Some(gpu.scene(&made, "full").unwrap())
+    Some(gpu.scene(&made, Form::Full).unwrap())
 }
 
 fn flakes() -> Flakes {
@@ -220,12 +221,12 @@ fn normal_maps_tilt_the_surface_in_pictures() {
     let set = MaterialSet::from_manifest(&manifest);
     let wgsl = luthier_shader::emit(&set, Form::Baked, Target::Wgsl).unwrap();
     manifest.bindings = luthier_shader::bindings(&set, Form::Baked);
-    let shaders = vec![WgslShader { form: "baked".to_owned(), wgsl }];
+    let shaders = vec![WgslShader { form: Form::Baked, wgsl }];
     let mut artefacts = Artefacts::from_parts(manifest, Vec::new(), shaders).unwrap();
     let texel = (0.5 * tilted + 0.5).as_vec3();
     let image = Image { width: 1, height: 1, channels: 4, data: vec![texel.x, texel.y, texel.z, 1.0] };
     artefacts.maps.push(MapTexels { material: 0, slot: MapSlot::Normal, layer: Some(0), image });
-    let scene = gpu.scene(&artefacts, "baked").unwrap();
+    let scene = gpu.scene(&artefacts, Form::Baked).unwrap();
     let settings = RenderSettings { lights: sun([3.0, 4.0, 12.0], [1.0; 3]), ..dark() };
     check(&scene.render(&[0], &settings).unwrap(), 2e-5, |n, wo| {
         let light = DVec3::new(3.0, 4.0, 12.0) / 13.0;

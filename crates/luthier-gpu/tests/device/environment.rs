@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use luthier_gpu::{Environment, Light, RenderSettings, Scene};
-use luthier_lut::{AtlasLayout, Image, LayerRecord, TableKind, TexelFormat};
+use luthier_lut::{AtlasLayout, Image, TableKind, TexelFormat};
+use luthier_manifest::LayerRecord;
 
 use crate::bake_by_hand::{Table, conductor, dielectric};
 use crate::render::{SIZE, dark, ggx_tables, hit, scene_of, tiled};

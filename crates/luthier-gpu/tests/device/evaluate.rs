@@ -3,7 +3,8 @@
 use glam::DVec3;
 use luthier_gpu::GpuError;
 use luthier_layers::elek::{self, Layer, Terms};
-use luthier_lut::{AtlasLayout, Image, LayerRecord, Mapping, TableKind, TexelFormat, WeightBits, bilinear};
+use luthier_lut::{AtlasLayout, Image, Mapping, TableKind, TexelFormat, WeightBits, bilinear};
+use luthier_manifest::LayerRecord;
 use luthier_optics::Rgb;
 use luthier_optics::stack::Distribution;
 use luthier_shader::Form;
@@ -121,7 +122,7 @@ fn worst(layers: &[Layer], terms: &impl Terms, pairs: &[Pair], device: &[[f32; 3
 
 /// Gold-like and glass-like stacks, one per feature of the model.
 fn stacks() -> Vec<(&'static str, Vec<LayerRecord>)> {
-    let glass = |alpha, n| LayerRecord { distribution: "beckmann".to_owned(), ..dielectric(alpha, n) };
+    let glass = |alpha, n| LayerRecord { distribution: Distribution::Beckmann, ..dielectric(alpha, n) };
     let absorbing = LayerRecord { optical_depth: [0.2, 0.9, 2.5], ..glass(0.05, 1.5) };
     // Relative to a coat of index 1.5.
     let gold = |alpha| conductor(alpha, [0.12, 0.35, 0.97], [2.32, 1.6, 1.25]);
@@ -155,7 +156,7 @@ fn the_full_form_equals_f64() {
     let Some(gpu) = gpu() else { return };
     let stacks = stacks();
     let materials = stacks.iter().map(|(_, layers)| layers.clone()).collect();
-    let scene = gpu.scene(&artefacts(Form::Full, materials, &[]), "full").unwrap();
+    let scene = gpu.scene(&artefacts(Form::Full, materials, &[]), Form::Full).unwrap();
     let pairs: Vec<Pair> = pairs(7).into_iter().chain(corners()).collect();
     let mut failures = Vec::new();
     for (i, (name, records)) in stacks.iter().enumerate() {
@@ -230,10 +231,10 @@ fn the_baked_form_equals_f64_on_the_same_tables() {
     let tables = [fresnel.clone(), distribution.clone()];
 
     let tiled = |layer: LayerRecord, fresnel: u32| {
-        let ggx = u32::from(layer.distribution == "ggx");
+        let ggx = u32::from(layer.distribution == Distribution::Ggx);
         LayerRecord { fresnel_tile: Some(fresnel), distribution_tile: Some(ggx), ..layer }
     };
-    let beckmann = LayerRecord { distribution: "beckmann".to_owned(), ..dielectric(0.1, 1.5) };
+    let beckmann = LayerRecord { distribution: Distribution::Beckmann, ..dielectric(0.1, 1.5) };
     let materials = vec![
         vec![tiled(dielectric(0.03, 1.5), 0), diffuse([0.8, 0.4, 0.2], 0.3)],
         vec![tiled(beckmann, 0), tiled(conductor(0.25, [0.35; 3], [1.6; 3]), 1)],
@@ -243,7 +244,7 @@ fn the_baked_form_equals_f64_on_the_same_tables() {
             tiled(conductor(0.25, [0.35; 3], [1.6; 3]), 1),
         ],
     ];
-    let scene = gpu.scene(&artefacts(Form::Baked, materials.clone(), &tables), "baked").unwrap();
+    let scene = gpu.scene(&artefacts(Form::Baked, materials.clone(), &tables), Form::Baked).unwrap();
     let pairs: Vec<Pair> = pairs(11).into_iter().chain(corners()).collect();
     for (i, records) in materials.iter().enumerate() {
         let texels = |t: &Table| t.texels();
@@ -263,7 +264,7 @@ fn the_baked_form_equals_f64_on_the_same_tables() {
 fn any_number_of_pairs_and_no_others_materials() {
     let Some(gpu) = gpu() else { return };
     let materials = vec![vec![diffuse([0.5, 0.25, 0.125], 0.0)], vec![diffuse([1.0; 3], 0.0)]];
-    let scene = gpu.scene(&artefacts(Form::Full, materials, &[]), "full").unwrap();
+    let scene = gpu.scene(&artefacts(Form::Full, materials, &[]), Form::Full).unwrap();
     assert!(scene.evaluate(0, &[]).unwrap().is_empty());
     let up = [0.0, 0.0, 1.0];
     for count in [1, 63, 64, 65, (1 << 18) + 1] {

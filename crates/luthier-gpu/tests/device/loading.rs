@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use luthier_gpu::{Artefacts, GpuError, TableTexels};
-use luthier_lut::{AtlasLayout, FileEntry, LutError, Manifest, Mapping, ShaderEntry, TableKind, TexelFormat};
+use luthier_lut::{AtlasLayout, Mapping, TableKind, TexelFormat};
+use luthier_manifest::{FileEntry, Form, Manifest, ManifestError, ShaderEntry, Target};
 use luthier_texture::{FolderError, Texture, ktx2};
 use sha2::{Digest, Sha256};
 use tempfile::TempDir;
@@ -38,10 +39,12 @@ fn bake(change: impl FnOnce(&mut Manifest)) -> TempDir {
     let TableTexels { format, width, height, bytes, .. } = texels(std::slice::from_ref(&table)).remove(0);
     let texture = ktx2::encode(&Texture { format, width, height, bytes }).unwrap();
     manifest.tables[0].texture = write(folder.path(), "tables/fresnel.ktx2", &texture);
-    let shader = |target: &str, file| ShaderEntry { target: target.to_owned(), form: "baked".to_owned(), file };
+    let shader = |target, file| ShaderEntry { target, form: Form::Baked, file };
     let missing = FileEntry { path: "shaders/none.glsl".to_owned(), sha256: String::new() };
-    manifest.shaders =
-        vec![shader("glsl450", missing), shader("wgsl", write(folder.path(), "shaders/baked.wgsl", WGSL.as_bytes()))];
+    manifest.shaders = vec![
+        shader(Target::Glsl450, missing),
+        shader(Target::Wgsl, write(folder.path(), "shaders/baked.wgsl", WGSL.as_bytes())),
+    ];
     change(&mut manifest);
     std::fs::write(folder.path().join("manifest.json"), manifest.to_json().unwrap()).unwrap();
     folder
@@ -56,9 +59,9 @@ fn a_bake_loads_with_what_it_needs_only() {
     let folder = bake(|_| {});
     let artefacts = Artefacts::load(folder.path()).unwrap();
     assert_eq!(artefacts.tables, texels(&[table()]));
-    assert_eq!(artefacts.shader("baked").unwrap().wgsl, WGSL);
+    assert_eq!(artefacts.shader(Form::Baked).unwrap().wgsl, WGSL);
     assert_eq!(artefacts.shaders.len(), 1);
-    let error = artefacts.shader("full").unwrap_err();
+    let error = artefacts.shader(Form::Full).unwrap_err();
     assert!(matches!(&error, GpuError::NoShader { known, .. } if known == "baked"), "{error}");
 }
 
@@ -100,16 +103,19 @@ fn contradictions_are_refused() {
         other => panic!("{other}"),
     };
     let format = table(refusal(|m| m.tables[0].format = TexelFormat::Rgba8Unorm));
-    assert!(matches!(format, LutError::TableMismatch { .. }), "{format}");
+    assert!(matches!(format, ManifestError::TableMismatch { .. }), "{format}");
     let tiles = table(refusal(|m| m.tables[0].layout.tiles = 3));
-    assert!(matches!(tiles, LutError::TableMismatch { .. }), "{tiles}");
+    assert!(matches!(tiles, ManifestError::TableMismatch { .. }), "{tiles}");
     for nonsense in [0, u32::MAX] {
         let error = table(refusal(|m| m.tables[0].layout.columns = nonsense));
-        assert!(matches!(error, LutError::Layout { .. }), "{nonsense}: {error}");
+        assert!(matches!(error, ManifestError::Layout { .. }), "{nonsense}: {error}");
         let error = table(refusal(|m| m.tables[0].layout.x.size = nonsense));
-        assert!(matches!(error, LutError::Layout { .. } | LutError::TableMismatch { .. }), "{nonsense}: {error}");
+        assert!(
+            matches!(error, ManifestError::Layout { .. } | ManifestError::TableMismatch { .. }),
+            "{nonsense}: {error}"
+        );
     }
-    assert!(matches!(table(refusal(|m| m.tables[0].layout.apron = u32::MAX)), LutError::Layout { .. }));
+    assert!(matches!(table(refusal(|m| m.tables[0].layout.apron = u32::MAX)), ManifestError::Layout { .. }));
     assert!(matches!(refusal(|m| m.materials.clear()), GpuError::NoMaterials));
     assert!(matches!(refusal(|m| m.materials[0].layers.clear()), GpuError::NoLayers { .. }));
     assert!(matches!(refusal(|m| m.schema = 99), GpuError::Folder(FolderError::Manifest { .. })));

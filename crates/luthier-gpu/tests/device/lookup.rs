@@ -1,7 +1,8 @@
 //! The device's look-ups against the CPU sampler of luthier-lut, for every kind, format and mapping.
 
 use luthier_gpu::{Gpu, GpuError};
-use luthier_lut::{AtlasLayout, LayerRecord, Mapping, TableKind, TexelFormat, WeightBits, bilinear};
+use luthier_lut::{AtlasLayout, Mapping, TableKind, TexelFormat, WeightBits, bilinear};
+use luthier_manifest::LayerRecord;
 use luthier_shader::Form;
 
 use crate::adapter::gpu;
@@ -81,7 +82,7 @@ fn probes(layout: &AtlasLayout) -> Vec<[f32; 2]> {
 fn compare(table: &Table) {
     let Some(gpu) = gpu() else { return };
     let tables = with(table.clone());
-    let scene = gpu.scene(&artefacts(Form::Baked, layers(&tables), &tables), "baked").unwrap();
+    let scene = gpu.scene(&artefacts(Form::Baked, layers(&tables), &tables), Form::Baked).unwrap();
     let texels = table.texels();
     let channels = match table.kind {
         TableKind::Distribution => 1,
@@ -192,7 +193,7 @@ fn fgd_tiles_in_blocks() {
     let Some(gpu) = gpu() else { return };
     let table = Table::new(TableKind::Fgd, fgd_layout(), TexelFormat::Bc6hRgbUfloat, ramp);
     let tables = with(table.clone());
-    match gpu.scene(&artefacts(Form::Baked, layers(&tables), &tables), "baked") {
+    match gpu.scene(&artefacts(Form::Baked, layers(&tables), &tables), Form::Baked) {
         Err(GpuError::NoSuchFormat { kind, format }) => {
             assert_eq!((kind, format), (TableKind::Fgd, TexelFormat::Bc6hRgbUfloat));
         }
@@ -255,7 +256,7 @@ fn tiles_do_not_bleed() {
         let tables = with(Table::new(TableKind::Fresnel, rows, format, loud));
         let mut tables: Vec<Table> = tables;
         tables.push(Table::new(TableKind::Fgd, squares, format, loud));
-        let scene = gpu.scene(&artefacts(Form::Baked, layers(&tables), &tables), "baked").unwrap();
+        let scene = gpu.scene(&artefacts(Form::Baked, layers(&tables), &tables), Form::Baked).unwrap();
         for table in tables.iter().filter(|t| t.kind != TableKind::Distribution) {
             let values = probes(&table.layout);
             for tile in 0..table.layout.tiles {
@@ -278,7 +279,7 @@ fn tiles_do_not_bleed() {
 fn absent_tables_and_tiles_are_errors() {
     let Some(gpu) = gpu() else { return };
     let tables = plain_tables();
-    let scene = gpu.scene(&artefacts(Form::Baked, layers(&tables), &tables), "baked").unwrap();
+    let scene = gpu.scene(&artefacts(Form::Baked, layers(&tables), &tables), Form::Baked).unwrap();
     let missing = scene.lookup(TableKind::Phase, 0, &[[0.5, 0.0]]).unwrap_err();
     assert!(matches!(missing, GpuError::NoTable { kind: TableKind::Phase, .. }), "{missing}");
     let beyond = scene.lookup(TableKind::Fresnel, 1, &[[0.5, 0.0]]).unwrap_err();

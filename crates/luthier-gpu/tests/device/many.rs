@@ -1,6 +1,7 @@
 //! Materials of a large set against each of them alone.
 
-use luthier_lut::{AtlasLayout, LayerRecord, Mapping, SIDE, SIDE_MAX, TableKind, TexelFormat};
+use luthier_lut::{AtlasLayout, Mapping, TableKind, TexelFormat};
+use luthier_manifest::{LayerRecord, SIDE, SIDE_MAX};
 use luthier_shader::Form;
 
 use crate::adapter::gpu;
@@ -49,9 +50,9 @@ fn pairs() -> Vec<([f32; 3], [f32; 3])> {
 fn a_large_number_finds_its_own_layers() {
     let Some(gpu) = gpu() else { return };
     let many = artefacts(Form::Full, (0..COUNT).map(|number| layers(number, 0)).collect(), &[]);
-    let scene = gpu.scene(&many, "full").unwrap();
+    let scene = gpu.scene(&many, Form::Full).unwrap();
     for number in NUMBERS {
-        let alone = gpu.scene(&artefacts(Form::Full, vec![layers(number, 0)], &[]), "full").unwrap();
+        let alone = gpu.scene(&artefacts(Form::Full, vec![layers(number, 0)], &[]), Form::Full).unwrap();
         let (found, expected) = (scene.evaluate(number, &pairs()).unwrap(), alone.evaluate(0, &pairs()).unwrap());
         assert!(expected.iter().flatten().all(|value| *value > 0.0));
         assert_eq!(found, expected, "material {number}");
@@ -70,10 +71,10 @@ fn a_large_number_finds_its_own_rows() {
         let table = rows(tiles, columns, 0);
         assert!(table.layout.size().iter().all(|side| *side <= SIDE_MAX));
         let many = artefacts(Form::Baked, (0..COUNT).map(|number| layers(number, 2 * number)).collect(), &[table]);
-        let scene = gpu.scene(&many, "baked").unwrap();
+        let scene = gpu.scene(&many, Form::Baked).unwrap();
         for number in NUMBERS {
             let table = rows(2, 1, 2 * number);
-            let alone = gpu.scene(&artefacts(Form::Baked, vec![layers(number, 0)], &[table]), "baked").unwrap();
+            let alone = gpu.scene(&artefacts(Form::Baked, vec![layers(number, 0)], &[table]), Form::Baked).unwrap();
             let (found, expected) = (scene.evaluate(number, &pairs()).unwrap(), alone.evaluate(0, &pairs()).unwrap());
             for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
                 let error = (found - expected).abs() / expected.max(1e-3);

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use luthier_layers::elek::{Below, Layer, Terms};
-use luthier_lut::{LayerKind, LayerRecord};
+use luthier_manifest::{LayerKind, LayerRecord};
 use luthier_optics::Rgb;
 use luthier_optics::stack::{Diffuse, Distribution};
 use num_complex::Complex64;
@@ -71,7 +71,7 @@ pub(crate) fn model_layers(records: &[LayerRecord]) -> Vec<Layer> {
     records
         .iter()
         .map(|r| Layer {
-            distribution: if r.distribution == "ggx" { Distribution::Ggx } else { Distribution::Beckmann },
+            distribution: r.distribution,
             alpha: r.alpha,
             below: match r.kind {
                 LayerKind::Dielectric => Below::Dielectric { eta: r.eta, optical_depth: r.optical_depth },

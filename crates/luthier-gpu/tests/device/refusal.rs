@@ -1,7 +1,7 @@
 //! A refusal of the device comes back as an error, and leaves the device usable.
 
 use luthier_gpu::{Artefacts, GpuError, WgslShader};
-use luthier_lut::BindingEntry;
+use luthier_manifest::{BindingEntry, Form};
 
 use crate::adapter::gpu;
 use crate::bake_by_hand::{diffuse, manifest};
@@ -16,7 +16,7 @@ fn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
 fn bake(wgsl: &str, name: &str, resource: &str) -> Artefacts {
     let mut manifest = manifest(vec![vec![diffuse([0.5; 3], 0.0)]], &[]);
     manifest.bindings = vec![BindingEntry { binding: 6, name: name.to_owned(), resource: resource.to_owned() }];
-    let shaders = vec![WgslShader { form: "full".to_owned(), wgsl: wgsl.to_owned() }];
+    let shaders = vec![WgslShader { form: Form::Full, wgsl: wgsl.to_owned() }];
     Artefacts::from_parts(manifest, Vec::new(), shaders).unwrap()
 }
 
@@ -31,18 +31,19 @@ fn bad_shaders_are_errors_and_the_device_lives_on() {
         (GOOD, "something_else", "buffer"),
         (GOOD, materials, "sampler"),
     ] {
-        let error = gpu.scene(&bake(wgsl, name, resource), "full").unwrap_err();
+        let error = gpu.scene(&bake(wgsl, name, resource), Form::Full).unwrap_err();
         assert!(matches!(&error, GpuError::Refused { what, .. } if what.contains("full")), "{error}");
     }
-    let error = gpu.scene(&bake(GOOD, materials, "texture_3d<f32>"), "full").unwrap_err();
+    let error = gpu.scene(&bake(GOOD, materials, "texture_3d<f32>"), Form::Full).unwrap_err();
     assert!(matches!(error, GpuError::Binding { .. }), "{error}");
-    let error = gpu.scene(&bake("const luthier_water = 1.0;", "luthier_water", "texture_2d<f32>"), "full").unwrap_err();
+    let error =
+        gpu.scene(&bake("const luthier_water = 1.0;", "luthier_water", "texture_2d<f32>"), Form::Full).unwrap_err();
     assert!(matches!(error, GpuError::Binding { .. }), "{error}");
 
-    let scene = gpu.scene(&bake(GOOD, materials, "buffer"), "full").unwrap();
-    assert_eq!(scene.form(), "full");
+    let scene = gpu.scene(&bake(GOOD, materials, "buffer"), Form::Full).unwrap();
+    assert_eq!(scene.form(), Form::Full);
     // The header word of material 0: its layers begin behind its header, and there is one; whole numbers lie above 2^23.
     let got = scene.evaluate(0, &[([0.0, 0.0, 1.0], [2.0, 0.0, 0.0])]).unwrap();
     let whole = |n: usize| ((1 << 23) + n) as f32;
-    assert_eq!(got, [[whole(luthier_lut::MATERIAL_WORDS + 2), whole(1), whole(1)]]);
+    assert_eq!(got, [[whole(luthier_manifest::MATERIAL_WORDS + 2), whole(1), whole(1)]]);
 }

@@ -3,7 +3,8 @@
 use std::sync::{Arc, OnceLock};
 
 use luthier_gpu::{Artefacts, Backdrop, Blur, Environment, GpuError, Light, RenderSettings, Scene, Shape, Sky};
-use luthier_lut::{AtlasLayout, Image, LayerRecord, Mapping, TableKind, TexelFormat};
+use luthier_lut::{AtlasLayout, Image, Mapping, TableKind, TexelFormat};
+use luthier_manifest::LayerRecord;
 use luthier_shader::Form;
 
 use crate::adapter::gpu;
@@ -105,7 +106,7 @@ pub(crate) fn check(image: &Image, tolerance: f64, expected: impl Fn([f64; 3], [
 
 pub(crate) fn scene_of(materials: Vec<Vec<LayerRecord>>, tables: &[Table]) -> Option<Scene> {
     let artefacts: Artefacts = artefacts(Form::Baked, materials, tables);
-    Some(gpu()?.scene(&artefacts, "baked").unwrap())
+    Some(gpu()?.scene(&artefacts, Form::Baked).unwrap())
 }
 
 #[test]
@@ -323,7 +324,7 @@ fn settings_out_of_range_are_errors() {
     assert!(refused(above));
     assert!(matches!(scene.render(&[9], &dark()), Err(GpuError::NoMaterial { material: 9, .. })));
     let Some(gpu) = gpu() else { return };
-    let full = gpu.scene(&artefacts(Form::Full, vec![vec![diffuse([1.0; 3], 0.0)]], &[]), "full").unwrap();
+    let full = gpu.scene(&artefacts(Form::Full, vec![vec![diffuse([1.0; 3], 0.0)]], &[]), Form::Full).unwrap();
     assert!(matches!(full.render(&[0], &dark()), Err(GpuError::Prefiltered { .. })));
     let sampled = RenderSettings { environment: uniform(1.0), environment_samples: 4, ..dark() };
     check(&full.render(&[0], &sampled).unwrap(), 1e-5, |_, _| [1.0; 3]);

@@ -17,15 +17,15 @@ fn a_rebound_scene_is_that_of_the_other_materials() {
     let furnace = RenderSettings { environment: uniform(1.0), ..dark() };
     let first = artefacts(Form::Baked, metal(0.2), &tables(0.25, 0.75));
     let other = artefacts(Form::Baked, metal(0.6), &tables(0.5, 0.375));
-    let scene = gpu.scene(&first, "baked").unwrap();
+    let scene = gpu.scene(&first, Form::Baked).unwrap();
     let before = scene.render(&[0], &furnace).unwrap();
     let rebound = scene.rebound(&other).unwrap().expect("the same shader");
-    let expected = gpu.scene(&other, "baked").unwrap().render(&[0], &furnace).unwrap();
+    let expected = gpu.scene(&other, Form::Baked).unwrap().render(&[0], &furnace).unwrap();
     assert!(rebound.render(&[0], &furnace).unwrap() == expected);
     assert!(expected != before);
     assert!(scene.render(&[0], &furnace).unwrap() == before, "the old one is as it was");
     let up = ([0.0, 0.0, 1.0], [0.0, 0.6, 0.8]);
-    let fresh = gpu.scene(&other, "baked").unwrap().evaluate(0, &[up]).unwrap();
+    let fresh = gpu.scene(&other, Form::Baked).unwrap().evaluate(0, &[up]).unwrap();
     assert_eq!(rebound.evaluate(0, &[up]).unwrap(), fresh);
 }
 
@@ -38,14 +38,14 @@ fn another_shader_cannot_be_rebound() {
         vec![vec![tiled(dielectric(0.1, 1.5), None), diffuse([0.5; 3], 0.0)]],
         &tables(0.1, 0.1),
     );
-    let scene = gpu.scene(&matte, "baked").unwrap();
+    let scene = gpu.scene(&matte, Form::Baked).unwrap();
     assert!(scene.rebound(&coated).unwrap().is_none());
 }
 
 #[test]
 fn a_rendering_may_be_given_up_between_passes() {
     let Some(gpu) = gpu() else { return };
-    let scene = gpu.scene(&artefacts(Form::Baked, vec![vec![diffuse([0.5; 3], 0.0)]], &[]), "baked").unwrap();
+    let scene = gpu.scene(&artefacts(Form::Baked, vec![vec![diffuse([0.5; 3], 0.0)]], &[]), Form::Baked).unwrap();
     // Enough evaluations for a few passes.
     let settings = RenderSettings { size: 256, samples: 4, ..dark() };
     let asked = Cell::new(0);

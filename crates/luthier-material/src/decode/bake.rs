@@ -1,6 +1,11 @@
+//! Bake settings and budgets of a file.
+
+use luthier_lut::{TableKind, TexelFormat};
+use luthier_manifest::{Budget, ColorMode, ShadingModel};
+
 use crate::bake_settings::{
-    AlphaMapping, BakeSettings, BudgetSettings, ColorSetting, DistributionMapping, DistributionSettings, Format,
-    FresnelMapping, FresnelSettings, GridSettings, ModelSetting, RowSettings, TableSetting,
+    AlphaMapping, BakeSettings, DistributionMapping, DistributionSettings, FresnelMapping, FresnelSettings,
+    GridSettings, RowSettings,
 };
 use crate::diagnostic::Sink;
 use crate::section::Section;
@@ -10,9 +15,9 @@ pub(super) fn decode(document: &Section<'_>, sink: &mut Sink<'_>) -> BakeSetting
     let Some(at) = document.section("bake") else { return BakeSettings::default() };
     let wavelengths_nm = at.rgb("wavelengths_nm").filter(|w| distinct(w, &at, sink));
     BakeSettings {
-        model: at.text("model").and_then(ModelSetting::from_name),
-        tables: at.texts("tables").iter().filter_map(|name| TableSetting::from_name(name)).collect(),
-        color: at.text("color").and_then(ColorSetting::from_name),
+        model: at.text("model").and_then(ShadingModel::from_name),
+        tables: at.texts("tables").iter().filter_map(|name| TableKind::from_name(name)).collect(),
+        color: at.text("color").and_then(ColorMode::from_name),
         wavelengths_nm,
         fresnel: at.section("fresnel").map(|at| fresnel(&at)).unwrap_or_default(),
         distribution: at.section("distribution").map(|at| distribution(&at, sink)).unwrap_or_default(),
@@ -23,9 +28,9 @@ pub(super) fn decode(document: &Section<'_>, sink: &mut Sink<'_>) -> BakeSetting
 }
 
 /// The budget that the file allows its tables.
-pub(super) fn budget(document: &Section<'_>) -> BudgetSettings {
-    let Some(at) = document.section("budget") else { return BudgetSettings::default() };
-    BudgetSettings {
+pub(super) fn budget(document: &Section<'_>) -> Budget {
+    let Some(at) = document.section("budget") else { return Budget::default() };
+    Budget {
         max_abs: at.number("max_abs"),
         max_rel: at.number("max_rel"),
         delta_e: at.number("delta_e"),
@@ -47,8 +52,8 @@ fn distinct(wavelengths: &[f64; 3], at: &Section<'_>, sink: &mut Sink<'_>) -> bo
     false
 }
 
-fn format(at: &Section<'_>) -> Option<Format> {
-    at.text("format").and_then(Format::from_name)
+fn format(at: &Section<'_>) -> Option<TexelFormat> {
+    at.text("format").and_then(TexelFormat::from_name)
 }
 
 fn fresnel(at: &Section<'_>) -> FresnelSettings {

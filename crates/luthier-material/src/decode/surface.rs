@@ -5,10 +5,7 @@ use crate::section::Section;
 
 /// The micro-surface of a layer, in whichever way the file gives it.
 pub(super) fn decode(at: &Section<'_>, sink: &mut Sink<'_>) -> Surface {
-    let distribution = match at.text("distribution") {
-        Some("beckmann") => Distribution::Beckmann,
-        _ => Distribution::Ggx,
-    };
+    let distribution = at.text("distribution").and_then(Distribution::from_name).unwrap_or_default();
     if let (Some(alpha_x), Some(alpha_y)) = (at.number("alpha_x"), at.number("alpha_y")) {
         let rotation = at.number("rotation_deg").unwrap_or(0.0).to_radians();
         return Surface { distribution, alpha_x, alpha_y, rotation };

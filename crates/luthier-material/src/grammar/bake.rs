@@ -1,7 +1,10 @@
+//! Keys of `[bake]` and `[budget]`.
+
+use luthier_lut::TableKind;
+use luthier_manifest::{ColorMode, ShadingModel};
+
 use super::{Key, Kind, POSITIVE, Range, Table};
-use crate::bake_settings::{
-    AlphaMapping, ColorSetting, DistributionMapping, FresnelMapping, ModelSetting, TableSetting,
-};
+use crate::bake_settings::{AlphaMapping, DistributionMapping, FresnelMapping};
 
 /// Wavelengths that the colour matching functions cover.
 const VISIBLE_NM: Range = Range { min: 360.0, max: 830.0, above: false };
@@ -27,18 +30,18 @@ pub(super) static BAKE: Table = Table {
     keys: &[
         Key::with_default(
             "model",
-            Kind::Choice(ModelSetting::NAMES),
+            Kind::Choice(ShadingModel::NAMES),
             "\"elek\"",
             "The reflectance model that the shader evaluates.",
         ),
         Key::optional(
             "tables",
-            Kind::List { item: &Kind::Choice(TableSetting::NAMES), min: 1, max: TableSetting::NAMES.len() },
+            Kind::List { item: &Kind::Choice(TableKind::NAMES), min: 1, max: TableKind::NAMES.len() },
             "Kinds of tables to bake beside those that the shader reads; settings of a kind ask for it too.",
         ),
         Key::optional(
             "color",
-            Kind::Choice(ColorSetting::NAMES),
+            Kind::Choice(ColorMode::NAMES),
             "Integrate spectra, or take the function at three wavelengths as R, G, B.",
         ),
         Key::with_default(

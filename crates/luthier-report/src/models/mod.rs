@@ -33,7 +33,7 @@ use luthier_layers::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_layers::model::{Kind, Model, ModelInfo};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::registry::models;
-use luthier_lut::ShadingModel;
+use luthier_manifest::ShadingModel;
 use luthier_optics::color_difference::{ciede2000, lab};
 use luthier_optics::stack::Stack;
 use rayon::prelude::*;

@@ -1,6 +1,6 @@
 //! One section per material.
 
-use luthier_lut::ColorMode;
+use luthier_manifest::ColorMode;
 use std::fmt::Write;
 
 use super::{anchor, cell, glance, of_material, pictures, summary, trade};

@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use luthier_lut::{Axis, Budget, Candidate, CandidateForm, RowBase, Search, TableKind};
+use luthier_lut::{Axis, RowBase, TableKind};
+use luthier_manifest::{Budget, Candidate, CandidateForm, Search};
 
 use super::cell;
 use crate::chart::{Choice, Mark, Price, Series, legend, pareto};

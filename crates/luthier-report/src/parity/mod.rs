@@ -6,7 +6,7 @@ mod tolerances;
 
 use luthier_layers::real_time::Twin;
 use luthier_layers::terms::ShaderTerms;
-use luthier_lut::{ColorMode, ShadingModel};
+use luthier_manifest::{ColorMode, ShadingModel};
 use luthier_optics::Rgb;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};

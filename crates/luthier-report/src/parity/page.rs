@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use luthier_lut::ShadingModel;
+use luthier_manifest::ShadingModel;
 
 use super::tolerances::{KNOWN, Tolerance, tolerance};
 use super::{Parity, ParityRow, ParitySet, Share, Verdict};

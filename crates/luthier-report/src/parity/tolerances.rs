@@ -1,6 +1,6 @@
 //! How far a shader may be from its twin, model by model, and what is known to be further.
 
-use luthier_lut::ShadingModel;
+use luthier_manifest::ShadingModel;
 use serde::{Deserialize, Serialize};
 
 use crate::Form;

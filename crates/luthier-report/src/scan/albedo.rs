@@ -1,4 +1,4 @@
-use luthier_lut::ColorMode;
+use luthier_manifest::ColorMode;
 use luthier_optics::Rgb;
 use luthier_optics::albedo::{Effort, FacetStatistics, ReflectanceCurves, crossed_albedo};
 use luthier_optics::color::{Color, luminance};

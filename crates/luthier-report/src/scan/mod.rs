@@ -8,7 +8,8 @@ mod phase;
 mod thickness;
 
 use luthier_layers::terms::Exact;
-use luthier_lut::{Axis, ErrorStats, LayerRecord, TableKind, Worst};
+use luthier_lut::{Axis, ErrorStats, TableKind, Worst};
+use luthier_manifest::LayerRecord;
 
 use crate::report::{Curves, TableReport, TileReport};
 use crate::statistics::summarise;

@@ -10,9 +10,9 @@ use luthier_layers::statistics::diffuse_base::Veil;
 use luthier_layers::statistics::energy::{Energy, ExactEnergy, FacetCache};
 use luthier_layers::statistics::total_reflection::escaping_share;
 use luthier_layers::terms::Exact;
-use luthier_lut::{
-    AtlasLayout, Axis, ColorMode, ErrorStats, FileEntry, Image, LayerKind, LayerRecord, MANIFEST_SCHEMA, Manifest,
-    Mapping, MaterialEntry, ShadingModel, TableEntry, TableKind, TexelFormat, Tile, Worst,
+use luthier_lut::{AtlasLayout, Axis, ErrorStats, Image, Mapping, TableKind, TexelFormat, Tile, Worst};
+use luthier_manifest::{
+    ColorMode, FileEntry, LayerKind, LayerRecord, MANIFEST_SCHEMA, Manifest, MaterialEntry, ShadingModel, TableEntry,
 };
 use luthier_optics::color::Color;
 use luthier_optics::ior::{Ior, IorSample};
@@ -108,7 +108,7 @@ impl Bake {
             shaders: Vec::new(),
             bindings: Vec::new(),
             material_buffer: FileEntry::default(),
-            material_texture: luthier_lut::MaterialTexture::default(),
+            material_texture: luthier_manifest::MaterialTexture::default(),
         };
         let textures = vec![(TableKind::Fresnel, fresnel), (TableKind::Distribution, distribution)];
         Self { manifest, textures, stacks: named.into_iter().map(|(_, stack)| stack).collect() }
@@ -323,7 +323,7 @@ pub(crate) fn table(
 fn record(layer: &elek::Layer) -> LayerRecord {
     let mut record = LayerRecord {
         kind: LayerKind::Conductor,
-        distribution: layer.distribution.name().to_owned(),
+        distribution: layer.distribution,
         alpha: layer.alpha,
         alpha_xy: [layer.alpha; 2],
         eta: 1.0,

@@ -1,4 +1,5 @@
-use luthier_lut::{Image, ShadingModel, TableKind};
+use luthier_lut::{Image, TableKind};
+use luthier_manifest::ShadingModel;
 use luthier_report::{Compared, Form, Report, ReportError, Settings, Subject, Weights, judge};
 
 use crate::fixture::Bake;

@@ -1,6 +1,6 @@
 //! Budgets against what was found.
 
-use luthier_lut::Budget;
+use luthier_manifest::Budget;
 use luthier_report::{Asked, FileBudget, SeenLight, Settings, judge, limits};
 
 use crate::fixture::Bake;

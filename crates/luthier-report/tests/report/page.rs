@@ -1,9 +1,7 @@
 use std::path::PathBuf;
 
-use luthier_lut::{
-    Axis, Budget, Candidate, CandidateForm, Mapping, MeasuredError, RowBase, Search, ShadingModel, TableKind,
-    TexelFormat,
-};
+use luthier_lut::{Axis, Mapping, RowBase, TableKind, TexelFormat};
+use luthier_manifest::{Budget, Candidate, CandidateForm, MeasuredError, Search, ShadingModel};
 use luthier_report::{
     AgainstReference, Costs, Exhibit, Exhibits, PictureErrors, ReferencePaths, Report, Settings, ShaderCost, ShapeCost,
     judge,

@@ -1,6 +1,7 @@
 //! The parity run against devices whose errors are known.
 
-use luthier_lut::{ShadingModel, TableKind};
+use luthier_lut::TableKind;
+use luthier_manifest::ShadingModel;
 use luthier_report::{
     Factor, Form, POLISHED_ALPHAS, Parity, ParityCase, ParityRow, ParitySet, ReportError, Settings, Share, Verdict,
     judge, parity,
@@ -29,7 +30,7 @@ fn shaded(model: ShadingModel) -> Bake {
 
 /// The materials of the fixture, each its own polished variants.
 fn cases(bake: &Bake) -> Vec<ParityCase> {
-    let case = |(n, m): (u32, &luthier_lut::MaterialEntry)| ParityCase {
+    let case = |(n, m): (u32, &luthier_manifest::MaterialEntry)| ParityCase {
         name: m.name.clone(),
         material: n,
         polished: vec![n; POLISHED_ALPHAS.len()],

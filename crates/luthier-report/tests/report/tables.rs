@@ -2,7 +2,8 @@
 
 use luthier_layers::elek::Terms;
 use luthier_layers::terms::Exact;
-use luthier_lut::{AtlasLayout, Image, Mapping, ShadingModel, TableKind, TexelFormat};
+use luthier_lut::{AtlasLayout, Image, Mapping, TableKind, TexelFormat};
+use luthier_manifest::ShadingModel;
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Film, FilmThickness, Slab};

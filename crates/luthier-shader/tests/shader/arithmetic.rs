@@ -6,10 +6,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use crate::machine::{Machine, Value, vector};
 use crate::paper;
 use crate::scenes::{clear, conductor, dielectric, diffuse, filmed, material, sets, tables};
-use luthier_lut::{
-    Axis, Image, LayerRecord, Mapping, MaterialEntry, ShadingModel, TableKind, TexelFormat, WeightBits, bilinear,
-    material_buffer,
-};
+use luthier_lut::{Axis, Image, Mapping, TableKind, TexelFormat, WeightBits, bilinear};
+use luthier_manifest::{Distribution, LayerRecord, MaterialEntry, ShadingModel, material_buffer};
 use luthier_shader::{Form, MaterialSet, TableFace, Target, emit};
 
 pub(crate) fn full(materials: &[MaterialEntry]) -> Machine {
@@ -79,8 +77,8 @@ fn full_form_agrees_with_the_paper() {
 #[test]
 fn narrow_lobes_keep_their_shape() {
     // alpha = 0.001: directions are known to 6e-8, that is 1e-4 of the lobe's width after halving and squaring.
-    let layer = |distribution: &str| LayerRecord { alpha: 1e-3, distribution: distribution.to_owned(), ..clear() };
-    for distribution in ["beckmann", "ggx"] {
+    let layer = |distribution| LayerRecord { alpha: 1e-3, distribution, ..clear() };
+    for distribution in [Distribution::Beckmann, Distribution::Ggx] {
         let materials = [material("sharp", &[layer(distribution)])];
         let machine = full(&materials);
         for (wi, _) in directions(300) {
@@ -89,7 +87,7 @@ fn narrow_lobes_keep_their_shape() {
                 let wo = direction((wi[2] + tilt).min(1.0), wi[1].atan2(wi[0]) + TAU / 2.0);
                 let (expected, found) = (paper::eval(&materials[0].layers, wi, wo), eval(&machine, 0, wi, wo));
                 let error = (f64::from(found[0]) - expected[0]).abs() / expected[0].max(1e-3);
-                assert!(error < 5e-3, "{distribution} {wi:?} {wo:?}: {found:?}, paper {expected:?}");
+                assert!(error < 5e-3, "{distribution:?} {wi:?} {wo:?}: {found:?}, paper {expected:?}");
             }
         }
     }

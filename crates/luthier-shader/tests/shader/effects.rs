@@ -9,8 +9,8 @@ use luthier_layers::heterogeneous::Map;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 use luthier_layers::patina::Patina;
 use luthier_layers::voronoi::Voronoi;
-use luthier_lut::{LayerRecord, MaterialEntry, material_buffer};
-use luthier_optics::stack::{Distribution, Surface};
+use luthier_manifest::{LayerRecord, MaterialEntry, material_buffer};
+use luthier_optics::stack::Surface;
 use luthier_shader::{Form, MaterialSet, Target, emit};
 use num_complex::Complex64;
 
@@ -70,7 +70,7 @@ fn vec3(value: &Value) -> DVec3 {
 }
 
 fn flakes() -> Flakes {
-    let luthier_lut::FlakesRecord { seed, count, tiling, spread, scale, fade_start } = FLAKES;
+    let luthier_manifest::FlakesRecord { seed, count, tiling, spread, scale, fade_start } = FLAKES;
     Flakes { seed, count, tiling, spread, scale, fade_start }
 }
 
@@ -177,11 +177,11 @@ fn monochrome(layers: &[LayerRecord], channel: usize) -> Monochrome {
     let layers = layers
         .iter()
         .map(|record| {
-            let distribution = if record.distribution == "ggx" { Distribution::Ggx } else { Distribution::Beckmann };
+            let distribution = record.distribution;
             let surface = Surface::isotropic(distribution, record.alpha);
             let ior = above * Complex64::new(record.ior_n[channel], record.ior_k[channel]);
             let below = match record.kind {
-                luthier_lut::LayerKind::Dielectric => MonochromeBelow::Dielectric {
+                luthier_manifest::LayerKind::Dielectric => MonochromeBelow::Dielectric {
                     ior: ior.re,
                     complex_ior: ior,
                     optical_depth: record.optical_depth[channel],
@@ -270,7 +270,7 @@ fn patina_without_transition_is_a_step() {
 #[test]
 fn without_textures_only_the_layers_are_left() {
     for material in [flaked(), patina(), glitter()] {
-        let plain = MaterialEntry { constants: luthier_lut::MaterialConstants::default(), ..material.clone() };
+        let plain = MaterialEntry { constants: luthier_manifest::MaterialConstants::default(), ..material.clone() };
         let [machine, plain] = [[material], [plain]].map(|m| machine(&m));
         for (wi, wo) in directions(200) {
             let eval = |machine: &Machine| machine.call("luthier_eval", vec![Value::U(0), single(wi), single(wo)]);

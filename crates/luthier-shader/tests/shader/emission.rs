@@ -3,14 +3,15 @@
 use crate::arithmetic::{directions, eval, full};
 use crate::machine::Machine;
 use crate::scenes::{clear, conductor, dielectric, diffuse, filmed, material, sets, tables};
-use luthier_lut::{BUFFER_WORDS_MAX, LAYER_WORDS, LayerKind, Mapping, RowBase, TableKind, TexelFormat};
+use luthier_lut::{Mapping, RowBase, TableKind, TexelFormat};
+use luthier_manifest::{BUFFER_WORDS_MAX, LAYER_WORDS, LayerKind};
 use luthier_shader::{
     Form, MaterialSet, ShaderError, TableFace, Target, bindings, complete, complete_spirv, emit, emit_constant,
     emit_spirv, validate,
 };
 
 /// Emits in all forms and languages; each is validated on the way.
-fn emit_all(materials: &[luthier_lut::MaterialEntry], tables: &[TableFace]) {
+fn emit_all(materials: &[luthier_manifest::MaterialEntry], tables: &[TableFace]) {
     let set = MaterialSet { materials, tables: tables.to_vec() };
     for form in Form::ALL {
         for target in Target::TEXT {
@@ -21,7 +22,7 @@ fn emit_all(materials: &[luthier_lut::MaterialEntry], tables: &[TableFace]) {
     }
 }
 
-fn richest() -> Vec<luthier_lut::MaterialEntry> {
+fn richest() -> Vec<luthier_manifest::MaterialEntry> {
     sets().pop().unwrap().1
 }
 
@@ -107,14 +108,14 @@ fn every_axis_and_layout_passes() {
 
 #[test]
 fn what_a_set_lacks_is_not_in_its_text() {
-    let text = |layers: &[luthier_lut::LayerRecord], form| {
+    let text = |layers: &[luthier_manifest::LayerRecord], form| {
         let materials = [material("sample", layers)];
         emit(&MaterialSet { materials: &materials, tables: tables() }, form, Target::Wgsl).unwrap()
     };
     let film = ["film", "airy", "phase", "luthier_thickness"];
     let depth = ["optical_depth", "exp(-layer"];
     let oren = ["sigma", "Oren"];
-    let cases: [(&[luthier_lut::LayerRecord], &[&[&str]]); 6] = [
+    let cases: [(&[luthier_manifest::LayerRecord], &[&[&str]]); 6] = [
         (&[diffuse(0.0)], &[&film, &depth, &oren, &["alpha", "fresnel", "Path", "luthier_sampler"]]),
         (&[dielectric()], &[&film, &depth, &oren, &["layer.eta", "albedo:", "open = true", "ggx", "diffuse("]]),
         (&[clear(), diffuse(0.0)], &[&film, &depth, &oren, &["ggx"]]),
@@ -199,7 +200,7 @@ fn functions_of_the_face_are_documented_in_every_language() {
 
 #[test]
 fn full_binds_the_buffer_only_and_baked_what_it_reads() {
-    let numbers = |layers: &[luthier_lut::LayerRecord], tables: Vec<TableFace>, form| {
+    let numbers = |layers: &[luthier_manifest::LayerRecord], tables: Vec<TableFace>, form| {
         let materials = [material("sample", layers)];
         bindings(&MaterialSet { materials: &materials, tables }, form).iter().map(|b| b.binding).collect::<Vec<_>>()
     };
@@ -213,7 +214,7 @@ fn full_binds_the_buffer_only_and_baked_what_it_reads() {
 
 #[test]
 fn sets_that_cannot_be_emitted_say_why() {
-    let attempt = |materials: &[luthier_lut::MaterialEntry], tables: Vec<TableFace>, target| {
+    let attempt = |materials: &[luthier_manifest::MaterialEntry], tables: Vec<TableFace>, target| {
         emit(&MaterialSet { materials, tables }, Form::Baked, target).unwrap_err()
     };
     let lone = |layer| [material("sample", &[layer])];
@@ -227,9 +228,6 @@ fn sets_that_cannot_be_emitted_say_why() {
     assert!(matches!(error, ShaderError::NoTile { table: TableKind::Fresnel, layer: 0, .. }), "{error}");
     let error = attempt(&lone(conductor()), Vec::new(), Target::Wgsl);
     assert!(matches!(error, ShaderError::TileOutOfRange { tiles: 0, .. }), "{error}");
-    let mut layer = conductor();
-    layer.distribution = "phong".to_owned();
-    assert!(matches!(attempt(&lone(layer), tables(), Target::Wgsl), ShaderError::Distribution { .. }));
     let mut odd = tables();
     odd[0].layout.x.quantity = "wavelength".to_owned();
     assert!(matches!(attempt(&lone(conductor()), odd, Target::Wgsl), ShaderError::Layout { .. }));
@@ -266,9 +264,9 @@ fn any_number_of_materials_is_emitted() {
 #[test]
 fn one_material_can_be_constants() {
     for layers in [vec![clear(), conductor()], vec![filmed(), dielectric(), diffuse(0.4)], vec![conductor()]] {
-        use luthier_lut::ShadingModel::{Elek, GranierHeidrich, Microfacet, Phong, WeidlichWilkie};
+        use luthier_manifest::ShadingModel::{Elek, GranierHeidrich, Microfacet, Phong, WeidlichWilkie};
         for model in [Elek, WeidlichWilkie, GranierHeidrich, Phong, Microfacet] {
-            let materials = [luthier_lut::MaterialEntry { model, ..material("sample", &layers) }];
+            let materials = [luthier_manifest::MaterialEntry { model, ..material("sample", &layers) }];
             let set = MaterialSet { materials: &materials, tables: tables() };
             for form in Form::ALL {
                 for target in Target::TEXT {
@@ -312,10 +310,10 @@ fn without_its_table_d_is_a_closed_form() {
 /// Sets in which light is totally reflected read their rows at the cosine of the refracted direction; others have no word of it.
 #[test]
 fn only_total_reflection_pays_for_its_rows() {
-    let inward = luthier_lut::LayerRecord { eta: 1.0 / 1.5, critical_cot_sq: 1.25, ..clear() };
+    let inward = luthier_manifest::LayerRecord { eta: 1.0 / 1.5, critical_cot_sq: 1.25, ..clear() };
     let materials = [material("wine-glass", &[clear(), inward, filmed(), conductor()])];
     emit_all(&materials, &tables());
-    let text = |layers: &[luthier_lut::LayerRecord], form| {
+    let text = |layers: &[luthier_manifest::LayerRecord], form| {
         let materials = [material("sample", layers)];
         emit(&MaterialSet { materials: &materials, tables: tables() }, form, Target::Wgsl).unwrap()
     };

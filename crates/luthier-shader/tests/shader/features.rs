@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use luthier_lut::{
-    Feature, FileEntry, Image, LayerRecord, MapEntry, MapSlot, MaterialConstants, MaterialEntry, ShadingModel,
-    TableKind, material_buffer,
+use luthier_lut::{Image, TableKind};
+use luthier_manifest::{
+    Distribution, Feature, FileEntry, LayerRecord, MapEntry, MapSlot, MaterialConstants, MaterialEntry, ShadingModel,
+    material_buffer,
 };
 use luthier_shader::{Form, MaterialSet, TableFace, Target, emit};
 
@@ -96,7 +97,7 @@ fn rough(layer: LayerRecord, alpha: f64) -> LayerRecord {
 }
 
 fn coat() -> LayerRecord {
-    rough(LayerRecord { distribution: "ggx".to_owned(), ..dielectric() }, 0.3)
+    rough(LayerRecord { distribution: Distribution::Ggx, ..dielectric() }, 0.3)
 }
 
 fn gold() -> LayerRecord {
@@ -166,7 +167,7 @@ fn change(model: ShadingModel, feature: Feature, form: Form) -> Option<f32> {
             moved(&shader(&[brushed]), &shader(&[rough(conductor(), 0.3)]))
         }
         Feature::Beckmann => {
-            let beckmann = LayerRecord { distribution: "beckmann".to_owned(), ..gold() };
+            let beckmann = LayerRecord { distribution: Distribution::Beckmann, ..gold() };
             moved(&shader(&[beckmann]), &shader(&[gold()]))
         }
         Feature::NormalMap | Feature::RoughnessMap | Feature::ThicknessMap => {
@@ -186,7 +187,7 @@ fn change(model: ShadingModel, feature: Feature, form: Form) -> Option<f32> {
                 Feature::Glitter => MaterialConstants { glitter: Some(GLITTER), ..plain().constants },
                 _ => {
                     let record = self::patina().constants.patina.unwrap();
-                    let record = luthier_lut::PatinaRecord { bare: patina(), ..record };
+                    let record = luthier_manifest::PatinaRecord { bare: patina(), ..record };
                     MaterialConstants { patina: Some(record), ..plain().constants }
                 }
             };

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use luthier_lut::MaterialEntry;
+use luthier_manifest::MaterialEntry;
 use luthier_shader::{Form, MaterialSet, Target, complete, complete_spirv, emit, emit_spirv};
 use tempfile::TempDir;
 

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use luthier_lut::{LayerKind, LayerRecord};
+use luthier_manifest::{Distribution, LayerKind, LayerRecord};
 use num_complex::Complex64 as C;
 
 type V = [f64; 3];
@@ -42,7 +42,7 @@ pub(crate) fn fresnel(layer: &LayerRecord, channel: usize, cos_theta: f64) -> f6
 /// Normalised D.
 fn slopes(layer: &LayerRecord, alpha: f64, cos: f64, sin_sq: f64) -> f64 {
     let tan_sq = sin_sq / (cos * cos);
-    if layer.distribution == "ggx" {
+    if layer.distribution == Distribution::Ggx {
         1.0 / (PI * alpha * alpha * cos.powi(4) * (1.0 + tan_sq / (alpha * alpha)).powi(2))
     } else {
         (-tan_sq / (alpha * alpha)).exp() / (PI * alpha * alpha * cos.powi(4))

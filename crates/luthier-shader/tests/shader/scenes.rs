@@ -1,8 +1,9 @@
 //! Material sets for the tests: small, with one material for every kind of layer.
 
-use luthier_lut::{
-    AtlasLayout, Axis, FlakesRecord, GlitterRecord, LayerKind, LayerRecord, Mapping, MaterialConstants, MaterialEntry,
-    PatinaRecord, ShadingModel, TableKind, TexelFormat,
+use luthier_lut::{AtlasLayout, Axis, Mapping, TableKind, TexelFormat};
+use luthier_manifest::{
+    Distribution, FlakesRecord, GlitterRecord, LayerKind, LayerRecord, MaterialConstants, MaterialEntry, PatinaRecord,
+    ShadingModel,
 };
 use luthier_shader::TableFace;
 
@@ -10,7 +11,7 @@ use luthier_shader::TableFace;
 pub(crate) fn dielectric() -> LayerRecord {
     LayerRecord {
         kind: LayerKind::Dielectric,
-        distribution: "beckmann".to_owned(),
+        distribution: Distribution::Beckmann,
         alpha: 0.02,
         eta: 1.5,
         optical_depth: [0.1, 0.5, 0.9],
@@ -32,7 +33,7 @@ pub(crate) fn clear() -> LayerRecord {
 pub(crate) fn conductor() -> LayerRecord {
     LayerRecord {
         kind: LayerKind::Conductor,
-        distribution: "ggx".to_owned(),
+        distribution: Distribution::Ggx,
         alpha: 0.3,
         alpha_xy: [0.3; 2],
         eta: 1.0,

@@ -9,10 +9,8 @@ use luthier_layers::statistics::energy::Energy;
 use luthier_layers::statistics::evaluate::{Follow, evaluate};
 use luthier_layers::statistics::layers::{Below, Layer, Layers};
 use luthier_layers::statistics::spread::Covariance;
-use luthier_lut::{
-    AtlasLayout, Image, LayerKind, LayerRecord, MaterialEntry, ShadingModel, TableKind, WeightBits, bilinear,
-    material_buffer,
-};
+use luthier_lut::{AtlasLayout, Image, TableKind, WeightBits, bilinear};
+use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry, ShadingModel, material_buffer};
 use luthier_optics::fresnel::{FilmLayer, coated};
 use luthier_optics::stack::{Distribution, Surface};
 use luthier_shader::{Form, MaterialSet, Target, emit};

@@ -1,4 +1,4 @@
-use luthier_lut::MapSlot;
+use luthier_manifest::MapSlot;
 use tempfile::TempDir;
 
 use super::*;
@@ -103,7 +103,7 @@ fn manifests_of_another_schema_are_refused() {
     assert!(matches!(error, FolderError::NoBake { .. }), "{error}");
     std::fs::write(folder.join(MANIFEST), "{\"schema\": 99}").unwrap();
     let error = BakeFolder::open(&folder).unwrap_err();
-    assert!(matches!(error, FolderError::Manifest { source: LutError::ManifestSchema { found: 99, .. }, .. }));
+    assert!(matches!(error, FolderError::Manifest { source: ManifestError::Schema { found: 99, .. }, .. }));
     std::fs::write(folder.join(MANIFEST), [0xff, 0xfe]).unwrap();
     assert!(matches!(BakeFolder::open(&folder), Err(FolderError::Text { .. })));
 }

@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 
 use luthier_bake::goals::{Goals, Parameters, SharedGoal};
-use luthier_lut::{Candidate, CandidateForm, Mapping};
+use luthier_lut::Mapping;
+use luthier_manifest::{Candidate, CandidateForm};
 
 /// Tiles and rows in blocks.
 pub(super) fn blocks(out: &mut String, goals: &Goals) {

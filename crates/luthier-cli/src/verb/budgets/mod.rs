@@ -3,8 +3,9 @@ mod alternatives;
 use std::fmt::Write as _;
 
 use luthier_bake::goals::{Family, Goals, ROW_BYTES, goals};
-use luthier_lut::{Axis, CandidateForm, Mapping, RowBase};
-use luthier_material::{BakeSettings, Material, TableSetting};
+use luthier_lut::{Axis, Mapping, RowBase, TableKind};
+use luthier_manifest::CandidateForm;
+use luthier_material::{BakeSettings, Material};
 
 use crate::cli::BudgetsOptions;
 use crate::failure::{Failure, Outcome, files};
@@ -70,7 +71,7 @@ Not among the candidates:
 /// A material with rows and albedos of every interface, whatever its shader reads, of which its file decides nothing.
 fn open(mut material: Material) -> Material {
     let BakeSettings { model, color, wavelengths_nm, .. } = material.bake;
-    let tables = vec![TableSetting::Fresnel, TableSetting::Fgd];
+    let tables = vec![TableKind::Fresnel, TableKind::Fgd];
     material.bake = BakeSettings { model, color, wavelengths_nm, tables, ..BakeSettings::default() };
     material
 }

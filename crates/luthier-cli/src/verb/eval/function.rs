@@ -6,7 +6,7 @@ use luthier_layers::layered_mc::Estimate;
 use luthier_layers::model::{Estimator, Model};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::shaded::{Shaded, at_wavelength};
-use luthier_material::ColorSetting;
+use luthier_manifest::ColorMode;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
@@ -186,8 +186,8 @@ fn shaded(subject: &Subject, kind: &Kind) -> Option<How> {
             // Phong's coefficients are in the material's colour, in both forms of its shader.
             let color = match subject.material.bake.color {
                 _ if name != "phong" => color,
-                Some(ColorSetting::ThreeWavelengths) => Color::ThreeWavelengths(wavelengths_nm),
-                Some(ColorSetting::Spectral) | None => Color::Spectral,
+                Some(ColorMode::ThreeWavelengths) => Color::ThreeWavelengths(wavelengths_nm),
+                Some(ColorMode::Spectral) | None => Color::Spectral,
             };
             Some(How::Shader(Box::new(Shaded::new(name, stack, wavelengths_nm, color, place)?), 0))
         }

@@ -2,7 +2,8 @@
 
 use luthier_gpu::Shape;
 use luthier_lut::Image;
-use luthier_material::{Material, ModelSetting};
+use luthier_manifest::{Form, ShadingModel};
+use luthier_material::Material;
 use luthier_report::{Curve, Plot, PlotAxis, PlotColor, lightness_chroma_hue};
 
 use super::figure::{Figure, Made, compared};
@@ -57,11 +58,11 @@ fn classes(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let mut materials = Vec::new();
     for (name, _, text) in CLASSES {
-        materials.push(shaded(&material(name, text)?, name, ModelSetting::WeidlichWilkie));
+        materials.push(shaded(&material(name, text)?, name, ShadingModel::WeidlichWilkie));
     }
     let artefacts = memory_bake::bake(&materials)?;
-    let baked = studio.rendered(&artefacts, "baked", Shape::Sphere, |_, _| {})?;
-    let full = studio.rendered(&artefacts, "full", Shape::Sphere, |_, _| {})?;
+    let baked = studio.rendered(&artefacts, Form::Baked, Shape::Sphere, |_, _| {})?;
+    let full = studio.rendered(&artefacts, Form::Full, Shape::Sphere, |_, _| {})?;
     for ((material, baked), full) in materials.iter().zip(&baked).zip(&full) {
         let flip = compared(baked, full)?.flip_mean;
         made.measure(format!("{} {}, tables against full: mean FLIP", material.class, material.name), flip);
@@ -91,9 +92,9 @@ fn varnish(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let mut materials = Vec::new();
     for (i, thickness) in THICKNESSES.into_iter().enumerate() {
-        materials.push(shaded(&varnished(thickness)?, &format!("varnish-{i}"), ModelSetting::WeidlichWilkie));
+        materials.push(shaded(&varnished(thickness)?, &format!("varnish-{i}"), ShadingModel::WeidlichWilkie));
     }
-    let pictures = studio.pictures(&materials, "baked", Shape::Sphere, |_, _| {})?;
+    let pictures = studio.pictures(&materials, Form::Baked, Shape::Sphere, |_, _| {})?;
     let names = [("lightness L*", PlotColor::Ink), ("chroma C*", PlotColor::Red), ("hue, degrees", PlotColor::Blue)];
     let mut curves = names.map(|(name, color)| Curve { name: name.to_owned(), color, points: Vec::new() });
     for (thickness, picture) in THICKNESSES.into_iter().zip(&pictures) {

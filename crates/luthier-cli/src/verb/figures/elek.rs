@@ -4,10 +4,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
 use luthier_gpu::{Camera, Environment, Light, RenderSettings, Shape, Sky};
-use luthier_lut::{Image, WeightBits, bilinear};
-use luthier_material::{
-    AlphaMapping, BakeSettings, DistributionMapping, Format, FresnelMapping, Material, ModelSetting,
-};
+use luthier_lut::{Image, TexelFormat, WeightBits, bilinear};
+use luthier_manifest::{Form, ShadingModel};
+use luthier_material::{AlphaMapping, BakeSettings, DistributionMapping, FresnelMapping, Material};
 use luthier_report::{Curve, Plot, PlotAxis, PlotColor};
 
 use super::figure::{Figure, Made, compared};
@@ -70,7 +69,7 @@ fn coated(name: &str, alphas: [f64; 2]) -> Outcome<Material> {
 fn clamp(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let series = [0.01, 0.1, 0.2, 0.4];
-    let (clamped, bare) = (ModelSetting::Elek, ModelSetting::WeidlichWilkie);
+    let (clamped, bare) = (ShadingModel::Elek, ShadingModel::WeidlichWilkie);
     let mut materials = Vec::new();
     let mut labels = Vec::new();
     for (i, alpha) in series.into_iter().enumerate() {
@@ -81,7 +80,7 @@ fn clamp(studio: &Studio) -> Outcome<Made> {
     materials.push(shaded(&odd, "clamped", clamped));
     materials.push(shaded(&odd, "bare", bare));
     labels.extend(["clamped", "not clamped"].map(str::to_owned));
-    let pictures = studio.pictures(&materials, "baked", Shape::Torus, |_, _| {})?;
+    let pictures = studio.pictures(&materials, Form::Baked, Shape::Torus, |_, _| {})?;
     if let [.., with, without] = pictures.as_slice() {
         let apart = compared(with, without)?;
         made.measure("tori m1 0.4, m2 0.05, with against without the clamp: mean FLIP", apart.flip_mean);
@@ -119,7 +118,7 @@ fn sharp() -> Outcome<Vec<Material>> {
         let mut metal = coated("sharp", [alpha, alpha])?;
         metal.stack.layers.remove(0);
         metal.layers.remove(0);
-        Ok(shaded(&metal, &format!("sharp-{i}"), ModelSetting::Elek))
+        Ok(shaded(&metal, &format!("sharp-{i}"), ShadingModel::Elek))
     };
     SHARP.into_iter().enumerate().map(one).collect()
 }
@@ -140,7 +139,7 @@ fn mapping(studio: &Studio) -> Outcome<Made> {
         // The peak is F D / 4 with D = 1 / (pi m^2): to about 1.
         settings.exposure = (8.0 * PI * alpha * alpha) as f32;
     };
-    let render = |form: &str, angle: Option<DistributionMapping>| {
+    let render = |form: Form, angle: Option<DistributionMapping>| {
         let mut variants = metals.clone();
         for variant in &mut variants {
             if let Some(angle) = angle {
@@ -149,11 +148,11 @@ fn mapping(studio: &Studio) -> Outcome<Made> {
         }
         studio.pictures(&variants, form, Shape::Sphere, look)
     };
-    let full = render("full", None)?;
+    let full = render(Form::Full, None)?;
     let tables = [
-        ("linear angle", PlotColor::Red, render("baked", Some(DistributionMapping::Linear))?),
-        ("u^8, even m", PlotColor::Blue, render("baked", Some(DistributionMapping::Power))?),
-        ("u^8, log m", PlotColor::Ink, render("baked", None)?),
+        ("linear angle", PlotColor::Red, render(Form::Baked, Some(DistributionMapping::Linear))?),
+        ("u^8, even m", PlotColor::Blue, render(Form::Baked, Some(DistributionMapping::Power))?),
+        ("u^8, log m", PlotColor::Ink, render(Form::Baked, None)?),
     ];
     let mut curves = Vec::new();
     let mut shown = Vec::new();
@@ -205,10 +204,10 @@ fn nothing() -> crate::failure::Failure {
 /// The tables of Elek's section 3.1: rows of 128 texels of 8 bits, 512 x 512 half floats.
 fn elek_tables(bake: &mut BakeSettings, angle: DistributionMapping) {
     bake.fresnel.size = Some(128);
-    bake.fresnel.format = Some(Format::Rgba8Unorm);
+    bake.fresnel.format = Some(TexelFormat::Rgba8Unorm);
     bake.fresnel.mapping = Some(FresnelMapping::Theta);
     bake.distribution.size = Some([512, 512]);
-    bake.distribution.format = Some(Format::R16Float);
+    bake.distribution.format = Some(TexelFormat::R16Float);
     bake.distribution.mapping = Some(angle);
     bake.distribution.alpha_mapping = Some(AlphaMapping::Linear);
 }
@@ -257,14 +256,14 @@ fn mipped(full: &Image, alpha: f64) -> Image {
 
 fn tables(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
-    let ours = shaded(&coated("coated", [0.08, 0.3])?, "coated", ModelSetting::Elek);
+    let ours = shaded(&coated("coated", [0.08, 0.3])?, "coated", ShadingModel::Elek);
     let mut his = ours.clone();
     elek_tables(&mut his.bake, DistributionMapping::Power);
     let one = |material: &Material, form| -> Outcome<Image> {
         studio.pictures(std::slice::from_ref(material), form, Shape::Torus, |_, _| {})?.pop().ok_or_else(nothing)
     };
-    let full = one(&ours, "full")?;
-    let (his, ours) = (one(&his, "baked")?, one(&ours, "baked")?);
+    let full = one(&ours, Form::Full)?;
+    let (his, ours) = (one(&his, Form::Baked)?, one(&ours, Form::Baked)?);
     let his_difference = made.compare("tables of the paper against full", &his, &full)?;
     let our_difference = made.compare("default tables against full", &ours, &full)?;
     let shown = |label: &str, image: Image| (label.to_owned(), super::figure::TONE.image(image));

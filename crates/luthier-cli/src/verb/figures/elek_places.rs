@@ -1,8 +1,9 @@
 //! Figures of Elek 2010 about surfaces that vary.
 
 use luthier_gpu::Shape;
-use luthier_lut::{Image, MapSlot};
-use luthier_material::{Material, ModelSetting};
+use luthier_lut::Image;
+use luthier_manifest::{Form, MapSlot, ShadingModel};
+use luthier_material::Material;
 use luthier_optics::color::luminance;
 
 use super::figure::{Figure, Made};
@@ -44,7 +45,7 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let paint = material("chromium-car-paint.toml", CAR_PAINT)?;
     let variant = |name: &str, fade_start: f64, scale: f64| -> Outcome<Material> {
-        let mut paint = shaded(&paint, name, ModelSetting::Elek);
+        let mut paint = shaded(&paint, name, ShadingModel::Elek);
         let missing = || Failure::Input(anyhow::anyhow!("chromium-car-paint.toml has no flakes"));
         let flakes = paint.effects.flakes.as_mut().ok_or_else(missing)?;
         (flakes.fade_start, flakes.scale) = (fade_start, scale);
@@ -57,7 +58,7 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
     for (step, distance) in DISTANCES.into_iter().enumerate() {
         // A pixel is always as wide at the eye; what is far away is smaller, and enlarged.
         let size = (studio.size >> step).max(8);
-        let mut pictures = studio.rendered(&artefacts, "baked", Shape::Sphere, |_, settings| {
+        let mut pictures = studio.rendered(&artefacts, Form::Baked, Shape::Sphere, |_, settings| {
             settings.camera.eye = [0.0, 0.0, distance];
             settings.camera.half_extent = 1.25;
             settings.size = size;
@@ -115,7 +116,7 @@ fn patina(studio: &Studio) -> Outcome<Made> {
     let copper = material("copper-patina.toml", PATINA)?;
     let mut materials = Vec::new();
     for (i, extent) in EXTENTS.into_iter().enumerate() {
-        let mut stage = shaded(&copper, &format!("stage-{i}"), ModelSetting::Elek);
+        let mut stage = shaded(&copper, &format!("stage-{i}"), ShadingModel::Elek);
         let missing = || Failure::Input(anyhow::anyhow!("copper-patina.toml has no patina"));
         let patina = stage.effects.patina.as_mut().ok_or_else(missing)?;
         (patina.extent, patina.transition) = (extent, TRANSITION);
@@ -131,7 +132,7 @@ fn patina(studio: &Studio) -> Outcome<Made> {
         let count = map.map_or(1, Image::texel_count);
         made.measure(format!("extent {extent}: mean amount of patina"), amounts.sum::<f64>() / count as f64);
     }
-    let pictures = studio.rendered(&artefacts, "baked", Shape::Torus, |_, _| {})?;
+    let pictures = studio.rendered(&artefacts, Form::Baked, Shape::Torus, |_, _| {})?;
     let labels = EXTENTS.iter().map(|extent| format!("extent {extent}"));
     made.sheet("elek-8", labels.zip(pictures).collect(), 6);
     Ok(made)

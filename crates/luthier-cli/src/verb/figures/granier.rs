@@ -5,7 +5,8 @@ use luthier_gpu::{RenderSettings, Shape};
 use luthier_layers::granier_heidrich::Film;
 use luthier_layers::monochrome::Monochrome;
 use luthier_lut::Image;
-use luthier_material::{Material, ModelSetting};
+use luthier_manifest::{Form, ShadingModel};
+use luthier_material::Material;
 use luthier_report::{Curve, Plot, PlotAxis, PlotColor};
 
 use super::figure::{Figure, Made, TONE};
@@ -101,7 +102,7 @@ impl Coating {
              [[layer]]\ntype = \"diffuse\"\nalbedo = {diffuse}\n\
              [bake]\ncolor = \"three-wavelengths\"\nwavelengths_nm = [645, 525, 445]\n"
         );
-        Ok(shaded(&material(name, &text)?, name, ModelSetting::GranierHeidrich))
+        Ok(shaded(&material(name, &text)?, name, ShadingModel::GranierHeidrich))
     }
 }
 
@@ -122,8 +123,9 @@ fn diffuse(studio: &Studio) -> Outcome<Made> {
         .zip(names)
         .flat_map(|((_, range), [lit, unlit])| [coating(lit, *range, 0.6), coating(unlit, *range, 0.0)]);
     let pictures =
-        studio
-            .pictures(&materials(&pairs.collect::<Vec<_>>())?, "baked", Shape::Sphere, |_, settings| look(settings))?;
+        studio.pictures(&materials(&pairs.collect::<Vec<_>>())?, Form::Baked, Shape::Sphere, |_, settings| {
+            look(settings)
+        })?;
     let mut shown = Vec::new();
     for ((name, [min, max]), pair) in ranges.iter().zip(pictures.chunks_exact(2)) {
         // The specular part is the same in both: what is left is the diffuse one.
@@ -171,7 +173,7 @@ fn deviation(studio: &Studio) -> Outcome<Made> {
     };
     let rising = [1.4, 1.45, 1.6];
     let coatings = [coating("parallel", rising), coating("deviated", rising), coating("no-dispersion", [1.45; 3])];
-    let pictures = studio.pictures(&materials(&coatings)?, "baked", Shape::Sphere, |n, settings| {
+    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, |n, settings| {
         look(settings);
         settings.film_tilt = [if n == 0 { 0.0 } else { TILT }, 0.0];
     })?;
@@ -200,7 +202,7 @@ fn correlated(studio: &Studio) -> Outcome<Made> {
         coating("flat-oil", FLAT_UM, [200.0, 900.0]),
         coating("hilly-oil", 2.0 * HILLY_UM, [200.0, 900.0]),
     ];
-    let pictures = studio.pictures(&materials(&coatings)?, "baked", Shape::Sphere, |_, settings| look(settings))?;
+    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, |_, settings| look(settings))?;
     let labels = ["flat 100-400", "bump 100-400", "flat 200-900", "bump 200-900"];
     for (label, picture) in labels.iter().zip(&pictures) {
         made.measure(format!("{label}: spread of the channels"), spread(picture));
@@ -227,7 +229,7 @@ fn combined(studio: &Studio) -> Outcome<Made> {
         extent_um: FLAT_UM,
         frequency: 4,
     });
-    let pictures = studio.pictures(&materials(&coatings)?, "baked", Shape::Sphere, |_, settings| {
+    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, |_, settings| {
         look(settings);
         settings.film_tilt = [TILT, 0.0];
     })?;

@@ -9,7 +9,8 @@ use luthier_layers::inputs::Inputs;
 use luthier_layers::model::Model;
 use luthier_layers::registry;
 use luthier_lut::Image;
-use luthier_material::{Material, ModelSetting, parse};
+use luthier_manifest::{Form, ShadingModel};
+use luthier_material::{Material, parse};
 use luthier_report::{BallPicture, DistantLight, render_ball};
 
 use crate::cli::FiguresOptions;
@@ -69,7 +70,7 @@ impl Studio {
     pub(crate) fn pictures(
         &self,
         materials: &[Material],
-        form: &str,
+        form: Form,
         shape: Shape,
         adjust: impl Fn(usize, &mut RenderSettings),
     ) -> Outcome<Vec<Image>> {
@@ -80,7 +81,7 @@ impl Studio {
     pub(crate) fn rendered(
         &self,
         artefacts: &Artefacts,
-        form: &str,
+        form: Form,
         shape: Shape,
         adjust: impl Fn(usize, &mut RenderSettings),
     ) -> Outcome<Vec<Image>> {
@@ -117,7 +118,7 @@ pub(crate) fn material(label: &str, text: &str) -> Outcome<Material> {
 }
 
 /// A material under another name and model.
-pub(crate) fn shaded(material: &Material, name: &str, model: ModelSetting) -> Material {
+pub(crate) fn shaded(material: &Material, name: &str, model: ShadingModel) -> Material {
     let mut shaded = material.clone();
     shaded.name = name.to_owned();
     shaded.bake.model = Some(model);

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use luthier_lut::{Form, Manifest, ShadingModel};
+use luthier_manifest::{Form, Manifest, ShadingModel};
 use luthier_material::Material;
 use luthier_report::stability::Stability;
 use luthier_report::{

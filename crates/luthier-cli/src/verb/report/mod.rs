@@ -4,7 +4,7 @@ mod pictures;
 
 use std::path::Path;
 
-use luthier_lut::Manifest;
+use luthier_manifest::Manifest;
 use luthier_material::{Material, Parsed};
 use luthier_report::{Asked, Device, Exhibits, FileBudget, Report, Settings, Subject, judge, limits};
 use luthier_scene::{LeaveOut, simplified};
@@ -43,7 +43,7 @@ pub(crate) fn run(options: &ReportOptions) -> Outcome {
     evidence::add(&mut report, &given, options, manifest, &materials)?;
     let pictures = pictures(&mut report, device.as_ref(), options)?;
     let budgets: Vec<FileBudget> =
-        (0..).zip(&materials).map(|(material, m)| FileBudget { material, budget: budget(m) }).collect();
+        (0..).zip(&materials).map(|(material, m)| FileBudget { material, budget: m.budget }).collect();
     report.limits = limits(&report, &budgets, &asked(options));
     let exhibits = Exhibits { pictures, stability: given.stability };
 
@@ -105,12 +105,6 @@ fn asked(options: &ReportOptions) -> Asked {
         #[cfg(not(feature = "gpu"))]
         flip: None,
     }
-}
-
-/// The budget that a material file states for its tables.
-fn budget(material: &Material) -> luthier_lut::Budget {
-    let luthier_material::BudgetSettings { max_abs, max_rel, delta_e, max_bytes, max_cost } = material.budget;
-    luthier_lut::Budget { max_abs, max_rel, delta_e, max_bytes, max_cost }
 }
 
 /// The materials of a bake, read again from their files: the judge takes nothing on trust.

@@ -1,6 +1,7 @@
 use luthier_bake::{BakeError, Options, Silent};
-use luthier_lut::{Budget, FormatSet, MaterialChoice, SceneBudget, SceneChoice, SceneError};
-use luthier_material::{Material, ModelBudget, Scene};
+use luthier_lut::FormatSet;
+use luthier_manifest::{Budget, MaterialChoice, SceneBudget, SceneChoice, SceneError};
+use luthier_material::{Material, Scene};
 use luthier_report::{Subject, TableTerms, Weights};
 use luthier_scene::{CostTable, Form, Judge, TABLE_SHARE, label};
 
@@ -86,13 +87,9 @@ impl<'a> Director<'a> {
     }
 
     /// The limits of a material.
-    fn budget(&self, own: &ModelBudget, max_rel: Option<f64>) -> SceneBudget {
-        let budget = |from: &ModelBudget| {
-            let &ModelBudget { max_rel, max_abs, delta_e } = from;
-            SceneBudget { max_rel, max_abs, delta_e }
-        };
+    fn budget(&self, own: &SceneBudget, max_rel: Option<f64>) -> SceneBudget {
         let given = SceneBudget { max_rel, ..SceneBudget::default() };
-        given.or(&budget(own)).or(&budget(&self.scene.budget))
+        given.or(own).or(&self.scene.budget)
     }
 
     fn attempt(&mut self, form: Form, budgets: &[SceneBudget], allow_miss: bool) -> Outcome<Result<Made, Refusal>> {
@@ -132,7 +129,7 @@ impl<'a> Director<'a> {
         let files = match form {
             Form::Full => BakeFiles::without_tables(&materials, &shaders)?,
             Form::Baked => {
-                match tables(&materials, &shaders, formats(scene), judges, &mut choices, budgets, allow_miss)? {
+                match tables(&materials, &shaders, scene.target.formats, judges, &mut choices, budgets, allow_miss)? {
                     Ok(files) => files,
                     Err(reason) => return Ok(Err(Refusal::Tables(reason))),
                 }
@@ -142,7 +139,7 @@ impl<'a> Director<'a> {
             scene: scene.name.clone(),
             source: scene.source.clone(),
             source_hash: sha256(scene.text.as_bytes()),
-            form: form.name().to_owned(),
+            form,
             materials: choices,
         };
         let mut made = Made { choice, files };
@@ -160,15 +157,9 @@ fn unfit(scene: &Scene, made: &Made) -> Option<String> {
     if let Some(most) = scene.target.max_bytes.filter(|most| bytes > *most) {
         return Some(format!("tables take {bytes} bytes, more than {most}"));
     }
-    let formats = formats(scene)?;
+    let formats = scene.target.formats?;
     let foreign = made.files.manifest.tables.iter().find(|table| !formats.has(table.format))?;
     Some(format!("the {} table is {}, which the target does not have", foreign.kind.name(), foreign.format.name()))
-}
-
-/// Texel formats that tables may have, if the target says so.
-fn formats(scene: &Scene) -> Option<FormatSet> {
-    let named = |formats: &Vec<String>| formats.iter().filter_map(|name| name.parse().ok()).collect();
-    scene.target.formats.as_ref().map(named)
 }
 
 /// The loosest tables whose errors, under the light of the scene, stay inside what models leave of the budgets.

@@ -5,7 +5,7 @@ mod page;
 
 use std::path::{Component, Path, PathBuf};
 
-use luthier_lut::{MaterialChoice, SceneChoice};
+use luthier_manifest::{MaterialChoice, SceneChoice};
 use luthier_material::{Diagnostic, Material, Scene, is_scene, parse_scene};
 use luthier_scene::label as candidate_label;
 use serde_json::json;

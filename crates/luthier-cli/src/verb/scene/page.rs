@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use luthier_lut::{MaterialChoice, Verdict};
+use luthier_manifest::{MaterialChoice, Verdict};
 use luthier_material::Scene;
 use luthier_scene::{CostTable, MAX_SAMPLES, MODEL_SHARE, label};
 
@@ -129,7 +129,7 @@ fn models(made: &Made) -> String {
 
 fn row(budget: f64, choice: &MaterialChoice) -> String {
     let own = choice.candidate();
-    let cycles = |candidate: &luthier_lut::SceneCandidate| {
+    let cycles = |candidate: &luthier_manifest::SceneCandidate| {
         let mark = if candidate.cost_is_of_similar { "~" } else { "" };
         format!("{mark}{:.0}", candidate.cost)
     };

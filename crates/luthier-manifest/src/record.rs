@@ -1,8 +1,12 @@
+//! The record of a layer, and the material buffer that shaders read.
+
 use std::f64::consts::{FRAC_1_PI, LOG2_E};
 
+use luthier_lut::refracted_cosine;
+use luthier_optics::stack::Distribution;
 use serde::{Deserialize, Serialize};
 
-use crate::{MaterialConstants, MaterialEntry, refracted_cosine};
+use crate::{MaterialConstants, MaterialEntry};
 
 /// `vec4` words of a material's header in the material buffer.
 pub const MATERIAL_WORDS: usize = 11;
@@ -30,8 +34,9 @@ pub enum LayerKind {
 pub struct LayerRecord {
     /// Kind of the layer.
     pub kind: LayerKind,
-    /// Slope distribution, by name: `beckmann` or `ggx`.
-    pub distribution: String,
+    /// Slope distribution: `beckmann` or `ggx`.
+    #[serde(with = "crate::distribution")]
+    pub distribution: Distribution,
     /// Isotropic slope parameter, clamped to the domain of the model.
     pub alpha: f64,
     /// Slope parameters along the layer's tangent and bitangent, clamped alike.
@@ -117,7 +122,7 @@ impl LayerRecord {
             LayerKind::Conductor => 1,
             LayerKind::Diffuse => 2,
         };
-        let is_ggx = self.distribution == "ggx";
+        let is_ggx = self.distribution == Distribution::Ggx;
         let distribution = if is_ggx { 1.0 } else { 0.0 };
         let tile = |t: Option<u32>| t.map_or(-1.0, |t| t as f32);
         let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
@@ -189,7 +194,7 @@ mod tests {
     fn numbered(kind: LayerKind) -> LayerRecord {
         LayerRecord {
             kind,
-            distribution: "ggx".into(),
+            distribution: Distribution::Ggx,
             alpha: 2.0,
             alpha_xy: [30.0, 31.0],
             rotation: 0.0,
@@ -236,7 +241,7 @@ mod tests {
         );
         assert_eq!(numbered(LayerKind::Dielectric).words()[10][0], 8_388_608.0);
         assert_eq!(numbered(LayerKind::Diffuse).words()[10][0], 8_388_610.0);
-        let beckmann = LayerRecord { distribution: "beckmann".into(), ..numbered(LayerKind::Diffuse) };
+        let beckmann = LayerRecord { distribution: Distribution::Beckmann, ..numbered(LayerKind::Diffuse) };
         assert_eq!((beckmann.words()[3][3], beckmann.words()[0][0]), (0.0, 0.360_673_76));
     }
 

@@ -1,8 +1,10 @@
+//! The manifest of a bake.
+
+use luthier_lut::{AtlasLayout, TableKind, TexelFormat, Tile};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    AtlasLayout, LayerRecord, LutError, MaterialConstants, MaterialTexture, SceneChoice, Search, ShadingModel,
-    TableKind, TexelFormat, Tile,
+    Form, LayerRecord, ManifestError, MaterialConstants, MaterialTexture, SceneChoice, Search, ShadingModel, Target,
 };
 
 /// Version of the manifest's shape. A reader refuses any other.
@@ -36,15 +38,17 @@ pub struct Manifest {
     pub material_texture: MaterialTexture,
 }
 
-/// How spectra became colour channels.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ColorMode {
-    /// Integrated against the CIE 1931 2-degree observer under D65, to linear Rec.709.
-    #[default]
-    Spectral,
-    /// The value at three wavelengths, taken for the three channels.
-    ThreeWavelengths,
+luthier_lut::named! {
+    /// How spectra become colour channels.
+    #[derive(Default, Serialize, Deserialize)]
+    #[serde(into = "&'static str", try_from = "String")]
+    pub enum ColorMode("colour") {
+        /// Integrated against the CIE 1931 2-degree observer under D65, to linear Rec.709.
+        #[default]
+        Spectral = "spectral",
+        /// The value at three wavelengths, taken for the three channels.
+        ThreeWavelengths = "three-wavelengths",
+    }
 }
 
 /// One material.
@@ -72,32 +76,21 @@ pub struct MaterialEntry {
     pub maps: Vec<MapEntry>,
 }
 
-/// Quantity that a map varies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum MapSlot {
-    /// Tangent-space normal: RGB is (normal + 1) / 2.
-    Normal,
-    /// Factor on the roughness: on the slope parameters its square.
-    Roughness,
-    /// Factor on the thickness of the slab below the layer.
-    Thickness,
-    /// Order in which patina develops; dark places come first.
-    Patina,
-    /// Normals of flakes, RGB as for [`MapSlot::Normal`], to be read without filtering.
-    FlakeNormal,
-}
-
-impl MapSlot {
-    /// The name in files and manifests.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Normal => "normal",
-            Self::Roughness => "roughness",
-            Self::Thickness => "thickness",
-            Self::Patina => "patina",
-            Self::FlakeNormal => "flake-normal",
-        }
+luthier_lut::named! {
+    /// Quantity that a map varies.
+    #[derive(Serialize, Deserialize)]
+    #[serde(into = "&'static str", try_from = "String")]
+    pub enum MapSlot("map") {
+        /// Tangent-space normal: RGB is (normal + 1) / 2.
+        Normal = "normal",
+        /// Factor on the roughness: on the slope parameters its square.
+        Roughness = "roughness",
+        /// Factor on the thickness of the slab below the layer.
+        Thickness = "thickness",
+        /// Order in which patina develops; dark places come first.
+        Patina = "patina",
+        /// Normals of flakes, RGB as for [`MapSlot::Normal`], to be read without filtering.
+        FlakeNormal = "flake-normal",
     }
 }
 
@@ -152,10 +145,10 @@ pub struct FileEntry {
 /// An emitted shader.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ShaderEntry {
-    /// `wgsl`, `glsl450`, `glsl-es300`, `hlsl`, `msl` or `spirv`.
-    pub target: String,
-    /// `baked` reads the tables; `full` evaluates in ALU.
-    pub form: String,
+    /// Its language.
+    pub target: Target,
+    /// How it evaluates a material.
+    pub form: Form,
     /// The file.
     pub file: FileEntry,
 }
@@ -189,15 +182,15 @@ impl TableEntry {
     /// Checks that texels are those of the entry: its layout, its format, its bytes.
     ///
     /// # Errors
-    /// [`LutError::Layout`], [`LutError::TableMismatch`].
-    pub fn check(&self, size: [u32; 2], format: TexelFormat, bytes: usize) -> Result<(), LutError> {
-        let stated = self.layout.checked_size().ok_or(LutError::Layout(self.kind))?;
+    /// [`ManifestError::Layout`], [`ManifestError::TableMismatch`].
+    pub fn check(&self, size: [u32; 2], format: TexelFormat, bytes: usize) -> Result<(), ManifestError> {
+        let stated = self.layout.checked_size().ok_or(ManifestError::Layout(self.kind))?;
         let texels = u128::from(stated[0]) * u128::from(stated[1]);
         let texel_bytes = texels * u128::from(self.format.texel_bytes());
         let describe = |size: [u32; 2], format, bytes| format!("{} x {} {format}, {bytes} bytes", size[0], size[1]);
         let found = describe(size, format, bytes as u128);
         let expected = describe(stated, self.format, texel_bytes);
-        if found == expected { Ok(()) } else { Err(LutError::TableMismatch { kind: self.kind, found, expected }) }
+        if found == expected { Ok(()) } else { Err(ManifestError::TableMismatch { kind: self.kind, found, expected }) }
     }
 }
 
@@ -205,8 +198,8 @@ impl Manifest {
     /// JSON, indented, with a final newline.
     ///
     /// # Errors
-    /// [`LutError::Manifest`] if a number is not finite.
-    pub fn to_json(&self) -> Result<String, LutError> {
+    /// [`ManifestError::Json`] if a number is not finite.
+    pub fn to_json(&self) -> Result<String, ManifestError> {
         let mut json = serde_json::to_string_pretty(self)?;
         // What is not finite has become null, which no number reads back.
         serde_json::from_str::<Self>(&json)?;
@@ -233,15 +226,15 @@ impl Manifest {
     /// Reads what [`Manifest::to_json`] wrote.
     ///
     /// # Errors
-    /// [`LutError::Manifest`] for other JSON, [`LutError::ManifestSchema`] for another version.
-    pub fn from_json(json: &str) -> Result<Self, LutError> {
+    /// [`ManifestError::Json`] for other JSON, [`ManifestError::Schema`] for another version.
+    pub fn from_json(json: &str) -> Result<Self, ManifestError> {
         #[derive(Deserialize)]
         struct Version {
             schema: u32,
         }
         let Version { schema } = serde_json::from_str(json)?;
         if schema != MANIFEST_SCHEMA {
-            return Err(LutError::ManifestSchema { found: schema, expected: MANIFEST_SCHEMA });
+            return Err(ManifestError::Schema { found: schema, expected: MANIFEST_SCHEMA });
         }
         Ok(serde_json::from_str(json)?)
     }
@@ -260,9 +253,11 @@ impl Manifest {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use luthier_lut::{Axis, ErrorStats, Mapping, Worst};
+    use luthier_optics::stack::Distribution;
+
     use crate::{
-        Axis, Budget, Candidate, CandidateForm, ErrorStats, FlakesRecord, GlitterRecord, LayerKind, Mapping,
-        MeasuredError, PatinaRecord, Worst,
+        Budget, Candidate, CandidateForm, FlakesRecord, GlitterRecord, LayerKind, MeasuredError, PatinaRecord,
     };
 
     fn manifest() -> Manifest {
@@ -285,7 +280,7 @@ mod tests {
         };
         let layer = LayerRecord {
             kind: LayerKind::Dielectric,
-            distribution: "beckmann".into(),
+            distribution: Distribution::Beckmann,
             alpha: 0.09,
             eta: 1.5,
             optical_depth: [0.1, 0.2, 0.3],
@@ -302,7 +297,7 @@ mod tests {
                 apron: 0,
                 columns: 1,
                 tiles: 1,
-                base: crate::RowBase::Zero,
+                base: luthier_lut::RowBase::Zero,
             },
             format: TexelFormat::R16Float,
             texel_bytes: 524_288,
@@ -385,11 +380,7 @@ mod tests {
                 measured: 12,
             }],
             choice: None,
-            shaders: vec![ShaderEntry {
-                target: "wgsl".into(),
-                form: "baked".into(),
-                file: file("shaders/baked.wgsl"),
-            }],
+            shaders: vec![ShaderEntry { target: Target::Wgsl, form: Form::Baked, file: file("shaders/baked.wgsl") }],
             bindings: vec![BindingEntry {
                 binding: 1,
                 name: "luthier_distribution".into(),
@@ -429,9 +420,25 @@ mod tests {
     #[test]
     fn another_schema_is_refused_before_its_shape_is_looked_at() {
         let refused = Manifest::from_json(r#"{"schema": 4, "future": true}"#);
-        assert!(matches!(refused, Err(LutError::ManifestSchema { found: 4, expected: MANIFEST_SCHEMA })));
+        assert!(matches!(refused, Err(ManifestError::Schema { found: 4, expected: MANIFEST_SCHEMA })));
         for other in ["", "{}", "[]", r#"{"schema": "1"}"#, r#"{"schema": 3}"#, r#"{"schema": -1}"#] {
-            assert!(matches!(Manifest::from_json(other), Err(LutError::Manifest(_))), "{other}");
+            assert!(matches!(Manifest::from_json(other), Err(ManifestError::Json(_))), "{other}");
+        }
+    }
+
+    #[test]
+    fn a_name_that_does_not_exist_is_refused_with_those_that_do() {
+        let json = manifest().to_json().unwrap();
+        for (name, other, known) in [
+            ("\"belcour\"", "\"ward\"", "elek, weidlich-wilkie"),
+            ("\"distribution\": \"beckmann\"", "\"distribution\": \"phong\"", "beckmann, ggx"),
+            ("\"wgsl\"", "\"cg\"", "wgsl, glsl450"),
+            ("\"baked\"", "\"raw\"", "baked, full"),
+            ("\"r16float\"", "\"r8unorm\"", "r16float, rg16float"),
+            ("\"flake-normal\"", "\"flakes\"", "normal, roughness"),
+        ] {
+            let error = Manifest::from_json(&json.replace(name, other)).unwrap_err().to_string();
+            assert!(error.contains(known), "{error}");
         }
     }
 
@@ -440,7 +447,7 @@ mod tests {
         for bad in [f64::NAN, f64::INFINITY] {
             let mut manifest = manifest();
             manifest.tables[0].tiles[0].error.max_abs_err = bad;
-            assert!(matches!(manifest.to_json(), Err(LutError::Manifest(_))), "{bad}");
+            assert!(matches!(manifest.to_json(), Err(ManifestError::Json(_))), "{bad}");
         }
     }
 

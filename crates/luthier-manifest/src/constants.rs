@@ -1,3 +1,5 @@
+//! Constants of a whole surface, beside its layers.
+
 use serde::{Deserialize, Serialize};
 
 use crate::LayerRecord;

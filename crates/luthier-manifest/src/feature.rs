@@ -1,3 +1,5 @@
+//! Features of a material that a model may leave out.
+
 use crate::{Form, ShadingModel};
 
 /// A feature that a material file can ask for and a model can leave out.

@@ -1,6 +1,8 @@
+//! The choice of models for a scene, with its reasons.
+
 use serde::{Deserialize, Serialize};
 
-use crate::{ColorMode, ShadingModel};
+use crate::{ColorMode, Form, ShadingModel};
 
 /// Limits on the error of a model against the reference under the light of a scene; what is absent is unlimited.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -131,8 +133,8 @@ pub struct SceneChoice {
     pub source: String,
     /// SHA-256 of that file, hex.
     pub source_hash: String,
-    /// The form of all shaders: `baked` or `full`.
-    pub form: String,
+    /// The form of all shaders.
+    pub form: Form,
     /// One per material, in the order of the manifest.
     pub materials: Vec<MaterialChoice>,
 }

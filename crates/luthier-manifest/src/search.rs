@@ -1,6 +1,7 @@
-use serde::{Deserialize, Serialize};
+//! Budgets of tables, and the candidates that a search compared.
 
-use crate::{AtlasLayout, Axis, RowBase, TableKind, TexelFormat};
+use luthier_lut::{AtlasLayout, Axis, RowBase, TableKind, TexelFormat};
+use serde::{Deserialize, Serialize};
 
 /// Limits on tables; what is absent is unlimited.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]

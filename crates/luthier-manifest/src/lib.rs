@@ -1,0 +1,35 @@
+//! Names and records of a bake: the manifest, the records of layers that shaders and their f64 twins read, budgets of tables, choices of
+//! scenes; models, features, forms, targets and colour modes by name.
+//!
+//! Every crate that reads or writes a bake says these things with the types of this crate.
+//!
+//! Out of scope: what a model computes (`luthier-layers`), files (`luthier-export`), texels (`luthier-lut`).
+
+mod choice;
+mod constants;
+mod distribution;
+mod error;
+mod feature;
+mod form;
+mod limits;
+mod manifest;
+mod model;
+mod record;
+mod search;
+mod target;
+
+pub use choice::{MaterialChoice, SceneBudget, SceneCandidate, SceneChoice, SceneError, Verdict};
+pub use constants::{FlakesRecord, GlitterRecord, MaterialConstants, PatinaRecord};
+pub use error::ManifestError;
+pub use feature::Feature;
+pub use form::Form;
+pub use limits::{BUFFER_WORDS_MAX, MaterialTexture, SIDE, SIDE_MAX};
+pub use luthier_optics::stack::Distribution;
+pub use manifest::{
+    BindingEntry, ColorMode, FileEntry, MANIFEST_SCHEMA, Manifest, MapEntry, MapSlot, MaterialEntry, ShaderEntry,
+    TableEntry,
+};
+pub use model::ShadingModel;
+pub use record::{LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, material_buffer};
+pub use search::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR, Search};
+pub use target::Target;
