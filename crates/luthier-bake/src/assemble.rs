@@ -16,11 +16,11 @@ use crate::maps::{MaterialMap, maps};
 use crate::plan::{ImageReader, Plan, PlannedLayers, Tiles, color, color_mode, shading_model};
 use crate::search;
 use crate::settings::Settings;
-use crate::{AIM, BakeError, DEFAULT_BUDGET};
+use crate::{AIM, BakeError, DEFAULT_BUDGET, MemoryStore, Store};
 
 /// Tables, records and maps that a set of materials needs at run time.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Bake {
+pub struct Baked {
     /// Atlases in binding order, at most one of each kind.
     pub atlases: Vec<Atlas>,
     /// Each material, in the order given.
@@ -42,6 +42,14 @@ pub struct BakedMaterial {
     pub records: Vec<LayerRecord>,
     /// Its maps: layers from the top down, then effects.
     pub maps: Vec<MaterialMap>,
+}
+
+impl BakedMaterial {
+    /// Leaves every layer without tiles, as shaders have it that read no tables.
+    pub fn forget_tables(&mut self) {
+        let bare = self.constants.patina.as_mut().map(|patina| &mut patina.bare);
+        self.records.iter_mut().chain(bare).for_each(LayerRecord::forget_tiles);
+    }
 }
 
 /// Outline of a bake: its tables, tiles and materials, without texels.
@@ -95,7 +103,7 @@ pub fn outline_with(
     options: &Options,
     read_image: ImageReader<'_>,
 ) -> Result<Outline, BakeError> {
-    let planned = plan(materials, options, read_image, &Silent)?;
+    let planned = plan(materials, options, read_image, &Silent, &MemoryStore::default())?;
     let tables = layouts(&planned.plan)?;
     let Plan { tiles, records, .. } = planned.plan;
     let keys = used(&tiles).map(|(_, tiles)| tiles.tiles.iter().map(|(_, key)| *key).collect()).collect();
@@ -114,11 +122,12 @@ pub fn kinked_rows(material: &Material, read_image: ImageReader<'_>) -> Result<V
     if layers.is_empty() || !budget(materials, &Budget::default())?.is_empty() {
         return Ok(Vec::new());
     }
-    let Planned { plan, results, .. } = plan(materials, &Options::default(), read_image, &Silent)?;
+    let Planned { plan, results, .. } =
+        plan(materials, &Options::default(), read_image, &Silent, &MemoryStore::default())?;
     if !plan.settings.asked.leaves(TableKind::Fresnel) {
         return Ok(Vec::new());
     }
-    let results = plan.graph.only(&[JobKind::Fresnel]).run(&Silent, results);
+    let results = plan.graph.only(&[JobKind::Fresnel]).run(&Silent, &MemoryStore::default(), results);
     let rows = &plan.tiles[TableKind::Fresnel as usize].tiles;
     let error = |layer: usize| {
         let (_, key) = rows.get(plan.records[0].layers[layer].fresnel_tile? as usize)?;
@@ -154,11 +163,11 @@ pub fn check(materials: &[Material], options: &Options) -> Result<(), Vec<BakeEr
 ///
 /// # Errors
 /// See [`BakeError`]. Nothing depends on the number of threads of the current rayon pool but the time it takes.
-pub fn bake(materials: &[Material], read_image: ImageReader<'_>, observer: &dyn Observer) -> Result<Bake, BakeError> {
-    bake_with(materials, &Options::default(), read_image, observer)
+pub fn bake(materials: &[Material], read_image: ImageReader<'_>, observer: &dyn Observer) -> Result<Baked, BakeError> {
+    bake_with(materials, &Options::default(), read_image, observer, &MemoryStore::default())
 }
 
-/// [`bake`] with options.
+/// [`bake`] with options. What the store has is not computed again; what is computed goes into it.
 ///
 /// # Errors
 /// See [`BakeError`].
@@ -167,16 +176,17 @@ pub fn bake_with(
     options: &Options,
     read_image: ImageReader<'_>,
     observer: &dyn Observer,
-) -> Result<Bake, BakeError> {
-    let Planned { plan, results, searches } = plan(materials, options, read_image, observer)?;
+    store: &dyn Store,
+) -> Result<Baked, BakeError> {
+    let Planned { plan, results, searches } = plan(materials, options, read_image, observer, store)?;
     let layouts = layouts(&plan)?;
     let Plan { settings, graph, tiles, records } = plan;
-    let results = graph.run(observer, results);
+    let results = graph.run(observer, store, results);
     let is_asked = !options.search || !budget(materials, &options.budget)?.is_empty();
     let aim = |kind: TableKind| (!is_asked && settings.asked.leaves(kind)).then_some(AIM);
     let atlas = |(kind, layout, format)| atlas(kind, layout, format, &tiles[kind as usize], &results, aim(kind));
     let atlases = layouts.into_iter().map(atlas).collect();
-    Ok(Bake { atlases, materials: baked_materials(materials, records), searches })
+    Ok(Baked { atlases, materials: baked_materials(materials, records), searches })
 }
 
 /// A plan whose settings are final, results that were needed to find them, and what the search found.
@@ -194,6 +204,7 @@ fn plan(
     options: &Options,
     read_image: ImageReader<'_>,
     observer: &dyn Observer,
+    store: &dyn Store,
 ) -> Result<Planned, BakeError> {
     check(materials, options).map_err(|mut errors| errors.swap_remove(0))?;
     let mut settings = Settings { formats: options.formats, ..Settings::of(materials)? };
@@ -211,7 +222,7 @@ fn plan(
     // Costly tables are made once; candidates are compared with them.
     let mut results = Results::default();
     if is_asked {
-        results = fixed.graph.only(&search::READ).run(observer, results);
+        results = fixed.graph.only(&search::READ).run(observer, store, results);
     }
     let mut found = if is_asked { search::candidates(&fixed, &results, &budget) } else { search::by_default(&fixed) };
     found.iter_mut().for_each(|found| fitting(found, &fixed));
@@ -251,7 +262,7 @@ fn plan(
         plan = Plan::new(materials, settings, read_image)?;
         // The measurement of the bake itself climbs to the worst points; it has the last word.
         let exact = plan.graph.only(if is_asked { &kinds } else { &kinds[..1] });
-        results = exact.run(observer, results);
+        results = exact.run(observer, store, results);
         let mut is_confirmed = true;
         for (kind, &choice) in found.iter_mut().zip(&chosen) {
             let tiles = plan.tiles[kind.kind as usize].tiles.iter().enumerate();

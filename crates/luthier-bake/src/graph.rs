@@ -1,12 +1,14 @@
 //! The graph of jobs and its execution.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use crate::facet_grid::{CrossedGrid, FacetGrid};
 use crate::fgd::FgdTruth;
-use crate::job::{Artefact, Job, JobKind, Key, TileData};
+use crate::job::{Job, JobKind, Key, Output, TileData};
+use crate::store::{Artefact, Store};
 
 /// Told what happens, from any thread. It cannot change what is computed.
 pub trait Observer: Sync {
@@ -36,7 +38,7 @@ pub(crate) struct Graph {
 
 /// Results by key.
 #[derive(Debug, Default)]
-pub(crate) struct Results(BTreeMap<Key, Artefact>);
+pub(crate) struct Results(BTreeMap<Key, Arc<Artefact>>);
 
 /// The results that a running job may read: those of its dependencies.
 #[derive(Debug, Clone, Copy)]
@@ -74,9 +76,14 @@ impl Graph {
 
     /// Runs everything that has no result yet on the rayon pool. Kinds run in their order, which puts dependencies first; jobs of one
     /// kind run side by side.
-    pub(crate) fn run(mut self, observer: &dyn Observer, mut results: Results) -> Results {
+    pub(crate) fn run(mut self, observer: &dyn Observer, store: &dyn Store, mut results: Results) -> Results {
         for jobs in self.jobs.values_mut() {
-            jobs.retain(|key, _| !results.0.contains_key(key));
+            jobs.retain(|&key, _| {
+                if let Some(artefact) = store.get(key) {
+                    results.0.entry(key).or_insert(artefact);
+                }
+                !results.0.contains_key(&key)
+            });
         }
         observer.planned(self.jobs.values().map(BTreeMap::len).sum());
         for (kind, jobs) in self.jobs {
@@ -84,10 +91,11 @@ impl Graph {
                 continue;
             }
             observer.batch(kind, true);
-            let done: Vec<(Key, Artefact)> = jobs
+            let done: Vec<(Key, Arc<Artefact>)> = jobs
                 .into_par_iter()
                 .map(|(key, job)| {
-                    let artefact = job.run(&Inputs(&results));
+                    let artefact = Arc::new(Artefact(job.run(&Inputs(&results))));
+                    store.put(key, &artefact);
                     observer.finished(kind);
                     (key, artefact)
                 })
@@ -100,28 +108,30 @@ impl Graph {
 }
 
 impl Results {
+    fn output(&self, key: Key) -> Option<&Output> {
+        self.0.get(&key).map(|artefact| &artefact.0)
+    }
+
     /// The tile of a planned job.
     pub(crate) fn tile(&self, key: Key) -> &TileData {
-        match self.0.get(&key) {
-            Some(Artefact::Tile(tile)) => tile,
+        match self.output(key) {
+            Some(Output::Tile(tile)) => tile,
             _ => unreachable!("every planned tile job has run"),
         }
     }
-}
 
-impl Results {
     /// The values of an FGD tile.
     pub(crate) fn fgd_truth(&self, job: &Job) -> &FgdTruth {
-        match self.0.get(&job.key()) {
-            Some(Artefact::FgdTruth(truth)) => truth,
+        match self.output(job.key()) {
+            Some(Output::FgdTruth(truth)) => truth,
             _ => unreachable!("values run before the tiles that hold them"),
         }
     }
 
     /// The tile of a job, if it has run.
     pub(crate) fn find(&self, key: Key) -> Option<&TileData> {
-        match self.0.get(&key) {
-            Some(Artefact::Tile(tile)) => Some(tile),
+        match self.output(key) {
+            Some(Output::Tile(tile)) => Some(tile),
             _ => None,
         }
     }
@@ -129,8 +139,8 @@ impl Results {
 
 impl<'a> Inputs<'a> {
     pub(crate) fn facet_grid(self, job: &Job) -> &'a FacetGrid {
-        match self.0.0.get(&job.key()) {
-            Some(Artefact::FacetGrid(grid)) => grid,
+        match self.0.output(job.key()) {
+            Some(Output::FacetGrid(grid)) => grid,
             _ => unreachable!("facet grids run before the tiles that need them"),
         }
     }
@@ -140,8 +150,8 @@ impl<'a> Inputs<'a> {
     }
 
     pub(crate) fn crossed(self, job: &Job) -> &'a CrossedGrid {
-        match self.0.0.get(&job.key()) {
-            Some(Artefact::Crossed(grid)) => grid,
+        match self.0.output(job.key()) {
+            Some(Output::Crossed(grid)) => grid,
             _ => unreachable!("crossed grids run before the tiles that need them"),
         }
     }

@@ -137,25 +137,25 @@ impl Job {
         }
     }
 
-    pub(crate) fn run(&self, inputs: &Inputs<'_>) -> Artefact {
+    pub(crate) fn run(&self, inputs: &Inputs<'_>) -> Output {
         match self {
-            Self::Fresnel(job) => Artefact::Tile(job.run()),
-            Self::Distribution(job) => Artefact::Tile(job.run()),
-            Self::FacetGrid(job) => Artefact::FacetGrid(job.run()),
-            Self::Crossed(job) => Artefact::Crossed(job.run()),
-            Self::FgdTruth(job) => Artefact::FgdTruth(job.run(inputs)),
-            Self::Fgd(job) => Artefact::Tile(job.run(inputs)),
-            Self::Phase(job) => Artefact::Tile(job.run()),
-            Self::Thickness(job) => Artefact::Tile(job.run()),
-            Self::Film(job) => Artefact::Tile(job.run()),
-            Self::Escape(job) => Artefact::Tile(job.run()),
+            Self::Fresnel(job) => Output::Tile(job.run()),
+            Self::Distribution(job) => Output::Tile(job.run()),
+            Self::FacetGrid(job) => Output::FacetGrid(job.run()),
+            Self::Crossed(job) => Output::Crossed(job.run()),
+            Self::FgdTruth(job) => Output::FgdTruth(job.run(inputs)),
+            Self::Fgd(job) => Output::Tile(job.run(inputs)),
+            Self::Phase(job) => Output::Tile(job.run()),
+            Self::Thickness(job) => Output::Tile(job.run()),
+            Self::Film(job) => Output::Tile(job.run()),
+            Self::Escape(job) => Output::Tile(job.run()),
         }
     }
 }
 
 /// Result of a job.
 #[derive(Debug)]
-pub(crate) enum Artefact {
+pub(crate) enum Output {
     Tile(TileData),
     FacetGrid(FacetGrid),
     Crossed(CrossedGrid),

@@ -34,13 +34,17 @@ mod relief;
 mod search;
 mod settings;
 mod smooth;
+mod store;
 mod thickness;
 mod veil;
 
-pub use assemble::{Bake, BakedMaterial, Options, Outline, bake, bake_with, check, kinked_rows, outline, outline_with};
+pub use assemble::{
+    Baked, BakedMaterial, Options, Outline, bake, bake_with, check, kinked_rows, outline, outline_with,
+};
 pub use error::BakeError;
 pub use graph::{Observer, Silent};
 pub use job::{JobKind, Key};
 pub use maps::{MapSource, MaterialMap};
 pub use plan::ImageReader;
 pub use search::{AIM, DEFAULT_BUDGET, goals};
+pub use store::{Artefact, MemoryStore, Store};

@@ -2,14 +2,16 @@
 
 use std::fmt::Write as _;
 
+use luthier_bake::Options;
 use luthier_cost::{Counts, Family, Harness, Kernel, Style};
+use luthier_export::outline;
 use luthier_lut::TexelFormat;
 use luthier_manifest::{ColorMode, ShadingModel};
 use luthier_material::{FresnelMapping, FresnelSettings, Material};
 use luthier_shader::{Form, MaterialSet};
 
 use crate::failure::{Failure, Outcome};
-use crate::verb::cost::{outline, without_d};
+use crate::verb::cost::without_d;
 
 /// Two layers each: a coat over a metal and over a diffuse base. Where the materials at hand have neither, the first with two layers
 /// stands in.
@@ -77,17 +79,15 @@ fn case(material: &Material) -> Outcome<PaperCase> {
         material
     };
     let (elek, phong) = (with(ShadingModel::Elek), with(ShadingModel::Phong));
-    let (elek_entries, elek_tables) = outline(std::slice::from_ref(&elek))?;
-    let (phong_entries, phong_tables) = outline(std::slice::from_ref(&phong))?;
+    let [of_elek, of_phong] =
+        [&elek, &phong].map(|material| outline(std::slice::from_ref(material), &Options::default()));
+    let (of_elek, of_phong) = (of_elek?, of_phong?);
     let mut variants = Vec::new();
     let mut texts = Vec::new();
     for constant in [false, true] {
         for (name, role) in ROLES {
-            let (entries, tables) = match role {
-                Role::Phong => (&phong_entries, &phong_tables),
-                _ => (&elek_entries, &elek_tables),
-            };
-            let set = MaterialSet { materials: entries, tables: without_d(tables, role == Role::FresnelTable) };
+            let manifest = if role == Role::Phong { &of_phong } else { &of_elek };
+            let set = without_d(MaterialSet::from_manifest(manifest), role == Role::FresnelTable);
             let form = if matches!(role, Role::Tables | Role::FresnelTable) { Form::Baked } else { Form::Full };
             let style = Style { form, constant, approximate: role == Role::Approximate };
             let kernel = |harness| Kernel::of_set(&set, style, harness).map_err(Failure::input);
@@ -112,7 +112,7 @@ const PAIRS: u32 = 20_000;
 /// [`luthier_report::FLOOR`] where that is darker. Nothing where there is no device.
 #[cfg(feature = "gpu")]
 fn errors(material: &Material, texts: &[String]) -> Outcome<Vec<Option<f64>>> {
-    use luthier_gpu::WgslShader;
+    use luthier_export::Shader;
     use luthier_report::{FLOOR, ParitySet};
 
     let Ok(gpu) = luthier_gpu::Gpu::open() else { return Ok(vec![None; texts.len()]) };
@@ -125,7 +125,7 @@ fn errors(material: &Material, texts: &[String]) -> Outcome<Vec<Option<f64>>> {
         .flat_map(|set| set.pairs(PAIRS, &luthier_layers::elek::layers(&material.stack)))
         .collect();
     let mut values = |text: &String| {
-        artefacts.shaders = vec![WgslShader { form: Form::Baked, wgsl: text.clone() }];
+        artefacts.shaders = vec![Shader::wgsl(Form::Baked, text.clone())];
         let scene = gpu.scene(&artefacts, Form::Baked).map_err(device)?;
         scene.evaluate(0, &pairs).map_err(device)
     };

@@ -1,9 +1,8 @@
 //! The graphics adapter as the judge sees it.
 
-use luthier_gpu::{Artefacts, Gpu, GpuError, Scene};
+use luthier_gpu::{Gpu, GpuError, Package, Scene};
 use luthier_report::{Device, Form};
 
-use crate::artefacts::unusable;
 use crate::failure::{Failure, Outcome};
 
 /// Both shaders of a bake, ready to run.
@@ -14,8 +13,8 @@ pub(crate) struct Shaders {
 }
 
 impl Shaders {
-    pub(crate) fn new(gpu: &Gpu, artefacts: &Artefacts) -> Outcome<Self> {
-        let scene = |form| gpu.scene(artefacts, form).map_err(device);
+    pub(crate) fn new(gpu: &Gpu, package: &Package) -> Outcome<Self> {
+        let scene = |form| gpu.scene(package, form).map_err(device);
         let name = format!("{} ({}, {})", gpu.adapter_name(), gpu.backend(), gpu.driver());
         Ok(Self { name, baked: scene(Form::Baked)?, full: scene(Form::Full)? })
     }
@@ -49,14 +48,8 @@ pub(crate) fn open(name: Option<&str>) -> Outcome<Gpu> {
 /// An error of the runtime: what is wrong with the bake is not the adapter's fault.
 pub(crate) fn device(source: GpuError) -> Failure {
     match source {
-        GpuError::Folder(source) => unusable(source),
-        GpuError::Table(_)
-        | GpuError::MissingTexels { .. }
-        | GpuError::NoMaterials
-        | GpuError::NoLayers { .. }
-        | GpuError::NoReflectance { .. }
-        | GpuError::NoShader { .. }
-        | GpuError::Binding { .. } => Failure::Input(source.into()),
+        GpuError::Package(source) => source.into(),
+        GpuError::NoReflectance { .. } | GpuError::Binding { .. } => Failure::Input(source.into()),
         _ => Failure::Device(source.into()),
     }
 }

@@ -2,7 +2,9 @@ use std::fmt;
 use std::io;
 use std::process::ExitCode;
 
+use luthier_export::{ExportError, PackageError};
 use luthier_material::{Diagnostic, did_you_mean};
+use luthier_scene::SceneFailure;
 use serde_json::{Value, json};
 
 use crate::output::{complain, print};
@@ -57,7 +59,12 @@ impl Failure {
             Self::Files(error) => (3, "files", error),
             Self::Device(error) => (4, "device", error),
         };
-        let diagnostics = error.downcast_ref::<Broken>().map_or(&[][..], |broken| &broken.diagnostics);
+        let broken = error.downcast_ref::<Broken>().map(|broken| &broken.diagnostics);
+        let refused = error.downcast_ref::<ExportError>().and_then(|error| match error {
+            ExportError::Refused { diagnostics, .. } => Some(diagnostics),
+            _ => None,
+        });
+        let diagnostics = broken.or(refused).map_or(&[][..], Vec::as_slice);
         print_json(code, kind, &sentence(error), diagnostics);
         complain(&format!("error: {}", sentence(error)));
         ExitCode::from(code)
@@ -129,6 +136,38 @@ impl From<io::Error> for Failure {
             Self::BrokenPipe
         } else {
             Self::Files(anyhow::Error::new(source).context("cannot write to standard output"))
+        }
+    }
+}
+
+impl From<ExportError> for Failure {
+    fn from(error: ExportError) -> Self {
+        match error {
+            ExportError::Package(error) => error.into(),
+            ExportError::File { .. } => Self::Files(error.into()),
+            _ => Self::Input(error.into()),
+        }
+    }
+}
+
+impl From<PackageError> for Failure {
+    /// A file that is missing or cannot be written is a matter of files, all else is wrong with the bake.
+    fn from(error: PackageError) -> Self {
+        match error {
+            PackageError::NoBake { .. } | PackageError::Read { .. } | PackageError::Write { .. } => {
+                Self::Files(error.into())
+            }
+            _ => Self::Input(error.into()),
+        }
+    }
+}
+
+impl From<SceneFailure> for Failure {
+    fn from(error: SceneFailure) -> Self {
+        match error {
+            SceneFailure::Export(error) => error.into(),
+            SceneFailure::Package(error) => error.into(),
+            _ => Self::Input(error.into()),
         }
     }
 }

@@ -1,72 +1,27 @@
-//! Files that users name: only regular ones, of a size that fits their purpose. A pipe would be waited for, and a device has no end.
+//! Texts that the command line names.
 
-use std::fs::File;
-use std::io::{self, ErrorKind, Read};
+use std::io::{self, Read};
 use std::path::Path;
+
+use luthier_export::input::{self, TEXT_MAX};
 
 use crate::failure::{Failure, Outcome, files};
 
-/// Bytes of the longest text that is read: materials, scenes, indices, directions, reports.
-const TEXT_MAX: u64 = 64 << 20;
-
-/// Bytes of the largest image that is read: maps, environments, tables.
-const IMAGE_MAX: u64 = 1 << 30;
-
-/// The bytes of an image.
-pub(crate) fn image(path: &Path) -> io::Result<Vec<u8>> {
-    read(path, IMAGE_MAX)
-}
-
-/// The bytes of what should be a text.
-pub(crate) fn bytes(path: &Path) -> io::Result<Vec<u8>> {
-    read(path, TEXT_MAX)
-}
-
-/// A text.
-pub(crate) fn text(path: &Path) -> io::Result<String> {
-    let invalid = |source| io::Error::new(ErrorKind::InvalidData, source);
-    String::from_utf8(bytes(path)?).map_err(|_| invalid("the file is not UTF-8"))
-}
-
 /// A text that the command line names.
 pub(crate) fn named_text(path: &Path) -> Outcome<String> {
-    text(path).map_err(files(path, "read"))
+    input::text(path).map_err(files(path, "read"))
 }
 
 /// Standard input, to its end.
 pub(crate) fn standard() -> Outcome<String> {
     let mut text = String::new();
-    let read = io::stdin()
-        .take(TEXT_MAX + 1)
-        .read_to_string(&mut text)
-        .and_then(|length| if length as u64 > TEXT_MAX { Err(too_large(TEXT_MAX)) } else { Ok(()) });
+    let read = io::stdin().take(TEXT_MAX + 1).read_to_string(&mut text).and_then(|length| {
+        if length as u64 > TEXT_MAX {
+            Err(io::Error::other(format!("it is larger than {} MiB", TEXT_MAX >> 20)))
+        } else {
+            Ok(())
+        }
+    });
     read.map_err(|source| Failure::Files(anyhow::Error::new(source).context("cannot read standard input")))?;
     Ok(text)
-}
-
-fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
-    // Asked before it is opened: to open a pipe is to wait for its other end.
-    let kind = std::fs::metadata(path).map_err(plainly)?;
-    if kind.is_dir() {
-        return Err(io::Error::other("it is a folder, not a file"));
-    }
-    if !kind.is_file() {
-        return Err(io::Error::other("it is a pipe or a device, not a file"));
-    }
-    if kind.len() > most {
-        return Err(too_large(most));
-    }
-    let mut bytes = Vec::with_capacity(kind.len() as usize);
-    // Files can grow, and some systems have files that hold more than they say.
-    File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > most { Err(too_large(most)) } else { Ok(bytes) }
-}
-
-fn too_large(most: u64) -> io::Error {
-    io::Error::other(format!("it is larger than {} MiB", most >> 20))
-}
-
-/// The commonest error in words that do not depend on the system.
-fn plainly(error: io::Error) -> io::Error {
-    if error.kind() == ErrorKind::NotFound { io::Error::new(ErrorKind::NotFound, "no such file") } else { error }
 }

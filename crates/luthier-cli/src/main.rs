@@ -1,7 +1,5 @@
 //! The `luthier` command: sole owner of paths, standard streams and exit codes.
 
-mod artefacts;
-mod bake_files;
 mod cli;
 mod command_line;
 mod cost_page;
@@ -9,7 +7,6 @@ mod cost_papers;
 #[cfg(feature = "gpu")]
 mod device;
 mod directions;
-mod doubts;
 mod failure;
 #[cfg(feature = "gpu")]
 mod grid;
@@ -23,11 +20,9 @@ mod output;
 #[cfg(feature = "gpu")]
 mod picture;
 mod progress;
-mod refusals;
 mod reradiation;
 #[cfg(feature = "gpu")]
 mod sheet;
-mod staging;
 mod verb;
 #[cfg(feature = "view")]
 mod view_host;

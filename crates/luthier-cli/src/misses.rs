@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
+use luthier_export::{Source, read_image, read_one};
 use luthier_lut::TableKind;
 use luthier_manifest::{LayerRecord, Manifest};
 use luthier_material::{Diagnostic, Material, Severity};
 
 use crate::failure::Outcome;
-use crate::materials::{Source, read_image, read_one};
 use crate::output::complain;
 
 /// A warning for every layer that reads a tile which misses its aim, at its line of its file; unless quiet, they are printed.

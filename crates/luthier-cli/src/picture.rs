@@ -10,7 +10,7 @@ use luthier_texture::{Metadata, exr, png, radiance};
 use crate::cli::Look;
 use crate::device::device;
 use crate::failure::{Failure, Outcome, files};
-use crate::input;
+use luthier_export::input;
 
 /// The settings that options ask for.
 pub(crate) fn settings(look: &Look, shape: Shape, size: u32) -> Outcome<RenderSettings> {

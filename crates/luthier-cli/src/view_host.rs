@@ -6,20 +6,13 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::SystemTime;
 
-use luthier_bake::{Bake, Key, Outline, Silent};
-use luthier_gpu::{Artefacts, WgslShader};
-use luthier_lut::Atlas;
-use luthier_manifest::Manifest;
+use luthier_export::{Bake, MemoryStore, Package, Source, find, read_one};
 use luthier_material::Material;
-use luthier_shader::{MaterialSet, TableFace, Target};
 use luthier_texture::png;
 use luthier_view::{Form, Host, MaterialFile, Screenshot};
 
-use crate::bake_files::{GENERATOR, material_entries, table_entry};
-use crate::device::device;
 use crate::failure::{Failure, Outcome};
-use crate::materials::{Source, find, read_image, read_one};
-use crate::memory_bake::{self, table_texels, with_maps};
+use crate::memory_bake;
 
 /// Time of the last change and length of each file that matters; `None` where it cannot be read.
 type Stamps = BTreeMap<PathBuf, Option<(SystemTime, u64)>>;
@@ -29,54 +22,20 @@ pub(crate) struct ViewHost {
     paths: Vec<PathBuf>,
     screenshot: Option<PathBuf>,
     seen: Mutex<Option<(Stamps, Vec<MaterialFile>)>>,
-    tables: Mutex<Option<Tables>>,
-}
-
-/// Tables of the last bake, and what they are of.
-struct Tables {
-    keys: Vec<Vec<Key>>,
-    atlases: Vec<Atlas>,
+    /// Results of the jobs of the last bake: most serve the next.
+    store: MemoryStore,
 }
 
 impl ViewHost {
     pub(crate) fn new(paths: Vec<PathBuf>, screenshot: Option<PathBuf>) -> Self {
-        Self { paths, screenshot, seen: Mutex::new(None), tables: Mutex::new(None) }
+        Self { paths, screenshot, seen: Mutex::new(None), store: MemoryStore::default() }
     }
 
-    /// The tables of a material: those of the last bake, where only numbers in the material buffer changed.
-    fn atlases(&self, materials: &[Material], outline: &Outline) -> Outcome<Vec<Atlas>> {
-        let mut last = lock(&self.tables);
-        if let Some(Tables { keys, atlases }) = &*last
-            && *keys == outline.keys
-            && atlases.iter().map(|a| (a.kind, &a.layout, a.format)).eq(outline.tables.iter().map(|t| (t.0, &t.1, t.2)))
-        {
-            return Ok(atlases.clone());
-        }
-        let Bake { atlases, .. } = luthier_bake::bake(materials, &read_image, &Silent).map_err(Failure::input)?;
-        *last = Some(Tables { keys: outline.keys.clone(), atlases: atlases.clone() });
-        Ok(atlases)
-    }
-
-    fn artefacts(&self, material: &Material, form: Form) -> Outcome<Artefacts> {
-        let lit = memory_bake::lit(std::slice::from_ref(material));
-        let materials = lit.as_slice();
-        let outline = luthier_bake::outline(materials, &read_image).map_err(Failure::input)?;
-        let atlases = match form {
-            Form::Baked => self.atlases(materials, &outline)?,
-            Form::Full => Vec::new(),
-        };
-        let mut files = Vec::new();
-        let entries = material_entries(materials, &outline.materials, &mut files)?;
-        let tables =
-            outline.tables.into_iter().map(|(kind, layout, format)| TableFace { kind, layout, format }).collect();
-        let set = MaterialSet { materials: &entries, tables };
-        let wgsl = luthier_shader::emit(&set, form, Target::Wgsl).map_err(Failure::input)?;
-        let bindings = luthier_shader::bindings(&set, form);
-        let manifest =
-            Manifest { bindings, ..Manifest::new(GENERATOR, entries, atlases.iter().map(table_entry).collect()) };
-        let shaders = vec![WgslShader { form, wgsl }];
-        let artefacts = Artefacts::from_parts(manifest, table_texels(&atlases), shaders).map_err(device)?;
-        with_maps(artefacts, &files)
+    fn package(&self, material: &Material, form: Form) -> Outcome<Package> {
+        let materials = memory_bake::lit(std::slice::from_ref(material));
+        let package = Package::new(&materials, &Bake::wgsl(&[form]), &self.store)?;
+        self.store.sweep();
+        Ok(package)
     }
 }
 
@@ -99,8 +58,8 @@ impl Host for ViewHost {
         is_new.then_some(files)
     }
 
-    fn bake(&self, material: &Material, form: Form) -> Result<Artefacts, String> {
-        self.artefacts(material, form).map_err(|failure| failure.sentence())
+    fn bake(&self, material: &Material, form: Form) -> Result<Package, String> {
+        self.package(material, form).map_err(|failure| failure.sentence())
     }
 
     fn save(&self, screenshot: &Screenshot, number: u32, asked: bool) -> Result<String, String> {
@@ -124,9 +83,9 @@ impl Host for ViewHost {
 fn file(path: &Path) -> MaterialFile {
     let Source { label, text, parsed } = match read_one(path) {
         Ok(source) => source,
-        Err(failure) => {
+        Err(error) => {
             let label = path.to_string_lossy().into_owned();
-            return MaterialFile { label, material: Err(failure.sentence()), revision: 0 };
+            return MaterialFile { label, material: Err(Failure::from(error).sentence()), revision: 0 };
         }
     };
     match parsed {
@@ -250,16 +209,16 @@ mod tests {
         let host = ViewHost::new(Vec::new(), None);
         let first = host.bake(&material, Form::Baked).unwrap();
         luthier_view::Handle::Alpha(0).set(&mut material, 0.4);
-        // Marked, to tell whether these are the tables that come back.
-        lock(&host.tables).as_mut().unwrap().atlases[0].tiles[0].name = "marked".to_owned();
+        let jobs = host.store.len();
         let rougher = host.bake(&material, Form::Baked).unwrap();
-        assert_eq!(rougher.manifest.tables[0].tiles[0].name, "marked");
+        // Nothing new was computed: what is not used again would have been swept.
+        assert_eq!(host.store.len(), jobs);
         assert_eq!(rougher.tables, first.tables);
         assert_eq!(rougher.manifest.materials[0].layers[0].alpha, 0.4);
         luthier_view::Handle::IorN(0).set(&mut material, 1.2);
         let other = host.bake(&material, Form::Baked).unwrap();
         assert!(other.tables != first.tables);
         let full = host.bake(&material, Form::Full).unwrap();
-        assert!(full.tables.is_empty() && full.shader(Form::Full).is_ok());
+        assert!(full.tables.is_empty() && full.wgsl(Form::Full).is_ok());
     }
 }

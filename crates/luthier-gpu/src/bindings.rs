@@ -5,7 +5,9 @@ use luthier_manifest::{BindingEntry, material_buffer};
 use wgpu::{BindGroupLayoutEntry, BindingType, ShaderStages};
 
 use crate::context::Context;
-use crate::{Artefacts, GpuError};
+use luthier_export::{Package, PackageError};
+
+use crate::GpuError;
 
 /// One binding that a shader names.
 #[derive(Debug)]
@@ -24,11 +26,11 @@ pub(crate) struct ShaderBindings {
 
 impl ShaderBindings {
     /// Uploads the tables that the shader names.
-    pub(crate) fn new(context: &Context, artefacts: &Artefacts, wgsl: &str) -> Result<Self, GpuError> {
+    pub(crate) fn new(context: &Context, package: &Package, wgsl: &str) -> Result<Self, GpuError> {
         let mut resources = Vec::new();
         // A form binds what its text names: the full form needs no table.
-        for entry in artefacts.manifest.bindings.iter().filter(|entry| wgsl.contains(&entry.name)) {
-            resources.push((entry.binding, resource(context, artefacts, entry)?));
+        for entry in package.manifest.bindings.iter().filter(|entry| wgsl.contains(&entry.name)) {
+            resources.push((entry.binding, resource(context, package, entry)?));
         }
         let entries: Vec<_> = resources.iter().map(|(binding, r)| layout_entry(*binding, r)).collect();
         let layout = context.guarded("bindings of the manifest", || {
@@ -66,11 +68,11 @@ impl ShaderBindings {
 }
 
 /// The material buffer of a bake.
-pub(crate) fn material_words(artefacts: &Artefacts) -> Vec<[f32; 4]> {
-    material_buffer(&artefacts.manifest.materials)
+pub(crate) fn material_words(package: &Package) -> Vec<[f32; 4]> {
+    material_buffer(&package.manifest.materials)
 }
 
-fn resource(context: &Context, artefacts: &Artefacts, entry: &BindingEntry) -> Result<Resource, GpuError> {
+fn resource(context: &Context, package: &Package, entry: &BindingEntry) -> Result<Resource, GpuError> {
     let unknown = || GpuError::Binding { name: entry.name.clone(), resource: entry.resource.clone() };
     match entry.resource.as_str() {
         "buffer" => Ok(Resource::Materials),
@@ -88,14 +90,14 @@ fn resource(context: &Context, artefacts: &Artefacts, entry: &BindingEntry) -> R
         "texture_2d<f32>" => {
             let named = |kind: &TableKind| entry.name.strip_prefix("luthier_") == Some(kind.name());
             let kind = TableKind::ALL.into_iter().find(named).ok_or_else(unknown)?;
-            table(context, artefacts, kind)
+            table(context, package, kind)
         }
         _ => Err(unknown()),
     }
 }
 
-fn table(context: &Context, artefacts: &Artefacts, kind: TableKind) -> Result<Resource, GpuError> {
-    let texels = artefacts.table(kind).ok_or(GpuError::MissingTexels { kind })?;
+fn table(context: &Context, package: &Package, kind: TableKind) -> Result<Resource, GpuError> {
+    let texels = package.table(kind).ok_or(PackageError::MissingTexels { kind })?;
     let (width, height) = (texels.width, texels.height);
     let limit = context.device.limits().max_texture_dimension_2d;
     if width > limit || height > limit {

@@ -1,41 +1,15 @@
+use luthier_export::PackageError;
 use luthier_lut::{TableKind, TexelFormat};
-use luthier_manifest::{Form, ManifestError};
-use luthier_texture::FolderError;
+use luthier_manifest::Form;
 use thiserror::Error;
 
-/// Why artefacts cannot be loaded, bound or run.
+/// Why a package cannot be loaded, bound or run.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum GpuError {
-    /// A bake cannot be read from its folder.
+    /// The bake cannot be read, or its parts do not fit together.
     #[error(transparent)]
-    Folder(#[from] FolderError),
-    /// The manifest and the texels at hand contradict each other.
-    #[error(transparent)]
-    Table(#[from] ManifestError),
-    /// The manifest lists a table whose texels were not given.
-    #[error("no texels for the {} table", kind.name())]
-    MissingTexels {
-        /// The table.
-        kind: TableKind,
-    },
-    /// A bake without materials.
-    #[error("the bake holds no material")]
-    NoMaterials,
-    /// A material without layers.
-    #[error("material `{name}` has no layer")]
-    NoLayers {
-        /// Its name.
-        name: String,
-    },
-    /// No WGSL shader of the form asked for.
-    #[error("the bake holds no WGSL shader of the form `{form}`; it has: {known}")]
-    NoShader {
-        /// Asked for.
-        form: Form,
-        /// Forms at hand, comma-separated.
-        known: String,
-    },
+    Package(#[from] PackageError),
     /// A binding of the manifest that this version cannot make.
     #[error("the manifest binds `{name}` as `{resource}`, which this version does not know")]
     Binding {

@@ -2,7 +2,9 @@ use luthier_manifest::Form;
 use wgpu::{DeviceType, DownlevelFlags};
 
 use crate::context::Context;
-use crate::{Artefacts, GpuError, Scene};
+use luthier_export::Package;
+
+use crate::{GpuError, Scene};
 
 /// An open device.
 #[derive(Debug)]
@@ -89,8 +91,8 @@ impl Gpu {
     ///
     /// # Errors
     /// When the bake has no such shader, a table is too large, or the device refuses the shader or its bindings.
-    pub fn scene(&self, artefacts: &Artefacts, form: Form) -> Result<Scene, GpuError> {
-        Scene::new(self.context.clone(), artefacts, form)
+    pub fn scene(&self, package: &Package, form: Form) -> Result<Scene, GpuError> {
+        Scene::new(self.context.clone(), package, form)
     }
 }
 

@@ -1,11 +1,11 @@
-//! The runtime: loads what a bake wrote, and nothing else, binds the emitted shader on a wgpu device, evaluates it
+//! The runtime: takes the package of a bake, and nothing else, binds the emitted shader on a wgpu device, evaluates it
 //! for arrays of directions, reads its tables, and renders pictures.
 //!
 //! ```no_run
 //! # fn main() -> Result<(), luthier_gpu::GpuError> {
-//! let artefacts = luthier_gpu::Artefacts::load(std::path::Path::new("out"))?;
+//! let package = luthier_gpu::Package::read(std::path::Path::new("out"))?;
 //! let gpu = luthier_gpu::Gpu::open()?;
-//! let scene = gpu.scene(&artefacts, Form::Baked)?;
+//! let scene = gpu.scene(&package, luthier_manifest::Form::Baked)?;
 //! let up = [0.0, 0.0, 1.0];
 //! let rgb = scene.evaluate(0, &[(up, up)])?;
 //! # Ok(()) }
@@ -20,7 +20,6 @@
 //!
 //! Out of scope: windows, encoding pictures, the models themselves (the shader brings them).
 
-mod artefacts;
 mod bindings;
 mod context;
 mod environment;
@@ -40,11 +39,11 @@ mod time;
 mod tone;
 mod vector;
 
-pub use artefacts::{Artefacts, MapTexels, TableTexels, WgslShader};
 pub use environment::{Blur, Environment};
 pub use error::GpuError;
 pub use gpu::Gpu;
 pub use light::Light;
+pub use luthier_export::{Map, Package, PackageError, Shader, Table};
 pub use render::{Backdrop, RenderSettings};
 pub use scene::Scene;
 pub use shape::{Camera, GRID_SIDE, Shape};

@@ -5,14 +5,16 @@ use luthier_manifest::{Form, LayerRecord, Manifest};
 
 use crate::bindings::{ShaderBindings, kernel_layout, material_words};
 use crate::context::Context;
-use crate::{Artefacts, GpuError, MapTexels, evaluate};
+use luthier_export::{Map, Package};
+
+use crate::{GpuError, evaluate};
 
 /// A bake on a device, ready to evaluate, to look up and to render.
 #[derive(Debug)]
 pub struct Scene {
     pub(crate) context: Context,
     pub(crate) manifest: Manifest,
-    pub(crate) maps: Vec<MapTexels>,
+    pub(crate) maps: Vec<Map>,
     form: Form,
     wgsl: String,
     pub(crate) bindings: ShaderBindings,
@@ -25,10 +27,10 @@ pub struct Scene {
 }
 
 impl Scene {
-    pub(crate) fn new(context: Context, artefacts: &Artefacts, form: Form) -> Result<Self, GpuError> {
-        let shader = artefacts.shader(form)?;
-        let bindings = ShaderBindings::new(&context, artefacts, &shader.wgsl)?;
-        let group = bindings.group(&context, &material_words(artefacts))?;
+    pub(crate) fn new(context: Context, package: &Package, form: Form) -> Result<Self, GpuError> {
+        let wgsl = package.wgsl(form)?;
+        let bindings = ShaderBindings::new(&context, package, wgsl)?;
+        let group = bindings.group(&context, &material_words(package))?;
         let kernel_group = kernel_layout(&context)?;
         let kernels = context.guarded("pipeline layout", || {
             context.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -37,13 +39,13 @@ impl Scene {
                 immediate_size: 0,
             })
         })?;
-        let evaluate = compile(&context, &kernels, form, &shader.wgsl, evaluate::KERNEL)?;
+        let evaluate = compile(&context, &kernels, form, wgsl, evaluate::KERNEL)?;
         Ok(Self {
             context,
-            manifest: artefacts.manifest.clone(),
-            maps: artefacts.maps.clone(),
+            manifest: package.manifest.clone(),
+            maps: package.maps.clone(),
             form,
-            wgsl: shader.wgsl.clone(),
+            wgsl: wgsl.to_owned(),
             bindings,
             group,
             kernels,
@@ -53,22 +55,22 @@ impl Scene {
         })
     }
 
-    /// The scene with the same shader and other materials, tables and maps: nothing is compiled. `None` where the shader of these artefacts
+    /// The scene with the same shader and other materials, tables and maps: nothing is compiled. `None` where the shader of this package
     /// is another one.
     ///
     /// # Errors
     /// [`GpuError::NoShader`], and as [`Gpu::scene`](crate::Gpu::scene) for the tables.
-    pub fn rebound(&self, artefacts: &Artefacts) -> Result<Option<Self>, GpuError> {
-        if artefacts.shader(self.form)?.wgsl != self.wgsl {
+    pub fn rebound(&self, package: &Package) -> Result<Option<Self>, GpuError> {
+        if package.wgsl(self.form)? != self.wgsl {
             return Ok(None);
         }
         // Layouts with the same entries are the same to the device, so the pipelines take the new groups.
-        let bindings = ShaderBindings::new(&self.context, artefacts, &self.wgsl)?;
-        let group = bindings.group(&self.context, &material_words(artefacts))?;
+        let bindings = ShaderBindings::new(&self.context, package, &self.wgsl)?;
+        let group = bindings.group(&self.context, &material_words(package))?;
         Ok(Some(Self {
             context: self.context.clone(),
-            manifest: artefacts.manifest.clone(),
-            maps: artefacts.maps.clone(),
+            manifest: package.manifest.clone(),
+            maps: package.maps.clone(),
             form: self.form,
             wgsl: self.wgsl.clone(),
             bindings,

@@ -87,6 +87,16 @@ pub struct LayerRecord {
 }
 
 impl LayerRecord {
+    /// Leaves the layer without tiles: shaders compute what these would hold.
+    pub fn forget_tiles(&mut self) {
+        let Self {
+            fresnel_tile, distribution_tile, fgd_tile, phase_tile, thickness_tile, film_tile, escape_tile, ..
+        } = self;
+        for tile in [fresnel_tile, distribution_tile, fgd_tile, phase_tile, thickness_tile, film_tile, escape_tile] {
+            *tile = None;
+        }
+    }
+
     /// Whether the thickness of its film varies over the surface.
     pub fn varies(&self) -> bool {
         self.film_thickness_max_nm > self.film_thickness_nm

@@ -10,14 +10,11 @@
 //! Simplifications: textures that are written are two-dimensional with one level, one layer and one face; EXR files are
 //! single-part scan-line images of 32-bit floats.
 //!
-//! [`BakeFolder`] is the one reader of a bake's folder, for the runtime and for the judge; all else takes and gives bytes.
-//!
 //! Out of scope: writing files, block compression.
 
 mod dds;
 mod error;
 pub mod exr;
-mod folder;
 pub mod ktx2;
 mod limits;
 mod metadata;
@@ -30,7 +27,7 @@ mod texture;
 mod zstd;
 
 pub use error::{Container, TextureError};
-pub use folder::{BakeFolder, FolderError, MANIFEST, MAX_FILE_BYTES};
+
 pub use limits::{MAX_BYTES, MAX_SIDE};
 pub use metadata::Metadata;
 pub use texels::Samples;

@@ -7,7 +7,7 @@ use eframe::egui::{
     Align2, Area, CentralPanel, ColorImage, Context, Frame, Id, Margin, Panel, PointerButton, Rect, RichText, Sense,
     TextureHandle, TextureOptions, Theme, Ui, ViewportCommand, pos2,
 };
-use luthier_gpu::{Artefacts, Gpu, RenderSettings, Shape};
+use luthier_gpu::{Gpu, Package, RenderSettings, Shape};
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::Material;
 
@@ -63,7 +63,7 @@ pub(crate) struct App {
     bake_order: Option<BakeOrder>,
     baked: u64,
     bake_problem: Option<String>,
-    artefacts: Option<(u64, Form, Arc<Artefacts>)>,
+    package: Option<(u64, Form, Arc<Package>)>,
     paint_order: Option<(u64, u64, View)>,
     painted: u64,
     finished: bool,
@@ -112,7 +112,7 @@ impl App {
             bake_order: None,
             baked: 0,
             bake_problem: None,
-            artefacts: None,
+            package: None,
             paint_order: None,
             painted: 0,
             finished: false,
@@ -195,9 +195,9 @@ impl App {
         }
         if let Some(baked) = self.baker.results.take() {
             self.baked = baked.version;
-            match baked.artefacts {
-                Ok(artefacts) => {
-                    self.artefacts = Some((baked.version, baked.form, artefacts));
+            match baked.package {
+                Ok(package) => {
+                    self.package = Some((baked.version, baked.form, package));
                     self.bake_problem = None;
                 }
                 Err(problem) => self.bake_problem = Some(problem),
@@ -315,7 +315,7 @@ impl App {
                 self.bake_order = Some(order);
             }
         }
-        let Some((baked, form, artefacts)) = &self.artefacts else { return };
+        let Some((baked, form, package)) = &self.package else { return };
         let pixels = |points: f32| (points * ui.ctx().pixels_per_point()).round().max(1.0) as u32;
         let view = View {
             shape: self.shape,
@@ -332,8 +332,8 @@ impl App {
         if self.paint_order.is_none_or(|(_, of, last)| of != *baked || last != view) {
             let version = self.paint_order.map_or(1, |(last, ..)| last + 1);
             self.paint_order = Some((version, *baked, view));
-            let (artefacts, environment) = (Arc::clone(artefacts), Arc::clone(environment));
-            self.painter.orders.put(PaintOrder { version, artefacts, form: *form, environment, view });
+            let (package, environment) = (Arc::clone(package), Arc::clone(environment));
+            self.painter.orders.put(PaintOrder { version, package, form: *form, environment, view });
         }
     }
 

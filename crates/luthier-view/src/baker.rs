@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::thread;
 
 use eframe::egui;
-use luthier_gpu::Artefacts;
+use luthier_gpu::Package;
 use luthier_manifest::Form;
 use luthier_material::Material;
 
@@ -26,7 +26,7 @@ pub(crate) struct BakeOrder {
 #[derive(Debug)]
 pub(crate) struct Baked {
     pub(crate) version: u64,
-    pub(crate) artefacts: Result<Arc<Artefacts>, String>,
+    pub(crate) package: Result<Arc<Package>, String>,
     pub(crate) form: Form,
 }
 
@@ -43,8 +43,8 @@ impl Baker {
         let (todo, done) = (Arc::clone(&orders), Arc::clone(&results));
         let work = move || {
             while let Some(BakeOrder { version, material, form, .. }) = todo.wait() {
-                let artefacts = host.bake(&material, form).map(Arc::new);
-                done.put(Baked { version, artefacts, form });
+                let package = host.bake(&material, form).map(Arc::new);
+                done.put(Baked { version, package, form });
                 context.request_repaint();
             }
         };

@@ -1,4 +1,4 @@
-use luthier_gpu::Artefacts;
+use luthier_gpu::Package;
 use luthier_manifest::Form;
 use luthier_material::Material;
 
@@ -7,11 +7,11 @@ pub trait Host: Send + Sync {
     /// All material files, when any of them, or any file that they name, changed since the last call; at first always.
     fn changed(&self) -> Option<Vec<MaterialFile>>;
 
-    /// The artefacts that the renderer needs for one material in one form.
+    /// The package that the renderer needs for one material in one form.
     ///
     /// # Errors
     /// A message for people.
-    fn bake(&self, material: &Material, form: Form) -> Result<Artefacts, String>;
+    fn bake(&self, material: &Material, form: Form) -> Result<Package, String>;
 
     /// Writes a screenshot. `number` counts from 1; `asked` says that it is one of those that the command line asks for, not
     /// one that somebody took by hand. Gives the path.

@@ -5,7 +5,7 @@ use std::thread::{self, JoinHandle};
 use std::time::Instant;
 
 use eframe::egui::{self, ecolor};
-use luthier_gpu::{Artefacts, Backdrop, Environment, Gpu, GpuError, RenderSettings, Scene, Shape, ToneMapping};
+use luthier_gpu::{Backdrop, Environment, Gpu, GpuError, Package, RenderSettings, Scene, Shape, ToneMapping};
 use luthier_lut::Image;
 use luthier_manifest::Form;
 
@@ -43,7 +43,7 @@ pub(crate) struct View {
 #[derive(Debug, Clone)]
 pub(crate) struct PaintOrder {
     pub(crate) version: u64,
-    pub(crate) artefacts: Arc<Artefacts>,
+    pub(crate) package: Arc<Package>,
     pub(crate) form: Form,
     pub(crate) environment: Arc<Environment>,
     pub(crate) view: View,
@@ -112,7 +112,7 @@ struct Worker {
     orders: Arc<Latest<PaintOrder>>,
     pictures: Arc<Latest<Picture>>,
     context: egui::Context,
-    scene: Option<(Arc<Artefacts>, Scene)>,
+    scene: Option<(Arc<Package>, Scene)>,
     /// Per evaluation, as measured last.
     seconds: f64,
 }
@@ -158,21 +158,21 @@ impl Worker {
     /// The scene of an order: the one at hand where it serves, else with other materials, else compiled.
     fn scene(&mut self, order: &PaintOrder) -> Result<Scene, GpuError> {
         match self.scene.take() {
-            Some((artefacts, scene)) if scene.form() == order.form => {
-                if Arc::ptr_eq(&artefacts, &order.artefacts) {
+            Some((package, scene)) if scene.form() == order.form => {
+                if Arc::ptr_eq(&package, &order.package) {
                     return Ok(scene);
                 }
-                match scene.rebound(&order.artefacts)? {
+                match scene.rebound(&order.package)? {
                     Some(scene) => Ok(scene),
-                    None => self.gpu.scene(&order.artefacts, order.form),
+                    None => self.gpu.scene(&order.package, order.form),
                 }
             }
-            _ => self.gpu.scene(&order.artefacts, order.form),
+            _ => self.gpu.scene(&order.package, order.form),
         }
     }
 
     fn keep(&mut self, order: &PaintOrder, scene: Scene) -> Result<(), GpuError> {
-        self.scene = Some((Arc::clone(&order.artefacts), scene));
+        self.scene = Some((Arc::clone(&order.package), scene));
         Ok(())
     }
 

@@ -25,6 +25,7 @@ use crate::graph::{Results, Silent};
 use crate::job::{Job, JobKind};
 use crate::plan::{ImageReader, Plan};
 use crate::settings::{Settings, axis};
+use crate::store::MemoryStore;
 
 /// Bytes of Elek's rows: 128 texels of three bytes.
 pub const ROW_BYTES: u64 = 384;
@@ -179,7 +180,7 @@ pub fn goals(materials: &[Material], read_image: ImageReader<'_>) -> Result<Goal
         blocks::rows(&truths).into_iter().map(|r| (r.clone(), blocks::least_row(&colors, r.max_abs, f64::INFINITY)));
     let row_blocks = row_blocks.collect();
     let (shared, bare) = shared_goals(&plan);
-    let results = plan.graph.only(&[JobKind::FgdTruth]).run(&Silent, Results::default());
+    let results = plan.graph.only(&[JobKind::FgdTruth]).run(&Silent, &MemoryStore::default(), Results::default());
     let albedos = albedos(&plan, &results);
     plan.settings.formats = TexelFormat::ALL.into_iter().collect();
     let blocks = blocks::tiles(&plan, &results);

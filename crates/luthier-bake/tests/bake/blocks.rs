@@ -1,6 +1,6 @@
 //! Albedo tiles in blocks of texels: asked for by a material, or taken by a search whose target has them.
 
-use luthier_bake::{Bake, BakeError, Options, Silent, bake_with};
+use luthier_bake::{BakeError, Baked, MemoryStore, Options, Silent, bake_with};
 use luthier_lut::{FormatSet, TableKind, TexelFormat};
 use luthier_manifest::Budget;
 use luthier_material::Material;
@@ -22,10 +22,16 @@ fn set(settings: &str) -> Vec<Material> {
     ]
 }
 
-fn with(materials: &[Material], max_abs: f64, formats: FormatSet) -> Result<Bake, BakeError> {
+fn with(materials: &[Material], max_abs: f64, formats: FormatSet) -> Result<Baked, BakeError> {
     let budget = Budget { max_abs: Some(max_abs), ..Budget::default() };
     let no_images = |_: &str, _: &str| Err("no images here".to_owned());
-    bake_with(materials, &Options { budget, formats, ..Options::default() }, &no_images, &Silent)
+    bake_with(
+        materials,
+        &Options { budget, formats, ..Options::default() },
+        &no_images,
+        &Silent,
+        &MemoryStore::default(),
+    )
 }
 
 #[test]

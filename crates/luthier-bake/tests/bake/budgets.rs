@@ -1,6 +1,6 @@
 //! Searches: budgets hold as an independent scan sees it, tighter ones never take fewer bytes, and what cannot be met is refused.
 
-use luthier_bake::{Bake, BakeError, Options, Silent, bake_with};
+use luthier_bake::{BakeError, Baked, MemoryStore, Options, Silent, bake_with};
 use luthier_lut::{RowBase, TableKind, TexelFormat, WeightBits};
 use luthier_manifest::{Budget, CandidateForm, Search};
 use luthier_material::Material;
@@ -25,26 +25,26 @@ fn set() -> Vec<Material> {
     ]
 }
 
-fn with(materials: &[Material], budget: Budget) -> Result<Bake, BakeError> {
+fn with(materials: &[Material], budget: Budget) -> Result<Baked, BakeError> {
     let no_images = |_: &str, _: &str| Err("no images here".to_owned());
-    bake_with(materials, &Options { budget, ..Options::default() }, &no_images, &Silent)
+    bake_with(materials, &Options { budget, ..Options::default() }, &no_images, &Silent, &MemoryStore::default())
 }
 
 fn max_abs(limit: f64) -> Budget {
     Budget { max_abs: Some(limit), ..Budget::default() }
 }
 
-fn search(bake: &Bake, kind: TableKind) -> &Search {
+fn search(bake: &Baked, kind: TableKind) -> &Search {
     bake.searches.iter().find(|s| s.kind == kind).unwrap()
 }
 
-fn chosen(bake: &Bake, kind: TableKind) -> &luthier_manifest::Candidate {
+fn chosen(bake: &Baked, kind: TableKind) -> &luthier_manifest::Candidate {
     let search = search(bake, kind);
     &search.front[search.chosen]
 }
 
 /// Largest error of the shipped rows over 20000 cosines, half of them crowded at grazing angles.
-fn fresnel_error(materials: &[Material], bake: &Bake) -> f64 {
+fn fresnel_error(materials: &[Material], bake: &Baked) -> f64 {
     let rows = atlas(bake, TableKind::Fresnel);
     let mut worst = 0.0_f64;
     for (material, baked) in materials.iter().zip(&bake.materials) {
@@ -111,7 +111,7 @@ fn the_front_is_one() {
 #[test]
 fn bytes_and_cost_are_kept() {
     let set = set();
-    let total = |bake: &Bake| -> u64 {
+    let total = |bake: &Baked| -> u64 {
         let bytes = |a: &luthier_lut::Atlas| a.format.encode(&a.texels).len() as u64;
         bake.atlases.iter().map(bytes).sum()
     };
@@ -211,8 +211,14 @@ fn rows_of_a_form_that_is_asked_for_are_not_searched() {
     let inverse = material("inverse", &layers, FIXED_ALBEDO);
     let asked = (RowBase::Schlick, TexelFormat::Rgb10a2Unorm);
     let no_images = |_: &str, _: &str| Err("no images here".to_owned());
-    let bake =
-        bake_with(&[inverse], &Options { rows: Some(asked), ..Options::default() }, &no_images, &Silent).unwrap();
+    let bake = bake_with(
+        &[inverse],
+        &Options { rows: Some(asked), ..Options::default() },
+        &no_images,
+        &Silent,
+        &MemoryStore::default(),
+    )
+    .unwrap();
     let atlas = atlas(&bake, TableKind::Fresnel);
     assert_eq!((atlas.layout.base, atlas.format), asked);
 }

@@ -1,6 +1,6 @@
 //! Film tiles against the spectral reflectance, beside the phase rows of the same films.
 
-use luthier_bake::Bake;
+use luthier_bake::Baked;
 use luthier_lut::{TableKind, WeightBits};
 use luthier_manifest::LayerRecord;
 use luthier_material::Material;
@@ -13,7 +13,7 @@ use crate::materials::{SMALL, atlas, bake_all, dielectric, material};
 const MAX_NM: f64 = 1600.0;
 
 /// A film between air and a denser body, as the sign of the phase row needs it; colours are spectral.
-fn film(settings: &str) -> (Material, Bake) {
+fn film(settings: &str) -> (Material, Baked) {
     let layers = format!(
         "[[layer]]\ntype = \"thin-film\"\nior = 1.4\n[layer.thickness_nm]\nmin = 10\nmax = {MAX_NM}\nextent_um = 1000\n\
          map = {{ noise = {{ seed = 5, frequency = 3, octaves = 2 }} }}\n{}",
@@ -33,7 +33,7 @@ fn spectral(material: &Material, nm: f64, cos_theta: f64) -> [f64; 3] {
 
 /// Two beams whose interference is read from the phase row: what Granier and Heidrich's texture can give, with the exact powers
 /// of both interfaces.
-fn two_beams(bake: &Bake, record: &LayerRecord, nm: f64, cos_theta: f64) -> [f64; 3] {
+fn two_beams(bake: &Baked, record: &LayerRecord, nm: f64, cos_theta: f64) -> [f64; 3] {
     let power = |above: f64, below: f64, cos_theta: f64| {
         let cos_t = (1.0 - (above / below).powi(2) * (1.0 - cos_theta * cos_theta)).sqrt();
         let s = (above * cos_theta - below * cos_t) / (above * cos_theta + below * cos_t);

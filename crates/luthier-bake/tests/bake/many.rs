@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use luthier_bake::{Bake, Options, Silent, bake_with};
+use luthier_bake::{Baked, MemoryStore, Options, Silent, bake_with};
 use luthier_lut::{Atlas, TableKind};
 use luthier_manifest::SIDE_MAX;
 use luthier_material::{Material, parse};
@@ -21,9 +21,9 @@ fn materials(numbers: impl Iterator<Item = u32>) -> Vec<Material> {
     numbers.map(material).collect()
 }
 
-fn bake(materials: &[Material]) -> Bake {
+fn bake(materials: &[Material]) -> Baked {
     let options = Options { search: false, ..Options::default() };
-    bake_with(materials, &options, &|_, _| Err("no images here".to_owned()), &Silent).unwrap()
+    bake_with(materials, &options, &|_, _| Err("no images here".to_owned()), &Silent, &MemoryStore::default()).unwrap()
 }
 
 /// The texels of a tile.

@@ -1,6 +1,6 @@
 //! Materials for tests, written as files.
 
-use luthier_bake::{Bake, BakeError, Silent, bake};
+use luthier_bake::{BakeError, Baked, Silent, bake};
 use luthier_lut::{Atlas, TableKind};
 use luthier_material::{Material, parse};
 
@@ -41,14 +41,14 @@ pub(crate) fn dielectric(ior: &str, alpha: f64) -> String {
     format!("[[layer]]\ntype = \"dielectric\"\nior = {ior}\nalpha = {alpha}\n")
 }
 
-pub(crate) fn try_bake(materials: &[Material]) -> Result<Bake, BakeError> {
+pub(crate) fn try_bake(materials: &[Material]) -> Result<Baked, BakeError> {
     bake(materials, &|_, _| Err("no images here".to_owned()), &Silent)
 }
 
-pub(crate) fn bake_all(materials: &[Material]) -> Bake {
+pub(crate) fn bake_all(materials: &[Material]) -> Baked {
     try_bake(materials).unwrap()
 }
 
-pub(crate) fn atlas(bake: &Bake, kind: TableKind) -> &Atlas {
+pub(crate) fn atlas(bake: &Baked, kind: TableKind) -> &Atlas {
     bake.atlases.iter().find(|a| a.kind == kind).unwrap()
 }

@@ -1,6 +1,6 @@
 //! Bytes, shared tiles, and sets that cannot be baked.
 
-use luthier_bake::{Bake, BakeError};
+use luthier_bake::{BakeError, Baked};
 use luthier_lut::TableKind;
 
 use crate::materials::{ASKED, SMALL, atlas, bake_all, conductor, dielectric, material, try_bake};
@@ -17,7 +17,7 @@ map = { noise = { seed = 3, frequency = 4, octaves = 3 } }
 ";
 
 /// Everything that a bake decides, bit by bit.
-fn bits(bake: &Bake) -> Vec<u32> {
+fn bits(bake: &Baked) -> Vec<u32> {
     let images = bake.atlases.iter().flat_map(|a| a.truth.data.iter().chain(&a.texels.data));
     let errors = bake.atlases.iter().flat_map(|a| &a.tiles).flat_map(|t| {
         let e = &t.error;

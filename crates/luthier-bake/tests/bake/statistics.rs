@@ -1,7 +1,7 @@
 //! Inputs of the models `belcour` and `yamaguchi`: total reflection, and the layers that cover a diffuse base.
 
 use glam::DVec3;
-use luthier_bake::Bake;
+use luthier_bake::Baked;
 use luthier_layers::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::statistics::adding::add;
@@ -80,7 +80,7 @@ fn only_what_is_read_is_baked_and_other_tiles_stay_as_they_are() {
 
     let plain = bake_all(&[material("metal", &layers, &three)]);
     let hashes =
-        |bake: &Bake| atlas(bake, TableKind::Fgd).tiles.iter().map(|t| t.input_hash.clone()).collect::<Vec<_>>();
+        |bake: &Baked| atlas(bake, TableKind::Fgd).tiles.iter().map(|t| t.input_hash.clone()).collect::<Vec<_>>();
     assert_eq!(hashes(&baked), hashes(&plain));
     assert!(plain.atlases.iter().all(|a| a.kind != TableKind::Escape));
     assert_eq!(plain.materials[0].constants.internal_reflectance, [0.0; 3]);
@@ -131,7 +131,7 @@ fn what_covers_a_diffuse_base() {
 
 /// Energies as the baked shader reads them.
 struct Read<'a> {
-    bake: &'a Bake,
+    bake: &'a Baked,
     records: &'a [LayerRecord],
 }
 

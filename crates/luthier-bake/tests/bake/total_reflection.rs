@@ -1,6 +1,6 @@
 //! Interfaces that reflect totally: their rows hold what others hold, cost others nothing, and are named where they do not.
 
-use luthier_bake::{AIM, Bake, kinked_rows};
+use luthier_bake::{AIM, Baked, kinked_rows};
 use luthier_lut::{TableKind, WeightBits};
 use luthier_material::Material;
 use luthier_optics::interface::Interface;
@@ -41,7 +41,7 @@ fn cosines(above: f64, below: f64) -> Vec<f64> {
 }
 
 /// Largest error of the row of a layer, and what the bake states of it.
-fn errors(bake: &Bake, material: usize, layer: usize, exact: impl Fn(f64) -> f64, at: &[f64]) -> (f64, f64) {
+fn errors(bake: &Baked, material: usize, layer: usize, exact: impl Fn(f64) -> f64, at: &[f64]) -> (f64, f64) {
     let rows = atlas(bake, TableKind::Fresnel);
     let record = &bake.materials[material].records[layer];
     let tile = record.fresnel_tile.unwrap();
@@ -87,7 +87,7 @@ fn a_wine_glass_costs_the_others_nothing() {
 }
 
 /// The rows of a bake are those of another that has more.
-fn same_rows(alone: &Bake, bake: &Bake) {
+fn same_rows(alone: &Baked, bake: &Baked) {
     let [few, all] = [alone, bake].map(|bake| atlas(bake, TableKind::Fresnel));
     assert_eq!((few.format, few.layout.base, &few.layout.x), (all.format, all.layout.base, &all.layout.x));
     for (tile, other) in few.tiles.iter().zip(&all.tiles) {

@@ -1,23 +1,19 @@
 use std::collections::BTreeSet;
-use std::path::{Component, Path};
 use std::time::Instant;
 
 use luthier_bake::{Observer, Silent};
+use luthier_export::{Bake, Compression, MANIFEST, MemoryStore, Package, Source, of_model, read, refuse};
 use luthier_manifest::{CandidateForm, Manifest};
 use luthier_material::Diagnostic;
 use luthier_shader::{Form, Target};
 use serde_json::{Value, json};
 
-use crate::bake_files::{BakeFiles, MANIFEST, REPORT_FILES, REPORT_FOLDER, Shaders};
 use crate::cli::{BakeOptions, Emission};
-use crate::doubts;
-use crate::failure::{Failure, Outcome, files};
-use crate::materials::{Source, read, read_image, shaded, valid};
+use crate::failure::{Failure, Outcome};
+use crate::materials::{shaded, valid};
 use crate::misses;
 use crate::output::{bytes, print};
 use crate::progress::BakeProgress;
-use crate::refusals;
-use crate::staging::Staging;
 use crate::verb::check::diagnostics;
 use crate::verb::scene;
 
@@ -31,12 +27,12 @@ pub(crate) fn run(options: &BakeOptions) -> Outcome {
         return Err(Failure::Usage(anyhow::anyhow!("--allow-miss and --budgets are for scenes (docs/scenes.md)")));
     }
     let mut sources = read(&options.sources.paths)?;
-    refusals::find(&mut sources, |material| doubts::of_model(material, options.shading.model));
+    refuse(&mut sources, |material| of_model(material, options.shading.model));
     let mut told: Vec<Diagnostic> = sources.iter().flat_map(Source::diagnostics).cloned().collect();
     let materials = shaded(valid(sources, options.quiet)?, &options.shading);
-    let shaders = options.emission.shaders();
+    let forms = options.emission.forms();
     let limits = options.limits.options();
-    if shaders.forms == [Form::Full] && !limits.budget.is_empty() {
+    if forms == [Form::Full] && !limits.budget.is_empty() {
         return Err(Failure::Usage(anyhow::anyhow!(
             "limits are those of tables, and a bake of --form full has no tables"
         )));
@@ -46,98 +42,44 @@ pub(crate) fn run(options: &BakeOptions) -> Outcome {
         .num_threads(options.threads.map_or(0, usize::from))
         .build()
         .map_err(|source| Failure::Files(anyhow::Error::new(source).context("cannot start threads")))?;
-    let made = pool.install(|| {
+    let encoded = pool.install(|| {
         let observer: &dyn Observer = if options.quiet { &Silent } else { &progress };
-        // Without a shader that reads them, there are no tables.
-        if shaders.forms == [Form::Full] {
-            return BakeFiles::without_tables(&materials, &shaders);
-        }
-        let bake = luthier_bake::bake_with(&materials, &limits, &read_image, observer);
-        BakeFiles::new(&materials, &bake.map_err(Failure::input)?, &shaders)
+        let bake = Bake { options: limits, targets: options.emission.targets(), forms, observer, ..Bake::default() };
+        Ok::<_, Failure>(Package::new(&materials, &bake, &MemoryStore::default())?.encode(options.compression())?)
     })?;
-    publish(options, &made)?;
-    told.extend(misses::name(&made.manifest, options.quiet)?);
+    encoded.write(&options.out)?;
+    let manifest = &encoded.manifest;
+    told.extend(misses::name(manifest, options.quiet)?);
 
     if options.json {
-        let mut summary = summary(options, &made.manifest, &progress, start);
+        let mut summary = summary(options, manifest, &progress, start);
         summary["diagnostics"] = diagnostics(&told);
         print(&format!("{summary:#}"))
     } else if options.quiet {
         Ok(())
     } else {
-        print(&text(options, &made.manifest, &progress, start))
+        print(&text(options, manifest, &progress, start))
     }
 }
 
 impl Emission {
-    /// The shaders to write, each once.
-    pub(super) fn shaders(&self) -> Shaders {
-        let all = Shaders::default();
-        let targets: BTreeSet<Target> = self.target.iter().copied().collect();
-        let forms: BTreeSet<Form> = self.form.iter().copied().collect();
-        Shaders {
-            targets: if targets.is_empty() { all.targets } else { targets.into_iter().collect() },
-            forms: if forms.is_empty() { all.forms } else { forms.into_iter().collect() },
-        }
+    /// The languages of the shaders to write, each once.
+    pub(super) fn targets(&self) -> Vec<Target> {
+        let asked: BTreeSet<Target> = self.target.iter().copied().collect();
+        if asked.is_empty() { Bake::default().targets } else { asked.into_iter().collect() }
+    }
+
+    /// Their forms, each once.
+    fn forms(&self) -> Vec<Form> {
+        let asked: BTreeSet<Form> = self.form.iter().copied().collect();
+        if asked.is_empty() { Bake::default().forms } else { asked.into_iter().collect() }
     }
 }
 
-/// Moves everything into place, the manifest last, and removes what an earlier bake left and this one does not have; the
-/// report on another bake too.
-pub(super) fn publish(options: &BakeOptions, made: &BakeFiles) -> Outcome {
-    let plain = if options.no_zstd { Some(made.without_zstd()?) } else { None };
-    let made = plain.as_ref().unwrap_or(made);
-    let manifest = made.manifest.to_json().map_err(Failure::input)?;
-    // Unreadable is as good as none: what it named, nobody knows.
-    let old = std::fs::read_to_string(options.out.join(MANIFEST)).unwrap_or_default();
-    let stale = if old == manifest { Vec::new() } else { left_by(&old) };
-    let mut staging = Staging::for_folder(&options.out)?;
-    for (path, bytes) in &made.files {
-        staging.write(path, bytes)?;
+impl BakeOptions {
+    pub(super) fn compression(&self) -> Compression {
+        if self.no_zstd { Compression::None } else { Compression::Zstd }
     }
-    staging.write(MANIFEST, manifest.as_bytes())?;
-    staging.publish()?;
-    let current: BTreeSet<&Path> =
-        made.files.iter().map(|(path, _)| path.as_str()).chain([MANIFEST]).map(Path::new).collect();
-    for path in stale.iter().filter(|p| !current.contains(Path::new(p))) {
-        let path = options.out.join(path);
-        if path.is_file() {
-            std::fs::remove_file(&path).map_err(files(&path, "remove"))?;
-        }
-    }
-    if !stale.is_empty() {
-        // Stays if something else is in it.
-        let _ = std::fs::remove_dir(options.out.join(REPORT_FOLDER));
-    }
-    Ok(())
-}
-
-/// The files of an earlier bake, and of the report on it: whatever its manifest, of any schema, names with a hash. A manifest
-/// of another program names nothing of ours.
-fn left_by(manifest: &str) -> Vec<String> {
-    let Ok(manifest) = serde_json::from_str::<Value>(manifest) else { return Vec::new() };
-    if !manifest["generator"].as_str().is_some_and(|g| g.starts_with("luthier ")) {
-        return Vec::new();
-    }
-    let mut paths: Vec<String> = REPORT_FILES.map(str::to_owned).into();
-    let mut open = vec![&manifest];
-    while let Some(value) = open.pop() {
-        match value {
-            Value::Array(items) => open.extend(items),
-            Value::Object(entries) => {
-                if let (Some(Value::String(path)), Some(Value::String(_))) =
-                    (entries.get("path"), entries.get("sha256"))
-                {
-                    paths.push(path.clone());
-                }
-                open.extend(entries.values());
-            }
-            _ => {}
-        }
-    }
-    // We write nothing outside the folder, and remove nothing there.
-    paths.retain(|p| Path::new(p).components().all(|part| matches!(part, Component::Normal(_))));
-    paths
 }
 
 fn text(options: &BakeOptions, manifest: &Manifest, progress: &BakeProgress, start: Instant) -> String {

@@ -1,16 +1,16 @@
-use luthier_gpu::{Artefacts, Gpu, Scene, Stopwatch, WgslShader};
+use luthier_export::{GENERATOR, Package, Shader, read};
+use luthier_gpu::{Gpu, Scene, Stopwatch};
 use luthier_manifest::ShadingModel;
 use luthier_material::Material;
 use luthier_report::ParitySet;
 use luthier_shader::{Form, MaterialSet, Target};
 use serde::Serialize;
 
-use crate::bake_files::GENERATOR;
 use crate::cli::BenchOptions;
 use crate::cost_page::{label, reads_d};
 use crate::device::{device, open};
 use crate::failure::{Failure, Outcome, files};
-use crate::materials::{read, valid};
+use crate::materials::valid;
 use crate::memory_bake::bake;
 use crate::output::print;
 use crate::progress::Bar;
@@ -132,23 +132,23 @@ struct Subject {
 /// The forms of every model of a material, Phong's model first: ratios are to it.
 fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -> Outcome<Vec<Subject>> {
     let mut models = vec![ShadingModel::Phong];
-    let named = options.model.iter().filter_map(|setting| ShadingModel::from_name(setting.name()));
-    let wanted: Vec<ShadingModel> = if options.model.is_empty() { ShadingModel::ALL.to_vec() } else { named.collect() };
+    let wanted: Vec<ShadingModel> =
+        if options.model.is_empty() { ShadingModel::ALL.to_vec() } else { options.model.clone() };
     models.extend(wanted.into_iter().filter(|&model| model != ShadingModel::Phong));
     let mut subjects = Vec::new();
     for model in models {
         let mut shaded = material.clone();
         shaded.bake.model = Some(model);
-        let mut artefacts = bake(std::slice::from_ref(&shaded))?;
+        let mut package = bake(std::slice::from_ref(&shaded))?;
         let reads_d = reads_d(model);
         let styles = [(Form::Full, true), (Form::Baked, !reads_d), (Form::Baked, true)];
         // Without a table of D to read, closed or not is the same.
         let distinct = if reads_d { 3 } else { 2 };
         for (form, closed) in styles.into_iter().take(distinct) {
             if form == Form::Baked && closed && reads_d {
-                artefacts = with_closed(artefacts)?;
+                package = with_closed(package)?;
             }
-            let scene = gpu.scene(&artefacts, form).map_err(device)?;
+            let scene = gpu.scene(&package, form).map_err(device)?;
             subjects.push(Subject { model, form, closed, scene });
         }
     }
@@ -156,12 +156,12 @@ fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -> Outcome<V
 }
 
 /// The bake with the shader `baked` that has D in closed form.
-fn with_closed(mut artefacts: Artefacts) -> Outcome<Artefacts> {
-    let mut set = MaterialSet::from_manifest(&artefacts.manifest);
+fn with_closed(mut package: Package) -> Outcome<Package> {
+    let mut set = MaterialSet::from_manifest(&package.manifest);
     set.tables.retain(|table| table.kind != luthier_lut::TableKind::Distribution);
     let wgsl = luthier_shader::emit(&set, Form::Baked, Target::Wgsl).map_err(Failure::input)?;
-    artefacts.shaders = vec![WgslShader { form: Form::Baked, wgsl }];
-    Ok(artefacts)
+    package.shaders = vec![Shader::wgsl(Form::Baked, wgsl)];
+    Ok(package)
 }
 
 /// Times of each stopwatch. They take turns, so that a clock that drifts is nobody's advantage.

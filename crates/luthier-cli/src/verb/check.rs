@@ -1,14 +1,12 @@
+use luthier_export::{Source, find, input, of_model, read_one, refuse, refuse_too_many};
 use luthier_material::{Diagnostic, is_scene};
 use serde_json::{Value, json};
 
 use crate::cli::CheckOptions;
-use crate::doubts;
 use crate::failure::{Failure, Outcome, diagnostic, files};
-use crate::input;
-use crate::materials::{Source, find, read_one};
+use crate::materials::{print_source, shaded};
 use crate::misses;
 use crate::output::print;
-use crate::refusals;
 use crate::verb::scene::SceneSource;
 
 /// Validates files, materials as one set; diagnostics go to standard error, one line per file to standard output.
@@ -22,8 +20,8 @@ pub(crate) fn run(options: &CheckOptions) -> Outcome {
             sources.push(read_one(&path)?);
         }
     }
-    refusals::find(&mut sources, |material| doubts::of_model(material, options.shading.model));
-    refusals::find_too_many(&mut sources, &options.shading);
+    refuse(&mut sources, |material| of_model(material, options.shading.model));
+    refuse_too_many(&mut sources, |materials| shaded(materials, &options.shading));
     misses::foresee(&mut sources);
     let all = || sources.iter().chain(scenes.iter().flat_map(|scene| &scene.materials));
     if options.json {
@@ -36,7 +34,7 @@ pub(crate) fn run(options: &CheckOptions) -> Outcome {
             lines.push_str(&scene_line(scene));
         }
         for source in all() {
-            source.print_diagnostics();
+            print_source(source);
             lines.push_str(&line(source));
         }
         print(&lines)?;

@@ -1,7 +1,8 @@
 use luthier_manifest::Form;
 use std::path::Path;
 
-use luthier_gpu::{Artefacts, GpuError, ToneMapping};
+use luthier_export::Package;
+use luthier_gpu::{GpuError, ToneMapping};
 use luthier_lut::Image;
 use luthier_report::{PIXELS_PER_DEGREE, PictureComparison, compare_pictures};
 use serde_json::{Value, json};
@@ -28,7 +29,7 @@ pub(crate) fn run(options: &CompareOptions) -> Outcome {
     settings.environment_samples = look.environment_samples.unwrap_or(ENVIRONMENT_SAMPLES);
     let gpu = open(look.adapter.as_deref())?;
     let render = |subject: &Subject| -> Result<Image, GpuError> {
-        gpu.scene(&subject.artefacts, subject.form)?.render(&[subject.material], &settings)
+        gpu.scene(&subject.package, subject.form)?.render(&[subject.material], &settings)
     };
     let a = render(&a).map_err(device)?;
     let b = render(&b).map_err(device)?;
@@ -64,7 +65,7 @@ pub(crate) fn run(options: &CompareOptions) -> Outcome {
 
 /// One side of the comparison.
 struct Subject {
-    artefacts: Artefacts,
+    package: Package,
     material: u32,
     form: Form,
 }
@@ -78,9 +79,9 @@ impl Subject {
             )));
         }
         let shading = Shading { model: choice.model, ..Shading::default() };
-        let (artefacts, material) = memory_bake::find(&options.material, &shading, &options.out)?;
-        artefacts.shader(choice.form).map_err(device)?;
-        Ok(Self { artefacts, material, form: choice.form })
+        let (package, material) = memory_bake::find(&options.material, &shading, &options.out)?;
+        package.wgsl(choice.form)?;
+        Ok(Self { package, material, form: choice.form })
     }
 }
 

@@ -3,18 +3,19 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use luthier_bake::Options;
 use luthier_cost::{Compiled, FOREIGN_VARIABLES, Family, Harness, Kernel, Style};
+use luthier_export::{GENERATOR, outline, read};
 use luthier_lut::TableKind;
-use luthier_manifest::{MaterialEntry, ShadingModel};
+use luthier_manifest::ShadingModel;
 use luthier_material::Material;
-use luthier_shader::{Form, MaterialSet, TableFace};
+use luthier_shader::{Form, MaterialSet};
 
-use crate::bake_files::{GENERATOR, material_entries};
 use crate::cli::CostOptions;
 use crate::cost_page::{CostReport, CostRow, FamilyCost, reads_d};
 use crate::cost_papers;
 use crate::failure::{Failure, Outcome, files};
-use crate::materials::{read, read_image, valid};
+use crate::materials::valid;
 use crate::output::print;
 
 /// The hidden verb of [`probe`].
@@ -100,8 +101,8 @@ fn shapes(options: &CostOptions, materials: &[Material]) -> Outcome {
             if keys.iter().any(|(known, _, s)| (*known, s) == (model, &shape)) {
                 continue;
             }
-            let (entries, tables) = outline(std::slice::from_ref(&material))?;
-            let set = MaterialSet { materials: &entries, tables };
+            let manifest = outline(std::slice::from_ref(&material), &Options::default())?;
+            let set = MaterialSet::from_manifest(&manifest);
             for (form, key) in [(Form::Baked, luthier_scene::Form::Baked), (Form::Full, luthier_scene::Form::Full)] {
                 let style = Style { form, constant: false, approximate: false };
                 kernels.push(Kernel::of_set(&set, style, Harness::Bare).map_err(Failure::input)?);
@@ -146,11 +147,8 @@ struct Variant {
 
 /// Every material (or all as one set) in every model, form and style asked for.
 fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Variant>> {
-    let models: Vec<ShadingModel> = if options.model.is_empty() {
-        ShadingModel::ALL.to_vec()
-    } else {
-        options.model.iter().filter_map(|setting| ShadingModel::from_name(setting.name())).collect()
-    };
+    let models: Vec<ShadingModel> =
+        if options.model.is_empty() { ShadingModel::ALL.to_vec() } else { options.model.clone() };
     let forms: Vec<Form> = if options.form.is_empty() { Form::ALL.to_vec() } else { options.form.clone() };
     let mut variants = Vec::new();
     for model in models {
@@ -164,16 +162,16 @@ fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Varian
             shaded.iter().map(|m| (m.name.clone(), std::slice::from_ref(m))).collect()
         };
         for (name, group) in groups {
-            let (entries, tables) = outline(group)?;
+            let manifest = outline(group, &Options::default())?;
             for &form in &forms {
                 for (closed, constant) in styles(options) {
                     // What reads no table of D has it in closed form, or has none, either way.
-                    let has_d = tables.iter().any(|t| t.kind == TableKind::Distribution);
+                    let has_d = manifest.table(TableKind::Distribution).is_some();
                     let has_table = form == Form::Baked && reads_d(model) && has_d;
                     if closed && !has_table && !options.closed {
                         continue;
                     }
-                    let set = MaterialSet { materials: &entries, tables: without_d(&tables, closed) };
+                    let set = without_d(MaterialSet::from_manifest(&manifest), closed);
                     let style = Style { form, constant, approximate: false };
                     let kernel = Kernel::of_set(&set, style, Harness::Bare).map_err(Failure::input)?;
                     let closed = closed || !has_table;
@@ -196,17 +194,10 @@ fn styles(options: &CostOptions) -> Vec<(bool, bool)> {
     all.into_iter().filter(wanted).filter(exact).collect()
 }
 
-/// The tables, without that of D where it is a closed form.
-pub(crate) fn without_d(tables: &[TableFace], closed: bool) -> Vec<TableFace> {
-    tables.iter().filter(|table| !(closed && table.kind == TableKind::Distribution)).cloned().collect()
-}
-
-/// The materials and tables that a bake would have.
-pub(crate) fn outline(materials: &[Material]) -> Outcome<(Vec<MaterialEntry>, Vec<TableFace>)> {
-    let outline = luthier_bake::outline(materials, &read_image).map_err(Failure::input)?;
-    let entries = material_entries(materials, &outline.materials, &mut Vec::new())?;
-    let tables = outline.tables.into_iter().map(|(kind, layout, format)| TableFace { kind, layout, format }).collect();
-    Ok((entries, tables))
+/// The set, without a table of D where this is a closed form.
+pub(crate) fn without_d(mut set: MaterialSet<'_>, closed: bool) -> MaterialSet<'_> {
+    set.tables.retain(|table| !(closed && table.kind == TableKind::Distribution));
+    set
 }
 
 /// Runs [`probe`] in a process of its own: the driver reads its family from the environment when it is loaded.

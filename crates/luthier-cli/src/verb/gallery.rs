@@ -1,10 +1,11 @@
 use crate::cli::{GalleryOptions, ShapeName};
 use crate::device::{device, open};
 use crate::failure::{Failure, Outcome};
-use crate::materials::{read, shaded, valid};
+use crate::materials::{shaded, valid};
 use crate::memory_bake;
 use crate::picture::{Format, settings};
 use crate::sheet::sheet;
+use luthier_export::read;
 use luthier_manifest::Form;
 
 /// Renders many materials side by side.
@@ -16,11 +17,11 @@ pub(crate) fn run(options: &GalleryOptions) -> Outcome {
         )));
     }
     let materials = shaded(valid(read(&options.sources.paths)?, false)?, &options.shading);
-    let artefacts = memory_bake::bake_lit(&materials)?;
+    let package = memory_bake::bake_lit(&materials)?;
     let look = &options.look;
     let settings = settings(look, options.shape.into(), options.size)?;
     let gpu = open(look.adapter.as_deref())?;
-    let scene = gpu.scene(&artefacts, Form::Baked).map_err(device)?;
+    let scene = gpu.scene(&package, Form::Baked).map_err(device)?;
     let mut pictures = Vec::with_capacity(materials.len());
     for (i, material) in materials.iter().enumerate() {
         pictures.push((material.name.clone(), scene.render(&[i as u32], &settings).map_err(device)?));

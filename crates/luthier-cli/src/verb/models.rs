@@ -5,9 +5,10 @@ use serde_json::{Value, json};
 
 use crate::cli::{MODEL_SAMPLES, ModelsOptions};
 use crate::failure::{Failure, Outcome};
-use crate::materials::{read, valid};
+use crate::materials::valid;
 use crate::output::print;
 use crate::progress::Bar;
+use luthier_export::read;
 
 /// Lists the reflectance models, or judges them.
 pub(crate) fn run(options: &ModelsOptions) -> Outcome {

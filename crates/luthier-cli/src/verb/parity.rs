@@ -1,18 +1,18 @@
-use luthier_bake::Silent;
-use luthier_gpu::{Artefacts, Gpu, WgslShader};
-use luthier_lut::{Atlas, Image, TableKind};
-use luthier_manifest::{Manifest, MaterialEntry, ShadingModel, material_buffer};
+use std::ops::Range;
+
+use luthier_export::{Bake, GENERATOR, MemoryStore, Package, read};
+use luthier_gpu::Gpu;
+use luthier_lut::{Image, TableKind};
+use luthier_manifest::{Manifest, ShadingModel};
 use luthier_material::Material;
 use luthier_optics::stack::{Base, Layer, Stack};
 use luthier_report::{POLISHED_ALPHAS, Parity, ParityCase, Share, Subject, Verdict, parity};
-use luthier_shader::{Form, MaterialSet, Target};
+use luthier_shader::Form;
 
-use crate::bake_files::{GENERATOR, material_entries, sha256, table_entry};
 use crate::cli::ParityOptions;
-use crate::device::{Shaders, device, open};
+use crate::device::{Shaders, open};
 use crate::failure::{Failure, Outcome, files};
-use crate::materials::{read, read_image, valid};
-use crate::memory_bake::table_texels;
+use crate::materials::valid;
 use crate::output::{complain, print};
 use crate::progress::Bar;
 
@@ -26,9 +26,10 @@ pub(crate) fn run(options: &ParityOptions) -> Outcome {
     let all: Vec<Material> =
         models.iter().flat_map(|model| materials.iter().flat_map(|m| variants(m, *model))).collect();
     let baking = Bar::new("baking");
-    let bake = luthier_bake::bake(&all, &read_image, &Silent).map_err(Failure::input)?;
+    // Shaders are compared within the domains of their models and beyond.
+    let bake = Bake { refuses: false, ..Bake::wgsl(&Form::ALL) };
+    let package = Package::new(&all, &bake, &MemoryStore::default())?;
     drop(baking);
-    let entries = material_entries(&all, &bake.materials, &mut Vec::new())?;
     let bar = Bar::new("comparing");
     let gpu = open(options.adapter.as_deref())?;
     let total = models.len() * materials.len();
@@ -37,7 +38,7 @@ pub(crate) fn run(options: &ParityOptions) -> Outcome {
     for (index, _) in models.iter().enumerate() {
         let range = index * per_model..(index + 1) * per_model;
         let stacks = all[range.clone()].iter().map(|m| m.stack.clone()).collect();
-        let compiled = Compiled::new(&gpu, &bake.atlases, &entries[range], stacks)?;
+        let compiled = Compiled::new(&gpu, &package, range, stacks)?;
         adapter = luthier_report::Device::name(&compiled.shaders);
         let cases: Vec<ParityCase> = (0..).zip(&materials).map(|(n, material)| case(n, material)).collect();
         let mut progress = || {
@@ -132,23 +133,10 @@ pub(crate) struct Compiled {
 }
 
 impl Compiled {
-    pub(crate) fn new(gpu: &Gpu, atlases: &[Atlas], entries: &[MaterialEntry], stacks: Vec<Stack>) -> Outcome<Self> {
-        let mut manifest = Manifest::new(GENERATOR, entries.to_vec(), atlases.iter().map(table_entry).collect());
-        let words = material_buffer(&manifest.materials);
-        let bytes: Vec<u8> = words.as_flattened().iter().flat_map(|value| value.to_le_bytes()).collect();
-        manifest.material_buffer.sha256 = sha256(&bytes);
-        let set = MaterialSet::from_manifest(&manifest);
-        let shader = |form: Form| {
-            let wgsl = luthier_shader::emit(&set, form, Target::Wgsl).map_err(Failure::input)?;
-            Ok::<_, Failure>(WgslShader { form, wgsl })
-        };
-        let shaders = Form::ALL.into_iter().map(shader).collect::<Outcome<Vec<_>>>()?;
-        let bindings = luthier_shader::bindings(&set, Form::Baked);
-        manifest.bindings = bindings;
-        let artefacts = Artefacts::from_parts(manifest.clone(), table_texels(atlases), shaders).map_err(device)?;
-        let shaders = Shaders::new(gpu, &artefacts)?;
-        let textures = atlases.iter().map(|atlas| (atlas.kind, atlas.texels.clone())).collect();
-        Ok(Self { manifest, textures, stacks, shaders })
+    pub(crate) fn new(gpu: &Gpu, package: &Package, numbers: Range<usize>, stacks: Vec<Stack>) -> Outcome<Self> {
+        let package = package.of_materials(numbers)?;
+        let shaders = Shaders::new(gpu, &package)?;
+        Ok(Self { textures: package.textures()?, manifest: package.manifest, stacks, shaders })
     }
 }
 

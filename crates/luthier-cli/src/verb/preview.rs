@@ -11,25 +11,25 @@ use crate::{grid, memory_bake};
 /// Renders one material, or the grid.
 pub(crate) fn run(options: &PreviewOptions) -> Outcome {
     let format = Format::of(&options.output)?;
-    let (artefacts, parts) = match (&options.material, options.shape) {
+    let (package, parts) = match (&options.material, options.shape) {
         (None, ShapeName::Grid) => {
-            let artefacts = memory_bake::bake_lit(&grid::materials()?)?;
+            let package = memory_bake::bake_lit(&grid::materials()?)?;
             let parts = (0..Shape::Grid.materials() as u32).collect();
-            (artefacts, parts)
+            (package, parts)
         }
         (Some(_), ShapeName::Grid) => {
             return Err(Failure::Input(anyhow::anyhow!("the grid makes its own materials; name none")));
         }
         (None, _) => return Err(Failure::Input(anyhow::anyhow!("name a material, or take --shape grid"))),
         (Some(material), _) => {
-            let (artefacts, number) = memory_bake::find(material, &options.shading, &options.out)?;
-            (artefacts, vec![number])
+            let (package, number) = memory_bake::find(material, &options.shading, &options.out)?;
+            (package, vec![number])
         }
     };
     let look = &options.look;
     let mut settings = settings(look, options.shape.into(), options.size)?;
     let gpu = open(look.adapter.as_deref())?;
-    let scene = gpu.scene(&artefacts, Form::Baked).map_err(device)?;
+    let scene = gpu.scene(&package, Form::Baked).map_err(device)?;
     for &part in &parts {
         // A bake on disk has albedos only where a shader reads them, or where they were asked for.
         if look.environment_samples.is_none() && !scene.has_albedo(part).map_err(device)? {

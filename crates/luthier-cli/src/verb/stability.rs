@@ -1,16 +1,15 @@
-use luthier_bake::{Options, Silent};
+use luthier_bake::Options;
+use luthier_export::{Bake, GENERATOR, MemoryStore, Package};
 use luthier_gpu::Gpu;
 use luthier_lut::{RowBase, TexelFormat};
-use luthier_manifest::{Budget, ColorMode, ShadingModel};
+use luthier_manifest::{Budget, ColorMode, Form, ShadingModel};
 use luthier_material::{BakeSettings, LayerExtras, Material, SurfaceClass};
 use luthier_report::Subject;
 use luthier_report::stability::{Cell, Stability, StressCase, cases, model_cells, shader_cells};
 
-use crate::bake_files::{GENERATOR, material_entries};
 use crate::cli::StabilityOptions;
 use crate::device::open;
 use crate::failure::{Failure, Outcome, files};
-use crate::materials::read_image;
 use crate::output::{complain, print};
 use crate::progress::Bar;
 use crate::verb::parity::Compiled;
@@ -93,11 +92,11 @@ fn gpu_cells(gpu: &Gpu, cases: &[StressCase], cells: &mut Vec<Cell>) -> Outcome<
     for Tables { name, options, models } in &all {
         let materials: Vec<Material> =
             models.iter().flat_map(|model| (0..).zip(cases).map(|(n, case)| material(n, case, *model))).collect();
-        let bake = luthier_bake::bake_with(&materials, options, &read_image, &Silent).map_err(Failure::input)?;
-        let entries = material_entries(&materials, &bake.materials, &mut Vec::new())?;
-        for entries in entries.chunks(cases.len()) {
+        let bake = Bake { options: *options, refuses: false, ..Bake::wgsl(&Form::ALL) };
+        let package = Package::new(&materials, &bake, &MemoryStore::default())?;
+        for first in (0..materials.len()).step_by(cases.len()) {
             let stacks = cases.iter().map(|case| case.stack.clone()).collect();
-            let compiled = Compiled::new(gpu, &bake.atlases, entries, stacks)?;
+            let compiled = Compiled::new(gpu, &package, first..first + cases.len(), stacks)?;
             adapter = luthier_report::Device::name(&compiled.shaders);
             let subject = Subject {
                 manifest: &compiled.manifest,

@@ -6,9 +6,9 @@ use luthier_view::{Options, Shots, ViewError};
 use crate::cli::{ShapeName, ThemeName, ViewOptions};
 use crate::device::{device, open};
 use crate::failure::{Failure, Outcome};
-use crate::materials::read;
 use crate::picture::{Format, settings};
 use crate::view_host::ViewHost;
+use luthier_export::read;
 
 /// Opens the window, and returns when it is closed.
 pub(crate) fn run(options: &ViewOptions) -> Outcome {

@@ -99,6 +99,23 @@ fn some_dependencies_have_one_owner() {
     }
 }
 
+/// The runtime reads packages: of `luthier-export` it has the part that bakes nothing.
+#[test]
+fn the_runtime_does_not_use_the_baker() {
+    let manifest = fs::read_to_string(root().join("crates/luthier-gpu/Cargo.toml")).unwrap();
+    assert!(manifest.contains("\nluthier-export.workspace = true\n"), "no feature is asked for");
+    let workspace = fs::read_to_string(root().join("Cargo.toml")).unwrap();
+    let export = workspace.lines().find(|line| line.starts_with("luthier-export = ")).unwrap();
+    assert!(export.contains("default-features = false"), "{export}");
+    let output = Command::new(env!("CARGO"))
+        .args(["tree", "--offline", "--locked", "-p", "luthier-gpu", "-e", "normal", "--prefix", "none"])
+        .current_dir(root())
+        .output()
+        .unwrap();
+    let tree = String::from_utf8_lossy(&output.stdout);
+    assert!(tree.contains("luthier-export") && !tree.contains("luthier-bake"), "{tree}");
+}
+
 #[test]
 fn the_judge_does_not_use_the_baker() {
     let uses = &internal(&dependencies());

@@ -4,13 +4,13 @@ use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use luthier_gpu::{Artefacts, Gpu, GpuError, WgslShader};
+use luthier_export::{Bake, MemoryStore, Package, Shader};
+use luthier_gpu::{Gpu, GpuError};
 use luthier_layers::shaded::{Place, Shaded};
-use luthier_manifest::{ColorMode, Manifest, MaterialEntry, ShadingModel};
+use luthier_manifest::{ColorMode, Form, ShadingModel};
 use luthier_material::{Material, parse};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
-use luthier_shader::{Form, MaterialSet, TableFace, Target};
 
 use crate::workshop::Workshop;
 
@@ -57,39 +57,16 @@ fn shipped(model: &str) -> Vec<Material> {
     paths.iter().map(material).collect()
 }
 
-fn no_image(_: &str, path: &str) -> Result<luthier_lut::Image, String> {
-    Err(format!("{path}: not for this test"))
-}
-
 /// The `full` form of some materials with another body of `luthier_eval`, if there is one, over the emitted functions.
 fn scene(gpu: &Gpu, materials: &[Material], body: Option<&str>) -> luthier_gpu::Scene {
-    let outline = luthier_bake::outline(materials, &no_image).unwrap();
-    let entry = |(material, baked): (&Material, luthier_bake::BakedMaterial)| MaterialEntry {
-        name: material.name.clone(),
-        source: material.source.clone(),
-        source_hash: String::new(),
-        class: material.class.letter().to_string(),
-        model: baked.model,
-        color: baked.color,
-        wavelengths_nm: material.bake.wavelengths_nm(),
-        constants: baked.constants,
-        layers: baked.records,
-        maps: Vec::new(),
-    };
-    let entries: Vec<MaterialEntry> = materials.iter().zip(outline.materials).map(entry).collect();
-    let tables: Vec<TableFace> =
-        outline.tables.into_iter().map(|(kind, layout, format)| TableFace { kind, layout, format }).collect();
-    let set = MaterialSet { materials: &entries, tables };
-    let mut wgsl = luthier_shader::emit(&set, Form::Full, Target::Wgsl).unwrap();
+    let bake = Bake { refuses: false, ..Bake::wgsl(&[Form::Full]) };
+    let mut package = Package::new(materials, &bake, &MemoryStore::default()).unwrap();
     if let Some(body) = body {
-        wgsl = wgsl.replace("fn luthier_eval(", "fn emitted_eval(");
-        wgsl +=
-            &format!("\nfn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n{body}\n}}\n");
+        let wgsl = package.wgsl(Form::Full).unwrap().replace("fn luthier_eval(", "fn emitted_eval(")
+            + &format!("\nfn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n{body}\n}}\n");
+        package.shaders = vec![Shader::wgsl(Form::Full, wgsl)];
     }
-    let bindings = luthier_shader::bindings(&set, Form::Full);
-    let manifest = Manifest { bindings, ..Manifest::new("by hand", entries.clone(), Vec::new()) };
-    let shaders = vec![WgslShader { form: Form::Full, wgsl }];
-    gpu.scene(&Artefacts::from_parts(manifest, Vec::new(), shaders).unwrap(), Form::Full).unwrap()
+    gpu.scene(&package, Form::Full).unwrap()
 }
 
 fn unit(z: f64, phi: f64) -> DVec3 {

@@ -1,12 +1,13 @@
 //! Small bakes written out in tests: layer records, tables of known values, and the shaders that the emitter makes of
 //! them.
 
-use luthier_gpu::{Artefacts, TableTexels, WgslShader};
+use luthier_gpu::{Package, Shader};
 use luthier_lut::{AtlasLayout, Axis, Image, Mapping, RowBase, TableKind, TexelFormat};
 use luthier_manifest::{
     BindingEntry, ColorMode, Distribution, FileEntry, LayerKind, LayerRecord, Manifest, MaterialEntry, TableEntry,
 };
 use luthier_shader::{Form, MaterialSet, Target};
+use luthier_texture::Texture;
 
 /// A table of a bake.
 #[derive(Clone)]
@@ -134,25 +135,21 @@ pub(crate) fn manifest(materials: Vec<Vec<LayerRecord>>, tables: &[Table]) -> Ma
 }
 
 /// A bake with the emitter's shader of one form.
-pub(crate) fn artefacts(form: Form, materials: Vec<Vec<LayerRecord>>, tables: &[Table]) -> Artefacts {
+pub(crate) fn artefacts(form: Form, materials: Vec<Vec<LayerRecord>>, tables: &[Table]) -> Package {
     let mut manifest = manifest(materials, tables);
     let set = MaterialSet::from_manifest(&manifest);
     let wgsl = luthier_shader::emit(&set, form, Target::Wgsl).unwrap();
     let bindings: Vec<BindingEntry> = luthier_shader::bindings(&set, form);
     manifest.bindings = bindings;
-    let shaders = vec![WgslShader { form, wgsl }];
-    Artefacts::from_parts(manifest, texels(tables), shaders).unwrap()
+    let shaders = vec![Shader::wgsl(form, wgsl)];
+    Package::from_parts(manifest, texels(tables), shaders).unwrap()
 }
 
-pub(crate) fn texels(tables: &[Table]) -> Vec<TableTexels> {
-    tables
-        .iter()
-        .map(|t| TableTexels {
-            kind: t.kind,
-            format: t.format,
-            width: t.truth.width,
-            height: t.truth.height,
-            bytes: t.format.encode(&t.truth),
-        })
-        .collect()
+pub(crate) fn texels(tables: &[Table]) -> Vec<luthier_gpu::Table> {
+    let texels = |t: &Table| {
+        let (width, height) = (t.truth.width, t.truth.height);
+        let texture = Texture { format: t.format, width, height, bytes: t.format.encode(&t.truth) };
+        luthier_gpu::Table { kind: t.kind, texture, truth: None }
+    };
+    tables.iter().map(texels).collect()
 }

@@ -1,7 +1,7 @@
 //! Flakes, patina, glitter and maps on the device, against their f64 twins and closed forms.
 
 use glam::{DVec2, DVec3};
-use luthier_gpu::{Artefacts, MapTexels, RenderSettings, Scene, WgslShader};
+use luthier_gpu::{Package, RenderSettings, Scene, Shader};
 use luthier_layers::elek;
 use luthier_layers::flakes::Flakes;
 use luthier_layers::heterogeneous::Map;
@@ -58,8 +58,8 @@ fn scene_with(body: &str) -> Option<Scene> {
     let wgsl = luthier_shader::emit(&set, Form::Full, Target::Wgsl).unwrap();
     let wgsl = wgsl.replace("fn luthier_eval(", "fn emitted_eval(")
         + &format!("\nfn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n{body}\n}}\n");
-    let shaders = vec![WgslShader { form: Form::Full, wgsl }];
-    let made = Artefacts::from_parts(made.manifest, Vec::new(), shaders).unwrap();
+    let shaders = vec![Shader::wgsl(Form::Full, wgsl)];
+    let made = Package::from_parts(made.manifest, Vec::new(), shaders).unwrap();
     Some(gpu.scene(&made, Form::Full).unwrap())
 }
 
@@ -221,11 +221,17 @@ fn normal_maps_tilt_the_surface_in_pictures() {
     let set = MaterialSet::from_manifest(&manifest);
     let wgsl = luthier_shader::emit(&set, Form::Baked, Target::Wgsl).unwrap();
     manifest.bindings = luthier_shader::bindings(&set, Form::Baked);
-    let shaders = vec![WgslShader { form: Form::Baked, wgsl }];
-    let mut artefacts = Artefacts::from_parts(manifest, Vec::new(), shaders).unwrap();
+    let shaders = vec![Shader::wgsl(Form::Baked, wgsl)];
+    let mut artefacts = Package::from_parts(manifest, Vec::new(), shaders).unwrap();
     let texel = (0.5 * tilted + 0.5).as_vec3();
     let image = Image { width: 1, height: 1, channels: 4, data: vec![texel.x, texel.y, texel.z, 1.0] };
-    artefacts.maps.push(MapTexels { material: 0, slot: MapSlot::Normal, layer: Some(0), image });
+    artefacts.maps.push(luthier_gpu::Map {
+        material: 0,
+        slot: MapSlot::Normal,
+        layer: Some(0),
+        image,
+        png: Vec::new(),
+    });
     let scene = gpu.scene(&artefacts, Form::Baked).unwrap();
     let settings = RenderSettings { lights: sun([3.0, 4.0, 12.0], [1.0; 3]), ..dark() };
     check(&scene.render(&[0], &settings).unwrap(), 2e-5, |n, wo| {

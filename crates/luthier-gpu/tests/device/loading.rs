@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use luthier_gpu::{Artefacts, GpuError, TableTexels};
+use luthier_gpu::{Package, PackageError};
 use luthier_lut::{AtlasLayout, Mapping, TableKind, TexelFormat};
 use luthier_manifest::{FileEntry, Form, Manifest, ManifestError, ShaderEntry, Target};
-use luthier_texture::{FolderError, Texture, ktx2};
+use luthier_texture::ktx2;
 use sha2::{Digest, Sha256};
 use tempfile::TempDir;
 
@@ -36,8 +36,7 @@ fn bake(change: impl FnOnce(&mut Manifest)) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let table = table();
     let mut manifest = manifest(vec![vec![diffuse([0.5; 3], 0.0)]], std::slice::from_ref(&table));
-    let TableTexels { format, width, height, bytes, .. } = texels(std::slice::from_ref(&table)).remove(0);
-    let texture = ktx2::encode(&Texture { format, width, height, bytes }).unwrap();
+    let texture = ktx2::encode(&texels(std::slice::from_ref(&table))[0].texture).unwrap();
     manifest.tables[0].texture = write(folder.path(), "tables/fresnel.ktx2", &texture);
     let shader = |target, file| ShaderEntry { target, form: Form::Baked, file };
     let missing = FileEntry { path: "shaders/none.glsl".to_owned(), sha256: String::new() };
@@ -50,19 +49,19 @@ fn bake(change: impl FnOnce(&mut Manifest)) -> TempDir {
     folder
 }
 
-fn refusal(change: impl FnOnce(&mut Manifest)) -> GpuError {
-    Artefacts::load(bake(change).path()).unwrap_err()
+fn refusal(change: impl FnOnce(&mut Manifest)) -> PackageError {
+    Package::read(bake(change).path()).unwrap_err()
 }
 
 #[test]
 fn a_bake_loads_with_what_it_needs_only() {
     let folder = bake(|_| {});
-    let artefacts = Artefacts::load(folder.path()).unwrap();
+    let artefacts = Package::read(folder.path()).unwrap();
     assert_eq!(artefacts.tables, texels(&[table()]));
-    assert_eq!(artefacts.shader(Form::Baked).unwrap().wgsl, WGSL);
+    assert_eq!(artefacts.wgsl(Form::Baked).unwrap(), WGSL);
     assert_eq!(artefacts.shaders.len(), 1);
-    let error = artefacts.shader(Form::Full).unwrap_err();
-    assert!(matches!(&error, GpuError::NoShader { known, .. } if known == "baked"), "{error}");
+    let error = artefacts.wgsl(Form::Full).unwrap_err();
+    assert!(matches!(&error, PackageError::NoShader { known, .. } if known == "baked"), "{error}");
 }
 
 #[test]
@@ -73,12 +72,12 @@ fn files_that_are_not_the_manifests_are_refused() {
         let mut bytes = std::fs::read(&path).unwrap();
         *bytes.last_mut().unwrap() ^= 1;
         std::fs::write(&path, bytes).unwrap();
-        let error = Artefacts::load(folder.path()).unwrap_err();
-        assert!(matches!(&error, GpuError::Folder(FolderError::Hash { path: named, .. }) if *named == path), "{error}");
+        let error = Package::read(folder.path()).unwrap_err();
+        assert!(matches!(&error, PackageError::Hash { path: named, .. } if *named == path), "{error}");
 
         std::fs::remove_file(&path).unwrap();
-        let error = Artefacts::load(folder.path()).unwrap_err();
-        assert!(matches!(&error, GpuError::Folder(FolderError::Read { path: named, .. }) if *named == path), "{error}");
+        let error = Package::read(folder.path()).unwrap_err();
+        assert!(matches!(&error, PackageError::Read { path: named, .. } if *named == path), "{error}");
     }
 }
 
@@ -86,20 +85,20 @@ fn files_that_are_not_the_manifests_are_refused() {
 fn paths_stay_inside_the_folder() {
     for path in ["../fresnel.ktx2", "/etc/hostname", "", "tables/../../x"] {
         let error = refusal(|m| m.tables[0].texture.path = path.to_owned());
-        assert!(matches!(error, GpuError::Folder(FolderError::Outside { .. })), "{path}: {error}");
+        assert!(matches!(error, PackageError::Outside { .. }), "{path}: {error}");
     }
 }
 
 #[test]
 fn a_file_that_is_no_texture_is_refused() {
     let error = refusal(|m| m.tables[0].texture = m.shaders[1].file.clone());
-    assert!(matches!(error, GpuError::Folder(FolderError::Texture { .. })), "{error}");
+    assert!(matches!(error, PackageError::Texture { .. }), "{error}");
 }
 
 #[test]
 fn contradictions_are_refused() {
-    let table = |error: GpuError| match error {
-        GpuError::Folder(FolderError::Manifest { source, .. }) => source,
+    let table = |error: PackageError| match error {
+        PackageError::Manifest { source, .. } => source,
         other => panic!("{other}"),
     };
     let format = table(refusal(|m| m.tables[0].format = TexelFormat::Rgba8Unorm));
@@ -116,26 +115,23 @@ fn contradictions_are_refused() {
         );
     }
     assert!(matches!(table(refusal(|m| m.tables[0].layout.apron = u32::MAX)), ManifestError::Layout { .. }));
-    assert!(matches!(refusal(|m| m.materials.clear()), GpuError::NoMaterials));
-    assert!(matches!(refusal(|m| m.materials[0].layers.clear()), GpuError::NoLayers { .. }));
-    assert!(matches!(refusal(|m| m.schema = 99), GpuError::Folder(FolderError::Manifest { .. })));
+    assert!(matches!(refusal(|m| m.materials.clear()), PackageError::NoMaterials));
+    assert!(matches!(refusal(|m| m.materials[0].layers.clear()), PackageError::NoLayers { .. }));
+    assert!(matches!(refusal(|m| m.schema = 99), PackageError::Manifest { .. }));
 }
 
 #[test]
 fn no_bake_at_all_names_the_file() {
     let folder = tempfile::tempdir().unwrap();
-    let error = Artefacts::load(folder.path()).unwrap_err();
-    assert!(
-        matches!(&error, GpuError::Folder(FolderError::NoBake { folder: named }) if named == folder.path()),
-        "{error}"
-    );
+    let error = Package::read(folder.path()).unwrap_err();
+    assert!(matches!(&error, PackageError::NoBake { folder: named } if named == folder.path()), "{error}");
     std::fs::write(folder.path().join("manifest.json"), "{]").unwrap();
-    assert!(matches!(Artefacts::load(folder.path()), Err(GpuError::Folder(FolderError::Manifest { .. }))));
+    assert!(matches!(Package::read(folder.path()), Err(PackageError::Manifest { .. })));
 }
 
 #[test]
 fn texels_must_be_given_for_every_table() {
     let manifest = manifest(vec![vec![diffuse([0.5; 3], 0.0)]], &[table()]);
-    let error = Artefacts::from_parts(manifest, Vec::new(), Vec::new()).unwrap_err();
-    assert!(matches!(error, GpuError::MissingTexels { kind: TableKind::Fresnel }), "{error}");
+    let error = Package::from_parts(manifest, Vec::new(), Vec::new()).unwrap_err();
+    assert!(matches!(error, PackageError::MissingTexels { kind: TableKind::Fresnel }), "{error}");
 }

@@ -1,4 +1,4 @@
-//! Artefacts made by hand, on whatever adapter there is. One test binary: a device is opened once per test, and
+//! Package made by hand, on whatever adapter there is. One test binary: a device is opened once per test, and
 //! linking wgpu is slow.
 
 #![expect(clippy::disallowed_methods, reason = "an oracle decides no bytes")]

@@ -1,6 +1,6 @@
 //! A refusal of the device comes back as an error, and leaves the device usable.
 
-use luthier_gpu::{Artefacts, GpuError, WgslShader};
+use luthier_gpu::{GpuError, Package, Shader};
 use luthier_manifest::{BindingEntry, Form};
 
 use crate::adapter::gpu;
@@ -13,11 +13,11 @@ fn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
 }";
 
 /// A bake whose shader and binding are given as they are.
-fn bake(wgsl: &str, name: &str, resource: &str) -> Artefacts {
+fn bake(wgsl: &str, name: &str, resource: &str) -> Package {
     let mut manifest = manifest(vec![vec![diffuse([0.5; 3], 0.0)]], &[]);
     manifest.bindings = vec![BindingEntry { binding: 6, name: name.to_owned(), resource: resource.to_owned() }];
-    let shaders = vec![WgslShader { form: Form::Full, wgsl: wgsl.to_owned() }];
-    Artefacts::from_parts(manifest, Vec::new(), shaders).unwrap()
+    let shaders = vec![Shader::wgsl(Form::Full, wgsl.to_owned())];
+    Package::from_parts(manifest, Vec::new(), shaders).unwrap()
 }
 
 #[test]

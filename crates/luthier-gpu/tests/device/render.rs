@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use luthier_gpu::{Artefacts, Backdrop, Blur, Environment, GpuError, Light, RenderSettings, Scene, Shape, Sky};
+use luthier_gpu::{Backdrop, Blur, Environment, GpuError, Light, Package, RenderSettings, Scene, Shape, Sky};
 use luthier_lut::{AtlasLayout, Image, Mapping, TableKind, TexelFormat};
 use luthier_manifest::LayerRecord;
 use luthier_shader::Form;
@@ -105,7 +105,7 @@ pub(crate) fn check(image: &Image, tolerance: f64, expected: impl Fn([f64; 3], [
 }
 
 pub(crate) fn scene_of(materials: Vec<Vec<LayerRecord>>, tables: &[Table]) -> Option<Scene> {
-    let artefacts: Artefacts = artefacts(Form::Baked, materials, tables);
+    let artefacts: Package = artefacts(Form::Baked, materials, tables);
     Some(gpu()?.scene(&artefacts, Form::Baked).unwrap())
 }
 

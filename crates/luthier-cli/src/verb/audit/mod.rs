@@ -12,8 +12,8 @@ use serde_json::json;
 use self::statement::statement;
 use crate::cli::{AuditOptions, SamplesName};
 use crate::failure::{Failure, Outcome, files};
-use crate::input;
 use crate::output::print;
+use luthier_export::input;
 
 /// Reads the table, judges it and prints the verdict.
 pub(crate) fn run(options: &AuditOptions) -> Outcome {

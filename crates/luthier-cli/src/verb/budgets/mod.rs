@@ -9,8 +9,9 @@ use luthier_material::{BakeSettings, Material};
 
 use crate::cli::BudgetsOptions;
 use crate::failure::{Failure, Outcome, files};
-use crate::materials::{read, read_image, valid};
+use crate::materials::valid;
 use crate::output::print;
+use luthier_export::{read, read_image};
 
 /// Text of the page that does not depend on the materials.
 const INTRODUCTION: &str = "\

@@ -60,9 +60,9 @@ fn classes(studio: &Studio) -> Outcome<Made> {
     for (name, _, text) in CLASSES {
         materials.push(shaded(&material(name, text)?, name, ShadingModel::WeidlichWilkie));
     }
-    let artefacts = memory_bake::bake(&materials)?;
-    let baked = studio.rendered(&artefacts, Form::Baked, Shape::Sphere, |_, _| {})?;
-    let full = studio.rendered(&artefacts, Form::Full, Shape::Sphere, |_, _| {})?;
+    let package = memory_bake::bake(&materials)?;
+    let baked = studio.rendered(&package, Form::Baked, Shape::Sphere, |_, _| {})?;
+    let full = studio.rendered(&package, Form::Full, Shape::Sphere, |_, _| {})?;
     for ((material, baked), full) in materials.iter().zip(&baked).zip(&full) {
         let flip = compared(baked, full)?.flip_mean;
         made.measure(format!("{} {}, tables against full: mean FLIP", material.class, material.name), flip);

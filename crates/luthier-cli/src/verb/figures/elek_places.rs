@@ -53,12 +53,12 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
     };
     let near = f64::from(DISTANCES[0]);
     let materials = [variant("fading", near, 1.0)?, variant("not-fading", 1e6, 1.0)?, variant("smooth", near, 0.0)?];
-    let artefacts = memory_bake::bake_lit(&materials)?;
+    let package = memory_bake::bake_lit(&materials)?;
     let mut rows = [Vec::new(), Vec::new()];
     for (step, distance) in DISTANCES.into_iter().enumerate() {
         // A pixel is always as wide at the eye; what is far away is smaller, and enlarged.
         let size = (studio.size >> step).max(8);
-        let mut pictures = studio.rendered(&artefacts, Form::Baked, Shape::Sphere, |_, settings| {
+        let mut pictures = studio.rendered(&package, Form::Baked, Shape::Sphere, |_, settings| {
             settings.camera.eye = [0.0, 0.0, distance];
             settings.camera.half_extent = 1.25;
             settings.size = size;
@@ -122,8 +122,8 @@ fn patina(studio: &Studio) -> Outcome<Made> {
         (patina.extent, patina.transition) = (extent, TRANSITION);
         materials.push(stage);
     }
-    let artefacts = memory_bake::bake(&materials)?;
-    let map = artefacts.maps.iter().find(|map| map.slot == MapSlot::Patina).map(|map| &map.image);
+    let package = memory_bake::bake(&materials)?;
+    let map = package.maps.iter().find(|map| map.slot == MapSlot::Patina).map(|map| &map.image);
     for extent in EXTENTS {
         let amounts = map
             .into_iter()
@@ -132,7 +132,7 @@ fn patina(studio: &Studio) -> Outcome<Made> {
         let count = map.map_or(1, Image::texel_count);
         made.measure(format!("extent {extent}: mean amount of patina"), amounts.sum::<f64>() / count as f64);
     }
-    let pictures = studio.rendered(&artefacts, Form::Baked, Shape::Torus, |_, _| {})?;
+    let pictures = studio.rendered(&package, Form::Baked, Shape::Torus, |_, _| {})?;
     let labels = EXTENTS.iter().map(|extent| format!("extent {extent}"));
     made.sheet("elek-8", labels.zip(pictures).collect(), 6);
     Ok(made)

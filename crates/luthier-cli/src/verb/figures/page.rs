@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 
 use super::figure::{Figure, Made};
 use super::studio::Studio;
-use crate::bake_files::GENERATOR;
 use crate::cli::FiguresOptions;
+use luthier_export::GENERATOR;
 
 /// The manifest.
 pub(crate) fn json(options: &FiguresOptions, studio: &Studio, made: &[(&Figure, Made)]) -> Value {

@@ -4,7 +4,8 @@ use std::cell::OnceCell;
 use std::io::ErrorKind;
 use std::sync::Arc;
 
-use luthier_gpu::{Artefacts, Environment, Gpu, RenderSettings, Shape};
+use luthier_export::Package;
+use luthier_gpu::{Environment, Gpu, RenderSettings, Shape};
 use luthier_layers::inputs::Inputs;
 use luthier_layers::model::Model;
 use luthier_layers::registry;
@@ -80,18 +81,18 @@ impl Studio {
     /// Renders each material of a bake, linear.
     pub(crate) fn rendered(
         &self,
-        artefacts: &Artefacts,
+        package: &Package,
         form: Form,
         shape: Shape,
         adjust: impl Fn(usize, &mut RenderSettings),
     ) -> Outcome<Vec<Image>> {
-        let scene = self.gpu()?.scene(artefacts, form).map_err(device)?;
+        let scene = self.gpu()?.scene(package, form).map_err(device)?;
         let render = |n: usize| {
             let mut settings = self.settings(shape)?;
             adjust(n, &mut settings);
             scene.render(&[n as u32], &settings).map_err(device)
         };
-        (0..artefacts.manifest.materials.len()).map(render).collect()
+        (0..package.manifest.materials.len()).map(render).collect()
     }
 
     /// A ball in f64, under two lights and nothing else; estimates from the paths of the command line.

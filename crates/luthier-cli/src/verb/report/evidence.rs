@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use luthier_bake::Options;
+use luthier_export::{GENERATOR, outline, sha256};
 use luthier_manifest::{Form, Manifest, ShadingModel};
 use luthier_material::Material;
 use luthier_report::stability::Stability;
@@ -12,11 +14,9 @@ use luthier_scene::CostTable;
 use rayon::prelude::*;
 use serde_json::json;
 
-use crate::bake_files::{GENERATOR, sha256};
 use crate::cli::ReportOptions;
 use crate::failure::{Failure, Outcome};
 use crate::input;
-use crate::materials::read_image;
 
 /// First family of random numbers of the paths.
 const SEED: u64 = 1;
@@ -79,9 +79,8 @@ pub(super) fn add(
     if !manifest.searches.is_empty() && manifest.generator == GENERATOR {
         let alone: Vec<_> = materials
             .par_iter()
-            .map(|material| luthier_bake::outline(std::slice::from_ref(material), &read_image))
-            .collect::<Result<_, _>>()
-            .map_err(Failure::input)?;
+            .map(|material| outline(std::slice::from_ref(material), &Options::default()))
+            .collect::<Result<_, _>>()?;
         for (material, outline) in report.materials.iter_mut().zip(alone) {
             material.alone = outline.searches;
         }

@@ -4,26 +4,22 @@ mod pictures;
 
 use std::path::Path;
 
+use luthier_export::{Folder, GENERATOR, REPORT_FILES, publish, read_one, source_hash};
 use luthier_manifest::Manifest;
 use luthier_material::{Material, Parsed};
 use luthier_report::{Asked, Device, Exhibits, FileBudget, Report, Settings, Subject, judge, limits};
 use luthier_scene::{LeaveOut, simplified};
-use luthier_texture::BakeFolder;
 
-use crate::artefacts::{open, textures};
-use crate::bake_files::{GENERATOR, REPORT_FILES, source_hash};
 use crate::cli::ReportOptions;
 use crate::failure::{Failure, Outcome};
-use crate::materials::read_one;
 use crate::output::print;
 use crate::progress::Bar;
-use crate::staging::Staging;
 
 /// Judges a bake and writes the report beside it.
 pub(crate) fn run(options: &ReportOptions) -> Outcome {
-    let folder = open(&options.out)?;
+    let folder = Folder::open(&options.out)?;
     let manifest = folder.manifest();
-    let textures = textures(&folder)?;
+    let textures = folder.textures()?;
     let materials = materials(manifest)?;
     let given = evidence::given(options)?;
     let device = device(&folder, options)?;
@@ -48,19 +44,16 @@ pub(crate) fn run(options: &ReportOptions) -> Outcome {
     let exhibits = Exhibits { pictures, stability: given.stability };
 
     let json = report.to_json().map_err(Failure::input)?;
-    let mut staging = Staging::for_folder(&options.out)?;
-    let [data, summary, page] = REPORT_FILES;
-    staging.write(data, json.as_bytes())?;
-    staging.write(summary, report.to_markdown().as_bytes())?;
-    staging.write(page, report.to_html(&exhibits).as_bytes())?;
-    staging.publish()?;
+    let contents = [json.clone(), report.to_markdown(), report.to_html(&exhibits)];
+    let written: Vec<(&str, &[u8])> = REPORT_FILES.into_iter().zip(contents.iter().map(String::as_bytes)).collect();
+    publish(&options.out, &written)?;
 
     print(&if options.json { json } else { text(&report, &options.out) })?;
     if report.is_within_budget() == Some(false) { Err(Failure::Verdict) } else { Ok(()) }
 }
 
 /// Facts that identify the run.
-fn provenance(folder: &BakeFolder, options: &ReportOptions, given: &evidence::Given) -> Vec<(String, String)> {
+fn provenance(folder: &Folder, options: &ReportOptions, given: &evidence::Given) -> Vec<(String, String)> {
     let mut out = vec![
         ("judged by".to_owned(), GENERATOR.to_owned()),
         ("command".to_owned(), command(options)),
@@ -114,7 +107,7 @@ fn materials(manifest: &Manifest) -> Outcome<Vec<Material>> {
         .iter()
         .enumerate()
         .map(|(number, entry)| {
-            let source = read_one(Path::new(&entry.source)).map_err(|failure| match failure {
+            let source = read_one(Path::new(&entry.source)).map_err(|error| match Failure::from(error) {
                 Failure::Files(error) => Failure::Files(error.context(format!(
                     "the bake was made from {}, which the judge reads again; run the report where the bake ran",
                     entry.source
@@ -150,16 +143,15 @@ type Runner = crate::device::Shaders;
 type Runner = NoShaders;
 
 #[cfg(feature = "gpu")]
-fn device(folder: &BakeFolder, options: &ReportOptions) -> Outcome<Option<Runner>> {
-    use crate::device::{Shaders, device, open};
-    use luthier_gpu::Artefacts;
+fn device(folder: &Folder, options: &ReportOptions) -> Outcome<Option<Runner>> {
+    use crate::device::{Shaders, open};
 
     if options.no_device {
         return Ok(None);
     }
-    let artefacts = Artefacts::read(folder).map_err(device)?;
+    let package = folder.package()?;
     let gpu = open(options.adapter.as_deref())?;
-    Ok(Some(Shaders::new(&gpu, &artefacts)?))
+    Ok(Some(Shaders::new(&gpu, &package)?))
 }
 
 #[cfg(feature = "gpu")]
@@ -180,7 +172,7 @@ impl Device for NoShaders {
 }
 
 #[cfg(not(feature = "gpu"))]
-fn device(_: &BakeFolder, options: &ReportOptions) -> Outcome<Option<Runner>> {
+fn device(_: &Folder, options: &ReportOptions) -> Outcome<Option<Runner>> {
     if options.no_device {
         return Ok(None);
     }

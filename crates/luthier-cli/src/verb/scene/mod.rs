@@ -1,26 +1,21 @@
 //! Bakes of scenes: a model for each material, and only the code and the tables that these models need.
 
-mod director;
 mod page;
 
 use std::path::{Component, Path, PathBuf};
 
+use luthier_export::{MANIFEST, Source, find as find_files, input, label, of_domain, read_one, refuse};
 use luthier_manifest::{MaterialChoice, SceneChoice};
 use luthier_material::{Diagnostic, Material, Scene, is_scene, parse_scene};
-use luthier_scene::label as candidate_label;
+use luthier_scene::{Director, Made, label as candidate_label};
 use serde_json::json;
 
 use crate::cli::BakeOptions;
-use crate::doubts;
 use crate::failure::{Broken, Failure, Outcome, files};
-use crate::input;
-use crate::materials::{Source, find as find_files, label, print_diagnostics, read_one, valid};
+use crate::materials::{print_diagnostics, valid};
 use crate::misses;
 use crate::output::{bytes, print};
-use crate::refusals;
-use crate::verb::bake::publish;
 use crate::verb::check::diagnostics;
-use director::{Director, Made};
 
 /// The scenes among the files; `None` where there is none, and files are materials.
 pub(super) fn find(paths: &[PathBuf]) -> Outcome<Option<Vec<PathBuf>>> {
@@ -50,7 +45,7 @@ pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
             "the form of a scene's shaders is chosen with its models: leave out --form"
         )));
     }
-    let shaders = options.emission.shaders();
+    let targets = options.emission.targets();
     let shading = &options.shading;
     if shading.model.is_some() || !shading.tables.is_empty() || !limits.search || !limits.budget.is_empty() {
         let text = "a scene has its limits in its [budget] and [target], and its models are chosen: leave out --model, --tables, \
@@ -69,11 +64,11 @@ pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
         return Err(Failure::Usage(anyhow::anyhow!(text)));
     };
     let (scene, materials) = read(path, options.quiet)?;
-    let made = pool.install(|| Director::new(&scene, &materials, shaders).step(None, options.allow_miss))?;
-    publish(options, &made.files)?;
-    let missed = misses::name(&made.files.manifest, options.quiet)?;
+    let made = pool.install(|| Director::new(&scene, &materials, targets).step(None, options.allow_miss))?;
+    made.package.encode(options.compression())?.write(&options.out)?;
+    let missed = misses::name(&made.package.manifest, options.quiet)?;
     if options.json {
-        let manifest = options.out.join(crate::bake_files::MANIFEST);
+        let manifest = options.out.join(MANIFEST);
         let (bytes, cycles) = (made.bytes(), made.cycles());
         let summary = json!({
             "manifest": manifest.to_string_lossy(), "texel_bytes": bytes, "cycles": cycles, "choice": made.choice,
@@ -94,9 +89,9 @@ fn tighten(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
     let mut tightened = Vec::new();
     for path in scenes {
         let (scene, materials) = read(path, options.quiet)?;
-        let mut director = Director::new(&scene, &materials, options.emission.shaders());
+        let mut director = Director::new(&scene, &materials, options.emission.targets());
         let steps: Vec<Made> =
-            budgets.iter().map(|&limit| director.step(Some(limit), options.allow_miss)).collect::<Outcome<_>>()?;
+            budgets.iter().map(|&limit| director.step(Some(limit), options.allow_miss)).collect::<Result<_, _>>()?;
         tightened.push((scene, steps));
     }
     if options.json {
@@ -129,13 +124,13 @@ impl SceneSource {
             let folder = path.parent().unwrap_or(Path::new(""));
             let mut missing = Vec::new();
             for named in &scene.materials {
-                match read_one(&plain(&folder.join(&named.file))) {
+                match read_one(&plain(&folder.join(&named.file))).map_err(Failure::from) {
                     Ok(source) => materials.push(source),
                     Err(failure) => missing.push(scene.diagnostic(named, failure.sentence())),
                 }
             }
             if missing.is_empty() {
-                refusals::find(&mut materials, |material| doubts::of_domain(material, None));
+                refuse(&mut materials, |material| of_domain(material, None));
             } else {
                 parsed = Err(missing);
             }
@@ -192,10 +187,10 @@ fn text(options: &BakeOptions, made: &Made) -> String {
         out.push_str(&format!("{name}: {reason}\n"));
     }
     let models: Vec<String> = materials.iter().map(|choice| candidate_label(choice.candidate())).collect();
-    let tables: Vec<&str> = made.files.manifest.tables.iter().map(|table| table.kind.name()).collect();
+    let tables: Vec<&str> = made.package.manifest.tables.iter().map(|table| table.kind.name()).collect();
     out.push_str(&format!("\nmodels: {}\n", models.join("; ")));
     out.push_str(&format!("tables: {}\n", if tables.is_empty() { "none".to_owned() } else { tables.join(", ") }));
-    out.push_str(&format!("wrote {}\n", options.out.join(crate::bake_files::MANIFEST).display()));
+    out.push_str(&format!("wrote {}\n", options.out.join(MANIFEST).display()));
     out
 }
 

@@ -4,9 +4,7 @@ use std::fmt::Write as _;
 
 use luthier_manifest::{MaterialChoice, Verdict};
 use luthier_material::Scene;
-use luthier_scene::{CostTable, MAX_SAMPLES, MODEL_SHARE, label};
-
-use super::director::Made;
+use luthier_scene::{CostTable, MAX_SAMPLES, MODEL_SHARE, Made, label};
 
 /// The page; steps are in the order of `budgets`, loosest first.
 pub(super) fn markdown(command: &str, budgets: &[f64], scenes: &[(Scene, Vec<Made>)]) -> String {

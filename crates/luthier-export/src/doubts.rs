@@ -3,10 +3,11 @@
 use luthier_layers::domain::{Outside, Quantity, outside};
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::{Diagnostic, Material, Severity};
-use luthier_scene::{LeftOut, left_out};
+
+use crate::{LeftOut, left_out};
 
 /// Warnings, and an error for what would be wrong beyond use. `asked` is the model of the command line.
-pub(crate) fn of_model(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {
+pub fn of_model(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {
     let model = model(material, asked);
     let dropped = left_out(material, model);
     let mut doubts = of_domain(material, asked);
@@ -15,7 +16,7 @@ pub(crate) fn of_model(material: &Material, asked: Option<ShadingModel>) -> Vec<
 }
 
 /// Doubts about a material of a scene, whose model is chosen by what it leaves out: only quantities outside its domain.
-pub(crate) fn of_domain(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {
+pub fn of_domain(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {
     let model = model(material, asked);
     outside(model.name(), &material.stack).iter().map(|outside| domain(material, model, outside)).collect()
 }

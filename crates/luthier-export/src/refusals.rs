@@ -5,15 +5,14 @@ use std::collections::BTreeMap;
 use luthier_bake::BakeError;
 use luthier_material::{Diagnostic, Material, NamedImage, Severity};
 
-use crate::cli::Shading;
 use crate::input;
-use crate::materials::{Source, beside, read_image, shaded};
+use crate::sources::{Source, beside, read_image};
 
 /// The key of the film's map, which is read for its grey; the others are pictures of any kind.
 const FILM_MAP: &str = "layer.0.film.0.thickness_nm.map.image";
 
 /// Adds `doubts`, and makes files unusable that cannot be baked: one by one, then, where each is usable, as a set.
-pub(crate) fn find(sources: &mut [Source], doubts: impl Fn(&Material) -> Vec<Diagnostic>) {
+pub fn refuse(sources: &mut [Source], doubts: impl Fn(&Material) -> Vec<Diagnostic>) {
     for source in sources.iter_mut() {
         let Ok(parsed) = &source.parsed else { continue };
         let mut found = doubts(&parsed.material);
@@ -27,9 +26,9 @@ pub(crate) fn find(sources: &mut [Source], doubts: impl Fn(&Material) -> Vec<Dia
 }
 
 /// Makes the first file unusable where the material buffer or a texture cannot hold all of them. A bake plans its tables, and says so itself.
-pub(crate) fn find_too_many(sources: &mut [Source], shading: &Shading) {
+pub fn refuse_too_many(sources: &mut [Source], shaded: impl Fn(Vec<Material>) -> Vec<Material>) {
     let Some(materials) = usable(sources) else { return };
-    let materials = shaded(materials, shading);
+    let materials = shaded(materials);
     let options = luthier_bake::Options { search: false, ..luthier_bake::Options::default() };
     // Anything else has been told.
     if let Err(error @ (BakeError::TooManyTiles { .. } | BakeError::TooManyLayers { .. })) =

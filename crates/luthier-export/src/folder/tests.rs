@@ -1,4 +1,4 @@
-use luthier_manifest::MapSlot;
+use luthier_manifest::{ManifestError, MapSlot};
 use tempfile::TempDir;
 
 use super::*;
@@ -27,14 +27,14 @@ fn files_are_known_by_their_hash() {
     std::fs::create_dir(folder.join("tables")).unwrap();
     let path = folder.join("tables/a");
     std::fs::write(&path, b"abc").unwrap();
-    let bake = BakeFolder::open(&folder).unwrap();
+    let bake = Folder::open(&folder).unwrap();
     assert_eq!(bake.read(&entry("tables/a")).unwrap(), b"abc");
     assert_eq!(bake.text(&FileEntry { sha256: ABC.to_uppercase(), ..entry("tables/a") }).unwrap(), "abc");
     std::fs::write(&path, b"abd").unwrap();
     let error = bake.read(&entry("tables/a")).unwrap_err();
-    assert!(matches!(&error, FolderError::Hash { path: named, expected, .. } if *named == path && expected == ABC));
+    assert!(matches!(&error, PackageError::Hash { path: named, expected, .. } if *named == path && expected == ABC));
     std::fs::remove_file(&path).unwrap();
-    assert!(matches!(bake.read(&entry("tables/a")), Err(FolderError::Read { path: named, .. }) if named == path));
+    assert!(matches!(bake.read(&entry("tables/a")), Err(PackageError::Read { path: named, .. }) if named == path));
 }
 
 /// The hash is right every time: it is the way that is refused.
@@ -42,10 +42,10 @@ fn files_are_known_by_their_hash() {
 fn paths_stay_within_the_folder() {
     let (around, folder) = bake();
     let absolute = around.path().join("secret");
-    let bake = BakeFolder::open(&folder).unwrap();
+    let bake = Folder::open(&folder).unwrap();
     for path in ["../secret", "", ".", "./a", "tables/../../secret", "/", absolute.to_str().unwrap()] {
         let error = bake.read(&entry(path)).unwrap_err();
-        assert!(matches!(&error, FolderError::Outside { path: named } if named == path), "{path}: {error}");
+        assert!(matches!(&error, PackageError::Outside { path: named } if named == path), "{path}: {error}");
     }
 }
 
@@ -63,15 +63,15 @@ fn links_do_not_lead_out_of_the_folder() {
     let linked = around.path().join("linked");
     symlink("out", &linked).unwrap();
     for folder in [&folder, &linked] {
-        let bake = BakeFolder::open(folder).unwrap();
+        let bake = Folder::open(folder).unwrap();
         for path in ["file", "folder/secret"] {
-            assert!(matches!(bake.read(&entry(path)), Err(FolderError::Outside { .. })), "{path}");
+            assert!(matches!(bake.read(&entry(path)), Err(PackageError::Outside { .. })), "{path}");
         }
         assert_eq!(bake.read(&entry("within")).unwrap(), b"abc");
     }
     std::fs::rename(folder.join(MANIFEST), around.path().join(MANIFEST)).unwrap();
     symlink(Path::new("..").join(MANIFEST), folder.join(MANIFEST)).unwrap();
-    assert!(matches!(BakeFolder::open(&folder), Err(FolderError::Outside { .. })));
+    assert!(matches!(Folder::open(&folder), Err(PackageError::Outside { .. })));
 }
 
 /// A socket stands for all that is no file and would be waited for.
@@ -81,9 +81,9 @@ fn only_regular_files_are_read() {
     let (_around, folder) = bake();
     std::fs::create_dir(folder.join("folder")).unwrap();
     let _socket = std::os::unix::net::UnixListener::bind(folder.join("socket")).unwrap();
-    let bake = BakeFolder::open(&folder).unwrap();
+    let bake = Folder::open(&folder).unwrap();
     for path in ["folder", "socket"] {
-        assert!(matches!(bake.read(&entry(path)), Err(FolderError::NotAFile { .. })), "{path}");
+        assert!(matches!(bake.read(&entry(path)), Err(PackageError::NotAFile { .. })), "{path}");
     }
 }
 
@@ -92,20 +92,20 @@ fn large_files_are_refused() {
     let (_around, folder) = bake();
     // No more than its name on the disk.
     File::create(folder.join("large")).unwrap().set_len(MAX_FILE_BYTES + 1).unwrap();
-    let bake = BakeFolder::open(&folder).unwrap();
-    assert!(matches!(bake.read(&entry("large")), Err(FolderError::TooLarge { .. })));
+    let bake = Folder::open(&folder).unwrap();
+    assert!(matches!(bake.read(&entry("large")), Err(PackageError::TooLarge { .. })));
 }
 
 #[test]
 fn manifests_of_another_schema_are_refused() {
     let (around, folder) = bake();
-    let error = BakeFolder::open(around.path()).unwrap_err();
-    assert!(matches!(error, FolderError::NoBake { .. }), "{error}");
+    let error = Folder::open(around.path()).unwrap_err();
+    assert!(matches!(error, PackageError::NoBake { .. }), "{error}");
     std::fs::write(folder.join(MANIFEST), "{\"schema\": 99}").unwrap();
-    let error = BakeFolder::open(&folder).unwrap_err();
-    assert!(matches!(error, FolderError::Manifest { source: ManifestError::Schema { found: 99, .. }, .. }));
+    let error = Folder::open(&folder).unwrap_err();
+    assert!(matches!(error, PackageError::Manifest { source: ManifestError::Schema { found: 99, .. }, .. }));
     std::fs::write(folder.join(MANIFEST), [0xff, 0xfe]).unwrap();
-    assert!(matches!(BakeFolder::open(&folder), Err(FolderError::Text { .. })));
+    assert!(matches!(Folder::open(&folder), Err(PackageError::Text { .. })));
 }
 
 #[test]
@@ -121,8 +121,8 @@ fn maps_have_the_size_that_the_manifest_states() {
         width,
         height: 1,
     };
-    let bake = BakeFolder::open(&folder).unwrap();
-    assert_eq!(bake.map(&map(2)).unwrap().width, 2);
+    let bake = Folder::open(&folder).unwrap();
+    assert_eq!(bake.map(&map(2)).unwrap().1.width, 2);
     let error = bake.map(&map(3)).unwrap_err();
-    assert!(matches!(error, FolderError::MapSize { found: [2, 1], expected: [3, 1], .. }), "{error}");
+    assert!(matches!(error, PackageError::MapSize { found: [2, 1], expected: [3, 1], .. }), "{error}");
 }

@@ -1,13 +1,14 @@
-use luthier_bake::{BakeError, Options, Silent};
-use luthier_lut::FormatSet;
-use luthier_manifest::{Budget, MaterialChoice, SceneBudget, SceneChoice, SceneError};
-use luthier_material::{Material, Scene};
-use luthier_report::{Subject, TableTerms, Weights};
-use luthier_scene::{CostTable, Form, Judge, TABLE_SHARE, label};
+//! Bakes of scenes: a model for each material, and only the code and the tables that these models need.
 
-use crate::bake_files::{BakeFiles, Shaders, sha256};
-use crate::failure::{Failure, Outcome};
-use crate::materials::read_image;
+use luthier_bake::{BakeError, MemoryStore, Options};
+use luthier_export::{Bake, ExportError, Package, PackageError, sha256};
+use luthier_lut::FormatSet;
+use luthier_manifest::{Budget, MaterialChoice, SceneBudget, SceneChoice, SceneError, Target};
+use luthier_material::{Material, Scene};
+use luthier_report::{ReportError, Subject, TableTerms, Weights};
+use thiserror::Error;
+
+use crate::{CostTable, Form, Judge, TABLE_SHARE, label};
 
 /// Limits on the absolute error of tables that are tried, loosest first.
 const TABLE_LEVELS: [f64; 6] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5];
@@ -15,42 +16,69 @@ const TABLE_LEVELS: [f64; 6] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5];
 /// Reflectances are about this: a relative limit times it is where the search for tables begins.
 const REFLECTANCE: f64 = 0.2;
 
-/// A scene at work. What one step computes serves the next.
-pub(super) struct Director<'a> {
+/// A search for the models and tables of a scene. What one step computes serves the next.
+pub struct Director<'a> {
     scene: &'a Scene,
     materials: &'a [Material],
-    shaders: Shaders,
+    targets: Vec<Target>,
+    store: MemoryStore,
     costs: CostTable,
     baked: Option<Vec<Judge>>,
     full: Option<Vec<Judge>>,
 }
 
 /// A bake of a scene.
-pub(super) struct Made {
-    pub(super) choice: SceneChoice,
-    pub(super) files: BakeFiles,
+#[derive(Debug, Clone)]
+pub struct Made {
+    /// The models, with the reasons for them.
+    pub choice: SceneChoice,
+    /// The tables and shaders that these models need.
+    pub package: Package,
 }
 
 impl Made {
     /// Bytes of all texels.
-    pub(super) fn bytes(&self) -> u64 {
-        self.files.manifest.tables.iter().map(|table| table.texel_bytes).sum()
+    pub fn bytes(&self) -> u64 {
+        self.package.texel_bytes()
     }
 
     /// Cycles of all materials together.
-    pub(super) fn cycles(&self) -> f64 {
+    pub fn cycles(&self) -> f64 {
         self.choice.materials.iter().map(|choice| choice.candidate().cost).sum()
     }
 
     /// The largest error of a model, relative.
-    pub(super) fn max_rel(&self) -> f64 {
+    pub fn max_rel(&self) -> f64 {
         self.choice.materials.iter().map(|choice| choice.candidate().error.max_rel).fold(0.0, f64::max)
     }
 
     /// The largest error of tables, relative.
-    pub(super) fn table_max_rel(&self) -> f64 {
+    pub fn table_max_rel(&self) -> f64 {
         self.choice.materials.iter().filter_map(|c| c.table_error).map(|error| error.max_rel).fold(0.0, f64::max)
     }
+}
+
+/// Why no bake of a scene came out.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum SceneFailure {
+    /// No models and tables hold the budget of the scene.
+    #[error("the scene cannot be held. {reasons}{hint}")]
+    Unheld {
+        /// A line for each form that was tried.
+        reasons: String,
+        /// Advice to the user; empty where there is none.
+        hint: &'static str,
+    },
+    /// The chosen models cannot be baked.
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    /// Texels that cannot be read back.
+    #[error(transparent)]
+    Package(#[from] PackageError),
+    /// Tables that the judge does not take.
+    #[error(transparent)]
+    Report(#[from] ReportError),
 }
 
 /// Why a form will not do.
@@ -62,14 +90,22 @@ enum Refusal {
 }
 
 impl<'a> Director<'a> {
-    /// The languages are those of `shaders`; the form is chosen.
-    pub(super) fn new(scene: &'a Scene, materials: &'a [Material], shaders: Shaders) -> Self {
-        Self { scene, materials, shaders, costs: CostTable::shipped(), baked: None, full: None }
+    /// `targets` are the languages of the shaders; their form is chosen with the models.
+    pub fn new(scene: &'a Scene, materials: &'a [Material], targets: Vec<Target>) -> Self {
+        Self {
+            scene,
+            materials,
+            targets,
+            store: MemoryStore::default(),
+            costs: CostTable::shipped(),
+            baked: None,
+            full: None,
+        }
     }
 
     /// Chooses and bakes, under another limit on the relative error if one is given: with tables, or, where these do not fit the target,
     /// without.
-    pub(super) fn step(&mut self, max_rel: Option<f64>, allow_miss: bool) -> Outcome<Made> {
+    pub fn step(&mut self, max_rel: Option<f64>, allow_miss: bool) -> Result<Made, SceneFailure> {
         let budgets: Vec<SceneBudget> = self.scene.materials.iter().map(|m| self.budget(&m.budget, max_rel)).collect();
         let mut reasons = Vec::new();
         for form in [Form::Baked, Form::Full] {
@@ -83,7 +119,7 @@ impl<'a> Director<'a> {
             }
         }
         let hint = if allow_miss { "" } else { "\nloosen the budget, or take what comes nearest with --allow-miss" };
-        Err(Failure::Input(anyhow::anyhow!("the scene cannot be held. {}{hint}", reasons.join("\n"))))
+        Err(SceneFailure::Unheld { reasons: reasons.join("\n"), hint })
     }
 
     /// The limits of a material.
@@ -92,7 +128,12 @@ impl<'a> Director<'a> {
         given.or(own).or(&self.scene.budget)
     }
 
-    fn attempt(&mut self, form: Form, budgets: &[SceneBudget], allow_miss: bool) -> Outcome<Result<Made, Refusal>> {
+    fn attempt(
+        &mut self,
+        form: Form,
+        budgets: &[SceneBudget],
+        allow_miss: bool,
+    ) -> Result<Result<Made, Refusal>, SceneFailure> {
         let judges = match form {
             Form::Baked => &mut self.baked,
             Form::Full => &mut self.full,
@@ -125,12 +166,15 @@ impl<'a> Director<'a> {
             .zip(&choices)
             .map(|(judge, choice)| judge.candidates()[choice.chosen].material.clone())
             .collect();
-        let shaders = Shaders { forms: vec![form], ..self.shaders.clone() };
-        let files = match form {
-            Form::Full => BakeFiles::without_tables(&materials, &shaders)?,
+        // The judges know the domain of a model better: they have its error.
+        let bake = Bake { targets: self.targets.clone(), forms: vec![form], refuses: false, ..Bake::default() };
+        let package = match form {
+            Form::Full => Package::new(&materials, &bake, &self.store)?,
             Form::Baked => {
-                match tables(&materials, &shaders, scene.target.formats, judges, &mut choices, budgets, allow_miss)? {
-                    Ok(files) => files,
+                let formats = scene.target.formats.unwrap_or(FormatSet::CORE);
+                let bake = Bake { options: Options { formats, ..bake.options }, ..bake };
+                match tables(&materials, &bake, &self.store, judges, &mut choices, budgets, allow_miss)? {
+                    Ok(package) => package,
                     Err(reason) => return Ok(Err(Refusal::Tables(reason))),
                 }
             }
@@ -142,8 +186,8 @@ impl<'a> Director<'a> {
             form,
             materials: choices,
         };
-        let mut made = Made { choice, files };
-        made.files.manifest.choice = Some(made.choice.clone());
+        let mut made = Made { choice, package };
+        made.package.manifest.choice = Some(made.choice.clone());
         Ok(match unfit(scene, &made) {
             Some(reason) => Err(Refusal::Tables(reason)),
             None => Ok(made),
@@ -158,20 +202,20 @@ fn unfit(scene: &Scene, made: &Made) -> Option<String> {
         return Some(format!("tables take {bytes} bytes, more than {most}"));
     }
     let formats = scene.target.formats?;
-    let foreign = made.files.manifest.tables.iter().find(|table| !formats.has(table.format))?;
+    let foreign = made.package.manifest.tables.iter().find(|table| !formats.has(table.format))?;
     Some(format!("the {} table is {}, which the target does not have", foreign.kind.name(), foreign.format.name()))
 }
 
 /// The loosest tables whose errors, under the light of the scene, stay inside what models leave of the budgets.
 fn tables(
     materials: &[Material],
-    shaders: &Shaders,
-    formats: Option<FormatSet>,
+    bake: &Bake<'_>,
+    store: &MemoryStore,
     judges: &[Judge],
     choices: &mut [MaterialChoice],
     budgets: &[SceneBudget],
     allow_miss: bool,
-) -> Outcome<Result<BakeFiles, String>> {
+) -> Result<Result<Package, String>, SceneFailure> {
     let limits: Vec<SceneBudget> = budgets.iter().map(|budget| budget.scaled(TABLE_SHARE)).collect();
     let tightest = limits.iter().filter_map(|limit| limit.max_rel).fold(f64::INFINITY, f64::min);
     let levels = TABLE_LEVELS.into_iter().filter(|level| *level <= REFLECTANCE * tightest);
@@ -180,29 +224,25 @@ fn tables(
     levels.reverse();
     let mut nearest = String::new();
     while let Some(level) = levels.pop() {
-        let options = Options {
-            budget: Budget { max_abs: level, ..Budget::default() },
-            formats: formats.unwrap_or(FormatSet::CORE),
-            ..Options::default()
-        };
-        let bake = match luthier_bake::bake_with(materials, &options, &read_image, &Silent) {
+        let budget = Budget { max_abs: level, ..Budget::default() };
+        let bake = Bake { options: Options { budget, ..bake.options }, ..bake.clone() };
+        let package = match Package::new(materials, &bake, store) {
             // Tighter ones cannot be held either.
-            Err(BakeError::Budget { .. }) if level.is_some() => {
+            Err(ExportError::Bake(BakeError::Budget { .. })) if level.is_some() => {
                 levels = vec![None];
                 continue;
             }
-            bake => bake.map_err(Failure::input)?,
+            package => package?,
         };
-        let files = BakeFiles::new(materials, &bake, shaders)?;
-        let errors = table_errors(&files, materials, judges, choices, budgets)?;
+        let errors = table_errors(&package, materials, judges, choices, budgets)?;
         choices.iter_mut().zip(&errors).for_each(|(choice, error)| choice.table_error = Some(*error));
         let worst = (0..errors.len())
             .map(|i| (i, limits[i].excess(&errors[i])))
             .max_by(|a, b| a.1.total_cmp(&b.1))
             .filter(|(_, excess)| *excess > 1.0);
-        let Some((number, excess)) = worst else { return Ok(Ok(files)) };
+        let Some((number, excess)) = worst else { return Ok(Ok(package)) };
         if levels.is_empty() && allow_miss {
-            return Ok(Ok(files));
+            return Ok(Ok(package));
         }
         nearest = format!(
             "tables for {} ({}) err {excess:.2} times what is theirs of the budget",
@@ -215,27 +255,17 @@ fn tables(
 
 /// Errors of the tables of every material at the directions of the scene.
 fn table_errors(
-    files: &BakeFiles,
+    package: &Package,
     materials: &[Material],
     judges: &[Judge],
     choices: &[MaterialChoice],
     budgets: &[SceneBudget],
-) -> Outcome<Vec<SceneError>> {
-    let manifest = &files.manifest;
-    let textures = manifest
-        .tables
-        .iter()
-        .map(|table| {
-            let bytes =
-                files.files.iter().find(|(path, _)| *path == table.texture.path).map(|(_, bytes)| bytes.as_slice());
-            let image = luthier_texture::ktx2::decode(bytes.unwrap_or_default()).and_then(|texture| texture.image());
-            Ok((table.kind, image.map_err(Failure::input)?))
-        })
-        .collect::<Outcome<Vec<_>>>()?;
+) -> Result<Vec<SceneError>, SceneFailure> {
+    let (manifest, textures) = (&package.manifest, package.textures()?);
     let stacks = materials.iter().map(|material| material.stack.clone()).collect();
     let subject = Subject { manifest, textures, stacks };
     let error = |number: usize| {
-        let terms = TableTerms::new(&subject, number, Weights::EightBit).map_err(Failure::input)?;
+        let terms = TableTerms::new(&subject, number, Weights::EightBit)?;
         Ok(judges[number].table_error(choices[number].chosen, &terms, budgets[number].delta_e.is_some()))
     };
     (0..materials.len()).map(error).collect()

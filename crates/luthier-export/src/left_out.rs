@@ -1,3 +1,5 @@
+//! Features of a material that its model leaves out.
+
 use luthier_manifest::{Feature, Form, ShadingModel};
 use luthier_material::Material;
 use luthier_optics::stack::{Base, Distribution};

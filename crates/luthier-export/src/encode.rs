@@ -1,0 +1,172 @@
+//! A package as files.
+
+use std::path::Path;
+
+use luthier_lut::{AtlasLayout, Axis, Image, Mapping, RowBase, TableKind, Tile};
+use luthier_manifest::{FileEntry, Manifest, ShaderEntry, TableEntry, material_buffer};
+use luthier_texture::{Metadata, exr, ktx2, png};
+use sha2::{Digest, Sha256};
+
+use crate::{GENERATOR, MANIFEST, Package, PackageError, Shader, Table, publish};
+
+/// Whether texels are compressed inside KTX2 files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Compression {
+    /// Zstandard, a supercompression scheme of KTX2.
+    #[default]
+    Zstd,
+    /// None: for loaders without a decompressor.
+    None,
+}
+
+/// The files of a package, with their paths relative to the folder, and the manifest that names them by their hashes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Encoded {
+    /// The manifest.
+    pub manifest: Manifest,
+    /// All files but the manifest.
+    pub files: Vec<(String, Vec<u8>)>,
+}
+
+impl Package {
+    /// Encodes tables (KTX2, their unrounded values as EXR, a picture as PNG), shaders, maps and the material buffer.
+    ///
+    /// # Errors
+    /// [`PackageError::NoTruth`] for a package that was read from a folder; [`PackageError::Texels`].
+    pub fn encode(&self, compression: Compression) -> Result<Encoded, PackageError> {
+        let mut manifest = self.manifest.clone();
+        let mut files = Files::default();
+        for (entry, table) in
+            manifest.tables.iter_mut().zip(each(&self.tables, |table| self.encode_table(table, compression)))
+        {
+            let name = entry.kind.name();
+            let [texture, truth, picture] = table?;
+            entry.texture = files.add(format!("tables/{name}.ktx2"), texture);
+            entry.truth = files.add(format!("tables/{name}.exr"), truth);
+            entry.picture = files.add(format!("tables/{name}.png"), picture);
+        }
+        for (entry, map) in manifest.materials.iter_mut().flat_map(|m| &mut m.maps).zip(&self.maps) {
+            entry.file = files.add(entry.file.path.clone(), map.png.clone());
+        }
+        let mut words = material_buffer(&manifest.materials);
+        words.resize(manifest.material_texture.words(), [0.0; 4]);
+        let bytes = words.as_flattened().iter().flat_map(|value| value.to_le_bytes()).collect();
+        manifest.material_buffer = files.add("materials.bin".to_owned(), bytes);
+        let mut shader = |shader: &Shader| {
+            let &Shader { form, target, ref bytes } = shader;
+            let file = files.add(format!("shaders/{form}.{}", target.extension()), bytes.clone());
+            ShaderEntry { target, form, file }
+        };
+        manifest.shaders = self.shaders.iter().map(&mut shader).collect();
+        Ok(Encoded { manifest, files: files.0 })
+    }
+
+    /// The texture, the truth and the picture of a table.
+    fn encode_table(&self, table: &Table, compression: Compression) -> Result<[Vec<u8>; 3], PackageError> {
+        let kind = table.kind;
+        let (Some(truth), Some(entry)) = (&table.truth, self.manifest.table(kind)) else {
+            return Err(PackageError::NoTruth { kind });
+        };
+        // Thickness without slopes is one channel of the kind's four.
+        let channels = if truth.channels == 1 { &["Y"] } else { kind.channels() };
+        let texture = match compression {
+            Compression::Zstd => ktx2::encode(&table.texture)?,
+            Compression::None => ktx2::encode_plain(&table.texture)?,
+        };
+        Ok([texture, exr::encode(truth, channels, &metadata(entry))?, png::encode_image(&picture(kind, truth))?])
+    }
+}
+
+impl Encoded {
+    /// Publishes all files in a folder at once, see [`publish`](crate::publish()).
+    ///
+    /// # Errors
+    /// [`PackageError::Write`], [`PackageError::Table`].
+    pub fn write(&self, folder: &Path) -> Result<(), PackageError> {
+        let manifest = self.manifest.to_json()?;
+        let mut files: Vec<(&str, &[u8])> =
+            self.files.iter().map(|(path, bytes)| (path.as_str(), bytes.as_slice())).collect();
+        files.push((MANIFEST, manifest.as_bytes()));
+        publish::publish(folder, &files)
+    }
+}
+
+/// SHA-256 in hex.
+pub fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Files by their paths.
+#[derive(Default)]
+struct Files(Vec<(String, Vec<u8>)>);
+
+impl Files {
+    fn add(&mut self, path: String, bytes: Vec<u8>) -> FileEntry {
+        let entry = FileEntry { path: path.clone(), sha256: sha256(&bytes) };
+        self.0.push((path, bytes));
+        entry
+    }
+}
+
+/// The results of a function for each table, side by side where threads are at hand.
+#[cfg(feature = "bake")]
+fn each<T: Send>(tables: &[Table], f: impl Fn(&Table) -> T + Sync + Send) -> Vec<T> {
+    use rayon::prelude::*;
+    tables.par_iter().map(f).collect()
+}
+
+#[cfg(not(feature = "bake"))]
+fn each<T>(tables: &[Table], f: impl Fn(&Table) -> T) -> Vec<T> {
+    tables.iter().map(f).collect()
+}
+
+/// Metadata of the unquantised values of a table.
+fn metadata(table: &TableEntry) -> Metadata {
+    let AtlasLayout { x, y, apron, columns, tiles, base } = &table.layout;
+    let joined = |f: &dyn Fn(&Tile) -> String| table.tiles.iter().map(f).collect::<Vec<_>>().join("\n");
+    let hashes = joined(&|t| t.input_hash.clone());
+    let mut pairs = vec![
+        ("generator", GENERATOR.to_owned()),
+        ("table", table.kind.name().to_owned()),
+        ("model", joined(&|t| t.model.clone())),
+        ("axis.x", axis(x)),
+        ("tile.names", joined(&|t| t.name.clone())),
+        ("tile.count", tiles.to_string()),
+        ("tile.columns", columns.to_string()),
+        ("tile.apron", apron.to_string()),
+        ("texel.format", table.format.name().to_owned()),
+        ("input.sha256", sha256(hashes.as_bytes())),
+    ];
+    if let Some(y) = y {
+        pairs.push(("axis.y", axis(y)));
+    }
+    if *base == RowBase::Schlick {
+        pairs.push(("row.base", "schlick".to_owned()));
+    }
+    pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+}
+
+fn axis(axis: &Axis) -> String {
+    let Axis { quantity, unit, min, max, size, mapping } = axis;
+    let mapping = match mapping {
+        Mapping::Linear => "linear".to_owned(),
+        Mapping::Power { exponent } => format!("power {exponent}"),
+        Mapping::Rational { bend } => format!("rational {bend}"),
+        Mapping::Logarithmic => "logarithmic".to_owned(),
+        Mapping::Periodic => "periodic".to_owned(),
+    };
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    format!("{quantity}: {min} to {max}{unit}, {size} nodes, {mapping}")
+}
+
+/// A table as something to look at: its first three channels, brought into 0..1 where they are signed.
+fn picture(kind: TableKind, truth: &Image) -> Image {
+    let channels = truth.channels.min(3);
+    let mut data = Vec::with_capacity(truth.texel_count() * channels as usize);
+    for texel in truth.texels() {
+        for &value in &texel[..channels as usize] {
+            data.push(if kind == TableKind::Phase { 0.25 * value + 0.5 } else { value });
+        }
+    }
+    Image { width: truth.width, height: truth.height, channels, data }
+}

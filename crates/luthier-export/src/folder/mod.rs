@@ -1,0 +1,179 @@
+//! The one reader of a bake's folder.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Component, Path, PathBuf};
+
+use luthier_lut::{Image, TableKind};
+use luthier_manifest::{FileEntry, Manifest, MapEntry, TableEntry, Target};
+use luthier_texture::{MAX_BYTES, Texture, ktx2, png};
+use sha2::{Digest, Sha256};
+
+use crate::{Map, Package, PackageError, READY, Shader, Table};
+
+/// File name of the manifest.
+pub const MANIFEST: &str = "manifest.json";
+
+/// Most bytes of any file of a bake: the texels of the largest texture, and as much again for what is around them.
+pub const MAX_FILE_BYTES: u64 = 2 * MAX_BYTES;
+
+/// A bake in its folder, of which nothing is believed before it is checked: the manifest's schema, that files are regular ones within the
+/// folder, their sizes and hashes, and that texels are those that the manifest describes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Folder {
+    /// Path without links, so that a file's place can be compared with it.
+    root: PathBuf,
+    /// Path as it was named, for messages.
+    named: PathBuf,
+    manifest: Manifest,
+    sha256: String,
+}
+
+impl Folder {
+    /// Reads the manifest of a folder.
+    ///
+    /// # Errors
+    /// [`PackageError`], with [`PackageError::NoBake`] where there is no manifest.
+    pub fn open(folder: &Path) -> Result<Self, PackageError> {
+        let named = folder.to_owned();
+        let path = [folder.join(READY).join(MANIFEST), folder.join(MANIFEST)].into_iter().find(|path| path.exists());
+        let (Some(path), Ok(root)) = (path, folder.canonicalize()) else {
+            return Err(PackageError::NoBake { folder: named });
+        };
+        let bytes = regular(&root, &path, MANIFEST)?;
+        let unusable = |source| PackageError::Manifest { path: path.clone(), source };
+        let text = std::str::from_utf8(&bytes).map_err(|_| PackageError::Text { path: path.clone() })?;
+        let manifest = Manifest::from_json(text).map_err(unusable)?;
+        Ok(Self { root, named, manifest, sha256: hex(&bytes) })
+    }
+
+    /// The manifest of the bake.
+    pub fn manifest(&self) -> &Manifest {
+        &self.manifest
+    }
+
+    /// SHA-256 of the manifest, hex.
+    pub fn sha256(&self) -> &str {
+        &self.sha256
+    }
+
+    /// The bytes of a file of the bake.
+    ///
+    /// # Errors
+    /// [`PackageError::Outside`] for a path that leaves the folder, by its words or through a link, [`PackageError::NotAFile`],
+    /// [`PackageError::TooLarge`], [`PackageError::Read`], [`PackageError::Hash`].
+    pub fn read(&self, entry: &FileEntry) -> Result<Vec<u8>, PackageError> {
+        let relative = Path::new(&entry.path);
+        if entry.path.is_empty() || !relative.components().all(|c| matches!(c, Component::Normal(_))) {
+            return Err(PackageError::Outside { path: entry.path.clone() });
+        }
+        let path = self.named.join(relative);
+        let bytes = self.bytes(&path, &entry.path)?;
+        let found = hex(&bytes);
+        if !found.eq_ignore_ascii_case(&entry.sha256) {
+            return Err(PackageError::Hash { path, found, expected: entry.sha256.clone() });
+        }
+        Ok(bytes)
+    }
+
+    /// A text of the bake.
+    ///
+    /// # Errors
+    /// As [`Folder::read`], and [`PackageError::Text`].
+    pub fn text(&self, entry: &FileEntry) -> Result<String, PackageError> {
+        String::from_utf8(self.read(entry)?).map_err(|_| PackageError::Text { path: self.named.join(&entry.path) })
+    }
+
+    /// The texels of a table as they ship.
+    ///
+    /// # Errors
+    /// As [`Folder::read`], [`PackageError::Texture`], and [`PackageError::Manifest`] where they are not those of the entry.
+    pub fn texture(&self, table: &TableEntry) -> Result<Texture, PackageError> {
+        let path = || self.named.join(&table.texture.path);
+        let bytes = self.read(&table.texture)?;
+        let texture = ktx2::decode(&bytes).map_err(|source| PackageError::Texture { path: path(), source })?;
+        let Texture { format, width, height, bytes } = &texture;
+        let checked = table.check([*width, *height], *format, bytes.len());
+        checked.map_err(|source| PackageError::Manifest { path: self.named.join(MANIFEST), source })?;
+        Ok(texture)
+    }
+
+    /// The texels of all tables, as a shader reads them.
+    ///
+    /// # Errors
+    /// As [`Folder::texture`], and [`PackageError::Texels`].
+    pub fn textures(&self) -> Result<Vec<(TableKind, Image)>, PackageError> {
+        self.manifest.tables.iter().map(|table| Ok((table.kind, self.texture(table)?.image()?))).collect()
+    }
+
+    /// A map of a material: its file, and RGBA, linear.
+    ///
+    /// # Errors
+    /// As [`Folder::read`], [`PackageError::Texture`], and [`PackageError::MapSize`].
+    pub fn map(&self, map: &MapEntry) -> Result<(Vec<u8>, Image), PackageError> {
+        let path = || self.named.join(&map.file.path);
+        let bytes = self.read(&map.file)?;
+        let image = png::decode(&bytes).map_err(|source| PackageError::Texture { path: path(), source })?;
+        let (found, expected) = ([image.width, image.height], [map.width, map.height]);
+        if found == expected {
+            Ok((bytes, image))
+        } else {
+            Err(PackageError::MapSize { path: path(), found, expected })
+        }
+    }
+
+    /// All that a program needs that renders: tables, shaders in WGSL, maps.
+    ///
+    /// # Errors
+    /// Those of the other functions, and of [`Package::from_parts`].
+    pub fn package(&self) -> Result<Package, PackageError> {
+        let manifest = &self.manifest;
+        let table = |entry: &TableEntry| Ok(Table { kind: entry.kind, texture: self.texture(entry)?, truth: None });
+        let tables = manifest.tables.iter().map(table).collect::<Result<_, PackageError>>()?;
+        let texts = manifest.shaders.iter().filter(|s| s.target == Target::Wgsl);
+        let shaders = texts
+            .map(|entry| Ok(Shader::wgsl(entry.form, self.text(&entry.file)?)))
+            .collect::<Result<_, PackageError>>()?;
+        let mut package = Package::from_parts(manifest.clone(), tables, shaders)?;
+        for (material, entry) in (0..).zip(&manifest.materials) {
+            for map in &entry.maps {
+                let (png, image) = self.map(map)?;
+                package.maps.push(Map { material, slot: map.slot, layer: map.layer, image, png });
+            }
+        }
+        Ok(package)
+    }
+
+    /// The bytes of a file; of one that is about to be published if the bake before this one was interrupted then.
+    fn bytes(&self, path: &Path, named: &str) -> Result<Vec<u8>, PackageError> {
+        let ready = self.named.join(READY).join(named);
+        regular(&self.root, if ready.exists() { &ready } else { path }, named)
+    }
+}
+
+/// The bytes of a regular file that lies within a folder, wherever links lead.
+fn regular(root: &Path, path: &Path, named: &str) -> Result<Vec<u8>, PackageError> {
+    let unreadable = |source| PackageError::Read { path: path.to_owned(), source };
+    let target = path.canonicalize().map_err(unreadable)?;
+    if !target.starts_with(root) {
+        return Err(PackageError::Outside { path: named.to_owned() });
+    }
+    // Asked before it is opened: opening a pipe waits for its writer.
+    let metadata = target.metadata().map_err(unreadable)?;
+    if !metadata.is_file() {
+        return Err(PackageError::NotAFile { path: path.to_owned() });
+    }
+    if metadata.len() > MAX_FILE_BYTES {
+        return Err(PackageError::TooLarge { path: path.to_owned() });
+    }
+    let mut bytes = Vec::new();
+    File::open(&target).and_then(|file| file.take(MAX_FILE_BYTES).read_to_end(&mut bytes)).map_err(unreadable)?;
+    Ok(bytes)
+}
+
+fn hex(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,296 @@
+//! Packages made from materials.
+
+use std::io;
+use std::ops::Range;
+use std::path::Path;
+
+use luthier_bake::{BakeError, BakedMaterial, ImageReader, MapSource, MaterialMap, Observer, Options, Silent, Store};
+use luthier_lut::{Atlas, AtlasLayout, Image, TableKind, TexelFormat};
+use luthier_manifest::{
+    FileEntry, Form, Manifest, MapEntry, MaterialEntry, MaterialTexture, TableEntry, Target, material_buffer,
+};
+use luthier_material::{Diagnostic, Material, Severity};
+use luthier_shader::{MaterialSet, ShaderError};
+use luthier_texture::{Texture, TextureError, png};
+use rayon::prelude::*;
+use thiserror::Error;
+
+use crate::{GENERATOR, Map, Package, PackageError, Shader, Table, input, of_domain, sha256, sources};
+
+/// How a package is made, beside what its materials say. The default is all that `luthier bake` writes.
+#[derive(Clone)]
+pub struct Bake<'a> {
+    /// Limits, formats, whether tables are searched for.
+    pub options: Options,
+    /// Languages of the shaders.
+    pub targets: Vec<Target>,
+    /// Forms of the shaders; with [`Form::Full`] alone the package has no tables.
+    pub forms: Vec<Form>,
+    /// Told what happens.
+    pub observer: &'a dyn Observer,
+    /// Whether materials outside the domain of their model are refused; tests at the limits of models take them.
+    pub refuses: bool,
+}
+
+impl Default for Bake<'_> {
+    fn default() -> Self {
+        Self {
+            options: Options::default(),
+            targets: vec![Target::Wgsl, Target::Glsl450, Target::GlslEs300],
+            forms: Form::ALL.to_vec(),
+            observer: &Silent,
+            refuses: true,
+        }
+    }
+}
+
+impl Bake<'_> {
+    /// A package for a renderer: shaders in WGSL only.
+    pub fn wgsl(forms: &[Form]) -> Self {
+        Self { targets: vec![Target::Wgsl], forms: forms.to_vec(), ..Self::default() }
+    }
+}
+
+/// Why no package came of materials.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ExportError {
+    /// A file cannot be read, or a folder not listed.
+    #[error("cannot {action} {path}: {source}")]
+    File {
+        /// The action in words.
+        action: &'static str,
+        /// The file or folder.
+        path: String,
+        /// Error of the system.
+        source: io::Error,
+    },
+    /// A folder without material files.
+    #[error("no *.toml in the folder {folder}")]
+    NoFiles {
+        /// The folder.
+        folder: String,
+    },
+    /// Materials that are not valid, or outside the domain of their model.
+    #[error("{sentence}")]
+    Refused {
+        /// The refusal in a sentence.
+        sentence: String,
+        /// All that is wrong.
+        diagnostics: Vec<Diagnostic>,
+    },
+    /// The materials do not go together, or no tables hold their budget.
+    #[error(transparent)]
+    Bake(#[from] BakeError),
+    /// No shader came out.
+    #[error(transparent)]
+    Shader(#[from] ShaderError),
+    /// A map that a material names is no picture.
+    #[error("{material}: map {map}: {source}")]
+    Map {
+        /// The material file.
+        material: String,
+        /// The map, as the file names it.
+        map: String,
+        /// Fault of the picture.
+        source: TextureError,
+    },
+    /// The parts do not make a package.
+    #[error(transparent)]
+    Package(#[from] PackageError),
+}
+
+impl Package {
+    /// Bakes materials: tables as they need, then shaders that read them. What the store has is not computed again; what is computed goes
+    /// into it. Files that materials name are read beside the materials' own files.
+    ///
+    /// # Errors
+    /// [`ExportError`]. The bytes depend on nothing but the arguments and the files.
+    pub fn new(materials: &[Material], bake: &Bake<'_>, store: &dyn Store) -> Result<Self, ExportError> {
+        if bake.refuses {
+            refuse_foreign(materials)?;
+        }
+        let read = &sources::read_image as ImageReader<'_>;
+        if bake.forms == [Form::Full] {
+            // Without a shader that reads them there are no tables.
+            let options = Options { search: false, ..bake.options };
+            let mut outline = luthier_bake::outline_with(materials, &options, read)?;
+            outline.materials.iter_mut().for_each(BakedMaterial::forget_tables);
+            return Self::assemble(materials, &outline.materials, Vec::new(), bake);
+        }
+        let baked = luthier_bake::bake_with(materials, &bake.options, read, bake.observer, store)?;
+        let mut package = Self::assemble(materials, &baked.materials, baked.atlases, bake)?;
+        package.manifest.searches = baked.searches;
+        Ok(package)
+    }
+
+    fn assemble(
+        materials: &[Material],
+        baked: &[BakedMaterial],
+        atlases: Vec<Atlas>,
+        bake: &Bake<'_>,
+    ) -> Result<Self, ExportError> {
+        let (entries, maps) = material_entries(materials, baked)?;
+        let entry = |atlas: &Atlas| TableEntry {
+            tiles: atlas.tiles.clone(),
+            ..table_entry(atlas.kind, &atlas.layout, atlas.format)
+        };
+        let manifest = Manifest::new(GENERATOR, entries, atlases.iter().map(entry).collect());
+        let table =
+            |atlas: Atlas| Table { kind: atlas.kind, texture: Texture::from_atlas(&atlas), truth: Some(atlas.truth) };
+        let tables = atlases.into_iter().map(table).collect();
+        let mut package = Self::from_parts(manifest, tables, Vec::new())?;
+        package.maps = maps;
+        package.emit(&bake.targets, &bake.forms)?;
+        Ok(package)
+    }
+
+    /// Emits and validates the shaders, and describes what they bind. The bindings are those of the first form.
+    fn emit(&mut self, targets: &[Target], forms: &[Form]) -> Result<(), ExportError> {
+        let manifest = &mut self.manifest;
+        manifest.material_texture = MaterialTexture::of(material_buffer(&manifest.materials).len());
+        let set = MaterialSet::from_manifest(manifest);
+        let wanted: Vec<(Form, Target)> =
+            forms.iter().flat_map(|&form| targets.iter().map(move |&target| (form, target))).collect();
+        let shader = |(form, target)| {
+            let bytes = match target {
+                Target::SpirV => luthier_shader::emit_spirv(&set, form),
+                _ => luthier_shader::emit(&set, form, target).map(String::into_bytes),
+            };
+            Ok(Shader { form, target, bytes: bytes? })
+        };
+        self.shaders = wanted.into_par_iter().map(shader).collect::<Result<_, ShaderError>>()?;
+        let bindings = luthier_shader::bindings(&set, forms.first().copied().unwrap_or(Form::Baked));
+        manifest.bindings = bindings;
+        Ok(())
+    }
+
+    /// The package of some of the materials, by their numbers: with all tables, and with shaders for these materials alone.
+    ///
+    /// # Errors
+    /// [`ExportError`].
+    pub fn of_materials(&self, numbers: Range<usize>) -> Result<Self, ExportError> {
+        let mut package = self.clone();
+        package.manifest.materials = self.manifest.materials[numbers.clone()].to_vec();
+        let kept = |map: &Map| numbers.contains(&(map.material as usize));
+        package.maps = self.maps.iter().filter(|map| kept(map)).cloned().collect();
+        package.maps.iter_mut().for_each(|map| map.material -= numbers.start as u32);
+        let (mut targets, mut forms) = (Vec::new(), Vec::new());
+        for Shader { form, target, .. } in &self.shaders {
+            if !targets.contains(target) {
+                targets.push(*target);
+            }
+            if !forms.contains(form) {
+                forms.push(*form);
+            }
+        }
+        package.emit(&targets, &forms)?;
+        Ok(package)
+    }
+}
+
+/// The manifest that a bake of these materials would have, without its files: materials, tables without tiles, searches. Takes little
+/// computing, unless a material has a budget.
+///
+/// # Errors
+/// [`ExportError`].
+pub fn outline(materials: &[Material], options: &Options) -> Result<Manifest, ExportError> {
+    let outline = luthier_bake::outline_with(materials, options, &sources::read_image)?;
+    let (entries, _) = material_entries(materials, &outline.materials)?;
+    let tables = outline.tables.iter().map(|(kind, layout, format)| table_entry(*kind, layout, *format)).collect();
+    Ok(Manifest { searches: outline.searches, ..Manifest::new(GENERATOR, entries, tables) })
+}
+
+/// The hash of a material file and of all that it names: of its text, followed by the hash of each file, if it names any.
+///
+/// # Errors
+/// [`ExportError::File`].
+pub fn source_hash(material: &Material) -> Result<String, ExportError> {
+    let mut text = material.text.clone();
+    for path in &material.files {
+        text.push_str(&sha256(&named_file(material, path)?));
+    }
+    Ok(sha256(text.as_bytes()))
+}
+
+/// Refuses materials outside the domain of their model.
+fn refuse_foreign(materials: &[Material]) -> Result<(), ExportError> {
+    let doubts = materials.iter().flat_map(|material| of_domain(material, None));
+    let diagnostics: Vec<Diagnostic> = doubts.filter(|d| d.severity == Severity::Error).collect();
+    let Some(first) = diagnostics.first() else { return Ok(()) };
+    Err(ExportError::Refused { sentence: format!("{}: {}", first.label, first.message), diagnostics })
+}
+
+/// The manifest's entry of a table, without its tiles and files.
+fn table_entry(kind: TableKind, layout: &AtlasLayout, format: TexelFormat) -> TableEntry {
+    let [width, height] = layout.size();
+    TableEntry {
+        kind,
+        layout: layout.clone(),
+        format,
+        texel_bytes: u64::from(width) * u64::from(height) * u64::from(format.texel_bytes()),
+        texture: FileEntry::default(),
+        truth: FileEntry::default(),
+        picture: FileEntry::default(),
+        tiles: Vec::new(),
+    }
+}
+
+/// The manifest's entries of the materials, and their maps.
+fn material_entries(
+    materials: &[Material],
+    baked: &[BakedMaterial],
+) -> Result<(Vec<MaterialEntry>, Vec<Map>), ExportError> {
+    let (mut entries, mut maps) = (Vec::with_capacity(materials.len()), Vec::new());
+    for (number, (material, baked)) in (0..).zip(materials.iter().zip(baked)) {
+        let mut own = Vec::with_capacity(baked.maps.len());
+        for map in &baked.maps {
+            let (entry, image, png) = self::map(material, map)?;
+            maps.push(Map { material: number, slot: map.slot, layer: map.layer, image, png });
+            own.push(entry);
+        }
+        entries.push(MaterialEntry {
+            name: material.name.clone(),
+            source: material.source.clone(),
+            source_hash: source_hash(material)?,
+            class: material.class.letter().to_string(),
+            model: baked.model,
+            color: baked.color,
+            wavelengths_nm: material.bake.wavelengths_nm(),
+            constants: baked.constants.clone(),
+            layers: baked.records.clone(),
+            maps: own,
+        });
+    }
+    Ok((entries, maps))
+}
+
+/// A map as it ships: an image as it is, noise as a grey PNG.
+fn map(material: &Material, map: &MaterialMap) -> Result<(MapEntry, Image, Vec<u8>), ExportError> {
+    let label = map.source.label();
+    let unusable = |source| ExportError::Map { material: material.source.clone(), map: map.source.label(), source };
+    let bytes = match &map.source {
+        MapSource::File(path) => named_file(material, path)?,
+        MapSource::Noise { .. } => {
+            let texels = map.source.texels().unwrap_or_else(|| Image::zeros(1, 1, 1));
+            png::encode_gray(&texels).map_err(unusable)?
+        }
+    };
+    let image = png::decode(&bytes).map_err(unusable)?;
+    let layer = map.layer.map_or_else(String::new, |layer| format!("-{layer}"));
+    let path = format!("maps/{}-{}{layer}.png", material.name, map.slot.name());
+    let file = FileEntry { path, sha256: sha256(&bytes) };
+    let (slot, layer, width, height) = (map.slot, map.layer, image.width, image.height);
+    Ok((MapEntry { slot, layer, source: label, file, width, height }, image, bytes))
+}
+
+/// A file that a material names.
+fn named_file(material: &Material, path: &str) -> Result<Vec<u8>, ExportError> {
+    let path = sources::beside(&material.source, path);
+    input::image(&path).map_err(|source| file("read", &path, source))
+}
+
+/// An error of the system about a file.
+pub(crate) fn file(action: &'static str, path: &Path, source: io::Error) -> ExportError {
+    ExportError::File { action, path: path.display().to_string(), source }
+}

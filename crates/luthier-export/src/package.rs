@@ -1,0 +1,134 @@
+//! A package: all that a bake made, in memory.
+
+use std::path::Path;
+
+use luthier_lut::{Image, TableKind};
+use luthier_manifest::{Form, Manifest, MapSlot, MaterialEntry, Target};
+use luthier_texture::Texture;
+
+use crate::{Folder, PackageError, publish};
+
+/// A bake in memory: the manifest, the texels of its tables, its shaders, the maps of its materials.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Package {
+    /// The manifest. Until files are made of the package, its entries of files have no hashes.
+    pub manifest: Manifest,
+    /// One for each table of the manifest, in its order.
+    pub tables: Vec<Table>,
+    /// The emitted shaders; those in WGSL where the package was read from a folder.
+    pub shaders: Vec<Shader>,
+    /// Maps of the materials, in the manifest's order. Materials without maps are the same at every place.
+    pub maps: Vec<Map>,
+}
+
+/// The texels of a table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    /// Kind of the table.
+    pub kind: TableKind,
+    /// Texels as they ship.
+    pub texture: Texture,
+    /// The values before they were rounded to texels; `None` where the package was read from a folder.
+    pub truth: Option<Image>,
+}
+
+/// An emitted shader: functions only, no entry point.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Shader {
+    /// How it evaluates a material.
+    pub form: Form,
+    /// Its language.
+    pub target: Target,
+    /// UTF-8 text, or the words of SPIR-V, little-endian.
+    pub bytes: Vec<u8>,
+}
+
+/// A map of a material.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Map {
+    /// Number of the material.
+    pub material: u32,
+    /// Quantity that the map varies.
+    pub slot: MapSlot,
+    /// The layer that it is of; `None` for those of the whole surface.
+    pub layer: Option<u32>,
+    /// RGBA, linear.
+    pub image: Image,
+    /// The PNG file.
+    pub png: Vec<u8>,
+}
+
+impl Shader {
+    /// A shader in WGSL.
+    pub fn wgsl(form: Form, text: String) -> Self {
+        Self { form, target: Target::Wgsl, bytes: text.into_bytes() }
+    }
+
+    /// The text; empty for SPIR-V.
+    pub fn text(&self) -> &str {
+        std::str::from_utf8(&self.bytes).unwrap_or_default()
+    }
+}
+
+impl Package {
+    /// Reads the bake in a folder: its manifest, tables, shaders in WGSL, and maps. While luthier publishes into the folder, this waits.
+    ///
+    /// # Errors
+    /// [`PackageError`] when a file is missing, damaged, from another bake or outside the folder; those of [`Package::from_parts`].
+    pub fn read(folder: &Path) -> Result<Self, PackageError> {
+        let _lock = publish::shared(folder);
+        Folder::open(folder)?.package()
+    }
+
+    /// A package of parts in memory, without maps. Tables may come in any order.
+    ///
+    /// # Errors
+    /// When a table of the manifest has no texels or others than its entry says, and when there is nothing to shade.
+    pub fn from_parts(manifest: Manifest, mut tables: Vec<Table>, shaders: Vec<Shader>) -> Result<Self, PackageError> {
+        if manifest.materials.is_empty() {
+            return Err(PackageError::NoMaterials);
+        }
+        if let Some(MaterialEntry { name, .. }) = manifest.materials.iter().find(|m| m.layers.is_empty()) {
+            return Err(PackageError::NoLayers { name: name.clone() });
+        }
+        let mut ordered = Vec::with_capacity(manifest.tables.len());
+        for entry in &manifest.tables {
+            let position = tables.iter().position(|t| t.kind == entry.kind);
+            let table = tables.swap_remove(position.ok_or(PackageError::MissingTexels { kind: entry.kind })?);
+            let Texture { format, width, height, bytes } = &table.texture;
+            entry.check([*width, *height], *format, bytes.len())?;
+            ordered.push(table);
+        }
+        Ok(Self { manifest, tables: ordered, shaders, maps: Vec::new() })
+    }
+
+    /// The texels of a table, if the package has it.
+    pub fn table(&self, kind: TableKind) -> Option<&Texture> {
+        self.tables.iter().find(|t| t.kind == kind).map(|t| &t.texture)
+    }
+
+    /// The texels of all tables as a shader reads them.
+    ///
+    /// # Errors
+    /// [`PackageError::Texels`] where bytes are not those of their format.
+    pub fn textures(&self) -> Result<Vec<(TableKind, Image)>, PackageError> {
+        self.tables.iter().map(|table| Ok((table.kind, table.texture.image()?))).collect()
+    }
+
+    /// The WGSL of a form.
+    ///
+    /// # Errors
+    /// [`PackageError::NoShader`].
+    pub fn wgsl(&self, form: Form) -> Result<&str, PackageError> {
+        let texts = || self.shaders.iter().filter(|s| s.target == Target::Wgsl);
+        texts().find(|s| s.form == form).map(Shader::text).ok_or_else(|| PackageError::NoShader {
+            form,
+            known: texts().map(|s| s.form.name()).collect::<Vec<_>>().join(", "),
+        })
+    }
+
+    /// Bytes of the texels of all tables.
+    pub fn texel_bytes(&self) -> u64 {
+        self.manifest.tables.iter().map(|table| table.texel_bytes).sum()
+    }
+}

@@ -1,0 +1,159 @@
+//! Publication of files into a folder, all or none.
+//!
+//! Files are staged in `.luthier-new/`. Its renaming to `.luthier-ready/` is the moment of publication: before it the folder
+//! holds the old generation, after it [`crate::Folder`] reads the new one. Then every file is moved to its place, the manifest last. A
+//! program that was killed between leaves `.luthier-ready/`, whose files the next publication moves before its own; a `.luthier-new/` is
+//! removed. One program publishes into a folder at a time: others wait for its lock on `.luthier.lock`.
+
+use std::collections::BTreeSet;
+use std::fs::{File, OpenOptions};
+use std::io::{self, ErrorKind};
+use std::path::{Component, Path, PathBuf};
+
+use serde_json::Value;
+
+use crate::{MANIFEST, PackageError};
+
+/// Folder of the files that are being written.
+const NEW: &str = ".luthier-new";
+/// Folder of complete files that are being moved to their places.
+pub(crate) const READY: &str = ".luthier-ready";
+/// File that a program locks while it publishes.
+const LOCK: &str = ".luthier.lock";
+
+/// Folder of the report beside the manifest.
+pub const REPORT_FOLDER: &str = "report";
+
+/// The report: for programs, for pull requests, and for people.
+pub const REPORT_FILES: [&str; 3] = ["report/report.json", "report/report.md", "report/index.html"];
+
+/// Writes files into a folder, which is made if it does not exist: all of them, or none. Where one is a manifest, what the manifest before
+/// it named is removed unless it is written again, the report on that bake too.
+///
+/// # Errors
+/// [`PackageError::Write`]; the folder then holds the files that it held.
+pub fn publish(folder: &Path, files: &[(&str, &[u8])]) -> Result<(), PackageError> {
+    at("make the folder", folder, std::fs::create_dir_all(folder))?;
+    let lock = folder.join(LOCK);
+    let lock_file = OpenOptions::new().create(true).truncate(false).write(true).open(&lock);
+    let lock_file = at("write to", folder, lock_file)?;
+    at("lock", &lock, lock_file.lock())?;
+    settle(folder)?;
+    let new = folder.join(NEW);
+    let staged = stage(folder, &new, files);
+    if staged.is_err() {
+        let _ = std::fs::remove_dir_all(&new);
+    }
+    staged?;
+    at("write to", folder, std::fs::rename(&new, folder.join(READY)))?;
+    settle(folder)
+}
+
+/// A lock that keeps others from publishing into a folder; `None` where nobody ever did, or where the folder cannot be written to.
+pub(crate) fn shared(folder: &Path) -> Option<File> {
+    let lock = File::open(folder.join(LOCK)).ok()?;
+    lock.lock_shared().ok()?;
+    Some(lock)
+}
+
+/// Writes all files into a folder of their own, and makes sure that nothing is in the way of any.
+fn stage(folder: &Path, new: &Path, files: &[(&str, &[u8])]) -> Result<(), PackageError> {
+    at("write to", folder, std::fs::create_dir(new))?;
+    for (path, bytes) in files {
+        let (file, place) = (new.join(path), folder.join(path));
+        for parent in [file.parent(), place.parent()].into_iter().flatten() {
+            at("make the folder", parent, std::fs::create_dir_all(parent))?;
+        }
+        if place.is_dir() {
+            return at("write", &place, Err(ErrorKind::IsADirectory.into()));
+        }
+        at("write", &place, std::fs::write(&file, bytes))?;
+    }
+    Ok(())
+}
+
+/// Moves what is ready to its places, the manifest last, and removes what an interrupted program left.
+fn settle(folder: &Path) -> Result<(), PackageError> {
+    let (new, ready) = (folder.join(NEW), folder.join(READY));
+    if new.exists() {
+        at("remove", &new, std::fs::remove_dir_all(&new))?;
+    }
+    if !ready.exists() {
+        return Ok(());
+    }
+    let mut files = Vec::new();
+    at("list", &ready, list(&ready, &mut files))?;
+    let relative = |file: &PathBuf| file.strip_prefix(&ready).map(Path::to_owned).unwrap_or_default();
+    let (mut manifest, others): (Vec<_>, Vec<_>) =
+        files.iter().map(relative).partition(|path| path == Path::new(MANIFEST));
+    for path in &others {
+        at("write", &folder.join(path), std::fs::rename(ready.join(path), folder.join(path)))?;
+    }
+    if let Some(path) = manifest.pop() {
+        remove_stale(folder, &ready.join(&path))?;
+        at("write", &folder.join(&path), std::fs::rename(ready.join(&path), folder.join(&path)))?;
+    }
+    at("remove", &ready, std::fs::remove_dir_all(&ready))
+}
+
+/// Removes what the manifest in place names and the next one does not.
+fn remove_stale(folder: &Path, next: &Path) -> Result<(), PackageError> {
+    // Unreadable is as good as none: it names nothing.
+    let [old, next] = [&folder.join(MANIFEST), next].map(|path| std::fs::read_to_string(path).unwrap_or_default());
+    if old == next {
+        return Ok(());
+    }
+    let current: BTreeSet<String> = named_by(&next).into_iter().collect();
+    let mut stale = named_by(&old);
+    if stale.is_empty() {
+        return Ok(());
+    }
+    stale.retain(|path| !current.contains(path));
+    stale.extend(REPORT_FILES.map(str::to_owned));
+    for path in stale.iter().map(|path| folder.join(path)).filter(|path| path.is_file()) {
+        at("remove", &path, std::fs::remove_file(&path))?;
+    }
+    // Stays if something else is in it.
+    let _ = std::fs::remove_dir(folder.join(REPORT_FOLDER));
+    Ok(())
+}
+
+/// The files that a manifest of luthier, of any schema, names with a hash, as far as they lie inside its folder.
+fn named_by(manifest: &str) -> Vec<String> {
+    let Ok(manifest) = serde_json::from_str::<Value>(manifest) else { return Vec::new() };
+    if !manifest["generator"].as_str().is_some_and(|g| g.starts_with("luthier ")) {
+        return Vec::new();
+    }
+    let mut paths = Vec::new();
+    let mut open = vec![&manifest];
+    while let Some(value) = open.pop() {
+        match value {
+            Value::Array(items) => open.extend(items),
+            Value::Object(entries) => {
+                if let (Some(Value::String(path)), Some(Value::String(_))) =
+                    (entries.get("path"), entries.get("sha256"))
+                {
+                    paths.push(path.clone());
+                }
+                open.extend(entries.values());
+            }
+            _ => {}
+        }
+    }
+    paths.retain(|p| Path::new(p).components().all(|part| matches!(part, Component::Normal(_))));
+    paths
+}
+
+/// All files below a folder.
+fn list(folder: &Path, files: &mut Vec<PathBuf>) -> io::Result<()> {
+    for entry in std::fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() { list(&path, files)? } else { files.push(path) }
+    }
+    files.sort();
+    Ok(())
+}
+
+fn at<T>(action: &'static str, path: &Path, result: io::Result<T>) -> Result<T, PackageError> {
+    result.map_err(|source| PackageError::Write { action, path: path.to_owned(), source })
+}
