@@ -6,9 +6,16 @@ cd "$(dirname "$0")/.."
 
 luthier() { cargo run --quiet --release --locked -p luthier-cli -- "$@"; }
 
-for name in red-lacquer brass-foil car-paint copper-patina anodised-titanium soap-film sugar silver-paint; do
-  luthier preview "materials/$name.toml" -o "docs/images/$name.png" --size 192
+sheet=()
+for name in red-lacquer anodised-titanium car-paint brass-foil soap-film chromium-car-paint brushed-aluminium yamaguchi-brushed; do
+  sheet+=("materials/$name.toml")
 done
+luthier gallery "${sheet[@]}" -o docs/images/materials.png --size 232 --columns 4
+# The example of the README, as it stands there.
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+awk '/^```toml$/ { on = 1; next } /^```$/ { on = 0 } on' README.md >"$work/enamel.toml"
+luthier preview "$work/enamel.toml" -o docs/images/enamel.png --size 192
 # Scenes choose by these costs: they are part of the program.
 luthier cost materials materials/scenes/still-life --shapes -o crates/luthier-scene/data/cost.json
 luthier cost materials -o docs/cost.md
