@@ -1,5 +1,5 @@
 #!/bin/sh
-# Times every evaluation and prints a Markdown table: ./scripts/bench-table.sh > docs/speed.md
+# Times every evaluation and prints a Markdown table: ./scripts/bench-table.sh > docs/pages/speed.md
 # Takes half a minute to two. Other work on the machine shows as spread, and in the rows of milliseconds as time.
 set -eu
 cd "$(dirname "$0")/.."
@@ -14,7 +14,7 @@ cpu=$(sed -n 's/^model name[[:space:]]*: *//p' /proc/cpuinfo 2>/dev/null | head 
 cat <<TEXT
 # Speed of the evaluations in f64
 
-Made by \`scripts/bench-table.sh > docs/speed.md\`. One thread; $cpu; $(rustc --version); profile \`bench\`.
+Made by \`scripts/bench-table.sh > docs/pages/speed.md\`. One thread; $cpu; $(rustc --version); profile \`bench\`.
 
 A row is a bench: *median* and *fastest* of its samples in nanoseconds per call, *spread* their mean over the fastest,
 *phong* the median over that of \`functions/bare_conductor/phong\` in the same run, whose coefficients are made from the

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Bakes the slope distribution in every mapping and texel format and prints a page of the measured errors, relative to the peak of D:
-# scripts/compare-distribution.sh > docs/distribution-table.md. Takes a minute; needs python3 for the JSON.
+# scripts/compare-distribution.sh > docs/pages/distribution-table.md. Takes a minute; needs python3 for the JSON.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 cargo build --release --locked -p luthier-cli >&2
@@ -41,7 +41,7 @@ cat <<'HEAD'
 # The slope distribution, in every mapping
 
 Errors of the table of pi alpha^2 D as sampled (bilinear, 8-bit weights, quantised), so relative to the peak of D. "Worst at" is (theta_h or
-cos theta_h, alpha). Made by `scripts/compare-distribution.sh > docs/distribution-table.md`. A bake has this table only where a material
+cos theta_h, alpha). Made by `scripts/compare-distribution.sh > docs/pages/distribution-table.md`. A bake has this table only where a material
 asks for it in `[bake.distribution]`: the closed forms cost less.
 
 HEAD

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Bakes libraries of 100, 1,000 and 10,000 generated materials (or of the sizes given), and writes time, memory and bytes to
-# docs/scale.md. Needs GNU time (on Debian: apt-get install time).
+# docs/pages/scale.md. Needs GNU time (on Debian: apt-get install time).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 sizes=("$@")
 [ ${#sizes[@]} -gt 0 ] || sizes=(100 1000 10000)
 out=target/many
-page=docs/scale.md
+page=docs/pages/scale.md
 mkdir -p "$out"
 
 cargo build --locked --quiet --release -p luthier-cli
@@ -23,7 +23,7 @@ mega() { awk -v bytes="$1" 'BEGIN { printf "%.1f", bytes / 1e6 }'; }
   echo
   echo "Made by \`scripts/many.sh\`: libraries of generated materials (\`crates/luthier-material/examples/library\`, seed 1) of one to four"
   echo "layers, baked by \`luthier bake FOLDER\` with \`$(nproc)\` cores. Time is that of the whole command, memory its largest resident set; tables"
-  echo "are the KTX2 files, as they ship. Sizes are in MB of 10^6 bytes. Limits are in [manifest.md](manifest.md)."
+  echo "are the KTX2 files, as they ship. Sizes are in MB of 10^6 bytes. Limits are in [manifest.md](../manifest.md)."
   echo
   echo "| materials | layers | seconds | processor seconds | memory MB | tables | truth and pictures | material buffer | manifest | shaders |"
   echo "|---|---|---|---|---|---|---|---|---|---|"

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Lines and bytes of the emitted shader for three scenes, as a Markdown table: what a scene does not use is not in its code.
-#   scripts/shader-size.sh > docs/shader-size.md
+#   scripts/shader-size.sh > docs/pages/shader-size.md
 set -eu
 cd "$(dirname "$0")/.."
 cargo build --quiet --release --locked -p luthier-cli --no-default-features

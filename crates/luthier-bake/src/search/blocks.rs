@@ -1,4 +1,4 @@
-//! Blocks of 4 x 4 texels beside texels by themselves, for `docs/budgets.md`.
+//! Blocks of 4 x 4 texels beside texels by themselves, for `docs/pages/budgets.md`.
 
 use luthier_lut::{Axis, Image, Mapping, SchlickBase, TexelFormat, WeightBits, bilinear};
 use luthier_manifest::{Candidate, CandidateForm};

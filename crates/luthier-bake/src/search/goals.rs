@@ -1,4 +1,4 @@
-//! Errors and sizes that searches reach against the fixed tables of the literature, for `docs/budgets.md`.
+//! Errors and sizes that searches reach against the fixed tables of the literature, for `docs/pages/budgets.md`.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -89,7 +89,7 @@ pub struct Step {
     pub chosen: Result<Candidate, String>,
 }
 
-/// All goals of `docs/budgets.md`, as measured.
+/// All goals of `docs/pages/budgets.md`, as measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Goals {
     /// The rows within [`ROW_BYTES`] whose least gain is largest.

@@ -1,5 +1,5 @@
 //! One table of Fresnel reflectance over three axes for all interfaces, as the course has it (section 3.4.1), beside rows: for
-//! `docs/budgets.md`.
+//! `docs/pages/budgets.md`.
 //!
 //! It is read once for each channel, at the channel's index; films have none, and colours integrated over spectra only nearly.
 

@@ -45,7 +45,7 @@ pub(super) fn write(out: &mut String, report: &Report) {
         || "models against simulated paths (layered-mc)".to_owned(),
         |r| format!("models that ship against layered-mc, {} paths a view, seed {}", r.paths, r.seed),
     );
-    let missing = "not measured in this run: luthier report --reference; docs/models.md has all models";
+    let missing = "not measured in this run: luthier report --reference; docs/pages/models.md has all models";
     let lobe = model.map(|(material, a)| {
         (
             a.lobe_err,

@@ -54,9 +54,9 @@ fn pages_say_what_the_code_says() {
     }
 }
 
-/// The pages that people write and read: those in the root, in `docs/` and of the examples.
+/// The pages that people read: those in the root, in `docs/` and of the examples.
 fn pages(root: &Path) -> Vec<PathBuf> {
-    let mut folders = vec![root.to_owned(), root.join("docs"), root.join("docs/measurements")];
+    let mut folders = vec![root.to_owned(), root.join("docs"), root.join("docs/pages"), root.join("docs/measurements")];
     folders.extend(fs::read_dir(root.join("examples")).unwrap().map(|entry| entry.unwrap().path()));
     let files = folders.iter().filter(|folder| folder.is_dir()).flat_map(|folder| fs::read_dir(folder).unwrap());
     files.map(|entry| entry.unwrap().path()).filter(|path| path.extension().is_some_and(|e| e == "md")).collect()
