@@ -8,7 +8,8 @@
 use luthier_optics::interface::Interface;
 use luthier_optics::stack::{Base, Stack};
 
-use crate::elek::{MODEL, REFRACTION_WAVELENGTH_NM};
+use crate::elek::MODEL;
+use crate::refraction::REFRACTION_WAVELENGTH_NM;
 
 /// Quantity that a domain is a range of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -9,45 +9,28 @@
 //!
 //! Out of scope: reading material files, tables, devices.
 
-pub mod belcour;
-pub mod closed_form;
-pub mod densities;
-pub mod diffuse;
+mod effects;
+mod models;
+mod noise;
+mod references;
+mod twins;
+
 pub mod directional_albedo;
 pub mod domain;
-pub mod elek;
-pub mod elek_model;
-pub mod facets;
-pub mod flakes;
-pub mod fluorescence;
 pub mod frame;
 pub mod furnace;
-pub mod granier_heidrich;
-mod hash;
-pub mod heterogeneous;
 pub mod inputs;
-pub mod interface_fresnel;
-pub mod layered_mc;
 mod memo;
-pub mod microfacet;
 pub mod model;
 pub mod monochrome;
-pub mod normals;
-pub mod oren_nayar;
-pub mod patina;
-pub mod perlin;
-pub mod phong;
-pub mod plane_stack;
-pub mod random_walk;
-pub mod real_time;
 pub mod registry;
-pub mod shaded;
-pub mod statistics;
-pub mod terms;
-pub mod textured;
-pub mod transfer_matrix;
-pub mod voronoi;
-pub mod weidlich_wilkie;
-pub mod weidlich_wilkie_corrected;
-pub mod weidlich_wilkie_sampling;
-pub mod yamaguchi;
+
+pub use self::noise::{perlin, voronoi};
+pub use effects::{flakes, fluorescence, heterogeneous, patina, textured};
+pub use models::{
+    belcour, densities, diffuse, elek, elek_model, facets, granier_heidrich, interface_fresnel, microfacet, normals,
+    oren_nayar, phong, refraction, statistics, weidlich_wilkie, weidlich_wilkie_corrected, weidlich_wilkie_sampling,
+    yamaguchi,
+};
+pub use references::{closed_form, layered_mc, plane_stack, random_walk, transfer_matrix};
+pub use twins::{real_time, shaded, terms};

@@ -5,10 +5,10 @@ use std::f64::consts::PI;
 use glam::{DVec2, DVec3};
 
 use crate::elek_model;
-use crate::hash;
 use crate::inputs::{Input, Inputs};
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::Monochrome;
+use crate::noise::hash;
 
 /// Flakes below the first interface, one per cell of a grid, each with a normal of its own (Elek 2010, section 4.1).
 #[derive(Debug, Clone, Copy, PartialEq)]

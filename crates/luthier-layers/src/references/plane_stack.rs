@@ -1,6 +1,7 @@
 //! A stack of plane interfaces between thick slabs: powers add, phases do not.
 
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
+use crate::refraction::refracted_cosine;
 use luthier_optics::fresnel::coated;
 use num_complex::Complex64;
 
@@ -17,12 +18,6 @@ pub struct Powers {
 
 /// Powers of no interface: all light passes.
 const CLEAR: Powers = Powers { transmittance: 1.0, above: 0.0, below: 0.0 };
-
-/// Cosine below an interface, from the cosine above and the ratio of indices, or `None` under total reflection.
-fn refracted_cosine(cos: f64, eta: f64) -> Option<f64> {
-    let cos_sq = (cos * cos + (eta - 1.0) * (eta + 1.0)) / (eta * eta);
-    (cos_sq > 0.0).then(|| libm::sqrt(cos_sq).min(1.0))
-}
 
 /// The first `count` interfaces of a stack as if they were smooth, each with the slab below it, for the direction that makes
 /// `cos_theta` with the normal in the medium below them. Adding of powers (Stokes 1862) per interface.

@@ -13,10 +13,10 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use crate::elek::refract;
 use crate::facets::Facets;
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 use crate::plane_stack::seen_from_above;
+use crate::refraction::refract;
 
 /// A proposed direction.
 #[derive(Debug, Clone, Copy, PartialEq)]

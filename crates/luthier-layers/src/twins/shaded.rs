@@ -8,12 +8,12 @@ use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Distribution, Stack, Surface};
 
-use crate::elek::{self, ALPHA_MIN, Terms};
+use crate::elek::{self, ALPHA_MIN};
 use crate::frame;
 use crate::real_time::{Twin, Under};
 use crate::statistics::diffuse_base::Veil;
 use crate::statistics::energy::Energy;
-use crate::terms::{Exact, ShaderTerms};
+use crate::terms::{Exact, ShaderTerms, Terms};
 use crate::textured::TextureSample;
 
 /// Values of textures and effects at one place of a surface: `LuthierPlace` of the shaders.

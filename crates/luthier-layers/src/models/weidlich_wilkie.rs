@@ -18,12 +18,12 @@
 
 use glam::DVec3;
 
-use crate::elek::refract;
 use crate::facets::{Facets, Masking};
 use crate::frame;
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow, Optics};
 use crate::oren_nayar;
+use crate::refraction::{refract, refract_at};
 
 /// Normal at which both directions are refracted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -157,11 +157,4 @@ impl WeidlichWilkie {
         }
         total
     }
-}
-
-/// Refraction at a facet, the direction turned to point up again.
-fn refract_at(m: DVec3, w: DVec3, eta: f64) -> Option<DVec3> {
-    let cos = w.dot(m);
-    let cos_sq = (cos * cos + (eta - 1.0) * (eta + 1.0)) / (eta * eta);
-    (cos_sq > 0.0).then(|| (w - m * cos) / eta + m * cos_sq.sqrt())
 }

@@ -19,12 +19,12 @@
 use glam::DVec3;
 use luthier_optics::quadrature::gauss_legendre;
 
-use crate::elek::refract;
 use crate::facets::{Facets, Masking};
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 use crate::oren_nayar;
 use crate::plane_stack::{diffuse_return, seen_from_above, seen_from_below};
+use crate::refraction::refract;
 
 /// Quadrature points per smooth piece of the diffuse mean: 1e-7 without absorption.
 const POINTS: usize = 32;

@@ -8,10 +8,31 @@ use luthier_optics::interface::{Interface, Sampled};
 use luthier_optics::microfacet;
 use luthier_optics::stack::{Distribution, Stack};
 
-use crate::elek::Terms;
 use crate::statistics::diffuse_base::Veil;
 use crate::statistics::energy::{ColorEnergy, Energy};
 use crate::statistics::layers::Layers;
+
+/// The factors of a model that can be read from tables. Layers are numbered from the top.
+pub trait Terms {
+    /// Fresnel reflectance of the interface of a layer.
+    fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb;
+
+    /// `pi alpha^2 D(theta_h, alpha)` of the slope distribution of a layer, from the cosine and the squared sine of theta_h.
+    fn distribution(
+        &self,
+        layer: usize,
+        distribution: Distribution,
+        alpha: f64,
+        cos_theta_h: f64,
+        sin_theta_h_sq: f64,
+    ) -> f64;
+
+    /// `2 cos(2 Phi)` of the film of a layer, in one colour channel, for the sum of the cosines in it; `None` where no table holds it,
+    /// and it is to be computed. Elek's model has no use for it.
+    fn swing(&self, _layer: usize, _channel: usize, _cosines: f64) -> Option<f64> {
+        None
+    }
+}
 
 /// All that the shaders of any model are given: what [`Terms`] are, and for `belcour` and `yamaguchi` energies, and what layers do
 /// to the light of a diffuse base.

@@ -5,10 +5,11 @@ use luthier_optics::Rgb;
 use luthier_optics::microfacet;
 use luthier_optics::stack::{Diffuse, Distribution};
 
-use crate::elek::{self, ALPHA_MIN, Below, Layer, Terms};
+use crate::elek::{self, ALPHA_MIN, Below, Layer};
 use crate::inputs::Input;
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
+use crate::terms::Terms;
 
 /// The real-time model of [`elek`] with exact terms at one wavelength: the index that bends the directions is the wavelength's
 /// own, where the colour form has one scalar.

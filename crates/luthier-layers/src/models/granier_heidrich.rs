@@ -34,11 +34,11 @@ use std::f64::consts::{FRAC_1_PI, PI};
 
 use glam::DVec3;
 
-use crate::elek::refract;
 use crate::facets::ALPHA_MIN;
 use crate::inputs::{Input, Inputs};
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow, Optics};
+use crate::refraction::refract;
 
 /// A film as the model takes it, at one wavelength.
 #[derive(Debug, Clone, Copy, PartialEq)]

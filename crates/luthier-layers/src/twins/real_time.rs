@@ -13,16 +13,17 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::{Base, Stack, Surface};
 
-use crate::elek::{self, ALPHA_MIN, REFRACTION_WAVELENGTH_NM, Terms};
+use crate::elek::{self, ALPHA_MIN};
 use crate::granier_heidrich::GranierHeidrich;
 use crate::microfacet::{Components, Microfacet};
 use crate::monochrome::{Monochrome, MonochromeBelow, Optics, in_color};
 use crate::phong::Coefficients;
+use crate::refraction::REFRACTION_WAVELENGTH_NM;
 use crate::statistics::diffuse_base::DiffuseBase;
 use crate::statistics::evaluate::{Follow, evaluate};
 use crate::statistics::layers::Layers;
 use crate::statistics::spread::{Covariance, Spread};
-use crate::terms::ShaderTerms;
+use crate::terms::{ShaderTerms, Terms};
 use crate::weidlich_wilkie::WeidlichWilkie;
 
 /// Normals below the first interface of a surface: those of `LuthierPlace`, each unit.

@@ -7,6 +7,7 @@ use luthier_optics::albedo::COS_THETA_MIN;
 use super::energy::Energy;
 use super::layers::{Below, Layers};
 use super::spread::Spread;
+use crate::refraction::cos_theta_t_sq;
 
 /// Number of inter-reflections that spread light, at most. Between two perfect reflectors it is infinite, and so are
 /// variances.
@@ -102,7 +103,7 @@ pub fn add<S: Spread, const C: usize>(stack: &Layers<C>, energy: &impl Energy<C>
             break;
         };
         let n12 = ior / layer.above;
-        let cos_t_sq = (cos_i * cos_i + (n12 - 1.0) * (n12 + 1.0)) / (n12 * n12);
+        let cos_t_sq = cos_theta_t_sq(cos_i, n12);
         if cos_t_sq <= 0.0 {
             (t0i, ti0, cos_i) = ([0.0; C], [0.0; C], 0.0);
             break;

@@ -19,16 +19,16 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use luthier_optics::Rgb;
+use luthier_optics::masking::v_cavity;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Stack};
 
+use crate::refraction::{REFRACTION_WAVELENGTH_NM, refract};
+use crate::terms::Terms;
 use crate::{frame, oren_nayar};
 
 /// Smallest slope parameter of the model. Smoother surfaces are evaluated with this one: a lobe 0.06 degrees wide, well
 /// below what one pixel or one light source resolves, and still safe in f32.
 pub const ALPHA_MIN: f64 = 1e-3;
-
-/// Wavelength at which one scalar index bends the refracted directions (sodium D).
-pub const REFRACTION_WAVELENGTH_NM: f64 = 589.3;
 
 /// The model's name, as manifests and reports give it.
 pub const MODEL: &str = "elek";
@@ -58,28 +58,6 @@ pub enum Below {
     Conductor,
     /// The layer is a diffuse base, without an interface of its own.
     Diffuse(Diffuse),
-}
-
-/// The factors of a model that can be read from tables. Layers are numbered from the top.
-pub trait Terms {
-    /// Fresnel reflectance of the interface of a layer.
-    fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb;
-
-    /// `pi alpha^2 D(theta_h, alpha)` of the slope distribution of a layer, from the cosine and the squared sine of theta_h.
-    fn distribution(
-        &self,
-        layer: usize,
-        distribution: Distribution,
-        alpha: f64,
-        cos_theta_h: f64,
-        sin_theta_h_sq: f64,
-    ) -> f64;
-
-    /// `2 cos(2 Phi)` of the film of a layer, in one colour channel, for the sum of the cosines in it; `None` where no table holds it,
-    /// and it is to be computed. [`eval`] has no use for it.
-    fn swing(&self, _layer: usize, _channel: usize, _cosines: f64) -> Option<f64> {
-        None
-    }
 }
 
 /// The layers of a stack as the model sees them.
@@ -166,18 +144,6 @@ pub fn eval_below(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3, no
         (wi_local, wo_local) = (wi_below, wo_below);
     }
     total
-}
-
-/// Masking and shadowing of V-cavities (Torrance and Sparrow 1967; Cook and Torrance 1982, eq. 9).
-pub fn v_cavity(cos_theta_i: f64, cos_theta_o: f64, cos_theta_h: f64, cos_theta_d: f64) -> f64 {
-    (2.0 * cos_theta_h * cos_theta_i.min(cos_theta_o) / cos_theta_d).min(1.0)
-}
-
-/// The direction in the medium below, turned to point up again, or `None` when it is totally reflected. The tangential part
-/// keeps its sign.
-pub(crate) fn refract(w: DVec3, eta: f64) -> Option<DVec3> {
-    let cos_sq = (w.z * w.z + (eta - 1.0) * (eta + 1.0)) / (eta * eta);
-    (cos_sq > 0.0).then(|| DVec3::new(w.x / eta, w.y / eta, cos_sq.sqrt()))
 }
 
 fn add(total: &mut Rgb, weight: Rgb, value: Rgb) {

@@ -2,8 +2,9 @@
 
 use luthier_optics::stack::{Base, Stack, Surface};
 
-use crate::elek::{ALPHA_MIN, REFRACTION_WAVELENGTH_NM};
+use crate::elek::ALPHA_MIN;
 use crate::monochrome::{Monochrome, MonochromeBelow};
+use crate::refraction::REFRACTION_WAVELENGTH_NM;
 
 /// A stack in `C` channels that share their directions: one wavelength, or three colours.
 #[derive(Debug, Clone, PartialEq)]

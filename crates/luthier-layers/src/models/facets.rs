@@ -11,7 +11,6 @@ use luthier_optics::masking::{self, Correlation};
 use luthier_optics::stack::{Distribution, Surface};
 use luthier_optics::{microfacet, visible_normals};
 
-use crate::elek::v_cavity;
 use crate::monochrome::Optics;
 
 /// Slope parameters below this one are evaluated as this one: a lobe 0.006 degrees wide. A model of finite lobes has no other
@@ -58,7 +57,7 @@ impl Masking {
         let masking = match self {
             Self::Smith => masking::smith(Correlation::Height, lambda(wi), lambda(wo)),
             Self::SmithSeparable => masking::smith(Correlation::Separable, lambda(wi), lambda(wo)),
-            Self::VCavity => v_cavity(wi.z, wo.z, wh.z, cos_theta_d),
+            Self::VCavity => masking::v_cavity(wi.z, wo.z, wh.z, cos_theta_d),
             Self::Kelemen => masking::kelemen(wi.z, wo.z, cos_theta_d),
             Self::SchlickSmith => masking::schlick_smith(alpha, wi.z, wo.z),
             Self::Implicit => masking::implicit(wi.z, wo.z),

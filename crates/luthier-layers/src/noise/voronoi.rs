@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::hash;
+use super::hash;
 
 /// Voronoi cells of one random point per square of a lattice (Worley 1996).
 #[derive(Debug, Clone, Copy, PartialEq)]
