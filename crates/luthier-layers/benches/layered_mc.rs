@@ -1,4 +1,4 @@
-//! Speed of the reference: `cargo bench -p luthier-layers --bench layered_mc`.
+//! Speed of the Monte Carlo reference: `cargo bench -p luthier-layers --bench layered_mc`.
 //!
 //! One thread. Items are paths from the eye (`paths`), or samples of a value, each of which takes one path from
 //! either side and their connections (`values`).

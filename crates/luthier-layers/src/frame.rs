@@ -1,4 +1,4 @@
-//! Frames around a tilted normal.
+//! Local frame around a tilted normal.
 
 use glam::DVec3;
 

@@ -1,5 +1,12 @@
-//! Evaluation of layer stacks in f64: the real-time models, `real_time` with the twins of the emitted shaders, and the
-//! references that judge them, `random_walk` for one interface and `layered_mc` for a whole stack.
+//! Evaluation of layer stacks in f64: reflectance models, twins of the emitted shaders, and the references that judge both.
+//!
+//! | room | holds |
+//! |---|---|
+//! | `models` | every reflectance model under its name, with its facets, refraction and statistics of light |
+//! | `effects` | flakes, patina, particles, textures, fluorescence |
+//! | `twins` | models as the shaders evaluate them, in three channels: [`real_time`], [`shaded`], and the [`terms`] of tables |
+//! | `references` | [`random_walk`] for one rough interface, [`layered_mc`] for a rough stack, [`closed_form`] for a smooth one |
+//! | `noise` | gradient noise and cells |
 //!
 //! A [`model::Model`] evaluates a [`monochrome::Monochrome`] stack at one wavelength; [`registry`] lists all by name.
 //!

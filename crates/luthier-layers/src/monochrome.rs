@@ -1,4 +1,4 @@
-//! A layered surface at one wavelength: what every model evaluates.
+//! Layered surface at one wavelength, the input of every model.
 
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;

@@ -1,4 +1,4 @@
-//! All models by name.
+//! Registry of all models by name.
 
 use glam::DVec2;
 

@@ -1,4 +1,4 @@
-//! Where layered models fail: one test each, with the number by which one fails and what the right one gives.
+//! Failures of layered models: one test each, with the size of the error and the right value.
 //!
 //! Stress cases of optics alone are in `luthier-optics`, those of tables in `luthier-lut`; `docs/oracles.md` lists all.
 

@@ -22,10 +22,10 @@ const FIRST_NODES: usize = 129;
 /// lines for curves with a kink.
 const WALK_NODES: usize = 1025;
 
-/// How closely cubics have to follow a curve. They miss a kink by a hundred times as much.
+/// Tolerance of cubics against a curve. They miss a kink by a hundred times as much.
 const CUBIC_TOLERANCE: f64 = 1e-3;
 
-/// Where they have to: steep films are missed next to grazing, at no great cost.
+/// Least cosine at which the tolerance holds: steep films are missed next to grazing, at no great cost.
 const CUBIC_COS_THETA: f64 = 1.0 / 32.0;
 
 /// Points of a curve, per interval of nodes, in the means that stand for it where cubics fail.
@@ -123,7 +123,7 @@ impl Effort {
     }
 }
 
-/// How light from one direction meets the facets of a perfectly reflecting micro-surface.
+/// Encounters of the light from one direction with the facets of a perfectly reflecting micro-surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FacetStatistics {
     /// Weight of the first bounce per cosine node; the sum is the single-scattering albedo for F = 1.

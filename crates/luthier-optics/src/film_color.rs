@@ -1,5 +1,4 @@
-//! Thin films straight to RGB: the approximations that stand in for the spectral integral of
-//! [`fresnel::coated`](crate::fresnel::coated).
+//! Approximations of thin films in RGB, without the spectral integral of [`fresnel::coated`](crate::fresnel::coated).
 //!
 //! [`BelcourBarla`] integrates the interference of every order against Gaussian fits of the matching functions, in closed form.
 //! [`granier_two_beam`] takes three wavelengths and two beams. What either costs in accuracy is in the tests.

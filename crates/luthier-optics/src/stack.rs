@@ -1,4 +1,4 @@
-//! Parts of a layered surface: the description that every model evaluates.
+//! Description of a layered surface: layers, interfaces, films, slabs and bases.
 //!
 //! A [`Stack`] is read from the top down. Each [`Layer`] is one interface (its micro-surface, the thin
 //! films that coat it, the medium or base below it). A dielectric base continues into a [`Slab`] and

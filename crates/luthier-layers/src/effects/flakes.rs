@@ -1,4 +1,4 @@
-//! Metal flakes in a coat.
+//! Metal flakes in a coat, each with a normal of its own.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! Surfaces that are a different stack from place to place.
+//! Surfaces whose stack differs from place to place: cells, glitter, and noise between them.
 //!
 //! A. Weidlich and A. Wilkie, "Exploring the potential of layered BRDF models", SIGGRAPH Asia 2009 course, sec. 5.2.1: maps
 //! of Voronoi cells choose the stack of each particle, a sparse map of larger cells puts glitter on top, its cells tilted
@@ -25,7 +25,7 @@ pub struct Pick {
     pub normal: DVec3,
 }
 
-/// How stacks are spread over a surface.
+/// Spread of stacks over a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Map {
     /// One stack everywhere.
@@ -56,9 +56,9 @@ pub enum Map {
         noise: Perlin,
         /// Its value at the boundary.
         threshold: f64,
-        /// Where the noise is below the threshold.
+        /// Map where the noise is below the threshold.
         below: Box<Map>,
-        /// Where it is not.
+        /// Map where it is not.
         above: Box<Map>,
     },
 }
@@ -111,7 +111,7 @@ pub fn eval(model: &dyn Model, stacks: &[Monochrome], pick: Pick, wi: DVec3, wo:
     }
 }
 
-/// How the models by name spread two stacks: number 0, and number 1, the other.
+/// Pattern in which a model by name spreads two stacks: number 0, and number 1, the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pattern {
     /// Voronoi cells, 20 per unit of length, half of them of either stack.

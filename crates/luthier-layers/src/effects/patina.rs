@@ -1,4 +1,4 @@
-//! A first layer that has grown over the rest in places.
+//! Patina: a first layer that has grown over the others in places.
 
 use std::f64::consts::FRAC_1_PI;
 
@@ -14,7 +14,7 @@ use crate::monochrome::Monochrome;
 /// Where it has grown, scattering in it shows as a diffuse term, and the layer below may have become rougher and darker.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Patina {
-    /// How far it has developed, in `-transition..=1 + transition`.
+    /// Extent of its growth, in `-transition..=1 + transition`.
     pub extent: f64,
     /// Softness of its boundary, 0..=1.
     pub transition: f64,
@@ -28,7 +28,7 @@ pub struct Patina {
 }
 
 impl Patina {
-    /// How much patina there is where the map has a value (0..=1; dark places come first):
+    /// Amount of patina where the map has a value (0..=1; dark places come first):
     /// `clamp(1/2 + (extent - map) / (2 transition), 0, 1)`, a step at transition 0.
     ///
     /// The paper's line of code is lost; this form is none at extent -transition and full at 1 + transition, for every value,

@@ -1,4 +1,4 @@
-//! Texture samples in front of any model.
+//! Textures of normal, roughness and thickness in front of any model.
 
 use glam::DVec3;
 use luthier_optics::Rgb;

@@ -1,4 +1,4 @@
-//! Sampling densities by name: what a Monte Carlo renderer divides `f cos_theta_i` by.
+//! Sampling densities by name, by which a Monte Carlo renderer divides `f cos_theta_i`.
 //!
 //! The value is the density in solid angle of `wi`, for the direction `wo` of the eye. Its integral over `wi` (the albedo of the
 //! listing) is the share of draws that are not lost below the horizon; that of the global method counts the layers.

@@ -1,4 +1,4 @@
-//! The diffuse base of a stack by itself, as if nothing lay above it.
+//! Lambert's and Oren and Nayar's models of the diffuse base of a stack, as if nothing lay above it.
 
 use glam::DVec3;
 

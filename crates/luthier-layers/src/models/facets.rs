@@ -1,4 +1,4 @@
-//! The facets of a surface as single-scattering models use them: distribution, masking, sampling; anisotropic.
+//! Anisotropic facets for single scattering: distribution, masking, sampling.
 //!
 //! An anisotropic surface is an isotropic one of unit roughness whose slopes are stretched by `alpha_x` and `alpha_y`
 //! (Heitz 2014, "Understanding the Masking-Shadowing Function"), so that every function here is the isotropic one

@@ -1,4 +1,4 @@
-//! Reflectances of an interface by name: the exact one, and what stands in for it.
+//! Fresnel reflectances of an interface by name: exact ones and approximations.
 
 use luthier_optics::Rgb;
 use luthier_optics::film_color::{BelcourBarla, granier_two_beam};

@@ -1,4 +1,4 @@
-//! One rough interface, one bounce: the model of Torrance and Sparrow, by its components.
+//! The model of Torrance and Sparrow for one rough interface and one bounce, by its components.
 
 use glam::DVec3;
 use luthier_optics::Rgb;

@@ -1,4 +1,4 @@
-//! The full model of Oren and Nayar.
+//! The full model of Oren and Nayar for rough diffuse surfaces.
 
 use std::f64::consts::{FRAC_1_PI, PI};
 

@@ -1,4 +1,4 @@
-//! The model that layered ones are compared with: one Phong lobe over one diffuse term.
+//! Phong's model: one lobe over one diffuse term, the baseline for layered models.
 
 use std::f64::consts::{FRAC_1_PI, PI};
 

@@ -1,4 +1,4 @@
-//! The layered model of Weidlich and Wilkie with its energy put right.
+//! The layered model of Weidlich and Wilkie, corrected to conserve energy.
 //!
 //! Two corrections to [`crate::weidlich_wilkie`]:
 //!

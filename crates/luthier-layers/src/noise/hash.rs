@@ -1,4 +1,4 @@
-//! Random numbers as a function of a place. 32 bits at a time, so that shaders compute the same.
+//! Random numbers as a function of a place, in 32-bit arithmetic that shaders repeat bit by bit.
 
 /// A well-mixed word for a lattice cell. Coordinates count modulo 2^32.
 pub(crate) fn cell(seed: u32, x: i64, y: i64) -> u32 {

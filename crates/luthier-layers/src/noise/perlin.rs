@@ -1,4 +1,4 @@
-//! Gradient noise in the plane.
+//! Perlin's gradient noise, summed over octaves.
 
 use glam::DVec2;
 use noise::NoiseFn;

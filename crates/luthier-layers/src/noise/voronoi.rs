@@ -1,4 +1,4 @@
-//! Cells around random points.
+//! Voronoi cells around one random point per square of a lattice.
 
 use glam::DVec2;
 

@@ -1,4 +1,4 @@
-//! The reference for smooth coats: no estimate, a formula.
+//! Closed form of smooth coats over a mirror or a Lambertian base, with all bounces: the reference for smooth stacks.
 
 use std::f64::consts::FRAC_1_PI;
 

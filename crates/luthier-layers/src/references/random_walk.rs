@@ -1,4 +1,4 @@
-//! The reference for one rough interface: multiple scattering between its facets, reflecting and refracting.
+//! Random walk between the facets of one rough interface, reflecting and refracting: the reference for a single interface.
 //!
 //! Heitz, Hanika, d'Eon and Dachsbacher 2016, "Multiple-Scattering Microfacet BSDFs with the Smith Model",
 //! anisotropic, for conductors and for dielectrics from both sides, films included. Below the interface there is

@@ -1,5 +1,6 @@
-//! Thin films by characteristic matrices: another road to what [`coated`](luthier_optics::fresnel::coated) gets from Airy's
-//! recursion.
+//! Reflectance of thin films by characteristic matrices.
+//!
+//! Independent of [`coated`](luthier_optics::fresnel::coated), which has Airy's recursion.
 
 use std::f64::consts::PI;
 

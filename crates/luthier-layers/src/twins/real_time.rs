@@ -1,5 +1,4 @@
-//! f64 twins of the emitted shaders: the same models in three colour channels, with optical terms that are computed or read from
-//! tables.
+//! Twins in f64 of the emitted shaders: models in three colour channels, with optical terms computed or read from tables.
 //!
 //! No model is written here: a twin evaluates the model of its module, channel by channel, with what is particular to shaders: one
 //! set of slope parameters, at least [`ALPHA_MIN`]; one index at [`REFRACTION_WAVELENGTH_NM`] that bends the directions of all

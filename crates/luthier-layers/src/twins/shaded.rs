@@ -35,7 +35,7 @@ impl Place {
 /// Patina at a place (Elek 2010, section 4.2): the first layer has grown over the others.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Growth {
-    /// How much of it there is, 0..=1: see [`Patina::amount`](crate::patina::Patina::amount).
+    /// Amount of it, 0..=1: see [`Patina::amount`](crate::patina::Patina::amount).
     pub amount: f64,
     /// Diffuse reflectance that stands for scattering in it.
     pub diffuse_albedo: Rgb,

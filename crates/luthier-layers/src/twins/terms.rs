@@ -1,4 +1,4 @@
-//! The exact terms of the real-time models in colour: what tables stand in for.
+//! Terms of the real-time models in colour that tables stand in for, and their exact values.
 
 use std::sync::OnceLock;
 

@@ -1,5 +1,6 @@
-//! Laws that models of layers keep and laws that they break, in one table, and tests that hold them to it: claims on random stacks,
-//! breaches by their measured amount. Models of one surface are in `everywhere`.
+//! Table of the laws that models of layers keep and break, and tests that hold them to it.
+//!
+//! Claims are tested on random stacks, breaches by their measured amount. Models of one surface are in `everywhere`.
 //!
 //! A model of layers without a row fails `every_model_of_layers_has_a_row`. To add one, write a row with zeros and run the tests:
 //! their messages print what was found.

@@ -1,4 +1,4 @@
-//! Energy and reciprocity: kept by the models that claim them, broken by the others by a known amount.
+//! Energy and reciprocity of the classic models: kept where claimed, else broken by a known amount.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! Laws of every model, stack and pair of directions.
+//! Laws of every model for every stack and pair of directions.
 
 use glam::DVec3;
 use luthier_layers::furnace::furnace;

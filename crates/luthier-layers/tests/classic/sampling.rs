@@ -1,5 +1,6 @@
-//! Samples against densities: Pearson's test on cells graded around the mirror direction, so that one grid serves lobes of any
-//! width. What gives no direction is a cell too.
+//! Samples of layered surfaces against their densities, by Pearson's test.
+//!
+//! Cells are graded around the mirror direction, so that one grid serves lobes of any width. Draws without a direction are a cell too.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! Stacks at one wavelength.
+//! Builders of stacks at one wavelength.
 
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 use luthier_optics::stack::{Distribution, Surface};

@@ -1,5 +1,6 @@
-//! Rough stacks without chance: interfaces as matrices over directions, one per Fourier mode of the azimuth, joined by
-//! adding (van de Hulst 1980, "Multiple Light Scattering", ch. 4-5).
+//! Rough stacks against adding of matrices over directions (van de Hulst 1980, "Multiple Light Scattering", ch. 4-5).
+//!
+//! Each interface is one matrix per Fourier mode of the azimuth; no random numbers are involved.
 //!
 //! With `A` the base and `B` the underside of the coat, both followed by a slab, light from `wo` that reaches the base comes
 //! back with `t (1 - A B)^-1 A u`: the geometric series of all bounces. Interfaces are written out here from Walter et al.

@@ -1,4 +1,4 @@
-//! Smooth coats, where the answer is a formula (physics reference, section E).
+//! Smooth coats against closed forms (physics reference, section E).
 
 use std::f64::consts::PI;
 

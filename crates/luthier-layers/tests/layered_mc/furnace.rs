@@ -1,4 +1,4 @@
-//! Stacks that absorb nothing lose nothing.
+//! White furnace: stacks that absorb nothing return all light.
 
 use luthier_layers::layered_mc::{Estimate, InterfaceMode};
 use luthier_optics::stack::{Distribution, Surface};

@@ -1,4 +1,4 @@
-//! Values integrate to what paths carry, moment by moment.
+//! Integrals of the estimated values against moments of the traced paths.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! One facet per event, against formulas and quadrature written here.
+//! One facet per event against formulas and quadrature written here.
 
 use std::f64::consts::PI;
 

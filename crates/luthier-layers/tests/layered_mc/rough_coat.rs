@@ -1,8 +1,7 @@
-//! Rough coats on Lambertian bases, all bounces: the albedo of the interface by another formulation, and a series for
-//! the rest.
+//! Rough coats on Lambertian bases against a series of diffuse bounces.
 //!
-//! What the interface reflects from above comes from `luthier_optics::albedo` (quadrature over first facets and
-//! low-discrepancy walks, which the reference does not use); what it reflects of diffuse light from below follows by
+//! The albedo of the interface from above comes from `luthier_optics::albedo` (quadrature over first facets and
+//! low-discrepancy walks, which the reference does not use); its share of diffuse light from below follows by
 //! reciprocity, `1 - (1 - mean from above) / n^2`.
 
 use std::f64::consts::PI;

@@ -1,4 +1,4 @@
-//! Stacks and directions.
+//! Stacks and directions of the Monte Carlo tests.
 
 use glam::DVec3;
 use luthier_layers::layered_mc::{Estimate, InterfaceMode, LayeredMc};

@@ -1,4 +1,4 @@
-//! One interface: the albedos of `luthier_optics::albedo`, which come from quadrature and low-discrepancy walks.
+//! Albedos of one interface against those of `luthier_optics::albedo`, from quadrature and low-discrepancy walks.
 
 use luthier_layers::layered_mc::{InterfaceMode, Side};
 use luthier_layers::random_walk::RandomWalk;

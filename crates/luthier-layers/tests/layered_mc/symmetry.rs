@@ -1,4 +1,4 @@
-//! Reciprocity and determinism.
+//! Reciprocity and determinism of the Monte Carlo reference.
 
 use luthier_layers::layered_mc::{InterfaceMode, LayeredMc, Side};
 use luthier_layers::monochrome::Monochrome;

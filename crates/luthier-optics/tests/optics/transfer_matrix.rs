@@ -1,4 +1,4 @@
-//! Films by characteristic matrices: another road to what the crate gets from Airy's recursion.
+//! Characteristic matrices of films, an oracle independent of Airy's recursion.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! Belcour's statistical operators with isotropic spreads, for any number of layers.
+//! Belcour's model: statistical operators with isotropic spreads, for any number of layers.
 //!
 //! See [`statistics`](crate::statistics) for the method. Surfaces count as isotropic GGX: anisotropic ones enter with the
 //! geometric mean of their slope parameters, Beckmann ones with their FGD-infinity and a GGX lobe of their slope parameter.

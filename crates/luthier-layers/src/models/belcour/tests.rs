@@ -1,3 +1,5 @@
+//! Tests of Belcour's model: energy, reciprocity, tables in place of energies, and the mean number of bounces.
+
 use std::f64::consts::PI;
 
 use luthier_optics::fresnel::FilmLayer;

@@ -1,4 +1,6 @@
-//! A diffuse base below the layers, which the papers do not have: its light has no mean direction to follow.
+//! Diffuse base below the layers of the statistical models.
+//!
+//! The papers have none: its light has no mean direction to follow.
 
 use std::array::from_fn;
 

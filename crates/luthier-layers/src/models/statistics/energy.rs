@@ -1,4 +1,4 @@
-//! The energies that the statistics are given: FGD-infinity and total reflection, computed or read.
+//! Energies of the statistical models: FGD-infinity and total reflection, computed or read.
 
 use std::array::from_fn;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use super::layers::Layers;
 use super::total_reflection::escaping_share;
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 
-/// Where the energies of a stack come from, in `C` channels.
+/// Source of the energies of a stack, in `C` channels.
 ///
 /// A closure `(layer, cos_theta_i, alpha) -> reflectance` is one for a single channel.
 pub trait Energy<const C: usize> {
@@ -37,7 +37,7 @@ impl<F: Fn(usize, f64, f64) -> f64> Energy<1> for F {
 /// is, which has lost the kinks and fringes of the reflectance.
 const NEARLY_SMOOTH: f64 = 0.025;
 
-/// How finely FGD-infinity is computed, and the same where total reflection puts a kink into the reflectance.
+/// Fineness of the computation of FGD-infinity: without, and with, a kink that total reflection puts into the reflectance.
 #[derive(Debug, Clone, Copy)]
 struct Detail {
     /// Intervals over the cosine; between their ends FGD-infinity is a cubic.
@@ -267,7 +267,7 @@ fn node(i: usize, count: usize) -> f64 {
     u * u
 }
 
-/// How light meets micro-surfaces at all nodes: what the energies of any interface on them are computed from.
+/// Facet statistics of micro-surfaces at all nodes, from which the energies of any interface on them are computed.
 #[derive(Debug, Clone)]
 pub struct FacetCache {
     detail: Detail,

@@ -1,4 +1,4 @@
-//! A stack as the statistics see it, in any number of channels.
+//! Stack description of the statistical models, in any number of channels.
 
 use luthier_optics::stack::{Base, Stack, Surface};
 

@@ -1,4 +1,4 @@
-//! How widely a lobe spreads: a variance, or a covariance matrix, and the micro-surface that stands for it.
+//! Spread of a lobe: a variance or a covariance matrix, and the micro-surface that stands for it.
 
 use std::ops::{Add, Mul};
 

@@ -1,4 +1,4 @@
-//! How much of a lobe inside a dense medium lies within the critical angle.
+//! Share of a lobe inside a dense medium that lies within the critical angle.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! Belcour's operators with covariance matrices: anisotropic surfaces, each layer with its own tangent.
+//! The model of Yamaguchi et al.: Belcour's operators with covariance matrices, for anisotropic layers with a tangent each.
 //!
 //! Yamaguchi et al. 2019 replace variances by 2x2 matrices `M diag(h(s alpha_x), h(s alpha_y)) M^T`, tangents as the columns of M (the
 //! print has M^T first), and keep everything else. The Jacobians are diagonal with equal entries, so a matrix keeps its axes

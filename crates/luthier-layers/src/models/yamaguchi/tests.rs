@@ -1,3 +1,5 @@
+//! Tests of the model of Yamaguchi et al.: the paper's two-layer formulas, rotations, and Belcour's model as a limit.
+
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use luthier_optics::stack::{Distribution, Surface};

@@ -1,4 +1,4 @@
-//! The value of a stack for two directions: light paths from both, connected at every interface that both meet.
+//! Bidirectional estimate of a value: light paths from both directions, connected at every interface that both meet.
 //!
 //! A path with k events has one estimator per event that is not smooth: the directions before it are drawn from the
 //! side of `wo`, those after it from the side of `wi`, and the event itself is evaluated. Balanced weights (Veach

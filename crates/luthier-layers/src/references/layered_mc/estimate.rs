@@ -1,4 +1,4 @@
-//! A Monte Carlo mean and how far it may be off.
+//! Monte Carlo mean with its standard error.
 
 /// Squares of smaller means are none.
 const TINY: f64 = 1e-150;

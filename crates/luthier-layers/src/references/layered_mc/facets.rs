@@ -1,4 +1,4 @@
-//! The facets of a micro-surface, anisotropic: their distribution, the area that a direction sees of them, and samples.
+//! Anisotropic facets of a micro-surface: their distribution, the area that a direction sees of them, and samples.
 //!
 //! Everything is the isotropic surface of unit slope in a frame stretched by the two slopes (Heitz 2014, sec. 5.3).
 //! Directions that see the surface may come from below the horizon, as rays between facets do.

@@ -78,7 +78,7 @@ impl Interface {
         }
     }
 
-    /// Where light from `a` goes, and with what weight, by chance; `None` when it is lost.
+    /// Direction in which light from `a` goes on, and its weight, by chance; `None` when it is lost.
     #[inline(always)]
     pub(crate) fn scatter(&self, stream: &mut Stream, a: Sided) -> Option<(Sided, f64)> {
         match &self.kind {

@@ -1,4 +1,4 @@
-//! The reference: position-free Monte Carlo of the whole stack at one wavelength.
+//! Position-free Monte Carlo of a whole stack at one wavelength: the reference for rough stacks.
 //!
 //! Guo, Hasan and Zhao 2018, "Position-Free Monte Carlo Simulation for Arbitrary Layered BSDFs", with the interfaces
 //! of Heitz et al. 2016: every interface is a Smith micro-surface on which light walks, reflecting and refracting,

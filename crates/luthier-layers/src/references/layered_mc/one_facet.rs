@@ -6,7 +6,7 @@
 use super::random::Stream;
 use super::rough::{Rough, Sided};
 
-/// Where light from `a` leaves the interface and with what weight, by chance; `None` when it is lost.
+/// Direction in which light from `a` leaves the interface, and its weight, by chance; `None` when it is lost.
 pub(crate) fn scatter(rough: &Rough, stream: &mut Stream, a: Sided) -> Option<(Sided, f64)> {
     let (b, kept) = rough.scatter(stream, a.side, &rough.facets.view(a.direction));
     (b.direction.z > 0.0).then(|| (b, kept * masking(rough, a, b)))

@@ -1,4 +1,4 @@
-//! Split of light at one facet, or at a smooth interface: the shares that go back and through, from both sides.
+//! Fresnel split of light at one facet or at a smooth interface: reflected and transmitted shares, from both sides.
 
 use std::f64::consts::PI;
 

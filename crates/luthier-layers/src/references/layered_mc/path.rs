@@ -1,5 +1,7 @@
-//! Paths of light through a stack. Position-free: between interfaces only directions matter (Guo, Hasan and Zhao 2018,
-//! "Position-Free Monte Carlo Simulation for Arbitrary Layered BSDFs").
+//! Position-free paths of light through a stack.
+//!
+//! Between interfaces only directions matter (Guo, Hasan and Zhao 2018, "Position-Free Monte Carlo Simulation for Arbitrary Layered
+//! BSDFs").
 
 use glam::DVec3;
 
@@ -36,7 +38,7 @@ pub(crate) struct Interfaces {
 pub(crate) struct Arrival {
     /// Number of the interface, from the top.
     pub(crate) interface: usize,
-    /// Where the light comes from.
+    /// Side and direction that the light comes from.
     pub(crate) from: Sided,
     /// Weight that is left of the light.
     pub(crate) weight: f64,

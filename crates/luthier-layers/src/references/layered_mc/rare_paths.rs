@@ -1,4 +1,4 @@
-//! Values that rare paths carry: no error is stated that is false.
+//! Tests of values that rare paths carry: a stated standard error is true.
 
 use std::f64::consts::PI;
 

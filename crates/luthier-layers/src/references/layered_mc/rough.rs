@@ -1,4 +1,4 @@
-//! One facet of a rough interface: where it sends light, and with what density.
+//! Scattering at one facet of a rough interface: sampled directions and their density.
 
 use glam::DVec3;
 

@@ -1,5 +1,4 @@
-//! A rough interface as a random walk between its facets, reflecting and refracting, until the light leaves on either
-//! side.
+//! Random walk of light between the facets of a rough interface, until it leaves on either side.
 //!
 //! Heitz, Hanika, d'Eon and Dachsbacher 2016, "Multiple-Scattering Microfacet BSDFs with the Smith Model". The height
 //! enters as the depth `-ln c`, where `c` is the share of the surface that lies lower; it is 0 above everything.
@@ -151,7 +150,7 @@ impl Walker {
     }
 }
 
-/// Where light from `a` leaves the interface and with what weight, by chance; `None` when it dies.
+/// Direction in which light from `a` leaves the interface, and its weight, by chance; `None` when it dies.
 #[inline(always)]
 pub(crate) fn scatter(rough: &Rough, stream: &mut Stream, a: Sided) -> Option<(Sided, f64)> {
     let mut walker = Walker::enter(rough, stream, a);

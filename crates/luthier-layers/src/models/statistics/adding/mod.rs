@@ -1,4 +1,4 @@
-//! Adding interfaces from the top down: all paths of light between them, as one lobe per layer.
+//! Adding of interfaces from the top down: all paths of light between them, as one lobe per layer.
 
 use std::array::from_fn;
 

@@ -1,3 +1,5 @@
+//! Tests of adding: closed forms, transfer matrices of power, published widths, and bounds.
+
 use glam::DVec3;
 use luthier_optics::stack::{Distribution, Surface};
 use num_complex::Complex64;
