@@ -33,11 +33,12 @@
 use std::f64::consts::{FRAC_1_PI, PI};
 
 use glam::DVec3;
+use luthier_optics::schlick::schlick;
 
-use crate::facets::ALPHA_MIN;
 use crate::inputs::{Input, Inputs};
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow, Optics};
+use crate::phong::{exponent, lobe};
 use crate::refraction::refract;
 
 /// A film as the model takes it, at one wavelength.
@@ -80,7 +81,7 @@ impl Film {
             return Beams { reflected: 0.0, transmitted: 0.0, cosines: 0.0, compression: 0.0 };
         }
         let f = self.normal_reflectance();
-        let fresnel = schlick(f, wi.z);
+        let fresnel = schlick(f, wi.z.min(1.0));
         let reflected = fresnel * lobe(DVec3::new(-wi.x, -wi.y, wi.z), wo, self.exponents[0]);
         let none = Beams { reflected, transmitted: 0.0, cosines: 0.0, compression: 0.0 };
 
@@ -221,7 +222,7 @@ impl GranierHeidrich {
                 let f = optics.reflectance(0, 1.0);
                 let reflected = match layer.below {
                     MonochromeBelow::Diffuse { .. } => 0.0,
-                    _ => schlick(f, wi.z) * scale(e) * lobe(DVec3::new(-wi.x, -wi.y, wi.z), wo, e),
+                    _ => schlick(f, wi.z.min(1.0)) * scale(e) * lobe(DVec3::new(-wi.x, -wi.y, wi.z), wo, e),
                 };
                 (reflected, 1.0)
             }
@@ -229,22 +230,4 @@ impl GranierHeidrich {
         };
         self.specular_weight * specular + base * diffuse * FRAC_1_PI * wi.z
     }
-}
-
-/// Phong's exponent for a slope parameter: `2/alpha^2 - 2`.
-pub fn exponent(alpha: f64) -> f64 {
-    let alpha = alpha.clamp(ALPHA_MIN, 1.0);
-    2.0 / (alpha * alpha) - 2.0
-}
-
-/// Schlick 1994.
-fn schlick(normal: f64, cos: f64) -> f64 {
-    let q = (1.0 - cos).max(0.0);
-    normal + (1.0 - normal) * (q * q) * (q * q) * q
-}
-
-/// `max(0, a.b)^e` of unit directions, without cancellation near a = b.
-fn lobe(a: DVec3, b: DVec3, e: f64) -> f64 {
-    let away = 0.5 * (a - b).length_squared();
-    if away < 1.0 { libm::exp(e * libm::log1p(-away)) } else { 0.0 }
 }
