@@ -1,6 +1,7 @@
 //! How light meets the facets of a slope distribution, over the whole domain of a table: the part of FGD-infinity that no
 //! material enters, computed once for all of them.
 
+use luthier_layers::refraction::REFRACTION_WAVELENGTH_NM;
 use luthier_lut::{Axis, Scan};
 use luthier_optics::Rgb;
 use luthier_optics::albedo::{Effort, FacetStatistics, crossed_albedo};
@@ -146,9 +147,6 @@ const CROSSED_PROBES: u32 = 6;
 /// Number of families of walks that the grid is compared with; each has the walks of a node.
 const CROSSED_FAMILIES: u32 = 4;
 
-/// Wavelength whose refraction stands for all: dispersion changes this small part by a few percent of itself.
-const REFRACTION_WAVELENGTH_NM: f64 = 589.3;
-
 /// The crossed part over coordinates `u` of the table.
 #[derive(Debug)]
 pub(crate) struct CrossedGrid {
@@ -206,7 +204,7 @@ impl CrossedJob {
         grid
     }
 
-    /// Index below over index above.
+    /// Index below over index above at one wavelength for all: dispersion changes this small part by a few percent of itself.
     fn eta(&self) -> f64 {
         let index = |ior: &Ior| ior.at(REFRACTION_WAVELENGTH_NM).re;
         index(&self.interface.below) / index(&self.interface.above)

@@ -1,4 +1,4 @@
-//! Where the models of the shaders may be used: ranges of the quantities that a stack is made of.
+//! Domains of the shaders' models: ranges of index, slope, thickness and absorption within which they may be used.
 //!
 //! The ranges are those over which no level (f64, tables, f32, device) of the stability suite fails: `luthier stability` derives them
 //! anew, and a test of luthier-report compares. Between the values that the suite tries, the last that did not fail counts.
@@ -8,7 +8,8 @@
 use luthier_optics::interface::Interface;
 use luthier_optics::stack::{Base, Stack};
 
-use crate::elek::{MODEL, REFRACTION_WAVELENGTH_NM};
+use crate::elek::MODEL;
+use crate::refraction::REFRACTION_WAVELENGTH_NM;
 
 /// Quantity that a domain is a range of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -169,7 +170,7 @@ fn returned(stack: &Stack, layer: usize) -> f64 {
     crossed * crossed * libm::exp(-2.0 * depth) * below
 }
 
-/// All that lies outside the domain of a model.
+/// Quantities of a stack outside the domain of a model.
 pub fn outside(model: &str, stack: &Stack) -> Vec<Outside> {
     let mut out = Vec::new();
     let mut above = stack.exterior.at(REFRACTION_WAVELENGTH_NM).re;

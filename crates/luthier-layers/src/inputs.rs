@@ -55,7 +55,7 @@ pub struct Inputs {
     pub uv: Option<DVec2>,
     /// Distance of the eye, in the scene's unit of length; at least 0.
     pub distance: Option<f64>,
-    /// How far patina has developed: below 0 none, above 1 all, see [`Patina::extent`](crate::patina::Patina::extent).
+    /// Extent of patina: below 0 none, above 1 all, see [`Patina::extent`](crate::patina::Patina::extent).
     pub extent: Option<f64>,
     /// Value of the patina's map, 0..=1.
     pub map: Option<f64>,

@@ -1,5 +1,12 @@
-//! Evaluation of layer stacks in f64: the real-time models, `real_time` with the twins of the emitted shaders, and the
-//! references that judge them, `random_walk` for one interface and `layered_mc` for a whole stack.
+//! Evaluation of layer stacks in f64: reflectance models, twins of the emitted shaders, and the references that judge both.
+//!
+//! | room | holds |
+//! |---|---|
+//! | `models` | every reflectance model under its name, with its facets, refraction and statistics of light |
+//! | `effects` | flakes, patina, particles, textures, fluorescence |
+//! | `twins` | models as the shaders evaluate them, in three channels: [`real_time`], [`shaded`], and the [`terms`] of tables |
+//! | `references` | [`random_walk`] for one rough interface, [`layered_mc`] for a rough stack, [`closed_form`] for a smooth one |
+//! | `noise` | gradient noise and cells |
 //!
 //! A [`model::Model`] evaluates a [`monochrome::Monochrome`] stack at one wavelength; [`registry`] lists all by name.
 //!
@@ -7,47 +14,40 @@
 //! `f cos_theta_i`, the BRDF times the cosine of the incident direction: that stays finite where the BRDF alone does
 //! not.
 //!
+//! Stacks are described by [`luthier_optics`], directions are vectors of [`glam`], and indices complex numbers of [`num_complex`]; these
+//! crates are re-exported.
+//!
 //! Out of scope: reading material files, tables, devices.
 
-pub mod belcour;
-pub mod closed_form;
-pub mod densities;
-pub mod diffuse;
+mod effects;
+mod models;
+mod noise;
+mod references;
+mod twins;
+
 pub mod directional_albedo;
 pub mod domain;
-pub mod elek;
-pub mod elek_model;
-pub mod facets;
-pub mod flakes;
-pub mod fluorescence;
 pub mod frame;
 pub mod furnace;
-pub mod granier_heidrich;
-mod hash;
-pub mod heterogeneous;
 pub mod inputs;
-pub mod interface_fresnel;
-pub mod layered_mc;
 mod memo;
-pub mod microfacet;
 pub mod model;
 pub mod monochrome;
-pub mod normals;
-pub mod oren_nayar;
-pub mod patina;
-pub mod perlin;
-pub mod phong;
-pub mod plane_stack;
-pub mod random_walk;
-pub mod real_time;
 pub mod registry;
-pub mod shaded;
-pub mod statistics;
-pub mod terms;
-pub mod textured;
-pub mod transfer_matrix;
-pub mod voronoi;
-pub mod weidlich_wilkie;
-pub mod weidlich_wilkie_corrected;
-pub mod weidlich_wilkie_sampling;
-pub mod yamaguchi;
+
+/// Vectors, for directions and places.
+pub use glam;
+/// Descriptions of stacks, and the optics of their parts.
+pub use luthier_optics;
+/// Complex numbers, for indices.
+pub use num_complex;
+
+pub use self::noise::{perlin, voronoi};
+pub use effects::{flakes, fluorescence, heterogeneous, patina, textured};
+pub use models::{
+    belcour, densities, diffuse, elek, elek_model, facets, granier_heidrich, interface_fresnel, microfacet, normals,
+    oren_nayar, phong, refraction, statistics, weidlich_wilkie, weidlich_wilkie_corrected, weidlich_wilkie_sampling,
+    yamaguchi,
+};
+pub use references::{closed_form, layered_mc, plane_stack, random_walk, transfer_matrix};
+pub use twins::{real_time, shaded, terms};

@@ -1,4 +1,4 @@
-//! Values that cost more to compute than to keep.
+//! Memo of a pure function: a bounded number of its values by argument.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};

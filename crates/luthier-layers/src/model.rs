@@ -1,4 +1,4 @@
-//! Models by name.
+//! The `Model` trait: evaluation at one wavelength, and a description for listings.
 
 use glam::DVec3;
 use luthier_optics::Rgb;

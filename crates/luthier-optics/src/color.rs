@@ -10,7 +10,7 @@ pub const GRANIER_WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
 /// Luminance of linear Rec.709 (IEC 61966-2-1, second row of the RGB to XYZ matrix).
 pub const LUMINANCE: Rgb = [0.2126, 0.7152, 0.0722];
 
-/// How a function of wavelength becomes three numbers.
+/// Rule by which a function of wavelength becomes three numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Color {
     /// Integrated over 360 to 830 nm in 5 nm steps against the CIE 1931 2-degree observer under D65, in linear Rec.709.
@@ -81,7 +81,7 @@ impl Color {
     }
 }
 
-/// How far node `i` is from node `a` to node `b`.
+/// Fraction of the way from node `a` to node `b` at which node `i` lies.
 fn between(nodes: &[WavelengthNode], i: usize, a: usize, b: usize) -> f64 {
     let nm = |i: usize| nodes[i].wavelength_nm;
     (nm(i) - nm(a)) / (nm(b) - nm(a))

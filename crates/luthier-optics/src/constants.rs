@@ -28,7 +28,7 @@ pub struct Dataset {
     pub page: &'static str,
     /// Terms under which the rows are available.
     pub licence: &'static str,
-    /// How the rows follow from the source: measured points joined, or a formula evaluated.
+    /// Origin of the rows: measured points joined, or a formula evaluated.
     pub rows: &'static str,
     /// Conditions of the measurement, and what to know before relying on it.
     pub note: &'static str,

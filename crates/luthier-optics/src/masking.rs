@@ -1,4 +1,4 @@
-//! Masking and shadowing: the fraction of micro-facets of one orientation that is seen and lit.
+//! Masking and shadowing: the fraction of micro-facets that is both seen and lit.
 //!
 //! G multiplies F D / (4 cos_theta_i cos_theta_o). A G1 is right for a distribution D if the facets seen fill the view: the integral of
 //! D max(0, wo.wh) G1 over the normals is cos_theta_o (Heitz 2014, eq. 15). That holds for V-cavities and for Smith; it does not for

@@ -1,4 +1,4 @@
-//! Random walks on Smith micro-surfaces: every bounce between facets, not only the first.
+//! Random walks on Smith micro-surfaces, with every bounce between facets.
 //!
 //! Heitz, Hanika, d'Eon and Dachsbacher 2016, "Multiple-Scattering Microfacet BSDFs with the Smith Model". Heights
 //! enter only through the fraction `c` of the surface that lies below: the result does not depend on the height
@@ -220,7 +220,7 @@ fn escape(distribution: Distribution, alpha: f64, ray: DVec3, depth: f64) -> f64
     if ray.z <= 0.0 { 0.0 } else { libm::exp(-depth * lambda(distribution, alpha, ray.z)) }
 }
 
-/// Where a ray meets the surface again, given that it does: `u` is uniform in 0..(1 - probability to leave).
+/// Depth at which a ray meets the surface again, given that it does: `u` is uniform in 0..(1 - probability to leave).
 fn next_depth(distribution: Distribution, alpha: f64, ray: DVec3, depth: f64, u: f64) -> f64 {
     if ray.z > 0.0 {
         let lambda = lambda(distribution, alpha, ray.z);
@@ -230,7 +230,7 @@ fn next_depth(distribution: Distribution, alpha: f64, ray: DVec3, depth: f64, u:
     }
 }
 
-/// Where a ray that goes down meets the surface.
+/// Depth at which a ray that goes down meets the surface.
 fn drop_in(distribution: Distribution, alpha: f64, ray: DVec3, depth: f64, u: f64) -> f64 {
     depth - libm::log(1.0 - u) / (1.0 + lambda(distribution, alpha, -ray.z))
 }

@@ -1,4 +1,4 @@
-//! Directions drawn with a known density: what Monte Carlo estimates and white furnaces are made of.
+//! Samplers of directions with a known density: cosine, visible normals, and mixtures.
 //!
 //! All densities are per solid angle of the light's direction `wi`, given the eye's direction `wo`; both local, +z the normal.
 

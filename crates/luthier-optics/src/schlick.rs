@@ -1,4 +1,4 @@
-//! Rational approximations of the Fresnel reflectance: what real-time renderers evaluate instead of it.
+//! Rational approximations of the Fresnel reflectance for real-time rendering: Schlick, Lazanyi, F82.
 //!
 //! None of them is exact anywhere but at normal and at grazing incidence. Largest errors against
 //! [`fresnel::interface`] over all angles, from the tests:

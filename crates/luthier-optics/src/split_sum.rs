@@ -1,5 +1,6 @@
-//! The split sum of image-based lighting (Karis 2013, "Real Shading in Unreal Engine 4"): directional albedo of a rough interface
-//! under Schlick's Fresnel as `f0 * scale + bias`, single-scattering, for the masking terms in use.
+//! The split sum of image-based lighting (Karis 2013, "Real Shading in Unreal Engine 4"), for the masking terms in use.
+//!
+//! It is the directional albedo of a rough interface under Schlick's Fresnel as `f0 * scale + bias`, single-scattering.
 
 use crate::albedo::{ALPHA_MIN, COS_THETA_MIN, reflecting_facets};
 use crate::masking::{Correlation, implicit, kelemen, schlick_smith, smith, v_cavity};

@@ -1,4 +1,4 @@
-//! Sampling of the micro-normals that a direction sees, isotropic.
+//! Sampling of the visible micro-normals of an isotropic surface.
 
 use std::f64::consts::PI;
 

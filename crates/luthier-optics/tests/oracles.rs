@@ -1,5 +1,6 @@
-//! Numbers that were computed two ways outside this project, to the digits given; and that the list of all such numbers,
-//! `docs/oracles.md`, names tests that exist.
+//! Oracle numbers, each computed two ways outside this project, to the digits given.
+//!
+//! Every test that the list of such numbers names, `docs/oracles.md`, exists.
 
 #![expect(clippy::disallowed_methods, reason = "oracles: nothing that ships depends on them")]
 

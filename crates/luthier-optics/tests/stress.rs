@@ -1,4 +1,4 @@
-//! Where usual methods fail in optics: one test each, with the number by which the usual method fails and what the crate does.
+//! Failures of usual methods in optics: one test each, with the size of the error and the crate's own value.
 //!
 //! The failing methods are written out here; nothing that ships uses them.
 

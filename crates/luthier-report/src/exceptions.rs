@@ -3,11 +3,10 @@
 use std::cell::RefCell;
 
 use glam::DVec3;
-use luthier_layers::elek::Terms;
 use luthier_layers::real_time::Twin;
 use luthier_layers::statistics::diffuse_base::Veil;
 use luthier_layers::statistics::energy::Energy;
-use luthier_layers::terms::{Exact, ShaderTerms};
+use luthier_layers::terms::{Exact, ShaderTerms, Terms};
 use luthier_lut::TableKind;
 use luthier_optics::Rgb;
 use luthier_optics::stack::Distribution;

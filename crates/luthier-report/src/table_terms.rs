@@ -1,9 +1,8 @@
 //! The model's terms as a shader reads them: from texels.
 
-use luthier_layers::elek::Terms;
 use luthier_layers::statistics::diffuse_base::Veil;
 use luthier_layers::statistics::energy::Energy;
-use luthier_layers::terms::ShaderTerms;
+use luthier_layers::terms::{ShaderTerms, Terms};
 use luthier_lut::{TableKind, TexelFormat, WeightBits, read};
 use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry, ShadingModel};
 use luthier_optics::Rgb;

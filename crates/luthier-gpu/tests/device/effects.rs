@@ -5,6 +5,7 @@ use luthier_gpu::{Package, RenderSettings, Scene, Shader};
 use luthier_layers::elek;
 use luthier_layers::flakes::Flakes;
 use luthier_layers::heterogeneous::Map;
+use luthier_layers::terms::Terms;
 use luthier_layers::voronoi::Voronoi;
 use luthier_lut::Image;
 use luthier_manifest::{
@@ -193,7 +194,7 @@ fn patina_blends_two_stacks_on_the_device() {
     let eval = |records: &[LayerRecord]| elek::eval(&model_layers(records), &RecordTerms(records), wi, wo);
     let (grown_value, bare_value) = (eval(&grown), eval(&bare));
     let cos_theta_d = 0.5 * (wi + wo).length();
-    let passed = 1.0 - elek::Terms::fresnel(&RecordTerms(&grown), 0, cos_theta_d)[0];
+    let passed = 1.0 - RecordTerms(&grown).fresnel(0, cos_theta_d)[0];
     for (map, found) in maps.iter().zip(scene.evaluate(0, &pairs).unwrap()) {
         let amount = (0.5 + (0.5 - map)).clamp(0.0, 1.0);
         for (c, albedo) in [0.3, 0.5, 0.2].into_iter().enumerate() {

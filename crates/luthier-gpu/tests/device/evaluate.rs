@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 use luthier_gpu::GpuError;
-use luthier_layers::elek::{self, Layer, Terms};
+use luthier_layers::elek::{self, Layer};
+use luthier_layers::terms::Terms;
 use luthier_lut::{AtlasLayout, Image, Mapping, TableKind, TexelFormat, WeightBits, bilinear};
 use luthier_manifest::LayerRecord;
 use luthier_optics::Rgb;

@@ -1,4 +1,4 @@
-//! Estimates of one value with its standard error, at the registered number of samples.
+//! Benchmarks of Monte Carlo estimates of one value, at the registered number of samples.
 
 use divan::Bencher;
 use luthier_optics::stack::Stack;

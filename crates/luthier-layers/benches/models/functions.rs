@@ -1,4 +1,4 @@
-//! `f cos_theta_i` of one pair of directions at one wavelength.
+//! Benchmarks of `f cos_theta_i` for one pair of directions at one wavelength.
 
 use divan::Bencher;
 use luthier_optics::stack::Stack;

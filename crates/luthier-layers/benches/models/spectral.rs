@@ -1,4 +1,4 @@
-//! `f cos_theta_i` in full spectral colour, as `in_color` makes it.
+//! Benchmarks of `f cos_theta_i` in full spectral colour.
 
 use divan::Bencher;
 use luthier_layers::monochrome::in_color;

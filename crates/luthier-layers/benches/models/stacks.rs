@@ -1,4 +1,4 @@
-//! Stacks that the models are evaluated on.
+//! Stacks of the benchmarks.
 
 use luthier_layers::monochrome::Monochrome;
 use luthier_optics::constants::dataset;

@@ -1,4 +1,4 @@
-//! The classic models against closed forms and published numbers, and the measure of what they break.
+//! Tests of the classic models against closed forms and published numbers.
 
 #![expect(clippy::disallowed_methods, reason = "oracles: nothing that ships depends on them")]
 

@@ -1,5 +1,6 @@
-//! Rough stacks without chance: interfaces as matrices over directions, one per Fourier mode of the azimuth, joined by
-//! adding (van de Hulst 1980, "Multiple Light Scattering", ch. 4-5).
+//! Rough stacks against adding of matrices over directions (van de Hulst 1980, "Multiple Light Scattering", ch. 4-5).
+//!
+//! Each interface is one matrix per Fourier mode of the azimuth; no random numbers are involved.
 //!
 //! With `A` the base and `B` the underside of the coat, both followed by a slab, light from `wo` that reaches the base comes
 //! back with `t (1 - A B)^-1 A u`: the geometric series of all bounces. Interfaces are written out here from Walter et al.
@@ -13,7 +14,7 @@ use luthier_layers::layered_mc::InterfaceMode;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
 use luthier_optics::quadrature::gauss_legendre;
 
-use crate::scenes::{at, conductor, dielectric, ggx, lambert, mc, stack};
+use crate::scenes::{at, conductor, dielectric, ggx, lambert, mc};
 
 /// GGX's D, eq. 33.
 fn density(alpha: f64, m: DVec3) -> f64 {
@@ -115,7 +116,7 @@ impl Coated {
             Base::Conductor { alpha, n, k } => (ggx(alpha), conductor(n, k)),
             Base::Lambert { albedo } => (ggx(0.0), lambert(albedo)),
         };
-        stack(&[(ggx(self.alpha), dielectric(self.ior, self.optical_depth)), (surface, below)])
+        Monochrome::bare(&[(ggx(self.alpha), dielectric(self.ior, self.optical_depth)), (surface, below)])
     }
 }
 

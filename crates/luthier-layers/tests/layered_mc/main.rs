@@ -1,4 +1,4 @@
-//! The reference against closed forms, other formulations, and what must hold of any truth.
+//! Tests of the Monte Carlo reference against closed forms, other formulations and laws of physics.
 
 #![expect(clippy::disallowed_methods, reason = "oracles: nothing that ships depends on them")]
 

@@ -1,4 +1,4 @@
-//! Directions in angles.
+//! Directions from angles in degrees.
 
 use glam::DVec3;
 

@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use luthier_layers::elek::{self, ALPHA_MIN, Below, Layer, Terms};
-use luthier_layers::terms::Exact;
+use luthier_layers::elek::{self, ALPHA_MIN, Below, Layer};
+use luthier_layers::terms::{Exact, Terms};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;

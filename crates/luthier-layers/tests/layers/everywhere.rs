@@ -1,4 +1,4 @@
-//! Laws of every stack and every pair of directions.
+//! Laws of Elek's model for every stack and pair of directions.
 
 use glam::DVec3;
 use luthier_layers::elek;

@@ -1,4 +1,4 @@
-//! The layered model against closed forms, values computed by other programs, and what must hold everywhere.
+//! Tests of Elek's and of Oren and Nayar's models against closed forms, other programs and general laws.
 
 #![expect(clippy::disallowed_methods, reason = "oracles: nothing that ships depends on them")]
 

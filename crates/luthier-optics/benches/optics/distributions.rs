@@ -1,4 +1,4 @@
-//! Distributions of micro-normals.
+//! Benchmarks of the distributions of micro-normals.
 
 use crate::inputs::{INPUTS, angles, each};
 use divan::Bencher;

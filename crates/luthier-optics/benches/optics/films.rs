@@ -1,4 +1,4 @@
-//! Reflectance of interfaces with films against the cosine.
+//! Benchmarks of the reflectance of interfaces with films.
 
 use crate::inputs::{INPUTS, SAMPLES, SOME, draws, each};
 use divan::Bencher;

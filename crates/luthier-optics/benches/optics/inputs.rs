@@ -1,5 +1,4 @@
-//! Inputs of the evaluations: fixed pseudo-random directions, one after the other, so that neither branches nor cached results are
-//! foreseen.
+//! Inputs of the benchmarks: fixed pseudo-random directions, so that neither branches nor cached results are foreseen.
 
 use std::f64::consts::PI;
 

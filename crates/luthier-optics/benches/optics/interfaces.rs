@@ -1,4 +1,4 @@
-//! Reflectance of bare interfaces against the cosine.
+//! Benchmarks of the reflectance of bare interfaces.
 
 use crate::inputs::{INPUTS, SAMPLES, SOME, draws, each};
 use divan::Bencher;

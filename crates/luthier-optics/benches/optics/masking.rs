@@ -1,4 +1,4 @@
-//! Masking and shadowing.
+//! Benchmarks of masking and shadowing.
 
 use crate::inputs::{INPUTS, angles, draws, each};
 use divan::{Bencher, black_box};

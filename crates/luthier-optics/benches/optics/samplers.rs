@@ -1,4 +1,4 @@
-//! Samplers and their densities.
+//! Benchmarks of the samplers and their densities.
 
 use crate::inputs::{INPUTS, draws, each};
 use divan::Bencher;

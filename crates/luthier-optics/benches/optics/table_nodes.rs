@@ -1,4 +1,4 @@
-//! Costs of a node of a table to the baker.
+//! Benchmarks of one node of each table, as the baker computes it.
 
 use crate::inputs::{draws, each};
 use divan::Bencher;

@@ -1,4 +1,4 @@
-//! Walks between facets.
+//! Benchmarks of walks between facets.
 
 use crate::inputs::{INPUTS, SAMPLES, SOME, draws, each};
 use divan::Bencher;

@@ -1,4 +1,4 @@
-//! Blinn's power of a cosine.
+//! The Blinn-Phong distribution: a power of the cosine.
 
 use std::f64::consts::PI;
 

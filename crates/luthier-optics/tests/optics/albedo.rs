@@ -1,4 +1,4 @@
-//! FGD-infinity against brute force.
+//! FGD-infinity against brute-force walks.
 
 use luthier_optics::albedo::{Effort, FacetStatistics, ReflectanceCurves};
 use luthier_optics::stack::Distribution;

@@ -1,4 +1,4 @@
-//! Laws of every interface: energy, reciprocity, limits.
+//! Laws of every plane interface: energy, reciprocity, limits.
 
 use luthier_optics::fresnel::{FilmLayer, coated, interface};
 use proptest::prelude::*;

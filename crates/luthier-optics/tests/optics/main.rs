@@ -1,5 +1,5 @@
-//! The physics against oracles that share no code with it: walks by brute force, transfer matrices, conservation and
-//! reciprocity, published colours of metals, histograms.
+//! Tests of the optics against oracles that share no code with it: brute-force walks, transfer matrices, conservation laws,
+//! published colours of metals, histograms.
 
 #![expect(clippy::disallowed_methods, reason = "oracles: nothing that ships depends on them")]
 

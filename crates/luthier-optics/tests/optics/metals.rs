@@ -1,4 +1,4 @@
-//! Colours of real materials.
+//! Published colours of metals at normal incidence.
 
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;

@@ -1,4 +1,4 @@
-//! Directions drawn by the samplers against the density that they report: Pearson's chi-square.
+//! Samples of directions against the densities that the samplers report: Pearson's chi-square.
 //!
 //! Reflected directions are binned by their half vector, in slopes over the alphas, so that the cells fit the lobe at every alpha; the
 //! draws that are lost below the horizon are a cell of their own. The expected counts integrate `pdf_solid_angle`.

@@ -1,5 +1,4 @@
-use luthier_layers::elek::Terms;
-use luthier_layers::terms::Exact;
+use luthier_layers::terms::{Exact, Terms};
 use luthier_lut::incident_cosine;
 
 use super::{Measured, Scan, User, coordinate, coordinates};

@@ -1,7 +1,6 @@
 //! Tables whose right values are known without the code that the judge uses.
 
-use luthier_layers::elek::Terms;
-use luthier_layers::terms::Exact;
+use luthier_layers::terms::{Exact, Terms};
 use luthier_lut::{AtlasLayout, Image, Mapping, TableKind, TexelFormat};
 use luthier_manifest::ShadingModel;
 use luthier_optics::color::Color;

@@ -1,0 +1,7 @@
+//! Surfaces that vary from place to place, and light that changes its wavelength.
+
+pub mod flakes;
+pub mod fluorescence;
+pub mod heterogeneous;
+pub mod patina;
+pub mod textured;

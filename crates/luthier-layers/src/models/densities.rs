@@ -1,0 +1,122 @@
+//! Sampling densities by name, by which a Monte Carlo renderer divides `f cos_theta_i`.
+//!
+//! The value is the density in solid angle of `wi`, for the direction `wo` of the eye. Its integral over `wi` (the albedo of the
+//! listing) is the share of draws that are not lost below the horizon; that of the global method counts the layers.
+
+use glam::DVec3;
+use luthier_optics::ndf::{Anisotropic, to_layer};
+use luthier_optics::sampling::{CosineHemisphere, Mixture, Sampler as DirectionSampler, VisibleNormals};
+use luthier_optics::stack::Surface;
+
+use crate::facets::ALPHA_MIN;
+use crate::model::{Claims, Kind, Model, ModelInfo};
+use crate::monochrome::Monochrome;
+use crate::weidlich_wilkie_sampling::Sampler;
+
+/// A sampling method.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Density {
+    /// Cosine over pi.
+    Cosine,
+    /// Facets of the first interface that the eye sees.
+    VisibleNormals,
+    /// Half of either, the densities added (balance heuristic).
+    Mixture,
+    /// The local method of Weidlich and Wilkie: one direction for all layers.
+    LocalLayers,
+    /// The global method of Weidlich and Wilkie: one proposal for each layer; the sum of the layers' densities.
+    GlobalLayers,
+}
+
+impl Density {
+    /// All methods, in the order of listings.
+    pub const ALL: [Self; 5] =
+        [Self::Cosine, Self::VisibleNormals, Self::Mixture, Self::LocalLayers, Self::GlobalLayers];
+}
+
+impl Model for Density {
+    fn info(&self) -> ModelInfo {
+        let (name, source) = match self {
+            Self::Cosine => ("density-cosine", "Malley's method: a disc lifted to the hemisphere"),
+            Self::VisibleNormals => {
+                ("density-visible-normals", "GGX: Dupuy and Benyoub 2023; Beckmann: Heitz and d'Eon 2014")
+            }
+            Self::Mixture => ("density-mixture", "half cosine, half visible normals; Veach and Guibas 1995"),
+            Self::LocalLayers => ("density-layers-local", "Weidlich and Wilkie 2009, section 3.2.4, eq. 3.6"),
+            Self::GlobalLayers => ("density-layers-global", "Weidlich and Wilkie 2009, section 3.2.2"),
+        };
+        let (domain, leaves_out) = match self {
+            Self::Cosine => ("any stack", "what the surface looks like"),
+            Self::VisibleNormals | Self::Mixture => {
+                ("the first interface, anisotropic or not; alpha from 1e-4", "all layers below")
+            }
+            Self::LocalLayers | Self::GlobalLayers => ("any stack; alpha from 1e-4", "blur by refraction"),
+        };
+        let claims = Claims::NONE;
+        ModelInfo { name, kind: Kind::Density, claims, source, domain, leaves_out, inputs: &[] }
+    }
+
+    fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
+        let Some(layer) = stack.layers.first() else { return 0.0 };
+        if wi.z <= 0.0 || wo.z <= 0.0 || (wi + wo).length() == 0.0 {
+            return 0.0;
+        }
+        match self {
+            Self::Cosine => CosineHemisphere.pdf_solid_angle(wo, wi),
+            Self::VisibleNormals => turned(&layer.surface, wi, wo, |normals| normals),
+            Self::Mixture => turned(&layer.surface, wi, wo, |normals| {
+                Mixture::default().with(1.0, CosineHemisphere).with(1.0, normals)
+            }),
+            Self::LocalLayers => Sampler::new(stack, wo).pdf_solid_angle(wi),
+            Self::GlobalLayers => Sampler::new(stack, wo).sum_of_densities(wi),
+        }
+    }
+}
+
+/// The density of a method built on a surface's visible normals, in the surface's own frame.
+fn turned<S: DirectionSampler>(surface: &Surface, wi: DVec3, wo: DVec3, method: impl Fn(VisibleNormals) -> S) -> f64 {
+    let [alpha_x, alpha_y] = [surface.alpha_x, surface.alpha_y].map(|alpha| alpha.clamp(ALPHA_MIN, 1.0));
+    let [wi, wo] = [wi, wo].map(|w| to_layer(surface.rotation, w));
+    // Slope parameters in that range are always accepted.
+    Anisotropic::new(surface.distribution, alpha_x, alpha_y)
+        .map_or(0.0, |ndf| method(VisibleNormals { ndf }).pdf_solid_angle(wo, wi))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::directional_albedo::directional_albedo;
+    use crate::facets::Facets;
+    use crate::monochrome::MonochromeBelow;
+    use luthier_optics::stack::Distribution;
+
+    fn varnished() -> Monochrome {
+        let surface = Surface { distribution: Distribution::Ggx, alpha_x: 0.4, alpha_y: 0.1, rotation: 0.6 };
+        let base = MonochromeBelow::Diffuse { albedo: 0.7, sigma: 0.0 };
+        Monochrome::bare(&[MonochromeBelow::dielectric(1.5, 0.2), base].map(|below| (surface, below)))
+    }
+
+    /// One minus what is lost: nothing of the cosine's draws; of reflections at GGX facets, seen from the normal, those steeper than 45
+    /// degrees, which leaves 1/sqrt((1 + alpha_x^2)(1 + alpha_y^2)); of the diffuse proposal what total reflection holds back,
+    /// 1 - 1/n^2.
+    #[test]
+    fn densities_integrate_to_what_is_not_lost() {
+        let stack = varnished();
+        let share = |density| directional_albedo(&density, &stack, DVec3::Z).value;
+        let [cosine, normals, mixture, _, global] = Density::ALL.map(share);
+        assert!((cosine - 1.0).abs() < 1e-6, "{cosine}");
+        assert!((normals - 1.0 / libm::sqrt(1.16 * 1.01)).abs() < 1e-4, "{normals}");
+        assert!((mixture - 0.5 * (cosine + normals)).abs() < 2e-4, "{mixture}");
+        assert!((global - normals - 1.0 / 2.25).abs() < 2e-3, "{global} {normals}");
+    }
+
+    /// Oracle: the facets of this crate, which are another road to the same.
+    #[test]
+    fn visible_normals_are_turned_with_the_surface() {
+        let stack = varnished();
+        let (wi, wo) = (DVec3::new(0.2, 0.5, 0.8).normalize(), DVec3::new(-0.3, 0.1, 0.7).normalize());
+        let expected = Facets::new(&stack.layers[0].surface).pdf_solid_angle(wi, wo);
+        assert!((Density::VisibleNormals.eval(&stack, wi, wo) / expected - 1.0).abs() < 1e-12);
+        assert_eq!(Density::VisibleNormals.eval(&stack, -wi, wo), 0.0);
+    }
+}

@@ -1,0 +1,145 @@
+//! Elek's real-time form of the layered model of Weidlich and Wilkie, for any number of layers.
+//!
+//! O. Elek, "Layered Materials in Real-Time Rendering", CESCG 2010, eq. 2-4 and Algorithm 1:
+//!
+//! ```text
+//! f(i) = f_i(L, V) + T_12 f(i+1)(L', V') a t
+//! T_12 = T_21 = 1 - F(V.H)      a = exp(-sigma d (1/NL' + 1/NV'))      t = (1 - G) + T_21 G
+//! ```
+//!
+//! with f_i the Torrance-Sparrow BRDF `F D G / (4 NL NV)`, D normalised (the paper's prefactors disagree with each
+//! other; see CONVENTIONS.md), G of V-cavities, and L', V' refracted at the surface normal. As in the paper, a
+//! layer is never smoother than the one above it, which stands for the blur of refraction.
+//!
+//! Simplifications of the model, all the paper's: no inter-reflection between layers, no 1/n^2 compression of
+//! radiance, `t` gives back blocked light heuristically, absorption and `f_i` combine in three colour channels.
+//! Roughness is isotropic: anisotropic surfaces enter with the geometric mean of their slope parameters.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use luthier_optics::Rgb;
+use luthier_optics::masking::v_cavity;
+use luthier_optics::stack::{Base, Diffuse, Distribution, Stack};
+
+use crate::refraction::{REFRACTION_WAVELENGTH_NM, refract};
+use crate::terms::Terms;
+use crate::{frame, oren_nayar};
+
+/// Smallest slope parameter of the model. Smoother surfaces are evaluated with this one: a lobe 0.06 degrees wide, well
+/// below what one pixel or one light source resolves, and still safe in f32.
+pub const ALPHA_MIN: f64 = 1e-3;
+
+/// The model's name, as manifests and reports give it.
+pub const MODEL: &str = "elek";
+
+/// One layer as the model sees it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Layer {
+    /// Slope distribution.
+    pub distribution: Distribution,
+    /// Isotropic slope parameter, at least [`ALPHA_MIN`].
+    pub alpha: f64,
+    /// Material below the interface.
+    pub below: Below,
+}
+
+/// Material that follows below an interface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Below {
+    /// A transparent medium: real index below over index above, and the optical depth of the slab.
+    Dielectric {
+        /// Index below over index above.
+        eta: f64,
+        /// Optical depth along the normal.
+        optical_depth: Rgb,
+    },
+    /// A conductor: nothing lies below.
+    Conductor,
+    /// The layer is a diffuse base, without an interface of its own.
+    Diffuse(Diffuse),
+}
+
+/// The layers of a stack as the model sees them.
+pub fn layers(stack: &Stack) -> Vec<Layer> {
+    let mut above = stack.exterior.at(REFRACTION_WAVELENGTH_NM).re;
+    let mut out = Vec::with_capacity(stack.layers.len());
+    for layer in &stack.layers {
+        let below = match &layer.base {
+            Base::Dielectric { ior, slab } => {
+                let index = ior.at(REFRACTION_WAVELENGTH_NM).re;
+                let eta = index / above;
+                above = index;
+                Below::Dielectric { eta, optical_depth: slab.optical_depth() }
+            }
+            Base::Conductor { .. } => Below::Conductor,
+            Base::Diffuse(diffuse) => Below::Diffuse(*diffuse),
+        };
+        out.push(Layer {
+            distribution: layer.surface.distribution,
+            alpha: layer.surface.alpha_isotropic().clamp(ALPHA_MIN, 1.0),
+            below,
+        });
+    }
+    out
+}
+
+/// `f cos_theta_i` of the layers for light from `wi` seen from `wo`, per channel. Zero when either is at or below the
+/// horizon. Finite for all unit directions. Reciprocal: every factor of eq. 2 is symmetric in the two directions with T_12 and T_21
+/// at the half vector.
+pub fn eval(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3) -> Rgb {
+    eval_below(layers, terms, wi, wo, DVec3::Z)
+}
+
+/// [`eval`] with another normal below the first interface (unit, in the surface's frame): what flakes in the coat look like
+/// (Elek 2010, section 4.1). The refracted directions are measured against it, the path lengths of the first slab included, as
+/// in the paper's code; layers below see nothing when it hides either of them.
+pub fn eval_below(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3, normal_below: DVec3) -> Rgb {
+    if wi.z <= 0.0 || wo.z <= 0.0 {
+        return [0.0; 3];
+    }
+    let (mut wi_local, mut wo_local) = (wi, wo);
+    let mut throughput = [wi.z; 3];
+    let mut total = [0.0; 3];
+    let mut alpha_above = ALPHA_MIN;
+
+    for (i, layer) in layers.iter().enumerate() {
+        if let Below::Diffuse(diffuse) = layer.below {
+            add(&mut total, throughput, oren_nayar::brdf(&diffuse, wi_local, wo_local));
+            break;
+        }
+        let alpha = layer.alpha.max(alpha_above);
+        alpha_above = alpha;
+
+        let Some((wh, cos_theta_d)) = frame::half_vector(wi_local, wo_local) else { break };
+        let sin_theta_h_sq = wh.x * wh.x + wh.y * wh.y;
+        let f = terms.fresnel(i, cos_theta_d);
+        let d = terms.distribution(i, layer.distribution, alpha, wh.z, sin_theta_h_sq) / (PI * alpha * alpha);
+        let g = v_cavity(wi_local.z, wo_local.z, wh.z, cos_theta_d);
+        let geometry = d * g / (4.0 * wi_local.z * wo_local.z);
+        add(&mut total, throughput, f.map(|f| f * geometry));
+
+        let Below::Dielectric { eta, optical_depth } = layer.below else { break };
+        let (Some(mut wi_below), Some(mut wo_below)) = (refract(wi_local, eta), refract(wo_local, eta)) else { break };
+        if i == 0 && normal_below != DVec3::Z {
+            (wi_below, wo_below) = (frame::local(normal_below, wi_below), frame::local(normal_below, wo_below));
+            if wi_below.z <= 0.0 || wo_below.z <= 0.0 {
+                break;
+            }
+        }
+        let path = 1.0 / wi_below.z + 1.0 / wo_below.z;
+        for c in 0..3 {
+            let transmitted = 1.0 - f[c];
+            let absorbed = libm::exp(-optical_depth[c] * path);
+            throughput[c] *= transmitted * absorbed * ((1.0 - g) + transmitted * g);
+        }
+        (wi_local, wo_local) = (wi_below, wo_below);
+    }
+    total
+}
+
+fn add(total: &mut Rgb, weight: Rgb, value: Rgb) {
+    for c in 0..3 {
+        total[c] += weight[c] * value[c];
+    }
+}

@@ -1,0 +1,216 @@
+//! The model of Torrance and Sparrow for one rough interface and one bounce, by its components.
+
+use glam::DVec3;
+use luthier_optics::Rgb;
+use luthier_optics::stack::Distribution;
+
+use crate::facets::{Facets, Masking};
+use crate::frame::cos_theta_d;
+use crate::furnace;
+use crate::interface_fresnel::{Fresnel, LazanyiMemo};
+use crate::memo::Memo;
+use crate::model::{Claims, Kind, Model, ModelInfo};
+use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer, Optics};
+use crate::normals::{Normals, NormalsMemo};
+use crate::oren_nayar;
+
+/// Parts of a microfacet model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Components {
+    /// Distribution of facet normals.
+    pub normals: Normals,
+    /// Masking and shadowing.
+    pub masking: Masking,
+    /// Reflectance of a facet.
+    pub fresnel: Fresnel,
+}
+
+impl Components {
+    /// The surface's own distribution, height-correlated Smith masking, exact reflectance.
+    pub const PLAIN: Self = Self { normals: Normals::Surface, masking: Masking::Smith, fresnel: Fresnel::Exact };
+}
+
+/// Each model by name: the components, and their source.
+///
+/// All but the first differ from it in one component.
+pub const VARIANTS: [(&str, Components, &str); 18] = {
+    const P: Components = Components::PLAIN;
+    const BECKMANN: Normals = Normals::Slopes(Distribution::Beckmann);
+    const GGX: Normals = Normals::Slopes(Distribution::Ggx);
+    [
+        ("microfacet", P, "Walter et al. 2007, eq. 20; masking of Heitz 2014, eq. 99"),
+        (
+            "microfacet-beckmann",
+            Components { normals: BECKMANN, ..P },
+            "Beckmann and Spizzichino 1963; anisotropic: Ward 1992, Heitz 2014, eq. 81",
+        ),
+        (
+            "microfacet-ggx",
+            Components { normals: GGX, ..P },
+            "Trowbridge and Reitz 1975; Walter et al. 2007, eq. 33; anisotropic: Burley 2012, eq. 13",
+        ),
+        (
+            "microfacet-blinn-phong",
+            Components { normals: Normals::BlinnPhong, ..P },
+            "Blinn 1977, normalised; exponent 2/alpha^2 - 2 (Walter et al. 2007); Smith masking by quadrature",
+        ),
+        (
+            "microfacet-abc",
+            Components { normals: Normals::Abc, ..P },
+            "Low et al. 2012, normalised; b = 2/alpha^2, c = 2; Smith masking by quadrature",
+        ),
+        (
+            "microfacet-sgd",
+            Components { normals: Normals::Sgd, ..P },
+            "Bagher et al. 2012; its alpha is alpha^2, p = 1; Smith masking by quadrature",
+        ),
+        (
+            "microfacet-implicit",
+            Components { masking: Masking::Implicit, ..P },
+            "Hoffman 2013: masking cos_theta_i cos_theta_o",
+        ),
+        (
+            "microfacet-v-cavity",
+            Components { masking: Masking::VCavity, ..P },
+            "Torrance and Sparrow 1967; Cook and Torrance 1982, eq. 9",
+        ),
+        (
+            "microfacet-kelemen",
+            Components { masking: Masking::Kelemen, ..P },
+            "Kelemen and Szirmay-Kalos 2001: masking cos_theta_i cos_theta_o / cos_theta_d^2",
+        ),
+        (
+            "microfacet-schlick-smith",
+            Components { masking: Masking::SchlickSmith, ..P },
+            "Schlick 1994: masking with k = alpha sqrt(2/pi)",
+        ),
+        (
+            "microfacet-smith-separable",
+            Components { masking: Masking::SmithSeparable, ..P },
+            "Smith 1967; Walter et al. 2007, eq. 23",
+        ),
+        (
+            "microfacet-schlick",
+            Components { fresnel: Fresnel::Schlick, ..P },
+            "Schlick 1994, from the exact reflectance at normal incidence, films included",
+        ),
+        (
+            "microfacet-complex-f0",
+            Components { fresnel: Fresnel::ComplexF0, ..P },
+            "Elek 2010, FresnelTermNP: Schlick's form, F0 from n and k; films left out",
+        ),
+        (
+            "microfacet-lazanyi",
+            Components { fresnel: Fresnel::Lazanyi, ..P },
+            "Lazanyi and Szirmay-Kalos 2005, correction fitted at each wavelength; films left out",
+        ),
+        (
+            "microfacet-f82",
+            Components { fresnel: Fresnel::F82, ..P },
+            "Kutz, Hasan and Edmondson 2021: F82-tint through the exact reflectance at 0 and 81.8 degrees",
+        ),
+        (
+            "microfacet-transfer-matrix",
+            Components { fresnel: Fresnel::TransferMatrix, ..P },
+            "Abeles 1950; Born and Wolf, section 1.6: films by characteristic matrices",
+        ),
+        (
+            "microfacet-granier-film",
+            Components { fresnel: Fresnel::TwoBeams, ..P },
+            "Granier and Heidrich 2003, eq. 5: two beams of the first film; Schlick 1994 without one",
+        ),
+        (
+            "microfacet-belcour-barla",
+            Components { fresnel: Fresnel::BelcourBarla, ..P },
+            "Belcour and Barla 2017: first film, two orders; prefiltered in spectral colour; exact without a film",
+        ),
+    ]
+};
+
+/// `f = F D G / (4 cos_theta_i cos_theta_o)` of the first interface (Torrance and Sparrow 1967; Walter et al. 2007, eq. 20), D
+/// normalised. What the interface lets through is lost; a diffuse first layer is Oren and Nayar's.
+///
+/// Reciprocal, and never above unit albedo on an interface, but for two beams, which gain. V-cavities let `f cos_theta_i` grow as
+/// 1/cos_theta_o towards grazing mirror directions.
+#[derive(Debug)]
+pub struct Microfacet {
+    components: Components,
+    normals: NormalsMemo,
+    fits: LazanyiMemo,
+}
+
+impl Microfacet {
+    /// The model of some components.
+    pub const fn new(components: Components) -> Self {
+        Self { components, normals: NormalsMemo::new(), fits: Memo::new() }
+    }
+
+    /// `f cos_theta_i` but for the reflectance, and the angle for that.
+    fn lobe(&self, layer: &MonochromeLayer, optics: &impl Optics, wi: DVec3, wo: DVec3) -> Option<(f64, f64)> {
+        let Components { normals, masking, .. } = self.components;
+        let lobe = match normals {
+            Normals::Surface => Facets::new(&layer.surface).lobe_of(optics, 0, masking, wi, wo),
+            _ => normals.lobe(&self.normals, &layer.surface, masking, wi, wo),
+        };
+        lobe.map(|lobe| (lobe.value, lobe.cos_theta_d))
+    }
+
+    /// [`Model::eval`] with optical terms that may come from elsewhere; of the components, these are the surface's own distribution
+    /// and the exact reflectance.
+    pub fn eval_with(&self, stack: &Monochrome, optics: &impl Optics, wi: DVec3, wo: DVec3) -> f64 {
+        let Some(layer) = stack.layers.first() else { return 0.0 };
+        if wi.z <= 0.0 || wo.z <= 0.0 {
+            return 0.0;
+        }
+        if let MonochromeBelow::Diffuse { albedo, sigma } = layer.below {
+            return wi.z * oren_nayar::brdf_scalar(albedo, sigma, wi, wo);
+        }
+        let Some((value, cos_theta_d)) = self.lobe(layer, optics, wi, wo) else { return 0.0 };
+        let reflectance = match self.components.fresnel {
+            Fresnel::Exact => optics.reflectance(0, cos_theta_d),
+            other => other.reflectance(&self.fits, layer, cos_theta_d),
+        };
+        reflectance * value
+    }
+}
+
+impl Model for Microfacet {
+    fn info(&self) -> ModelInfo {
+        let known = VARIANTS.iter().find(|(_, components, _)| *components == self.components);
+        let (name, source) = known.map_or(("microfacet-composed", "see its components"), |v| (v.0, v.2));
+        let claims = match self.components.fresnel {
+            Fresnel::TwoBeams => Claims::RECIPROCAL,
+            _ => Claims::BOTH,
+        };
+        ModelInfo {
+            name,
+            kind: Kind::Surface,
+            claims,
+            source,
+            domain: match self.components.normals {
+                Normals::Surface | Normals::Slopes(_) => {
+                    "the first interface of any stack, anisotropic or not; alpha from 1e-4"
+                }
+                Normals::BlinnPhong | Normals::Abc | Normals::Sgd => {
+                    "the first interface of any stack, isotropic; alpha from 1e-4"
+                }
+            },
+            leaves_out: "all layers below, and all bounces after the first",
+            inputs: &[],
+        }
+    }
+
+    fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
+        self.eval_with(stack, stack, wi, wo)
+    }
+
+    fn eval_rgb(&self, channels: &[(f64, Monochrome); 3], wi: DVec3, wo: DVec3) -> Option<Rgb> {
+        let reflectance = self.components.fresnel.rgb(channels, cos_theta_d(wi, wo))?;
+        let (value, _) = self.lobe(channels[0].1.layers.first()?, &channels[0].1, wi, wo).unwrap_or((0.0, 0.0));
+        Some(reflectance.map(|r| r * value))
+    }
+
+    fn lossless(&self, stack: &Monochrome) -> Monochrome {
+        furnace::lossless_interface(stack)
+    }
+}

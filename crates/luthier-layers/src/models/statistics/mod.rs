@@ -1,0 +1,24 @@
+//! Layers as operators on the statistics of light: energy, mean direction, variance.
+//!
+//! L. Belcour, "Efficient Rendering of Layered Materials using an Atomic Decomposition with Statistical Operators", SIGGRAPH
+//! 2018; Yamaguchi, Yatagawa, Tokuyoshi and Morishima, "Real-time Rendering of Layered Materials with Anisotropic Normal
+//! Distributions", SIGGRAPH Asia 2019 Technical Briefs, whose eq. 1-3 restate it. A lobe of light is a point in the unit
+//! disc (the mean of its directions, projected on the surface), an energy and a spread around that point. Interfaces and
+//! slabs change the three; adding sums all paths between them.
+//!
+//! The two papers differ in the type of a spread only: a number, or a covariance matrix. So does the code: everything here is
+//! generic over [`spread::Spread`]. It is generic over the number of channels too: the models of this crate have one, a wavelength; shaders
+//! have three colours that share directions and spreads ([`layers::Layers::rgb`]).
+//!
+//! Out of scope: media that scatter.
+
+pub mod adding;
+pub mod diffuse_base;
+pub mod energy;
+pub mod evaluate;
+#[cfg(test)]
+pub(crate) mod fixtures;
+pub mod layers;
+pub mod model;
+pub mod spread;
+pub mod total_reflection;

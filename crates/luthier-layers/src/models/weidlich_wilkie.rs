@@ -1,0 +1,160 @@
+//! The layered model of Weidlich and Wilkie, as printed.
+//!
+//! A. Weidlich and A. Wilkie, "Exploring the potential of layered BRDF models", SIGGRAPH Asia 2009 course, eq. 3.1-3.3
+//! (first in "Arbitrarily layered micro-facet surfaces", GRAPHITE 2007):
+//!
+//! ```text
+//! f = f_1(wi, wo) + T_12 f_2(wi', wo') a t
+//! a = exp(-sigma d (1/cos_theta_i' + 1/cos_theta_o'))      t = (1 - G) + T_21 G
+//! ```
+//!
+//! f_2 is again a layered surface; T_12 = T_21 = 1 - F at the half vector (the course's shader takes both there, see
+//! [`Transmission`]); G is of V-cavities. Of the distributions the course leaves free, each surface brings its own.
+//!
+//! The model errs in two ways, which the tests measure: radiance is not compressed by 1/n^2 on its way out, so that a smooth
+//! coat over a white base returns about twice what it receives; and light that comes back from the underside of an
+//! interface is lost or, by `t`, made up for where facets hide each other. [`crate::weidlich_wilkie_corrected`] mends
+//! both.
+
+use glam::DVec3;
+
+use crate::facets::{Facets, Masking};
+use crate::frame;
+use crate::model::{Claims, Kind, Model, ModelInfo};
+use crate::monochrome::{Monochrome, MonochromeBelow, Optics};
+use crate::oren_nayar;
+use crate::refraction::{refract, refract_at};
+
+/// Normal at which both directions are refracted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Refraction {
+    /// The surface's, as in Elek's form of the model and in the sampling of this crate.
+    #[default]
+    Surface,
+    /// The half vector: both rays pass the one facet that they have in common (the course's first simplification, read by the
+    /// letter). The lower layer then sees the same half vector, whatever the index.
+    Facet,
+}
+
+/// Angles at which the transmission coefficients are taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Transmission {
+    /// Both coefficients at the half vector, as in the course's shader.
+    #[default]
+    HalfVector,
+    /// T_12 at the angle of `wi`, T_21 at that of `wo`, each with the normal, and `t = T_21`: the physics of a smooth
+    /// interface, which hides nothing.
+    Directions,
+}
+
+/// The recursive model, faithful to the course.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct WeidlichWilkie {
+    /// Normal at which directions are refracted.
+    pub refraction: Refraction,
+    /// Angles at which T_12 and T_21 are taken.
+    pub transmission: Transmission,
+}
+
+impl WeidlichWilkie {
+    /// The directions in the medium below, pointing up, or `None` when either is totally reflected or leaves upward.
+    fn below(self, eta: f64, wi: DVec3, wo: DVec3) -> Option<(DVec3, DVec3)> {
+        let pair = match self.refraction {
+            Refraction::Surface => (refract(wi, eta)?, refract(wo, eta)?),
+            Refraction::Facet => {
+                let m = (wi + wo).try_normalize()?;
+                (refract_at(m, wi, eta)?, refract_at(m, wo, eta)?)
+            }
+        };
+        (pair.0.z > 0.0 && pair.1.z > 0.0).then_some(pair)
+    }
+}
+
+impl Model for WeidlichWilkie {
+    fn info(&self) -> ModelInfo {
+        let (name, domain) = match (self.refraction, self.transmission) {
+            (Refraction::Surface, Transmission::HalfVector) => {
+                ("weidlich-wilkie", "any stack; refraction at the surface normal; alpha from 1e-4")
+            }
+            (Refraction::Surface, Transmission::Directions) => {
+                ("weidlich-wilkie-directions", "any stack; transmission at the directions' own angles; alpha from 1e-4")
+            }
+            (Refraction::Facet, Transmission::HalfVector) => {
+                ("weidlich-wilkie-facet", "any stack; refraction at the half vector; alpha from 1e-4")
+            }
+            (Refraction::Facet, Transmission::Directions) => {
+                ("weidlich-wilkie-facet-directions", "any stack; refraction at the half vector, transmission not")
+            }
+        };
+        ModelInfo {
+            name,
+            kind: Kind::Layered,
+            claims: Claims::RECIPROCAL,
+            source: "Weidlich and Wilkie 2009, eq. 3.1-3.3; Elek 2010, eq. 2-4",
+            domain,
+            leaves_out: "1/n^2 (up to n^2 times too bright), bounces between layers, blur by refraction",
+            inputs: &[],
+        }
+    }
+
+    fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
+        self.eval_with(stack, stack, wi, wo)
+    }
+}
+
+impl WeidlichWilkie {
+    /// [`Model::eval`] with optical terms that may come from elsewhere.
+    pub fn eval_with(self, stack: &Monochrome, optics: &impl Optics, wi: DVec3, wo: DVec3) -> f64 {
+        self.eval_below(stack, optics, wi, wo, DVec3::Z)
+    }
+
+    /// [`Self::eval_with`] with another normal below the first interface, see [`eval_below`](crate::elek::eval_below).
+    pub(crate) fn eval_below(
+        self,
+        stack: &Monochrome,
+        optics: &impl Optics,
+        wi: DVec3,
+        wo: DVec3,
+        normal_below: DVec3,
+    ) -> f64 {
+        if wi.z <= 0.0 || wo.z <= 0.0 {
+            return 0.0;
+        }
+        let (mut wi_local, mut wo_local) = (wi, wo);
+        let (mut throughput, mut total) = (1.0, 0.0);
+        for (i, layer) in stack.layers.iter().enumerate() {
+            // f_cos below carries the local cosine; the model wants that of the exterior.
+            let cosines = wi.z / wi_local.z;
+            if let MonochromeBelow::Diffuse { albedo, sigma } = layer.below {
+                return total + throughput * wi.z * oren_nayar::brdf_scalar(albedo, sigma, wi_local, wo_local);
+            }
+            let facets = Facets::new(&layer.surface);
+            let Some(lobe) = facets.lobe_of(optics, i, Masking::VCavity, wi_local, wo_local) else { break };
+            let reflected = optics.reflectance(i, lobe.cos_theta_d);
+            total += throughput * cosines * reflected * lobe.value;
+
+            let MonochromeBelow::Dielectric { optical_depth, .. } = layer.below else { break };
+            let Some((mut wi_below, mut wo_below)) = self.below(layer.eta(), wi_local, wo_local) else { break };
+            if i == 0 && normal_below != DVec3::Z {
+                (wi_below, wo_below) = (frame::local(normal_below, wi_below), frame::local(normal_below, wo_below));
+                if wi_below.z <= 0.0 || wo_below.z <= 0.0 {
+                    break;
+                }
+            }
+            let passed = match self.transmission {
+                Transmission::HalfVector => {
+                    let transmitted = 1.0 - reflected;
+                    transmitted * ((1.0 - lobe.masking) + transmitted * lobe.masking)
+                }
+                Transmission::Directions => {
+                    (1.0 - optics.reflectance(i, wi_local.z.min(1.0)))
+                        * (1.0 - optics.reflectance(i, wo_local.z.min(1.0)))
+                }
+            };
+            let absorbed = libm::exp(-optical_depth * (1.0 / wi_below.z + 1.0 / wo_below.z));
+            throughput *= passed * absorbed;
+            (wi_local, wo_local) = (wi_below, wo_below);
+        }
+        total
+    }
+}

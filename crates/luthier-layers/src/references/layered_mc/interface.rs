@@ -1,0 +1,171 @@
+//! An interface, or a diffuse base, as the paths through a stack meet it.
+//!
+//! Kernels are densities of light per solid angle: `K(a, b)` is what becomes of a unit of light that comes in from
+//! `a` and leaves along `b`. With radiance, `K = f cos_theta_b`; reciprocity reads `n_a^2 cos_a K(a, b) = n_b^2 cos_b
+//! K(b, a)`.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use luthier_optics::stack::Diffuse;
+
+use super::InterfaceMode;
+use super::facets::Facets;
+use super::optics::{Optics, Side};
+use super::random::Stream;
+use super::rough::{Rough, Sided};
+use super::{one_facet, walk};
+use crate::monochrome::{MonochromeBelow, MonochromeLayer};
+use crate::oren_nayar;
+
+/// An interface.
+#[derive(Debug, Clone)]
+pub(crate) struct Interface {
+    kind: Kind,
+    /// Cosine and sine of the angle from the stack's tangent to the interface's, where it matters.
+    rotation: Option<(f64, f64)>,
+    mode: InterfaceMode,
+}
+
+#[derive(Debug, Clone)]
+enum Kind {
+    Smooth(Optics),
+    Rough(Rough),
+    Diffuse(Diffuse),
+}
+
+impl Interface {
+    /// The interface at the top of a layer.
+    pub(crate) fn new(layer: &MonochromeLayer, mode: InterfaceMode) -> Self {
+        let surface = &layer.surface;
+        let faceted = |optics: Optics| match Facets::new(surface) {
+            Some(facets) if !optics.is_absent() => Kind::Rough(Rough { optics, facets }),
+            _ => Kind::Smooth(optics),
+        };
+        let kind = match layer.below {
+            MonochromeBelow::Diffuse { albedo, sigma } => Kind::Diffuse(Diffuse { albedo: [albedo; 3], sigma }),
+            MonochromeBelow::Conductor { ior } => faceted(Optics::opaque(layer.above, &layer.films, ior)),
+            MonochromeBelow::Dielectric { complex_ior, .. } => {
+                faceted(Optics::transparent(layer.above, &layer.films, complex_ior))
+            }
+        };
+        let turned = surface.alpha_x != surface.alpha_y && surface.rotation != 0.0;
+        let rotation = turned.then(|| (libm::cos(surface.rotation), libm::sin(surface.rotation)));
+        Self { kind, rotation, mode }
+    }
+
+    /// Whether every direction has one mirrored and one refracted direction only.
+    pub(crate) fn is_smooth(&self) -> bool {
+        matches!(self.kind, Kind::Smooth(_))
+    }
+
+    /// The facets of the interface, where it has them.
+    #[cfg(test)]
+    pub(crate) fn rough(&self) -> Option<&Rough> {
+        if let Kind::Rough(rough) = &self.kind { Some(rough) } else { None }
+    }
+
+    /// Whether it is a diffuse base that reflects nothing.
+    pub(crate) fn is_black(&self) -> bool {
+        matches!(&self.kind, Kind::Diffuse(diffuse) if diffuse.albedo == [0.0; 3])
+    }
+
+    /// Index of the medium on a side; `None` at a diffuse base, which does not know it.
+    pub(crate) fn index(&self, side: Side) -> Option<f64> {
+        match &self.kind {
+            Kind::Smooth(optics) | Kind::Rough(Rough { optics, .. }) => Some(optics.index(side)),
+            Kind::Diffuse(_) => None,
+        }
+    }
+
+    /// Direction in which light from `a` goes on, and its weight, by chance; `None` when it is lost.
+    #[inline(always)]
+    pub(crate) fn scatter(&self, stream: &mut Stream, a: Sided) -> Option<(Sided, f64)> {
+        match &self.kind {
+            Kind::Smooth(optics) => Some(scatter_smooth(optics, stream, a)),
+            Kind::Diffuse(diffuse) => {
+                let (direction, u) = stream.direction_and_uniform();
+                let sin = u.sqrt();
+                let b = DVec3::new(sin * direction.x, sin * direction.y, (1.0 - u).sqrt());
+                Some((Sided { direction: b, ..a }, PI * diffuse_brdf(diffuse, a.direction, b)))
+            }
+            Kind::Rough(rough) => {
+                let a = self.turned(a);
+                let scattered = match self.mode {
+                    InterfaceMode::SmithWalk => walk::scatter(rough, stream, a),
+                    InterfaceMode::OneFacet => one_facet::scatter(rough, stream, a),
+                };
+                scattered.map(|(b, weight)| (self.turned_back(b), weight))
+            }
+        }
+    }
+
+    /// K(a, b), or an unbiased estimate of it. Zero for a smooth interface, whose kernel is no function.
+    pub(crate) fn kernel(&self, stream: &mut Stream, a: Sided, b: Sided) -> f64 {
+        match &self.kind {
+            Kind::Smooth(_) => 0.0,
+            Kind::Diffuse(diffuse) => diffuse_brdf(diffuse, a.direction, b.direction) * b.direction.z,
+            Kind::Rough(rough) => {
+                let (a, b) = (self.turned(a), self.turned(b));
+                match self.mode {
+                    InterfaceMode::SmithWalk => walk::kernel(rough, stream, a, b),
+                    InterfaceMode::OneFacet => one_facet::kernel(rough, a, b),
+                }
+            }
+        }
+    }
+
+    /// About the density of `b` in what [`Self::scatter`] draws from `a`, and of `a` in what it draws from `b`:
+    /// positive wherever it is. Weights between strategies need no more. For a smooth interface, which is no
+    /// strategy, 1.
+    pub(crate) fn densities(&self, a: Sided, b: Sided) -> (f64, f64) {
+        let (forth, back) = match &self.kind {
+            Kind::Smooth(_) => (1.0, 1.0),
+            Kind::Diffuse(_) => (b.direction.z / PI, a.direction.z / PI),
+            Kind::Rough(rough) => {
+                let (a, b) = (self.turned(a), self.turned(b));
+                let (forth, back) = rough.phases(a, b);
+                match self.mode {
+                    InterfaceMode::SmithWalk => {
+                        (forth + walk::later_density(rough, b), back + walk::later_density(rough, a))
+                    }
+                    InterfaceMode::OneFacet => (forth, back),
+                }
+            }
+        };
+        (forth.max(f64::MIN_POSITIVE), back.max(f64::MIN_POSITIVE))
+    }
+
+    /// Turns a direction from the stack's frame to the interface's.
+    fn turned(&self, d: Sided) -> Sided {
+        self.rotation.map_or(d, |(cos, sin)| rotated(d, cos, -sin))
+    }
+
+    fn turned_back(&self, d: Sided) -> Sided {
+        self.rotation.map_or(d, |(cos, sin)| rotated(d, cos, sin))
+    }
+}
+
+fn rotated(d: Sided, cos: f64, sin: f64) -> Sided {
+    let DVec3 { x, y, z } = d.direction;
+    Sided { direction: DVec3::new(cos * x - sin * y, sin * x + cos * y, z), ..d }
+}
+
+fn scatter_smooth(optics: &Optics, stream: &mut Stream, a: Sided) -> (Sided, f64) {
+    let DVec3 { x, y, z } = a.direction;
+    let split = optics.split(a.side, z);
+    let kept = split.reflectance + split.transmittance;
+    if split.transmittance == 0.0 || stream.uniform() * kept < split.reflectance {
+        return (Sided { direction: DVec3::new(-x, -y, z), ..a }, kept);
+    }
+    let other = a.side.other();
+    let eta_it = optics.eta_it(a.side);
+    (Sided { side: other, direction: DVec3::new(-x * eta_it, -y * eta_it, split.cos_theta_t) }, kept)
+}
+
+fn diffuse_brdf(diffuse: &Diffuse, a: DVec3, b: DVec3) -> f64 {
+    if diffuse.sigma == 0.0 {
+        return diffuse.albedo[0] / PI;
+    }
+    oren_nayar::brdf(diffuse, b, a)[0]
+}

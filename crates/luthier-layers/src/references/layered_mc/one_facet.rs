@@ -1,0 +1,24 @@
+//! A rough interface with one facet per event: what the facets' shadows catch is lost.
+//!
+//! Reflection and refraction have the height-correlated masking `G2 = 1 / (1 + Lambda_i + Lambda_o)`, the form that
+//! fast models use for both (for refraction Smith's model itself has a Beta function, Heitz et al. 2016, eq. 46).
+
+use super::random::Stream;
+use super::rough::{Rough, Sided};
+
+/// Direction in which light from `a` leaves the interface, and its weight, by chance; `None` when it is lost.
+pub(crate) fn scatter(rough: &Rough, stream: &mut Stream, a: Sided) -> Option<(Sided, f64)> {
+    let (b, kept) = rough.scatter(stream, a.side, &rough.facets.view(a.direction));
+    (b.direction.z > 0.0).then(|| (b, kept * masking(rough, a, b)))
+}
+
+/// Density per solid angle of the light from `a` that leaves along `b`.
+pub(crate) fn kernel(rough: &Rough, a: Sided, b: Sided) -> f64 {
+    rough.phase(a.side, &rough.facets.view(a.direction), b) * masking(rough, a, b)
+}
+
+/// G2 / G1.
+fn masking(rough: &Rough, a: Sided, b: Sided) -> f64 {
+    let visible = 1.0 + rough.facets.lambda(a.direction);
+    visible / (visible + rough.facets.lambda(b.direction))
+}

@@ -1,0 +1,7 @@
+//! References that judge the models: closed forms of smooth stacks, and random walks through rough ones.
+
+pub mod closed_form;
+pub mod layered_mc;
+pub mod plane_stack;
+pub mod random_walk;
+pub mod transfer_matrix;

@@ -1,0 +1,368 @@
+//! Twins in f64 of the emitted shaders: models in three colour channels, with optical terms computed or read from tables.
+//!
+//! No model is written here: a twin evaluates the model of its module, channel by channel, with what is particular to shaders: one
+//! set of slope parameters, at least [`ALPHA_MIN`]; one index at [`REFRACTION_WAVELENGTH_NM`] that bends the directions of all
+//! channels, except in Granier and Heidrich's model, which bends each by the index of its own wavelength; reflectances from
+//! [`Terms`]. Belcour's and Yamaguchi's models have one spread for all three channels, too.
+
+use std::cell::RefCell;
+
+use glam::DVec3;
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use luthier_optics::stack::{Base, Stack, Surface};
+
+use crate::elek::{self, ALPHA_MIN};
+use crate::granier_heidrich::GranierHeidrich;
+use crate::microfacet::{Components, Microfacet};
+use crate::monochrome::{Monochrome, MonochromeBelow, Optics, in_color};
+use crate::phong::Coefficients;
+use crate::refraction::REFRACTION_WAVELENGTH_NM;
+use crate::statistics::diffuse_base::DiffuseBase;
+use crate::statistics::evaluate::{Follow, evaluate};
+use crate::statistics::layers::Layers;
+use crate::statistics::spread::{Covariance, Spread};
+use crate::terms::{ShaderTerms, Terms};
+use crate::weidlich_wilkie::WeidlichWilkie;
+
+/// Normals below the first interface of a surface: those of `LuthierPlace`, each unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Under {
+    /// Normal of the flakes, which all that lies below is turned by; for `elek` and `weidlich-wilkie`.
+    pub flake_normal: DVec3,
+    /// Normal of the lower boundary of the film; for `granier-heidrich`.
+    pub inner_normal: DVec3,
+}
+
+impl Under {
+    /// Normals of the surface itself.
+    pub const NONE: Self = Self { flake_normal: DVec3::Z, inner_normal: DVec3::Z };
+}
+
+/// The twin of a shader, for one surface.
+#[derive(Debug)]
+pub struct Twin(Kind);
+
+#[derive(Debug)]
+enum Kind {
+    Elek(Vec<elek::Layer>),
+    WeidlichWilkie([Monochrome; 3]),
+    GranierHeidrich([Monochrome; 3]),
+    Phong([Coefficients; 3]),
+    Microfacet(Box<(Microfacet, [Monochrome; 3])>),
+    Belcour(Layers<3>),
+    Yamaguchi(Layers<3>),
+}
+
+impl Twin {
+    /// Names of the models that have a twin.
+    pub const MODELS: [&str; 7] =
+        [elek::MODEL, "weidlich-wilkie", "granier-heidrich", "belcour", "yamaguchi", "phong", "microfacet"];
+
+    /// The twin of the shader of a model, by the model's name; `None` for a model that has none. `wavelengths_nm` are those of the
+    /// three channels. `color` says how Phong's coefficients come by their colour, which both forms of the shader read from the
+    /// material; the colour of everything else is that of the [`Terms`].
+    pub fn new(model: &str, stack: &Stack, wavelengths_nm: [f64; 3], color: Color) -> Option<Self> {
+        let channels = || channels(stack, wavelengths_nm).map(|one| bend_alike(one, stack));
+        Some(Self(match model {
+            elek::MODEL => Kind::Elek(elek::layers(stack)),
+            "weidlich-wilkie" => Kind::WeidlichWilkie(channels()),
+            "granier-heidrich" => Kind::GranierHeidrich(granier_channels(stack, wavelengths_nm)),
+            "phong" => Kind::Phong(coefficients(stack, wavelengths_nm, color)),
+            "belcour" => Kind::Belcour(Layers::rgb(stack)),
+            "yamaguchi" => Kind::Yamaguchi(Layers::rgb(stack)),
+            "microfacet" => Kind::Microfacet(Box::new((Microfacet::new(Components::PLAIN), channels()))),
+            _ => return None,
+        }))
+    }
+
+    /// `f cos_theta_i`, RGB. Zero when either direction is at or below the horizon. Terms are asked once for every value, however many
+    /// channels need it.
+    pub fn eval(&self, terms: &impl ShaderTerms, wi: DVec3, wo: DVec3) -> Rgb {
+        self.eval_over(terms, &Under::NONE, wi, wo)
+    }
+
+    /// [`Twin::eval`] with other normals below the first interface.
+    pub fn eval_over(&self, terms: &impl ShaderTerms, under: &Under, wi: DVec3, wo: DVec3) -> Rgb {
+        let &Under { flake_normal, inner_normal } = under;
+        match &self.0 {
+            Kind::Elek(layers) => elek::eval_below(layers, terms, wi, wo, flake_normal),
+            Kind::WeidlichWilkie(stacks) => each(terms, stacks, |stack, optics| {
+                WeidlichWilkie::default().eval_below(stack, optics, wi, wo, flake_normal)
+            }),
+            Kind::GranierHeidrich(stacks) => {
+                let model = GranierHeidrich { inner_normal, ..GranierHeidrich::default() };
+                each(terms, stacks, |stack, optics| model.eval_with(stack, optics, wi, wo))
+            }
+            Kind::Belcour(layers) => statistical::<f64>(layers, terms, wi, wo),
+            Kind::Yamaguchi(layers) => statistical::<Covariance>(layers, terms, wi, wo),
+            Kind::Phong(channels) => channels.map(|coefficients| coefficients.eval(wi, wo)),
+            Kind::Microfacet(one) => each(terms, &one.1, |stack, optics| one.0.eval_with(stack, optics, wi, wo)),
+        }
+    }
+}
+
+/// Belcour's or Yamaguchi's model: three channels that share directions and spreads, as their shader has them.
+fn statistical<S: Spread>(layers: &Layers<3>, terms: &impl ShaderTerms, wi: DVec3, wo: DVec3) -> Rgb {
+    let base = DiffuseBase::veiled(layers, terms.veil());
+    evaluate::<S, 3>(layers, terms, base.as_ref(), Follow::Eye, wi, wo)
+}
+
+/// A model at each channel's wavelength.
+fn each<T: Terms>(terms: &T, stacks: &[Monochrome; 3], eval: impl Fn(&Monochrome, &Channel<'_, T>) -> f64) -> Rgb {
+    let memory = Memory::default();
+    [0, 1, 2].map(|channel| eval(&stacks[channel], &Channel { terms, stacks, channel, memory: &memory }))
+}
+
+/// The stack at each wavelength, slope parameters clamped as in layer records.
+fn channels(stack: &Stack, wavelengths_nm: [f64; 3]) -> [Monochrome; 3] {
+    let clamped = |alpha: f64| alpha.clamp(ALPHA_MIN, 1.0);
+    [0, 1, 2].map(|channel| {
+        let mut one = Monochrome::new(stack, wavelengths_nm[channel], channel);
+        for Surface { alpha_x, alpha_y, .. } in one.layers.iter_mut().map(|layer| &mut layer.surface) {
+            (*alpha_x, *alpha_y) = (clamped(*alpha_x), clamped(*alpha_y));
+        }
+        one
+    })
+}
+
+/// Stacks of the channels with isotropic surfaces, whose slope parameter is clamped after the mean is taken.
+fn granier_channels(stack: &Stack, wavelengths_nm: [f64; 3]) -> [Monochrome; 3] {
+    let mut channels = channels(stack, wavelengths_nm);
+    for one in &mut channels {
+        for (layer, given) in one.layers.iter_mut().zip(&stack.layers) {
+            let alpha = given.surface.alpha_isotropic().clamp(ALPHA_MIN, 1.0);
+            layer.surface = Surface::isotropic(given.surface.distribution, alpha);
+        }
+    }
+    channels
+}
+
+/// The stack with the real indices of the common wavelength, which bend directions. Reflectances come from elsewhere.
+fn bend_alike(mut one: Monochrome, stack: &Stack) -> Monochrome {
+    for (layer, given) in one.layers.iter_mut().zip(&stack.layers) {
+        if let (MonochromeBelow::Dielectric { ior, .. }, Base::Dielectric { ior: given, .. }) =
+            (&mut layer.below, &given.base)
+        {
+            *ior = given.at(REFRACTION_WAVELENGTH_NM).re;
+        }
+    }
+    Monochrome::joined(stack.exterior.at(REFRACTION_WAVELENGTH_NM).re, one.layers)
+}
+
+/// Phong's coefficients in colour; one lobe has one exponent, that of the green wavelength.
+fn coefficients(stack: &Stack, wavelengths_nm: [f64; 3], color: Color) -> [Coefficients; 3] {
+    let diffuse = in_color(stack, &color, |one| Coefficients::of(one).diffuse);
+    let specular = in_color(stack, &color, |one| Coefficients::of(one).specular);
+    let Coefficients { exponent, .. } = Coefficients::of(&Monochrome::new(stack, wavelengths_nm[1], 1));
+    [0, 1, 2].map(|c| Coefficients { diffuse: diffuse[c], specular: specular[c], exponent })
+}
+
+/// Values of terms during one evaluation, by layer and arguments.
+#[derive(Debug, Default)]
+struct Memory {
+    reflectances: RefCell<Vec<(usize, f64, Rgb)>>,
+    distributions: RefCell<Vec<(usize, [f64; 3], f64)>>,
+}
+
+/// Terms as one channel sees them.
+struct Channel<'a, T> {
+    terms: &'a T,
+    stacks: &'a [Monochrome; 3],
+    channel: usize,
+    memory: &'a Memory,
+}
+
+impl<T: Terms> Optics for Channel<'_, T> {
+    fn reflectance(&self, layer: usize, cos_theta_i: f64) -> f64 {
+        let mut known = self.memory.reflectances.borrow_mut();
+        if let Some((.., rgb)) = known.iter().find(|(l, cos, _)| (*l, *cos) == (layer, cos_theta_i)) {
+            return rgb[self.channel];
+        }
+        let rgb = self.terms.fresnel(layer, cos_theta_i);
+        known.push((layer, cos_theta_i, rgb));
+        rgb[self.channel]
+    }
+
+    fn distribution(&self, layer: usize, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
+        let arguments = [alpha, cos_theta_h, sin_theta_h_sq];
+        let mut known = self.memory.distributions.borrow_mut();
+        if let Some((.., value)) = known.iter().find(|(l, a, _)| (*l, *a) == (layer, arguments)) {
+            return *value;
+        }
+        let Some(surface) = self.stacks[self.channel].layers.get(layer).map(|layer| layer.surface) else { return 0.0 };
+        let value = self.terms.distribution(layer, surface.distribution, alpha, cos_theta_h, sin_theta_h_sq);
+        known.push((layer, arguments, value));
+        value
+    }
+
+    fn swing(&self, layer: usize, cosines: f64) -> f64 {
+        let tabulated = self.terms.swing(layer, self.channel, cosines);
+        tabulated.unwrap_or_else(|| self.stacks[self.channel].swing(layer, cosines))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use luthier_optics::ior::{Ior, IorSample};
+    use luthier_optics::stack::{Diffuse, Distribution, Film, FilmThickness, Layer, Slab};
+
+    use super::*;
+    use crate::model::Model;
+    use crate::registry;
+    use crate::statistics::diffuse_base::Veil;
+    use crate::statistics::energy::Energy;
+    use crate::statistics::evaluate::Prepared;
+    use crate::terms::Exact;
+
+    const WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
+
+    fn dispersive(n: f64) -> Ior {
+        let samples = [(400.0, n + 0.05, 0.0), (700.0, n - 0.05, 0.0)];
+        Ior::sampled(samples.map(|(wavelength_nm, n, k)| IorSample { wavelength_nm, n, k }).to_vec()).unwrap()
+    }
+
+    fn layer(surface: Surface, base: Base) -> Layer {
+        Layer { films: Vec::new(), surface, base }
+    }
+
+    fn coat(ior: Ior) -> Layer {
+        let surface = Surface { distribution: Distribution::Ggx, alpha_x: 0.3, alpha_y: 0.1, rotation: 0.4 };
+        layer(
+            surface,
+            Base::Dielectric { ior, slab: Slab { thickness_um: 10.0, absorption_per_um: [0.01, 0.02, 0.03] } },
+        )
+    }
+
+    fn directions() -> [(DVec3, DVec3); 2] {
+        let unit = |x, y, z| DVec3::new(x, y, z).normalize();
+        [(unit(0.3, 0.1, 0.7), unit(-0.2, 0.2, 0.9)), (unit(0.9, 0.0, 0.1), unit(-0.8, 0.3, 0.2))]
+    }
+
+    /// The energies that the models at one wavelength compute, in all channels.
+    struct Grey(Prepared);
+
+    impl Terms for Grey {
+        fn fresnel(&self, _: usize, _: f64) -> Rgb {
+            [f64::NAN; 3]
+        }
+
+        fn distribution(&self, _: usize, _: Distribution, _: f64, _: f64, _: f64) -> f64 {
+            f64::NAN
+        }
+    }
+
+    impl Energy<3> for Grey {
+        fn fgd(&self, layer: usize, cos_theta_i: f64, alpha: f64) -> Rgb {
+            let [grey] = self.0.energy().fgd(layer, cos_theta_i, alpha);
+            [grey; 3]
+        }
+    }
+
+    impl ShaderTerms for Grey {
+        fn veil(&self) -> Veil<3> {
+            let Some(Veil { internal: [internal], upward: [upward] }) = self.0.veil() else { return Veil::NONE };
+            Veil { internal: [internal; 3], upward: [upward; 3] }
+        }
+    }
+
+    /// Oracle: the model at each wavelength alone. Coats and metals are grey, because the shaders' channels share their spreads.
+    #[test]
+    fn exact_twins_of_the_statistical_models_are_the_models() {
+        let grey = Ior::constant(1.5, 0.0).unwrap();
+        let metal = |distribution| {
+            let surface = Surface { distribution, alpha_x: 0.05, alpha_y: 0.2, rotation: -0.3 };
+            layer(surface, Base::Conductor { ior: Ior::constant(0.2, 3.0).unwrap() })
+        };
+        let base = layer(Surface::smooth(), Base::Diffuse(Diffuse { albedo: [0.5; 3], sigma: 0.3 }));
+        let slab = Slab { thickness_um: 1.0, absorption_per_um: [0.1; 3] };
+        let rough = layer(
+            Surface { distribution: Distribution::Ggx, alpha_x: 0.3, alpha_y: 0.1, rotation: 0.4 },
+            Base::Dielectric { ior: grey, slab },
+        );
+        for layers in
+            [vec![rough.clone(), metal(Distribution::Ggx)], vec![metal(Distribution::Beckmann)], vec![rough, base]]
+        {
+            let stack = Stack { exterior: Ior::vacuum(), layers };
+            let color = Color::ThreeWavelengths(WAVELENGTHS_NM);
+            let grey = Grey(Prepared::new(&Monochrome::new(&stack, 550.0, 1)));
+            let exact = Exact::new(&stack, color);
+            for name in ["belcour", "yamaguchi"] {
+                let twin = Twin::new(name, &stack, WAVELENGTHS_NM, color).unwrap();
+                let model = registry::model(name).unwrap();
+                for (wi, wo) in directions() {
+                    let found = twin.eval(&grey, wi, wo);
+                    let fine = twin.eval(&exact, wi, wo);
+                    for (c, nm) in WAVELENGTHS_NM.into_iter().enumerate() {
+                        let expected = model.eval(&Monochrome::new(&stack, nm, c), wi, wo);
+                        assert!(expected > 1e-6, "{name}: {expected}");
+                        assert!((found[c] / expected - 1.0).abs() < 1e-9, "{name}, {c}: {} for {expected}", found[c]);
+                        // The models compute energies to 2e-3; finer ones are no other energies.
+                        assert!((fine[c] / expected - 1.0).abs() < 5e-3, "{name}, {c}: {} for {expected}", fine[c]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Oracle: the model at each wavelength alone. Where nothing disperses, bending all channels alike changes nothing.
+    #[test]
+    fn exact_twins_are_the_models_at_three_wavelengths() {
+        let metal = layer(
+            Surface::isotropic(Distribution::Beckmann, 0.4),
+            Base::Conductor { ior: Ior::constant(0.2, 3.0).unwrap() },
+        );
+        let film = Film { ior: dispersive(1.6), thickness: FilmThickness { min_nm: 300.0, max_nm: 300.0 } };
+        let filmed = Layer { films: vec![film], ..metal.clone() };
+        let base = layer(Surface::smooth(), Base::Diffuse(Diffuse { albedo: [0.2, 0.5, 0.8], sigma: 0.3 }));
+        let stack = |layers| Stack { exterior: Ior::vacuum(), layers };
+        let plain = Ior::constant(1.5, 0.0).unwrap();
+        let dispersive_coat = stack(vec![coat(dispersive(1.5)), base.clone()]);
+        let cases = [
+            ("elek", stack(vec![coat(plain.clone()), metal.clone()])),
+            ("weidlich-wilkie", stack(vec![coat(plain), metal])),
+            ("microfacet", stack(vec![filmed.clone()])),
+            ("microfacet", dispersive_coat.clone()),
+            ("granier-heidrich", stack(vec![filmed, base])),
+            ("granier-heidrich", dispersive_coat),
+        ];
+        for (name, stack) in cases {
+            let color = Color::ThreeWavelengths(WAVELENGTHS_NM);
+            let twin = Twin::new(name, &stack, WAVELENGTHS_NM, color).unwrap();
+            let model = registry::model(name).unwrap();
+            for (wi, wo) in directions() {
+                let found = twin.eval(&Exact::new(&stack, color), wi, wo);
+                for (c, nm) in WAVELENGTHS_NM.into_iter().enumerate() {
+                    let expected = model.eval(&Monochrome::new(&stack, nm, c), wi, wo);
+                    assert!(expected > 1e-6, "{name}: {expected}");
+                    assert!((found[c] / expected - 1.0).abs() < 1e-12, "{name}, {c}: {} for {expected}", found[c]);
+                }
+            }
+        }
+    }
+
+    /// Dispersion moves what lies below a coat, channel by channel, but for the models whose shaders bend all alike.
+    #[test]
+    fn one_index_bends_all_channels() {
+        let metal = Base::Conductor { ior: Ior::constant(0.2, 3.0).unwrap() };
+        let smooth = layer(Surface::isotropic(Distribution::Beckmann, 0.05), metal);
+        let stack = Stack { exterior: Ior::vacuum(), layers: vec![coat(dispersive(1.5)), smooth] };
+        let color = Color::ThreeWavelengths(WAVELENGTHS_NM);
+        let twin = Twin::new("weidlich-wilkie", &stack, WAVELENGTHS_NM, color).unwrap();
+        let (wi, wo) = directions()[1];
+        let found = twin.eval(&Exact::new(&stack, color), wi, wo);
+        let own = WeidlichWilkie::default().eval(&Monochrome::new(&stack, 645.0, 0), wi, wo);
+        assert!((found[0] / own - 1.0).abs() > 1e-4, "{} {own}", found[0]);
+        let alike = bend_alike(Monochrome::new(&stack, 645.0, 0), &stack);
+        assert!((alike.layers[0].eta() - dispersive(1.5).at(REFRACTION_WAVELENGTH_NM).re).abs() < 1e-15);
+        assert_eq!(alike.layers[1].above, alike.layers[0].eta());
+    }
+
+    #[test]
+    fn a_model_without_a_shader_has_no_twin() {
+        let stack = Stack { exterior: Ior::vacuum(), layers: vec![coat(dispersive(1.5))] };
+        let twin = |name| Twin::new(name, &stack, WAVELENGTHS_NM, Color::Spectral);
+        assert!(twin("layered-mc").is_none());
+        assert!(Twin::MODELS.into_iter().all(|name| twin(name).is_some()));
+    }
+}

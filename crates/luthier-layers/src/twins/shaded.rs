@@ -1,0 +1,285 @@
+//! The f64 twin of `luthier_eval_at`: a model with a shader, at one place of a surface that varies.
+
+use std::f64::consts::FRAC_1_PI;
+
+use glam::DVec3;
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use luthier_optics::ior::Ior;
+use luthier_optics::stack::{Base, Distribution, Stack, Surface};
+
+use crate::elek::{self, ALPHA_MIN};
+use crate::frame;
+use crate::real_time::{Twin, Under};
+use crate::statistics::diffuse_base::Veil;
+use crate::statistics::energy::Energy;
+use crate::terms::{Exact, ShaderTerms, Terms};
+use crate::textured::TextureSample;
+
+/// Values of textures and effects at one place of a surface: `LuthierPlace` of the shaders.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// Normal and factors.
+    pub sample: TextureSample,
+    /// Normals below the first interface.
+    pub under: Under,
+    /// Patina; `None` where all layers are there, without its diffuse term and tarnish.
+    pub patina: Option<Growth>,
+}
+
+impl Place {
+    /// A place without textures and effects.
+    pub const NONE: Self = Self { sample: TextureSample::NONE, under: Under::NONE, patina: None };
+}
+
+/// Patina at a place (Elek 2010, section 4.2): the first layer has grown over the others.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Growth {
+    /// Amount of it, 0..=1: see [`Patina::amount`](crate::patina::Patina::amount).
+    pub amount: f64,
+    /// Diffuse reflectance that stands for scattering in it.
+    pub diffuse_albedo: Rgb,
+    /// Slope parameter of the layer below where it has grown; `None` leaves that layer as it is.
+    pub base_alpha: Option<f64>,
+    /// Factor on the reflection of the layers below where it has grown.
+    pub tarnish: Rgb,
+}
+
+/// A model with a shader at one place, with exact terms.
+#[derive(Debug)]
+pub struct Shaded {
+    place: Place,
+    layers: Layers,
+    /// The layers below the first, where patina leaves them bare.
+    bare: Option<Layers>,
+}
+
+#[derive(Debug)]
+struct Layers {
+    twin: Twin,
+    terms: Exact,
+}
+
+impl Shaded {
+    /// The model at a place; `None` for a model without a shader. `color` is that of the terms: spectral as in the tables of the baked
+    /// form, or three wavelengths as in the form without tables. Belcour's and Yamaguchi's models have the energies of rough
+    /// interfaces, as in the baked form.
+    ///
+    /// Effects are those of the model's shader: flakes and patina in `elek` and `weidlich-wilkie`, deviated films in `granier-heidrich`.
+    pub fn new(model: &str, stack: &Stack, wavelengths_nm: [f64; 3], color: Color, place: &Place) -> Option<Self> {
+        let is_chain = [elek::MODEL, "weidlich-wilkie"].contains(&model);
+        let patina = place.patina.filter(|_| is_chain && stack.layers.len() > 1);
+        let layers = |stack: &Stack| {
+            let twin = Twin::new(model, stack, wavelengths_nm, color)?;
+            Some(Layers { twin, terms: Exact::new(stack, color) })
+        };
+        let here = at(stack, model, place, patina);
+        let bare = patina.map(|_| layers(&Stack { layers: here.layers[1..].to_vec(), ..here.clone() }));
+        Some(Self { place: Place { patina, ..*place }, layers: layers(&here)?, bare: bare.flatten() })
+    }
+
+    /// `f cos_theta_i`, RGB; the cosine is that against the place's normal. Zero where either direction is at or below the horizon of the
+    /// surface or of the place.
+    pub fn eval(&self, wi: DVec3, wo: DVec3) -> Rgb {
+        let [wi_here, wo_here] = [wi, wo].map(|w| frame::local(self.place.sample.normal, w));
+        if [wi, wo, wi_here, wo_here].iter().any(|w| w.z <= 0.0) {
+            return [0.0; 3];
+        }
+        let (wi, wo, under) = (wi_here, wo_here, &self.place.under);
+        let Layers { twin, terms } = &self.layers;
+        let (Some(patina), Some(bare)) = (&self.place.patina, &self.bare) else {
+            return twin.eval_over(terms, under, wi, wo);
+        };
+        let amount = patina.amount;
+        let dull = patina.tarnish.map(|tarnish| 1.0 + (tarnish - 1.0) * amount);
+        let passed = terms.fresnel(0, frame::cos_theta_d(wi, wo)).map(|reflected| 1.0 - reflected);
+        let mut value = [0, 1, 2].map(|c| amount * passed[c] * patina.diffuse_albedo[c] * FRAC_1_PI * wi.z);
+        let mut add = |share: f64, layers: &Layers, first: Rgb, under: &Under| {
+            if share > 0.0 {
+                let tarnished = Tarnished { terms: &layers.terms, first, below: dull };
+                let part = layers.twin.eval_over(&tarnished, under, wi, wo);
+                (0..3).for_each(|c| value[c] += share * part[c]);
+            }
+        };
+        add(1.0 - amount, bare, dull, &Under::NONE);
+        add(amount, &self.layers, [1.0; 3], under);
+        value
+    }
+}
+
+/// The stack as a model's shader has it at a place.
+fn at(stack: &Stack, model: &str, place: &Place, patina: Option<Growth>) -> Stack {
+    let mut here = stack.clone();
+    let factors = &place.sample;
+    for (i, layer) in here.layers.iter_mut().enumerate() {
+        let base_alpha = patina.filter(|_| i == 1).and_then(|p| Some((p.base_alpha?, p.amount)));
+        if factors.alpha_factor == 1.0 && base_alpha.is_none() {
+            continue;
+        }
+        if model == elek::MODEL {
+            layer.surface = Surface::isotropic(layer.surface.distribution, layer.surface.alpha_isotropic());
+        }
+        for alpha in [&mut layer.surface.alpha_x, &mut layer.surface.alpha_y] {
+            // Records are clamped before anything acts on them.
+            *alpha = (alpha.clamp(ALPHA_MIN, 1.0) * factors.alpha_factor).clamp(ALPHA_MIN, 1.0);
+            if let Some((base_alpha, amount)) = base_alpha {
+                *alpha += (base_alpha - *alpha) * amount;
+            }
+        }
+    }
+    // Phong's coefficients are those of the nominal thicknesses.
+    if let Some(layer) = here.layers.first_mut().filter(|_| model != "phong") {
+        for film in &mut layer.films {
+            film.thickness.min_nm *= factors.film_factor;
+            film.thickness.max_nm *= factors.film_factor;
+        }
+        if let Base::Dielectric { slab, .. } = &mut layer.base {
+            slab.thickness_um *= factors.slab_factor;
+        }
+    }
+    here
+}
+
+/// The stack with the indices that it has at one wavelength, at all of them: its shaders bend directions by those, and not by the common
+/// one.
+pub fn at_wavelength(stack: &Stack, wavelength_nm: f64) -> Stack {
+    let still = |ior: &Ior| {
+        let here = ior.at(wavelength_nm);
+        // The index was valid in its file, and is at every wavelength.
+        Ior::constant(here.re, here.im).unwrap_or_else(|_| ior.clone())
+    };
+    let mut here = stack.clone();
+    here.exterior = still(&here.exterior);
+    for layer in &mut here.layers {
+        layer.films.iter_mut().for_each(|film| film.ior = still(&film.ior));
+        match &mut layer.base {
+            Base::Dielectric { ior, .. } | Base::Conductor { ior } => *ior = still(ior),
+            Base::Diffuse(_) => {}
+        }
+    }
+    here
+}
+
+/// Terms whose reflectances are dimmed, those of the first layer and those of the layers below.
+struct Tarnished<'a> {
+    terms: &'a Exact,
+    first: Rgb,
+    below: Rgb,
+}
+
+impl Terms for Tarnished<'_> {
+    fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
+        let factor = if layer == 0 { self.first } else { self.below };
+        let bright = self.terms.fresnel(layer, cos_theta_d);
+        [0, 1, 2].map(|c| factor[c] * bright[c])
+    }
+
+    fn distribution(&self, layer: usize, d: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
+        self.terms.distribution(layer, d, alpha, cos_theta_h, sin_theta_h_sq)
+    }
+}
+
+impl Energy<3> for Tarnished<'_> {
+    fn fgd(&self, layer: usize, cos_theta_i: f64, alpha: f64) -> Rgb {
+        self.terms.fgd(layer, cos_theta_i, alpha)
+    }
+}
+
+impl ShaderTerms for Tarnished<'_> {
+    fn veil(&self) -> Veil<3> {
+        self.terms.veil()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use luthier_optics::ior::IorSample;
+    use luthier_optics::stack::{Layer, Slab};
+
+    use super::*;
+    use crate::flakes::Flakes;
+    use crate::model::Model;
+    use crate::monochrome::Monochrome;
+    use crate::patina::Patina;
+    use crate::registry;
+
+    const WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
+
+    /// Copper under a dispersive coat.
+    fn copper() -> Stack {
+        let layer =
+            |alpha, base| Layer { films: Vec::new(), surface: Surface::isotropic(Distribution::Beckmann, alpha), base };
+        let samples = [(400.0, 1.7), (700.0, 1.5)].map(|(wavelength_nm, n)| IorSample { wavelength_nm, n, k: 0.0 });
+        let slab = Slab { thickness_um: 1.0, absorption_per_um: [0.1, 0.3, 0.2] };
+        let coat = Base::Dielectric { ior: Ior::sampled(samples.to_vec()).unwrap(), slab };
+        let metal = Base::Conductor { ior: Ior::constant(1.04, 2.59).unwrap() };
+        Stack { exterior: Ior::vacuum(), layers: vec![layer(0.3, coat), layer(0.2, metal)] }
+    }
+
+    fn directions() -> (DVec3, DVec3) {
+        (DVec3::new(0.3, 0.1, 0.7).normalize(), DVec3::new(-0.2, 0.2, 0.9).normalize())
+    }
+
+    fn shaded(place: &Place, nm: f64) -> Rgb {
+        let (wi, wo) = directions();
+        let still = at_wavelength(&copper(), nm);
+        Shaded::new("elek", &still, [nm; 3], Color::ThreeWavelengths([nm; 3]), place).unwrap().eval(wi, wo)
+    }
+
+    /// Oracle: the effects of Elek's model at one wavelength, which are written for a stack at one wavelength.
+    #[test]
+    fn effects_are_those_of_the_models_at_one_wavelength() {
+        let (wi, wo) = directions();
+        let patina = Patina { extent: 0.6, transition: 0.5, diffuse_albedo: 0.3, base_alpha: Some(0.4), tarnish: 0.6 };
+        for map in [0.0, 0.4, 0.7, 1.0] {
+            let growth = Growth {
+                amount: patina.amount(map),
+                diffuse_albedo: [0.3; 3],
+                base_alpha: Some(0.4),
+                tarnish: [0.6; 3],
+            };
+            let found = shaded(&Place { patina: Some(growth), ..Place::NONE }, 525.0);
+            for (c, found) in found.into_iter().enumerate() {
+                let expected = patina.eval(&Monochrome::new(&copper(), 525.0, c), map, wi, wo);
+                assert!((found / expected - 1.0).abs() < 1e-12, "{map}: {found} {expected}");
+            }
+        }
+        let flakes = Flakes { seed: 5, count: 64, tiling: 10.0, spread: 0.2, scale: 1.0, fade_start: 1.0 };
+        let uv = glam::DVec2::new(0.0123, 0.0456);
+        let under = Under { flake_normal: flakes.normal(uv, 0.5), ..Under::NONE };
+        let found = shaded(&Place { under, ..Place::NONE }, 600.0);
+        let plain = shaded(&Place::NONE, 600.0);
+        for c in 0..3 {
+            let expected = flakes.eval(&Monochrome::new(&copper(), 600.0, c), uv, 0.5, wi, wo);
+            assert!((found[c] / expected - 1.0).abs() < 1e-12, "{} {expected}", found[c]);
+            assert!((found[c] / plain[c] - 1.0).abs() > 1e-3);
+        }
+    }
+
+    /// Oracle: the model of that wavelength with its textures.
+    #[test]
+    fn places_are_those_of_the_textured_models() {
+        let (wi, wo) = directions();
+        let sample = TextureSample {
+            normal: DVec3::new(0.1, -0.05, 0.9).normalize(),
+            alpha_factor: 1.3,
+            slab_factor: 2.0,
+            film_factor: 1.0,
+        };
+        for name in ["elek", "weidlich-wilkie", "granier-heidrich", "microfacet"] {
+            let model = registry::model(name).unwrap();
+            let (nm, still) = (480.0, at_wavelength(&copper(), 480.0));
+            for sample in [TextureSample::NONE, sample] {
+                let color = Color::ThreeWavelengths([nm; 3]);
+                let place = Place { sample, ..Place::NONE };
+                let found = Shaded::new(name, &still, [nm; 3], color, &place).unwrap().eval(wi, wo);
+                for (c, found) in found.into_iter().enumerate() {
+                    let expected =
+                        sample.eval(model.as_ref() as &dyn Model, &Monochrome::new(&copper(), nm, c), wi, wo);
+                    assert!((found / expected - 1.0).abs() < 1e-12, "{name}: {found} {expected}");
+                }
+            }
+        }
+        assert!(Shaded::new("layered-mc", &copper(), WAVELENGTHS_NM, Color::Spectral, &Place::NONE).is_none());
+    }
+}

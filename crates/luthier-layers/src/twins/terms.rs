@@ -1,0 +1,120 @@
+//! Terms of the real-time models in colour that tables stand in for, and their exact values.
+
+use std::sync::OnceLock;
+
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use luthier_optics::interface::{Interface, Sampled};
+use luthier_optics::microfacet;
+use luthier_optics::stack::{Distribution, Stack};
+
+use crate::statistics::diffuse_base::Veil;
+use crate::statistics::energy::{ColorEnergy, Energy};
+use crate::statistics::layers::Layers;
+
+/// The factors of a model that can be read from tables. Layers are numbered from the top.
+pub trait Terms {
+    /// Fresnel reflectance of the interface of a layer.
+    fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb;
+
+    /// `pi alpha^2 D(theta_h, alpha)` of the slope distribution of a layer, from the cosine and the squared sine of theta_h; the closed
+    /// form unless a table holds it.
+    fn distribution(
+        &self,
+        _layer: usize,
+        distribution: Distribution,
+        alpha: f64,
+        cos_theta_h: f64,
+        sin_theta_h_sq: f64,
+    ) -> f64 {
+        microfacet::scaled_distribution(distribution, alpha, cos_theta_h, sin_theta_h_sq)
+    }
+
+    /// `2 cos(2 Phi)` of the film of a layer, in one colour channel, for the sum of the cosines in it; `None` where no table holds it,
+    /// and it is to be computed. Elek's model has no use for it.
+    fn swing(&self, _layer: usize, _channel: usize, _cosines: f64) -> Option<f64> {
+        None
+    }
+}
+
+/// All that the shaders of any model are given: what [`Terms`] are, and for `belcour` and `yamaguchi` energies, and what layers do
+/// to the light of a diffuse base.
+pub trait ShaderTerms: Terms + Energy<3> {
+    /// Effect of the layers above a diffuse base on its light; anything where there is no such base.
+    fn veil(&self) -> Veil<3>;
+}
+
+/// Exact terms. Fresnel and distribution terms are evaluated at every call; energies are prepared at the first, see
+/// [`ColorEnergy`].
+#[derive(Debug, Clone)]
+pub struct Exact {
+    stack: Stack,
+    color: Color,
+    interfaces: Vec<Option<Sampled>>,
+    energies: Energies,
+}
+
+#[derive(Debug, Clone)]
+enum Energies {
+    Facets(OnceLock<(ColorEnergy, Veil<3>)>),
+    Level(Veil<3>),
+}
+
+impl Exact {
+    /// The terms of a stack, in the given colour mode.
+    pub fn new(stack: &Stack, color: Color) -> Self {
+        Self::with(stack, color, Energies::Facets(OnceLock::new()))
+    }
+
+    /// The terms of a stack with the energies of shaders without tables: facets count as level, and nothing of a lobe is totally reflected.
+    /// `veil` is what those shaders are told of the layers above a diffuse base.
+    pub fn level(stack: &Stack, color: Color, veil: Veil<3>) -> Self {
+        Self::with(stack, color, Energies::Level(veil))
+    }
+
+    fn with(stack: &Stack, color: Color, energies: Energies) -> Self {
+        let interfaces = (0..stack.layers.len())
+            .map(|i| Interface::of(stack, i).map(|interface| interface.sampled(&color)))
+            .collect();
+        Self { stack: stack.clone(), color, interfaces, energies }
+    }
+
+    fn facets<'a>(&self, prepared: &'a OnceLock<(ColorEnergy, Veil<3>)>) -> &'a (ColorEnergy, Veil<3>) {
+        prepared.get_or_init(|| {
+            let energy = ColorEnergy::new(&self.stack, self.color);
+            let veil = Veil::new(&Layers::rgb(&self.stack), &energy).unwrap_or(Veil::NONE);
+            (energy, veil)
+        })
+    }
+}
+
+impl Terms for Exact {
+    fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
+        self.interfaces.get(layer).and_then(Option::as_ref).map_or([0.0; 3], |i| i.rgb(cos_theta_d))
+    }
+}
+
+impl Energy<3> for Exact {
+    fn fgd(&self, layer: usize, cos_theta_i: f64, alpha: f64) -> Rgb {
+        match &self.energies {
+            Energies::Facets(prepared) => self.facets(prepared).0.fgd(layer, cos_theta_i, alpha),
+            Energies::Level(_) => self.fresnel(layer, cos_theta_i),
+        }
+    }
+
+    fn escaping(&self, layer: usize, cos_theta_i: f64, alpha: f64, eta: f64) -> f64 {
+        match &self.energies {
+            Energies::Facets(prepared) => self.facets(prepared).0.escaping(layer, cos_theta_i, alpha, eta),
+            Energies::Level(_) => 1.0,
+        }
+    }
+}
+
+impl ShaderTerms for Exact {
+    fn veil(&self) -> Veil<3> {
+        match &self.energies {
+            Energies::Facets(prepared) => self.facets(prepared).1,
+            Energies::Level(veil) => *veil,
+        }
+    }
+}
