@@ -7,8 +7,8 @@ struct $Path {
     cos_above: f32, //? escape
     /// Index of i over that of 0. //? statistics_base
     eta: f32, //? statistics_base
-    /// Share that comes down from 0 to i. //? below
-    t0i: vec3<f32>, //? below
+    /// Share that comes down from 0 to i. //? below|statistics_base
+    t0i: vec3<f32>, //? below|statistics_base
     /// Share that goes up from i to 0. //? below
     ti0: vec3<f32>, //? below
     /// Share that comes back to i from above. //? below
@@ -37,7 +37,7 @@ fn $start(cos_theta: f32) -> $Path {
     path.cos_theta = clamp(cos_theta, 0.00001, 1.0);
     path.cos_above = path.cos_theta; //? escape
     path.eta = 1.0; //? statistics_base
-    path.t0i = vec3<f32>(1.0); //? below
+    path.t0i = vec3<f32>(1.0); //? below|statistics_base
     path.ti0 = vec3<f32>(1.0); //? below
     path.jacobian = 1.0; //? below
     path.slab = vec3<f32>(1.0); //? absorption, escape
@@ -88,7 +88,7 @@ fn $add(path: $Path, layer: LuthierLayer) -> $Path {
     } //? below
     next.cos_theta = clamp(sqrt(cos_sq), 0.00001, 1.0); //? below
     next.cos_above = path.cos_theta; //? below, escape
-    next.eta = path.eta * layer.eta; //? statistics_base
+    next.eta = path.eta * layer.eta; //? below, statistics_base
     let widening = layer.eta * next.cos_theta / path.cos_theta; //? below
     let spread_t12 = $interface_spread(layer, 0.5 * abs(1.0 - 1.0 / widening)); //? below
     let spread_t21 = $interface_spread(layer, 0.5 * abs(1.0 - widening)); //? below
@@ -106,7 +106,7 @@ fn $add(path: $Path, layer: LuthierLayer) -> $Path {
     next.t0i = path.t0i * downward; //? below
     next.ti0 = (1.0 - r21) * upward; //? below
     next.ri0 = reflected; //? below
-    next.escape_tile = layer.escape_tile; //? escape
+    next.escape_tile = layer.escape_tile; //? below, escape
     let slab = exp2(-layer.halvings / next.cos_theta); //? below, absorption
     next.slab = slab; //? absorption, escape
     next.t0i *= slab; //? below, absorption
