@@ -23,9 +23,7 @@ pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, 
     );
     let is_diffuse = |layer: &luthier_lut::LayerRecord| layer.kind == LayerKind::Diffuse;
     if layers.iter().all(|layers| layers.first().is_some_and(is_diffuse)) {
-        let diffuse =
-            if features.has("oren_nayar") { "luthier_diffuse(layer, wi, wo)" } else { "luthier_diffuse(layer)" };
-        let _ = writeln!(out, "    let layer = $layer(material, 0u);\n    return wi.z * {diffuse};\n}}");
+        out.push_str("    let layer = $layer(material, 0u);\n    return wi.z * $diffuse(layer, wi, wo);\n}\n");
         return out + &patina(model, features);
     }
     let depth = layers.iter().map(|layers| layers.len()).max().unwrap_or(0);

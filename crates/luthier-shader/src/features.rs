@@ -81,8 +81,7 @@ impl Features {
             names.insert("full");
         }
         for table in set.tables_read(form) {
-            // `film` is whether any layer has one.
-            names.insert(if table.kind == TableKind::Film { "film_table" } else { table.kind.name() });
+            names.insert(feature(table.kind));
             if !table.format.is_filterable() {
                 names.insert("bilinear");
             }
@@ -112,6 +111,11 @@ impl Features {
         }
         Self(names)
     }
+}
+
+/// The word for a table that is read; `film` is whether any layer has one.
+pub(crate) fn feature(table: TableKind) -> &'static str {
+    if table == TableKind::Film { "film_table" } else { table.name() }
 }
 
 /// The features of the layers that a material's model reads.
@@ -249,15 +253,13 @@ fn is_mixed(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::module::words;
+    use crate::module::{features_named, modules, prune};
 
     #[test]
-    fn modules_name_no_unknown_feature() {
-        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/wgsl");
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            let module = std::fs::read_to_string(&path).unwrap();
-            for word in words(&module) {
+    fn modules_have_whole_blocks_and_name_no_unknown_feature() {
+        for (path, module) in modules() {
+            prune(&module, &Features(BTreeSet::new()));
+            for word in features_named(&module) {
                 assert!(Features::ALL.contains(&word), "`{word}` in {}", path.display());
             }
         }

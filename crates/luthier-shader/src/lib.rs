@@ -30,6 +30,7 @@ mod features;
 mod glsl;
 mod hlsl;
 mod lookup;
+mod members;
 mod module;
 mod msl;
 mod set;

@@ -23,12 +23,12 @@ pub(crate) fn modules(set: &MaterialSet<'_>, model: ShadingModel, features: &Fea
         module
     };
     if is_bare(set, model) {
-        return vec![text(&eval(set, model, features), features)];
+        return vec![text(&eval(set, model), features)];
     }
     vec![
         named(text(include_str!("wgsl/statistics_path.wgsl"), features)),
         text(spreads, features),
-        text(&eval(set, model, features), features),
+        text(&eval(set, model), features),
     ]
 }
 
@@ -45,7 +45,7 @@ fn is_diffuse(layer: &LayerRecord) -> bool {
     layer.kind == LayerKind::Diffuse
 }
 
-fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> String {
+fn eval(set: &MaterialSet<'_>, model: ShadingModel) -> String {
     let (name, prefix) = (function(model), format!("luthier_{}", model.name()));
     let layers = layers(set, model);
     let mut out = format!(
@@ -54,10 +54,7 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Stri
         model.name()
     );
     if is_bare(set, model) {
-        let diffuse =
-            if features.has("oren_nayar") { "luthier_diffuse(layer, wi, wo)" } else { "luthier_diffuse(layer)" };
-        let _ = writeln!(out, "    let layer = $layer(material, 0u);\n    return wi.z * {diffuse};\n}}");
-        return out;
+        return out + "    let layer = $layer(material, 0u);\n    return wi.z * $diffuse(layer, wi, wo);\n}\n";
     }
     let depth = layers.iter().map(|layers| layers.len()).max().unwrap_or(0);
     if depth > 1 {

@@ -8,8 +8,8 @@ use std::collections::BTreeSet;
 use naga::Module;
 
 use self::comments::Comments;
-pub(crate) use self::tidy::rename;
 use self::tidy::tidy;
+pub(crate) use self::tidy::{rename, words};
 
 /// Our name for a helper function of naga's, which does in another language what WGSL promises.
 pub(crate) fn helper(word: &str) -> Option<String> {

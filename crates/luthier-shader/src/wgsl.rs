@@ -2,11 +2,12 @@
 
 use std::fmt::Write as _;
 
-use luthier_lut::{MaterialTexture, SIDE, ShadingModel, material_buffer};
+use luthier_lut::{MaterialTexture, SIDE, ShadingModel, TableKind, material_buffer};
 
 use crate::chain;
-use crate::features::Features;
+use crate::features::{Features, feature};
 use crate::lookup::lookup;
+use crate::members::without_missing;
 use crate::module::prune;
 use crate::statistics;
 use crate::{Form, MaterialSet, ShaderError, bindings};
@@ -69,7 +70,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         parts.insert(2, include_str!("wgsl/pi.wgsl").to_owned());
     }
     parts.retain(|part| !part.is_empty());
-    let wgsl = parts.join("\n");
+    let wgsl = without_missing(&parts.join("\n"));
     Ok(match buffer {
         Buffer::Constant => wgsl.replace("    return material * LUTHIER_MATERIAL_WORDS;\n", "    return 0u;\n"),
         Buffer::Texture => read_from_texture(&wgsl),
@@ -78,15 +79,33 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
 }
 
 /// The lines of a module that a set keeps. Models take a `LuthierPlace` where a material of the set varies over its surface:
-/// `$place_parameter` declares it, `$place_argument` hands it on, and `$layer(` reads a layer as it is there.
+/// `$place_parameter` declares it, `$place_argument` hands it on, and `$layer(` reads a layer as it is there. `$diffuse(` is the BRDF of a
+/// base, which directions decide where one is rough. `$tiles` are the members of a layer that point into tables. `$distribution_read`
+/// is pi alpha^2 D from the table, which is the distribution's term where no layer has it computed.
 pub(crate) fn text(module: &str, features: &Features) -> String {
     let [parameter, argument, layer] = if features.has("place") {
         ["place: LuthierPlace, ", "place, ", "luthier_layer_at(place, "]
     } else {
         ["", "", "luthier_layer("]
     };
-    let text = prune(module, features).replace("$place_parameter ", parameter).replace("$place_argument ", argument);
-    text.replace("$layer(", layer)
+    let text = prune(&module.replace("    $tiles\n", &tiles(features)), features);
+    let text =
+        text.replace("$place_parameter ", parameter).replace("$place_argument ", argument).replace("$layer(", layer);
+    let term = if features.has("closed") { "luthier_distribution_read" } else { "luthier_distribution_term" };
+    let text = text.replace("$distribution_read", term);
+    if features.has("oren_nayar") {
+        return text.replace("$diffuse(", "luthier_diffuse(");
+    }
+    let mut parts = text.split("$diffuse(layer");
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.filter_map(|part| part.split_once(')')).fold(first, |out, (_, after)| out + "luthier_diffuse(layer)" + after)
+}
+
+/// The members of a layer that say where in the tables it is.
+fn tiles(features: &Features) -> String {
+    let is_read = |kind: &TableKind| features.has(feature(*kind));
+    let names = TableKind::ALL.into_iter().filter(is_read).map(TableKind::name);
+    names.map(|name| format!("    /// Tile in `luthier_{name}`.\n    {name}_tile: f32,\n")).collect()
 }
 
 /// The modules of a model, `luthier_eval_<model>` last.

@@ -3,15 +3,19 @@ fn luthier_belcour_interface_spread(layer: LuthierLayer, scale: f32) -> f32 {
     return luthier_variance(scale * layer.alpha);
 }
 
-/// Slope parameter of the isotropic surface of that variance. //? escape
-fn luthier_belcour_mean_alpha(spread: f32) -> f32 { //? escape
-    return luthier_spread_alpha(spread); //? escape
-} //? escape
+//? escape
+/// Slope parameter of the isotropic surface of that variance.
+fn luthier_belcour_mean_alpha(spread: f32) -> f32 {
+    return luthier_spread_alpha(spread);
+}
+//? end
 
-/// A variance held far beyond that of any surface, but finite. //? below
-fn luthier_belcour_limited(spread: f32) -> f32 { //? below
-    return min(spread, 1e9); //? below
-} //? below
+//? below
+/// A variance held far beyond that of any surface, but finite.
+fn luthier_belcour_limited(spread: f32) -> f32 {
+    return min(spread, 1e9);
+}
+//? end
 
 /// f cos_theta_i of the lobe of the last interface: a GGX surface of its variance.
 fn luthier_belcour_lobe(path: LuthierBelcour, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {

@@ -2,10 +2,15 @@
 /// eq. 20). What it lets through is lost.
 fn luthier_eval_microfacet($place_parameter material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
     let layer = $layer(material, 0u);
-    if layer.kind == LUTHIER_DIFFUSE { //? microfacet_diffuse, smith
-        return wi.z * luthier_diffuse(layer, wi, wo); //? microfacet_diffuse, oren_nayar
-        return wi.z * luthier_diffuse(layer); //? microfacet_diffuse, !oren_nayar
-    } //? microfacet_diffuse, smith
-    let lobe = luthier_smith_lobe(layer, wi, wo); //? smith
-    return luthier_fresnel_term(layer, lobe.cos_theta_d) * lobe.value; //? smith
+    //? smith
+    //? microfacet_diffuse
+    if layer.kind == LUTHIER_DIFFUSE {
+        return wi.z * $diffuse(layer, wi, wo);
+    }
+    //? end
+    let lobe = luthier_smith_lobe(layer, wi, wo);
+    return luthier_fresnel_term(layer, lobe.cos_theta_d) * lobe.value;
+    //? else
+    return wi.z * $diffuse(layer, wi, wo);
+    //? end
 }

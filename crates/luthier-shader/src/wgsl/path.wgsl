@@ -10,23 +10,28 @@ struct LuthierPath {
     throughput: vec3<f32>,
     /// f of the layers so far.
     reflected: vec3<f32>,
-    /// Greatest slope parameter so far: a layer is never smoother than those above it. //? clamped
-    alpha: f32, //? clamped
+    //? clamped
+    /// Greatest slope parameter so far: a layer is never smoother than those above it.
+    alpha: f32,
+    //? end
     /// Whether any light reaches the next layer.
     open: bool,
-    /// Normal below the next interface, in its frame: that of the flakes. //? flakes
-    normal_below: vec3<f32>, //? flakes
+    //? flakes
+    /// Normal below the next interface, in its frame: that of the flakes.
+    normal_below: vec3<f32>,
+    //? end
 }
 
-/// Adds what a diffuse base reflects. It ends the stack. //? chain_diffuse
-fn luthier_add_diffuse(path: LuthierPath, layer: LuthierLayer) -> LuthierPath { //? chain_diffuse
-    let brdf = luthier_diffuse(layer, path.wi, path.wo); //? chain_diffuse, oren_nayar
-    let brdf = luthier_diffuse(layer); //? chain_diffuse, !oren_nayar
-    var next = path; //? chain_diffuse
-    next.reflected = path.reflected + path.throughput * brdf; //? chain_diffuse
-    next.open = false; //? chain_diffuse
-    return next; //? chain_diffuse
-} //? chain_diffuse
+//? chain_diffuse
+/// Adds what a diffuse base reflects. It ends the stack.
+fn luthier_add_diffuse(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
+    let brdf = $diffuse(layer, path.wi, path.wo);
+    var next = path;
+    next.reflected = path.reflected + path.throughput * brdf;
+    next.open = false;
+    return next;
+}
+//? end
 
 /// Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
 /// layer below it (Weidlich and Wilkie 2007; Elek 2010, eq. 2-4).
@@ -40,36 +45,52 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
     let secant_d = 2.0 * inverseSqrt(length_sq);
     let cos_theta_d = min(0.25 * length_sq * secant_d, 1.0);
-    let fresnel = luthier_fresnel_term(layer, cos_theta_d); //? !patina
-    let fresnel = layer.tarnish * luthier_fresnel_term(layer, cos_theta_d); //? patina
+    //? patina
+    let fresnel = layer.tarnish * luthier_fresnel_term(layer, cos_theta_d);
+    //? else
+    let fresnel = luthier_fresnel_term(layer, cos_theta_d);
+    //? end
     // G of V-cavities: 2 cos_theta_h / cos_theta_d times the lower cosine, at most 1.
     let masking = min(bisector.z * min(cosines.x, cosines.y) * (secant_d * secant_d), 1.0);
     let shape = luthier_quarter_density(layer, bisector) * masking / (cosines.x * cosines.y);
     next.reflected = path.reflected + path.throughput * fresnel * shape;
 
-    if layer.kind != LUTHIER_DIELECTRIC { //? below, conductor
-        return next; //? below, conductor
-    } //? below, conductor
-    // Refracted at the normal; the squared cosine does not cancel for an index near 1. //? below
-    let bent = cosines * layer.inverse_eta; //? below
-    let cosines_sq = bent * bent + layer.grazing_cos_sq; //? below
-    let secants = inverseSqrt(cosines_sq); //? below
-    let refracted = cosines_sq * secants; //? below
-    next.wi = vec3<f32>(path.wi.xy * layer.inverse_eta, refracted.x); //? below
-    next.wo = vec3<f32>(path.wo.xy * layer.inverse_eta, refracted.y); //? below
-    next.across = path.across * layer.inverse_eta; //? below
-    // Flakes tilt all that lies below, the paths through the slab included. //? flakes
-    next.wi = luthier_turned(path.normal_below, next.wi); //? flakes
-    next.wo = luthier_turned(path.normal_below, next.wo); //? flakes
-    next.across = luthier_turned(path.normal_below, vec3<f32>(next.across, refracted.x + refracted.y)).xy; //? flakes
-    next.normal_below = vec3<f32>(0.0, 0.0, 1.0); //? flakes
-    next.open = min(cosines_sq.x, cosines_sq.y) > 0.0; //? below, !flakes
-    next.open = min(cosines_sq.x, cosines_sq.y) > 0.0 && min(next.wi.z, next.wo.z) > 0.0; //? below, flakes
-    // (1 - F) down, (1 - F) up, and part of what the cavities block comes back: (1 - F) (1 - G + (1 - F) G). //? below
-    let returned = 1.0 - masking * fresnel; //? below
-    next.throughput = path.throughput * (1.0 - fresnel) * returned; //? below, !absorption
-    let absorbed = exp2(-layer.halvings * (secants.x + secants.y)); //? below, absorption, !flakes
-    let absorbed = exp2(-layer.halvings * (1.0 / next.wi.z + 1.0 / next.wo.z)); //? below, absorption, flakes
-    next.throughput = path.throughput * (absorbed - absorbed * fresnel) * returned; //? below, absorption
+    //? below
+    //? conductor
+    if layer.kind != LUTHIER_DIELECTRIC {
+        return next;
+    }
+    //? end
+    // Refracted at the normal; the squared cosine does not cancel for an index near 1.
+    let bent = cosines * layer.inverse_eta;
+    let cosines_sq = bent * bent + layer.grazing_cos_sq;
+    let secants = inverseSqrt(cosines_sq);
+    let refracted = cosines_sq * secants;
+    next.wi = vec3<f32>(path.wi.xy * layer.inverse_eta, refracted.x);
+    next.wo = vec3<f32>(path.wo.xy * layer.inverse_eta, refracted.y);
+    next.across = path.across * layer.inverse_eta;
+    //? flakes
+    // Flakes tilt all that lies below, the paths through the slab included.
+    next.wi = luthier_turned(path.normal_below, next.wi);
+    next.wo = luthier_turned(path.normal_below, next.wo);
+    next.across = luthier_turned(path.normal_below, vec3<f32>(next.across, refracted.x + refracted.y)).xy;
+    next.normal_below = vec3<f32>(0.0, 0.0, 1.0);
+    next.open = min(cosines_sq.x, cosines_sq.y) > 0.0 && min(next.wi.z, next.wo.z) > 0.0;
+    //? else
+    next.open = min(cosines_sq.x, cosines_sq.y) > 0.0;
+    //? end
+    // (1 - F) down, (1 - F) up, and part of what the cavities block comes back: (1 - F) (1 - G + (1 - F) G).
+    let returned = 1.0 - masking * fresnel;
+    //? absorption
+    //? flakes
+    let absorbed = exp2(-layer.halvings * (1.0 / next.wi.z + 1.0 / next.wo.z));
+    //? else
+    let absorbed = exp2(-layer.halvings * (secants.x + secants.y));
+    //? end
+    next.throughput = path.throughput * (absorbed - absorbed * fresnel) * returned;
+    //? else
+    next.throughput = path.throughput * (1.0 - fresnel) * returned;
+    //? end
+    //? end
     return next;
 }

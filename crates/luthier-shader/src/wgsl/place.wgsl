@@ -8,12 +8,18 @@ struct LuthierPlace {
     slab_factor: f32,
     /// Factor on the thickness of the film on the first interface.
     film_factor: f32,
-    /// Normal of the lower boundary of that film, unit, in the frame of `normal`. //? granier
-    inner_normal: vec3<f32>, //? granier
-    /// Normal of the flakes below the first interface, unit, in the frame of `normal`. //? flakes
-    flake_normal: vec3<f32>, //? flakes
-    /// Amount of patina, 0 to 1; below 0 all layers are there, without its diffuse term and tarnish. //? patina
-    patina: f32, //? patina
+    //? granier
+    /// Normal of the lower boundary of that film, unit, in the frame of `normal`.
+    inner_normal: vec3<f32>,
+    //? end
+    //? flakes
+    /// Normal of the flakes below the first interface, unit, in the frame of `normal`.
+    flake_normal: vec3<f32>,
+    //? end
+    //? patina
+    /// Amount of patina, 0 to 1; below 0 all layers are there, without its diffuse term and tarnish.
+    patina: f32,
+    //? end
 }
 
 /// A place without textures.
@@ -23,47 +29,55 @@ fn luthier_place() -> LuthierPlace {
     place.alpha_factor = 1.0;
     place.slab_factor = 1.0;
     place.film_factor = 1.0;
-    place.inner_normal = vec3<f32>(0.0, 0.0, 1.0); //? granier
-    place.flake_normal = vec3<f32>(0.0, 0.0, 1.0); //? flakes
-    place.patina = -1.0; //? patina
+    place.inner_normal = vec3<f32>(0.0, 0.0, 1.0);
+    place.flake_normal = vec3<f32>(0.0, 0.0, 1.0);
+    place.patina = -1.0;
     return place;
 }
 
 /// A layer of a material, counted from the top, as it is at a place.
 fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLayer {
     var layer = luthier_layer(material, index);
-    layer = luthier_with_alpha(layer, clamp(layer.alpha * place.alpha_factor, 0.001, 1.0)); //? interface
-    layer.alpha_xy = clamp(layer.alpha_xy * place.alpha_factor, vec2<f32>(0.001), vec2<f32>(1.0)); //? anisotropic
-    if index == 0u { //? absorption|film
-        layer.halvings *= place.slab_factor; //? absorption
-        layer.film_waves *= place.film_factor; //? full|granier, film
-        layer.film_thickness_nm *= place.film_factor; //? phase|thickness|film_table
-    } //? absorption|film
-    if place.patina >= 0.0 && index > 0u { //? patina
-        let count = luthier_layer_count(material); //? patina
-        let base_alpha = luthier_materials[luthier_header(material) + 6u].z; //? patina
-        if base_alpha >= 0.0 && (index == 1u || index == count) { //? patina
-            layer = luthier_with_alpha(layer, max(mix(layer.alpha, base_alpha, place.patina), 0.001)); //? patina
-            layer.alpha_xy = max(mix(layer.alpha_xy, vec2<f32>(base_alpha), place.patina), vec2<f32>(0.001)); //? patina, anisotropic
-        } //? patina
-        let tarnish = luthier_materials[luthier_header(material) + 8u].xyz; //? patina
-        layer.tarnish = mix(vec3<f32>(1.0), tarnish, place.patina); //? patina
-    } //? patina
+    //? interface
+    layer = luthier_with_alpha(layer, clamp(layer.alpha * place.alpha_factor, 0.001, 1.0));
+    //? end
+    layer.alpha_xy = clamp(layer.alpha_xy * place.alpha_factor, vec2<f32>(0.001), vec2<f32>(1.0));
+    //? absorption|film
+    if index == 0u {
+        layer.halvings *= place.slab_factor;
+        layer.film_waves *= place.film_factor;
+        layer.film_thickness_nm *= place.film_factor;
+    }
+    //? end
+    //? patina
+    if place.patina >= 0.0 && index > 0u {
+        let count = luthier_layer_count(material);
+        let base_alpha = luthier_materials[luthier_header(material) + 6u].z;
+        if base_alpha >= 0.0 && (index == 1u || index == count) {
+            layer = luthier_with_alpha(layer, max(mix(layer.alpha, base_alpha, place.patina), 0.001));
+            layer.alpha_xy = max(mix(layer.alpha_xy, vec2<f32>(base_alpha), place.patina), vec2<f32>(0.001));
+        }
+        let tarnish = luthier_materials[luthier_header(material) + 8u].xyz;
+        layer.tarnish = mix(vec3<f32>(1.0), tarnish, place.patina);
+    }
+    //? end
     return layer;
 }
 
-/// A place with the film of a material as thick as its table says there. Repeats in uv. //? thickness
-fn luthier_film_place(place: LuthierPlace, material: u32, uv: vec2<f32>) -> LuthierPlace { //? thickness
-    let layer = luthier_layer(material, 0u); //? thickness
-    if layer.thickness_tile < 0.0 { //? thickness
-        return place; //? thickness
-    } //? thickness
-    let record = luthier_lookup_thickness(layer.thickness_tile, uv); //? thickness
-    var next = place; //? thickness
-    next.film_factor = 2.0 * record.x * layer.film_thickness_max_nm / layer.film_thickness_nm; //? thickness
-    next.inner_normal = normalize(vec3<f32>(record.yz, 1.0)); //? thickness, granier
-    return next; //? thickness
-} //? thickness
+//? thickness
+/// A place with the film of a material as thick as its table says there. Repeats in uv.
+fn luthier_film_place(place: LuthierPlace, material: u32, uv: vec2<f32>) -> LuthierPlace {
+    let layer = luthier_layer(material, 0u);
+    if layer.thickness_tile < 0.0 {
+        return place;
+    }
+    let record = luthier_lookup_thickness(layer.thickness_tile, uv);
+    var next = place;
+    next.film_factor = 2.0 * record.x * layer.film_thickness_max_nm / layer.film_thickness_nm;
+    next.inner_normal = normalize(vec3<f32>(record.yz, 1.0));
+    return next;
+}
+//? end
 
 /// A direction in a frame whose normal is `normal` (unit, in the frame of the direction): the least rotation that takes +z
 /// there is undone.

@@ -8,20 +8,29 @@ struct LuthierLobe {
 
 /// Smith's Lambda of a direction above the horizon (Walter et al. 2007, eq. 34 for GGX; Heitz 2014, table 1).
 fn luthier_lambda(layer: LuthierLayer, w: vec3<f32>) -> f32 {
-    let across = luthier_scaled(layer, layer.alpha_xy, w); //? anisotropic
-    let across = layer.alpha * w.xy; //? !anisotropic
+    //? anisotropic
+    let across = luthier_scaled(layer, layer.alpha_xy, w);
+    //? else
+    let across = layer.alpha * w.xy;
+    //? end
     let slope_sq = dot(across, across) / (w.z * w.z);
-    if layer.distribution > 0.5 { //? beckmann, ggx
-        return 0.5 * (sqrt(1.0 + slope_sq) - 1.0); //? ggx
-    } //? beckmann, ggx
-    if slope_sq < 0.01 { //? beckmann
-        return 0.0; //? beckmann
-    } //? beckmann
-    // erfc as Abramowitz and Stegun 1964, 7.1.26: within 1.5e-7. //? beckmann
-    let nu = inverseSqrt(slope_sq); //? beckmann
-    let t = 1.0 / (1.0 + 0.3275911 * nu); //? beckmann
-    let poly = t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429)))); //? beckmann
-    return max(exp(-nu * nu) * (0.282094792 / nu - 0.5 * poly), 0.0); //? beckmann
+    //? beckmann
+    //? ggx
+    if layer.distribution > 0.5 {
+        return 0.5 * (sqrt(1.0 + slope_sq) - 1.0);
+    }
+    //? end
+    if slope_sq < 0.01 {
+        return 0.0;
+    }
+    // erfc as Abramowitz and Stegun 1964, 7.1.26: within 1.5e-7.
+    let nu = inverseSqrt(slope_sq);
+    let t = 1.0 / (1.0 + 0.3275911 * nu);
+    let poly = t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429))));
+    return max(exp(-nu * nu) * (0.282094792 / nu - 0.5 * poly), 0.0);
+    //? else
+    return 0.5 * (sqrt(1.0 + slope_sq) - 1.0);
+    //? end
 }
 
 /// The lobe of a layer, with height-correlated masking 1 / (1 + Lambda_i + Lambda_o) (Heitz 2014, eq. 99).

@@ -9,12 +9,17 @@ fn luthier_spread_alpha(variance: f32) -> f32 {
     return clamp(pow(max(variance, 1e-20) / (1.0 + variance), 0.909090909), 0.0001, 1.0);
 }
 
-/// Share of the light at a cosine above an interface that it sends back, all bounces on it included. //? !full
-/// Share of the light at a cosine above an interface that it sends back, its facets taken as level. //? full
+//? full
+/// Share of the light at a cosine above an interface that it sends back, its facets taken as level.
 fn luthier_sent_back(layer: LuthierLayer, cos_theta: f32) -> vec3<f32> {
-    return saturate(luthier_lookup_fgd(layer.fgd_tile, cos_theta, layer.alpha).rgb); //? !full
-    return saturate(luthier_fresnel_term(layer, cos_theta)); //? full
+    return saturate(luthier_fresnel_term(layer, cos_theta));
 }
+//? else
+/// Share of the light at a cosine above an interface that it sends back, all bounces on it included.
+fn luthier_sent_back(layer: LuthierLayer, cos_theta: f32) -> vec3<f32> {
+    return saturate(luthier_lookup_fgd(layer.fgd_tile, cos_theta, layer.alpha).rgb);
+}
+//? end
 
 /// f cos_theta_i of a perfectly reflecting GGX surface, its slope parameters along an axis and across it: D G / (4 cos_theta_o), G
 /// height-correlated (Heitz 2014, eq. 99), multiplied out so that no vanishing cosine is left alone below a fraction.
@@ -34,12 +39,13 @@ fn luthier_ggx_lobe(alpha: vec2<f32>, axis: vec2<f32>, wi: vec3<f32>, wo: vec3<f
     return ratio * ratio / (2.0 * LUTHIER_PI * alpha.x * alpha.y * (eye_length + wo.z / wi.z * light_length));
 }
 
-/// BRDF of a diffuse base below layers (T(wi) T(wo) f / (n^2 (1 - rho R)), R their reflectance of diffuse light from below) for //? statistics_base
-/// what comes down along both directions, these directions above the base, and the index there over that outside. //? statistics_base
-fn luthier_base(material: u32, layer: LuthierLayer, down: vec3<f32>, wi: vec3<f32>, wo: vec3<f32>, eta: f32) -> vec3<f32> { //? statistics_base
-    let veil = luthier_materials[luthier_header(material) + 3u]; //? statistics_base
-    let lost = max(1.0 - LUTHIER_PI * layer.lambert * veil.rgb, vec3<f32>(1e-6)); //? statistics_base
-    let brdf = luthier_diffuse(layer, wi, wo); //? statistics_base, oren_nayar
-    let brdf = luthier_diffuse(layer); //? statistics_base, !oren_nayar
-    return down * brdf * ((1.0 - veil.w) / (eta * eta)) / lost; //? statistics_base
-} //? statistics_base
+//? statistics_base
+/// BRDF of a diffuse base below layers (T(wi) T(wo) f / (n^2 (1 - rho R)), R their reflectance of diffuse light from below) for
+/// what comes down along both directions, these directions above the base, and the index there over that outside.
+fn luthier_base(material: u32, layer: LuthierLayer, down: vec3<f32>, wi: vec3<f32>, wo: vec3<f32>, eta: f32) -> vec3<f32> {
+    let veil = luthier_materials[luthier_header(material) + 3u];
+    let lost = max(1.0 - LUTHIER_PI * layer.lambert * veil.rgb, vec3<f32>(1e-6));
+    let brdf = $diffuse(layer, wi, wo);
+    return down * brdf * ((1.0 - veil.w) / (eta * eta)) / lost;
+}
+//? end

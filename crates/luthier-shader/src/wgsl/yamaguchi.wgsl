@@ -1,24 +1,31 @@
 /// Covariance (xx, xy, yy) that an interface adds, its slope parameters times `scale` (Yamaguchi et al. 2019, eq. 1).
 fn luthier_yamaguchi_interface_spread(layer: LuthierLayer, scale: f32) -> vec3<f32> {
-    let along = luthier_variance(scale * layer.alpha_xy.x); //? anisotropic
-    let across = luthier_variance(scale * layer.alpha_xy.y); //? anisotropic
-    let turn = layer.rotation; //? anisotropic
-    let turn_sq = turn * turn; //? anisotropic
-    let xx = turn_sq.x * along + turn_sq.y * across; //? anisotropic
-    let yy = turn_sq.y * along + turn_sq.x * across; //? anisotropic
-    return vec3<f32>(xx, turn.x * turn.y * (along - across), yy); //? anisotropic
-    return luthier_variance(scale * layer.alpha) * vec3<f32>(1.0, 0.0, 1.0); //? !anisotropic
+    //? anisotropic
+    let along = luthier_variance(scale * layer.alpha_xy.x);
+    let across = luthier_variance(scale * layer.alpha_xy.y);
+    let turn = layer.rotation;
+    let turn_sq = turn * turn;
+    let xx = turn_sq.x * along + turn_sq.y * across;
+    let yy = turn_sq.y * along + turn_sq.x * across;
+    return vec3<f32>(xx, turn.x * turn.y * (along - across), yy);
+    //? else
+    return luthier_variance(scale * layer.alpha) * vec3<f32>(1.0, 0.0, 1.0);
+    //? end
 }
 
-/// Slope parameter of the isotropic surface of the same mean variance. //? escape
-fn luthier_yamaguchi_mean_alpha(spread: vec3<f32>) -> f32 { //? escape
-    return luthier_spread_alpha(0.5 * (spread.x + spread.z)); //? escape
-} //? escape
+//? escape
+/// Slope parameter of the isotropic surface of the same mean variance.
+fn luthier_yamaguchi_mean_alpha(spread: vec3<f32>) -> f32 {
+    return luthier_spread_alpha(0.5 * (spread.x + spread.z));
+}
+//? end
 
-/// A covariance held far beyond that of any surface, but finite. //? below
-fn luthier_yamaguchi_limited(spread: vec3<f32>) -> vec3<f32> { //? below
-    return spread * min(1e9 / max(spread.x + spread.z, 1e-20), 1.0); //? below
-} //? below
+//? below
+/// A covariance held far beyond that of any surface, but finite.
+fn luthier_yamaguchi_limited(spread: vec3<f32>) -> vec3<f32> {
+    return spread * min(1e9 / max(spread.x + spread.z, 1e-20), 1.0);
+}
+//? end
 
 /// f cos_theta_i of the lobe of the last interface: a GGX surface along the principal axes of its covariance.
 fn luthier_yamaguchi_lobe(path: LuthierYamaguchi, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {

@@ -39,9 +39,9 @@ struct LuthierLayer {
     float inverse_eta;
     // Squared cosine of a refracted grazing direction, 1 - 1 / eta^2.
     float grazing_cos_sq;
-    // Tile of the Fresnel table.
+    // Tile in `luthier_fresnel`.
     float fresnel_tile;
-    // Tile of the distribution table.
+    // Tile in `luthier_distribution`.
     float distribution_tile;
 };
 

@@ -61,9 +61,9 @@ struct LuthierLayer {
     inverse_eta: f32,
     /// Squared cosine of a refracted grazing direction, 1 - 1 / eta^2.
     grazing_cos_sq: f32,
-    /// Tile of the Fresnel table.
+    /// Tile in `luthier_fresnel`.
     fresnel_tile: f32,
-    /// Tile of the distribution table.
+    /// Tile in `luthier_distribution`.
     distribution_tile: f32,
 }
 

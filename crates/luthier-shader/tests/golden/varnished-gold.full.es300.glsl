@@ -18,16 +18,16 @@ struct LuthierLayer {
     float falloff;
     // A quarter of the greatest D, 1 / (4 pi alpha^2).
     float peak;
-    // Index above over index below, for the refracted directions.
-    float inverse_eta;
-    // Squared cosine of a refracted grazing direction, 1 - 1 / eta^2.
-    float grazing_cos_sq;
     // Slope distribution: 0 Beckmann, 1 GGX.
     float distribution;
     // Real part of the index below, at three wavelengths.
     vec3 ior_n;
     // Imaginary part of it.
     vec3 ior_k;
+    // Index above over index below, for the refracted directions.
+    float inverse_eta;
+    // Squared cosine of a refracted grazing direction, 1 - 1 / eta^2.
+    float grazing_cos_sq;
 };
 
 // Complex numbers at three wavelengths.
@@ -80,7 +80,7 @@ uint luthier_layer_count(uint material) {
 
 // A layer of a material, counted from the top.
 LuthierLayer luthier_layer(uint material, uint index) {
-    LuthierLayer layer = LuthierLayer(0u, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec3(0.0), vec3(0.0));
+    LuthierLayer layer = LuthierLayer(0u, 0.0, 0.0, 0.0, 0.0, vec3(0.0), vec3(0.0), 0.0, 0.0);
     uint first = luthier_whole(luthier_word(luthier_header(material)).x) + (index * LUTHIER_LAYER_WORDS);
     vec4 head = luthier_word(first);
     vec4 base = luthier_word(first + 3u);
@@ -145,7 +145,7 @@ vec3 luthier_fresnel_term(LuthierLayer layer, float cos_theta_d) {
     return luthier_fresnel(layer.ior_n, layer.ior_k, cos_theta_d);
 }
 
-// pi alpha^2 D of a layer, in closed form, from squares of the half vector.
+// pi alpha^2 D of a layer, from squares of the half vector.
 float luthier_distribution_term(LuthierLayer layer, float z_sq, float across_sq) {
     float falloff = layer.falloff;
     if (layer.distribution > 0.5) {

@@ -24,16 +24,16 @@ struct LuthierLayer {
     falloff: f32,
     /// A quarter of the greatest D, 1 / (4 pi alpha^2).
     peak: f32,
-    /// Index above over index below, for the refracted directions.
-    inverse_eta: f32,
-    /// Squared cosine of a refracted grazing direction, 1 - 1 / eta^2.
-    grazing_cos_sq: f32,
     /// Slope distribution: 0 Beckmann, 1 GGX.
     distribution: f32,
     /// Real part of the index below, at three wavelengths.
     ior_n: vec3<f32>,
     /// Imaginary part of it.
     ior_k: vec3<f32>,
+    /// Index above over index below, for the refracted directions.
+    inverse_eta: f32,
+    /// Squared cosine of a refracted grazing direction, 1 - 1 / eta^2.
+    grazing_cos_sq: f32,
 }
 
 /// A whole number n, which the buffer holds as 2^23 + n: its low bits are n.
@@ -124,7 +124,7 @@ fn luthier_fresnel_term(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
     return luthier_fresnel(layer.ior_n, layer.ior_k, cos_theta_d);
 }
 
-/// pi alpha^2 D of a layer, in closed form, from squares of the half vector.
+/// pi alpha^2 D of a layer, from squares of the half vector.
 fn luthier_distribution_term(layer: LuthierLayer, z_sq: f32, across_sq: f32) -> f32 {
     let falloff = layer.falloff;
     if layer.distribution > 0.5 {
