@@ -1,3 +1,5 @@
+//! The languages of shaders, by name.
+
 use std::fmt;
 use std::str::FromStr;
 

@@ -1,6 +1,6 @@
 //! Modules of WGSL: the blocks that a set keeps of one.
 
-use crate::features::Features;
+use crate::compose::features::Features;
 
 /// Starts a line that opens, turns or closes a block; see [`prune`].
 const MARK: &str = "//?";

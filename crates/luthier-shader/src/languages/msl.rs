@@ -5,7 +5,7 @@
 use naga::ResourceBinding;
 use naga::back::msl::{BindSamplerTarget, BindTarget, EntryPointResources, Options, PipelineOptions, write_string};
 
-use crate::text::{helper, layout, rename};
+use crate::languages::text::{helper, layout, rename};
 use crate::validate::module;
 use crate::{Form, MaterialSet, ShaderError, Target, bindings};
 

@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use luthier_lut::{LayerKind, ShadingModel};
 
 use crate::MaterialSet;
-use crate::features::Features;
-use crate::wgsl::function;
+use crate::compose::features::Features;
+use crate::compose::function;
 
 /// `luthier_eval_<model>` of a model, whose function `interface` adds an interface to a `LuthierPath`.
 pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, features: &Features) -> String {

@@ -1,13 +1,18 @@
+//! Snippets and complete shaders, each under a comment that says how to use it.
+
+mod binding_lines;
+
 use std::fmt::Write as _;
 
 use luthier_lut::{Axis, Mapping, ShadingModel, TableKind};
 
-use crate::binding_lines::binding_lines;
-use crate::wgsl::{Buffer, compose};
-use crate::{Form, MaterialSet, ShaderError, Target, glsl, hlsl, msl, validate};
+use self::binding_lines::binding_lines;
+use crate::compose::{Buffer, compose};
+use crate::languages::{glsl, hlsl, msl};
+use crate::{Form, MaterialSet, ShaderError, Target, validate};
 
 /// The entry point of a complete shader, in WGSL.
-pub(crate) const FRAGMENT: &str = include_str!("wgsl/fragment.wgsl");
+pub(crate) const FRAGMENT: &str = include_str!("../wgsl/fragment.wgsl");
 
 /// A snippet to paste: functions, bindings and constants for the materials of a set, without an entry point. It has been
 /// parsed and validated.
@@ -40,12 +45,12 @@ pub fn complete(set: &MaterialSet<'_>, form: Form, target: Target) -> Result<Str
         Target::Wgsl | Target::Hlsl | Target::Msl | Target::SpirV => text(set, form, target, FRAGMENT, None)?,
         Target::Glsl450 => {
             let snippet = emit(set, form, target)?;
-            format!("#version 450 core\n{snippet}\n{}", include_str!("glsl/fragment_450.glsl"))
+            format!("#version 450 core\n{snippet}\n{}", include_str!("../glsl/fragment_450.glsl"))
         }
         Target::GlslEs300 => {
             let snippet = emit(set, form, target)?;
             let precision = "precision highp float;\nprecision highp int;\n";
-            format!("#version 300 es\n{precision}{snippet}\n{}", include_str!("glsl/fragment_es300.glsl"))
+            format!("#version 300 es\n{precision}{snippet}\n{}", include_str!("../glsl/fragment_es300.glsl"))
         }
     })
 }

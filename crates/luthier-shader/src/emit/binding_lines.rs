@@ -1,3 +1,5 @@
+//! The part of the comment at the top that says what to bind.
+
 use std::fmt::Write as _;
 
 use luthier_lut::MaterialTexture;

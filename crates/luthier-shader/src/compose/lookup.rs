@@ -4,21 +4,23 @@ use std::fmt::Write as _;
 
 use luthier_lut::{Axis, Encoding, Mapping, RowBase, SchlickBase, TableKind};
 
-use crate::features::Features;
-use crate::module::prune;
+use crate::compose::blocks::prune;
+use crate::compose::features::Features;
 use crate::{ShaderError, TableFace};
 
 /// WGSL of a table: its texture, its sizes, its look-up.
 pub(crate) fn lookup(table: &TableFace, features: &Features) -> Result<String, ShaderError> {
     let kind = table.kind;
     let (module, has_rows, x_names): (_, _, &[&str]) = match kind {
-        TableKind::Fresnel => (include_str!("wgsl/lookup_fresnel.wgsl"), false, &["cos_theta", "theta"]),
-        TableKind::Distribution => (include_str!("wgsl/lookup_distribution.wgsl"), true, &["cos_theta_h", "theta_h"]),
-        TableKind::Fgd => (include_str!("wgsl/lookup_fgd.wgsl"), true, &["cos_theta", "theta"]),
-        TableKind::Phase => (include_str!("wgsl/lookup_phase.wgsl"), false, &["s"]),
-        TableKind::Thickness => (include_str!("wgsl/lookup_thickness.wgsl"), true, &["u"]),
-        TableKind::Film => (include_str!("wgsl/lookup_film.wgsl"), true, &["cos_theta"]),
-        TableKind::Escape => (include_str!("wgsl/lookup_escape.wgsl"), true, &["cos_theta"]),
+        TableKind::Fresnel => (include_str!("../wgsl/tables/fresnel.wgsl"), false, &["cos_theta", "theta"]),
+        TableKind::Distribution => {
+            (include_str!("../wgsl/tables/distribution.wgsl"), true, &["cos_theta_h", "theta_h"])
+        }
+        TableKind::Fgd => (include_str!("../wgsl/tables/fgd.wgsl"), true, &["cos_theta", "theta"]),
+        TableKind::Phase => (include_str!("../wgsl/tables/phase.wgsl"), false, &["s"]),
+        TableKind::Thickness => (include_str!("../wgsl/tables/thickness.wgsl"), true, &["u"]),
+        TableKind::Film => (include_str!("../wgsl/tables/film.wgsl"), true, &["cos_theta"]),
+        TableKind::Escape => (include_str!("../wgsl/tables/escape.wgsl"), true, &["cos_theta"]),
     };
     let layout = &table.layout;
     let fail = |reason: String| ShaderError::Layout { table: kind, reason };

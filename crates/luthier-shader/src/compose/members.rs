@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::text::words;
+use crate::languages::text::words;
 
 /// A text whose functions assign no member that a structure lacks, nor have a `let` that nothing reads for that.
 pub(crate) fn without_missing(wgsl: &str) -> String {
@@ -93,7 +93,7 @@ mod tests {
     use luthier_lut::TableKind;
 
     use super::*;
-    use crate::module::modules;
+    use crate::compose::blocks::modules;
 
     /// A member that no structure has in any set is a slip, which would go unseen.
     #[test]

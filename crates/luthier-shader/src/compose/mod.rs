@@ -1,15 +1,20 @@
 //! Composition: the modules that a set needs, one function per model in use, and `luthier_eval` that chooses among them.
 
+mod blocks;
+mod chain;
+mod features;
+mod lookup;
+mod members;
+mod statistics;
+
 use std::fmt::Write as _;
 
 use luthier_lut::{MaterialTexture, SIDE, ShadingModel, TableKind, material_buffer};
 
-use crate::chain;
-use crate::features::{Features, feature};
-use crate::lookup::lookup;
-use crate::members::without_missing;
-use crate::module::prune;
-use crate::statistics;
+use self::blocks::prune;
+use self::features::{Features, feature};
+use self::lookup::lookup;
+use self::members::without_missing;
 use crate::{Form, MaterialSet, ShaderError, bindings};
 
 /// Where the material buffer lives.
@@ -37,37 +42,37 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     // D is a function of the layers' own slope parameters; the statistics have lobes of others.
     let facets = has("chain") || has("smith");
     let modules = [
-        (has("bilinear"), include_str!("wgsl/bilinear.wgsl")),
-        (true, include_str!("wgsl/layer.wgsl")),
-        (has("place"), include_str!("wgsl/place.wgsl")),
-        (has("flakes") || has("glitter"), include_str!("wgsl/hash.wgsl")),
-        (has("flakes"), include_str!("wgsl/flakes.wgsl")),
-        (has("patina"), include_str!("wgsl/patina.wgsl")),
-        (has("glitter"), include_str!("wgsl/glitter.wgsl")),
-        (has("phong") || has("granier") && has("interface"), include_str!("wgsl/lobe.wgsl")),
-        (has("oren_nayar"), include_str!("wgsl/oren_nayar.wgsl")),
-        (has("diffuse") && !has("oren_nayar"), include_str!("wgsl/lambert.wgsl")),
-        (has("full") && has("interface"), include_str!("wgsl/complex.wgsl")),
-        (has("full") && has("bare"), include_str!("wgsl/fresnel.wgsl")),
-        (has("full") && has("film"), include_str!("wgsl/film.wgsl")),
-        (has("closed") && has("beckmann") && facets, include_str!("wgsl/beckmann.wgsl")),
-        (has("closed") && has("ggx") && facets, include_str!("wgsl/ggx.wgsl")),
-        (has("full") && has("interface"), include_str!("wgsl/terms_full.wgsl")),
-        (has("closed") && facets, include_str!("wgsl/terms_closed.wgsl")),
-        (!has("full") && (facets || has("granier_bare")), include_str!("wgsl/terms_baked.wgsl")),
-        (has("smith") || has("chain"), include_str!("wgsl/slopes.wgsl")),
-        (has("smith"), include_str!("wgsl/smith.wgsl")),
-        (has("chain"), include_str!("wgsl/path.wgsl")),
-        (has("statistics"), include_str!("wgsl/statistics.wgsl")),
+        (has("bilinear"), include_str!("../wgsl/tables/bilinear.wgsl")),
+        (true, include_str!("../wgsl/layer.wgsl")),
+        (has("place"), include_str!("../wgsl/surface/place.wgsl")),
+        (has("flakes") || has("glitter"), include_str!("../wgsl/surface/hash.wgsl")),
+        (has("flakes"), include_str!("../wgsl/surface/flakes.wgsl")),
+        (has("patina"), include_str!("../wgsl/surface/patina.wgsl")),
+        (has("glitter"), include_str!("../wgsl/surface/glitter.wgsl")),
+        (has("phong") || has("granier") && has("interface"), include_str!("../wgsl/interface/power_lobe.wgsl")),
+        (has("oren_nayar"), include_str!("../wgsl/base/oren_nayar.wgsl")),
+        (has("diffuse") && !has("oren_nayar"), include_str!("../wgsl/base/lambert.wgsl")),
+        (has("full") && has("interface"), include_str!("../wgsl/interface/complex.wgsl")),
+        (has("full") && has("bare"), include_str!("../wgsl/interface/fresnel.wgsl")),
+        (has("full") && has("film"), include_str!("../wgsl/interface/film.wgsl")),
+        (has("closed") && has("beckmann") && facets, include_str!("../wgsl/interface/beckmann.wgsl")),
+        (has("closed") && has("ggx") && facets, include_str!("../wgsl/interface/ggx.wgsl")),
+        (has("full") && has("interface"), include_str!("../wgsl/interface/full_terms.wgsl")),
+        (has("closed") && facets, include_str!("../wgsl/interface/closed_terms.wgsl")),
+        (!has("full") && (facets || has("granier_bare")), include_str!("../wgsl/interface/baked_terms.wgsl")),
+        (has("smith") || has("chain"), include_str!("../wgsl/interface/slopes.wgsl")),
+        (has("smith"), include_str!("../wgsl/interface/smith.wgsl")),
+        (has("chain"), include_str!("../wgsl/models/path.wgsl")),
+        (has("statistics"), include_str!("../wgsl/models/statistics.wgsl")),
     ];
     parts.extend(modules.iter().filter(|(used, _)| *used).map(|(_, module)| text(module, &features)));
     for model in set.models() {
         parts.extend(self::model(set, model, &features));
     }
     parts.push(eval(set, &features));
-    parts.push(include_str!("wgsl/bounded.wgsl").to_owned());
+    parts.push(include_str!("../wgsl/bounded.wgsl").to_owned());
     if parts.iter().any(|part| part.contains("LUTHIER_PI")) {
-        parts.insert(2, include_str!("wgsl/pi.wgsl").to_owned());
+        parts.insert(2, include_str!("../wgsl/pi.wgsl").to_owned());
     }
     parts.retain(|part| !part.is_empty());
     let wgsl = without_missing(&parts.join("\n"));
@@ -113,16 +118,16 @@ fn model(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec
     let module = |text| self::text(text, features);
     match model {
         ShadingModel::Elek if features.has("clamped") => vec![
-            module(include_str!("wgsl/elek.wgsl")),
+            module(include_str!("../wgsl/models/elek.wgsl")),
             module(&chain::eval(set, model, "luthier_elek_interface", features)),
         ],
         // Elek's model is the same chain where no interface is smoother than one above it.
         ShadingModel::Elek | ShadingModel::WeidlichWilkie => {
             vec![module(&chain::eval(set, model, "luthier_add_interface", features))]
         }
-        ShadingModel::GranierHeidrich => vec![module(include_str!("wgsl/granier_heidrich.wgsl"))],
-        ShadingModel::Phong => vec![module(include_str!("wgsl/phong.wgsl"))],
-        ShadingModel::Microfacet => vec![module(include_str!("wgsl/microfacet.wgsl"))],
+        ShadingModel::GranierHeidrich => vec![module(include_str!("../wgsl/models/granier_heidrich.wgsl"))],
+        ShadingModel::Phong => vec![module(include_str!("../wgsl/models/phong.wgsl"))],
+        ShadingModel::Microfacet => vec![module(include_str!("../wgsl/models/microfacet.wgsl"))],
         ShadingModel::Belcour | ShadingModel::Yamaguchi => statistics::modules(set, model, features),
     }
 }

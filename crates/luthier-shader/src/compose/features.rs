@@ -1,3 +1,5 @@
+//! Features: the words that conditions in the modules may name.
+
 use std::collections::BTreeSet;
 
 use luthier_lut::{LayerKind, LayerRecord, MaterialEntry, ShadingModel, TableKind};
@@ -253,7 +255,7 @@ fn is_mixed(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::module::{features_named, modules, prune};
+    use crate::compose::blocks::{features_named, modules, prune};
 
     #[test]
     fn modules_have_whole_blocks_and_name_no_unknown_feature() {

@@ -8,7 +8,7 @@ use naga::back::glsl::{Options, PipelineOptions, ReflectionInfo, Version, Writer
 use naga::proc::BoundsCheckPolicies;
 use naga::{GlobalVariable, Handle, Module, ResourceBinding, ShaderStage};
 
-use crate::text::{layout, rename};
+use crate::languages::text::{layout, rename};
 use crate::validate::module;
 use crate::{Form, MaterialSet, ShaderError, Target, bindings};
 

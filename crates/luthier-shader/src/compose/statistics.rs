@@ -6,14 +6,14 @@ use std::fmt::Write as _;
 use luthier_lut::{LayerKind, LayerRecord, ShadingModel};
 
 use crate::MaterialSet;
-use crate::features::Features;
-use crate::wgsl::{function, text};
+use crate::compose::features::Features;
+use crate::compose::{function, text};
 
 /// The modules of a model, `luthier_eval_<model>` last.
 pub(crate) fn modules(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec<String> {
     let (path, spread, spreads) = match model {
-        ShadingModel::Yamaguchi => ("LuthierYamaguchi", "vec3<f32>", include_str!("wgsl/yamaguchi.wgsl")),
-        _ => ("LuthierBelcour", "f32", include_str!("wgsl/belcour.wgsl")),
+        ShadingModel::Yamaguchi => ("LuthierYamaguchi", "vec3<f32>", include_str!("../wgsl/models/yamaguchi.wgsl")),
+        _ => ("LuthierBelcour", "f32", include_str!("../wgsl/models/belcour.wgsl")),
     };
     let named = |module: String| {
         let mut module = module.replace("$Path", path).replace("$spread", spread);
@@ -26,7 +26,7 @@ pub(crate) fn modules(set: &MaterialSet<'_>, model: ShadingModel, features: &Fea
         return vec![text(&eval(set, model), features)];
     }
     vec![
-        named(text(include_str!("wgsl/statistics_path.wgsl"), features)),
+        named(text(include_str!("../wgsl/models/statistics_path.wgsl"), features)),
         text(spreads, features),
         text(&eval(set, model), features),
     ]

@@ -2,7 +2,7 @@
 
 use naga::back::hlsl::{Options, PipelineOptions, ShaderModel, Writer};
 
-use crate::text::{helper, layout, rename};
+use crate::languages::text::{helper, layout, rename};
 use crate::validate::module;
 use crate::{Form, MaterialSet, ShaderError, Target, bindings};
 
