@@ -70,7 +70,7 @@ pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, 
             _ => write!(out, "    if path.open & (count > {i}u) {{\n{step}    }}\n"),
         };
     }
-    out.push_str("    return wi.z * path.reflected;\n}\n");
+    out.push_str("    return wi.z * path.total;\n}\n");
     out + &patina(model, features)
 }
 
@@ -85,12 +85,12 @@ fn patina(model: ShadingModel, features: &Features) -> String {
         "\n/// f cos_theta_i of the model `{}` with patina (Elek 2010, section 4.2).\n\
          fn {name}(place: LuthierPlace, material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n    \
              var value = luthier_patina_diffuse(place, material, wi, wo);\n    \
-             let grown = select(1.0, place.patina, place.patina >= 0.0);\n    \
-             if grown < 1.0 {{\n        \
-                 value += (1.0 - grown) * {stack}(place, material, true, wi, wo);\n    \
+             let amount = select(1.0, place.patina, place.patina >= 0.0);\n    \
+             if amount < 1.0 {{\n        \
+                 value += (1.0 - amount) * {stack}(place, material, true, wi, wo);\n    \
              }}\n    \
-             if grown > 0.0 {{\n        \
-                 value += grown * {stack}(place, material, false, wi, wo);\n    \
+             if amount > 0.0 {{\n        \
+                 value += amount * {stack}(place, material, false, wi, wo);\n    \
              }}\n    \
              return value;\n\
          }}\n",

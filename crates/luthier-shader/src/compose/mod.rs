@@ -6,6 +6,7 @@ mod features;
 mod lookup;
 mod members;
 mod statistics;
+mod words;
 
 use std::fmt::Write as _;
 
@@ -15,6 +16,7 @@ use self::blocks::prune;
 use self::features::{Features, feature};
 use self::lookup::lookup;
 use self::members::without_missing;
+use self::words::numbered;
 use crate::{Form, MaterialSet, ShaderError, bindings};
 
 /// Where the material buffer lives.
@@ -97,7 +99,7 @@ pub(crate) fn text(module: &str, features: &Features) -> String {
     let text =
         text.replace("$place_parameter ", parameter).replace("$place_argument ", argument).replace("$layer(", layer);
     let term = if features.has("closed") { "luthier_distribution_read" } else { "luthier_distribution_term" };
-    let text = text.replace("$distribution_read", term);
+    let text = numbered(&text).replace("$distribution_read", term);
     if features.has("oren_nayar") {
         return text.replace("$diffuse(", "luthier_diffuse(");
     }
@@ -207,7 +209,9 @@ fn eval(set: &MaterialSet<'_>, features: &Features) -> String {
     let mut body = String::from(guard);
     let turned = features.has("place");
     if turned {
-        body.push_str("    let wi_here = luthier_turned(place.normal, wi);\n    let wo_here = luthier_turned(place.normal, wo);\n");
+        body.push_str(
+            "    let wi_here = luthier_local(place.normal, wi);\n    let wo_here = luthier_local(place.normal, wo);\n",
+        );
         body.push_str(&guard.replace("wi.z", "wi_here.z").replace("wo.z", "wo_here.z"));
     }
     let call = |model: ShadingModel| {

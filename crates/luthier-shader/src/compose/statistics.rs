@@ -60,17 +60,16 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel) -> String {
     if depth > 1 {
         out.push_str("    let count = luthier_layer_count(material);\n");
     }
-    let _ = writeln!(out, "    var reflected = vec3<f32>(0.0);\n    var eye = {prefix}_start(wo.z);");
+    let _ = writeln!(out, "    var sum = vec3<f32>(0.0);\n    var eye = {prefix}_start(wo.z);");
     for i in 0..depth {
         let here = || layers.iter().filter_map(|layers| layers.get(i));
         let mut step = vec![format!("let layer_{i} = $layer(material, {i}u);")];
-        let interface =
-            [format!("eye = {prefix}_add(eye, layer_{i});"), format!("reflected += {prefix}_lobe(eye, wi, wo);")];
+        let interface = [format!("eye = {prefix}_add(eye, layer_{i});"), format!("sum += {prefix}_lobe(eye, wi, wo);")];
         // The other direction takes the same way down; every layer above a base is an interface.
         let above = (0..i).map(|k| format!("light = {prefix}_add(light, $layer(material, {k}u));"));
         let base = std::iter::once(format!("var light = {prefix}_start(wi.z);"))
             .chain(above)
-            .chain([format!("reflected += {prefix}_add_base(material, layer_{i}, light, eye, wi, wo);")]);
+            .chain([format!("sum += {prefix}_add_base(material, layer_{i}, light, eye, wi, wo);")]);
         match (here().any(is_diffuse), here().all(is_diffuse)) {
             (false, _) => step.extend(interface),
             (true, true) => step.extend(base),
@@ -92,6 +91,6 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel) -> String {
             _ => write!(out, "    if eye.open & (count > {i}u) {{\n{step}    }}\n"),
         };
     }
-    out.push_str("    return reflected;\n}\n");
+    out.push_str("    return sum;\n}\n");
     out
 }

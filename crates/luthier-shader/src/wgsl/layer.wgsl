@@ -7,8 +7,8 @@ const LUTHIER_CONDUCTOR: u32 = 1u;
 //? mixed|granier_base
 const LUTHIER_DIFFUSE: u32 = 2u;
 //? end
-const LUTHIER_MATERIAL_WORDS: u32 = 11u;
-const LUTHIER_LAYER_WORDS: u32 = 11u;
+const LUTHIER_MATERIAL_WORDS: u32 = $words_material;
+const LUTHIER_LAYER_WORDS: u32 = $words_layer;
 
 /// One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
 struct LuthierLayer {
@@ -44,7 +44,7 @@ struct LuthierLayer {
     /// Imaginary part of it.
     film_ior_k: vec3<f32>,
     /// Thickness of the film in wavelengths of the medium above.
-    film_waves: vec3<f32>,
+    film_thickness_waves: vec3<f32>,
     //? end
     //? end
     //? end
@@ -108,12 +108,12 @@ fn luthier_layer_count(material: u32) -> u32 {
 fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     let first = luthier_whole(luthier_materials[luthier_header(material)].x) + index * LUTHIER_LAYER_WORDS;
     let head = luthier_materials[first];
-    let tiles = luthier_materials[first + 1u];
-    let slab = luthier_materials[first + 2u];
-    let base = luthier_materials[first + 3u];
-    let real_part = luthier_materials[first + 4u];
-    let imaginary_part = luthier_materials[first + 5u];
-    let numbers = luthier_materials[first + 10u];
+    let tiles = luthier_materials[first + $word_tiles];
+    let slab = luthier_materials[first + $word_slab];
+    let base = luthier_materials[first + $word_base];
+    let real_part = luthier_materials[first + $word_ior_n];
+    let imaginary_part = luthier_materials[first + $word_ior_k];
+    let numbers = luthier_materials[first + $word_numbers];
     var layer: LuthierLayer;
     layer.kind = luthier_whole(numbers.x);
     layer.alpha = numbers.y;
@@ -125,24 +125,24 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     layer.halvings = slab.xyz;
     layer.lambert = base.xyz;
     layer.sigma = numbers.w;
-    layer.critical_cot_sq = luthier_materials[first + 7u].w;
+    layer.critical_cot_sq = luthier_materials[first + $word_film_ior_k].w;
     layer.fresnel_tile = tiles.x;
     layer.distribution_tile = tiles.y;
     layer.fgd_tile = tiles.z;
     layer.phase_tile = tiles.w;
     layer.thickness_tile = slab.w;
-    layer.film_tile = luthier_materials[first + 6u].w;
-    layer.escape_tile = luthier_materials[first + 8u].w;
+    layer.film_tile = luthier_materials[first + $word_film_ior_n].w;
+    layer.escape_tile = luthier_materials[first + $word_film_thickness_waves].w;
     layer.film_thickness_nm = real_part.w;
     layer.film_thickness_max_nm = imaginary_part.w;
     layer.distribution = base.w;
     layer.ior_n = real_part.xyz;
     layer.ior_k = imaginary_part.xyz;
-    layer.film_ior_n = luthier_materials[first + 6u].xyz;
-    layer.film_ior_k = luthier_materials[first + 7u].xyz;
-    layer.film_waves = luthier_materials[first + 8u].xyz;
-    layer.alpha_xy = luthier_materials[first + 9u].xy;
-    layer.rotation = luthier_materials[first + 9u].zw;
+    layer.film_ior_n = luthier_materials[first + $word_film_ior_n].xyz;
+    layer.film_ior_k = luthier_materials[first + $word_film_ior_k].xyz;
+    layer.film_thickness_waves = luthier_materials[first + $word_film_thickness_waves].xyz;
+    layer.alpha_xy = luthier_materials[first + $word_tangent].xy;
+    layer.rotation = luthier_materials[first + $word_tangent].zw;
     layer.tarnish = vec3<f32>(1.0);
     return layer;
 }

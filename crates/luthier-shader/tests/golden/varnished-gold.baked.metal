@@ -48,16 +48,16 @@ struct LuthierLayer {
 // What the light has met on its way down and back up: directions, and sums over the layers so far.
 struct LuthierPath {
     // To the light, in the medium above the next layer.
-    metal::float3 wi;
+    metal::float3 wi_local;
     // To the eye, in the medium above the next layer.
-    metal::float3 wo;
+    metal::float3 wo_local;
     // Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
     metal::float2 across;
     char _pad3[8];
     // Share of the light that comes down to the next layer and back out.
     metal::float3 throughput;
     // f of the layers so far.
-    metal::packed_float3 reflected;
+    metal::packed_float3 total;
     // Whether any light reaches the next layer.
     bool open;
 };
@@ -179,21 +179,21 @@ LuthierPath luthier_add_interface(
 ) {
     LuthierPath next = path;
     next.open = false;
-    metal::float2 cosines = metal::float2(path.wi.z, path.wo.z);
+    metal::float2 cosines = metal::float2(path.wi_local.z, path.wo_local.z);
     metal::float3 bisector = metal::float3(path.across, cosines.x + cosines.y);
     float length_sq = metal::dot(bisector.xy, bisector.xy) + (bisector.z * bisector.z);
     float secant_d = 2.0 * metal::rsqrt(length_sq);
     float cos_theta_d = metal::min((0.25 * length_sq) * secant_d, 1.0);
     metal::float3 fresnel = luthier_fresnel_term(layer, cos_theta_d, luthier_fresnel, luthier_sampler);
     float masking = metal::min((bisector.z * metal::min(cosines.x, cosines.y)) * (secant_d * secant_d), 1.0);
-    float shape = (luthier_quarter_density(layer, bisector, luthier_distribution, luthier_sampler) * masking) / (cosines.x * cosines.y);
-    next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
+    float geometry = (luthier_quarter_density(layer, bisector, luthier_distribution, luthier_sampler) * masking) / (cosines.x * cosines.y);
+    next.total = path.total + ((path.throughput * fresnel) * geometry);
     metal::float2 bent = cosines * layer.inverse_eta;
     metal::float2 cosines_sq = (bent * bent) + metal::float2(layer.grazing_cos_sq);
     metal::float2 secants = metal::rsqrt(cosines_sq);
     metal::float2 refracted = cosines_sq * secants;
-    next.wi = metal::float3(path.wi.xy * layer.inverse_eta, refracted.x);
-    next.wo = metal::float3(path.wo.xy * layer.inverse_eta, refracted.y);
+    next.wi_local = metal::float3(path.wi_local.xy * layer.inverse_eta, refracted.x);
+    next.wo_local = metal::float3(path.wo_local.xy * layer.inverse_eta, refracted.y);
     next.across = path.across * layer.inverse_eta;
     next.open = metal::min(cosines_sq.x, cosines_sq.y) > 0.0;
     metal::float3 returned = metal::float3(1.0) - (masking * fresnel);
@@ -218,7 +218,7 @@ metal::float3 luthier_eval_elek(
     if (path.open) {
         path = luthier_add_interface(path, luthier_layer(material, 1u, luthier_materials), luthier_fresnel, luthier_distribution, luthier_sampler);
     }
-    return wi.z * path.reflected;
+    return wi.z * path.total;
 }
 
 // f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away

@@ -39,15 +39,15 @@ struct LuthierComplex {
 // What the light has met on its way down and back up: directions, and sums over the layers so far.
 struct LuthierPath {
     // To the light, in the medium above the next layer.
-    vec3 wi;
+    vec3 wi_local;
     // To the eye, in the medium above the next layer.
-    vec3 wo;
+    vec3 wo_local;
     // Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
     vec2 across;
     // Share of the light that comes down to the next layer and back out.
     vec3 throughput;
     // f of the layers so far.
-    vec3 reflected;
+    vec3 total;
     // Whether any light reaches the next layer.
     bool open;
 };
@@ -166,21 +166,21 @@ float luthier_quarter_density(LuthierLayer layer, vec3 bisector) {
 LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     LuthierPath next = path;
     next.open = false;
-    vec2 cosines = vec2(path.wi.z, path.wo.z);
+    vec2 cosines = vec2(path.wi_local.z, path.wo_local.z);
     vec3 bisector = vec3(path.across, cosines.x + cosines.y);
     float length_sq = dot(bisector.xy, bisector.xy) + (bisector.z * bisector.z);
     float secant_d = 2.0 * inversesqrt(length_sq);
     float cos_theta_d = min((0.25 * length_sq) * secant_d, 1.0);
     vec3 fresnel = luthier_fresnel_term(layer, cos_theta_d);
     float masking = min((bisector.z * min(cosines.x, cosines.y)) * (secant_d * secant_d), 1.0);
-    float shape = (luthier_quarter_density(layer, bisector) * masking) / (cosines.x * cosines.y);
-    next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
+    float geometry = (luthier_quarter_density(layer, bisector) * masking) / (cosines.x * cosines.y);
+    next.total = path.total + ((path.throughput * fresnel) * geometry);
     vec2 bent = cosines * layer.inverse_eta;
     vec2 cosines_sq = (bent * bent) + vec2(layer.grazing_cos_sq);
     vec2 secants = inversesqrt(cosines_sq);
     vec2 refracted = cosines_sq * secants;
-    next.wi = vec3(path.wi.xy * layer.inverse_eta, refracted.x);
-    next.wo = vec3(path.wo.xy * layer.inverse_eta, refracted.y);
+    next.wi_local = vec3(path.wi_local.xy * layer.inverse_eta, refracted.x);
+    next.wo_local = vec3(path.wo_local.xy * layer.inverse_eta, refracted.y);
     next.across = path.across * layer.inverse_eta;
     next.open = min(cosines_sq.x, cosines_sq.y) > 0.0;
     vec3 returned = vec3(1.0) - (masking * fresnel);
@@ -197,7 +197,7 @@ vec3 luthier_eval_elek(uint material, vec3 wi, vec3 wo) {
     if (path.open) {
         path = luthier_add_interface(path, luthier_layer(material, 1u));
     }
-    return wi.z * path.reflected;
+    return wi.z * path.total;
 }
 
 // f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away

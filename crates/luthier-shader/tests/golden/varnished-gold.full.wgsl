@@ -143,15 +143,15 @@ fn luthier_quarter_density(layer: LuthierLayer, bisector: vec3<f32>) -> f32 {
 /// What the light has met on its way down and back up: directions, and sums over the layers so far.
 struct LuthierPath {
     /// To the light, in the medium above the next layer.
-    wi: vec3<f32>,
+    wi_local: vec3<f32>,
     /// To the eye, in the medium above the next layer.
-    wo: vec3<f32>,
+    wo_local: vec3<f32>,
     /// Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
     across: vec2<f32>,
     /// Share of the light that comes down to the next layer and back out.
     throughput: vec3<f32>,
     /// f of the layers so far.
-    reflected: vec3<f32>,
+    total: vec3<f32>,
     /// Whether any light reaches the next layer.
     open: bool,
 }
@@ -162,7 +162,7 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     var next = path;
     next.open = false;
 
-    let cosines = vec2<f32>(path.wi.z, path.wo.z);
+    let cosines = vec2<f32>(path.wi_local.z, path.wo_local.z);
     let bisector = vec3<f32>(path.across, cosines.x + cosines.y);
     let length_sq = dot(bisector.xy, bisector.xy) + bisector.z * bisector.z;
     // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
@@ -171,16 +171,16 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     let fresnel = luthier_fresnel_term(layer, cos_theta_d);
     // G of V-cavities: 2 cos_theta_h / cos_theta_d times the lower cosine, at most 1.
     let masking = min(bisector.z * min(cosines.x, cosines.y) * (secant_d * secant_d), 1.0);
-    let shape = luthier_quarter_density(layer, bisector) * masking / (cosines.x * cosines.y);
-    next.reflected = path.reflected + path.throughput * fresnel * shape;
+    let geometry = luthier_quarter_density(layer, bisector) * masking / (cosines.x * cosines.y);
+    next.total = path.total + path.throughput * fresnel * geometry;
 
     // Refracted at the normal; the squared cosine does not cancel for an index near 1.
     let bent = cosines * layer.inverse_eta;
     let cosines_sq = bent * bent + layer.grazing_cos_sq;
     let secants = inverseSqrt(cosines_sq);
     let refracted = cosines_sq * secants;
-    next.wi = vec3<f32>(path.wi.xy * layer.inverse_eta, refracted.x);
-    next.wo = vec3<f32>(path.wo.xy * layer.inverse_eta, refracted.y);
+    next.wi_local = vec3<f32>(path.wi_local.xy * layer.inverse_eta, refracted.x);
+    next.wo_local = vec3<f32>(path.wo_local.xy * layer.inverse_eta, refracted.y);
     next.across = path.across * layer.inverse_eta;
     next.open = min(cosines_sq.x, cosines_sq.y) > 0.0;
     // (1 - F) down, (1 - F) up, and part of what the cavities block comes back: (1 - F) (1 - G + (1 - F) G).
@@ -199,7 +199,7 @@ fn luthier_eval_elek(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
     if path.open {
         path = luthier_add_interface(path, luthier_layer(material, 1u));
     }
-    return wi.z * path.reflected;
+    return wi.z * path.total;
 }
 
 /// f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away

@@ -34,9 +34,9 @@ fn luthier_film(layer: LuthierLayer, cos_theta: f32) -> vec3<f32> {
     let film = luthier_normal_index(layer.film_ior_n, layer.film_ior_k, cos_theta);
     let below = luthier_normal_index(layer.ior_n, layer.ior_k, cos_theta);
     // Whole cycles are taken off first: sines of large angles are imprecise on GPUs.
-    let cycles = 2.0 * film.re * layer.film_waves;
+    let cycles = 2.0 * film.re * layer.film_thickness_waves;
     let angle = 2.0 * LUTHIER_PI * (cycles - round(cycles));
-    let decay = exp(-4.0 * LUTHIER_PI * film.im * layer.film_waves);
+    let decay = exp(-4.0 * LUTHIER_PI * film.im * layer.film_thickness_waves);
     let echo = LuthierComplex(decay * cos(angle), decay * sin(angle));
     let film_p = luthier_parallel_index(film, layer.film_ior_n, layer.film_ior_k);
     let below_p = luthier_parallel_index(below, layer.ior_n, layer.ior_k);

@@ -9,7 +9,7 @@ struct LuthierLobe {
 /// Smith's Lambda of a direction above the horizon (Walter et al. 2007, eq. 34 for GGX; Heitz 2014, table 1).
 fn luthier_lambda(layer: LuthierLayer, w: vec3<f32>) -> f32 {
     //? anisotropic
-    let across = luthier_scaled(layer, layer.alpha_xy, w);
+    let across = luthier_stretched(layer, layer.alpha_xy, w);
     //? else
     let across = layer.alpha * w.xy;
     //? end

@@ -20,5 +20,5 @@ fn luthier_belcour_limited(spread: f32) -> f32 {
 /// f cos_theta_i of the lobe of the last interface: a GGX surface of its variance.
 fn luthier_belcour_lobe(path: LuthierBelcour, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
     let alpha = luthier_spread_alpha(path.lobe_spread);
-    return path.lobe * luthier_ggx_lobe(vec2<f32>(alpha), vec2<f32>(1.0, 0.0), wi, wo);
+    return path.lobe_energy * luthier_ggx_lobe(vec2<f32>(alpha), vec2<f32>(1.0, 0.0), wi, wo);
 }

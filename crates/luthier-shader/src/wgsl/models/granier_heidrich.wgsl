@@ -2,7 +2,7 @@
 /// The transmitted beam of a film for one channel (Granier and Heidrich 2003, eq. 10).
 struct LuthierBeam {
     /// T, scaled so that its lobe carries its coefficient.
-    power: f32,
+    transmitted: f32,
     /// Sum of the cosines in the film; 0 when nothing is transmitted.
     cosines: f32,
 }
@@ -17,24 +17,24 @@ fn luthier_schlick(normal: vec3<f32>, cos_theta: f32) -> vec3<f32> {
 //? end
 
 //? granier_transparent
-/// The beam through a film whose index over that outside is `eta`; `normal` is that of its inner boundary.
-fn luthier_beam(wi: vec3<f32>, wo: vec3<f32>, eta: f32, exponent: f32, normal: vec3<f32>) -> LuthierBeam {
+/// The beam through a film whose index over that outside is `eta`; `inner_normal` is that of its inner boundary.
+fn luthier_beam(wi: vec3<f32>, wo: vec3<f32>, eta: f32, exponent: f32, inner_normal: vec3<f32>) -> LuthierBeam {
     let cosines_sq = (vec2<f32>(wi.z * wi.z, wo.z * wo.z) + (eta - 1.0) * (eta + 1.0)) / (eta * eta);
     if min(cosines_sq.x, cosines_sq.y) <= 0.0 {
         return LuthierBeam(0.0, 0.0);
     }
     let ti = vec3<f32>(wi.xy / eta, sqrt(cosines_sq.x));
     let to = vec3<f32>(wo.xy / eta, sqrt(cosines_sq.y));
-    let across = dot(ti, normal);
-    if min(across, dot(to, normal)) <= 0.0 {
+    let across = dot(ti, inner_normal);
+    if min(across, dot(to, inner_normal)) <= 0.0 {
         return LuthierBeam(0.0, 0.0);
     }
-    // 2 across normal - ti - to without differences of rounded cosines: in a narrow lobe all of it cancels but a little.
-    let tilt = normal.xy;
+    // 2 across inner_normal - ti - to without differences of rounded cosines: in a narrow lobe all of it cancels but a little.
+    let tilt = inner_normal.xy;
     let rise = (wi.z - wo.z) * (wi.z + wo.z) / (eta * eta * (ti.z + to.z));
     let apart = vec3<f32>(
         2.0 * across * tilt - (wi.xy + wo.xy) / eta,
-        2.0 * (dot(ti.xy, tilt) * normal.z - ti.z * dot(tilt, tilt)) + rise,
+        2.0 * (dot(ti.xy, tilt) * inner_normal.z - ti.z * dot(tilt, tilt)) + rise,
     );
     let root = (eta - 1.0) / (eta + 1.0);
     let leaving = 1.0 - luthier_schlick(vec3<f32>(root * root), min(to.z, 1.0)).x;
@@ -42,13 +42,13 @@ fn luthier_beam(wi: vec3<f32>, wo: vec3<f32>, eta: f32, exponent: f32, normal: v
     let c = wi.z;
     let entering = (1.0 - root * root) * c * (5.0 + c * (-10.0 + c * (10.0 + c * (-5.0 + c))));
     // Directions crowd in the film by cos_theta_i / (eta^2 cos_theta_t).
-    let crowding = wi.z / (eta * eta * ti.z);
+    let compression = wi.z / (eta * eta * ti.z);
     let lobe = (exponent + 1.0) / (2.0 * LUTHIER_PI) * luthier_power_lobe(0.5 * dot(apart, apart), exponent);
-    return LuthierBeam(entering * leaving * crowding * lobe, ti.z + to.z);
+    return LuthierBeam(entering * leaving * compression * lobe, ti.z + to.z);
 }
 
 /// Two powers and their interference for the sums of the cosines in the film (eq. 3-5); a slab is too thick for it.
-fn luthier_superposed(layer: LuthierLayer, r: vec3<f32>, t: vec3<f32>, cosines: vec3<f32>) -> vec3<f32> {
+fn luthier_superpose(layer: LuthierLayer, r: vec3<f32>, t: vec3<f32>, cosines: vec3<f32>) -> vec3<f32> {
     //? granier_film
     if layer.film_ior_n.x <= 0.0 {
         return r + t;
@@ -61,7 +61,7 @@ fn luthier_superposed(layer: LuthierLayer, r: vec3<f32>, t: vec3<f32>, cosines: 
     let swing = vec3<f32>(red, green, blue);
     //? else
     // Whole cycles are taken off first: sines of large angles are imprecise on GPUs.
-    let cycles = layer.film_ior_n * layer.film_waves * cosines;
+    let cycles = layer.film_ior_n * layer.film_thickness_waves * cosines;
     let swing = 2.0 * cos(2.0 * LUTHIER_PI * (cycles - round(cycles)));
     //? end
     return max(r + t + swing * sqrt(r * t), vec3<f32>(0.0));
@@ -94,20 +94,20 @@ fn luthier_eval_granier_heidrich($place_parameter material: u32, wi: vec3<f32>, 
     //? end
         let root = (eta - 1.0) / (eta + 1.0);
         //? place
-        let normal = place.inner_normal;
+        let inner_normal = place.inner_normal;
         //? else
-        let normal = vec3<f32>(0.0, 0.0, 1.0);
+        let inner_normal = vec3<f32>(0.0, 0.0, 1.0);
         //? end
-        let red = luthier_beam(wi, wo, eta.x, exponent, normal);
-        let green = luthier_beam(wi, wo, eta.y, exponent, normal);
-        let blue = luthier_beam(wi, wo, eta.z, exponent, normal);
+        let red = luthier_beam(wi, wo, eta.x, exponent, inner_normal);
+        let green = luthier_beam(wi, wo, eta.y, exponent, inner_normal);
+        let blue = luthier_beam(wi, wo, eta.z, exponent, inner_normal);
         let r = luthier_schlick(root * root, wi.z) * mirror;
-        let t = vec3<f32>(red.power, green.power, blue.power);
-        specular = luthier_superposed(layer, r, t, vec3<f32>(red.cosines, green.cosines, blue.cosines));
+        let t = vec3<f32>(red.transmitted, green.transmitted, blue.transmitted);
+        specular = luthier_superpose(layer, r, t, vec3<f32>(red.cosines, green.cosines, blue.cosines));
         //? granier_base
         // The mean of Schlick's reflectance (eq. 14).
-        let mean = (21.0 * (eta * eta + 1.0) - 38.0 * eta) / (21.0 * (eta + 1.0) * (eta + 1.0));
-        diffuse = luthier_superposed(layer, mean, 1.0 - mean, vec3<f32>(2.0));
+        let diffuse_reflectance = (21.0 * (eta * eta + 1.0) - 38.0 * eta) / (21.0 * (eta + 1.0) * (eta + 1.0));
+        diffuse = luthier_superpose(layer, diffuse_reflectance, 1.0 - diffuse_reflectance, vec3<f32>(2.0));
         //? end
     }
     //? end

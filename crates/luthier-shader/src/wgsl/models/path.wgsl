@@ -1,18 +1,18 @@
 /// What the light has met on its way down and back up: directions, and sums over the layers so far.
 struct LuthierPath {
     /// To the light, in the medium above the next layer.
-    wi: vec3<f32>,
+    wi_local: vec3<f32>,
     /// To the eye, in the medium above the next layer.
-    wo: vec3<f32>,
+    wo_local: vec3<f32>,
     /// Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
     across: vec2<f32>,
     /// Share of the light that comes down to the next layer and back out.
     throughput: vec3<f32>,
     /// f of the layers so far.
-    reflected: vec3<f32>,
+    total: vec3<f32>,
     //? clamped
     /// Greatest slope parameter so far: a layer is never smoother than those above it.
-    alpha: f32,
+    alpha_above: f32,
     //? end
     /// Whether any light reaches the next layer.
     open: bool,
@@ -25,9 +25,9 @@ struct LuthierPath {
 //? chain_diffuse
 /// Adds what a diffuse base reflects. It ends the stack.
 fn luthier_add_diffuse(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
-    let brdf = $diffuse(layer, path.wi, path.wo);
+    let brdf = $diffuse(layer, path.wi_local, path.wo_local);
     var next = path;
-    next.reflected = path.reflected + path.throughput * brdf;
+    next.total = path.total + path.throughput * brdf;
     next.open = false;
     return next;
 }
@@ -39,7 +39,7 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     var next = path;
     next.open = false;
 
-    let cosines = vec2<f32>(path.wi.z, path.wo.z);
+    let cosines = vec2<f32>(path.wi_local.z, path.wo_local.z);
     let bisector = vec3<f32>(path.across, cosines.x + cosines.y);
     let length_sq = dot(bisector.xy, bisector.xy) + bisector.z * bisector.z;
     // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
@@ -52,8 +52,8 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     //? end
     // G of V-cavities: 2 cos_theta_h / cos_theta_d times the lower cosine, at most 1.
     let masking = min(bisector.z * min(cosines.x, cosines.y) * (secant_d * secant_d), 1.0);
-    let shape = luthier_quarter_density(layer, bisector) * masking / (cosines.x * cosines.y);
-    next.reflected = path.reflected + path.throughput * fresnel * shape;
+    let geometry = luthier_quarter_density(layer, bisector) * masking / (cosines.x * cosines.y);
+    next.total = path.total + path.throughput * fresnel * geometry;
 
     //? below
     //? conductor
@@ -66,16 +66,16 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     let cosines_sq = bent * bent + layer.grazing_cos_sq;
     let secants = inverseSqrt(cosines_sq);
     let refracted = cosines_sq * secants;
-    next.wi = vec3<f32>(path.wi.xy * layer.inverse_eta, refracted.x);
-    next.wo = vec3<f32>(path.wo.xy * layer.inverse_eta, refracted.y);
+    next.wi_local = vec3<f32>(path.wi_local.xy * layer.inverse_eta, refracted.x);
+    next.wo_local = vec3<f32>(path.wo_local.xy * layer.inverse_eta, refracted.y);
     next.across = path.across * layer.inverse_eta;
     //? flakes
     // Flakes tilt all that lies below, the paths through the slab included.
-    next.wi = luthier_turned(path.normal_below, next.wi);
-    next.wo = luthier_turned(path.normal_below, next.wo);
-    next.across = luthier_turned(path.normal_below, vec3<f32>(next.across, refracted.x + refracted.y)).xy;
+    next.wi_local = luthier_local(path.normal_below, next.wi_local);
+    next.wo_local = luthier_local(path.normal_below, next.wo_local);
+    next.across = luthier_local(path.normal_below, vec3<f32>(next.across, refracted.x + refracted.y)).xy;
     next.normal_below = vec3<f32>(0.0, 0.0, 1.0);
-    next.open = min(cosines_sq.x, cosines_sq.y) > 0.0 && min(next.wi.z, next.wo.z) > 0.0;
+    next.open = min(cosines_sq.x, cosines_sq.y) > 0.0 && min(next.wi_local.z, next.wo_local.z) > 0.0;
     //? else
     next.open = min(cosines_sq.x, cosines_sq.y) > 0.0;
     //? end
@@ -83,7 +83,7 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     let returned = 1.0 - masking * fresnel;
     //? absorption
     //? flakes
-    let absorbed = exp2(-layer.halvings * (1.0 / next.wi.z + 1.0 / next.wo.z));
+    let absorbed = exp2(-layer.halvings * (1.0 / next.wi_local.z + 1.0 / next.wo_local.z));
     //? else
     let absorbed = exp2(-layer.halvings * (secants.x + secants.y));
     //? end

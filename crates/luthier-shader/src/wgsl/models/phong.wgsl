@@ -2,8 +2,8 @@
 /// carries the specular coefficient).
 fn luthier_eval_phong($place_parameter material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
     let header = luthier_header(material);
-    let diffuse = luthier_materials[header + 1u];
-    let specular = luthier_materials[header + 2u].rgb;
+    let diffuse = luthier_materials[header + $word_phong_diffuse];
+    let specular = luthier_materials[header + $word_phong_specular].rgb;
     //? place
     // The exponent is (1/alpha^2 - 1) / 2.
     let exponent = max((diffuse.w + 0.5) / (place.alpha_factor * place.alpha_factor) - 0.5, 0.0);

@@ -11,12 +11,12 @@ fn luthier_spread_alpha(variance: f32) -> f32 {
 
 //? full
 /// Share of the light at a cosine above an interface that it sends back, its facets taken as level.
-fn luthier_sent_back(layer: LuthierLayer, cos_theta: f32) -> vec3<f32> {
+fn luthier_energy_fgd(layer: LuthierLayer, cos_theta: f32) -> vec3<f32> {
     return saturate(luthier_fresnel_term(layer, cos_theta));
 }
 //? else
 /// Share of the light at a cosine above an interface that it sends back, all bounces on it included.
-fn luthier_sent_back(layer: LuthierLayer, cos_theta: f32) -> vec3<f32> {
+fn luthier_energy_fgd(layer: LuthierLayer, cos_theta: f32) -> vec3<f32> {
     return saturate(luthier_lookup_fgd(layer.fgd_tile, cos_theta, layer.alpha).rgb);
 }
 //? end
@@ -42,10 +42,10 @@ fn luthier_ggx_lobe(alpha: vec2<f32>, axis: vec2<f32>, wi: vec3<f32>, wo: vec3<f
 //? statistics_base
 /// BRDF of a diffuse base below layers (T(wi) T(wo) f / (n^2 (1 - rho R)), R their reflectance of diffuse light from below) for
 /// what comes down along both directions, these directions above the base, and the index there over that outside.
-fn luthier_base(material: u32, layer: LuthierLayer, down: vec3<f32>, wi: vec3<f32>, wo: vec3<f32>, eta: f32) -> vec3<f32> {
-    let veil = luthier_materials[luthier_header(material) + 3u];
+fn luthier_base(material: u32, layer: LuthierLayer, transmitted: vec3<f32>, wi: vec3<f32>, wo: vec3<f32>, eta: f32) -> vec3<f32> {
+    let veil = luthier_materials[luthier_header(material) + $word_veil];
     let lost = max(1.0 - LUTHIER_PI * layer.lambert * veil.rgb, vec3<f32>(1e-6));
     let brdf = $diffuse(layer, wi, wo);
-    return down * brdf * ((1.0 - veil.w) / (eta * eta)) / lost;
+    return transmitted * brdf * ((1.0 - veil.w) / (eta * eta)) / lost;
 }
 //? end

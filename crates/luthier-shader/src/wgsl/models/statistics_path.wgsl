@@ -31,10 +31,10 @@ struct $Path {
     spread_ti0: $spread,
     spread_ri0: $spread,
     /// By how much spreads in i grow on the way to 0.
-    jacobian: f32,
+    jacobian_0i: f32,
     //? end
     /// Energy that left the last interface to 0.
-    lobe: vec3<f32>,
+    lobe_energy: vec3<f32>,
     /// Its spread.
     lobe_spread: $spread,
     /// Whether any light reaches the next layer.
@@ -49,7 +49,7 @@ fn $start(cos_theta: f32) -> $Path {
     path.eta = 1.0;
     path.t0i = vec3<f32>(1.0);
     path.ti0 = vec3<f32>(1.0);
-    path.jacobian = 1.0;
+    path.jacobian_0i = 1.0;
     path.slab = vec3<f32>(1.0);
     path.escape_tile = -1.0;
     path.open = true;
@@ -60,7 +60,7 @@ fn $start(cos_theta: f32) -> $Path {
 fn $add(path: $Path, layer: LuthierLayer) -> $Path {
     var next = path;
     next.open = false;
-    let r12 = luthier_sent_back(layer, path.cos_theta);
+    let r12 = luthier_energy_fgd(layer, path.cos_theta);
     let spread_r12 = $interface_spread(layer, 1.0);
     //? below
     //? escape
@@ -89,8 +89,8 @@ fn $add(path: $Path, layer: LuthierLayer) -> $Path {
     let downward = select(vec3<f32>(1.0), min((1.0 - r12) / guarded, vec3<f32>(1.0)), q > vec3<f32>(0.0));
     let bounces = dot(min(echo / max(q, vec3<f32>(1e-6)), vec3<f32>(1e6)), vec3<f32>(0.333333333));
     let between = (spread_r12 + path.spread_ri0) * bounces;
-    next.lobe = path.t0i * r12 * upward;
-    next.lobe_spread = $limited(path.spread_ti0 + (path.spread_t0i + spread_r12 + between) * path.jacobian);
+    next.lobe_energy = path.t0i * r12 * upward;
+    next.lobe_spread = $limited(path.spread_ti0 + (path.spread_t0i + spread_r12 + between) * path.jacobian_0i);
 
     next.t0i = vec3<f32>(0.0);
     //? conductor
@@ -99,26 +99,26 @@ fn $add(path: $Path, layer: LuthierLayer) -> $Path {
     }
     //? end
     // Refracted at the normal; the squared cosine is written so that it does not cancel for an index near 1.
-    let cos_sq = (path.cos_theta * path.cos_theta + (layer.eta - 1.0) * (layer.eta + 1.0)) / (layer.eta * layer.eta);
-    if cos_sq <= 0.0 {
+    let cos_t_sq = (path.cos_theta * path.cos_theta + (layer.eta - 1.0) * (layer.eta + 1.0)) / (layer.eta * layer.eta);
+    if cos_t_sq <= 0.0 {
         return next;
     }
-    next.cos_theta = clamp(sqrt(cos_sq), 0.00001, 1.0);
+    next.cos_theta = clamp(sqrt(cos_t_sq), 0.00001, 1.0);
     next.cos_above = path.cos_theta;
     next.eta = path.eta * layer.eta;
-    let widening = layer.eta * next.cos_theta / path.cos_theta;
-    let spread_t12 = $interface_spread(layer, 0.5 * abs(1.0 - 1.0 / widening));
-    let spread_t21 = $interface_spread(layer, 0.5 * abs(1.0 - widening));
+    let j12 = layer.eta * next.cos_theta / path.cos_theta;
+    let spread_t12 = $interface_spread(layer, 0.5 * abs(1.0 - 1.0 / j12));
+    let spread_t21 = $interface_spread(layer, 0.5 * abs(1.0 - j12));
 
     let r21 = r12;
     let back = (1.0 - r21) * ri0 * downward;
     let reflected = r21 + back;
     let share = dot(back, vec3<f32>(1.0)) / max(dot(reflected, vec3<f32>(1.0)), 1e-20);
-    let deep = spread_t12 + (spread_t21 + path.spread_ri0 + between) * widening;
+    let deep = spread_t12 + (spread_t21 + path.spread_ri0 + between) * j12;
     next.spread_ri0 = $limited(spread_r12 * (1.0 - share) + deep * share);
-    next.spread_t0i = $limited((path.spread_t0i + between) * widening + spread_t12);
-    next.spread_ti0 = $limited(path.spread_ti0 + (spread_t21 + between) / path.jacobian);
-    next.jacobian = path.jacobian * widening;
+    next.spread_t0i = $limited((path.spread_t0i + between) * j12 + spread_t12);
+    next.spread_ti0 = $limited(path.spread_ti0 + (spread_t21 + between) / path.jacobian_0i);
+    next.jacobian_0i = path.jacobian_0i * j12;
 
     next.t0i = path.t0i * downward;
     next.ti0 = (1.0 - r21) * upward;
@@ -133,7 +133,7 @@ fn $add(path: $Path, layer: LuthierLayer) -> $Path {
     //? end
     next.open = true;
     //? else
-    next.lobe = r12;
+    next.lobe_energy = r12;
     next.lobe_spread = spread_r12;
     //? end
     return next;

@@ -1,13 +1,13 @@
 /// Covariance (xx, xy, yy) that an interface adds, its slope parameters times `scale` (Yamaguchi et al. 2019, eq. 1).
 fn luthier_yamaguchi_interface_spread(layer: LuthierLayer, scale: f32) -> vec3<f32> {
     //? anisotropic
-    let along = luthier_variance(scale * layer.alpha_xy.x);
-    let across = luthier_variance(scale * layer.alpha_xy.y);
+    let variance_x = luthier_variance(scale * layer.alpha_xy.x);
+    let variance_y = luthier_variance(scale * layer.alpha_xy.y);
     let turn = layer.rotation;
     let turn_sq = turn * turn;
-    let xx = turn_sq.x * along + turn_sq.y * across;
-    let yy = turn_sq.y * along + turn_sq.x * across;
-    return vec3<f32>(xx, turn.x * turn.y * (along - across), yy);
+    let xx = turn_sq.x * variance_x + turn_sq.y * variance_y;
+    let yy = turn_sq.y * variance_x + turn_sq.x * variance_y;
+    return vec3<f32>(xx, turn.x * turn.y * (variance_x - variance_y), yy);
     //? else
     return luthier_variance(scale * layer.alpha) * vec3<f32>(1.0, 0.0, 1.0);
     //? end
@@ -40,5 +40,5 @@ fn luthier_yamaguchi_lobe(path: LuthierYamaguchi, wi: vec3<f32>, wo: vec3<f32>) 
     let turned = select(vec2<f32>(larger, smaller), vec2<f32>(smaller, larger), half_difference < 0.0);
     let axis = select(vec2<f32>(1.0, 0.0), turned, radius > 0.0);
     let alpha = vec2<f32>(luthier_spread_alpha(first), luthier_spread_alpha(second));
-    return path.lobe * luthier_ggx_lobe(alpha, axis, wi, wo);
+    return path.lobe_energy * luthier_ggx_lobe(alpha, axis, wi, wo);
 }

@@ -20,13 +20,13 @@ fn luthier_voronoi(seed: u32, p: vec2<f32>) -> u32 {
 /// Normal of the particle at a texture coordinate, unit: a share of the cells is tilted (Weidlich and Wilkie 2009, section
 /// 5.2.1). +z elsewhere and for a material without glitter.
 fn luthier_glitter_normal(material: u32, uv: vec2<f32>) -> vec3<f32> {
-    let shape = luthier_materials[luthier_header(material) + 9u];
+    let shape = luthier_materials[luthier_header(material) + $word_glitter_cells];
     let cell = luthier_voronoi(u32(shape.x) + u32(shape.y) * 65536u, uv * shape.z);
     if luthier_unit(cell, 3u) >= shape.w {
         return vec3<f32>(0.0, 0.0, 1.0);
     }
     // 1 - cos: no cancellation in small tilts.
-    let lack = luthier_unit(cell, 4u) * luthier_materials[luthier_header(material) + 10u].x;
+    let lack = luthier_unit(cell, 4u) * luthier_materials[luthier_header(material) + $word_glitter_tilt].x;
     let phi = 2.0 * LUTHIER_PI * luthier_unit(cell, 5u);
     return vec3<f32>(sqrt(lack * (2.0 - lack)) * vec2<f32>(cos(phi), sin(phi)), 1.0 - lack);
 }

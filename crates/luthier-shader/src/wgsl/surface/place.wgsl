@@ -45,19 +45,19 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
     //? absorption|film
     if index == 0u {
         layer.halvings *= place.slab_factor;
-        layer.film_waves *= place.film_factor;
+        layer.film_thickness_waves *= place.film_factor;
         layer.film_thickness_nm *= place.film_factor;
     }
     //? end
     //? patina
     if place.patina >= 0.0 && index > 0u {
         let count = luthier_layer_count(material);
-        let base_alpha = luthier_materials[luthier_header(material) + 6u].z;
+        let base_alpha = luthier_materials[luthier_header(material) + $word_patina].z;
         if base_alpha >= 0.0 && (index == 1u || index == count) {
             layer = luthier_with_alpha(layer, max(mix(layer.alpha, base_alpha, place.patina), 0.001));
             layer.alpha_xy = max(mix(layer.alpha_xy, vec2<f32>(base_alpha), place.patina), vec2<f32>(0.001));
         }
-        let tarnish = luthier_materials[luthier_header(material) + 8u].xyz;
+        let tarnish = luthier_materials[luthier_header(material) + $word_patina_tarnish].xyz;
         layer.tarnish = mix(vec3<f32>(1.0), tarnish, place.patina);
     }
     //? end
@@ -81,7 +81,7 @@ fn luthier_film_place(place: LuthierPlace, material: u32, uv: vec2<f32>) -> Luth
 
 /// A direction in a frame whose normal is `normal` (unit, in the frame of the direction): the least rotation that takes +z
 /// there is undone.
-fn luthier_turned(normal: vec3<f32>, w: vec3<f32>) -> vec3<f32> {
+fn luthier_local(normal: vec3<f32>, w: vec3<f32>) -> vec3<f32> {
     let across = w.x * normal.x + w.y * normal.y;
     let along = w.z + across / (1.0 + max(normal.z, 0.0));
     return vec3<f32>(w.xy - normal.xy * along, across + w.z * normal.z);
