@@ -1,18 +1,25 @@
+//
+// Materials, each a number and a constant:
+//   0 varnished-gold, LUTHIER_MATERIAL_VARNISHED_GOLD: elek, 2 layers
+//
 // Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
 // Fresnel reflectance and slope distribution are read from tables.
 //
-// Tables, in texels:
-//   fresnel       128 x 3 rgba16float, 3 tiles of 128 x 1; cos_theta 0..1
-//   distribution  512 x 1024 r16float, 2 tiles of 512 x 512; theta_h 0..1.5707964 as u^8, alpha 0.001..1 logarithmic
+// Functions:
+//   luthier_eval(material, wi, wo): f cos_theta_i, linear Rec.709; a light adds its irradiance times this
+//   luthier_bounded(radiance): a sum over lights within 0..65504, which half floats hold
+//   luthier_layer(material, index), luthier_layer_count(material): the layers as records, from the top
+//   luthier_lookup_T(tile, ...): a value of the table T, which is fresnel, distribution
+// wi points to the light and wo to the eye. Both are unit vectors in the local frame of the surface, away from it. +z is the normal, +x the
+// tangent. Values are 0 where either is not above the horizon.
 //
 // Bindings, group 0:
-//   0 luthier_fresnel: sampler2D
-//   1 luthier_distribution: sampler2D
-//   each table filtered linearly, clamped to its edge
+//   0 luthier_fresnel: sampler2D, rgba16float, 128 x 3, filtered; 3 tiles of 128 x 1: cos_theta 0..1
+//   1 luthier_distribution: sampler2D, r16float, 512 x 1024, filtered; 2 tiles of 512 x 512: theta_h 0..1.5707964 as u^8, alpha 0.001..1
+//     logarithmic
 //   6 luthier_materials: storage block LuthierMaterials (std430), 33 vec4
-//
-// Materials:
-//   0 varnished-gold, elek, 2 layers
+// luthier_materials is materials.bin of the bake, byte for byte. Textures are the KTX2 files of the bake: one level, linear values, the
+// first row at coordinate 0. Filters clamp to the edge. Numbers from 16 up are yours.
 
 // One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
 struct LuthierLayer {

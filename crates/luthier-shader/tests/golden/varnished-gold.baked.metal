@@ -1,20 +1,28 @@
-// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
-// Fresnel reflectance and slope distribution are read from tables.
 // Metal 2.0. Not checked by a Metal compiler.
 //
-// Tables, in texels:
-//   fresnel       128 x 3 rgba16float, 3 tiles of 128 x 1; cos_theta 0..1
-//   distribution  512 x 1024 r16float, 2 tiles of 512 x 512; theta_h 0..1.5707964 as u^8, alpha 0.001..1 logarithmic
+// Materials, each a number and a constant:
+//   0 varnished-gold, LUTHIER_MATERIAL_VARNISHED_GOLD: elek, 2 layers
 //
-// Bindings, by argument index of a complete shader. A function takes those that it reads, in this order, as its last
-// arguments:
-//   texture(0) luthier_fresnel: texture2d<float>
-//   texture(1) luthier_distribution: texture2d<float>
+// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
+// Fresnel reflectance and slope distribution are read from tables.
+//
+// Functions:
+//   luthier_eval(material, wi, wo): f cos_theta_i, linear Rec.709; a light adds its irradiance times this
+//   luthier_bounded(radiance): a sum over lights within 0..65504, which half floats hold
+//   luthier_layer(material, index), luthier_layer_count(material): the layers as records, from the top
+//   luthier_lookup_T(tile, ...): a value of the table T, which is fresnel, distribution
+// wi points to the light and wo to the eye. Both are unit vectors in the local frame of the surface, away from it. +z is the normal, +x the
+// tangent. Values are 0 where either is not above the horizon.
+//
+// Bindings, by argument index of a complete shader:
+//   texture(0) luthier_fresnel: texture2d<float>, rgba16float, 128 x 3, filtered; 3 tiles of 128 x 1: cos_theta 0..1
+//   texture(1) luthier_distribution: texture2d<float>, r16float, 512 x 1024, filtered; 2 tiles of 512 x 512: theta_h 0..1.5707964 as u^8,
+//     alpha 0.001..1 logarithmic
 //   sampler(5) luthier_sampler: sampler, linear, clamp to edge
 //   buffer(6) luthier_materials: device LuthierMaterials const&, 33 float4
-//
-// Materials:
-//   0 varnished-gold, elek, 2 layers
+// A function takes those that it reads as its last arguments, in this order. luthier_materials is materials.bin of the bake, byte for byte.
+// Textures are the KTX2 files of the bake: one level, linear values, the first row at coordinate 0. Filters clamp to the edge. Numbers from
+// 16 up are yours.
 
 #include <metal_stdlib>
 #include <simd/simd.h>

@@ -1,13 +1,22 @@
-// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
-// No tables: Fresnel equations at three wavelengths, closed forms of D.
 // Metal 2.0. Not checked by a Metal compiler.
 //
-// Bindings, by argument index of a complete shader. A function takes those that it reads, in this order, as its last
-// arguments:
-//   buffer(6) luthier_materials: device LuthierMaterials const&, 33 float4
+// Materials, each a number and a constant:
+//   0 varnished-gold, LUTHIER_MATERIAL_VARNISHED_GOLD: elek, 2 layers
 //
-// Materials:
-//   0 varnished-gold, elek, 2 layers
+// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
+// No tables: Fresnel equations at three wavelengths, closed forms of D.
+//
+// Functions:
+//   luthier_eval(material, wi, wo): f cos_theta_i, linear Rec.709; a light adds its irradiance times this
+//   luthier_bounded(radiance): a sum over lights within 0..65504, which half floats hold
+//   luthier_layer(material, index), luthier_layer_count(material): the layers as records, from the top
+// wi points to the light and wo to the eye. Both are unit vectors in the local frame of the surface, away from it. +z is the normal, +x the
+// tangent. Values are 0 where either is not above the horizon.
+//
+// Bindings, by argument index of a complete shader:
+//   buffer(6) luthier_materials: device LuthierMaterials const&, 33 float4
+// A function takes those that it reads as its last arguments, in this order. luthier_materials is materials.bin of the bake, byte for byte.
+// Numbers from 16 up are yours.
 
 #include <metal_stdlib>
 #include <simd/simd.h>

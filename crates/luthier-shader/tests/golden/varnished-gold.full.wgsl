@@ -1,11 +1,20 @@
+//
+// Materials, each a number and a constant:
+//   0 varnished-gold, LUTHIER_MATERIAL_VARNISHED_GOLD: elek, 2 layers
+//
 // Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
 // No tables: Fresnel equations at three wavelengths, closed forms of D.
 //
+// Functions:
+//   luthier_eval(material, wi, wo): f cos_theta_i, linear Rec.709; a light adds its irradiance times this
+//   luthier_bounded(radiance): a sum over lights within 0..65504, which half floats hold
+//   luthier_layer(material, index), luthier_layer_count(material): the layers as records, from the top
+// wi points to the light and wo to the eye. Both are unit vectors in the local frame of the surface, away from it. +z is the normal, +x the
+// tangent. Values are 0 where either is not above the horizon.
+//
 // Bindings, group 0:
 //   6 luthier_materials: storage buffer, 33 vec4
-//
-// Materials:
-//   0 varnished-gold, elek, 2 layers
+// luthier_materials is materials.bin of the bake, byte for byte. Numbers from 16 up are yours.
 
 const LUTHIER_MATERIAL_VARNISHED_GOLD: u32 = 0u;
 
