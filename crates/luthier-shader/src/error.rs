@@ -1,3 +1,5 @@
+//! The ways in which no shader comes out.
+
 use luthier_lut::TableKind;
 use thiserror::Error;
 

@@ -22,26 +22,16 @@
 //!
 //! Out of scope: texels and files (`luthier-lut`, `luthier-texture`), devices (`luthier-gpu`).
 
-mod binding_lines;
-mod chain;
+mod compose;
 mod emit;
 mod error;
-mod features;
-mod glsl;
-mod hlsl;
-mod lookup;
-mod module;
-mod msl;
+mod languages;
 mod set;
-mod spirv;
-mod statistics;
-mod text;
 mod validate;
-mod wgsl;
 
 pub use emit::{complete, emit, emit_constant};
 pub use error::ShaderError;
+pub use languages::spirv::{complete_spirv, emit_spirv, spirv_words};
 pub use luthier_manifest::{Form, Target};
 pub use set::{MaterialSet, RESERVED_BINDINGS, TableFace, bindings, identifier};
-pub use spirv::{complete_spirv, emit_spirv, spirv_words};
 pub use validate::validate;

@@ -1,3 +1,5 @@
+//! The set that a shader serves: materials and descriptions of tables; what it binds.
+
 use std::collections::BTreeMap;
 
 use luthier_lut::{AtlasLayout, TableKind, TexelFormat};

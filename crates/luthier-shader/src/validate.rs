@@ -1,3 +1,5 @@
+//! WGSL through naga: parsed, and validated for core WebGPU.
+
 use naga::Module;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 

@@ -1,11 +1,20 @@
-// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
 // Needs `precision highp float;` and `precision highp int;` above.
+//
+// Materials, each a number and a constant:
+//   0 chalk, LUTHIER_MATERIAL_CHALK: elek, 1 layer
+//
+// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
+//
+// Functions:
+//   luthier_eval(material, wi, wo): f cos_theta_i, linear Rec.709; a light adds its irradiance times this
+//   luthier_bounded(radiance): a sum over lights within 0..65504, which half floats hold
+//   luthier_layer(material, index), luthier_layer_count(material): the layers as records, from the top
+// wi points to the light and wo to the eye. Both are unit vectors in the local frame of the surface, away from it. +z is the normal, +x the
+// tangent. Values are 0 where either is not above the horizon.
 //
 // Bindings, by name:
 //   luthier_materials: sampler2D, RGBA32F, 22 x 1, not filtered
-//
-// Materials:
-//   0 chalk, elek, 1 layer
+// luthier_materials is materials.bin of the bake, byte for byte. Set each sampler2D to a texture unit.
 
 // One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
 struct LuthierLayer {

@@ -1,11 +1,20 @@
-// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
 // Shader model 5.1. Checked by glslang, not by a compiler of Direct3D.
 //
-// Registers, space0:
-//   t6 luthier_materials: ByteAddressBuffer, 22 float4
+// Materials, each a number and a constant:
+//   0 chalk, LUTHIER_MATERIAL_CHALK: elek, 1 layer
 //
-// Materials:
-//   0 chalk, elek, 1 layer
+// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
+//
+// Functions:
+//   luthier_eval(material, wi, wo): f cos_theta_i, linear Rec.709; a light adds its irradiance times this
+//   luthier_bounded(radiance): a sum over lights within 0..65504, which half floats hold
+//   luthier_layer(material, index), luthier_layer_count(material): the layers as records, from the top
+// wi points to the light and wo to the eye. Both are unit vectors in the local frame of the surface, away from it. +z is the normal, +x the
+// tangent. Values are 0 where either is not above the horizon.
+//
+// Registers, space0:
+//   t6 luthier_materials: ByteAddressBuffer (a raw view), 22 float4
+// luthier_materials is materials.bin of the bake, byte for byte. Numbers from 16 up are yours.
 
 // One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
 struct LuthierLayer {

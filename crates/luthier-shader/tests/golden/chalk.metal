@@ -1,12 +1,21 @@
-// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
 // Metal 2.0. Not checked by a Metal compiler.
 //
-// Bindings, by argument index of a complete shader. A function takes those that it reads, in this order, as its last
-// arguments:
-//   buffer(6) luthier_materials: device LuthierMaterials const&, 22 float4
+// Materials, each a number and a constant:
+//   0 chalk, LUTHIER_MATERIAL_CHALK: elek, 1 layer
 //
-// Materials:
-//   0 chalk, elek, 1 layer
+// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
+//
+// Functions:
+//   luthier_eval(material, wi, wo): f cos_theta_i, linear Rec.709; a light adds its irradiance times this
+//   luthier_bounded(radiance): a sum over lights within 0..65504, which half floats hold
+//   luthier_layer(material, index), luthier_layer_count(material): the layers as records, from the top
+// wi points to the light and wo to the eye. Both are unit vectors in the local frame of the surface, away from it. +z is the normal, +x the
+// tangent. Values are 0 where either is not above the horizon.
+//
+// Bindings, by argument index of a complete shader:
+//   buffer(6) luthier_materials: device LuthierMaterials const&, 22 float4
+// A function takes those that it reads as its last arguments, in this order. luthier_materials is materials.bin of the bake, byte for byte.
+// Numbers from 16 up are yours.
 
 #include <metal_stdlib>
 #include <simd/simd.h>

@@ -1,19 +1,26 @@
-// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
-// Fresnel reflectance and slope distribution are read from tables.
 // Needs `precision highp float;` and `precision highp int;` above.
 //
-// Tables, in texels:
-//   fresnel       128 x 3 rgba16float, 3 tiles of 128 x 1; cos_theta 0..1
-//   distribution  512 x 1024 r16float, 2 tiles of 512 x 512; theta_h 0..1.5707964 as u^8, alpha 0.001..1 logarithmic
+// Materials, each a number and a constant:
+//   0 varnished-gold, LUTHIER_MATERIAL_VARNISHED_GOLD: elek, 2 layers
+//
+// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
+// Fresnel reflectance and slope distribution are read from tables.
+//
+// Functions:
+//   luthier_eval(material, wi, wo): f cos_theta_i, linear Rec.709; a light adds its irradiance times this
+//   luthier_bounded(radiance): a sum over lights within 0..65504, which half floats hold
+//   luthier_layer(material, index), luthier_layer_count(material): the layers as records, from the top
+//   luthier_lookup_T(tile, ...): a value of the table T, which is fresnel, distribution
+// wi points to the light and wo to the eye. Both are unit vectors in the local frame of the surface, away from it. +z is the normal, +x the
+// tangent. Values are 0 where either is not above the horizon.
 //
 // Bindings, by name:
-//   luthier_fresnel: sampler2D
-//   luthier_distribution: sampler2D
-//   each table filtered linearly, clamped to its edge
+//   luthier_fresnel: sampler2D, rgba16float, 128 x 3, filtered; 3 tiles of 128 x 1: cos_theta 0..1
+//   luthier_distribution: sampler2D, r16float, 512 x 1024, filtered; 2 tiles of 512 x 512: theta_h 0..1.5707964 as u^8, alpha 0.001..1
+//     logarithmic
 //   luthier_materials: sampler2D, RGBA32F, 33 x 1, not filtered
-//
-// Materials:
-//   0 varnished-gold, elek, 2 layers
+// luthier_materials is materials.bin of the bake, byte for byte. Textures are the KTX2 files of the bake: one level, linear values, the
+// first row at coordinate 0. Filters clamp to the edge. Set each sampler2D to a texture unit.
 
 // One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
 struct LuthierLayer {
@@ -29,24 +36,24 @@ struct LuthierLayer {
     float inverse_eta;
     // Squared cosine of a refracted grazing direction, 1 - 1 / eta^2.
     float grazing_cos_sq;
-    // Tile of the Fresnel table.
+    // Tile in `luthier_fresnel`.
     float fresnel_tile;
-    // Tile of the distribution table.
+    // Tile in `luthier_distribution`.
     float distribution_tile;
 };
 
 // What the light has met on its way down and back up: directions, and sums over the layers so far.
 struct LuthierPath {
     // To the light, in the medium above the next layer.
-    vec3 wi;
+    vec3 wi_local;
     // To the eye, in the medium above the next layer.
-    vec3 wo;
+    vec3 wo_local;
     // Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
     vec2 across;
     // Share of the light that comes down to the next layer and back out.
     vec3 throughput;
     // f of the layers so far.
-    vec3 reflected;
+    vec3 total;
     // Whether any light reaches the next layer.
     bool open;
 };
@@ -143,21 +150,21 @@ float luthier_quarter_density(LuthierLayer layer, vec3 bisector) {
 LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     LuthierPath next = path;
     next.open = false;
-    vec2 cosines = vec2(path.wi.z, path.wo.z);
+    vec2 cosines = vec2(path.wi_local.z, path.wo_local.z);
     vec3 bisector = vec3(path.across, cosines.x + cosines.y);
     float length_sq = dot(bisector.xy, bisector.xy) + (bisector.z * bisector.z);
     float secant_d = 2.0 * inversesqrt(length_sq);
     float cos_theta_d = min((0.25 * length_sq) * secant_d, 1.0);
     vec3 fresnel = luthier_fresnel_term(layer, cos_theta_d);
     float masking = min((bisector.z * min(cosines.x, cosines.y)) * (secant_d * secant_d), 1.0);
-    float shape = (luthier_quarter_density(layer, bisector) * masking) / (cosines.x * cosines.y);
-    next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
+    float geometry = (luthier_quarter_density(layer, bisector) * masking) / (cosines.x * cosines.y);
+    next.total = path.total + ((path.throughput * fresnel) * geometry);
     vec2 bent = cosines * layer.inverse_eta;
     vec2 cosines_sq = (bent * bent) + vec2(layer.grazing_cos_sq);
     vec2 secants = inversesqrt(cosines_sq);
     vec2 refracted = cosines_sq * secants;
-    next.wi = vec3(path.wi.xy * layer.inverse_eta, refracted.x);
-    next.wo = vec3(path.wo.xy * layer.inverse_eta, refracted.y);
+    next.wi_local = vec3(path.wi_local.xy * layer.inverse_eta, refracted.x);
+    next.wo_local = vec3(path.wo_local.xy * layer.inverse_eta, refracted.y);
     next.across = path.across * layer.inverse_eta;
     next.open = min(cosines_sq.x, cosines_sq.y) > 0.0;
     vec3 returned = vec3(1.0) - (masking * fresnel);
@@ -174,7 +181,7 @@ vec3 luthier_eval_elek(uint material, vec3 wi, vec3 wo) {
     if (path.open) {
         path = luthier_add_interface(path, luthier_layer(material, 1u));
     }
-    return wi.z * path.reflected;
+    return wi.z * path.total;
 }
 
 // f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away

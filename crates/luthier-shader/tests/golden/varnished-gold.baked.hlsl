@@ -1,19 +1,27 @@
-// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
-// Fresnel reflectance and slope distribution are read from tables.
 // Shader model 5.1. Checked by glslang, not by a compiler of Direct3D.
 //
-// Tables, in texels:
-//   fresnel       128 x 3 rgba16float, 3 tiles of 128 x 1; cos_theta 0..1
-//   distribution  512 x 1024 r16float, 2 tiles of 512 x 512; theta_h 0..1.5707964 as u^8, alpha 0.001..1 logarithmic
+// Materials, each a number and a constant:
+//   0 varnished-gold, LUTHIER_MATERIAL_VARNISHED_GOLD: elek, 2 layers
+//
+// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
+// Fresnel reflectance and slope distribution are read from tables.
+//
+// Functions:
+//   luthier_eval(material, wi, wo): f cos_theta_i, linear Rec.709; a light adds its irradiance times this
+//   luthier_bounded(radiance): a sum over lights within 0..65504, which half floats hold
+//   luthier_layer(material, index), luthier_layer_count(material): the layers as records, from the top
+//   luthier_lookup_T(tile, ...): a value of the table T, which is fresnel, distribution
+// wi points to the light and wo to the eye. Both are unit vectors in the local frame of the surface, away from it. +z is the normal, +x the
+// tangent. Values are 0 where either is not above the horizon.
 //
 // Registers, space0:
-//   t0 luthier_fresnel: Texture2D<float4>
-//   t1 luthier_distribution: Texture2D<float4>
+//   t0 luthier_fresnel: Texture2D<float4>, rgba16float, 128 x 3, filtered; 3 tiles of 128 x 1: cos_theta 0..1
+//   t1 luthier_distribution: Texture2D<float4>, r16float, 512 x 1024, filtered; 2 tiles of 512 x 512: theta_h 0..1.5707964 as u^8, alpha
+//     0.001..1 logarithmic
 //   s5 luthier_sampler: SamplerState, linear, clamp to edge
-//   t6 luthier_materials: ByteAddressBuffer, 33 float4
-//
-// Materials:
-//   0 varnished-gold, elek, 2 layers
+//   t6 luthier_materials: ByteAddressBuffer (a raw view), 33 float4
+// luthier_materials is materials.bin of the bake, byte for byte. Textures are the KTX2 files of the bake: one level, linear values, the
+// first row at coordinate 0. Filters clamp to the edge. Numbers from 16 up are yours.
 
 // One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
 struct LuthierLayer {
@@ -29,24 +37,24 @@ struct LuthierLayer {
     float inverse_eta;
     // Squared cosine of a refracted grazing direction, 1 - 1 / eta^2.
     float grazing_cos_sq;
-    // Tile of the Fresnel table.
+    // Tile in `luthier_fresnel`.
     float fresnel_tile;
-    // Tile of the distribution table.
+    // Tile in `luthier_distribution`.
     float distribution_tile;
 };
 
 // What the light has met on its way down and back up: directions, and sums over the layers so far.
 struct LuthierPath {
     // To the light, in the medium above the next layer.
-    float3 wi;
+    float3 wi_local;
     // To the eye, in the medium above the next layer.
-    float3 wo;
+    float3 wo_local;
     // Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
     float2 across;
     // Share of the light that comes down to the next layer and back out.
     float3 throughput;
     // f of the layers so far.
-    float3 reflected;
+    float3 total;
     // Whether any light reaches the next layer.
     bool open;
 };
@@ -139,21 +147,21 @@ float luthier_quarter_density(LuthierLayer layer, float3 bisector) {
 LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     LuthierPath next = path;
     next.open = false;
-    float2 cosines = float2(path.wi.z, path.wo.z);
+    float2 cosines = float2(path.wi_local.z, path.wo_local.z);
     float3 bisector = float3(path.across, cosines.x + cosines.y);
     float length_sq = dot(bisector.xy, bisector.xy) + (bisector.z * bisector.z);
     float secant_d = 2.0 * rsqrt(length_sq);
     float cos_theta_d = min((0.25 * length_sq) * secant_d, 1.0);
     float3 fresnel = luthier_fresnel_term(layer, cos_theta_d);
     float masking = min((bisector.z * min(cosines.x, cosines.y)) * (secant_d * secant_d), 1.0);
-    float shape = (luthier_quarter_density(layer, bisector) * masking) / (cosines.x * cosines.y);
-    next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
+    float geometry = (luthier_quarter_density(layer, bisector) * masking) / (cosines.x * cosines.y);
+    next.total = path.total + ((path.throughput * fresnel) * geometry);
     float2 bent = cosines * layer.inverse_eta;
     float2 cosines_sq = (bent * bent) + (layer.grazing_cos_sq).xx;
     float2 secants = rsqrt(cosines_sq);
     float2 refracted = cosines_sq * secants;
-    next.wi = float3(path.wi.xy * layer.inverse_eta, refracted.x);
-    next.wo = float3(path.wo.xy * layer.inverse_eta, refracted.y);
+    next.wi_local = float3(path.wi_local.xy * layer.inverse_eta, refracted.x);
+    next.wo_local = float3(path.wo_local.xy * layer.inverse_eta, refracted.y);
     next.across = path.across * layer.inverse_eta;
     next.open = min(cosines_sq.x, cosines_sq.y) > 0.0;
     float3 returned = (1.0).xxx - (masking * fresnel);
@@ -163,11 +171,11 @@ LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
 
 LuthierPath ConstructLuthierPath(float3 arg0, float3 arg1, float2 arg2, float3 arg3, float3 arg4, bool arg5) {
     LuthierPath ret = (LuthierPath)0;
-    ret.wi = arg0;
-    ret.wo = arg1;
+    ret.wi_local = arg0;
+    ret.wo_local = arg1;
     ret.across = arg2;
     ret.throughput = arg3;
-    ret.reflected = arg4;
+    ret.total = arg4;
     ret.open = arg5;
     return ret;
 }
@@ -181,7 +189,7 @@ float3 luthier_eval_elek(uint material, float3 wi, float3 wo) {
     if (path.open) {
         path = luthier_add_interface(path, luthier_layer(material, 1u));
     }
-    return wi.z * path.reflected;
+    return wi.z * path.total;
 }
 
 // f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away

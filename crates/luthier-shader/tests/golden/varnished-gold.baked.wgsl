@@ -1,18 +1,26 @@
+//
+// Materials, each a number and a constant:
+//   0 varnished-gold, LUTHIER_MATERIAL_VARNISHED_GOLD: elek, 2 layers
+//
 // Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
 // Fresnel reflectance and slope distribution are read from tables.
 //
-// Tables, in texels:
-//   fresnel       128 x 3 rgba16float, 3 tiles of 128 x 1; cos_theta 0..1
-//   distribution  512 x 1024 r16float, 2 tiles of 512 x 512; theta_h 0..1.5707964 as u^8, alpha 0.001..1 logarithmic
+// Functions:
+//   luthier_eval(material, wi, wo): f cos_theta_i, linear Rec.709; a light adds its irradiance times this
+//   luthier_bounded(radiance): a sum over lights within 0..65504, which half floats hold
+//   luthier_layer(material, index), luthier_layer_count(material): the layers as records, from the top
+//   luthier_lookup_T(tile, ...): a value of the table T, which is fresnel, distribution
+// wi points to the light and wo to the eye. Both are unit vectors in the local frame of the surface, away from it. +z is the normal, +x the
+// tangent. Values are 0 where either is not above the horizon.
 //
 // Bindings, group 0:
-//   0 luthier_fresnel: texture
-//   1 luthier_distribution: texture
+//   0 luthier_fresnel: texture_2d<f32>, rgba16float, 128 x 3, filtered; 3 tiles of 128 x 1: cos_theta 0..1
+//   1 luthier_distribution: texture_2d<f32>, r16float, 512 x 1024, filtered; 2 tiles of 512 x 512: theta_h 0..1.5707964 as u^8, alpha
+//     0.001..1 logarithmic
 //   5 luthier_sampler: sampler, linear, clamp to edge
 //   6 luthier_materials: storage buffer, 33 vec4
-//
-// Materials:
-//   0 varnished-gold, elek, 2 layers
+// luthier_materials is materials.bin of the bake, byte for byte. Textures are the KTX2 files of the bake: one level, linear values, the
+// first row at coordinate 0. Filters clamp to the edge. Numbers from 16 up are yours.
 
 const LUTHIER_MATERIAL_VARNISHED_GOLD: u32 = 0u;
 
@@ -61,9 +69,9 @@ struct LuthierLayer {
     inverse_eta: f32,
     /// Squared cosine of a refracted grazing direction, 1 - 1 / eta^2.
     grazing_cos_sq: f32,
-    /// Tile of the Fresnel table.
+    /// Tile in `luthier_fresnel`.
     fresnel_tile: f32,
-    /// Tile of the distribution table.
+    /// Tile in `luthier_distribution`.
     distribution_tile: f32,
 }
 
@@ -123,15 +131,15 @@ fn luthier_quarter_density(layer: LuthierLayer, bisector: vec3<f32>) -> f32 {
 /// What the light has met on its way down and back up: directions, and sums over the layers so far.
 struct LuthierPath {
     /// To the light, in the medium above the next layer.
-    wi: vec3<f32>,
+    wi_local: vec3<f32>,
     /// To the eye, in the medium above the next layer.
-    wo: vec3<f32>,
+    wo_local: vec3<f32>,
     /// Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
     across: vec2<f32>,
     /// Share of the light that comes down to the next layer and back out.
     throughput: vec3<f32>,
     /// f of the layers so far.
-    reflected: vec3<f32>,
+    total: vec3<f32>,
     /// Whether any light reaches the next layer.
     open: bool,
 }
@@ -142,7 +150,7 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     var next = path;
     next.open = false;
 
-    let cosines = vec2<f32>(path.wi.z, path.wo.z);
+    let cosines = vec2<f32>(path.wi_local.z, path.wo_local.z);
     let bisector = vec3<f32>(path.across, cosines.x + cosines.y);
     let length_sq = dot(bisector.xy, bisector.xy) + bisector.z * bisector.z;
     // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
@@ -151,16 +159,16 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     let fresnel = luthier_fresnel_term(layer, cos_theta_d);
     // G of V-cavities: 2 cos_theta_h / cos_theta_d times the lower cosine, at most 1.
     let masking = min(bisector.z * min(cosines.x, cosines.y) * (secant_d * secant_d), 1.0);
-    let shape = luthier_quarter_density(layer, bisector) * masking / (cosines.x * cosines.y);
-    next.reflected = path.reflected + path.throughput * fresnel * shape;
+    let geometry = luthier_quarter_density(layer, bisector) * masking / (cosines.x * cosines.y);
+    next.total = path.total + path.throughput * fresnel * geometry;
 
     // Refracted at the normal; the squared cosine does not cancel for an index near 1.
     let bent = cosines * layer.inverse_eta;
     let cosines_sq = bent * bent + layer.grazing_cos_sq;
     let secants = inverseSqrt(cosines_sq);
     let refracted = cosines_sq * secants;
-    next.wi = vec3<f32>(path.wi.xy * layer.inverse_eta, refracted.x);
-    next.wo = vec3<f32>(path.wo.xy * layer.inverse_eta, refracted.y);
+    next.wi_local = vec3<f32>(path.wi_local.xy * layer.inverse_eta, refracted.x);
+    next.wo_local = vec3<f32>(path.wo_local.xy * layer.inverse_eta, refracted.y);
     next.across = path.across * layer.inverse_eta;
     next.open = min(cosines_sq.x, cosines_sq.y) > 0.0;
     // (1 - F) down, (1 - F) up, and part of what the cavities block comes back: (1 - F) (1 - G + (1 - F) G).
@@ -179,7 +187,7 @@ fn luthier_eval_elek(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
     if path.open {
         path = luthier_add_interface(path, luthier_layer(material, 1u));
     }
-    return wi.z * path.reflected;
+    return wi.z * path.total;
 }
 
 /// f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away

@@ -1,12 +1,21 @@
+// Needs `precision highp float;` and `precision highp int;` above.
+//
+// Materials, each a number and a constant:
+//   0 varnished-gold, LUTHIER_MATERIAL_VARNISHED_GOLD: elek, 2 layers
+//
 // Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
 // No tables: Fresnel equations at three wavelengths, closed forms of D.
-// Needs `precision highp float;` and `precision highp int;` above.
+//
+// Functions:
+//   luthier_eval(material, wi, wo): f cos_theta_i, linear Rec.709; a light adds its irradiance times this
+//   luthier_bounded(radiance): a sum over lights within 0..65504, which half floats hold
+//   luthier_layer(material, index), luthier_layer_count(material): the layers as records, from the top
+// wi points to the light and wo to the eye. Both are unit vectors in the local frame of the surface, away from it. +z is the normal, +x the
+// tangent. Values are 0 where either is not above the horizon.
 //
 // Bindings, by name:
 //   luthier_materials: sampler2D, RGBA32F, 33 x 1, not filtered
-//
-// Materials:
-//   0 varnished-gold, elek, 2 layers
+// luthier_materials is materials.bin of the bake, byte for byte. Set each sampler2D to a texture unit.
 
 // One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
 struct LuthierLayer {
@@ -18,16 +27,16 @@ struct LuthierLayer {
     float falloff;
     // A quarter of the greatest D, 1 / (4 pi alpha^2).
     float peak;
-    // Index above over index below, for the refracted directions.
-    float inverse_eta;
-    // Squared cosine of a refracted grazing direction, 1 - 1 / eta^2.
-    float grazing_cos_sq;
     // Slope distribution: 0 Beckmann, 1 GGX.
     float distribution;
     // Real part of the index below, at three wavelengths.
     vec3 ior_n;
     // Imaginary part of it.
     vec3 ior_k;
+    // Index above over index below, for the refracted directions.
+    float inverse_eta;
+    // Squared cosine of a refracted grazing direction, 1 - 1 / eta^2.
+    float grazing_cos_sq;
 };
 
 // Complex numbers at three wavelengths.
@@ -39,15 +48,15 @@ struct LuthierComplex {
 // What the light has met on its way down and back up: directions, and sums over the layers so far.
 struct LuthierPath {
     // To the light, in the medium above the next layer.
-    vec3 wi;
+    vec3 wi_local;
     // To the eye, in the medium above the next layer.
-    vec3 wo;
+    vec3 wo_local;
     // Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
     vec2 across;
     // Share of the light that comes down to the next layer and back out.
     vec3 throughput;
     // f of the layers so far.
-    vec3 reflected;
+    vec3 total;
     // Whether any light reaches the next layer.
     bool open;
 };
@@ -80,7 +89,7 @@ uint luthier_layer_count(uint material) {
 
 // A layer of a material, counted from the top.
 LuthierLayer luthier_layer(uint material, uint index) {
-    LuthierLayer layer = LuthierLayer(0u, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec3(0.0), vec3(0.0));
+    LuthierLayer layer = LuthierLayer(0u, 0.0, 0.0, 0.0, 0.0, vec3(0.0), vec3(0.0), 0.0, 0.0);
     uint first = luthier_whole(luthier_word(luthier_header(material)).x) + (index * LUTHIER_LAYER_WORDS);
     vec4 head = luthier_word(first);
     vec4 base = luthier_word(first + 3u);
@@ -145,7 +154,7 @@ vec3 luthier_fresnel_term(LuthierLayer layer, float cos_theta_d) {
     return luthier_fresnel(layer.ior_n, layer.ior_k, cos_theta_d);
 }
 
-// pi alpha^2 D of a layer, in closed form, from squares of the half vector.
+// pi alpha^2 D of a layer, from squares of the half vector.
 float luthier_distribution_term(LuthierLayer layer, float z_sq, float across_sq) {
     float falloff = layer.falloff;
     if (layer.distribution > 0.5) {
@@ -166,21 +175,21 @@ float luthier_quarter_density(LuthierLayer layer, vec3 bisector) {
 LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     LuthierPath next = path;
     next.open = false;
-    vec2 cosines = vec2(path.wi.z, path.wo.z);
+    vec2 cosines = vec2(path.wi_local.z, path.wo_local.z);
     vec3 bisector = vec3(path.across, cosines.x + cosines.y);
     float length_sq = dot(bisector.xy, bisector.xy) + (bisector.z * bisector.z);
     float secant_d = 2.0 * inversesqrt(length_sq);
     float cos_theta_d = min((0.25 * length_sq) * secant_d, 1.0);
     vec3 fresnel = luthier_fresnel_term(layer, cos_theta_d);
     float masking = min((bisector.z * min(cosines.x, cosines.y)) * (secant_d * secant_d), 1.0);
-    float shape = (luthier_quarter_density(layer, bisector) * masking) / (cosines.x * cosines.y);
-    next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
+    float geometry = (luthier_quarter_density(layer, bisector) * masking) / (cosines.x * cosines.y);
+    next.total = path.total + ((path.throughput * fresnel) * geometry);
     vec2 bent = cosines * layer.inverse_eta;
     vec2 cosines_sq = (bent * bent) + vec2(layer.grazing_cos_sq);
     vec2 secants = inversesqrt(cosines_sq);
     vec2 refracted = cosines_sq * secants;
-    next.wi = vec3(path.wi.xy * layer.inverse_eta, refracted.x);
-    next.wo = vec3(path.wo.xy * layer.inverse_eta, refracted.y);
+    next.wi_local = vec3(path.wi_local.xy * layer.inverse_eta, refracted.x);
+    next.wo_local = vec3(path.wo_local.xy * layer.inverse_eta, refracted.y);
     next.across = path.across * layer.inverse_eta;
     next.open = min(cosines_sq.x, cosines_sq.y) > 0.0;
     vec3 returned = vec3(1.0) - (masking * fresnel);
@@ -197,7 +206,7 @@ vec3 luthier_eval_elek(uint material, vec3 wi, vec3 wo) {
     if (path.open) {
         path = luthier_add_interface(path, luthier_layer(material, 1u));
     }
-    return wi.z * path.reflected;
+    return wi.z * path.total;
 }
 
 // f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away

@@ -1,12 +1,21 @@
-// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
-// No tables: Fresnel equations at three wavelengths, closed forms of D.
 // Shader model 5.1. Checked by glslang, not by a compiler of Direct3D.
 //
-// Registers, space0:
-//   t6 luthier_materials: ByteAddressBuffer, 33 float4
+// Materials, each a number and a constant:
+//   0 varnished-gold, LUTHIER_MATERIAL_VARNISHED_GOLD: elek, 2 layers
 //
-// Materials:
-//   0 varnished-gold, elek, 2 layers
+// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
+// No tables: Fresnel equations at three wavelengths, closed forms of D.
+//
+// Functions:
+//   luthier_eval(material, wi, wo): f cos_theta_i, linear Rec.709; a light adds its irradiance times this
+//   luthier_bounded(radiance): a sum over lights within 0..65504, which half floats hold
+//   luthier_layer(material, index), luthier_layer_count(material): the layers as records, from the top
+// wi points to the light and wo to the eye. Both are unit vectors in the local frame of the surface, away from it. +z is the normal, +x the
+// tangent. Values are 0 where either is not above the horizon.
+//
+// Registers, space0:
+//   t6 luthier_materials: ByteAddressBuffer (a raw view), 33 float4
+// luthier_materials is materials.bin of the bake, byte for byte. Numbers from 16 up are yours.
 
 // One layer of a material. Indices are relative to the medium above it; tiles are -1 where there is none.
 struct LuthierLayer {
@@ -18,16 +27,16 @@ struct LuthierLayer {
     float falloff;
     // A quarter of the greatest D, 1 / (4 pi alpha^2).
     float peak;
-    // Index above over index below, for the refracted directions.
-    float inverse_eta;
-    // Squared cosine of a refracted grazing direction, 1 - 1 / eta^2.
-    float grazing_cos_sq;
     // Slope distribution: 0 Beckmann, 1 GGX.
     float distribution;
     // Real part of the index below, at three wavelengths.
     float3 ior_n;
     // Imaginary part of it.
     float3 ior_k;
+    // Index above over index below, for the refracted directions.
+    float inverse_eta;
+    // Squared cosine of a refracted grazing direction, 1 - 1 / eta^2.
+    float grazing_cos_sq;
 };
 
 // Complex numbers at three wavelengths.
@@ -39,15 +48,15 @@ struct LuthierComplex {
 // What the light has met on its way down and back up: directions, and sums over the layers so far.
 struct LuthierPath {
     // To the light, in the medium above the next layer.
-    float3 wi;
+    float3 wi_local;
     // To the eye, in the medium above the next layer.
-    float3 wo;
+    float3 wo_local;
     // Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
     float2 across;
     // Share of the light that comes down to the next layer and back out.
     float3 throughput;
     // f of the layers so far.
-    float3 reflected;
+    float3 total;
     // Whether any light reaches the next layer.
     bool open;
 };
@@ -147,7 +156,7 @@ float3 luthier_fresnel_term(LuthierLayer layer, float cos_theta_d) {
     return luthier_fresnel(layer.ior_n, layer.ior_k, cos_theta_d);
 }
 
-// pi alpha^2 D of a layer, in closed form, from squares of the half vector.
+// pi alpha^2 D of a layer, from squares of the half vector.
 float luthier_distribution_term(LuthierLayer layer, float z_sq, float across_sq) {
     float falloff = layer.falloff;
     if (layer.distribution > 0.5) {
@@ -168,21 +177,21 @@ float luthier_quarter_density(LuthierLayer layer, float3 bisector) {
 LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     LuthierPath next = path;
     next.open = false;
-    float2 cosines = float2(path.wi.z, path.wo.z);
+    float2 cosines = float2(path.wi_local.z, path.wo_local.z);
     float3 bisector = float3(path.across, cosines.x + cosines.y);
     float length_sq = dot(bisector.xy, bisector.xy) + (bisector.z * bisector.z);
     float secant_d = 2.0 * rsqrt(length_sq);
     float cos_theta_d = min((0.25 * length_sq) * secant_d, 1.0);
     float3 fresnel = luthier_fresnel_term(layer, cos_theta_d);
     float masking = min((bisector.z * min(cosines.x, cosines.y)) * (secant_d * secant_d), 1.0);
-    float shape = (luthier_quarter_density(layer, bisector) * masking) / (cosines.x * cosines.y);
-    next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
+    float geometry = (luthier_quarter_density(layer, bisector) * masking) / (cosines.x * cosines.y);
+    next.total = path.total + ((path.throughput * fresnel) * geometry);
     float2 bent = cosines * layer.inverse_eta;
     float2 cosines_sq = (bent * bent) + (layer.grazing_cos_sq).xx;
     float2 secants = rsqrt(cosines_sq);
     float2 refracted = cosines_sq * secants;
-    next.wi = float3(path.wi.xy * layer.inverse_eta, refracted.x);
-    next.wo = float3(path.wo.xy * layer.inverse_eta, refracted.y);
+    next.wi_local = float3(path.wi_local.xy * layer.inverse_eta, refracted.x);
+    next.wo_local = float3(path.wo_local.xy * layer.inverse_eta, refracted.y);
     next.across = path.across * layer.inverse_eta;
     next.open = min(cosines_sq.x, cosines_sq.y) > 0.0;
     float3 returned = (1.0).xxx - (masking * fresnel);
@@ -192,11 +201,11 @@ LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
 
 LuthierPath ConstructLuthierPath(float3 arg0, float3 arg1, float2 arg2, float3 arg3, float3 arg4, bool arg5) {
     LuthierPath ret = (LuthierPath)0;
-    ret.wi = arg0;
-    ret.wo = arg1;
+    ret.wi_local = arg0;
+    ret.wo_local = arg1;
     ret.across = arg2;
     ret.throughput = arg3;
-    ret.reflected = arg4;
+    ret.total = arg4;
     ret.open = arg5;
     return ret;
 }
@@ -210,7 +219,7 @@ float3 luthier_eval_elek(uint material, float3 wi, float3 wo) {
     if (path.open) {
         path = luthier_add_interface(path, luthier_layer(material, 1u));
     }
-    return wi.z * path.reflected;
+    return wi.z * path.total;
 }
 
 // f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away

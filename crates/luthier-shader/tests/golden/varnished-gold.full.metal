@@ -1,13 +1,22 @@
-// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
-// No tables: Fresnel equations at three wavelengths, closed forms of D.
 // Metal 2.0. Not checked by a Metal compiler.
 //
-// Bindings, by argument index of a complete shader. A function takes those that it reads, in this order, as its last
-// arguments:
-//   buffer(6) luthier_materials: device LuthierMaterials const&, 33 float4
+// Materials, each a number and a constant:
+//   0 varnished-gold, LUTHIER_MATERIAL_VARNISHED_GOLD: elek, 2 layers
 //
-// Materials:
-//   0 varnished-gold, elek, 2 layers
+// Model: elek (O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010).
+// No tables: Fresnel equations at three wavelengths, closed forms of D.
+//
+// Functions:
+//   luthier_eval(material, wi, wo): f cos_theta_i, linear Rec.709; a light adds its irradiance times this
+//   luthier_bounded(radiance): a sum over lights within 0..65504, which half floats hold
+//   luthier_layer(material, index), luthier_layer_count(material): the layers as records, from the top
+// wi points to the light and wo to the eye. Both are unit vectors in the local frame of the surface, away from it. +z is the normal, +x the
+// tangent. Values are 0 where either is not above the horizon.
+//
+// Bindings, by argument index of a complete shader:
+//   buffer(6) luthier_materials: device LuthierMaterials const&, 33 float4
+// A function takes those that it reads as its last arguments, in this order. luthier_materials is materials.bin of the bake, byte for byte.
+// Numbers from 16 up are yours.
 
 #include <metal_stdlib>
 #include <simd/simd.h>
@@ -28,17 +37,17 @@ struct LuthierLayer {
     float falloff;
     // A quarter of the greatest D, 1 / (4 pi alpha^2).
     float peak;
+    // Slope distribution: 0 Beckmann, 1 GGX.
+    float distribution;
+    char _pad5[12];
+    // Real part of the index below, at three wavelengths.
+    metal::float3 ior_n;
+    // Imaginary part of it.
+    metal::packed_float3 ior_k;
     // Index above over index below, for the refracted directions.
     float inverse_eta;
     // Squared cosine of a refracted grazing direction, 1 - 1 / eta^2.
     float grazing_cos_sq;
-    // Slope distribution: 0 Beckmann, 1 GGX.
-    float distribution;
-    char _pad7[4];
-    // Real part of the index below, at three wavelengths.
-    metal::float3 ior_n;
-    // Imaginary part of it.
-    metal::float3 ior_k;
 };
 
 // Complex numbers at three wavelengths.
@@ -50,16 +59,16 @@ struct LuthierComplex {
 // What the light has met on its way down and back up: directions, and sums over the layers so far.
 struct LuthierPath {
     // To the light, in the medium above the next layer.
-    metal::float3 wi;
+    metal::float3 wi_local;
     // To the eye, in the medium above the next layer.
-    metal::float3 wo;
+    metal::float3 wo_local;
     // Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
     metal::float2 across;
     char _pad3[8];
     // Share of the light that comes down to the next layer and back out.
     metal::float3 throughput;
     // f of the layers so far.
-    metal::packed_float3 reflected;
+    metal::packed_float3 total;
     // Whether any light reaches the next layer.
     bool open;
 };
@@ -150,7 +159,7 @@ metal::float3 luthier_fresnel_term(LuthierLayer layer, float cos_theta_d) {
     return luthier_fresnel(layer.ior_n, layer.ior_k, cos_theta_d);
 }
 
-// pi alpha^2 D of a layer, in closed form, from squares of the half vector.
+// pi alpha^2 D of a layer, from squares of the half vector.
 float luthier_distribution_term(LuthierLayer layer, float z_sq, float across_sq) {
     float falloff = layer.falloff;
     if (layer.distribution > 0.5) {
@@ -171,21 +180,21 @@ float luthier_quarter_density(LuthierLayer layer, metal::float3 bisector) {
 LuthierPath luthier_add_interface(LuthierPath path, LuthierLayer layer) {
     LuthierPath next = path;
     next.open = false;
-    metal::float2 cosines = metal::float2(path.wi.z, path.wo.z);
+    metal::float2 cosines = metal::float2(path.wi_local.z, path.wo_local.z);
     metal::float3 bisector = metal::float3(path.across, cosines.x + cosines.y);
     float length_sq = metal::dot(bisector.xy, bisector.xy) + (bisector.z * bisector.z);
     float secant_d = 2.0 * metal::rsqrt(length_sq);
     float cos_theta_d = metal::min((0.25 * length_sq) * secant_d, 1.0);
     metal::float3 fresnel = luthier_fresnel_term(layer, cos_theta_d);
     float masking = metal::min((bisector.z * metal::min(cosines.x, cosines.y)) * (secant_d * secant_d), 1.0);
-    float shape = (luthier_quarter_density(layer, bisector) * masking) / (cosines.x * cosines.y);
-    next.reflected = path.reflected + ((path.throughput * fresnel) * shape);
+    float geometry = (luthier_quarter_density(layer, bisector) * masking) / (cosines.x * cosines.y);
+    next.total = path.total + ((path.throughput * fresnel) * geometry);
     metal::float2 bent = cosines * layer.inverse_eta;
     metal::float2 cosines_sq = (bent * bent) + metal::float2(layer.grazing_cos_sq);
     metal::float2 secants = metal::rsqrt(cosines_sq);
     metal::float2 refracted = cosines_sq * secants;
-    next.wi = metal::float3(path.wi.xy * layer.inverse_eta, refracted.x);
-    next.wo = metal::float3(path.wo.xy * layer.inverse_eta, refracted.y);
+    next.wi_local = metal::float3(path.wi_local.xy * layer.inverse_eta, refracted.x);
+    next.wo_local = metal::float3(path.wo_local.xy * layer.inverse_eta, refracted.y);
     next.across = path.across * layer.inverse_eta;
     next.open = metal::min(cosines_sq.x, cosines_sq.y) > 0.0;
     metal::float3 returned = metal::float3(1.0) - (masking * fresnel);
@@ -207,7 +216,7 @@ metal::float3 luthier_eval_elek(
     if (path.open) {
         path = luthier_add_interface(path, luthier_layer(material, 1u, luthier_materials));
     }
-    return wi.z * path.reflected;
+    return wi.z * path.total;
 }
 
 // f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away

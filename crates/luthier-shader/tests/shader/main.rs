@@ -10,6 +10,7 @@ mod features;
 mod golden;
 mod judges;
 mod machine;
+mod manual;
 mod pages;
 mod paper;
 mod scenes;

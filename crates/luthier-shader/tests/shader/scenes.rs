@@ -193,6 +193,7 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
         ("belcour", vec![of(ShadingModel::Belcour, gold())]),
         ("belcour-base", vec![of(ShadingModel::Belcour, house())]),
         ("belcour-bare", vec![of(ShadingModel::Belcour, chalk())]),
+        ("belcour-chalk-and-metal", [chalk(), gold()].map(|m| of(ShadingModel::Belcour, m)).into()),
         (
             "belcour-coat",
             vec![of(ShadingModel::Belcour, material("varnish", &[with_escape(dielectric()), conductor()]))],

@@ -288,7 +288,7 @@ fn lobes_carry_no_more_than_arrives_and_all_of_it_on_a_white_base() {
             })
             .collect();
         let name = format!("luthier_{}", model.name());
-        let add = |i: u32| format!("path = {name}_add(path, luthier_layer(material, {i}u)); sum += path.lobe;");
+        let add = |i: u32| format!("path = {name}_add(path, luthier_layer(material, {i}u)); sum += path.lobe_energy;");
         let probe = format!(
             "fn probe(material: u32, cos_theta: f32) -> vec3<f32> {{ var path = {name}_start(cos_theta); \
              var sum = vec3<f32>(0.0); {} {} {} return sum; }}",

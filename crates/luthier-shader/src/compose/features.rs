@@ -1,0 +1,270 @@
+//! Features: the words that conditions in the modules may name.
+
+use std::collections::BTreeSet;
+
+use luthier_lut::TableKind;
+use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry, ShadingModel};
+
+use crate::{Form, MaterialSet};
+
+/// Features that the materials of a set use: the words that conditions in the modules may name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Features(BTreeSet<&'static str>);
+
+impl Features {
+    /// Every word there is, for the check that modules name no other.
+    #[cfg(test)]
+    pub(crate) const ALL: [&'static str; 43] = [
+        "absorption",
+        "anisotropic",
+        "bare",
+        "beckmann",
+        "below",
+        "chain",
+        "chain_diffuse",
+        "clamped",
+        "closed",
+        "conductor",
+        "diffuse",
+        "distribution",
+        "escape",
+        "fgd",
+        "film",
+        "film_table",
+        "flakes",
+        "fresnel",
+        "full",
+        "ggx",
+        "glitter",
+        "granier",
+        "granier_bare",
+        "granier_base",
+        "granier_film",
+        "granier_transparent",
+        "interface",
+        "microfacet_diffuse",
+        "mixed",
+        "oren_nayar",
+        "patina",
+        "phase",
+        "phong",
+        "place",
+        "schlick_base",
+        "smith",
+        "split_root",
+        "statistics",
+        "statistics_base",
+        "theta_axis",
+        "thickness",
+        "total_reflection",
+        "bilinear",
+    ];
+
+    pub(crate) fn of(set: &MaterialSet<'_>, form: Form) -> Self {
+        let mut names = BTreeSet::new();
+        for material in set.materials {
+            names.extend(of_model(material));
+            if material.varies() {
+                names.insert("place");
+            }
+            if material.constants.glitter.is_some() {
+                names.insert("glitter");
+            }
+        }
+        if [ShadingModel::Belcour, ShadingModel::Yamaguchi].into_iter().any(|model| has_base(set, model)) {
+            names.insert("statistics_base");
+        }
+        if set.models().any(|model| is_mixed(set, model)) {
+            names.insert("mixed");
+        }
+        if [ShadingModel::Elek, ShadingModel::WeidlichWilkie].into_iter().any(|model| ends_early(set, model)) {
+            names.insert("conductor");
+        }
+        if form == Form::Full {
+            names.insert("full");
+        }
+        for table in set.tables_read(form) {
+            names.insert(feature(table.kind));
+            if !table.format.is_filterable() {
+                names.insert("bilinear");
+            }
+        }
+        // Without a table, D is computed; so it is for layers without a tile.
+        let has_facets = names.contains("smith") || names.contains("chain") && names.contains("interface");
+        if form == Form::Full || has_facets && !names.contains("distribution") {
+            names.insert("closed");
+        }
+        // Slope parameters that vary may come in any order; those along two axes are one for Elek's model.
+        let has_elek = set.models().any(|model| model == ShadingModel::Elek);
+        if has_elek && names.contains("chain") && ["place", "anisotropic"].iter().any(|name| names.contains(name)) {
+            names.insert("clamped");
+        }
+        Self(names)
+    }
+
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.0.contains(name)
+    }
+
+    /// The features, and a word that holds for one module only.
+    pub(crate) fn with(&self, name: &'static str, holds: bool) -> Self {
+        let mut names = self.0.clone();
+        if holds {
+            names.insert(name);
+        }
+        Self(names)
+    }
+}
+
+/// The word for a table that is read; `film` is whether any layer has one.
+pub(crate) fn feature(table: TableKind) -> &'static str {
+    if table == TableKind::Film { "film_table" } else { table.name() }
+}
+
+/// The features of the layers that a material's model reads.
+fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
+    let mut names = BTreeSet::new();
+    let is_diffuse = |layer: &LayerRecord| layer.kind == LayerKind::Diffuse;
+    let layers = match material.model {
+        ShadingModel::Phong => {
+            names.insert("phong");
+            return names;
+        }
+        ShadingModel::Microfacet | ShadingModel::GranierHeidrich => &material.layers[..material.layers.len().min(1)],
+        ShadingModel::Elek | ShadingModel::WeidlichWilkie | ShadingModel::Belcour | ShadingModel::Yamaguchi => {
+            material.layers.as_slice()
+        }
+    };
+    let is_chain = matches!(material.model, ShadingModel::Elek | ShadingModel::WeidlichWilkie);
+    let bare = material.constants.patina.as_ref().filter(|_| is_chain).map(|patina| &patina.bare);
+    for layer in layers.iter().chain(bare) {
+        if is_diffuse(layer) && material.model == ShadingModel::GranierHeidrich {
+            continue;
+        }
+        if is_diffuse(layer) {
+            names.insert("diffuse");
+            if layer.sigma != 0.0 {
+                names.insert("oren_nayar");
+            }
+            continue;
+        }
+        names.insert("interface");
+        names.insert(layer.distribution.name());
+        names.insert(if layer.film_ior_n[0] > 0.0 { "film" } else { "bare" });
+        if layer.critical_cot_sq > 0.0 {
+            names.insert("total_reflection");
+        }
+        if (is_chain || material.model == ShadingModel::Microfacet) && layer.distribution_tile.is_none() {
+            names.insert("closed");
+        }
+        if layer.kind == LayerKind::Conductor && !is_chain {
+            names.insert("conductor");
+        }
+        let is_isotropic = matches!(material.model, ShadingModel::Elek | ShadingModel::Belcour);
+        if !is_isotropic && layer.alpha_xy[0] != layer.alpha_xy[1] {
+            names.insert("anisotropic");
+        }
+    }
+    for pair in layers.windows(2) {
+        if pair[0].kind == LayerKind::Dielectric {
+            names.insert("below");
+            if pair[0].optical_depth.iter().any(|&depth| depth != 0.0) {
+                names.insert("absorption");
+            }
+        }
+    }
+    let (has_interface, has_diffuse) = (names.contains("interface"), names.contains("diffuse"));
+    match material.model {
+        ShadingModel::Microfacet if has_interface => names.insert("smith"),
+        ShadingModel::Microfacet => names.insert("microfacet_diffuse"),
+        // Beside a coat it is a step of the chain; alone in its set it needs none.
+        ShadingModel::Elek | ShadingModel::WeidlichWilkie if !has_interface => names.insert("chain_diffuse"),
+        ShadingModel::Elek | ShadingModel::WeidlichWilkie => {
+            if has_diffuse {
+                names.insert("chain_diffuse");
+            }
+            if material.model == ShadingModel::Elek && gets_smoother(layers) {
+                names.insert("clamped");
+            }
+            // Other models have no layer below the first interface that flakes could tilt or patina cover.
+            if material.constants.flakes.is_some() && names.contains("below") {
+                names.insert("flakes");
+            }
+            if material.constants.patina.is_some() {
+                names.insert("patina");
+            }
+            names.insert("chain")
+        }
+        ShadingModel::Belcour | ShadingModel::Yamaguchi if has_interface => names.insert("statistics"),
+        ShadingModel::GranierHeidrich => {
+            let first = &material.layers[0];
+            let has_film = first.film_ior_n[0] > 0.0;
+            if has_film {
+                names.insert("granier_film");
+            }
+            match first.kind {
+                _ if has_film => names.insert("granier_transparent"),
+                LayerKind::Dielectric => names.insert("granier_transparent"),
+                LayerKind::Conductor => names.insert("granier_bare"),
+                LayerKind::Diffuse => false,
+            };
+            if material.layers.last().is_some_and(is_diffuse) {
+                names.insert("granier_base");
+            }
+            names.insert("granier")
+        }
+        _ => false,
+    };
+    names
+}
+
+/// Whether an interface is smoother than one above it.
+fn gets_smoother(layers: &[LayerRecord]) -> bool {
+    let interfaces = || layers.iter().filter(|layer| layer.kind != LayerKind::Diffuse);
+    interfaces().zip(interfaces().skip(1)).any(|(above, below)| below.alpha < above.alpha)
+}
+
+/// Whether a conductor of a chain lies where another stack goes on: elsewhere what would follow it is not there.
+fn ends_early(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
+    let materials = || set.materials.iter().filter(|m| m.model == model);
+    let depth = materials().map(|m| m.layers.len()).max().unwrap_or(0);
+    let is_conductor = |layer: &LayerRecord| layer.kind == LayerKind::Conductor;
+    materials().any(|m| m.layers.iter().take(depth.saturating_sub(1)).any(is_conductor))
+}
+
+/// Whether a model of statistics meets diffuse bases, those of materials without an interface too, in a set that has interfaces.
+fn has_base(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
+    let layers = || set.materials.iter().filter(|m| m.model == model).flat_map(|m| &m.layers);
+    let is_diffuse = |layer: &LayerRecord| layer.kind == LayerKind::Diffuse;
+    layers().any(is_diffuse) && !layers().all(is_diffuse)
+}
+
+/// Whether the layers at some depth of the materials of a model are diffuse bases and interfaces.
+fn is_mixed(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
+    let layers = || set.materials.iter().filter(|m| m.model == model).map(|m| &m.layers);
+    let depth = match model {
+        ShadingModel::Phong => 0,
+        ShadingModel::Microfacet => 1,
+        _ => layers().map(Vec::len).max().unwrap_or(0),
+    };
+    (0..depth).any(|i| {
+        let kinds = || layers().filter_map(|layers| layers.get(i)).map(|layer| layer.kind == LayerKind::Diffuse);
+        kinds().any(|diffuse| diffuse) && kinds().any(|diffuse| !diffuse)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compose::blocks::{features_named, modules, prune};
+
+    #[test]
+    fn modules_have_whole_blocks_and_name_no_unknown_feature() {
+        for (path, module) in modules() {
+            prune(&module, &Features(BTreeSet::new()));
+            for word in features_named(&module) {
+                assert!(Features::ALL.contains(&word), "`{word}` in {}", path.display());
+            }
+        }
+    }
+}

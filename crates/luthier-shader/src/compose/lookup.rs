@@ -1,0 +1,196 @@
+//! Look-ups: the texel position of a value, as WGSL for one layout.
+
+use std::fmt::Write as _;
+
+use luthier_lut::{Axis, Encoding, Mapping, RowBase, SchlickBase, TableKind};
+
+use crate::compose::blocks::prune;
+use crate::compose::features::Features;
+use crate::{ShaderError, TableFace};
+
+/// WGSL of a table: its texture, its sizes, its look-up.
+pub(crate) fn lookup(table: &TableFace, features: &Features) -> Result<String, ShaderError> {
+    let kind = table.kind;
+    let (module, has_rows, x_names): (_, _, &[&str]) = match kind {
+        TableKind::Fresnel => (include_str!("../wgsl/tables/fresnel.wgsl"), false, &["cos_theta", "theta"]),
+        TableKind::Distribution => {
+            (include_str!("../wgsl/tables/distribution.wgsl"), true, &["cos_theta_h", "theta_h"])
+        }
+        TableKind::Fgd => (include_str!("../wgsl/tables/fgd.wgsl"), true, &["cos_theta", "theta"]),
+        TableKind::Phase => (include_str!("../wgsl/tables/phase.wgsl"), false, &["s"]),
+        TableKind::Thickness => (include_str!("../wgsl/tables/thickness.wgsl"), true, &["u"]),
+        TableKind::Film => (include_str!("../wgsl/tables/film.wgsl"), true, &["cos_theta"]),
+        TableKind::Escape => (include_str!("../wgsl/tables/escape.wgsl"), true, &["cos_theta"]),
+    };
+    let layout = &table.layout;
+    let fail = |reason: String| ShaderError::Layout { table: kind, reason };
+    if layout.columns == 0 || layout.tiles == 0 {
+        return Err(fail("it has no tiles".to_owned()));
+    }
+    if layout.y.is_some() != has_rows {
+        let expected = if has_rows { "two axes are" } else { "one axis is" };
+        return Err(fail(format!("{expected} expected")));
+    }
+    let y_name = match kind {
+        TableKind::Thickness => "v",
+        TableKind::Film => "fraction",
+        _ => "alpha",
+    };
+    check_axis(&layout.x, x_names, kind)?;
+    if let Some(y) = &layout.y {
+        check_axis(y, &[y_name], kind)?;
+    }
+    let is_periodic = |axis: &Axis| axis.mapping == Mapping::Periodic;
+    if layout.apron == 0 && (is_periodic(&layout.x) || layout.y.as_ref().is_some_and(is_periodic)) {
+        return Err(fail("a periodic axis needs an apron".to_owned()));
+    }
+
+    let has_base = layout.base == RowBase::Schlick;
+    if has_base
+        && (kind != TableKind::Fresnel || layout.x.quantity != "cos_theta" || table.format.unorm_max().is_none())
+    {
+        return Err(fail("only unorm rows of reflectance over cos_theta are added to Schlick's form".to_owned()));
+    }
+
+    let has_angle = layout.x.quantity.starts_with("theta");
+    let mut out = String::new();
+    let is_split = Encoding::of(kind, table.format) == Encoding::SplitSixteenthRoot;
+    let features = features.with("theta_axis", has_angle).with("split_root", is_split);
+    let features = features.with("schlick_base", has_base);
+    for line in prune(module, &features).lines() {
+        if let Some(value) = place(line, "let x = $x(") {
+            let unit = if is_whole(table) { 1.0 / f64::from(layout.size()[0]) } else { 1.0 };
+            node_index(&mut out, "x", &layout.x, value, unit);
+        } else if let (Some(value), Some(y)) = (place(line, "let y = $y("), &layout.y) {
+            node_index(&mut out, "y", y, value, 1.0);
+        } else if line.contains("$position") {
+            position(&mut out, table);
+        } else {
+            let line = line.replace("$nodes", &layout.x.size.to_string());
+            let line = line.replace("$span", &float(SchlickBase::span(table.format)));
+            let _ = writeln!(out, "{}", line.replace("$read", &read(table)));
+        }
+    }
+    Ok(out)
+}
+
+/// The argument of a place that stands alone on its line.
+fn place<'l>(line: &'l str, opening: &str) -> Option<&'l str> {
+    line.trim().strip_prefix(opening)?.strip_suffix(");")
+}
+
+fn check_axis(axis: &Axis, names: &[&str], table: TableKind) -> Result<(), ShaderError> {
+    let fail = |reason: String| Err(ShaderError::Layout { table, reason });
+    if !names.contains(&axis.quantity.as_str()) {
+        return fail(format!("its axis is `{}`, known here: {}", axis.quantity, names.join(", ")));
+    }
+    let is_range = axis.min.is_finite() && axis.max.is_finite() && axis.min < axis.max;
+    let is_mapped = match axis.mapping {
+        Mapping::Linear | Mapping::Periodic => true,
+        Mapping::Power { exponent } => exponent.is_finite() && exponent > 0.0,
+        Mapping::Rational { bend } => bend.is_finite() && bend > 0.0,
+        Mapping::Logarithmic => axis.min > 0.0,
+    };
+    if axis.size < 2 || !is_range || !is_mapped {
+        return fail(format!("its axis `{}` has no valid range, size or mapping", axis.quantity));
+    }
+    Ok(())
+}
+
+/// Whether positions of a table are parts of the atlas, as samplers want them, from the start: one product and one sum across. Down the
+/// atlas they are quotients all the same, and across where it has columns: a quotient times its divisor is mostly exact, and
+/// tiles of unlike content do not bleed into each other by a rounding error. Other positions are texels: nodes are also read one
+/// by one.
+fn is_whole(table: &TableFace) -> bool {
+    table.format.is_filterable() && table.layout.base == RowBase::Zero && table.layout.columns == 1
+}
+
+/// `let position = ...;`: where node (x, y) of a tile is in the atlas; x counts as [`is_whole`] says.
+fn position(out: &mut String, table: &TableFace) {
+    let layout = &table.layout;
+    let half = f64::from(layout.apron) + 0.5;
+    let [[width, height], [tile_width, tile_height]] = [layout.size(), layout.tile_size()];
+    let y = if layout.y.is_some() { format!("y + {}", float(half)) } else { "0.5".to_owned() };
+    let down = match (layout.tiles, &layout.y) {
+        (1, _) => y.clone(),
+        (_, None) => "tile + 0.5".to_owned(),
+        _ => format!("tile * {tile_height}.0 + {y}"),
+    };
+    let _ = match (is_whole(table), layout.columns) {
+        (true, _) => {
+            let down = if height == 1 { down } else { format!("({down}) / {height}.0") };
+            writeln!(out, "    let position = vec2<f32>(x + {}, {down});", float(half / f64::from(width)))
+        }
+        (false, 1) => writeln!(out, "    let position = vec2<f32>(x + {}, {down});", float(half)),
+        (false, columns) => writeln!(
+            out,
+            "    let row = floor((tile + 0.5) / {columns}.0);\n    \
+             let column = tile - row * {columns}.0;\n    \
+             let position = vec2<f32>(column * {tile_width}.0 + x + {}, row * {tile_height}.0 + {y});",
+            float(half)
+        ),
+    };
+}
+
+fn read(table: &TableFace) -> String {
+    let name = table.kind.name();
+    let [width, height] = table.layout.size();
+    match (table.format.is_filterable(), is_whole(table)) {
+        (true, true) => format!("textureSampleLevel(luthier_{name}, luthier_sampler, position, 0.0)"),
+        (true, false) => format!(
+            "textureSampleLevel(luthier_{name}, luthier_sampler, position / vec2<f32>({width}.0, {height}.0), 0.0)"
+        ),
+        (false, _) => format!("luthier_bilinear(luthier_{name}, position)"),
+    }
+}
+
+/// `let NAME = ...;`: the fractional node index of a value, the WGSL of [`Axis::index`], times `unit`.
+fn node_index(out: &mut String, name: &str, axis: &Axis, value: &str, unit: f64) {
+    let steps = f64::from(axis.intervals()) * unit;
+    let range = axis.max - axis.min;
+    let shifted = if axis.min == 0.0 { value.to_owned() } else { format!("({value} - {})", float(axis.min)) };
+    let t = if range == 1.0 { shifted } else { format!("{shifted} / {}", float(range)) };
+    let t = t.strip_prefix('(').and_then(|t| t.strip_suffix(')')).map_or(t.clone(), str::to_owned);
+    let index = match axis.mapping {
+        Mapping::Linear => format!("saturate({t})"),
+        Mapping::Periodic => format!("fract({t})"),
+        Mapping::Logarithmic => {
+            let scale = libm::log2(axis.max / axis.min);
+            format!("saturate(log2(max({value}, {min}) / {min}) / {})", float(scale), min = float(axis.min))
+        }
+        Mapping::Rational { bend } => {
+            let _ = writeln!(out, "    let {name}_t = saturate({t});");
+            let _ = writeln!(
+                out,
+                "    let {name} = {name}_t / ({name}_t + {}) * {};",
+                float(bend),
+                float((1.0 + bend) * steps)
+            );
+            return;
+        }
+        Mapping::Power { exponent } => {
+            if let Some(roots) = halvings(exponent) {
+                format!("{}saturate({t}){}", "sqrt(".repeat(roots), ")".repeat(roots))
+            } else if let Some(squares) = halvings(1.0 / exponent) {
+                let _ = writeln!(out, "    var {name}_power = saturate({t});");
+                for _ in 0..squares {
+                    let _ = writeln!(out, "    {name}_power *= {name}_power;");
+                }
+                format!("{name}_power")
+            } else {
+                format!("pow(saturate({t}), {})", float(1.0 / exponent))
+            }
+        }
+    };
+    let _ = writeln!(out, "    let {name} = {index} * {};", float(steps));
+}
+
+/// How often a power of two above 1 (up to 2^8) is halved to give 1.
+fn halvings(exponent: f64) -> Option<usize> {
+    (1..=8).find(|&n| exponent == f64::from(1u32 << n))
+}
+
+/// A number as a WGSL literal that reads back as the same f32.
+fn float(value: f64) -> String {
+    format!("{:?}", value as f32)
+}

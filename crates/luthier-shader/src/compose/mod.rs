@@ -1,0 +1,249 @@
+//! Composition: the modules that a set needs, one function per model in use, and `luthier_eval` that chooses among them.
+
+mod blocks;
+mod chain;
+mod features;
+mod lookup;
+mod members;
+mod statistics;
+mod words;
+
+use std::fmt::Write as _;
+
+use luthier_lut::TableKind;
+use luthier_manifest::{MaterialTexture, SIDE, ShadingModel, material_buffer};
+
+use self::blocks::prune;
+use self::features::{Features, feature};
+use self::lookup::lookup;
+use self::members::without_missing;
+use self::words::numbered;
+use crate::{Form, MaterialSet, ShaderError, bindings};
+
+/// Where the material buffer lives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Buffer {
+    /// Storage, of any length.
+    Storage,
+    /// Storage of the length of the set, for a language that wants it stated.
+    Sized,
+    /// A texture of whole words, for a language without storage.
+    Texture,
+    /// No buffer: the numbers of one material are constants.
+    Constant,
+}
+
+/// WGSL of a set, without the header comment.
+pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Result<String, ShaderError> {
+    set.check(form)?;
+    let features = Features::of(set, form);
+    let has = |name| features.has(name);
+    let mut parts = vec![constants(set)?, declarations(set, form, buffer)];
+    for table in set.tables_read(form) {
+        parts.push(lookup(table, &features)?);
+    }
+    // D is a function of the layers' own slope parameters; the statistics have lobes of others.
+    let facets = has("chain") || has("smith");
+    let modules = [
+        (has("bilinear"), include_str!("../wgsl/tables/bilinear.wgsl")),
+        (true, include_str!("../wgsl/layer.wgsl")),
+        (has("place"), include_str!("../wgsl/surface/place.wgsl")),
+        (has("flakes") || has("glitter"), include_str!("../wgsl/surface/hash.wgsl")),
+        (has("flakes"), include_str!("../wgsl/surface/flakes.wgsl")),
+        (has("patina"), include_str!("../wgsl/surface/patina.wgsl")),
+        (has("glitter"), include_str!("../wgsl/surface/glitter.wgsl")),
+        (has("phong") || has("granier") && has("interface"), include_str!("../wgsl/interface/power_lobe.wgsl")),
+        (has("oren_nayar"), include_str!("../wgsl/base/oren_nayar.wgsl")),
+        (has("diffuse") && !has("oren_nayar"), include_str!("../wgsl/base/lambert.wgsl")),
+        (has("full") && has("interface"), include_str!("../wgsl/interface/complex.wgsl")),
+        (has("full") && has("bare"), include_str!("../wgsl/interface/fresnel.wgsl")),
+        (has("full") && has("film"), include_str!("../wgsl/interface/film.wgsl")),
+        (has("closed") && has("beckmann") && facets, include_str!("../wgsl/interface/beckmann.wgsl")),
+        (has("closed") && has("ggx") && facets, include_str!("../wgsl/interface/ggx.wgsl")),
+        (has("full") && has("interface"), include_str!("../wgsl/interface/full_terms.wgsl")),
+        (has("closed") && facets, include_str!("../wgsl/interface/closed_terms.wgsl")),
+        (!has("full") && (facets || has("granier_bare")), include_str!("../wgsl/interface/baked_terms.wgsl")),
+        (has("smith") || has("chain"), include_str!("../wgsl/interface/slopes.wgsl")),
+        (has("smith"), include_str!("../wgsl/interface/smith.wgsl")),
+        (has("chain"), include_str!("../wgsl/models/path.wgsl")),
+        (has("statistics"), include_str!("../wgsl/models/statistics.wgsl")),
+    ];
+    parts.extend(modules.iter().filter(|(used, _)| *used).map(|(_, module)| text(module, &features)));
+    for model in set.models() {
+        parts.extend(self::model(set, model, &features));
+    }
+    parts.push(eval(set, &features));
+    parts.push(include_str!("../wgsl/bounded.wgsl").to_owned());
+    if parts.iter().any(|part| part.contains("LUTHIER_PI")) {
+        parts.insert(2, include_str!("../wgsl/pi.wgsl").to_owned());
+    }
+    parts.retain(|part| !part.is_empty());
+    let wgsl = without_missing(&parts.join("\n"));
+    Ok(match buffer {
+        Buffer::Constant => wgsl.replace("    return material * LUTHIER_MATERIAL_WORDS;\n", "    return 0u;\n"),
+        Buffer::Texture => read_from_texture(&wgsl),
+        Buffer::Storage | Buffer::Sized => wgsl,
+    })
+}
+
+/// The lines of a module that a set keeps. Models take a `LuthierPlace` where a material of the set varies over its surface:
+/// `$place_parameter` declares it, `$place_argument` hands it on, and `$layer(` reads a layer as it is there. `$diffuse(` is the BRDF of a
+/// base, which directions decide where one is rough. `$tiles` are the members of a layer that point into tables. `$distribution_read`
+/// is pi alpha^2 D from the table, which is the distribution's term where no layer has it computed.
+pub(crate) fn text(module: &str, features: &Features) -> String {
+    let [parameter, argument, layer] = if features.has("place") {
+        ["place: LuthierPlace, ", "place, ", "luthier_layer_at(place, "]
+    } else {
+        ["", "", "luthier_layer("]
+    };
+    let text = prune(&module.replace("    $tiles\n", &tiles(features)), features);
+    let text =
+        text.replace("$place_parameter ", parameter).replace("$place_argument ", argument).replace("$layer(", layer);
+    let term = if features.has("closed") { "luthier_distribution_read" } else { "luthier_distribution_term" };
+    let text = numbered(&text).replace("$distribution_read", term);
+    if features.has("oren_nayar") {
+        return text.replace("$diffuse(", "luthier_diffuse(");
+    }
+    let mut parts = text.split("$diffuse(layer");
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.filter_map(|part| part.split_once(')')).fold(first, |out, (_, after)| out + "luthier_diffuse(layer)" + after)
+}
+
+/// The members of a layer that say where in the tables it is.
+fn tiles(features: &Features) -> String {
+    let is_read = |kind: &TableKind| features.has(feature(*kind));
+    let names = TableKind::ALL.into_iter().filter(is_read).map(TableKind::name);
+    names.map(|name| format!("    /// Tile in `luthier_{name}`.\n    {name}_tile: f32,\n")).collect()
+}
+
+/// The modules of a model, `luthier_eval_<model>` last.
+fn model(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec<String> {
+    let module = |text| self::text(text, features);
+    match model {
+        ShadingModel::Elek if features.has("clamped") => vec![
+            module(include_str!("../wgsl/models/elek.wgsl")),
+            module(&chain::eval(set, model, "luthier_elek_interface", features)),
+        ],
+        // Elek's model is the same chain where no interface is smoother than one above it.
+        ShadingModel::Elek | ShadingModel::WeidlichWilkie => {
+            vec![module(&chain::eval(set, model, "luthier_add_interface", features))]
+        }
+        ShadingModel::GranierHeidrich => vec![module(include_str!("../wgsl/models/granier_heidrich.wgsl"))],
+        ShadingModel::Phong => vec![module(include_str!("../wgsl/models/phong.wgsl"))],
+        ShadingModel::Microfacet => vec![module(include_str!("../wgsl/models/microfacet.wgsl"))],
+        ShadingModel::Belcour | ShadingModel::Yamaguchi => statistics::modules(set, model, features),
+    }
+}
+
+/// Numbers of the materials, by name, and of the models if there are several.
+fn constants(set: &MaterialSet<'_>) -> Result<String, ShaderError> {
+    let mut out = String::new();
+    for (i, constant) in set.constants()?.iter().enumerate() {
+        let _ = writeln!(out, "const {constant}: u32 = {i}u;");
+    }
+    Ok(out)
+}
+
+fn declarations(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> String {
+    let mut out = String::new();
+    for entry in bindings(set, form) {
+        let (space, resource) = match (entry.resource.as_str(), buffer) {
+            ("buffer", Buffer::Storage) => ("<storage, read>", "array<vec4<f32>>".to_owned()),
+            ("buffer", Buffer::Constant) => {
+                out.push_str(&numbers(set));
+                continue;
+            }
+            ("buffer", Buffer::Sized) => ("<storage, read>", format!("array<vec4<f32>, {}>", set.words())),
+            ("buffer", Buffer::Texture) => ("", "texture_2d<f32>".to_owned()),
+            _ => ("", entry.resource),
+        };
+        let _ = writeln!(out, "@group(0) @binding({}) var{space} {}: {resource};", entry.binding, entry.name);
+    }
+    if buffer == Buffer::Texture {
+        out.push_str(&word(set));
+    }
+    out
+}
+
+/// The function that reads a word where the material buffer is a texture.
+fn word(set: &MaterialSet<'_>) -> String {
+    let texel = match MaterialTexture::of(set.words()).height {
+        1 => "i32(index), 0".to_owned(),
+        _ => format!("i32(index & {}u), i32(index >> {}u)", SIDE - 1, SIDE.ilog2()),
+    };
+    format!(
+        "\n/// A word of the material buffer, which is a texture.\nfn luthier_word(index: u32) -> vec4<f32> {{\n    \
+         return textureLoad(luthier_materials, vec2<i32>({texel}), 0);\n}}\n"
+    )
+}
+
+/// The modules, which index the material buffer, with calls of [`word`] instead.
+fn read_from_texture(wgsl: &str) -> String {
+    let mut out = String::with_capacity(wgsl.len());
+    let mut rest = wgsl;
+    // No index holds another.
+    while let Some((before, (index, after))) =
+        rest.split_once("luthier_materials[").and_then(|(before, rest)| Some((before, rest.split_once(']')?)))
+    {
+        out.push_str(&format!("{before}luthier_word({index})"));
+        rest = after;
+    }
+    out + rest
+}
+
+/// The words of the material buffer as a constant.
+fn numbers(set: &MaterialSet<'_>) -> String {
+    let words = material_buffer(set.materials);
+    let mut out = format!("const luthier_materials = array<vec4<f32>, {}>(\n", words.len());
+    for [x, y, z, w] in words {
+        let _ = writeln!(out, "    vec4<f32>({x:?}, {y:?}, {z:?}, {w:?}),");
+    }
+    out.push_str(");\n");
+    out
+}
+
+/// The functions that choose the model of a material: `luthier_eval`, and `luthier_eval_at` where surfaces vary.
+fn eval(set: &MaterialSet<'_>, features: &Features) -> String {
+    const SUMMARY: &str = "/// f cos_theta_i, RGB, of a material for light from wi seen from wo: unit, in the local frame (+z is the normal), away\n\
+         /// from the surface. Zero when either is not above the horizon. See `luthier_bounded` for the range.\n";
+    let guard = "    if min(wi.z, wo.z) <= 0.0 {\n        return vec3<f32>(0.0);\n    }\n";
+    let mut body = String::from(guard);
+    let turned = features.has("place");
+    if turned {
+        body.push_str(
+            "    let wi_here = luthier_local(place.normal, wi);\n    let wo_here = luthier_local(place.normal, wo);\n",
+        );
+        body.push_str(&guard.replace("wi.z", "wi_here.z").replace("wo.z", "wo_here.z"));
+    }
+    let call = |model: ShadingModel| {
+        let name = function(model);
+        let arguments = if turned { "place, material, wi_here, wo_here" } else { "material, wi, wo" };
+        format!("{name}({arguments})")
+    };
+    let models: Vec<ShadingModel> = set.models().collect();
+    if let [first, others @ ..] = models.as_slice() {
+        if !others.is_empty() {
+            body.push_str("    let model = luthier_whole(luthier_materials[luthier_header(material)].z);\n");
+        }
+        for &other in others {
+            let (number, call) = (other.number(), call(other));
+            let _ = writeln!(body, "    if model == {number}u {{\n        return {call};\n    }}");
+        }
+        let _ = writeln!(body, "    return {};", call(*first));
+    }
+    let parameters = "material: u32, wi: vec3<f32>, wo: vec3<f32>";
+    if turned {
+        format!(
+            "{SUMMARY}fn luthier_eval_at(place: LuthierPlace, {parameters}) -> vec3<f32> {{\n{body}}}\n\n\
+             /// f cos_theta_i of a material, RGB, at a place without textures: `luthier_eval_at` there.\n\
+             fn luthier_eval({parameters}) -> vec3<f32> {{\n    return luthier_eval_at(luthier_place(), material, wi, wo);\n}}\n"
+        )
+    } else {
+        format!("{SUMMARY}fn luthier_eval({parameters}) -> vec3<f32> {{\n{body}}}\n")
+    }
+}
+
+/// The function of a model.
+pub(crate) fn function(model: ShadingModel) -> String {
+    format!("luthier_eval_{}", model.name().replace('-', "_"))
+}

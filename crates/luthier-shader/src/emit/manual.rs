@@ -1,0 +1,260 @@
+//! The comment at the top of a text: its manual, for a reader who has no other page.
+
+use std::fmt::Write as _;
+
+use luthier_lut::{Axis, Mapping, TableKind};
+use luthier_manifest::{BindingEntry, MaterialTexture, ShadingModel};
+
+use super::Part;
+use crate::{Form, MaterialSet, RESERVED_BINDINGS, ShaderError, Target, bindings};
+
+/// Longest line of prose.
+const WIDTH: usize = 140;
+/// Materials that are listed one by one; of more, the first and the last are named.
+const LISTED: usize = 6;
+
+/// Functions of the face, by their calls, and what they give.
+const FUNCTIONS: [(&str, &str); 10] = [
+    ("luthier_eval(material, wi, wo)", "f cos_theta_i, linear Rec.709; a light adds its irradiance times this"),
+    ("luthier_bounded(radiance)", "a sum over lights within 0..65504, which half floats hold"),
+    ("luthier_eval_at(place, material, wi, wo)", "luthier_eval at a place of a surface that varies"),
+    ("luthier_place()", "a place without textures; what yours say goes into its members"),
+    ("luthier_flake_normal(material, uv, distance)", "flake_normal of a place at a distance from the eye"),
+    ("luthier_flake_tilt(material, flake, distance)", "flake_normal for the normal of a flake in a texture"),
+    ("luthier_patina_amount(material, map_value)", "patina of a place for the value of a texture"),
+    ("luthier_glitter_normal(material, uv)", "normal of a place"),
+    ("luthier_film_place(place, material, uv)", "the place with a film as thick as its table says"),
+    ("luthier_layer(material, index), luthier_layer_count(material)", "the layers as records, from the top"),
+];
+
+/// The manual of a text, which was made of this WGSL.
+pub(super) fn manual(
+    set: &MaterialSet<'_>,
+    form: Form,
+    target: Target,
+    part: Part,
+    wgsl: &str,
+) -> Result<String, ShaderError> {
+    let version = env!("CARGO_PKG_VERSION");
+    let title = format!("luthier {version}, form {form}, {target}. Generated: bake again instead of editing.");
+    let sections = [
+        std::iter::once(title).chain(note(target, part)).collect(),
+        materials(set, part)?,
+        models(set, form),
+        functions(set, form, target, part, wgsl),
+        resources(set, form, target, part),
+    ];
+    let mut out = String::new();
+    for section in sections {
+        out.push_str(if out.is_empty() { "" } else { "//\n" });
+        section.iter().for_each(|text| comment(&mut out, text));
+    }
+    Ok(out)
+}
+
+/// A text as lines of a comment; entries of lists begin with two spaces, and go on below with four.
+fn comment(out: &mut String, text: &str) {
+    let indent = if text.starts_with("  ") { "  " } else { "" };
+    let mut line = format!("//{indent}");
+    for word in text.trim_start().split(' ') {
+        if line.len() + word.len() >= WIDTH {
+            let _ = writeln!(out, "{line}");
+            line = format!("//{indent}{indent}");
+        }
+        let _ = write!(line, " {word}");
+    }
+    let _ = writeln!(out, "{line}");
+}
+
+fn materials(set: &MaterialSet<'_>, part: Part) -> Result<Vec<String>, ShaderError> {
+    let constants = set.constants()?;
+    let mut texts = Vec::new();
+    match (set.materials, constants.as_slice()) {
+        ([first, .., last], [constant, ..]) if constants.len() > LISTED => {
+            let (count, end) = (constants.len(), constants.len() - 1);
+            let (first, last) = (&first.name, &last.name);
+            texts.push(format!("Materials: {count}, from 0 ({first}) to {end} ({last})."));
+            texts.push(format!("The number of each is a constant, as {constant} is."));
+        }
+        (materials, constants) => {
+            texts.push("Materials, each a number and a constant:".to_owned());
+            texts.extend(constants.iter().zip(materials).enumerate().map(|(i, (constant, material))| {
+                let (model, layers) = (material.model.name(), counted(material.layers.len() as u32, "layer"));
+                format!("  {i} {}, {constant}: {model}, {layers}", material.name)
+            }));
+        }
+    }
+    if part == Part::Constant {
+        texts.push("What the material is made of is in the code. Functions do not look at its number.".to_owned());
+    }
+    Ok(texts)
+}
+
+fn models(set: &MaterialSet<'_>, form: Form) -> Vec<String> {
+    let titles: Vec<&str> = set.models().map(ShadingModel::title).collect();
+    let plural = if titles.len() == 1 { "" } else { "s" };
+    let mut texts = vec![format!("Model{plural}: {}.", titles.join("; "))];
+    let reads = |kind| set.tables_read(form).any(|table| table.kind == kind);
+    let terms = match form {
+        Form::Full => "No tables: Fresnel equations at three wavelengths, closed forms of D.",
+        Form::Baked if !reads(TableKind::Fresnel) => "",
+        Form::Baked if reads(TableKind::Distribution) => {
+            "Fresnel reflectance and slope distribution are read from tables."
+        }
+        Form::Baked => "Fresnel reflectance is read from tables; closed forms of D.",
+    };
+    let is_statistical = |model| matches!(model, ShadingModel::Belcour | ShadingModel::Yamaguchi);
+    let statistics = match form {
+        _ if !set.models().any(is_statistical) => "",
+        Form::Baked => {
+            "belcour, yamaguchi: energies and total reflection are read from tables, lobes are closed forms of GGX."
+        }
+        Form::Full => {
+            "belcour, yamaguchi: facets count as level in energies, and no part of a lobe is totally reflected. Albedos of coated \
+             metals are up to 0.3 too high."
+        }
+    };
+    texts.extend([terms, statistics].iter().filter(|text| !text.is_empty()).map(|text| (*text).to_owned()));
+    texts
+}
+
+fn functions(set: &MaterialSet<'_>, form: Form, target: Target, part: Part, wgsl: &str) -> Vec<String> {
+    let is_there = |call: &str| call.split('(').next().is_some_and(|name| wgsl.contains(&format!("fn {name}(")));
+    let there = FUNCTIONS.iter().filter(|(call, _)| is_there(call));
+    let mut texts = vec!["Functions:".to_owned()];
+    texts.extend(there.map(|(call, gives)| format!("  {call}: {gives}")));
+    let tables: Vec<&str> = set.tables_read(form).map(|table| table.kind.name()).collect();
+    if !tables.is_empty() {
+        texts.push(format!("  luthier_lookup_T(tile, ...): a value of the table T, which is {}", tables.join(", ")));
+    }
+    if part == Part::Complete {
+        let name = if target == Target::Msl { "main_" } else { "main" };
+        texts.push(format!(
+            "  {name}: a fragment shader, whose output is luthier_bounded of luthier_eval, with alpha 1"
+        ));
+        texts.push("Inputs 0 and 1 are wi and wo. Input 2 is the number of the material, not interpolated.".to_owned());
+    }
+    texts.push(
+        "wi points to the light and wo to the eye. Both are unit vectors in the local frame of the surface, away from it. +z is the \
+         normal, +x the tangent. Values are 0 where either is not above the horizon."
+            .to_owned(),
+    );
+    texts
+}
+
+/// Each binding with its number, name, kind, format and filter, and how to fill them.
+fn resources(set: &MaterialSet<'_>, form: Form, target: Target, part: Part) -> Vec<String> {
+    let has_buffer = part != Part::Constant;
+    let is_numbered = target != Target::GlslEs300;
+    let mut entries = bindings(set, form);
+    entries.retain(|entry| match entry.resource.as_str() {
+        "buffer" => has_buffer,
+        // In GLSL a texture and its sampler are one.
+        "sampler" => !matches!(target, Target::Glsl450 | Target::GlslEs300),
+        _ => true,
+    });
+    if entries.is_empty() {
+        return vec!["Bindings: none.".to_owned()];
+    }
+    // Arguments of functions in MSL come in the order of the declarations.
+    if target != Target::Msl {
+        entries.sort_by_key(|entry| entry.binding);
+    }
+    let heading = match target {
+        Target::Wgsl | Target::Glsl450 | Target::SpirV => "Bindings, group 0:",
+        Target::GlslEs300 => "Bindings, by name:",
+        Target::Hlsl => "Registers, space0:",
+        Target::Msl => "Bindings, by argument index of a complete shader:",
+    };
+    let mut texts = vec![heading.to_owned()];
+    texts.extend(entries.iter().map(|entry| format!("  {}", resource(set, form, target, entry))));
+    let mut how = Vec::new();
+    if target == Target::Msl {
+        how.push("A function takes those that it reads as its last arguments, in this order.".to_owned());
+    }
+    if has_buffer {
+        how.push("luthier_materials is materials.bin of the bake, byte for byte.".to_owned());
+    }
+    if set.tables_read(form).next().is_some() {
+        how.push(
+            "Textures are the KTX2 files of the bake: one level, linear values, the first row at coordinate 0."
+                .to_owned(),
+        );
+        how.push("Filters clamp to the edge.".to_owned());
+    }
+    how.push(match is_numbered {
+        true => format!("Numbers from {RESERVED_BINDINGS} up are yours."),
+        false => "Set each sampler2D to a texture unit.".to_owned(),
+    });
+    texts.push(how.join(" "));
+    texts
+}
+
+/// A binding in the words of a language.
+fn resource(set: &MaterialSet<'_>, form: Form, target: Target, entry: &BindingEntry) -> String {
+    let BindingEntry { binding, name, resource } = entry;
+    let words = set.words();
+    let kind = match (resource.as_str(), target) {
+        ("buffer", Target::Wgsl | Target::SpirV) => format!("storage buffer, {words} vec4"),
+        ("buffer", Target::Glsl450) => format!("storage block LuthierMaterials (std430), {words} vec4"),
+        ("buffer", Target::GlslEs300) => {
+            let MaterialTexture { width, height } = MaterialTexture::of(words);
+            format!("sampler2D, RGBA32F, {width} x {height}, not filtered")
+        }
+        ("buffer", Target::Hlsl) => format!("ByteAddressBuffer (a raw view), {words} float4"),
+        ("buffer", Target::Msl) => format!("device LuthierMaterials const&, {words} float4"),
+        ("sampler", Target::Hlsl) => "SamplerState, linear, clamp to edge".to_owned(),
+        ("sampler", _) => "sampler, linear, clamp to edge".to_owned(),
+        (_, Target::Wgsl | Target::SpirV) => "texture_2d<f32>".to_owned(),
+        (_, Target::Glsl450 | Target::GlslEs300) => "sampler2D".to_owned(),
+        (_, Target::Hlsl) => "Texture2D<float4>".to_owned(),
+        (_, Target::Msl) => "texture2d<float>".to_owned(),
+    };
+    let place = match (target, resource.as_str()) {
+        (Target::GlslEs300, _) => String::new(),
+        (Target::Hlsl, "sampler") => format!("s{binding} "),
+        (Target::Hlsl, _) => format!("t{binding} "),
+        (Target::Msl, "sampler" | "buffer") => format!("{resource}({binding}) "),
+        (Target::Msl, _) => format!("texture({binding}) "),
+        _ => format!("{binding} "),
+    };
+    let mut text = format!("{place}{name}: {kind}");
+    for table in set.tables_read(form).filter(|table| table.kind.binding() == *binding) {
+        let ([width, height], [across, down]) = (table.layout.size(), table.layout.tile_size());
+        let filter = if table.format.is_filterable() { "filtered" } else { "not filtered" };
+        let axes: Vec<String> = std::iter::once(&table.layout.x).chain(&table.layout.y).map(axis).collect();
+        let (format, tiles, axes) = (table.format, counted(table.layout.tiles, "tile"), axes.join(", "));
+        let _ = write!(text, ", {format}, {width} x {height}, {filter}; {tiles} of {across} x {down}: {axes}");
+    }
+    text
+}
+
+/// What a language asks for, and what nothing has checked.
+fn note(target: Target, part: Part) -> Option<String> {
+    let note = match target {
+        Target::GlslEs300 if part != Part::Complete => {
+            "Needs `precision highp float;` and `precision highp int;` above."
+        }
+        Target::Hlsl => "Shader model 5.1. Checked by glslang, not by a compiler of Direct3D.",
+        Target::Msl => "Metal 2.0. Not checked by a Metal compiler.",
+        _ => return None,
+    };
+    Some(note.to_owned())
+}
+
+/// `1 layer`, `2 layers`.
+fn counted(count: u32, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+}
+
+/// `cos_theta 0..1 as u^2`.
+fn axis(axis: &Axis) -> String {
+    let mapping = match axis.mapping {
+        Mapping::Linear => String::new(),
+        Mapping::Power { exponent } => format!(" as u^{exponent}"),
+        Mapping::Rational { bend } => format!(" bent by {bend}"),
+        Mapping::Logarithmic => " logarithmic".to_owned(),
+        Mapping::Periodic => " repeating".to_owned(),
+    };
+    format!("{} {}..{}{mapping}", axis.quantity, axis.min as f32, axis.max as f32)
+}

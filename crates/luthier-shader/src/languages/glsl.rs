@@ -1,0 +1,92 @@
+//! GLSL of a composed module: naga's output, with our names, comments and no entry point.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use luthier_lut::TableKind;
+use naga::back::glsl::{Options, PipelineOptions, ReflectionInfo, Version, Writer, WriterFlags};
+use naga::proc::BoundsCheckPolicies;
+use naga::{GlobalVariable, Handle, Module, ResourceBinding, ShaderStage};
+
+use crate::languages::text::{layout, rename};
+use crate::validate::module;
+use crate::{Form, MaterialSet, ShaderError, Target, bindings};
+
+/// naga writes GLSL for an entry point only; this one is cut off again.
+const ENTRY: &str = "luthier_entry";
+/// Name of the block of the material buffer.
+const BLOCK: &str = "LuthierMaterials";
+
+/// Functions, blocks and uniforms in GLSL, without `#version`, precision and `main`.
+pub(crate) fn from_wgsl(wgsl: &str, set: &MaterialSet<'_>, form: Form, target: Target) -> Result<String, ShaderError> {
+    let (module, info) = module(&format!("{wgsl}\n{}", entry_point(set, form)))?;
+    let version = if target == Target::GlslEs300 { Version::new_gles(300) } else { Version::Desktop(450) };
+    let slot = |binding: u32| (ResourceBinding { group: 0, binding }, binding as u8);
+    let options = Options {
+        version,
+        writer_flags: WriterFlags::INCLUDE_UNUSED_ITEMS,
+        binding_map: bindings(set, form).iter().map(|e| slot(e.binding)).collect(),
+        zero_initialize_workgroup_memory: false,
+    };
+    let pipeline =
+        PipelineOptions { shader_stage: ShaderStage::Fragment, entry_point: ENTRY.to_owned(), multiview: None };
+    let mut text = String::new();
+    let refused = |e: naga::back::glsl::Error| ShaderError::untranslatable(target, e);
+    let mut writer =
+        Writer::new(&mut text, &module, &info, &options, &pipeline, BoundsCheckPolicies::default()).map_err(refused)?;
+    let names = names(&module, &writer.write().map_err(refused)?);
+    let body = body(&text).ok_or_else(|| ShaderError::untranslatable(target, "no entry point"))?;
+    let body = rename(body, |word| names.get(word).map(String::as_str));
+    if body.contains("_group_0_") {
+        return Err(ShaderError::untranslatable(target, "a binding without a name"));
+    }
+    Ok(layout(&body, &module, wgsl))
+}
+
+/// An entry point that uses every binding, so that naga reports the name it gives to each.
+fn entry_point(set: &MaterialSet<'_>, form: Form) -> String {
+    let mut out = format!("@fragment fn {ENTRY}() {{\n");
+    out.push_str("    _ = luthier_eval(0u, vec3<f32>(), vec3<f32>());\n");
+    for table in set.tables_read(form) {
+        let arguments = match table.kind {
+            TableKind::Fresnel | TableKind::Phase => "0.0, 0.0",
+            TableKind::Distribution => "0.0, 0.0, 0.0, 0.0",
+            TableKind::Fgd | TableKind::Film | TableKind::Escape => "0.0, 0.0, 0.0",
+            TableKind::Thickness => "0.0, vec2<f32>()",
+        };
+        let _ = writeln!(out, "    _ = luthier_lookup_{}({arguments});", table.kind.name());
+    }
+    out.push_str("}\n");
+    out
+}
+
+/// Map from naga's names of bindings and blocks to ours.
+fn names(module: &Module, reflection: &ReflectionInfo) -> BTreeMap<String, String> {
+    let global = |handle: Handle<GlobalVariable>| module.global_variables[handle].name.clone().unwrap_or_default();
+    let mut names = BTreeMap::new();
+    for (name, mapping) in &reflection.texture_mapping {
+        names.insert(name.clone(), global(mapping.texture));
+    }
+    for (&handle, block) in &reflection.uniforms {
+        names.insert(block.clone(), BLOCK.to_owned());
+        if let Some(at) = &module.global_variables[handle].binding {
+            names.insert(format!("_group_{}_binding_{}_fs", at.group, at.binding), global(handle));
+        }
+    }
+    names
+}
+
+/// The text between the precision statements and the entry point.
+fn body(text: &str) -> Option<&str> {
+    let end = text.find("\nvoid main()")?;
+    let mut start = 0;
+    for line in text[..end].split_inclusive('\n') {
+        // Storage blocks need no extension in 450.
+        let is_header = line.starts_with('#') || line.starts_with("precision ") || line.trim().is_empty();
+        if !is_header {
+            break;
+        }
+        start += line.len();
+    }
+    Some(&text[start..end])
+}

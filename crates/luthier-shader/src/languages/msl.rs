@@ -1,0 +1,99 @@
+//! Metal Shading Language of a composed module: naga's output, with our names and comments.
+//!
+//! Nothing here can compile it.
+
+use naga::ResourceBinding;
+use naga::back::msl::{BindSamplerTarget, BindTarget, EntryPointResources, Options, PipelineOptions, write_string};
+
+use crate::languages::text::{helper, layout, rename};
+use crate::validate::module;
+use crate::{Form, MaterialSet, ShaderError, Target, bindings};
+
+/// Name of the type of the material buffer.
+const BUFFER: &str = "LuthierMaterials";
+/// Longest line that a list of parameters is joined into.
+const WIDTH: usize = 120;
+
+/// The module in MSL 2.0. Argument indices of entry points are binding numbers.
+pub(crate) fn from_wgsl(wgsl: &str, set: &MaterialSet<'_>, form: Form) -> Result<String, ShaderError> {
+    let (module, info) = module(wgsl)?;
+    let resources =
+        EntryPointResources { resources: bindings(set, form).iter().map(slot).collect(), ..Default::default() };
+    let options = Options {
+        lang_version: (2, 0),
+        per_entry_point_map: module.entry_points.iter().map(|e| (e.name.clone(), resources.clone())).collect(),
+        fake_missing_bindings: false,
+        ..Options::default()
+    };
+    let refused = |e: &dyn ToString| ShaderError::untranslatable(Target::Msl, e.to_string());
+    let (text, written) =
+        write_string(&module, &info, &options, &PipelineOptions::default()).map_err(|e| refused(&e))?;
+    for name in written.entry_point_names {
+        name.map_err(|e| refused(&e))?;
+    }
+    let text = without_end_padding(&text.replace(", metal::access::sample>", ">"));
+    let text = rename(text.trim_start_matches(|c| c != '#'), helper);
+    let buffer = text.split_once(" const& luthier_materials").and_then(|(before, _)| before.rsplit(' ').next());
+    let body = rename(&text, |word| (Some(word) == buffer).then_some(BUFFER));
+    if body.to_ascii_lowercase().contains("naga") {
+        return Err(refused(&"a name of naga's is left"));
+    }
+    Ok(layout(&joined(&body), &module, wgsl))
+}
+
+/// Where an entry point finds a binding.
+fn slot(entry: &luthier_manifest::BindingEntry) -> (ResourceBinding, BindTarget) {
+    let at = entry.binding as u8;
+    let target = match entry.resource.as_str() {
+        "buffer" => BindTarget { buffer: Some(at), ..BindTarget::default() },
+        "sampler" => BindTarget { sampler: Some(BindSamplerTarget::Resource(at)), ..BindTarget::default() },
+        _ => BindTarget { texture: Some(at), ..BindTarget::default() },
+    };
+    (ResourceBinding { group: 0, binding: entry.binding }, target)
+}
+
+/// The text without padding at the end of structures: no buffer holds them, and no initialiser names it.
+fn without_end_padding(text: &str) -> String {
+    let lines: Vec<&str> = text.lines().collect();
+    let is_end_padding = |i: usize| lines[i].starts_with("    char _pad") && lines.get(i + 1) == Some(&"};");
+    (0..lines.len()).filter(|&i| !is_end_padding(i)).map(|i| format!("{}\n", lines[i])).collect()
+}
+
+/// Heads of functions on one line where it is not too long.
+fn joined(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once("(\n    ") {
+        let head = before.rsplit('\n').next().unwrap_or_default();
+        out.push_str(before);
+        rest = after;
+        let end = if head.starts_with(' ') { None } else { after.split_once("\n) {\n") };
+        match end.map(|(list, tail)| (list.replace("\n    ", " "), tail)) {
+            Some((list, tail)) if !list.contains('\n') && head.len() + list.len() + 4 <= WIDTH => {
+                out.push_str(&format!("({list}) {{\n"));
+                rest = tail;
+            }
+            _ => out.push_str("(\n    "),
+        }
+    }
+    out + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn short_heads_are_joined() {
+        let long = format!("float f(\n    float {},\n    float b\n) {{\n    return b;\n}}\n", "a".repeat(WIDTH));
+        assert_eq!(joined(&long), long);
+        let short = "int g(\n    int a,\n    int b\n) {\n    return a;\n}\n";
+        assert_eq!(joined(&(long.clone() + short)), long + "int g(int a, int b) {\n    return a;\n}\n");
+    }
+
+    #[test]
+    fn only_padding_at_the_end_goes() {
+        let text = "struct A {\n    float a;\n    char _pad1[12];\n    float b;\n    char _pad2[15];\n};\n";
+        assert_eq!(without_end_padding(text), "struct A {\n    float a;\n    char _pad1[12];\n    float b;\n};\n");
+    }
+}

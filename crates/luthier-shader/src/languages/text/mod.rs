@@ -1,0 +1,78 @@
+//! The text that naga writes, made readable again: our names and comments, and the order of the WGSL.
+
+mod comments;
+mod tidy;
+
+use std::collections::BTreeSet;
+
+use naga::Module;
+
+use self::comments::Comments;
+use self::tidy::tidy;
+pub(crate) use self::tidy::{rename, words};
+
+/// Our name for a helper function of naga's, which does in another language what WGSL promises.
+pub(crate) fn helper(word: &str) -> Option<String> {
+    let name = word.strip_prefix("naga_").or_else(|| word.strip_prefix("Naga"))?;
+    Some(format!("luthier_wgsl_{name}"))
+}
+
+/// The declarations one by one: comments of the WGSL put back, functions tidied, blank lines between unlike things.
+pub(crate) fn layout(body: &str, module: &Module, wgsl: &str) -> String {
+    let comments = Comments::of(wgsl);
+    let globals: BTreeSet<&str> = module
+        .functions
+        .iter()
+        .filter_map(|(_, f)| f.name.as_deref())
+        .chain(module.constants.iter().filter_map(|(_, c)| c.name.as_deref()))
+        .chain(module.global_variables.iter().filter_map(|(_, v)| v.name.as_deref()))
+        .chain(module.types.iter().filter_map(|(_, t)| t.name.as_deref()))
+        .collect();
+    let mut out = String::with_capacity(body.len() * 2);
+    let mut last = String::new();
+    for declaration in declarations(body) {
+        let first = declaration.lines().next().unwrap_or_default();
+        let kind =
+            if first.contains(": register(") { "binding" } else { first.split([' ', '(']).next().unwrap_or_default() };
+        if !out.is_empty() && (kind != last || declaration.contains('\n')) {
+            out.push('\n');
+        }
+        kind.clone_into(&mut last);
+        if kind == "struct" {
+            out.push_str(&comments.on_structure(&declaration));
+        } else if declaration.contains('\n') {
+            let name = first.split('(').next().and_then(|head| head.rsplit(' ').next()).unwrap_or_default();
+            comments.write(&mut out, name, "");
+            // An entry point is `main_` where no function may be `main`.
+            let entry = module.entry_points.iter().find(|e| e.name == name.trim_end_matches('_')).map(|e| &e.function);
+            let function = module.functions.iter().map(|(_, f)| f).find(|f| f.name.as_deref() == Some(name)).or(entry);
+            match function {
+                Some(function) => out.push_str(&tidy(&declaration, function, &globals)),
+                None => out.push_str(&declaration),
+            }
+        } else {
+            out.push_str(&declaration);
+        }
+        if !out.ends_with('\n') {
+            out.push('\n');
+        }
+    }
+    out
+}
+
+/// The declarations at file level, in order: single lines, structures and functions.
+fn declarations(body: &str) -> Vec<String> {
+    let mut out: Vec<String> = Vec::new();
+    let mut is_open = false;
+    for line in body.lines().filter(|line| !line.is_empty()) {
+        match out.last_mut() {
+            Some(declaration) if is_open => {
+                declaration.push('\n');
+                declaration.push_str(line);
+            }
+            _ => out.push(line.to_owned()),
+        }
+        is_open = if is_open { !line.starts_with('}') } else { line.ends_with(['{', '(']) };
+    }
+    out
+}

@@ -1,0 +1,297 @@
+//! naga's temporaries and numbered names, made readable again.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use naga::{Block, Function, Statement};
+
+/// A function with the names that WGSL gave to its values, as far as they clash with nothing; without temporaries that
+/// are used once, on the next line; without brackets around whole expressions and arguments.
+///
+/// Relies on what holds for the modules here: functions have no side effects, and there are no loops.
+pub(super) fn tidy(text: &str, function: &Function, globals: &BTreeSet<&str>) -> String {
+    let mut names: BTreeMap<String, String> = BTreeMap::new();
+    let mut taken: BTreeSet<String> = local_words(text).map(str::to_owned).collect();
+    let mut wanted: Vec<(String, String)> = Vec::new();
+    calls(&function.body, &mut |index, result| {
+        if let Some(name) = function.named_expressions.get(&result) {
+            wanted.push((format!("_e{index}"), name.clone()));
+        }
+    });
+    wanted.extend(local_words(text).filter_map(|word| Some((word.to_owned(), unnumbered(word)?.to_owned()))));
+    for (from, to) in wanted {
+        if names.contains_key(&from) || !taken.contains(&from) {
+            continue;
+        }
+        if !taken.contains(&to) && !globals.contains(to.as_str()) && !RESERVED.contains(&to.as_str()) {
+            taken.insert(to.clone());
+            names.insert(from, to);
+        }
+    }
+    let renamed = rename(text, |word| names.get(word).map(String::as_str));
+    let lines = declared_late(without_temporaries(renamed.lines().map(str::to_owned).collect()));
+    lines.iter().map(|line| unbracketed(line) + "\n").collect()
+}
+
+/// The text with some of its words replaced; members (after a dot) are left alone.
+pub(crate) fn rename<N: AsRef<str>>(text: &str, name: impl Fn(&str) -> Option<N>) -> String {
+    let mut out = String::with_capacity(text.len());
+    for word in words(text) {
+        let is_member = out.ends_with('.');
+        match name(word).filter(|_| !is_member) {
+            Some(name) => out.push_str(name.as_ref()),
+            None => out.push_str(word),
+        }
+    }
+    out
+}
+
+/// A text cut into words (identifiers and numbers) and what lies between them; nothing is dropped.
+pub(crate) fn words(text: &str) -> impl Iterator<Item = &str> {
+    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let mut rest = text;
+    std::iter::from_fn(move || {
+        let first = rest.chars().next()?;
+        let end = rest.find(|c| is_word(c) != is_word(first)).unwrap_or(rest.len());
+        let (word, tail) = rest.split_at(end);
+        rest = tail;
+        Some(word)
+    })
+}
+
+/// The identifiers of a function that are not members.
+fn local_words(text: &str) -> impl Iterator<Item = &str> {
+    let mut is_member = false;
+    words(text).filter(move |word| {
+        let is_identifier = word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
+        let keep = is_identifier && !is_member;
+        is_member = word.ends_with('.');
+        keep
+    })
+}
+
+/// Visits the results of all calls, with the number that naga gives them.
+fn calls(block: &Block, visit: &mut impl FnMut(usize, naga::Handle<naga::Expression>)) {
+    for statement in block.iter() {
+        match statement {
+            Statement::Call { result: Some(result), .. } => visit(result.index(), *result),
+            Statement::Block(inner) => calls(inner, visit),
+            Statement::If { accept, reject, .. } => {
+                calls(accept, visit);
+                calls(reject, visit);
+            }
+            _ => {}
+        }
+    }
+}
+
+/// `name` of `name_3`, as naga numbers names that it has seen before.
+fn unnumbered(word: &str) -> Option<&str> {
+    let (name, number) = word.rsplit_once('_')?;
+    let is_numbered = !number.is_empty() && number.chars().all(|c| c.is_ascii_digit());
+    (is_numbered && name.ends_with(|c: char| c.is_ascii_alphabetic())).then_some(name)
+}
+
+/// Names that WGSL allows and another language keeps for itself: those that a shader writer might well give to a value.
+const RESERVED: [&str; 47] = [
+    "active",
+    "asm",
+    "attribute",
+    "buffer",
+    "centroid",
+    "char",
+    "common",
+    "constant",
+    "device",
+    "double",
+    "filter",
+    "fixed",
+    "flat",
+    "fragment",
+    "half",
+    "highp",
+    "in",
+    "inline",
+    "inout",
+    "input",
+    "kernel",
+    "line",
+    "linear",
+    "long",
+    "lowp",
+    "matrix",
+    "metal",
+    "out",
+    "output",
+    "partition",
+    "pass",
+    "patch",
+    "point",
+    "precise",
+    "sample",
+    "sampler",
+    "shared",
+    "short",
+    "smooth",
+    "string",
+    "superp",
+    "technique",
+    "texture",
+    "triangle",
+    "varying",
+    "vector",
+    "vertex",
+];
+
+/// Puts `TYPE _eN = VALUE;` into the next line where that is the only place that reads it.
+fn without_temporaries(mut lines: Vec<String>) -> Vec<String> {
+    for i in (0..lines.len().saturating_sub(1)).rev() {
+        let Some((name, value)) = temporary(&lines[i]).map(|(name, value)| (name.to_owned(), value.to_owned())) else {
+            continue;
+        };
+        let uses = |line: &String| words(line).filter(|word| *word == name).count();
+        if uses(&lines[i + 1]) == 1 && lines.iter().map(uses).sum::<usize>() == 2 {
+            let value = if is_compound(&value) { format!("({value})") } else { value };
+            lines[i + 1] = rename(&lines[i + 1], |word| (word == name).then_some(value.as_str()));
+            lines.remove(i);
+        }
+    }
+    lines
+}
+
+/// Name and value of a line that declares a temporary of naga's.
+fn temporary(line: &str) -> Option<(&str, &str)> {
+    let (declared, value) = line.trim_start().strip_suffix(';')?.split_once(" = ")?;
+    let name = declared.split_once(' ')?.1;
+    name.strip_prefix("_e")?.parse::<usize>().ok()?;
+    Some((name, value))
+}
+
+/// Whether a value has an operator outside all brackets.
+fn is_compound(value: &str) -> bool {
+    let mut depth = 0;
+    value.chars().any(|c| {
+        match c {
+            '(' | '[' | '{' => depth += 1,
+            ')' | ']' | '}' => depth -= 1,
+            _ => {}
+        }
+        depth == 0 && c == ' '
+    })
+}
+
+/// Declares a variable where it is first given a value, if that is at the outer level: naga declares all at the top.
+fn declared_late(mut lines: Vec<String>) -> Vec<String> {
+    let mut i = 1;
+    while i < lines.len() {
+        let found = late_declaration(&lines, i);
+        if let Some((first, line)) = found {
+            lines[first] = line;
+            lines.remove(i);
+        } else {
+            i += 1;
+        }
+    }
+    lines
+}
+
+/// The line that could declare in place of a declaration in line `i`, and its new text.
+fn late_declaration(lines: &[String], i: usize) -> Option<(usize, String)> {
+    let (declared, _) = lines[i].strip_suffix(';')?.split_once(" = ")?;
+    let (kind, name) = declared.trim_start().split_once(' ')?;
+    let mentions = |line: &str| words(line).any(|word| word == name);
+    let first = (i + 1..lines.len()).find(|&j| mentions(&lines[j]))?;
+    let value = lines[first].strip_prefix("    ")?.strip_prefix(name)?.strip_prefix(" = ")?;
+    (!mentions(value)).then(|| (first, format!("    {kind} {name} = {value}")))
+}
+
+/// A line without brackets that enclose a whole argument, index, condition or value.
+fn unbracketed(line: &str) -> String {
+    let bytes = line.as_bytes();
+    let mut open = Vec::new();
+    let mut dropped = BTreeSet::new();
+    for (end, &byte) in bytes.iter().enumerate() {
+        match byte {
+            b'(' => open.push(end),
+            b')' => {
+                let Some(start) = open.pop() else { return line.to_owned() };
+                let (before, after) = (&line[..start], bytes.get(end + 1));
+                let is_argument = before.ends_with(['(', '[']) || before.ends_with(", ");
+                let is_value = before.ends_with(" = ") || before.ends_with("return ");
+                let is_argument_end = matches!(after, Some(b')' | b']' | b','));
+                if (is_argument && is_argument_end) || (is_value && after == Some(&b';')) {
+                    dropped.extend([start, end]);
+                }
+            }
+            _ => {}
+        }
+    }
+    line.char_indices().filter(|(i, _)| !dropped.contains(i)).map(|(_, c)| c).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn brackets_go_only_where_they_enclose_the_whole() {
+        for (line, expected) in [
+            ("    float x = (a + b);", "    float x = a + b;"),
+            ("    float x = (a + b) * (c + d);", "    float x = (a + b) * (c + d);"),
+            ("    return ((a + b) * (c + d));", "    return (a + b) * (c + d);"),
+            ("    if ((a < b)) {", "    if (a < b) {"),
+            ("    if ((a < b) && (c < d)) {", "    if ((a < b) && (c < d)) {"),
+            ("    x = vec2((a + b), ((c + d) * e));", "    x = vec2(a + b, (c + d) * e);"),
+            ("    x = words[(first + 1u)];", "    x = words[first + 1u];"),
+            ("    f();", "    f();"),
+        ] {
+            assert_eq!(unbracketed(line), expected);
+        }
+    }
+
+    #[test]
+    fn renaming_leaves_members_alone() {
+        let text = rename("a.alpha = alpha_1 + alpha;", |w| (w == "alpha").then_some("beta"));
+        assert_eq!(text, "a.alpha = alpha_1 + beta;");
+        assert_eq!(unnumbered("x_12"), Some("x"));
+        assert_eq!(unnumbered("x_"), None);
+        assert_eq!(unnumbered("_12"), None);
+    }
+
+    #[test]
+    fn temporaries_move_only_into_their_one_use() {
+        let lines = |text: &str| text.lines().map(str::to_owned).collect::<Vec<_>>();
+        let once = "float f() {\n    float _e3 = g(x);\n    float _e4 = h(y);\n    return _e3 + _e4;\n}";
+        assert_eq!(without_temporaries(lines(once)), lines("float f() {\n    return g(x) + h(y);\n}"));
+        for kept in [
+            "float f() {\n    float _e3 = g(x);\n    return _e3 * _e3;\n}",
+            "float f() {\n    float _e3 = x;\n    x = 1.0;\n    return _e3;\n}",
+        ] {
+            assert_eq!(without_temporaries(lines(kept)), lines(kept));
+        }
+    }
+
+    #[test]
+    fn a_value_with_an_operator_moves_in_brackets() {
+        let lines = ["float f() {", "    float _e3 = a + b;", "    return _e3 * c;", "}"].map(str::to_owned);
+        assert_eq!(without_temporaries(lines.to_vec())[1], "    return (a + b) * c;");
+        for (value, expected) in
+            [("g(a + b)", false), ("a[i + 1].xyz", false), ("(a + b) * c", true), ("P {a, b}", true)]
+        {
+            assert_eq!(is_compound(value), expected, "{value}");
+        }
+    }
+
+    #[test]
+    fn variables_are_declared_at_their_first_value() {
+        let lines = |text: &str| text.lines().map(str::to_owned).collect::<Vec<_>>();
+        let early = "void f() {\n    float x = 0.0;\n    float y = 1.0;\n    x = y + 2.0;\n}";
+        assert_eq!(declared_late(lines(early)), lines("void f() {\n    float y = 1.0;\n    float x = y + 2.0;\n}"));
+        for kept in [
+            "void f() {\n    float x = 0.0;\n    x = x + 2.0;\n}",
+            "void f() {\n    float x = 0.0;\n    if (a) {\n        x = 2.0;\n    }\n}",
+            "void f() {\n    P x = P(0.0);\n    x.y = 2.0;\n    x = z;\n}",
+        ] {
+            assert_eq!(declared_late(lines(kept)), lines(kept));
+        }
+    }
+}

@@ -1,0 +1,13 @@
+/// Fresnel reflectance of a layer at three wavelengths, its film included.
+fn luthier_fresnel_term(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
+    //? bare
+    //? film
+    if layer.film_ior_n.x > 0.0 {
+        return luthier_film(layer, cos_theta_d);
+    }
+    //? end
+    return luthier_fresnel(layer.ior_n, layer.ior_k, cos_theta_d);
+    //? else
+    return luthier_film(layer, cos_theta_d);
+    //? end
+}

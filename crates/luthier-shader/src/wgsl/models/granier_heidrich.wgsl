@@ -1,0 +1,130 @@
+//? granier_transparent
+/// The transmitted beam of a film for one channel (Granier and Heidrich 2003, eq. 10).
+struct LuthierBeam {
+    /// T, scaled so that its lobe carries its coefficient.
+    transmitted: f32,
+    /// Sum of the cosines in the film; 0 when nothing is transmitted.
+    cosines: f32,
+}
+//? end
+
+//? interface
+/// Schlick 1994.
+fn luthier_schlick(normal: vec3<f32>, cos_theta: f32) -> vec3<f32> {
+    let q = 1.0 - cos_theta;
+    return normal + (1.0 - normal) * (q * q * q * q * q);
+}
+//? end
+
+//? granier_transparent
+/// The beam through a film whose index over that outside is `eta`; `inner_normal` is that of its inner boundary.
+fn luthier_beam(wi: vec3<f32>, wo: vec3<f32>, eta: f32, exponent: f32, inner_normal: vec3<f32>) -> LuthierBeam {
+    let cosines_sq = (vec2<f32>(wi.z * wi.z, wo.z * wo.z) + (eta - 1.0) * (eta + 1.0)) / (eta * eta);
+    if min(cosines_sq.x, cosines_sq.y) <= 0.0 {
+        return LuthierBeam(0.0, 0.0);
+    }
+    let ti = vec3<f32>(wi.xy / eta, sqrt(cosines_sq.x));
+    let to = vec3<f32>(wo.xy / eta, sqrt(cosines_sq.y));
+    let across = dot(ti, inner_normal);
+    if min(across, dot(to, inner_normal)) <= 0.0 {
+        return LuthierBeam(0.0, 0.0);
+    }
+    // 2 across inner_normal - ti - to without differences of rounded cosines: in a narrow lobe all of it cancels but a little.
+    let tilt = inner_normal.xy;
+    let rise = (wi.z - wo.z) * (wi.z + wo.z) / (eta * eta * (ti.z + to.z));
+    let apart = vec3<f32>(
+        2.0 * across * tilt - (wi.xy + wo.xy) / eta,
+        2.0 * (dot(ti.xy, tilt) * inner_normal.z - ti.z * dot(tilt, tilt)) + rise,
+    );
+    let root = (eta - 1.0) / (eta + 1.0);
+    let leaving = 1.0 - luthier_schlick(vec3<f32>(root * root), min(to.z, 1.0)).x;
+    // The same of the way in, multiplied out: at grazing angles it is small.
+    let c = wi.z;
+    let entering = (1.0 - root * root) * c * (5.0 + c * (-10.0 + c * (10.0 + c * (-5.0 + c))));
+    // Directions crowd in the film by cos_theta_i / (eta^2 cos_theta_t).
+    let compression = wi.z / (eta * eta * ti.z);
+    let lobe = (exponent + 1.0) / (2.0 * LUTHIER_PI) * luthier_power_lobe(0.5 * dot(apart, apart), exponent);
+    return LuthierBeam(entering * leaving * compression * lobe, ti.z + to.z);
+}
+
+/// Two powers and their interference for the sums of the cosines in the film (eq. 3-5); a slab is too thick for it.
+fn luthier_superpose(layer: LuthierLayer, r: vec3<f32>, t: vec3<f32>, cosines: vec3<f32>) -> vec3<f32> {
+    //? granier_film
+    if layer.film_ior_n.x <= 0.0 {
+        return r + t;
+    }
+    //? phase
+    let s = cosines * (0.5 * layer.film_thickness_nm / layer.film_thickness_max_nm);
+    let red = luthier_lookup_phase(layer.phase_tile, s.x).x;
+    let green = luthier_lookup_phase(layer.phase_tile, s.y).y;
+    let blue = luthier_lookup_phase(layer.phase_tile, s.z).z;
+    let swing = vec3<f32>(red, green, blue);
+    //? else
+    // Whole cycles are taken off first: sines of large angles are imprecise on GPUs.
+    let cycles = layer.film_ior_n * layer.film_thickness_waves * cosines;
+    let swing = 2.0 * cos(2.0 * LUTHIER_PI * (cycles - round(cycles)));
+    //? end
+    return max(r + t + swing * sqrt(r * t), vec3<f32>(0.0));
+    //? else
+    return r + t;
+    //? end
+}
+//? end
+
+/// f cos_theta_i of two beams, their interference and a diffuse term (Granier and Heidrich 2003, eq. 5-18).
+fn luthier_eval_granier_heidrich($place_parameter material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
+    let layer = $layer(material, 0u);
+    var specular = vec3<f32>(0.0);
+    //? granier_base
+    var diffuse = vec3<f32>(1.0);
+    //? end
+    //? interface
+    let exponent = 2.0 / (layer.alpha * layer.alpha) - 2.0;
+    let apart = vec3<f32>(wi.xy + wo.xy, wi.z - wo.z);
+    let mirror = (exponent + 1.0) / (2.0 * LUTHIER_PI) * luthier_power_lobe(0.5 * dot(apart, apart), exponent);
+    //? end
+    //? granier_transparent
+    //? granier_film
+    let has_film = layer.film_ior_n.x > 0.0;
+    if layer.kind == LUTHIER_DIELECTRIC || has_film {
+        let eta = select(layer.ior_n, layer.film_ior_n, has_film);
+    //? else
+    if layer.kind == LUTHIER_DIELECTRIC {
+        let eta = layer.ior_n;
+    //? end
+        let root = (eta - 1.0) / (eta + 1.0);
+        //? place
+        let inner_normal = place.inner_normal;
+        //? else
+        let inner_normal = vec3<f32>(0.0, 0.0, 1.0);
+        //? end
+        let red = luthier_beam(wi, wo, eta.x, exponent, inner_normal);
+        let green = luthier_beam(wi, wo, eta.y, exponent, inner_normal);
+        let blue = luthier_beam(wi, wo, eta.z, exponent, inner_normal);
+        let r = luthier_schlick(root * root, wi.z) * mirror;
+        let t = vec3<f32>(red.transmitted, green.transmitted, blue.transmitted);
+        specular = luthier_superpose(layer, r, t, vec3<f32>(red.cosines, green.cosines, blue.cosines));
+        //? granier_base
+        // The mean of Schlick's reflectance (eq. 14).
+        let diffuse_reflectance = (21.0 * (eta * eta + 1.0) - 38.0 * eta) / (21.0 * (eta + 1.0) * (eta + 1.0));
+        diffuse = luthier_superpose(layer, diffuse_reflectance, 1.0 - diffuse_reflectance, vec3<f32>(2.0));
+        //? end
+    }
+    //? end
+    //? granier_bare
+    //? granier_film
+    if layer.kind == LUTHIER_CONDUCTOR && !has_film {
+    //? else
+    if layer.kind == LUTHIER_CONDUCTOR {
+    //? end
+        specular = luthier_schlick(luthier_fresnel_term(layer, 1.0), wi.z) * mirror;
+    }
+    //? end
+    //? granier_base
+    let last = luthier_layer(material, luthier_layer_count(material) - 1u);
+    if last.kind == LUTHIER_DIFFUSE {
+        specular += diffuse * last.lambert * wi.z;
+    }
+    //? end
+    return specular;
+}

@@ -1,0 +1,96 @@
+/// What the light has met on its way down and back up: directions, and sums over the layers so far.
+struct LuthierPath {
+    /// To the light, in the medium above the next layer.
+    wi_local: vec3<f32>,
+    /// To the eye, in the medium above the next layer.
+    wo_local: vec3<f32>,
+    /// Sum of their tangential parts. It nearly cancels in a highlight, so that it is refracted as a whole.
+    across: vec2<f32>,
+    /// Share of the light that comes down to the next layer and back out.
+    throughput: vec3<f32>,
+    /// f of the layers so far.
+    total: vec3<f32>,
+    //? clamped
+    /// Greatest slope parameter so far: a layer is never smoother than those above it.
+    alpha_above: f32,
+    //? end
+    /// Whether any light reaches the next layer.
+    open: bool,
+    //? flakes
+    /// Normal below the next interface, in its frame: that of the flakes.
+    normal_below: vec3<f32>,
+    //? end
+}
+
+//? chain_diffuse
+/// Adds what a diffuse base reflects. It ends the stack.
+fn luthier_add_diffuse(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
+    let brdf = $diffuse(layer, path.wi_local, path.wo_local);
+    var next = path;
+    next.total = path.total + path.throughput * brdf;
+    next.open = false;
+    return next;
+}
+//? end
+
+/// Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
+/// layer below it (Weidlich and Wilkie 2007; Elek 2010, eq. 2-4).
+fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
+    var next = path;
+    next.open = false;
+
+    let cosines = vec2<f32>(path.wi_local.z, path.wo_local.z);
+    let bisector = vec3<f32>(path.across, cosines.x + cosines.y);
+    let length_sq = dot(bisector.xy, bisector.xy) + bisector.z * bisector.z;
+    // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
+    let secant_d = 2.0 * inverseSqrt(length_sq);
+    let cos_theta_d = min(0.25 * length_sq * secant_d, 1.0);
+    //? patina
+    let fresnel = layer.tarnish * luthier_fresnel_term(layer, cos_theta_d);
+    //? else
+    let fresnel = luthier_fresnel_term(layer, cos_theta_d);
+    //? end
+    // G of V-cavities: 2 cos_theta_h / cos_theta_d times the lower cosine, at most 1.
+    let masking = min(bisector.z * min(cosines.x, cosines.y) * (secant_d * secant_d), 1.0);
+    let geometry = luthier_quarter_density(layer, bisector) * masking / (cosines.x * cosines.y);
+    next.total = path.total + path.throughput * fresnel * geometry;
+
+    //? below
+    //? conductor
+    if layer.kind != LUTHIER_DIELECTRIC {
+        return next;
+    }
+    //? end
+    // Refracted at the normal; the squared cosine does not cancel for an index near 1.
+    let bent = cosines * layer.inverse_eta;
+    let cosines_sq = bent * bent + layer.grazing_cos_sq;
+    let secants = inverseSqrt(cosines_sq);
+    let refracted = cosines_sq * secants;
+    next.wi_local = vec3<f32>(path.wi_local.xy * layer.inverse_eta, refracted.x);
+    next.wo_local = vec3<f32>(path.wo_local.xy * layer.inverse_eta, refracted.y);
+    next.across = path.across * layer.inverse_eta;
+    //? flakes
+    // Flakes tilt all that lies below, the paths through the slab included.
+    next.wi_local = luthier_local(path.normal_below, next.wi_local);
+    next.wo_local = luthier_local(path.normal_below, next.wo_local);
+    next.across = luthier_local(path.normal_below, vec3<f32>(next.across, refracted.x + refracted.y)).xy;
+    next.normal_below = vec3<f32>(0.0, 0.0, 1.0);
+    next.open = min(cosines_sq.x, cosines_sq.y) > 0.0 && min(next.wi_local.z, next.wo_local.z) > 0.0;
+    //? else
+    next.open = min(cosines_sq.x, cosines_sq.y) > 0.0;
+    //? end
+    // (1 - F) down, (1 - F) up, and part of what the cavities block comes back: (1 - F) (1 - G + (1 - F) G).
+    let returned = 1.0 - masking * fresnel;
+    //? absorption
+    //? flakes
+    let absorbed = exp2(-layer.halvings * (1.0 / next.wi_local.z + 1.0 / next.wo_local.z));
+    //? else
+    let absorbed = exp2(-layer.halvings * (secants.x + secants.y));
+    //? end
+    next.throughput = path.throughput * (absorbed - absorbed * fresnel) * returned;
+    //? else
+    next.throughput = path.throughput * (1.0 - fresnel) * returned;
+    //? end
+    //? end
+    return next;
+}

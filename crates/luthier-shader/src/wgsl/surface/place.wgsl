@@ -1,0 +1,88 @@
+/// What textures say about one place of a surface. Factors multiply what the material says.
+struct LuthierPlace {
+    /// Normal, unit, in the frame of the directions.
+    normal: vec3<f32>,
+    /// Factor on the slope parameters of every layer.
+    alpha_factor: f32,
+    /// Factor on the thickness of the slab below the first interface.
+    slab_factor: f32,
+    /// Factor on the thickness of the film on the first interface.
+    film_factor: f32,
+    //? granier
+    /// Normal of the lower boundary of that film, unit, in the frame of `normal`.
+    inner_normal: vec3<f32>,
+    //? end
+    //? flakes
+    /// Normal of the flakes below the first interface, unit, in the frame of `normal`.
+    flake_normal: vec3<f32>,
+    //? end
+    //? patina
+    /// Amount of patina, 0 to 1; below 0 all layers are there, without its diffuse term and tarnish.
+    patina: f32,
+    //? end
+}
+
+/// A place without textures.
+fn luthier_place() -> LuthierPlace {
+    var place: LuthierPlace;
+    place.normal = vec3<f32>(0.0, 0.0, 1.0);
+    place.alpha_factor = 1.0;
+    place.slab_factor = 1.0;
+    place.film_factor = 1.0;
+    place.inner_normal = vec3<f32>(0.0, 0.0, 1.0);
+    place.flake_normal = vec3<f32>(0.0, 0.0, 1.0);
+    place.patina = -1.0;
+    return place;
+}
+
+/// A layer of a material, counted from the top, as it is at a place.
+fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLayer {
+    var layer = luthier_layer(material, index);
+    //? interface
+    layer = luthier_with_alpha(layer, clamp(layer.alpha * place.alpha_factor, 0.001, 1.0));
+    //? end
+    layer.alpha_xy = clamp(layer.alpha_xy * place.alpha_factor, vec2<f32>(0.001), vec2<f32>(1.0));
+    //? absorption|film
+    if index == 0u {
+        layer.halvings *= place.slab_factor;
+        layer.film_thickness_waves *= place.film_factor;
+        layer.film_thickness_nm *= place.film_factor;
+    }
+    //? end
+    //? patina
+    if place.patina >= 0.0 && index > 0u {
+        let count = luthier_layer_count(material);
+        let base_alpha = luthier_materials[luthier_header(material) + $word_patina].z;
+        if base_alpha >= 0.0 && (index == 1u || index == count) {
+            layer = luthier_with_alpha(layer, max(mix(layer.alpha, base_alpha, place.patina), 0.001));
+            layer.alpha_xy = max(mix(layer.alpha_xy, vec2<f32>(base_alpha), place.patina), vec2<f32>(0.001));
+        }
+        let tarnish = luthier_materials[luthier_header(material) + $word_patina_tarnish].xyz;
+        layer.tarnish = mix(vec3<f32>(1.0), tarnish, place.patina);
+    }
+    //? end
+    return layer;
+}
+
+//? thickness
+/// A place with the film of a material as thick as its table says there. Repeats in uv.
+fn luthier_film_place(place: LuthierPlace, material: u32, uv: vec2<f32>) -> LuthierPlace {
+    let layer = luthier_layer(material, 0u);
+    if layer.thickness_tile < 0.0 {
+        return place;
+    }
+    let record = luthier_lookup_thickness(layer.thickness_tile, uv);
+    var next = place;
+    next.film_factor = 2.0 * record.x * layer.film_thickness_max_nm / layer.film_thickness_nm;
+    next.inner_normal = normalize(vec3<f32>(record.yz, 1.0));
+    return next;
+}
+//? end
+
+/// A direction in a frame whose normal is `normal` (unit, in the frame of the direction): the least rotation that takes +z
+/// there is undone.
+fn luthier_local(normal: vec3<f32>, w: vec3<f32>) -> vec3<f32> {
+    let across = w.x * normal.x + w.y * normal.y;
+    let along = w.z + across / (1.0 + max(normal.z, 0.0));
+    return vec3<f32>(w.xy - normal.xy * along, across + w.z * normal.z);
+}
