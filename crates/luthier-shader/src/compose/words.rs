@@ -1,6 +1,6 @@
 //! Words of the material buffer, by the names that modules have for them.
 
-use luthier_manifest::{Distribution, LAYER_WORDS, MATERIAL_WORDS};
+use luthier_manifest::{LAYER_WORDS, MATERIAL_WORDS};
 
 /// Header words of a material, as `MaterialConstants::words` lays them out behind the first.
 const MATERIAL: [&str; MATERIAL_WORDS] = [
