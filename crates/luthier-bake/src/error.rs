@@ -1,3 +1,5 @@
+//! Errors of a bake: materials that do not go together, capacities, budgets.
+
 use luthier_lut::{TableKind, TexelFormat};
 use luthier_manifest::{BUFFER_WORDS_MAX, SIDE_MAX};
 use thiserror::Error;

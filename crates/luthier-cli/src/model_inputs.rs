@@ -56,7 +56,7 @@ pub(crate) struct ModelInputs {
     textures: Textures,
 }
 
-/// What textures say about the place, in front of any model.
+/// Values of the textures at the place, for any model.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Textures at the place, for every model")]
 struct Textures {

@@ -1,3 +1,5 @@
+//! The device and its queue: compute passes, read-back, and the faults that wgpu reports outside of calls.
+
 use std::sync::mpsc;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;

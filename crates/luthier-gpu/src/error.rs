@@ -1,3 +1,5 @@
+//! Errors of the runtime: packages, bindings, devices.
+
 use luthier_export::PackageError;
 use luthier_lut::{TableKind, TexelFormat};
 use luthier_manifest::Form;

@@ -1,3 +1,5 @@
+//! Evaluation of `luthier_eval` for arrays of pairs of directions.
+
 use crate::context::Pass;
 use crate::{GpuError, Scene};
 

@@ -1,3 +1,5 @@
+//! Choice of an adapter, and the device on it.
+
 use luthier_manifest::Form;
 use wgpu::{DeviceType, DownlevelFlags};
 

@@ -1,3 +1,5 @@
+//! Lights without a body, and their words in the kernel's buffer.
+
 use crate::GpuError;
 use crate::sky::{check_direction, setting};
 

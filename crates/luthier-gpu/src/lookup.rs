@@ -1,3 +1,5 @@
+//! Reads of the tables through the shader's own look-up functions.
+
 use luthier_lut::TableKind;
 
 use crate::context::Pass;

@@ -1,3 +1,5 @@
+//! Rendering of a shape under lights and an environment, in passes of bounded length.
+
 use luthier_manifest::{Distribution, Form};
 use std::sync::Arc;
 

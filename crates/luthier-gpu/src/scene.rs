@@ -1,3 +1,5 @@
+//! A package on a device: its textures and buffer, and the pipelines of the kernels.
+
 use std::sync::OnceLock;
 
 use luthier_lut::TableKind;

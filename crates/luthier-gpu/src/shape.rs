@@ -1,3 +1,5 @@
+//! Shapes that are rendered, and the camera that sees them.
+
 use crate::GpuError;
 use crate::sky::setting;
 use crate::vector::{cross, unit};

@@ -1,3 +1,5 @@
+//! A sky by formula: a vertical gradient and two soft lights.
+
 use crate::GpuError;
 use crate::vector::{dot, unit};
 

@@ -1,3 +1,5 @@
+//! Timing of evaluations, by timestamp queries where the adapter has them.
+
 use std::time::Instant;
 
 use crate::context::TimedPass;

@@ -1,3 +1,5 @@
+//! Tone curves, from radiance to display values.
+
 use luthier_lut::Image;
 
 /// How radiance becomes what a display shows, before its transfer function. Each channel by itself, 0 to 0; the display

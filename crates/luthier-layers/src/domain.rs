@@ -3,7 +3,7 @@
 //! The ranges are those over which no level (f64, tables, f32, device) of the stability suite fails: `luthier stability` derives them
 //! anew, and a test of luthier-report compares. Between the values that the suite tries, the last that did not fail counts.
 //!
-//! What a model leaves out within its domain (bounces, blur, 1/n^2) is no matter of the domain: `docs/pages/models.md` has its size.
+//! A model may leave out parts of the light within its domain (bounces, blur, 1/n^2): `docs/pages/models.md` has their size.
 
 use luthier_optics::interface::Interface;
 use luthier_optics::stack::{Base, Stack};

@@ -1,3 +1,5 @@
+//! Atlases: equal tiles of one kind of table in one texture.
+
 use serde::{Deserialize, Serialize};
 
 use crate::{Axis, Encoding, ErrorStats, Image, RowBase, SchlickBase, TexelFormat, WeightBits, bilinear};

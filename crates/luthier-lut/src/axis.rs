@@ -1,3 +1,5 @@
+//! Axes of tables: the mapping between a quantity and the coordinate of a texel.
+
 use serde::{Deserialize, Serialize};
 
 /// How an axis coordinate `u` in 0..=1 becomes a value between `min` and `max`.

@@ -1,3 +1,5 @@
+//! Bases of rows: the part of a Fresnel row that the shader computes, so that texels hold the difference.
+
 use serde::{Deserialize, Serialize};
 
 use crate::{Image, TexelFormat};

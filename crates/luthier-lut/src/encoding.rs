@@ -1,3 +1,5 @@
+//! Encodings of values in texels: plain, or a sixteenth root in two halves.
+
 use crate::{Image, TableKind, TexelFormat};
 
 /// How values become texels, beyond the rounding of the texel format.

@@ -1,3 +1,5 @@
+//! Texel formats: sizes, quantisation, bytes.
+
 use half::f16;
 use serde::{Deserialize, Serialize};
 

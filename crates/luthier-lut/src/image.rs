@@ -1,3 +1,5 @@
+//! Images of 32-bit floats, the unquantised form of tables and maps.
+
 /// A rectangle of texels in f32, row by row from the top, channels interleaved.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Image {

@@ -1,3 +1,5 @@
+//! Error of a table: a scan that compares sampled values with the function.
+
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 

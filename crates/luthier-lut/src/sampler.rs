@@ -1,3 +1,5 @@
+//! Bilinear filtering with the weights of texture hardware.
+
 use crate::Image;
 
 /// Precision of the interpolation weights.

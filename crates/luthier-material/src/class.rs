@@ -1,3 +1,5 @@
+//! Classes of layered surfaces, a to h.
+
 use std::fmt;
 
 use luthier_optics::stack::{Base, Stack, Surface};

@@ -1,3 +1,5 @@
+//! Diagnostics: a message, its place in the file, and a hint.
+
 use std::ops::Range;
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};

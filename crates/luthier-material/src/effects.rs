@@ -1,3 +1,5 @@
+//! Effects of a material: glitter, flakes, patina.
+
 use luthier_optics::Rgb;
 
 use crate::material::VariationSource;

@@ -1,3 +1,5 @@
+//! The validated material, with the places of its values in the file.
+
 use luthier_optics::stack::Stack;
 
 use luthier_manifest::Budget;

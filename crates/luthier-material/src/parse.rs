@@ -1,3 +1,5 @@
+//! Parser of a material file: text to material, warnings and errors.
+
 use crate::check::{check_key, check_table};
 use crate::decode::decode;
 use crate::diagnostic::{Diagnostic, Sink};

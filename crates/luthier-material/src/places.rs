@@ -1,3 +1,5 @@
+//! Places of values in a material file, by key.
+
 use std::collections::BTreeMap;
 use std::ops::Range;
 

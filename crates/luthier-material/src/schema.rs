@@ -8,7 +8,7 @@ use crate::grammar::{DOCUMENT, Kind, NAME_MAX, SCENE, Table, TextForm};
 
 /// The grammar of material files as JSON Schema (draft 2020-12), generated from the tables that files are checked against.
 ///
-/// What holds between values, such as a conductor being the last layer, is beyond it.
+/// Conditions between values, such as a conductor being the last layer, are beyond it.
 pub fn schema() -> Value {
     document(&DOCUMENT, "luthier material")
 }

@@ -1,3 +1,5 @@
+//! Sections of a TOML document, read by key and with spans.
+
 use std::ops::Range as Span;
 
 use toml::Spanned;

@@ -1,3 +1,5 @@
+//! Suggestions for misspelt words, and the formatting of values in messages.
+
 /// Characters of the longest word that can be a misspelt one of ours.
 const WORD_MAX: usize = 64;
 

@@ -143,7 +143,7 @@ impl TransparentFacets<'_> {
 
 /// Fraction of the light of a walk that crosses an interface between transparent media, and leaves it upward all the same.
 ///
-/// What leaves counts by its expectation; strong branches are followed both ways, weak ones reflect or refract by chance.
+/// Light that leaves counts by its expectation; strong branches are followed both ways, weak ones reflect or refract by chance.
 /// `alpha` > 0, `cos_theta_i` > 0.
 pub fn crossed_and_returned(
     distribution: Distribution,

@@ -1,3 +1,5 @@
+//! Interface to a device that runs the emitted shaders.
+
 use luthier_manifest::Form;
 
 use crate::Pair;
@@ -11,6 +13,6 @@ pub trait Device {
     /// order.
     ///
     /// # Errors
-    /// What went wrong, in words for the user.
+    /// The failure, in words for the user.
     fn evaluate(&self, form: Form, material: u32, pairs: &[Pair]) -> Result<Vec<[f32; 3]>, String>;
 }

@@ -1,3 +1,5 @@
+//! Errors of a judgement: a bake that cannot be judged.
+
 use luthier_lut::TableKind;
 use luthier_manifest::ShadingModel;
 use thiserror::Error;

@@ -1,3 +1,5 @@
+//! The judgement of a bake: order of its parts, settings, progress.
+
 use std::fmt;
 
 use glam::DVec3;

@@ -14,7 +14,7 @@
 //! [`audit()`] judges a table that anybody made against what it is said to hold.
 //! [`parity`] compares the shaders of all models with their f64 twins. [`compare_pictures`] compares two rendered pictures,
 //! [`render_ball`] makes one in f64, [`Plot`] draws curves.
-//! What else a page shows (searches, costs, pictures, models against the reference) is put into the report by its caller: [`Costs`],
+//! The caller puts the rest of a page (searches, costs, pictures, models against the reference) into the report: [`Costs`],
 //! [`Exhibits`], [`judge_shading_models`]. [`limits()`] holds the report against budgets.
 //! [`judge_models`] is the judge of what the bake stands on: every reflectance model against the Monte Carlo of whole stacks.
 //! [`stability`] runs every method where methods fail, and says where each may be used.

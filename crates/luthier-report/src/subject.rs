@@ -1,3 +1,5 @@
+//! The subject of a judgement: manifest, decoded tables, stacks.
+
 use luthier_layers::elek::{self, Below};
 use luthier_lut::{Image, TableKind};
 use luthier_manifest::{LayerKind, LayerRecord, Manifest, TableEntry};

@@ -1,3 +1,5 @@
+//! Model candidates of a material, in the order of their cost.
+
 use std::f64::consts::FRAC_1_PI;
 use std::sync::OnceLock;
 

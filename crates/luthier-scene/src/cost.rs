@@ -1,3 +1,5 @@
+//! Costs of shaders by model, form and shape, as a compiler counted them.
+
 use luthier_manifest::{Form, ShadingModel};
 use serde::{Deserialize, Serialize};
 

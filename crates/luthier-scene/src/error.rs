@@ -1,3 +1,5 @@
+//! Errors of candidates against the reference, with the noise of the reference.
+
 use std::f64::consts::{FRAC_1_PI, PI};
 
 use luthier_manifest::{SceneBudget, SceneError};

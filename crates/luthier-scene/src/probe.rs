@@ -1,3 +1,5 @@
+//! Directions at which candidates and reference are compared.
+
 use std::f64::consts::PI;
 
 use glam::DVec3;

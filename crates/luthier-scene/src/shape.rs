@@ -1,3 +1,5 @@
+//! Shapes of stacks, by which costs are looked up.
+
 use luthier_manifest::ShadingModel;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Stack};
 

@@ -1,3 +1,5 @@
+//! Simplified materials: variants with parts left out.
+
 use luthier_manifest::Feature;
 use luthier_material::{Maps, Material};
 use luthier_optics::stack::{Base, Distribution, FilmThickness, Slab, Surface};

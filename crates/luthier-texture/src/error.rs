@@ -1,3 +1,5 @@
+//! Errors of reading and writing containers.
+
 use std::borrow::Cow;
 use std::fmt;
 

@@ -1,3 +1,5 @@
+//! Limits on sizes, checked before memory is allocated.
+
 use luthier_lut::Image;
 
 use crate::TextureError;

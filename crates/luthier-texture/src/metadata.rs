@@ -1,3 +1,5 @@
+//! Metadata of EXR files: rules for keys and values.
+
 use crate::TextureError;
 
 /// Statements of an EXR file about itself: key and value, sorted by key in the file. Keys are 1 to 64 ASCII letters, digits, `.`, `_` and

@@ -1,3 +1,5 @@
+//! The sRGB transfer function, and 8-bit pixels.
+
 use luthier_lut::Image;
 
 /// The sRGB transfer function of IEC 61966-2-1 as 8 bits, clipped to 0..=1; not a number is 0.

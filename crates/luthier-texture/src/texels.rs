@@ -1,3 +1,5 @@
+//! Layouts of texels in files of other makers: number type, channels, order.
+
 use std::fmt;
 
 use half::f16;

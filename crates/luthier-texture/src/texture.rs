@@ -1,3 +1,5 @@
+//! Textures as a device takes them: a format, a size, bytes.
+
 use luthier_lut::{Atlas, Image, TexelFormat};
 
 use crate::TextureError;

@@ -1,3 +1,5 @@
+//! Errors of the window.
+
 use luthier_gpu::GpuError;
 use thiserror::Error;
 

@@ -1,3 +1,5 @@
+//! Interface to the program around the window: files, bakes, screenshots.
+
 use luthier_gpu::Package;
 use luthier_manifest::Form;
 use luthier_material::Material;

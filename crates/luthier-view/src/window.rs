@@ -1,3 +1,5 @@
+//! The window: its options, and the loop that runs it.
+
 use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui::{ThemePreference, ViewportBuilder};

@@ -1,3 +1,5 @@
+//! Tests of the reader of a folder: hashes, paths, links, sizes.
+
 use luthier_manifest::{ManifestError, MapSlot};
 use tempfile::TempDir;
 

@@ -1,3 +1,5 @@
+//! Tests of environments: blurred maps and irradiance against quadrature.
+
 use super::*;
 use crate::sky::lobe_integral;
 use crate::vector::unit;

@@ -1,4 +1,4 @@
-// Reads the maps of environment.rs. kernel_inputs.maps names the first of their headers: word offset, columns, rows.
+// Reads the maps of the module `environment`. kernel_inputs.maps names the first of their headers: word offset, columns, rows.
 // Order: the map, irradiance over pi, then the blurred maps of each slope distribution in use.
 
 const ENVIRONMENT_PI: f32 = 3.14159265358979;

@@ -1,3 +1,5 @@
+//! Decoder of the section `[effects]`.
+
 use luthier_optics::stack::Stack;
 
 use super::films;

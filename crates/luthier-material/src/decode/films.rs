@@ -1,3 +1,5 @@
+//! Decoder of `thin-film` layers, which become films of the layer that follows.
+
 use std::ops::Range as Span;
 
 use luthier_optics::ior::Ior;

@@ -1,3 +1,5 @@
+//! Decoder of indices: numbers, samples, CSV files and built-in data sets.
+
 use std::ops::Range as Span;
 
 use luthier_optics::constants::{dataset, datasets, parse_csv};

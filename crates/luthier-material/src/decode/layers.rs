@@ -1,3 +1,5 @@
+//! Decoder of the list of layers.
+
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Surface};
 

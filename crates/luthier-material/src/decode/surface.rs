@@ -1,3 +1,5 @@
+//! Decoder of micro-surfaces; roughness and slope angles become slope parameters here.
+
 use luthier_optics::stack::{Distribution, Surface};
 
 use crate::diagnostic::Sink;

@@ -1,3 +1,5 @@
+//! Grammar of a material file, top level.
+
 use super::bake::{BAKE, BUDGET};
 use super::effects::EFFECTS;
 use super::layers::{CONDUCTOR, DIELECTRIC, DIFFUSE, IOR, THIN_FILM};

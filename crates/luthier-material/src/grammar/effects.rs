@@ -1,3 +1,5 @@
+//! Grammar of the section `[effects]`.
+
 use super::layers::VARIATION;
 use super::{ANY, Alternatives, Key, Kind, NOT_NEGATIVE, PATH, POSITIVE, Range, Table, UNIT, UNIT_RGB};
 

@@ -1,3 +1,5 @@
+//! Grammar of layers: types, indices, micro-surfaces, slabs, maps.
+
 use super::{
     Alternatives, Key, Kind, NOT_NEGATIVE, NOT_NEGATIVE_RGB, PATH, POSITIVE, Range, Table, TextForm, UNIT,
     UNIT_ABOVE_ZERO, UNIT_RGB,

@@ -1,3 +1,5 @@
+//! Grammar of a scene file.
+
 use super::{Key, Kind, LAYERS_MAX, POSITIVE, Range, SCENE_MATERIALS_MAX, Table, TextForm};
 
 /// Version of the grammar of scenes.

@@ -1,3 +1,5 @@
+//! Axes of a table under audit: quantity, mapping, position of nodes.
+
 use std::f64::consts::FRAC_PI_2;
 use std::str::FromStr;
 

@@ -1,3 +1,5 @@
+//! Hypotheses about the contents of a table: a statement with a few mistakes.
+
 use serde::Serialize;
 
 use super::axes::{AxisSpec, Layout, Nodes};

@@ -1,3 +1,5 @@
+//! Text of an audit.
+
 use luthier_lut::ErrorStats;
 
 use super::{Audit, AuditVerdict, Candidate};

@@ -1,3 +1,5 @@
+//! Search for the hypothesis that fits a table best.
+
 use std::collections::BTreeSet;
 
 use luthier_lut::{Image, Mapping};

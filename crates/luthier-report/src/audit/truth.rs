@@ -1,3 +1,5 @@
+//! Exact values of the functions that audited tables are said to hold.
+
 use std::f64::consts::PI;
 
 use luthier_optics::Rgb;

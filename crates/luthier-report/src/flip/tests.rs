@@ -1,3 +1,5 @@
+//! Tests of LDR-FLIP against the implementation of its authors.
+
 use super::*;
 use crate::picture::PIXELS_PER_DEGREE;
 

@@ -1,3 +1,5 @@
+//! Figures of the judgement of models, as the JSON has them.
+
 use serde::Serialize;
 
 use super::page;

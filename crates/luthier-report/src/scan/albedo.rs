@@ -1,3 +1,5 @@
+//! Scan of FGD tiles against new estimates of the directional albedo.
+
 use luthier_manifest::ColorMode;
 use luthier_optics::Rgb;
 use luthier_optics::albedo::{Effort, FacetStatistics, ReflectanceCurves, crossed_albedo};

@@ -1,3 +1,5 @@
+//! Scan of distribution tiles against the closed forms of D.
+
 use luthier_lut::AtlasLayout;
 use luthier_optics::microfacet::scaled_distribution;
 

@@ -1,3 +1,5 @@
+//! Scan of Fresnel rows against the interfaces that read them.
+
 use luthier_layers::terms::{Exact, Terms};
 use luthier_lut::incident_cosine;
 

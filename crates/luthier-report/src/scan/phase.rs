@@ -1,3 +1,5 @@
+//! Scan of phase rows against the interference term of films.
+
 use std::f64::consts::TAU;
 
 use super::{Measured, Scan, User, coordinates};

@@ -1,3 +1,5 @@
+//! Check of thickness tiles: ranges and normalisation.
+
 use super::User;
 use crate::Subject;
 use crate::format::number;

@@ -229,7 +229,7 @@ fn resource(set: &MaterialSet<'_>, form: Form, target: Target, entry: &BindingEn
     text
 }
 
-/// What a language asks for, and what nothing has checked.
+/// Requirements of a language, and the checks that a text in it has not had; `None` where there is nothing to say.
 fn note(target: Target, part: Part) -> Option<String> {
     let note = match target {
         Target::GlslEs300 if part != Part::Complete => {

@@ -10,7 +10,7 @@ use crate::{Form, MaterialSet, ShaderError, Target, validate};
 /// The entry point of a complete shader, in WGSL.
 pub(crate) const FRAGMENT: &str = include_str!("../wgsl/fragment.wgsl");
 
-/// What a text is.
+/// Kind of an emitted text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Part {
     /// Functions to paste.

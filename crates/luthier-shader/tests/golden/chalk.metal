@@ -95,7 +95,7 @@ metal::float3 luthier_eval(
     return luthier_eval_elek(material, wi, wo, luthier_materials);
 }
 
-// What a picture of half floats holds of a sum over lights, 0 to 65504. Highlights at grazing angles go beyond, and colours outside
+// A sum over lights, clamped to what a picture of half floats holds, 0 to 65504. Highlights at grazing angles go beyond, colours outside
 // of Rec.709 have channels below 0: bound the sum, not its terms.
 metal::float3 luthier_bounded(metal::float3 radiance) {
     return metal::clamp(radiance, metal::float3(0.0), metal::float3(65504.0));

@@ -42,7 +42,7 @@ struct LuthierLayer {
     float distribution_tile;
 };
 
-// What the light has met on its way down and back up: directions, and sums over the layers so far.
+// State of the light on its way down and back up: directions, and sums over the layers so far.
 struct LuthierPath {
     // To the light, in the medium above the next layer.
     vec3 wi_local;
@@ -193,7 +193,7 @@ vec3 luthier_eval(uint material, vec3 wi, vec3 wo) {
     return luthier_eval_elek(material, wi, wo);
 }
 
-// What a picture of half floats holds of a sum over lights, 0 to 65504. Highlights at grazing angles go beyond, and colours outside
+// A sum over lights, clamped to what a picture of half floats holds, 0 to 65504. Highlights at grazing angles go beyond, colours outside
 // of Rec.709 have channels below 0: bound the sum, not its terms.
 vec3 luthier_bounded(vec3 radiance) {
     return clamp(radiance, vec3(0.0), vec3(65504.0));

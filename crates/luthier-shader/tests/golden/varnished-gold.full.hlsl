@@ -45,7 +45,7 @@ struct LuthierComplex {
     float3 im;
 };
 
-// What the light has met on its way down and back up: directions, and sums over the layers so far.
+// State of the light on its way down and back up: directions, and sums over the layers so far.
 struct LuthierPath {
     // To the light, in the medium above the next layer.
     float3 wi_local;
@@ -231,7 +231,7 @@ float3 luthier_eval(uint material, float3 wi, float3 wo) {
     return luthier_eval_elek(material, wi, wo);
 }
 
-// What a picture of half floats holds of a sum over lights, 0 to 65504. Highlights at grazing angles go beyond, and colours outside
+// A sum over lights, clamped to what a picture of half floats holds, 0 to 65504. Highlights at grazing angles go beyond, colours outside
 // of Rec.709 have channels below 0: bound the sum, not its terms.
 float3 luthier_bounded(float3 radiance) {
     return clamp(radiance, (0.0).xxx, (65504.0).xxx);

@@ -149,7 +149,7 @@ fn luthier_quarter_density(layer: LuthierLayer, bisector: vec3<f32>) -> f32 {
     return luthier_distribution_term(layer, z_sq, across_sq) * layer.peak;
 }
 
-/// What the light has met on its way down and back up: directions, and sums over the layers so far.
+/// State of the light on its way down and back up: directions, and sums over the layers so far.
 struct LuthierPath {
     /// To the light, in the medium above the next layer.
     wi_local: vec3<f32>,
@@ -220,7 +220,7 @@ fn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
     return luthier_eval_elek(material, wi, wo);
 }
 
-/// What a picture of half floats holds of a sum over lights, 0 to 65504. Highlights at grazing angles go beyond, and colours outside
+/// A sum over lights, clamped to what a picture of half floats holds, 0 to 65504. Highlights at grazing angles go beyond, colours outside
 /// of Rec.709 have channels below 0: bound the sum, not its terms.
 fn luthier_bounded(radiance: vec3<f32>) -> vec3<f32> {
     return clamp(radiance, vec3<f32>(0.0), vec3<f32>(65504.0));

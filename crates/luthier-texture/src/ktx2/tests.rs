@@ -1,3 +1,5 @@
+//! Tests of KTX2: round trips, another reader, the specification byte by byte.
+
 use proptest::prelude::*;
 
 use super::*;

@@ -1,3 +1,5 @@
+//! Tests of tables of other makers: DDS, KTX2, EXR, PNG, raw and damaged files.
+
 use proptest::prelude::*;
 
 use super::*;

@@ -1,3 +1,5 @@
+//! Tests of the parameters that the window edits.
+
 use luthier_material::parse;
 
 use super::*;

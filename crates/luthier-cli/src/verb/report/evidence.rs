@@ -103,7 +103,7 @@ pub(super) fn add(
     Ok(())
 }
 
-/// What the table that scenes choose by says of the shader of a material.
+/// Cost of the shader of a material, from the table that scenes choose by.
 fn shape_cost(costs: &CostTable, model: ShadingModel, material: &Material) -> Option<ShapeCost> {
     let shape = luthier_scene::shape(&material.stack);
     let (baked, is_of_similar) = costs.cost(model, Form::Baked, &shape)?;

@@ -21,7 +21,7 @@ fn luthier_airy(a: f32, b: LuthierComplex, c: LuthierComplex, e: LuthierComplex)
     return (num.re * num.re + num.im * num.im) / max(den_sq, vec3<f32>(1e-30));
 }
 
-/// What takes the place of the normal index for p-polarised light: it over the squared index.
+/// The normal index over the squared index, which takes its place for p-polarised light.
 fn luthier_parallel_index(normal: LuthierComplex, ior_n: vec3<f32>, ior_k: vec3<f32>) -> LuthierComplex {
     let modulus_sq = ior_n * ior_n + ior_k * ior_k;
     let re = (ior_n * ior_n - ior_k * ior_k) / (modulus_sq * modulus_sq);

@@ -1,4 +1,4 @@
-/// What the light has met on its way down and back up: directions, and sums over the layers so far.
+/// State of the light on its way down and back up: directions, and sums over the layers so far.
 struct LuthierPath {
     /// To the light, in the medium above the next layer.
     wi_local: vec3<f32>,

@@ -4,7 +4,7 @@ struct $Path {
     /// Cosine of the mean direction in i.
     cos_theta: f32,
     //? escape
-    /// The same in the medium above i.
+    /// Cosine of the mean direction in the medium above i.
     cos_above: f32,
     /// Tile of the escape table for lobes in i; -1 where all escapes.
     escape_tile: f32,

@@ -1,4 +1,4 @@
-/// What textures say about one place of a surface. Factors multiply what the material says.
+/// Values of textures at one place of a surface. Factors multiply the numbers of the material.
 struct LuthierPlace {
     /// Normal, unit, in the frame of the directions.
     normal: vec3<f32>,

@@ -1,6 +1,6 @@
 //! OpenEXR: single-part scan-line images of 32-bit floats, ZIP-compressed (lossless), through the `exr` crate.
 //!
-//! That crate keeps custom attributes in a hash map, whose order differs from run to run. So that the bytes do not, all
+//! The `exr` crate keeps custom attributes in a hash map, whose order differs from run to run. So that the bytes do not, all
 //! metadata are one attribute: `luthier`, a string that holds a JSON object of strings, sorted by key.
 
 use std::collections::BTreeMap;

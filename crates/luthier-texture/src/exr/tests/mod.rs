@@ -1,10 +1,12 @@
+//! Tests of EXR: round trips, the file layout, a file of the reference library, damaged files.
+
 use proptest::prelude::*;
 
 use super::*;
 
 /// A file by the reference library (OpenEXR 3.5.3 for Python): 8 x 40, ZIP, row + column / 8 + 10 * channel, the string attributes
 /// `luthier` and `other`.
-const OPENEXR: &[u8] = include_bytes!("tests/openexr.exr");
+const OPENEXR: &[u8] = include_bytes!("openexr.exr");
 
 const NAMES: [&str; 4] = ["R", "G", "B", "A"];
 

@@ -100,7 +100,7 @@ pub(crate) enum Verb {
         after_help = "Examples:\n  luthier schema > material.schema.json\n  luthier schema --scene > scene.schema.json"
     )]
     Schema {
-        /// That of scene files
+        /// Print the schema of scene files
         #[arg(long)]
         scene: bool,
     },

@@ -1,3 +1,5 @@
+//! Tests of PNG: round trips, bit depths, damaged files.
+
 mod fixtures;
 
 use proptest::prelude::*;

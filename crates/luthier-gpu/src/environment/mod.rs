@@ -1,3 +1,5 @@
+//! Environments: a map of radiance, its irradiance, and its copies blurred by slope distributions.
+
 use std::sync::OnceLock;
 
 use luthier_lut::Image;
