@@ -11,6 +11,7 @@ mod failure;
 #[cfg(feature = "gpu")]
 mod grid;
 mod input;
+mod interrupt;
 mod materials;
 #[cfg(feature = "gpu")]
 mod memory_bake;
@@ -33,6 +34,7 @@ use crate::cli::Verb;
 
 fn main() -> ExitCode {
     let cli = command_line::parse();
+    interrupt::watch();
     let outcome = match &cli.verb {
         Verb::Bake(options) => verb::bake::run(options),
         Verb::Budgets(options) => verb::budgets::run(options),

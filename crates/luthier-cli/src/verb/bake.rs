@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 
 use crate::cli::{BakeOptions, Emission};
 use crate::failure::{Failure, Outcome};
+use crate::interrupt::whole;
 use crate::materials::{shaded, valid};
 use crate::misses;
 use crate::output::{bytes, print};
@@ -47,7 +48,7 @@ pub(crate) fn run(options: &BakeOptions) -> Outcome {
         let bake = Bake { options: limits, targets: options.emission.targets(), forms, observer, ..Bake::default() };
         Ok::<_, Failure>(Package::new(&materials, &bake, &MemoryStore::default())?.encode(options.compression())?)
     })?;
-    encoded.write(&options.out)?;
+    whole(|| encoded.write(&options.out))?;
     let manifest = &encoded.manifest;
     told.extend(misses::name(manifest, options.quiet)?);
 

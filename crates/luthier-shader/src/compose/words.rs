@@ -52,7 +52,9 @@ pub(crate) fn numbered(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use luthier_manifest::{FlakesRecord, GlitterRecord, LayerKind, LayerRecord, MaterialConstants, PatinaRecord};
+    use luthier_manifest::{
+        Distribution, FlakesRecord, GlitterRecord, LayerKind, LayerRecord, MaterialConstants, PatinaRecord,
+    };
 
     use super::*;
 

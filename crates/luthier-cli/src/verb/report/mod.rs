@@ -12,6 +12,7 @@ use luthier_scene::{LeaveOut, simplified};
 
 use crate::cli::ReportOptions;
 use crate::failure::{Failure, Outcome};
+use crate::interrupt::whole;
 use crate::output::print;
 use crate::progress::Bar;
 
@@ -46,7 +47,7 @@ pub(crate) fn run(options: &ReportOptions) -> Outcome {
     let json = report.to_json().map_err(Failure::input)?;
     let contents = [json.clone(), report.to_markdown(), report.to_html(&exhibits)];
     let written: Vec<(&str, &[u8])> = REPORT_FILES.into_iter().zip(contents.iter().map(String::as_bytes)).collect();
-    publish(&options.out, &written)?;
+    whole(|| publish(&options.out, &written))?;
 
     print(&if options.json { json } else { text(&report, &options.out) })?;
     if report.is_within_budget() == Some(false) { Err(Failure::Verdict) } else { Ok(()) }

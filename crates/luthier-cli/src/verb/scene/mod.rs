@@ -12,6 +12,7 @@ use serde_json::json;
 
 use crate::cli::BakeOptions;
 use crate::failure::{Broken, Failure, Outcome, files};
+use crate::interrupt::whole;
 use crate::materials::{print_diagnostics, valid};
 use crate::misses;
 use crate::output::{bytes, print};
@@ -65,7 +66,8 @@ pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
     };
     let (scene, materials) = read(path, options.quiet)?;
     let made = pool.install(|| Director::new(&scene, &materials, targets).step(None, options.allow_miss))?;
-    made.package.encode(options.compression())?.write(&options.out)?;
+    let encoded = made.package.encode(options.compression())?;
+    whole(|| encoded.write(&options.out))?;
     let missed = misses::name(&made.package.manifest, options.quiet)?;
     if options.json {
         let manifest = options.out.join(MANIFEST);

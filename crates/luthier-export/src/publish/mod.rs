@@ -157,3 +157,6 @@ fn list(folder: &Path, files: &mut Vec<PathBuf>) -> io::Result<()> {
 fn at<T>(action: &'static str, path: &Path, result: io::Result<T>) -> Result<T, PackageError> {
     result.map_err(|source| PackageError::Write { action, path: path.to_owned(), source })
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,122 @@
+//! Publications that are complete, interrupted, in the way of something, or two at once.
+
+use luthier_manifest::{FileEntry, Form, Manifest, ShaderEntry, Target};
+use tempfile::TempDir;
+
+use super::*;
+use crate::{Folder, sha256};
+
+/// A generation of files: a manifest that names one shader, whose text is given.
+fn generation(path: &str, text: &str) -> Vec<(String, Vec<u8>)> {
+    let file = FileEntry { path: path.to_owned(), sha256: sha256(text.as_bytes()) };
+    let shaders = vec![ShaderEntry { target: Target::Wgsl, form: Form::Baked, file }];
+    let manifest = Manifest { shaders, ..Manifest::new("luthier test", Vec::new(), Vec::new()) };
+    vec![(path.to_owned(), text.as_bytes().to_vec()), (MANIFEST.to_owned(), manifest.to_json().unwrap().into_bytes())]
+}
+
+fn put(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), PackageError> {
+    let files: Vec<(&str, &[u8])> = files.iter().map(|(path, bytes)| (path.as_str(), bytes.as_slice())).collect();
+    publish(folder, &files)
+}
+
+/// The text of the one shader that the manifest names.
+fn text(folder: &Path) -> String {
+    let folder = Folder::open(folder).unwrap();
+    folder.text(&folder.manifest().shaders[0].file).unwrap()
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut files = Vec::new();
+    list(folder, &mut files).unwrap();
+    let name = |path: &PathBuf| path.strip_prefix(folder).unwrap().to_string_lossy().replace('\\', "/");
+    files.iter().map(name).filter(|name| name != LOCK).collect()
+}
+
+fn folder() -> TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+#[test]
+fn a_generation_replaces_the_one_before_and_leaves_what_is_not_luthiers() {
+    let folder = folder();
+    std::fs::write(folder.path().join("note.txt"), "mine").unwrap();
+    put(folder.path(), &generation("shaders/a.wgsl", "first")).unwrap();
+    publish(folder.path(), &[(REPORT_FILES[0], b"{}")]).unwrap();
+    put(folder.path(), &generation("shaders/b.wgsl", "second")).unwrap();
+    assert_eq!(text(folder.path()), "second");
+    // The report was on the bake before.
+    assert_eq!(names(folder.path()), ["manifest.json", "note.txt", "shaders/b.wgsl"]);
+}
+
+/// Killed while files were written: the folder holds the generation before, and the next publication removes the rest.
+#[test]
+fn unfinished_files_are_swept() {
+    let folder = folder();
+    put(folder.path(), &generation("a.wgsl", "first")).unwrap();
+    std::fs::create_dir(folder.path().join(NEW)).unwrap();
+    std::fs::write(folder.path().join(NEW).join("a.wgsl"), "half").unwrap();
+    assert_eq!(text(folder.path()), "first");
+    put(folder.path(), &generation("a.wgsl", "third")).unwrap();
+    assert_eq!(text(folder.path()), "third");
+    assert_eq!(names(folder.path()), ["a.wgsl", "manifest.json"]);
+}
+
+/// Killed after every single move of a publication: readers see the new generation whole, and the next one finds its place.
+#[test]
+fn a_publication_that_was_interrupted_is_read_and_completed() {
+    for moved in 0..=2 {
+        let folder = folder();
+        put(folder.path(), &generation("a.wgsl", "first")).unwrap();
+        let next = generation("b.wgsl", "second");
+        let ready = folder.path().join(READY);
+        std::fs::create_dir(&ready).unwrap();
+        next.iter().for_each(|(path, bytes)| std::fs::write(ready.join(path), bytes).unwrap());
+        for (path, _) in next.iter().take(moved) {
+            std::fs::rename(ready.join(path), folder.path().join(path)).unwrap();
+        }
+        assert_eq!(text(folder.path()), "second", "{moved} files moved");
+        publish(folder.path(), &[(REPORT_FILES[1], b"judged")]).unwrap();
+        assert_eq!(text(folder.path()), "second", "{moved} files moved");
+        let stale = if moved == 2 { vec!["a.wgsl"] } else { Vec::new() };
+        let expected: Vec<&str> = stale.into_iter().chain(["b.wgsl", "manifest.json", REPORT_FILES[1]]).collect();
+        assert_eq!(names(folder.path()), expected, "{moved} files moved");
+    }
+}
+
+#[test]
+fn a_folder_in_the_place_of_a_file_stops_a_publication_before_it_begins() {
+    let folder = folder();
+    put(folder.path(), &generation("a.wgsl", "first")).unwrap();
+    std::fs::create_dir(folder.path().join("b.wgsl")).unwrap();
+    let error = put(folder.path(), &generation("b.wgsl", "second")).unwrap_err();
+    assert!(matches!(&error, PackageError::Write { path, .. } if path.ends_with("b.wgsl")), "{error}");
+    assert_eq!(text(folder.path()), "first");
+    assert_eq!(names(folder.path()), ["a.wgsl", "manifest.json"]);
+}
+
+#[test]
+fn publications_side_by_side_take_turns() {
+    let folder = folder();
+    let texts: Vec<String> = (0..8).map(|i| format!("generation {i}")).collect();
+    std::thread::scope(|scope| {
+        for (i, text) in texts.iter().enumerate() {
+            let path = folder.path();
+            scope.spawn(move || put(path, &generation(&format!("{i}.wgsl"), text)).unwrap());
+        }
+    });
+    assert!(texts.contains(&text(folder.path())));
+    assert_eq!(names(folder.path()).len(), 2, "{:?}", names(folder.path()));
+}
+
+/// A manifest names files; what of these lies outside its folder is nobody's to remove.
+#[test]
+fn nothing_outside_the_folder_is_removed() {
+    let around = folder();
+    let folder = around.path().join("out");
+    std::fs::write(around.path().join("secret"), "mine").unwrap();
+    put(&folder, &generation("a.wgsl", "first")).unwrap();
+    let manifest = std::fs::read_to_string(folder.join(MANIFEST)).unwrap().replace("a.wgsl", "../secret");
+    std::fs::write(folder.join(MANIFEST), manifest).unwrap();
+    put(&folder, &generation("b.wgsl", "second")).unwrap();
+    assert_eq!(std::fs::read_to_string(around.path().join("secret")).unwrap(), "mine");
+}
