@@ -1,5 +1,8 @@
 //! Bakes materials into tables, by a graph of pure jobs.
 //!
+#![doc = include_str!("../README.md")]
+//! # In detail
+//!
 //! [`bake`] plans one job per distinct table tile, runs the graph on the rayon pool, and assembles one atlas per kind with
 //! the layer records that refer to its tiles. A job is a pure function of its inputs; its [`Key`] is the hash of these, so
 //! equal interfaces of different materials share a tile, and the bytes depend on nothing else: not on threads, build
@@ -8,8 +11,6 @@
 //! Simplifications: albedos are tabulated at the nominal thickness of films, reflectances over all of their thickness where it
 //! varies; anisotropic surfaces enter with the
 //! geometric mean of their slope parameters.
-//!
-//! Out of scope: reading material files, encoding textures, shaders, the command line.
 
 mod assemble;
 mod balance;

@@ -1,5 +1,8 @@
 //! Costs of shaders on real GPU instruction sets, without a GPU.
 //!
+#![doc = include_str!("../README.md")]
+//! # In detail
+//!
 //! Mesa's RADV driver makes a device without hardware when it is told a family of chips; its compiler then runs in full, and reports
 //! instructions, registers, and cycles by its own model of the pipeline ([`Counts`]). The numbers depend on the kernels and the version
 //! of the driver only. Nothing can run on such a device.

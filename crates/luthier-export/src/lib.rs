@@ -1,30 +1,12 @@
 //! The library's front door: materials become a [`Package`] in memory, a package becomes files, and files become a package again.
 //!
-//! ```
-//! # #[cfg(feature = "bake")]
-//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! use luthier_export::{Bake, Compression, MemoryStore, Package, parse};
-//!
-//! let text = "schema = 1\nname = \"red\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n\
-//!             [[layer]]\ntype = \"diffuse\"\nalbedo = [0.5, 0.05, 0.05]\n";
-//! let material = parse("red.toml", text)?;
-//! let package = Package::new(&[material], &Bake::default(), &MemoryStore::default())?;
-//! assert!(package.wgsl(luthier_manifest::Form::Baked)?.contains("fn luthier_eval("));
-//! let folder = tempfile::tempdir()?;
-//! package.encode(Compression::Zstd)?.write(folder.path())?;
-//! assert_eq!(Package::read(folder.path())?.manifest.materials[0].name, "red");
-//! # Ok(())
-//! # }
-//! # #[cfg(not(feature = "bake"))]
-//! # fn main() {}
-//! ```
+#![cfg_attr(feature = "bake", doc = include_str!("../README.md"))]
+//! # In detail
 //!
 //! With the feature `bake`, which is the default, packages are made from materials, and material files are read with all that is wrong with
 //! them. Without it the crate reads packages only, and depends on nothing that bakes: so does the runtime, `luthier-gpu`.
 //!
 //! A set of materials outside the domain of its model is refused here, and by every program that is built on this crate.
-//!
-//! Out of scope: the command line, devices, judgement.
 
 mod encode;
 mod error;

@@ -1,15 +1,8 @@
 //! The runtime: takes the package of a bake, and nothing else, binds the emitted shader on a wgpu device, evaluates it
 //! for arrays of directions, reads its tables, and renders pictures.
 //!
-//! ```no_run
-//! # fn main() -> Result<(), luthier_gpu::GpuError> {
-//! let package = luthier_gpu::Package::read(std::path::Path::new("out"))?;
-//! let gpu = luthier_gpu::Gpu::open()?;
-//! let scene = gpu.scene(&package, luthier_manifest::Form::Baked)?;
-//! let up = [0.0, 0.0, 1.0];
-//! let rgb = scene.evaluate(0, &[(up, up)])?;
-//! # Ok(()) }
-//! ```
+#![doc = include_str!("../README.md")]
+//! # In detail
 //!
 //! Every call blocks until the device has answered. Group 0 is the shader's, as the manifest lists it; group 1
 //! belongs to the kernels of this crate (`src/wgsl`), which are appended to the text of the shader.
@@ -17,8 +10,6 @@
 //! Simplifications: one device at a time, compute passes only (the renderer is a compute kernel, so that it runs wherever
 //! evaluation does), shapes that rays meet in closed form, no shadows and no light between parts of a shape, and a timeout
 //! per submission in place of cancellation.
-//!
-//! Out of scope: windows, encoding pictures, the models themselves (the shader brings them).
 
 mod bindings;
 mod context;

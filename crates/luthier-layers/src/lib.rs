@@ -1,5 +1,8 @@
 //! Evaluation of layer stacks in f64: reflectance models, twins of the emitted shaders, and the references that judge both.
 //!
+#![doc = include_str!("../README.md")]
+//! # In detail
+//!
 //! | room | holds |
 //! |---|---|
 //! | `models` | every reflectance model under its name, with its facets, refraction and statistics of light |
@@ -16,8 +19,6 @@
 //!
 //! Stacks are described by [`luthier_optics`], directions are vectors of [`glam`], and indices complex numbers of [`num_complex`]; these
 //! crates are re-exported.
-//!
-//! Out of scope: reading material files, tables, devices.
 
 mod effects;
 mod models;

@@ -1,13 +1,11 @@
 //! Look-up tables as data: named axes with their mappings, texel formats, atlases of tiles, a sampler that
 //! behaves as texture hardware does, and error statistics.
 //!
-//! This crate is the one source of truth for where a value lies in a texture. The baker writes by it, the
-//! shader emitter prints it, the judge reads by it.
+#![doc = include_str!("../README.md")]
+//! # In detail
 //!
 //! Simplifications: tables have one or two axes and one mip level; filtering is bilinear with
 //! clamp-to-edge.
-//!
-//! Out of scope: file containers (`luthier-texture`), the functions that fill tables (`luthier-optics`).
 
 mod atlas;
 mod axis;

@@ -1,9 +1,10 @@
 //! Names and records of a bake: the manifest, the records of layers that shaders and their f64 twins read, budgets of tables, choices of
 //! scenes; models, features, forms, targets and colour modes by name.
 //!
-//! Every crate that reads or writes a bake says these things with the types of this crate.
+#![doc = include_str!("../README.md")]
+//! # In detail
 //!
-//! Out of scope: what a model computes (`luthier-layers`), files (`luthier-export`), texels (`luthier-lut`).
+//! Every crate that reads or writes a bake says these things with the types of this crate.
 
 mod choice;
 mod constants;

@@ -1,13 +1,14 @@
 //! Material files: TOML to a validated layer stack, with diagnostics that point at the mistake.
 //!
+#![doc = include_str!("../README.md")]
+//! # In detail
+//!
 //! [`parse`] reads one file. A declarative grammar (keys, types, ranges, alternatives) checks it first, a decoder then
 //! builds the [`Stack`](luthier_optics::stack::Stack); both report as much as they can in one run. [`schema`] is the same
 //! grammar as JSON Schema. [`parse_scene`] and [`scene_schema`] do the same for scenes, which name materials.
 //!
 //! Physical nonsense is an error, doubtful physics a warning. This crate crosses the units of files (degrees, artist's
 //! roughness) into those of the optics (radians, slope parameters), once.
-//!
-//! Out of scope: evaluating a material, and reading images; files named as maps are not opened here.
 
 mod bake_settings;
 mod check;

@@ -1,6 +1,9 @@
 //! Optics in double precision: indices, Fresnel, thin films, microfacet distributions, spectra and
 //! colour, quadrature, and the description of a layered surface.
 //!
+#![doc = include_str!("../README.md")]
+//! # In detail
+//!
 //! Directions are unit vectors that point away from the surface; local +z is the normal. `alpha` is the
 //! slope parameter. Indices are `n + i k` with `k >= 0`. Lengths carry their unit in the name. Colour
 //! is linear Rec.709 with a D65 white.
@@ -9,8 +12,6 @@
 //!
 //! Everything is deterministic: transcendental functions come from `libm`, so that the same input gives
 //! the same bits on every platform.
-//!
-//! Out of scope: polarised light as output, scattering media, birefringence, diffraction.
 
 pub mod albedo;
 pub mod color;

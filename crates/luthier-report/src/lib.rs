@@ -1,5 +1,8 @@
 //! The judge: how far the tables and the shaders of a bake are from the f64 reference, as numbers and as a page.
 //!
+#![doc = include_str!("../README.md")]
+//! # In detail
+//!
 //! [`judge`] takes what a bake shipped (manifest, decoded texels), the stacks that it was made from, and optionally a
 //! [`Device`] that runs the emitted shaders. Every figure of the [`Report`] comes from that run:
 //!
@@ -14,7 +17,7 @@
 //! [`audit()`] judges a table that anybody made against what it is said to hold.
 //! [`parity`] compares the shaders of all models with their f64 twins. [`compare_pictures`] compares two rendered pictures,
 //! [`render_ball`] makes one in f64, [`Plot`] draws curves.
-//! The caller puts the rest of a page (searches, costs, pictures, models against the reference) into the report: [`Costs`],
+//! What else a page shows (searches, costs, pictures, models against the reference) is put into the report by its caller: [`Costs`],
 //! [`Exhibits`], [`judge_shading_models`]. [`limits()`] holds the report against budgets.
 //! [`judge_models`] is the judge of what the bake stands on: every reflectance model against the Monte Carlo of whole stacks.
 //! [`stability`] runs every method where methods fail, and says where each may be used.
@@ -22,8 +25,6 @@
 //! Simplifications: of thickness maps only what follows from the stack is checked (range, normalisation), because their
 //! truth is a noise function or an image that only the baker has; the albedo's estimate shares its walks and quadrature with
 //! the baker (both are of `luthier-optics`), not their seeds, number or colour treatment.
-//!
-//! Out of scope: baking, decoding containers, running shaders, files. The judge never uses the baker.
 
 mod audit;
 mod ball;

@@ -1,5 +1,8 @@
 //! The cheapest model of each material of a scene whose error against the reference stays inside a budget.
 //!
+#![doc = include_str!("../README.md")]
+//! # In detail
+//!
 //! [`Judge`] holds one material: its candidates (model, colour, what is left out of the stack) in the order of their cost, the
 //! directions of the scene, and the reference there. [`Judge::choose`] takes the first candidate that holds.
 //!
@@ -8,8 +11,6 @@
 //!
 //! Simplifications: lights are one direction, a range of directions, or equal from everywhere; effects and maps are not judged;
 //! films that vary are judged at their nominal thickness; a pixel's footprint counts as slopes of every interface.
-//!
-//! Out of scope: reading scene files, tables, shaders.
 
 mod candidate;
 mod choice;

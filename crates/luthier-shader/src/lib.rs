@@ -1,5 +1,8 @@
 //! Shaders for exactly the materials and tables at hand.
 //!
+#![doc = include_str!("../README.md")]
+//! # In detail
+//!
 //! [`emit`] composes WGSL from small modules (`src/wgsl`, one per model or table), leaves out what no material of the set
 //! uses, has naga validate it, and gives it as WGSL, GLSL 4.50, GLSL ES 3.00, HLSL or MSL. The result is a snippet to
 //! paste: `luthier_eval` and its helpers, no entry point, group 0 for [`bindings`]. [`complete`] puts a small fragment shader
@@ -19,8 +22,6 @@
 //!
 //! Sums of `luthier_eval` over lights go through `luthier_bounded` where they are written. Numbers of group 0 from
 //! [`RESERVED_BINDINGS`] up are the caller's.
-//!
-//! Out of scope: texels and files (`luthier-lut`, `luthier-texture`), devices (`luthier-gpu`).
 
 mod compose;
 mod emit;

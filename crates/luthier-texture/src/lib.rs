@@ -2,6 +2,9 @@
 //! of radiance ([`radiance`]) and tables ([`table`]: DDS, KTX2, EXR, PNG, raw). The bytes of a file depend
 //! on its content only; nothing here reads a clock or starts a thread.
 //!
+#![doc = include_str!("../README.md")]
+//! # In detail
+//!
 //! Every reader takes untrusted bytes: sizes are checked against [`MAX_SIDE`] and [`MAX_BYTES`] before anything is
 //! allocated for them, and memory grows with the data found rather than with the data promised.
 //!
@@ -9,8 +12,6 @@
 //!
 //! Simplifications: textures that are written are two-dimensional with one level, one layer and one face; EXR files are
 //! single-part scan-line images of 32-bit floats.
-//!
-//! Out of scope: writing files, block compression.
 
 mod dds;
 mod error;

@@ -1,5 +1,8 @@
 //! A window to look at materials and to edit them: [`run`] opens it and returns when it is closed.
 //!
+#![doc = include_str!("../README.md")]
+//! # In detail
+//!
 //! Three threads stand behind the one of the window, each with the latest order only: one looks whether files changed, one
 //! bakes the material that is shown, one renders it. While something moves the picture is small and coarse; at rest it is
 //! rendered again with more samples. A material that cannot be used leaves the last picture where it was, below the message.
@@ -9,8 +12,6 @@
 //! Simplifications: the renderer has a device of its own, and its pixels travel through memory to the window's, so that
 //! neither can bring down the other and both may use different adapters. Edits live in the window; nothing writes them to a
 //! file, and a change on disk replaces them. On Linux the window speaks X11, which Wayland desktops understand.
-//!
-//! Out of scope: reading and writing files, baking, several windows.
 
 mod app;
 mod baker;
