@@ -547,7 +547,7 @@ pub(crate) struct EvalOptions {
     /// White furnace against angle: radiance of the lossless surface under light of radiance 1, and its deviation from 1
     #[arg(long)]
     pub(crate) furnace: bool,
-    /// What the first interface mirrors of an environment of radiance 1, against angle (elek)
+    /// Radiance that the first interface mirrors of an environment of radiance 1, against angle (elek)
     #[arg(long)]
     pub(crate) environment: bool,
     /// Reflectance of light polarised normal to the plane of incidence (s) and in it (p), against angle: one smooth interface, bare or

@@ -68,7 +68,7 @@ pub(crate) struct PreviewOptions {
     /// Folder of the bake, for materials by name
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(crate) out: PathBuf,
-    /// What to render
+    /// Shape to render
     #[arg(long, value_enum, default_value_t = ShapeName::Sphere)]
     pub(crate) shape: ShapeName,
     /// Side of the picture in pixels
@@ -90,7 +90,7 @@ pub(crate) struct GalleryOptions {
     /// Picture to write: .png or .exr
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: PathBuf,
-    /// What to render: sphere, torus or plane
+    /// Shape to render: sphere, torus or plane
     #[arg(long, value_enum, default_value_t = ShapeName::Sphere)]
     pub(crate) shape: ShapeName,
     /// Side of each picture in pixels
@@ -131,7 +131,7 @@ pub(crate) struct CompareOptions {
     /// Folder of the bake, for materials by name
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(crate) out: PathBuf,
-    /// What to render: sphere, torus or plane
+    /// Shape to render: sphere, torus or plane
     #[arg(long, value_enum, default_value_t = ShapeName::Sphere)]
     pub(crate) shape: ShapeName,
     /// Side of the pictures in pixels

@@ -30,7 +30,7 @@ pub(crate) struct ViewOptions {
     /// Reads the tables, or evaluates everything in ALU
     #[arg(long, value_parser = named::<Form>(Form::NAMES), default_value_t = Form::Baked)]
     pub(crate) form: Form,
-    /// What to show: sphere, torus or plane
+    /// Shape to show: sphere, torus or plane
     #[arg(long, value_enum, default_value_t = ShapeName::Sphere)]
     pub(crate) shape: ShapeName,
     /// Inner size of the window

@@ -1,3 +1,5 @@
+//! `bake`: files into a folder.
+
 use std::collections::BTreeSet;
 use std::time::Instant;
 

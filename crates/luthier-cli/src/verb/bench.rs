@@ -1,3 +1,5 @@
+//! `bench`: shaders timed on the adapter at hand.
+
 use luthier_export::{GENERATOR, Package, Shader, read};
 use luthier_gpu::{Gpu, Scene, Stopwatch};
 use luthier_manifest::ShadingModel;

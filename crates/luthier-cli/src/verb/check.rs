@@ -1,3 +1,5 @@
+//! `check`: what is wrong with files, without a bake.
+
 use luthier_export::{Source, find, input, of_model, read_one, refuse, refuse_too_many};
 use luthier_material::{Diagnostic, is_scene};
 use serde_json::{Value, json};

@@ -1,3 +1,5 @@
+//! `ior`: the built-in optical constants.
+
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::constants::{Dataset, dataset, datasets};

@@ -1,3 +1,5 @@
+//! `models`: the list of reflectance models.
+
 use luthier_layers::model::{Claims, Kind, ModelInfo};
 use luthier_layers::registry::models;
 use luthier_report::{ModelSettings, ModelSubject, judge_models};

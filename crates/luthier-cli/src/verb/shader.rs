@@ -1,3 +1,5 @@
+//! `shader`: the shader of some materials, without a bake.
+
 use luthier_bake::Options;
 use luthier_export::{outline, read};
 use luthier_shader::{MaterialSet, Target, complete, complete_spirv, emit, emit_constant, emit_spirv};

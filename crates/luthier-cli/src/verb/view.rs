@@ -1,3 +1,5 @@
+//! `view`: the window.
+
 use std::sync::Arc;
 
 use luthier_gpu::Shape;

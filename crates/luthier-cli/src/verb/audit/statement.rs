@@ -1,3 +1,5 @@
+//! A foreign table as the command line states it.
+
 use luthier_optics::constants::{dataset, datasets};
 use luthier_optics::interface::Interface;
 use luthier_optics::ior::Ior;

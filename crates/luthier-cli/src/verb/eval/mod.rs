@@ -1,3 +1,5 @@
+//! `eval`: a reflectance model of a material, in f64.
+
 mod function;
 mod place;
 mod polarised;

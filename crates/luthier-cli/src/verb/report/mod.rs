@@ -1,3 +1,5 @@
+//! `report`: a bake judged, as JSON, as Markdown and as a page.
+
 mod evidence;
 #[cfg(feature = "gpu")]
 mod pictures;
