@@ -1,3 +1,5 @@
+//! `bake`: files into a folder.
+
 use std::collections::BTreeSet;
 use std::time::Instant;
 
@@ -6,13 +8,12 @@ use luthier_export::{Bake, Compression, MANIFEST, MemoryStore, Package, Source, 
 use luthier_manifest::{CandidateForm, Manifest};
 use luthier_material::Diagnostic;
 use luthier_shader::{Form, Target};
+use luthier_terminal::{Failure, Outcome, bytes, print, valid};
 use serde_json::{Value, json};
 
 use crate::cli::{BakeOptions, Emission};
-use crate::failure::{Failure, Outcome};
-use crate::materials::{shaded, valid};
+use crate::materials::shaded;
 use crate::misses;
-use crate::output::{bytes, print};
 use crate::progress::BakeProgress;
 use crate::verb::check::diagnostics;
 use crate::verb::scene;

@@ -56,8 +56,8 @@ fn intro(command: &str) -> String {
          absorption, films, slopes of the diffuse base, anisotropy, one transparent layer, and any of these together, where that makes the \
          model cheaper. Which models have light between layers, and bounces between facets, is their own affair: `belcour` and \
          `yamaguchi` have both in their energies, the others neither.\n\
-         - *Cost*: cycles per wave of 64 ({driver}, {family}) from `crates/luthier-scene/data/cost.json`, made by `luthier cost materials \
-         materials/scenes/still-life --shapes`: by model, form and shape of the stack. A stack whose shape was not measured has the cost of the most similar one (`~`).\n\
+         - *Cost*: cycles per wave of 64 ({driver}, {family}) from `crates/luthier-scene/data/cost.json`, made by `luthier-lab shapes materials \
+         materials/scenes/still-life`: by model, form and shape of the stack. A stack whose shape was not measured has the cost of the most similar one (`~`).\n\
          - *Verdict*: the cheapest candidate whose largest error, plus two standard errors of the reference, is inside {model:.0} % of each limit; \
          the standard error must be below a quarter of that. Samples are doubled where a decision is open, up to {samples} million for a \
          material; what is open then is `undecided`, and not taken. Tables have the other {rest:.0} %: of the limits 1e-2, 3e-3, 1e-3, 3e-4, \
