@@ -1,3 +1,5 @@
+//! Counts of a kernel.
+
 use serde::{Deserialize, Serialize};
 
 /// Counts that RADV's compiler (ACO) reports of one kernel, for one wave of 64.

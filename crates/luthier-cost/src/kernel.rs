@@ -1,3 +1,5 @@
+//! Kernels: a shader in a harness.
+
 use luthier_shader::{Form, MaterialSet, Target, bindings, emit, emit_constant, spirv_words};
 use serde::{Deserialize, Serialize};
 

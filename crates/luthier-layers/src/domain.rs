@@ -1,6 +1,6 @@
 //! Domains of the shaders' models: ranges of index, slope, thickness and absorption within which they may be used.
 //!
-//! The ranges are those over which no level (f64, tables, f32, device) of the stability suite fails: `luthier stability` derives them
+//! The ranges are those over which no level (f64, tables, f32, device) of the stability suite fails: `luthier-lab stability` derives them
 //! anew, and a test of luthier-report compares. Between the values that the suite tries, the last that did not fail counts.
 //!
 //! What a model leaves out within its domain (bounces, blur, 1/n^2) is no matter of the domain: `docs/pages/models.md` has its size.

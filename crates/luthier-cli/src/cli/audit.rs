@@ -27,7 +27,7 @@ pub(crate) struct AuditOptions {
     /// The table
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
-    /// What it is said to hold: ggx- or beckmann- with a masking term, ndf or all-bounces; or fresnel
+    /// Function that it is said to hold: ggx- or beckmann- with a masking term, ndf or all-bounces; or fresnel
     #[arg(long, value_name = "NAME")]
     pub(crate) model: Option<String>,
     /// Its axes, across first: [-]QUANTITY[=MIN..MAX][^EXPONENT|@log]; - is falling
@@ -36,7 +36,7 @@ pub(crate) struct AuditOptions {
     /// Where nodes lie: texel centres of 0..1, or 0 and 1 at the first and last texel
     #[arg(long, value_enum)]
     pub(crate) nodes: Option<NodesName>,
-    /// What each channel holds: scale, bias, albedo; red, green, blue; scaled-d, d
+    /// Content of each channel: scale, bias, albedo; red, green, blue; scaled-d, d
     #[arg(long, value_name = "TERM,..", value_delimiter = ',')]
     pub(crate) values: Option<Vec<String>>,
     /// Channels to read, in the order of --values

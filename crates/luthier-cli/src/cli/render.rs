@@ -9,7 +9,9 @@ use luthier_gpu::{Shape, ToneMapping};
 use luthier_lut::UnknownName;
 use luthier_manifest::{Form, ShadingModel};
 
-use super::{Shading, Sources};
+use luthier_terminal::Sources;
+
+use super::Shading;
 
 const PREVIEW_EXAMPLES: &str = "\
 MATERIAL is a material file, or the name of a material in the bake. Directions and positions have +y up and +z to the eye;
@@ -68,7 +70,7 @@ pub(crate) struct PreviewOptions {
     /// Folder of the bake, for materials by name
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(crate) out: PathBuf,
-    /// What to render
+    /// Shape to render
     #[arg(long, value_enum, default_value_t = ShapeName::Sphere)]
     pub(crate) shape: ShapeName,
     /// Side of the picture in pixels
@@ -90,7 +92,7 @@ pub(crate) struct GalleryOptions {
     /// Picture to write: .png or .exr
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: PathBuf,
-    /// What to render: sphere, torus or plane
+    /// Shape to render: sphere, torus or plane
     #[arg(long, value_enum, default_value_t = ShapeName::Sphere)]
     pub(crate) shape: ShapeName,
     /// Side of each picture in pixels
@@ -131,7 +133,7 @@ pub(crate) struct CompareOptions {
     /// Folder of the bake, for materials by name
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(crate) out: PathBuf,
-    /// What to render: sphere, torus or plane
+    /// Shape to render: sphere, torus or plane
     #[arg(long, value_enum, default_value_t = ShapeName::Sphere)]
     pub(crate) shape: ShapeName,
     /// Side of the pictures in pixels

@@ -6,7 +6,9 @@ use clap::{Args, ValueEnum};
 
 use luthier_manifest::Form;
 
-use super::{Look, Shading, ShapeName, Sources, named};
+use luthier_terminal::{Sources, named};
+
+use super::{Look, Shading, ShapeName};
 
 const VIEW_EXAMPLES: &str = "\
 Drag turns the shape, a drag with the right button the light, the wheel zooms; H lists the keys. Files are read again when they
@@ -30,7 +32,7 @@ pub(crate) struct ViewOptions {
     /// Reads the tables, or evaluates everything in ALU
     #[arg(long, value_parser = named::<Form>(Form::NAMES), default_value_t = Form::Baked)]
     pub(crate) form: Form,
-    /// What to show: sphere, torus or plane
+    /// Shape to show: sphere, torus or plane
     #[arg(long, value_enum, default_value_t = ShapeName::Sphere)]
     pub(crate) shape: ShapeName,
     /// Inner size of the window

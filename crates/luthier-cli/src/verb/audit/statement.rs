@@ -1,13 +1,15 @@
+//! A foreign table as the command line states it.
+
 use luthier_optics::constants::{dataset, datasets};
 use luthier_optics::interface::Interface;
 use luthier_optics::ior::Ior;
 use luthier_optics::split_sum::Masking;
 use luthier_optics::stack::Distribution;
 use luthier_report::{Layout, Model, Nodes, Statement, Term};
+use luthier_terminal::{Failure, Outcome};
 use luthier_texture::table::Table;
 
 use crate::cli::{AuditOptions, NodesName, PresetName};
-use crate::failure::{Failure, Outcome};
 
 /// Contents of an engine's tables.
 struct Preset {

@@ -1,0 +1,534 @@
+//! The command line: the one definition of verbs, options and their help.
+
+#[cfg(feature = "gpu")]
+use std::num::NonZeroU32;
+use std::path::PathBuf;
+
+use clap::{ArgGroup, Args, Parser, Subcommand};
+#[cfg(feature = "cost")]
+use luthier_cost::Family;
+use luthier_lut::TableKind;
+use luthier_manifest::{Form, ShadingModel, Target};
+use luthier_terminal::{Sources, named};
+
+use crate::directions::Angles;
+use crate::model_inputs::ModelInputs;
+
+const AFTER_HELP: &str = "\
+Exit codes:
+  0  success
+  1  an input is invalid, or a budget is exceeded or cannot be met
+  2  the command line is wrong
+  3  a file cannot be read or written
+  4  no usable graphics adapter, driver or display, or it failed
+
+With --json a failure is one JSON object on standard output, besides the sentence on standard error:
+  {\"error\": {\"code\": 1, \"kind\": \"input\", \"message\": \"...\", \"diagnostics\": []}}
+The kinds are input (1), usage (2), files (3) and device (4); diagnostics are those of `luthier check --json`.
+
+Examples:
+  luthier bake materials            tables, manifest and shaders into out/
+  luthier report --max-error 1e-3   judge out/ against the full evaluation in f64
+  luthier preview materials/red-lacquer.toml -o ball.png
+  luthier check my-material.toml
+  luthier shader materials/red-lacquer.toml --target glsl450";
+
+/// Bakes layered materials into look-up tables, with a shader that reads them and a report that proves the error.
+#[derive(Debug, Parser)]
+#[command(name = "luthier", version, after_help = AFTER_HELP, max_term_width = 100)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) verb: Verb,
+}
+
+/// Verbs that a cargo feature brings, and the feature.
+pub(crate) const OF_FEATURES: [(&str, &str); 6] =
+    [("preview", "gpu"), ("gallery", "gpu"), ("compare", "gpu"), ("bench", "gpu"), ("cost", "cost"), ("view", "view")];
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Verb {
+    /// Bake materials: textures, manifest and shaders
+    Bake(BakeOptions),
+    /// Validate materials and scenes as `bake` would, without baking, and print the class of each surface
+    Check(CheckOptions),
+    /// Judge a bake: tables and shaders against the full evaluation in f64
+    Report(ReportOptions),
+    /// Judge a table that anybody made, and find the mistake in it
+    Audit(Box<AuditOptions>),
+    /// Render a material off screen
+    #[cfg(feature = "gpu")]
+    Preview(PreviewOptions),
+    /// Render a contact sheet of many materials
+    #[cfg(feature = "gpu")]
+    Gallery(GalleryOptions),
+    /// Render a material with two shaders and compare the pictures
+    #[cfg(feature = "gpu")]
+    Compare(CompareOptions),
+    /// Costs of every shader of every material on real GPUs, which need not be here: a page in Markdown
+    #[cfg(feature = "cost")]
+    Cost(CostOptions),
+    /// Time every shader of every material on the graphics adapter at hand
+    #[cfg(feature = "gpu")]
+    Bench(BenchOptions),
+    /// Open a window: turn, light and edit materials, and see them change with their files
+    #[cfg(feature = "view")]
+    View(ViewOptions),
+    /// Print the shader of some materials, or write it to a file
+    Shader(ShaderOptions),
+    /// List the reflectance models
+    Models(ModelsOptions),
+    /// Evaluate a reflectance model of a material in f64
+    Eval(Box<EvalOptions>),
+    /// List the built-in optical constants, or show one set
+    Ior(IorOptions),
+    /// Print the JSON Schema of material files, or of scenes
+    #[command(
+        after_help = "Examples:\n  luthier schema > material.schema.json\n  luthier schema --scene > scene.schema.json"
+    )]
+    Schema {
+        /// That of scene files
+        #[arg(long)]
+        scene: bool,
+    },
+}
+
+/// The model of the shaders, and the tables beside them.
+#[derive(Debug, Default, Args)]
+pub(crate) struct Shading {
+    /// Reflectance model of the shader; by default the one that each material file asks for
+    #[arg(long, value_name = "NAME", value_parser = named::<ShadingModel>(ShadingModel::NAMES))]
+    pub(crate) model: Option<ShadingModel>,
+    /// Kinds of tables to bake and bind for every material, beside those that its shader reads
+    #[arg(long, value_name = "KIND,...", value_delimiter = ',', value_parser = named::<TableKind>(TableKind::NAMES))]
+    pub(crate) tables: Vec<TableKind>,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  luthier bake materials\n  luthier bake a.toml b.toml --out build/luts --threads 1 --json\n  \
+                  luthier bake a.toml --max-abs 1e-3 --max-cost 200\n  \
+                  luthier bake materials --target wgsl,msl --form baked\n  \
+                  luthier bake a.toml --tables fgd,fresnel\n  \
+                  luthier bake materials/scenes/showroom.toml\n  luthier bake materials/scenes/still-life.toml --budgets 0.3,0.1,0.03"
+)]
+pub(crate) struct BakeOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    #[command(flatten)]
+    pub(crate) shading: Shading,
+    #[command(flatten)]
+    pub(crate) limits: Limits,
+    #[command(flatten)]
+    pub(crate) emission: Emission,
+    /// Of a scene: where no model holds the budget, take the most accurate
+    #[arg(long)]
+    pub(crate) allow_miss: bool,
+    /// Of scenes: print what would be chosen under each of these limits on the relative error, as a page in Markdown; nothing is written
+    #[arg(long, value_name = "X,...", value_delimiter = ',', value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) budgets: Vec<f64>,
+    /// Folder to write to
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub(crate) out: PathBuf,
+    /// Leave the texels of the textures uncompressed, for programs that decode no zstd
+    #[arg(long)]
+    pub(crate) no_zstd: bool,
+    /// Threads to use; by default all. The bytes do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// Print what was made as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print errors only
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+/// The shaders to write.
+#[derive(Debug, Args)]
+pub(crate) struct Emission {
+    /// Languages of the shaders; by default wgsl, glsl450 and glsl-es300
+    #[arg(long, value_parser = named::<Target>(Target::NAMES), value_name = "NAME,...", value_delimiter = ',')]
+    pub(crate) target: Vec<Target>,
+    /// Forms of the shaders; by default both
+    #[arg(long, value_parser = named::<Form>(Form::NAMES), value_name = "NAME,...", value_delimiter = ',')]
+    pub(crate) form: Vec<Form>,
+}
+
+/// Limits on tables, each in place of those in the files' `[budget]`: the cheapest tables that hold them are taken (docs/pages/budgets.md).
+#[derive(Debug, Args)]
+pub(crate) struct Limits {
+    /// Largest absolute error of a sampled table; of D, relative to its peak
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) max_abs: Option<f64>,
+    /// Largest error relative to the value, or to 0.01 where it is less
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) max_rel: Option<f64>,
+    /// Largest CIEDE2000 difference of tabulated reflectances under D65
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) delta_e: Option<f64>,
+    /// Bytes of the texels of all tables
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
+    pub(crate) max_bytes: Option<u64>,
+    /// Estimated cost of one read of every table, in operations
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) max_cost: Option<f64>,
+    /// Take fixed sizes, mappings and formats, whatever the budget
+    #[arg(long, conflicts_with_all = ["max_abs", "max_rel", "delta_e", "max_bytes", "max_cost"])]
+    pub(crate) no_search: bool,
+}
+
+impl Limits {
+    /// The options of the baker under these limits.
+    pub(crate) fn options(&self) -> luthier_bake::Options {
+        let &Self { max_abs, max_rel, delta_e, max_bytes, max_cost, no_search } = self;
+        let budget = luthier_manifest::Budget { max_abs, max_rel, delta_e, max_bytes, max_cost };
+        luthier_bake::Options { budget, search: !no_search, ..luthier_bake::Options::default() }
+    }
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  luthier check materials\n  luthier check mine.toml --json")]
+pub(crate) struct CheckOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    #[command(flatten)]
+    pub(crate) shading: Shading,
+    /// Print the diagnostics as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Exits with 1 when a limit is broken: of the command line, or a budget of a material file.\n\nExamples:\n  luthier report\n  \
+                  luthier report --out build/luts --max-error 1e-3 --max-delta-e 1\n  luthier report --no-device --json\n  luthier report \
+                  --reference --cost cost.json --stability suite.json"
+)]
+pub(crate) struct ReportOptions {
+    /// Folder of the bake; the report goes into its folder report/
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub(crate) out: PathBuf,
+    /// Exit with 1 when the largest relative error of a shader exceeds this, or the error of a table that misses what its bake aimed at
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) max_error: Option<f64>,
+    /// Exit with 1 when the absolute error of a table exceeds this, as measured here
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) max_abs: Option<f64>,
+    /// Exit with 1 when a colour difference (CIEDE2000, daylight) of a shader exceeds this
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) max_delta_e: Option<f64>,
+    /// Exit with 1 when the mean FLIP of a material's pictures exceeds this
+    #[cfg(feature = "gpu")]
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true, conflicts_with = "no_device")]
+    pub(crate) max_flip: Option<f64>,
+    /// Exit with 1 when the texels of all tables take more bytes than this
+    #[arg(long, value_name = "N")]
+    pub(crate) max_bytes: Option<u64>,
+    /// Exit with 1 when the lobe error of a model that ships, against the reference, exceeds this
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true, requires = "reference")]
+    pub(crate) max_lobe: Option<f64>,
+    /// Compare the models with simulated paths, this many a view
+    #[arg(long, value_name = "PATHS", num_args = 0..=1, default_missing_value = "1000", require_equals = true)]
+    pub(crate) reference: Option<std::num::NonZeroU32>,
+    /// Costs of shaders: what `luthier cost --json` printed for these materials
+    #[arg(long, value_name = "FILE")]
+    pub(crate) cost: Option<PathBuf>,
+    /// The stability suite: what `luthier-lab stability --json` printed
+    #[arg(long, value_name = "FILE")]
+    pub(crate) stability: Option<PathBuf>,
+    /// Side of the pictures in pixels; 0 makes none
+    #[cfg(feature = "gpu")]
+    #[arg(long, value_name = "N", default_value_t = 144, value_parser = clap::value_parser!(u32).range(0..=512))]
+    pub(crate) picture_size: u32,
+    /// Pairs of directions in every set of every material
+    #[arg(long, value_name = "N", default_value_t = 4096, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) pairs: u32,
+    /// Judge the tables only, without running the shaders
+    #[arg(long)]
+    pub(crate) no_device: bool,
+    /// Use the graphics adapter whose name contains this
+    #[cfg(feature = "gpu")]
+    #[arg(long, value_name = "NAME", conflicts_with = "no_device")]
+    pub(crate) adapter: Option<String>,
+    /// Print report.json to standard output as well
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+mod audit;
+pub(crate) use audit::{AuditOptions, NodesName, PresetName, SamplesName};
+
+#[cfg(feature = "gpu")]
+mod render;
+#[cfg(feature = "gpu")]
+pub(crate) use render::{CompareOptions, GalleryOptions, Look, PreviewOptions, ShaderChoice, ShapeName};
+
+#[cfg(feature = "cost")]
+const COST_EXAMPLES: &str = "\
+Mesa's RADV driver compiles for these GPUs without having one; where it is missing, the exit code is 4. What making directions \
+and writing the value costs is subtracted. Every shader comes with its material in a buffer and as constants of the code, and the \
+form `baked` with D from its table and in closed form, unless named.
+
+Examples:
+  luthier cost materials -o docs/pages/cost.md
+  luthier cost mine.toml --model elek --model phong --family rdna2 --json
+  luthier cost materials --set --form baked
+  luthier cost mine.toml --model elek --form baked --closed --constant --family rdna2 --assembly";
+
+#[cfg(feature = "cost")]
+#[derive(Debug, Args)]
+#[command(after_help = COST_EXAMPLES)]
+pub(crate) struct CostOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Model to compile; may be given again. By default all
+    #[arg(long, value_name = "NAME", value_parser = named::<ShadingModel>(ShadingModel::NAMES))]
+    pub(crate) model: Vec<ShadingModel>,
+    /// Form to compile; may be given again. By default both
+    #[arg(long, value_parser = named::<Form>(Form::NAMES), value_name = "FORM")]
+    pub(crate) form: Vec<Form>,
+    /// Instruction set: gcn5, rdna2 or rdna3; may be given again. By default all
+    #[arg(long, value_name = "NAME", value_parser = named::<Family>(Family::NAMES))]
+    pub(crate) family: Vec<Family>,
+    /// All materials in one shader, as a bake of them has it, instead of each in its own
+    #[arg(long)]
+    pub(crate) set: bool,
+    /// Only shaders whose D is a closed form
+    #[arg(long)]
+    pub(crate) closed: bool,
+    /// Only shaders whose material is constants of the code
+    #[arg(long, conflicts_with = "set")]
+    pub(crate) constant: bool,
+    /// Print the machine code of one kernel
+    #[arg(long, conflicts_with_all = ["json", "output"])]
+    pub(crate) assembly: bool,
+    /// JSON instead of Markdown
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// File to write instead of standard output
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+#[cfg(feature = "gpu")]
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Shaders take turns; what is printed are nanoseconds per evaluation. A software adapter is timed like any other, and named as one.\n\nExamples:\n  luthier bench materials/car-paint.toml\n  luthier bench mine.toml --model elek --repeats 100 --json -o bench.json"
+)]
+pub(crate) struct BenchOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Model to time besides Phong's; may be given again. By default all
+    #[arg(long, value_name = "NAME", value_parser = named::<ShadingModel>(ShadingModel::NAMES))]
+    pub(crate) model: Vec<ShadingModel>,
+    /// Evaluations of one run, at least
+    #[arg(long, value_name = "N", default_value_t = 1 << 20, value_parser = clap::value_parser!(u32).range(1..=60_000_000))]
+    pub(crate) evaluations: u32,
+    /// Runs of each shader that do not count
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub(crate) warm_up: u32,
+    /// Runs of each shader that count
+    #[arg(long, value_name = "N", default_value_t = BENCH_REPEATS)]
+    pub(crate) repeats: NonZeroU32,
+    /// Use the graphics adapter whose name contains this
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+    /// JSON instead of a table
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// File to write instead of standard output
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+/// Runs that count: the median is then safe from fourteen outliers.
+#[cfg(feature = "gpu")]
+const BENCH_REPEATS: NonZeroU32 = NonZeroU32::new(30).expect("not zero");
+
+#[cfg(feature = "view")]
+mod view;
+#[cfg(feature = "view")]
+pub(crate) use view::{ThemeName, ViewOptions};
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  luthier shader materials\n  luthier shader mine.toml --target glsl-es300 --form full --complete\n  luthier shader mine.toml --target spirv --complete -o mine.spv"
+)]
+pub(crate) struct ShaderOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    #[command(flatten)]
+    pub(crate) shading: Shading,
+    /// Language
+    #[arg(long, value_parser = named::<Target>(Target::NAMES), default_value_t = Target::Wgsl)]
+    pub(crate) target: Target,
+    /// Reads the tables, or evaluates everything in ALU
+    #[arg(long, value_parser = named::<Form>(Form::NAMES), default_value_t = Form::Baked)]
+    pub(crate) form: Form,
+    /// D in closed form instead of from its table
+    #[arg(long)]
+    pub(crate) closed: bool,
+    /// The numbers of one material as constants of the code instead of a buffer
+    #[arg(long, conflicts_with = "complete")]
+    pub(crate) constant: bool,
+    /// A complete small fragment shader instead of functions to paste (SPIR-V: instead of a library to link)
+    #[arg(long)]
+    pub(crate) complete: bool,
+    /// File to write instead of standard output
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  luthier models\n  luthier models --json")]
+pub(crate) struct ModelsOptions {
+    /// Print as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+const EVAL_EXAMPLES: &str = "\
+Prints f cos theta_i in linear Rec.709, spectral by default. Models with a shader (elek, weidlich-wilkie, granier-heidrich, belcour, \
+yamaguchi, phong, microfacet) are its f64 twin: one index at 589.3 nm bends the directions of all channels, colours are those of \
+each term. --three-wavelengths stands for the `full` form, spectral colour for the `baked` one.
+
+Effects of the file count at the place of --uv and --distance: flakes and patina for elek and weidlich-wilkie, glitter for all; JSON says \
+what is there. That is `luthier_eval_at`; --no-effects is `luthier_eval`. Other maps of the file do not count: the options on textures \
+say what they hold.
+
+Estimates come with their standard error. It is `not-settled`, in JSON null beside `settled` false, where rare paths carry the light and too \
+few of them were met to know it; more --samples settle it.
+
+Furnace: the surface without loss (no absorption, conductors and diffuse bases that reflect everything, a white base below a \
+last medium; for models of one interface a mirror below it) under light of radiance 1 from everywhere. What a model shows \
+of it is 1 where it keeps all energy.
+
+Matrix: CSV. The first row has the wavelengths of the light in nm after a first field that is free; each row below has a \
+wavelength that comes out, the same ones, and the shares of the power of each wavelength of the light that come out there.
+
+Examples:
+  luthier eval materials/red-lacquer.toml --model belcour --wi 30,0 --wo 45,180
+  luthier eval materials/red-lacquer.toml --model layered-mc --wi 30,0 --wo 45,180 --wavelength 550
+  luthier eval materials/car-paint.toml --model elek --directions pairs.csv --three-wavelengths
+  luthier eval materials/car-paint.toml --model elek --directions - --json
+  luthier eval materials/car-paint.toml --model elek --albedo
+  luthier eval materials/car-paint.toml --model elek --albedo --angles 0,60 --normal 10,0
+  luthier eval materials/copper-patina.toml --model elek --uv 0.2,0.7 --wi 30,0 --wo 45,180
+  luthier eval film.toml --polarised --angles 0,60 --wavelength 550
+  luthier eval materials/car-paint.toml --model weidlich-wilkie --furnace
+  luthier eval materials/car-paint.toml --model flakes --uv 0.2,0.7 --wi 30,0 --wo 45,180
+  luthier eval a.toml --model fluorescence --matrix m.csv --excitation 530 --wavelength 600 --albedo";
+
+#[derive(Debug, Args)]
+#[command(after_help = EVAL_EXAMPLES)]
+#[command(group = ArgGroup::new("what").required(true).args(["wi", "directions", "albedo", "furnace", "environment", "polarised"]))]
+#[command(group = ArgGroup::new("against_angle").args(["albedo", "furnace", "environment", "polarised"]))]
+pub(crate) struct EvalOptions {
+    /// A material file
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
+    /// Name of a model; `luthier models` lists them
+    #[arg(long, value_name = "NAME", required_unless_present = "polarised")]
+    pub(crate) model: Option<String>,
+    /// Direction to the light, in degrees: theta from the normal (0 to 90), phi around it
+    #[arg(long, value_name = "THETA,PHI", allow_hyphen_values = true, requires = "wo")]
+    pub(crate) wi: Option<Angles>,
+    /// Direction to the eye
+    #[arg(long, value_name = "THETA,PHI", allow_hyphen_values = true, requires = "wi")]
+    pub(crate) wo: Option<Angles>,
+    /// CSV file of lines theta_i,phi_i,theta_o,phi_o in degrees; `-` is standard input. Lines that begin with # do not count
+    #[arg(long, value_name = "CSV")]
+    pub(crate) directions: Option<PathBuf>,
+    /// Directional albedo against angle instead of values: at 550 nm unless another wavelength is given
+    #[arg(long)]
+    pub(crate) albedo: bool,
+    /// White furnace against angle: radiance of the lossless surface under light of radiance 1, and its deviation from 1
+    #[arg(long)]
+    pub(crate) furnace: bool,
+    /// Radiance that the first interface mirrors of an environment of radiance 1, against angle (elek)
+    #[arg(long)]
+    pub(crate) environment: bool,
+    /// Reflectance of light polarised normal to the plane of incidence (s) and in it (p), against angle: one smooth interface, bare or
+    /// under films
+    #[arg(long, conflicts_with = "model")]
+    pub(crate) polarised: bool,
+    /// Angles from the normal instead of 0 to 85 degrees in steps of 5
+    #[arg(long, value_name = "DEG,...", value_delimiter = ',', value_parser = angle, requires = "against_angle")]
+    pub(crate) angles: Vec<f64>,
+    /// Azimuth of the eye, in degrees, of what is tabulated against angle
+    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_hyphen_values = true, requires = "against_angle")]
+    pub(crate) azimuth: f64,
+    /// Spectral colour: the default for values, for tables against angle instead of one wavelength
+    #[arg(long, conflicts_with_all = ["furnace", "environment"])]
+    pub(crate) rgb: bool,
+    /// One wavelength, 360 to 830 nm. Absorption and diffuse albedo are those of the channel nearest to it (645, 525, 445 nm)
+    #[arg(long, value_name = "NM", value_parser = wavelength, conflicts_with_all = ["rgb", "three_wavelengths"])]
+    pub(crate) wavelength: Option<f64>,
+    /// The material's three wavelengths taken as R, G, B instead of spectral colour
+    #[arg(long, conflicts_with_all = ["rgb", "furnace", "environment"])]
+    pub(crate) three_wavelengths: bool,
+    /// Print as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) inputs: ModelInputs,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  luthier ior\n  luthier ior au\n  luthier ior tio2_film --json\n  luthier ior --f0"
+)]
+pub(crate) struct IorOptions {
+    /// Id of a data set; without it, all are listed
+    #[arg(value_name = "NAME")]
+    pub(crate) name: Option<String>,
+    /// The printed tables of reflectance at normal incidence beside what the data sets give
+    #[arg(long, conflicts_with = "name")]
+    pub(crate) f0: bool,
+    /// Print as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+pub(crate) fn wavelength(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (360.0..=830.0).contains(&value) => Ok(value),
+        _ => Err("expected a wavelength from 360 to 830 nm".to_owned()),
+    }
+}
+
+fn angle(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if (0.0..=90.0).contains(&value) => Ok(value),
+        _ => Err("expected an angle from 0 to 90 degrees".to_owned()),
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("expected a positive number, such as 1e-3".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    /// The table of features and the attributes of the verbs say the same.
+    #[test]
+    fn a_verb_is_there_where_its_feature_is() {
+        let command = Cli::command();
+        for (verb, feature) in OF_FEATURES {
+            let is_on = match feature {
+                "cost" => cfg!(feature = "cost"),
+                "gpu" => cfg!(feature = "gpu"),
+                "view" => cfg!(feature = "view"),
+                other => panic!("no feature `{other}`"),
+            };
+            assert_eq!(command.find_subcommand(verb).is_some(), is_on, "{verb}");
+        }
+    }
+}
