@@ -7,9 +7,15 @@ cd "$(dirname "$0")/.."
 verify=--no-verify
 [ "${1-}" = --verify ] && verify=
 
+# Crates of the project alone are not published.
+own=()
+for manifest in $(grep -l '^publish = false$' crates/*/Cargo.toml); do
+  own+=(--exclude "$(basename "$(dirname "$manifest")")")
+done
+
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-cargo package --workspace --locked --offline --allow-dirty $verify 2>&1 | tee "$log"
+cargo package --workspace "${own[@]}" --locked --offline --allow-dirty $verify 2>&1 | tee "$log"
 if grep -q '^warning' "$log"; then
   echo "error: packages with warnings"
   exit 1

@@ -49,10 +49,10 @@ fi
 step "unit and integration tests"
 cargo test --workspace --locked --features luthier-cli/view
 
-step "the lean build has no wgpu"
+step "the lean build has neither wgpu nor Vulkan"
 cargo check --locked -p luthier-cli --no-default-features
-if cargo tree --locked -p luthier-cli --no-default-features -e normal | grep -E '\bwgpu\b'; then
-  echo "error: the lean build depends on wgpu"
+if cargo tree --locked -p luthier-cli --no-default-features -e normal | grep -E '\b(wgpu|ash)\b'; then
+  echo "error: the lean build depends on wgpu or on Vulkan (ash)"
   exit 1
 fi
 

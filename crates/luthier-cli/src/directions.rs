@@ -4,8 +4,8 @@ use std::path::Path;
 use std::str::FromStr;
 
 use glam::DVec3;
+use luthier_terminal::{Failure, Outcome};
 
-use crate::failure::{Failure, Outcome};
 use crate::input;
 
 /// Angle from the normal and around it, in degrees.

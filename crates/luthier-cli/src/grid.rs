@@ -2,8 +2,7 @@
 
 use luthier_gpu::GRID_SIDE;
 use luthier_material::{Material, parse};
-
-use crate::failure::{Failure, Outcome};
+use luthier_terminal::{Failure, Outcome};
 
 /// Base colour: F0 of copper as the lecture prints it.
 const BASE: [f64; 3] = [0.955, 0.638, 0.538];

@@ -4,8 +4,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use luthier_export::input::{self, TEXT_MAX};
-
-use crate::failure::{Failure, Outcome, files};
+use luthier_terminal::{Failure, Outcome, files};
 
 /// A text that the command line names.
 pub(crate) fn named_text(path: &Path) -> Outcome<String> {

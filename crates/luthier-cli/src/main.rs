@@ -1,13 +1,7 @@
-//! The `luthier` command: sole owner of paths, standard streams and exit codes.
+//! The `luthier` command: all that a user of luthier runs. What it has in common with `luthier-lab` is in luthier-terminal.
 
 mod cli;
-mod command_line;
-mod cost_page;
-mod cost_papers;
-#[cfg(feature = "gpu")]
-mod device;
 mod directions;
-mod failure;
 #[cfg(feature = "gpu")]
 mod grid;
 mod input;
@@ -17,34 +11,30 @@ mod materials;
 mod memory_bake;
 mod misses;
 mod model_inputs;
-mod output;
 #[cfg(feature = "gpu")]
 mod picture;
 mod progress;
 mod reradiation;
-#[cfg(feature = "gpu")]
-mod sheet;
 mod verb;
 #[cfg(feature = "view")]
 mod view_host;
 
 use std::process::ExitCode;
 
-use crate::cli::Verb;
+use crate::cli::{Cli, OF_FEATURES, Verb};
 
 fn main() -> ExitCode {
-    let cli = command_line::parse();
+    // This may be the process that asks the driver's compiler.
+    #[cfg(feature = "cost")]
+    if let Some(code) = luthier_cost::answer() {
+        return code;
+    }
     interrupt::watch();
-    let outcome = match &cli.verb {
+    let outcome = match &luthier_terminal::parse::<Cli>(&OF_FEATURES).verb {
         Verb::Bake(options) => verb::bake::run(options),
-        Verb::Budgets(options) => verb::budgets::run(options),
         Verb::Check(options) => verb::check::run(options),
         Verb::Report(options) => verb::report::run(options),
         Verb::Audit(options) => verb::audit::run(options),
-        #[cfg(feature = "gpu")]
-        Verb::Parity(options) => verb::parity::run(options),
-        #[cfg(feature = "gpu")]
-        Verb::Stability(options) => verb::stability::run(options),
         #[cfg(feature = "gpu")]
         Verb::Preview(options) => verb::preview::run(options),
         #[cfg(feature = "gpu")]
@@ -53,12 +43,10 @@ fn main() -> ExitCode {
         Verb::Compare(options) => verb::compare::run(options),
         #[cfg(feature = "gpu")]
         Verb::Bench(options) => verb::bench::run(options),
+        #[cfg(feature = "cost")]
         Verb::Cost(options) => verb::cost::run(options),
-        Verb::CostProbe { family, assembly } => verb::cost::probe(family.0, *assembly),
         #[cfg(feature = "view")]
         Verb::View(options) => verb::view::run(options),
-        #[cfg(feature = "gpu")]
-        Verb::Figures(options) => verb::figures::run(options),
         Verb::Shader(options) => verb::shader::run(options),
         Verb::Models(options) => verb::models::run(options),
         Verb::Eval(options) => verb::eval::run(options),

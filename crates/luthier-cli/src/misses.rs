@@ -6,9 +6,7 @@ use luthier_export::{Source, read_image, read_one};
 use luthier_lut::TableKind;
 use luthier_manifest::{LayerRecord, Manifest};
 use luthier_material::{Diagnostic, Material, Severity};
-
-use crate::failure::Outcome;
-use crate::output::complain;
+use luthier_terminal::{Outcome, complain};
 
 /// A warning for every layer that reads a tile which misses its aim, at its line of its file; unless quiet, they are printed.
 pub(crate) fn name(manifest: &Manifest, quiet: bool) -> Outcome<Vec<Diagnostic>> {

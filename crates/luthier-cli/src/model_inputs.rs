@@ -10,9 +10,9 @@ use luthier_layers::model::Model;
 use luthier_layers::registry::models;
 use luthier_layers::textured::{TextureSample, Textured};
 use luthier_material::Effects;
+use luthier_terminal::{Failure, Outcome};
 
 use crate::directions::Angles;
-use crate::failure::{Failure, Outcome};
 
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Options of some models")]

@@ -3,18 +3,17 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use luthier_export::input;
 use luthier_gpu::{Backdrop, Environment, Light, RenderSettings, Shape, ToneMapping};
 use luthier_lut::Image;
+use luthier_terminal::{Failure, Outcome, files};
 use luthier_texture::{Metadata, exr, png, radiance};
 
 use crate::cli::Look;
-use crate::device::device;
-use crate::failure::{Failure, Outcome, files};
-use luthier_export::input;
 
 /// The settings that options ask for.
 pub(crate) fn settings(look: &Look, shape: Shape, size: u32) -> Outcome<RenderSettings> {
-    let mut settings = RenderSettings::new(shape).map_err(device)?;
+    let mut settings = RenderSettings::new(shape)?;
     settings.size = size;
     settings.samples = look.samples;
     settings.exposure = libm::exp2f(look.exposure);

@@ -1,47 +1,11 @@
-//! Progress on a terminal, and the time that each kind of job took.
+//! Progress of a bake, and the time that each kind of job took.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use luthier_bake::{JobKind, Observer};
-
-use crate::output::has_cursor;
-
-/// Work shorter than this shows no bar.
-const PATIENCE: Duration = Duration::from_secs(1);
-
-/// A bar on standard error that appears when work takes longer than a second, and never when that is no terminal, or one that cannot move its cursor.
-pub(crate) struct Bar {
-    bar: ProgressBar,
-    started: Instant,
-}
-
-impl Bar {
-    pub(crate) fn new(what: &str) -> Self {
-        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
-        if let Ok(style) = ProgressStyle::with_template("{msg} [{bar:32}] {pos}/{len} {elapsed}") {
-            bar.set_style(style.progress_chars("=> "));
-        }
-        bar.set_message(what.to_owned());
-        Self { bar, started: Instant::now() }
-    }
-
-    pub(crate) fn set(&self, done: u64, total: u64) {
-        self.bar.set_length(total);
-        self.bar.set_position(done);
-        if self.bar.is_hidden() && self.started.elapsed() > PATIENCE && has_cursor() {
-            self.bar.set_draw_target(ProgressDrawTarget::stderr());
-        }
-    }
-}
-
-impl Drop for Bar {
-    fn drop(&mut self) {
-        self.bar.finish_and_clear();
-    }
-}
+use luthier_terminal::Bar;
 
 /// Follows a bake.
 pub(crate) struct BakeProgress {

@@ -9,8 +9,8 @@ use std::path::Path;
 
 use luthier_layers::fluorescence::{Fluorescent, Reradiated};
 use luthier_layers::monochrome::Monochrome;
+use luthier_terminal::{Failure, Outcome};
 
-use crate::failure::{Failure, Outcome};
 use crate::input;
 
 /// A matrix and the wavelengths of its bins.

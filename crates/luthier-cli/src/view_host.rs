@@ -6,13 +6,11 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::SystemTime;
 
-use luthier_export::{Bake, MemoryStore, Package, Source, find, read_one};
+use luthier_export::{Bake, MemoryStore, Package, Source, find, lit, read_one};
 use luthier_material::Material;
+use luthier_terminal::{Failure, Outcome};
 use luthier_texture::png;
 use luthier_view::{Form, Host, MaterialFile, Screenshot};
-
-use crate::failure::{Failure, Outcome};
-use crate::memory_bake;
 
 /// Time of the last change and length of each file that matters; `None` where it cannot be read.
 type Stamps = BTreeMap<PathBuf, Option<(SystemTime, u64)>>;
@@ -32,7 +30,7 @@ impl ViewHost {
     }
 
     fn package(&self, material: &Material, form: Form) -> Outcome<Package> {
-        let materials = memory_bake::lit(std::slice::from_ref(material));
+        let materials = lit(std::slice::from_ref(material));
         let package = Package::new(&materials, &Bake::wgsl(&[form]), &self.store)?;
         self.store.sweep();
         Ok(package)

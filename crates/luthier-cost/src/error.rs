@@ -1,3 +1,8 @@
+//! Why a cost cannot be found.
+
+use std::io;
+
+use luthier_lut::UnknownName;
 use luthier_shader::ShaderError;
 use thiserror::Error;
 
@@ -30,4 +35,21 @@ pub enum CostError {
     /// A shader that cannot be emitted.
     #[error(transparent)]
     Shader(#[from] ShaderError),
+    /// A family that there is not.
+    #[error(transparent)]
+    Family(#[from] UnknownName),
+    /// A process of its own that cannot be had.
+    #[error("cannot {action}: {source}")]
+    Process {
+        /// Action that failed.
+        action: &'static str,
+        /// Error of the system.
+        source: io::Error,
+    },
+    /// A failure in a process of its own, as it told it.
+    #[error("{0}")]
+    Probe(String),
+    /// Kernels or counts that are not what processes exchange.
+    #[error("JSON of kernels or counts: {0}")]
+    Exchange(#[from] serde_json::Error),
 }

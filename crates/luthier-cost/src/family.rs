@@ -1,32 +1,22 @@
-use std::fmt;
+//! Instruction sets that the driver compiles for.
 
 use serde::{Deserialize, Serialize};
 
-/// An instruction set that Mesa's RADV driver compiles for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Family {
-    /// Graphics Core Next 5: Vega 10 (2017). Waves of 64.
-    Gcn5,
-    /// Navi 21 (2020). Waves of 64 in compute kernels.
-    Rdna2,
-    /// Navi 31 (2022), gfx1100. Waves of 64 in compute kernels.
-    Rdna3,
+luthier_lut::named! {
+    /// An instruction set that Mesa's RADV driver compiles for.
+    #[derive(Serialize, Deserialize)]
+    #[serde(into = "&'static str", try_from = "String")]
+    pub enum Family("family") {
+        /// Graphics Core Next 5: Vega 10 (2017). Waves of 64.
+        Gcn5 = "gcn5",
+        /// Navi 21 (2020). Waves of 64 in compute kernels.
+        Rdna2 = "rdna2",
+        /// Navi 31 (2022), gfx1100. Waves of 64 in compute kernels.
+        Rdna3 = "rdna3",
+    }
 }
 
 impl Family {
-    /// All families, oldest first.
-    pub const ALL: [Self; 3] = [Self::Gcn5, Self::Rdna2, Self::Rdna3];
-
-    /// The name in files and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Gcn5 => "gcn5",
-            Self::Rdna2 => "rdna2",
-            Self::Rdna3 => "rdna3",
-        }
-    }
-
     /// The chip, as RADV names it.
     pub fn chip(self) -> &'static str {
         match self {
@@ -43,11 +33,6 @@ impl Family {
             Self::Gcn5 => 4 * plain + 16 * quarter_rate,
             Self::Rdna2 | Self::Rdna3 => (2 * (plain + quarter_rate)).max(8 * quarter_rate),
         }
-    }
-
-    /// The family of a name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|family| family.name() == name)
     }
 
     /// Variables that the process must have when the Vulkan loader is first called: the null device of this family, and no
@@ -68,9 +53,3 @@ pub const FOREIGN_VARIABLES: [&str; 8] = [
     "VK_INSTANCE_LAYERS",
     "VK_LOADER_LAYERS_ENABLE",
 ];
-
-impl fmt::Display for Family {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}

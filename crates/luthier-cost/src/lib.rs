@@ -8,22 +8,27 @@
 //! of the driver only. Nothing can run on such a device.
 //!
 //! The driver reads its environment once, when the Vulkan loader loads: [`compile`] is for a process that was started with
-//! [`Family::environment`], one per family.
+//! [`Family::environment`], one per family. [`compile_apart`] starts one, of a program whose `main` begins with [`answer`].
+//! [`CostReport`] is what came of it, as JSON and as a page.
 //!
 //! Simplifications: a texture read counts as issued, without cache misses; all branches of a kernel count, the taken and the others, so
 //! that a set of several models costs the sum of them; uniform registers and interpolation are free.
 //!
-//! Out of scope: starting processes, files, time on a real device (`luthier-gpu`).
+//! Out of scope: files, arguments, time on a real device (`luthier-gpu`).
 
+mod apart;
 mod code;
 mod counts;
 mod error;
 mod family;
 mod kernel;
 mod radv;
+mod report;
 
+pub use apart::{answer, assembly_apart, compile_apart};
 pub use counts::{Compiled, Counts};
 pub use error::CostError;
 pub use family::{FOREIGN_VARIABLES, Family};
 pub use kernel::{Binding, Harness, Kernel, Resource, Style, shader_text};
 pub use radv::{assembly, compile};
+pub use report::{CostReport, CostRow, FamilyCost};

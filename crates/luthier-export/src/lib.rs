@@ -24,6 +24,8 @@ mod make;
 #[cfg(feature = "bake")]
 mod refusals;
 #[cfg(feature = "bake")]
+mod renderer;
+#[cfg(feature = "bake")]
 mod sources;
 
 pub use encode::{Compression, Encoded, sha256};
@@ -42,6 +44,8 @@ pub use luthier_bake::{MemoryStore, Store};
 pub use make::{Bake, ExportError, outline, source_hash};
 #[cfg(feature = "bake")]
 pub use refusals::{refuse, refuse_too_many};
+#[cfg(feature = "bake")]
+pub use renderer::lit;
 #[cfg(feature = "bake")]
 pub use sources::{Source, find, label, parse, read, read_image, read_one};
 

@@ -1,6 +1,6 @@
 //! Domains of the shaders' models: ranges of index, slope, thickness and absorption within which they may be used.
 //!
-//! The ranges are those over which no level (f64, tables, f32, device) of the stability suite fails: `luthier stability` derives them
+//! The ranges are those over which no level (f64, tables, f32, device) of the stability suite fails: `luthier-lab stability` derives them
 //! anew, and a test of luthier-report compares. Between the values that the suite tries, the last that did not fail counts.
 //!
 //! A model may leave out parts of the light within its domain (bounces, blur, 1/n^2): `docs/pages/models.md` has their size.

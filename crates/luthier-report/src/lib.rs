@@ -16,8 +16,8 @@
 //!
 //! [`audit()`] judges a table that anybody made against what it is said to hold.
 //! [`parity`] compares the shaders of all models with their f64 twins. [`compare_pictures`] compares two rendered pictures,
-//! [`render_ball`] makes one in f64, [`Plot`] draws curves.
-//! What else a page shows (searches, costs, pictures, models against the reference) is put into the report by its caller: [`Costs`],
+//! [`render_ball`] makes one in f64, [`sheet()`] puts many on one, [`Plot`] draws curves. [`Spread`] is for times of a stopwatch.
+//! The caller puts the rest of a page (searches, costs, pictures, models against the reference) into the report: [`Costs`],
 //! [`Exhibits`], [`judge_shading_models`]. [`limits()`] holds the report against budgets.
 //! [`judge_models`] is the judge of what the bake stands on: every reflectance model against the Monte Carlo of whole stacks.
 //! [`stability`] runs every method where methods fail, and says where each may be used.
@@ -78,7 +78,7 @@ pub use parity::{
     KNOWN, Known, POLISHED_ALPHAS, Parity, ParityCase, ParityRow, ParitySet, Share, Tolerance, Verdict, parity,
     tolerance,
 };
-pub use picture::{PIXELS_PER_DEGREE, PictureComparison, compare_pictures};
+pub use picture::{PIXELS_PER_DEGREE, PictureComparison, brightened_difference, compare_pictures, sheet};
 pub use profile::{ANGLE_BINS, AngleProfile, Exceedance};
 pub use report::{
     AlphaPoint, Compared, Comparison, Curves, MaterialReport, REPORT_SCHEMA, ReflectanceCurve, Report, TableReport,
@@ -86,7 +86,7 @@ pub use report::{
 };
 pub use seen::{Seen, SeenLight, picture_color_difference};
 pub use statistics::{
-    DIM_FLOOR, ErrorSummary, FLOOR, PEAK_FRACTION, Statistics, TARGET_MAX_REL_ERR, WorstPair, statistics,
+    DIM_FLOOR, ErrorSummary, FLOOR, PEAK_FRACTION, Spread, Statistics, TARGET_MAX_REL_ERR, WorstPair, statistics,
 };
 pub use subject::Subject;
 pub use table_terms::{TableTerms, Weights};

@@ -1,4 +1,4 @@
-//! Errors of many values at once: what is relative to what, and the order statistics.
+//! Errors of many values at once: what is relative to what, and the order statistics. Spreads of measured times.
 
 use std::f64::consts::FRAC_1_PI;
 
@@ -160,9 +160,56 @@ pub(crate) fn summarise(mut errors: Vec<f64>) -> ErrorSummary {
     ErrorSummary { max, p99, rms }
 }
 
+/// Order statistics of repeated measurements, in the unit of the samples; NaN where there are none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spread {
+    /// Median.
+    pub median: f64,
+    /// Median absolute deviation from it.
+    pub mad: f64,
+    /// Tenth percentile.
+    pub p10: f64,
+    /// Ninetieth percentile.
+    pub p90: f64,
+}
+
+impl Spread {
+    /// The spread of samples in any order.
+    pub fn of(samples: &[f64]) -> Self {
+        let median = quantile(samples, 0.5);
+        let apart: Vec<f64> = samples.iter().map(|sample| (sample - median).abs()).collect();
+        Self { median, mad: quantile(&apart, 0.5), p10: quantile(samples, 0.1), p90: quantile(samples, 0.9) }
+    }
+}
+
+/// A quantile, between the nearest two samples in proportion.
+fn quantile(samples: &[f64], q: f64) -> f64 {
+    let mut sorted = samples.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
+    let at = q * last as f64;
+    let (below, above) = (sorted[at as usize], sorted[(at as usize + 1).min(last)]);
+    below + (above - below) * at.fract()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn quantiles_lie_between_samples() {
+        let samples = [4.0, 1.0, 3.0, 2.0];
+        assert_eq!([0.0, 0.5, 0.75, 1.0].map(|q| quantile(&samples, q)), [1.0, 2.5, 3.25, 4.0]);
+        assert_eq!(quantile(&[7.0], 0.9), 7.0);
+        assert!(quantile(&[], 0.5).is_nan());
+    }
+
+    #[test]
+    fn a_spread_by_hand() {
+        let s = Spread::of(&[9.0, 1.0, 2.0, 3.0, 4.0]);
+        assert_eq!((s.median, s.mad), (3.0, 1.0));
+        assert!((s.p10 - 1.4).abs() < 1e-12 && (s.p90 - 7.0).abs() < 1e-12, "{s:?}");
+    }
 
     const UP: Pair = ([0.0, 0.0, 1.0], [0.0, 0.0, 1.0]);
 

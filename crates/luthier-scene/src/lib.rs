@@ -7,7 +7,7 @@
 //! directions of the scene, and the reference there. [`Judge::choose`] takes the first candidate that holds.
 //!
 //! Errors here are those of models against `layered-mc`, the Monte Carlo of the whole stack. Tables and single precision are other
-//! matters, with budgets of their own. Costs are looked up in data that `luthier cost --shapes` made: no driver is needed.
+//! matters, with budgets of their own. Costs are looked up in data that `luthier-lab shapes` made: no driver is needed.
 //!
 //! Simplifications: lights are one direction, a range of directions, or equal from everywhere; effects and maps are not judged;
 //! films that vary are judged at their nominal thickness; a pixel's footprint counts as slopes of every interface.

@@ -28,6 +28,7 @@ mod emit;
 mod error;
 mod languages;
 mod set;
+mod style;
 mod validate;
 
 pub use emit::{complete, emit, emit_constant};
@@ -35,4 +36,5 @@ pub use error::ShaderError;
 pub use languages::spirv::{complete_spirv, emit_spirv, spirv_words};
 pub use luthier_manifest::{Form, Target};
 pub use set::{MaterialSet, RESERVED_BINDINGS, TableFace, bindings, identifier};
+pub use style::{reads_distribution, style_name};
 pub use validate::validate;

@@ -1,14 +1,15 @@
 //! The command line: the one definition of verbs, options and their help.
 
+#[cfg(feature = "gpu")]
 use std::num::NonZeroU32;
 use std::path::PathBuf;
-use std::str::FromStr;
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args, Parser, Subcommand};
+#[cfg(feature = "cost")]
 use luthier_cost::Family;
-use luthier_lut::{TableKind, UnknownName};
+use luthier_lut::TableKind;
 use luthier_manifest::{Form, ShadingModel, Target};
+use luthier_terminal::{Sources, named};
 
 use crate::directions::Angles;
 use crate::model_inputs::ModelInputs;
@@ -40,24 +41,20 @@ pub(crate) struct Cli {
     pub(crate) verb: Verb,
 }
 
+/// Verbs that a cargo feature brings, and the feature.
+pub(crate) const OF_FEATURES: [(&str, &str); 6] =
+    [("preview", "gpu"), ("gallery", "gpu"), ("compare", "gpu"), ("bench", "gpu"), ("cost", "cost"), ("view", "view")];
+
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
     /// Bake materials: textures, manifest and shaders
     Bake(BakeOptions),
-    /// Measure what searches for tables reach against fixed ones: a page in Markdown
-    Budgets(BudgetsOptions),
     /// Validate materials and scenes as `bake` would, without baking, and print the class of each surface
     Check(CheckOptions),
     /// Judge a bake: tables and shaders against the full evaluation in f64
     Report(ReportOptions),
     /// Judge a table that anybody made, and find the mistake in it
     Audit(Box<AuditOptions>),
-    /// Compare every shader of every material with its f64 twin: a page in Markdown
-    #[cfg(feature = "gpu")]
-    Parity(ParityOptions),
-    /// Run every method where methods fail, and say where each may be used: a page in Markdown
-    #[cfg(feature = "gpu")]
-    Stability(StabilityOptions),
     /// Render a material off screen
     #[cfg(feature = "gpu")]
     Preview(PreviewOptions),
@@ -67,26 +64,15 @@ pub(crate) enum Verb {
     /// Render a material with two shaders and compare the pictures
     #[cfg(feature = "gpu")]
     Compare(CompareOptions),
-    /// What every shader of every material costs on real GPUs, which need not be here: a page in Markdown
+    /// Costs of every shader of every material on real GPUs, which need not be here: a page in Markdown
+    #[cfg(feature = "cost")]
     Cost(CostOptions),
     /// Time every shader of every material on the graphics adapter at hand
     #[cfg(feature = "gpu")]
     Bench(BenchOptions),
-    /// Compile the kernels of standard input on the null device that the environment names
-    #[command(hide = true)]
-    CostProbe {
-        #[arg(value_parser = family())]
-        family: FamilyName,
-        /// Machine code instead of counts
-        #[arg(long)]
-        assembly: bool,
-    },
     /// Open a window: turn, light and edit materials, and see them change with their files
     #[cfg(feature = "view")]
     View(ViewOptions),
-    /// Make the figures of the papers anew
-    #[cfg(feature = "gpu")]
-    Figures(FiguresOptions),
     /// Print the shader of some materials, or write it to a file
     Shader(ShaderOptions),
     /// List the reflectance models
@@ -104,14 +90,6 @@ pub(crate) enum Verb {
         #[arg(long)]
         scene: bool,
     },
-}
-
-/// Files to work on.
-#[derive(Debug, Args)]
-pub(crate) struct Sources {
-    /// Material files, or folders of them (their *.toml, not deeper)
-    #[arg(value_name = "PATH", default_value = "materials")]
-    pub(crate) paths: Vec<PathBuf>,
 }
 
 /// The model of the shaders, and the tables beside them.
@@ -176,17 +154,7 @@ pub(crate) struct Emission {
     pub(crate) form: Vec<Form>,
 }
 
-#[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  luthier budgets materials -o docs/budgets.md")]
-pub(crate) struct BudgetsOptions {
-    #[command(flatten)]
-    pub(crate) sources: Sources,
-    /// File to write instead of standard output
-    #[arg(long, short, value_name = "FILE")]
-    pub(crate) output: Option<PathBuf>,
-}
-
-/// Limits on tables, each in place of those in the files' `[budget]`: the cheapest tables that hold them are taken (docs/budgets.md).
+/// Limits on tables, each in place of those in the files' `[budget]`: the cheapest tables that hold them are taken (docs/pages/budgets.md).
 #[derive(Debug, Args)]
 pub(crate) struct Limits {
     /// Largest absolute error of a sampled table; of D, relative to its peak
@@ -265,7 +233,7 @@ pub(crate) struct ReportOptions {
     /// Costs of shaders: what `luthier cost --json` printed for these materials
     #[arg(long, value_name = "FILE")]
     pub(crate) cost: Option<PathBuf>,
-    /// The stability suite: what `luthier stability --json` printed
+    /// The stability suite: what `luthier-lab stability --json` printed
     #[arg(long, value_name = "FILE")]
     pub(crate) stability: Option<PathBuf>,
     /// Side of the pictures in pixels; 0 makes none
@@ -287,75 +255,27 @@ pub(crate) struct ReportOptions {
     pub(crate) json: bool,
 }
 
-/// Pairs of directions in each of the five sets: 100,000 in all.
-#[cfg(feature = "gpu")]
-pub(crate) const PARITY_PAIRS: u32 = 20_000;
-
-#[cfg(feature = "gpu")]
-#[derive(Debug, Args)]
-#[command(
-    after_help = "Exits with 1 when an error exceeds its tolerance and the reason is not listed.\n\nExamples:\n  luthier parity materials -o docs/parity.md\n  luthier parity mine.toml --model elek --model phong --pairs 1000 --json"
-)]
-pub(crate) struct ParityOptions {
-    #[command(flatten)]
-    pub(crate) sources: Sources,
-    /// Model to compare; may be given again. By default all that have a twin
-    #[arg(long, value_name = "NAME", value_parser = named::<ShadingModel>(ShadingModel::NAMES))]
-    pub(crate) model: Vec<ShadingModel>,
-    /// Pairs of directions in each of the five sets of every material
-    #[arg(long, value_name = "N", default_value_t = PARITY_PAIRS, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    pub(crate) pairs: u32,
-    /// Use the graphics adapter whose name contains this
-    #[arg(long, value_name = "NAME")]
-    pub(crate) adapter: Option<String>,
-    /// File to write instead of standard output
-    #[arg(long, short, value_name = "FILE")]
-    pub(crate) output: Option<PathBuf>,
-    /// JSON instead of Markdown
-    #[arg(long)]
-    pub(crate) json: bool,
-}
-
 mod audit;
 pub(crate) use audit::{AuditOptions, NodesName, PresetName, SamplesName};
 
 #[cfg(feature = "gpu")]
-#[derive(Debug, Args)]
-#[command(
-    after_help = "Exits with 1 when a shader is NaN or infinite somewhere, or when nobody can explain why a method does not hold.\n\nExamples:\n  luthier stability\n  luthier stability -o docs/stability.md\n  luthier stability --json"
-)]
-pub(crate) struct StabilityOptions {
-    /// Use the graphics adapter whose name contains this
-    #[arg(long, value_name = "NAME")]
-    pub(crate) adapter: Option<String>,
-    /// File to write instead of standard output
-    #[arg(long, short, value_name = "FILE")]
-    pub(crate) output: Option<PathBuf>,
-    /// JSON instead of Markdown
-    #[arg(long)]
-    pub(crate) json: bool,
-}
-
-#[cfg(feature = "gpu")]
-mod figures;
-#[cfg(feature = "gpu")]
 mod render;
-#[cfg(feature = "gpu")]
-pub(crate) use figures::FiguresOptions;
 #[cfg(feature = "gpu")]
 pub(crate) use render::{CompareOptions, GalleryOptions, Look, PreviewOptions, ShaderChoice, ShapeName};
 
+#[cfg(feature = "cost")]
 const COST_EXAMPLES: &str = "\
 Mesa's RADV driver compiles for these GPUs without having one; where it is missing, the exit code is 4. What making directions \
 and writing the value costs is subtracted. Every shader comes with its material in a buffer and as constants of the code, and the \
 form `baked` with D from its table and in closed form, unless named.
 
 Examples:
-  luthier cost materials -o docs/cost.md
+  luthier cost materials -o docs/pages/cost.md
   luthier cost mine.toml --model elek --model phong --family rdna2 --json
   luthier cost materials --set --form baked
   luthier cost mine.toml --model elek --form baked --closed --constant --family rdna2 --assembly";
 
+#[cfg(feature = "cost")]
 #[derive(Debug, Args)]
 #[command(after_help = COST_EXAMPLES)]
 pub(crate) struct CostOptions {
@@ -368,8 +288,8 @@ pub(crate) struct CostOptions {
     #[arg(long, value_parser = named::<Form>(Form::NAMES), value_name = "FORM")]
     pub(crate) form: Vec<Form>,
     /// Instruction set: gcn5, rdna2 or rdna3; may be given again. By default all
-    #[arg(long, value_name = "NAME", value_parser = family())]
-    pub(crate) family: Vec<FamilyName>,
+    #[arg(long, value_name = "NAME", value_parser = named::<Family>(Family::NAMES))]
+    pub(crate) family: Vec<Family>,
     /// All materials in one shader, as a bake of them has it, instead of each in its own
     #[arg(long)]
     pub(crate) set: bool,
@@ -382,10 +302,6 @@ pub(crate) struct CostOptions {
     /// Print the machine code of one kernel
     #[arg(long, conflicts_with_all = ["json", "output"])]
     pub(crate) assembly: bool,
-    /// The table by which scenes choose models: every shape of the materials, and of what is left of them without some of their parts,
-    /// on RDNA2, as JSON
-    #[arg(long, conflicts_with_all = ["json", "assembly", "set", "closed", "constant", "model", "form", "family"])]
-    pub(crate) shapes: bool,
     /// JSON instead of Markdown
     #[arg(long)]
     pub(crate) json: bool,
@@ -429,15 +345,6 @@ pub(crate) struct BenchOptions {
 #[cfg(feature = "gpu")]
 const BENCH_REPEATS: NonZeroU32 = NonZeroU32::new(30).expect("not zero");
 
-/// A family of GPUs by its name.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct FamilyName(pub(crate) Family);
-
-fn family() -> impl TypedValueParser<Value = FamilyName> {
-    PossibleValuesParser::new(Family::ALL.map(Family::name))
-        .try_map(|name| Family::from_name(&name).map(FamilyName).ok_or_else(|| format!("no family `{name}`")))
-}
-
 #[cfg(feature = "view")]
 mod view;
 #[cfg(feature = "view")]
@@ -472,18 +379,9 @@ pub(crate) struct ShaderOptions {
     pub(crate) output: Option<PathBuf>,
 }
 
-/// Standard errors of albedos are then at most 1e-3: 0.5 over the root.
-pub(crate) const MODEL_SAMPLES: NonZeroU32 = NonZeroU32::new(1 << 18).expect("not zero");
-
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  luthier models\n  luthier models --judge materials > docs/models.md")]
+#[command(after_help = "Examples:\n  luthier models\n  luthier models --json")]
 pub(crate) struct ModelsOptions {
-    /// Compare every model with the layered-mc reference on materials, a page in Markdown: files, or folders of them
-    #[arg(long, value_name = "PATH", num_args = 1..)]
-    pub(crate) judge: Vec<PathBuf>,
-    /// Paths of the reference for each wavelength and direction of --judge; by default minutes of work
-    #[arg(long, value_name = "N", default_value_t = MODEL_SAMPLES, requires = "judge")]
-    pub(crate) samples: NonZeroU32,
     /// Print as JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -606,17 +504,31 @@ fn angle(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A value by its name, one of those listed.
-pub(crate) fn named<T>(names: &'static [&'static str]) -> impl TypedValueParser<Value = T>
-where
-    T: FromStr<Err = UnknownName> + Clone + Send + Sync + 'static,
-{
-    PossibleValuesParser::new(names).try_map(|name| name.parse::<T>())
-}
-
 fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         _ => Err("expected a positive number, such as 1e-3".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    /// The table of features and the attributes of the verbs say the same.
+    #[test]
+    fn a_verb_is_there_where_its_feature_is() {
+        let command = Cli::command();
+        for (verb, feature) in OF_FEATURES {
+            let is_on = match feature {
+                "cost" => cfg!(feature = "cost"),
+                "gpu" => cfg!(feature = "gpu"),
+                "view" => cfg!(feature = "view"),
+                other => panic!("no feature `{other}`"),
+            };
+            assert_eq!(command.find_subcommand(verb).is_some(), is_on, "{verb}");
+        }
     }
 }

@@ -9,7 +9,9 @@ use luthier_gpu::{Shape, ToneMapping};
 use luthier_lut::UnknownName;
 use luthier_manifest::{Form, ShadingModel};
 
-use super::{Shading, Sources};
+use luthier_terminal::Sources;
+
+use super::Shading;
 
 const PREVIEW_EXAMPLES: &str = "\
 MATERIAL is a material file, or the name of a material in the bake. Directions and positions have +y up and +z to the eye;

@@ -6,7 +6,9 @@ use clap::{Args, ValueEnum};
 
 use luthier_manifest::Form;
 
-use super::{Look, Shading, ShapeName, Sources, named};
+use luthier_terminal::{Sources, named};
+
+use super::{Look, Shading, ShapeName};
 
 const VIEW_EXAMPLES: &str = "\
 Drag turns the shape, a drag with the right button the light, the wheel zooms; H lists the keys. Files are read again when they

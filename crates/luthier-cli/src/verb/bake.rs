@@ -8,14 +8,13 @@ use luthier_export::{Bake, Compression, MANIFEST, MemoryStore, Package, Source, 
 use luthier_manifest::{CandidateForm, Manifest};
 use luthier_material::Diagnostic;
 use luthier_shader::{Form, Target};
+use luthier_terminal::{Failure, Outcome, bytes, print, valid};
 use serde_json::{Value, json};
 
 use crate::cli::{BakeOptions, Emission};
-use crate::failure::{Failure, Outcome};
 use crate::interrupt::whole;
-use crate::materials::{shaded, valid};
+use crate::materials::shaded;
 use crate::misses;
-use crate::output::{bytes, print};
 use crate::progress::BakeProgress;
 use crate::verb::check::diagnostics;
 use crate::verb::scene;
@@ -27,7 +26,9 @@ pub(crate) fn run(options: &BakeOptions) -> Outcome {
         return scene::run(options, &scenes);
     }
     if options.allow_miss || !options.budgets.is_empty() {
-        return Err(Failure::Usage(anyhow::anyhow!("--allow-miss and --budgets are for scenes (docs/scenes.md)")));
+        return Err(Failure::Usage(anyhow::anyhow!(
+            "--allow-miss and --budgets are for scenes (docs/pages/scenes.md)"
+        )));
     }
     let mut sources = read(&options.sources.paths)?;
     refuse(&mut sources, |material| of_model(material, options.shading.model));

@@ -4,18 +4,12 @@ use luthier_export::{GENERATOR, Package, Shader, read};
 use luthier_gpu::{Gpu, Scene, Stopwatch};
 use luthier_manifest::ShadingModel;
 use luthier_material::Material;
-use luthier_report::ParitySet;
-use luthier_shader::{Form, MaterialSet, Target};
+use luthier_report::{ParitySet, Spread};
+use luthier_shader::{Form, MaterialSet, Target, reads_distribution, style_name};
+use luthier_terminal::{Bar, Failure, Outcome, deliver, open, valid};
 use serde::Serialize;
 
 use crate::cli::BenchOptions;
-use crate::cost_page::{label, reads_d};
-use crate::device::{device, open};
-use crate::failure::{Failure, Outcome, files};
-use crate::materials::valid;
-use crate::memory_bake::bake;
-use crate::output::print;
-use crate::progress::Bar;
 
 /// Pairs of directions, near the mirror direction and anywhere by halves: few enough for any cache.
 const PAIRS: u32 = 1024;
@@ -51,7 +45,7 @@ struct Adapter {
 struct Row {
     material: String,
     model: ShadingModel,
-    form: &'static str,
+    form: Form,
     closed: bool,
     /// Median, all included.
     median_ns: f64,
@@ -86,7 +80,7 @@ pub(crate) fn run(options: &BenchOptions) -> Outcome {
             .collect();
         let mut watches = Vec::new();
         for (i, subject) in subjects.iter().enumerate() {
-            let watch = |is_empty| subject.scene.stopwatch(0, &pairs, options.evaluations, is_empty).map_err(device);
+            let watch = |is_empty| subject.scene.stopwatch(0, &pairs, options.evaluations, is_empty);
             if i == 0 {
                 watches.push(watch(true)?);
             }
@@ -96,7 +90,7 @@ pub(crate) fn run(options: &BenchOptions) -> Outcome {
         if let Some(watch) = watches.first() {
             (evaluations, has_timestamps) = (watch.evaluations(), watch.has_timestamps());
         }
-        rows.extend(rows_of(material, &subjects, times));
+        rows.extend(rows_of(material, &subjects, &times));
         bar.set(n as u64 + 1, materials.len() as u64);
     }
     drop(bar);
@@ -117,10 +111,7 @@ pub(crate) fn run(options: &BenchOptions) -> Outcome {
     } else {
         bench.to_text()
     };
-    match &options.output {
-        Some(path) => std::fs::write(path, text).map_err(files(path, "write")),
-        None => print(&text),
-    }
+    deliver(&text, options.output.as_deref())
 }
 
 /// One shader on the device.
@@ -141,8 +132,8 @@ fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -> Outcome<V
     for model in models {
         let mut shaded = material.clone();
         shaded.bake.model = Some(model);
-        let mut package = bake(std::slice::from_ref(&shaded))?;
-        let reads_d = reads_d(model);
+        let mut package = Package::for_renderer(std::slice::from_ref(&shaded))?;
+        let reads_d = reads_distribution(model);
         let styles = [(Form::Full, true), (Form::Baked, !reads_d), (Form::Baked, true)];
         // Without a table of D to read, closed or not is the same.
         let distinct = if reads_d { 3 } else { 2 };
@@ -150,7 +141,7 @@ fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -> Outcome<V
             if form == Form::Baked && closed && reads_d {
                 package = with_closed(package)?;
             }
-            let scene = gpu.scene(&package, form).map_err(device)?;
+            let scene = gpu.scene(&package, form)?;
             subjects.push(Subject { model, form, closed, scene });
         }
     }
@@ -159,8 +150,7 @@ fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -> Outcome<V
 
 /// The bake with the shader `baked` that has D in closed form.
 fn with_closed(mut package: Package) -> Outcome<Package> {
-    let mut set = MaterialSet::from_manifest(&package.manifest);
-    set.tables.retain(|table| table.kind != luthier_lut::TableKind::Distribution);
+    let set = MaterialSet::from_manifest(&package.manifest).with_closed_distribution();
     let wgsl = luthier_shader::emit(&set, Form::Baked, Target::Wgsl).map_err(Failure::input)?;
     package.shaders = vec![Shader::wgsl(Form::Baked, wgsl)];
     Ok(package)
@@ -171,7 +161,7 @@ fn times(watches: &[Stopwatch<'_>], options: &BenchOptions) -> Outcome<Vec<Vec<f
     let mut times = vec![Vec::new(); watches.len()];
     for round in 0..options.warm_up + options.repeats.get() {
         for (watch, times) in watches.iter().zip(&mut times) {
-            let time = watch.run().map_err(device)?;
+            let time = watch.run()?;
             if round >= options.warm_up {
                 times.push(time);
             }
@@ -180,27 +170,26 @@ fn times(watches: &[Stopwatch<'_>], options: &BenchOptions) -> Outcome<Vec<Vec<f
     Ok(times)
 }
 
-fn rows_of(material: &Material, subjects: &[Subject], times: Vec<Vec<f64>>) -> Vec<Row> {
-    let mut times = times.into_iter();
-    let harness = times.next().map_or(0.0, |times| quantile(&times, 0.5));
-    let times: Vec<Vec<f64>> = times.collect();
-    let net: Vec<f64> = times.iter().map(|times| quantile(times, 0.5) - harness).collect();
+fn rows_of(material: &Material, subjects: &[Subject], times: &[Vec<f64>]) -> Vec<Row> {
+    let mut spreads = times.iter().map(|times| Spread::of(times));
+    let harness = spreads.next().map_or(0.0, |spread| spread.median);
+    let spreads: Vec<Spread> = spreads.collect();
+    let net: Vec<f64> = spreads.iter().map(|spread| spread.median - harness).collect();
     let of = |wanted: &dyn Fn(&Subject) -> bool| subjects.iter().position(wanted).map_or(f64::NAN, |i| net[i]);
     let phong = of(&|s| s.model == ShadingModel::Phong);
     let mut rows = Vec::new();
     for (i, subject) in subjects.iter().enumerate() {
-        let median = quantile(&times[i], 0.5);
-        let apart: Vec<f64> = times[i].iter().map(|time| (time - median).abs()).collect();
+        let Spread { median, mad, p10, p90 } = spreads[i];
         let full = of(&|s| s.model == subject.model && s.form == Form::Full);
         rows.push(Row {
             material: material.name.clone(),
             model: subject.model,
-            form: subject.form.name(),
+            form: subject.form,
             closed: subject.closed,
             median_ns: median,
-            mad_ns: quantile(&apart, 0.5),
-            p10_ns: quantile(&times[i], 0.1),
-            p90_ns: quantile(&times[i], 0.9),
+            mad_ns: mad,
+            p10_ns: p10,
+            p90_ns: p90,
             harness_ns: harness,
             net_ns: net[i],
             of_phong: net[i] / phong,
@@ -208,16 +197,6 @@ fn rows_of(material: &Material, subjects: &[Subject], times: Vec<Vec<f64>>) -> V
         });
     }
     rows
-}
-
-/// A quantile, between the nearest two samples in proportion.
-fn quantile(samples: &[f64], q: f64) -> f64 {
-    let mut sorted = samples.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
-    let at = q * last as f64;
-    let (below, above) = (sorted[at as usize], sorted[(at as usize + 1).min(last)]);
-    below + (above - below) * at.fract()
 }
 
 impl Bench {
@@ -244,7 +223,7 @@ impl Bench {
                 "{:<24} {:<17} {:<16} {:>9.4} {:>8.4} {:>9.4} {:>7.2} {:>7.2}\n",
                 row.material,
                 row.model.name(),
-                label(row.model, row.form, row.closed, false),
+                style_name(row.model, row.form, row.closed, false),
                 row.median_ns,
                 row.mad_ns,
                 row.net_ns,
@@ -253,18 +232,5 @@ impl Bench {
             ));
         }
         out
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn quantiles_lie_between_samples() {
-        let samples = [4.0, 1.0, 3.0, 2.0];
-        assert_eq!([0.0, 0.5, 0.75, 1.0].map(|q| quantile(&samples, q)), [1.0, 2.5, 3.25, 4.0]);
-        assert_eq!(quantile(&[7.0], 0.9), 7.0);
-        assert!(quantile(&[], 0.5).is_nan());
     }
 }

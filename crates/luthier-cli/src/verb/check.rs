@@ -2,13 +2,12 @@
 
 use luthier_export::{Source, find, input, of_model, read_one, refuse, refuse_too_many};
 use luthier_material::{Diagnostic, is_scene};
+use luthier_terminal::{Failure, Outcome, diagnostic, files, print, print_diagnostics};
 use serde_json::{Value, json};
 
 use crate::cli::CheckOptions;
-use crate::failure::{Failure, Outcome, diagnostic, files};
-use crate::materials::{print_source, shaded};
+use crate::materials::shaded;
 use crate::misses;
-use crate::output::print;
 use crate::verb::scene::SceneSource;
 
 /// Validates files, materials as one set; diagnostics go to standard error, one line per file to standard output.
@@ -36,7 +35,7 @@ pub(crate) fn run(options: &CheckOptions) -> Outcome {
             lines.push_str(&scene_line(scene));
         }
         for source in all() {
-            print_source(source);
+            print_diagnostics(source.diagnostics(), &source.text);
             lines.push_str(&line(source));
         }
         print(&lines)?;

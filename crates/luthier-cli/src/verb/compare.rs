@@ -1,17 +1,17 @@
-use luthier_manifest::Form;
+//! `compare`: two pictures by two shaders, and how far they are apart.
+
 use std::path::Path;
 
 use luthier_export::Package;
 use luthier_gpu::{GpuError, ToneMapping};
 use luthier_lut::Image;
-use luthier_report::{PIXELS_PER_DEGREE, PictureComparison, compare_pictures};
+use luthier_manifest::Form;
+use luthier_report::{PIXELS_PER_DEGREE, PictureComparison, brightened_difference, compare_pictures};
+use luthier_terminal::{Failure, Outcome, files, open, print};
 use serde_json::{Value, json};
 
 use crate::cli::{CompareOptions, ShaderChoice, Shading, ShapeName};
-use crate::device::{device, open};
-use crate::failure::{Failure, Outcome, files};
 use crate::memory_bake;
-use crate::output::print;
 use crate::picture::{Format, settings};
 
 /// Directions of the environment where none are asked for.
@@ -31,12 +31,12 @@ pub(crate) fn run(options: &CompareOptions) -> Outcome {
     let render = |subject: &Subject| -> Result<Image, GpuError> {
         gpu.scene(&subject.package, subject.form)?.render(&[subject.material], &settings)
     };
-    let a = render(&a).map_err(device)?;
-    let b = render(&b).map_err(device)?;
+    let a = render(&a)?;
+    let b = render(&b)?;
 
     let tone = ToneMapping::from(look.tone);
     let compared = compare_pictures(&a, &b, |v| tone.value(v)).map_err(Failure::input)?;
-    let (difference, gain) = difference(&a, &b, tone);
+    let (difference, gain) = brightened_difference(&a, &b, |v| tone.value(v));
     std::fs::create_dir_all(&options.output).map_err(files(&options.output, "make"))?;
     let pictures = [
         ("a.png", a, tone),
@@ -83,20 +83,6 @@ impl Subject {
         package.wgsl(choice.form)?;
         Ok(Self { package, material, form: choice.form })
     }
-}
-
-/// Absolute difference of what a display shows, brightened by the largest power of two that keeps it within 1.
-pub(crate) fn difference(a: &Image, b: &Image, tone: ToneMapping) -> (Image, u32) {
-    let shown = |v: f32| tone.value(v).min(1.0);
-    let mut image = a.clone();
-    image.data.iter_mut().zip(&b.data).for_each(|(a, b)| *a = (shown(*a) - shown(*b)).abs());
-    let largest = image.data.iter().copied().fold(0.0, f32::max);
-    let mut gain = 1;
-    while gain < 1 << 16 && largest > 0.0 && largest * (2 * gain) as f32 <= 1.0 {
-        gain *= 2;
-    }
-    image.data.iter_mut().for_each(|v| *v *= gain as f32);
-    (image, gain)
 }
 
 fn json(options: &CompareOptions, compared: &PictureComparison, gain: u32) -> Value {

@@ -1,138 +1,52 @@
-use std::ffi::OsString;
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+//! `cost`: shaders compiled for GPUs that are not here.
 
 use luthier_bake::Options;
-use luthier_cost::{Compiled, FOREIGN_VARIABLES, Family, Harness, Kernel, Style};
+use luthier_cost::{CostReport, CostRow, Family, Harness, Kernel, Style, assembly_apart, compile_apart};
 use luthier_export::{GENERATOR, outline, read};
 use luthier_lut::TableKind;
 use luthier_manifest::ShadingModel;
 use luthier_material::Material;
-use luthier_shader::{Form, MaterialSet};
+use luthier_shader::{Form, MaterialSet, reads_distribution};
+use luthier_terminal::{Failure, Outcome, deliver, print, valid};
 
 use crate::cli::CostOptions;
-use crate::cost_page::{CostReport, CostRow, FamilyCost, reads_d};
-use crate::cost_papers;
-use crate::failure::{Failure, Outcome, files};
-use crate::materials::valid;
-use crate::output::print;
-
-/// The hidden verb of [`probe`].
-const PROBE: &str = "cost-probe";
-
-/// Folders where drivers of Vulkan register themselves.
-const DRIVER_FOLDERS: [&str; 4] =
-    ["/usr/share/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "/etc/vulkan/icd.d", "/usr/local/etc/vulkan/icd.d"];
 
 /// Compiles shaders for GPUs that are not here, and prints what they cost.
 pub(crate) fn run(options: &CostOptions) -> Outcome {
     let materials = valid(read(&options.sources.paths)?, true)?;
-    if options.shapes {
-        return shapes(options, &materials);
-    }
     let variants = variants(options, &materials)?;
     if options.assembly {
         return match (variants.as_slice(), options.family.as_slice()) {
-            ([variant], [family]) => print(&started(family.0, true, std::slice::from_ref(&variant.kernel))?),
+            ([variant], [family]) => print(&assembly_apart(*family, &variant.kernel).map_err(Failure::device)?),
             _ => Err(Failure::Usage(anyhow::anyhow!(
                 "--assembly prints one kernel, not {}: name one material, --model, --form, --closed, --constant and --family",
                 variants.len()
             ))),
         };
     }
-    let papers = if options.json { Vec::new() } else { cost_papers::cases(&materials)? };
-    let mut kernels = vec![empty(Harness::Bare)?, empty(Harness::NormalMapped)?];
+    let mut kernels = vec![Kernel::empty(Harness::Bare).map_err(Failure::input)?];
     kernels.extend(variants.iter().map(|v| v.kernel.clone()));
-    kernels.extend(papers.iter().flat_map(|case| case.variants.iter()).flat_map(|v| v.kernels.clone()));
-    let families: Vec<Family> =
-        if options.family.is_empty() { Family::ALL.to_vec() } else { options.family.iter().map(|f| f.0).collect() };
+    let families: &[Family] = if options.family.is_empty() { &Family::ALL } else { &options.family };
     let mut report = CostReport { generator: GENERATOR.to_owned(), ..CostReport::default() };
-    let mut paper_counts = Vec::new();
-    for family in families {
-        let compiled: Compiled = serde_json::from_str(&started(family, false, &kernels)?).map_err(Failure::input)?;
-        let [harness, framed, counts @ ..] = compiled.counts.as_slice() else {
+    for &family in families {
+        let compiled = compile_apart(family, &kernels).map_err(Failure::device)?;
+        let [harness, counts @ ..] = compiled.counts.as_slice() else {
             return Err(Failure::Device(anyhow::anyhow!("the probe gave no counts")));
         };
-        let (own, others) = counts.split_at(variants.len());
-        report.driver = compiled.driver;
-        report.families.push(FamilyCost {
-            family,
-            chip: family.chip().to_owned(),
-            device: compiled.device,
-            harness: *harness,
-        });
-        report.rows.extend(variants.iter().zip(own).map(|(variant, counts)| CostRow {
+        report.add_family(family, &compiled, *harness);
+        report.rows.extend(variants.iter().zip(counts).map(|(variant, counts)| CostRow {
             material: variant.material.clone(),
             model: variant.model,
-            form: variant.style.form.name().to_owned(),
+            form: variant.style.form,
             closed: variant.closed,
             constant: variant.style.constant,
             family,
             counts: counts.beyond(harness),
         }));
-        paper_counts.push((family, *harness, *framed, others.to_vec()));
     }
-    let text = if options.json {
-        report.to_json().map_err(Failure::input)?
-    } else {
-        let papers = cost_papers::to_markdown(&papers, &paper_counts);
-        report.to_markdown(&command(options), &papers)
-    };
-    match &options.output {
-        Some(path) => std::fs::write(path, text).map_err(files(path, "write")),
-        None => print(&text),
-    }
-}
-
-/// Costs of every shape that the materials have, whole or without some of their parts: what scenes choose by.
-fn shapes(options: &CostOptions, materials: &[Material]) -> Outcome {
-    let family = Family::Rdna2;
-    let simpler = || materials.iter().flat_map(luthier_scene::variants).map(|(_, material)| material);
-    let mut keys: Vec<(ShadingModel, luthier_scene::Form, String)> = Vec::new();
-    let mut kernels = vec![empty(Harness::Bare)?];
-    for model in ShadingModel::ALL {
-        for mut material in simpler() {
-            material.bake.model = Some(model);
-            let shape = luthier_scene::shape_of(model, &luthier_scene::shape(&material.stack));
-            // What is no matter of shape, and what would make two materials of one shape differ.
-            material.effects = Default::default();
-            material.bake.distribution = Default::default();
-            if keys.iter().any(|(known, _, s)| (*known, s) == (model, &shape)) {
-                continue;
-            }
-            let manifest = outline(std::slice::from_ref(&material), &Options::default())?;
-            let set = MaterialSet::from_manifest(&manifest);
-            for (form, key) in [(Form::Baked, luthier_scene::Form::Baked), (Form::Full, luthier_scene::Form::Full)] {
-                let style = Style { form, constant: false, approximate: false };
-                kernels.push(Kernel::of_set(&set, style, Harness::Bare).map_err(Failure::input)?);
-                keys.push((model, key, shape.clone()));
-            }
-        }
-    }
-    let compiled: Compiled = serde_json::from_str(&started(family, false, &kernels)?).map_err(Failure::input)?;
-    let [harness, counts @ ..] = compiled.counts.as_slice() else {
-        return Err(Failure::Device(anyhow::anyhow!("the probe gave no counts")));
-    };
-    let mut rows: Vec<String> = Vec::new();
-    keys.iter().zip(counts).for_each(|((model, form, shape), counts)| {
-        let (model, form, cycles) = (model.name(), form.name(), counts.beyond(harness).inverse_throughput);
-        rows.push(format!(r#"    {{"model":"{model}","form":"{form}","shape":"{shape}","cycles":{cycles}}}"#));
-    });
-    let text = format!(
-        "{{\n  \"driver\": {},\n  \"family\": \"{}\",\n  \"rows\": [\n{}\n  ]\n}}\n",
-        serde_json::json!(compiled.driver),
-        family.name(),
-        rows.join(",\n")
-    );
-    match &options.output {
-        Some(path) => std::fs::write(path, text).map_err(files(path, "write")),
-        None => print(&text),
-    }
-}
-
-fn empty(harness: Harness) -> Outcome<Kernel> {
-    Kernel::empty(harness).map_err(Failure::input)
+    let text =
+        if options.json { report.to_json().map_err(Failure::input)? } else { report.to_markdown(&command(options)) };
+    deliver(&text, options.output.as_deref())
 }
 
 /// One shader to compile.
@@ -167,11 +81,12 @@ fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Varian
                 for (closed, constant) in styles(options) {
                     // What reads no table of D has it in closed form, or has none, either way.
                     let has_d = manifest.table(TableKind::Distribution).is_some();
-                    let has_table = form == Form::Baked && reads_d(model) && has_d;
+                    let has_table = form == Form::Baked && reads_distribution(model) && has_d;
                     if closed && !has_table && !options.closed {
                         continue;
                     }
-                    let set = without_d(MaterialSet::from_manifest(&manifest), closed);
+                    let set = MaterialSet::from_manifest(&manifest);
+                    let set = if closed { set.with_closed_distribution() } else { set };
                     let style = Style { form, constant, approximate: false };
                     let kernel = Kernel::of_set(&set, style, Harness::Bare).map_err(Failure::input)?;
                     let closed = closed || !has_table;
@@ -194,83 +109,13 @@ fn styles(options: &CostOptions) -> Vec<(bool, bool)> {
     all.into_iter().filter(wanted).filter(exact).collect()
 }
 
-/// The set, without a table of D where this is a closed form.
-pub(crate) fn without_d(mut set: MaterialSet<'_>, closed: bool) -> MaterialSet<'_> {
-    set.tables.retain(|table| !(closed && table.kind == TableKind::Distribution));
-    set
-}
-
-/// Runs [`probe`] in a process of its own: the driver reads its family from the environment when it is loaded.
-fn started(family: Family, assembly: bool, kernels: &[Kernel]) -> Outcome<String> {
-    let lost =
-        |what: &str, source: std::io::Error| Failure::Device(anyhow::Error::new(source).context(what.to_owned()));
-    let program = std::env::current_exe().map_err(|source| lost("cannot find this program", source))?;
-    let mut command = Command::new(program);
-    command.args([PROBE, family.name()]).args(assembly.then_some("--assembly")).envs(family.environment());
-    for variable in FOREIGN_VARIABLES {
-        command.env_remove(variable);
-    }
-    if let Some(drivers) = drivers() {
-        command.env("VK_DRIVER_FILES", &drivers).env("VK_ICD_FILENAMES", &drivers);
-    }
-    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = command.spawn().map_err(|source| lost("cannot start the probe", source))?;
-    let input = serde_json::to_vec(kernels).map_err(Failure::input)?;
-    if let Some(mut stdin) = child.stdin.take() {
-        // A probe that ended early says why by itself.
-        let _ = stdin.write_all(&input);
-    }
-    let output = child.wait_with_output().map_err(|source| lost("cannot wait for the probe", source))?;
-    let words = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    if output.status.success() {
-        return Ok(words(&output.stdout));
-    }
-    let said = words(&output.stderr);
-    let error = said.lines().find_map(|line| line.strip_prefix("error: "));
-    let text =
-        error.map_or_else(|| format!("the probe of {family} ended with {}: {said}", output.status), str::to_owned);
-    Err(Failure::Device(anyhow::anyhow!(text)))
-}
-
-/// The descriptions of RADV, for the loader to load nothing else; `None` leaves the choice to the user's own variables.
-fn drivers() -> Option<OsString> {
-    if ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"].iter().any(|name| std::env::var_os(name).is_some()) {
-        return None;
-    }
-    let is_radv = |path: &PathBuf| {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        name.starts_with("radeon_icd") && name.ends_with(".json")
-    };
-    let in_folder = |folder: &str| {
-        let entries = std::fs::read_dir(Path::new(folder)).into_iter().flatten().flatten();
-        let mut found: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(is_radv).collect();
-        found.sort();
-        found
-    };
-    let found: Vec<PathBuf> = DRIVER_FOLDERS.into_iter().flat_map(in_folder).collect();
-    if found.is_empty() { None } else { std::env::join_paths(found).ok() }
-}
-
-/// Reads kernels from standard input, compiles them on the null device of this process and prints what came of it.
-pub(crate) fn probe(family: Family, assembly: bool) -> Outcome {
-    let kernels: Vec<Kernel> = serde_json::from_reader(std::io::stdin().lock()).map_err(Failure::input)?;
-    let device = |source: luthier_cost::CostError| Failure::Device(source.into());
-    if assembly {
-        let texts: Vec<String> =
-            kernels.iter().map(luthier_cost::assembly).collect::<Result<_, _>>().map_err(device)?;
-        return print(&texts.join("\n"));
-    }
-    let compiled = luthier_cost::compile(family, &kernels).map_err(device)?;
-    print(&serde_json::to_string(&compiled).map_err(Failure::input)?)
-}
-
 /// The command line that makes the page.
 fn command(options: &CostOptions) -> String {
     let mut words = vec!["luthier cost".to_owned()];
     words.extend(options.sources.paths.iter().map(|path| path.display().to_string()));
     words.extend(options.model.iter().map(|model| format!("--model {}", model.name())));
     words.extend(options.form.iter().map(|&form| format!("--form {}", form.name())));
-    words.extend(options.family.iter().map(|family| format!("--family {}", family.0)));
+    words.extend(options.family.iter().map(|family| format!("--family {}", family)));
     let flags = [("--set", options.set), ("--closed", options.closed), ("--constant", options.constant)];
     words.extend(flags.iter().filter(|(_, is_set)| *is_set).map(|(flag, _)| (*flag).to_owned()));
     words.extend(options.output.iter().map(|path| format!("-o {}", path.display())));

@@ -1,12 +1,13 @@
-use crate::cli::{GalleryOptions, ShapeName};
-use crate::device::{device, open};
-use crate::failure::{Failure, Outcome};
-use crate::materials::{shaded, valid};
-use crate::memory_bake;
-use crate::picture::{Format, settings};
-use crate::sheet::sheet;
-use luthier_export::read;
+//! `gallery`: many materials side by side.
+
+use luthier_export::{Package, lit, read};
 use luthier_manifest::Form;
+use luthier_report::sheet;
+use luthier_terminal::{Failure, Outcome, open, valid};
+
+use crate::cli::{GalleryOptions, ShapeName};
+use crate::materials::shaded;
+use crate::picture::{Format, settings};
 
 /// Renders many materials side by side.
 pub(crate) fn run(options: &GalleryOptions) -> Outcome {
@@ -17,14 +18,14 @@ pub(crate) fn run(options: &GalleryOptions) -> Outcome {
         )));
     }
     let materials = shaded(valid(read(&options.sources.paths)?, false)?, &options.shading);
-    let package = memory_bake::bake_lit(&materials)?;
+    let package = Package::for_renderer(&lit(&materials))?;
     let look = &options.look;
     let settings = settings(look, options.shape.into(), options.size)?;
     let gpu = open(look.adapter.as_deref())?;
-    let scene = gpu.scene(&package, Form::Baked).map_err(device)?;
+    let scene = gpu.scene(&package, Form::Baked)?;
     let mut pictures = Vec::with_capacity(materials.len());
     for (i, material) in materials.iter().enumerate() {
-        pictures.push((material.name.clone(), scene.render(&[i as u32], &settings).map_err(device)?));
+        pictures.push((material.name.clone(), scene.render(&[i as u32], &settings)?));
     }
     let columns = options.columns.unwrap_or_else(|| (pictures.len() as f64).sqrt().ceil() as u32);
     format.write(&options.output, sheet(&pictures, columns), look.tone.into())

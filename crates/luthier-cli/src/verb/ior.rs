@@ -6,11 +6,10 @@ use luthier_optics::constants::{Dataset, dataset, datasets};
 use luthier_optics::f0_table::{DIELECTRIC_F0, DielectricF0, F0_TABLE, F0Entry};
 use luthier_optics::interface::Interface;
 use luthier_optics::ior::Ior;
+use luthier_terminal::{Failure, Outcome, print};
 use serde_json::{Value, json};
 
 use crate::cli::IorOptions;
-use crate::failure::{Failure, Outcome};
-use crate::output::print;
 
 /// Lists the built-in optical constants, or shows one set.
 pub(crate) fn run(options: &IorOptions) -> Outcome {

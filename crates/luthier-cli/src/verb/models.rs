@@ -2,21 +2,13 @@
 
 use luthier_layers::model::{Claims, Kind, ModelInfo};
 use luthier_layers::registry::models;
-use luthier_report::{ModelSettings, ModelSubject, judge_models};
+use luthier_terminal::{Outcome, print};
 use serde_json::{Value, json};
 
-use crate::cli::{MODEL_SAMPLES, ModelsOptions};
-use crate::failure::{Failure, Outcome};
-use crate::materials::valid;
-use crate::output::print;
-use crate::progress::Bar;
-use luthier_export::read;
+use crate::cli::ModelsOptions;
 
-/// Lists the reflectance models, or judges them.
+/// Lists the reflectance models.
 pub(crate) fn run(options: &ModelsOptions) -> Outcome {
-    if !options.judge.is_empty() {
-        return judge(options);
-    }
     let infos: Vec<ModelInfo> = models().iter().map(|model| model.info()).collect();
     if options.json {
         return print(&format!("{:#}", Value::from_iter(infos.iter().map(entry))));
@@ -71,33 +63,4 @@ fn entry(info: &ModelInfo) -> Value {
         "conserves_energy": claims.conserves_energy,
         "inputs": inputs.iter().map(|input| input.name()).collect::<Value>(),
     })
-}
-
-fn judge(options: &ModelsOptions) -> Outcome {
-    let subjects: Vec<ModelSubject> = valid(read(&options.judge)?, false)?
-        .into_iter()
-        .map(|material| ModelSubject {
-            wavelengths_nm: material.bake.wavelengths_nm(),
-            name: material.name,
-            stack: material.stack,
-        })
-        .collect();
-    let bar = Bar::new("judging models");
-    let settings = ModelSettings { samples: options.samples, seed: 0 };
-    let report = judge_models(&subjects, settings, &|done, total| bar.set(done as u64, total as u64));
-    drop(bar);
-    if options.json {
-        return print(&report.to_json().map_err(Failure::input)?);
-    }
-    print(&report.to_markdown(&command(options)))
-}
-
-/// The command line that makes the page.
-fn command(options: &ModelsOptions) -> String {
-    let mut words = vec!["luthier models --judge".to_owned()];
-    words.extend(options.judge.iter().map(|path| path.display().to_string()));
-    if options.samples != MODEL_SAMPLES {
-        words.push(format!("--samples {}", options.samples));
-    }
-    words.join(" ")
 }

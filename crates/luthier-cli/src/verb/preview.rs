@@ -1,9 +1,11 @@
+//! `preview`: a picture of one material, or of the grid.
+
+use luthier_export::{Package, lit};
 use luthier_gpu::Shape;
 use luthier_manifest::Form;
+use luthier_terminal::{Failure, Outcome, open};
 
 use crate::cli::{PreviewOptions, ShapeName};
-use crate::device::{device, open};
-use crate::failure::{Failure, Outcome};
 use crate::picture::{Format, settings};
 use crate::verb::compare::ENVIRONMENT_SAMPLES;
 use crate::{grid, memory_bake};
@@ -13,7 +15,7 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
     let format = Format::of(&options.output)?;
     let (package, parts) = match (&options.material, options.shape) {
         (None, ShapeName::Grid) => {
-            let package = memory_bake::bake_lit(&grid::materials()?)?;
+            let package = Package::for_renderer(&lit(&grid::materials()?))?;
             let parts = (0..Shape::Grid.materials() as u32).collect();
             (package, parts)
         }
@@ -29,13 +31,13 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
     let look = &options.look;
     let mut settings = settings(look, options.shape.into(), options.size)?;
     let gpu = open(look.adapter.as_deref())?;
-    let scene = gpu.scene(&package, Form::Baked).map_err(device)?;
+    let scene = gpu.scene(&package, Form::Baked)?;
     for &part in &parts {
         // A bake on disk has albedos only where a shader reads them, or where they were asked for.
-        if look.environment_samples.is_none() && !scene.has_albedo(part).map_err(device)? {
+        if look.environment_samples.is_none() && !scene.has_albedo(part)? {
             settings.environment_samples = ENVIRONMENT_SAMPLES;
         }
     }
-    let image = scene.render(&parts, &settings).map_err(device)?;
+    let image = scene.render(&parts, &settings)?;
     format.write(&options.output, image, look.tone.into())
 }

@@ -1,5 +1,6 @@
-use crate::failure::Outcome;
-use crate::output::print;
+//! `schema`: the JSON Schemas of files.
+
+use luthier_terminal::{Outcome, print};
 
 /// Prints the JSON Schema of material files, or of scene files.
 pub(crate) fn run(scene: bool) -> Outcome {

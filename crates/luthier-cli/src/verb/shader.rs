@@ -3,18 +3,17 @@
 use luthier_bake::Options;
 use luthier_export::{outline, read};
 use luthier_shader::{MaterialSet, Target, complete, complete_spirv, emit, emit_constant, emit_spirv};
+use luthier_terminal::{Failure, Outcome, files, print_bytes};
 
 use crate::cli::ShaderOptions;
-use crate::failure::{Failure, Outcome, files};
 use crate::materials::bakeable;
-use crate::output::print_bytes;
-use crate::verb::cost::without_d;
 
 /// Prints or writes the shader of some materials, without baking them.
 pub(crate) fn run(options: &ShaderOptions) -> Outcome {
     let materials = bakeable(read(&options.sources.paths)?, &options.shading, false)?;
     let manifest = outline(&materials, &Options::default())?;
-    let set = without_d(MaterialSet::from_manifest(&manifest), options.closed);
+    let set = MaterialSet::from_manifest(&manifest);
+    let set = if options.closed { set.with_closed_distribution() } else { set };
     let (form, target) = (options.form, options.target);
     let bytes = match (target, options.complete) {
         (Target::SpirV, true) => complete_spirv(&set, form),

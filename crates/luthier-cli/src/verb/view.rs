@@ -2,15 +2,14 @@
 
 use std::sync::Arc;
 
+use luthier_export::read;
 use luthier_gpu::Shape;
+use luthier_terminal::{Failure, Outcome, open};
 use luthier_view::{Options, Shots, ViewError};
 
 use crate::cli::{ShapeName, ThemeName, ViewOptions};
-use crate::device::{device, open};
-use crate::failure::{Failure, Outcome};
 use crate::picture::{Format, settings};
 use crate::view_host::ViewHost;
-use luthier_export::read;
 
 /// Opens the window, and returns when it is closed.
 pub(crate) fn run(options: &ViewOptions) -> Outcome {
@@ -41,7 +40,7 @@ pub(crate) fn run(options: &ViewOptions) -> Outcome {
     };
     let host = ViewHost::new(options.sources.paths.clone(), options.screenshot.clone());
     luthier_view::run(Arc::new(host), gpu, window).map_err(|error| match error {
-        ViewError::Renderer(source) => device(source),
+        ViewError::Renderer(source) => source.into(),
         ViewError::Screenshot(_) => Failure::Files(error.into()),
         _ => Failure::Device(error.into()),
     })

@@ -317,8 +317,8 @@ mod tests {
     #[test]
     fn the_page_has_a_column_for_every_row_and_no_empty_cell_in_errors() {
         let report = judged(50, 1);
-        let page = report.to_markdown("luthier models --judge somewhere");
-        assert!(page.contains("\n    luthier models --judge somewhere\n"));
+        let page = report.to_markdown("luthier-lab judge somewhere");
+        assert!(page.contains("\n    luthier-lab judge somewhere\n"));
         for kind in ["## Albedo error", "## Lobe error"] {
             let section = page.split(&format!("\n{kind}\n")).nth(1).unwrap().split("\n## ").next().unwrap();
             let heads: Vec<&str> = section.lines().filter(|line| line.starts_with("| material")).collect();

@@ -20,7 +20,7 @@ pub(super) fn write(out: &mut String, report: &Report, exhibits: &Exhibits) {
 fn map(out: &mut String, report: &Report, exhibits: &Exhibits) {
     let Some((suite, summary)) = exhibits.stability.as_ref().zip(report.stability.as_ref()) else {
         out.push_str(
-            "<p>Not in this report: <code>luthier stability --json -o stability.json</code> runs the suite, <code>luthier report \
+            "<p>Not in this report: <code>luthier-lab stability --json -o stability.json</code> runs the suite, <code>luthier report \
              --stability stability.json</code> shows it.</p>\n",
         );
         return;

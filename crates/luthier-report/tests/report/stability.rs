@@ -138,8 +138,8 @@ fn the_heat_map_is_xml_with_a_tooltip_for_every_cell() {
         document.descendants().filter_map(|n| n.has_tag_name("title").then(|| n.text()).flatten()).collect();
     assert!(titles.contains(&"f64, elek, furnace-2: fails, wrong 0.900"), "{titles:?}");
     assert!(svg.contains("fill=\"currentColor\"") && svg.contains("var(--stability-holds"));
-    let page = stability.to_markdown("luthier stability");
-    assert!(page.contains("\n    luthier stability\n") && page.contains("an <adapter>"), "{page}");
+    let page = stability.to_markdown("luthier-lab stability");
+    assert!(page.contains("\n    luthier-lab stability\n") && page.contains("an <adapter>"), "{page}");
     for heading in ["## Summary", "## Domains", "## f64", "## device", "## Explanations", "## Cases"] {
         assert!(page.contains(heading), "{heading}");
     }

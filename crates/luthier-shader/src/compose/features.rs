@@ -14,51 +14,10 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is, for the check that modules name no other.
     #[cfg(test)]
-    pub(crate) const ALL: [&'static str; 43] = [
-        "absorption",
-        "anisotropic",
-        "bare",
-        "beckmann",
-        "below",
-        "chain",
-        "chain_diffuse",
-        "clamped",
-        "closed",
-        "conductor",
-        "diffuse",
-        "distribution",
-        "escape",
-        "fgd",
-        "film",
-        "film_table",
-        "flakes",
-        "fresnel",
-        "full",
-        "ggx",
-        "glitter",
-        "granier",
-        "granier_bare",
-        "granier_base",
-        "granier_film",
-        "granier_transparent",
-        "interface",
-        "microfacet_diffuse",
-        "mixed",
-        "oren_nayar",
-        "patina",
-        "phase",
-        "phong",
-        "place",
-        "schlick_base",
-        "smith",
-        "split_root",
-        "statistics",
-        "statistics_base",
-        "theta_axis",
-        "thickness",
-        "total_reflection",
-        "bilinear",
-    ];
+    const ALL: &str = "absorption anisotropic bare beckmann below bilinear chain chain_diffuse clamped closed conductor diffuse \
+    distribution escape fgd film film_table flakes fresnel full ggx glitter granier granier_bare granier_base \
+    granier_film granier_transparent interface microfacet_diffuse mixed oren_nayar patina phase phong place \
+    schlick_base smith split_root statistics statistics_base theta_axis thickness total_reflection";
 
     pub(crate) fn of(set: &MaterialSet<'_>, form: Form) -> Self {
         let mut names = BTreeSet::new();
@@ -263,7 +222,7 @@ mod tests {
         for (path, module) in modules() {
             prune(&module, &Features(BTreeSet::new()));
             for word in features_named(&module) {
-                assert!(Features::ALL.contains(&word), "`{word}` in {}", path.display());
+                assert!(Features::ALL.split(' ').any(|known| known == word), "`{word}` in {}", path.display());
             }
         }
     }

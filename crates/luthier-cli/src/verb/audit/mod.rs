@@ -4,16 +4,15 @@ mod statement;
 
 use std::path::Path;
 
+use luthier_export::input;
 use luthier_lut::Image;
 use luthier_report::{Audit, audit};
+use luthier_terminal::{Failure, Outcome, files, print};
 use luthier_texture::{Samples, table};
 use serde_json::json;
 
 use self::statement::statement;
 use crate::cli::{AuditOptions, SamplesName};
-use crate::failure::{Failure, Outcome, files};
-use crate::output::print;
-use luthier_export::input;
 
 /// Reads the table, judges it and prints the verdict.
 pub(crate) fn run(options: &AuditOptions) -> Outcome {

@@ -6,10 +6,10 @@ use luthier_optics::ior::Ior;
 use luthier_optics::split_sum::Masking;
 use luthier_optics::stack::Distribution;
 use luthier_report::{Layout, Model, Nodes, Statement, Term};
+use luthier_terminal::{Failure, Outcome};
 use luthier_texture::table::Table;
 
 use crate::cli::{AuditOptions, NodesName, PresetName};
-use crate::failure::{Failure, Outcome};
 
 /// Contents of an engine's tables.
 struct Preset {

@@ -18,13 +18,11 @@ use serde_json::{Value, json};
 
 use crate::cli::EvalOptions;
 use crate::directions;
-use crate::failure::{Failure, Outcome};
-use crate::materials::valid;
 use crate::model_inputs::ModelInputs;
-use crate::output::complain;
 use crate::reradiation::Reradiation;
 use function::Kind;
 use luthier_export::read_one;
+use luthier_terminal::{Failure, Outcome, complain, valid};
 use place::place;
 use sweep::{Sweep, sweep};
 use values::values;

@@ -11,8 +11,8 @@ use luthier_layers::shaded::{Growth, Place};
 use luthier_layers::voronoi::Voronoi;
 use luthier_lut::Image;
 use luthier_material::{Effects, FlakeSource, Glitter, Material, VariationSource};
+use luthier_terminal::{Failure, Outcome, files};
 
-use crate::failure::{Failure, Outcome, files};
 use crate::model_inputs::ModelInputs;
 
 /// The place; `shows` are the effects that count.

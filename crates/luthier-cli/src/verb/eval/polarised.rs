@@ -3,12 +3,11 @@
 use luthier_material::Material;
 use luthier_optics::Rgb;
 use luthier_optics::stack::{Base, Stack};
+use luthier_terminal::{Failure, Outcome, print};
 use serde_json::{Value, json};
 
 use super::function::Kind;
 use super::significant;
-use crate::failure::{Failure, Outcome};
-use crate::output::print;
 
 /// Prints the reflectances of the one interface of a material, its films included, for light polarised normal to the plane of
 /// incidence (s) and in it (p).

@@ -4,6 +4,7 @@ use luthier_layers::directional_albedo::DirectionalAlbedo;
 use luthier_layers::elek_model::environment;
 use luthier_layers::furnace::furnace;
 use luthier_layers::layered_mc::Estimate;
+use luthier_terminal::{Outcome, print};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
@@ -11,8 +12,6 @@ use super::function::{Albedo, Function, Kind};
 use super::{Subject, WAVELENGTH_NM, at, error, significant};
 use crate::cli::EvalOptions;
 use crate::directions::Angles;
-use crate::failure::Outcome;
-use crate::output::print;
 
 /// Angles, in degrees, unless others are given.
 const THETAS_DEG: [f64; 18] =

@@ -1,14 +1,13 @@
 //! Values for pairs of directions.
 
 use luthier_layers::layered_mc::Estimate;
+use luthier_terminal::{Outcome, print};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::function::{Function, Kind};
 use super::{Subject, error, significant};
 use crate::directions::Angles;
-use crate::failure::Outcome;
-use crate::output::print;
 
 /// Prints the values for pairs (wi, wo).
 pub(crate) fn values(subject: &Subject, kind: Kind, pairs: &[[Angles; 2]], json: bool) -> Outcome {

@@ -11,11 +11,11 @@ use luthier_report::{
     Costs, ModelSettings, ModelSubject, ReferencePaths, Report, ShapeCost, StabilitySummary, judge_shading_models,
 };
 use luthier_scene::CostTable;
+use luthier_terminal::{Failure, Outcome};
 use rayon::prelude::*;
 use serde_json::json;
 
 use crate::cli::ReportOptions;
-use crate::failure::{Failure, Outcome};
 use crate::input;
 
 /// First family of random numbers of the paths.
@@ -42,7 +42,7 @@ pub(super) fn given(options: &ReportOptions) -> Outcome<Given> {
     if let Some(path) = &options.stability {
         let text = read(path, "stability", &mut out.files)?;
         let suite = Stability::from_json(&text);
-        out.stability = Some(suite.map_err(|source| unusable(path, "luthier stability", source.into()))?);
+        out.stability = Some(suite.map_err(|source| unusable(path, "luthier-lab stability", source.into()))?);
     }
     Ok(out)
 }

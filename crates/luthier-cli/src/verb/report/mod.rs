@@ -11,12 +11,10 @@ use luthier_manifest::Manifest;
 use luthier_material::{Material, Parsed};
 use luthier_report::{Asked, Device, Exhibits, FileBudget, Report, Settings, Subject, judge, limits};
 use luthier_scene::{LeaveOut, simplified};
+use luthier_terminal::{Bar, Failure, Outcome, print};
 
 use crate::cli::ReportOptions;
-use crate::failure::{Failure, Outcome};
 use crate::interrupt::whole;
-use crate::output::print;
-use crate::progress::Bar;
 
 /// Judges a bake and writes the report beside it.
 pub(crate) fn run(options: &ReportOptions) -> Outcome {
@@ -139,7 +137,7 @@ fn changed(source: &str) -> Failure {
 }
 
 #[cfg(feature = "gpu")]
-type Runner = crate::device::Shaders;
+type Runner = luthier_terminal::Shaders;
 
 /// The runner of a build that runs no shaders.
 #[cfg(not(feature = "gpu"))]
@@ -147,7 +145,7 @@ type Runner = NoShaders;
 
 #[cfg(feature = "gpu")]
 fn device(folder: &Folder, options: &ReportOptions) -> Outcome<Option<Runner>> {
-    use crate::device::{Shaders, open};
+    use luthier_terminal::{Shaders, open};
 
     if options.no_device {
         return Ok(None);

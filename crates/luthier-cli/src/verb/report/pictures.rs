@@ -2,14 +2,13 @@
 
 use luthier_gpu::{RenderSettings, Shape, ToneMapping};
 use luthier_lut::Image;
-use luthier_report::{Exhibit, Form, PictureErrors, Report, compare_pictures, picture_color_difference};
+use luthier_report::{
+    Exhibit, Form, PictureErrors, Report, brightened_difference, compare_pictures, picture_color_difference,
+};
+use luthier_terminal::{Bar, Failure, Outcome, Shaders};
 use luthier_texture::png;
 
 use crate::cli::ReportOptions;
-use crate::device::{Shaders, device};
-use crate::failure::{Failure, Outcome};
-use crate::progress::Bar;
-use crate::verb::compare::difference;
 
 /// Directions of the environment for each lobe and sample: the form without tables has no albedo to weigh blurred maps with.
 const ENVIRONMENT_SAMPLES: u32 = 16;
@@ -28,18 +27,18 @@ pub(super) fn pictures(
         size: options.picture_size,
         samples: SAMPLES,
         environment_samples: ENVIRONMENT_SAMPLES,
-        ..RenderSettings::new(Shape::Sphere).map_err(device)?
+        ..RenderSettings::new(Shape::Sphere)?
     };
     let tone = ToneMapping::default();
     let bar = Bar::new("pictures");
     let count = report.materials.len() as u64;
     let mut out = Vec::new();
     for (number, material) in (0..).zip(&mut report.materials) {
-        let render = |form| shaders.scene(form).render(&[number], &settings).map_err(device);
+        let render = |form| shaders.scene(form).render(&[number], &settings);
         let (full, baked) = (render(Form::Full)?, render(Form::Baked)?);
         let compared = compare_pictures(&baked, &full, |v| tone.value(v)).map_err(Failure::input)?;
         let [delta_e_mean, delta_e_max] = picture_color_difference(&baked, &full, |v| tone.value(v));
-        let (apart, gain) = difference(&baked, &full, tone);
+        let (apart, gain) = brightened_difference(&baked, &full, |v| tone.value(v));
         material.picture = Some(PictureErrors {
             size: settings.size,
             rms_err: compared.rms_err,

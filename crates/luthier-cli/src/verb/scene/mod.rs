@@ -7,15 +7,13 @@ use std::path::{Component, Path, PathBuf};
 use luthier_export::{MANIFEST, Source, find as find_files, input, label, of_domain, read_one, refuse};
 use luthier_manifest::{MaterialChoice, SceneChoice};
 use luthier_material::{Diagnostic, Material, Scene, is_scene, parse_scene};
-use luthier_scene::{Director, Made, label as candidate_label};
+use luthier_scene::{Director, Made, SceneFailure, label as candidate_label};
+use luthier_terminal::{Broken, Failure, Outcome, bytes, files, print, print_diagnostics, valid};
 use serde_json::json;
 
 use crate::cli::BakeOptions;
-use crate::failure::{Broken, Failure, Outcome, files};
 use crate::interrupt::whole;
-use crate::materials::{print_diagnostics, valid};
 use crate::misses;
-use crate::output::{bytes, print};
 use crate::verb::check::diagnostics;
 
 /// The scenes among the files; `None` where there is none, and files are materials.
@@ -65,7 +63,8 @@ pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
         return Err(Failure::Usage(anyhow::anyhow!(text)));
     };
     let (scene, materials) = read(path, options.quiet)?;
-    let made = pool.install(|| Director::new(&scene, &materials, targets).step(None, options.allow_miss))?;
+    let made =
+        pool.install(|| Director::new(&scene, &materials, targets).step(None, options.allow_miss)).map_err(failure)?;
     let encoded = made.package.encode(options.compression())?;
     whole(|| encoded.write(&options.out))?;
     let missed = misses::name(&made.package.manifest, options.quiet)?;
@@ -84,6 +83,15 @@ pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
     }
 }
 
+/// A scene without models is an input that is not usable; what its materials say is theirs.
+fn failure(error: SceneFailure) -> Failure {
+    match error {
+        SceneFailure::Export(error) => error.into(),
+        SceneFailure::Package(error) => error.into(),
+        _ => Failure::input(error),
+    }
+}
+
 /// The steps of every scene, loosest budget first, as a page or as JSON.
 fn tighten(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
     let mut budgets = options.budgets.clone();
@@ -92,8 +100,8 @@ fn tighten(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
     for path in scenes {
         let (scene, materials) = read(path, options.quiet)?;
         let mut director = Director::new(&scene, &materials, options.emission.targets());
-        let steps: Vec<Made> =
-            budgets.iter().map(|&limit| director.step(Some(limit), options.allow_miss)).collect::<Result<_, _>>()?;
+        let mut step = |&limit: &f64| director.step(Some(limit), options.allow_miss).map_err(failure);
+        let steps: Vec<Made> = budgets.iter().map(&mut step).collect::<Outcome<_>>()?;
         tightened.push((scene, steps));
     }
     if options.json {

@@ -22,7 +22,7 @@ pub(super) fn tidy(text: &str, function: &Function, globals: &BTreeSet<&str>) ->
         if names.contains_key(&from) || !taken.contains(&from) {
             continue;
         }
-        if !taken.contains(&to) && !globals.contains(to.as_str()) && !RESERVED.contains(&to.as_str()) {
+        if !taken.contains(&to) && !globals.contains(to.as_str()) && !RESERVED.split(' ').any(|word| word == to) {
             taken.insert(to.clone());
             names.insert(from, to);
         }
@@ -92,55 +92,9 @@ fn unnumbered(word: &str) -> Option<&str> {
 }
 
 /// Names that WGSL allows and another language keeps for itself: those that a shader writer might well give to a value.
-const RESERVED: [&str; 47] = [
-    "active",
-    "asm",
-    "attribute",
-    "buffer",
-    "centroid",
-    "char",
-    "common",
-    "constant",
-    "device",
-    "double",
-    "filter",
-    "fixed",
-    "flat",
-    "fragment",
-    "half",
-    "highp",
-    "in",
-    "inline",
-    "inout",
-    "input",
-    "kernel",
-    "line",
-    "linear",
-    "long",
-    "lowp",
-    "matrix",
-    "metal",
-    "out",
-    "output",
-    "partition",
-    "pass",
-    "patch",
-    "point",
-    "precise",
-    "sample",
-    "sampler",
-    "shared",
-    "short",
-    "smooth",
-    "string",
-    "superp",
-    "technique",
-    "texture",
-    "triangle",
-    "varying",
-    "vector",
-    "vertex",
-];
+const RESERVED: &str = "active asm attribute buffer centroid char common constant device double filter fixed flat fragment half highp in \
+    inline inout input kernel line linear long lowp matrix metal out output partition pass patch point precise \
+    sample sampler shared short smooth string superp technique texture triangle varying vector vertex";
 
 /// Puts `TYPE _eN = VALUE;` into the next line where that is the only place that reads it.
 fn without_temporaries(mut lines: Vec<String>) -> Vec<String> {

@@ -1,0 +1,13 @@
+//! Bakes: what is written, what is refused, and which tables are made.
+
+mod containers;
+mod folder;
+mod many;
+mod maps;
+mod misses;
+mod output;
+mod plain;
+mod refusals;
+mod scenes;
+mod tables;
+mod thickness_map;

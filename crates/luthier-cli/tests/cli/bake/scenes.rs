@@ -1,0 +1,173 @@
+//! `luthier bake SCENE`: models chosen by their error, and only their code and tables.
+
+use luthier_workshop::{material_files, root};
+use serde_json::Value;
+
+use crate::workshop::Workshop;
+
+/// Rough metal: Phong's lobe is far off, the others differ by what bounces between facets.
+const METAL: &str = "schema = 1\nname = \"metal\"\n\n[[layer]]\ntype = \"conductor\"\nior = { n = 0.2, k = 3.0 }\n\
+                     alpha_x = 0.09\nalpha_y = 0.11\n";
+
+/// A diffuse base whose slopes are hardly seen.
+const CLAY: &str =
+    "schema = 1\nname = \"clay\"\n\n[[layer]]\ntype = \"diffuse\"\nalbedo = [0.5, 0.3, 0.2]\nsigma = 0.25\n";
+
+const SCENE: &str = "scene = 1\nname = \"shelf\"\n\n[[material]]\nfile = \"parts/metal.toml\"\n\n[[material]]\n\
+                     file = \"parts/clay.toml\"\n\n[[light]]\ntype = \"directional\"\nfrom_eye_deg = 50\n\n\
+                     [view]\nangles_deg = [0, 45]\nfootprint_deg = 1\n\n[budget]\nmax_rel = 0.3\n";
+
+fn shelf() -> Workshop {
+    Workshop::with(&[("parts/metal.toml", METAL), ("parts/clay.toml", CLAY), ("shelf.toml", SCENE)])
+}
+
+fn models(choice: &Value) -> Vec<&str> {
+    let materials = choice["materials"].as_array().unwrap();
+    let chosen = |m: &'_ Value| m["chosen"].as_u64().unwrap() as usize;
+    materials.iter().map(|m| m["tried"][chosen(m)]["model"].as_str().unwrap()).collect()
+}
+
+#[test]
+fn the_form_of_a_scene_is_chosen() {
+    shelf().run(&["bake", "shelf.toml", "--form", "full"]).fails(2, &["leave out --form"]);
+}
+
+/// The second criterion of budgets: tighter costs no less, weighs no less and errs no more, and something changes on the way.
+#[test]
+fn a_tightened_budget_is_monotone() {
+    let run = shelf().run(&["bake", "shelf.toml", "--budgets", "1.5,0.4,0.3,0.1", "--json"]).exits(0);
+    let all = run.json();
+    let steps = all["scenes"][0].as_array().unwrap();
+    assert_eq!(steps.len(), 4);
+    let worst = |step: &Value| {
+        let materials = step["choice"]["materials"].as_array().unwrap();
+        let of = |m: &Value| m["tried"][m["chosen"].as_u64().unwrap() as usize].clone();
+        materials.iter().map(|m| of(m)["error"]["max_rel"].as_f64().unwrap()).fold(0.0, f64::max)
+    };
+    for (step, budget) in steps.iter().zip([1.5, 0.4, 0.3, 0.1]) {
+        assert!(worst(step) <= 0.75 * budget, "{budget}: {}", worst(step));
+    }
+    for pair in steps.windows(2) {
+        let number = |key: &str| [0, 1].map(|i: usize| pair[i][key].as_f64().unwrap());
+        for key in ["cycles", "texel_bytes"] {
+            let [loose, tight] = number(key);
+            assert!(loose <= tight, "{key}: {loose} {tight}");
+        }
+        // Noise of the reference falls from step to step, and the error of one model with it.
+        assert!(worst(&pair[1]) <= worst(&pair[0]) + 0.01, "{} {}", worst(&pair[0]), worst(&pair[1]));
+    }
+    let chosen: Vec<Vec<&str>> = steps.iter().map(|step| models(&step["choice"])).collect();
+    assert!(chosen[0] != chosen[3] && steps[0]["cycles"] != steps[3]["cycles"], "{chosen:?}");
+}
+
+/// A bake has the code and the tables of the chosen models only, says why, and does not depend on threads.
+#[test]
+fn only_what_was_chosen_is_written() {
+    let workshop = shelf();
+    let said = workshop.run(&["bake", "shelf.toml", "--out", "a", "--threads", "1"]).exits(0).stdout;
+    workshop.run(&["bake", "shelf.toml", "--out", "b", "--threads", "2", "-q"]).exits(0);
+    assert!(workshop.tree("a") == workshop.tree("b"));
+    let manifest = workshop.json("a/manifest.json");
+    let choice = &manifest["choice"];
+    assert_eq!((choice["scene"].as_str(), choice["form"].as_str()), (Some("shelf"), Some("baked")));
+    for (i, material) in choice["materials"].as_array().unwrap().iter().enumerate() {
+        let tried = material["tried"].as_array().unwrap();
+        let chosen = &tried[material["chosen"].as_u64().unwrap() as usize];
+        assert_eq!(chosen["verdict"], "holds");
+        assert_eq!(manifest["materials"][i]["model"], chosen["model"]);
+        let reason = material["reason"].as_str().unwrap();
+        assert!(said.contains(reason) && reason.contains("the cheapest that holds"), "{said}");
+        // Nothing cheaper holds.
+        assert!(tried.iter().all(|t| t["verdict"] != "holds" || t == chosen));
+        if let Some(next) = material["next_cheaper"].as_u64() {
+            assert!(tried[next as usize]["cost"].as_f64() < chosen["cost"].as_f64());
+            assert!(reason.contains("would have"), "{reason}");
+        }
+    }
+    assert!(!workshop.path("a/shaders/full.wgsl").exists());
+    let wgsl = workshop.text("a/shaders/baked.wgsl");
+    let tables: Vec<&str> =
+        manifest["tables"].as_array().unwrap().iter().map(|t| t["kind"].as_str().unwrap()).collect();
+    for kind in ["fresnel", "distribution", "fgd", "escape", "film", "phase"] {
+        assert_eq!(wgsl.contains(&format!("luthier_lookup_{kind}")), tables.contains(&kind), "{kind} {tables:?}");
+    }
+    assert_eq!(tables, ["fresnel"]);
+    // The judge reads the materials again, and finds in the tables what is said of them.
+    workshop.run(&["report", "--out", "a", "--no-device", "--pairs", "64"]).exits(0);
+}
+
+#[test]
+fn what_nothing_holds_is_refused_or_said() {
+    let workshop = shelf();
+    workshop.edit("shelf.toml", |text| text.replace("max_rel = 0.3", "max_rel = 1e-4\n[target]\nmax_cost = 55"));
+    let run = workshop.run(&["bake", "shelf.toml"]).fails(1, &["no model holds the budget"]);
+    assert!(run.stderr.contains("metal: phong") && run.stderr.contains("comes nearest"), "{}", run.stderr);
+    assert!(!workshop.path("out").exists());
+    let run = workshop.run(&["bake", "shelf.toml", "--allow-miss"]).exits(0);
+    assert!(run.stdout.contains("none holds; this comes nearest"), "{}", run.stdout);
+    workshop.edit("shelf.toml", |text| text.replace("max_cost = 55", "max_cost = 2"));
+    workshop.run(&["bake", "shelf.toml"]).fails(1, &["cycles, more than 2"]);
+}
+
+/// Where there is no room for tables the form without them is taken, if its error is small enough.
+#[test]
+fn a_target_without_textures_gets_the_full_form() {
+    let workshop = shelf();
+    workshop.edit("shelf.toml", |text| format!("{text}\n[target]\nformats = []\n"));
+    workshop.run(&["bake", "shelf.toml", "-q"]).exits(0);
+    let manifest = workshop.json("out/manifest.json");
+    assert_eq!(manifest["choice"]["form"], "full");
+    assert_eq!(manifest["tables"].as_array().map(Vec::len), Some(0));
+    assert_eq!(manifest["bindings"].as_array().map(Vec::len), Some(1));
+    assert!(workshop.path("out/shaders/full.wgsl").exists() && !workshop.path("out/shaders/baked.wgsl").exists());
+    workshop.edit("shelf.toml", |text| text.replace("formats = []", "max_bytes = 1"));
+    workshop.run(&["bake", "shelf.toml", "-q"]).exits(0);
+    assert_eq!(workshop.json("out/manifest.json")["choice"]["form"], "full");
+}
+
+/// Formats that the target lacks are not searched, and the tables that ship have one that it has.
+#[test]
+fn a_target_keeps_the_search_to_its_formats() {
+    let workshop = shelf();
+    let formats = |workshop: &Workshop| -> Vec<String> {
+        workshop.run(&["bake", "shelf.toml", "-q"]).exits(0);
+        let manifest = workshop.json("out/manifest.json");
+        assert_eq!(manifest["choice"]["form"], "baked");
+        let tables = manifest["tables"].as_array().unwrap();
+        tables.iter().map(|table| table["format"].as_str().unwrap().to_owned()).collect()
+    };
+    let free = formats(&workshop);
+    assert!(!free.is_empty() && free.iter().all(|format| format != "rgba16float"), "{free:?}");
+    workshop.edit("shelf.toml", |text| format!("{text}\n[target]\nformats = [\"rgba16float\"]\n"));
+    assert_eq!(formats(&workshop), vec!["rgba16float"; free.len()]);
+}
+
+#[test]
+fn mistakes_name_the_place_and_a_way_out() {
+    let workshop = shelf();
+    workshop.edit("shelf.toml", |text| text.replace("from_eye_deg", "from_eye"));
+    let run = workshop.run(&["bake", "shelf.toml"]).exits(1);
+    run.says(&["shelf.toml:12:1", "unknown key `from_eye`", "did you mean `from_eye_deg`?", "nothing was written"]);
+    workshop.write("shelf.toml", SCENE.replace("metal.toml", "mettle.toml"));
+    workshop.run(&["bake", "shelf.toml"]).exits(1).says(&["mettle.toml", "no such file", "shelf.toml:"]);
+    workshop.write("shelf.toml", SCENE);
+    workshop.run(&["bake", "shelf.toml", "parts/clay.toml"]).fails(2, &["is a scene"]);
+    workshop.run(&["bake", "shelf.toml", "--model", "elek"]).fails(2, &["--model"]);
+    workshop.run(&["bake", "parts/clay.toml", "--allow-miss"]).fails(2, &["for scenes"]);
+    let schema = workshop.run(&["schema", "--scene"]).exits(0).json();
+    assert!(schema["properties"]["light"].is_object() && schema["properties"]["layer"].is_null());
+}
+
+/// The scenes that ship hold their budgets.
+#[test]
+fn the_jeweller_s_window_holds() {
+    let workshop = Workshop::new();
+    let scene = root().join("materials/scenes/jewellery.toml");
+    let run = workshop.run(&["bake", scene.to_str().unwrap(), "--json"]).exits(0);
+    let choice = &run.json()["choice"];
+    assert_eq!(models(choice).len(), 3);
+    for scene in material_files("materials/scenes") {
+        let text = std::fs::read_to_string(&scene).unwrap();
+        assert!(luthier_material::parse_scene("scene.toml", &text).is_ok(), "{}", scene.display());
+    }
+}

@@ -1,0 +1,155 @@
+//! `check` refuses what `bake` refuses, in the same words, and `bake` leaves everything as it was.
+
+use std::fs;
+
+use luthier_workshop::material_texts::{NOISE, film, gold, lacquer, matte};
+use luthier_workshop::{Run, file_name, material_files};
+
+use crate::workshop::Workshop;
+
+/// A folder with a finished bake, and pictures: one that is grey, one in colour, one cut short, one that is none.
+fn workshop() -> Workshop {
+    let workshop = Workshop::with(&[("matte.toml", &matte("matte"))]);
+    workshop.run(&["bake", "matte.toml", "-q"]).exits(0);
+    workshop.write("maps/text.png", "no picture");
+    let grey = image::ImageBuffer::from_fn(64, 64, |x, y| image::Luma([(x * y) as u8]));
+    grey.save(workshop.path("maps/grey.png")).unwrap();
+    image::RgbImage::from_pixel(4, 4, image::Rgb([200, 10, 10])).save(workshop.path("maps/red.png")).unwrap();
+    let whole = fs::read(workshop.path("maps/grey.png")).unwrap();
+    workshop.write("maps/cut.png", &whole[..whole.len() / 2]);
+    workshop
+}
+
+/// Errors with their places; what `bake` adds about its files is left out.
+fn errors(run: &Run) -> Vec<String> {
+    let mut lines = run.stderr.lines();
+    let mut found = Vec::new();
+    while let Some(line) = lines.next() {
+        if line.starts_with("error: ") && !line.ends_with("nothing was written") {
+            found.push(format!("{line}{}", lines.next().unwrap_or_default()));
+        }
+    }
+    found
+}
+
+/// Bakes and checks, and compares; the words of each error contain these.
+#[track_caller]
+fn refused(workshop: &Workshop, paths: &[&str], words: &[&str]) {
+    let before = workshop.tree("");
+    let both = ["check", "bake"].map(|verb| {
+        let arguments: Vec<&str> = [verb].into_iter().chain(paths.iter().copied()).collect();
+        errors(&workshop.run(&arguments).exits(1))
+    });
+    assert!(workshop.tree("") == before, "{paths:?}");
+    assert!(!both[0].is_empty(), "{paths:?}");
+    assert_eq!(both[0], both[1], "{paths:?}");
+    for word in words {
+        assert!(both[0].iter().any(|error| error.contains(word)), "{word} not in {:?}", both[0]);
+    }
+}
+
+#[test]
+fn broken_files() {
+    let workshop = workshop();
+    for case in material_files("tests/broken") {
+        workshop.write(file_name(&case), fs::read(&case).unwrap());
+        refused(&workshop, &[file_name(&case)], &[file_name(&case)]);
+        refused(&workshop, &["matte.toml", file_name(&case)], &[]);
+    }
+}
+
+#[test]
+fn files_that_do_not_go_together() {
+    let workshop = workshop();
+    workshop.write("again.toml", matte("matte"));
+    workshop.write("shout.toml", matte("MATTE"));
+    workshop.write("a.toml", lacquer("a"));
+    workshop.write("b.toml", lacquer("b").replace("[8, 8]", "[8, 16]"));
+    workshop.write(
+        "c.toml",
+        lacquer("c").replace("fresnel = { size = 64 }", "fresnel = { size = 64, format = \"rgba32float\" }"),
+    );
+    workshop.write(
+        "d.toml",
+        lacquer("d").replace("fresnel = { size = 64 }", "fresnel = { size = 64, format = \"rgba8unorm\" }"),
+    );
+    workshop.write("odd.toml", lacquer("odd").replace("[8, 8]", "[8, 9], format = \"bc6h-rgb-ufloat\""));
+    for (paths, words) in [
+        (["matte.toml", "again.toml"], ["two materials are named `matte`", "again.toml:2:8"]),
+        (["matte.toml", "shout.toml"], ["are both `LUTHIER_MATERIAL_MATTE` in a shader", "shout.toml:2:8"]),
+        (["a.toml", "b.toml"], ["bake.fgd.size is [8, 8] in a.toml:", "b.toml:18:"]),
+        (["c.toml", "d.toml"], ["bake.fresnel.format is Rgba32Float in c.toml:", "d.toml:16:"]),
+        (["a.toml", "odd.toml"], ["bake.fgd.size is", "odd.toml:18:"]),
+    ] {
+        refused(&workshop, &paths, &words);
+    }
+    refused(&workshop, &["odd.toml"], &["write a multiple of 4", "odd.toml:18:"]);
+}
+
+#[test]
+fn files_that_materials_name() {
+    let workshop = workshop();
+    let coat = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.2\n";
+    let metal = "[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.2\n";
+    let effect = |text: &str| format!("schema = 1\nname = \"x\"\n{coat}{metal}{text}\n");
+    let coated = |rest: &str| effect("").replacen(coat, &format!("{coat}{rest}\n"), 1);
+    for (picture, why) in [("none", "no such file"), ("text", ""), ("cut", ""), ("folder", "it is a folder")] {
+        fs::create_dir_all(workshop.path("maps/folder.png")).unwrap();
+        let path = format!("maps/{picture}.png");
+        for (text, line) in [
+            (film("x", &format!("{{ image = \"{path}\" }}")), 12),
+            (coated(&format!("maps = {{ normal = \"{path}\" }}")), 7),
+            (coated(&format!("maps = {{ roughness = \"{path}\" }}")), 7),
+            (coated(&format!("thickness_um = 1\nabsorption_per_um = 1\nmaps = {{ thickness = \"{path}\" }}")), 9),
+            (effect(&format!("[effects.flakes]\nnormal_map = \"{path}\"")), 12),
+            (effect(&format!("[effects.patina]\nextent = 0\ntransition = 0.5\nmap = {{ image = \"{path}\" }}")), 14),
+        ] {
+            workshop.write("x.toml", text);
+            refused(&workshop, &["x.toml"], &[&format!("`{path}`: {why}"), &format!("x.toml:{line}:")]);
+        }
+    }
+    workshop.write("x.toml", film("x", "{ image = \"maps/red.png\" }"));
+    refused(&workshop, &["x.toml"], &["equal red, green and blue", "x.toml:12:"]);
+    workshop.write("maps/far.csv", "wavelength_nm,n,k\n400,1.5,0\n700,1e300,0\n");
+    workshop.write("maps/infrared.csv", "wavelength_nm,n,k\n1400,1.5,0\n1700,1.4,0\n");
+    for (path, words) in [
+        ("maps/none.csv", "no such file"),
+        ("maps/far.csv", "that of no medium"),
+        ("maps/infrared.csv", "no sample of this index is visible"),
+    ] {
+        workshop.write("x.toml", gold("x").replace("\"au\"", &format!("\"{path}\"")));
+        refused(&workshop, &["x.toml"], &[words, "x.toml:6:7"]);
+    }
+    workshop.write("x.toml", film("x", &NOISE.replace("frequency = 2", "frequency = 1e19")));
+    refused(&workshop, &["x.toml"], &["must be above 0 and at most 65536", "x.toml:12:"]);
+    workshop.write("x.toml", film("x", "{ image = \"maps/grey.png\" }"));
+    workshop.run(&["check", "x.toml"]).exits(0);
+}
+
+const SCENE: &str = "scene = 1\nname = \"shelf\"\n\n[[material]]\nfile = \"matte.toml\"\n\n[[material]]\nfile = \"b.toml\"\n\n\
+                     [[light]]\ntype = \"directional\"\nfrom_eye_deg = 40\n\n[budget]\nmax_rel = 0.5\n";
+
+#[test]
+fn scenes() {
+    let workshop = workshop();
+    workshop.write("shelf.toml", SCENE);
+    refused(&workshop, &["shelf.toml"], &["b.toml", "no such file", "shelf.toml:8:8"]);
+    workshop.write("b.toml", matte("matte"));
+    refused(&workshop, &["shelf.toml"], &["two materials are named `matte`", "b.toml:2:8"]);
+    workshop.write("b.toml", film("b", "{ image = \"maps/none.png\" }"));
+    refused(&workshop, &["shelf.toml"], &["maps/none.png", "b.toml:12:"]);
+    workshop.write("b.toml", lacquer("b"));
+    let run = workshop.run(&["check", "shelf.toml"]).exits(0);
+    assert!(run.stdout.starts_with("shelf.toml: ok, scene of 2 materials\n"), "{}", run.stdout);
+    for (from, to, words) in [
+        ("[budget]\nmax_rel = 0.5", "[budget]", "limits nothing"),
+        ("from_eye_deg = 40", "from_eye_deg = 400", "must be from 0 to 170"),
+        ("[budget]", "[target]\nformats = [\"rgba7unorm\"]\n[budget]", "`rgba7unorm` is no value"),
+        ("b.toml", "matte.toml", "is in the scene already"),
+    ] {
+        workshop.write("shelf.toml", SCENE.replace(from, to));
+        refused(&workshop, &["shelf.toml"], &[words, "shelf.toml:"]);
+    }
+    let json = workshop.run(&["check", "shelf.toml", "--json"]).exits(1).json();
+    assert_eq!((&json[0]["file"], &json[0]["diagnostics"][0]["line"]), (&"shelf.toml".into(), &8.into()));
+}

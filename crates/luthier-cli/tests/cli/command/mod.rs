@@ -1,0 +1,8 @@
+//! The command as a whole: help, failures, streams, schemas, and the crates that it is made of.
+
+mod crate_graph;
+mod failures;
+mod help;
+mod pipes;
+mod schema;
+mod sources;

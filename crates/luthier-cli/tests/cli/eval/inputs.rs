@@ -1,0 +1,176 @@
+//! Inputs that some models take, and inputs that they refuse.
+
+use luthier_workshop::material_texts::{filmed, gold, lacquer, matte};
+
+use crate::workshop::Workshop;
+
+const PAIR: [&str; 6] = ["--wi", "30,0", "--wo", "45,180", "--wavelength", "550"];
+
+fn workshop() -> Workshop {
+    Workshop::with(&[
+        ("m.toml", &matte("m")),
+        ("l.toml", &lacquer("l")),
+        ("g.toml", &gold("g")),
+        ("f.toml", &filmed("f")),
+        ("p.toml", PATINATED),
+    ])
+}
+
+/// A coat that grew over a metal.
+const PATINATED: &str = "schema = 1\nname = \"p\"
+
+[[layer]]
+type = \"dielectric\"
+ior = 2.5
+roughness = 0.6
+
+[[layer]]
+type = \"conductor\"
+ior = \"cu\"
+roughness = 0.4
+";
+
+/// The value, and the name of the material that it is of.
+fn eval(workshop: &Workshop, file: &str, model: &str, more: &[&str]) -> (f64, String) {
+    let args = [&["eval", file, "--model", model, "--json"], &PAIR[..], more].concat();
+    let json = workshop.run(&args).exits(0).json();
+    (json["values"][0]["value"][0].as_f64().unwrap(), json["material"].as_str().unwrap().to_owned())
+}
+
+/// Flakes seen from far away are Elek's model: the tilt of a single flake no longer shows.
+#[test]
+fn flakes_at_a_place_and_a_distance() {
+    let workshop = workshop();
+    let of = |more: &[&str]| eval(&workshop, "p.toml", "flakes", more).0;
+    let plain = eval(&workshop, "p.toml", "elek", &[]).0;
+    assert!((of(&["--distance", "1e9"]) / plain - 1.0).abs() < 1e-6);
+    assert!((of(&["--uv", "0.3,0.6", "--distance", "1e9"]) / plain - 1.0).abs() < 1e-6);
+    let [mean, here, there] = [of(&[]), of(&["--uv", "0.3,0.6"]), of(&["--uv=-0.31,0.6"])];
+    assert!(mean != here && here != there && mean != plain);
+}
+
+/// None below 0, all above 1; the ends are the stack without and with its first layer.
+#[test]
+fn patina_grows_with_its_extent() {
+    let workshop = workshop();
+    let of = |more: &[&str]| eval(&workshop, "p.toml", "patina", more).0;
+    workshop.edit("p.toml", |text| {
+        text.replace("type = \"dielectric\"\nior = 2.5", "type = \"dielectric\"\nior = 1.000001")
+    });
+    let all = of(&["--extent", "2"]);
+    // A layer that is all but air: patina adds its diffuse term alone, 0.3 cos 30 / pi.
+    let none = of(&["--extent=-1"]);
+    let diffuse = 0.3 * libm::sqrt(0.75) / std::f64::consts::PI;
+    // The clamp that stands for blur makes the metal as rough as the coat: the lobes differ.
+    assert!(all > diffuse && none > 0.0, "{all} {none}");
+    assert!((of(&["--extent", "0.5", "--map", "0.5"]) - 0.5 * (all + none)).abs() < 1e-9 * all);
+    assert_eq!(of(&["--extent", "0.5", "--map", "1"]), none);
+}
+
+/// A deviated inner boundary of a film: turned by nothing it is the model without the option, tilted the light goes elsewhere.
+#[test]
+fn a_film_with_boundaries_of_its_own() {
+    let workshop = workshop();
+    let of = |more: &[&str]| eval(&workshop, "f.toml", "granier-heidrich", more).0;
+    assert_eq!(of(&["--inner-normal", "0,0"]), of(&[]));
+    assert!((of(&["--inner-normal", "6,0"]) / of(&[]) - 1.0).abs() > 1e-2);
+}
+
+/// Places of both materials, each with the value of its own.
+#[test]
+fn two_materials_share_a_surface() {
+    let workshop = workshop();
+    let plain = |file| eval(&workshop, file, "weidlich-wilkie", &[]).0;
+    let (gold, matte) = (plain("g.toml"), plain("m.toml"));
+    for model in ["heterogeneous", "heterogeneous-switch"] {
+        let mut seen = Vec::new();
+        for place in ["0.1,0.1", "0.2,0.7", "0.5,0.3", "0.9,0.9", "0.33,0.61", "0.71,0.12", "0.05,0.55", "0.82,0.41"] {
+            let (value, name) = eval(&workshop, "g.toml", model, &["--uv", place, "--other", "m.toml"]);
+            assert_eq!(value, if name == "g" { gold } else { matte }, "{model} {place} {name}");
+            seen.push(name);
+        }
+        assert!(seen.contains(&"g".to_owned()) && seen.contains(&"m".to_owned()), "{model}: {seen:?}");
+        assert_eq!(eval(&workshop, "g.toml", model, &["--uv", "0.2,0.7"]), (gold, "g".to_owned()));
+    }
+    let glitter = |x: u32| eval(&workshop, "g.toml", "heterogeneous-glitter", &["--uv", &format!("0.{x}7,0.5")]).0;
+    let tilted = (0..10).filter(|&x| glitter(x) != gold).count();
+    assert!((1..10).contains(&tilted), "{tilted}");
+}
+
+/// Textures act on every model: halved slope parameters, thicker slabs and films are those of another file.
+#[test]
+fn textures_act_on_every_model() {
+    let workshop = workshop();
+    workshop.write("thick.toml", workshop.text("f.toml").replace("thickness_nm = 300", "thickness_nm = 450"));
+    workshop.write("slab.toml", workshop.text("f.toml").replace("thickness_um = 1", "thickness_um = 3"));
+    workshop.write("fine.toml", workshop.text("f.toml").replace("alpha = 0.2", "alpha = 0.1"));
+    for (option, factor, other) in [
+        ("--film-factor", "1.5", "thick.toml"),
+        ("--slab-factor", "3", "slab.toml"),
+        ("--alpha-factor", "0.5", "fine.toml"),
+    ] {
+        for model in ["elek", "weidlich-wilkie-corrected", "closed-form"] {
+            let (found, expected) =
+                (eval(&workshop, "f.toml", model, &[option, factor]).0, eval(&workshop, other, model, &[]).0);
+            assert!((found / expected - 1.0).abs() < 1e-12, "{option} {model}: {found} {expected}");
+        }
+    }
+    // The prefiltered film too, in its own colour.
+    let rgb = |file: &str, more: &[&str]| {
+        let args = ["eval", file, "--model", "microfacet-belcour-barla", "--wi", "30,0", "--wo", "30,180"];
+        workshop.run(&[&args, more].concat()).exits(0).stdout
+    };
+    assert_eq!(rgb("f.toml", &["--film-factor", "1.5"]), rgb("thick.toml", &[]));
+    assert_ne!(rgb("f.toml", &[]), rgb("f.toml", &["--three-wavelengths"]));
+    // Lambert's surface seen through a tilted normal: the cosine against it, 30 degrees less 10.
+    let found = eval(&workshop, "m.toml", "lambert", &["--normal", "10,0"]).0;
+    let expected = 0.3 * libm::cos(20f64.to_radians()) / std::f64::consts::PI;
+    assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+}
+
+/// Sixteen times the samples, a quarter of the standard error; another seed, another value within their errors.
+#[test]
+fn estimates_take_samples_and_a_seed() {
+    let workshop = workshop();
+    for model in ["random-walk", "layered-mc", "layered-mc-one-facet"] {
+        let of = |more: &[&str]| {
+            let args = [&["eval", "p.toml", "--model", model, "--json"], &PAIR[..], more].concat();
+            let json = workshop.run(&args).exits(0).json();
+            ["value", "std_err"].map(|key| json["values"][0][key][0].as_f64().unwrap())
+        };
+        let ([few, few_err], [many, many_err]) = (of(&["--samples", "20000"]), of(&["--samples", "320000"]));
+        assert!((0.15..0.4).contains(&(many_err / few_err)), "{model}: {few_err} {many_err}");
+        let [other, other_err] = of(&["--samples", "20000", "--seed", "7"]);
+        assert!(other != few && (other - few).abs() < 5.0 * (few_err + other_err), "{model}: {few} {other}");
+        assert!((many - few).abs() < 5.0 * few_err, "{model}: {few} {many}");
+    }
+    workshop
+        .run(&[&["eval", "p.toml", "--model", "layered-mc"], &PAIR[..], &["--samples", "0"]].concat())
+        .fails(2, &["1.."]);
+}
+
+#[test]
+fn what_models_do_not_take_is_refused() {
+    let workshop = workshop();
+    let refuses = |model: &str, more: &[&str], parts: &[&str]| {
+        workshop.run(&[&["eval", "f.toml", "--model", model], &PAIR[..], more].concat()).fails(2, parts);
+    };
+    refuses("elek", &["--uv", "0,0"], &["`elek` does not take --uv", "flakes", "heterogeneous"]);
+    refuses("patina", &["--distance", "2"], &["--distance", "flakes"]);
+    refuses("flakes", &["--extent", "1"], &["--extent", "patina"]);
+    refuses("flakes", &["--map", "1"], &["--map", "patina"]);
+    refuses("elek", &["--inner-normal", "1,0"], &["--inner-normal", "granier-heidrich"]);
+    refuses("elek", &["--other", "m.toml"], &["--other", "heterogeneous"]);
+    refuses("elek", &["--samples", "9"], &["--samples", "layered-mc"]);
+    refuses("flakes", &["--uv", "0.1"], &["texture coordinate"]);
+    refuses("flakes", &["--uv", "0.1,x"], &["texture coordinate"]);
+    refuses("flakes", &["--distance=-1"], &["from 0 up"]);
+    refuses("patina", &["--map", "1.5"], &["0 to 1"]);
+    refuses("patina", &["--extent", "nan"], &["expected a number"]);
+    refuses("elek", &["--alpha-factor=-1"], &["from 0 up"]);
+    refuses("elek", &["--normal", "95,0"], &["0 to 90"]);
+    let tilted_albedo = ["eval", "f.toml", "--model", "elek", "--furnace", "--normal", "10,0"];
+    workshop.run(&tilted_albedo).fails(2, &["--normal"]);
+    let missing = ["eval", "g.toml", "--model", "heterogeneous", "--other", "no.toml"];
+    workshop.run(&[&missing[..], &PAIR].concat()).fails(3, &["no.toml"]);
+}

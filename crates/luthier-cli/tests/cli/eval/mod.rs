@@ -1,0 +1,11 @@
+//! Evaluation in f64: models, inputs, optical constants.
+
+mod fluorescence;
+mod furnace;
+mod inputs;
+mod ior;
+mod models;
+mod polarised;
+#[cfg(feature = "gpu")]
+mod twin;
+mod values;

@@ -1,0 +1,10 @@
+//! Pictures, and the window.
+
+#[cfg(feature = "gpu")]
+mod compare;
+#[cfg(feature = "gpu")]
+mod gallery;
+#[cfg(feature = "gpu")]
+mod preview;
+#[cfg(feature = "view")]
+mod view;

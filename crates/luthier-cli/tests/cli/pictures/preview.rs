@@ -1,0 +1,202 @@
+//! `preview`.
+
+use image::RgbImage;
+use luthier_workshop::material_texts::{gold, lacquer, matte};
+use luthier_workshop::{Run, root};
+
+use crate::workshop::Workshop;
+
+fn baked() -> Workshop {
+    let workshop = Workshop::with(&[("lacquer.toml", &lacquer("lacquer")), ("matte.toml", &matte("matte"))]);
+    workshop.run(&["bake", "lacquer.toml", "-q"]).exits(0);
+    workshop
+}
+
+fn preview(workshop: &Workshop, material: &str, picture: &str, more: &[&str]) -> Option<RgbImage> {
+    let size = ["preview", material, "-o", picture, "--size", "48", "--samples", "2"];
+    let run: Run = workshop.run(&[&size[..], more].concat());
+    if run.lacks_adapter() {
+        return None;
+    }
+    assert_eq!(run.exits(0).stdout, "");
+    Some(image::open(workshop.path(picture)).unwrap().into_rgb8())
+}
+
+/// Mean of all channels of a rectangle, 0 to 255.
+fn mean(picture: &RgbImage, [x, y, width, height]: [u32; 4]) -> f64 {
+    let pixels = image::imageops::crop_imm(picture, x, y, width, height).to_image();
+    let bytes = pixels.as_raw();
+    bytes.iter().map(|&b| f64::from(b)).sum::<f64>() / bytes.len() as f64
+}
+
+#[test]
+fn a_ball_by_name_and_by_file() {
+    let workshop = baked();
+    let Some(by_name) = preview(&workshop, "lacquer", "name.png", &[]) else { return };
+    assert_eq!(by_name.dimensions(), (48, 48));
+    let colours: std::collections::BTreeSet<[u8; 3]> = by_name.pixels().map(|p| p.0).collect();
+    assert!(colours.len() > 100, "a lit ball is not flat: {} colours", colours.len());
+    let [red, green, _] = by_name.get_pixel(24, 30).0;
+    assert!(red > green, "the lacquer is red: {:?}", by_name.get_pixel(24, 30));
+
+    // The same bake, in memory.
+    let by_file = preview(&workshop, "lacquer.toml", "file.png", &[]).unwrap();
+    assert!(by_name == by_file);
+    assert_eq!(workshop.files("out"), baked().files("out"), "a preview leaves the bake alone");
+}
+
+/// A bake has no albedos that its shaders do not read; its pictures ask the shader for the environment then.
+#[test]
+fn a_bake_without_albedos_is_sampled() {
+    let workshop = Workshop::new();
+    let text = lacquer("lean");
+    workshop.write("lean.toml", text.split_once("[bake]").unwrap().0);
+    workshop.run(&["bake", "lean.toml", "-q"]).exits(0);
+    assert!(!workshop.path("out/tables/fgd.ktx2").exists());
+    let Some(by_name) = preview(&workshop, "lean", "name.png", &[]) else { return };
+    let sampled = preview(&workshop, "lean", "sampled.png", &["--environment-samples", "64"]).unwrap();
+    assert!(by_name == sampled);
+    // By file, tables of albedos are baked in memory: the same ball but for what the two ways leave out.
+    let by_file = preview(&workshop, "lean.toml", "file.png", &[]).unwrap();
+    let middle = [16, 16, 16, 16];
+    let [sampled, split] = [&sampled, &by_file].map(|picture| mean(picture, middle));
+    assert!((sampled / split - 1.0).abs() < 0.1, "{sampled} {split}");
+
+    // Where not even reflectances are there, blurred maps are refused.
+    workshop.run(&["bake", "lean.toml", "--model", "phong", "-q"]).exits(0);
+    let blurred = ["preview", "lean", "-o", "ball.png", "--size", "8", "--environment-samples", "0"];
+    let run = workshop.run(&blurred);
+    assert!(run.code != Some(0) && run.stderr.contains("fresnel"), "{}", run.stderr);
+}
+
+#[test]
+fn a_material_needs_no_bake() {
+    let workshop = Workshop::with(&[("gold.toml", &gold("gold")), ("matte.toml", &matte("matte"))]);
+    for material in ["gold.toml", "matte.toml"] {
+        let Some(picture) = preview(&workshop, material, "ball.png", &[]) else { return };
+        assert!(mean(&picture, [16, 16, 16, 16]) > 1.0, "{material} is black");
+    }
+    assert!(!workshop.path("out").exists());
+}
+
+#[test]
+fn exposure_is_in_stops() {
+    let workshop = baked();
+    let Some(normal) = preview(&workshop, "matte.toml", "ball.png", &[]) else { return };
+    let whole = [0, 0, 48, 48];
+    let darker = preview(&workshop, "matte.toml", "ball.png", &["--exposure", "-2"]).unwrap();
+    let black = preview(&workshop, "matte.toml", "ball.png", &["--exposure", "-20"]).unwrap();
+    assert!(mean(&normal, whole) > 1.3 * mean(&darker, whole));
+    assert!(mean(&black, whole) < 1.0);
+    for bad in ["nan", "inf", "-inf", "21", "bright"] {
+        workshop.run(&["preview", "lacquer", "-o", "no.png", "--exposure", bad]).fails(2, &["--exposure", bad]);
+    }
+}
+
+#[test]
+fn names_that_no_material_has() {
+    let workshop = Workshop::with(&[("a.toml", &matte("ash")), ("b.toml", &matte("birch"))]);
+    workshop.run(&["bake", "a.toml", "b.toml", "-q"]).exits(0);
+    workshop.run(&["preview", "cherry", "-o", "no.png"]).fails(1, &["`cherry`", "ash, birch", ".toml"]);
+    workshop.run(&["preview", "cherry.toml", "-o", "no.png"]).fails(3, &["cherry.toml"]);
+    assert!(!workshop.path("no.png").exists());
+}
+
+#[test]
+fn a_broken_material() {
+    let workshop = Workshop::new();
+    let case = root().join("tests/broken/negative-k.toml");
+    workshop.write("negative-k.toml", std::fs::read(case).unwrap());
+    workshop.run(&["preview", "negative-k.toml", "-o", "no.png"]).exits(1).says(&["negative-k.toml:"]);
+    assert!(!workshop.path("no.png").exists());
+}
+
+#[test]
+fn pictures_that_cannot_be_written() {
+    let workshop = baked();
+    let run = workshop.run(&["preview", "lacquer", "-o", "no/folder.png", "--size", "8"]);
+    if run.lacks_adapter() {
+        return;
+    }
+    run.fails(3, &["no/folder.png"]);
+    workshop.run(&["preview", "lacquer", "-o", "ball.gif"]).fails(1, &["ball.gif", ".png or .exr"]);
+    workshop.run(&["preview", "lacquer"]).fails(2, &["required"]);
+    workshop.run(&["preview", "lacquer", "-o", "x.png", "--size", "0"]).fails(2, &["--size"]);
+}
+
+#[test]
+fn every_shape() {
+    let workshop = baked();
+    let Some(sphere) = preview(&workshop, "matte.toml", "sphere.png", &[]) else { return };
+    for shape in ["torus", "plane"] {
+        let picture = preview(&workshop, "matte.toml", "shape.png", &["--shape", shape]).unwrap();
+        assert!(picture != sphere && mean(&picture, [0, 0, 48, 48]) > 1.0, "{shape}");
+    }
+}
+
+/// 25 materials that no file has: metals at the top are copper, dielectrics at the bottom have a copper-coloured base, and
+/// highlights spread to the right.
+#[test]
+fn the_grid() {
+    let workshop = Workshop::new();
+    let run = workshop.run(&["preview", "--shape", "grid", "-o", "grid.png", "--size", "110", "--samples", "2"]);
+    if run.lacks_adapter() {
+        return;
+    }
+    run.exits(0);
+    let picture = image::open(workshop.path("grid.png")).unwrap().into_rgb8();
+    for cell in 0..25 {
+        let [x, y] = [cell % 5, cell / 5].map(|i: u32| 13 + i * 21 - 6);
+        let [r, _, b] = [0, 1, 2].map(|c| {
+            let pixels = image::imageops::crop_imm(&picture, x, y, 12, 12).to_image();
+            pixels.pixels().map(|p| f64::from(p.0[c])).sum::<f64>()
+        });
+        assert!(r > 1.05 * b && b > 0.0, "{cell}: {r} {b}");
+    }
+    workshop.run(&["preview", "a.toml", "--shape", "grid", "-o", "no.png"]).fails(1, &["grid"]);
+    workshop.run(&["preview", "-o", "no.png"]).fails(1, &["--shape grid"]);
+}
+
+/// Light on the left of a map lights the left of the ball; EXR pictures are linear and not clipped.
+#[test]
+fn an_environment_by_file() {
+    let workshop = Workshop::with(&[("matte.toml", &matte("matte"))]);
+    let (width, height) = (64, 32);
+    let left = |x: u32| if x < width / 2 { 8.0 } else { 0.5 };
+    let map = image::Rgb32FImage::from_fn(width, height, |x, _| image::Rgb([left(x); 3]));
+    let mut file = Vec::new();
+    image::codecs::hdr::HdrEncoder::new(&mut file).encode(&map.pixels().copied().collect::<Vec<_>>(), 64, 32).unwrap();
+    workshop.write("studio.hdr", file);
+    let dim = ["--environment", "studio.hdr", "--exposure", "-4"];
+    let Some(picture) = preview(&workshop, "matte.toml", "ball.png", &dim) else { return };
+    assert!(mean(&picture, [12, 16, 8, 16]) > 1.2 * mean(&picture, [28, 16, 8, 16]));
+
+    let more = ["--environment", "studio.hdr", "--background", "--tone", "none"];
+    let args = ["preview", "matte.toml", "-o", "ball.exr", "--size", "48", "--samples", "1"];
+    workshop.run(&[&args[..], &more[..]].concat()).exits(0);
+    let (exr, _) = luthier_texture::exr::decode(&std::fs::read(workshop.path("ball.exr")).unwrap()).unwrap();
+    assert!((exr.texel(0, 0)[0] / 8.0 - 1.0).abs() < 0.02 && (exr.texel(47, 0)[0] / 0.5 - 1.0).abs() < 0.02);
+
+    workshop.write("broken.hdr", "#?RADIANCE\n");
+    let bad = |file: &str, code, parts: &[&str]| {
+        workshop.run(&["preview", "matte.toml", "-o", "no.png", "--environment", file]).fails(code, parts);
+    };
+    bad("broken.hdr", 1, &["broken.hdr"]);
+    bad("matte.toml", 1, &["matte.toml", "neither OpenEXR nor Radiance"]);
+    bad("missing.hdr", 3, &["missing.hdr"]);
+}
+
+#[test]
+fn lights_and_tone_curves() {
+    let workshop = Workshop::with(&[("matte.toml", &matte("matte"))]);
+    let from_right = ["--light", "1,0,0.2"];
+    let Some(right) = preview(&workshop, "matte.toml", "right.png", &from_right) else { return };
+    let left = preview(&workshop, "matte.toml", "left.png", &["--point-light", "-5,0,1"]).unwrap();
+    let halves = |p: &RgbImage| [mean(p, [6, 16, 12, 16]), mean(p, [30, 16, 12, 16])];
+    assert!(halves(&right)[1] > halves(&right)[0] && halves(&left)[0] > halves(&left)[1]);
+    let reinhard = preview(&workshop, "matte.toml", "tone.png", &[&from_right[..], &["--tone", "reinhard"]].concat());
+    assert!(mean(&reinhard.unwrap(), [0, 0, 48, 48]) < mean(&right, [0, 0, 48, 48]));
+    for bad in ["1,2", "0,0,0", "a,b,c", "inf,0,0"] {
+        workshop.run(&["preview", "matte.toml", "-o", "no.png", "--light", bad]).fails(2, &["--light", bad]);
+    }
+}

@@ -1,0 +1,166 @@
+//! Costs of many shaders, as JSON and as Markdown.
+
+use std::fmt::Write as _;
+
+use luthier_manifest::{Form, ShadingModel};
+use luthier_shader::style_name;
+use serde::Serialize;
+
+use crate::{Compiled, CostError, Counts, Family};
+
+/// Version of the JSON.
+const SCHEMA: u32 = 1;
+
+/// All that was counted. The JSON of it is described in docs/measurements/README.md.
+#[derive(Debug, Default)]
+pub struct CostReport {
+    /// Program and version.
+    pub generator: String,
+    /// Driver and version.
+    pub driver: String,
+    /// The instruction sets.
+    pub families: Vec<FamilyCost>,
+    /// The shaders on them.
+    pub rows: Vec<CostRow>,
+}
+
+/// One instruction set.
+#[derive(Debug, Serialize)]
+pub struct FamilyCost {
+    /// Its name.
+    pub family: Family,
+    /// The chip, as RADV names it.
+    pub chip: String,
+    /// The device that the driver stands in for.
+    pub device: String,
+    /// Counts of the harness, subtracted from every row.
+    pub harness: Counts,
+}
+
+/// One shader on one instruction set, without the harness.
+#[derive(Debug, Serialize)]
+pub struct CostRow {
+    /// The material, or a set of them in words.
+    pub material: String,
+    /// The model.
+    pub model: ShadingModel,
+    /// The form.
+    pub form: Form,
+    /// D comes in closed form, or there is none.
+    pub closed: bool,
+    /// The material is constants of the code.
+    pub constant: bool,
+    /// The instruction set.
+    pub family: Family,
+    /// Counts beyond those of the harness.
+    #[serde(flatten)]
+    pub counts: Counts,
+}
+
+impl CostReport {
+    /// Adds a family that kernels were compiled for; `harness` is what every row of it is without.
+    pub fn add_family(&mut self, family: Family, compiled: &Compiled, harness: Counts) {
+        self.driver.clone_from(&compiled.driver);
+        let (chip, device) = (family.chip().to_owned(), compiled.device.clone());
+        self.families.push(FamilyCost { family, chip, device, harness });
+    }
+
+    /// JSON, a row of it per line.
+    ///
+    /// # Errors
+    /// [`CostError::Exchange`] where a number is none of JSON's.
+    pub fn to_json(&self) -> Result<String, CostError> {
+        let lines = |values: Vec<String>| format!("[\n    {}\n  ]", values.join(",\n    "));
+        let families = self.families.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
+        let rows = self.rows.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
+        Ok(format!(
+            "{{\n  \"schema\": {SCHEMA},\n  \"generator\": {},\n  \"driver\": {},\n  \"families\": {},\n  \"rows\": {}\n}}\n",
+            serde_json::to_string(&self.generator)?,
+            serde_json::to_string(&self.driver)?,
+            lines(families),
+            lines(rows),
+        ))
+    }
+
+    /// A page on every model; `command` is the command line that makes it.
+    pub fn to_markdown(&self, command: &str) -> String {
+        let mut out = self.introduction("What the shaders cost on GPUs", command);
+        out.push_str(" All counts are in `docs/measurements/gpu-cost.json`.\n");
+        for family in &self.families {
+            self.models(&mut out, family.family);
+        }
+        out
+    }
+
+    /// The beginning of a page: its title, the command line that makes it, and how counts are to be read. The last line is not ended.
+    pub fn introduction(&self, title: &str, command: &str) -> String {
+        let chips: Vec<String> = self
+            .families
+            .iter()
+            .map(|f| {
+                let Counts { instructions, inverse_throughput, issue_cycles, .. } = f.harness;
+                format!(
+                    "{} ({}: {instructions} instructions, {inverse_throughput} and {issue_cycles} cycles)",
+                    f.family, f.chip
+                )
+            })
+            .collect();
+        format!(
+            "# {title}\n\n\
+             Made by `{command}`, {}. No GPU is involved: Mesa's driver `{}` compiles every shader for chips that are not there, \
+             and reports what its own model of them says. Same driver, same shaders, same numbers. In brackets what the harness alone \
+             costs, which is subtracted unless said otherwise: {}.\n\n\
+             *Inverse throughput* is cycles per wave of 64 by that model, all waves in flight. It has two habits to know: what lies \
+             under a branch counts three quarters (half, where all threads agree), nested ones multiplied, so that a second layer looks \
+             cheaper than a first; and a short kernel is charged its latency over the number of waves. *Issue* is cycles that the vector \
+             instructions of all branches take to issue on one SIMD (a plain instruction 4 on GCN5 and 2 on RDNA, a reciprocal, root, \
+             exponential or logarithm 16 and 8, overlapping with the others on RDNA), counted in the machine code: no branch \
+             is skipped and nothing waits. A fetch counts as issued: no cache is modelled, which flatters tables; time on a device is in \
+             `docs/measurements/`.\n\n\
+             *constants*: the numbers of the one material are in the code instead of a buffer (`luthier shader --constant`). *closed D*: \
+             Fresnel from its table, the slope distribution in closed form (`luthier shader --closed`).",
+            self.generator,
+            self.driver,
+            chips.join(", "),
+        )
+    }
+
+    /// Every model of every material on one family.
+    fn models(&self, out: &mut String, family: Family) {
+        let _ = writeln!(
+            out,
+            "\n## Every model on {family}\n\n\
+             Inverse throughput, *issue*, vector registers and reads of textures, the least and the most of the materials.\n\n\
+             | model | form | inverse throughput | issue | registers | reads |\n|---|---|--:|--:|--:|--:|"
+        );
+        let mut seen: Vec<(ShadingModel, Form, bool, bool)> = Vec::new();
+        for row in self.rows.iter().filter(|row| row.family == family) {
+            let key = (row.model, row.form, row.closed, row.constant);
+            if seen.contains(&key) {
+                continue;
+            }
+            seen.push(key);
+            let same = || {
+                let of = |other: &&CostRow| (other.model, other.form, other.closed, other.constant) == key;
+                self.rows.iter().filter(|other| other.family == family).filter(of)
+            };
+            let range = |count: &dyn Fn(&Counts) -> i64| {
+                let values = || same().map(|other| count(&other.counts));
+                let (least, most) = (values().min().unwrap_or(0), values().max().unwrap_or(0));
+                if least == most { least.to_string() } else { format!("{least}..{most}") }
+            };
+            let _ = writeln!(
+                out,
+                "| {} | {} | {} | {} | {} | {} |",
+                row.model.name(),
+                style_name(row.model, row.form, row.closed, row.constant),
+                range(&|c| c.inverse_throughput),
+                range(&|c| c.issue_cycles),
+                range(&|c| c.vgprs),
+                range(&|c| c.texture_reads),
+            );
+        }
+        let spilling = self.rows.iter().filter(|row| row.family == family && row.counts.spills > 0).count();
+        let _ = writeln!(out, "\nShaders that spill registers: {spilling}.");
+    }
+}

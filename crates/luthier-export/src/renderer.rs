@@ -1,0 +1,28 @@
+//! Packages for a renderer: in memory, with shaders in WGSL.
+
+use luthier_bake::MemoryStore;
+use luthier_lut::TableKind;
+use luthier_manifest::Form;
+use luthier_material::Material;
+
+use crate::{Bake, ExportError, Package};
+
+/// Tables that the environment of pictures reads beside the shader: reflectance and albedo of every interface.
+const ENVIRONMENT_TABLES: [TableKind; 3] = [TableKind::Fresnel, TableKind::Fgd, TableKind::Film];
+
+impl Package {
+    /// Bakes materials for a renderer: both forms of the shader in WGSL. Nothing is kept for the next package.
+    ///
+    /// # Errors
+    /// Those of [`Package::new`].
+    pub fn for_renderer(materials: &[Material]) -> Result<Self, ExportError> {
+        Self::new(materials, &Bake::wgsl(&Form::ALL), &MemoryStore::default())
+    }
+}
+
+/// The materials, each asking for the tables that blurred environments read, too.
+pub fn lit(materials: &[Material]) -> Vec<Material> {
+    let mut lit = materials.to_vec();
+    lit.iter_mut().for_each(|material| material.bake.tables.extend(ENVIRONMENT_TABLES));
+    lit
+}

@@ -1,0 +1,191 @@
+//! The command line: the one definition of verbs, options and their help.
+
+use std::num::NonZeroU32;
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+use luthier_cost::Family;
+use luthier_manifest::ShadingModel;
+use luthier_terminal::{Sources, named};
+
+const AFTER_HELP: &str = "\
+Exit codes and failures in JSON are those of `luthier --help`. `scripts/pages.sh` makes all pages.
+
+Examples:
+  luthier-lab parity materials -o docs/pages/parity.md
+  luthier-lab figures elek-5 -o seen";
+
+/// Makes the project's own pages: figures of the papers, measurements, proofs.
+#[derive(Debug, Parser)]
+#[command(name = "luthier-lab", version, after_help = AFTER_HELP, max_term_width = 100)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Verb {
+    /// Make the figures of the papers anew
+    Figures(FiguresOptions),
+    /// Compare every shader of every material with its f64 twin: a page in Markdown
+    Parity(ParityOptions),
+    /// Run every method where methods fail, and say where each may be used: a page in Markdown
+    Stability(StabilityOptions),
+    /// Compare every reflectance model with the layered-mc reference on materials: a page in Markdown
+    Judge(JudgeOptions),
+    /// Measure what searches for tables reach against fixed ones: a page in Markdown
+    Budgets(BudgetsOptions),
+    /// Count the shaders of the papers on today's chips, which need not be here: a page in Markdown
+    Papers(PapersOptions),
+    /// Count every shape of surface: the table by which scenes choose models, as JSON
+    Shapes(ShapesOptions),
+}
+
+/// Where a page goes.
+#[derive(Debug, Args)]
+pub(crate) struct Destination {
+    /// File to write instead of standard output
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+/// The graphics adapter to use.
+#[derive(Debug, Args)]
+pub(crate) struct Adapter {
+    /// Use the graphics adapter whose name contains this
+    #[arg(long = "adapter", value_name = "NAME")]
+    pub(crate) name: Option<String>,
+}
+
+/// Form of a page.
+#[derive(Debug, Args)]
+pub(crate) struct Format {
+    /// JSON instead of Markdown
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+const FIGURES_EXAMPLES: &str = "\
+Writes the pictures and figures.json into a folder, and a page that explains them beside it: out/figures.md for out/figures.
+Pictures of shaders depend on the adapter in their last bits; those in f64 (simulation, curves) are the same everywhere.
+
+Examples:
+  luthier-lab figures
+  luthier-lab figures --list
+  luthier-lab figures elek-5 course-classes -o seen --size 256";
+
+#[derive(Debug, Args)]
+#[command(after_help = FIGURES_EXAMPLES)]
+pub(crate) struct FiguresOptions {
+    /// Figures to make; by default all
+    #[arg(value_name = "NAME")]
+    pub(crate) names: Vec<String>,
+    /// Folder to write to
+    #[arg(long, short, value_name = "DIR", default_value = "out/figures")]
+    pub(crate) output: PathBuf,
+    /// Side of each single picture in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 128, value_parser = clap::value_parser!(u32).range(16..=1024))]
+    pub(crate) size: u32,
+    /// Samples along each side of a pixel, of shaders
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=16))]
+    pub(crate) samples: u32,
+    /// Paths of the simulation per pixel, light and channel
+    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u64).range(2..=1_000_000))]
+    pub(crate) paths: u64,
+    #[command(flatten)]
+    pub(crate) adapter: Adapter,
+    /// Print names and titles instead
+    #[arg(long)]
+    pub(crate) list: bool,
+}
+
+/// Pairs of directions in each of the five sets: 100,000 in all.
+pub(crate) const PARITY_PAIRS: u32 = 20_000;
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Exits with 1 when an error exceeds its tolerance and the reason is not listed.\n\nExamples:\n  \
+                  luthier-lab parity materials -o docs/pages/parity.md\n  \
+                  luthier-lab parity mine.toml --model elek --model phong --pairs 1000 --json"
+)]
+pub(crate) struct ParityOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Model to compare; may be given again. By default all that have a twin
+    #[arg(long, value_name = "NAME", value_parser = named::<ShadingModel>(ShadingModel::NAMES))]
+    pub(crate) model: Vec<ShadingModel>,
+    /// Pairs of directions in each of the five sets of every material
+    #[arg(long, value_name = "N", default_value_t = PARITY_PAIRS, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) pairs: u32,
+    #[command(flatten)]
+    pub(crate) adapter: Adapter,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+    #[command(flatten)]
+    pub(crate) format: Format,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Exits with 1 when a shader is NaN or infinite somewhere, or when nobody can explain why a method does not hold.\n\n\
+                  Examples:\n  luthier-lab stability\n  luthier-lab stability -o docs/pages/stability.md\n  luthier-lab stability --json"
+)]
+pub(crate) struct StabilityOptions {
+    #[command(flatten)]
+    pub(crate) adapter: Adapter,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+    #[command(flatten)]
+    pub(crate) format: Format,
+}
+
+/// Standard errors of albedos are then at most 1e-3: 0.5 over the root.
+pub(crate) const JUDGE_SAMPLES: NonZeroU32 = NonZeroU32::new(1 << 18).expect("not zero");
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  luthier-lab judge materials > docs/pages/models.md")]
+pub(crate) struct JudgeOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Paths of the reference for each wavelength and direction; by default minutes of work
+    #[arg(long, value_name = "N", default_value_t = JUDGE_SAMPLES)]
+    pub(crate) samples: NonZeroU32,
+    #[command(flatten)]
+    pub(crate) format: Format,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  luthier-lab budgets materials -o docs/pages/budgets.md")]
+pub(crate) struct BudgetsOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Wants what `luthier cost` wants. Errors are measured on the graphics adapter at hand, if there is one.\n\n\
+                  Examples:\n  luthier-lab papers materials -o docs/papers.md\n  luthier-lab papers mine.toml --family rdna2"
+)]
+pub(crate) struct PapersOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Instruction set; may be given again. By default all
+    #[arg(long, value_name = "NAME", value_parser = named::<Family>(Family::NAMES))]
+    pub(crate) family: Vec<Family>,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Every shape of the materials, and of what is left of them without some of their parts, on RDNA2. Wants what `luthier cost` wants.\n\n\
+                  Examples:\n  luthier-lab shapes materials materials/scenes/still-life -o crates/luthier-scene/data/cost.json"
+)]
+pub(crate) struct ShapesOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+}

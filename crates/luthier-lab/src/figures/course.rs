@@ -1,0 +1,134 @@
+//! Figures of the course of Weidlich and Wilkie.
+
+use luthier_gpu::{Package, Shape};
+use luthier_lut::Image;
+use luthier_manifest::{Form, ShadingModel};
+use luthier_material::Material;
+use luthier_report::{Curve, Plot, PlotAxis, PlotColor, lightness_chroma_hue};
+use luthier_terminal::Outcome;
+
+use super::figure::{Figure, Made, compared};
+use super::studio::{Studio, material, shaded};
+
+pub(crate) const FIGURES: [Figure; 2] = [
+    Figure {
+        name: "course-classes",
+        title: "the eight classes of layered surfaces",
+        source: "A. Weidlich and A. Wilkie, Exploring the Potential of Layered BRDF Models, SIGGRAPH Asia 2009 Courses, figures 4.4 \
+                 and 5.7",
+        caption: "One material of the course for each class, by Weidlich and Wilkie's model: a and b show the white highlight of a \
+                  smooth coat on a diffuse base, clear and tinted; c has none left; d mirrors the room in colour; e has a sharp white \
+                  light over a soft coloured one; f a rough coat over a metal that still mirrors sharply, because this model does not \
+                  blur what crosses the coat (elek-2 shows what becomes of it); g is matt and bright; h has two clear layers on a blue \
+                  base, too rough to see a light in. Numbers: how far the picture of the tables is from that of the full evaluation.",
+        make: classes,
+    },
+    Figure {
+        name: "course-varnish",
+        title: "a varnish that gets thicker",
+        source: "Weidlich and Wilkie 2009, figure 3.4",
+        caption: "White balls under a yellow varnish at the twelve thicknesses of the course: first saturation grows at nearly the same \
+                  lightness, then the hue turns from yellow over orange to red while the ball darkens, most at its rim, where paths in \
+                  the varnish are longest. White highlights stay. The chart is the colour of the middle of each ball. The absorption is \
+                  ours; the hue without varnish is that of the light and says nothing at so little chroma.",
+        make: varnish,
+    },
+];
+
+macro_rules! of_class {
+    ($name:literal, $label:literal) => {
+        ($name, $label, include_str!(concat!("../../../../materials/", $name, ".toml")))
+    };
+}
+
+/// A material of the course for each class, a to h: name, label, text.
+const CLASSES: [(&str, &str, &str); 8] = [
+    of_class!("ceramic-glaze", "glaze"),
+    of_class!("red-lacquer", "lacquer"),
+    of_class!("latex", "latex"),
+    of_class!("brass-foil", "foil"),
+    of_class!("car-paint", "car paint"),
+    of_class!("blue-metallic-paint", "metallic"),
+    of_class!("silver-paint", "silver"),
+    of_class!("house-paint", "house"),
+];
+
+fn classes(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let mut materials = Vec::new();
+    for (name, _, text) in CLASSES {
+        materials.push(shaded(&material(name, text)?, name, ShadingModel::WeidlichWilkie));
+    }
+    let package = Package::for_renderer(&materials)?;
+    let baked = studio.rendered(&package, Form::Baked, Shape::Sphere, |_, _| {})?;
+    let full = studio.rendered(&package, Form::Full, Shape::Sphere, |_, _| {})?;
+    for ((material, baked), full) in materials.iter().zip(&baked).zip(&full) {
+        let flip = compared(baked, full)?.flip_mean;
+        made.measure(format!("{} {}, tables against full: mean FLIP", material.class, material.name), flip);
+    }
+    let label =
+        |(material, (_, label, _)): (&Material, &(&str, &str, &str))| format!("{} {label}", material.class.letter());
+    made.sheet("course-classes", materials.iter().zip(&CLASSES).map(label).zip(baked).collect(), 4);
+    Ok(made)
+}
+
+/// The thicknesses of figure 3.4, in a unit that the course does not name; um here.
+const THICKNESSES: [f64; 12] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.2, 1.6, 3.0, 5.0, 7.5, 10.0, 15.0];
+
+/// White under a yellow varnish. The absorption is ours.
+fn varnished(thickness: f64) -> Outcome<Material> {
+    let text = format!(
+        "schema = 1\nname = \"varnished\"\n\
+         [[layer]]\ntype = \"dielectric\"\nior = 1.5\nslope_deg = 2\ndistribution = \"beckmann\"\n\
+         thickness_um = {thickness}\nabsorption_per_um = [0.02, 0.1, 0.8]\n\
+         [[layer]]\ntype = \"diffuse\"\nalbedo = 0.9\n\
+         [bake]\ncolor = \"three-wavelengths\"\n"
+    );
+    material("varnished", &text)
+}
+
+fn varnish(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let mut materials = Vec::new();
+    for (i, thickness) in THICKNESSES.into_iter().enumerate() {
+        materials.push(shaded(&varnished(thickness)?, &format!("varnish-{i}"), ShadingModel::WeidlichWilkie));
+    }
+    let pictures = studio.pictures(&materials, Form::Baked, Shape::Sphere, |_, _| {})?;
+    let names = [("lightness L*", PlotColor::Ink), ("chroma C*", PlotColor::Red), ("hue, degrees", PlotColor::Blue)];
+    let mut curves = names.map(|(name, color)| Curve { name: name.to_owned(), color, points: Vec::new() });
+    for (thickness, picture) in THICKNESSES.into_iter().zip(&pictures) {
+        let values = lightness_chroma_hue(middle(picture));
+        for (curve, value) in curves.iter_mut().zip(values) {
+            made.measure(format!("thickness {thickness}: {}", curve.name), value);
+            curve.points.push([thickness, value]);
+        }
+    }
+    let labels = THICKNESSES.iter().map(f64::to_string);
+    made.sheet("course-varnish", labels.zip(pictures).collect(), 6);
+    let axis = |label: &str, range, step| PlotAxis { label: label.to_owned(), range, step };
+    made.plot(
+        "course-varnish-colour",
+        Plot {
+            title: "Colour of the middle of the balls against the thickness of the varnish".to_owned(),
+            x: axis("thickness of the varnish", [0.0, 15.0], 2.5),
+            y: axis("CIE 1976 lightness and chroma; hue", [0.0, 120.0], 20.0),
+            curves: curves.to_vec(),
+        },
+    );
+    Ok(made)
+}
+
+/// Mean colour of the middle fifth of a picture.
+fn middle(image: &Image) -> [f64; 3] {
+    let range = image.width * 2 / 5..image.width * 3 / 5;
+    let count = f64::from(range.end - range.start).max(1.0);
+    let mut sum = [0.0; 3];
+    for y in range.clone() {
+        for x in range.clone() {
+            for (sum, value) in sum.iter_mut().zip(image.texel(x, y)) {
+                *sum += f64::from(*value) / (count * count);
+            }
+        }
+    }
+    sum
+}

@@ -1,0 +1,82 @@
+//! Definition of a figure, and its results.
+
+use luthier_gpu::ToneMapping;
+use luthier_lut::Image;
+use luthier_report::{PictureComparison, Plot, brightened_difference, compare_pictures, sheet};
+use luthier_terminal::{Failure, Outcome};
+
+use super::studio::Studio;
+
+/// A figure of a paper, and how to make it anew.
+#[derive(Clone, Copy)]
+pub(crate) struct Figure {
+    pub(crate) name: &'static str,
+    pub(crate) title: &'static str,
+    /// Paper and number there.
+    pub(crate) source: &'static str,
+    /// Text below the figure: what the paper shows, what differs here, what to see.
+    pub(crate) caption: &'static str,
+    pub(crate) make: fn(&Studio) -> Outcome<Made>,
+}
+
+/// Results of a figure.
+#[derive(Default)]
+pub(crate) struct Made {
+    pub(crate) files: Vec<(String, Content)>,
+    pub(crate) measured: Vec<Measured>,
+}
+
+pub(crate) enum Content {
+    /// A picture as a display shows it, before its transfer function.
+    Picture(Image),
+    Plot(Plot),
+}
+
+/// A number of this run.
+pub(crate) struct Measured {
+    pub(crate) what: String,
+    pub(crate) value: f64,
+}
+
+/// Pictures and what stands below each.
+pub(crate) type Labelled = Vec<(String, Image)>;
+
+/// Tone curve of all pictures.
+pub(crate) const TONE: ToneMapping = ToneMapping::Shoulder;
+
+impl Made {
+    /// Adds a sheet of linear pictures.
+    pub(crate) fn sheet(&mut self, file: &str, pictures: Labelled, columns: u32) {
+        self.shown(file, pictures.into_iter().map(|(label, image)| (label, TONE.image(image))).collect(), columns);
+    }
+
+    /// Adds a sheet of pictures that are as a display shows them.
+    pub(crate) fn shown(&mut self, file: &str, pictures: Labelled, columns: u32) {
+        self.files.push((format!("{file}.png"), Content::Picture(sheet(&pictures, columns))));
+    }
+
+    pub(crate) fn plot(&mut self, file: &str, plot: Plot) {
+        self.files.push((format!("{file}.svg"), Content::Plot(plot)));
+    }
+
+    pub(crate) fn measure(&mut self, what: impl Into<String>, value: f64) {
+        self.measured.push(Measured { what: what.into(), value });
+    }
+
+    /// Compares two linear pictures: RMSE, largest difference and FLIP are noted. The brightened difference of what a
+    /// display shows, with its label.
+    pub(crate) fn compare(&mut self, what: &str, a: &Image, b: &Image) -> Outcome<(String, Image)> {
+        let compared = compared(a, b)?;
+        self.measure(format!("{what}: RMSE of linear radiance"), compared.rms_err);
+        self.measure(format!("{what}: mean FLIP"), compared.flip_mean);
+        let (shown, gain) = brightened_difference(a, b, |v| TONE.value(v));
+        let largest = shown.data.iter().copied().fold(0.0, f32::max) / gain as f32;
+        self.measure(format!("{what}: largest difference of what a display shows"), f64::from(largest));
+        Ok((format!("diff. x{gain}"), shown))
+    }
+}
+
+/// Two linear pictures as a display shows them.
+pub(crate) fn compared(a: &Image, b: &Image) -> Outcome<PictureComparison> {
+    compare_pictures(a, b, |v| TONE.value(v)).map_err(Failure::input)
+}

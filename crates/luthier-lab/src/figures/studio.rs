@@ -1,0 +1,125 @@
+//! Where pictures are taken: one adapter, one light, one size.
+
+use std::cell::OnceCell;
+use std::io::ErrorKind;
+use std::sync::Arc;
+
+use luthier_export::Package;
+use luthier_gpu::{Environment, Gpu, RenderSettings, Shape};
+use luthier_layers::inputs::Inputs;
+use luthier_layers::model::Model;
+use luthier_layers::registry;
+use luthier_lut::Image;
+use luthier_manifest::{Form, ShadingModel};
+use luthier_material::{Material, parse};
+use luthier_report::{BallPicture, DistantLight, render_ball};
+use luthier_terminal::{Failure, Outcome, adapter_label, open};
+
+use crate::cli::FiguresOptions;
+
+/// Directions of the environment per lobe and sample: with four samples to a pixel, 128 per lobe.
+const ENVIRONMENT_SAMPLES: u32 = 32;
+
+/// A key from the upper left and a dimmer one from behind on the right: of no paper.
+const LIGHTS: [DistantLight; 2] = [
+    DistantLight { direction: [-0.45, 0.7, 0.6], irradiance: [1.75, 1.7, 1.62] },
+    DistantLight { direction: [0.9, 0.1, -0.2], irradiance: [1.0, 1.1, 1.25] },
+];
+
+pub(crate) struct Studio {
+    pub(crate) size: u32,
+    samples: u32,
+    paths: u64,
+    adapter: Option<String>,
+    gpu: OnceCell<Gpu>,
+    environment: OnceCell<Arc<Environment>>,
+}
+
+impl Studio {
+    pub(crate) fn new(options: &FiguresOptions) -> Self {
+        let FiguresOptions { size, samples, paths, adapter, .. } = options;
+        let (gpu, environment) = (OnceCell::new(), OnceCell::new());
+        Self { size: *size, samples: *samples, paths: *paths, adapter: adapter.name.clone(), gpu, environment }
+    }
+
+    /// The adapter, opened when the first figure needs it.
+    pub(crate) fn gpu(&self) -> Outcome<&Gpu> {
+        if self.gpu.get().is_none() {
+            let _ = self.gpu.set(open(self.adapter.as_deref())?);
+        }
+        self.gpu.get().ok_or_else(|| Failure::Device(anyhow::anyhow!("no graphics adapter")))
+    }
+
+    /// Name of the adapter, if a figure needed one.
+    pub(crate) fn adapter_name(&self) -> Option<String> {
+        self.gpu.get().map(adapter_label)
+    }
+
+    /// The studio of `luthier preview`, its environment through the shader.
+    pub(crate) fn settings(&self, shape: Shape) -> Outcome<RenderSettings> {
+        let mut settings = RenderSettings::new(shape)?;
+        settings.environment = self.environment.get_or_init(|| settings.environment.clone()).clone();
+        settings.size = self.size;
+        settings.samples = self.samples;
+        settings.environment_samples = ENVIRONMENT_SAMPLES;
+        Ok(settings)
+    }
+
+    /// Bakes materials and renders each, linear. `adjust` may change the settings of the n-th.
+    pub(crate) fn pictures(
+        &self,
+        materials: &[Material],
+        form: Form,
+        shape: Shape,
+        adjust: impl Fn(usize, &mut RenderSettings),
+    ) -> Outcome<Vec<Image>> {
+        self.rendered(&Package::for_renderer(materials)?, form, shape, adjust)
+    }
+
+    /// Renders each material of a bake, linear.
+    pub(crate) fn rendered(
+        &self,
+        package: &Package,
+        form: Form,
+        shape: Shape,
+        adjust: impl Fn(usize, &mut RenderSettings),
+    ) -> Outcome<Vec<Image>> {
+        let scene = self.gpu()?.scene(package, form)?;
+        let render = |n: usize| {
+            let mut settings = self.settings(shape)?;
+            adjust(n, &mut settings);
+            Ok(scene.render(&[n as u32], &settings)?)
+        };
+        (0..package.manifest.materials.len()).map(render).collect()
+    }
+
+    /// A ball in f64, under two lights and nothing else; estimates from the paths of the command line.
+    pub(crate) fn ball(&self, material: &Material, model: &str) -> Outcome<BallPicture> {
+        let model = self.model(model)?;
+        Ok(render_ball(model.as_ref(), &material.stack, material.bake.wavelengths_nm(), &LIGHTS, self.size))
+    }
+
+    fn model(&self, name: &str) -> Outcome<Box<dyn Model>> {
+        let model = registry::model(name).ok_or_else(|| Failure::Input(anyhow::anyhow!("no model `{name}`")))?;
+        let inputs = Inputs { samples: Some(self.paths), ..Inputs::default() };
+        Ok(model.with_inputs(&inputs).unwrap_or(model))
+    }
+}
+
+/// The material of a text.
+pub(crate) fn material(label: &str, text: &str) -> Outcome<Material> {
+    let parsed = parse(label, text, &|_| Err(ErrorKind::NotFound.into()));
+    let wrong = |errors: Vec<luthier_material::Diagnostic>| {
+        let messages: Vec<String> = errors.into_iter().map(|e| e.render(text)).collect();
+        Failure::Input(anyhow::anyhow!(messages.join("\n")))
+    };
+    Ok(parsed.map_err(wrong)?.material)
+}
+
+/// A material under another name and model.
+pub(crate) fn shaded(material: &Material, name: &str, model: ShadingModel) -> Material {
+    let mut shaded = material.clone();
+    shaded.name = name.to_owned();
+    shaded.bake.model = Some(model);
+    shaded
+}

@@ -1,0 +1,37 @@
+//! The reflectance models against the reference, on materials.
+
+use luthier_export::read;
+use luthier_report::{ModelSettings, ModelSubject, judge_models};
+use luthier_terminal::{Bar, Failure, Outcome, print, valid};
+
+use crate::cli::{JUDGE_SAMPLES, JudgeOptions};
+
+/// Judges every model on materials.
+pub(crate) fn run(options: &JudgeOptions) -> Outcome {
+    let subjects: Vec<ModelSubject> = valid(read(&options.sources.paths)?, false)?
+        .into_iter()
+        .map(|material| ModelSubject {
+            wavelengths_nm: material.bake.wavelengths_nm(),
+            name: material.name,
+            stack: material.stack,
+        })
+        .collect();
+    let bar = Bar::new("judging models");
+    let settings = ModelSettings { samples: options.samples, seed: 0 };
+    let report = judge_models(&subjects, settings, &|done, total| bar.set(done as u64, total as u64));
+    drop(bar);
+    if options.format.json {
+        return print(&report.to_json().map_err(Failure::input)?);
+    }
+    print(&report.to_markdown(&command(options)))
+}
+
+/// The command line that makes the page.
+fn command(options: &JudgeOptions) -> String {
+    let mut words = vec!["luthier-lab judge".to_owned()];
+    words.extend(options.sources.paths.iter().map(|path| path.display().to_string()));
+    if options.samples != JUDGE_SAMPLES {
+        words.push(format!("--samples {}", options.samples));
+    }
+    words.join(" ")
+}

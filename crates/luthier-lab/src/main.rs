@@ -1,0 +1,34 @@
+//! The `luthier-lab` command: makes the pages and measurements of this repository. A user of luthier needs none of it.
+
+mod budgets;
+mod cli;
+mod figures;
+mod judge;
+mod papers;
+mod parity;
+mod shapes;
+mod stability;
+
+use std::process::ExitCode;
+
+use crate::cli::{Cli, Verb};
+
+fn main() -> ExitCode {
+    // This may be the process that asks the driver's compiler.
+    if let Some(code) = luthier_cost::answer() {
+        return code;
+    }
+    let outcome = match &luthier_terminal::parse::<Cli>(&[]).verb {
+        Verb::Figures(options) => figures::run(options),
+        Verb::Parity(options) => parity::run(options),
+        Verb::Stability(options) => stability::run(options),
+        Verb::Judge(options) => judge::run(options),
+        Verb::Budgets(options) => budgets::run(options),
+        Verb::Papers(options) => papers::run(options),
+        Verb::Shapes(options) => shapes::run(options),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.exit(),
+    }
+}

@@ -1,0 +1,325 @@
+//! Table 1 of Elek 2010 and section 3.4.2 of the course of Weidlich and Wilkie 2009, with today's compilers and chips.
+
+use std::fmt::Write as _;
+
+use luthier_bake::Options;
+use luthier_cost::{CostReport, Counts, Family, Harness, Kernel, Style, compile_apart};
+use luthier_export::{GENERATOR, Package, Shader, outline, read};
+use luthier_lut::TexelFormat;
+use luthier_manifest::{ColorMode, ShadingModel};
+use luthier_material::{FresnelMapping, FresnelSettings, Material};
+use luthier_report::{FLOOR, Pair, ParitySet};
+use luthier_shader::{Form, MaterialSet};
+use luthier_terminal::{Failure, Outcome, deliver, valid};
+
+use crate::cli::PapersOptions;
+
+/// Two layers each: a coat over a metal and over a diffuse base. Where the materials at hand have neither, the first with two layers
+/// stands in.
+const MATERIALS: [&str; 2] = ["car-paint", "red-lacquer"];
+
+/// The goal: shares of the form `full` and of Phong's model in inverse throughput, at this error.
+const GOAL: (f64, f64, f64) = (0.40, 1.5, 0.01);
+
+/// Counts the shaders of the papers, as a page.
+pub(crate) fn run(options: &PapersOptions) -> Outcome {
+    let cases = cases(&valid(read(&options.sources.paths)?, true)?)?;
+    if cases.is_empty() {
+        return Err(Failure::Input(anyhow::anyhow!(
+            "none of the materials has two layers, as those of the papers have"
+        )));
+    }
+    let empty = |harness| Kernel::empty(harness).map_err(Failure::input);
+    let mut kernels = vec![empty(Harness::Bare)?, empty(Harness::NormalMapped)?];
+    kernels.extend(cases.iter().flat_map(|case| &case.variants).flat_map(|variant| variant.kernels.clone()));
+    let families: &[Family] = if options.family.is_empty() { &Family::ALL } else { &options.family };
+    let mut report = CostReport { generator: GENERATOR.to_owned(), ..CostReport::default() };
+    let mut counts = Vec::new();
+    for &family in families {
+        let compiled = compile_apart(family, &kernels).map_err(Failure::device)?;
+        let [bare, framed, others @ ..] = compiled.counts.as_slice() else {
+            return Err(Failure::Device(anyhow::anyhow!("the probe gave no counts")));
+        };
+        report.add_family(family, &compiled, *bare);
+        counts.push((family, *bare, *framed, others.to_vec()));
+    }
+    let mut page = report.introduction("The papers' own costs", &command(options));
+    page.push('\n');
+    tables(&mut page, &cases, &counts);
+    deliver(&page, options.destination.output.as_deref())
+}
+
+/// One material in all variants of the tables.
+struct PaperCase {
+    material: String,
+    variants: Vec<PaperVariant>,
+}
+
+/// One row of the page: a variant of the tables.
+struct PaperVariant {
+    name: &'static str,
+    role: Role,
+    constant: bool,
+    /// Largest error against the form `full`; `None` for another model, or without a device.
+    error: Option<f64>,
+    /// Kernels in the bare harness, and with a normal map and an environment.
+    kernels: [Kernel; 2],
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Role {
+    Full,
+    Approximate,
+    Tables,
+    FresnelTable,
+    Phong,
+}
+
+const ROLES: [(&str, Role); 5] = [
+    ("full", Role::Full),
+    ("full, approximated Fresnel", Role::Approximate),
+    ("precomputed F and D", Role::Tables),
+    ("precomputed F, closed D", Role::FresnelTable),
+    ("Phong", Role::Phong),
+];
+
+/// The cases among the materials.
+fn cases(materials: &[Material]) -> Outcome<Vec<PaperCase>> {
+    let named: Vec<&Material> =
+        MATERIALS.iter().filter_map(|name| materials.iter().find(|m| m.name == *name)).collect();
+    let chosen =
+        if named.is_empty() { materials.iter().filter(|m| m.stack.layers.len() == 2).take(1).collect() } else { named };
+    chosen.into_iter().map(case).collect()
+}
+
+fn case(material: &Material) -> Outcome<PaperCase> {
+    let with = |model: ShadingModel| {
+        let mut material = material.clone();
+        material.bake.model = Some(model);
+        // Both forms are to mean the same.
+        material.bake.color = Some(ColorMode::ThreeWavelengths);
+        // Elek's tables (section 3.1): rows over the cosine, D over an angle and the slope parameter.
+        material.bake.fresnel = FresnelSettings {
+            size: Some(128),
+            format: Some(TexelFormat::Rgba16Float),
+            mapping: Some(FresnelMapping::Cosine),
+        };
+        material.bake.distribution.size = Some([512, 512]);
+        material
+    };
+    let (elek, phong) = (with(ShadingModel::Elek), with(ShadingModel::Phong));
+    let [of_elek, of_phong] =
+        [&elek, &phong].map(|material| outline(std::slice::from_ref(material), &Options::default()));
+    let (of_elek, of_phong) = (of_elek?, of_phong?);
+    let mut variants = Vec::new();
+    let mut texts = Vec::new();
+    for constant in [false, true] {
+        for (name, role) in ROLES {
+            let manifest = if role == Role::Phong { &of_phong } else { &of_elek };
+            let set = MaterialSet::from_manifest(manifest);
+            let set = if role == Role::FresnelTable { set.with_closed_distribution() } else { set };
+            let form = if matches!(role, Role::Tables | Role::FresnelTable) { Form::Baked } else { Form::Full };
+            let style = Style { form, constant, approximate: role == Role::Approximate };
+            let kernel = |harness| Kernel::of_set(&set, style, harness).map_err(Failure::input);
+            let kernels = [kernel(Harness::Bare)?, kernel(Harness::NormalMapped)?];
+            texts.push(luthier_cost::shader_text(&set, style).map_err(Failure::input)?);
+            variants.push(PaperVariant { name, role, constant, error: None, kernels });
+        }
+    }
+    let errors = errors(&elek, &texts)?;
+    for (variant, error) in variants.iter_mut().zip(errors) {
+        variant.error =
+            error.filter(|_| !matches!(variant.role, Role::Phong) && (variant.role != Role::Full || variant.constant));
+    }
+    Ok(PaperCase { material: material.name.clone(), variants })
+}
+
+/// Pairs of directions in each of the sets that errors are found on.
+const PAIRS: u32 = 20_000;
+
+/// The largest error of each shader against the first, on the device at hand: relative to the brightest channel, or to
+/// [`FLOOR`] where that is darker. Nothing where there is no device.
+fn errors(material: &Material, texts: &[String]) -> Outcome<Vec<Option<f64>>> {
+    let Ok(gpu) = luthier_gpu::Gpu::open() else { return Ok(vec![None; texts.len()]) };
+    let mut package = Package::for_renderer(std::slice::from_ref(material))?;
+    // Phong's shader would read another buffer.
+    let is_elek = |text: &&String| text.contains("fn luthier_eval_elek");
+    let pairs: Vec<Pair> = ParitySet::ALL
+        .iter()
+        .flat_map(|set| set.pairs(PAIRS, &luthier_layers::elek::layers(&material.stack)))
+        .collect();
+    let mut values = |text: &String| -> Outcome<Vec<[f32; 3]>> {
+        package.shaders = vec![Shader::wgsl(Form::Baked, text.clone())];
+        Ok(gpu.scene(&package, Form::Baked)?.evaluate(0, &pairs)?)
+    };
+    let exact = values(&texts[0])?;
+    let mut errors = Vec::with_capacity(texts.len());
+    for text in texts {
+        errors.push(if is_elek(&text) {
+            let found = values(text)?;
+            let error = |(found, exact): (&[f32; 3], &[f32; 3])| {
+                let scale = exact.iter().fold(FLOOR, |scale, &channel| scale.max(f64::from(channel)));
+                let apart = found.iter().zip(exact).map(|(a, b)| (f64::from(*a) - f64::from(*b)).abs());
+                apart.fold(0.0, f64::max) / scale
+            };
+            Some(found.iter().zip(&exact).map(error).fold(0.0, f64::max))
+        } else {
+            None
+        });
+    }
+    Ok(errors)
+}
+
+/// Text on the figures above, from the machine code.
+const WHY: &str = "
+**What costs, and what the goal asks for**
+
+- The table of D is dearer than D. Its coordinate is an eighth root of an angle: an arc tangent, three roots and two quotients stand \
+against one exponential and one quotient of Beckmann's closed form, which has no error and no texels. Elek's table pays where \
+a chip has slow exponentials; these have none. `luthier shader --closed` emits the closed form.
+- The table of F pays over metals: complex roots at three wavelengths go. Below a clear coat over a diffuse base there is one \
+Fresnel term only, and with constants for its index the compiler reduces that to little more than the fetch: the share of \
+full then approaches 1.
+- Without Fresnel and D an interface still has the half vector, the masking, a quotient by both cosines, and on the way down two \
+refracted cosines and three exponentials of the absorption. The model `microfacet`, one interface and nothing below it, takes 1.5 of Phong \
+or nearly so (`docs/pages/cost.md`). So 1.5 of Phong alone is out of reach of shaders that evaluate two interfaces; it can be reached where the \
+normal map and the environment are counted on both sides, as the papers did. Alone it would need one lobe fitted to the stack.
+- What both forms have in common hides what tables save, and is short: 1 / alpha^2, the peak of D, 1 / eta and their like are in the material \
+buffer, half vectors keep their length, whole numbers need no conversion, a position in an atlas is one product and one sum.
+- Constants save where a form computes with numbers of the material, Fresnel terms above all; with tables they save next to nothing, because \
+a number from the buffer costs no instruction either. In the model's inverse throughput some rows rise: a branch that the constants decide is gone, \
+and with it the discount for what lies under it.
+";
+
+/// A count that is compared between variants.
+struct Measure {
+    title: &'static str,
+    /// Kernel of a variant.
+    kernel: usize,
+    count: fn(&Counts) -> i64,
+    /// Whether the harness is subtracted.
+    net: bool,
+}
+
+const MEASURES: [Measure; 3] = [
+    Measure { title: "Inverse throughput of the evaluation", kernel: 0, count: |c| c.inverse_throughput, net: true },
+    Measure { title: "Issue of the evaluation", kernel: 0, count: |c| c.issue_cycles, net: true },
+    Measure {
+        title: "Inverse throughput with a normal map and a reflected environment, harness included",
+        kernel: 1,
+        count: |c| c.inverse_throughput,
+        net: false,
+    },
+];
+
+/// Counts of one family: the two harnesses, and all kernels of all cases in order.
+type FamilyCounts = (Family, Counts, Counts, Vec<Counts>);
+
+/// The tables beside those of the papers.
+fn tables(out: &mut String, cases: &[PaperCase], counts: &[FamilyCounts]) {
+    out.push_str(
+        "\n## Elek's Table 1 and section 3.4.2 of the course\n\n\
+         Elek 2010 and Weidlich and Wilkie 2009 give cycles of a GeForce 8800 GTX by NVIDIA's FX Composer, for whole pixel shaders with a \
+         normal map and a reflected environment.\n\n\
+         | paper | full | approximated Fresnel | precomputed | Phong | precomputed over full | over Phong | error |\n\
+         |---|--:|--:|--:|--:|--:|--:|--:|\n\
+         | Elek, Table 1: tables of F and D | 436 | – | 236 | 104 | 0.54 | 2.27 | 6 % |\n\
+         | course, 3.4.2: table of F, Blinn-Phong | 479 | 268 | 195 | 83 | 0.41 | 2.35 | – |\n\n\
+         Below the model `elek` of luthier: each cell is cycles, then the share of *full* and of *Phong* of the same kind (with or without \
+         constants). The error is the largest of f cos theta_i against *full* over the five sets of directions of `docs/pages/parity.md` on the \
+         device at hand, relative to the brightest channel or, where that is darker, to 0.1/pi. The approximated Fresnel term is Schlick's \
+         with the complex index at normal incidence (Elek's listing). *Precomputed* reads Fresnel rows of 128 half floats over the cosine and \
+         a table of D of 512 x 512, Elek's sizes.\n",
+    );
+    let mut offset = 0;
+    for case in cases {
+        let here = offset;
+        offset += 2 * case.variants.len();
+        for measure in &MEASURES {
+            let _ = write!(out, "\n**{}**, {}\n\n| shader |", case.material, measure.title);
+            for (family, ..) in counts {
+                let _ = write!(out, " {family} |");
+            }
+            out.push_str(" error |\n|---|");
+            out.push_str(&"--:|".repeat(counts.len() + 1));
+            out.push('\n');
+            for (i, variant) in case.variants.iter().enumerate() {
+                let numbers = if variant.constant { ", constants" } else { "" };
+                let _ = write!(out, "| {}{numbers} |", variant.name);
+                for family in counts {
+                    let cost = |i| cost(measure, family, here, i);
+                    let of = |role| cost(i) as f64 / cost(partner(case, i, role)) as f64;
+                    let _ = write!(out, " {} ({:.2}, {:.2}) |", cost(i), of(Role::Full), of(Role::Phong));
+                }
+                let error = variant.error.map_or_else(|| "–".to_owned(), |error| format!("{error:.1e}"));
+                let _ = writeln!(out, " {error} |");
+            }
+        }
+        verdict(out, case, here, counts);
+    }
+    out.push_str(WHY);
+}
+
+/// The command line that makes the page.
+fn command(options: &PapersOptions) -> String {
+    let mut words = vec!["luthier-lab papers".to_owned()];
+    words.extend(options.sources.paths.iter().map(|path| path.display().to_string()));
+    words.extend(options.family.iter().map(|family| format!("--family {family}")));
+    words.extend(options.destination.output.iter().map(|path| format!("-o {}", path.display())));
+    words.join(" ")
+}
+
+/// The variant of a role that is alike in its constants.
+fn partner(case: &PaperCase, i: usize, role: Role) -> usize {
+    let constant = case.variants[i].constant;
+    case.variants.iter().position(|v| v.role == role && v.constant == constant).unwrap_or(i)
+}
+
+fn cost(measure: &Measure, (_, bare, framed, kernels): &FamilyCounts, first: usize, i: usize) -> i64 {
+    let harness = if measure.kernel == 0 { bare } else { framed };
+    let all = (measure.count)(&kernels[first + 2 * i + measure.kernel]);
+    if measure.net { all - (measure.count)(harness) } else { all }
+}
+
+/// The goal against what was found.
+fn verdict(out: &mut String, case: &PaperCase, first: usize, counts: &[FamilyCounts]) {
+    let (of_full, of_phong, error) = GOAL;
+    let _ = writeln!(
+        out,
+        "\nGoal: precomputed at most {of_full:.2} of full and {of_phong} of Phong in inverse throughput, at an error of at most {:.0} %.",
+        100.0 * error
+    );
+    for (i, variant) in case.variants.iter().enumerate() {
+        if !matches!(variant.role, Role::Tables | Role::FresnelTable) {
+            continue;
+        }
+        let numbers = if variant.constant { ", constants" } else { "" };
+        let ratios = |role: Role, measure: &Measure| {
+            let of = |family| {
+                cost(measure, family, first, i) as f64 / cost(measure, family, first, partner(case, i, role)) as f64
+            };
+            counts.iter().map(of).fold(0.0, f64::max)
+        };
+        let says = |holds: bool| if holds { "reached" } else { "missed" };
+        let (full, phong) = (ratios(Role::Full, &MEASURES[0]), ratios(Role::Phong, &MEASURES[0]));
+        let framed = ratios(Role::Phong, &MEASURES[2]);
+        let default = counts
+            .iter()
+            .map(|family| cost(&MEASURES[0], family, first, i) as f64 / cost(&MEASURES[0], family, first, 0) as f64)
+            .fold(0.0, f64::max);
+        let exact = match variant.error {
+            Some(found) => format!("error {found:.1e}: {}", says(found <= error)),
+            None => "error not measured".to_owned(),
+        };
+        let _ = writeln!(
+            out,
+            "- {}{numbers}: at most {full:.2} of its full form: {}; {default:.2} of the full form that reads a buffer: {}; \
+             {phong:.2} of Phong: {}; {framed:.2} of Phong with normal map and environment: {}; {exact}.",
+            variant.name,
+            says(full <= of_full),
+            says(default <= of_full),
+            says(phong <= of_phong),
+            says(framed <= of_phong),
+        );
+    }
+}

@@ -1,0 +1,155 @@
+//! `parity`: every shader of every material against its f64 twin.
+
+use std::ops::Range;
+
+use luthier_export::{Bake, GENERATOR, MemoryStore, Package, read};
+use luthier_gpu::Gpu;
+use luthier_lut::{Image, TableKind};
+use luthier_manifest::{Manifest, ShadingModel};
+use luthier_material::Material;
+use luthier_optics::stack::{Base, Layer, Stack};
+use luthier_report::{POLISHED_ALPHAS, Parity, ParityCase, Share, Subject, Verdict, parity};
+use luthier_shader::Form;
+use luthier_terminal::{Bar, Failure, Outcome, Shaders, complain, deliver, open, valid};
+
+use crate::cli::{PARITY_PAIRS, ParityOptions};
+
+/// Least slope parameter of the polished variants: that of layer records.
+const ALPHA_MIN: f64 = luthier_layers::elek::ALPHA_MIN;
+
+/// Compares every shader with its f64 twin.
+pub(crate) fn run(options: &ParityOptions) -> Outcome {
+    let materials = valid(read(&options.sources.paths)?, true)?;
+    let models = models(options);
+    let all: Vec<Material> =
+        models.iter().flat_map(|model| materials.iter().flat_map(|m| variants(m, *model))).collect();
+    let baking = Bar::new("baking");
+    // Shaders are compared within the domains of their models and beyond.
+    let bake = Bake { refuses: false, ..Bake::wgsl(&Form::ALL) };
+    let package = Package::new(&all, &bake, &MemoryStore::default())?;
+    drop(baking);
+    let bar = Bar::new("comparing");
+    let gpu = open(options.adapter.name.as_deref())?;
+    let total = models.len() * materials.len();
+    let (mut rows, mut done, mut adapter) = (Vec::new(), 0, String::new());
+    let per_model = materials.len() * (1 + POLISHED_ALPHAS.len());
+    for (index, _) in models.iter().enumerate() {
+        let range = index * per_model..(index + 1) * per_model;
+        let stacks = all[range.clone()].iter().map(|m| m.stack.clone()).collect();
+        let compiled = Compiled::new(&gpu, &package, range, stacks)?;
+        adapter = luthier_report::Device::name(&compiled.shaders);
+        let cases: Vec<ParityCase> = (0..).zip(&materials).map(|(n, material)| case(n, material)).collect();
+        let mut progress = || {
+            done += 1;
+            bar.set(done as u64, total as u64);
+        };
+        let subject = Subject {
+            manifest: &compiled.manifest,
+            textures: compiled.textures.clone(),
+            stacks: compiled.stacks.clone(),
+        };
+        let found =
+            parity(&subject, &compiled.shaders, &cases, options.pairs, &mut progress).map_err(Failure::input)?;
+        rows.extend(found);
+    }
+    drop(bar);
+    let report = Parity::new(GENERATOR, adapter, options.pairs, rows);
+    let text = if options.format.json {
+        report.to_json().map_err(Failure::input)?
+    } else {
+        report.to_markdown(&command(options))
+    };
+    deliver(&text, options.destination.output.as_deref())?;
+    for row in report.rows.iter().filter(|row| !row.holds()) {
+        let broken = Share::ALL.into_iter().filter(|share| row.verdict(*share) == Verdict::Broken);
+        let shares: Vec<String> = broken.map(|share| format!("{} {:.2e}", share.name(), row.max(share))).collect();
+        complain(&format!(
+            "{}, {}, {}: {} not finite; beyond its tolerance: {}",
+            row.model.name(),
+            row.form,
+            row.material,
+            row.not_finite,
+            shares.join(", ")
+        ));
+    }
+    if report.holds() { Ok(()) } else { Err(Failure::Verdict) }
+}
+
+/// The models to compare: all, unless named.
+fn models(options: &ParityOptions) -> Vec<ShadingModel> {
+    let named: Vec<ShadingModel> =
+        options.model.iter().filter_map(|setting| ShadingModel::from_name(setting.name())).collect();
+    if named.is_empty() { ShadingModel::ALL.to_vec() } else { named }
+}
+
+/// A material shaded by a model, and its polished variants; names are unique over all models.
+fn variants(material: &Material, model: ShadingModel) -> Vec<Material> {
+    let mut base = material.clone();
+    base.bake.model = Some(model);
+    base.name = format!("{}-{}", material.name, model.name());
+    let polished = POLISHED_ALPHAS.iter().enumerate().map(|(i, &alpha)| {
+        let mut polished = base.clone();
+        polish(&mut polished.stack, alpha);
+        polished.name = format!("{}-polished-{i}", base.name);
+        polished
+    });
+    std::iter::once(base.clone()).chain(polished).collect()
+}
+
+/// Scales all slope parameters alike, so that the largest is `alpha`.
+fn polish(stack: &mut Stack, alpha: f64) {
+    let is_interface = |layer: &&mut Layer| !matches!(layer.base, Base::Diffuse(_));
+    let largest = stack
+        .layers
+        .iter_mut()
+        .filter(is_interface)
+        .fold(0.0, |largest: f64, layer| largest.max(layer.surface.alpha_x).max(layer.surface.alpha_y));
+    let factor = if largest > 0.0 { alpha / largest } else { 1.0 };
+    for layer in stack.layers.iter_mut().filter(is_interface) {
+        for alpha in [&mut layer.surface.alpha_x, &mut layer.surface.alpha_y] {
+            *alpha = (*alpha * factor).max(ALPHA_MIN);
+        }
+    }
+}
+
+/// The numbers of the variants of the n-th material.
+fn case(n: u32, material: &Material) -> ParityCase {
+    let first = n * (1 + POLISHED_ALPHAS.len() as u32);
+    ParityCase {
+        name: material.name.clone(),
+        material: first,
+        polished: (1..=POLISHED_ALPHAS.len() as u32).map(|i| first + i).collect(),
+    }
+}
+
+/// The shaders of some materials of a bake, on the device.
+pub(crate) struct Compiled {
+    pub(crate) manifest: Manifest,
+    pub(crate) textures: Vec<(TableKind, Image)>,
+    pub(crate) stacks: Vec<Stack>,
+    pub(crate) shaders: Shaders,
+}
+
+impl Compiled {
+    pub(crate) fn new(gpu: &Gpu, package: &Package, numbers: Range<usize>, stacks: Vec<Stack>) -> Outcome<Self> {
+        let package = package.of_materials(numbers)?;
+        let shaders = Shaders::new(gpu, &package)?;
+        Ok(Self { textures: package.textures()?, manifest: package.manifest, stacks, shaders })
+    }
+}
+
+/// The command line that makes the page.
+fn command(options: &ParityOptions) -> String {
+    let mut words = vec!["luthier-lab parity".to_owned()];
+    words.extend(options.sources.paths.iter().map(|path| path.display().to_string()));
+    for model in &options.model {
+        words.push(format!("--model {}", model.name()));
+    }
+    if options.pairs != PARITY_PAIRS {
+        words.push(format!("--pairs {}", options.pairs));
+    }
+    if let Some(path) = &options.destination.output {
+        words.push(format!("-o {}", path.display()));
+    }
+    words.join(" ")
+}

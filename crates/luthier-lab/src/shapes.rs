@@ -1,0 +1,54 @@
+//! The table by which scenes choose models: costs by shape of the surface.
+
+use luthier_bake::Options;
+use luthier_cost::{Family, Harness, Kernel, Style, compile_apart};
+use luthier_export::{outline, read};
+use luthier_manifest::ShadingModel;
+use luthier_shader::{Form, MaterialSet};
+use luthier_terminal::{Failure, Outcome, deliver, valid};
+
+use crate::cli::ShapesOptions;
+
+/// Costs of every shape that the materials have, whole or without some of their parts: what scenes choose by.
+pub(crate) fn run(options: &ShapesOptions) -> Outcome {
+    let materials = valid(read(&options.sources.paths)?, true)?;
+    let family = Family::Rdna2;
+    let simpler = || materials.iter().flat_map(luthier_scene::variants).map(|(_, material)| material);
+    let mut keys: Vec<(ShadingModel, Form, String)> = Vec::new();
+    let mut kernels = vec![Kernel::empty(Harness::Bare).map_err(Failure::input)?];
+    for model in ShadingModel::ALL {
+        for mut material in simpler() {
+            material.bake.model = Some(model);
+            let shape = luthier_scene::shape_of(model, &luthier_scene::shape(&material.stack));
+            // What is no matter of shape, and what would make two materials of one shape differ.
+            material.effects = Default::default();
+            material.bake.distribution = Default::default();
+            if keys.iter().any(|(known, _, s)| (*known, s) == (model, &shape)) {
+                continue;
+            }
+            let manifest = outline(std::slice::from_ref(&material), &Options::default())?;
+            let set = MaterialSet::from_manifest(&manifest);
+            for form in [Form::Baked, Form::Full] {
+                let style = Style { form, constant: false, approximate: false };
+                kernels.push(Kernel::of_set(&set, style, Harness::Bare).map_err(Failure::input)?);
+                keys.push((model, form, shape.clone()));
+            }
+        }
+    }
+    let compiled = compile_apart(family, &kernels).map_err(Failure::device)?;
+    let [harness, counts @ ..] = compiled.counts.as_slice() else {
+        return Err(Failure::Device(anyhow::anyhow!("the probe gave no counts")));
+    };
+    let mut rows: Vec<String> = Vec::new();
+    keys.iter().zip(counts).for_each(|((model, form, shape), counts)| {
+        let (model, form, cycles) = (model.name(), form.name(), counts.beyond(harness).inverse_throughput);
+        rows.push(format!(r#"    {{"model":"{model}","form":"{form}","shape":"{shape}","cycles":{cycles}}}"#));
+    });
+    let text = format!(
+        "{{\n  \"driver\": {},\n  \"family\": \"{}\",\n  \"rows\": [\n{}\n  ]\n}}\n",
+        serde_json::json!(compiled.driver),
+        family.name(),
+        rows.join(",\n")
+    );
+    deliver(&text, options.destination.output.as_deref())
+}

@@ -1,0 +1,9 @@
+//! The `luthier-lab` command: every page that it makes, judged by files, streams and exit codes.
+
+mod command;
+mod costs;
+mod figures;
+mod judge;
+mod parity;
+mod stability;
+mod workshop;

@@ -1,0 +1,27 @@
+//! Styles of the shader of a model: whether D is read or computed, whether numbers are read or written into the code.
+
+use luthier_lut::TableKind;
+use luthier_manifest::{Form, ShadingModel};
+
+use crate::MaterialSet;
+
+impl MaterialSet<'_> {
+    /// The set without a table of D: its shader has D in closed form.
+    #[must_use]
+    pub fn with_closed_distribution(mut self) -> Self {
+        self.tables.retain(|table| table.kind != TableKind::Distribution);
+        self
+    }
+}
+
+/// Whether shaders of a model read D from a table, where there is one.
+pub fn reads_distribution(model: ShadingModel) -> bool {
+    matches!(model, ShadingModel::Elek | ShadingModel::WeidlichWilkie | ShadingModel::Microfacet)
+}
+
+/// The style of a shader in words: `baked, closed D, constants`.
+pub fn style_name(model: ShadingModel, form: Form, closed: bool, constant: bool) -> String {
+    let d = if form == Form::Baked && closed && reads_distribution(model) { ", closed D" } else { "" };
+    let numbers = if constant { ", constants" } else { "" };
+    format!("{form}{d}{numbers}")
+}

@@ -1,0 +1,40 @@
+//! Reads the command line of a process.
+
+use std::process::exit;
+
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{ColorChoice, CommandFactory, FromArgMatches};
+
+use crate::{complain, has_colour, print_json};
+
+/// The command line of this process; exits where it asks for help or is wrong. `of_features` are verbs that a cargo feature brings, each
+/// with its feature: where such a verb is left out, the failure names the feature.
+pub fn parse<C: CommandFactory + FromArgMatches>(of_features: &[(&str, &str)]) -> C {
+    // The parser's own rule colours a dumb terminal of a build server.
+    let colour = if has_colour() { ColorChoice::Auto } else { ColorChoice::Never };
+    let matches = C::command().color(colour).try_get_matches();
+    let line = matches.and_then(|matches| C::from_arg_matches(&matches));
+    line.unwrap_or_else(|error| match left_out(&error, of_features) {
+        Some((verb, feature)) => {
+            print_json(2, "usage", &format!("this build leaves `{verb}` out"), &[]);
+            complain(&format!("error: this build leaves `{verb}` out\nhint: build with `--features {feature}`"));
+            exit(2)
+        }
+        None => {
+            // Help and versions are errors to this parser.
+            if error.use_stderr() {
+                let text = error.render().to_string();
+                let sentence = text.lines().next().unwrap_or_default();
+                print_json(2, "usage", sentence.trim_start_matches("error: "), &[]);
+            }
+            error.exit()
+        }
+    })
+}
+
+/// The verb that is unknown only because its feature is off.
+fn left_out<'v>(error: &clap::Error, of_features: &[(&'v str, &'v str)]) -> Option<(&'v str, &'v str)> {
+    let Some(ContextValue::String(name)) = error.get(ContextKind::InvalidSubcommand) else { return None };
+    let is_verb = error.kind() == ErrorKind::InvalidSubcommand;
+    of_features.iter().copied().find(|(verb, _)| is_verb && verb == name)
+}

@@ -1,0 +1,56 @@
+//! The graphics adapter as the judge sees it.
+
+use luthier_gpu::{Gpu, Package, Scene};
+use luthier_report::{Device, Form, Pair};
+
+use crate::Outcome;
+
+/// Both shaders of a bake, ready to run.
+#[derive(Debug)]
+pub struct Shaders {
+    name: String,
+    baked: Scene,
+    full: Scene,
+}
+
+impl Shaders {
+    /// The shaders of a package on an adapter.
+    ///
+    /// # Errors
+    /// Whatever the adapter reports.
+    pub fn new(gpu: &Gpu, package: &Package) -> Outcome<Self> {
+        let scene = |form| gpu.scene(package, form);
+        Ok(Self { name: adapter_label(gpu), baked: scene(Form::Baked)?, full: scene(Form::Full)? })
+    }
+
+    /// The pipelines of a form.
+    pub fn scene(&self, form: Form) -> &Scene {
+        match form {
+            Form::Baked => &self.baked,
+            Form::Full => &self.full,
+        }
+    }
+}
+
+impl Device for Shaders {
+    fn name(&self) -> String {
+        self.name.clone()
+    }
+
+    fn evaluate(&self, form: Form, material: u32, pairs: &[Pair]) -> Result<Vec<[f32; 3]>, String> {
+        self.scene(form).evaluate(material, pairs).map_err(|source| source.to_string())
+    }
+}
+
+/// Name, interface and driver of an adapter, as pages have them.
+pub fn adapter_label(gpu: &Gpu) -> String {
+    format!("{} ({}, {})", gpu.adapter_name(), gpu.backend(), gpu.driver())
+}
+
+/// Opens an adapter: the best there is, or the one whose name contains a text.
+///
+/// # Errors
+/// [`Failure::Device`](crate::Failure::Device).
+pub fn open(name: Option<&str>) -> Outcome<Gpu> {
+    Ok(name.map_or_else(Gpu::open, Gpu::open_named)?)
+}

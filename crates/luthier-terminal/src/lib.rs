@@ -1,0 +1,29 @@
+//! Terminal code that the commands of this workspace share, so that none of it is written twice.
+//!
+#![doc = include_str!("../README.md")]
+//! # In detail
+//!
+//! - [`Failure`]: why a command ends with another code than 0, and the codes. A verb returns an [`Outcome`];
+//! - [`print`], [`deliver`], [`complain`]: the standard streams, whose readers may be gone;
+//! - [`Bar`]: progress of work that takes longer than a second;
+//! - [`valid`]: the materials of files, with their diagnostics printed;
+//! - [`Sources`], [`named`]: options that many verbs have; [`parse`] reads a command line;
+//! - [`Shaders`], with the feature `gpu`: the graphics adapter as the judge sees it.
+
+mod command_line;
+#[cfg(feature = "gpu")]
+mod device;
+mod failure;
+mod materials;
+mod options;
+mod output;
+mod progress;
+
+pub use command_line::parse;
+#[cfg(feature = "gpu")]
+pub use device::{Shaders, adapter_label, open};
+pub use failure::{Broken, Failure, Outcome, diagnostic, files, print_json};
+pub use materials::{print_diagnostics, valid};
+pub use options::{Sources, named};
+pub use output::{bytes, complain, deliver, has_colour, has_cursor, print, print_bytes};
+pub use progress::Bar;

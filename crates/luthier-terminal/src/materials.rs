@@ -1,0 +1,38 @@
+//! Materials of files that a command line names.
+
+use luthier_export::Source;
+use luthier_material::{Diagnostic, Material};
+
+use crate::{Broken, Failure, Outcome, complain, has_colour};
+
+/// Prints diagnostics of a text to standard error.
+pub fn print_diagnostics<'d>(diagnostics: impl IntoIterator<Item = &'d Diagnostic>, text: &str) {
+    let colour = has_colour();
+    for diagnostic in diagnostics {
+        let rendered = if colour { diagnostic.render_coloured(text) } else { diagnostic.render(text) };
+        complain(&format!("{rendered}\n"));
+    }
+}
+
+/// Prints all diagnostics of a file to standard error.
+fn print_source(source: &Source) {
+    print_diagnostics(source.diagnostics(), &source.text);
+}
+
+/// The materials of all files; or, when any is invalid, its diagnostics and a failure.
+pub fn valid(sources: Vec<Source>, quiet: bool) -> Outcome<Vec<Material>> {
+    let broken = sources.iter().filter(|s| s.parsed.is_err()).count();
+    if broken > 0 {
+        let broken_sources = || sources.iter().filter(|s| s.parsed.is_err());
+        broken_sources().for_each(print_source);
+        let sentence = format!("{broken} of {} material files cannot be used; nothing was written", sources.len());
+        let diagnostics = broken_sources().flat_map(Source::diagnostics).cloned().collect();
+        return Err(Failure::input(Broken { sentence, diagnostics }));
+    }
+    if !quiet {
+        for source in &sources {
+            print_source(source);
+        }
+    }
+    Ok(sources.into_iter().filter_map(|s| s.parsed.ok()).map(|parsed| parsed.material).collect())
+}

@@ -1,0 +1,69 @@
+//! Standard output and standard error.
+
+use std::io::{self, IsTerminal, Write};
+use std::path::Path;
+
+use crate::{Failure, Outcome, files};
+
+/// Writes a text to standard output, with a final newline.
+///
+/// # Errors
+/// [`Failure::Files`], [`Failure::BrokenPipe`].
+pub fn print(text: &str) -> Outcome {
+    let mut out = io::stdout().lock();
+    out.write_all(text.as_bytes())?;
+    if !text.ends_with('\n') {
+        out.write_all(b"\n")?;
+    }
+    out.flush()?;
+    Ok(())
+}
+
+/// Writes a text to a file, or to standard output where none is named.
+///
+/// # Errors
+/// [`Failure::Files`], [`Failure::BrokenPipe`].
+pub fn deliver(text: &str, file: Option<&Path>) -> Outcome {
+    match file {
+        Some(path) => std::fs::write(path, text).map_err(files(path, "write")),
+        None => print(text),
+    }
+}
+
+/// Writes bytes as they are. Those that are no text are refused where standard output is a terminal.
+///
+/// # Errors
+/// [`Failure::Input`] where a terminal cannot show them; [`Failure::Files`], [`Failure::BrokenPipe`].
+pub fn print_bytes(bytes: &[u8], is_text: bool) -> Outcome {
+    let mut out = io::stdout().lock();
+    if !is_text && out.is_terminal() {
+        return Err(Failure::Input(anyhow::anyhow!("a terminal cannot show bytes: name a file with -o")));
+    }
+    out.write_all(bytes)?;
+    out.flush()?;
+    Ok(())
+}
+
+/// Writes a line to standard error. Where nobody listens there is nobody to tell.
+pub fn complain(line: &str) {
+    let _ = writeln!(io::stderr().lock(), "{line}");
+}
+
+/// Whether standard error is a terminal that can move its cursor, for progress bars.
+pub fn has_cursor() -> bool {
+    io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
+}
+
+/// Whether standard error takes colours: where `NO_COLOR` has a value, it does not (no-color.org).
+pub fn has_colour() -> bool {
+    has_cursor() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
+}
+
+/// Bytes for people.
+pub fn bytes(count: u64) -> String {
+    match count {
+        0..1024 => format!("{count} B"),
+        1024..1_048_576 => format!("{:.1} KiB", count as f64 / 1024.0),
+        _ => format!("{:.1} MiB", count as f64 / 1_048_576.0),
+    }
+}

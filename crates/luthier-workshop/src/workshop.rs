@@ -1,0 +1,118 @@
+//! A folder for one test, and the command run in it.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::marker::PhantomData;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::Run;
+
+/// Far more than anything here takes on a busy machine; a hang becomes a failure.
+const PATIENCE: Duration = Duration::from_secs(900);
+
+/// A command under test.
+pub trait Program {
+    /// Its name.
+    const NAME: &'static str;
+    /// The executable, which `env!("CARGO_BIN_EXE_…")` names.
+    const PATH: &'static str;
+}
+
+/// A folder that goes away with the test, where a command runs.
+#[derive(Debug)]
+pub struct Workshop<P> {
+    folder: TempDir,
+    program: PhantomData<P>,
+}
+
+impl<P: Program> Default for Workshop<P> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<P: Program> Workshop<P> {
+    /// An empty folder.
+    pub fn new() -> Self {
+        Self { folder: tempfile::tempdir().unwrap(), program: PhantomData }
+    }
+
+    /// A folder with files in it, most of them materials.
+    pub fn with(files: &[(&str, &str)]) -> Self {
+        let workshop = Self::new();
+        for (name, text) in files {
+            workshop.write(name, text);
+        }
+        workshop
+    }
+
+    /// The path of a file in the folder.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// Writes a file, and makes the folders above it.
+    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) {
+        let path = self.path(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, content).unwrap();
+    }
+
+    /// Changes a text file.
+    pub fn edit(&self, name: &str, change: impl FnOnce(String) -> String) {
+        self.write(name, change(self.text(name)));
+    }
+
+    /// The text of a file.
+    pub fn text(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).unwrap()
+    }
+
+    /// The JSON of a file.
+    pub fn json(&self, name: &str) -> Value {
+        serde_json::from_str(&self.text(name)).unwrap()
+    }
+
+    /// Runs the command in the folder; its streams are pipes.
+    pub fn run(&self, args: &[&str]) -> Run {
+        Self::run_in(self.folder.path(), args)
+    }
+
+    /// Runs the command in any folder; its streams are pipes.
+    pub fn run_in(folder: &Path, args: &[&str]) -> Run {
+        let mut command = assert_cmd::Command::new(P::PATH);
+        let output = command.current_dir(folder).args(args).timeout(PATIENCE).output().unwrap();
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        let (stdout, stderr) = (text(output.stdout), text(output.stderr));
+        Run { command: format!("{} {}", P::NAME, args.join(" ")), code: output.status.code(), stdout, stderr }
+    }
+
+    /// All that is in a folder, hidden files too: path from there, with forward slashes, and bytes; folders end in a slash.
+    pub fn tree(&self, folder: &str) -> BTreeMap<String, Vec<u8>> {
+        let mut found = BTreeMap::new();
+        collect(&self.path(folder), "", &mut found);
+        found
+    }
+
+    /// The files of [`Self::tree`].
+    pub fn files(&self, folder: &str) -> Vec<String> {
+        self.tree(folder).into_keys().filter(|path| !path.ends_with('/')).collect()
+    }
+}
+
+fn collect(folder: &Path, prefix: &str, found: &mut BTreeMap<String, Vec<u8>>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let entry = entry.unwrap();
+        let name = format!("{prefix}{}", entry.file_name().to_str().unwrap());
+        if entry.file_type().unwrap().is_dir() {
+            found.insert(format!("{name}/"), Vec::new());
+            collect(&entry.path(), &format!("{name}/"), found);
+        } else {
+            found.insert(name, fs::read(entry.path()).unwrap());
+        }
+    }
+}
