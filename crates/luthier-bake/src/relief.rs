@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
+use luthier_layers::perlin::Octaves;
 use luthier_lut::Image;
 use luthier_material::VariationSource;
-use noise::{NoiseFn, Perlin};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
@@ -47,7 +47,7 @@ impl Relief {
 /// A relief with values in 0..1. Noise is stretched to them over the points (i/width, j/height).
 pub(crate) struct Field<'a> {
     relief: &'a Relief,
-    octaves: Vec<Perlin>,
+    octaves: Octaves,
     /// Lowest and highest value of the relief: stretched to 0..1.
     range: [f64; 2],
 }
@@ -55,8 +55,8 @@ pub(crate) struct Field<'a> {
 impl<'a> Field<'a> {
     pub(crate) fn new(relief: &'a Relief, [width, height]: [u32; 2]) -> Self {
         let octaves = match relief {
-            Relief::Noise { seed, octaves, .. } => (0..*octaves).map(|i| Perlin::new(seed.wrapping_add(i))).collect(),
-            Relief::Image(_) => Vec::new(),
+            Relief::Noise { seed, octaves, .. } => Octaves::new(*seed, *octaves),
+            Relief::Image(_) => Octaves::new(0, 0),
         };
         let mut field = Self { relief, octaves, range: [0.0, 1.0] };
         if let Relief::Noise { .. } = relief {
@@ -85,15 +85,8 @@ impl<'a> Field<'a> {
                 // A square that repeats is a torus in four dimensions.
                 let (cu, su) = (libm::cos(2.0 * PI * u), libm::sin(2.0 * PI * u));
                 let (cv, sv) = (libm::cos(2.0 * PI * v), libm::sin(2.0 * PI * v));
-                let mut radius = frequency / (2.0 * PI);
-                let mut weight = 1.0;
-                let mut sum = 0.0;
-                for octave in &self.octaves {
-                    sum += weight * octave.get([radius * cu, radius * su, radius * cv, radius * sv]);
-                    radius *= 2.0;
-                    weight *= 0.5;
-                }
-                sum
+                let radius = frequency / (2.0 * PI);
+                self.octaves.in_four_dimensions([cu, su, cv, sv].map(|x| radius * x))
             }
         }
     }

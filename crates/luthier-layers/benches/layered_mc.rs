@@ -7,7 +7,7 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use glam::DVec3;
 use luthier_layers::layered_mc::{InterfaceMode, LayeredMc};
-use luthier_layers::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
+use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
 use luthier_optics::stack::{Distribution, Surface};
 use num_complex::Complex64;
 
@@ -28,13 +28,9 @@ fn main() {
 
 /// A coat of index 1.5 that absorbs a little, over rough gold at 550 nm.
 fn coated_conductor(alpha_coat: f64) -> Monochrome {
-    let layer = |alpha, above, below| {
-        let surface = Surface::isotropic(Distribution::Ggx, alpha);
-        MonochromeLayer { surface, above, films: Vec::new(), below }
-    };
-    let coat = MonochromeBelow::Dielectric { ior: 1.5, complex_ior: Complex64::new(1.5, 0.0), optical_depth: 0.1 };
+    let surface = |alpha| Surface::isotropic(Distribution::Ggx, alpha);
     let gold = MonochromeBelow::Conductor { ior: Complex64::new(0.42, 2.35) };
-    Monochrome { exterior: 1.0, layers: vec![layer(alpha_coat, 1.0, coat), layer(0.3, 1.5, gold)] }
+    Monochrome::bare(&[(surface(alpha_coat), MonochromeBelow::dielectric(1.5, 0.1)), (surface(0.3), gold)])
 }
 
 fn direction(cos: f64, phi: f64) -> DVec3 {

@@ -1,4 +1,4 @@
-//! Local frame around a tilted normal.
+//! Local frame around a tilted normal, and the half vector of two directions.
 
 use glam::DVec3;
 
@@ -11,6 +11,21 @@ pub fn local(normal: DVec3, w: DVec3) -> DVec3 {
     let tangent = DVec3::new(1.0 - n.x * n.x * a, shear, -n.x);
     let bitangent = DVec3::new(shear, 1.0 - n.y * n.y * a, -n.y);
     DVec3::new(tangent.dot(w), bitangent.dot(w), n.dot(w))
+}
+
+/// The half vector of two unit directions and the cosine of either to it; `None` where they are opposite.
+///
+/// For unit directions that cosine is half the length of their sum; in this form directions that were rounded to f32 do not cancel at
+/// grazing angles.
+pub(crate) fn half_vector(wi: DVec3, wo: DVec3) -> Option<(DVec3, f64)> {
+    let bisector = wi + wo;
+    let length = bisector.length();
+    (length != 0.0).then(|| (bisector / length, (0.5 * length).min(1.0)))
+}
+
+/// The cosine of two unit directions to their half vector, as in [`half_vector`]; 0 where they are opposite.
+pub(crate) fn cos_theta_d(wi: DVec3, wo: DVec3) -> f64 {
+    half_vector(wi, wo).map_or(0.0, |(_, cos_theta_d)| cos_theta_d)
 }
 
 #[cfg(test)]

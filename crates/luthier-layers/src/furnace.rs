@@ -75,11 +75,11 @@ mod tests {
     use luthier_optics::stack::Distribution;
 
     fn filmed(alpha: f64, base: MonochromeBelow) -> Monochrome {
-        let film = FilmLayer { ior: Complex64::new(1.4, 0.3), waves: 0.4 };
         let coat = MonochromeBelow::Dielectric { ior: 1.5, complex_ior: Complex64::new(1.5, 1e-3), optical_depth: 0.7 };
-        let surface = Surface::isotropic(Distribution::Ggx, alpha);
-        let layer = |above, films, below| MonochromeLayer { surface, above, films, below };
-        Monochrome { exterior: 1.0, layers: vec![layer(1.0, vec![film], coat), layer(1.5, Vec::new(), base)] }
+        let mut stack =
+            Monochrome::bare(&[coat, base].map(|below| (Surface::isotropic(Distribution::Ggx, alpha), below)));
+        stack.layers[0].films.push(FilmLayer { ior: Complex64::new(1.4, 0.3), waves: 0.4 });
+        stack
     }
 
     fn towards(cos_theta_o: f64) -> DVec3 {
@@ -91,10 +91,10 @@ mod tests {
     fn smooth_stacks_return_everything() {
         let gold = MonochromeBelow::Conductor { ior: Complex64::new(0.2, 3.0) };
         let grey = MonochromeBelow::Diffuse { albedo: 0.3, sigma: 0.0 };
-        let glass = MonochromeBelow::Dielectric { ior: 1.2, complex_ior: Complex64::new(1.2, 0.0), optical_depth: 0.4 };
+        let glass = MonochromeBelow::dielectric(1.2, 0.4);
         for base in [gold, grey, glass] {
             for cos_theta_o in [0.1, 0.6, 1.0] {
-                let radiance = furnace(&ClosedForm::new(), &filmed(0.0, base), towards(cos_theta_o)).value;
+                let radiance = furnace(&ClosedForm, &filmed(0.0, base), towards(cos_theta_o)).value;
                 // Of the diffuse base's quadrature.
                 assert!((radiance - 1.0).abs() < 1e-6, "{base:?} {cos_theta_o}: {radiance}");
             }

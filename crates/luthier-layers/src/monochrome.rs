@@ -4,7 +4,7 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::fresnel::{FilmLayer, Polarised, coated};
 use luthier_optics::microfacet;
-use luthier_optics::stack::{Base, Stack, Surface};
+use luthier_optics::stack::{Base, Layer, Stack, Surface};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -73,31 +73,49 @@ pub enum MonochromeBelow {
     },
 }
 
+impl MonochromeBelow {
+    /// A transparent medium whose index has no imaginary part.
+    pub const fn dielectric(ior: f64, optical_depth: f64) -> Self {
+        Self::Dielectric { ior, complex_ior: Complex64::new(ior, 0.0), optical_depth }
+    }
+}
+
 impl Monochrome {
+    /// Interfaces without films under vacuum, from the top down: the micro-surface of each, and the material below it.
+    pub fn bare(interfaces: &[(Surface, MonochromeBelow)]) -> Self {
+        let layer = |&(surface, below)| MonochromeLayer { surface, above: 1.0, films: Vec::new(), below };
+        Self::joined(1.0, interfaces.iter().map(layer).collect())
+    }
+
+    /// Layers under a medium of index `exterior`, from the top down; the index above each becomes that of the medium there.
+    pub fn joined(exterior: f64, mut layers: Vec<MonochromeLayer>) -> Self {
+        let mut above = exterior;
+        for layer in &mut layers {
+            layer.above = above;
+            if let MonochromeBelow::Dielectric { ior, .. } = layer.below {
+                above = ior;
+            }
+        }
+        Self { exterior, layers }
+    }
+
     /// The stack at a wavelength, for channel 0, 1 or 2.
     pub fn new(stack: &Stack, wavelength_nm: f64, channel: usize) -> Self {
         let exterior = stack.exterior.at(wavelength_nm).re;
-        let mut above = exterior;
-        let mut layers = Vec::with_capacity(stack.layers.len());
-        for layer in &stack.layers {
-            let films = layer
-                .films
-                .iter()
-                .map(|f| FilmLayer { ior: f.ior.at(wavelength_nm), waves: f.thickness.nominal_nm() / wavelength_nm })
-                .collect();
-            let (below, next) = match &layer.base {
+        let layer = |layer: &Layer| {
+            let below = match &layer.base {
                 Base::Dielectric { ior, slab } => {
                     let complex_ior = ior.at(wavelength_nm);
                     let optical_depth = slab.optical_depth()[channel];
-                    (MonochromeBelow::Dielectric { ior: complex_ior.re, complex_ior, optical_depth }, complex_ior.re)
+                    MonochromeBelow::Dielectric { ior: complex_ior.re, complex_ior, optical_depth }
                 }
-                Base::Conductor { ior } => (MonochromeBelow::Conductor { ior: ior.at(wavelength_nm) }, above),
-                Base::Diffuse(d) => (MonochromeBelow::Diffuse { albedo: d.albedo[channel], sigma: d.sigma }, above),
+                Base::Conductor { ior } => MonochromeBelow::Conductor { ior: ior.at(wavelength_nm) },
+                Base::Diffuse(d) => MonochromeBelow::Diffuse { albedo: d.albedo[channel], sigma: d.sigma },
             };
-            layers.push(MonochromeLayer { surface: layer.surface, above, films, below });
-            above = next;
-        }
-        Self { exterior, layers }
+            let films = layer.films.iter().map(|film| film.at(wavelength_nm)).collect();
+            MonochromeLayer { surface: layer.surface, above: exterior, films, below }
+        };
+        Self::joined(exterior, stack.layers.iter().map(layer).collect())
     }
 }
 

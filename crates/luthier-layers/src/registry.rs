@@ -35,7 +35,7 @@ pub fn models() -> Vec<Box<dyn Model>> {
         Box::new(WeidlichWilkie::default()) as Box<dyn Model>,
         Box::new(WeidlichWilkie { transmission: Transmission::Directions, ..WeidlichWilkie::default() }),
         Box::new(WeidlichWilkie { refraction: Refraction::Facet, ..WeidlichWilkie::default() }),
-        Box::new(WeidlichWilkieCorrected::new()),
+        Box::new(WeidlichWilkieCorrected),
         Box::new(Elek),
         Box::new(GranierHeidrich::default()),
         Box::new(Belcour::new(Follow::Eye)),
@@ -51,7 +51,7 @@ pub fn models() -> Vec<Box<dyn Model>> {
         Box::new(RandomWalk::new()) as Box<dyn Model>,
         Box::new(LayeredMc::new(InterfaceMode::SmithWalk)),
         Box::new(LayeredMc::new(InterfaceMode::OneFacet)),
-        Box::new(ClosedForm::new()),
+        Box::new(ClosedForm),
     ]);
     models
 }

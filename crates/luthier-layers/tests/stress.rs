@@ -8,7 +8,7 @@ use glam::DVec3;
 use luthier_layers::directional_albedo::directional_albedo;
 use luthier_layers::layered_mc::{Estimate, InterfaceMode, LayeredMc};
 use luthier_layers::model::{Kind, Model};
-use luthier_layers::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
+use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
 use luthier_layers::registry::{model, models};
 use luthier_layers::statistics::adding::add;
 use luthier_layers::statistics::energy::Energy;
@@ -34,20 +34,12 @@ fn ggx(alpha: f64) -> Surface {
 }
 
 fn glass(ior: f64, optical_depth: f64) -> MonochromeBelow {
-    MonochromeBelow::Dielectric { ior, complex_ior: Complex64::new(ior, 0.0), optical_depth }
+    MonochromeBelow::dielectric(ior, optical_depth)
 }
 
 /// GGX layers in air, from the top.
 fn stack(layers: &[(f64, MonochromeBelow)]) -> Monochrome {
-    let mut above = 1.0;
-    let mut all = Vec::new();
-    for &(alpha, below) in layers {
-        all.push(MonochromeLayer { surface: ggx(alpha), above, films: Vec::new(), below });
-        if let MonochromeBelow::Dielectric { ior, .. } = below {
-            above = ior;
-        }
-    }
-    Monochrome { exterior: 1.0, layers: all }
+    Monochrome::bare(&layers.iter().map(|&(alpha, below)| (ggx(alpha), below)).collect::<Vec<_>>())
 }
 
 fn at(theta_deg: f64, phi_deg: f64) -> DVec3 {

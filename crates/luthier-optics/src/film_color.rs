@@ -10,6 +10,7 @@ use num_complex::Complex64;
 
 use crate::Rgb;
 use crate::color::{self, Matrix};
+use crate::fresnel::amplitudes;
 use crate::schlick::schlick;
 
 /// A lossless film of constant index between a transparent medium and any base.
@@ -72,8 +73,8 @@ impl BelcourBarla {
         }
         let cos_film = libm::sqrt(cos_film_sq);
         let path_nm = 2.0 * self.film * self.thickness_nm * cos_film;
-        let top = amplitudes(self.above, cos_theta_i, Complex64::new(self.film, 0.0));
-        let bottom = amplitudes(self.film, cos_film, self.below);
+        let [above, film] = [self.above, self.film].map(|ior| Complex64::new(ior, 0.0));
+        let [top, bottom] = [amplitudes(above, film, cos_theta_i), amplitudes(film, self.below, cos_film)];
         let mut sum = [0.0; 3];
         for (r12, r23) in std::iter::zip(top, bottom) {
             let (refl_12, refl_23) = (r12.re * r12.re, r23.norm_sqr());
@@ -96,22 +97,6 @@ impl BelcourBarla {
         }
         sum
     }
-}
-
-/// Amplitudes reflected (s, p) by a boundary, from a transparent medium.
-fn amplitudes(above: f64, cos_theta_i: f64, below: Complex64) -> [Complex64; 2] {
-    let sine_sq = above * above * (1.0 - cos_theta_i * cos_theta_i);
-    let q_above = Complex64::new(above * cos_theta_i, 0.0);
-    let q_below = sqrt(below * below - sine_sq);
-    let ratio = |a: Complex64, b: Complex64| if a + b == Complex64::ZERO { Complex64::ZERO } else { (a - b) / (a + b) };
-    [ratio(q_above, q_below), ratio(below * below * q_above, q_below * (above * above))]
-}
-
-/// The root with real and imaginary parts not negative.
-fn sqrt(z: Complex64) -> Complex64 {
-    let modulus = libm::hypot(z.re, z.im);
-    let (re, im) = (libm::sqrt(0.5 * (modulus + z.re).max(0.0)), libm::sqrt(0.5 * (modulus - z.re).max(0.0)));
-    Complex64::new(re, im)
 }
 
 /// Gaussians in wave number that fit the matching functions x, y, z: weight (m^2, scaled), centre (1/m), variance (1/m^2).

@@ -39,11 +39,7 @@ impl Interface {
     pub fn at(&self, wavelength_nm: f64) -> Monochrome {
         Monochrome {
             above: Complex64::new(self.above.at(wavelength_nm).re, 0.0),
-            films: self
-                .films
-                .iter()
-                .map(|f| FilmLayer { ior: f.ior.at(wavelength_nm), waves: f.thickness.nominal_nm() / wavelength_nm })
-                .collect(),
+            films: self.films.iter().map(|film| film.at(wavelength_nm)).collect(),
             below: self.below.at(wavelength_nm),
         }
     }

@@ -6,6 +6,7 @@
 //! half-infinite, and what enters it is lost.
 
 use crate::Rgb;
+use crate::fresnel::FilmLayer;
 use crate::ior::Ior;
 
 /// A layered surface, from the exterior down.
@@ -79,6 +80,13 @@ pub struct Film {
     pub ior: Ior,
     /// Thickness.
     pub thickness: FilmThickness,
+}
+
+impl Film {
+    /// The film at a wavelength, at its nominal thickness.
+    pub fn at(&self, wavelength_nm: f64) -> FilmLayer {
+        FilmLayer { ior: self.ior.at(wavelength_nm), waves: self.thickness.nominal_nm() / wavelength_nm }
+    }
 }
 
 /// Thickness of a film, constant or varying over the surface.

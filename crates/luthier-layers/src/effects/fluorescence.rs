@@ -10,7 +10,6 @@
 use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
-use luthier_optics::quadrature::gauss_legendre;
 
 use crate::facets::{Facets, Masking};
 use crate::inputs::Input;
@@ -94,7 +93,6 @@ impl Fluorescent {
                 return Err(FluorescenceError::Gain { from, power });
             }
         }
-        let rule = gauss_legendre(32);
         let mut held = Vec::with_capacity(bins);
         for (bin, stack) in coats.iter().enumerate() {
             match stack.layers.as_slice() {
@@ -102,7 +100,7 @@ impl Fluorescent {
                     if matches!(coat.below, MonochromeBelow::Dielectric { .. })
                         && matches!(base.below, MonochromeBelow::Diffuse { .. }) =>
                 {
-                    held.push(diffuse_return(stack, 1, &rule));
+                    held.push(diffuse_return(stack, 1));
                 }
                 _ => return Err(FluorescenceError::Stack { bin }),
             }
@@ -214,16 +212,12 @@ fn with_bounces(matrix: &[f64], held: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::monochrome::MonochromeLayer;
     use luthier_optics::stack::{Distribution, Surface};
-    use num_complex::Complex64;
 
     fn coat(n: f64, alpha: f64) -> Monochrome {
-        let below = MonochromeBelow::Dielectric { ior: n, complex_ior: Complex64::new(n, 0.0), optical_depth: 0.0 };
-        let surface = Surface::isotropic(Distribution::Ggx, alpha);
         let diffuse = MonochromeBelow::Diffuse { albedo: 0.5, sigma: 0.0 };
-        let layer = |surface, above, below| MonochromeLayer { surface, above, films: Vec::new(), below };
-        Monochrome { exterior: 1.0, layers: vec![layer(surface, 1.0, below), layer(surface, n, diffuse)] }
+        let surface = Surface::isotropic(Distribution::Ggx, alpha);
+        Monochrome::bare(&[MonochromeBelow::dielectric(n, 0.0), diffuse].map(|below| (surface, below)))
     }
 
     /// Directional albedo from bin to bin: the light is at the normal; midpoints in cosine squared. Only exact without a narrow lobe.

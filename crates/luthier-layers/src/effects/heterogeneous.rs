@@ -270,12 +270,11 @@ mod tests {
     /// A flat particle is the model; a tilted one the model in its frame.
     #[test]
     fn what_is_picked_is_evaluated() {
-        use crate::monochrome::{MonochromeBelow, MonochromeLayer};
+        use crate::monochrome::MonochromeBelow;
         use luthier_optics::stack::{Distribution, Surface};
         let below = MonochromeBelow::Conductor { ior: num_complex::Complex64::new(0.2, 3.0) };
         let surface = Surface::isotropic(Distribution::Ggx, 0.3);
-        let layers = vec![MonochromeLayer { surface, above: 1.0, films: Vec::new(), below }];
-        let stack = Monochrome { exterior: 1.0, layers };
+        let stack = Monochrome::bare(&[(surface, below)]);
         let (wi, wo) = (DVec3::new(0.3, 0.2, 0.8).normalize(), DVec3::new(-0.1, 0.3, 0.9).normalize());
         let flat = WeidlichWilkie::default().eval(&stack, wi, wo);
         for uv in places() {

@@ -5,6 +5,7 @@ use std::f64::consts::FRAC_1_PI;
 use glam::DVec3;
 
 use crate::elek_model;
+use crate::frame;
 use crate::inputs::{Input, Inputs};
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::Monochrome;
@@ -71,8 +72,7 @@ impl Patina {
             value += (1.0 - amount) * elek_model::eval_below(&bare, [tarnish, tarnish], wi, wo, DVec3::Z);
         }
         if amount > 0.0 {
-            let cos_theta_d = (0.5 * (wi + wo).length()).min(1.0);
-            let passed = grown.layers.first().map_or(1.0, |l| 1.0 - l.reflectance(cos_theta_d));
+            let passed = grown.layers.first().map_or(1.0, |l| 1.0 - l.reflectance(frame::cos_theta_d(wi, wo)));
             let layered = elek_model::eval_below(&grown, [1.0, tarnish], wi, wo, DVec3::Z);
             value += amount * (layered + passed * self.diffuse_albedo * FRAC_1_PI * wi.z);
         }
@@ -124,7 +124,7 @@ impl Model for PatinaAt {
 mod tests {
     use super::*;
     use crate::elek_model::Elek;
-    use crate::monochrome::{MonochromeBelow, MonochromeLayer};
+    use crate::monochrome::MonochromeBelow;
     use luthier_optics::stack::{Distribution, Surface};
     use num_complex::Complex64;
 
@@ -134,13 +134,8 @@ mod tests {
     fn copper() -> Monochrome {
         let coat = MonochromeBelow::Dielectric { ior: 3.1, complex_ior: Complex64::new(3.1, 0.19), optical_depth: 0.2 };
         let metal = MonochromeBelow::Conductor { ior: Complex64::new(1.04, 2.59) };
-        let layer = |alpha, above, below| MonochromeLayer {
-            surface: Surface::isotropic(Distribution::Beckmann, alpha),
-            above,
-            films: Vec::new(),
-            below,
-        };
-        Monochrome { exterior: 1.0, layers: vec![layer(0.5, 1.0, coat), layer(0.1, 3.1, metal)] }
+        let surface = |alpha| Surface::isotropic(Distribution::Beckmann, alpha);
+        Monochrome::bare(&[(surface(0.5), coat), (surface(0.1), metal)])
     }
 
     /// The ranges that the paper states for its two parameters.
@@ -161,8 +156,7 @@ mod tests {
     fn its_ends_are_the_models_with_and_without_the_layer() {
         let (wi, wo) = (DVec3::new(0.2, 0.1, 0.9).normalize(), DVec3::new(-0.3, 0.2, 0.8).normalize());
         let stack = copper();
-        let metal = MonochromeLayer { above: 1.0, ..stack.layers[1].clone() };
-        let bare = Monochrome { exterior: 1.0, layers: vec![metal] };
+        let bare = Monochrome::joined(1.0, vec![stack.layers[1].clone()]);
         assert_eq!(PATINA.eval(&stack, 1.0, wi, wo), Elek.eval(&bare, wi, wo));
         assert_eq!(PATINA.eval(&stack, 0.0, wi, wo), Elek.eval(&stack, wi, wo));
         // Halfway there: the mean.

@@ -112,26 +112,16 @@ impl Estimator for Textured {
 mod tests {
     use super::*;
     use crate::elek_model::Elek;
-    use crate::monochrome::MonochromeLayer;
     use luthier_optics::fresnel::FilmLayer;
     use luthier_optics::stack::{Distribution, Surface};
     use num_complex::Complex64;
 
     fn coated(alpha: f64, optical_depth: f64, waves: f64) -> Monochrome {
-        let below = MonochromeBelow::Dielectric { ior: 1.5, complex_ior: Complex64::new(1.5, 0.0), optical_depth };
-        let coat = MonochromeLayer {
-            surface: Surface::isotropic(Distribution::Ggx, alpha),
-            above: 1.0,
-            films: vec![FilmLayer { ior: Complex64::new(1.3, 0.0), waves }],
-            below,
-        };
-        let base = MonochromeLayer {
-            surface: Surface::smooth(),
-            above: 1.5,
-            films: Vec::new(),
-            below: MonochromeBelow::Diffuse { albedo: 0.5, sigma: 0.0 },
-        };
-        Monochrome { exterior: 1.0, layers: vec![coat, base] }
+        let coat = (Surface::isotropic(Distribution::Ggx, alpha), MonochromeBelow::dielectric(1.5, optical_depth));
+        let base = (Surface::smooth(), MonochromeBelow::Diffuse { albedo: 0.5, sigma: 0.0 });
+        let mut stack = Monochrome::bare(&[coat, base]);
+        stack.layers[0].films.push(FilmLayer { ior: Complex64::new(1.3, 0.0), waves });
+        stack
     }
 
     #[test]

@@ -87,16 +87,13 @@ mod tests {
     use super::*;
     use crate::directional_albedo::directional_albedo;
     use crate::facets::Facets;
-    use crate::monochrome::{MonochromeBelow, MonochromeLayer};
+    use crate::monochrome::MonochromeBelow;
     use luthier_optics::stack::Distribution;
-    use num_complex::Complex64;
 
     fn varnished() -> Monochrome {
         let surface = Surface { distribution: Distribution::Ggx, alpha_x: 0.4, alpha_y: 0.1, rotation: 0.6 };
-        let coat = MonochromeBelow::Dielectric { ior: 1.5, complex_ior: Complex64::new(1.5, 0.0), optical_depth: 0.2 };
         let base = MonochromeBelow::Diffuse { albedo: 0.7, sigma: 0.0 };
-        let layer = |above, below| MonochromeLayer { surface, above, films: Vec::new(), below };
-        Monochrome { exterior: 1.0, layers: vec![layer(1.0, coat), layer(1.5, base)] }
+        Monochrome::bare(&[MonochromeBelow::dielectric(1.5, 0.2), base].map(|below| (surface, below)))
     }
 
     /// One minus what is lost: nothing of the cosine's draws; of reflections at GGX facets, seen from the normal, those steeper than 45

@@ -83,9 +83,7 @@ mod tests {
     use num_complex::Complex64;
 
     fn stack(last: MonochromeBelow) -> Monochrome {
-        let coat = MonochromeBelow::Dielectric { ior: 1.5, complex_ior: Complex64::new(1.5, 0.0), optical_depth: 1.0 };
-        let layer = |above, below| MonochromeLayer { surface: Surface::smooth(), above, films: Vec::new(), below };
-        Monochrome { exterior: 1.0, layers: vec![layer(1.0, coat), layer(1.5, last)] }
+        Monochrome::bare(&[MonochromeBelow::dielectric(1.5, 1.0), last].map(|below| (Surface::smooth(), below)))
     }
 
     /// Values by hand: albedo cos / pi; and Oren and Nayar's C1 + C3-free value at the normal, 1 - 0.5 s/(s + 0.33) + 0.17 rho s/(s +

@@ -111,15 +111,7 @@ pub fn eval_below(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3, no
         let alpha = layer.alpha.max(alpha_above);
         alpha_above = alpha;
 
-        // For unit directions wo.wh is half the length of their sum; in this form directions that were rounded to f32 do not
-        // cancel at grazing angles.
-        let bisector = wi_local + wo_local;
-        let length = bisector.length();
-        if length == 0.0 {
-            break;
-        }
-        let wh = bisector / length;
-        let cos_theta_d = (0.5 * length).min(1.0);
+        let Some((wh, cos_theta_d)) = frame::half_vector(wi_local, wo_local) else { break };
         let sin_theta_h_sq = wh.x * wh.x + wh.y * wh.y;
         let f = terms.fresnel(i, cos_theta_d);
         let d = terms.distribution(i, layer.distribution, alpha, wh.z, sin_theta_h_sq) / (PI * alpha * alpha);

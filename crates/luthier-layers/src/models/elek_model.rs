@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 use luthier_optics::Rgb;
-use luthier_optics::microfacet;
-use luthier_optics::stack::{Diffuse, Distribution};
+use luthier_optics::stack::Diffuse;
 
 use crate::elek::{self, ALPHA_MIN, Below, Layer};
 use crate::inputs::Input;
@@ -84,17 +83,6 @@ impl Terms for Exact<'_> {
         let tint = if layer == 0 { self.tint[0] } else { self.tint[1] };
         [self.stack.layers.get(layer).map_or(0.0, |l| tint * l.reflectance(cos_theta_d)); 3]
     }
-
-    fn distribution(
-        &self,
-        _: usize,
-        distribution: Distribution,
-        alpha: f64,
-        cos_theta_h: f64,
-        sin_theta_h_sq: f64,
-    ) -> f64 {
-        microfacet::scaled_distribution(distribution, alpha, cos_theta_h, sin_theta_h_sq)
-    }
 }
 
 #[cfg(test)]
@@ -103,7 +91,7 @@ mod tests {
     use crate::terms;
     use luthier_optics::color::Color;
     use luthier_optics::ior::Ior;
-    use luthier_optics::stack::{self, Base, Slab, Stack, Surface};
+    use luthier_optics::stack::{self, Base, Distribution, Slab, Stack, Surface};
 
     fn lacquer() -> Stack {
         let coat = Base::Dielectric {

@@ -11,6 +11,7 @@ use luthier_optics::masking::{self, Correlation};
 use luthier_optics::stack::{Distribution, Surface};
 use luthier_optics::{microfacet, visible_normals};
 
+use crate::frame::half_vector;
 use crate::monochrome::Optics;
 
 /// Slope parameters below this one are evaluated as this one: a lobe 0.006 degrees wide. A model of finite lobes has no other
@@ -47,13 +48,7 @@ impl Masking {
         if wi.z <= 0.0 || wo.z <= 0.0 {
             return None;
         }
-        let bisector = wi + wo;
-        let length = bisector.length();
-        if length == 0.0 {
-            return None;
-        }
-        let wh = bisector / length;
-        let cos_theta_d = (0.5 * length).min(1.0);
+        let (wh, cos_theta_d) = half_vector(wi, wo)?;
         let masking = match self {
             Self::Smith => masking::smith(Correlation::Height, lambda(wi), lambda(wo)),
             Self::SmithSeparable => masking::smith(Correlation::Separable, lambda(wi), lambda(wo)),

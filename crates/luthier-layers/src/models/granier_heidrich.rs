@@ -34,10 +34,10 @@ use std::f64::consts::{FRAC_1_PI, PI};
 
 use glam::DVec3;
 
-use crate::facets::ALPHA_MIN;
 use crate::inputs::{Input, Inputs};
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow, Optics};
+use crate::phong::{exponent, lobe};
 use crate::refraction::refract;
 
 /// A film as the model takes it, at one wavelength.
@@ -231,20 +231,8 @@ impl GranierHeidrich {
     }
 }
 
-/// Phong's exponent for a slope parameter: `2/alpha^2 - 2`.
-pub fn exponent(alpha: f64) -> f64 {
-    let alpha = alpha.clamp(ALPHA_MIN, 1.0);
-    2.0 / (alpha * alpha) - 2.0
-}
-
-/// Schlick 1994.
+/// Schlick 1994. Manifests of scenes state errors to the last digit, in which `luthier_optics::schlick` differs by its order of products.
 fn schlick(normal: f64, cos: f64) -> f64 {
     let q = (1.0 - cos).max(0.0);
     normal + (1.0 - normal) * (q * q) * (q * q) * q
-}
-
-/// `max(0, a.b)^e` of unit directions, without cancellation near a = b.
-fn lobe(a: DVec3, b: DVec3, e: f64) -> f64 {
-    let away = 0.5 * (a - b).length_squared();
-    if away < 1.0 { libm::exp(e * libm::log1p(-away)) } else { 0.0 }
 }

@@ -5,6 +5,7 @@ use luthier_optics::Rgb;
 use luthier_optics::stack::Distribution;
 
 use crate::facets::{Facets, Masking};
+use crate::frame::cos_theta_d;
 use crate::furnace;
 use crate::interface_fresnel::{Fresnel, LazanyiMemo};
 use crate::memo::Memo;
@@ -204,8 +205,7 @@ impl Model for Microfacet {
     }
 
     fn eval_rgb(&self, channels: &[(f64, Monochrome); 3], wi: DVec3, wo: DVec3) -> Option<Rgb> {
-        let cos_theta_d = (0.5 * (wi + wo).length()).min(1.0);
-        let reflectance = self.components.fresnel.rgb(channels, cos_theta_d)?;
+        let reflectance = self.components.fresnel.rgb(channels, cos_theta_d(wi, wo))?;
         let (value, _) = self.lobe(channels[0].1.layers.first()?, &channels[0].1, wi, wo).unwrap_or((0.0, 0.0));
         Some(reflectance.map(|r| r * value))
     }

@@ -7,6 +7,7 @@ use luthier_optics::stack::{Distribution, Surface};
 
 use crate::facets::{ALPHA_MIN, Facets, Lobe, Masking};
 use crate::memo::Memo;
+use crate::phong::exponent;
 
 /// Distribution of facet normals.
 ///
@@ -74,10 +75,7 @@ impl Normals {
         let alpha = surface.alpha_isotropic().clamp(ALPHA_MIN, 1.0);
         let translate = || match self {
             Self::Surface | Self::Slopes(_) => None,
-            Self::BlinnPhong => {
-                let exponent = (2.0 / (alpha * alpha) - 2.0).max(EXPONENT_MIN);
-                BlinnPhong::new(exponent).map(Isotropic::BlinnPhong).ok()
-            }
+            Self::BlinnPhong => BlinnPhong::new(exponent(alpha).max(EXPONENT_MIN)).map(Isotropic::BlinnPhong).ok(),
             Self::Abc => Abc::new(2.0 / (alpha * alpha), 2.0).map(Isotropic::Abc).ok(),
             Self::Sgd => Sgd::new(alpha * alpha, 1.0).map(Isotropic::Sgd).ok(),
         };

@@ -54,8 +54,7 @@ impl Coefficients {
                 (most, alpha) = (share, layer.surface.alpha_isotropic());
             }
         }
-        let alpha = alpha.clamp(ALPHA_MIN, 1.0);
-        Self { diffuse, specular, exponent: 0.25 * (2.0 / (alpha * alpha) - 2.0) }
+        Self { diffuse, specular, exponent: 0.25 * exponent(alpha) }
     }
 
     /// `f cos_theta_i`; zero unless both directions are above the horizon.
@@ -64,12 +63,21 @@ impl Coefficients {
             return 0.0;
         }
         let Self { diffuse, specular, exponent } = *self;
-        // 1 - r.wo is half the squared distance between the two: no cancellation in narrow lobes.
-        let mirror = DVec3::new(-wi.x, -wi.y, wi.z);
-        let away = 0.5 * (mirror - wo).length_squared();
-        let lobe = if away < 1.0 { libm::exp(exponent * libm::log1p(-away)) } else { 0.0 };
+        let lobe = lobe(DVec3::new(-wi.x, -wi.y, wi.z), wo, exponent);
         FRAC_1_PI * diffuse * wi.z + specular * (exponent + 1.0) / (2.0 * PI) * lobe
     }
+}
+
+/// Blinn's exponent for a slope parameter: `2/alpha^2 - 2` (Walter et al. 2007).
+pub fn exponent(alpha: f64) -> f64 {
+    let alpha = alpha.clamp(ALPHA_MIN, 1.0);
+    2.0 / (alpha * alpha) - 2.0
+}
+
+/// `max(0, a.b)^e` of unit directions. `1 - a.b` is half the squared distance between them, which does not cancel in narrow lobes.
+pub(crate) fn lobe(a: DVec3, b: DVec3, e: f64) -> f64 {
+    let away = 0.5 * (a - b).length_squared();
+    if away < 1.0 { libm::exp(e * libm::log1p(-away)) } else { 0.0 }
 }
 
 impl Model for Phong {

@@ -17,7 +17,6 @@
 //! surface that is exact (adding of powers, layer by layer), and the whole is reciprocal for any stack.
 
 use glam::DVec3;
-use luthier_optics::quadrature::gauss_legendre;
 
 use crate::facets::{Facets, Masking};
 use crate::model::{Claims, Kind, Model, ModelInfo};
@@ -26,27 +25,9 @@ use crate::oren_nayar;
 use crate::plane_stack::{diffuse_return, seen_from_above, seen_from_below};
 use crate::refraction::refract;
 
-/// Quadrature points per smooth piece of the diffuse mean: 1e-7 without absorption.
-const POINTS: usize = 32;
-
 /// The energy-corrected variant.
-#[derive(Debug, Clone, PartialEq)]
-pub struct WeidlichWilkieCorrected {
-    rule: Vec<(f64, f64)>,
-}
-
-impl WeidlichWilkieCorrected {
-    /// The model.
-    pub fn new() -> Self {
-        Self { rule: gauss_legendre(POINTS) }
-    }
-}
-
-impl Default for WeidlichWilkieCorrected {
-    fn default() -> Self {
-        Self::new()
-    }
-}
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct WeidlichWilkieCorrected;
 
 impl Model for WeidlichWilkieCorrected {
     fn info(&self) -> ModelInfo {
@@ -77,7 +58,7 @@ impl Model for WeidlichWilkieCorrected {
             let compression = stack.exterior / index;
             let crossed = powers_i.transmittance * powers_o.transmittance * (compression * compression);
             if let MonochromeBelow::Diffuse { albedo, sigma } = layer.below {
-                let echo = albedo * diffuse_return(stack, k, &self.rule);
+                let echo = albedo * diffuse_return(stack, k);
                 let value = oren_nayar::brdf_scalar(albedo, sigma, wi_local, wo_local);
                 return total + wi.z * crossed * value * series(echo);
             }

@@ -3,6 +3,40 @@
 use glam::DVec2;
 use noise::NoiseFn;
 
+/// Octaves of Perlin's noise, with their tables made: each doubles the frequency of the one before it and halves the amplitude.
+#[derive(Debug, Clone)]
+pub struct Octaves(Vec<noise::Perlin>);
+
+impl Octaves {
+    /// The octaves of a seed; each has a seed of its own, the next number.
+    pub fn new(seed: u32, count: u32) -> Self {
+        Self((0..count).map(|octave| noise::Perlin::new(seed.wrapping_add(octave))).collect())
+    }
+
+    /// Their sum at a place of the plane, in lattice cells of the first octave, which has amplitude 1.
+    pub fn in_plane(&self, place: DVec2) -> f64 {
+        self.sum(place.to_array())
+    }
+
+    /// Their sum in four dimensions, where a plane that repeats is a torus.
+    pub fn in_four_dimensions(&self, place: [f64; 4]) -> f64 {
+        self.sum(place)
+    }
+
+    fn sum<const N: usize>(&self, mut place: [f64; N]) -> f64
+    where
+        noise::Perlin: NoiseFn<f64, N>,
+    {
+        let (mut sum, mut amplitude) = (0.0, 1.0);
+        for octave in &self.0 {
+            sum += amplitude * octave.get(place);
+            place = place.map(|x| 2.0 * x);
+            amplitude *= 0.5;
+        }
+        sum
+    }
+}
+
 /// Perlin's noise, summed over octaves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Perlin {
@@ -17,14 +51,9 @@ pub struct Perlin {
 impl Perlin {
     /// The noise at a place: mean 0, within -1..=1, zero at the lattice points of a single octave.
     pub fn at(&self, uv: DVec2) -> f64 {
-        let (mut sum, mut total, mut amplitude) = (0.0, 0.0, 1.0);
-        let mut p = uv * self.frequency;
-        for octave in 0..self.octaves {
-            sum += amplitude * noise::Perlin::new(self.seed.wrapping_add(octave)).get([p.x, p.y]);
-            total += amplitude;
-            amplitude *= 0.5;
-            p *= 2.0;
-        }
+        // The sum of the amplitudes.
+        let total = 2.0 * (1.0 - libm::exp2(-f64::from(self.octaves)));
+        let sum = Octaves::new(self.seed, self.octaves).in_plane(uv * self.frequency);
         if total > 0.0 { sum / total } else { 0.0 }
     }
 }

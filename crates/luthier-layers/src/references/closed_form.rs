@@ -3,15 +3,11 @@
 use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
-use luthier_optics::quadrature::gauss_legendre;
 
 use crate::layered_mc::Estimate;
 use crate::model::{Claims, Estimator, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
-use crate::plane_stack::{diffuse_return, seen_from_above};
-
-/// Quadrature points per smooth piece of the diffuse mean: 1e-7 without absorption.
-const POINTS: usize = 32;
+use crate::plane_stack::{diffuse_return, rule, seen_from_above};
 
 /// Smooth interfaces and absorbing slabs over anything, Lambert's surface included, with all bounces: powers added interface by
 /// interface (Stokes 1862), the diffuse base as in Saunderson 1942 with exact Fresnel,
@@ -22,41 +18,15 @@ const POINTS: usize = 32;
 ///
 /// T being the power that the coats pass, R what they return of diffuse light below, n the index on the base over that of the exterior.
 /// Roughness is ignored. Light mirrored by the interfaces is no function of two directions: it counts in the albedo alone.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ClosedForm {
-    rule: Vec<(f64, f64)>,
-}
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ClosedForm;
 
-impl ClosedForm {
-    /// The reference.
-    pub fn new() -> Self {
-        Self { rule: gauss_legendre(POINTS) }
-    }
-
-    /// Cosines and weights, on both sides of the one from which all azimuths are above the plane with the normal `up`.
-    fn nodes(&self, up: DVec3) -> impl Iterator<Item = (f64, f64)> {
-        let kink = libm::hypot(up.x, up.y).min(1.0);
-        let pieces = [(0.0, kink), (kink, 1.0 - kink)];
-        let piece = move |(from, length)| self.rule.iter().map(move |&(x, w)| (from + length * x, length * w));
-        pieces.into_iter().filter(|(_, length)| *length > 0.0).flat_map(piece)
-    }
-
-    /// The quantities that all directions share, of a stack of at least one layer.
-    fn parts<'a>(&self, stack: &'a Monochrome) -> Option<Parts<'a>> {
-        let coats = stack.layers.len().checked_sub(1)?;
-        let MonochromeBelow::Diffuse { albedo, .. } = stack.layers[coats].below else {
-            return Some(Parts { stack, coats, diffuse: 0.0 });
-        };
-        let returned = albedo * diffuse_return(stack, coats, &self.rule);
-        // Nothing comes out where everything is held back.
-        Some(Parts { stack, coats, diffuse: if returned < 1.0 { albedo / (1.0 - returned) } else { 0.0 } })
-    }
-}
-
-impl Default for ClosedForm {
-    fn default() -> Self {
-        Self::new()
-    }
+/// Cosines and weights, on both sides of the one from which all azimuths are above the plane with the normal `up`.
+fn nodes(up: DVec3) -> impl Iterator<Item = (f64, f64)> {
+    let kink = libm::hypot(up.x, up.y).min(1.0);
+    let pieces = [(0.0, kink), (kink, 1.0 - kink)];
+    let piece = move |(from, length)| rule().iter().map(move |&(x, w)| (from + length * x, length * w));
+    pieces.into_iter().filter(|(_, length)| *length > 0.0).flat_map(piece)
 }
 
 /// The share of the azimuths at a cosine that is above the plane with the normal `up`.
@@ -76,7 +46,18 @@ struct Parts<'a> {
     diffuse: f64,
 }
 
-impl Parts<'_> {
+impl<'a> Parts<'a> {
+    /// The parts of a stack of at least one layer.
+    fn of(stack: &'a Monochrome) -> Option<Self> {
+        let coats = stack.layers.len().checked_sub(1)?;
+        let MonochromeBelow::Diffuse { albedo, .. } = stack.layers[coats].below else {
+            return Some(Self { stack, coats, diffuse: 0.0 });
+        };
+        let returned = albedo * diffuse_return(stack, coats);
+        // Nothing comes out where everything is held back.
+        Some(Self { stack, coats, diffuse: if returned < 1.0 { albedo / (1.0 - returned) } else { 0.0 } })
+    }
+
     fn transmittance(&self, cos_theta: f64) -> f64 {
         seen_from_above(self.stack, self.coats, cos_theta).map_or(0.0, |(powers, _)| powers.transmittance)
     }
@@ -138,7 +119,7 @@ impl Model for ClosedForm {
 
 impl Estimator for ClosedForm {
     fn eval_with_error(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> Estimate {
-        let parts = if wi.z > 0.0 && wo.z > 0.0 { self.parts(stack) } else { None };
+        let parts = if wi.z > 0.0 && wo.z > 0.0 { Parts::of(stack) } else { None };
         Estimate::exact(parts.map_or(0.0, |parts| {
             let passed = parts.transmittance(wi.z.min(1.0)) * parts.transmittance(wo.z.min(1.0));
             wi.z * passed * parts.diffuse * FRAC_1_PI * parts.spread()
@@ -146,7 +127,7 @@ impl Estimator for ClosedForm {
     }
 
     fn albedo_with_error(&self, stack: &Monochrome, wo: DVec3, up: DVec3) -> Estimate {
-        let parts = if wo.z > 0.0 { self.parts(stack) } else { None };
+        let parts = if wo.z > 0.0 { Parts::of(stack) } else { None };
         Estimate::exact(parts.map_or(0.0, |parts| {
             let cos_theta = wo.z.min(1.0);
             let leaves = DVec3::new(-wo.x, -wo.y, wo.z).dot(up) > 0.0;
@@ -154,10 +135,8 @@ impl Estimator for ClosedForm {
             if parts.diffuse == 0.0 {
                 return mirrored;
             }
-            let lit: f64 = self
-                .nodes(up)
-                .map(|(mu, weight)| 2.0 * weight * mu * share_above(up, mu) * parts.transmittance(mu))
-                .sum();
+            let lit: f64 =
+                nodes(up).map(|(mu, weight)| 2.0 * weight * mu * share_above(up, mu) * parts.transmittance(mu)).sum();
             mirrored + parts.transmittance(cos_theta) * parts.diffuse * lit * parts.spread()
         }))
     }
@@ -166,14 +145,12 @@ impl Estimator for ClosedForm {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::monochrome::MonochromeLayer;
+    use luthier_optics::quadrature::gauss_legendre;
     use luthier_optics::stack::Surface;
     use num_complex::Complex64;
 
     fn coated(n: f64, optical_depth: f64, base: MonochromeBelow) -> Monochrome {
-        let coat = MonochromeBelow::Dielectric { ior: n, complex_ior: Complex64::new(n, 0.0), optical_depth };
-        let layer = |above, below| MonochromeLayer { surface: Surface::smooth(), above, films: Vec::new(), below };
-        Monochrome { exterior: 1.0, layers: vec![layer(1.0, coat), layer(n, base)] }
+        Monochrome::bare(&[MonochromeBelow::dielectric(n, optical_depth), base].map(|below| (Surface::smooth(), below)))
     }
 
     fn towards(cos: f64) -> DVec3 {
@@ -185,7 +162,7 @@ mod tests {
     fn coated_lambert() {
         for (albedo, expected) in [(0.18, 0.11813908), (0.5, 0.31607089), (0.8, 0.63283341), (1.0, 1.0)] {
             let stack = coated(1.5, 0.0, MonochromeBelow::Diffuse { albedo, sigma: 0.0 });
-            let found = ClosedForm::new().albedo_with_error(&stack, DVec3::Z, DVec3::Z).mean;
+            let found = ClosedForm.albedo_with_error(&stack, DVec3::Z, DVec3::Z).mean;
             assert!((found - expected).abs() < 1e-6, "{albedo}: {found}");
         }
     }
@@ -195,34 +172,30 @@ mod tests {
     fn coated_mirror() {
         let mirror = MonochromeBelow::Conductor { ior: Complex64::new(0.0, 1.0) };
         for (depth, expected) in [(0.1, 0.7992518131), (1.0, 0.1441269347)] {
-            let found = ClosedForm::new()
-                .albedo_with_error(&coated(1.5, depth, mirror), towards(libm::sqrt(0.5)), DVec3::Z)
-                .mean;
+            let found =
+                ClosedForm.albedo_with_error(&coated(1.5, depth, mirror), towards(libm::sqrt(0.5)), DVec3::Z).mean;
             assert!((found - expected).abs() < 1e-9, "{depth}: {found}");
         }
-        assert_eq!(ClosedForm::new().eval(&coated(1.5, 0.1, mirror), DVec3::Z, DVec3::Z), 0.0);
+        assert_eq!(ClosedForm.eval(&coated(1.5, 0.1, mirror), DVec3::Z, DVec3::Z), 0.0);
     }
 
     /// Light from a denser exterior that a coat reflects totally, through a slab that absorbs.
     #[test]
     fn total_reflection_on_the_way_down() {
-        let matched =
-            MonochromeBelow::Dielectric { ior: 1.5, complex_ior: Complex64::new(1.5, 0.0), optical_depth: 0.3 };
-        let air = MonochromeBelow::Dielectric { ior: 1.0, complex_ior: Complex64::ONE, optical_depth: 0.0 };
+        let [matched, air] = [MonochromeBelow::dielectric(1.5, 0.3), MonochromeBelow::dielectric(1.0, 0.0)];
         let base = MonochromeBelow::Diffuse { albedo: 0.5, sigma: 0.0 };
-        let layer = |above, below| MonochromeLayer { surface: Surface::smooth(), above, films: Vec::new(), below };
-        let layers = vec![layer(1.5, matched), layer(1.5, air), layer(1.0, base)];
-        let stack = Monochrome { exterior: 1.5, layers };
-        let found = ClosedForm::new().albedo_with_error(&stack, towards(0.5), DVec3::Z).mean;
+        let bare = Monochrome::bare(&[matched, air, base].map(|below| (Surface::smooth(), below)));
+        let stack = Monochrome::joined(1.5, bare.layers);
+        let found = ClosedForm.albedo_with_error(&stack, towards(0.5), DVec3::Z).mean;
         assert!((found - libm::exp(-2.0 * 0.3 / 0.5)).abs() < 1e-12, "{found}");
-        assert_eq!(ClosedForm::new().eval(&stack, towards(0.5), DVec3::Z), 0.0);
+        assert_eq!(ClosedForm.eval(&stack, towards(0.5), DVec3::Z), 0.0);
     }
 
     /// The light seen from a direction is the integral of f cos_theta_i, less the mirrored light.
     #[test]
     fn albedo_is_the_integral() {
         let stack = coated(1.4, 0.2, MonochromeBelow::Diffuse { albedo: 0.7, sigma: 0.0 });
-        let reference = ClosedForm::new();
+        let reference = ClosedForm;
         let wo = towards(0.6);
         let sum: f64 = gauss_legendre(64)
             .into_iter()

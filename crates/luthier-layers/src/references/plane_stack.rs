@@ -1,9 +1,13 @@
 //! A stack of plane interfaces between thick slabs: powers add, phases do not.
 
+use std::sync::OnceLock;
+
+use luthier_optics::fresnel::coated;
+use luthier_optics::quadrature::gauss_legendre;
+use num_complex::Complex64;
+
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 use crate::refraction::refracted_cosine;
-use luthier_optics::fresnel::coated;
-use num_complex::Complex64;
 
 /// Power that the first interfaces of a stack pass and return, with all bounces between them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,6 +18,15 @@ pub struct Powers {
     pub above: f64,
     /// Reflected, for light from below.
     pub below: f64,
+}
+
+/// Quadrature points per smooth piece of an integral over cosines.
+const POINTS: usize = 32;
+
+/// The Gauss-Legendre rule of those points on 0..1, made once.
+pub(crate) fn rule() -> &'static [(f64, f64)] {
+    static RULE: OnceLock<Vec<(f64, f64)>> = OnceLock::new();
+    RULE.get_or_init(|| gauss_legendre(POINTS))
 }
 
 /// Powers of no interface: all light passes.
@@ -95,9 +108,8 @@ fn through_slab(powers: Powers, optical_depth: f64, cos: f64) -> Powers {
 }
 
 /// Mean of the power that returns to the medium below the first `count` interfaces, for diffuse light in it (cosine-weighted),
-/// absorption on the way included. `rule` is a quadrature rule on 0..1, applied to each piece between critical angles; 32
-/// Gauss-Legendre points give 1e-7 without absorption.
-pub fn diffuse_return(stack: &Monochrome, count: usize, rule: &[(f64, f64)]) -> f64 {
+/// absorption on the way included. Within 1e-7 without absorption.
+pub fn diffuse_return(stack: &Monochrome, count: usize) -> f64 {
     let layers = stack.layers.get(..count).unwrap_or(&stack.layers);
     let Some(last) = layers.last() else { return 0.0 };
     let MonochromeBelow::Dielectric { ior: base, .. } = last.below else { return 0.0 };
@@ -114,7 +126,7 @@ pub fn diffuse_return(stack: &Monochrome, count: usize, rule: &[(f64, f64)]) -> 
         let (low, width) = (pair[0], pair[1] - pair[0]);
         // mu^2 = low + width s^2: s is the cosine in the medium whose critical angle is at `low`, up to a factor, so that
         // the square root there disappears.
-        for (s, weight) in rule {
+        for (s, weight) in rule() {
             let mu = libm::sqrt(low + width * s * s);
             sum += 2.0 * width * s * weight * seen_from_below(stack, count, mu).below;
         }
@@ -125,29 +137,18 @@ pub fn diffuse_return(stack: &Monochrome, count: usize, rule: &[(f64, f64)]) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use luthier_optics::quadrature::gauss_legendre;
     use luthier_optics::stack::Surface;
 
     fn coats(indices: &[f64], optical_depth: f64) -> Monochrome {
-        let mut above = 1.0;
-        let layers = indices
-            .iter()
-            .map(|&ior| {
-                let below = MonochromeBelow::Dielectric { ior, complex_ior: Complex64::new(ior, 0.0), optical_depth };
-                let layer = MonochromeLayer { surface: Surface::smooth(), above, films: Vec::new(), below };
-                above = ior;
-                layer
-            })
-            .collect();
-        Monochrome { exterior: 1.0, layers }
+        let coat = |&ior| (Surface::smooth(), MonochromeBelow::dielectric(ior, optical_depth));
+        Monochrome::bare(&indices.iter().map(coat).collect::<Vec<_>>())
     }
 
     /// Oracle: the closed form of the cosine-weighted internal reflectance.
     #[test]
     fn diffuse_light_is_held_back_by_the_published_part() {
-        let rule = gauss_legendre(32);
         for (n, expected) in [(1.33, 0.4719491488), (1.5, 0.5963457597), (2.0, 0.7901491593)] {
-            let found = diffuse_return(&coats(&[n], 0.0), 1, &rule);
+            let found = diffuse_return(&coats(&[n], 0.0), 1);
             assert!((found - expected).abs() < 2e-7, "{n}: {found}");
         }
     }
@@ -155,9 +156,8 @@ mod tests {
     /// An interface between equal media changes nothing.
     #[test]
     fn matched_interfaces_do_not_count() {
-        let rule = gauss_legendre(32);
-        let one = diffuse_return(&coats(&[1.5], 0.0), 1, &rule);
-        assert!((diffuse_return(&coats(&[1.0, 1.5, 1.5], 0.0), 3, &rule) - one).abs() < 1e-6);
+        let one = diffuse_return(&coats(&[1.5], 0.0), 1);
+        assert!((diffuse_return(&coats(&[1.0, 1.5, 1.5], 0.0), 3) - one).abs() < 1e-6);
     }
 
     #[test]

@@ -63,11 +63,7 @@ impl Twin {
     /// three channels. `color` says how Phong's coefficients come by their colour, which both forms of the shader read from the
     /// material; the colour of everything else is that of the [`Terms`].
     pub fn new(model: &str, stack: &Stack, wavelengths_nm: [f64; 3], color: Color) -> Option<Self> {
-        let channels = || {
-            let mut channels = channels(stack, wavelengths_nm);
-            channels.iter_mut().for_each(|one| bend_alike(one, stack));
-            channels
-        };
+        let channels = || channels(stack, wavelengths_nm).map(|one| bend_alike(one, stack));
         Some(Self(match model {
             elek::MODEL => Kind::Elek(elek::layers(stack)),
             "weidlich-wilkie" => Kind::WeidlichWilkie(channels()),
@@ -142,18 +138,16 @@ fn granier_channels(stack: &Stack, wavelengths_nm: [f64; 3]) -> [Monochrome; 3] 
     channels
 }
 
-/// Replaces the real indices, which bend directions, by those of the common wavelength. Reflectances come from elsewhere.
-fn bend_alike(one: &mut Monochrome, stack: &Stack) {
-    let mut above = stack.exterior.at(REFRACTION_WAVELENGTH_NM).re;
+/// The stack with the real indices of the common wavelength, which bend directions. Reflectances come from elsewhere.
+fn bend_alike(mut one: Monochrome, stack: &Stack) -> Monochrome {
     for (layer, given) in one.layers.iter_mut().zip(&stack.layers) {
-        layer.above = above;
         if let (MonochromeBelow::Dielectric { ior, .. }, Base::Dielectric { ior: given, .. }) =
             (&mut layer.below, &given.base)
         {
             *ior = given.at(REFRACTION_WAVELENGTH_NM).re;
-            above = *ior;
         }
     }
+    Monochrome::joined(stack.exterior.at(REFRACTION_WAVELENGTH_NM).re, one.layers)
 }
 
 /// Phong's coefficients in colour; one lobe has one exponent, that of the green wavelength.
@@ -359,8 +353,7 @@ mod tests {
         let found = twin.eval(&Exact::new(&stack, color), wi, wo);
         let own = WeidlichWilkie::default().eval(&Monochrome::new(&stack, 645.0, 0), wi, wo);
         assert!((found[0] / own - 1.0).abs() > 1e-4, "{} {own}", found[0]);
-        let mut alike = Monochrome::new(&stack, 645.0, 0);
-        bend_alike(&mut alike, &stack);
+        let alike = bend_alike(Monochrome::new(&stack, 645.0, 0), &stack);
         assert!((alike.layers[0].eta() - dispersive(1.5).at(REFRACTION_WAVELENGTH_NM).re).abs() < 1e-15);
         assert_eq!(alike.layers[1].above, alike.layers[0].eta());
     }

@@ -92,7 +92,7 @@ impl Shaded {
         };
         let amount = patina.amount;
         let dull = patina.tarnish.map(|tarnish| 1.0 + (tarnish - 1.0) * amount);
-        let passed = terms.fresnel(0, (0.5 * (wi + wo).length()).min(1.0)).map(|reflected| 1.0 - reflected);
+        let passed = terms.fresnel(0, frame::cos_theta_d(wi, wo)).map(|reflected| 1.0 - reflected);
         let mut value = [0, 1, 2].map(|c| amount * passed[c] * patina.diffuse_albedo[c] * FRAC_1_PI * wi.z);
         let mut add = |share: f64, layers: &Layers, first: Rgb, under: &Under| {
             if share > 0.0 {

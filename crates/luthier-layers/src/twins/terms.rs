@@ -17,15 +17,18 @@ pub trait Terms {
     /// Fresnel reflectance of the interface of a layer.
     fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb;
 
-    /// `pi alpha^2 D(theta_h, alpha)` of the slope distribution of a layer, from the cosine and the squared sine of theta_h.
+    /// `pi alpha^2 D(theta_h, alpha)` of the slope distribution of a layer, from the cosine and the squared sine of theta_h; the closed
+    /// form unless a table holds it.
     fn distribution(
         &self,
-        layer: usize,
+        _layer: usize,
         distribution: Distribution,
         alpha: f64,
         cos_theta_h: f64,
         sin_theta_h_sq: f64,
-    ) -> f64;
+    ) -> f64 {
+        microfacet::scaled_distribution(distribution, alpha, cos_theta_h, sin_theta_h_sq)
+    }
 
     /// `2 cos(2 Phi)` of the film of a layer, in one colour channel, for the sum of the cosines in it; `None` where no table holds it,
     /// and it is to be computed. Elek's model has no use for it.
@@ -88,17 +91,6 @@ impl Exact {
 impl Terms for Exact {
     fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
         self.interfaces.get(layer).and_then(Option::as_ref).map_or([0.0; 3], |i| i.rgb(cos_theta_d))
-    }
-
-    fn distribution(
-        &self,
-        _: usize,
-        distribution: Distribution,
-        alpha: f64,
-        cos_theta_h: f64,
-        sin_theta_h_sq: f64,
-    ) -> f64 {
-        microfacet::scaled_distribution(distribution, alpha, cos_theta_h, sin_theta_h_sq)
     }
 }
 

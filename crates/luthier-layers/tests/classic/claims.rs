@@ -16,7 +16,7 @@ use proptest::prelude::*;
 
 use crate::random::{Losses, smooth_white, stack as random_stack, upward};
 use crate::sphere::{at, furnace};
-use crate::stacks::{WHITE, dielectric, ggx, lambert, stack};
+use crate::stacks::{WHITE, dielectric, ggx, lambert};
 
 /// `f(wi, wo) = f(wo, wi)`.
 #[derive(Debug, Clone, Copy)]
@@ -71,7 +71,7 @@ impl Scene {
             Self::CoatedLambert(alpha) => (alpha, alpha, lambert(1.0)),
             Self::GlossyOverSatin => (0.05, 0.3, WHITE),
         };
-        stack(&[(ggx(coat), dielectric(1.5, 0.0)), (ggx(alpha), base)])
+        Monochrome::bare(&[(ggx(coat), dielectric(1.5, 0.0)), (ggx(alpha), base)])
     }
 }
 
@@ -199,7 +199,7 @@ fn models_that_gain_do_so_by_the_measured_amount() {
 /// Beckmann coat of index 1.4 and alpha 0.2, seen at 50 degrees.
 #[test]
 fn rough_coats_gain_a_few_thousandths() {
-    let mut white = stack(&[(ggx(0.2), dielectric(1.4, 0.0)), (ggx(0.02), lambert(1.0))]);
+    let mut white = Monochrome::bare(&[(ggx(0.2), dielectric(1.4, 0.0)), (ggx(0.02), lambert(1.0))]);
     white.layers[0].surface.distribution = Distribution::Beckmann;
     for (name, expected) in [("weidlich-wilkie-corrected", 1.00223), ("fluorescence", 1.00294)] {
         let (model, row) = claimed().find(|(_, row)| row.name == name).unwrap();

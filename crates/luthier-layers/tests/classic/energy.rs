@@ -19,7 +19,7 @@ use luthier_optics::quadrature::gauss_legendre;
 use luthier_optics::stack::{Distribution, Surface};
 
 use crate::sphere::{albedo, at, furnace};
-use crate::stacks::{WHITE, dielectric, ggx, lambert, stack};
+use crate::stacks::{WHITE, dielectric, ggx, lambert};
 
 static SMITH: Microfacet = Microfacet::new(Components::PLAIN);
 static V_CAVITY: Microfacet = Microfacet::new(Components { masking: Masking::VCavity, ..Components::PLAIN });
@@ -31,7 +31,7 @@ fn close(found: f64, expected: f64, tolerance: f64) {
 /// Oracle: single scattering of GGX with F = 1, closed form at alpha 1 (1 - ln 2), the rest computed two ways elsewhere.
 #[test]
 fn single_scattering_with_smith_masking() {
-    let bare = |alpha: f64| stack(&[(ggx(alpha), WHITE)]);
+    let bare = |alpha: f64| Monochrome::bare(&[(ggx(alpha), WHITE)]);
     for (alpha, expected) in [
         (0.1, 0.9883040565),
         (0.25, 0.9158124302),
@@ -54,7 +54,7 @@ fn microfacets_do_not_gain() {
         ggx(1.0),
         Surface { distribution: Distribution::Beckmann, alpha_x: 0.6, alpha_y: 0.1, rotation: 0.4 },
     ] {
-        let bare = stack(&[(surface, WHITE)]);
+        let bare = Monochrome::bare(&[(surface, WHITE)]);
         for theta in [0.0, 40.0, 70.0, 85.0] {
             for model in [&SMITH, &V_CAVITY] {
                 let found = albedo(model, &bare, at(theta));
@@ -67,10 +67,10 @@ fn microfacets_do_not_gain() {
 /// Rough coats too: what is missing is what facets scatter more than once.
 #[test]
 fn the_corrected_layered_model_does_not_gain() {
-    let model = WeidlichWilkieCorrected::new();
+    let model = WeidlichWilkieCorrected;
     for alpha in [0.1, 0.3, 0.6, 1.0] {
         for base in [lambert(1.0), WHITE] {
-            let coated = stack(&[(ggx(alpha), dielectric(1.5, 0.0)), (ggx(0.5), base)]);
+            let coated = Monochrome::bare(&[(ggx(alpha), dielectric(1.5, 0.0)), (ggx(0.5), base)]);
             for theta in [0.0, 40.0, 60.0, 80.0] {
                 let found = albedo(&model, &coated, at(theta));
                 assert!(found < 1.001, "{alpha} {theta}: {found}");
@@ -84,7 +84,7 @@ fn the_corrected_layered_model_does_not_gain() {
 #[test]
 fn statistics_do_not_gain_over_a_white_base() {
     let satin = |ior| (ggx(0.6), dielectric(ior, 0.0));
-    let coated = stack(&[satin(1.5), satin(1.9), (ggx(0.0), lambert(1.0))]);
+    let coated = Monochrome::bare(&[satin(1.5), satin(1.9), (ggx(0.0), lambert(1.0))]);
     for (follow, expected) in [(Follow::Eye, [0.9875, 0.9830, 0.9851]), (Follow::HalfVector, [0.9883, 0.9772, 0.9367])]
     {
         for (theta, expected) in [0.0, 60.0, 85.0].into_iter().zip(expected) {
@@ -100,7 +100,7 @@ fn statistics_do_not_gain_over_a_white_base() {
 /// Snell compression and takes transmission at the half vector.
 #[test]
 fn faithful_layered_models_gain_at_grazing_angles() {
-    let coated = stack(&[(ggx(0.0), dielectric(1.5, 0.0)), (ggx(0.0), lambert(1.0))]);
+    let coated = Monochrome::bare(&[(ggx(0.0), dielectric(1.5, 0.0)), (ggx(0.0), lambert(1.0))]);
     close(albedo(&Elek, &coated, at(80.0)), 1.300, 3e-3);
     close(albedo(&WeidlichWilkie::default(), &coated, at(80.0)), 1.300, 3e-3);
 }
@@ -109,7 +109,7 @@ fn faithful_layered_models_gain_at_grazing_angles() {
 /// 4000 by 180 midpoints in cosine and azimuth.
 #[test]
 fn oren_nayar_gains_at_grazing_angles() {
-    let white = stack(&[(ggx(0.0), MonochromeBelow::Diffuse { albedo: 1.0, sigma: 0.5 })]);
+    let white = Monochrome::bare(&[(ggx(0.0), MonochromeBelow::Diffuse { albedo: 1.0, sigma: 0.5 })]);
     for (theta, expected) in [(0.0, 0.8963), (80.0, 0.9748), (89.0, 1.0166)] {
         let wi = at(theta);
         let mut sum = 0.0;
@@ -129,7 +129,7 @@ fn oren_nayar_gains_at_grazing_angles() {
 /// there.
 #[test]
 fn phong_gains_and_is_not_reciprocal() {
-    let bare = stack(&[(ggx(0.5), WHITE)]);
+    let bare = Monochrome::bare(&[(ggx(0.5), WHITE)]);
     close(albedo(&Phong, &bare, at(80.0)), 1.527, 3e-3);
     close(furnace(&Phong, &bare, at(80.0)), 0.599, 3e-3);
     close(furnace(&Phong, &bare, at(0.0)), 1.0, 1e-4);
@@ -151,8 +151,9 @@ fn relative_difference(model: &dyn Model, stack: &Monochrome) -> f64 {
 #[test]
 fn reciprocity_holds_where_it_is_claimed() {
     let surface = Surface { distribution: Distribution::Ggx, alpha_x: 0.5, alpha_y: 0.2, rotation: 0.3 };
-    let layered = stack(&[(surface, dielectric(1.5, 0.1)), (ggx(0.3), dielectric(1.2, 0.2)), (ggx(0.4), WHITE)]);
-    let corrected = WeidlichWilkieCorrected::new();
+    let layered =
+        Monochrome::bare(&[(surface, dielectric(1.5, 0.1)), (ggx(0.3), dielectric(1.2, 0.2)), (ggx(0.4), WHITE)]);
+    let corrected = WeidlichWilkieCorrected;
     // The layered forms are symmetric in the two directions but for the outer cosine, which cancels.
     let models: [&dyn Model; 5] = [&SMITH, &V_CAVITY, &WeidlichWilkie::default(), &corrected, &Elek];
     for model in models {

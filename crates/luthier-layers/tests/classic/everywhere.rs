@@ -39,11 +39,7 @@ fn layer(below: impl Strategy<Value = MonochromeBelow>) -> impl Strategy<Value =
 
 fn transparent() -> impl Strategy<Value = MonochromeBelow> {
     let depth = prop_oneof![Just(0.0), 0.0..5.0, Just(1e4)];
-    (prop_oneof![1.0..2.6, Just(1.5)], depth).prop_map(|(ior, optical_depth)| MonochromeBelow::Dielectric {
-        ior,
-        complex_ior: Complex64::new(ior, 0.0),
-        optical_depth,
-    })
+    (prop_oneof![1.0..2.6, Just(1.5)], depth).prop_map(|(ior, depth)| MonochromeBelow::dielectric(ior, depth))
 }
 
 fn base() -> impl Strategy<Value = MonochromeBelow> {
@@ -55,14 +51,7 @@ fn base() -> impl Strategy<Value = MonochromeBelow> {
 fn stack() -> impl Strategy<Value = Monochrome> {
     (prop::collection::vec(layer(transparent()), 0..=2), layer(base())).prop_map(|(mut layers, last)| {
         layers.push(last);
-        let mut above = 1.0;
-        for layer in &mut layers {
-            layer.above = above;
-            if let MonochromeBelow::Dielectric { ior, .. } = layer.below {
-                above = ior;
-            }
-        }
-        Monochrome { exterior: 1.0, layers }
+        Monochrome::joined(1.0, layers)
     })
 }
 
@@ -113,14 +102,10 @@ fn surfaces_keep_energy_where_they_claim_it() {
         }
         for (distribution, alpha) in [(Distribution::Ggx, 0.1), (Distribution::Beckmann, 0.5), (Distribution::Ggx, 1.0)]
         {
-            let glass =
-                MonochromeBelow::Dielectric { ior: 1.5, complex_ior: Complex64::new(1.5, 0.0), optical_depth: 0.0 };
             let surface = Surface::isotropic(distribution, alpha);
             let base = MonochromeBelow::Diffuse { albedo: 0.5, sigma: 0.3 };
-            let film = FilmLayer { ior: Complex64::new(1.3, 0.0), waves: 0.3 };
-            let layer = |above, films, below| MonochromeLayer { surface, above, films, below };
-            let stack =
-                Monochrome { exterior: 1.0, layers: vec![layer(1.0, vec![film], glass), layer(1.5, Vec::new(), base)] };
+            let mut stack = Monochrome::bare(&[MonochromeBelow::dielectric(1.5, 0.0), base].map(|b| (surface, b)));
+            stack.layers[0].films.push(FilmLayer { ior: Complex64::new(1.3, 0.0), waves: 0.3 });
             for cos in [1.0, 0.7, 0.3, 0.1f64] {
                 let wo = DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
                 let radiance = furnace(model.as_ref(), &stack, wo);

@@ -3,14 +3,15 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use luthier_layers::granier_heidrich::{Film, GranierHeidrich, exponent};
+use luthier_layers::granier_heidrich::{Film, GranierHeidrich};
 use luthier_layers::model::Model;
 use luthier_layers::monochrome::Monochrome;
+use luthier_layers::phong::exponent;
 use luthier_optics::fresnel::FilmLayer;
 use num_complex::Complex64;
 
 use crate::sphere::{at, furnace, mirrored};
-use crate::stacks::{dielectric, ggx, lambert, stack};
+use crate::stacks::{dielectric, ggx, lambert};
 
 fn film(eta: f64, waves_inside: Option<f64>) -> Film {
     Film { eta, waves_inside, inner_normal: DVec3::Z, exponents: [90.0, 170.0] }
@@ -84,7 +85,7 @@ fn boundaries_that_face_away_transmit_nothing() {
 #[test]
 fn parameters_come_from_the_stack() {
     close(exponent(0.14744), 90.0, 0.01);
-    let mut granier = stack(&[(ggx(0.14744), dielectric(1.8, 0.0)), (ggx(0.0), lambert(0.7))]);
+    let mut granier = Monochrome::bare(&[(ggx(0.14744), dielectric(1.8, 0.0)), (ggx(0.0), lambert(0.7))]);
     granier.layers[0].films = vec![FilmLayer { ior: Complex64::new(1.45, 0.0), waves: 71.0 / 525.0 }];
     let film = GranierHeidrich::default().film(&granier).unwrap();
     assert_eq!((film.eta, film.waves_inside), (1.45, Some(1.45 * (71.0 / 525.0))));
@@ -105,7 +106,7 @@ fn narrow_lobes_carry_their_coefficients() {
         let wo = at(theta);
         let cos_t = (1.0 - (wo.x / 1.5) * (wo.x / 1.5)).sqrt();
         let waves = 0.5 / cos_t;
-        let mut glossy = stack(&[(ggx(0.001), dielectric(1.5, 0.0)), (ggx(0.0), lambert(0.0))]);
+        let mut glossy = Monochrome::bare(&[(ggx(0.001), dielectric(1.5, 0.0)), (ggx(0.0), lambert(0.0))]);
         let seen = |stack: &Monochrome| furnace(&GranierHeidrich::default(), stack, wo);
         close(film(1.5, None).specular(mirrored(wo), wo), together, 1e-4);
         close(seen(&glossy), together, 1e-3);
@@ -122,7 +123,7 @@ fn narrow_lobes_carry_their_coefficients() {
 /// A white object that scatters returns all that enters twice: mirrored, and diffuse.
 #[test]
 fn the_diffuse_term_comes_on_top() {
-    let coated = stack(&[(ggx(0.1), dielectric(1.5, 0.0)), (ggx(0.0), lambert(1.0))]);
+    let coated = Monochrome::bare(&[(ggx(0.1), dielectric(1.5, 0.0)), (ggx(0.0), lambert(1.0))]);
     close(furnace(&GranierHeidrich::default(), &coated, DVec3::Z), 1.0 + 0.04 + 0.96 * 0.96, 1e-2);
     close(film(1.5, Some(0.0)).diffuse(), 1.560, 1e-3);
 }

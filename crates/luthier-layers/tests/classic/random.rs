@@ -68,16 +68,10 @@ pub(crate) fn stack(losses: Losses) -> impl Strategy<Value = Monochrome> {
     let coats = prop::collection::vec(layer(losses, coat(losses)), 0..=2);
     (coats, layer(losses, base(losses))).prop_map(|(mut layers, last)| {
         layers.push(last);
-        let mut above = 1.0;
-        for layer in &mut layers {
-            layer.above = above;
-            match layer.below {
-                MonochromeBelow::Dielectric { ior, .. } => above = ior,
-                MonochromeBelow::Diffuse { .. } => layer.films.clear(),
-                MonochromeBelow::Conductor { .. } => {}
-            }
+        for layer in layers.iter_mut().filter(|layer| matches!(layer.below, MonochromeBelow::Diffuse { .. })) {
+            layer.films.clear();
         }
-        Monochrome { exterior: 1.0, layers }
+        Monochrome::joined(1.0, layers)
     })
 }
 
@@ -96,6 +90,6 @@ pub(crate) fn smooth_white() -> impl Strategy<Value = Monochrome> {
     (prop::collection::vec(1.05..2.6f64, 0..=2), base).prop_map(|(indices, base)| {
         let mut layers: Vec<_> = indices.into_iter().map(|n| (Surface::smooth(), dielectric(n, 0.0))).collect();
         layers.push((Surface::smooth(), base));
-        crate::stacks::stack(&layers)
+        Monochrome::bare(&layers)
     })
 }

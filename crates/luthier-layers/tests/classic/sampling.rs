@@ -12,7 +12,7 @@ use luthier_layers::weidlich_wilkie_sampling::Sampler;
 use luthier_optics::stack::{Distribution, Surface};
 
 use crate::sphere::{at, coordinate, direction, frame, mirrored, radius};
-use crate::stacks::{WHITE, dielectric, ggx, lambert, stack};
+use crate::stacks::{WHITE, dielectric, ggx, lambert};
 
 const RINGS: usize = 40;
 const SECTORS: usize = 16;
@@ -87,9 +87,9 @@ fn deviate(centre: DVec3, mut sample: impl FnMut() -> Option<DVec3>, pdf: impl F
 fn stacks() -> Vec<Monochrome> {
     let brushed = Surface { distribution: Distribution::Beckmann, alpha_x: 0.5, alpha_y: 0.15, rotation: 0.6 };
     vec![
-        stack(&[(ggx(0.005), dielectric(1.5, 0.2)), (ggx(0.2), WHITE)]),
-        stack(&[(ggx(0.4), dielectric(1.5, 0.0)), (ggx(0.0), lambert(0.8))]),
-        stack(&[(ggx(0.1), dielectric(1.3, 0.1)), (brushed, dielectric(1.7, 0.1)), (ggx(0.3), WHITE)]),
+        Monochrome::bare(&[(ggx(0.005), dielectric(1.5, 0.2)), (ggx(0.2), WHITE)]),
+        Monochrome::bare(&[(ggx(0.4), dielectric(1.5, 0.0)), (ggx(0.0), lambert(0.8))]),
+        Monochrome::bare(&[(ggx(0.1), dielectric(1.3, 0.1)), (brushed, dielectric(1.7, 0.1)), (ggx(0.3), WHITE)]),
     ]
 }
 

@@ -13,7 +13,7 @@ use luthier_layers::weidlich_wilkie::{Refraction, Transmission, WeidlichWilkie};
 use luthier_layers::weidlich_wilkie_corrected::WeidlichWilkieCorrected;
 
 use crate::sphere::{albedo, at, mirrored};
-use crate::stacks::{WHITE, dielectric, ggx, lambert, stack};
+use crate::stacks::{WHITE, dielectric, ggx, lambert};
 
 /// Tolerance of the quadrature and of the finite width (1e-4) of "smooth" lobes.
 const TOLERANCE: f64 = 3e-4;
@@ -28,11 +28,11 @@ fn coat(optical_depth: f64) -> (luthier_optics::stack::Surface, luthier_layers::
 }
 
 fn over_mirror(optical_depth: f64) -> Monochrome {
-    stack(&[coat(optical_depth), (ggx(0.0), WHITE)])
+    Monochrome::bare(&[coat(optical_depth), (ggx(0.0), WHITE)])
 }
 
 fn over_lambert(rho: f64) -> Monochrome {
-    stack(&[coat(0.0), (ggx(0.0), lambert(rho))])
+    Monochrome::bare(&[coat(0.0), (ggx(0.0), lambert(rho))])
 }
 
 /// Albedo with what lies below the first interface divided by n^2.
@@ -49,7 +49,7 @@ fn close(found: f64, expected: f64, tolerance: f64) {
 /// Oracle: F + (1-F)^2 a/(1 - F a), a = exp(-2 sigma d/cos_theta_t), n = 1.5 at 45 degrees.
 #[test]
 fn the_corrected_model_is_exact_for_a_coated_mirror() {
-    let model = WeidlichWilkieCorrected::new();
+    let model = WeidlichWilkieCorrected;
     for (optical_depth, expected) in [(0.0, 1.0), (0.1, 0.7992518131), (1.0, 0.1441269347)] {
         close(albedo(&model, &over_mirror(optical_depth), at(45.0)), expected, TOLERANCE);
     }
@@ -58,7 +58,7 @@ fn the_corrected_model_is_exact_for_a_coated_mirror() {
 /// Oracle: f = Ti To rho/(pi n^2 (1 - rho Fbar_i)) pointwise; Fbar_i from its closed form.
 #[test]
 fn the_corrected_model_is_exact_for_coated_lambert_surfaces() {
-    let model = WeidlichWilkieCorrected::new();
+    let model = WeidlichWilkieCorrected;
     // At normal incidence and 45 degrees off the mirror direction, where the coat's lobe is nothing.
     let (wi, wo) = (at(0.0), at(45.0));
     for (rho, whole) in [(0.18, 0.11813908), (0.5, 0.31607089), (0.8, 0.63283341), (1.0, 1.0)] {
@@ -71,11 +71,14 @@ fn the_corrected_model_is_exact_for_coated_lambert_surfaces() {
 /// Two coats on a white base: everything comes back, whatever lies between.
 #[test]
 fn the_corrected_model_keeps_energy_through_two_smooth_coats() {
-    let model = WeidlichWilkieCorrected::new();
+    let model = WeidlichWilkieCorrected;
     for base in [WHITE, lambert(1.0)] {
         for (upper, lower) in [(1.3, 1.7), (1.7, 1.3)] {
-            let two =
-                stack(&[(ggx(0.0), dielectric(upper, 0.0)), (ggx(0.0), dielectric(lower, 0.0)), (ggx(0.0), base)]);
+            let two = Monochrome::bare(&[
+                (ggx(0.0), dielectric(upper, 0.0)),
+                (ggx(0.0), dielectric(lower, 0.0)),
+                (ggx(0.0), base),
+            ]);
             for theta in [0.0, 50.0] {
                 // Light does not reach a lower medium beyond its critical angle: 1.7 to 1.3 has none from air.
                 close(albedo(&model, &two, at(theta)), 1.0, TOLERANCE);
@@ -89,7 +92,7 @@ fn the_corrected_model_keeps_energy_through_two_smooth_coats() {
 /// integral in Python: 1.9807 and 0.9025).
 #[test]
 fn the_faithful_model_lacks_one_over_n_squared() {
-    let stack = stack(&[coat(0.0), (ggx(0.1), WHITE)]);
+    let stack = Monochrome::bare(&[coat(0.0), (ggx(0.1), WHITE)]);
     let directions = WeidlichWilkie { transmission: Transmission::Directions, ..WeidlichWilkie::default() };
     close(albedo(&directions, &stack, at(0.0)), 1.968, 1e-3);
     close(compressed(&directions, &stack, 0.0), 0.897, 1e-3);
@@ -121,13 +124,13 @@ fn refraction_at_the_half_vector_is_no_better() {
 #[test]
 fn limits() {
     let (wi, wo) = (at(30.0), mirrored(at(40.0)));
-    let corrected = WeidlichWilkieCorrected::new();
+    let corrected = WeidlichWilkieCorrected;
     let models: [&dyn Model; 2] = [&WeidlichWilkie::default(), &corrected];
     for model in models {
-        let bare = stack(&[(ggx(0.3), WHITE)]);
-        let coated = stack(&[(ggx(0.1), dielectric(1.0, 0.0)), (ggx(0.3), WHITE)]);
+        let bare = Monochrome::bare(&[(ggx(0.3), WHITE)]);
+        let coated = Monochrome::bare(&[(ggx(0.1), dielectric(1.0, 0.0)), (ggx(0.3), WHITE)]);
         close(model.eval(&coated, wi, wo) / model.eval(&bare, wi, wo), 1.0, 1e-12);
-        let black = stack(&[(ggx(0.3), dielectric(1.5, 1e4)), (ggx(0.3), WHITE)]);
+        let black = Monochrome::bare(&[(ggx(0.3), dielectric(1.5, 1e4)), (ggx(0.3), WHITE)]);
         let top = Microfacet::new(Components { masking: Masking::VCavity, ..Components::PLAIN }).eval(&black, wi, wo);
         close(model.eval(&black, wi, wo) / top, 1.0, 1e-12);
     }
@@ -156,7 +159,7 @@ fn many_layers_are_the_recursion_of_the_course() {
     }
     let base = MonochromeBelow::Diffuse { albedo: 0.7, sigma: 0.4 };
     let layers = [(ggx(0.4), dielectric(1.3, 0.3)), (ggx(0.2), dielectric(1.7, 0.1)), (ggx(0.5), dielectric(1.4, 0.6))];
-    let stack = stack(&[layers[0], layers[1], layers[2], (ggx(0.0), base)]);
+    let stack = Monochrome::bare(&[layers[0], layers[1], layers[2], (ggx(0.0), base)]);
     for (i, o) in [(10.0, 30.0), (50.0, 20.0), (70.0, 80.0)] {
         let (wi, wo) = (at(i), mirrored(at(o)));
         let expected = recursion(&stack, 0, wi, wo) * wi.z;

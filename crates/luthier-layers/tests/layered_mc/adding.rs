@@ -14,7 +14,7 @@ use luthier_layers::layered_mc::InterfaceMode;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
 use luthier_optics::quadrature::gauss_legendre;
 
-use crate::scenes::{at, conductor, dielectric, ggx, lambert, mc, stack};
+use crate::scenes::{at, conductor, dielectric, ggx, lambert, mc};
 
 /// GGX's D, eq. 33.
 fn density(alpha: f64, m: DVec3) -> f64 {
@@ -116,7 +116,7 @@ impl Coated {
             Base::Conductor { alpha, n, k } => (ggx(alpha), conductor(n, k)),
             Base::Lambert { albedo } => (ggx(0.0), lambert(albedo)),
         };
-        stack(&[(ggx(self.alpha), dielectric(self.ior, self.optical_depth)), (surface, below)])
+        Monochrome::bare(&[(ggx(self.alpha), dielectric(self.ior, self.optical_depth)), (surface, below)])
     }
 }
 

@@ -3,13 +3,12 @@
 use std::f64::consts::PI;
 
 use luthier_layers::layered_mc::InterfaceMode;
+use luthier_layers::monochrome::Monochrome;
 use luthier_optics::fresnel::{dielectric_average, interface};
 use luthier_optics::stack::Surface;
 use num_complex::Complex64;
 
-use crate::scenes::{
-    assert_agrees, at, conductor, cosine, dielectric, evenly, ggx, lambert, mc, mean_of, mirror, stack,
-};
+use crate::scenes::{assert_agrees, at, conductor, cosine, dielectric, evenly, ggx, lambert, mc, mean_of, mirror};
 
 const N: f64 = 1.5;
 
@@ -17,8 +16,8 @@ fn fresnel(cos: f64) -> f64 {
     interface(Complex64::new(1.0, 0.0), Complex64::new(N, 0.0), cos).unpolarised()
 }
 
-fn coated_lambert(rho: f64) -> luthier_layers::monochrome::Monochrome {
-    stack(&[(Surface::smooth(), dielectric(N, 0.0)), (Surface::smooth(), lambert(rho))])
+fn coated_lambert(rho: f64) -> Monochrome {
+    Monochrome::bare(&[(Surface::smooth(), dielectric(N, 0.0)), (Surface::smooth(), lambert(rho))])
 }
 
 #[test]
@@ -67,7 +66,7 @@ fn smooth_coat_on_a_mirror_with_absorption() {
     assert!((formula(at(45.0, 0.0).z, 1.0) - 0.1441269347).abs() < 1e-9);
     for theta in [0.0, 45.0, 70.0, 85.0] {
         for depth in [0.0, 0.1, 1.0] {
-            let coated = stack(&[(Surface::smooth(), dielectric(N, depth)), (Surface::smooth(), mirror())]);
+            let coated = Monochrome::bare(&[(Surface::smooth(), dielectric(N, depth)), (Surface::smooth(), mirror())]);
             let wo = at(theta, 30.0);
             let albedo = mc(InterfaceMode::SmithWalk, 0).albedo(&coated, wo, 250_000);
             assert_agrees(albedo, formula(wo.z, depth), 1e-3, &format!("{theta} {depth}"));
@@ -79,7 +78,7 @@ fn smooth_coat_on_a_mirror_with_absorption() {
 fn two_smooth_interfaces_are_a_series() {
     // Coat, second coat and Lambertian base: the two interfaces as one plate of incoherent bounces.
     let (n1, n2, rho) = (1.3, 1.7, 0.6);
-    let base = stack(&[
+    let base = Monochrome::bare(&[
         (Surface::smooth(), dielectric(n1, 0.0)),
         (Surface::smooth(), dielectric(n2, 0.0)),
         (Surface::smooth(), lambert(rho)),
@@ -108,8 +107,8 @@ fn two_smooth_interfaces_are_a_series() {
 #[test]
 fn a_smooth_coat_of_the_index_of_air_is_not_there() {
     // Estimates of one event against estimates of three, two of them smooth.
-    let base = stack(&[(ggx(0.3), conductor(0.2, 3.5))]);
-    let nearly = stack(&[(Surface::smooth(), dielectric(1.0 + 1e-7, 0.0)), (ggx(0.3), conductor(0.2, 3.5))]);
+    let base = Monochrome::bare(&[(ggx(0.3), conductor(0.2, 3.5))]);
+    let nearly = Monochrome::bare(&[(Surface::smooth(), dielectric(1.0 + 1e-7, 0.0)), (ggx(0.3), conductor(0.2, 3.5))]);
     let (wi, wo) = (at(30.0, 0.0), at(40.0, 170.0));
     let mc = mc(InterfaceMode::SmithWalk, 100_000);
     let (bare, coated) = (mc.estimate(&base, wi, wo), mc.estimate(&nearly, wi, wo));

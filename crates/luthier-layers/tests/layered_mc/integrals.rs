@@ -9,7 +9,7 @@ use luthier_optics::fresnel::FilmLayer;
 use luthier_optics::stack::{Distribution, Surface};
 use num_complex::Complex64;
 
-use crate::scenes::{MODES, at, conductor, cosine, dielectric, evenly, ggx, mc, mean_of, stack};
+use crate::scenes::{MODES, at, conductor, cosine, dielectric, evenly, ggx, mc, mean_of};
 
 /// Functions of the direction that tell lobes apart.
 fn moments(w: DVec3) -> [f64; 5] {
@@ -41,13 +41,17 @@ fn compare(what: &str, stack: &Monochrome, wo: DVec3) {
 
 #[test]
 fn rough_coat_over_rough_conductor() {
-    compare("coat", &stack(&[(ggx(0.4), dielectric(1.5, 0.1)), (ggx(0.6), conductor(0.2, 3.5))]), at(50.0, 20.0));
+    compare(
+        "coat",
+        &Monochrome::bare(&[(ggx(0.4), dielectric(1.5, 0.1)), (ggx(0.6), conductor(0.2, 3.5))]),
+        at(50.0, 20.0),
+    );
 }
 
 #[test]
 fn smooth_coat_over_rough_conductor() {
     // Values leave out what the coat mirrors at once: so do the paths here, where it is one direction.
-    let coated = stack(&[(Surface::smooth(), dielectric(1.5, 0.05)), (ggx(0.6), conductor(0.2, 3.5))]);
+    let coated = Monochrome::bare(&[(Surface::smooth(), dielectric(1.5, 0.05)), (ggx(0.6), conductor(0.2, 3.5))]);
     let wo = at(30.0, 0.0);
     for mode in MODES {
         let mirrored = DVec3::new(-wo.x, -wo.y, wo.z);
@@ -72,7 +76,7 @@ fn smooth_coat_over_rough_conductor() {
 fn rough_coat_over_smooth_conductor() {
     compare(
         "mirror",
-        &stack(&[(ggx(0.5), dielectric(1.5, 0.2)), (Surface::smooth(), conductor(0.2, 3.5))]),
+        &Monochrome::bare(&[(ggx(0.5), dielectric(1.5, 0.2)), (Surface::smooth(), conductor(0.2, 3.5))]),
         at(40.0, 0.0),
     );
 }
@@ -81,7 +85,7 @@ fn rough_coat_over_smooth_conductor() {
 fn three_anisotropic_layers_with_films_over_oren_nayar() {
     let tilted = |x, y, rotation| Surface { distribution: Distribution::Beckmann, alpha_x: x, alpha_y: y, rotation };
     let base = MonochromeBelow::Diffuse { albedo: 0.7, sigma: 0.4 };
-    let mut layered = stack(&[
+    let mut layered = Monochrome::bare(&[
         (tilted(0.6, 0.3, 0.7), dielectric(1.4, 0.1)),
         (tilted(0.4, 0.7, 2.0), dielectric(1.8, 0.0)),
         (ggx(0.0), base),
@@ -94,7 +98,7 @@ fn three_anisotropic_layers_with_films_over_oren_nayar() {
 
 #[test]
 fn denser_exterior_with_total_reflection_at_the_top() {
-    let mut wet = stack(&[(ggx(0.5), dielectric(1.1, 0.0)), (ggx(0.4), conductor(0.2, 3.5))]);
+    let mut wet = Monochrome::bare(&[(ggx(0.5), dielectric(1.1, 0.0)), (ggx(0.4), conductor(0.2, 3.5))]);
     wet.exterior = 1.5;
     wet.layers[0].above = 1.5;
     compare("wet", &wet, at(50.0, 20.0));

@@ -4,12 +4,13 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use luthier_layers::layered_mc::InterfaceMode;
+use luthier_layers::monochrome::Monochrome;
 use luthier_optics::fresnel::interface;
 use luthier_optics::microfacet::{distribution, lambda};
 use luthier_optics::stack::{Distribution, Surface};
 use num_complex::Complex64;
 
-use crate::scenes::{BOTH, assert_agrees, at, conductor, dielectric, ggx, lambert, mc, stack};
+use crate::scenes::{BOTH, assert_agrees, at, conductor, dielectric, ggx, lambert, mc};
 
 #[test]
 fn one_interface_is_torrance_and_sparrow() {
@@ -22,7 +23,7 @@ fn one_interface_is_torrance_and_sparrow() {
                 let fresnel = interface(Complex64::new(1.0, 0.0), ior, wo.dot(wh)).unpolarised();
                 let g2 = 1.0 / (1.0 + lambda(d, alpha, wi.z) + lambda(d, alpha, wo.z));
                 let expected = distribution(d, alpha, wh.z, sin_sq) * fresnel * g2 / (4.0 * wo.z);
-                let metal = stack(&[(Surface::isotropic(d, alpha), conductor(0.2, 3.5))]);
+                let metal = Monochrome::bare(&[(Surface::isotropic(d, alpha), conductor(0.2, 3.5))]);
                 let value = mc(InterfaceMode::OneFacet, 3).estimate(&metal, wi, wo);
                 assert!((value.mean - expected).abs() <= 1e-9 * expected, "{d:?} {alpha}: {value:?} {expected}");
             }
@@ -82,7 +83,7 @@ fn rough_coat_on_lambert_by_quadrature() {
         inside[0] += 2.0 * cos * r / f64::from(steps);
         inside[1] += 2.0 * cos * t / f64::from(steps);
     }
-    let coated = stack(&[(ggx(alpha), dielectric(n, 0.0)), (ggx(0.0), lambert(rho))]);
+    let coated = Monochrome::bare(&[(ggx(alpha), dielectric(n, 0.0)), (ggx(0.0), lambert(rho))]);
     for theta in [0.0, 45.0, 75.0] {
         let wo = at(theta, 0.0);
         let [r, t] = shares(alpha, 1.0, n, wo.z);

@@ -7,6 +7,7 @@
 use std::f64::consts::PI;
 
 use luthier_layers::layered_mc::{Estimate, InterfaceMode, Side};
+use luthier_layers::monochrome::Monochrome;
 use luthier_layers::random_walk::RandomWalk;
 use luthier_optics::albedo::{Effort, FacetStatistics, ReflectanceCurves, crossed_albedo};
 use luthier_optics::fresnel::interface;
@@ -15,7 +16,7 @@ use luthier_optics::quadrature::gauss_legendre;
 use luthier_optics::stack::{Distribution, Surface};
 use num_complex::Complex64;
 
-use crate::scenes::{assert_agrees, at, dielectric, ggx, lambert, mc, stack};
+use crate::scenes::{assert_agrees, at, dielectric, ggx, lambert, mc};
 
 struct Coat {
     distribution: Distribution,
@@ -55,7 +56,8 @@ fn albedo_is_a_series_of_diffuse_bounces() {
     {
         let coat = Coat::new(d, alpha, 1.5);
         let inside = coat.reflects_inside();
-        let coated = stack(&[(Surface::isotropic(d, alpha), dielectric(1.5, 0.0)), (ggx(0.0), lambert(rho))]);
+        let coated =
+            Monochrome::bare(&[(Surface::isotropic(d, alpha), dielectric(1.5, 0.0)), (ggx(0.0), lambert(rho))]);
         for theta in [0.0, 60.0, 80.0] {
             let wo = at(theta, 0.0);
             let r = coat.reflects(wo.z);
@@ -71,7 +73,7 @@ fn value_is_the_interface_plus_a_diffuse_part() {
     let (alpha, n, rho) = (0.3, 1.5, 0.8);
     let coat = Coat::new(Distribution::Ggx, alpha, n);
     let inside = coat.reflects_inside();
-    let coated = stack(&[(ggx(alpha), dielectric(n, 0.0)), (ggx(0.0), lambert(rho))]);
+    let coated = Monochrome::bare(&[(ggx(alpha), dielectric(n, 0.0)), (ggx(0.0), lambert(rho))]);
     for (wi, wo) in [(at(20.0, 0.0), at(60.0, 50.0)), (at(45.0, 0.0), at(40.0, 175.0)), (at(80.0, 0.0), at(10.0, 0.0))]
     {
         let through = (1.0 - coat.reflects(wi.z)) * (1.0 - coat.reflects(wo.z));

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use luthier_layers::layered_mc::{Estimate, InterfaceMode, LayeredMc};
-use luthier_layers::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
+use luthier_layers::monochrome::MonochromeBelow;
 use luthier_optics::stack::{Distribution, Surface};
 use num_complex::Complex64;
 
@@ -14,7 +14,7 @@ pub(crate) fn ggx(alpha: f64) -> Surface {
 }
 
 pub(crate) fn dielectric(ior: f64, optical_depth: f64) -> MonochromeBelow {
-    MonochromeBelow::Dielectric { ior, complex_ior: Complex64::new(ior, 0.0), optical_depth }
+    MonochromeBelow::dielectric(ior, optical_depth)
 }
 
 pub(crate) fn conductor(n: f64, k: f64) -> MonochromeBelow {
@@ -28,19 +28,6 @@ pub(crate) fn mirror() -> MonochromeBelow {
 
 pub(crate) fn lambert(albedo: f64) -> MonochromeBelow {
     MonochromeBelow::Diffuse { albedo, sigma: 0.0 }
-}
-
-/// A stack in air from its surfaces and what lies below each.
-pub(crate) fn stack(layers: &[(Surface, MonochromeBelow)]) -> Monochrome {
-    let mut above = 1.0;
-    let mut all = Vec::new();
-    for &(surface, below) in layers {
-        all.push(MonochromeLayer { surface, above, films: Vec::new(), below });
-        if let MonochromeBelow::Dielectric { ior, .. } = below {
-            above = ior;
-        }
-    }
-    Monochrome { exterior: 1.0, layers: all }
 }
 
 /// A direction at an elevation and an azimuth in degrees.

@@ -1,6 +1,7 @@
 //! Albedos of one interface against those of `luthier_optics::albedo`, from quadrature and low-discrepancy walks.
 
 use luthier_layers::layered_mc::{InterfaceMode, Side};
+use luthier_layers::monochrome::Monochrome;
 use luthier_layers::random_walk::RandomWalk;
 use luthier_optics::albedo::{Effort, FacetStatistics, ReflectanceCurves, crossed_albedo};
 use luthier_optics::fresnel::interface;
@@ -8,7 +9,7 @@ use luthier_optics::microsurface::TransparentFacets;
 use luthier_optics::stack::Surface;
 use num_complex::Complex64;
 
-use crate::scenes::{BOTH, assert_agrees, at, conductor, cosine, dielectric, evenly, mc, mean_of, stack};
+use crate::scenes::{BOTH, assert_agrees, at, conductor, cosine, dielectric, evenly, mc, mean_of};
 
 const EFFORT: Effort = Effort { first: 32, later: 48 };
 
@@ -24,7 +25,7 @@ fn conductors_reflect_what_facet_statistics_say() {
     let ior = Complex64::new(3.2, 3.3);
     for d in BOTH {
         for alpha in [0.1, 0.5, 1.0] {
-            let metal = stack(&[(Surface::isotropic(d, alpha), conductor(ior.re, ior.im))]);
+            let metal = Monochrome::bare(&[(Surface::isotropic(d, alpha), conductor(ior.re, ior.im))]);
             for theta in [0.0, 60.0, 85.0] {
                 let wo = at(theta, 0.0);
                 let expected = FacetStatistics::new(d, alpha, wo.z, EFFORT, 0).albedo(&curve(ior))[0];
@@ -40,7 +41,7 @@ fn values_of_a_conductor_integrate_to_its_facet_statistics() {
     let ior = Complex64::new(3.2, 3.3);
     for d in BOTH {
         let alpha = 0.7;
-        let metal = stack(&[(Surface::isotropic(d, alpha), conductor(ior.re, ior.im))]);
+        let metal = Monochrome::bare(&[(Surface::isotropic(d, alpha), conductor(ior.re, ior.im))]);
         let wo = at(50.0, 30.0);
         let expected = FacetStatistics::new(d, alpha, wo.z, EFFORT, 0).albedo(&curve(ior))[0];
         let each = |i: u64| {
@@ -59,7 +60,7 @@ fn dielectrics_split_light_as_crossing_walks_say() {
     let fresnel = curve(Complex64::new(n, 0.0));
     for d in BOTH {
         for alpha in [0.2, 0.8] {
-            let glass = stack(&[(Surface::isotropic(d, alpha), dielectric(n, 0.0))]);
+            let glass = Monochrome::bare(&[(Surface::isotropic(d, alpha), dielectric(n, 0.0))]);
             for theta in [0.0, 60.0, 85.0] {
                 let wo = at(theta, 0.0);
                 let facets = TransparentFacets { eta: n, from_above: &fresnel, curve: 0 };
@@ -76,7 +77,7 @@ fn dielectrics_split_light_as_crossing_walks_say() {
 
 #[test]
 fn transmitted_values_integrate_to_the_transmitted_share_from_both_sides() {
-    let glass = stack(&[(Surface::isotropic(BOTH[1], 0.6), dielectric(1.5, 0.0))]);
+    let glass = Monochrome::bare(&[(Surface::isotropic(BOTH[1], 0.6), dielectric(1.5, 0.0))]);
     for (side, theta) in [(Side::Above, 50.0), (Side::Below, 30.0), (Side::Below, 60.0)] {
         let a = (side, at(theta, 0.0));
         let shares = RandomWalk { samples: 100_000, seed: 1 }.albedo(&glass.layers[0], a.0, a.1);

@@ -5,18 +5,18 @@ use luthier_layers::monochrome::Monochrome;
 use luthier_layers::random_walk::RandomWalk;
 use luthier_optics::stack::{Distribution, Surface};
 
-use crate::scenes::{MODES, at, conductor, dielectric, ggx, lambert, mc, stack};
+use crate::scenes::{MODES, at, conductor, dielectric, ggx, lambert, mc};
 
 fn stacks() -> Vec<(&'static str, Monochrome)> {
     let brushed = Surface { distribution: Distribution::Ggx, alpha_x: 0.6, alpha_y: 0.2, rotation: 0.8 };
     let beckmann = Surface::isotropic(Distribution::Beckmann, 0.5);
     vec![
-        ("metal", stack(&[(brushed, conductor(0.2, 3.5))])),
-        ("coated metal", stack(&[(ggx(0.3), dielectric(1.5, 0.1)), (brushed, conductor(0.2, 3.5))])),
-        ("coated Lambert", stack(&[(beckmann, dielectric(1.5, 0.2)), (ggx(0.0), lambert(0.8))])),
+        ("metal", Monochrome::bare(&[(brushed, conductor(0.2, 3.5))])),
+        ("coated metal", Monochrome::bare(&[(ggx(0.3), dielectric(1.5, 0.1)), (brushed, conductor(0.2, 3.5))])),
+        ("coated Lambert", Monochrome::bare(&[(beckmann, dielectric(1.5, 0.2)), (ggx(0.0), lambert(0.8))])),
         (
             "two coats",
-            stack(&[
+            Monochrome::bare(&[
                 (ggx(0.2), dielectric(1.3, 0.1)),
                 (beckmann, dielectric(1.8, 0.1)),
                 (ggx(0.5), conductor(3.0, 3.0)),
@@ -44,7 +44,7 @@ fn brdfs_are_reciprocal() {
 #[test]
 fn walks_through_an_interface_are_reciprocal() {
     let n = 1.5;
-    let glass = stack(&[(ggx(0.6), dielectric(n, 0.0))]);
+    let glass = Monochrome::bare(&[(ggx(0.6), dielectric(n, 0.0))]);
     let walks = RandomWalk { samples: 200_000, seed: 5 };
     for (above, below) in [(at(30.0, 0.0), at(25.0, 170.0)), (at(70.0, 0.0), at(20.0, 200.0))] {
         let down = walks.density(&glass.layers[0], (Side::Above, above), (Side::Below, below));

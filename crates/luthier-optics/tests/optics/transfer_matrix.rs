@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use luthier_optics::fresnel::{FilmLayer, Polarised, coated};
+use luthier_optics::fresnel::{FilmLayer, Polarised, coated, transmitted};
 use num_complex::Complex64;
 use proptest::prelude::*;
 
@@ -75,6 +75,20 @@ proptest! {
             let error = (reflectance(found, plane) - expected).abs();
             prop_assert!(error < 1e-12, "{:?}: {} against {}", plane, reflectance(found, plane), expected);
         }
+    }
+
+    /// Through absorbing films too.
+    #[test]
+    fn transmittance_agrees_with_matrices(
+        above in prop_oneof![Just(1.0), 1.0..2.0],
+        films in prop::collection::vec(film(), 0..=3),
+        below in 1.0..4.0,
+        cos in 0.02..=1.0,
+    ) {
+        let found = transmitted(above, &films, below, cos);
+        let [s, p] = [Plane::S, Plane::P].map(|plane| powers(above, &films, c(below, 0.0), cos, plane)[1]);
+        let total = above * (1.0 - cos * cos).sqrt() >= below;
+        prop_assert!((found - if total { 0.0 } else { 0.5 * (s + p) }).abs() < 1e-12, "{found} against {s} and {p}");
     }
 }
 

@@ -97,7 +97,7 @@ fn truth(stack: &Monochrome, wo: DVec3) -> Estimate {
     }
     let stack = &stack;
     if is_smooth(stack) {
-        ClosedForm::new().albedo_with_error(stack, wo, DVec3::Z)
+        ClosedForm.albedo_with_error(stack, wo, DVec3::Z)
     } else {
         LayeredMc::new(InterfaceMode::SmithWalk).albedo(stack, wo, PATHS)
     }

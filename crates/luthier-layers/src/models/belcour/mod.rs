@@ -17,61 +17,35 @@
 //! - *Energy*: following the eye at most 1. At the half vector lobes carry the energy of another angle: at grazing angles a white
 //!   mirror of alpha 0.3 below a coat of alpha 0.05 returns 1.15 (89 degrees).
 
-use glam::DVec3;
+use crate::statistics::evaluate::Follow;
+use crate::statistics::model::Statistical;
 
-use crate::model::{Claims, Kind, Model, ModelInfo};
-use crate::monochrome::Monochrome;
-use crate::statistics::evaluate::{Follow, Memory};
-
-/// Belcour 2018, with FGD-infinity computed exactly. To read it from a table, see
-/// [`evaluate`](crate::statistics::evaluate::evaluate).
-#[derive(Debug)]
-pub struct Belcour {
-    follow: Follow,
-    memory: Memory,
-}
+/// Belcour 2018.
+pub type Belcour = Statistical<f64>;
 
 impl Belcour {
     /// The model, following one of the directions.
     pub fn new(follow: Follow) -> Self {
-        Self { follow, memory: Memory::default() }
-    }
-}
-
-impl Model for Belcour {
-    fn info(&self) -> ModelInfo {
-        let name = match self.follow {
-            Follow::Eye => "belcour",
-            Follow::HalfVector => "belcour-half-vector",
-        };
-        ModelInfo {
-            name,
-            kind: Kind::Layered,
-            claims: match self.follow {
-                Follow::Eye => Claims::ENERGY,
-                Follow::HalfVector => Claims::RECIPROCAL,
-            },
-            inputs: &[],
-            source: match self.follow {
-                Follow::Eye => "Belcour 2018, sec. 3-5 (atomic operators, adding, total reflection)",
-                Follow::HalfVector => "Belcour 2018, sec. 3-5, at the angle against the half vector",
-            },
-            domain: "any number of GGX interfaces and absorbing slabs on a conductor or a diffuse base; small alpha, away from \
-                     grazing angles",
-            leaves_out: match self.follow {
-                Follow::Eye => {
-                    "reciprocity, anisotropy, shear and skew of lobes, light that lobes lose to masking, scattering media"
-                }
-                Follow::HalfVector => {
+        let domain = "any number of GGX interfaces and absorbing slabs on a conductor or a diffuse base; small alpha, away from \
+                      grazing angles";
+        Self::published(
+            follow,
+            match follow {
+                Follow::Eye => [
+                    "belcour",
+                    "Belcour 2018, sec. 3-5 (atomic operators, adding, total reflection)",
+                    domain,
+                    "reciprocity, anisotropy, shear and skew of lobes, light that lobes lose to masking, scattering media",
+                ],
+                Follow::HalfVector => [
+                    "belcour-half-vector",
+                    "Belcour 2018, sec. 3-5, at the angle against the half vector",
+                    domain,
                     "conservation of energy at grazing angles, anisotropy, shear and skew of lobes, light that lobes lose \
-                     to masking, scattering media"
-                }
+                     to masking, scattering media",
+                ],
             },
-        }
-    }
-
-    fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
-        self.memory.prepared(stack).eval::<f64>(self.follow, wi, wo)
+        )
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use glam::DVec3;
 use luthier_optics::fresnel::FilmLayer;
 use luthier_optics::quadrature::gauss_legendre;
 use luthier_optics::stack::{Distribution, Surface};
@@ -9,21 +10,18 @@ use num_complex::Complex64;
 use proptest::prelude::*;
 
 use super::*;
-use crate::monochrome::{MonochromeBelow, MonochromeLayer};
+use crate::model::Model;
+use crate::monochrome::{Monochrome, MonochromeBelow};
 use crate::statistics::adding::add;
-use crate::statistics::energy::Energy;
+use crate::statistics::diffuse_base::DiffuseBase;
 use crate::statistics::evaluate::{Prepared, evaluate};
+use crate::statistics::fixtures::{NotTotal, direction, fresnel, tabulated};
 use crate::statistics::layers::Layers;
 use crate::statistics::spread::{alpha, variance};
 
 fn coated(coat: f64, base: f64, below: MonochromeBelow) -> Monochrome {
     let surface = |alpha| Surface::isotropic(Distribution::Ggx, alpha);
-    let varnish = MonochromeBelow::Dielectric { ior: 1.5, complex_ior: Complex64::new(1.5, 0.0), optical_depth: 0.1 };
-    let layers = vec![
-        MonochromeLayer { surface: surface(coat), above: 1.0, films: Vec::new(), below: varnish },
-        MonochromeLayer { surface: surface(base), above: 1.5, films: Vec::new(), below },
-    ];
-    Monochrome { exterior: 1.0, layers }
+    Monochrome::bare(&[(surface(coat), MonochromeBelow::dielectric(1.5, 0.1)), (surface(base), below)])
 }
 
 fn gold() -> MonochromeBelow {
@@ -32,11 +30,6 @@ fn gold() -> MonochromeBelow {
 
 fn chalk() -> MonochromeBelow {
     MonochromeBelow::Diffuse { albedo: 0.9, sigma: 0.0 }
-}
-
-fn direction(cos: f64, phi: f64) -> DVec3 {
-    let sin = (1.0 - cos * cos).max(0.0).sqrt();
-    DVec3::new(sin * libm::cos(phi), sin * libm::sin(phi), cos)
 }
 
 /// Directional albedo for the eye at `wo`, in polar angles about the mirror direction's half vectors.
@@ -100,31 +93,9 @@ fn a_table_can_stand_in_for_the_energies() {
     let prepared = Prepared::new(&stack);
     let (wi, wo) = (direction(0.7, 0.3), direction(0.6, 3.0));
     let exact = prepared.eval::<f64>(Follow::Eye, wi, wo);
-    // A coarse table of FGD-infinity for the two layers, read linearly.
-    let table: Vec<Vec<f64>> = (0..2)
-        .map(|layer| (0..64).map(|i| prepared.energy().fgd(layer, f64::from(i) / 63.0, 0.2)[0]).collect())
-        .collect();
-    let read = |layer: usize, cos: f64, _alpha: f64| {
-        let at = cos * 63.0;
-        let i = (at as usize).min(62);
-        let row = &table[layer];
-        row[i] + (row[i + 1] - row[i]) * (at - i as f64)
-    };
-    let [got] = evaluate::<f64, 1>(prepared.layers(), &read, None, Follow::Eye, wi, wo);
+    let table = tabulated(prepared.energy());
+    let [got] = evaluate::<f64, 1>(prepared.layers(), &table, None, Follow::Eye, wi, wo);
     assert!((got - exact).abs() < 2e-3 * exact, "{got} against {exact}");
-}
-
-/// Fresnel without total reflection: the two-layer formulas.
-struct Plain<'a>(&'a Monochrome);
-
-impl Energy<1> for Plain<'_> {
-    fn fgd(&self, layer: usize, cos: f64, _: f64) -> [f64; 1] {
-        [self.0.layers[layer].reflectance(cos)]
-    }
-
-    fn escaping(&self, _: usize, _: f64, _: f64, _: f64) -> f64 {
-        1.0
-    }
 }
 
 /// The bounces of each wavelength differ little from their mean, the one m for all channels that the paper's code takes. Slopes of the
@@ -146,8 +117,7 @@ fn bounces_by_wavelength_differ_little_from_their_mean() {
         });
         // Absorption lowers m; the formula is that without it.
         let clear = stacks.map(|mut stack| {
-            stack.layers[0].below =
-                MonochromeBelow::Dielectric { ior: n, complex_ior: Complex64::new(n, 0.0), optical_depth: 0.0 };
+            stack.layers[0].below = MonochromeBelow::dielectric(n, 0.0);
             stack
         });
         let m = bounces.iter().sum::<f64>() / 3.0;
@@ -155,7 +125,8 @@ fn bounces_by_wavelength_differ_little_from_their_mean() {
         let t21 = variance(0.1 * (1.0 - j).abs());
         let mean = alpha(t21 + j * (t12 + variance(0.2) * (1.0 + 2.0 * m)));
         for (stack, expected) in clear.iter().zip(expected) {
-            let found = alpha(add::<f64, 1>(&Layers::from(stack), &Plain(stack), cos_i).lobes[1].spread) / mean - 1.0;
+            let lobes = add::<f64, 1>(&Layers::from(stack), &NotTotal(fresnel(stack)), cos_i).lobes;
+            let found = alpha(lobes[1].spread) / mean - 1.0;
             assert!((found - expected).abs() < 1e-4, "{cos_i}: {found} against {expected}");
         }
     }
@@ -186,15 +157,14 @@ proptest! {
         diffuse in any::<bool>(),
     ) {
         let mut stack = coated(alphas[0], alphas[1], if diffuse { chalk() } else { gold() });
-        stack.layers[0].below =
-            MonochromeBelow::Dielectric { ior, complex_ior: Complex64::new(ior, 0.0), optical_depth: 0.5 };
-        stack.layers[1].above = ior;
+        stack.layers[0].below = MonochromeBelow::dielectric(ior, 0.5);
+        stack = Monochrome::joined(1.0, stack.layers);
         if film {
             stack.layers[0].films.push(FilmLayer { ior: Complex64::new(1.8, 0.0), waves: 0.4 });
         }
         // Fresnel in place of FGD-infinity: the walks have tests of their own.
-        let energy = |layer: usize, cos: f64, _: f64| stack.layers[layer].reflectance(cos);
-        let base = crate::statistics::diffuse_base::DiffuseBase::new(&Layers::from(&stack), &energy);
+        let energy = fresnel(&stack);
+        let base = DiffuseBase::new(&Layers::from(&stack), &energy);
         let (wi, wo) = (direction(cosines[0], 0.0), direction(cosines[1], phi));
         for follow in [Follow::Eye, Follow::HalfVector] {
             let [value] = evaluate::<f64, 1>(&Layers::from(&stack), &energy, base.as_ref(), follow, wi, wo);

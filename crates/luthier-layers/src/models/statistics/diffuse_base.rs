@@ -127,19 +127,15 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::*;
-    use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
+    use crate::monochrome::{Monochrome, MonochromeBelow};
+    use crate::statistics::fixtures::fresnel;
     use luthier_optics::stack::Surface;
-    use num_complex::Complex64;
 
     fn coated(albedo: f64, optical_depth: f64) -> Monochrome {
-        let layer = |above, below| MonochromeLayer { surface: Surface::smooth(), above, films: Vec::new(), below };
-        let coat = MonochromeBelow::Dielectric { ior: 1.5, complex_ior: Complex64::new(1.5, 0.0), optical_depth };
         let base = MonochromeBelow::Diffuse { albedo, sigma: 0.0 };
-        Monochrome { exterior: 1.0, layers: vec![layer(1.0, coat), layer(1.5, base)] }
-    }
-
-    fn fresnel(stack: &Monochrome) -> impl Energy<1> {
-        |layer: usize, cos: f64, _: f64| stack.layers[layer].reflectance(cos)
+        Monochrome::bare(
+            &[MonochromeBelow::dielectric(1.5, optical_depth), base].map(|below| (Surface::smooth(), below)),
+        )
     }
 
     #[test]
@@ -180,9 +176,8 @@ mod tests {
     fn a_base_below_air_has_no_light_beyond_a_critical_angle() {
         for ior in [1.0, 0.7] {
             let mut stack = coated(0.5, 0.0);
-            stack.layers[0].below =
-                MonochromeBelow::Dielectric { ior, complex_ior: Complex64::new(ior, 0.0), optical_depth: 0.0 };
-            stack.layers[1].above = ior;
+            stack.layers[0].below = MonochromeBelow::dielectric(ior, 0.0);
+            stack = Monochrome::joined(1.0, stack.layers);
             let veil = Veil::new(&Layers::from(&stack), &fresnel(&stack)).unwrap();
             // An interface between equal media returns nothing; that of a thinner medium some, by refraction inwards.
             assert!(

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use luthier_optics::albedo::{ALPHA_MIN, Effort, FacetStatistics, ReflectanceCurves, crossed_albedo};
 use luthier_optics::color::Color;
 use luthier_optics::interface::{self, Interface, Sampled};
+use luthier_optics::interpolation::cubic_stencil;
 use luthier_optics::microsurface::TransparentFacets;
 use luthier_optics::stack::{Base, Distribution, Stack, Surface};
 
@@ -243,16 +244,7 @@ fn albedo_nodes(
 
 /// Lagrange's cubic through the four nodes around a cosine in 0..=1.
 fn between_nodes<const C: usize>(nodes: &[[f64; C]], cos_theta_i: f64) -> [f64; C] {
-    let intervals = nodes.len() - 1;
-    let at = cos_theta_i.sqrt() * intervals as f64;
-    let first = (at as usize).clamp(1, intervals - 2) - 1;
-    let t = at - first as f64;
-    let weights = [
-        -(t - 1.0) * (t - 2.0) * (t - 3.0) / 6.0,
-        t * (t - 2.0) * (t - 3.0) / 2.0,
-        -t * (t - 1.0) * (t - 3.0) / 2.0,
-        t * (t - 1.0) * (t - 2.0) / 6.0,
-    ];
+    let (first, weights) = cubic_stencil(cos_theta_i.sqrt() * (nodes.len() - 1) as f64, nodes.len());
     from_fn(|c| weights.iter().zip(&nodes[first..]).map(|(w, value)| w * value[c]).sum())
 }
 
@@ -312,12 +304,11 @@ mod tests {
 
     fn interface(alpha: f64, above: f64, below: MonochromeBelow) -> Monochrome {
         let surface = Surface::isotropic(Distribution::Ggx, alpha);
-        let layer = MonochromeLayer { surface, above, films: Vec::new(), below };
-        Monochrome { exterior: above, layers: vec![layer] }
+        Monochrome::joined(above, Monochrome::bare(&[(surface, below)]).layers)
     }
 
     fn glass(ior: f64) -> MonochromeBelow {
-        MonochromeBelow::Dielectric { ior, complex_ior: Complex64::new(ior, 0.0), optical_depth: 0.0 }
+        MonochromeBelow::dielectric(ior, 0.0)
     }
 
     #[test]

@@ -10,6 +10,7 @@ use super::energy::{Energy, ExactEnergy, FacetCache};
 use super::layers::Layers;
 use super::spread::Spread;
 use crate::facets::{Facets, Masking};
+use crate::frame::cos_theta_d;
 use crate::monochrome::Monochrome;
 
 /// The direction whose statistics all lobes are given.
@@ -40,8 +41,7 @@ pub fn evaluate<S: Spread, const C: usize>(
     }
     let cos_theta = match follow {
         Follow::Eye => wo.z,
-        // For unit directions wo.wh is half the length of their sum.
-        Follow::HalfVector => (0.5 * (wi + wo).length()).min(1.0),
+        Follow::HalfVector => cos_theta_d(wi, wo),
     };
     for lobe in add::<S, C>(stack, energy, cos_theta).lobes {
         if lobe.energy.iter().any(|&energy| energy > 0.0) {

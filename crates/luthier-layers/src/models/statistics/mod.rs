@@ -16,6 +16,9 @@ pub mod adding;
 pub mod diffuse_base;
 pub mod energy;
 pub mod evaluate;
+#[cfg(test)]
+pub(crate) mod fixtures;
 pub mod layers;
+pub mod model;
 pub mod spread;
 pub mod total_reflection;

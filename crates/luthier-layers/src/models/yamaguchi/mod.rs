@@ -15,61 +15,36 @@
 //! light that enters, sigma/eta in eq. 2, is backwards; as in Belcour's adding, spreads grow by
 //! `j = n12 cos theta_t / cos theta_i` on the way out.
 
-use glam::DVec3;
-
-use crate::model::{Claims, Kind, Model, ModelInfo};
-use crate::monochrome::Monochrome;
-use crate::statistics::evaluate::{Follow, Memory};
+use crate::statistics::evaluate::Follow;
+use crate::statistics::model::Statistical;
 use crate::statistics::spread::Covariance;
 
 /// Yamaguchi et al. 2019.
-#[derive(Debug)]
-pub struct Yamaguchi {
-    follow: Follow,
-    memory: Memory,
-}
+pub type Yamaguchi = Statistical<Covariance>;
 
 impl Yamaguchi {
     /// The model, following one of the directions.
     pub fn new(follow: Follow) -> Self {
-        Self { follow, memory: Memory::default() }
-    }
-}
-
-impl Model for Yamaguchi {
-    fn info(&self) -> ModelInfo {
-        let name = match self.follow {
-            Follow::Eye => "yamaguchi",
-            Follow::HalfVector => "yamaguchi-half-vector",
-        };
-        ModelInfo {
-            name,
-            kind: Kind::Layered,
-            claims: match self.follow {
-                Follow::Eye => Claims::ENERGY,
-                Follow::HalfVector => Claims::RECIPROCAL,
-            },
-            inputs: &[],
-            source: match self.follow {
-                Follow::Eye => "Yamaguchi et al. 2019, eq. 1-5 and sec. 2.1, with the adding of Belcour 2018",
-                Follow::HalfVector => "Yamaguchi et al. 2019, at the angle against the half vector",
-            },
-            domain: "GGX interfaces with a tangent each (two in the paper) and absorbing slabs on a conductor or a diffuse base; \
-                     small alpha, away from grazing angles",
-            leaves_out: match self.follow {
-                Follow::Eye => {
-                    "reciprocity, anisotropy of energies, shear and skew of lobes, light that lobes lose to masking"
-                }
-                Follow::HalfVector => {
+        let domain = "GGX interfaces with a tangent each (two in the paper) and absorbing slabs on a conductor or a diffuse base; \
+                      small alpha, away from grazing angles";
+        Self::published(
+            follow,
+            match follow {
+                Follow::Eye => [
+                    "yamaguchi",
+                    "Yamaguchi et al. 2019, eq. 1-5 and sec. 2.1, with the adding of Belcour 2018",
+                    domain,
+                    "reciprocity, anisotropy of energies, shear and skew of lobes, light that lobes lose to masking",
+                ],
+                Follow::HalfVector => [
+                    "yamaguchi-half-vector",
+                    "Yamaguchi et al. 2019, at the angle against the half vector",
+                    domain,
                     "conservation of energy at grazing angles, anisotropy of energies, shear and skew of lobes, light that \
-                     lobes lose to masking"
-                }
+                     lobes lose to masking",
+                ],
             },
-        }
-    }
-
-    fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
-        self.memory.prepared(stack).eval::<Covariance>(self.follow, wi, wo)
+        )
     }
 }
 

@@ -8,10 +8,11 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::belcour::Belcour;
-use crate::monochrome::{MonochromeBelow, MonochromeLayer};
+use crate::model::Model;
+use crate::monochrome::{Monochrome, MonochromeBelow};
 use crate::statistics::adding::add;
-use crate::statistics::energy::Energy;
 use crate::statistics::evaluate::{Prepared, evaluate};
+use crate::statistics::fixtures::{NotTotal, direction, fresnel, tabulated};
 use crate::statistics::layers::Layers;
 use crate::statistics::spread::variance;
 
@@ -21,35 +22,8 @@ fn surface(alpha_x: f64, alpha_y: f64, rotation: f64) -> Surface {
 
 /// A coat of index 1.49 on gold: the materials of the paper's figures.
 fn coated(coat: Surface, base: Surface) -> Monochrome {
-    let varnish = MonochromeBelow::Dielectric { ior: 1.49, complex_ior: Complex64::new(1.49, 0.0), optical_depth: 0.0 };
     let gold = MonochromeBelow::Conductor { ior: Complex64::new(0.143, 3.983) };
-    let layers = vec![
-        MonochromeLayer { surface: coat, above: 1.0, films: Vec::new(), below: varnish },
-        MonochromeLayer { surface: base, above: 1.49, films: Vec::new(), below: gold },
-    ];
-    Monochrome { exterior: 1.0, layers }
-}
-
-fn direction(cos: f64, phi: f64) -> DVec3 {
-    let sin = (1.0 - cos * cos).max(0.0).sqrt();
-    DVec3::new(sin * libm::cos(phi), sin * libm::sin(phi), cos)
-}
-
-fn fresnel(stack: &Monochrome) -> impl Energy<1> {
-    |layer: usize, cos: f64, _: f64| stack.layers[layer].reflectance(cos)
-}
-
-/// Fresnel without total reflection, as the two-layer formulas have it.
-struct Plain<'a>(&'a Monochrome);
-
-impl Energy<1> for Plain<'_> {
-    fn fgd(&self, layer: usize, cos: f64, _: f64) -> [f64; 1] {
-        [self.0.layers[layer].reflectance(cos)]
-    }
-
-    fn escaping(&self, _: usize, _: f64, _: f64, _: f64) -> f64 {
-        1.0
-    }
+    Monochrome::bare(&[(coat, MonochromeBelow::dielectric(1.49, 0.0)), (base, gold)])
 }
 
 #[test]
@@ -72,7 +46,7 @@ fn two_layers_are_the_formulas_of_the_paper() {
     let t21 = sigma(coat, 0.5 * (1.0 - n * cos_t / cos_i).abs());
     let (r1, b) = (sigma(coat, 1.0), sigma(base, 1.0));
 
-    let lobes = add::<Covariance, 1>(&Layers::from(&stack), &Plain(&stack), cos_i).lobes;
+    let lobes = add::<Covariance, 1>(&Layers::from(&stack), &NotTotal(fresnel(&stack)), cos_i).lobes;
     assert!((lobes[0].energy[0] - r12).abs() < 1e-15 && (lobes[1].energy[0] - weight).abs() < 1e-15);
     for (lobe, expected) in
         [(lobes[0], r1), (lobes[1], [0, 1, 2].map(|k| t21[k] + j12 * (t12[k] + b[k] + m * (b[k] + r1[k]))))]
@@ -116,16 +90,10 @@ fn isotropic_stacks_give_belcour_as_models() {
 fn a_table_can_stand_in_for_the_energies() {
     let stack = coated(surface(0.1, 0.4, 0.2), surface(0.3, 0.05, 0.5));
     let prepared = Prepared::new(&stack);
-    let table: Vec<Vec<f64>> = (0..2)
-        .map(|layer| (0..64).map(|i| prepared.energy().fgd(layer, f64::from(i) / 63.0, 0.2)[0]).collect())
-        .collect();
-    let read = |layer: usize, cos: f64, _: f64| {
-        let i = ((cos * 63.0) as usize).min(62);
-        table[layer][i] + (table[layer][i + 1] - table[layer][i]) * (cos * 63.0 - i as f64)
-    };
     let (wi, wo) = (direction(0.7, 0.3), direction(0.6, 3.0));
     let exact = prepared.eval::<Covariance>(Follow::Eye, wi, wo);
-    let [got] = evaluate::<Covariance, 1>(&Layers::from(&stack), &read, None, Follow::Eye, wi, wo);
+    let table = tabulated(prepared.energy());
+    let [got] = evaluate::<Covariance, 1>(&Layers::from(&stack), &table, None, Follow::Eye, wi, wo);
     assert!(exact > 0.0 && (got - exact).abs() < 2e-3 * exact, "{got} against {exact}");
 }
 

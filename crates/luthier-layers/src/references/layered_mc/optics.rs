@@ -1,8 +1,6 @@
 //! Fresnel split of light at one facet or at a smooth interface: reflected and transmitted shares, from both sides.
 
-use std::f64::consts::PI;
-
-use luthier_optics::fresnel::{FilmLayer, coated};
+use luthier_optics::fresnel::{FilmLayer, coated, transmitted};
 use num_complex::Complex64;
 
 /// Side of an interface.
@@ -183,7 +181,7 @@ impl Optics {
             }
         };
         let transmittance = if cos_t > 0.0 && cos > 0.0 {
-            transmittance(self.above, films, self.below, cos_above).clamp(0.0, 1.0 - reflectance)
+            transmitted(self.above, films, self.below, cos_above).clamp(0.0, 1.0 - reflectance)
         } else {
             0.0
         };
@@ -222,54 +220,6 @@ fn conductor(ior: Complex64, cos: f64, c_sq: f64) -> f64 {
     0.5 * refl_s * (1.0 + ratio)
 }
 
-/// Unpolarised transmittance of coherent films between transparent media: the amplitudes of Airy's recursion, times the
-/// ratio of the wave numbers along the normal (Born and Wolf sec. 1.6). By reciprocity it is the same from below.
-fn transmittance(above: f64, films: &[FilmLayer], below: f64, cos_theta_i: f64) -> f64 {
-    let above = Complex64::new(above, 0.0);
-    let below = Complex64::new(below, 0.0);
-    let q_above = above * cos_theta_i;
-    let normal = |ior: Complex64| sqrt((ior - above) * (ior + above) + q_above * q_above);
-    let medium = |i: usize| if i == 0 { (above, q_above) } else { (films[i - 1].ior, normal(films[i - 1].ior)) };
-    let q_below = normal(below);
-    let mut lower = (below, q_below);
-    // Per polarisation: reflected and transmitted amplitude of everything below the current medium.
-    let mut inner: Option<[(Complex64, Complex64); 2]> = None;
-    for i in (0..=films.len()).rev() {
-        let upper = medium(i);
-        let ((na, qa), (nb, qb)) = (upper, lower);
-        let (s, p) = (qa + qb, nb * nb * qa + na * na * qb);
-        let boundary = [((qa - qb) / s, 2.0 * qa / s), ((nb * nb * qa - na * na * qb) / p, 2.0 * na * nb * qa / p)];
-        inner = Some(match inner {
-            None => boundary,
-            Some(inner) => {
-                let once = exp_i(lower.1 * (2.0 * PI * films[i].waves));
-                [0, 1].map(|k| {
-                    let (r, t) = boundary[k];
-                    let echo = inner[k].0 * once * once;
-                    let sum = Complex64::ONE + r * echo;
-                    ((r + echo) / sum, t * once * inner[k].1 / sum)
-                })
-            }
-        });
-        lower = upper;
-    }
-    let power = inner.map_or(0.0, |[s, p]| 0.5 * (s.1.norm_sqr() + p.1.norm_sqr()));
-    power * q_below.re / q_above.re
-}
-
-/// The root with an imaginary part that is not negative, for arguments of that kind.
-fn sqrt(z: Complex64) -> Complex64 {
-    let modulus = libm::hypot(z.re, z.im);
-    let re = (0.5 * (modulus + z.re)).max(0.0).sqrt();
-    let im = (0.5 * (modulus - z.re)).max(0.0).sqrt();
-    Complex64::new(re, im)
-}
-
-fn exp_i(z: Complex64) -> Complex64 {
-    let amplitude = libm::exp(-z.im);
-    Complex64::new(amplitude * libm::cos(z.re), amplitude * libm::sin(z.re))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -297,13 +247,12 @@ mod tests {
 
     #[test]
     fn film_amplitudes_conserve_energy_without_absorption() {
-        // Reflectance and transmittance come from different recursions.
         for (films, n3) in [(vec![(1.38, 0.3)], 1.5), (vec![(2.2, 0.17), (1.3, 0.6)], 1.7), (vec![], 2.0)] {
             let films: Vec<FilmLayer> =
                 films.into_iter().map(|(n, waves)| FilmLayer { ior: c(n, 0.0), waves }).collect();
             for cos in [0.05, 0.4, 1.0] {
                 let r = coated(c(1.0, 0.0), &films, c(n3, 0.0), cos).unpolarised();
-                let t = transmittance(1.0, &films, n3, cos);
+                let t = transmitted(1.0, &films, n3, cos);
                 assert!((r + t - 1.0).abs() < 1e-12, "{cos}: {r} + {t}");
             }
         }
@@ -318,7 +267,7 @@ mod tests {
             let down = o.split(Side::Above, cos);
             let up = o.split(Side::Below, down.cos_theta_t);
             // The recursion from the other side, which the code does not run.
-            let turned = transmittance(1.5, &upward, 1.0, down.cos_theta_t);
+            let turned = transmitted(1.5, &upward, 1.0, down.cos_theta_t);
             assert!((down.transmittance - turned).abs() < 1e-12 && (up.transmittance - turned).abs() < 1e-12);
             assert!(down.transmittance > 0.01 && down.reflectance + down.transmittance < 0.999);
             assert!(up.reflectance + up.transmittance < 0.999);

@@ -33,7 +33,7 @@ fn interface(above: f64, below: Complex64, surface: Surface) -> MonochromeLayer 
     let below = if below.im > 0.0 {
         MonochromeBelow::Conductor { ior: below }
     } else {
-        MonochromeBelow::Dielectric { ior: below.re, complex_ior: below, optical_depth: 0.0 }
+        MonochromeBelow::dielectric(below.re, 0.0)
     };
     MonochromeLayer { surface, above, films: Vec::new(), below }
 }

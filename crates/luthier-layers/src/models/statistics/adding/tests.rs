@@ -6,33 +6,22 @@ use num_complex::Complex64;
 use proptest::prelude::*;
 
 use super::*;
-use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
+use crate::monochrome::{Monochrome, MonochromeBelow};
+use crate::statistics::fixtures::{NotTotal, fresnel};
 use crate::statistics::spread::{Covariance, alpha};
 
 fn glass(ior: f64, optical_depth: f64) -> MonochromeBelow {
-    MonochromeBelow::Dielectric { ior, complex_ior: Complex64::new(ior, 0.0), optical_depth }
+    MonochromeBelow::dielectric(ior, optical_depth)
 }
 
 /// Interfaces of (alpha, what is below), from the top.
 fn stack(layers: &[(f64, MonochromeBelow)]) -> Monochrome {
-    let mut above = 1.0;
-    let layers = layers.iter().map(|&(alpha, below)| {
-        let surface = Surface::isotropic(Distribution::Ggx, alpha);
-        let layer = MonochromeLayer { surface, above, films: Vec::new(), below };
-        if let MonochromeBelow::Dielectric { ior, .. } = below {
-            above = ior;
-        }
-        layer
-    });
-    Monochrome { exterior: 1.0, layers: layers.collect() }
+    let surfaced = |&(alpha, below)| (Surface::isotropic(Distribution::Ggx, alpha), below);
+    Monochrome::bare(&layers.iter().map(surfaced).collect::<Vec<_>>())
 }
 
 fn metal() -> MonochromeBelow {
     MonochromeBelow::Conductor { ior: Complex64::new(0.2, 3.5) }
-}
-
-fn fresnel(stack: &Monochrome) -> impl Energy<1> {
-    |layer: usize, cos: f64, _: f64| stack.layers[layer].reflectance(cos)
 }
 
 const COS_45: f64 = std::f64::consts::FRAC_1_SQRT_2;
@@ -106,16 +95,7 @@ fn base_under_a_rough_coat_has_the_published_width() {
     for (coat, base, expected) in [(0.4, 0.05, 0.214), (0.2, 0.2, 0.311), (0.3, 0.01, 0.139)] {
         let stack = stack(&[(coat, glass(1.5, 0.0)), (base, metal())]);
         let first_pass = |layer: usize, _: f64, _: f64| if layer == 0 { 0.0 } else { 1.0 };
-        struct FirstPass<E>(E);
-        impl<E: Energy<1>> Energy<1> for FirstPass<E> {
-            fn fgd(&self, layer: usize, cos: f64, alpha: f64) -> [f64; 1] {
-                self.0.fgd(layer, cos, alpha)
-            }
-            fn escaping(&self, _: usize, _: f64, _: f64, _: f64) -> f64 {
-                1.0
-            }
-        }
-        let lobe = add::<f64, 1>(&Layers::from(&stack), &FirstPass(first_pass), 1.0).lobes[1];
+        let lobe = add::<f64, 1>(&Layers::from(&stack), &NotTotal(first_pass), 1.0).lobes[1];
         assert!((alpha(lobe.spread) - expected).abs() < 6e-4, "{coat} {base}: {}", alpha(lobe.spread));
     }
 }
@@ -182,14 +162,14 @@ proptest! {
         reflectances in prop::collection::vec(prop_oneof![0.0..=1.0f64, Just(0.0), Just(1.0)], 7),
         cos in prop_oneof![0.0..=1.0f64, Just(0.0), Just(1.0), Just(1e-9)],
     ) {
-        let mut above = 1.0;
-        let layers = layers.iter().map(|&(alpha_x, alpha_y, ior, optical_depth)| {
-            let surface = Surface { distribution: Distribution::Ggx, alpha_x, alpha_y, rotation: ior };
-            let layer = MonochromeLayer { surface, above, films: Vec::new(), below: glass(ior, optical_depth) };
-            above = ior;
-            layer
-        });
-        let stack = Monochrome { exterior: 1.0, layers: layers.collect() };
+        let layers: Vec<_> = layers
+            .iter()
+            .map(|&(alpha_x, alpha_y, ior, optical_depth)| {
+                let surface = Surface { distribution: Distribution::Ggx, alpha_x, alpha_y, rotation: ior };
+                (surface, glass(ior, optical_depth))
+            })
+            .collect();
+        let stack = Monochrome::bare(&layers);
         let energy = |layer: usize, _: f64, _: f64| reflectances[layer];
         let scalar = add::<f64, 1>(&Layers::from(&stack), &energy, cos);
         let total = scalar.reflected()[0] + scalar.transmitted[0];
