@@ -148,6 +148,25 @@ mod tests {
         assert_eq!(letter(vec![coat(30.0, 0.0), coat(7.0, 0.0), diffuse()]), 'h');
     }
 
+    /// The labels of figure 4.4.
+    #[test]
+    fn classes_have_the_names_of_the_text() {
+        let labels = [
+            "a) Glossy Paint",
+            "b) Tinted Glazing",
+            "c) Frosted Paint",
+            "d) Metal Foil",
+            "e) Metallic Paint",
+            "f) Frosted Metal",
+            "g) Patina",
+            "h) Multi-Layer",
+        ];
+        assert_eq!(SurfaceClass::ALL.map(|class| class.to_string()), labels);
+        for (class, label) in SurfaceClass::ALL.into_iter().zip(labels) {
+            assert_eq!(format!("{}) {}", class.letter(), class.name()), label);
+        }
+    }
+
     #[test]
     fn one_layer_is_its_own_top_and_base() {
         assert_eq!(letter(vec![metal(0.0)]), 'd');

@@ -428,6 +428,7 @@ fn radius(distribution: Distribution, coordinate: f64) -> (f64, f64) {
 mod tests {
     use super::*;
     use crate::fresnel::interface;
+    use crate::microfacet::distribution;
     use crate::microsurface::reflecting_walk;
     use num_complex::Complex64;
 
@@ -484,6 +485,54 @@ mod tests {
                 for mu in [0.0, 0.01, 0.3, 0.7, 1.0] {
                     let s = FacetStatistics::new(d, alpha, mu, EFFORT, 0);
                     assert!((s.albedo(&white())[0] - 1.0).abs() < 1e-6, "{d:?} {alpha} {mu}");
+                }
+            }
+        }
+    }
+
+    /// Share of the first facets, and the means over them of the cosine at the facet and of the reflected height.
+    type Moments = [f64; 3];
+
+    fn add(sums: &mut Moments, weight: f64, cos_theta_d: f64, height: f64) {
+        sums.iter_mut().zip([1.0, cos_theta_d, height]).for_each(|(sum, x)| *sum += weight * x);
+    }
+
+    /// Oracle: visible normals on midpoints of the sphere, by whether they reflect above the horizon or below; both shares sum to 1,
+    /// Smith's normalisation.
+    #[test]
+    fn first_facets_are_the_visible_normals_on_either_side_of_the_horizon() {
+        // Circles of slopes that lie below the horizon as a whole begin inside a piece: the tails of GGX converge slowly.
+        for (d, converged) in [(Distribution::Beckmann, 1e-6), (Distribution::Ggx, 5e-4)] {
+            for (alpha, mu) in [(0.3, 0.2), (0.6, 0.1), (0.6, 0.7), (1.0, 0.5), (1.0, 1.0)] {
+                let surface = Microsurface::new(d, alpha, mu);
+                let found = [Horizon::Above, Horizon::Below].map(|horizon| {
+                    let mut sums = [0.0; 3];
+                    let visit = |f: FirstFacet| add(&mut sums, f.weight, f.cos_theta_d, f.reflected.z);
+                    surface.first_facets(192, horizon, visit);
+                    sums
+                });
+                let mut expected = [[0.0; 3]; 2];
+                let (thetas, phis) = (1500, 720);
+                for i in 0..thetas {
+                    let (sin, cos) = libm::sincos(0.5 * PI * (f64::from(i) + 0.5) / f64::from(thetas));
+                    for j in 0..phis {
+                        let phi = PI * (f64::from(j) + 0.5) / f64::from(phis);
+                        let cos_theta_d = (sin * libm::cos(phi) * surface.sin_i + cos * mu).max(0.0);
+                        let area = sin * PI * PI / f64::from(thetas * phis);
+                        let weight = distribution(d, alpha, cos, sin * sin) * cos_theta_d * area;
+                        let height = 2.0 * cos_theta_d * cos - mu;
+                        let side = &mut expected[usize::from(height < 0.0)];
+                        add(side, weight / (mu * (1.0 + surface.lambda_i)), cos_theta_d, height);
+                    }
+                }
+                let total = found[0][0] + found[1][0];
+                assert!((total - 1.0).abs() < converged, "{d:?} {alpha} {mu}: {total}");
+                for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
+                    // The midpoints miss parts of the cells that the horizon cuts.
+                    assert!(
+                        (found - expected).abs() < 2e-4 + converged,
+                        "{d:?} {alpha} {mu}: {found} against {expected}"
+                    );
                 }
             }
         }
