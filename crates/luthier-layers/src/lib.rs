@@ -14,6 +14,9 @@
 //! `f cos_theta_i`, the BRDF times the cosine of the incident direction: that stays finite where the BRDF alone does
 //! not.
 //!
+//! Stacks are described by [`luthier_optics`], directions are vectors of [`glam`], and indices complex numbers of [`num_complex`]; these
+//! crates are re-exported.
+//!
 //! Out of scope: reading material files, tables, devices.
 
 mod effects;
@@ -31,6 +34,13 @@ mod memo;
 pub mod model;
 pub mod monochrome;
 pub mod registry;
+
+/// Vectors, for directions and places.
+pub use glam;
+/// Descriptions of stacks, and the optics of their parts.
+pub use luthier_optics;
+/// Complex numbers, for indices.
+pub use num_complex;
 
 pub use self::noise::{perlin, voronoi};
 pub use effects::{flakes, fluorescence, heterogeneous, patina, textured};

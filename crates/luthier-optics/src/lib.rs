@@ -5,6 +5,8 @@
 //! slope parameter. Indices are `n + i k` with `k >= 0`. Lengths carry their unit in the name. Colour
 //! is linear Rec.709 with a D65 white.
 //!
+//! Directions are vectors of [`glam`] and indices complex numbers of [`num_complex`]; both crates are re-exported.
+//!
 //! Everything is deterministic: transcendental functions come from `libm`, so that the same input gives
 //! the same bits on every platform.
 //!
@@ -30,6 +32,11 @@ pub mod schlick;
 pub mod split_sum;
 pub mod stack;
 pub mod visible_normals;
+
+/// Vectors, for directions.
+pub use glam;
+/// Complex numbers, for indices and amplitudes.
+pub use num_complex;
 
 /// A value per colour channel: linear Rec.709, D65 white.
 pub type Rgb = [f64; 3];
