@@ -49,6 +49,7 @@ pub fn coated(above: Complex64, films: &[FilmLayer], below: Complex64, cos_theta
         films,
         below,
         cos_theta_i,
+        sqrt,
         |r, _, _| r,
         |boundary, inner, q, waves| {
             // The wave crosses the film down and up.
@@ -71,11 +72,17 @@ pub fn transmitted(above: f64, films: &[FilmLayer], below: f64, cos_theta_i: f64
     if q_above <= 0.0 || q_below_sq <= 0.0 {
         return 0.0;
     }
+    // Manifests of scenes state errors to the last digit, in which this root and `sqrt` differ.
+    let root = |z: Complex64| {
+        let modulus = libm::hypot(z.re, z.im);
+        let [re, im] = [z.re, -z.re].map(|x| libm::sqrt((0.5 * (modulus + x)).max(0.0)));
+        Complex64::new(re, im)
+    };
     let boundary = |[r_s, r_p]: [Complex64; 2], (na, qa): Medium, (nb, qb): Medium| {
         [(r_s, 2.0 * qa / (qa + qb)), (r_p, 2.0 * na * nb * qa / (nb * nb * qa + na * na * qb))]
     };
     let [above, below] = [above, below].map(|ior| Complex64::new(ior, 0.0));
-    let [s, p] = airy(above, films, below, cos_theta_i, boundary, |boundary, inner, q, waves| {
+    let [s, p] = airy(above, films, below, cos_theta_i, root, boundary, |boundary, inner, q, waves| {
         let once = exp_i(q * (2.0 * PI * waves));
         [0, 1].map(|p: usize| {
             let ((r, t), echo) = (boundary[p], inner[p].0 * once * once);
@@ -88,7 +95,7 @@ pub fn transmitted(above: f64, films: &[FilmLayer], below: f64, cos_theta_i: f64
 
 /// Amplitudes (s, p) that a bare interface reflects.
 pub(crate) fn amplitudes(above: Complex64, below: Complex64, cos_theta_i: f64) -> [Complex64; 2] {
-    airy(above, &[], below, cos_theta_i, |r, _, _| r, |boundary, _, _, _| boundary)
+    airy(above, &[], below, cos_theta_i, sqrt, |r, _, _| r, |boundary, _, _, _| boundary)
 }
 
 /// Index, and wave number along the normal over the vacuum's, `q = n cos theta`.
@@ -103,13 +110,14 @@ fn reflected((na, qa): Medium, (nb, qb): Medium) -> [Complex64; 2] {
 /// Airy's formula from the bottom up: r = (r_ab + r_below e^{i delta}) / (1 + r_ab r_below e^{i delta}) with
 /// delta = 4 pi n cos d / lambda (Born and Wolf sec. 7.6; Parratt 1954).
 ///
-/// `boundary` makes the amplitudes of the boundary between two media from those reflected. `join` makes those of a film and all below it
+/// `root` has real and imaginary parts that are not negative. `boundary` makes the amplitudes of the boundary between two media from those reflected. `join` makes those of a film and all below it
 /// from those of its upper boundary, those of all below it, its q, and its thickness in waves.
 fn airy<A>(
     above: Complex64,
     films: &[FilmLayer],
     below: Complex64,
     cos_theta_i: f64,
+    root: impl Fn(Complex64) -> Complex64,
     boundary: impl Fn([Complex64; 2], Medium, Medium) -> A,
     join: impl Fn(A, A, Complex64, f64) -> A,
 ) -> A {
@@ -119,7 +127,7 @@ fn airy<A>(
 
     // q^2 = n^2 - (n_above sin theta_above)^2, written so that nothing cancels between nearly equal indices.
     let q_above = above * cos_theta_i;
-    let normal = |ior: Complex64| sqrt((ior - above) * (ior + above) + q_above * q_above);
+    let normal = |ior: Complex64| root((ior - above) * (ior + above) + q_above * q_above);
 
     // Airy's formula is 0/0 for a film exactly at its critical angle. The reflectance is even in q, so a q kept off zero errs by
     // its square only, and by rounding over q.

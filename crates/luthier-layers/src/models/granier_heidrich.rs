@@ -33,7 +33,6 @@
 use std::f64::consts::{FRAC_1_PI, PI};
 
 use glam::DVec3;
-use luthier_optics::schlick::schlick;
 
 use crate::inputs::{Input, Inputs};
 use crate::model::{Claims, Kind, Model, ModelInfo};
@@ -230,4 +229,10 @@ impl GranierHeidrich {
         };
         self.specular_weight * specular + base * diffuse * FRAC_1_PI * wi.z
     }
+}
+
+/// Schlick 1994. Manifests of scenes state errors to the last digit, in which `luthier_optics::schlick` differs by its order of products.
+fn schlick(normal: f64, cos: f64) -> f64 {
+    let q = (1.0 - cos).max(0.0);
+    normal + (1.0 - normal) * (q * q) * (q * q) * q
 }
