@@ -3,7 +3,7 @@
 //! Files are staged in `.luthier-new/`. Its renaming to `.luthier-ready/` is the moment of publication: before it the folder
 //! holds the old generation, after it [`crate::Folder`] reads the new one. Then every file is moved to its place, the manifest last. A
 //! program that was killed between leaves `.luthier-ready/`, whose files the next publication moves before its own; a `.luthier-new/` is
-//! removed. One program publishes into a folder at a time: others wait for its lock on `.luthier.lock`.
+//! removed. One program publishes into a folder at a time: others wait for its lock on the folder.
 
 use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions};
@@ -18,7 +18,7 @@ use crate::{MANIFEST, PackageError};
 const NEW: &str = ".luthier-new";
 /// Folder of complete files that are being moved to their places.
 pub(crate) const READY: &str = ".luthier-ready";
-/// File that a program locks while it publishes.
+/// File that a program locks while it publishes, on systems where it cannot lock the folder.
 const LOCK: &str = ".luthier.lock";
 
 /// Folder of the report beside the manifest.
@@ -34,10 +34,8 @@ pub const REPORT_FILES: [&str; 3] = ["report/report.json", "report/report.md", "
 /// [`PackageError::Write`]; the folder then holds the files that it held.
 pub fn publish(folder: &Path, files: &[(&str, &[u8])]) -> Result<(), PackageError> {
     at("make the folder", folder, std::fs::create_dir_all(folder))?;
-    let lock = folder.join(LOCK);
-    let lock_file = OpenOptions::new().create(true).truncate(false).write(true).open(&lock);
-    let lock_file = at("write to", folder, lock_file)?;
-    at("lock", &lock, lock_file.lock())?;
+    let handle = at("write to", folder, handle(folder))?;
+    at("lock", folder, handle.lock())?;
     settle(folder)?;
     let new = folder.join(NEW);
     let staged = stage(folder, &new, files);
@@ -49,11 +47,20 @@ pub fn publish(folder: &Path, files: &[(&str, &[u8])]) -> Result<(), PackageErro
     settle(folder)
 }
 
-/// A lock that keeps others from publishing into a folder; `None` where nobody ever did, or where the folder cannot be written to.
+/// A lock that keeps others from publishing into a folder; `None` where the folder cannot be locked.
 pub(crate) fn shared(folder: &Path) -> Option<File> {
-    let lock = File::open(folder.join(LOCK)).ok()?;
-    lock.lock_shared().ok()?;
-    Some(lock)
+    let handle = handle(folder).ok()?;
+    handle.lock_shared().ok()?;
+    Some(handle)
+}
+
+/// The file by which a folder is locked: the folder itself, or, where folders are no files, one inside it.
+fn handle(folder: &Path) -> io::Result<File> {
+    if cfg!(unix) {
+        File::open(folder)
+    } else {
+        OpenOptions::new().create(true).truncate(false).write(true).open(folder.join(LOCK))
+    }
 }
 
 /// Writes all files into a folder of their own, and makes sure that nothing is in the way of any.
@@ -103,13 +110,13 @@ fn remove_stale(folder: &Path, next: &Path) -> Result<(), PackageError> {
     if old == next {
         return Ok(());
     }
-    let current: BTreeSet<String> = named_by(&next).into_iter().collect();
+    let current: BTreeSet<PathBuf> = named_by(&next).into_iter().chain([PathBuf::from(MANIFEST)]).collect();
     let mut stale = named_by(&old);
     if stale.is_empty() {
         return Ok(());
     }
     stale.retain(|path| !current.contains(path));
-    stale.extend(REPORT_FILES.map(str::to_owned));
+    stale.extend(REPORT_FILES.map(PathBuf::from));
     for path in stale.iter().map(|path| folder.join(path)).filter(|path| path.is_file()) {
         at("remove", &path, std::fs::remove_file(&path))?;
     }
@@ -119,7 +126,7 @@ fn remove_stale(folder: &Path, next: &Path) -> Result<(), PackageError> {
 }
 
 /// The files that a manifest of luthier, of any schema, names with a hash, as far as they lie inside its folder.
-fn named_by(manifest: &str) -> Vec<String> {
+fn named_by(manifest: &str) -> Vec<PathBuf> {
     let Ok(manifest) = serde_json::from_str::<Value>(manifest) else { return Vec::new() };
     if !manifest["generator"].as_str().is_some_and(|g| g.starts_with("luthier ")) {
         return Vec::new();
@@ -133,14 +140,14 @@ fn named_by(manifest: &str) -> Vec<String> {
                 if let (Some(Value::String(path)), Some(Value::String(_))) =
                     (entries.get("path"), entries.get("sha256"))
                 {
-                    paths.push(path.clone());
+                    paths.push(PathBuf::from(path));
                 }
                 open.extend(entries.values());
             }
             _ => {}
         }
     }
-    paths.retain(|p| Path::new(p).components().all(|part| matches!(part, Component::Normal(_))));
+    paths.retain(|path| path.components().all(|part| matches!(part, Component::Normal(_))));
     paths
 }
 

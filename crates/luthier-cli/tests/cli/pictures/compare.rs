@@ -41,7 +41,7 @@ fn tables_and_arithmetic_look_alike() {
 #[test]
 fn what_cannot_be_compared() {
     let workshop = Workshop::with(&[("a.toml", &matte("ash"))]);
-    workshop.run(&["compare", "a.toml", "--b", "fast", "-o", "no"]).fails(1, &["`fast`", "baked, full"]);
+    workshop.run(&["compare", "a.toml", "--b", "fast", "-o", "no"]).fails(2, &["`fast`", "baked, full"]);
     workshop.run(&["compare", "a.toml", "--b", "fong/full", "-o", "no"]).fails(2, &["`fong`", "phong"]);
     workshop.run(&["compare", "ash", "--a", "phong", "-o", "no"]).fails(1, &[".toml"]);
     workshop.run(&["compare", "a.toml", "--shape", "grid", "-o", "no"]).fails(1, &["grid"]);
