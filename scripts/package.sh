@@ -15,7 +15,7 @@ done
 
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-cargo package --workspace "${own[@]}" --locked --offline --allow-dirty $verify 2>&1 | tee "$log"
+cargo package --workspace "${own[@]}" --locked --allow-dirty $verify 2>&1 | tee "$log"
 if grep -q '^warning' "$log"; then
   echo "error: packages with warnings"
   exit 1
