@@ -61,7 +61,7 @@ impl Scene {
     /// is another one.
     ///
     /// # Errors
-    /// [`GpuError::NoShader`], and as [`Gpu::scene`](crate::Gpu::scene) for the tables.
+    /// [`PackageError::NoShader`](crate::PackageError::NoShader), and as [`Gpu::scene`](crate::Gpu::scene) for the tables.
     pub fn rebound(&self, package: &Package) -> Result<Option<Self>, GpuError> {
         if package.wgsl(self.form)? != self.wgsl {
             return Ok(None);

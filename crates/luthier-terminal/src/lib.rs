@@ -4,7 +4,7 @@
 //! # In detail
 //!
 //! - [`Failure`]: why a command ends with another code than 0, and the codes. A verb returns an [`Outcome`];
-//! - [`print`], [`deliver`], [`complain`]: the standard streams, whose readers may be gone;
+//! - [`print()`], [`deliver`], [`complain`]: the standard streams, whose readers may be gone;
 //! - [`Bar`]: progress of work that takes longer than a second;
 //! - [`valid`]: the materials of files, with their diagnostics printed;
 //! - [`Sources`], [`named`]: options that many verbs have; [`parse`] reads a command line;
