@@ -1,5 +1,6 @@
 //! The manual at the top of a text names what is in the text, all of it, and nothing else.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
@@ -8,8 +9,8 @@ use luthier_lut::TableKind;
 use luthier_manifest::MaterialEntry;
 use luthier_shader::{Form, MaterialSet, Target, bindings, complete, emit, emit_constant, identifier};
 
-/// Functions of the shader's face, as ARCHITECTURE.md has them.
-fn face() -> Vec<String> {
+/// Functions of the shader's face, as ARCHITECTURE.md has them, each once.
+fn face() -> BTreeSet<String> {
     let page = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../ARCHITECTURE.md")).unwrap();
     let part = page.split("## The shader's face").nth(1).unwrap().split("\n\nA material has a model").next().unwrap();
     let quoted = part.split('`').skip(1).step_by(2);
