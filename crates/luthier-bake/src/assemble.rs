@@ -2,20 +2,18 @@
 
 use std::collections::BTreeMap;
 
-use luthier_lut::{Atlas, AtlasLayout, Axis, FormatSet, Image, RowBase, TableKind, TexelFormat, Tile};
-use luthier_manifest::{Budget, CandidateForm, ColorMode, LayerRecord, MaterialConstants, Search, ShadingModel};
+use luthier_lut::{Atlas, AtlasLayout, FormatSet, Image, Mapping, RowBase, TableKind, TexelFormat, Tile};
+use luthier_manifest::{Budget, CandidateForm, ColorMode, LayerRecord, MaterialConstants, Search, ShadingModel, Tiles};
 use luthier_material::Material;
 use luthier_optics::interface::Interface;
 
 use crate::constants::constants;
-use crate::fresnel::RowShape;
-use crate::graph::{Observer, Results, Silent};
-use crate::job::{JobKind, Key};
+use crate::graph::{JobKind, Key, Observer, Results, Silent};
 use crate::limits;
 use crate::maps::{MaterialMap, maps};
-use crate::plan::{ImageReader, Plan, PlannedLayers, Tiles, color, color_mode, shading_model};
+use crate::plan::{ImageReader, Plan, PlannedLayers, TileList, color, color_mode, shading_model};
 use crate::search;
-use crate::settings::Settings;
+use crate::settings::{Settings, Shape};
 use crate::{AIM, BakeError, DEFAULT_BUDGET, MemoryStore, Store};
 
 /// Tables, records and maps that a set of materials needs at run time.
@@ -48,7 +46,7 @@ impl BakedMaterial {
     /// Leaves every layer without tiles, as shaders have it that read no tables.
     pub fn forget_tables(&mut self) {
         let bare = self.constants.patina.as_mut().map(|patina| &mut patina.bare);
-        self.records.iter_mut().chain(bare).for_each(LayerRecord::forget_tiles);
+        self.records.iter_mut().chain(bare).for_each(|record| record.tiles = Tiles::default());
     }
 }
 
@@ -124,13 +122,17 @@ pub fn kinked_rows(material: &Material, read_image: ImageReader<'_>) -> Result<V
     }
     let Planned { plan, results, .. } =
         plan(materials, &Options::default(), read_image, &Silent, &MemoryStore::default())?;
-    if !plan.settings.asked.leaves(TableKind::Fresnel) {
+    if !plan.settings.leaves(TableKind::Fresnel) {
         return Ok(Vec::new());
     }
-    let results = plan.graph.only(&[JobKind::Fresnel]).run(&Silent, &MemoryStore::default(), results);
+    let results = plan.graph.only(|job| job.kind() == JobKind::tile(TableKind::Fresnel)).run(
+        &Silent,
+        &MemoryStore::default(),
+        results,
+    );
     let rows = &plan.tiles[TableKind::Fresnel as usize].tiles;
     let error = |layer: usize| {
-        let (_, key) = rows.get(plan.records[0].layers[layer].fresnel_tile? as usize)?;
+        let (_, key) = rows.get(plan.records[0].layers[layer].tiles[TableKind::Fresnel]? as usize)?;
         Some((layer, results.find(*key)?.error.max_abs_err))
     };
     Ok(layers.into_iter().filter_map(error).filter(|(_, error)| *error > AIM).collect())
@@ -183,7 +185,7 @@ pub fn bake_with(
     let Plan { settings, graph, tiles, records } = plan;
     let results = graph.run(observer, store, results);
     let is_asked = !options.search || !budget(materials, &options.budget)?.is_empty();
-    let aim = |kind: TableKind| (!is_asked && settings.asked.leaves(kind)).then_some(AIM);
+    let aim = |kind: TableKind| (!is_asked && settings.leaves(kind)).then_some(AIM);
     let atlas = |(kind, layout, format)| atlas(kind, layout, format, &tiles[kind as usize], &results, aim(kind));
     let atlases = layouts.into_iter().map(atlas).collect();
     Ok(Baked { atlases, materials: baked_materials(materials, records), searches })
@@ -207,7 +209,8 @@ fn plan(
     store: &dyn Store,
 ) -> Result<Planned, BakeError> {
     check(materials, options).map_err(|mut errors| errors.swap_remove(0))?;
-    let mut settings = Settings { formats: options.formats, ..Settings::of(materials)? };
+    let mut settings = Settings::of(materials)?;
+    settings.formats = options.formats;
     if let Some(rows) = options.rows {
         settings.take_rows(rows);
     }
@@ -222,7 +225,7 @@ fn plan(
     // Costly tables are made once; candidates are compared with them.
     let mut results = Results::default();
     if is_asked {
-        results = fixed.graph.only(&search::READ).run(observer, store, results);
+        results = fixed.graph.intermediate().run(observer, store, results);
     }
     let mut found = if is_asked { search::candidates(&fixed, &results, &budget) } else { search::by_default(&fixed) };
     found.iter_mut().for_each(|found| fitting(found, &fixed));
@@ -236,7 +239,6 @@ fn plan(
             u64::from(width) * u64::from(height) * u64::from(format.texel_bytes())
         })
         .sum();
-    let kinds = [JobKind::Fresnel, JobKind::Distribution, JobKind::Phase, JobKind::Fgd, JobKind::Film];
     let mut plan = fixed;
     let (mut chosen, mut refusal) = (Vec::new(), None);
     for _ in 0..ROUNDS {
@@ -257,11 +259,11 @@ fn plan(
         };
         let mut settings = settings.clone();
         for (kind, &choice) in found.iter().zip(&chosen) {
-            search::apply(&mut settings, kind.kind, &kind.candidates[choice].form);
+            settings.apply(kind.kind, &kind.candidates[choice].form);
         }
         plan = Plan::new(materials, settings, read_image)?;
         // The measurement of the bake itself climbs to the worst points; it has the last word.
-        let exact = plan.graph.only(if is_asked { &kinds } else { &kinds[..1] });
+        let exact = plan.graph.only(|job| searched.iter().any(|&kind| job.kind() == JobKind::tile(kind)));
         results = exact.run(observer, store, results);
         let mut is_confirmed = true;
         for (kind, &choice) in found.iter_mut().zip(&chosen) {
@@ -317,7 +319,7 @@ fn budget(materials: &[Material], given: &Budget) -> Result<Budget, BakeError> {
     Ok(budget)
 }
 
-fn used(tiles: &[Tiles; TableKind::ALL.len()]) -> impl Iterator<Item = (TableKind, &Tiles)> {
+fn used(tiles: &[TileList; TableKind::ALL.len()]) -> impl Iterator<Item = (TableKind, &TileList)> {
     TableKind::ALL.into_iter().zip(tiles).filter(|(_, tiles)| !tiles.tiles.is_empty())
 }
 
@@ -332,40 +334,12 @@ fn baked_materials(materials: &[Material], records: Vec<PlannedLayers>) -> Vec<B
     materials.iter().zip(records).map(baked).collect()
 }
 
-/// Axes, format and base of one kind of table.
-struct Shape<'a> {
-    x: &'a Axis,
-    y: Option<&'a Axis>,
-    format: TexelFormat,
-    base: RowBase,
-}
-
-/// The shape of a kind; none where its values are computed.
-fn shape(kind: TableKind, settings: &Settings) -> Option<Shape<'_>> {
-    let ([x, y], format) = match kind {
-        TableKind::Fresnel => {
-            let RowShape { axis, format, base } = &settings.fresnel;
-            return Some(Shape { x: axis, y: None, format: *format, base: *base });
-        }
-        TableKind::Phase => {
-            let (x, format) = settings.phase.as_ref()?;
-            return Some(Shape { x, y: None, format: *format, base: RowBase::Zero });
-        }
-        TableKind::Distribution => settings.distribution.as_ref()?,
-        TableKind::Fgd => &settings.fgd,
-        TableKind::Thickness => &settings.thickness,
-        TableKind::Film => &settings.film,
-        TableKind::Escape => &settings.escape,
-    };
-    Some(Shape { x, y: Some(y), format: *format, base: RowBase::Zero })
-}
-
 /// Kind, layout and texel format of each table of a plan, in binding order.
 fn layouts(plan: &Plan) -> Result<Vec<(TableKind, AtlasLayout, TexelFormat)>, BakeError> {
-    let layout = |(kind, tiles): (TableKind, &Tiles)| {
-        let Shape { x, y, base, format } = shape(kind, &plan.settings)?;
-        let (apron, tiles) = (u32::from(kind == TableKind::Thickness), tiles.tiles.len() as u32);
-        let layout = AtlasLayout { x: x.clone(), y: y.cloned(), apron, columns: 1, tiles, base };
+    let layout = |(kind, tiles): (TableKind, &TileList)| {
+        let Shape { x, y, base, format } = plan.settings.shape(kind)?.clone();
+        let (apron, tiles) = (u32::from(x.mapping == Mapping::Periodic), tiles.tiles.len() as u32);
+        let layout = AtlasLayout { x, y, apron, columns: 1, tiles, base };
         Some(match limits::columns(&layout) {
             Some(columns) => Ok((kind, AtlasLayout { columns, ..layout }, format)),
             None => Err(limits::too_many_tiles(kind, &layout)),
@@ -378,7 +352,7 @@ fn atlas(
     kind: TableKind,
     layout: AtlasLayout,
     format: TexelFormat,
-    tiles: &Tiles,
+    tiles: &TileList,
     results: &Results,
     aim: Option<f64>,
 ) -> Atlas {

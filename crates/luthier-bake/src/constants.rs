@@ -6,14 +6,14 @@ use luthier_manifest::{FlakesRecord, GlitterRecord, LayerRecord, MaterialConstan
 use luthier_material::{Effects, FlakeSource, Glitter, Material};
 use luthier_optics::stack::Stack;
 
-use crate::plan::{color, is_statistical, shading_model};
+use crate::plan::{color, shading_model};
 use crate::veil::veil;
 
 /// The constants of a material; `bare` is the layer below its patina.
 pub(crate) fn constants(material: &Material, bare: Option<LayerRecord>) -> MaterialConstants {
     let (stack, color) = (&material.stack, color(material));
     let (internal_reflectance, upward_loss) =
-        if is_statistical(shading_model(material)) { veil(stack, &color) } else { ([0.0; 3], 0.0) };
+        if shading_model(material).is_statistical() { veil(stack, &color) } else { ([0.0; 3], 0.0) };
     MaterialConstants {
         phong_diffuse: in_color(stack, &color, |one| Coefficients::of(one).diffuse),
         phong_specular: in_color(stack, &color, |one| Coefficients::of(one).specular),

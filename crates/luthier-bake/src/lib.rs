@@ -13,39 +13,26 @@
 //! geometric mean of their slope parameters.
 
 mod assemble;
-mod balance;
 mod constants;
-mod distribution;
 mod error;
-mod escape;
-mod facet_grid;
-mod fgd;
-mod film;
-mod fresnel;
 mod graph;
 mod grid;
-mod job;
 mod json;
+mod kinds;
 mod limits;
 mod maps;
-mod phase;
 mod plan;
 mod records;
-mod relief;
 mod search;
 mod settings;
-mod smooth;
-mod store;
-mod thickness;
+mod tile;
 mod veil;
 
 pub use assemble::{
     Baked, BakedMaterial, Options, Outline, bake, bake_with, check, kinked_rows, outline, outline_with,
 };
 pub use error::BakeError;
-pub use graph::{Observer, Silent};
-pub use job::{JobKind, Key};
+pub use graph::{Artefact, JobKind, Key, MemoryStore, Observer, Silent, Store};
 pub use maps::{MapSource, MaterialMap};
 pub use plan::ImageReader;
 pub use search::{AIM, DEFAULT_BUDGET, goals};
-pub use store::{Artefact, MemoryStore, Store};

@@ -33,10 +33,8 @@ pub(crate) fn columns(layout: &AtlasLayout) -> Option<u32> {
 pub(crate) fn too_many_tiles(kind: TableKind, layout: &AtlasLayout) -> BakeError {
     let tile = layout.tile_size();
     let [across, down] = grid(tile, SIDE_MAX);
-    let setting = match kind {
-        TableKind::Film | TableKind::Escape => String::new(),
-        _ => format!("make the tiles smaller (`size` in [bake.{}]), or ", kind.name()),
-    };
+    let setting = format!("make the tiles smaller (`size` in [bake.{}]), or ", kind.name());
+    let setting = if kind.facts().has_settings { setting.as_str() } else { "" };
     let hint = format!("{setting}bake the materials into several folders");
     BakeError::TooManyTiles { kind, tiles: layout.tiles, tile, most: across * down, hint }
 }

@@ -4,7 +4,7 @@ use luthier_lut::Image;
 use luthier_manifest::MapSlot;
 use luthier_material::{FlakeSource, Material, VariationSource};
 
-use crate::relief::{Field, Relief};
+use crate::kinds::thickness::relief::{Field, Relief};
 
 /// Side of the maps that noise is baked to.
 const NOISE_SIDE: u32 = 256;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use luthier_export::{Source, read_image, read_one};
 use luthier_lut::TableKind;
-use luthier_manifest::{LayerRecord, Manifest};
+use luthier_manifest::Manifest;
 use luthier_material::{Diagnostic, Material, Severity};
 use luthier_terminal::{Outcome, complain};
 
@@ -12,14 +12,11 @@ use luthier_terminal::{Outcome, complain};
 pub(crate) fn name(manifest: &Manifest, quiet: bool) -> Outcome<Vec<Diagnostic>> {
     let mut warnings = Vec::new();
     for table in &manifest.tables {
-        let tile = |record: &LayerRecord| match table.kind {
-            TableKind::Fresnel => record.fresnel_tile,
-            TableKind::Fgd => record.fgd_tile,
-            _ => None,
-        };
         for material in &manifest.materials {
             for (layer, record) in material.layers.iter().enumerate() {
-                let Some(tile) = tile(record).and_then(|tile| table.tiles.get(tile as usize)) else { continue };
+                let Some(tile) = record.tiles[table.kind].and_then(|tile| table.tiles.get(tile as usize)) else {
+                    continue;
+                };
                 let Some((error, aim)) = tile.miss() else { continue };
                 let source = read_one(Path::new(&material.source))?;
                 let Ok(parsed) = &source.parsed else { continue };

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use luthier_lut::{AtlasLayout, Axis, Image, Mapping, RowBase, TableKind, Tile};
+use luthier_lut::{AtlasLayout, Axis, Image, Mapping, RowBase, TableKind, Tile, Values};
 use luthier_manifest::{FileEntry, Manifest, ShaderEntry, TableEntry, material_buffer};
 use luthier_texture::{Metadata, exr, ktx2, png};
 use sha2::{Digest, Sha256};
@@ -68,7 +68,7 @@ impl Package {
             return Err(PackageError::NoTruth { kind });
         };
         // Thickness without slopes is one channel of the kind's four.
-        let channels = if truth.channels == 1 { &["Y"] } else { kind.channels() };
+        let channels = if truth.channels == 1 { &["Y"] } else { kind.facts().channels };
         let texture = match compression {
             Compression::Zstd => ktx2::encode(&table.texture)?,
             Compression::None => ktx2::encode_plain(&table.texture)?,
@@ -165,7 +165,7 @@ fn picture(kind: TableKind, truth: &Image) -> Image {
     let mut data = Vec::with_capacity(truth.texel_count() * channels as usize);
     for texel in truth.texels() {
         for &value in &texel[..channels as usize] {
-            data.push(if kind == TableKind::Phase { 0.25 * value + 0.5 } else { value });
+            data.push(if kind.facts().values == Values::Signed { 0.25 * value + 0.5 } else { value });
         }
     }
     Image { width: truth.width, height: truth.height, channels, data }

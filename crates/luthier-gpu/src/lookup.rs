@@ -31,7 +31,7 @@ impl Scene {
         if tile >= count {
             return Err(GpuError::NoTile { kind, tile, count });
         }
-        let kernel = KERNEL.replace("KERNEL_LOOKUP", call(kind));
+        let kernel = KERNEL.replace("KERNEL_LOOKUP", &call(kind, self.signature(kind).ok_or_else(missing)?));
         let pipeline = self.pipeline(&self.lookups[kind as usize], &kernel)?;
 
         let mut read = Vec::with_capacity(values.len());
@@ -50,17 +50,24 @@ impl Scene {
     }
 }
 
-/// The expression that reads a table, in terms of `at`.
-fn call(kind: TableKind) -> &'static str {
-    match kind {
-        TableKind::Fresnel => "vec4<f32>(luthier_lookup_fresnel(at.x, at.y), 0.0)",
-        TableKind::Distribution => "vec4<f32>(luthier_lookup_distribution(at.x, at.y, at.z, at.w), 0.0, 0.0, 0.0)",
-        TableKind::Fgd => "luthier_lookup_fgd(at.x, at.y, at.z)",
-        TableKind::Phase => "vec4<f32>(luthier_lookup_phase(at.x, at.y), 0.0)",
-        TableKind::Thickness => "luthier_lookup_thickness(at.x, at.yz)",
-        TableKind::Film => "vec4<f32>(luthier_lookup_film(at.x, at.y, at.z), 0.0)",
-        TableKind::Escape => "vec4<f32>(luthier_lookup_escape(at.x, at.y, at.z), 0.0, 0.0, 0.0)",
+/// The expression that reads a table, in terms of `at`: its components in their order are those of the look-up's arguments.
+fn call(kind: TableKind, (parameters, value): (&str, &str)) -> String {
+    let mut components = "xyzw".chars();
+    let mut argument = |declared: &str| {
+        let kind = declared.split_once(": ").map_or(declared, |(_, kind)| kind);
+        components.by_ref().take(width(kind)).collect::<String>()
+    };
+    let arguments: Vec<String> = parameters.split(", ").map(|declared| format!("at.{}", argument(declared))).collect();
+    let read = format!("luthier_lookup_{}({})", kind.name(), arguments.join(", "));
+    match width(value) {
+        4 => read,
+        channels => format!("vec4<f32>({read}{})", ", 0.0".repeat(4 - channels)),
     }
+}
+
+/// Numbers in a WGSL type: `f32` or a vector.
+fn width(kind: &str) -> usize {
+    kind.strip_prefix("vec").and_then(|rest| rest[..1].parse().ok()).unwrap_or(1)
 }
 
 /// The argument `at` of the kernel.

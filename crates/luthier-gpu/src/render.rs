@@ -118,7 +118,8 @@ impl Scene {
     /// [`GpuError::NoMaterial`].
     pub fn has_albedo(&self, material: u32) -> Result<bool, GpuError> {
         self.layers(material)?;
-        let is_known = |layer: &LayerRecord| layer.fgd_tile.is_some() || layer.film_tile.is_some();
+        let is_known =
+            |layer: &LayerRecord| layer.tiles[TableKind::Fgd].is_some() || layer.tiles[TableKind::Film].is_some();
         Ok(self.interfaces(material).all(|layer| has_reflectance(layer) && is_known(layer)))
     }
 
@@ -307,7 +308,7 @@ impl Scene {
 }
 
 fn has_reflectance(layer: &LayerRecord) -> bool {
-    layer.fresnel_tile.is_some() || layer.film_tile.is_some()
+    layer.tiles[TableKind::Fresnel].is_some() || layer.tiles[TableKind::Film].is_some()
 }
 
 fn blur_of(layer: &LayerRecord) -> Blur {
@@ -330,7 +331,12 @@ fn layer_words(layer: &LayerRecord, chain: f32) -> [[f32; 4]; 4] {
     let rgbw = |[r, g, b]: [f64; 3], w: f64| [r as f32, g as f32, b as f32, w as f32];
     [
         [kind, layer.alpha as f32, layer.eta as f32, chain],
-        [tile(layer.fresnel_tile), tile(layer.fgd_tile), tile(layer.film_tile), film_fraction as f32],
+        [
+            tile(layer.tiles[TableKind::Fresnel]),
+            tile(layer.tiles[TableKind::Fgd]),
+            tile(layer.tiles[TableKind::Film]),
+            film_fraction as f32,
+        ],
         rgbw(layer.optical_depth, layer.critical_cot_sq),
         rgbw(layer.albedo, 0.0),
     ]

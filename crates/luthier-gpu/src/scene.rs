@@ -101,6 +101,12 @@ impl Scene {
         self.wgsl.contains(&format!("fn luthier_lookup_{}(", kind.name()))
     }
 
+    /// Parameters and type of the value of the look-up of a table, as the shader declares them.
+    pub(crate) fn signature(&self, kind: TableKind) -> Option<(&str, &str)> {
+        let opening = format!("fn luthier_lookup_{}(", kind.name());
+        self.wgsl.lines().find_map(|line| line.strip_prefix(&opening)?.strip_suffix(" {")?.split_once(") -> "))
+    }
+
     /// Whether the shader has a function or a member of a structure.
     pub(crate) fn has(&self, declaration: &str) -> bool {
         self.wgsl.contains(declaration)

@@ -2,57 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Axis, Encoding, ErrorStats, Image, RowBase, SchlickBase, TexelFormat, WeightBits, bilinear};
-
-crate::named! {
-    /// Kind of a table, by its contents. One texture of each kind serves any number of materials.
-    #[derive(Serialize, Deserialize)]
-    #[serde(into = "&'static str", try_from = "String")]
-    pub enum TableKind("table") {
-        /// Fresnel reflectance over the cosine, RGB; one row per interface.
-        Fresnel = "fresnel",
-        /// `pi alpha^2 D` over angle and alpha; one tile per slope distribution.
-        Distribution = "distribution",
-        /// Directional albedo with all microsurface bounces over (cos_theta, alpha), RGB, and in A the luminance of
-        /// the part that never crossed the interface; one tile per interface.
-        Fgd = "fgd",
-        /// Granier's `2 cos(2 Phi)` over normalised thickness, RGB; one row per film.
-        Phase = "phase",
-        /// Granier's T_d over (u, v): normalised thickness, slopes, normalisation factor; one tile per varying film.
-        Thickness = "thickness",
-        /// Reflectance of an interface over the cosine and the thickness of its film, RGB; one tile per interface whose film varies.
-        Film = "film",
-        /// Share of a lobe inside a medium that is not totally reflected at its surface, over (cos_theta, alpha), the cosine being that of the
-        /// refracted direction outside; one tile per index.
-        Escape = "escape",
-    }
-}
-
-impl TableKind {
-    /// The channels of its unquantised values by name: those of a colour by letter, what is no colour by what it is. None is called A,
-    /// which viewers take for transparency.
-    pub fn channels(self) -> &'static [&'static str] {
-        match self {
-            Self::Fresnel | Self::Phase | Self::Film => &["R", "G", "B"],
-            Self::Distribution | Self::Escape => &["Y"],
-            Self::Fgd => &["R", "G", "B", "never_crossed.Y"],
-            Self::Thickness => &["R", "G", "B", "normalisation.Y"],
-        }
-    }
-
-    /// Binding number of its texture. 5 is the sampler, 6 the material buffer.
-    pub const fn binding(self) -> u32 {
-        match self {
-            Self::Fresnel => 0,
-            Self::Distribution => 1,
-            Self::Fgd => 2,
-            Self::Phase => 3,
-            Self::Thickness => 4,
-            Self::Film => 7,
-            Self::Escape => 8,
-        }
-    }
-}
+use crate::{Axis, Encoding, ErrorStats, Image, RowBase, SchlickBase, TableKind, TexelFormat, WeightBits, bilinear};
 
 /// Where every texel of an atlas lies: equal tiles in a grid, filled row by row.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -272,13 +222,5 @@ mod tests {
             AtlasLayout { x: axis(128, Mapping::Linear), y: None, apron: 0, columns: 2, tiles: 3, base: RowBase::Zero };
         assert_eq!(layout.position(1, [0.5, f64::NAN]), [128.5, 0.5]);
         assert_eq!(layout.position(2, [2.0, 0.0]), [127.5, 1.5]);
-    }
-
-    #[test]
-    fn bindings_follow_the_order_of_the_kinds() {
-        assert_eq!(TableKind::ALL.map(TableKind::binding), [0, 1, 2, 3, 4, 7, 8]);
-        for kind in TableKind::ALL {
-            assert_eq!(serde_json::to_string(&kind).unwrap(), format!("\"{}\"", kind.name()));
-        }
     }
 }

@@ -90,7 +90,7 @@ impl ShadingModel {
     /// Phong's coefficients are computed from the stack at normal incidence: what changes these is not left out.
     pub fn honours(self, feature: Feature, form: Form) -> bool {
         let is_chain = matches!(self, Self::Elek | Self::WeidlichWilkie);
-        let is_statistical = matches!(self, Self::Belcour | Self::Yamaguchi);
+        let is_statistical = self.is_statistical();
         match feature {
             Feature::NormalMap | Feature::RoughnessMap | Feature::Glitter | Feature::Films => true,
             Feature::InnerInterface | Feature::Absorption => is_chain || is_statistical || self == Self::Phong,

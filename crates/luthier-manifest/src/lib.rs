@@ -15,9 +15,11 @@ mod form;
 mod limits;
 mod manifest;
 mod model;
+mod reads;
 mod record;
 mod search;
 mod target;
+mod tiles;
 
 pub use choice::{MaterialChoice, SceneBudget, SceneCandidate, SceneChoice, SceneError, Verdict};
 pub use constants::{FlakesRecord, GlitterRecord, MaterialConstants, PatinaRecord};
@@ -34,3 +36,4 @@ pub use model::ShadingModel;
 pub use record::{LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, material_buffer};
 pub use search::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR, Search};
 pub use target::Target;
+pub use tiles::Tiles;

@@ -252,6 +252,8 @@ impl Manifest {
 
 #[cfg(test)]
 mod tests {
+    use crate::Tiles;
+
     use super::*;
     use luthier_lut::{Axis, ErrorStats, Mapping, Worst};
     use luthier_optics::stack::Distribution;
@@ -285,8 +287,7 @@ mod tests {
             eta: 1.5,
             optical_depth: [0.1, 0.2, 0.3],
             ior_n: [1.49, 1.5, 1.51],
-            fresnel_tile: Some(0),
-            distribution_tile: Some(1),
+            tiles: Tiles::of([(TableKind::Fresnel, 0), (TableKind::Distribution, 1)]),
             ..LayerRecord::default()
         };
         let table = |kind: TableKind, mapping| TableEntry {

@@ -2,16 +2,26 @@
 
 use std::f64::consts::{FRAC_1_PI, LOG2_E};
 
-use luthier_lut::refracted_cosine;
+use luthier_lut::{TableKind, refracted_cosine};
 use luthier_optics::stack::Distribution;
 use serde::{Deserialize, Serialize};
 
-use crate::{MaterialConstants, MaterialEntry};
+use crate::{MaterialConstants, MaterialEntry, Tiles};
 
 /// `vec4` words of a material's header in the material buffer.
 pub const MATERIAL_WORDS: usize = 11;
-/// `vec4` words of a layer in the material buffer.
-pub const LAYER_WORDS: usize = 11;
+/// `vec4` words of a layer in the material buffer: those of its numbers, and more where kinds of tables have slots beyond.
+pub const LAYER_WORDS: usize = {
+    let (mut words, mut i) = (11, 0);
+    while i < TableKind::ALL.len() {
+        let [word, _] = TableKind::ALL[i].facts().slot;
+        if word >= words {
+            words = word + 1;
+        }
+        i += 1;
+    }
+    words
+};
 
 /// Kind of a layer, to the shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -69,34 +79,12 @@ pub struct LayerRecord {
     /// those of interfaces with total reflection are; else 0.
     #[serde(default)]
     pub critical_cot_sq: f64,
-    /// Tile of the Fresnel atlas.
-    pub fresnel_tile: Option<u32>,
-    /// Tile of the distribution atlas.
-    pub distribution_tile: Option<u32>,
-    /// Tile of the FGD atlas.
-    pub fgd_tile: Option<u32>,
-    /// Tile of the phase atlas.
-    pub phase_tile: Option<u32>,
-    /// Tile of the thickness atlas.
-    pub thickness_tile: Option<u32>,
-    /// Tile of the film atlas.
-    pub film_tile: Option<u32>,
-    /// Tile of the escape atlas: for lobes in the layer's medium that meet its interface from below, over the cosine above the
-    /// interface of the refracted direction.
-    pub escape_tile: Option<u32>,
+    /// The tiles that serve the layer: fields `fresnel_tile` and so on.
+    #[serde(flatten)]
+    pub tiles: Tiles,
 }
 
 impl LayerRecord {
-    /// Leaves the layer without tiles: shaders compute what these would hold.
-    pub fn forget_tiles(&mut self) {
-        let Self {
-            fresnel_tile, distribution_tile, fgd_tile, phase_tile, thickness_tile, film_tile, escape_tile, ..
-        } = self;
-        for tile in [fresnel_tile, distribution_tile, fgd_tile, phase_tile, thickness_tile, film_tile, escape_tile] {
-            *tile = None;
-        }
-    }
-
     /// Whether the thickness of its film varies over the surface.
     pub fn varies(&self) -> bool {
         self.film_thickness_max_nm > self.film_thickness_nm
@@ -107,7 +95,8 @@ impl LayerRecord {
         refracted_cosine(self.critical_cot_sq, cos_theta)
     }
 
-    /// The words of the material buffer, in the order that the shader unpacks them. Tiles are numbers, -1 for none.
+    /// The words of the material buffer, in the order that the shader unpacks them. Tiles are numbers, -1 for none, where
+    /// [`luthier_lut::KindFacts::slot`] says.
     ///
     /// | word | x, y, z, w |
     /// |---|---|
@@ -134,26 +123,25 @@ impl LayerRecord {
         };
         let is_ggx = self.distribution == Distribution::Ggx;
         let distribution = if is_ggx { 1.0 } else { 0.0 };
-        let tile = |t: Option<u32>| t.map_or(-1.0, |t| t as f32);
         let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
         let (sharpness, unit) = (inverse(self.alpha * self.alpha), if is_ggx { 1.0 } else { LOG2_E });
         let grazing_cos_sq = (self.eta - 1.0) * (self.eta + 1.0) / (self.eta * self.eta).max(f64::MIN_POSITIVE);
         let rgbw = |rgb: [f64; 3], w: f32| [rgb[0] as f32, rgb[1] as f32, rgb[2] as f32, w];
-        [
+        let numbers = [
             [
                 (sharpness * unit) as f32,
                 (sharpness * 0.25 * FRAC_1_PI) as f32,
                 inverse(self.eta) as f32,
                 grazing_cos_sq as f32,
             ],
-            [tile(self.fresnel_tile), tile(self.distribution_tile), tile(self.fgd_tile), tile(self.phase_tile)],
-            rgbw(self.optical_depth.map(|depth| depth * LOG2_E), tile(self.thickness_tile)),
+            [0.0; 4],
+            rgbw(self.optical_depth.map(|depth| depth * LOG2_E), 0.0),
             rgbw(self.albedo.map(|albedo| albedo * FRAC_1_PI), distribution),
             rgbw(self.ior_n, self.film_thickness_nm as f32),
             rgbw(self.ior_k, self.film_thickness_max_nm as f32),
-            rgbw(self.film_ior_n, tile(self.film_tile)),
+            rgbw(self.film_ior_n, 0.0),
             rgbw(self.film_ior_k, self.critical_cot_sq as f32),
-            rgbw(self.film_thickness_waves, tile(self.escape_tile)),
+            rgbw(self.film_thickness_waves, 0.0),
             [
                 self.alpha_xy[0] as f32,
                 self.alpha_xy[1] as f32,
@@ -161,7 +149,14 @@ impl LayerRecord {
                 libm::sin(self.rotation) as f32,
             ],
             [whole(kind), self.alpha as f32, self.eta as f32, self.sigma as f32],
-        ]
+        ];
+        let mut words = [[0.0; 4]; LAYER_WORDS];
+        words[..numbers.len()].copy_from_slice(&numbers);
+        for kind in TableKind::ALL {
+            let [word, component] = kind.facts().slot;
+            words[word][component] = self.tiles[kind].map_or(-1.0, |tile| tile as f32);
+        }
+        words
     }
 }
 
@@ -220,13 +215,15 @@ mod tests {
             film_thickness_nm: 25.0,
             film_thickness_max_nm: 26.0,
             critical_cot_sq: 35.0,
-            fresnel_tile: Some(27),
-            distribution_tile: Some(28),
-            fgd_tile: None,
-            phase_tile: Some(0),
-            thickness_tile: None,
-            film_tile: Some(33),
-            escape_tile: Some(34),
+            tiles: Tiles::default().with([
+                (TableKind::Fresnel, Some(27)),
+                (TableKind::Distribution, Some(28)),
+                (TableKind::Fgd, None),
+                (TableKind::Phase, Some(0)),
+                (TableKind::Thickness, None),
+                (TableKind::Film, Some(33)),
+                (TableKind::Escape, Some(34)),
+            ]),
         }
     }
 

@@ -78,7 +78,7 @@ impl BakeSettings {
             TableKind::Fgd => self.fgd != GridSettings::default(),
             TableKind::Phase => self.phase != RowSettings::default(),
             TableKind::Thickness => self.thickness != RowSettings::default(),
-            TableKind::Film | TableKind::Escape => false,
+            _ => false,
         };
         is_set || self.tables.contains(&kind)
     }

@@ -6,7 +6,7 @@ use std::ops::Range as Span;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Layer, Slab, Stack};
 
-use luthier_lut::TableKind;
+use luthier_lut::Served;
 use luthier_manifest::{ColorMode, ShadingModel};
 
 use crate::bake_settings::BakeSettings;
@@ -129,15 +129,13 @@ fn empty_tables(stack: &Stack, bake: &BakeSettings, sources: &Sources, sink: &mu
     let at = sources.places.span("bake.tables");
     let has = |is: fn(&Layer) -> bool| stack.layers.iter().any(is);
     for kind in &bake.tables {
-        let (is_some, reason) = match kind {
-            TableKind::Fresnel | TableKind::Distribution | TableKind::Fgd => {
-                (has(|layer| !matches!(layer.base, Base::Diffuse(_))), "no layer is an interface")
-            }
-            TableKind::Escape => {
+        let (is_some, reason) = match kind.facts().served {
+            Served::Interfaces => (has(|layer| !matches!(layer.base, Base::Diffuse(_))), "no layer is an interface"),
+            Served::Transparent => {
                 (has(|layer| matches!(layer.base, Base::Dielectric { .. })), "no layer is transparent")
             }
-            TableKind::Phase => (has(|layer| !layer.films.is_empty()), "no layer has a film"),
-            TableKind::Thickness | TableKind::Film => (
+            Served::Films => (has(|layer| !layer.films.is_empty()), "no layer has a film"),
+            Served::VaryingFilms => (
                 has(|layer| layer.films.iter().any(|film| film.thickness.max_nm > film.thickness.min_nm)),
                 "no film varies in thickness",
             ),

@@ -16,7 +16,7 @@ use crate::exceptions::{Factors, Miss, exception};
 use crate::report::{Compared, Comparison, MaterialReport, REPORT_SCHEMA, Report, TableReport};
 use crate::seen::SeenBy;
 use crate::statistics::{brightest, relative_error};
-use crate::table_terms::{TableTerms, Weights, is_statistical, recorded_veil};
+use crate::table_terms::{TableTerms, Weights, recorded_veil};
 use crate::{
     AngleProfile, Device, DirectionSet, Exceedance, FLOOR, Form, Pair, ReportError, Statistics, Subject,
     TARGET_MAX_REL_ERR, format, scan, statistics,
@@ -239,7 +239,7 @@ impl References {
             twin: twin.ok_or_else(|| ReportError::Model { material: material.name.clone(), model })?,
             spectral: Exact::new(stack, Color::Spectral),
             three: Exact::new(stack, three),
-            level: is_statistical(model).then(|| Exact::level(stack, three, recorded_veil(material))),
+            level: model.is_statistical().then(|| Exact::level(stack, three, recorded_veil(material))),
             color: material.color,
         })
     }

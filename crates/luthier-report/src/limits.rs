@@ -1,6 +1,6 @@
 //! Limits that a report is held against.
 
-use luthier_lut::TableKind;
+use luthier_lut::Values;
 use luthier_manifest::Budget;
 use serde::{Deserialize, Serialize};
 
@@ -65,7 +65,7 @@ pub fn limits(report: &Report, files: &[FileBudget], asked: &Asked) -> Vec<Limit
         let read = || {
             let reads = |users: &[String]| users.iter().any(|u| u.split('/').next() == Some(material.name.as_str()));
             // Thickness textures are pictures.
-            let tables = report.tables.iter().filter(|t| t.kind != TableKind::Thickness);
+            let tables = report.tables.iter().filter(|t| t.kind.facts().values != Values::Picture);
             tables.flat_map(|t| &t.tiles).filter(move |tile| reads(&tile.users))
         };
         let measured = read().map(|tile| tile.judge.as_ref().unwrap_or(&tile.baker).max_abs_err);

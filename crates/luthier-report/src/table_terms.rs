@@ -3,8 +3,8 @@
 use luthier_layers::statistics::diffuse_base::Veil;
 use luthier_layers::statistics::energy::Energy;
 use luthier_layers::terms::{ShaderTerms, Terms};
-use luthier_lut::{TableKind, TexelFormat, WeightBits, read};
-use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry, ShadingModel};
+use luthier_lut::{TableKind, TexelFormat, Values, WeightBits, read};
+use luthier_manifest::{LayerRecord, MaterialEntry};
 use luthier_optics::Rgb;
 use luthier_optics::microfacet::scaled_distribution;
 use luthier_optics::stack::Distribution;
@@ -41,29 +41,30 @@ impl Table<'_> {
     }
 }
 
-/// Quantity of the x axis of a table over an angle.
+/// Whether the x axis of a table is an angle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum AngleAxis {
     Theta,
+    /// The cosine of an angle, or no angle at all.
     CosTheta,
 }
 
 impl AngleAxis {
-    /// The quantity of a Fresnel, distribution or FGD table.
+    /// The quantity of the x axis of a table.
     ///
     /// # Errors
     /// [`ReportError::Layout`] when the axes are not those of such a table.
     pub(crate) fn of(table: &Table<'_>) -> Result<Self, ReportError> {
         let kind = table.entry.kind;
+        let (layout, facts) = (&table.entry.layout, kind.facts());
         let refuse = |reason| Err(ReportError::Layout { kind, reason });
-        if kind != TableKind::Fresnel && table.entry.layout.y.is_none() {
-            return refuse("it has no alpha axis");
+        if facts.y.is_some() && layout.y.is_none() {
+            return refuse("it has no second axis");
         }
-        match table.entry.layout.x.quantity.as_str() {
-            "theta" | "theta_h" => Ok(Self::Theta),
-            "cos_theta" | "cos_theta_h" => Ok(Self::CosTheta),
-            _ => refuse("its x axis is neither an angle nor a cosine"),
+        if !facts.x.contains(&layout.x.quantity.as_str()) {
+            return refuse("its x axis is not of a quantity that such tables have");
         }
+        Ok(if layout.x.quantity.starts_with("theta") { Self::Theta } else { Self::CosTheta })
     }
 
     /// The axis value of an angle, from its cosine and squared sine.
@@ -94,12 +95,8 @@ impl AngleAxis {
 /// Terms of one material, read from the shipped tables with f64 arithmetic.
 #[derive(Debug)]
 pub struct TableTerms<'a> {
-    fresnel: Option<(Table<'a>, AngleAxis)>,
-    distribution: Option<(Table<'a>, AngleAxis)>,
-    phase: Option<Table<'a>>,
-    film: Option<Table<'a>>,
-    fgd: Option<(Table<'a>, AngleAxis)>,
-    escape: Option<Table<'a>>,
+    /// By kind, with the quantity of the x axis.
+    tables: [Option<(Table<'a>, AngleAxis)>; TableKind::ALL.len()],
     veil: Veil<3>,
     records: &'a [LayerRecord],
     weights: Weights,
@@ -111,29 +108,26 @@ impl<'a> TableTerms<'a> {
     /// # Errors
     /// A table that does not fit its layout, or a layer that needs a tile and has none.
     pub fn new(subject: &'a Subject<'_>, material: usize, weights: Weights) -> Result<Self, ReportError> {
-        let with_angle = |kind| match subject.table(kind)? {
-            Some(table) => Ok(Some((table, AngleAxis::of(&table)?))),
-            None => Ok::<_, ReportError>(None),
-        };
         let Some(entry) = subject.manifest.materials.get(material) else {
             return Err(ReportError::MaterialCount {
                 manifest: subject.manifest.materials.len(),
                 stacks: subject.stacks.len(),
             });
         };
-        let terms = Self {
-            fresnel: with_angle(TableKind::Fresnel)?,
-            distribution: with_angle(TableKind::Distribution)?,
-            phase: subject.table(TableKind::Phase)?,
-            film: subject.table(TableKind::Film)?,
-            fgd: with_angle(TableKind::Fgd)?,
-            escape: subject.table(TableKind::Escape)?,
-            veil: recorded_veil(entry),
-            records: &entry.layers,
-            weights,
-        };
+        let mut tables = [None; TableKind::ALL.len()];
+        for kind in TableKind::ALL {
+            if let Some(table) = subject.table(kind)? {
+                tables[kind as usize] = Some((table, AngleAxis::of(&table)?));
+            }
+        }
+        let terms = Self { tables, veil: recorded_veil(entry), records: &entry.layers, weights };
         for (layer, kind) in read_by(entry) {
-            let is_computed = matches!(kind, TableKind::Distribution | TableKind::Phase) && terms.table(kind).is_none();
+            let is_computed = match kind {
+                // A layer without a tile has D computed.
+                TableKind::Distribution => entry.layers[layer].tiles[kind].is_none() || terms.table(kind).is_none(),
+                TableKind::Phase => terms.table(kind).is_none(),
+                _ => false,
+            };
             if !is_computed && terms.tile(kind, layer).is_none() {
                 return Err(ReportError::MissingTile { material: entry.name.clone(), layer, kind });
             }
@@ -142,31 +136,19 @@ impl<'a> TableTerms<'a> {
     }
 
     fn table(&self, kind: TableKind) -> Option<Table<'a>> {
-        match kind {
-            TableKind::Fresnel => self.fresnel.map(|(table, _)| table),
-            TableKind::Distribution => self.distribution.map(|(table, _)| table),
-            TableKind::Phase => self.phase,
-            TableKind::Film => self.film,
-            TableKind::Fgd => self.fgd.map(|(table, _)| table),
-            TableKind::Escape => self.escape,
-            TableKind::Thickness => None,
-        }
+        Some(self.tables[kind as usize]?.0)
     }
 
     /// The tile that a layer reads, if it is there.
     fn tile(&self, kind: TableKind, layer: usize) -> Option<u32> {
-        let record = self.records.get(layer)?;
-        let tile = match kind {
-            TableKind::Fresnel => record.fresnel_tile,
-            TableKind::Distribution => record.distribution_tile,
-            TableKind::Phase => record.phase_tile,
-            TableKind::Film => record.film_tile,
-            TableKind::Fgd => record.fgd_tile,
-            TableKind::Escape => record.escape_tile,
-            TableKind::Thickness => None,
-        };
         let tiles = self.table(kind)?.entry.layout.tiles;
-        tile.filter(|tile| *tile < tiles)
+        self.records.get(layer)?.tiles[kind].filter(|tile| *tile < tiles)
+    }
+
+    /// The table of a kind, the quantity of its x axis, and the tile of a layer in it.
+    fn read_at(&self, kind: TableKind, layer: usize) -> Option<(Table<'a>, AngleAxis, u32)> {
+        let (table, angle) = self.tables[kind as usize]?;
+        Some((table, angle, self.tile(kind, layer)?))
     }
 
     /// Name of the row that a layer reads; empty for a layer that reads none.
@@ -182,11 +164,6 @@ impl<'a> TableTerms<'a> {
     }
 }
 
-/// Whether a model follows the statistics of light.
-pub(crate) fn is_statistical(model: ShadingModel) -> bool {
-    matches!(model, ShadingModel::Belcour | ShadingModel::Yamaguchi)
-}
-
 /// The veil of the layers above a diffuse base that shaders of the statistical models are told.
 pub(crate) fn recorded_veil(entry: &MaterialEntry) -> Veil<3> {
     let constants = &entry.constants;
@@ -194,59 +171,19 @@ pub(crate) fn recorded_veil(entry: &MaterialEntry) -> Veil<3> {
 }
 
 /// Layers and tables without which the shader of a material cannot be evaluated.
-fn read_by(entry: &MaterialEntry) -> Vec<(usize, TableKind)> {
-    let count = match entry.model {
-        ShadingModel::Phong => 0,
-        ShadingModel::Microfacet | ShadingModel::GranierHeidrich => 1,
-        ShadingModel::Elek | ShadingModel::WeidlichWilkie | ShadingModel::Belcour | ShadingModel::Yamaguchi => {
-            entry.layers.len()
-        }
-    };
-    let mut out = Vec::new();
-    for (layer, record) in entry.layers.iter().enumerate().take(count) {
-        if record.kind == LayerKind::Diffuse {
-            break;
-        }
-        let has_film = record.film_ior_n[0] > 0.0;
-        if entry.model == ShadingModel::GranierHeidrich {
-            match record.kind {
-                _ if has_film => out.push((layer, TableKind::Phase)),
-                LayerKind::Conductor => out.push((layer, TableKind::Fresnel)),
-                LayerKind::Dielectric | LayerKind::Diffuse => {}
-            }
-            continue;
-        }
-        if is_statistical(entry.model) {
-            out.push((layer, TableKind::Fgd));
-            // An interface below a denser medium: part of its lobe is totally reflected.
-            let next = entry.layers.get(layer + 1).is_some_and(|next| next.kind != LayerKind::Diffuse);
-            if next && record.kind == LayerKind::Dielectric && record.eta > 1.0 {
-                out.push((layer, TableKind::Escape));
-            }
-            if record.kind == LayerKind::Conductor {
-                break;
-            }
-            continue;
-        }
-        out.push((layer, if record.film_tile.is_some() { TableKind::Film } else { TableKind::Fresnel }));
-        // A layer without a tile has D computed.
-        if record.distribution_tile.is_some() {
-            out.push((layer, TableKind::Distribution));
-        }
-        if record.kind == LayerKind::Conductor {
-            break;
-        }
-    }
-    out
+fn read_by(entry: &MaterialEntry) -> impl Iterator<Item = (usize, TableKind)> {
+    let kinds = TableKind::ALL.into_iter().filter(|kind| kind.facts().values != Values::Picture);
+    let all = (0..entry.layers.len()).flat_map(move |layer| kinds.clone().map(move |kind| (layer, kind)));
+    all.filter(|&(layer, kind)| entry.model.reads(kind, &entry.layers, layer))
 }
 
 impl Terms for TableTerms<'_> {
     fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
         let cos_theta_d = self.records[layer].row_cosine(cos_theta_d);
-        let [r, g, b, _] = if let (Some(table), Some(tile)) = (self.film, self.tile(TableKind::Film, layer)) {
+        let [r, g, b, _] = if let Some((table, _, tile)) = self.read_at(TableKind::Film, layer) {
             let record = &self.records[layer];
             table.read(tile, [cos_theta_d, record.film_thickness_nm / record.film_thickness_max_nm], self.weights)
-        } else if let (Some((table, angle)), Some(tile)) = (self.fresnel, self.tile(TableKind::Fresnel, layer)) {
+        } else if let Some((table, angle, tile)) = self.read_at(TableKind::Fresnel, layer) {
             table.read(tile, [angle.value_at(cos_theta_d), 0.0], self.weights)
         } else {
             [f64::NAN; 4]
@@ -256,8 +193,8 @@ impl Terms for TableTerms<'_> {
 
     /// Read where the layer has a tile; else the closed form.
     fn distribution(&self, layer: usize, form: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
-        match (self.distribution, self.tile(TableKind::Distribution, layer)) {
-            (Some((table, angle)), Some(tile)) => {
+        match self.read_at(TableKind::Distribution, layer) {
+            Some((table, angle, tile)) => {
                 table.read(tile, [angle.value(cos_theta_h, sin_theta_h_sq), alpha], self.weights)[0]
             }
             _ => scaled_distribution(form, alpha, cos_theta_h, sin_theta_h_sq),
@@ -266,7 +203,7 @@ impl Terms for TableTerms<'_> {
 
     /// The swing from the row over s, the sum of the cosines times d / (2 d_max) (Granier and Heidrich 2003, eq. 19).
     fn swing(&self, layer: usize, channel: usize, cosines: f64) -> Option<f64> {
-        let (table, tile) = (self.phase?, self.tile(TableKind::Phase, layer)?);
+        let (table, _, tile) = self.read_at(TableKind::Phase, layer)?;
         let record = &self.records[layer];
         let s = 0.5 * cosines * record.film_thickness_nm / record.film_thickness_max_nm;
         Some(table.read(tile, [s, 0.0], self.weights)[channel])
@@ -275,8 +212,8 @@ impl Terms for TableTerms<'_> {
 
 impl Energy<3> for TableTerms<'_> {
     fn fgd(&self, layer: usize, cos_theta_i: f64, alpha: f64) -> Rgb {
-        match (self.fgd, self.tile(TableKind::Fgd, layer)) {
-            (Some((table, angle)), Some(tile)) => {
+        match self.read_at(TableKind::Fgd, layer) {
+            Some((table, angle, tile)) => {
                 let [r, g, b, _] = table.read(tile, [angle.value_at(cos_theta_i), alpha], self.weights);
                 [r, g, b]
             }
@@ -286,8 +223,8 @@ impl Energy<3> for TableTerms<'_> {
 
     /// The table is over the cosine outside, of the direction that is refracted to `cos_theta_i`.
     fn escaping(&self, layer: usize, cos_theta_i: f64, alpha: f64, eta: f64) -> f64 {
-        match (self.escape, self.tile(TableKind::Escape, layer)) {
-            (Some(table), Some(tile)) => {
+        match self.read_at(TableKind::Escape, layer) {
+            Some((table, _, tile)) => {
                 let sin_sq = (1.0 - cos_theta_i) * (1.0 + cos_theta_i) / (eta * eta);
                 table.read(tile, [(1.0 - sin_sq).max(0.0).sqrt(), alpha], self.weights)[0]
             }

@@ -118,7 +118,7 @@ impl Candidate {
     fn exact(&self, footprint_deg: f64) -> Exact {
         let stack = footprint(&self.material.stack, footprint_deg);
         let exact = Exact::new(&stack, color_of(self.color, &self.material));
-        let is_statistical = matches!(self.model, ShadingModel::Belcour | ShadingModel::Yamaguchi);
+        let is_statistical = self.model.is_statistical();
         if self.form == Form::Full && is_statistical {
             let three = Color::ThreeWavelengths(self.material.bake.wavelengths_nm());
             Exact::level(&stack, three, exact.veil())

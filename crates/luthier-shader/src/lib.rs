@@ -36,5 +36,5 @@ pub use error::ShaderError;
 pub use languages::spirv::{complete_spirv, emit_spirv, spirv_words};
 pub use luthier_manifest::{Form, Target};
 pub use set::{MaterialSet, RESERVED_BINDINGS, TableFace, bindings, identifier};
-pub use style::{reads_distribution, style_name};
+pub use style::style_name;
 pub use validate::validate;

@@ -2,10 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use luthier_lut::{AtlasLayout, TableKind, TexelFormat};
+use luthier_lut::{AtlasLayout, TableKind, TexelFormat, Values};
 use luthier_manifest::{
-    BUFFER_WORDS_MAX, BindingEntry, LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, Manifest, MaterialEntry,
-    ShadingModel,
+    BUFFER_WORDS_MAX, BindingEntry, LAYER_WORDS, LayerRecord, MATERIAL_WORDS, Manifest, MaterialEntry, ShadingModel,
 };
 
 use crate::{Form, ShaderError};
@@ -82,7 +81,7 @@ impl<'a> MaterialSet<'a> {
     pub(crate) fn tables_read(&self, form: Form) -> impl Iterator<Item = &TableFace> {
         TableKind::ALL
             .into_iter()
-            .filter(move |&kind| form == Form::Baked && self.layers().any(|layer| tile(layer, kind).is_some()))
+            .filter(move |&kind| form == Form::Baked && self.layers().any(|layer| layer.tiles[kind].is_some()))
             .filter_map(|kind| self.tables.iter().find(|t| t.kind == kind))
     }
 
@@ -110,13 +109,16 @@ impl<'a> MaterialSet<'a> {
         if words > BUFFER_WORDS_MAX {
             return Err(ShaderError::BufferTooLarge { words, limit: BUFFER_WORDS_MAX });
         }
-        let has_phases = self.layers().any(|layer| layer.phase_tile.is_some());
         for material in self.materials {
             if material.layers.is_empty() {
                 return Err(ShaderError::NoLayers(material.name.clone()));
             }
-            for (i, layer) in material.records().enumerate() {
-                self.check_layer(form, material, i, layer, has_phases)?;
+            for (i, layer) in material.layers.iter().enumerate() {
+                self.check_layer(form, material, i, layer, |kind| material.model.reads(kind, &material.layers, i))?;
+            }
+            if let Some(bare) = material.records().nth(material.layers.len()) {
+                let reads = |kind| material.model.reads(kind, std::slice::from_ref(bare), 0);
+                self.check_layer(form, material, material.layers.len(), bare, reads)?;
             }
         }
         Ok(())
@@ -128,39 +130,25 @@ impl<'a> MaterialSet<'a> {
         material: &MaterialEntry,
         i: usize,
         layer: &LayerRecord,
-        has_phases: bool,
+        reads: impl Fn(TableKind) -> bool,
     ) -> Result<(), ShaderError> {
-        let needed: &[TableKind] = match material.model {
-            ShadingModel::Phong => &[],
-            // They look at the first layer alone.
-            ShadingModel::Microfacet | ShadingModel::GranierHeidrich if i > 0 => &[],
-            // Films are phases, which are computed where the set has no table of them.
-            ShadingModel::GranierHeidrich if layer.film_ior_n[0] > 0.0 => {
-                if has_phases {
-                    &[TableKind::Phase]
-                } else {
-                    &[]
-                }
-            }
-            // Bare transparent interfaces are Schlick's form.
-            ShadingModel::GranierHeidrich if layer.kind != LayerKind::Conductor => &[],
-            ShadingModel::GranierHeidrich => &[TableKind::Fresnel],
-            ShadingModel::Belcour | ShadingModel::Yamaguchi => &[TableKind::Fgd],
-            // A layer without a tile of D has it computed.
-            _ if layer.film_tile.is_some() => &[],
-            _ => &[TableKind::Fresnel],
-        };
-        let (material, is_interface) = (|| material.name.clone(), layer.kind != LayerKind::Diffuse);
         if form == Form::Full {
             return Ok(());
         }
+        let has_phases = || self.layers().any(|layer| layer.tiles[TableKind::Phase].is_some());
+        // Layers without a tile of D have it computed; films have their phases computed where no layer has a tile of them.
+        let is_needed = |table: TableKind| match table {
+            TableKind::Phase => has_phases(),
+            _ => !table.facts().has_closed_form && table.facts().values != Values::Picture,
+        };
         for table in TableKind::ALL {
-            if matches!(table, TableKind::Distribution | TableKind::Phase) && !self.has(table) {
+            if table.facts().has_closed_form && !self.has(table) {
                 continue;
             }
             let tiles = self.tables.iter().find(|t| t.kind == table).map_or(0, |t| t.layout.tiles);
-            match tile(layer, table) {
-                None if is_interface && needed.contains(&table) => {
+            let material = || material.name.clone();
+            match layer.tiles[table] {
+                None if reads(table) && is_needed(table) => {
                     return Err(ShaderError::NoTile { material: material(), layer: i, table });
                 }
                 Some(tile) if tile >= tiles => {
@@ -188,19 +176,6 @@ pub fn bindings(set: &MaterialSet<'_>, form: Form) -> Vec<BindingEntry> {
     }
     bindings.push(entry(MATERIALS_BINDING, "luthier_materials".to_owned(), "buffer"));
     bindings
-}
-
-/// The tile of a layer in a table.
-fn tile(layer: &LayerRecord, kind: TableKind) -> Option<u32> {
-    match kind {
-        TableKind::Fresnel => layer.fresnel_tile,
-        TableKind::Distribution => layer.distribution_tile,
-        TableKind::Fgd => layer.fgd_tile,
-        TableKind::Phase => layer.phase_tile,
-        TableKind::Thickness => layer.thickness_tile,
-        TableKind::Film => layer.film_tile,
-        TableKind::Escape => layer.escape_tile,
-    }
 }
 
 /// The constant that shaders have for a material of this name: for `red-lacquer` it is `LUTHIER_MATERIAL_RED_LACQUER`. A last digit is

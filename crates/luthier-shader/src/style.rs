@@ -14,14 +14,9 @@ impl MaterialSet<'_> {
     }
 }
 
-/// Whether shaders of a model read D from a table, where there is one.
-pub fn reads_distribution(model: ShadingModel) -> bool {
-    matches!(model, ShadingModel::Elek | ShadingModel::WeidlichWilkie | ShadingModel::Microfacet)
-}
-
 /// The style of a shader in words: `baked, closed D, constants`.
 pub fn style_name(model: ShadingModel, form: Form, closed: bool, constant: bool) -> String {
-    let d = if form == Form::Baked && closed && reads_distribution(model) { ", closed D" } else { "" };
+    let d = if form == Form::Baked && closed && model.reads_distribution() { ", closed D" } else { "" };
     let numbers = if constant { ", constants" } else { "" };
     format!("{form}{d}{numbers}")
 }

@@ -5,13 +5,13 @@ use luthier_manifest::{Candidate, CandidateForm};
 use luthier_optics::Rgb;
 use rayon::prelude::*;
 
-use super::fresnel::{Truth, price};
 use super::grids::{self, Group};
-use crate::balance;
-use crate::fresnel::RowShape;
 use crate::graph::Results;
+use crate::kinds::fresnel::RowShape;
+use crate::kinds::fresnel::search::{Truth, price};
 use crate::plan::Plan;
 use crate::settings::axis;
+use crate::tile::balance;
 
 /// The format of blocks.
 const BLOCKS: TexelFormat = TexelFormat::Bc6hRgbUfloat;
@@ -105,7 +105,7 @@ impl<'a> Row<'a> {
             let base = if over_schlick { truth.fit.closed_form(x.node(i)) } else { [0.0; 3] };
             values.texel_mut(i, 0).copy_from_slice(&[0, 1, 2].map(|c: usize| (exact[c] - base[c]) as f32));
         }
-        let mut texels = balance::balance(&values, if over_schlick { f64::NEG_INFINITY } else { 0.0 });
+        let mut texels = balance(&values, if over_schlick { f64::NEG_INFINITY } else { 0.0 });
         let scale = over_schlick.then(|| {
             let largest = |c: usize| texels.texels().map(|t| f64::from(t[c]).abs()).fold(f64::MIN_POSITIVE, f64::max);
             [0, 1, 2].map(largest)

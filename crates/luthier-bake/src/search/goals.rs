@@ -14,18 +14,17 @@ use luthier_optics::stack::Distribution;
 use rayon::prelude::*;
 
 pub use super::blocks::{BlockStep, RowBlocks};
-use super::fresnel::{self, FORMATS, Truth};
 use super::shared::{Bare, shared_tables};
 pub use super::shared::{OneChannel, Parameters, SharedTable};
 use super::{Found, WEIGHTS, blocks, choose, grids, measured};
 use crate::BakeError;
-use crate::distribution::DistributionJob;
-use crate::fresnel::{FresnelJob, RowShape};
-use crate::graph::{Results, Silent};
-use crate::job::{Job, JobKind};
+use crate::graph::{MemoryStore, Results, Silent};
+use crate::kinds::distribution::DistributionJob;
+use crate::kinds::fgd::{FgdJob, FgdTruth};
+use crate::kinds::fresnel::search::{self as fresnel, FORMATS, Truth};
+use crate::kinds::fresnel::{FresnelJob, RowShape};
 use crate::plan::{ImageReader, Plan};
 use crate::settings::{Settings, axis};
-use crate::store::MemoryStore;
 
 /// Bytes of Elek's rows: 128 texels of three bytes.
 pub const ROW_BYTES: u64 = 384;
@@ -132,11 +131,7 @@ pub fn goals(materials: &[Material], read_image: ImageReader<'_>) -> Result<Goal
     let names = |kind: TableKind| plan.tiles[kind as usize].tiles.clone();
     let rows: Vec<(String, Truth)> = names(TableKind::Fresnel)
         .into_par_iter()
-        .filter_map(|(name, key)| {
-            let is_it = |job: &&Job| job.key() == key;
-            let Some(Job::Fresnel(job)) = plan.graph.of_kind(JobKind::Fresnel).find(is_it) else { return None };
-            Some((name, Truth::new(job)))
-        })
+        .filter_map(|(name, key)| Some((name, Truth::new(plan.graph.get(key)?))))
         .collect();
     let elek: Vec<f64> = rows.par_iter().map(|(_, truth)| elek_error(truth)).collect();
     let families: Vec<Family> = [FORMATS.as_slice(), &BEYOND_CORE]
@@ -161,14 +156,13 @@ pub fn goals(materials: &[Material], read_image: ImageReader<'_>) -> Result<Goal
     let best = core.cloned().reduce(|a, b| if b.least_gain > a.least_gain { b } else { a });
     let Some(row) = best else { return Err(BakeError::Empty) };
     let shape = RowShape { axis: row.axis.clone(), format: row.format, base: row.base };
-    let exact = plan.graph.of_kind(JobKind::Fresnel).collect::<Vec<_>>();
     let found: Vec<RowGoal> = names(TableKind::Fresnel)
         .iter()
         .zip(&elek)
         .filter_map(|((name, key), &elek)| {
             // As the bake would measure it.
-            let Some(Job::Fresnel(job)) = exact.iter().find(|job| job.key() == *key) else { return None };
-            let found = FresnelJob { shape: shape.clone(), ..job.clone() }.run().error.max_abs_err;
+            let job: &FresnelJob = plan.graph.get(*key)?;
+            let found = FresnelJob { shape: shape.clone(), ..job.clone() }.tile().error.max_abs_err;
             Some(RowGoal { name: name.clone(), elek, found })
         })
         .collect();
@@ -180,7 +174,7 @@ pub fn goals(materials: &[Material], read_image: ImageReader<'_>) -> Result<Goal
         blocks::rows(&truths).into_iter().map(|r| (r.clone(), blocks::least_row(&colors, r.max_abs, f64::INFINITY)));
     let row_blocks = row_blocks.collect();
     let (shared, bare) = shared_goals(&plan);
-    let results = plan.graph.only(&[JobKind::FgdTruth]).run(&Silent, &MemoryStore::default(), Results::default());
+    let results = plan.graph.intermediate().run(&Silent, &MemoryStore::default(), Results::default());
     let albedos = albedos(&plan, &results);
     plan.settings.formats = TexelFormat::ALL.into_iter().collect();
     let blocks = blocks::tiles(&plan, &results);
@@ -208,13 +202,8 @@ fn row_shapes(truths: &[&Truth]) -> Vec<(RowShape, f64)> {
 const SHARED_POINTS: u32 = 256;
 
 fn shared_goals(plan: &Plan) -> (Vec<SharedGoal>, u32) {
-    let bare = |job: &Job| match job {
-        Job::Fresnel(job) if job.interface.films.is_empty() && job.interface.above != job.interface.below => {
-            Some(job.clone())
-        }
-        _ => None,
-    };
-    let jobs: Vec<FresnelJob> = plan.graph.of_kind(JobKind::Fresnel).filter_map(bare).collect();
+    let is_bare = |job: &&FresnelJob| job.interface.films.is_empty() && job.interface.above != job.interface.below;
+    let jobs: Vec<FresnelJob> = plan.graph.of().filter(is_bare).cloned().collect();
     let wavelengths = |job: &FresnelJob| match job.color {
         Color::Spectral => DEFAULT_WAVELENGTHS_NM,
         Color::ThreeWavelengths(nm) => nm,
@@ -277,9 +266,8 @@ fn elek_error(truth: &Truth) -> f64 {
 
 fn albedos(plan: &Plan, results: &Results) -> Vec<AlbedoGoal> {
     let goals = plan.tiles[TableKind::Fgd as usize].tiles.iter().filter_map(|(name, key)| {
-        let is_it = |job: &&Job| job.key() == *key;
-        let Some(Job::Fgd(job)) = plan.graph.of_kind(JobKind::Fgd).find(is_it) else { return None };
-        let truth = results.fgd_truth(&Job::FgdTruth(job.truth.clone()));
+        let job: &FgdJob = plan.graph.get(*key)?;
+        let truth: &FgdTruth = results.part(&job.truth);
         let MeasuredError { max_abs, .. } = grids::sampled_error(truth, &job.truth.grid, TexelFormat::Rgba16Float);
         Some(AlbedoGoal { name: name.clone(), sampled: max_abs, uncertainty: truth.slack })
     });

@@ -5,13 +5,13 @@ use luthier_manifest::{Candidate, CandidateForm, MeasuredError};
 use rayon::prelude::*;
 
 use super::{Found, WEIGHTS, cost, measured};
-use crate::fgd::FgdTruth;
-use crate::film::FilmJob;
 use crate::graph::Results;
 use crate::grid::resampled;
-use crate::job::{Job, JobKind, lone_tile};
+use crate::kinds::fgd::{FgdTruth, FgdTruthJob};
+use crate::kinds::film::FilmJob;
 use crate::plan::Plan;
 use crate::settings::axis;
+use crate::tile::lone_tile;
 
 /// Sides of albedo tiles.
 const FGD_SIDES: [u32; 9] = [8, 12, 16, 20, 24, 32, 40, 48, 64];
@@ -68,8 +68,8 @@ pub(super) fn of_group(plan: &Plan, results: &Results, group: Group) -> Vec<Cand
             candidates(TableKind::Film, &film_tiles(plan), film_axes(), &allowed(&FILM_FORMATS, plan), 3, false)
         }
         Group::BareAlbedo | Group::FilmAlbedo => {
-            let is_film = |job: &&Job| matches!(job, Job::FgdTruth(job) if !job.interface.films.is_empty());
-            let jobs = plan.graph.of_kind(JobKind::FgdTruth).filter(|job| is_film(job) == (group == Group::FilmAlbedo));
+            let has_film = |job: &&FgdTruthJob| !job.interface.films.is_empty();
+            let jobs = plan.graph.of().filter(|job| has_film(job) == (group == Group::FilmAlbedo));
             let mut tiles = fgd_tiles(plan, results, jobs);
             tiles.iter_mut().for_each(|tile| tile.slack = 0.0);
             candidates(TableKind::Fgd, &tiles, fgd_axes(plan), &allowed(&FGD_FORMATS, plan), 4, false)
@@ -77,18 +77,18 @@ pub(super) fn of_group(plan: &Plan, results: &Results, group: Group) -> Vec<Cand
     }
 }
 
-fn fgd_tiles<'a>(plan: &Plan, results: &Results, jobs: impl Iterator<Item = &'a Job>) -> Vec<Fine> {
-    let tile = |job: &Job| {
-        let FgdTruth { image, mut probes, kinks, slack, .. } = results.fgd_truth(job).clone();
+fn fgd_tiles<'a>(plan: &Plan, results: &Results, jobs: impl Iterator<Item = &'a FgdTruthJob>) -> Vec<Fine> {
+    let tile = |job: &FgdTruthJob| {
+        let FgdTruth { image, mut probes, kinks, slack, .. } = results.part::<FgdTruth>(job).clone();
         probes.extend(kinks);
-        Fine { grid: plan.settings.fgd.0.clone(), image, probes, slack }
+        Fine { grid: plan.settings.fixed(TableKind::Fgd).axes(), image, probes, slack }
     };
     jobs.map(tile).collect()
 }
 
 fn fgd_axes(plan: &Plan) -> Vec<[Axis; 2]> {
-    let [x, y] = &plan.settings.fgd.0;
-    if plan.settings.asked.fgd_size {
+    let [x, y] = &plan.settings.fixed(TableKind::Fgd).axes();
+    if plan.settings.asked(TableKind::Fgd).size {
         return vec![[x.clone(), y.clone()]];
     }
     let power = |axis: &Axis, size, exponent| Axis { size, mapping: Mapping::Power { exponent }, ..axis.clone() };
@@ -103,15 +103,14 @@ fn fgd_axes(plan: &Plan) -> Vec<[Axis; 2]> {
     axes
 }
 
-pub(super) fn fgd(plan: &Plan, results: &Results, colors: bool) -> Option<Found> {
-    let asked = plan.settings.asked;
-    let (axes, format) = &plan.settings.fgd;
-    let tiles = fgd_tiles(plan, results, plan.graph.of_kind(JobKind::FgdTruth));
-    if tiles.is_empty() || asked.fgd_size && asked.fgd_format {
+pub(crate) fn fgd(plan: &Plan, results: &Results, colors: bool) -> Option<Found> {
+    let (asked, fixed) = (plan.settings.asked(TableKind::Fgd), plan.settings.fixed(TableKind::Fgd));
+    let tiles = fgd_tiles(plan, results, plan.graph.of());
+    if tiles.is_empty() || asked.size && asked.format {
         return None;
     }
-    let formats = if asked.fgd_format { vec![*format] } else { allowed(&FGD_FORMATS, plan) };
-    let fixed_cost = price(axes, TexelFormat::Rgba16Float);
+    let formats = if asked.format { vec![fixed.format] } else { allowed(&FGD_FORMATS, plan) };
+    let fixed_cost = price(&fixed.axes(), TexelFormat::Rgba16Float);
     let candidates = candidates(TableKind::Fgd, &tiles, fgd_axes(plan), &formats, 4, colors);
     Some(Found::new(TableKind::Fgd, fixed_cost, candidates))
 }
@@ -127,8 +126,7 @@ fn finest(exponent: f64) -> [Axis; 2] {
 fn film_tiles(plan: &Plan) -> Vec<Fine> {
     let grid = finest(3.0);
     plan.graph
-        .of_kind(JobKind::Film)
-        .filter_map(|job| if let Job::Film(job) = job { Some(job) } else { None })
+        .of::<FilmJob>()
         .map(|job| Fine {
             image: FilmJob { axes: grid.clone(), ..job.clone() }.truth(),
             grid: grid.clone(),
@@ -151,14 +149,15 @@ fn film_axes() -> Vec<[Axis; 2]> {
     axes
 }
 
-pub(super) fn film(plan: &Plan, colors: bool) -> Option<Found> {
+pub(crate) fn film(plan: &Plan, colors: bool) -> Option<Found> {
     let tiles = film_tiles(plan);
     if tiles.is_empty() {
         return None;
     }
     let fixed_cost = price(&finest(2.0), TexelFormat::Rgba16Float);
     let candidates = candidates(TableKind::Film, &tiles, film_axes(), &allowed(&FILM_FORMATS, plan), 3, colors);
-    Some(Found::new(TableKind::Film, fixed_cost, candidates))
+    // Errors of film tiles are steep ridges along grazing angles, between the points of a search.
+    Some(Found { is_whole: false, ..Found::new(TableKind::Film, fixed_cost, candidates) })
 }
 
 /// The formats of a list that the search may take.

@@ -8,11 +8,8 @@
 
 mod blocks;
 mod choice;
-mod distribution;
-mod fresnel;
 pub mod goals;
-mod grids;
-mod phase;
+pub(crate) mod grids;
 mod shared;
 
 use luthier_lut::{Axis, Mapping, RowBase, TableKind, TexelFormat, WeightBits};
@@ -22,9 +19,8 @@ use luthier_optics::color_difference::{ciede2000, lab};
 pub(crate) use choice::{best_effort, choose, front};
 
 use crate::graph::Results;
-use crate::job::JobKind;
+use crate::kinds;
 use crate::plan::Plan;
-use crate::settings::Settings;
 
 /// Budget of tables for which none is stated: errors that a fixed row of 128 half floats has too.
 pub const DEFAULT_BUDGET: Budget =
@@ -61,13 +57,11 @@ impl Found {
 
     pub(crate) fn new(kind: TableKind, fixed_cost: f64, candidates: Vec<Candidate>) -> Self {
         let confirmed = vec![false; candidates.len()];
-        // Errors of film tiles are steep ridges along grazing angles, between the points of a search.
-        let is_whole = kind != TableKind::Film;
-        Self { kind, fixed_cost, candidates, confirmed, left_out: Vec::new(), is_whole }
+        Self { kind, fixed_cost, candidates, confirmed, left_out: Vec::new(), is_whole: true }
     }
 
     /// Keeps the candidates whose read costs at most half as much again as one of the fixed default, for bakes without a stated budget.
-    fn affordable(mut self) -> Self {
+    pub(crate) fn affordable(mut self) -> Self {
         let most = 1.5 * self.fixed_cost;
         self.candidates.retain(|c| c.cost <= most);
         self.confirmed.truncate(self.candidates.len());
@@ -90,47 +84,17 @@ impl Found {
     }
 }
 
-/// Kinds of the jobs whose results [`candidates`] reads.
-pub(crate) const READ: [JobKind; 1] = [JobKind::FgdTruth];
-
-/// The candidates that come near the default budget: only those of what shaders read for every interface and needs no costly truth. A row
-/// that none serves does not count.
+/// The candidates that come near the default budget. A row that none serves does not count.
 pub(crate) fn by_default(plan: &Plan) -> Vec<Found> {
-    let found = [fresnel::served(plan), distribution::candidates(plan).map(Found::affordable)];
-    found.into_iter().flatten().filter(|f| f.comes_near(&DEFAULT_BUDGET)).collect()
+    let found = TableKind::ALL.into_iter().filter_map(|kind| kinds::of(kind).candidates_by_default(plan));
+    found.filter(|f| f.comes_near(&DEFAULT_BUDGET)).collect()
 }
 
-/// Measures the candidates of the kinds that a plan has. `results` has those of [`READ`].
+/// Measures the candidates of the kinds that a plan has. `results` has the intermediate ones of its graph.
 pub(crate) fn candidates(plan: &Plan, results: &Results, budget: &Budget) -> Vec<Found> {
     let colors = budget.delta_e.is_some();
-    let found = [
-        fresnel::candidates(plan, colors),
-        distribution::candidates(plan),
-        phase::candidates(plan),
-        grids::fgd(plan, results, colors),
-        grids::film(plan, colors),
-    ];
-    found.into_iter().flatten().filter(|f: &Found| !f.candidates.is_empty()).collect()
-}
-
-/// Puts a candidate into the settings.
-pub(crate) fn apply(settings: &mut Settings, kind: TableKind, form: &CandidateForm) {
-    let table = match form.clone() {
-        CandidateForm::ClosedForm => None,
-        CandidateForm::Table { x, y, format, base } => Some((x, y, format, base)),
-    };
-    match (kind, table) {
-        (TableKind::Fresnel, Some((axis, _, format, base))) => {
-            settings.fresnel = crate::fresnel::RowShape { axis, format, base };
-        }
-        (TableKind::Distribution, None) => settings.distribution = None,
-        (TableKind::Distribution, Some((x, Some(y), format, _))) => settings.distribution = Some(([x, y], format)),
-        (TableKind::Phase, None) => settings.phase = None,
-        (TableKind::Phase, Some((axis, _, format, _))) => settings.phase = Some((axis, format)),
-        (TableKind::Fgd, Some((x, Some(y), format, _))) => settings.fgd = ([x, y], format),
-        (TableKind::Film, Some((x, Some(y), format, _))) => settings.film = ([x, y], format),
-        _ => {}
-    }
+    let found = TableKind::ALL.into_iter().filter_map(|kind| kinds::of(kind).candidates(plan, results, colors));
+    found.filter(|f| !f.candidates.is_empty()).collect()
 }
 
 /// The report of a search.
@@ -205,9 +169,9 @@ pub(crate) fn measured<'p>(
 }
 
 /// A table of one row.
-fn row_form(x: Axis, format: TexelFormat, base: RowBase) -> CandidateForm {
+pub(crate) fn row_form(x: Axis, format: TexelFormat, base: RowBase) -> CandidateForm {
     CandidateForm::Table { x, y: None, format, base }
 }
 
 /// How devices weigh texels.
-const WEIGHTS: WeightBits = WeightBits::Fixed(8);
+pub(crate) const WEIGHTS: WeightBits = WeightBits::Fixed(8);

@@ -54,7 +54,7 @@ fn fresnel_error(materials: &[Material], bake: &Baked) -> f64 {
                 let u = f64::from(step) / 9999.0;
                 for cos_theta in [u, u.powi(4)] {
                     let at = [record.row_cosine(cos_theta), 0.0];
-                    let read = rows.sample(record.fresnel_tile.unwrap(), at, WeightBits::Fixed(8));
+                    let read = rows.sample(record.tiles[TableKind::Fresnel].unwrap(), at, WeightBits::Fixed(8));
                     worst = worst.max((read[1] - exact.reflectance(cos_theta)).abs());
                 }
             }
@@ -134,7 +134,7 @@ fn d_is_computed_unless_a_table_is_asked_for() {
     for bake in [bake_all(&set), with(&set, max_abs(1e-2)).unwrap()] {
         assert!(bake.atlases.iter().all(|a| a.kind != TableKind::Distribution));
         assert_eq!(chosen(&bake, TableKind::Distribution).form, CandidateForm::ClosedForm);
-        assert!(bake.materials.iter().flat_map(|m| &m.records).all(|r| r.distribution_tile.is_none()));
+        assert!(bake.materials.iter().flat_map(|m| &m.records).all(|r| r.tiles[TableKind::Distribution].is_none()));
     }
     let asked = [material(
         "asked",

@@ -43,7 +43,7 @@ fn two_beams(bake: &Baked, record: &LayerRecord, nm: f64, cos_theta: f64) -> [f6
     let (r, cos_t) = power(1.0, 1.4, cos_theta);
     let t = (1.0 - r) * (1.0 - r) * power(1.4, 1.8, cos_t).0;
     let swing = atlas(bake, TableKind::Phase).sample(
-        record.phase_tile.unwrap(),
+        record.tiles[TableKind::Phase].unwrap(),
         [nm / MAX_NM * cos_t, 0.0],
         WeightBits::Fixed(8),
     );
@@ -57,7 +57,7 @@ fn film_tiles_hold_the_spectral_reflectance_off_their_nodes() {
     let record = &bake.materials[0].records[0];
     let table = atlas(&bake, TableKind::Film);
     let read = |nm: f64, cos_theta: f64| {
-        table.sample(record.film_tile.unwrap(), [cos_theta, nm / MAX_NM], WeightBits::Fixed(8))
+        table.sample(record.tiles[TableKind::Film].unwrap(), [cos_theta, nm / MAX_NM], WeightBits::Fixed(8))
     };
     let stated = table.tiles[0].error.max_abs_err;
     eprintln!("| thickness, nm | angle | film table | phase row |\n|---|---|---|---|");
@@ -89,7 +89,7 @@ fn film_tiles_hold_the_spectral_reflectance_off_their_nodes() {
 fn only_films_that_vary_have_a_tile() {
     let layers = format!("[[layer]]\ntype = \"thin-film\"\nior = 1.4\nthickness_nm = 300\n{}", dielectric("1.8", 0.1));
     let bake = bake_all(&[material("film", &layers, SMALL)]);
-    assert_eq!(bake.materials[0].records[0].film_tile, None);
+    assert_eq!(bake.materials[0].records[0].tiles[TableKind::Film], None);
     assert!(bake.atlases.iter().all(|a| a.kind != TableKind::Film));
 }
 
@@ -100,10 +100,16 @@ fn the_nominal_thickness_reads_as_the_fresnel_row() {
     let record = &bake.materials[0].records[0];
     let fraction = record.film_thickness_nm / record.film_thickness_max_nm;
     for cos_theta in [0.1, 0.37, 0.8, 1.0] {
-        let row =
-            atlas(&bake, TableKind::Fresnel).sample(record.fresnel_tile.unwrap(), [cos_theta, 0.0], WeightBits::Exact);
-        let tile =
-            atlas(&bake, TableKind::Film).sample(record.film_tile.unwrap(), [cos_theta, fraction], WeightBits::Exact);
+        let row = atlas(&bake, TableKind::Fresnel).sample(
+            record.tiles[TableKind::Fresnel].unwrap(),
+            [cos_theta, 0.0],
+            WeightBits::Exact,
+        );
+        let tile = atlas(&bake, TableKind::Film).sample(
+            record.tiles[TableKind::Film].unwrap(),
+            [cos_theta, fraction],
+            WeightBits::Exact,
+        );
         for c in 0..3 {
             // The row of this test has 24 nodes over a curve that bends by 3 near grazing.
             assert!((row[c] - tile[c]).abs() < 6e-3, "{cos_theta}: {row:?} {tile:?}");

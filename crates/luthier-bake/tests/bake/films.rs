@@ -147,12 +147,10 @@ fn records_have_one_film_and_tables_have_all() {
     let two = material("two", &(film(1.9, 140.0) + &film(1.4, 90.0) + &coat), SMALL);
     let outline = luthier_bake::outline(&[one, two], &|_, _| Err("no images here".to_owned())).unwrap();
     let [one, two] = [0, 1].map(|i| outline.materials[i].records[0].clone());
-    assert_ne!(one.fresnel_tile, two.fresnel_tile);
-    assert_ne!(one.fgd_tile, two.fgd_tile);
+    assert_ne!(one.tiles[TableKind::Fresnel], two.tiles[TableKind::Fresnel]);
+    assert_ne!(one.tiles[TableKind::Fgd], two.tiles[TableKind::Fgd]);
     let tiles = |record: &luthier_manifest::LayerRecord| luthier_manifest::LayerRecord {
-        fresnel_tile: None,
-        fgd_tile: None,
-        phase_tile: None,
+        tiles: record.tiles.with([(TableKind::Fresnel, None), (TableKind::Fgd, None), (TableKind::Phase, None)]),
         ..record.clone()
     };
     assert_eq!(tiles(&one), tiles(&two));

@@ -57,8 +57,8 @@ fn d_is_a_table_for_those_who_ask() {
         material("does-not", &conductor("{ n = 0.2, k = 3.5 }", 0.4), ""),
     ]);
     let tiles = |read: fn(&LayerRecord) -> Option<u32>| [0, 1].map(|i: usize| read(&bake.materials[i].records[0]));
-    assert_eq!(tiles(|record| record.distribution_tile), [Some(0), None]);
-    assert_eq!(tiles(|record| record.fresnel_tile), [Some(0), Some(0)]);
+    assert_eq!(tiles(|record| record.tiles[TableKind::Distribution]), [Some(0), None]);
+    assert_eq!(tiles(|record| record.tiles[TableKind::Fresnel]), [Some(0), Some(0)]);
     assert_eq!(atlas(&bake, TableKind::Distribution).layout.size(), [16, 8]);
 }
 

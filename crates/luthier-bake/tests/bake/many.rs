@@ -44,7 +44,7 @@ fn a_thousand_materials_find_their_rows() {
         .materials
         .iter()
         .flat_map(|material| &material.records)
-        .filter_map(|record| record.fresnel_tile)
+        .filter_map(|record| record.tiles[TableKind::Fresnel])
         .collect();
     assert!(used.into_iter().eq(0..rows.layout.tiles), "every row is somebody's");
     for number in [0, 1, 499, 742, COUNT - 1] {
@@ -53,8 +53,9 @@ fn a_thousand_materials_find_their_rows() {
         assert_eq!(found.records.len(), expected.records.len());
         for (found, expected) in found.records.iter().zip(&expected.records) {
             assert_eq!((found.alpha, found.ior_n, found.eta), (expected.alpha, expected.ior_n, expected.eta));
-            let Some((found, expected)) = found.fresnel_tile.zip(expected.fresnel_tile) else {
-                assert_eq!(found.fresnel_tile, expected.fresnel_tile);
+            let Some((found, expected)) = found.tiles[TableKind::Fresnel].zip(expected.tiles[TableKind::Fresnel])
+            else {
+                assert_eq!(found.tiles[TableKind::Fresnel], expected.tiles[TableKind::Fresnel]);
                 continue;
             };
             assert_eq!(texels(rows, found), texels(atlas(&alone, TableKind::Fresnel), expected), "material {number}");

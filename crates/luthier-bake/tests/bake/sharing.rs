@@ -62,11 +62,23 @@ fn equal_interfaces_share_their_tiles() {
     ];
     let baked = bake_all(&set);
     let [one, two, three, four] = [0, 1, 2, 3].map(|i: usize| &baked.materials[i].records[0]);
-    assert_eq!((one.fresnel_tile, one.distribution_tile, one.fgd_tile), (Some(0), Some(0), Some(0)));
-    assert_eq!((two.fresnel_tile, two.distribution_tile, two.fgd_tile), (Some(0), Some(0), Some(0)));
-    assert_eq!((three.fresnel_tile, three.distribution_tile, three.fgd_tile), (Some(1), Some(0), Some(1)));
+    assert_eq!(
+        (one.tiles[TableKind::Fresnel], one.tiles[TableKind::Distribution], one.tiles[TableKind::Fgd]),
+        (Some(0), Some(0), Some(0))
+    );
+    assert_eq!(
+        (two.tiles[TableKind::Fresnel], two.tiles[TableKind::Distribution], two.tiles[TableKind::Fgd]),
+        (Some(0), Some(0), Some(0))
+    );
+    assert_eq!(
+        (three.tiles[TableKind::Fresnel], three.tiles[TableKind::Distribution], three.tiles[TableKind::Fgd]),
+        (Some(1), Some(0), Some(1))
+    );
     // Fresnel's formulas know no roughness.
-    assert_eq!((four.fresnel_tile, four.distribution_tile, four.fgd_tile), (Some(0), Some(1), Some(2)));
+    assert_eq!(
+        (four.tiles[TableKind::Fresnel], four.tiles[TableKind::Distribution], four.tiles[TableKind::Fgd]),
+        (Some(0), Some(1), Some(2))
+    );
     let counts = baked.atlases.iter().map(|a| (a.kind, a.tiles.len())).collect::<Vec<_>>();
     assert_eq!(counts, [(TableKind::Fresnel, 2), (TableKind::Distribution, 2), (TableKind::Fgd, 3)]);
 }

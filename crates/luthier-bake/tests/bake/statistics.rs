@@ -42,7 +42,7 @@ fn inside(cos: f64) -> f64 {
 fn shares_that_escape_as_counted() {
     let baked = bake_all(&[belcour("coat", &(coat(0.1, CLEAR) + &conductor("\"au\"", 0.2)), SMALL)]);
     let table = atlas(&baked, TableKind::Escape);
-    let tile = baked.materials[0].records[0].escape_tile.unwrap();
+    let tile = baked.materials[0].records[0].tiles[TableKind::Escape].unwrap();
     for [cos, alpha] in [[1.0, 0.3], [0.8, 0.5], [0.3, 0.1], [0.1, 0.9], [0.05, 0.2], [0.6, 0.05], [0.02, 0.02]] {
         // Stratified visible normals.
         let w = DVec3::new((1.0 - inside(cos) * inside(cos)).sqrt(), 0.0, inside(cos));
@@ -73,7 +73,8 @@ fn only_what_is_read_is_baked_and_other_tiles_stay_as_they_are() {
         belcour("glass", &dielectric("1.5", 0.1), ""),
     ];
     let baked = bake_all(&set);
-    let escapes = |i: usize| baked.materials[i].records.iter().map(|r| r.escape_tile.is_some()).collect::<Vec<_>>();
+    let escapes =
+        |i: usize| baked.materials[i].records.iter().map(|r| r.tiles[TableKind::Escape].is_some()).collect::<Vec<_>>();
     // The second coat has the index of the first: nothing is totally reflected.
     assert_eq!(escapes(0), [true, false, false]);
     assert_eq!((escapes(1), escapes(2)), (vec![false; 2], vec![false]));
@@ -101,7 +102,7 @@ fn threads_do_not_matter_to_what_the_statistics_read() {
 #[test]
 fn a_rarer_medium_below_can_be_baked() {
     let baked = bake_all(&[material("gap", &(coat(0.1, CLEAR) + &dielectric("1.2", 0.3)), SMALL)]);
-    let tile = baked.materials[0].records[1].fgd_tile.unwrap();
+    let tile = baked.materials[0].records[1].tiles[TableKind::Fgd].unwrap();
     let [r, ..] = atlas(&baked, TableKind::Fgd).sample(tile, [0.2, 0.1], WeightBits::Exact);
     assert!(r > 0.9, "{r}: a cosine of 0.2 is far beyond the critical angle");
 }
@@ -137,13 +138,13 @@ struct Read<'a> {
 
 impl Energy<3> for Read<'_> {
     fn fgd(&self, layer: usize, cos_theta_i: f64, alpha: f64) -> [f64; 3] {
-        let tile = self.records[layer].fgd_tile.unwrap();
+        let tile = self.records[layer].tiles[TableKind::Fgd].unwrap();
         let [r, g, b, _] = atlas(self.bake, TableKind::Fgd).sample(tile, [cos_theta_i, alpha], WeightBits::Fixed(8));
         [r, g, b]
     }
 
     fn escaping(&self, layer: usize, cos_theta_i: f64, alpha: f64, eta: f64) -> f64 {
-        let Some(tile) = self.records[layer].escape_tile else { return 1.0 };
+        let Some(tile) = self.records[layer].tiles[TableKind::Escape] else { return 1.0 };
         let cos = (1.0 - (1.0 - cos_theta_i * cos_theta_i) / (eta * eta)).max(0.0).sqrt();
         atlas(self.bake, TableKind::Escape).sample(tile, [cos, alpha], WeightBits::Fixed(8))[0]
     }

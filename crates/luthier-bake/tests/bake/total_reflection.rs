@@ -44,7 +44,7 @@ fn cosines(above: f64, below: f64) -> Vec<f64> {
 fn errors(bake: &Baked, material: usize, layer: usize, exact: impl Fn(f64) -> f64, at: &[f64]) -> (f64, f64) {
     let rows = atlas(bake, TableKind::Fresnel);
     let record = &bake.materials[material].records[layer];
-    let tile = record.fresnel_tile.unwrap();
+    let tile = record.tiles[TableKind::Fresnel].unwrap();
     let error = |cos_theta: f64| {
         let read = rows.sample(tile, [record.row_cosine(cos_theta), 0.0], WeightBits::Fixed(8));
         (0..3).map(|c| (read[c] - exact(cos_theta)).abs()).fold(0.0, f64::max)

@@ -5,7 +5,7 @@ use luthier_gpu::{Gpu, Scene, Stopwatch};
 use luthier_manifest::ShadingModel;
 use luthier_material::Material;
 use luthier_report::{ParitySet, Spread};
-use luthier_shader::{Form, MaterialSet, Target, reads_distribution, style_name};
+use luthier_shader::{Form, MaterialSet, Target, style_name};
 use luthier_terminal::{Bar, Failure, Outcome, deliver, open, valid};
 use serde::Serialize;
 
@@ -133,7 +133,7 @@ fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -> Outcome<V
         let mut shaded = material.clone();
         shaded.bake.model = Some(model);
         let mut package = Package::for_renderer(std::slice::from_ref(&shaded))?;
-        let reads_d = reads_distribution(model);
+        let reads_d = model.reads_distribution();
         let styles = [(Form::Full, true), (Form::Baked, !reads_d), (Form::Baked, true)];
         // Without a table of D to read, closed or not is the same.
         let distinct = if reads_d { 3 } else { 2 };

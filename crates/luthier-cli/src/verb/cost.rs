@@ -6,7 +6,7 @@ use luthier_export::{GENERATOR, outline, read};
 use luthier_lut::TableKind;
 use luthier_manifest::ShadingModel;
 use luthier_material::Material;
-use luthier_shader::{Form, MaterialSet, reads_distribution};
+use luthier_shader::{Form, MaterialSet};
 use luthier_terminal::{Failure, Outcome, deliver, print, valid};
 
 use crate::cli::CostOptions;
@@ -81,7 +81,7 @@ fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Varian
                 for (closed, constant) in styles(options) {
                     // What reads no table of D has it in closed form, or has none, either way.
                     let has_d = manifest.table(TableKind::Distribution).is_some();
-                    let has_table = form == Form::Baked && reads_distribution(model) && has_d;
+                    let has_table = form == Form::Baked && model.reads_distribution() && has_d;
                     if closed && !has_table && !options.closed {
                         continue;
                     }

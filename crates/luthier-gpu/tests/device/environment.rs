@@ -68,7 +68,10 @@ fn scene(coat: Option<f64>) -> Option<Scene> {
     let mut tables = ggx_tables(1.0, 1.0);
     let layout = AtlasLayout { tiles: 2, ..tables[0].layout.clone() };
     tables[0] = Table::new(TableKind::Fresnel, layout, TexelFormat::Rgba16Float, |tile, _| [(1 - tile) as f32; 4]);
-    let clear = |n| LayerRecord { fresnel_tile: Some(1), ..tiled(dielectric(1e-3, n), None) };
+    let clear = |n| LayerRecord {
+        tiles: tiled(dielectric(1e-3, n), None).tiles.with([(TableKind::Fresnel, Some(1))]),
+        ..tiled(dielectric(1e-3, n), None)
+    };
     let metal = |alpha| tiled(conductor(alpha, [0.1; 3], [9.0; 3]), None);
     let stack = |alpha| coat.map(clear).into_iter().chain([metal(alpha)]).collect();
     scene_of(ALPHAS.map(stack).into(), &tables)

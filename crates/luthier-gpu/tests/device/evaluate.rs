@@ -181,7 +181,7 @@ struct TableTerms<'a> {
 impl Terms for TableTerms<'_> {
     fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
         let (table, texels) = &self.fresnel;
-        let tile = self.records[layer].fresnel_tile.unwrap();
+        let tile = self.records[layer].tiles[TableKind::Fresnel].unwrap();
         let cos_theta_d = self.records[layer].row_cosine(cos_theta_d);
         let [r, g, b, _] = bilinear(texels, table.layout.position(tile, [cos_theta_d, 0.0]), WeightBits::Exact);
         [r, g, b]
@@ -233,7 +233,10 @@ fn the_baked_form_equals_f64_on_the_same_tables() {
 
     let tiled = |layer: LayerRecord, fresnel: u32| {
         let ggx = u32::from(layer.distribution == Distribution::Ggx);
-        LayerRecord { fresnel_tile: Some(fresnel), distribution_tile: Some(ggx), ..layer }
+        LayerRecord {
+            tiles: layer.tiles.with([(TableKind::Fresnel, Some(fresnel)), (TableKind::Distribution, Some(ggx))]),
+            ..layer
+        }
     };
     let beckmann = LayerRecord { distribution: Distribution::Beckmann, ..dielectric(0.1, 1.5) };
     let materials = vec![

@@ -24,16 +24,8 @@ fn layers(tables: &[Table]) -> Vec<Vec<LayerRecord>> {
     for table in tables {
         for tile in 0..table.layout.tiles {
             let mut layer = dielectric(0.5, 1.5);
-            (layer.fresnel_tile, layer.distribution_tile) = (Some(0), Some(0));
-            match table.kind {
-                TableKind::Fresnel => layer.fresnel_tile = Some(tile),
-                TableKind::Distribution => layer.distribution_tile = Some(tile),
-                TableKind::Fgd => layer.fgd_tile = Some(tile),
-                TableKind::Phase => layer.phase_tile = Some(tile),
-                TableKind::Thickness => layer.thickness_tile = Some(tile),
-                TableKind::Film => layer.film_tile = Some(tile),
-                TableKind::Escape => layer.escape_tile = Some(tile),
-            }
+            (layer.tiles[TableKind::Fresnel], layer.tiles[TableKind::Distribution]) = (Some(0), Some(0));
+            layer.tiles[table.kind] = Some(tile);
             layers.push(vec![layer, diffuse([0.5; 3], 0.0)]);
         }
     }

@@ -21,7 +21,7 @@ fn layers(number: u32, tile: u32) -> Vec<LayerRecord> {
     [coat, metal]
         .into_iter()
         .zip([tile, tile + 1])
-        .map(|(layer, tile)| LayerRecord { fresnel_tile: Some(tile), ..layer })
+        .map(|(layer, tile)| LayerRecord { tiles: layer.tiles.with([(TableKind::Fresnel, Some(tile))]), ..layer })
         .collect()
 }
 

@@ -64,7 +64,14 @@ pub(crate) fn ggx_tables(fresnel: f32, fgd: f32) -> Vec<Table> {
 }
 
 pub(crate) fn tiled(layer: LayerRecord, fgd: Option<u32>) -> LayerRecord {
-    LayerRecord { fresnel_tile: Some(0), distribution_tile: Some(0), fgd_tile: fgd, ..layer }
+    LayerRecord {
+        tiles: layer.tiles.with([
+            (TableKind::Fresnel, Some(0)),
+            (TableKind::Distribution, Some(0)),
+            (TableKind::Fgd, fgd),
+        ]),
+        ..layer
+    }
 }
 
 /// Normal of the ball under the centre of a pixel, and the direction to the eye; `None` beside the ball.

@@ -56,7 +56,7 @@ fn list(out: &mut String, report: &Report) {
 
 fn section(out: &mut String, table: &TableReport, points: u32) {
     let _ = write!(out, "<h3 id=\"table-{0}\">{0}</h3>", table.kind.name());
-    let _ = write!(out, "<p>{}</p>", purpose(table.kind));
+    let _ = write!(out, "<p>{}</p>", table.kind.facts().holds);
     reflectances(out, table);
     alphas(out, table);
     out.push_str(
@@ -96,9 +96,6 @@ fn how(table: &TableReport, points: u32) -> String {
     let here = "“Here” is this report's own scan of the shipped texels at other points, without local refinement; a \
                 baker's maximum, which is refined, should not be smaller.";
     match table.kind {
-        TableKind::Fresnel | TableKind::Distribution | TableKind::Phase | TableKind::Film | TableKind::Escape => {
-            here.to_owned()
-        }
         TableKind::Fgd => {
             let measured: Vec<_> = table.tiles.iter().filter_map(|t| t.judge.as_ref()).collect();
             let within = measured.iter().filter(|j| j.max_abs_err <= TARGET_MAX_REL_ERR).count();
@@ -116,21 +113,7 @@ fn how(table: &TableReport, points: u32) -> String {
                                  normalisation against the slopes, are checked, and what does not fit is a finding."
                 .to_owned()
         }
-    }
-}
-
-fn purpose(kind: TableKind) -> &'static str {
-    match kind {
-        TableKind::Fresnel => "Fresnel reflectance of an interface over the cosine, RGB.",
-        TableKind::Distribution => "Slope distributions, stored as π α² D.",
-        TableKind::Fgd => {
-            "Directional albedo of a rough interface with all its microsurface bounces, RGB; in A the luminance of \
-             the part that never crossed."
-        }
-        TableKind::Phase => "Interference of a film: 2 cos(2 Φ) over normalised thickness, RGB.",
-        TableKind::Film => "Reflectance of an interface over cosine and thickness of its film, RGB.",
-        TableKind::Escape => "Share of a lobe that is not totally reflected inside.",
-        TableKind::Thickness => "Thickness of a varying film: normalised thickness, slopes, normalisation.",
+        _ => here.to_owned(),
     }
 }
 

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::exceptions::{Factor, Factors, Miss, Part};
 use crate::judge::{References, WeightsVote, evaluate, run};
-use crate::table_terms::{TableTerms, is_statistical};
+use crate::table_terms::TableTerms;
 use crate::{
     Device, ErrorSummary, FLOOR, Form, Pair, ReportError, Statistics, Subject, Weights, WorstPair, json, statistics,
 };
@@ -206,7 +206,7 @@ fn compare(
         .into_par_iter()
         .map(|number| {
             let references = references(subject, number as usize)?;
-            if is_statistical(subject.manifest.materials[number as usize].model) {
+            if subject.manifest.materials[number as usize].model.is_statistical() {
                 references.baked().veil();
             }
             Ok((number, references))

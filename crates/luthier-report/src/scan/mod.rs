@@ -9,7 +9,6 @@ mod thickness;
 
 use luthier_layers::terms::Exact;
 use luthier_lut::{Axis, ErrorStats, TableKind, Worst};
-use luthier_manifest::LayerRecord;
 
 use crate::report::{Curves, TableReport, TileReport};
 use crate::statistics::summarise;
@@ -88,7 +87,7 @@ type User = (usize, usize);
 fn users(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<User> {
     let mut out = Vec::new();
     for (m, material) in subject.manifest.materials.iter().enumerate() {
-        let reads = |l: &usize| tile_of(&material.layers[*l], kind) == Some(tile);
+        let reads = |l: &usize| material.layers[*l].tiles[kind] == Some(tile);
         out.extend((0..material.layers.len()).filter(reads).map(|l| (m, l)));
     }
     out
@@ -99,24 +98,12 @@ fn names(subject: &Subject<'_>, kind: TableKind, tile: u32, users: &[User]) -> V
     let materials = &subject.manifest.materials;
     let bare = materials
         .iter()
-        .filter(|m| m.constants.patina.as_ref().is_some_and(|patina| tile_of(&patina.bare, kind) == Some(tile)));
+        .filter(|m| m.constants.patina.as_ref().is_some_and(|patina| patina.bare.tiles[kind] == Some(tile)));
     users
         .iter()
         .map(|&(m, l)| format!("{}/{l}", materials[m].name))
         .chain(bare.map(|m| format!("{}/bare", m.name)))
         .collect()
-}
-
-fn tile_of(record: &LayerRecord, kind: TableKind) -> Option<u32> {
-    match kind {
-        TableKind::Fresnel => record.fresnel_tile,
-        TableKind::Distribution => record.distribution_tile,
-        TableKind::Fgd => record.fgd_tile,
-        TableKind::Phase => record.phase_tile,
-        TableKind::Thickness => record.thickness_tile,
-        TableKind::Film => record.film_tile,
-        TableKind::Escape => record.escape_tile,
-    }
 }
 
 /// Findings of the scan of a tile.

@@ -65,8 +65,8 @@ impl Bake {
             for (l, layer) in elek::layers(stack).iter().enumerate() {
                 let mut record = record(layer);
                 if record.kind != LayerKind::Diffuse {
-                    record.fresnel_tile = Some(rows.len() as u32);
-                    record.distribution_tile = Some(u32::from(layer.distribution == Distribution::Ggx));
+                    record.tiles[TableKind::Fresnel] = Some(rows.len() as u32);
+                    record.tiles[TableKind::Distribution] = Some(u32::from(layer.distribution == Distribution::Ggx));
                     let row: Vec<_> = (0..128).map(|i| exact.fresnel(l, fresnel_axis.node(i))).collect();
                     rows.push((format!("{name}/{l}"), row));
                 }
@@ -136,9 +136,9 @@ impl Bake {
         for material in &mut bake.manifest.materials {
             material.model = model;
             for record in material.layers.iter_mut().filter(|r| r.kind != LayerKind::Diffuse) {
-                record.fgd_tile = tile.next();
+                record.tiles[TableKind::Fgd] = tile.next();
                 let is_above_metal = record.kind == LayerKind::Dielectric && material.name == "lacquered-copper";
-                record.escape_tile = is_above_metal.then_some(0);
+                record.tiles[TableKind::Escape] = is_above_metal.then_some(0);
             }
             material.color = ColorMode::ThreeWavelengths;
             material.constants.internal_reflectance = [0.6; 3];

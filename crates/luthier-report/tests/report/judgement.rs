@@ -155,7 +155,7 @@ fn what_does_not_fit_together_is_refused() {
     assert!(matches!(refused(&|b| b.manifest.tables[0].layout.columns = 0), ReportError::Layout { .. }));
     assert!(matches!(refused(&|b| b.manifest.tables[0].layout.x.size = u32::MAX), ReportError::TextureSize { .. }));
     assert!(matches!(
-        refused(&|b| b.manifest.materials[0].layers[0].fresnel_tile = Some(99)),
+        refused(&|b| b.manifest.materials[0].layers[0].tiles[TableKind::Fresnel] = Some(99)),
         ReportError::MissingTile { layer: 0, kind: TableKind::Fresnel, .. }
     ));
     assert!(matches!(

@@ -97,7 +97,11 @@ fn a_missing_tile_is_refused() {
     for kind in [TableKind::Fgd, TableKind::Escape] {
         let mut bake = shaded(ShadingModel::Belcour);
         let record = &mut bake.manifest.materials[1].layers[0];
-        *(if kind == TableKind::Fgd { &mut record.fgd_tile } else { &mut record.escape_tile }) = None;
+        *(if kind == TableKind::Fgd {
+            &mut record.tiles[TableKind::Fgd]
+        } else {
+            &mut record.tiles[TableKind::Escape]
+        }) = None;
         let refusal = judge(&bake.subject(), None, &Settings { pairs_per_set: 8, ..Settings::default() }).unwrap_err();
         let expected = ReportError::MissingTile { material: "lacquered-copper".to_owned(), layer: 0, kind };
         assert_eq!(refusal.to_string(), expected.to_string());

@@ -63,8 +63,8 @@ fn albedos_of_a_perfect_mirror_and_of_nothing_at_all() {
     bake.stacks[2].layers[0].base = Base::Conductor { ior: Ior::constant(1.0, 1e6).unwrap() };
     let slab = Slab { thickness_um: 50.0, absorption_per_um: [0.0; 3] };
     bake.stacks[0].layers[0].base = Base::Dielectric { ior: Ior::constant(1.0, 0.0).unwrap(), slab };
-    bake.manifest.materials[2].layers[0].fgd_tile = Some(0);
-    bake.manifest.materials[0].layers[0].fgd_tile = Some(1);
+    bake.manifest.materials[2].layers[0].tiles[TableKind::Fgd] = Some(0);
+    bake.manifest.materials[0].layers[0].tiles[TableKind::Fgd] = Some(1);
     let layout = AtlasLayout {
         x: axis("cos_theta", 0.0, 1.0, 8, Mapping::Power { exponent: 2.0 }),
         y: Some(axis("alpha", 0.0, 1.0, 8, Mapping::Power { exponent: 3.0 })),
@@ -93,7 +93,7 @@ fn phases_follow_the_closed_form() {
     let thickness = FilmThickness { min_nm: 100.0, max_nm: 300.0 };
     bake.stacks[1].layers[0].films = vec![Film { ior: Ior::constant(1.5, 0.0).unwrap(), thickness }];
     bake.manifest.materials[1].wavelengths_nm = [900.0, 450.0, 300.0];
-    bake.manifest.materials[1].layers[0].phase_tile = Some(0);
+    bake.manifest.materials[1].layers[0].tiles[TableKind::Phase] = Some(0);
     let nodes = [[2.0, 2.0, 2.0], [0.0, -2.0, 0.0], [-2.0, 2.0, -2.0], [0.0, -2.0, 0.0], [2.0, 2.0, 2.0]];
     let x = axis("s", 0.0, 1.0, 5, Mapping::Linear);
     bake.add(
@@ -115,7 +115,7 @@ fn phases_follow_the_closed_form() {
 fn thickness_maps_are_held_to_their_film() {
     let film = |bake: &mut Bake, thickness| {
         bake.stacks[1].layers[0].films = vec![Film { ior: Ior::constant(1.5, 0.0).unwrap(), thickness }];
-        bake.manifest.materials[1].layers[0].thickness_tile = Some(0);
+        bake.manifest.materials[1].layers[0].tiles[TableKind::Thickness] = Some(0);
     };
     let findings = |texel: [f32; 4]| {
         let mut bake = Bake::new();
@@ -141,8 +141,9 @@ fn fresnel_rows_over_the_angle_are_read_as_such() {
     let mut row = 0;
     for (stack, material) in bake.stacks.iter().zip(&bake.manifest.materials) {
         let exact = Exact::new(stack, Color::Spectral);
-        for (layer, record) in material.layers.iter().enumerate().filter(|(_, r)| r.fresnel_tile.is_some()) {
-            assert_eq!(record.fresnel_tile, Some(row));
+        for (layer, record) in material.layers.iter().enumerate().filter(|(_, r)| r.tiles[TableKind::Fresnel].is_some())
+        {
+            assert_eq!(record.tiles[TableKind::Fresnel], Some(row));
             for x in 0..128 {
                 let rgb = exact.fresnel(layer, libm::cos(theta.node(x)).max(0.0));
                 bake.textures[0].1.texel_mut(x, row)[..3].copy_from_slice(&rgb.map(|c| c as f32));

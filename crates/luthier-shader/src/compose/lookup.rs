@@ -8,37 +8,47 @@ use crate::compose::blocks::prune;
 use crate::compose::features::Features;
 use crate::{ShaderError, TableFace};
 
+macro_rules! module {
+    ($($kind:ident $name:literal),+) => {
+        /// The module of the look-up of a kind, before it is laid out for one table.
+        pub(crate) fn module(kind: TableKind) -> &'static str {
+            match kind {
+                $(TableKind::$kind => include_str!(concat!("../wgsl/tables/", $name, ".wgsl")),)+
+            }
+        }
+    };
+}
+
+luthier_lut::for_table_kinds!(module);
+
+/// Types of a look-up function `luthier_lookup_NAME` in WGSL: of its parameters, the tile first, and of its value.
+///
+/// # Panics
+/// Never for the look-ups that this crate has.
+pub(crate) fn lookup_signature(kind: TableKind) -> (Vec<&'static str>, &'static str) {
+    let opening = format!("fn luthier_lookup_{}(", kind.name());
+    let declared =
+        module(kind).lines().find_map(|line| line.strip_prefix(&opening)?.strip_suffix(" {")?.split_once(") -> "));
+    let (parameters, value) = declared.unwrap_or_else(|| panic!("no look-up in the module of {}", kind.name()));
+    (parameters.split(", ").filter_map(|parameter| Some(parameter.split_once(": ")?.1)).collect(), value)
+}
+
 /// WGSL of a table: its texture, its sizes, its look-up.
 pub(crate) fn lookup(table: &TableFace, features: &Features) -> Result<String, ShaderError> {
     let kind = table.kind;
-    let (module, has_rows, x_names): (_, _, &[&str]) = match kind {
-        TableKind::Fresnel => (include_str!("../wgsl/tables/fresnel.wgsl"), false, &["cos_theta", "theta"]),
-        TableKind::Distribution => {
-            (include_str!("../wgsl/tables/distribution.wgsl"), true, &["cos_theta_h", "theta_h"])
-        }
-        TableKind::Fgd => (include_str!("../wgsl/tables/fgd.wgsl"), true, &["cos_theta", "theta"]),
-        TableKind::Phase => (include_str!("../wgsl/tables/phase.wgsl"), false, &["s"]),
-        TableKind::Thickness => (include_str!("../wgsl/tables/thickness.wgsl"), true, &["u"]),
-        TableKind::Film => (include_str!("../wgsl/tables/film.wgsl"), true, &["cos_theta"]),
-        TableKind::Escape => (include_str!("../wgsl/tables/escape.wgsl"), true, &["cos_theta"]),
-    };
+    let facts = kind.facts();
     let layout = &table.layout;
     let fail = |reason: String| ShaderError::Layout { table: kind, reason };
     if layout.columns == 0 || layout.tiles == 0 {
         return Err(fail("it has no tiles".to_owned()));
     }
-    if layout.y.is_some() != has_rows {
-        let expected = if has_rows { "two axes are" } else { "one axis is" };
+    if layout.y.is_some() != facts.y.is_some() {
+        let expected = if facts.y.is_some() { "two axes are" } else { "one axis is" };
         return Err(fail(format!("{expected} expected")));
     }
-    let y_name = match kind {
-        TableKind::Thickness => "v",
-        TableKind::Film => "fraction",
-        _ => "alpha",
-    };
-    check_axis(&layout.x, x_names, kind)?;
-    if let Some(y) = &layout.y {
-        check_axis(y, &[y_name], kind)?;
+    check_axis(&layout.x, facts.x, kind)?;
+    if let (Some(y), Some(quantity)) = (&layout.y, facts.y) {
+        check_axis(y, &[quantity], kind)?;
     }
     let is_periodic = |axis: &Axis| axis.mapping == Mapping::Periodic;
     if layout.apron == 0 && (is_periodic(&layout.x) || layout.y.as_ref().is_some_and(is_periodic)) {
@@ -57,7 +67,7 @@ pub(crate) fn lookup(table: &TableFace, features: &Features) -> Result<String, S
     let is_split = Encoding::of(kind, table.format) == Encoding::SplitSixteenthRoot;
     let features = features.with("theta_axis", has_angle).with("split_root", is_split);
     let features = features.with("schlick_base", has_base);
-    for line in prune(module, &features).lines() {
+    for line in prune(module(kind), &features).lines() {
         if let Some(value) = place(line, "let x = $x(") {
             let unit = if is_whole(table) { 1.0 / f64::from(layout.size()[0]) } else { 1.0 };
             node_index(&mut out, "x", &layout.x, value, unit);

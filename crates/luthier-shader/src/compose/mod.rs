@@ -16,6 +16,7 @@ use luthier_manifest::{MaterialTexture, SIDE, ShadingModel, material_buffer};
 use self::blocks::prune;
 use self::features::{Features, feature};
 use self::lookup::lookup;
+pub(crate) use self::lookup::lookup_signature;
 use self::members::without_missing;
 use self::words::numbered;
 use crate::{Form, MaterialSet, ShaderError, bindings};
@@ -88,7 +89,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
 
 /// The lines of a module that a set keeps. Models take a `LuthierPlace` where a material of the set varies over its surface:
 /// `$place_parameter` declares it, `$place_argument` hands it on, and `$layer(` reads a layer as it is there. `$diffuse(` is the BRDF of a
-/// base, which directions decide where one is rough. `$tiles` are the members of a layer that point into tables. `$distribution_read`
+/// base, which directions decide where one is rough. `$tiles` are the members of a layer that point into tables, `$assign_tiles` reads them. `$distribution_read`
 /// is pi alpha^2 D from the table, which is the distribution's term where no layer has it computed.
 pub(crate) fn text(module: &str, features: &Features) -> String {
     let [parameter, argument, layer] = if features.has("place") {
@@ -96,7 +97,8 @@ pub(crate) fn text(module: &str, features: &Features) -> String {
     } else {
         ["", "", "luthier_layer("]
     };
-    let text = prune(&module.replace("    $tiles\n", &tiles(features)), features);
+    let text = module.replace("    $tiles\n", &tiles(features)).replace("    $assign_tiles\n", &assign_tiles());
+    let text = prune(&text, features);
     let text =
         text.replace("$place_parameter ", parameter).replace("$place_argument ", argument).replace("$layer(", layer);
     let term = if features.has("closed") { "luthier_distribution_read" } else { "luthier_distribution_term" };
@@ -114,6 +116,16 @@ fn tiles(features: &Features) -> String {
     let is_read = |kind: &TableKind| features.has(feature(*kind));
     let names = TableKind::ALL.into_iter().filter(is_read).map(TableKind::name);
     names.map(|name| format!("    /// Tile in `luthier_{name}`.\n    {name}_tile: f32,\n")).collect()
+}
+
+/// The statements that read all tiles of a layer from its words in the buffer; those of members that are left out go with these.
+fn assign_tiles() -> String {
+    let assignment = |kind: TableKind| {
+        let [word, component] = kind.facts().slot;
+        let read = words::layer(word);
+        format!("    layer.{}_tile = {read}.{};\n", kind.name(), ["x", "y", "z", "w"][component])
+    };
+    TableKind::ALL.into_iter().map(assignment).collect()
 }
 
 /// The modules of a model, `luthier_eval_<model>` last.

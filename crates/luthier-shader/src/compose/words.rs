@@ -18,7 +18,7 @@ const MATERIAL: [&str; MATERIAL_WORDS] = [
 ];
 
 /// Words of a layer, as `LayerRecord::words` lays them out.
-const LAYER: [&str; LAYER_WORDS] = [
+const LAYER: [&str; 11] = [
     "slopes",
     "tiles",
     "slab",
@@ -31,6 +31,14 @@ const LAYER: [&str; LAYER_WORDS] = [
     "tangent",
     "numbers",
 ];
+
+/// The expression of a word of a layer in `luthier_layer`: words of numbers and tiles are there by name.
+pub(crate) fn layer(word: usize) -> String {
+    match LAYER.get(word) {
+        Some(&name @ ("tiles" | "slab")) => name.to_owned(),
+        _ => format!("luthier_materials[first + {word}u]"),
+    }
+}
 
 /// The text with the number of each word in place of `$word_NAME`, and how many there are in place of `$words_material` and `$words_layer`.
 ///
@@ -55,6 +63,8 @@ mod tests {
     use luthier_manifest::{
         Distribution, FlakesRecord, GlitterRecord, LayerKind, LayerRecord, MaterialConstants, PatinaRecord,
     };
+
+    use luthier_lut::TableKind;
 
     use super::*;
 
@@ -92,16 +102,40 @@ mod tests {
     fn layer_words_have_the_numbers_of_the_buffer() {
         let none = LayerRecord::default();
         for (name, record) in [
-            ("tiles", LayerRecord { fresnel_tile: Some(1), phase_tile: Some(1), ..none.clone() }),
-            ("slab", LayerRecord { optical_depth: [1.0; 3], thickness_tile: Some(1), ..none.clone() }),
+            (
+                "tiles",
+                LayerRecord {
+                    tiles: none.tiles.with([(TableKind::Fresnel, Some(1)), (TableKind::Phase, Some(1))]),
+                    ..none.clone()
+                },
+            ),
+            (
+                "slab",
+                LayerRecord {
+                    optical_depth: [1.0; 3],
+                    tiles: none.tiles.with([(TableKind::Thickness, Some(1))]),
+                    ..none.clone()
+                },
+            ),
             ("base", LayerRecord { albedo: [1.0; 3], distribution: Distribution::Ggx, ..none.clone() }),
             ("ior_n", LayerRecord { ior_n: [1.0; 3], film_thickness_nm: 1.0, ..none.clone() }),
             ("ior_k", LayerRecord { ior_k: [1.0; 3], film_thickness_max_nm: 1.0, ..none.clone() }),
-            ("film_ior_n", LayerRecord { film_ior_n: [1.0; 3], film_tile: Some(1), ..none.clone() }),
+            (
+                "film_ior_n",
+                LayerRecord {
+                    film_ior_n: [1.0; 3],
+                    tiles: none.tiles.with([(TableKind::Film, Some(1))]),
+                    ..none.clone()
+                },
+            ),
             ("film_ior_k", LayerRecord { film_ior_k: [1.0; 3], critical_cot_sq: 1.0, ..none.clone() }),
             (
                 "film_thickness_waves",
-                LayerRecord { film_thickness_waves: [1.0; 3], escape_tile: Some(1), ..none.clone() },
+                LayerRecord {
+                    film_thickness_waves: [1.0; 3],
+                    tiles: none.tiles.with([(TableKind::Escape, Some(1))]),
+                    ..none.clone()
+                },
             ),
             ("tangent", LayerRecord { alpha_xy: [1.0; 2], rotation: 1.0, ..none.clone() }),
             ("numbers", LayerRecord { kind: LayerKind::Diffuse, sigma: 1.0, ..none.clone() }),

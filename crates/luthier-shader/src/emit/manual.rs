@@ -103,9 +103,8 @@ fn models(set: &MaterialSet<'_>, form: Form) -> Vec<String> {
         }
         Form::Baked => "Fresnel reflectance is read from tables; closed forms of D.",
     };
-    let is_statistical = |model| matches!(model, ShadingModel::Belcour | ShadingModel::Yamaguchi);
     let statistics = match form {
-        _ if !set.models().any(is_statistical) => "",
+        _ if !set.models().any(ShadingModel::is_statistical) => "",
         Form::Baked => {
             "belcour, yamaguchi: energies and total reflection are read from tables, lobes are closed forms of GGX."
         }

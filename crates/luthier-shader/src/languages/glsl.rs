@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use luthier_lut::TableKind;
 use naga::back::glsl::{Options, PipelineOptions, ReflectionInfo, Version, Writer, WriterFlags};
 use naga::proc::BoundsCheckPolicies;
 use naga::{GlobalVariable, Handle, Module, ResourceBinding, ShaderStage};
 
+use crate::compose::lookup_signature;
 use crate::languages::text::{layout, rename};
 use crate::validate::module;
 use crate::{Form, MaterialSet, ShaderError, Target, bindings};
@@ -48,13 +48,8 @@ fn entry_point(set: &MaterialSet<'_>, form: Form) -> String {
     let mut out = format!("@fragment fn {ENTRY}() {{\n");
     out.push_str("    _ = luthier_eval(0u, vec3<f32>(), vec3<f32>());\n");
     for table in set.tables_read(form) {
-        let arguments = match table.kind {
-            TableKind::Fresnel | TableKind::Phase => "0.0, 0.0",
-            TableKind::Distribution => "0.0, 0.0, 0.0, 0.0",
-            TableKind::Fgd | TableKind::Film | TableKind::Escape => "0.0, 0.0, 0.0",
-            TableKind::Thickness => "0.0, vec2<f32>()",
-        };
-        let _ = writeln!(out, "    _ = luthier_lookup_{}({arguments});", table.kind.name());
+        let arguments: Vec<String> = lookup_signature(table.kind).0.iter().map(|kind| format!("{kind}()")).collect();
+        let _ = writeln!(out, "    _ = luthier_lookup_{}({});", table.kind.name(), arguments.join(", "));
     }
     out.push_str("}\n");
     out

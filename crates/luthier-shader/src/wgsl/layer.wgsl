@@ -126,13 +126,7 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     layer.lambert = base.xyz;
     layer.sigma = numbers.w;
     layer.critical_cot_sq = luthier_materials[first + $word_film_ior_k].w;
-    layer.fresnel_tile = tiles.x;
-    layer.distribution_tile = tiles.y;
-    layer.fgd_tile = tiles.z;
-    layer.phase_tile = tiles.w;
-    layer.thickness_tile = slab.w;
-    layer.film_tile = luthier_materials[first + $word_film_ior_n].w;
-    layer.escape_tile = luthier_materials[first + $word_film_thickness_waves].w;
+    $assign_tiles
     layer.film_thickness_nm = real_part.w;
     layer.film_thickness_max_nm = imaginary_part.w;
     layer.distribution = base.w;

@@ -298,7 +298,7 @@ fn remapped(axis: &Axis, mapping: Mapping) -> Axis {
 
 fn check_positions(tables: &[TableFace]) {
     let mut materials = sets().pop().unwrap().1;
-    materials[0].layers[0].escape_tile = Some(0);
+    materials[0].layers[0].tiles[TableKind::Escape] = Some(0);
     let set = MaterialSet { materials: &materials, tables: tables.to_vec() };
     let textures: BTreeMap<_, _> = tables.iter().map(|t| (format!("luthier_{}", t.kind.name()), rulers(t))).collect();
     let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();

@@ -60,7 +60,7 @@ fn without_a_table_d_is_computed() {
         let records = materials
             .iter_mut()
             .flat_map(|m| m.layers.iter_mut().chain(m.constants.patina.as_mut().map(|patina| &mut patina.bare)));
-        records.for_each(|layer| layer.distribution_tile = None);
+        records.for_each(|layer| layer.tiles[TableKind::Distribution] = None);
         let tables: Vec<_> = tables().into_iter().filter(|t| t.kind != TableKind::Distribution).collect();
         emit_all(&materials, &tables);
         let text = emit(&MaterialSet { materials: &materials, tables }, Form::Baked, Target::Wgsl).unwrap();
@@ -223,7 +223,7 @@ fn sets_that_cannot_be_emitted_say_why() {
     let twins = [material("a-b", &[conductor()]), material("A-B", &[conductor()])];
     assert!(matches!(attempt(&twins, tables(), Target::Wgsl), ShaderError::NameClash { .. }));
     let mut layer = conductor();
-    layer.fresnel_tile = None;
+    layer.tiles[TableKind::Fresnel] = None;
     let error = attempt(&lone(layer), tables(), Target::Wgsl);
     assert!(matches!(error, ShaderError::NoTile { table: TableKind::Fresnel, layer: 0, .. }), "{error}");
     let error = attempt(&lone(conductor()), Vec::new(), Target::Wgsl);

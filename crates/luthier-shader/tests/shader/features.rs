@@ -93,7 +93,7 @@ fn moved(with: &Shader, without: &Shader) -> f32 {
 }
 
 fn rough(layer: LayerRecord, alpha: f64) -> LayerRecord {
-    LayerRecord { alpha, alpha_xy: [alpha; 2], distribution_tile: None, ..layer }
+    LayerRecord { alpha, alpha_xy: [alpha; 2], tiles: layer.tiles.with([(TableKind::Distribution, None)]), ..layer }
 }
 
 fn coat() -> LayerRecord {
@@ -107,7 +107,12 @@ fn gold() -> LayerRecord {
 fn of(model: ShadingModel, layers: &[LayerRecord]) -> MaterialEntry {
     let layers: Vec<LayerRecord> = layers
         .iter()
-        .map(|layer| LayerRecord { fgd_tile: layer.fgd_tile.or(Some(2)), distribution_tile: None, ..layer.clone() })
+        .map(|layer| LayerRecord {
+            tiles: layer
+                .tiles
+                .with([(TableKind::Fgd, layer.tiles[TableKind::Fgd].or(Some(2))), (TableKind::Distribution, None)]),
+            ..layer.clone()
+        })
         .collect();
     let constants = MaterialConstants {
         phong_diffuse: [0.2; 3],
@@ -149,7 +154,11 @@ fn change(model: ShadingModel, feature: Feature, form: Form) -> Option<f32> {
         }
         Feature::Films => {
             let film = LayerRecord { film_thickness_max_nm: 300.0, ..rough(filmed(), 0.3) };
-            let without = LayerRecord { film_ior_n: [0.0; 3], phase_tile: None, film_tile: None, ..film.clone() };
+            let without = LayerRecord {
+                film_ior_n: [0.0; 3],
+                tiles: film.tiles.with([(TableKind::Phase, None), (TableKind::Film, None)]),
+                ..film.clone()
+            };
             moved(&shader(&[film, gold()]), &shader(&[without, gold()]))
         }
         Feature::FilmVariation => {
@@ -181,7 +190,7 @@ fn change(model: ShadingModel, feature: Feature, form: Form) -> Option<f32> {
         }
         Feature::Flakes | Feature::Patina | Feature::Glitter => {
             let plain = || of(model, &[coat(), gold()]);
-            let patina = || LayerRecord { fgd_tile: Some(2), ..gold() };
+            let patina = || LayerRecord { tiles: gold().tiles.with([(TableKind::Fgd, Some(2))]), ..gold() };
             let constants = match feature {
                 Feature::Flakes => MaterialConstants { flakes: Some(FLAKES), ..plain().constants },
                 Feature::Glitter => MaterialConstants { glitter: Some(GLITTER), ..plain().constants },

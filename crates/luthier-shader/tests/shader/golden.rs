@@ -1,6 +1,7 @@
 //! Emitted text, as committed under `tests/golden`: the smallest set and one with the common features, in every
 //! language. To accept a deliberate change, run with `LUTHIER_ACCEPT=1` and read the difference.
 
+use luthier_lut::TableKind;
 use std::fs;
 use std::path::Path;
 
@@ -30,9 +31,9 @@ fn lambert_needs_no_table_and_no_interface() {
 #[test]
 fn varnished_gold_has_two_layers_two_distributions_and_no_absorption() {
     let mut gold = conductor();
-    gold.fgd_tile = None;
+    gold.tiles[TableKind::Fgd] = None;
     let mut varnish = clear();
-    varnish.fgd_tile = None;
+    varnish.tiles[TableKind::Fgd] = None;
     let materials = [material("varnished-gold", &[varnish, gold])];
     let set = MaterialSet { materials: &materials, tables: tables() };
     for form in Form::ALL {

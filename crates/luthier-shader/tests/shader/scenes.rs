@@ -3,7 +3,7 @@
 use luthier_lut::{AtlasLayout, Axis, Mapping, TableKind, TexelFormat};
 use luthier_manifest::{
     Distribution, FlakesRecord, GlitterRecord, LayerKind, LayerRecord, MaterialConstants, MaterialEntry, PatinaRecord,
-    ShadingModel,
+    ShadingModel, Tiles,
 };
 use luthier_shader::TableFace;
 
@@ -17,9 +17,7 @@ pub(crate) fn dielectric() -> LayerRecord {
         optical_depth: [0.1, 0.5, 0.9],
         alpha_xy: [0.02; 2],
         ior_n: [1.49, 1.5, 1.51],
-        fresnel_tile: Some(0),
-        distribution_tile: Some(0),
-        fgd_tile: Some(0),
+        tiles: Tiles::of([(TableKind::Fresnel, 0), (TableKind::Distribution, 0), (TableKind::Fgd, 0)]),
         ..LayerRecord::default()
     }
 }
@@ -40,9 +38,11 @@ pub(crate) fn conductor() -> LayerRecord {
         optical_depth: [0.0; 3],
         ior_n: [0.16, 0.42, 1.47],
         ior_k: [3.9, 2.4, 1.95],
-        fresnel_tile: Some(1),
-        distribution_tile: Some(1),
-        fgd_tile: Some(1),
+        tiles: dielectric().tiles.with([
+            (TableKind::Fresnel, Some(1)),
+            (TableKind::Distribution, Some(1)),
+            (TableKind::Fgd, Some(1)),
+        ]),
         ..dielectric()
     }
 }
@@ -55,9 +55,11 @@ pub(crate) fn diffuse(sigma: f64) -> LayerRecord {
         optical_depth: [0.0; 3],
         albedo: [0.8, 0.5, 0.2],
         sigma,
-        fresnel_tile: None,
-        distribution_tile: None,
-        fgd_tile: None,
+        tiles: dielectric().tiles.with([
+            (TableKind::Fresnel, None),
+            (TableKind::Distribution, None),
+            (TableKind::Fgd, None),
+        ]),
         ..dielectric()
     }
 }
@@ -70,18 +72,25 @@ pub(crate) fn filmed() -> LayerRecord {
         film_thickness_waves: [0.43, 0.55, 0.67],
         film_thickness_nm: 300.0,
         film_thickness_max_nm: 400.0,
-        phase_tile: Some(0),
-        thickness_tile: Some(0),
-        film_tile: Some(0),
-        fresnel_tile: Some(2),
-        fgd_tile: None,
+        tiles: clear().tiles.with([
+            (TableKind::Phase, Some(0)),
+            (TableKind::Thickness, Some(0)),
+            (TableKind::Film, Some(0)),
+            (TableKind::Fresnel, Some(2)),
+            (TableKind::Fgd, None),
+        ]),
         ..clear()
     }
 }
 
 /// A layer of a material of the statistical models: with an escape tile.
 pub(crate) fn with_escape(layer: LayerRecord) -> LayerRecord {
-    LayerRecord { fgd_tile: layer.fgd_tile.or(Some(2)), escape_tile: Some(0), ..layer }
+    LayerRecord {
+        tiles: layer
+            .tiles
+            .with([(TableKind::Fgd, layer.tiles[TableKind::Fgd].or(Some(2))), (TableKind::Escape, Some(0))]),
+        ..layer
+    }
 }
 
 /// A material of these layers.

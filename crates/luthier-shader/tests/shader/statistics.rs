@@ -77,12 +77,12 @@ impl Read<'_> {
 
 impl Energy<3> for Read<'_> {
     fn fgd(&self, layer: usize, cos_theta_i: f64, alpha: f64) -> [f64; 3] {
-        Self::at(&self.fgd, self.material.layers[layer].fgd_tile.unwrap(), [cos_theta_i, alpha])
+        Self::at(&self.fgd, self.material.layers[layer].tiles[TableKind::Fgd].unwrap(), [cos_theta_i, alpha])
     }
 
     fn escaping(&self, layer: usize, cos_theta_i: f64, alpha: f64, eta: f64) -> f64 {
         let sin_sq = (1.0 - cos_theta_i * cos_theta_i) / (eta * eta);
-        let tile = self.material.layers[layer].escape_tile;
+        let tile = self.material.layers[layer].tiles[TableKind::Escape];
         tile.map_or(1.0, |tile| Self::at(&self.escape, tile, [(1.0 - sin_sq).max(0.0).sqrt(), alpha])[0])
     }
 }
@@ -274,7 +274,7 @@ fn narrow_lobes_keep_their_shape() {
 /// All lobes together carry no more than arrives, and all of it on a white base, on its way through f32.
 #[test]
 fn lobes_carry_no_more_than_arrives_and_all_of_it_on_a_white_base() {
-    let white = || LayerRecord { fgd_tile: Some(4), ..conductor() };
+    let white = || LayerRecord { tiles: conductor().tiles.with([(TableKind::Fgd, Some(4))]), ..conductor() };
     let coat = |layer: LayerRecord, alpha: f64| with_escape(LayerRecord { alpha, alpha_xy: [alpha; 2], ..layer });
     for model in [ShadingModel::Belcour, ShadingModel::Yamaguchi] {
         let of = |name: &str, layers: &[LayerRecord]| MaterialEntry { model, ..material(name, layers) };

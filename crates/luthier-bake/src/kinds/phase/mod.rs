@@ -1,16 +1,55 @@
 //! Phase rows of films: Granier and Heidrich 2003, eq. 19.
 
-use std::f64::consts::PI;
+mod search;
 
-use luthier_lut::{Axis, Comparison, Image, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use luthier_lut::{Axis, Comparison, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
+use luthier_material::BakeSettings;
 use luthier_optics::ior::Ior;
 use serde_json::{Value, json};
 
-use crate::job::{TileData, lone_tile};
-use crate::json;
+use super::{Kind, Site};
+use crate::graph::{Inputs, Job, JobKind, Output, Results};
+use crate::plan::Plan;
+use crate::search::Found;
+use crate::settings::{Ask, Asked, Shape, axis};
+use crate::tile::{TileData, lone_tile};
+use crate::{BakeError, json};
 
 /// Points of the error scan per texel interval.
 const PER_CELL: u32 = 4;
+
+/// Phase tables.
+pub(crate) struct Table;
+
+impl Kind for Table {
+    fn fixed(&self, ask: Ask<'_>) -> Result<Shape, BakeError> {
+        let size = ask.one("bake.phase.size", |b| b.phase.size)?.unwrap_or(256);
+        let format = ask.format("bake.phase.format", |b| b.phase.format, TexelFormat::Rgba16Float)?;
+        Ok(Shape::row(axis("s", "", [0.0, 1.0], size, Mapping::Linear), format))
+    }
+
+    fn asked(&self, bake: &BakeSettings) -> Asked {
+        Asked::all(bake.asks_for(TableKind::Phase))
+    }
+
+    fn job(&self, site: &Site<'_>) -> Result<Option<Arc<dyn Job>>, BakeError> {
+        let Some(film) = site.layer.films.first() else { return Ok(None) };
+        Ok(Some(Arc::new(PhaseJob {
+            film: film.ior.clone(),
+            thickness_max_nm: film.thickness.max_nm,
+            wavelengths_nm: site.material.bake.wavelengths_nm(),
+            axis: site.shape.x.clone(),
+            format: site.shape.format,
+        })))
+    }
+
+    fn candidates(&self, plan: &Plan, _: &Results, _: bool) -> Option<Found> {
+        search::candidates(plan)
+    }
+}
 
 /// `T_Phi(s) = 2 cos(2 pi 2 d_max n(lambda) / lambda s)` at three wavelengths.
 #[derive(Debug, Clone)]
@@ -22,8 +61,12 @@ pub(crate) struct PhaseJob {
     pub(crate) format: TexelFormat,
 }
 
-impl PhaseJob {
-    pub(crate) fn inputs(&self) -> Value {
+impl Job for PhaseJob {
+    fn kind(&self) -> JobKind {
+        JobKind::tile(TableKind::Phase)
+    }
+
+    fn inputs(&self) -> Value {
         json!({
             "film": json::ior(&self.film),
             "thickness_max_nm": self.thickness_max_nm,
@@ -33,7 +76,13 @@ impl PhaseJob {
         })
     }
 
-    pub(crate) fn run(&self) -> TileData {
+    fn run(&self, _: &Inputs<'_>) -> Output {
+        Box::new(self.tile())
+    }
+}
+
+impl PhaseJob {
+    fn tile(&self) -> TileData {
         let waves = self.wavelengths_nm.map(|nm| 2.0 * self.thickness_max_nm * self.film.at(nm).re / nm);
         let phase = |s: f64| waves.map(|w| 2.0 * libm::cos(2.0 * PI * w * s));
         let mut truth = Image::zeros(self.axis.size, 1, 3);

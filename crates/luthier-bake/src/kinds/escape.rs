@@ -1,27 +1,55 @@
 //! Escape tiles: which part of a lobe inside a medium is not totally reflected at its surface.
 
+use std::sync::Arc;
+
 use luthier_layers::statistics::total_reflection::escaping_share;
-use luthier_lut::{Axis, Comparison, Image, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
+use luthier_lut::{Axis, Comparison, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
 use serde_json::{Value, json};
 
-use crate::facet_grid::{DOMAIN_ALPHA, DOMAIN_COS_THETA};
-use crate::job::{TileData, lone_tile};
-use crate::json;
+use super::fgd::{DOMAIN_ALPHA, DOMAIN_COS_THETA};
+use super::{Kind, Site};
+use crate::graph::{Inputs, Job, JobKind, Output};
+use crate::settings::{Ask, Shape, axis};
+use crate::tile::{TileData, lone_tile};
+use crate::{BakeError, json};
 
 /// Points of the error scan along each axis.
 const PROBES: u32 = 96;
 
-#[derive(Debug, Clone)]
-pub(crate) struct EscapeJob {
-    /// Index of the medium over that outside, above 1.
-    pub(crate) eta: f64,
-    /// cos_theta outside, of the refracted direction, and alpha of the lobe.
-    pub(crate) axes: [Axis; 2],
-    pub(crate) format: TexelFormat,
+/// Escape tables. Their shape is fixed.
+pub(crate) struct Table;
+
+impl Kind for Table {
+    fn fixed(&self, _: Ask<'_>) -> Result<Shape, BakeError> {
+        let axes = [
+            axis("cos_theta", "", [0.0, 1.0], 64, Mapping::Linear),
+            axis("alpha", "", [0.0, 1.0], 64, Mapping::Power { exponent: 2.0 }),
+        ];
+        Ok(Shape::grid(axes, TexelFormat::R16Float))
+    }
+
+    /// A tile for a layer that totally reflects some of the lobes of an interface below; other layers need none.
+    fn job(&self, site: &Site<'_>) -> Result<Option<Arc<dyn Job>>, BakeError> {
+        let job = |eta| EscapeJob { eta, axes: site.shape.axes(), format: site.shape.format };
+        Ok((site.record.eta > 1.0).then(|| Arc::new(job(site.record.eta)) as Arc<dyn Job>))
+    }
 }
 
-impl EscapeJob {
-    pub(crate) fn inputs(&self) -> Value {
+#[derive(Debug)]
+struct EscapeJob {
+    /// Index of the medium over that outside, above 1.
+    eta: f64,
+    /// cos_theta outside, of the refracted direction, and alpha of the lobe.
+    axes: [Axis; 2],
+    format: TexelFormat,
+}
+
+impl Job for EscapeJob {
+    fn kind(&self) -> JobKind {
+        JobKind::tile(TableKind::Escape)
+    }
+
+    fn inputs(&self) -> Value {
         json!({
             "eta": self.eta,
             "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
@@ -29,7 +57,7 @@ impl EscapeJob {
         })
     }
 
-    pub(crate) fn run(&self) -> TileData {
+    fn run(&self, _: &Inputs<'_>) -> Output {
         let [x, y] = &self.axes;
         let mut truth = Image::zeros(x.size, y.size, 1);
         for j in 0..y.size {
@@ -60,9 +88,11 @@ impl EscapeJob {
              {DOMAIN_ALPHA}",
             self.eta
         );
-        TileData { model, truth, texels: atlas.texels, bytes: atlas.bytes, error }
+        Box::new(TileData { model, truth, texels: atlas.texels, bytes: atlas.bytes, error })
     }
+}
 
+impl EscapeJob {
     /// The share of the lobe around the direction into which light at `cos_theta` outside is refracted.
     fn value(&self, cos_theta: f64, alpha: f64) -> f64 {
         let eta = self.eta;

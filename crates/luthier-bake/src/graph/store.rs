@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::job::{Key, Output};
+use crate::graph::{Key, Output};
 
 /// Result of a job: a function of the inputs whose hash is its [`Key`].
 #[derive(Debug)]

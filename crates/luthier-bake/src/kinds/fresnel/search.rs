@@ -6,14 +6,13 @@ use luthier_optics::Rgb;
 use luthier_optics::interpolation::cubic_stencil;
 use rayon::prelude::*;
 
-use super::{DEFAULT_BUDGET, Found, WEIGHTS, cost, measured, row_form};
-use crate::fresnel::{Fit, FresnelJob, RowCurve, RowShape, cos_theta};
-use crate::job::{Job, JobKind};
+use super::{Fit, FresnelJob, RowCurve, RowShape, cos_theta};
 use crate::plan::Plan;
-use crate::settings::axis;
+use crate::search::{DEFAULT_BUDGET, Found, WEIGHTS, cost, measured, row_form};
+use crate::settings::{Asked, axis};
 
 /// Nodes of a row: four to the octave, and those that make 384 bytes of texels of 4 and 8 bytes.
-pub(super) const SIZES: [u32; 33] = [
+pub(crate) const SIZES: [u32; 33] = [
     2, 3, 4, 5, 6, 7, 8, 10, 11, 13, 16, 19, 23, 27, 32, 38, 45, 48, 54, 64, 76, 93, 96, 108, 128, 152, 181, 215, 256,
     304, 362, 431, 512,
 ];
@@ -35,7 +34,7 @@ const MAPPINGS: [Mapping; 13] = [
 ];
 
 /// Texel formats of plain rows and of rows over Schlick's form.
-pub(super) const FORMATS: [(RowBase, TexelFormat); 7] = [
+pub(crate) const FORMATS: [(RowBase, TexelFormat); 7] = [
     (RowBase::Zero, TexelFormat::Rgba8Unorm),
     (RowBase::Zero, TexelFormat::Rgb10a2Unorm),
     (RowBase::Zero, TexelFormat::Rg11b10Ufloat),
@@ -115,11 +114,7 @@ fn hardness(job: &FresnelJob) -> f64 {
 /// The rows of a plan by the numbers of their tiles; where they are many, the hardest first.
 fn rows(plan: &Plan) -> Vec<(usize, &FresnelJob)> {
     let tiles = plan.tiles[TableKind::Fresnel as usize].tiles.iter().enumerate();
-    let job = |(tile, (_, key)): (usize, &(String, _))| match plan.graph.get(JobKind::Fresnel, *key) {
-        Some(Job::Fresnel(job)) => Some((tile, job)),
-        _ => None,
-    };
-    let rows: Vec<(usize, &FresnelJob)> = tiles.filter_map(job).collect();
+    let rows: Vec<(usize, &FresnelJob)> = tiles.filter_map(|(i, (_, key))| Some((i, plan.graph.get(*key)?))).collect();
     if rows.len() <= HARDEST {
         return rows;
     }
@@ -141,7 +136,7 @@ pub(crate) fn candidate(shape: &RowShape, truths: &[&Truth], rows: usize, colors
 }
 
 /// The cost of a look-up.
-pub(super) fn price(shape: &RowShape) -> f64 {
+pub(crate) fn price(shape: &RowShape) -> f64 {
     let angle = if shape.axis.quantity == "theta" { 6.0 * cost::QUARTER_RATE } else { 0.0 };
     let header = f64::from(shape.base.header_texels());
     // Three fetches, a power, and for each channel a handful of products.
@@ -149,7 +144,7 @@ pub(super) fn price(shape: &RowShape) -> f64 {
     angle + cost::axis(&shape.axis) + cost::read(shape.format) + base
 }
 
-pub(super) fn candidates(plan: &Plan, colors: bool) -> Option<Found> {
+pub(crate) fn candidates(plan: &Plan, colors: bool) -> Option<Found> {
     let rows = rows(plan);
     of_rows(plan, &truths(&rows).iter().collect::<Vec<_>>(), rows.len(), colors)
 }
@@ -179,16 +174,17 @@ pub(super) fn served(plan: &Plan) -> Option<Found> {
 
 /// The candidates of all `rows`, measured on these.
 fn of_rows(plan: &Plan, truths: &[&Truth], rows: usize, colors: bool) -> Option<Found> {
-    let (asked, given) = (plan.settings.asked, &plan.settings.fresnel);
-    if truths.is_empty() || asked.fresnel_size && asked.fresnel_format && asked.fresnel_mapping {
+    let asked = plan.settings.asked(TableKind::Fresnel);
+    let given = RowShape::of(plan.settings.fixed(TableKind::Fresnel));
+    if truths.is_empty() || asked == Asked::all(true) {
         return None;
     }
-    let mappings: Vec<Axis> = if asked.fresnel_mapping {
+    let mappings: Vec<Axis> = if asked.mapping {
         vec![given.axis.clone()]
     } else {
         MAPPINGS.map(|mapping| axis("cos_theta", "", [0.0, 1.0], given.axis.size, mapping)).to_vec()
     };
-    let formats: Vec<(RowBase, TexelFormat)> = if asked.fresnel_format {
+    let formats: Vec<(RowBase, TexelFormat)> = if asked.format {
         vec![(RowBase::Zero, given.format)]
     } else {
         FORMATS.into_iter().filter(|(_, format)| plan.settings.formats.has(*format)).collect()
@@ -202,7 +198,7 @@ fn of_rows(plan: &Plan, truths: &[&Truth], rows: usize, colors: bool) -> Option<
         .into_par_iter()
         .map(|(base, format, mapping)| {
             let shape = |size| RowShape { axis: Axis { size, ..mapping.clone() }, format, base };
-            if asked.fresnel_size {
+            if asked.size {
                 return vec![candidate(&shape(given.axis.size), truths, rows, colors)];
             }
             let mut family: Vec<Candidate> = Vec::new();

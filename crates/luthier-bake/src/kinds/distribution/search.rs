@@ -7,10 +7,9 @@ use luthier_lut::{Axis, Mapping, RowBase, TableKind, TexelFormat};
 use luthier_manifest::{Candidate, CandidateForm, MeasuredError};
 use rayon::prelude::*;
 
-use super::{Found, cost};
-use crate::distribution::DistributionJob;
-use crate::job::{Job, JobKind};
+use super::DistributionJob;
 use crate::plan::Plan;
+use crate::search::{Found, cost};
 use crate::settings::axis;
 
 const SIDES: [u32; 3] = [32, 64, 128];
@@ -24,12 +23,8 @@ const CLOSED_FORM: f64 = 3.0 * cost::QUARTER_RATE + 6.0;
 const ANGLE: f64 = 3.0 * cost::QUARTER_RATE + 12.0;
 
 pub(super) fn candidates(plan: &Plan) -> Option<Found> {
-    let jobs: Vec<&DistributionJob> = plan
-        .graph
-        .of_kind(JobKind::Distribution)
-        .filter_map(|job| if let Job::Distribution(job) = job { Some(job) } else { None })
-        .collect();
-    if jobs.is_empty() || plan.settings.asked.distribution {
+    let jobs: Vec<&DistributionJob> = plan.graph.of().collect();
+    if jobs.is_empty() || plan.settings.asked(TableKind::Distribution).is_any() {
         return None;
     }
     let formats = FORMATS.iter().filter(|format| plan.settings.formats.has(**format));
@@ -48,7 +43,7 @@ pub(super) fn candidates(plan: &Plan) -> Option<Found> {
         let axes = axes(exponent, side);
         let error = jobs
             .iter()
-            .map(|job| DistributionJob { axes: axes.clone(), format, ..(*job).clone() }.run().error.max_abs_err)
+            .map(|job| DistributionJob { axes: axes.clone(), format, ..(*job).clone() }.tile().error.max_abs_err)
             .fold(0.0, f64::max);
         let price = price(&axes, format);
         let [x, y] = axes;

@@ -1,17 +1,27 @@
 //! Fresnel rows: exact reflectance of one interface over the angle.
 
+pub(crate) mod search;
+
+use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
+
 use luthier_lut::{
-    Atlas, AtlasLayout, Axis, Comparison, Image, RowBase, Scan, SchlickBase, TableKind, TexelFormat, WeightBits,
-    incident_cosine, measure_scan,
+    Atlas, AtlasLayout, Axis, Comparison, Image, Mapping, RowBase, Scan, SchlickBase, TableKind, TexelFormat,
+    WeightBits, incident_cosine, measure_scan,
 };
+use luthier_material::{BakeSettings, FresnelMapping};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::{Interface, Sampled};
 use serde_json::{Value, json};
 
-use crate::balance;
-use crate::job::{TileData, color_in_words, lone_tile};
-use crate::json;
+use super::{Kind, Site};
+use crate::graph::{Inputs, Job, JobKind, Output, Results};
+use crate::plan::Plan;
+use crate::search::Found;
+use crate::settings::{Ask, Asked, Shape, axis};
+use crate::tile::{TileData, balance, color_in_words, lone_tile};
+use crate::{BakeError, json};
 
 /// Points of the error scan per texel interval.
 const PER_CELL: u32 = 16;
@@ -24,6 +34,45 @@ const FIT_POINTS: u32 = 64;
 
 /// Steps of the search for that coefficient; each takes a third off the range of 32.
 const FIT_STEPS: u32 = 32;
+
+/// Fresnel tables.
+pub(crate) struct Table;
+
+impl Kind for Table {
+    fn fixed(&self, ask: Ask<'_>) -> Result<Shape, BakeError> {
+        let mapping = ask.one("bake.fresnel.mapping", |b| b.fresnel.mapping)?.unwrap_or(FresnelMapping::Cosine);
+        let size = ask.one("bake.fresnel.size", |b| b.fresnel.size)?.unwrap_or(128);
+        let cosine = |mapping| axis("cos_theta", "", [0.0, 1.0], size, mapping);
+        let x = match mapping {
+            FresnelMapping::Cosine => cosine(Mapping::Linear),
+            FresnelMapping::SqrtCosine => cosine(Mapping::Power { exponent: 2.0 }),
+            FresnelMapping::Theta => axis("theta", "rad", [0.0, FRAC_PI_2], size, Mapping::Linear),
+        };
+        Ok(Shape::row(x, ask.format("bake.fresnel.format", |b| b.fresnel.format, TexelFormat::Rgba16Float)?))
+    }
+
+    fn asked(&self, bake: &BakeSettings) -> Asked {
+        let given = &bake.fresnel;
+        Asked { size: given.size.is_some(), mapping: given.mapping.is_some(), format: given.format.is_some() }
+    }
+
+    fn job(&self, site: &Site<'_>) -> Result<Option<Arc<dyn Job>>, BakeError> {
+        let shape = RowShape::of(site.shape);
+        Ok(Some(Arc::new(FresnelJob { interface: site.interface.clone(), color: site.color, shape })))
+    }
+
+    fn has_aim(&self) -> bool {
+        true
+    }
+
+    fn candidates(&self, plan: &Plan, _: &Results, colors: bool) -> Option<Found> {
+        search::candidates(plan, colors)
+    }
+
+    fn candidates_by_default(&self, plan: &Plan) -> Option<Found> {
+        search::served(plan)
+    }
+}
 
 /// How a Fresnel row is laid out.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,8 +89,12 @@ pub(crate) struct FresnelJob {
     pub(crate) shape: RowShape,
 }
 
-impl FresnelJob {
-    pub(crate) fn inputs(&self) -> Value {
+impl Job for FresnelJob {
+    fn kind(&self) -> JobKind {
+        JobKind::tile(TableKind::Fresnel)
+    }
+
+    fn inputs(&self) -> Value {
         json!({
             "interface": json::interface(&self.interface),
             "color": json::color(&self.color),
@@ -51,7 +104,13 @@ impl FresnelJob {
         })
     }
 
-    pub(crate) fn run(&self) -> TileData {
+    fn run(&self, _: &Inputs<'_>) -> Output {
+        Box::new(self.tile())
+    }
+}
+
+impl FresnelJob {
+    pub(crate) fn tile(&self) -> TileData {
         let curve = RowCurve::new(&self.interface, &self.color);
         let reflectance = |cos_theta: f64| curve.at(cos_theta);
         let axis = &self.shape.axis;
@@ -115,6 +174,11 @@ pub(crate) fn cos_theta(axis: &Axis, value: f64) -> f64 {
 }
 
 impl RowShape {
+    /// The rows of a table.
+    pub(crate) fn of(shape: &Shape) -> Self {
+        Self { axis: shape.x.clone(), format: shape.format, base: shape.base }
+    }
+
     /// A row of a reflectance over the cosine, as an atlas of its own, and its values at the nodes.
     pub(crate) fn row(&self, reflectance: &dyn Fn(f64) -> Rgb, base: &SchlickBase) -> (Atlas, Image) {
         let mut truth = Image::zeros(self.axis.size, 1, 3);
@@ -140,7 +204,7 @@ impl RowShape {
                 *value = (f64::from(*value) - closed_form[c]) as f32;
             }
         }
-        let missed = balance::balance(&missed, f64::NEG_INFINITY);
+        let missed = balance(&missed, f64::NEG_INFINITY);
         let max = self.format.unorm_max().unwrap_or(1.0);
         let span = SchlickBase::span(self.format);
         // The next code above, so that every remainder is within reach of the texels; below half a code of it there is none.

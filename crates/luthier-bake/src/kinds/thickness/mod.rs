@@ -1,12 +1,22 @@
 //! Thickness textures of films: Granier and Heidrich 2003, section 6.
 
-use luthier_lut::{Axis, Comparison, Image, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
+pub(crate) mod relief;
+
+use std::sync::Arc;
+
+use luthier_lut::{Axis, Comparison, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
+use luthier_manifest::ShadingModel;
+use luthier_material::Material;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use crate::job::{TileData, lone_tile};
-use crate::json;
-use crate::relief::{Field, Relief};
+use self::relief::{Field, Relief};
+use super::{Kind, Site};
+use crate::graph::{Inputs, Job, JobKind, Output};
+use crate::plan::shading_model;
+use crate::settings::{Ask, Shape, axis};
+use crate::tile::{TileData, lone_tile};
+use crate::{BakeError, json};
 
 /// Half the step, in repeats, of the central differences that give the slopes.
 const SLOPE_STEP: f64 = 1.0 / 4096.0;
@@ -14,18 +24,60 @@ const SLOPE_STEP: f64 = 1.0 / 4096.0;
 /// Texels repeated around the tile.
 const APRON: u32 = 1;
 
-#[derive(Debug, Clone)]
-pub(crate) struct ThicknessJob {
-    pub(crate) relief: Relief,
-    pub(crate) min_nm: f64,
-    pub(crate) max_nm: f64,
-    pub(crate) extent_um: f64,
-    pub(crate) axes: [Axis; 2],
-    pub(crate) format: TexelFormat,
+/// Thickness tables.
+pub(crate) struct Table;
+
+impl Kind for Table {
+    fn fixed(&self, ask: Ask<'_>) -> Result<Shape, BakeError> {
+        let size = ask.one("bake.thickness.size", |b| b.thickness.size)?.unwrap_or(256);
+        let axes = ["u", "v"].map(|name| axis(name, "", [0.0, 1.0], size, Mapping::Periodic));
+        let format = ask.format("bake.thickness.format", |b| b.thickness.format, default_format(ask.0))?;
+        Ok(Shape::grid(axes, format))
+    }
+
+    fn job(&self, site: &Site<'_>) -> Result<Option<Arc<dyn Job>>, BakeError> {
+        let variation = site.extras.and_then(|extras| extras.film_variation.as_ref());
+        let Some((film, variation)) = site.layer.films.first().zip(variation) else { return Ok(None) };
+        let source = &site.material.source;
+        let relief = Relief::of(&variation.source, |path| {
+            let map = |reason| BakeError::Map { material: source.clone(), path: path.to_owned(), reason };
+            (site.read_image)(source, path).map_err(map)
+        })?;
+        Ok(Some(Arc::new(ThicknessJob {
+            relief,
+            min_nm: film.thickness.min_nm,
+            max_nm: film.thickness.max_nm,
+            extent_um: variation.extent_um,
+            axes: site.shape.axes(),
+            format: site.shape.format,
+        })))
+    }
 }
 
-impl ThicknessJob {
-    pub(crate) fn inputs(&self) -> Value {
+/// Four channels where someone reads slopes: Granier and Heidrich's model, or who asks for the table; else the thickness alone.
+fn default_format(materials: &[Material]) -> TexelFormat {
+    let reads_slopes = |material: &Material| {
+        shading_model(material) == ShadingModel::GranierHeidrich || material.bake.asks_for(TableKind::Thickness)
+    };
+    if materials.iter().any(reads_slopes) { TexelFormat::Rgba16Float } else { TexelFormat::R16Float }
+}
+
+#[derive(Debug)]
+struct ThicknessJob {
+    relief: Relief,
+    min_nm: f64,
+    max_nm: f64,
+    extent_um: f64,
+    axes: [Axis; 2],
+    format: TexelFormat,
+}
+
+impl Job for ThicknessJob {
+    fn kind(&self) -> JobKind {
+        JobKind::tile(TableKind::Thickness)
+    }
+
+    fn inputs(&self) -> Value {
         json!({
             "relief": self.relief.inputs(),
             "range_nm": [self.min_nm, self.max_nm],
@@ -35,7 +87,7 @@ impl ThicknessJob {
         })
     }
 
-    pub(crate) fn run(&self) -> TileData {
+    fn run(&self, _: &Inputs<'_>) -> Output {
         let [x, y] = &self.axes;
         let surface = Surface::new(self);
         let channels = self.format.channels();
@@ -60,7 +112,7 @@ impl ThicknessJob {
             },
             |u| u.to_vec(),
         );
-        TileData {
+        Box::new(TileData {
             model: match channels {
                 1 => "d/(2 d_max); Granier and Heidrich 2003 sec. 6".into(),
                 _ => "d/(2 d_max), slopes dd/dx and dd/dy, sqrt(1 + slopes^2); Granier and Heidrich 2003 sec. 6".into(),
@@ -69,7 +121,7 @@ impl ThicknessJob {
             texels: atlas.texels,
             bytes: atlas.bytes,
             error,
-        }
+        })
     }
 }
 

@@ -1,20 +1,31 @@
 //! FGD-infinity tiles: the energy that one rough interface sends back, all bounces of its micro-surface included.
 
-use luthier_lut::{Axis, Comparison, Image, TableKind, TexelFormat, WeightBits, measure_at};
+mod facet_grid;
+mod smooth;
+
+use std::sync::Arc;
+
+use luthier_lut::{Axis, Comparison, Image, Mapping, TableKind, TexelFormat, WeightBits, measure_at};
+use luthier_material::{BakeSettings, Material};
 use luthier_optics::Rgb;
 use luthier_optics::albedo::{FacetStatistics, ReflectanceCurves};
 use luthier_optics::color::{Color, WavelengthNode, luminance};
 use luthier_optics::interface::{Interface, Sampled};
-use luthier_optics::stack::Distribution;
+use luthier_optics::stack::{Base, Distribution};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use crate::facet_grid::{CrossedJob, DOMAIN_ALPHA, DOMAIN_COS_THETA, FacetGrid, FacetGridJob};
-use crate::graph::Inputs;
+use self::facet_grid::{CrossedGrid, CrossedJob, FacetGrid, FacetGridJob};
+pub(crate) use self::facet_grid::{DOMAIN_ALPHA, DOMAIN_COS_THETA};
+use self::smooth::savitzky_golay;
+use super::{Kind, Site};
+use crate::graph::{Inputs, Job, JobKind, Output, Results};
 use crate::grid::resampled;
-use crate::job::{Job, TileData, color_in_words, lone_tile};
-use crate::json;
-use crate::smooth::savitzky_golay;
+use crate::plan::Plan;
+use crate::search::{Found, grids};
+use crate::settings::{Ask, Asked, Shape, axis};
+use crate::tile::{TileData, color_in_words, lone_tile};
+use crate::{BakeError, json};
 
 /// Largest change of the share of the light after the first bounce by wavelengths that are left out; the first bounce has all.
 const SPECTRUM_TOLERANCE: f64 = 4e-4;
@@ -36,6 +47,52 @@ const KINK_POINTS: u32 = 8;
 
 /// The alphas there: roughness wears the kink away.
 const KINK_ALPHAS: [f64; 4] = [DOMAIN_ALPHA, 0.03, 0.1, 0.3];
+
+/// FGD tables.
+pub(crate) struct Table;
+
+impl Kind for Table {
+    fn fixed(&self, ask: Ask<'_>) -> Result<Shape, BakeError> {
+        let size = ask.one("bake.fgd.size", |b| b.fgd.size)?.unwrap_or([64, 64]);
+        let axes = [
+            axis("cos_theta", "", [0.0, 1.0], size[0], Mapping::Power { exponent: 2.0 }),
+            axis("alpha", "", [0.0, 1.0], size[1], Mapping::Power { exponent: 3.0 }),
+        ];
+        let format = ask.format("bake.fgd.format", |b| b.fgd.format, TexelFormat::Rgba16Float)?;
+        if let Some(&side) = size.iter().find(|side| !side.is_multiple_of(format.block_side())) {
+            let asks = |has: fn(&Material) -> bool| ask.0.iter().position(has);
+            let sized = asks(|m| m.bake.fgd.size.is_some()).map(|material| (material, "bake.fgd.size"));
+            let (material, setting) = sized
+                .or_else(|| Some((asks(|m| m.bake.fgd.format.is_some())?, "bake.fgd.format")))
+                .unwrap_or((0, "bake.fgd.size"));
+            return Err(BakeError::Blocks { material, setting, format, side });
+        }
+        Ok(Shape::grid(axes, format))
+    }
+
+    fn asked(&self, bake: &BakeSettings) -> Asked {
+        Asked { size: bake.fgd.size.is_some(), mapping: false, format: bake.fgd.format.is_some() }
+    }
+
+    fn job(&self, site: &Site<'_>) -> Result<Option<Arc<dyn Job>>, BakeError> {
+        let truth = FgdTruthJob {
+            interface: site.interface.clone(),
+            transparent: matches!(site.layer.base, Base::Dielectric { .. }),
+            distribution: site.layer.surface.distribution,
+            color: site.color,
+            grid: site.fixed.axes(),
+        };
+        Ok(Some(Arc::new(FgdJob { truth, axes: site.shape.axes(), format: site.shape.format })))
+    }
+
+    fn has_aim(&self) -> bool {
+        true
+    }
+
+    fn candidates(&self, plan: &Plan, results: &Results, colors: bool) -> Option<Found> {
+        grids::fgd(plan, results, colors)
+    }
+}
 
 /// The values of a tile on the grid where they are computed: what its table settings do not enter.
 #[derive(Debug, Clone)]
@@ -63,8 +120,12 @@ pub(crate) struct FgdTruth {
     pub(crate) slack_rms: f64,
 }
 
-impl FgdTruthJob {
-    pub(crate) fn inputs(&self) -> Value {
+impl Job for FgdTruthJob {
+    fn kind(&self) -> JobKind {
+        JobKind::part("fgd-truth")
+    }
+
+    fn inputs(&self) -> Value {
         json!({
             "interface": json::interface(&self.interface),
             "transparent": self.transparent,
@@ -74,12 +135,18 @@ impl FgdTruthJob {
         })
     }
 
-    pub(crate) fn dependencies(&self) -> Vec<Job> {
-        let mut jobs = vec![Job::FacetGrid(self.facet_grid())];
-        jobs.extend(self.crossed());
+    fn dependencies(&self) -> Vec<Arc<dyn Job>> {
+        let mut jobs: Vec<Arc<dyn Job>> = vec![Arc::new(self.facet_grid())];
+        jobs.extend(self.crossed().map(|job| Arc::new(job) as Arc<dyn Job>));
         jobs
     }
 
+    fn run(&self, inputs: &Inputs<'_>) -> Output {
+        Box::new(self.truth(inputs))
+    }
+}
+
+impl FgdTruthJob {
     fn facet_grid(&self) -> FacetGridJob {
         let kinked = self.transparent && !self.critical_cosines().is_empty();
         FacetGridJob { distribution: self.distribution, kinked, axes: self.grid.clone() }
@@ -111,23 +178,21 @@ impl FgdTruthJob {
         KINK_ALPHAS.iter().flat_map(|&alpha| columns.iter().map(move |&u| [u, y.encode(alpha)])).collect()
     }
 
-    fn crossed(&self) -> Option<Job> {
-        self.transparent.then(|| {
-            Job::Crossed(CrossedJob {
-                interface: self.interface.clone(),
-                color: self.color,
-                distribution: self.distribution,
-                axes: self.grid.clone(),
-            })
+    fn crossed(&self) -> Option<CrossedJob> {
+        self.transparent.then(|| CrossedJob {
+            interface: self.interface.clone(),
+            color: self.color,
+            distribution: self.distribution,
+            axes: self.grid.clone(),
         })
     }
 
-    pub(crate) fn run(&self, inputs: &Inputs<'_>) -> FgdTruth {
+    fn truth(&self, inputs: &Inputs<'_>) -> FgdTruth {
         let [x, y] = &self.grid;
         let facets = self.facet_grid();
         let kinks = facets.probes(if facets.kinked { self.kinks() } else { Vec::new() });
-        let grid = inputs.facet_grid(&Job::FacetGrid(facets));
-        let crossed = self.crossed().map(|job| inputs.crossed(&job));
+        let grid: &FacetGrid = inputs.part(&facets);
+        let crossed: Option<&CrossedGrid> = self.crossed().map(|job| inputs.part(&job));
         let curves = Curves::new(&self.interface, &self.color);
         let crossed_at = |u| crossed.map_or([0.0; 3], |c| c.at(u));
 
@@ -167,8 +232,12 @@ pub(crate) struct FgdJob {
     pub(crate) format: TexelFormat,
 }
 
-impl FgdJob {
-    pub(crate) fn inputs(&self) -> Value {
+impl Job for FgdJob {
+    fn kind(&self) -> JobKind {
+        JobKind::tile(TableKind::Fgd)
+    }
+
+    fn inputs(&self) -> Value {
         json!({
             "truth": self.truth.inputs(),
             "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
@@ -176,12 +245,12 @@ impl FgdJob {
         })
     }
 
-    pub(crate) fn dependencies(&self) -> Vec<Job> {
-        vec![Job::FgdTruth(self.truth.clone())]
+    fn dependencies(&self) -> Vec<Arc<dyn Job>> {
+        vec![Arc::new(self.truth.clone())]
     }
 
-    pub(crate) fn run(&self, inputs: &Inputs<'_>) -> TileData {
-        let FgdTruth { image, probes, kinks, slack, slack_rms } = inputs.fgd_truth(&Job::FgdTruth(self.truth.clone()));
+    fn run(&self, inputs: &Inputs<'_>) -> Output {
+        let FgdTruth { image, probes, kinks, slack, slack_rms } = inputs.part(&self.truth);
         let [x, y] = &self.axes;
         let truth =
             if self.axes == self.truth.grid { image.clone() } else { resampled(image, &self.truth.grid, &self.axes) };
@@ -202,7 +271,7 @@ impl FgdJob {
             self.truth.distribution.name(),
             color_in_words(&self.truth.color)
         );
-        TileData { model, truth, texels: atlas.texels, bytes: atlas.bytes, error }
+        Box::new(TileData { model, truth, texels: atlas.texels, bytes: atlas.bytes, error })
     }
 }
 

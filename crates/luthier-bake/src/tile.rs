@@ -1,6 +1,41 @@
-//! Texels that make linear filtering err evenly.
+//! Tiles: values, and texels that make linear filtering err evenly.
 
-use luthier_lut::{Encoding, Image, TableKind, TexelFormat};
+use luthier_lut::{
+    Atlas, AtlasLayout, Axis, Encoding, ErrorStats, Image, Mapping, RowBase, TableKind, TexelFormat, Values,
+};
+use luthier_optics::color::Color;
+
+/// One tile, apron included: its values, its texels, and its error as sampled.
+#[derive(Debug, Clone)]
+pub(crate) struct TileData {
+    pub(crate) model: String,
+    pub(crate) truth: Image,
+    pub(crate) texels: Image,
+    pub(crate) bytes: Vec<u8>,
+    pub(crate) error: ErrorStats,
+}
+
+/// A single tile as an atlas of its own, to be sampled and measured.
+pub(crate) fn lone_tile(kind: TableKind, axes: &[&Axis], format: TexelFormat, truth: &Image) -> Atlas {
+    let layout = AtlasLayout {
+        x: axes[0].clone(),
+        y: axes.get(1).map(|&y| y.clone()),
+        apron: u32::from(axes.iter().any(|axis| axis.mapping == Mapping::Periodic)),
+        columns: 1,
+        tiles: 1,
+        base: RowBase::Zero,
+    };
+    let (bytes, texels) = texels(kind, format, truth);
+    Atlas { kind, layout, format, tiles: Vec::new(), truth: truth.clone(), texels, bytes }
+}
+
+/// Words on how the colour of a tile was made, for its description.
+pub(crate) fn color_in_words(color: &Color) -> String {
+    match color {
+        Color::Spectral => "spectral, CIE 1931 under D65, linear Rec.709".to_owned(),
+        Color::ThreeWavelengths([r, g, b]) => format!("RGB taken at {r}, {g} and {b} nm"),
+    }
+}
 
 /// The texels that ship for the values of one tile: encoded, balanced, quantised; as bytes, and as read from these.
 ///
@@ -10,12 +45,10 @@ use luthier_lut::{Encoding, Image, TableKind, TexelFormat};
 /// nodes are not moved, and what is not negative stays so: at the foot of a lobe a second difference says little.
 pub(crate) fn texels(kind: TableKind, format: TexelFormat, truth: &Image) -> (Vec<u8>, Image) {
     let roots = Encoding::of(kind, format).to_root(truth);
-    let balanced = match kind {
-        TableKind::Thickness => roots,
-        TableKind::Phase => balance(&roots, f64::NEG_INFINITY),
-        TableKind::Fresnel | TableKind::Distribution | TableKind::Fgd | TableKind::Film | TableKind::Escape => {
-            balance(&roots, 0.0)
-        }
+    let balanced = match kind.facts().values {
+        Values::Picture => roots,
+        Values::Signed => balance(&roots, f64::NEG_INFINITY),
+        Values::Positive => balance(&roots, 0.0),
     };
     format.texels(&Encoding::of(kind, format).split(&balanced))
 }

@@ -1,6 +1,10 @@
 //! Film tiles: reflectance of an interface over the angle and the thickness of its top film.
 
-use luthier_lut::{Axis, Comparison, Image, Scan, TableKind, TexelFormat, WeightBits, incident_cosine, measure_scan};
+use std::sync::Arc;
+
+use luthier_lut::{
+    Axis, Comparison, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, incident_cosine, measure_scan,
+};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::{Interface, Sampled};
@@ -8,14 +12,43 @@ use luthier_optics::stack::FilmThickness;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use crate::job::{TileData, color_in_words, lone_tile};
-use crate::json;
+use super::{Kind, Site};
+use crate::graph::{Inputs, Job, JobKind, Output, Results};
+use crate::plan::Plan;
+use crate::search::{Found, grids};
+use crate::settings::{Ask, Shape, axis};
+use crate::tile::{TileData, color_in_words, lone_tile};
+use crate::{BakeError, json};
 
 /// Points of the error scan along each axis; the search from the worst of them finds what lies between.
 const SCAN: u32 = 128;
 
 /// Steps of the sequence of points in the unit square.
 const R2: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
+
+/// Film tables.
+pub(crate) struct Table;
+
+impl Kind for Table {
+    fn fixed(&self, _: Ask<'_>) -> Result<Shape, BakeError> {
+        let axes = [
+            axis("cos_theta", "", [0.0, 1.0], 64, Mapping::Power { exponent: 2.0 }),
+            axis("fraction", "", [0.0, 1.0], 256, Mapping::Linear),
+        ];
+        Ok(Shape::grid(axes, TexelFormat::Rgba16Float))
+    }
+
+    fn job(&self, site: &Site<'_>) -> Result<Option<Arc<dyn Job>>, BakeError> {
+        let Some(film) = site.layer.films.first().filter(|_| site.record.varies()) else { return Ok(None) };
+        let (interface, thickness) = (site.interface.clone(), film.thickness);
+        let (axes, format) = (site.shape.axes(), site.shape.format);
+        Ok(Some(Arc::new(FilmJob { interface, thickness, color: site.color, axes, format })))
+    }
+
+    fn candidates(&self, plan: &Plan, _: &Results, colors: bool) -> Option<Found> {
+        grids::film(plan, colors)
+    }
+}
 
 /// Airy's reflectance over (cos_theta, d / d_max), integrated as the colour says: where Granier and Heidrich's phase row has two
 /// beams at three wavelengths, this has all beams at all of them. Where light is totally reflected the cosine is that of the refracted
@@ -30,8 +63,12 @@ pub(crate) struct FilmJob {
     pub(crate) format: TexelFormat,
 }
 
-impl FilmJob {
-    pub(crate) fn inputs(&self) -> Value {
+impl Job for FilmJob {
+    fn kind(&self) -> JobKind {
+        JobKind::tile(TableKind::Film)
+    }
+
+    fn inputs(&self) -> Value {
         json!({
             "interface": json::interface(&self.thickest()),
             "least": self.least(),
@@ -41,6 +78,12 @@ impl FilmJob {
         })
     }
 
+    fn run(&self, _: &Inputs<'_>) -> Output {
+        Box::new(self.tile())
+    }
+}
+
+impl FilmJob {
     /// The interface where the top film is thickest.
     fn thickest(&self) -> Interface {
         let mut interface = self.interface.clone();
@@ -87,7 +130,7 @@ impl FilmJob {
             .collect()
     }
 
-    pub(crate) fn run(&self) -> TileData {
+    fn tile(&self) -> TileData {
         let thickest = self.thickest().sampled(&self.color);
         let cot_sq = thickest.critical_cot_sq();
         let [x, y] = &self.axes;

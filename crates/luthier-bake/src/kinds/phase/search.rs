@@ -4,10 +4,9 @@ use luthier_lut::{Mapping, RowBase, TableKind, TexelFormat};
 use luthier_manifest::{Candidate, CandidateForm, MeasuredError};
 use rayon::prelude::*;
 
-use super::{Found, cost, row_form};
-use crate::job::{Job, JobKind};
-use crate::phase::PhaseJob;
+use super::PhaseJob;
 use crate::plan::Plan;
+use crate::search::{Found, cost, row_form};
 use crate::settings::axis;
 
 const SIZES: [u32; 8] = [16, 32, 64, 128, 192, 256, 384, 512];
@@ -17,12 +16,8 @@ const FORMATS: [TexelFormat; 2] = [TexelFormat::Rgba16Float, TexelFormat::Rgba32
 const CLOSED_FORM: f64 = 3.0 * (cost::QUARTER_RATE + 6.0);
 
 pub(super) fn candidates(plan: &Plan) -> Option<Found> {
-    let jobs: Vec<&PhaseJob> = plan
-        .graph
-        .of_kind(JobKind::Phase)
-        .filter_map(|job| if let Job::Phase(job) = job { Some(job) } else { None })
-        .collect();
-    if jobs.is_empty() || plan.settings.asked.phase {
+    let jobs: Vec<&PhaseJob> = plan.graph.of().collect();
+    if jobs.is_empty() || plan.settings.asked(TableKind::Phase).is_any() {
         return None;
     }
     let formats = FORMATS.into_iter().filter(|format| plan.settings.formats.has(*format));
@@ -40,7 +35,7 @@ pub(super) fn candidates(plan: &Plan) -> Option<Found> {
         let axis = axis("s", "", [0.0, 1.0], size, Mapping::Linear);
         let error = jobs
             .iter()
-            .map(|job| PhaseJob { axis: axis.clone(), format, ..(*job).clone() }.run().error.max_abs_err)
+            .map(|job| PhaseJob { axis: axis.clone(), format, ..(*job).clone() }.tile().error.max_abs_err)
             .fold(0.0, f64::max);
         let form = row_form(axis, format, RowBase::Zero);
         // A swing of 2 either way passes through 0: relative errors are those to its reach.

@@ -1,14 +1,18 @@
 //! The graph of jobs and its execution.
 
+mod job;
+mod store;
+
+use std::any::Any;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use crate::facet_grid::{CrossedGrid, FacetGrid};
-use crate::fgd::FgdTruth;
-use crate::job::{Job, JobKind, Key, Output, TileData};
-use crate::store::{Artefact, Store};
+pub(crate) use self::job::{Job, Output};
+pub use self::job::{JobKind, Key};
+pub use self::store::{Artefact, MemoryStore, Store};
+use crate::tile::TileData;
 
 /// Told what happens, from any thread. It cannot change what is computed.
 pub trait Observer: Sync {
@@ -30,10 +34,10 @@ impl Observer for Silent {
     fn batch(&self, _: JobKind, _: bool) {}
 }
 
-/// Distinct jobs, dependencies before dependants.
+/// Distinct jobs, dependencies before dependants: by the longest way down to a job without dependencies, then by kind.
 #[derive(Debug, Default)]
 pub(crate) struct Graph {
-    jobs: BTreeMap<JobKind, BTreeMap<Key, Job>>,
+    jobs: BTreeMap<(u32, JobKind), BTreeMap<Key, Arc<dyn Job>>>,
 }
 
 /// Results by key.
@@ -46,32 +50,48 @@ pub(crate) struct Inputs<'a>(&'a Results);
 
 impl Graph {
     /// Adds a job and all that it needs; a job that is already there is not added again.
-    pub(crate) fn add(&mut self, job: Job) -> Key {
-        for dependency in job.dependencies() {
-            self.add(dependency);
-        }
-        let key = job.key();
-        self.jobs.entry(job.kind()).or_default().entry(key).or_insert(job);
-        key
+    pub(crate) fn add(&mut self, job: Arc<dyn Job>) -> Key {
+        self.insert(job).1
     }
 
-    /// The graph of the jobs of some kinds, with all that these need.
-    pub(crate) fn only(&self, kinds: &[JobKind]) -> Self {
+    fn insert(&mut self, job: Arc<dyn Job>) -> (u32, Key) {
+        let depth = job.dependencies().into_iter().map(|needed| 1 + self.insert(needed).0).max().unwrap_or(0);
+        let key = job.key();
+        self.jobs.entry((depth, job.kind())).or_default().entry(key).or_insert(job);
+        (depth, key)
+    }
+
+    fn all(&self) -> impl Iterator<Item = (Key, &Arc<dyn Job>)> {
+        self.jobs.values().flatten().map(|(key, job)| (*key, job))
+    }
+
+    /// The graph of some of its jobs, with all that these need.
+    pub(crate) fn only(&self, is_one: impl Fn(&dyn Job) -> bool) -> Self {
         let mut some = Self::default();
-        for job in kinds.iter().flat_map(|&kind| self.of_kind(kind)) {
+        for (_, job) in self.all().filter(|(_, job)| is_one(job.as_ref())) {
             some.add(job.clone());
         }
         some
     }
 
-    /// The jobs of a kind, in the order of their keys.
-    pub(crate) fn of_kind(&self, kind: JobKind) -> impl Iterator<Item = &Job> {
-        self.jobs.get(&kind).into_iter().flat_map(BTreeMap::values)
+    /// The graph of the jobs whose results are intermediate.
+    pub(crate) fn intermediate(&self) -> Self {
+        let mut some = Self::default();
+        for job in self.all().flat_map(|(_, job)| job.dependencies()) {
+            some.add(job);
+        }
+        some
     }
 
-    /// A job by its key.
-    pub(crate) fn get(&self, kind: JobKind, key: Key) -> Option<&Job> {
-        self.jobs.get(&kind)?.get(&key)
+    /// The jobs of a type, in the order of their keys.
+    pub(crate) fn of<J: Job>(&self) -> impl Iterator<Item = &J> {
+        self.all().filter_map(|(_, job)| (job.as_ref() as &dyn Any).downcast_ref())
+    }
+
+    /// A job of a type by its key.
+    pub(crate) fn get<J: Job>(&self, key: Key) -> Option<&J> {
+        let job = self.jobs.values().find_map(|jobs| jobs.get(&key))?;
+        (job.as_ref() as &dyn Any).downcast_ref()
     }
 
     /// Runs everything that has no result yet on the rayon pool. Kinds run in their order, which puts dependencies first; jobs of one
@@ -86,7 +106,7 @@ impl Graph {
             });
         }
         observer.planned(self.jobs.values().map(BTreeMap::len).sum());
-        for (kind, jobs) in self.jobs {
+        for ((_, kind), jobs) in self.jobs {
             if jobs.is_empty() {
                 continue;
             }
@@ -108,51 +128,30 @@ impl Graph {
 }
 
 impl Results {
-    fn output(&self, key: Key) -> Option<&Output> {
-        self.0.get(&key).map(|artefact| &artefact.0)
+    /// The result of a job of which it has the type, if the job has run.
+    fn get<T: Any>(&self, key: Key) -> Option<&T> {
+        self.0.get(&key)?.0.downcast_ref()
     }
 
     /// The tile of a planned job.
     pub(crate) fn tile(&self, key: Key) -> &TileData {
-        match self.output(key) {
-            Some(Output::Tile(tile)) => tile,
-            _ => unreachable!("every planned tile job has run"),
-        }
-    }
-
-    /// The values of an FGD tile.
-    pub(crate) fn fgd_truth(&self, job: &Job) -> &FgdTruth {
-        match self.output(job.key()) {
-            Some(Output::FgdTruth(truth)) => truth,
-            _ => unreachable!("values run before the tiles that hold them"),
-        }
+        self.find(key).unwrap_or_else(|| unreachable!("every planned tile job has run"))
     }
 
     /// The tile of a job, if it has run.
     pub(crate) fn find(&self, key: Key) -> Option<&TileData> {
-        match self.output(key) {
-            Some(Output::Tile(tile)) => Some(tile),
-            _ => None,
-        }
+        self.get(key)
+    }
+
+    /// The intermediate result of a job that has run, of its type.
+    pub(crate) fn part<T: Any>(&self, job: &dyn Job) -> &T {
+        self.get(job.key()).unwrap_or_else(|| unreachable!("dependencies run before the jobs that need them"))
     }
 }
 
 impl<'a> Inputs<'a> {
-    pub(crate) fn facet_grid(self, job: &Job) -> &'a FacetGrid {
-        match self.0.output(job.key()) {
-            Some(Output::FacetGrid(grid)) => grid,
-            _ => unreachable!("facet grids run before the tiles that need them"),
-        }
-    }
-
-    pub(crate) fn fgd_truth(self, job: &Job) -> &'a FgdTruth {
-        self.0.fgd_truth(job)
-    }
-
-    pub(crate) fn crossed(self, job: &Job) -> &'a CrossedGrid {
-        match self.0.output(job.key()) {
-            Some(Output::Crossed(grid)) => grid,
-            _ => unreachable!("crossed grids run before the tiles that need them"),
-        }
+    /// The result of a dependency, of its type.
+    pub(crate) fn part<T: Any>(self, job: &dyn Job) -> &'a T {
+        self.0.part(job)
     }
 }

@@ -14,9 +14,10 @@ use luthier_optics::stack::Distribution;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use crate::fgd::crossed_curves;
+use super::crossed_curves;
+use super::smooth::savitzky_golay;
+use crate::graph::{Inputs, Job, JobKind, Output};
 use crate::json;
-use crate::smooth::savitzky_golay;
 
 /// Effort at the nodes, where neighbours share their noise, and at the points of the error scan.
 const EFFORT: [Effort; 2] = [Effort { first: 20, later: 40 }, Effort { first: 28, later: 72 }];
@@ -54,8 +55,12 @@ pub(crate) struct FacetGrid {
     pub(crate) probes: Vec<([f64; 2], FacetStatistics)>,
 }
 
-impl FacetGridJob {
-    pub(crate) fn inputs(&self) -> Value {
+impl Job for FacetGridJob {
+    fn kind(&self) -> JobKind {
+        JobKind::part("facet-grid")
+    }
+
+    fn inputs(&self) -> Value {
         json!({
             "distribution": self.distribution.name(),
             "kinked": self.kinked,
@@ -63,7 +68,13 @@ impl FacetGridJob {
         })
     }
 
-    pub(crate) fn run(&self) -> FacetGrid {
+    fn run(&self, _: &Inputs<'_>) -> Output {
+        Box::new(self.grid())
+    }
+}
+
+impl FacetGridJob {
+    fn grid(&self) -> FacetGrid {
         let [x, y] = &self.axes;
         let nodes = (0..x.size * y.size)
             .into_par_iter()
@@ -158,8 +169,12 @@ pub(crate) struct CrossedGrid {
     pub(crate) rms_err: f64,
 }
 
-impl CrossedJob {
-    pub(crate) fn inputs(&self) -> Value {
+impl Job for CrossedJob {
+    fn kind(&self) -> JobKind {
+        JobKind::part("crossed")
+    }
+
+    fn inputs(&self) -> Value {
         json!({
             "interface": json::interface(&self.interface),
             "color": json::color(&self.color),
@@ -168,7 +183,13 @@ impl CrossedJob {
         })
     }
 
-    pub(crate) fn run(&self) -> CrossedGrid {
+    fn run(&self, _: &Inputs<'_>) -> Output {
+        Box::new(self.grid())
+    }
+}
+
+impl CrossedJob {
+    fn grid(&self) -> CrossedGrid {
         let crossing = self.crossing();
         let (side, walks) = match self.interface.films.len() {
             0 if self.eta() < 1.0 => (CROSSED_NODES, CROSSED_WALKS_DENSE),

@@ -1,0 +1,92 @@
+//! Kinds of tables: how each is laid out, which job makes a tile of it, and which candidates a search compares.
+
+pub(crate) mod distribution;
+mod escape;
+pub(crate) mod fgd;
+pub(crate) mod film;
+pub(crate) mod fresnel;
+pub(crate) mod phase;
+pub(crate) mod thickness;
+
+use std::sync::Arc;
+
+use luthier_lut::TableKind;
+use luthier_manifest::LayerRecord;
+use luthier_material::{BakeSettings, LayerExtras, Material};
+use luthier_optics::color::Color;
+use luthier_optics::interface::Interface;
+use luthier_optics::stack::Layer;
+
+use crate::BakeError;
+use crate::graph::{Job, Results};
+use crate::plan::{ImageReader, Plan};
+use crate::search::Found;
+use crate::settings::{Ask, Asked, Shape};
+
+/// An interface that may need a tile: one layer of a material.
+pub(crate) struct Site<'a> {
+    pub(crate) material: &'a Material,
+    pub(crate) layer: &'a Layer,
+    pub(crate) extras: Option<&'a LayerExtras>,
+    pub(crate) record: &'a LayerRecord,
+    pub(crate) interface: &'a Interface,
+    pub(crate) color: Color,
+    /// Shape of the tile.
+    pub(crate) shape: &'a Shape,
+    /// Shape that it would have without a search.
+    pub(crate) fixed: &'a Shape,
+    pub(crate) read_image: ImageReader<'a>,
+}
+
+/// What a bake does for one kind of table.
+pub(crate) trait Kind: Sync {
+    /// The shape of its tiles without a search.
+    ///
+    /// # Errors
+    /// [`BakeError`] where the materials ask for shapes that do not go together.
+    fn fixed(&self, ask: Ask<'_>) -> Result<Shape, BakeError>;
+
+    /// The parts of that shape that a material decides itself.
+    fn asked(&self, _: &BakeSettings) -> Asked {
+        Asked::default()
+    }
+
+    /// The job that makes the tile of an interface; none where the interface has no use for a tile.
+    ///
+    /// # Errors
+    /// [`BakeError::Map`] where an image cannot be read.
+    fn job(&self, site: &Site<'_>) -> Result<Option<Arc<dyn Job>>, BakeError>;
+
+    /// The name of the tile, where that is not the name of the layer.
+    fn name(&self, _: &Layer) -> Option<&'static str> {
+        None
+    }
+
+    /// Whether tiles that no budget is stated for are to hold [`crate::AIM`].
+    fn has_aim(&self) -> bool {
+        false
+    }
+
+    /// The candidates for the tiles of a plan; none where nothing is left to choose. `results` has the intermediate ones.
+    fn candidates(&self, _plan: &Plan, _results: &Results, _colors: bool) -> Option<Found> {
+        None
+    }
+
+    /// The candidates where no budget is stated: only of kinds that shaders read for every interface and that need no costly truth.
+    fn candidates_by_default(&self, _: &Plan) -> Option<Found> {
+        None
+    }
+}
+
+/// The kind of a table.
+pub(crate) fn of(kind: TableKind) -> &'static dyn Kind {
+    match kind {
+        TableKind::Fresnel => &fresnel::Table,
+        TableKind::Distribution => &distribution::Table,
+        TableKind::Fgd => &fgd::Table,
+        TableKind::Phase => &phase::Table,
+        TableKind::Thickness => &thickness::Table,
+        TableKind::Film => &film::Table,
+        TableKind::Escape => &escape::Table,
+    }
+}
