@@ -375,8 +375,8 @@ impl Terms for Mixed<'_> {
     }
 
     /// The exact value is computed by the model.
-    fn swing(&self, layer: usize, channel: usize, cosines: f64) -> Option<f64> {
-        let sampled = self.tables.swing(layer, channel, cosines)?;
+    fn interference(&self, layer: usize, channel: usize, cosines: f64) -> Option<f64> {
+        let sampled = self.tables.interference(layer, channel, cosines)?;
         self.record(layer, Term::Phase { cosines }, None, Some(sampled))
     }
 }
