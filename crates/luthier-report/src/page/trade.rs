@@ -304,7 +304,7 @@ fn words(form: &CandidateForm) -> String {
     match form {
         CandidateForm::ClosedForm => "closed form".to_owned(),
         CandidateForm::Table { x, y, format, base } => {
-            let over = if *base == RowBase::Zero { "" } else { ", difference from Schlick's form" };
+            let over = if *base == RowBase::Zero { "" } else { " over Schlick's form" };
             let axes: Vec<String> = [Some(x), y.as_ref()].into_iter().flatten().map(|a: &Axis| axis(a)).collect();
             format!("{format}{over}; {}", axes.join("; "))
         }
