@@ -41,7 +41,7 @@ pub(crate) enum Verb {
     Shapes(ShapesOptions),
 }
 
-/// Where a page goes.
+/// Destination of a page.
 #[derive(Debug, Args)]
 pub(crate) struct Destination {
     /// File to write instead of standard output

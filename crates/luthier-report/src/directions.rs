@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// `(wi, wo)`: unit to f32 precision, above the horizon, in the local frame.
 pub type Pair = ([f32; 3], [f32; 3]);
 
-/// Where a shader is compared with its reference.
+/// Set of directions at which a shader is compared with its reference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DirectionSet {

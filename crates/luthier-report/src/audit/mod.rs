@@ -27,7 +27,7 @@ pub use truth::{Model, Term};
 
 /// Fraction bits of the sampler's weights.
 const WEIGHTS: WeightBits = WeightBits::Fixed(8);
-/// Above this root mean square, no hypothesis is taken for what the table holds.
+/// Largest root mean square error of a hypothesis that is accepted as the content of a table.
 const NO_FIT: f64 = 0.03;
 
 /// Why no audit was made.
@@ -103,7 +103,7 @@ pub enum AuditVerdict {
     AsStated,
     /// Another one does: the first candidate.
     FitsBetterAs,
-    /// None fits.
+    /// No hypothesis fits.
     FitsNothing,
 }
 

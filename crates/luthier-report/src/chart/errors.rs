@@ -9,7 +9,7 @@ use crate::{ANGLE_BINS, Exceedance};
 /// Errors below this share the end of an axis.
 const SMALLEST: f64 = 1e-9;
 
-/// How a comparison is drawn, everywhere.
+/// Colour and mark of a comparison in all charts.
 pub(crate) fn series(compared: Compared) -> Series {
     let (class, mark) = match compared {
         Compared::BakedDevice => ("s-baked", Mark::Circle),

@@ -153,7 +153,7 @@ fn short(part: &Part) -> String {
     }
 }
 
-/// Whose doing the misses are.
+/// The factors that cause the misses, in words.
 fn tally(tally: &[(Factor, u64)]) -> String {
     let name = |factor| match factor {
         Factor::Fresnel => "Fresnel",

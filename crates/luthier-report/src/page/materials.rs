@@ -155,7 +155,7 @@ pub(super) fn number_deg(degrees: f64) -> String {
     number((degrees * 1e4).round() / 1e4)
 }
 
-/// How the tables of a material came by their colour, in words.
+/// Colour mode of the tables of a material, in words.
 fn color(color: ColorMode) -> &'static str {
     match color {
         ColorMode::Spectral => "spectral",

@@ -1,4 +1,4 @@
-//! How the figures came about: enough to repeat them, and to know what they do not say.
+//! The section on method: references, directions and floors, so that a reader can repeat the figures and knows their limits.
 
 use std::fmt::Write;
 

@@ -1,4 +1,4 @@
-//! Where every figure came from: enough to have it again.
+//! The section on provenance: commands, adapters and random numbers behind every figure.
 
 use std::fmt::Write;
 

@@ -75,7 +75,7 @@ fn broken_limits(report: &Report) -> Option<(&'static str, String)> {
     }
 }
 
-/// Where the worst is, in words.
+/// Place of the largest error, in words.
 fn at(worst: &WorstCase<'_>) -> String {
     let place = format!("{}, {}, {} set", worst.material, worst.compared.name(), worst.set.name());
     match (worst.statistics.not_finite_at, &worst.statistics.worst) {

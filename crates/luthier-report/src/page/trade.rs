@@ -140,7 +140,7 @@ fn shipped(report: &Report, kind: TableKind, reads: &dyn Fn(&str) -> bool) -> Op
     Some((table.texel_bytes as f64 * read.len() as f64 / table.tiles.len() as f64, found))
 }
 
-/// One material: its tables where it is baked alone, and its models by what they cost.
+/// Writes the charts of one material: its tables if it is baked alone, and its models by cost.
 pub(super) fn of_material(out: &mut String, report: &Report, material: &MaterialReport) {
     let alone: Vec<&Search> = material.alone.iter().filter(|s| s.front.len() > 1).collect();
     let costs = report.costs.as_ref().map_or(Vec::new(), |costs| of_shaders(report, material, costs));

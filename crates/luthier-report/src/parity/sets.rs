@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::directions::{GRAZING_COS_MIN, LOBE_REACH, direction, halton, log_uniform, mirrored, rounded, spreads};
 use crate::{DirectionSet, Pair};
 
-/// Where a shader is compared with its twin.
+/// Set of directions at which a shader is compared with its twin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ParitySet {

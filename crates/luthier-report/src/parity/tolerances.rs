@@ -1,4 +1,4 @@
-//! How far a shader may be from its twin, model by model, and what is known to be further.
+//! Tolerances of the error of a shader against its twin, by model, and known reasons of larger errors.
 
 use luthier_manifest::ShadingModel;
 use serde::{Deserialize, Serialize};
@@ -124,9 +124,9 @@ pub struct Known {
     pub share: Share,
     /// Factor that has to be at fault.
     pub factor: Factor,
-    /// How far it goes.
+    /// Largest error that it explains.
     pub limit: f64,
-    /// Where it comes from.
+    /// The reason of the error.
     pub reason: &'static str,
 }
 

@@ -1,4 +1,4 @@
-//! Where a case is looked at.
+//! Directions of the light and of the eye on a case.
 
 use glam::DVec3;
 use luthier_layers::elek::Layer;

@@ -7,7 +7,7 @@ use luthier_optics::constants::dataset;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Film, FilmThickness, Layer, Slab, Stack, Surface};
 
-/// A stack, where it is looked at, and which promise of a method it puts to the test.
+/// A stack and directions that test methods.
 #[derive(Debug, Clone)]
 pub struct StressCase {
     /// Name, unique.
@@ -16,7 +16,7 @@ pub struct StressCase {
     pub title: String,
     /// The quantity that is swept, and its value.
     pub swept: Option<(Quantity, f64)>,
-    /// Where it is looked at.
+    /// Directions of the light and of the eye.
     pub aim: Aim,
     /// Whether its colour is spectral; else three wavelengths.
     pub is_spectral: bool,

@@ -1,4 +1,4 @@
-//! Why a method does not hold, and how far each reason goes.
+//! Reasons why methods do not hold, each with a limit on the error that it explains.
 
 use super::{Cell, Fault, Level, Verdict};
 

@@ -54,7 +54,7 @@ const EXTREMES: &str = "denormal and huge arguments";
 pub struct FormulaResult {
     /// Entry of the [`PITFALLS`], or another subject of the formulation.
     pub row: String,
-    /// How it is written, in which precision.
+    /// The formulation, and its precision.
     pub formulation: String,
     /// Whether it ships.
     pub ships: bool,
