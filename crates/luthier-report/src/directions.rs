@@ -61,7 +61,7 @@ impl DirectionSet {
                  each lobe in turn (widened by refraction for lobes below the first interface)."
             }
             Self::Glancing => {
-                "As highlight, with wi grazing: cosine log-uniform from 1.745e-4 (89.99°) to 0.1. Closer to the \
+                "The pairs of highlight, but with wi grazing: its cosine is log-uniform from 1.745e-4 (89.99°) to 0.1. Closer to the \
                  horizon two f32 directions no longer determine the angle between them."
             }
         }

@@ -171,7 +171,7 @@ pub struct MaterialReport {
     pub picture: Option<PictureErrors>,
     /// The cost of its shader, by the kinds of its layers; `None` where the caller does not know it.
     pub shape_cost: Option<ShapeCost>,
-    /// Why its model was chosen: what a bake of a scene says in its manifest.
+    /// Reason for the choice of its model: the words of the manifest of a scene.
     pub choice: Option<serde_json::Value>,
 }
 

@@ -189,16 +189,22 @@ fn reason(tried: &[SceneCandidate], chosen: usize, next_cheaper: Option<usize>, 
         parts.join(", ")
     };
     let verdict = match own.verdict {
-        Verdict::Holds => "the cheapest that holds",
+        Verdict::Holds => "the cheapest that holds the budget",
         Verdict::Undecided => {
-            "none holds for certain; this comes nearest, and the noise of the reference leaves it open"
+            "none holds the budget for certain; this one comes nearest, and the noise of the reference leaves the verdict open"
         }
-        Verdict::Fails | Verdict::TooDear => "none holds; this comes nearest",
+        Verdict::Fails | Verdict::TooDear => "none holds the budget; this one comes nearest",
     };
     let mut text = format!("{} for {:.0} cycles: {verdict} (error {})", label(own), own.cost, errs(own));
     if let Some(cheaper) = cheaper {
-        let outcome = if cheaper.verdict == Verdict::Undecided { "could not be told apart from" } else { "would have" };
-        text.push_str(&format!("; {} for {:.0} cycles {outcome} {}", label(cheaper), cheaper.cost, errs(cheaper)));
+        let outcome =
+            if cheaper.verdict == Verdict::Undecided { "may or may not hold the budget, with" } else { "would have" };
+        text.push_str(&format!(
+            "; {} for {:.0} cycles {outcome} an error of {}",
+            label(cheaper),
+            cheaper.cost,
+            errs(cheaper)
+        ));
     }
     text
 }

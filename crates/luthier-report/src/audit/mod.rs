@@ -1,4 +1,4 @@
-//! The audit of a table that anybody made: how far it is, as a shader reads it, from the model that it is said to hold; and whether
+//! The audit of a table of another program: its error, as a shader reads it, against the model that it should hold; and whether
 //! it fits another statement better. [`audit`] tells flips, swaps, shifted nodes, mistaken axes and channels, encodings and masking
 //! terms apart by comparing texels with quadrature under every combination of them.
 //!
@@ -30,7 +30,7 @@ const WEIGHTS: WeightBits = WeightBits::Fixed(8);
 /// Largest root mean square error of a hypothesis that is accepted as the content of a table.
 const NO_FIT: f64 = 0.03;
 
-/// Why no audit was made.
+/// Failure to audit a table.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum AuditError {

@@ -36,7 +36,7 @@ pub struct Tolerance {
     pub name: &'static str,
     /// Relative to max(brightest channel of the reference, [`crate::FLOOR`]).
     pub limit: f64,
-    /// Why it is what it is.
+    /// Reason for the limit.
     pub reason: &'static str,
 }
 

@@ -123,7 +123,7 @@ fn heat_map(out: &mut String, stability: &Stability, level: Level) {
     }
     let _ = writeln!(
         out,
-        "\n## {}\n\nA dot means that the method holds. A number is the error of a method that degrades, or of one that fails if it is in bold. The letters refer to the section Explanations.",
+        "\n## {}\n\nA dot means that the method holds. A number is the error of a method that degrades. Bold text means that the method fails. The letters refer to the section Explanations.",
         level.name()
     );
     for cases in stability.cases.chunks(COLUMNS) {

@@ -76,12 +76,12 @@ fn only_what_was_chosen_is_written() {
         assert_eq!(chosen["verdict"], "holds");
         assert_eq!(manifest["materials"][i]["model"], chosen["model"]);
         let reason = material["reason"].as_str().unwrap();
-        assert!(said.contains(reason) && reason.contains("the cheapest that holds"), "{said}");
+        assert!(said.contains(reason) && reason.contains("the cheapest that holds the budget"), "{said}");
         // Nothing cheaper holds.
         assert!(tried.iter().all(|t| t["verdict"] != "holds" || t == chosen));
         if let Some(next) = material["next_cheaper"].as_u64() {
             assert!(tried[next as usize]["cost"].as_f64() < chosen["cost"].as_f64());
-            assert!(reason.contains("would have"), "{reason}");
+            assert!(reason.contains("would have an error of"), "{reason}");
         }
     }
     assert!(!workshop.path("a/shaders/full.wgsl").exists());
@@ -104,7 +104,7 @@ fn what_nothing_holds_is_refused_or_said() {
     assert!(run.stderr.contains("metal: phong") && run.stderr.contains("comes nearest"), "{}", run.stderr);
     assert!(!workshop.path("out").exists());
     let run = workshop.run(&["bake", "shelf.toml", "--allow-miss"]).exits(0);
-    assert!(run.stdout.contains("none holds; this comes nearest"), "{}", run.stdout);
+    assert!(run.stdout.contains("none holds the budget; this one comes nearest"), "{}", run.stdout);
     workshop.edit("shelf.toml", |text| text.replace("max_cost = 55", "max_cost = 2"));
     workshop.run(&["bake", "shelf.toml"]).fails(1, &["cycles, more than 2"]);
 }
