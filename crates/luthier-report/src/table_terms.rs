@@ -264,7 +264,7 @@ impl Terms for TableTerms<'_> {
         }
     }
 
-    /// The interference term from the row over s, the sum of the cosines times d / (2 d_max) (Granier and Heidrich 2003, eq. 19).
+    /// The swing from the row over s, the sum of the cosines times d / (2 d_max) (Granier and Heidrich 2003, eq. 19).
     fn interference(&self, layer: usize, channel: usize, cosines: f64) -> Option<f64> {
         let (table, tile) = (self.phase?, self.tile(TableKind::Phase, layer)?);
         let record = &self.records[layer];
