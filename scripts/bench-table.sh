@@ -16,13 +16,13 @@ cat <<TEXT
 
 Made by \`scripts/bench-table.sh > docs/pages/speed.md\`. One thread; $cpu; $(rustc --version); profile \`bench\`.
 
-A row is a bench: *median* and *fastest* of its samples in nanoseconds per call, *spread* their mean over the fastest,
-*phong* the median over that of \`functions/bare_conductor/phong\` in the same run, whose coefficients are made from the
-stack at every call, as those of all models are. A call takes the next of 1024 pseudo-random pairs of directions, both
-uniform on the hemisphere; \`loop\` is what that costs by itself and is part of every row. Only samples of the
-quickest go through all pairs: the spread of others is also one between directions.
+Each row is a benchmark. *Median* and *fastest* are those of its samples, in nanoseconds per call. *Spread* is the mean of the samples over
+the fastest. *Phong* is the median over that of \`functions/bare_conductor/phong\` in the same run. All models, Phong's too, compute their
+coefficients from the stack at every call. A call takes the next of 1024 pseudo-random pairs of directions, both uniform on the
+hemisphere. The row \`loop\` is the cost of taking that pair, and is part of every other row. Only the samples of the quickest benchmarks
+go through all pairs. The spread of the slower ones includes that between directions.
 
-Stacks: \`bare_conductor\` is rough gold; \`coated_conductor\` the same under a rough coat that absorbs; \`film_slab_diffuse\` that
+Stacks: \`bare_conductor\` is rough gold; \`coated_conductor\` is rough gold under a rough coat that absorbs; \`film_slab_diffuse\` is that
 coat with a film on it, over a rough diffuse base. \`functions\` are values at one wavelength, \`spectral\` colours from 95
 wavelengths, \`estimates\` values at 4096 samples. In \`layered_mc\` a call is one path (\`paths\`) or one sample of a value
 (\`values\`), and the arguments are alpha of the coat and the mode.

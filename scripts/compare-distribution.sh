@@ -40,9 +40,9 @@ PY
 cat <<'HEAD'
 # The slope distribution, in every mapping
 
-Errors of the table of pi alpha^2 D as sampled (bilinear, 8-bit weights, quantised), so relative to the peak of D. "Worst at" is (theta_h or
-cos theta_h, alpha). Made by `scripts/compare-distribution.sh > docs/pages/distribution-table.md`. A bake has this table only where a material
-asks for it in `[bake.distribution]`: the closed forms cost less.
+The errors are those of the table of pi alpha^2 D as a device samples it: quantised texels, filtered bilinearly with 8-bit weights. The peak of pi alpha^2 D is
+about 1, so that they are relative to the peak of D. "Worst at" is (theta_h or cos theta_h, alpha). Made by `scripts/compare-distribution.sh > docs/pages/distribution-table.md`.
+A bake has this table only where a material asks for it in `[bake.distribution]`, because the closed forms cost less.
 
 HEAD
 echo "| mapping, 512 x 512 | bytes | Beckmann max | rms | worst at | GGX max | rms | worst at |"
@@ -58,8 +58,8 @@ cat <<'TAIL'
 
 - A linear alpha axis, which Elek's paper implies, cannot hold alpha near 0, where D is a spike of no width: the worst point is the first row. The
   logarithmic axis ends at alpha = 0.001, the smoothest surface that the model evaluates.
-- A linear angle axis misses narrow lobes, and so does the other reading of the paper, u = (N.H)^8.
-- A single half float is as good at the peak as the split root, but has lost the tail: below 6e-8 of the peak it holds nothing, and linear
-  interpolation of a lobe that falls by orders of magnitude between texels is off by percents of the local value. That is what
-  `luthier report` measures, and why the split root is the default format at twice the bytes.
+- A linear angle axis misses narrow lobes. So does u = (N.H)^8, another way to read the paper.
+- A single half float is as good at the peak as the split root, but loses the tail of the lobe. It stores 0 below 6e-8 of the peak. Where the lobe falls
+  by orders of magnitude between texels, linear interpolation is off by percents of the local value. `luthier report` measures that error. Because of it the
+  split root is the default format, at twice the bytes.
 TAIL

@@ -22,8 +22,8 @@ mega() { awk -v bytes="$1" 'BEGIN { printf "%.1f", bytes / 1e6 }'; }
   echo "# Many materials"
   echo
   echo "Made by \`scripts/many.sh\`: libraries of generated materials (\`crates/luthier-material/examples/library\`, seed 1) of one to four"
-  echo "layers, baked by \`luthier bake FOLDER\` with \`$(nproc)\` cores. Time is that of the whole command, memory its largest resident set; tables"
-  echo "are the KTX2 files, as they ship. Sizes are in MB of 10^6 bytes. Limits are in [manifest.md](../manifest.md)."
+  echo "layers, baked by \`luthier bake FOLDER\` with \`$(nproc)\` cores. Time is that of the whole command, and memory its largest resident set."
+  echo "The column tables has the KTX2 files of the package. Sizes are in MB of 10^6 bytes. [manifest.md](../manifest.md) states the limits."
   echo
   echo "| materials | layers | seconds | processor seconds | memory MB | tables | truth and pictures | material buffer | manifest | shaders |"
   echo "|---|---|---|---|---|---|---|---|---|---|"

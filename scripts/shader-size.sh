@@ -20,8 +20,8 @@ row() {
 cat <<'HEAD'
 # Size of the emitted shader
 
-What the materials of a scene do not use is left out of their shader. Lines and bytes of WGSL without comments and blank lines, and
-bytes of the SPIR-V library. Made by `scripts/shader-size.sh`.
+The shader of a scene contains only the code that its materials use. The table has the lines and bytes of WGSL without comments and blank
+lines, and the bytes of the SPIR-V library. Made by `scripts/shader-size.sh`.
 
 | scene | form | WGSL lines | WGSL bytes | SPIR-V bytes |
 |---|---|--:|--:|--:|
@@ -29,4 +29,4 @@ HEAD
 row 'one metal: `polished-gold`' materials/polished-gold.toml
 row 'a coat over a diffuse base: `red-lacquer`' materials/red-lacquer.toml
 row 'all 22 materials, films and Oren-Nayar bases included' materials
-row 'the same, shaded by `phong`' materials --model phong
+row 'all 22 materials, shaded by `phong`' materials --model phong

@@ -6,7 +6,7 @@ use luthier_lut::UnknownName;
 use luthier_shader::ShaderError;
 use thiserror::Error;
 
-/// Why a cost cannot be found.
+/// Failure to find a cost.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CostError {

@@ -22,7 +22,7 @@ pub enum Harness {
     NormalMapped,
 }
 
-/// How the shader of a set is made.
+/// Variant of the shader of a set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Style {
     /// Form of the shader.

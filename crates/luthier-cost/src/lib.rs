@@ -9,7 +9,7 @@
 //!
 //! The driver reads its environment once, when the Vulkan loader loads: [`compile`] is for a process that was started with
 //! [`Family::environment`], one per family. [`compile_apart`] starts one, of a program whose `main` begins with [`answer`].
-//! [`CostReport`] is what came of it, as JSON and as a page.
+//! [`CostReport`] holds the counts of many shaders, and writes them as JSON and as a page.
 //!
 //! Simplifications: a texture read counts as issued, without cache misses; all branches of a kernel count, the taken and the others, so
 //! that a set of several models costs the sum of them; uniform registers and interpolation are free.

@@ -107,18 +107,19 @@ impl CostReport {
             .collect();
         format!(
             "# {title}\n\n\
-             Made by `{command}`, {}. No GPU is involved: Mesa's driver `{}` compiles every shader for chips that are not there, \
-             and reports what its own model of them says. Same driver, same shaders, same numbers. In brackets what the harness alone \
-             costs, which is subtracted unless said otherwise: {}.\n\n\
-             *Inverse throughput* is cycles per wave of 64 by that model, all waves in flight. It has two habits to know: what lies \
-             under a branch counts three quarters (half, where all threads agree), nested ones multiplied, so that a second layer looks \
-             cheaper than a first; and a short kernel is charged its latency over the number of waves. *Issue* is cycles that the vector \
-             instructions of all branches take to issue on one SIMD (a plain instruction 4 on GCN5 and 2 on RDNA, a reciprocal, root, \
-             exponential or logarithm 16 and 8, overlapping with the others on RDNA), counted in the machine code: no branch \
-             is skipped and nothing waits. A fetch counts as issued: no cache is modelled, which flatters tables; time on a device is in \
-             `docs/measurements/`.\n\n\
-             *constants*: the numbers of the one material are in the code instead of a buffer (`luthier shader --constant`). *closed D*: \
-             Fresnel from its table, the slope distribution in closed form (`luthier shader --closed`).",
+             Made by `{command}`, {}. No GPU is needed: Mesa's driver `{}` compiles every shader for chips that this machine does not have, \
+             and reports the cycles that its own model of each chip predicts. One driver always gives the same numbers for a shader. The page subtracts the cost \
+             of the harness (the code around the evaluation) unless it says otherwise. That cost is in brackets: {}.\n\n\
+             *Inverse throughput* is the number of cycles per wave of 64 threads by that model, with all waves in flight. Read it with two reservations. \
+             Code in a branch counts three quarters of its cycles (half, where all threads agree), and the factors of nested branches multiply, so that \
+             a second layer looks cheaper than the first. A short kernel is charged its latency divided by the number of waves.\n\n\
+             *Issue* is the number of cycles that one SIMD takes to issue the vector instructions of all branches, counted in the machine code: no branch \
+             is skipped, and no instruction waits. A plain instruction takes 4 cycles on GCN5 and 2 on RDNA; a reciprocal, root, exponential or logarithm takes \
+             16 and 8, and overlaps with other instructions on RDNA.\n\n\
+             A fetch counts as one issued instruction. Caches are not modelled, which makes tables look cheaper than they are; `docs/measurements/` has times \
+             on devices.\n\n\
+             *constants* means that the numbers of the one material are in the code instead of a buffer (`luthier shader --constant`). *closed D* means that \
+             Fresnel's reflectance comes from its table and the slope distribution from its closed form (`luthier shader --closed`).",
             self.generator,
             self.driver,
             chips.join(", "),
@@ -130,7 +131,7 @@ impl CostReport {
         let _ = writeln!(
             out,
             "\n## Every model on {family}\n\n\
-             Inverse throughput, *issue*, vector registers and reads of textures, the least and the most of the materials.\n\n\
+             The columns are inverse throughput, *issue*, vector registers and reads of textures: the smallest and the largest number over the materials.\n\n\
              | model | form | inverse throughput | issue | registers | reads |\n|---|---|--:|--:|--:|--:|"
         );
         let mut seen: Vec<(ShadingModel, Form, bool, bool)> = Vec::new();

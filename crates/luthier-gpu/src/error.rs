@@ -82,7 +82,7 @@ pub enum GpuError {
     /// No answer from the device in time.
     #[error("the device did not finish within {seconds} s")]
     Timeout {
-        /// How long it was given.
+        /// Time that it was given.
         seconds: u64,
     },
     /// A material number that the bake does not have.

@@ -15,7 +15,7 @@ pub enum Light {
     },
     /// Near: irradiance falls with the square of the distance.
     Point {
-        /// Where it is.
+        /// Its position.
         position: [f32; 3],
         /// Irradiance that the light gives to a patch that faces it at distance 1.
         intensity: [f32; 3],

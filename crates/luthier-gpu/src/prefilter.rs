@@ -39,7 +39,7 @@ pub(crate) fn level_height(alpha: f64) -> u32 {
     ((8.0 / alpha).ceil() as u32).next_power_of_two().clamp(16, 256)
 }
 
-/// Where a slope parameter lies among the maps: 0 is the unblurred map, k is `ALPHAS[k - 1]`; and the weight of the next.
+/// Index of the map for a slope parameter, and the weight of the next map. Index 0 is the unblurred map, k is `ALPHAS[k - 1]`.
 pub(crate) fn place(alpha: f64) -> (usize, f64) {
     if alpha < ALPHAS[0] {
         return (0, alpha.max(0.0) / ALPHAS[0]);

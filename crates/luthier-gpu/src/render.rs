@@ -34,7 +34,7 @@ pub enum Backdrop {
     Environment,
 }
 
-/// How a shape is lit and seen. Radiance and irradiance are linear RGB in the same arbitrary unit; +y is up, +z points
+/// Lighting and view of a shape. Radiance and irradiance are linear RGB in the same arbitrary unit; +y is up, +z points
 /// to the eye.
 #[derive(Debug, Clone)]
 pub struct RenderSettings {

@@ -20,7 +20,7 @@ pub enum Shape {
 /// Spheres along a side of the grid.
 pub const GRID_SIDE: u32 = 5;
 
-/// Where the picture is taken from. It is square and in perspective.
+/// The camera. The picture is square and in perspective.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
     /// The eye.

@@ -2,7 +2,7 @@
 
 use luthier_lut::Image;
 
-/// How radiance becomes what a display shows, before its transfer function. Each channel by itself, 0 to 0; the display
+/// Map from radiance to the values of a display, before its transfer function. Each channel by itself, 0 to 0; the display
 /// clips what is above 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ToneMapping {
@@ -19,11 +19,11 @@ pub enum ToneMapping {
     Aces,
 }
 
-/// Where highlights start to be compressed.
+/// Value above which highlights are compressed.
 const SHOULDER: f32 = 0.8;
 
 impl ToneMapping {
-    /// One value under the curve. Negative ones become 0.
+    /// Applies the curve to one value. Negative values become 0.
     pub fn value(self, x: f32) -> f32 {
         let x = x.max(0.0);
         match self {

@@ -29,19 +29,19 @@ pub(crate) enum Verb {
     Figures(FiguresOptions),
     /// Compare every shader of every material with its f64 twin: a page in Markdown
     Parity(ParityOptions),
-    /// Run every method where methods fail, and say where each may be used: a page in Markdown
+    /// Run every method on stacks where methods fail, and find the domain of each: a page in Markdown
     Stability(StabilityOptions),
     /// Compare every reflectance model with the layered-mc reference on materials: a page in Markdown
     Judge(JudgeOptions),
-    /// Measure what searches for tables reach against fixed ones: a page in Markdown
+    /// Measure the tables that searches find against fixed ones: a page in Markdown
     Budgets(BudgetsOptions),
-    /// Count the shaders of the papers on today's chips, which need not be here: a page in Markdown
+    /// Count the cycles of the papers' shaders on today's chips, without the chips: a page in Markdown
     Papers(PapersOptions),
-    /// Count every shape of surface: the table by which scenes choose models, as JSON
+    /// Count the cycles of a shader for every shape of stack: the table by which scenes choose models, as JSON
     Shapes(ShapesOptions),
 }
 
-/// Where a page goes.
+/// Destination of a page.
 #[derive(Debug, Args)]
 pub(crate) struct Destination {
     /// File to write instead of standard output
@@ -127,7 +127,7 @@ pub(crate) struct ParityOptions {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Exits with 1 when a shader is NaN or infinite somewhere, or when nobody can explain why a method does not hold.\n\n\
+    after_help = "Exits with 1 when a shader is NaN or infinite somewhere, or when the error of a method has no explanation.\n\n\
                   Examples:\n  luthier-lab stability\n  luthier-lab stability -o docs/pages/stability.md\n  luthier-lab stability --json"
 )]
 pub(crate) struct StabilityOptions {
@@ -165,7 +165,7 @@ pub(crate) struct BudgetsOptions {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Wants what `luthier cost` wants. Errors are measured on the graphics adapter at hand, if there is one.\n\n\
+    after_help = "Needs Mesa's RADV driver, as `luthier cost` does. Errors are measured on the graphics adapter of this machine, if there is one.\n\n\
                   Examples:\n  luthier-lab papers materials -o docs/papers.md\n  luthier-lab papers mine.toml --family rdna2"
 )]
 pub(crate) struct PapersOptions {
@@ -180,7 +180,7 @@ pub(crate) struct PapersOptions {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Every shape of the materials, and of what is left of them without some of their parts, on RDNA2. Wants what `luthier cost` wants.\n\n\
+    after_help = "Counts every shape of the materials, whole and without some of their parts, on RDNA2. Needs Mesa's RADV driver, as `luthier cost` does.\n\n\
                   Examples:\n  luthier-lab shapes materials materials/scenes/still-life -o crates/luthier-scene/data/cost.json"
 )]
 pub(crate) struct ShapesOptions {

@@ -172,23 +172,22 @@ fn errors(material: &Material, texts: &[String]) -> Outcome<Vec<Option<f64>>> {
 
 /// Text on the figures above, from the machine code.
 const WHY: &str = "
-**What costs, and what the goal asks for**
+**Where the cycles go, and which goals can be reached**
 
-- The table of D is dearer than D. Its coordinate is an eighth root of an angle: an arc tangent, three roots and two quotients stand \
-against one exponential and one quotient of Beckmann's closed form, which has no error and no texels. Elek's table pays where \
-a chip has slow exponentials; these have none. `luthier shader --closed` emits the closed form.
-- The table of F pays over metals: complex roots at three wavelengths go. Below a clear coat over a diffuse base there is one \
-Fresnel term only, and with constants for its index the compiler reduces that to little more than the fetch: the share of \
-full then approaches 1.
-- Without Fresnel and D an interface still has the half vector, the masking, a quotient by both cosines, and on the way down two \
-refracted cosines and three exponentials of the absorption. The model `microfacet`, one interface and nothing below it, takes 1.5 of Phong \
-or nearly so (`docs/pages/cost.md`). So 1.5 of Phong alone is out of reach of shaders that evaluate two interfaces; it can be reached where the \
-normal map and the environment are counted on both sides, as the papers did. Alone it would need one lobe fitted to the stack.
-- What both forms have in common hides what tables save, and is short: 1 / alpha^2, the peak of D, 1 / eta and their like are in the material \
-buffer, half vectors keep their length, whole numbers need no conversion, a position in an atlas is one product and one sum.
-- Constants save where a form computes with numbers of the material, Fresnel terms above all; with tables they save next to nothing, because \
-a number from the buffer costs no instruction either. In the model's inverse throughput some rows rise: a branch that the constants decide is gone, \
-and with it the discount for what lies under it.
+- A look-up of D costs more than computing D. The coordinate of the table is an eighth root of an angle, which takes an arc tangent, three roots and two \
+quotients. Beckmann's closed form takes one exponential and one quotient, has no error and needs no texels. Elek's table pays on chips with slow \
+exponentials, and the chips of this page have fast ones. `luthier shader --closed` emits the closed form.
+- The table of F pays for metals, because it replaces complex roots at three wavelengths. A clear coat over a diffuse base has a single Fresnel term. \
+If its index is a constant, the compiler reduces that term to little more than the cost of the fetch, and the share of *full* approaches 1.
+- An interface has more than Fresnel and D: the half vector, the masking, a quotient by both cosines and, for the layers below, two refracted cosines and \
+three exponentials of the absorption. The model `microfacet`, which has one interface and no other layer, takes about 1.5 times the cycles of Phong \
+(`docs/pages/cost.md`). So a shader that evaluates two interfaces cannot stay below 1.5 of Phong by itself. It can if the normal map and the environment \
+are counted for both shaders, as the papers did. By itself it would need one lobe that is fitted to the stack.
+- The code that both forms share hides part of the savings of tables, and is therefore kept short. 1 / alpha^2, the peak of D, 1 / eta and the like are in the \
+material buffer, half vectors are not normalised, whole numbers need no conversion, and a position in an atlas takes one product and one sum.
+- Constants save cycles in a form that computes with numbers of the material, above all in Fresnel terms. With tables they save next to nothing, because \
+a number from the buffer costs no instruction either. Some rows have a higher inverse throughput with constants: the compiler removes a branch, and with it the \
+discount that its model gives to the code in a branch.
 ";
 
 /// A count that is compared between variants.
@@ -225,11 +224,11 @@ fn tables(out: &mut String, cases: &[PaperCase], counts: &[FamilyCounts]) {
          |---|--:|--:|--:|--:|--:|--:|--:|\n\
          | Elek, Table 1: tables of F and D | 436 | – | 236 | 104 | 0.54 | 2.27 | 6 % |\n\
          | course, 3.4.2: table of F, Blinn-Phong | 479 | 268 | 195 | 83 | 0.41 | 2.35 | – |\n\n\
-         Below the model `elek` of luthier: each cell is cycles, then the share of *full* and of *Phong* of the same kind (with or without \
-         constants). The error is the largest of f cos theta_i against *full* over the five sets of directions of `docs/pages/parity.md` on the \
-         device at hand, relative to the brightest channel or, where that is darker, to 0.1/pi. The approximated Fresnel term is Schlick's \
-         with the complex index at normal incidence (Elek's listing). *Precomputed* reads Fresnel rows of 128 half floats over the cosine and \
-         a table of D of 512 x 512, Elek's sizes.\n",
+         The tables below are for the model `elek` of luthier. Each cell has the cycles of a shader and, in brackets, their ratios to the cycles of *full* and of \
+         *Phong* of the same kind (with or without constants). The error is the largest error of f cos theta_i against *full* over the five sets of directions of \
+         `docs/pages/parity.md`, on the graphics adapter of this machine. It is relative to the brightest channel, or to 0.1/pi where that is larger. The approximated \
+         Fresnel term is Schlick's, with the reflectance of the complex index at normal incidence (Elek's listing). *Precomputed* reads Fresnel rows of 128 half floats \
+         over the cosine and a table of D of 512 x 512 texels, which are Elek's sizes.\n",
     );
     let mut offset = 0;
     for case in cases {
@@ -286,7 +285,7 @@ fn verdict(out: &mut String, case: &PaperCase, first: usize, counts: &[FamilyCou
     let (of_full, of_phong, error) = GOAL;
     let _ = writeln!(
         out,
-        "\nGoal: precomputed at most {of_full:.2} of full and {of_phong} of Phong in inverse throughput, at an error of at most {:.0} %.",
+        "\nGoal: the precomputed form takes at most {of_full:.2} of the inverse throughput of *full* and {of_phong} of that of *Phong*, with an error of at most {:.0} %. Ratios are the largest over the instruction sets.",
         100.0 * error
     );
     for (i, variant) in case.variants.iter().enumerate() {
@@ -313,7 +312,7 @@ fn verdict(out: &mut String, case: &PaperCase, first: usize, counts: &[FamilyCou
         };
         let _ = writeln!(
             out,
-            "- {}{numbers}: at most {full:.2} of its full form: {}; {default:.2} of the full form that reads a buffer: {}; \
+            "- {}{numbers}: {full:.2} of its full form: {}; {default:.2} of the full form that reads a buffer: {}; \
              {phong:.2} of Phong: {}; {framed:.2} of Phong with normal map and environment: {}; {exact}.",
             variant.name,
             says(full <= of_full),

@@ -55,7 +55,7 @@ pub(crate) fn run(options: &StabilityOptions) -> Outcome {
 struct Tables {
     /// Name of the tables; `None` for those that ship by default.
     name: Option<&'static str>,
-    /// How they are asked for.
+    /// Options of the bake that makes them.
     options: Options,
     /// Models that are run with them.
     models: &'static [ShadingModel],

@@ -19,7 +19,7 @@ pub trait Optics {
 
     /// `2 cos(2 Phi)` of the first film of a layer for the sum of the cosines in it (Granier and Heidrich 2003, eq. 3 and 19); 0
     /// without a film.
-    fn swing(&self, layer: usize, cosines: f64) -> f64;
+    fn interference(&self, layer: usize, cosines: f64) -> f64;
 }
 
 /// A stack at one wavelength, for one colour channel.
@@ -130,7 +130,7 @@ impl Optics for Monochrome {
         })
     }
 
-    fn swing(&self, layer: usize, cosines: f64) -> f64 {
+    fn interference(&self, layer: usize, cosines: f64) -> f64 {
         let film = self.layers.get(layer).and_then(|layer| layer.films.first());
         film.map_or(0.0, |film| 2.0 * libm::cos(2.0 * PI * film.ior.re * film.waves * cosines))
     }

@@ -101,12 +101,12 @@ pub fn smith_g1_of(ndf: &impl Ndf, cos_theta: f64) -> f64 {
             // Graded to the start: the lobe of the first piece, the square root of the second.
             let theta_h = start + length * u * u * u * u;
             let (sin, cos) = (libm::sin(theta_h), libm::cos(theta_h));
-            let (mean, swing) = (cos * cos_theta, sin * sin_theta);
-            let azimuths = if mean >= swing {
+            let (mean, amplitude) = (cos * cos_theta, sin * sin_theta);
+            let azimuths = if mean >= amplitude {
                 2.0 * PI * mean
             } else {
-                let last = libm::acos(-mean / swing);
-                2.0 * (mean * last + swing * libm::sin(last))
+                let last = libm::acos(-mean / amplitude);
+                2.0 * (mean * last + amplitude * libm::sin(last))
             };
             seen += weight * length * 4.0 * u * u * u * ndf.density(cos, sin * sin) * azimuths * sin;
         }

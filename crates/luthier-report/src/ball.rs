@@ -73,7 +73,7 @@ struct Place {
 }
 
 impl Place {
-    /// Where the ray through a point of the picture, -1 to 1 in both coordinates, meets the ball.
+    /// Point of the ball that the ray through a point of the picture meets; -1 to 1 in both coordinates.
     fn hit([x, y]: [f64; 2]) -> Option<Self> {
         let eye = DVec3::new(0.0, 0.0, EYE);
         let ray = (DVec3::new(x * HALF_EXTENT, y * HALF_EXTENT, 0.0) - eye).normalize();

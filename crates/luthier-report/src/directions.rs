@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// `(wi, wo)`: unit to f32 precision, above the horizon, in the local frame.
 pub type Pair = ([f32; 3], [f32; 3]);
 
-/// Where a shader is compared with its reference.
+/// Set of directions at which a shader is compared with its reference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DirectionSet {
@@ -61,7 +61,7 @@ impl DirectionSet {
                  each lobe in turn (widened by refraction for lobes below the first interface)."
             }
             Self::Glancing => {
-                "As highlight, with wi grazing: cosine log-uniform from 1.745e-4 (89.99°) to 0.1. Closer to the \
+                "The pairs of highlight, but with wi grazing: its cosine is log-uniform from 1.745e-4 (89.99°) to 0.1. Closer to the \
                  horizon two f32 directions no longer determine the angle between them."
             }
         }

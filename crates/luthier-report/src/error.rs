@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::Form;
 
-/// Why no judgement could be passed.
+/// Failure to judge a bake.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ReportError {

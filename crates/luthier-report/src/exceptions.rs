@@ -1,4 +1,4 @@
-//! Where a shader misses the target, and what makes it miss.
+//! Samples on which a shader misses the target, and their causes.
 
 use std::cell::RefCell;
 
@@ -40,7 +40,7 @@ pub struct Exception {
     pub worst: WorstPair,
     /// Parts of the error of the worst pair, largest first.
     pub parts: Vec<Part>,
-    /// How often each factor is the largest part, over the pairs that were looked at: all that miss, or some hundred evenly
+    /// Numbers of examined pairs on which each factor has the largest part. Examined are all pairs that miss, or some hundred evenly
     /// taken from them. Most frequent first.
     pub tally: Vec<(Factor, u64)>,
 }
@@ -375,8 +375,8 @@ impl Terms for Mixed<'_> {
     }
 
     /// The exact value is computed by the model.
-    fn swing(&self, layer: usize, channel: usize, cosines: f64) -> Option<f64> {
-        let sampled = self.tables.swing(layer, channel, cosines)?;
+    fn interference(&self, layer: usize, channel: usize, cosines: f64) -> Option<f64> {
+        let sampled = self.tables.interference(layer, channel, cosines)?;
         self.record(layer, Term::Phase { cosines }, None, Some(sampled))
     }
 }

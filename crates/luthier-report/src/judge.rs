@@ -22,14 +22,14 @@ use crate::{
     TARGET_MAX_REL_ERR, format, scan, statistics,
 };
 
-/// How far the judge's largest table error may exceed the baker's before it is a finding: both scan finitely many
+/// Factor by which the judge's largest table error may exceed the baker's before it is a finding: both scan finitely many
 /// points.
 const BAKER_MARGIN: f64 = 1.05;
 
 /// Standard errors by which an estimated table error has to exceed the baker's besides.
 pub(crate) const UNCERTAINTY_MARGIN: f64 = 4.0;
 
-/// How to judge.
+/// Settings of a judgement.
 #[derive(Clone)]
 pub struct Settings<'a> {
     /// Pairs of directions in every set of every material, at least 1. Albedos are estimated at a point for every 64 of them,
@@ -60,7 +60,7 @@ impl fmt::Debug for Settings<'_> {
     }
 }
 
-/// How far a judgement has come.
+/// Progress of a judgement.
 #[derive(Debug, Clone, Copy)]
 pub struct Progress<'a> {
     /// Steps done: parts of the table scan, then sets of every material.

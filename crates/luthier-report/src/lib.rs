@@ -1,29 +1,29 @@
-//! The judge: how far the tables and the shaders of a bake are from the f64 reference, as numbers and as a page.
+//! The judge of bakes: errors of tables and shaders against the f64 reference, as numbers and as a page.
 //!
 #![doc = include_str!("../README.md")]
 //! # In detail
 //!
-//! [`judge`] takes what a bake shipped (manifest, decoded texels), the stacks that it was made from, and optionally a
+//! [`judge`] takes the result of a bake (manifest, decoded texels), the stacks that it was made from, and optionally a
 //! [`Device`] that runs the emitted shaders. Every figure of the [`Report`] comes from that run:
 //!
 //! - tables are read back through the sampler of `luthier-lut` at points of the judge's own choosing;
 //! - shaders are compared with `luthier_layers::real_time` over deterministic sets of directions;
-//! - the error of the baked shader is split into what the tables do and what f32 arithmetic does;
-//! - the difference between three wavelengths and the spectrum is shown apart, so that nobody takes it for an error;
-//! - colour differences say what of it is seen under which light ([`Seen`]);
-//! - whatever misses [`TARGET_MAX_REL_ERR`] is listed with the factor that makes it miss;
+//! - the error of the baked shader is split into the error of the tables and that of f32 arithmetic;
+//! - the difference between three wavelengths and the spectrum is shown apart, because it is not an error of the bake;
+//! - colour differences say which errors are visible under which light ([`Seen`]);
+//! - samples that miss [`TARGET_MAX_REL_ERR`] are listed with the factor that causes the error;
 //! - directional albedos (FGD) are estimated anew, wavelength by wavelength, with the uncertainty of the estimate.
 //!
-//! [`audit()`] judges a table that anybody made against what it is said to hold.
+//! [`audit()`] judges a table of another program against the function that it should hold.
 //! [`parity`] compares the shaders of all models with their f64 twins. [`compare_pictures`] compares two rendered pictures,
 //! [`render_ball`] makes one in f64, [`sheet()`] puts many on one, [`Plot`] draws curves. [`Spread`] is for times of a stopwatch.
 //! The caller puts the rest of a page (searches, costs, pictures, models against the reference) into the report: [`Costs`],
 //! [`Exhibits`], [`judge_shading_models`]. [`limits()`] holds the report against budgets.
-//! [`judge_models`] is the judge of what the bake stands on: every reflectance model against the Monte Carlo of whole stacks.
-//! [`stability`] runs every method where methods fail, and says where each may be used.
+//! [`judge_models`] compares every reflectance model with the Monte Carlo simulation of whole stacks.
+//! [`stability`] runs every method on stacks where methods fail, and finds the domain of each.
 //!
-//! Simplifications: of thickness maps only what follows from the stack is checked (range, normalisation), because their
-//! truth is a noise function or an image that only the baker has; the albedo's estimate shares its walks and quadrature with
+//! Simplifications: of thickness maps only the properties that follow from the stack are checked (range, normalisation), because
+//! their truth is a noise function or an image that only the baker has; the albedo's estimate shares its walks and quadrature with
 //! the baker (both are of `luthier-optics`), not their seeds, number or colour treatment.
 
 mod audit;

@@ -10,7 +10,7 @@ use crate::seen::SeenLight;
 /// A limit and what it was compared with.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Limit {
-    /// Who states it: a material file, or the command line.
+    /// Origin of the limit: a material file, or the command line.
     pub stated_by: String,
     /// Quantity that is limited, in words.
     pub quantity: String,

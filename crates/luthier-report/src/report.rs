@@ -44,7 +44,7 @@ pub struct Report {
     pub exceptions: Vec<Exception>,
     /// Limits other than [`Report::budget`], and what they were compared with.
     pub limits: Vec<Limit>,
-    /// How the tables came by their sizes, mappings and formats: what the baker searched, by its own figures.
+    /// Searches of the baker for sizes, mappings and formats of tables, with its own figures.
     pub searches: Vec<Search>,
     /// Costs of shaders, if they were given.
     pub costs: Option<Costs>,
@@ -103,7 +103,7 @@ pub struct TileReport {
 }
 
 impl TileReport {
-    /// How far the tile is off as sampled, and what the bake aimed at, where it does not hold that: by what was measured here or what the
+    /// Error of the tile as sampled and the aim of the bake, if the error exceeds the aim: the error that was measured here or that the
     /// baker states, whichever is more.
     pub fn miss(&self) -> Option<(f64, f64)> {
         let stated = (self.baker.worst.expected - self.baker.worst.sampled).abs();
@@ -157,7 +157,7 @@ pub struct MaterialReport {
     pub class: String,
     /// The reflectance model that its shaders evaluate.
     pub model: ShadingModel,
-    /// How its tables came by their colour, and so what the baked shader is compared with.
+    /// Colour mode of its tables, which decides the reference of the baked shader.
     pub color: ColorMode,
     /// The layers from the top down, in words.
     pub layers: Vec<String>,
@@ -171,7 +171,7 @@ pub struct MaterialReport {
     pub picture: Option<PictureErrors>,
     /// The cost of its shader, by the kinds of its layers; `None` where the caller does not know it.
     pub shape_cost: Option<ShapeCost>,
-    /// Why its model was chosen: what a bake of a scene says in its manifest.
+    /// Reason for the choice of its model: the words of the manifest of a scene.
     pub choice: Option<serde_json::Value>,
 }
 
@@ -245,7 +245,7 @@ impl MaterialReport {
     }
 }
 
-/// Where the largest error is.
+/// Place of the largest error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WorstCase<'a> {
     /// Name of the material.
@@ -270,7 +270,7 @@ impl Report {
         if reads { f64::INFINITY } else { self.worst().map_or(0.0, |w| w.error) }
     }
 
-    /// Where the largest error of the shaders is (without a device, of the tables); nothing without materials.
+    /// Place of the largest error of the shaders (without a device, of the tables); nothing without materials.
     pub fn worst(&self) -> Option<WorstCase<'_>> {
         let mut worst: Option<WorstCase<'_>> = None;
         for material in &self.materials {

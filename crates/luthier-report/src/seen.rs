@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Pair;
 
-/// How a surface is lit and shown. Its colour is `pi f cos_theta_i` times the light, each channel clipped to what a Rec.709 display
+/// Light for the comparison of colours. A colour is `pi f cos_theta_i` times the light, each channel clipped to what a Rec.709 display
 /// shows, seen by an eye that is adapted to D65.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

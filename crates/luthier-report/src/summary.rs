@@ -102,7 +102,7 @@ fn levels(out: &mut String, report: &Report) {
         let place = format!("{}, {}", line(material), model.model.name());
         let _ = writeln!(
             out,
-            "| 3 model against reference | share of light elsewhere | {} | {place} |",
+            "| 3 model against reference | share of light in other directions | {} | {place} |",
             error(model.lobe_err)
         );
     }

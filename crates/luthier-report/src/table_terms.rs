@@ -201,8 +201,8 @@ impl Terms for TableTerms<'_> {
         }
     }
 
-    /// The swing from the row over s, the sum of the cosines times d / (2 d_max) (Granier and Heidrich 2003, eq. 19).
-    fn swing(&self, layer: usize, channel: usize, cosines: f64) -> Option<f64> {
+    /// The interference term from the row over s, the sum of the cosines times d / (2 d_max) (Granier and Heidrich 2003, eq. 19).
+    fn interference(&self, layer: usize, channel: usize, cosines: f64) -> Option<f64> {
         let (table, _, tile) = self.read_at(TableKind::Phase, layer)?;
         let record = &self.records[layer];
         let s = 0.5 * cosines * record.film_thickness_nm / record.film_thickness_max_nm;

@@ -58,12 +58,12 @@ impl Made {
     }
 }
 
-/// Why no bake of a scene came out.
+/// Failure to bake a scene.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SceneFailure {
     /// No models and tables hold the budget of the scene.
-    #[error("the scene cannot be held. {reasons}{hint}")]
+    #[error("no choice of models and tables holds the budget of the scene. {reasons}{hint}")]
     Unheld {
         /// A line for each form that was tried.
         reasons: String,
@@ -81,7 +81,7 @@ pub enum SceneFailure {
     Report(#[from] ReportError),
 }
 
-/// Why a form will not do.
+/// Reason to reject a form.
 enum Refusal {
     /// No model holds the budget.
     Model(String),
@@ -118,7 +118,8 @@ impl<'a> Director<'a> {
                 }
             }
         }
-        let hint = if allow_miss { "" } else { "\nloosen the budget, or take what comes nearest with --allow-miss" };
+        let hint =
+            if allow_miss { "" } else { "\nloosen the budget, or take the nearest candidates with --allow-miss" };
         Err(SceneFailure::Unheld { reasons: reasons.join("\n"), hint })
     }
 
@@ -245,7 +246,7 @@ fn tables(
             return Ok(Ok(package));
         }
         nearest = format!(
-            "tables for {} ({}) err {excess:.2} times what is theirs of the budget",
+            "the tables for {} ({}) have {excess:.2} times the error that the budget leaves to tables",
             choices[number].name,
             label(choices[number].candidate())
         );

@@ -36,7 +36,7 @@ impl Value {
     }
 }
 
-/// How a value compares with a budget.
+/// Relation of a value to a budget.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Standing {
     Inside,

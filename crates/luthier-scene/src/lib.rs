@@ -1,4 +1,4 @@
-//! The cheapest model of each material of a scene whose error against the reference stays inside a budget.
+//! Choice of the cheapest model, for each material of a scene, whose error against the reference stays inside a budget.
 //!
 #![doc = include_str!("../README.md")]
 //! # In detail
@@ -6,8 +6,8 @@
 //! [`Judge`] holds one material: its candidates (model, colour, what is left out of the stack) in the order of their cost, the
 //! directions of the scene, and the reference there. [`Judge::choose`] takes the first candidate that holds.
 //!
-//! Errors here are those of models against `layered-mc`, the Monte Carlo of the whole stack. Tables and single precision are other
-//! matters, with budgets of their own. Costs are looked up in data that `luthier-lab shapes` made: no driver is needed.
+//! The errors are those of models against `layered-mc`, the Monte Carlo simulation of the whole stack. Errors of tables and of single precision are
+//! not part of them, and have budgets of their own. Costs are looked up in data that `luthier-lab shapes` made: no driver is needed.
 //!
 //! Simplifications: lights are one direction, a range of directions, or equal from everywhere; effects and maps are not judged;
 //! films that vary are judged at their nominal thickness; a pixel's footprint counts as slopes of every interface.

@@ -7,7 +7,7 @@ use luthier_layers::elek::ALPHA_MIN;
 use luthier_material::{Light, View};
 use luthier_optics::stack::{Base, Stack};
 
-/// Where a model is compared with the reference.
+/// Directions at which a model is compared with the reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Probe {
     /// `f cos theta_i` for a pair of directions.

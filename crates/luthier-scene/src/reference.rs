@@ -24,7 +24,7 @@ const MOST: u64 = 1 << 20;
 /// Largest change of a reflectance by wavelengths that are left out.
 const SPECTRUM_TOLERANCE: f64 = 1e-3;
 
-/// Where spectra are compared to decide which wavelengths are left out.
+/// Cosines at which spectra are compared to decide which wavelengths are left out.
 const SPECTRUM_COS_THETA: [f64; 3] = [1.0, 0.6, 0.2];
 
 /// `layered-mc` in colour at some probes. The same calls give the same numbers.

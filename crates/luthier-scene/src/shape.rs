@@ -60,7 +60,7 @@ fn code(layer: &Layer, has_slab: bool) -> String {
     code
 }
 
-/// How unlike two shapes are: letters that only one of them has, layer by layer from the bottom; a layer more or less weighs ten.
+/// Distance of two shapes: letters that only one of them has, layer by layer from the bottom; a layer more or less weighs ten.
 pub(crate) fn distance(a: &str, b: &str) -> usize {
     let layers = |shape: &str| shape.split('/').rev().map(str::to_owned).collect::<Vec<_>>();
     let (a, b) = (layers(a), layers(b));

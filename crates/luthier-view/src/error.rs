@@ -3,7 +3,7 @@
 use luthier_gpu::GpuError;
 use thiserror::Error;
 
-/// Why there is no window.
+/// Failure to open a window.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ViewError {

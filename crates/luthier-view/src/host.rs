@@ -6,7 +6,7 @@ use luthier_material::Material;
 
 /// Services that the window asks of the program around it. Called from several threads.
 pub trait Host: Send + Sync {
-    /// All material files, when any of them, or any file that they name, changed since the last call; at first always.
+    /// Returns all material files if one of them, or a file that they name, changed since the last call. The first call always does.
     fn changed(&self) -> Option<Vec<MaterialFile>>;
 
     /// The package that the renderer needs for one material in one form.

@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use luthier_gpu::{Backdrop, Environment, GpuError, Light, RenderSettings, Sky, ToneMapping};
 
-/// How a material is lit and shown; edited in the window.
+/// Lighting and display of a material; edited in the window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Look {
     /// Exposure in stops.
     pub exposure_stops: f32,
     /// Around +y from +z towards +x, where the light comes from, in degrees.
     pub azimuth_deg: f32,
-    /// Above the horizon, in degrees.
+    /// Elevation above the horizon, in degrees.
     pub elevation_deg: f32,
     /// Factor on the irradiance of the light; 0 is off.
     pub strength: f32,

@@ -9,7 +9,7 @@ use luthier_gpu::{Camera, Shape};
 pub struct Orbit {
     /// Around +y from +z towards +x, in radians, -pi to pi.
     pub azimuth: f64,
-    /// Above the horizon, in radians, short of a right angle: above the pole there is no up.
+    /// Elevation above the horizon, in radians, less than a right angle: at the pole the upward direction is undefined.
     pub elevation: f64,
     /// Magnification against [`Shape::camera`], [`Orbit::ZOOM_MIN`] to [`Orbit::ZOOM_MAX`].
     pub zoom: f64,

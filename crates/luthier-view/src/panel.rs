@@ -11,7 +11,7 @@ use crate::app::{App, SHAPES};
 use crate::keys::{KEYS, MOUSE};
 use crate::parameter::{Parameter, groups};
 
-/// Below this, a logarithmic slider is linear.
+/// Value below which a logarithmic slider is linear.
 const SMALLEST: f64 = 1e-3;
 
 const TONES: [(ToneMapping, &str); 4] = [

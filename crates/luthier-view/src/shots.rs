@@ -29,7 +29,7 @@ impl Schedule {
         self.fresh = true;
     }
 
-    /// One frame was shown. The number of the screenshot to take now, from 1.
+    /// Counts a frame that was shown. Returns the number of the screenshot to take now, from 1.
     pub(crate) fn frame(&mut self, settled: bool) -> Option<u32> {
         if !settled || !self.fresh || self.taken == self.shots.count {
             self.frames_left = self.shots.frames.max(1);

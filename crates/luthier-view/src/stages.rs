@@ -1,4 +1,4 @@
-//! How a picture gets better: the renderings of one view, coarse first.
+//! Stages of a picture: the renderings of one view, coarse first.
 
 /// One rendering of a view.
 #[derive(Debug, Clone, Copy, PartialEq)]

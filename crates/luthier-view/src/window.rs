@@ -12,7 +12,7 @@ use crate::host::Host;
 use crate::look::{Look, Surroundings};
 use crate::shots::Shots;
 
-/// How the window starts.
+/// Initial state of the window.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Light, environment, samples, exposure. Its size and camera do not count; environment samples of 0 become some in the

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 const AUDIT_EXAMPLES: &str = "\
-Judges a table that anybody made: DDS, KTX2, EXR, PNG, Radiance HDR, or raw values with --size. The verdict says whether it is as \
+Judges a table of another program: DDS, KTX2, EXR, PNG, Radiance HDR, or raw values with --size. The verdict says whether it is as \
 stated, or which mistakes explain it better: flips, swapped axes or channels, half a texel, alpha for roughness, another masking \
 term, an encoding. docs/audit.md has the models, axes and presets.
 
@@ -27,13 +27,13 @@ pub(crate) struct AuditOptions {
     /// The table
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
-    /// Function that it is said to hold: ggx- or beckmann- with a masking term, ndf or all-bounces; or fresnel
+    /// Function that the table should hold: ggx- or beckmann- with a masking term, ndf or all-bounces; or fresnel
     #[arg(long, value_name = "NAME")]
     pub(crate) model: Option<String>,
-    /// Its axes, across first: [-]QUANTITY[=MIN..MAX][^EXPONENT|@log]; - is falling
+    /// Axes of the table, the one across first: [-]QUANTITY[=MIN..MAX][^EXPONENT|@log]; - is a falling axis
     #[arg(long, value_name = "X[,Y]", allow_hyphen_values = true)]
     pub(crate) axes: Option<String>,
-    /// Where nodes lie: texel centres of 0..1, or 0 and 1 at the first and last texel
+    /// Position of the nodes: at texel centres of 0..1, or from 0 at the first texel to 1 at the last
     #[arg(long, value_enum)]
     pub(crate) nodes: Option<NodesName>,
     /// Content of each channel: scale, bias, albedo; red, green, blue; scaled-d, d
@@ -57,16 +57,16 @@ pub(crate) struct AuditOptions {
     /// Channels of raw values
     #[arg(long, value_name = "N", requires = "size", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=4))]
     pub(crate) channels: u32,
-    /// Raw values, little-endian
+    /// Type of raw values, little-endian
     #[arg(long, value_enum, requires = "size", default_value_t = SamplesName::Float)]
     pub(crate) samples: SamplesName,
-    /// Lowest cosine whose errors count
+    /// Ignore errors at lower cosines
     #[arg(long, value_name = "X", default_value_t = 0.01, value_parser = unit)]
     pub(crate) min_cos: f64,
-    /// Lowest alpha whose errors count
+    /// Ignore errors at lower alphas
     #[arg(long, value_name = "X", default_value_t = 0.0025, value_parser = unit)]
     pub(crate) min_alpha: f64,
-    /// Largest absolute error as sampled
+    /// Exit with 1 when the largest absolute error of filtered reads exceeds this
     #[arg(long, value_name = "X", default_value_t = MAX_ERROR, value_parser = super::positive, allow_hyphen_values = true)]
     pub(crate) max_error: f64,
     /// Print as JSON

@@ -53,7 +53,7 @@ pub(crate) enum Verb {
     Check(CheckOptions),
     /// Judge a bake: tables and shaders against the full evaluation in f64
     Report(ReportOptions),
-    /// Judge a table that anybody made, and find the mistake in it
+    /// Judge a table of another program, and find the mistake in it
     Audit(Box<AuditOptions>),
     /// Render a material off screen
     #[cfg(feature = "gpu")]
@@ -64,10 +64,10 @@ pub(crate) enum Verb {
     /// Render a material with two shaders and compare the pictures
     #[cfg(feature = "gpu")]
     Compare(CompareOptions),
-    /// Costs of every shader of every material on real GPUs, which need not be here: a page in Markdown
+    /// Count the cycles of every shader of every material on real GPUs, without such a GPU: a page in Markdown
     #[cfg(feature = "cost")]
     Cost(CostOptions),
-    /// Time every shader of every material on the graphics adapter at hand
+    /// Time every shader of every material on the graphics adapter of this machine
     #[cfg(feature = "gpu")]
     Bench(BenchOptions),
     /// Open a window: turn, light and edit materials, and see them change with their files
@@ -120,10 +120,10 @@ pub(crate) struct BakeOptions {
     pub(crate) limits: Limits,
     #[command(flatten)]
     pub(crate) emission: Emission,
-    /// Of a scene: where no model holds the budget, take the most accurate
+    /// Of a scene: if no model holds the budget, take the most accurate one
     #[arg(long)]
     pub(crate) allow_miss: bool,
-    /// Of scenes: print what would be chosen under each of these limits on the relative error, as a page in Markdown; nothing is written
+    /// Of scenes: print the choices under each of these limits on the relative error, as a page in Markdown; no bake is written
     #[arg(long, value_name = "X,...", value_delimiter = ',', value_parser = positive, allow_hyphen_values = true)]
     pub(crate) budgets: Vec<f64>,
     /// Folder to write to
@@ -154,13 +154,13 @@ pub(crate) struct Emission {
     pub(crate) form: Vec<Form>,
 }
 
-/// Limits on tables, each in place of those in the files' `[budget]`: the cheapest tables that hold them are taken (docs/pages/budgets.md).
+/// Limits on tables. Each replaces that of the files' `[budget]`; the bake takes the cheapest tables that hold them (docs/pages/budgets.md).
 #[derive(Debug, Args)]
 pub(crate) struct Limits {
     /// Largest absolute error of a sampled table; of D, relative to its peak
     #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) max_abs: Option<f64>,
-    /// Largest error relative to the value, or to 0.01 where it is less
+    /// Largest error relative to the value, or to 0.01 where that is larger
     #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) max_rel: Option<f64>,
     /// Largest CIEDE2000 difference of tabulated reflectances under D65
@@ -211,7 +211,7 @@ pub(crate) struct ReportOptions {
     /// Exit with 1 when the largest relative error of a shader exceeds this, or the error of a table that misses what its bake aimed at
     #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) max_error: Option<f64>,
-    /// Exit with 1 when the absolute error of a table exceeds this, as measured here
+    /// Exit with 1 when the absolute error of a table, as the report measures it, exceeds this
     #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) max_abs: Option<f64>,
     /// Exit with 1 when a colour difference (CIEDE2000, daylight) of a shader exceeds this
@@ -224,16 +224,16 @@ pub(crate) struct ReportOptions {
     /// Exit with 1 when the texels of all tables take more bytes than this
     #[arg(long, value_name = "N")]
     pub(crate) max_bytes: Option<u64>,
-    /// Exit with 1 when the lobe error of a model that ships, against the reference, exceeds this
+    /// Exit with 1 when the lobe error of a model of the bake, against the reference, exceeds this
     #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true, requires = "reference")]
     pub(crate) max_lobe: Option<f64>,
-    /// Compare the models with simulated paths, this many a view
+    /// Compare the models with a simulation of this many paths per view
     #[arg(long, value_name = "PATHS", num_args = 0..=1, default_missing_value = "1000", require_equals = true)]
     pub(crate) reference: Option<std::num::NonZeroU32>,
-    /// Costs of shaders: what `luthier cost --json` printed for these materials
+    /// Costs of shaders: the output of `luthier cost --json` for these materials
     #[arg(long, value_name = "FILE")]
     pub(crate) cost: Option<PathBuf>,
-    /// The stability suite: what `luthier-lab stability --json` printed
+    /// Results of the stability suite: the output of `luthier-lab stability --json`
     #[arg(long, value_name = "FILE")]
     pub(crate) stability: Option<PathBuf>,
     /// Side of the pictures in pixels; 0 makes none
@@ -313,7 +313,7 @@ pub(crate) struct CostOptions {
 #[cfg(feature = "gpu")]
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Shaders take turns; what is printed are nanoseconds per evaluation. A software adapter is timed like any other, and named as one.\n\nExamples:\n  luthier bench materials/car-paint.toml\n  luthier bench mine.toml --model elek --repeats 100 --json -o bench.json"
+    after_help = "Shaders are timed in turns; the output has nanoseconds per evaluation. A software adapter is timed too, and the output says so.\n\nExamples:\n  luthier bench materials/car-paint.toml\n  luthier bench mine.toml --model elek --repeats 100 --json -o bench.json"
 )]
 pub(crate) struct BenchOptions {
     #[command(flatten)]
@@ -321,13 +321,13 @@ pub(crate) struct BenchOptions {
     /// Model to time besides Phong's; may be given again. By default all
     #[arg(long, value_name = "NAME", value_parser = named::<ShadingModel>(ShadingModel::NAMES))]
     pub(crate) model: Vec<ShadingModel>,
-    /// Evaluations of one run, at least
+    /// Least number of evaluations in one run
     #[arg(long, value_name = "N", default_value_t = 1 << 20, value_parser = clap::value_parser!(u32).range(1..=60_000_000))]
     pub(crate) evaluations: u32,
-    /// Runs of each shader that do not count
+    /// Runs of each shader before the timed ones
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub(crate) warm_up: u32,
-    /// Runs of each shader that count
+    /// Timed runs of each shader
     #[arg(long, value_name = "N", default_value_t = BENCH_REPEATS)]
     pub(crate) repeats: NonZeroU32,
     /// Use the graphics adapter whose name contains this
@@ -359,10 +359,10 @@ pub(crate) struct ShaderOptions {
     pub(crate) sources: Sources,
     #[command(flatten)]
     pub(crate) shading: Shading,
-    /// Language
+    /// Language of the shader
     #[arg(long, value_parser = named::<Target>(Target::NAMES), default_value_t = Target::Wgsl)]
     pub(crate) target: Target,
-    /// Reads the tables, or evaluates everything in ALU
+    /// Form of the shader: `baked` reads tables, `full` computes all terms
     #[arg(long, value_parser = named::<Form>(Form::NAMES), default_value_t = Form::Baked)]
     pub(crate) form: Form,
     /// D in closed form instead of from its table
@@ -436,7 +436,7 @@ pub(crate) struct EvalOptions {
     /// Direction to the eye
     #[arg(long, value_name = "THETA,PHI", allow_hyphen_values = true, requires = "wi")]
     pub(crate) wo: Option<Angles>,
-    /// CSV file of lines theta_i,phi_i,theta_o,phi_o in degrees; `-` is standard input. Lines that begin with # do not count
+    /// CSV file of lines theta_i,phi_i,theta_o,phi_o in degrees; `-` is standard input. Lines that begin with # are comments
     #[arg(long, value_name = "CSV")]
     pub(crate) directions: Option<PathBuf>,
     /// Directional albedo against angle instead of values: at 550 nm unless another wavelength is given
@@ -445,7 +445,7 @@ pub(crate) struct EvalOptions {
     /// White furnace against angle: radiance of the lossless surface under light of radiance 1, and its deviation from 1
     #[arg(long)]
     pub(crate) furnace: bool,
-    /// Radiance that the first interface mirrors of an environment of radiance 1, against angle (elek)
+    /// Share of a uniform environment that the first interface mirrors, against angle (elek)
     #[arg(long)]
     pub(crate) environment: bool,
     /// Reflectance of light polarised normal to the plane of incidence (s) and in it (p), against angle: one smooth interface, bare or
@@ -455,10 +455,10 @@ pub(crate) struct EvalOptions {
     /// Angles from the normal instead of 0 to 85 degrees in steps of 5
     #[arg(long, value_name = "DEG,...", value_delimiter = ',', value_parser = angle, requires = "against_angle")]
     pub(crate) angles: Vec<f64>,
-    /// Azimuth of the eye, in degrees, of what is tabulated against angle
+    /// Azimuth of the eye, in degrees, in output against angle
     #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_hyphen_values = true, requires = "against_angle")]
     pub(crate) azimuth: f64,
-    /// Spectral colour: the default for values, for tables against angle instead of one wavelength
+    /// Spectral colour: the default for values; for output against angle, instead of one wavelength
     #[arg(long, conflicts_with_all = ["furnace", "environment"])]
     pub(crate) rgb: bool,
     /// One wavelength, 360 to 830 nm. Absorption and diffuse albedo are those of the channel nearest to it (645, 525, 445 nm)
@@ -482,7 +482,7 @@ pub(crate) struct IorOptions {
     /// Id of a data set; without it, all are listed
     #[arg(value_name = "NAME")]
     pub(crate) name: Option<String>,
-    /// The printed tables of reflectance at normal incidence beside what the data sets give
+    /// Compare published tables of reflectance at normal incidence with the data sets
     #[arg(long, conflicts_with = "name")]
     pub(crate) f0: bool,
     /// Print as JSON

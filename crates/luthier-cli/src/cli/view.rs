@@ -29,7 +29,7 @@ pub(crate) struct ViewOptions {
     pub(crate) sources: Sources,
     #[command(flatten)]
     pub(crate) shading: Shading,
-    /// Reads the tables, or evaluates everything in ALU
+    /// Form of the shader: `baked` reads tables, `full` computes all terms
     #[arg(long, value_parser = named::<Form>(Form::NAMES), default_value_t = Form::Baked)]
     pub(crate) form: Form,
     /// Shape to show: sphere, torus or plane

@@ -10,10 +10,10 @@ use luthier_manifest::{Candidate, CandidateForm};
 pub(super) fn blocks(out: &mut String, goals: &Goals) {
     out.push_str(
         "\n## Blocks: BC6H\n\n\
-         16 bytes for 4 x 4 texels of three half floats without sign (`bc6h-rgb-ufloat`), fitted here to the least largest error by the modes of one \
-         line through the colours of a block. Tiles have sides of multiples of 4, so that no two share a block. They have no A: what albedo tiles \
-         hold there, no shader of luthier reads. The fewest bytes of one tile whose error, as sampled, is \
-         within `max_abs` for all tiles of `materials/`:\n\n\
+         BC6H (`bc6h-rgb-ufloat`) stores 4 x 4 texels of three half floats without sign in 16 bytes. The baker uses its modes with one line through the \
+         colours of a block, and fits the line to the smallest largest error. The sides of tiles are multiples of 4, so that no two tiles share a block. \
+         The format has no channel A; albedo tiles of other formats use it, but no shader of luthier reads it. The table has the smallest tile whose \
+         error, as sampled, is within `max_abs` for all tiles of `materials/`:\n\n\
          | tiles | max_abs | core WebGPU | bytes | bc6h-rgb-ufloat | bytes | share |\n|---|---|---|---|---|---|---|\n",
     );
     for step in &goals.blocks {
@@ -34,13 +34,13 @@ pub(super) fn blocks(out: &mut String, goals: &Goals) {
         );
     }
     out.push_str(
-        "\nAlbedos of bare interfaces gain, where the budget is loose. Films do not: their colours leave the gamut, what is negative becomes 0, and \
-         fringes turn within a block.\n",
+        "\nBlocks make albedo tiles of bare interfaces smaller where the budget is loose. They do not help films: colours of films leave the gamut, \
+         blocks turn their negative values into 0, and the colours of fringes within a block do not lie on a line.\n",
     );
     out.push_str(
-        "\nRows are one texel high: four of them share a block, or one is repeated four times. The fewest bytes of a row whose error is within \
-         `max_abs` for all rows of `materials/`, in the order of their atlas; `over` is what Schlick's form misses in blocks, its coefficients \
-         counted as 24 bytes elsewhere. `-` is more than 128 texels:\n\n\
+        "\nRows are one texel high. So four rows share a block, in the order of their atlas, or one row is repeated four times. The table has the fewest \
+         bytes of a row whose error is within `max_abs` for all rows of `materials/`. The columns with `over` are for blocks that store the difference \
+         from Schlick's form; 24 bytes for its coefficients are added. `-` means that more than 128 texels are needed:\n\n\
          | max_abs | core WebGPU | four rows | repeated | four rows, over | repeated, over |\n|---|---|---|---|---|---|\n",
     );
     for (row, core) in &goals.row_blocks {
@@ -66,13 +66,13 @@ pub(super) fn shared(out: &mut String, goals: &Goals) {
     let _ = write!(
         out,
         "\n## One table over angle, n and k\n\n\
-         The course (section 3.4.1) considers a texture of three axes for all interfaces, read once for each channel, and prefers rows. Here for the \
-         {} interfaces of `materials/` without films, over the least ranges that hold them; the cosine is mapped by u, u^2 or u^3, whichever errs \
-         least; trilinear with weights of 8 bits. Axes `n, k` are uniform, as in the course; `amplitude` stands for magnitude and phase of \
-         (n + ik - 1)/(n + ik + 1), also uniform. The first error is that against the function at three \
-         wavelengths, which is all that such a table can hold; the second that against the colours that the rows hold, integrated over the \
-         spectrum. The last columns: the fewest bytes of a row for values at three wavelengths that neither errs nor costs more, and \
-         the number of interfaces from which on the table is smaller than such rows.\n\n\
+         The course (section 3.4.1) considers a texture of three axes for all interfaces, which a shader reads once for each channel; it then prefers rows. \
+         The table measures such textures for the {} interfaces of `materials/` without films. The axes cover the smallest ranges that contain them. \
+         The cosine is mapped by u, u^2 or u^3, whichever has the smallest error. Filtering is trilinear, with weights of 8 bits. The axes `n, k` are \
+         uniform, as in the course. `amplitude` stands for the magnitude and the phase of (n + ik - 1)/(n + ik + 1), also uniform. The column \
+         `three wavelengths` is the error against the function at three wavelengths; such a table can hold nothing else. The column `colours` is the error \
+         against the colours that rows hold, integrated over the spectrum. `row` is the fewest bytes of a row for values at three wavelengths that has neither \
+         a larger error nor a higher cost. `interfaces` is the number of interfaces from which the table is smaller than such rows.\n\n\
          | axes | size | format | bytes | cost | three wavelengths | colours | row | interfaces |\n|---|---|---|---|---|---|---|---|---|\n",
         goals.bare
     );
@@ -101,8 +101,8 @@ pub(super) fn shared(out: &mut String, goals: &Goals) {
     let colors = goals.shared.iter().map(|goal| goal.table.colors).fold(f64::INFINITY, f64::min);
     let _ = write!(
         out,
-        "\nIt is on the front from {} interfaces without films on, if an error of {:.1e} will do, and only for values at three wavelengths. The {} \
-         here take {} bytes as rows of that error. From spectral colours it is {colors:.1e} off at best.",
+        "\nThe table of three axes pays from {} interfaces without films, if an error of {:.1e} suffices, and only for values at three wavelengths. The {} \
+         interfaces of `materials/` take {} bytes as rows of that error. Against spectral colours its smallest error is {colors:.1e}.",
         even(&first).unwrap_or_default(),
         first.table.three_wavelengths,
         goals.bare,
@@ -112,7 +112,7 @@ pub(super) fn shared(out: &mut String, goals: &Goals) {
         let (count, bytes, cost, error) = (goals.rows.len(), rows.bytes, rows.cost, rows.error.max_abs);
         let _ = write!(
             out,
-            " All rows that `max_abs = 5e-4` chooses above, {count} with films, take {bytes} bytes, cost {cost:.0} and are {error:.1e} off."
+            " The rows that the search chooses under `max_abs = 5e-4` (see above), {count} with those of films, take {bytes} bytes, have a cost of {cost:.0} and an error of {error:.1e}."
         );
     }
     out.push('\n');

@@ -16,21 +16,26 @@ pub(crate) const FIGURES: [Figure; 2] = [
         title: "the eight classes of layered surfaces",
         source: "A. Weidlich and A. Wilkie, Exploring the Potential of Layered BRDF Models, SIGGRAPH Asia 2009 Courses, figures 4.4 \
                  and 5.7",
-        caption: "One material of the course for each class, by Weidlich and Wilkie's model: a and b show the white highlight of a \
-                  smooth coat on a diffuse base, clear and tinted; c has none left; d mirrors the room in colour; e has a sharp white \
-                  light over a soft coloured one; f a rough coat over a metal that still mirrors sharply, because this model does not \
-                  blur what crosses the coat (elek-2 shows what becomes of it); g is matt and bright; h has two clear layers on a blue \
-                  base, too rough to see a light in. Numbers: how far the picture of the tables is from that of the full evaluation.",
+        caption: "The pictures show one material of the course for each class, by Weidlich and Wilkie's model. In a \
+                  and b, a smooth coat, clear and tinted, has a white highlight on a diffuse base; in c no \
+                  highlight is left. The metal of d mirrors the room in colour. In e, a sharp white \
+                  reflection of the light lies over a soft coloured one. In f, a rough coat lies over a metal that \
+                  still mirrors sharply, because this model does not blur the light that crosses the coat (elek-2 \
+                  compares it with the simulation). The material of g is matt and bright. In h, two clear layers lie \
+                  on a blue base, too rough to show the light. The numbers are the differences between the picture \
+                  of the tables and that of the full evaluation.",
         make: classes,
     },
     Figure {
         name: "course-varnish",
         title: "a varnish that gets thicker",
         source: "Weidlich and Wilkie 2009, figure 3.4",
-        caption: "White balls under a yellow varnish at the twelve thicknesses of the course: first saturation grows at nearly the same \
-                  lightness, then the hue turns from yellow over orange to red while the ball darkens, most at its rim, where paths in \
-                  the varnish are longest. White highlights stay. The chart is the colour of the middle of each ball. The absorption is \
-                  ours; the hue without varnish is that of the light and says nothing at so little chroma.",
+        caption: "The pictures show white balls under a yellow varnish at the twelve thicknesses of the course. \
+                  First the saturation grows at nearly constant lightness. Then the hue turns from yellow over \
+                  orange to red, and the ball darkens, most at its rim, where paths in the varnish are longest. The \
+                  highlights stay white. The chart shows the colour of the middle of each ball. The absorption is \
+                  luthier's. The hue of the ball without varnish is that of the light, and has little meaning at so \
+                  small a chroma.",
         make: varnish,
     },
 ];

@@ -18,35 +18,44 @@ pub(crate) const FIGURES: [Figure; 3] = [
         name: "elek-2",
         title: "the roughness clamp",
         source: "O. Elek, Layered Materials in Real-Time Rendering, CESCG 2010, figure 2",
-        caption: "Elek clamps the lower layer's m2 to at least the upper layer's m1, because a model that cannot sample does not blur \
-                  light on its way through the coat. First sheet (m1 / m2): the highlight of the metal widens with m1 while the coat's own fades \
-                  (m1 0.01 to 0.4); then m1 0.4 over m2 0.05 with the clamp, which looks like m2 0.4, and without, where the metal \
-                  mirrors as sharply as if the coat were smooth (Weidlich and Wilkie's model is the same without the clamp). Second \
-                  sheet, not in the paper: that last material in f64 under two lights. Simulation lies between: softer than without the \
-                  clamp, far narrower than with it. The clamp avoids the needle of light, so its RMSE is the smallest, but it greys the \
-                  whole ball, so its FLIP is the largest. `corrected` is Weidlich and Wilkie's model with 1/n^2 and bounces inside the \
-                  coat: its energy is nearest, its shape as wrong as without the clamp. Materials are chromium of the paper's appendix A \
-                  under a red coat of ours.",
+        caption: "A model without sampling does not blur the light that passes through a coat. Elek therefore clamps \
+                  the roughness m2 of the lower layer to at least m1, that of the upper layer. The first sheet (m1 / \
+                  m2) shows the coat's m1 growing from 0.01 to 0.4: the highlight of the metal widens, and that of \
+                  the coat fades. Then it shows m1 0.4 over m2 0.05, with and without the clamp. With the clamp, the \
+                  material looks like m2 0.4. Without it, the metal mirrors as sharply as under a smooth coat; \
+                  Weidlich and Wilkie's model gives that picture too. The second sheet is not in the paper. It shows \
+                  m1 0.4 over m2 0.05 in f64 under two lights. The simulation lies between the two: it is softer \
+                  than the model without the clamp and far narrower than the model with it. The clamp avoids the \
+                  sharp highlight, so that its RMSE is the smallest. It also greys the whole ball, so that its FLIP \
+                  is the largest. `corrected` is Weidlich and Wilkie's model with the factor 1/n^2 and with bounces \
+                  inside the coat. Its energy is nearest to the simulation, but its highlight is as sharp as without \
+                  the clamp. The metal is chromium of the paper's appendix A; the red coat is luthier's.",
         make: clamp,
     },
     Figure {
         name: "elek-4",
         title: "the mapping of the slope distribution",
         source: "Elek 2010, figure 4",
-        caption: "A highlight of m = 0.01 seen through a magnifying glass, light from the eye. D from a table that is linear in the \
-                  angle is a cone of straight pieces, seen as faint rings; u^8 as in the paper, and the default table (u^8, logarithmic \
-                  m, two half floats), cannot be told from the full evaluation (`even m` is equal steps of m). With MIP maps on, rows of other m are mixed in: a hot \
-                  core in a wide veil. The chart measures what the paper says in words, that a linear angle begins to fail below m = \
-                  0.02. It also shows what the paper does not say: m = 0.01 happens to lie near a row of its table, and below that its linear m axis gets nearly as bad as the linear angle, where the logarithmic one stays flat.",
+        caption: "The pictures show a highlight of m = 0.01 through a magnifying glass, with light from the eye. A \
+                  table of D that is linear in the angle turns the highlight into a cone of straight pieces, visible \
+                  as faint rings. The paper's mapping u^8, and the default table (u^8, logarithmic m, two half \
+                  floats), look like the full evaluation; `even m` means equal steps of m. With MIP maps, rows of \
+                  other m are mixed in, and the highlight has a hot core in a wide veil. The chart measures the \
+                  paper's statement that a linear angle begins to fail below m = 0.02. It also shows an effect that \
+                  the paper does not mention: m = 0.01 happens to lie near a row of its table. For smaller m, the \
+                  linear axis of m gets nearly as bad as the linear angle, while the logarithmic axis stays \
+                  accurate.",
         make: mapping,
     },
     Figure {
         name: "elek-5",
         title: "full evaluation against tables",
         source: "Elek 2010, figure 5",
-        caption: "Full evaluation, the tables of the paper's section 3.1 (Fresnel rows of 128 texels of 8 bits, D in 512 x 512 half \
-                  floats) and the default tables. The three look the same. The differences lie around the highlights, where all terms are large. The paper found up to 6% with its material; here both pictures of \
-                  tables stay far below that. Mind the factors under the differences.",
+        caption: "The pictures compare three evaluations: the full one, the tables of the paper's section 3.1 \
+                  (Fresnel rows of 128 texels of 8 bits, D in 512 x 512 half floats), and the default tables of \
+                  luthier. All three look alike. The differences lie around the highlights, where all terms are \
+                  large; they are multiplied by the factors printed below them. The paper found errors of up to 6% \
+                  with its material. Both pictures of tables stay far below that.",
         make: tables,
     },
 ];

@@ -16,21 +16,24 @@ pub(crate) const FIGURES: [Figure; 2] = [
         name: "elek-7",
         title: "metal flakes with distance",
         source: "Elek 2010, figure 7",
-        caption: "Chromium flakes under a red coat from four distances, one ray to a pixel and no filtering; what is far away covers \
-                  fewer pixels, which are enlarged. Top: the normal is weighted by the distance, as in the paper, from distance 4 on, \
-                  and the paint becomes smooth. Bottom: without that, the ball stays about as noisy at any distance, down to single dark and \
-                  bright pixels. The number is what flakes do to the luminance of a pixel, over the mean, in the middle of the picture; \
-                  at distance 32 that is a square of 8 pixels by default.",
+        caption: "The pictures show chromium flakes under a red coat from four distances, with one ray to a pixel \
+                  and no filtering. The ball covers fewer pixels at larger distances, and is enlarged. In the top \
+                  row, the flakes' normal is weighted by the distance from distance 4 on, as in the paper, and the \
+                  paint becomes smooth. In the bottom row it is not weighted, and the ball stays noisy at any \
+                  distance, down to single dark and bright pixels. The number is the variation of luminance that \
+                  flakes cause between pixels, divided by the mean, in the middle of the picture; at distance 32 \
+                  that is a square of 8 pixels by default.",
         make: flakes,
     },
     Figure {
         name: "elek-8",
         title: "a growing patina",
         source: "Elek 2010, figure 8",
-        caption: "Copper under cuprite at the six stages and the transition of the paper. Patina comes first where the map is dark; with \
-                  so wide a transition there is no edge, the copper pales, turns green unevenly and ends as a matt green with the \
-                  tarnish below. Number: the mean of the amount of patina over the map. The map, the green and the tarnish are ours, see \
-                  `materials/copper-patina.toml`.",
+        caption: "The pictures show copper under cuprite at the six stages of the paper, with its width of the \
+                  transition. Patina grows first where the map is dark. The transition is so wide that no edge is \
+                  visible: the copper pales, turns green unevenly and ends as a matt green with the tarnish below. \
+                  The number is the mean amount of patina over the map. The map, the green and the tarnish are \
+                  luthier's; see `materials/copper-patina.toml`.",
         make: patina,
     },
 ];

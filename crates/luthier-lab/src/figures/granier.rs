@@ -18,41 +18,48 @@ pub(crate) const FIGURES: [Figure; 4] = [
         name: "granier-3",
         title: "the diffuse part under a layer of varying thickness",
         source: "X. Granier and W. Heidrich, A Simple Layered RGB BRDF Model, Graphical Models 65 (2003), figure 3",
-        caption: "The diffuse part alone: a picture with the base less one without, so that the specular part cancels. Thickness follows \
-                  Perlin noise; a narrow range gives old metal (left) or clay (right), a wide one bands of pure colours (middle). The \
-                  chart is the coefficient for the three wavelengths: it exceeds 1, so a white base under this model returns more light \
-                  than it gets. Indices 1.5, 1.6, 1.8 are those of figure 6, the ranges are ours.",
+        caption: "The pictures show the diffuse part alone: luthier subtracts a picture without the base from one \
+                  with it, so that the specular part cancels. The thickness follows Perlin noise. A narrow range of \
+                  thicknesses looks like old metal (left) or clay (right); a wide range gives bands of pure colours \
+                  (middle). The chart shows the diffuse coefficient for the three wavelengths. It exceeds 1, so that \
+                  a white base under this model reflects more light than it receives. The indices 1.5, 1.6, 1.8 are \
+                  those of figure 6; the ranges are luthier's.",
         make: diffuse,
     },
     Figure {
         name: "granier-4",
         title: "boundaries that are not parallel",
         source: "Granier and Heidrich 2003, figure 4",
-        caption: "Indices 1.4, 1.45, 1.6, thickness 66 to 76 nm, exponent 90, diffuse weight 0.7, as printed. With parallel boundaries \
-                  both beams leave in the mirror direction. With an inner boundary that leans by a constant 14 degrees (the angle of \
-                  figure 6) the transmitted beam is turned to the side: each light has a second highlight to the right of the first, \
-                  with a bluish and a yellow edge, and the right of the ball darkens. With the same index for all colours it moves \
-                  without the coloured edges. One exponent serves both boundaries here; the paper has 170 for the inner one.",
+        caption: "The parameters are the printed ones: indices 1.4, 1.45, 1.6, thickness 66 to 76 nm, exponent 90, \
+                  diffuse weight 0.7. With parallel boundaries, both beams leave in the mirror direction. In the \
+                  other pictures the inner boundary is tilted by a constant 14 degrees (the angle of figure 6), \
+                  which turns the transmitted beam to the side. Each light then has a second highlight to the right \
+                  of the first, with a bluish and a yellow edge, and the right of the ball darkens. With one index \
+                  for all colours, the second highlight has no coloured edges. Here one exponent serves both \
+                  boundaries; the paper has 170 for the inner one.",
         make: deviation,
     },
     Figure {
         name: "granier-5",
         title: "normals that follow the thickness",
         source: "Granier and Heidrich 2003, figure 5",
-        caption: "The specular part alone, with the inner boundary flat or following the thickness like a bump map. Flat: smooth bands \
-                  of colour, finer for thicker films. Bumps: the same bands broken up into streaks, like oil on rough ground. One repeat \
-                  of the thickness map is 12 and 24 um wide here, chosen for the look; the ranges are ours.",
+        caption: "The pictures show the specular part alone. The inner boundary is flat, or it follows the thickness \
+                  like a bump map. A flat boundary gives smooth bands of colour, which are finer for thicker films. \
+                  Bumps break these bands up into streaks, like oil on rough ground. One repeat of the thickness map \
+                  is 12 and 24 um wide, chosen for the look. The ranges of thickness are luthier's.",
         make: correlated,
     },
     Figure {
         name: "granier-6",
         title: "specular and diffuse part together",
         source: "Granier and Heidrich 2003, figure 6",
-        caption: "Indices 1.5, 1.6, 1.8, exponent 130, deviation 14 degrees, diffuse weight 0.5, as printed; thickness ranges and the \
-                  index of the object are ours. Thin films are brown, thicker ones blue, then yellow; a wide range shows all orders at \
-                  once, and coloured highlights stand beside the white ones. The charts compare the mirror direction with the exact \
-                  film: the extremes lie at the same thicknesses, but the two beams return an object that mirrors everything, and where \
-                  both are in phase more light than there is.",
+        caption: "The parameters are the printed ones: indices 1.5, 1.6, 1.8, exponent 130, deviation 14 degrees, \
+                  diffuse weight 0.5. The ranges of thickness and the index of the object are luthier's. Thin films \
+                  are brown, and thicker ones blue, then yellow. A wide range of thickness shows all orders of \
+                  interference at once. Coloured highlights stand beside the white ones. The charts compare the \
+                  model with the exact film in the mirror direction. Both have their extremes at the same \
+                  thicknesses. But the two beams of the model make the object reflect all light, and more than falls \
+                  on it where both are in phase.",
         make: combined,
     },
 ];

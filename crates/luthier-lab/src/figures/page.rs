@@ -40,10 +40,11 @@ pub(crate) fn json(options: &FiguresOptions, studio: &Studio, made: &[(&Figure, 
 pub(crate) fn markdown(options: &FiguresOptions, studio: &Studio, made: &[(&Figure, Made)]) -> String {
     let folder = options.output.file_name().unwrap_or_default().to_string_lossy();
     let mut page = format!(
-        "# The papers' figures, made anew\n\nMade by `{}`. Single pictures are {} pixels wide, with {} samples to a pixel; \
-         simulations take {} paths per pixel, light and channel. Adapter: {}. Tone curve: unchanged to 0.8, bent to 1 above. \
-         RMSE is of linear radiance over all pixels and channels, FLIP of what a display shows at 67 pixels per degree. \
-         The light, the shapes and whatever a paper leaves open are ours.\n",
+        "# The papers' figures, made anew\n\nMade by `{}`. Each figure was published in a paper on layered materials; luthier \
+         renders it again from the paper's parameters. A single picture is {} pixels wide, with {} samples to a pixel. A \
+         simulation takes {} paths per pixel, light and channel. Adapter: {}. The tone curve keeps values up to 0.8 and bends larger \
+         ones towards 1. RMSE compares linear radiance over all pixels and channels. FLIP compares pictures as a display shows \
+         them at 67 pixels per degree. Where a paper does not state a parameter, and for the light and the shapes, the values are luthier's own.\n",
         command(options, None),
         options.size,
         options.samples * options.samples,

@@ -1,4 +1,4 @@
-//! Where pictures are taken: one adapter, one light, one size.
+//! A studio for pictures: one adapter, one light, one size.
 
 use std::cell::OnceCell;
 use std::io::ErrorKind;

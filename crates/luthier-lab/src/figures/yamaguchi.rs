@@ -13,11 +13,14 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
     title: "statistical layering against simulation",
     source: "T. Yamaguchi et al., Real-time Rendering of Layered Materials with Anisotropic Normal Distributions, SIGGRAPH Asia 2019 \
              Technical Briefs, figure 4",
-    caption: "A coat of index 1.49 on gold (figure 1 (e)) under two lights, in f64: simulation, Yamaguchi's model, its difference, \
-                  Belcour's model, its difference. Yamaguchi's highlights have the shapes of the simulated ones: round, stretched along \
-                  the brushing, and crossed where the coat is brushed across. Belcour's are round whatever the brushing. Both miss \
-                  brightness around the highlights and towards the rim, where the paper finds its errors too. Where the brushings cross, Belcour's RMSE is the smaller one all the same: Yamaguchi's band across the ball has the right shape and is too faint. The \
-                  slopes are ours (the paper's are in a supplement that we lack), so its RMSE values cannot be compared.",
+    caption: "The pictures show a coat of index 1.49 on gold (figure 1 (e)) under two lights, in f64. From left to \
+              right they are the simulation, Yamaguchi's model and its difference, Belcour's model and its \
+              difference. The highlights of Yamaguchi's model have the shapes of the simulated ones: round, \
+              stretched along the brushing, and crossed where the coat is brushed across. Those of Belcour's model \
+              are always round. Both models are too dark around the highlights and towards the rim, where the paper \
+              finds errors too. Where the brushings cross, Belcour's RMSE is still the smaller one, because \
+              Yamaguchi's band across the ball has the right shape but is too faint. The slopes are luthier's, because the \
+              paper's supplement, which states its own, was not available. So its RMSE values cannot be compared.",
     make: simulation,
 }];
 

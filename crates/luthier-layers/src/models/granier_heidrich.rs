@@ -99,22 +99,22 @@ impl Film {
     /// Eq. 5: lobes of height one, as printed. Without interference when the layer is too thick for it.
     pub fn specular(&self, wi: DVec3, wo: DVec3) -> f64 {
         let Beams { reflected, transmitted, cosines, .. } = self.beams(wi, wo);
-        superpose(reflected, transmitted, self.swing(cosines))
+        superpose(reflected, transmitted, self.interference(cosines))
     }
 
     /// Eq. 13 with eq. 14, 15 and 17: the paper's eq. 18.
     pub fn diffuse(&self) -> f64 {
-        self.diffuse_by(self.swing(2.0))
+        self.diffuse_by(self.interference(2.0))
     }
 
     /// [`Film::diffuse`] from `2 cos(2 Phi)` at the normal.
-    fn diffuse_by(&self, swing: f64) -> f64 {
+    fn diffuse_by(&self, interference: f64) -> f64 {
         let reflected = self.diffuse_reflectance();
-        superpose(reflected, 1.0 - reflected, swing)
+        superpose(reflected, 1.0 - reflected, interference)
     }
 
     /// `2 cos(2 Phi)` for a sum of cosines in the film; 0 when the layer is too thick to interfere.
-    fn swing(&self, cosines: f64) -> f64 {
+    fn interference(&self, cosines: f64) -> f64 {
         self.waves_inside.map_or(0.0, |waves| 2.0 * libm::cos(2.0 * PI * waves * cosines))
     }
 
@@ -126,8 +126,8 @@ impl Film {
 }
 
 /// Two powers and their interference (eq. 4), from `2 cos(2 Phi)`.
-fn superpose(r: f64, t: f64, swing: f64) -> f64 {
-    (r + t + swing * libm::sqrt(r * t)).max(0.0)
+fn superpose(r: f64, t: f64, interference: f64) -> f64 {
+    (r + t + interference * libm::sqrt(r * t)).max(0.0)
 }
 
 /// The model on a stack.
@@ -213,8 +213,8 @@ impl GranierHeidrich {
                 let [e0, e1] = film.exponents;
                 let Beams { reflected, transmitted, cosines, compression } = film.beams(wi, wo);
                 let (r, t) = (scale(e0) * reflected, scale(e1) * compression * transmitted);
-                let swing = |cosines| film.waves_inside.map_or(0.0, |_| optics.swing(0, cosines));
-                (superpose(r, t, swing(cosines)), film.diffuse_by(swing(2.0)))
+                let interference = |cosines| film.waves_inside.map_or(0.0, |_| optics.interference(0, cosines));
+                (superpose(r, t, interference(cosines)), film.diffuse_by(interference(2.0)))
             }
             (None, Some(layer)) => {
                 let e = self.exponents.map_or_else(|| exponent(layer.surface.alpha_isotropic()), |e| e[0]);

@@ -196,9 +196,9 @@ impl<T: Terms> Optics for Channel<'_, T> {
         value
     }
 
-    fn swing(&self, layer: usize, cosines: f64) -> f64 {
-        let tabulated = self.terms.swing(layer, self.channel, cosines);
-        tabulated.unwrap_or_else(|| self.stacks[self.channel].swing(layer, cosines))
+    fn interference(&self, layer: usize, cosines: f64) -> f64 {
+        let tabulated = self.terms.interference(layer, self.channel, cosines);
+        tabulated.unwrap_or_else(|| self.stacks[self.channel].interference(layer, cosines))
     }
 }
 

@@ -32,7 +32,7 @@ pub trait Terms {
 
     /// `2 cos(2 Phi)` of the film of a layer, in one colour channel, for the sum of the cosines in it; `None` where no table holds it,
     /// and it is to be computed. Elek's model has no use for it.
-    fn swing(&self, _layer: usize, _channel: usize, _cosines: f64) -> Option<f64> {
+    fn interference(&self, _layer: usize, _channel: usize, _cosines: f64) -> Option<f64> {
         None
     }
 }

@@ -14,9 +14,9 @@ use super::AuditError;
 pub enum Quantity {
     /// Cosine against the normal.
     CosTheta,
-    /// Its square.
+    /// The square of the cosine.
     CosThetaSq,
-    /// Its square root.
+    /// The square root of the cosine.
     SqrtCosTheta,
     /// Angle against the normal, radians.
     Theta,
@@ -24,7 +24,7 @@ pub enum Quantity {
     Roughness,
     /// The slope parameter.
     Alpha,
-    /// Its square.
+    /// The square of the slope parameter.
     AlphaSq,
     /// The root of the roughness, alpha = its fourth power.
     SqrtRoughness,
@@ -91,7 +91,7 @@ impl Quantity {
     }
 }
 
-/// Where the nodes of an axis lie: the coordinate of texel `i` of `n`.
+/// Positions of the nodes of an axis: the coordinate of texel `i` of `n`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Nodes {
@@ -139,7 +139,7 @@ pub struct AxisSpec {
     pub mapping: Mapping,
     /// Whether values fall from the first texel to the last.
     pub descending: bool,
-    /// Where its nodes lie.
+    /// Positions of its nodes.
     pub nodes: Nodes,
     /// Lowest value: lower ones are evaluated as this one.
     pub floor: f64,
@@ -212,7 +212,7 @@ impl FromStr for AxisSpec {
     }
 }
 
-/// Where a table holds what.
+/// Layout of a table: the axes along its sides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Layout {
     /// The axis of the direction.
@@ -251,7 +251,7 @@ impl Layout {
         [self.angle.canonical(texel[a], size[a]), slope]
     }
 
-    /// Where a shader that knows this layout reads, in texels.
+    /// Position at which a shader that knows this layout reads, in texels.
     pub(super) fn position(&self, size: [u32; 2], [theta, alpha]: [f64; 2]) -> [f64; 2] {
         let [a, s] = self.order();
         let mut position = [0.5; 2];

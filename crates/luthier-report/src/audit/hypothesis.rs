@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::axes::{AxisSpec, Layout, Nodes};
 use super::truth::{Term, Truth};
 
-/// How values were encoded before they were stored.
+/// Encoding of values before they were stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Encoding {
     Linear,
@@ -57,7 +57,7 @@ impl Hypothesis {
         if self.clamped { value.max(0.0) } else { value }
     }
 
-    /// How it differs from what is stated.
+    /// The differences of the hypothesis from the statement.
     pub(super) fn mistakes(&self, stated: &Self, truth: &Truth) -> Vec<Mistake> {
         let mut found = Vec::new();
         let mut add = |kind, text: String| found.push(Mistake { kind, text });

@@ -1,4 +1,4 @@
-//! The audit of a table that anybody made: how far it is, as a shader reads it, from the model that it is said to hold; and whether
+//! The audit of a table of another program: its error, as a shader reads it, against the model that it should hold; and whether
 //! it fits another statement better. [`audit`] tells flips, swaps, shifted nodes, mistaken axes and channels, encodings and masking
 //! terms apart by comparing texels with quadrature under every combination of them.
 //!
@@ -27,10 +27,10 @@ pub use truth::{Model, Term};
 
 /// Fraction bits of the sampler's weights.
 const WEIGHTS: WeightBits = WeightBits::Fixed(8);
-/// Above this root mean square, no hypothesis is taken for what the table holds.
+/// Largest root mean square error of a hypothesis that is accepted as the content of a table.
 const NO_FIT: f64 = 0.03;
 
-/// Why no audit was made.
+/// Failure to audit a table.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum AuditError {
@@ -103,7 +103,7 @@ pub enum AuditVerdict {
     AsStated,
     /// Another one does: the first candidate.
     FitsBetterAs,
-    /// None fits.
+    /// No hypothesis fits.
     FitsNothing,
 }
 

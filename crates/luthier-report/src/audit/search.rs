@@ -13,7 +13,7 @@ use super::truth::Truth;
 const CAP: f64 = 0.25;
 /// A hypothesis with one mistake more must fit this much better to be preferred.
 const PENALTY: f64 = 1.25;
-/// Below this, root mean square, nothing is told apart: what quadrature and rounding leave.
+/// Root mean square error below which hypotheses are not told apart: the error of quadrature and rounding.
 const FLOOR: f64 = 5e-5;
 /// Texels along each axis in the first, second and last round.
 const TEXELS: [u32; 3] = [12, 28, 16];

@@ -9,7 +9,7 @@ use crate::{ANGLE_BINS, Exceedance};
 /// Errors below this share the end of an axis.
 const SMALLEST: f64 = 1e-9;
 
-/// How a comparison is drawn, everywhere.
+/// Colour and mark of a comparison in all charts.
 pub(crate) fn series(compared: Compared) -> Series {
     let (class, mark) = match compared {
         Compared::BakedDevice => ("s-baked", Mark::Circle),
@@ -29,7 +29,7 @@ pub(crate) fn max_by_material(report: &Report, compared: &[Compared]) -> String 
         let comparisons = report.materials.iter().flat_map(|m| compared.iter().filter_map(|c| m.comparison(*c)));
         comparisons.map(|c| c.max_error())
     };
-    let (limit, named) = report.budget.map_or((report.target_max_rel_err, "target"), |budget| (budget, "budget"));
+    let (limit, named) = report.budget.map_or((report.target_max_rel_err, "target"), |budget| (budget, "limit"));
     let x = Scale::decades(values().chain([limit]), SMALLEST);
     let margin = Margin { left: 210.0, right: 74.0, top: 20.0, bottom: 38.0 };
     let height = margin.top + margin.bottom + ROW * report.materials.len() as f64;

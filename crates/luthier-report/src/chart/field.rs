@@ -1,4 +1,4 @@
-//! All materials in one chart: what each costs against how far it is off.
+//! Chart of all materials: cost against error.
 
 use super::frame::{Frame, Margin, Series};
 use super::scale::Scale;
@@ -20,7 +20,7 @@ const MARK: f64 = 6.0;
 pub(crate) struct Spot {
     /// Name of the material.
     pub(crate) material: String,
-    /// Where the page says more about it.
+    /// Anchor of the material's section of the page.
     pub(crate) anchor: String,
     /// Cycles or bytes.
     pub(crate) price: f64,
@@ -28,7 +28,7 @@ pub(crate) struct Spot {
     pub(crate) error: f64,
     /// Description of the spot.
     pub(crate) tip: String,
-    /// How it is drawn.
+    /// Colour and mark of the spot.
     pub(crate) series: Series,
     /// Whether the name stands beside the mark, where there is room.
     pub(crate) is_named: bool,

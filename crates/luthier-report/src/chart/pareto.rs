@@ -20,7 +20,7 @@ pub(crate) struct Choice {
     pub(crate) tip: String,
     /// A word beside its mark, if there is room for it.
     pub(crate) label: &'static str,
-    /// How it is drawn.
+    /// Colour and mark of the choice.
     pub(crate) series: Series,
     /// Whether it was chosen.
     pub(crate) is_chosen: bool,

@@ -32,7 +32,7 @@ pub struct PlotAxis {
 pub struct Curve {
     /// Name, for the legend.
     pub name: String,
-    /// How it looks.
+    /// Colour of the curve.
     pub color: PlotColor,
     /// Points (x, y), in the order of the line.
     pub points: Vec<[f64; 2]>,

@@ -1,4 +1,4 @@
-//! How much energy a model sends into each cell.
+//! Energies that a model sends into the cells.
 
 use luthier_layers::model::Model;
 use luthier_layers::monochrome::Monochrome;

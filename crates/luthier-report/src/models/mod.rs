@@ -69,7 +69,7 @@ pub struct ModelSubject {
     pub wavelengths_nm: [f64; 3],
 }
 
-/// How to judge.
+/// Settings of the comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ModelSettings {
     /// Paths of the reference per view.

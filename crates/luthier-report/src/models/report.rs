@@ -6,7 +6,7 @@ use super::page;
 use super::{ModelSettings, ModelSubject, PHI_DEG, Row, THETAS_DEG};
 use crate::{ReportError, json};
 
-/// How far all models are from the reference, on all materials.
+/// Errors of all models against the reference, on all materials.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelsReport {
     /// Paths of the reference per view.
@@ -21,7 +21,7 @@ pub struct ModelsReport {
     pub materials: Vec<MaterialModels>,
 }
 
-/// How far all models are from the reference, on one material.
+/// Errors of all models against the reference, on one material.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MaterialModels {
     /// The material.
@@ -32,7 +32,7 @@ pub struct MaterialModels {
     pub models: Vec<ModelErrors>,
 }
 
-/// How far a model is from the reference, on one material.
+/// Errors of one model against the reference, on one material.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelErrors {
     /// The model, or what else is compared.

@@ -11,8 +11,8 @@ use crate::report::{Compared, Report};
 pub(super) fn write(out: &mut String, report: &Report) {
     let target = number(report.target_max_rel_err);
     let says = match report.exceptions.len() {
-        0 => format!("none: nothing misses the target of {target}"),
-        count => format!("{count} cases miss the target of {target}, each with its cause"),
+        0 => format!("none: every comparison meets the target of {target}"),
+        count => format!("{count} comparisons miss the target of {target}, each with its cause"),
     };
     super::fold(out, "exceptions", "Exceptions", &says);
     list(out, report);
@@ -30,7 +30,7 @@ fn list(out: &mut String, report: &Report) {
         let _ = writeln!(
             out,
             "<p>None: no finite sample of the {all} {of} is further than {target} from its reference, relative to \
-             max(brightest channel of the reference, {floor}).</p>"
+             the brightest channel of the reference, or to {floor} where that is larger.</p>"
         );
         return;
     }
@@ -38,8 +38,8 @@ fn list(out: &mut String, report: &Report) {
     let above: u64 = report.exceptions.iter().map(|e| e.samples_above).sum();
     let _ = write!(
         out,
-        "<p>The target is a largest error of {target}, relative to max(brightest channel of the reference, {floor}). {} of \
-         {all} {of} miss it somewhere, in {} of all samples ({above} of {samples}).</p>",
+        "<p>The target is a largest error of {target}, relative to the brightest channel of the reference, or to {floor} where that is larger. {} of \
+         {all} {of} miss it somewhere. Together they miss it in {} of all samples ({above} of {samples}).</p>",
         report.exceptions.len(),
         share(above, samples)
     );
@@ -51,10 +51,10 @@ fn list(out: &mut String, report: &Report) {
         row(out, report, exception);
     }
     out.push_str(
-        "</tbody></table></div><p class=\"note\">“Beyond” is the smallest of the larger angles to the normal. Causes are measured: each factor is read from the tables alone, in f64, \
-         with all others exact, and f32 arithmetic is taken alone; the largest part is the cause. A part may exceed the \
-         whole where another makes up for it. The last words say whose doing the other pairs above the target \
-         are.</p>\n",
+        "</tbody></table></div><p class=\"note\">“Beyond” gives an angle: each pair above the target has a direction at least so far from the normal. Causes are measured. The f64 model is evaluated with one factor \
+         read from the tables and all others exact, for each factor in turn, and f32 arithmetic is measured by itself. The factor with the largest error is the cause. \
+         One error may exceed the total where another cancels part of it. The last words of a row say which factors cause the errors of the other pairs above the \
+         target.</p>\n",
     );
 }
 
@@ -89,7 +89,7 @@ fn row(out: &mut String, report: &Report, exception: &Exception) {
         out.push_str("<td>–</td></tr>");
         return;
     };
-    let mut small = format!("alone {}", error(first.rel_err.abs()));
+    let mut small = format!("by itself {}", error(first.rel_err.abs()));
     if let Some(next) = rest.first() {
         let _ = write!(small, ", {} {}", short(next), error(next.rel_err.abs()));
     }
@@ -153,7 +153,7 @@ fn short(part: &Part) -> String {
     }
 }
 
-/// Whose doing the misses are.
+/// The factors that cause the misses, in words.
 fn tally(tally: &[(Factor, u64)]) -> String {
     let name = |factor| match factor {
         Factor::Fresnel => "Fresnel",
@@ -166,11 +166,11 @@ fn tally(tally: &[(Factor, u64)]) -> String {
     };
     let total: u64 = tally.iter().map(|(_, count)| count).sum();
     match tally {
-        [] => "no pair looked at".to_owned(),
-        [(factor, _)] => format!("all pairs above: {}", name(*factor)),
+        [] => "no pair was examined".to_owned(),
+        [(factor, _)] => format!("all pairs above the target: {}", name(*factor)),
         several => {
             let each = several.iter().map(|(factor, count)| format!("{} {}", name(*factor), share(*count, total)));
-            format!("pairs above: {}", each.collect::<Vec<_>>().join(", "))
+            format!("pairs above the target: {}", each.collect::<Vec<_>>().join(", "))
         }
     }
 }

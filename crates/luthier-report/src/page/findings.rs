@@ -6,7 +6,7 @@ use crate::format::escape;
 pub(super) fn write(out: &mut String, report: &Report) {
     let says = match report.findings.len() {
         0 => "none".to_owned(),
-        count => format!("{count} that a reader should know before trusting the rest"),
+        count => format!("{count}, to be read before trusting the figures"),
     };
     super::fold(out, "findings", "Findings", &says);
     list(out, report);
@@ -16,8 +16,8 @@ pub(super) fn write(out: &mut String, report: &Report) {
 fn list(out: &mut String, report: &Report) {
     if report.findings.is_empty() {
         out.push_str(
-            "<p>None: every value is finite, the layer records are those of the material files, and no table is \
-             worse than its baker states.</p>\n",
+            "<p>There are none: every value is finite, the layer records are those of the material files, and no table has a \
+             larger error than the bake stated.</p>\n",
         );
         return;
     }

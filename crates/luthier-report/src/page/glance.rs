@@ -65,15 +65,21 @@ fn facts(out: &mut String, report: &Report) {
     let of = |form| spread(all().filter_map(|m| cycles(report, m, form)).collect());
     let total: u64 = report.tables.iter().map(|t| t.texel_bytes).sum();
     let accurate = spread(errors).map_or(("–".to_owned(), "no material".to_owned()), |[least, median, largest]| {
-        let most = format!("median of the largest errors; {} to {}", error(least), error(largest));
+        let most = format!(
+            "median of the largest errors of all materials; they range from {} to {}",
+            error(least),
+            error(largest)
+        );
         (error(median), most)
     });
     let fast = of("baked").map_or_else(
-        || ("not measured".to_owned(), "luthier cost --json, then report --cost FILE".to_owned()),
+        || ("not measured".to_owned(), "run luthier cost --json, then luthier report --cost FILE".to_owned()),
         |[least, median, most]| {
-            let full = of("full").map_or_else(String::new, |[_, full, _]| format!("; full form {}", number(full)));
+            let full = of("full")
+                .map_or_else(String::new, |[_, full, _]| format!("; median of the full form {}", number(full)));
             let family = FAMILY.to_uppercase();
-            let range = format!("{} to {}, per wave of 64 on {family}{full}", number(least), number(most));
+            let range =
+                format!("median; {} to {} per wave of 64 threads on {family}{full}", number(least), number(most));
             (format!("{} cycles", number(median)), range)
         },
     );
@@ -121,22 +127,25 @@ fn chart(out: &mut String, report: &Report) {
             spots.push(Spot { material: name, anchor, price, error: found, tip, series, is_named: place == 0 });
         }
     }
-    let limit = report.budget.map_or((report.target_max_rel_err, "target"), |budget| (budget, "budget"));
+    let limit = report.budget.map_or((report.target_max_rel_err, "target"), |budget| (budget, "limit"));
     let (x_title, note) = if has_costs {
         (
-            format!("cycles per wave of 64, {}, inverse throughput; compiled, not timed", FAMILY.to_uppercase()),
+            format!(
+                "cycles per wave of 64 threads, {}, inverse throughput; counted by the compiler, not timed",
+                FAMILY.to_uppercase()
+            ),
             match &report.costs {
-                Some(_) => "Cost against largest error: better is left and below.",
+                Some(_) => "Cost against largest error: the best materials are at the lower left.",
                 None => {
-                    "Cost against largest error: better is left and below. The cost is that of a shader for layers of the same kinds with D in closed form, which \
-                     comes with luthier; that of these shaders is measured by luthier cost --json and shown by luthier report --cost."
+                    "Cost against largest error: the best materials are at the lower left. The cost is that of a shader for layers of the same kinds, with D in \
+                     closed form; it comes with luthier. luthier cost --json measures the cost of these shaders, and luthier report --cost shows it."
                 }
             },
         )
     } else {
         (
             "bytes of the tables that a material reads".to_owned(),
-            "Better is left and below. No cost of shaders was given (luthier report --cost), and no time is measured here.",
+            "The best materials are at the lower left. No cost of shaders was given (luthier report --cost), and the report measures no times.",
         )
     };
     out.push_str("<figure class=\"field\">");
@@ -144,7 +153,7 @@ fn chart(out: &mut String, report: &Report) {
     let title = format!("All materials: error by {}", if has_costs { "cost" } else { "bytes" });
     let _ = writeln!(
         out,
-        "<div class=\"scroll\">{}</div><figcaption>{} Each mark has its figures, and leads to its \
+        "<div class=\"scroll\">{}</div><figcaption>{} Hover over a mark for its figures; click it to go to its \
          material.</figcaption></figure>",
         field(&title, &x_title, &spots, limit),
         escape(note)

@@ -9,9 +9,9 @@ use crate::report::Report;
 
 pub(super) fn write(out: &mut String, report: &Report) {
     out.push_str(
-        "<h2 id=\"levels\">Three levels of error</h2><p>Each level has its own reference and its own unit; no figure below is a sum or a \
-         maximum over levels.</p><div class=\"scroll\"><table><thead><tr><th>level</th><th>what against \
-         what</th><th>unit</th><th class=\"n\">largest</th><th>where</th></tr></thead><tbody>",
+        "<h2 id=\"levels\">Three levels of error</h2><p>luthier measures errors at three levels. Each has its own reference and its own unit, so that no figure \
+         below adds up levels or compares them.</p><div class=\"scroll\"><table><thead><tr><th>level</th><th>what is \
+         compared</th><th>unit</th><th class=\"n\">largest</th><th>where</th></tr></thead><tbody>",
     );
     let mut row = |level: &str, what: &str, unit: &str, found: Option<(f64, String)>, missing: &str| {
         let (value, place) = found.map_or(("–".to_owned(), missing.to_owned()), |(v, p)| (error(v), p));
@@ -22,7 +22,7 @@ pub(super) fn write(out: &mut String, report: &Report) {
         );
     };
     let table = report.worst_table().map(|(error, kind, tile)| (error, format!("{}, {tile}", kind.name())));
-    let texels = "a sampled read of a shipped table against its function";
+    let texels = "filtered reads of a table against the tabulated function";
     row("1 · table", texels, "absolute", table, "no table was measured");
     let of = if report.device.is_some() { "shaders on the device" } else { "tables in f64 arithmetic" };
     let worst =
@@ -43,16 +43,21 @@ pub(super) fn write(out: &mut String, report: &Report) {
     let model = report.worst_model();
     let what = report.reference.map_or_else(
         || "models against simulated paths (layered-mc)".to_owned(),
-        |r| format!("models that ship against layered-mc, {} paths a view, seed {}", r.paths, r.seed),
+        |r| format!("the models of this bake against layered-mc, {} paths a view, seed {}", r.paths, r.seed),
     );
-    let missing = "not measured in this run: luthier report --reference; docs/pages/models.md has all models";
+    let missing = "not measured; luthier report --reference measures it, and docs/pages/models.md has all models";
     let lobe = model.map(|(material, a)| {
         (
             a.lobe_err,
-            format!("{material}, {} at {}°; noise alone {}", a.model.name(), a.worst_theta_deg, error(a.lobe_noise)),
+            format!(
+                "{material}, {} at {}°; noise alone makes {}",
+                a.model.name(),
+                a.worst_theta_deg,
+                error(a.lobe_noise)
+            ),
         )
     });
-    row("3 · model", &what, "share of the light that is elsewhere", lobe, missing);
+    row("3 · model", &what, "share of the light in other directions", lobe, missing);
     let shipped = || {
         let all = report.materials.iter().flat_map(|m| m.against_reference.iter().map(move |a| (m, a)));
         all.filter(|(m, a)| m.model == a.model)
@@ -62,9 +67,9 @@ pub(super) fn write(out: &mut String, report: &Report) {
     let seen = shipped().map(|(m, a)| (a.delta_e, m.name.clone())).max_by(|a, b| a.0.total_cmp(&b.0));
     row("3 · model, seen", &what, "CIEDE2000 of albedos, D65", seen, missing);
     out.push_str(
-        "</tbody></table></div><p class=\"note\">CIEDE2000 is of colours as a display shows them: each channel clipped to 0..1 after the \
-         light, “daylight” being that which makes a white diffuser white. In highlights of saturated colour, far brighter than white, a \
-         small relative error can move a dark channel from one end to the other; how rare that is stands with each material.</p>\n",
+        "</tbody></table></div><p class=\"note\">CIEDE2000 compares colours as a display shows them: lit, and with each channel clipped to 0..1. Under “daylight” a white \
+         diffuser is white. In highlights of saturated colour, far brighter than white, a small relative error can move a dark channel from \
+         one end of the range to the other. The section of each material says how rare that is.</p>\n",
     );
     limits(out, report);
 }
@@ -75,7 +80,7 @@ fn limits(out: &mut String, report: &Report) {
     }
     out.push_str(
         "<h3 id=\"limits\">Limits</h3><div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>stated \
-         by</th><th>what</th><th class=\"n\">limit</th><th class=\"n\">found</th><th>found by</th><th>verdict</th></tr></thead><tbody>",
+         by</th><th>quantity</th><th class=\"n\">limit</th><th class=\"n\">found</th><th>found by</th><th>verdict</th></tr></thead><tbody>",
     );
     for limit in &report.limits {
         let found = limit.found.map_or_else(|| "nothing to compare".to_owned(), error);

@@ -11,9 +11,9 @@ use crate::{DirectionSet, ErrorSummary, Exhibits, Statistics};
 
 pub(super) fn write(out: &mut String, report: &Report, exhibits: &Exhibits) {
     out.push_str(
-        "<h2 id=\"materials\">Materials</h2><p class=\"sub\">Each opens to its pictures, the largest relative error of f cos θᵢ in each set of \
-         directions (below it the 99th percentile and the root mean square), costs, colour differences and worst pairs. The sets and floors \
-         are defined under <a href=\"#method\">method</a>.</p>",
+        "<h2 id=\"materials\">Materials</h2><p class=\"sub\">The section of a material has its pictures, costs, colour differences and worst pairs of directions. Its table gives the largest relative \
+         error of f cos θᵢ in each set of directions, and below it the 99th percentile and the root mean square. <a href=\"#method\">Method</a> defines \
+         the sets and the floors.</p>",
     );
     let mut drawn = summary::shown(report).to_vec();
     if report.device.is_some() {
@@ -155,7 +155,7 @@ pub(super) fn number_deg(degrees: f64) -> String {
     number((degrees * 1e4).round() / 1e4)
 }
 
-/// How the tables of a material came by their colour, in words.
+/// Colour mode of the tables of a material, in words.
 fn color(color: ColorMode) -> &'static str {
     match color {
         ColorMode::Spectral => "spectral",

@@ -1,4 +1,4 @@
-//! How the figures came about: enough to repeat them, and to know what they do not say.
+//! The section on method: references, directions and floors, so that a reader can repeat the figures and knows their limits.
 
 use std::fmt::Write;
 
@@ -8,37 +8,32 @@ use crate::table_terms::Weights;
 use crate::{DIM_FLOOR, DirectionSet, PEAK_FRACTION};
 
 pub(super) fn write(out: &mut String, report: &Report) {
-    super::fold(
-        out,
-        "method",
-        "Method",
-        "references, directions and floors: what the figures say, and what they do not",
-    );
+    super::fold(out, "method", "Method", "references, directions and floors");
     let _ = write!(
         out,
-        "<p><b>Reference.</b> The model <code>{}</code> in f64 with exact Fresnel and distribution terms (of statistical models: directional \
-         albedos from the micro-surface, and total reflection), at exactly the f32 directions that the shader gets. The baked shader and the tables are compared with terms \
-         integrated over the spectrum (CIE 1931 2° observer, D65, to linear Rec.709), or taken at the material's three \
-         wavelengths where its file asks for that; the full shader with terms at the material's three wavelengths, because that is what it \
-         evaluates, and, of statistical models, with facets that count as level. The errors are those of tables and arithmetic, not of the model.</p>",
+        "<p><b>Reference.</b> The model <code>{}</code> in f64, at exactly the f32 directions that the shader gets. It has exact Fresnel and distribution terms; a statistical model \
+         has directional albedos from the micro-surface and exact total reflection. The reference of the baked shader and of the tables integrates these terms over the \
+         spectrum (CIE 1931 2° observer, D65, to linear Rec.709), or takes them at three wavelengths if the material file asks for that. The reference of the \
+         full shader takes them at three wavelengths, as the shader does; in a statistical model it takes facets as level. The errors are those of tables \
+         and arithmetic, not those of the model.</p>",
         escape(&report.model)
     );
     comparisons(out, report);
     let _ = write!(
         out,
-        "<p><b>Relative errors</b> are |value − reference| / max(brightest channel of the reference, floor), every colour channel a \
-         sample. The floor of the headline is {} in f cos θᵢ: a tenth of a white diffuser lit along its normal. \
+        "<p><b>Relative errors</b> are |value − reference| / max(brightest channel of the reference, floor). Every colour channel is a \
+         sample. The floor of the main figures is {} in f cos θᵢ: a tenth of a white diffuser lit along its normal. \
          Below it an error of 10⁻³ is 10⁻⁴ of diffuse white, a third of the darkest step of an 8-bit sRGB picture \
-         exposed for that white. Two other floors show what this one hides: {} (a thousandth of white) judges the \
-         dark, {} of the peak of the set judges the highlight alone, and forgives everything else.</p>",
+         exposed for that white. Two other floors show what the main one hides. The floor of {} (a thousandth of white) shows errors in the \
+         dark. The floor of {} of the peak of the set shows errors of the highlight alone.</p>",
         number(report.floor),
         error(DIM_FLOOR),
         number(PEAK_FRACTION)
     );
     let _ = write!(
         out,
-        "<p><b>Directions.</b> {} pairs in every set, from a Halton sequence; a later run draws the \
-         same.</p><div class=\"scroll\"><table><tbody>",
+        "<p><b>Directions.</b> Every set has {} pairs, from a Halton sequence, so that every run draws the \
+         same pairs.</p><div class=\"scroll\"><table><tbody>",
         report.pairs_per_set
     );
     for set in DirectionSet::ALL {
@@ -46,15 +41,15 @@ pub(super) fn write(out: &mut String, report: &Report) {
     }
     out.push_str("</tbody></table></div>");
     out.push_str(
-        "<p><b>Tables</b> are scanned from the shipped texels: Fresnel rows at eight points a cell and 256 grazing \
-         cosines against every interface that reads them, distributions at one point in every cell, phase rows at \
-         eight points a cell against the closed form, shares that escape total reflection on a grid over the same domain as albedos, albedos at some dozen points against an estimate of their own. \
-         Formats that a sampler filters are read with 8-bit weights; others exactly, as shaders fetch them. Values and \
-         weights are otherwise f64.</p><p><b>Exceptions.</b> For a pair that misses the target, the f64 model is \
-         evaluated again with exact terms but for one, which is read from the tables: the Fresnel term, the \
-         distribution and so on of each layer in turn. What the device adds to f64 on the same tables is f32 arithmetic. The \
-         largest of these is the cause.</p><p><b>Not judged here:</b> the model against nature; pairs below the \
-         horizon; film thickness maps, which the reference takes at their nominal value.</p>\n",
+        "<p><b>Tables</b> are compared with their functions as the texels store them. Fresnel rows are read at eight points a cell and at 256 grazing \
+         cosines, and compared with every interface that reads them; distributions are read at one point in every cell; phase rows at \
+         eight points a cell, against the closed form. Shares that escape total reflection are read on a grid over the range of the albedos. Albedos are read at some dozen points, and compared with an estimate that does not use the baker's. \
+         Formats that a sampler filters are read with 8-bit weights, others with exact weights, as shaders fetch them. All other \
+         arithmetic is f64.</p><p><b>Exceptions.</b> For a pair that misses the target, the f64 model is \
+         evaluated again with one term read from the tables and all others exact: the Fresnel term, the \
+         distribution and so on of each layer in turn. The difference between the device and f64 on the same tables is the error of f32 arithmetic. The \
+         largest of these errors is the cause.</p><p><b>The report does not judge</b> the model against nature, pairs below the \
+         horizon, or film thickness maps, which the reference takes at their nominal value.</p>\n",
     );
     super::end_fold(out);
 }
@@ -74,7 +69,9 @@ fn comparisons(out: &mut String, report: &Report) {
             Compared::TablesEightBit => {
                 "f64 arithmetic on the shipped texels, filtered with 8-bit weights, against exact terms".to_owned()
             }
-            Compared::TablesExact => "the same with exact weights".to_owned(),
+            Compared::TablesExact => {
+                "f64 arithmetic on the shipped texels, filtered with exact weights, against exact terms".to_owned()
+            },
             Compared::Arithmetic => {
                 format!(
                     "the table-reading shader on the device, against f64 arithmetic on the same texels with {weights}"
@@ -84,7 +81,7 @@ fn comparisons(out: &mut String, report: &Report) {
                 "the table-free shader on the device, against exact terms at three wavelengths".to_owned()
             }
             Compared::ThreeWavelengths => {
-                "no error: exact terms at three wavelengths against exact spectral terms, both in f64".to_owned()
+                "exact terms at three wavelengths against exact spectral terms, both in f64; a property of the material, not an error of the bake".to_owned()
             }
         };
         let _ = write!(out, "<tr><th>{}</th><td>{words}</td></tr>", compared.name());

@@ -25,8 +25,8 @@ pub(super) fn write(out: &mut String, material: &MaterialReport, exhibits: &[Exh
         let _ = write!(
             out,
             "<p class=\"note\">Baked against full: FLIP {} mean, {} largest; CIEDE2000 {} mean, {} largest; linear radiance {} RMS, {} \
-             largest. The full form computes at three wavelengths and knows films at their nominal thickness, so that this includes what \
-             colour costs there, and films that vary.</p>",
+             largest. The full form computes at three wavelengths and takes films at their nominal thickness. The differences therefore include the colour \
+             error of three wavelengths, and the thickness maps of films.</p>",
             error(p.flip_mean),
             error(p.flip_max),
             error(p.delta_e_mean),

@@ -1,4 +1,4 @@
-//! Where every figure came from: enough to have it again.
+//! The section on provenance: commands, adapters and random numbers behind every figure.
 
 use std::fmt::Write;
 
@@ -6,7 +6,7 @@ use crate::format::escape;
 use crate::report::Report;
 
 pub(super) fn write(out: &mut String, report: &Report) {
-    super::fold(out, "provenance", "Provenance", "the command, and where every figure came from");
+    super::fold(out, "provenance", "Provenance", "the command, and the origin of every figure");
     out.push_str("<div class=\"scroll\"><table><tbody>");
     for (name, value) in &report.provenance {
         let _ = write!(out, "<tr><th>{}</th><td>{}</td></tr>", escape(name), escape(value));
@@ -39,8 +39,8 @@ pub(super) fn write(out: &mut String, report: &Report) {
         row(["stability", &stability.generator, adapter, "fixed by case"]);
     }
     out.push_str(
-        "</tbody></table></div><details><summary>Sources</summary><div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>material</th><th>file</th><th>SHA-256 of it \
-         and of what it names</th></tr></thead><tbody>",
+        "</tbody></table></div><details><summary>Sources</summary><div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>material</th><th>file</th><th>SHA-256 of the file \
+         and of the files that it names</th></tr></thead><tbody>",
     );
     for m in &report.materials {
         let [name, source, hash] = [&m.name, &m.source, &m.source_hash].map(|t| escape(t));

@@ -20,16 +20,17 @@ pub(super) fn write(out: &mut String, report: &Report, exhibits: &Exhibits) {
 fn map(out: &mut String, report: &Report, exhibits: &Exhibits) {
     let Some((suite, summary)) = exhibits.stability.as_ref().zip(report.stability.as_ref()) else {
         out.push_str(
-            "<p>Not in this report: <code>luthier-lab stability --json -o stability.json</code> runs the suite, <code>luthier report \
-             --stability stability.json</code> shows it.</p>\n",
+            "<p>This report has no results of the suite. <code>luthier-lab stability --json -o stability.json</code> runs it, and <code>luthier report \
+             --stability stability.json</code> shows its results.</p>\n",
         );
         return;
     };
     let _ = write!(
         out,
-        "<p>Every method on stacks and directions at which formulas divide by little, overflow or stop being true: {} cells, of which {} \
-         hold, {} degrade and {} fail. {} have no explanation; {} of what ships are not finite. A shader holds up to a relative error of \
-         {HOLDS}, an albedo up to {HOLDS_ALBEDO}; beyond {FAILS} they fail. Made by {} on {}.</p>",
+        "<p>The suite runs each model, and the shader of each model that has one, on stacks and directions at which formulas divide by small \
+         numbers, overflow or stop being true. Of {} cells {} hold, {} degrade and {} fail. {} have no explanation. {} cells of shaders and tables \
+         are not finite. A shader holds up to a relative error of {HOLDS}, and the albedo of a model up to an absolute error of {HOLDS_ALBEDO}; \
+         beyond {FAILS} both fail. Made by {} on {}.</p>",
         summary.cells,
         summary.holds,
         summary.degrades,
@@ -41,7 +42,8 @@ fn map(out: &mut String, report: &Report, exhibits: &Exhibits) {
     );
     out.push_str(
         "<p class=\"legend\"><span class=\"heat holds\">holds</span><span class=\"heat degrades\">· degrades</span><span class=\"heat \
-         fails\">× fails</span>Rows are methods by level, columns cases; hover for what it is and why.</p><figure class=\"heat-map\">",
+         fails\">× fails</span>Rows are methods, grouped by level; columns are cases. Hover over a cell for its error and the explanation, and over the name of a \
+         case for its description.</p><figure class=\"heat-map\">",
     );
     out.push_str(&heat_map_svg(suite));
     out.push_str("</figure>\n");

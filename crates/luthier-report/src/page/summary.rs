@@ -42,23 +42,23 @@ fn verdict(out: &mut String, report: &Report) {
     let max = report.max_error();
     let within = report.budget.map(|budget| max <= budget);
     let (class, words) = match (within, report.budget) {
-        (Some(true), Some(budget)) => (" good", format!("Within budget: {} of {}", error(max), error(budget))),
+        (Some(true), Some(budget)) => (" good", format!("Within the limit: {} of {}", error(max), error(budget))),
         (Some(false), Some(budget)) if max.is_finite() => {
-            (" bad", format!("Over budget: {}, limit {}", error(max), error(budget)))
+            (" bad", format!("Over the limit: {} of {}", error(max), error(budget)))
         }
-        (Some(false), _) => (" bad", "Over budget: some values are not finite".to_owned()),
+        (Some(false), _) => (" bad", "Over the limit: some values are not finite".to_owned()),
         _ if max.is_finite() => ("", format!("Largest error {}", error(max))),
         _ => (" bad", "Some values are not finite".to_owned()),
     };
     let judged = if report.device.is_some() {
-        "the emitted shaders (table-reading and table-free) against their references in f64"
+        "the emitted shaders (with and without tables) against their references in f64"
     } else {
-        "the tables, read with 8-bit weights and f64 arithmetic, against exact terms: no shader was run"
+        "the tables, read with 8-bit weights and f64 arithmetic, against exact terms, because no shader was run"
     };
     let _ = writeln!(
         out,
-        "<section class=\"verdict{class}\"><p class=\"figure\">{}</p><p>The largest error of f cos θᵢ over all materials, directions and \
-         channels, of {judged}; relative to max(brightest channel of the reference, {}).{}</p></section>",
+        "<section class=\"verdict{class}\"><p class=\"figure\">{}</p><p>This is the largest error of f cos θᵢ over all materials, directions and \
+         channels. It compares {judged}. It is relative to the brightest channel of the reference, or to {} where that is larger.{}</p></section>",
         escape(&words),
         number(report.floor),
         report.worst().map_or(String::new(), |worst| at(&worst))
@@ -75,7 +75,7 @@ fn broken_limits(report: &Report) -> Option<(&'static str, String)> {
     }
 }
 
-/// Where the worst is, in words.
+/// Place of the largest error, in words.
 fn at(worst: &WorstCase<'_>) -> String {
     let place = format!("{}, {}, {} set", worst.material, worst.compared.name(), worst.set.name());
     match (worst.statistics.not_finite_at, &worst.statistics.worst) {
@@ -83,7 +83,7 @@ fn at(worst: &WorstCase<'_>) -> String {
             format!(" It is at {}: {}.", escape(&place), super::materials::angles(wi, wo))
         }
         (None, Some(pair)) => format!(
-            " It is at {}: {}; {} where {} is right.",
+            " It is at {}: {}, where the value is {} and the reference {}.",
             escape(&place),
             super::materials::angles(pair.wi, pair.wo),
             value(pair.found),
@@ -122,25 +122,25 @@ pub(super) fn overview(out: &mut String, report: &Report) {
         out,
         "materials-at-a-glance",
         "Errors side by side",
-        "every comparison, how rare large errors are, bytes of each table",
+        "all comparisons, the share of large errors, and the bytes of each table",
     );
     figures(out, report);
     out.push_str("<figure>");
     out.push_str(&legend(&series));
     out.push_str(&chart::max_by_material(report, shown));
     out.push_str(if report.device.is_some() {
-        "<figcaption>Where the ring holds the diamond, the tables make the error; where it lies to the right of it, \
-         f32 arithmetic does. The square shares no table: it is arithmetic alone, at three wavelengths. Errors of \
+        "<figcaption>Where ring and diamond coincide, the tables cause the error. Where the ring lies to the right of the diamond, \
+         f32 arithmetic causes it. The square is the shader without tables: its error is that of arithmetic alone, at three wavelengths. Errors of \
          zero have no mark.</figcaption></figure>\n"
     } else {
-        "<figcaption>Both marks are the tables alone; what lies between them is the precision of the sampler's \
+        "<figcaption>Both marks are errors of the tables alone, and differ by the precision of the sampler's \
          weights. Errors of zero have no mark.</figcaption></figure>\n"
     });
     out.push_str("<div class=\"pair\"><figure>");
     out.push_str(&chart::exceedance(report, shown));
     out.push_str(
-        "<figcaption>How rare the largest errors are: the share of all samples, all materials and sets in equal \
-         parts, whose error exceeds the value on the x axis. Colours as above.</figcaption></figure><figure>",
+        "<figcaption>The curves give the share of all samples whose error exceeds the value on the x axis. All materials and \
+         sets have equal weight. The colours are those of the chart above.</figcaption></figure><figure>",
     );
     out.push_str(&chart::bytes_by_table(&report.tables));
     out.push_str(
@@ -188,7 +188,7 @@ fn rows(out: &mut String, report: &Report, shown: &[Compared]) {
     }
     out.push_str(
         "</tbody></table></div><p class=\"note\">Largest relative errors over all sets of directions. “Three \
-         wavelengths” is no error: it is how far the model at three wavelengths lies from the spectral one, both in \
-         f64. All are relative to max(brightest channel of the reference, floor).</p>\n",
+         wavelengths” is not an error of the bake: it is the difference between the model at three wavelengths and the spectral one, both in \
+         f64. All errors are relative to the brightest channel of the reference, or to the floor where that is larger.</p>\n",
     );
 }

@@ -15,15 +15,16 @@ use crate::report::{Compared, MaterialReport, Report};
 pub(super) const FAMILY: &str = "rdna2";
 
 const CANDIDATE: Series = Series { class: "s-tables", name: "candidate of the search", mark: Mark::Diamond };
-const SHIPS: Series = Series { class: "s-baked", name: "what ships, as measured here", mark: Mark::Circle };
+const SHIPS: Series =
+    Series { class: "s-baked", name: "tables of this bake, as measured by the report", mark: Mark::Circle };
 const BAKED: Series = Series { class: "s-tables", name: "model, baked", mark: Mark::Diamond };
 const FULL: Series = Series { class: "s-full", name: "model, full", mark: Mark::Square };
 
 /// All kinds of tables.
 pub(super) fn write(out: &mut String, report: &Report) {
     let says = match report.searches.len() {
-        0 => "nothing was searched for".to_owned(),
-        count => format!("what the search found for {count} kinds of tables, and what it took"),
+        0 => "the bake made no search".to_owned(),
+        count => format!("candidates of the search for {count} kinds of tables, and its choices"),
     };
     super::fold(out, "trade", "Cost and bytes against error", &says);
     searches(out, report);
@@ -32,13 +33,13 @@ pub(super) fn write(out: &mut String, report: &Report) {
 
 fn searches(out: &mut String, report: &Report) {
     if report.searches.is_empty() {
-        out.push_str("<p>Sizes and formats of this bake are fixed defaults, or stated in its files.</p>\n");
+        out.push_str("<p>The sizes and formats of this bake are the fixed defaults, or those that its material files state.</p>\n");
         return;
     }
     out.push_str(
-        "<p>Candidates of the search that no other beats in bytes, cost and error at once, over all materials; errors as the baker measured \
-         them, absolute, of the worst tile. A ring marks what ships. Cost is an estimate in operations of one look-up; cycles of whole \
-         shaders are with each material.</p>",
+        "<p>The charts show the candidates that no other candidate beats in bytes, cost and error at once, over all materials. Their errors are absolute, of the worst \
+         tile, as the bake measured them. A ring marks the choice of the search. Cost is an estimate in operations of one look-up. The sections of materials have the cycles \
+         of whole shaders.</p>",
     );
     out.push_str(&legend(&[CANDIDATE, SHIPS]));
     for search in &report.searches {
@@ -50,7 +51,7 @@ fn kind(out: &mut String, report: &Report, search: &Search) {
     let name = search.kind.name();
     let _ = write!(
         out,
-        "<h3 id=\"trade-{name}\">{name}</h3><p class=\"sub\">{} candidates measured; asked: {}.</p>",
+        "<h3 id=\"trade-{name}\">{name}</h3><p class=\"sub\">{} candidates measured; the budget asks for {}.</p>",
         search.measured,
         asked(&search.budget)
     );
@@ -58,7 +59,7 @@ fn kind(out: &mut String, report: &Report, search: &Search) {
         let Candidate { form, bytes: size, cost, error: found } = only;
         let _ = writeln!(
             out,
-            "<p>One candidate beats all others and ships: {}, {}, cost {}, error {}.</p>",
+            "<p>One candidate beats all others, and the search chose it: {}, {}, cost {}, error {}.</p>",
             escape(&words(form)),
             bytes(*size),
             number(*cost),
@@ -69,7 +70,7 @@ fn kind(out: &mut String, report: &Report, search: &Search) {
     charts(out, search, shipped(report, search.kind, &|_| true), &format!("{name}, all materials"));
     let _ = write!(
         out,
-        "<details class=\"long\"><summary>All {} of the front</summary><div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>candidate</th><th \
+        "<details class=\"long\"><summary>All {} candidates of the front</summary><div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>candidate</th><th \
          class=\"n\">bytes</th><th class=\"n\">cost</th><th class=\"n\">max abs</th><th class=\"n\">max rel</th><th \
          class=\"n\">CIEDE2000</th><th>chosen</th></tr></thead><tbody>",
         search.front.len()
@@ -114,7 +115,11 @@ fn charts(out: &mut String, search: &Search, ships: Option<(f64, f64)>, of: &str
         };
         let mut choices: Vec<Choice> = search.front.iter().enumerate().map(of_candidate).collect();
         if let (Price::Bytes, Some((size, found))) = (price, ships) {
-            let tip = format!("what ships: {}, error measured here {}", bytes(size as u64), error(found));
+            let tip = format!(
+                "tables of this bake: {}, error as measured by the report {}",
+                bytes(size as u64),
+                error(found)
+            );
             choices.push(Choice { price: size, error: found, tip, label: "", series: SHIPS, is_chosen: false });
         }
         let label = format!("{of}: {by} against error");
@@ -135,7 +140,7 @@ fn shipped(report: &Report, kind: TableKind, reads: &dyn Fn(&str) -> bool) -> Op
     Some((table.texel_bytes as f64 * read.len() as f64 / table.tiles.len() as f64, found))
 }
 
-/// One material: its tables where it is baked alone, and its models by what they cost.
+/// Writes the charts of one material: its tables if it is baked alone, and its models by cost.
 pub(super) fn of_material(out: &mut String, report: &Report, material: &MaterialReport) {
     let alone: Vec<&Search> = material.alone.iter().filter(|s| s.front.len() > 1).collect();
     let costs = report.costs.as_ref().map_or(Vec::new(), |costs| of_shaders(report, material, costs));
@@ -148,8 +153,8 @@ pub(super) fn of_material(out: &mut String, report: &Report, material: &Material
         charts(out, search, shipped(report, search.kind, &reads), &format!("{}, {name} alone", material.name));
         let _ = write!(
             out,
-            "<p class=\"note\">{name}: what a search finds where this material is baked alone; the ring is its choice. What ships is shared \
-             by all materials of the bake and stands at the bytes of the tiles that this one reads.</p>"
+            "<p class=\"note\">The chart shows the search for the table {name} if this material is baked alone; the ring is its choice. All materials of this bake share \
+             one table. Its mark stands at the bytes of the tiles that this material reads.</p>"
         );
     }
     models(out, material, &costs);
@@ -226,21 +231,21 @@ fn models(out: &mut String, material: &MaterialReport, shaders: &[Shader<'_>]) {
     let choices: Vec<Choice> = shaders.iter().filter_map(choice).collect();
     let (title, note) = if has_reference {
         (
-            "share of the light that is elsewhere",
-            "Error of models against layered-mc; what tables and arithmetic add is above.",
+            "share of the light in other directions",
+            "The errors are those of the models against layered-mc. The errors of tables and arithmetic are shown above.",
         )
     } else {
         (
             "largest relative error",
-            "Error of the shaders against their model; against the reference: luthier report --reference.",
+            "The errors are those of the shaders against their model. luthier report --reference measures those of the models.",
         )
     };
     if !choices.is_empty() {
-        let x_title = format!("cycles per wave of 64, {FAMILY}, inverse throughput");
+        let x_title = format!("cycles per wave of 64 threads, {FAMILY}, inverse throughput");
         let label = format!("{}: cost of models against error", material.name);
         let _ = write!(
             out,
-            "{}<figure class=\"half\">{}<figcaption>{note} The ring is what ships.</figcaption></figure>",
+            "{}<figure class=\"half\">{}<figcaption>{note} The ring marks the shader of this bake.</figcaption></figure>",
             legend(&[BAKED, FULL]),
             pareto(&label, Price::Cost, [&x_title, title], &choices, None)
         );
@@ -261,7 +266,7 @@ fn model_rows(out: &mut String, material: &MaterialReport, shaders: &[Shader<'_>
     }
     out.push_str("<th>cycles, baked</th><th>cycles, full</th></tr></thead><tbody>");
     for a in &material.against_reference {
-        let ships = if a.model == material.model { "<small>ships</small>" } else { "" };
+        let ships = if a.model == material.model { "<small>of this bake</small>" } else { "" };
         let _ = write!(out, "<tr><th>{}{ships}</th>", a.model.name());
         for value in
             [a.lobe_err, a.lobe_noise, a.albedo_err, a.delta_e].into_iter().chain(a.by_angle.iter().map(|p| p.1))

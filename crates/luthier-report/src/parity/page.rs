@@ -34,19 +34,28 @@ fn preamble(parity: &Parity, command: &str) -> String {
     let mut out = format!(
         "# The shaders against their f64 twins
 
-Every shader of every material on a device, against the same model in f64. All of this page is made by
+luthier runs every shader of every material on a device and compares it with the same model in f64. This command makes the whole page:
 
     {command}
 
-on {device}, by {generator}. Compared is f cos θᵢ at {pairs} pairs of directions for each model, form and material: {pairs_per_set} in \
-each of five sets. An error is relative to max(brightest channel of the reference, {}), a tenth of what a white diffuser gives; every \
-channel is a sample.
+It ran on {device}, by {generator}. The compared value is f cos θᵢ, at {pairs} pairs of directions for each model, form and material: {pairs_per_set} in \
+each of five sets. An error is divided by the brightest channel of the reference, or by {} where that is larger: a tenth of what a white diffuser \
+gives. Every channel counts as a sample.
 
-The reference of `baked` is the material's colour, spectral or at three wavelengths; that of `full` is three wavelengths. Of `belcour` and \
-`yamaguchi` the reference of `baked` computes directional albedos from the micro-surface (to 5e-4) and total reflection by integration; \
-that of `full` takes facets as level, as the form does, and what covers a diffuse base from the material's record. *Table* is f64 \
-arithmetic on the texels that ship against the reference; *arithmetic* is the device against that, or, where there is no table, \
-against the reference; *total* is the device against the reference.
+| error | compares | with |
+|---|---|---|
+| total | the shader on the device | the reference in f64 |
+| table | f64 arithmetic on the texels that the shader reads | the reference in f64 |
+| arithmetic | the shader on the device | f64 arithmetic on the texels that the shader reads; the reference in f64 where the shader reads no table |
+
+Table and arithmetic are the two shares of the total error. The reference depends on the form and on the model:
+
+- The reference of `baked` has the colour of the material: spectral, or at three wavelengths.
+- The reference of `full` is computed at three wavelengths, like the shader.
+- For `belcour` and `yamaguchi`, the reference of `baked` computes directional albedos from the micro-surface (to 5e-4) and total reflection by \
+integration.
+- For `belcour` and `yamaguchi`, the reference of `full` takes facets as level, as the shader does. It takes the terms of the layers over a diffuse \
+base from the record of the material.
 
 | set | directions |
 |---|---|
@@ -61,7 +70,7 @@ against the reference; *total* is the device against the reference.
 
 fn summary(out: &mut String, parity: &Parity) {
     out.push_str(
-        "\n## Summary\n\nThe largest of all materials. Root mean squares are of the worst material.\n\n| model | form | total max | p99 | rms | table max | p99 \
+        "\n## Summary\n\nEach value is the largest over all materials: the largest error (max), the 99th percentile (p99) and the root mean square (rms).\n\n| model | form | total max | p99 | rms | table max | p99 \
          | rms | arithmetic max | p99 | rms | not finite |\n|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
     );
     for model in models(parity) {
@@ -83,7 +92,7 @@ fn summary(out: &mut String, parity: &Parity) {
             let _ = writeln!(out, "| {} | {form} | {} | {not_finite} |", model.name(), cells.join(" | "));
         }
     }
-    out.push_str("\nThe largest error of each set, table and arithmetic:\n\n| model | form |");
+    out.push_str("\nThe largest error in each set: of the tables, then of the arithmetic. The form `full` has an error of arithmetic only.\n\n| model | form |");
     for set in ParitySet::ALL {
         let _ = write!(out, " {} |", set.name());
     }
@@ -114,7 +123,7 @@ fn errors(summary: Option<ErrorSummary>) -> String {
 }
 
 fn tolerances(out: &mut String, parity: &Parity) {
-    out.push_str("\n## Tolerances\n\nOf the largest error of a share.\n\n| tolerance | limit | of | reason |\n|---|--:|---|---|\n");
+    out.push_str("\n## Tolerances\n\nA tolerance limits the largest error of a share, table or arithmetic.\n\n| tolerance | limit | of | reason |\n|---|--:|---|---|\n");
     let mut named: Vec<(Tolerance, Vec<String>)> = Vec::new();
     for model in models(parity) {
         for form in [Form::Baked, Form::Full] {
@@ -149,12 +158,12 @@ fn exceptions(out: &mut String, parity: &Parity) {
         .filter(|(.., verdict)| *verdict != Verdict::Met)
         .collect();
     if beyond.is_empty() {
-        out.push_str("None: every tolerance is met.\n");
+        out.push_str("There are none: every tolerance is met.\n");
         return;
     }
     let used = |name| beyond.iter().any(|(.., verdict)| matches!(verdict, Verdict::Explained(k) if k.name == name));
     if KNOWN.iter().any(|known| used(known.name)) {
-        out.push_str("An error beyond its tolerance is accepted where the factor at fault, measured, is one that is known:\n\n| known | limit | reason |\n|---|--:|---|\n");
+        out.push_str("An error beyond its tolerance is accepted where the page has measured which factor of the model causes it, and a reason is known for that factor:\n\n| known | limit | reason |\n|---|--:|---|\n");
         for known in KNOWN.iter().filter(|known| used(known.name)) {
             let _ = writeln!(out, "| `{}` | {} | {} |", known.name, limit_text(known.limit), known.reason);
         }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::directions::{GRAZING_COS_MIN, LOBE_REACH, direction, halton, log_uniform, mirrored, rounded, spreads};
 use crate::{DirectionSet, Pair};
 
-/// Where a shader is compared with its twin.
+/// Set of directions at which a shader is compared with its twin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ParitySet {
@@ -54,16 +54,16 @@ impl ParitySet {
                  for lobes below the first interface)."
             }
             Self::Grazing => {
-                "Cosines log-uniform from that of 89.9° to 0.1: a sixth of the pairs with both directions grazing, a sixth with wi \
-                 only, a sixth with wo only, at any azimuths; half with wi grazing and wo near its mirror direction."
+                "Grazing cosines are log-uniform from that of 89.9° to 0.1. In a sixth of the pairs both directions are grazing, in a sixth wi \
+                 only, in a sixth wo only, at any azimuths. In half of the pairs wi is grazing and wo lies near its mirror direction."
             }
             Self::Smooth => {
-                "As near-specular, on four polished variants of the material: all slope parameters scaled alike, so that the largest is \
-                 0.001, 0.003, 0.01 and 0.03, none below 0.001."
+                "The pairs of near-specular, on four polished variants of the material. Their slope parameters are scaled by one factor, so that the largest is \
+                 0.001, 0.003, 0.01 and 0.03, and none is below 0.001."
             }
             Self::Opposite => {
-                "A quarter each: wo opposite in azimuth with both cosines log-uniform from 1e-6 to 0.1; wo = wi; wo = -wi, and both \
-                 below the horizon, where the value is exactly 0."
+                "Four kinds of pairs, a quarter each: wo opposite in azimuth, with both cosines log-uniform from 1e-6 to 0.1; wo = wi; wo = -wi; and \
+                 both directions below the horizon. The value of the last two is exactly 0."
             }
         }
     }

@@ -1,4 +1,4 @@
-//! How far a shader may be from its twin, model by model, and what is known to be further.
+//! Tolerances of the error of a shader against its twin, by model, and known reasons of larger errors.
 
 use luthier_manifest::ShadingModel;
 use serde::{Deserialize, Serialize};
@@ -36,65 +36,65 @@ pub struct Tolerance {
     pub name: &'static str,
     /// Relative to max(brightest channel of the reference, [`crate::FLOOR`]).
     pub limit: f64,
-    /// Why it is what it is.
+    /// Reason for the limit.
     pub reason: &'static str,
 }
 
 const LOBE_TABLE: Tolerance = Tolerance {
     name: "LOBE_TABLE",
     limit: 2.5e-3,
-    reason: "A Fresnel row is within 5e-4, and what lies below is seen through its complement twice. Where a material asks for a table \
-             of the distribution, that is interpolated between slope parameters; at the foot of a lobe a value that is a few \
-             thousandths off is still bright over the floor.",
+    reason: "A Fresnel row is within 5e-4 of the reflectance F, and light of lower layers passes the interface twice, with a factor of 1 - F each time. \
+             If a material asks for a table of the distribution, that table is interpolated between slope parameters. The values at the foot \
+             of a lobe are then a few thousandths off, and still brighter than the floor.",
 };
 
 const PHASE_TABLE: Tolerance = Tolerance {
     name: "PHASE_TABLE",
     limit: 1.5e-3,
-    reason: "Between the 256 nodes of a phase row a cosine is a straight line, and its texels are half floats of up to 2.",
+    reason: "A phase row replaces a cosine by straight lines between 256 nodes, and stores it in half floats of up to 2.",
 };
 
 const ENERGY_TABLE: Tolerance = Tolerance {
     name: "ENERGY_TABLE",
     limit: 2.5e-3,
-    reason: "A lobe is a closed form times its energy, a product of reads of the albedo and escape tables; these have 64 nodes along each axis, \
-             and what is off by 1e-3 in one is off by that in the lobe.",
+    reason: "A lobe is a closed form times its energy, and the energy is a product of values from the `fgd` and `escape` tables. The tables have 64 nodes \
+             along each axis. An error of 1e-3 in one of the factors is an error of 1e-3 in the lobe.",
 };
 
-const NO_TABLE: Tolerance = Tolerance { name: "NO_TABLE", limit: 0.0, reason: "Nothing is read from a table." };
+const NO_TABLE: Tolerance = Tolerance { name: "NO_TABLE", limit: 0.0, reason: "The shader reads no table." };
 
 const LOBE_READ: Tolerance = Tolerance {
     name: "LOBE_READ",
     limit: 2e-4,
-    reason: "As `LAYERS_IN_F32`; but a texel of a distribution table, where a material asks for one, is a sixteenth root: a rounding \
-             error of the coordinate or of the filter comes out sixteen times as large.",
+    reason: "The reason of `LAYERS_IN_F32` holds. In addition, a distribution table, where a material asks for one, stores sixteenth roots: \
+             a rounding error of the coordinate or of the filter grows sixteenfold.",
 };
 
 const LAYERS_IN_F32: Tolerance = Tolerance {
     name: "LAYERS_IN_F32",
     limit: 5e-5,
-    reason: "Some tens of roundings of 6e-8 for every layer, in an exponential whose argument may be ten or more before the value is below \
-             the floor.",
+    reason: "Every layer adds some tens of roundings of 6e-8 each. They enter an exponential, whose argument can reach ten or more \
+             before its value is below the floor.",
 };
 
 const BEAMS_IN_F32: Tolerance = Tolerance {
     name: "BEAMS_IN_F32",
     limit: 2e-5,
-    reason: "As one layer; the exponents of the lobes reach 2e6, but what they are applied to is formed without cancellation.",
+    reason: "The rounding errors are those of one layer. The exponents of the lobes reach 2e6, but their bases are computed without cancellation.",
 };
 
 const STATISTICS_IN_F32: Tolerance = Tolerance {
     name: "STATISTICS_IN_F32",
     limit: 2e-5,
-    reason: "Some tens of roundings of 6e-8 for every layer, and two powers on the way from a slope parameter to a variance and back; no \
-             exponential, and the tables hold what they mean.",
+    reason: "Every layer adds some tens of roundings of 6e-8 each, and two powers convert a slope parameter to a variance and back. No exponential \
+             and no root of a stored value makes the errors larger.",
 };
 
 const PHONG_IN_F32: Tolerance = Tolerance {
     name: "PHONG_IN_F32",
     limit: 1e-5,
-    reason: "One exponential of a product whose factors have an error of 1e-7 each: the error is that times the exponent's \
-             argument, which the value outweighs beyond 1.",
+    reason: "The shader evaluates one exponential of a product whose factors have an error of 1e-7 each. The error of the value is that error times \
+             the argument, and beyond an argument of 1 the value falls faster than the error grows.",
 };
 
 /// The tolerance of a shader.
@@ -124,9 +124,9 @@ pub struct Known {
     pub share: Share,
     /// Factor that has to be at fault.
     pub factor: Factor,
-    /// How far it goes.
+    /// Largest error that it explains.
     pub limit: f64,
-    /// Where it comes from.
+    /// The reason of the error.
     pub reason: &'static str,
 }
 
@@ -138,9 +138,10 @@ pub const KNOWN: [Known; 5] = [
         share: Share::Table,
         factor: Factor::Fresnel,
         limit: 2e-2,
-        reason: "What lies below an interface is seen through (1 - F)² of it, and beyond 88° 1 - F is small: 0.05 at cos θ 0.008. A half float is up \
-                 to 2.4e-4 off there, and straight lines between 128 nodes are as much. Measured on brass-foil, car-paint and gold-metallic-paint: nodes \
-                 over the square root of the cosine leave 4.5e-3 to 7.2e-3 in half floats and 1.1e-3 in 32 bits. Of soap-film see FILM_AT_GRAZING.",
+        reason: "An interface transmits (1 - F)² of the light of lower layers, and beyond 88° 1 - F is small: 0.05 at cos θ = 0.008. A half float is up \
+                 to 2.4e-4 off there, and so is linear interpolation between 128 nodes. This was measured on brass-foil, car-paint and \
+                 gold-metallic-paint: with nodes over the square root of the cosine, errors of 4.5e-3 to 7.2e-3 remain in half floats, and 1.1e-3 in 32 bits. \
+                 The reason for soap-film is FILM_AT_GRAZING.",
     },
     Known {
         name: "DISTRIBUTION_FAR_OUT",
@@ -148,8 +149,8 @@ pub const KNOWN: [Known; 5] = [
         share: Share::Table,
         factor: Factor::Distribution,
         limit: 1e-2,
-        reason: "Half vectors beyond 55° on surfaces of alpha 0.45 and more: the angle axis has its nodes near the normal, and division \
-                 by both cosines makes what is small there bright.",
+        reason: "The half vectors are more than 55° from the normal, on surfaces of alpha 0.45 and more. The angle axis has most of its nodes near the normal, \
+                 and division by both cosines makes the small values far from it bright.",
     },
     Known {
         name: "FILM_AT_GRAZING",
@@ -157,9 +158,9 @@ pub const KNOWN: [Known; 5] = [
         share: Share::Table,
         factor: Factor::Fresnel,
         limit: 2e-2,
-        reason: "A free film at grazing angles is a resonator: at cos θ 0.0023 its fringes are narrower than the 5 nm steps of spectral integrals, so that red \
-                 ripples by 0.06 every 3 nm of thickness, in the reference too; at cos θ 0.02 it does not. The tile's nodes are 2.4 nm apart. What is \
-                 compared are two samplings of one ripple.",
+        reason: "A free film at grazing angles is a resonator. At cos θ = 0.0023 its fringes are narrower than the 5 nm steps of spectral integrals, so that \
+                 red ripples by 0.06 every 3 nm of thickness, in the reference too; at cos θ = 0.02 there is no ripple. The nodes of the tile are 2.4 nm \
+                 apart. So the page compares two samplings of one ripple.",
     },
     Known {
         name: "ESCAPE_OF_NARROW_LOBES",
@@ -167,9 +168,10 @@ pub const KNOWN: [Known; 5] = [
         share: Share::Table,
         factor: Factor::Escape,
         limit: 1e-2,
-        reason: "Of lobes of alpha 0.001 to 0.01 close to the critical angle (83° to 86° outside) a share turns back that depends on alpha strongly, and \
-                 the table's axis, the square root of alpha, has five nodes there, up to a factor of 2.2 apart. Measured for n = 1.5: interpolation \
-                 over alpha alone is up to 1.4e-2 off, over the cosine alone 6.8e-3; from alpha 0.01 up 2.0e-3 and 6.8e-4.",
+        reason: "Part of a lobe of alpha 0.001 to 0.01 close to the critical angle (83° to 86° outside) is totally reflected, and that part depends strongly \
+                 on alpha. The axis of the table is the square root of alpha; it has five nodes in this range, up to a factor of 2.2 apart. For n = 1.5, \
+                 interpolation over alpha alone was measured to be up to 1.4e-2 off, and over the cosine alone 6.8e-3; from alpha 0.01 upwards they \
+                 are 2.0e-3 and 6.8e-4 off.",
     },
     Known {
         name: "ALBEDO_AT_GRAZING",
@@ -177,9 +179,10 @@ pub const KNOWN: [Known; 5] = [
         share: Share::Table,
         factor: Factor::Fgd,
         limit: 1e-2,
-        reason: "Surfaces of alpha 0.001 beyond 89.9°, outside the domain of the tile's stated error (alpha from 0.01, to 89.5°): it holds up to 6.6e-3 too much. Quadrature \
-                 without any table agrees with the reference: for Beckmann, n = 1.5, alpha 0.001 and cos θ 0.0011 0.99075, the reference of \
-                 acrylic-lacquer 0.99073, its tile 0.99681. Of soap-film it is the ripple of FILM_AT_GRAZING.",
+        reason: "Surfaces of alpha 0.001 beyond 89.9° are outside the range of the tile's stated error (alpha from 0.01, angles to 89.5°). The tile is up to \
+                 6.6e-3 too large there. Quadrature without any table agrees with the reference: for Beckmann, n = 1.5, alpha 0.001 and cos θ = 0.0011 it \
+                 gives 0.99075, where the reference of acrylic-lacquer has 0.99073 and its tile 0.99681. The reason for soap-film is the ripple of \
+                 FILM_AT_GRAZING.",
     },
 ];
 

@@ -1,4 +1,4 @@
-//! Where a case is looked at.
+//! Directions of the light and of the eye on a case.
 
 use glam::DVec3;
 use luthier_layers::elek::Layer;
@@ -43,9 +43,11 @@ impl Aim {
     pub fn title(self) -> &'static str {
         match self {
             Self::Ordinary => "uniform directions and highlights",
-            Self::Grazing => "cosines from 1e-7 to 0.1, both or one",
+            Self::Grazing => "both cosines, or one of them, from 1e-7 to 0.1",
             Self::Mirror => "mirror directions, cosines from 1e-7 to 1",
-            Self::Opposite => "wo = -wi, below the horizon, and opposite beside it",
+            Self::Opposite => {
+                "wo = -wi and other directions below the horizon, and grazing directions of opposite azimuths"
+            }
             Self::Retro => "wo = wi",
         }
     }

@@ -7,7 +7,7 @@ use luthier_optics::constants::dataset;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Film, FilmThickness, Layer, Slab, Stack, Surface};
 
-/// A stack, where it is looked at, and which promise of a method it puts to the test.
+/// A stack and directions that test methods.
 #[derive(Debug, Clone)]
 pub struct StressCase {
     /// Name, unique.
@@ -16,7 +16,7 @@ pub struct StressCase {
     pub title: String,
     /// The quantity that is swept, and its value.
     pub swept: Option<(Quantity, f64)>,
-    /// Where it is looked at.
+    /// Directions of the light and of the eye.
     pub aim: Aim,
     /// Whether its colour is spectral; else three wavelengths.
     pub is_spectral: bool,
@@ -112,14 +112,17 @@ fn sweeps(cases: &mut Cases) {
     let alphas = [1e-310, 1e-4, 1e-3, 0.01, 0.1, 0.3, 0.6, 1.0];
     cases.sweep(Quantity::Alpha, &alphas, "bare metal, GGX, alpha", |alpha| in_air(vec![bright(alpha)]));
     let films = [1e-6, 1e-3, 100.0, 300.0, 1000.0, 5000.0, 20_000.0];
-    cases.sweep(Quantity::FilmNm, &films, "film of index 1.4 on metal of alpha 0.1, three wavelengths, nm", |nm| {
-        in_air(vec![filmed(1.4, nm, metal(0.1, 1.0, 6.69))])
-    });
+    cases.sweep(
+        Quantity::FilmNm,
+        &films,
+        "film of index 1.4 on metal of alpha 0.1, three wavelengths, thickness in nm",
+        |nm| in_air(vec![filmed(1.4, nm, metal(0.1, 1.0, 6.69))]),
+    );
     let counts = [1.0, 2.0, 4.0, 8.0, 32.0];
     cases.sweep(
         Quantity::Layers,
         &counts,
-        "coats of alpha 0.05 and indices 1.3 and 1.5 in turn, over white; layers",
+        "coats of alpha 0.05 and indices 1.3 and 1.5 in turn, over white; number of layers",
         |count| {
             let index = |i: usize| if i.is_multiple_of(2) { 1.3 } else { 1.5 };
             let coats = (0..count as usize - 1).map(|i| coat(0.05, index(i), 0.0));
@@ -176,7 +179,7 @@ fn singular(cases: &mut Cases) {
         cases.add(&format!("beckmann-{alpha}"), &format!("bare metal, Beckmann, alpha {alpha}"), in_air(vec![layer]));
     }
     let sigma = std::f64::consts::FRAC_PI_2;
-    cases.add("oren-nayar", "white Oren-Nayar base, sigma 90 degrees", in_air(vec![diffuse([1.0; 3], sigma)]));
+    cases.add("oren-nayar", "white Oren-Nayar base with a sigma of 90 degrees", in_air(vec![diffuse([1.0; 3], sigma)]));
     cases.add(
         "from-inside",
         "from index 1.5 through a gap of index 1 onto white",
@@ -196,9 +199,11 @@ fn singular(cases: &mut Cases) {
 fn colours(cases: &mut Cases) {
     if let Some(gold) = dataset("au") {
         let base = Base::Conductor { ior: gold.ior.clone() };
-        cases.add("gold", "gold, spectral: its red is above 1", in_air(vec![layer(0.1, base)])).is_spectral = true;
+        cases
+            .add("gold", "gold, spectral: its red is above 1, out of the gamut", in_air(vec![layer(0.1, base)]))
+            .is_spectral = true;
     }
-    for (nm, what) in [(380.0, "out of the gamut"), (20_000.0, "fringes finer than the eye's curves")] {
+    for (nm, what) in [(380.0, "out of the gamut"), (20_000.0, "fringes narrower than the colour-matching curves")] {
         let stack = in_air(vec![filmed(2.4, nm, metal(0.1, 1.0, 6.69))]);
         let case =
             cases.add(&format!("film-spectral-{nm}"), &format!("film of index 2.4, {nm} nm, spectral: {what}"), stack);

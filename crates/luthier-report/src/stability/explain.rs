@@ -1,4 +1,4 @@
-//! Why a method does not hold, and how far each reason goes.
+//! Reasons why methods do not hold, each with a limit on the error that it explains.
 
 use super::{Cell, Fault, Level, Verdict};
 
@@ -62,7 +62,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: &["index-huge"],
         faults: &[Fault::Wrong],
         limit: 0.03,
-        reason: "An index of 1e30 is stored as 10000, which single precision can square twice: 4e-4 of the light goes through, where nothing should.",
+        reason: "An index of 1e30 is stored as 10000, so that single precision can square it twice. Therefore 4e-4 of the light enters the coat, where none should.",
     },
     Explanation {
         name: "KINK_AT_THE_CRITICAL_ANGLE",
@@ -71,7 +71,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: &["index-2.5e-1", "index-5e-1", "index-6.67e-1", "index-9e-1", "from-inside"],
         faults: &[Fault::Wrong],
         limit: 0.3,
-        reason: "Seen from the denser side Fresnel's reflectance has a kink at the critical angle, and a row or grid of equal steps of the cosine cuts it: off by up to 0.25 in that interval, and by nothing beyond it.",
+        reason: "Seen from the denser side, Fresnel's reflectance has a kink at the critical angle. A row or grid with equal steps of the cosine cuts the kink off: the error is up to 0.25 in the interval of the kink, and none elsewhere.",
     },
     Explanation {
         name: "FRINGES_FINER_THAN_THE_ROW",
@@ -80,7 +80,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: &["film-5e3", "film-2e4", "film-spectral-20000"],
         faults: &[Fault::Wrong],
         limit: 0.05,
-        reason: "The fringes of a thick film are a few texels wide on the cosine axis: 20 um of index 1.4 have 38 over the row at 445 nm. The baked form at three wavelengths shows them rounded off; the form without tables has them.",
+        reason: "The fringes of a thick film are a few texels wide on the cosine axis: a film of 20 um and index 1.4 has 38 fringes along the row at 445 nm. The baked form at three wavelengths shows them rounded off; the form without tables shows them in full.",
     },
     Explanation {
         name: "FRINGES_FINER_THAN_THE_PHASES",
@@ -89,7 +89,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: &["film-5e3", "film-2e4", "film-spectral-20000"],
         faults: &[Fault::Wrong],
         limit: 1.8,
-        reason: "The phase row has 256 nodes between no phase and that of the thickest film: at 20 um and 445 nm a period is 2.0 nodes, at an index of 2.4 1.2, so that what is read has nothing to do with the cosine. Outside the domain from 5 um on.",
+        reason: "The phase row has 256 nodes from a phase of 0 to the phase of the thickest film. At 20 um and 445 nm a period is 2.0 nodes long, and 1.2 nodes at an index of 2.4, so that the value read has nothing to do with the cosine. Films of 5 um and more are outside the domain of the model.",
     },
     Explanation {
         name: "TABLES_ADD_UP",
@@ -98,7 +98,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: &["layers-3.2e1"],
         faults: &[Fault::Wrong],
         limit: 0.03,
-        reason: "31 interfaces read their tables one after the other, and the errors add up; with 7 they are below 1%.",
+        reason: "31 interfaces read their tables one after the other, and the errors add up. With 7 interfaces the sum is below 1%.",
     },
     Explanation {
         name: "RED_CLIPPED_IN_THE_ROW",
@@ -107,7 +107,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: &["gold"],
         faults: &[Fault::Wrong],
         limit: 0.04,
-        reason: "The red of gold is 1.0376, and no code of a normalised row is above 1. By default a search takes rows of 10 bits only where that is within 5e-4; rows over Schlick's form reach 1.25.",
+        reason: "The red of gold is 1.0376, and a normalised format stores nothing above 1. By default a search takes rows of 10 bits only where their error is within 5e-4. Schlick rows reach 1.25.",
     },
     Explanation {
         name: "CODES_OF_EIGHT_BITS",
@@ -116,7 +116,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: &["*"],
         faults: &[Fault::Wrong],
         limit: 0.25,
-        reason: "Half a step of a row is 0.002, 4% of the highlight of a coat of index 1.5; below many coats the steps add up.",
+        reason: "The format rounds a value by up to half a step, 0.002, which is 4% of the highlight of a coat of index 1.5. The errors of many coats add up.",
     },
     Explanation {
         name: "CODES_OF_TEN_BITS",
@@ -125,7 +125,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: &["layers-*", "depth-*", "k-*"],
         faults: &[Fault::Wrong],
         limit: 0.04,
-        reason: "Half a step of a row is 5e-4, 1% of the highlight of a coat of index 1.5; equal steps of the cosine miss as much at grazing angles; below many coats both add up, and a row down in index, over the refracted cosine, errs as the row up does.",
+        reason: "The format rounds a value by up to half a step, 5e-4, which is 1% of the highlight of a coat of index 1.5. Interpolation between equal steps of the cosine errs by as much at grazing angles. The errors of many coats add up. A row for light that enters a thinner medium is read at the refracted cosine, and has the same error as the row for the way back.",
     },
     Explanation {
         name: "SIX_BITS_OF_MANTISSA",
@@ -134,7 +134,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: &["*"],
         faults: &[Fault::Wrong],
         limit: 0.05,
-        reason: "Half a step of red and green is 0.8% of the value at most, of blue 1.6%; where two bounces multiply, twice that.",
+        reason: "The format rounds red and green by at most 0.8% of the value, and blue by 1.6%. A product of two reflectances has twice that error.",
     },
     Explanation {
         name: "SCHLICK_IS_FAR",
@@ -143,7 +143,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: &["layers-*", "tunnel"],
         faults: &[Fault::Wrong],
         limit: 0.08,
-        reason: "Where light meets the thinner medium there is total reflection, to which Schlick's form is not near: texels hold as much as those of plain rows, in as coarse codes, and 3 to 31 interfaces add up.",
+        reason: "Where light meets a thinner medium it is totally reflected at some angles, and Schlick's form is far from that. The differences that Schlick rows store are then as large as the values of plain rows, and are rounded as coarsely. The errors of 3 to 31 interfaces add up.",
     },
     Explanation {
         name: "VARIANCES_OF_ONE_FLOAT",
@@ -152,7 +152,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: &["brushed"],
         faults: &[Fault::Wrong],
         limit: 0.3,
-        reason: "The covariance of a surface of alpha 0.001 along and 1 across, turned by 0.5 rad, mixes variances of 5e-4 and 9e3, whose ratio is about the rounding of single precision: the smaller comes out of a difference.",
+        reason: "A surface of alpha 0.001 along and 1 across, turned by 0.5 rad, has a covariance matrix that mixes variances of 5e-4 and 9e3. Their ratio is about the rounding error of single precision, and the smaller one results from a difference.",
     },
     Explanation {
         name: "WALK_SQUARES",
@@ -161,7 +161,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: &["k-1e150"],
         faults: &[Fault::NotFinite],
         limit: 0.0,
-        reason: "The reference's own optics take the fourth power of the index, which is no double from 1e77 on. No metal has a k above 1e3; records hold at most 10000.",
+        reason: "The Fresnel formulas of the simulation take the fourth power of the index, which overflows a double from 1e77 on. No metal has a k above 1e3, and records of layers hold at most 10000.",
     },
     Explanation {
         name: "LAMBERT_FOR_OREN_NAYAR",
@@ -170,7 +170,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: &["oren-nayar"],
         faults: &[Fault::Wrong],
         limit: 0.3,
-        reason: "They evaluate Lambert's surface whatever the sigma; at 90 degrees a white Oren-Nayar base reflects 0.73.",
+        reason: "These models evaluate Lambert's law whatever sigma is. A white Oren-Nayar base with a sigma of 90 degrees reflects 0.73.",
     },
     Explanation {
         name: "MASKING_WITHOUT_AREA",
@@ -179,7 +179,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: METALS,
         faults: &[Fault::Wrong],
         limit: 0.9,
-        reason: "Their masking is not that of a surface: the projected area of the facets seen is not the cosine of the eye, so that energy is lost even from smooth surfaces (implicit), with roughness (Kelemen) and at grazing angles (Schlick).",
+        reason: "These masking functions are not those of any surface: the projected areas of the visible facets do not add up to the cosine of the viewing angle. Energy is lost even by smooth surfaces (implicit), by rough ones (Kelemen) and at grazing angles (Schlick).",
     },
     Explanation {
         name: "FILM_LEFT_OUT",
@@ -188,7 +188,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: &["film-*"],
         faults: &[Fault::Wrong],
         limit: 0.3,
-        reason: "An approximation through one or two angles does not follow the fringes of a film; complex F0 and Lazanyi's leave it out.",
+        reason: "An approximation that is fitted at one or two angles does not follow the fringes of a film. Complex F0 and Lazanyi's approximation leave the film out.",
     },
     Explanation {
         name: "TWO_BEAMS",
@@ -197,7 +197,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: METALS,
         faults: &[Fault::Wrong],
         limit: 0.7,
-        reason: "Two beams of a film that stands free, in Schlick's reflectance: the metal below it is left out, and three beams and more. Without a film, one bounce between facets.",
+        reason: "The formula adds two beams of a free-standing film with Schlick's reflectance. It leaves out the metal below the film, and the third and all later beams. On a stack without a film, the error is that of one bounce between facets.",
     },
     Explanation {
         name: "FACETS_MEET_LIGHT_ONCE",
@@ -215,7 +215,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: METALS,
         faults: &[Fault::Wrong],
         limit: 0.72,
-        reason: "One bounce per facet: what is blocked is lost, 1 - ln 2 = 0.31 is left of a mirror of alpha 1 at normal incidence. With Beckmann less, with V-cavities less. Belcour and Yamaguchi give their lobes the energy of all bounces, and lose it to masking again; they and Phong show Beckmann as another lobe.",
+        reason: "These models follow one bounce between facets, and light that other facets block is lost: a GGX mirror of alpha 1 reflects 1 - ln 2 = 0.31 at normal incidence. The loss is smaller with Beckmann's distribution and with V-cavities. Belcour's and Yamaguchi's models give their lobes the energy of all bounces, but lose it to masking. They and Phong's model replace a Beckmann distribution by a lobe of another shape.",
     },
     Explanation {
         name: "PHONG_STANDS_IN",
@@ -224,7 +224,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: &["*"],
         faults: &[Fault::Wrong],
         limit: 0.8,
-        reason: "One lobe and one diffuse term stand for any stack: Fresnel at other angles, bounces and most of the absorption are left out.",
+        reason: "One lobe and one diffuse term stand for the whole stack. They leave out the change of Fresnel's reflectance with the angle, bounces between layers and most of the absorption.",
     },
     Explanation {
         name: "BEAMS_RETURN_ALL",
@@ -233,7 +233,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: &["*"],
         faults: &[Fault::Wrong],
         limit: 1.8,
-        reason: "The specular beams return all light, in phase up to twice that; the diffuse term of the base comes on top, and absorption is left out. Where a stack has a base, the model is outside its domain.",
+        reason: "The two specular beams together return all light, and up to twice that where they are in phase. The diffuse term of the base comes on top, and absorption is left out. A stack with a base is outside the domain of the model.",
     },
     Explanation {
         name: "NO_INVERSE_SQUARE",
@@ -242,7 +242,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: COATS,
         faults: &[Fault::Wrong],
         limit: 1.4,
-        reason: "Equation 3.1 lacks 1/n^2, so that what lies below is up to n^2 times too bright, and the bounces between layers, which make up for part of it. From an index of 2.5 on, and for a rough coat over a smooth mirror, more light is added than falls on the surface.",
+        reason: "Equation 3.1 lacks the factor 1/n^2, so that the layers below a coat are up to n^2 times too bright. It also lacks the bounces between layers, which would add light; so the two errors cancel in part. From an index of 2.5 on, and for a rough coat over a smooth mirror, the model adds more light than falls on the surface.",
     },
     Explanation {
         name: "NO_BLUR",
@@ -251,7 +251,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: COATS,
         faults: &[Fault::Wrong],
         limit: 0.5,
-        reason: "Energies are exact for smooth interfaces; a rough one is taken as smooth where it transmits, and its own lobe loses what is blocked. The base is not blurred.",
+        reason: "The energies are exact for smooth interfaces. A rough interface transmits as if it were smooth, so that it does not blur the base, and its own lobe loses the light that facets block.",
     },
     Explanation {
         name: "LOBES_LOSE_TO_MASKING",
@@ -260,7 +260,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: COATS,
         faults: &[Fault::Wrong],
         limit: 0.5,
-        reason: "The energies of the lobes are right; evaluated as GGX surfaces they lose to masking and to the horizon again, the more the rougher and the closer to grazing. That is the papers' stated limit.",
+        reason: "The energies of the lobes are right. The lobes are then evaluated as GGX surfaces, which lose energy to masking and below the horizon. The loss grows with roughness and towards grazing angles; both papers state this limit.",
     },
     Explanation {
         name: "ONE_FACET",
@@ -269,7 +269,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: COATS,
         faults: &[Fault::Wrong],
         limit: 0.5,
-        reason: "What one facet blocks is lost at every interface: the mode shows what that assumption costs.",
+        reason: "At every interface the light that a second facet blocks is lost. This mode of the simulation measures the error of that assumption.",
     },
     Explanation {
         name: "SMOOTH_COAT_ONLY",
@@ -278,7 +278,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: COATS,
         faults: &[Fault::Wrong],
         limit: 0.12,
-        reason: "It is exact for a smooth coat; here the coat has alpha 0.1, whose lobe loses what is blocked.",
+        reason: "The model is exact for a smooth coat. In this case the coat has alpha 0.1, and its lobe loses the light that facets block.",
     },
 ];
 

@@ -54,7 +54,7 @@ const EXTREMES: &str = "denormal and huge arguments";
 pub struct FormulaResult {
     /// Entry of the [`PITFALLS`], or another subject of the formulation.
     pub row: String,
-    /// How it is written, in which precision.
+    /// The formulation, and its precision.
     pub formulation: String,
     /// Whether it ships.
     pub ships: bool,
@@ -175,9 +175,9 @@ fn storage_of_d(out: &mut Collector) {
         "1/(pi m^2) in a half float",
         truth,
         peak(1.0 / (PI * m * m)).abs(),
-        "It overflows below m = 0.0022.",
+        "The value overflows a half float below m = 0.0022.",
     );
-    out.rejected(row, "m of row i is i/511", truth, f64::NAN, "Row 0 is 0/0, row 1 overflows.");
+    out.rejected(row, "m of row i is i/511", truth, f64::NAN, "Row 0 is 0/0, and row 1 overflows.");
     let ours = largest((0..1000).map(|i| {
         let value = beckmann(1.0, FRAC_PI_2 * f64::from(i) / 1000.0);
         (libm::pow(f16(libm::pow(value, 0.0625)), 16.0) - value).abs()
@@ -185,38 +185,56 @@ fn storage_of_d(out: &mut Collector) {
     out.ours(
         row,
         "(pi m^2 D)^(1/16) in a half float",
-        "all angles at m = 1, of the largest peak 4/e",
+        "all angles at m = 1, as a fraction of the largest peak, 4/e",
         ours / 1.4715,
         8e-3,
     );
 
     for m in [0.02, 0.005] {
-        let truth = format!("row of 512 texels at m = {m}, of the peak, against D");
+        let truth = format!("row of 512 texels at m = {m}, against D, as a fraction of the peak");
         let linear = interpolation(512, |u| beckmann(m, FRAC_PI_2 * u));
-        out.rejected(PITFALLS[1].0, "angle linear", &truth, linear, "Lobes are narrower than its texels.");
+        out.rejected(PITFALLS[1].0, "angle linear", &truth, linear, "The lobe is narrower than a texel.");
         let eighth = interpolation(512, |u| beckmann(m, FRAC_PI_2 * libm::pow(u, 8.0)));
         out.ours(PITFALLS[1].0, "angle = (pi/2) u^8", &truth, eighth, 2e-4);
         let cosine = interpolation(512, |u| beckmann(m, libm::acos(libm::pow(u, 0.125))));
-        out.rejected(PITFALLS[2].0, "cosine = u^(1/8)", &truth, cosine, "Nodes are too far apart beside the normal.");
+        out.rejected(PITFALLS[2].0, "cosine = u^(1/8)", &truth, cosine, "The nodes near the normal are too far apart.");
         out.ours(PITFALLS[2].0, "angle = (pi/2) u^8", &truth, eighth, 2e-4);
         let row = libm::floor(m * 511.0);
-        let truth = format!("peak between the rows at m = {m}");
+        let truth = format!("peak halfway between two rows at m = {m}, relative to the peak");
         let [low, high] = [row, row + 1.0].map(|i| 1.0 / (i * i));
         let middle = 1.0 / ((row + 0.5) * (row + 0.5));
         let error = 0.5 * (low + high) / middle - 1.0;
-        out.rejected(PITFALLS[3].0, "D over m, linear, 512 rows", &truth, error, "1/m^2 is no straight line.");
+        out.rejected(
+            PITFALLS[3].0,
+            "D over m, linear, 512 rows",
+            &truth,
+            error,
+            "1/m^2 is far from linear between two rows.",
+        );
         // The rows that ship are a ratio of 1000^(1/511) apart; half the slope of a lobe is its error.
         let ratio = libm::pow(1000.0, 0.5 / 511.0);
         let error = largest((0..400).map(|i| {
             let theta = 4.0 * m * f64::from(i) / 400.0;
             (0.5 * (beckmann(m * ratio, theta) + beckmann(m / ratio, theta)) - beckmann(m, theta)).abs()
         }));
-        out.ours(PITFALLS[3].0, "pi m^2 D over log m, 512 rows", &truth.replace("peak", "lobe"), error, 1e-3);
+        out.ours(
+            PITFALLS[3].0,
+            "pi m^2 D over log m, 512 rows",
+            &truth.replace("peak halfway", "lobe halfway"),
+            error,
+            1e-3,
+        );
     }
     let rows = || (0..16).map(|i| (0.02 * 511.0 - 7.5 + f64::from(i)) / 511.0);
     let mean = rows().map(|m| 1.0 / (m * m)).sum::<f64>() / 16.0 * 4e-4;
-    let truth = "mean of 16 rows about m = 0.02 against the row";
-    out.rejected(PITFALLS[4].0, "mip maps of D", truth, mean - 1.0, "The mean of 1/m^2 over a..b is 1/(ab).");
+    let truth = "mean of the peaks of 16 rows around m = 0.02, relative to the peak there";
+    out.rejected(
+        PITFALLS[4].0,
+        "mip maps of D",
+        truth,
+        mean - 1.0,
+        "A mip map averages D over m, and the mean of 1/m^2 from a to b is 1/(ab).",
+    );
     let ours = rows().map(|m| beckmann(m, 0.0)).sum::<f64>() / 16.0;
     out.ours(PITFALLS[4].0, "one level of pi m^2 D", truth, (ours - 1.0).abs(), 1e-12);
 }
@@ -228,8 +246,8 @@ fn reflectance(above: f64, below: f64, cos: f64) -> f64 {
 fn rows_of_fresnel(out: &mut Collector) {
     for n in [1.5, 1.33] {
         let f0 = reflectance(1.0, n, 1.0);
-        let truth = format!("half a step of F0 at n = {n}, relative");
-        let reason = "A tenth of water's highlight is a step.";
+        let truth = format!("rounding error of F0 at n = {n}, relative");
+        let reason = "Half a step of the format is a tenth of the highlight of water.";
         out.rejected(PITFALLS[5].0, "unorm8", &truth, 0.5 / 255.0 / f0, reason);
         let half = largest((0..=100).map(|i| {
             let value = reflectance(1.0, n, f64::from(i) / 100.0);
@@ -245,14 +263,14 @@ fn rows_of_fresnel(out: &mut Collector) {
             "theta",
             &truth,
             theta,
-            "Steep at grazing; used only where a material asks for it.",
+            "The reflectance is steep at grazing angles. A row over theta is used only where a material asks for it.",
         );
         out.ours(PITFALLS[6].0, "cosine", &truth, interpolation(128, |u| reflectance(1.0, n, u)), 6e-3);
     }
     let critical = (1.0 - 1.0 / 2.25_f64).sqrt();
     let truth = "128 texels from 1.5 into 1, absolute, against Fresnel's formulas";
     let plain = interpolation(128, |u| reflectance(1.5, 1.0, u));
-    let reason = "It misses the kink at the critical angle. Rows of materials are seen from above: where that is the denser side, check warns.";
+    let reason = "It misses the kink at the critical angle. Rows are seen from above; `luthier check` warns of a material whose interface has the denser medium above it.";
     out.rejected(PITFALLS[7].0, "cosine over 0..1", truth, plain, reason);
     let knot = interpolation(64, |u| reflectance(1.5, 1.0, critical + (1.0 - critical) * u * u));
     out.rejected(
@@ -260,7 +278,7 @@ fn rows_of_fresnel(out: &mut Collector) {
         "knot at the critical angle, u^2 beyond",
         truth,
         knot,
-        "Holds; no material needs it so far.",
+        "It holds, but no material needs it so far.",
     );
 
     let metals = [("copper", 0.213, 4.05), ("aluminium", 1.0, 6.69), ("chromium", 3.18, 4.41), ("1.01", 1.01, 0.0)];
@@ -274,7 +292,13 @@ fn rows_of_fresnel(out: &mut Collector) {
             }))
         };
         let error = worst(&|cos| complex_f0(1.0, below, cos));
-        out.rejected(PITFALLS[8].0, "Schlick with complex F0", &truth, error, "Not the 5% that is claimed for it.");
+        out.rejected(
+            PITFALLS[8].0,
+            "Schlick with complex F0",
+            &truth,
+            error,
+            "The error is not the 5% that the literature claims.",
+        );
         let lazanyi = Lazanyi::fit(1.0, below);
         let error = worst(&|cos| lazanyi.eval(cos));
         out.rejected(
@@ -282,7 +306,7 @@ fn rows_of_fresnel(out: &mut Collector) {
             "with Lazanyi's correction",
             &truth,
             error,
-            "Better, and still no formula of Fresnel's.",
+            "The correction is better, but still not close to Fresnel's formulas.",
         );
         let row = interpolation(128, |cos| interface(Complex64::ONE, below, cos).unpolarised());
         out.ours(PITFALLS[8].0, "row of 128 texels", &truth, row, 6e-3);
@@ -306,7 +330,13 @@ fn single_precision(out: &mut Collector) {
             bad = if error > bad || error.is_nan() { error } else { bad };
             good = good.max((value(from_sine) / exact - 1.0).abs());
         }
-        out.rejected(PITFALLS[9].0, "from the cosine, f32", &truth, bad, "1 - cos^2 has no digits left.");
+        out.rejected(
+            PITFALLS[9].0,
+            "from the cosine, f32",
+            &truth,
+            bad,
+            "1 - cos^2 cancels and has no correct digits.",
+        );
         out.ours(PITFALLS[9].0, "from the squared sine, f32", &truth, good, 2e-6);
     }
     let (n, k) = (0.01_f64, 10.0_f64);
@@ -318,13 +348,13 @@ fn single_precision(out: &mut Collector) {
     let a = (0.5 * (modulus + t0)).max(0.0).sqrt();
     let usual = 1.0 - f64::from((modulus + 1.0 - 2.0 * a) / (modulus + 1.0 + 2.0 * a));
     let error = (usual / exact - 1.0).abs();
-    out.rejected(PITFALLS[10].0, "the usual form, f32", truth, error, "Squares of k cancel; tables are baked in f64.");
+    out.rejected(PITFALLS[10].0, "the usual form, f32", truth, error, "Squares of k cancel. Tables are baked in f64.");
     let ours = 1.0 - interface(Complex64::ONE, Complex64::new(n, k), 1.0).unpolarised();
     out.ours(PITFALLS[10].0, "interface(), f64", truth, (ours / exact - 1.0).abs(), 1e-11);
     let truth = "alpha^2 for alpha from 0.001 to 0.0078, relative";
     let alphas = || (0..200).map(|i| 1e-3 + 6.8e-3 * f64::from(i) / 200.0);
     let half = largest(alphas().map(|a| (f16(a * a) / (a * a) - 1.0).abs()));
-    out.rejected(PITFALLS[11].0, "half float", truth, half, "It is below the smallest normal number.");
+    out.rejected(PITFALLS[11].0, "half float", truth, half, "alpha^2 is below the smallest normal half float.");
     let single = largest(alphas().map(|a| (f64::from((a as f32) * (a as f32)) / (a * a) - 1.0).abs()));
     out.ours(PITFALLS[11].0, "f32", truth, single, 3e-7);
 }
@@ -339,7 +369,7 @@ fn energies(out: &mut Collector) {
         "one bounce",
         truth,
         single,
-        "What shaders evaluate: it lacks ln 2 here.",
+        "Shaders evaluate one bounce; it lacks ln 2 of the light in this case.",
     );
     let all = (1.0 - statistics.albedo(&mirror)[0]).abs();
     out.ours("single-scatter microfacets", "FGD with all bounces", truth, all, 1e-6);
@@ -362,23 +392,29 @@ fn energies(out: &mut Collector) {
             "Elek's clamp",
             &truth,
             (coat / seen - 1.0).abs(),
-            "The paper's; check warns of a base smoother than its coat.",
+            "This is the formula of the paper. `luthier check` warns of a base that is smoother than its coat.",
         );
     }
 
     let naive = |f: f64| f + (1.0 - f) * (1.0 - f) / (1.0 - f);
-    let truth = "coat and base that reflect everything, against 1";
+    let truth = "reflectance of a coat and a base that reflect everything, against 1";
     out.rejected(
         "q -> 0",
         "F + (1-F)^2/(1-F)",
         truth,
         naive(1.0) - 1.0,
-        "0/0; models and shaders stop where nothing comes through.",
+        "The formula is 0/0. Models and shaders stop where an interface transmits nothing.",
     );
     let gold = F0_TABLE.iter().find(|entry| entry.name == "Gold").and_then(|entry| entry.computed());
     let red = gold.map_or(f64::NAN, |rgb| rgb[0]);
-    let truth = "red of gold at normal incidence, against 1.0376 of its spectrum";
-    out.rejected("gold F0 red", "unorm8", truth, (red.min(1.0) / 1.0376 - 1.0).abs(), "It clips.");
+    let truth = "red of gold at normal incidence, against 1.0376 from its spectrum, relative";
+    out.rejected(
+        "gold F0 red",
+        "unorm8",
+        truth,
+        (red.min(1.0) / 1.0376 - 1.0).abs(),
+        "The format clips values above 1.",
+    );
     out.ours("gold F0 red", "half float", truth, (f16(red) / 1.0376 - 1.0).abs(), 1e-3);
 }
 
@@ -417,7 +453,13 @@ fn films(out: &mut Collector) {
     out.ours(row, "Airy's formula, complex", truth, (found - 0.631_275_63).abs(), 1e-8);
     let published = BelcourBarla { above: 1.5, film: 1.0, thickness_nm: 100.0, below: glass, orders: 2 };
     let error = (published.monochrome(550.0, cos) - 0.631_275_63).abs();
-    out.rejected(row, "Belcour and Barla's shader", truth, error, "It returns 1 beyond the critical angle.");
+    out.rejected(
+        row,
+        "Belcour and Barla's shader",
+        truth,
+        error,
+        "The published shader returns 1 beyond the critical angle.",
+    );
     let base = Complex64::new(0.213, 4.05);
     let truth = "film of index 1.5, 0.01 nm on copper, all angles, against the bare metal";
     let error = largest((1..=100).map(|i| {
@@ -456,7 +498,7 @@ fn beyond_zero(value: f64) -> f64 {
 fn extremes(out: &mut Collector) {
     let cosines = || EXTREME.into_iter().filter(|value| *value <= 1.0);
     let alphas = || EXTREME.into_iter().filter(|value| *value > 0.0 && *value <= 1.0);
-    let range = "least and largest double, cosines to 0: distance from 0..=1";
+    let range = "arguments from the least to the largest double, cosines down to 0: distance from the interval 0 to 1";
     let indices = || EXTREME.into_iter().flat_map(|n| EXTREME.map(|k| Complex64::new(n, k)));
     // The modulus of what is squared twice must be a number: of real materials it is below 1e3.
     let usable = |ior: &Complex64| ior.l1_norm() > 1e-75 && ior.l1_norm() < 1e75;
@@ -468,7 +510,7 @@ fn extremes(out: &mut Collector) {
     out.ours(
         EXTREMES,
         "Fresnel, interface()",
-        "moduli from 1e-75 to 1e75, cosines to 0: distance from 0..=1",
+        "moduli of the index from 1e-75 to 1e75, cosines down to 0: distance from the interval 0 to 1",
         bare,
         0.0,
     );
@@ -480,7 +522,13 @@ fn extremes(out: &mut Collector) {
             })
         })
     }));
-    out.ours(EXTREMES, "films, coated()", "film moduli from 1e-3 to 1e4, up to 20 um: distance from 0..=1", film, 0.0);
+    out.ours(
+        EXTREMES,
+        "films, coated()",
+        "moduli of the film's index from 1e-3 to 1e4, up to 20 um: distance from the interval 0 to 1",
+        film,
+        0.0,
+    );
     for kind in [Distribution::Ggx, Distribution::Beckmann] {
         let d = largest(alphas().filter(|a| *a >= 1e-30).flat_map(|alpha| {
             cosines().map(move |cos| beyond_zero(scaled_distribution(kind, alpha, cos, 1.0 - cos * cos)))
@@ -488,7 +536,7 @@ fn extremes(out: &mut Collector) {
         out.ours(
             EXTREMES,
             &format!("pi alpha^2 D, {}", kind.name()),
-            "alphas from 1e-30: distance from a number",
+            "alphas from 1e-30 to 1: distance below 0",
             d,
             0.0,
         );
@@ -526,13 +574,19 @@ fn extremes(out: &mut Collector) {
         EXTREMES,
         "Schlick's forms (complex F0, Lazanyi, F82)",
         false,
-        "finite",
+        "0 if all values are finite",
         approximations,
         0.0,
-        "Not finite.",
+        "A value is not finite.",
     );
     let average = largest([1.0 + 1e-3, 1.01, 1.5, 4.0, 100.0].into_iter().map(|n| beyond_unit(dielectric_average(n))));
-    out.ours(EXTREMES, "mean reflectance, closed form", "indices from 1.001 to 100: distance from 0..=1", average, 0.0);
+    out.ours(
+        EXTREMES,
+        "mean reflectance, closed form",
+        "indices from 1.001 to 100: distance from the interval 0 to 1",
+        average,
+        0.0,
+    );
     let escape = largest(cosines().flat_map(|cos| {
         alphas().flat_map(move |alpha| {
             [1e-7, 0.25, 0.667, 0.999_999, 1.0, 4.0].map(|eta| beyond_unit(escaping_share(cos, alpha, eta)))

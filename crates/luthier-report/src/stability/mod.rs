@@ -54,7 +54,7 @@ pub const FAILS: f64 = 1.0;
 /// Relative difference between a BRDF and that of the exchanged directions that rounding makes; beyond it reciprocity is lost.
 pub const RECIPROCITY: f64 = 1e-6;
 
-/// Where a method runs.
+/// Level at which a method runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, PartialOrd, Ord)]
 #[serde(rename_all = "kebab-case")]
 pub enum Level {
@@ -111,7 +111,7 @@ impl Verdict {
     }
 }
 
-/// How a method fails or degrades.
+/// Way in which a method fails or degrades.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, PartialOrd, Ord)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fault {
@@ -143,7 +143,7 @@ impl Fault {
 /// One method on one case.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Cell {
-    /// Where it runs.
+    /// Level at which it runs.
     pub level: Level,
     /// Name of the model.
     pub method: String,
@@ -207,7 +207,7 @@ pub struct Stability {
     pub cells: Vec<Cell>,
     /// Ways to write or to store one function.
     pub formulas: Vec<FormulaResult>,
-    /// Where each model may be used.
+    /// Domain of each model, by quantity.
     pub domains: Vec<DomainRange>,
 }
 

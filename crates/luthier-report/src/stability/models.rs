@@ -85,7 +85,7 @@ fn is_smooth(stack: &Monochrome) -> bool {
     })
 }
 
-/// Beyond this k a metal reflects everything to the last digit, and the fourth powers of the reference's own optics overflow.
+/// The k beyond which a metal reflects everything to the last digit, and the fourth powers in the reference's formulas overflow.
 const IDEAL_K: f64 = 1e30;
 
 fn truth(stack: &Monochrome, wo: DVec3) -> Estimate {

@@ -30,28 +30,37 @@ fn preamble(stability: &Stability, command: &str) -> String {
     format!(
         "# Where methods fail
 
-Every method on stacks and directions at which formulas divide by little, overflow or stop being true. All of this page is made by
+luthier runs each method (a reflectance model, or the shader of one) on stacks and directions at which formulas divide by small numbers, overflow \
+or stop being true. This command makes the whole page:
 
     {command}
 
-on {device}, by {}. What runs where:
+It ran on {device}, by {}. Methods run at four levels:
 
-- **f64**: all registered models. First the laws: values are finite, not negative, 0 at and below the horizon; reciprocal and conserving where \
-`luthier models` says so. Then the directional albedo at two angles against the truth of the case, at 525 nm.
-- **table**: f64 arithmetic on the texels that ship (weights of 8 bits), against exact terms.
-- **f32**: the shader without tables (`full`) on the adapter.
-- **device**: the shader with tables (`baked`) on the adapter.
+- **f64**: all registered models, in double precision. The laws come first. Values must be finite, not negative, and 0 at and below the horizon; \
+a model must be reciprocal and conserve energy if `luthier models` says that it does. Then the directional albedo at two angles, at 525 nm, is \
+compared with the truth of the case, which the last section names.
+- **table**: the arithmetic of the shader in f64, on the texels that a bake writes, filtered with weights of 8 bits.
+- **f32**: the shader without tables (the form `full`) on the adapter.
+- **device**: the shader with tables (the form `baked`) on the adapter.
 
-Rows named by a model alone are what ships where nobody asks for other tables: D is computed. Settings and budgets can choose rows of other \
-formats, over Schlick's form or not, D from a table and computed phases: rows named by a model and its tables, of fixed sizes, for two models \
-that read them. No other model and no albedo or film table is run in other formats.
+Table, f32 and device are compared with the same model in f64, with exact terms in place of tables. Slope parameters are raised to 0.001 there, as \
+in all shaders. On a software adapter (llvmpipe) f32 and device compute in IEEE single precision, so that their results are those of a CPU that rounds \
+correctly. A GPU fuses and reorders operations and has coarser reciprocals and sines, within the limits of WGSL.
 
-f32 and device are against the same model in f64 with exact terms, slope parameters raised to 0.001 as all shaders do. On a software adapter \
-(llvmpipe) both are IEEE single precision, so that f32 is what a correctly rounding CPU gives; a GPU fuses and reorders operations, and has coarser \
-reciprocals and sines, within what WGSL allows.
+A row that is named by a model alone uses the tables that a bake chooses by default; the distribution D is computed there. Settings and budgets can \
+choose other tables: reflectance rows in other texel formats, rows that store the difference from Schlick's form (Schlick rows), a table of D, or no \
+phase rows, so that the shader computes the interference. A row that is named by a model and its tables shows one such choice, with tables of fixed \
+sizes. Two models that read these tables are run with them. The other models, and albedo and film tables, are run in their default formats only.
 
-**Holds**: albedo within {}, shader within {} (relative to the brightest channel, at least a tenth of a white diffuser). **Degrades**: by \
-no more than {}. **Fails**: a law is broken, or the error is larger. No cell: the method is not for such stacks.
+A method gets one of three verdicts on a case:
+
+- It **holds** if the error of the albedo is at most {}, or the error of the shader at most {}. The error of a shader is relative to the brightest \
+channel of the reference, or to a tenth of a white diffuser where that is larger.
+- It **degrades** if the error is larger, but at most {}.
+- It **fails** if it breaks a law, or if the error is larger still.
+
+A cell is empty where the method does not apply to the stack.
 ",
         stability.generator,
         number(HOLDS_ALBEDO),
@@ -81,8 +90,8 @@ fn summary(out: &mut String, stability: &Stability) {
 
 fn domains(out: &mut String, stability: &Stability) {
     out.push_str(
-        "\n## Domains\n\nThe range of each quantity about its ordinary value over which no level of a model fails; in brackets that over which all hold. \
-         `luthier bake` and `luthier check` warn of a material that leaves the first.\n\n| model |",
+        "\n## Domains\n\nEach cell gives the range of a quantity, around its ordinary value, in which a model fails at no level. The range in brackets is the one in which \
+         it holds at all levels. `luthier bake` and `luthier check` warn about a material outside the first range.\n\n| model |",
     );
     for quantity in Quantity::ALL {
         let _ = write!(out, " {} (ordinary {}) |", quantity.name(), number(quantity.ordinary()));
@@ -114,7 +123,7 @@ fn heat_map(out: &mut String, stability: &Stability, level: Level) {
     }
     let _ = writeln!(
         out,
-        "\n## {}\n\n`.` holds; a number is an error that degrades; **bold** fails. The letters are the explanations below.",
+        "\n## {}\n\nA dot means that the method holds. A number is the error of a method that degrades. Bold text means that the method fails. The letters refer to the section Explanations.",
         level.name()
     );
     for cases in stability.cases.chunks(COLUMNS) {
@@ -160,7 +169,7 @@ fn letter(name: &str) -> String {
 }
 
 fn explanations(out: &mut String, stability: &Stability) {
-    out.push_str("\n## Explanations\n\nEach is for named methods and cases, up to a limit; beyond it a cell counts as unexplained.\n\n| | name | cells | largest | limit | reason |\n|---|---|--:|--:|--:|---|\n");
+    out.push_str("\n## Explanations\n\nEach explanation covers the errors of certain methods on certain cases, up to a limit. A cell with an error beyond the limit counts as unexplained. The column *largest* has the largest error that an explanation covers.\n\n| | name | cells | largest | limit | reason |\n|---|---|--:|--:|--:|---|\n");
     for explanation in EXPLANATIONS {
         let cells: Vec<&Cell> =
             stability.cells.iter().filter(|c| c.explanation.as_deref() == Some(explanation.name)).collect();
@@ -183,7 +192,7 @@ fn explanations(out: &mut String, stability: &Stability) {
 
 fn formulas(out: &mut String, stability: &Stability) {
     out.push_str(
-        "\n## Ways to write and to store a function\n\nKnown pitfalls of layered models and of their tables: for each what ships, and what was rejected, with the error.\n\n\
+        "\n## Ways to write and to store a function\n\nThe table lists known pitfalls of layered models and of their tables. For each pitfall it has the formulation that luthier uses (*ships*) and those that were rejected, with their errors. The last column says why a formulation was rejected.\n\n\
          | pitfall | formulation | ships | error of | error | verdict | |\n|---|---|---|---|--:|---|---|\n",
     );
     for formula in &stability.formulas {
@@ -199,14 +208,14 @@ fn formulas(out: &mut String, stability: &Stability) {
             if formula.holds() { "" } else { &formula.reason }
         );
     }
-    out.push_str("\nPitfalls that are cases of the heat maps:\n\n");
+    out.push_str("\nSome pitfalls are also cases of the tables of levels above:\n\n");
     for (row, cases) in PITFALLS.iter().filter(|(_, cases)| !cases.is_empty()) {
         let _ = writeln!(out, "- {row}: {}", cases.join(", "));
     }
 }
 
 fn cases(out: &mut String, stability: &Stability) {
-    out.push_str("\n## Cases\n\nAlbedos are compared with the truth: `layered-mc` is 16384 paths, and a model is not charged for four standard errors of them.\n\n| case | what it is | truth |\n|---|---|---|\n");
+    out.push_str("\n## Cases\n\nAlbedos are compared with the truth in the last column. `layered-mc` is the simulation with 16384 paths; four of its standard errors are taken off the error of a model. `laws only` means that no albedo is compared.\n\n| case | what it is | truth |\n|---|---|---|\n");
     for case in &stability.cases {
         let _ = writeln!(out, "| {} | {} | {} |", case.id, case.title, case.truth);
     }

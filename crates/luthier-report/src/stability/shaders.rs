@@ -10,7 +10,7 @@ use crate::judge::{References, evaluate, run};
 use crate::statistics::{brightest, relative_error};
 use crate::{Device, FLOOR, Form, Pair, ReportError, Subject, TableTerms, Weights};
 
-/// Below this a negative channel is rounding.
+/// Size below which a negative channel is rounding.
 const ROUNDING: f64 = 1e-6;
 
 /// Values of a case in f64: exact terms for the form with tables and for the one without, and the tables.

@@ -151,7 +151,7 @@ fn the_page_says_what_was_found() {
     assert!(pages[0].1.contains("copper &amp; &lt;satin&gt;") && !pages[0].1.contains("<satin>"));
     assert!(pages[0].1.contains("Fake &amp; Sons &lt;f64&gt;"));
     assert!(pages[1].1.contains("no shader was run"));
-    assert!(pages[2].1.contains("Over budget: some values are not finite"));
+    assert!(pages[2].1.contains("Over the limit: some values are not finite"));
 }
 
 /// The chosen point is ringed in every chart of what is paid and what is got.

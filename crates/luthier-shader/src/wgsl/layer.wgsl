@@ -60,8 +60,8 @@ struct LuthierLayer {
     grazing_cos_sq: f32,
     //? end
     //? absorption
-    /// How many times the slab below the interface halves light that goes straight through, RGB.
-    halvings: vec3<f32>,
+    /// Optical depth of the slab below the interface over ln 2, RGB: light that goes straight through is halved so many times.
+    optical_depth_log2: vec3<f32>,
     //? end
     //? end
     //? diffuse|granier_base
@@ -122,7 +122,7 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     layer.eta = numbers.z;
     layer.inverse_eta = head.z;
     layer.grazing_cos_sq = head.w;
-    layer.halvings = slab.xyz;
+    layer.optical_depth_log2 = slab.xyz;
     layer.lambert = base.xyz;
     layer.sigma = numbers.w;
     layer.critical_cot_sq = luthier_materials[first + $word_film_ior_k].w;

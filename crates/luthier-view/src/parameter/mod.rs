@@ -38,7 +38,7 @@ pub enum Handle {
     FilmMax(usize, usize),
     /// Constant index of a film.
     FilmIor(usize, usize),
-    /// How far the patina has developed.
+    /// Stage of the patina.
     PatinaExtent,
     /// Softness of its boundary.
     PatinaTransition,
@@ -60,7 +60,7 @@ pub enum Handle {
     FlakeSpread,
 }
 
-/// How a number is shown and what it may be.
+/// Name, unit and range of a number in the window.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameter {
     /// Number of the material.

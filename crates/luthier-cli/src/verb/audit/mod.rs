@@ -1,4 +1,4 @@
-//! `luthier audit`: judges a table that anybody made.
+//! `luthier audit`: judges a table of another program.
 
 mod statement;
 

@@ -194,7 +194,7 @@ fn text(report: &Report, folder: &Path) -> String {
     );
     out.push_str(&format!("largest relative error: {:.2e}\n", report.max_error()));
     if let Some(arithmetic) = report.max_arithmetic_error() {
-        out.push_str(&format!("of it, arithmetic: {arithmetic:.2e}\n"));
+        out.push_str(&format!("largest error of f32 arithmetic: {arithmetic:.2e}\n"));
     }
     if let Some(budget) = report.budget {
         let is_held = report.max_error() <= budget;

@@ -70,9 +70,9 @@ fn sentences(report: &ModelsReport, all: &[Overall<'_>]) -> String {
             .max_by(|a, b| a.close[kind].cmp(&b.close[kind]).then(b.errors[kind].0.total_cmp(&a.errors[kind].0)));
         let (Some(best), Some(close)) = (best, close) else { continue };
         out.push(format!(
-            "- The smallest median {what} error is {}, of `{}`; within {CLOSE} most often is `{}`, on {} of {count}.",
-            number(best.errors[kind].0),
+            "- `{}` has the smallest median {what} error, {}. `{}` is within {CLOSE} most often: on {} of {count} materials.",
             best.name,
+            number(best.errors[kind].0),
             close.name,
             close.close[kind],
         ));
@@ -83,7 +83,7 @@ fn sentences(report: &ModelsReport, all: &[Overall<'_>]) -> String {
             .map(|m| m.name.clone())
             .collect();
         if !far.is_empty() {
-            out.push(format!("- No model comes within {CLOSE} in its {what} on {}.", far.join(", ")));
+            out.push(format!("- No model has a {what} error within {CLOSE} on these materials: {}.", far.join(", ")));
         }
     }
     let gains: Vec<String> = all
@@ -92,13 +92,13 @@ fn sentences(report: &ModelsReport, all: &[Overall<'_>]) -> String {
         .map(|o| format!("`{}` ({}, {})", o.name, number(o.brightest.0), o.brightest.1))
         .collect();
     if !gains.is_empty() {
-        out.push(format!("- These return more light than there is (largest albedo, where): {}.", gains.join(", ")));
+        out.push(format!("- These models reflect more light than falls on the surface (in brackets the largest albedo and its material): {}.", gains.join(", ")));
     }
     for other in all.iter().filter(|o| !o.is_model) {
         let [(_, albedo, at), (_, lobe, lobe_at)] = other.errors;
-        let what = if other.name == CONTROL { "Noise alone" } else { "The mode of the reference alone" };
+        let what = if other.name == CONTROL { "Noise alone" } else { "The assumption of one facet alone" };
         out.push(format!(
-            "- {what} (`{}`) makes an albedo error of up to {} ({at}) and a lobe error of up to {} ({lobe_at}).",
+            "- {what} (`{}`) causes an albedo error of up to {} ({at}) and a lobe error of up to {} ({lobe_at}).",
             other.name,
             number(albedo),
             number(lobe),

@@ -33,33 +33,36 @@ fn preamble(report: &ModelsReport, command: &str) -> String {
     format!(
         "# The models against the reference
 
-How far every model of layers that `luthier models` lists is from `layered-mc`, the Monte Carlo of the whole stack that walks between the
-facets of rough interfaces; `microfacet` and `phong` stand beside them for what one layer alone does. Every line of this page is made by
+This page gives the error of every model of layers that `luthier models` lists, on every material. The reference is `layered-mc`, a Monte Carlo
+simulation of the whole stack in which paths walk between the facets of rough interfaces. `microfacet` and `phong` are listed too, to show the error
+of a model of one layer alone. This command makes the whole page:
 
     {command}
 
-A *view* is one of a material's three wavelengths ({wavelengths} nm; absorption and diffuse albedo are those of the
-channel of the wavelength) seen at {thetas} degrees from the normal, at azimuth {phi_deg}. Tables show the worst view. For each the reference
-traces {samples} paths from the eye, seed {seed}; a model is integrated over all light directions.
+Errors are measured in *views*. A view has one of a material's three wavelengths ({wavelengths} nm), and looks at the surface from {thetas} degrees
+to the normal, at azimuth {phi_deg}. Absorption and diffuse albedo are those of the colour channel of the wavelength. The tables show the worst view.
+For each view the reference traces {samples} paths from the eye, seed {seed}. A model is integrated over all light directions.
 
-- *Albedo error*: |a - a_ref|, a being the directional albedo, the part of unit light from everywhere that reaches the eye.
-- *Lobe error*: 1/2 sum |e_k - r_k| / a_ref, over the energies e of the model and r of the reference in {CELLS} cells of the
-  hemisphere: the share of the reference's light that goes elsewhere, and half of what is missing or too much. The same lobe has 0, a
-  black model 1/2, a lobe of the right energy that goes elsewhere 1; too much light has no limit.
+- *Albedo error*: |a - a_ref|, where a is the directional albedo: the part of uniform unit light that the surface reflects to the eye.
+- *Lobe error*: 1/2 sum |e_k - r_k| / a_ref, where e_k and r_k are the energies of the model and of the reference in {CELLS} cells of the
+  hemisphere. It adds two parts: the share of the reference's light that the model sends into other directions, and half of the light that the model
+  lacks or has too much. A perfect lobe has the error 0, a black model 1/2, and a lobe of the right energy in the wrong place 1. The error of
+  too much light has no upper bound.
 
 Cells are drawn around the mirror direction, by the half vector between light and eye: a disc of {first} degrees, then {rings} rings
-up to {last} degrees from the normal, each about sqrt(2) times as wide as the one before, in {SECTORS} sectors. Smooth interfaces
-reflect into a single direction in the reference; models show them as lobes of their smallest roughness, alpha 0.0001 or, Elek's
-models, 0.001. Both end in the albedo and in the disc (all but 1.3 % of the wider lobe), so that a mirror counts the same either way.
+up to {last} degrees from the normal, each about sqrt(2) times as wide as the one before, in {SECTORS} sectors. In the reference, smooth interfaces
+reflect into a single direction. Models show them as lobes of their smallest roughness: alpha 0.001 in Elek's models, 0.0001 in all others. The
+single direction and the lobe (but for 1.3 % of the wider lobe) lie in the disc, so that a mirror counts the same in both.
 
-*±* is half the 95 % interval of the reference's noise, plus what the model's quadrature changed by when its points were last
-doubled: the largest of a row. *Noise* is the lobe error that a perfect model would show on average.
+*±* is half the 95 % interval of the reference's noise, plus the change of the model's integral when its points were last
+doubled. It is the largest of its row. *Noise* is the lobe error that a perfect model would show on average.
 
-Two rows are no models. `layered-mc-one-facet` is the reference without bounces between facets of the same interface (what is blocked
-is lost), as most models assume. `{CONTROL}` is the reference against itself. Both have 1/{FEWER} of the paths, so more
-noise. `flakes` and `patina` stand for what `luthier models` says, on every material; models that leave layers out are judged on the
-whole material all the same. The smallest error of a material is bold, the first of those
-that are equal as printed.
+Two entries are not models: they check the reference itself. `layered-mc-one-facet` is the reference without bounces between the facets of one
+interface: the light that a second facet blocks is lost, as most models assume. It measures the error of that assumption. `{CONTROL}` is the reference
+with other random numbers, and measures the noise. Both trace 1/{FEWER} of the paths, and so have more noise than the reference.
+
+`flakes` and `patina` are evaluated with the parameters that `luthier models` states, on every material. Models that leave layers out are still judged
+against the whole material. The smallest error of a material is bold; among equal printed errors, the first one is.
 ",
         wavelengths = wavelengths.join(" or "),
         thetas = list(&report.thetas_deg),

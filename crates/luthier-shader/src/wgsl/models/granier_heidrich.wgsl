@@ -58,13 +58,13 @@ fn luthier_superpose(layer: LuthierLayer, r: vec3<f32>, t: vec3<f32>, cosines: v
     let red = luthier_lookup_phase(layer.phase_tile, s.x).x;
     let green = luthier_lookup_phase(layer.phase_tile, s.y).y;
     let blue = luthier_lookup_phase(layer.phase_tile, s.z).z;
-    let swing = vec3<f32>(red, green, blue);
+    let interference = vec3<f32>(red, green, blue);
     //? else
     // Whole cycles are taken off first: sines of large angles are imprecise on GPUs.
     let cycles = layer.film_ior_n * layer.film_thickness_waves * cosines;
-    let swing = 2.0 * cos(2.0 * LUTHIER_PI * (cycles - round(cycles)));
+    let interference = 2.0 * cos(2.0 * LUTHIER_PI * (cycles - round(cycles)));
     //? end
-    return max(r + t + swing * sqrt(r * t), vec3<f32>(0.0));
+    return max(r + t + interference * sqrt(r * t), vec3<f32>(0.0));
     //? else
     return r + t;
     //? end

@@ -83,9 +83,9 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     let returned = 1.0 - masking * fresnel;
     //? absorption
     //? flakes
-    let absorbed = exp2(-layer.halvings * (1.0 / next.wi_local.z + 1.0 / next.wo_local.z));
+    let absorbed = exp2(-layer.optical_depth_log2 * (1.0 / next.wi_local.z + 1.0 / next.wo_local.z));
     //? else
-    let absorbed = exp2(-layer.halvings * (secants.x + secants.y));
+    let absorbed = exp2(-layer.optical_depth_log2 * (secants.x + secants.y));
     //? end
     next.throughput = path.throughput * (absorbed - absorbed * fresnel) * returned;
     //? else

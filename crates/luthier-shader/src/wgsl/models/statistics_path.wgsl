@@ -125,7 +125,7 @@ fn $add(path: $Path, layer: LuthierLayer) -> $Path {
     next.ri0 = reflected;
     next.escape_tile = layer.escape_tile;
     //? absorption
-    let slab = exp2(-layer.halvings / next.cos_theta);
+    let slab = exp2(-layer.optical_depth_log2 / next.cos_theta);
     next.slab = slab;
     next.t0i *= slab;
     next.ti0 *= slab;

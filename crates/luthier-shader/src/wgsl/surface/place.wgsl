@@ -44,7 +44,7 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
     layer.alpha_xy = clamp(layer.alpha_xy * place.alpha_factor, vec2<f32>(0.001), vec2<f32>(1.0));
     //? absorption|film
     if index == 0u {
-        layer.halvings *= place.slab_factor;
+        layer.optical_depth_log2 *= place.slab_factor;
         layer.film_thickness_waves *= place.film_factor;
         layer.film_thickness_nm *= place.film_factor;
     }
