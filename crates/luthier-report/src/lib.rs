@@ -27,66 +27,49 @@
 //! the baker (both are of `luthier-optics`), not their seeds, number or colour treatment.
 
 mod audit;
-mod ball;
-mod chart;
-mod device;
-mod directions;
 mod error;
-mod evidence;
-mod exceptions;
-mod flip;
-mod format;
-mod json;
 mod judge;
-mod limits;
+mod measure;
 mod models;
-mod page;
+mod pages;
 mod parity;
 mod picture;
-mod profile;
-mod report;
-mod scan;
-mod seen;
 pub mod stability;
-mod statistics;
-mod subject;
-mod summary;
-mod table_terms;
 
 pub use audit::{
     Audit, AuditError, AuditVerdict, AxisSpec, Candidate, Layout, Mistake, Model, Nodes, Quantity as AxisQuantity,
     Statement, Term, audit,
 };
-pub use ball::{BallPicture, DistantLight, render_ball};
-pub use chart::{Curve, Plot, PlotAxis, PlotColor};
-pub use device::Device;
-pub use directions::{DirectionSet, Pair};
 pub use error::ReportError;
-pub use evidence::{
+pub use judge::ball::{BallPicture, DistantLight, render_ball};
+pub use judge::evidence::{
     AgainstReference, Costs, Exhibit, Exhibits, PictureErrors, ReferencePaths, ShaderCost, ShapeCost, StabilitySummary,
 };
-pub use exceptions::{Cause, Exception, Factor, Part};
-pub use flip::lightness_chroma_hue;
+pub use judge::exceptions::{Cause, Exception, Factor, Part};
+pub use judge::limits::{Asked, FileBudget, Limit, limits};
+pub use judge::profile::{ANGLE_BINS, AngleProfile, Exceedance};
+pub use judge::report::{
+    AlphaPoint, Compared, Comparison, Curves, MaterialReport, REPORT_SCHEMA, ReflectanceCurve, Report, TableReport,
+    TileReport, WorstCase,
+};
 pub use judge::{Progress, Settings, judge};
-pub use limits::{Asked, FileBudget, Limit, limits};
 pub use luthier_manifest::Form;
+pub use measure::device::Device;
+pub use measure::directions::{DirectionSet, Pair};
+pub use measure::seen::{Seen, SeenLight, picture_color_difference};
+pub use measure::statistics::{
+    DIM_FLOOR, ErrorSummary, FLOOR, PEAK_FRACTION, Spread, Statistics, TARGET_MAX_REL_ERR, WorstPair, statistics,
+};
+pub use measure::subject::Subject;
+pub use measure::table_terms::{TableTerms, Weights};
 pub use models::{
     MaterialModels, ModelErrors, ModelSettings, ModelSubject, ModelsReport, Quantity, ViewError, Worst, judge_models,
     judge_shading_models,
 };
+pub use pages::chart::{Curve, Plot, PlotAxis, PlotColor};
 pub use parity::{
     KNOWN, Known, POLISHED_ALPHAS, Parity, ParityCase, ParityRow, ParitySet, Share, Tolerance, Verdict, parity,
     tolerance,
 };
+pub use picture::flip::lightness_chroma_hue;
 pub use picture::{PIXELS_PER_DEGREE, PictureComparison, brightened_difference, compare_pictures, sheet};
-pub use profile::{ANGLE_BINS, AngleProfile, Exceedance};
-pub use report::{
-    AlphaPoint, Compared, Comparison, Curves, MaterialReport, REPORT_SCHEMA, ReflectanceCurve, Report, TableReport,
-    TileReport, WorstCase,
-};
-pub use seen::{Seen, SeenLight, picture_color_difference};
-pub use statistics::{
-    DIM_FLOOR, ErrorSummary, FLOOR, PEAK_FRACTION, Spread, Statistics, TARGET_MAX_REL_ERR, WorstPair, statistics,
-};
-pub use subject::Subject;
-pub use table_terms::{TableTerms, Weights};

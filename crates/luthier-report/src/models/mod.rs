@@ -38,7 +38,7 @@ use luthier_optics::color_difference::{ciede2000, lab};
 use luthier_optics::stack::Stack;
 use rayon::prelude::*;
 
-use crate::evidence::AgainstReference;
+use crate::judge::evidence::AgainstReference;
 
 use cells::Cells;
 use compare::compare;

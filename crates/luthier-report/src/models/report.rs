@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::page;
 use super::{ModelSettings, ModelSubject, PHI_DEG, Row, THETAS_DEG};
-use crate::{ReportError, json};
+use crate::{ReportError, pages::json};
 
 /// Errors of all models against the reference, on all materials.
 #[derive(Debug, Clone, PartialEq, Serialize)]

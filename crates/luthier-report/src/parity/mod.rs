@@ -11,11 +11,12 @@ use luthier_optics::Rgb;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::exceptions::{Factor, Factors, Miss, Part};
+use crate::judge::exceptions::{Factor, Factors, Miss, Part};
 use crate::judge::{References, WeightsVote, evaluate, run};
-use crate::table_terms::TableTerms;
+use crate::measure::table_terms::TableTerms;
 use crate::{
-    Device, ErrorSummary, FLOOR, Form, Pair, ReportError, Statistics, Subject, Weights, WorstPair, json, statistics,
+    Device, ErrorSummary, FLOOR, Form, Pair, ReportError, Statistics, Subject, Weights, WorstPair, pages::json,
+    statistics,
 };
 
 pub use sets::{POLISHED_ALPHAS, ParitySet};

@@ -6,8 +6,8 @@ use luthier_manifest::ShadingModel;
 
 use super::tolerances::{KNOWN, Tolerance, tolerance};
 use super::{Parity, ParityRow, ParitySet, Share, Verdict};
-use crate::format::{error, number};
-use crate::page::{angles, cause};
+use crate::pages::format::{error, number};
+use crate::pages::page::{angles, cause};
 use crate::{ErrorSummary, Form};
 
 /// The whole page.

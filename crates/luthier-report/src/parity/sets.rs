@@ -4,7 +4,9 @@ use glam::DVec3;
 use luthier_layers::elek::{Below, Layer};
 use serde::{Deserialize, Serialize};
 
-use crate::directions::{GRAZING_COS_MIN, LOBE_REACH, direction, halton, log_uniform, mirrored, rounded, spreads};
+use crate::measure::directions::{
+    GRAZING_COS_MIN, LOBE_REACH, direction, halton, log_uniform, mirrored, rounded, spreads,
+};
 use crate::{DirectionSet, Pair};
 
 /// Set of directions at which a shader is compared with its twin.

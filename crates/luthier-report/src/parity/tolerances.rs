@@ -4,7 +4,7 @@ use luthier_manifest::ShadingModel;
 use serde::{Deserialize, Serialize};
 
 use crate::Form;
-use crate::exceptions::Factor;
+use crate::judge::exceptions::Factor;
 
 /// A share of the error of a shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

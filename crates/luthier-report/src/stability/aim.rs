@@ -3,7 +3,7 @@
 use glam::DVec3;
 use luthier_layers::elek::Layer;
 
-use crate::directions::{direction, halton, log_uniform, mirrored, rounded};
+use crate::measure::directions::{direction, halton, log_uniform, mirrored, rounded};
 use crate::{Pair, ParitySet};
 
 /// Smallest cosine of a stressed direction.

@@ -32,7 +32,7 @@ mod svg;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{ReportError, json};
+use crate::{ReportError, pages::json};
 
 pub use aim::Aim;
 pub use case::{StressCase, cases};

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::case::StressCase;
 use super::{Cell, Fault, Level};
 use crate::judge::{References, evaluate, run};
-use crate::statistics::{brightest, relative_error};
+use crate::measure::statistics::{brightest, relative_error};
 use crate::{Device, FLOOR, Form, Pair, ReportError, Subject, TableTerms, Weights};
 
 /// Size below which a negative channel is rounding.

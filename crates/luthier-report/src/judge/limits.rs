@@ -1,0 +1,122 @@
+//! Limits that a report is held against.
+
+use luthier_lut::Values;
+use luthier_manifest::Budget;
+use serde::{Deserialize, Serialize};
+
+use crate::Report;
+use crate::measure::seen::SeenLight;
+
+/// A limit and what it was compared with.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Limit {
+    /// Origin of the limit: a material file, or the command line.
+    pub stated_by: String,
+    /// Quantity that is limited, in words.
+    pub quantity: String,
+    /// The limit.
+    pub limit: f64,
+    /// Value that was found; `None` where it is not finite, or where nothing was found that it could be compared with.
+    pub found: Option<f64>,
+    /// Source of the value: measured here, or stated by the baker.
+    pub found_by: String,
+    /// Whether what was found is at most the limit.
+    pub is_held: bool,
+}
+
+/// The budget of a material file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FileBudget {
+    /// Place of the material in the report.
+    pub material: usize,
+    /// Its limits.
+    pub budget: Budget,
+}
+
+/// Limits of the command line.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Asked {
+    /// Limit on the absolute error of every table, as measured here.
+    pub max_abs: Option<f64>,
+    /// Limit on the colour difference of the shaders (without a device, of the tables) under [`SeenLight::Daylight`].
+    pub delta_e: Option<f64>,
+    /// Limit on the mean FLIP of the pictures.
+    pub flip: Option<f64>,
+    /// Limit on the texel bytes of all tables.
+    pub max_bytes: Option<u64>,
+    /// Limit on the lobe error of the models that ship against the reference.
+    pub lobe: Option<f64>,
+}
+
+const HERE: &str = "measured here";
+const BAKER: &str = "stated by the baker";
+const BOTH: &str = "measured here; of tables that are not, stated by the baker";
+
+const LARGER: &str = "measured here or stated by the baker, whichever is larger";
+
+/// Holds a report against the budgets of its materials and those asked for. What was not measured holds no limit.
+pub fn limits(report: &Report, files: &[FileBudget], asked: &Asked) -> Vec<Limit> {
+    let mut out = Vec::new();
+    for FileBudget { material, budget } in files {
+        let Some(material) = report.materials.get(*material) else { continue };
+        let mut add = |quantity: &str, limit: Option<f64>, found: Option<f64>, by: &str| {
+            out.extend(limit.map(|limit| made(&material.source, quantity, limit, found, by)));
+        };
+        let read = || {
+            let reads = |users: &[String]| users.iter().any(|u| u.split('/').next() == Some(material.name.as_str()));
+            // Thickness textures are pictures.
+            let tables = report.tables.iter().filter(|t| t.kind.facts().values != Values::Picture);
+            tables.flat_map(|t| &t.tiles).filter(move |tile| reads(&tile.users))
+        };
+        let measured = read().map(|tile| tile.judge.as_ref().unwrap_or(&tile.baker).max_abs_err);
+        let by = if read().all(|tile| tile.judge.is_some()) { HERE } else { BOTH };
+        add("tables: largest absolute error", budget.max_abs, Some(measured.fold(0.0, f64::max)), by);
+        let searched = |of: fn(&luthier_manifest::Candidate) -> Option<f64>| {
+            report.searches.iter().filter_map(|s| of(s.front.get(s.chosen)?)).reduce(f64::max)
+        };
+        add("tables: largest relative error", budget.max_rel, searched(|c| Some(c.error.max_rel)), BAKER);
+        add("tables: largest CIEDE2000", budget.delta_e, searched(|c| c.error.delta_e), BAKER);
+        add("bytes of all tables", budget.max_bytes.map(|b| b as f64), Some(bytes(report)), HERE);
+        let cost = report.searches.iter().filter_map(|s| s.front.get(s.chosen)).map(|c| c.cost).sum();
+        let cost = Some(cost).filter(|_| !report.searches.is_empty());
+        add("estimated cost of one read of every searched table", budget.max_cost, cost, BAKER);
+    }
+    // Random directions may pass by what a tile misses.
+    let missed = report.tables.iter().flat_map(|table| table.tiles.iter().map(|tile| (table.kind.name(), tile)));
+    let missed = missed.filter_map(|(kind, tile)| Some((tile.miss()?.0, kind, &tile.name)));
+    if let Some((found, kind, tile)) = missed.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        let quantity = format!("tables: absolute error of {kind} tile {tile}, which misses what the bake aimed at");
+        out.extend(report.budget.map(|limit| made("command line", &quantity, limit, Some(found), LARGER)));
+    }
+    let mut add = |quantity: &str, limit: Option<f64>, found: Option<f64>| {
+        out.extend(limit.map(|limit| made("command line", quantity, limit, found, HERE)));
+    };
+    // Without tables nothing is read wrongly.
+    let tables = report.worst_table().map_or(0.0, |(error, ..)| error);
+    add("tables: largest absolute error", asked.max_abs, Some(tables));
+    let seen = report.worst_seen(SeenLight::Daylight).map(|(difference, _)| difference);
+    add("shaders: largest CIEDE2000 in daylight", asked.delta_e, seen);
+    let flip = report.materials.iter().map(|m| m.picture.as_ref().map(|p| p.flip_mean));
+    let flip = flip.collect::<Option<Vec<f64>>>().and_then(|all| all.into_iter().reduce(f64::max));
+    add("pictures: largest mean FLIP", asked.flip, flip);
+    add("bytes of all tables", asked.max_bytes.map(|b| b as f64), Some(bytes(report)));
+    let lobe = report.worst_model().map(|(_, model)| model.lobe_err);
+    add("models: largest lobe error against the reference", asked.lobe, lobe);
+    out
+}
+
+fn bytes(report: &Report) -> f64 {
+    report.tables.iter().map(|t| t.texel_bytes).sum::<u64>() as f64
+}
+
+fn made(stated_by: &str, quantity: &str, limit: f64, found: Option<f64>, found_by: &str) -> Limit {
+    let found = found.filter(|f| f.is_finite());
+    Limit {
+        stated_by: stated_by.to_owned(),
+        quantity: quantity.to_owned(),
+        limit,
+        found,
+        found_by: found_by.to_owned(),
+        is_held: found.is_some_and(|found| found <= limit),
+    }
+}

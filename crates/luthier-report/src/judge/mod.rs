@@ -1,0 +1,437 @@
+//! The judgement of a bake: order of its parts, settings, progress.
+
+pub(crate) mod ball;
+pub(crate) mod evidence;
+pub(crate) mod exceptions;
+pub(crate) mod limits;
+pub(crate) mod profile;
+pub(crate) mod report;
+
+use std::fmt;
+
+use glam::DVec3;
+use luthier_layers::elek::{self, Layer};
+use luthier_layers::real_time::Twin;
+use luthier_layers::terms::{Exact, ShaderTerms};
+use luthier_manifest::{ColorMode, LayerKind, LayerRecord, Manifest, MaterialEntry, ShadingModel};
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use luthier_optics::stack::Stack;
+use rayon::prelude::*;
+
+use crate::judge::exceptions::{Factors, Miss, exception};
+use crate::judge::report::{Compared, Comparison, MaterialReport, REPORT_SCHEMA, Report, TableReport};
+use crate::measure::seen::SeenBy;
+use crate::measure::statistics::{brightest, relative_error};
+use crate::measure::table_terms::{TableTerms, Weights, recorded_veil};
+use crate::{
+    AngleProfile, Device, DirectionSet, Exceedance, FLOOR, Form, Pair, ReportError, Statistics, Subject,
+    TARGET_MAX_REL_ERR, measure::scan, pages::format, statistics,
+};
+
+/// Factor by which the judge's largest table error may exceed the baker's before it is a finding: both scan finitely many
+/// points.
+const BAKER_MARGIN: f64 = 1.05;
+
+/// Standard errors by which an estimated table error has to exceed the baker's besides.
+pub(crate) const UNCERTAINTY_MARGIN: f64 = 4.0;
+
+/// Settings of a judgement.
+#[derive(Clone)]
+pub struct Settings<'a> {
+    /// Pairs of directions in every set of every material, at least 1. Albedos are estimated at a point for every 64 of them,
+    /// 4 to 48.
+    pub pairs_per_set: u32,
+    /// Limit on [`Report::max_error`].
+    pub budget: Option<f64>,
+    /// Facts that the caller knows about the run: shown and stored as given.
+    pub provenance: Vec<(String, String)>,
+    /// Called after every part of the table scan and every set of every material.
+    pub progress: Option<&'a dyn Fn(Progress<'_>)>,
+}
+
+impl Default for Settings<'_> {
+    /// 4096 pairs, no budget, no provenance, no progress.
+    fn default() -> Self {
+        Self { pairs_per_set: 4096, budget: None, provenance: Vec::new(), progress: None }
+    }
+}
+
+impl fmt::Debug for Settings<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Settings")
+            .field("pairs_per_set", &self.pairs_per_set)
+            .field("budget", &self.budget)
+            .field("provenance", &self.provenance)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Progress of a judgement.
+#[derive(Debug, Clone, Copy)]
+pub struct Progress<'a> {
+    /// Steps done: parts of the table scan, then sets of every material.
+    pub done: u64,
+    /// Steps in all.
+    pub total: u64,
+    /// The material at hand; `tables` while these are scanned.
+    pub subject: &'a str,
+}
+
+/// Judges a bake: its tables always, its shaders when there is a device to run them.
+///
+/// The result depends on the subject, the settings and the device's values only, not on the number of threads.
+///
+/// # Errors
+/// See [`ReportError`]: a subject that does not fit together, a device that fails. Bad values are no error here; they
+/// are in the report.
+pub fn judge(
+    subject: &Subject<'_>,
+    device: Option<&dyn Device>,
+    settings: &Settings<'_>,
+) -> Result<Report, ReportError> {
+    if settings.pairs_per_set == 0 {
+        return Err(ReportError::NoPairs);
+    }
+    subject.check()?;
+    let manifest = subject.manifest;
+    let references: Vec<References> = manifest
+        .materials
+        .iter()
+        .zip(&subject.stacks)
+        .map(|(material, stack)| References::new(stack, material))
+        .collect::<Result<_, _>>()?;
+    let baked: Vec<Exact> = references.iter().map(|r| r.baked().clone()).collect();
+    let total = u64::from(scan::STEPS) + (manifest.materials.len() * DirectionSet::ALL.len()) as u64;
+    let mut done = 0;
+    let mut step = |subject: &str| {
+        done += 1;
+        if let Some(progress) = settings.progress {
+            progress(Progress { done, total, subject });
+        }
+    };
+    let mut findings = Vec::new();
+    let tables = scan::scan(subject, &baked, settings.pairs_per_set, &mut || step("tables"), &mut findings)?;
+
+    let mut materials = Vec::with_capacity(manifest.materials.len());
+    let mut weights = WeightsVote::default();
+    for (index, (entry, references)) in manifest.materials.iter().zip(&references).enumerate() {
+        let eight_bit = TableTerms::new(subject, index, Weights::EightBit)?;
+        let exact_weights = TableTerms::new(subject, index, Weights::Exact)?;
+        let layers = &references.layers;
+        record_findings(&entry.name, layers, &entry.layers, &mut findings);
+        let mut gathered = Gathered::new(device.is_some());
+        for set in DirectionSet::ALL {
+            let pairs = set.pairs(settings.pairs_per_set, layers);
+            let three = evaluate(&references.twin, &references.three, &pairs);
+            let spectral = evaluate(&references.twin, &references.spectral, &pairs);
+            let baked_reference = match entry.color {
+                ColorMode::Spectral => &spectral,
+                ColorMode::ThreeWavelengths => &three,
+            };
+            let tables_8 = evaluate(&references.twin, &eight_bit, &pairs);
+            let tables_exact = evaluate(&references.twin, &exact_weights, &pairs);
+            gathered.add(Compared::TablesEightBit, set, &pairs, &tables_8, baked_reference);
+            gathered.add(Compared::TablesExact, set, &pairs, &tables_exact, baked_reference);
+            gathered.add(Compared::ThreeWavelengths, set, &pairs, &three, &spectral);
+            if let Some(device) = device {
+                let found = run(device, Form::Full, index as u32, &pairs)?;
+                let level = references.level.as_ref().map(|level| evaluate(&references.twin, level, &pairs));
+                gathered.add(Compared::FullDevice, set, &pairs, &found, level.as_ref().unwrap_or(&three));
+                let found = run(device, Form::Baked, index as u32, &pairs)?;
+                gathered.add(Compared::BakedDevice, set, &pairs, &found, baked_reference);
+                weights.add(&found, &tables_8, &tables_exact);
+                gathered.device.push((set, pairs, found, [tables_8, tables_exact]));
+            }
+            step(&entry.name);
+        }
+        materials.push(gathered);
+    }
+
+    let device_weights = device.map(|_| weights.decide());
+    let mut exceptions = Vec::new();
+    let mut judged = Vec::with_capacity(materials.len());
+    for (index, mut gathered) in materials.into_iter().enumerate() {
+        let entry = &manifest.materials[index];
+        if let Some(weights) = device_weights {
+            gathered.split_arithmetic(weights);
+        }
+        for (comparison, (_, seen)) in gathered.comparisons.iter_mut().zip(gathered.seen) {
+            comparison.seen = seen.finish();
+        }
+        gathered.comparisons.sort_by_key(|c| c.compared);
+        let material = MaterialReport {
+            name: entry.name.clone(),
+            source: entry.source.clone(),
+            source_hash: entry.source_hash.clone(),
+            class: entry.class.clone(),
+            model: entry.model,
+            color: entry.color,
+            layers: entry.layers.iter().map(format::layer).collect(),
+            comparisons: gathered.comparisons,
+            against_reference: Vec::new(),
+            alone: Vec::new(),
+            picture: None,
+            shape_cost: None,
+            choice: None,
+        };
+        let read = TableTerms::new(subject, index, device_weights.unwrap_or(Weights::EightBit))?;
+        for (compared, misses) in gathered.misses {
+            let reference = &references[index];
+            let factors = Factors {
+                twin: &reference.twin,
+                exact: reference.baked(),
+                tables: (compared != Compared::FullDevice).then_some(&read),
+                on_device: device.is_some(),
+            };
+            exceptions.extend(exception(&material, compared, &misses, &factors));
+        }
+        judged.push(material);
+    }
+    let materials = judged;
+    table_findings(&tables, &mut findings);
+    value_findings(&materials, &mut findings);
+    Ok(Report {
+        schema: REPORT_SCHEMA,
+        generator: manifest.generator.clone(),
+        model: models(manifest),
+        provenance: settings.provenance.clone(),
+        device: device.map(Device::name),
+        device_weights,
+        budget: settings.budget,
+        pairs_per_set: settings.pairs_per_set,
+        floor: FLOOR,
+        findings,
+        target_max_rel_err: TARGET_MAX_REL_ERR,
+        exceptions,
+        limits: Vec::new(),
+        searches: manifest.searches.clone(),
+        costs: None,
+        reference: None,
+        stability: None,
+        tables,
+        materials,
+    })
+}
+
+/// Names of the models in use.
+fn models(manifest: &Manifest) -> String {
+    let used = |model: &ShadingModel| manifest.materials.iter().any(|m| m.model == *model);
+    let names: Vec<&str> = ShadingModel::ALL.into_iter().filter(used).map(ShadingModel::name).collect();
+    names.join(", ")
+}
+
+/// The f64 twin of one material's shader, and its exact terms.
+pub(crate) struct References {
+    pub(crate) layers: Vec<Layer>,
+    pub(crate) twin: Twin,
+    pub(crate) spectral: Exact,
+    pub(crate) three: Exact,
+    /// Exact terms of the form without tables, where these are not `three`.
+    pub(crate) level: Option<Exact>,
+    color: ColorMode,
+}
+
+impl References {
+    pub(crate) fn new(stack: &Stack, material: &MaterialEntry) -> Result<Self, ReportError> {
+        let three = Color::ThreeWavelengths(material.wavelengths_nm);
+        let color = match material.color {
+            ColorMode::Spectral => Color::Spectral,
+            ColorMode::ThreeWavelengths => three,
+        };
+        let model = material.model;
+        let twin = Twin::new(model.name(), stack, material.wavelengths_nm, color);
+        Ok(Self {
+            layers: elek::layers(stack),
+            twin: twin.ok_or_else(|| ReportError::Model { material: material.name.clone(), model })?,
+            spectral: Exact::new(stack, Color::Spectral),
+            three: Exact::new(stack, three),
+            level: model.is_statistical().then(|| Exact::level(stack, three, recorded_veil(material))),
+            color: material.color,
+        })
+    }
+
+    /// The exact terms of the form without tables.
+    pub(crate) fn full(&self) -> &Exact {
+        self.level.as_ref().unwrap_or(&self.three)
+    }
+
+    /// The exact terms that the tables stand for.
+    pub(crate) fn baked(&self) -> &Exact {
+        match self.color {
+            ColorMode::Spectral => &self.spectral,
+            ColorMode::ThreeWavelengths => &self.three,
+        }
+    }
+}
+
+/// The model in f64 at exactly the f32 directions that the device gets.
+pub(crate) fn evaluate(twin: &Twin, terms: &(impl ShaderTerms + Sync), pairs: &[Pair]) -> Vec<Rgb> {
+    let wide = |w: [f32; 3]| DVec3::from(w.map(f64::from));
+    pairs.par_iter().map(|&(wi, wo)| twin.eval(terms, wide(wi), wide(wo))).collect()
+}
+
+pub(crate) fn run(device: &dyn Device, form: Form, material: u32, pairs: &[Pair]) -> Result<Vec<Rgb>, ReportError> {
+    let values =
+        device.evaluate(form, material, pairs).map_err(|message| ReportError::Device { form, material, message })?;
+    if values.len() != pairs.len() {
+        return Err(ReportError::DeviceCount { form, material, asked: pairs.len(), found: values.len() });
+    }
+    Ok(values.into_iter().map(|v| v.map(f64::from)).collect())
+}
+
+/// Pairs, the device's values there, and those of f64 arithmetic on the tables with 8-bit and exact weights.
+type DeviceRun = (DirectionSet, Vec<Pair>, Vec<Rgb>, [Vec<Rgb>; 2]);
+
+/// The comparisons of one material, as they come in.
+struct Gathered {
+    with_device: bool,
+    comparisons: Vec<Comparison>,
+    device: Vec<DeviceRun>,
+    /// Colour differences, of comparisons as they come in.
+    seen: Vec<(Compared, SeenBy)>,
+    /// Pairs that miss the target, of the comparisons that are judged.
+    misses: Vec<(Compared, Vec<Miss>)>,
+}
+
+impl Gathered {
+    fn new(with_device: bool) -> Self {
+        Self { with_device, comparisons: Vec::new(), device: Vec::new(), seen: Vec::new(), misses: Vec::new() }
+    }
+
+    fn add(&mut self, compared: Compared, set: DirectionSet, pairs: &[Pair], found: &[Rgb], expected: &[Rgb]) {
+        let at = self.comparisons.iter().position(|c| c.compared == compared).unwrap_or_else(|| {
+            self.comparisons.push(Comparison {
+                compared,
+                sets: Vec::new(),
+                by_angle: AngleProfile::new(),
+                exceedance: Exceedance::new(),
+                seen: Vec::new(),
+            });
+            self.seen.push((compared, SeenBy::default()));
+            self.comparisons.len() - 1
+        });
+        let comparison = &mut self.comparisons[at];
+        comparison.sets.push((set, statistics(pairs, found, expected)));
+        comparison.by_angle.add(pairs, found, expected);
+        comparison.exceedance.add(found, expected);
+        self.seen[at].1.add(pairs, found, expected);
+        if compared.is_judged(self.with_device) {
+            let misses = Miss::among(pairs, found, expected);
+            match self.misses.iter_mut().find(|(c, _)| *c == compared) {
+                Some((_, all)) => all.extend(misses),
+                None => self.misses.push((compared, misses)),
+            }
+        }
+    }
+
+    /// Compares the device with f64 on the same tables, now that its weights are known.
+    fn split_arithmetic(&mut self, weights: Weights) {
+        for (set, pairs, found, [eight_bit, exact]) in std::mem::take(&mut self.device) {
+            let expected = match weights {
+                Weights::EightBit => &eight_bit,
+                Weights::Exact => &exact,
+            };
+            self.add(Compared::Arithmetic, set, &pairs, &found, expected);
+        }
+    }
+}
+
+/// Vote on the weights that explain a device: the smaller sum of squared relative errors over all materials.
+#[derive(Default)]
+pub(crate) struct WeightsVote {
+    eight_bit: f64,
+    exact: f64,
+}
+
+impl WeightsVote {
+    pub(crate) fn add(&mut self, device: &[Rgb], eight_bit: &[Rgb], exact: &[Rgb]) {
+        let sum = |expected: &[Rgb]| {
+            let errors = device.iter().zip(expected).flat_map(|(d, e)| {
+                let bright = brightest(e);
+                [0, 1, 2].map(|c: usize| relative_error(d[c], e[c], bright, FLOOR))
+            });
+            errors.map(|e| e * e).filter(|e| e.is_finite()).sum::<f64>()
+        };
+        self.eight_bit += sum(eight_bit);
+        self.exact += sum(exact);
+    }
+
+    pub(crate) fn decide(&self) -> Weights {
+        if self.exact <= self.eight_bit { Weights::Exact } else { Weights::EightBit }
+    }
+}
+
+/// Records whose numbers are not those of the material file. The running maximum of alpha counts: no layer is evaluated
+/// smoother than the one above it.
+fn record_findings(material: &str, layers: &[Layer], records: &[LayerRecord], findings: &mut Vec<String>) {
+    let (mut alpha, mut recorded) = (0.0_f64, 0.0_f64);
+    for (i, (layer, record)) in layers.iter().zip(records).enumerate() {
+        if record.kind == LayerKind::Diffuse {
+            break;
+        }
+        alpha = alpha.max(layer.alpha);
+        recorded = recorded.max(record.alpha);
+        if (alpha - recorded).abs() > 1e-6 {
+            findings.push(format!(
+                "{material}, layer {i}: the shader's alpha is {}, the material file's {}.",
+                format::number(recorded),
+                format::number(alpha)
+            ));
+        }
+        if let elek::Below::Dielectric { eta, .. } = layer.below
+            && (eta - record.eta).abs() > 1e-6
+        {
+            findings.push(format!(
+                "{material}, layer {i}: the shader's relative index is {}, the material file's {}.",
+                format::number(record.eta),
+                format::number(eta)
+            ));
+        }
+    }
+}
+
+fn table_findings(tables: &[TableReport], findings: &mut Vec<String>) {
+    for table in tables {
+        for tile in &table.tiles {
+            let name = format!("{} tile {}", table.kind.name(), tile.name);
+            if tile.not_finite > 0 {
+                findings.push(format!("{name}: {} reads are not finite.", tile.not_finite));
+            }
+            if let Some((found, aim)) = tile.miss() {
+                let (found, aim) = (format::error(found), format::error(aim));
+                findings.push(format!("{name}: off by up to {found} as sampled, where the bake aimed at {aim}."));
+            }
+            if tile.users.is_empty() {
+                findings.push(format!("{name}: no layer reads it."));
+            }
+            let Some(judge) = &tile.judge else { continue };
+            let doubt = UNCERTAINTY_MARGIN * tile.uncertainty.unwrap_or(0.0);
+            if judge.max_abs_err - doubt > BAKER_MARGIN * tile.baker.max_abs_err {
+                findings.push(format!(
+                    "{name}: measured here {}, the baker states {}.",
+                    format::uncertain(judge.max_abs_err, tile.uncertainty),
+                    format::error(tile.baker.max_abs_err)
+                ));
+            }
+        }
+    }
+}
+
+fn value_findings(materials: &[MaterialReport], findings: &mut Vec<String>) {
+    for material in materials {
+        for comparison in &material.comparisons {
+            for (set, Statistics { not_finite, pairs, .. }) in &comparison.sets {
+                if *not_finite > 0 {
+                    findings.push(format!(
+                        "{}, {}, {} set: {not_finite} of {} values are not finite.",
+                        material.name,
+                        comparison.compared.name(),
+                        set.name(),
+                        3 * pairs
+                    ));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,376 @@
+//! Data of a judgement.
+
+use luthier_lut::{AtlasLayout, ErrorStats, TableKind, TexelFormat};
+use luthier_manifest::{ColorMode, Search, ShadingModel};
+use serde::{Deserialize, Serialize};
+
+use crate::judge::UNCERTAINTY_MARGIN;
+use crate::judge::evidence::{
+    AgainstReference, Costs, Exhibits, PictureErrors, ReferencePaths, ShapeCost, StabilitySummary,
+};
+use crate::judge::exceptions::Exception;
+use crate::judge::limits::Limit;
+use crate::measure::seen::Seen;
+use crate::{
+    AngleProfile, DirectionSet, Exceedance, ReportError, Statistics, Weights, pages::json, pages::page, pages::summary,
+};
+
+/// Version of the report's shape.
+pub const REPORT_SCHEMA: u32 = 3;
+
+/// The judgement of a bake: `report.json`, whose shape is `docs/report.schema.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// [`REPORT_SCHEMA`].
+    pub schema: u32,
+    /// Program and version that baked.
+    pub generator: String,
+    /// The reflectance model of shaders and reference.
+    pub model: String,
+    /// Facts that the caller knows about the run, in the caller's order.
+    pub provenance: Vec<(String, String)>,
+    /// The adapter; absent when no shader was run.
+    pub device: Option<String>,
+    /// The interpolation weights that explain the device's values best; absent when no shader was run.
+    pub device_weights: Option<Weights>,
+    /// The limit on [`Report::max_error`], if one was set.
+    pub budget: Option<f64>,
+    /// Pairs of directions in every set.
+    pub pairs_per_set: u32,
+    /// The floor of the relative errors: [`crate::FLOOR`].
+    pub floor: f64,
+    /// Oddities, in words: values that are not finite, figures of the baker that the judge does not confirm.
+    pub findings: Vec<String>,
+    /// The target that exceptions miss: [`crate::TARGET_MAX_REL_ERR`].
+    pub target_max_rel_err: f64,
+    /// Every material and shader that misses the target somewhere (without a device: every material whose tables, read
+    /// with 8-bit weights, do), in the order of the materials. Samples that are not finite are findings instead.
+    pub exceptions: Vec<Exception>,
+    /// Limits other than [`Report::budget`], and what they were compared with.
+    pub limits: Vec<Limit>,
+    /// Searches of the baker for sizes, mappings and formats of tables, with its own figures.
+    pub searches: Vec<Search>,
+    /// Costs of shaders, if they were given.
+    pub costs: Option<Costs>,
+    /// Reference that the models were compared with, if they were.
+    pub reference: Option<ReferencePaths>,
+    /// A run of the stability suite, if one was given.
+    pub stability: Option<StabilitySummary>,
+    /// The tables, in binding order.
+    pub tables: Vec<TableReport>,
+    /// The materials, in the order of the manifest.
+    pub materials: Vec<MaterialReport>,
+}
+
+/// One table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TableReport {
+    /// Kind of the table.
+    pub kind: TableKind,
+    /// Texels of the texture.
+    pub size: [u32; 2],
+    /// Axes, mappings and tiles.
+    pub layout: AtlasLayout,
+    /// Texel format.
+    pub format: TexelFormat,
+    /// Bytes of its texels, uncompressed.
+    pub texel_bytes: u64,
+    /// The file, relative to the manifest.
+    pub path: String,
+    /// One entry per tile.
+    pub tiles: Vec<TileReport>,
+}
+
+/// One tile of a table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TileReport {
+    /// Its name.
+    pub name: String,
+    /// Function that was tabulated.
+    pub model: String,
+    /// The layers that read it, as `material/layer`.
+    pub users: Vec<String>,
+    /// Its error as the baker measured it.
+    pub baker: ErrorStats,
+    /// Its error as measured here from the shipped texels, with 8-bit weights where a sampler filters the format;
+    /// absent for thickness maps, whose truth only the baker has, and for tiles that no layer reads.
+    pub judge: Option<ErrorStats>,
+    /// Standard error of the reference at the worst point of `judge`, where the reference is an estimate itself.
+    pub uncertainty: Option<f64>,
+    /// The error that the baker aimed at as sampled, where no other was asked for.
+    #[serde(default)]
+    pub aim: Option<f64>,
+    /// Reads that were not finite; they are not part of `judge`.
+    pub not_finite: u64,
+    /// Curves that are drawn of the tile.
+    pub curves: Curves,
+}
+
+impl TileReport {
+    /// Error of the tile as sampled and the aim of the bake, if the error exceeds the aim: the error that was measured here or that the
+    /// baker states, whichever is more.
+    pub fn miss(&self) -> Option<(f64, f64)> {
+        let stated = (self.baker.worst.expected - self.baker.worst.sampled).abs();
+        let doubt = UNCERTAINTY_MARGIN * self.uncertainty.unwrap_or(0.0);
+        let found = self.judge.as_ref().map_or(0.0, |judge| judge.max_abs_err - doubt).max(stated);
+        self.aim.filter(|aim| found > *aim).map(|aim| (found, aim))
+    }
+}
+
+/// Curves of a tile, in four significant digits: for drawing.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Curves {
+    /// No curves.
+    #[default]
+    None,
+    /// A Fresnel row, as read.
+    Reflectance(ReflectanceCurve),
+    /// The error of a distribution.
+    ByAlpha(Vec<AlphaPoint>),
+}
+
+/// A Fresnel row over the angle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ReflectanceCurve {
+    /// Degrees from one point to the next; the first is at the normal.
+    pub step_deg: f64,
+    /// Reflectance, RGB.
+    pub rgb: Vec<[f64; 3]>,
+}
+
+/// The error of a distribution in a band of alpha.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct AlphaPoint {
+    /// Middle of the band.
+    pub alpha: f64,
+    /// Largest error over the angle, as a fraction of the largest value at that alpha.
+    pub max_err_of_peak: f64,
+}
+
+/// One material.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MaterialReport {
+    /// Its name.
+    pub name: String,
+    /// The file it was described in.
+    pub source: String,
+    /// SHA-256 of it, hex, and of what it names.
+    pub source_hash: String,
+    /// Surface class a-h.
+    pub class: String,
+    /// The reflectance model that its shaders evaluate.
+    pub model: ShadingModel,
+    /// Colour mode of its tables, which decides the reference of the baked shader.
+    pub color: ColorMode,
+    /// The layers from the top down, in words.
+    pub layers: Vec<String>,
+    /// Comparisons, each over all sets of directions.
+    pub comparisons: Vec<Comparison>,
+    /// The models of shaders against the reference of whole stacks; empty where that was not asked for.
+    pub against_reference: Vec<AgainstReference>,
+    /// Searches for this material alone, by the baker's figures.
+    pub alone: Vec<Search>,
+    /// Its pictures, compared.
+    pub picture: Option<PictureErrors>,
+    /// The cost of its shader, by the kinds of its layers; `None` where the caller does not know it.
+    pub shape_cost: Option<ShapeCost>,
+    /// Reason for the choice of its model: the words of the manifest of a scene.
+    pub choice: Option<serde_json::Value>,
+}
+
+/// Two sides of a comparison; always `f cos_theta_i`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Compared {
+    /// The table-reading shader on the device, against exact terms in f64.
+    BakedDevice,
+    /// The tables alone: f64 arithmetic, 8-bit weights, against exact terms.
+    TablesEightBit,
+    /// The tables alone: f64 arithmetic, exact weights, against exact terms.
+    TablesExact,
+    /// f32 arithmetic alone: the table-reading shader on the device, against f64 arithmetic on the same tables.
+    Arithmetic,
+    /// The table-free shader on the device, against exact terms at its three wavelengths in f64.
+    FullDevice,
+    /// Three wavelengths against the spectrum, both in f64: no error but a difference of models.
+    ThreeWavelengths,
+}
+
+impl Compared {
+    /// Short name, for tables and legends.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::BakedDevice => "baked shader",
+            Self::TablesEightBit => "tables, 8-bit weights",
+            Self::TablesExact => "tables, exact weights",
+            Self::Arithmetic => "f32 arithmetic",
+            Self::FullDevice => "full shader",
+            Self::ThreeWavelengths => "three wavelengths",
+        }
+    }
+
+    /// Whether it is a comparison that [`Report::max_error`] covers in a run with or without a device.
+    pub(crate) fn is_judged(self, with_device: bool) -> bool {
+        match self {
+            Self::BakedDevice | Self::FullDevice => with_device,
+            Self::TablesEightBit => !with_device,
+            Self::TablesExact | Self::Arithmetic | Self::ThreeWavelengths => false,
+        }
+    }
+}
+
+/// A comparison over all sets of directions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Comparison {
+    /// Two sides of the comparison.
+    pub compared: Compared,
+    /// Statistics per set, in the order of [`DirectionSet::ALL`].
+    pub sets: Vec<(DirectionSet, Statistics)>,
+    /// Largest error by angle, over all sets.
+    pub by_angle: AngleProfile,
+    /// Counts of errors above thresholds, over all sets.
+    pub exceedance: Exceedance,
+    /// Colour differences, over all sets, a light each.
+    pub seen: Vec<Seen>,
+}
+
+impl Comparison {
+    /// The largest relative error of all sets; infinite when a sample is not finite.
+    pub fn max_error(&self) -> f64 {
+        self.sets.iter().map(|(_, s)| s.max_error()).fold(0.0, f64::max)
+    }
+}
+
+impl MaterialReport {
+    /// The comparison of a kind, if it was made.
+    pub fn comparison(&self, compared: Compared) -> Option<&Comparison> {
+        self.comparisons.iter().find(|c| c.compared == compared)
+    }
+}
+
+/// Place of the largest error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WorstCase<'a> {
+    /// Name of the material.
+    pub material: &'a str,
+    /// Two sides of the comparison.
+    pub compared: Compared,
+    /// Set of directions.
+    pub set: DirectionSet,
+    /// The statistics of that set; the pair is its `worst`, or `not_finite_at` when that is given.
+    pub statistics: &'a Statistics,
+    /// The error: that of [`Report::max_error`].
+    pub error: f64,
+}
+
+impl Report {
+    /// The figure that a limit is compared with: the largest error of `f cos_theta_i`, relative to max(brightest
+    /// channel of the reference, [`crate::FLOOR`]), of any channel, set and material - of both shaders on the device against their f64
+    /// references, or, when no shader was run, of the tables read with 8-bit weights. Infinite when any of those
+    /// samples, or any read of the table scans, is not finite.
+    pub fn max_error(&self) -> f64 {
+        let reads = self.tables.iter().flat_map(|t| &t.tiles).any(|t| t.not_finite > 0);
+        if reads { f64::INFINITY } else { self.worst().map_or(0.0, |w| w.error) }
+    }
+
+    /// Place of the largest error of the shaders (without a device, of the tables); nothing without materials.
+    pub fn worst(&self) -> Option<WorstCase<'_>> {
+        let mut worst: Option<WorstCase<'_>> = None;
+        for material in &self.materials {
+            for comparison in material.comparisons.iter().filter(|c| c.compared.is_judged(self.device.is_some())) {
+                for (set, statistics) in &comparison.sets {
+                    let error = statistics.max_error();
+                    if worst.is_none_or(|w| error > w.error) {
+                        let (material, compared) = (material.name.as_str(), comparison.compared);
+                        worst = Some(WorstCase { material, compared, set: *set, statistics, error });
+                    }
+                }
+            }
+        }
+        worst
+    }
+
+    /// The largest error of f32 arithmetic, measured like [`Report::max_error`]: of the table-reading shader against
+    /// f64 on the same tables, and of the table-free one against its reference. Nothing when no shader was run.
+    pub fn max_arithmetic_error(&self) -> Option<f64> {
+        let arithmetic = |m: &MaterialReport| {
+            let of = |compared| m.comparison(compared).map_or(0.0, Comparison::max_error);
+            of(Compared::Arithmetic).max(of(Compared::FullDevice))
+        };
+        self.device.as_ref().map(|_| self.materials.iter().map(arithmetic).fold(0.0, f64::max))
+    }
+
+    /// Whether [`Report::max_error`] is within the budget and every limit is held; nothing without any.
+    pub fn is_within_budget(&self) -> Option<bool> {
+        let budget = self.budget.map(|budget| self.max_error() <= budget);
+        let limits = self.limits.iter().map(|limit| limit.is_held);
+        budget.into_iter().chain(limits).reduce(|a, b| a && b)
+    }
+
+    /// The largest error of tables against their functions, as measured here: the table and the tile besides.
+    pub fn worst_table(&self) -> Option<(f64, TableKind, &str)> {
+        let tiles = self.tables.iter().flat_map(|t| t.tiles.iter().map(move |tile| (t.kind, tile)));
+        let measured =
+            tiles.filter_map(|(kind, tile)| Some((tile.judge.as_ref()?.max_abs_err, kind, tile.name.as_str())));
+        measured.max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// The largest colour difference of what [`Report::max_error`] covers, under a light: the material besides.
+    pub fn worst_seen(&self, light: crate::SeenLight) -> Option<(f64, &str)> {
+        let judged = |c: &&Comparison| c.compared.is_judged(self.device.is_some());
+        let seen = |m: &MaterialReport| {
+            let all = m.comparisons.iter().filter(judged).flat_map(|c| &c.seen).filter(|s| s.light == light);
+            all.map(|s| s.max).fold(0.0, f64::max)
+        };
+        self.materials.iter().map(|m| (seen(m), m.name.as_str())).max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// The largest error of the models that ship against the reference: lobe error, the material and all of that comparison.
+    pub fn worst_model(&self) -> Option<(&str, &AgainstReference)> {
+        let shipped = |m: &MaterialReport| m.against_reference.iter().position(|a| a.model == m.model);
+        let all = self.materials.iter().filter_map(|m| Some((m.name.as_str(), &m.against_reference[shipped(m)?])));
+        all.max_by(|a, b| a.1.lobe_err.total_cmp(&b.1.lobe_err))
+    }
+
+    /// JSON, objects indented and arrays in a line, with a final newline. Besides the fields it has `max_error`, `max_arithmetic_error` (null when
+    /// not finite) and `within_budget`.
+    ///
+    /// # Errors
+    /// [`ReportError::Json`], should the writer fail.
+    pub fn to_json(&self) -> Result<String, ReportError> {
+        #[derive(Serialize)]
+        struct WithFigures<'a> {
+            max_error: Option<f64>,
+            max_arithmetic_error: Option<f64>,
+            within_budget: Option<bool>,
+            #[serde(flatten)]
+            report: &'a Report,
+        }
+        json::to_string(&WithFigures {
+            max_error: Some(self.max_error()).filter(|e| e.is_finite()),
+            max_arithmetic_error: self.max_arithmetic_error().filter(|e| e.is_finite()),
+            within_budget: self.is_within_budget(),
+            report: self,
+        })
+    }
+
+    /// Reads what [`Report::to_json`] wrote.
+    ///
+    /// # Errors
+    /// [`ReportError::Json`] for other JSON.
+    pub fn from_json(json: &str) -> Result<Self, ReportError> {
+        Ok(serde_json::from_str(json)?)
+    }
+
+    /// A self-contained page: charts are inline SVG, pictures are in it, no external resource; light, dark and print. It can be read
+    /// without its script, which sorts, filters and reads out values. It is well-formed XML too.
+    pub fn to_html(&self, exhibits: &Exhibits) -> String {
+        page::html(self, exhibits)
+    }
+
+    /// A summary in Markdown, as for a pull request.
+    pub fn to_markdown(&self) -> String {
+        summary::markdown(self)
+    }
+}

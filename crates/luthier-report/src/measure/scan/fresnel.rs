@@ -1,0 +1,59 @@
+//! Scan of Fresnel rows against the interfaces that read them.
+
+use luthier_layers::terms::{Exact, Terms};
+use luthier_lut::incident_cosine;
+
+use super::{Measured, Scan, User, coordinate, coordinates};
+use crate::judge::report::{Curves, ReflectanceCurve};
+use crate::measure::subject::Table;
+use crate::measure::table_terms::{AngleAxis, Weights};
+use crate::pages::format::rounded;
+use crate::{ReportError, Subject};
+
+/// Points in every cell of a row.
+const POINTS_PER_CELL: u32 = 8;
+/// Extra cosines below 0.1, log-uniform down to 1e-6: the first cells hold the steepest part.
+const GRAZING_POINTS: u32 = 256;
+/// Degrees between the points of a drawn curve.
+const CURVE_STEP_DEG: f64 = 1.5;
+
+/// A Fresnel row against every interface that reads it: a row that two different interfaces share is wrong for one.
+pub(super) fn scan(
+    table: &Table<'_>,
+    tile: u32,
+    users: &[User],
+    subject: &Subject<'_>,
+    exact: &[Exact],
+) -> Result<Measured, ReportError> {
+    let axis = &table.entry.layout.x;
+    let angle = AngleAxis::of(table)?;
+    let regular = coordinates(axis, POINTS_PER_CELL).into_iter().map(|u| angle.cos_and_sin_sq(axis.decode(u)).0);
+    let grazing = (0..GRAZING_POINTS).map(|n| 1e-6 * libm::pow(1e5, coordinate(n, GRAZING_POINTS)));
+    let cosines: Vec<f64> = regular.chain(grazing).map(|c| c.clamp(0.0, 1.0)).collect();
+    let record = |(material, layer): User| &subject.manifest.materials[material].layers[layer];
+    let mut scan = Scan::default();
+    for &(material, layer) in users {
+        let record = record((material, layer));
+        // Rows over the cosine below the interface are met at their nodes too.
+        let inside = cosines.iter().map(|&c| incident_cosine(record.critical_cot_sq, c));
+        let inside = inside.filter(|_| record.critical_cot_sq > 0.0);
+        for cos_theta in cosines.iter().copied().chain(inside) {
+            let expected = exact[material].fresnel(layer, cos_theta);
+            let value = angle.value_at(record.row_cosine(cos_theta));
+            let sampled = table.read(tile, [value, 0.0], Weights::EightBit);
+            for channel in 0..3 {
+                scan.add(&[value], channel, expected[channel], sampled[channel]);
+            }
+        }
+    }
+    let first = users.first().map(|&user| record(user));
+    let steps = (90.0 / CURVE_STEP_DEG) as u32;
+    let rgb = (0..=steps).map(|n| {
+        let cos_theta = libm::cos((CURVE_STEP_DEG * f64::from(n)).to_radians());
+        let value = angle.value_at(first.map_or(cos_theta, |record| record.row_cosine(cos_theta)));
+        let [r, g, b, _] = table.read(tile, [value, 0.0], Weights::Exact);
+        [r, g, b].map(|c| rounded(c, 4))
+    });
+    let curve = ReflectanceCurve { step_deg: CURVE_STEP_DEG, rgb: rgb.collect() };
+    Ok(Measured { scan, curves: Curves::Reflectance(curve), uncertainty: None })
+}

@@ -1,0 +1,164 @@
+//! The judge's own measurement of shipped tables, at points that the baker did not choose.
+
+mod albedo;
+mod distribution;
+mod escape;
+mod fresnel;
+mod phase;
+mod thickness;
+
+use luthier_layers::terms::Exact;
+use luthier_lut::{Axis, ErrorStats, TableKind, Worst};
+
+use crate::judge::report::{Curves, TableReport, TileReport};
+use crate::measure::statistics::summarise;
+use crate::{ReportError, Subject};
+
+pub(crate) use albedo::{DOMAIN_ALPHA, DOMAIN_COS_THETA, REPEATS, STEPS, points};
+
+/// 1/phi and 1/phi^2 of the plastic number: steps of the two-dimensional additive recurrence (Roberts 2018).
+const R2: [f64; 2] = [0.754_877_666_246_693, 0.569_840_290_998_053_2];
+
+/// Reports every table of the subject; `exact[m]` are the exact terms that the tables of material `m` stand for. `step` is
+/// called [`STEPS`] times in all.
+pub(crate) fn scan(
+    subject: &Subject<'_>,
+    exact: &[Exact],
+    pairs_per_set: u32,
+    step: &mut dyn FnMut(),
+    findings: &mut Vec<String>,
+) -> Result<Vec<TableReport>, ReportError> {
+    let mut reports = Vec::new();
+    let mut albedo = None;
+    if let Some(table) = subject.table(TableKind::Fgd)? {
+        albedo = Some(albedo::scan(&table, subject, points(pairs_per_set), step)?);
+    } else {
+        (0..STEPS).for_each(|_| step());
+    }
+    for kind in TableKind::ALL {
+        let Some(table) = subject.table(kind)? else { continue };
+        let entry = table.entry;
+        let mut tiles = Vec::new();
+        for (number, tile) in (0..entry.layout.tiles).zip(&entry.tiles) {
+            let users = users(subject, kind, number);
+            let measured = match kind {
+                TableKind::Fresnel => Some(fresnel::scan(&table, number, &users, subject, exact)?),
+                TableKind::Distribution => distribution::scan(&table, number, &users, subject)?,
+                TableKind::Fgd => albedo.as_mut().and_then(|tiles| tiles[number as usize].take()),
+                TableKind::Phase => phase::scan(&table, number, &users, subject),
+                TableKind::Escape => escape::scan(&table, number, &users, subject),
+                TableKind::Film => None,
+                TableKind::Thickness => {
+                    findings.extend(thickness::doubts(&table, number, &users, subject));
+                    None
+                }
+            };
+            let Measured { scan, curves, uncertainty } = measured.unwrap_or_default();
+            let not_finite = scan.not_finite;
+            let judge = scan.stats();
+            tiles.push(TileReport {
+                name: tile.name.clone(),
+                model: tile.model.clone(),
+                users: names(subject, kind, number, &users),
+                baker: tile.error.clone(),
+                aim: tile.aim,
+                uncertainty: uncertainty.filter(|_| judge.is_some()),
+                judge,
+                not_finite,
+                curves,
+            });
+        }
+        reports.push(TableReport {
+            kind,
+            size: entry.layout.size(),
+            layout: entry.layout.clone(),
+            format: entry.format,
+            texel_bytes: entry.texel_bytes,
+            path: entry.texture.path.clone(),
+            tiles,
+        });
+    }
+    Ok(reports)
+}
+
+/// A layer that reads a tile: numbers of the material and of the layer.
+type User = (usize, usize);
+
+fn users(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<User> {
+    let mut out = Vec::new();
+    for (m, material) in subject.manifest.materials.iter().enumerate() {
+        let reads = |l: &usize| material.layers[*l].tiles[kind] == Some(tile);
+        out.extend((0..material.layers.len()).filter(reads).map(|l| (m, l)));
+    }
+    out
+}
+
+/// Names of those that read a tile: the layers, and what lies bare where no patina has grown.
+fn names(subject: &Subject<'_>, kind: TableKind, tile: u32, users: &[User]) -> Vec<String> {
+    let materials = &subject.manifest.materials;
+    let bare = materials
+        .iter()
+        .filter(|m| m.constants.patina.as_ref().is_some_and(|patina| patina.bare.tiles[kind] == Some(tile)));
+    users
+        .iter()
+        .map(|&(m, l)| format!("{}/{l}", materials[m].name))
+        .chain(bare.map(|m| format!("{}/bare", m.name)))
+        .collect()
+}
+
+/// Findings of the scan of a tile.
+#[derive(Default)]
+struct Measured {
+    scan: Scan,
+    curves: Curves,
+    /// Standard error of the reference at the worst point, when the reference is an estimate.
+    uncertainty: Option<f64>,
+}
+
+#[derive(Default)]
+struct Scan {
+    errors: Vec<f64>,
+    worst: Option<(f64, Worst)>,
+    not_finite: u64,
+}
+
+impl Scan {
+    /// Takes a sample in; whether it is the worst so far.
+    fn add(&mut self, at: &[f64], channel: usize, expected: f64, sampled: f64) -> bool {
+        let error = (expected - sampled).abs();
+        if !error.is_finite() {
+            self.not_finite += 1;
+            return false;
+        }
+        self.errors.push(error);
+        let is_worst = self.worst.as_ref().is_none_or(|(worst, _)| error > *worst);
+        if is_worst {
+            self.worst = Some((error, Worst { at: at.to_vec(), channel: channel as u32, expected, sampled }));
+        }
+        is_worst
+    }
+
+    fn stats(self) -> Option<ErrorStats> {
+        let (_, worst) = self.worst?;
+        let points = self.errors.len() as u64;
+        let summary = summarise(self.errors);
+        let (max_abs_err, rms_err, p99_abs_err) = (summary.max, summary.rms, summary.p99);
+        Some(ErrorStats { max_abs_err, rms_err, p99_abs_err, slack: 0.0, worst, points })
+    }
+}
+
+/// Coordinates of a scan along an axis: so many stratified points in every cell, never on a node; then the nodes, which balancing moves.
+fn coordinates(axis: &Axis, points_per_cell: u32) -> Vec<f64> {
+    let count = axis.intervals() * points_per_cell;
+    let nodes = (0..axis.size).map(|i| axis.node_coordinate(f64::from(i)));
+    (0..count).map(|n| coordinate(n, count)).chain(nodes).collect()
+}
+
+/// Coordinate of scan point `n` of `count` along an axis: stratified, never on a node.
+fn coordinate(n: u32, count: u32) -> f64 {
+    (f64::from(n) + 0.05 + 0.9 * fraction(0.5 + f64::from(n) * R2[0])) / f64::from(count)
+}
+
+fn fraction(x: f64) -> f64 {
+    x - libm::floor(x)
+}

@@ -1,0 +1,240 @@
+//! The model's terms as a shader reads them: from texels.
+
+use luthier_layers::statistics::diffuse_base::Veil;
+use luthier_layers::statistics::energy::Energy;
+use luthier_layers::terms::{ShaderTerms, Terms};
+use luthier_lut::{TableKind, TexelFormat, Values, WeightBits, read};
+use luthier_manifest::{LayerRecord, MaterialEntry};
+use luthier_optics::Rgb;
+use luthier_optics::microfacet::scaled_distribution;
+use luthier_optics::stack::Distribution;
+use serde::{Deserialize, Serialize};
+
+use crate::measure::subject::Table;
+use crate::{ReportError, Subject};
+
+/// How precisely a filtering sampler weighs texels. Formats that core WebGPU does not filter are read with four fetches
+/// and weighed in the shader, exactly, under either.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Weights {
+    /// 8 fractional bits: most hardware.
+    EightBit,
+    /// Weights as precise as the arithmetic: software rasterisers.
+    Exact,
+}
+
+impl Weights {
+    fn bits(self, format: TexelFormat) -> WeightBits {
+        match self {
+            Self::EightBit if format.is_filterable() => WeightBits::Fixed(8),
+            Self::EightBit | Self::Exact => WeightBits::Exact,
+        }
+    }
+}
+
+impl Table<'_> {
+    /// A sampled read of a tile.
+    pub(crate) fn read(&self, tile: u32, values: [f64; 2], weights: Weights) -> [f64; 4] {
+        let entry = self.entry;
+        read(entry.kind, &entry.layout, entry.format, self.texels, tile, values, weights.bits(entry.format))
+    }
+}
+
+/// Whether the x axis of a table is an angle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum AngleAxis {
+    Theta,
+    /// The cosine of an angle, or no angle at all.
+    CosTheta,
+}
+
+impl AngleAxis {
+    /// The quantity of the x axis of a table.
+    ///
+    /// # Errors
+    /// [`ReportError::Layout`] when the axes are not those of such a table.
+    pub(crate) fn of(table: &Table<'_>) -> Result<Self, ReportError> {
+        let kind = table.entry.kind;
+        let (layout, facts) = (&table.entry.layout, kind.facts());
+        let refuse = |reason| Err(ReportError::Layout { kind, reason });
+        if facts.y.is_some() && layout.y.is_none() {
+            return refuse("it has no second axis");
+        }
+        if !facts.x.contains(&layout.x.quantity.as_str()) {
+            return refuse("its x axis is not of a quantity that such tables have");
+        }
+        Ok(if layout.x.quantity.starts_with("theta") { Self::Theta } else { Self::CosTheta })
+    }
+
+    /// The axis value of an angle, from its cosine and squared sine.
+    fn value(self, cos_theta: f64, sin_theta_sq: f64) -> f64 {
+        match self {
+            Self::Theta => libm::atan2(sin_theta_sq.max(0.0).sqrt(), cos_theta),
+            Self::CosTheta => cos_theta,
+        }
+    }
+
+    /// The axis value of a cosine.
+    pub(crate) fn value_at(self, cos_theta: f64) -> f64 {
+        self.value(cos_theta, (1.0 - cos_theta) * (1.0 + cos_theta))
+    }
+
+    /// Cosine and squared sine of an axis value.
+    pub(crate) fn cos_and_sin_sq(self, value: f64) -> (f64, f64) {
+        match self {
+            Self::Theta => {
+                let sin = libm::sin(value);
+                (libm::cos(value), sin * sin)
+            }
+            Self::CosTheta => (value, (1.0 - value * value).max(0.0)),
+        }
+    }
+}
+
+/// Terms of one material, read from the shipped tables with f64 arithmetic.
+#[derive(Debug)]
+pub struct TableTerms<'a> {
+    /// By kind, with the quantity of the x axis.
+    tables: [Option<(Table<'a>, AngleAxis)>; TableKind::ALL.len()],
+    veil: Veil<3>,
+    records: &'a [LayerRecord],
+    weights: Weights,
+}
+
+impl<'a> TableTerms<'a> {
+    /// The terms of a material, by number.
+    ///
+    /// # Errors
+    /// A table that does not fit its layout, or a layer that needs a tile and has none.
+    pub fn new(subject: &'a Subject<'_>, material: usize, weights: Weights) -> Result<Self, ReportError> {
+        let Some(entry) = subject.manifest.materials.get(material) else {
+            return Err(ReportError::MaterialCount {
+                manifest: subject.manifest.materials.len(),
+                stacks: subject.stacks.len(),
+            });
+        };
+        let mut tables = [None; TableKind::ALL.len()];
+        for kind in TableKind::ALL {
+            if let Some(table) = subject.table(kind)? {
+                tables[kind as usize] = Some((table, AngleAxis::of(&table)?));
+            }
+        }
+        let terms = Self { tables, veil: recorded_veil(entry), records: &entry.layers, weights };
+        for (layer, kind) in read_by(entry) {
+            let is_computed = match kind {
+                // A layer without a tile has D computed.
+                TableKind::Distribution => entry.layers[layer].tiles[kind].is_none() || terms.table(kind).is_none(),
+                TableKind::Phase => terms.table(kind).is_none(),
+                _ => false,
+            };
+            if !is_computed && terms.tile(kind, layer).is_none() {
+                return Err(ReportError::MissingTile { material: entry.name.clone(), layer, kind });
+            }
+        }
+        Ok(terms)
+    }
+
+    fn table(&self, kind: TableKind) -> Option<Table<'a>> {
+        Some(self.tables[kind as usize]?.0)
+    }
+
+    /// The tile that a layer reads, if it is there.
+    fn tile(&self, kind: TableKind, layer: usize) -> Option<u32> {
+        let tiles = self.table(kind)?.entry.layout.tiles;
+        self.records.get(layer)?.tiles[kind].filter(|tile| *tile < tiles)
+    }
+
+    /// The table of a kind, the quantity of its x axis, and the tile of a layer in it.
+    fn read_at(&self, kind: TableKind, layer: usize) -> Option<(Table<'a>, AngleAxis, u32)> {
+        let (table, angle) = self.tables[kind as usize]?;
+        Some((table, angle, self.tile(kind, layer)?))
+    }
+
+    /// Name of the row that a layer reads; empty for a layer that reads none.
+    pub(crate) fn fresnel_name(&self, layer: usize) -> &str {
+        let kind = if self.tile(TableKind::Film, layer).is_some() { TableKind::Film } else { TableKind::Fresnel };
+        self.name(kind, layer)
+    }
+
+    /// Name of the tile of a kind that a layer reads; empty when there is none.
+    pub(crate) fn name(&self, kind: TableKind, layer: usize) -> &str {
+        let tile = self.table(kind).zip(self.tile(kind, layer));
+        tile.and_then(|(table, tile)| table.entry.tiles.get(tile as usize)).map_or("", |tile| &tile.name)
+    }
+}
+
+/// The veil of the layers above a diffuse base that shaders of the statistical models are told.
+pub(crate) fn recorded_veil(entry: &MaterialEntry) -> Veil<3> {
+    let constants = &entry.constants;
+    Veil { internal: constants.internal_reflectance, upward: [1.0 - constants.upward_loss; 3] }
+}
+
+/// Layers and tables without which the shader of a material cannot be evaluated.
+fn read_by(entry: &MaterialEntry) -> impl Iterator<Item = (usize, TableKind)> {
+    let kinds = TableKind::ALL.into_iter().filter(|kind| kind.facts().values != Values::Picture);
+    let all = (0..entry.layers.len()).flat_map(move |layer| kinds.clone().map(move |kind| (layer, kind)));
+    all.filter(|&(layer, kind)| entry.model.reads(kind, &entry.layers, layer))
+}
+
+impl Terms for TableTerms<'_> {
+    fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
+        let cos_theta_d = self.records[layer].row_cosine(cos_theta_d);
+        let [r, g, b, _] = if let Some((table, _, tile)) = self.read_at(TableKind::Film, layer) {
+            let record = &self.records[layer];
+            table.read(tile, [cos_theta_d, record.film_thickness_nm / record.film_thickness_max_nm], self.weights)
+        } else if let Some((table, angle, tile)) = self.read_at(TableKind::Fresnel, layer) {
+            table.read(tile, [angle.value_at(cos_theta_d), 0.0], self.weights)
+        } else {
+            [f64::NAN; 4]
+        };
+        [r, g, b]
+    }
+
+    /// Read where the layer has a tile; else the closed form.
+    fn distribution(&self, layer: usize, form: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
+        match self.read_at(TableKind::Distribution, layer) {
+            Some((table, angle, tile)) => {
+                table.read(tile, [angle.value(cos_theta_h, sin_theta_h_sq), alpha], self.weights)[0]
+            }
+            _ => scaled_distribution(form, alpha, cos_theta_h, sin_theta_h_sq),
+        }
+    }
+
+    /// The interference term from the row over s, the sum of the cosines times d / (2 d_max) (Granier and Heidrich 2003, eq. 19).
+    fn interference(&self, layer: usize, channel: usize, cosines: f64) -> Option<f64> {
+        let (table, _, tile) = self.read_at(TableKind::Phase, layer)?;
+        let record = &self.records[layer];
+        let s = 0.5 * cosines * record.film_thickness_nm / record.film_thickness_max_nm;
+        Some(table.read(tile, [s, 0.0], self.weights)[channel])
+    }
+}
+
+impl Energy<3> for TableTerms<'_> {
+    fn fgd(&self, layer: usize, cos_theta_i: f64, alpha: f64) -> Rgb {
+        match self.read_at(TableKind::Fgd, layer) {
+            Some((table, angle, tile)) => {
+                let [r, g, b, _] = table.read(tile, [angle.value_at(cos_theta_i), alpha], self.weights);
+                [r, g, b]
+            }
+            _ => [f64::NAN; 3],
+        }
+    }
+
+    /// The table is over the cosine outside, of the direction that is refracted to `cos_theta_i`.
+    fn escaping(&self, layer: usize, cos_theta_i: f64, alpha: f64, eta: f64) -> f64 {
+        match self.read_at(TableKind::Escape, layer) {
+            Some((table, _, tile)) => {
+                let sin_sq = (1.0 - cos_theta_i) * (1.0 + cos_theta_i) / (eta * eta);
+                table.read(tile, [(1.0 - sin_sq).max(0.0).sqrt(), alpha], self.weights)[0]
+            }
+            _ => f64::NAN,
+        }
+    }
+}
+
+impl ShaderTerms for TableTerms<'_> {
+    fn veil(&self) -> Veil<3> {
+        self.veil
+    }
+}

@@ -1,0 +1,312 @@
+//! Charts of price against error: bytes and cost, by kind of table and by material.
+
+use std::fmt::Write;
+
+use luthier_lut::{Axis, RowBase, TableKind};
+use luthier_manifest::{Budget, Candidate, CandidateForm, Search};
+
+use super::cell;
+use crate::judge::evidence::{Costs, ShaderCost};
+use crate::judge::report::{Compared, MaterialReport, Report};
+use crate::pages::chart::{Choice, Mark, Price, Series, legend, pareto};
+use crate::pages::format::{axis, bytes, error, escape, number};
+
+/// The instruction set that charts show; tables have all.
+pub(super) const FAMILY: &str = "rdna2";
+
+const CANDIDATE: Series = Series { class: "s-tables", name: "candidate of the search", mark: Mark::Diamond };
+const SHIPS: Series =
+    Series { class: "s-baked", name: "tables of this bake, as measured by the report", mark: Mark::Circle };
+const BAKED: Series = Series { class: "s-tables", name: "model, baked", mark: Mark::Diamond };
+const FULL: Series = Series { class: "s-full", name: "model, full", mark: Mark::Square };
+
+/// All kinds of tables.
+pub(super) fn write(out: &mut String, report: &Report) {
+    let says = match report.searches.len() {
+        0 => "the bake made no search".to_owned(),
+        count => format!("candidates of the search for {count} kinds of tables, and its choices"),
+    };
+    super::fold(out, "trade", "Cost and bytes against error", &says);
+    searches(out, report);
+    super::end_fold(out);
+}
+
+fn searches(out: &mut String, report: &Report) {
+    if report.searches.is_empty() {
+        out.push_str("<p>The sizes and formats of this bake are the fixed defaults, or those that its material files state.</p>\n");
+        return;
+    }
+    out.push_str(
+        "<p>The charts show the candidates that no other candidate beats in bytes, cost and error at once, over all materials. Their errors are absolute, of the worst \
+         tile, as the bake measured them. A ring marks the choice of the search. Cost is an estimate in operations of one look-up. The sections of materials have the cycles \
+         of whole shaders.</p>",
+    );
+    out.push_str(&legend(&[CANDIDATE, SHIPS]));
+    for search in &report.searches {
+        kind(out, report, search);
+    }
+}
+
+fn kind(out: &mut String, report: &Report, search: &Search) {
+    let name = search.kind.name();
+    let _ = write!(
+        out,
+        "<h3 id=\"trade-{name}\">{name}</h3><p class=\"sub\">{} candidates measured; the budget asks for {}.</p>",
+        search.measured,
+        asked(&search.budget)
+    );
+    if let [only] = search.front.as_slice() {
+        let Candidate { form, bytes: size, cost, error: found } = only;
+        let _ = writeln!(
+            out,
+            "<p>One candidate beats all others, and the search chose it: {}, {}, cost {}, error {}.</p>",
+            escape(&words(form)),
+            bytes(*size),
+            number(*cost),
+            error(found.max_abs)
+        );
+        return;
+    }
+    charts(out, search, shipped(report, search.kind, &|_| true), &format!("{name}, all materials"));
+    let _ = write!(
+        out,
+        "<details class=\"long\"><summary>All {} candidates of the front</summary><div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>candidate</th><th \
+         class=\"n\">bytes</th><th class=\"n\">cost</th><th class=\"n\">max abs</th><th class=\"n\">max rel</th><th \
+         class=\"n\">CIEDE2000</th><th>chosen</th></tr></thead><tbody>",
+        search.front.len()
+    );
+    for (i, candidate) in search.front.iter().enumerate() {
+        let Candidate { form, bytes: size, cost, error: found } = candidate;
+        let _ = write!(
+            out,
+            "<tr><td>{}</td><td class=\"n\" data-v=\"{size}\">{}</td>{}{}{}{}<td>{}</td></tr>",
+            escape(&words(form)),
+            bytes(*size),
+            cell(&number(*cost)),
+            cell(&error(found.max_abs)),
+            cell(&error(found.max_rel)),
+            cell(&found.delta_e.map_or_else(|| "–".to_owned(), error)),
+            if i == search.chosen { "yes" } else { "" }
+        );
+    }
+    out.push_str("</tbody></table></div></details>\n");
+}
+
+/// Bytes and cost of a search against its errors, side by side.
+fn charts(out: &mut String, search: &Search, ships: Option<(f64, f64)>, of: &str) {
+    let limit = search.budget.max_abs.map(|limit| (limit, "limit"));
+    out.push_str("<div class=\"pair\">");
+    for (price, x_title, by) in
+        [(Price::Bytes, "bytes of texels", "bytes"), (Price::Cost, "estimated operations of one look-up", "cost")]
+    {
+        let of_candidate = |(i, candidate): (usize, &Candidate)| Choice {
+            price: if price == Price::Bytes { candidate.bytes as f64 } else { candidate.cost },
+            error: candidate.error.max_abs,
+            tip: format!(
+                "{}: {}, cost {}, error {}",
+                words(&candidate.form),
+                bytes(candidate.bytes),
+                number(candidate.cost),
+                error(candidate.error.max_abs)
+            ),
+            label: "",
+            series: CANDIDATE,
+            is_chosen: i == search.chosen,
+        };
+        let mut choices: Vec<Choice> = search.front.iter().enumerate().map(of_candidate).collect();
+        if let (Price::Bytes, Some((size, found))) = (price, ships) {
+            let tip = format!(
+                "tables of this bake: {}, error as measured by the report {}",
+                bytes(size as u64),
+                error(found)
+            );
+            choices.push(Choice { price: size, error: found, tip, label: "", series: SHIPS, is_chosen: false });
+        }
+        let label = format!("{of}: {by} against error");
+        let _ = write!(
+            out,
+            "<figure>{}</figure>",
+            pareto(&label, price, [x_title, "largest absolute error"], &choices, limit)
+        );
+    }
+    out.push_str("</div>");
+}
+
+/// Bytes of the tiles of a kind that some layers read, and their largest error as measured here.
+fn shipped(report: &Report, kind: TableKind, reads: &dyn Fn(&str) -> bool) -> Option<(f64, f64)> {
+    let table = report.tables.iter().find(|t| t.kind == kind)?;
+    let read: Vec<_> = table.tiles.iter().filter(|tile| tile.users.iter().any(|u| reads(u))).collect();
+    let found = read.iter().filter_map(|tile| Some(tile.judge.as_ref()?.max_abs_err)).reduce(f64::max)?;
+    Some((table.texel_bytes as f64 * read.len() as f64 / table.tiles.len() as f64, found))
+}
+
+/// Writes the charts of one material: its tables if it is baked alone, and its models by cost.
+pub(super) fn of_material(out: &mut String, report: &Report, material: &MaterialReport) {
+    let alone: Vec<&Search> = material.alone.iter().filter(|s| s.front.len() > 1).collect();
+    let costs = report.costs.as_ref().map_or(Vec::new(), |costs| of_shaders(report, material, costs));
+    if !alone.is_empty() {
+        out.push_str(&legend(&[CANDIDATE, SHIPS]));
+    }
+    for search in alone {
+        let reads = |user: &str| user.split('/').next() == Some(material.name.as_str());
+        let name = search.kind.name();
+        charts(out, search, shipped(report, search.kind, &reads), &format!("{}, {name} alone", material.name));
+        let _ = write!(
+            out,
+            "<p class=\"note\">The chart shows the search for the table {name} if this material is baked alone; the ring is its choice. All materials of this bake share \
+             one table. Its mark stands at the bytes of the tiles that this material reads.</p>"
+        );
+    }
+    models(out, material, &costs);
+    if let Some(choice) = &material.choice {
+        out.push_str("<h4>Why this model</h4><table class=\"choice\"><tbody>");
+        choice_rows(out, choice);
+        out.push_str("</tbody></table>");
+    }
+}
+
+/// A choice as the manifest states it, name by name.
+fn choice_rows(out: &mut String, choice: &serde_json::Value) {
+    let text = |value: &serde_json::Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+    match choice.as_object() {
+        Some(members) => {
+            for (name, value) in members {
+                let _ = write!(
+                    out,
+                    "<tr><th>{}</th><td>{}</td></tr>",
+                    escape(&name.replace('_', " ")),
+                    escape(&text(value))
+                );
+            }
+        }
+        None => {
+            let _ = write!(out, "<tr><td>{}</td></tr>", escape(&text(choice)));
+        }
+    }
+}
+
+/// The shader of a model and form, with its cycles per instruction set.
+pub(super) struct Shader<'a> {
+    pub(super) row: &'a ShaderCost,
+    cycles: Vec<(&'a str, i64)>,
+}
+
+/// Shaders of a material whose numbers come from the buffer, with D as this bake has it.
+pub(super) fn of_shaders<'a>(report: &Report, material: &MaterialReport, costs: &'a Costs) -> Vec<Shader<'a>> {
+    let reads_d = report.tables.iter().any(|t| t.kind == TableKind::Distribution);
+    let rows = || costs.rows.iter().filter(|r| r.material == material.name && !r.constant);
+    // Shaders that read no table of D are listed as closed whatever the bake has.
+    let is_ours = |r: &&ShaderCost| {
+        let has_other =
+            rows().any(|o| (o.model, &o.form, &o.family) == (r.model, &r.form, &r.family) && o.closed != r.closed);
+        !has_other || r.closed != reads_d
+    };
+    let ours: Vec<&ShaderCost> = rows().filter(is_ours).collect();
+    let of_family = ours.iter().filter(|r| r.family == FAMILY);
+    let cycles = |row: &ShaderCost| {
+        let same = ours.iter().filter(|o| (o.model, &o.form) == (row.model, &row.form));
+        same.map(|o| (o.family.as_str(), o.inverse_throughput)).collect()
+    };
+    of_family.map(|row| Shader { row, cycles: cycles(row) }).collect()
+}
+
+/// The models of a material: cost against error.
+fn models(out: &mut String, material: &MaterialReport, shaders: &[Shader<'_>]) {
+    let against = |row: &ShaderCost| material.against_reference.iter().find(|a| a.model == row.model);
+    // Without the reference only the shaders of the model that ships have an error, against that model.
+    let own = |row: &ShaderCost| {
+        let compared = if row.form == "full" { Compared::FullDevice } else { Compared::BakedDevice };
+        Some(material.comparison(compared)?.max_error()).filter(|_| row.model == material.model)
+    };
+    let has_reference = !material.against_reference.is_empty();
+    let choice = |shader: &Shader<'_>| {
+        let row = shader.row;
+        let found = if has_reference { against(row).map(|a| a.lobe_err) } else { own(row) }?;
+        let is_chosen = row.model == material.model && row.form == "baked";
+        let (series, label) = if row.form == "full" { (FULL, "") } else { (BAKED, row.model.name()) };
+        let tip =
+            format!("{}, {}: {} cycles, error {}", row.model.name(), row.form, row.inverse_throughput, error(found));
+        Some(Choice { price: row.inverse_throughput as f64, error: found, tip, label, series, is_chosen })
+    };
+    let choices: Vec<Choice> = shaders.iter().filter_map(choice).collect();
+    let (title, note) = if has_reference {
+        (
+            "share of the light in other directions",
+            "The errors are those of the models against layered-mc. The errors of tables and arithmetic are shown above.",
+        )
+    } else {
+        (
+            "largest relative error",
+            "The errors are those of the shaders against their model. luthier report --reference measures those of the models.",
+        )
+    };
+    if !choices.is_empty() {
+        let x_title = format!("cycles per wave of 64 threads, {FAMILY}, inverse throughput");
+        let label = format!("{}: cost of models against error", material.name);
+        let _ = write!(
+            out,
+            "{}<figure class=\"half\">{}<figcaption>{note} The ring marks the shader of this bake.</figcaption></figure>",
+            legend(&[BAKED, FULL]),
+            pareto(&label, Price::Cost, [&x_title, title], &choices, None)
+        );
+    }
+    if has_reference {
+        model_rows(out, material, shaders);
+    }
+}
+
+fn model_rows(out: &mut String, material: &MaterialReport, shaders: &[Shader<'_>]) {
+    out.push_str(
+        "<details><summary>Models against the reference</summary><div class=\"scroll\"><table class=\"sortable\"><thead><tr><th>model</th><th \
+         class=\"n\">lobe</th><th class=\"n\">noise alone</th><th class=\"n\">albedo</th><th class=\"n\">CIEDE2000</th>",
+    );
+    let angles = material.against_reference.first().map_or(&[][..], |a| &a.by_angle);
+    for (theta_deg, _) in angles {
+        let _ = write!(out, "<th class=\"n\">lobe at {theta_deg}°</th>");
+    }
+    out.push_str("<th>cycles, baked</th><th>cycles, full</th></tr></thead><tbody>");
+    for a in &material.against_reference {
+        let ships = if a.model == material.model { "<small>of this bake</small>" } else { "" };
+        let _ = write!(out, "<tr><th>{}{ships}</th>", a.model.name());
+        for value in
+            [a.lobe_err, a.lobe_noise, a.albedo_err, a.delta_e].into_iter().chain(a.by_angle.iter().map(|p| p.1))
+        {
+            out.push_str(&cell(&error(value)));
+        }
+        for form in ["baked", "full"] {
+            let shader = shaders.iter().find(|s| s.row.model == a.model && s.row.form == form);
+            let words = shader.map_or_else(
+                || "–".to_owned(),
+                |s| s.cycles.iter().map(|(family, cycles)| format!("{cycles} {family}")).collect::<Vec<_>>().join(", "),
+            );
+            let _ = write!(out, "<td>{}</td>", escape(&words));
+        }
+        out.push_str("</tr>");
+    }
+    out.push_str("</tbody></table></div></details>");
+}
+
+fn asked(budget: &Budget) -> String {
+    let parts = [
+        ("absolute error", budget.max_abs.map(error)),
+        ("relative error", budget.max_rel.map(error)),
+        ("CIEDE2000", budget.delta_e.map(number)),
+        ("bytes", budget.max_bytes.map(bytes)),
+        ("cost", budget.max_cost.map(number)),
+    ];
+    let stated: Vec<String> =
+        parts.into_iter().filter_map(|(name, limit)| Some(format!("{name} at most {}", limit?))).collect();
+    if stated.is_empty() { "nothing".to_owned() } else { stated.join(", ") }
+}
+
+/// A candidate in words.
+fn words(form: &CandidateForm) -> String {
+    match form {
+        CandidateForm::ClosedForm => "closed form".to_owned(),
+        CandidateForm::Table { x, y, format, base } => {
+            let over = if *base == RowBase::Zero { "" } else { " over Schlick's form" };
+            let axes: Vec<String> = [Some(x), y.as_ref()].into_iter().flatten().map(|a: &Axis| axis(a)).collect();
+            format!("{format}{over}; {}", axes.join("; "))
+        }
+    }
+}
