@@ -68,7 +68,11 @@ fn named(text: &str) -> Vec<&str> {
     let is_ours = |path: &&str| {
         let first = path.split('/').next().unwrap_or_default();
         let is_made = ["out", "target", "tables", "shaders", "maps", "build"].contains(&first);
-        path.contains('/') && !path.contains(char::is_whitespace) && !is_made && Path::new(path).extension().is_some()
+        path.contains('/')
+            && !path.contains("NAME")
+            && !path.contains(char::is_whitespace)
+            && !is_made
+            && Path::new(path).extension().is_some()
     };
     let links = text.split("](").skip(1).filter_map(|rest| rest.split([')', '#']).next());
     quoted.filter(is_ours).chain(links.filter(|link| !link.is_empty() && !link.contains("://"))).collect()

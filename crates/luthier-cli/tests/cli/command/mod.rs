@@ -3,6 +3,7 @@
 mod crate_graph;
 mod failures;
 mod help;
+mod kinds;
 mod pipes;
 mod schema;
 mod sources;

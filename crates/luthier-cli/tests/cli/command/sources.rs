@@ -20,7 +20,7 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
 }
 
 /// The sources of every crate, Rust and WGSL, with their text.
-fn sources() -> Vec<(String, String)> {
+pub(super) fn sources() -> Vec<(String, String)> {
     let mut files = Vec::new();
     for entry in fs::read_dir(root().join("crates")).unwrap() {
         collect(&entry.unwrap().path().join("src"), &mut files);

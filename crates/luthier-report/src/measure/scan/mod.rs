@@ -3,6 +3,7 @@
 mod albedo;
 mod distribution;
 mod escape;
+mod film;
 mod fresnel;
 mod phase;
 mod thickness;
@@ -47,7 +48,7 @@ pub(crate) fn scan(
                 TableKind::Fgd => albedo.as_mut().and_then(|tiles| tiles[number as usize].take()),
                 TableKind::Phase => phase::scan(&table, number, &users, subject),
                 TableKind::Escape => escape::scan(&table, number, &users, subject),
-                TableKind::Film => None,
+                TableKind::Film => film::scan(&table, number, &users, subject),
                 TableKind::Thickness => {
                     findings.extend(thickness::doubts(&table, number, &users, subject));
                     None
