@@ -81,8 +81,8 @@ pub struct KindFacts {
     pub values: Values,
     /// Layers that can have a tile.
     pub served: Served,
-    /// Whether a shader computes its function for layers without a tile.
-    pub has_closed_form: bool,
+    /// Whether a shader does without a tile: it computes the function, or takes the value that it mostly has.
+    pub is_optional: bool,
     /// Whether `[bake.NAME]` in a material file sets the size and the format of its tiles.
     pub has_settings: bool,
 }
@@ -103,7 +103,7 @@ impl TableKind {
                 y: None,
                 values: Values::Positive,
                 served: Served::Interfaces,
-                has_closed_form: false,
+                is_optional: false,
                 has_settings: true,
             },
             Self::Distribution => KindFacts {
@@ -115,7 +115,7 @@ impl TableKind {
                 y: Some("alpha"),
                 values: Values::Positive,
                 served: Served::Interfaces,
-                has_closed_form: true,
+                is_optional: true,
                 has_settings: true,
             },
             Self::Fgd => KindFacts {
@@ -128,7 +128,7 @@ impl TableKind {
                 y: Some("alpha"),
                 values: Values::Positive,
                 served: Served::Interfaces,
-                has_closed_form: false,
+                is_optional: false,
                 has_settings: true,
             },
             Self::Phase => KindFacts {
@@ -140,7 +140,7 @@ impl TableKind {
                 y: None,
                 values: Values::Signed,
                 served: Served::Films,
-                has_closed_form: true,
+                is_optional: true,
                 has_settings: true,
             },
             Self::Thickness => KindFacts {
@@ -152,7 +152,7 @@ impl TableKind {
                 y: Some("v"),
                 values: Values::Picture,
                 served: Served::VaryingFilms,
-                has_closed_form: false,
+                is_optional: false,
                 has_settings: true,
             },
             Self::Film => KindFacts {
@@ -164,7 +164,7 @@ impl TableKind {
                 y: Some("fraction"),
                 values: Values::Positive,
                 served: Served::VaryingFilms,
-                has_closed_form: false,
+                is_optional: false,
                 has_settings: false,
             },
             Self::Escape => KindFacts {
@@ -176,7 +176,7 @@ impl TableKind {
                 y: Some("alpha"),
                 values: Values::Positive,
                 served: Served::Transparent,
-                has_closed_form: false,
+                is_optional: true,
                 has_settings: false,
             },
         }

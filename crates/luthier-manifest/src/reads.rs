@@ -16,7 +16,7 @@ impl ShadingModel {
     }
 
     /// Whether the `baked` shader of the model reads a kind of table for a layer of a stack, by the layer's number. For layers without a
-    /// tile it computes the kinds that have a closed form.
+    /// tile it does without the kinds that are optional.
     pub fn reads(self, kind: TableKind, layers: &[LayerRecord], number: usize) -> bool {
         let Some(layer) = layers.get(number).filter(|layer| layer.kind != LayerKind::Diffuse) else { return false };
         let has_film = layer.film_ior_n[0] > 0.0;

@@ -136,13 +136,13 @@ impl<'a> MaterialSet<'a> {
             return Ok(());
         }
         let has_phases = || self.layers().any(|layer| layer.tiles[TableKind::Phase].is_some());
-        // Layers without a tile of D have it computed; films have their phases computed where no layer has a tile of them.
+        // Films have their phases computed where no layer has a tile of them.
         let is_needed = |table: TableKind| match table {
             TableKind::Phase => has_phases(),
-            _ => !table.facts().has_closed_form && table.facts().values != Values::Picture,
+            _ => !table.facts().is_optional && table.facts().values != Values::Picture,
         };
         for table in TableKind::ALL {
-            if table.facts().has_closed_form && !self.has(table) {
+            if matches!(table, TableKind::Distribution | TableKind::Phase) && !self.has(table) {
                 continue;
             }
             let tiles = self.tables.iter().find(|t| t.kind == table).map_or(0, |t| t.layout.tiles);
