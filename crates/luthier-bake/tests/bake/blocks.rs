@@ -1,11 +1,11 @@
 //! Albedo tiles in blocks of texels: asked for by a material, or taken by a search whose target has them.
 
-use luthier_bake::{BakeError, Baked, MemoryStore, Options, Silent, bake_with};
+use luthier_bake::{BakeError, Baked, Options, Silent, bake_with};
 use luthier_lut::{FormatSet, TableKind, TexelFormat};
 use luthier_manifest::Budget;
 use luthier_material::Material;
 
-use crate::materials::{atlas, bake_all, conductor, dielectric, material, try_bake};
+use crate::materials::{STORE, atlas, bake_all, bake_anew, conductor, dielectric, material, try_bake};
 
 const BLOCKS: TexelFormat = TexelFormat::Bc6hRgbUfloat;
 
@@ -25,13 +25,7 @@ fn set(settings: &str) -> Vec<Material> {
 fn with(materials: &[Material], max_abs: f64, formats: FormatSet) -> Result<Baked, BakeError> {
     let budget = Budget { max_abs: Some(max_abs), ..Budget::default() };
     let no_images = |_: &str, _: &str| Err("no images here".to_owned());
-    bake_with(
-        materials,
-        &Options { budget, formats, ..Options::default() },
-        &no_images,
-        &Silent,
-        &MemoryStore::default(),
-    )
+    bake_with(materials, &Options { budget, formats, ..Options::default() }, &no_images, &Silent, &*STORE)
 }
 
 #[test]
@@ -44,7 +38,7 @@ fn a_material_may_ask_for_blocks() {
     assert!(fgd.tiles.iter().all(|tile| tile.error.max_abs_err < 0.06));
     // Each tile has the blocks that it has alone.
     let alone = material("gold", &conductor("\"au\"", 0.2), SMALL_BLOCKS);
-    let alone = bake_all(&[alone]);
+    let alone = bake_anew(&[alone]);
     let alone = &atlas(&alone, TableKind::Fgd).texels;
     let tile = fgd.tiles.iter().position(|tile| tile.name == "gold/0").unwrap();
     let [x, y] = fgd.layout.origin(tile as u32);

@@ -6,7 +6,7 @@ use luthier_manifest::{Budget, CandidateForm, Search};
 use luthier_material::Material;
 use luthier_optics::interface::Interface;
 
-use crate::materials::{atlas, bake_all, conductor, dielectric, material};
+use crate::materials::{STORE, atlas, bake_all, conductor, dielectric, material, no_images};
 
 /// Albedos that no search touches: small, and their format given.
 const FIXED_ALBEDO: &str = "[bake.fgd]\nsize = [8, 8]\nformat = \"rgba16float\"\n";
@@ -26,8 +26,7 @@ fn set() -> Vec<Material> {
 }
 
 fn with(materials: &[Material], budget: Budget) -> Result<Baked, BakeError> {
-    let no_images = |_: &str, _: &str| Err("no images here".to_owned());
-    bake_with(materials, &Options { budget, ..Options::default() }, &no_images, &Silent, &MemoryStore::default())
+    bake_with(materials, &Options { budget, ..Options::default() }, &no_images, &Silent, &*STORE)
 }
 
 fn max_abs(limit: f64) -> Budget {
@@ -169,7 +168,8 @@ fn threads_do_not_matter_to_a_search() {
     set.push(material("free", &conductor("{ n = 1.2, k = 2.4 }", 0.3), "[bake.phase]\nsize = 16\n"));
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| with(&set, max_abs(3e-3)).unwrap())
+        let options = Options { budget: max_abs(3e-3), ..Options::default() };
+        pool.install(|| bake_with(&set, &options, &no_images, &Silent, &MemoryStore::default()).unwrap())
     };
     assert_eq!(on(1), on(3));
 }
@@ -210,15 +210,9 @@ fn rows_of_a_form_that_is_asked_for_are_not_searched() {
     let layers = dielectric("0.5", 0.1) + &conductor("{ n = 0.2, k = 3.5 }", 0.3);
     let inverse = material("inverse", &layers, FIXED_ALBEDO);
     let asked = (RowBase::Schlick, TexelFormat::Rgb10a2Unorm);
-    let no_images = |_: &str, _: &str| Err("no images here".to_owned());
-    let bake = bake_with(
-        &[inverse],
-        &Options { rows: Some(asked), ..Options::default() },
-        &no_images,
-        &Silent,
-        &MemoryStore::default(),
-    )
-    .unwrap();
+    let bake =
+        bake_with(&[inverse], &Options { rows: Some(asked), ..Options::default() }, &no_images, &Silent, &*STORE)
+            .unwrap();
     let atlas = atlas(&bake, TableKind::Fresnel);
     assert_eq!((atlas.layout.base, atlas.format), asked);
 }

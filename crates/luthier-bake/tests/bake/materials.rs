@@ -1,6 +1,8 @@
 //! Materials for tests, written as files.
 
-use luthier_bake::{BakeError, Baked, Silent, bake};
+use std::sync::LazyLock;
+
+use luthier_bake::{BakeError, Baked, MemoryStore, Options, Silent, bake, bake_with};
 use luthier_lut::{Atlas, TableKind};
 use luthier_material::{Material, parse};
 
@@ -41,8 +43,20 @@ pub(crate) fn dielectric(ior: &str, alpha: f64) -> String {
     format!("[[layer]]\ntype = \"dielectric\"\nior = {ior}\nalpha = {alpha}\n")
 }
 
+/// Results that tests share: facets of a slope distribution are costly, and many need them.
+pub(crate) static STORE: LazyLock<MemoryStore> = LazyLock::new(MemoryStore::default);
+
+pub(crate) fn no_images(_: &str, _: &str) -> Result<luthier_lut::Image, String> {
+    Err("no images here".to_owned())
+}
+
 pub(crate) fn try_bake(materials: &[Material]) -> Result<Baked, BakeError> {
-    bake(materials, &|_, _| Err("no images here".to_owned()), &Silent)
+    bake_with(materials, &Options::default(), &no_images, &Silent, &*STORE)
+}
+
+/// A bake that computes everything itself, to be compared with another.
+pub(crate) fn bake_anew(materials: &[Material]) -> Baked {
+    bake(materials, &no_images, &Silent).unwrap()
 }
 
 pub(crate) fn bake_all(materials: &[Material]) -> Baked {

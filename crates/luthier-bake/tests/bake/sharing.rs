@@ -3,7 +3,7 @@
 use luthier_bake::{BakeError, Baked};
 use luthier_lut::TableKind;
 
-use crate::materials::{ASKED, SMALL, atlas, bake_all, conductor, dielectric, material, try_bake};
+use crate::materials::{ASKED, SMALL, atlas, bake_anew, conductor, dielectric, material, try_bake};
 
 const FILM: &str = "
 [[layer]]
@@ -36,7 +36,7 @@ fn threads_do_not_matter() {
     ];
     let with = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| bake_all(&set))
+        pool.install(|| bake_anew(&set))
     };
     let (one, two) = (with(1), with(2));
     assert_eq!(one, two);
@@ -60,7 +60,7 @@ fn equal_interfaces_share_their_tiles() {
         material("three", &dielectric("1.6", 0.1), ASKED),
         material("four", &(dielectric("1.5", 0.1) + "distribution = \"beckmann\"\n"), ASKED),
     ];
-    let baked = bake_all(&set);
+    let baked = bake_anew(&set);
     let [one, two, three, four] = [0, 1, 2, 3].map(|i: usize| &baked.materials[i].records[0]);
     assert_eq!(
         (one.tiles[TableKind::Fresnel], one.tiles[TableKind::Distribution], one.tiles[TableKind::Fgd]),
@@ -87,8 +87,8 @@ fn equal_interfaces_share_their_tiles() {
 #[test]
 fn a_tile_does_not_depend_on_its_neighbours() {
     let gold = || material("gold", &conductor("\"au\"", 0.3), SMALL);
-    let alone = bake_all(&[gold()]);
-    let set = bake_all(&[material("one", &dielectric("1.5", 0.1), ASKED), gold()]);
+    let alone = bake_anew(&[gold()]);
+    let set = bake_anew(&[material("one", &dielectric("1.5", 0.1), ASKED), gold()]);
     for kind in [TableKind::Fresnel, TableKind::Distribution, TableKind::Fgd] {
         let (a, b) = (atlas(&alone, kind), atlas(&set, kind));
         let tile = b.tiles.len() as u32 - 1;

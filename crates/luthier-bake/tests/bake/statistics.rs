@@ -13,7 +13,7 @@ use luthier_material::Material;
 use luthier_optics::stack::Distribution;
 use luthier_optics::visible_normals;
 
-use crate::materials::{SMALL, atlas, bake_all, conductor, dielectric, material};
+use crate::materials::{SMALL, atlas, bake_all, bake_anew, conductor, dielectric, material};
 
 /// Tables other than those that are looked at.
 const OTHERS: &str = "[bake.fresnel]\nsize = 4\n[bake.distribution]\nsize = [4, 4]\n";
@@ -72,14 +72,14 @@ fn only_what_is_read_is_baked_and_other_tiles_stay_as_they_are() {
         belcour("paint", &(coat(0.1, CLEAR) + &diffuse()), ""),
         belcour("glass", &dielectric("1.5", 0.1), ""),
     ];
-    let baked = bake_all(&set);
+    let baked = bake_anew(&set);
     let escapes =
         |i: usize| baked.materials[i].records.iter().map(|r| r.tiles[TableKind::Escape].is_some()).collect::<Vec<_>>();
     // The second coat has the index of the first: nothing is totally reflected.
     assert_eq!(escapes(0), [true, false, false]);
     assert_eq!((escapes(1), escapes(2)), (vec![false; 2], vec![false]));
 
-    let plain = bake_all(&[material("metal", &layers, &three)]);
+    let plain = bake_anew(&[material("metal", &layers, &three)]);
     let hashes =
         |bake: &Baked| atlas(bake, TableKind::Fgd).tiles.iter().map(|t| t.input_hash.clone()).collect::<Vec<_>>();
     assert_eq!(hashes(&baked), hashes(&plain));
@@ -94,7 +94,7 @@ fn threads_do_not_matter_to_what_the_statistics_read() {
         belcour("paint", &(coat(0.1, "[0.1, 0.2, 0.3]") + &diffuse()), ""),
     ];
     let with =
-        |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| bake_all(&set));
+        |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| bake_anew(&set));
     assert_eq!(with(1), with(2));
 }
 
