@@ -1,11 +1,84 @@
 #!/usr/bin/env bash
-# What takes too long for every change: property tests with new seeds, packages built from their own files, libraries of a hundred and of a
-# thousand materials, and every generated page made anew. Wants what scripts/test.sh installs, and GNU time. Two hours on two cores.
+# Checks that take too long for every change, and a page with their results: docs/pages/nightly.md.
+#   scripts/nightly.sh            all: two hours on two cores
+#   scripts/nightly.sh STEP...    some, by the names of the functions below
+#   scripts/nightly.sh --check    fails where a step has not passed since the bytes of bakes last changed (tests/golden.sha256)
+# Wants what scripts/test.sh installs, and GNU time.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-./scripts/random-tests.sh 5
-./scripts/package.sh --verify
-./scripts/many.sh 100 1000
-./scripts/pages.sh
+steps=(tests random release kind packages scale pages)
+declare -A says=(
+  [tests]='tests that are ignored elsewhere: the whole stability suite, and audits of tables with planted mistakes'
+  [random]='property tests with two new random seeds'
+  [release]='release builds write the bytes of debug builds, and name the Cargo feature of a verb that they lack'
+  [kind]='a kind of table is added by the six files of CONTRIBUTING.md, baked and judged'
+  [packages]='every crate is packed, and built from its package'
+  [scale]='libraries of 100 and 1,000 generated materials are baked'
+  [pages]='every generated page and measurement is made anew'
+)
+
+tests() { CI=true cargo test --locked --workspace --features luthier-cli/view --tests -- --ignored; }
+random() { ./scripts/random-tests.sh 2; }
+release() {
+  local work said
+  work=$(mktemp -d)
+  cargo build --locked --release -p luthier-cli
+  cargo build --locked --workspace --features luthier-cli/view
+  said=$(./target/release/luthier view 2>&1) && return 1
+  grep -q -- '--features view' <<<"$said"
+  for profile in debug release; do
+    "./target/$profile/luthier" bake materials --out "$work/$profile" --quiet 2>/dev/null
+  done
+  diff -r "$work/debug" "$work/release"
+  rm -rf "$work"
+}
+kind() { ./scripts/add-kind.sh; }
+packages() { ./scripts/package.sh --verify; }
+scale() { ./scripts/many.sh 100 1000 >/dev/null; }
+pages() { ./scripts/pages.sh; }
+
+results=docs/measurements/nightly.tsv
+page=docs/pages/nightly.md
+golden=$(sha256sum tests/golden.sha256 | cut -c1-16)
+touch "$results"
+
+if [ "${1-}" = --check ]; then
+  for step in "${steps[@]}"; do
+    if ! grep -q "^$step	$golden	" "$results"; then
+      echo "error: the bytes of bakes have changed since the nightly step \`$step\` passed; run scripts/nightly.sh $step and commit $page"
+      exit 1
+    fi
+  done
+  echo "every nightly step has passed since the bytes of bakes last changed"
+  exit
+fi
+
+write() {
+  cat <<'HEAD'
+# Nightly checks
+
+`scripts/nightly.sh` writes this page. Each step takes too long for every change. A step is out of date, and the tests fail, when the bytes
+that bakes write have changed since the step passed: the last column identifies them.
+
+| step | check | seconds | passed on | bytes |
+|---|---|--:|---|---|
+HEAD
+  for step in "${steps[@]}"; do
+    local sha=- seconds=- day='not since this page began'
+    IFS=$'\t' read -r _ sha seconds day < <(grep "^$step	" "$results" || printf '%s\t-\t-\tnever\n' "$step")
+    printf '| `%s` | %s | %s | %s | `%s` |\n' "$step" "${says[$step]}" "$seconds" "$day" "$sha"
+  done
+}
+
+[ $# -gt 0 ] && chosen=("$@") || chosen=("${steps[@]}")
+for step in "${chosen[@]}"; do
+  printf '\n== %s\n' "$step"
+  sed -i "/^$step	/d" "$results"
+  started=$SECONDS
+  # In a shell of its own, because a function under `if` does not stop at its first failure.
+  bash -c "set -euo pipefail; $(declare -f "$step"); $step"
+  printf '%s\t%s\t%s\t%s\n' "$step" "$golden" $((SECONDS - started)) "$(date -u +%F)" >>"$results"
+  write >"$page"
+done
 git --no-pager diff --stat -- docs crates/luthier-scene/data

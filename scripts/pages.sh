@@ -1,35 +1,57 @@
 #!/usr/bin/env bash
-# Makes every generated page and measurement of this repository anew, in an order in which each finds what it reads. Wants the
-# software Vulkan drivers of Debian's mesa-vulkan-drivers, and half an hour on two cores.
+# Makes generated pages and measurements of this repository anew, in an order in which each finds what it reads.
+#   scripts/pages.sh              all: half an hour on two cores
+#   scripts/pages.sh NAME...      some, by the names of the functions below
+#   scripts/pages.sh --cheap      those that take seconds and have no times in them; the tests make them too, and compare
+# Wants the software Vulkan drivers of Debian's mesa-vulkan-drivers. LUTHIER and LUTHIER_LAB name the programs; by default cargo builds them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-luthier() { cargo run --quiet --release --locked -p luthier-cli -- "$@"; }
-luthier-lab() { cargo run --quiet --release --locked -p luthier-lab -- "$@"; }
+luthier() { if [ -n "${LUTHIER-}" ]; then "$LUTHIER" "$@"; else cargo run --quiet --release --locked -p luthier-cli -- "$@"; fi; }
+luthier-lab() { if [ -n "${LUTHIER_LAB-}" ]; then "$LUTHIER_LAB" "$@"; else cargo run --quiet --release --locked -p luthier-lab -- "$@"; fi; }
+export -f luthier
 
-sheet=()
-for name in red-lacquer anodised-titanium car-paint brass-foil soap-film chromium-car-paint brushed-aluminium yamaguchi-brushed; do
-  sheet+=("materials/$name.toml")
-done
-luthier gallery "${sheet[@]}" -o docs/images/materials.png --size 232 --columns 4
-# The example of the README, as it stands there.
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-awk '/^```toml$/ { on = 1; next } /^```$/ { on = 0 } on' README.md >"$work/enamel.toml"
-luthier preview "$work/enamel.toml" -o docs/images/enamel.png --size 192
+
+materials() {
+  local sheet=()
+  for name in red-lacquer anodised-titanium car-paint brass-foil soap-film chromium-car-paint brushed-aluminium yamaguchi-brushed; do
+    sheet+=("materials/$name.toml")
+  done
+  luthier gallery "${sheet[@]}" -o docs/images/materials.png --size 232 --columns 4
+  # The example of the README, as it stands there.
+  awk '/^```toml$/ { on = 1; next } /^```$/ { on = 0 } on' README.md >"$work/enamel.toml"
+  luthier preview "$work/enamel.toml" -o docs/images/enamel.png --size 192
+}
 # Scenes choose by these costs: they are part of the program.
-luthier-lab shapes materials materials/scenes/still-life -o crates/luthier-scene/data/cost.json
-luthier cost materials -o docs/pages/cost.md
-luthier cost materials --json -o docs/measurements/gpu-cost.json
-luthier-lab papers materials -o docs/papers.md
-luthier-lab budgets materials -o docs/pages/budgets.md
-luthier bake materials/scenes --budgets 1,0.3,0.1,0.03 --allow-miss >docs/pages/scenes.md
-luthier-lab parity materials -o docs/pages/parity.md
-luthier-lab stability --json -o docs/measurements/stability.json
-luthier-lab stability -o docs/pages/stability.md
-luthier-lab figures -o docs/pages/figures --size 96
-luthier-lab judge materials >docs/pages/models.md
-luthier bench materials/car-paint.toml materials/red-lacquer.toml --json -o docs/measurements/bench-llvmpipe.json
-scripts/shader-size.sh >docs/pages/shader-size.md
-scripts/compare-distribution.sh >docs/pages/distribution-table.md
-scripts/bench-table.sh >docs/pages/speed.md
+shapes() { luthier-lab shapes materials materials/scenes/still-life -o crates/luthier-scene/data/cost.json; }
+cost() {
+  luthier cost materials -o docs/pages/cost.md
+  luthier cost materials --json -o docs/measurements/gpu-cost.json
+}
+papers() { luthier-lab papers materials -o docs/pages/papers-cost.md; }
+budgets() { luthier-lab budgets materials -o docs/pages/budgets.md; }
+scenes() { luthier bake materials/scenes --budgets 1,0.3,0.1,0.03 --allow-miss >docs/pages/scenes.md; }
+parity() { luthier-lab parity materials -o docs/pages/parity.md; }
+stability() {
+  luthier-lab stability --json -o docs/measurements/stability.json
+  luthier-lab stability -o docs/pages/stability.md
+}
+figures() { luthier-lab figures -o docs/pages/figures --size 96; }
+models() { luthier-lab judge materials >docs/pages/models.md; }
+bench() { luthier bench materials/car-paint.toml materials/red-lacquer.toml --json -o docs/measurements/bench-llvmpipe.json; }
+shader-size() { scripts/shader-size.sh >docs/pages/shader-size.md; }
+distribution-table() { scripts/compare-distribution.sh >docs/pages/distribution-table.md; }
+speed() { scripts/bench-table.sh >docs/pages/speed.md; }
+
+all=(materials shapes cost papers budgets scenes parity stability figures models bench shader-size distribution-table speed)
+case ${1-} in
+  "") pages=("${all[@]}") ;;
+  --cheap) pages=(cost papers shader-size) ;;
+  *) pages=("$@") ;;
+esac
+for page in "${pages[@]}"; do
+  printf '%s\n' "$page" >&2
+  "$page"
+done

@@ -3,8 +3,12 @@
 #   scripts/shader-size.sh > docs/pages/shader-size.md
 set -eu
 cd "$(dirname "$0")/.."
-cargo build --quiet --release --locked -p luthier-cli --no-default-features
-shader() { ./target/release/luthier shader "$@" 2>/dev/null; }
+luthier=${LUTHIER-}
+if [ -z "$luthier" ]; then
+  cargo build --quiet --release --locked -p luthier-cli --no-default-features
+  luthier=./target/release/luthier
+fi
+shader() { "$luthier" shader "$@" 2>/dev/null; }
 code() { grep -v '^ *//' | grep -v '^ *$'; }
 row() {
   name=$1

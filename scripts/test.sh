@@ -50,42 +50,45 @@ step "unit and integration tests"
 cargo test --workspace --locked --features luthier-cli/view
 
 step "the lean build has neither wgpu nor Vulkan"
-cargo check --locked -p luthier-cli --no-default-features
 if cargo tree --locked -p luthier-cli --no-default-features -e normal | grep -E '\b(wgpu|ash)\b'; then
   echo "error: the lean build depends on wgpu or on Vulkan (ash)"
   exit 1
 fi
 
-step "same bytes for 1 and 2 threads, debug and release"
+# The programs as the tests built them, so that nothing is built twice. scripts/nightly.sh compares release builds.
+cargo build --locked --workspace --features luthier-cli/view
+export LUTHIER=$PWD/target/debug/luthier LUTHIER_LAB=$PWD/target/debug/luthier-lab
+
+step "same bytes for 1 and 2 threads"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cargo build --locked --release -p luthier-cli
-# The tests ran with every verb; this build leaves one out, and says which feature brings it.
-said=$(./target/release/luthier view 2>&1) && exit 1
-grep -q -- '--features view' <<<"$said"
-# As the tests built it, so that nothing is built twice.
-cargo build --locked --workspace --features luthier-cli/view
-bake() { "./target/$1/luthier" bake materials --out "$work/$1-$2" --threads "$2" --quiet 2>/dev/null; }
-bake release 1
-bake release 2
-bake debug 2
-for other in release-2 debug-2; do
-  diff -r "$work/release-1" "$work/$other" && echo "release-1 = $other"
+for threads in 1 2; do
+  "$LUTHIER" bake materials --out "$work/$threads" --threads "$threads" --quiet 2>/dev/null
 done
+diff -r "$work/1" "$work/2" && echo "1 = 2"
 
 step "same bytes as in tests/golden.sha256"
 ./scripts/golden.sh
 
+step "pages are up to date"
+./scripts/nightly.sh --check
+cp -r docs/pages "$work/pages"
+./scripts/pages.sh --cheap
+if ! diff -r "$work/pages" docs/pages; then
+  echo "error: these pages were out of date, and have been made anew: commit them"
+  exit 1
+fi
+
 step "judging the bake"
 if [ -n "$(missing)" ]; then
-  ./target/release/luthier report --out "$work/release-1" --no-device --max-error 2e-2
+  "$LUTHIER" report --out "$work/1" --no-device --max-error 2e-2
 else
-  ./target/release/luthier report --out "$work/release-1" --max-error 2e-2
+  "$LUTHIER" report --out "$work/1" --max-error 2e-2
 fi
 
 step "examples, in a browser too"
 if [ -z "$(missing)" ] && command -v npm >/dev/null; then
-  LUTHIER=$PWD/target/release/luthier ./scripts/run-examples.sh
+  ./scripts/run-examples.sh
 elif [ -n "${CI-}" ]; then
   echo "error: the examples need $(missing) npm"
   exit 1

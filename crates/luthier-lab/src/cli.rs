@@ -166,7 +166,7 @@ pub(crate) struct BudgetsOptions {
 #[derive(Debug, Args)]
 #[command(
     after_help = "Needs Mesa's RADV driver, as `luthier cost` does. Errors are measured on the graphics adapter of this machine, if there is one.\n\n\
-                  Examples:\n  luthier-lab papers materials -o docs/papers.md\n  luthier-lab papers mine.toml --family rdna2"
+                  Examples:\n  luthier-lab papers materials -o docs/pages/papers-cost.md\n  luthier-lab papers mine.toml --family rdna2"
 )]
 pub(crate) struct PapersOptions {
     #[command(flatten)]

@@ -38,7 +38,7 @@ pub(crate) struct Site<'a> {
     pub(crate) read_image: ImageReader<'a>,
 }
 
-/// What a bake does for one kind of table.
+/// The part of a bake that differs by the kind of table.
 pub(crate) trait Kind: Sync {
     /// The shape of its tiles without a search.
     ///
