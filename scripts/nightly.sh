@@ -1,25 +1,24 @@
 #!/usr/bin/env bash
 # Checks that take too long for every change, and a page with their results: docs/pages/nightly.md.
-#   scripts/nightly.sh            all: two hours on two cores
+#   scripts/nightly.sh            all: an hour on two cores; scripts/pages.sh makes the long pages
 #   scripts/nightly.sh STEP...    some, by the names of the functions below
 #   scripts/nightly.sh --check    fails where a step has not passed since the bytes of bakes last changed (tests/golden.sha256)
 # Wants what scripts/test.sh installs, and GNU time.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-steps=(tests random release kind packages scale pages)
+steps=(tests random release kind packages scale)
 declare -A says=(
   [tests]='tests that are ignored elsewhere: the whole stability suite, and audits of tables with planted mistakes'
-  [random]='property tests with two new random seeds'
+  [random]='property tests with new random seeds'
   [release]='release builds write the bytes of debug builds, and name the Cargo feature of a verb that they lack'
   [kind]='a kind of table is added by the six files of CONTRIBUTING.md, baked and judged'
   [packages]='every crate is packed, and built from its package'
   [scale]='libraries of 100 and 1,000 generated materials are baked'
-  [pages]='every generated page and measurement is made anew'
 )
 
 tests() { CI=true cargo test --locked --workspace --features luthier-cli/view --tests -- --ignored; }
-random() { ./scripts/random-tests.sh 2; }
+random() { ./scripts/random-tests.sh 1; }
 release() {
   local work said
   work=$(mktemp -d)
@@ -36,7 +35,6 @@ release() {
 kind() { ./scripts/add-kind.sh; }
 packages() { ./scripts/package.sh --verify; }
 scale() { ./scripts/many.sh 100 1000 >/dev/null; }
-pages() { ./scripts/pages.sh; }
 
 results=docs/measurements/nightly.tsv
 page=docs/pages/nightly.md
@@ -81,4 +79,3 @@ for step in "${chosen[@]}"; do
   printf '%s\t%s\t%s\t%s\n' "$step" "$golden" $((SECONDS - started)) "$(date -u +%F)" >>"$results"
   write >"$page"
 done
-git --no-pager diff --stat -- docs crates/luthier-scene/data
