@@ -65,8 +65,6 @@ pub enum Verdict {
     Fails,
     /// The noise of the reference leaves it open at the greatest number of samples; it is not taken.
     Undecided,
-    /// Its cost is more than the scene allows.
-    TooDear,
 }
 
 /// A way to shade a material, and how far it is from the reference.

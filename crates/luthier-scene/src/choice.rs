@@ -193,7 +193,7 @@ fn reason(tried: &[SceneCandidate], chosen: usize, next_cheaper: Option<usize>, 
         Verdict::Undecided => {
             "none holds for certain; this comes nearest, and the noise of the reference leaves it open"
         }
-        Verdict::Fails | Verdict::TooDear => "none holds; this comes nearest",
+        Verdict::Fails => "none holds; this comes nearest",
     };
     let mut text = format!("{} for {:.0} cycles: {verdict} (error {})", label(own), own.cost, errs(own));
     if let Some(cheaper) = cheaper {

@@ -49,7 +49,7 @@ pub struct Exception {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Factor {
-    /// A Fresnel row.
+    /// A Fresnel row, or a film tile.
     Fresnel,
     /// A distribution tile.
     Distribution,
@@ -84,7 +84,7 @@ pub struct Part {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Cause {
-    /// A Fresnel row.
+    /// A Fresnel row, or a film tile.
     Fresnel {
         /// Layer, from 0.
         layer: u32,

@@ -101,7 +101,11 @@ fn row(out: &mut String, report: &Report, exception: &Exception) {
 pub(crate) fn cause(cause: &Cause) -> String {
     match cause {
         Cause::Fresnel { tile, cos_theta_d, expected, sampled, .. } => {
-            format!("Fresnel row {tile} at cos θ {}: {}", number(rounded(*cos_theta_d, 3)), off(*expected, *sampled))
+            format!(
+                "reflectance tile {tile} at cos θ {}: {}",
+                number(rounded(*cos_theta_d, 3)),
+                off(*expected, *sampled)
+            )
         }
         Cause::Distribution { tile, alpha, theta_h_deg, expected, sampled, .. } => format!(
             "distribution table {tile} at α {}, θₕ {}°: {}",

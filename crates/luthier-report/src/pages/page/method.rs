@@ -43,7 +43,7 @@ pub(super) fn write(out: &mut String, report: &Report) {
     out.push_str(
         "<p><b>Tables</b> are compared with their functions as the texels store them. Fresnel rows are read at eight points a cell and at 256 grazing \
          cosines, and compared with every interface that reads them; distributions are read at one point in every cell; phase rows at \
-         eight points a cell, against the closed form. Shares that escape total reflection are read on a grid over the range of the albedos. Albedos are read at some dozen points, and compared with an estimate that does not use the baker's. \
+         eight points a cell, against the closed form; film tiles at 96 cosines and 96 thicknesses, against the interfaces that read them. Shares that escape total reflection are read on a grid over the range of the albedos. Albedos are read at some dozen points, and compared with an estimate that does not use the baker's. \
          Formats that a sampler filters are read with 8-bit weights, others with exact weights, as shaders fetch them. All other \
          arithmetic is f64.</p><p><b>Exceptions.</b> For a pair that misses the target, the f64 model is \
          evaluated again with one term read from the tables and all others exact: the Fresnel term, the \
