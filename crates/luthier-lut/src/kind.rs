@@ -90,6 +90,20 @@ pub struct KindFacts {
 const RGB: &[&str] = &["R", "G", "B"];
 const ONE: &[&str] = &["Y"];
 
+/// Facts that most kinds have.
+const FACTS: KindFacts = KindFacts {
+    holds: "",
+    binding: 0,
+    slot: [0, 0],
+    channels: RGB,
+    x: &["cos_theta"],
+    y: None,
+    values: Values::Positive,
+    served: Served::Interfaces,
+    is_optional: false,
+    has_settings: true,
+};
+
 impl TableKind {
     /// The facts about a kind.
     pub const fn facts(self) -> KindFacts {
@@ -98,13 +112,8 @@ impl TableKind {
                 holds: "Fresnel reflectance of an interface over the cosine, RGB.",
                 binding: 0,
                 slot: [1, 0],
-                channels: RGB,
                 x: &["cos_theta", "theta"],
-                y: None,
-                values: Values::Positive,
-                served: Served::Interfaces,
-                is_optional: false,
-                has_settings: true,
+                ..FACTS
             },
             Self::Distribution => KindFacts {
                 holds: "Slope distributions, stored as π α² D.",
@@ -113,10 +122,8 @@ impl TableKind {
                 channels: ONE,
                 x: &["cos_theta_h", "theta_h"],
                 y: Some("alpha"),
-                values: Values::Positive,
-                served: Served::Interfaces,
                 is_optional: true,
-                has_settings: true,
+                ..FACTS
             },
             Self::Fgd => KindFacts {
                 holds: "Directional albedo of a rough interface with all its microsurface bounces, RGB; in A the luminance of \
@@ -126,22 +133,17 @@ impl TableKind {
                 channels: &["R", "G", "B", "never_crossed.Y"],
                 x: &["cos_theta", "theta"],
                 y: Some("alpha"),
-                values: Values::Positive,
-                served: Served::Interfaces,
-                is_optional: false,
-                has_settings: true,
+                ..FACTS
             },
             Self::Phase => KindFacts {
                 holds: "Interference of a film: 2 cos(2 Φ) over normalised thickness, RGB.",
                 binding: 3,
                 slot: [1, 3],
-                channels: RGB,
                 x: &["s"],
-                y: None,
                 values: Values::Signed,
                 served: Served::Films,
                 is_optional: true,
-                has_settings: true,
+                ..FACTS
             },
             Self::Thickness => KindFacts {
                 holds: "Thickness of a varying film: normalised thickness, slopes, normalisation.",
@@ -152,32 +154,27 @@ impl TableKind {
                 y: Some("v"),
                 values: Values::Picture,
                 served: Served::VaryingFilms,
-                is_optional: false,
-                has_settings: true,
+                ..FACTS
             },
             Self::Film => KindFacts {
                 holds: "Reflectance of an interface over cosine and thickness of its film, RGB.",
                 binding: 7,
                 slot: [6, 3],
-                channels: RGB,
-                x: &["cos_theta"],
                 y: Some("fraction"),
-                values: Values::Positive,
                 served: Served::VaryingFilms,
-                is_optional: false,
                 has_settings: false,
+                ..FACTS
             },
             Self::Escape => KindFacts {
                 holds: "Share of a lobe that is not totally reflected inside.",
                 binding: 8,
                 slot: [8, 3],
                 channels: ONE,
-                x: &["cos_theta"],
                 y: Some("alpha"),
-                values: Values::Positive,
                 served: Served::Transparent,
                 is_optional: true,
                 has_settings: false,
+                ..FACTS
             },
         }
     }
