@@ -2,7 +2,7 @@
 # Makes generated pages and measurements of this repository anew, in an order in which each finds what it reads.
 #   scripts/pages.sh              all: half an hour on two cores
 #   scripts/pages.sh NAME...      some, by the names of the functions below
-#   scripts/pages.sh --cheap      those that take seconds and have no times in them; the tests make them too, and compare
+#   scripts/pages.sh --cheap      those that take seconds and are alike on every machine; the tests make them too, and compare
 # Wants the software Vulkan drivers of Debian's mesa-vulkan-drivers. LUTHIER and LUTHIER_LAB name the programs; by default cargo builds them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -48,7 +48,7 @@ speed() { scripts/bench-table.sh >docs/pages/speed.md; }
 all=(materials shapes cost papers budgets scenes parity stability figures models bench shader-size distribution-table speed)
 case ${1-} in
   "") pages=("${all[@]}") ;;
-  --cheap) pages=(cost papers shader-size) ;;
+  --cheap) pages=(shader-size) ;;
   *) pages=("$@") ;;
 esac
 for page in "${pages[@]}"; do
