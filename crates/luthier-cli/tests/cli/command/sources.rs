@@ -1,5 +1,6 @@
 //! Comments of the sources: a file begins with a line that says what it holds, and a summary stands alone in an index of items.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -44,6 +45,16 @@ fn every_file_begins_with_what_it_holds() {
         .map(|(name, _)| name)
         .collect();
     assert!(without.is_empty(), "no line `//! …` at the top of {without:#?}");
+}
+
+#[test]
+fn no_folder_has_more_than_twenty_files() {
+    let mut folders: BTreeMap<String, usize> = BTreeMap::new();
+    for (name, _) in sources() {
+        *folders.entry(name.rsplit_once('/').unwrap().0.to_owned()).or_default() += 1;
+    }
+    folders.retain(|_, files| *files > 20);
+    assert!(folders.is_empty(), "{folders:#?}");
 }
 
 #[test]
