@@ -55,8 +55,7 @@ if cargo tree --locked -p luthier-cli --no-default-features -e normal | grep -E 
   exit 1
 fi
 
-# The programs as the tests built them, so that nothing is built twice. scripts/nightly.sh compares release builds.
-cargo build --locked --workspace --features luthier-cli/view
+# The programs that the tests above have built and run. scripts/nightly.sh compares release builds.
 export LUTHIER=$PWD/target/debug/luthier LUTHIER_LAB=$PWD/target/debug/luthier-lab
 
 step "same bytes for 1 and 2 threads"
