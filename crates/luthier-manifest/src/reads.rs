@@ -49,3 +49,57 @@ impl ShadingModel {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn layer(kind: LayerKind, eta: f64) -> LayerRecord {
+        LayerRecord { kind, eta, ..LayerRecord::default() }
+    }
+
+    /// A coat under a film that varies.
+    fn varying() -> LayerRecord {
+        let film = LayerRecord { film_ior_n: [1.4; 3], film_thickness_nm: 300.0, ..layer(LayerKind::Dielectric, 1.5) };
+        LayerRecord { film_thickness_max_nm: 400.0, ..film }
+    }
+
+    fn read(model: ShadingModel, layers: &[LayerRecord], number: usize) -> String {
+        let kinds = TableKind::ALL.into_iter().filter(|&kind| model.reads(kind, layers, number));
+        kinds.map(TableKind::name).collect::<Vec<_>>().join(" ")
+    }
+
+    /// Tables by model, stack and layer, filled in by hand from the modules of the shaders.
+    #[test]
+    fn models_read_what_their_shaders_call() {
+        use ShadingModel::{Belcour, Elek, GranierHeidrich, Microfacet, Phong, WeidlichWilkie, Yamaguchi};
+        let (coat, down) = (|| layer(LayerKind::Dielectric, 1.5), || layer(LayerKind::Dielectric, 0.8));
+        let (metal, diffuse) = (|| layer(LayerKind::Conductor, 1.0), || layer(LayerKind::Diffuse, 1.0));
+        let chains: &[ShadingModel] = &[Elek, WeidlichWilkie];
+        let statistical: &[ShadingModel] = &[Belcour, Yamaguchi];
+        for (models, layers, expected) in [
+            (chains, vec![coat(), metal()], ["fresnel distribution", "fresnel distribution"]),
+            (chains, vec![varying(), diffuse()], ["distribution thickness film", ""]),
+            (chains, vec![coat(), varying()], ["fresnel distribution", "distribution film"]),
+            (&[Microfacet], vec![coat(), metal()], ["fresnel distribution", ""]),
+            (&[Phong], vec![coat(), metal()], ["", ""]),
+            (statistical, vec![coat(), metal()], ["fgd escape", "fgd"]),
+            (statistical, vec![down(), metal()], ["fgd", "fgd"]),
+            (statistical, vec![varying(), diffuse()], ["fgd", ""]),
+            (statistical, vec![metal()], ["fgd", ""]),
+            (&[GranierHeidrich], vec![coat(), metal()], ["", ""]),
+            (&[GranierHeidrich], vec![metal()], ["fresnel", ""]),
+            (&[GranierHeidrich], vec![varying(), diffuse()], ["phase thickness", ""]),
+            (&[GranierHeidrich], vec![coat(), varying()], ["", ""]),
+        ] {
+            for &model in models {
+                let found = [0, 1].map(|number| read(model, &layers, number));
+                assert_eq!(found, expected, "{model} {layers:?}");
+            }
+        }
+        for model in ShadingModel::ALL {
+            assert_eq!(model.is_statistical(), statistical.contains(&model));
+            assert_eq!(model.reads_distribution(), [Elek, WeidlichWilkie, Microfacet].contains(&model));
+        }
+    }
+}
