@@ -23,6 +23,7 @@ use crate::judge::exceptions::{Factors, Miss, exception};
 use crate::judge::report::{Compared, Comparison, MaterialReport, REPORT_SCHEMA, Report, TableReport};
 use crate::measure::seen::SeenBy;
 use crate::measure::statistics::{brightest, relative_error};
+use crate::measure::subject::color;
 use crate::measure::table_terms::{TableTerms, Weights, recorded_veil};
 use crate::{
     AngleProfile, Device, DirectionSet, Exceedance, FLOOR, Form, Pair, ReportError, Statistics, Subject,
@@ -235,10 +236,7 @@ pub(crate) struct References {
 impl References {
     pub(crate) fn new(stack: &Stack, material: &MaterialEntry) -> Result<Self, ReportError> {
         let three = Color::ThreeWavelengths(material.wavelengths_nm);
-        let color = match material.color {
-            ColorMode::Spectral => Color::Spectral,
-            ColorMode::ThreeWavelengths => three,
-        };
+        let color = color(material);
         let model = material.model;
         let twin = Twin::new(model.name(), stack, material.wavelengths_nm, color);
         Ok(Self {

@@ -2,7 +2,8 @@
 
 use luthier_layers::elek::{self, Below};
 use luthier_lut::{Image, TableKind};
-use luthier_manifest::{LayerKind, LayerRecord, Manifest, TableEntry};
+use luthier_manifest::{ColorMode, LayerKind, LayerRecord, Manifest, MaterialEntry, TableEntry};
+use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
 
 use crate::ReportError;
@@ -16,6 +17,14 @@ pub struct Subject<'a> {
     pub textures: Vec<(TableKind, Image)>,
     /// The surfaces that the materials describe, parallel to the materials of the manifest.
     pub stacks: Vec<Stack>,
+}
+
+/// The colour that the tables of a material hold.
+pub(crate) fn color(material: &MaterialEntry) -> Color {
+    match material.color {
+        ColorMode::Spectral => Color::Spectral,
+        ColorMode::ThreeWavelengths => Color::ThreeWavelengths(material.wavelengths_nm),
+    }
 }
 
 /// A table whose texels fit its layout.

@@ -2,13 +2,13 @@
 
 use luthier_layers::terms::{Exact, Terms};
 use luthier_lut::{AtlasLayout, Image, Mapping, TableKind, TexelFormat};
-use luthier_manifest::ShadingModel;
+use luthier_manifest::{ColorMode, ShadingModel};
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Film, FilmThickness, Slab};
 use luthier_report::{Report, Settings, TableTerms, TileReport, Weights, judge};
 
-use crate::fixture::{Bake, axis, table};
+use crate::fixture::{Bake, WAVELENGTHS_NM, axis, table};
 
 fn judged(bake: &Bake) -> Report {
     with_pairs(bake, 20)
@@ -109,6 +109,46 @@ fn phases_follow_the_closed_form() {
     // Three quarters of a wave between nodes: |2 cos x - 2 + 4x/(3 pi)| is largest, 2.7119, where sin x = 2/(3 pi).
     assert_eq!(judge.worst.channel, 2);
     assert!((2.6..2.7125).contains(&judge.max_abs_err), "{judge:?}");
+}
+
+/// Reflectance of a film of index 1.9 on one of 1.5 (Airy), both real.
+fn airy(cos_theta: f64, nm: f64, wavelength_nm: f64) -> f64 {
+    let n = [1.0, 1.9, 1.5];
+    let cos = n.map(|n| (1.0 - (1.0 - cos_theta * cos_theta) / (n * n)).sqrt());
+    let delay = (4.0 * std::f64::consts::PI * n[1] * nm * cos[1] / wavelength_nm).cos();
+    let power = |a: f64, b: f64| (a * a + b * b + 2.0 * a * b * delay) / (1.0 + a * a * b * b + 2.0 * a * b * delay);
+    let s = |i: usize| (n[i] * cos[i] - n[i + 1] * cos[i + 1]) / (n[i] * cos[i] + n[i + 1] * cos[i + 1]);
+    let p = |i: usize| (n[i + 1] * cos[i] - n[i] * cos[i + 1]) / (n[i + 1] * cos[i] + n[i] * cos[i + 1]);
+    0.5 * (power(s(0), s(1)) + power(p(0), p(1)))
+}
+
+/// A tile of Airy's formula, and the same a tenth too high in one channel.
+#[test]
+fn film_tiles_are_measured() {
+    const MAX_NM: f64 = 400.0;
+    let worst = |spoil: f64| {
+        let mut bake = Bake::new();
+        let thickness = FilmThickness { min_nm: 100.0, max_nm: MAX_NM };
+        bake.stacks[1].layers[0].films = vec![Film { ior: Ior::constant(1.9, 0.0).unwrap(), thickness }];
+        let material = &mut bake.manifest.materials[1];
+        material.color = ColorMode::ThreeWavelengths;
+        let record = &mut material.layers[0];
+        (record.film_thickness_nm, record.film_thickness_max_nm) = (250.0, MAX_NM);
+        record.tiles[TableKind::Film] = Some(0);
+        let x = axis("cos_theta", 0.0, 1.0, 128, Mapping::Power { exponent: 2.0 });
+        let y = axis("fraction", 0.0, 1.0, 256, Mapping::Linear);
+        let (cosines, fractions) = (x.clone(), y.clone());
+        let layout = AtlasLayout { x, y: Some(y), apron: 0, columns: 1, tiles: 1, base: luthier_lut::RowBase::Zero };
+        bake.add(TableKind::Film, layout, |_, i, j| {
+            let nm = MAX_NM * fractions.node(j);
+            let [r, g, b] = WAVELENGTHS_NM.map(|wavelength| airy(cosines.node(i), nm, wavelength));
+            [r, g + spoil, b, 1.0].map(|value| value as f32)
+        });
+        tiles(&judged(&bake), TableKind::Film)[0].judge.clone().unwrap()
+    };
+    let (good, bad) = (worst(0.0), worst(0.1));
+    assert!(good.max_abs_err < 2e-3, "{good:?}");
+    assert!(bad.worst.channel == 1 && (bad.max_abs_err - 0.1).abs() < 2e-3, "{bad:?}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What is wrong with files, said before work begins.
+//! `check`: faults of material files, named before any table is computed.
 
 mod diagnostics;
 mod hostile;

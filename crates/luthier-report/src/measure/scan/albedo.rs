@@ -1,6 +1,5 @@
 //! Scan of FGD tiles against new estimates of the directional albedo.
 
-use luthier_manifest::ColorMode;
 use luthier_optics::Rgb;
 use luthier_optics::albedo::{Effort, FacetStatistics, ReflectanceCurves, crossed_albedo};
 use luthier_optics::color::{Color, luminance};
@@ -10,7 +9,7 @@ use luthier_optics::stack::{Base, Distribution};
 use rayon::prelude::*;
 
 use super::{Measured, R2, fraction, users};
-use crate::measure::subject::Table;
+use crate::measure::subject::{Table, color};
 use crate::measure::table_terms::{AngleAxis, Weights};
 use crate::{ReportError, Subject};
 
@@ -135,10 +134,7 @@ fn readers(table: &Table<'_>, subject: &Subject<'_>) -> Vec<Reader> {
             let stack = &subject.stacks[m];
             let (Some(layer), Some(interface)) = (stack.layers.get(l), Interface::of(stack, l)) else { continue };
             let entry = &subject.manifest.materials[m];
-            let color = match entry.color {
-                ColorMode::Spectral => Color::Spectral,
-                ColorMode::ThreeWavelengths => Color::ThreeWavelengths(entry.wavelengths_nm),
-            };
+            let color = color(entry);
             let distribution = layer.surface.distribution;
             let known = |r: &Reader| {
                 r.tile == tile && r.interface == interface && r.color == color && r.distribution == distribution

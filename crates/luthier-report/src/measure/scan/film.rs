@@ -1,15 +1,14 @@
 //! Scan of film tiles against the interfaces that read them, at thicknesses of their films.
 
 use luthier_lut::incident_cosine;
-use luthier_manifest::ColorMode;
-use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
+use luthier_optics::stack::FilmThickness;
 use rayon::prelude::*;
 
 use super::{Measured, Scan, User, coordinate};
 use crate::Subject;
 use crate::judge::report::Curves;
-use crate::measure::subject::Table;
+use crate::measure::subject::{Table, color};
 use crate::measure::table_terms::Weights;
 
 /// Points along each axis: cosines and thicknesses.
@@ -24,20 +23,15 @@ pub(super) fn scan(table: &Table<'_>, tile: u32, users: &[User], subject: &Subje
         let entry = &subject.manifest.materials[material];
         let (record, interface) = (&entry.layers[layer], Interface::of(&subject.stacks[material], layer)?);
         let thickness = interface.films.first()?.thickness;
-        let color = match entry.color {
-            ColorMode::Spectral => Color::Spectral,
-            ColorMode::ThreeWavelengths => Color::ThreeWavelengths(entry.wavelengths_nm),
-        };
+        let color = color(entry);
         let least = y.encode(thickness.min_nm / thickness.max_nm);
         let points: Vec<_> = (0..POINTS)
             .into_par_iter()
             .flat_map_iter(|j| {
                 let fraction = y.decode(least + (1.0 - least) * coordinate(j, POINTS));
                 let mut here = interface.clone();
-                for film in here.films.iter_mut().take(1) {
-                    (film.thickness.min_nm, film.thickness.max_nm) =
-                        (fraction * thickness.max_nm, fraction * thickness.max_nm);
-                }
+                let nm = fraction * thickness.max_nm;
+                here.films[0].thickness = FilmThickness { min_nm: nm, max_nm: nm };
                 let here = here.sampled(&color);
                 (0..POINTS).map(move |i| {
                     let cos_theta = x.decode(coordinate(i, POINTS));
