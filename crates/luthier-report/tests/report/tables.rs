@@ -115,7 +115,7 @@ fn phases_follow_the_closed_form() {
 fn airy(cos_theta: f64, nm: f64, wavelength_nm: f64) -> f64 {
     let n = [1.0, 1.9, 1.5];
     let cos = n.map(|n| (1.0 - (1.0 - cos_theta * cos_theta) / (n * n)).sqrt());
-    let delay = (4.0 * std::f64::consts::PI * n[1] * nm * cos[1] / wavelength_nm).cos();
+    let delay = libm::cos(4.0 * std::f64::consts::PI * n[1] * nm * cos[1] / wavelength_nm);
     let power = |a: f64, b: f64| (a * a + b * b + 2.0 * a * b * delay) / (1.0 + a * a * b * b + 2.0 * a * b * delay);
     let s = |i: usize| (n[i] * cos[i] - n[i + 1] * cos[i + 1]) / (n[i] * cos[i] + n[i + 1] * cos[i + 1]);
     let p = |i: usize| (n[i + 1] * cos[i] - n[i] * cos[i + 1]) / (n[i + 1] * cos[i] + n[i] * cos[i + 1]);
