@@ -136,3 +136,69 @@ pub struct SceneChoice {
     /// One per material, in the order of the manifest.
     pub materials: Vec<MaterialChoice>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ERROR: SceneError = SceneError { max_abs: 0.2, max_rel: 0.3, delta_e: Some(4.0), std_err_rel: 9.0 };
+
+    #[test]
+    fn a_budget_takes_what_it_lacks_from_another() {
+        let own = SceneBudget { max_abs: Some(0.1), max_rel: None, delta_e: Some(2.0) };
+        let other = SceneBudget { max_abs: Some(0.5), max_rel: Some(0.3), delta_e: None };
+        assert_eq!(own.or(&other), SceneBudget { max_abs: Some(0.1), max_rel: Some(0.3), delta_e: Some(2.0) });
+        assert_eq!(other.or(&own), SceneBudget { max_abs: Some(0.5), max_rel: Some(0.3), delta_e: Some(2.0) });
+    }
+
+    #[test]
+    fn scaling_leaves_out_what_is_not_limited() {
+        let budget = SceneBudget { max_abs: Some(0.5), max_rel: None, delta_e: Some(2.0) };
+        assert_eq!(budget.scaled(3.0), SceneBudget { max_abs: Some(1.5), max_rel: None, delta_e: Some(6.0) });
+    }
+
+    #[test]
+    fn excess_is_the_largest_ratio_of_what_is_limited() {
+        let of = |max_abs, max_rel, delta_e| SceneBudget { max_abs, max_rel, delta_e }.excess(&ERROR);
+        assert_eq!(of(Some(0.1), Some(0.2), Some(8.0)), 2.0);
+        assert_eq!(of(Some(0.4), Some(0.1), Some(8.0)), 0.3 / 0.1);
+        assert_eq!(of(Some(0.4), None, Some(1.0)), 4.0);
+        assert_eq!(of(None, None, None), 0.0);
+        let no_colors = SceneBudget { delta_e: Some(1e-9), ..SceneBudget::default() };
+        assert_eq!(no_colors.excess(&SceneError { delta_e: None, ..ERROR }), 0.0);
+    }
+
+    #[test]
+    fn a_choice_holds_if_its_candidate_does() {
+        let candidate = |model, verdict| SceneCandidate {
+            model,
+            color: ColorMode::Spectral,
+            left_out: Vec::new(),
+            cost: 1.0,
+            cost_is_of_similar: false,
+            error: ERROR,
+            verdict,
+        };
+        let mut choice = MaterialChoice {
+            name: "enamel".to_owned(),
+            budget: SceneBudget::default(),
+            chosen: 1,
+            next_cheaper: Some(0),
+            reason: String::new(),
+            tried: vec![
+                candidate(ShadingModel::Phong, Verdict::Fails),
+                candidate(ShadingModel::Elek, Verdict::Holds),
+                candidate(ShadingModel::Belcour, Verdict::Undecided),
+            ],
+            probes: 1,
+            samples: 1,
+            table_error: None,
+        };
+        let mut found = Vec::new();
+        for chosen in 0..3 {
+            choice.chosen = chosen;
+            found.push((choice.candidate().model, choice.holds()));
+        }
+        assert_eq!(found, [(ShadingModel::Phong, false), (ShadingModel::Elek, true), (ShadingModel::Belcour, false)]);
+    }
+}

@@ -109,3 +109,40 @@ impl ShadingModel {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One column for each of [`Feature::ALL`]: `#` where both forms show the feature, `b` the baked one only, `f` the full one only.
+    #[test]
+    fn what_models_leave_out_is_as_written_here() {
+        let shown = |model: ShadingModel| -> String {
+            let column = |feature: Feature| match [Form::Baked, Form::Full].map(|form| model.honours(feature, form)) {
+                [true, true] => '#',
+                [true, false] => 'b',
+                [false, true] => 'f',
+                [false, false] => '.',
+            };
+            Feature::ALL.into_iter().map(column).collect()
+        };
+        for (model, expected) in [
+            (ShadingModel::Elek, "#####b##.#######"),
+            (ShadingModel::WeidlichWilkie, "#####b##########"),
+            (ShadingModel::Belcour, "#####bf#..###..#"),
+            (ShadingModel::Yamaguchi, "#####bf##.###..#"),
+            (ShadingModel::GranierHeidrich, ".#..#.#...##...#"),
+            (ShadingModel::Phong, "###.##....##...#"),
+            (ShadingModel::Microfacet, "....#b######...#"),
+        ] {
+            assert_eq!(shown(model), expected, "{model}");
+        }
+    }
+
+    #[test]
+    fn names_of_features_differ() {
+        let names: std::collections::BTreeSet<&str> = Feature::ALL.into_iter().map(Feature::name).collect();
+        assert_eq!(names.len(), Feature::ALL.len());
+        assert!(names.iter().all(|name| name.len() > 4), "{names:?}");
+    }
+}

@@ -460,4 +460,50 @@ mod tests {
         assert_eq!(manifest.material_index("red-lacquer"), Some(0));
         assert_eq!(manifest.material_index("blue-lacquer"), None);
     }
+
+    #[test]
+    fn each_cause_of_variation_counts() {
+        let whole = manifest().materials.remove(0);
+        let plain = MaterialEntry { constants: MaterialConstants::default(), maps: Vec::new(), ..whole.clone() };
+        assert!(!plain.varies());
+        let constants = &whole.constants;
+        let none = MaterialConstants::default;
+        for constants in [
+            MaterialConstants { flakes: constants.flakes.clone(), ..none() },
+            MaterialConstants { patina: constants.patina.clone(), ..none() },
+            MaterialConstants { glitter: constants.glitter.clone(), ..none() },
+        ] {
+            assert!(MaterialEntry { constants, ..plain.clone() }.varies());
+        }
+        assert!(MaterialEntry { maps: whole.maps.clone(), ..plain.clone() }.varies());
+        let mut film = plain;
+        film.layers[0].film_thickness_max_nm = 1.0;
+        assert!(film.varies());
+    }
+
+    #[test]
+    fn records_end_with_the_layer_below_a_patina() {
+        let mut material = manifest().materials.remove(0);
+        assert_eq!(material.records().count(), 2);
+        material.constants.patina = None;
+        assert_eq!(material.records().collect::<Vec<_>>(), [&material.layers[0]]);
+    }
+
+    #[test]
+    fn texels_are_compared_with_the_entry() {
+        let entry = manifest().tables.remove(0);
+        assert!(entry.check([512, 512], TexelFormat::R16Float, 524_288).is_ok());
+        for (size, format, bytes) in [
+            ([512, 511], TexelFormat::R16Float, 524_288),
+            ([511, 512], TexelFormat::R16Float, 524_288),
+            ([512, 512], TexelFormat::Rg16Float, 524_288),
+            ([512, 512], TexelFormat::R16Float, 524_287),
+        ] {
+            assert!(matches!(entry.check(size, format, bytes), Err(ManifestError::TableMismatch { .. })), "{size:?}");
+        }
+        let mut overlong = entry;
+        overlong.layout.x.size = u32::MAX;
+        overlong.layout.columns = u32::MAX;
+        assert!(matches!(overlong.check([1, 1], TexelFormat::R16Float, 2), Err(ManifestError::Layout(_))));
+    }
 }

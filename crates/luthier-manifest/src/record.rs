@@ -296,4 +296,30 @@ mod tests {
         assert_eq!(buffer[MATERIAL_WORDS][0], whole(first + 3 * LAYER_WORDS));
         assert_eq!(buffer[first + 3 * LAYER_WORDS..], top.words());
     }
+
+    #[test]
+    fn what_has_no_slopes_and_lets_nothing_through_has_zeros() {
+        let words = LayerRecord { alpha: 0.0, eta: 0.0, ..numbered(LayerKind::Diffuse) }.words();
+        assert_eq!(words[0][..3], [0.0; 3]);
+    }
+
+    #[test]
+    fn a_film_varies_if_it_gets_thicker() {
+        let film = |thickest| LayerRecord {
+            film_thickness_nm: 25.0,
+            film_thickness_max_nm: thickest,
+            ..LayerRecord::default()
+        };
+        assert_eq!([24.0, 25.0, 26.0].map(|thickest| film(thickest).varies()), [false, false, true]);
+    }
+
+    /// From index 1.5 to 1: 30 degrees inside are asin(.75) outside.
+    #[test]
+    fn rows_of_total_reflection_are_over_the_refracted_cosine() {
+        let plain = LayerRecord::default();
+        assert_eq!(plain.row_cosine(0.3), 0.3);
+        let inside = LayerRecord { critical_cot_sq: 1.25, ..plain };
+        let found = inside.row_cosine(libm::sqrt(0.75));
+        assert!((found - libm::sqrt(1.0 - 0.75 * 0.75)).abs() < 1e-12, "{found}");
+    }
 }

@@ -141,6 +141,8 @@ pub struct Search {
 
 #[cfg(test)]
 mod tests {
+    use luthier_lut::Mapping;
+
     use super::*;
 
     #[test]
@@ -159,5 +161,47 @@ mod tests {
         let error = MeasuredError { max_abs: 5e-4, max_rel: 2e-2, delta_e: Some(9.0) };
         assert_eq!(budget.excess(&error), 2.0);
         assert_eq!(Budget::default().excess(&error), 0.0);
+    }
+
+    #[test]
+    fn excess_counts_each_limit() {
+        let error = MeasuredError { max_abs: 0.5, max_rel: 0.25, delta_e: Some(3.0) };
+        for (budget, expected) in [
+            (Budget { max_abs: Some(0.25), ..Budget::default() }, 2.0),
+            (Budget { max_rel: Some(0.0625), ..Budget::default() }, 4.0),
+            (Budget { delta_e: Some(2.0), ..Budget::default() }, 1.5),
+            (Budget { max_bytes: Some(1), max_cost: Some(1e-9), ..Budget::default() }, 0.0),
+        ] {
+            assert_eq!(budget.excess(&error), expected, "{budget:?}");
+            assert_eq!(budget.limits_errors(), expected > 0.0, "{budget:?}");
+            assert!(!budget.is_empty(), "{budget:?}");
+        }
+        assert!(Budget::default().is_empty());
+    }
+
+    #[test]
+    fn the_larger_of_two_errors_is_so_in_each_measure() {
+        let one = MeasuredError { max_abs: 1.0, max_rel: 4.0, delta_e: None };
+        let two = MeasuredError { max_abs: 2.0, max_rel: 3.0, delta_e: Some(5.0) };
+        let both = MeasuredError { max_abs: 2.0, max_rel: 4.0, delta_e: Some(5.0) };
+        assert_eq!((one.max(&two), two.max(&one), one.max(&one)), (both, both, one));
+    }
+
+    /// Rows over Schlick's form begin with three texels of coefficients.
+    #[test]
+    fn bytes_are_those_of_all_tiles() {
+        let axis = |size| Axis {
+            quantity: "cos_theta".into(),
+            unit: String::new(),
+            min: 0.0,
+            max: 1.0,
+            size,
+            mapping: Mapping::Linear,
+        };
+        let table = |y: Option<u32>, format, base| CandidateForm::Table { x: axis(16), y: y.map(axis), format, base };
+        assert_eq!(table(None, TexelFormat::Rgba16Float, RowBase::Zero).bytes(3), 16 * 8 * 3);
+        assert_eq!(table(None, TexelFormat::Rgb10a2Unorm, RowBase::Schlick).bytes(2), (16 + 3) * 4 * 2);
+        assert_eq!(table(Some(5), TexelFormat::Rg16Float, RowBase::Zero).bytes(2), 16 * 5 * 4 * 2);
+        assert_eq!(CandidateForm::ClosedForm.bytes(7), 0);
     }
 }

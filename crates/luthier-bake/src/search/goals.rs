@@ -7,16 +7,12 @@ use luthier_lut::{
     Atlas, AtlasLayout, Axis, Encoding, Image, Mapping, RowBase, TableKind, TexelFormat, WeightBits, bilinear,
 };
 use luthier_manifest::{Budget, Candidate, MeasuredError};
-use luthier_material::{DEFAULT_WAVELENGTHS_NM, Material};
-use luthier_optics::color::Color;
+use luthier_material::Material;
 use luthier_optics::microfacet::scaled_distribution;
 use luthier_optics::stack::Distribution;
 use rayon::prelude::*;
 
-pub use super::blocks::{BlockStep, RowBlocks};
-use super::shared::{Bare, shared_tables};
-pub use super::shared::{OneChannel, Parameters, SharedTable};
-use super::{Found, WEIGHTS, blocks, choose, grids, measured};
+use super::{Found, WEIGHTS, choose, grids, measured};
 use crate::BakeError;
 use crate::graph::{MemoryStore, Results, Silent};
 use crate::kinds::distribution::DistributionJob;
@@ -103,23 +99,6 @@ pub struct Goals {
     pub albedos: Vec<AlbedoGoal>,
     /// Ways to have D.
     pub distributions: Vec<DistributionGoal>,
-    /// Tiles in blocks of texels.
-    pub blocks: Vec<BlockStep>,
-    /// Rows in blocks of texels, and the fewest bytes of one of those that a search may take.
-    pub row_blocks: Vec<(RowBlocks, Option<u32>)>,
-    /// Tables of three axes in place of rows.
-    pub shared: Vec<SharedGoal>,
-    /// Interfaces that such a table could serve: those without films that reflect anything.
-    pub bare: u32,
-}
-
-/// A table of three axes, beside rows.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SharedGoal {
-    /// The table.
-    pub table: SharedTable,
-    /// The fewest bytes of a row whose error at three wavelengths, and whose cost, is no larger.
-    pub row_bytes: Option<u32>,
 }
 
 /// Measures the goals for a set of materials.
@@ -127,7 +106,7 @@ pub struct SharedGoal {
 /// # Errors
 /// See [`BakeError`].
 pub fn goals(materials: &[Material], read_image: ImageReader<'_>) -> Result<Goals, BakeError> {
-    let mut plan = Plan::new(materials, Settings::of(materials)?, read_image)?;
+    let plan = Plan::new(materials, Settings::of(materials)?, read_image)?;
     let names = |kind: TableKind| plan.tiles[kind as usize].tiles.clone();
     let rows: Vec<(String, Truth)> = names(TableKind::Fresnel)
         .into_par_iter()
@@ -168,68 +147,10 @@ pub fn goals(materials: &[Material], read_image: ImageReader<'_>) -> Result<Goal
         .collect();
     let only_rows = fresnel::candidates(&plan, false);
     let steps = [1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4].map(|max_abs| step(only_rows.as_ref(), max_abs)).to_vec();
-    let truths: Vec<&Truth> = rows.iter().map(|(_, truth)| truth).collect();
-    let colors = row_shapes(&truths);
-    let row_blocks =
-        blocks::rows(&truths).into_iter().map(|r| (r.clone(), blocks::least_row(&colors, r.max_abs, f64::INFINITY)));
-    let row_blocks = row_blocks.collect();
-    let (shared, bare) = shared_goals(&plan);
     let results = plan.graph.intermediate().run(&Silent, &MemoryStore::default(), Results::default());
     let albedos = albedos(&plan, &results);
-    plan.settings.formats = TexelFormat::ALL.into_iter().collect();
-    let blocks = blocks::tiles(&plan, &results);
     let distributions = distributions();
-    Ok(Goals { row, rows: found, families, steps, albedos, distributions, blocks, row_blocks, shared, bare })
-}
-
-/// Rows for comparison, and their largest errors: all sizes and formats of the search, four mappings.
-fn row_shapes(truths: &[&Truth]) -> Vec<(RowShape, f64)> {
-    let mut shapes = Vec::new();
-    for (base, format) in FORMATS {
-        for exponent in [1.0, 2.0, 3.0, 4.0] {
-            shapes.extend(fresnel::SIZES.map(|size| RowShape {
-                axis: axis("cos_theta", "", [0.0, 1.0], size, Mapping::Power { exponent }),
-                format,
-                base,
-            }));
-        }
-    }
-    let error = |shape: &RowShape| truths.iter().map(|t| t.error(shape, false).max_abs).fold(0.0, f64::max);
-    shapes.into_par_iter().map(|shape| (shape.clone(), error(&shape))).collect()
-}
-
-/// Points at which tables of three axes are compared with the function: squares of equal steps in the cosine.
-const SHARED_POINTS: u32 = 256;
-
-fn shared_goals(plan: &Plan) -> (Vec<SharedGoal>, u32) {
-    let is_bare = |job: &&FresnelJob| job.interface.films.is_empty() && job.interface.above != job.interface.below;
-    let jobs: Vec<FresnelJob> = plan.graph.of().filter(is_bare).cloned().collect();
-    let wavelengths = |job: &FresnelJob| match job.color {
-        Color::Spectral => DEFAULT_WAVELENGTHS_NM,
-        Color::ThreeWavelengths(nm) => nm,
-    };
-    let interfaces: Vec<Bare> = jobs
-        .par_iter()
-        .map(|job| {
-            let at = wavelengths(job).map(|nm| job.interface.at(nm));
-            let sampled = job.interface.sampled(&job.color);
-            let points = (0..=SHARED_POINTS).map(|i| f64::from(i) / f64::from(SHARED_POINTS)).map(|u| u * u);
-            Bare {
-                etas: [0, 1, 2].map(|c: usize| at[c].below / at[c].above),
-                points: points.map(|c| (c, [[0, 1, 2].map(|k: usize| at[k].reflectance(c)), sampled.rgb(c)])).collect(),
-            }
-        })
-        .collect();
-    let three = jobs.iter().map(|job| FresnelJob { color: Color::ThreeWavelengths(wavelengths(job)), ..job.clone() });
-    let truths: Vec<Truth> = three.map(|job| Truth::new(&job)).collect();
-    let rows = row_shapes(&truths.iter().collect::<Vec<_>>());
-    let tables = shared_tables(&interfaces).into_iter();
-    let goal = |table: SharedTable| SharedGoal {
-        row_bytes: blocks::least_row(&rows, table.three_wavelengths, table.cost),
-        table,
-    };
-    let goals = tables.map(goal);
-    (goals.collect(), jobs.len() as u32)
+    Ok(Goals { row, rows: found, families, steps, albedos, distributions })
 }
 
 fn step(found: Option<&Found>, max_abs: f64) -> Step {

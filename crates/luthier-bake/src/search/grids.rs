@@ -43,40 +43,6 @@ struct Fine {
     slack: f64,
 }
 
-/// Tiles that are measured together.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Group {
-    BareAlbedo,
-    FilmAlbedo,
-    Film,
-}
-
-impl Group {
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::BareAlbedo => "albedo of bare interfaces",
-            Self::FilmAlbedo => "albedo of films",
-            Self::Film => "films that vary",
-        }
-    }
-}
-
-/// The candidates for a group of tiles, without what functions may be off themselves.
-pub(super) fn of_group(plan: &Plan, results: &Results, group: Group) -> Vec<Candidate> {
-    match group {
-        Group::Film => {
-            candidates(TableKind::Film, &film_tiles(plan), film_axes(), &allowed(&FILM_FORMATS, plan), 3, false)
-        }
-        Group::BareAlbedo | Group::FilmAlbedo => {
-            let has_film = |job: &&FgdTruthJob| !job.interface.films.is_empty();
-            let jobs = plan.graph.of().filter(|job| has_film(job) == (group == Group::FilmAlbedo));
-            let mut tiles = fgd_tiles(plan, results, jobs);
-            tiles.iter_mut().for_each(|tile| tile.slack = 0.0);
-            candidates(TableKind::Fgd, &tiles, fgd_axes(plan), &allowed(&FGD_FORMATS, plan), 4, false)
-        }
-    }
-}
-
 fn fgd_tiles<'a>(plan: &Plan, results: &Results, jobs: impl Iterator<Item = &'a FgdTruthJob>) -> Vec<Fine> {
     let tile = |job: &FgdTruthJob| {
         let FgdTruth { image, mut probes, kinks, slack, .. } = results.part::<FgdTruth>(job).clone();

@@ -6,11 +6,9 @@
 //!
 //! Not searched: thickness textures, which are pictures, and escape tiles.
 
-mod blocks;
 mod choice;
 pub mod goals;
 pub(crate) mod grids;
-mod shared;
 
 use luthier_lut::{Axis, Mapping, RowBase, TableKind, TexelFormat, WeightBits};
 use luthier_manifest::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR, Search};

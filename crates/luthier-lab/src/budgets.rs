@@ -1,7 +1,5 @@
 //! `budgets`: what searches for tables reach against fixed ones.
 
-mod alternatives;
-
 use std::fmt::Write as _;
 
 use luthier_bake::goals::{Family, Goals, ROW_BYTES, goals};
@@ -64,10 +62,9 @@ search to the formats in it. A material may ask for `bc6h-rgb-ufloat` in `[bake.
 
 These are not among the candidates:
 
-- BC6H for Fresnel rows. Measurements below show that it is never smaller. Phase rows do not need it, because they have a closed form of no bytes and
-  no error. Escape tiles hold one number, not three.
+- BC6H for Fresnel and phase rows. A block is four texels high, and a row one. Escape tiles hold one number, not three.
 - rgba16unorm. Core WebGPU and GLSL ES 3.00 lack it, so that no search takes it, but a material may ask for it. It is measured below.
-- The table of the course with three axes (angle, n, k). It is measured below.
+- The table of the course with three axes (angle, n, k). It can hold neither films nor colours integrated over a spectrum.
 - A fitted monotone map of an axis as a table of knots. It would need another fetch. The search fits one number per axis: the exponent or the bend.
 ";
 
@@ -91,8 +88,6 @@ fn page(goals: &Goals) -> String {
     fresnel(&mut out, goals);
     albedo(&mut out, goals);
     distribution(&mut out, goals);
-    alternatives::blocks(&mut out, goals);
-    alternatives::shared(&mut out, goals);
     out
 }
 
