@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Compares everything that a bake of `materials` and of each scene writes with tests/golden.sha256; `--update` writes that list anew.
+# Compares everything that a bake of `materials` and of each scene writes with tests/golden.sha256; `--update` writes that list anew,
+# `--keep DIR` compares and leaves the bakes in DIR, which does not exist before.
 # Text shaders count without comments and blank lines, the manifest without their hashes: what a shader says of itself may change.
 # Takes half a minute of baking in release.
 set -euo pipefail
@@ -7,8 +8,13 @@ cd "$(dirname "$0")/.."
 
 list=tests/golden.sha256
 luthier=${LUTHIER:-./target/release/luthier}
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+if [ "${1-}" = --keep ]; then
+  work=$2
+  mkdir "$work"
+else
+  work=$(mktemp -d)
+  trap 'rm -rf "$work"' EXIT
+fi
 
 "$luthier" bake materials --out "$work/materials" --quiet 2>/dev/null
 for scene in materials/scenes/*.toml; do

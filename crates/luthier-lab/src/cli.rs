@@ -33,6 +33,8 @@ pub(crate) enum Verb {
     Stability(StabilityOptions),
     /// Compare every reflectance model with the layered-mc reference on materials: a page in Markdown
     Judge(JudgeOptions),
+    /// Fit lobes to simulated stacks, shipped ones and random ones, and compare them with the papers' models: a page in Markdown
+    Lobes(LobesOptions),
     /// Measure the tables that searches find against fixed ones: a page in Markdown
     Budgets(BudgetsOptions),
     /// Count the cycles of the papers' shaders on today's chips, without the chips: a page in Markdown
@@ -152,6 +154,32 @@ pub(crate) struct JudgeOptions {
     pub(crate) samples: NonZeroU32,
     #[command(flatten)]
     pub(crate) format: Format,
+}
+
+/// The noise of the judge is then about 0.005.
+pub(crate) const LOBES_SAMPLES: NonZeroU32 = NonZeroU32::new(1 << 19).expect("not zero");
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  luthier-lab lobes materials --random 200 -o docs/pages/lobes.md\n  luthier-lab lobes materials/gold-paint.toml"
+)]
+pub(crate) struct LobesOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Random stacks besides
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) random: u32,
+    /// Paths of the judge for each wavelength and direction
+    #[arg(long, value_name = "N", default_value_t = LOBES_SAMPLES)]
+    pub(crate) samples: NonZeroU32,
+    /// Paths of the fit for each row
+    #[arg(long = "paths", value_name = "N", default_value = "50000")]
+    pub(crate) paths_per_row: NonZeroU32,
+    /// Rows over the view
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(4..=64))]
+    pub(crate) rows: u32,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
 }
 
 #[derive(Debug, Args)]

@@ -4,6 +4,7 @@ mod budgets;
 mod cli;
 mod figures;
 mod judge;
+mod lobes;
 mod papers;
 mod parity;
 mod shapes;
@@ -23,6 +24,7 @@ fn main() -> ExitCode {
         Verb::Parity(options) => parity::run(options),
         Verb::Stability(options) => stability::run(options),
         Verb::Judge(options) => judge::run(options),
+        Verb::Lobes(options) => lobes::run(options),
         Verb::Budgets(options) => budgets::run(options),
         Verb::Papers(options) => papers::run(options),
         Verb::Shapes(options) => shapes::run(options),

@@ -8,6 +8,7 @@
 //! | `models` | every reflectance model under its name, with its facets, refraction and statistics of light |
 //! | `effects` | flakes, patina, particles, textures, fluorescence |
 //! | `twins` | models as the shaders evaluate them, in three channels: [`real_time`], [`shaded`], and the [`terms`] of tables |
+//! | [`lobes`] | the stack as it was simulated, in a few lobes |
 //! | `references` | [`random_walk`] for one rough interface, [`layered_mc`] for a rough stack, [`closed_form`] for a smooth one |
 //! | `noise` | gradient noise and cells |
 //!
@@ -21,6 +22,7 @@
 //! crates are re-exported.
 
 mod effects;
+pub mod lobes;
 mod models;
 mod noise;
 mod references;

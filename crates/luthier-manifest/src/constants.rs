@@ -133,7 +133,7 @@ mod tests {
             bare: LayerRecord::default(),
         };
         let glitter =
-            GlitterRecord { seed: 0x0005_0004, frequency: 30.0, filled: 0.25, tilt: std::f64::consts::FRAC_PI_2 };
+            GlitterRecord { seed: 0x0005_0004, frequency: 30.0, filled: 0.25, tilt: std::f64::consts::FRAC_PI_3 };
         let constants = MaterialConstants {
             phong_diffuse: [20.0, 21.0, 22.0],
             phong_specular: [23.0, 24.0, 25.0],
@@ -156,7 +156,7 @@ mod tests {
                 [11.0, 12.0, 13.0, 0.0],
                 [14.0, 15.0, 16.0, 0.0],
                 [4.0, 5.0, 30.0, 0.25],
-                [1.0, 0.0, 0.0, 0.0],
+                [0.5, 0.0, 0.0, 0.0],
             ]
         );
         assert_eq!(MaterialConstants::default().words(), [[0.0; 4]; MaterialConstants::WORDS]);

@@ -469,9 +469,9 @@ mod tests {
         let constants = &whole.constants;
         let none = MaterialConstants::default;
         for constants in [
-            MaterialConstants { flakes: constants.flakes.clone(), ..none() },
+            MaterialConstants { flakes: constants.flakes, ..none() },
             MaterialConstants { patina: constants.patina.clone(), ..none() },
-            MaterialConstants { glitter: constants.glitter.clone(), ..none() },
+            MaterialConstants { glitter: constants.glitter, ..none() },
         ] {
             assert!(MaterialEntry { constants, ..plain.clone() }.varies());
         }

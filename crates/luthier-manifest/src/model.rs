@@ -60,6 +60,7 @@ mod tests {
     fn names_and_numbers_are_those_of_files_and_buffers() {
         for (i, model) in ShadingModel::ALL.into_iter().enumerate() {
             assert_eq!(model.number() as usize, i);
+            assert!(model.title().starts_with(model.name()), "{model}");
             assert_eq!(ShadingModel::from_name(model.name()), Some(model));
             assert_eq!(serde_json::to_string(&model).unwrap(), format!("\"{}\"", model.name()));
         }

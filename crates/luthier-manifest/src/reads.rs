@@ -85,6 +85,7 @@ mod tests {
             (&[Phong], vec![coat(), metal()], ["", ""]),
             (statistical, vec![coat(), metal()], ["fgd escape", "fgd"]),
             (statistical, vec![down(), metal()], ["fgd", "fgd"]),
+            (statistical, vec![layer(LayerKind::Dielectric, 1.0), metal()], ["fgd", "fgd"]),
             (statistical, vec![varying(), diffuse()], ["fgd", ""]),
             (statistical, vec![metal()], ["fgd", ""]),
             (&[GranierHeidrich], vec![coat(), metal()], ["", ""]),

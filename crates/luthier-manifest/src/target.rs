@@ -38,3 +38,15 @@ impl Target {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_of_different_languages_end_differently() {
+        let endings: std::collections::BTreeSet<&str> = Target::ALL.into_iter().map(Target::extension).collect();
+        assert_eq!(endings.len(), Target::ALL.len());
+        assert!(!endings.contains(""));
+    }
+}

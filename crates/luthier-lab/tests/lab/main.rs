@@ -4,6 +4,7 @@ mod command;
 mod costs;
 mod figures;
 mod judge;
+mod lobes;
 mod parity;
 mod stability;
 mod workshop;

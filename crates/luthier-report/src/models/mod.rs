@@ -20,6 +20,7 @@
 mod cells;
 mod compare;
 mod energies;
+mod lobes;
 mod page;
 mod paths;
 mod report;
@@ -43,6 +44,7 @@ use crate::judge::evidence::AgainstReference;
 use cells::Cells;
 use compare::compare;
 use energies::Energies;
+pub use lobes::judge_views;
 use paths::Histogram;
 pub use report::{MaterialModels, ModelErrors, ModelsReport, Quantity, ViewError, Worst};
 

@@ -8,6 +8,7 @@
 //! Everything is geometrical optics of unpolarised light: each event sees the mean of both polarisations, films
 //! excepted, which are coherent inside. Interfaces do not know each other's heights. Lateral extent is out of scope.
 
+mod colored;
 mod connect;
 mod estimate;
 mod facets;
@@ -25,6 +26,7 @@ mod walk;
 
 use glam::DVec3;
 
+pub use colored::{ColorPath, ColorPaths};
 pub use estimate::Estimate;
 pub use optics::Side;
 

@@ -13,7 +13,7 @@ use super::rough::Sided;
 use crate::monochrome::{Monochrome, MonochromeBelow};
 
 /// Event from which on a path survives by chance: late, because light that a lossless stack holds back would make noise.
-const EVENTS_SURE: usize = 4096;
+pub(super) const EVENTS_SURE: usize = 4096;
 
 /// Event from which on a path that is to be connected survives by chance: the cost grows with the square of its length.
 const EVENTS_SURE_CONNECTED: usize = 64;
@@ -128,7 +128,7 @@ impl Interfaces {
 }
 
 /// The probability with which light survives, if it does.
-fn survives(stream: &mut Stream, weight: f64, sure: bool) -> Option<f64> {
+pub(super) fn survives(stream: &mut Stream, weight: f64, sure: bool) -> Option<f64> {
     if sure && weight >= FAINT {
         return Some(1.0);
     }

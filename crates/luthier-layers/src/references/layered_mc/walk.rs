@@ -150,15 +150,16 @@ impl Walker {
     }
 }
 
-/// Direction in which light from `a` leaves the interface, and its weight, by chance; `None` when it dies.
+/// Direction in which light from `a` leaves the interface, its weight, and the facets that it met before its last one, by chance; `None`
+/// when it dies.
 #[inline(always)]
-pub(crate) fn scatter(rough: &Rough, stream: &mut Stream, a: Sided) -> Option<(Sided, f64)> {
+pub(crate) fn scatter(rough: &Rough, stream: &mut Stream, a: Sided) -> Option<(Sided, f64, u32)> {
     let mut walker = Walker::enter(rough, stream, a);
     let mut facet = 0;
     loop {
         match walker.scatter::<false>(rough, stream, facet) {
             Next::Facet => facet += 1,
-            Next::Left(b) => return Some((b, walker.weight)),
+            Next::Left(b) => return Some((b, walker.weight, facet)),
             Next::Died => return None,
         }
     }

@@ -1,0 +1,101 @@
+//! Stacks to fit: materials, their twins in the other distribution, and random ones.
+
+use luthier_material::Material;
+use luthier_optics::constants::dataset;
+use luthier_optics::ior::Ior;
+use luthier_optics::stack::{Base, Diffuse, Distribution, Film, FilmThickness, Layer, Slab, Stack, Surface};
+use luthier_report::ModelSubject;
+
+/// Wavelengths of random stacks.
+const WAVELENGTHS_NM: [f64; 3] = [630.0, 532.0, 465.0];
+
+/// Conductors of random stacks.
+const METALS: [&str; 7] = ["au", "ag", "cu", "al", "cr", "ti", "fe"];
+
+/// Numbers from a seed: SplitMix64 (Steele, Lea and Flood 2014).
+struct Draw(u64);
+
+impl Draw {
+    fn uniform(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.uniform()
+    }
+
+    fn chance(&mut self, probability: f64) -> bool {
+        self.uniform() < probability
+    }
+
+    /// A slope parameter, .001 to .8, each factor as often.
+    fn alpha(&mut self) -> f64 {
+        0.001 * libm::pow(800.0, self.uniform())
+    }
+
+    fn rgb(&mut self, low: f64, high: f64) -> [f64; 3] {
+        [0; 3].map(|_| self.between(low, high))
+    }
+}
+
+/// A material as it is, or with the other distribution.
+pub(super) fn of(material: &Material, is_twin: bool) -> ModelSubject {
+    let mut stack = material.stack.clone();
+    if is_twin {
+        for layer in &mut stack.layers {
+            layer.surface.distribution = match layer.surface.distribution {
+                Distribution::Beckmann => Distribution::Ggx,
+                Distribution::Ggx => Distribution::Beckmann,
+            };
+        }
+    }
+    ModelSubject { name: material.name.clone(), stack, wavelengths_nm: material.bake.wavelengths_nm() }
+}
+
+/// A plausible stack: up to four coats, some absorbing, some with a film, over a metal or a diffuse base. One coat in ten has an index below
+/// that of what is above it.
+pub(super) fn random(seed: u64) -> ModelSubject {
+    let mut draw = Draw(seed.wrapping_mul(0x5851_f42d_4c95_7f2d));
+    let distribution = if draw.chance(0.5) { Distribution::Ggx } else { Distribution::Beckmann };
+    let mut name = format!("{seed} {}:", distribution.name());
+    let mut layers = Vec::new();
+    for _ in 0..(5.0 * draw.uniform()) as u32 {
+        let alpha = draw.alpha();
+        let index = draw.between(1.2, 2.6);
+        let index = if draw.chance(0.1) { 1.0 / index } else { index };
+        let absorption_per_um = if draw.chance(0.5) { draw.rgb(0.0, 0.7) } else { [0.0; 3] };
+        let films = if draw.chance(0.1) {
+            let nm = draw.between(100.0, 600.0);
+            vec![Film { ior: constant(draw.between(1.3, 2.3)), thickness: FilmThickness { min_nm: nm, max_nm: nm } }]
+        } else {
+            Vec::new()
+        };
+        name += &format!(" {index:.2}/{alpha:.3}{}", if films.is_empty() { "" } else { " film" });
+        let slab = Slab { thickness_um: 1.0, absorption_per_um };
+        let base = Base::Dielectric { ior: constant(index), slab };
+        layers.push(Layer { films, surface: Surface::isotropic(distribution, alpha), base });
+    }
+    if draw.chance(0.5) {
+        let id = METALS[(draw.uniform() * METALS.len() as f64) as usize];
+        let alpha = draw.alpha();
+        name += &format!(" {id}/{alpha:.3}");
+        let ior = dataset(id).map_or_else(|| constant(1.0), |data| data.ior.clone());
+        let surface = Surface::isotropic(distribution, alpha);
+        layers.push(Layer { films: Vec::new(), surface, base: Base::Conductor { ior } });
+    } else {
+        let albedo = draw.rgb(0.03, 0.9);
+        name += " diffuse";
+        let base = Base::Diffuse(Diffuse { albedo, sigma: if draw.chance(0.3) { 0.4 } else { 0.0 } });
+        layers.push(Layer { films: Vec::new(), surface: Surface::smooth(), base });
+    }
+    ModelSubject { name, stack: Stack { exterior: Ior::vacuum(), layers }, wavelengths_nm: WAVELENGTHS_NM }
+}
+
+/// An index that does not hang on the wavelength.
+fn constant(n: f64) -> Ior {
+    Ior::constant(n, 0.0).unwrap_or_else(|_| Ior::vacuum())
+}

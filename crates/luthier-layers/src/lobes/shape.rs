@@ -1,0 +1,138 @@
+//! Shapes of lobes: a density of slopes, and the wide remainder.
+
+use std::f64::consts::PI;
+
+/// A density of slopes: elliptic, with its middle in the plane of the eye.
+///
+/// `p(s) = (1 + t q)^-(1 + 1/t) / (pi w_x w_y)`, `q = ((s_x - m) / w_x)^2 + (s_y / w_y)^2`: Student's in two dimensions. Its tail t is 0 for
+/// a Gaussian (Beckmann's distribution), and 1 for the distribution of Trowbridge and Reitz (GGX). It integrates to 1 over all slopes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shape {
+    /// The middle m, along the plane of the eye.
+    pub shift: f64,
+    /// Widths along the plane of the eye and across it.
+    pub width: [f64; 2],
+    /// The tail t, in 0..=1.
+    pub tail: f64,
+}
+
+/// Tails below this count as Gaussian.
+const TAIL_MIN: f64 = 1e-3;
+
+impl Shape {
+    /// Density of a slope.
+    pub fn density(&self, [x, y]: [f64; 2]) -> f64 {
+        let (x, y) = ((x - self.shift) / self.width[0], y / self.width[1]);
+        let q = x * x + y * y;
+        let falloff = if self.tail < TAIL_MIN { -q } else { -(1.0 + 1.0 / self.tail) * libm::log1p(self.tail * q) };
+        libm::exp(falloff) / (PI * self.width[0] * self.width[1])
+    }
+
+    /// A slope for two numbers that are uniform in 0..1.
+    ///
+    /// The share of a shape beyond q is `(1 + t q)^-(1/t)`.
+    pub fn sample(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        let log = libm::log(1.0 - u);
+        let q = if self.tail < TAIL_MIN { -log } else { libm::expm1(-self.tail * log) / self.tail };
+        let (sin, cos) = libm::sincos(2.0 * PI * v);
+        let radius = q.sqrt();
+        [self.shift + self.width[0] * radius * cos, self.width[1] * radius * sin]
+    }
+}
+
+/// The shape of what is left over the cosine of the light: `S(mu) = 1 - a (1 - mu)^5 - b (1 - mu)^2`, not below 0.
+///
+/// The fifth power is Schlick's, for light that crosses an interface; the square is for whatever else darkens grazing light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wide {
+    falloff: [f64; 2],
+    integral: f64,
+}
+
+impl Wide {
+    /// The coefficients a and b.
+    pub fn falloff(&self) -> [f64; 2] {
+        self.falloff
+    }
+
+    /// S.
+    pub fn value(&self, cos_theta: f64) -> f64 {
+        let rest = 1.0 - cos_theta;
+        let square = rest * rest;
+        (1.0 - self.falloff[0] * (square * square * rest) - self.falloff[1] * square).max(0.0)
+    }
+
+    /// The shape of two coefficients.
+    pub fn new(falloff: [f64; 2]) -> Self {
+        const POINTS: u32 = 256;
+        let mut wide = Self { falloff, integral: 1.0 };
+        let value = |i: u32| wide.value(((f64::from(i) + 0.5) / f64::from(POINTS)).sqrt());
+        wide.integral = (0..POINTS).map(value).sum::<f64>() / f64::from(POINTS);
+        wide
+    }
+
+    /// The integral of `S(mu) mu / pi` over the hemisphere, by the midpoint rule over `mu^2`; within 1e-4.
+    pub fn integral(&self) -> f64 {
+        self.integral
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use luthier_optics::microfacet;
+    use luthier_optics::stack::Distribution;
+
+    /// Oracle: the distributions of facets, whose densities of slopes are `D cos^4`.
+    #[test]
+    fn the_ends_of_the_tail_are_the_two_distributions() {
+        for (tail, distribution) in [(0.0, Distribution::Beckmann), (1.0, Distribution::Ggx)] {
+            for alpha in [0.05, 0.4] {
+                let shape = Shape { shift: 0.0, width: [alpha; 2], tail };
+                for slope in [0.0, 0.02, 0.3, 1.5] {
+                    let cos_sq: f64 = 1.0 / (1.0 + slope * slope);
+                    let d = microfacet::distribution(distribution, alpha, cos_sq.sqrt(), 1.0 - cos_sq);
+                    let expected = d * cos_sq * cos_sq;
+                    let found = shape.density([0.6 * slope, 0.8 * slope]);
+                    assert!(
+                        (found - expected).abs() <= 1e-9 * expected.max(1e-3),
+                        "{tail} {slope}: {found} {expected}"
+                    );
+                }
+            }
+        }
+    }
+
+    /// Samples fall into each ring as often as the density says; the ring's share is counted by the midpoint rule.
+    #[test]
+    fn samples_follow_the_density() {
+        for tail in [0.0, 0.3, 1.0] {
+            let shape = Shape { shift: 0.2, width: [0.5, 0.1], tail };
+            let side = 400;
+            let (mut sampled, mut expected) = ([0.0; 4], [0.0; 4]);
+            let ring = |[x, y]: [f64; 2]| ((((x - 0.2) / 0.5).abs() + (y / 0.1).abs()) * 2.0) as usize;
+            for i in 0..side * side {
+                let u = [f64::from(i % side) + 0.5, f64::from(i / side) + 0.5].map(|u| u / f64::from(side));
+                if let Some(count) = sampled.get_mut(ring(shape.sample(u))) {
+                    *count += 1.0 / f64::from(side * side);
+                }
+                // Sides that no edge of a ring divides evenly.
+                let at = [0.2 + 2.03 * (2.0 * u[0] - 1.0), 0.41 * (2.0 * u[1] - 1.0)];
+                if let Some(share) = expected.get_mut(ring(at)) {
+                    *share += shape.density(at) * 4.06 * 0.82 / f64::from(side * side);
+                }
+            }
+            for (a, b) in sampled.iter().zip(expected) {
+                assert!((a - b).abs() < 2e-3, "{tail}: {sampled:?} {expected:?}");
+            }
+        }
+    }
+
+    /// Oracle: by hand, `2 int mu S = 1 - a / 21 - b / 6`.
+    #[test]
+    fn the_wide_shape_integrates() {
+        let wide = Wide::new([0.7, 0.2]);
+        assert!((wide.integral() - (1.0 - 0.7 / 21.0 - 0.2 / 6.0)).abs() < 1e-4, "{}", wide.integral());
+        assert_eq!(Wide::new([0.0, 2.0]).value(0.1), 0.0);
+    }
+}

@@ -1,0 +1,155 @@
+//! Simulated light of one view in cells of slopes.
+//!
+//! Cells are rings and sectors around the mirror direction, in the half vectors of a medium; rings grow geometrically. An isotropic stack
+//! is its own mirror image in the plane of the eye, so that both halves count together.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use luthier_optics::Rgb;
+
+use super::half_vector::{outside, refracted, slope};
+
+const RINGS: usize = 20;
+const SECTORS: usize = 12;
+/// Discs and rings inside the innermost ring.
+const INNER: usize = 6;
+/// Points of a cell along either side.
+const POINTS: usize = 2;
+/// The greatest slope that counts: steeper ones are counted with it.
+const STEEPEST: f64 = 12.0;
+
+/// Number of cells.
+pub(super) const CELLS: usize = 1 + RINGS * SECTORS;
+
+/// Cells in the half vectors of a medium.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cells {
+    /// Relative index of the medium.
+    pub(super) index: f64,
+    /// Outer edge of the innermost disc.
+    least: f64,
+    /// Logarithm of the ratio of two edges.
+    step: f64,
+}
+
+/// A point of a cell, and what it stands for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Point {
+    pub(super) cell: usize,
+    pub(super) slope: [f64; 2],
+    /// Area of slopes, both halves together.
+    pub(super) area: f64,
+    /// Cosine of the light.
+    pub(super) cos_theta: f64,
+    /// Solid angle of the light, both halves together.
+    pub(super) solid_angle: f64,
+}
+
+impl Cells {
+    /// Cells for lobes of slope parameters down to `alpha`.
+    pub(super) fn new(index: f64, alpha: f64) -> Self {
+        let least = 0.25 * alpha;
+        Self { index, least, step: libm::log(STEEPEST / least) / RINGS as f64 }
+    }
+
+    /// The cell of light from `wi` seen from `wo`, whose plane is that of x and z.
+    fn cell(&self, wi: DVec3, wo: DVec3) -> usize {
+        let ([x, y], _) = slope(wi, refracted(wi, self.index), refracted(wo, self.index), self.index);
+        let radius = libm::hypot(x, y);
+        if radius < self.least {
+            return 0;
+        }
+        let ring = ((libm::log(radius / self.least) / self.step) as usize).min(RINGS - 1);
+        let sector = ((libm::atan2(y.abs(), x) * (SECTORS as f64 / PI)) as usize).min(SECTORS - 1);
+        1 + ring * SECTORS + sector
+    }
+
+    /// Points of all cells from which light reaches `wo`.
+    pub(super) fn points(&self, wo: DVec3) -> Vec<Point> {
+        let eye = refracted(wo, self.index);
+        let mut points = Vec::new();
+        let mut add = |cell: usize, radius: [f64; 2], phi: [f64; 2]| {
+            let area = (radius[1] * radius[1] - radius[0] * radius[0]) * (phi[1] - phi[0]);
+            // The mean of the squared radius over the area.
+            let middle = (0.5 * (radius[0] * radius[0] + radius[1] * radius[1])).sqrt();
+            let (sin, cos) = libm::sincos(0.5 * (phi[0] + phi[1]));
+            let at = [middle * cos, middle * sin];
+            let Some(wi) = outside(at, eye, self.index) else { return };
+            let (_, factor) = slope(wi, refracted(wi, self.index), eye, self.index);
+            points.push(Point { cell, slope: at, area, cos_theta: wi.z, solid_angle: area / factor });
+        };
+        for sector in 0..SECTORS {
+            let phi = [sector, sector + 1].map(|i| i as f64 * PI / SECTORS as f64);
+            for i in 0..INNER {
+                add(0, [i, i + 1].map(|i| self.least * i as f64 / INNER as f64), phi);
+            }
+            for ring in 0..RINGS {
+                let cell = 1 + ring * SECTORS + sector;
+                let edge = |i: usize| self.least * libm::exp(self.step * (ring as f64 + i as f64 / POINTS as f64));
+                let turn = |j: usize| phi[0] + (phi[1] - phi[0]) * j as f64 / POINTS as f64;
+                for i in 0..POINTS {
+                    for j in 0..POINTS {
+                        add(cell, [edge(i), edge(i + 1)], [turn(j), turn(j + 1)]);
+                    }
+                }
+            }
+        }
+        points
+    }
+}
+
+/// Light of one view: what met one facet of the first interface alone, and the rest in cells.
+#[derive(Debug, Clone)]
+pub(super) struct Tally {
+    /// Energy by cell and channel, for each set of cells.
+    pub(super) rest: Vec<Vec<Rgb>>,
+    /// Their sum.
+    pub(super) total: Rgb,
+    /// Energy of the light that met one facet alone.
+    pub(super) first_facet: Rgb,
+}
+
+impl Tally {
+    pub(super) fn new(sets: usize) -> Self {
+        Self { rest: vec![vec![[0.0; 3]; CELLS]; sets], total: [0.0; 3], first_facet: [0.0; 3] }
+    }
+
+    /// Counts light with a weight.
+    pub(super) fn add(&mut self, cells: &[Cells], [wi, wo]: [DVec3; 2], weight: Rgb, is_first_facet: bool) {
+        let plus = |sum: &mut Rgb| (0..3).for_each(|c| sum[c] += weight[c]);
+        if is_first_facet {
+            return plus(&mut self.first_facet);
+        }
+        plus(&mut self.total);
+        for (cells, rest) in cells.iter().zip(&mut self.rest) {
+            plus(&mut rest[cells.cell(wi, wo)]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Oracle: the solid angle and the projected area of the hemisphere.
+    #[test]
+    fn points_cover_the_hemisphere() {
+        for index in [1.0, 1.6] {
+            for cos_theta in [1.0, 0.7, 0.2] {
+                let wo = DVec3::new(f64::sqrt(1.0 - cos_theta * cos_theta), 0.0, cos_theta);
+                let cells = Cells::new(index, 0.2);
+                let points = cells.points(wo);
+                let projected: f64 = points.iter().map(|p| p.solid_angle * p.cos_theta).sum();
+                // Points of cells that the critical angle cuts are in or out: a few hundredths of the wide remainder.
+                assert!((projected / PI - 1.0).abs() < 0.06, "{index} {cos_theta}: {projected}");
+                assert!(points.iter().all(|p| p.cell < CELLS && p.area > 0.0 && p.solid_angle > 0.0));
+                // The point of a cell is found there again.
+                for point in &points {
+                    let wi = outside(point.slope, refracted(wo, index), index).unwrap();
+                    assert_eq!(cells.cell(wi, wo), point.cell);
+                }
+            }
+        }
+    }
+}
