@@ -54,6 +54,9 @@ const TAIL_STARTS: [f64; 2] = [0.3, 1.1];
 /// Nodes of shapes over the view.
 const NODES: usize = 6;
 
+/// Slope parameter from which on an interface has no critical angle to speak of.
+const SMOOTH: f64 = 0.01;
+
 /// Indices of media closer than this are one.
 const INDEX_STEP: f64 = 0.05;
 
@@ -108,7 +111,9 @@ impl Simulation {
         let last = rough.last().copied().unwrap_or(0.3).max(1e-3);
         let starts = if last < 0.7 * joined { vec![joined, last] } else { vec![joined] };
         let cells = indices(stack).into_iter().map(|index| Cells::new(index, least)).collect();
-        let axis = ViewAxis::new(settings.rows);
+        let is_smooth = stack.layers.first().is_some_and(|layer| layer.surface.alpha_x < SMOOTH);
+        let critical = first.as_ref().filter(|_| is_smooth).map_or(0.0, |first| first.reflectance.critical_cot_sq());
+        let axis = ViewAxis::new(settings.rows, critical);
         let paths = ColorPaths::new(stack, color);
         Ok(Self { first, axis, cells, starts, paths, settings, views: Vec::new() })
     }
@@ -245,6 +250,7 @@ struct Problem<'a> {
 
 /// One view of it.
 struct ViewProblem {
+    axis: ViewAxis,
     cos_theta: f64,
     sin: f64,
     /// Place among the nodes of shapes.
@@ -266,7 +272,7 @@ struct Profiles {
 
 impl<'a> Problem<'a> {
     fn new(simulation: &'a Simulation, set: usize) -> Self {
-        let nodes = ViewAxis::new(NODES);
+        let nodes = ViewAxis::new(NODES, simulation.axis.critical_cot_sq());
         let mean = |rgb: Rgb| rgb.iter().sum::<f64>() / 3.0;
         let view = |(row, tally): (usize, &Tally)| {
             let cos_theta = simulation.axis.cos_theta(row as f64);
@@ -275,6 +281,7 @@ impl<'a> Problem<'a> {
             let found: Vec<f64> = tally.rest[set].iter().map(|rgb| mean(*rgb).max(0.0) / all).collect();
             let weights = found.iter().map(|r| 1.0 / (r + WEIGHT_FLOOR / CELLS as f64)).collect();
             ViewProblem {
+                axis: simulation.axis,
                 cos_theta,
                 sin: wo.x,
                 place: nodes.place(cos_theta),
@@ -308,7 +315,7 @@ impl<'a> Problem<'a> {
             blocks
         };
         let (parameters, cost) = SEARCH.minimise(parameters, residuals, touched, ripples + 1);
-        let wide = wide_of(&parameters);
+        let wide = wide_of(&parameters, self.simulation.axis);
         Found { set: self.set, cost, parameters, wide }
     }
 
@@ -331,7 +338,11 @@ impl<'a> Problem<'a> {
                 amounts[view].signed(&counted, &cells, tally.total[c], guess)
             })
         });
-        let rgb = |view: usize, part: usize| channels.each_ref().map(|channel| channel[view][part]);
+        // What is totally reflected does not come from below; the row at the critical angle stands for all flatter views.
+        let is_total = |view: usize| view == 0 && self.simulation.axis.critical_cot_sq() > 0.0;
+        let rgb = |view: usize, part: usize| {
+            if is_total(view) { [0.0; 3] } else { channels.each_ref().map(|channel| channel[view][part]) }
+        };
         (0..amounts.len()).map(|view| (0..=count).map(|part| rgb(view, part)).collect()).collect()
     }
 
@@ -411,8 +422,8 @@ fn tail_of(p: &[f64], lobe: usize) -> f64 {
     sin * sin
 }
 
-fn wide_of(p: &[f64]) -> Wide {
-    Wide::new([p[p.len() - 2], p[p.len() - 1]])
+fn wide_of(p: &[f64], axis: ViewAxis) -> Wide {
+    Wide::new([p[p.len() - 2], p[p.len() - 1]], axis)
 }
 
 /// The last node of the shifts is that of the normal.
@@ -457,7 +468,7 @@ impl ViewProblem {
             let shape = self.shape(p, lobe);
             self.points.iter().for_each(|point| profile[point.cell] += shape.density(point.slope) * point.area);
         }
-        let wide = wide_of(p);
+        let wide = wide_of(p, self.axis);
         for point in &self.points {
             cells[lobes][point.cell] += wide.value(point.cos_theta) * point.cos_theta * point.solid_angle;
         }

@@ -62,7 +62,7 @@ pub struct Lobes {
     pub wide: Wide,
     /// The axis of the rows.
     pub axis: ViewAxis,
-    /// What hangs on the view, from grazing views to the normal.
+    /// Rows from grazing views to the normal.
     pub rows: Vec<Row>,
 }
 

@@ -71,6 +71,11 @@ impl<'a> Prepared<'a> {
         Some(Self { lobes, wo, azimuth, eye, shapes, row, chances })
     }
 
+    /// The row of the view.
+    pub fn row(&self) -> &Row {
+        &self.row
+    }
+
     /// Directional albedo by channel.
     pub fn albedo_dir(&self) -> Rgb {
         [0, 1, 2].map(|c: usize| {

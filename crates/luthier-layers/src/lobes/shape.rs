@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use super::ViewAxis;
+
 /// A density of slopes: elliptic, with its middle in the plane of the eye.
 ///
 /// `p(s) = (1 + t q)^-(1 + 1/t) / (pi w_x w_y)`, `q = ((s_x - m) / w_x)^2 + (s_y / w_y)^2`: Student's in two dimensions. Its tail t is 0 for
@@ -40,12 +42,14 @@ impl Shape {
     }
 }
 
-/// The shape of what is left over the cosine of the light: `S(mu) = 1 - a (1 - mu)^5 - b (1 - mu)^2`, not below 0.
+/// The shape of what is left over the cosine of the light: `S(mu) = 1 - a (1 - c)^5 - b (1 - c)^2`, not below 0; c is mu, or the cosine of
+/// [`ViewAxis::cosine`].
 ///
 /// The fifth power is Schlick's, for light that crosses an interface; the square is for whatever else darkens grazing light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wide {
     falloff: [f64; 2],
+    axis: ViewAxis,
     integral: f64,
 }
 
@@ -57,15 +61,15 @@ impl Wide {
 
     /// S.
     pub fn value(&self, cos_theta: f64) -> f64 {
-        let rest = 1.0 - cos_theta;
+        let rest = 1.0 - self.axis.cosine(cos_theta);
         let square = rest * rest;
         (1.0 - self.falloff[0] * (square * square * rest) - self.falloff[1] * square).max(0.0)
     }
 
-    /// The shape of two coefficients.
-    pub fn new(falloff: [f64; 2]) -> Self {
+    /// The shape of two coefficients over the cosine of an axis.
+    pub fn new(falloff: [f64; 2], axis: ViewAxis) -> Self {
         const POINTS: u32 = 256;
-        let mut wide = Self { falloff, integral: 1.0 };
+        let mut wide = Self { falloff, axis, integral: 1.0 };
         let value = |i: u32| wide.value(((f64::from(i) + 0.5) / f64::from(POINTS)).sqrt());
         wide.integral = (0..POINTS).map(value).sum::<f64>() / f64::from(POINTS);
         wide
@@ -131,8 +135,8 @@ mod tests {
     /// Oracle: by hand, `2 int mu S = 1 - a / 21 - b / 6`.
     #[test]
     fn the_wide_shape_integrates() {
-        let wide = Wide::new([0.7, 0.2]);
+        let wide = Wide::new([0.7, 0.2], ViewAxis::new(2, 0.0));
         assert!((wide.integral() - (1.0 - 0.7 / 21.0 - 0.2 / 6.0)).abs() < 1e-4, "{}", wide.integral());
-        assert_eq!(Wide::new([0.0, 2.0]).value(0.1), 0.0);
+        assert_eq!(Wide::new([0.0, 2.0], ViewAxis::new(2, 0.0)).value(0.1), 0.0);
     }
 }

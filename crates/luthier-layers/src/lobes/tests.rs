@@ -160,6 +160,21 @@ fn a_diffuse_base_is_the_wide_remainder() {
     }
 }
 
+/// Oracle: total reflection. From a medium of index 1.5 into air, flat light does not reach the base; steep light does.
+#[test]
+fn flat_views_see_nothing_below_a_thinner_medium() {
+    let air = Base::Dielectric { ior: Ior::vacuum(), slab: Slab { thickness_um: 1.0, absorption_per_um: [0.0; 3] } };
+    let matte = Base::Diffuse(Diffuse { albedo: [0.5; 3], sigma: 0.0 });
+    let layers = vec![layer(0.0, air), layer(0.0, matte)];
+    let lobes = fitted(&Stack { exterior: Ior::constant(1.5, 0.0).unwrap(), layers }, 0);
+    let wi = direction(20.0, 2.0);
+    assert_eq!(lobes.prepare(direction(42.0, 0.0)).unwrap().row().wide, [0.0; 3]);
+    assert!(lobes.eval(wi, direction(42.0, 0.0))[0] < 1e-4);
+    assert!(lobes.eval(wi, direction(35.0, 0.0))[0] > 0.05);
+    // The other way around.
+    assert!(lobes.eval(direction(50.0, 2.0), direction(20.0, 0.0))[0] < 0.01);
+}
+
 #[test]
 fn settings_decide_everything_and_anisotropy_is_refused() {
     let stack = lacquered();

@@ -35,14 +35,14 @@ enum Kind {
     Diffuse(Diffuse),
 }
 
-/// What becomes of light at an interface, in three channels.
+/// Light that goes on from an interface, in three channels.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Scattered {
     /// Direction in which it goes on.
     pub(crate) to: Sided,
-    /// What is left of it in every channel.
+    /// Share of it that is left in every channel.
     pub(crate) weight: f64,
-    /// What is left of it besides, by channel.
+    /// Share of it that is left besides, by channel.
     pub(crate) tint: Rgb,
     /// Facets that it met before the last.
     pub(crate) facets_before: u32,
