@@ -71,7 +71,7 @@ fn judge(subject: &ModelSubject, options: &LobesOptions) -> Result<Judged, Strin
         ..FitSettings::default()
     };
     let simulation = Simulation::new(&subject.stack, &color, settings);
-    let simulation = simulation.map_err(|error| format!("{}: {error}", subject.name))?.traced();
+    let simulation = simulation.map_err(|error| format!("{}: {error}", subject.name))?;
     let fits: Vec<Lobes> = COUNTS.map(|lobes| simulation.fit(lobes)).to_vec();
     let models = |channel: usize| -> Vec<Box<dyn Model + '_>> {
         let own = fits.iter().map(|lobes| Box::new(Channel { lobes, channel }) as Box<dyn Model>);

@@ -34,7 +34,7 @@ The model `lobes` (`luthier-layers/src/lobes`) simulates a stack and fits what c
 compares fits of none, one and two lobes, and two models of papers, with another simulation of other random numbers.
 
 Lobe errors and albedo errors are those of [models.md](models.md): shares of the light of the reference that have to move, and absolute
-differences. Every figure is the worst over three wavelengths and ten angles of the eye from 0 to 85 degrees, which no fit has seen. `noise` is the lobe
+differences. Every figure is the worst over three wavelengths and ten angles of the eye from 0 to 85 degrees; of these, fits have seen 0 degrees alone. `noise` is the lobe
 error that the random numbers of the judge make on average where a model is exact. Nothing is subtracted from the errors. `albedo` is the albedo error of
 two lobes, `index` the index of the medium in whose half vectors they are, `tails` are their tails.
 

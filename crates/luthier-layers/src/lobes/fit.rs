@@ -81,13 +81,11 @@ pub struct Simulation {
     cells: Vec<Cells>,
     /// Widths with which a fit starts.
     starts: Vec<f64>,
-    paths: ColorPaths,
-    settings: FitSettings,
     views: Vec<Tally>,
 }
 
 impl Simulation {
-    /// A simulation of an isotropic stack, of which no view has been traced yet.
+    /// Traces the paths of an isotropic stack, for every row.
     ///
     /// # Errors
     /// [`FitError`].
@@ -110,32 +108,23 @@ impl Simulation {
         let joined = rough.iter().map(|alpha| alpha * alpha).sum::<f64>().sqrt().clamp(1e-3, 0.8);
         let last = rough.last().copied().unwrap_or(0.3).max(1e-3);
         let starts = if last < 0.7 * joined { vec![joined, last] } else { vec![joined] };
-        let cells = indices(stack).into_iter().map(|index| Cells::new(index, least)).collect();
+        let cells: Vec<Cells> = indices(stack).into_iter().map(|index| Cells::new(index, least)).collect();
         let is_smooth = stack.layers.first().is_some_and(|layer| layer.surface.alpha_x < SMOOTH);
         let critical = first.as_ref().filter(|_| is_smooth).map_or(0.0, |first| first.reflectance.critical_cot_sq());
         let axis = ViewAxis::new(settings.rows, critical);
-        let paths = ColorPaths::new(stack, color);
-        Ok(Self { first, axis, cells, starts, paths, settings, views: Vec::new() })
-    }
-
-    /// Traces the paths of one row.
-    fn view(&self, row: usize) -> Tally {
-        let wo = direction(self.axis.cos_theta(row as f64));
-        let mut tally = Tally::new(self.cells.len());
-        let count = self.settings.paths;
-        // A family of its own for every row.
-        let seed = self.settings.seed.wrapping_mul(self.axis.size() as u64).wrapping_add(row as u64);
-        self.paths.trace(seed, count, wo, |path| {
-            tally.add(&self.cells, [path.wi, wo], path.weight.map(|w| w / count as f64), path.is_first_facet);
-        });
-        tally
-    }
-
-    /// Traces all rows.
-    #[must_use]
-    pub fn traced(mut self) -> Self {
-        self.views = (0..self.axis.size()).map(|row| self.view(row)).collect();
-        self
+        let (paths, count) = (ColorPaths::new(stack, color), settings.paths);
+        let view = |row: usize| {
+            let wo = direction(axis.cos_theta(row as f64));
+            let mut tally = Tally::new(cells.len());
+            // A family of its own for every row.
+            let seed = settings.seed.wrapping_mul(axis.size() as u64).wrapping_add(row as u64);
+            paths.trace(seed, count, wo, |path| {
+                tally.add(&cells, [path.wi, wo], path.weight.map(|w| w / count as f64), path.is_first_facet);
+            });
+            tally
+        };
+        let views = (0..axis.size()).map(view).collect();
+        Ok(Self { first, axis, cells, starts, views })
     }
 
     /// The lobes, so many, that are nearest to the light that was traced.
@@ -296,9 +285,9 @@ impl<'a> Problem<'a> {
 
     fn minimise(&self, starts: Vec<Start>, wide: [f64; 2]) -> Found {
         let mut parameters = Vec::new();
-        for Start(rows, root) in starts {
+        for Start(rows, tail) in starts {
             rows.iter().for_each(|row| parameters.extend(row));
-            parameters.push(root);
+            parameters.push(tail);
         }
         parameters.extend(wide);
         let lobes = parameters.len() / PER_LOBE;

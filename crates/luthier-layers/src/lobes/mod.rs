@@ -15,16 +15,14 @@
 //! - **Shapes.** [`Shape`]: an ellipse with a tail between Beckmann's and GGX. Shift and widths hang on the view, the tail on the lobe;
 //!   channels share them.
 //! - **Energies.** E are energies by channel, taken from the simulation view by view, and A is the share of a shape above the horizon. So
-//!   the directional albedo is that of the simulation, whatever the shapes are.
+//!   the directional albedo of a row is that of the simulation, whatever the shapes are.
 //! - **Rows.** All that hangs on the view is in rows over `cos_theta_o^(1/1.5)`, linear between.
 //!
 //! Sampling is exact: draw a lobe, draw a slope, mirror the eye about it, refract. What is drawn beyond the horizon has no weight.
 //!
 //! Simplifications: isotropic surfaces; the lobes are not reciprocal. Out of scope: places that differ, which take a row each.
 //!
-//! Why not other forms. Lobes of the half vector outside need two where this needs one (silver paint in GGX: lobe error .057 with n = 1,
-//! .023 with n = 1.7, one lobe each). A rule of two lobes for each stack is dearer than its gain where one is enough: the number is a matter
-//! of the fit.
+//! Lobes in the half vectors outside the stack are the case n = 1. The fit tries it, and takes it where it is the nearest.
 
 mod fit;
 mod half_vector;

@@ -8,7 +8,6 @@ use luthier_optics::Rgb;
 use super::half_vector::{outside, refracted, slope};
 use super::{Lobes, Row, Shape};
 use crate::facets::Masking;
-use crate::frame::half_vector;
 
 /// The model as seen from a direction: what a renderer computes once for all lights.
 #[derive(Debug, Clone)]
@@ -144,7 +143,6 @@ impl<'a> Prepared<'a> {
     fn first_facet(&self, wi: DVec3) -> Rgb {
         let value = self.lobes.first.as_ref().and_then(|first| {
             let lobe = first.facets.lobe(Masking::Smith, wi, self.wo)?;
-            half_vector(wi, self.wo)?;
             Some(first.reflectance.rgb(lobe.cos_theta_d).map(|reflectance| reflectance * lobe.value))
         });
         value.unwrap_or([0.0; 3])

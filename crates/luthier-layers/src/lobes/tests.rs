@@ -31,7 +31,7 @@ fn stack(layers: Vec<Layer>) -> Stack {
 
 fn fitted(stack: &Stack, count: usize) -> Lobes {
     let settings = FitSettings { rows: 10, paths: 8000, seed: 5 };
-    Simulation::new(stack, &Color::ThreeWavelengths(NM), settings).unwrap().traced().fit(count)
+    Simulation::new(stack, &Color::ThreeWavelengths(NM), settings).unwrap().fit(count)
 }
 
 /// A tinted coat of alpha .2 on a metal of alpha .1.

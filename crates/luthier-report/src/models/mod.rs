@@ -20,10 +20,10 @@
 mod cells;
 mod compare;
 mod energies;
-mod lobes;
 mod page;
 mod paths;
 mod report;
+mod views;
 
 use std::num::NonZeroU32;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -32,7 +32,6 @@ use glam::DVec3;
 use luthier_layers::inputs::Input;
 use luthier_layers::layered_mc::{InterfaceMode, LayeredMc};
 use luthier_layers::model::{Kind, Model, ModelInfo};
-use luthier_layers::monochrome::Monochrome;
 use luthier_layers::registry::models;
 use luthier_manifest::ShadingModel;
 use luthier_optics::color_difference::{ciede2000, lab};
@@ -41,12 +40,11 @@ use rayon::prelude::*;
 
 use crate::judge::evidence::AgainstReference;
 
-use cells::Cells;
 use compare::compare;
 use energies::Energies;
-pub use lobes::judge_views;
-use paths::Histogram;
 pub use report::{MaterialModels, ModelErrors, ModelsReport, Quantity, ViewError, Worst};
+use views::View;
+pub use views::judge_views;
 
 /// Angles of the eye against the normal, degrees.
 pub(crate) const THETAS_DEG: [f64; 4] = [0.0, 30.0, 60.0, 80.0];
@@ -187,25 +185,19 @@ fn rows() -> Vec<Row> {
 /// Errors per row and view.
 fn judge_material(rows: &[Row], subject: &ModelSubject, settings: ModelSettings) -> Vec<Vec<ViewError>> {
     let mut judged: Vec<Vec<ViewError>> = rows.iter().map(|_| Vec::new()).collect();
-    let trace = |mode, family: u64, samples: u32, stack: &Monochrome, cells: &Cells| {
-        // Families are far apart, so that seeds that follow each other share none.
-        let seed = settings.seed.wrapping_add(family << 32);
-        Histogram::trace(LayeredMc { mode, samples: samples.into(), seed }, stack, cells)
-    };
-    for (channel, wavelength_nm) in subject.wavelengths_nm.into_iter().enumerate() {
-        let stack = Monochrome::new(&subject.stack, wavelength_nm, channel);
+    for channel in 0..3 {
         for theta_deg in THETAS_DEG {
-            let cells = Cells::new(direction(theta_deg, PHI_DEG));
+            let view = View::new(subject, channel, theta_deg);
             let samples = settings.samples.get();
-            let reference = trace(InterfaceMode::SmithWalk, 0, samples, &stack, &cells);
+            let reference = view.trace(InterfaceMode::SmithWalk, 0, samples, settings.seed);
             let fewer = samples.div_ceil(FEWER);
             for (row, found) in rows.iter().zip(&mut judged) {
                 let energies = match row {
-                    Row::Model(model) => Energies::of(model.as_ref(), &stack, &cells),
-                    Row::Paths(mode @ InterfaceMode::SmithWalk) => trace(*mode, 1, fewer, &stack, &cells).into(),
-                    Row::Paths(mode @ InterfaceMode::OneFacet) => trace(*mode, 2, fewer, &stack, &cells).into(),
+                    Row::Model(model) => Energies::of(model.as_ref(), &view.stack, &view.cells),
+                    Row::Paths(mode @ InterfaceMode::SmithWalk) => view.trace(*mode, 1, fewer, settings.seed).into(),
+                    Row::Paths(mode @ InterfaceMode::OneFacet) => view.trace(*mode, 2, fewer, settings.seed).into(),
                 };
-                found.push(compare(&energies, &reference, wavelength_nm, theta_deg));
+                found.push(compare(&energies, &reference, view.wavelength_nm, theta_deg));
             }
         }
     }
