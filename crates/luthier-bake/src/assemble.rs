@@ -9,6 +9,7 @@ use luthier_optics::interface::Interface;
 
 use crate::constants::constants;
 use crate::graph::{JobKind, Key, Observer, Results, Silent};
+use crate::kinds::lobes;
 use crate::limits;
 use crate::maps::{MaterialMap, maps};
 use crate::plan::{ImageReader, Plan, PlannedLayers, TileList, color, color_mode, shading_model};
@@ -105,7 +106,12 @@ pub fn outline_with(
     let tables = layouts(&planned.plan)?;
     let Plan { tiles, records, .. } = planned.plan;
     let keys = used(&tiles).map(|(_, tiles)| tiles.tiles.iter().map(|(_, key)| *key).collect()).collect();
-    Ok(Outline { tables, keys, materials: baked_materials(materials, records), searches: planned.searches })
+    Ok(Outline {
+        tables,
+        keys,
+        materials: baked_materials(materials, records, &planned.results),
+        searches: planned.searches,
+    })
 }
 
 /// The layers whose Fresnel rows would miss [`AIM`] in a bake of this material alone, and by how much they are off: those of interfaces that reflect
@@ -188,7 +194,7 @@ pub fn bake_with(
     let aim = |kind: TableKind| (!is_asked && settings.leaves(kind)).then_some(AIM);
     let atlas = |(kind, layout, format)| atlas(kind, layout, format, &tiles[kind as usize], &results, aim(kind));
     let atlases = layouts.into_iter().map(atlas).collect();
-    Ok(Baked { atlases, materials: baked_materials(materials, records), searches })
+    Ok(Baked { atlases, materials: baked_materials(materials, records, &results), searches })
 }
 
 /// A plan whose settings are final, results that were needed to find them, and what the search found.
@@ -323,11 +329,12 @@ fn used(tiles: &[TileList; TableKind::ALL.len()]) -> impl Iterator<Item = (Table
     TableKind::ALL.into_iter().zip(tiles).filter(|(_, tiles)| !tiles.tiles.is_empty())
 }
 
-fn baked_materials(materials: &[Material], records: Vec<PlannedLayers>) -> Vec<BakedMaterial> {
+fn baked_materials(materials: &[Material], records: Vec<PlannedLayers>, results: &Results) -> Vec<BakedMaterial> {
+    let lobes = |m: &Material| (shading_model(m) == ShadingModel::Lobes).then(|| lobes::record(m, results));
     let baked = |(m, planned): (&Material, PlannedLayers)| BakedMaterial {
         model: shading_model(m),
         color: color_mode(m),
-        constants: constants(m, planned.bare),
+        constants: constants(m, planned.bare, lobes(m)),
         records: planned.layers,
         maps: maps(m),
     };

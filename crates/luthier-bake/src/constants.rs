@@ -2,15 +2,19 @@
 
 use luthier_layers::monochrome::{Monochrome, in_color};
 use luthier_layers::phong::Coefficients;
-use luthier_manifest::{FlakesRecord, GlitterRecord, LayerRecord, MaterialConstants, PatinaRecord};
+use luthier_manifest::{FlakesRecord, GlitterRecord, LayerRecord, LobesRecord, MaterialConstants, PatinaRecord};
 use luthier_material::{Effects, FlakeSource, Glitter, Material};
 use luthier_optics::stack::Stack;
 
 use crate::plan::{color, shading_model};
 use crate::veil::veil;
 
-/// The constants of a material; `bare` is the layer below its patina.
-pub(crate) fn constants(material: &Material, bare: Option<LayerRecord>) -> MaterialConstants {
+/// The constants of a material; `bare` is the layer below its patina, `lobes` are those that were fitted.
+pub(crate) fn constants(
+    material: &Material,
+    bare: Option<LayerRecord>,
+    lobes: Option<LobesRecord>,
+) -> MaterialConstants {
     let (stack, color) = (&material.stack, color(material));
     let (internal_reflectance, upward_loss) =
         if shading_model(material).is_statistical() { veil(stack, &color) } else { ([0.0; 3], 0.0) };
@@ -20,6 +24,7 @@ pub(crate) fn constants(material: &Material, bare: Option<LayerRecord>) -> Mater
         phong_exponent: exponent(stack, material.bake.wavelengths_nm()),
         internal_reflectance,
         upward_loss,
+        lobes,
         flakes: flakes(&material.effects),
         patina: bare.and_then(|bare| patina(&material.effects, bare)),
         glitter: glitter(&material.effects),

@@ -46,7 +46,7 @@ pub(crate) fn color_in_words(color: &Color) -> String {
 pub(crate) fn texels(kind: TableKind, format: TexelFormat, truth: &Image) -> (Vec<u8>, Image) {
     let roots = Encoding::of(kind, format).to_root(truth);
     let balanced = match kind.facts().values {
-        Values::Picture => roots,
+        Values::Picture | Values::Apart => roots,
         Values::Signed => balance(&roots, f64::NEG_INFINITY),
         Values::Positive => balance(&roots, 0.0),
     };

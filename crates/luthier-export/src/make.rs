@@ -24,7 +24,7 @@ pub struct Bake<'a> {
     pub options: Options,
     /// Languages of the shaders.
     pub targets: Vec<Target>,
-    /// Forms of the shaders; with [`Form::Full`] alone the package has no tables.
+    /// Forms of the shaders, or none for all that the models have; with [`Form::Full`] alone the package has no tables.
     pub forms: Vec<Form>,
     /// Told what happens.
     pub observer: &'a dyn Observer,
@@ -37,7 +37,7 @@ impl Default for Bake<'_> {
         Self {
             options: Options::default(),
             targets: vec![Target::Wgsl, Target::Glsl450, Target::GlslEs300],
-            forms: Form::ALL.to_vec(),
+            forms: Vec::new(),
             observer: &Silent,
             refuses: true,
         }
@@ -111,6 +111,8 @@ impl Package {
             refuse_foreign(materials)?;
         }
         let read = &sources::read_image as ImageReader<'_>;
+        let forms = forms(materials, &bake.forms)?;
+        let bake = &Bake { forms, ..bake.clone() };
         if bake.forms == [Form::Full] {
             // Without a shader that reads them there are no tables.
             let options = Options { search: false, ..bake.options };
@@ -184,6 +186,9 @@ impl Package {
                 forms.push(*form);
             }
         }
+        // Forms that only others lack.
+        let is_new = |form: &Form| !self.manifest.has(*form) && package.manifest.has(*form);
+        forms.extend(Form::ALL.into_iter().filter(is_new));
         package.emit(&targets, &forms)?;
         Ok(package)
     }
@@ -219,6 +224,20 @@ fn refuse_foreign(materials: &[Material]) -> Result<(), ExportError> {
     let diagnostics: Vec<Diagnostic> = doubts.filter(|d| d.severity == Severity::Error).collect();
     let Some(first) = diagnostics.first() else { return Ok(()) };
     Err(ExportError::Refused { sentence: format!("{}: {}", first.label, first.message), diagnostics })
+}
+
+/// The forms of the shaders of materials: those that are asked for, or all that the models of all materials have.
+fn forms(materials: &[Material], asked: &[Form]) -> Result<Vec<Form>, ExportError> {
+    let model = |material: &Material| material.bake.model.unwrap_or_default();
+    let lacking = |form: Form| materials.iter().find(|material| !model(material).has(form));
+    for &form in asked {
+        if let Some(material) = lacking(form) {
+            let (material, model) = (material.name.clone(), model(material));
+            return Err(ShaderError::NoForm { material, model, form }.into());
+        }
+    }
+    let all = || Form::ALL.into_iter().filter(|&form| lacking(form).is_none()).collect();
+    Ok(if asked.is_empty() { all() } else { asked.to_vec() })
 }
 
 /// The manifest's entry of a table, without its tiles and files.

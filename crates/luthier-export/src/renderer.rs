@@ -2,7 +2,6 @@
 
 use luthier_bake::MemoryStore;
 use luthier_lut::TableKind;
-use luthier_manifest::Form;
 use luthier_material::Material;
 
 use crate::{Bake, ExportError, Package};
@@ -16,7 +15,7 @@ impl Package {
     /// # Errors
     /// Those of [`Package::new`].
     pub fn for_renderer(materials: &[Material]) -> Result<Self, ExportError> {
-        Self::new(materials, &Bake::wgsl(&Form::ALL), &MemoryStore::default())
+        Self::new(materials, &Bake::wgsl(&[]), &MemoryStore::default())
     }
 }
 

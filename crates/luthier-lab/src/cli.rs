@@ -173,7 +173,7 @@ pub(crate) struct LobesOptions {
     #[arg(long, value_name = "N", default_value_t = LOBES_SAMPLES)]
     pub(crate) samples: NonZeroU32,
     /// Paths of the fit for each row
-    #[arg(long = "paths", value_name = "N", default_value = "50000")]
+    #[arg(long = "paths", value_name = "N", default_value = "16384")]
     pub(crate) paths_per_row: NonZeroU32,
     /// Rows over the view
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(4..=64))]

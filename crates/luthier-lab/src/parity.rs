@@ -9,7 +9,6 @@ use luthier_manifest::{Manifest, ShadingModel};
 use luthier_material::Material;
 use luthier_optics::stack::{Base, Layer, Stack};
 use luthier_report::{POLISHED_ALPHAS, Parity, ParityCase, Share, Subject, Verdict, parity};
-use luthier_shader::Form;
 use luthier_terminal::{Bar, Failure, Outcome, Shaders, complain, deliver, open, valid};
 
 use crate::cli::{PARITY_PAIRS, ParityOptions};
@@ -25,7 +24,7 @@ pub(crate) fn run(options: &ParityOptions) -> Outcome {
         models.iter().flat_map(|model| materials.iter().flat_map(|m| variants(m, *model))).collect();
     let baking = Bar::new("baking");
     // Shaders are compared within the domains of their models and beyond.
-    let bake = Bake { refuses: false, ..Bake::wgsl(&Form::ALL) };
+    let bake = Bake { refuses: false, ..Bake::wgsl(&[]) };
     let package = Package::new(&all, &bake, &MemoryStore::default())?;
     drop(baking);
     let bar = Bar::new("comparing");

@@ -28,7 +28,7 @@ pub(crate) fn run(options: &ShapesOptions) -> Outcome {
             }
             let manifest = outline(std::slice::from_ref(&material), &Options::default())?;
             let set = MaterialSet::from_manifest(&manifest);
-            for form in [Form::Baked, Form::Full] {
+            for form in Form::ALL.into_iter().filter(|&form| model.has(form)) {
                 let style = Style { form, constant: false, approximate: false };
                 kernels.push(Kernel::of_set(&set, style, Harness::Bare).map_err(Failure::input)?);
                 keys.push((model, form, shape.clone()));

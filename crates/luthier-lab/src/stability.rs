@@ -4,7 +4,7 @@ use luthier_bake::Options;
 use luthier_export::{Bake, GENERATOR, MemoryStore, Package};
 use luthier_gpu::Gpu;
 use luthier_lut::{RowBase, TexelFormat};
-use luthier_manifest::{Budget, ColorMode, Form, ShadingModel};
+use luthier_manifest::{Budget, ColorMode, ShadingModel};
 use luthier_material::{BakeSettings, LayerExtras, Material, SurfaceClass};
 use luthier_report::Subject;
 use luthier_report::stability::{Cell, Stability, StressCase, cases, model_cells, shader_cells};
@@ -91,7 +91,7 @@ fn gpu_cells(gpu: &Gpu, cases: &[StressCase], cells: &mut Vec<Cell>) -> Outcome<
     for Tables { name, options, models } in &all {
         let materials: Vec<Material> =
             models.iter().flat_map(|model| (0..).zip(cases).map(|(n, case)| material(n, case, *model))).collect();
-        let bake = Bake { options: *options, refuses: false, ..Bake::wgsl(&Form::ALL) };
+        let bake = Bake { options: *options, refuses: false, ..Bake::wgsl(&[]) };
         let package = Package::new(&materials, &bake, &MemoryStore::default())?;
         for first in (0..materials.len()).step_by(cases.len()) {
             let stacks = cases.iter().map(|case| case.stack.clone()).collect();

@@ -12,6 +12,7 @@ use crate::fluorescence::Fluorescence;
 use crate::granier_heidrich::GranierHeidrich;
 use crate::heterogeneous::{Heterogeneous, Pattern};
 use crate::layered_mc::{InterfaceMode, LayeredMc};
+use crate::lobes::Fitted;
 use crate::microfacet::{Microfacet, VARIANTS};
 use crate::model::Model;
 use crate::patina::PatinaAt;
@@ -42,6 +43,7 @@ pub fn models() -> Vec<Box<dyn Model>> {
         Box::new(Belcour::new(Follow::HalfVector)),
         Box::new(Yamaguchi::new(Follow::Eye)),
         Box::new(Yamaguchi::new(Follow::HalfVector)),
+        Box::new(Fitted::default()),
         Box::new(Fluorescence),
     ]);
     models.extend([Box::new(FlakeMean::default()) as Box<dyn Model>, Box::new(PatinaAt::default())]);

@@ -275,7 +275,12 @@ fn grazing_mirror_directions_make_v_cavities_grow_without_bound_and_smith_s_mask
                 // No lobe at all, or none but on a diffuse base.
                 assert!(near <= 1.02 * far, "{name}: {near} {far}");
             } else {
-                let (growth, slack) = if on_v_cavities(name) { (1000.0, 10.0) } else { (1.0, 0.02) };
+                let (growth, slack) = match name {
+                    // Lobes of slopes are hidden by nothing; the first facet beside them is.
+                    "lobes" => (500.0, 500.0),
+                    _ if on_v_cavities(name) => (1000.0, 10.0),
+                    _ => (1.0, 0.02),
+                };
                 assert_near(near / far, growth, slack);
             }
             for cos in [1e-1, 1e-3, 1e-6, 1e-9] {
@@ -351,6 +356,8 @@ fn an_index_matched_coat_is_not_there_but_for_elek_s_clamp() {
                     let sigma = a.std_err.hypot(b.std_err);
                     assert!((a.mean - b.mean).abs() <= 4.0 * sigma && sigma < 0.01 * b.mean, "{a:?} {b:?}");
                 }
+                // The metal's own facets become a lobe below the coat.
+                "lobes" => assert_near(ratio, 1.0, 0.08),
                 _ => assert_near(ratio, 1.0, 1e-9),
             }
         }

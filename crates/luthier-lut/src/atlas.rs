@@ -134,7 +134,7 @@ pub fn read(
     values: [f64; 2],
     weights: WeightBits,
 ) -> [f64; 4] {
-    let weights = if format.is_filterable() { weights } else { WeightBits::Exact };
+    let weights = if kind.is_filtered(format) { weights } else { WeightBits::Exact };
     let texel = bilinear(texels, layout.position(tile, values), weights);
     match layout.base {
         RowBase::Zero => Encoding::of(kind, format).decode(texel),

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::TexelFormat;
+
 crate::named! {
     /// Kind of a table, by its contents. One texture of each kind serves any number of materials.
     #[derive(Serialize, Deserialize)]
@@ -23,6 +25,8 @@ crate::named! {
         /// Share of a lobe inside a medium that is not totally reflected at its surface, over (cos_theta, alpha), the cosine being that of the
         /// refracted direction outside; one tile per index.
         Escape = "escape",
+        /// Light from below the first interface as lobes, part by part, over the cosine of the view; one tile per material.
+        Lobes = "lobes",
     }
 }
 
@@ -32,7 +36,7 @@ macro_rules! for_table_kinds {
     ($callback:ident) => {
         $callback! {
             Fresnel "fresnel", Distribution "distribution", Fgd "fgd", Phase "phase", Thickness "thickness", Film "film",
-            Escape "escape"
+            Escape "escape", Lobes "lobes"
         }
     };
 }
@@ -59,6 +63,8 @@ pub enum Values {
     Signed,
     /// A picture, of which the material file is the only source.
     Picture,
+    /// Rows of numbers of both signs that have nothing to do with the rows beside them.
+    Apart,
 }
 
 /// Facts about a kind of table.
@@ -68,8 +74,9 @@ pub struct KindFacts {
     pub holds: &'static str,
     /// Binding number of its texture. 5 is the sampler, 6 the material buffer.
     pub binding: u32,
-    /// Word and component of a layer in the material buffer that have the number of its tile.
-    pub slot: [usize; 2],
+    /// Word and component of a layer in the material buffer that have the number of its tile; `None` for tiles that serve a material as a
+    /// whole, whose number is in the header of the material. Records have these at the first layer.
+    pub slot: Option<[usize; 2]>,
     /// The channels of its unquantised values by name: those of a colour by letter, others by what they are. None is called A,
     /// which viewers take for transparency.
     pub channels: &'static [&'static str],
@@ -94,7 +101,7 @@ const ONE: &[&str] = &["Y"];
 const FACTS: KindFacts = KindFacts {
     holds: "",
     binding: 0,
-    slot: [0, 0],
+    slot: Some([0, 0]),
     channels: RGB,
     x: &["cos_theta"],
     y: None,
@@ -111,14 +118,14 @@ impl TableKind {
             Self::Fresnel => KindFacts {
                 holds: "Fresnel reflectance of an interface over the cosine, RGB.",
                 binding: 0,
-                slot: [1, 0],
+                slot: Some([1, 0]),
                 x: &["cos_theta", "theta"],
                 ..FACTS
             },
             Self::Distribution => KindFacts {
                 holds: "Slope distributions, stored as π α² D.",
                 binding: 1,
-                slot: [1, 1],
+                slot: Some([1, 1]),
                 channels: ONE,
                 x: &["cos_theta_h", "theta_h"],
                 y: Some("alpha"),
@@ -129,7 +136,7 @@ impl TableKind {
                 holds: "Directional albedo of a rough interface with all its microsurface bounces, RGB; in A the luminance of \
                         the part that never crossed.",
                 binding: 2,
-                slot: [1, 2],
+                slot: Some([1, 2]),
                 channels: &["R", "G", "B", "never_crossed.Y"],
                 x: &["cos_theta", "theta"],
                 y: Some("alpha"),
@@ -138,7 +145,7 @@ impl TableKind {
             Self::Phase => KindFacts {
                 holds: "Interference of a film: 2 cos(2 Φ) over normalised thickness, RGB.",
                 binding: 3,
-                slot: [1, 3],
+                slot: Some([1, 3]),
                 x: &["s"],
                 values: Values::Signed,
                 served: Served::Films,
@@ -148,7 +155,7 @@ impl TableKind {
             Self::Thickness => KindFacts {
                 holds: "Thickness of a varying film: normalised thickness, slopes, normalisation.",
                 binding: 4,
-                slot: [2, 3],
+                slot: Some([2, 3]),
                 channels: &["R", "G", "B", "normalisation.Y"],
                 x: &["u"],
                 y: Some("v"),
@@ -159,7 +166,7 @@ impl TableKind {
             Self::Film => KindFacts {
                 holds: "Reflectance of an interface over cosine and thickness of its film, RGB.",
                 binding: 7,
-                slot: [6, 3],
+                slot: Some([6, 3]),
                 y: Some("fraction"),
                 served: Served::VaryingFilms,
                 has_settings: false,
@@ -168,7 +175,7 @@ impl TableKind {
             Self::Escape => KindFacts {
                 holds: "Share of a lobe that is not totally reflected inside.",
                 binding: 8,
-                slot: [8, 3],
+                slot: Some([8, 3]),
                 channels: ONE,
                 y: Some("alpha"),
                 served: Served::Transparent,
@@ -176,7 +183,23 @@ impl TableKind {
                 has_settings: false,
                 ..FACTS
             },
+            Self::Lobes => KindFacts {
+                holds: "Light from below the first interface in lobes over the cosine of the view: energies RGB and shapes, part by part.",
+                binding: 9,
+                slot: None,
+                channels: &["R", "G", "B", "shape"],
+                y: Some("part"),
+                values: Values::Apart,
+                has_settings: false,
+                ..FACTS
+            },
         }
+    }
+
+    /// Whether shaders read its tiles through a sampler: in a format that filters, and not where rows have nothing to do with those beside
+    /// them.
+    pub fn is_filtered(self, format: TexelFormat) -> bool {
+        format.is_filterable() && self.facts().values != Values::Apart
     }
 
     /// Binding number of its texture.
@@ -193,8 +216,8 @@ mod tests {
 
     #[test]
     fn bindings_and_slots_are_distinct() {
-        assert_eq!(TableKind::ALL.map(TableKind::binding), [0, 1, 2, 3, 4, 7, 8]);
-        let slots: BTreeSet<[usize; 2]> = TableKind::ALL.iter().map(|kind| kind.facts().slot).collect();
+        assert_eq!(TableKind::ALL.map(TableKind::binding), [0, 1, 2, 3, 4, 7, 8, 9]);
+        let slots: BTreeSet<Option<[usize; 2]>> = TableKind::ALL.iter().map(|kind| kind.facts().slot).collect();
         assert_eq!(slots.len(), TableKind::ALL.len());
         for kind in TableKind::ALL {
             assert_eq!(serde_json::to_string(&kind).unwrap(), format!("\"{}\"", kind.name()));

@@ -1,5 +1,7 @@
 //! Constants of a whole surface, beside its layers.
 
+use std::f64::consts::FRAC_1_PI;
+
 use serde::{Deserialize, Serialize};
 
 use crate::LayerRecord;
@@ -18,12 +20,28 @@ pub struct MaterialConstants {
     /// Share of diffuse light from below that layers keep beyond the share that they keep from above: 1 - Ti0/T0i of the statistics; 0 for
     /// smooth ones.
     pub upward_loss: f64,
+    /// Lobes, for the model that reads these.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lobes: Option<LobesRecord>,
     /// Flakes in the coat.
     pub flakes: Option<FlakesRecord>,
     /// Patina: the first layer has grown over the others in places.
     pub patina: Option<PatinaRecord>,
     /// Cells of the surface that glitter.
     pub glitter: Option<GlitterRecord>,
+}
+
+/// Numbers of the model `lobes` that hold at all views.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct LobesRecord {
+    /// Relative index of the medium in whose half vectors the lobes are.
+    pub index: f64,
+    /// Coefficients a and b of the wide remainder, `S = 1 - a (1 - c)^5 - b (1 - c)^2`, not below 0; c is the cosine of the light.
+    pub falloff: [f64; 2],
+    /// Integral of `S c / pi` over the hemisphere.
+    pub integral: f64,
+    /// Squared cotangent of the critical angle: c is then the cosine of the refracted direction. 0 where it is that of the light.
+    pub critical_cot_sq: f64,
 }
 
 /// Flakes, one per cell of a grid or as a normal map has them (Elek 2010, section 4.1).
@@ -82,8 +100,8 @@ impl MaterialConstants {
     /// | header word | x, y, z, w |
     /// |---|---|
     /// | 1 | Phong's diffuse coefficient RGB, exponent |
-    /// | 2 | Phong's specular coefficient RGB, 0 |
-    /// | 3 | internal reflectance RGB, upward loss |
+    /// | 2 | Phong's specular coefficient RGB; of lobes the squared cotangent of the critical angle, or 0 |
+    /// | 3 | internal reflectance RGB, upward loss; of lobes 1 / index, a, b, and 1 over pi and the integral of S |
     /// | 4 | flakes: low and high 16 bits of the seed, cells, tiling; all 0 without flakes |
     /// | 5 | flakes: spread, scale, fade start, 0 |
     /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; all 0 without patina |
@@ -97,6 +115,10 @@ impl MaterialConstants {
         words[0] = with(self.phong_diffuse, self.phong_exponent);
         words[1] = with(self.phong_specular, 0.0);
         words[2] = with(self.internal_reflectance, self.upward_loss);
+        if let Some(LobesRecord { index, falloff: [a, b], integral, critical_cot_sq }) = self.lobes {
+            words[1][3] = critical_cot_sq as f32;
+            words[2] = with([1.0 / index, a, b], FRAC_1_PI / integral);
+        }
         let half = |bits: u32| (bits & 0xffff) as f32;
         if let Some(f) = &self.flakes {
             words[3] = [half(f.seed), half(f.seed >> 16), f.count as f32, f.tiling as f32];
@@ -140,6 +162,7 @@ mod tests {
             phong_exponent: 26.0,
             internal_reflectance: [27.0, 28.0, 29.0],
             upward_loss: 30.0,
+            lobes: None,
             flakes: Some(flakes),
             patina: Some(patina),
             glitter: Some(glitter),
@@ -160,5 +183,8 @@ mod tests {
             ]
         );
         assert_eq!(MaterialConstants::default().words(), [[0.0; 4]; MaterialConstants::WORDS]);
+        let lobes = LobesRecord { index: 1.25, falloff: [0.5, 0.75], integral: FRAC_1_PI, critical_cot_sq: 3.0 };
+        let words = MaterialConstants { lobes: Some(lobes), ..MaterialConstants::default() }.words();
+        assert_eq!((words[1][3], words[2]), (3.0, [0.8, 0.5, 0.75, 1.0]));
     }
 }

@@ -92,18 +92,25 @@ impl ShadingModel {
         let is_chain = matches!(self, Self::Elek | Self::WeidlichWilkie);
         let is_statistical = self.is_statistical();
         match feature {
-            Feature::NormalMap | Feature::RoughnessMap | Feature::Glitter | Feature::Films => true,
-            Feature::InnerInterface | Feature::Absorption => is_chain || is_statistical || self == Self::Phong,
+            Feature::NormalMap | Feature::Glitter | Feature::Films => true,
+            Feature::RoughnessMap => self != Self::Lobes,
+            Feature::InnerInterface | Feature::Absorption => {
+                is_chain || is_statistical || matches!(self, Self::Phong | Self::Lobes)
+            }
             // Phong's diffuse coefficient is the base's albedo, less what interfaces reflect.
-            Feature::BaseAbsorption => is_chain || is_statistical,
+            Feature::BaseAbsorption => is_chain || is_statistical || self == Self::Lobes,
             Feature::Base => self != Self::Microfacet,
             // Records have one film of an interface; tables and Phong's coefficients are made of all.
-            Feature::InnerFilms => self == Self::Phong || form == Form::Baked && self != Self::GranierHeidrich,
+            Feature::InnerFilms => {
+                matches!(self, Self::Phong | Self::Lobes) || form == Form::Baked && self != Self::GranierHeidrich
+            }
             // Albedos are tabulated at the nominal thickness.
-            Feature::FilmVariation => self != Self::Phong && !(is_statistical && form == Form::Baked),
-            Feature::DiffuseSlopes => is_chain || is_statistical || self == Self::Microfacet,
+            Feature::FilmVariation => {
+                !(matches!(self, Self::Phong | Self::Lobes) || is_statistical && form == Form::Baked)
+            }
+            Feature::DiffuseSlopes => is_chain || is_statistical || matches!(self, Self::Microfacet | Self::Lobes),
             Feature::Anisotropy => matches!(self, Self::WeidlichWilkie | Self::Yamaguchi | Self::Microfacet),
-            Feature::Beckmann => is_chain || self == Self::Microfacet,
+            Feature::Beckmann => is_chain || matches!(self, Self::Microfacet | Self::Lobes),
             Feature::ThicknessMap => is_chain || is_statistical,
             Feature::Flakes | Feature::Patina => is_chain,
         }
@@ -134,6 +141,7 @@ mod tests {
             (ShadingModel::GranierHeidrich, ".#..#.#...##...#"),
             (ShadingModel::Phong, "###.##....##...#"),
             (ShadingModel::Microfacet, "....#b######...#"),
+            (ShadingModel::Lobes, "######.#.##....#"),
         ] {
             assert_eq!(shown(model), expected, "{model}");
         }

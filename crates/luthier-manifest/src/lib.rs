@@ -22,7 +22,7 @@ mod target;
 mod tiles;
 
 pub use choice::{MaterialChoice, SceneBudget, SceneCandidate, SceneChoice, SceneError, Verdict};
-pub use constants::{FlakesRecord, GlitterRecord, MaterialConstants, PatinaRecord};
+pub use constants::{FlakesRecord, GlitterRecord, LobesRecord, MaterialConstants, PatinaRecord};
 pub use error::ManifestError;
 pub use feature::Feature;
 pub use form::Form;

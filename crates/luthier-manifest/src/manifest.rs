@@ -207,6 +207,11 @@ impl Manifest {
         Ok(json)
     }
 
+    /// Whether shaders of all its materials have a form.
+    pub fn has(&self, form: Form) -> bool {
+        self.materials.iter().all(|material| material.model.has(form))
+    }
+
     /// A manifest of materials and tables, without shaders and files.
     pub fn new(generator: &str, materials: Vec<MaterialEntry>, tables: Vec<TableEntry>) -> Self {
         Self {

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::Form;
+
 luthier_lut::named! {
     /// A reflectance model that shaders evaluate.
     #[derive(Default, Serialize, Deserialize)]
@@ -23,6 +25,8 @@ luthier_lut::named! {
         Phong = "phong",
         /// The first interface alone: K. Torrance and E. Sparrow 1967, with the masking of Heitz 2014, eq. 99.
         Microfacet = "microfacet",
+        /// The first interface, and the simulated light from below it in lobes.
+        Lobes = "lobes",
     }
 }
 
@@ -43,7 +47,13 @@ impl ShadingModel {
             }
             Self::Phong => "phong (B. T. Phong, Illumination for computer generated pictures, 1975)",
             Self::Microfacet => "microfacet (K. Torrance, E. Sparrow 1967; masking of E. Heitz 2014)",
+            Self::Lobes => "lobes (luthier's own: lobes fitted to a simulation of the stack)",
         }
+    }
+
+    /// Whether its shader has a form: what is read from tables alone has no other.
+    pub fn has(self, form: Form) -> bool {
+        form == Form::Baked || self != Self::Lobes
     }
 
     /// Its number in the material buffer.

@@ -12,7 +12,7 @@ impl ShadingModel {
 
     /// Whether its `baked` shader reads D from a table, where there is one.
     pub fn reads_distribution(self) -> bool {
-        matches!(self, Self::Elek | Self::WeidlichWilkie | Self::Microfacet)
+        matches!(self, Self::Elek | Self::WeidlichWilkie | Self::Microfacet | Self::Lobes)
     }
 
     /// Whether the `baked` shader of the model reads a kind of table for a layer of a stack, by the layer's number. For layers without a
@@ -23,7 +23,9 @@ impl ShadingModel {
         match self {
             Self::Phong => false,
             // They look at the first layer alone.
-            Self::Microfacet | Self::GranierHeidrich if number > 0 => false,
+            Self::Microfacet | Self::GranierHeidrich | Self::Lobes if number > 0 => false,
+            // Films have their nominal thickness.
+            Self::Lobes => matches!(kind, TableKind::Fresnel | TableKind::Distribution | TableKind::Lobes),
             Self::Elek | Self::WeidlichWilkie | Self::Microfacet => match kind {
                 TableKind::Fresnel => !layer.varies(),
                 TableKind::Film => layer.varies(),
@@ -72,7 +74,7 @@ mod tests {
     /// Tables by model, stack and layer, filled in by hand from the modules of the shaders.
     #[test]
     fn models_read_what_their_shaders_call() {
-        use ShadingModel::{Belcour, Elek, GranierHeidrich, Microfacet, Phong, WeidlichWilkie, Yamaguchi};
+        use ShadingModel::{Belcour, Elek, GranierHeidrich, Lobes, Microfacet, Phong, WeidlichWilkie, Yamaguchi};
         let (coat, down) = (|| layer(LayerKind::Dielectric, 1.5), || layer(LayerKind::Dielectric, 0.8));
         let (metal, diffuse) = (|| layer(LayerKind::Conductor, 1.0), || layer(LayerKind::Diffuse, 1.0));
         let chains: &[ShadingModel] = &[Elek, WeidlichWilkie];
@@ -83,6 +85,9 @@ mod tests {
             (chains, vec![coat(), varying()], ["fresnel distribution", "distribution film"]),
             (&[Microfacet], vec![coat(), metal()], ["fresnel distribution", ""]),
             (&[Phong], vec![coat(), metal()], ["", ""]),
+            (&[Lobes], vec![coat(), metal()], ["fresnel distribution lobes", ""]),
+            (&[Lobes], vec![varying(), diffuse()], ["fresnel distribution lobes", ""]),
+            (&[Lobes], vec![diffuse()], ["", ""]),
             (statistical, vec![coat(), metal()], ["fgd escape", "fgd"]),
             (statistical, vec![down(), metal()], ["fgd", "fgd"]),
             (statistical, vec![layer(LayerKind::Dielectric, 1.0), metal()], ["fgd", "fgd"]),
@@ -100,7 +105,7 @@ mod tests {
         }
         for model in ShadingModel::ALL {
             assert_eq!(model.is_statistical(), statistical.contains(&model));
-            assert_eq!(model.reads_distribution(), [Elek, WeidlichWilkie, Microfacet].contains(&model));
+            assert_eq!(model.reads_distribution(), [Elek, WeidlichWilkie, Microfacet, Lobes].contains(&model));
         }
     }
 }

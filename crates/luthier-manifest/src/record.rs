@@ -14,8 +14,9 @@ pub const MATERIAL_WORDS: usize = 11;
 pub const LAYER_WORDS: usize = {
     let (mut words, mut i) = (11, 0);
     while i < TableKind::ALL.len() {
-        let [word, _] = TableKind::ALL[i].facts().slot;
-        if word >= words {
+        if let Some([word, _]) = TableKind::ALL[i].facts().slot
+            && word >= words
+        {
             words = word + 1;
         }
         i += 1;
@@ -153,8 +154,9 @@ impl LayerRecord {
         let mut words = [[0.0; 4]; LAYER_WORDS];
         words[..numbers.len()].copy_from_slice(&numbers);
         for kind in TableKind::ALL {
-            let [word, component] = kind.facts().slot;
-            words[word][component] = self.tiles[kind].map_or(-1.0, |tile| tile as f32);
+            if let Some([word, component]) = kind.facts().slot {
+                words[word][component] = self.tiles[kind].map_or(-1.0, |tile| tile as f32);
+            }
         }
         words
     }
@@ -168,13 +170,15 @@ impl LayerRecord {
 ///
 /// | header word | x, y, z, w |
 /// |---|---|
-/// | 0 | index of its first layer's first word, number of layers, number of the model, 0 |
+/// | 0 | index of its first layer's first word, number of layers, number of the model, number of its tile of lobes or 0 |
 /// | 1-10 | see [`MaterialConstants::words`] |
 pub fn material_buffer(materials: &[MaterialEntry]) -> Vec<[f32; 4]> {
     let mut words = Vec::new();
     let mut first = materials.len() * MATERIAL_WORDS;
     for material in materials {
-        words.push([whole(first), whole(material.layers.len()), whole(material.model.number() as usize), 0.0]);
+        let lobes = material.layers.first().and_then(|layer| layer.tiles[TableKind::Lobes]).unwrap_or(0);
+        let model = material.model.number() as usize;
+        words.push([whole(first), whole(material.layers.len()), whole(model), lobes as f32]);
         words.extend(material.constants.words());
         first += material.records().count() * LAYER_WORDS;
     }

@@ -8,7 +8,8 @@ use serde::de::{IgnoredAny, MapAccess, Visitor};
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// Numbers of the tiles that serve a layer, by the kind of table. Files have each as `NAME_tile`, null where there is none.
+/// Numbers of the tiles that serve a layer, by the kind of table. Files have each as `NAME_tile`, null where there is none; tiles that serve a
+/// whole material are left out where there are none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Tiles([Option<u32>; TableKind::ALL.len()]);
 
@@ -46,8 +47,9 @@ impl IndexMut<TableKind> for Tiles {
 
 impl Serialize for Tiles {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(self.0.len()))?;
-        for kind in TableKind::ALL {
+        let is_written = |kind: &TableKind| kind.facts().slot.is_some() || self[*kind].is_some();
+        let mut map = serializer.serialize_map(Some(TableKind::ALL.iter().filter(|kind| is_written(kind)).count()))?;
+        for kind in TableKind::ALL.into_iter().filter(is_written) {
             map.serialize_entry(&format!("{}_tile", kind.name()), &self[kind])?;
         }
         map.end()
@@ -91,6 +93,11 @@ mod tests {
         let text = serde_json::to_string(&tiles).unwrap();
         assert!(text.starts_with(r#"{"fresnel_tile":null,"distribution_tile":null,"fgd_tile":3,"#), "{text}");
         assert_eq!(serde_json::from_str::<Tiles>(&text).unwrap(), tiles);
+        assert!(!text.contains("lobes"), "{text}");
+        let lobes = Tiles::of([(TableKind::Lobes, 2)]);
+        let text = serde_json::to_string(&lobes).unwrap();
+        assert!(text.ends_with(r#""escape_tile":null,"lobes_tile":2}"#), "{text}");
+        assert_eq!(serde_json::from_str::<Tiles>(&text).unwrap(), lobes);
         // Files of older versions have fewer, those of newer ones more.
         let few = serde_json::from_str::<Tiles>(r#"{"fgd_tile":3,"escape_tile":0,"later_tile":1,"kind":"x"}"#).unwrap();
         assert_eq!(few, tiles);

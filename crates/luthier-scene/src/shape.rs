@@ -24,6 +24,7 @@ pub fn shape_of(model: ShadingModel, shape: &str) -> String {
     match model {
         ShadingModel::Phong => String::new(),
         ShadingModel::Microfacet => first(),
+        ShadingModel::Lobes => first().replace('a', ""),
         ShadingModel::GranierHeidrich => {
             let base = shape.rsplit('/').next().filter(|base| base.starts_with(['l', 'o']));
             [Some(first().replace('a', "")), base.map(|_| "l".to_owned())]

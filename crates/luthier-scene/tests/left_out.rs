@@ -107,7 +107,7 @@ fn twins_show_what_the_table_says() {
             }
         }
     }
-    assert_eq!(tried, 61);
+    assert_eq!(tried, 70);
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 

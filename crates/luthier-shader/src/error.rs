@@ -1,9 +1,10 @@
 //! The ways in which no shader comes out.
 
 use luthier_lut::TableKind;
+use luthier_manifest::ShadingModel;
 use thiserror::Error;
 
-use crate::Target;
+use crate::{Form, Target};
 
 /// Why no shader came out.
 #[derive(Debug, Error)]
@@ -30,6 +31,18 @@ pub enum ShaderError {
         second: String,
         /// The identifier.
         constant: String,
+    },
+    /// A form that the model of a material does not have.
+    #[error(
+        "`{material}` has no `{form}` shader: its model `{model}` is read from tables; ask for the `baked` form, or for another model"
+    )]
+    NoForm {
+        /// The material.
+        material: String,
+        /// Its model.
+        model: ShadingModel,
+        /// The form.
+        form: Form,
     },
     /// The baked form needs a tile that the layer does not have.
     #[error("layer {layer} of `{material}` has no tile of the {} table, which the baked form reads", table.name())]

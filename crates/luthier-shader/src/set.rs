@@ -113,11 +113,17 @@ impl<'a> MaterialSet<'a> {
             if material.layers.is_empty() {
                 return Err(ShaderError::NoLayers(material.name.clone()));
             }
+            if !material.model.has(form) {
+                return Err(ShaderError::NoForm { material: material.name.clone(), model: material.model, form });
+            }
             for (i, layer) in material.layers.iter().enumerate() {
                 self.check_layer(form, material, i, layer, |kind| material.model.reads(kind, &material.layers, i))?;
             }
             if let Some(bare) = material.records().nth(material.layers.len()) {
-                let reads = |kind| material.model.reads(kind, std::slice::from_ref(bare), 0);
+                // Tiles of the whole material are at its first layer.
+                let reads = |kind: TableKind| {
+                    kind.facts().slot.is_some() && material.model.reads(kind, std::slice::from_ref(bare), 0)
+                };
                 self.check_layer(form, material, material.layers.len(), bare, reads)?;
             }
         }
@@ -168,7 +174,7 @@ pub fn bindings(set: &MaterialSet<'_>, form: Form) -> Vec<BindingEntry> {
     let mut bindings = Vec::new();
     let mut is_sampled = false;
     for table in set.tables_read(form) {
-        is_sampled |= table.format.is_filterable();
+        is_sampled |= table.kind.is_filtered(table.format);
         bindings.push(entry(table.kind.binding(), format!("luthier_{}", table.kind.name()), "texture_2d<f32>"));
     }
     if is_sampled {

@@ -5,12 +5,13 @@ use luthier_report::{Device, Form, Pair};
 
 use crate::Outcome;
 
-/// Both shaders of a bake, ready to run.
+/// The shaders of a bake, ready to run.
 #[derive(Debug)]
 pub struct Shaders {
     name: String,
     baked: Scene,
-    full: Scene,
+    /// None where a model of the bake has no such form.
+    full: Option<Scene>,
 }
 
 impl Shaders {
@@ -20,14 +21,16 @@ impl Shaders {
     /// Whatever the adapter reports.
     pub fn new(gpu: &Gpu, package: &Package) -> Outcome<Self> {
         let scene = |form| gpu.scene(package, form);
-        Ok(Self { name: adapter_label(gpu), baked: scene(Form::Baked)?, full: scene(Form::Full)? })
+        let has_full = package.manifest.has(Form::Full);
+        let full = has_full.then(|| scene(Form::Full)).transpose()?;
+        Ok(Self { name: adapter_label(gpu), baked: scene(Form::Baked)?, full })
     }
 
-    /// The pipelines of a form.
-    pub fn scene(&self, form: Form) -> &Scene {
+    /// The pipelines of a form, if the bake has it.
+    pub fn scene(&self, form: Form) -> Option<&Scene> {
         match form {
-            Form::Baked => &self.baked,
-            Form::Full => &self.full,
+            Form::Baked => Some(&self.baked),
+            Form::Full => self.full.as_ref(),
         }
     }
 }
@@ -38,7 +41,8 @@ impl Device for Shaders {
     }
 
     fn evaluate(&self, form: Form, material: u32, pairs: &[Pair]) -> Result<Vec<[f32; 3]>, String> {
-        self.scene(form).evaluate(material, pairs).map_err(|source| source.to_string())
+        let scene = self.scene(form).ok_or_else(|| format!("the bake has no `{form}` shader"))?;
+        scene.evaluate(material, pairs).map_err(|source| source.to_string())
     }
 }
 

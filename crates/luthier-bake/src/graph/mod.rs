@@ -129,7 +129,7 @@ impl Graph {
 
 impl Results {
     /// The result of a job of which it has the type, if the job has run.
-    fn get<T: Any>(&self, key: Key) -> Option<&T> {
+    pub(crate) fn get<T: Any>(&self, key: Key) -> Option<&T> {
         self.0.get(&key)?.0.downcast_ref()
     }
 

@@ -5,6 +5,7 @@ mod escape;
 pub(crate) mod fgd;
 pub(crate) mod film;
 pub(crate) mod fresnel;
+pub(crate) mod lobes;
 pub(crate) mod phase;
 pub(crate) mod thickness;
 
@@ -88,5 +89,6 @@ pub(crate) fn of(kind: TableKind) -> &'static dyn Kind {
         TableKind::Thickness => &thickness::Table,
         TableKind::Film => &film::Table,
         TableKind::Escape => &escape::Table,
+        TableKind::Lobes => &lobes::Table,
     }
 }

@@ -19,6 +19,7 @@ fn models_bake_what_their_shaders_read() {
     use TableKind::{Film, Fresnel, Phase, Thickness};
     let coated = dielectric("1.5", 0.1) + &conductor("{ n = 0.2, k = 3.5 }", 0.3);
     let filmed = FILM.to_owned() + &dielectric("1.8", 0.2);
+    assert_eq!(kinds(&coated, "lobes", ""), [Fresnel, TableKind::Lobes]);
     for (model, of_coat, of_film) in [
         ("elek", vec![Fresnel], vec![Thickness, Film]),
         ("weidlich-wilkie", vec![Fresnel], vec![Thickness, Film]),
@@ -41,7 +42,7 @@ fn models_bake_what_their_shaders_read() {
 
 #[test]
 fn every_kind_can_be_asked_for() {
-    let all = "tables = [\"fresnel\", \"distribution\", \"fgd\", \"phase\", \"thickness\", \"film\", \"escape\"]\n";
+    let all = "tables = [\"fresnel\", \"distribution\", \"fgd\", \"phase\", \"thickness\", \"film\", \"escape\", \"lobes\"]\n";
     let layers = FILM.to_owned() + &dielectric("1.8", 0.2) + &conductor("{ n = 0.2, k = 3.5 }", 0.3);
     for model in ["elek", "granier-heidrich", "phong"] {
         assert_eq!(kinds(&layers, model, &(all.to_owned() + SMALL)), TableKind::ALL, "{model}");

@@ -73,10 +73,9 @@ impl Emission {
         if asked.is_empty() { Bake::default().targets } else { asked.into_iter().collect() }
     }
 
-    /// Their forms, each once.
+    /// The forms that are asked for, each once.
     fn forms(&self) -> Vec<Form> {
-        let asked: BTreeSet<Form> = self.form.iter().copied().collect();
-        if asked.is_empty() { Bake::default().forms } else { asked.into_iter().collect() }
+        self.form.iter().copied().collect::<BTreeSet<Form>>().into_iter().collect()
     }
 }
 

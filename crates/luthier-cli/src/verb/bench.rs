@@ -137,7 +137,7 @@ fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -> Outcome<V
         let styles = [(Form::Full, true), (Form::Baked, !reads_d), (Form::Baked, true)];
         // Without a table of D to read, closed or not is the same.
         let distinct = if reads_d { 3 } else { 2 };
-        for (form, closed) in styles.into_iter().take(distinct) {
+        for (form, closed) in styles.into_iter().take(distinct).filter(|(form, _)| model.has(*form)) {
             if form == Form::Baked && closed && reads_d {
                 package = with_closed(package)?;
             }

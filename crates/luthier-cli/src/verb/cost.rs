@@ -77,7 +77,9 @@ fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Varian
         };
         for (name, group) in groups {
             let manifest = outline(group, &Options::default())?;
-            for &form in &forms {
+            // Those that are asked for by name are refused where there are none.
+            let is_there = |form: &&Form| !options.form.is_empty() || model.has(**form);
+            for &form in forms.iter().filter(is_there) {
                 for (closed, constant) in styles(options) {
                     // What reads no table of D has it in closed form, or has none, either way.
                     let has_d = manifest.table(TableKind::Distribution).is_some();

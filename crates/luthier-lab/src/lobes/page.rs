@@ -76,13 +76,13 @@ fn group(out: &mut String, title: &str, outcomes: &Outcomes) -> std::fmt::Result
         }
         let Some((lobes, views)) = stack.fits.last() else { continue };
         let noise = views.iter().map(|view| view.lobe_floor).fold(0.0, f64::max);
-        let tails: Vec<String> = lobes.tails.iter().map(|tail| format!("{tail:.2}")).collect();
+        let tails: Vec<String> = lobes.rows[0].lobes.iter().map(|lobe| format!("{:.2}", lobe.tail)).collect();
         writeln!(
             out,
             " {noise:.3} | {} | {:.4} | {:.2} | {} |",
             worst(views),
             albedo(views),
-            lobes.index,
+            lobes.frame.index,
             tails.join(" ")
         )?;
     }

@@ -41,7 +41,7 @@ fn shapes_are_counted_by_model_and_form() {
     assert_eq!(table.family, "rdna2");
     assert!(table.driver.contains("Mesa"), "{}", table.driver);
     for model in luthier_manifest::ShadingModel::ALL {
-        for form in luthier_manifest::Form::ALL {
+        for form in luthier_manifest::Form::ALL.into_iter().filter(|&form| model.has(form)) {
             assert!(table.rows.iter().any(|row| (row.model, row.form) == (model, form)), "{model}, {form}");
         }
     }

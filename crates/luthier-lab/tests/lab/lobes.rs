@@ -37,7 +37,7 @@ fn lobes_are_fitted_to_materials_and_to_random_stacks() {
     }
     let row = page.lines().find(|line| line.starts_with("| m |")).unwrap();
     let figures: Vec<f64> = row.split('|').filter_map(|cell| cell.trim().parse().ok()).collect();
-    let [none, _, _, belcour, _, noise, albedo, _] = figures[..] else { panic!("{row}") };
+    let [none, _, _, belcour, _, noise, albedo, ..] = figures[..] else { panic!("{row}") };
     // Paths that all have the weight of the albedo.
     assert!(none < 2.0 * noise && belcour < 2.0 * noise && albedo < 2e-3, "{row}");
     assert_eq!(workshop.run(&args).exits(0).stdout, page, "again");

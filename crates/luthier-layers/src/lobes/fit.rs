@@ -5,6 +5,8 @@
 //! projection, Golub and Pereyra 1973). Residuals are those of cells, `(e - r) / sqrt(r + c)`, all views together, so that lobes keep their
 //! identity from view to view.
 
+use std::f64::consts::PI;
+
 use glam::DVec3;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
@@ -13,9 +15,9 @@ use luthier_optics::stack::{Base, Stack};
 use thiserror::Error;
 
 use super::half_vector::{outside, refracted};
-use super::solve::{Amounts, Guess, LeastSquares};
+use super::solve::{Amounts, Column, Guess, LeastSquares, Place, Residuals};
 use super::tally::{CELLS, Cells, Point, Tally};
-use super::{FirstInterface, Lobe, Lobes, Row, Shape, ViewAxis, Wide};
+use super::{FirstInterface, Frame, Lobe, Lobes, Row, Shape, TAIL_MIN, ViewAxis, Wide};
 use crate::facets::{ALPHA_MIN, Facets};
 use crate::layered_mc::ColorPaths;
 
@@ -31,9 +33,9 @@ pub struct FitSettings {
 }
 
 impl Default for FitSettings {
-    /// 20 rows, 50,000 paths for each.
+    /// 20 rows, 16,384 paths for each.
     fn default() -> Self {
-        Self { rows: 20, paths: 50_000, seed: 0 }
+        Self { rows: 20, paths: 16_384, seed: 0 }
     }
 }
 
@@ -71,7 +73,17 @@ const REST_WEIGHT: f64 = 0.003;
 /// Energy that is added to that of a cell, over the mean, where residuals are weighed.
 const WEIGHT_FLOOR: f64 = 0.05;
 
-const SEARCH: LeastSquares = LeastSquares { steps: 25, difference: 1e-4, longest: 0.7, gain: 1e-4 };
+const SEARCH: LeastSquares = LeastSquares { longest: 0.7, gain: 1e-4 };
+
+/// Steps from every start, and further ones from the places that were best after these.
+const FIRST_STEPS: u32 = 6;
+const LAST_STEPS: u32 = 20;
+
+/// Places that are followed to the end.
+const FOLLOWED: usize = 2;
+
+/// Step of the differences that slopes of amounts are.
+const DIFFERENCE: f64 = 1e-5;
 
 /// Light of a stack, view by view, in the half vectors of every medium that lobes may be in.
 #[derive(Debug, Clone)]
@@ -129,43 +141,82 @@ impl Simulation {
 
     /// The lobes, so many, that are nearest to the light that was traced.
     pub fn fit(&self, count: usize) -> Lobes {
-        let best = |found: Option<Found>, next: Found| match found {
-            Some(found) if found.cost <= next.cost => Some(found),
-            _ => Some(next),
+        let problems = self.problems();
+        let fits = self.fits(&problems, count);
+        let found = fits.last().unwrap_or_else(|| unreachable!("there is a fit without lobes"));
+        problems[found.set].lobes(found)
+    }
+
+    /// The fewest lobes, so many at most, whose lobe error is no more than `excess` above that of the most.
+    ///
+    /// The error of a fit holds the noise of the paths, which all fits have alike: they are compared by the differences of their squared
+    /// residuals. Those of one view are over the energies, so that half the root of their sum is at least the lobe error that they make.
+    pub fn fit_fewest(&self, most: usize, excess: f64) -> Lobes {
+        let problems = self.problems();
+        let fits = self.fits(&problems, most);
+        let least = fits.iter().map(|found| found.place.cost).fold(f64::INFINITY, f64::min);
+        let error = |found: &Found| 0.5 * ((found.place.cost - least) / self.views.len() as f64).sqrt();
+        let found = fits.iter().find(|found| error(found) <= excess).unwrap_or(&fits[0]);
+        problems[found.set].lobes(found)
+    }
+
+    fn problems(&self) -> Vec<Problem<'_>> {
+        (0..self.cells.len()).map(|set| Problem::new(self, set)).collect()
+    }
+
+    /// Fits of no lobe, of one, and so on; those that gain nothing by another are the last.
+    fn fits(&self, problems: &[Problem<'_>], most: usize) -> Vec<Found> {
+        let alone = |set: usize| {
+            self.starts
+                .iter()
+                .flat_map(move |&width| TAIL_STARTS.map(|tail| (set, vec![Start::new(width, tail)], REMAINDER_START)))
         };
-        let problems: Vec<Problem<'_>> = (0..self.cells.len()).map(|set| Problem::new(self, set)).collect();
-        let mut found: Option<Found> = None;
-        for problem in &problems {
-            if count == 0 {
-                found = best(found, problem.minimise(Vec::new(), [0.3, 0.0]));
-            } else {
-                for &width in &self.starts {
-                    for tail in TAIL_STARTS {
-                        found = best(found, problem.minimise(vec![Start::new(width, tail)], [0.3, 0.0]));
-                    }
-                }
-            }
-        }
+        let one = (most > 0).then(|| nearest(problems, (0..problems.len()).flat_map(alone).collect()));
+        // In the cells of the others, so that residuals compare.
+        let set = one.as_ref().map_or(0, |one| one.set);
+        let mut fits = vec![nearest(problems, vec![(set, Vec::new(), REMAINDER_START)])];
+        fits.extend(one);
         // One lobe more at a time, beside those found, wider or narrower.
-        for _ in 1..count {
-            let Some(fewer) = found.take() else { break };
-            let problem = &problems[fewer.set];
-            for factor in [2.5, 0.4] {
-                for tail in TAIL_STARTS {
-                    let mut starts = fewer.starts();
-                    let beside = starts[starts.len() - 1].scaled(factor);
-                    starts.push(Start(beside.0, tail));
-                    found = best(found, problem.minimise(starts, fewer.wide.falloff()));
-                }
-            }
-            if found.as_ref().is_none_or(|found| found.cost >= fewer.cost) {
-                found = Some(fewer);
+        for count in 1..most {
+            let fewer = &fits[count];
+            let (lobes, wide) = (fewer.starts(), fewer.wide_falloff());
+            let beside = |factor: f64| {
+                TAIL_STARTS.map(|tail| {
+                    let mut starts = lobes.clone();
+                    let scaled = starts[starts.len() - 1].scaled(factor);
+                    starts.push(Start(scaled.0, tail));
+                    (fewer.set, starts, wide)
+                })
+            };
+            let more = nearest(problems, [2.5, 0.4].into_iter().flat_map(beside).collect());
+            if more.place.cost >= fewer.place.cost {
                 break;
             }
+            fits.push(more);
         }
-        let found = found.unwrap_or_else(|| problems[0].minimise(Vec::new(), [0.0; 2]));
-        problems[found.set].lobes(&found)
+        fits
     }
+}
+
+/// Coefficients of the remainder with which a fit starts.
+const REMAINDER_START: [f64; 2] = [0.3, 0.0];
+
+/// The best place that searches from some starts come to: in a set of cells, with lobes and falloff of the remainder.
+fn nearest(problems: &[Problem<'_>], starts: Vec<(usize, Vec<Start>, [f64; 2])>) -> Found {
+    let first = |(set, lobes, wide): (usize, Vec<Start>, [f64; 2])| {
+        let problem = Lobed { problem: &problems[set], lobes: lobes.len() };
+        let place = Place::new(parameters(lobes, wide), &problem);
+        Found { set, place: SEARCH.descend(place, &problem, FIRST_STEPS) }
+    };
+    let mut found: Vec<Found> = starts.into_iter().map(first).collect();
+    found.sort_by(|a, b| a.place.cost.total_cmp(&b.place.cost));
+    found.truncate(FOLLOWED);
+    let last = |Found { set, place }: Found| {
+        let problem = Lobed { problem: &problems[set], lobes: place.parameters.len() / PER_LOBE };
+        Found { set, place: SEARCH.descend(place, &problem, LAST_STEPS) }
+    };
+    let best = found.into_iter().map(last).min_by(|a, b| a.place.cost.total_cmp(&b.place.cost));
+    best.unwrap_or_else(|| unreachable!("there is a start"))
 }
 
 /// The relative indices in whose half vectors lobes may be: 1, that of the first medium, and that of the last.
@@ -212,12 +263,22 @@ impl Start {
 /// Parameters of one lobe in the vector of all.
 const PER_LOBE: usize = 3 * NODES + 1;
 
+/// Parameters of lobes and remainder in one vector.
+fn parameters(lobes: Vec<Start>, wide: [f64; 2]) -> Vec<f64> {
+    let mut parameters = Vec::new();
+    for Start(rows, tail) in lobes {
+        rows.iter().for_each(|row| parameters.extend(row));
+        parameters.push(tail);
+    }
+    parameters.extend(wide);
+    parameters
+}
+
+/// A place that a search came to.
 struct Found {
     /// Number of the set of cells.
     set: usize,
-    cost: f64,
-    parameters: Vec<f64>,
-    wide: Wide,
+    place: Place,
 }
 
 impl Found {
@@ -226,7 +287,13 @@ impl Found {
             let row = |i: usize| p[i * NODES..(i + 1) * NODES].to_vec();
             Start([row(0), row(1), row(2)], p[3 * NODES])
         };
-        self.parameters[..self.parameters.len() - 2].chunks(PER_LOBE).map(of).collect()
+        let p = &self.place.parameters;
+        p[..p.len() - 2].chunks(PER_LOBE).map(of).collect()
+    }
+
+    fn wide_falloff(&self) -> [f64; 2] {
+        let p = &self.place.parameters;
+        [p[p.len() - 2], p[p.len() - 1]]
     }
 }
 
@@ -248,8 +315,9 @@ struct ViewProblem {
     /// Brightness of the cells: means of the channels, over that of all light of the view.
     found: Vec<f64>,
     total: f64,
-    /// Weights of squared residuals.
+    /// Weights of squared residuals, and their roots.
     weights: Vec<f64>,
+    roots: Vec<f64>,
 }
 
 /// A view with shapes: what every part sends to each cell, of a unit of its energy.
@@ -257,6 +325,32 @@ struct Profiles {
     cells: Vec<Vec<f64>>,
     /// Shares of the shapes above the horizon, as the cells have them.
     shares: Vec<f64>,
+}
+
+/// A problem with a number of lobes. Its blocks are the views, and last the ripples.
+struct Lobed<'a> {
+    problem: &'a Problem<'a>,
+    lobes: usize,
+}
+
+impl Residuals for Lobed<'_> {
+    fn blocks(&self) -> usize {
+        self.problem.views.len() + 1
+    }
+
+    fn block(&self, p: &[f64], block: usize) -> Vec<f64> {
+        match self.problem.views.get(block) {
+            Some(view) => view.residuals(&view.profiles(p, self.lobes)),
+            None => ripple(p, self.lobes),
+        }
+    }
+
+    fn slopes(&self, p: &[f64], block: usize, now: &[f64]) -> Vec<Column> {
+        match self.problem.views.get(block) {
+            Some(view) => view.slopes(p, self.lobes, now),
+            None => ripple_slopes(p, self.lobes),
+        }
+    }
 }
 
 impl<'a> Problem<'a> {
@@ -268,7 +362,7 @@ impl<'a> Problem<'a> {
             let wo = direction(cos_theta);
             let all = (mean(tally.total) + mean(tally.first_facet)).max(f64::MIN_POSITIVE);
             let found: Vec<f64> = tally.rest[set].iter().map(|rgb| mean(*rgb).max(0.0) / all).collect();
-            let weights = found.iter().map(|r| 1.0 / (r + WEIGHT_FLOOR / CELLS as f64)).collect();
+            let weights: Vec<f64> = found.iter().map(|r| 1.0 / (r + WEIGHT_FLOOR / CELLS as f64)).collect();
             ViewProblem {
                 axis: simulation.axis,
                 cos_theta,
@@ -277,35 +371,11 @@ impl<'a> Problem<'a> {
                 points: simulation.cells[set].points(wo),
                 total: found.iter().sum(),
                 found,
+                roots: weights.iter().map(|weight| weight.sqrt()).collect(),
                 weights,
             }
         };
         Self { simulation, set, views: simulation.views.iter().enumerate().map(view).collect() }
-    }
-
-    fn minimise(&self, starts: Vec<Start>, wide: [f64; 2]) -> Found {
-        let mut parameters = Vec::new();
-        for Start(rows, tail) in starts {
-            rows.iter().for_each(|row| parameters.extend(row));
-            parameters.push(tail);
-        }
-        parameters.extend(wide);
-        let lobes = parameters.len() / PER_LOBE;
-        let ripples = self.views.len();
-        let residuals = |p: &[f64], block: usize| match self.views.get(block) {
-            Some(view) => view.residuals(p, lobes),
-            None => ripple(p, lobes),
-        };
-        let touched = |j: usize| {
-            let node = (j < lobes * PER_LOBE && j % PER_LOBE < 3 * NODES).then_some(j % PER_LOBE % NODES);
-            let is_near = |view: &ViewProblem| node.is_none_or(|node| (view.place - node as f64).abs() < 1.0);
-            let mut blocks: Vec<usize> = (0..ripples).filter(|&block| is_near(&self.views[block])).collect();
-            blocks.push(ripples);
-            blocks
-        };
-        let (parameters, cost) = SEARCH.minimise(parameters, residuals, touched, ripples + 1);
-        let wide = wide_of(&parameters, self.simulation.axis);
-        Found { set: self.set, cost, parameters, wide }
     }
 
     /// Energies by view, part and channel.
@@ -323,8 +393,7 @@ impl<'a> Problem<'a> {
             smoothed(amounts.len(), |view, guess| {
                 let tally = &self.simulation.views[view];
                 let cells: Vec<f64> = tally.rest[self.set].iter().map(|rgb| rgb[c]).collect();
-                let counted: Vec<bool> = brightness[view].iter().map(|amount| *amount > 0.0).collect();
-                amounts[view].signed(&counted, &cells, tally.total[c], guess)
+                amounts[view].among(&brightness[view], &cells, tally.total[c], guess)
             })
         });
         // What is totally reflected does not come from below; the row at the critical angle stands for all flatter views.
@@ -337,33 +406,36 @@ impl<'a> Problem<'a> {
 
     /// The lobes of the parameters found, with energies by channel.
     fn lobes(&self, found: &Found) -> Lobes {
-        let p = &found.parameters;
+        let p = &found.place.parameters;
         let count = p.len() / PER_LOBE;
-        let tails = (0..count).map(|lobe| tail_of(p, lobe)).collect();
         let energies = self.energies(p, count);
         let row = |((view, tally), energies): ((&ViewProblem, &Tally), &Vec<Rgb>)| {
             let lobe = |lobe: usize| {
                 let shape = view.shape(p, lobe);
+                let share = share_above(&shape, direction(view.cos_theta), self.simulation.cells[self.set].index);
                 Lobe {
-                    energy: energies[lobe],
-                    share: share_above(&shape, direction(view.cos_theta), self.simulation.cells[self.set].index),
+                    strength: energies[lobe].map(|energy| energy / share.max(SHARE_MIN)),
+                    share,
                     shift: if view.sin > 0.0 { shape.shift / view.sin } else { shift_at_normal(p, lobe) },
                     sharpness: shape.width.map(|width| 1.0 / width),
+                    tail: shape.tail,
                 }
             };
-            Row { first_facet: tally.first_facet, lobes: (0..count).map(lobe).collect(), wide: energies[count] }
+            let sum = |c: usize| tally.first_facet[c] + energies.iter().map(|energy| energy[c]).sum::<f64>();
+            Row { albedo_dir: [0, 1, 2].map(sum), lobes: (0..count).map(lobe).collect(), wide: energies[count] }
         };
         let Simulation { first, axis, cells, views, .. } = self.simulation;
         Lobes {
             first: first.clone(),
-            index: cells[self.set].index,
-            tails,
-            wide: found.wide,
+            frame: Frame { index: cells[self.set].index, wide: wide_of(p, *axis) },
             axis: *axis,
             rows: self.views.iter().zip(views).zip(&energies).map(row).collect(),
         }
     }
 }
+
+/// Shares above the horizon are no less than this, where energies are divided by them.
+const SHARE_MIN: f64 = 1e-3;
 
 /// Weight with which the energies of a view are pulled to those of its neighbours, against squared residuals over energies.
 const NEIGHBOUR_WEIGHT: f64 = 0.1;
@@ -434,11 +506,54 @@ fn ripple(p: &[f64], lobes: usize) -> Vec<f64> {
     out
 }
 
+/// Slopes of [`ripple`], which is linear.
+fn ripple_slopes(p: &[f64], lobes: usize) -> Vec<Column> {
+    let unit = |j: usize| {
+        let mut unit = vec![0.0; p.len()];
+        unit[j] = 1.0;
+        (j, ripple(&unit, lobes))
+    };
+    (0..lobes * PER_LOBE).filter(|j| j % PER_LOBE < 3 * NODES).map(unit).collect()
+}
+
+/// Light that a shape or the remainder sends to each cell, and its slopes by a few numbers.
+struct Sent<const N: usize> {
+    cells: Vec<f64>,
+    slopes: [Vec<f64>; N],
+}
+
+impl<const N: usize> Sent<N> {
+    fn new() -> Self {
+        Self { cells: vec![0.0; CELLS], slopes: std::array::from_fn(|_| vec![0.0; CELLS]) }
+    }
+
+    /// Adds a value and its relative slopes to a cell.
+    fn add(&mut self, cell: usize, value: f64, relative: [f64; N]) {
+        self.cells[cell] += value;
+        self.slopes.iter_mut().zip(relative).for_each(|(slopes, relative)| slopes[cell] += value * relative);
+    }
+
+    /// The slopes of a unit of the energy, and those of the share.
+    fn normalised(&self) -> [(Vec<f64>, f64); N] {
+        let share = self.cells.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+        self.slopes.each_ref().map(|slopes| {
+            let slope: f64 = slopes.iter().sum();
+            let of_unit = |(slopes, cell): (&f64, &f64)| (slopes - cell / share * slope) / share;
+            (slopes.iter().zip(&self.cells).map(of_unit).collect(), slope)
+        })
+    }
+}
+
 impl ViewProblem {
+    /// The node of shapes before the view, and the share of the next.
+    fn node(&self) -> (usize, f64) {
+        let first = (self.place as usize).min(NODES - 2);
+        (first, self.place - first as f64)
+    }
+
     fn shape(&self, p: &[f64], lobe: usize) -> Shape {
         let own = &p[lobe * PER_LOBE..(lobe + 1) * PER_LOBE];
-        let first = (self.place as usize).min(NODES - 2);
-        let t = self.place - first as f64;
+        let (first, t) = self.node();
         let [shift, width, ratio] = [0, 1, 2].map(|i: usize| {
             let row = &own[i * NODES..];
             row[first] + t * (row[first + 1] - row[first])
@@ -449,6 +564,25 @@ impl ViewProblem {
             width: [libm::exp(width + ratio), libm::exp(width - ratio)],
             tail: tail_of(p, lobe),
         }
+    }
+
+    /// Light of a shape by cell, with slopes by the middle, by the logarithms of the widths, and by the angle of the tail.
+    fn sent(&self, shape: &Shape, tail_angle: f64) -> Sent<4> {
+        let mut sent = Sent::new();
+        let tail = shape.tail.max(TAIL_MIN);
+        let tail_slope = if shape.tail > TAIL_MIN { libm::sin(2.0 * tail_angle) } else { 0.0 };
+        let norm = 1.0 / (PI * shape.width[0] * shape.width[1]);
+        for point in &self.points {
+            let (x, y) = ((point.slope[0] - shape.shift) / shape.width[0], point.slope[1] / shape.width[1]);
+            let q = x * x + y * y;
+            let log = libm::log1p(tail * q);
+            let density = norm * libm::exp(-(1.0 + 1.0 / tail) * log);
+            let steep = 2.0 * (1.0 + tail) / (1.0 + tail * q);
+            let by_tail = log / (tail * tail) - 0.5 * steep * q / tail;
+            let relative = [steep * x / shape.width[0], steep * x * x - 1.0, steep * y * y - 1.0, by_tail * tail_slope];
+            sent.add(point.cell, density * point.area, relative);
+        }
+        sent
     }
 
     fn profiles(&self, p: &[f64], lobes: usize) -> Profiles {
@@ -469,15 +603,104 @@ impl ViewProblem {
         Profiles { cells, shares }
     }
 
-    fn residuals(&self, p: &[f64], lobes: usize) -> Vec<f64> {
-        let Profiles { cells, shares } = self.profiles(p, lobes);
-        let energies = Amounts::new(&cells, &self.weights).positive(&self.found, self.total, None);
+    fn residuals(&self, profiles: &Profiles) -> Vec<f64> {
+        let Profiles { cells, shares } = profiles;
+        let energies = Amounts::new(cells, &self.weights).positive(&self.found, self.total, None);
         let residual = |cell: usize| {
             let sent: f64 = cells.iter().zip(&energies).map(|(profile, energy)| profile[cell] * energy).sum();
-            self.weights[cell].sqrt() * (self.found[cell] - sent)
+            self.roots[cell] * (self.found[cell] - sent)
         };
         let mut out: Vec<f64> = (0..CELLS).map(residual).collect();
+        let lobes = shares.len() - 1;
         out.extend(shares[..lobes].iter().map(|share| SHARE_WEIGHT * (SHARE_WANTED - share).max(0.0)));
         out
+    }
+
+    /// Slopes of the residuals: those of profiles are analytic, those of the amounts that go with them are differences.
+    fn slopes(&self, p: &[f64], lobes: usize, now: &[f64]) -> Vec<Column> {
+        let mut profiles = self.profiles(p, lobes);
+        let mut along = |part: usize, (slopes, share): &(Vec<f64>, f64)| -> Vec<f64> {
+            let (before, share_before) = (profiles.cells[part].clone(), profiles.shares[part]);
+            profiles.cells[part].iter_mut().zip(slopes).for_each(|(cell, slope)| *cell += DIFFERENCE * slope);
+            profiles.shares[part] += DIFFERENCE * share;
+            let there = self.residuals(&profiles);
+            (profiles.cells[part], profiles.shares[part]) = (before, share_before);
+            there.iter().zip(now).map(|(a, b)| (a - b) / DIFFERENCE).collect()
+        };
+        let (first, t) = self.node();
+        let mut columns = Vec::new();
+        for lobe in 0..lobes {
+            let of_tail = lobe * PER_LOBE + 3 * NODES;
+            let [middle, wide, across, tail] = self.sent(&self.shape(p, lobe), p[of_tail]).normalised();
+            let mixed = |a: f64, b: f64| -> (Vec<f64>, f64) {
+                let cells = wide.0.iter().zip(&across.0).map(|(x, y)| a * x + b * y).collect();
+                (cells, a * wide.1 + b * across.1)
+            };
+            let sin_sq = self.sin * self.sin;
+            let shift = (middle.0.iter().map(|x| self.sin * x).collect(), self.sin * middle.1);
+            for (row, slopes) in [shift, mixed(1.0, 1.0), mixed(sin_sq, -sin_sq)].iter().enumerate() {
+                let column = along(lobe, slopes);
+                for (node, share) in [(first, 1.0 - t), (first + 1, t)] {
+                    let number = lobe * PER_LOBE + row * NODES + node;
+                    columns.push((number, column.iter().map(|x| share * x).collect()));
+                }
+            }
+            columns.push((of_tail, along(lobe, &tail)));
+        }
+        let wide = wide_of(p, self.axis);
+        let mut sent = Sent::<2>::new();
+        for point in &self.points {
+            let value = wide.value(point.cos_theta);
+            if value > 0.0 {
+                let relative = wide.slopes(point.cos_theta).map(|slope| slope / value);
+                sent.add(point.cell, value * point.cos_theta * point.solid_angle, relative);
+            }
+        }
+        for (number, slopes) in (p.len() - 2..).zip(&sent.normalised()) {
+            columns.push((number, along(lobes, slopes)));
+        }
+        columns
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use luthier_optics::ior::Ior;
+    use luthier_optics::stack::{Distribution, Layer, Slab, Surface};
+
+    use super::*;
+
+    /// Oracle: differences of the residuals.
+    #[test]
+    fn slopes_are_those_of_the_residuals() {
+        let layer =
+            |alpha, base| Layer { films: Vec::new(), surface: Surface::isotropic(Distribution::Ggx, alpha), base };
+        let slab = Slab { thickness_um: 1.0, absorption_per_um: [0.2; 3] };
+        let coat = Base::Dielectric { ior: Ior::constant(1.5, 0.0).unwrap(), slab };
+        let metal = Base::Conductor { ior: Ior::constant(0.3, 3.0).unwrap() };
+        let stack = Stack { exterior: Ior::vacuum(), layers: vec![layer(0.3, coat), layer(0.1, metal)] };
+        let settings = FitSettings { rows: 4, paths: 2000, seed: 1 };
+        let simulation = Simulation::new(&stack, &Color::ThreeWavelengths([550.0; 3]), settings).unwrap();
+        let problem = Problem::new(&simulation, 1);
+        let lobed = Lobed { problem: &problem, lobes: 2 };
+        let mut p = parameters(vec![Start::new(0.2, 0.6), Start::new(0.5, 1.0)], [0.3, 0.1]);
+        (0..p.len()).for_each(|j| p[j] += 0.05 * (j % 7) as f64);
+        for block in 0..lobed.blocks() {
+            let now = lobed.block(&p, block);
+            for (j, slopes) in lobed.slopes(&p, block, &now) {
+                let ends = [1e-5, -1e-5].map(|step| {
+                    let mut moved = p.clone();
+                    moved[j] += step;
+                    lobed.block(&moved, block)
+                });
+                for (i, slope) in slopes.iter().enumerate() {
+                    let expected = (ends[0][i] - ends[1][i]) / 2e-5;
+                    assert!(
+                        (slope - expected).abs() < 2e-3 * (1.0 + expected.abs()),
+                        "{block} {j} {i}: {slope} {expected}"
+                    );
+                }
+            }
+        }
     }
 }

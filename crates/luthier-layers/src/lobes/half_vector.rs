@@ -5,20 +5,25 @@
 
 use glam::DVec3;
 
-/// A direction outside, refracted into a medium of relative index `index >= 1` by the plane of the surface. Both point away from it.
+/// Least cosine of a direction inside: single precision has all products of such cosines.
+const COS_MIN: f64 = 1e-6;
+
+/// A direction outside, refracted into a medium of relative index `index >= 1` by the plane of the surface. Both point away from it. For an
+/// index of 1 the cosine is that of the direction, whatever rounding has done to its length; it is [`COS_MIN`] at least.
 pub(super) fn refracted(outside: DVec3, index: f64) -> DVec3 {
-    let (x, y) = (outside.x / index, outside.y / index);
-    DVec3::new(x, y, (1.0 - x * x - y * y).max(0.0).sqrt())
+    let cos_sq = outside.z * outside.z + (index - 1.0) * (index + 1.0);
+    let cos = (cos_sq.sqrt() / index).max(COS_MIN);
+    DVec3::new(outside.x / index, outside.y / index, cos)
 }
 
 /// Slope of the half vector between two directions inside, and the factor from densities of slopes to densities of the solid angle of
 /// `outside`, whose refraction is `inside`.
 ///
-/// With h the sum of the directions, `d slope / d omega_inside = (1 + cos(inside, other)) / h_z^3`, and
-/// `d omega_inside / d omega_outside = cos_outside / (index^2 cos_inside)`.
+/// With h the sum of the directions, `d slope / d omega_inside = (h.h / 2) / h_z^3`, and `d omega_inside / d omega_outside = cos_outside /
+/// (index^2 cos_inside)`.
 pub(super) fn slope(outside: DVec3, inside: DVec3, other: DVec3, index: f64) -> ([f64; 2], f64) {
     let sum = inside + other;
-    let per_inside = (1.0 + inside.dot(other)) / (sum.z * sum.z * sum.z);
+    let per_inside = 0.5 * sum.length_squared() / (sum.z * sum.z * sum.z);
     ([sum.x / sum.z, sum.y / sum.z], per_inside * outside.z / (index * index * inside.z))
 }
 

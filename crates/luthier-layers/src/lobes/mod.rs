@@ -16,7 +16,7 @@
 //!   channels share them.
 //! - **Energies.** E are energies by channel, taken from the simulation view by view, and A is the share of a shape above the horizon. So
 //!   the directional albedo of a row is that of the simulation, whatever the shapes are.
-//! - **Rows.** All that hangs on the view is in rows over `cos_theta_o^(1/1.5)`, linear between.
+//! - **Rows.** All that hangs on the view is in rows over [`ViewAxis`], linear between.
 //!
 //! Sampling is exact: draw a lobe, draw a slope, mirror the eye about it, refract. What is drawn beyond the horizon has no weight.
 //!
@@ -24,7 +24,9 @@
 //!
 //! Lobes in the half vectors outside the stack are the case n = 1. The fit tries it, and takes it where it is the nearest.
 
+mod below;
 mod fit;
+mod fitted;
 mod half_vector;
 mod prepared;
 mod rows;
@@ -34,15 +36,21 @@ mod tally;
 #[cfg(test)]
 mod tests;
 
+pub use below::Below;
 pub use fit::{FitError, FitSettings, Simulation};
+pub use fitted::Fitted;
 pub use prepared::{Prepared, Sample};
 pub use rows::{Lobe, Row, ViewAxis};
-pub use shape::{Shape, Wide};
+pub use shape::{Shape, TAIL_MIN, Wide};
 
 use glam::DVec3;
 use luthier_optics::Rgb;
+use luthier_optics::color::Color;
 use luthier_optics::interface::Sampled;
+use luthier_optics::ior::{Ior, IorSample};
+use luthier_optics::stack::{Base, Stack, Surface};
 
+use crate::domain::INDEX_MAX;
 use crate::facets::Facets;
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::Monochrome;
@@ -52,16 +60,21 @@ use crate::monochrome::Monochrome;
 pub struct Lobes {
     /// The first interface; none for a diffuse base alone.
     pub(crate) first: Option<FirstInterface>,
-    /// Relative index n of the medium in whose half vectors the lobes are.
-    pub index: f64,
-    /// Tails of the lobes.
-    pub tails: Vec<f64>,
-    /// Shape of the wide remainder.
-    pub wide: Wide,
+    /// Numbers that hold at all views.
+    pub frame: Frame,
     /// The axis of the rows.
     pub axis: ViewAxis,
     /// Rows from grazing views to the normal.
     pub rows: Vec<Row>,
+}
+
+/// Numbers of lobes that hold at all views.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame {
+    /// Relative index n of the medium in whose half vectors the lobes are.
+    pub index: f64,
+    /// Shape of the wide remainder.
+    pub wide: Wide,
 }
 
 /// The first interface: its facets, and its reflectance by channel.
@@ -71,7 +84,54 @@ pub(crate) struct FirstInterface {
     pub(crate) reflectance: Sampled,
 }
 
+/// The name of the model.
+pub const MODEL: &str = "lobes";
+
+/// The model, for listings.
+const INFO: ModelInfo = ModelInfo {
+    name: MODEL,
+    kind: Kind::Layered,
+    claims: Claims::ENERGY,
+    source: "luthier: lobes fitted to layered-mc",
+    domain: "all stacks; anisotropic surfaces have the mean of their slope parameters",
+    leaves_out: "reciprocity; shapes that a few lobes do not have",
+    inputs: &[],
+};
+
+/// The most lobes that a bake has.
+pub const LOBES: usize = 2;
+
+/// Bound on the lobe error for which a bake takes fewer, see [`Simulation::fit_fewest`]. On the materials that come with luthier the error
+/// itself grows by .003 at most.
+pub const EXCESS: f64 = 0.02;
+
 impl Lobes {
+    /// The lobes of a stack as bakes have them: as few as do, [`LOBES`] at most, of [`FitSettings::default`]. Anisotropic surfaces have their
+    /// mean slope parameter.
+    pub fn of(stack: &Stack, color: &Color) -> Self {
+        match Simulation::new(&shown(stack), color, FitSettings::default()) {
+            Ok(simulation) => simulation.fit_fewest(LOBES, EXCESS),
+            Err(FitError::Anisotropic { .. }) => unreachable!("its surfaces were made isotropic"),
+        }
+    }
+
+    /// The row of a view, between those that were fitted.
+    pub fn row(&self, cos_theta_o: f64) -> Row {
+        self.row_at(self.axis.cosine(cos_theta_o))
+    }
+
+    /// The row of a cosine of [`ViewAxis::cosine`].
+    pub fn row_at(&self, c: f64) -> Row {
+        let place = self.axis.place_at(c);
+        let first = (place as usize).min(self.rows.len() - 2);
+        self.rows[first].between(&self.rows[first + 1], place - first as f64)
+    }
+
+    /// Light from below the first interface as seen from `wo` (unit, above the surface; `None` otherwise).
+    pub fn below(&self, wo: DVec3) -> Option<Below> {
+        (wo.z > 0.0).then(|| Below::new(self.frame, self.row(wo.z), wo))
+    }
+
     /// The lobes as seen from `wo` (unit, above the surface; `None` otherwise).
     pub fn prepare(&self, wo: DVec3) -> Option<Prepared<'_>> {
         Prepared::new(self, wo)
@@ -81,6 +141,22 @@ impl Lobes {
     pub fn eval(&self, wi: DVec3, wo: DVec3) -> Rgb {
         self.prepare(wo).map_or([0.0; 3], |prepared| prepared.eval(wi))
     }
+}
+
+/// The stack as lobes show it: surfaces have one slope parameter each, the mean of two; metals have indices up to
+/// [`INDEX_MAX`](crate::domain::INDEX_MAX), as in layer records.
+pub fn shown(stack: &Stack) -> Stack {
+    let mut stack = stack.clone();
+    for layer in &mut stack.layers {
+        let surface = &mut layer.surface;
+        *surface = Surface::isotropic(surface.distribution, surface.alpha_isotropic());
+        if let Base::Conductor { ior } = &mut layer.base {
+            let bounded = |s: &IorSample| IorSample { n: s.n.min(INDEX_MAX), k: s.k.min(INDEX_MAX), ..*s };
+            // Smaller numbers in the same order: an index still.
+            *ior = Ior::sampled(ior.samples().iter().map(bounded).collect()).unwrap_or_else(|_| ior.clone());
+        }
+    }
+    stack
 }
 
 /// One channel of lobes as a model. It holds the stack that it shows: the one that it is given counts for nothing.
@@ -94,15 +170,7 @@ pub struct Channel<'a> {
 
 impl Model for Channel<'_> {
     fn info(&self) -> ModelInfo {
-        ModelInfo {
-            name: "lobes",
-            kind: Kind::Layered,
-            claims: Claims::ENERGY,
-            source: "luthier: a fit to layered-mc",
-            domain: "isotropic stacks",
-            leaves_out: "reciprocity; what several lobes cannot show",
-            inputs: &[],
-        }
+        INFO
     }
 
     fn eval(&self, _stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {

@@ -2,16 +2,15 @@
 
 use luthier_optics::Rgb;
 
-/// Power of the axis: `v = cos_theta^(1 / POWER)`. Between 1, which leaves grazing angles few nodes, and 2, which leaves the normal few.
-const POWER: f64 = 1.5;
+use super::shape::TAIL_MIN;
 
-/// Grazing view of the first row, degrees: flatter ones are seen as this one.
-const FLATTEST_DEG: f64 = 89.0;
+/// Cosine of the view that stands for all that are flatter, where rows are traced: at 89.9 degrees.
+const FLATTEST: f64 = 0.001_745;
 
-/// The axis of rows over the view: nodes at equal distances in `c^(1/1.5)`, up to the normal.
+/// The axis of rows over the view: nodes at equal distances in `2c / (1 + c)`, up to the normal.
 ///
-/// c is the cosine of the view, from 89 degrees on. Where a smooth first interface reflects flat light totally, everything from below has
-/// a kink at the critical angle; there c is the cosine of the refracted view, from 0 on.
+/// c is the cosine of the view. Where a smooth first interface reflects flat light totally, everything from below has a kink at the
+/// critical angle; there c is the cosine of the refracted view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ViewAxis {
     size: usize,
@@ -40,30 +39,29 @@ impl ViewAxis {
         (cos_theta * cos_theta - self.critical_cot_sq * sin_sq).clamp(0.0, 1.0).sqrt()
     }
 
-    fn least(self) -> f64 {
-        if self.critical_cot_sq > 0.0 { 0.0 } else { libm::pow(libm::cos(FLATTEST_DEG.to_radians()), 1.0 / POWER) }
-    }
-
     /// Fractional number of the node of a view.
     pub fn place(self, cos_theta: f64) -> f64 {
-        let least = self.least();
-        let v = libm::pow(self.cosine(cos_theta), 1.0 / POWER);
-        ((v - least) / (1.0 - least)).clamp(0.0, 1.0) * (self.size - 1) as f64
+        self.place_at(self.cosine(cos_theta))
     }
 
-    /// The view of a fractional number.
+    /// Fractional number of the node of a cosine c.
+    pub fn place_at(self, c: f64) -> f64 {
+        2.0 * c / (1.0 + c) * (self.size - 1) as f64
+    }
+
+    /// The view of a fractional number, not quite at the horizon.
     pub fn cos_theta(self, place: f64) -> f64 {
-        let least = self.least();
-        let c = libm::pow(least + (1.0 - least) * place / (self.size - 1) as f64, POWER).min(1.0);
-        ((c * c + self.critical_cot_sq) / (1.0 + self.critical_cot_sq)).sqrt()
+        let u = place / (self.size - 1) as f64;
+        let c = (u / (2.0 - u)).clamp(0.0, 1.0);
+        ((c * c + self.critical_cot_sq) / (1.0 + self.critical_cot_sq)).sqrt().max(FLATTEST)
     }
 }
 
 /// Energies and shapes at a view.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
-    /// Directional albedo of one facet of the first interface.
-    pub first_facet: Rgb,
+    /// Directional albedo.
+    pub albedo_dir: Rgb,
     /// The lobes.
     pub lobes: Vec<Lobe>,
     /// Energy of the wide remainder.
@@ -73,32 +71,91 @@ pub struct Row {
 /// A lobe at a view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lobe {
-    /// Energy.
-    pub energy: Rgb,
+    /// Energy over the share of the shape above the horizon.
+    pub strength: Rgb,
     /// Share of the shape above the horizon.
     pub share: f64,
     /// Shift of the middle over the sine of the view.
     pub shift: f64,
     /// Reciprocal widths in the plane of the eye and across it.
     pub sharpness: [f64; 2],
+    /// Tail of the shape.
+    pub tail: f64,
 }
 
 impl Row {
-    /// The row between two others.
-    pub(super) fn between(&self, other: &Self, t: f64) -> Self {
-        let mix = |a: f64, b: f64| a + t * (b - a);
-        let rgb = |a: Rgb, b: Rgb| [0, 1, 2].map(|c: usize| mix(a[c], b[c]));
-        let lobe = |(a, b): (&Lobe, &Lobe)| Lobe {
-            energy: rgb(a.energy, b.energy),
-            share: mix(a.share, b.share),
-            shift: mix(a.shift, b.shift),
-            sharpness: [0, 1].map(|i: usize| mix(a.sharpness[i], b.sharpness[i])),
+    /// Number of parts of a row of so many lobes.
+    pub const fn parts(lobes: usize) -> usize {
+        2 + 2 * lobes
+    }
+
+    /// The row as parts of four numbers, as tables have it.
+    ///
+    /// | part | x, y, z, w |
+    /// |---|---|
+    /// | 0 | wide remainder RGB, 0 |
+    /// | 1 + 2k | strength of lobe k RGB, shift |
+    /// | 2 + 2k | of lobe k the sharpness along the plane of the eye, and across it, times the root of the tail; 1 over the tail; share |
+    /// | last | directional albedo RGB, 0 |
+    ///
+    /// With the root of the tail in both, the shape is `x y z / pi (1 + q)^-(1 + z)`.
+    pub fn to_parts(&self) -> Vec<[f64; 4]> {
+        let rgb = |[r, g, b]: Rgb, w: f64| [r, g, b, w];
+        let mut parts = vec![rgb(self.wide, 0.0)];
+        for lobe in &self.lobes {
+            parts.push(rgb(lobe.strength, lobe.shift));
+            let tail = lobe.tail.max(TAIL_MIN);
+            let [x, y] = lobe.sharpness.map(|sharpness| sharpness * tail.sqrt());
+            parts.push([x, y, 1.0 / tail, lobe.share]);
+        }
+        parts.push(rgb(self.albedo_dir, 0.0));
+        parts
+    }
+
+    /// The row of parts.
+    pub fn of_parts(parts: &[[f64; 4]]) -> Self {
+        let rgb = |part: Option<&[f64; 4]>| part.map_or([0.0; 3], |&[r, g, b, _]| [r, g, b]);
+        let inner = parts.get(1..parts.len().saturating_sub(1)).unwrap_or_default();
+        let lobe = |pair: &[[f64; 4]]| {
+            let &[strength, [x, y, inverse_tail, share]] = pair else { return None };
+            let inverse_tail = inverse_tail.max(1.0);
+            let sharpness = [x, y].map(|x| x * inverse_tail.sqrt());
+            Some(Lobe {
+                strength: rgb(Some(&strength)),
+                share,
+                shift: strength[3],
+                sharpness,
+                tail: 1.0 / inverse_tail,
+            })
         };
         Self {
-            first_facet: rgb(self.first_facet, other.first_facet),
-            lobes: self.lobes.iter().zip(&other.lobes).map(lobe).collect(),
-            wide: rgb(self.wide, other.wide),
+            albedo_dir: rgb(parts.last()),
+            lobes: inner.chunks_exact(2).filter_map(lobe).collect(),
+            wide: rgb(parts.first()),
         }
+    }
+
+    /// The row with lobes without light behind its own, so many in all.
+    #[must_use]
+    pub fn filled(mut self, lobes: usize) -> Self {
+        let none = Lobe { strength: [0.0; 3], share: 1.0, shift: 0.0, sharpness: [1.0; 2], tail: 0.0 };
+        self.lobes.resize(lobes.max(self.lobes.len()), none);
+        self
+    }
+
+    /// Energy of one facet of the first interface: the albedo without lobes and remainder.
+    pub fn first_facet(&self) -> Rgb {
+        [0, 1, 2].map(|c: usize| {
+            let lobes: f64 = self.lobes.iter().map(|lobe| lobe.strength[c] * lobe.share).sum();
+            (self.albedo_dir[c] - lobes - self.wide[c]).max(0.0)
+        })
+    }
+
+    /// The row between two others.
+    pub(super) fn between(&self, other: &Self, t: f64) -> Self {
+        let mix = |a: &[f64; 4], b: &[f64; 4]| [0, 1, 2, 3].map(|i: usize| a[i] + t * (b[i] - a[i]));
+        let parts: Vec<[f64; 4]> = self.to_parts().iter().zip(&other.to_parts()).map(|(a, b)| mix(a, b)).collect();
+        Self::of_parts(&parts)
     }
 }
 
@@ -109,7 +166,7 @@ mod tests {
     #[test]
     fn places_and_views_are_inverse() {
         let axis = ViewAxis::new(20, 0.0);
-        for place in [0.0, 0.3, 7.5, 19.0] {
+        for place in [0.3, 7.5, 19.0] {
             for axis in [axis, ViewAxis::new(20, 1.25)] {
                 assert!((axis.place(axis.cos_theta(place)) - place).abs() < 1e-6, "{axis:?} {place}");
             }
@@ -119,6 +176,33 @@ mod tests {
         assert!((critical * critical - 5.0 / 9.0).abs() < 1e-12);
         assert_eq!(axis.place(0.0), 0.0);
         assert!((axis.cos_theta(19.0) - 1.0).abs() < 1e-15);
-        assert!((libm::acos(axis.cos_theta(0.0)).to_degrees() - 89.0).abs() < 1e-9);
+        assert!((libm::acos(axis.cos_theta(0.0)).to_degrees() - 89.9).abs() < 1e-3);
+        // 2/3 of 1/2 over 3/2: two thirds of the way.
+        assert!((ViewAxis::new(4, 0.0).place(0.5) - 2.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn parts_are_the_row() {
+        let lobe = |k: f64| Lobe {
+            strength: [1.0, 2.0, 3.0].map(|x| x + k),
+            share: 0.5 + k,
+            shift: 0.25,
+            sharpness: [8.0, 9.0],
+            tail: 0.25,
+        };
+        for lobes in [vec![], vec![lobe(0.0)], vec![lobe(0.0), lobe(0.25)]] {
+            let row = Row { albedo_dir: [4.0, 5.0, 6.0], lobes, wide: [0.1, 0.2, 0.3] };
+            let parts = row.to_parts();
+            assert_eq!((parts.len(), Row::of_parts(&parts)), (Row::parts(row.lobes.len()), row));
+        }
+    }
+
+    /// By hand: 4 - (1 * .5) - .1 and so on.
+    #[test]
+    fn the_first_facet_has_the_rest() {
+        let lobe = Lobe { strength: [1.0, 2.0, 3.0], share: 0.5, shift: 0.0, sharpness: [1.0; 2], tail: 0.0 };
+        let row = Row { albedo_dir: [4.0, 2.0, 1.0], lobes: vec![lobe], wide: [0.1; 3] };
+        let expected = [3.4, 0.9, 0.0];
+        assert!(row.first_facet().iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12));
     }
 }

@@ -62,9 +62,19 @@ impl<'a> Amounts<'a> {
 
     /// The amounts, not negative, that leave the least residuals, by trying every set of profiles that count.
     pub(super) fn positive(&self, found: &[f64], total: f64, guess: Option<Guess<'_>>) -> Vec<f64> {
+        self.best(found, total, guess, (1 << self.profiles.len()) - 1)
+    }
+
+    /// As [`Self::positive`], of the profiles alone that have an amount in `others`.
+    pub(super) fn among(&self, others: &[f64], found: &[f64], total: f64, guess: Option<Guess<'_>>) -> Vec<f64> {
+        let counted = others.iter().enumerate().filter(|(_, amount)| **amount > 0.0).map(|(i, _)| 1 << i).sum();
+        self.best(found, total, guess, counted)
+    }
+
+    fn best(&self, found: &[f64], total: f64, guess: Option<Guess<'_>>, counted: usize) -> Vec<f64> {
         let right = self.right(found, total, guess);
         let mut best = (0.0, vec![0.0; right.len()]);
-        for set in 1..1_usize << right.len() {
+        for set in (1..=counted).filter(|set| set & !counted == 0) {
             let amounts = self.of(set, &right, guess);
             // What the squared residuals lose against amounts of 0, at the minimum within the set.
             let gain: f64 = amounts.iter().zip(&right).map(|(x, r)| x * r).sum();
@@ -73,12 +83,6 @@ impl<'a> Amounts<'a> {
             }
         }
         best.1
-    }
-
-    /// The amounts, of either sign, of the profiles in `counted` that leave the least residuals.
-    pub(super) fn signed(&self, counted: &[bool], found: &[f64], total: f64, guess: Option<Guess<'_>>) -> Vec<f64> {
-        let set = counted.iter().enumerate().filter(|(_, counts)| **counts).map(|(i, _)| 1 << i).sum();
-        self.of(set, &self.right(found, total, guess), guess)
     }
 
     fn of(&self, set: usize, right: &[f64], guess: Option<Guess<'_>>) -> Vec<f64> {
@@ -93,98 +97,99 @@ impl<'a> Amounts<'a> {
     }
 }
 
-/// Least squares by Levenberg's and Marquardt's damping. Derivatives are differences.
+/// Least squares by Levenberg's and Marquardt's damping.
 pub(super) struct LeastSquares {
-    /// Steps at most.
-    pub(super) steps: u32,
-    /// Step of the differences.
-    pub(super) difference: f64,
     /// Longest step of a parameter.
     pub(super) longest: f64,
     /// Share of the sum of squares below which a gain ends the search.
     pub(super) gain: f64,
 }
 
-impl LeastSquares {
-    /// The parameters that make the residuals least, from a start; and the sum of squares. `residuals` has them in blocks, and `touched`
-    /// tells which blocks a parameter changes.
-    pub(super) fn minimise(
-        &self,
-        mut parameters: Vec<f64>,
-        residuals: impl Fn(&[f64], usize) -> Vec<f64>,
-        touched: impl Fn(usize) -> Vec<usize>,
-        blocks: usize,
-    ) -> (Vec<f64>, f64) {
-        let n = parameters.len();
-        let all = |p: &[f64]| -> Vec<Vec<f64>> { (0..blocks).map(|block| residuals(p, block)).collect() };
-        let sum = |r: &[Vec<f64>]| -> f64 { r.iter().flatten().map(|x| x * x).sum() };
-        let mut now = all(&parameters);
-        let mut cost = sum(&now);
-        let mut damping = 1e-2;
-        for _ in 0..self.steps {
-            let columns: Vec<Vec<(usize, Vec<f64>)>> = (0..n)
-                .map(|j| {
-                    let mut moved = parameters.clone();
-                    moved[j] += self.difference;
-                    let change = |block: usize| {
-                        let there = residuals(&moved, block);
-                        let slope = there.iter().zip(&now[block]).map(|(a, b)| (a - b) / self.difference);
-                        (block, slope.collect())
-                    };
-                    touched(j).into_iter().map(change).collect()
-                })
-                .collect();
-            let (matrix, gradient) = normal(&columns, &now);
-            let before = cost;
-            for _ in 0..6 {
-                let mut damped = matrix.clone();
-                (0..n).for_each(|i| damped[i][i] += damping * (damped[i][i] + 1e-6));
-                let step = solve(damped, gradient.clone());
-                let moved: Vec<f64> =
-                    parameters.iter().zip(&step).map(|(p, s)| p - s.clamp(-self.longest, self.longest)).collect();
-                let there = all(&moved);
-                let found = sum(&there);
-                if found < cost {
-                    (parameters, now, cost) = (moved, there, found);
-                    damping = (0.2 * damping).max(1e-7);
-                    break;
-                }
-                damping *= 5.0;
-            }
-            if before - cost <= self.gain * before {
-                break;
-            }
-        }
-        (parameters, cost)
+/// A column of a Jacobian within a block: the number of the parameter, and the slopes of the residuals.
+pub(super) type Column = (usize, Vec<f64>);
+
+/// Residuals in blocks, and their slopes.
+pub(super) trait Residuals {
+    /// Number of blocks.
+    fn blocks(&self) -> usize;
+
+    /// The residuals of a block.
+    fn block(&self, parameters: &[f64], block: usize) -> Vec<f64>;
+
+    /// The slopes of a block whose residuals are `now`, by parameter; those that change nothing there may be left out.
+    fn slopes(&self, parameters: &[f64], block: usize, now: &[f64]) -> Vec<Column>;
+}
+
+/// A place that a search has come to.
+#[derive(Debug, Clone)]
+pub(super) struct Place {
+    pub(super) parameters: Vec<f64>,
+    /// Sum of the squares.
+    pub(super) cost: f64,
+    damping: f64,
+    /// Whether the last step gained next to nothing.
+    is_still: bool,
+}
+
+impl Place {
+    /// A place to start from.
+    pub(super) fn new(parameters: Vec<f64>, residuals: &impl Residuals) -> Self {
+        let cost = sum(&all(residuals, &parameters));
+        Self { parameters, cost, damping: 1e-2, is_still: false }
     }
 }
 
-/// The normal matrix and gradient of the columns of a Jacobian, each in ascending blocks.
-fn normal(columns: &[Vec<(usize, Vec<f64>)>], residuals: &[Vec<f64>]) -> (Vec<Vec<f64>>, Vec<f64>) {
-    let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
-    let n = columns.len();
-    let mut matrix = vec![vec![0.0; n]; n];
-    for i in 0..n {
-        for j in 0..=i {
-            let (mut a, mut b) = (columns[i].iter().peekable(), columns[j].iter().peekable());
-            let mut sum = 0.0;
-            while let (Some((p, x)), Some((q, y))) = (a.peek(), b.peek()) {
-                match p.cmp(q) {
-                    std::cmp::Ordering::Less => drop(a.next()),
-                    std::cmp::Ordering::Greater => drop(b.next()),
-                    std::cmp::Ordering::Equal => {
-                        sum += dot(x, y);
-                        a.next();
-                        b.next();
-                    }
-                }
+fn all(residuals: &impl Residuals, p: &[f64]) -> Vec<Vec<f64>> {
+    (0..residuals.blocks()).map(|block| residuals.block(p, block)).collect()
+}
+
+fn sum(residuals: &[Vec<f64>]) -> f64 {
+    residuals.iter().flatten().map(|x| x * x).sum()
+}
+
+impl LeastSquares {
+    /// So many steps from a place towards the least residuals, or fewer if there is nothing left to gain.
+    pub(super) fn descend(&self, mut place: Place, residuals: &impl Residuals, steps: u32) -> Place {
+        let mut now = all(residuals, &place.parameters);
+        for _ in 0..steps {
+            if place.is_still {
+                break;
             }
-            matrix[i][j] = sum;
-            matrix[j][i] = sum;
+            let (matrix, gradient) = normal(place.parameters.len(), residuals, &place.parameters, &now);
+            let before = place.cost;
+            for _ in 0..6 {
+                let mut damped = matrix.clone();
+                (0..gradient.len()).for_each(|i| damped[i][i] += place.damping * (damped[i][i] + 1e-6));
+                let step = solve(damped, gradient.clone());
+                let step = step.iter().map(|s| s.clamp(-self.longest, self.longest));
+                let moved: Vec<f64> = place.parameters.iter().zip(step).map(|(p, s)| p - s).collect();
+                let there = all(residuals, &moved);
+                let found = sum(&there);
+                if found < place.cost {
+                    (place.parameters, place.cost, now) = (moved, found, there);
+                    place.damping = (0.2 * place.damping).max(1e-7);
+                    break;
+                }
+                place.damping *= 5.0;
+            }
+            place.is_still = before - place.cost <= self.gain * before;
+        }
+        place
+    }
+}
+
+/// The normal matrix and the gradient.
+fn normal(n: usize, residuals: &impl Residuals, parameters: &[f64], now: &[Vec<f64>]) -> (Vec<Vec<f64>>, Vec<f64>) {
+    let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
+    let (mut matrix, mut gradient) = (vec![vec![0.0; n]; n], vec![0.0; n]);
+    for (block, now) in now.iter().enumerate() {
+        let columns = residuals.slopes(parameters, block, now);
+        for (i, x) in &columns {
+            gradient[*i] += dot(x, now);
+            columns.iter().for_each(|(j, y)| matrix[*i][*j] += dot(x, y));
         }
     }
-    let along = |column: &Vec<(usize, Vec<f64>)>| column.iter().map(|(block, x)| dot(x, &residuals[*block])).sum();
-    (matrix, columns.iter().map(along).collect())
+    (matrix, gradient)
 }
 
 #[cfg(test)]
@@ -210,8 +215,9 @@ mod tests {
         // Light that only a negative amount of the second profile would make.
         let found = amounts.positive(&[1.0, -0.1, -0.1], 0.8, None);
         assert!(found.iter().all(|x| *x >= 0.0) && found[1] == 0.0, "{found:?}");
-        let signed = amounts.signed(&[true, true, false], &[1.0, -0.1, -0.1], 0.8, None);
-        assert!((signed[0] - 1.0).abs() < 1e-6 && (signed[1] + 0.2).abs() < 1e-6 && signed[2] == 0.0, "{signed:?}");
+        // The third profile would do alone, and does not count.
+        let found = amounts.among(&[1.0, 0.1, 0.0], &[0.4, 0.3, 0.3], 1.0, None);
+        assert!((found[0] - 0.4).abs() < 1e-6 && (found[1] - 0.6).abs() < 1e-6 && found[2] == 0.0, "{found:?}");
     }
 
     /// Profiles that are alike: the residuals leave their amounts open, and the guess decides.
@@ -224,18 +230,40 @@ mod tests {
         assert!((found[0] - 0.9).abs() < 1e-3 && (found[1] - 0.1).abs() < 1e-3, "{found:?}");
     }
 
+    /// `p exp(-q x)` at ten places of two blocks, less that of 2 and .7.
+    struct Curve;
+
+    impl Curve {
+        fn places(block: usize) -> impl Iterator<Item = f64> {
+            (0..10).map(move |i| f64::from(i) * 0.1 + block as f64)
+        }
+    }
+
+    impl Residuals for Curve {
+        fn blocks(&self) -> usize {
+            2
+        }
+
+        fn block(&self, p: &[f64], block: usize) -> Vec<f64> {
+            Self::places(block).map(|x| p[0] * libm::exp(-p[1] * x) - 2.0 * libm::exp(-0.7 * x)).collect()
+        }
+
+        fn slopes(&self, p: &[f64], block: usize, _: &[f64]) -> Vec<Column> {
+            let falloff = |x: f64| libm::exp(-p[1] * x);
+            let along = Self::places(block).map(falloff).collect();
+            vec![(0, along), (1, Self::places(block).map(|x| -x * p[0] * falloff(x)).collect())]
+        }
+    }
+
     /// Oracle: the parameters that the data were made from.
     #[test]
     fn a_curve_is_found_again() {
-        let at = |p: &[f64], block: usize| -> Vec<f64> {
-            (0..10).map(|i| f64::from(i) * 0.1 + block as f64).map(|x| p[0] * libm::exp(-p[1] * x)).collect()
-        };
-        let truth = [2.0, 0.7];
-        let residuals = |p: &[f64], block: usize| -> Vec<f64> {
-            at(p, block).iter().zip(at(&truth, block)).map(|(a, b)| a - b).collect()
-        };
-        let search = LeastSquares { steps: 50, difference: 1e-6, longest: 0.5, gain: 1e-12 };
-        let (found, cost) = search.minimise(vec![1.0, 0.1], residuals, |_| vec![0, 1], 2);
-        assert!(cost < 1e-12 && (found[0] - 2.0).abs() < 1e-5 && (found[1] - 0.7).abs() < 1e-5, "{found:?}");
+        let search = LeastSquares { longest: 0.5, gain: 1e-12 };
+        let Place { parameters, cost, .. } = search.descend(Place::new(vec![1.0, 0.1], &Curve), &Curve, 50);
+        assert!(cost < 1e-12 && (parameters[0] - 2.0).abs() < 1e-5, "{parameters:?}");
+        assert!((parameters[1] - 0.7).abs() < 1e-5, "{parameters:?}");
+        // In two goes as in one.
+        let half = search.descend(Place::new(vec![1.0, 0.1], &Curve), &Curve, 3);
+        assert_eq!(search.descend(half, &Curve, 47).parameters, parameters);
     }
 }

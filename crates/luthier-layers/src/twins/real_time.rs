@@ -14,6 +14,7 @@ use luthier_optics::stack::{Base, Stack, Surface};
 
 use crate::elek::{self, ALPHA_MIN};
 use crate::granier_heidrich::GranierHeidrich;
+use crate::lobes;
 use crate::microfacet::{Components, Microfacet};
 use crate::monochrome::{Monochrome, MonochromeBelow, Optics, in_color};
 use crate::phong::Coefficients;
@@ -50,14 +51,24 @@ enum Kind {
     GranierHeidrich([Monochrome; 3]),
     Phong([Coefficients; 3]),
     Microfacet(Box<(Microfacet, [Monochrome; 3])>),
+    /// The first interface, with light from below where there is an interface.
+    Lobes(Box<(Microfacet, [Monochrome; 3])>, bool),
     Belcour(Layers<3>),
     Yamaguchi(Layers<3>),
 }
 
 impl Twin {
     /// Names of the models that have a twin.
-    pub const MODELS: [&str; 7] =
-        [elek::MODEL, "weidlich-wilkie", "granier-heidrich", "belcour", "yamaguchi", "phong", "microfacet"];
+    pub const MODELS: [&str; 8] = [
+        elek::MODEL,
+        "weidlich-wilkie",
+        "granier-heidrich",
+        "belcour",
+        "yamaguchi",
+        "phong",
+        "microfacet",
+        lobes::MODEL,
+    ];
 
     /// The twin of the shader of a model, by the model's name; `None` for a model that has none. `wavelengths_nm` are those of the
     /// three channels. `color` says how Phong's coefficients come by their colour, which both forms of the shader read from the
@@ -72,6 +83,12 @@ impl Twin {
             "belcour" => Kind::Belcour(Layers::rgb(stack)),
             "yamaguchi" => Kind::Yamaguchi(Layers::rgb(stack)),
             "microfacet" => Kind::Microfacet(Box::new((Microfacet::new(Components::PLAIN), channels()))),
+            lobes::MODEL => {
+                let is_interface = stack.layers.first().is_some_and(|layer| !matches!(layer.base, Base::Diffuse(_)));
+                let first = self::channels(&lobes::shown(stack), wavelengths_nm);
+                let first = first.map(|one| bend_alike(one, stack));
+                Kind::Lobes(Box::new((Microfacet::new(Components::PLAIN), first)), is_interface)
+            }
             _ => return None,
         }))
     }
@@ -97,6 +114,12 @@ impl Twin {
             Kind::Belcour(layers) => statistical::<f64>(layers, terms, wi, wo),
             Kind::Yamaguchi(layers) => statistical::<Covariance>(layers, terms, wi, wo),
             Kind::Phong(channels) => channels.map(|coefficients| coefficients.eval(wi, wo)),
+            Kind::Lobes(one, is_interface) => {
+                let first = each(terms, &one.1, |stack, optics| one.0.eval_with(stack, optics, wi, wo));
+                let below = if *is_interface && wi.z > 0.0 { terms.below(wo) } else { None };
+                let below = below.map_or([0.0; 3], |below| below.eval(wi));
+                [0, 1, 2].map(|c: usize| first[c] + below[c])
+            }
             Kind::Microfacet(one) => each(terms, &one.1, |stack, optics| one.0.eval_with(stack, optics, wi, wo)),
         }
     }
@@ -208,6 +231,7 @@ mod tests {
     use luthier_optics::stack::{Diffuse, Distribution, Film, FilmThickness, Layer, Slab};
 
     use super::*;
+    use crate::lobes::Below;
     use crate::model::Model;
     use crate::registry;
     use crate::statistics::diffuse_base::Veil;
@@ -263,6 +287,10 @@ mod tests {
         fn veil(&self) -> Veil<3> {
             let Some(Veil { internal: [internal], upward: [upward] }) = self.0.veil() else { return Veil::NONE };
             Veil { internal: [internal; 3], upward: [upward; 3] }
+        }
+
+        fn below(&self, _: DVec3) -> Option<Below> {
+            None
         }
     }
 

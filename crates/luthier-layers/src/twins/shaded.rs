@@ -10,6 +10,7 @@ use luthier_optics::stack::{Base, Distribution, Stack, Surface};
 
 use crate::elek::{self, ALPHA_MIN};
 use crate::frame;
+use crate::lobes::{self, Below};
 use crate::real_time::{Twin, Under};
 use crate::statistics::diffuse_base::Veil;
 use crate::statistics::energy::Energy;
@@ -109,6 +110,10 @@ impl Shaded {
 
 /// The stack as a model's shader has it at a place.
 fn at(stack: &Stack, model: &str, place: &Place, patina: Option<Growth>) -> Stack {
+    // Rows are those of the surface without textures.
+    if model == lobes::MODEL {
+        return lobes::shown(stack);
+    }
     let mut here = stack.clone();
     let factors = &place.sample;
     for (i, layer) in here.layers.iter_mut().enumerate() {
@@ -188,6 +193,10 @@ impl Energy<3> for Tarnished<'_> {
 impl ShaderTerms for Tarnished<'_> {
     fn veil(&self) -> Veil<3> {
         self.terms.veil()
+    }
+
+    fn below(&self, wo: DVec3) -> Option<Below> {
+        self.terms.below(wo)
     }
 }
 

@@ -2,12 +2,14 @@
 
 use std::sync::OnceLock;
 
+use glam::DVec3;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::{Interface, Sampled};
 use luthier_optics::microfacet;
 use luthier_optics::stack::{Distribution, Stack};
 
+use crate::lobes::{Below, Lobes};
 use crate::statistics::diffuse_base::Veil;
 use crate::statistics::energy::{ColorEnergy, Energy};
 use crate::statistics::layers::Layers;
@@ -37,21 +39,25 @@ pub trait Terms {
     }
 }
 
-/// All that the shaders of any model are given: what [`Terms`] are, and for `belcour` and `yamaguchi` energies, and what layers do
-/// to the light of a diffuse base.
+/// All that the shaders of any model are given: what [`Terms`] are; for `belcour` and `yamaguchi` energies, and what layers do to the light
+/// of a diffuse base; for `lobes` the light from below the first interface.
 pub trait ShaderTerms: Terms + Energy<3> {
     /// Effect of the layers above a diffuse base on its light; anything where there is no such base.
     fn veil(&self) -> Veil<3>;
+
+    /// Light from below the first interface as seen from `wo`; `None` below the horizon, and where the terms have none.
+    fn below(&self, wo: DVec3) -> Option<Below>;
 }
 
-/// Exact terms. Fresnel and distribution terms are evaluated at every call; energies are prepared at the first, see
-/// [`ColorEnergy`].
+/// Exact terms. Fresnel and distribution terms are evaluated at every call. Energies are prepared at the first, see [`ColorEnergy`]; so are
+/// lobes, which are simulated then ([`Lobes::of`]).
 #[derive(Debug, Clone)]
 pub struct Exact {
     stack: Stack,
     color: Color,
     interfaces: Vec<Option<Sampled>>,
     energies: Energies,
+    lobes: OnceLock<Lobes>,
 }
 
 #[derive(Debug, Clone)]
@@ -76,7 +82,12 @@ impl Exact {
         let interfaces = (0..stack.layers.len())
             .map(|i| Interface::of(stack, i).map(|interface| interface.sampled(&color)))
             .collect();
-        Self { stack: stack.clone(), color, interfaces, energies }
+        Self { stack: stack.clone(), color, interfaces, energies, lobes: OnceLock::new() }
+    }
+
+    /// The lobes of the stack.
+    pub fn lobes(&self) -> &Lobes {
+        self.lobes.get_or_init(|| Lobes::of(&self.stack, &self.color))
     }
 
     fn facets<'a>(&self, prepared: &'a OnceLock<(ColorEnergy, Veil<3>)>) -> &'a (ColorEnergy, Veil<3>) {
@@ -116,5 +127,9 @@ impl ShaderTerms for Exact {
             Energies::Facets(prepared) => self.facets(prepared).1,
             Energies::Level(veil) => *veil,
         }
+    }
+
+    fn below(&self, wo: DVec3) -> Option<Below> {
+        self.lobes().below(wo)
     }
 }

@@ -124,6 +124,7 @@ const TABLE: &[Claims] = &[
     row("belcour-half-vector", Kept, Gains(GlossyOverSatin, 89.0, 1.1536), Furnace::Smooth, [[0.5861, 0.5702, 0.7866], [0.9963, 0.9807, 0.9111]]),
     row("yamaguchi", Broken(0.339), AtMost(1.0), Furnace::Smooth, [[0.6030, 0.5606, 0.7993], [0.9955, 0.9883, 0.9834]]),
     row("yamaguchi-half-vector", Kept, Gains(GlossyOverSatin, 89.0, 1.1536), Furnace::Smooth, [[0.5861, 0.5702, 0.7866], [0.9963, 0.9807, 0.9111]]),
+    row("lobes", Broken(0.6036), AtMost(1.002), Furnace::No, [[1.0004, 1.0028, 0.9979], [1.0001, 1.0004, 0.9997]]),
     row("fluorescence", Kept, AtMost(1.003), Furnace::No, [[0.0; 3], [0.9956, 0.9718, 0.5417]]),
     row("heterogeneous", Kept, Gains(CoatedMirror(0.02), 0.0, 2.108), Furnace::No, [[1.3183, 0.9913, 1.0536], [0.9579, 0.9807, 1.1934]]),
     row("heterogeneous-glitter", Broken(0.957), Gains(CoatedMirror(0.02), 0.0, 2.108), Furnace::No, [[1.3183, 0.9913, 1.0536], [0.9579, 0.9807, 1.1934]]),
@@ -233,6 +234,28 @@ fn models_that_are_not_reciprocal_miss_by_the_measured_amount() {
     assert!(wrong.is_empty(), "found:\n{wrong}");
 }
 
+#[test]
+fn lobes_keep_energy_and_are_not_negative() {
+    let (model, _) = claimed().find(|(_, row)| row.name == "lobes").unwrap();
+    let flat = dielectric(0.8, 0.2);
+    for layers in [
+        vec![(ggx(0.01), dielectric(1.7, 0.0)), (ggx(0.4), WHITE)],
+        vec![(ggx(0.6), dielectric(1.3, 0.1)), (ggx(0.1), dielectric(2.2, 0.0)), (ggx(0.0), lambert(0.9))],
+        vec![(ggx(0.0), flat), (ggx(0.2), lambert(1.0))],
+    ] {
+        let stack = Monochrome::bare(&layers);
+        for theta in [0.0, 40.0, 75.0, 89.0] {
+            let found = directional_albedo(&*model, &stack, at(theta));
+            assert!(found.value <= 1.002 + slack(found), "{theta}: {found:?}");
+            for (i, turn) in [(0.0, 0.0), (50.0, 1.0), (89.99, 3.0)] {
+                let wi = DVec3::new(at(i).x * f64::cos(turn), at(i).x * f64::sin(turn), at(i).z);
+                let f = model.eval(&stack, wi, at(theta));
+                assert!(f.is_finite() && f >= 0.0, "{theta} {i}: {f}");
+            }
+        }
+    }
+}
+
 fn config(cases: u32) -> ProptestConfig {
     ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() }
 }
@@ -246,7 +269,8 @@ proptest! {
         stack in prop_oneof![random_stack(Losses::Any), random_stack(Losses::None)],
         wi in upward(1e-4), wo in upward(1e-4), grazing in upward(1e-7),
     ) {
-        for (model, row) in claimed() {
+        // A fit takes a second: see `lobes_keep_energy_and_are_not_negative`.
+        for (model, row) in claimed().filter(|(_, row)| row.name != "lobes") {
             let name = row.name;
             for (wi, wo) in [(wi, wo), (wo, grazing), (grazing, wo), (grazing, grazing)] {
                 let f = model.eval(&stack, wi, wo);

@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 
 use glam::DVec3;
+use luthier_layers::lobes::Below;
 use luthier_layers::real_time::Twin;
 use luthier_layers::statistics::diffuse_base::Veil;
 use luthier_layers::statistics::energy::Energy;
@@ -61,14 +62,24 @@ pub enum Factor {
     Escape,
     /// The material's record of the layers above a diffuse base.
     Veil,
+    /// The rows of lobes.
+    Lobes,
     /// f32 arithmetic: what is left when f64 reads the same tables.
     Arithmetic,
 }
 
 impl Factor {
     /// All factors.
-    pub(crate) const ALL: [Self; 7] =
-        [Self::Fresnel, Self::Distribution, Self::Phase, Self::Fgd, Self::Escape, Self::Veil, Self::Arithmetic];
+    pub(crate) const ALL: [Self; 8] = [
+        Self::Fresnel,
+        Self::Distribution,
+        Self::Phase,
+        Self::Fgd,
+        Self::Escape,
+        Self::Veil,
+        Self::Lobes,
+        Self::Arithmetic,
+    ];
 }
 
 /// Part of an error that one factor adds, all others being exact.
@@ -156,6 +167,13 @@ pub enum Cause {
         /// Value that the record gives.
         sampled: f64,
     },
+    /// The rows of lobes.
+    Lobes {
+        /// Name of the tile.
+        tile: String,
+        /// Cosine of the view.
+        cos_theta: f64,
+    },
     /// f32 arithmetic.
     Arithmetic,
 }
@@ -170,6 +188,7 @@ impl Cause {
             Self::Fgd { .. } => Factor::Fgd,
             Self::Escape { .. } => Factor::Escape,
             Self::Veil { .. } => Factor::Veil,
+            Self::Lobes { .. } => Factor::Lobes,
             Self::Arithmetic => Factor::Arithmetic,
         }
     }
@@ -338,6 +357,7 @@ enum Term {
     Fgd { alpha: f64, cos_theta: f64, expected: Rgb, sampled: Rgb },
     Escape { alpha: f64, cos_theta: f64, expected: f64, sampled: f64 },
     Veil { expected: Rgb, sampled: Rgb },
+    Lobes { cos_theta: f64 },
 }
 
 impl<'a> Mixed<'a> {
@@ -400,6 +420,11 @@ impl ShaderTerms for Mixed<'_> {
         let term = Term::Veil { expected: expected.internal, sampled: sampled.internal };
         self.record(0, term, expected, sampled)
     }
+
+    fn below(&self, wo: DVec3) -> Option<Below> {
+        let [expected, sampled] = [self.exact.below(wo), self.tables.below(wo)];
+        self.record(0, Term::Lobes { cos_theta: wo.z }, expected, sampled)
+    }
 }
 
 impl Read {
@@ -411,6 +436,7 @@ impl Read {
             Term::Fgd { .. } => Factor::Fgd,
             Term::Escape { .. } => Factor::Escape,
             Term::Veil { .. } => Factor::Veil,
+            Term::Lobes { .. } => Factor::Lobes,
         }
     }
 
@@ -446,6 +472,9 @@ impl Read {
                 Cause::Escape { layer, tile, alpha, cos_theta, expected, sampled }
             }
             Term::Veil { expected, sampled } => Cause::Veil { expected: expected[channel], sampled: sampled[channel] },
+            Term::Lobes { cos_theta } => {
+                Cause::Lobes { tile: tables.name(TableKind::Lobes, self.layer).to_owned(), cos_theta }
+            }
         }
     }
 }

@@ -124,21 +124,26 @@ pub fn judge(
         let mut gathered = Gathered::new(device.is_some());
         for set in DirectionSet::ALL {
             let pairs = set.pairs(settings.pairs_per_set, layers);
-            let three = evaluate(&references.twin, &references.three, &pairs);
-            let spectral = evaluate(&references.twin, &references.spectral, &pairs);
-            let baked_reference = match entry.color {
-                ColorMode::Spectral => &spectral,
-                ColorMode::ThreeWavelengths => &three,
-            };
+            let baked_reference = &evaluate(&references.twin, references.baked(), &pairs);
             let tables_8 = evaluate(&references.twin, &eight_bit, &pairs);
             let tables_exact = evaluate(&references.twin, &exact_weights, &pairs);
             gathered.add(Compared::TablesEightBit, set, &pairs, &tables_8, baked_reference);
             gathered.add(Compared::TablesExact, set, &pairs, &tables_exact, baked_reference);
-            gathered.add(Compared::ThreeWavelengths, set, &pairs, &three, &spectral);
+            // Without tables there is no other colour.
+            let three = entry.model.has(Form::Full).then(|| evaluate(&references.twin, &references.three, &pairs));
+            if let Some(three) = &three {
+                let spectral = match entry.color {
+                    ColorMode::Spectral => baked_reference,
+                    ColorMode::ThreeWavelengths => &evaluate(&references.twin, &references.spectral, &pairs),
+                };
+                gathered.add(Compared::ThreeWavelengths, set, &pairs, three, spectral);
+            }
             if let Some(device) = device {
-                let found = run(device, Form::Full, index as u32, &pairs)?;
-                let level = references.level.as_ref().map(|level| evaluate(&references.twin, level, &pairs));
-                gathered.add(Compared::FullDevice, set, &pairs, &found, level.as_ref().unwrap_or(&three));
+                if let Some(three) = three.as_ref().filter(|_| manifest.has(Form::Full)) {
+                    let found = run(device, Form::Full, index as u32, &pairs)?;
+                    let level = references.level.as_ref().map(|level| evaluate(&references.twin, level, &pairs));
+                    gathered.add(Compared::FullDevice, set, &pairs, &found, level.as_ref().unwrap_or(three));
+                }
                 let found = run(device, Form::Baked, index as u32, &pairs)?;
                 gathered.add(Compared::BakedDevice, set, &pairs, &found, baked_reference);
                 weights.add(&found, &tables_8, &tables_exact);

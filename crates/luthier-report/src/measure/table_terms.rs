@@ -1,10 +1,12 @@
 //! The model's terms as a shader reads them: from texels.
 
+use glam::DVec3;
+use luthier_layers::lobes::{Below, Frame, Row, ViewAxis, Wide};
 use luthier_layers::statistics::diffuse_base::Veil;
 use luthier_layers::statistics::energy::Energy;
 use luthier_layers::terms::{ShaderTerms, Terms};
 use luthier_lut::{TableKind, TexelFormat, Values, WeightBits, read};
-use luthier_manifest::{LayerRecord, MaterialEntry};
+use luthier_manifest::{LayerRecord, LobesRecord, MaterialEntry};
 use luthier_optics::Rgb;
 use luthier_optics::microfacet::scaled_distribution;
 use luthier_optics::stack::Distribution;
@@ -25,9 +27,9 @@ pub enum Weights {
 }
 
 impl Weights {
-    fn bits(self, format: TexelFormat) -> WeightBits {
+    fn bits(self, kind: TableKind, format: TexelFormat) -> WeightBits {
         match self {
-            Self::EightBit if format.is_filterable() => WeightBits::Fixed(8),
+            Self::EightBit if kind.is_filtered(format) => WeightBits::Fixed(8),
             Self::EightBit | Self::Exact => WeightBits::Exact,
         }
     }
@@ -37,7 +39,14 @@ impl Table<'_> {
     /// A sampled read of a tile.
     pub(crate) fn read(&self, tile: u32, values: [f64; 2], weights: Weights) -> [f64; 4] {
         let entry = self.entry;
-        read(entry.kind, &entry.layout, entry.format, self.texels, tile, values, weights.bits(entry.format))
+        read(entry.kind, &entry.layout, entry.format, self.texels, tile, values, weights.bits(entry.kind, entry.format))
+    }
+
+    /// A sampled row of lobes.
+    pub(crate) fn row(&self, tile: u32, cos_theta: f64, weights: Weights) -> Row {
+        let parts = self.entry.layout.y.as_ref().map_or(1, |y| y.size);
+        let part = |part: u32| self.read(tile, [cos_theta, f64::from(part)], weights);
+        Row::of_parts(&(0..parts).map(part).collect::<Vec<_>>())
     }
 }
 
@@ -98,6 +107,7 @@ pub struct TableTerms<'a> {
     /// By kind, with the quantity of the x axis.
     tables: [Option<(Table<'a>, AngleAxis)>; TableKind::ALL.len()],
     veil: Veil<3>,
+    lobes: Option<LobesRecord>,
     records: &'a [LayerRecord],
     weights: Weights,
 }
@@ -120,7 +130,8 @@ impl<'a> TableTerms<'a> {
                 tables[kind as usize] = Some((table, AngleAxis::of(&table)?));
             }
         }
-        let terms = Self { tables, veil: recorded_veil(entry), records: &entry.layers, weights };
+        let terms =
+            Self { tables, veil: recorded_veil(entry), lobes: entry.constants.lobes, records: &entry.layers, weights };
         for (layer, kind) in read_by(entry) {
             let is_computed = match kind {
                 // A layer without a tile has D computed.
@@ -236,5 +247,13 @@ impl Energy<3> for TableTerms<'_> {
 impl ShaderTerms for TableTerms<'_> {
     fn veil(&self) -> Veil<3> {
         self.veil
+    }
+
+    fn below(&self, wo: DVec3) -> Option<Below> {
+        let LobesRecord { index, falloff, critical_cot_sq, .. } = self.lobes.filter(|_| wo.z > 0.0)?;
+        let (table, _, tile) = self.read_at(TableKind::Lobes, 0)?;
+        let axis = ViewAxis::new(2, critical_cot_sq);
+        let frame = Frame { index, wide: Wide::new(falloff, axis) };
+        Some(Below::new(frame, table.row(tile, axis.cosine(wo.z), self.weights), wo))
     }
 }

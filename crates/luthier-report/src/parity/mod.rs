@@ -148,7 +148,7 @@ impl Parity {
     }
 }
 
-/// Compares the shaders of a bake with their twins: two rows for every case. `progress` is called after each case.
+/// Compares the shaders of a bake with their twins: a row for every case and form. `progress` is called after each case.
 ///
 /// # Errors
 /// See [`ReportError`].
@@ -177,10 +177,12 @@ struct Block {
     material: usize,
     pairs: Vec<Pair>,
     reference: Vec<Rgb>,
+    /// Empty without this form.
     full_reference: Vec<Rgb>,
     /// f64 on the tables, with 8-bit and with exact weights.
     tables: [Vec<Rgb>; 2],
     baked: Vec<Rgb>,
+    /// Empty without this form.
     full: Vec<Rgb>,
 }
 
@@ -198,7 +200,7 @@ fn compare(
     device: &dyn Device,
     case: &ParityCase,
     pairs_per_set: u32,
-) -> Result<[ParityRow; 2], ReportError> {
+) -> Result<Vec<ParityRow>, ReportError> {
     let mut numbers: Vec<u32> = std::iter::once(case.material).chain(case.polished.iter().copied()).collect();
     numbers.sort_unstable();
     numbers.dedup();
@@ -207,13 +209,18 @@ fn compare(
         .into_par_iter()
         .map(|number| {
             let references = references(subject, number as usize)?;
-            if subject.manifest.materials[number as usize].model.is_statistical() {
+            let model = subject.manifest.materials[number as usize].model;
+            if model.is_statistical() {
                 references.baked().veil();
+            }
+            if model == ShadingModel::Lobes {
+                references.baked().lobes();
             }
             Ok((number, references))
         })
         .collect::<Result<_, ReportError>>()?;
     let of = |number| prepared.iter().find(|(n, _)| *n == number).map(|(_, references)| references);
+    let has_full = subject.manifest.has(Form::Full);
     let mut blocks = Vec::new();
     let mut vote = WeightsVote::default();
     for set in ParitySet::ALL {
@@ -231,10 +238,10 @@ fn compare(
                 set,
                 material,
                 reference: evaluate(twin, references.baked(), &pairs),
-                full_reference: evaluate(twin, references.full(), &pairs),
+                full_reference: if has_full { evaluate(twin, references.full(), &pairs) } else { Vec::new() },
                 tables: [tables(Weights::EightBit)?, tables(Weights::Exact)?],
                 baked: run(device, Form::Baked, number, &pairs)?,
-                full: run(device, Form::Full, number, &pairs)?,
+                full: if has_full { run(device, Form::Full, number, &pairs)? } else { Vec::new() },
                 pairs,
             };
             vote.add(&block.baked, &block.tables[0], &block.tables[1]);
@@ -265,8 +272,9 @@ fn compare(
     let mut baked =
         row(Form::Baked, Compared::new(&blocks, |b| &b.baked, |b| &b.reference, Some(weights)), Some(weights));
     baked.parts = parts(subject, &blocks, weights, &baked, of)?;
-    let full = row(Form::Full, Compared::new(&blocks, |b| &b.full, |b| &b.full_reference, None), None);
-    Ok([baked, full])
+    let full = || row(Form::Full, Compared::new(&blocks, |b| &b.full, |b| &b.full_reference, None), None);
+    let full = has_full.then(full);
+    Ok(std::iter::once(baked).chain(full).collect())
 }
 
 fn references(subject: &Subject<'_>, material: usize) -> Result<References, ReportError> {

@@ -74,7 +74,7 @@ fn summary(out: &mut String, parity: &Parity) {
          | rms | arithmetic max | p99 | rms | not finite |\n|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
     );
     for model in models(parity) {
-        for form in [Form::Baked, Form::Full] {
+        for form in Form::ALL.into_iter().filter(|&form| model.has(form)) {
             let rows = || parity.rows.iter().filter(|row| row.model == model && row.form == form);
             let largest = |get: &dyn Fn(&ParityRow) -> Option<ErrorSummary>| {
                 rows().filter_map(get).reduce(|a, b| ErrorSummary {
@@ -98,7 +98,7 @@ fn summary(out: &mut String, parity: &Parity) {
     }
     out.push_str("\n|---|---|--:|--:|--:|--:|--:|\n");
     for model in models(parity) {
-        for form in [Form::Baked, Form::Full] {
+        for form in Form::ALL.into_iter().filter(|&form| model.has(form)) {
             let _ = write!(out, "| {} | {form} |", model.name());
             for (index, _) in ParitySet::ALL.iter().enumerate() {
                 let rows = parity.rows.iter().filter(|row| row.model == model && row.form == form);
@@ -126,7 +126,7 @@ fn tolerances(out: &mut String, parity: &Parity) {
     out.push_str("\n## Tolerances\n\nA tolerance limits the largest error of a share, table or arithmetic.\n\n| tolerance | limit | of | reason |\n|---|--:|---|---|\n");
     let mut named: Vec<(Tolerance, Vec<String>)> = Vec::new();
     for model in models(parity) {
-        for form in [Form::Baked, Form::Full] {
+        for form in Form::ALL.into_iter().filter(|&form| model.has(form)) {
             for share in Share::ALL {
                 if share == Share::Table && form == Form::Full {
                     continue;

@@ -164,6 +164,26 @@ pub const EXPLANATIONS: &[Explanation] = &[
         reason: "The Fresnel formulas of the simulation take the fourth power of the index, which overflows a double from 1e77 on. No metal has a k above 1e3, and records of layers hold at most 10000.",
     },
     Explanation {
+        name: "BETWEEN_THE_ROWS_OF_LOBES",
+        levels: &[Level::F64],
+        methods: &["lobes"],
+        cases: &["index-2.5e-1", "index-5e-1", "index-6.67e-1", "furnace-2", "frosted-0.3-0.01"],
+        faults: &[Fault::Gains, Fault::Wrong],
+        limit: 0.05,
+        reason: "Energies are right at 20 directions of the eye, and the light that lobes send between these is interpolated. It is up to 0.006 too bright for coats \
+                 over mirrors. Under a rough interface into a thinner medium the energy from below ends within a few degrees of the critical angle, and the rows on both \
+                 sides are up to 7 degrees away.",
+    },
+    Explanation {
+        name: "MEAN_OF_TWO_SLOPES",
+        levels: &[Level::F64],
+        methods: &["lobes"],
+        cases: &["brushed"],
+        faults: &[Fault::Wrong],
+        limit: 0.06,
+        reason: "Lobes are isotropic. A surface of alpha 0.001 along and 1 across is shown with alpha 0.032.",
+    },
+    Explanation {
         name: "LAMBERT_FOR_OREN_NAYAR",
         levels: &[Level::F64],
         methods: &["lambert", "phong", "granier-heidrich"],

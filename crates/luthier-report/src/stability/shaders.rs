@@ -17,7 +17,7 @@ const ROUNDING: f64 = 1e-6;
 struct Expected {
     pairs: Vec<Pair>,
     baked: Vec<Rgb>,
-    full: Vec<Rgb>,
+    full: Option<Vec<Rgb>>,
     read: Vec<Rgb>,
 }
 
@@ -43,7 +43,8 @@ pub fn shader_cells(
             let references = References::new(stack, entry)?;
             let twin = &references.twin;
             let terms = TableTerms::new(subject, number, Weights::EightBit)?;
-            let (baked, full) = (evaluate(twin, references.baked(), &pairs), evaluate(twin, references.full(), &pairs));
+            let baked = evaluate(twin, references.baked(), &pairs);
+            let full = entry.model.has(Form::Full).then(|| evaluate(twin, references.full(), &pairs));
             let read = evaluate(twin, &terms, &pairs);
             Ok(Expected { pairs, baked, full, read })
         })
@@ -56,7 +57,7 @@ pub fn shader_cells(
         let of = |level, found: &[Rgb], truth: &[Rgb]| cell(level, &method, case, pairs, found, truth);
         cells.push(of(Level::Table, read, baked));
         if let Some(device) = device {
-            if tables.is_none() {
+            if let Some(full) = full.as_ref().filter(|_| tables.is_none() && subject.manifest.has(Form::Full)) {
                 cells.push(of(Level::F32, &run(device, Form::Full, number as u32, pairs)?, full));
             }
             cells.push(of(Level::Device, &run(device, Form::Baked, number as u32, pairs)?, baked));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use luthier_lut::TableKind;
+use luthier_lut::{TableKind, Values};
 use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry, ShadingModel};
 
 use crate::{Form, MaterialSet};
@@ -14,10 +14,10 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is but the names of tables, for the check that modules name no other.
     #[cfg(test)]
-    const ALL: &str = "absorption anisotropic bare beckmann below bilinear chain chain_diffuse clamped closed conductor diffuse \
+    const ALL: &str = "absorption along anisotropic bare beckmann below bilinear chain chain_diffuse clamped closed conductor diffuse \
     film film_table flakes full ggx glitter granier granier_bare granier_base \
-    granier_film granier_transparent interface microfacet_diffuse mixed oren_nayar patina phong place \
-    schlick_base smith split_root statistics statistics_base theta_axis total_reflection";
+    granier_film granier_transparent interface lobes_diffuse microfacet_diffuse mixed one_lobe oren_nayar patina phong place \
+    schlick_base smith split_root statistics statistics_base theta_axis total_reflection two_lobes";
 
     pub(crate) fn of(set: &MaterialSet<'_>, form: Form) -> Self {
         let mut names = BTreeSet::new();
@@ -44,7 +44,18 @@ impl Features {
         }
         for table in set.tables_read(form) {
             names.insert(feature(table.kind));
-            if !table.format.is_filterable() {
+            if let (TableKind::Lobes, Some(parts)) = (table.kind, &table.layout.y) {
+                // Two parts are no lobe's, and each lobe has two.
+                names.extend(
+                    [(4..6, "one_lobe"), (6..7, "two_lobes")]
+                        .iter()
+                        .filter(|(sizes, _)| sizes.contains(&parts.size))
+                        .map(|(_, name)| *name),
+                );
+            }
+            if table.kind.facts().values == Values::Apart {
+                names.insert("along");
+            } else if !table.format.is_filterable() {
                 names.insert("bilinear");
             }
         }
@@ -89,7 +100,9 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
             names.insert("phong");
             return names;
         }
-        ShadingModel::Microfacet | ShadingModel::GranierHeidrich => &material.layers[..material.layers.len().min(1)],
+        ShadingModel::Microfacet | ShadingModel::GranierHeidrich | ShadingModel::Lobes => {
+            &material.layers[..material.layers.len().min(1)]
+        }
         ShadingModel::Elek | ShadingModel::WeidlichWilkie | ShadingModel::Belcour | ShadingModel::Yamaguchi => {
             material.layers.as_slice()
         }
@@ -113,13 +126,13 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
         if layer.critical_cot_sq > 0.0 {
             names.insert("total_reflection");
         }
-        if (is_chain || material.model == ShadingModel::Microfacet) && layer.tiles[TableKind::Distribution].is_none() {
+        if material.model.reads_distribution() && layer.tiles[TableKind::Distribution].is_none() {
             names.insert("closed");
         }
         if layer.kind == LayerKind::Conductor && !is_chain {
             names.insert("conductor");
         }
-        let is_isotropic = matches!(material.model, ShadingModel::Elek | ShadingModel::Belcour);
+        let is_isotropic = matches!(material.model, ShadingModel::Elek | ShadingModel::Belcour | ShadingModel::Lobes);
         if !is_isotropic && layer.alpha_xy[0] != layer.alpha_xy[1] {
             names.insert("anisotropic");
         }
@@ -134,7 +147,8 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
     }
     let (has_interface, has_diffuse) = (names.contains("interface"), names.contains("diffuse"));
     match material.model {
-        ShadingModel::Microfacet if has_interface => names.insert("smith"),
+        ShadingModel::Microfacet | ShadingModel::Lobes if has_interface => names.insert("smith"),
+        ShadingModel::Lobes => names.insert("lobes_diffuse"),
         ShadingModel::Microfacet => names.insert("microfacet_diffuse"),
         // Beside a coat it is a step of the chain; alone in its set it needs none.
         ShadingModel::Elek | ShadingModel::WeidlichWilkie if !has_interface => names.insert("chain_diffuse"),
@@ -203,7 +217,7 @@ fn is_mixed(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
     let layers = || set.materials.iter().filter(|m| m.model == model).map(|m| &m.layers);
     let depth = match model {
         ShadingModel::Phong => 0,
-        ShadingModel::Microfacet => 1,
+        ShadingModel::Microfacet | ShadingModel::Lobes => 1,
         _ => layers().map(Vec::len).max().unwrap_or(0),
     };
     (0..depth).any(|i| {

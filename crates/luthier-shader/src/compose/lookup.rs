@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use luthier_lut::{Axis, Encoding, Mapping, RowBase, SchlickBase, TableKind};
+use luthier_lut::{Axis, Encoding, Mapping, RowBase, SchlickBase, TableKind, Values};
 
 use crate::compose::blocks::prune;
 use crate::compose::features::Features;
@@ -112,7 +112,7 @@ fn check_axis(axis: &Axis, names: &[&str], table: TableKind) -> Result<(), Shade
 /// tiles of unlike content do not bleed into each other by a rounding error. Other positions are texels: nodes are also read one
 /// by one.
 fn is_whole(table: &TableFace) -> bool {
-    table.format.is_filterable() && table.layout.base == RowBase::Zero && table.layout.columns == 1
+    table.kind.is_filtered(table.format) && table.layout.base == RowBase::Zero && table.layout.columns == 1
 }
 
 /// `let position = ...;`: where node (x, y) of a tile is in the atlas; x counts as [`is_whole`] says.
@@ -145,6 +145,9 @@ fn position(out: &mut String, table: &TableFace) {
 fn read(table: &TableFace) -> String {
     let name = table.kind.name();
     let [width, height] = table.layout.size();
+    if table.kind.facts().values == Values::Apart {
+        return format!("luthier_along(luthier_{name}, position)");
+    }
     match (table.format.is_filterable(), is_whole(table)) {
         (true, true) => format!("textureSampleLevel(luthier_{name}, luthier_sampler, position, 0.0)"),
         (true, false) => format!(

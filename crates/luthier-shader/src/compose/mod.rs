@@ -47,6 +47,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     let facets = has("chain") || has("smith");
     let modules = [
         (has("bilinear"), include_str!("../wgsl/tables/bilinear.wgsl")),
+        (has("along"), include_str!("../wgsl/tables/along.wgsl")),
         (true, include_str!("../wgsl/layer.wgsl")),
         (has("place"), include_str!("../wgsl/surface/place.wgsl")),
         (has("flakes") || has("glitter"), include_str!("../wgsl/surface/hash.wgsl")),
@@ -113,7 +114,7 @@ pub(crate) fn text(module: &str, features: &Features) -> String {
 
 /// The members of a layer that say where in the tables it is.
 fn tiles(features: &Features) -> String {
-    let is_read = |kind: &TableKind| features.has(feature(*kind));
+    let is_read = |kind: &TableKind| features.has(feature(*kind)) && kind.facts().slot.is_some();
     let names = TableKind::ALL.into_iter().filter(is_read).map(TableKind::name);
     names.map(|name| format!("    /// Tile in `luthier_{name}`.\n    {name}_tile: f32,\n")).collect()
 }
@@ -121,11 +122,11 @@ fn tiles(features: &Features) -> String {
 /// The statements that read all tiles of a layer from its words in the buffer; those of members that are left out go with these.
 fn assign_tiles() -> String {
     let assignment = |kind: TableKind| {
-        let [word, component] = kind.facts().slot;
+        let [word, component] = kind.facts().slot?;
         let read = words::layer(word);
-        format!("    layer.{}_tile = {read}.{};\n", kind.name(), ["x", "y", "z", "w"][component])
+        Some(format!("    layer.{}_tile = {read}.{};\n", kind.name(), ["x", "y", "z", "w"][component]))
     };
-    TableKind::ALL.into_iter().map(assignment).collect()
+    TableKind::ALL.into_iter().filter_map(assignment).collect()
 }
 
 /// The modules of a model, `luthier_eval_<model>` last.
@@ -143,6 +144,7 @@ fn model(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec
         ShadingModel::GranierHeidrich => vec![module(include_str!("../wgsl/models/granier_heidrich.wgsl"))],
         ShadingModel::Phong => vec![module(include_str!("../wgsl/models/phong.wgsl"))],
         ShadingModel::Microfacet => vec![module(include_str!("../wgsl/models/microfacet.wgsl"))],
+        ShadingModel::Lobes => vec![module(include_str!("../wgsl/models/lobes.wgsl"))],
         ShadingModel::Belcour | ShadingModel::Yamaguchi => statistics::modules(set, model, features),
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::arithmetic::{directions, eval, full};
 use crate::machine::Machine;
-use crate::scenes::{clear, conductor, dielectric, diffuse, filmed, material, sets, tables};
+use crate::scenes::{clear, conductor, dielectric, diffuse, filmed, forms, material, sets, tables};
 use luthier_lut::{Mapping, RowBase, TableKind, TexelFormat};
 use luthier_manifest::{BUFFER_WORDS_MAX, LAYER_WORDS, LayerKind};
 use luthier_shader::{
@@ -13,7 +13,7 @@ use luthier_shader::{
 /// Emits in all forms and languages; each is validated on the way.
 fn emit_all(materials: &[luthier_manifest::MaterialEntry], tables: &[TableFace]) {
     let set = MaterialSet { materials, tables: tables.to_vec() };
-    for form in Form::ALL {
+    for form in forms(materials) {
         for target in Target::TEXT {
             complete(&set, form, target).unwrap_or_else(|e| panic!("{form} {target}: {e}"));
         }
@@ -141,7 +141,7 @@ fn shipped_functions_have_no_loops_and_no_placeholders() {
     // The cells of glitter are looked for in a loop.
     for (_, materials) in sets().into_iter().filter(|(_, m)| m.iter().all(|m| m.constants.glitter.is_none())) {
         let set = MaterialSet { materials: &materials, tables: tables() };
-        for form in Form::ALL {
+        for form in forms(&materials) {
             for target in Target::TEXT {
                 let text = emit(&set, form, target).unwrap();
                 for word in ["loop", "while", "for (", "$", "//?", "_group_", "_e1", "main(", "\n\n\n"] {

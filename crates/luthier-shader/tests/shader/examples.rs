@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::scenes::{sets, tables};
-use luthier_shader::{Form, MaterialSet, Target, emit, validate};
+use crate::scenes::{forms, sets, tables};
+use luthier_shader::{MaterialSet, Target, emit, validate};
 
 /// A shader of an example, with a place for the text of the bake.
 struct Shader {
@@ -87,7 +87,7 @@ pub(crate) fn composed(language: Target) -> Vec<(String, String)> {
     let mut texts = Vec::new();
     for (name, materials) in sets() {
         let set = MaterialSet { materials: &materials, tables: tables() };
-        for form in Form::ALL {
+        for form in forms(&materials) {
             let bake = emit(&set, form, language).unwrap();
             texts.extend(shaders.iter().map(|shader| (format!("{} {name} {form}", shader.file), paste(shader, &bake))));
         }

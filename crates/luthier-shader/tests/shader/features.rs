@@ -221,7 +221,8 @@ fn change(model: ShadingModel, feature: Feature, form: Form) -> Option<f32> {
 fn models_show_what_the_table_says() {
     let mut wrong = Vec::new();
     let mut tried = 0;
-    for model in ShadingModel::ALL {
+    // Rows have all that a stack has: for them, `luthier-scene/tests/left_out.rs` has the twin.
+    for model in ShadingModel::ALL.into_iter().filter(|model| *model != ShadingModel::Lobes) {
         for feature in Feature::ALL {
             for form in Form::ALL {
                 let Some(change) = change(model, feature, form) else { continue };

@@ -10,7 +10,7 @@ use luthier_shader::{Form, MaterialSet, Target, complete, complete_spirv, emit, 
 use tempfile::TempDir;
 
 use crate::examples;
-use crate::scenes::{clear, conductor, material, sets, tables};
+use crate::scenes::{clear, conductor, forms, material, sets, tables};
 
 /// Environment that SPIR-V emitted here is for.
 const VULKAN: &str = "vulkan1.1";
@@ -34,7 +34,7 @@ fn expect_success(output: &Output, what: &str, source: &str) {
 fn each(mut judge: impl FnMut(&str, &MaterialSet<'_>, Form, &Path)) {
     let folder = TempDir::new().unwrap();
     for (name, materials) in sets() {
-        for form in Form::ALL {
+        for form in forms(&materials) {
             judge(&format!("{name} {form}"), &set(&materials), form, folder.path());
         }
     }

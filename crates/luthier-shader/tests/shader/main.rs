@@ -9,6 +9,7 @@ mod examples;
 mod features;
 mod golden;
 mod judges;
+mod lobes;
 mod machine;
 mod manual;
 mod pages;

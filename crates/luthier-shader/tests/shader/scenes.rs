@@ -2,10 +2,10 @@
 
 use luthier_lut::{AtlasLayout, Axis, Mapping, TableKind, TexelFormat};
 use luthier_manifest::{
-    Distribution, FlakesRecord, GlitterRecord, LayerKind, LayerRecord, MaterialConstants, MaterialEntry, PatinaRecord,
-    ShadingModel, Tiles,
+    Distribution, FlakesRecord, GlitterRecord, LayerKind, LayerRecord, LobesRecord, MaterialConstants, MaterialEntry,
+    PatinaRecord, ShadingModel, Tiles,
 };
-use luthier_shader::TableFace;
+use luthier_shader::{Form, TableFace};
 
 /// An interface without film: red-lacquer's coat.
 pub(crate) fn dielectric() -> LayerRecord {
@@ -162,6 +162,25 @@ fn coated_brushed() -> MaterialEntry {
     material("coated-brushed", &[with_escape(coat), base])
 }
 
+/// From a dense medium into a thinner one.
+fn inward() -> LayerRecord {
+    LayerRecord { eta: 1.0 / 1.5, critical_cot_sq: 1.25, ..clear() }
+}
+
+/// The material with the model `lobes`, which has its first tile of rows.
+fn with_lobes(mut material: MaterialEntry) -> MaterialEntry {
+    material.model = ShadingModel::Lobes;
+    material.layers[0].tiles[TableKind::Lobes] = Some(0);
+    material.constants.lobes =
+        Some(LobesRecord { index: 1.5, falloff: [0.6, 0.2], integral: 0.9, critical_cot_sq: 0.0 });
+    material
+}
+
+/// The forms that the models of some materials have.
+pub(crate) fn forms(materials: &[MaterialEntry]) -> impl Iterator<Item = Form> {
+    Form::ALL.into_iter().filter(|&form| materials.iter().all(|material| material.model.has(form)))
+}
+
 /// Sets by name, from the simplest to the richest.
 pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
     let lacquer = || material("red-lacquer", &[dielectric(), diffuse(0.0)]);
@@ -226,6 +245,19 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
                 oil(),
             ],
         ),
+        ("lobes", vec![with_lobes(house())]),
+        ("lobes-film", vec![with_lobes(oil())]),
+        (
+            "lobes-mixed",
+            vec![
+                with_lobes(brushed()),
+                of(ShadingModel::Lobes, chalk()),
+                of(ShadingModel::Microfacet, gold()),
+                with_lobes(glitter()),
+                lacquer(),
+            ],
+        ),
+        ("lobes-inward", vec![with_lobes(material("inward", &[inward(), diffuse(0.0)]))]),
         ("everything", vec![lacquer(), house(), gold(), oil(), material("clay", &[diffuse(0.3)])]),
     ]
 }
@@ -284,5 +316,14 @@ pub(crate) fn tables() -> Vec<TableFace> {
             TexelFormat::Rgba16Float,
         ),
         face(TableKind::Escape, cos_theta(32), Some(alpha(Mapping::Linear, 32)), 0, 1, 1, TexelFormat::R16Float),
+        face(
+            TableKind::Lobes,
+            axis("cos_theta", 0.0, 1.0, 20, Mapping::Rational { bend: 1.0 }),
+            Some(axis("part", 0.0, 5.0, 6, Mapping::Linear)),
+            0,
+            1,
+            1,
+            TexelFormat::Rgba16Float,
+        ),
     ]
 }

@@ -1,6 +1,6 @@
 //! Pictures of every material with both shaders.
 
-use luthier_gpu::{RenderSettings, Shape, ToneMapping};
+use luthier_gpu::{RenderSettings, Scene, Shape, ToneMapping};
 use luthier_lut::Image;
 use luthier_report::{
     Exhibit, Form, PictureErrors, Report, brightened_difference, compare_pictures, picture_color_difference,
@@ -22,7 +22,9 @@ pub(super) fn pictures(
     shaders: Option<&Shaders>,
     options: &ReportOptions,
 ) -> Outcome<Vec<Vec<Exhibit>>> {
-    let Some(shaders) = shaders.filter(|_| options.picture_size > 0) else { return Ok(Vec::new()) };
+    let shaders = shaders.filter(|_| options.picture_size > 0);
+    let scenes = shaders.and_then(|shaders| shaders.scene(Form::Full).zip(shaders.scene(Form::Baked)));
+    let Some((full, baked)) = scenes else { return Ok(Vec::new()) };
     let settings = RenderSettings {
         size: options.picture_size,
         samples: SAMPLES,
@@ -34,8 +36,8 @@ pub(super) fn pictures(
     let count = report.materials.len() as u64;
     let mut out = Vec::new();
     for (number, material) in (0..).zip(&mut report.materials) {
-        let render = |form| shaders.scene(form).render(&[number], &settings);
-        let (full, baked) = (render(Form::Full)?, render(Form::Baked)?);
+        let render = |scene: &Scene| scene.render(&[number], &settings);
+        let (full, baked) = (render(full)?, render(baked)?);
         let compared = compare_pictures(&baked, &full, |v| tone.value(v)).map_err(Failure::input)?;
         let [delta_e_mean, delta_e_max] = picture_color_difference(&baked, &full, |v| tone.value(v));
         let (apart, gain) = brightened_difference(&baked, &full, |v| tone.value(v));

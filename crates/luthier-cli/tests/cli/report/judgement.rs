@@ -138,7 +138,7 @@ fn models_are_compared_with_paths_when_asked() {
     workshop.run(&TABLES_ONLY).exits(0);
     assert_eq!(material()["against_reference"], Value::Array(Vec::new()));
     workshop.run(&[&TABLES_ONLY[..], &["--reference=200"]].concat()).exits(0);
-    assert_eq!(material()["against_reference"].as_array().unwrap().len(), 7);
+    assert_eq!(material()["against_reference"].as_array().unwrap().len(), 8);
     assert_eq!(workshop.json("out/report/report.json")["reference"]["paths"], 200);
 }
 

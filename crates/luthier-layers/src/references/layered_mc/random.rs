@@ -5,16 +5,49 @@ use glam::DVec2;
 /// Increment of the counter: 2^64 over the golden ratio, odd.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// The numbers of one path: the k-th is a hash of (seed, path, k), whatever other paths do.
+/// The numbers of one path: the k-th is a hash of (seed, path, k), whatever other paths do. The first numbers of an even stream are those of a
+/// sequence instead.
 #[derive(Debug, Clone)]
 pub(crate) struct Stream {
     counter: u64,
+    /// Number of the path in the sequence.
+    place: u64,
+    /// The next of [`STEPS`] that counts.
+    dimension: usize,
+    seed: u64,
 }
+
+/// Fractions of the square roots of primes, times 2^64 (Richtmyer 1951): multiples of each fill the unit interval evenly, and those of all
+/// together the unit cube.
+const STEPS: [u64; 16] = [
+    0x6a09_e667_f3bc_c908,
+    0xbb67_ae85_84ca_a73b,
+    0x3c6e_f372_fe94_f82b,
+    0xa54f_f53a_5f1d_36f1,
+    0x510e_527f_ade6_82d1,
+    0x9b05_688c_2b3e_6c1f,
+    0x1f83_d9ab_fb41_bd6b,
+    0x5be0_cd19_137e_2179,
+    0xcbbb_9d5d_c105_9ed8,
+    0x629a_292a_367c_d507,
+    0x9159_015a_3070_dd17,
+    0x152f_ecd8_f70e_5939,
+    0x6733_2667_ffc0_0b31,
+    0x8eb4_4a87_6858_1511,
+    0xdb0c_2e0d_64f9_8fa7,
+    0x47b5_481d_befa_4fa4,
+];
 
 impl Stream {
     /// The stream of a path.
     pub(crate) fn new(seed: u64, path: u64) -> Self {
-        Self { counter: mix(mix(seed.wrapping_add(GOLDEN)).wrapping_add(path.wrapping_mul(GOLDEN))) }
+        let counter = mix(mix(seed.wrapping_add(GOLDEN)).wrapping_add(path.wrapping_mul(GOLDEN)));
+        Self { counter, place: 0, dimension: STEPS.len(), seed: 0 }
+    }
+
+    /// The stream of a path whose first numbers are those of a sequence, which a seed shifts: means over many paths have less noise.
+    pub(crate) fn even(seed: u64, path: u64) -> Self {
+        Self { place: path + 1, dimension: 0, seed: mix(seed.wrapping_add(GOLDEN)), ..Self::new(seed, path) }
     }
 
     /// A seed from a seed and a number.
@@ -24,6 +57,11 @@ impl Stream {
 
     #[inline]
     fn next(&mut self) -> u64 {
+        if let Some(step) = STEPS.get(self.dimension) {
+            self.dimension += 1;
+            let shift = mix(self.seed.wrapping_add((self.dimension as u64).wrapping_mul(GOLDEN)));
+            return self.place.wrapping_mul(*step).wrapping_add(shift);
+        }
         self.counter = self.counter.wrapping_add(GOLDEN);
         mix(self.counter)
     }
@@ -40,6 +78,10 @@ impl Stream {
     /// (Marsaglia 1972 for the disc).
     #[inline]
     pub(crate) fn direction_and_uniform(&mut self) -> (DVec2, f64) {
+        if self.dimension < STEPS.len() {
+            let (sin, cos) = libm::sincos(std::f64::consts::TAU * self.uniform());
+            return (DVec2::new(cos, sin), self.uniform());
+        }
         loop {
             // Two numbers of 32 bits at the middles of their steps, from -1 to 1.
             let bits = self.next();
@@ -74,6 +116,24 @@ mod tests {
         // Standard errors: sqrt(1/12 / n) and 1/12 / sqrt(n).
         assert!((mean - 0.5).abs() < 4.0 * 9.2e-4, "{mean}");
         assert!(product.abs() < 4.0 * 2.7e-4, "{product}");
+    }
+
+    /// Oracle: the integral of a product of six numbers, (1/2)^6. Independent numbers miss it by 2.7e-4 on average.
+    #[test]
+    fn even_numbers_fill_the_cube() {
+        let n = 16_000u64;
+        for seed in 0..4 {
+            let product = |i| {
+                let mut stream = Stream::even(seed, i);
+                (0..6).map(|_| stream.uniform()).product::<f64>()
+            };
+            let mean = (0..n).map(product).sum::<f64>() / n as f64;
+            assert!((mean - 1.0 / 64.0).abs() < 1.3e-4, "{seed}: {mean}");
+        }
+        // Behind the sequence they are independent.
+        let mut stream = Stream::even(1, 2);
+        (0..STEPS.len()).for_each(|_| assert!(stream.uniform() < 1.0));
+        assert_eq!(stream.uniform(), Stream::new(1, 2).uniform());
     }
 
     #[test]

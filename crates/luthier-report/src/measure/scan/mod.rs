@@ -5,6 +5,7 @@ mod distribution;
 mod escape;
 mod film;
 mod fresnel;
+mod lobes;
 mod phase;
 mod thickness;
 
@@ -49,6 +50,7 @@ pub(crate) fn scan(
                 TableKind::Phase => phase::scan(&table, number, &users, subject),
                 TableKind::Escape => escape::scan(&table, number, &users, subject),
                 TableKind::Film => film::scan(&table, number, &users, subject),
+                TableKind::Lobes => lobes::scan(&table, number, &users, exact),
                 TableKind::Thickness => {
                     findings.extend(thickness::doubts(&table, number, &users, subject));
                     None

@@ -3,11 +3,12 @@
 use crate::models::{MaterialModels, ModelErrors, ModelsReport, Worst};
 
 /// Families of models: title, and how the names of its members begin.
-const FAMILIES: [(&str, &[&str]); 5] = [
+const FAMILIES: [(&str, &[&str]); 6] = [
     ("One layer", &["microfacet", "phong"]),
     ("Weidlich and Wilkie", &["weidlich-wilkie", "fluorescence"]),
     ("Elek, Granier and Heidrich", &["elek", "flakes", "patina", "granier-heidrich"]),
     ("Statistics of light", &["belcour", "yamaguchi"]),
+    ("Lobes fitted to the reference", &["lobes"]),
     ("The reference itself", &["layered-mc"]),
 ];
 

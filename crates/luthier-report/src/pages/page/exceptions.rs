@@ -129,6 +129,7 @@ pub(crate) fn cause(cause: &Cause) -> String {
             off(*expected, *sampled)
         ),
         Cause::Veil { expected, sampled } => format!("internal reflectance: {}", off(*expected, *sampled)),
+        Cause::Lobes { tile, cos_theta } => format!("rows of lobes {tile} at cos θ {}", number(rounded(*cos_theta, 3))),
         Cause::Arithmetic => "f32 arithmetic".to_owned(),
     }
 }
@@ -153,6 +154,7 @@ fn short(part: &Part) -> String {
         Cause::Fgd { layer, .. } => format!("albedo of layer {layer}"),
         Cause::Escape { layer, .. } => format!("escape from layer {layer}"),
         Cause::Veil { .. } => "internal reflectance".to_owned(),
+        Cause::Lobes { .. } => "rows of lobes".to_owned(),
         Cause::Arithmetic => "arithmetic".to_owned(),
     }
 }
@@ -166,6 +168,7 @@ fn tally(tally: &[(Factor, u64)]) -> String {
         Factor::Fgd => "albedo",
         Factor::Escape => "escape",
         Factor::Veil => "internal reflectance",
+        Factor::Lobes => "rows of lobes",
         Factor::Arithmetic => "arithmetic",
     };
     let total: u64 = tally.iter().map(|(_, count)| count).sum();

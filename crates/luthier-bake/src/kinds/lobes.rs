@@ -1,0 +1,169 @@
+//! Lobes tiles: the simulated light from below the first interface of a material.
+
+use std::sync::Arc;
+
+use luthier_layers::lobes::{EXCESS, FitSettings, LOBES, Lobes, Row, shown};
+use luthier_lut::{
+    Axis, Comparison, ErrorStats, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan,
+};
+use luthier_manifest::LobesRecord;
+use luthier_material::Material;
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use luthier_optics::stack::Stack;
+use serde_json::{Value, json};
+
+use super::{Kind, Site};
+use crate::graph::{Inputs, Job, JobKind, Output, Results};
+use crate::plan::color;
+use crate::settings::{Ask, Shape, axis};
+use crate::tile::{TileData, color_in_words, lone_tile};
+use crate::{BakeError, json};
+
+/// Points of the error scan per texel interval.
+const PER_CELL: u32 = 8;
+
+/// Lobes tables.
+pub(crate) struct Table;
+
+impl Kind for Table {
+    fn fixed(&self, _: Ask<'_>) -> Result<Shape, BakeError> {
+        let (rows, parts) = (FitSettings::default().rows as u32, Row::parts(LOBES) as u32);
+        let axes = [
+            axis("cos_theta", "", [0.0, 1.0], rows, Mapping::Rational { bend: 1.0 }),
+            axis("part", "", [0.0, f64::from(parts - 1)], parts, Mapping::Linear),
+        ];
+        Ok(Shape::grid(axes, TexelFormat::Rgba16Float))
+    }
+
+    /// A tile for the first layer: the others are in it.
+    fn job(&self, site: &Site<'_>) -> Result<Option<Arc<dyn Job>>, BakeError> {
+        let Site { material, layer, shape, .. } = site;
+        let is_first = material.stack.layers.first().is_some_and(|first| std::ptr::eq(first, *layer));
+        let job = || LobesJob { fit: fit(material), axes: shape.axes(), format: shape.format };
+        Ok(is_first.then(|| Arc::new(job()) as Arc<dyn Job>))
+    }
+}
+
+/// The fit of a material.
+fn fit(material: &Material) -> Arc<FitJob> {
+    Arc::new(FitJob { stack: shown(&material.stack), color: color(material) })
+}
+
+/// Numbers that stand in where nothing was fitted: outlines are for sizes and costs.
+const UNFITTED: LobesRecord = LobesRecord { index: 1.5, falloff: [0.5, 0.1], integral: 0.95, critical_cot_sq: 0.0 };
+
+/// The numbers of a material's lobes that hold at all views; [`UNFITTED`] in an outline.
+pub(crate) fn record(material: &Material, results: &Results) -> LobesRecord {
+    let Some(lobes) = results.get::<Lobes>(fit(material).key()) else { return UNFITTED };
+    let (wide, critical_cot_sq) = (lobes.frame.wide, lobes.axis.critical_cot_sq());
+    let (falloff, integral) = (wide.falloff(), wide.integral());
+    LobesRecord { index: lobes.frame.index, falloff, integral, critical_cot_sq }
+}
+
+/// The simulation of a stack, and the fit to it: [`Lobes`].
+#[derive(Debug)]
+struct FitJob {
+    stack: Stack,
+    color: Color,
+}
+
+impl Job for FitJob {
+    fn kind(&self) -> JobKind {
+        JobKind::part("fit")
+    }
+
+    fn inputs(&self) -> Value {
+        let FitSettings { rows, paths, seed } = FitSettings::default();
+        json!({
+            "stack": json::stack(&self.stack),
+            "color": json::color(&self.color),
+            "lobes": LOBES,
+            "excess": EXCESS,
+            "rows": rows,
+            "paths": paths,
+            "seed": seed,
+        })
+    }
+
+    fn run(&self, _: &Inputs<'_>) -> Output {
+        Box::new(Lobes::of(&self.stack, &self.color))
+    }
+}
+
+#[derive(Debug)]
+struct LobesJob {
+    fit: Arc<FitJob>,
+    /// Cosine of the view, and part.
+    axes: [Axis; 2],
+    format: TexelFormat,
+}
+
+impl Job for LobesJob {
+    fn kind(&self) -> JobKind {
+        JobKind::tile(TableKind::Lobes)
+    }
+
+    fn inputs(&self) -> Value {
+        json!({
+            "fit": self.fit.key().to_string(),
+            "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
+            "format": self.format.name(),
+        })
+    }
+
+    fn dependencies(&self) -> Vec<Arc<dyn Job>> {
+        vec![self.fit.clone()]
+    }
+
+    fn run(&self, inputs: &Inputs<'_>) -> Output {
+        let lobes: &Lobes = inputs.part(self.fit.as_ref());
+        let [x, y] = &self.axes;
+        let mut truth = Image::zeros(x.size, y.size, 4);
+        for (i, row) in (0..x.size).zip(&lobes.rows) {
+            for (j, part) in (0..y.size).zip(row.clone().filled(LOBES).to_parts()) {
+                truth.texel_mut(i, j).copy_from_slice(&part.map(|value| value as f32));
+            }
+        }
+        let atlas = lone_tile(TableKind::Lobes, &[x, y], self.format, &truth);
+        let read = |c: f64| {
+            let part = |j: u32| atlas.sample(0, [c, f64::from(j)], WeightBits::Fixed(8));
+            Row::of_parts(&(0..y.size).map(part).collect::<Vec<_>>())
+        };
+        let scan = Scan::whole([x.intervals(), 0], [PER_CELL, 0]);
+        // Energies: the albedo, each lobe's, and that of the remainder.
+        let energies = |part: usize| {
+            measure_scan(
+                &scan,
+                |u| {
+                    let c = x.decode(u[0]);
+                    let [expected, sampled] = [lobes.row_at(c).filled(LOBES), read(c)].map(|row| {
+                        let [r, g, b] = energy(&row, part);
+                        [r, g, b, 0.0]
+                    });
+                    Comparison { expected, sampled }
+                },
+                |u| vec![x.decode(u[0]), part as f64],
+            )
+        };
+        let error = (1..LOBES + 2).map(energies).fold(energies(0), ErrorStats::with_worst_of);
+        let over = if lobes.axis.critical_cot_sq() > 0.0 { ", over the cosine of the refracted view" } else { "" };
+        let model = format!(
+            "{} fitted to the simulated stack, in half vectors of a medium of index {:.3}{over}; {}; errors are those of energies \
+             against the rows before they were rounded",
+            ["no lobe", "one lobe", "two lobes"][lobes.rows[0].lobes.len().min(LOBES)],
+            lobes.frame.index,
+            color_in_words(&self.fit.color)
+        );
+        Box::new(TileData { model, truth, texels: atlas.texels, bytes: atlas.bytes, error })
+    }
+}
+
+/// Energies of a row by number: the albedo, the wide remainder, then the lobes.
+fn energy(row: &Row, part: usize) -> Rgb {
+    match part {
+        0 => row.albedo_dir,
+        1 => row.wide,
+        _ => row.lobes.get(part - 2).map_or([0.0; 3], |lobe| lobe.strength.map(|strength| strength * lobe.share)),
+    }
+}

@@ -1,0 +1,107 @@
+//! The model at one wavelength, for stacks that it fits itself.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use glam::DVec3;
+use luthier_optics::color::Color;
+use luthier_optics::fresnel::FilmLayer;
+use luthier_optics::ior::Ior;
+use luthier_optics::stack::{Base, Diffuse, Film, FilmThickness, Layer, Slab, Stack};
+use num_complex::Complex64;
+
+use super::{INFO, Lobes};
+use crate::model::{Model, ModelInfo};
+use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
+use crate::oren_nayar;
+
+/// Stacks whose lobes are kept.
+const KEPT: usize = 8;
+
+/// Real part of an index, at least: a perfect mirror of none reflects a hundred millionth less.
+const INDEX_MIN: f64 = 1e-9;
+
+/// A wavelength for indices that do not depend on it.
+const WAVELENGTH_NM: f64 = 550.0;
+
+/// The model `lobes`. It simulates a stack when it first meets it, for a second or so; the last eight stacks are kept.
+#[derive(Debug, Default)]
+pub struct Fitted {
+    kept: Mutex<VecDeque<(Monochrome, Arc<Lobes>)>>,
+}
+
+impl Fitted {
+    /// The lobes of a stack; `None` where an index is infinite or not a number.
+    fn lobes(&self, stack: &Monochrome) -> Option<Arc<Lobes>> {
+        // Under the lock: others that ask for a stack wait for its lobes.
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, lobes)) = kept.iter().find(|(known, _)| known == stack) {
+            return Some(lobes.clone());
+        }
+        let lobes = Arc::new(Lobes::of(&in_all_colors(stack)?, &Color::ThreeWavelengths([WAVELENGTH_NM; 3])));
+        kept.truncate(KEPT - 1);
+        kept.push_front((stack.clone(), lobes.clone()));
+        Some(lobes)
+    }
+}
+
+impl Model for Fitted {
+    fn info(&self) -> ModelInfo {
+        INFO
+    }
+
+    fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
+        let Some(first) = stack.layers.first().filter(|_| wi.z > 0.0 && wo.z > 0.0) else { return 0.0 };
+        if let MonochromeBelow::Diffuse { albedo, sigma } = first.below {
+            return wi.z * oren_nayar::brdf_scalar(albedo, sigma, wi, wo);
+        }
+        self.lobes(stack).map_or(0.0, |lobes| lobes.eval(wi, wo)[0])
+    }
+}
+
+/// The stack that is this one at every wavelength and in every channel; `None` where an index is infinite or not a number.
+fn in_all_colors(stack: &Monochrome) -> Option<Stack> {
+    let constant = |ior: Complex64| Ior::constant(ior.re.max(INDEX_MIN), ior.im).ok();
+    let layer = |layer: &MonochromeLayer| {
+        let film = |film: &FilmLayer| {
+            let thickness_nm = film.waves * WAVELENGTH_NM;
+            let thickness = FilmThickness { min_nm: thickness_nm, max_nm: thickness_nm };
+            Some(Film { ior: constant(film.ior)?, thickness })
+        };
+        let base = match layer.below {
+            MonochromeBelow::Dielectric { complex_ior, optical_depth, .. } => {
+                let slab = Slab { thickness_um: 1.0, absorption_per_um: [optical_depth; 3] };
+                Base::Dielectric { ior: constant(complex_ior)?, slab }
+            }
+            MonochromeBelow::Conductor { ior } => Base::Conductor { ior: constant(ior)? },
+            MonochromeBelow::Diffuse { albedo, sigma } => Base::Diffuse(Diffuse { albedo: [albedo; 3], sigma }),
+        };
+        Some(Layer { films: layer.films.iter().map(film).collect::<Option<_>>()?, surface: layer.surface, base })
+    };
+    Some(Stack {
+        exterior: constant(Complex64::new(stack.exterior, 0.0))?,
+        layers: stack.layers.iter().map(layer).collect::<Option<_>>()?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use luthier_optics::stack::{Distribution, Surface};
+
+    use super::*;
+
+    #[test]
+    fn a_stack_at_one_wavelength_is_itself_in_all_colors() {
+        let film = FilmLayer { ior: Complex64::new(1.4, 0.1), waves: 0.7 };
+        let surface = Surface::isotropic(Distribution::Ggx, 0.2);
+        let mut stack = Monochrome::bare(&[
+            (surface, MonochromeBelow::dielectric(1.5, 0.3)),
+            (surface, MonochromeBelow::Conductor { ior: Complex64::new(0.2, 3.0) }),
+        ]);
+        stack.layers[0].films.push(film);
+        let colored = in_all_colors(&stack).unwrap();
+        for (nm, channel) in [(WAVELENGTH_NM, 0), (WAVELENGTH_NM, 2)] {
+            assert_eq!(Monochrome::new(&colored, nm, channel), stack);
+        }
+    }
+}

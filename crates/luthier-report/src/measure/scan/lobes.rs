@@ -1,0 +1,39 @@
+//! Scan of rows of lobes against rows that are fitted anew.
+
+use luthier_layers::lobes::Row;
+use luthier_layers::terms::Exact;
+use luthier_optics::Rgb;
+
+use super::{Measured, Scan, User, coordinates};
+use crate::judge::report::Curves;
+use crate::measure::subject::Table;
+use crate::measure::table_terms::Weights;
+
+/// Points in every interval between nodes.
+const POINTS_PER_CELL: u32 = 4;
+
+/// Energies of a row of lobes, over the cosine of the view, against those of the simulation and fit that the stack's terms make anew: the
+/// albedo, the wide remainder, each lobe. Whether the fit is near the simulation is judged with the models.
+pub(super) fn scan(table: &Table<'_>, tile: u32, users: &[User], exact: &[Exact]) -> Option<Measured> {
+    let x = &table.entry.layout.x;
+    let mut scan = Scan::default();
+    // Users of one tile have one stack.
+    let &(material, _) = users.first()?;
+    let lobes = exact.get(material)?.lobes();
+    for u in coordinates(x, POINTS_PER_CELL) {
+        let c = x.decode(u);
+        let (expected, sampled) = (energies(&lobes.row_at(c)), energies(&table.row(tile, c, Weights::EightBit)));
+        for (part, (expected, sampled)) in expected.iter().zip(&sampled).enumerate() {
+            for channel in 0..3 {
+                scan.add(&[c, part as f64], channel, expected[channel], sampled[channel]);
+            }
+        }
+    }
+    Some(Measured { scan, curves: Curves::None, uncertainty: None })
+}
+
+/// The albedo, the energy of the remainder, and those of the lobes.
+fn energies(row: &Row) -> Vec<Rgb> {
+    let lobes = row.lobes.iter().map(|lobe| lobe.strength.map(|strength| strength * lobe.share));
+    [row.albedo_dir, row.wide].into_iter().chain(lobes).collect()
+}

@@ -1,0 +1,103 @@
+//! The shader of `lobes` against its f64 twin, on rows that no fit has made.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use luthier_layers::lobes::{Below, Frame, Row, ViewAxis, Wide};
+use luthier_lut::{AtlasLayout, Image, TableKind, WeightBits, bilinear};
+use luthier_manifest::{LobesRecord, MaterialEntry, material_buffer};
+use luthier_shader::{Form, MaterialSet, ShaderError, Target, emit};
+
+use crate::arithmetic::directions;
+use crate::machine::{Machine, Value, vector};
+use crate::scenes::{sets, tables};
+
+/// Rows that change with the view in every part.
+fn rows() -> (AtlasLayout, Image) {
+    let layout = tables().into_iter().find(|t| t.kind == TableKind::Lobes).unwrap().layout;
+    let [width, height] = layout.size();
+    let mut image = Image::zeros(width, height, 4);
+    for i in 0..width {
+        let c = layout.x.node(i);
+        let parts = [
+            [0.3 * c, 0.2, 0.1, 0.0],
+            [0.5, 0.4 + 0.1 * c, 0.3, 0.3 - 0.2 * c],
+            [8.0 + c, 12.0 - c, 1.0, 0.9],
+            [0.1, 0.2, 0.2 + 0.3 * c, -0.1],
+            [0.5 + c, 0.7, 40.0, 0.8],
+            [0.9, 0.8, 0.7, 0.0],
+        ];
+        for (j, part) in (0..height).zip(parts) {
+            image.texel_mut(i, j).copy_from_slice(&part.map(|value| value as f32));
+        }
+    }
+    (layout, image)
+}
+
+fn set(name: &str) -> Vec<MaterialEntry> {
+    sets().into_iter().find(|(known, _)| *known == name).unwrap().1
+}
+
+/// The light below as the twin has it, and as the function of the shader has it.
+#[test]
+fn light_from_below_is_that_of_the_twin() {
+    let (layout, image) = rows();
+    for (name, critical_cot_sq) in [("lobes", 0.0), ("lobes-inward", 0.0), ("lobes-inward", 1.25)] {
+        let mut materials = set(name);
+        let lobes = LobesRecord { index: 1.4, falloff: [0.6, 0.3], integral: 1.0, critical_cot_sq };
+        let axis = ViewAxis::new(2, critical_cot_sq);
+        let wide = Wide::new(lobes.falloff, axis);
+        materials[0].constants.lobes = Some(LobesRecord { integral: wide.integral(), ..lobes });
+        let set = MaterialSet { materials: &materials, tables: tables() };
+        let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
+        let textures = BTreeMap::from([("luthier_lobes".to_owned(), image.clone())]);
+        let machine = Machine::new(&text, &material_buffer(&materials), textures);
+        let mut brightest = 0.0_f64;
+        for (wi, wo) in directions(300) {
+            let [light, eye] = [wi, wo].map(DVec3::from);
+            if light.z <= 0.0 || eye.z <= 0.0 {
+                continue;
+            }
+            let part = |part: u32| {
+                let at = layout.position(0, [axis.cosine(eye.z), f64::from(part)]);
+                bilinear(&image, at, WeightBits::Exact)
+            };
+            let row = Row::of_parts(&(0..6).map(part).collect::<Vec<_>>());
+            let expected = Below::new(Frame { index: 1.4f32.into(), wide }, row, eye).eval(light);
+            let seen = machine.call("luthier_see_below", vec![Value::U(0), vector(&wo.map(|w| w as f32))]);
+            let found = machine.call("luthier_below", vec![seen, vector(&wi.map(|w| w as f32))]).floats();
+            for (found, expected) in found.iter().zip(expected) {
+                let error = (f64::from(*found) - expected).abs() / expected.abs().max(0.03);
+                assert!(error < 1e-4, "{name} {wi:?} {wo:?}: {found} {expected}");
+                brightest = brightest.max(expected);
+            }
+        }
+        assert!(brightest > 1.0, "{name}: {brightest}");
+    }
+}
+
+#[test]
+fn lobes_have_no_form_without_tables() {
+    let materials = set("lobes-mixed");
+    let set = MaterialSet { materials: &materials, tables: tables() };
+    let refusal = emit(&set, Form::Full, Target::Wgsl).unwrap_err();
+    assert!(matches!(&refusal, ShaderError::NoForm { material, form: Form::Full, .. } if material == "brushed"));
+    assert!(refusal.to_string().contains("ask for the `baked` form"), "{refusal}");
+}
+
+/// Rows without lobes have no code for any; rows of one have none for a second.
+#[test]
+fn sets_pay_for_the_lobes_that_rows_have() {
+    let materials = set("lobes");
+    for (parts, present, absent) in
+        [(2, "", "luthier_slope_density"), (4, "first_shape", "second_shape"), (6, "second_shape", "$")]
+    {
+        let mut tables = tables();
+        for table in tables.iter_mut().filter(|table| table.kind == TableKind::Lobes) {
+            let y = table.layout.y.as_mut().unwrap();
+            (y.size, y.max) = (parts, f64::from(parts - 1));
+        }
+        let text = emit(&MaterialSet { materials: &materials, tables }, Form::Baked, Target::Wgsl).unwrap();
+        assert!(text.contains(present) && !text.contains(absent), "{parts}: {text}");
+    }
+}
