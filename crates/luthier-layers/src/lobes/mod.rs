@@ -144,7 +144,7 @@ impl Lobes {
 }
 
 /// The stack as lobes show it: surfaces have one slope parameter each, the mean of two; metals have indices up to
-/// [`INDEX_MAX`](crate::domain::INDEX_MAX), as in layer records.
+/// [`INDEX_MAX`], as in layer records.
 pub fn shown(stack: &Stack) -> Stack {
     let mut stack = stack.clone();
     for layer in &mut stack.layers {
