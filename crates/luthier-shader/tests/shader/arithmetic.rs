@@ -331,8 +331,12 @@ fn check_position(machine: &Machine, table: &TableFace, textures: &BTreeMap<Stri
         TableKind::Thickness if is_periodic => (vec![vector(&[x as f32 - 1.0, y as f32 + 2.0])], at),
         TableKind::Thickness => (vec![vector(&[x as f32, y as f32])], at),
         TableKind::Fgd | TableKind::Film | TableKind::Escape => (vec![float(x), float(y)], at),
-        // Its second axis is over whole numbers.
-        TableKind::Lobes => (vec![float(x), float(5.0 * y)], [x, 5.0 * y]),
+        // Nothing lies between its rows.
+        TableKind::Lobes => {
+            let rows = table.layout.y.as_ref().unwrap();
+            let row = rows.node((y * f64::from(rows.intervals())).round() as u32);
+            (vec![float(x), float(row)], [x, row])
+        }
         TableKind::Fresnel | TableKind::Phase => (vec![float(x)], at),
     };
     let call = std::iter::once(Value::F(tile as f32)).chain(arguments).collect();
