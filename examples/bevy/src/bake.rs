@@ -33,6 +33,8 @@ pub struct BakedMaterial {
     film: Option<Handle<Image>>,
     #[texture(8)]
     escape: Option<Handle<Image>>,
+    #[texture(9)]
+    lobes: Option<Handle<Image>>,
     #[storage(6, read_only)]
     materials: Handle<ShaderBuffer>,
     /// Number of the material in the bake. Bindings of a program's own start at 16.
@@ -102,6 +104,7 @@ impl BakedMaterial {
             thickness: table("thickness")?,
             film: table("film")?,
             escape: table("escape")?,
+            lobes: table("lobes")?,
             materials: buffers.add(ShaderBuffer::new(&words, RenderAssetUsages::RENDER_WORLD)),
             material,
         })

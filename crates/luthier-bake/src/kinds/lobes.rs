@@ -8,7 +8,6 @@ use luthier_lut::{
 };
 use luthier_manifest::LobesRecord;
 use luthier_material::Material;
-use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
 use serde_json::{Value, json};
@@ -127,18 +126,17 @@ impl Job for LobesJob {
         }
         let atlas = lone_tile(TableKind::Lobes, &[x, y], self.format, &truth);
         let read = |c: f64| {
-            let part = |j: u32| atlas.sample(0, [c, f64::from(j)], WeightBits::Fixed(8));
+            let part = |j: u32| atlas.sample(0, [c, f64::from(j)], WeightBits::Exact);
             Row::of_parts(&(0..y.size).map(part).collect::<Vec<_>>())
         };
         let scan = Scan::whole([x.intervals(), 0], [PER_CELL, 0]);
-        // Energies: the albedo, each lobe's, and that of the remainder.
         let energies = |part: usize| {
             measure_scan(
                 &scan,
                 |u| {
                     let c = x.decode(u[0]);
                     let [expected, sampled] = [lobes.row_at(c).filled(LOBES), read(c)].map(|row| {
-                        let [r, g, b] = energy(&row, part);
+                        let [r, g, b] = row.energies()[part];
                         [r, g, b, 0.0]
                     });
                     Comparison { expected, sampled }
@@ -156,14 +154,5 @@ impl Job for LobesJob {
             color_in_words(&self.fit.color)
         );
         Box::new(TileData { model, truth, texels: atlas.texels, bytes: atlas.bytes, error })
-    }
-}
-
-/// Energies of a row by number: the albedo, the wide remainder, then the lobes.
-fn energy(row: &Row, part: usize) -> Rgb {
-    match part {
-        0 => row.albedo_dir,
-        1 => row.wide,
-        _ => row.lobes.get(part - 2).map_or([0.0; 3], |lobe| lobe.strength.map(|strength| strength * lobe.share)),
     }
 }

@@ -147,10 +147,11 @@ impl Simulation {
         problems[found.set].lobes(found)
     }
 
-    /// The fewest lobes, so many at most, whose lobe error is no more than `excess` above that of the most.
+    /// The fewest lobes, so many at most, that are no more than `excess` farther from the light than the best.
     ///
     /// The error of a fit holds the noise of the paths, which all fits have alike: they are compared by the differences of their squared
-    /// residuals. Those of one view are over the energies, so that half the root of their sum is at least the lobe error that they make.
+    /// residuals. Residuals are over the roots of energies, so that half the root of the mean over the views bounds what the lobe error of an
+    /// average view gains; that of the worst view may gain more.
     pub fn fit_fewest(&self, most: usize, excess: f64) -> Lobes {
         let problems = self.problems();
         let fits = self.fits(&problems, most);

@@ -101,8 +101,8 @@ const INFO: ModelInfo = ModelInfo {
 /// The most lobes that a bake has.
 pub const LOBES: usize = 2;
 
-/// Bound on the lobe error for which a bake takes fewer, see [`Simulation::fit_fewest`]. On the materials that come with luthier the error
-/// itself grows by .003 at most.
+/// Excess for which a bake takes fewer lobes, see [`Simulation::fit_fewest`]. The lobe error of `latex.toml`, which has no lobe for it, is .034
+/// at the worst of ten views, and .025 with two (1,500,000 paths a view).
 pub const EXCESS: f64 = 0.02;
 
 impl Lobes {

@@ -143,12 +143,17 @@ impl Row {
         self
     }
 
+    /// Energies: the albedo, that of the wide remainder, and those of the lobes.
+    pub fn energies(&self) -> Vec<Rgb> {
+        let lobes = self.lobes.iter().map(|lobe| lobe.strength.map(|strength| strength * lobe.share));
+        [self.albedo_dir, self.wide].into_iter().chain(lobes).collect()
+    }
+
     /// Energy of one facet of the first interface: the albedo without lobes and remainder.
     pub fn first_facet(&self) -> Rgb {
-        [0, 1, 2].map(|c: usize| {
-            let lobes: f64 = self.lobes.iter().map(|lobe| lobe.strength[c] * lobe.share).sum();
-            (self.albedo_dir[c] - lobes - self.wide[c]).max(0.0)
-        })
+        let energies = self.energies();
+        [0, 1, 2]
+            .map(|c: usize| (self.albedo_dir[c] - energies[1..].iter().map(|energy| energy[c]).sum::<f64>()).max(0.0))
     }
 
     /// The row between two others.

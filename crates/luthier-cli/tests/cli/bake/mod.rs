@@ -2,6 +2,7 @@
 
 mod containers;
 mod folder;
+mod lobes;
 mod many;
 mod maps;
 mod misses;

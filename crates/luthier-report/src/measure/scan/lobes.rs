@@ -1,8 +1,6 @@
 //! Scan of rows of lobes against rows that are fitted anew.
 
-use luthier_layers::lobes::Row;
 use luthier_layers::terms::Exact;
-use luthier_optics::Rgb;
 
 use super::{Measured, Scan, User, coordinates};
 use crate::judge::report::Curves;
@@ -22,7 +20,7 @@ pub(super) fn scan(table: &Table<'_>, tile: u32, users: &[User], exact: &[Exact]
     let lobes = exact.get(material)?.lobes();
     for u in coordinates(x, POINTS_PER_CELL) {
         let c = x.decode(u);
-        let (expected, sampled) = (energies(&lobes.row_at(c)), energies(&table.row(tile, c, Weights::EightBit)));
+        let (expected, sampled) = (lobes.row_at(c).energies(), table.row(tile, c, Weights::Exact).energies());
         for (part, (expected, sampled)) in expected.iter().zip(&sampled).enumerate() {
             for channel in 0..3 {
                 scan.add(&[c, part as f64], channel, expected[channel], sampled[channel]);
@@ -30,10 +28,4 @@ pub(super) fn scan(table: &Table<'_>, tile: u32, users: &[User], exact: &[Exact]
         }
     }
     Some(Measured { scan, curves: Curves::None, uncertainty: None })
-}
-
-/// The albedo, the energy of the remainder, and those of the lobes.
-fn energies(row: &Row) -> Vec<Rgb> {
-    let lobes = row.lobes.iter().map(|lobe| lobe.strength.map(|strength| strength * lobe.share));
-    [row.albedo_dir, row.wide].into_iter().chain(lobes).collect()
 }
