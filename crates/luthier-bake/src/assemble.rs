@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use luthier_lut::{Atlas, AtlasLayout, FormatSet, Image, Mapping, RowBase, TableKind, TexelFormat, Tile};
+use luthier_lut::{Atlas, AtlasLayout, FormatSet, Image, RowBase, TableKind, TexelFormat, Tile};
 use luthier_manifest::{Budget, CandidateForm, ColorMode, LayerRecord, MaterialConstants, Search, ShadingModel, Tiles};
 use luthier_material::Material;
 use luthier_optics::interface::Interface;
@@ -15,6 +15,7 @@ use crate::maps::{MaterialMap, maps};
 use crate::plan::{ImageReader, Plan, PlannedLayers, TileList, color, color_mode, shading_model};
 use crate::search;
 use crate::settings::{Settings, Shape};
+use crate::tile::apron;
 use crate::{AIM, BakeError, DEFAULT_BUDGET, MemoryStore, Store};
 
 /// Tables, records and maps that a set of materials needs at run time.
@@ -76,16 +77,18 @@ pub struct Options {
     pub rows: Option<(RowBase, TexelFormat)>,
     /// Texel formats that a search may take; those of core WebGPU unless the target is known.
     pub formats: FormatSet,
+    /// Whether an outline fits lobes, which takes seconds: their number decides tables and shaders. A bake always does.
+    pub fits: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { budget: Budget::default(), search: true, rows: None, formats: FormatSet::CORE }
+        Self { budget: Budget::default(), search: true, rows: None, formats: FormatSet::CORE, fits: true }
     }
 }
 
 /// The outline of a bake of these materials: each material with the tiles that serve it, and the layout and texel format of each table, in
-/// binding order. The outline takes little computing, unless a material has a budget: the candidates that may hold it must be measured.
+/// binding order. The outline takes little computing, unless a material has a budget, whose candidates must be measured, or lobes.
 ///
 /// # Errors
 /// See [`BakeError`].
@@ -93,7 +96,7 @@ pub fn outline(materials: &[Material], read_image: ImageReader<'_>) -> Result<Ou
     outline_with(materials, &Options::default(), read_image)
 }
 
-/// [`outline`] with options; without a search nothing is computed.
+/// [`outline`] with options; without a search and without fits nothing is computed.
 ///
 /// # Errors
 /// See [`BakeError`].
@@ -127,7 +130,7 @@ pub fn kinked_rows(material: &Material, read_image: ImageReader<'_>) -> Result<V
         return Ok(Vec::new());
     }
     let Planned { plan, results, .. } =
-        plan(materials, &Options::default(), read_image, &Silent, &MemoryStore::default())?;
+        plan(materials, &Options { fits: false, ..Options::default() }, read_image, &Silent, &MemoryStore::default())?;
     if !plan.settings.leaves(TableKind::Fresnel) {
         return Ok(Vec::new());
     }
@@ -186,7 +189,8 @@ pub fn bake_with(
     observer: &dyn Observer,
     store: &dyn Store,
 ) -> Result<Baked, BakeError> {
-    let Planned { plan, results, searches } = plan(materials, options, read_image, observer, store)?;
+    let options = Options { fits: true, ..*options };
+    let Planned { plan, results, searches } = plan(materials, &options, read_image, observer, store)?;
     let layouts = layouts(&plan)?;
     let Plan { settings, graph, tiles, records } = plan;
     let results = graph.run(observer, store, results);
@@ -220,16 +224,22 @@ fn plan(
     if let Some(rows) = options.rows {
         settings.take_rows(rows);
     }
-    let fixed = Plan::new(materials, settings.clone(), read_image)?;
+    let mut fixed = Plan::new(materials, settings.clone(), read_image)?;
+    let mut results = Results::default();
+    if let Some(fits) = lobes::fits(&fixed.graph).filter(|_| options.fits) {
+        // Tiles have as many parts as the material with the most lobes needs.
+        results = fits.run(observer, store, results);
+        settings.take_lobes(lobes::most_lobes(&fixed.graph, &results));
+        fixed = Plan::new(materials, settings.clone(), read_image)?;
+    }
     let fixed_layouts = layouts(&fixed)?;
     if !options.search {
-        return Ok(Planned { plan: fixed, results: Results::default(), searches: Vec::new() });
+        return Ok(Planned { plan: fixed, results, searches: Vec::new() });
     }
     let asked = budget(materials, &options.budget)?;
     let is_asked = !asked.is_empty();
     let budget = if is_asked { asked } else { DEFAULT_BUDGET };
     // Costly tables are made once; candidates are compared with them.
-    let mut results = Results::default();
     if is_asked {
         results = fixed.graph.intermediate().run(observer, store, results);
     }
@@ -345,7 +355,7 @@ fn baked_materials(materials: &[Material], records: Vec<PlannedLayers>, results:
 fn layouts(plan: &Plan) -> Result<Vec<(TableKind, AtlasLayout, TexelFormat)>, BakeError> {
     let layout = |(kind, tiles): (TableKind, &TileList)| {
         let Shape { x, y, base, format } = plan.settings.shape(kind)?.clone();
-        let (apron, tiles) = (u32::from(x.mapping == Mapping::Periodic), tiles.tiles.len() as u32);
+        let (apron, tiles) = (apron(std::iter::once(&x).chain(&y)), tiles.tiles.len() as u32);
         let layout = AtlasLayout { x, y, apron, columns: 1, tiles, base };
         Some(match limits::columns(&layout) {
             Some(columns) => Ok((kind, AtlasLayout { columns, ..layout }, format)),

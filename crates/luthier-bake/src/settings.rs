@@ -127,6 +127,13 @@ impl Settings {
         self.shapes[kind as usize] = Shape::of(form);
     }
 
+    /// Tiles of so many lobes.
+    pub(crate) fn take_lobes(&mut self, lobes: usize) {
+        let kind = TableKind::Lobes as usize;
+        self.fixed[kind] = kinds::lobes::shape(lobes);
+        self.shapes[kind] = Some(self.fixed[kind].clone());
+    }
+
     /// Fresnel rows of this form: nothing is left to search for.
     pub(crate) fn take_rows(&mut self, (base, format): (RowBase, TexelFormat)) {
         let rows = TableKind::Fresnel as usize;

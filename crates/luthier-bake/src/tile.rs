@@ -20,13 +20,18 @@ pub(crate) fn lone_tile(kind: TableKind, axes: &[&Axis], format: TexelFormat, tr
     let layout = AtlasLayout {
         x: axes[0].clone(),
         y: axes.get(1).map(|&y| y.clone()),
-        apron: u32::from(axes.iter().any(|axis| axis.mapping == Mapping::Periodic)),
+        apron: apron(axes.iter().copied()),
         columns: 1,
         tiles: 1,
         base: RowBase::Zero,
     };
     let (bytes, texels) = texels(kind, format, truth);
     Atlas { kind, layout, format, tiles: Vec::new(), truth: truth.clone(), texels, bytes }
+}
+
+/// Texels repeated around a tile of such axes: neighbours of nodes at its rim, where it repeats, or where others than its own lie beside it.
+pub(crate) fn apron<'a>(axes: impl IntoIterator<Item = &'a Axis>) -> u32 {
+    u32::from(axes.into_iter().any(|axis| matches!(axis.mapping, Mapping::Periodic | Mapping::Apart)))
 }
 
 /// Words on how the colour of a tile was made, for its description.

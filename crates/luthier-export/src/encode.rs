@@ -154,6 +154,7 @@ fn axis(axis: &Axis) -> String {
         Mapping::Rational { bend } => format!("rational {bend}"),
         Mapping::Logarithmic => "logarithmic".to_owned(),
         Mapping::Periodic => "periodic".to_owned(),
+        Mapping::Apart => "apart".to_owned(),
     };
     let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
     format!("{quantity}: {min} to {max}{unit}, {size} nodes, {mapping}")

@@ -29,7 +29,7 @@ pub fn refuse(sources: &mut [Source], doubts: impl Fn(&Material) -> Vec<Diagnost
 pub fn refuse_too_many(sources: &mut [Source], shaded: impl Fn(Vec<Material>) -> Vec<Material>) {
     let Some(materials) = usable(sources) else { return };
     let materials = shaded(materials);
-    let options = luthier_bake::Options { search: false, ..luthier_bake::Options::default() };
+    let options = luthier_bake::Options { search: false, fits: false, ..luthier_bake::Options::default() };
     // Anything else has been told.
     if let Err(error @ (BakeError::TooManyTiles { .. } | BakeError::TooManyLayers { .. })) =
         luthier_bake::outline_with(&materials, &options, &read_image)

@@ -2,16 +2,21 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Axis, Encoding, ErrorStats, Image, RowBase, SchlickBase, TableKind, TexelFormat, WeightBits, bilinear};
+use crate::{
+    Axis, Encoding, ErrorStats, Image, Mapping, RowBase, SchlickBase, TableKind, TexelFormat, WeightBits, bilinear,
+};
 
 /// Where every texel of an atlas lies: equal tiles in a grid, filled row by row.
+///
+/// Rows whose axis is [`Mapping::Apart`] are side by side, each with its own apron, and the height of the texture is a power of two. Samplers
+/// round positions: a part of a row beside it, however small, would count where numbers of two rows differ by thousands.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AtlasLayout {
     /// Axis across a tile.
     pub x: Axis,
     /// Axis down a tile; absent when a tile is a single row.
     pub y: Option<Axis>,
-    /// Texels repeated around a tile (1 for periodic axes, else 0).
+    /// Texels repeated around a tile: 1 for periodic axes and on both sides of rows that are apart, else 0.
     pub apron: u32,
     /// Tiles side by side.
     pub columns: u32,
@@ -23,16 +28,31 @@ pub struct AtlasLayout {
 }
 
 impl AtlasLayout {
+    /// The y axis whose nodes are rows side by side, where it is one.
+    pub fn abreast(&self) -> Option<&Axis> {
+        self.y.as_ref().filter(|y| y.mapping == Mapping::Apart)
+    }
+
     /// Texels of one tile, apron and coefficients included.
     pub fn tile_size(&self) -> [u32; 2] {
-        let header = self.base.header_texels();
-        [self.x.size + 2 * self.apron + header, self.y.as_ref().map_or(1, |y| y.size + 2 * self.apron)]
+        let width = self.row_size();
+        match (&self.y, self.abreast()) {
+            (_, Some(rows)) => [width * rows.size, 1],
+            (Some(y), None) => [width, y.size + 2 * self.apron],
+            (None, None) => [width, 1],
+        }
+    }
+
+    /// Texels of one row of a tile, apron and coefficients included.
+    pub fn row_size(&self) -> u32 {
+        self.x.size + 2 * self.apron + self.base.header_texels()
     }
 
     /// Texels of the whole texture.
     pub fn size(&self) -> [u32; 2] {
         let [w, h] = self.tile_size();
-        [w * self.columns, h * self.tiles.div_ceil(self.columns)]
+        let rows = self.tiles.div_ceil(self.columns);
+        [w * self.columns, h * if self.abreast().is_some() { rows.next_power_of_two() } else { rows }]
     }
 
     /// [`AtlasLayout::size`] of a layout that may be nonsense: `None` where that would overflow, and where an axis has no interval.
@@ -44,8 +64,12 @@ impl AtlasLayout {
         }
         let header = self.base.header_texels();
         let width = self.x.size.checked_add(apron)?.checked_add(header)?.checked_mul(self.columns)?;
+        let rows = self.tiles.div_ceil(self.columns);
+        if let Some(abreast) = self.abreast() {
+            return Some([width.checked_mul(abreast.size)?, rows.checked_next_power_of_two()?]);
+        }
         let tile_height = self.y.as_ref().map_or(Some(1), |y| y.size.checked_add(apron))?;
-        let height = tile_height.checked_mul(self.tiles.div_ceil(self.columns))?;
+        let height = tile_height.checked_mul(rows)?;
         Some([width, height])
     }
 
@@ -68,6 +92,9 @@ impl AtlasLayout {
         let [ox, oy] = self.origin(tile).map(f64::from);
         let apron = f64::from(self.apron);
         let x = ox + apron + self.x.index(values[0]) + 0.5;
+        if let Some(rows) = self.abreast() {
+            return [x + rows.index(values[1]) * f64::from(self.row_size()), oy + 0.5];
+        }
         let y = self.y.as_ref().map_or(oy + 0.5, |axis| oy + apron + axis.index(values[1]) + 0.5);
         [x, y]
     }
@@ -134,7 +161,7 @@ pub fn read(
     values: [f64; 2],
     weights: WeightBits,
 ) -> [f64; 4] {
-    let weights = if kind.is_filtered(format) { weights } else { WeightBits::Exact };
+    let weights = if format.is_filterable() { weights } else { WeightBits::Exact };
     let texel = bilinear(texels, layout.position(tile, values), weights);
     match layout.base {
         RowBase::Zero => Encoding::of(kind, format).decode(texel),
@@ -153,7 +180,6 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::Mapping;
 
     fn axis(size: u32, mapping: Mapping) -> Axis {
         Axis { quantity: "x".into(), unit: String::new(), min: 0.5, max: 2.0, size, mapping }
@@ -197,6 +223,32 @@ mod tests {
             }
             for weights in [WeightBits::Exact, WeightBits::Fixed(8)] {
                 prop_assert_eq!(bilinear(&image, layout.position(tile, values), weights)[0], 1.0);
+            }
+        }
+    }
+
+    proptest! {
+        /// A position that is off by a rounding of a sampler reads its row alone.
+        #[test]
+        fn rows_that_are_apart_do_not_bleed(size in 2..40u32, rows in 2..8u32, columns in 1..4u32, tiles in 1..9u32, at: u32, x in 0.5..2.0f64, ends: bool) {
+            let y = Axis { min: 0.0, max: f64::from(rows - 1), ..axis(rows, Mapping::Apart) };
+            let x_axis = axis(size, Mapping::Linear);
+            let layout = AtlasLayout { x: x_axis, y: Some(y), apron: 1, columns, tiles, base: RowBase::Zero };
+            let ([width, height], across) = (layout.size(), layout.row_size());
+            prop_assert!(height.is_power_of_two() && layout.checked_size() == Some([width, height]));
+            let mut image = Image::zeros(width, height, 1);
+            for j in 0..height {
+                for i in 0..width {
+                    image.texel_mut(i, j)[0] = (j * width + i / across) as f32;
+                }
+            }
+            let (tile, row) = (at % tiles, at / tiles % rows);
+            let [left, top] = layout.origin(tile);
+            let expected = f64::from(top * width + left / across + row);
+            let x = if ends { if x < 1.0 { 0.5 } else { 2.0 } } else { x };
+            let [x, y] = layout.position(tile, [x, f64::from(row)]);
+            for off in [-1.0 / 256.0, 0.0, 1.0 / 256.0] {
+                prop_assert_eq!(bilinear(&image, [x + off, y], WeightBits::Fixed(8))[0], expected);
             }
         }
     }

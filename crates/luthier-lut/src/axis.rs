@@ -22,6 +22,8 @@ pub enum Mapping {
     Logarithmic,
     /// Linear and repeating: node `i` lies at `i/size`, and `u` is taken modulo 1.
     Periodic,
+    /// Linear, and nothing lies between nodes: as the y axis of a tile, its rows are side by side, see [`crate::AtlasLayout`].
+    Apart,
 }
 
 /// One axis of a table. Nodes are texel centres; the first lies at `u = 0`, and unless the axis is
@@ -46,7 +48,7 @@ impl Axis {
     /// The value at coordinate `u` in 0..=1.
     pub fn decode(&self, u: f64) -> f64 {
         match self.mapping {
-            Mapping::Linear | Mapping::Periodic => self.min + (self.max - self.min) * u,
+            Mapping::Linear | Mapping::Periodic | Mapping::Apart => self.min + (self.max - self.min) * u,
             Mapping::Power { exponent } => self.min + (self.max - self.min) * libm::pow(u, exponent),
             Mapping::Rational { bend } => self.min + (self.max - self.min) * (bend * u / (bend + (1.0 - u))),
             Mapping::Logarithmic => self.min * libm::pow(self.max / self.min, u),
@@ -57,7 +59,7 @@ impl Axis {
     pub fn encode(&self, value: f64) -> f64 {
         let t = (value - self.min) / (self.max - self.min);
         match self.mapping {
-            Mapping::Linear => t.clamp(0.0, 1.0),
+            Mapping::Linear | Mapping::Apart => t.clamp(0.0, 1.0),
             Mapping::Periodic => {
                 // A hair below a whole period rounds up to 1, which is 0 again.
                 let wrapped = t - libm::floor(t);

@@ -2,8 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::TexelFormat;
-
 crate::named! {
     /// Kind of a table, by its contents. One texture of each kind serves any number of materials.
     #[derive(Serialize, Deserialize)]
@@ -194,12 +192,6 @@ impl TableKind {
                 ..FACTS
             },
         }
-    }
-
-    /// Whether shaders read its tiles through a sampler: in a format that filters, and not where rows have nothing to do with those beside
-    /// them.
-    pub fn is_filtered(self, format: TexelFormat) -> bool {
-        format.is_filterable() && self.facts().values != Values::Apart
     }
 
     /// Binding number of its texture.

@@ -101,7 +101,7 @@ impl MaterialConstants {
     /// |---|---|
     /// | 1 | Phong's diffuse coefficient RGB, exponent |
     /// | 2 | Phong's specular coefficient RGB; of lobes the squared cotangent of the critical angle, or 0 |
-    /// | 3 | internal reflectance RGB, upward loss; of lobes 1 / index, a, b, and 1 over pi and the integral of S |
+    /// | 3 | internal reflectance RGB, upward loss; of lobes the squared index less 1, a, b, and 1 over pi and the integral of S |
     /// | 4 | flakes: low and high 16 bits of the seed, cells, tiling; all 0 without flakes |
     /// | 5 | flakes: spread, scale, fade start, 0 |
     /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; all 0 without patina |
@@ -117,7 +117,7 @@ impl MaterialConstants {
         words[2] = with(self.internal_reflectance, self.upward_loss);
         if let Some(LobesRecord { index, falloff: [a, b], integral, critical_cot_sq }) = self.lobes {
             words[1][3] = critical_cot_sq as f32;
-            words[2] = with([1.0 / index, a, b], FRAC_1_PI / integral);
+            words[2] = with([(index - 1.0) * (index + 1.0), a, b], FRAC_1_PI / integral);
         }
         let half = |bits: u32| (bits & 0xffff) as f32;
         if let Some(f) = &self.flakes {
@@ -185,6 +185,6 @@ mod tests {
         assert_eq!(MaterialConstants::default().words(), [[0.0; 4]; MaterialConstants::WORDS]);
         let lobes = LobesRecord { index: 1.25, falloff: [0.5, 0.75], integral: FRAC_1_PI, critical_cot_sq: 3.0 };
         let words = MaterialConstants { lobes: Some(lobes), ..MaterialConstants::default() }.words();
-        assert_eq!((words[1][3], words[2]), (3.0, [0.8, 0.5, 0.75, 1.0]));
+        assert_eq!((words[1][3], words[2]), (3.0, [0.5625, 0.5, 0.75, 1.0]));
     }
 }

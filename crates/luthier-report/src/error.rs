@@ -37,9 +37,9 @@ pub enum ReportError {
         /// Kind of the table.
         kind: TableKind,
         /// Width needed.
-        width: u64,
+        width: u32,
         /// Height needed.
-        height: u64,
+        height: u32,
         /// Width given.
         found_width: u32,
         /// Height given.

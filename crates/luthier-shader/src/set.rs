@@ -174,7 +174,7 @@ pub fn bindings(set: &MaterialSet<'_>, form: Form) -> Vec<BindingEntry> {
     let mut bindings = Vec::new();
     let mut is_sampled = false;
     for table in set.tables_read(form) {
-        is_sampled |= table.kind.is_filtered(table.format);
+        is_sampled |= table.format.is_filterable();
         bindings.push(entry(table.kind.binding(), format!("luthier_{}", table.kind.name()), "texture_2d<f32>"));
     }
     if is_sampled {

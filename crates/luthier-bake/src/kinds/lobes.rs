@@ -13,7 +13,7 @@ use luthier_optics::stack::Stack;
 use serde_json::{Value, json};
 
 use super::{Kind, Site};
-use crate::graph::{Inputs, Job, JobKind, Output, Results};
+use crate::graph::{Graph, Inputs, Job, JobKind, Output, Results};
 use crate::plan::color;
 use crate::settings::{Ask, Shape, axis};
 use crate::tile::{TileData, color_in_words, lone_tile};
@@ -22,17 +22,15 @@ use crate::{BakeError, json};
 /// Points of the error scan per texel interval.
 const PER_CELL: u32 = 8;
 
+/// Jobs that fit lobes.
+const FIT: JobKind = JobKind::part("fit");
+
 /// Lobes tables.
 pub(crate) struct Table;
 
 impl Kind for Table {
     fn fixed(&self, _: Ask<'_>) -> Result<Shape, BakeError> {
-        let (rows, parts) = (FitSettings::default().rows as u32, Row::parts(LOBES) as u32);
-        let axes = [
-            axis("cos_theta", "", [0.0, 1.0], rows, Mapping::Rational { bend: 1.0 }),
-            axis("part", "", [0.0, f64::from(parts - 1)], parts, Mapping::Linear),
-        ];
-        Ok(Shape::grid(axes, TexelFormat::Rgba16Float))
+        Ok(shape(LOBES))
     }
 
     /// A tile for the first layer: the others are in it.
@@ -44,15 +42,37 @@ impl Kind for Table {
     }
 }
 
+/// The shape of tiles for so many lobes.
+pub(crate) fn shape(lobes: usize) -> Shape {
+    let (rows, parts) = (FitSettings::default().rows as u32, Row::parts(lobes) as u32);
+    let axes = [
+        axis("cos_theta", "", [0.0, 1.0], rows, Mapping::Rational { bend: 1.0 }),
+        axis("part", "", [0.0, f64::from(parts - 1)], parts, Mapping::Apart),
+    ];
+    Shape::grid(axes, TexelFormat::Rgba16Float)
+}
+
+/// The graph of the fits alone, if there are any.
+pub(crate) fn fits(graph: &Graph) -> Option<Graph> {
+    graph.of::<FitJob>().next()?;
+    Some(graph.only(|job| job.kind() == FIT))
+}
+
+/// The most lobes that any fit of a graph has found.
+pub(crate) fn most_lobes(graph: &Graph, results: &Results) -> usize {
+    let lobes = |job: &FitJob| Some(results.get::<Lobes>(job.key())?.rows[0].lobes.len());
+    graph.of::<FitJob>().filter_map(lobes).max().unwrap_or(0)
+}
+
 /// The fit of a material.
 fn fit(material: &Material) -> Arc<FitJob> {
     Arc::new(FitJob { stack: shown(&material.stack), color: color(material) })
 }
 
-/// Numbers that stand in where nothing was fitted: outlines are for sizes and costs.
+/// Numbers that stand in where nothing was fitted.
 const UNFITTED: LobesRecord = LobesRecord { index: 1.5, falloff: [0.5, 0.1], integral: 0.95, critical_cot_sq: 0.0 };
 
-/// The numbers of a material's lobes that hold at all views; [`UNFITTED`] in an outline.
+/// The numbers of a material's lobes that hold at all views; [`UNFITTED`] in an outline without fits.
 pub(crate) fn record(material: &Material, results: &Results) -> LobesRecord {
     let Some(lobes) = results.get::<Lobes>(fit(material).key()) else { return UNFITTED };
     let (wide, critical_cot_sq) = (lobes.frame.wide, lobes.axis.critical_cot_sq());
@@ -69,7 +89,7 @@ struct FitJob {
 
 impl Job for FitJob {
     fn kind(&self) -> JobKind {
-        JobKind::part("fit")
+        FIT
     }
 
     fn inputs(&self) -> Value {
@@ -118,15 +138,18 @@ impl Job for LobesJob {
     fn run(&self, inputs: &Inputs<'_>) -> Output {
         let lobes: &Lobes = inputs.part(self.fit.as_ref());
         let [x, y] = &self.axes;
-        let mut truth = Image::zeros(x.size, y.size, 4);
-        for (i, row) in (0..x.size).zip(&lobes.rows) {
-            for (j, part) in (0..y.size).zip(row.clone().filled(LOBES).to_parts()) {
-                truth.texel_mut(i, j).copy_from_slice(&part.map(|value| value as f32));
+        let most = (y.size as usize - Row::parts(0)) / (Row::parts(1) - Row::parts(0));
+        // Parts are side by side; the first and the last node of each stand there twice.
+        let mut truth = Image::zeros((x.size + 2) * y.size, 1, 4);
+        for i in 0..x.size + 2 {
+            let row = &lobes.rows[(i.max(1) - 1).min(x.size - 1) as usize];
+            for (j, part) in (0..y.size).zip(row.clone().filled(most).to_parts()) {
+                truth.texel_mut(j * (x.size + 2) + i, 0).copy_from_slice(&part.map(|value| value as f32));
             }
         }
         let atlas = lone_tile(TableKind::Lobes, &[x, y], self.format, &truth);
         let read = |c: f64| {
-            let part = |j: u32| atlas.sample(0, [c, f64::from(j)], WeightBits::Exact);
+            let part = |j: u32| atlas.sample(0, [c, f64::from(j)], WeightBits::Fixed(8));
             Row::of_parts(&(0..y.size).map(part).collect::<Vec<_>>())
         };
         let scan = Scan::whole([x.intervals(), 0], [PER_CELL, 0]);
@@ -135,7 +158,7 @@ impl Job for LobesJob {
                 &scan,
                 |u| {
                     let c = x.decode(u[0]);
-                    let [expected, sampled] = [lobes.row_at(c).filled(LOBES), read(c)].map(|row| {
+                    let [expected, sampled] = [lobes.row_at(c).filled(most), read(c)].map(|row| {
                         let [r, g, b] = row.energies()[part];
                         [r, g, b, 0.0]
                     });
@@ -144,7 +167,7 @@ impl Job for LobesJob {
                 |u| vec![x.decode(u[0]), part as f64],
             )
         };
-        let error = (1..LOBES + 2).map(energies).fold(energies(0), ErrorStats::with_worst_of);
+        let error = (1..most + 2).map(energies).fold(energies(0), ErrorStats::with_worst_of);
         let over = if lobes.axis.critical_cot_sq() > 0.0 { ", over the cosine of the refracted view" } else { "" };
         let model = format!(
             "{} fitted to the simulated stack, in half vectors of a medium of index {:.3}{over}; {}; errors are those of energies \

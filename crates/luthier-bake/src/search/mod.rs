@@ -127,7 +127,7 @@ pub(crate) mod cost {
         let offset = if axis.min == 0.0 { 0.0 } else { 1.0 };
         offset
             + match axis.mapping {
-                Mapping::Linear | Mapping::Periodic => 2.0,
+                Mapping::Linear | Mapping::Periodic | Mapping::Apart => 2.0,
                 Mapping::Power { exponent: 2.0 } => 2.0 + QUARTER_RATE,
                 Mapping::Power { exponent: 4.0 } => 2.0 + 2.0 * QUARTER_RATE,
                 Mapping::Power { exponent: 8.0 } => 2.0 + 3.0 * QUARTER_RATE,

@@ -33,9 +33,9 @@ pub struct FitSettings {
 }
 
 impl Default for FitSettings {
-    /// 20 rows, 16,384 paths for each.
+    /// 19 rows, 16,384 paths for each.
     fn default() -> Self {
-        Self { rows: 20, paths: 16_384, seed: 0 }
+        Self { rows: 19, paths: 16_384, seed: 0 }
     }
 }
 

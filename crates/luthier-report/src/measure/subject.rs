@@ -59,17 +59,11 @@ impl Subject<'_> {
                 return refuse("an axis has no extent");
             }
         }
-        // In 64 bits: a manifest from elsewhere may hold numbers whose product does not fit 32.
-        let apron = 2 * u64::from(layout.apron);
-        let rows = u64::from(layout.tiles.div_ceil(layout.columns));
-        let header = u64::from(layout.base.header_texels());
-        let width = (u64::from(layout.x.size) + apron + header).checked_mul(u64::from(layout.columns));
-        let tile_height = layout.y.as_ref().map_or(1, |y| u64::from(y.size) + apron);
-        let (Some(width), Some(height)) = (width, tile_height.checked_mul(rows)) else {
+        let Some([width, height]) = layout.checked_size() else {
             return refuse("it is larger than any texture");
         };
         let values = u128::from(width) * u128::from(height) * u128::from(texels.channels);
-        let fits = (u64::from(texels.width), u64::from(texels.height)) == (width, height);
+        let fits = [texels.width, texels.height] == [width, height];
         if !fits || texels.channels == 0 || texels.channels > 4 || values != texels.data.len() as u128 {
             let (found_width, found_height) = (texels.width, texels.height);
             return Err(ReportError::TextureSize { kind, width, height, found_width, found_height });

@@ -27,9 +27,9 @@ pub enum Weights {
 }
 
 impl Weights {
-    fn bits(self, kind: TableKind, format: TexelFormat) -> WeightBits {
+    fn bits(self, format: TexelFormat) -> WeightBits {
         match self {
-            Self::EightBit if kind.is_filtered(format) => WeightBits::Fixed(8),
+            Self::EightBit if format.is_filterable() => WeightBits::Fixed(8),
             Self::EightBit | Self::Exact => WeightBits::Exact,
         }
     }
@@ -39,7 +39,7 @@ impl Table<'_> {
     /// A sampled read of a tile.
     pub(crate) fn read(&self, tile: u32, values: [f64; 2], weights: Weights) -> [f64; 4] {
         let entry = self.entry;
-        read(entry.kind, &entry.layout, entry.format, self.texels, tile, values, weights.bits(entry.kind, entry.format))
+        read(entry.kind, &entry.layout, entry.format, self.texels, tile, values, weights.bits(entry.format))
     }
 
     /// A sampled row of lobes.

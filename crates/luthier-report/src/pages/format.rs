@@ -85,6 +85,7 @@ pub(crate) fn axis(axis: &Axis) -> String {
         Mapping::Rational { bend } => format!("bent by {}", number(bend)),
         Mapping::Logarithmic => "logarithmic".to_owned(),
         Mapping::Periodic => "periodic".to_owned(),
+        Mapping::Apart => "apart".to_owned(),
     };
     let unit = if axis.unit.is_empty() { String::new() } else { format!(" {}", axis.unit) };
     let (min, max) = (number(axis.min), number(axis.max));

@@ -170,7 +170,7 @@ pub const EXPLANATIONS: &[Explanation] = &[
         cases: &["index-2.5e-1", "index-5e-1", "index-6.67e-1", "furnace-2", "frosted-0.3-0.01"],
         faults: &[Fault::Gains, Fault::Wrong],
         limit: 0.05,
-        reason: "Energies are right at 20 directions of the eye, and the light that lobes send between these is interpolated. It is up to 0.006 too bright for coats \
+        reason: "Energies are right at 19 directions of the eye, and the light that lobes send between these is interpolated. It is up to 0.006 too bright for coats \
                  over mirrors. Under a rough interface into a thinner medium the energy from below ends within a few degrees of the critical angle, and the rows on both \
                  sides are up to 7 degrees away.",
     },

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use luthier_lut::{TableKind, Values};
+use luthier_lut::TableKind;
 use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry, ShadingModel};
 
 use crate::{Form, MaterialSet};
@@ -14,7 +14,7 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is but the names of tables, for the check that modules name no other.
     #[cfg(test)]
-    const ALL: &str = "absorption along anisotropic bare beckmann below bilinear chain chain_diffuse clamped closed conductor diffuse \
+    const ALL: &str = "absorption anisotropic bare beckmann below bilinear chain chain_diffuse clamped closed coat conductor diffuse \
     film film_table flakes full ggx glitter granier granier_bare granier_base \
     granier_film granier_transparent interface lobes_diffuse microfacet_diffuse mixed one_lobe oren_nayar patina phong place \
     schlick_base smith split_root statistics statistics_base theta_axis total_reflection two_lobes";
@@ -53,14 +53,13 @@ impl Features {
                         .map(|(_, name)| *name),
                 );
             }
-            if table.kind.facts().values == Values::Apart {
-                names.insert("along");
-            } else if !table.format.is_filterable() {
+            if !table.format.is_filterable() {
                 names.insert("bilinear");
             }
         }
         // Without a table, D is computed; so it is for layers without a tile.
-        let has_facets = names.contains("smith") || names.contains("chain") && names.contains("interface");
+        let has_facets =
+            names.contains("smith") || names.contains("coat") || names.contains("chain") && names.contains("interface");
         if form == Form::Full || has_facets && !names.contains("distribution") {
             names.insert("closed");
         }
@@ -147,7 +146,8 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
     }
     let (has_interface, has_diffuse) = (names.contains("interface"), names.contains("diffuse"));
     match material.model {
-        ShadingModel::Microfacet | ShadingModel::Lobes if has_interface => names.insert("smith"),
+        ShadingModel::Microfacet if has_interface => names.insert("smith"),
+        ShadingModel::Lobes if has_interface => names.insert("coat"),
         ShadingModel::Lobes => names.insert("lobes_diffuse"),
         ShadingModel::Microfacet => names.insert("microfacet_diffuse"),
         // Beside a coat it is a step of the chain; alone in its set it needs none.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use luthier_lut::{Axis, Encoding, Mapping, RowBase, SchlickBase, TableKind, Values};
+use luthier_lut::{Axis, Encoding, Mapping, RowBase, SchlickBase, TableKind};
 
 use crate::compose::blocks::prune;
 use crate::compose::features::Features;
@@ -96,7 +96,7 @@ fn check_axis(axis: &Axis, names: &[&str], table: TableKind) -> Result<(), Shade
     }
     let is_range = axis.min.is_finite() && axis.max.is_finite() && axis.min < axis.max;
     let is_mapped = match axis.mapping {
-        Mapping::Linear | Mapping::Periodic => true,
+        Mapping::Linear | Mapping::Periodic | Mapping::Apart => true,
         Mapping::Power { exponent } => exponent.is_finite() && exponent > 0.0,
         Mapping::Rational { bend } => bend.is_finite() && bend > 0.0,
         Mapping::Logarithmic => axis.min > 0.0,
@@ -112,7 +112,7 @@ fn check_axis(axis: &Axis, names: &[&str], table: TableKind) -> Result<(), Shade
 /// tiles of unlike content do not bleed into each other by a rounding error. Other positions are texels: nodes are also read one
 /// by one.
 fn is_whole(table: &TableFace) -> bool {
-    table.kind.is_filtered(table.format) && table.layout.base == RowBase::Zero && table.layout.columns == 1
+    table.format.is_filterable() && table.layout.base == RowBase::Zero && table.layout.columns == 1
 }
 
 /// `let position = ...;`: where node (x, y) of a tile is in the atlas; x counts as [`is_whole`] says.
@@ -120,24 +120,30 @@ fn position(out: &mut String, table: &TableFace) {
     let layout = &table.layout;
     let half = f64::from(layout.apron) + 0.5;
     let [[width, height], [tile_width, tile_height]] = [layout.size(), layout.tile_size()];
-    let y = if layout.y.is_some() { format!("y + {}", float(half)) } else { "0.5".to_owned() };
-    let down = match (layout.tiles, &layout.y) {
+    let unit = if is_whole(table) { 1.0 / f64::from(width) } else { 1.0 };
+    // Rows side by side, or one below the other.
+    let (row, y) = match (layout.abreast(), &layout.y) {
+        (Some(_), _) => (format!("y * {} + ", float(f64::from(layout.row_size()) * unit)), "0.5".to_owned()),
+        (None, Some(_)) => (String::new(), format!("y + {}", float(half))),
+        (None, None) => (String::new(), "0.5".to_owned()),
+    };
+    let across = format!("{row}x + {}", float(half * unit));
+    let down = match (layout.tiles, tile_height) {
         (1, _) => y.clone(),
-        (_, None) => "tile + 0.5".to_owned(),
+        (_, 1) => "tile + 0.5".to_owned(),
         _ => format!("tile * {tile_height}.0 + {y}"),
     };
     let _ = match (is_whole(table), layout.columns) {
         (true, _) => {
             let down = if height == 1 { down } else { format!("({down}) / {height}.0") };
-            writeln!(out, "    let position = vec2<f32>(x + {}, {down});", float(half / f64::from(width)))
+            writeln!(out, "    let position = vec2<f32>({across}, {down});")
         }
-        (false, 1) => writeln!(out, "    let position = vec2<f32>(x + {}, {down});", float(half)),
+        (false, 1) => writeln!(out, "    let position = vec2<f32>({across}, {down});"),
         (false, columns) => writeln!(
             out,
             "    let row = floor((tile + 0.5) / {columns}.0);\n    \
              let column = tile - row * {columns}.0;\n    \
-             let position = vec2<f32>(column * {tile_width}.0 + x + {}, row * {tile_height}.0 + {y});",
-            float(half)
+             let position = vec2<f32>(column * {tile_width}.0 + {across}, row * {tile_height}.0 + {y});"
         ),
     };
 }
@@ -145,9 +151,6 @@ fn position(out: &mut String, table: &TableFace) {
 fn read(table: &TableFace) -> String {
     let name = table.kind.name();
     let [width, height] = table.layout.size();
-    if table.kind.facts().values == Values::Apart {
-        return format!("luthier_along(luthier_{name}, position)");
-    }
     match (table.format.is_filterable(), is_whole(table)) {
         (true, true) => format!("textureSampleLevel(luthier_{name}, luthier_sampler, position, 0.0)"),
         (true, false) => format!(
@@ -165,7 +168,7 @@ fn node_index(out: &mut String, name: &str, axis: &Axis, value: &str, unit: f64)
     let t = if range == 1.0 { shifted } else { format!("{shifted} / {}", float(range)) };
     let t = t.strip_prefix('(').and_then(|t| t.strip_suffix(')')).map_or(t.clone(), str::to_owned);
     let index = match axis.mapping {
-        Mapping::Linear => format!("saturate({t})"),
+        Mapping::Linear | Mapping::Apart => format!("saturate({t})"),
         Mapping::Periodic => format!("fract({t})"),
         Mapping::Logarithmic => {
             let scale = libm::log2(axis.max / axis.min);

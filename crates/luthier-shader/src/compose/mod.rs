@@ -44,10 +44,9 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         parts.push(lookup(table, &features)?);
     }
     // D is a function of the layers' own slope parameters; the statistics have lobes of others.
-    let facets = has("chain") || has("smith");
+    let facets = has("chain") || has("smith") || has("coat");
     let modules = [
         (has("bilinear"), include_str!("../wgsl/tables/bilinear.wgsl")),
-        (has("along"), include_str!("../wgsl/tables/along.wgsl")),
         (true, include_str!("../wgsl/layer.wgsl")),
         (has("place"), include_str!("../wgsl/surface/place.wgsl")),
         (has("flakes") || has("glitter"), include_str!("../wgsl/surface/hash.wgsl")),
@@ -65,7 +64,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         (has("full") && has("interface"), include_str!("../wgsl/interface/full_terms.wgsl")),
         (has("closed") && facets, include_str!("../wgsl/interface/closed_terms.wgsl")),
         (!has("full") && (facets || has("granier_bare")), include_str!("../wgsl/interface/baked_terms.wgsl")),
-        (has("smith") || has("chain"), include_str!("../wgsl/interface/slopes.wgsl")),
+        (facets, include_str!("../wgsl/interface/slopes.wgsl")),
         (has("smith"), include_str!("../wgsl/interface/smith.wgsl")),
         (has("chain"), include_str!("../wgsl/models/path.wgsl")),
         (has("statistics"), include_str!("../wgsl/models/statistics.wgsl")),

@@ -220,7 +220,7 @@ fn resource(set: &MaterialSet<'_>, form: Form, target: Target, entry: &BindingEn
     let mut text = format!("{place}{name}: {kind}");
     for table in set.tables_read(form).filter(|table| table.kind.binding() == *binding) {
         let ([width, height], [across, down]) = (table.layout.size(), table.layout.tile_size());
-        let filter = if table.kind.is_filtered(table.format) { "filtered" } else { "not filtered" };
+        let filter = if table.format.is_filterable() { "filtered" } else { "not filtered" };
         let axes: Vec<String> = std::iter::once(&table.layout.x).chain(&table.layout.y).map(axis).collect();
         let (format, tiles, axes) = (table.format, counted(table.layout.tiles, "tile"), axes.join(", "));
         let _ = write!(text, ", {format}, {width} x {height}, {filter}; {tiles} of {across} x {down}: {axes}");
@@ -254,6 +254,7 @@ fn axis(axis: &Axis) -> String {
         Mapping::Rational { bend } => format!(" bent by {bend}"),
         Mapping::Logarithmic => " logarithmic".to_owned(),
         Mapping::Periodic => " repeating".to_owned(),
+        Mapping::Apart => " side by side".to_owned(),
     };
     format!("{} {}..{}{mapping}", axis.quantity, axis.min as f32, axis.max as f32)
 }

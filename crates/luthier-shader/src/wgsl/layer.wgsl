@@ -17,13 +17,13 @@ struct LuthierLayer {
     //? interface
     /// Slope parameter of the micro-surface.
     alpha: f32,
-    //? chain|smith
+    //? chain|smith|coat
     /// How fast D falls with the squared slope: 1 / alpha^2, over ln 2 for Beckmann.
     falloff: f32,
     /// A quarter of the greatest D, 1 / (4 pi alpha^2).
     peak: f32,
     //? end
-    //? closed|smith, beckmann, ggx
+    //? closed|smith|coat, beckmann, ggx
     /// Slope distribution: 0 Beckmann, 1 GGX.
     distribution: f32,
     //? end

@@ -319,8 +319,8 @@ pub(crate) fn tables() -> Vec<TableFace> {
         face(
             TableKind::Lobes,
             axis("cos_theta", 0.0, 1.0, 20, Mapping::Rational { bend: 1.0 }),
-            Some(axis("part", 0.0, 5.0, 6, Mapping::Linear)),
-            0,
+            Some(axis("part", 0.0, 5.0, 6, Mapping::Apart)),
+            1,
             1,
             1,
             TexelFormat::Rgba16Float,

@@ -79,7 +79,7 @@ pub(super) fn add(
     if !manifest.searches.is_empty() && manifest.generator == GENERATOR {
         let alone: Vec<_> = materials
             .par_iter()
-            .map(|material| outline(std::slice::from_ref(material), &Options::default()))
+            .map(|material| outline(std::slice::from_ref(material), &Options { fits: false, ..Options::default() }))
             .collect::<Result<_, _>>()?;
         for (material, outline) in report.materials.iter_mut().zip(alone) {
             material.alone = outline.searches;

@@ -15,6 +15,11 @@ fn lobes_have_a_tile_a_record_and_one_form() {
     assert!(material["constants"]["lobes"]["index"].as_f64().unwrap() >= 1.0, "{material}");
     let forms: Vec<&str> = manifest["shaders"].as_array().unwrap().iter().filter_map(|s| s["form"].as_str()).collect();
     assert_eq!(forms, ["baked"]);
+    let constant = workshop.run(&["shader", "a.toml", "--model", "lobes", "--constant"]).exits(0).stdout;
+    for number in material["constants"]["lobes"]["falloff"].as_array().unwrap() {
+        let number = format!("{:?}", number.as_f64().unwrap() as f32);
+        assert!(constant.contains(&number), "the shader has the numbers of the fit: {number} {constant}");
+    }
     let before = workshop.text("out/manifest.json");
     let refused = ["bake", "a.toml", "--model", "lobes", "--form", "full"];
     workshop.run(&refused).fails(1, &["`a` has no `full` shader", "ask for the `baked` form"]);

@@ -20,7 +20,7 @@ pub(super) fn scan(table: &Table<'_>, tile: u32, users: &[User], exact: &[Exact]
     let lobes = exact.get(material)?.lobes();
     for u in coordinates(x, POINTS_PER_CELL) {
         let c = x.decode(u);
-        let (expected, sampled) = (lobes.row_at(c).energies(), table.row(tile, c, Weights::Exact).energies());
+        let (expected, sampled) = (lobes.row_at(c).energies(), table.row(tile, c, Weights::EightBit).energies());
         for (part, (expected, sampled)) in expected.iter().zip(&sampled).enumerate() {
             for channel in 0..3 {
                 scan.add(&[c, part as f64], channel, expected[channel], sampled[channel]);

@@ -21,7 +21,7 @@ fn luthier_fresnel_term(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
     //? end
 }
 
-//? distribution, chain|smith
+//? distribution, chain|smith|coat
 //? anisotropic
 /// pi alpha^2 D of a layer whose falloff is `sharper` times its own, from the table and squares of the half vector.
 fn $distribution_read(layer: LuthierLayer, sharper: f32, z_sq: f32, across_sq: f32) -> f32 {

@@ -1,11 +1,17 @@
 //? lobes
-/// Light from below the first interface as seen from a direction: lobes of slopes between refracted directions, and a wide remainder.
-struct LuthierBelow {
+/// A material of the model as seen from a direction: what can be kept for all lights.
+struct LuthierPreparedLobes {
+    /// The first interface.
+    coat: LuthierLayer,
+    /// The eye.
+    wo: vec3<f32>,
+    /// 1 + Lambda of the eye.
+    masking: f32,
     /// Cosine and sine of the azimuth of the eye.
     azimuth: vec2<f32>,
-    /// The eye, its cosine that of the refracted direction.
-    eye: vec3<f32>,
-    /// 1 over the index that refracts, the coefficients of the remainder's shape, and 1 over its integral.
+    /// Cosine of the refracted eye times the index.
+    inside_cos: f32,
+    /// The index squared less 1, the coefficients of the remainder's shape, and 1 over its integral.
     medium: vec4<f32>,
     //? total_reflection
     /// Squared cotangent of the critical angle; 0 where nothing has a kink there.
@@ -27,6 +33,23 @@ struct LuthierBelow {
     //? end
 }
 
+/// Smith's Lambda of a slope: that of the direction times the slope parameter (Walter et al. 2007, eq. 34 for GGX). That of Beckmann is a rational
+/// function; 1 / (1 + Lambda) is within 5e-5.
+fn luthier_slope_lambda(coat: LuthierLayer, slope: f32) -> f32 {
+    //? beckmann
+    //? ggx
+    if coat.distribution > 0.5 {
+        return 0.5 * (sqrt(1.0 + slope * slope) - 1.0);
+    }
+    //? end
+    let beyond = clamp(slope - 0.354768, 0.0, 1e9);
+    let squared = beyond * beyond;
+    return squared * squared / (1.6329 + beyond * (3.41329 + beyond * (5.04868 + beyond * 3.5449077)));
+    //? else
+    return 0.5 * (sqrt(1.0 + slope * slope) - 1.0);
+    //? end
+}
+
 //? total_reflection
 /// Cosine of a refracted direction; 0 where it would be totally reflected.
 fn luthier_critical_cosine(critical_cot_sq: f32, cos_theta: f32) -> f32 {
@@ -35,84 +58,94 @@ fn luthier_critical_cosine(critical_cot_sq: f32, cos_theta: f32) -> f32 {
 }
 //? end
 
-/// Squared cosine of the direction refracted into a medium, from 1 over its index: without cancellation for an index of 1, and not 0.
-fn luthier_inside_cos_sq(inverse: f32, cos_theta: f32) -> f32 {
-    let inverse_sq = inverse * inverse;
-    return max(inverse_sq * (cos_theta * cos_theta) + (1.0 - inverse_sq), 1e-12);
+/// Squared cosine of a refracted direction times the squared index; not 0.
+fn luthier_inside_cos_sq(medium: vec4<f32>, cos_theta: f32) -> f32 {
+    return max(cos_theta * cos_theta + medium.x, 1e-12);
 }
 
-/// The light from below the first interface of a material as seen from wo: what can be kept for all lights.
-fn luthier_see_below(material: u32, wo: vec3<f32>) -> LuthierBelow {
+/// A material as seen from wo, above the horizon.
+fn luthier_prepare_lobes(material: u32, wo: vec3<f32>) -> LuthierPreparedLobes {
     let header = luthier_header(material);
     let tile = luthier_materials[header].w;
-    let sin_theta_sq = dot(wo.xy, wo.xy);
-    let inverse_sin = inverseSqrt(max(sin_theta_sq, 1e-30));
+    // Along the normal the azimuth is 0.
+    let across = vec2<f32>(wo.x + 1e-15, wo.y);
+    let sin_theta_sq = dot(across, across);
+    let inverse_sin = inverseSqrt(sin_theta_sq);
     let sin_theta = sin_theta_sq * inverse_sin;
-    var below: LuthierBelow;
-    below.medium = luthier_materials[header + $word_veil];
-    below.azimuth = select(vec2<f32>(1.0, 0.0), wo.xy * inverse_sin, sin_theta_sq > 1e-30);
-    let inverse = below.medium.x;
-    below.eye = vec3<f32>(wo.xy, sqrt(luthier_inside_cos_sq(inverse, wo.z)));
+    var prepared: LuthierPreparedLobes;
+    prepared.coat = luthier_layer(material, 0u);
+    //? anisotropic
+    prepared.coat.alpha_xy = vec2<f32>(prepared.coat.alpha);
+    //? end
+    prepared.wo = wo;
+    prepared.masking = 1.0 + luthier_slope_lambda(prepared.coat, prepared.coat.alpha * sin_theta / wo.z);
+    prepared.azimuth = across * inverse_sin;
+    prepared.medium = luthier_materials[header + $word_veil];
+    prepared.inside_cos = sqrt(luthier_inside_cos_sq(prepared.medium, wo.z));
     //? total_reflection
-    below.critical_cot_sq = luthier_materials[header + $word_phong_specular].w;
-    let cos_theta = luthier_critical_cosine(below.critical_cot_sq, wo.z);
+    prepared.critical_cot_sq = luthier_materials[header + $word_phong_specular].w;
+    let cos_theta = luthier_critical_cosine(prepared.critical_cot_sq, wo.z);
     //? else
     let cos_theta = wo.z;
     //? end
-    below.wide = luthier_lookup_lobes(tile, cos_theta, 0.0).rgb;
+    prepared.wide = luthier_lookup_lobes(tile, cos_theta, 0.0).rgb;
     //? one_lobe|two_lobes
     let first = luthier_lookup_lobes(tile, cos_theta, 1.0);
-    below.first_strength = first.rgb;
-    below.first_shape = vec4<f32>(first.a * sin_theta, luthier_lookup_lobes(tile, cos_theta, 2.0).rgb);
+    prepared.first_strength = first.rgb;
+    prepared.first_shape = vec4<f32>(first.a * sin_theta, luthier_lookup_lobes(tile, cos_theta, 2.0).rgb);
     //? end
     //? two_lobes
     let second = luthier_lookup_lobes(tile, cos_theta, 3.0);
-    below.second_strength = second.rgb;
-    below.second_shape = vec4<f32>(second.a * sin_theta, luthier_lookup_lobes(tile, cos_theta, 4.0).rgb);
+    prepared.second_strength = second.rgb;
+    prepared.second_shape = vec4<f32>(second.a * sin_theta, luthier_lookup_lobes(tile, cos_theta, 4.0).rgb);
     //? end
-    return below;
+    return prepared;
 }
 
 //? one_lobe|two_lobes
-/// Density of slopes of a lobe: z / pi (1 + q)^-(1 + z) with its decay z, q being the squared distance from the middle times the sharpness;
-/// Student's, from GGX at 1 to Gaussians.
-fn luthier_slope_density(shape: vec4<f32>, slope: vec2<f32>) -> f32 {
+/// Half the density of slopes of a lobe: z / (2 pi) (1 + q)^-(1 + z) with its decay z, q being the squared distance from the middle times the
+/// sharpness; Student's, from GGX at 1 to Gaussians.
+fn luthier_half_slope_density(shape: vec4<f32>, slope: vec2<f32>) -> f32 {
     let apart = vec2<f32>(slope.x - shape.x, slope.y) * shape.yz;
     let falloff = (1.0 + shape.w) * log2(1.0 + dot(apart, apart));
-    return exp2(-falloff) * (shape.y * shape.z * shape.w / LUTHIER_PI);
+    return exp2(-falloff) * (shape.y * shape.z * shape.w * (0.5 / LUTHIER_PI));
 }
 //? end
 
-/// f cos_theta_i of the light from below for light from wi, above the horizon.
-fn luthier_below(below: LuthierBelow, wi: vec3<f32>) -> vec3<f32> {
-    //? one_lobe|two_lobes
-    // The half vector between refracted directions, in the plane of the eye.
-    let inverse = below.medium.x;
-    let sum = inverse * (wi.xy + below.eye.xy);
-    let across = vec2<f32>(dot(below.azimuth, sum), below.azimuth.x * sum.y - below.azimuth.y * sum.x);
-    let cos_theta_t_sq = luthier_inside_cos_sq(inverse, wi.z);
-    let inverse_cos = inverseSqrt(cos_theta_t_sq);
-    let z = cos_theta_t_sq * inverse_cos + below.eye.z;
-    let inverse_z = 1.0 / z;
-    let slope = across * inverse_z;
-    // From densities of slopes to densities of solid angle outside.
-    let solid = inverse_cos * wi.z * (0.5 * inverse * inverse);
-    let factor = (dot(across, across) + z * z) * (inverse_z * inverse_z * inverse_z) * solid;
-    //? end
+/// f cos_theta_i of a prepared material for light from wi, above the horizon.
+fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f32> {
+    let wo = prepared.wo;
+    let sum = vec3<f32>(wi.xy + wo.xy, max(wi.z + wo.z, 1e-16));
+    // One facet of the first interface. For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
+    let slope_i = prepared.coat.alpha * sqrt(dot(wi.xy, wi.xy)) / wi.z;
+    let masking = prepared.masking + luthier_slope_lambda(prepared.coat, slope_i);
+    let facets = luthier_quarter_density(prepared.coat, sum) / (masking * wo.z);
+    let cos_theta_d = min(0.5 * length(sum), 1.0);
+    var value = luthier_fresnel_term(prepared.coat, cos_theta_d) * facets;
+    let medium = prepared.medium;
+    // The wide remainder.
     //? total_reflection
-    let away = 1.0 - luthier_critical_cosine(below.critical_cot_sq, wi.z);
+    let away = 1.0 - luthier_critical_cosine(prepared.critical_cot_sq, wi.z);
     //? else
     let away = 1.0 - wi.z;
     //? end
     let away_sq = away * away;
-    let medium = below.medium;
     let wide = max(1.0 - medium.y * (away_sq * away_sq * away) - medium.z * away_sq, 0.0);
-    var value = below.wide * (wide * wi.z * medium.w);
+    value += prepared.wide * (wide * wi.z * medium.w);
     //? one_lobe|two_lobes
-    value += below.first_strength * (luthier_slope_density(below.first_shape, slope) * factor);
+    // The half vector between refracted directions times the index, in the plane of the eye.
+    let across = vec2<f32>(dot(prepared.azimuth, sum.xy), prepared.azimuth.x * sum.y - prepared.azimuth.y * sum.x);
+    let inside_cos_sq = luthier_inside_cos_sq(medium, wi.z);
+    let inverse_cos = inverseSqrt(inside_cos_sq);
+    let z = inside_cos_sq * inverse_cos + prepared.inside_cos;
+    let inverse_z = 1.0 / z;
+    let slope = across * inverse_z;
+    // From half densities of slopes to densities of solid angle outside.
+    let factor = (dot(sum.xy, sum.xy) + z * z) * (inverse_z * inverse_z * inverse_z) * (inverse_cos * wi.z);
+    value += prepared.first_strength * (luthier_half_slope_density(prepared.first_shape, slope) * factor);
     //? end
     //? two_lobes
-    value += below.second_strength * (luthier_slope_density(below.second_shape, slope) * factor);
+    value += prepared.second_strength * (luthier_half_slope_density(prepared.second_shape, slope) * factor);
     //? end
     return value;
 }
@@ -120,22 +153,16 @@ fn luthier_below(below: LuthierBelow, wi: vec3<f32>) -> vec3<f32> {
 //? end
 /// f cos_theta_i of the first interface, one bounce, and of the simulated light from below it.
 fn luthier_eval_lobes($place_parameter material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
-    //? anisotropic
-    var layer = luthier_layer(material, 0u);
-    layer.alpha_xy = vec2<f32>(layer.alpha);
-    //? else
-    let layer = luthier_layer(material, 0u);
-    //? end
     //? lobes
     //? lobes_diffuse
+    let layer = luthier_layer(material, 0u);
     if layer.kind == LUTHIER_DIFFUSE {
         return wi.z * $diffuse(layer, wi, wo);
     }
     //? end
-    let lobe = luthier_smith_lobe(layer, wi, wo);
-    let first = luthier_fresnel_term(layer, lobe.cos_theta_d) * lobe.value;
-    return first + luthier_below(luthier_see_below(material, wo), wi);
+    return luthier_light_lobes(luthier_prepare_lobes(material, wo), wi);
     //? else
+    let layer = luthier_layer(material, 0u);
     return wi.z * $diffuse(layer, wi, wo);
     //? end
 }
