@@ -2,6 +2,7 @@
 
 use luthier_bake::MemoryStore;
 use luthier_lut::TableKind;
+use luthier_manifest::ShadingModel;
 use luthier_material::Material;
 
 use crate::{Bake, ExportError, Package};
@@ -22,6 +23,8 @@ impl Package {
 /// The materials, each asking for the tables that blurred environments read, too.
 pub fn lit(materials: &[Material]) -> Vec<Material> {
     let mut lit = materials.to_vec();
-    lit.iter_mut().for_each(|material| material.bake.tables.extend(ENVIRONMENT_TABLES));
+    // Lobes have their own energies.
+    let of_layers = |material: &&mut Material| material.bake.model != Some(ShadingModel::Lobes);
+    lit.iter_mut().filter(of_layers).for_each(|material| material.bake.tables.extend(ENVIRONMENT_TABLES));
     lit
 }

@@ -9,6 +9,7 @@ mod effects;
 mod environment;
 mod evaluate;
 mod loading;
+mod lobes;
 mod lookup;
 mod many;
 mod record_terms;

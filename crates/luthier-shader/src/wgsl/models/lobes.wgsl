@@ -1,10 +1,25 @@
 //? lobes
+/// Lobes from below that rows have.
+//? two_lobes
+const LUTHIER_LOBES: u32 = 2u;
+//? else
+//? one_lobe
+const LUTHIER_LOBES: u32 = 1u;
+//? else
+const LUTHIER_LOBES: u32 = 0u;
+//? end
+//? end
+/// The part of rows that is the albedo.
+const LUTHIER_LOBES_ALBEDO: f32 = f32(1u + 2u * LUTHIER_LOBES);
+
 /// A material of the model as seen from a direction: what can be kept for all lights.
 struct LuthierPreparedLobes {
     /// The first interface.
     coat: LuthierLayer,
     /// The eye.
     wo: vec3<f32>,
+    /// Tile of its rows, and the cosine at which they are read.
+    row: vec2<f32>,
     /// 1 + Lambda of the eye.
     masking: f32,
     /// Cosine and sine of the azimuth of the eye.
@@ -88,6 +103,7 @@ fn luthier_prepare_lobes(material: u32, wo: vec3<f32>) -> LuthierPreparedLobes {
     //? else
     let cos_theta = wo.z;
     //? end
+    prepared.row = vec2<f32>(tile, cos_theta);
     prepared.wide = luthier_lookup_lobes(tile, cos_theta, 0.0).rgb;
     //? one_lobe|two_lobes
     let first = luthier_lookup_lobes(tile, cos_theta, 1.0);
@@ -148,6 +164,34 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     value += prepared.second_strength * (luthier_half_slope_density(prepared.second_shape, slope) * factor);
     //? end
     return value;
+}
+
+/// Directional albedo of a prepared material, RGB.
+fn luthier_albedo_lobes(prepared: LuthierPreparedLobes) -> vec3<f32> {
+    return luthier_lookup_lobes(prepared.row.x, prepared.row.y, LUTHIER_LOBES_ALBEDO).rgb;
+}
+
+/// A lobe of a prepared material by number, below `LUTHIER_LOBES`.
+struct LuthierBelow {
+    /// Energy, RGB.
+    energy: vec3<f32>,
+    /// Its middle, its sharpness along the plane of the eye and across it, and its decay.
+    shape: vec4<f32>,
+}
+
+fn luthier_lobe_below(prepared: LuthierPreparedLobes, lobe: u32) -> LuthierBelow {
+    //? two_lobes
+    if lobe == 1u {
+        let share = luthier_lookup_lobes(prepared.row.x, prepared.row.y, 4.0).a;
+        return LuthierBelow(prepared.second_strength * share, prepared.second_shape);
+    }
+    //? end
+    //? one_lobe|two_lobes
+    let share = luthier_lookup_lobes(prepared.row.x, prepared.row.y, 2.0).a;
+    return LuthierBelow(prepared.first_strength * share, prepared.first_shape);
+    //? else
+    return LuthierBelow(vec3<f32>(0.0), vec4<f32>(0.0, 1.0, 1.0, 1.0));
+    //? end
 }
 
 //? end
