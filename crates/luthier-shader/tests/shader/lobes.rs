@@ -146,3 +146,78 @@ fn sets_pay_for_the_lobes_that_rows_have() {
         assert!(text.contains(present) && !text.contains(absent), "{parts}: {text}");
     }
 }
+
+/// Directions that were drawn fall into each bin of the hemisphere as often as the density says, and mean weights are the energy of what the
+/// material reflects. Oracle: quadrature over the bins, by the midpoint rule.
+#[test]
+fn directions_are_drawn_as_their_density_says() {
+    const DRAWN: u32 = 4096;
+    const RINGS: usize = 6;
+    const SECTORS: usize = 6;
+    let (_, image) = rows();
+    for (name, coat) in [("lobes", 0.3), ("lobes-inward", 0.2)] {
+        let mut materials = set(name);
+        let lobes = LobesRecord { index: 1.4, falloff: [0.6, 0.3], integral: 0.8, critical_cot_sq: 0.0 };
+        materials[0].constants.lobes = Some(lobes);
+        let first = &mut materials[0].layers[0];
+        (first.alpha, first.alpha_xy) = (coat, [coat; 2]);
+        first.tiles[TableKind::Distribution] = None;
+        let set = MaterialSet { materials: &materials, tables: tables() };
+        let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
+        let gray = Image { data: vec![0.1; 36], ..Image::zeros(3, 3, 4) };
+        let textures = [("luthier_fresnel", gray), ("luthier_lobes", image.clone())];
+        let machine =
+            Machine::new(&text, &material_buffer(&materials), BTreeMap::from(textures.map(|(n, i)| (n.to_owned(), i))));
+        for theta in [0.0, 0.7, 1.3_f64] {
+            let wo = [theta.sin() * 0.8, theta.sin() * 0.6, theta.cos()].map(|w| w as f32);
+            let prepared = machine.call("luthier_prepare_lobes", vec![Value::U(0), vector(&wo)]);
+            let call =
+                |function: &str, arguments: &[f32]| machine.call(function, vec![prepared.clone(), vector(arguments)]);
+            let mut counts = [0.0; RINGS * SECTORS];
+            let bin = |x: f64, y: f64, z: f64| {
+                let ring = ((1.0 - z) * RINGS as f64) as usize;
+                let turn = libm::atan2(y, x) / std::f64::consts::TAU;
+                ring.min(RINGS - 1) * SECTORS + (((turn + 1.0) % 1.0) * SECTORS as f64) as usize % SECTORS
+            };
+            let (mut lost, mut weights, mut greatest) = (0.0, 0.0, 0.0_f64);
+            for i in 0..DRAWN {
+                // Roberts 2018: multiples of the powers of the root of x^4 = x + 1.
+                let u = [0.819_172_5, 0.671_043_6, 0.549_700_5]
+                    .map(|step: f64| ((f64::from(i) + 0.5) * step).fract() as f32);
+                let Value::Many(members) = call("luthier_sample_lobes", &u) else { panic!("a sample is a structure") };
+                let (wi, pdf) = (members[0].floats(), members[1].floats()[0]);
+                let weight = members[2].floats();
+                if pdf == 0.0 {
+                    lost += 1.0 / f64::from(DRAWN);
+                    continue;
+                }
+                counts[bin(wi[0].into(), wi[1].into(), wi[2].into())] += 1.0 / f64::from(DRAWN);
+                weights += f64::from(weight[1]) / f64::from(DRAWN);
+                greatest = greatest.max(weight.iter().map(|&w| f64::from(w)).sum::<f64>() / 3.0);
+            }
+            let mut expected = [0.0; RINGS * SECTORS];
+            let mut energy = 0.0;
+            let side = [96, 96];
+            for (i, j) in (0..side[0]).flat_map(|i| (0..side[1]).map(move |j| (i, j))) {
+                let z = (f64::from(i) + 0.5) / f64::from(side[0]);
+                let (sin, cos) = libm::sincos(std::f64::consts::TAU * (f64::from(j) + 0.5) / f64::from(side[1]));
+                let across = (1.0 - z * z).sqrt();
+                let wi = [across * cos, across * sin, z];
+                let area = std::f64::consts::TAU / f64::from(side[0] * side[1]);
+                let at = wi.map(|w| w as f32);
+                expected[bin(wi[0], wi[1], wi[2])] += area * f64::from(call("luthier_pdf_lobes", &at).floats()[0]);
+                energy += area * f64::from(call("luthier_light_lobes", &at).floats()[1]);
+            }
+            for (i, (found, expected)) in counts.iter().zip(expected).enumerate() {
+                assert!((found - expected).abs() < 0.006, "{name} {coat} {theta} bin {i}: {found} {expected}");
+            }
+            let above: f64 = expected.iter().sum();
+            assert!((above + lost - 1.0).abs() < 0.01, "{name} {coat} {theta}: {above} {lost}");
+            assert!((weights / energy - 1.0).abs() < 0.02, "{name} {coat} {theta}: {weights} {energy}");
+            eprintln!(
+                "{name} {coat} {theta}: lost {lost:.3}, greatest weight {:.2} of energy and share",
+                greatest * above / energy
+            );
+        }
+    }
+}

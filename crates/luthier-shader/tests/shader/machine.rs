@@ -356,6 +356,10 @@ fn math(fun: MathFunction, operands: &[Value]) -> Value {
     match fun {
         M::Dot => return F(dot(&operands[0], &operands[1])),
         M::Length => return F(dot(&operands[0], &operands[0]).sqrt()),
+        M::Normalize => {
+            let length = dot(&operands[0], &operands[0]).sqrt();
+            return vector(&operands[0].floats().iter().map(|v| v / length).collect::<Vec<_>>());
+        }
         _ => {}
     }
     each(operands, &|v| {

@@ -128,6 +128,22 @@ fn luthier_half_slope_density(shape: vec4<f32>, slope: vec2<f32>) -> f32 {
 }
 //? end
 
+//? one_lobe|two_lobes
+/// The half vector with light from wi between refracted directions: its slopes in the plane of the eye and across it, and the factor from half
+/// densities of slopes to densities of solid angle outside.
+fn luthier_place_below(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f32> {
+    // Directions inside times the index.
+    let sum = wi.xy + prepared.wo.xy;
+    let across = vec2<f32>(dot(prepared.azimuth, sum), prepared.azimuth.x * sum.y - prepared.azimuth.y * sum.x);
+    let inside_cos_sq = luthier_inside_cos_sq(prepared.medium, wi.z);
+    let inverse_cos = inverseSqrt(inside_cos_sq);
+    let z = inside_cos_sq * inverse_cos + prepared.inside_cos;
+    let inverse_z = 1.0 / z;
+    let factor = (dot(sum, sum) + z * z) * (inverse_z * inverse_z * inverse_z) * (inverse_cos * wi.z);
+    return vec3<f32>(across * inverse_z, factor);
+}
+//? end
+
 /// f cos_theta_i of a prepared material for light from wi, above the horizon.
 fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f32> {
     let wo = prepared.wo;
@@ -149,19 +165,11 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     let wide = max(1.0 - medium.y * (away_sq * away_sq * away) - medium.z * away_sq, 0.0);
     value += prepared.wide * (wide * wi.z * medium.w);
     //? one_lobe|two_lobes
-    // The half vector between refracted directions times the index, in the plane of the eye.
-    let across = vec2<f32>(dot(prepared.azimuth, sum.xy), prepared.azimuth.x * sum.y - prepared.azimuth.y * sum.x);
-    let inside_cos_sq = luthier_inside_cos_sq(medium, wi.z);
-    let inverse_cos = inverseSqrt(inside_cos_sq);
-    let z = inside_cos_sq * inverse_cos + prepared.inside_cos;
-    let inverse_z = 1.0 / z;
-    let slope = across * inverse_z;
-    // From half densities of slopes to densities of solid angle outside.
-    let factor = (dot(sum.xy, sum.xy) + z * z) * (inverse_z * inverse_z * inverse_z) * (inverse_cos * wi.z);
-    value += prepared.first_strength * (luthier_half_slope_density(prepared.first_shape, slope) * factor);
+    let place = luthier_place_below(prepared, wi);
+    value += prepared.first_strength * (luthier_half_slope_density(prepared.first_shape, place.xy) * place.z);
     //? end
     //? two_lobes
-    value += prepared.second_strength * (luthier_half_slope_density(prepared.second_shape, slope) * factor);
+    value += prepared.second_strength * (luthier_half_slope_density(prepared.second_shape, place.xy) * place.z);
     //? end
     return value;
 }
