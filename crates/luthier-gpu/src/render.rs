@@ -23,7 +23,11 @@ const EVALUATIONS_PER_SHORT_PASS: u32 = 1 << 18;
 const WORKGROUP: u32 = 8;
 
 /// `vec4` words before `words` in `render.wgsl`.
-const HEADER_WORDS: usize = 8;
+const HEADER_WORDS: usize = 9;
+
+/// Turns of loops that one thread makes in a submission, by a generous count. Software adapters end loops after 65,535 turns in all, without a
+/// word.
+const TURNS_PER_PASS: u32 = 1 << 15;
 
 /// Background behind the shape. It takes no part in the light.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -174,15 +178,19 @@ impl Scene {
 
         let size = settings.size;
         let lobes = 1 + self.manifest.materials.iter().map(|m| m.layers.len()).max().unwrap_or(0) as u32;
-        let per_pixel = settings.samples * settings.samples * (1 + settings.environment_samples * lobes);
+        let shares = shares(settings, lobes);
+        let per_pixel =
+            shares.iter().map(|[_, samples, _, directions]| samples * (1 + directions * lobes)).max().unwrap_or(1);
         let rows = (evaluations / size.saturating_mul(per_pixel).max(1)).clamp(1, size);
-        let mut data = Vec::with_capacity((size * size * 3) as usize);
-        for row in (0..size).step_by(rows as usize) {
+        let mut data = vec![0.0; (size * size * 3) as usize];
+        let blocks = (0..size).step_by(rows as usize).flat_map(|row| shares.iter().map(move |share| (row, *share)));
+        for (row, share) in blocks {
             if stop() {
                 return Ok(None);
             }
             let rows = rows.min(size - row);
             inputs[5][1] = row;
+            inputs[HEADER_WORDS - 1] = share;
             let pixels = self.context.run(&Pass {
                 what: "rendering",
                 pipeline,
@@ -191,7 +199,10 @@ impl Scene {
                 inputs: bytemuck::cast_slice(&inputs),
                 output_words: (size * rows) as usize,
             })?;
-            data.extend(pixels.iter().flat_map(|pixel| &pixel[..3]));
+            let block = &mut data[(row * size * 3) as usize..];
+            for (sum, value) in block.iter_mut().zip(pixels.iter().flat_map(|pixel| &pixel[..3])) {
+                *sum += value;
+            }
         }
         Ok(Some(Image { width: size, height: size, channels: 3, data }))
     }
@@ -306,6 +317,8 @@ impl Scene {
             [settings.samples, 0, settings.shape.number(), settings.environment_samples],
             [settings.lights.len() as u32, self.manifest.materials.len() as u32, 0, lights],
             [headers, maps, settings.film_tilt[0].to_bits(), settings.film_tilt[1].to_bits()],
+            // Those of a pass.
+            [0; 4],
         ];
         header.to_vec()
     }
@@ -318,6 +331,25 @@ impl Scene {
         let is_used = |blur: &Blur| has_lobes && *blur == Blur::Beckmann || layers().any(|l| blur_of(l) == *blur);
         [Blur::Ggx, Blur::Beckmann].into_iter().filter(is_used).collect()
     }
+}
+
+/// The samples of a pixel and the directions of each, in shares that one submission has: first sample, number, first direction, number. A material
+/// has so many lobes, the cosine counted.
+fn shares(settings: &RenderSettings, lobes: u32) -> Vec<[u32; 4]> {
+    let (samples, directions) = (settings.samples * settings.samples, settings.environment_samples);
+    // Densities of all lobes for each direction, and what an evaluation may turn.
+    let per_direction = lobes * (16 + lobes * lobes);
+    let per_sample = directions.saturating_mul(per_direction).saturating_add(256);
+    if per_sample <= TURNS_PER_PASS {
+        let most = TURNS_PER_PASS / per_sample;
+        return (0..samples)
+            .step_by(most as usize)
+            .map(|first| [first, most.min(samples - first), 0, directions])
+            .collect();
+    }
+    let most = (TURNS_PER_PASS / per_direction).max(1);
+    let parts = (0..directions).step_by(most as usize).map(|first| (first, most.min(directions - first)));
+    (0..samples).flat_map(|sample| parts.clone().map(move |(first, count)| [sample, 1, first, count])).collect()
 }
 
 /// Whether the surroundings that a material shows are read where its lobes are.

@@ -26,6 +26,11 @@ struct Render {
     maps: u32,
     // Slopes of the inner boundary of films against the outer one, beside those of a thickness table.
     film_tilt: vec2<f32>,
+    // What this dispatch adds: samples of a pixel, and directions of the environment for each of these. Lights come with the first direction.
+    first_sample: u32,
+    sample_count: u32,
+    first_direction: u32,
+    direction_count: u32,
     words: array<vec4<f32>>,
 }
 
@@ -39,6 +44,9 @@ fn render_radiance(at: vec2<f32>, seed: u32) -> vec3<f32> {
     let hit = shape_hit(kernel_inputs.shape, kernel_inputs.eye, ray);
     if hit.found {
         return shading_radiance(hit.part, hit.place, -ray, seed);
+    }
+    if kernel_inputs.first_direction > 0u {
+        return vec3<f32>(0.0);
     }
     if kernel_inputs.environment_behind == 1.0 {
         return environment_radiance(ray);
@@ -56,12 +64,12 @@ fn kernel_render(@builtin(global_invocation_id) thread: vec3<u32>) {
     let pixel = vec2<f32>(f32(thread.x), f32(kernel_inputs.row + thread.y));
     let samples = kernel_inputs.samples;
     var sum = vec3<f32>(0.0);
-    for (var j = 0u; j < samples; j++) {
-        for (var i = 0u; i < samples; i++) {
-            let at = (pixel + (vec2<f32>(f32(i), f32(j)) + 0.5) / f32(samples)) / f32(size);
-            let seed = ((kernel_inputs.row + thread.y) * size + thread.x) * samples * samples + j * samples + i;
-            sum += render_radiance(vec2<f32>(2.0 * at.x - 1.0, 1.0 - 2.0 * at.y), seed);
-        }
+    for (var i = 0u; i < kernel_inputs.sample_count; i++) {
+        let sample = kernel_inputs.first_sample + i;
+        let cell = vec2<f32>(f32(sample % samples), f32(sample / samples));
+        let at = (pixel + (cell + 0.5) / f32(samples)) / f32(size);
+        let seed = ((kernel_inputs.row + thread.y) * size + thread.x) * samples * samples + sample;
+        sum += render_radiance(vec2<f32>(2.0 * at.x - 1.0, 1.0 - 2.0 * at.y), seed);
     }
     kernel_outputs[index] = vec4<f32>(sum * (kernel_inputs.exposure / f32(samples * samples)), 1.0);
 }

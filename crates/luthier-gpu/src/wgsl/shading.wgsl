@@ -291,7 +291,8 @@ fn shading_sampled(material: u32, surface: ShadingSurface, frame: mat3x3<f32>, w
         }
         let first = shading_hash(seed * 16u + lobe);
         let shift = vec2<f32>(shading_unit(first), shading_unit(shading_hash(first)));
-        for (var i = 0u; i < count; i++) {
+        let first_direction = kernel_inputs.first_direction;
+        for (var i = first_direction; i < first_direction + kernel_inputs.direction_count; i++) {
             let point = vec2<f32>((f32(i) + 0.5) / f32(count), shading_unit(reverseBits(i)));
             let wi = shading_sample(alpha, fract(point + shift), wo);
             if wi.z <= 0.0 {
@@ -319,7 +320,8 @@ fn shading_radiance(part: u32, place: Place, wo_world: vec3<f32>, seed: u32) -> 
     let wo = wo_world * frame;
     let surface = shading_surface(material, shading_maps(material, place.uv), length(kernel_inputs.eye - place.position));
     var total = vec3<f32>(0.0);
-    for (var i = 0u; i < kernel_inputs.light_count; i++) {
+    let light_count = select(0u, kernel_inputs.light_count, kernel_inputs.first_direction == 0u);
+    for (var i = 0u; i < light_count; i++) {
         let light = kernel_inputs.words[kernel_inputs.lights + 2u * i];
         let color = kernel_inputs.words[kernel_inputs.lights + 2u * i + 1u].rgb;
         // A directional light is 1 away.

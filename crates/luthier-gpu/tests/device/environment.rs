@@ -120,3 +120,20 @@ fn below_a_coat_the_highlight_has_more_energy_than_the_environment() {
         assert!((energy - 1.0).abs() < 0.06, "{alpha}: {energy}");
     }
 }
+
+/// Sixteen samples of a pixel with 64 directions for each of six lobes are more turns of loops than software adapters make in one submission.
+#[test]
+fn many_directions_and_samples_are_as_bright_as_few() {
+    let coat = |n| tiled(dielectric(0.2, n), None);
+    let stack = [1.2, 1.3, 1.4, 1.5].map(coat).into_iter().chain([tiled(conductor(0.2, [0.1; 3], [9.0; 3]), None)]);
+    let Some(scene) = scene_of(vec![stack.collect()], &ggx_tables(0.1, 0.1)) else { return };
+    let mean = |samples, environment_samples| {
+        let even = Environment::sky(&luthier_gpu::Sky::uniform([0.8; 3])).unwrap();
+        let environment = Arc::new(even);
+        let settings = RenderSettings { size: 16, samples, environment_samples, environment, ..dark() };
+        let image = scene.render(&[0], &settings).unwrap();
+        image.texels().map(|texel| f64::from(texel[1])).sum::<f64>()
+    };
+    let (few, many) = (mean(4, 4), mean(4, 64));
+    assert!((many / few - 1.0).abs() < 0.03, "{few} {many}");
+}
