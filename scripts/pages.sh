@@ -40,7 +40,7 @@ stability() {
 }
 figures() { luthier-lab figures -o docs/pages/figures --size 96; }
 models() { luthier-lab judge materials >docs/pages/models.md; }
-lobes() { luthier-lab lobes materials --random 60 --samples 150000 -o docs/pages/lobes.md; }
+lobes() { luthier-lab lobes materials --random 60 --samples 300000 -o docs/pages/lobes.md; }
 bench() { luthier bench materials/car-paint.toml materials/red-lacquer.toml --json -o docs/measurements/bench-llvmpipe.json; }
 shader-size() { scripts/shader-size.sh >docs/pages/shader-size.md; }
 distribution-table() { scripts/compare-distribution.sh >docs/pages/distribution-table.md; }

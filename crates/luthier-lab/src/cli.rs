@@ -176,7 +176,7 @@ pub(crate) struct LobesOptions {
     #[arg(long = "paths", value_name = "N", default_value = "16384")]
     pub(crate) paths_per_row: NonZeroU32,
     /// Rows over the view
-    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(4..=64))]
+    #[arg(long, value_name = "N", default_value_t = 19, value_parser = clap::value_parser!(u32).range(4..=64))]
     pub(crate) rows: u32,
     #[command(flatten)]
     pub(crate) destination: Destination,

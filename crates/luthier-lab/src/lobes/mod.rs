@@ -6,7 +6,7 @@ mod stacks;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use luthier_export::read;
-use luthier_layers::lobes::{Channel, FitSettings, Lobes, Simulation};
+use luthier_layers::lobes::{Channel, EXCESS, FitSettings, LOBES, Lobes, Simulation};
 use luthier_layers::model::Model;
 use luthier_layers::registry::model;
 use luthier_optics::color::Color;
@@ -33,6 +33,8 @@ struct Judged {
     name: String,
     /// For each of [`COUNTS`]: the lobes, and the errors of all views.
     fits: Vec<(Lobes, Vec<ViewError>)>,
+    /// Lobes of them that a bake takes.
+    baked: usize,
     /// For each of [`BESIDE`].
     beside: Vec<Vec<ViewError>>,
 }
@@ -73,6 +75,7 @@ fn judge(subject: &ModelSubject, options: &LobesOptions) -> Result<Judged, Strin
     let simulation = Simulation::new(&subject.stack, &color, settings);
     let simulation = simulation.map_err(|error| format!("{}: {error}", subject.name))?;
     let fits: Vec<Lobes> = COUNTS.map(|lobes| simulation.fit(lobes)).to_vec();
+    let baked = simulation.fit_fewest(LOBES, EXCESS).rows[0].lobes.len();
     let models = |channel: usize| -> Vec<Box<dyn Model + '_>> {
         let own = fits.iter().map(|lobes| Box::new(Channel { lobes, channel }) as Box<dyn Model>);
         own.chain(BESIDE.iter().filter_map(|name| model(name))).collect()
@@ -81,5 +84,5 @@ fn judge(subject: &ModelSubject, options: &LobesOptions) -> Result<Judged, Strin
     let mut views = judge_views(subject, models, &THETAS_DEG, judge);
     let beside = views.split_off(fits.len());
     let fits = fits.into_iter().zip(views).collect();
-    Ok(Judged { name: subject.name.clone(), fits, beside })
+    Ok(Judged { name: subject.name.clone(), fits, baked, beside })
 }

@@ -34,7 +34,7 @@ The model `lobes` (`luthier-layers/src/lobes`) simulates a stack and fits what c
 compares fits of none, one and two lobes, and two models of papers, with another simulation of other random numbers.
 
 Lobe errors and albedo errors are those of [models.md](models.md): shares of the light of the reference that have to move, and absolute
-differences. Every figure is the worst over three wavelengths and ten angles of the eye from 0 to 85 degrees; of these, fits have seen 0 degrees alone. `noise` is the lobe
+differences. `baked` is the fit with the fewest lobes that do, which a bake takes; their number is in brackets. Every figure is the worst over three wavelengths and ten angles of the eye from 0 to 85 degrees; of these, fits have seen 0 degrees alone. `noise` is the lobe
 error that the random numbers of the judge make on average where a model is exact. Nothing is subtracted from the errors. `albedo` is the albedo error of
 two lobes, `index` the index of the medium in whose half vectors they are, `tails` are their tails.
 
@@ -63,16 +63,18 @@ fn group(out: &mut String, title: &str, outcomes: &Outcomes) -> std::fmt::Result
     for count in COUNTS {
         write!(out, " {count} {} |", if count == 1 { "lobe" } else { "lobes" })?;
     }
+    write!(out, " baked |")?;
     for name in BESIDE {
         write!(out, " {name} |")?;
     }
     writeln!(out, " noise | worst at | albedo | index | tails |")?;
-    writeln!(out, "|---|{}", "--:|".repeat(COUNTS.len() + BESIDE.len() + 5))?;
+    writeln!(out, "|---|{}", "--:|".repeat(COUNTS.len() + BESIDE.len() + 6))?;
     let judged: Vec<&Judged> = outcomes.iter().filter_map(|outcome| outcome.as_ref().ok()).collect();
     for stack in &judged {
         write!(out, "| {} |", stack.name)?;
-        for views in columns(stack) {
-            write!(out, " {:.3} |", lobe(views))?;
+        for (column, views) in columns(stack).enumerate() {
+            let count = if column == COUNTS.len() { format!(" ({})", stack.baked) } else { String::new() };
+            write!(out, " {:.3}{count} |", lobe(views))?;
         }
         let Some((lobes, views)) = stack.fits.last() else { continue };
         let noise = views.iter().map(|view| view.lobe_floor).fold(0.0, f64::max);
@@ -90,7 +92,7 @@ fn group(out: &mut String, title: &str, outcomes: &Outcomes) -> std::fmt::Result
     if count > 0 {
         for (name, rank) in [("median", count / 2), ("95th percentile", count * 95 / 100), ("largest", count - 1)] {
             write!(out, "| **{name}** |")?;
-            for column in 0..COUNTS.len() + BESIDE.len() {
+            for column in 0..=COUNTS.len() + BESIDE.len() {
                 let mut errors: Vec<f64> =
                     judged.iter().filter_map(|stack| columns(stack).nth(column)).map(|views| lobe(views)).collect();
                 errors.sort_by(f64::total_cmp);
@@ -107,5 +109,6 @@ fn group(out: &mut String, title: &str, outcomes: &Outcomes) -> std::fmt::Result
 
 /// The errors of all columns.
 fn columns(stack: &Judged) -> impl Iterator<Item = &Vec<ViewError>> {
-    stack.fits.iter().map(|(_, views)| views).chain(&stack.beside)
+    let baked = stack.fits.get(stack.baked).map(|(_, views)| views);
+    stack.fits.iter().map(|(_, views)| views).chain(baked).chain(&stack.beside)
 }

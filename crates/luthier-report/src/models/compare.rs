@@ -63,7 +63,7 @@ mod tests {
 
     /// `count` paths of weight 1 with the given chances.
     fn paths(energies: &[f64], count: f64) -> Histogram {
-        Histogram { energies: energies.to_vec(), squares: energies.to_vec(), count }
+        Histogram { energies: energies.to_vec(), squares: energies.to_vec(), count, families: Vec::new() }
     }
 
     #[test]

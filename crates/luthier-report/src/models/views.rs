@@ -30,10 +30,16 @@ impl View {
         let estimator = LayeredMc { mode, samples: samples.into(), seed: seed.wrapping_add(family << 32) };
         Histogram::trace(estimator, &self.stack, &self.cells)
     }
+
+    /// Even paths of the simulation.
+    fn trace_evenly(&self, samples: u32, seed: u64) -> Histogram {
+        let estimator = LayeredMc { mode: InterfaceMode::SmithWalk, samples: samples.into(), seed };
+        Histogram::trace_evenly(estimator, &self.stack, &self.cells)
+    }
 }
 
-/// Errors of models on a material, as [`super::judge_models`] has them, seen from other angles against the normal. `models` are those of a
-/// channel of the subject's. By model; views by channel, then by angle.
+/// Errors of models on a material, as [`super::judge_models`] has them, seen from other angles against the normal, with a reference of even paths
+/// ([`LayeredMc::even_paths`]). `models` are those of a channel of the subject's. By model; views by channel, then by angle.
 pub fn judge_views<'m>(
     subject: &ModelSubject,
     models: impl Fn(usize) -> Vec<Box<dyn Model + 'm>> + Sync,
@@ -46,7 +52,7 @@ pub fn judge_views<'m>(
         .into_par_iter()
         .map(|(channel, theta_deg)| {
             let view = View::new(subject, channel, theta_deg);
-            let reference = view.trace(InterfaceMode::SmithWalk, 0, settings.samples.get(), settings.seed);
+            let reference = view.trace_evenly(settings.samples.get(), settings.seed);
             let error = |model: Box<dyn Model + 'm>| {
                 let energies = Energies::of(model.as_ref(), &view.stack, &view.cells);
                 compare(&energies, &reference, view.wavelength_nm, theta_deg)
