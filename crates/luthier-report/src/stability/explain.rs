@@ -175,6 +175,16 @@ pub const EXPLANATIONS: &[Explanation] = &[
                  sides are up to 7 degrees away.",
     },
     Explanation {
+        name: "WEIGHTS_OF_ROWS_OF_LOBES",
+        levels: &[Level::Table],
+        methods: &["lobes"],
+        cases: &["mirror-metal"],
+        faults: &[Fault::Wrong],
+        limit: 0.03,
+        reason: "Samplers weigh two rows in steps of 1/256. For an eye within a degree of the horizon the first two rows differ by a factor of several in the widths \
+                 and strengths of lobes, and half a step is up to 1.5% of a value.",
+    },
+    Explanation {
         name: "MEAN_OF_TWO_SLOPES",
         levels: &[Level::F64],
         methods: &["lobes"],
