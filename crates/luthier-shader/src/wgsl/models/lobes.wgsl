@@ -57,9 +57,9 @@ fn luthier_slope_lambda(coat: LuthierLayer, slope: f32) -> f32 {
         return 0.5 * (sqrt(1.0 + slope * slope) - 1.0);
     }
     //? end
-    let beyond = clamp(slope - 0.354768, 0.0, 1e9);
-    let squared = beyond * beyond;
-    return squared * squared / (1.6329 + beyond * (3.41329 + beyond * (5.04868 + beyond * 3.5449077)));
+    let beyond = max(slope - 0.354768, 0.0);
+    let inverse = 1.0 / max(beyond, 1e-9);
+    return beyond / (3.5449077 + inverse * (5.04868 + inverse * (3.41329 + inverse * 1.6329)));
     //? else
     return 0.5 * (sqrt(1.0 + slope * slope) - 1.0);
     //? end

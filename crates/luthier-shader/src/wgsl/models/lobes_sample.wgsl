@@ -14,18 +14,22 @@ struct LuthierSample {
 /// Probabilities of the first facet, of the lobes and of the wide remainder, times their sum.
 fn luthier_chances_lobes(prepared: LuthierPreparedLobes) -> vec4<f32> {
     let third = vec3<f32>(1.0 / 3.0);
-    var chances = vec4<f32>(dot(luthier_albedo_lobes(prepared) - prepared.wide, third), 0.0, 0.0, dot(prepared.wide, third));
-    //? one_lobe|two_lobes
-    chances.x -= dot(luthier_lobe_below(prepared, 0u).energy, third);
-    chances.y = dot(prepared.first_strength, third);
-    //? end
-    //? two_lobes
-    chances.x -= dot(luthier_lobe_below(prepared, 1u).energy, third);
-    chances.z = dot(prepared.second_strength, third);
-    //? end
+    let wide = dot(prepared.wide, third);
+    var rest = dot(luthier_albedo_lobes(prepared), third) - wide;
     // A material that reflects nothing has a remainder without light.
-    chances = max(chances, vec4<f32>(0.0, 0.0, 0.0, 1e-6));
-    return chances;
+    let least = vec4<f32>(0.0, 0.0, 0.0, 1e-6);
+    //? one_lobe|two_lobes
+    rest -= dot(luthier_lobe_below(prepared, 0u).energy, third);
+    let first = dot(prepared.first_strength, third);
+    //? two_lobes
+    rest -= dot(luthier_lobe_below(prepared, 1u).energy, third);
+    return max(vec4<f32>(rest, first, dot(prepared.second_strength, third), wide), least);
+    //? else
+    return max(vec4<f32>(rest, first, 0.0, wide), least);
+    //? end
+    //? else
+    return max(vec4<f32>(rest, 0.0, 0.0, wide), least);
+    //? end
 }
 
 /// Visible normals of the first interface, as GGX has them for its slope parameter whatever its distribution is: density of the direction
