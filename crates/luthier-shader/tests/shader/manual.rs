@@ -60,7 +60,7 @@ fn check(what: &str, set: &MaterialSet<'_>, form: Form, has_buffer: bool, text: 
 
 #[test]
 fn manuals_name_what_is_there() {
-    assert_eq!(face().len(), 19, "{:?}", face());
+    assert_eq!(face().len(), 24, "{:?}", face());
     for (name, materials) in sets() {
         let set = MaterialSet { materials: &materials, tables: tables() };
         for form in forms(&materials) {
