@@ -33,7 +33,7 @@ fn luthier_chances_lobes(prepared: LuthierPreparedLobes) -> vec4<f32> {
 }
 
 /// Visible normals of the first interface, as GGX has them for its slope parameter whatever its distribution is: density of the direction
-/// mirrored at them (Heitz 2018). Beckmann's facets have weights up to 1.5 then, and up to 2.5 for an eye within 20 degrees of the horizon.
+/// mirrored at them (Heitz 2018). Beckmann's facets have weights up to 2 then, and up to 2.6 for an eye within 20 degrees of the horizon.
 fn luthier_visible_density(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> f32 {
     let alpha = prepared.coat.alpha;
     let wo = prepared.wo;
