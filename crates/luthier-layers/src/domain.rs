@@ -137,12 +137,12 @@ const FEW_NODES: Limit = limit(
     "the 256 nodes of its phase row are too few for the fringes: off by 0.57 at 20 um",
 );
 
-/// Rows on both sides of a critical angle: 0.5 gains 0.04, 0.667 is the last that does not gain.
+/// Rows on both sides of a critical angle: 0.5 gains 0.05, 0.667 is the last that does not gain.
 const BETWEEN_ROWS: Limit = limit(
     Quantity::Index,
     0.667,
     4.0,
-    "rows of lobes are too far apart at the critical angle of a rough interface: up to 0.04 more light than falls on it",
+    "rows of lobes are too far apart at the critical angle of a rough interface: up to 0.05 more light than falls on it",
 );
 
 /// The domain of a model, by name, beside what holds for all; nothing for one that fails nowhere, and for one without a shader. Slope
