@@ -40,8 +40,22 @@ pub struct LobesRecord {
     pub falloff: [f64; 2],
     /// Integral of `S c / pi` over the hemisphere.
     pub integral: f64,
-    /// Squared cotangent of the critical angle: c is then the cosine of the refracted direction. 0 where it is that of the light.
+    /// Squared cotangent k of the critical angle: c is then the cosine inside. 0 where there is none.
     pub critical_cot_sq: f64,
+    /// Half the width w over which the cosine inside turns at the critical angle, in squared cosines.
+    pub critical_width: f64,
+    /// Share of the cosine of the view in the axis of the rows; the rest is the cosine inside.
+    pub critical_plain_share: f64,
+}
+
+impl LobesRecord {
+    /// Numbers of the cosine inside: k, `4 w^2`, and factor and offset for the root to be 0 at the horizon and 1 at the normal.
+    fn inside(&self) -> [f64; 4] {
+        let four_width_sq = 4.0 * self.critical_width * self.critical_width;
+        let root = |x: f64| (0.5 * (x + (x * x + four_width_sq).sqrt())).max(0.0).sqrt();
+        let [horizon, normal] = [root(-self.critical_cot_sq), root(1.0)];
+        [self.critical_cot_sq, four_width_sq, 1.0 / (normal - horizon), (0.0 - horizon) / (normal - horizon)]
+    }
 }
 
 /// Flakes, one per cell of a grid or as a normal map has them (Elek 2010, section 4.1).
@@ -99,8 +113,8 @@ impl MaterialConstants {
     ///
     /// | header word | x, y, z, w |
     /// |---|---|
-    /// | 1 | Phong's diffuse coefficient RGB, exponent |
-    /// | 2 | Phong's specular coefficient RGB; of lobes the squared cotangent of the critical angle, or 0 |
+    /// | 1 | Phong's diffuse coefficient RGB, exponent; of lobes 0, 0, 0, share of the cosine of the view in the axis of the rows |
+    /// | 2 | Phong's specular coefficient RGB; of lobes k, 4 w^2, and factor and offset of the root that is the cosine inside |
     /// | 3 | internal reflectance RGB, upward loss; of lobes the squared index less 1, a, b, and 1 over pi and the integral of S |
     /// | 4 | flakes: low and high 16 bits of the seed, cells, tiling; all 0 without flakes |
     /// | 5 | flakes: spread, scale, fade start, 0 |
@@ -115,8 +129,10 @@ impl MaterialConstants {
         words[0] = with(self.phong_diffuse, self.phong_exponent);
         words[1] = with(self.phong_specular, 0.0);
         words[2] = with(self.internal_reflectance, self.upward_loss);
-        if let Some(LobesRecord { index, falloff: [a, b], integral, critical_cot_sq }) = self.lobes {
-            words[1][3] = critical_cot_sq as f32;
+        if let Some(lobes) = self.lobes {
+            let LobesRecord { index, falloff: [a, b], integral, .. } = lobes;
+            words[0] = with([0.0; 3], lobes.critical_plain_share);
+            words[1] = lobes.inside().map(|x| x as f32);
             words[2] = with([(index - 1.0) * (index + 1.0), a, b], FRAC_1_PI / integral);
         }
         let half = |bits: u32| (bits & 0xffff) as f32;
@@ -183,8 +199,20 @@ mod tests {
             ]
         );
         assert_eq!(MaterialConstants::default().words(), [[0.0; 4]; MaterialConstants::WORDS]);
-        let lobes = LobesRecord { index: 1.25, falloff: [0.5, 0.75], integral: FRAC_1_PI, critical_cot_sq: 3.0 };
-        let words = MaterialConstants { lobes: Some(lobes), ..MaterialConstants::default() }.words();
-        assert_eq!((words[1][3], words[2]), (3.0, [0.5625, 0.5, 0.75, 1.0]));
+        let lobes = LobesRecord {
+            index: 1.25,
+            falloff: [0.5, 0.75],
+            integral: FRAC_1_PI,
+            critical_cot_sq: 3.0,
+            critical_width: 2.0,
+            critical_plain_share: 0.25,
+        };
+        let words = |lobes| MaterialConstants { lobes: Some(lobes), ..MaterialConstants::default() }.words();
+        // Roots: of (-3 + sqrt(9 + 16)) / 2 = 1, and of (1 + sqrt(17)) / 2.
+        let range = f64::sqrt(0.5 * (1.0 + f64::sqrt(17.0))) - 1.0;
+        let inside = [3.0, 16.0, (1.0 / range) as f32, (-1.0 / range) as f32];
+        assert_eq!(words(lobes)[..3], [[0.0, 0.0, 0.0, 0.25], inside, [0.5625, 0.5, 0.75, 1.0]]);
+        let without = LobesRecord { critical_cot_sq: 0.0, critical_width: 0.0, ..lobes };
+        assert_eq!(words(without)[1], [0.0, 0.0, 1.0, 0.0]);
     }
 }

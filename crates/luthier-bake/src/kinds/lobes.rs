@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use luthier_layers::lobes::{EXCESS, FitSettings, LOBES, Lobes, Row, shown};
+use luthier_layers::lobes::{Critical, EXCESS, FitSettings, LOBES, Lobes, Row, shown};
 use luthier_lut::{
     Axis, Comparison, ErrorStats, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan,
 };
@@ -70,14 +70,27 @@ fn fit(material: &Material) -> Arc<FitJob> {
 }
 
 /// Numbers that stand in where nothing was fitted.
-const UNFITTED: LobesRecord = LobesRecord { index: 1.5, falloff: [0.5, 0.1], integral: 0.95, critical_cot_sq: 0.0 };
+const UNFITTED: LobesRecord = LobesRecord {
+    index: 1.5,
+    falloff: [0.5, 0.1],
+    integral: 0.95,
+    critical_cot_sq: 0.0,
+    critical_width: 0.0,
+    critical_plain_share: 0.0,
+};
 
 /// The numbers of a material's lobes that hold at all views; [`UNFITTED`] in an outline without fits.
 pub(crate) fn record(material: &Material, results: &Results) -> LobesRecord {
     let Some(lobes) = results.get::<Lobes>(fit(material).key()) else { return UNFITTED };
-    let (wide, critical_cot_sq) = (lobes.frame.wide, lobes.axis.critical_cot_sq());
-    let (falloff, integral) = (wide.falloff(), wide.integral());
-    LobesRecord { index: lobes.frame.index, falloff, integral, critical_cot_sq }
+    let (wide, Critical { cot_sq, width, plain_share }) = (lobes.frame.wide, lobes.axis.critical());
+    LobesRecord {
+        index: lobes.frame.index,
+        falloff: wide.falloff(),
+        integral: wide.integral(),
+        critical_cot_sq: cot_sq,
+        critical_width: width,
+        critical_plain_share: plain_share,
+    }
 }
 
 /// The simulation of a stack, and the fit to it: [`Lobes`].
@@ -168,7 +181,7 @@ impl Job for LobesJob {
             )
         };
         let error = (1..most + 2).map(energies).fold(energies(0), ErrorStats::with_worst_of);
-        let over = if lobes.axis.critical_cot_sq() > 0.0 { ", over the cosine of the refracted view" } else { "" };
+        let over = if lobes.axis.critical().cot_sq > 0.0 { ", rows close together at its critical angle" } else { "" };
         let model = format!(
             "{} fitted to the simulated stack, in half vectors of a medium of index {:.3}{over}; {}; errors are those of energies \
              against the rows before they were rounded",

@@ -64,8 +64,14 @@ fn scene(first: f32, fresnel: f32) -> Option<Scene> {
     };
     let mut manifest = manifest(vec![vec![coat, conductor(0.2, [0.1; 3], [9.0; 3])]], &tables);
     manifest.materials[0].model = ShadingModel::Lobes;
-    manifest.materials[0].constants.lobes =
-        Some(LobesRecord { index: INDEX, falloff: [0.0; 2], integral: 1.0, critical_cot_sq: 0.0 });
+    manifest.materials[0].constants.lobes = Some(LobesRecord {
+        index: INDEX,
+        falloff: [0.0; 2],
+        integral: 1.0,
+        critical_cot_sq: 0.0,
+        critical_width: 0.0,
+        critical_plain_share: 0.0,
+    });
     let set = MaterialSet::from_manifest(&manifest);
     let wgsl = luthier_shader::emit(&set, Form::Baked, Target::Wgsl).unwrap();
     manifest.bindings = luthier_shader::bindings(&set, Form::Baked);

@@ -17,7 +17,7 @@ use thiserror::Error;
 use super::half_vector::{outside, refracted};
 use super::solve::{Amounts, Column, Guess, LeastSquares, Place, Residuals};
 use super::tally::{CELLS, Cells, Point, Tally};
-use super::{FirstInterface, Frame, Lobe, Lobes, Row, Shape, TAIL_MIN, ViewAxis, Wide};
+use super::{Critical, FirstInterface, Frame, Lobe, Lobes, Row, Shape, TAIL_MIN, ViewAxis, Wide};
 use crate::facets::{ALPHA_MIN, Facets};
 use crate::layered_mc::ColorPaths;
 
@@ -33,9 +33,9 @@ pub struct FitSettings {
 }
 
 impl Default for FitSettings {
-    /// 19 rows, 16,384 paths for each.
+    /// 19 rows, 32,768 paths for each.
     fn default() -> Self {
-        Self { rows: 19, paths: 16_384, seed: 0 }
+        Self { rows: 19, paths: 32_768, seed: 0 }
     }
 }
 
@@ -56,11 +56,11 @@ const TAIL_STARTS: [f64; 2] = [0.3, 1.1];
 /// Nodes of shapes over the view.
 const NODES: usize = 6;
 
-/// Slope parameter from which on an interface has no critical angle to speak of.
-const SMOOTH: f64 = 0.01;
-
 /// Indices of media closer than this are one.
 const INDEX_STEP: f64 = 0.05;
+
+/// Width over which the axis of the rows turns at a critical angle, over that over which the facets of the interfaces blur it.
+const BLUR: f64 = 0.5;
 
 /// Share of a shape above the horizon below which the fit is held back.
 const SHARE_WANTED: f64 = 0.35;
@@ -91,8 +91,9 @@ pub struct Simulation {
     first: Option<FirstInterface>,
     axis: ViewAxis,
     cells: Vec<Cells>,
-    /// Widths with which a fit starts.
+    /// Widths with which a fit starts, and with which further lobes do.
     starts: Vec<f64>,
+    widths: Vec<f64>,
     views: Vec<Tally>,
 }
 
@@ -120,10 +121,9 @@ impl Simulation {
         let joined = rough.iter().map(|alpha| alpha * alpha).sum::<f64>().sqrt().clamp(1e-3, 0.8);
         let last = rough.last().copied().unwrap_or(0.3).max(1e-3);
         let starts = if last < 0.7 * joined { vec![joined, last] } else { vec![joined] };
+        let widths = widths(&rough);
         let cells: Vec<Cells> = indices(stack).into_iter().map(|index| Cells::new(index, least)).collect();
-        let is_smooth = stack.layers.first().is_some_and(|layer| layer.surface.alpha_x < SMOOTH);
-        let critical = first.as_ref().filter(|_| is_smooth).map_or(0.0, |first| first.reflectance.critical_cot_sq());
-        let axis = ViewAxis::new(settings.rows, critical);
+        let axis = ViewAxis::new(settings.rows, critical(stack, settings.rows));
         let (paths, count) = (ColorPaths::new(stack, color), settings.paths);
         let view = |row: usize| {
             let wo = direction(axis.cos_theta(row as f64));
@@ -136,7 +136,7 @@ impl Simulation {
             tally
         };
         let views = (0..axis.size()).map(view).collect();
-        Ok(Self { first, axis, cells, starts, views })
+        Ok(Self { first, axis, cells, starts, widths, views })
     }
 
     /// The lobes, so many, that are nearest to the light that was traced.
@@ -147,18 +147,23 @@ impl Simulation {
         problems[found.set].lobes(found)
     }
 
-    /// The fewest lobes, so many at most, that are no more than `excess` farther from the light than the best.
+    /// The fewest lobes, so many at most, that are no more than `excess` farther from the light than the best, at any view. The best have
+    /// the least error at their worst view.
     ///
     /// The error of a fit holds the noise of the paths, which all fits have alike: they are compared by the differences of their squared
-    /// residuals. Residuals are over the roots of energies, so that half the root of the mean over the views bounds what the lobe error of an
-    /// average view gains; that of the worst view may gain more.
+    /// residuals. Residuals are over the roots of energies, so that half the root of a difference bounds what the lobe error gains.
     pub fn fit_fewest(&self, most: usize, excess: f64) -> Lobes {
         let problems = self.problems();
         let fits = self.fits(&problems, most);
-        let least = fits.iter().map(|found| found.place.cost).fold(f64::INFINITY, f64::min);
-        let error = |found: &Found| 0.5 * ((found.place.cost - least) / self.views.len() as f64).sqrt();
-        let found = fits.iter().find(|found| error(found) <= excess).unwrap_or(&fits[0]);
-        problems[found.set].lobes(found)
+        let costs: Vec<Vec<f64>> = fits.iter().map(|found| found.costs(&problems)).collect();
+        let worst: Vec<f64> = costs.iter().map(|costs| costs.iter().copied().fold(0.0, f64::max)).collect();
+        let best = (0..fits.len()).min_by(|a, b| worst[*a].total_cmp(&worst[*b])).unwrap_or(0);
+        let error = |cost: &Vec<f64>| {
+            let gains = cost.iter().zip(&costs[best]).map(|(own, best)| 0.5 * (own - best).max(0.0).sqrt());
+            gains.fold(0.0, f64::max)
+        };
+        let fewest = costs.iter().position(|cost| error(cost) <= excess).unwrap_or(best);
+        problems[fits[fewest].set].lobes(&fits[fewest])
     }
 
     fn problems(&self) -> Vec<Problem<'_>> {
@@ -181,15 +186,17 @@ impl Simulation {
         for count in 1..most {
             let fewer = &fits[count];
             let (lobes, wide) = (fewer.starts(), fewer.wide_falloff());
-            let beside = |factor: f64| {
+            let last = &lobes[lobes.len() - 1];
+            let scaled = [2.5, 0.4].map(|factor| last.scaled(factor));
+            let of_interfaces = self.widths.iter().map(|&width| Start::new(width, 0.0));
+            let beside = |another: Start| {
                 TAIL_STARTS.map(|tail| {
                     let mut starts = lobes.clone();
-                    let scaled = starts[starts.len() - 1].scaled(factor);
-                    starts.push(Start(scaled.0, tail));
+                    starts.push(Start(another.0.clone(), tail));
                     (fewer.set, starts, wide)
                 })
             };
-            let more = nearest(problems, [2.5, 0.4].into_iter().flat_map(beside).collect());
+            let more = nearest(problems, scaled.into_iter().chain(of_interfaces).flat_map(beside).collect());
             if more.place.cost >= fewer.place.cost {
                 break;
             }
@@ -220,6 +227,23 @@ fn nearest(problems: &[Problem<'_>], starts: Vec<(usize, Vec<Start>, [f64; 2])>)
     best.unwrap_or_else(|| unreachable!("there is a start"))
 }
 
+/// Widths of lobes that interfaces below the first may send, each blurred by those above, without those that are nearly another.
+fn widths(alphas: &[f64]) -> Vec<f64> {
+    let mut joined_sq = 0.0;
+    let mut widths: Vec<f64> = Vec::new();
+    for (i, alpha) in alphas.iter().enumerate() {
+        joined_sq += alpha * alpha;
+        let width = f64::sqrt(joined_sq).clamp(1e-3, 0.8);
+        if i > 0 && widths.iter().all(|known| width > WIDTH_STEP * known) {
+            widths.push(width);
+        }
+    }
+    widths
+}
+
+/// Ratio of widths from which on they are two.
+const WIDTH_STEP: f64 = 1.6;
+
 /// The relative indices in whose half vectors lobes may be: 1, that of the first medium, and that of the last.
 fn indices(stack: &Stack) -> Vec<f64> {
     let exterior = stack.exterior.at(REFERENCE_NM).re;
@@ -235,6 +259,26 @@ fn indices(stack: &Stack) -> Vec<f64> {
         }
     }
     indices
+}
+
+/// The critical angle of the view for the medium of the least index, blurred by the interfaces above that medium.
+fn critical(stack: &Stack, rows: usize) -> Critical {
+    let exterior = stack.exterior.at(REFERENCE_NM).re;
+    let mut found = (1.0, 0.0);
+    let mut joined_sq = 0.0;
+    for layer in &stack.layers {
+        let Base::Dielectric { ior, .. } = &layer.base else { break };
+        let alpha = layer.surface.alpha_x.max(ALPHA_MIN);
+        joined_sq += alpha * alpha;
+        let index = ior.at(REFERENCE_NM).re / exterior;
+        if index < found.0 {
+            found = (index, joined_sq.sqrt());
+        }
+    }
+    let (index, alpha): (f64, f64) = found;
+    // A facet that tilts by alpha turns the angle by as much: the squared cosine inside by 2 alpha sqrt(1 - n^2) / n.
+    let width = 2.0 * BLUR * alpha * ((1.0 - index) * (1.0 + index)).sqrt() / index;
+    Critical::new(index, width, rows)
 }
 
 /// The wavelength at which directions are refracted: the sodium D line.
@@ -283,6 +327,14 @@ struct Found {
 }
 
 impl Found {
+    /// Sum of the squared residuals of each view.
+    fn costs(&self, problems: &[Problem<'_>]) -> Vec<f64> {
+        let p = &self.place.parameters;
+        let cost =
+            |view: &ViewProblem| view.residuals(&view.profiles(p, p.len() / PER_LOBE)).iter().map(|x| x * x).sum();
+        problems[self.set].views.iter().map(cost).collect()
+    }
+
     fn starts(&self) -> Vec<Start> {
         let of = |p: &[f64]| {
             let row = |i: usize| p[i * NODES..(i + 1) * NODES].to_vec();
@@ -356,7 +408,7 @@ impl Residuals for Lobed<'_> {
 
 impl<'a> Problem<'a> {
     fn new(simulation: &'a Simulation, set: usize) -> Self {
-        let nodes = ViewAxis::new(NODES, simulation.axis.critical_cot_sq());
+        let nodes = ViewAxis::new(NODES, simulation.axis.critical());
         let mean = |rgb: Rgb| rgb.iter().sum::<f64>() / 3.0;
         let view = |(row, tally): (usize, &Tally)| {
             let cos_theta = simulation.axis.cos_theta(row as f64);
@@ -397,11 +449,7 @@ impl<'a> Problem<'a> {
                 amounts[view].among(&brightness[view], &cells, tally.total[c], guess)
             })
         });
-        // What is totally reflected does not come from below; the row at the critical angle stands for all flatter views.
-        let is_total = |view: usize| view == 0 && self.simulation.axis.critical_cot_sq() > 0.0;
-        let rgb = |view: usize, part: usize| {
-            if is_total(view) { [0.0; 3] } else { channels.each_ref().map(|channel| channel[view][part]) }
-        };
+        let rgb = |view: usize, part: usize| channels.each_ref().map(|channel| channel[view][part]);
         (0..amounts.len()).map(|view| (0..=count).map(|part| rgb(view, part)).collect()).collect()
     }
 

@@ -10,10 +10,9 @@ use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Film, FilmThickness, Layer, Slab, Stack};
 use num_complex::Complex64;
 
-use super::{INFO, Lobes};
+use super::{INFO, Lobes, bare_diffuse};
 use crate::model::{Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
-use crate::oren_nayar;
 
 /// Stacks whose lobes are kept.
 const KEPT: usize = 8;
@@ -51,11 +50,10 @@ impl Model for Fitted {
     }
 
     fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
-        let Some(first) = stack.layers.first().filter(|_| wi.z > 0.0 && wo.z > 0.0) else { return 0.0 };
-        if let MonochromeBelow::Diffuse { albedo, sigma } = first.below {
-            return wi.z * oren_nayar::brdf_scalar(albedo, sigma, wi, wo);
+        if wi.z <= 0.0 || wo.z <= 0.0 || stack.layers.is_empty() {
+            return 0.0;
         }
-        self.lobes(stack).map_or(0.0, |lobes| lobes.eval(wi, wo)[0])
+        bare_diffuse(stack, wi, wo).unwrap_or_else(|| self.lobes(stack).map_or(0.0, |lobes| lobes.eval(wi, wo)[0]))
     }
 }
 

@@ -7,20 +7,60 @@ use super::shape::TAIL_MIN;
 /// Cosine of the view that stands for all that are flatter, where rows are traced: at 89.9 degrees.
 const FLATTEST: f64 = 0.001_745;
 
+/// A critical angle of the view, beyond which a medium that is optically thinner than the exterior lets nothing through.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Critical {
+    /// Squared cotangent k of the angle; 0 where there is none.
+    pub cot_sq: f64,
+    /// Half the width w over which rough interfaces blur the kink, in squared cosines.
+    pub width: f64,
+    /// Share of the cosine of the view in that of the axis; the rest is the cosine inside.
+    pub plain_share: f64,
+}
+
+/// Share of the cosine of the view, about.
+const PLAIN_SHARE: f64 = 0.25;
+
+impl Critical {
+    /// The critical angle of a medium of relative index below 1; none for another. A node of the rows is at the kink.
+    pub fn new(index: f64, width: f64, rows: usize) -> Self {
+        if index >= 1.0 {
+            return Self::default();
+        }
+        let cot_sq = (1.0 - index) * (1.0 + index) / (index * index);
+        let critical = Self { cot_sq, width, plain_share: PLAIN_SHARE };
+        let axis = ViewAxis::new(rows, critical);
+        let outside = ((1.0 - index) * (1.0 + index)).sqrt();
+        let (inside, last) = (axis.inside(outside), (axis.size - 1) as f64);
+        let u = libm::round(axis.place(outside)).max(1.0) / last;
+        let share = (u / (2.0 - u) - inside) / (outside - inside);
+        // Where the kink is beside an end of the axis, no node can be.
+        if share > 0.5 * PLAIN_SHARE && share < 2.0 * PLAIN_SHARE {
+            Self { plain_share: share, ..critical }
+        } else {
+            critical
+        }
+    }
+}
+
 /// The axis of rows over the view: nodes at equal distances in `2c / (1 + c)`, up to the normal.
 ///
-/// c is the cosine of the view. Where a smooth first interface reflects flat light totally, everything from below has a kink at the
-/// critical angle; there c is the cosine of the refracted view.
+/// c is the cosine of the view. Where a medium reflects flat light totally, everything from below has a kink at the critical angle. There
+/// c is a mean of the cosine inside ([`Self::inside`]), whose slope is steep at the kink, and of that of the view, which tells flatter views
+/// apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ViewAxis {
     size: usize,
-    critical_cot_sq: f64,
+    critical: Critical,
+    /// Root at the horizon, and what there is from it to that at the normal.
+    roots: [f64; 2],
 }
 
 impl ViewAxis {
-    /// An axis of so many nodes, at least two, for a first interface with the squared cotangent of a critical angle, or 0.
-    pub fn new(size: usize, critical_cot_sq: f64) -> Self {
-        Self { size: size.max(2), critical_cot_sq }
+    /// An axis of so many nodes, at least two.
+    pub fn new(size: usize, critical: Critical) -> Self {
+        let [horizon, normal] = [-critical.cot_sq, 1.0].map(|x| root(x, critical.width));
+        Self { size: size.max(2), critical, roots: [horizon, normal - horizon] }
     }
 
     /// Number of nodes.
@@ -28,15 +68,29 @@ impl ViewAxis {
         self.size
     }
 
-    /// Squared cotangent of the critical angle; 0 without one.
-    pub fn critical_cot_sq(self) -> f64 {
-        self.critical_cot_sq
+    /// The critical angle.
+    pub fn critical(self) -> Critical {
+        self.critical
+    }
+
+    /// The cosine inside: with `x = cos^2 - k sin^2`, the squared cosine of the refracted direction, the root of x rounded off,
+    /// `sqrt((x + sqrt(x^2 + 4 w^2)) / 2)`, in proportion from 0 at the horizon to 1 at the normal. Without a critical angle it is the
+    /// cosine.
+    pub fn inside(self, cos_theta: f64) -> f64 {
+        let sin_sq = (1.0 - cos_theta) * (1.0 + cos_theta);
+        let [horizon, range] = self.roots;
+        let x = cos_theta * cos_theta - self.critical.cot_sq * sin_sq;
+        ((root(x, self.critical.width) - horizon) / range).clamp(0.0, 1.0)
     }
 
     /// The cosine c of a direction.
     pub fn cosine(self, cos_theta: f64) -> f64 {
-        let sin_sq = (1.0 - cos_theta) * (1.0 + cos_theta);
-        (cos_theta * cos_theta - self.critical_cot_sq * sin_sq).clamp(0.0, 1.0).sqrt()
+        if self.critical.cot_sq > 0.0 {
+            let inside = self.inside(cos_theta);
+            inside + self.critical.plain_share * (cos_theta - inside)
+        } else {
+            cos_theta.clamp(0.0, 1.0)
+        }
     }
 
     /// Fractional number of the node of a view.
@@ -53,8 +107,27 @@ impl ViewAxis {
     pub fn cos_theta(self, place: f64) -> f64 {
         let u = place / (self.size - 1) as f64;
         let c = (u / (2.0 - u)).clamp(0.0, 1.0);
-        ((c * c + self.critical_cot_sq) / (1.0 + self.critical_cot_sq)).sqrt().max(FLATTEST)
+        if self.critical.cot_sq == 0.0 || c == 1.0 {
+            return c.max(FLATTEST);
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (low + high);
+            *if self.cosine(middle) < c { &mut low } else { &mut high } = middle;
+        }
+        f64::max(0.5 * (low + high), FLATTEST)
     }
+}
+
+/// Halvings of the interval in which a view is looked for.
+const BISECTIONS: u32 = 50;
+
+/// The root of x, rounded off over a width: `sqrt((x + sqrt(x^2 + 4 w^2)) / 2)`.
+fn root(x: f64, width: f64) -> f64 {
+    let far = (x * x + 4.0 * width * width).sqrt();
+    // Without cancellation.
+    let sum = if x < 0.0 { 4.0 * width * width / (far - x) } else { x + far };
+    (0.5 * sum).sqrt()
 }
 
 /// Energies and shapes at a view.
@@ -170,20 +243,36 @@ mod tests {
 
     #[test]
     fn places_and_views_are_inverse() {
-        let axis = ViewAxis::new(20, 0.0);
+        let axis = ViewAxis::new(20, Critical::default());
+        // From index 1.5 to 1: the critical angle has a sine of two thirds.
+        let (cot_sq, critical_cos) = (1.25, f64::sqrt(5.0 / 9.0));
+        let critical = |width| ViewAxis::new(20, Critical { cot_sq, width, plain_share: 0.25 });
         for place in [0.3, 7.5, 19.0] {
-            for axis in [axis, ViewAxis::new(20, 1.25)] {
+            for axis in [axis, critical(0.01), critical(0.5)] {
                 assert!((axis.place(axis.cos_theta(place)) - place).abs() < 1e-6, "{axis:?} {place}");
             }
         }
-        // From index 1.5 to 1: the critical angle has a sine of two thirds.
-        let critical = ViewAxis::new(20, 1.25).cos_theta(0.0);
-        assert!((critical * critical - 5.0 / 9.0).abs() < 1e-12);
+        // Where x is 0, the rounded root is that of the width.
+        let soft = critical(0.01);
+        let [horizon, normal] = [root(-cot_sq, 0.01), root(1.0, 0.01)];
+        assert!((soft.inside(critical_cos) - (0.1 - horizon) / (normal - horizon)).abs() < 1e-12);
+        assert!((soft.cosine(critical_cos) - (0.75 * soft.inside(critical_cos) + 0.25 * critical_cos)).abs() < 1e-12);
+        assert_eq!([soft.cosine(0.0), soft.cosine(1.0)], [0.0, 1.0]);
+        // With a node at the kink.
+        let kinked = ViewAxis::new(20, Critical::new(2.0 / 3.0, 0.01, 20));
+        let place = kinked.place(critical_cos);
+        assert!((place - libm::round(place)).abs() < 1e-9, "{place}");
+        assert_eq!(Critical::new(1.2, 0.1, 20), Critical::default());
+        // A sharp kink: the cosine of the refracted direction.
+        assert!(
+            critical(0.0).inside(critical_cos - 1e-9) == 0.0
+                && (critical(0.0).inside(0.9) - f64::sqrt(0.81 - 1.25 * 0.19)).abs() < 1e-12
+        );
         assert_eq!(axis.place(0.0), 0.0);
         assert!((axis.cos_theta(19.0) - 1.0).abs() < 1e-15);
         assert!((libm::acos(axis.cos_theta(0.0)).to_degrees() - 89.9).abs() < 1e-3);
         // 2/3 of 1/2 over 3/2: two thirds of the way.
-        assert!((ViewAxis::new(4, 0.0).place(0.5) - 2.0).abs() < 1e-15);
+        assert!((ViewAxis::new(4, Critical::default()).place(0.5) - 2.0).abs() < 1e-15);
     }
 
     #[test]

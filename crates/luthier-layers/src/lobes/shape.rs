@@ -61,14 +61,14 @@ impl Wide {
 
     /// S.
     pub fn value(&self, cos_theta: f64) -> f64 {
-        let rest = 1.0 - self.axis.cosine(cos_theta);
+        let rest = 1.0 - self.axis.inside(cos_theta);
         let square = rest * rest;
         (1.0 - self.falloff[0] * (square * square * rest) - self.falloff[1] * square).max(0.0)
     }
 
     /// Slopes of S by a and by b where it is not 0.
     pub(super) fn slopes(&self, cos_theta: f64) -> [f64; 2] {
-        let rest = 1.0 - self.axis.cosine(cos_theta);
+        let rest = 1.0 - self.axis.inside(cos_theta);
         let square = rest * rest;
         [-square * square * rest, -square]
     }
@@ -91,6 +91,7 @@ impl Wide {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lobes::Critical;
     use luthier_optics::microfacet;
     use luthier_optics::stack::Distribution;
 
@@ -142,8 +143,8 @@ mod tests {
     /// Oracle: by hand, `2 int mu S = 1 - a / 21 - b / 6`.
     #[test]
     fn the_wide_shape_integrates() {
-        let wide = Wide::new([0.7, 0.2], ViewAxis::new(2, 0.0));
+        let wide = Wide::new([0.7, 0.2], ViewAxis::new(2, Critical::default()));
         assert!((wide.integral() - (1.0 - 0.7 / 21.0 - 0.2 / 6.0)).abs() < 1e-4, "{}", wide.integral());
-        assert_eq!(Wide::new([0.0, 2.0], ViewAxis::new(2, 0.0)).value(0.1), 0.0);
+        assert_eq!(Wide::new([0.0, 2.0], ViewAxis::new(2, Critical::default())).value(0.1), 0.0);
     }
 }

@@ -1,7 +1,7 @@
 //! The model's terms as a shader reads them: from texels.
 
 use glam::DVec3;
-use luthier_layers::lobes::{Below, Frame, Row, ViewAxis, Wide};
+use luthier_layers::lobes::{Below, Critical, Frame, Row, ViewAxis, Wide};
 use luthier_layers::statistics::diffuse_base::Veil;
 use luthier_layers::statistics::energy::Energy;
 use luthier_layers::terms::{ShaderTerms, Terms};
@@ -250,10 +250,15 @@ impl ShaderTerms for TableTerms<'_> {
     }
 
     fn below(&self, wo: DVec3) -> Option<Below> {
-        let LobesRecord { index, falloff, critical_cot_sq, .. } = self.lobes.filter(|_| wo.z > 0.0)?;
+        let lobes = self.lobes.filter(|_| wo.z > 0.0)?;
         let (table, _, tile) = self.read_at(TableKind::Lobes, 0)?;
-        let axis = ViewAxis::new(2, critical_cot_sq);
-        let frame = Frame { index, wide: Wide::new(falloff, axis) };
+        let critical = Critical {
+            cot_sq: lobes.critical_cot_sq,
+            width: lobes.critical_width,
+            plain_share: lobes.critical_plain_share,
+        };
+        let axis = ViewAxis::new(2, critical);
+        let frame = Frame { index: lobes.index, wide: Wide::new(lobes.falloff, axis) };
         Some(Below::new(frame, table.row(tile, axis.cosine(wo.z), self.weights), wo))
     }
 }

@@ -14,7 +14,7 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is but the names of tables, for the check that modules name no other.
     #[cfg(test)]
-    const ALL: &str = "absorption anisotropic bare beckmann below bilinear chain chain_diffuse clamped closed coat conductor diffuse \
+    const ALL: &str = "absorption anisotropic bare beckmann below bilinear chain chain_diffuse clamped closed coat conductor critical_view diffuse \
     film film_table flakes full ggx glitter granier granier_bare granier_base \
     granier_film granier_transparent interface lobes_diffuse microfacet_diffuse mixed one_lobe oren_nayar patina phong place \
     schlick_base smith split_root statistics statistics_base theta_axis total_reflection two_lobes";
@@ -124,6 +124,9 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
         names.insert(if layer.film_ior_n[0] > 0.0 { "film" } else { "bare" });
         if layer.critical_cot_sq > 0.0 {
             names.insert("total_reflection");
+        }
+        if material.model == ShadingModel::Lobes && material.constants.lobes.is_some_and(|l| l.critical_cot_sq > 0.0) {
+            names.insert("critical_view");
         }
         if material.model.reads_distribution() && layer.tiles[TableKind::Distribution].is_none() {
             names.insert("closed");

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use luthier_layers::lobes::{Below, Frame, Row, ViewAxis, Wide};
+use luthier_layers::lobes::{Below, Critical, Frame, Row, ViewAxis, Wide};
 use luthier_lut::{AtlasLayout, Image, TableKind, WeightBits, bilinear};
 use luthier_manifest::{LobesRecord, MaterialEntry, material_buffer};
 use luthier_optics::microfacet;
@@ -45,10 +45,17 @@ fn set(name: &str) -> Vec<MaterialEntry> {
 #[test]
 fn light_from_below_is_that_of_the_twin() {
     let (layout, image) = rows();
-    for (name, critical_cot_sq) in [("lobes", 0.0), ("lobes-inward", 0.0), ("lobes-inward", 1.25)] {
+    for (name, cot_sq, width) in [("lobes", 0.0, 0.0), ("lobes-inward", 0.0, 0.0), ("lobes-inward", 1.25, 0.02)] {
         let mut materials = set(name);
-        let lobes = LobesRecord { index: 1.4, falloff: [0.6, 0.3], integral: 1.0, critical_cot_sq };
-        let axis = ViewAxis::new(2, critical_cot_sq);
+        let lobes = LobesRecord {
+            index: 1.4,
+            falloff: [0.6, 0.3],
+            integral: 1.0,
+            critical_cot_sq: cot_sq,
+            critical_width: width,
+            critical_plain_share: 0.25,
+        };
+        let axis = ViewAxis::new(2, Critical { cot_sq, width, plain_share: 0.25 });
         let wide = Wide::new(lobes.falloff, axis);
         materials[0].constants.lobes = Some(LobesRecord { integral: wide.integral(), ..lobes });
         let set = MaterialSet { materials: &materials, tables: tables() };
@@ -157,7 +164,14 @@ fn directions_are_drawn_as_their_density_says() {
     let (_, image) = rows();
     for (name, coat) in [("lobes", 0.3), ("lobes-inward", 0.2)] {
         let mut materials = set(name);
-        let lobes = LobesRecord { index: 1.4, falloff: [0.6, 0.3], integral: 0.8, critical_cot_sq: 0.0 };
+        let lobes = LobesRecord {
+            index: 1.4,
+            falloff: [0.6, 0.3],
+            integral: 0.8,
+            critical_cot_sq: 0.0,
+            critical_width: 0.0,
+            critical_plain_share: 0.0,
+        };
         materials[0].constants.lobes = Some(lobes);
         let first = &mut materials[0].layers[0];
         (first.alpha, first.alpha_xy) = (coat, [coat; 2]);

@@ -171,8 +171,15 @@ fn inward() -> LayerRecord {
 fn with_lobes(mut material: MaterialEntry) -> MaterialEntry {
     material.model = ShadingModel::Lobes;
     material.layers[0].tiles[TableKind::Lobes] = Some(0);
-    material.constants.lobes =
-        Some(LobesRecord { index: 1.5, falloff: [0.6, 0.2], integral: 0.9, critical_cot_sq: 0.0 });
+    let critical_cot_sq = material.layers[0].critical_cot_sq;
+    material.constants.lobes = Some(LobesRecord {
+        index: 1.5,
+        falloff: [0.6, 0.2],
+        integral: 0.9,
+        critical_cot_sq,
+        critical_width: 0.02,
+        critical_plain_share: 0.25,
+    });
     material
 }
 

@@ -28,9 +28,9 @@ struct LuthierPreparedLobes {
     inside_cos: f32,
     /// The index squared less 1, the coefficients of the remainder's shape, and 1 over its integral.
     medium: vec4<f32>,
-    //? total_reflection
-    /// Squared cotangent of the critical angle; 0 where nothing has a kink there.
-    critical_cot_sq: f32,
+    //? critical_view
+    /// Numbers of the cosine inside, see `luthier_inside_cosine`.
+    inside: vec4<f32>,
     //? end
     /// Energy of the remainder, RGB.
     wide: vec3<f32>,
@@ -65,11 +65,15 @@ fn luthier_slope_lambda(coat: LuthierLayer, slope: f32) -> f32 {
     //? end
 }
 
-//? total_reflection
-/// Cosine of a refracted direction; 0 where it would be totally reflected.
-fn luthier_critical_cosine(critical_cot_sq: f32, cos_theta: f32) -> f32 {
-    let sin_theta_sq = (1.0 - cos_theta) * (1.0 + cos_theta);
-    return sqrt(max(cos_theta * cos_theta - critical_cot_sq * sin_theta_sq, 0.0));
+//? critical_view
+/// The cosine of a refracted direction where a medium reflects flat light totally: its kink at the critical angle is rounded off, and it goes
+/// from 0 at the horizon to 1 at the normal. The numbers: squared cotangent of the angle, four times the squared width of the kink, factor
+/// and offset.
+fn luthier_inside_cosine(inside: vec4<f32>, cos_theta: f32) -> f32 {
+    let cos_theta_sq = cos_theta * cos_theta;
+    let refracted = cos_theta_sq - inside.x * (1.0 - cos_theta_sq);
+    let root = sqrt(max(0.5 * (refracted + sqrt(refracted * refracted + inside.y)), 0.0));
+    return root * inside.z + inside.w;
 }
 //? end
 
@@ -97,9 +101,10 @@ fn luthier_prepare_lobes(material: u32, wo: vec3<f32>) -> LuthierPreparedLobes {
     prepared.azimuth = across * inverse_sin;
     prepared.medium = luthier_materials[header + $word_veil];
     prepared.inside_cos = sqrt(luthier_inside_cos_sq(prepared.medium, wo.z));
-    //? total_reflection
-    prepared.critical_cot_sq = luthier_materials[header + $word_phong_specular].w;
-    let cos_theta = luthier_critical_cosine(prepared.critical_cot_sq, wo.z);
+    //? critical_view
+    prepared.inside = luthier_materials[header + $word_phong_specular];
+    // Rows are over a mean of it and of the cosine outside.
+    let cos_theta = mix(luthier_inside_cosine(prepared.inside, wo.z), wo.z, luthier_materials[header + $word_phong_diffuse].w);
     //? else
     let cos_theta = wo.z;
     //? end
@@ -156,8 +161,8 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     var value = luthier_fresnel_term(prepared.coat, cos_theta_d) * facets;
     let medium = prepared.medium;
     // The wide remainder.
-    //? total_reflection
-    let away = 1.0 - luthier_critical_cosine(prepared.critical_cot_sq, wi.z);
+    //? critical_view
+    let away = 1.0 - luthier_inside_cosine(prepared.inside, wi.z);
     //? else
     let away = 1.0 - wi.z;
     //? end
