@@ -7,7 +7,7 @@ use std::path::Path;
 use luthier_bake::{BakeError, BakedMaterial, ImageReader, MapSource, MaterialMap, Observer, Options, Silent, Store};
 use luthier_lut::{Atlas, AtlasLayout, Image, TableKind, TexelFormat};
 use luthier_manifest::{
-    FileEntry, Form, Manifest, MapEntry, MaterialEntry, MaterialTexture, TableEntry, Target, material_buffer,
+    FileEntry, Form, Functions, Manifest, MapEntry, MaterialEntry, MaterialTexture, TableEntry, Target, material_buffer,
 };
 use luthier_material::{Diagnostic, Material, Severity};
 use luthier_shader::{MaterialSet, ShaderError};
@@ -26,6 +26,8 @@ pub struct Bake<'a> {
     pub targets: Vec<Target>,
     /// Forms of the shaders, or none for all that the models have; with [`Form::Full`] alone the package has no tables.
     pub forms: Vec<Form>,
+    /// Groups of functions of each shader.
+    pub functions: Functions,
     /// Told what happens.
     pub observer: &'a dyn Observer,
     /// Whether materials outside the domain of their model are refused; tests at the limits of models take them.
@@ -38,6 +40,7 @@ impl Default for Bake<'_> {
             options: Options::default(),
             targets: vec![Target::Wgsl, Target::Glsl450, Target::GlslEs300],
             forms: Vec::new(),
+            functions: Functions::default(),
             observer: &Silent,
             refuses: true,
         }
@@ -137,7 +140,8 @@ impl Package {
             tiles: atlas.tiles.clone(),
             ..table_entry(atlas.kind, &atlas.layout, atlas.format)
         };
-        let manifest = Manifest::new(GENERATOR, entries, atlases.iter().map(entry).collect());
+        let tables = atlases.iter().map(entry).collect();
+        let manifest = Manifest { functions: bake.functions.clone(), ..Manifest::new(GENERATOR, entries, tables) };
         let table =
             |atlas: Atlas| Table { kind: atlas.kind, texture: Texture::from_atlas(&atlas), truth: Some(atlas.truth) };
         let tables = atlases.into_iter().map(table).collect();

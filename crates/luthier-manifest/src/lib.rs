@@ -12,6 +12,7 @@ mod distribution;
 mod error;
 mod feature;
 mod form;
+mod functions;
 mod limits;
 mod manifest;
 mod model;
@@ -26,6 +27,7 @@ pub use constants::{FlakesRecord, GlitterRecord, LobesRecord, MaterialConstants,
 pub use error::ManifestError;
 pub use feature::Feature;
 pub use form::Form;
+pub use functions::{FunctionGroup, Functions};
 pub use limits::{BUFFER_WORDS_MAX, MaterialTexture, SIDE, SIDE_MAX};
 pub use luthier_optics::stack::Distribution;
 pub use manifest::{

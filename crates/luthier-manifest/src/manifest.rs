@@ -4,7 +4,8 @@ use luthier_lut::{AtlasLayout, TableKind, TexelFormat, Tile};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Form, LayerRecord, ManifestError, MaterialConstants, MaterialTexture, SceneChoice, Search, ShadingModel, Target,
+    Form, Functions, LayerRecord, ManifestError, MaterialConstants, MaterialTexture, SceneChoice, Search, ShadingModel,
+    Target,
 };
 
 /// Version of the manifest's shape. A reader refuses any other.
@@ -29,6 +30,9 @@ pub struct Manifest {
     pub choice: Option<SceneChoice>,
     /// The emitted shaders.
     pub shaders: Vec<ShaderEntry>,
+    /// The groups of functions that each of them has; absent where it is `eval` alone.
+    #[serde(default, skip_serializing_if = "Functions::is_eval_alone")]
+    pub functions: Functions,
     /// Resources of group 0, and where to bind them.
     pub bindings: Vec<BindingEntry>,
     /// The material buffer: little-endian `vec4<f32>` words, see [`crate::material_buffer`].
@@ -222,6 +226,7 @@ impl Manifest {
             searches: Vec::new(),
             choice: None,
             shaders: Vec::new(),
+            functions: Functions::default(),
             bindings: Vec::new(),
             material_buffer: FileEntry::default(),
             material_texture: MaterialTexture::default(),
@@ -387,6 +392,7 @@ mod tests {
             }],
             choice: None,
             shaders: vec![ShaderEntry { target: Target::Wgsl, form: Form::Baked, file: file("shaders/baked.wgsl") }],
+            functions: Functions::default(),
             bindings: vec![BindingEntry {
                 binding: 1,
                 name: "luthier_distribution".into(),

@@ -3,7 +3,7 @@
 use luthier_bake::{BakeError, MemoryStore, Options};
 use luthier_export::{Bake, ExportError, Package, PackageError, sha256};
 use luthier_lut::FormatSet;
-use luthier_manifest::{Budget, MaterialChoice, SceneBudget, SceneChoice, SceneError, Target};
+use luthier_manifest::{Budget, Functions, MaterialChoice, SceneBudget, SceneChoice, SceneError, Target};
 use luthier_material::{Material, Scene};
 use luthier_report::{ReportError, Subject, TableTerms, Weights};
 use thiserror::Error;
@@ -21,6 +21,7 @@ pub struct Director<'a> {
     scene: &'a Scene,
     materials: &'a [Material],
     targets: Vec<Target>,
+    functions: Functions,
     store: MemoryStore,
     costs: CostTable,
     baked: Option<Vec<Judge>>,
@@ -96,11 +97,18 @@ impl<'a> Director<'a> {
             scene,
             materials,
             targets,
+            functions: Functions::default(),
             store: MemoryStore::default(),
             costs: CostTable::shipped(),
             baked: None,
             full: None,
         }
+    }
+
+    /// With these groups of functions in the shaders.
+    #[must_use]
+    pub fn with_functions(self, functions: Functions) -> Self {
+        Self { functions, ..self }
     }
 
     /// Chooses and bakes, under another limit on the relative error if one is given: with tables, or, where these do not fit the target,
@@ -168,7 +176,8 @@ impl<'a> Director<'a> {
             .map(|(judge, choice)| judge.candidates()[choice.chosen].material.clone())
             .collect();
         // The judges know the domain of a model better: they have its error.
-        let bake = Bake { targets: self.targets.clone(), forms: vec![form], refuses: false, ..Bake::default() };
+        let (targets, functions) = (self.targets.clone(), self.functions.clone());
+        let bake = Bake { targets, forms: vec![form], functions, refuses: false, ..Bake::default() };
         let package = match form {
             Form::Full => Package::new(&materials, &bake, &self.store)?,
             Form::Baked => {

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use luthier_lut::{AtlasLayout, TableKind, TexelFormat, Values};
 use luthier_manifest::{
-    BUFFER_WORDS_MAX, BindingEntry, LAYER_WORDS, LayerRecord, MATERIAL_WORDS, Manifest, MaterialEntry, ShadingModel,
+    BUFFER_WORDS_MAX, BindingEntry, Functions, LAYER_WORDS, LayerRecord, MATERIAL_WORDS, Manifest, MaterialEntry,
+    ShadingModel,
 };
 
 use crate::{Form, ShaderError};
@@ -47,14 +48,22 @@ pub struct MaterialSet<'a> {
     /// The tables, at most one of a kind; of several the first counts. The `baked` form evaluates D in closed form for layers without a
     /// tile of a distribution table.
     pub tables: Vec<TableFace>,
+    /// The groups of functions that its shaders have.
+    pub functions: Functions,
 }
 
 impl<'a> MaterialSet<'a> {
-    /// All materials and tables of a bake.
+    /// Materials and tables, for shaders of `luthier_eval` alone.
+    pub fn new(materials: &'a [MaterialEntry], tables: Vec<TableFace>) -> Self {
+        Self { materials, tables, functions: Functions::default() }
+    }
+
+    /// All materials, tables and groups of functions of a bake.
     pub fn from_manifest(manifest: &'a Manifest) -> Self {
         let face =
             |t: &luthier_manifest::TableEntry| TableFace { kind: t.kind, layout: t.layout.clone(), format: t.format };
-        Self { materials: &manifest.materials, tables: manifest.tables.iter().map(face).collect() }
+        let tables = manifest.tables.iter().map(face).collect();
+        Self { materials: &manifest.materials, tables, functions: manifest.functions.clone() }
     }
 
     /// All records of all materials, in the order of the buffer.

@@ -8,7 +8,7 @@ use clap::{ArgGroup, Args, Parser, Subcommand};
 #[cfg(feature = "cost")]
 use luthier_cost::Family;
 use luthier_lut::TableKind;
-use luthier_manifest::{Form, ShadingModel, Target};
+use luthier_manifest::{Form, FunctionGroup, ShadingModel, Target};
 use luthier_terminal::{Sources, named};
 
 use crate::directions::Angles;
@@ -152,6 +152,9 @@ pub(crate) struct Emission {
     /// Forms of the shaders; by default both
     #[arg(long, value_parser = named::<Form>(Form::NAMES), value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) form: Vec<Form>,
+    /// Groups of functions beside luthier_eval: `light` (two steps for many lights), `sample` (drawn directions), `albedo`
+    #[arg(long, value_parser = named::<FunctionGroup>(FunctionGroup::NAMES), value_name = "NAME,...", value_delimiter = ',')]
+    pub(crate) functions: Vec<FunctionGroup>,
 }
 
 /// Limits on tables. Each replaces that of the files' `[budget]`; the bake takes the cheapest tables that hold them (docs/pages/budgets.md).
@@ -352,7 +355,7 @@ pub(crate) use view::{ThemeName, ViewOptions};
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  luthier shader materials\n  luthier shader mine.toml --target glsl-es300 --form full --complete\n  luthier shader mine.toml --target spirv --complete -o mine.spv"
+    after_help = "Examples:\n  luthier shader materials\n  luthier shader mine.toml --target glsl-es300 --form full --complete\n  luthier shader mine.toml --functions sample,albedo\n  luthier shader mine.toml --target spirv --complete -o mine.spv"
 )]
 pub(crate) struct ShaderOptions {
     #[command(flatten)]
@@ -365,6 +368,9 @@ pub(crate) struct ShaderOptions {
     /// Form of the shader: `baked` reads tables, `full` computes all terms
     #[arg(long, value_parser = named::<Form>(Form::NAMES), default_value_t = Form::Baked)]
     pub(crate) form: Form,
+    /// Groups of functions beside luthier_eval: `light` (two steps for many lights), `sample` (drawn directions), `albedo`
+    #[arg(long, value_parser = named::<FunctionGroup>(FunctionGroup::NAMES), value_name = "NAME,...", value_delimiter = ',')]
+    pub(crate) functions: Vec<FunctionGroup>,
     /// D in closed form instead of from its table
     #[arg(long)]
     pub(crate) closed: bool,

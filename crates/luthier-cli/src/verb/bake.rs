@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use luthier_bake::{Observer, Silent};
 use luthier_export::{Bake, Compression, MANIFEST, MemoryStore, Package, Source, of_model, read, refuse};
-use luthier_manifest::{CandidateForm, Manifest};
+use luthier_manifest::{CandidateForm, Functions, Manifest};
 use luthier_material::Diagnostic;
 use luthier_shader::{Form, Target};
 use luthier_terminal::{Failure, Outcome, bytes, print, valid};
@@ -48,7 +48,8 @@ pub(crate) fn run(options: &BakeOptions) -> Outcome {
         .map_err(|source| Failure::Files(anyhow::Error::new(source).context("cannot start threads")))?;
     let encoded = pool.install(|| {
         let observer: &dyn Observer = if options.quiet { &Silent } else { &progress };
-        let bake = Bake { options: limits, targets: options.emission.targets(), forms, observer, ..Bake::default() };
+        let (targets, functions) = (options.emission.targets(), options.emission.functions());
+        let bake = Bake { options: limits, targets, forms, functions, observer, ..Bake::default() };
         Ok::<_, Failure>(Package::new(&materials, &bake, &MemoryStore::default())?.encode(options.compression())?)
     })?;
     whole(|| encoded.write(&options.out))?;
@@ -76,6 +77,11 @@ impl Emission {
     /// The forms that are asked for, each once.
     fn forms(&self) -> Vec<Form> {
         self.form.iter().copied().collect::<BTreeSet<Form>>().into_iter().collect()
+    }
+
+    /// The groups of functions of each shader.
+    pub(super) fn functions(&self) -> Functions {
+        self.functions.iter().copied().collect()
     }
 }
 

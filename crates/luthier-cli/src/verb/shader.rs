@@ -11,7 +11,8 @@ use crate::materials::bakeable;
 /// Prints or writes the shader of some materials, without baking them.
 pub(crate) fn run(options: &ShaderOptions) -> Outcome {
     let materials = bakeable(read(&options.sources.paths)?, &options.shading, false)?;
-    let manifest = outline(&materials, &Options::default())?;
+    let mut manifest = outline(&materials, &Options::default())?;
+    manifest.functions = options.functions.iter().copied().collect();
     let set = MaterialSet::from_manifest(&manifest);
     let set = if options.closed { set.with_closed_distribution() } else { set };
     let (form, target) = (options.form, options.target);

@@ -106,6 +106,7 @@ impl Bake {
             searches: Vec::new(),
             choice: None,
             shaders: Vec::new(),
+            functions: luthier_manifest::Functions::default(),
             bindings: Vec::new(),
             material_buffer: FileEntry::default(),
             material_texture: luthier_manifest::MaterialTexture::default(),

@@ -82,7 +82,7 @@ mod tests {
     use crate::{Form, MaterialSet};
 
     fn none() -> Features {
-        Features::of(&MaterialSet { materials: &[], tables: Vec::new() }, Form::Baked)
+        Features::of(&MaterialSet::new(&[], Vec::new()), Form::Baked)
     }
 
     #[test]

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use luthier_manifest::{LayerKind, ShadingModel};
 
 use crate::MaterialSet;
+use crate::compose::face::parts_function;
 use crate::compose::features::Features;
 use crate::compose::function;
 
@@ -96,4 +97,163 @@ fn patina(model: ShadingModel, features: &Features) -> String {
          }}\n",
         model.name()
     )
+}
+
+/// Number of interfaces down to the last one of a model's materials; with patina those of the bare stacks come behind.
+pub(crate) fn parts_count(set: &MaterialSet<'_>, model: ShadingModel, has_patina: bool) -> usize {
+    let depth = layers(set, model)
+        .iter()
+        .filter_map(|layers| layers.iter().rposition(|layer| layer.kind != LayerKind::Diffuse))
+        .map(|last| last + 1)
+        .max()
+        .unwrap_or(0);
+    // What is bare begins one layer below the top.
+    if has_patina { (2 * depth).saturating_sub(1) } else { depth }
+}
+
+fn layers<'a>(set: &MaterialSet<'a>, model: ShadingModel) -> Vec<&'a [luthier_manifest::LayerRecord]> {
+    set.materials.iter().filter(|m| m.model == model).map(|m| m.layers.as_slice()).collect()
+}
+
+/// `luthier_parts_<model>`: the interfaces as light in the mirrored direction meets them, and what a base reflects of light at a mean cosine.
+pub(crate) fn parts(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> String {
+    let mut out = format!(
+        "/// The parts of the model `{}`.\n\
+         fn {}(given: LuthierPrepared, $place_parameter material: u32, wo: vec3<f32>) -> LuthierPrepared {{\n    \
+             var prepared = given;\n    let light = luthier_mean_light(wo);\n",
+        model.name(),
+        parts_function(model)
+    );
+    let layers = layers(set, model);
+    let count = parts_count(set, model, false);
+    if count == 0 {
+        let base = "let layer = $layer(material, 0u);\n    prepared.wide = LUTHIER_PI * $diffuse(layer, light, wo);";
+        return format!("{out}    {base}\n    return prepared;\n}}\n");
+    }
+    let has_patina = features.has("patina");
+    let depths = || layers.iter().map(|layers| layers.len());
+    if depths().min() < depths().max() || has_patina {
+        out.push_str("    let count = luthier_layer_count(material);\n");
+    }
+    if has_patina {
+        out.push_str(
+            "    prepared.wide = luthier_patina_diffuse(place, material, light, wo) * (LUTHIER_PI / light.z);\n    \
+             let amount = select(1.0, place.patina, place.patina >= 0.0);\n    if amount > 0.0 {\n",
+        );
+        out.push_str(&walk(&layers, model, features, &Walk { share: "amount", is_bare: false, first_part: 0 }));
+        out.push_str("    }\n    if amount < 1.0 {\n");
+        out.push_str(&walk(
+            &layers,
+            model,
+            features,
+            &Walk { share: "1.0 - amount", is_bare: true, first_part: count },
+        ));
+        out.push_str("    }\n");
+    } else {
+        out.push_str(&walk(&layers, model, features, &Walk { share: "1.0", is_bare: false, first_part: 0 }));
+    }
+    out + "    return prepared;\n}\n"
+}
+
+/// A way down the layers.
+struct Walk<'w> {
+    /// Share of the surface where it is gone.
+    share: &'w str,
+    /// Whether the first layer is not there.
+    is_bare: bool,
+    /// Number of the part of its first interface.
+    first_part: usize,
+}
+
+fn walk(
+    layers: &[&[luthier_manifest::LayerRecord]],
+    model: ShadingModel,
+    features: &Features,
+    walk: &Walk<'_>,
+) -> String {
+    const LEVEL: &str = "vec3<f32>(0.0, 0.0, 1.0)";
+    let is_diffuse = |layer: &luthier_manifest::LayerRecord| layer.kind == LayerKind::Diffuse;
+    let (has_flakes, is_clamped) = (features.has("flakes"), features.has("clamped"));
+    let (interface, alpha, axis) = match model {
+        ShadingModel::Elek if is_clamped => {
+            ("luthier_elek_interface", "vec2<f32>(next.alpha_above)", "vec2<f32>(1.0, 0.0)")
+        }
+        ShadingModel::WeidlichWilkie if features.has("anisotropic") => {
+            ("luthier_add_interface", "layer.alpha_xy", "layer.rotation")
+        }
+        _ => ("luthier_add_interface", "vec2<f32>(layer.alpha)", "vec2<f32>(1.0, 0.0)"),
+    };
+    let normal = if walk.is_bare { LEVEL } else { "place.flake_normal" };
+    let below = if has_flakes { format!(", {normal}") } else { String::new() };
+    let clamp = if is_clamped { "0.0, " } else { "" };
+    let start = |light: &str, across: &str| {
+        format!("LuthierPath({light}, wo, {across}, vec3<f32>({}), vec3<f32>(0.0), {clamp}true{below})", walk.share)
+    };
+    let mut lines = vec![
+        format!("var path = {};", start("vec3<f32>(-wo.xy, wo.z)", "vec2<f32>(0.0)")),
+        format!("var mean = {};", start("light", "light.xy + wo.xy")),
+    ];
+    let depth = layers.iter().map(|layers| layers.len()).max().unwrap_or(0);
+    let least = layers.iter().map(|layers| layers.len()).min().unwrap_or(0);
+    let first = usize::from(walk.is_bare);
+    if depth > first + 1 {
+        lines.push("var eta = 1.0;".to_owned());
+        if has_flakes {
+            lines.push("var outer_eta = 1.0;".to_owned());
+        }
+    }
+    for i in first..depth {
+        let here = || layers.iter().filter_map(|layers| layers.get(i));
+        let index = if walk.is_bare && i == 1 { "count".to_owned() } else { format!("{i}u") };
+        let media = match (i == first, has_flakes) {
+            (true, _) => format!("1.0, {LEVEL}, 1.0"),
+            (false, false) => format!("eta, {LEVEL}, 1.0"),
+            (false, true) => format!("outer_eta, {normal}, eta"),
+        };
+        let mut add = vec![
+            format!("let next = {interface}(path, layer);"),
+            format!(
+                "prepared.parts[{}] = luthier_path_part(path, layer, {alpha}, {axis}, {media});",
+                walk.first_part + i - first
+            ),
+            "if mean.open {".to_owned(),
+            format!("    mean = {interface}(mean, layer);"),
+            "}".to_owned(),
+            "path = luthier_path_mirrored(next);".to_owned(),
+        ];
+        if i + 1 < depth {
+            let eta = if i == first && has_flakes { "outer_eta" } else { "eta" };
+            add.push(format!("{eta} = {eta} / layer.inverse_eta;"));
+        }
+        let base = [
+            "if mean.open {",
+            "    mean.total = vec3<f32>(0.0);",
+            "    mean = luthier_add_diffuse(mean, layer);",
+            "    prepared.wide += LUTHIER_PI * mean.total;",
+            "}",
+            "path.open = false;",
+        ]
+        .map(str::to_owned);
+        let mut step = vec![format!("let layer = $layer(material, {index});")];
+        match (here().any(|layer| is_diffuse(layer)), here().all(|layer| is_diffuse(layer))) {
+            (false, _) => step.extend(add),
+            (true, true) => step.extend(base),
+            (true, false) => {
+                step.push("if layer.kind == LUTHIER_DIFFUSE {".to_owned());
+                step.extend(base.iter().map(|line| format!("    {line}")));
+                step.push("} else {".to_owned());
+                step.extend(add.iter().map(|line| format!("    {line}")));
+                step.push("}".to_owned());
+            }
+        }
+        lines.push(match i {
+            _ if i == first && first < least => "{".to_owned(),
+            _ if i < least => "if path.open {".to_owned(),
+            _ => format!("if path.open & (count > {i}u) {{"),
+        });
+        lines.extend(step.iter().map(|line| format!("    {line}")));
+        lines.push("}".to_owned());
+    }
+    let indent = if features.has("patina") { "        " } else { "    " };
+    lines.iter().map(|line| format!("{indent}{line}\n")).collect()
 }

@@ -15,9 +15,9 @@ impl Features {
     /// Every word there is but the names of tables, for the check that modules name no other.
     #[cfg(test)]
     const ALL: &str = "absorption anisotropic bare beckmann below bilinear chain chain_diffuse clamped closed coat conductor critical_view diffuse \
-    film film_table flakes full ggx glitter granier granier_bare granier_base \
-    granier_film granier_transparent interface lobes_diffuse microfacet_diffuse mixed one_lobe oren_nayar patina phong place \
-    schlick_base smith split_root statistics statistics_base theta_axis total_reflection two_lobes";
+    face film film_table flakes full ggx glitter granier granier_bare granier_base \
+    granier_film granier_transparent interface lobes_diffuse media microfacet_diffuse mixed one_lobe oren_nayar patina phong \
+    place powers schlick_base several smith split_root statistics statistics_base theta_axis tilted total_reflection two_lobes visible";
 
     pub(crate) fn of(set: &MaterialSet<'_>, form: Form) -> Self {
         let mut names = BTreeSet::new();
@@ -68,6 +68,9 @@ impl Features {
         if has_elek && names.contains("chain") && ["place", "anisotropic"].iter().any(|name| names.contains(name)) {
             names.insert("clamped");
         }
+        if !set.functions.is_eval_alone() {
+            names.extend(of_face(set, &names));
+        }
         Self(names)
     }
 
@@ -83,6 +86,21 @@ impl Features {
         }
         Self(names)
     }
+}
+
+/// What functions beside `luthier_eval` need: lobes of visible normals, and of powers of a cosine; whether some are below boundaries, and
+/// tilted there; whether a material has to say which model it is of.
+fn of_face(set: &MaterialSet<'_>, names: &BTreeSet<&'static str>) -> Vec<&'static str> {
+    let has = |name| names.contains(name);
+    let words = [
+        ("face", true),
+        ("visible", has("chain") || has("smith") || has("statistics")),
+        ("powers", has("phong") || has("granier") && has("interface")),
+        ("media", has("chain") && has("below") || has("granier_transparent")),
+        ("tilted", has("flakes") || has("granier_transparent") && has("place")),
+        ("several", set.models().count() > 1 || has("lobes") && has("lobes_diffuse")),
+    ];
+    words.into_iter().filter(|(_, holds)| *holds).map(|(name, _)| name).collect()
 }
 
 /// The word for a table that is read; `film` is whether any layer has one.

@@ -2,6 +2,7 @@
 
 mod blocks;
 mod chain;
+mod face;
 mod features;
 mod lookup;
 mod members;
@@ -49,6 +50,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         (has("bilinear"), include_str!("../wgsl/tables/bilinear.wgsl")),
         (true, include_str!("../wgsl/layer.wgsl")),
         (has("place"), include_str!("../wgsl/surface/place.wgsl")),
+        (has("place") || has("powers"), include_str!("../wgsl/surface/local.wgsl")),
         (has("flakes") || has("glitter"), include_str!("../wgsl/surface/hash.wgsl")),
         (has("flakes"), include_str!("../wgsl/surface/flakes.wgsl")),
         (has("patina"), include_str!("../wgsl/surface/patina.wgsl")),
@@ -73,6 +75,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     for model in set.models() {
         parts.extend(self::model(set, model, &features));
     }
+    parts.extend(face::modules(set, &features));
     parts.push(eval(set, &features));
     parts.push(include_str!("../wgsl/bounded.wgsl").to_owned());
     if parts.iter().any(|part| part.contains("LUTHIER_PI")) {
@@ -143,10 +146,7 @@ fn model(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec
         ShadingModel::GranierHeidrich => vec![module(include_str!("../wgsl/models/granier_heidrich.wgsl"))],
         ShadingModel::Phong => vec![module(include_str!("../wgsl/models/phong.wgsl"))],
         ShadingModel::Microfacet => vec![module(include_str!("../wgsl/models/microfacet.wgsl"))],
-        ShadingModel::Lobes => vec![
-            module(include_str!("../wgsl/models/lobes.wgsl")),
-            module(include_str!("../wgsl/models/lobes_sample.wgsl")),
-        ],
+        ShadingModel::Lobes => vec![module(include_str!("../wgsl/models/lobes.wgsl"))],
         ShadingModel::Belcour | ShadingModel::Yamaguchi => statistics::modules(set, model, features),
     }
 }

@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use luthier_manifest::{LayerKind, LayerRecord, ShadingModel};
 
 use crate::MaterialSet;
+use crate::compose::face::parts_function;
 use crate::compose::features::Features;
 use crate::compose::{function, text};
 
@@ -33,7 +34,7 @@ pub(crate) fn modules(set: &MaterialSet<'_>, model: ShadingModel, features: &Fea
 }
 
 /// Whether every material of a model is a diffuse base alone.
-fn is_bare(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
+pub(crate) fn is_bare(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
     layers(set, model).iter().all(|layers| layers.first().is_some_and(is_diffuse))
 }
 
@@ -93,4 +94,96 @@ fn eval(set: &MaterialSet<'_>, model: ShadingModel) -> String {
     }
     out.push_str("    return sum;\n}\n");
     out
+}
+
+/// `luthier_parts_<model>` and `luthier_light_<model>`: the lobes of the eye's direction are kept for all lights.
+pub(crate) fn parts(set: &MaterialSet<'_>, model: ShadingModel) -> String {
+    let prefix = format!("luthier_{}", model.name());
+    let mut out = format!(
+        "/// The parts of the model `{}`: its lobes, and its base.\n\
+         fn {}(given: LuthierPrepared, $place_parameter material: u32, wo: vec3<f32>) -> LuthierPrepared {{\n    \
+             var prepared = given;\n",
+        model.name(),
+        parts_function(model)
+    );
+    if is_bare(set, model) {
+        return out
+            + "    let layer = $layer(material, 0u);\n    let light = luthier_mean_light(wo);\n    \
+               prepared.wide = LUTHIER_PI * $diffuse(layer, light, wo);\n    return prepared;\n}\n";
+    }
+    let layers = layers(set, model);
+    let depth = layers.iter().map(|layers| layers.len()).max().unwrap_or(0);
+    if depth > 1 {
+        out.push_str("    let count = luthier_layer_count(material);\n");
+    }
+    let has_base = layers.iter().flat_map(|layers| layers.iter()).any(is_diffuse);
+    if has_base {
+        out.push_str("    let mean = luthier_mean_light(wo);\n");
+    }
+    let _ = writeln!(out, "    var eye = {prefix}_start(wo.z);");
+    let down = |i: usize, cosine: &str| {
+        let above = (0..i).map(|k| format!("light = {prefix}_add(light, $layer(material, {k}u));"));
+        std::iter::once(format!("var light = {prefix}_start({cosine});")).chain(above).collect::<Vec<_>>()
+    };
+    let mut light = format!(
+        "\n/// f cos_theta_i of the model `{}`, its lobes as they are prepared.\n\
+         fn luthier_light_{}(prepared: LuthierPrepared, $place_parameter material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n    \
+             var sum = vec3<f32>(0.0);\n",
+        model.name(),
+        model.name()
+    );
+    for i in 0..depth {
+        let here = || layers.iter().filter_map(|layers| layers.get(i));
+        let interface =
+            [format!("eye = {prefix}_add(eye, layer);"), format!("prepared.parts[{i}] = {prefix}_part(eye);")];
+        let mut base = down(i, "mean.z");
+        base.extend([
+            format!(
+                "prepared.wide = {prefix}_add_base(material, layer, light, eye, mean, wo) * (LUTHIER_PI / mean.z);"
+            ),
+            format!("prepared.base = {}u;", i + 1),
+            "prepared.base_share = eye.t0i;".to_owned(),
+            "prepared.base_cos = eye.cos_theta;".to_owned(),
+            "prepared.base_eta = eye.eta;".to_owned(),
+            "eye.open = false;".to_owned(),
+        ]);
+        if !here().all(is_diffuse) {
+            let _ = writeln!(
+                light,
+                "    sum += prepared.parts[{i}].energy * luthier_ggx_lobe(prepared.parts[{i}].alpha, prepared.parts[{i}].axis, wi, wo);"
+            );
+        }
+        if here().any(is_diffuse) {
+            let _ = writeln!(light, "    if prepared.base == {}u {{", i + 1);
+            let mut step = down(i, "wi.z");
+            step.extend([
+                format!("var eye = {prefix}_start(1.0);"),
+                "eye.t0i = prepared.base_share;".to_owned(),
+                "eye.cos_theta = prepared.base_cos;".to_owned(),
+                "eye.eta = prepared.base_eta;".to_owned(),
+                format!("sum += {prefix}_add_base(material, $layer(material, {i}u), light, eye, wi, wo);"),
+            ]);
+            light.extend(step.iter().map(|line| format!("        {line}\n")));
+            light.push_str("    }\n");
+        }
+        let mut step = vec![format!("let layer = $layer(material, {i}u);")];
+        match (here().any(is_diffuse), here().all(is_diffuse)) {
+            (false, _) => step.extend(interface),
+            (true, true) => step.extend(base),
+            (true, false) => {
+                step.push("if layer.kind == LUTHIER_DIFFUSE {".to_owned());
+                step.extend(base.iter().map(|line| format!("    {line}")));
+                step.push("} else {".to_owned());
+                step.extend(interface.iter().map(|line| format!("    {line}")));
+                step.push("}".to_owned());
+            }
+        }
+        out.push_str(&match i {
+            0 => "    {\n".to_owned(),
+            _ => format!("    if eye.open & (count > {i}u) {{\n"),
+        });
+        out.extend(step.iter().map(|line| format!("        {line}\n")));
+        out.push_str("    }\n");
+    }
+    out + "    return prepared;\n}\n" + &light + "    return sum;\n}\n"
 }

@@ -14,19 +14,19 @@ const WIDTH: usize = 140;
 const LISTED: usize = 6;
 
 /// Functions of the face, by their calls, and what they give.
-const FUNCTIONS: [(&str, &str); 14] = [
+const FUNCTIONS: [(&str, &str); 15] = [
     ("luthier_eval(material, wi, wo)", "f cos_theta_i, linear Rec.709; a light adds its irradiance times this"),
     (
-        "luthier_prepare_lobes(material, wo), luthier_light_lobes(prepared, wi)",
-        "luthier_eval in two steps, of which the first is the same for all lights; wo and wi are above the horizon. These and the next three are for \
-         interfaces of the model lobes",
+        "luthier_prepare(material, wo), luthier_light(prepared, wi)",
+        "luthier_eval in two steps, of which the first is the same for all lights",
     ),
-    ("luthier_albedo_lobes(prepared)", "directional albedo RGB"),
+    ("luthier_prepare_at(place, material, wo)", "luthier_prepare at a place of a surface that varies"),
+    ("luthier_albedo(prepared)", "directional albedo RGB: of lobes that of its rows, of other models an estimate"),
     (
-        "luthier_sample_lobes(prepared, u)",
-        "a direction of light from three numbers in 0..1, its density, and its weight f cos_theta_i / density",
+        "luthier_sample(prepared, u)",
+        "a direction of light from three numbers in 0..1, its density, its weight f cos_theta_i / density, and its lobe",
     ),
-    ("luthier_pdf_lobes(prepared, wi)", "the density of a direction that luthier_sample_lobes draws"),
+    ("luthier_pdf(prepared, wi)", "the density in solid angle of a direction that luthier_sample draws"),
     ("luthier_bounded(radiance)", "a sum over lights within 0..65504, which half floats hold"),
     ("luthier_eval_at(place, material, wi, wo)", "luthier_eval at a place of a surface that varies"),
     ("luthier_place()", "a place without textures; what yours say goes into its members"),

@@ -11,7 +11,7 @@ use luthier_manifest::{Distribution, LayerRecord, MaterialEntry, ShadingModel, m
 use luthier_shader::{Form, MaterialSet, TableFace, Target, emit};
 
 pub(crate) fn full(materials: &[MaterialEntry]) -> Machine {
-    let set = MaterialSet { materials, tables: Vec::new() };
+    let set = MaterialSet::new(materials, Vec::new());
     Machine::new(&emit(&set, Form::Full, Target::Wgsl).unwrap(), &material_buffer(materials), BTreeMap::new())
 }
 
@@ -300,7 +300,7 @@ fn check_positions(tables: &[TableFace]) {
     let mut materials = sets().pop().unwrap().1;
     materials[0].layers[0].tiles[TableKind::Escape] = Some(0);
     materials[0].layers[0].tiles[TableKind::Lobes] = Some(0);
-    let set = MaterialSet { materials: &materials, tables: tables.to_vec() };
+    let set = MaterialSet::new(&materials, tables.to_vec());
     let textures: BTreeMap<_, _> = tables.iter().map(|t| (format!("luthier_{}", t.kind.name()), rulers(t))).collect();
     let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
     let machine = Machine::new(&text, &material_buffer(&materials), textures.clone());

@@ -30,7 +30,7 @@ const FLAKE_NORMAL: usize = 4;
 const PATINA: usize = 4;
 
 fn machine(materials: &[MaterialEntry]) -> Machine {
-    let set = MaterialSet { materials, tables: Vec::new() };
+    let set = MaterialSet::new(materials, Vec::new());
     Machine::new(&emit(&set, Form::Full, Target::Wgsl).unwrap(), &material_buffer(materials), BTreeMap::new())
 }
 
@@ -285,9 +285,8 @@ fn without_textures_only_the_layers_are_left() {
 #[test]
 fn sets_without_effects_carry_no_word_of_them() {
     let words = ["flake", "patina", "glitter", "voronoi", "luthier_mix", "tarnish", "is_bare", "normal_below"];
-    let text = |materials: &[MaterialEntry], form| {
-        emit(&MaterialSet { materials, tables: tables() }, form, Target::Wgsl).unwrap()
-    };
+    let text =
+        |materials: &[MaterialEntry], form| emit(&MaterialSet::new(materials, tables()), form, Target::Wgsl).unwrap();
     for form in Form::ALL {
         let plain = text(&[material("coated", &[dielectric(), conductor()])], form);
         let [flakes, patina, glitter] = [flaked(), patina(), glitter()].map(|m| text(&[m], form));

@@ -12,7 +12,7 @@ use luthier_shader::{
 
 /// Emits in all forms and languages; each is validated on the way.
 fn emit_all(materials: &[luthier_manifest::MaterialEntry], tables: &[TableFace]) {
-    let set = MaterialSet { materials, tables: tables.to_vec() };
+    let set = MaterialSet::new(materials, tables.to_vec());
     for form in forms(materials) {
         for target in Target::TEXT {
             complete(&set, form, target).unwrap_or_else(|e| panic!("{form} {target}: {e}"));
@@ -63,7 +63,7 @@ fn without_a_table_d_is_computed() {
         records.for_each(|layer| layer.tiles[TableKind::Distribution] = None);
         let tables: Vec<_> = tables().into_iter().filter(|t| t.kind != TableKind::Distribution).collect();
         emit_all(&materials, &tables);
-        let text = emit(&MaterialSet { materials: &materials, tables }, Form::Baked, Target::Wgsl).unwrap();
+        let text = emit(&MaterialSet::new(&materials, tables), Form::Baked, Target::Wgsl).unwrap();
         assert!(!text.contains("distribution_tile") && !text.contains("luthier_lookup_distribution"), "{name}");
     }
 }
@@ -110,7 +110,7 @@ fn every_axis_and_layout_passes() {
 fn what_a_set_lacks_is_not_in_its_text() {
     let text = |layers: &[luthier_manifest::LayerRecord], form| {
         let materials = [material("sample", layers)];
-        emit(&MaterialSet { materials: &materials, tables: tables() }, form, Target::Wgsl).unwrap()
+        emit(&MaterialSet::new(&materials, tables()), form, Target::Wgsl).unwrap()
     };
     let film = ["film", "airy", "phase", "luthier_thickness"];
     let depth = ["optical_depth", "exp(-layer"];
@@ -140,7 +140,7 @@ fn what_a_set_lacks_is_not_in_its_text() {
 fn shipped_functions_have_no_loops_and_no_placeholders() {
     // The cells of glitter are looked for in a loop.
     for (_, materials) in sets().into_iter().filter(|(_, m)| m.iter().all(|m| m.constants.glitter.is_none())) {
-        let set = MaterialSet { materials: &materials, tables: tables() };
+        let set = MaterialSet::new(&materials, tables());
         for form in forms(&materials) {
             for target in Target::TEXT {
                 let text = emit(&set, form, target).unwrap();
@@ -156,7 +156,7 @@ fn shipped_functions_have_no_loops_and_no_placeholders() {
 #[test]
 fn complete_shaders_bind_by_our_numbers() {
     let materials = richest();
-    let set = MaterialSet { materials: &materials, tables: tables() };
+    let set = MaterialSet::new(&materials, tables());
     for (target, texture, sampler, buffer, entry) in [
         (Target::Hlsl, "register(t1)", "register(s5)", "register(t6)", "float4 main("),
         (Target::Msl, "[[texture(1)]]", "[[sampler(5)]]", "[[buffer(6)]]", "fragment main_Output main_("),
@@ -178,7 +178,7 @@ fn complete_shaders_bind_by_our_numbers() {
 #[test]
 fn functions_of_the_face_are_documented_in_every_language() {
     let materials = richest();
-    let set = MaterialSet { materials: &materials, tables: tables() };
+    let set = MaterialSet::new(&materials, tables());
     for target in Target::TEXT {
         let text = emit(&set, Form::Baked, target).unwrap();
         let lines: Vec<&str> = text.lines().collect();
@@ -202,7 +202,7 @@ fn functions_of_the_face_are_documented_in_every_language() {
 fn full_binds_the_buffer_only_and_baked_what_it_reads() {
     let numbers = |layers: &[luthier_manifest::LayerRecord], tables: Vec<TableFace>, form| {
         let materials = [material("sample", layers)];
-        bindings(&MaterialSet { materials: &materials, tables }, form).iter().map(|b| b.binding).collect::<Vec<_>>()
+        bindings(&MaterialSet::new(&materials, tables), form).iter().map(|b| b.binding).collect::<Vec<_>>()
     };
     assert_eq!(numbers(&[filmed()], tables(), Form::Full), [6]);
     assert_eq!(numbers(&[filmed()], tables(), Form::Baked), [0, 1, 3, 4, 7, 5, 6]);
@@ -215,7 +215,7 @@ fn full_binds_the_buffer_only_and_baked_what_it_reads() {
 #[test]
 fn sets_that_cannot_be_emitted_say_why() {
     let attempt = |materials: &[luthier_manifest::MaterialEntry], tables: Vec<TableFace>, target| {
-        emit(&MaterialSet { materials, tables }, Form::Baked, target).unwrap_err()
+        emit(&MaterialSet::new(materials, tables), Form::Baked, target).unwrap_err()
     };
     let lone = |layer| [material("sample", &[layer])];
     assert!(matches!(attempt(&[], tables(), Target::Wgsl), ShaderError::NoMaterials));
@@ -247,7 +247,7 @@ fn any_number_of_materials_is_emitted() {
     {
         let materials: Vec<_> = (0..count).map(|i| material(&format!("m-{i}"), &layers)).collect();
         emit_all(&materials, &tables());
-        let set = MaterialSet { materials: &materials, tables: tables() };
+        let set = MaterialSet::new(&materials, tables());
         let text = emit(&set, Form::Baked, Target::GlslEs300).unwrap();
         for part in [
             format!("luthier_materials: sampler2D, RGBA32F, {width} x {height}, not filtered"),
@@ -267,7 +267,7 @@ fn one_material_can_be_constants() {
         use luthier_manifest::ShadingModel::{Elek, GranierHeidrich, Microfacet, Phong, WeidlichWilkie};
         for model in [Elek, WeidlichWilkie, GranierHeidrich, Phong, Microfacet] {
             let materials = [luthier_manifest::MaterialEntry { model, ..material("sample", &layers) }];
-            let set = MaterialSet { materials: &materials, tables: tables() };
+            let set = MaterialSet::new(&materials, tables());
             for form in Form::ALL {
                 for target in Target::TEXT {
                     let text = emit_constant(&set, form, target).unwrap_or_else(|e| panic!("{form} {target}: {e}"));
@@ -288,7 +288,7 @@ fn one_material_can_be_constants() {
         }
     }
     let two = [material("a", &[conductor()]), material("b", &[conductor()])];
-    let set = MaterialSet { materials: &two, tables: tables() };
+    let set = MaterialSet::new(&two, tables());
     assert!(matches!(emit_constant(&set, Form::Baked, Target::Wgsl), Err(ShaderError::NotOne(2))));
 }
 
@@ -300,7 +300,7 @@ fn without_its_table_d_is_a_closed_form() {
         emit_all(&materials, &closed);
     }
     let materials = [material("sample", &[clear(), conductor()])];
-    let set = MaterialSet { materials: &materials, tables: closed };
+    let set = MaterialSet::new(&materials, closed);
     let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
     assert!(!text.contains("luthier_lookup_distribution") && text.contains("fn luthier_beckmann("), "{text}");
     assert!(text.contains("luthier_lookup_fresnel(layer"), "{text}");
@@ -315,7 +315,7 @@ fn only_total_reflection_pays_for_its_rows() {
     emit_all(&materials, &tables());
     let text = |layers: &[luthier_manifest::LayerRecord], form| {
         let materials = [material("sample", layers)];
-        emit(&MaterialSet { materials: &materials, tables: tables() }, form, Target::Wgsl).unwrap()
+        emit(&MaterialSet::new(&materials, tables()), form, Target::Wgsl).unwrap()
     };
     assert!(text(&materials[0].layers, Form::Baked).contains("layer.critical_cot_sq * sin_theta_i_sq"));
     assert!(!text(&materials[0].layers, Form::Full).contains("critical_cot_sq"));
@@ -325,7 +325,7 @@ fn only_total_reflection_pays_for_its_rows() {
 #[test]
 fn kernels_can_be_appended() {
     let materials = [material("gold", &[conductor()])];
-    let set = MaterialSet { materials: &materials, tables: tables() };
+    let set = MaterialSet::new(&materials, tables());
     let kernel = "@group(1) @binding(0) var<storage, read_write> out: array<vec3<f32>>;\n\
         @compute @workgroup_size(64) fn kernel(@builtin(global_invocation_id) id: vec3<u32>) {\n\
         out[id.x] = luthier_eval(LUTHIER_MATERIAL_GOLD, vec3<f32>(0.0, 0.0, 1.0), vec3<f32>(0.0, 0.0, 1.0)); }";

@@ -86,7 +86,7 @@ pub(crate) fn composed(language: Target) -> Vec<(String, String)> {
     assert!(!shaders.is_empty(), "no example is in {language}");
     let mut texts = Vec::new();
     for (name, materials) in sets() {
-        let set = MaterialSet { materials: &materials, tables: tables() };
+        let set = MaterialSet::new(&materials, tables());
         for form in forms(&materials) {
             let bake = emit(&set, form, language).unwrap();
             texts.extend(shaders.iter().map(|shader| (format!("{} {name} {form}", shader.file), paste(shader, &bake))));

@@ -47,7 +47,7 @@ fn textures() -> BTreeMap<String, Image> {
 impl Shader {
     fn new(material: MaterialEntry, form: Form) -> Self {
         let materials = [material];
-        let set = MaterialSet { materials: &materials, tables: faces() };
+        let set = MaterialSet::new(&materials, faces());
         let wgsl = emit(&set, form, Target::Wgsl).unwrap();
         let machine = Machine::new(&wgsl, &material_buffer(&materials), textures());
         let has_place = wgsl.contains("fn luthier_place(");

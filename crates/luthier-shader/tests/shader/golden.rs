@@ -22,7 +22,7 @@ fn check(name: &str, text: &str) {
 #[test]
 fn lambert_needs_no_table_and_no_interface() {
     let materials = [material("chalk", &[diffuse(0.0)])];
-    let set = MaterialSet { materials: &materials, tables: tables() };
+    let set = MaterialSet::new(&materials, tables());
     for target in Target::TEXT {
         check(&format!("chalk.{}", target.extension()), &emit(&set, Form::Baked, target).unwrap());
     }
@@ -35,7 +35,7 @@ fn varnished_gold_has_two_layers_two_distributions_and_no_absorption() {
     let mut varnish = clear();
     varnish.tiles[TableKind::Fgd] = None;
     let materials = [material("varnished-gold", &[varnish, gold])];
-    let set = MaterialSet { materials: &materials, tables: tables() };
+    let set = MaterialSet::new(&materials, tables());
     for form in Form::ALL {
         for target in Target::TEXT {
             let name = format!("varnished-gold.{form}.{}", target.extension());

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use luthier_manifest::MaterialEntry;
+use luthier_manifest::{FunctionGroup, MaterialEntry};
 use luthier_shader::{Form, MaterialSet, Target, complete, complete_spirv, emit, emit_spirv};
 use tempfile::TempDir;
 
@@ -30,18 +30,26 @@ fn expect_success(output: &Output, what: &str, source: &str) {
     assert!(output.status.success(), "{what}:\n{stdout}{stderr}\n{source}");
 }
 
-/// Every set of materials in both forms, with a name and a folder to work in.
+/// Every set of materials in both forms, with `luthier_eval` alone and with all functions, a name and a folder to work in.
 fn each(mut judge: impl FnMut(&str, &MaterialSet<'_>, Form, &Path)) {
     let folder = TempDir::new().unwrap();
     for (name, materials) in sets() {
         for form in forms(&materials) {
-            judge(&format!("{name} {form}"), &set(&materials), form, folder.path());
+            let plain = set(&materials);
+            let functions = FunctionGroup::ALL.into_iter().collect();
+            judge(
+                &format!("{name} {form} all functions"),
+                &MaterialSet { functions, ..plain.clone() },
+                form,
+                folder.path(),
+            );
+            judge(&format!("{name} {form}"), &plain, form, folder.path());
         }
     }
 }
 
 fn set(materials: &[MaterialEntry]) -> MaterialSet<'_> {
-    MaterialSet { materials, tables: tables() }
+    MaterialSet::new(materials, tables())
 }
 
 /// Compiles with glslang into `shader.spv` of the folder.

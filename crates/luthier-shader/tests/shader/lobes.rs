@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use luthier_layers::lobes::{Below, Critical, Frame, Row, ViewAxis, Wide};
 use luthier_lut::{AtlasLayout, Image, TableKind, WeightBits, bilinear};
-use luthier_manifest::{LobesRecord, MaterialEntry, material_buffer};
+use luthier_manifest::{FunctionGroup, LobesRecord, MaterialEntry, material_buffer};
 use luthier_optics::microfacet;
 use luthier_optics::stack::Distribution;
 use luthier_shader::{Form, MaterialSet, ShaderError, Target, emit};
@@ -58,7 +58,7 @@ fn light_from_below_is_that_of_the_twin() {
         let axis = ViewAxis::new(2, Critical { cot_sq, width, plain_share: 0.25 });
         let wide = Wide::new(lobes.falloff, axis);
         materials[0].constants.lobes = Some(LobesRecord { integral: wide.integral(), ..lobes });
-        let set = MaterialSet { materials: &materials, tables: tables() };
+        let set = MaterialSet::new(&materials, tables());
         let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
         // Without a first facet.
         let black = Image::zeros(3, 3, 3);
@@ -103,7 +103,7 @@ fn the_first_facet_has_smith_s_masking() {
             let coat = &mut materials[0].layers[0];
             (coat.distribution, coat.alpha, coat.alpha_xy) = (distribution, alpha, [alpha; 2]);
             coat.tiles[TableKind::Distribution] = None;
-            let set = MaterialSet { materials: &materials, tables: tables() };
+            let set = MaterialSet::new(&materials, tables());
             let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
             let [width, height] = rows().0.size();
             let textures = [("luthier_fresnel", all(3, 3, 1.0)), ("luthier_lobes", all(width, height, 0.0))];
@@ -131,7 +131,7 @@ fn the_first_facet_has_smith_s_masking() {
 #[test]
 fn lobes_have_no_form_without_tables() {
     let materials = set("lobes-mixed");
-    let set = MaterialSet { materials: &materials, tables: tables() };
+    let set = MaterialSet::new(&materials, tables());
     let refusal = emit(&set, Form::Full, Target::Wgsl).unwrap_err();
     assert!(matches!(&refusal, ShaderError::NoForm { material, form: Form::Full, .. } if material == "brushed"));
     assert!(refusal.to_string().contains("ask for the `baked` form"), "{refusal}");
@@ -149,7 +149,7 @@ fn sets_pay_for_the_lobes_that_rows_have() {
             let y = table.layout.y.as_mut().unwrap();
             (y.size, y.max) = (parts, f64::from(parts - 1));
         }
-        let text = emit(&MaterialSet { materials: &materials, tables }, Form::Baked, Target::Wgsl).unwrap();
+        let text = emit(&MaterialSet::new(&materials, tables), Form::Baked, Target::Wgsl).unwrap();
         assert!(text.contains(present) && !text.contains(absent), "{parts}: {text}");
     }
 }
@@ -176,7 +176,8 @@ fn directions_are_drawn_as_their_density_says() {
         let first = &mut materials[0].layers[0];
         (first.alpha, first.alpha_xy) = (coat, [coat; 2]);
         first.tiles[TableKind::Distribution] = None;
-        let set = MaterialSet { materials: &materials, tables: tables() };
+        let functions = [FunctionGroup::Sample].into_iter().collect();
+        let set = MaterialSet { functions, ..MaterialSet::new(&materials, tables()) };
         let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
         let gray = Image { data: vec![0.1; 36], ..Image::zeros(3, 3, 4) };
         let textures = [("luthier_fresnel", gray), ("luthier_lobes", image.clone())];
@@ -184,7 +185,7 @@ fn directions_are_drawn_as_their_density_says() {
             Machine::new(&text, &material_buffer(&materials), BTreeMap::from(textures.map(|(n, i)| (n.to_owned(), i))));
         for theta in [0.0, 0.7, 1.3_f64] {
             let wo = [theta.sin() * 0.8, theta.sin() * 0.6, theta.cos()].map(|w| w as f32);
-            let prepared = machine.call("luthier_prepare_lobes", vec![Value::U(0), vector(&wo)]);
+            let prepared = machine.call("luthier_prepare", vec![Value::U(0), vector(&wo)]);
             let call =
                 |function: &str, arguments: &[f32]| machine.call(function, vec![prepared.clone(), vector(arguments)]);
             let mut counts = [0.0; RINGS * SECTORS];
@@ -198,7 +199,7 @@ fn directions_are_drawn_as_their_density_says() {
                 // Roberts 2018: multiples of the powers of the root of x^4 = x + 1.
                 let u = [0.819_172_5, 0.671_043_6, 0.549_700_5]
                     .map(|step: f64| ((f64::from(i) + 0.5) * step).fract() as f32);
-                let Value::Many(members) = call("luthier_sample_lobes", &u) else { panic!("a sample is a structure") };
+                let Value::Many(members) = call("luthier_sample", &u) else { panic!("a sample is a structure") };
                 let (wi, pdf) = (members[0].floats(), members[1].floats()[0]);
                 let weight = members[2].floats();
                 if pdf == 0.0 {
@@ -219,8 +220,8 @@ fn directions_are_drawn_as_their_density_says() {
                 let wi = [across * cos, across * sin, z];
                 let area = std::f64::consts::TAU / f64::from(side[0] * side[1]);
                 let at = wi.map(|w| w as f32);
-                expected[bin(wi[0], wi[1], wi[2])] += area * f64::from(call("luthier_pdf_lobes", &at).floats()[0]);
-                energy += area * f64::from(call("luthier_light_lobes", &at).floats()[1]);
+                expected[bin(wi[0], wi[1], wi[2])] += area * f64::from(call("luthier_pdf", &at).floats()[0]);
+                energy += area * f64::from(call("luthier_light", &at).floats()[1]);
             }
             for (i, (found, expected)) in counts.iter().zip(expected).enumerate() {
                 assert!((found - expected).abs() < 0.006, "{name} {coat} {theta} bin {i}: {found} {expected}");

@@ -274,6 +274,9 @@ impl Machine {
             TypeInner::Scalar(s) => scalar(s),
             TypeInner::Vector { size, scalar: s } => Many(vec![scalar(s); *size as usize]),
             TypeInner::Struct { members, .. } => Many(members.iter().map(|m| self.zero(m.ty)).collect()),
+            TypeInner::Array { base, size: naga::ArraySize::Constant(count), .. } => {
+                Many(vec![self.zero(*base); count.get() as usize])
+            }
             other => panic!("no zero of {other:?}"),
         }
     }
@@ -338,6 +341,7 @@ fn binary(op: BinaryOperator, left: &Value, right: &Value) -> Value {
         (Op::Modulo, I(a), I(b)) => I(a % b),
         (Op::Less, I(a), I(b)) => B(a < b),
         (Op::Subtract, I(a), I(b)) => I(a - b),
+        (Op::Less, U(a), U(b)) => B(a < b),
         (Op::Less, F(a), F(b)) => B(a < b),
         (Op::LessEqual, F(a), F(b)) => B(a <= b),
         (Op::Greater, F(a), F(b)) => B(a > b),

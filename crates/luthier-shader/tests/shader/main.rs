@@ -6,6 +6,7 @@ mod arithmetic;
 mod effects;
 mod emission;
 mod examples;
+mod face;
 mod features;
 mod golden;
 mod judges;

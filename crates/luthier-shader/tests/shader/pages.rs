@@ -17,7 +17,7 @@ const END: &str = "<!-- end -->\n";
 fn numbers() -> String {
     let mut all = BTreeMap::new();
     for (_, materials) in sets() {
-        let set = MaterialSet { materials: &materials, tables: tables() };
+        let set = MaterialSet::new(&materials, tables());
         all.extend(bindings(&set, Form::Baked).into_iter().map(|entry| (entry.binding, entry)));
     }
     assert_eq!(all.len(), TableKind::ALL.len() + 2, "sets that read every table, the sampler and the buffer");

@@ -121,7 +121,7 @@ fn shares() -> (AtlasLayout, Image) {
 }
 
 fn baked(materials: &[MaterialEntry], more: &str) -> Machine {
-    let set = MaterialSet { materials, tables: tables() };
+    let set = MaterialSet::new(materials, tables());
     let text = emit(&set, Form::Baked, Target::Wgsl).unwrap() + more;
     let textures = [("luthier_fgd", albedos().1), ("luthier_escape", shares().1)];
     let textures: BTreeMap<_, _> = textures.map(|(name, image)| (name.to_owned(), image)).into();
@@ -332,7 +332,7 @@ fn places_change_slopes_slabs_and_films() {
             ..layer.clone()
         };
         let [other] = of(&[doubled(&oiled), doubled(&base)]);
-        let text = emit(&MaterialSet { materials: &materials, tables: Vec::new() }, Form::Full, Target::Wgsl).unwrap();
+        let text = emit(&MaterialSet::new(&materials, Vec::new()), Form::Full, Target::Wgsl).unwrap();
         let machine = Machine::new(&(text + probe), &material_buffer(&materials), BTreeMap::new());
         for (wi, wo) in directions(200) {
             let expected = twin(&other, &LevelFacets(&other), wi, wo);

@@ -63,8 +63,8 @@ pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
         return Err(Failure::Usage(anyhow::anyhow!(text)));
     };
     let (scene, materials) = read(path, options.quiet)?;
-    let made =
-        pool.install(|| Director::new(&scene, &materials, targets).step(None, options.allow_miss)).map_err(failure)?;
+    let mut director = Director::new(&scene, &materials, targets).with_functions(options.emission.functions());
+    let made = pool.install(|| director.step(None, options.allow_miss)).map_err(failure)?;
     let encoded = made.package.encode(options.compression())?;
     whole(|| encoded.write(&options.out))?;
     let missed = misses::name(&made.package.manifest, options.quiet)?;

@@ -1,5 +1,7 @@
 //! Evaluation in f64: models, inputs, optical constants.
 
+#[cfg(feature = "gpu")]
+mod draws;
 mod fluorescence;
 mod furnace;
 mod inputs;

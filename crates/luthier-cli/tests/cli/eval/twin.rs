@@ -27,7 +27,7 @@ const PAIRS: u32 = 150;
 
 type Pair = ([f32; 3], [f32; 3]);
 
-fn gpu() -> Option<Gpu> {
+pub(super) fn gpu() -> Option<Gpu> {
     match Gpu::open() {
         Ok(gpu) => Some(gpu),
         Err(error @ GpuError::NoAdapter) if std::env::var_os("CI").is_none() => {
@@ -43,7 +43,7 @@ fn folder() -> PathBuf {
 }
 
 /// Every shipped material, shaded by a model.
-fn shipped(model: &str) -> Vec<Material> {
+pub(super) fn shipped(model: &str) -> Vec<Material> {
     let mut paths: Vec<PathBuf> = std::fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
     paths.sort();

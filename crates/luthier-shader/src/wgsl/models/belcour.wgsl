@@ -22,3 +22,13 @@ fn luthier_belcour_lobe(path: LuthierBelcour, wi: vec3<f32>, wo: vec3<f32>) -> v
     let alpha = luthier_spread_alpha(path.lobe_spread);
     return path.lobe_energy * luthier_ggx_lobe(vec2<f32>(alpha), vec2<f32>(1.0, 0.0), wi, wo);
 }
+
+//? face
+/// The same as a part to draw from.
+fn luthier_belcour_part(path: LuthierBelcour) -> LuthierPart {
+    var part = luthier_no_part();
+    part.energy = path.lobe_energy;
+    part.alpha = vec2<f32>(luthier_spread_alpha(path.lobe_spread));
+    return part;
+}
+//? end

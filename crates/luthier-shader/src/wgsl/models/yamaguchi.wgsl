@@ -27,8 +27,13 @@ fn luthier_yamaguchi_limited(spread: vec3<f32>) -> vec3<f32> {
 }
 //? end
 
+//? face
+/// The lobe of the last interface: a GGX surface along the principal axes of its covariance.
+fn luthier_yamaguchi_part(path: LuthierYamaguchi) -> LuthierPart {
+//? else
 /// f cos_theta_i of the lobe of the last interface: a GGX surface along the principal axes of its covariance.
 fn luthier_yamaguchi_lobe(path: LuthierYamaguchi, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
+//? end
     let spread = path.lobe_spread;
     let half_difference = 0.5 * (spread.x - spread.z);
     let radius = sqrt(half_difference * half_difference + spread.y * spread.y);
@@ -40,5 +45,19 @@ fn luthier_yamaguchi_lobe(path: LuthierYamaguchi, wi: vec3<f32>, wo: vec3<f32>) 
     let turned = select(vec2<f32>(larger, smaller), vec2<f32>(smaller, larger), half_difference < 0.0);
     let axis = select(vec2<f32>(1.0, 0.0), turned, radius > 0.0);
     let alpha = vec2<f32>(luthier_spread_alpha(first), luthier_spread_alpha(second));
+    //? face
+    var part = luthier_no_part();
+    part.energy = path.lobe_energy;
+    part.alpha = alpha;
+    part.axis = axis;
+    return part;
+}
+
+/// f cos_theta_i of the lobe of the last interface.
+fn luthier_yamaguchi_lobe(path: LuthierYamaguchi, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
+    let part = luthier_yamaguchi_part(path);
+    return part.energy * luthier_ggx_lobe(part.alpha, part.axis, wi, wo);
+    //? else
     return path.lobe_energy * luthier_ggx_lobe(alpha, axis, wi, wo);
+    //? end
 }

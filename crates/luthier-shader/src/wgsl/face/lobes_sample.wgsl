@@ -1,16 +1,3 @@
-//? lobes
-/// A direction of light that was drawn for a material.
-struct LuthierSample {
-    /// Direction, unit.
-    wi: vec3<f32>,
-    /// Density in solid angle; 0 where nothing is reflected along the direction. Such a draw counts all the same.
-    pdf: f32,
-    /// f cos_theta_i over the density, RGB.
-    weight: vec3<f32>,
-    /// The part that it was drawn for: 0 the first facet, 1 and 2 the lobes, 3 the wide remainder.
-    part: u32,
-}
-
 /// Probabilities of the first facet, of the lobes and of the wide remainder, times their sum.
 fn luthier_chances_lobes(prepared: LuthierPreparedLobes) -> vec4<f32> {
     let third = vec3<f32>(1.0 / 3.0);
@@ -32,27 +19,10 @@ fn luthier_chances_lobes(prepared: LuthierPreparedLobes) -> vec4<f32> {
     //? end
 }
 
-/// Visible normals of the first interface, as GGX has them for its slope parameter whatever its distribution is: density of the direction
-/// mirrored at them (Heitz 2018). Beckmann's facets have weights up to 2 then, and up to 2.6 for an eye within 20 degrees of the horizon.
-fn luthier_visible_density(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> f32 {
-    let alpha = prepared.coat.alpha;
-    let wo = prepared.wo;
-    let wh = normalize(vec3<f32>(wi.xy + wo.xy, max(wi.z + wo.z, 1e-16)));
-    let root = alpha / max(alpha * alpha * wh.z * wh.z + dot(wh.xy, wh.xy), 1e-20);
-    let slope = alpha * vec2<f32>(wo.x, wo.y);
-    // D / 4 over cos_theta_o (1 + Lambda).
-    return root * root / (2.0 * LUTHIER_PI * (wo.z + sqrt(wo.z * wo.z + dot(slope, slope))));
-}
-
-/// A direction mirrored at a visible normal of the first interface (Dupuy and Benyoub 2023).
-fn luthier_sample_facet(prepared: LuthierPreparedLobes, u: vec2<f32>) -> vec3<f32> {
-    let alpha = prepared.coat.alpha;
-    let stretched = normalize(vec3<f32>(alpha * prepared.wo.xy, prepared.wo.z));
-    let phi = 2.0 * LUTHIER_PI * u.y;
-    let z = (1.0 - u.x) * (1.0 + stretched.z) - stretched.z;
-    let cap = vec3<f32>(sqrt(max(1.0 - z * z, 0.0)) * vec2<f32>(cos(phi), sin(phi)), z) + stretched;
-    let wh = normalize(vec3<f32>(alpha * cap.xy, max(cap.z, 1e-6)));
-    return 2.0 * dot(wh, prepared.wo) * wh - prepared.wo;
+/// Density of directions mirrored at the visible normals of the first interface, as GGX has them for its slope parameter whatever its
+/// distribution is. Beckmann's facets have weights up to 2 then, and up to 2.6 for an eye within 20 degrees of the horizon.
+fn luthier_facet_density(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> f32 {
+    return luthier_visible_density(vec2<f32>(prepared.coat.alpha), vec2<f32>(1.0, 0.0), prepared.wo, wi);
 }
 
 //? one_lobe|two_lobes
@@ -81,13 +51,10 @@ fn luthier_sample_lobe(prepared: LuthierPreparedLobes, shape: vec4<f32>, u: vec2
 }
 
 //? end
-/// Density in solid angle with which `luthier_sample_lobes` draws a direction. Its integral is 1 less the share of draws that have no weight.
-fn luthier_pdf_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> f32 {
-    if wi.z <= 0.0 {
-        return 0.0;
-    }
+/// Density in solid angle with which `luthier_draw_lobes` draws a direction above the horizon.
+fn luthier_density_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> f32 {
     let chances = luthier_chances_lobes(prepared);
-    var density = chances.x * luthier_visible_density(prepared, wi) + chances.w * (wi.z / LUTHIER_PI);
+    var density = chances.x * luthier_facet_density(prepared, wi) + chances.w * (wi.z / LUTHIER_PI);
     //? one_lobe|two_lobes
     density += chances.y * luthier_lobe_density(prepared, prepared.first_shape, wi);
     //? end
@@ -97,14 +64,14 @@ fn luthier_pdf_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> f32 {
     return density / dot(chances, vec4<f32>(1.0));
 }
 
-/// A direction of light for a prepared material, from three numbers that are uniform in 0..1.
-fn luthier_sample_lobes(prepared: LuthierPreparedLobes, u: vec3<f32>) -> LuthierSample {
+/// Direction and part of a draw, without its density and weight: 0 the first facet, 1 and 2 the lobes, 3 the wide remainder.
+fn luthier_draw_lobes(prepared: LuthierPreparedLobes, u: vec3<f32>) -> LuthierSample {
     let chances = luthier_chances_lobes(prepared);
     let choice = u.x * dot(chances, vec4<f32>(1.0));
     let phi = 2.0 * LUTHIER_PI * u.z;
     var drawn = LuthierSample(vec3<f32>(sqrt(u.y) * vec2<f32>(cos(phi), sin(phi)), sqrt(1.0 - u.y)), 0.0, vec3<f32>(0.0), 3u);
     if choice < chances.x {
-        drawn.wi = luthier_sample_facet(prepared, u.yz);
+        drawn.wi = luthier_draw_visible(vec2<f32>(prepared.coat.alpha), vec2<f32>(1.0, 0.0), prepared.wo, u.yz);
         drawn.part = 0u;
     }
     //? one_lobe|two_lobes
@@ -120,10 +87,5 @@ fn luthier_sample_lobes(prepared: LuthierPreparedLobes, u: vec3<f32>) -> Luthier
         drawn.part = 2u;
     }
     //? end
-    drawn.pdf = luthier_pdf_lobes(prepared, drawn.wi);
-    if drawn.pdf > 0.0 {
-        drawn.weight = luthier_light_lobes(prepared, drawn.wi) / drawn.pdf;
-    }
     return drawn;
 }
-//? end

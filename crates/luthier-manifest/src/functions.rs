@@ -1,0 +1,87 @@
+//! Groups of functions that an emitted shader has.
+
+use std::collections::BTreeSet;
+
+use serde::{Deserialize, Serialize};
+
+luthier_lut::named! {
+    /// A group of functions of an emitted shader.
+    #[derive(Serialize, Deserialize)]
+    #[serde(into = "&'static str", try_from = "String")]
+    pub enum FunctionGroup("group of functions") {
+        /// `luthier_eval`, look-ups, records, places. Every shader has them.
+        Eval = "eval",
+        /// `luthier_prepare` once for a view, `luthier_light` for each light.
+        Light = "light",
+        /// `luthier_sample` and `luthier_pdf`; they bring `light`.
+        Sample = "sample",
+        /// `luthier_albedo`; it brings `light`.
+        Albedo = "albedo",
+    }
+}
+
+/// Groups of functions of one shader: `eval` always, others where they were asked for.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "Vec<FunctionGroup>", into = "Vec<FunctionGroup>")]
+pub struct Functions(BTreeSet<FunctionGroup>);
+
+impl Functions {
+    /// Whether a group is there.
+    pub fn has(&self, group: FunctionGroup) -> bool {
+        self.0.contains(&group)
+    }
+
+    /// Whether there is no other group than `eval`.
+    pub fn is_eval_alone(&self) -> bool {
+        self.0.len() == 1
+    }
+}
+
+impl Default for Functions {
+    /// `eval` alone.
+    fn default() -> Self {
+        Self::from_iter([])
+    }
+}
+
+impl FromIterator<FunctionGroup> for Functions {
+    /// The groups that were asked for, and those that they bring.
+    fn from_iter<T: IntoIterator<Item = FunctionGroup>>(asked: T) -> Self {
+        let mut groups: BTreeSet<FunctionGroup> = asked.into_iter().collect();
+        groups.insert(FunctionGroup::Eval);
+        if groups.len() > 1 {
+            groups.insert(FunctionGroup::Light);
+        }
+        Self(groups)
+    }
+}
+
+impl From<Vec<FunctionGroup>> for Functions {
+    fn from(groups: Vec<FunctionGroup>) -> Self {
+        groups.into_iter().collect()
+    }
+}
+
+impl From<Functions> for Vec<FunctionGroup> {
+    fn from(functions: Functions) -> Self {
+        functions.0.into_iter().collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_bring_what_they_call() {
+        let json =
+            |groups: &[FunctionGroup]| serde_json::to_string(&groups.iter().copied().collect::<Functions>()).unwrap();
+        assert_eq!(json(&[]), r#"["eval"]"#);
+        assert_eq!(json(&[FunctionGroup::Light]), r#"["eval","light"]"#);
+        assert_eq!(json(&[FunctionGroup::Sample]), r#"["eval","light","sample"]"#);
+        assert_eq!(json(&[FunctionGroup::Albedo]), r#"["eval","light","albedo"]"#);
+        assert!(Functions::default().is_eval_alone());
+        let read: Functions = serde_json::from_str(r#"["sample"]"#).unwrap();
+        assert_eq!(read, Functions::from_iter([FunctionGroup::Sample]));
+    }
+}

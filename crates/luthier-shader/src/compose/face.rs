@@ -1,0 +1,224 @@
+//! What renderers call beside `luthier_eval`: a material prepared for a view, its light, drawn directions, its albedo.
+
+use std::fmt::Write as _;
+
+use luthier_manifest::{FunctionGroup, LayerKind, LayerRecord, MaterialEntry, ShadingModel};
+
+use crate::MaterialSet;
+use crate::compose::features::Features;
+use crate::compose::{chain, function, statistics, text};
+
+/// Number in place of a model's for a base alone of the model `lobes`, which has no rows.
+const BASE: &str = "255u";
+
+/// The function that fills the parts of a material, by its model.
+pub(crate) fn parts_function(model: ShadingModel) -> String {
+    function(model).replace("luthier_eval", "luthier_parts")
+}
+
+/// The modules of the groups of functions beside `eval`.
+pub(crate) fn modules(set: &MaterialSet<'_>, features: &Features) -> Vec<String> {
+    if set.functions.is_eval_alone() {
+        return Vec::new();
+    }
+    let parts = count(set, features);
+    let module = |wgsl: &str| {
+        let wgsl = wgsl.replace("$parts", &format!("{parts}u")).replace("$model_base", BASE);
+        text(&wgsl.replace("$model_lobes", &number(ShadingModel::Lobes)), features)
+    };
+    let mut modules = vec![module(include_str!("../wgsl/face/prepared.wgsl"))];
+    if features.has("chain") {
+        modules.push(module(include_str!("../wgsl/face/path_part.wgsl")));
+    }
+    for model in set.models() {
+        modules.push(match model {
+            ShadingModel::Elek | ShadingModel::WeidlichWilkie => module(&chain::parts(set, model, features)),
+            ShadingModel::Belcour | ShadingModel::Yamaguchi => module(&statistics::parts(set, model)),
+            ShadingModel::GranierHeidrich => module(include_str!("../wgsl/face/granier_heidrich.wgsl")),
+            ShadingModel::Phong => module(include_str!("../wgsl/face/phong.wgsl")),
+            ShadingModel::Microfacet => module(include_str!("../wgsl/face/microfacet.wgsl")),
+            ShadingModel::Lobes => module(include_str!("../wgsl/face/lobes.wgsl")),
+        });
+    }
+    modules.extend([module(&prepare(set, features, parts)), module(&light(set, features))]);
+    if set.functions.has(FunctionGroup::Sample) {
+        if features.has("visible") || features.has("coat") {
+            modules.push(module(include_str!("../wgsl/face/visible.wgsl")));
+        }
+        if features.has("lobes") {
+            modules.push(module(include_str!("../wgsl/face/lobes_sample.wgsl")));
+        }
+        modules.push(module(&unrolled(include_str!("../wgsl/face/sample.wgsl"), parts, features)));
+    }
+    if set.functions.has(FunctionGroup::Albedo) {
+        modules.push(module(include_str!("../wgsl/face/albedo.wgsl")));
+        modules.push(module(&albedo(features, parts)));
+    }
+    modules
+}
+
+/// Greatest number of lobes, outside of the model `lobes`, of a material of the set.
+fn count(set: &MaterialSet<'_>, features: &Features) -> usize {
+    let is_interface = |layer: &LayerRecord| layer.kind != LayerKind::Diffuse;
+    let of = |material: &MaterialEntry| {
+        let first = material.layers.first();
+        match material.model {
+            ShadingModel::Lobes => 0,
+            ShadingModel::Phong => 1,
+            ShadingModel::Microfacet => usize::from(first.is_some_and(is_interface)),
+            ShadingModel::GranierHeidrich => match first {
+                Some(layer) if layer.kind == LayerKind::Diffuse => 0,
+                Some(_) if !features.has("granier_transparent") => 1,
+                // With a tilted inner boundary the beams of the channels part.
+                _ if features.has("place") => 4,
+                _ => 2,
+            },
+            ShadingModel::Elek | ShadingModel::WeidlichWilkie => {
+                chain::parts_count(set, material.model, features.has("patina"))
+            }
+            ShadingModel::Belcour | ShadingModel::Yamaguchi => {
+                material.layers.iter().rposition(is_interface).map_or(0, |i| i + 1)
+            }
+        }
+    };
+    set.materials.iter().map(of).max().unwrap_or(0)
+}
+
+fn number(model: ShadingModel) -> String {
+    format!("{}u", model.number())
+}
+
+/// `luthier_prepare`, and `luthier_prepare_at` where surfaces vary.
+fn prepare(set: &MaterialSet<'_>, features: &Features, parts: usize) -> String {
+    const SUMMARY: &str = "A material for light seen from wo: unit, in the local frame, away from the surface.";
+    let has_place = features.has("place");
+    let (name, parameters, eye) = match has_place {
+        true => ("luthier_prepare_at", "place: LuthierPlace, material: u32", "luthier_local(place.normal, wo)"),
+        false => ("luthier_prepare", "material: u32", "wo"),
+    };
+    let mut out = format!(
+        "/// {SUMMARY}\nfn {name}({parameters}, wo: vec3<f32>) -> LuthierPrepared {{\n    let eye = {eye};\n    \
+         var prepared: LuthierPrepared;\n    prepared.material = material;\n"
+    );
+    if has_place {
+        out.push_str("    prepared.place = place;\n    prepared.open = min(wo.z, eye.z) > 0.0;\n");
+    } else {
+        out.push_str("    prepared.open = eye.z > 0.0;\n");
+    }
+    // What comes of an eye below the horizon is not shown.
+    out.push_str("    prepared.wo = vec3<f32>(eye.xy, max(eye.z, 1e-16));\n");
+    for i in 0..parts {
+        let _ = writeln!(out, "    prepared.parts[{i}] = luthier_no_part();");
+    }
+    if features.has("several") {
+        out.push_str("    prepared.model = luthier_whole(luthier_materials[luthier_header(material)].z);\n");
+    }
+    let models: Vec<ShadingModel> = set.models().collect();
+    let call = |model| format!("return {}(prepared, $place_argument material, prepared.wo);", parts_function(model));
+    if let [first, others @ ..] = models.as_slice() {
+        for &other in others {
+            let _ = writeln!(out, "    if prepared.model == {} {{\n        {}\n    }}", number(other), call(other));
+        }
+        let _ = writeln!(out, "    {}\n}}", call(*first));
+    }
+    if has_place {
+        out.push_str(
+            "\n/// `luthier_prepare_at` at a place without textures.\nfn luthier_prepare(material: u32, wo: vec3<f32>) -> LuthierPrepared {\n    \
+             return luthier_prepare_at(luthier_place(), material, wo);\n}\n",
+        );
+    }
+    out
+}
+
+/// `luthier_light`: what a view decides is not computed again where a model has such.
+fn light(set: &MaterialSet<'_>, features: &Features) -> String {
+    let mut out = String::from(
+        "/// f cos_theta_i, RGB, of a prepared material for light from wi: that of `luthier_eval`.\n\
+         fn luthier_light(prepared: LuthierPrepared, wi: vec3<f32>) -> vec3<f32> {\n    \
+         if wi.z <= 0.0 || !prepared.open {\n        return vec3<f32>(0.0);\n    }\n",
+    );
+    let wi = if features.has("place") {
+        out.push_str(
+            "    let wi_here = luthier_local(prepared.place.normal, wi);\n    \
+             if wi_here.z <= 0.0 {\n        return vec3<f32>(0.0);\n    }\n",
+        );
+        "wi_here"
+    } else {
+        "wi"
+    };
+    let place = if features.has("place") { "prepared.place, " } else { "" };
+    let eval = |model| format!("return {}({place}prepared.material, {wi}, prepared.wo);", function(model));
+    let call = |model: ShadingModel| match model {
+        ShadingModel::Lobes if features.has("lobes") => format!("return luthier_light_lobes(prepared.lobes, {wi});"),
+        ShadingModel::Belcour | ShadingModel::Yamaguchi if !statistics::is_bare(set, model) => {
+            let light = function(model).replace("luthier_eval", "luthier_light");
+            format!("return {light}(prepared, {place}prepared.material, {wi}, prepared.wo);")
+        }
+        _ => eval(model),
+    };
+    let models: Vec<ShadingModel> = set.models().collect();
+    if let [first, others @ ..] = models.as_slice() {
+        let case = |number: &str, call: &str| format!("    if prepared.model == {number} {{\n        {call}\n    }}\n");
+        for &other in others {
+            out.push_str(&case(&number(other), &call(other)));
+        }
+        if models.contains(&ShadingModel::Lobes) && features.has("lobes") && features.has("lobes_diffuse") {
+            out.push_str(&case(BASE, &eval(ShadingModel::Lobes)));
+        }
+        let _ = writeln!(out, "    {}\n}}", call(*first));
+    }
+    out
+}
+
+/// `luthier_albedo`.
+fn albedo(features: &Features, parts: usize) -> String {
+    let mut sum = String::from("prepared.wide");
+    for i in 0..parts {
+        let part = format!("prepared.parts[{i}]");
+        let _ = write!(sum, "\n        + {part}.energy * luthier_leaving_share({part}, prepared.wo)");
+    }
+    let mut out = String::from(
+        "/// Directional albedo of a prepared material, RGB: of `lobes` that of its rows, of other models an estimate from their parts.\n\
+         fn luthier_albedo(prepared: LuthierPrepared) -> vec3<f32> {\n    if !prepared.open {\n        return vec3<f32>(0.0);\n    }\n",
+    );
+    let lobes = "return luthier_albedo_lobes(prepared.lobes);";
+    match (features.has("lobes"), features.has("several")) {
+        (true, false) => out.push_str(&format!("    {lobes}\n}}\n")),
+        (has_lobes, _) => {
+            if has_lobes {
+                out.push_str(&format!("    if prepared.model == $model_lobes {{\n        {lobes}\n    }}\n"));
+            }
+            out.push_str(&format!("    return {sum};\n}}\n"));
+        }
+    }
+    out
+}
+
+/// The module of drawn directions with a statement for each part.
+fn unrolled(module: &str, parts: usize, features: &Features) -> String {
+    let each = |line: &dyn Fn(usize) -> String| (0..parts).map(line).collect::<String>();
+    let spill = if features.has("visible") {
+        each(&|i| format!("    chance += luthier_spill(prepared.parts[{i}]);\n"))
+    } else {
+        String::new()
+    };
+    let density = each(&|i| {
+        format!(
+            "    let chance_{i} = luthier_chance(prepared.parts[{i}]);\n    \
+             density += chance_{i} * luthier_part_density(prepared.parts[{i}], prepared.wo, wi);\n    total += chance_{i};\n"
+        )
+    });
+    let total = each(&|i| format!("    total += luthier_chance(prepared.parts[{i}]);\n"));
+    let choice = each(&|i| {
+        format!(
+            "    if choice >= below {{\n        part = prepared.parts[{i}];\n        drawn.part = {i}u;\n    }}\n    \
+             below += luthier_chance(prepared.parts[{i}]);\n"
+        )
+    });
+    let end = "    if choice >= below {\n        drawn.part = $parts;\n    }\n";
+    module
+        .replace("    $each_spill\n", &spill)
+        .replace("    $each_density\n", &density)
+        .replace("    $each_total\n", &total)
+        .replace("    $each_choice\n", &format!("{choice}{end}"))
+}

@@ -1,0 +1,70 @@
+//? granier_transparent
+/// The beam through a film, with energies of the channels.
+fn luthier_beam_part(energy: vec3<f32>, exponent: f32, eta: f32, normal: vec3<f32>) -> LuthierPart {
+    var part = luthier_no_part();
+    part.energy = energy;
+    part.exponent = exponent;
+    part.eta = eta;
+    part.normal = normal;
+    return part;
+}
+//? end
+
+/// The parts of the model `granier-heidrich`: mirrored and transmitted beams without their interference, and the diffuse term.
+fn luthier_parts_granier_heidrich(given: LuthierPrepared, $place_parameter material: u32, wo: vec3<f32>) -> LuthierPrepared {
+    var prepared = given;
+    let layer = $layer(material, 0u);
+    //? granier_base
+    var diffuse = vec3<f32>(1.0);
+    //? end
+    //? interface
+    var mirror = luthier_no_part();
+    mirror.exponent = 2.0 / (layer.alpha * layer.alpha) - 2.0;
+    //? end
+    //? granier_transparent
+    //? granier_film
+    let has_film = layer.film_ior_n.x > 0.0;
+    if layer.kind == LUTHIER_DIELECTRIC || has_film {
+        let eta = select(layer.ior_n, layer.film_ior_n, has_film);
+    //? else
+    if layer.kind == LUTHIER_DIELECTRIC {
+        let eta = layer.ior_n;
+    //? end
+        let root = (eta - 1.0) / (eta + 1.0);
+        mirror.energy = luthier_schlick(root * root, wo.z);
+        let leaving = 1.0 - mirror.energy;
+        let energy = leaving * leaving;
+        //? place
+        let normal = place.inner_normal;
+        prepared.parts[1] = luthier_beam_part(energy * vec3<f32>(1.0, 0.0, 0.0), mirror.exponent, eta.x, normal);
+        prepared.parts[2] = luthier_beam_part(energy * vec3<f32>(0.0, 1.0, 0.0), mirror.exponent, eta.y, normal);
+        prepared.parts[3] = luthier_beam_part(energy * vec3<f32>(0.0, 0.0, 1.0), mirror.exponent, eta.z, normal);
+        //? else
+        prepared.parts[1] = luthier_beam_part(energy, mirror.exponent, eta.y, vec3<f32>(0.0, 0.0, 1.0));
+        //? end
+        //? granier_base
+        let diffuse_reflectance = (21.0 * (eta * eta + 1.0) - 38.0 * eta) / (21.0 * (eta + 1.0) * (eta + 1.0));
+        diffuse = luthier_superpose(layer, diffuse_reflectance, 1.0 - diffuse_reflectance, vec3<f32>(2.0));
+        //? end
+    }
+    //? end
+    //? granier_bare
+    //? granier_film
+    if layer.kind == LUTHIER_CONDUCTOR && !has_film {
+    //? else
+    if layer.kind == LUTHIER_CONDUCTOR {
+    //? end
+        mirror.energy = luthier_schlick(luthier_fresnel_term(layer, 1.0), wo.z);
+    }
+    //? end
+    //? interface
+    prepared.parts[0] = mirror;
+    //? end
+    //? granier_base
+    let last = luthier_layer(material, luthier_layer_count(material) - 1u);
+    if last.kind == LUTHIER_DIFFUSE {
+        prepared.wide = LUTHIER_PI * diffuse * last.lambert;
+    }
+    //? end
+    return prepared;
+}

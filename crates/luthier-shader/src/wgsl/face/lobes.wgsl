@@ -1,0 +1,22 @@
+/// The parts of the model `lobes` are its own; a diffuse base has none.
+fn luthier_parts_lobes(given: LuthierPrepared, $place_parameter material: u32, wo: vec3<f32>) -> LuthierPrepared {
+    var prepared = given;
+    //? lobes_diffuse
+    let layer = luthier_layer(material, 0u);
+    //? lobes
+    if layer.kind == LUTHIER_DIFFUSE {
+        let light = luthier_mean_light(wo);
+        prepared.wide = LUTHIER_PI * $diffuse(layer, light, wo);
+        prepared.model = $model_base;
+        return prepared;
+    }
+    //? else
+    let light = luthier_mean_light(wo);
+    prepared.wide = LUTHIER_PI * $diffuse(layer, light, wo);
+    //? end
+    //? end
+    //? lobes
+    prepared.lobes = luthier_prepare_lobes(material, wo);
+    //? end
+    return prepared;
+}

@@ -1,0 +1,29 @@
+/// The part of an interface, whose energy is that in the mirrored direction. These models spread it over eta^2 the solid angle without
+/// dimming it.
+fn luthier_path_part(
+    path: LuthierPath, layer: LuthierLayer, alpha: vec2<f32>, axis: vec2<f32>, eta: f32, normal: vec3<f32>, inner_eta: f32,
+) -> LuthierPart {
+    var part = luthier_no_part();
+    let index = eta * inner_eta;
+    //? patina
+    let fresnel = layer.tarnish * luthier_fresnel_term(layer, min(path.wo_local.z, 1.0));
+    //? else
+    let fresnel = luthier_fresnel_term(layer, min(path.wo_local.z, 1.0));
+    //? end
+    part.energy = path.throughput * fresnel * (index * index);
+    part.alpha = alpha;
+    part.axis = axis;
+    part.eta = eta;
+    part.normal = normal;
+    part.inner_eta = inner_eta;
+    return part;
+}
+
+/// A path whose light is mirrored at the layers below.
+fn luthier_path_mirrored(path: LuthierPath) -> LuthierPath {
+    var next = path;
+    next.wi_local = vec3<f32>(-path.wo_local.xy, path.wo_local.z);
+    next.across = vec2<f32>(0.0);
+    next.open = path.open && path.wo_local.z > 0.0;
+    return next;
+}
