@@ -18,6 +18,8 @@
 //! `luthier_flake_normal`, `luthier_patina_amount`, `luthier_glitter_normal` and `luthier_film_place`, and calls
 //! `luthier_eval_at`.
 //!
+//! [`MaterialSet::functions`] asks for more: `luthier_prepare` and `luthier_light`, drawn directions, albedos.
+//!
 //! Simplifications: bindings are in group 0; the full form knows one film per interface.
 //!
 //! Sums of `luthier_eval` over lights go through `luthier_bounded` where they are written. Numbers of group 0 from

@@ -235,7 +235,7 @@ fn walk(
         ]
         .map(str::to_owned);
         let mut step = vec![format!("let layer = $layer(material, {index});")];
-        match (here().any(|layer| is_diffuse(layer)), here().all(|layer| is_diffuse(layer))) {
+        match (here().any(&is_diffuse), here().all(&is_diffuse)) {
             (false, _) => step.extend(add),
             (true, true) => step.extend(base),
             (true, false) => {

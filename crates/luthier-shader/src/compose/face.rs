@@ -1,4 +1,4 @@
-//! What renderers call beside `luthier_eval`: a material prepared for a view, its light, drawn directions, its albedo.
+//! Functions for renderers beside `luthier_eval`: a material prepared for a view, its light, drawn directions, its albedo.
 
 use std::fmt::Write as _;
 

@@ -88,7 +88,7 @@ impl Features {
     }
 }
 
-/// What functions beside `luthier_eval` need: lobes of visible normals, and of powers of a cosine; whether some are below boundaries, and
+/// Words for functions beside `luthier_eval`: lobes of visible normals, and of powers of a cosine; whether some are below boundaries, and
 /// tilted there; whether a material has to say which model it is of.
 fn of_face(set: &MaterialSet<'_>, names: &BTreeSet<&'static str>) -> Vec<&'static str> {
     let has = |name| names.contains(name);

@@ -50,6 +50,27 @@ fn the_default_is_wgsl_with_tables() {
     assert!(!workshop.run(&["shader", "all", "--form", "full"]).stdout.contains("texture_2d"), "only the buffer");
 }
 
+/// Groups of functions are there where they are asked for, in a bake as well, whose manifest lists them.
+#[test]
+fn functions_are_asked_for() {
+    let workshop = sets();
+    let plain = workshop.run(&["shader", "all"]).exits(0).stdout;
+    assert_eq!(plain, workshop.run(&["shader", "all", "--functions", "eval"]).exits(0).stdout);
+    let text = workshop.run(&["shader", "all", "--functions", "sample,albedo"]).exits(0).stdout;
+    for function in ["prepare", "light", "sample", "pdf", "albedo"] {
+        let declaration = format!("fn luthier_{function}(");
+        assert!(text.contains(&declaration) && !plain.contains(&declaration), "{function}");
+    }
+    workshop.run(&["bake", "all", "-q"]).exits(0);
+    assert!(!workshop.text("out/manifest.json").contains("\"functions\""));
+    workshop.run(&["bake", "all", "-q", "--functions", "albedo,sample"]).exits(0);
+    assert_eq!(workshop.text("out/shaders/baked.wgsl"), text);
+    let manifest: serde_json::Value = serde_json::from_str(&workshop.text("out/manifest.json")).unwrap();
+    assert_eq!(manifest["functions"], serde_json::json!(["eval", "light", "sample", "albedo"]));
+    let refusal = workshop.run(&["shader", "all", "--functions", "smaple"]).exits(2).stderr;
+    assert!(refusal.contains("possible values: eval, light, sample, albedo"), "{refusal}");
+}
+
 /// A set mentions the tables that it needs, and no other.
 #[test]
 fn tables_that_are_not_needed_are_not_mentioned() {

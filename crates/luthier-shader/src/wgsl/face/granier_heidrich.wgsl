@@ -10,7 +10,7 @@ fn luthier_beam_part(energy: vec3<f32>, exponent: f32, eta: f32, normal: vec3<f3
 }
 //? end
 
-/// The parts of the model `granier-heidrich`: mirrored and transmitted beams without their interference, and the diffuse term.
+/// The parts of the model `granier-heidrich`: the mirrored beam, the transmitted one with the interference of both, and the diffuse term.
 fn luthier_parts_granier_heidrich(given: LuthierPrepared, $place_parameter material: u32, wo: vec3<f32>) -> LuthierPrepared {
     var prepared = given;
     let layer = $layer(material, 0u);
@@ -33,7 +33,9 @@ fn luthier_parts_granier_heidrich(given: LuthierPrepared, $place_parameter mater
         let root = (eta - 1.0) / (eta + 1.0);
         mirror.energy = luthier_schlick(root * root, wo.z);
         let leaving = 1.0 - mirror.energy;
-        let energy = leaving * leaving;
+        // The beams interfere as they do along the mirrored direction.
+        let inside = sqrt(max(wo.z * wo.z + (eta - 1.0) * (eta + 1.0), vec3<f32>(0.0))) / eta;
+        let energy = luthier_superpose(layer, mirror.energy, leaving * leaving, 2.0 * inside) - mirror.energy;
         //? place
         let normal = place.inner_normal;
         prepared.parts[1] = luthier_beam_part(energy * vec3<f32>(1.0, 0.0, 0.0), mirror.exponent, eta.x, normal);

@@ -70,7 +70,7 @@ struct LuthierPrepared {
     base_eta: f32,
     //? end
     //? lobes
-    /// The same for the model `lobes`.
+    /// A material of the model `lobes` as seen from the eye.
     lobes: LuthierPreparedLobes,
     //? end
 }

@@ -18,13 +18,13 @@ fn luthier_chance(part: LuthierPart) -> f32 {
 //? end
 
 //? visible, powers
-/// What the diffuse draws take over from a part: where lobes are rough, models leave their visible normals.
+/// Probability that diffuse draws take over from a part: where lobes are rough, models leave their visible normals.
 fn luthier_spill(part: LuthierPart) -> f32 {
     return select(0.1 * max(part.alpha.x, part.alpha.y), 0.0, part.exponent >= 0.0) * luthier_chance(part);
 }
 //? else
 //? visible
-/// What the diffuse draws take over from a part: where lobes are rough, models leave their visible normals.
+/// Probability that diffuse draws take over from a part: where lobes are rough, models leave their visible normals.
 fn luthier_spill(part: LuthierPart) -> f32 {
     return 0.1 * max(part.alpha.x, part.alpha.y) * luthier_chance(part);
 }

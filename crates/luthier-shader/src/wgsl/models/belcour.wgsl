@@ -24,7 +24,7 @@ fn luthier_belcour_lobe(path: LuthierBelcour, wi: vec3<f32>, wo: vec3<f32>) -> v
 }
 
 //? face
-/// The same as a part to draw from.
+/// The lobe of the last interface as a part to draw from.
 fn luthier_belcour_part(path: LuthierBelcour) -> LuthierPart {
     var part = luthier_no_part();
     part.energy = path.lobe_energy;
