@@ -15,6 +15,7 @@ mod model_inputs;
 mod picture;
 mod progress;
 mod reradiation;
+mod surroundings;
 mod verb;
 #[cfg(feature = "view")]
 mod view_host;
@@ -48,6 +49,7 @@ fn main() -> ExitCode {
         #[cfg(feature = "view")]
         Verb::View(options) => verb::view::run(options),
         Verb::Shader(options) => verb::shader::run(options),
+        Verb::Environment(options) => verb::environment::run(options),
         Verb::Models(options) => verb::models::run(options),
         Verb::Eval(options) => verb::eval::run(options),
         Verb::Ior(options) => verb::ior::run(options),

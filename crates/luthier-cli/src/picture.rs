@@ -3,13 +3,13 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use luthier_export::input;
-use luthier_gpu::{Backdrop, Environment, Light, RenderSettings, Shape, ToneMapping};
+use luthier_gpu::{Backdrop, Light, RenderSettings, Shape, ToneMapping};
 use luthier_lut::Image;
 use luthier_terminal::{Failure, Outcome, files};
-use luthier_texture::{Metadata, exr, png, radiance};
+use luthier_texture::{Metadata, exr, png};
 
 use crate::cli::Look;
+use crate::surroundings;
 
 /// The settings that options ask for.
 pub(crate) fn settings(look: &Look, shape: Shape, size: u32) -> Outcome<RenderSettings> {
@@ -19,7 +19,7 @@ pub(crate) fn settings(look: &Look, shape: Shape, size: u32) -> Outcome<RenderSe
     settings.exposure = libm::exp2f(look.exposure);
     settings.environment_samples = look.environment_samples.unwrap_or(0);
     if let Some(path) = &look.environment {
-        settings.environment = Arc::new(environment(path)?);
+        settings.environment = Arc::new(surroundings::read(path)?.environment);
     }
     if look.background {
         settings.backdrop = Backdrop::Environment;
@@ -35,15 +35,6 @@ pub(crate) fn settings(look: &Look, shape: Shape, size: u32) -> Outcome<RenderSe
         settings.lights.extend(default);
     }
     Ok(settings)
-}
-
-fn environment(path: &Path) -> Outcome<Environment> {
-    let bytes = input::image(path).map_err(files(path, "read"))?;
-    let unusable = |source: anyhow::Error| Failure::Input(source.context(path.display().to_string()));
-    let mut map = radiance::decode(&bytes).map_err(|source| unusable(source.into()))?;
-    // Resampling leaves small negative values in many maps.
-    map.data.iter_mut().for_each(|v| *v = if *v < 0.0 { 0.0 } else { *v });
-    Environment::new(map).map_err(|source| unusable(source.into()))
 }
 
 /// File format of a picture.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::SystemTime;
 
-use luthier_export::{Bake, MemoryStore, Package, Source, find, lit, read_one};
+use luthier_export::{Bake, MemoryStore, Package, Source, find, lit, lit_functions, read_one};
 use luthier_material::Material;
 use luthier_terminal::{Failure, Outcome};
 use luthier_texture::png;
@@ -31,7 +31,8 @@ impl ViewHost {
 
     fn package(&self, material: &Material, form: Form) -> Outcome<Package> {
         let materials = lit(std::slice::from_ref(material));
-        let package = Package::new(&materials, &Bake::wgsl(&[form]), &self.store)?;
+        let package =
+            Package::new(&materials, &Bake { functions: lit_functions(), ..Bake::wgsl(&[form]) }, &self.store)?;
         self.store.sweep();
         Ok(package)
     }

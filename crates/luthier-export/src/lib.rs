@@ -45,7 +45,7 @@ pub use make::{Bake, ExportError, outline, source_hash};
 #[cfg(feature = "bake")]
 pub use refusals::{refuse, refuse_too_many};
 #[cfg(feature = "bake")]
-pub use renderer::lit;
+pub use renderer::{lit, lit_functions};
 #[cfg(feature = "bake")]
 pub use sources::{Source, find, label, parse, read, read_image, read_one};
 

@@ -2,7 +2,7 @@
 
 use luthier_bake::MemoryStore;
 use luthier_lut::TableKind;
-use luthier_manifest::ShadingModel;
+use luthier_manifest::{FunctionGroup, Functions, ShadingModel};
 use luthier_material::Material;
 
 use crate::{Bake, ExportError, Package};
@@ -11,13 +11,18 @@ use crate::{Bake, ExportError, Package};
 const ENVIRONMENT_TABLES: [TableKind; 3] = [TableKind::Fresnel, TableKind::Fgd, TableKind::Film];
 
 impl Package {
-    /// Bakes materials for a renderer: both forms of the shader in WGSL. Nothing is kept for the next package.
+    /// Bakes materials for a renderer: both forms of the shader in WGSL, with what shows an environment. Nothing is kept for the next package.
     ///
     /// # Errors
     /// Those of [`Package::new`].
     pub fn for_renderer(materials: &[Material]) -> Result<Self, ExportError> {
-        Self::new(materials, &Bake::wgsl(&[]), &MemoryStore::default())
+        Self::new(materials, &Bake { functions: lit_functions(), ..Bake::wgsl(&[]) }, &MemoryStore::default())
     }
+}
+
+/// Groups of functions that show an environment.
+pub fn lit_functions() -> Functions {
+    [FunctionGroup::Environment].into_iter().collect()
 }
 
 /// The materials, each asking for the tables that blurred environments read, too.

@@ -5,6 +5,7 @@ use luthier_manifest::{BindingEntry, material_buffer};
 use wgpu::{BindGroupLayoutEntry, BindingType, ShaderStages};
 
 use crate::context::Context;
+use crate::surroundings::Surroundings;
 use luthier_export::{Package, PackageError};
 
 use crate::GpuError;
@@ -15,6 +16,10 @@ enum Resource {
     Table(wgpu::TextureView, TexelFormat),
     Sampler(wgpu::Sampler),
     Materials,
+    /// The levels of an environment.
+    Environment,
+    /// Its irradiance.
+    Irradiance,
 }
 
 /// The resources of group 0 and their layout. The material buffer is given per bind group.
@@ -25,6 +30,11 @@ pub(crate) struct ShaderBindings {
 }
 
 impl ShaderBindings {
+    /// Whether the shader reads an environment.
+    pub(crate) fn has_surroundings(&self) -> bool {
+        self.resources.iter().any(|(_, resource)| matches!(resource, Resource::Environment))
+    }
+
     /// Uploads the tables that the shader names.
     pub(crate) fn new(context: &Context, package: &Package, wgsl: &str) -> Result<Self, GpuError> {
         let mut resources = Vec::new();
@@ -42,8 +52,13 @@ impl ShaderBindings {
         Ok(Self { resources, layout })
     }
 
-    /// Group 0 with these words as the material buffer.
-    pub(crate) fn group(&self, context: &Context, materials: &[[f32; 4]]) -> Result<wgpu::BindGroup, GpuError> {
+    /// Group 0 with these words as the material buffer, in these surroundings.
+    pub(crate) fn group(
+        &self,
+        context: &Context,
+        materials: &[[f32; 4]],
+        surroundings: &Surroundings,
+    ) -> Result<wgpu::BindGroup, GpuError> {
         context.guarded("material buffer", || {
             let buffer = context.upload("luthier_materials", bytemuck::cast_slice(materials));
             let entries: Vec<_> = self
@@ -55,6 +70,8 @@ impl ShaderBindings {
                         Resource::Table(view, _) => wgpu::BindingResource::TextureView(view),
                         Resource::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
                         Resource::Materials => buffer.as_entire_binding(),
+                        Resource::Environment => wgpu::BindingResource::TextureView(&surroundings.environment),
+                        Resource::Irradiance => wgpu::BindingResource::TextureView(&surroundings.irradiance),
                     },
                 })
                 .collect();
@@ -82,6 +99,7 @@ fn resource(context: &Context, package: &Package, entry: &BindingEntry) -> Resul
                     label: Some(&entry.name),
                     mag_filter: wgpu::FilterMode::Linear,
                     min_filter: wgpu::FilterMode::Linear,
+                    mipmap_filter: wgpu::MipmapFilterMode::Linear,
                     ..Default::default()
                 })
             })?;
@@ -92,6 +110,11 @@ fn resource(context: &Context, package: &Package, entry: &BindingEntry) -> Resul
             let kind = TableKind::ALL.into_iter().find(named).ok_or_else(unknown)?;
             table(context, package, kind)
         }
+        "texture_cube<f32>" => match entry.name.as_str() {
+            "luthier_environment_map" => Ok(Resource::Environment),
+            "luthier_irradiance_map" => Ok(Resource::Irradiance),
+            _ => Err(unknown()),
+        },
         _ => Err(unknown()),
     }
 }
@@ -133,6 +156,11 @@ fn layout_entry(binding: u32, resource: &Resource) -> BindGroupLayoutEntry {
         },
         Resource::Sampler(_) => BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
         Resource::Materials => storage(true),
+        Resource::Environment | Resource::Irradiance => BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+            view_dimension: wgpu::TextureViewDimension::Cube,
+            multisampled: false,
+        },
     };
     BindGroupLayoutEntry { binding, visibility: ShaderStages::COMPUTE, ty, count: None }
 }

@@ -99,6 +99,19 @@ impl Context {
         );
     }
 
+    /// Fills a level of a face of a cube.
+    pub(crate) fn upload_face(&self, texture: &wgpu::Texture, level: u32, face: u32, bytes: &[u8]) {
+        let size = (texture.width() >> level).max(1);
+        let origin = wgpu::Origin3d { x: 0, y: 0, z: face };
+        let rows = bytes.len() as u32 / size;
+        self.queue.write_texture(
+            wgpu::TexelCopyTextureInfo { mip_level: level, origin, ..texture.as_image_copy() },
+            bytes,
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(rows), rows_per_image: None },
+            wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
+        );
+    }
+
     /// Runs a pass and waits for its output.
     pub(crate) fn run(&self, pass: &Pass<'_>) -> Result<Vec<[f32; 4]>, GpuError> {
         let bytes = (pass.output_words * size_of::<[f32; 4]>()) as u64;

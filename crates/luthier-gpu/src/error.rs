@@ -1,5 +1,6 @@
 //! Errors of the runtime: packages, bindings, devices.
 
+use luthier_environment::EnvironmentError;
 use luthier_export::PackageError;
 use luthier_lut::{TableKind, TexelFormat};
 use luthier_manifest::Form;
@@ -119,13 +120,16 @@ pub enum GpuError {
     },
     /// Blurred maps of the environment need the reflectance of every interface.
     #[error(
-        "without samples of the environment every interface needs a Fresnel tile, and `{material}` has one without: bake the kinds \
-         fresnel and fgd too, or sample the environment"
+        "without samples of the environment every interface needs a Fresnel tile, and materials of lobes the functions `environment`; \
+         `{material}` lacks them: bake the kinds fresnel and fgd, or these functions, too, or sample the environment"
     )]
     NoReflectance {
         /// Name of the material.
         material: String,
     },
+    /// An environment that cannot be made.
+    #[error("environment: {0}")]
+    Environment(#[from] EnvironmentError),
     /// A setting of the renderer out of range.
     #[error("render setting {name} = {value}; {allowed}")]
     Setting {
@@ -136,4 +140,13 @@ pub enum GpuError {
         /// Values that are allowed.
         allowed: &'static str,
     },
+}
+
+pub(crate) fn setting(name: &'static str, value: String, allowed: &'static str) -> GpuError {
+    GpuError::Setting { name, value, allowed }
+}
+
+pub(crate) fn check_direction(name: &'static str, v: [f32; 3]) -> Result<(), GpuError> {
+    let length_sq: f32 = v.iter().map(|x| x * x).sum();
+    if length_sq.is_normal() { Ok(()) } else { Err(setting(name, format!("{v:?}"), "a finite direction, not zero")) }
 }

@@ -13,31 +13,26 @@
 
 mod bindings;
 mod context;
-mod environment;
 mod error;
 mod evaluate;
 mod gpu;
 mod light;
 mod lookup;
 mod maps;
-mod panorama;
-mod prefilter;
 mod render;
 mod scene;
 mod shape;
-mod sky;
+mod surroundings;
 mod time;
 mod tone;
-mod vector;
 
-pub use environment::{Blur, Environment};
 pub use error::GpuError;
 pub use gpu::Gpu;
 pub use light::Light;
+pub use luthier_environment::{Blur, Environment, EnvironmentError, Sky, SoftLight};
 pub use luthier_export::{Map, Package, PackageError, Shader, Table};
 pub use render::{Backdrop, RenderSettings};
 pub use scene::Scene;
 pub use shape::{Camera, GRID_SIDE, Shape};
-pub use sky::{Sky, SoftLight};
 pub use time::Stopwatch;
 pub use tone::ToneMapping;

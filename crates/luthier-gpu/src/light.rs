@@ -1,7 +1,7 @@
 //! Lights without a body, and their words in the kernel's buffer.
 
 use crate::GpuError;
-use crate::sky::{check_direction, setting};
+use crate::error::{check_direction, setting};
 
 /// A light without a visible body. Linear RGB; +y is up.
 #[derive(Debug, Clone, Copy, PartialEq)]

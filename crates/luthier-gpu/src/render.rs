@@ -3,14 +3,14 @@
 use luthier_manifest::{Distribution, Form};
 use std::sync::Arc;
 
+use luthier_environment::{ALPHAS, Blur, Environment};
 use luthier_lut::{Image, TableKind};
 use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry, ShadingModel, material_buffer};
 
 use crate::context::Pass;
-use crate::environment::{Blur, Environment};
+use crate::error::setting;
 use crate::maps::MAP_WORDS;
-use crate::prefilter::ALPHAS;
-use crate::sky::setting;
+use crate::surroundings::Surroundings;
 use crate::{Camera, GpuError, Light, Scene, Shape, Sky};
 
 /// Evaluations per submission: about a second on a software adapter.
@@ -107,10 +107,8 @@ impl Scene {
     /// the first; and below a coat `luthier_eval` spreads a lobe over eta^2 the solid angle without dimming it
     /// (Weidlich and Wilkie's eq. 3.1 lacks 1 / eta^2), where this way keeps to the energy that came in.
     ///
-    /// A material of the model `lobes` has the energies of its rows instead: each lobe and the first interface reflect their own in 64 directions
-    /// that they would draw, each blurred by its share of the lobe (Krivanek and Colbert 2008); the wide remainder reflects irradiance. The
-    /// albedo is that of the model. Against 512 samples, the root mean squared error over the mean is .002 to .021 on eight materials under the
-    /// default sky.
+    /// A material of the model `lobes` has the energies of its rows instead: `luthier_environment` of the emitted shader reads cubes that were blurred
+    /// beforehand. The samples of a pixel turn its directions. `docs/pages/environment.md` has its errors.
     ///
     /// # Errors
     /// [`GpuError::Prefiltered`] for another form than `baked` without samples, [`GpuError::NoReflectance`] for a material without
@@ -127,6 +125,9 @@ impl Scene {
     /// [`GpuError::NoMaterial`].
     pub fn has_albedo(&self, material: u32) -> Result<bool, GpuError> {
         self.layers(material)?;
+        if shows_lobes(&self.manifest.materials[material as usize]) {
+            return Ok(self.bindings.has_surroundings());
+        }
         let is_known =
             |layer: &LayerRecord| layer.tiles[TableKind::Fgd].is_some() || layer.tiles[TableKind::Film].is_some();
         Ok(self.interfaces(material).all(|layer| has_reflectance(layer) && is_known(layer)))
@@ -167,12 +168,21 @@ impl Scene {
         if self.form() != Form::Baked && settings.environment_samples == 0 {
             return Err(GpuError::Prefiltered { form: self.form() });
         }
-        let lacks = |material: &&u32| !self.interfaces(**material).all(has_reflectance);
+        let lacks = |material: &&u32| {
+            let hides = !self.bindings.has_surroundings() && shows_lobes(&self.manifest.materials[**material as usize]);
+            hides || !self.interfaces(**material).all(has_reflectance)
+        };
         if let Some(&material) = materials.iter().find(lacks).filter(|_| settings.environment_samples == 0) {
             let material = self.manifest.materials[material as usize].name.clone();
             return Err(GpuError::NoReflectance { material });
         }
-        let group = self.bindings.group(&self.context, &self.widened_words(settings.light_angular_radius))?;
+        let surroundings = if self.bindings.has_surroundings() && settings.environment_samples == 0 {
+            Surroundings::new(&self.context, &settings.environment)?
+        } else {
+            Surroundings::black(&self.context)?
+        };
+        let words = self.widened_words(settings.light_angular_radius);
+        let group = self.bindings.group(&self.context, &words, &surroundings)?;
         let pipeline = self.pipeline(&self.render, &self.render_kernel())?;
         let mut inputs = self.inputs(materials, settings);
 
@@ -234,19 +244,21 @@ impl Scene {
              fn shading_fgd(tile: f32, cos_theta: f32, alpha: f32) -> vec3<f32> {{\n    return {fgd};\n}}\n\
              fn shading_film(tile: f32, cos_theta: f32, fraction: f32) -> vec3<f32> {{\n    return {film};\n}}\n"
         );
-        let lobes = if self.manifest.materials.iter().any(shows_lobes) {
-            include_str!("wgsl/lobes.wgsl")
+        let shown = if self.bindings.has_surroundings() {
+            "luthier_environment_lobes(luthier_prepare_lobes(material, vec3<f32>(wo.xy, max(wo.z, 1e-4))), frame, turn)"
         } else {
-            "fn lobes_environment(material: u32, frame: mat3x3<f32>, wo: vec3<f32>, chain: u32, coat_tail: f32, seed: u32) -> vec3<f32> {\n    \
-             return vec3<f32>(0.0);\n}\n"
+            "vec3<f32>(0.0)"
         };
+        let lobes = format!(
+            "fn lobes_environment(material: u32, frame: mat3x3<f32>, wo: vec3<f32>, turn: f32) -> vec3<f32> {{\n    return {shown};\n}}\n"
+        );
         [
             include_str!("wgsl/shape.wgsl"),
             include_str!("wgsl/environment.wgsl"),
             include_str!("wgsl/shading.wgsl"),
             include_str!("wgsl/render.wgsl"),
             &lookups,
-            lobes,
+            &lobes,
             &self.surface_functions(),
         ]
         .join("\n")
@@ -265,7 +277,7 @@ impl Scene {
         let entries = &self.manifest.materials;
         let mut first = headers + entries.len();
         for entry in entries {
-            words.push([first as u32, entry.layers.len() as u32, 0, lobes_number(entry, &used).to_bits()]);
+            words.push([first as u32, entry.layers.len() as u32, 0, f32::from(u8::from(shows_lobes(entry))).to_bits()]);
             first += entry.records().count() * 4;
         }
         for layer in entries.iter().flat_map(MaterialEntry::records) {
@@ -325,10 +337,15 @@ impl Scene {
 
     /// The slope distributions of all layers, in the order of their chains.
     fn blurs(&self) -> Vec<Blur> {
-        let layers =
-            || self.manifest.materials.iter().flat_map(MaterialEntry::records).filter(|l| l.kind != LayerKind::Diffuse);
-        let has_lobes = self.manifest.materials.iter().any(shows_lobes);
-        let is_used = |blur: &Blur| has_lobes && *blur == Blur::Beckmann || layers().any(|l| blur_of(l) == *blur);
+        let layers = || {
+            self.manifest
+                .materials
+                .iter()
+                .filter(|m| !shows_lobes(m))
+                .flat_map(MaterialEntry::records)
+                .filter(|l| l.kind != LayerKind::Diffuse)
+        };
+        let is_used = |blur: &Blur| layers().any(|l| blur_of(l) == *blur);
         [Blur::Ggx, Blur::Beckmann].into_iter().filter(is_used).collect()
     }
 }
@@ -361,17 +378,6 @@ fn shows_lobes(entry: &MaterialEntry) -> bool {
 fn first_map(used: &[Blur], blur: Blur) -> u32 {
     2 + (used.iter().position(|other| *other == blur).unwrap_or(0) * ALPHAS.len()) as u32
 }
-
-/// The number about lobes in `shading.wgsl`: the first map of Beckmann's distribution, and as a fraction the tail of the first interface; 0 without
-/// lobes.
-fn lobes_number(entry: &MaterialEntry, used: &[Blur]) -> f32 {
-    let tail = |coat: &LayerRecord| if blur_of(coat) == Blur::Ggx { 1.0 - TAIL_STEP } else { TAIL_STEP };
-    let coat = entry.layers.first().filter(|_| shows_lobes(entry));
-    coat.map_or(0.0, |coat| first_map(used, Blur::Beckmann) as f32 + tail(coat))
-}
-
-/// How near tails are to those of Beckmann (0) and GGX (1).
-const TAIL_STEP: f32 = 1.0 / 1024.0;
 
 fn has_reflectance(layer: &LayerRecord) -> bool {
     layer.tiles[TableKind::Fresnel].is_some() || layer.tiles[TableKind::Film].is_some()

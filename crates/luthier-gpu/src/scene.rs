@@ -9,6 +9,7 @@ use crate::bindings::{ShaderBindings, kernel_layout, material_words};
 use crate::context::Context;
 use luthier_export::{Map, Package};
 
+use crate::surroundings::Surroundings;
 use crate::{GpuError, evaluate};
 
 /// A bake on a device, ready to evaluate, to look up and to render.
@@ -32,7 +33,7 @@ impl Scene {
     pub(crate) fn new(context: Context, package: &Package, form: Form) -> Result<Self, GpuError> {
         let wgsl = package.wgsl(form)?;
         let bindings = ShaderBindings::new(&context, package, wgsl)?;
-        let group = bindings.group(&context, &material_words(package))?;
+        let group = bindings.group(&context, &material_words(package), &Surroundings::black(&context)?)?;
         let kernel_group = kernel_layout(&context)?;
         let kernels = context.guarded("pipeline layout", || {
             context.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -68,7 +69,7 @@ impl Scene {
         }
         // Layouts with the same entries are the same to the device, so the pipelines take the new groups.
         let bindings = ShaderBindings::new(&self.context, package, &self.wgsl)?;
-        let group = bindings.group(&self.context, &material_words(package))?;
+        let group = bindings.group(&self.context, &material_words(package), &Surroundings::black(&self.context)?)?;
         Ok(Some(Self {
             context: self.context.clone(),
             manifest: package.manifest.clone(),

@@ -1,8 +1,7 @@
 //! Shapes that are rendered, and the camera that sees them.
 
 use crate::GpuError;
-use crate::sky::setting;
-use crate::vector::{cross, unit};
+use crate::error::setting;
 
 /// Shape that is looked at. All shapes are about the origin, +y is up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -90,4 +89,13 @@ impl Camera {
     fn sight(&self) -> [f64; 3] {
         [0, 1, 2].map(|c| f64::from(self.target[c]) - f64::from(self.eye[c]))
     }
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn unit(v: [f64; 3]) -> [f64; 3] {
+    let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+    v.map(|x| x / length)
 }

@@ -35,6 +35,8 @@ pub(crate) enum Verb {
     Judge(JudgeOptions),
     /// Fit lobes to simulated stacks, shipped ones and random ones, and compare them with the papers' models: a page in Markdown
     Lobes(LobesOptions),
+    /// Compare the environment that pictures show with sums over all directions: a page in Markdown
+    Environment(EnvironmentOptions),
     /// Measure the tables that searches find against fixed ones: a page in Markdown
     Budgets(BudgetsOptions),
     /// Count the cycles of the papers' shaders on today's chips, without the chips: a page in Markdown
@@ -178,6 +180,23 @@ pub(crate) struct LobesOptions {
     /// Rows over the view
     #[arg(long, value_name = "N", default_value_t = 19, value_parser = clap::value_parser!(u32).range(4..=64))]
     pub(crate) rows: u32,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  luthier-lab environment materials/silver-paint.toml -o docs/pages/environment.md")]
+pub(crate) struct EnvironmentOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Pixels along a side of the picture of a ball whose pixels are compared
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(4..=64))]
+    pub(crate) size: u32,
+    /// Rows of the maps
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(32..=512))]
+    pub(crate) rows: u32,
+    #[command(flatten)]
+    pub(crate) adapter: Adapter,
     #[command(flatten)]
     pub(crate) destination: Destination,
 }

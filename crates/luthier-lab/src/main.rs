@@ -2,6 +2,7 @@
 
 mod budgets;
 mod cli;
+mod environment;
 mod figures;
 mod judge;
 mod lobes;
@@ -24,6 +25,7 @@ fn main() -> ExitCode {
         Verb::Parity(options) => parity::run(options),
         Verb::Stability(options) => stability::run(options),
         Verb::Judge(options) => judge::run(options),
+        Verb::Environment(options) => environment::run(options),
         Verb::Lobes(options) => lobes::run(options),
         Verb::Budgets(options) => budgets::run(options),
         Verb::Papers(options) => papers::run(options),

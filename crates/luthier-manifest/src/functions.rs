@@ -17,6 +17,8 @@ luthier_lut::named! {
         Sample = "sample",
         /// `luthier_albedo`; it brings `light`.
         Albedo = "albedo",
+        /// `luthier_environment`, which shows a prefiltered environment; it brings `light`.
+        Environment = "environment",
     }
 }
 

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use luthier_lut::{AtlasLayout, TableKind, TexelFormat, Values};
 use luthier_manifest::{
-    BUFFER_WORDS_MAX, BindingEntry, Functions, LAYER_WORDS, LayerRecord, MATERIAL_WORDS, Manifest, MaterialEntry,
-    ShadingModel,
+    BUFFER_WORDS_MAX, BindingEntry, FunctionGroup, Functions, LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS,
+    Manifest, MaterialEntry, ShadingModel,
 };
 
 use crate::{Form, ShaderError};
@@ -18,6 +18,12 @@ pub const RESERVED_BINDINGS: u32 = 16;
 const SAMPLER_BINDING: u32 = 5;
 /// Binding of the material buffer.
 const MATERIALS_BINDING: u32 = 6;
+/// Bindings of the environment.
+const ENVIRONMENT_BINDINGS: [(u32, &str, &str); 3] = [
+    (13, "luthier_environment_map", "texture_cube<f32>"),
+    (14, "luthier_irradiance_map", "texture_cube<f32>"),
+    (15, "luthier_environment_sampler", "sampler"),
+];
 
 const _: () = {
     let mut i = 0;
@@ -74,6 +80,14 @@ impl<'a> MaterialSet<'a> {
     /// The models in use, in the order of their numbers.
     pub(crate) fn models(&self) -> impl Iterator<Item = ShadingModel> {
         ShadingModel::ALL.into_iter().filter(|&model| self.materials.iter().any(|m| m.model == model))
+    }
+
+    /// Whether shaders of a form show the environment: where they were asked to, and some material has lobes.
+    pub(crate) fn shows_environment(&self, form: Form) -> bool {
+        let has_lobes = |m: &MaterialEntry| {
+            m.model == ShadingModel::Lobes && m.layers.iter().any(|layer| layer.kind != LayerKind::Diffuse)
+        };
+        form == Form::Baked && self.functions.has(FunctionGroup::Environment) && self.materials.iter().any(has_lobes)
     }
 
     /// Words of the material buffer.
@@ -190,6 +204,10 @@ pub fn bindings(set: &MaterialSet<'_>, form: Form) -> Vec<BindingEntry> {
         bindings.push(entry(SAMPLER_BINDING, "luthier_sampler".to_owned(), "sampler"));
     }
     bindings.push(entry(MATERIALS_BINDING, "luthier_materials".to_owned(), "buffer"));
+    if set.shows_environment(form) {
+        bindings
+            .extend(ENVIRONMENT_BINDINGS.map(|(binding, name, resource)| entry(binding, name.to_owned(), resource)));
+    }
     bindings
 }
 

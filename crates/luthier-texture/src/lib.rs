@@ -10,7 +10,7 @@
 //!
 //! The codecs are those of the `ktx2`, `ruzstd`, `exr` and `image` crates.
 //!
-//! Simplifications: textures that are written are two-dimensional with one level, one layer and one face; EXR files are
+//! Simplifications: textures that are written have one layer; EXR files are
 //! single-part scan-line images of 32-bit floats.
 
 mod dds;

@@ -75,6 +75,8 @@ pub(crate) enum Verb {
     View(ViewOptions),
     /// Print the shader of some materials, or write it to a file
     Shader(ShaderOptions),
+    /// Filter a picture of the surroundings beforehand: levels and irradiance as cubes and equirectangular maps
+    Environment(EnvironmentOptions),
     /// List the reflectance models
     Models(ModelsOptions),
     /// Evaluate a reflectance model of a material in f64
@@ -152,7 +154,7 @@ pub(crate) struct Emission {
     /// Forms of the shaders; by default both
     #[arg(long, value_parser = named::<Form>(Form::NAMES), value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) form: Vec<Form>,
-    /// Groups of functions beside luthier_eval: `light` (two steps for many lights), `sample` (drawn directions), `albedo`
+    /// Groups of functions beside luthier_eval: `light` (two steps for many lights), `sample` (drawn directions), `albedo`, `environment` (prefiltered, of materials of lobes)
     #[arg(long, value_parser = named::<FunctionGroup>(FunctionGroup::NAMES), value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) functions: Vec<FunctionGroup>,
 }
@@ -257,6 +259,9 @@ pub(crate) struct ReportOptions {
     #[arg(long)]
     pub(crate) json: bool,
 }
+
+mod environment;
+pub(crate) use environment::{EnvironmentOptions, LayoutName};
 
 mod audit;
 pub(crate) use audit::{AuditOptions, NodesName, PresetName, SamplesName};
@@ -368,7 +373,7 @@ pub(crate) struct ShaderOptions {
     /// Form of the shader: `baked` reads tables, `full` computes all terms
     #[arg(long, value_parser = named::<Form>(Form::NAMES), default_value_t = Form::Baked)]
     pub(crate) form: Form,
-    /// Groups of functions beside luthier_eval: `light` (two steps for many lights), `sample` (drawn directions), `albedo`
+    /// Groups of functions beside luthier_eval: `light` (two steps for many lights), `sample` (drawn directions), `albedo`, `environment` (prefiltered, of materials of lobes)
     #[arg(long, value_parser = named::<FunctionGroup>(FunctionGroup::NAMES), value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) functions: Vec<FunctionGroup>,
     /// D in closed form instead of from its table

@@ -9,6 +9,7 @@ pub(crate) mod check;
 pub(crate) mod compare;
 #[cfg(feature = "cost")]
 pub(crate) mod cost;
+pub(crate) mod environment;
 pub(crate) mod eval;
 #[cfg(feature = "gpu")]
 pub(crate) mod gallery;

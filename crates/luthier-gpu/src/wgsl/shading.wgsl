@@ -336,10 +336,11 @@ fn shading_radiance(part: u32, place: Place, wo_world: vec3<f32>, seed: u32) -> 
     }
     let factors = shading_factors(surface);
     let turned = shading_turned_frame(frame, factors.normal);
-    // Of a material of lobes: the first map of Beckmann, and the tail of its coat.
-    let lobes = kernel_inputs.words[kernel_inputs.materials + material].w;
-    if lobes > 0.0 {
-        return total + lobes_environment(material, turned, wo_world * turned, u32(lobes), fract(lobes), seed);
+    if kernel_inputs.words[kernel_inputs.materials + material].w > 0.0 {
+        // The samples of a pixel share the directions of a circle.
+        let samples = kernel_inputs.samples * kernel_inputs.samples;
+        let turn = f32(seed % samples) / f32(samples);
+        return total + lobes_environment(material, turned, wo_world * turned, turn);
     }
     return total + shading_environment(material, factors, turned, wo_world * turned);
 }

@@ -2,7 +2,7 @@
 
 use luthier_gpu::{Package, RenderSettings, Scene, Shader};
 use luthier_lut::{AtlasLayout, Axis, Mapping, TableKind, TexelFormat};
-use luthier_manifest::{LobesRecord, ShadingModel};
+use luthier_manifest::{FunctionGroup, LobesRecord, ShadingModel};
 use luthier_shader::{Form, MaterialSet, Target};
 
 use crate::adapter::gpu;
@@ -72,6 +72,7 @@ fn scene(first: f32, fresnel: f32) -> Option<Scene> {
         critical_width: 0.0,
         critical_plain_share: 0.0,
     });
+    manifest.functions = [FunctionGroup::Environment].into_iter().collect();
     let set = MaterialSet::from_manifest(&manifest);
     let wgsl = luthier_shader::emit(&set, Form::Baked, Target::Wgsl).unwrap();
     manifest.bindings = luthier_shader::bindings(&set, Form::Baked);

@@ -134,7 +134,7 @@ fn sharp() -> Outcome<Vec<Material>> {
 fn mapping(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let metals = sharp()?;
-    let dark = Arc::new(Environment::sky(&Sky::uniform([0.0; 3]))?);
+    let dark = Arc::new(Environment::sky(&Sky::uniform([0.0; 3])).map_err(luthier_gpu::GpuError::from)?);
     let look = |n: usize, settings: &mut RenderSettings| {
         let alpha = SHARP[n];
         let [extent, distance] = [ZOOM[0] * alpha, ZOOM[1]].map(|v| v as f32);

@@ -50,6 +50,9 @@ pub(crate) fn modules(set: &MaterialSet<'_>, features: &Features) -> Vec<String>
         }
         modules.push(module(&unrolled(include_str!("../wgsl/face/sample.wgsl"), parts, features)));
     }
+    if features.has("environment") {
+        modules.push(module(include_str!("../wgsl/face/environment.wgsl")));
+    }
     if set.functions.has(FunctionGroup::Albedo) {
         modules.push(module(include_str!("../wgsl/face/albedo.wgsl")));
         modules.push(module(&albedo(features, parts)));

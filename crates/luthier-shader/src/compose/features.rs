@@ -14,7 +14,7 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is but the names of tables, for the check that modules name no other.
     #[cfg(test)]
-    const ALL: &str = "absorption anisotropic bare beckmann below bilinear chain chain_diffuse clamped closed coat conductor critical_view diffuse \
+    const ALL: &str = "absorption anisotropic bare beckmann below bilinear chain chain_diffuse clamped closed coat conductor critical_view diffuse environment \
     face film film_table flakes full ggx glitter granier granier_bare granier_base \
     granier_film granier_transparent interface lobes_diffuse media microfacet_diffuse mixed one_lobe oren_nayar patina phong \
     place powers schlick_base several smith split_root statistics statistics_base theta_axis tilted total_reflection two_lobes visible";
@@ -67,6 +67,9 @@ impl Features {
         let has_elek = set.models().any(|model| model == ShadingModel::Elek);
         if has_elek && names.contains("chain") && ["place", "anisotropic"].iter().any(|name| names.contains(name)) {
             names.insert("clamped");
+        }
+        if set.shows_environment(form) {
+            names.insert("environment");
         }
         if !set.functions.is_eval_alone() {
             names.extend(of_face(set, &names));

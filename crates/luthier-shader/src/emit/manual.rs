@@ -14,7 +14,7 @@ const WIDTH: usize = 140;
 const LISTED: usize = 6;
 
 /// Functions of the face, by their calls, and what they give.
-const FUNCTIONS: [(&str, &str); 15] = [
+const FUNCTIONS: [(&str, &str); 16] = [
     ("luthier_eval(material, wi, wo)", "f cos_theta_i, linear Rec.709; a light adds its irradiance times this"),
     (
         "luthier_prepare(material, wo), luthier_light(prepared, wi)",
@@ -27,6 +27,11 @@ const FUNCTIONS: [(&str, &str); 15] = [
         "a direction of light from three numbers in 0..1, its density, its weight f cos_theta_i / density, and its lobe",
     ),
     ("luthier_pdf(prepared, wi)", "the density in solid angle of a direction that luthier_sample draws"),
+    (
+        "luthier_environment(prepared, frame, turn)",
+        "what the prefiltered environment sends to the eye; the columns of frame are tangent, bitangent and normal in the world of the environment, \
+         turn in 0..1 is 0 or changes from frame to frame",
+    ),
     ("luthier_bounded(radiance)", "a sum over lights within 0..65504, which half floats hold"),
     ("luthier_eval_at(place, material, wi, wo)", "luthier_eval at a place of a surface that varies"),
     ("luthier_place()", "a place without textures; what yours say goes into its members"),
@@ -192,6 +197,12 @@ fn resources(set: &MaterialSet<'_>, form: Form, target: Target, part: Part) -> V
         );
         how.push("Filters clamp to the edge.".to_owned());
     }
+    if set.shows_environment(form) {
+        how.push(
+            "The two cubes are KTX2 files of `luthier environment`; their sampler is linear between levels, too."
+                .to_owned(),
+        );
+    }
     how.push(match is_numbered {
         true => format!("Numbers from {RESERVED_BINDINGS} up are yours."),
         false => "Set each sampler2D to a texture unit.".to_owned(),
@@ -215,7 +226,10 @@ fn resource(set: &MaterialSet<'_>, form: Form, target: Target, entry: &BindingEn
         ("buffer", Target::Msl) => format!("device LuthierMaterials const&, {words} float4"),
         ("sampler", Target::Hlsl) => "SamplerState, linear, clamp to edge".to_owned(),
         ("sampler", _) => "sampler, linear, clamp to edge".to_owned(),
-        (_, Target::Wgsl | Target::SpirV) => "texture_2d<f32>".to_owned(),
+        ("texture_cube<f32>", Target::Glsl450 | Target::GlslEs300) => "samplerCube".to_owned(),
+        ("texture_cube<f32>", Target::Hlsl) => "TextureCube<float4>".to_owned(),
+        ("texture_cube<f32>", Target::Msl) => "texturecube<float>".to_owned(),
+        (kind, Target::Wgsl | Target::SpirV) => kind.to_owned(),
         (_, Target::Glsl450 | Target::GlslEs300) => "sampler2D".to_owned(),
         (_, Target::Hlsl) => "Texture2D<float4>".to_owned(),
         (_, Target::Msl) => "texture2d<float>".to_owned(),

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use luthier_manifest::{FunctionGroup, MaterialEntry};
-use luthier_shader::{Form, MaterialSet, Target, complete, complete_spirv, emit, emit_spirv};
+use luthier_shader::{Form, MaterialSet, Target, bindings, complete, complete_spirv, emit, emit_spirv};
 use tempfile::TempDir;
 
 use crate::examples;
@@ -44,6 +44,11 @@ fn each(mut judge: impl FnMut(&str, &MaterialSet<'_>, Form, &Path)) {
                 folder.path(),
             );
             judge(&format!("{name} {form}"), &plain, form, folder.path());
+        }
+        let functions = [FunctionGroup::Environment].into_iter().collect();
+        let lit = MaterialSet { functions, ..set(&materials) };
+        if bindings(&lit, Form::Baked).iter().any(|entry| entry.name == "luthier_environment_map") {
+            judge(&format!("{name} with the environment"), &lit, Form::Baked, folder.path());
         }
     }
 }

@@ -1,4 +1,4 @@
-//! KTX2 (Khronos KTX file format 2.0): one level, zstd-supercompressed or plain, with a basic data format descriptor.
+//! KTX2 (Khronos KTX file format 2.0): one level, or levels of maps and cubes to write; zstd-supercompressed or plain, with a basic data format descriptor.
 //!
 //! `KTXwriter` is the only key that is written: Khronos' validator warns about every key that the specification does not list,
 //! whatever its prefix, so that a file with one would not pass `ktx validate --warnings-as-errors`.
@@ -24,7 +24,7 @@ const FREE_DFD_BYTES: [std::ops::Range<usize>; 3] = [13..14, 15..16, 20..28];
 /// # Errors
 /// [`TextureError::Size`], [`TextureError::Length`] when the bytes do not fit the size.
 pub fn encode(texture: &Texture) -> Result<Vec<u8>, TextureError> {
-    write(texture, Some(SupercompressionScheme::Zstandard))
+    write(&Levels::one(texture), Some(SupercompressionScheme::Zstandard))
 }
 
 /// A KTX2 file of a texture with the texels as they are, for readers without a decoder of zstd.
@@ -32,25 +32,68 @@ pub fn encode(texture: &Texture) -> Result<Vec<u8>, TextureError> {
 /// # Errors
 /// As [`encode`].
 pub fn encode_plain(texture: &Texture) -> Result<Vec<u8>, TextureError> {
-    write(texture, None)
+    write(&Levels::one(texture), None)
 }
 
-fn write(texture: &Texture, scheme: Option<SupercompressionScheme>) -> Result<Vec<u8>, TextureError> {
-    let expected = level_bytes(texture.format, texture.width, texture.height)?;
-    if texture.bytes.len() != expected {
-        return Err(TextureError::Length { found: texture.bytes.len(), expected });
+/// A KTX2 file of a map or a cube with levels, the smallest first, as the specification wants them; with zstd or without.
+///
+/// # Errors
+/// As [`encode`]; and [`TextureError::Length`] for faces of another number than 1 or 6, or more levels than halve the sides.
+pub fn encode_levels(levels: &Levels<'_>, is_compressed: bool) -> Result<Vec<u8>, TextureError> {
+    write(levels, is_compressed.then_some(SupercompressionScheme::Zstandard))
+}
+
+/// Texels of a map or a cube, level by level.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Levels<'a> {
+    /// Format of the texels.
+    pub format: TexelFormat,
+    /// Texels across, of the largest level; each level has half of those of the one before.
+    pub width: u32,
+    /// Texels down.
+    pub height: u32,
+    /// 1, or the 6 faces of a cube: +x, -x, +y, -y, +z, -z.
+    pub faces: u32,
+    /// The faces of each level one after another, the largest level first.
+    pub levels: Vec<std::borrow::Cow<'a, [u8]>>,
+}
+
+impl<'a> Levels<'a> {
+    fn one(texture: &'a Texture) -> Self {
+        let Texture { format, width, height, ref bytes } = *texture;
+        Self { format, width, height, faces: 1, levels: vec![bytes.as_slice().into()] }
+    }
+}
+
+fn write(texture: &Levels<'_>, scheme: Option<SupercompressionScheme>) -> Result<Vec<u8>, TextureError> {
+    let count = texture.levels.len() as u32;
+    let is_map = texture.faces == 1 || texture.faces == 6 && texture.width == texture.height;
+    if !is_map || count == 0 || count > texture.width.max(texture.height).ilog2() + 1 {
+        return Err(TextureError::Length { found: texture.levels.len(), expected: 1 });
+    }
+    let half = |side: u32, level: u32| (side >> level).max(1);
+    for (level, bytes) in (0..).zip(&texture.levels) {
+        let (width, height) = (half(texture.width, level), half(texture.height, level));
+        let expected = level_bytes(texture.format, width, height)? * texture.faces as usize;
+        if bytes.len() != expected {
+            return Err(TextureError::Length { found: bytes.len(), expected });
+        }
     }
 
     let (descriptor, type_size) = descriptor_section(texture.format)?;
     let key_values = key_value_section();
-    let (texels, alignment) = match scheme {
-        Some(_) => (zstd::compress(&texture.bytes)?, 1),
-        None => (texture.bytes.clone(), block_bytes(texture.format)),
+    let alignment = if scheme.is_some() { 1 } else { block_bytes(texture.format) };
+    let stored: Vec<std::borrow::Cow<'_, [u8]>> = match scheme {
+        Some(_) => {
+            let packed = texture.levels.iter().map(|bytes| Ok(zstd::compress(bytes)?.into()));
+            packed.collect::<Result<_, TextureError>>()?
+        }
+        None => texture.levels.clone(),
     };
 
     // Descriptor and key/value entries are multiples of 4 bytes. Levels lie at multiples of 4 and of the bytes of a block of texels,
     // but for supercompressed ones, which need no alignment.
-    let descriptor_at = Header::LENGTH + LevelIndex::LENGTH;
+    let descriptor_at = Header::LENGTH + LevelIndex::LENGTH * stored.len();
     let key_values_at = descriptor_at + descriptor.len();
     let key_values_end = key_values_at + key_values.len();
     let texels_at = key_values_end.next_multiple_of(alignment);
@@ -61,8 +104,8 @@ fn write(texture: &Texture, scheme: Option<SupercompressionScheme>) -> Result<Ve
         pixel_height: texture.height,
         pixel_depth: 0,
         layer_count: 0,
-        face_count: 1,
-        level_count: 1,
+        face_count: texture.faces,
+        level_count: count,
         supercompression_scheme: scheme,
         index: Index {
             dfd_byte_offset: descriptor_at as u32,
@@ -73,13 +116,21 @@ fn write(texture: &Texture, scheme: Option<SupercompressionScheme>) -> Result<Ve
             sgd_byte_length: 0,
         },
     };
-    let level = LevelIndex {
-        byte_offset: texels_at as u64,
-        byte_length: texels.len() as u64,
-        uncompressed_byte_length: texture.bytes.len() as u64,
-    };
-    let padding = vec![0; texels_at - key_values_end];
-    Ok([&header.as_bytes(), level.as_bytes().as_slice(), &descriptor, &key_values, &padding, &texels].concat())
+    let mut body = vec![0; texels_at - key_values_end];
+    let mut index = vec![Vec::new(); stored.len()];
+    // The smallest level comes first.
+    for (level, bytes) in stored.iter().enumerate().rev() {
+        let end = key_values_end + body.len();
+        body.resize(body.len() + end.next_multiple_of(alignment) - end, 0);
+        let entry = LevelIndex {
+            byte_offset: (key_values_end + body.len()) as u64,
+            byte_length: bytes.len() as u64,
+            uncompressed_byte_length: texture.levels[level].len() as u64,
+        };
+        index[level] = entry.as_bytes().to_vec();
+        body.extend_from_slice(bytes);
+    }
+    Ok([&header.as_bytes(), index.concat().as_slice(), &descriptor, &key_values, &body].concat())
 }
 
 /// Reads a KTX2 file of the shape that [`encode`] writes, with zstd or no supercompression. Of the key/value data only the orientation

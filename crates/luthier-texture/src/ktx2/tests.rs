@@ -217,3 +217,35 @@ proptest! {
         }
     }
 }
+
+/// Levels and faces as another reader finds them.
+#[test]
+fn levels_of_a_cube() {
+    let level =
+        |side: u32, first: u8| (0..side * side * 6 * 8).map(|i| first.wrapping_add(i as u8)).collect::<Vec<u8>>();
+    let levels = vec![level(4, 1).into(), level(2, 7).into(), level(1, 9).into()];
+    let cube = Levels { format: TexelFormat::Rgba16Float, width: 4, height: 4, faces: 6, levels };
+    for is_compressed in [true, false] {
+        let file = encode_levels(&cube, is_compressed).unwrap();
+        let reader = ::ktx2::Reader::new(&file).unwrap();
+        assert_eq!((reader.header().face_count, reader.header().level_count), (6, 3));
+        let mut ends = Vec::new();
+        for (found, expected) in reader.levels().zip(&cube.levels) {
+            let bytes = match is_compressed {
+                true => zstd::decompress(found.data, expected.len()).unwrap(),
+                false => found.data.to_vec(),
+            };
+            assert_eq!(bytes, expected.as_ref());
+            ends.push(found.data.as_ptr() as usize);
+        }
+        assert!(ends[0] > ends[1] && ends[1] > ends[2], "the smallest level comes first");
+        assert!(is_compressed || ends.iter().all(|at| (at - file.as_ptr() as usize).is_multiple_of(8)));
+    }
+    for wrong in [
+        Levels { faces: 2, ..cube.clone() },
+        Levels { width: 8, ..cube.clone() },
+        Levels { levels: Vec::new(), ..cube },
+    ] {
+        assert!(encode_levels(&wrong, true).is_err());
+    }
+}

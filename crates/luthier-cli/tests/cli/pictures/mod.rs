@@ -2,6 +2,7 @@
 
 #[cfg(feature = "gpu")]
 mod compare;
+mod environment;
 #[cfg(feature = "gpu")]
 mod gallery;
 #[cfg(feature = "gpu")]

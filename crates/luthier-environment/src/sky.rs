@@ -1,6 +1,7 @@
 //! A sky by formula: a vertical gradient and two soft lights.
 
-use crate::GpuError;
+use crate::EnvironmentError;
+use crate::error::setting;
 use crate::vector::{dot, unit};
 
 /// A smooth surrounding made of a formula: a vertical gradient and two soft lights. Radiance, linear RGB; +y is up.
@@ -60,7 +61,7 @@ impl Sky {
         self.lights.iter().filter(shines).map(|light| light.sharpness).fold(1.0, f32::max)
     }
 
-    pub(crate) fn check(&self) -> Result<(), GpuError> {
+    pub(crate) fn check(&self) -> Result<(), EnvironmentError> {
         let colors = [self.ground, self.horizon, self.zenith, self.lights[0].radiance, self.lights[1].radiance];
         for color in colors {
             if !color.iter().all(|v| v.is_finite() && *v >= 0.0) {
@@ -98,11 +99,7 @@ pub(crate) fn lobe_integral(sharpness: f64) -> f64 {
     2.0 * std::f64::consts::PI * (1.0 - libm::exp(-2.0 * sharpness)) / sharpness
 }
 
-pub(crate) fn setting(name: &'static str, value: String, allowed: &'static str) -> GpuError {
-    GpuError::Setting { name, value, allowed }
-}
-
-pub(crate) fn check_direction(name: &'static str, v: [f32; 3]) -> Result<(), GpuError> {
+fn check_direction(name: &'static str, v: [f32; 3]) -> Result<(), EnvironmentError> {
     let length_sq: f32 = v.iter().map(|x| x * x).sum();
     if length_sq.is_normal() { Ok(()) } else { Err(setting(name, format!("{v:?}"), "a finite direction, not zero")) }
 }

@@ -6,7 +6,7 @@ use crate::environment::Blur;
 
 /// Slope parameters of the blurred maps, half an octave apart. Rougher than 1 there is nothing; between 0 (the map itself)
 /// and the first, and between neighbours, maps are mixed.
-pub(crate) const ALPHAS: [f64; 13] = [
+pub const ALPHAS: [f64; 13] = [
     1.0 / 64.0,
     1.0 / 45.254_834,
     1.0 / 32.0,

@@ -5,11 +5,12 @@ use std::sync::OnceLock;
 use luthier_lut::Image;
 use rayon::prelude::*;
 
+use crate::cube::Cube;
+use crate::error::setting;
+use crate::mirror::{ALPHAS, Lobe, level_height};
 use crate::panorama::{bilinear, coordinates, direction, shrunk, solid_angle, texel_direction};
-use crate::prefilter::{ALPHAS, Lobe, level_height};
-use crate::sky::setting;
 use crate::vector::{dot, tangents};
-use crate::{GpuError, Sky};
+use crate::{EnvironmentError, Layout, Level, Sky};
 
 /// Rows of the largest map kept: one texel is 0.35 degrees.
 const MAX_HEIGHT: u32 = 512;
@@ -26,10 +27,18 @@ const IRRADIANCE_HEIGHT: u32 = 32;
 pub struct Environment {
     /// The map, then each half as high as the one before.
     levels: Vec<Image>,
+    /// Levels of a cube.
+    levels_of_cube: OnceLock<Vec<Level>>,
+    /// The map on a cube, then each with half the side of the one before.
+    cubes: OnceLock<Vec<Cube>>,
+    lights: OnceLock<Vec<Patch>>,
     irradiance: OnceLock<Image>,
     ggx: OnceLock<Vec<Image>>,
     beckmann: OnceLock<Vec<Image>>,
 }
+
+/// A texel of a small map: its direction, solid angle and radiance.
+type Patch = ([f64; 3], f64, [f64; 3]);
 
 /// A slope distribution that reflections of the environment are blurred by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,8 +53,8 @@ impl Environment {
     /// The environment of a map: RGB, twice as wide as high. Maps with more than 512 rows are averaged down to that.
     ///
     /// # Errors
-    /// [`GpuError::Setting`] for another shape, and for radiance that is negative or not finite.
-    pub fn new(map: Image) -> Result<Self, GpuError> {
+    /// [`EnvironmentError`] for another shape, and for radiance that is negative or not finite.
+    pub fn new(map: Image) -> Result<Self, EnvironmentError> {
         if map.channels != 3 || map.height < 2 || map.width != 2 * map.height {
             let found = format!("{} x {} with {} channels", map.width, map.height, map.channels);
             return Err(setting("environment", found, "an RGB map is twice as wide as high"));
@@ -58,14 +67,22 @@ impl Environment {
             let next = shrunk(&levels[levels.len() - 1], height);
             levels.push(next);
         }
-        Ok(Self { levels, irradiance: OnceLock::new(), ggx: OnceLock::new(), beckmann: OnceLock::new() })
+        Ok(Self {
+            levels,
+            levels_of_cube: OnceLock::new(),
+            cubes: OnceLock::new(),
+            lights: OnceLock::new(),
+            irradiance: OnceLock::new(),
+            ggx: OnceLock::new(),
+            beckmann: OnceLock::new(),
+        })
     }
 
     /// A map of a sky, fine enough for its sharpest light.
     ///
     /// # Errors
-    /// [`GpuError::Setting`].
-    pub fn sky(sky: &Sky) -> Result<Self, GpuError> {
+    /// [`EnvironmentError`].
+    pub fn sky(sky: &Sky) -> Result<Self, EnvironmentError> {
         sky.check()?;
         // Eight rows to the spread of the sharpest light, which bilinear reads follow within a percent.
         let height = (8.0 * sky.sharpness().sqrt()) as u32;
@@ -95,44 +112,65 @@ impl Environment {
         bilinear(self.irradiance_map(), coordinates(normal))
     }
 
-    /// Radiance that a rough mirror with slope parameter `alpha` shows around the mirrored direction, over its albedo: see
-    /// [`crate::Scene::render`].
+    /// Radiance that a rough mirror with slope parameter `alpha` shows around the mirrored direction, over its albedo: the
+    /// facets of a surface at normal incidence, by their cavities' masking.
     pub fn mirrored(&self, blur: Blur, alpha: f64, direction: [f64; 3]) -> [f64; 3] {
         let at = coordinates(direction);
         let read = |k: usize| bilinear(if k == 0 { self.map() } else { &self.chain(blur)[k - 1] }, at);
-        let (low, weight) = crate::prefilter::place(alpha);
+        let (low, weight) = crate::mirror::place(alpha);
         let (a, b) = (read(low), read((low + 1).min(ALPHAS.len())));
         [0, 1, 2].map(|c| a[c] + weight * (b[c] - a[c]))
     }
 
-    /// Irradiance over pi, by direct summation over a small copy of the map. The weights of each texel sum to 1, so
+    /// The levels of a cube as large as suits the map.
+    pub fn cube_levels(&self) -> &[Level] {
+        self.levels_of_cube
+            .get_or_init(|| self.levels(Layout::Cube, self.level_size()).expect("a size that is a power of two"))
+    }
+
+    /// Irradiance over pi on a small map.
+    pub fn irradiance_map(&self) -> &Image {
+        self.irradiance
+            .get_or_init(|| filled(2 * IRRADIANCE_HEIGHT, IRRADIANCE_HEIGHT, |normal| self.irradiance(normal)))
+    }
+
+    /// Irradiance over pi, by direct summation over a small copy of the map. The weights of the texels sum to 1, so
     /// that an even environment is returned exactly.
-    pub(crate) fn irradiance_map(&self) -> &Image {
-        self.irradiance.get_or_init(|| {
+    pub(crate) fn irradiance(&self, normal: [f64; 3]) -> [f64; 3] {
+        let lights = self.lights.get_or_init(|| {
             let source = self.level_with(IRRADIANCE_HEIGHT);
-            let mut lights = Vec::with_capacity(source.texel_count());
-            for y in 0..source.height {
-                for x in 0..source.width {
-                    let radiance = [0, 1, 2].map(|c| f64::from(source.texel(x, y)[c]));
-                    lights.push((texel_direction(source, x, y), solid_angle(source, y), radiance));
-                }
+            let texels = (0..source.height).flat_map(|y| (0..source.width).map(move |x| (x, y)));
+            let patch = |(x, y)| {
+                let radiance = [0, 1, 2].map(|c| f64::from(source.texel(x, y)[c]));
+                (texel_direction(source, x, y), solid_angle(source, y), radiance)
+            };
+            texels.map(patch).collect()
+        });
+        let (mut sum, mut weights) = ([0.0; 3], 0.0);
+        for (direction, solid_angle, radiance) in lights {
+            let weight = solid_angle * dot(*direction, normal).max(0.0);
+            weights += weight;
+            for (sum, value) in sum.iter_mut().zip(radiance) {
+                *sum += weight * value;
             }
-            filled(2 * IRRADIANCE_HEIGHT, IRRADIANCE_HEIGHT, |normal| {
-                let (mut sum, mut weights) = ([0.0; 3], 0.0);
-                for (direction, solid_angle, radiance) in &lights {
-                    let weight = solid_angle * dot(*direction, normal).max(0.0);
-                    weights += weight;
-                    for (sum, value) in sum.iter_mut().zip(radiance) {
-                        *sum += weight * value;
-                    }
-                }
-                sum.map(|v| v / weights)
-            })
+        }
+        sum.map(|v| v / weights)
+    }
+
+    /// The map on a cube as fine as it, and averages over ever larger texels.
+    pub(crate) fn sources(&self) -> &[Cube] {
+        self.cubes.get_or_init(|| {
+            let mut cubes = vec![Cube::new(self.level_size(), |direction| self.radiance(direction))];
+            while let Some(last) = cubes.last().filter(|cube| cube.size() > 2) {
+                let next = last.halved();
+                cubes.push(next);
+            }
+            cubes
         })
     }
 
     /// The map blurred for each of [`ALPHAS`].
-    pub(crate) fn chain(&self, blur: Blur) -> &[Image] {
+    pub fn chain(&self, blur: Blur) -> &[Image] {
         let cell = match blur {
             Blur::Ggx => &self.ggx,
             Blur::Beckmann => &self.beckmann,

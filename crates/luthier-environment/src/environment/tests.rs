@@ -127,7 +127,7 @@ fn blurring_keeps_the_mean_of_a_sky() {
 
 #[test]
 fn maps_of_other_shapes_are_refused() {
-    let refused = |map: Image| matches!(Environment::new(map), Err(GpuError::Setting { .. }));
+    let refused = |map: Image| matches!(Environment::new(map), Err(EnvironmentError { .. }));
     assert!(refused(Image::zeros(8, 8, 3)));
     assert!(refused(Image::zeros(8, 4, 4)));
     assert!(refused(Image { data: vec![f32::NAN; 96], ..Image::zeros(8, 4, 3) }));

@@ -1,0 +1,35 @@
+//! Pictures of surroundings that the command line names.
+
+use std::path::Path;
+
+use luthier_environment::Environment;
+use luthier_export::{input, sha256};
+use luthier_terminal::{Failure, Outcome, files};
+use luthier_texture::radiance;
+
+/// A picture of surroundings, read.
+pub(crate) struct Surroundings {
+    pub(crate) environment: Environment,
+    /// Hash of the file.
+    pub(crate) sha256: String,
+    /// Texels across and down.
+    pub(crate) size: [u32; 2],
+    /// Values below 0, which were set to it.
+    pub(crate) negative: usize,
+}
+
+/// Reads a Radiance HDR or OpenEXR file.
+pub(crate) fn read(path: &Path) -> Outcome<Surroundings> {
+    let bytes = input::image(path).map_err(files(path, "read"))?;
+    let unusable = |source: anyhow::Error| Failure::Input(source.context(path.display().to_string()));
+    let mut map = radiance::decode(&bytes).map_err(|source| unusable(source.into()))?;
+    // Resampling leaves small negative values in many maps.
+    let mut negative = 0;
+    for value in map.data.iter_mut().filter(|value| **value < 0.0) {
+        *value = 0.0;
+        negative += 1;
+    }
+    let size = [map.width, map.height];
+    let environment = Environment::new(map).map_err(|source| unusable(source.into()))?;
+    Ok(Surroundings { environment, sha256: sha256(&bytes), size, negative })
+}

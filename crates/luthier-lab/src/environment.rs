@@ -1,0 +1,231 @@
+//! `environment`: what pictures show of surroundings with detail, against sums over every texel of these.
+
+use std::f64::consts::PI;
+use std::fmt::Write as _;
+use std::sync::Arc;
+
+use luthier_environment::{Environment, Scenery};
+use luthier_export::{Package, lit, read};
+use luthier_gpu::{Gpu, RenderSettings, Scene, Shape};
+use luthier_lut::Image;
+use luthier_manifest::{Form, ShadingModel};
+use luthier_material::Material;
+use luthier_terminal::{Bar, Failure, Outcome, deliver, open, valid};
+
+use crate::cli::EnvironmentOptions;
+
+/// Models whose pictures stand beside those of lobes.
+const PAPERS: [ShadingModel; 2] = [ShadingModel::Elek, ShadingModel::Belcour];
+
+/// Compares pictures of materials.
+pub(crate) fn run(options: &EnvironmentOptions) -> Outcome {
+    let gpu = open(options.adapter.name.as_deref())?;
+    let materials = valid(read(&options.sources.paths)?, false)?;
+    let skies: Vec<Arc<Environment>> = Scenery::ALL
+        .into_iter()
+        .map(|scenery| scenery.environment(options.rows).map(Arc::new))
+        .collect::<Result<_, _>>()
+        .map_err(Failure::input)?;
+    let points = points(options.size);
+    let texels = texels(&skies);
+    let bar = Bar::new("materials");
+    let mut rows = Vec::new();
+    for (i, material) in materials.iter().enumerate() {
+        let lobes = Pictures::new(&gpu, material, ShadingModel::Lobes, options.size, &points, &skies, &texels)?;
+        let papers: Vec<Pictures> = PAPERS
+            .iter()
+            .map(|model| Pictures::new(&gpu, material, *model, options.size, &points, &skies, &texels))
+            .collect::<Outcome<_>>()?;
+        for (sky, scenery) in Scenery::ALL.into_iter().enumerate() {
+            let truth = &lobes.summed[sky];
+            let mut row = format!(
+                "| {} | {:.3} | {} | {:.3} | {:.4} |",
+                material.name,
+                lobes.alpha,
+                scenery.name(),
+                mean(truth),
+                error(&lobes.shown[sky], truth)
+            );
+            for paper in &papers {
+                let (own, lobes) = (error(&paper.shown[sky], &paper.summed[sky]), error(&paper.shown[sky], truth));
+                let _ = write!(row, " {own:.3} | {lobes:.3} |");
+            }
+            rows.push(row);
+        }
+        bar.set(i as u64 + 1, materials.len() as u64);
+    }
+    drop(bar);
+    deliver(&page(&rows, points.len(), options), options.destination.output.as_deref())
+}
+
+/// A place on the ball: pixel, normal, direction to the eye.
+struct Point {
+    pixel: [u32; 2],
+    normal: [f64; 3],
+    wo: [f64; 3],
+}
+
+/// The places under the middles of the pixels of a picture, as the renderer meets them.
+fn points(size: u32) -> Vec<Point> {
+    let camera = Shape::Sphere.camera();
+    let (eye, half) = (f64::from(camera.eye[2]), f64::from(camera.half_extent));
+    let mut points = Vec::new();
+    for [x, y] in (0..size).flat_map(|y| (0..size).map(move |x| [x, y])) {
+        let at = |i: u32| (2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0) * half;
+        let ray = unit([at(x), -at(y), -eye]);
+        let b = eye * ray[2];
+        let discriminant = b * b - (eye * eye - 1.0);
+        // Away from the silhouette, where f32 and f64 may disagree on a hit.
+        if discriminant > 1e-3 {
+            let t = -b - discriminant.sqrt();
+            points.push(Point {
+                pixel: [x, y],
+                normal: [t * ray[0], t * ray[1], eye + t * ray[2]],
+                wo: ray.map(|v| -v),
+            });
+        }
+    }
+    points
+}
+
+/// A texel: its direction, and radiance times solid angle in each sky.
+type Texel = ([f64; 3], Vec<[f64; 3]>);
+
+fn texels(skies: &[Arc<Environment>]) -> Vec<Texel> {
+    let map = skies[0].map();
+    let (width, height) = (map.width, map.height);
+    let mut texels = Vec::new();
+    for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+        let edge = |y: u32| libm::cos(PI * f64::from(y) / f64::from(height));
+        let solid_angle = 2.0 * PI / f64::from(width) * (edge(y) - edge(y + 1));
+        let (sin_theta, cos_theta) = libm::sincos(PI * (f64::from(y) + 0.5) / f64::from(height));
+        let (sin_phi, cos_phi) = libm::sincos(2.0 * PI * ((f64::from(x) + 0.5) / f64::from(width) - 0.5));
+        let light = |sky: &Arc<Environment>| {
+            let texel = sky.map().texel(x, y);
+            [0, 1, 2].map(|c| solid_angle * f64::from(texel[c]))
+        };
+        let direction = [sin_theta * sin_phi, cos_theta, -sin_theta * cos_phi];
+        texels.push((direction, skies.iter().map(light).collect()));
+    }
+    texels
+}
+
+/// Radiance of all places under each sky: as a picture shows it, and as a sum over all texels.
+struct Pictures {
+    alpha: f64,
+    shown: Vec<Vec<[f64; 3]>>,
+    summed: Vec<Vec<[f64; 3]>>,
+}
+
+impl Pictures {
+    fn new(
+        gpu: &Gpu,
+        material: &Material,
+        model: ShadingModel,
+        size: u32,
+        points: &[Point],
+        skies: &[Arc<Environment>],
+        texels: &[Texel],
+    ) -> Outcome<Self> {
+        let mut shaded = material.clone();
+        shaded.bake.model = Some(model);
+        let package = Package::for_renderer(&lit(&[shaded]))?;
+        let scene = gpu.scene(&package, Form::Baked)?;
+        let mut shown = Vec::new();
+        for sky in skies {
+            let environment = Arc::clone(sky);
+            let settings = RenderSettings {
+                size,
+                samples: 1,
+                lights: Vec::new(),
+                environment,
+                ..RenderSettings::new(Shape::Sphere)?
+            };
+            let image = scene.render(&[0], &settings)?;
+            shown.push(points.iter().map(|point| texel(&image, point.pixel)).collect());
+        }
+        let mut summed = vec![Vec::new(); skies.len()];
+        for point in points {
+            let sums = sums(&scene, point, texels, skies.len())?;
+            summed.iter_mut().zip(sums).for_each(|(all, sum)| all.push(sum));
+        }
+        let alpha = package.manifest.materials[0].layers.first().map_or(0.0, |layer| layer.alpha);
+        Ok(Self { alpha, shown, summed })
+    }
+}
+
+/// The sum over the texels above the horizon of a place, in each sky.
+fn sums(scene: &Scene, point: &Point, texels: &[Texel], skies: usize) -> Outcome<Vec<[f64; 3]>> {
+    let n = point.normal;
+    let t = unit(if n[1].abs() < 0.9 { cross([0.0, 1.0, 0.0], n) } else { cross([1.0, 0.0, 0.0], n) });
+    let local = |d: [f64; 3]| [dot(d, t), dot(d, cross(n, t)), dot(d, n)].map(|v| v as f32);
+    let wo = local(point.wo);
+    let above: Vec<&Texel> = texels.iter().filter(|(direction, _)| dot(*direction, n) > 0.0).collect();
+    let pairs: Vec<([f32; 3], [f32; 3])> = above.iter().map(|(direction, _)| (local(*direction), wo)).collect();
+    let mut sums = vec![[0.0; 3]; skies];
+    for ((_, light), value) in above.iter().zip(scene.evaluate(0, &pairs)?) {
+        for (sum, light) in sums.iter_mut().zip(light) {
+            (0..3).for_each(|c| sum[c] += light[c] * f64::from(value[c]));
+        }
+    }
+    Ok(sums)
+}
+
+fn texel(image: &Image, [x, y]: [u32; 2]) -> [f64; 3] {
+    let texel = image.texel(x, y);
+    [0, 1, 2].map(|c| f64::from(texel[c]))
+}
+
+fn mean(values: &[[f64; 3]]) -> f64 {
+    values.iter().flatten().sum::<f64>() / (3 * values.len()) as f64
+}
+
+/// Root of the mean squared difference over the mean.
+fn error(values: &[[f64; 3]], truth: &[[f64; 3]]) -> f64 {
+    let squares: f64 = values.iter().flatten().zip(truth.iter().flatten()).map(|(a, b)| (a - b) * (a - b)).sum();
+    (squares / (3 * truth.len()) as f64).sqrt() / mean(truth)
+}
+
+fn page(rows: &[String], points: usize, options: &EnvironmentOptions) -> String {
+    let mut words = vec!["luthier-lab environment".to_owned()];
+    words.extend(options.sources.paths.iter().map(|path| path.display().to_string()));
+    let mut page = format!(
+        "# Environment\n\nGenerated by `{} --size {} --rows {}`.\n\n",
+        words.join(" "),
+        options.size,
+        options.rows
+    );
+    page.push_str(INTRODUCTION);
+    let _ = writeln!(page, "Places: {points}.\n");
+    let mut head = "| material | alpha | sky | mean | lobes |".to_owned();
+    for model in PAPERS {
+        let _ = write!(head, " {0}, own sum | {0}, sum of lobes |", model.name());
+    }
+    let _ = writeln!(page, "{head}\n|---|--:|---|--:|--:|{}", "--:|--:|".repeat(PAPERS.len()));
+    for row in rows {
+        let _ = writeln!(page, "{row}");
+    }
+    page
+}
+
+const INTRODUCTION: &str = "\
+Pictures show surroundings that were filtered beforehand. This page compares what they show on a ball with sums over every texel of the
+map, each through `luthier_eval`. Sums have no noise. Skies are those of `luthier environment --sky`.
+
+Figures are roots of the mean squared difference over all places and channels, over the mean of the sum. `lobes` is the model `lobes` against its own
+sum. Of other models the first figure is against their own sum, and the second against that of lobes, which the simulation of the stack made: what a
+picture of that model is off in all. `alpha` is the slope parameter of the first interface.
+
+";
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn unit(v: [f64; 3]) -> [f64; 3] {
+    v.map(|x| x / dot(v, v).sqrt())
+}

@@ -1,0 +1,159 @@
+//? environment
+/// Level of `luthier_environment_map` that is blurred by a width in radians. Levels have widths 0, 8 / size, and then twice that of the one before, up
+/// to 1; between two of them the square of the width is linear, so that what is read has the width's second moment.
+fn luthier_environment_level(width: f32) -> f32 {
+    let size = f32(textureDimensions(luthier_environment_map).x);
+    let relative = 0.125 * size * width;
+    if relative <= 1.0 {
+        return relative * relative;
+    }
+    let whole = floor(min(log2(relative), log2(size) - 3.001));
+    let above = relative * exp2(-whole);
+    return min(whole + 1.0 + (above * above - 1.0) / 3.0, log2(size) - 2.0);
+}
+
+/// Radiance around a direction of the world, blurred by a width in radians.
+fn luthier_environment_around(direction: vec3<f32>, width: f32) -> vec3<f32> {
+    let level = luthier_environment_level(width);
+    return textureSampleLevel(luthier_environment_map, luthier_environment_sampler, direction, level).rgb;
+}
+
+/// What a white Lambertian patch sends out: irradiance over pi.
+fn luthier_environment_diffuse(normal: vec3<f32>) -> vec3<f32> {
+    return textureSampleLevel(luthier_irradiance_map, luthier_environment_sampler, normal, 0.0).rgb;
+}
+
+/// A lobe that the environment is shown in, in slopes of half vectors in the plane of the eye.
+struct LuthierShownLobe {
+    /// The eye inside, times the index.
+    eye: vec3<f32>,
+    /// Middle along the plane of the eye.
+    middle: f32,
+    /// Widths along that plane and across it.
+    width: vec2<f32>,
+    /// Those within which directions lie: what their blurs leave.
+    spread: vec2<f32>,
+    /// 1 over the decay: near 0 Beckmann's distribution, 1 that of GGX.
+    tail: f32,
+    /// Whether facets of the first interface weigh the directions.
+    is_coat: bool,
+    /// Cosine and sine by which directions are turned about the middle.
+    turn: vec2<f32>,
+}
+
+/// Light that was read in some directions of a lobe, and the weights of these.
+struct LuthierShown {
+    light: vec3<f32>,
+    weight: vec3<f32>,
+}
+
+/// Angles between directions outside over differences of slopes, in the plane of the eye and across it.
+fn luthier_shown_stretch(up_z: f32, cos_theta_i: f32, cos_theta_d: f32, cos_theta_h: f32) -> vec2<f32> {
+    return 2.0 * cos_theta_h * vec2<f32>(cos_theta_h * max(up_z, 0.0) / max(cos_theta_i, 0.02), max(cos_theta_d, 1e-3));
+}
+
+/// Standard deviation of the blur of a direction over the widths of its lobe, of which it has a sixteenth: with half as much the directions
+/// are seen one by one in small bright lights.
+const LUTHIER_TAP_BLUR: f32 = 0.2659;
+
+/// A lobe with this middle and these widths, seen in a medium whose squared index less 1 is the excess.
+fn luthier_shown_lobe(prepared: LuthierPreparedLobes, excess: f32, middle: f32, width: vec2<f32>, tail: f32, turn: vec2<f32>) -> LuthierShownLobe {
+    let eye = vec3<f32>(dot(prepared.azimuth, prepared.wo.xy), 0.0, sqrt(prepared.wo.z * prepared.wo.z + excess));
+    let wh = vec3<f32>(middle, 0.0, 1.0) * inverseSqrt(1.0 + middle * middle);
+    let cos_theta_d = dot(wh, eye);
+    let up = 2.0 * cos_theta_d * wh - eye;
+    let angles = luthier_shown_stretch(up.z, sqrt(max(1.0 - up.x * up.x, 0.0)), cos_theta_d, wh.z) * width;
+    let blur = min(LUTHIER_TAP_BLUR * sqrt(angles.x * angles.y), 0.70711 * min(angles.x, angles.y));
+    let left = max(1.0 - 2.0 * (blur * blur) / (angles * angles), vec2<f32>(0.0));
+    return LuthierShownLobe(eye, middle, width, width * sqrt(left), tail, false, turn);
+}
+
+/// Light so far and that of one more direction of a lobe: beyond it lies this share of the lobe, and it lies towards a unit vector from the
+/// middle. What would not leave the surface weighs nothing.
+fn luthier_shown_tap(shown: LuthierShown, lobe: LuthierShownLobe, prepared: LuthierPreparedLobes, frame: mat3x3<f32>, beyond: f32, towards: vec2<f32>) -> LuthierShown {
+    let fall = log2(beyond);
+    let radius = sqrt((exp2(-lobe.tail * fall) - 1.0) / lobe.tail);
+    let around = vec2<f32>(lobe.turn.x * towards.x - lobe.turn.y * towards.y, lobe.turn.y * towards.x + lobe.turn.x * towards.y);
+    let slope = vec2<f32>(lobe.middle, 0.0) + radius * lobe.spread * around;
+    let wh = vec3<f32>(slope, 1.0) * inverseSqrt(1.0 + dot(slope, slope));
+    let cos_theta_d = dot(wh, lobe.eye);
+    let up = 2.0 * cos_theta_d * wh - lobe.eye;
+    let sin_sq = dot(up.xy, up.xy);
+    // Below 0 where light does not leave.
+    let above = select(-1.0, 1.0, sin_sq < 1.0 && up.z > 0.0) * sqrt(abs(1.0 - sin_sq));
+    let cos_theta_i = max(above, 1e-2);
+    let across = up.xy * min(inverseSqrt(max(sin_sq, 1e-12)), 1.0);
+    let angles = luthier_shown_stretch(up.z, cos_theta_i, cos_theta_d, wh.z) * lobe.width;
+    let blur = min(LUTHIER_TAP_BLUR * sqrt(angles.x * angles.y), 0.70711 * min(angles.x, angles.y));
+    let width = min(blur * exp2(-0.5 * (1.0 + lobe.tail) * fall), 1.4);
+    var weight = vec3<f32>(saturate(0.5 + 0.5 * above / max(width, 0.014)));
+    if lobe.is_coat {
+        let slope_i = prepared.coat.alpha * sqrt(sin_sq) / cos_theta_i;
+        let masking = prepared.masking + luthier_slope_lambda(prepared.coat, slope_i);
+        let fresnel = luthier_fresnel_term(prepared.coat, clamp(cos_theta_d, 0.0, 1.0));
+        weight *= max(fresnel, vec3<f32>(1e-6)) * (max(cos_theta_d, 1e-3) / (wh.z * masking * prepared.wo.z));
+    }
+    let azimuth = prepared.azimuth;
+    let wi = vec3<f32>(azimuth.x * across.x - azimuth.y * across.y, azimuth.y * across.x + azimuth.x * across.y, cos_theta_i);
+    let light = luthier_environment_around(frame * wi, width);
+    return LuthierShown(shown.light + weight * light, shown.weight + weight);
+}
+
+/// Mean radiance in a lobe: in directions that have equal shares of it, along a spiral that turns by the golden angle (Vogel 1979), each blurred by
+/// its share (Krivanek and Colbert 2008), but not wider than the lobe is where it is narrow.
+fn luthier_shown_mean(lobe: LuthierShownLobe, prepared: LuthierPreparedLobes, frame: mat3x3<f32>) -> vec3<f32> {
+    var shown = LuthierShown(vec3<f32>(0.0), vec3<f32>(1e-6));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.96875, vec2<f32>(1.000000, 0.000000));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.90625, vec2<f32>(-0.737369, 0.675490));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.84375, vec2<f32>(0.087426, -0.996171));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.78125, vec2<f32>(0.608439, 0.793601));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.71875, vec2<f32>(-0.984713, -0.174182));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.65625, vec2<f32>(0.843755, -0.536728));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.59375, vec2<f32>(-0.259604, 0.965715));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.53125, vec2<f32>(-0.460907, -0.887448));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.46875, vec2<f32>(0.939321, 0.343039));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.40625, vec2<f32>(-0.924346, 0.381556));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.34375, vec2<f32>(0.423846, -0.905734));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.28125, vec2<f32>(0.299284, 0.954164));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.21875, vec2<f32>(-0.865211, -0.501408));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.15625, vec2<f32>(0.976676, -0.214719));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.09375, vec2<f32>(-0.575129, 0.818062));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.03125, vec2<f32>(-0.128511, -0.991708));
+    return shown.light / shown.weight;
+}
+
+/// Radiance that a prepared material sends to the eye from a prefiltered environment. The columns of the frame are tangent, bitangent and normal in
+/// the world of the environment. A turn in 0..1 moves the directions: samples of a pixel with turns of their own see more of them.
+fn luthier_environment_lobes(prepared: LuthierPreparedLobes, frame: mat3x3<f32>, turn: f32) -> vec3<f32> {
+    let angle = 2.0 * LUTHIER_PI * turn;
+    let turned = vec2<f32>(cos(angle), sin(angle));
+    var rest = luthier_albedo_lobes(prepared) - prepared.wide;
+    var total = prepared.wide * luthier_environment_diffuse(frame[2]);
+    //? one_lobe|two_lobes
+    let first = luthier_lobe_below(prepared, 0u);
+    rest -= first.energy;
+    let first_width = inverseSqrt(first.shape.w) / first.shape.yz;
+    let first_lobe = luthier_shown_lobe(prepared, prepared.medium.x, first.shape.x, first_width, 1.0 / first.shape.w, turned);
+    total += first.energy * luthier_shown_mean(first_lobe, prepared, frame);
+    //? end
+    //? two_lobes
+    let second = luthier_lobe_below(prepared, 1u);
+    rest -= second.energy;
+    let second_width = inverseSqrt(second.shape.w) / second.shape.yz;
+    let second_lobe = luthier_shown_lobe(prepared, prepared.medium.x, second.shape.x, second_width, 1.0 / second.shape.w, turned);
+    total += second.energy * luthier_shown_mean(second_lobe, prepared, frame);
+    //? end
+    //? beckmann
+    //? ggx
+    let tail = 0.001 + 0.998 * prepared.coat.distribution;
+    //? else
+    let tail = 0.001;
+    //? end
+    //? else
+    let tail = 0.999;
+    //? end
+    var coat = luthier_shown_lobe(prepared, 0.0, 0.0, vec2<f32>(prepared.coat.alpha), tail, turned);
+    coat.is_coat = true;
+    return total + max(rest, vec3<f32>(0.0)) * luthier_shown_mean(coat, prepared, frame);
+}
+//? end
