@@ -12,7 +12,7 @@ use crate::graph::{JobKind, Key, Observer, Results, Silent};
 use crate::kinds::lobes;
 use crate::limits;
 use crate::maps::{MaterialMap, maps};
-use crate::plan::{ImageReader, Plan, PlannedLayers, TileList, color, color_mode, shading_model};
+use crate::plan::{ImageReader, Plan, PlannedLayers, TileList, color, color_mode};
 use crate::search;
 use crate::settings::{Settings, Shape};
 use crate::tile::apron;
@@ -340,9 +340,9 @@ fn used(tiles: &[TileList; TableKind::ALL.len()]) -> impl Iterator<Item = (Table
 }
 
 fn baked_materials(materials: &[Material], records: Vec<PlannedLayers>, results: &Results) -> Vec<BakedMaterial> {
-    let lobes = |m: &Material| (shading_model(m) == ShadingModel::Lobes).then(|| lobes::record(m, results));
+    let lobes = |m: &Material| (m.model() == ShadingModel::Lobes).then(|| lobes::record(m, results));
     let baked = |(m, planned): (&Material, PlannedLayers)| BakedMaterial {
-        model: shading_model(m),
+        model: m.model(),
         color: color_mode(m),
         constants: constants(m, planned.bare, lobes(m)),
         records: planned.layers,

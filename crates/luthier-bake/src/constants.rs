@@ -6,7 +6,7 @@ use luthier_manifest::{FlakesRecord, GlitterRecord, LayerRecord, LobesRecord, Ma
 use luthier_material::{Effects, FlakeSource, Glitter, Material};
 use luthier_optics::stack::Stack;
 
-use crate::plan::{color, shading_model};
+use crate::plan::color;
 use crate::veil::veil;
 
 /// The constants of a material; `bare` is the layer below its patina, `lobes` are those that were fitted.
@@ -17,7 +17,7 @@ pub(crate) fn constants(
 ) -> MaterialConstants {
     let (stack, color) = (&material.stack, color(material));
     let (internal_reflectance, upward_loss) =
-        if shading_model(material).is_statistical() { veil(stack, &color) } else { ([0.0; 3], 0.0) };
+        if material.model().is_statistical() { veil(stack, &color) } else { ([0.0; 3], 0.0) };
     MaterialConstants {
         phong_diffuse: in_color(stack, &color, |one| Coefficients::of(one).diffuse),
         phong_specular: in_color(stack, &color, |one| Coefficients::of(one).specular),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use luthier_lut::{Image, TableKind};
-use luthier_manifest::{ColorMode, LayerRecord, ShadingModel};
+use luthier_manifest::{ColorMode, LayerRecord};
 use luthier_material::{LayerExtras, Material};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
@@ -63,11 +63,6 @@ pub(crate) fn color_mode(material: &Material) -> ColorMode {
     material.bake.color.unwrap_or_default()
 }
 
-/// The model that shades a material: Elek's, unless its file asks for another.
-pub(crate) fn shading_model(material: &Material) -> ShadingModel {
-    material.bake.model.unwrap_or_default()
-}
-
 /// Reads an image that a material names: material file, path as written there.
 pub type ImageReader<'a> = &'a dyn Fn(&str, &str) -> Result<Image, String>;
 
@@ -108,7 +103,7 @@ impl Plan {
         label: &str,
         read_image: ImageReader<'_>,
     ) -> Result<Vec<LayerRecord>, BakeError> {
-        let (color, model) = (color(material), shading_model(material));
+        let (color, model) = (color(material), material.model());
         let mut records = records(stack, material.bake.wavelengths_nm());
         for (i, layer) in stack.layers.iter().enumerate() {
             let Some(interface) = Interface::of(stack, i) else { continue };

@@ -51,7 +51,7 @@ fn text(name: &str, metallic: f64, roughness: f64) -> String {
     format!(
         "schema = 1\nname = \"{name}\"\n[[layer]]\ntype = \"{kind}\"\nroughness = {roughness:.3}\n\
          ior = {{ n = [{n}], k = [{k}], wavelengths_nm = [645, 525, 445] }}\n{base}\
-         [bake]\ncolor = \"three-wavelengths\"\nwavelengths_nm = [645, 525, 445]\n"
+         [bake]\nmodel = \"elek\"\ncolor = \"three-wavelengths\"\nwavelengths_nm = [645, 525, 445]\n"
     )
 }
 

@@ -1,23 +1,61 @@
 //! Materials that a command works on.
 
 use luthier_export::{Source, of_model, refuse};
-use luthier_material::Material;
+use luthier_manifest::{Form, ShadingModel};
+use luthier_material::{Diagnostic, Material, Severity};
 use luthier_terminal::{Outcome, valid};
 
 use crate::cli::Shading;
 
+impl Shading {
+    /// The model by which the command line has a material shaded in some forms, unless that is the material's own. The form `full` computes all
+    /// terms, so that it takes a model that is not fitted.
+    fn model_of(&self, material: &Material, forms: &[Form]) -> Option<ShadingModel> {
+        let is_closed = self.no_fit || forms.contains(&Form::Full);
+        self.model.or_else(|| is_closed.then(|| material.model_without_fit()))
+    }
+
+    /// The model by which a material is shaded.
+    pub(crate) fn model(&self, material: &Material) -> ShadingModel {
+        self.model_of(material, &[]).unwrap_or_else(|| material.model())
+    }
+
+    /// Doubts about a material in some forms, and refusals.
+    pub(crate) fn doubts(&self, material: &Material, forms: &[Form]) -> Vec<Diagnostic> {
+        let model = self.model_of(material, forms);
+        let mut doubts = of_model(material, model);
+        if self.no_fit && model == Some(ShadingModel::Lobes) {
+            let message = "the model `lobes` is fitted to a simulation, and `--no-fit` makes none";
+            let hint = "leave out `--no-fit`, or write `--model elek` in its place".to_owned();
+            doubts.push(material.diagnostic(Severity::Error, "bake.model", message, Some(hint)));
+        }
+        doubts
+    }
+}
+
 /// The materials that can be baked, shaded by the model that the command line asks for; or, when anything is refused, its diagnostics
 /// and a failure.
-pub(crate) fn bakeable(mut sources: Vec<Source>, shading: &Shading, quiet: bool) -> Outcome<Vec<Material>> {
-    refuse(&mut sources, |material| of_model(material, shading.model));
-    Ok(shaded(valid(sources, quiet)?, shading))
+pub(crate) fn bakeable(
+    mut sources: Vec<Source>,
+    shading: &Shading,
+    forms: &[Form],
+    quiet: bool,
+) -> Outcome<Vec<Material>> {
+    refuse(&mut sources, |material| shading.doubts(material, forms));
+    Ok(shaded(valid(sources, quiet)?, shading, forms))
 }
 
 /// The materials, shaded by the model that the command line asks for, with its tables.
-pub(crate) fn shaded(mut materials: Vec<Material>, shading: &Shading) -> Vec<Material> {
-    if shading.model.is_some() {
-        materials.iter_mut().for_each(|material| material.bake.model = shading.model);
+pub(crate) fn shaded(mut materials: Vec<Material>, shading: &Shading, forms: &[Form]) -> Vec<Material> {
+    for material in &mut materials {
+        material.bake.model = shading.model_of(material, forms).or(material.bake.model);
+        material.bake.tables.extend(&shading.tables);
     }
-    materials.iter_mut().for_each(|material| material.bake.tables.extend(&shading.tables));
     materials
+}
+
+/// The models that are asked for, or all; without a fit, all but `lobes`.
+pub(crate) fn models(asked: &[ShadingModel], no_fit: bool) -> Vec<ShadingModel> {
+    let all = || ShadingModel::ALL.into_iter().filter(|model| !no_fit || *model != ShadingModel::Lobes).collect();
+    if asked.is_empty() { all() } else { asked.to_vec() }
 }

@@ -7,6 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::SystemTime;
 
 use luthier_export::{Bake, MemoryStore, Package, Source, find, lit, lit_functions, read_one};
+use luthier_manifest::ShadingModel;
 use luthier_material::Material;
 use luthier_terminal::{Failure, Outcome};
 use luthier_texture::png;
@@ -19,14 +20,16 @@ type Stamps = BTreeMap<PathBuf, Option<(SystemTime, u64)>>;
 pub(crate) struct ViewHost {
     paths: Vec<PathBuf>,
     screenshot: Option<PathBuf>,
+    /// Whether lobes may be fitted.
+    fits: bool,
     seen: Mutex<Option<(Stamps, Vec<MaterialFile>)>>,
     /// Results of the jobs of the last bake: most serve the next.
     store: MemoryStore,
 }
 
 impl ViewHost {
-    pub(crate) fn new(paths: Vec<PathBuf>, screenshot: Option<PathBuf>) -> Self {
-        Self { paths, screenshot, seen: Mutex::new(None), store: MemoryStore::default() }
+    pub(crate) fn new(paths: Vec<PathBuf>, screenshot: Option<PathBuf>, fits: bool) -> Self {
+        Self { paths, screenshot, fits, seen: Mutex::new(None), store: MemoryStore::default() }
     }
 
     fn package(&self, material: &Material, form: Form) -> Outcome<Package> {
@@ -58,6 +61,9 @@ impl Host for ViewHost {
     }
 
     fn bake(&self, material: &Material, form: Form) -> Result<Package, String> {
+        if !self.fits && material.model() == ShadingModel::Lobes {
+            return Err("the model `lobes` is fitted to a simulation, and --no-fit makes none".to_owned());
+        }
         self.package(material, form).map_err(|failure| failure.sentence())
     }
 
@@ -179,7 +185,7 @@ mod tests {
             std::fs::write(&path, text).unwrap();
         };
         write("0.5");
-        let host = ViewHost::new(vec![folder.path().to_owned()], None);
+        let host = ViewHost::new(vec![folder.path().to_owned()], None, true);
         assert!(host.changed().unwrap()[0].material.is_ok());
         assert!(host.changed().is_none());
         write("0.25");
@@ -205,7 +211,7 @@ mod tests {
                     [bake]\nfgd = { size = [8, 8] }\ndistribution = { size = [16, 16] }\ncolor = \"three-wavelengths\"\n";
         let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
         let mut material = luthier_material::parse("m.toml", text, &no_files).unwrap().material;
-        let host = ViewHost::new(Vec::new(), None);
+        let host = ViewHost::new(Vec::new(), None, true);
         let first = host.bake(&material, Form::Baked).unwrap();
         luthier_view::Handle::Alpha(0).set(&mut material, 0.4);
         let jobs = host.store.len();

@@ -2,27 +2,35 @@
 
 use luthier_layers::domain::{Outside, Quantity, outside};
 use luthier_manifest::{Form, ShadingModel};
-use luthier_material::{Diagnostic, Material, Severity};
-
-use crate::{LeftOut, left_out};
+use luthier_material::{Diagnostic, LeftOut, Material, Severity, left_out};
 
 /// Warnings, and an error for what would be wrong beyond use. `asked` is the model of the command line.
 pub fn of_model(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {
-    let model = model(material, asked);
+    let model = asked.unwrap_or_else(|| material.model());
     let dropped = left_out(material, model);
     let mut doubts = of_domain(material, asked);
+    doubts.extend(material.unfit_for_lobes().filter(|_| asked.is_none()).map(|part| instead(material, &part)));
     doubts.extend(dropped.iter().map(|part| dropped_part(material, model, part)));
     doubts
 }
 
 /// Doubts about a material of a scene, whose model is chosen by what it leaves out: only quantities outside its domain.
 pub fn of_domain(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {
-    let model = model(material, asked);
+    let model = asked.unwrap_or_else(|| material.model());
     outside(model.name(), &material.stack).iter().map(|outside| domain(material, model, outside)).collect()
 }
 
-fn model(material: &Material, asked: Option<ShadingModel>) -> ShadingModel {
-    asked.or(material.bake.model).unwrap_or_default()
+/// Says that the default is another model, and why.
+fn instead(material: &Material, part: &LeftOut) -> Diagnostic {
+    let (model, feature) = (material.model().name(), part.feature.name());
+    let message = format!("the default model, `lobes`, does not show {feature}: `{model}` takes its place");
+    let hint = match material.model_without_fit().name() {
+        closed if closed != model => format!(
+            "write `[bake] model = \"{model}\"` to choose it; `\"{closed}\"` is cheaper, and too bright for coats over metals"
+        ),
+        _ => format!("write `[bake] model = \"{model}\"` to choose it; it is too bright for coats over metals"),
+    };
+    material.diagnostic(Severity::Warning, &part.key, message, Some(hint))
 }
 
 fn dropped_part(material: &Material, model: ShadingModel, part: &LeftOut) -> Diagnostic {

@@ -18,8 +18,6 @@ mod publish;
 #[cfg(feature = "bake")]
 mod doubts;
 #[cfg(feature = "bake")]
-mod left_out;
-#[cfg(feature = "bake")]
 mod make;
 #[cfg(feature = "bake")]
 mod refusals;
@@ -37,11 +35,11 @@ pub use publish::{REPORT_FILES, REPORT_FOLDER, publish};
 #[cfg(feature = "bake")]
 pub use doubts::{of_domain, of_model};
 #[cfg(feature = "bake")]
-pub use left_out::{LeftOut, left_out};
-#[cfg(feature = "bake")]
 pub use luthier_bake::{MemoryStore, Store};
 #[cfg(feature = "bake")]
-pub use make::{Bake, ExportError, outline, source_hash};
+pub use luthier_material::{LeftOut, left_out};
+#[cfg(feature = "bake")]
+pub use make::{Bake, ExportError, outline, source_hash, unfitted};
 #[cfg(feature = "bake")]
 pub use refusals::{refuse, refuse_too_many};
 #[cfg(feature = "bake")]

@@ -104,12 +104,15 @@ pub enum ExportError {
 }
 
 impl Package {
-    /// Bakes materials: tables as they need, then shaders that read them. What the store has is not computed again; what is computed goes
+    /// Bakes materials: tables as they need, then shaders that read them. Where the form `full` is asked for, materials that name no model
+    /// take one of their own that has it ([`unfitted`]). What the store has is not computed again; what is computed goes
     /// into it. Files that materials name are read beside the materials' own files.
     ///
     /// # Errors
     /// [`ExportError`]. The bytes depend on nothing but the arguments and the files.
     pub fn new(materials: &[Material], bake: &Bake<'_>, store: &dyn Store) -> Result<Self, ExportError> {
+        let closed = bake.forms.contains(&Form::Full).then(|| unfitted(materials));
+        let materials = closed.as_deref().unwrap_or(materials);
         if bake.refuses {
             refuse_foreign(materials)?;
         }
@@ -222,6 +225,13 @@ pub fn source_hash(material: &Material) -> Result<String, ExportError> {
     Ok(sha256(text.as_bytes()))
 }
 
+/// The materials, each of the model that it has where nothing is simulated.
+pub fn unfitted(materials: &[Material]) -> Vec<Material> {
+    let mut unfitted = materials.to_vec();
+    unfitted.iter_mut().for_each(|material| material.bake.model = Some(material.model_without_fit()));
+    unfitted
+}
+
 /// Refuses materials outside the domain of their model.
 fn refuse_foreign(materials: &[Material]) -> Result<(), ExportError> {
     let doubts = materials.iter().flat_map(|material| of_domain(material, None));
@@ -232,11 +242,10 @@ fn refuse_foreign(materials: &[Material]) -> Result<(), ExportError> {
 
 /// The forms of the shaders of materials: those that are asked for, or all that the models of all materials have.
 fn forms(materials: &[Material], asked: &[Form]) -> Result<Vec<Form>, ExportError> {
-    let model = |material: &Material| material.bake.model.unwrap_or_default();
-    let lacking = |form: Form| materials.iter().find(|material| !model(material).has(form));
+    let lacking = |form: Form| materials.iter().find(|material| !material.model().has(form));
     for &form in asked {
         if let Some(material) = lacking(form) {
-            let (material, model) = (material.name.clone(), model(material));
+            let (material, model) = (material.name.clone(), material.model());
             return Err(ShaderError::NoForm { material, model, form }.into());
         }
     }

@@ -29,7 +29,7 @@ pub fn lit_functions() -> Functions {
 pub fn lit(materials: &[Material]) -> Vec<Material> {
     let mut lit = materials.to_vec();
     // Lobes have their own energies.
-    let of_layers = |material: &&mut Material| material.bake.model != Some(ShadingModel::Lobes);
+    let of_layers = |material: &&mut Material| material.model() != ShadingModel::Lobes;
     lit.iter_mut().filter(of_layers).for_each(|material| material.bake.tables.extend(ENVIRONMENT_TABLES));
     lit
 }

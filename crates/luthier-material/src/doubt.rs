@@ -11,6 +11,7 @@ use luthier_manifest::{ColorMode, ShadingModel};
 
 use crate::bake_settings::BakeSettings;
 use crate::diagnostic::Sink;
+use crate::material::Material;
 use crate::places::Places;
 use crate::suggest::short;
 
@@ -30,11 +31,14 @@ const FILM_MAX_NM: f64 = 5000.0;
 /// Two indices that differ by less than this reflect less than 1e-8 at normal incidence.
 const SAME_INDEX: f64 = 2e-4;
 
+/// A sampled spectrum that may be too short: name, range in nm, place.
+pub(crate) type Spectrum = (String, (f64, f64), Span<usize>);
+
 /// Places in the text that doubts point at.
 #[derive(Default)]
 pub(crate) struct Sources {
-    /// Sampled spectra that may be too short: name, range in nm, place.
-    pub(crate) spectra: Vec<(String, (f64, f64), Span<usize>)>,
+    /// Sampled spectra that may be too short.
+    pub(crate) spectra: Vec<Spectrum>,
     /// Where values stand; only of a file without errors.
     pub(crate) places: Places,
 }
@@ -74,17 +78,19 @@ impl At<'_> {
     }
 }
 
-/// Reports every doubt about a valid stack.
-pub(crate) fn report(stack: &Stack, bake: &BakeSettings, sources: &Sources, sink: &mut Sink<'_>) {
-    clamped_spectra(bake, sources, sink);
-    empty_tables(stack, bake, sources, sink);
+/// Reports every doubt about a valid material.
+pub(crate) fn report(material: &Material, spectra: &[Spectrum], sink: &mut Sink<'_>) {
+    let Material { stack, bake, places, .. } = material;
+    let model = material.model();
+    clamped_spectra(bake, spectra, sink);
+    empty_tables(stack, bake, places, sink);
     let mut above = &stack.exterior;
     let mut roughest: f64 = 0.0;
     for (i, layer) in stack.layers.iter().enumerate() {
-        let at = &At { places: &sources.places, layer: i };
+        let at = &At { places, layer: i };
         let is_last = i + 1 == stack.layers.len();
         surface(layer, at, sink);
-        smoother_than_above(layer, roughest, bake.model, at, sink);
+        smoother_than_above(layer, roughest, model, at, sink);
         films(layer, at, sink);
         match &layer.base {
             Base::Dielectric { ior, slab } => {
@@ -103,7 +109,7 @@ pub(crate) fn report(stack: &Stack, bake: &BakeSettings, sources: &Sources, sink
 }
 
 /// Spectra that do not reach as far as the bake asks for them.
-fn clamped_spectra(bake: &BakeSettings, sources: &Sources, sink: &mut Sink<'_>) {
+fn clamped_spectra(bake: &BakeSettings, spectra: &[Spectrum], sink: &mut Sink<'_>) {
     let (low, high) = match bake.color {
         Some(ColorMode::ThreeWavelengths) => {
             let [r, _, b] = bake.wavelengths_nm();
@@ -111,7 +117,7 @@ fn clamped_spectra(bake: &BakeSettings, sources: &Sources, sink: &mut Sink<'_>) 
         }
         _ => VISIBLE_NM,
     };
-    for (name, (first, last), span) in &sources.spectra {
+    for (name, (first, last), span) in spectra {
         if *first > low || *last < high {
             let range = format!("{}-{} nm", short(*first), short(*last));
             let message = format!("`{name}` covers {range} only: outside, it is held constant");
@@ -122,11 +128,11 @@ fn clamped_spectra(bake: &BakeSettings, sources: &Sources, sink: &mut Sink<'_>) 
 }
 
 /// Kinds of tables that nothing in the stack could fill.
-fn empty_tables(stack: &Stack, bake: &BakeSettings, sources: &Sources, sink: &mut Sink<'_>) {
-    if !sources.places.has("bake.tables") {
+fn empty_tables(stack: &Stack, bake: &BakeSettings, places: &Places, sink: &mut Sink<'_>) {
+    if !places.has("bake.tables") {
         return;
     }
-    let at = sources.places.span("bake.tables");
+    let at = places.span("bake.tables");
     let has = |is: fn(&Layer) -> bool| stack.layers.iter().any(is);
     for kind in &bake.tables {
         let (is_some, reason) = match kind.facts().served {
@@ -161,17 +167,16 @@ fn surface(layer: &Layer, at: &At<'_>, sink: &mut Sink<'_>) {
 }
 
 /// Warns where a rough layer blurs what lies below, and the model blurs it too much or not at all.
-fn smoother_than_above(layer: &Layer, roughest: f64, model: Option<ShadingModel>, at: &At<'_>, sink: &mut Sink<'_>) {
+fn smoother_than_above(layer: &Layer, roughest: f64, model: ShadingModel, at: &At<'_>, sink: &mut Sink<'_>) {
     let alpha = layer.surface.alpha_isotropic();
     if matches!(layer.base, Base::Diffuse(_)) || alpha >= roughest {
         return;
     }
     let (effect, hint) = match model {
-        None => ("the default model, `elek`, raises it", format!("that model will use {}", at.in_its_terms(roughest))),
-        Some(ShadingModel::Elek) => {
+        ShadingModel::Elek => {
             ("the model `elek` raises it", format!("the model will use {}", at.in_its_terms(roughest)))
         }
-        Some(ShadingModel::WeidlichWilkie) => (
+        ShadingModel::WeidlichWilkie => (
             "the model `weidlich-wilkie` shows it as sharp as if it were bare",
             "`belcour` follows the light through the rougher layer: write `[bake] model = \"belcour\"`".to_owned(),
         ),

@@ -46,10 +46,13 @@ fn a_base_smoother_than_its_coat() {
     let stack = |coat: &str, base: &str| {
         layer("dielectric", &format!("ior = 1.5\n{coat}")) + &layer("conductor", &format!("ior = \"au\"\n{base}"))
     };
-    let w = warnings(&stack("slope_deg = 17", "slope_deg = 1"));
+    let elek = |coat: &str, base: &str| warnings(&(stack(coat, base) + "[bake]\nmodel = \"elek\"\n"));
+    let w = elek("slope_deg = 17", "slope_deg = 1");
     assert!(w.contains("smoother") && w.contains("`slope_deg = 17`"), "{w}");
-    assert!(warnings(&stack("alpha = 0.25", "roughness = 0.3")).contains("`roughness = 0.5`"));
-    assert_eq!(warnings(&stack("alpha = 0.2", "alpha = 0.2")), "");
+    assert!(elek("alpha = 0.25", "roughness = 0.3").contains("`roughness = 0.5`"));
+    assert_eq!(elek("alpha = 0.2", "alpha = 0.2"), "");
+    // The default model shows it as it is.
+    assert_eq!(warnings(&stack("slope_deg = 17", "slope_deg = 1")), "");
     assert_eq!(warnings(&(layer("dielectric", "ior = 1.5\nalpha = 0.5") + DIFFUSE)), "");
     let by = |model: &str| warnings(&(stack("alpha = 0.3", "alpha = 0.1") + "[bake]\nmodel = \"" + model + "\"\n"));
     assert!(by("elek").contains("`elek` raises it"));

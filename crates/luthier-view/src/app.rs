@@ -45,6 +45,7 @@ pub(crate) struct App {
     /// Materials that were edited, by the labels of their files.
     pub(crate) edits: BTreeMap<String, Material>,
     pub(crate) model: Option<ShadingModel>,
+    fits: bool,
     pub(crate) form: Form,
     pub(crate) shape: Shape,
     pub(crate) orbit: Orbit,
@@ -96,6 +97,7 @@ impl App {
             files: Files::default(),
             edits: BTreeMap::new(),
             model: options.model,
+            fits: options.fits,
             form: options.form,
             shape,
             orbit: Orbit::of(shape),
@@ -132,6 +134,11 @@ impl App {
     pub(crate) fn material(&self) -> Option<&Material> {
         let entry = self.files.selected()?;
         self.edits.get(&entry.label).or(entry.material.as_ref())
+    }
+
+    /// The model of a material where none is chosen: the form `full` has no tables, and so no fit.
+    pub(crate) fn own_model(&self, material: &Material) -> ShadingModel {
+        if self.fits && self.form == Form::Baked { material.model() } else { material.model_without_fit() }
     }
 
     /// Keeps an edited material; one that is as in its file is no edit.
@@ -302,9 +309,7 @@ impl App {
     /// Gives the threads what has changed.
     fn order(&mut self, ui: &Ui, rect: Rect, moving: bool) {
         if let Some(mut material) = self.material().cloned() {
-            if self.model.is_some() {
-                material.bake.model = self.model;
-            }
+            material.bake.model = Some(self.model.unwrap_or_else(|| self.own_model(&material)));
             let (form, revision) = (self.form, self.files.selected().map_or(0, |entry| entry.revision));
             let is_same =
                 |last: &BakeOrder| last.material == material && (last.form, last.revision) == (form, revision);

@@ -67,7 +67,7 @@ fn title(app: &mut App, ui: &mut Ui) {
 }
 
 fn choices(app: &mut App, ui: &mut Ui) {
-    let own = app.material().and_then(|material| material.bake.model).map_or("elek", ShadingModel::name);
+    let own = app.material().map_or("", |material| app.own_model(material).name());
     Grid::new("choices").num_columns(2).show(ui, |ui| {
         ui.label("model");
         let text = app.model.map_or_else(|| format!("{own} (its own)"), |model| model.name().to_owned());

@@ -28,6 +28,8 @@ pub struct Options {
     pub form: Form,
     /// Model; `None` is what each file asks for.
     pub model: Option<ShadingModel>,
+    /// Whether files that ask for no model may have one that is fitted to a simulation.
+    pub fits: bool,
     /// Inner size of the window in points.
     pub size: [f32; 2],
     /// Dark; `None` is what the desktop says, or else dark.

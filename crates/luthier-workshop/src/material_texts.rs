@@ -1,6 +1,6 @@
 //! Small materials: tables that bake in no time.
 
-/// Table settings that all materials here share; unoptimised builds bake them in a moment.
+/// Settings that all materials here share: a model without a fit, and tables that unoptimised builds bake in a moment.
 const SMALL: &str = "
 [bake]
 fresnel = { size = 64 }
@@ -8,6 +8,7 @@ distribution = { size = [32, 32] }
 fgd = { size = [8, 8] }
 phase = { size = 32 }
 thickness = { size = 16 }
+model = \"elek\"
 ";
 
 /// A material without any table.
@@ -22,7 +23,7 @@ pub fn lacquer(name: &str) -> String {
 
 /// [`lacquer`] with the default Fresnel and distribution tables.
 pub fn fine_lacquer(name: &str) -> String {
-    format!("schema = 1\nname = \"{name}\"\n{LACQUER}\n[bake]\nfgd = {{ size = [8, 8] }}\n")
+    format!("schema = 1\nname = \"{name}\"\n{LACQUER}\n[bake]\nmodel = \"elek\"\nfgd = {{ size = [8, 8] }}\n")
 }
 
 const LACQUER: &str = "

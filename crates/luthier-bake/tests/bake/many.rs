@@ -8,7 +8,7 @@ use luthier_manifest::SIDE_MAX;
 use luthier_material::{Material, parse};
 
 use crate::library::Library;
-use crate::materials::atlas;
+use crate::materials::{atlas, unfitted};
 
 const COUNT: u32 = 1000;
 
@@ -16,7 +16,8 @@ fn materials(numbers: impl Iterator<Item = u32>) -> Vec<Material> {
     let library = Library { seed: 7, variety: 50 };
     let material = |number: u32| {
         let text = library.material(number);
-        parse(&format!("{number}.toml"), &text, &|_| Err(std::io::ErrorKind::NotFound.into())).unwrap().material
+        let parsed = parse(&format!("{number}.toml"), &text, &|_| Err(std::io::ErrorKind::NotFound.into()));
+        unfitted(parsed.unwrap().material)
     };
     numbers.map(material).collect()
 }

@@ -23,14 +23,20 @@ size = 16
 /// Every kind of table that an interface without a film has.
 pub(crate) const ASKED: &str = "[bake]\ntables = [\"fresnel\", \"distribution\", \"fgd\"]\n";
 
-/// A material of that name with these layers (TOML) and settings.
+/// A material of that name with these layers (TOML) and settings. Without a model it has one that reads tables of every interface.
 pub(crate) fn material(name: &str, layers: &str, settings: &str) -> Material {
     let text = format!("schema = 1\nname = \"{name}\"\n{layers}\n{settings}\n");
     let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
     match parse(&format!("{name}.toml"), &text, &no_files) {
-        Ok(parsed) => parsed.material,
+        Ok(parsed) => unfitted(parsed.material),
         Err(errors) => panic!("{}", errors.iter().map(|e| e.render(&text)).collect::<String>()),
     }
+}
+
+/// A material with the model that it has without a fit.
+pub(crate) fn unfitted(mut material: Material) -> Material {
+    material.bake.model = Some(material.model_without_fit());
+    material
 }
 
 /// One conductor, GGX.

@@ -97,9 +97,13 @@ pub(crate) enum Verb {
 /// The model of the shaders, and the tables beside them.
 #[derive(Debug, Default, Args)]
 pub(crate) struct Shading {
-    /// Reflectance model of the shader; by default the one that each material file asks for
+    /// Reflectance model of the shader. By default the one that each material file asks for; of a stack whose file asks for none `lobes`,
+    /// or what shows all of it (docs/materials.md)
     #[arg(long, value_name = "NAME", value_parser = named::<ShadingModel>(ShadingModel::NAMES))]
     pub(crate) model: Option<ShadingModel>,
+    /// Simulate nothing: files that ask for no model take a closed form, `elek` for most. Those that ask for `lobes` are refused
+    #[arg(long, conflicts_with = "model")]
+    pub(crate) no_fit: bool,
     /// Kinds of tables to bake and bind for every material, beside those that its shader reads
     #[arg(long, value_name = "KIND,...", value_delimiter = ',', value_parser = named::<TableKind>(TableKind::NAMES))]
     pub(crate) tables: Vec<TableKind>,
@@ -292,6 +296,9 @@ pub(crate) struct CostOptions {
     /// Model to compile; may be given again. By default all
     #[arg(long, value_name = "NAME", value_parser = named::<ShadingModel>(ShadingModel::NAMES))]
     pub(crate) model: Vec<ShadingModel>,
+    /// Leave out `lobes`, whose shader takes a simulation of each material
+    #[arg(long, conflicts_with = "model")]
+    pub(crate) no_fit: bool,
     /// Form to compile; may be given again. By default both
     #[arg(long, value_parser = named::<Form>(Form::NAMES), value_name = "FORM")]
     pub(crate) form: Vec<Form>,
@@ -329,6 +336,9 @@ pub(crate) struct BenchOptions {
     /// Model to time besides Phong's; may be given again. By default all
     #[arg(long, value_name = "NAME", value_parser = named::<ShadingModel>(ShadingModel::NAMES))]
     pub(crate) model: Vec<ShadingModel>,
+    /// Leave out `lobes`, whose tables take a simulation of each material
+    #[arg(long, conflicts_with = "model")]
+    pub(crate) no_fit: bool,
     /// Least number of evaluations in one run
     #[arg(long, value_name = "N", default_value_t = 1 << 20, value_parser = clap::value_parser!(u32).range(1..=60_000_000))]
     pub(crate) evaluations: u32,

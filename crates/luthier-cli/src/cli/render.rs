@@ -127,6 +127,9 @@ pub(crate) struct CompareOptions {
     /// The second shader
     #[arg(long, value_name = "SHADER", default_value = "full")]
     pub(crate) b: ShaderChoice,
+    /// Simulate nothing: a file that asks for no model takes a closed form, which it does as well where a form is `full`
+    #[arg(long)]
+    pub(crate) no_fit: bool,
     /// Folder to write to
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: PathBuf,

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::time::Instant;
 
 use luthier_bake::{Observer, Silent};
-use luthier_export::{Bake, Compression, MANIFEST, MemoryStore, Package, Source, of_model, read, refuse};
+use luthier_export::{Bake, Compression, MANIFEST, MemoryStore, Package, Source, read, refuse};
 use luthier_manifest::{CandidateForm, Functions, Manifest};
 use luthier_material::Diagnostic;
 use luthier_shader::{Form, Target};
@@ -31,10 +31,10 @@ pub(crate) fn run(options: &BakeOptions) -> Outcome {
         )));
     }
     let mut sources = read(&options.sources.paths)?;
-    refuse(&mut sources, |material| of_model(material, options.shading.model));
-    let mut told: Vec<Diagnostic> = sources.iter().flat_map(Source::diagnostics).cloned().collect();
-    let materials = shaded(valid(sources, options.quiet)?, &options.shading);
     let forms = options.emission.forms();
+    refuse(&mut sources, |material| options.shading.doubts(material, &forms));
+    let mut told: Vec<Diagnostic> = sources.iter().flat_map(Source::diagnostics).cloned().collect();
+    let materials = shaded(valid(sources, options.quiet)?, &options.shading, &forms);
     let limits = options.limits.options();
     if forms == [Form::Full] && !limits.budget.is_empty() {
         return Err(Failure::Usage(anyhow::anyhow!(

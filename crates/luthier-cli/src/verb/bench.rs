@@ -10,6 +10,7 @@ use luthier_terminal::{Bar, Failure, Outcome, deliver, open, valid};
 use serde::Serialize;
 
 use crate::cli::BenchOptions;
+use crate::materials::models;
 
 /// Pairs of directions, near the mirror direction and anywhere by halves: few enough for any cache.
 const PAIRS: u32 = 1024;
@@ -125,9 +126,8 @@ struct Subject {
 /// The forms of every model of a material, Phong's model first: ratios are to it.
 fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -> Outcome<Vec<Subject>> {
     let mut models = vec![ShadingModel::Phong];
-    let wanted: Vec<ShadingModel> =
-        if options.model.is_empty() { ShadingModel::ALL.to_vec() } else { options.model.clone() };
-    models.extend(wanted.into_iter().filter(|&model| model != ShadingModel::Phong));
+    models
+        .extend(self::models(&options.model, options.no_fit).into_iter().filter(|&model| model != ShadingModel::Phong));
     let mut subjects = Vec::new();
     for model in models {
         let mut shaded = material.clone();

@@ -1,6 +1,7 @@
 //! `check`: what is wrong with files, without a bake.
 
-use luthier_export::{Source, find, input, of_model, read_one, refuse, refuse_too_many};
+use luthier_export::{Source, find, input, read_one, refuse, refuse_too_many};
+use luthier_manifest::ShadingModel;
 use luthier_material::{Diagnostic, is_scene};
 use luthier_terminal::{Failure, Outcome, diagnostic, files, print, print_diagnostics};
 use serde_json::{Value, json};
@@ -21,12 +22,17 @@ pub(crate) fn run(options: &CheckOptions) -> Outcome {
             sources.push(read_one(&path)?);
         }
     }
-    refuse(&mut sources, |material| of_model(material, options.shading.model));
-    refuse_too_many(&mut sources, |materials| shaded(materials, &options.shading));
+    let shading = &options.shading;
+    refuse(&mut sources, |material| shading.doubts(material, &[]));
+    refuse_too_many(&mut sources, |materials| shaded(materials, shading, &[]));
     misses::foresee(&mut sources);
-    let all = || sources.iter().chain(scenes.iter().flat_map(|scene| &scene.materials));
+    // Models of materials of a scene are the scene's to choose.
+    let of_scenes = || scenes.iter().flat_map(|scene| &scene.materials).map(|source| (source, None));
+    let alone =
+        || sources.iter().map(|source| (source, source.parsed.as_ref().ok().map(|p| shading.model(&p.material))));
+    let all = || alone().chain(of_scenes());
     if options.json {
-        let entries = scenes.iter().map(scene_entry).chain(all().map(entry));
+        let entries = scenes.iter().map(scene_entry).chain(all().map(|(source, model)| entry(source, model)));
         print(&format!("{:#}", Value::from_iter(entries)))?;
     } else {
         let mut lines = String::new();
@@ -34,9 +40,9 @@ pub(crate) fn run(options: &CheckOptions) -> Outcome {
             scene.print_diagnostics();
             lines.push_str(&scene_line(scene));
         }
-        for source in all() {
+        for (source, model) in all() {
             print_diagnostics(source.diagnostics(), &source.text);
-            lines.push_str(&line(source));
+            lines.push_str(&line(source, model));
         }
         print(&lines)?;
     }
@@ -49,7 +55,7 @@ fn count(diagnostics: &[Diagnostic], what: &str) -> String {
     format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
-fn line(source: &Source) -> String {
+fn line(source: &Source, model: Option<ShadingModel>) -> String {
     match &source.parsed {
         Err(errors) => format!("{}: {}\n", source.label, count(errors, "error")),
         Ok(parsed) => {
@@ -58,7 +64,8 @@ fn line(source: &Source) -> String {
                 [] => String::new(),
                 warnings => format!(", {}", count(warnings, "warning")),
             };
-            format!("{}: ok, class {} ({}){warnings}\n", source.label, class.letter(), class.name())
+            let model = model.map_or_else(String::new, |model| format!(", model {model}"));
+            format!("{}: ok, class {} ({}){model}{warnings}\n", source.label, class.letter(), class.name())
         }
     }
 }
@@ -74,10 +81,14 @@ fn scene_line(scene: &SceneSource) -> String {
     }
 }
 
-fn entry(source: &Source) -> Value {
+fn entry(source: &Source, model: Option<ShadingModel>) -> Value {
     let material = source.parsed.as_ref().ok().map(|parsed| {
         let m = &parsed.material;
-        json!({"name": m.name, "class": m.class.letter().to_string(), "class_name": m.class.name()})
+        let mut about = json!({"name": m.name, "class": m.class.letter().to_string(), "class_name": m.class.name()});
+        if let Some(model) = model {
+            about["model"] = json!(model.name());
+        }
+        about
     });
     json!({"file": source.label, "material": material, "diagnostics": diagnostics(source.diagnostics())})
 }

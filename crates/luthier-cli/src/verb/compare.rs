@@ -5,7 +5,7 @@ use std::path::Path;
 use luthier_export::Package;
 use luthier_gpu::{GpuError, ToneMapping};
 use luthier_lut::Image;
-use luthier_manifest::Form;
+use luthier_manifest::{Form, ShadingModel};
 use luthier_report::{PIXELS_PER_DEGREE, PictureComparison, brightened_difference, compare_pictures};
 use luthier_terminal::{Failure, Outcome, files, open, print};
 use serde_json::{Value, json};
@@ -78,8 +78,14 @@ impl Subject {
                 "the bake has its models already; name a .toml file to choose one"
             )));
         }
-        let shading = Shading { model: choice.model, ..Shading::default() };
-        let (package, material) = memory_bake::find(&options.material, &shading, &options.out)?;
+        if options.no_fit && choice.model == Some(ShadingModel::Lobes) {
+            return Err(Failure::Usage(anyhow::anyhow!("the model `lobes` is fitted: leave out --no-fit")));
+        }
+        let shading = Shading { model: choice.model, no_fit: options.no_fit, ..Shading::default() };
+        // Both sides have the material's model, if neither names another: one that both forms have.
+        let own = [&options.a, &options.b].into_iter().filter(|choice| choice.model.is_none());
+        let forms: Vec<Form> = own.map(|choice| choice.form).collect();
+        let (package, material) = memory_bake::find(&options.material, &shading, &forms, &options.out)?;
         package.wgsl(choice.form)?;
         Ok(Self { package, material, form: choice.form })
     }

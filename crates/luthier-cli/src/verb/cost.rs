@@ -10,6 +10,7 @@ use luthier_shader::{Form, MaterialSet};
 use luthier_terminal::{Failure, Outcome, deliver, print, valid};
 
 use crate::cli::CostOptions;
+use crate::materials::models;
 
 /// Compiles shaders for GPUs that are not here, and prints what they cost.
 pub(crate) fn run(options: &CostOptions) -> Outcome {
@@ -61,8 +62,7 @@ struct Variant {
 
 /// Every material (or all as one set) in every model, form and style asked for.
 fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Variant>> {
-    let models: Vec<ShadingModel> =
-        if options.model.is_empty() { ShadingModel::ALL.to_vec() } else { options.model.clone() };
+    let models = models(&options.model, options.no_fit);
     let forms: Vec<Form> = if options.form.is_empty() { Form::ALL.to_vec() } else { options.form.clone() };
     let mut variants = Vec::new();
     for model in models {
@@ -118,7 +118,12 @@ fn command(options: &CostOptions) -> String {
     words.extend(options.model.iter().map(|model| format!("--model {}", model.name())));
     words.extend(options.form.iter().map(|&form| format!("--form {}", form.name())));
     words.extend(options.family.iter().map(|family| format!("--family {}", family)));
-    let flags = [("--set", options.set), ("--closed", options.closed), ("--constant", options.constant)];
+    let flags = [
+        ("--no-fit", options.no_fit),
+        ("--set", options.set),
+        ("--closed", options.closed),
+        ("--constant", options.constant),
+    ];
     words.extend(flags.iter().filter(|(_, is_set)| *is_set).map(|(flag, _)| (*flag).to_owned()));
     words.extend(options.output.iter().map(|path| format!("-o {}", path.display())));
     words.join(" ")

@@ -3,10 +3,10 @@
 use luthier_export::{Package, lit, read};
 use luthier_manifest::Form;
 use luthier_report::sheet;
-use luthier_terminal::{Failure, Outcome, open, valid};
+use luthier_terminal::{Failure, Outcome, open};
 
 use crate::cli::{GalleryOptions, ShapeName};
-use crate::materials::shaded;
+use crate::materials::bakeable;
 use crate::picture::{Format, settings};
 
 /// Renders many materials side by side.
@@ -17,7 +17,7 @@ pub(crate) fn run(options: &GalleryOptions) -> Outcome {
             "a gallery shows one material per picture, the grid 25 of its own"
         )));
     }
-    let materials = shaded(valid(read(&options.sources.paths)?, false)?, &options.shading);
+    let materials = bakeable(read(&options.sources.paths)?, &options.shading, &[], false)?;
     let package = Package::for_renderer(&lit(&materials))?;
     let look = &options.look;
     let settings = settings(look, options.shape.into(), options.size)?;

@@ -24,7 +24,7 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
         }
         (None, _) => return Err(Failure::Input(anyhow::anyhow!("name a material, or take --shape grid"))),
         (Some(material), _) => {
-            let (package, number) = memory_bake::find(material, &options.shading, &options.out)?;
+            let (package, number) = memory_bake::find(material, &options.shading, &[], &options.out)?;
             (package, vec![number])
         }
     };

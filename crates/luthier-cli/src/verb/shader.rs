@@ -10,7 +10,7 @@ use crate::materials::bakeable;
 
 /// Prints or writes the shader of some materials, without baking them.
 pub(crate) fn run(options: &ShaderOptions) -> Outcome {
-    let materials = bakeable(read(&options.sources.paths)?, &options.shading, false)?;
+    let materials = bakeable(read(&options.sources.paths)?, &options.shading, &[options.form], false)?;
     let mut manifest = outline(&materials, &Options::default())?;
     manifest.functions = options.functions.iter().copied().collect();
     let set = MaterialSet::from_manifest(&manifest);

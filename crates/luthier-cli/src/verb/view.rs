@@ -34,11 +34,12 @@ pub(crate) fn run(options: &ViewOptions) -> Outcome {
         shape,
         form: options.form,
         model: options.shading.model,
+        fits: !options.shading.no_fit,
         size: options.window.0.map(f32::from),
         dark: options.theme.map(|theme| theme == ThemeName::Dark),
         shots: options.screenshot.is_some().then_some(Shots { frames: options.frames, count: options.shots }),
     };
-    let host = ViewHost::new(options.sources.paths.clone(), options.screenshot.clone());
+    let host = ViewHost::new(options.sources.paths.clone(), options.screenshot.clone(), !options.shading.no_fit);
     luthier_view::run(Arc::new(host), gpu, window).map_err(|error| match error {
         ViewError::Renderer(source) => source.into(),
         ViewError::Screenshot(_) => Failure::Files(error.into()),

@@ -43,9 +43,7 @@ pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read
     let stack = Stack { exterior, layers };
     let bake = bake::decode(document, sink);
     let effects = effects::decode(document, &stack, sink);
-    if !sink.has_errors() {
-        doubt::report(&stack, &bake, &sources, sink);
-    }
+    let Sources { spectra, places } = sources;
     let mut material = Material {
         name: document.text("name").unwrap_or_default().to_owned(),
         source: label.to_owned(),
@@ -59,11 +57,14 @@ pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read
         effects,
         bake,
         budget: bake::budget(document),
-        places: sources.places,
+        places,
     };
     let mut files = named.into_inner();
     files.extend(material.images().iter().map(|image| image.path.to_owned()));
     material.files = files.into_iter().collect();
+    if !sink.has_errors() {
+        doubt::report(&material, &spectra, sink);
+    }
     material
 }
 

@@ -13,7 +13,6 @@ use serde_json::{Value, json};
 use self::relief::{Field, Relief};
 use super::{Kind, Site};
 use crate::graph::{Inputs, Job, JobKind, Output};
-use crate::plan::shading_model;
 use crate::settings::{Ask, Shape, axis};
 use crate::tile::{TileData, lone_tile};
 use crate::{BakeError, json};
@@ -57,7 +56,7 @@ impl Kind for Table {
 /// Four channels where someone reads slopes: Granier and Heidrich's model, or who asks for the table; else the thickness alone.
 fn default_format(materials: &[Material]) -> TexelFormat {
     let reads_slopes = |material: &Material| {
-        shading_model(material) == ShadingModel::GranierHeidrich || material.bake.asks_for(TableKind::Thickness)
+        material.model() == ShadingModel::GranierHeidrich || material.bake.asks_for(TableKind::Thickness)
     };
     if materials.iter().any(reads_slopes) { TexelFormat::Rgba16Float } else { TexelFormat::R16Float }
 }

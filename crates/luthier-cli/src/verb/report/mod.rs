@@ -115,9 +115,10 @@ fn materials(manifest: &Manifest) -> Outcome<Vec<Material>> {
                 ))),
                 other => other,
             })?;
-            let Ok(Parsed { material, .. }) = source.parsed else {
+            let Ok(Parsed { mut material, .. }) = source.parsed else {
                 return Err(changed(&entry.source));
             };
+            material.bake.model = Some(entry.model);
             if source_hash(&material)? != entry.source_hash {
                 return Err(changed(&entry.source));
             }

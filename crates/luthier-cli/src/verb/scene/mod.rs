@@ -46,9 +46,14 @@ pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
     }
     let targets = options.emission.targets();
     let shading = &options.shading;
-    if shading.model.is_some() || !shading.tables.is_empty() || !limits.search || !limits.budget.is_empty() {
-        let text = "a scene has its limits in its [budget] and [target], and its models are chosen: leave out --model, --tables, \
-                    --no-search and limits on tables";
+    if shading.model.is_some()
+        || shading.no_fit
+        || !shading.tables.is_empty()
+        || !limits.search
+        || !limits.budget.is_empty()
+    {
+        let text = "a scene has its limits in its [budget] and [target], and its models are chosen: leave out --model, --no-fit, \
+                    --tables, --no-search and limits on tables";
         return Err(Failure::Usage(anyhow::anyhow!(text)));
     }
     let pool = rayon::ThreadPoolBuilder::new()

@@ -85,7 +85,7 @@ fn doubts_do_not_fail() {
     assert!(run.stderr.starts_with("warning: "), "{}", run.stderr);
     let mut lines = run.stdout.lines();
     assert!(lines.next().is_some_and(|l| l.starts_with("doubtful.toml: ok, class ") && l.ends_with(", 1 warning")));
-    assert!(lines.next().is_some_and(|l| l.starts_with("matte.toml: ok, class ") && l.ends_with(')')));
+    assert!(lines.next().is_some_and(|l| l.starts_with("matte.toml: ok, class ") && l.ends_with("), model elek")));
 }
 
 #[test]
@@ -155,7 +155,8 @@ fn coated(ior: f64, bake: &str) -> String {
 fn materials_outside_the_domain_of_their_model_are_told() {
     let granier = "\n[bake]\nmodel = \"granier-heidrich\"\n";
     let workshop = Workshop::with(&[
-        ("diamond.toml", &coated(2.42, "")),
+        ("diamond.toml", &coated(2.42, "\n[bake]\nmodel = \"elek\"\n")),
+        ("default.toml", &coated(2.42, "")),
         ("glass.toml", &coated(1.5, "")),
         ("belcour.toml", &coated(2.42, "\n[bake]\nmodel = \"belcour\"\n")),
         ("granier.toml", &coated(1.5, granier)),
@@ -165,6 +166,7 @@ fn materials_outside_the_domain_of_their_model_are_told() {
     for part in ["2.42 is outside the domain of `elek`", "diamond.toml:6:7", "write `[bake] model = \"belcour\"`"] {
         assert!(found.contains(part), "{part}: {found}");
     }
+    assert_eq!(words("default.toml"), "");
     assert_eq!(words("glass.toml"), "");
     assert_eq!(words("belcour.toml"), "");
     assert!(words("granier.toml").contains("number of layers 2 is outside the domain of `granier-heidrich`"));
@@ -206,9 +208,9 @@ fn the_materials_of_this_repository_are_inside_their_domains() {
 #[test]
 fn what_a_model_leaves_out_is_told() {
     let metal = "[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha_x = 0.1\nalpha_y = 0.4\n";
-    let bake = "\n[bake]\nfresnel = { size = 64 }\ndistribution = { size = [32, 32] }\nfgd = { size = [8, 8] }\n";
+    let bake = "\n[bake]\nmodel = \"elek\"\nfresnel = { size = 64 }\ndistribution = { size = [32, 32] }\nfgd = { size = [8, 8] }\n";
     let brushed = |name: &str, bake: &str| format!("schema = 1\nname = \"{name}\"\n\n{metal}{bake}");
-    let modelled = bake.replace("[bake]", "[bake]\nmodel = \"weidlich-wilkie\"");
+    let modelled = bake.replace("elek", "weidlich-wilkie");
     let workshop =
         Workshop::with(&[("brushed.toml", &brushed("brushed", bake)), ("known.toml", &brushed("known", &modelled))]);
     let told = [

@@ -1,15 +1,16 @@
 //! Features of a material that its model leaves out.
 
 use luthier_manifest::{Feature, Form, ShadingModel};
-use luthier_material::Material;
 use luthier_optics::stack::{Base, Distribution};
+
+use crate::material::Material;
 
 /// A feature that a material asks for and its model does not show.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LeftOut {
     /// Feature that is not shown.
     pub feature: Feature,
-    /// The key that asks for it, as in [`luthier_material::Places`].
+    /// The key that asks for it, as in [`Places`](crate::Places).
     pub key: String,
     /// The forms of the shader that leave it out; at least one.
     pub forms: Vec<Form>,
