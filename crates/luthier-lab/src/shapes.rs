@@ -26,7 +26,9 @@ pub(crate) fn run(options: &ShapesOptions) -> Outcome {
             if keys.iter().any(|(known, _, s)| (*known, s) == (model, &shape)) {
                 continue;
             }
-            let manifest = outline(std::slice::from_ref(&material), &Options::default())?;
+            // Without a fit, lobes are as many as there may be: the dearest.
+            let options = Options { fits: false, ..Options::default() };
+            let manifest = outline(std::slice::from_ref(&material), &options)?;
             let set = MaterialSet::from_manifest(&manifest);
             for form in Form::ALL.into_iter().filter(|&form| model.has(form)) {
                 let style = Style { form, constant: false, approximate: false };

@@ -1,5 +1,7 @@
 //! The choice of models for a scene, with its reasons.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 use crate::{ColorMode, Form, ShadingModel};
@@ -26,6 +28,30 @@ pub struct SceneError {
     pub delta_e: Option<f64>,
     /// Standard error of the reference at the direction with the largest relative error, as a relative error.
     pub std_err_rel: f64,
+    /// The direction with the largest relative error; absent in manifests of older programs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at: Option<SceneDirection>,
+}
+
+/// Directions to eye and light in degrees, in tenths.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SceneDirection {
+    /// Between normal and eye.
+    pub eye_deg: f64,
+    /// Between normal and light, and around the normal from eye to light; absent where light comes from everywhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub light_deg: Option<[f64; 2]>,
+}
+
+impl fmt::Display for SceneDirection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.light_deg {
+            Some([theta, around]) => {
+                write!(f, "eye at {}°, light at {theta}° and {around}° around from the eye", self.eye_deg)
+            }
+            None => write!(f, "eye at {}°, light from everywhere", self.eye_deg),
+        }
+    }
 }
 
 impl SceneBudget {
@@ -141,7 +167,7 @@ pub struct SceneChoice {
 mod tests {
     use super::*;
 
-    const ERROR: SceneError = SceneError { max_abs: 0.2, max_rel: 0.3, delta_e: Some(4.0), std_err_rel: 9.0 };
+    const ERROR: SceneError = SceneError { max_abs: 0.2, max_rel: 0.3, delta_e: Some(4.0), std_err_rel: 9.0, at: None };
 
     #[test]
     fn a_budget_takes_what_it_lacks_from_another() {

@@ -22,7 +22,7 @@ mod search;
 mod target;
 mod tiles;
 
-pub use choice::{MaterialChoice, SceneBudget, SceneCandidate, SceneChoice, SceneError, Verdict};
+pub use choice::{MaterialChoice, SceneBudget, SceneCandidate, SceneChoice, SceneDirection, SceneError, Verdict};
 pub use constants::{FlakesRecord, GlitterRecord, LobesRecord, MaterialConstants, PatinaRecord};
 pub use error::ManifestError;
 pub use feature::Feature;

@@ -9,6 +9,7 @@ use luthier_manifest::{ColorMode, Feature, Form, ShadingModel};
 use luthier_material::Material;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
+use luthier_optics::stack::Stack;
 use rayon::prelude::*;
 
 use crate::cost::CostTable;
@@ -34,6 +35,8 @@ pub struct Candidate {
     /// Whether the cost is that of a similar surface.
     pub cost_is_of_similar: bool,
     values: OnceLock<Vec<Rgb>>,
+    /// Values without a footprint, of a model whose tables know no other roughness.
+    sharp_values: OnceLock<Vec<Rgb>>,
 }
 
 /// The colour of a mode.
@@ -73,8 +76,18 @@ impl Candidate {
                     material.bake.model = Some(model);
                     material.bake.color = Some(color);
                     let cost_is_of_similar = is_of_similar;
-                    let (left_out, values) = (left_out.clone(), OnceLock::new());
-                    found.push(Self { model, form, color, left_out, material, cost, cost_is_of_similar, values });
+                    let (left_out, values, sharp_values) = (left_out.clone(), OnceLock::new(), OnceLock::new());
+                    found.push(Self {
+                        model,
+                        form,
+                        color,
+                        left_out,
+                        material,
+                        cost,
+                        cost_is_of_similar,
+                        values,
+                        sharp_values,
+                    });
                 }
             }
         }
@@ -85,19 +98,33 @@ impl Candidate {
 
     /// The candidate's values at probes, computed once.
     pub(crate) fn values(&self, probes: &[Probe], footprint_deg: f64) -> &[Rgb] {
-        self.values.get_or_init(|| self.values_with(&self.exact(footprint_deg), probes, footprint_deg))
+        self.values.get_or_init(|| {
+            let stack = footprint(&self.material.stack, footprint_deg);
+            self.values_of(&stack, &self.exact(&stack), probes)
+        })
     }
 
-    /// The candidate's values at probes, on other terms.
+    /// The candidate's values at probes on exact terms, and on those of tables that stand for them. Rows of lobes are of the roughness that was
+    /// simulated: neither has a footprint there.
     pub(crate) fn values_with(
         &self,
         terms: &(impl ShaderTerms + Sync),
         probes: &[Probe],
         footprint_deg: f64,
-    ) -> Vec<Rgb> {
+    ) -> (&[Rgb], Vec<Rgb>) {
+        if self.model == ShadingModel::Lobes {
+            let stack = &self.material.stack;
+            let exact = self.sharp_values.get_or_init(|| self.values_of(stack, &self.exact(stack), probes));
+            return (exact, self.values_of(stack, terms, probes));
+        }
         let stack = footprint(&self.material.stack, footprint_deg);
+        (self.values(probes, footprint_deg), self.values_of(&stack, terms, probes))
+    }
+
+    /// Values at probes of a stack, on some terms.
+    fn values_of(&self, stack: &Stack, terms: &(impl ShaderTerms + Sync), probes: &[Probe]) -> Vec<Rgb> {
         let color = color_of(self.color, &self.material);
-        let twin = Twin::new(self.model.name(), &stack, self.material.bake.wavelengths_nm(), color);
+        let twin = Twin::new(self.model.name(), stack, self.material.bake.wavelengths_nm(), color);
         // Every model that ships has a twin; one that had none would be as wrong as can be.
         let evaluate = |wi, wo| twin.as_ref().map_or([f64::NAN; 3], |twin| twin.eval(terms, wi, wo));
         let value = |probe: &Probe| match *probe {
@@ -115,13 +142,12 @@ impl Candidate {
     }
 
     /// The exact terms that the candidate's tables stand for, or that its form computes.
-    fn exact(&self, footprint_deg: f64) -> Exact {
-        let stack = footprint(&self.material.stack, footprint_deg);
-        let exact = Exact::new(&stack, color_of(self.color, &self.material));
+    fn exact(&self, stack: &Stack) -> Exact {
+        let exact = Exact::new(stack, color_of(self.color, &self.material));
         let is_statistical = self.model.is_statistical();
         if self.form == Form::Full && is_statistical {
             let three = Color::ThreeWavelengths(self.material.bake.wavelengths_nm());
-            Exact::level(&stack, three, exact.veil())
+            Exact::level(stack, three, exact.veil())
         } else {
             exact
         }

@@ -111,11 +111,10 @@ impl Judge {
     /// Errors of what stands in for the exact terms of a candidate (tables), at the directions of the scene.
     pub fn table_error(&self, candidate: usize, terms: &(impl ShaderTerms + Sync), with_delta_e: bool) -> SceneError {
         let candidate = &self.candidates[candidate];
-        let exact = candidate.values(&self.probes, self.footprint_deg);
-        let found = candidate.values_with(terms, &self.probes, self.footprint_deg);
+        let (exact, found) = candidate.values_with(terms, &self.probes, self.footprint_deg);
         let known = |rgb| Value { rgb, std_err: [0.0; 3] };
         let misses: Vec<Miss> = found.iter().zip(exact).map(|(f, e)| Miss::of(*f, &known(*e), with_delta_e)).collect();
-        largest(&misses)
+        largest(&misses, &self.probes)
     }
 
     /// The candidates, cheapest first.
@@ -154,7 +153,7 @@ impl Judge {
                 left_out: candidate.left_out.iter().map(|part| LeaveOut::name(*part)).collect(),
                 cost: candidate.cost,
                 cost_is_of_similar: candidate.cost_is_of_similar,
-                error: largest(&misses),
+                error: largest(&misses, &self.probes),
                 verdict,
             };
             return (judged, misses.iter().map(|miss| miss.excess(budget)).fold(0.0, f64::max));
@@ -195,7 +194,8 @@ fn reason(tried: &[SceneCandidate], chosen: usize, next_cheaper: Option<usize>, 
         }
         Verdict::Fails => "none holds; this comes nearest",
     };
-    let mut text = format!("{} for {:.0} cycles: {verdict} (error {})", label(own), own.cost, errs(own));
+    let place = own.error.at.filter(|_| own.verdict != Verdict::Holds).map_or_else(String::new, |at| format!("; {at}"));
+    let mut text = format!("{} for {:.0} cycles: {verdict} (error {}{place})", label(own), own.cost, errs(own));
     if let Some(cheaper) = cheaper {
         let outcome = if cheaper.verdict == Verdict::Undecided { "could not be told apart from" } else { "would have" };
         text.push_str(&format!("; {} for {:.0} cycles {outcome} {}", label(cheaper), cheaper.cost, errs(cheaper)));

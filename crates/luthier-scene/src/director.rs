@@ -2,8 +2,10 @@
 
 use luthier_bake::{BakeError, MemoryStore, Options};
 use luthier_export::{Bake, ExportError, Package, PackageError, sha256};
-use luthier_lut::FormatSet;
-use luthier_manifest::{Budget, Functions, MaterialChoice, SceneBudget, SceneChoice, SceneError, Target};
+use luthier_lut::{FormatSet, TexelFormat};
+use luthier_manifest::{
+    Budget, Functions, MaterialChoice, SceneBudget, SceneChoice, SceneError, ShadingModel, Target,
+};
 use luthier_material::{Material, Scene};
 use luthier_report::{ReportError, Subject, TableTerms, Weights};
 use thiserror::Error;
@@ -93,13 +95,16 @@ enum Refusal {
 impl<'a> Director<'a> {
     /// `targets` are the languages of the shaders; their form is chosen with the models.
     pub fn new(scene: &'a Scene, materials: &'a [Material], targets: Vec<Target>) -> Self {
+        // Rows of lobes have one format.
+        let has_rows = scene.target.formats.is_none_or(|formats| formats.has(TexelFormat::Rgba16Float));
+        let costs = CostTable::shipped();
         Self {
             scene,
             materials,
             targets,
             functions: Functions::default(),
             store: MemoryStore::default(),
-            costs: CostTable::shipped(),
+            costs: if has_rows { costs } else { costs.without(ShadingModel::Lobes) },
             baked: None,
             full: None,
         }

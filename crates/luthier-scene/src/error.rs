@@ -6,6 +6,8 @@ use luthier_manifest::{SceneBudget, SceneError};
 use luthier_optics::Rgb;
 use luthier_optics::color_difference::{ciede2000, lab};
 
+use crate::probe::Probe;
+
 /// Values darker than this count as this in relative errors: a tenth of a white diffuse surface under unit light, as in reports.
 pub const FLOOR: f64 = 0.1 * FRAC_1_PI;
 
@@ -95,13 +97,13 @@ impl Miss {
     }
 }
 
-/// The largest errors.
-pub(crate) fn largest(misses: &[Miss]) -> SceneError {
+/// The largest errors, one at each probe.
+pub(crate) fn largest(misses: &[Miss], probes: &[Probe]) -> SceneError {
     let mut error = SceneError::default();
-    for Miss { abs, rel, delta_e } in misses {
+    for (Miss { abs, rel, delta_e }, probe) in misses.iter().zip(probes) {
         error.max_abs = error.max_abs.max(abs[0]);
         if rel[0] >= error.max_rel {
-            (error.max_rel, error.std_err_rel) = (rel[0], rel[1]);
+            (error.max_rel, error.std_err_rel, error.at) = (rel[0], rel[1], Some(probe.direction()));
         }
         error.delta_e = error.delta_e.into_iter().chain(delta_e.map(|[miss, _]| miss)).reduce(f64::max);
     }
@@ -110,6 +112,8 @@ pub(crate) fn largest(misses: &[Miss]) -> SceneError {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
 
     fn miss(found: f64, expected: f64, noise: f64) -> Miss {
@@ -139,7 +143,10 @@ mod tests {
         let budget = SceneBudget { max_rel: Some(1.0), max_abs: Some(0.01), delta_e: Some(1e3) };
         assert!((miss(0.12, 0.1, 0.0).excess(&budget) - 2.0).abs() < 1e-12);
         assert_eq!(miss(0.12, 0.1, 0.0).standing(&budget), Standing::Outside);
-        let error = largest(&[miss(0.12, 0.1, 0.0), miss(0.5, 0.49, 0.001)]);
+        let [up, aside] = [DVec3::Z, DVec3::new(0.5, 0.0, libm::sqrt(0.75))];
+        let probes = [Probe::Pair { wi: aside, wo: up }, Probe::Sky { wo: up }];
+        let error = largest(&[miss(0.12, 0.1, 0.0), miss(0.5, 0.49, 0.001)], &probes);
+        assert_eq!(error.at.map(|at| (at.eye_deg, at.light_deg)), Some((0.0, Some([30.0, 0.0]))));
         assert!(
             (error.max_abs - 0.02).abs() < 1e-12 && (error.max_rel - 0.2).abs() < 1e-12 && error.delta_e > Some(1.0)
         );

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use luthier_layers::elek::ALPHA_MIN;
+use luthier_manifest::SceneDirection;
 use luthier_material::{Light, View};
 use luthier_optics::stack::{Base, Stack};
 
@@ -22,6 +23,21 @@ pub enum Probe {
         /// Direction to the eye.
         wo: DVec3,
     },
+}
+
+impl Probe {
+    /// Its angles.
+    pub(crate) fn direction(&self) -> SceneDirection {
+        let tenths = |degrees: f64| (10.0 * degrees).round() / 10.0;
+        let theta = |w: DVec3| tenths(libm::acos(w.z.clamp(-1.0, 1.0)).to_degrees());
+        match *self {
+            Self::Pair { wi, wo } => {
+                let around = libm::atan2(wo.x * wi.y - wo.y * wi.x, wo.x * wi.x + wo.y * wi.y).to_degrees().abs();
+                SceneDirection { eye_deg: theta(wo), light_deg: Some([theta(wi), tenths(around)]) }
+            }
+            Self::Sky { wo } => SceneDirection { eye_deg: theta(wo), light_deg: None },
+        }
+    }
 }
 
 /// Azimuth of the eye in the surface's frame: neither along nor across what is anisotropic.

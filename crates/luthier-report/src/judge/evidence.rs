@@ -44,8 +44,8 @@ pub struct ShaderCost {
 pub struct ShapeCost {
     /// Cycles of the table-reading form.
     pub baked: u32,
-    /// Cycles of the table-free form.
-    pub full: u32,
+    /// Cycles of the table-free form, if the model has it.
+    pub full: Option<u32>,
     /// Whether the surface is only similar, because none of these layers was compiled.
     pub is_of_similar: bool,
 }

@@ -197,7 +197,7 @@ fn all_materials_are_in_one_chart() {
     // Of the fixture's tables each material reads some.
     assert!(bytes.contains("KiB of tables") || bytes.contains(" B of tables"), "{bytes}");
     for material in &mut report.materials {
-        material.shape_cost = Some(ShapeCost { baked: 77, full: 212, is_of_similar: false });
+        material.shape_cost = Some(ShapeCost { baked: 77, full: Some(212), is_of_similar: false });
     }
     let kinds = chart(&report.to_html(&Exhibits::default()));
     assert_eq!(kinds.matches("<a href=\"#material-").count(), 2 * materials, "baked and full");

@@ -107,8 +107,8 @@ pub(super) fn add(
 fn shape_cost(costs: &CostTable, model: ShadingModel, material: &Material) -> Option<ShapeCost> {
     let shape = luthier_scene::shape(&material.stack);
     let (baked, is_of_similar) = costs.cost(model, Form::Baked, &shape)?;
-    let (full, _) = costs.cost(model, Form::Full, &shape)?;
-    Some(ShapeCost { baked: baked as u32, full: full as u32, is_of_similar })
+    let full = costs.cost(model, Form::Full, &shape).map(|(cycles, _)| cycles as u32);
+    Some(ShapeCost { baked: baked as u32, full, is_of_similar })
 }
 
 /// Adds the manifest's reasons for the choice of each model, which a bake of a scene has.

@@ -60,7 +60,28 @@ fn section(scene: &Scene, budgets: &[f64], steps: &[Made]) -> String {
         }
     }
     out.push('\n');
+    let missed: String = (0..scene.materials.len()).map(|number| misses(budgets, steps, number)).collect();
+    if !missed.is_empty() {
+        let _ = writeln!(out, "{missed}");
+    }
     out
+}
+
+/// Lines on the budgets that a material does not hold, and the direction of the largest error.
+fn misses(budgets: &[f64], steps: &[Made], number: usize) -> String {
+    let choices = budgets.iter().zip(steps).map(|(budget, made)| (budget, &made.choice.materials[number]));
+    let missed = choices.filter(|(_, choice)| !choice.holds());
+    let line = |(budget, choice): (&f64, &MaterialChoice)| {
+        let own = choice.candidate();
+        let place = own.error.at.map_or_else(String::new, |at| format!(": {at}"));
+        format!(
+            "- {} misses {budget} with {}, which is off by {:.1e}{place}.\n",
+            choice.name,
+            label(own),
+            own.error.max_rel
+        )
+    };
+    missed.map(line).collect()
 }
 
 /// The models in use and how many materials have each.

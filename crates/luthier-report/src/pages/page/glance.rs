@@ -36,7 +36,7 @@ fn judged(report: &Report) -> Compared {
 fn cycles(report: &Report, material: &MaterialReport, form: &str) -> Option<f64> {
     let Some(costs) = &report.costs else {
         let cost = material.shape_cost?;
-        return Some(f64::from(if form == "full" { cost.full } else { cost.baked }));
+        return (if form == "full" { cost.full } else { Some(cost.baked) }).map(f64::from);
     };
     let shaders = of_shaders(report, material, costs);
     let ships = shaders.iter().find(|s| s.row.model == material.model && s.row.form == form)?;
