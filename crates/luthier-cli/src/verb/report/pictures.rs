@@ -16,15 +16,17 @@ const ENVIRONMENT_SAMPLES: u32 = 16;
 /// Samples along each side of a pixel.
 const SAMPLES: u32 = 2;
 
-/// Renders every material with both shaders, compares them, and puts the figures into the report.
+/// Renders every material with both shaders, compares them, and puts the figures into the report. A bake without the form `full` has pictures of
+/// the form `baked` alone.
 pub(super) fn pictures(
     report: &mut Report,
     shaders: Option<&Shaders>,
     options: &ReportOptions,
 ) -> Outcome<Vec<Vec<Exhibit>>> {
     let shaders = shaders.filter(|_| options.picture_size > 0);
-    let scenes = shaders.and_then(|shaders| shaders.scene(Form::Full).zip(shaders.scene(Form::Baked)));
-    let Some((full, baked)) = scenes else { return Ok(Vec::new()) };
+    let Some(shaders) = shaders else { return Ok(Vec::new()) };
+    let Some(baked) = shaders.scene(Form::Baked) else { return Ok(Vec::new()) };
+    let full = shaders.scene(Form::Full);
     let settings = RenderSettings {
         size: options.picture_size,
         samples: SAMPLES,
@@ -37,7 +39,13 @@ pub(super) fn pictures(
     let mut out = Vec::new();
     for (number, material) in (0..).zip(&mut report.materials) {
         let render = |scene: &Scene| scene.render(&[number], &settings);
-        let (full, baked) = (render(full)?, render(baked)?);
+        let baked = render(baked)?;
+        bar.set(u64::from(number) + 1, count);
+        let Some(full) = full else {
+            out.push(vec![exhibit("baked", baked, tone)?]);
+            continue;
+        };
+        let full = render(full)?;
         let compared = compare_pictures(&baked, &full, |v| tone.value(v)).map_err(Failure::input)?;
         let [delta_e_mean, delta_e_max] = picture_color_difference(&baked, &full, |v| tone.value(v));
         let (apart, gain) = brightened_difference(&baked, &full, |v| tone.value(v));
@@ -57,7 +65,6 @@ pub(super) fn pictures(
             exhibit(&format!("difference × {gain}"), apart, ToneMapping::None)?,
             exhibit(&format!("FLIP, mean {:.4}", compared.flip_mean), compared.flip, ToneMapping::None)?,
         ]);
-        bar.set(u64::from(number) + 1, count);
     }
     Ok(out)
 }
