@@ -22,7 +22,7 @@ mega() { awk -v bytes="$1" 'BEGIN { printf "%.1f", bytes / 1e6 }'; }
   echo "# Many materials"
   echo
   echo "Made by \`scripts/many.sh\`: libraries of generated materials (\`crates/luthier-material/examples/library\`, seed 1) of one to four"
-  echo "layers, baked by \`luthier bake FOLDER\` with \`$(nproc)\` cores. Time is that of the whole command, and memory its largest resident set."
+  echo "layers, baked by \`luthier bake FOLDER --no-fit\` with \`$(nproc)\` cores. Time is that of the whole command, and memory its largest resident set."
   echo "The column tables has the KTX2 files of the package. Sizes are in MB of 10^6 bytes. [manifest.md](../manifest.md) states the limits."
   echo
   echo "| materials | layers | seconds | processor seconds | memory MB | tables | truth and pictures | material buffer | manifest | shaders |"
@@ -33,7 +33,7 @@ for count in "${sizes[@]}"; do
   rm -rf "$out/$count" && mkdir -p "$out/$count"
   cargo run --locked --quiet -p luthier-material --example library -- "$count" "$out/$count/materials"
   layers=$(cat "$out/$count/materials/"*.toml | grep -c '^type = "\(dielectric\|conductor\|diffuse\)"')
-  /usr/bin/time -f '%e %U %S %M' -o "$out/$count/time" "$luthier" bake "$out/$count/materials" --out "$out/$count/out" --quiet 2>/dev/null
+  /usr/bin/time -f '%e %U %S %M' -o "$out/$count/time" "$luthier" bake "$out/$count/materials" --out "$out/$count/out" --no-fit --quiet 2>/dev/null
   read -r elapsed user system kib <"$out/$count/time"
   bake=$out/$count/out
   printf '| %s | %s | %s | %s | %s | %s | %s | %s | %s | %s |\n' "$count" "$layers" "$elapsed" \

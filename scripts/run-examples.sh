@@ -45,7 +45,7 @@ example difference "$out/wgpu-car-paint.png" "$out/three.png" "$limit"
 # Among others the records of the material lie beyond the first row of the material texture, and its rows elsewhere in the tables.
 step "the same material in a library"
 cargo run --locked --quiet -p luthier-material --example library -- 60 "$out/library"
-luthier bake "$out/library" materials --out "$out/many" --target wgsl,glsl-es300 --form baked --quiet
+luthier bake "$out/library" materials --out "$out/many" --target wgsl,glsl-es300 --form baked --no-fit --quiet
 example luthier-example-wgpu "$out/many" "$(scene car-paint)" "$out/many-wgpu.png"
 node examples/browser.mjs examples/three "$out/many" "$(scene car-paint)" "$out/many-three.png"
 example difference "$out/many-wgpu.png" "$out/many-three.png" "$limit"
