@@ -28,18 +28,17 @@ pub struct SceneError {
     pub delta_e: Option<f64>,
     /// Standard error of the reference at the direction with the largest relative error, as a relative error.
     pub std_err_rel: f64,
-    /// The direction with the largest relative error; absent in manifests of older programs.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// The direction with the largest relative error, for the program that chose; manifests do not have it.
+    #[serde(skip)]
     pub at: Option<SceneDirection>,
 }
 
 /// Directions to eye and light in degrees, in tenths.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneDirection {
     /// Between normal and eye.
     pub eye_deg: f64,
     /// Between normal and light, and around the normal from eye to light; absent where light comes from everywhere.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub light_deg: Option<[f64; 2]>,
 }
 

@@ -3,9 +3,7 @@
 use luthier_bake::{BakeError, MemoryStore, Options};
 use luthier_export::{Bake, ExportError, Package, PackageError, sha256};
 use luthier_lut::{FormatSet, TexelFormat};
-use luthier_manifest::{
-    Budget, Functions, MaterialChoice, SceneBudget, SceneChoice, SceneError, ShadingModel, Target,
-};
+use luthier_manifest::{Budget, Functions, MaterialChoice, SceneBudget, SceneChoice, SceneError, ShadingModel, Target};
 use luthier_material::{Material, Scene};
 use luthier_report::{ReportError, Subject, TableTerms, Weights};
 use thiserror::Error;
@@ -108,6 +106,12 @@ impl<'a> Director<'a> {
             baked: None,
             full: None,
         }
+    }
+
+    /// Without models that simulate a stack and fit to it.
+    #[must_use]
+    pub fn without_fits(self) -> Self {
+        Self { costs: self.costs.without(ShadingModel::Lobes), ..self }
     }
 
     /// With these groups of functions in the shaders.

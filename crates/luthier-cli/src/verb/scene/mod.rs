@@ -36,6 +36,12 @@ pub(super) fn find(paths: &[PathBuf]) -> Outcome<Option<Vec<PathBuf>>> {
     }
 }
 
+fn director<'a>(options: &BakeOptions, scene: &'a Scene, materials: &'a [Material]) -> Director<'a> {
+    let director = Director::new(scene, materials, options.emission.targets());
+    let director = director.with_functions(options.emission.functions());
+    if options.shading.no_fit { director.without_fits() } else { director }
+}
+
 /// Bakes a scene, or prints what budgets would choose for some.
 pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
     let limits = options.limits.options();
@@ -44,16 +50,10 @@ pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
             "the form of a scene's shaders is chosen with its models: leave out --form"
         )));
     }
-    let targets = options.emission.targets();
     let shading = &options.shading;
-    if shading.model.is_some()
-        || shading.no_fit
-        || !shading.tables.is_empty()
-        || !limits.search
-        || !limits.budget.is_empty()
-    {
-        let text = "a scene has its limits in its [budget] and [target], and its models are chosen: leave out --model, --no-fit, \
-                    --tables, --no-search and limits on tables";
+    if shading.model.is_some() || !shading.tables.is_empty() || !limits.search || !limits.budget.is_empty() {
+        let text = "a scene has its limits in its [budget] and [target], and its models are chosen: leave out --model, --tables, \
+                    --no-search and limits on tables";
         return Err(Failure::Usage(anyhow::anyhow!(text)));
     }
     let pool = rayon::ThreadPoolBuilder::new()
@@ -68,7 +68,7 @@ pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
         return Err(Failure::Usage(anyhow::anyhow!(text)));
     };
     let (scene, materials) = read(path, options.quiet)?;
-    let mut director = Director::new(&scene, &materials, targets).with_functions(options.emission.functions());
+    let mut director = director(options, &scene, &materials);
     let made = pool.install(|| director.step(None, options.allow_miss)).map_err(failure)?;
     let encoded = made.package.encode(options.compression())?;
     whole(|| encoded.write(&options.out))?;
@@ -104,7 +104,7 @@ fn tighten(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
     let mut tightened = Vec::new();
     for path in scenes {
         let (scene, materials) = read(path, options.quiet)?;
-        let mut director = Director::new(&scene, &materials, options.emission.targets());
+        let mut director = director(options, &scene, &materials);
         let mut step = |&limit: &f64| director.step(Some(limit), options.allow_miss).map_err(failure);
         let steps: Vec<Made> = budgets.iter().map(&mut step).collect::<Outcome<_>>()?;
         tightened.push((scene, steps));
