@@ -6,7 +6,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{name} = {value}; {allowed}")]
 pub struct EnvironmentError {
-    /// What was given.
+    /// Name of the setting.
     pub name: &'static str,
     /// Its value.
     pub value: String,

@@ -18,7 +18,7 @@ fn luthier_environment_around(direction: vec3<f32>, width: f32) -> vec3<f32> {
     return textureSampleLevel(luthier_environment_map, luthier_environment_sampler, direction, level).rgb;
 }
 
-/// What a white Lambertian patch sends out: irradiance over pi.
+/// Irradiance over pi around a normal of the world: the radiance of a white Lambertian patch.
 fn luthier_environment_diffuse(normal: vec3<f32>) -> vec3<f32> {
     return textureSampleLevel(luthier_irradiance_map, luthier_environment_sampler, normal, 0.0).rgb;
 }
@@ -54,7 +54,7 @@ fn luthier_shown_stretch(up_z: f32, cos_theta_i: f32, cos_theta_d: f32, cos_thet
 
 /// Standard deviation of the blur of a direction over the widths of its lobe, of which it has a thirty-second part: with less the directions
 /// are seen one by one in small bright lights.
-const LUTHIER_TAP_BLUR: f32 = 0.1410;
+const LUTHIER_TAP_BLUR: f32 = 0.1880;
 
 /// A lobe with this middle and these widths, seen in a medium whose squared index less 1 is the excess.
 fn luthier_shown_lobe(prepared: LuthierPreparedLobes, excess: f32, middle: f32, width: vec2<f32>, tail: f32, turn: vec2<f32>) -> LuthierShownLobe {
