@@ -66,6 +66,7 @@ impl<'a> Levels<'a> {
 }
 
 fn write(texture: &Levels<'_>, scheme: Option<SupercompressionScheme>) -> Result<Vec<u8>, TextureError> {
+    level_bytes(texture.format, texture.width, texture.height)?;
     let count = texture.levels.len() as u32;
     let is_map = texture.faces == 1 || texture.faces == 6 && texture.width == texture.height;
     if !is_map || count == 0 || count > texture.width.max(texture.height).ilog2() + 1 {
