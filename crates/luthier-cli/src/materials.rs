@@ -55,6 +55,7 @@ pub(crate) fn shaded(mut materials: Vec<Material>, shading: &Shading, forms: &[F
 }
 
 /// The models that are asked for, or all; without a fit, all but `lobes`.
+#[cfg(any(feature = "cost", feature = "gpu"))]
 pub(crate) fn models(asked: &[ShadingModel], no_fit: bool) -> Vec<ShadingModel> {
     let all = || ShadingModel::ALL.into_iter().filter(|model| !no_fit || *model != ShadingModel::Lobes).collect();
     if asked.is_empty() { all() } else { asked.to_vec() }
