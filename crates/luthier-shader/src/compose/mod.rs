@@ -146,10 +146,13 @@ fn model(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec
         ShadingModel::GranierHeidrich => vec![module(include_str!("../wgsl/models/granier_heidrich.wgsl"))],
         ShadingModel::Phong => vec![module(include_str!("../wgsl/models/phong.wgsl"))],
         ShadingModel::Microfacet => vec![module(include_str!("../wgsl/models/microfacet.wgsl"))],
-        ShadingModel::Lobes => vec![
-            module(include_str!("../wgsl/models/lobes.wgsl")),
-            module(include_str!("../wgsl/models/lobes_environment.wgsl")),
-        ],
+        ShadingModel::Lobes => {
+            let mut modules = vec![module(include_str!("../wgsl/models/lobes.wgsl"))];
+            if features.has("environment") {
+                modules.push(module(include_str!("../wgsl/models/lobes_environment.wgsl")));
+            }
+            modules
+        }
         ShadingModel::Belcour | ShadingModel::Yamaguchi => statistics::modules(set, model, features),
     }
 }

@@ -52,7 +52,7 @@ fn entry_point(set: &MaterialSet<'_>, form: Form) -> String {
         let _ = writeln!(out, "    _ = luthier_lookup_{}({});", table.kind.name(), arguments.join(", "));
     }
     if set.shows_environment(form) {
-        out.push_str("    _ = luthier_environment(luthier_prepare_lobes(0u, vec3<f32>()), mat3x3<f32>(), 0.0);\n");
+        out.push_str("    _ = luthier_environment(luthier_prepare(0u, vec3<f32>()), mat3x3<f32>(), 0.0);\n");
     }
     out.push_str("}\n");
     out

@@ -1,4 +1,3 @@
-//? environment
 /// Level of `luthier_environment_map` that is blurred by a width in radians. Levels have widths 0, 8 / size, and then twice that of the one before, up
 /// to 1; between two of them the square of the width is linear, so that what is read has the width's second moment.
 fn luthier_environment_level(width: f32) -> f32 {
@@ -172,4 +171,3 @@ fn luthier_environment_lobes(prepared: LuthierPreparedLobes, frame: mat3x3<f32>,
     coat.is_coat = true;
     return total + max(rest, vec3<f32>(0.0)) * luthier_shown_mean(coat, prepared, frame);
 }
-//? end
