@@ -8,6 +8,7 @@ use crate::MaterialSet;
 use crate::compose::face::parts_function;
 use crate::compose::features::Features;
 use crate::compose::function;
+use crate::languages::text::rename;
 
 /// `luthier_eval_<model>` of a model, whose function `interface` adds an interface to a `LuthierPath`.
 pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, features: &Features) -> String {
@@ -165,6 +166,12 @@ struct Walk<'w> {
     first_part: usize,
 }
 
+/// A statement on `layer` and `next` with their numbers: values of one name in one function would lose it in languages that naga writes.
+pub(super) fn of_layer(statement: &str, i: usize) -> String {
+    let numbered = rename(statement, |word| matches!(word, "layer" | "next").then(|| format!("{word}_{i}")));
+    numbered.replace(&format!("$layer_{i}("), "$layer(")
+}
+
 fn walk(
     layers: &[&[luthier_manifest::LayerRecord]],
     model: ShadingModel,
@@ -251,7 +258,7 @@ fn walk(
             _ if i < least => "if path.open {".to_owned(),
             _ => format!("if path.open & (count > {i}u) {{"),
         });
-        lines.extend(step.iter().map(|line| format!("    {line}")));
+        lines.extend(step.iter().map(|line| format!("    {}", of_layer(line, walk.first_part + i))));
         lines.push("}".to_owned());
     }
     let indent = if features.has("patina") { "        " } else { "    " };

@@ -81,7 +81,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     if parts.iter().any(|part| part.contains("LUTHIER_PI")) {
         parts.insert(2, include_str!("../wgsl/pi.wgsl").to_owned());
     }
-    parts.retain(|part| !part.is_empty());
+    parts.retain(|part| !part.trim().is_empty());
     let wgsl = without_missing(&parts.join("\n"));
     Ok(match buffer {
         Buffer::Constant => wgsl.replace("    return material * LUTHIER_MATERIAL_WORDS;\n", "    return 0u;\n"),

@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use luthier_manifest::{LayerKind, LayerRecord, ShadingModel};
 
 use crate::MaterialSet;
+use crate::compose::chain::of_layer;
 use crate::compose::face::parts_function;
 use crate::compose::features::Features;
 use crate::compose::{function, text};
@@ -182,7 +183,7 @@ pub(crate) fn parts(set: &MaterialSet<'_>, model: ShadingModel) -> String {
             0 => "    {\n".to_owned(),
             _ => format!("    if eye.open & (count > {i}u) {{\n"),
         });
-        out.extend(step.iter().map(|line| format!("        {line}\n")));
+        out.extend(step.iter().map(|line| format!("        {}\n", of_layer(line, i))));
         out.push_str("    }\n");
     }
     out + "    return prepared;\n}\n" + &light + "    return sum;\n}\n"

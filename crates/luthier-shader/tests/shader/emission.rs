@@ -4,7 +4,7 @@ use crate::arithmetic::{directions, eval, full};
 use crate::machine::Machine;
 use crate::scenes::{clear, conductor, dielectric, diffuse, filmed, forms, material, sets, tables};
 use luthier_lut::{Mapping, RowBase, TableKind, TexelFormat};
-use luthier_manifest::{BUFFER_WORDS_MAX, LAYER_WORDS, LayerKind};
+use luthier_manifest::{BUFFER_WORDS_MAX, FunctionGroup, LAYER_WORDS, LayerKind};
 use luthier_shader::{
     Form, MaterialSet, ShaderError, TableFace, Target, bindings, complete, complete_spirv, emit, emit_constant,
     emit_spirv, validate,
@@ -140,10 +140,11 @@ fn what_a_set_lacks_is_not_in_its_text() {
 fn shipped_functions_have_no_loops_and_no_placeholders() {
     // The cells of glitter are looked for in a loop.
     for (_, materials) in sets().into_iter().filter(|(_, m)| m.iter().all(|m| m.constants.glitter.is_none())) {
-        let set = MaterialSet::new(&materials, tables());
-        for form in forms(&materials) {
+        let plain = MaterialSet::new(&materials, tables());
+        let whole = MaterialSet { functions: FunctionGroup::ALL.into_iter().collect(), ..plain.clone() };
+        for (set, form) in [plain, whole].iter().flat_map(|set| forms(&materials).map(move |form| (set, form))) {
             for target in Target::TEXT {
-                let text = emit(&set, form, target).unwrap();
+                let text = emit(set, form, target).unwrap();
                 for word in ["loop", "while", "for (", "$", "//?", "_group_", "_e1", "main(", "\n\n\n"] {
                     assert!(!text.contains(word), "`{word}` in {form} {target}:\n{text}");
                 }
