@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 use std::fmt::Write as _;
 use std::sync::Arc;
 
+use glam::DVec3;
 use luthier_environment::{Environment, Scenery};
 use luthier_export::{Package, lit, read};
 use luthier_gpu::{Gpu, RenderSettings, Scene, Shape};
@@ -61,8 +62,8 @@ pub(crate) fn run(options: &EnvironmentOptions) -> Outcome {
 /// A place on the ball: pixel, normal, direction to the eye.
 struct Point {
     pixel: [u32; 2],
-    normal: [f64; 3],
-    wo: [f64; 3],
+    normal: DVec3,
+    wo: DVec3,
 }
 
 /// The places under the middles of the pixels of a picture, as the renderer meets them.
@@ -72,24 +73,20 @@ fn points(size: u32) -> Vec<Point> {
     let mut points = Vec::new();
     for [x, y] in (0..size).flat_map(|y| (0..size).map(move |x| [x, y])) {
         let at = |i: u32| (2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0) * half;
-        let ray = unit([at(x), -at(y), -eye]);
-        let b = eye * ray[2];
+        let ray = DVec3::new(at(x), -at(y), -eye).normalize();
+        let b = eye * ray.z;
         let discriminant = b * b - (eye * eye - 1.0);
         // Away from the silhouette, where f32 and f64 may disagree on a hit.
         if discriminant > 1e-3 {
             let t = -b - discriminant.sqrt();
-            points.push(Point {
-                pixel: [x, y],
-                normal: [t * ray[0], t * ray[1], eye + t * ray[2]],
-                wo: ray.map(|v| -v),
-            });
+            points.push(Point { pixel: [x, y], normal: t * ray + eye * DVec3::Z, wo: -ray });
         }
     }
     points
 }
 
 /// A texel: its direction, and radiance times solid angle in each sky.
-type Texel = ([f64; 3], Vec<[f64; 3]>);
+type Texel = (DVec3, Vec<[f64; 3]>);
 
 fn texels(skies: &[Arc<Environment>]) -> Vec<Texel> {
     let map = skies[0].map();
@@ -104,7 +101,7 @@ fn texels(skies: &[Arc<Environment>]) -> Vec<Texel> {
             let texel = sky.map().texel(x, y);
             [0, 1, 2].map(|c| solid_angle * f64::from(texel[c]))
         };
-        let direction = [sin_theta * sin_phi, cos_theta, -sin_theta * cos_phi];
+        let direction = DVec3::new(sin_theta * sin_phi, cos_theta, -sin_theta * cos_phi);
         texels.push((direction, skies.iter().map(light).collect()));
     }
     texels
@@ -157,10 +154,10 @@ impl Pictures {
 /// The sum over the texels above the horizon of a place, in each sky.
 fn sums(scene: &Scene, point: &Point, texels: &[Texel], skies: usize) -> Outcome<Vec<[f64; 3]>> {
     let n = point.normal;
-    let t = unit(if n[1].abs() < 0.9 { cross([0.0, 1.0, 0.0], n) } else { cross([1.0, 0.0, 0.0], n) });
-    let local = |d: [f64; 3]| [dot(d, t), dot(d, cross(n, t)), dot(d, n)].map(|v| v as f32);
+    let t = if n.y.abs() < 0.9 { DVec3::Y } else { DVec3::X }.cross(n).normalize();
+    let local = |d: DVec3| [d.dot(t), d.dot(n.cross(t)), d.dot(n)].map(|v| v as f32);
     let wo = local(point.wo);
-    let above: Vec<&Texel> = texels.iter().filter(|(direction, _)| dot(*direction, n) > 0.0).collect();
+    let above: Vec<&Texel> = texels.iter().filter(|(direction, _)| direction.dot(n) > 0.0).collect();
     let pairs: Vec<([f32; 3], [f32; 3])> = above.iter().map(|(direction, _)| (local(*direction), wo)).collect();
     let mut sums = vec![[0.0; 3]; skies];
     for ((_, light), value) in above.iter().zip(scene.evaluate(0, &pairs)?) {
@@ -218,15 +215,3 @@ picture of that model is off in all. `alpha` is the slope parameter of the first
 that the look-up takes. Sums resolve no lobes narrower than a texel of the map, so that smooth materials are not here.
 
 ";
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn unit(v: [f64; 3]) -> [f64; 3] {
-    v.map(|x| x / dot(v, v).sqrt())
-}
