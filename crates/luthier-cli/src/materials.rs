@@ -1,9 +1,10 @@
 //! Materials that a command works on.
 
 use luthier_export::{Source, of_model, refuse};
-use luthier_manifest::{Form, ShadingModel};
+use luthier_manifest::{Form, FunctionGroup, ShadingModel};
 use luthier_material::{Diagnostic, Material, Severity};
-use luthier_terminal::{Outcome, valid};
+use luthier_optics::stack::{Base, Layer};
+use luthier_terminal::{Failure, Outcome, valid};
 
 use crate::cli::Shading;
 
@@ -52,6 +53,23 @@ pub(crate) fn shaded(mut materials: Vec<Material>, shading: &Shading, forms: &[F
         material.bake.tables.extend(&shading.tables);
     }
     materials
+}
+
+/// Refuses functions of the environment where no shader has them.
+pub(crate) fn refuse_environment(functions: &[FunctionGroup], is_shown: bool) -> Outcome {
+    if is_shown || !functions.contains(&FunctionGroup::Environment) {
+        return Ok(());
+    }
+    Err(Failure::Usage(anyhow::anyhow!(
+        "`--functions environment` is for interfaces of the model `lobes` in the form `baked`, and there is none: leave it out, or write \
+         `--model lobes`"
+    )))
+}
+
+/// Whether the form `baked` of a material shows the environment.
+pub(crate) fn shows_environment(material: &Material) -> bool {
+    let is_interface = |layer: &Layer| !matches!(layer.base, Base::Diffuse(_));
+    material.model() == ShadingModel::Lobes && material.stack.layers.iter().any(is_interface)
 }
 
 /// The models that are asked for, or all; without a fit, all but `lobes`.

@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 
 use crate::cli::{BakeOptions, Emission};
 use crate::interrupt::whole;
-use crate::materials::shaded;
+use crate::materials::{refuse_environment, shaded, shows_environment};
 use crate::misses;
 use crate::progress::BakeProgress;
 use crate::verb::check::diagnostics;
@@ -35,6 +35,8 @@ pub(crate) fn run(options: &BakeOptions) -> Outcome {
     refuse(&mut sources, |material| options.shading.doubts(material, &forms));
     let mut told: Vec<Diagnostic> = sources.iter().flat_map(Source::diagnostics).cloned().collect();
     let materials = shaded(valid(sources, options.quiet)?, &options.shading, &forms);
+    let is_shown = materials.iter().any(shows_environment) && forms != [Form::Full];
+    refuse_environment(&options.emission.functions, is_shown)?;
     let limits = options.limits.options();
     if forms == [Form::Full] && !limits.budget.is_empty() {
         return Err(Failure::Usage(anyhow::anyhow!(

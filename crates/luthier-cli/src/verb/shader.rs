@@ -2,15 +2,18 @@
 
 use luthier_bake::Options;
 use luthier_export::{outline, read};
+use luthier_manifest::Form;
 use luthier_shader::{MaterialSet, Target, complete, complete_spirv, emit, emit_constant, emit_spirv};
 use luthier_terminal::{Failure, Outcome, files, print_bytes};
 
 use crate::cli::ShaderOptions;
-use crate::materials::bakeable;
+use crate::materials::{bakeable, refuse_environment, shows_environment};
 
 /// Prints or writes the shader of some materials, without baking them.
 pub(crate) fn run(options: &ShaderOptions) -> Outcome {
     let materials = bakeable(read(&options.sources.paths)?, &options.shading, &[options.form], false)?;
+    let is_shown = materials.iter().any(shows_environment) && options.form == Form::Baked;
+    refuse_environment(&options.functions, is_shown)?;
     let mut manifest = outline(&materials, &Options::default())?;
     manifest.functions = options.functions.iter().copied().collect();
     let set = MaterialSet::from_manifest(&manifest);

@@ -88,7 +88,8 @@ fn in_a_white_furnace_lobes_show_their_albedo() {
     check(&image, 2e-3, |_, _| [0.8 * 0.95; 3]);
 }
 
-/// Without a first interface, whose energy is given by hand. One sample of a pixel, 32 directions of a lobe.
+/// Without a first interface, whose energy is given by hand. One sample of a pixel, 32 directions of a lobe: .0363 of the mean was
+/// measured.
 #[test]
 fn lobes_show_the_environment_that_a_brute_force_finds() {
     let Some(scene) = scene(0.0, 0.0) else { return };

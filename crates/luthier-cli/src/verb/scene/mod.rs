@@ -5,7 +5,7 @@ mod page;
 use std::path::{Component, Path, PathBuf};
 
 use luthier_export::{MANIFEST, Source, find as find_files, input, label, of_domain, read_one, refuse};
-use luthier_manifest::{MaterialChoice, SceneChoice};
+use luthier_manifest::{MaterialChoice, SceneChoice, ShadingModel};
 use luthier_material::{Diagnostic, Material, Scene, is_scene, parse_scene};
 use luthier_scene::{Director, Made, SceneFailure, label as candidate_label};
 use luthier_terminal::{Broken, Failure, Outcome, bytes, files, print, print_diagnostics, valid};
@@ -13,6 +13,7 @@ use serde_json::json;
 
 use crate::cli::BakeOptions;
 use crate::interrupt::whole;
+use crate::materials::refuse_environment;
 use crate::misses;
 use crate::verb::check::diagnostics;
 
@@ -70,6 +71,8 @@ pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
     let (scene, materials) = read(path, options.quiet)?;
     let mut director = director(options, &scene, &materials);
     let made = pool.install(|| director.step(None, options.allow_miss)).map_err(failure)?;
+    let is_shown = made.package.manifest.materials.iter().any(|m| m.model == ShadingModel::Lobes);
+    refuse_environment(&options.emission.functions, is_shown)?;
     let encoded = made.package.encode(options.compression())?;
     whole(|| encoded.write(&options.out))?;
     let missed = misses::name(&made.package.manifest, options.quiet)?;

@@ -71,6 +71,24 @@ fn functions_are_asked_for() {
     assert!(refusal.contains("possible values: eval, light, sample, albedo"), "{refusal}");
 }
 
+/// What no shader has is refused, not left out: the environment of other models, of a base alone, of the form `full`.
+#[test]
+fn an_environment_that_nothing_shows_is_refused() {
+    let workshop = sets();
+    for arguments in [
+        &["shader", "gold", "--model", "elek"][..],
+        &["shader", "matte", "--model", "lobes"],
+        &["shader", "gold", "--form", "full"],
+        &["bake", "gold", "-q", "--no-fit"],
+    ] {
+        let refusal = workshop.run(&[arguments, &["--functions", "environment"]].concat()).exits(2).stderr;
+        assert!(refusal.contains("`--model lobes`"), "{arguments:?}: {refusal}");
+    }
+    assert!(!workshop.path("out").exists());
+    let text = workshop.run(&["shader", "gold", "--model", "lobes", "--functions", "environment"]).exits(0).stdout;
+    assert!(text.contains("fn luthier_environment("));
+}
+
 /// A set mentions the tables that it needs, and no other.
 #[test]
 fn tables_that_are_not_needed_are_not_mentioned() {
