@@ -355,9 +355,10 @@ fn baked_materials(materials: &[Material], records: Vec<PlannedLayers>, results:
 fn layouts(plan: &Plan) -> Result<Vec<(TableKind, AtlasLayout, TexelFormat)>, BakeError> {
     let layout = |(kind, tiles): (TableKind, &TileList)| {
         let Shape { x, y, base, format } = plan.settings.shape(kind)?.clone();
-        let (apron, tiles) = (apron(std::iter::once(&x).chain(&y)), tiles.tiles.len() as u32);
-        let layout = AtlasLayout { x, y, apron, columns: 1, tiles, base };
-        Some(match limits::columns(&layout) {
+        let (apron, count) = (apron(std::iter::once(&x).chain(&y)), tiles.tiles.len() as u32);
+        let layout = AtlasLayout { x, y, apron, columns: 1, tiles: count, base };
+        let columns = if tiles.has_runs { limits::one_column(&layout) } else { limits::columns(&layout) };
+        Some(match columns {
             Some(columns) => Ok((kind, AtlasLayout { columns, ..layout }, format)),
             None => Err(limits::too_many_tiles(kind, &layout)),
         })

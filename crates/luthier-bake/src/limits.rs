@@ -29,6 +29,12 @@ pub(crate) fn columns(layout: &AtlasLayout) -> Option<u32> {
     })
 }
 
+/// One, if a texture holds all tiles of a layout one below the other.
+pub(crate) fn one_column(layout: &AtlasLayout) -> Option<u32> {
+    let [across, down] = grid(layout.tile_size(), SIDE_MAX);
+    (across > 0 && layout.tiles <= down).then_some(1)
+}
+
 /// The refusal of tiles that no texture holds.
 pub(crate) fn too_many_tiles(kind: TableKind, layout: &AtlasLayout) -> BakeError {
     let tile = layout.tile_size();
@@ -70,6 +76,9 @@ mod tests {
             ([1, 8193], 1, None),
         ] {
             assert_eq!(columns(&layout(tile, tiles)), expected, "{tiles} of {tile:?}");
+        }
+        for (tile, tiles, expected) in [([128, 1], 8192, Some(1)), ([128, 1], 8193, None), ([8193, 1], 1, None)] {
+            assert_eq!(one_column(&layout(tile, tiles)), expected, "{tiles} of {tile:?}");
         }
     }
 

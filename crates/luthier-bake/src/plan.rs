@@ -20,6 +20,8 @@ use crate::{BakeError, limits};
 pub(crate) struct TileList {
     pub(crate) tiles: Vec<(String, Key)>,
     numbers: BTreeMap<Key, u32>,
+    /// Whether look-ups mix tiles that follow each other, which are then one below the other.
+    pub(crate) has_runs: bool,
 }
 
 impl TileList {
@@ -125,7 +127,15 @@ impl Plan {
                 let key = self.graph.add(job);
                 let own = || kinds::of(kind).name(layer).map(str::to_owned);
                 let name = || own().unwrap_or_else(|| format!("{}/{label}{i}", material.name));
-                records[i].tiles[kind] = Some(self.tiles[kind as usize].tile(key, name));
+                let followers = kinds::of(kind).followers(&site);
+                let tiles = &mut self.tiles[kind as usize];
+                records[i].tiles[kind] = Some(tiles.tile(key, name));
+                // The jobs of a run are those of no other material, or all of another's: their tiles follow each other.
+                tiles.has_runs |= !followers.is_empty();
+                for (node, job) in (1..).zip(followers) {
+                    let key = self.graph.add(job);
+                    tiles.tile(key, || format!("{}/{label}{i}-{node}", material.name));
+                }
             }
         }
         Ok(records)

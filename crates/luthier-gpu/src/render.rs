@@ -245,12 +245,16 @@ impl Scene {
              fn shading_film(tile: f32, cos_theta: f32, fraction: f32) -> vec3<f32> {{\n    return {film};\n}}\n"
         );
         let shown = if self.bindings.has_surroundings() {
-            "luthier_environment_lobes(luthier_prepare_lobes(material, vec3<f32>(wo.xy, max(wo.z, 1e-4))), frame, turn)"
+            let place = if self.has("struct LuthierPlace") { "surface, " } else { "" };
+            format!(
+                "luthier_environment_lobes(luthier_prepare_lobes({place}material, vec3<f32>(wo.xy, max(wo.z, 1e-4))), frame, turn)"
+            )
         } else {
-            "vec3<f32>(0.0)"
+            "vec3<f32>(0.0)".to_owned()
         };
         let lobes = format!(
-            "fn lobes_environment(material: u32, frame: mat3x3<f32>, wo: vec3<f32>, turn: f32) -> vec3<f32> {{\n    return {shown};\n}}\n"
+            "fn lobes_environment(\n    material: u32, surface: ShadingSurface, frame: mat3x3<f32>, wo: vec3<f32>, turn: f32,\n\
+             ) -> vec3<f32> {{\n    return {shown};\n}}\n"
         );
         [
             include_str!("wgsl/shape.wgsl"),

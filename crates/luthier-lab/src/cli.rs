@@ -35,6 +35,8 @@ pub(crate) enum Verb {
     Judge(JudgeOptions),
     /// Fit lobes to simulated stacks, shipped ones and random ones, and compare them with the papers' models: a page in Markdown
     Lobes(LobesOptions),
+    /// Fit lobes to stacks whose roughness or thickness varies, and compare them between their nodes with the simulation: a page in Markdown
+    Varying(VaryingOptions),
     /// Compare the environment that pictures show with sums over all directions: a page in Markdown
     Environment(EnvironmentOptions),
     /// Measure the tables that searches find against fixed ones: a page in Markdown
@@ -180,6 +182,19 @@ pub(crate) struct LobesOptions {
     /// Rows over the view
     #[arg(long, value_name = "N", default_value_t = 19, value_parser = clap::value_parser!(u32).range(4..=64))]
     pub(crate) rows: u32,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  luthier-lab varying --random 8 -o docs/pages/varying.md")]
+pub(crate) struct VaryingOptions {
+    /// Random stacks: those of `lobes` with two layers or more
+    #[arg(long, value_name = "N", default_value_t = 8)]
+    pub(crate) random: u32,
+    /// Paths of the judge for each wavelength and direction
+    #[arg(long, value_name = "N", default_value_t = LOBES_SAMPLES)]
+    pub(crate) samples: NonZeroU32,
     #[command(flatten)]
     pub(crate) destination: Destination,
 }

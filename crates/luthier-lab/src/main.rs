@@ -10,6 +10,7 @@ mod papers;
 mod parity;
 mod shapes;
 mod stability;
+mod varying;
 
 use std::process::ExitCode;
 
@@ -25,6 +26,7 @@ fn main() -> ExitCode {
         Verb::Parity(options) => parity::run(options),
         Verb::Stability(options) => stability::run(options),
         Verb::Judge(options) => judge::run(options),
+        Verb::Varying(options) => varying::run(options),
         Verb::Environment(options) => environment::run(options),
         Verb::Lobes(options) => lobes::run(options),
         Verb::Budgets(options) => budgets::run(options),

@@ -46,9 +46,44 @@ pub struct LobesRecord {
     pub critical_width: f64,
     /// Share of the cosine of the view in the axis of the rows; the rest is the cosine inside.
     pub critical_plain_share: f64,
+    /// Tiles over a factor that a texture has, where rows are over one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub varying: Option<VaryingRecord>,
+}
+
+/// Tiles of lobes one after the other, over a factor that a texture has, at equal distances of its root. The first is that of 1. The last is
+/// that of 0 on the slab, and on slope parameters one step before it. Rows of two are mixed linearly in the root.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct VaryingRecord {
+    /// Factor of the texture.
+    pub factor: VaryingFactor,
+    /// Number of the tiles.
+    pub tiles: u32,
+    /// The least factor on slopes: rows have theirs divided by it.
+    pub least_spread: f64,
+}
+
+/// A member of `LuthierPlace` that rows of lobes are over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum VaryingFactor {
+    /// Factor on the slope parameters of all interfaces; rows have the slopes of lobes divided by it.
+    AlphaFactor,
+    /// Factor on the thickness of the first slab.
+    SlabFactor,
 }
 
 impl LobesRecord {
+    /// Tiles beyond the first over the factor on slope parameters and over that on the first slab, and the least factor on slopes.
+    fn varying(&self) -> [f64; 3] {
+        let Some(VaryingRecord { factor, tiles, least_spread }) = self.varying else { return [0.0, 0.0, SPREAD_MIN] };
+        let beyond = f64::from(tiles) - 1.0;
+        match factor {
+            VaryingFactor::AlphaFactor => [beyond, 0.0, least_spread],
+            VaryingFactor::SlabFactor => [0.0, beyond, SPREAD_MIN],
+        }
+    }
+
     /// Numbers of the cosine inside: k, `4 w^2`, and factor and offset for the root to be 0 at the horizon and 1 at the normal.
     fn inside(&self) -> [f64; 4] {
         let four_width_sq = 4.0 * self.critical_width * self.critical_width;
@@ -57,6 +92,9 @@ impl LobesRecord {
         [self.critical_cot_sq, four_width_sq, 1.0 / (normal - horizon), (0.0 - horizon) / (normal - horizon)]
     }
 }
+
+/// The least factor on slopes where rows are not over one.
+const SPREAD_MIN: f64 = 1e-3;
 
 /// Flakes, one per cell of a grid or as a normal map has them (Elek 2010, section 4.1).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -113,7 +151,7 @@ impl MaterialConstants {
     ///
     /// | header word | x, y, z, w |
     /// |---|---|
-    /// | 1 | Phong's diffuse coefficient RGB, exponent; of lobes 0, 0, 0, share of the cosine of the view in the axis of the rows |
+    /// | 1 | Phong's diffuse coefficient RGB, exponent; of lobes tiles beyond the first over `alpha_factor`, those over `slab_factor`, least factor on slopes, share of the cosine of the view in the axis of the rows |
     /// | 2 | Phong's specular coefficient RGB; of lobes k, 4 w^2, and factor and offset of the root that is the cosine inside |
     /// | 3 | internal reflectance RGB, upward loss; of lobes the squared index less 1, a, b, and 1 over pi and the integral of S |
     /// | 4 | flakes: low and high 16 bits of the seed, cells, tiling; all 0 without flakes |
@@ -131,7 +169,7 @@ impl MaterialConstants {
         words[2] = with(self.internal_reflectance, self.upward_loss);
         if let Some(lobes) = self.lobes {
             let LobesRecord { index, falloff: [a, b], integral, .. } = lobes;
-            words[0] = with([0.0; 3], lobes.critical_plain_share);
+            words[0] = with(lobes.varying(), lobes.critical_plain_share);
             words[1] = lobes.inside().map(|x| x as f32);
             words[2] = with([(index - 1.0) * (index + 1.0), a, b], FRAC_1_PI / integral);
         }
@@ -206,13 +244,20 @@ mod tests {
             critical_cot_sq: 3.0,
             critical_width: 2.0,
             critical_plain_share: 0.25,
+            varying: None,
         };
         let words = |lobes| MaterialConstants { lobes: Some(lobes), ..MaterialConstants::default() }.words();
         // Roots: of (-3 + sqrt(9 + 16)) / 2 = 1, and of (1 + sqrt(17)) / 2.
         let range = f64::sqrt(0.5 * (1.0 + f64::sqrt(17.0))) - 1.0;
         let inside = [3.0, 16.0, (1.0 / range) as f32, (-1.0 / range) as f32];
-        assert_eq!(words(lobes)[..3], [[0.0, 0.0, 0.0, 0.25], inside, [0.5625, 0.5, 0.75, 1.0]]);
+        assert_eq!(words(lobes)[..3], [[0.0, 0.0, 1e-3, 0.25], inside, [0.5625, 0.5, 0.75, 1.0]]);
         let without = LobesRecord { critical_cot_sq: 0.0, critical_width: 0.0, ..lobes };
         assert_eq!(words(without)[1], [0.0, 0.0, 1.0, 0.0]);
+        let over = |factor| {
+            let varying = Some(VaryingRecord { factor, tiles: 9, least_spread: 0.5 });
+            words(LobesRecord { varying, ..lobes })[0]
+        };
+        assert_eq!(over(VaryingFactor::AlphaFactor), [8.0, 0.0, 0.5, 0.25]);
+        assert_eq!(over(VaryingFactor::SlabFactor), [0.0, 8.0, 1e-3, 0.25]);
     }
 }

@@ -92,8 +92,7 @@ impl ShadingModel {
         let is_chain = matches!(self, Self::Elek | Self::WeidlichWilkie);
         let is_statistical = self.is_statistical();
         match feature {
-            Feature::NormalMap | Feature::Glitter | Feature::Films => true,
-            Feature::RoughnessMap => self != Self::Lobes,
+            Feature::NormalMap | Feature::RoughnessMap | Feature::Glitter | Feature::Films => true,
             Feature::InnerInterface | Feature::Absorption => {
                 is_chain || is_statistical || matches!(self, Self::Phong | Self::Lobes)
             }
@@ -111,7 +110,7 @@ impl ShadingModel {
             Feature::DiffuseSlopes => is_chain || is_statistical || matches!(self, Self::Microfacet | Self::Lobes),
             Feature::Anisotropy => matches!(self, Self::WeidlichWilkie | Self::Yamaguchi | Self::Microfacet),
             Feature::Beckmann => is_chain || matches!(self, Self::Microfacet | Self::Lobes),
-            Feature::ThicknessMap => is_chain || is_statistical,
+            Feature::ThicknessMap => is_chain || is_statistical || self == Self::Lobes,
             Feature::Flakes | Feature::Patina => is_chain,
         }
     }
@@ -141,7 +140,7 @@ mod tests {
             (ShadingModel::GranierHeidrich, ".#..#.#...##...#"),
             (ShadingModel::Phong, "###.##....##...#"),
             (ShadingModel::Microfacet, "....#b######...#"),
-            (ShadingModel::Lobes, "######.#.##....#"),
+            (ShadingModel::Lobes, "######.#.####..#"),
         ] {
             assert_eq!(shown(model), expected, "{model}");
         }

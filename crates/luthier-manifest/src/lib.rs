@@ -23,7 +23,9 @@ mod target;
 mod tiles;
 
 pub use choice::{MaterialChoice, SceneBudget, SceneCandidate, SceneChoice, SceneDirection, SceneError, Verdict};
-pub use constants::{FlakesRecord, GlitterRecord, LobesRecord, MaterialConstants, PatinaRecord};
+pub use constants::{
+    FlakesRecord, GlitterRecord, LobesRecord, MaterialConstants, PatinaRecord, VaryingFactor, VaryingRecord,
+};
 pub use error::ManifestError;
 pub use feature::Feature;
 pub use form::Form;

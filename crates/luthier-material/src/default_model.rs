@@ -71,6 +71,8 @@ mod tests {
             ("alpha = 0.01\n", "alpha = 0.2\n", "alpha = 0.2\ndistribution = \"beckmann\"\n");
         let brushed = "alpha_x = 0.1\nalpha_y = 0.3\n";
         let scratched = "alpha = 0.1\n[layer.maps]\nroughness = \"r.png\"\n";
+        let stained = "alpha = 0.1\n[layer.maps]\nthickness = \"t.png\"\n";
+        let worn = "alpha = 0.1\n[layer.maps]\nroughness = \"r.png\"\nthickness = \"t.png\"\n";
         let bumpy = "alpha = 0.1\n[layer.maps]\nnormal = \"n.png\"\n";
         for (body, model, without, cause) in [
             (GOLD.to_owned() + rough, "elek", "elek", None),
@@ -80,8 +82,10 @@ mod tests {
             (COAT.to_owned() + smooth + WHITE, "lobes", "elek", None),
             (COAT.to_owned() + beckmann + GOLD + rough, "lobes", "elek", None),
             (COAT.to_owned() + bumpy + GOLD + rough, "lobes", "elek", None),
-            (COAT.to_owned() + scratched + WHITE, "belcour", "elek", Some("layer.0.maps.roughness")),
-            (COAT.to_owned() + scratched + GOLD + beckmann, "belcour", "elek", Some("layer.0.maps.roughness")),
+            (COAT.to_owned() + scratched + WHITE, "lobes", "elek", None),
+            (COAT.to_owned() + stained + WHITE, "lobes", "elek", None),
+            (COAT.to_owned() + worn + WHITE, "belcour", "elek", Some("layer.0.maps.thickness")),
+            (COAT.to_owned() + worn + GOLD + beckmann, "belcour", "elek", Some("layer.0.maps.thickness")),
             (COAT.to_owned() + smooth + GOLD + brushed, "yamaguchi", "weidlich-wilkie", Some("layer.1.alpha_x")),
             (VARYING.to_owned() + COAT + rough + WHITE, "elek", "elek", Some("layer.0.film.0.thickness_nm")),
             (COAT.to_owned() + smooth + GOLD + rough + FLAKES, "elek", "elek", Some("effects.flakes")),

@@ -84,5 +84,10 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
             tell(feature, key.to_owned());
         }
     }
+    // Rows are over one factor.
+    if model == ShadingModel::Lobes && maps.is_some_and(|maps| maps.roughness.is_some() && maps.thickness.is_some()) {
+        let feature = Feature::ThicknessMap;
+        found.push(LeftOut { feature, key: "layer.0.maps.thickness".to_owned(), forms: Form::ALL.to_vec() });
+    }
     found
 }

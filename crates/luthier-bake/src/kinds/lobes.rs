@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use luthier_layers::lobes::{Critical, EXCESS, FitSettings, LOBES, Lobes, Row, shown};
+use luthier_layers::lobes::{Critical, EXCESS, FitSettings, LOBES, Row, Varied, Varying, shown};
 use luthier_lut::{
     Axis, Comparison, ErrorStats, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan,
 };
-use luthier_manifest::LobesRecord;
+use luthier_manifest::{LobesRecord, VaryingFactor, VaryingRecord};
 use luthier_material::Material;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
@@ -37,9 +37,23 @@ impl Kind for Table {
     fn job(&self, site: &Site<'_>) -> Result<Option<Arc<dyn Job>>, BakeError> {
         let Site { material, layer, shape, .. } = site;
         let is_first = material.stack.layers.first().is_some_and(|first| std::ptr::eq(first, *layer));
-        let job = || LobesJob { fit: fit(material), axes: shape.axes(), format: shape.format };
+        let job = || LobesJob { fit: fit(material), node: 0, axes: shape.axes(), format: shape.format };
         Ok(is_first.then(|| Arc::new(job()) as Arc<dyn Job>))
     }
+
+    /// A tile for every other node over what a texture scales.
+    fn followers(&self, site: &Site<'_>) -> Vec<Arc<dyn Job>> {
+        let fit = fit(site.material);
+        let job = |node| LobesJob { fit: fit.clone(), node, axes: site.shape.axes(), format: site.shape.format };
+        (1..Varied::nodes_of(fit.varying)).map(|node| Arc::new(job(node)) as Arc<dyn Job>).collect()
+    }
+}
+
+/// The part of a material that a map scales and rows are over: they are over one factor alone.
+fn varying(material: &Material) -> Option<Varying> {
+    let maps = &material.layers.first()?.maps;
+    let thickness = maps.thickness.as_ref().map(|_| Varying::Slab);
+    maps.roughness.as_ref().map(|_| Varying::Alpha).or(thickness)
 }
 
 /// The shape of tiles for so many lobes.
@@ -60,13 +74,13 @@ pub(crate) fn fits(graph: &Graph) -> Option<Graph> {
 
 /// The most lobes that any fit of a graph has found.
 pub(crate) fn most_lobes(graph: &Graph, results: &Results) -> usize {
-    let lobes = |job: &FitJob| Some(results.get::<Lobes>(job.key())?.rows[0].lobes.len());
+    let lobes = |job: &FitJob| Some(results.get::<Varied>(job.key())?.nodes[0].rows[0].lobes.len());
     graph.of::<FitJob>().filter_map(lobes).max().unwrap_or(0)
 }
 
 /// The fit of a material.
 fn fit(material: &Material) -> Arc<FitJob> {
-    Arc::new(FitJob { stack: shown(&material.stack), color: color(material) })
+    Arc::new(FitJob { stack: shown(&material.stack), color: color(material), varying: varying(material) })
 }
 
 /// Numbers that stand in where nothing was fitted.
@@ -77,12 +91,22 @@ const UNFITTED: LobesRecord = LobesRecord {
     critical_cot_sq: 0.0,
     critical_width: 0.0,
     critical_plain_share: 0.0,
+    varying: None,
 };
 
 /// The numbers of a material's lobes that hold at all views; [`UNFITTED`] in an outline without fits.
 pub(crate) fn record(material: &Material, results: &Results) -> LobesRecord {
-    let Some(lobes) = results.get::<Lobes>(fit(material).key()) else { return UNFITTED };
+    let Some(varied) = results.get::<Varied>(fit(material).key()) else { return UNFITTED };
+    let lobes = &varied.nodes[0];
     let (wide, Critical { cot_sq, width, plain_share }) = (lobes.frame.wide, lobes.axis.critical());
+    let over = |varying| VaryingRecord {
+        factor: match varying {
+            Varying::Alpha => VaryingFactor::AlphaFactor,
+            Varying::Slab => VaryingFactor::SlabFactor,
+        },
+        tiles: varied.nodes.len() as u32,
+        least_spread: varied.least_spread(),
+    };
     LobesRecord {
         index: lobes.frame.index,
         falloff: wide.falloff(),
@@ -90,14 +114,16 @@ pub(crate) fn record(material: &Material, results: &Results) -> LobesRecord {
         critical_cot_sq: cot_sq,
         critical_width: width,
         critical_plain_share: plain_share,
+        varying: varied.varying().map(over),
     }
 }
 
-/// The simulation of a stack, and the fit to it: [`Lobes`].
+/// The simulation of a stack, and the fit to it: [`Varied`].
 #[derive(Debug)]
 struct FitJob {
     stack: Stack,
     color: Color,
+    varying: Option<Varying>,
 }
 
 impl Job for FitJob {
@@ -115,17 +141,28 @@ impl Job for FitJob {
             "rows": rows,
             "paths": paths,
             "seed": seed,
+            "varying": self.varying.map(factor_name),
         })
     }
 
     fn run(&self, _: &Inputs<'_>) -> Output {
-        Box::new(Lobes::of(&self.stack, &self.color))
+        Box::new(Varied::of(&self.stack, &self.color, self.varying))
+    }
+}
+
+/// Words on what varies.
+fn factor_name(varying: Varying) -> &'static str {
+    match varying {
+        Varying::Alpha => "slope parameters",
+        Varying::Slab => "thickness of the first slab",
     }
 }
 
 #[derive(Debug)]
 struct LobesJob {
     fit: Arc<FitJob>,
+    /// Number over what varies.
+    node: usize,
     /// Cosine of the view, and part.
     axes: [Axis; 2],
     format: TexelFormat,
@@ -139,6 +176,7 @@ impl Job for LobesJob {
     fn inputs(&self) -> Value {
         json!({
             "fit": self.fit.key().to_string(),
+            "node": self.node,
             "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
             "format": self.format.name(),
         })
@@ -149,14 +187,15 @@ impl Job for LobesJob {
     }
 
     fn run(&self, inputs: &Inputs<'_>) -> Output {
-        let lobes: &Lobes = inputs.part(self.fit.as_ref());
+        let varied: &Varied = inputs.part(self.fit.as_ref());
+        let lobes = &varied.nodes[self.node];
         let [x, y] = &self.axes;
         let most = (y.size as usize - Row::parts(0)) / (Row::parts(1) - Row::parts(0));
         // Parts are side by side; the first and the last node of each stand there twice.
         let mut truth = Image::zeros((x.size + 2) * y.size, 1, 4);
         for i in 0..x.size + 2 {
-            let row = &lobes.rows[(i.max(1) - 1).min(x.size - 1) as usize];
-            for (j, part) in (0..y.size).zip(row.clone().filled(most).to_parts()) {
+            let row = varied.stored(self.node, (i.max(1) - 1).min(x.size - 1) as usize);
+            for (j, part) in (0..y.size).zip(row.filled(most).to_parts()) {
                 truth.texel_mut(j * (x.size + 2) + i, 0).copy_from_slice(&part.map(|value| value as f32));
             }
         }
@@ -182,8 +221,11 @@ impl Job for LobesJob {
         };
         let error = (1..most + 2).map(energies).fold(energies(0), ErrorStats::with_worst_of);
         let over = if lobes.axis.critical().cot_sq > 0.0 { ", rows close together at its critical angle" } else { "" };
+        let factor =
+            |varying: Varying| format!(" with {:.4} of its {}", varying.factor(self.node as f64), factor_name(varying));
+        let factor = varied.varying().map(factor).unwrap_or_default();
         let model = format!(
-            "{} fitted to the simulated stack, in half vectors of a medium of index {:.3}{over}; {}; errors are those of energies \
+            "{} fitted to the simulated stack{factor}, in half vectors of a medium of index {:.3}{over}; {}; errors are those of energies \
              against the rows before they were rounded",
             ["no lobe", "one lobe", "two lobes"][lobes.rows[0].lobes.len().min(LOBES)],
             lobes.frame.index,

@@ -58,6 +58,11 @@ pub(crate) trait Kind: Sync {
     /// [`BakeError::Map`] where an image cannot be read.
     fn job(&self, site: &Site<'_>) -> Result<Option<Arc<dyn Job>>, BakeError>;
 
+    /// The jobs of more tiles of an interface, which follow the first.
+    fn followers(&self, _: &Site<'_>) -> Vec<Arc<dyn Job>> {
+        Vec::new()
+    }
+
     /// The name of the tile, where that is not the name of the layer.
     fn name(&self, _: &Layer) -> Option<&'static str> {
         None

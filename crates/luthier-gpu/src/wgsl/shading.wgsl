@@ -340,7 +340,7 @@ fn shading_radiance(part: u32, place: Place, wo_world: vec3<f32>, seed: u32) -> 
         // The samples of a pixel share the directions of a circle.
         let samples = kernel_inputs.samples * kernel_inputs.samples;
         let turn = f32(seed % samples) / f32(samples);
-        return total + lobes_environment(material, turned, wo_world * turned, turn);
+        return total + lobes_environment(material, surface, turned, wo_world * turned, turn);
     }
     return total + shading_environment(material, factors, turned, wo_world * turned);
 }

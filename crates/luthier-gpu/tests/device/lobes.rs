@@ -71,6 +71,7 @@ fn scene(first: f32, fresnel: f32) -> Option<Scene> {
         critical_cot_sq: 0.0,
         critical_width: 0.0,
         critical_plain_share: 0.0,
+        varying: None,
     });
     manifest.functions = [FunctionGroup::Environment].into_iter().collect();
     let set = MaterialSet::from_manifest(&manifest);

@@ -16,6 +16,8 @@ use rayon::prelude::*;
 
 use crate::cli::LobesOptions;
 
+pub(crate) use self::stacks::random;
+
 /// Angles of the judge against the normal, degrees: those of `luthier-lab judge`, and others between.
 const THETAS_DEG: [f64; 10] = [0.0, 7.0, 18.0, 30.0, 45.0, 60.0, 70.0, 77.0, 80.0, 85.0];
 
@@ -26,7 +28,7 @@ const COUNTS: [usize; 3] = [0, 1, 2];
 const BESIDE: [&str; 2] = ["belcour", "elek"];
 
 /// Family of random numbers of the judge; fits have 0.
-const JUDGE_SEED: u64 = 1 << 40;
+pub(crate) const JUDGE_SEED: u64 = 1 << 40;
 
 /// A stack, fitted and judged.
 struct Judged {

@@ -58,7 +58,7 @@ pub(super) fn of(material: &Material, is_twin: bool) -> ModelSubject {
 
 /// A plausible stack: up to four coats, some absorbing, some with a film, over a metal or a diffuse base. One coat in ten has an index below
 /// that of what is above it.
-pub(super) fn random(seed: u64) -> ModelSubject {
+pub(crate) fn random(seed: u64) -> ModelSubject {
     let mut draw = Draw(seed.wrapping_mul(0x5851_f42d_4c95_7f2d));
     let distribution = if draw.chance(0.5) { Distribution::Ggx } else { Distribution::Beckmann };
     let mut name = format!("{seed} {}:", distribution.name());

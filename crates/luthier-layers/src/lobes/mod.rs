@@ -28,13 +28,16 @@ mod below;
 mod fit;
 mod fitted;
 mod half_vector;
+mod parameters;
 mod prepared;
+mod problem;
 mod rows;
 mod shape;
 mod solve;
 mod tally;
 #[cfg(test)]
 mod tests;
+mod varied;
 
 pub use below::Below;
 pub use fit::{FitError, FitSettings, Simulation};
@@ -42,6 +45,7 @@ pub use fitted::Fitted;
 pub use prepared::{Prepared, Sample};
 pub use rows::{Critical, Lobe, Row, ViewAxis};
 pub use shape::{Shape, TAIL_MIN, Wide};
+pub use varied::{Varied, Varying};
 
 use glam::DVec3;
 use luthier_optics::Rgb;
@@ -109,10 +113,7 @@ impl Lobes {
     /// The lobes of a stack as bakes have them: as few as do, [`LOBES`] at most, of [`FitSettings::default`]. Anisotropic surfaces have their
     /// mean slope parameter.
     pub fn of(stack: &Stack, color: &Color) -> Self {
-        match Simulation::new(&shown(stack), color, FitSettings::default()) {
-            Ok(simulation) => simulation.fit_fewest(LOBES, EXCESS),
-            Err(FitError::Anisotropic { .. }) => unreachable!("its surfaces were made isotropic"),
-        }
+        Varied::of(stack, color, None).nodes.swap_remove(0)
     }
 
     /// The row of a view, between those that were fitted.

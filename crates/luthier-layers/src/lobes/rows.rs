@@ -216,6 +216,16 @@ impl Row {
         self
     }
 
+    /// The row with slopes that are so many times as steep: lobes are as much wider, and shifted as much farther.
+    #[must_use]
+    pub fn spread(mut self, factor: f64) -> Self {
+        for lobe in &mut self.lobes {
+            lobe.shift *= factor;
+            lobe.sharpness = lobe.sharpness.map(|sharpness| sharpness / factor);
+        }
+        self
+    }
+
     /// Energies: the albedo, that of the wide remainder, and those of the lobes.
     pub fn energies(&self) -> Vec<Rgb> {
         let lobes = self.lobes.iter().map(|lobe| lobe.strength.map(|strength| strength * lobe.share));

@@ -10,7 +10,7 @@ use luthier_optics::stack::{Base, Distribution, Stack, Surface};
 
 use crate::elek::{self, ALPHA_MIN};
 use crate::frame;
-use crate::lobes::{self, Below};
+use crate::lobes::{self, Below, Varying};
 use crate::real_time::{Twin, Under};
 use crate::statistics::diffuse_base::Veil;
 use crate::statistics::energy::Energy;
@@ -110,12 +110,12 @@ impl Shaded {
 
 /// The stack as a model's shader has it at a place.
 fn at(stack: &Stack, model: &str, place: &Place, patina: Option<Growth>) -> Stack {
-    // Rows are those of the surface without textures.
+    let factors = &place.sample;
     if model == lobes::MODEL {
-        return lobes::shown(stack);
+        let here = Varying::Alpha.apply(&lobes::shown(stack), factors.alpha_factor);
+        return Varying::Slab.apply(&here, factors.slab_factor);
     }
     let mut here = stack.clone();
-    let factors = &place.sample;
     for (i, layer) in here.layers.iter_mut().enumerate() {
         let base_alpha = patina.filter(|_| i == 1).and_then(|p| Some((p.base_alpha?, p.amount)));
         if factors.alpha_factor == 1.0 && base_alpha.is_none() {

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use luthier_layers::lobes::{Below, Critical, Frame, Row, ViewAxis, Wide};
 use luthier_lut::{AtlasLayout, Image, TableKind, WeightBits, bilinear};
-use luthier_manifest::{FunctionGroup, LobesRecord, MaterialEntry, material_buffer};
+use luthier_manifest::{FunctionGroup, LobesRecord, MaterialEntry, VaryingFactor, VaryingRecord, material_buffer};
 use luthier_optics::microfacet;
 use luthier_optics::stack::Distribution;
-use luthier_shader::{Form, MaterialSet, ShaderError, Target, emit};
+use luthier_shader::{Form, MaterialSet, ShaderError, TableFace, Target, emit};
 
 use crate::arithmetic::directions;
 use crate::machine::{Machine, Value, vector};
@@ -54,6 +54,7 @@ fn light_from_below_is_that_of_the_twin() {
             critical_cot_sq: cot_sq,
             critical_width: width,
             critical_plain_share: 0.25,
+            varying: None,
         };
         let axis = ViewAxis::new(2, Critical { cot_sq, width, plain_share: 0.25 });
         let wide = Wide::new(lobes.falloff, axis);
@@ -87,6 +88,80 @@ fn light_from_below_is_that_of_the_twin() {
             }
         }
         assert!(brightest > 1.0, "{name}: {brightest}");
+    }
+}
+
+/// A factor of the place mixes the rows of two tiles, and widens lobes; tiles beyond those of the material are another's.
+#[test]
+fn rows_over_a_factor_are_those_of_the_twin() {
+    let (one, _) = rows();
+    let layout = AtlasLayout { tiles: 5, ..one };
+    let [width, height] = layout.size();
+    let mut image = Image::zeros(width, height, 4);
+    for tile in 0..5 {
+        let [_, y] = layout.origin(tile);
+        for x in 0..width {
+            let (part, k) = (x / layout.row_size(), f64::from(tile));
+            let texel = match part {
+                // Shapes and strengths of the first lobe; the second has no light.
+                1 => [0.5 + 0.1 * k, 0.4, 0.3 * k, 0.2 + 0.05 * k],
+                2 => [6.0 + k, 9.0 - k, 2.0 + k, 0.9],
+                4 => [1.0, 1.0, 1.0, 1.0],
+                _ => [0.1 * k, 0.2, 0.3, 0.0],
+            };
+            image.texel_mut(x, y).copy_from_slice(&texel.map(|value| value as f32));
+        }
+    }
+    let tables: Vec<TableFace> = (tables().into_iter())
+        .map(|table| if table.kind == TableKind::Lobes { TableFace { layout: layout.clone(), ..table } } else { table })
+        .collect();
+    for (factor, member, first) in [(VaryingFactor::AlphaFactor, 0, 1), (VaryingFactor::SlabFactor, 1, 0)] {
+        let mut material = set("lobes-place")[0].clone();
+        material.layers[0].tiles[TableKind::Lobes] = Some(first);
+        let record = material.constants.lobes.as_mut().unwrap();
+        let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
+        record.integral = wide.integral();
+        record.varying = Some(VaryingRecord { factor, tiles: 4, least_spread: 0.1 });
+        let frame = Frame { index: record.index, wide };
+        let materials = [material];
+        let text = emit(&MaterialSet::new(&materials, tables.clone()), Form::Baked, Target::Wgsl).unwrap();
+        let black = Image::zeros(3, 3, 3);
+        let textures =
+            [("luthier_fresnel", black.clone()), ("luthier_distribution", black), ("luthier_lobes", image.clone())];
+        let textures = BTreeMap::from(textures.map(|(name, image)| (name.to_owned(), image)));
+        let machine = Machine::new(&text, &material_buffer(&materials), textures);
+        let Value::Many(neutral) = machine.call("luthier_place", Vec::new()) else { panic!("a place is a structure") };
+        // By hand: roots 1, .7, .41, 0; of four tiles, the last on slopes is that of 1/4.
+        for (scale, over_alpha, over_slab) in
+            [(1.0, 0.0, 0.0), (0.49, 1.2, 0.9), (0.1681, 2.36, 1.77), (0.0025, 3.0, 2.85), (0.0, 3.0, 3.0)]
+        {
+            let mut place = neutral.clone();
+            place[1 + member] = Value::F(scale as f32);
+            let (over, spread) = if member == 0 { (over_alpha, f64::max(scale, 0.1)) } else { (over_slab, 1.0) };
+            let tile = f64::from(first) + over;
+            let low = (tile as u32).min(3);
+            for (wi, wo) in directions(60) {
+                let [light, eye] = [wi, wo].map(DVec3::from);
+                if light.z <= 0.0 || eye.z <= 0.0 {
+                    continue;
+                }
+                let part = |part: u32| {
+                    let read =
+                        |tile| bilinear(&image, layout.position(tile, [eye.z, f64::from(part)]), WeightBits::Exact);
+                    let (a, b, t) = (read(low), read(low + 1), tile - f64::from(low));
+                    [0, 1, 2, 3].map(|i: usize| a[i] + t * (b[i] - a[i]))
+                };
+                let row = Row::of_parts(&(0..6).map(part).collect::<Vec<_>>()).spread(spread);
+                let expected = Below::new(frame, row, eye).eval(light);
+                let arguments = vec![Value::Many(place.clone()), Value::U(0), vector(&wo.map(|w| w as f32))];
+                let prepared = machine.call("luthier_prepare_lobes", arguments);
+                let found = machine.call("luthier_light_lobes", vec![prepared, vector(&wi.map(|w| w as f32))]).floats();
+                for (found, expected) in found.iter().zip(expected) {
+                    let error = (f64::from(*found) - expected).abs() / expected.abs().max(0.03);
+                    assert!(error < 3e-4, "{factor:?} {scale} {wi:?} {wo:?}: {found} {expected}");
+                }
+            }
+        }
     }
 }
 
@@ -171,6 +246,7 @@ fn directions_are_drawn_as_their_density_says() {
             critical_cot_sq: 0.0,
             critical_width: 0.0,
             critical_plain_share: 0.0,
+            varying: None,
         };
         materials[0].constants.lobes = Some(lobes);
         let first = &mut materials[0].layers[0];

@@ -179,6 +179,7 @@ fn with_lobes(mut material: MaterialEntry) -> MaterialEntry {
         critical_cot_sq,
         critical_width: 0.02,
         critical_plain_share: 0.25,
+        varying: None,
     });
     material
 }
@@ -254,6 +255,7 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
         ),
         ("lobes", vec![with_lobes(house())]),
         ("lobes-film", vec![with_lobes(oil())]),
+        ("lobes-place", vec![with_lobes(glitter())]),
         (
             "lobes-mixed",
             vec![

@@ -41,3 +41,44 @@ fn the_albedo_of_lobes_is_that_of_the_reference() {
         assert!((found - expected).abs() < 4.0 * sigma + 2e-3 && sigma < 2e-3, "{found} {expected} {sigma}");
     }
 }
+
+/// A roughness map makes rows over its factor, and the model remains `lobes`. Oracle of the albedo at a place: paths of the reference for a
+/// material whose roughness is written as that.
+#[test]
+fn a_roughness_map_makes_rows_over_its_factor() {
+    let coat =
+        |alpha: f64, maps: &str| format!("[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = {alpha:?}\n{maps}");
+    let metal = |alpha: f64| format!("[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = {alpha:?}\n");
+    let head = "schema = 1\nname = \"worn\"\n";
+    let worn = format!("{head}{}{}", coat(0.4, "maps = { roughness = \"r.png\" }\n"), metal(0.3));
+    let factor = 0.36;
+    let plain = format!("{head}{}{}", coat(0.4 * factor, ""), metal(0.3 * factor));
+    let workshop = Workshop::with(&[("worn.toml", &worn), ("plain.toml", &plain)]);
+    let map = image::ImageBuffer::from_fn(4, 4, |x, y| image::Luma([(20 * (x + y)) as u8]));
+    map.save(workshop.path("r.png")).unwrap();
+    workshop.run(&["bake", "worn.toml", "-q", "--target", "wgsl"]).exits(0);
+    let manifest = workshop.json("out/manifest.json");
+    let material = &manifest["materials"][0];
+    assert_eq!((&material["model"], &material["layers"][0]["lobes_tile"]), (&"lobes".into(), &0.into()));
+    let varying = &material["constants"]["lobes"]["varying"];
+    assert_eq!((&varying["factor"], &varying["tiles"]), (&"alpha_factor".into(), &8.into()), "{material}");
+    // The slope parameter that may be least over the greatest.
+    assert!((varying["least_spread"].as_f64().unwrap() - 1e-3 / 0.4).abs() < 1e-12, "{varying}");
+    let tables = manifest["tables"].as_array().unwrap();
+    let lobes = tables.iter().find(|table| table["kind"] == "lobes").unwrap();
+    let layout = &lobes["layout"];
+    assert_eq!((&layout["tiles"], &layout["columns"]), (&8.into(), &1.into()), "{layout}");
+    let bytes = std::fs::metadata(workshop.path("out/tables/lobes.ktx2")).unwrap().len();
+    assert!(bytes < 16 * 1024, "{bytes}");
+
+    let albedo = |file: &str, model: &[&str]| {
+        let args = [file, "--albedo", "--angles", "20,65", "--wavelength", "645", "--json", "--model"];
+        let json = workshop.run(&[&["eval"], &args[..], model].concat()).exits(0).json();
+        [0, 1].map(|i: usize| json["albedo"][i]["albedo"].as_f64().unwrap())
+    };
+    let found = albedo("worn.toml", &["lobes", "--alpha-factor", "0.36"]);
+    let expected = albedo("plain.toml", &["layered-mc", "--samples", "60000"]);
+    for (found, expected) in found.into_iter().zip(expected) {
+        assert!((found - expected).abs() < 0.01, "{found} {expected}");
+    }
+}

@@ -16,7 +16,7 @@ fn luthier_parts_lobes(given: LuthierPrepared, $place_parameter material: u32, w
     //? end
     //? end
     //? lobes
-    prepared.lobes = luthier_prepare_lobes(material, wo);
+    prepared.lobes = luthier_prepare_lobes($place_argument material, wo);
     //? end
     return prepared;
 }

@@ -82,17 +82,35 @@ fn luthier_inside_cos_sq(medium: vec4<f32>, cos_theta: f32) -> f32 {
     return max(cos_theta * cos_theta + medium.x, 1e-12);
 }
 
+//? place
+//? one_lobe|two_lobes
+/// A lobe whose slopes are so many times as steep.
+fn luthier_spread(shape: vec4<f32>, factor: f32) -> vec4<f32> {
+    let inverse = 1.0 / factor;
+    return shape * vec4<f32>(factor, inverse, inverse, 1.0);
+}
+//? end
+//? end
+
 /// A material as seen from wo, above the horizon.
-fn luthier_prepare_lobes(material: u32, wo: vec3<f32>) -> LuthierPreparedLobes {
+fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> LuthierPreparedLobes {
     let header = luthier_header(material);
+    //? place
+    // Rows over a factor lie one below the other, at equal distances of its root from 1: to 0 on the slab, to a step before it on slopes.
+    let over = luthier_materials[header + $word_phong_diffuse];
+    let away = 1.0 - sqrt(saturate(vec2<f32>(place.alpha_factor, place.slab_factor)));
+    let tile = luthier_materials[header].w + min(away.x * (over.x + 1.0), over.x) + away.y * over.y;
+    let spread = max(place.alpha_factor, over.z);
+    //? else
     let tile = luthier_materials[header].w;
+    //? end
     // Along the normal the azimuth is 0.
     let across = vec2<f32>(wo.x + 1e-15, wo.y);
     let sin_theta_sq = dot(across, across);
     let inverse_sin = inverseSqrt(sin_theta_sq);
     let sin_theta = sin_theta_sq * inverse_sin;
     var prepared: LuthierPreparedLobes;
-    prepared.coat = luthier_layer(material, 0u);
+    prepared.coat = $layer(material, 0u);
     //? anisotropic
     prepared.coat.alpha_xy = vec2<f32>(prepared.coat.alpha);
     //? end
@@ -113,12 +131,22 @@ fn luthier_prepare_lobes(material: u32, wo: vec3<f32>) -> LuthierPreparedLobes {
     //? one_lobe|two_lobes
     let first = luthier_lookup_lobes(tile, cos_theta, 1.0);
     prepared.first_strength = first.rgb;
-    prepared.first_shape = vec4<f32>(first.a * sin_theta, luthier_lookup_lobes(tile, cos_theta, 2.0).rgb);
+    let first_shape = vec4<f32>(first.a * sin_theta, luthier_lookup_lobes(tile, cos_theta, 2.0).rgb);
+    //? place
+    prepared.first_shape = luthier_spread(first_shape, spread);
+    //? else
+    prepared.first_shape = first_shape;
+    //? end
     //? end
     //? two_lobes
     let second = luthier_lookup_lobes(tile, cos_theta, 3.0);
     prepared.second_strength = second.rgb;
-    prepared.second_shape = vec4<f32>(second.a * sin_theta, luthier_lookup_lobes(tile, cos_theta, 4.0).rgb);
+    let second_shape = vec4<f32>(second.a * sin_theta, luthier_lookup_lobes(tile, cos_theta, 4.0).rgb);
+    //? place
+    prepared.second_shape = luthier_spread(second_shape, spread);
+    //? else
+    prepared.second_shape = second_shape;
+    //? end
     //? end
     return prepared;
 }
@@ -217,7 +245,7 @@ fn luthier_eval_lobes($place_parameter material: u32, wi: vec3<f32>, wo: vec3<f3
         return wi.z * $diffuse(layer, wi, wo);
     }
     //? end
-    return luthier_light_lobes(luthier_prepare_lobes(material, wo), wi);
+    return luthier_light_lobes(luthier_prepare_lobes($place_argument material, wo), wi);
     //? else
     let layer = luthier_layer(material, 0u);
     return wi.z * $diffuse(layer, wi, wo);

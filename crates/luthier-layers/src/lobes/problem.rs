@@ -1,0 +1,445 @@
+//! The least-squares problem of a fit: residuals of all views in one set of cells, and their slopes.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use luthier_optics::Rgb;
+
+use super::fit::{Found, Simulation};
+use super::half_vector::{outside, refracted};
+use super::parameters::{NODES, PER_LOBE};
+use super::solve::{Amounts, Column, Guess, Residuals};
+use super::tally::{CELLS, Point, Tally};
+use super::{Frame, Lobe, Lobes, Row, Shape, TAIL_MIN, ViewAxis, Wide};
+
+/// Share of a shape above the horizon below which the fit is held back.
+const SHARE_WANTED: f64 = 0.35;
+
+/// Weight of what [`SHARE_WANTED`] lacks, of second differences between nodes, and of shifts and ratios of widths by themselves.
+const SHARE_WEIGHT: f64 = 0.5;
+const RIPPLE_WEIGHT: f64 = 0.03;
+const REST_WEIGHT: f64 = 0.003;
+
+/// Energy that is added to that of a cell, over the mean, where residuals are weighed.
+const WEIGHT_FLOOR: f64 = 0.05;
+
+/// Step of the differences that slopes of amounts are.
+const DIFFERENCE: f64 = 1e-5;
+
+/// The fit in one set of cells.
+pub(super) struct Problem<'a> {
+    simulation: &'a Simulation,
+    set: usize,
+    pub(super) views: Vec<ViewProblem>,
+}
+
+/// One view of it.
+pub(super) struct ViewProblem {
+    axis: ViewAxis,
+    cos_theta: f64,
+    sin: f64,
+    /// Place among the nodes of shapes.
+    place: f64,
+    points: Vec<Point>,
+    /// Brightness of the cells: means of the channels, over that of all light of the view.
+    found: Vec<f64>,
+    total: f64,
+    /// Weights of squared residuals, and their roots.
+    weights: Vec<f64>,
+    roots: Vec<f64>,
+}
+
+/// A view with shapes: what every part sends to each cell, of a unit of its energy.
+pub(super) struct Profiles {
+    cells: Vec<Vec<f64>>,
+    /// Shares of the shapes above the horizon, as the cells have them.
+    shares: Vec<f64>,
+}
+
+/// A problem with a number of lobes. Its blocks are the views, and last the ripples.
+pub(super) struct Lobed<'a> {
+    pub(super) problem: &'a Problem<'a>,
+    pub(super) lobes: usize,
+    /// Whether the shape of the remainder is looked for; otherwise it stays as it is.
+    pub(super) is_remainder_free: bool,
+}
+
+impl Residuals for Lobed<'_> {
+    fn blocks(&self) -> usize {
+        self.problem.views.len() + 1
+    }
+
+    fn block(&self, p: &[f64], block: usize) -> Vec<f64> {
+        match self.problem.views.get(block) {
+            Some(view) => view.residuals(&view.profiles(p, self.lobes)),
+            None => ripple(p, self.lobes),
+        }
+    }
+
+    fn slopes(&self, p: &[f64], block: usize, now: &[f64]) -> Vec<Column> {
+        match self.problem.views.get(block) {
+            Some(view) => {
+                let mut columns = view.slopes(p, self.lobes, now);
+                columns.retain(|(number, _)| self.is_remainder_free || *number < p.len() - 2);
+                columns
+            }
+            None => ripple_slopes(p, self.lobes),
+        }
+    }
+}
+
+impl<'a> Problem<'a> {
+    pub(super) fn new(simulation: &'a Simulation, set: usize) -> Self {
+        let nodes = ViewAxis::new(NODES, simulation.axis.critical());
+        let mean = |rgb: Rgb| rgb.iter().sum::<f64>() / 3.0;
+        let view = |(row, tally): (usize, &Tally)| {
+            let cos_theta = simulation.axis.cos_theta(row as f64);
+            let wo = direction(cos_theta);
+            let all = (mean(tally.total) + mean(tally.first_facet)).max(f64::MIN_POSITIVE);
+            let found: Vec<f64> = tally.rest[set].iter().map(|rgb| mean(*rgb).max(0.0) / all).collect();
+            let weights: Vec<f64> = found.iter().map(|r| 1.0 / (r + WEIGHT_FLOOR / CELLS as f64)).collect();
+            ViewProblem {
+                axis: simulation.axis,
+                cos_theta,
+                sin: wo.x,
+                place: nodes.place(cos_theta),
+                points: simulation.cells[set].points(wo),
+                total: found.iter().sum(),
+                found,
+                roots: weights.iter().map(|weight| weight.sqrt()).collect(),
+                weights,
+            }
+        };
+        Self { simulation, set, views: simulation.views.iter().enumerate().map(view).collect() }
+    }
+
+    /// Energies by view, part and channel.
+    ///
+    /// Where parts look alike at a view, its light leaves open how much each of them has, and noise would decide: then between the rows the
+    /// energies of one part would be seen with the shape of another. So the energies of a view are pulled to those of the rows beside it.
+    fn energies(&self, p: &[f64], count: usize) -> Vec<Vec<Rgb>> {
+        let profiles: Vec<Vec<Vec<f64>>> = self.views.iter().map(|view| view.profiles(p, count).cells).collect();
+        let amounts: Vec<Amounts<'_>> =
+            self.views.iter().zip(&profiles).map(|(view, profiles)| Amounts::new(profiles, &view.weights)).collect();
+        let brightness = smoothed(amounts.len(), |view, guess| {
+            amounts[view].positive(&self.views[view].found, self.views[view].total, guess)
+        });
+        let channels = [0, 1, 2].map(|c: usize| {
+            smoothed(amounts.len(), |view, guess| {
+                let tally = &self.simulation.views[view];
+                let cells: Vec<f64> = tally.rest[self.set].iter().map(|rgb| rgb[c]).collect();
+                amounts[view].among(&brightness[view], &cells, tally.total[c], guess)
+            })
+        });
+        let rgb = |view: usize, part: usize| channels.each_ref().map(|channel| channel[view][part]);
+        (0..amounts.len()).map(|view| (0..=count).map(|part| rgb(view, part)).collect()).collect()
+    }
+
+    /// The lobes of the parameters found, with energies by channel.
+    pub(super) fn lobes(&self, found: &Found) -> Lobes {
+        let p = &found.place.parameters;
+        let count = p.len() / PER_LOBE;
+        let energies = self.energies(p, count);
+        let row = |((view, tally), energies): ((&ViewProblem, &Tally), &Vec<Rgb>)| {
+            let lobe = |lobe: usize| {
+                let shape = view.shape(p, lobe);
+                let share = share_above(&shape, direction(view.cos_theta), self.simulation.cells[self.set].index);
+                Lobe {
+                    strength: energies[lobe].map(|energy| energy / share.max(SHARE_MIN)),
+                    share,
+                    shift: if view.sin > 0.0 { shape.shift / view.sin } else { shift_at_normal(p, lobe) },
+                    sharpness: shape.width.map(|width| 1.0 / width),
+                    tail: shape.tail,
+                }
+            };
+            let sum = |c: usize| tally.first_facet[c] + energies.iter().map(|energy| energy[c]).sum::<f64>();
+            Row { albedo_dir: [0, 1, 2].map(sum), lobes: (0..count).map(lobe).collect(), wide: energies[count] }
+        };
+        let Simulation { first, axis, cells, views, .. } = self.simulation;
+        Lobes {
+            first: first.clone(),
+            frame: Frame { index: cells[self.set].index, wide: wide_of(p, *axis) },
+            axis: *axis,
+            rows: self.views.iter().zip(views).zip(&energies).map(row).collect(),
+        }
+    }
+}
+
+/// Shares above the horizon are no less than this, where energies are divided by them.
+const SHARE_MIN: f64 = 1e-3;
+
+/// Weight with which the energies of a view are pulled to those of its neighbours, against squared residuals over energies.
+const NEIGHBOUR_WEIGHT: f64 = 0.1;
+
+/// Rounds in which neighbours pull each other.
+const NEIGHBOUR_ROUNDS: u32 = 8;
+
+/// Amounts by view, each near the mean of its neighbours. `solve` has the amounts of a view for a guess.
+fn smoothed(views: usize, solve: impl Fn(usize, Option<Guess<'_>>) -> Vec<f64>) -> Vec<Vec<f64>> {
+    let mut amounts: Vec<Vec<f64>> = (0..views).map(|view| solve(view, None)).collect();
+    for _ in 0..NEIGHBOUR_ROUNDS {
+        for view in 0..views {
+            let [before, after] = match view {
+                0 => [1, 1],
+                last if last + 1 == views => [last - 1, last - 1],
+                view => [view - 1, view + 1],
+            };
+            let guess: Vec<f64> = amounts[before].iter().zip(&amounts[after]).map(|(a, b)| 0.5 * (a + b)).collect();
+            amounts[view] = solve(view, Some(Guess { amounts: &guess, weight: NEIGHBOUR_WEIGHT }));
+        }
+    }
+    amounts
+}
+
+/// Points of a shape by which its share above the horizon is counted.
+const SHARE_POINTS: u32 = 4096;
+
+/// Share of a shape that leaves the medium, by a lattice of points (Roberts 2018: multiples of the plastic number's powers); within about
+/// 1e-3.
+fn share_above(shape: &Shape, wo: DVec3, index: f64) -> f64 {
+    const STEP: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2];
+    let eye = refracted(wo, index);
+    let is_above = |i: &u32| {
+        let u = STEP.map(|step| {
+            let place = 0.5 + step * f64::from(*i);
+            place - libm::floor(place)
+        });
+        outside(shape.sample(u), eye, index).is_some()
+    };
+    (0..SHARE_POINTS).filter(is_above).count() as f64 / f64::from(SHARE_POINTS)
+}
+
+fn tail_of(p: &[f64], lobe: usize) -> f64 {
+    let sin = libm::sin(p[lobe * PER_LOBE + 3 * NODES]);
+    sin * sin
+}
+
+fn wide_of(p: &[f64], axis: ViewAxis) -> Wide {
+    Wide::new([p[p.len() - 2], p[p.len() - 1]], axis)
+}
+
+/// The last node of the shifts is that of the normal.
+fn shift_at_normal(p: &[f64], lobe: usize) -> f64 {
+    p[lobe * PER_LOBE + NODES - 1]
+}
+
+/// Second differences of rows, and shifts and ratios themselves: against ripples.
+fn ripple(p: &[f64], lobes: usize) -> Vec<f64> {
+    let mut out = Vec::new();
+    for lobe in p[..lobes * PER_LOBE].chunks(PER_LOBE) {
+        for (i, row) in lobe[..3 * NODES].chunks(NODES).enumerate() {
+            out.extend(row.windows(3).map(|t| RIPPLE_WEIGHT * (t[0] - 2.0 * t[1] + t[2])));
+            if i != 1 {
+                out.extend(row.iter().map(|value| REST_WEIGHT * value));
+            }
+        }
+    }
+    out
+}
+
+/// Slopes of [`ripple`], which is linear.
+fn ripple_slopes(p: &[f64], lobes: usize) -> Vec<Column> {
+    let unit = |j: usize| {
+        let mut unit = vec![0.0; p.len()];
+        unit[j] = 1.0;
+        (j, ripple(&unit, lobes))
+    };
+    (0..lobes * PER_LOBE).filter(|j| j % PER_LOBE < 3 * NODES).map(unit).collect()
+}
+
+/// Light that a shape or the remainder sends to each cell, and its slopes by a few numbers.
+struct Sent<const N: usize> {
+    cells: Vec<f64>,
+    slopes: [Vec<f64>; N],
+}
+
+impl<const N: usize> Sent<N> {
+    fn new() -> Self {
+        Self { cells: vec![0.0; CELLS], slopes: std::array::from_fn(|_| vec![0.0; CELLS]) }
+    }
+
+    /// Adds a value and its relative slopes to a cell.
+    fn add(&mut self, cell: usize, value: f64, relative: [f64; N]) {
+        self.cells[cell] += value;
+        self.slopes.iter_mut().zip(relative).for_each(|(slopes, relative)| slopes[cell] += value * relative);
+    }
+
+    /// The slopes of a unit of the energy, and those of the share.
+    fn normalised(&self) -> [(Vec<f64>, f64); N] {
+        let share = self.cells.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+        self.slopes.each_ref().map(|slopes| {
+            let slope: f64 = slopes.iter().sum();
+            let of_unit = |(slopes, cell): (&f64, &f64)| (slopes - cell / share * slope) / share;
+            (slopes.iter().zip(&self.cells).map(of_unit).collect(), slope)
+        })
+    }
+}
+
+impl ViewProblem {
+    /// The node of shapes before the view, and the share of the next.
+    fn node(&self) -> (usize, f64) {
+        let first = (self.place as usize).min(NODES - 2);
+        (first, self.place - first as f64)
+    }
+
+    fn shape(&self, p: &[f64], lobe: usize) -> Shape {
+        let own = &p[lobe * PER_LOBE..(lobe + 1) * PER_LOBE];
+        let (first, t) = self.node();
+        let [shift, width, ratio] = [0, 1, 2].map(|i: usize| {
+            let row = &own[i * NODES..];
+            row[first] + t * (row[first + 1] - row[first])
+        });
+        let ratio = ratio * self.sin * self.sin;
+        Shape {
+            shift: shift * self.sin,
+            width: [libm::exp(width + ratio), libm::exp(width - ratio)],
+            tail: tail_of(p, lobe),
+        }
+    }
+
+    /// Light of a shape by cell, with slopes by the middle, by the logarithms of the widths, and by the angle of the tail.
+    fn sent(&self, shape: &Shape, tail_angle: f64) -> Sent<4> {
+        let mut sent = Sent::new();
+        let tail = shape.tail.max(TAIL_MIN);
+        let tail_slope = if shape.tail > TAIL_MIN { libm::sin(2.0 * tail_angle) } else { 0.0 };
+        let norm = 1.0 / (PI * shape.width[0] * shape.width[1]);
+        for point in &self.points {
+            let (x, y) = ((point.slope[0] - shape.shift) / shape.width[0], point.slope[1] / shape.width[1]);
+            let q = x * x + y * y;
+            let log = libm::log1p(tail * q);
+            let density = norm * libm::exp(-(1.0 + 1.0 / tail) * log);
+            let steep = 2.0 * (1.0 + tail) / (1.0 + tail * q);
+            let by_tail = log / (tail * tail) - 0.5 * steep * q / tail;
+            let relative = [steep * x / shape.width[0], steep * x * x - 1.0, steep * y * y - 1.0, by_tail * tail_slope];
+            sent.add(point.cell, density * point.area, relative);
+        }
+        sent
+    }
+
+    pub(super) fn profiles(&self, p: &[f64], lobes: usize) -> Profiles {
+        let mut cells = vec![vec![0.0; CELLS]; lobes + 1];
+        for (lobe, profile) in cells[..lobes].iter_mut().enumerate() {
+            let shape = self.shape(p, lobe);
+            self.points.iter().for_each(|point| profile[point.cell] += shape.density(point.slope) * point.area);
+        }
+        let wide = wide_of(p, self.axis);
+        for point in &self.points {
+            cells[lobes][point.cell] += wide.value(point.cos_theta) * point.cos_theta * point.solid_angle;
+        }
+        let shares: Vec<f64> = cells.iter().map(|profile| profile.iter().sum()).collect();
+        for (profile, share) in cells.iter_mut().zip(&shares) {
+            let share = share.max(f64::MIN_POSITIVE);
+            profile.iter_mut().for_each(|energy| *energy /= share);
+        }
+        Profiles { cells, shares }
+    }
+
+    pub(super) fn residuals(&self, profiles: &Profiles) -> Vec<f64> {
+        let Profiles { cells, shares } = profiles;
+        let energies = Amounts::new(cells, &self.weights).positive(&self.found, self.total, None);
+        let residual = |cell: usize| {
+            let sent: f64 = cells.iter().zip(&energies).map(|(profile, energy)| profile[cell] * energy).sum();
+            self.roots[cell] * (self.found[cell] - sent)
+        };
+        let mut out: Vec<f64> = (0..CELLS).map(residual).collect();
+        let lobes = shares.len() - 1;
+        out.extend(shares[..lobes].iter().map(|share| SHARE_WEIGHT * (SHARE_WANTED - share).max(0.0)));
+        out
+    }
+
+    /// Slopes of the residuals: those of profiles are analytic, those of the amounts that go with them are differences.
+    fn slopes(&self, p: &[f64], lobes: usize, now: &[f64]) -> Vec<Column> {
+        let mut profiles = self.profiles(p, lobes);
+        let mut along = |part: usize, (slopes, share): &(Vec<f64>, f64)| -> Vec<f64> {
+            let (before, share_before) = (profiles.cells[part].clone(), profiles.shares[part]);
+            profiles.cells[part].iter_mut().zip(slopes).for_each(|(cell, slope)| *cell += DIFFERENCE * slope);
+            profiles.shares[part] += DIFFERENCE * share;
+            let there = self.residuals(&profiles);
+            (profiles.cells[part], profiles.shares[part]) = (before, share_before);
+            there.iter().zip(now).map(|(a, b)| (a - b) / DIFFERENCE).collect()
+        };
+        let (first, t) = self.node();
+        let mut columns = Vec::new();
+        for lobe in 0..lobes {
+            let of_tail = lobe * PER_LOBE + 3 * NODES;
+            let [middle, wide, across, tail] = self.sent(&self.shape(p, lobe), p[of_tail]).normalised();
+            let mixed = |a: f64, b: f64| -> (Vec<f64>, f64) {
+                let cells = wide.0.iter().zip(&across.0).map(|(x, y)| a * x + b * y).collect();
+                (cells, a * wide.1 + b * across.1)
+            };
+            let sin_sq = self.sin * self.sin;
+            let shift = (middle.0.iter().map(|x| self.sin * x).collect(), self.sin * middle.1);
+            for (row, slopes) in [shift, mixed(1.0, 1.0), mixed(sin_sq, -sin_sq)].iter().enumerate() {
+                let column = along(lobe, slopes);
+                for (node, share) in [(first, 1.0 - t), (first + 1, t)] {
+                    let number = lobe * PER_LOBE + row * NODES + node;
+                    columns.push((number, column.iter().map(|x| share * x).collect()));
+                }
+            }
+            columns.push((of_tail, along(lobe, &tail)));
+        }
+        let wide = wide_of(p, self.axis);
+        let mut sent = Sent::<2>::new();
+        for point in &self.points {
+            let value = wide.value(point.cos_theta);
+            if value > 0.0 {
+                let relative = wide.slopes(point.cos_theta).map(|slope| slope / value);
+                sent.add(point.cell, value * point.cos_theta * point.solid_angle, relative);
+            }
+        }
+        for (number, slopes) in (p.len() - 2..).zip(&sent.normalised()) {
+            columns.push((number, along(lobes, slopes)));
+        }
+        columns
+    }
+}
+
+/// A direction in the plane of x and z.
+pub(super) fn direction(cos_theta: f64) -> DVec3 {
+    DVec3::new((1.0 - cos_theta * cos_theta).max(0.0).sqrt(), 0.0, cos_theta)
+}
+
+#[cfg(test)]
+mod tests {
+    use luthier_optics::color::Color;
+    use luthier_optics::ior::Ior;
+    use luthier_optics::stack::{Base, Distribution, Layer, Slab, Stack, Surface};
+
+    use super::*;
+    use crate::lobes::FitSettings;
+    use crate::lobes::parameters::{Start, parameters};
+
+    /// Oracle: differences of the residuals.
+    #[test]
+    fn slopes_are_those_of_the_residuals() {
+        let layer =
+            |alpha, base| Layer { films: Vec::new(), surface: Surface::isotropic(Distribution::Ggx, alpha), base };
+        let slab = Slab { thickness_um: 1.0, absorption_per_um: [0.2; 3] };
+        let coat = Base::Dielectric { ior: Ior::constant(1.5, 0.0).unwrap(), slab };
+        let metal = Base::Conductor { ior: Ior::constant(0.3, 3.0).unwrap() };
+        let stack = Stack { exterior: Ior::vacuum(), layers: vec![layer(0.3, coat), layer(0.1, metal)] };
+        let settings = FitSettings { rows: 4, paths: 2000, seed: 1 };
+        let simulation = Simulation::new(&stack, &Color::ThreeWavelengths([550.0; 3]), settings).unwrap();
+        let problem = Problem::new(&simulation, 1);
+        let lobed = Lobed { problem: &problem, lobes: 2, is_remainder_free: true };
+        let mut p = parameters(vec![Start::new(0.2, 0.6), Start::new(0.5, 1.0)], [0.3, 0.1]);
+        (0..p.len()).for_each(|j| p[j] += 0.05 * (j % 7) as f64);
+        for block in 0..lobed.blocks() {
+            let now = lobed.block(&p, block);
+            for (j, slopes) in lobed.slopes(&p, block, &now) {
+                let ends = [1e-5, -1e-5].map(|step| {
+                    let mut moved = p.clone();
+                    moved[j] += step;
+                    lobed.block(&moved, block)
+                });
+                for (i, slope) in slopes.iter().enumerate() {
+                    let expected = (ends[0][i] - ends[1][i]) / 2e-5;
+                    assert!(
+                        (slope - expected).abs() < 2e-3 * (1.0 + expected.abs()),
+                        "{block} {j} {i}: {slope} {expected}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,263 @@
+//! Lobes of a stack of which a texture scales something: nodes over its factor.
+
+use luthier_optics::color::Color;
+use luthier_optics::stack::{Base, Stack, Surface};
+
+use super::fit::{FitError, Found, Simulation};
+use super::{EXCESS, FitSettings, LOBES, Lobes, Row, shown};
+use crate::elek::ALPHA_MIN;
+use crate::facets::Facets;
+
+/// The part of a stack that a texture scales.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Varying {
+    /// The slope parameters of all interfaces.
+    Alpha,
+    /// The thickness of the slab below the first interface.
+    Slab,
+}
+
+impl Varying {
+    /// The factor at the fractional number of a node. Roots of factors on slope parameters end one step before 0: from there on lobes grow narrower,
+    /// and their energies hardly change.
+    pub fn factor(self, place: f64) -> f64 {
+        let root = 1.0 - place / self.steps();
+        root * root
+    }
+
+    /// Steps between nodes from a root of 1 to one of 0.
+    fn steps(self) -> f64 {
+        match self {
+            Self::Alpha => NODES as f64,
+            Self::Slab => (NODES - 1) as f64,
+        }
+    }
+
+    /// The fractional number of the node of a factor.
+    fn place(self, factor: f64) -> f64 {
+        ((1.0 - factor.clamp(0.0, 1.0).sqrt()) * self.steps()).min((NODES - 1) as f64)
+    }
+
+    /// The stack at a factor.
+    pub fn apply(self, stack: &Stack, factor: f64) -> Stack {
+        let mut here = stack.clone();
+        match self {
+            Self::Alpha => {
+                here.layers.iter_mut().for_each(|layer| layer.surface = scaled_surface(layer.surface, factor));
+            }
+            Self::Slab => {
+                if let Some(Base::Dielectric { slab, .. }) = here.layers.first_mut().map(|layer| &mut layer.base) {
+                    slab.thickness_um *= factor;
+                }
+            }
+        }
+        here
+    }
+}
+
+/// Nodes over the factor.
+const NODES: usize = 8;
+
+/// Lobes at factors from 1 down. Between two nodes, rows are linear in the root of the factor.
+///
+/// Factors on slope parameters make lobes narrower by about as much. So rows are mixed after their slopes were divided by that factor, and are
+/// multiplied by it again.
+#[derive(Debug, Clone)]
+pub struct Varied {
+    /// The lobes of each node, at the factor 1 first; one where nothing varies. They have the axis, the medium and the shape of the remainder
+    /// in common, and the number of lobes.
+    pub nodes: Vec<Lobes>,
+    /// The part that varies, and the factor by which slopes are divided at least.
+    varying: Option<(Varying, f64)>,
+    /// The first surface.
+    surface: Option<Surface>,
+}
+
+impl Varied {
+    /// The lobes of a stack as bakes have them, see [`Lobes::of`].
+    pub fn of(stack: &Stack, color: &Color, varying: Option<Varying>) -> Self {
+        Self::with(stack, color, varying, FitSettings::default())
+    }
+
+    /// [`Self::of`] with settings.
+    pub fn with(stack: &Stack, color: &Color, varying: Option<Varying>, settings: FitSettings) -> Self {
+        let shown = shown(stack);
+        let traced = Simulation::new(&shown, color, settings);
+        let Ok(nominal) = traced else { unreachable!("its surfaces were made isotropic") };
+        let surface = nominal.first.is_some().then(|| shown.layers[0].surface);
+        let Some(varying) = varying else {
+            return Self { nodes: vec![nominal.fit_fewest(LOBES, EXCESS)], varying: None, surface };
+        };
+        let alphas = (shown.layers.iter())
+            .filter(|layer| !matches!(layer.base, Base::Diffuse(_)))
+            .map(|layer| layer.surface.alpha_x.clamp(ALPHA_MIN, 1.0));
+        let least = ALPHA_MIN / alphas.fold(ALPHA_MIN, f64::max);
+        let axis = nominal.axis;
+        let mut simulations = vec![nominal];
+        for node in 1..NODES {
+            let here = varying.apply(&shown, varying.factor(node as f64));
+            match Simulation::along(axis, &here, color, settings) {
+                Ok(simulation) => simulations.push(simulation),
+                Err(FitError::Anisotropic { .. }) => unreachable!("its surfaces were made isotropic"),
+            }
+        }
+        let spread = |node: usize| spread_of(varying, least, varying.factor(node as f64));
+        // Where the lobes are farther apart, more of them may be seen.
+        let (first, middle) = (simulations[0].fewest(LOBES, EXCESS), simulations[NODES / 2].fewest(LOBES, EXCESS));
+        let (seed, start) = if middle.lobes() > first.lobes() { (NODES / 2, middle) } else { (0, first) };
+        let mut found: Vec<Option<Found>> = (0..NODES).map(|_| None).collect();
+        found[seed] = Some(start);
+        let pairs = (seed + 1..NODES).map(|node| (node, node - 1)).chain((0..seed).rev().map(|node| (node, node + 1)));
+        for (node, beside) in pairs {
+            let from = found[beside].as_ref();
+            found[node] = from.map(|from| simulations[node].follow(from, spread(node) / spread(beside)));
+        }
+        let lobes = |(simulation, found): (&Simulation, &Option<Found>)| Some(simulation.lobes(found.as_ref()?));
+        let nodes = simulations.iter().zip(&found).filter_map(lobes).collect();
+        Self { nodes, varying: Some((varying, least)), surface }
+    }
+
+    /// Number of the nodes over what varies.
+    pub fn nodes_of(varying: Option<Varying>) -> usize {
+        varying.map_or(1, |_| NODES)
+    }
+
+    /// The part that varies.
+    pub fn varying(&self) -> Option<Varying> {
+        self.varying.map(|(varying, _)| varying)
+    }
+
+    /// The least factor on slopes that rows are divided by; 1 where slopes do not vary.
+    pub fn least_spread(&self) -> f64 {
+        self.varying.map_or(1.0, |(varying, least)| spread_of(varying, least, 0.0))
+    }
+
+    /// A row of a node, as tables have it: with slopes divided by the factor on them.
+    pub fn stored(&self, node: usize, row: usize) -> Row {
+        let spread =
+            self.varying.map_or(1.0, |(varying, least)| spread_of(varying, least, varying.factor(node as f64)));
+        self.nodes[node].rows[row].clone().spread(1.0 / spread)
+    }
+
+    /// The lobes at a factor.
+    pub fn at(&self, factor: f64) -> Lobes {
+        let mut lobes = self.nodes[0].clone();
+        let Some((varying, least)) = self.varying else { return lobes };
+        let place = varying.place(factor);
+        let first = (place as usize).min(self.nodes.len() - 2);
+        let spread = spread_of(varying, least, factor);
+        let row = |row: usize| {
+            let ends = [first, first + 1].map(|node| self.stored(node, row));
+            ends[0].between(&ends[1], place - first as f64).spread(spread)
+        };
+        lobes.rows = (0..lobes.rows.len()).map(row).collect();
+        if let (Varying::Alpha, Some(surface), Some(first)) = (varying, self.surface, &mut lobes.first) {
+            first.facets = Facets::new(&scaled_surface(surface, factor));
+        }
+        lobes
+    }
+}
+
+/// The factor on slopes.
+fn spread_of(varying: Varying, least: f64, factor: f64) -> f64 {
+    match varying {
+        Varying::Alpha => factor.max(least),
+        Varying::Slab => 1.0,
+    }
+}
+
+/// A surface with a factor on its slope parameters: those of layer records.
+fn scaled_surface(surface: Surface, factor: f64) -> Surface {
+    if factor == 1.0 {
+        return surface;
+    }
+    let alpha = (surface.alpha_isotropic().clamp(ALPHA_MIN, 1.0) * factor).clamp(ALPHA_MIN, 1.0);
+    Surface::isotropic(surface.distribution, alpha)
+}
+
+#[cfg(test)]
+mod tests {
+    use luthier_optics::ior::Ior;
+    use luthier_optics::stack::{Diffuse, Distribution, Layer, Slab};
+
+    use super::*;
+
+    const COLOR: Color = Color::ThreeWavelengths([650.0, 550.0, 450.0]);
+    const SETTINGS: FitSettings = FitSettings { rows: 8, paths: 4000, seed: 3 };
+
+    fn coated(alpha: f64, thickness_um: f64, base: Base, base_alpha: f64) -> Stack {
+        let coat = Base::Dielectric {
+            ior: Ior::constant(1.5, 0.0).unwrap(),
+            slab: Slab { thickness_um, absorption_per_um: [0.2, 0.4, 0.8] },
+        };
+        let layer = |alpha, base| Layer { films: vec![], surface: Surface::isotropic(Distribution::Ggx, alpha), base };
+        Stack { exterior: Ior::vacuum(), layers: vec![layer(alpha, coat), layer(base_alpha, base)] }
+    }
+
+    fn metal() -> Base {
+        Base::Conductor { ior: Ior::constant(0.3, 3.0).unwrap() }
+    }
+
+    #[test]
+    fn factors_and_places_are_inverse() {
+        for (varying, last) in [(Varying::Alpha, 1.0 / 64.0), (Varying::Slab, 0.0)] {
+            assert_eq!(varying.factor(0.0), 1.0);
+            assert!((varying.factor(7.0) - last).abs() < 1e-15, "{varying:?}");
+            for place in [0.0, 0.25, 3.5, 7.0] {
+                assert!((varying.place(varying.factor(place)) - place).abs() < 1e-12, "{varying:?} {place}");
+            }
+            assert_eq!(varying.place(0.0), 7.0);
+        }
+    }
+
+    /// Oracle: optics. A metal under a smooth coat shows its own distribution, as much narrower as the factor says.
+    #[test]
+    fn lobes_are_as_wide_as_the_factor_says() {
+        let stack = coated(0.0, 0.0, metal(), 0.2);
+        let varied = Varied::with(&stack, &COLOR, Some(Varying::Alpha), SETTINGS);
+        assert_eq!((varied.nodes.len(), varied.varying()), (8, Some(Varying::Alpha)));
+        let width = |factor: f64| {
+            let lobes = varied.at(factor);
+            let [along, across] = lobes.rows[lobes.rows.len() - 1].lobes[0].sharpness;
+            1.0 / (along * across).sqrt()
+        };
+        for factor in [1.0, 0.6, 0.3, 0.1, 0.02] {
+            let ratio = width(factor) / (0.2 * factor);
+            // Few paths, as a test has: widths of single fits are off by a tenth.
+            assert!((ratio - 1.0).abs() < 0.15, "{factor}: {ratio}");
+        }
+    }
+
+    /// Oracle: Bouguer's law. Light that goes down and up along the normal through the slab is attenuated as `exp(-2 d sigma)`.
+    #[test]
+    fn energies_between_nodes_are_those_of_the_slab() {
+        let diffuse = Base::Diffuse(Diffuse { albedo: [0.5; 3], sigma: 0.0 });
+        let varied = Varied::with(&coated(0.01, 1.0, diffuse, 0.0), &COLOR, Some(Varying::Slab), SETTINGS);
+        let smooth = Varied::with(&coated(0.0, 1.0, metal(), 0.01), &COLOR, Some(Varying::Slab), SETTINGS);
+        assert_eq!(varied.least_spread(), 1.0);
+        for factor in [1.0, 0.7, 0.41, 0.2, 0.05, 0.0] {
+            let clear = smooth.at(0.0).row(1.0);
+            let row = smooth.at(factor).row(1.0);
+            let [below, all] = [&row, &clear].map(|row| [0, 2].map(|c: usize| row.albedo_dir[c] - 0.04));
+            for (k, sigma) in [0.2, 0.8].into_iter().enumerate() {
+                let (expected, found) = (libm::exp(-2.0 * factor * sigma), below[k] / all[k]);
+                assert!((found - expected).abs() < 0.02, "{factor} {sigma}: {found} {expected}");
+            }
+            let albedo = varied.at(factor).row(0.8).albedo_dir;
+            assert!(albedo[2] <= albedo[0] + 1e-3 && albedo[0] < 0.6, "{factor}: {albedo:?}");
+        }
+    }
+
+    #[test]
+    fn the_first_node_is_the_fit_without_maps() {
+        let stack = coated(0.2, 1.0, metal(), 0.1);
+        let alone = Varied::with(&stack, &COLOR, None, SETTINGS);
+        let varied = Varied::with(&stack, &COLOR, Some(Varying::Slab), SETTINGS);
+        assert_eq!(alone.at(0.5).rows, alone.nodes[0].rows);
+        if varied.nodes[0].rows[0].lobes.len() == alone.nodes[0].rows[0].lobes.len() {
+            assert_eq!(varied.nodes[0].rows, alone.nodes[0].rows);
+        }
+        assert_eq!(varied.at(1.0).rows[3].albedo_dir, varied.nodes[0].rows[3].albedo_dir);
+        assert!(varied.nodes.iter().all(|node| node.rows.len() == 8));
+    }
+}
