@@ -40,7 +40,7 @@ pub(crate) struct ModelInputs {
     pub(crate) other: Option<PathBuf>,
     /// Re-radiation matrix of the base as a CSV file, see below; --wavelength is the light seen (fluorescence)
     #[arg(long, value_name = "CSV", requires = "excitation")]
-    #[arg(conflicts_with_all = ["furnace", "alpha_factor", "slab_factor", "film_factor"])]
+    #[arg(conflicts_with_all = ["furnace", "alpha_factor", "slab_factor", "film_factor", "slope_variance"])]
     pub(crate) matrix: Option<PathBuf>,
     /// Wavelength of the light, when it is not the one seen (fluorescence)
     #[arg(long, value_name = "NM", value_parser = crate::cli::wavelength)]
@@ -72,6 +72,9 @@ struct Textures {
     /// Factor on the thickness of the films on the first interface
     #[arg(long, value_name = "X", value_parser = not_negative, allow_hyphen_values = true)]
     film_factor: Option<f64>,
+    /// Variance, along either axis, of the slopes of the normals that a pixel sees
+    #[arg(long, value_name = "X", value_parser = not_negative, allow_hyphen_values = true)]
+    slope_variance: Option<f64>,
 }
 
 impl Textures {
@@ -81,6 +84,7 @@ impl Textures {
             alpha_factor: self.alpha_factor.unwrap_or(1.0),
             slab_factor: self.slab_factor.unwrap_or(1.0),
             film_factor: self.film_factor.unwrap_or(1.0),
+            slope_variance: self.slope_variance.unwrap_or(0.0),
         }
     }
 }
@@ -122,10 +126,12 @@ impl ModelInputs {
         }
         // As in the shaders: what lies below the first interface is theirs, and a particle's normal is anybody's.
         let is_chain = ["elek", "weidlich-wilkie"].contains(&model.info().name);
-        let below = [("flakes", effects.flakes.is_some()), ("patina", effects.patina.is_some())];
-        let dropped = below.into_iter().filter(|(_, is_there)| *is_there && !is_chain).map(|(name, _)| name).collect();
+        let has_flakes = is_chain || model.info().name == "lobes";
+        let below =
+            [("flakes", effects.flakes.is_some() && !has_flakes), ("patina", effects.patina.is_some() && !is_chain)];
+        let dropped = below.into_iter().filter(|(_, is_dropped)| *is_dropped).map(|(name, _)| name).collect();
         let shown = Effects {
-            flakes: effects.flakes.clone().filter(|_| is_chain),
+            flakes: effects.flakes.clone().filter(|_| has_flakes),
             patina: effects.patina.clone().filter(|_| is_chain),
             glitter: effects.glitter,
         };
@@ -163,9 +169,10 @@ impl ModelInputs {
         let takers: Vec<&str> = infos.filter(|i| i.inputs.contains(&input)).map(|i| i.name).collect();
         let effects = match input {
             Input::Uv => {
-                "; and `elek` and `weidlich-wilkie` for a file with flakes or patina, any model for one with glitter"
+                "; and `elek`, `weidlich-wilkie` and `lobes` for a file with flakes, the first two for one with patina, \
+                 any model for one with glitter"
             }
-            Input::Distance => "; and `elek` and `weidlich-wilkie` for a file with flakes",
+            Input::Distance => "; and `elek`, `weidlich-wilkie` and `lobes` for a file with flakes",
             Input::Extent | Input::Map => "; and `elek` and `weidlich-wilkie` for a file with patina",
             _ => "",
         };

@@ -111,7 +111,8 @@ impl ShadingModel {
             Feature::Anisotropy => matches!(self, Self::WeidlichWilkie | Self::Yamaguchi | Self::Microfacet),
             Feature::Beckmann => is_chain || matches!(self, Self::Microfacet | Self::Lobes),
             Feature::ThicknessMap => is_chain || is_statistical || self == Self::Lobes,
-            Feature::Flakes | Feature::Patina => is_chain,
+            Feature::Flakes => is_chain || self == Self::Lobes,
+            Feature::Patina => is_chain,
         }
     }
 }
@@ -140,7 +141,7 @@ mod tests {
             (ShadingModel::GranierHeidrich, ".#..#.#...##...#"),
             (ShadingModel::Phong, "###.##....##...#"),
             (ShadingModel::Microfacet, "....#b######...#"),
-            (ShadingModel::Lobes, "######.#.####..#"),
+            (ShadingModel::Lobes, "######.#.#####.#"),
         ] {
             assert_eq!(shown(model), expected, "{model}");
         }

@@ -19,6 +19,9 @@ luthier_lut::named! {
         Albedo = "albedo",
         /// `luthier_environment`, which shows a prefiltered environment; it brings `light`.
         Environment = "environment",
+        /// `LuthierPlace` for every material, with the variance of slopes of the normals in a pixel, and the normal of what lies below the
+        /// first interface; it brings `light`.
+        Surface = "surface",
     }
 }
 

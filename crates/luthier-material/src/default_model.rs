@@ -58,6 +58,8 @@ mod tests {
                            extent_um = 1000\nmap = { noise = { seed = 1, frequency = 2, octaves = 1 } }\n";
     const FLAKES: &str = "[effects.flakes]\ncells = { seed = 1, count = 8, spread_deg = 10 }\ntiling = 10\n";
 
+    const PATINA: &str = "[effects.patina]\nextent = 0.5\ntransition = 0.5\nmap = { noise = {} }\n";
+
     fn material(body: &str) -> Material {
         let text = format!("schema = 1\nname = \"x\"\n{body}");
         let parsed = crate::parse("x.toml", &text, &|_| Err(std::io::Error::other("none")));
@@ -88,7 +90,8 @@ mod tests {
             (COAT.to_owned() + worn + GOLD + beckmann, "belcour", "elek", Some("layer.0.maps.thickness")),
             (COAT.to_owned() + smooth + GOLD + brushed, "yamaguchi", "weidlich-wilkie", Some("layer.1.alpha_x")),
             (VARYING.to_owned() + COAT + rough + WHITE, "elek", "elek", Some("layer.0.film.0.thickness_nm")),
-            (COAT.to_owned() + smooth + GOLD + rough + FLAKES, "elek", "elek", Some("effects.flakes")),
+            (COAT.to_owned() + smooth + GOLD + rough + FLAKES, "lobes", "elek", None),
+            (COAT.to_owned() + smooth + GOLD + rough + PATINA, "elek", "elek", Some("effects.patina")),
             (
                 COAT.to_owned() + smooth + GOLD + brushed + FLAKES,
                 "weidlich-wilkie",

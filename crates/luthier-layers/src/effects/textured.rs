@@ -19,18 +19,26 @@ pub struct TextureSample {
     pub slab_factor: f64,
     /// Factor on the thickness of the films on the first interface.
     pub film_factor: f64,
+    /// Variance, along either axis, of the slopes of the normals that a pixel sees. Slope parameters have twice of it more, squared.
+    pub slope_variance: f64,
 }
 
 impl TextureSample {
     /// The sample where there is no texture.
-    pub const NONE: Self = Self { normal: DVec3::Z, alpha_factor: 1.0, slab_factor: 1.0, film_factor: 1.0 };
+    pub const NONE: Self =
+        Self { normal: DVec3::Z, alpha_factor: 1.0, slab_factor: 1.0, film_factor: 1.0, slope_variance: 0.0 };
+
+    /// A slope parameter with the variance of the normals.
+    pub(crate) fn widened(&self, alpha: f64) -> f64 {
+        if self.slope_variance > 0.0 { libm::sqrt(alpha * alpha + 2.0 * self.slope_variance) } else { alpha }
+    }
 
     /// The stack as it is at the place.
     pub fn apply(&self, stack: &Monochrome) -> Monochrome {
         let mut here = stack.clone();
         for layer in &mut here.layers {
             for alpha in [&mut layer.surface.alpha_x, &mut layer.surface.alpha_y] {
-                *alpha = (*alpha * self.alpha_factor).clamp(0.0, 1.0);
+                *alpha = self.widened(*alpha * self.alpha_factor).clamp(0.0, 1.0);
             }
         }
         if let Some(layer) = here.layers.first_mut() {

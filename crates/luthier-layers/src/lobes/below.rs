@@ -8,6 +8,9 @@ use luthier_optics::Rgb;
 use super::half_vector::{outside, refracted, slope};
 use super::{Frame, Row, Shape};
 
+/// Least cosine of a normal against that of the surface.
+const UP_MIN: f64 = 1e-3;
+
 /// Lobes and wide remainder at a view: what a renderer computes once for all lights.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Below {
@@ -18,6 +21,8 @@ pub struct Below {
     /// The eye in its own plane, inside.
     eye: DVec3,
     shapes: Vec<Shape>,
+    /// Slope by which the lobes are turned, along the plane of the eye and across it.
+    tilt: [f64; 2],
 }
 
 impl Below {
@@ -32,7 +37,38 @@ impl Below {
         });
         let shapes = shapes.collect();
         let eye = refracted(DVec3::new(sin, 0.0, wo.z), frame.index);
-        Self { frame, row, azimuth, eye, shapes }
+        Self { frame, row, azimuth, eye, shapes, tilt: [0.0; 2] }
+    }
+
+    /// The light where all that lies below a slab of relative index `index` is turned to a normal (unit, in the frame of the view): lobes are
+    /// shifted by the slope of the normal, as half vectors in that slab are. Energies and the wide remainder stay.
+    ///
+    /// Facets of slope s below a normal of slope t have the slope s + t, but for terms of second order. Where lobes are in half vectors of
+    /// another medium, the shift is that of the middle of a lobe in the mirror direction: times the ratio of the cosines inside, each times
+    /// its index. Against walks over a tilted metal under a smooth coat of index 1.5, tilts of 5 and 10 degrees add .004 to .05 to the lobe
+    /// error, one of 20 degrees .09 to .46 (`tilt_tests.rs`).
+    #[must_use]
+    pub fn tilted(mut self, normal: DVec3, index: f64) -> Self {
+        let [cos, sin] = self.azimuth;
+        let sin_theta_sq = self.frame.index * self.frame.index * (1.0 - self.eye.z * self.eye.z);
+        let ratio = (index * index - sin_theta_sq).max(0.0).sqrt() / (self.frame.index * self.eye.z);
+        let up = normal.z.max(UP_MIN);
+        let [x, y] = [normal.x, normal.y].map(|across| across * ratio / up);
+        self.tilt = [cos * x + sin * y, cos * y - sin * x];
+        self
+    }
+
+    /// The light where the normals that a pixel sees have slopes of a variance, along either axis: the squared widths of lobes have twice as
+    /// much more. A normal that leans by a slope shifts half vectors by as much of it as directions lean outside over those inside, `cos /
+    /// (n cos_inside)`. Energies stay.
+    #[must_use]
+    pub fn widened(mut self, wo: DVec3, slope_variance: f64) -> Self {
+        let leaning = wo.z / (self.frame.index * self.eye.z);
+        let more = 2.0 * slope_variance.max(0.0) * leaning * leaning;
+        for shape in &mut self.shapes {
+            shape.width = shape.width.map(|width| (width * width + more).sqrt());
+        }
+        self
     }
 
     /// The row of the view.
@@ -61,15 +97,18 @@ impl Below {
 
     /// A direction of a lobe for two numbers that are uniform in 0..1; `None` below the horizon.
     pub(super) fn sample(&self, lobe: usize, u: [f64; 2]) -> Option<DVec3> {
-        let DVec3 { x, y, z } = outside(self.shapes.get(lobe)?.sample(u), self.eye, self.frame.index)?;
+        let [x, y] = self.shapes.get(lobe)?.sample(u);
+        let slope = [x + self.tilt[0], y + self.tilt[1]];
+        let DVec3 { x, y, z } = outside(slope, self.eye, self.frame.index)?;
         let [cos, sin] = self.azimuth;
         Some(DVec3::new(cos * x - sin * y, sin * x + cos * y, z))
     }
 
-    /// The slope inside of the half vector with light, in the plane of the eye, and the factor to solid angles.
+    /// The slope inside of the half vector with light against the tilt, in the plane of the eye, and the factor to solid angles.
     fn slope(&self, wi: DVec3) -> ([f64; 2], f64) {
         let [cos, sin] = self.azimuth;
         let turned = DVec3::new(cos * wi.x + sin * wi.y, cos * wi.y - sin * wi.x, wi.z);
-        slope(turned, refracted(turned, self.frame.index), self.eye, self.frame.index)
+        let ([x, y], factor) = slope(turned, refracted(turned, self.frame.index), self.eye, self.frame.index);
+        ([x - self.tilt[0], y - self.tilt[1]], factor)
     }
 }

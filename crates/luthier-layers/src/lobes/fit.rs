@@ -159,8 +159,10 @@ impl Simulation {
     pub(super) fn follow(&self, from: &Found, factor: f64) -> Found {
         let lobes: Vec<Start> = from.starts().iter().map(|lobe| lobe.scaled(factor)).collect();
         let problem = Problem::new(self, from.set);
-        let lobed = Lobed { problem: &problem, lobes: lobes.len(), is_remainder_free: false };
-        let place = Place::new(parameters(lobes, from.wide_falloff()), &lobed);
+        let count = lobes.len();
+        let beside = parameters(lobes, from.wide_falloff());
+        let lobed = Lobed { problem: &problem, lobes: count, beside: Some(&beside) };
+        let place = Place::new(beside.clone(), &lobed);
         Found { set: from.set, place: SEARCH.descend(place, &lobed, LAST_STEPS) }
     }
 
@@ -215,7 +217,7 @@ const REMAINDER_START: [f64; 2] = [0.3, 0.0];
 /// The best place that searches from some starts come to: in a set of cells, with lobes and falloff of the remainder.
 fn nearest(problems: &[Problem<'_>], starts: Vec<(usize, Vec<Start>, [f64; 2])>) -> Found {
     let first = |(set, lobes, wide): (usize, Vec<Start>, [f64; 2])| {
-        let problem = Lobed { problem: &problems[set], lobes: lobes.len(), is_remainder_free: true };
+        let problem = Lobed { problem: &problems[set], lobes: lobes.len(), beside: None };
         let place = Place::new(parameters(lobes, wide), &problem);
         Found { set, place: SEARCH.descend(place, &problem, FIRST_STEPS) }
     };
@@ -223,8 +225,7 @@ fn nearest(problems: &[Problem<'_>], starts: Vec<(usize, Vec<Start>, [f64; 2])>)
     found.sort_by(|a, b| a.place.cost.total_cmp(&b.place.cost));
     found.truncate(FOLLOWED);
     let last = |Found { set, place }: Found| {
-        let problem =
-            Lobed { problem: &problems[set], lobes: place.parameters.len() / PER_LOBE, is_remainder_free: true };
+        let problem = Lobed { problem: &problems[set], lobes: place.parameters.len() / PER_LOBE, beside: None };
         Found { set, place: SEARCH.descend(place, &problem, LAST_STEPS) }
     };
     let best = found.into_iter().map(last).min_by(|a, b| a.place.cost.total_cmp(&b.place.cost));

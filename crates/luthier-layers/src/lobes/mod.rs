@@ -37,6 +37,8 @@ mod solve;
 mod tally;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tilt_tests;
 mod varied;
 
 pub use below::Below;

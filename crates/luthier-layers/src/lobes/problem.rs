@@ -20,6 +20,9 @@ const SHARE_WEIGHT: f64 = 0.5;
 const RIPPLE_WEIGHT: f64 = 0.03;
 const REST_WEIGHT: f64 = 0.003;
 
+/// Weight of the distance from the parameters of a neighbour.
+const BESIDE_WEIGHT: f64 = 0.05;
+
 /// Energy that is added to that of a cell, over the mean, where residuals are weighed.
 const WEIGHT_FLOOR: f64 = 0.05;
 
@@ -56,23 +59,27 @@ pub(super) struct Profiles {
     shares: Vec<f64>,
 }
 
-/// A problem with a number of lobes. Its blocks are the views, and last the ripples.
+/// A problem with a number of lobes. Its blocks are the views, the ripples, and last the distance from the parameters of a neighbour.
 pub(super) struct Lobed<'a> {
     pub(super) problem: &'a Problem<'a>,
     pub(super) lobes: usize,
-    /// Whether the shape of the remainder is looked for; otherwise it stays as it is.
-    pub(super) is_remainder_free: bool,
+    /// Parameters of a neighbour, between which and those that are looked for rows are mixed: the shape of the remainder stays as it is, and lobes
+    /// keep their identity.
+    pub(super) beside: Option<&'a [f64]>,
 }
 
 impl Residuals for Lobed<'_> {
     fn blocks(&self) -> usize {
-        self.problem.views.len() + 1
+        self.problem.views.len() + 1 + usize::from(self.beside.is_some())
     }
 
     fn block(&self, p: &[f64], block: usize) -> Vec<f64> {
-        match self.problem.views.get(block) {
-            Some(view) => view.residuals(&view.profiles(p, self.lobes)),
-            None => ripple(p, self.lobes),
+        match (self.problem.views.get(block), self.beside) {
+            (Some(view), _) => view.residuals(&view.profiles(p, self.lobes)),
+            (None, Some(beside)) if block > self.problem.views.len() => {
+                p[..self.lobes * PER_LOBE].iter().zip(beside).map(|(p, beside)| BESIDE_WEIGHT * (p - beside)).collect()
+            }
+            (None, _) => ripple(p, self.lobes),
         }
     }
 
@@ -80,8 +87,13 @@ impl Residuals for Lobed<'_> {
         match self.problem.views.get(block) {
             Some(view) => {
                 let mut columns = view.slopes(p, self.lobes, now);
-                columns.retain(|(number, _)| self.is_remainder_free || *number < p.len() - 2);
+                columns.retain(|(number, _)| self.beside.is_none() || *number < p.len() - 2);
                 columns
+            }
+            None if block > self.problem.views.len() => {
+                let count = self.lobes * PER_LOBE;
+                let column = |j: usize| (j, (0..count).map(|i| if i == j { BESIDE_WEIGHT } else { 0.0 }).collect());
+                (0..count).map(column).collect()
             }
             None => ripple_slopes(p, self.lobes),
         }
@@ -421,7 +433,7 @@ mod tests {
         let settings = FitSettings { rows: 4, paths: 2000, seed: 1 };
         let simulation = Simulation::new(&stack, &Color::ThreeWavelengths([550.0; 3]), settings).unwrap();
         let problem = Problem::new(&simulation, 1);
-        let lobed = Lobed { problem: &problem, lobes: 2, is_remainder_free: true };
+        let lobed = Lobed { problem: &problem, lobes: 2, beside: None };
         let mut p = parameters(vec![Start::new(0.2, 0.6), Start::new(0.5, 1.0)], [0.3, 0.1]);
         (0..p.len()).for_each(|j| p[j] += 0.05 * (j % 7) as f64);
         for block in 0..lobed.blocks() {

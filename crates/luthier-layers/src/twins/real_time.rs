@@ -26,18 +26,20 @@ use crate::statistics::spread::{Covariance, Spread};
 use crate::terms::{ShaderTerms, Terms};
 use crate::weidlich_wilkie::WeidlichWilkie;
 
-/// Normals below the first interface of a surface: those of `LuthierPlace`, each unit.
+/// Normals below the first interface of a surface, each unit, and the variance of its own: those of `LuthierPlace`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Under {
-    /// Normal of the flakes, which all that lies below is turned by; for `elek` and `weidlich-wilkie`.
+    /// Normal of the flakes, which all that lies below is turned by; for `elek`, `weidlich-wilkie` and `lobes`.
     pub flake_normal: DVec3,
     /// Normal of the lower boundary of the film; for `granier-heidrich`.
     pub inner_normal: DVec3,
+    /// Variance of the slopes of normals in a pixel, which widens what comes from below; for `lobes`. Others have it in their slope parameters.
+    pub slope_variance: f64,
 }
 
 impl Under {
     /// Normals of the surface itself.
-    pub const NONE: Self = Self { flake_normal: DVec3::Z, inner_normal: DVec3::Z };
+    pub const NONE: Self = Self { flake_normal: DVec3::Z, inner_normal: DVec3::Z, slope_variance: 0.0 };
 }
 
 /// The twin of a shader, for one surface.
@@ -101,7 +103,7 @@ impl Twin {
 
     /// [`Twin::eval`] with other normals below the first interface.
     pub fn eval_over(&self, terms: &impl ShaderTerms, under: &Under, wi: DVec3, wo: DVec3) -> Rgb {
-        let &Under { flake_normal, inner_normal } = under;
+        let &Under { flake_normal, inner_normal, slope_variance } = under;
         match &self.0 {
             Kind::Elek(layers) => elek::eval_below(layers, terms, wi, wo, flake_normal),
             Kind::WeidlichWilkie(stacks) => each(terms, stacks, |stack, optics| {
@@ -117,7 +119,16 @@ impl Twin {
             Kind::Lobes(one, is_interface) => {
                 let first = each(terms, &one.1, |stack, optics| one.0.eval_with(stack, optics, wi, wo));
                 let below = if *is_interface && wi.z > 0.0 { terms.below(wo) } else { None };
-                let below = below.map_or([0.0; 3], |below| below.eval(wi));
+                let below = below.map(|below| match slope_variance > 0.0 {
+                    true => below.widened(wo, slope_variance),
+                    false => below,
+                });
+                let below = below.map_or([0.0; 3], |below| match one.1[1].layers[0].below {
+                    MonochromeBelow::Dielectric { ior, .. } if flake_normal != DVec3::Z => {
+                        below.tilted(flake_normal, ior / one.1[1].exterior).eval(wi)
+                    }
+                    _ => below.eval(wi),
+                });
                 [0, 1, 2].map(|c: usize| first[c] + below[c])
             }
             Kind::Microfacet(one) => each(terms, &one.1, |stack, optics| one.0.eval_with(stack, optics, wi, wo)),

@@ -66,17 +66,23 @@ impl Shaded {
     /// form, or three wavelengths as in the form without tables. Belcour's and Yamaguchi's models have the energies of rough
     /// interfaces, as in the baked form.
     ///
-    /// Effects are those of the model's shader: flakes and patina in `elek` and `weidlich-wilkie`, deviated films in `granier-heidrich`.
+    /// Effects are those of the model's shader: flakes and patina in `elek` and `weidlich-wilkie`, flakes in `lobes`, deviated films in `granier-heidrich`.
     pub fn new(model: &str, stack: &Stack, wavelengths_nm: [f64; 3], color: Color, place: &Place) -> Option<Self> {
         let is_chain = [elek::MODEL, "weidlich-wilkie"].contains(&model);
         let patina = place.patina.filter(|_| is_chain && stack.layers.len() > 1);
         let layers = |stack: &Stack| {
-            let twin = Twin::new(model, stack, wavelengths_nm, color)?;
+            // Lobes are widened one by one, and the first interface beside them.
+            let mut first = stack.clone();
+            if model == lobes::MODEL {
+                first.layers.iter_mut().for_each(|layer| widen(&mut layer.surface, &place.sample));
+            }
+            let twin = Twin::new(model, &first, wavelengths_nm, color)?;
             Some(Layers { twin, terms: Exact::new(stack, color) })
         };
         let here = at(stack, model, place, patina);
         let bare = patina.map(|_| layers(&Stack { layers: here.layers[1..].to_vec(), ..here.clone() }));
-        Some(Self { place: Place { patina, ..*place }, layers: layers(&here)?, bare: bare.flatten() })
+        let under = Under { slope_variance: place.sample.slope_variance, ..place.under };
+        Some(Self { place: Place { patina, under, ..*place }, layers: layers(&here)?, bare: bare.flatten() })
     }
 
     /// `f cos_theta_i`, RGB; the cosine is that against the place's normal. Zero where either direction is at or below the horizon of the
@@ -108,6 +114,15 @@ impl Shaded {
     }
 }
 
+/// The surface with the variance of the normals of a pixel.
+fn widen(surface: &mut Surface, sample: &TextureSample) {
+    if sample.slope_variance > 0.0 {
+        for alpha in [&mut surface.alpha_x, &mut surface.alpha_y] {
+            *alpha = sample.widened(alpha.clamp(ALPHA_MIN, 1.0)).clamp(ALPHA_MIN, 1.0);
+        }
+    }
+}
+
 /// The stack as a model's shader has it at a place.
 fn at(stack: &Stack, model: &str, place: &Place, patina: Option<Growth>) -> Stack {
     let factors = &place.sample;
@@ -118,7 +133,7 @@ fn at(stack: &Stack, model: &str, place: &Place, patina: Option<Growth>) -> Stac
     let mut here = stack.clone();
     for (i, layer) in here.layers.iter_mut().enumerate() {
         let base_alpha = patina.filter(|_| i == 1).and_then(|p| Some((p.base_alpha?, p.amount)));
-        if factors.alpha_factor == 1.0 && base_alpha.is_none() {
+        if factors.alpha_factor == 1.0 && factors.slope_variance == 0.0 && base_alpha.is_none() {
             continue;
         }
         if model == elek::MODEL {
@@ -126,7 +141,7 @@ fn at(stack: &Stack, model: &str, place: &Place, patina: Option<Growth>) -> Stac
         }
         for alpha in [&mut layer.surface.alpha_x, &mut layer.surface.alpha_y] {
             // Records are clamped before anything acts on them.
-            *alpha = (alpha.clamp(ALPHA_MIN, 1.0) * factors.alpha_factor).clamp(ALPHA_MIN, 1.0);
+            *alpha = factors.widened(alpha.clamp(ALPHA_MIN, 1.0) * factors.alpha_factor).clamp(ALPHA_MIN, 1.0);
             if let Some((base_alpha, amount)) = base_alpha {
                 *alpha += (base_alpha - *alpha) * amount;
             }
@@ -273,7 +288,8 @@ mod tests {
             normal: DVec3::new(0.1, -0.05, 0.9).normalize(),
             alpha_factor: 1.3,
             slab_factor: 2.0,
-            film_factor: 1.0,
+            slope_variance: 0.02,
+            ..TextureSample::NONE
         };
         for name in ["elek", "weidlich-wilkie", "granier-heidrich", "microfacet"] {
             let model = registry::model(name).unwrap();

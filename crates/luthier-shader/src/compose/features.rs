@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use luthier_lut::TableKind;
-use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry, ShadingModel};
+use luthier_manifest::{FunctionGroup, LayerKind, LayerRecord, MaterialEntry, ShadingModel};
 
 use crate::{Form, MaterialSet};
 
@@ -16,8 +16,8 @@ impl Features {
     #[cfg(test)]
     const ALL: &str = "absorption anisotropic bare beckmann below bilinear chain chain_diffuse clamped closed coat conductor critical_view diffuse environment \
     face film film_table flakes full ggx glitter granier granier_bare granier_base \
-    granier_film granier_transparent interface lobes_diffuse media microfacet_diffuse mixed one_lobe oren_nayar patina phong \
-    place powers schlick_base several smith split_root statistics statistics_base theta_axis tilted total_reflection two_lobes visible";
+    granier_film granier_transparent interface lobes_diffuse lobes_tilted media microfacet_diffuse mixed one_lobe oren_nayar patina phong \
+    place powers schlick_base several smith split_root statistics statistics_base surface theta_axis tilted total_reflection two_lobes visible";
 
     pub(crate) fn of(set: &MaterialSet<'_>, form: Form) -> Self {
         let mut names = BTreeSet::new();
@@ -38,6 +38,15 @@ impl Features {
         }
         if [ShadingModel::Elek, ShadingModel::WeidlichWilkie].into_iter().any(|model| ends_early(set, model)) {
             names.insert("conductor");
+        }
+        if set.functions.has(FunctionGroup::Surface) {
+            names.extend(["place", "surface"]);
+            if names.contains("chain") && names.contains("below") {
+                names.insert("flakes");
+            }
+            if set.materials.iter().any(has_coat) {
+                names.extend(["flakes", "lobes_tilted"]);
+            }
         }
         if form == Form::Full {
             names.insert("full");
@@ -171,7 +180,12 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
     let (has_interface, has_diffuse) = (names.contains("interface"), names.contains("diffuse"));
     match material.model {
         ShadingModel::Microfacet if has_interface => names.insert("smith"),
-        ShadingModel::Lobes if has_interface => names.insert("coat"),
+        ShadingModel::Lobes if has_interface => {
+            if material.constants.flakes.is_some() && has_coat(material) {
+                names.extend(["flakes", "lobes_tilted"]);
+            }
+            names.insert("coat")
+        }
         ShadingModel::Lobes => names.insert("lobes_diffuse"),
         ShadingModel::Microfacet => names.insert("microfacet_diffuse"),
         // Beside a coat it is a step of the chain; alone in its set it needs none.
@@ -183,7 +197,7 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
             if material.model == ShadingModel::Elek && gets_smoother(layers) {
                 names.insert("clamped");
             }
-            // Other models have no layer below the first interface that flakes could tilt or patina cover.
+            // Beside these and `lobes`, models have no layer below the first interface that flakes could tilt or patina cover.
             if material.constants.flakes.is_some() && names.contains("below") {
                 names.insert("flakes");
             }
@@ -213,6 +227,12 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
         _ => false,
     };
     names
+}
+
+/// Whether lobes come from below a slab, in which what is there may be tilted.
+fn has_coat(material: &MaterialEntry) -> bool {
+    material.model == ShadingModel::Lobes
+        && material.layers.first().is_some_and(|first| first.kind == LayerKind::Dielectric)
 }
 
 /// Whether an interface is smoother than one above it.

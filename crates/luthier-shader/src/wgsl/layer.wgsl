@@ -48,8 +48,8 @@ struct LuthierLayer {
     //? end
     //? end
     //? end
-    //? below
-    //? statistics
+    //? below|lobes_tilted
+    //? statistics|lobes_tilted
     /// Index below over index above, for the refracted directions.
     eta: f32,
     //? end

@@ -136,9 +136,16 @@ fn a_shader_has_the_groups_that_were_asked_for() {
         (FunctionGroup::Light, &["fn luthier_prepare(", "fn luthier_light("][..]),
         (FunctionGroup::Sample, &["fn luthier_sample(", "fn luthier_pdf("]),
         (FunctionGroup::Albedo, &["fn luthier_albedo("]),
+        (FunctionGroup::Surface, &["    slope_variance: f32,"]),
     ];
     for (name, materials) in sets() {
-        for asked in [&[][..], &[FunctionGroup::Light], &[FunctionGroup::Sample], &[FunctionGroup::Albedo]] {
+        for asked in [
+            &[][..],
+            &[FunctionGroup::Light],
+            &[FunctionGroup::Sample],
+            &[FunctionGroup::Albedo],
+            &[FunctionGroup::Surface],
+        ] {
             let set =
                 MaterialSet { functions: asked.iter().copied().collect(), ..MaterialSet::new(&materials, tables()) };
             let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();

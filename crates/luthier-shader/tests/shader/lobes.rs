@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use luthier_layers::lobes::{Below, Critical, Frame, Row, ViewAxis, Wide};
 use luthier_lut::{AtlasLayout, Image, TableKind, WeightBits, bilinear};
-use luthier_manifest::{FunctionGroup, LobesRecord, MaterialEntry, VaryingFactor, VaryingRecord, material_buffer};
+use luthier_manifest::{
+    FunctionGroup, LobesRecord, MaterialConstants, MaterialEntry, VaryingFactor, VaryingRecord, material_buffer,
+};
 use luthier_optics::microfacet;
 use luthier_optics::stack::Distribution;
 use luthier_shader::{Form, MaterialSet, ShaderError, TableFace, Target, emit};
@@ -162,6 +164,57 @@ fn rows_over_a_factor_are_those_of_the_twin() {
                 }
             }
         }
+    }
+}
+
+/// The normal of flakes shifts lobes, and the variance of normals widens them, as they do in the twin, whose own oracles are a walk and a mean
+/// (`luthier-layers/src/lobes/tilt_tests.rs`).
+#[test]
+fn normals_below_and_in_a_pixel_change_lobes_as_in_the_twin() {
+    let (layout, image) = rows();
+    for (name, groups, variance) in [("lobes-flakes", &[][..], 0.0), ("lobes", &[FunctionGroup::Surface], 0.02)] {
+        let given = set(name).swap_remove(0);
+        let record = given.constants.lobes.unwrap();
+        let frame =
+            Frame { index: record.index, wide: Wide::new(record.falloff, ViewAxis::new(2, Critical::default())) };
+        let lobes = Some(LobesRecord { integral: frame.wide.integral(), ..record });
+        let materials =
+            [MaterialEntry { constants: MaterialConstants { lobes, ..given.constants.clone() }, ..given.clone() }];
+        let set = MaterialSet { functions: groups.iter().copied().collect(), ..MaterialSet::new(&materials, tables()) };
+        let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
+        let black = Image::zeros(3, 3, 3);
+        let textures =
+            [("luthier_fresnel", black.clone()), ("luthier_distribution", black), ("luthier_lobes", image.clone())];
+        let textures = BTreeMap::from(textures.map(|(name, image)| (name.to_owned(), image)));
+        let machine = Machine::new(&text, &material_buffer(&materials), textures);
+        let Value::Many(neutral) = machine.call("luthier_place", Vec::new()) else { panic!("a place is a structure") };
+        let mut moved = 0.0_f64;
+        for (k, (wi, wo)) in directions(300).into_iter().enumerate() {
+            let [light, eye] = [wi, wo].map(DVec3::from);
+            if light.z <= 0.0 || eye.z <= 0.0 {
+                continue;
+            }
+            let normal = DVec3::new(0.3, -0.2, 1.0 + 0.1 * k as f64).normalize().as_vec3();
+            let mut place = neutral.clone();
+            // After the normal and three factors.
+            if !groups.is_empty() {
+                place[4] = Value::F(variance as f32);
+            }
+            *place.last_mut().unwrap() = vector(&normal.to_array());
+            let part = |part: u32| bilinear(&image, layout.position(0, [eye.z, f64::from(part)]), WeightBits::Exact);
+            let below = Below::new(frame, Row::of_parts(&(0..6).map(part).collect::<Vec<_>>()), eye);
+            let straight = below.eval(light);
+            let there = below.widened(eye, variance).tilted(normal.as_dvec3(), given.layers[0].eta).eval(light);
+            let arguments = vec![Value::Many(place), Value::U(0), vector(&wo.map(|w| w as f32))];
+            let prepared = machine.call("luthier_prepare_lobes", arguments);
+            let found = machine.call("luthier_light_lobes", vec![prepared, vector(&wi.map(|w| w as f32))]).floats();
+            for c in 0..3 {
+                let error = (f64::from(found[c]) - there[c]).abs() / there[c].abs().max(0.03);
+                assert!(error < 3e-4, "{name} {wi:?} {wo:?} {normal}: {found:?} {there:?}");
+                moved = moved.max((there[c] - straight[c]).abs());
+            }
+        }
+        assert!(moved > 0.1, "{name}: {moved}");
     }
 }
 

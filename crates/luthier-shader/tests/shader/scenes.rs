@@ -256,6 +256,7 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
         ("lobes", vec![with_lobes(house())]),
         ("lobes-film", vec![with_lobes(oil())]),
         ("lobes-place", vec![with_lobes(glitter())]),
+        ("lobes-flakes", vec![with_lobes(flaked())]),
         (
             "lobes-mixed",
             vec![

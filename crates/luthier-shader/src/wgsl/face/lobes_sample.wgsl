@@ -39,7 +39,12 @@ fn luthier_sample_lobe(prepared: LuthierPreparedLobes, shape: vec4<f32>, u: vec2
     let series = y * (1.0 + y * (0.5 + y * (1.0 / 6.0)));
     let radius = sqrt(select(exp(y) - 1.0, series, y < 0.02));
     let phi = 2.0 * LUTHIER_PI * u.y;
-    let wh = normalize(vec3<f32>(vec2<f32>(shape.x, 0.0) + radius * vec2<f32>(cos(phi), sin(phi)) / shape.yz, 1.0));
+    //? lobes_tilted
+    let middle = vec2<f32>(shape.x, 0.0) + prepared.tilt;
+    //? else
+    let middle = vec2<f32>(shape.x, 0.0);
+    //? end
+    let wh = normalize(vec3<f32>(middle + radius * vec2<f32>(cos(phi), sin(phi)) / shape.yz, 1.0));
     // Directions inside times the index, in the plane of the eye.
     let eye = vec3<f32>(dot(prepared.azimuth, prepared.wo.xy), 0.0, prepared.inside_cos);
     let inside = 2.0 * dot(wh, eye) * wh - eye;

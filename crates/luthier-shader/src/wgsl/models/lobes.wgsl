@@ -28,6 +28,12 @@ struct LuthierPreparedLobes {
     inside_cos: f32,
     /// The index squared less 1, the coefficients of the remainder's shape, and 1 over its integral.
     medium: vec4<f32>,
+    //? lobes_tilted
+    //? one_lobe|two_lobes
+    /// Slope by which flakes turn the lobes, along the plane of the eye and across it.
+    tilt: vec2<f32>,
+    //? end
+    //? end
     //? critical_view
     /// Numbers of the cosine inside, see `luthier_inside_cosine`.
     inside: vec4<f32>,
@@ -84,10 +90,17 @@ fn luthier_inside_cos_sq(medium: vec4<f32>, cos_theta: f32) -> f32 {
 
 //? place
 //? one_lobe|two_lobes
-/// A lobe whose slopes are so many times as steep.
-fn luthier_spread(shape: vec4<f32>, factor: f32) -> vec4<f32> {
+/// A lobe whose slopes are so many times as steep, and then have twice a variance more.
+fn luthier_spread(shape: vec4<f32>, factor: f32, twice_variance: f32) -> vec4<f32> {
     let inverse = 1.0 / factor;
+    //? surface
+    // Squared widths are 1 / (z x^2).
+    let sharper = shape.yz * inverse;
+    let wider = sharper * inverseSqrt(1.0 + twice_variance * shape.w * sharper * sharper);
+    return vec4<f32>(shape.x * factor, wider, shape.w);
+    //? else
     return shape * vec4<f32>(factor, inverse, inverse, 1.0);
+    //? end
 }
 //? end
 //? end
@@ -119,6 +132,14 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     prepared.azimuth = across * inverse_sin;
     prepared.medium = luthier_materials[header + $word_veil];
     prepared.inside_cos = sqrt(luthier_inside_cos_sq(prepared.medium, wo.z));
+    //? lobes_tilted
+    //? one_lobe|two_lobes
+    // Half vectors in the slab are shifted by the slope of the normal, those in another medium as much as the mirror direction is.
+    let slab_cos = sqrt(max(prepared.coat.eta * prepared.coat.eta - sin_theta_sq, 0.0));
+    let turned = place.flake_normal.xy * (slab_cos / (prepared.inside_cos * max(place.flake_normal.z, 1e-3)));
+    prepared.tilt = vec2<f32>(dot(prepared.azimuth, turned), prepared.azimuth.x * turned.y - prepared.azimuth.y * turned.x);
+    //? end
+    //? end
     //? critical_view
     prepared.inside = luthier_materials[header + $word_phong_specular];
     // Rows are over a mean of it and of the cosine outside.
@@ -129,11 +150,20 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     prepared.row = vec2<f32>(tile, cos_theta);
     prepared.wide = luthier_lookup_lobes(tile, cos_theta, 0.0).rgb;
     //? one_lobe|two_lobes
+    //? surface
+    // A normal that leans by a slope shifts half vectors by as much of it as directions lean outside over those inside.
+    let leaning = wo.z / prepared.inside_cos;
+    let unresolved = 2.0 * max(place.slope_variance, 0.0) * leaning * leaning;
+    //? else
+    //? place
+    let unresolved = 0.0;
+    //? end
+    //? end
     let first = luthier_lookup_lobes(tile, cos_theta, 1.0);
     prepared.first_strength = first.rgb;
     let first_shape = vec4<f32>(first.a * sin_theta, luthier_lookup_lobes(tile, cos_theta, 2.0).rgb);
     //? place
-    prepared.first_shape = luthier_spread(first_shape, spread);
+    prepared.first_shape = luthier_spread(first_shape, spread, unresolved);
     //? else
     prepared.first_shape = first_shape;
     //? end
@@ -143,7 +173,7 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     prepared.second_strength = second.rgb;
     let second_shape = vec4<f32>(second.a * sin_theta, luthier_lookup_lobes(tile, cos_theta, 4.0).rgb);
     //? place
-    prepared.second_shape = luthier_spread(second_shape, spread);
+    prepared.second_shape = luthier_spread(second_shape, spread, unresolved);
     //? else
     prepared.second_shape = second_shape;
     //? end
@@ -162,7 +192,7 @@ fn luthier_half_slope_density(shape: vec4<f32>, slope: vec2<f32>) -> f32 {
 //? end
 
 //? one_lobe|two_lobes
-/// The half vector with light from wi between refracted directions: its slopes in the plane of the eye and across it, and the factor from half
+/// The half vector with light from wi between refracted directions: its slopes in the plane of the eye and across it, against the tilt, and the factor from half
 /// densities of slopes to densities of solid angle outside.
 fn luthier_place_below(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f32> {
     // Directions inside times the index.
@@ -173,7 +203,11 @@ fn luthier_place_below(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     let z = inside_cos_sq * inverse_cos + prepared.inside_cos;
     let inverse_z = 1.0 / z;
     let factor = (dot(sum, sum) + z * z) * (inverse_z * inverse_z * inverse_z) * (inverse_cos * wi.z);
+    //? lobes_tilted
+    return vec3<f32>(across * inverse_z - prepared.tilt, factor);
+    //? else
     return vec3<f32>(across * inverse_z, factor);
+    //? end
 }
 //? end
 

@@ -26,8 +26,8 @@ fn luthier_environment_diffuse(normal: vec3<f32>) -> vec3<f32> {
 struct LuthierShownLobe {
     /// The eye inside, times the index.
     eye: vec3<f32>,
-    /// Middle along the plane of the eye.
-    middle: f32,
+    /// Middle along the plane of the eye and across it.
+    middle: vec2<f32>,
     /// Widths along that plane and across it.
     width: vec2<f32>,
     /// Those within which directions lie: what their blurs leave.
@@ -55,10 +55,21 @@ fn luthier_shown_stretch(up_z: f32, cos_theta_i: f32, cos_theta_d: f32, cos_thet
 /// are seen one by one in small bright lights.
 const LUTHIER_TAP_BLUR: f32 = 0.1880;
 
+//? one_lobe|two_lobes
+/// Middle of a lobe of rows.
+fn luthier_shown_middle(prepared: LuthierPreparedLobes, shape: vec4<f32>) -> vec2<f32> {
+    //? lobes_tilted
+    return vec2<f32>(shape.x, 0.0) + prepared.tilt;
+    //? else
+    return vec2<f32>(shape.x, 0.0);
+    //? end
+}
+
+//? end
 /// A lobe with this middle and these widths, seen in a medium whose squared index less 1 is the excess.
-fn luthier_shown_lobe(prepared: LuthierPreparedLobes, excess: f32, middle: f32, width: vec2<f32>, tail: f32, turn: vec2<f32>) -> LuthierShownLobe {
+fn luthier_shown_lobe(prepared: LuthierPreparedLobes, excess: f32, middle: vec2<f32>, width: vec2<f32>, tail: f32, turn: vec2<f32>) -> LuthierShownLobe {
     let eye = vec3<f32>(dot(prepared.azimuth, prepared.wo.xy), 0.0, sqrt(prepared.wo.z * prepared.wo.z + excess));
-    let wh = vec3<f32>(middle, 0.0, 1.0) * inverseSqrt(1.0 + middle * middle);
+    let wh = vec3<f32>(middle, 1.0) * inverseSqrt(1.0 + dot(middle, middle));
     let cos_theta_d = dot(wh, eye);
     let up = 2.0 * cos_theta_d * wh - eye;
     let angles = luthier_shown_stretch(up.z, sqrt(max(1.0 - up.x * up.x, 0.0)), cos_theta_d, wh.z) * width;
@@ -73,7 +84,7 @@ fn luthier_shown_tap(shown: LuthierShown, lobe: LuthierShownLobe, prepared: Luth
     let fall = log2(beyond);
     let radius = sqrt((exp2(-lobe.tail * fall) - 1.0) / lobe.tail);
     let around = vec2<f32>(lobe.turn.x * towards.x - lobe.turn.y * towards.y, lobe.turn.y * towards.x + lobe.turn.x * towards.y);
-    let slope = vec2<f32>(lobe.middle, 0.0) + radius * lobe.spread * around;
+    let slope = lobe.middle + radius * lobe.spread * around;
     let wh = vec3<f32>(slope, 1.0) * inverseSqrt(1.0 + dot(slope, slope));
     let cos_theta_d = dot(wh, lobe.eye);
     let up = 2.0 * cos_theta_d * wh - lobe.eye;
@@ -148,14 +159,14 @@ fn luthier_environment_lobes(prepared: LuthierPreparedLobes, frame: mat3x3<f32>,
     let first = luthier_lobe_below(prepared, 0u);
     rest -= first.energy;
     let first_width = inverseSqrt(first.shape.w) / first.shape.yz;
-    let first_lobe = luthier_shown_lobe(prepared, prepared.medium.x, first.shape.x, first_width, 1.0 / first.shape.w, turned);
+    let first_lobe = luthier_shown_lobe(prepared, prepared.medium.x, luthier_shown_middle(prepared, first.shape), first_width, 1.0 / first.shape.w, turned);
     total += first.energy * luthier_shown_mean(first_lobe, prepared, frame);
     //? end
     //? two_lobes
     let second = luthier_lobe_below(prepared, 1u);
     rest -= second.energy;
     let second_width = inverseSqrt(second.shape.w) / second.shape.yz;
-    let second_lobe = luthier_shown_lobe(prepared, prepared.medium.x, second.shape.x, second_width, 1.0 / second.shape.w, turned);
+    let second_lobe = luthier_shown_lobe(prepared, prepared.medium.x, luthier_shown_middle(prepared, second.shape), second_width, 1.0 / second.shape.w, turned);
     total += second.energy * luthier_shown_mean(second_lobe, prepared, frame);
     //? end
     //? beckmann
@@ -167,7 +178,7 @@ fn luthier_environment_lobes(prepared: LuthierPreparedLobes, frame: mat3x3<f32>,
     //? else
     let tail = 0.999;
     //? end
-    var coat = luthier_shown_lobe(prepared, 0.0, 0.0, vec2<f32>(prepared.coat.alpha), tail, turned);
+    var coat = luthier_shown_lobe(prepared, 0.0, vec2<f32>(0.0), vec2<f32>(prepared.coat.alpha), tail, turned);
     coat.is_coat = true;
     return total + max(rest, vec3<f32>(0.0)) * luthier_shown_mean(coat, prepared, frame);
 }

@@ -8,12 +8,16 @@ struct LuthierPlace {
     slab_factor: f32,
     /// Factor on the thickness of the film on the first interface.
     film_factor: f32,
+    //? surface
+    /// Variance, along either axis, of the slopes of the normals that a pixel sees: of a normal map whose texels it averages.
+    slope_variance: f32,
+    //? end
     //? granier
     /// Normal of the lower boundary of that film, unit, in the frame of `normal`.
     inner_normal: vec3<f32>,
     //? end
     //? flakes
-    /// Normal of the flakes below the first interface, unit, in the frame of `normal`.
+    /// Normal of what lies below the first interface, flakes for instance, unit, in the frame of `normal`.
     flake_normal: vec3<f32>,
     //? end
     //? patina
@@ -38,10 +42,20 @@ fn luthier_place() -> LuthierPlace {
 /// A layer of a material, counted from the top, as it is at a place.
 fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLayer {
     var layer = luthier_layer(material, index);
+    //? surface
+    // Slope parameters are twice the variance of Beckmann's slopes, squared.
+    let unresolved = 2.0 * max(place.slope_variance, 0.0);
+    let scale = place.alpha_factor * place.alpha_factor;
+    //? interface
+    layer = luthier_with_alpha(layer, clamp(sqrt(layer.alpha * layer.alpha * scale + unresolved), 0.001, 1.0));
+    //? end
+    layer.alpha_xy = clamp(sqrt(layer.alpha_xy * layer.alpha_xy * scale + unresolved), vec2<f32>(0.001), vec2<f32>(1.0));
+    //? else
     //? interface
     layer = luthier_with_alpha(layer, clamp(layer.alpha * place.alpha_factor, 0.001, 1.0));
     //? end
     layer.alpha_xy = clamp(layer.alpha_xy * place.alpha_factor, vec2<f32>(0.001), vec2<f32>(1.0));
+    //? end
     //? absorption|film
     if index == 0u {
         layer.optical_depth_log2 *= place.slab_factor;
