@@ -189,7 +189,7 @@ fn normals_below_and_in_a_pixel_change_lobes_as_in_the_twin() {
         let machine = Machine::new(&text, &material_buffer(&materials), textures);
         let Value::Many(neutral) = machine.call("luthier_place", Vec::new()) else { panic!("a place is a structure") };
         let mut moved = 0.0_f64;
-        for (k, (wi, wo)) in directions(300).into_iter().enumerate() {
+        for (k, (wi, wo)) in directions(300).enumerate() {
             let [light, eye] = [wi, wo].map(DVec3::from);
             if light.z <= 0.0 || eye.z <= 0.0 {
                 continue;

@@ -25,13 +25,13 @@ const MATERIALS: [&str; 8] = [
     "polished-gold",
 ];
 /// Of these, those of which simulations are fitted.
-const FITTED: [&str; 3] = ["car-paint", "red-lacquer", "varnished-brass"];
+pub(super) const FITTED: [&str; 3] = ["car-paint", "red-lacquer", "varnished-brass"];
 
 /// Angles of the eye, degrees.
 const EYES: [f64; 3] = [0.0, 40.0, 75.0];
 const DRAWS: u32 = 1 << 16;
 /// Nodes of the integrals along radii and around, and of them in one bin.
-const NODES: [u32; 2] = [192, 512];
+pub(super) const NODES: [u32; 2] = [192, 512];
 const BIN: [u32; 2] = [12, 64];
 const BINS: usize = (NODES[0] / BIN[0] * (NODES[1] / BIN[1])) as usize;
 /// Radii fall by this power of e before they are linear.
@@ -41,7 +41,7 @@ const QUANTILE: f64 = 4.42;
 
 /// What a call gives, by its number.
 #[derive(Clone, Copy)]
-enum Call {
+pub(super) enum Call {
     Pdf,
     Light,
     Direction,
@@ -69,7 +69,7 @@ const BODY: &str = "
     return drawn.weight;";
 
 /// A package of materials, for a place whose flakes are tilted and whose patina is half grown.
-fn scene(materials: &[Material]) -> Option<Scene> {
+pub(super) fn scene(materials: &[Material]) -> Option<Scene> {
     let gpu = gpu()?;
     let functions = [FunctionGroup::Sample, FunctionGroup::Albedo].into_iter().collect();
     let bake = Bake { functions, refuses: false, ..Bake::wgsl(&[Form::Baked]) };
@@ -106,11 +106,16 @@ fn scene(materials: &[Material]) -> Option<Scene> {
 }
 
 /// The disc about the mirrored eye.
-struct Disc {
+pub(super) struct Disc {
     middle: [f64; 2],
 }
 
 impl Disc {
+    /// The disc of directions seen by an eye.
+    pub(super) fn new(wo: [f32; 3]) -> Self {
+        Self { middle: [-f64::from(wo[0]), -f64::from(wo[1])] }
+    }
+
     /// Distance to the horizon.
     fn reach(&self, psi: f64) -> f64 {
         let (sin, cos) = libm::sincos(psi);
@@ -120,7 +125,7 @@ impl Disc {
     }
 
     /// Direction at coordinates in 0..1, and solid angle over area there.
-    fn at(&self, t: f64, turn: f64) -> ([f32; 3], f64) {
+    pub(super) fn at(&self, t: f64, turn: f64) -> ([f32; 3], f64) {
         let psi = TAU * turn;
         let (sin, cos) = libm::sincos(psi);
         let reach = self.reach(psi);
@@ -152,7 +157,7 @@ fn bin_of(i: u32, j: u32) -> usize {
 }
 
 /// Calls of a function of a material that is seen from wo.
-fn calls(scene: &Scene, material: u32, wo: [f32; 3], call: Call, arguments: &[[f32; 3]]) -> Vec<[f32; 3]> {
+pub(super) fn calls(scene: &Scene, material: u32, wo: [f32; 3], call: Call, arguments: &[[f32; 3]]) -> Vec<[f32; 3]> {
     let scale = (1u32 << call as u32) as f32;
     let eye = wo.map(|v| v * scale);
     let pairs: Vec<_> = arguments.iter().map(|&argument| (argument, eye)).collect();
@@ -160,7 +165,7 @@ fn calls(scene: &Scene, material: u32, wo: [f32; 3], call: Call, arguments: &[[f
 }
 
 /// Numbers in 0..1 that look random (SplitMix64, Steele, Lea and Flood 2014).
-fn random(seed: u64) -> Vec<[f32; 3]> {
+pub(super) fn random(seed: u64) -> Vec<[f32; 3]> {
     let number = |i: u64| {
         let mut z = (seed << 32).wrapping_add(i + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -205,7 +210,7 @@ fn misfit(counts: &[f64], expected: &[f64]) -> f64 {
     if bins < 2.0 { 0.0 } else { normal(chi_sq, bins - 1.0) }
 }
 
-fn mean(value: [f32; 3]) -> f64 {
+pub(super) fn mean(value: [f32; 3]) -> f64 {
     value.iter().map(|&v| f64::from(v)).sum::<f64>() / 3.0
 }
 
@@ -260,7 +265,7 @@ fn directions_are_drawn_as_the_density_says() {
 fn judge(scene: &Scene, material: u32, theta: f64, seed: u64, what: &str, found: &mut Found) {
     let (sin, cos) = libm::sincos(theta.to_radians());
     let wo = [sin * 0.8, sin * 0.6, cos].map(|w| w as f32);
-    let disc = Disc { middle: [-f64::from(wo[0]), -f64::from(wo[1])] };
+    let disc = Disc::new(wo);
     let call = |call, arguments: &[[f32; 3]]| calls(scene, material, wo, call, arguments);
 
     let nodes: Vec<(u32, u32)> = (0..NODES[0]).flat_map(|i| (0..NODES[1]).map(move |j| (i, j))).collect();

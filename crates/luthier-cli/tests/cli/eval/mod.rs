@@ -1,6 +1,8 @@
 //! Evaluation in f64: models, inputs, optical constants.
 
 #[cfg(feature = "gpu")]
+mod ball;
+#[cfg(feature = "gpu")]
 mod draws;
 mod fluorescence;
 mod furnace;
