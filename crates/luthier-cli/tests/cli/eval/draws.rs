@@ -326,6 +326,10 @@ fn judge(scene: &Scene, material: u32, theta: f64, seed: u64, what: &str, found:
     if apart > 0.01 {
         found.faults.push(format!("{what}: weights have the mean {sum:?}, and f cos the integral {reflected:?}"));
     }
+    // Lobes draw each part from what it is made of; more than 1 are reflectances that grow towards grazing light, and colours.
+    if what.starts_with("lobes") && greatest * above > 1.5 * energy {
+        found.faults.push(format!("{what}: a weight is {} of the mean above the horizon", greatest * above / energy));
+    }
     found.misfit = found.misfit.max(misfit);
     found.share = found.share.max(share);
     found.weight = found.weight.max(apart);

@@ -19,10 +19,96 @@ fn luthier_chances_lobes(prepared: LuthierPreparedLobes) -> vec4<f32> {
     //? end
 }
 
-/// Density of directions mirrored at the visible normals of the first interface, as GGX has them for its slope parameter whatever its
-/// distribution is. Beckmann's facets have weights up to 2 then, and up to 2.6 for an eye within 20 degrees of the horizon.
+/// Density of directions mirrored at the visible normals of the first interface, D / 4 over cos_theta_o (1 + Lambda).
 fn luthier_facet_density(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> f32 {
-    return luthier_visible_density(vec2<f32>(prepared.coat.alpha), vec2<f32>(1.0, 0.0), prepared.wo, wi);
+    let sum = vec3<f32>(wi.xy + prepared.wo.xy, max(wi.z + prepared.wo.z, 1e-16));
+    return luthier_quarter_density(prepared.coat, sum) / (prepared.masking * prepared.wo.z);
+}
+
+//? beckmann
+/// Share of Gaussian slopes of unit alpha below x, within 1e-7 (Abramowitz and Stegun 1964, 7.1.26); the Gaussian is exp(-x^2).
+fn luthier_slope_share(x: f32, gaussian: f32) -> f32 {
+    let t = 1.0 / (1.0 + 0.3275911 * abs(x));
+    let series = t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429))));
+    let tail = 0.5 * series * gaussian;
+    return select(1.0 - tail, tail, x < 0.0);
+}
+
+/// A slope, and a bracket about the one that is looked for.
+struct LuthierSlopeSearch {
+    x: f32,
+    low: f32,
+    high: f32,
+}
+
+/// A step of Halley's, kept inside the bracket, towards the slope below which lies a target of the visible slopes:
+/// cos (1 + erf x) / 2 + sin exp(-x^2) / (2 sqrt pi) for an eye of that cosine and sine.
+fn luthier_slope_step(search: LuthierSlopeSearch, eye: vec2<f32>, wanted: f32) -> LuthierSlopeSearch {
+    let x = search.x;
+    let gaussian = exp(-x * x);
+    let excess = eye.x * luthier_slope_share(x, gaussian) + eye.y * (0.2820948 * gaussian) - wanted;
+    let low = select(x, search.low, excess > 0.0);
+    let high = select(search.high, x, excess > 0.0);
+    let visible = max(eye.x - x * eye.y, 1e-6);
+    let newton = excess / (0.5641896 * gaussian * visible);
+    let next = x - newton / (1.0 + newton * (x + 0.5 * eye.y / visible));
+    return LuthierSlopeSearch(select(0.5 * (low + high), next, next >= low && next <= high), low, high);
+}
+
+/// The slope along the plane of the eye of a visible facet of Beckmann's distribution of unit alpha (Heitz and d'Eon 2014); slopes end at 4.
+fn luthier_draw_slope_along(eye: vec2<f32>, u: f32) -> f32 {
+    let limit = min(eye.x / max(eye.y, 1e-6), 4.0);
+    let edge = exp(-limit * limit);
+    let wanted = u * (eye.x * luthier_slope_share(limit, edge) + eye.y * (0.2820948 * edge));
+    let v = clamp(u, 1e-6, 1.0 - 1e-6);
+    let guess = eye.x * 0.43 * log(v / (1.0 - v)) - eye.y * sqrt(-log(v));
+    let start = max(select(limit - sqrt(1.0 - u), guess, guess < limit), -4.0);
+    let first = luthier_slope_step(LuthierSlopeSearch(start, -4.0, limit), eye, wanted);
+    let second = luthier_slope_step(first, eye, wanted);
+    let third = luthier_slope_step(second, eye, wanted);
+    let fourth = luthier_slope_step(third, eye, wanted);
+    let fifth = luthier_slope_step(fourth, eye, wanted);
+    let sixth = luthier_slope_step(fifth, eye, wanted);
+    return sixth.x;
+}
+
+/// A Gaussian slope of unit alpha: Winitzki's closed form, good to 2e-3, and a step of Halley's on it.
+fn luthier_draw_slope_across(u: f32) -> f32 {
+    let v = clamp(u, 1e-7, 1.0 - 1e-7);
+    let tails = log(4.0 * v * (1.0 - v));
+    let middle = 4.3307467 + 0.5 * tails;
+    let size = sqrt(max(sqrt(middle * middle - 6.8027211 * tails) - middle, 0.0));
+    let guess = select(size, -size, v < 0.5);
+    let gaussian = exp(-guess * guess);
+    let newton = (luthier_slope_share(guess, gaussian) - v) / (0.5641896 * gaussian);
+    return guess - newton / (1.0 + newton * guess);
+}
+
+/// A direction mirrored at a visible normal of Beckmann's distribution; below the horizon for light that meets the surface again.
+fn luthier_draw_gaussian(alpha: f32, wo: vec3<f32>, u: vec2<f32>) -> vec3<f32> {
+    let stretched = normalize(vec3<f32>(alpha * wo.xy, wo.z));
+    let sin_theta = sqrt(dot(stretched.xy, stretched.xy));
+    let along = luthier_draw_slope_along(vec2<f32>(stretched.z, sin_theta), u.x);
+    let across = luthier_draw_slope_across(u.y);
+    let azimuth = select(vec2<f32>(1.0, 0.0), stretched.xy / max(sin_theta, 1e-20), sin_theta > 1e-20);
+    let slope = vec2<f32>(azimuth.x * along - azimuth.y * across, azimuth.y * along + azimuth.x * across);
+    let wh = normalize(vec3<f32>(-alpha * slope, 1.0));
+    return 2.0 * dot(wh, wo) * wh - wo;
+}
+
+//? end
+/// A direction mirrored at a visible normal of the first interface.
+fn luthier_draw_facet(prepared: LuthierPreparedLobes, u: vec2<f32>) -> vec3<f32> {
+    //? beckmann
+    //? ggx
+    if prepared.coat.distribution > 0.5 {
+        return luthier_draw_visible(vec2<f32>(prepared.coat.alpha), vec2<f32>(1.0, 0.0), prepared.wo, u);
+    }
+    //? end
+    return luthier_draw_gaussian(prepared.coat.alpha, prepared.wo, u);
+    //? else
+    return luthier_draw_visible(vec2<f32>(prepared.coat.alpha), vec2<f32>(1.0, 0.0), prepared.wo, u);
+    //? end
 }
 
 //? one_lobe|two_lobes
@@ -76,7 +162,7 @@ fn luthier_draw_lobes(prepared: LuthierPreparedLobes, u: vec3<f32>) -> LuthierSa
     let phi = 2.0 * LUTHIER_PI * u.z;
     var drawn = LuthierSample(vec3<f32>(sqrt(u.y) * vec2<f32>(cos(phi), sin(phi)), sqrt(1.0 - u.y)), 0.0, vec3<f32>(0.0), 3u);
     if choice < chances.x {
-        drawn.wi = luthier_draw_visible(vec2<f32>(prepared.coat.alpha), vec2<f32>(1.0, 0.0), prepared.wo, u.yz);
+        drawn.wi = luthier_draw_facet(prepared, u.yz);
         drawn.part = 0u;
     }
     //? one_lobe|two_lobes
