@@ -75,7 +75,6 @@ fn judge(subject: &ModelSubject, options: &LobesOptions) -> Result<Judged, Strin
         ..FitSettings::default()
     };
     let simulation = Simulation::new(&subject.stack, &color, settings);
-    let simulation = simulation.map_err(|error| format!("{}: {error}", subject.name))?;
     let fits: Vec<Lobes> = COUNTS.map(|lobes| simulation.fit(lobes)).to_vec();
     let baked = simulation.fit_fewest(LOBES, EXCESS).rows[0].lobes.len();
     let models = |channel: usize| -> Vec<Box<dyn Model + '_>> {

@@ -6,7 +6,7 @@ use glam::DVec3;
 use luthier_optics::Rgb;
 
 use super::half_vector::{outside, refracted, slope};
-use super::{Frame, Row, Shape};
+use super::{Frame, Lobe, Row, Shape};
 
 /// Least cosine of a normal against that of the surface.
 const UP_MIN: f64 = 1e-3;
@@ -16,9 +16,9 @@ const UP_MIN: f64 = 1e-3;
 pub struct Below {
     frame: Frame,
     row: Row,
-    /// Cosine and sine of the azimuth of the eye.
-    azimuth: [f64; 2],
-    /// The eye in its own plane, inside.
+    /// Cosine and sine of the azimuth of the frame of the shapes: the plane of the eye, or axes.
+    turn: [f64; 2],
+    /// The eye in that frame, inside.
     eye: DVec3,
     shapes: Vec<Shape>,
     /// Slope by which the lobes are turned, along the plane of the eye and across it.
@@ -29,15 +29,20 @@ impl Below {
     /// The light that a row has for `wo` (unit, above the surface).
     pub fn new(frame: Frame, row: Row, wo: DVec3) -> Self {
         let sin = libm::hypot(wo.x, wo.y);
-        let azimuth = if sin > 0.0 { [wo.x / sin, wo.y / sin] } else { [1.0, 0.0] };
-        let shapes = row.lobes.iter().map(|lobe| Shape {
-            shift: lobe.shift * sin,
-            width: lobe.sharpness.map(|sharpness| 1.0 / sharpness),
-            tail: lobe.tail,
-        });
-        let shapes = shapes.collect();
-        let eye = refracted(DVec3::new(sin, 0.0, wo.z), frame.index);
-        Self { frame, row, azimuth, eye, shapes, tilt: [0.0; 2] }
+        let (turn, at, shapes) = match frame.axes {
+            None => {
+                let turn = if sin > 0.0 { [wo.x / sin, wo.y / sin] } else { [1.0, 0.0] };
+                (turn, DVec3::new(sin, 0.0, wo.z), row.lobes.iter().map(|lobe| lobe.in_plane(sin)).collect())
+            }
+            Some(axes) => {
+                let at = axes.inside(wo);
+                let sign = axes.sign(at.x, at.y);
+                let shape = |lobe: &Lobe| Lobe { shear: sign * lobe.shear, ..*lobe }.in_axes([at.x, at.y]);
+                (axes.turn, at, row.lobes.iter().map(shape).collect())
+            }
+        };
+        let eye = refracted(at, frame.index);
+        Self { frame, row, turn, eye, shapes, tilt: [0.0; 2] }
     }
 
     /// The light where all that lies below a slab of relative index `index` is turned to a normal (unit, in the frame of the view): lobes are
@@ -49,7 +54,7 @@ impl Below {
     /// error, one of 20 degrees .09 to .46 (`tilt_tests.rs`).
     #[must_use]
     pub fn tilted(mut self, normal: DVec3, index: f64) -> Self {
-        let [cos, sin] = self.azimuth;
+        let [cos, sin] = self.turn;
         let sin_theta_sq = self.frame.index * self.frame.index * (1.0 - self.eye.z * self.eye.z);
         let ratio = (index * index - sin_theta_sq).max(0.0).sqrt() / (self.frame.index * self.eye.z);
         let up = normal.z.max(UP_MIN);
@@ -100,13 +105,13 @@ impl Below {
         let [x, y] = self.shapes.get(lobe)?.sample(u);
         let slope = [x + self.tilt[0], y + self.tilt[1]];
         let DVec3 { x, y, z } = outside(slope, self.eye, self.frame.index)?;
-        let [cos, sin] = self.azimuth;
+        let [cos, sin] = self.turn;
         Some(DVec3::new(cos * x - sin * y, sin * x + cos * y, z))
     }
 
-    /// The slope inside of the half vector with light against the tilt, in the plane of the eye, and the factor to solid angles.
+    /// The slope inside of the half vector with light against the tilt, in the frame of the shapes, and the factor to solid angles.
     fn slope(&self, wi: DVec3) -> ([f64; 2], f64) {
-        let [cos, sin] = self.azimuth;
+        let [cos, sin] = self.turn;
         let turned = DVec3::new(cos * wi.x + sin * wi.y, cos * wi.y - sin * wi.x, wi.z);
         let ([x, y], factor) = slope(turned, refracted(turned, self.frame.index), self.eye, self.frame.index);
         ([x - self.tilt[0], y - self.tilt[1]], factor)

@@ -3,18 +3,18 @@
 //! The unknowns are, for each lobe, shift and logarithms of widths at a few nodes over the view, and the tail; and the two numbers of the
 //! wide remainder. Energies are none: at every view they are the best for the shapes, with the sum of the simulation (variable
 //! projection, Golub and Pereyra 1973). Residuals are those of cells, `(e - r) / sqrt(r + c)`, all views together, so that lobes keep their
-//! identity from view to view.
+//! identity from view to view. An anisotropic stack is seen from several azimuths, all of them in one fit ([`Basis`]).
 
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
-use luthier_optics::stack::{Base, Stack};
-use thiserror::Error;
+use luthier_optics::stack::{Base, Stack, Surface};
 
-use super::parameters::{NODES, PER_LOBE, Start, parameters};
-use super::problem::{Lobed, Problem, ViewProblem, direction};
+use super::ellipse::{Numbers, Plane, logarithm};
+use super::parameters::{Basis, NODES, Start, parameters};
+use super::problem::{Lobed, Problem, ViewProblem, seen_from};
 use super::solve::{LeastSquares, Place};
 use super::tally::{Cells, Tally};
-use super::{Critical, FirstInterface, Lobes, ViewAxis};
+use super::{Axes, Critical, FirstInterface, Lobes, ViewAxis};
 use crate::facets::{ALPHA_MIN, Facets};
 use crate::layered_mc::ColorPaths;
 
@@ -23,7 +23,7 @@ use crate::layered_mc::ColorPaths;
 pub struct FitSettings {
     /// Rows over the view.
     pub rows: usize,
-    /// Paths for each row.
+    /// Paths for each row; a third at each azimuth of an anisotropic stack.
     pub paths: u64,
     /// Family of random numbers.
     pub seed: u64,
@@ -34,17 +34,6 @@ impl Default for FitSettings {
     fn default() -> Self {
         Self { rows: 19, paths: 32_768, seed: 0 }
     }
-}
-
-/// A stack that the fit cannot take.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-pub enum FitError {
-    /// A surface has other slopes along one axis than along the other.
-    #[error("layer {layer} is anisotropic; lobes over the view alone cannot show it")]
-    Anisotropic {
-        /// Its number, from 1 at the top.
-        layer: usize,
-    },
 }
 
 /// Angles whose squared sines are the tails with which a fit starts: .09 and .79.
@@ -65,69 +54,153 @@ const LAST_STEPS: u32 = 20;
 /// Places that are followed to the end.
 const FOLLOWED: usize = 2;
 
+/// Paths of a row over those at each azimuth.
+const AZIMUTH_SHARE: u64 = 3;
+
+/// Steps of an anisotropic fit with all views.
+const POLISH_STEPS: u32 = 4;
+
+/// Bounds of the widths with which a fit starts.
+const START_WIDTHS: [f64; 2] = [1e-3, 0.8];
+
 /// Light of a stack, view by view, in the half vectors of every medium that lobes may be in.
 #[derive(Debug, Clone)]
 pub struct Simulation {
     pub(super) first: Option<FirstInterface>,
     pub(super) axis: ViewAxis,
+    /// Tangents of an anisotropic stack.
+    pub(super) axes: Option<Axes>,
     pub(super) cells: Vec<Cells>,
-    /// Widths with which a fit starts, and with which further lobes do.
-    starts: Vec<f64>,
-    widths: Vec<f64>,
+    /// Ellipses with which a fit starts, and with which further lobes do.
+    starts: Vec<Numbers>,
+    widths: Vec<Numbers>,
+    /// Light by view, in the order of [`Views`].
     pub(super) views: Vec<Tally>,
 }
 
+/// Numbers of views: rows from grazing views up, one azimuth after the other, without that along the normal; and last that.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Views {
+    pub(super) rows: usize,
+    pub(super) axes: Option<Axes>,
+}
+
+impl Views {
+    /// Number of azimuths.
+    pub(super) fn azimuths(self) -> usize {
+        self.axes.map_or(1, Axes::azimuths)
+    }
+
+    /// The number of a view.
+    pub(super) fn number(self, azimuth: usize, row: usize) -> usize {
+        let own = self.rows - 1;
+        if row < own { azimuth * own + row } else { self.azimuths() * own }
+    }
+
+    /// Azimuth and row of each view.
+    pub(super) fn all(self) -> impl Iterator<Item = (usize, usize)> {
+        let own = self.rows - 1;
+        (0..self.azimuths()).flat_map(move |azimuth| (0..own).map(move |row| (azimuth, row))).chain([(0, own)])
+    }
+
+    /// Cosine and sine of an azimuth, in the axes.
+    pub(super) fn azimuth(self, number: usize) -> [f64; 2] {
+        self.axes.map_or([1.0, 0.0], |axes| axes.azimuth(number as f64))
+    }
+
+    /// The azimuths before and after one; beyond an axis of a mirror image the one on this side.
+    pub(super) fn next_azimuths(self, azimuth: usize) -> [usize; 2] {
+        let count = self.azimuths();
+        match self.axes {
+            None => [azimuth; 2],
+            Some(axes) if axes.is_mirrored && azimuth == 0 => [1; 2],
+            Some(axes) if axes.is_mirrored && azimuth + 1 == count => [azimuth - 1; 2],
+            Some(_) => [(azimuth + count - 1) % count, (azimuth + 1) % count],
+        }
+    }
+
+    /// Views beside each: of the next rows, and of the next azimuths.
+    pub(super) fn beside(self) -> Vec<Vec<usize>> {
+        let (azimuths, last) = (self.azimuths(), self.rows - 1);
+        let of = |(azimuth, row): (usize, usize)| {
+            if row == last {
+                return (0..azimuths).map(|azimuth| self.number(azimuth, last - 1)).collect();
+            }
+            let mut beside = vec![];
+            if row > 0 {
+                beside.push(self.number(azimuth, row - 1));
+            }
+            beside.push(self.number(azimuth, row + 1));
+            if self.axes.is_some() {
+                beside.extend(self.next_azimuths(azimuth).map(|azimuth| self.number(azimuth, row)));
+            }
+            beside
+        };
+        self.all().map(of).collect()
+    }
+}
+
 impl Simulation {
-    /// Traces the paths of an isotropic stack, for every row.
-    ///
-    /// # Errors
-    /// [`FitError`].
-    pub fn new(stack: &Stack, color: &Color, settings: FitSettings) -> Result<Self, FitError> {
+    /// Traces the paths of a stack, for every row.
+    pub fn new(stack: &Stack, color: &Color, settings: FitSettings) -> Self {
         Self::along(ViewAxis::new(settings.rows, critical(stack, settings.rows)), stack, color, settings)
     }
 
     /// [`Self::new`] with rows over an axis.
-    pub(super) fn along(axis: ViewAxis, stack: &Stack, color: &Color, settings: FitSettings) -> Result<Self, FitError> {
-        let anisotropic = stack.layers.iter().position(|layer| {
-            !matches!(layer.base, Base::Diffuse(_)) && layer.surface.alpha_x != layer.surface.alpha_y
-        });
-        if let Some(layer) = anisotropic {
-            return Err(FitError::Anisotropic { layer: layer + 1 });
-        }
+    pub(super) fn along(axis: ViewAxis, stack: &Stack, color: &Color, settings: FitSettings) -> Self {
         let first = Interface::of(stack, 0).map(|interface| FirstInterface {
             facets: Facets::new(&stack.layers[0].surface),
             reflectance: interface.sampled(color),
         });
-        let rough: Vec<f64> = (stack.layers.iter())
+        let axes = Axes::of(stack);
+        let rough: Vec<Covariance> = (stack.layers.iter())
             .filter(|layer| !matches!(layer.base, Base::Diffuse(_)))
-            .map(|layer| layer.surface.alpha_x.max(ALPHA_MIN))
+            .map(|layer| covariance(&layer.surface, axes))
             .collect();
-        let least = rough.iter().copied().fold(1.0, f64::min).max(1e-3);
-        let joined = rough.iter().map(|alpha| alpha * alpha).sum::<f64>().sqrt().clamp(1e-3, 0.8);
-        let last = rough.last().copied().unwrap_or(0.3).max(1e-3);
-        let starts = if last < 0.7 * joined { vec![joined, last] } else { vec![joined] };
-        let widths = widths(&rough);
-        let cells: Vec<Cells> = indices(stack).into_iter().map(|index| Cells::new(index, least)).collect();
+        let joined = rough.iter().fold([0.0; 3], |sum, own| plus(sum, own, 1.0));
+        let last = rough.last().copied().unwrap_or([0.09, 0.09, 0.0]);
+        let joined_alone = alpha(&last) >= 0.7 * alpha(&joined).clamp(START_WIDTHS[0], START_WIDTHS[1]);
+        let mut starts = vec![logarithm(joined, START_WIDTHS)];
+        if !joined_alone {
+            starts.push(logarithm(last, [START_WIDTHS[0], 1.0]));
+        }
+        let cells: Vec<Cells> = indices(stack).into_iter().map(|index| cells(index, &rough, axes)).collect();
         let (paths, count) = (ColorPaths::new(stack, color), settings.paths);
-        let view = |row: usize| {
-            let wo = direction(axis.cos_theta(row as f64));
-            let mut tally = Tally::new(cells.len());
+        let views = Views { rows: axis.size(), axes };
+        let view = |(number, (azimuth, row)): (usize, (usize, usize))| {
+            let wo = seen_from(axis, views.azimuth(azimuth), row);
+            // The light is traced in the tangents of the stack.
+            let outside = axes.map_or(wo, |axes| axes.outside(wo));
+            let count = if axes.is_some() && row + 1 < axis.size() { count / AZIMUTH_SHARE } else { count };
+            let mut tally = Tally::new(&cells);
             // A family of its own for every row.
-            let seed = settings.seed.wrapping_mul(axis.size() as u64).wrapping_add(row as u64);
-            paths.trace(seed, count, wo, |path| {
-                tally.add(&cells, [path.wi, wo], path.weight.map(|w| w / count as f64), path.is_first_facet);
+            let seed =
+                settings.seed.wrapping_mul(views.azimuths() as u64 * axis.size() as u64).wrapping_add(number as u64);
+            paths.trace(seed, count, outside, |path| {
+                let wi = axes.map_or(path.wi, |axes| axes.inside(path.wi));
+                tally.add(&cells, [wi, wo], path.weight.map(|w| w / count as f64), path.is_first_facet);
             });
             tally
         };
-        let views = (0..axis.size()).map(view).collect();
-        Ok(Self { first, axis, cells, starts, widths, views })
+        let tallies = views.all().enumerate().map(view).collect();
+        Self { first, axis, axes, cells, starts, widths: widths(&rough), views: tallies }
+    }
+
+    /// The unknowns of a lobe.
+    pub(super) fn basis(&self) -> Basis {
+        self.axes.map_or(Basis::Isotropic, |axes| if axes.is_mirrored { Basis::Mirrored } else { Basis::Turned })
+    }
+
+    /// The numbers of the views.
+    pub(super) fn numbers(&self) -> Views {
+        Views { rows: self.axis.size(), axes: self.axes }
     }
 
     /// The lobes, so many, that are nearest to the light that was traced.
     pub fn fit(&self, count: usize) -> Lobes {
         let problems = self.problems();
-        let fits = self.fits(&problems, count);
-        self.lobes(fits.last().unwrap_or_else(|| unreachable!("there is a fit without lobes")))
+        let mut fits = self.fits(&problems, count);
+        self.lobes(&self.polished(fits.pop().unwrap_or_else(|| unreachable!("there is a fit without lobes"))))
     }
 
     /// The fewest lobes, so many at most, that are no more than `excess` farther from the light than the best, at any view. The best have
@@ -151,13 +224,24 @@ impl Simulation {
             gains.fold(0.0, f64::max)
         };
         let fewest = costs.iter().position(|cost| error(cost) <= excess).unwrap_or(best);
-        fits.swap_remove(fewest)
+        self.polished(fits.swap_remove(fewest))
+    }
+
+    /// The place that a search with all views comes to.
+    fn polished(&self, Found { set, place }: Found) -> Found {
+        if self.axes.is_none() {
+            return Found { set, place };
+        }
+        let problem = Problem::new(self, set);
+        let lobed = Lobed::new(&problem, place.parameters.len() / self.basis().per_lobe());
+        let place = Place::new(place.parameters, &lobed);
+        Found { set, place: SEARCH.descend(place, &lobed, POLISH_STEPS) }
     }
 
     /// The place that a search comes to from that of a stack much like this one, whose lobes are narrower or wider by a factor. Its shape of the
     /// remainder is kept.
     pub(super) fn follow(&self, from: &Found, factor: f64) -> Found {
-        let lobes: Vec<Start> = from.starts().iter().map(|lobe| lobe.scaled(factor)).collect();
+        let lobes: Vec<Start> = from.starts(self.basis()).iter().map(|lobe| lobe.scaled(factor)).collect();
         let problem = Problem::new(self, from.set);
         let count = lobes.len();
         let beside = parameters(lobes, from.wide_falloff());
@@ -172,15 +256,17 @@ impl Simulation {
     }
 
     fn problems(&self) -> Vec<Problem<'_>> {
-        (0..self.cells.len()).map(|set| Problem::new(self, set)).collect()
+        (0..self.cells.len()).map(|set| Problem::coarse(self, set)).collect()
     }
 
     /// Fits of no lobe, of one, and so on; those that gain nothing by another are the last.
     fn fits(&self, problems: &[Problem<'_>], most: usize) -> Vec<Found> {
+        let basis = self.basis();
         let alone = |set: usize| {
-            self.starts
-                .iter()
-                .flat_map(move |&width| TAIL_STARTS.map(|tail| (set, vec![Start::new(width, tail)], REMAINDER_START)))
+            let start = move |&shape: &Numbers| {
+                TAIL_STARTS.map(|tail| (set, vec![Start::new(basis, shape, tail)], REMAINDER_START))
+            };
+            self.starts.iter().flat_map(start)
         };
         let one = (most > 0).then(|| nearest(problems, (0..problems.len()).flat_map(alone).collect()));
         // In the cells of the others, so that residuals compare.
@@ -190,14 +276,14 @@ impl Simulation {
         // One lobe more at a time, beside those found, wider or narrower.
         for count in 1..most {
             let fewer = &fits[count];
-            let (lobes, wide) = (fewer.starts(), fewer.wide_falloff());
+            let (lobes, wide) = (fewer.starts(basis), fewer.wide_falloff());
             let last = &lobes[lobes.len() - 1];
             let scaled = [2.5, 0.4].map(|factor| last.scaled(factor));
-            let of_interfaces = self.widths.iter().map(|&width| Start::new(width, 0.0));
+            let of_interfaces = self.widths.iter().map(|&shape| Start::new(basis, shape, 0.0));
             let beside = |another: Start| {
                 TAIL_STARTS.map(|tail| {
                     let mut starts = lobes.clone();
-                    starts.push(Start(another.0.clone(), tail));
+                    starts.push(Start { tail, ..another.clone() });
                     (fewer.set, starts, wide)
                 })
             };
@@ -217,7 +303,7 @@ const REMAINDER_START: [f64; 2] = [0.3, 0.0];
 /// The best place that searches from some starts come to: in a set of cells, with lobes and falloff of the remainder.
 fn nearest(problems: &[Problem<'_>], starts: Vec<(usize, Vec<Start>, [f64; 2])>) -> Found {
     let first = |(set, lobes, wide): (usize, Vec<Start>, [f64; 2])| {
-        let problem = Lobed { problem: &problems[set], lobes: lobes.len(), beside: None };
+        let problem = Lobed::new(&problems[set], lobes.len());
         let place = Place::new(parameters(lobes, wide), &problem);
         Found { set, place: SEARCH.descend(place, &problem, FIRST_STEPS) }
     };
@@ -225,29 +311,73 @@ fn nearest(problems: &[Problem<'_>], starts: Vec<(usize, Vec<Start>, [f64; 2])>)
     found.sort_by(|a, b| a.place.cost.total_cmp(&b.place.cost));
     found.truncate(FOLLOWED);
     let last = |Found { set, place }: Found| {
-        let problem = Lobed { problem: &problems[set], lobes: place.parameters.len() / PER_LOBE, beside: None };
+        let problem = Lobed::new(&problems[set], place.parameters.len() / problems[set].basis.per_lobe());
         Found { set, place: SEARCH.descend(place, &problem, LAST_STEPS) }
     };
     let best = found.into_iter().map(last).min_by(|a, b| a.place.cost.total_cmp(&b.place.cost));
     best.unwrap_or_else(|| unreachable!("there is a start"))
 }
 
-/// Widths of lobes that interfaces below the first may send, each blurred by those above, without those that are nearly another.
-fn widths(alphas: &[f64]) -> Vec<f64> {
-    let mut joined_sq = 0.0;
-    let mut widths: Vec<f64> = Vec::new();
-    for (i, alpha) in alphas.iter().enumerate() {
-        joined_sq += alpha * alpha;
-        let width = f64::sqrt(joined_sq).clamp(1e-3, 0.8);
-        if i > 0 && widths.iter().all(|known| width > WIDTH_STEP * known) {
-            widths.push(width);
+/// Squares of slope parameters, as a matrix: along x, along y, and between them.
+type Covariance = [f64; 3];
+
+/// The covariance of a surface in axes.
+fn covariance(surface: &Surface, axes: Option<Axes>) -> Covariance {
+    let [x, y] = [surface.alpha_x, surface.alpha_y].map(|alpha| alpha.max(ALPHA_MIN) * alpha.max(ALPHA_MIN));
+    let Some(axes) = axes.filter(|_| x != y) else { return [x, y, 0.0] };
+    let (sin, cos) = libm::sincos(surface.rotation);
+    let [cos, sin] = [axes.turn[0] * cos + axes.turn[1] * sin, axes.turn[0] * sin - axes.turn[1] * cos];
+    [cos * cos * x + sin * sin * y, sin * sin * x + cos * cos * y, cos * sin * (x - y)]
+}
+
+fn plus(a: Covariance, b: &Covariance, factor: f64) -> Covariance {
+    [0, 1, 2].map(|i: usize| a[i] + factor * b[i])
+}
+
+/// The slope parameter of the circle that has the area of an ellipse.
+fn alpha([xx, yy, xy]: &Covariance) -> f64 {
+    (xx * yy - xy * xy).max(0.0).sqrt().sqrt()
+}
+
+/// Ellipses of lobes that interfaces below the first may send, each blurred by those above, without those that are nearly another.
+fn widths(surfaces: &[Covariance]) -> Vec<Numbers> {
+    let mut joined = [0.0; 3];
+    let mut widths: Vec<(f64, Numbers)> = Vec::new();
+    for (i, own) in surfaces.iter().enumerate() {
+        joined = plus(joined, own, 1.0);
+        let width = alpha(&joined).clamp(START_WIDTHS[0], START_WIDTHS[1]);
+        if i > 0 && widths.iter().all(|(known, _)| width > WIDTH_STEP * known) {
+            widths.push((width, logarithm(joined, START_WIDTHS)));
         }
     }
-    widths
+    widths.into_iter().map(|(_, shape)| shape).collect()
 }
 
 /// Ratio of widths from which on they are two.
 const WIDTH_STEP: f64 = 1.6;
+
+/// Share of the covariance of the first interface, at least, by which the lobe of the next is blurred: that of an index of 1.5 along the normal.
+const BLURRED: f64 = 1.0 / 16.0;
+
+/// Greatest half logarithm of the ratio by which cells are stretched: that of 8. Wide light is seen in the same cells.
+const STRETCH: f64 = 1.04;
+
+/// Cells in the half vectors of a medium. Those of an anisotropic stack are stretched as the narrowest lobe from below.
+fn cells(index: f64, surfaces: &[Covariance], axes: Option<Axes>) -> Cells {
+    if axes.is_none() {
+        return Cells::new(index, surfaces.iter().map(alpha).fold(1.0, f64::min).max(1e-3));
+    }
+    let narrowest = match surfaces {
+        [first, second, ..] => plus(*second, first, BLURRED),
+        // Light from a diffuse base, or from several facets: wide.
+        rest => {
+            rest.first().map_or([1.0, 1.0, 0.0], |only| [alpha(only) * alpha(only), alpha(only) * alpha(only), 0.0])
+        }
+    };
+    let [_, mean, b, c] = logarithm(narrowest, [1e-3, 1.0]);
+    let share = (STRETCH / libm::hypot(b, c).max(STRETCH)).min(1.0);
+    Cells::stretched(index, Plane::OfTangents([0.0; 2]).shape([0.0, mean, share * b, share * c], 0.0))
+}
 
 /// The relative indices in whose half vectors lobes may be: 1, that of the first medium, and that of the last.
 fn indices(stack: &Stack) -> Vec<f64> {
@@ -273,7 +403,7 @@ fn critical(stack: &Stack, rows: usize) -> Critical {
     let mut joined_sq = 0.0;
     for layer in &stack.layers {
         let Base::Dielectric { ior, .. } = &layer.base else { break };
-        let alpha = layer.surface.alpha_x.max(ALPHA_MIN);
+        let alpha = layer.surface.alpha_isotropic().max(ALPHA_MIN);
         joined_sq += alpha * alpha;
         let index = ior.at(REFERENCE_NM).re / exterior;
         if index < found.0 {
@@ -299,24 +429,20 @@ pub(super) struct Found {
 impl Found {
     /// Sum of the squared residuals of each view.
     fn costs(&self, problems: &[Problem<'_>]) -> Vec<f64> {
-        let p = &self.place.parameters;
-        let cost =
-            |view: &ViewProblem| view.residuals(&view.profiles(p, p.len() / PER_LOBE)).iter().map(|x| x * x).sum();
-        problems[self.set].views.iter().map(cost).collect()
+        let (p, problem) = (&self.place.parameters, &problems[self.set]);
+        let count = p.len() / problem.basis.per_lobe();
+        let cost = |view: &ViewProblem| view.residuals(&view.profiles(p, count)).iter().map(|x| x * x).sum();
+        problem.views.iter().map(cost).collect()
     }
 
-    /// Number of lobes.
-    pub(super) fn lobes(&self) -> usize {
-        self.place.parameters.len() / PER_LOBE
-    }
-
-    fn starts(&self) -> Vec<Start> {
+    /// The lobes found.
+    pub(super) fn starts(&self, basis: Basis) -> Vec<Start> {
         let of = |p: &[f64]| {
-            let row = |i: usize| p[i * NODES..(i + 1) * NODES].to_vec();
-            Start([row(0), row(1), row(2)], p[3 * NODES])
+            let rows = p.chunks_exact(NODES).map(<[f64]>::to_vec).collect();
+            Start { rows, tail: p[p.len() - 1] }
         };
         let p = &self.place.parameters;
-        p[..p.len() - 2].chunks(PER_LOBE).map(of).collect()
+        p[..p.len() - 2].chunks(basis.per_lobe()).map(of).collect()
     }
 
     fn wide_falloff(&self) -> [f64; 2] {

@@ -16,15 +16,18 @@
 //!   channels share them.
 //! - **Energies.** E are energies by channel, taken from the simulation view by view, and A is the share of a shape above the horizon. So
 //!   the directional albedo of a row is that of the simulation, whatever the shapes are.
-//! - **Rows.** All that hangs on the view is in rows over [`ViewAxis`], linear between.
+//! - **Rows.** All that hangs on the view is in rows over [`ViewAxis`], linear between. An anisotropic stack has such rows at several azimuths of the
+//!   eye ([`Axes`]), linear between, too; its shapes are in the tangents of its axes, where they hardly change with the azimuth.
 //!
 //! Sampling is exact: draw a lobe, draw a slope, mirror the eye about it, refract. What is drawn beyond the horizon has no weight.
 //!
-//! Simplifications: isotropic surfaces; the lobes are not reciprocal. Out of scope: places that differ, which take a row each.
+//! Simplifications: the lobes are not reciprocal. Out of scope: places that differ, which take a row each, and anisotropic surfaces that vary.
 //!
 //! Lobes in the half vectors outside the stack are the case n = 1. The fit tries it, and takes it where it is the nearest.
 
+mod axes;
 mod below;
+mod ellipse;
 mod fit;
 mod fitted;
 mod half_vector;
@@ -38,11 +41,14 @@ mod tally;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
+mod tests_anisotropic;
+#[cfg(test)]
 mod tilt_tests;
 mod varied;
 
+pub use axes::Axes;
 pub use below::Below;
-pub use fit::{FitError, FitSettings, Simulation};
+pub use fit::{FitSettings, Simulation};
 pub use fitted::Fitted;
 pub use prepared::{Prepared, Sample};
 pub use rows::{Critical, Lobe, Row, ViewAxis};
@@ -71,7 +77,7 @@ pub struct Lobes {
     pub frame: Frame,
     /// The axis of the rows.
     pub axis: ViewAxis,
-    /// Rows from grazing views to the normal.
+    /// Rows from grazing views to the normal; of an anisotropic stack one azimuth after the other, [`Axes::TILES`] times.
     pub rows: Vec<Row>,
 }
 
@@ -82,6 +88,8 @@ pub struct Frame {
     pub index: f64,
     /// Shape of the wide remainder.
     pub wide: Wide,
+    /// Axes of an anisotropic stack, in which its lobes are; others are in the plane of the eye.
+    pub axes: Option<Axes>,
 }
 
 /// The first interface: its facets, and its reflectance by channel.
@@ -100,7 +108,7 @@ const INFO: ModelInfo = ModelInfo {
     kind: Kind::Layered,
     claims: Claims::ENERGY,
     source: "luthier: lobes fitted to layered-mc",
-    domain: "all stacks; anisotropic surfaces have the mean of their slope parameters",
+    domain: "all stacks",
     leaves_out: "reciprocity; shapes that a few lobes do not have",
     inputs: &[],
 };
@@ -112,27 +120,45 @@ pub const LOBES: usize = 2;
 pub const EXCESS: f64 = 0.03;
 
 impl Lobes {
-    /// The lobes of a stack as bakes have them: as few as do, [`LOBES`] at most, of [`FitSettings::default`]. Anisotropic surfaces have their
-    /// mean slope parameter.
+    /// The lobes of a stack as bakes have them: as few as do, [`LOBES`] at most, of [`FitSettings::default`].
     pub fn of(stack: &Stack, color: &Color) -> Self {
-        Varied::of(stack, color, None).nodes.swap_remove(0)
+        Self::with(stack, color, FitSettings::default())
     }
 
-    /// The row of a view, between those that were fitted.
-    pub fn row(&self, cos_theta_o: f64) -> Row {
-        self.row_at(self.axis.cosine(cos_theta_o))
+    /// [`Self::of`] with settings.
+    pub fn with(stack: &Stack, color: &Color, settings: FitSettings) -> Self {
+        Simulation::new(&bounded(stack), color, settings).fit_fewest(LOBES, EXCESS)
     }
 
-    /// The row of a cosine of [`ViewAxis::cosine`].
+    /// Rows of a tile: one azimuth of an anisotropic stack, or all.
+    pub fn tile(&self, tile: usize) -> &[Row] {
+        &self.rows[tile * self.axis.size()..(tile + 1) * self.axis.size()]
+    }
+
+    /// The row of a view (unit, above the surface), between those that were fitted.
+    pub fn row(&self, wo: DVec3) -> Row {
+        let c = self.axis.cosine(wo.z);
+        let Some(axes) = self.frame.axes else { return self.row_at(c) };
+        let at = axes.inside(wo);
+        let place = axes.place(at.x, at.y);
+        let first = (place as usize).min(Axes::TILES - 2);
+        self.row_of(first, c).between(&self.row_of(first + 1, c), place - first as f64)
+    }
+
+    /// The row of a cosine of [`ViewAxis::cosine`], in the first tile.
     pub fn row_at(&self, c: f64) -> Row {
-        let place = self.axis.place_at(c);
-        let first = (place as usize).min(self.rows.len() - 2);
-        self.rows[first].between(&self.rows[first + 1], place - first as f64)
+        self.row_of(0, c)
+    }
+
+    fn row_of(&self, tile: usize, c: f64) -> Row {
+        let (place, rows) = (self.axis.place_at(c), self.tile(tile));
+        let first = (place as usize).min(rows.len() - 2);
+        rows[first].between(&rows[first + 1], place - first as f64)
     }
 
     /// Light from below the first interface as seen from `wo` (unit, above the surface; `None` otherwise).
     pub fn below(&self, wo: DVec3) -> Option<Below> {
-        (wo.z > 0.0).then(|| Below::new(self.frame, self.row(wo.z), wo))
+        (wo.z > 0.0).then(|| Below::new(self.frame, self.row(wo), wo))
     }
 
     /// The lobes as seen from `wo` (unit, above the surface; `None` otherwise).
@@ -146,13 +172,20 @@ impl Lobes {
     }
 }
 
-/// The stack as lobes show it: surfaces have one slope parameter each, the mean of two; metals have indices up to
+/// The stack as shaders show it: surfaces have one slope parameter each, the mean of two; metals have indices up to
 /// [`INDEX_MAX`], as in layer records.
 pub fn shown(stack: &Stack) -> Stack {
+    let mut stack = bounded(stack);
+    for layer in &mut stack.layers {
+        layer.surface = Surface::isotropic(layer.surface.distribution, layer.surface.alpha_isotropic());
+    }
+    stack
+}
+
+/// The stack with indices of metals up to [`INDEX_MAX`].
+fn bounded(stack: &Stack) -> Stack {
     let mut stack = stack.clone();
     for layer in &mut stack.layers {
-        let surface = &mut layer.surface;
-        *surface = Surface::isotropic(surface.distribution, surface.alpha_isotropic());
         if let Base::Conductor { ior } = &mut layer.base {
             let bounded = |s: &IorSample| IorSample { n: s.n.min(INDEX_MAX), k: s.k.min(INDEX_MAX), ..*s };
             // Smaller numbers in the same order: an index still.

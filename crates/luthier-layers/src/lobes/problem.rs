@@ -5,12 +5,13 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use luthier_optics::Rgb;
 
-use super::fit::{Found, Simulation};
+use super::ellipse::{Numbers, Plane};
+use super::fit::{Found, Simulation, Views};
 use super::half_vector::{outside, refracted};
-use super::parameters::{NODES, PER_LOBE};
+use super::parameters::{Basis, NODES, SHIFT, Term};
 use super::solve::{Amounts, Column, Guess, Residuals};
-use super::tally::{CELLS, Point, Tally};
-use super::{Frame, Lobe, Lobes, Row, Shape, TAIL_MIN, ViewAxis, Wide};
+use super::tally::{Point, Tally};
+use super::{Axes, Frame, Lobe, Lobes, Row, Shape, TAIL_MIN, ViewAxis, Wide};
 
 /// Share of a shape above the horizon below which the fit is held back.
 const SHARE_WANTED: f64 = 0.35;
@@ -33,14 +34,18 @@ const DIFFERENCE: f64 = 1e-5;
 pub(super) struct Problem<'a> {
     simulation: &'a Simulation,
     set: usize,
+    pub(super) basis: Basis,
     pub(super) views: Vec<ViewProblem>,
 }
 
 /// One view of it.
 pub(super) struct ViewProblem {
     axis: ViewAxis,
-    cos_theta: f64,
-    sin: f64,
+    basis: Basis,
+    wo: DVec3,
+    plane: Plane,
+    /// Terms of each number of an ellipse.
+    terms: [Vec<Term>; 4],
     /// Place among the nodes of shapes.
     place: f64,
     points: Vec<Point>,
@@ -68,6 +73,13 @@ pub(super) struct Lobed<'a> {
     pub(super) beside: Option<&'a [f64]>,
 }
 
+impl<'a> Lobed<'a> {
+    /// Beside no other.
+    pub(super) fn new(problem: &'a Problem<'a>, lobes: usize) -> Self {
+        Self { problem, lobes, beside: None }
+    }
+}
+
 impl Residuals for Lobed<'_> {
     fn blocks(&self) -> usize {
         self.problem.views.len() + 1 + usize::from(self.beside.is_some())
@@ -77,9 +89,9 @@ impl Residuals for Lobed<'_> {
         match (self.problem.views.get(block), self.beside) {
             (Some(view), _) => view.residuals(&view.profiles(p, self.lobes)),
             (None, Some(beside)) if block > self.problem.views.len() => {
-                p[..self.lobes * PER_LOBE].iter().zip(beside).map(|(p, beside)| BESIDE_WEIGHT * (p - beside)).collect()
+                p[..self.lobes * self.problem.basis.per_lobe()].iter().zip(beside).map(|(p, beside)| BESIDE_WEIGHT * (p - beside)).collect()
             }
-            (None, _) => ripple(p, self.lobes),
+            (None, _) => ripple(p, self.lobes, self.problem.basis),
         }
     }
 
@@ -91,38 +103,62 @@ impl Residuals for Lobed<'_> {
                 columns
             }
             None if block > self.problem.views.len() => {
-                let count = self.lobes * PER_LOBE;
+                let count = self.lobes * self.problem.basis.per_lobe();
                 let column = |j: usize| (j, (0..count).map(|i| if i == j { BESIDE_WEIGHT } else { 0.0 }).collect());
                 (0..count).map(column).collect()
             }
-            None => ripple_slopes(p, self.lobes),
+            None => ripple_slopes(p, self.lobes, self.problem.basis),
         }
     }
 }
 
 impl<'a> Problem<'a> {
     pub(super) fn new(simulation: &'a Simulation, set: usize) -> Self {
-        let nodes = ViewAxis::new(NODES, simulation.axis.critical());
+        Self::of(simulation, set, |_, _| true)
+    }
+
+    /// The problem of every other view, for an anisotropic stack: of the first azimuth, the middle ones and the last, and of every other row.
+    pub(super) fn coarse(simulation: &'a Simulation, set: usize) -> Self {
+        let Some(axes) = simulation.axes else { return Self::new(simulation, set) };
+        let kept: &[usize] = if axes.is_mirrored { &[0, 3, 7] } else { &[0, 2, 4, 5] };
+        let last = simulation.axis.size() - 1;
+        Self::of(simulation, set, |azimuth, row| (last - row).is_multiple_of(2) && kept.contains(&azimuth))
+    }
+
+    fn of(simulation: &'a Simulation, set: usize, keep: impl Fn(usize, usize) -> bool) -> Self {
+        let (axis, basis, numbers) = (simulation.axis, simulation.basis(), simulation.numbers());
+        let nodes = ViewAxis::new(NODES, axis.critical());
+        let cells = &simulation.cells[set];
         let mean = |rgb: Rgb| rgb.iter().sum::<f64>() / 3.0;
-        let view = |(row, tally): (usize, &Tally)| {
-            let cos_theta = simulation.axis.cos_theta(row as f64);
-            let wo = direction(cos_theta);
+        let view = |((azimuth, row), tally): ((usize, usize), &Tally)| {
+            let [cos, sin] = numbers.azimuth(azimuth);
+            let wo = seen_from(axis, [cos, sin], row);
+            let sin_theta = direction(wo.z).x;
             let all = (mean(tally.total) + mean(tally.first_facet)).max(f64::MIN_POSITIVE);
             let found: Vec<f64> = tally.rest[set].iter().map(|rgb| mean(*rgb).max(0.0) / all).collect();
-            let weights: Vec<f64> = found.iter().map(|r| 1.0 / (r + WEIGHT_FLOOR / CELLS as f64)).collect();
+            let weights: Vec<f64> = found.iter().map(|r| 1.0 / (r + WEIGHT_FLOOR / cells.count() as f64)).collect();
+            let terms = basis.terms(sin_theta * sin_theta, [(cos - sin) * (cos + sin), 2.0 * cos * sin]);
+            let of_number = |number| terms.iter().copied().filter(|term| term.number == number).collect();
             ViewProblem {
-                axis: simulation.axis,
-                cos_theta,
-                sin: wo.x,
-                place: nodes.place(cos_theta),
-                points: simulation.cells[set].points(wo),
+                axis,
+                basis,
+                wo,
+                plane: if simulation.axes.is_some() {
+                    Plane::OfTangents([wo.x, wo.y])
+                } else {
+                    Plane::OfEye(sin_theta)
+                },
+                terms: [0, 1, 2, 3].map(of_number),
+                place: nodes.place(wo.z),
+                points: cells.points(wo),
                 total: found.iter().sum(),
                 found,
                 roots: weights.iter().map(|weight| weight.sqrt()).collect(),
                 weights,
             }
         };
-        Self { simulation, set, views: simulation.views.iter().enumerate().map(view).collect() }
+        let views = numbers.all().zip(&simulation.views).filter(|((azimuth, row), _)| keep(*azimuth, *row));
+        Self { simulation, set, basis, views: views.map(view).collect() }
     }
 
     /// Energies by view, part and channel.
@@ -133,11 +169,12 @@ impl<'a> Problem<'a> {
         let profiles: Vec<Vec<Vec<f64>>> = self.views.iter().map(|view| view.profiles(p, count).cells).collect();
         let amounts: Vec<Amounts<'_>> =
             self.views.iter().zip(&profiles).map(|(view, profiles)| Amounts::new(profiles, &view.weights)).collect();
-        let brightness = smoothed(amounts.len(), |view, guess| {
+        let beside = self.simulation.numbers().beside();
+        let brightness = smoothed(&beside, |view, guess| {
             amounts[view].positive(&self.views[view].found, self.views[view].total, guess)
         });
         let channels = [0, 1, 2].map(|c: usize| {
-            smoothed(amounts.len(), |view, guess| {
+            smoothed(&beside, |view, guess| {
                 let tally = &self.simulation.views[view];
                 let cells: Vec<f64> = tally.rest[self.set].iter().map(|rgb| rgb[c]).collect();
                 amounts[view].among(&brightness[view], &cells, tally.total[c], guess)
@@ -150,31 +187,60 @@ impl<'a> Problem<'a> {
     /// The lobes of the parameters found, with energies by channel.
     pub(super) fn lobes(&self, found: &Found) -> Lobes {
         let p = &found.place.parameters;
-        let count = p.len() / PER_LOBE;
+        let count = p.len() / self.basis.per_lobe();
         let energies = self.energies(p, count);
+        let Simulation { first, axis, axes, cells, .. } = self.simulation;
+        let index = cells[self.set].index;
         let row = |((view, tally), energies): ((&ViewProblem, &Tally), &Vec<Rgb>)| {
             let lobe = |lobe: usize| {
                 let shape = view.shape(p, lobe);
-                let share = share_above(&shape, direction(view.cos_theta), self.simulation.cells[self.set].index);
-                Lobe {
-                    strength: energies[lobe].map(|energy| energy / share.max(SHARE_MIN)),
-                    share,
-                    shift: if view.sin > 0.0 { shape.shift / view.sin } else { shift_at_normal(p, lobe) },
-                    sharpness: shape.width.map(|width| 1.0 / width),
-                    tail: shape.tail,
-                }
+                let share = share_above(&shape, view.wo, index);
+                let [x, y, shear] = shape.sharpness();
+                let shift = match view.plane {
+                    Plane::OfEye(sin) if sin > 0.0 => shape.middle[0] / sin,
+                    // The last node of the shifts is that of the normal.
+                    Plane::OfEye(_) => p[lobe * self.basis.per_lobe() + SHIFT * NODES + NODES - 1],
+                    Plane::OfTangents(_) => view.numbers(p, lobe)[SHIFT],
+                };
+                let strength = energies[lobe].map(|energy| energy / share.max(SHARE_MIN));
+                Lobe { strength, share, shift, sharpness: [x, y], shear, tail: shape.tail }
             };
             let sum = |c: usize| tally.first_facet[c] + energies.iter().map(|energy| energy[c]).sum::<f64>();
             Row { albedo_dir: [0, 1, 2].map(sum), lobes: (0..count).map(lobe).collect(), wide: energies[count] }
         };
-        let Simulation { first, axis, cells, views, .. } = self.simulation;
+        let rows: Vec<Row> = self.views.iter().zip(&self.simulation.views).zip(&energies).map(row).collect();
+        let numbers = self.simulation.numbers();
+        let tiles = axes.map_or(1, |_| Axes::TILES);
+        let of_tile = |tile: usize| (0..axis.size()).map(move |row| (tile % numbers.azimuths(), row));
         Lobes {
             first: first.clone(),
-            frame: Frame { index: cells[self.set].index, wide: wide_of(p, *axis) },
+            frame: Frame { index, wide: wide_of(p, *axis), axes: *axes },
             axis: *axis,
-            rows: self.views.iter().zip(views).zip(&energies).map(row).collect(),
+            rows: (0..tiles).flat_map(of_tile).map(|(azimuth, row)| balanced(&rows, numbers, azimuth, row)).collect(),
         }
     }
+}
+
+/// The row of an azimuth, moved so that what is linear between azimuths errs as much there as half way between them.
+///
+/// Half way, a chord is off by an eighth of the second difference.
+fn balanced(rows: &[Row], numbers: Views, azimuth: usize, row: usize) -> Row {
+    let here = &rows[numbers.number(azimuth, row)];
+    let Some(axes) = numbers.axes else { return here.clone() };
+    let next = numbers.next_azimuths(azimuth);
+    let [before, after] = next.map(|next| &rows[numbers.number(next, row)]);
+    let mut moved = here.between(&before.between(after, 0.5), -0.125);
+    for (moved, own) in moved.lobes.iter_mut().zip(&here.lobes) {
+        // Light that has none half way is not below 0.
+        (0..3).for_each(|c| moved.strength[c] = moved.strength[c].max(own.strength[c].min(0.0)));
+        moved.share = moved.share.min(1.0);
+        // Odd in both axes.
+        if axes.is_mirrored && next[0] == next[1] {
+            moved.shear = own.shear;
+        }
+    }
+    (0..3).for_each(|c| moved.wide[c] = moved.wide[c].max(here.wide[c].min(0.0)));
+    moved
 }
 
 /// Shares above the horizon are no less than this, where energies are divided by them.
@@ -187,16 +253,13 @@ const NEIGHBOUR_WEIGHT: f64 = 0.1;
 const NEIGHBOUR_ROUNDS: u32 = 8;
 
 /// Amounts by view, each near the mean of its neighbours. `solve` has the amounts of a view for a guess.
-fn smoothed(views: usize, solve: impl Fn(usize, Option<Guess<'_>>) -> Vec<f64>) -> Vec<Vec<f64>> {
-    let mut amounts: Vec<Vec<f64>> = (0..views).map(|view| solve(view, None)).collect();
+fn smoothed(beside: &[Vec<usize>], solve: impl Fn(usize, Option<Guess<'_>>) -> Vec<f64>) -> Vec<Vec<f64>> {
+    let mut amounts: Vec<Vec<f64>> = (0..beside.len()).map(|view| solve(view, None)).collect();
     for _ in 0..NEIGHBOUR_ROUNDS {
-        for view in 0..views {
-            let [before, after] = match view {
-                0 => [1, 1],
-                last if last + 1 == views => [last - 1, last - 1],
-                view => [view - 1, view + 1],
-            };
-            let guess: Vec<f64> = amounts[before].iter().zip(&amounts[after]).map(|(a, b)| 0.5 * (a + b)).collect();
+        for (view, beside) in beside.iter().enumerate() {
+            let share = 1.0 / beside.len() as f64;
+            let guess = |part: usize| share * beside.iter().map(|other| amounts[*other][part]).sum::<f64>();
+            let guess: Vec<f64> = (0..amounts[view].len()).map(guess).collect();
             amounts[view] = solve(view, Some(Guess { amounts: &guess, weight: NEIGHBOUR_WEIGHT }));
         }
     }
@@ -221,8 +284,8 @@ fn share_above(shape: &Shape, wo: DVec3, index: f64) -> f64 {
     (0..SHARE_POINTS).filter(is_above).count() as f64 / f64::from(SHARE_POINTS)
 }
 
-fn tail_of(p: &[f64], lobe: usize) -> f64 {
-    let sin = libm::sin(p[lobe * PER_LOBE + 3 * NODES]);
+fn tail_of(angle: f64) -> f64 {
+    let sin = libm::sin(angle);
     sin * sin
 }
 
@@ -230,18 +293,13 @@ fn wide_of(p: &[f64], axis: ViewAxis) -> Wide {
     Wide::new([p[p.len() - 2], p[p.len() - 1]], axis)
 }
 
-/// The last node of the shifts is that of the normal.
-fn shift_at_normal(p: &[f64], lobe: usize) -> f64 {
-    p[lobe * PER_LOBE + NODES - 1]
-}
-
 /// Second differences of rows, and shifts and ratios themselves: against ripples.
-fn ripple(p: &[f64], lobes: usize) -> Vec<f64> {
+fn ripple(p: &[f64], lobes: usize, basis: Basis) -> Vec<f64> {
     let mut out = Vec::new();
-    for lobe in p[..lobes * PER_LOBE].chunks(PER_LOBE) {
-        for (i, row) in lobe[..3 * NODES].chunks(NODES).enumerate() {
+    for lobe in p[..lobes * basis.per_lobe()].chunks(basis.per_lobe()) {
+        for (i, row) in lobe[..basis.rows() * NODES].chunks(NODES).enumerate() {
             out.extend(row.windows(3).map(|t| RIPPLE_WEIGHT * (t[0] - 2.0 * t[1] + t[2])));
-            if i != 1 {
+            if basis.is_small(i) {
                 out.extend(row.iter().map(|value| REST_WEIGHT * value));
             }
         }
@@ -250,13 +308,14 @@ fn ripple(p: &[f64], lobes: usize) -> Vec<f64> {
 }
 
 /// Slopes of [`ripple`], which is linear.
-fn ripple_slopes(p: &[f64], lobes: usize) -> Vec<Column> {
+fn ripple_slopes(p: &[f64], lobes: usize, basis: Basis) -> Vec<Column> {
     let unit = |j: usize| {
         let mut unit = vec![0.0; p.len()];
         unit[j] = 1.0;
-        (j, ripple(&unit, lobes))
+        (j, ripple(&unit, lobes, basis))
     };
-    (0..lobes * PER_LOBE).filter(|j| j % PER_LOBE < 3 * NODES).map(unit).collect()
+    let per_lobe = basis.per_lobe();
+    (0..lobes * per_lobe).filter(|j| j % per_lobe + 1 < per_lobe).map(unit).collect()
 }
 
 /// Light that a shape or the remainder sends to each cell, and its slopes by a few numbers.
@@ -266,8 +325,8 @@ struct Sent<const N: usize> {
 }
 
 impl<const N: usize> Sent<N> {
-    fn new() -> Self {
-        Self { cells: vec![0.0; CELLS], slopes: std::array::from_fn(|_| vec![0.0; CELLS]) }
+    fn new(cells: usize) -> Self {
+        Self { cells: vec![0.0; cells], slopes: std::array::from_fn(|_| vec![0.0; cells]) }
     }
 
     /// Adds a value and its relative slopes to a cell.
@@ -294,42 +353,57 @@ impl ViewProblem {
         (first, self.place - first as f64)
     }
 
-    fn shape(&self, p: &[f64], lobe: usize) -> Shape {
-        let own = &p[lobe * PER_LOBE..(lobe + 1) * PER_LOBE];
+    fn numbers(&self, p: &[f64], lobe: usize) -> Numbers {
+        let own = &p[lobe * self.basis.per_lobe()..];
         let (first, t) = self.node();
-        let [shift, width, ratio] = [0, 1, 2].map(|i: usize| {
-            let row = &own[i * NODES..];
-            row[first] + t * (row[first + 1] - row[first])
-        });
-        let ratio = ratio * self.sin * self.sin;
-        Shape {
-            shift: shift * self.sin,
-            width: [libm::exp(width + ratio), libm::exp(width - ratio)],
-            tail: tail_of(p, lobe),
-        }
+        let value = |term: &Term| {
+            let row = &own[term.row * NODES..];
+            term.factor * (row[first] + t * (row[first + 1] - row[first]))
+        };
+        self.terms.each_ref().map(|terms| terms.iter().map(value).sum())
     }
 
-    /// Light of a shape by cell, with slopes by the middle, by the logarithms of the widths, and by the angle of the tail.
-    fn sent(&self, shape: &Shape, tail_angle: f64) -> Sent<4> {
-        let mut sent = Sent::new();
+    /// The angle of the tail of a lobe.
+    fn tail_angle(&self, p: &[f64], lobe: usize) -> f64 {
+        p[(lobe + 1) * self.basis.per_lobe() - 1]
+    }
+
+    fn shape(&self, p: &[f64], lobe: usize) -> Shape {
+        self.plane.shape(self.numbers(p, lobe), tail_of(self.tail_angle(p, lobe)))
+    }
+
+    /// Light of a shape by cell, with slopes by the middle and by the logarithms of the widths as [`super::ellipse::Slopes`] has them, and by the
+    /// angle of the tail.
+    fn sent(&self, shape: &Shape, tail_angle: f64) -> Sent<6> {
+        let mut sent = Sent::new(self.found.len());
         let tail = shape.tail.max(TAIL_MIN);
         let tail_slope = if shape.tail > TAIL_MIN { libm::sin(2.0 * tail_angle) } else { 0.0 };
         let norm = 1.0 / (PI * shape.width[0] * shape.width[1]);
+        // The slope of the logarithm's exponential off the diagonal, over the product of the widths.
+        let log_ratio = libm::log(shape.width[0] / shape.width[1]);
+        let shear = if log_ratio.abs() < 1e-6 { 2.0 } else { 2.0 * libm::sinh(log_ratio) / log_ratio };
         for point in &self.points {
-            let (x, y) = ((point.slope[0] - shape.shift) / shape.width[0], point.slope[1] / shape.width[1]);
+            let [x, y] = shape.scaled(point.slope);
             let q = x * x + y * y;
             let log = libm::log1p(tail * q);
             let density = norm * libm::exp(-(1.0 + 1.0 / tail) * log);
             let steep = 2.0 * (1.0 + tail) / (1.0 + tail * q);
             let by_tail = log / (tail * tail) - 0.5 * steep * q / tail;
-            let relative = [steep * x / shape.width[0], steep * x * x - 1.0, steep * y * y - 1.0, by_tail * tail_slope];
+            let relative = [
+                steep * x / shape.width[0],
+                steep * y / shape.width[1],
+                steep * x * x - 1.0,
+                steep * y * y - 1.0,
+                steep * shear * x * y,
+                by_tail * tail_slope,
+            ];
             sent.add(point.cell, density * point.area, relative);
         }
         sent
     }
 
     pub(super) fn profiles(&self, p: &[f64], lobes: usize) -> Profiles {
-        let mut cells = vec![vec![0.0; CELLS]; lobes + 1];
+        let mut cells = vec![vec![0.0; self.found.len()]; lobes + 1];
         for (lobe, profile) in cells[..lobes].iter_mut().enumerate() {
             let shape = self.shape(p, lobe);
             self.points.iter().for_each(|point| profile[point.cell] += shape.density(point.slope) * point.area);
@@ -353,7 +427,7 @@ impl ViewProblem {
             let sent: f64 = cells.iter().zip(&energies).map(|(profile, energy)| profile[cell] * energy).sum();
             self.roots[cell] * (self.found[cell] - sent)
         };
-        let mut out: Vec<f64> = (0..CELLS).map(residual).collect();
+        let mut out: Vec<f64> = (0..self.found.len()).map(residual).collect();
         let lobes = shares.len() - 1;
         out.extend(shares[..lobes].iter().map(|share| SHARE_WEIGHT * (SHARE_WANTED - share).max(0.0)));
         out
@@ -373,25 +447,25 @@ impl ViewProblem {
         let (first, t) = self.node();
         let mut columns = Vec::new();
         for lobe in 0..lobes {
-            let of_tail = lobe * PER_LOBE + 3 * NODES;
-            let [middle, wide, across, tail] = self.sent(&self.shape(p, lobe), p[of_tail]).normalised();
-            let mixed = |a: f64, b: f64| -> (Vec<f64>, f64) {
-                let cells = wide.0.iter().zip(&across.0).map(|(x, y)| a * x + b * y).collect();
-                (cells, a * wide.1 + b * across.1)
-            };
-            let sin_sq = self.sin * self.sin;
-            let shift = (middle.0.iter().map(|x| self.sin * x).collect(), self.sin * middle.1);
-            for (row, slopes) in [shift, mixed(1.0, 1.0), mixed(sin_sq, -sin_sq)].iter().enumerate() {
-                let column = along(lobe, slopes);
-                for (node, share) in [(first, 1.0 - t), (first + 1, t)] {
-                    let number = lobe * PER_LOBE + row * NODES + node;
-                    columns.push((number, column.iter().map(|x| share * x).collect()));
+            let of_lobe = lobe * self.basis.per_lobe();
+            let sent = self.sent(&self.shape(p, lobe), self.tail_angle(p, lobe)).normalised();
+            for (terms, slopes) in self.terms.iter().zip(self.plane.slopes(self.numbers(p, lobe))) {
+                if terms.is_empty() {
+                    continue;
+                }
+                let column = along(lobe, &mixed(&sent, slopes));
+                for term in terms.iter().filter(|term| term.factor != 0.0) {
+                    for (node, share) in [(first, 1.0 - t), (first + 1, t)] {
+                        let number = of_lobe + term.row * NODES + node;
+                        columns.push((number, column.iter().map(|x| term.factor * share * x).collect()));
+                    }
                 }
             }
-            columns.push((of_tail, along(lobe, &tail)));
+            let [.., tail] = &sent;
+            columns.push((of_lobe + self.basis.per_lobe() - 1, along(lobe, tail)));
         }
         let wide = wide_of(p, self.axis);
-        let mut sent = Sent::<2>::new();
+        let mut sent = Sent::<2>::new(self.found.len());
         for point in &self.points {
             let value = wide.value(point.cos_theta);
             if value > 0.0 {
@@ -406,8 +480,24 @@ impl ViewProblem {
     }
 }
 
+/// The sum of slopes with factors.
+fn mixed(sent: &[(Vec<f64>, f64); 6], factors: [f64; 5]) -> (Vec<f64>, f64) {
+    let mut sum = (vec![0.0; sent[0].0.len()], 0.0);
+    for ((slopes, share), factor) in sent.iter().zip(factors).filter(|(_, factor)| *factor != 0.0) {
+        sum.0.iter_mut().zip(slopes).for_each(|(sum, slope)| *sum += factor * slope);
+        sum.1 += factor * share;
+    }
+    sum
+}
+
+/// The view of a row at an azimuth, whose cosine and sine are given.
+pub(super) fn seen_from(axis: ViewAxis, [cos, sin]: [f64; 2], row: usize) -> DVec3 {
+    let DVec3 { x, z, .. } = direction(axis.cos_theta(row as f64));
+    DVec3::new(cos * x, sin * x, z)
+}
+
 /// A direction in the plane of x and z.
-pub(super) fn direction(cos_theta: f64) -> DVec3 {
+fn direction(cos_theta: f64) -> DVec3 {
     DVec3::new((1.0 - cos_theta * cos_theta).max(0.0).sqrt(), 0.0, cos_theta)
 }
 
@@ -421,35 +511,48 @@ mod tests {
     use crate::lobes::FitSettings;
     use crate::lobes::parameters::{Start, parameters};
 
-    /// Oracle: differences of the residuals.
-    #[test]
-    fn slopes_are_those_of_the_residuals() {
-        let layer =
-            |alpha, base| Layer { films: Vec::new(), surface: Surface::isotropic(Distribution::Ggx, alpha), base };
+    fn stack(coat_alphas: [f64; 2], coat_rotation: f64, base_alphas: [f64; 2]) -> Stack {
+        let layer = |[alpha_x, alpha_y]: [f64; 2], rotation, base| Layer {
+            films: Vec::new(),
+            surface: Surface { distribution: Distribution::Ggx, alpha_x, alpha_y, rotation },
+            base,
+        };
         let slab = Slab { thickness_um: 1.0, absorption_per_um: [0.2; 3] };
         let coat = Base::Dielectric { ior: Ior::constant(1.5, 0.0).unwrap(), slab };
         let metal = Base::Conductor { ior: Ior::constant(0.3, 3.0).unwrap() };
-        let stack = Stack { exterior: Ior::vacuum(), layers: vec![layer(0.3, coat), layer(0.1, metal)] };
-        let settings = FitSettings { rows: 4, paths: 2000, seed: 1 };
-        let simulation = Simulation::new(&stack, &Color::ThreeWavelengths([550.0; 3]), settings).unwrap();
-        let problem = Problem::new(&simulation, 1);
-        let lobed = Lobed { problem: &problem, lobes: 2, beside: None };
-        let mut p = parameters(vec![Start::new(0.2, 0.6), Start::new(0.5, 1.0)], [0.3, 0.1]);
-        (0..p.len()).for_each(|j| p[j] += 0.05 * (j % 7) as f64);
-        for block in 0..lobed.blocks() {
-            let now = lobed.block(&p, block);
-            for (j, slopes) in lobed.slopes(&p, block, &now) {
-                let ends = [1e-5, -1e-5].map(|step| {
-                    let mut moved = p.clone();
-                    moved[j] += step;
-                    lobed.block(&moved, block)
-                });
-                for (i, slope) in slopes.iter().enumerate() {
-                    let expected = (ends[0][i] - ends[1][i]) / 2e-5;
-                    assert!(
-                        (slope - expected).abs() < 2e-3 * (1.0 + expected.abs()),
-                        "{block} {j} {i}: {slope} {expected}"
-                    );
+        let layers = vec![layer(coat_alphas, coat_rotation, coat), layer(base_alphas, 0.0, metal)];
+        Stack { exterior: Ior::vacuum(), layers }
+    }
+
+    /// Oracle: differences of the residuals.
+    #[test]
+    fn slopes_are_those_of_the_residuals() {
+        let stacks =
+            [stack([0.3; 2], 0.0, [0.1; 2]), stack([0.3; 2], 0.0, [0.1, 0.3]), stack([0.3, 0.1], 0.4, [0.1, 0.3])];
+        for (stack, basis) in stacks.iter().zip([Basis::Isotropic, Basis::Mirrored, Basis::Turned]) {
+            let settings = FitSettings { rows: 4, paths: 2000, seed: 1 };
+            let simulation = Simulation::new(stack, &Color::ThreeWavelengths([550.0; 3]), settings);
+            assert_eq!(simulation.basis(), basis);
+            let problem = Problem::coarse(&simulation, 1);
+            let lobed = Lobed::new(&problem, 2);
+            let starts = [(-1.6, 0.6), (-0.7, 1.0)].map(|(mean, tail)| Start::new(basis, [0.0, mean, 0.2, 0.1], tail));
+            let mut p = parameters(starts.to_vec(), [0.3, 0.1]);
+            (0..p.len()).for_each(|j| p[j] += 0.05 * (j % 7) as f64);
+            for block in 0..lobed.blocks() {
+                let now = lobed.block(&p, block);
+                for (j, slopes) in lobed.slopes(&p, block, &now) {
+                    let ends = [1e-5, -1e-5].map(|step| {
+                        let mut moved = p.clone();
+                        moved[j] += step;
+                        lobed.block(&moved, block)
+                    });
+                    for (i, slope) in slopes.iter().enumerate() {
+                        let expected = (ends[0][i] - ends[1][i]) / 2e-5;
+                        assert!(
+                            (slope - expected).abs() < 2e-3 * (1.0 + expected.abs()),
+                            "{basis:?} {block} {j} {i}: {slope} {expected}"
+                        );
+                    }
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use luthier_optics::Rgb;
 
-use super::shape::TAIL_MIN;
+use super::shape::{Shape, TAIL_MIN};
 
 /// Cosine of the view that stands for all that are flatter, where rows are traced: at 89.9 degrees.
 const FLATTEST: f64 = 0.001_745;
@@ -150,11 +150,45 @@ pub struct Lobe {
     pub share: f64,
     /// Shift of the middle over the sine of the view.
     pub shift: f64,
-    /// Reciprocal widths in the plane of the eye and across it.
+    /// Reciprocal widths in the plane of the eye and across it. In axes: those of a symmetric matrix S, along both.
     pub sharpness: [f64; 2],
+    /// The number of S between the axes; 0 in the plane of the eye.
+    pub shear: f64,
     /// Tail of the shape.
     pub tail: f64,
 }
+
+impl Lobe {
+    /// The shape in the plane of an eye, by the sine of its angle.
+    pub(super) fn in_plane(&self, sin: f64) -> Shape {
+        let width = self.sharpness.map(|sharpness| 1.0 / sharpness);
+        Shape { middle: [self.shift * sin, 0.0], width, turn: [1.0, 0.0], tail: self.tail }
+    }
+
+    /// The shape in axes in which the eye has coordinates along the surface.
+    ///
+    /// The middle is `shift det(S) S^-2 eye`: of S times the slope from it, the middle's part is `shift adj(S) eye`.
+    pub(super) fn in_axes(&self, eye: [f64; 2]) -> Shape {
+        let [x, y] = self.sharpness;
+        let (mean, half) = (0.5 * (x + y), 0.5 * (x - y));
+        // Rounding may leave no ellipse.
+        let radius = libm::hypot(half, self.shear).min(mean * (1.0 - SHARPNESS_MIN));
+        let (sin, cos) = libm::sincos(0.5 * libm::atan2(self.shear, half));
+        let sharpness = [mean + radius, mean - radius];
+        let [along, across] = [cos * eye[0] + sin * eye[1], cos * eye[1] - sin * eye[0]];
+        let ratio = sharpness[1] / sharpness[0];
+        let [along, across] = [self.shift * ratio * along, self.shift / ratio * across];
+        Shape {
+            middle: [cos * along - sin * across, sin * along + cos * across],
+            width: sharpness.map(|sharpness| 1.0 / sharpness),
+            turn: [cos, sin],
+            tail: self.tail,
+        }
+    }
+}
+
+/// Least sharpness along one axis, over that along the other.
+const SHARPNESS_MIN: f64 = 1e-4;
 
 impl Row {
     /// Number of parts of a row of so many lobes.
@@ -166,22 +200,23 @@ impl Row {
     ///
     /// | part | x, y, z, w |
     /// |---|---|
-    /// | 0 | wide remainder RGB, 0 |
+    /// | 0 | wide remainder RGB, shear of the first lobe |
     /// | 1 + 2k | strength of lobe k RGB, shift |
-    /// | 2 + 2k | of lobe k the sharpness along the plane of the eye, and across it, times the root of the tail; 1 over the tail; share |
-    /// | last | directional albedo RGB, 0 |
+    /// | 2 + 2k | of lobe k the sharpness along the plane of the eye, and across it; 1 over the tail; share |
+    /// | last | directional albedo RGB, shear of the second lobe |
     ///
-    /// With the root of the tail in both, the shape is `x y z / pi (1 + q)^-(1 + z)`.
+    /// Sharpness x and y and shear k are times the root of the tail: with it the shape is `(x y - k^2) z / pi (1 + q)^-(1 + z)`.
     pub fn to_parts(&self) -> Vec<[f64; 4]> {
         let rgb = |[r, g, b]: Rgb, w: f64| [r, g, b, w];
-        let mut parts = vec![rgb(self.wide, 0.0)];
+        let shear = |lobe: usize| self.lobes.get(lobe).map_or(0.0, |lobe| lobe.shear * lobe.tail.max(TAIL_MIN).sqrt());
+        let mut parts = vec![rgb(self.wide, shear(0))];
         for lobe in &self.lobes {
             parts.push(rgb(lobe.strength, lobe.shift));
             let tail = lobe.tail.max(TAIL_MIN);
             let [x, y] = lobe.sharpness.map(|sharpness| sharpness * tail.sqrt());
             parts.push([x, y, 1.0 / tail, lobe.share]);
         }
-        parts.push(rgb(self.albedo_dir, 0.0));
+        parts.push(rgb(self.albedo_dir, shear(1)));
         parts
     }
 
@@ -189,7 +224,12 @@ impl Row {
     pub fn of_parts(parts: &[[f64; 4]]) -> Self {
         let rgb = |part: Option<&[f64; 4]>| part.map_or([0.0; 3], |&[r, g, b, _]| [r, g, b]);
         let inner = parts.get(1..parts.len().saturating_sub(1)).unwrap_or_default();
-        let lobe = |pair: &[[f64; 4]]| {
+        let shear = |lobe: usize| match lobe {
+            0 => parts.first(),
+            1 => parts.last(),
+            _ => None,
+        };
+        let lobe = |(number, pair): (usize, &[[f64; 4]])| {
             let &[strength, [x, y, inverse_tail, share]] = pair else { return None };
             let inverse_tail = inverse_tail.max(1.0);
             let sharpness = [x, y].map(|x| x * inverse_tail.sqrt());
@@ -198,12 +238,13 @@ impl Row {
                 share,
                 shift: strength[3],
                 sharpness,
+                shear: shear(number).map_or(0.0, |part| part[3] * inverse_tail.sqrt()),
                 tail: 1.0 / inverse_tail,
             })
         };
         Self {
             albedo_dir: rgb(parts.last()),
-            lobes: inner.chunks_exact(2).filter_map(lobe).collect(),
+            lobes: inner.chunks_exact(2).enumerate().filter_map(lobe).collect(),
             wide: rgb(parts.first()),
         }
     }
@@ -211,7 +252,7 @@ impl Row {
     /// The row with lobes without light behind its own, so many in all.
     #[must_use]
     pub fn filled(mut self, lobes: usize) -> Self {
-        let none = Lobe { strength: [0.0; 3], share: 1.0, shift: 0.0, sharpness: [1.0; 2], tail: 0.0 };
+        let none = Lobe { strength: [0.0; 3], share: 1.0, shift: 0.0, sharpness: [1.0; 2], shear: 0.0, tail: 0.0 };
         self.lobes.resize(lobes.max(self.lobes.len()), none);
         self
     }
@@ -222,6 +263,7 @@ impl Row {
         for lobe in &mut self.lobes {
             lobe.shift *= factor;
             lobe.sharpness = lobe.sharpness.map(|sharpness| sharpness / factor);
+            lobe.shear /= factor;
         }
         self
     }
@@ -292,6 +334,7 @@ mod tests {
             share: 0.5 + k,
             shift: 0.25,
             sharpness: [8.0, 9.0],
+            shear: 1.0 + k,
             tail: 0.25,
         };
         for lobes in [vec![], vec![lobe(0.0)], vec![lobe(0.0), lobe(0.25)]] {
@@ -301,10 +344,29 @@ mod tests {
         }
     }
 
+    /// Oracle: the matrix itself, for the squared distance and the determinant.
+    #[test]
+    fn lobes_in_axes_are_those_of_their_matrix() {
+        let lobe = Lobe { strength: [1.0; 3], share: 1.0, shift: 0.3, sharpness: [7.0, 3.0], shear: -2.0, tail: 0.5 };
+        let eye = [0.5, 0.2];
+        let shape = lobe.in_axes(eye);
+        let adjugate = [3.0 * eye[0] + 2.0 * eye[1], 7.0 * eye[1] + 2.0 * eye[0]];
+        for [x, y] in [[0.0, 0.0], [0.3, -0.1], [-0.2, 0.5]] {
+            let scaled = [7.0 * x - 2.0 * y - 0.3 * adjugate[0], -2.0 * x + 3.0 * y - 0.3 * adjugate[1]];
+            let q = scaled[0] * scaled[0] + scaled[1] * scaled[1];
+            let expected = (7.0 * 3.0 - 4.0) / std::f64::consts::PI * libm::pow(1.0 + 0.5 * q, -3.0);
+            assert!((shape.density([x, y]) / expected - 1.0).abs() < 1e-9, "{x} {y}");
+        }
+        // Rounding has left no ellipse.
+        let none = Lobe { shear: 5.0, ..lobe }.in_axes(eye);
+        assert!(none.width.iter().all(|width| width.is_finite() && *width > 0.0));
+    }
+
     /// By hand: 4 - (1 * .5) - .1 and so on.
     #[test]
     fn the_first_facet_has_the_rest() {
-        let lobe = Lobe { strength: [1.0, 2.0, 3.0], share: 0.5, shift: 0.0, sharpness: [1.0; 2], tail: 0.0 };
+        let lobe =
+            Lobe { strength: [1.0, 2.0, 3.0], share: 0.5, shift: 0.0, sharpness: [1.0; 2], shear: 0.0, tail: 0.0 };
         let row = Row { albedo_dir: [4.0, 2.0, 1.0], lobes: vec![lobe], wide: [0.1; 3] };
         let expected = [3.4, 0.9, 0.0];
         assert!(row.first_facet().iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12));

@@ -4,17 +4,20 @@ use std::f64::consts::PI;
 
 use super::ViewAxis;
 
-/// A density of slopes: elliptic, with its middle in the plane of the eye.
+/// A density of slopes: elliptic.
 ///
-/// `p(s) = (1 + t q)^-(1 + 1/t) / (pi w_x w_y)`, `q = ((s_x - m) / w_x)^2 + (s_y / w_y)^2`: Student's in two dimensions. Its tail t is 0 for
+/// `p(s) = (1 + t q)^-(1 + 1/t) / (pi w_0 w_1)`, `q = (u_0 / w_0)^2 + (u_1 / w_1)^2`, u the slope from the middle along the axes of the ellipse:
+/// Student's in two dimensions. Its tail t is 0 for
 /// a Gaussian (Beckmann's distribution), and 1 for the distribution of Trowbridge and Reitz (GGX). It counts as [`TAIL_MIN`] at least: at q = 7,
 /// where a Gaussian is a thousandth of its peak, that is 2.4 % more. The density integrates to 1 over all slopes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
-    /// The middle m, along the plane of the eye.
-    pub shift: f64,
-    /// Widths along the plane of the eye and across it.
+    /// The middle: in the plane of the eye and across it, or in tangents.
+    pub middle: [f64; 2],
+    /// Widths along the axes.
     pub width: [f64; 2],
+    /// Cosine and sine of the angle of the first axis.
+    pub turn: [f64; 2],
     /// The tail t, in 0..=1.
     pub tail: f64,
 }
@@ -24,10 +27,31 @@ pub const TAIL_MIN: f64 = 1.0 / 1024.0;
 
 impl Shape {
     /// Density of a slope.
-    pub fn density(&self, [x, y]: [f64; 2]) -> f64 {
-        let (x, y) = ((x - self.shift) / self.width[0], y / self.width[1]);
+    pub fn density(&self, slope: [f64; 2]) -> f64 {
+        let [x, y] = self.scaled(slope);
         let (q, tail) = (x * x + y * y, self.tail.max(TAIL_MIN));
         libm::exp(-(1.0 + 1.0 / tail) * libm::log1p(tail * q)) / (PI * self.width[0] * self.width[1])
+    }
+
+    /// The slope from the middle along the axes, over the widths.
+    pub(super) fn scaled(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let ([x, y], [cos, sin]) = ([x - self.middle[0], y - self.middle[1]], self.turn);
+        [(cos * x + sin * y) / self.width[0], (cos * y - sin * x) / self.width[1]]
+    }
+
+    /// The slope of [`Self::scaled`].
+    pub(super) fn unscaled(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let ([x, y], [cos, sin]) = ([self.width[0] * x, self.width[1] * y], self.turn);
+        [self.middle[0] + (cos * x - sin * y), self.middle[1] + (sin * x + cos * y)]
+    }
+
+    /// Reciprocal widths as a symmetric matrix: along x, along y, and between them.
+    pub(super) fn sharpness(&self) -> [f64; 3] {
+        let ([cos, sin], [first, second]) = (self.turn, self.width.map(|width| 1.0 / width));
+        let (cos_sq, sin_sq) = (cos * cos, sin * sin);
+        // No negative zero.
+        let shear = cos * sin * (first - second) + 0.0;
+        [cos_sq * first + sin_sq * second, sin_sq * first + cos_sq * second, shear]
     }
 
     /// A slope for two numbers that are uniform in 0..1.
@@ -38,7 +62,7 @@ impl Shape {
         let q = libm::expm1(-tail * libm::log(1.0 - u)) / tail;
         let (sin, cos) = libm::sincos(2.0 * PI * v);
         let radius = q.sqrt();
-        [self.shift + self.width[0] * radius * cos, self.width[1] * radius * sin]
+        self.unscaled([radius * cos, radius * sin])
     }
 }
 
@@ -100,7 +124,7 @@ mod tests {
     fn the_ends_of_the_tail_are_the_two_distributions() {
         for (tail, distribution) in [(0.0, Distribution::Beckmann), (1.0, Distribution::Ggx)] {
             for alpha in [0.05, 0.4] {
-                let shape = Shape { shift: 0.0, width: [alpha; 2], tail };
+                let shape = Shape { middle: [0.0; 2], width: [alpha; 2], turn: [1.0, 0.0], tail };
                 for slope in [0.0, 0.02, 0.3, 1.5] {
                     let cos_sq: f64 = 1.0 / (1.0 + slope * slope);
                     let d = microfacet::distribution(distribution, alpha, cos_sq.sqrt(), 1.0 - cos_sq);
@@ -119,7 +143,7 @@ mod tests {
     #[test]
     fn samples_follow_the_density() {
         for tail in [0.0, 0.3, 1.0] {
-            let shape = Shape { shift: 0.2, width: [0.5, 0.1], tail };
+            let shape = Shape { middle: [0.2, 0.0], width: [0.5, 0.1], turn: [1.0, 0.0], tail };
             let side = 400;
             let (mut sampled, mut expected) = ([0.0; 4], [0.0; 4]);
             let ring = |[x, y]: [f64; 2]| ((((x - 0.2) / 0.5).abs() + (y / 0.1).abs()) * 2.0) as usize;

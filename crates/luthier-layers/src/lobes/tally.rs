@@ -1,26 +1,26 @@
 //! Simulated light of one view in cells of slopes.
 //!
 //! Cells are rings and sectors around the mirror direction, in the half vectors of a medium; rings grow geometrically. An isotropic stack
-//! is its own mirror image in the plane of the eye, so that both halves count together.
+//! is its own mirror image in the plane of the eye, so that both halves count together. Cells of an anisotropic one are stretched as its lobes are.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 use luthier_optics::Rgb;
 
+use super::Shape;
 use super::half_vector::{outside, refracted, slope};
 
 const RINGS: usize = 20;
+/// Sectors of half a turn, where halves count together, and of a turn.
 const SECTORS: usize = 12;
+const SECTORS_OF_TURN: usize = 16;
 /// Discs and rings inside the innermost ring.
 const INNER: usize = 6;
 /// Points of a cell along either side.
 const POINTS: usize = 2;
 /// The greatest slope that counts: steeper ones are counted with it.
 const STEEPEST: f64 = 12.0;
-
-/// Number of cells.
-pub(super) const CELLS: usize = 1 + RINGS * SECTORS;
 
 /// Cells in the half vectors of a medium.
 #[derive(Debug, Clone, Copy)]
@@ -31,6 +31,8 @@ pub(super) struct Cells {
     least: f64,
     /// Logarithm of the ratio of two edges.
     step: f64,
+    /// Ellipse of slopes that is a circle of cells; none where both halves count together.
+    stretch: Option<Shape>,
 }
 
 /// A point of a cell, and what it stands for.
@@ -38,54 +40,81 @@ pub(super) struct Cells {
 pub(super) struct Point {
     pub(super) cell: usize,
     pub(super) slope: [f64; 2],
-    /// Area of slopes, both halves together.
+    /// Area of slopes.
     pub(super) area: f64,
     /// Cosine of the light.
     pub(super) cos_theta: f64,
-    /// Solid angle of the light, both halves together.
+    /// Solid angle of the light.
     pub(super) solid_angle: f64,
 }
 
 impl Cells {
-    /// Cells for lobes of slope parameters down to `alpha`.
+    /// Cells for isotropic lobes of slope parameters down to `alpha`.
     pub(super) fn new(index: f64, alpha: f64) -> Self {
         let least = 0.25 * alpha;
-        Self { index, least, step: libm::log(STEEPEST / least) / RINGS as f64 }
+        Self { index, least, step: libm::log(STEEPEST / least) / RINGS as f64, stretch: None }
     }
 
-    /// The cell of light from `wi` seen from `wo`, whose plane is that of x and z.
+    /// Cells for lobes that are about as wide as a shape.
+    pub(super) fn stretched(index: f64, shape: Shape) -> Self {
+        let (least, most) = (0.25, STEEPEST / shape.width[0].min(shape.width[1]));
+        Self { index, least, step: libm::log(most / least) / RINGS as f64, stretch: Some(shape) }
+    }
+
+    /// Number of cells.
+    pub(super) fn count(&self) -> usize {
+        1 + RINGS * self.sectors()
+    }
+
+    fn sectors(&self) -> usize {
+        if self.stretch.is_some() { SECTORS_OF_TURN } else { SECTORS }
+    }
+
+    /// The cell of light from `wi` seen from `wo`. Where both halves count together, the plane of `wo` is that of x and z.
     fn cell(&self, wi: DVec3, wo: DVec3) -> usize {
-        let ([x, y], _) = slope(wi, refracted(wi, self.index), refracted(wo, self.index), self.index);
+        let (at, _) = slope(wi, refracted(wi, self.index), refracted(wo, self.index), self.index);
+        let ([x, y], least_angle, turn) = match &self.stretch {
+            None => ([at[0], at[1].abs()], 0.0, PI),
+            Some(shape) => (shape.scaled(at), PI, TAU),
+        };
         let radius = libm::hypot(x, y);
         if radius < self.least {
             return 0;
         }
         let ring = ((libm::log(radius / self.least) / self.step) as usize).min(RINGS - 1);
-        let sector = ((libm::atan2(y.abs(), x) * (SECTORS as f64 / PI)) as usize).min(SECTORS - 1);
-        1 + ring * SECTORS + sector
+        let sectors = self.sectors();
+        let sector = (((libm::atan2(y, x) + least_angle) * (sectors as f64 / turn)) as usize).min(sectors - 1);
+        1 + ring * sectors + sector
     }
 
     /// Points of all cells from which light reaches `wo`.
     pub(super) fn points(&self, wo: DVec3) -> Vec<Point> {
         let eye = refracted(wo, self.index);
         let mut points = Vec::new();
+        let (turn, least_angle) = if self.stretch.is_some() { (TAU, PI) } else { (PI, 0.0) };
         let mut add = |cell: usize, radius: [f64; 2], phi: [f64; 2]| {
-            let area = (radius[1] * radius[1] - radius[0] * radius[0]) * (phi[1] - phi[0]);
+            let mut area = (radius[1] * radius[1] - radius[0] * radius[0]) * (phi[1] - phi[0]);
             // The mean of the squared radius over the area.
             let middle = (0.5 * (radius[0] * radius[0] + radius[1] * radius[1])).sqrt();
-            let (sin, cos) = libm::sincos(0.5 * (phi[0] + phi[1]));
-            let at = [middle * cos, middle * sin];
+            let (sin, cos) = libm::sincos(0.5 * (phi[0] + phi[1]) - least_angle);
+            let mut at = [middle * cos, middle * sin];
+            if let Some(shape) = &self.stretch {
+                at = shape.unscaled(at);
+                // Half of what both halves have.
+                area *= 0.5 * shape.width[0] * shape.width[1];
+            }
             let Some(wi) = outside(at, eye, self.index) else { return };
             let (_, factor) = slope(wi, refracted(wi, self.index), eye, self.index);
             points.push(Point { cell, slope: at, area, cos_theta: wi.z, solid_angle: area / factor });
         };
-        for sector in 0..SECTORS {
-            let phi = [sector, sector + 1].map(|i| i as f64 * PI / SECTORS as f64);
+        let sectors = self.sectors();
+        for sector in 0..sectors {
+            let phi = [sector, sector + 1].map(|i| i as f64 * turn / sectors as f64);
             for i in 0..INNER {
                 add(0, [i, i + 1].map(|i| self.least * i as f64 / INNER as f64), phi);
             }
             for ring in 0..RINGS {
-                let cell = 1 + ring * SECTORS + sector;
+                let cell = 1 + ring * sectors + sector;
                 let edge = |i: usize| self.least * libm::exp(self.step * (ring as f64 + i as f64 / POINTS as f64));
                 let turn = |j: usize| phi[0] + (phi[1] - phi[0]) * j as f64 / POINTS as f64;
                 for i in 0..POINTS {
@@ -111,8 +140,9 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    pub(super) fn new(sets: usize) -> Self {
-        Self { rest: vec![vec![[0.0; 3]; CELLS]; sets], total: [0.0; 3], first_facet: [0.0; 3] }
+    pub(super) fn new(sets: &[Cells]) -> Self {
+        let rest = sets.iter().map(|cells| vec![[0.0; 3]; cells.count()]).collect();
+        Self { rest, total: [0.0; 3], first_facet: [0.0; 3] }
     }
 
     /// Counts light with a weight.
@@ -135,15 +165,16 @@ mod tests {
     /// Oracle: the solid angle and the projected area of the hemisphere.
     #[test]
     fn points_cover_the_hemisphere() {
-        for index in [1.0, 1.6] {
+        let long = Shape { middle: [0.0; 2], width: [0.6, 0.1], turn: [0.8, 0.6], tail: 0.0 };
+        for cells in [1.0, 1.6].into_iter().flat_map(|n| [Cells::new(n, 0.2), Cells::stretched(n, long)]) {
+            let index = cells.index;
             for cos_theta in [1.0, 0.7, 0.2] {
                 let wo = DVec3::new(f64::sqrt(1.0 - cos_theta * cos_theta), 0.0, cos_theta);
-                let cells = Cells::new(index, 0.2);
                 let points = cells.points(wo);
                 let projected: f64 = points.iter().map(|p| p.solid_angle * p.cos_theta).sum();
                 // Points of cells that the critical angle cuts are in or out: a few hundredths of the wide remainder.
-                assert!((projected / PI - 1.0).abs() < 0.06, "{index} {cos_theta}: {projected}");
-                assert!(points.iter().all(|p| p.cell < CELLS && p.area > 0.0 && p.solid_angle > 0.0));
+                assert!((projected / PI - 1.0).abs() < 0.06, "{cells:?} {cos_theta}: {projected}");
+                assert!(points.iter().all(|p| p.cell < cells.count() && p.area > 0.0 && p.solid_angle > 0.0));
                 // The point of a cell is found there again.
                 for point in &points {
                     let wi = outside(point.slope, refracted(wo, index), index).unwrap();

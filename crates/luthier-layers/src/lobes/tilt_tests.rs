@@ -108,7 +108,7 @@ fn lobe_error(model: &Grid, truth: &Grid) -> f64 {
 
 fn fitted() -> Lobes {
     let settings = FitSettings { rows: 19, paths: 16_000, seed: 1 };
-    Simulation::new(&coated_metal(), &Color::ThreeWavelengths([550.0; 3]), settings).unwrap().fit(1)
+    Simulation::new(&coated_metal(), &Color::ThreeWavelengths([550.0; 3]), settings).fit(1)
 }
 
 /// Oracle: the mean of the model over normals whose slopes are normal with the variance, by the midpoint rule.

@@ -3,7 +3,8 @@
 use luthier_optics::color::Color;
 use luthier_optics::stack::{Base, Stack, Surface};
 
-use super::fit::{FitError, Found, Simulation};
+use super::fit::{Found, Simulation};
+use super::parameters::Basis;
 use super::{EXCESS, FitSettings, LOBES, Lobes, Row, shown};
 use crate::elek::ALPHA_MIN;
 use crate::facets::Facets;
@@ -74,7 +75,7 @@ pub struct Varied {
 }
 
 impl Varied {
-    /// The lobes of a stack as bakes have them, see [`Lobes::of`].
+    /// The lobes of a stack as bakes have them, see [`Lobes::of`]. Anisotropic surfaces have their mean slope parameter ([`shown`]).
     pub fn of(stack: &Stack, color: &Color, varying: Option<Varying>) -> Self {
         Self::with(stack, color, varying, FitSettings::default())
     }
@@ -82,8 +83,7 @@ impl Varied {
     /// [`Self::of`] with settings.
     pub fn with(stack: &Stack, color: &Color, varying: Option<Varying>, settings: FitSettings) -> Self {
         let shown = shown(stack);
-        let traced = Simulation::new(&shown, color, settings);
-        let Ok(nominal) = traced else { unreachable!("its surfaces were made isotropic") };
+        let nominal = Simulation::new(&shown, color, settings);
         let surface = nominal.first.is_some().then(|| shown.layers[0].surface);
         let Some(varying) = varying else {
             return Self { nodes: vec![nominal.fit_fewest(LOBES, EXCESS)], varying: None, surface };
@@ -96,15 +96,13 @@ impl Varied {
         let mut simulations = vec![nominal];
         for node in 1..NODES {
             let here = varying.apply(&shown, varying.factor(node as f64));
-            match Simulation::along(axis, &here, color, settings) {
-                Ok(simulation) => simulations.push(simulation),
-                Err(FitError::Anisotropic { .. }) => unreachable!("its surfaces were made isotropic"),
-            }
+            simulations.push(Simulation::along(axis, &here, color, settings));
         }
         let spread = |node: usize| spread_of(varying, least, varying.factor(node as f64));
         // Where the lobes are farther apart, more of them may be seen.
         let (first, middle) = (simulations[0].fewest(LOBES, EXCESS), simulations[NODES / 2].fewest(LOBES, EXCESS));
-        let (seed, start) = if middle.lobes() > first.lobes() { (NODES / 2, middle) } else { (0, first) };
+        let lobes = |found: &Found| found.starts(Basis::Isotropic).len();
+        let (seed, start) = if lobes(&middle) > lobes(&first) { (NODES / 2, middle) } else { (0, first) };
         let mut found: Vec<Option<Found>> = (0..NODES).map(|_| None).collect();
         found[seed] = Some(start);
         let pairs = (seed + 1..NODES).map(|node| (node, node - 1)).chain((0..seed).rev().map(|node| (node, node + 1)));
@@ -177,6 +175,7 @@ fn scaled_surface(surface: Surface, factor: f64) -> Surface {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
     use luthier_optics::ior::Ior;
     use luthier_optics::stack::{Diffuse, Distribution, Layer, Slab};
 
@@ -236,14 +235,14 @@ mod tests {
         let smooth = Varied::with(&coated(0.0, 1.0, metal(), 0.01), &COLOR, Some(Varying::Slab), SETTINGS);
         assert_eq!(varied.least_spread(), 1.0);
         for factor in [1.0, 0.7, 0.41, 0.2, 0.05, 0.0] {
-            let clear = smooth.at(0.0).row(1.0);
-            let row = smooth.at(factor).row(1.0);
+            let clear = smooth.at(0.0).row(DVec3::Z);
+            let row = smooth.at(factor).row(DVec3::Z);
             let [below, all] = [&row, &clear].map(|row| [0, 2].map(|c: usize| row.albedo_dir[c] - 0.04));
             for (k, sigma) in [0.2, 0.8].into_iter().enumerate() {
                 let (expected, found) = (libm::exp(-2.0 * factor * sigma), below[k] / all[k]);
                 assert!((found - expected).abs() < 0.02, "{factor} {sigma}: {found} {expected}");
             }
-            let albedo = varied.at(factor).row(0.8).albedo_dir;
+            let albedo = varied.at(factor).row(DVec3::new(0.6, 0.0, 0.8)).albedo_dir;
             assert!(albedo[2] <= albedo[0] + 1e-3 && albedo[0] < 0.6, "{factor}: {albedo:?}");
         }
     }

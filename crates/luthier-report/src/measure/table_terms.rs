@@ -258,7 +258,7 @@ impl ShaderTerms for TableTerms<'_> {
             plain_share: lobes.critical_plain_share,
         };
         let axis = ViewAxis::new(2, critical);
-        let frame = Frame { index: lobes.index, wide: Wide::new(lobes.falloff, axis) };
+        let frame = Frame { index: lobes.index, wide: Wide::new(lobes.falloff, axis), axes: None };
         Some(Below::new(frame, table.row(tile, axis.cosine(wo.z), self.weights), wo))
     }
 }

@@ -80,7 +80,7 @@ fn light_from_below_is_that_of_the_twin() {
                 bilinear(&image, at, WeightBits::Exact)
             };
             let row = Row::of_parts(&(0..6).map(part).collect::<Vec<_>>());
-            let expected = Below::new(Frame { index: 1.4f32.into(), wide }, row, eye).eval(light);
+            let expected = Below::new(Frame { index: 1.4f32.into(), wide, axes: None }, row, eye).eval(light);
             let prepared = machine.call("luthier_prepare_lobes", vec![Value::U(0), vector(&wo.map(|w| w as f32))]);
             let found = machine.call("luthier_light_lobes", vec![prepared, vector(&wi.map(|w| w as f32))]).floats();
             for (found, expected) in found.iter().zip(expected) {
@@ -124,7 +124,7 @@ fn rows_over_a_factor_are_those_of_the_twin() {
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
         record.integral = wide.integral();
         record.varying = Some(VaryingRecord { factor, tiles: 4, least_spread: 0.1 });
-        let frame = Frame { index: record.index, wide };
+        let frame = Frame { index: record.index, wide, axes: None };
         let materials = [material];
         let text = emit(&MaterialSet::new(&materials, tables.clone()), Form::Baked, Target::Wgsl).unwrap();
         let black = Image::zeros(3, 3, 3);
