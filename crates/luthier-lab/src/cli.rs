@@ -37,6 +37,8 @@ pub(crate) enum Verb {
     Lobes(LobesOptions),
     /// Fit lobes to stacks whose roughness or thickness varies, and compare them between their nodes with the simulation: a page in Markdown
     Varying(VaryingOptions),
+    /// Fit lobes to anisotropic stacks, and compare them between the azimuths of their rows with the simulation: a page in Markdown
+    Anisotropic(AnisotropicOptions),
     /// Compare the environment that pictures show with sums over all directions: a page in Markdown
     Environment(EnvironmentOptions),
     /// Measure the tables that searches find against fixed ones: a page in Markdown
@@ -195,6 +197,24 @@ pub(crate) struct VaryingOptions {
     /// Paths of the judge for each wavelength and direction
     #[arg(long, value_name = "N", default_value_t = LOBES_SAMPLES)]
     pub(crate) samples: NonZeroU32,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  luthier-lab anisotropic materials --random 10 -o docs/pages/anisotropic.md")]
+pub(crate) struct AnisotropicOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Random stacks besides
+    #[arg(long, value_name = "N", default_value_t = 10)]
+    pub(crate) random: u32,
+    /// Paths of the judge for each wavelength and direction
+    #[arg(long, value_name = "N", default_value_t = LOBES_SAMPLES)]
+    pub(crate) samples: NonZeroU32,
+    /// Show the seconds that each fit takes, too
+    #[arg(long)]
+    pub(crate) times: bool,
     #[command(flatten)]
     pub(crate) destination: Destination,
 }

@@ -1,5 +1,6 @@
 //! The `luthier-lab` command: makes the pages and measurements of this repository. A user of luthier needs none of it.
 
+mod anisotropic;
 mod budgets;
 mod cli;
 mod environment;
@@ -27,6 +28,7 @@ fn main() -> ExitCode {
         Verb::Stability(options) => stability::run(options),
         Verb::Judge(options) => judge::run(options),
         Verb::Varying(options) => varying::run(options),
+        Verb::Anisotropic(options) => anisotropic::run(options),
         Verb::Environment(options) => environment::run(options),
         Verb::Lobes(options) => lobes::run(options),
         Verb::Budgets(options) => budgets::run(options),

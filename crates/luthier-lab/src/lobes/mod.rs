@@ -16,7 +16,7 @@ use rayon::prelude::*;
 
 use crate::cli::LobesOptions;
 
-pub(crate) use self::stacks::random;
+pub(crate) use self::stacks::{anisotropic, of, random};
 
 /// Angles of the judge against the normal, degrees: those of `luthier-lab judge`, and others between.
 const THETAS_DEG: [f64; 10] = [0.0, 7.0, 18.0, 30.0, 45.0, 60.0, 70.0, 77.0, 80.0, 85.0];

@@ -43,7 +43,7 @@ impl Draw {
 }
 
 /// A material as it is, or with the other distribution.
-pub(super) fn of(material: &Material, is_twin: bool) -> ModelSubject {
+pub(crate) fn of(material: &Material, is_twin: bool) -> ModelSubject {
     let mut stack = material.stack.clone();
     if is_twin {
         for layer in &mut stack.layers {
@@ -90,6 +90,49 @@ pub(crate) fn random(seed: u64) -> ModelSubject {
         let albedo = draw.rgb(0.03, 0.9);
         name += " diffuse";
         let base = Base::Diffuse(Diffuse { albedo, sigma: if draw.chance(0.3) { 0.4 } else { 0.0 } });
+        layers.push(Layer { films: Vec::new(), surface: Surface::smooth(), base });
+    }
+    ModelSubject { name, stack: Stack { exterior: Ior::vacuum(), layers }, wavelengths_nm: WAVELENGTHS_NM }
+}
+
+/// A coat over a metal or a diffuse base, one of them or both brushed, with common axes for even seeds.
+pub(crate) fn anisotropic(seed: u64) -> ModelSubject {
+    let mut draw = Draw((seed + 1).wrapping_mul(0x9fb2_1c65_1e98_df25));
+    let distribution = if draw.chance(0.5) { Distribution::Ggx } else { Distribution::Beckmann };
+    let mut name = format!("{seed} {}:", distribution.name());
+    let surface = |draw: &mut Draw, is_brushed: bool, rotation_deg: f64| {
+        let [alpha_x, alpha_y] = [0; 2].map(|_| 0.02 * libm::pow(30.0, draw.uniform()));
+        let alpha_y = if is_brushed { alpha_y } else { alpha_x };
+        (Surface { distribution, alpha_x, alpha_y, rotation: rotation_deg.to_radians() }, [alpha_x, alpha_y])
+    };
+    let is_metal = draw.chance(0.7);
+    let is_crossed = seed % 2 == 1 && is_metal;
+    let is_coat_brushed = is_crossed || !is_metal || draw.chance(0.5);
+    let rotation_deg = if is_crossed { libm::round(draw.between(15.0, 75.0)) } else { 90.0 };
+    let (mut coat, [x, y]) = surface(&mut draw, is_coat_brushed, rotation_deg);
+    if !is_coat_brushed && draw.chance(0.5) {
+        coat = Surface::smooth();
+    }
+    let index = draw.between(1.3, 1.8);
+    let absorption_per_um = if draw.chance(0.5) { draw.rgb(0.0, 0.5) } else { [0.0; 3] };
+    name += &format!(" {index:.2}");
+    name += &match (is_coat_brushed, coat.is_smooth()) {
+        (true, _) => format!("/{x:.3}x{y:.3}@{rotation_deg:.0}"),
+        (false, true) => "/smooth".to_owned(),
+        (false, false) => format!("/{x:.3}"),
+    };
+    let slab = Slab { thickness_um: 1.0, absorption_per_um };
+    let mut layers =
+        vec![Layer { films: Vec::new(), surface: coat, base: Base::Dielectric { ior: constant(index), slab } }];
+    if is_metal {
+        let id = METALS[(draw.uniform() * METALS.len() as f64) as usize];
+        let (base, [x, y]) = surface(&mut draw, true, 0.0);
+        name += &format!(" {id}/{x:.3}x{y:.3}");
+        let ior = dataset(id).map_or_else(|| constant(1.0), |data| data.ior.clone());
+        layers.push(Layer { films: Vec::new(), surface: base, base: Base::Conductor { ior } });
+    } else {
+        name += " diffuse";
+        let base = Base::Diffuse(Diffuse { albedo: draw.rgb(0.03, 0.9), sigma: 0.0 });
         layers.push(Layer { films: Vec::new(), surface: Surface::smooth(), base });
     }
     ModelSubject { name, stack: Stack { exterior: Ior::vacuum(), layers }, wavelengths_nm: WAVELENGTHS_NM }

@@ -50,7 +50,7 @@ pub use views::judge_views;
 pub(crate) const THETAS_DEG: [f64; 4] = [0.0, 30.0, 60.0, 80.0];
 
 /// Azimuth of the eye, degrees: along no axis of an anisotropic surface.
-pub(crate) const PHI_DEG: f64 = 30.0;
+pub const PHI_DEG: f64 = 30.0;
 
 /// The row that shows the noise.
 pub(crate) const CONTROL: &str = "layered-mc, other seed";
