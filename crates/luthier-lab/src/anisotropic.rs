@@ -161,5 +161,5 @@ The model `lobes` fits an anisotropic stack seen from several azimuths, and mixe
 numbers, seen from 20, 50 and 70 degrees off the tangent of the stack, where it has no rows.
 
 Errors are those of [lobes.md](lobes.md), the worst over three wavelengths and the azimuths, by angle of the eye. In brackets is the error of `yamaguchi`.
-Random stacks are brushed coats and bases, slope parameters of .02 to .6; every second one has axes that differ.
+Random stacks are brushed coats and bases, slope parameters of .02 to .6; every second one is brushed along other axes above than below.
 ";

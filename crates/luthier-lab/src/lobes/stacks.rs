@@ -95,7 +95,7 @@ pub(crate) fn random(seed: u64) -> ModelSubject {
     ModelSubject { name, stack: Stack { exterior: Ior::vacuum(), layers }, wavelengths_nm: WAVELENGTHS_NM }
 }
 
-/// A coat over a metal or a diffuse base, one of them or both brushed, with common axes for even seeds.
+/// A coat over a metal or a diffuse base, one of them or both brushed; for odd seeds both, along other axes.
 pub(crate) fn anisotropic(seed: u64) -> ModelSubject {
     let mut draw = Draw((seed + 1).wrapping_mul(0x9fb2_1c65_1e98_df25));
     let distribution = if draw.chance(0.5) { Distribution::Ggx } else { Distribution::Beckmann };
@@ -105,8 +105,8 @@ pub(crate) fn anisotropic(seed: u64) -> ModelSubject {
         let alpha_y = if is_brushed { alpha_y } else { alpha_x };
         (Surface { distribution, alpha_x, alpha_y, rotation: rotation_deg.to_radians() }, [alpha_x, alpha_y])
     };
-    let is_metal = draw.chance(0.7);
-    let is_crossed = seed % 2 == 1 && is_metal;
+    let is_crossed = seed % 2 == 1;
+    let is_metal = draw.chance(0.5) || is_crossed;
     let is_coat_brushed = is_crossed || !is_metal || draw.chance(0.5);
     let rotation_deg = if is_crossed { libm::round(draw.between(15.0, 75.0)) } else { 90.0 };
     let (mut coat, [x, y]) = surface(&mut draw, is_coat_brushed, rotation_deg);
