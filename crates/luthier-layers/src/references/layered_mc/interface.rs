@@ -8,9 +8,10 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use luthier_optics::Rgb;
-use luthier_optics::stack::Diffuse;
+use luthier_optics::stack::{Diffuse, Surface};
 
 use super::InterfaceMode;
+use super::chance::Chance;
 use super::facets::Facets;
 use super::optics::{Optics, Side};
 use super::random::Stream;
@@ -52,19 +53,17 @@ impl Interface {
     /// The interface at the top of a layer.
     pub(crate) fn new(layer: &MonochromeLayer, mode: InterfaceMode) -> Self {
         let surface = &layer.surface;
-        let faceted = |optics: Optics| match Facets::new(surface) {
-            Some(facets) if !optics.is_absent() => Kind::Rough(Rough { optics, facets }),
-            _ => Kind::Smooth(optics),
-        };
         let kind = match layer.below {
             MonochromeBelow::Diffuse { albedo, sigma } => Kind::Diffuse(Diffuse { albedo: [albedo; 3], sigma }),
-            MonochromeBelow::Conductor { ior } => faceted(Optics::opaque(layer.above, &layer.films, ior)),
-            MonochromeBelow::Dielectric { complex_ior, .. } => {
-                faceted(Optics::transparent(layer.above, &layer.films, complex_ior))
+            MonochromeBelow::Conductor { .. } | MonochromeBelow::Dielectric { .. } => {
+                let optics = Optics::of(layer);
+                match Facets::new(surface) {
+                    Some(facets) if !optics.is_absent() => Kind::Rough(Rough { optics, facets }),
+                    _ => Kind::Smooth(optics),
+                }
             }
         };
-        let turned = surface.alpha_x != surface.alpha_y && surface.rotation != 0.0;
-        let rotation = turned.then(|| (libm::cos(surface.rotation), libm::sin(surface.rotation)));
+        let rotation = turn(surface);
         Self { kind, rotation, mode }
     }
 
@@ -179,29 +178,34 @@ impl Interface {
 
     /// Turns a direction from the stack's frame to the interface's.
     fn turned(&self, d: Sided) -> Sided {
-        self.rotation.map_or(d, |(cos, sin)| rotated(d, cos, -sin))
+        self.rotation.map_or(d, |(cos, sin)| Sided { direction: rotated(d.direction, cos, -sin), ..d })
     }
 
     fn turned_back(&self, d: Sided) -> Sided {
-        self.rotation.map_or(d, |(cos, sin)| rotated(d, cos, sin))
+        self.rotation.map_or(d, |(cos, sin)| Sided { direction: rotated(d.direction, cos, sin), ..d })
     }
 }
 
-fn rotated(d: Sided, cos: f64, sin: f64) -> Sided {
-    let DVec3 { x, y, z } = d.direction;
-    Sided { direction: DVec3::new(cos * x - sin * y, sin * x + cos * y, z), ..d }
+/// Cosine and sine of the angle from a stack's tangent to that of a surface, where it matters.
+pub(super) fn turn(surface: &Surface) -> Option<(f64, f64)> {
+    let is_turned = surface.alpha_x != surface.alpha_y && surface.rotation != 0.0;
+    is_turned.then(|| (libm::cos(surface.rotation), libm::sin(surface.rotation)))
 }
 
-fn scatter_smooth(optics: &Optics, stream: &mut Stream, a: Sided) -> (Sided, f64) {
+/// A direction, turned about the normal.
+pub(super) fn rotated(DVec3 { x, y, z }: DVec3, cos: f64, sin: f64) -> DVec3 {
+    DVec3::new(cos * x - sin * y, sin * x + cos * y, z)
+}
+
+/// Light from `a` at a smooth interface: the direction in which it goes on by chance, and the share that is not absorbed.
+pub(super) fn scatter_smooth<O: Chance>(optics: &O, stream: &mut Stream, a: Sided) -> (Sided, O::Share) {
     let DVec3 { x, y, z } = a.direction;
-    let split = optics.split(a.side, z);
-    let kept = split.reflectance + split.transmittance;
-    if split.transmittance == 0.0 || stream.uniform() * kept < split.reflectance {
-        return (Sided { direction: DVec3::new(-x, -y, z), ..a }, kept);
-    }
-    let other = a.side.other();
+    let chosen = optics.choose(stream, a.side, z * z);
+    let Some([_, cos_theta_t]) = chosen.refracted else {
+        return (Sided { direction: DVec3::new(-x, -y, z), ..a }, chosen.kept);
+    };
     let eta_it = optics.eta_it(a.side);
-    (Sided { side: other, direction: DVec3::new(-x * eta_it, -y * eta_it, split.cos_theta_t) }, kept)
+    (Sided { side: a.side.other(), direction: DVec3::new(-x * eta_it, -y * eta_it, cos_theta_t) }, chosen.kept)
 }
 
 fn diffuse_brdf(diffuse: &Diffuse, a: DVec3, b: DVec3) -> f64 {

@@ -8,6 +8,7 @@
 //! Everything is geometrical optics of unpolarised light: each event sees the mean of both polarisations, films
 //! excepted, which are coherent inside. Interfaces do not know each other's heights. Lateral extent is out of scope.
 
+mod chance;
 mod colored;
 mod connect;
 mod estimate;
@@ -15,6 +16,7 @@ mod facets;
 #[cfg(test)]
 mod fixtures;
 mod interface;
+mod joint;
 mod one_facet;
 mod optics;
 mod path;
@@ -28,6 +30,7 @@ use glam::DVec3;
 
 pub use colored::{ColorPath, ColorPaths};
 pub use estimate::Estimate;
+pub use joint::{JointPath, JointPaths};
 pub use optics::Side;
 
 pub(crate) use connect::both_above;

@@ -3,6 +3,8 @@
 use luthier_optics::fresnel::{FilmLayer, coated, transmitted};
 use num_complex::Complex64;
 
+use crate::monochrome::{MonochromeBelow, MonochromeLayer};
+
 /// Side of an interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
@@ -45,7 +47,7 @@ impl Split {
 const INDEX_MATCH: f64 = 1e-5;
 
 /// The optics of an interface.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Optics {
     /// Real index above.
     pub(crate) above: f64,
@@ -56,7 +58,7 @@ pub(crate) struct Optics {
     kind: Kind,
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 enum Kind {
     /// Bare, between transparent media.
     Dielectric,
@@ -67,6 +69,17 @@ enum Kind {
 }
 
 impl Optics {
+    /// The interface at the top of a layer, which is not diffuse: a diffuse base has none, and counts as nothing.
+    pub(crate) fn of(layer: &MonochromeLayer) -> Self {
+        match layer.below {
+            MonochromeBelow::Conductor { ior } => Self::opaque(layer.above, &layer.films, ior),
+            MonochromeBelow::Dielectric { complex_ior, .. } => {
+                Self::transparent(layer.above, &layer.films, complex_ior)
+            }
+            MonochromeBelow::Diffuse { .. } => Self::between(layer.above, layer.above, Kind::Dielectric),
+        }
+    }
+
     /// An interface to an opaque medium of complex index `below`.
     pub(crate) fn opaque(above: f64, films: &[FilmLayer], below: Complex64) -> Self {
         if films.is_empty() {
@@ -105,6 +118,12 @@ impl Optics {
     /// Whether light goes straight through, as if there were nothing.
     pub(crate) fn is_absent(&self) -> bool {
         matches!(self.kind, Kind::Dielectric) && (self.below / self.above - 1.0).abs() < INDEX_MATCH
+    }
+
+    /// Whether light goes the ways that it goes at another interface.
+    pub(crate) fn is_parallel(&self, other: &Self) -> bool {
+        let ways = |optics: &Self| (optics.above, optics.below, optics.is_transparent(), optics.is_absent());
+        ways(self) == ways(other)
     }
 
     /// Index of the medium on a side.

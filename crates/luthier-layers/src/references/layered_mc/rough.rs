@@ -2,14 +2,15 @@
 
 use glam::DVec3;
 
+use super::chance::Chance;
 use super::facets::{Facets, View};
 use super::optics::{Optics, Side};
 use super::random::Stream;
 
 /// A rough interface, in the frame of its tangents.
 #[derive(Debug, Clone)]
-pub(crate) struct Rough {
-    pub(crate) optics: Optics,
+pub(crate) struct Rough<O = Optics> {
+    pub(crate) optics: O,
     pub(crate) facets: Facets,
 }
 
@@ -21,25 +22,26 @@ pub(crate) struct Sided {
     pub(crate) direction: DVec3,
 }
 
-impl Rough {
+impl<O: Chance> Rough<O> {
     /// Light that arrives on a side, seen from `view`, meets a facet: the direction in which it goes on, and the
     /// share that is not absorbed. Reflection or refraction by chance.
     #[inline(always)]
-    pub(crate) fn scatter(&self, stream: &mut Stream, side: Side, view: &View) -> (Sided, f64) {
+    pub(crate) fn scatter(&self, stream: &mut Stream, side: Side, view: &View) -> (Sided, O::Share) {
         let w = view.direction;
         let m = self.facets.sample(stream, view);
         let along = w.dot(m).max(0.0);
         let projected = along / m.length_squared();
-        let split = self.optics.split_sq(side, along * projected);
-        let kept = split.reflectance + split.transmittance;
-        if split.transmittance == 0.0 || stream.uniform() * kept < split.reflectance {
-            return (Sided { side, direction: 2.0 * projected * m - w }, kept);
-        }
+        let chosen = self.optics.choose(stream, side, along * projected);
+        let Some([cos_theta, cos_theta_t]) = chosen.refracted else {
+            return (Sided { side, direction: 2.0 * projected * m - w }, chosen.kept);
+        };
         let eta_it = self.optics.eta_it(side);
-        let refracted = m * (projected * (eta_it - split.cos_theta_t / split.cos_theta)) - w * eta_it;
-        (Sided { side: side.other(), direction: mirrored(refracted) }, kept)
+        let refracted = m * (projected * (eta_it - cos_theta_t / cos_theta)) - w * eta_it;
+        (Sided { side: side.other(), direction: mirrored(refracted) }, chosen.kept)
     }
+}
 
+impl Rough {
     /// Density per solid angle, absorption included, with which a facet seen from `view` on a side sends light to
     /// `b`: its integral over `b` is the share that is not absorbed. The view may be from below the horizon of its
     /// side.

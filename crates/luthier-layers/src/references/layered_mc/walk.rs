@@ -5,7 +5,8 @@
 //! Along a ray, facets are met at a rate of `visible area / |cos|` per depth. Below, the surface is seen upside down:
 //! `c` becomes `1 - c`.
 
-use super::facets::View;
+use super::chance::{Chance, Share};
+use super::facets::{Facets, View};
 use super::optics::Side;
 use super::random::Stream;
 use super::rough::{Rough, Sided};
@@ -76,12 +77,12 @@ impl Depth {
 }
 
 /// Light that has come to a facet.
-struct Walker {
+struct Walker<S = f64> {
     side: Side,
     /// The facet as the light sees it: looks back along the ray.
     view: View,
     depth: Depth,
-    weight: f64,
+    weight: S,
 }
 
 /// Next step of light at a facet.
@@ -91,32 +92,38 @@ enum Next {
     Died,
 }
 
-impl Walker {
+impl<S: Share> Walker<S> {
     /// The walker at its first facet, coming from `a`.
     #[inline(always)]
-    fn enter(rough: &Rough, stream: &mut Stream, a: Sided) -> Self {
-        let view = rough.facets.view(a.direction);
+    fn enter(facets: &Facets, stream: &mut Stream, a: Sided) -> Self {
+        let view = facets.view(a.direction);
         let rate = (view.area / a.direction.z).max(1.0);
-        Self { side: a.side, depth: Depth::Drawn { u: 1.0 - stream.uniform(), rate }, view, weight: 1.0 }
+        Self { side: a.side, depth: Depth::Drawn { u: 1.0 - stream.uniform(), rate }, view, weight: S::WHOLE }
     }
 
     /// Leaves the facet for the next, or for good. `MORE` says whether it goes to the next at least as often as [`MEETS_MIN`], with the
     /// weight that makes up for it; what leaves then has no weight that could be used.
     #[inline(always)]
-    fn scatter<const MORE: bool>(&mut self, rough: &Rough, stream: &mut Stream, facet: u32) -> Next {
+    fn scatter<const MORE: bool>(
+        &mut self,
+        rough: &Rough<impl Chance<Share = S>>,
+        stream: &mut Stream,
+        facet: u32,
+    ) -> Next {
         let (next, kept) = rough.scatter(stream, self.side, &self.view);
         let crossed = next.side != self.side;
         self.side = next.side;
-        self.weight *= kept;
-        if self.weight < FAINT || facet >= FACETS_SURE {
+        self.weight = self.weight.times(kept);
+        let brightest = self.weight.brightest();
+        if brightest < FAINT || facet >= FACETS_SURE {
             let mut survival = if facet < FACETS_SURE { 1.0 } else { SURVIVAL };
-            if self.weight < FAINT {
-                survival *= self.weight / FAINT;
+            if brightest < FAINT {
+                survival *= brightest / FAINT;
             }
             if stream.uniform() >= survival {
                 return Next::Died;
             }
-            self.weight /= survival;
+            self.weight = self.weight.over(survival);
         }
 
         self.view = rough.facets.view(-next.direction);
@@ -127,7 +134,7 @@ impl Walker {
             let depth = if crossed { self.depth.flipped() } else { self.depth.value() };
             let meets = -libm::expm1(-rate * depth);
             if meets < MEETS_MIN {
-                self.weight *= meets / MEETS_MIN;
+                self.weight = self.weight.scaled(meets / MEETS_MIN);
                 let free_path = -libm::log1p(-meets * ((1.0 - v) / MEETS_MIN)) / rate;
                 self.depth = Depth::Known((depth - free_path).max(0.0));
                 return Next::Facet;
@@ -153,8 +160,8 @@ impl Walker {
 /// Direction in which light from `a` leaves the interface, its weight, and the facets that it met before its last one, by chance; `None`
 /// when it dies.
 #[inline(always)]
-pub(crate) fn scatter(rough: &Rough, stream: &mut Stream, a: Sided) -> Option<(Sided, f64, u32)> {
-    let mut walker = Walker::enter(rough, stream, a);
+pub(crate) fn scatter<O: Chance>(rough: &Rough<O>, stream: &mut Stream, a: Sided) -> Option<(Sided, O::Share, u32)> {
+    let mut walker = Walker::enter(&rough.facets, stream, a);
     let mut facet = 0;
     loop {
         match walker.scatter::<false>(rough, stream, facet) {
@@ -186,7 +193,7 @@ pub(crate) fn kernel(rough: &Rough, stream: &mut Stream, a: Sided, b: Sided) -> 
 /// The walk of [`kernel`] that begins at `a`.
 fn from_one_end(rough: &Rough, stream: &mut Stream, a: Sided, b: Sided, turned: f64) -> f64 {
     let lambda = rough.facets.lambda(b.direction);
-    let mut walker = Walker::enter(rough, stream, a);
+    let mut walker = Walker::<f64>::enter(&rough.facets, stream, a);
     let entered = walker.depth;
     let mut value = sent(rough, &walker, b, lambda);
     let mut next = walker.scatter::<true>(rough, stream, 0);
@@ -211,7 +218,7 @@ fn from_one_end(rough: &Rough, stream: &mut Stream, a: Sided, b: Sided, turned: 
 #[cfg(test)]
 pub(crate) fn one_ended(rough: &Rough, stream: &mut Stream, a: Sided, b: Sided) -> f64 {
     let lambda = rough.facets.lambda(b.direction);
-    let mut walker = Walker::enter(rough, stream, a);
+    let mut walker = Walker::<f64>::enter(&rough.facets, stream, a);
     let (mut value, mut facet) = (0.0, 0);
     loop {
         value += walker.weight * sent(rough, &walker, b, lambda);
