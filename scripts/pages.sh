@@ -40,7 +40,7 @@ stability() {
 }
 figures() { luthier-lab figures -o docs/pages/figures --size 96; }
 models() { luthier-lab judge materials >docs/pages/models.md; }
-lobes() { luthier-lab lobes materials --random 60 --samples 300000 -o docs/pages/lobes.md; }
+lobes() { luthier-lab lobes materials --random 200 -o docs/pages/lobes.md; }
 varying() { luthier-lab varying --random 12 --samples 131072 -o docs/pages/varying.md; }
 environment() {
   luthier-lab environment materials/{silver-paint,latex,frosted-acrylic}.toml --size 12 --rows 128 -o docs/pages/environment.md

@@ -162,30 +162,38 @@ pub(crate) struct JudgeOptions {
     pub(crate) format: Format,
 }
 
-/// The noise of the judge is then about 0.005.
-pub(crate) const LOBES_SAMPLES: NonZeroU32 = NonZeroU32::new(1 << 19).expect("not zero");
+/// The most paths of a view of the judge.
+pub(crate) const LOBES_SAMPLES: NonZeroU32 = NonZeroU32::new(1 << 24).expect("not zero");
 
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Examples:\n  luthier-lab lobes materials --random 200 -o docs/pages/lobes.md\n  luthier-lab lobes materials/gold-paint.toml"
-)]
+#[command(after_help = "Examples:\n  luthier-lab lobes materials --random 200 -o docs/pages/lobes.md\n  \
+                  luthier-lab lobes materials/gold-paint.toml --noise 0.01")]
 pub(crate) struct LobesOptions {
     #[command(flatten)]
     pub(crate) sources: Sources,
     /// Random stacks besides
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) random: u32,
-    /// Paths of the judge for each wavelength and direction
+    /// Lobe error that the random numbers of the judge may make
+    #[arg(long, value_name = "SHARE", default_value_t = 0.005, value_parser = share)]
+    pub(crate) noise: f64,
+    /// The most paths of the judge for each direction, whatever the noise
     #[arg(long, value_name = "N", default_value_t = LOBES_SAMPLES)]
     pub(crate) samples: NonZeroU32,
-    /// Paths of the fit for each row
-    #[arg(long = "paths", value_name = "N", default_value = "16384")]
+    /// Paths of the fit for each row; by default those of a bake
+    #[arg(long = "paths", value_name = "N", default_value = "32768")]
     pub(crate) paths_per_row: NonZeroU32,
-    /// Rows over the view
+    /// Rows over the view; by default those of a bake
     #[arg(long, value_name = "N", default_value_t = 19, value_parser = clap::value_parser!(u32).range(4..=64))]
     pub(crate) rows: u32,
     #[command(flatten)]
     pub(crate) destination: Destination,
+}
+
+/// A share above 0 and below 1.
+fn share(text: &str) -> Result<f64, String> {
+    let share: f64 = text.parse().map_err(|error| format!("{error}"))?;
+    if share > 0.0 && share < 1.0 { Ok(share) } else { Err("a number between 0 and 1".to_owned()) }
 }
 
 #[derive(Debug, Args)]
@@ -194,7 +202,10 @@ pub(crate) struct VaryingOptions {
     /// Random stacks: those of `lobes` with two layers or more
     #[arg(long, value_name = "N", default_value_t = 8)]
     pub(crate) random: u32,
-    /// Paths of the judge for each wavelength and direction
+    /// Lobe error that the random numbers of the judge may make
+    #[arg(long, value_name = "SHARE", default_value_t = 0.005, value_parser = share)]
+    pub(crate) noise: f64,
+    /// The most paths of the judge for each direction, whatever the noise
     #[arg(long, value_name = "N", default_value_t = LOBES_SAMPLES)]
     pub(crate) samples: NonZeroU32,
     #[command(flatten)]

@@ -1,89 +1,186 @@
 //! `lobes`: how near fits of lobes come to the simulation, on materials, on their twins in the other distribution, and on random stacks.
 
 mod page;
+mod reasons;
 mod stacks;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use luthier_export::read;
-use luthier_layers::lobes::{Channel, EXCESS, FitSettings, LOBES, Lobes, Simulation};
-use luthier_layers::model::Model;
+use luthier_layers::lobes::{EXCESS, FitSettings, LOBES, Lobes, Simulation, shown};
 use luthier_layers::registry::model;
 use luthier_optics::color::Color;
-use luthier_report::{ModelSettings, ModelSubject, ViewError, judge_views};
+use luthier_optics::stack::Stack;
+use luthier_report::{ModelSubject, Reference, ReferenceSettings, Shown, ViewError};
 use luthier_terminal::{Bar, Failure, Outcome, deliver, valid};
 use rayon::prelude::*;
 
+use self::reasons::Reasons;
 use crate::cli::LobesOptions;
 
 pub(crate) use self::stacks::{anisotropic, of, random};
 
 /// Angles of the judge against the normal, degrees: those of `luthier-lab judge`, and others between.
-const THETAS_DEG: [f64; 10] = [0.0, 7.0, 18.0, 30.0, 45.0, 60.0, 70.0, 77.0, 80.0, 85.0];
-
-/// Numbers of lobes that are fitted.
-const COUNTS: [usize; 3] = [0, 1, 2];
+const THETAS_DEG: [f64; 9] = [0.0, 7.0, 30.0, 45.0, 60.0, 70.0, 77.0, 80.0, 85.0];
 
 /// Models of papers beside them.
 const BESIDE: [&str; 2] = ["belcour", "elek"];
 
+/// Standard error that albedos of the judge may have.
+pub(crate) const ALBEDO_STD_ERR: f64 = 7e-4;
+
 /// Family of random numbers of the judge; fits have 0.
 pub(crate) const JUDGE_SEED: u64 = 1 << 40;
+
+/// What is judged: lobe errors and albedo errors.
+const QUANTITIES: usize = 2;
+
+/// Errors that a stack should not exceed, by quantity.
+const LIMITS: [f64; QUANTITIES] = [0.05, 0.003];
+
+/// Random stacks by quantity whose errors are traced to a reason.
+const WORST: usize = 10;
 
 /// A stack, fitted and judged.
 struct Judged {
     name: String,
-    /// For each of [`COUNTS`]: the lobes, and the errors of all views.
-    fits: Vec<(Lobes, Vec<ViewError>)>,
-    /// Lobes of them that a bake takes.
-    baked: usize,
+    lobes: Lobes,
+    errors: Vec<ViewError>,
     /// For each of [`BESIDE`].
     beside: Vec<Vec<ViewError>>,
+    /// Paths of the judge.
+    paths: u64,
+    /// What would make the error less, where it was looked for.
+    reasons: Option<Reasons>,
 }
 
-/// A stack, judged or refused.
-type Outcomes = Vec<Result<Judged, String>>;
+impl Judged {
+    /// Largest error of a quantity.
+    fn error(&self, quantity: usize) -> f64 {
+        largest(&self.errors)[quantity]
+    }
+}
+
+/// The errors of a view by quantity.
+fn of_view(view: &ViewError) -> [f64; QUANTITIES] {
+    [view.lobe.error, view.albedo.error]
+}
+
+/// The largest errors of views by quantity.
+fn largest(views: &[ViewError]) -> [f64; QUANTITIES] {
+    views.iter().map(of_view).fold([0.0; QUANTITIES], |most, errors| [0, 1].map(|q: usize| most[q].max(errors[q])))
+}
+
+/// Stacks of a group whose errors are traced to a reason.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Choice {
+    /// Those with errors beyond the limit.
+    Beyond,
+    /// Those with the largest errors, [`WORST`] of them.
+    Worst,
+}
+
+impl Choice {
+    /// Numbers of the stacks whose error of a quantity is looked into, the largest first.
+    fn of(self, stacks: &[&Judged], quantity: usize) -> Vec<usize> {
+        let error = |number: usize| stacks[number].error(quantity);
+        let mut numbers: Vec<usize> = (0..stacks.len()).collect();
+        numbers.sort_by(|a, b| error(*b).total_cmp(&error(*a)));
+        match self {
+            Self::Beyond => numbers.retain(|number| error(*number) > LIMITS[quantity]),
+            Self::Worst => numbers.truncate(WORST),
+        }
+        numbers
+    }
+}
+
+/// A group of stacks: its title, its stacks, and which of them are looked into.
+struct Group {
+    title: &'static str,
+    stacks: Vec<Judged>,
+    choice: Choice,
+}
 
 /// Fits and judges, as a page.
 pub(crate) fn run(options: &LobesOptions) -> Outcome {
     let materials = valid(read(&options.sources.paths)?, false)?;
-    let groups: [Vec<ModelSubject>; 3] = [
-        materials.iter().map(|material| stacks::of(material, false)).collect(),
-        materials.iter().map(|material| stacks::of(material, true)).collect(),
-        (0..options.random.into()).map(stacks::random).collect(),
+    let groups: [(&str, Choice, Vec<ModelSubject>); 3] = [
+        ("Materials", Choice::Beyond, materials.iter().map(|material| stacks::of(material, false)).collect()),
+        (
+            "Twins in the other distribution",
+            Choice::Beyond,
+            materials.iter().map(|material| stacks::of(material, true)).collect(),
+        ),
+        ("Random stacks", Choice::Worst, (0..options.random.into()).map(stacks::random).collect()),
     ];
-    let total = groups.iter().map(Vec::len).sum::<usize>() as u64;
+    let total = groups.iter().map(|(.., subjects)| subjects.len()).sum::<usize>() as u64;
     let (bar, done) = (Bar::new("fitting and judging"), AtomicU64::new(0));
-    let judged: [Outcomes; 3] = groups.each_ref().map(|subjects| {
-        let outcome = |subject: &ModelSubject| {
-            let judged = judge(subject, options);
-            bar.set(done.fetch_add(1, Ordering::Relaxed) + 1, total);
-            judged
-        };
-        subjects.par_iter().map(outcome).collect()
+    let progress = || bar.set(done.fetch_add(1, Ordering::Relaxed) + 1, total);
+    let judged = groups.iter().filter(|(.., subjects)| !subjects.is_empty()).map(|(title, choice, subjects)| Group {
+        title,
+        stacks: judge_all(subjects, *choice, options, &progress),
+        choice: *choice,
     });
+    let judged: Vec<Group> = judged.collect();
     drop(bar);
     let page = page::page(&judged, options).map_err(Failure::input)?;
     deliver(&page, options.destination.output.as_deref())
 }
 
-fn judge(subject: &ModelSubject, options: &LobesOptions) -> Result<Judged, String> {
-    let color = Color::ThreeWavelengths(subject.wavelengths_nm);
-    let settings = FitSettings {
-        rows: options.rows as usize,
-        paths: u64::from(options.paths_per_row.get()),
-        ..FitSettings::default()
+/// Judges stacks, and looks for the reasons of the errors of some of them.
+fn judge_all(
+    subjects: &[ModelSubject],
+    choice: Choice,
+    options: &LobesOptions,
+    progress: &(dyn Fn() + Sync),
+) -> Vec<Judged> {
+    let outcome = |subject: &ModelSubject| {
+        let judged = judge(subject, options);
+        progress();
+        judged
     };
-    let simulation = Simulation::new(&subject.stack, &color, settings);
-    let fits: Vec<Lobes> = COUNTS.map(|lobes| simulation.fit(lobes)).to_vec();
-    let baked = simulation.fit_fewest(LOBES, EXCESS).rows[0].lobes.len();
-    let models = |channel: usize| -> Vec<Box<dyn Model + '_>> {
-        let own = fits.iter().map(|lobes| Box::new(Channel { lobes, channel }) as Box<dyn Model>);
-        own.chain(BESIDE.iter().filter_map(|name| model(name))).collect()
+    let mut judged: Vec<(Judged, Reference)> = subjects.par_iter().map(outcome).collect();
+    let stacks: Vec<&Judged> = judged.iter().map(|(stack, _)| stack).collect();
+    let mut chosen: Vec<usize> = (0..QUANTITIES).flat_map(|quantity| choice.of(&stacks, quantity)).collect();
+    chosen.sort_unstable();
+    chosen.dedup();
+    let reasons = |number: &usize| {
+        let (stack, reference) = &judged[*number];
+        Reasons::of(&subjects[*number], stack, reference, options)
     };
-    let judge = ModelSettings { samples: options.samples, seed: JUDGE_SEED };
-    let mut views = judge_views(subject, models, &THETAS_DEG, judge);
-    let beside = views.split_off(fits.len());
-    let fits = fits.into_iter().zip(views).collect();
-    Ok(Judged { name: subject.name.clone(), fits, baked, beside })
+    let reasons: Vec<Reasons> = chosen.par_iter().map(reasons).collect();
+    chosen.into_iter().zip(reasons).for_each(|(number, reasons)| judged[number].0.reasons = Some(reasons));
+    judged.into_iter().map(|(stack, _)| stack).collect()
+}
+
+/// Settings of the judge, with a family of random numbers.
+fn judge_settings(options: &LobesOptions, seed: u64) -> ReferenceSettings {
+    ReferenceSettings { noise: options.noise, albedo_std_err: ALBEDO_STD_ERR, most: options.samples.get().into(), seed }
+}
+
+/// Settings of the fit.
+fn fit_settings(options: &LobesOptions) -> FitSettings {
+    let (rows, paths) = (options.rows as usize, u64::from(options.paths_per_row.get()));
+    FitSettings { rows, paths, ..FitSettings::default() }
+}
+
+/// The light of a stack as bakes see it, with surfaces of one slope parameter each.
+fn simulated(stack: &Stack, wavelengths_nm: [f64; 3], settings: FitSettings) -> Simulation {
+    Simulation::new(&shown(stack), &Color::ThreeWavelengths(wavelengths_nm), settings)
+}
+
+fn judge(subject: &ModelSubject, options: &LobesOptions) -> (Judged, Reference) {
+    let simulation = simulated(&subject.stack, subject.wavelengths_nm, fit_settings(options));
+    let lobes = simulation.fit_fewest(LOBES, EXCESS);
+    let reference = Reference::new(subject, &THETAS_DEG, judge_settings(options, JUDGE_SEED));
+    let beside = BESIDE.iter().filter_map(|name| model(name));
+    let judged = Judged {
+        name: subject.name.clone(),
+        errors: reference.errors(Shown::Lobes(&lobes)),
+        beside: beside.map(|model| reference.errors(Shown::Model(model.as_ref()))).collect(),
+        paths: reference.paths(),
+        lobes,
+        reasons: None,
+    };
+    (judged, reference)
 }

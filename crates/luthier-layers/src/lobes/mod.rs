@@ -64,7 +64,7 @@ use luthier_optics::stack::{Base, Stack, Surface};
 
 use crate::domain::INDEX_MAX;
 use crate::facets::Facets;
-use crate::model::{Claims, Kind, Model, ModelInfo};
+use crate::model::{Claims, Kind, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 use crate::oren_nayar;
 
@@ -166,6 +166,19 @@ impl Lobes {
         Prepared::new(self, wo)
     }
 
+    /// `f cos_theta_i` by channel of light directions, as seen from `wo`: that of a bare diffuse base is its closed form, as shaders have it.
+    /// `stacks` is the stack of the lobes at each wavelength.
+    pub fn seen<'a>(&'a self, stacks: &'a [Monochrome; 3], wo: DVec3) -> impl Fn(DVec3) -> Rgb + 'a {
+        let prepared = self.prepare(wo);
+        move |wi| {
+            let [r, g, b] = stacks.each_ref().map(|stack| bare_diffuse(stack, wi, wo));
+            if let (Some(r), Some(g), Some(b)) = (r, g, b) {
+                return [r, g, b];
+            }
+            prepared.as_ref().map_or([0.0; 3], |prepared| prepared.eval(wi))
+        }
+    }
+
     /// `f cos_theta_i` by channel.
     pub fn eval(&self, wi: DVec3, wo: DVec3) -> Rgb {
         self.prepare(wo).map_or([0.0; 3], |prepared| prepared.eval(wi))
@@ -193,25 +206,6 @@ fn bounded(stack: &Stack) -> Stack {
         }
     }
     stack
-}
-
-/// One channel of lobes as a model. It holds the stack that it shows: of the one that it is given, a bare diffuse base alone counts.
-#[derive(Debug, Clone, Copy)]
-pub struct Channel<'a> {
-    /// The lobes.
-    pub lobes: &'a Lobes,
-    /// The channel.
-    pub channel: usize,
-}
-
-impl Model for Channel<'_> {
-    fn info(&self) -> ModelInfo {
-        INFO
-    }
-
-    fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
-        bare_diffuse(stack, wi, wo).unwrap_or_else(|| self.lobes.eval(wi, wo)[self.channel])
-    }
 }
 
 /// `f cos_theta_i` of a diffuse base without interfaces, which keeps its closed form; `None` for another stack.

@@ -47,6 +47,13 @@ pub(super) struct Node {
     pub(super) solid_angle: f64,
 }
 
+impl Patch {
+    /// Whether it is on the left of the plane of the eye; the right has the mirror image of each such patch.
+    pub(super) fn is_left(&self) -> bool {
+        self.phi[0] >= 0.0
+    }
+}
+
 impl Cells {
     pub(super) fn new(wo: DVec3) -> Self {
         let sin = libm::hypot(wo.x, wo.y);
@@ -116,6 +123,12 @@ impl Cells {
             }
         }
     }
+}
+
+/// The cell on the other side of the plane of the eye.
+pub(super) fn mirrored(cell: usize) -> usize {
+    let Some(place) = cell.checked_sub(1) else { return 0 };
+    index(1 + place / SECTORS, -((place % SECTORS) as f64))
 }
 
 /// Number of a cell; sectors count from any whole turn.

@@ -46,11 +46,16 @@ pub(super) fn compare(found: &Energies, reference: &Histogram, wavelength_nm: f6
             std_err: per_light(spread(&|cell| half_sign(cell) + lobe, &half_sign)),
             quadrature_change: per_light(found.change[1]),
         },
-        // Mean absolute value of a normal variable: sqrt(2 / pi) of its deviation.
-        lobe_floor: per_light(0.5 * libm::sqrt(2.0 / PI) * lobe_noise),
+        lobe_floor: per_light(energy_that_noise_moves(lobe_noise)),
         albedo_model: albedo,
         albedo_reference: albedo_ref,
     }
+}
+
+/// Energy that noise moves on average, from the sum of the standard deviations of all cells: half the mean absolute values of normal
+/// variables, which are sqrt(2 / pi) of their deviations.
+pub(super) fn energy_that_noise_moves(deviations: f64) -> f64 {
+    0.5 * libm::sqrt(2.0 / PI) * deviations
 }
 
 #[cfg(test)]

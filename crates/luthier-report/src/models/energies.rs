@@ -1,10 +1,11 @@
 //! Energies that a model sends into the cells.
 
+use glam::DVec3;
 use luthier_layers::model::Model;
 use luthier_layers::monochrome::Monochrome;
 use luthier_optics::quadrature::gauss_legendre;
 
-use super::cells::{CELLS, Cells, Patch};
+use super::cells::{CELLS, Cells, Patch, mirrored};
 use super::paths::Histogram;
 
 /// Points of the rule along every interval: first and last, doubled in between.
@@ -25,9 +26,20 @@ pub(super) struct Energies {
 }
 
 impl Energies {
-    /// The energies of a model that is a function: Gauss-Legendre quadrature of `f cos_theta_i` over every patch. Points are doubled, where
-    /// they change most, until half the changes of all patches are 5e-4 or less in all.
+    /// The energies of a model that is a function at one wavelength, see [`Self::of_values`].
     pub(super) fn of(model: &dyn Model, stack: &Monochrome, cells: &Cells) -> Self {
+        let [energies] = Self::of_values(|wi| [model.eval(stack, wi, cells.wo)], cells, false);
+        energies
+    }
+
+    /// The energies of functions `f cos_theta_i` of the light direction, several at once: Gauss-Legendre quadrature over every patch. Points are
+    /// doubled, where a function changes most, until half the changes of all patches are 5e-4 or less in all. Of functions that are symmetric
+    /// about the plane of the eye one half is integrated.
+    pub(super) fn of_values<const N: usize>(
+        values: impl Fn(DVec3) -> [f64; N],
+        cells: &Cells,
+        is_symmetric: bool,
+    ) -> [Self; N] {
         let mut rules = Vec::new();
         let mut points = POINTS[0];
         while points <= POINTS[1] {
@@ -35,49 +47,62 @@ impl Energies {
             points *= 2;
         }
         let integrate = |patch: &Patch, level: usize| {
-            let mut sum = 0.0;
-            cells.nodes(patch, &rules[level], |node| sum += node.solid_angle * model.eval(stack, node.wi, cells.wo));
+            let mut sum = [0.0; N];
+            cells.nodes(patch, &rules[level], |node| {
+                sum.iter_mut().zip(values(node.wi)).for_each(|(sum, value)| *sum += node.solid_angle * value);
+            });
             sum
         };
-        let mut refined: Vec<Refined> = cells
-            .patches()
+        let difference = |a: [f64; N], b: [f64; N]| std::array::from_fn(|i| a[i] - b[i]);
+        let patches = cells.patches();
+        // Patches that change by no more than this are content on their own.
+        let share = 2.0 * CONTENT / patches.len() as f64;
+        let mut refined: Vec<Refined<N>> = patches
             .into_iter()
+            .filter(|patch| !is_symmetric || patch.is_left())
             .map(|patch| {
                 let energy = integrate(&patch, 1);
-                Refined { patch, level: 1, energy, change: energy - integrate(&patch, 0) }
+                Refined { patch, level: 1, energy, change: difference(energy, integrate(&patch, 0)) }
             })
             .collect();
-        // Patches that change by no more than this are content on their own.
-        let share = 2.0 * CONTENT / refined.len() as f64;
+        let copies = if is_symmetric { 2.0 } else { 1.0 };
         loop {
-            let moved: f64 = refined.iter().map(|r| 0.5 * r.change.abs()).sum();
-            let open = |r: &&mut Refined| r.change.abs() > share && r.level + 1 < rules.len();
+            let moved: [f64; N] =
+                std::array::from_fn(|i| copies * refined.iter().map(|r| 0.5 * r.change[i].abs()).sum::<f64>());
+            let open = |r: &&mut Refined<N>| r.change.iter().any(|c| c.abs() > share) && r.level + 1 < rules.len();
             let mut changed = false;
-            if moved > CONTENT {
+            if moved.iter().any(|moved| *moved > CONTENT) {
                 for r in refined.iter_mut().filter(open) {
                     let finer = integrate(&r.patch, r.level + 1);
-                    *r = Refined { level: r.level + 1, energy: finer, change: finer - r.energy, ..*r };
+                    *r = Refined { level: r.level + 1, energy: finer, change: difference(finer, r.energy), ..*r };
                     changed = true;
                 }
             }
             if !changed {
-                let mut energies = vec![0.0; CELLS];
-                refined.iter().for_each(|r| energies[r.patch.cell] += r.energy);
-                let albedo: f64 = refined.iter().map(|r| r.change).sum();
-                return Self { energies, change: [albedo.abs(), moved], noise: None };
+                return std::array::from_fn(|i| {
+                    let mut energies = vec![0.0; CELLS];
+                    for r in &refined {
+                        energies[r.patch.cell] += r.energy[i];
+                        if is_symmetric {
+                            energies[mirrored(r.patch.cell)] += r.energy[i];
+                        }
+                    }
+                    let albedo = copies * refined.iter().map(|r| r.change[i]).sum::<f64>();
+                    Self { energies, change: [albedo.abs(), moved[i]], noise: None }
+                });
             }
         }
     }
 }
 
 /// A patch, integrated.
-struct Refined {
+struct Refined<const N: usize> {
     patch: Patch,
     /// Number of the rule.
     level: usize,
-    energy: f64,
+    energy: [f64; N],
     /// Against the rule before.
-    change: f64,
+    change: [f64; N],
 }
 
 impl From<Histogram> for Energies {

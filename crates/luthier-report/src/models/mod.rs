@@ -22,6 +22,7 @@ mod compare;
 mod energies;
 mod page;
 mod paths;
+mod reference;
 mod report;
 mod views;
 
@@ -42,9 +43,9 @@ use crate::judge::evidence::AgainstReference;
 
 use compare::compare;
 use energies::Energies;
+pub use reference::{Reference, ReferenceSettings, Shown};
 pub use report::{MaterialModels, ModelErrors, ModelsReport, Quantity, ViewError, Worst};
 use views::View;
-pub use views::judge_views;
 
 /// Angles of the eye against the normal, degrees.
 pub(crate) const THETAS_DEG: [f64; 4] = [0.0, 30.0, 60.0, 80.0];

@@ -4,6 +4,7 @@ use luthier_layers::layered_mc::LayeredMc;
 use luthier_layers::monochrome::Monochrome;
 
 use super::cells::{CELLS, Cells};
+use super::compare::energy_that_noise_moves;
 
 /// Paths by the cell in which they end.
 #[derive(Debug, Clone)]
@@ -17,9 +18,6 @@ pub(super) struct Histogram {
     /// Energies of each family of paths, where there are some; then variances are those between them.
     pub(super) families: Vec<Vec<f64>>,
 }
-
-/// Families of even paths.
-const FAMILIES: u64 = 16;
 
 impl Histogram {
     /// The histogram of as many paths as the estimator has samples.
@@ -35,22 +33,10 @@ impl Histogram {
         Self { energies, squares, count, families: Vec::new() }
     }
 
-    /// The histogram of [`FAMILIES`] families of even paths, together about as many as the estimator has samples: less noise, for the time
-    /// of as many paths.
-    pub(super) fn trace_evenly(estimator: LayeredMc, stack: &Monochrome, cells: &Cells) -> Self {
-        let samples = estimator.samples.div_ceil(FAMILIES);
-        let family = |number: u64| {
-            let mut energies = vec![0.0; CELLS];
-            let estimator = LayeredMc { samples, seed: estimator.seed + number, ..estimator };
-            for (wi, weight) in estimator.even_paths(stack, cells.wo).flatten() {
-                energies[cells.cell(wi)] += weight / samples as f64;
-            }
-            energies
-        };
-        let families: Vec<Vec<f64>> = (0..FAMILIES).map(family).collect();
-        let mean = |cell: usize| families.iter().map(|energies| energies[cell]).sum::<f64>() / FAMILIES as f64;
-        let energies = (0..CELLS).map(mean).collect();
-        Self { energies, squares: vec![0.0; CELLS], count: (samples * FAMILIES) as f64, families }
+    /// The histogram of families that have as many paths each, `count` in all.
+    pub(super) fn of_families(families: Vec<Vec<f64>>, count: f64) -> Self {
+        let mean = |cell: usize| families.iter().map(|energies| energies[cell]).sum::<f64>() / families.len() as f64;
+        Self { energies: (0..CELLS).map(mean).collect(), squares: vec![0.0; CELLS], count, families }
     }
 
     /// Variance of the mean of the families' values.
@@ -74,6 +60,12 @@ impl Histogram {
         (self.squares[cell] - self.energies[cell] * self.energies[cell]).max(0.0) / self.count
     }
 
+    /// [`ViewError::lobe_floor`](super::ViewError::lobe_floor) of a model without noise.
+    pub(super) fn lobe_floor(&self) -> f64 {
+        let deviations: f64 = (0..CELLS).map(|cell| self.cell_variance(cell).sqrt()).sum();
+        if deviations == 0.0 { 0.0 } else { energy_that_noise_moves(deviations) / self.albedo() }
+    }
+
     /// Variance of a sum of the cells' energies with factors.
     pub(super) fn variance(&self, factor: impl Fn(usize) -> f64) -> f64 {
         if !self.families.is_empty() {
@@ -87,33 +79,5 @@ impl Histogram {
             square += factor * factor * squared;
         }
         (square - mean * mean).max(0.0) / self.count
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use luthier_layers::layered_mc::InterfaceMode;
-    use luthier_layers::monochrome::MonochromeBelow;
-    use luthier_optics::stack::{Distribution, Surface};
-
-    use super::*;
-    use crate::models::cells::Cells;
-
-    /// Families of even paths find what independent paths find, with less noise, and say how much less.
-    #[test]
-    fn even_paths_agree_and_have_less_noise() {
-        let rough = Surface::isotropic(Distribution::Ggx, 0.3);
-        let base = MonochromeBelow::Diffuse { albedo: 0.5, sigma: 0.0 };
-        let stack = Monochrome::bare(&[(rough, MonochromeBelow::dielectric(1.5, 0.2)), (rough, base)]);
-        let cells = Cells::new(glam::DVec3::new(0.6, 0.0, 0.8));
-        let estimator = LayeredMc { mode: InterfaceMode::SmithWalk, samples: 40_000, seed: 5 };
-        let (even, plain) =
-            (Histogram::trace_evenly(estimator, &stack, &cells), Histogram::trace(estimator, &stack, &cells));
-        let [even_variance, plain_variance] = [&even, &plain].map(|histogram| histogram.variance(|_| 1.0));
-        let apart = (even.albedo() - plain.albedo()).abs();
-        assert!(apart < 4.0 * (even_variance + plain_variance).sqrt(), "{apart} {even_variance} {plain_variance}");
-        assert!(even_variance < 0.25 * plain_variance, "{even_variance} {plain_variance}");
-        let sum = |histogram: &Histogram| (0..CELLS).map(|cell| histogram.cell_variance(cell)).sum::<f64>();
-        assert!(sum(&even) < sum(&plain), "{} {}", sum(&even), sum(&plain));
     }
 }

@@ -1,15 +1,11 @@
-//! One view of a material, and the judgement of models from views of the caller's choice.
+//! One view of a material at one wavelength.
 
 use luthier_layers::layered_mc::{InterfaceMode, LayeredMc};
-use luthier_layers::model::Model;
 use luthier_layers::monochrome::Monochrome;
-use rayon::prelude::*;
 
 use super::cells::Cells;
-use super::compare::compare;
-use super::energies::Energies;
 use super::paths::Histogram;
-use super::{ModelSettings, ModelSubject, PHI_DEG, ViewError, direction};
+use super::{ModelSubject, PHI_DEG, direction};
 
 /// A material at one wavelength, seen from one direction.
 pub(super) struct View {
@@ -30,36 +26,4 @@ impl View {
         let estimator = LayeredMc { mode, samples: samples.into(), seed: seed.wrapping_add(family << 32) };
         Histogram::trace(estimator, &self.stack, &self.cells)
     }
-
-    /// Even paths of the simulation.
-    fn trace_evenly(&self, samples: u32, seed: u64) -> Histogram {
-        let estimator = LayeredMc { mode: InterfaceMode::SmithWalk, samples: samples.into(), seed };
-        Histogram::trace_evenly(estimator, &self.stack, &self.cells)
-    }
-}
-
-/// Errors of models on a material, as [`super::judge_models`] has them, seen from other angles against the normal, with a reference of even paths
-/// ([`LayeredMc::even_paths`]). `models` are those of a channel of the subject's. By model; views by channel, then by angle.
-pub fn judge_views<'m>(
-    subject: &ModelSubject,
-    models: impl Fn(usize) -> Vec<Box<dyn Model + 'm>> + Sync,
-    thetas_deg: &[f64],
-    settings: ModelSettings,
-) -> Vec<Vec<ViewError>> {
-    let views: Vec<(usize, f64)> =
-        (0..3).flat_map(|channel| thetas_deg.iter().map(move |theta| (channel, *theta))).collect();
-    let judged: Vec<Vec<ViewError>> = views
-        .into_par_iter()
-        .map(|(channel, theta_deg)| {
-            let view = View::new(subject, channel, theta_deg);
-            let reference = view.trace_evenly(settings.samples.get(), settings.seed);
-            let error = |model: Box<dyn Model + 'm>| {
-                let energies = Energies::of(model.as_ref(), &view.stack, &view.cells);
-                compare(&energies, &reference, view.wavelength_nm, theta_deg)
-            };
-            models(channel).into_iter().map(error).collect()
-        })
-        .collect();
-    let count = judged.first().map_or(0, Vec::len);
-    (0..count).map(|model| judged.iter().map(|view| view[model]).collect()).collect()
 }

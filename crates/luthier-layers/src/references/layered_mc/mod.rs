@@ -118,15 +118,6 @@ impl LayeredMc {
         let count = if wo.z > 0.0 { self.samples } else { 0 };
         (0..count).map(move |i| interfaces.trace::<false>(&mut Stream::new(seed, i), wo, |_| {}))
     }
-
-    /// [`Self::paths`] whose first random numbers are those of a sequence that fills their cube evenly (Richtmyer 1951), which the seed shifts:
-    /// means have less noise than the weights of single paths let expect. It shows between families of other seeds.
-    pub fn even_paths(&self, stack: &Monochrome, wo: DVec3) -> impl Iterator<Item = Option<(DVec3, f64)>> + use<> {
-        let interfaces = Interfaces::new(stack, self.mode);
-        let seed = self.seed;
-        let count = if wo.z > 0.0 { self.samples } else { 0 };
-        (0..count).map(move |i| interfaces.trace::<false>(&mut Stream::even(seed, i), wo, |_| {}))
-    }
 }
 
 impl Model for LayeredMc {
