@@ -220,7 +220,10 @@ pub(crate) struct AnisotropicOptions {
     /// Random stacks besides
     #[arg(long, value_name = "N", default_value_t = 10)]
     pub(crate) random: u32,
-    /// Paths of the judge for each wavelength and direction
+    /// Lobe error that the random numbers of the judge may make
+    #[arg(long, value_name = "SHARE", default_value_t = 0.005, value_parser = share)]
+    pub(crate) noise: f64,
+    /// The most paths of the judge for each direction, whatever the noise
     #[arg(long, value_name = "N", default_value_t = LOBES_SAMPLES)]
     pub(crate) samples: NonZeroU32,
     /// Show the seconds that each fit takes, too

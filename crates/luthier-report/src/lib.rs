@@ -63,8 +63,8 @@ pub use measure::statistics::{
 pub use measure::subject::Subject;
 pub use measure::table_terms::{TableTerms, Weights};
 pub use models::{
-    MaterialModels, ModelErrors, ModelSettings, ModelSubject, ModelsReport, PHI_DEG, Quantity, Reference, ReferenceSettings,
-    Shown, ViewError, Worst, judge_models, judge_shading_models,
+    MaterialModels, ModelErrors, ModelSettings, ModelSubject, ModelsReport, PHI_DEG, Quantity, Reference,
+    ReferenceSettings, Shown, ViewError, Worst, judge_models, judge_shading_models,
 };
 pub use pages::chart::{Curve, Plot, PlotAxis, PlotColor};
 pub use parity::{

@@ -88,9 +88,11 @@ impl Residuals for Lobed<'_> {
     fn block(&self, p: &[f64], block: usize) -> Vec<f64> {
         match (self.problem.views.get(block), self.beside) {
             (Some(view), _) => view.residuals(&view.profiles(p, self.lobes)),
-            (None, Some(beside)) if block > self.problem.views.len() => {
-                p[..self.lobes * self.problem.basis.per_lobe()].iter().zip(beside).map(|(p, beside)| BESIDE_WEIGHT * (p - beside)).collect()
-            }
+            (None, Some(beside)) if block > self.problem.views.len() => p[..self.lobes * self.problem.basis.per_lobe()]
+                .iter()
+                .zip(beside)
+                .map(|(p, beside)| BESIDE_WEIGHT * (p - beside))
+                .collect(),
             (None, _) => ripple(p, self.lobes, self.problem.basis),
         }
     }

@@ -58,6 +58,8 @@ pub enum Shown<'a> {
     Model(&'a dyn Model),
     /// Lobes that were fitted to the stack, in its colour.
     Lobes(&'a Lobes),
+    /// `f cos_theta_i` by wavelength, for directions to the light and to the eye.
+    Values(&'a (dyn Fn(DVec3, DVec3) -> Rgb + Sync)),
 }
 
 /// Families of paths, whose spread is the noise.
@@ -106,6 +108,7 @@ impl Reference {
         };
         match shown {
             Shown::Model(given) => model(given),
+            Shown::Values(values) => Energies::of_values(|wi| values(wi, cells.wo), cells, self.is_symmetric),
             Shown::Lobes(lobes) => Energies::of_values(lobes.seen(&self.stacks, cells.wo), cells, self.is_symmetric),
         }
     }

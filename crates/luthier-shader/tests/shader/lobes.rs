@@ -175,8 +175,11 @@ fn normals_below_and_in_a_pixel_change_lobes_as_in_the_twin() {
     for (name, groups, variance) in [("lobes-flakes", &[][..], 0.0), ("lobes", &[FunctionGroup::Surface], 0.02)] {
         let given = set(name).swap_remove(0);
         let record = given.constants.lobes.unwrap();
-        let frame =
-            Frame { index: record.index, wide: Wide::new(record.falloff, ViewAxis::new(2, Critical::default())) };
+        let frame = Frame {
+            index: record.index,
+            wide: Wide::new(record.falloff, ViewAxis::new(2, Critical::default())),
+            axes: None,
+        };
         let lobes = Some(LobesRecord { integral: frame.wide.integral(), ..record });
         let materials =
             [MaterialEntry { constants: MaterialConstants { lobes, ..given.constants.clone() }, ..given.clone() }];

@@ -7,7 +7,6 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use luthier_optics::Rgb;
 use luthier_optics::stack::{Diffuse, Surface};
 
 use super::InterfaceMode;
@@ -34,19 +33,6 @@ enum Kind {
     Smooth(Optics),
     Rough(Rough),
     Diffuse(Diffuse),
-}
-
-/// Light that goes on from an interface, in three channels.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Scattered {
-    /// Direction in which it goes on.
-    pub(crate) to: Sided,
-    /// Share of it that is left in every channel.
-    pub(crate) weight: f64,
-    /// Share of it that is left besides, by channel.
-    pub(crate) tint: Rgb,
-    /// Facets that it met before the last.
-    pub(crate) facets_before: u32,
 }
 
 impl Interface {
@@ -111,33 +97,6 @@ impl Interface {
                 scattered.map(|(b, weight)| (self.turned_back(b), weight))
             }
         }
-    }
-
-    /// As [`Self::scatter`], walks alone, and for a diffuse base with an albedo for each channel.
-    pub(crate) fn scatter_tinted(&self, stream: &mut Stream, a: Sided, albedo: Rgb) -> Option<Scattered> {
-        let whole = |(to, weight)| Scattered { to, weight, tint: [1.0; 3], facets_before: 0 };
-        match &self.kind {
-            Kind::Smooth(_) => self.scatter(stream, a).map(whole),
-            Kind::Diffuse(diffuse) => {
-                let (to, _) = self.scatter(stream, a)?;
-                let diffuse = Diffuse { albedo, ..*diffuse };
-                let brdf = if diffuse.sigma == 0.0 {
-                    albedo.map(|albedo| albedo / PI)
-                } else {
-                    oren_nayar::brdf(&diffuse, to.direction, a.direction)
-                };
-                Some(Scattered { to, weight: 1.0, tint: brdf.map(|brdf| PI * brdf), facets_before: 0 })
-            }
-            Kind::Rough(rough) => {
-                let (to, weight, facets_before) = walk::scatter(rough, stream, self.turned(a))?;
-                Some(Scattered { to: self.turned_back(to), weight, tint: [1.0; 3], facets_before })
-            }
-        }
-    }
-
-    /// Whether it is a diffuse base.
-    pub(crate) fn is_diffuse(&self) -> bool {
-        matches!(self.kind, Kind::Diffuse(_))
     }
 
     /// K(a, b), or an unbiased estimate of it. Zero for a smooth interface, whose kernel is no function.

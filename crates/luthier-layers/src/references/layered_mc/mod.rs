@@ -28,7 +28,7 @@ mod walk;
 
 use glam::DVec3;
 
-pub use colored::{ColorPath, ColorPaths};
+pub use colored::ColorPaths;
 pub use estimate::Estimate;
 pub use joint::{JointPath, JointPaths};
 pub use optics::Side;
