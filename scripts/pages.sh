@@ -41,7 +41,10 @@ stability() {
 figures() { luthier-lab figures -o docs/pages/figures --size 96; }
 models() { luthier-lab judge materials >docs/pages/models.md; }
 lobes() { luthier-lab lobes materials --random 200 -o docs/pages/lobes.md; }
-varying() { luthier-lab varying --random 12 --samples 131072 -o docs/pages/varying.md; }
+varying() { luthier-lab varying --random 8 --noise 0.015 -o docs/pages/varying.md; }
+anisotropic() {
+  luthier-lab anisotropic materials/{brushed-aluminium,yamaguchi-brushed}.toml --random 6 --noise 0.015 -o docs/pages/anisotropic.md
+}
 environment() {
   luthier-lab environment materials/{silver-paint,latex,frosted-acrylic}.toml --size 12 --rows 128 -o docs/pages/environment.md
 }
@@ -50,7 +53,7 @@ shader-size() { scripts/shader-size.sh >docs/pages/shader-size.md; }
 distribution-table() { scripts/compare-distribution.sh >docs/pages/distribution-table.md; }
 speed() { scripts/bench-table.sh >docs/pages/speed.md; }
 
-all=(materials shapes cost papers budgets scenes parity stability figures models lobes varying environment bench shader-size distribution-table speed)
+all=(materials shapes cost papers budgets scenes parity stability figures models lobes varying anisotropic environment bench shader-size distribution-table speed)
 case ${1-} in
   "") pages=("${all[@]}") ;;
   --cheap) pages=(shader-size) ;;

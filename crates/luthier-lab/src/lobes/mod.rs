@@ -32,7 +32,7 @@ pub(crate) const ALBEDO_STD_ERR: f64 = 7e-4;
 /// Family of random numbers of the judge; fits have 0.
 pub(crate) const JUDGE_SEED: u64 = 1 << 40;
 
-/// What is judged: lobe errors and albedo errors.
+/// Number of the quantities that are judged: lobe errors and albedo errors.
 const QUANTITIES: usize = 2;
 
 /// Errors that a stack should not exceed, by quantity.
@@ -50,7 +50,7 @@ struct Judged {
     beside: Vec<Vec<ViewError>>,
     /// Paths of the judge.
     paths: u64,
-    /// What would make the error less, where it was looked for.
+    /// Reasons of the errors, where they were looked for.
     reasons: Option<Reasons>,
 }
 

@@ -289,7 +289,7 @@ fn sets_pay_for_the_lobes_that_rows_have() {
 /// material reflects. Oracle: quadrature over the bins, by the midpoint rule.
 #[test]
 fn directions_are_drawn_as_their_density_says() {
-    const DRAWN: u32 = 4096;
+    const DRAWN: u32 = 8192;
     const RINGS: usize = 6;
     const SECTORS: usize = 6;
     let (_, image) = rows();
