@@ -9,7 +9,7 @@ use luthier_report::{ModelSubject, Reference, Shown, ViewError};
 use super::{JUDGE_SEED, Judged, QUANTITIES, THETAS_DEG, fit_settings, judge_settings, largest, simulated};
 use crate::cli::LobesOptions;
 
-/// What is changed.
+/// A change of the fit or of the judge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Change {
     /// Four times the paths for each row.

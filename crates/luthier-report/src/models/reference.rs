@@ -51,7 +51,7 @@ struct TracedView {
     paths: u64,
 }
 
-/// What is compared with a reference.
+/// A model or lobes that are compared with a reference.
 #[derive(Clone, Copy)]
 pub enum Shown<'a> {
     /// A model, given the stack at each wavelength.

@@ -5,7 +5,7 @@ use luthier_optics::Rgb;
 use super::optics::{Optics, Side};
 use super::random::Stream;
 
-/// What is left of light on its way: of one wavelength or of several.
+/// Light that is left on its way: of one wavelength or of several.
 pub(crate) trait Share: Copy {
     /// All of it.
     const WHOLE: Self;
@@ -81,13 +81,13 @@ pub(crate) struct Chosen<S> {
 
 /// An interface whose facets reflect or refract by chance.
 pub(crate) trait Chance {
-    /// What is left of the light.
+    /// Light that is left.
     type Share: Share;
 
     /// Index of a side over that of the other.
     fn eta_it(&self, side: Side) -> f64;
 
-    /// What becomes of light that arrives on a side at a squared cosine.
+    /// Chances of light that arrives on a side at a squared cosine.
     fn choose(&self, stream: &mut Stream, side: Side, cos_theta_sq: f64) -> Chosen<Self::Share>;
 }
 
