@@ -165,6 +165,17 @@ pub(crate) struct JudgeOptions {
 /// The most paths of a view of the judge.
 pub(crate) const LOBES_SAMPLES: NonZeroU32 = NonZeroU32::new(1 << 24).expect("not zero");
 
+/// How exact the judge of fits is.
+#[derive(Debug, Args)]
+pub(crate) struct Precision {
+    /// Lobe error that the random numbers of the judge may make
+    #[arg(long, value_name = "SHARE", default_value_t = 0.005, value_parser = share)]
+    pub(crate) noise: f64,
+    /// The most paths of the judge for each direction, whatever the noise
+    #[arg(long, value_name = "N", default_value_t = LOBES_SAMPLES)]
+    pub(crate) samples: NonZeroU32,
+}
+
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  luthier-lab lobes materials --random 200 -o docs/pages/lobes.md\n  \
                   luthier-lab lobes materials/gold-paint.toml --noise 0.01")]
@@ -174,12 +185,8 @@ pub(crate) struct LobesOptions {
     /// Random stacks besides
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) random: u32,
-    /// Lobe error that the random numbers of the judge may make
-    #[arg(long, value_name = "SHARE", default_value_t = 0.005, value_parser = share)]
-    pub(crate) noise: f64,
-    /// The most paths of the judge for each direction, whatever the noise
-    #[arg(long, value_name = "N", default_value_t = LOBES_SAMPLES)]
-    pub(crate) samples: NonZeroU32,
+    #[command(flatten)]
+    pub(crate) precision: Precision,
     /// Paths of the fit for each row; by default those of a bake
     #[arg(long = "paths", value_name = "N", default_value = "32768")]
     pub(crate) paths_per_row: NonZeroU32,
@@ -202,12 +209,8 @@ pub(crate) struct VaryingOptions {
     /// Random stacks: those of `lobes` with two layers or more
     #[arg(long, value_name = "N", default_value_t = 8)]
     pub(crate) random: u32,
-    /// Lobe error that the random numbers of the judge may make
-    #[arg(long, value_name = "SHARE", default_value_t = 0.005, value_parser = share)]
-    pub(crate) noise: f64,
-    /// The most paths of the judge for each direction, whatever the noise
-    #[arg(long, value_name = "N", default_value_t = LOBES_SAMPLES)]
-    pub(crate) samples: NonZeroU32,
+    #[command(flatten)]
+    pub(crate) precision: Precision,
     #[command(flatten)]
     pub(crate) destination: Destination,
 }
@@ -220,12 +223,8 @@ pub(crate) struct AnisotropicOptions {
     /// Random stacks besides
     #[arg(long, value_name = "N", default_value_t = 10)]
     pub(crate) random: u32,
-    /// Lobe error that the random numbers of the judge may make
-    #[arg(long, value_name = "SHARE", default_value_t = 0.005, value_parser = share)]
-    pub(crate) noise: f64,
-    /// The most paths of the judge for each direction, whatever the noise
-    #[arg(long, value_name = "N", default_value_t = LOBES_SAMPLES)]
-    pub(crate) samples: NonZeroU32,
+    #[command(flatten)]
+    pub(crate) precision: Precision,
     /// Show the seconds that each fit takes, too
     #[arg(long)]
     pub(crate) times: bool,

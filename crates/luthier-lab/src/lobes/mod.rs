@@ -16,7 +16,7 @@ use luthier_terminal::{Bar, Failure, Outcome, deliver, valid};
 use rayon::prelude::*;
 
 use self::reasons::Reasons;
-use crate::cli::LobesOptions;
+use crate::cli::{LobesOptions, Precision};
 
 pub(crate) use self::stacks::{anisotropic, of, random};
 
@@ -27,7 +27,7 @@ const THETAS_DEG: [f64; 9] = [0.0, 7.0, 30.0, 45.0, 60.0, 70.0, 77.0, 80.0, 85.0
 const BESIDE: [&str; 2] = ["belcour", "elek"];
 
 /// Standard error that albedos of the judge may have.
-pub(crate) const ALBEDO_STD_ERR: f64 = 7e-4;
+const ALBEDO_STD_ERR: f64 = 7e-4;
 
 /// Family of random numbers of the judge; fits have 0.
 pub(crate) const JUDGE_SEED: u64 = 1 << 40;
@@ -154,8 +154,9 @@ fn judge_all(
 }
 
 /// Settings of the judge, with a family of random numbers.
-fn judge_settings(options: &LobesOptions, seed: u64) -> ReferenceSettings {
-    ReferenceSettings { noise: options.noise, albedo_std_err: ALBEDO_STD_ERR, most: options.samples.get().into(), seed }
+pub(crate) fn judge_settings(precision: &Precision, seed: u64) -> ReferenceSettings {
+    let Precision { noise, samples } = *precision;
+    ReferenceSettings { noise, albedo_std_err: ALBEDO_STD_ERR, most: samples.get().into(), seed }
 }
 
 /// Settings of the fit.
@@ -172,7 +173,7 @@ fn simulated(stack: &Stack, wavelengths_nm: [f64; 3], settings: FitSettings) -> 
 fn judge(subject: &ModelSubject, options: &LobesOptions) -> (Judged, Reference) {
     let simulation = simulated(&subject.stack, subject.wavelengths_nm, fit_settings(options));
     let lobes = simulation.fit_fewest(LOBES, EXCESS);
-    let reference = Reference::new(subject, &THETAS_DEG, judge_settings(options, JUDGE_SEED));
+    let reference = Reference::new(subject, &THETAS_DEG, judge_settings(&options.precision, JUDGE_SEED));
     let beside = BESIDE.iter().filter_map(|name| model(name));
     let judged = Judged {
         name: subject.name.clone(),

@@ -85,13 +85,13 @@ impl Reasons {
             Change::OneMore => Some(of_lobes(&simulated(&subject.stack, nm, settings).fit(LOBES + 1))),
             Change::Channels => Some((0..3).flat_map(|c| alone(subject, c, reference, settings)).collect()),
             Change::Judge => {
-                let other = Reference::new(subject, &THETAS_DEG, judge_settings(options, 2 * JUDGE_SEED));
+                let other = Reference::new(subject, &THETAS_DEG, judge_settings(&options.precision, 2 * JUDGE_SEED));
                 Some(other.errors(Shown::Lobes(&judged.lobes)))
             }
             Change::Isotropic if is_isotropic => None,
             Change::Isotropic => {
                 let round = ModelSubject { stack: shown(&subject.stack), ..subject.clone() };
-                let other = Reference::new(&round, &THETAS_DEG, judge_settings(options, JUDGE_SEED));
+                let other = Reference::new(&round, &THETAS_DEG, judge_settings(&options.precision, JUDGE_SEED));
                 Some(other.errors(Shown::Lobes(&judged.lobes)))
             }
         };

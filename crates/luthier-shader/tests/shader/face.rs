@@ -158,3 +158,35 @@ fn a_shader_has_the_groups_that_were_asked_for() {
         }
     }
 }
+
+/// On a surface of one slope parameter a variance of slopes is a factor on it: alpha^2 + 2 variance.
+#[test]
+fn a_variance_of_slopes_is_a_factor_on_the_only_slope_parameter() {
+    for name in ["gold", "belcour", "microfacet"] {
+        let materials = sets().into_iter().find(|(known, _)| *known == name).unwrap().1;
+        let functions = [FunctionGroup::Surface].into_iter().collect();
+        let set = MaterialSet { functions, ..MaterialSet::new(&materials, tables()) };
+        let machine =
+            Machine::new(&emit(&set, Form::Baked, Target::Wgsl).unwrap(), &material_buffer(&materials), textures());
+        let Value::Many(neutral) = machine.call("luthier_place", Vec::new()) else { panic!("a place is a structure") };
+        let (alpha, variance) = (materials[0].layers[0].alpha, 0.02);
+        let (mut varied, mut scaled) = (neutral.clone(), neutral.clone());
+        // After the normal and three factors.
+        varied[4] = Value::F(variance as f32);
+        scaled[1] = Value::F(((alpha * alpha + 2.0 * variance).sqrt() / alpha) as f32);
+        let mut moved = 0.0_f32;
+        for (wi, wo) in directions(40).filter(|(wi, wo)| wi[2] > 0.0 && wo[2] > 0.0) {
+            let at = |place: &[Value]| {
+                let arguments = vec![Value::Many(place.to_vec()), Value::U(0), single(wi), single(wo)];
+                machine.call("luthier_eval_at", arguments).floats()[0]
+            };
+            let (found, expected, plain) = (at(&varied), at(&scaled), at(&neutral));
+            assert!(
+                (found - expected).abs() <= 1e-4 * expected.abs().max(1e-3),
+                "{name} {wi:?} {wo:?}: {found} {expected}"
+            );
+            moved = moved.max((found - plain).abs());
+        }
+        assert!(moved > 0.05, "{name}: {moved}");
+    }
+}

@@ -43,6 +43,14 @@ fn set(name: &str) -> Vec<MaterialEntry> {
     sets().into_iter().find(|(known, _)| *known == name).unwrap().1
 }
 
+/// A shader of materials whose first facets are black, with rows of lobes.
+fn lit_from_below(text: &str, materials: &[MaterialEntry], rows: &Image) -> Machine {
+    let black = Image::zeros(3, 3, 3);
+    let textures =
+        [("luthier_fresnel", black.clone()), ("luthier_distribution", black), ("luthier_lobes", rows.clone())];
+    Machine::new(text, &material_buffer(materials), textures.map(|(name, image)| (name.to_owned(), image)).into())
+}
+
 /// The light below as the twin has it, and as the function of the shader has it.
 #[test]
 fn light_from_below_is_that_of_the_twin() {
@@ -63,12 +71,7 @@ fn light_from_below_is_that_of_the_twin() {
         materials[0].constants.lobes = Some(LobesRecord { integral: wide.integral(), ..lobes });
         let set = MaterialSet::new(&materials, tables());
         let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
-        // Without a first facet.
-        let black = Image::zeros(3, 3, 3);
-        let textures =
-            [("luthier_fresnel", black.clone()), ("luthier_distribution", black), ("luthier_lobes", image.clone())];
-        let textures = BTreeMap::from(textures.map(|(name, image)| (name.to_owned(), image)));
-        let machine = Machine::new(&text, &material_buffer(&materials), textures);
+        let machine = lit_from_below(&text, &materials, &image);
         let mut brightest = 0.0_f64;
         for (wi, wo) in directions(300) {
             let [light, eye] = [wi, wo].map(DVec3::from);
@@ -127,11 +130,7 @@ fn rows_over_a_factor_are_those_of_the_twin() {
         let frame = Frame { index: record.index, wide, axes: None };
         let materials = [material];
         let text = emit(&MaterialSet::new(&materials, tables.clone()), Form::Baked, Target::Wgsl).unwrap();
-        let black = Image::zeros(3, 3, 3);
-        let textures =
-            [("luthier_fresnel", black.clone()), ("luthier_distribution", black), ("luthier_lobes", image.clone())];
-        let textures = BTreeMap::from(textures.map(|(name, image)| (name.to_owned(), image)));
-        let machine = Machine::new(&text, &material_buffer(&materials), textures);
+        let machine = lit_from_below(&text, &materials, &image);
         let Value::Many(neutral) = machine.call("luthier_place", Vec::new()) else { panic!("a place is a structure") };
         // By hand: roots 1, .7, .41, 0; of four tiles, the last on slopes is that of 1/4.
         for (scale, over_alpha, over_slab) in
@@ -185,11 +184,7 @@ fn normals_below_and_in_a_pixel_change_lobes_as_in_the_twin() {
             [MaterialEntry { constants: MaterialConstants { lobes, ..given.constants.clone() }, ..given.clone() }];
         let set = MaterialSet { functions: groups.iter().copied().collect(), ..MaterialSet::new(&materials, tables()) };
         let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
-        let black = Image::zeros(3, 3, 3);
-        let textures =
-            [("luthier_fresnel", black.clone()), ("luthier_distribution", black), ("luthier_lobes", image.clone())];
-        let textures = BTreeMap::from(textures.map(|(name, image)| (name.to_owned(), image)));
-        let machine = Machine::new(&text, &material_buffer(&materials), textures);
+        let machine = lit_from_below(&text, &materials, &image);
         let Value::Many(neutral) = machine.call("luthier_place", Vec::new()) else { panic!("a place is a structure") };
         let mut moved = 0.0_f64;
         for (k, (wi, wo)) in directions(300).enumerate() {

@@ -7,7 +7,7 @@ use super::random::Stream;
 
 /// Light that is left on its way: of one wavelength or of several.
 pub(crate) trait Share: Copy {
-    /// All of it.
+    /// The share of light that has lost nothing.
     const WHOLE: Self;
 
     /// Share of this share.
