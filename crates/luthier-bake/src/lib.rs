@@ -9,8 +9,7 @@
 //! profile or platform.
 //!
 //! Simplifications: albedos are tabulated at the nominal thickness of films, reflectances over all of their thickness where it
-//! varies; anisotropic surfaces enter with the
-//! geometric mean of their slope parameters.
+//! varies; anisotropic surfaces enter with the geometric mean of their slope parameters, except in lobes.
 
 mod assemble;
 mod constants;

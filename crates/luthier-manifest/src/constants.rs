@@ -49,6 +49,9 @@ pub struct LobesRecord {
     /// Tiles over a factor that a texture has, where rows are over one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub varying: Option<VaryingRecord>,
+    /// Axes of an anisotropic stack, with tiles over the azimuth; lobes of others are in the plane of the eye.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub axes: Option<AxesRecord>,
 }
 
 /// Tiles of lobes one after the other, over a factor that a texture has, at equal distances of its root. The first is that of 1. The last is
@@ -61,6 +64,18 @@ pub struct VaryingRecord {
     pub tiles: u32,
     /// The least factor on slopes: rows have theirs divided by it.
     pub least_spread: f64,
+}
+
+/// Tiles of lobes one after the other, over the azimuth of the eye in the axes of an anisotropic stack.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct AxesRecord {
+    /// Cosine and sine of the angle from the tangent of the surface to the first axis.
+    pub turn: [f64; 2],
+    /// Whether the stack is its own mirror image in both axes: tiles then go over a quarter of a circle; else over half of one, and the last is
+    /// the first.
+    pub is_mirrored: bool,
+    /// Number of the tiles.
+    pub tiles: u32,
 }
 
 /// A member of `LuthierPlace` that rows of lobes are over.
@@ -160,7 +175,7 @@ impl MaterialConstants {
     /// | 7 | patina: diffuse albedo RGB, 0 |
     /// | 8 | patina: tarnish RGB, 0 |
     /// | 9 | glitter: low and high 16 bits of the seed, frequency, filled; all 0 without glitter |
-    /// | 10 | glitter: 1 - cos tilt, 0, 0, 0 |
+    /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; all 0 without |
     pub fn words(&self) -> [[f32; 4]; Self::WORDS] {
         let with = |[r, g, b]: [f64; 3], w: f64| [r as f32, g as f32, b as f32, w as f32];
         let mut words = [[0.0; 4]; Self::WORDS];
@@ -185,7 +200,11 @@ impl MaterialConstants {
         }
         if let Some(g) = &self.glitter {
             words[8] = [half(g.seed), half(g.seed >> 16), g.frequency as f32, g.filled as f32];
-            words[9] = with([1.0 - libm::cos(g.tilt), 0.0, 0.0], 0.0);
+            words[9][0] = (1.0 - libm::cos(g.tilt)) as f32;
+        }
+        if let Some(AxesRecord { turn: [cos, sin], is_mirrored, tiles }) = self.lobes.and_then(|lobes| lobes.axes) {
+            let quarters = if is_mirrored { 1.0 } else { 2.0 };
+            words[9] = [words[9][0], cos as f32, sin as f32, ((f64::from(tiles) - 1.0) / quarters) as f32];
         }
         words
     }
@@ -245,6 +264,7 @@ mod tests {
             critical_width: 2.0,
             critical_plain_share: 0.25,
             varying: None,
+            axes: None,
         };
         let words = |lobes| MaterialConstants { lobes: Some(lobes), ..MaterialConstants::default() }.words();
         // Roots: of (-3 + sqrt(9 + 16)) / 2 = 1, and of (1 + sqrt(17)) / 2.
@@ -259,5 +279,10 @@ mod tests {
         };
         assert_eq!(over(VaryingFactor::AlphaFactor), [8.0, 0.0, 0.5, 0.25]);
         assert_eq!(over(VaryingFactor::SlabFactor), [0.0, 8.0, 1e-3, 0.25]);
+        let around = |is_mirrored| {
+            let axes = Some(AxesRecord { turn: [0.6, 0.8], is_mirrored, tiles: 8 });
+            words(LobesRecord { axes, ..lobes })[9]
+        };
+        assert_eq!([true, false].map(around), [[0.0, 0.6, 0.8, 7.0], [0.0, 0.6, 0.8, 3.5]]);
     }
 }

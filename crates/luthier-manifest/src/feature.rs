@@ -108,7 +108,9 @@ impl ShadingModel {
                 !(matches!(self, Self::Phong | Self::Lobes) || is_statistical && form == Form::Baked)
             }
             Feature::DiffuseSlopes => is_chain || is_statistical || matches!(self, Self::Microfacet | Self::Lobes),
-            Feature::Anisotropy => matches!(self, Self::WeidlichWilkie | Self::Yamaguchi | Self::Microfacet),
+            Feature::Anisotropy => {
+                matches!(self, Self::WeidlichWilkie | Self::Yamaguchi | Self::Microfacet | Self::Lobes)
+            }
             Feature::Beckmann => is_chain || matches!(self, Self::Microfacet | Self::Lobes),
             Feature::ThicknessMap => is_chain || is_statistical || self == Self::Lobes,
             Feature::Flakes => is_chain || self == Self::Lobes,
@@ -141,7 +143,7 @@ mod tests {
             (ShadingModel::GranierHeidrich, ".#..#.#...##...#"),
             (ShadingModel::Phong, "###.##....##...#"),
             (ShadingModel::Microfacet, "....#b######...#"),
-            (ShadingModel::Lobes, "######.#.#####.#"),
+            (ShadingModel::Lobes, "######.#######.#"),
         ] {
             assert_eq!(shown(model), expected, "{model}");
         }

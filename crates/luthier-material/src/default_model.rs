@@ -88,16 +88,23 @@ mod tests {
             (COAT.to_owned() + stained + WHITE, "lobes", "elek", None),
             (COAT.to_owned() + worn + WHITE, "belcour", "elek", Some("layer.0.maps.thickness")),
             (COAT.to_owned() + worn + GOLD + beckmann, "belcour", "elek", Some("layer.0.maps.thickness")),
-            (COAT.to_owned() + smooth + GOLD + brushed, "yamaguchi", "weidlich-wilkie", Some("layer.1.alpha_x")),
+            (COAT.to_owned() + smooth + GOLD + brushed, "lobes", "weidlich-wilkie", None),
+            (
+                COAT.to_owned() + scratched + GOLD + brushed,
+                "yamaguchi",
+                "weidlich-wilkie",
+                Some("layer.0.maps.roughness"),
+            ),
+            (
+                COAT.to_owned() + stained + GOLD + brushed,
+                "yamaguchi",
+                "weidlich-wilkie",
+                Some("layer.0.maps.thickness"),
+            ),
             (VARYING.to_owned() + COAT + rough + WHITE, "elek", "elek", Some("layer.0.film.0.thickness_nm")),
             (COAT.to_owned() + smooth + GOLD + rough + FLAKES, "lobes", "elek", None),
             (COAT.to_owned() + smooth + GOLD + rough + PATINA, "elek", "elek", Some("effects.patina")),
-            (
-                COAT.to_owned() + smooth + GOLD + brushed + FLAKES,
-                "weidlich-wilkie",
-                "weidlich-wilkie",
-                Some("layer.1.alpha_x"),
-            ),
+            (COAT.to_owned() + smooth + GOLD + brushed + FLAKES, "lobes", "weidlich-wilkie", None),
         ] {
             let found = material(&body);
             assert_eq!([found.model(), found.model_without_fit()].map(ShadingModel::name), [model, without], "{body}");

@@ -1,7 +1,7 @@
 //! Features of a material that its model leaves out.
 
 use luthier_manifest::{Feature, Form, ShadingModel};
-use luthier_optics::stack::{Base, Distribution};
+use luthier_optics::stack::{Base, Distribution, Layer};
 
 use crate::material::Material;
 
@@ -59,7 +59,7 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
             (film.is_some(), Feature::Films, "film.0.type"),
             (varies, Feature::FilmVariation, "film.0.thickness_nm"),
             (layer.films.len() > 1, Feature::InnerFilms, "film.1.type"),
-            (is_rough && slopes.alpha_x != slopes.alpha_y, Feature::Anisotropy, "alpha_x"),
+            (layer.is_anisotropic(), Feature::Anisotropy, "alpha_x"),
             (is_rough && slopes.distribution == Distribution::Beckmann, Feature::Beckmann, "distribution"),
             (absorbs && lights(number, Feature::InnerInterface), Feature::Absorption, "absorption_per_um"),
             (absorbs && lights(number, Feature::Base), Feature::BaseAbsorption, "absorption_per_um"),
@@ -84,10 +84,18 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
             tell(feature, key.to_owned());
         }
     }
-    // Rows are over one factor.
-    if model == ShadingModel::Lobes && maps.is_some_and(|maps| maps.roughness.is_some() && maps.thickness.is_some()) {
-        let feature = Feature::ThicknessMap;
-        found.push(LeftOut { feature, key: "layer.0.maps.thickness".to_owned(), forms: Form::ALL.to_vec() });
+    if let (ShadingModel::Lobes, Some(maps)) = (model, maps) {
+        // Rows are over one factor, or over the azimuth.
+        let is_turned = layers.iter().any(Layer::is_anisotropic);
+        let (roughness, thickness) = (maps.roughness.is_some(), maps.thickness.is_some());
+        for (lacks, feature, key) in [
+            (roughness && is_turned, Feature::RoughnessMap, "layer.0.maps.roughness"),
+            (thickness && (is_turned || roughness), Feature::ThicknessMap, "layer.0.maps.thickness"),
+        ] {
+            if lacks {
+                found.push(LeftOut { feature, key: key.to_owned(), forms: Form::ALL.to_vec() });
+            }
+        }
     }
     found
 }

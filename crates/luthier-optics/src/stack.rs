@@ -29,6 +29,13 @@ pub struct Layer {
     pub base: Base,
 }
 
+impl Layer {
+    /// Whether it is an interface with other slopes along one axis than along the other.
+    pub fn is_anisotropic(&self) -> bool {
+        !matches!(self.base, Base::Diffuse(_)) && self.surface.alpha_x != self.surface.alpha_y
+    }
+}
+
 /// Material below an interface.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Base {

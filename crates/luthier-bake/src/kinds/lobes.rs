@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use luthier_layers::lobes::{Critical, EXCESS, FitSettings, LOBES, Row, Varied, Varying, shown};
+use luthier_layers::lobes::{Axes, Critical, EXCESS, FitSettings, LOBES, Row, Varied, Varying, shown};
 use luthier_lut::{
     Axis, Comparison, ErrorStats, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan,
 };
-use luthier_manifest::{LobesRecord, VaryingFactor, VaryingRecord};
+use luthier_manifest::{AxesRecord, LobesRecord, VaryingFactor, VaryingRecord};
 use luthier_material::Material;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
@@ -37,15 +37,15 @@ impl Kind for Table {
     fn job(&self, site: &Site<'_>) -> Result<Option<Arc<dyn Job>>, BakeError> {
         let Site { material, layer, shape, .. } = site;
         let is_first = material.stack.layers.first().is_some_and(|first| std::ptr::eq(first, *layer));
-        let job = || LobesJob { fit: fit(material), node: 0, axes: shape.axes(), format: shape.format };
+        let job = || LobesJob { fit: fit(material), tile: 0, axes: shape.axes(), format: shape.format };
         Ok(is_first.then(|| Arc::new(job()) as Arc<dyn Job>))
     }
 
-    /// A tile for every other node over what a texture scales.
+    /// A tile for every other node over what a texture scales, or over the azimuth.
     fn followers(&self, site: &Site<'_>) -> Vec<Arc<dyn Job>> {
         let fit = fit(site.material);
-        let job = |node| LobesJob { fit: fit.clone(), node, axes: site.shape.axes(), format: site.shape.format };
-        (1..Varied::nodes_of(fit.varying)).map(|node| Arc::new(job(node)) as Arc<dyn Job>).collect()
+        let job = |tile| LobesJob { fit: fit.clone(), tile, axes: site.shape.axes(), format: site.shape.format };
+        (1..Varied::tiles_of(&fit.stack, fit.varying)).map(|tile| Arc::new(job(tile)) as Arc<dyn Job>).collect()
     }
 }
 
@@ -92,11 +92,17 @@ const UNFITTED: LobesRecord = LobesRecord {
     critical_width: 0.0,
     critical_plain_share: 0.0,
     varying: None,
+    axes: None,
 };
 
 /// The numbers of a material's lobes that hold at all views; [`UNFITTED`] in an outline without fits.
 pub(crate) fn record(material: &Material, results: &Results) -> LobesRecord {
-    let Some(varied) = results.get::<Varied>(fit(material).key()) else { return UNFITTED };
+    let axes = Axes::of(&material.stack).map(|Axes { turn, is_mirrored }| AxesRecord {
+        turn,
+        is_mirrored,
+        tiles: Axes::TILES as u32,
+    });
+    let Some(varied) = results.get::<Varied>(fit(material).key()) else { return LobesRecord { axes, ..UNFITTED } };
     let lobes = &varied.nodes[0];
     let (wide, Critical { cot_sq, width, plain_share }) = (lobes.frame.wide, lobes.axis.critical());
     let over = |varying| VaryingRecord {
@@ -115,6 +121,7 @@ pub(crate) fn record(material: &Material, results: &Results) -> LobesRecord {
         critical_width: width,
         critical_plain_share: plain_share,
         varying: varied.varying().map(over),
+        axes,
     }
 }
 
@@ -161,8 +168,8 @@ fn factor_name(varying: Varying) -> &'static str {
 #[derive(Debug)]
 struct LobesJob {
     fit: Arc<FitJob>,
-    /// Number over what varies.
-    node: usize,
+    /// Number over what varies, or over the azimuth.
+    tile: usize,
     /// Cosine of the view, and part.
     axes: [Axis; 2],
     format: TexelFormat,
@@ -176,7 +183,7 @@ impl Job for LobesJob {
     fn inputs(&self) -> Value {
         json!({
             "fit": self.fit.key().to_string(),
-            "node": self.node,
+            "tile": self.tile,
             "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
             "format": self.format.name(),
         })
@@ -188,13 +195,13 @@ impl Job for LobesJob {
 
     fn run(&self, inputs: &Inputs<'_>) -> Output {
         let varied: &Varied = inputs.part(self.fit.as_ref());
-        let lobes = &varied.nodes[self.node];
+        let (lobes, tile) = varied.tile(self.tile);
         let [x, y] = &self.axes;
         let most = (y.size as usize - Row::parts(0)) / (Row::parts(1) - Row::parts(0));
         // Parts are side by side; the first and the last node of each stand there twice.
         let mut truth = Image::zeros((x.size + 2) * y.size, 1, 4);
         for i in 0..x.size + 2 {
-            let row = varied.stored(self.node, (i.max(1) - 1).min(x.size - 1) as usize);
+            let row = varied.stored(self.tile, (i.max(1) - 1).min(x.size - 1) as usize);
             for (j, part) in (0..y.size).zip(row.filled(most).to_parts()) {
                 truth.texel_mut(j * (x.size + 2) + i, 0).copy_from_slice(&part.map(|value| value as f32));
             }
@@ -210,7 +217,7 @@ impl Job for LobesJob {
                 &scan,
                 |u| {
                     let c = x.decode(u[0]);
-                    let [expected, sampled] = [lobes.row_at(c).filled(most), read(c)].map(|row| {
+                    let [expected, sampled] = [lobes.row_of(tile, c).filled(most), read(c)].map(|row| {
                         let [r, g, b] = row.energies()[part];
                         [r, g, b, 0.0]
                     });
@@ -222,10 +229,17 @@ impl Job for LobesJob {
         let error = (1..most + 2).map(energies).fold(energies(0), ErrorStats::with_worst_of);
         let over = if lobes.axis.critical().cot_sq > 0.0 { ", rows close together at its critical angle" } else { "" };
         let factor =
-            |varying: Varying| format!(" with {:.4} of its {}", varying.factor(self.node as f64), factor_name(varying));
-        let factor = varied.varying().map(factor).unwrap_or_default();
+            |varying: Varying| format!(" with {:.4} of its {}", varying.factor(self.tile as f64), factor_name(varying));
+        let azimuth = |axes: Axes| {
+            let [cos, sin] = axes.azimuth(tile as f64);
+            format!(
+                " seen {:.1} degrees from the axis of its lowest anisotropic surface",
+                libm::atan2(sin, cos).to_degrees()
+            )
+        };
+        let here = varied.varying().map(factor).or(lobes.frame.axes.map(azimuth)).unwrap_or_default();
         let model = format!(
-            "{} fitted to the simulated stack{factor}, in half vectors of a medium of index {:.3}{over}; {}; errors are those of energies \
+            "{} fitted to the simulated stack{here}, in half vectors of a medium of index {:.3}{over}; {}; errors are those of energies \
              against the rows before they were rounded",
             ["no lobe", "one lobe", "two lobes"][lobes.rows[0].lobes.len().min(LOBES)],
             lobes.frame.index,

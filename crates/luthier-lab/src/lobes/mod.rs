@@ -165,7 +165,7 @@ fn fit_settings(options: &LobesOptions) -> FitSettings {
     FitSettings { rows, paths, ..FitSettings::default() }
 }
 
-/// The light of a stack as bakes see it, with surfaces of one slope parameter each.
+/// The light of a stack as bakes see it.
 fn simulated(stack: &Stack, wavelengths_nm: [f64; 3], settings: FitSettings) -> Simulation {
     Simulation::new(&shown(stack), &Color::ThreeWavelengths(wavelengths_nm), settings)
 }

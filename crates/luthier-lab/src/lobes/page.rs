@@ -67,7 +67,6 @@ fitted and judged anew with one thing changed; columns are the errors that are l
 - *3 lobes*: the fit has one lobe more than a bake may have.
 - *channels alone*: each channel is fitted by itself, from as many paths, so that it has its own shapes.
 - *other judge*: the judge has other random numbers.
-- *isotropic*: the judge sees the mean slope parameter of surfaces that have two, as the fit does.
 
 The reason is the change that leaves the least error, if it takes away a quarter of it. Otherwise it is the shape: two lobes cannot do better.
 ";

@@ -24,13 +24,11 @@ pub(super) enum Change {
     Channels,
     /// Other random numbers of the judge.
     Judge,
-    /// The stack with one slope parameter for each surface, where it has two.
-    Isotropic,
 }
 
 impl Change {
-    pub(super) const ALL: [Self; 7] =
-        [Self::Paths, Self::Rows, Self::AllLobes, Self::OneMore, Self::Channels, Self::Judge, Self::Isotropic];
+    pub(super) const ALL: [Self; 6] =
+        [Self::Paths, Self::Rows, Self::AllLobes, Self::OneMore, Self::Channels, Self::Judge];
 
     /// Head of its column.
     pub(super) fn head(self) -> &'static str {
@@ -41,7 +39,6 @@ impl Change {
             Self::OneMore => "3 lobes",
             Self::Channels => "channels alone",
             Self::Judge => "other judge",
-            Self::Isotropic => "isotropic",
         }
     }
 
@@ -54,7 +51,6 @@ impl Change {
             Self::OneMore => "two lobes too few",
             Self::Channels => "one shape for three channels",
             Self::Judge => "noise of the judge",
-            Self::Isotropic => "mean of two slope parameters",
         }
     }
 }
@@ -76,7 +72,6 @@ impl Reasons {
         let fit = |settings| simulated(&subject.stack, nm, settings).fit_fewest(LOBES, EXCESS);
         let lobes = judged.lobes.rows[0].lobes.len();
         let of_lobes = |lobes: &Lobes| reference.errors(Shown::Lobes(lobes));
-        let is_isotropic = shown(&subject.stack) == subject.stack;
         let errors = |change: Change| match change {
             Change::Paths => Some(of_lobes(&fit(FitSettings { paths: 4 * settings.paths, ..settings }))),
             Change::Rows => Some(of_lobes(&fit(FitSettings { rows: 2 * settings.rows - 1, ..settings }))),
@@ -86,12 +81,6 @@ impl Reasons {
             Change::Channels => Some((0..3).flat_map(|c| alone(subject, c, reference, settings)).collect()),
             Change::Judge => {
                 let other = Reference::new(subject, &THETAS_DEG, judge_settings(&options.precision, 2 * JUDGE_SEED));
-                Some(other.errors(Shown::Lobes(&judged.lobes)))
-            }
-            Change::Isotropic if is_isotropic => None,
-            Change::Isotropic => {
-                let round = ModelSubject { stack: shown(&subject.stack), ..subject.clone() };
-                let other = Reference::new(&round, &THETAS_DEG, judge_settings(&options.precision, JUDGE_SEED));
                 Some(other.errors(Shown::Lobes(&judged.lobes)))
             }
         };

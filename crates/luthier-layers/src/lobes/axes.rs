@@ -3,7 +3,9 @@
 use std::f64::consts::FRAC_PI_2;
 
 use glam::DVec3;
-use luthier_optics::stack::{Base, Stack, Surface};
+use luthier_optics::stack::Stack;
+
+use super::Row;
 
 /// Tangents in which the lobes of an anisotropic stack are, and the azimuths of its rows.
 ///
@@ -32,8 +34,8 @@ impl Axes {
 
     /// The axes of the lowest anisotropic interface, whose lobes are the narrowest; `None` for an isotropic stack.
     pub fn of(stack: &Stack) -> Option<Self> {
-        let rotations = anisotropic(stack).map(|surface| surface.rotation);
-        let rotations: Vec<f64> = rotations.collect();
+        let anisotropic = stack.layers.iter().filter(|layer| layer.is_anisotropic());
+        let rotations: Vec<f64> = anisotropic.map(|layer| layer.surface.rotation).collect();
         let last = *rotations.last()?;
         let off = |rotation: &f64| {
             let quarters = (rotation - last) / FRAC_PI_2;
@@ -81,6 +83,14 @@ impl Axes {
         }
     }
 
+    /// The row of a direction, between those of two tiles.
+    pub fn row(self, wo: DVec3, of_tile: impl Fn(usize) -> Row) -> Row {
+        let at = self.inside(wo);
+        let place = self.place(at.x, at.y);
+        let first = (place as usize).min(Self::TILES - 2);
+        of_tile(first).between(&of_tile(first + 1), place - first as f64)
+    }
+
     /// Cosine and sine of the azimuth of a place, in the axes.
     pub fn azimuth(self, place: f64) -> [f64; 2] {
         let quarters = place * if self.is_mirrored { 1.0 } else { 2.0 } / (Self::TILES - 1) as f64;
@@ -100,16 +110,10 @@ impl Axes {
     }
 }
 
-/// Interfaces with other slopes along one axis than along the other.
-fn anisotropic(stack: &Stack) -> impl Iterator<Item = &Surface> {
-    let interfaces = stack.layers.iter().filter(|layer| !matches!(layer.base, Base::Diffuse(_)));
-    interfaces.map(|layer| &layer.surface).filter(|surface| surface.alpha_x != surface.alpha_y)
-}
-
 #[cfg(test)]
 mod tests {
     use luthier_optics::ior::Ior;
-    use luthier_optics::stack::{Distribution, Layer};
+    use luthier_optics::stack::{Base, Distribution, Layer, Surface};
 
     use super::*;
 

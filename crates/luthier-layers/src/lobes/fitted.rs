@@ -10,7 +10,7 @@ use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Film, FilmThickness, Layer, Slab, Stack};
 use num_complex::Complex64;
 
-use super::{INFO, Lobes, bare_diffuse, shown};
+use super::{INFO, Lobes, bare_diffuse};
 use crate::model::{Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 
@@ -37,8 +37,7 @@ impl Fitted {
         if let Some((_, lobes)) = kept.iter().find(|(known, _)| known == stack) {
             return Some(lobes.clone());
         }
-        // As its shader shows the stack, which has no azimuths yet.
-        let lobes = Arc::new(Lobes::of(&shown(&in_all_colors(stack)?), &Color::ThreeWavelengths([WAVELENGTH_NM; 3])));
+        let lobes = Arc::new(Lobes::of(&in_all_colors(stack)?, &Color::ThreeWavelengths([WAVELENGTH_NM; 3])));
         kept.truncate(KEPT - 1);
         kept.push_front((stack.clone(), lobes.clone()));
         Some(lobes)

@@ -21,7 +21,7 @@
 //!
 //! Sampling is exact: draw a lobe, draw a slope, mirror the eye about it, refract. What is drawn beyond the horizon has no weight.
 //!
-//! Simplifications: the lobes are not reciprocal. Out of scope: places that differ, which take a row each, and anisotropic surfaces that vary.
+//! Simplifications: the lobes are not reciprocal. Out of scope: anisotropic surfaces that vary, which keep the rows of the surface that does not.
 //!
 //! Lobes in the half vectors outside the stack are the case n = 1. The fit tries it, and takes it where it is the nearest.
 
@@ -60,7 +60,7 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::Sampled;
 use luthier_optics::ior::{Ior, IorSample};
-use luthier_optics::stack::{Base, Stack, Surface};
+use luthier_optics::stack::{Base, Stack};
 
 use crate::domain::INDEX_MAX;
 use crate::facets::Facets;
@@ -127,7 +127,7 @@ impl Lobes {
 
     /// [`Self::of`] with settings.
     pub fn with(stack: &Stack, color: &Color, settings: FitSettings) -> Self {
-        Simulation::new(&bounded(stack), color, settings).fit_fewest(LOBES, EXCESS)
+        Simulation::new(&shown(stack), color, settings).fit_fewest(LOBES, EXCESS)
     }
 
     /// Rows of a tile: one azimuth of an anisotropic stack, or all.
@@ -138,19 +138,11 @@ impl Lobes {
     /// The row of a view (unit, above the surface), between those that were fitted.
     pub fn row(&self, wo: DVec3) -> Row {
         let c = self.axis.cosine(wo.z);
-        let Some(axes) = self.frame.axes else { return self.row_at(c) };
-        let at = axes.inside(wo);
-        let place = axes.place(at.x, at.y);
-        let first = (place as usize).min(Axes::TILES - 2);
-        self.row_of(first, c).between(&self.row_of(first + 1, c), place - first as f64)
+        self.frame.axes.map_or_else(|| self.row_of(0, c), |axes| axes.row(wo, |tile| self.row_of(tile, c)))
     }
 
-    /// The row of a cosine of [`ViewAxis::cosine`], in the first tile.
-    pub fn row_at(&self, c: f64) -> Row {
-        self.row_of(0, c)
-    }
-
-    fn row_of(&self, tile: usize, c: f64) -> Row {
+    /// The row of a cosine of [`ViewAxis::cosine`] in a tile.
+    pub fn row_of(&self, tile: usize, c: f64) -> Row {
         let (place, rows) = (self.axis.place_at(c), self.tile(tile));
         let first = (place as usize).min(rows.len() - 2);
         rows[first].between(&rows[first + 1], place - first as f64)
@@ -185,18 +177,8 @@ impl Lobes {
     }
 }
 
-/// The stack as shaders show it: surfaces have one slope parameter each, the mean of two; metals have indices up to
-/// [`INDEX_MAX`], as in layer records.
+/// The stack as shaders show it: metals have indices up to [`INDEX_MAX`], as in layer records.
 pub fn shown(stack: &Stack) -> Stack {
-    let mut stack = bounded(stack);
-    for layer in &mut stack.layers {
-        layer.surface = Surface::isotropic(layer.surface.distribution, layer.surface.alpha_isotropic());
-    }
-    stack
-}
-
-/// The stack with indices of metals up to [`INDEX_MAX`].
-fn bounded(stack: &Stack) -> Stack {
     let mut stack = stack.clone();
     for layer in &mut stack.layers {
         if let Base::Conductor { ior } = &mut layer.base {

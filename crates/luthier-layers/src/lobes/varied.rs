@@ -5,7 +5,7 @@ use luthier_optics::stack::{Base, Stack, Surface};
 
 use super::fit::{Found, Simulation};
 use super::parameters::Basis;
-use super::{EXCESS, FitSettings, LOBES, Lobes, Row, shown};
+use super::{Axes, EXCESS, FitSettings, LOBES, Lobes, Row, shown};
 use crate::elek::ALPHA_MIN;
 use crate::facets::Facets;
 
@@ -75,7 +75,7 @@ pub struct Varied {
 }
 
 impl Varied {
-    /// The lobes of a stack as bakes have them, see [`Lobes::of`]. Anisotropic surfaces have their mean slope parameter ([`shown`]).
+    /// The lobes of a stack as bakes have them, see [`Lobes::of`]. An anisotropic stack has its rows over the azimuth, and none over a factor.
     pub fn of(stack: &Stack, color: &Color, varying: Option<Varying>) -> Self {
         Self::with(stack, color, varying, FitSettings::default())
     }
@@ -85,7 +85,7 @@ impl Varied {
         let shown = shown(stack);
         let nominal = Simulation::new(&shown, color, settings);
         let surface = nominal.first.is_some().then(|| shown.layers[0].surface);
-        let Some(varying) = varying else {
+        let Some(varying) = over(&shown, varying) else {
             return Self { nodes: vec![nominal.fit_fewest(LOBES, EXCESS)], varying: None, surface };
         };
         let alphas = (shown.layers.iter())
@@ -115,9 +115,14 @@ impl Varied {
         Self { nodes, varying: Some((varying, least)), surface }
     }
 
-    /// Number of the nodes over what varies.
-    pub fn nodes_of(varying: Option<Varying>) -> usize {
-        varying.map_or(1, |_| NODES)
+    /// Number of the tiles of a stack: over what varies, or over the azimuth.
+    pub fn tiles_of(stack: &Stack, varying: Option<Varying>) -> usize {
+        if Axes::of(stack).is_some() { Axes::TILES } else { over(stack, varying).map_or(1, |_| NODES) }
+    }
+
+    /// The lobes of a tile, and the number of the tile in them.
+    pub fn tile(&self, tile: usize) -> (&Lobes, usize) {
+        if self.varying.is_some() { (&self.nodes[tile], 0) } else { (&self.nodes[0], tile) }
     }
 
     /// The part that varies.
@@ -130,11 +135,12 @@ impl Varied {
         self.varying.map_or(1.0, |(varying, least)| spread_of(varying, least, 0.0))
     }
 
-    /// A row of a node, as tables have it: with slopes divided by the factor on them.
-    pub fn stored(&self, node: usize, row: usize) -> Row {
+    /// A row of a tile, as tables have it: with slopes divided by the factor on them.
+    pub fn stored(&self, tile: usize, row: usize) -> Row {
         let spread =
-            self.varying.map_or(1.0, |(varying, least)| spread_of(varying, least, varying.factor(node as f64)));
-        self.nodes[node].rows[row].clone().spread(1.0 / spread)
+            self.varying.map_or(1.0, |(varying, least)| spread_of(varying, least, varying.factor(tile as f64)));
+        let (lobes, tile) = self.tile(tile);
+        lobes.tile(tile)[row].clone().spread(1.0 / spread)
     }
 
     /// The lobes at a factor.
@@ -156,6 +162,11 @@ impl Varied {
     }
 }
 
+/// The factor that rows are over: that of an isotropic stack.
+fn over(stack: &Stack, varying: Option<Varying>) -> Option<Varying> {
+    varying.filter(|_| Axes::of(stack).is_none())
+}
+
 /// The factor on slopes.
 fn spread_of(varying: Varying, least: f64, factor: f64) -> f64 {
     match varying {
@@ -169,8 +180,8 @@ fn scaled_surface(surface: Surface, factor: f64) -> Surface {
     if factor == 1.0 {
         return surface;
     }
-    let alpha = (surface.alpha_isotropic().clamp(ALPHA_MIN, 1.0) * factor).clamp(ALPHA_MIN, 1.0);
-    Surface::isotropic(surface.distribution, alpha)
+    let scaled = |alpha: f64| (alpha.clamp(ALPHA_MIN, 1.0) * factor).clamp(ALPHA_MIN, 1.0);
+    Surface { alpha_x: scaled(surface.alpha_x), alpha_y: scaled(surface.alpha_y), ..surface }
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use luthier_optics::interface::{Interface, Sampled};
 use luthier_optics::microfacet;
 use luthier_optics::stack::{Distribution, Stack};
 
-use crate::lobes::{Below, Lobes, shown};
+use crate::lobes::{Below, Lobes};
 use crate::statistics::diffuse_base::Veil;
 use crate::statistics::energy::{ColorEnergy, Energy};
 use crate::statistics::layers::Layers;
@@ -50,7 +50,7 @@ pub trait ShaderTerms: Terms + Energy<3> {
 }
 
 /// Exact terms. Fresnel and distribution terms are evaluated at every call. Energies are prepared at the first, see [`ColorEnergy`]; so are
-/// lobes, which are simulated then ([`Lobes::of`]), of surfaces that are isotropic as in tables ([`shown`]).
+/// lobes, which are simulated then ([`Lobes::of`]).
 #[derive(Debug, Clone)]
 pub struct Exact {
     stack: Stack,
@@ -87,7 +87,7 @@ impl Exact {
 
     /// The lobes of the stack.
     pub fn lobes(&self) -> &Lobes {
-        self.lobes.get_or_init(|| Lobes::of(&shown(&self.stack), &self.color))
+        self.lobes.get_or_init(|| Lobes::of(&self.stack, &self.color))
     }
 
     fn facets<'a>(&self, prepared: &'a OnceLock<(ColorEnergy, Veil<3>)>) -> &'a (ColorEnergy, Veil<3>) {

@@ -1,7 +1,7 @@
 //! The model's terms as a shader reads them: from texels.
 
 use glam::DVec3;
-use luthier_layers::lobes::{Below, Critical, Frame, Row, ViewAxis, Wide};
+use luthier_layers::lobes::{Axes, Below, Critical, Frame, Row, ViewAxis, Wide};
 use luthier_layers::statistics::diffuse_base::Veil;
 use luthier_layers::statistics::energy::Energy;
 use luthier_layers::terms::{ShaderTerms, Terms};
@@ -258,7 +258,10 @@ impl ShaderTerms for TableTerms<'_> {
             plain_share: lobes.critical_plain_share,
         };
         let axis = ViewAxis::new(2, critical);
-        let frame = Frame { index: lobes.index, wide: Wide::new(lobes.falloff, axis), axes: None };
-        Some(Below::new(frame, table.row(tile, axis.cosine(wo.z), self.weights), wo))
+        let axes = lobes.axes.map(|axes| Axes { turn: axes.turn, is_mirrored: axes.is_mirrored });
+        let frame = Frame { index: lobes.index, wide: Wide::new(lobes.falloff, axis), axes };
+        let row = |tile: u32| table.row(tile, axis.cosine(wo.z), self.weights);
+        let row = axes.map_or_else(|| row(tile), |axes| axes.row(wo, |number| row(tile + number as u32)));
+        Some(Below::new(frame, row, wo))
     }
 }

@@ -16,7 +16,7 @@ impl Features {
     #[cfg(test)]
     const ALL: &str = "absorption anisotropic bare beckmann below bilinear chain chain_diffuse clamped closed coat conductor critical_view diffuse environment \
     face film film_table flakes full ggx glitter granier granier_bare granier_base \
-    granier_film granier_transparent interface lobes_diffuse lobes_tilted media microfacet_diffuse mixed one_lobe oren_nayar patina phong \
+    granier_film granier_transparent interface lobes_axes lobes_diffuse lobes_tilted media microfacet_diffuse mixed one_lobe oren_nayar patina phong \
     place powers schlick_base several smith split_root statistics statistics_base surface theta_axis tilted total_reflection two_lobes visible";
 
     pub(crate) fn of(set: &MaterialSet<'_>, form: Form) -> Self {
@@ -158,13 +158,16 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
         if material.model == ShadingModel::Lobes && material.constants.lobes.is_some_and(|l| l.critical_cot_sq > 0.0) {
             names.insert("critical_view");
         }
+        if material.model == ShadingModel::Lobes && material.constants.lobes.is_some_and(|lobes| lobes.axes.is_some()) {
+            names.insert("lobes_axes");
+        }
         if material.model.reads_distribution() && layer.tiles[TableKind::Distribution].is_none() {
             names.insert("closed");
         }
         if layer.kind == LayerKind::Conductor && !is_chain {
             names.insert("conductor");
         }
-        let is_isotropic = matches!(material.model, ShadingModel::Elek | ShadingModel::Belcour | ShadingModel::Lobes);
+        let is_isotropic = matches!(material.model, ShadingModel::Elek | ShadingModel::Belcour);
         if !is_isotropic && layer.alpha_xy[0] != layer.alpha_xy[1] {
             names.insert("anisotropic");
         }

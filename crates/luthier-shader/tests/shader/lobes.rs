@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use luthier_layers::lobes::{Below, Critical, Frame, Row, ViewAxis, Wide};
+use luthier_layers::lobes::{Axes, Below, Critical, Frame, Row, ViewAxis, Wide};
 use luthier_lut::{AtlasLayout, Image, TableKind, WeightBits, bilinear};
 use luthier_manifest::{
-    FunctionGroup, LobesRecord, MaterialConstants, MaterialEntry, VaryingFactor, VaryingRecord, material_buffer,
+    AxesRecord, FunctionGroup, LobesRecord, MaterialConstants, MaterialEntry, VaryingFactor, VaryingRecord,
+    material_buffer,
 };
 use luthier_optics::microfacet;
 use luthier_optics::stack::Distribution;
@@ -65,6 +66,7 @@ fn light_from_below_is_that_of_the_twin() {
             critical_width: width,
             critical_plain_share: 0.25,
             varying: None,
+            axes: None,
         };
         let axis = ViewAxis::new(2, Critical { cot_sq, width, plain_share: 0.25 });
         let wide = Wide::new(lobes.falloff, axis);
@@ -117,9 +119,6 @@ fn rows_over_a_factor_are_those_of_the_twin() {
             image.texel_mut(x, y).copy_from_slice(&texel.map(|value| value as f32));
         }
     }
-    let tables: Vec<TableFace> = (tables().into_iter())
-        .map(|table| if table.kind == TableKind::Lobes { TableFace { layout: layout.clone(), ..table } } else { table })
-        .collect();
     for (factor, member, first) in [(VaryingFactor::AlphaFactor, 0, 1), (VaryingFactor::SlabFactor, 1, 0)] {
         let mut material = set("lobes-place")[0].clone();
         material.layers[0].tiles[TableKind::Lobes] = Some(first);
@@ -129,7 +128,7 @@ fn rows_over_a_factor_are_those_of_the_twin() {
         record.varying = Some(VaryingRecord { factor, tiles: 4, least_spread: 0.1 });
         let frame = Frame { index: record.index, wide, axes: None };
         let materials = [material];
-        let text = emit(&MaterialSet::new(&materials, tables.clone()), Form::Baked, Target::Wgsl).unwrap();
+        let text = emit(&MaterialSet::new(&materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap();
         let machine = lit_from_below(&text, &materials, &image);
         let Value::Many(neutral) = machine.call("luthier_place", Vec::new()) else { panic!("a place is a structure") };
         // By hand: roots 1, .7, .41, 0; of four tiles, the last on slopes is that of 1/4.
@@ -163,6 +162,100 @@ fn rows_over_a_factor_are_those_of_the_twin() {
                 }
             }
         }
+    }
+}
+
+/// Rows over the azimuth, which change with it in every part.
+fn turned_rows() -> (AtlasLayout, Image) {
+    let (one, _) = rows();
+    let layout = AtlasLayout { tiles: 9, ..one };
+    let [width, height] = layout.size();
+    let mut image = Image::zeros(width, height, 4);
+    for tile in 0..9 {
+        let ([_, y], k) = (layout.origin(tile), f64::from(tile));
+        for x in 0..width {
+            let texel = match x / layout.row_size() {
+                0 => [0.1, 0.2 + 0.02 * k, 0.3, 2.0 - 0.5 * k],
+                1 => [0.5 + 0.1 * k, 0.4, 0.3, 0.02 + 0.005 * k],
+                2 => [6.0 + k, 15.0 - k, 2.0, 0.9],
+                3 => [0.2, 0.1 * k, 0.3, -0.1],
+                4 => [0.7, 0.9, 40.0, 0.8],
+                _ => [2.0, 2.0, 2.0, 0.3 - 0.1 * k],
+            };
+            image.texel_mut(x, y).copy_from_slice(&texel.map(|value| value as f32));
+        }
+    }
+    (layout, image)
+}
+
+/// Tables whose lobes have a layout.
+fn tables_with(layout: &AtlasLayout) -> Vec<TableFace> {
+    let face = |table: TableFace| match table.kind {
+        TableKind::Lobes => TableFace { layout: layout.clone(), ..table },
+        _ => table,
+    };
+    tables().into_iter().map(face).collect()
+}
+
+/// Rows over the azimuth, with lobes in axes: of stacks that are their own mirror image and others; where normals vary in a pixel; and beside
+/// a material whose lobes are in the plane of the eye.
+#[test]
+fn lobes_in_axes_are_those_of_the_twin() {
+    let (layout, image) = turned_rows();
+    for (name, number, is_mirrored, variance) in [
+        ("lobes-axes", 0, true, 0.0),
+        ("lobes-axes", 0, false, 0.0),
+        ("lobes-axes", 0, true, 0.02),
+        ("lobes-axes-mixed", 1, false, 0.0),
+        ("lobes-axes-mixed", 0, false, 0.0),
+    ] {
+        let mut materials = set(name);
+        let first = 1;
+        for material in &mut materials {
+            material.layers[0].tiles[TableKind::Lobes] = Some(first);
+            let Some(record) = &mut material.constants.lobes else { continue };
+            let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
+            (record.index, record.integral) = (1.5, wide.integral());
+            record.axes = record.axes.map(|axes| AxesRecord { is_mirrored, ..axes });
+        }
+        let record = materials[number].constants.lobes.unwrap();
+        let axes = record.axes.map(|AxesRecord { turn, is_mirrored, .. }| Axes { turn, is_mirrored });
+        let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
+        let frame = Frame { index: record.index, wide, axes };
+        let groups = if variance > 0.0 { &[FunctionGroup::Surface][..] } else { &[] };
+        let set = MaterialSet {
+            functions: groups.iter().copied().collect(),
+            ..MaterialSet::new(&materials, tables_with(&layout))
+        };
+        let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
+        let machine = lit_from_below(&text, &materials, &image);
+        let place = (variance > 0.0).then(|| {
+            let Value::Many(mut place) = machine.call("luthier_place", Vec::new()) else { panic!("a structure") };
+            place[4] = Value::F(variance as f32);
+            Value::Many(place)
+        });
+        let mut brightest = 0.0_f64;
+        for (wi, wo) in directions(300) {
+            let [light, eye] = [wi, wo].map(DVec3::from);
+            if light.z <= 0.0 || eye.z <= 0.0 {
+                continue;
+            }
+            let row = |tile: usize| {
+                let at = |part| layout.position(first + tile as u32, [eye.z, f64::from(part)]);
+                Row::of_parts(&(0..6).map(|part| bilinear(&image, at(part), WeightBits::Exact)).collect::<Vec<_>>())
+            };
+            let row = axes.map_or_else(|| row(0), |axes| axes.row(eye, row));
+            let expected = Below::new(frame, row, eye).widened(eye, variance).eval(light);
+            let arguments = [Value::U(number as u32), vector(&wo.map(|w| w as f32))];
+            let prepared = machine.call("luthier_prepare_lobes", place.iter().cloned().chain(arguments).collect());
+            let found = machine.call("luthier_light_lobes", vec![prepared, vector(&wi.map(|w| w as f32))]).floats();
+            for (found, expected) in found.iter().zip(expected) {
+                let error = (f64::from(*found) - expected).abs() / expected.abs().max(0.03);
+                assert!(error < 4e-4, "{name} {number} {is_mirrored} {wi:?} {wo:?}: {found} {expected}");
+                brightest = brightest.max(expected);
+            }
+        }
+        assert!(brightest > 1.0, "{name}: {brightest}");
     }
 }
 
@@ -287,8 +380,11 @@ fn directions_are_drawn_as_their_density_says() {
     const DRAWN: u32 = 8192;
     const RINGS: usize = 6;
     const SECTORS: usize = 6;
-    let (_, image) = rows();
-    for (name, coat) in [("lobes", 0.3), ("lobes-inward", 0.2)] {
+    for (name, coat, axes, (layout, image)) in [
+        ("lobes", [0.3; 2], None, rows()),
+        ("lobes-inward", [0.2; 2], None, rows()),
+        ("lobes-axes", [0.1, 0.4], Some(AxesRecord { turn: [0.6, 0.8], is_mirrored: false, tiles: 8 }), turned_rows()),
+    ] {
         let mut materials = set(name);
         let lobes = LobesRecord {
             index: 1.4,
@@ -298,13 +394,14 @@ fn directions_are_drawn_as_their_density_says() {
             critical_width: 0.0,
             critical_plain_share: 0.0,
             varying: None,
+            axes,
         };
         materials[0].constants.lobes = Some(lobes);
         let first = &mut materials[0].layers[0];
-        (first.alpha, first.alpha_xy) = (coat, [coat; 2]);
+        (first.alpha, first.alpha_xy) = (libm::sqrt(coat[0] * coat[1]), coat);
         first.tiles[TableKind::Distribution] = None;
         let functions = [FunctionGroup::Sample].into_iter().collect();
-        let set = MaterialSet { functions, ..MaterialSet::new(&materials, tables()) };
+        let set = MaterialSet { functions, ..MaterialSet::new(&materials, tables_with(&layout)) };
         let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
         let gray = Image { data: vec![0.1; 36], ..Image::zeros(3, 3, 4) };
         let textures = [("luthier_fresnel", gray), ("luthier_lobes", image.clone())];
@@ -351,13 +448,13 @@ fn directions_are_drawn_as_their_density_says() {
                 energy += area * f64::from(call("luthier_light", &at).floats()[1]);
             }
             for (i, (found, expected)) in counts.iter().zip(expected).enumerate() {
-                assert!((found - expected).abs() < 0.006, "{name} {coat} {theta} bin {i}: {found} {expected}");
+                assert!((found - expected).abs() < 0.006, "{name} {theta} bin {i}: {found} {expected}");
             }
             let above: f64 = expected.iter().sum();
-            assert!((above + lost - 1.0).abs() < 0.01, "{name} {coat} {theta}: {above} {lost}");
-            assert!((weights / energy - 1.0).abs() < 0.02, "{name} {coat} {theta}: {weights} {energy}");
+            assert!((above + lost - 1.0).abs() < 0.01, "{name} {theta}: {above} {lost}");
+            assert!((weights / energy - 1.0).abs() < 0.02, "{name} {theta}: {weights} {energy}");
             eprintln!(
-                "{name} {coat} {theta}: lost {lost:.3}, greatest weight {:.2} of energy and share",
+                "{name} {theta}: lost {lost:.3}, greatest weight {:.2} of energy and share",
                 greatest * above / energy
             );
         }

@@ -2,8 +2,8 @@
 
 use luthier_lut::{AtlasLayout, Axis, Mapping, TableKind, TexelFormat};
 use luthier_manifest::{
-    Distribution, FlakesRecord, GlitterRecord, LayerKind, LayerRecord, LobesRecord, MaterialConstants, MaterialEntry,
-    PatinaRecord, ShadingModel, Tiles,
+    AxesRecord, Distribution, FlakesRecord, GlitterRecord, LayerKind, LayerRecord, LobesRecord, MaterialConstants,
+    MaterialEntry, PatinaRecord, ShadingModel, Tiles,
 };
 use luthier_shader::{Form, TableFace};
 
@@ -180,7 +180,16 @@ fn with_lobes(mut material: MaterialEntry) -> MaterialEntry {
         critical_width: 0.02,
         critical_plain_share: 0.25,
         varying: None,
+        axes: None,
     });
+    material
+}
+
+/// The material with lobes in axes of its own.
+fn with_axes(material: MaterialEntry) -> MaterialEntry {
+    let mut material = with_lobes(material);
+    let axes = AxesRecord { turn: [0.6, 0.8], is_mirrored: true, tiles: 8 };
+    material.constants.lobes = material.constants.lobes.map(|lobes| LobesRecord { axes: Some(axes), ..lobes });
     material
 }
 
@@ -257,6 +266,8 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
         ("lobes-film", vec![with_lobes(oil())]),
         ("lobes-place", vec![with_lobes(glitter())]),
         ("lobes-flakes", vec![with_lobes(flaked())]),
+        ("lobes-axes", vec![with_axes(coated_brushed())]),
+        ("lobes-axes-mixed", vec![with_lobes(house()), with_axes(coated_brushed()), with_lobes(chalk())]),
         (
             "lobes-mixed",
             vec![

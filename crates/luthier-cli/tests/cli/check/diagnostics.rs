@@ -216,7 +216,7 @@ fn what_a_model_leaves_out_is_told() {
     let told = [
         "warning: the model `elek` leaves out anisotropy",
         "brushed.toml:7:11",
-        "shown by `weidlich-wilkie`, `yamaguchi`, `microfacet`: write `[bake] model = ...`",
+        "shown by `weidlich-wilkie`, `yamaguchi`, `microfacet`, `lobes`: write `[bake] model = ...`",
     ];
     workshop.run(&["check", "brushed.toml"]).exits(0).says(&told);
     workshop.run(&["bake", "brushed.toml"]).exits(0).says(&told);

@@ -3,6 +3,7 @@
 use luthier_layers::terms::Exact;
 
 use super::{Measured, Scan, User, coordinates};
+use crate::Subject;
 use crate::judge::report::Curves;
 use crate::measure::subject::Table;
 use crate::measure::table_terms::Weights;
@@ -12,15 +13,23 @@ const POINTS_PER_CELL: u32 = 4;
 
 /// Energies of a row of lobes, over the cosine of the view, against those of the simulation and fit that the stack's terms make anew: the
 /// albedo, the wide remainder, each lobe. Whether the fit is near the simulation is judged with the models.
-pub(super) fn scan(table: &Table<'_>, tile: u32, users: &[User], exact: &[Exact]) -> Option<Measured> {
+pub(super) fn scan(
+    table: &Table<'_>,
+    tile: u32,
+    users: &[User],
+    subject: &Subject<'_>,
+    exact: &[Exact],
+) -> Option<Measured> {
     let x = &table.entry.layout.x;
     let mut scan = Scan::default();
     // Users of one tile have one stack.
-    let &(material, _) = users.first()?;
+    let &(material, layer) = users.first()?;
     let lobes = exact.get(material)?.lobes();
+    let number = (tile - subject.manifest.materials[material].layers[layer].tiles[table.entry.kind]?) as usize;
     for u in coordinates(x, POINTS_PER_CELL) {
         let c = x.decode(u);
-        let (expected, sampled) = (lobes.row_at(c).energies(), table.row(tile, c, Weights::EightBit).energies());
+        let (expected, sampled) =
+            (lobes.row_of(number, c).energies(), table.row(tile, c, Weights::EightBit).energies());
         for (part, (expected, sampled)) in expected.iter().zip(&sampled).enumerate() {
             for channel in 0..3 {
                 scan.add(&[c, part as f64], channel, expected[channel], sampled[channel]);

@@ -11,6 +11,7 @@ mod thickness;
 
 use luthier_layers::terms::Exact;
 use luthier_lut::{Axis, ErrorStats, TableKind, Worst};
+use luthier_manifest::MaterialEntry;
 
 use crate::judge::report::{Curves, TableReport, TileReport};
 use crate::measure::statistics::summarise;
@@ -50,7 +51,7 @@ pub(crate) fn scan(
                 TableKind::Phase => phase::scan(&table, number, &users, subject),
                 TableKind::Escape => escape::scan(&table, number, &users, subject),
                 TableKind::Film => film::scan(&table, number, &users, subject),
-                TableKind::Lobes => lobes::scan(&table, number, &users, exact),
+                TableKind::Lobes => lobes::scan(&table, number, &users, subject, exact),
                 TableKind::Thickness => {
                     findings.extend(thickness::doubts(&table, number, &users, subject));
                     None
@@ -87,10 +88,19 @@ pub(crate) fn scan(
 /// A layer that reads a tile: numbers of the material and of the layer.
 type User = (usize, usize);
 
+/// Number of the tiles that a layer of a material reads, one after the other: lobes of an anisotropic stack are over the azimuth.
+fn run(material: &MaterialEntry, kind: TableKind) -> u32 {
+    let axes = material.constants.lobes.and_then(|lobes| lobes.axes);
+    axes.filter(|_| kind == TableKind::Lobes).map_or(1, |axes| axes.tiles)
+}
+
 fn users(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<User> {
     let mut out = Vec::new();
     for (m, material) in subject.manifest.materials.iter().enumerate() {
-        let reads = |l: &usize| material.layers[*l].tiles[kind] == Some(tile);
+        let run = run(material, kind);
+        let reads = |l: &usize| {
+            material.layers[*l].tiles[kind].is_some_and(|first| (first..first.saturating_add(run)).contains(&tile))
+        };
         out.extend((0..material.layers.len()).filter(reads).map(|l| (m, l)));
     }
     out

@@ -85,54 +85,64 @@ fn luthier_draw_slope_across(u: f32) -> f32 {
 }
 
 /// A direction mirrored at a visible normal of Beckmann's distribution; below the horizon for light that meets the surface again.
-fn luthier_draw_gaussian(alpha: f32, wo: vec3<f32>, u: vec2<f32>) -> vec3<f32> {
-    let stretched = normalize(vec3<f32>(alpha * wo.xy, wo.z));
+fn luthier_draw_gaussian(alpha: vec2<f32>, axis: vec2<f32>, wo: vec3<f32>, u: vec2<f32>) -> vec3<f32> {
+    let eye = vec3<f32>(luthier_in_frame(axis, wo.xy), wo.z);
+    let stretched = normalize(vec3<f32>(alpha * eye.xy, eye.z));
     let sin_theta = sqrt(dot(stretched.xy, stretched.xy));
     let along = luthier_draw_slope_along(vec2<f32>(stretched.z, sin_theta), u.x);
     let across = luthier_draw_slope_across(u.y);
     let azimuth = select(vec2<f32>(1.0, 0.0), stretched.xy / max(sin_theta, 1e-20), sin_theta > 1e-20);
     let slope = vec2<f32>(azimuth.x * along - azimuth.y * across, azimuth.y * along + azimuth.x * across);
     let wh = normalize(vec3<f32>(-alpha * slope, 1.0));
-    return 2.0 * dot(wh, wo) * wh - wo;
+    let wi = 2.0 * dot(wh, eye) * wh - eye;
+    return vec3<f32>(axis.x * wi.x - axis.y * wi.y, axis.y * wi.x + axis.x * wi.y, wi.z);
 }
 
 //? end
 /// A direction mirrored at a visible normal of the first interface.
 fn luthier_draw_facet(prepared: LuthierPreparedLobes, u: vec2<f32>) -> vec3<f32> {
+    //? anisotropic
+    let alpha = prepared.coat.alpha_xy;
+    let axis = prepared.coat.rotation;
+    //? else
+    let alpha = vec2<f32>(prepared.coat.alpha);
+    let axis = vec2<f32>(1.0, 0.0);
+    //? end
     //? beckmann
     //? ggx
     if prepared.coat.distribution > 0.5 {
-        return luthier_draw_visible(vec2<f32>(prepared.coat.alpha), vec2<f32>(1.0, 0.0), prepared.wo, u);
+        return luthier_draw_visible(alpha, axis, prepared.wo, u);
     }
     //? end
-    return luthier_draw_gaussian(prepared.coat.alpha, prepared.wo, u);
+    return luthier_draw_gaussian(alpha, axis, prepared.wo, u);
     //? else
-    return luthier_draw_visible(vec2<f32>(prepared.coat.alpha), vec2<f32>(1.0, 0.0), prepared.wo, u);
+    return luthier_draw_visible(alpha, axis, prepared.wo, u);
     //? end
 }
 
 //? one_lobe|two_lobes
 /// Density in solid angle of light that a lobe sends to the eye.
-fn luthier_lobe_density(prepared: LuthierPreparedLobes, shape: vec4<f32>, wi: vec3<f32>) -> f32 {
+fn luthier_lobe_density(prepared: LuthierPreparedLobes, shape: LuthierLobeShape, wi: vec3<f32>) -> f32 {
     let place = luthier_place_below(prepared, wi);
     return luthier_half_slope_density(shape, place.xy) * place.z;
 }
 
 /// A direction whose half vector has a slope that a lobe draws; below the horizon where light does not leave there.
-fn luthier_sample_lobe(prepared: LuthierPreparedLobes, shape: vec4<f32>, u: vec2<f32>) -> vec3<f32> {
+fn luthier_sample_lobe(prepared: LuthierPreparedLobes, shape: LuthierLobeShape, u: vec2<f32>) -> vec3<f32> {
     // Of y, the tail times the logarithm of the share beyond, exp(y) - 1 without cancellation.
-    let y = -log(1.0 - min(u.x, 0.9999999)) / shape.w;
+    let y = -log(1.0 - min(u.x, 0.9999999)) / shape.decay;
     let series = y * (1.0 + y * (0.5 + y * (1.0 / 6.0)));
     let radius = sqrt(select(exp(y) - 1.0, series, y < 0.02));
     let phi = 2.0 * LUTHIER_PI * u.y;
+    let straight = luthier_lobe_slope(shape, radius * vec2<f32>(cos(phi), sin(phi)));
     //? lobes_tilted
-    let middle = vec2<f32>(shape.x, 0.0) + prepared.tilt;
+    let slope = straight + prepared.tilt;
     //? else
-    let middle = vec2<f32>(shape.x, 0.0);
+    let slope = straight;
     //? end
-    let wh = normalize(vec3<f32>(middle + radius * vec2<f32>(cos(phi), sin(phi)) / shape.yz, 1.0));
-    // Directions inside times the index, in the plane of the eye.
-    let eye = vec3<f32>(dot(prepared.azimuth, prepared.wo.xy), 0.0, prepared.inside_cos);
+    let wh = normalize(vec3<f32>(slope, 1.0));
+    // Directions inside times the index, in the frame of the lobes.
+    let eye = vec3<f32>(luthier_in_frame(prepared.azimuth, prepared.wo.xy), prepared.inside_cos);
     let inside = 2.0 * dot(wh, eye) * wh - eye;
     let cos_sq = 1.0 - dot(inside.xy, inside.xy);
     let leaves = inside.z > 0.0 && cos_sq > 0.0;

@@ -12,6 +12,28 @@ const LUTHIER_LOBES: u32 = 0u;
 /// The part of rows that is the albedo.
 const LUTHIER_LOBES_ALBEDO: f32 = f32(1u + 2u * LUTHIER_LOBES);
 
+//? one_lobe|two_lobes
+/// A lobe over slopes: elliptic, in the plane of the eye and across it, or in axes.
+struct LuthierLobeShape {
+    /// The sharpness times the slope of its middle.
+    //? lobes_axes
+    middle: vec2<f32>,
+    //? else
+    middle: f32,
+    //? end
+    /// Its sharpness, 1 over its widths.
+    sharpness: vec2<f32>,
+    //? lobes_axes
+    /// The number of the symmetric matrix of the sharpness between the axes.
+    shear: f32,
+    //? end
+    /// Its decay z, from 1 for GGX to Gaussians.
+    decay: f32,
+    /// Half its greatest density.
+    peak: f32,
+}
+
+//? end
 /// A material of the model as seen from a direction: what can be kept for all lights.
 struct LuthierPreparedLobes {
     /// The first interface.
@@ -22,7 +44,11 @@ struct LuthierPreparedLobes {
     row: vec2<f32>,
     /// 1 + Lambda of the eye.
     masking: f32,
+    //? lobes_axes
+    /// Cosine and sine of the azimuth of the frame of the lobes: the plane of the eye, or axes.
+    //? else
     /// Cosine and sine of the azimuth of the eye.
+    //? end
     azimuth: vec2<f32>,
     /// Cosine of the refracted eye times the index.
     inside_cos: f32,
@@ -30,7 +56,7 @@ struct LuthierPreparedLobes {
     medium: vec4<f32>,
     //? lobes_tilted
     //? one_lobe|two_lobes
-    /// Slope by which flakes turn the lobes, along the plane of the eye and across it.
+    /// Slope by which flakes turn the lobes, in their frame.
     tilt: vec2<f32>,
     //? end
     //? end
@@ -43,14 +69,12 @@ struct LuthierPreparedLobes {
     //? one_lobe|two_lobes
     /// Energy of the first lobe over its share above the horizon, RGB.
     first_strength: vec3<f32>,
-    /// Its middle, its sharpness along the plane of the eye and across it, and its decay.
-    first_shape: vec4<f32>,
+    first_shape: LuthierLobeShape,
     //? end
     //? two_lobes
     /// Energy of the second lobe over its share above the horizon, RGB.
     second_strength: vec3<f32>,
-    /// Its middle, its sharpness along the plane of the eye and across it, and its decay.
-    second_shape: vec4<f32>,
+    second_shape: LuthierLobeShape,
     //? end
 }
 
@@ -71,6 +95,16 @@ fn luthier_slope_lambda(coat: LuthierLayer, slope: f32) -> f32 {
     //? end
 }
 
+/// The slope parameter of a coat along a direction, times the tangent of the direction's angle.
+fn luthier_coat_slope(coat: LuthierLayer, w: vec3<f32>) -> f32 {
+    //? anisotropic
+    let across = luthier_stretched(coat, coat.alpha_xy, w);
+    return sqrt(dot(across, across)) / w.z;
+    //? else
+    return coat.alpha * sqrt(dot(w.xy, w.xy)) / w.z;
+    //? end
+}
+
 //? critical_view
 /// The cosine of a refracted direction where a medium reflects flat light totally: its kink at the critical angle is rounded off, and it goes
 /// from 0 at the horizon to 1 at the normal. The numbers: squared cotangent of the angle, four times the squared width of the kink, factor
@@ -88,22 +122,111 @@ fn luthier_inside_cos_sq(medium: vec4<f32>, cos_theta: f32) -> f32 {
     return max(cos_theta * cos_theta + medium.x, 1e-12);
 }
 
-//? place
 //? one_lobe|two_lobes
+//? place
 /// A lobe whose slopes are so many times as steep, and then have twice a variance more.
-fn luthier_spread(shape: vec4<f32>, factor: f32, twice_variance: f32) -> vec4<f32> {
-    let inverse = 1.0 / factor;
+fn luthier_spread(given: LuthierLobeShape, factor: f32, twice_variance: f32) -> LuthierLobeShape {
+    var shape = given;
+    shape.sharpness = given.sharpness / factor;
+    //? lobes_axes
+    shape.shear = given.shear / factor;
+    //? end
     //? surface
     // Squared widths are 1 / (z x^2).
-    let sharper = shape.yz * inverse;
-    let wider = sharper * inverseSqrt(1.0 + twice_variance * shape.w * sharper * sharper);
-    return vec4<f32>(shape.x * factor, wider, shape.w);
+    let excess = twice_variance * shape.decay;
+    //? lobes_axes
+    // As a matrix, about its mean: the share of either end of the ellipse that is left.
+    let mean = 0.5 * (shape.sharpness.x + shape.sharpness.y);
+    let about = vec2<f32>(0.5 * (shape.sharpness.x - shape.sharpness.y), shape.shear);
+    let radius = sqrt(dot(about, about));
+    let ends = mean + vec2<f32>(radius, -radius);
+    let left = inverseSqrt(1.0 + excess * ends * ends);
+    let level = 0.5 * (left.x + left.y);
+    let steep = 0.5 * (left.x - left.y) / max(radius, 1e-9 * mean);
+    let m = shape.middle;
+    shape.middle = level * m + steep * vec2<f32>(about.x * m.x + about.y * m.y, about.y * m.x - about.x * m.y);
+    let next = (level + steep * mean) * about;
+    shape.sharpness = level * mean + steep * radius * radius + vec2<f32>(next.x, -next.x);
+    shape.shear = next.y;
     //? else
-    return shape * vec4<f32>(factor, inverse, inverse, 1.0);
+    let left = inverseSqrt(1.0 + excess * shape.sharpness * shape.sharpness);
+    shape.middle *= left.x;
+    shape.sharpness *= left;
+    //? end
+    //? end
+    return shape;
+}
+
+//? end
+//? lobes_axes
+/// Determinant of the sharpness.
+fn luthier_lobe_determinant(shape: LuthierLobeShape) -> f32 {
+    let product = shape.sharpness.x * shape.sharpness.y;
+    // Rounding may leave no ellipse.
+    return max(product - shape.shear * shape.shear, 1e-4 * product);
+}
+
+//? end
+/// The slope at which the sharpness times the slope from the middle is so much.
+fn luthier_lobe_slope(shape: LuthierLobeShape, apart: vec2<f32>) -> vec2<f32> {
+    //? lobes_axes
+    let scaled = shape.middle + apart;
+    return (shape.sharpness.yx * scaled - shape.shear * scaled.yx) / luthier_lobe_determinant(shape);
+    //? else
+    return vec2<f32>(shape.middle + apart.x, apart.y) / shape.sharpness;
     //? end
 }
+
+/// A lobe of a row: its shift, its sharpness and decay, and the shear of its sharpness, as seen by an eye with coordinates along the surface in its frame.
+//? lobes_axes
+fn luthier_lobe_shape(shift: f32, numbers: vec3<f32>, shear: f32, eye: vec2<f32>, is_turned: bool) -> LuthierLobeShape {
+    var shape: LuthierLobeShape;
+    // In axes the middle is the adjugate of the sharpness times the eye.
+    let turned = numbers.yx * eye - shear * eye.yx;
+    shape.middle = shift * select(vec2<f32>(numbers.x * eye.x, 0.0), turned, is_turned);
+    shape.shear = shear;
+//? else
+fn luthier_lobe_shape(shift: f32, numbers: vec3<f32>, sin_theta: f32) -> LuthierLobeShape {
+    var shape: LuthierLobeShape;
+    shape.middle = shift * sin_theta * numbers.x;
 //? end
+    shape.sharpness = numbers.xy;
+    shape.decay = numbers.z;
+    return shape;
+}
+
+/// The lobe with its greatest density: z / pi times the determinant of the sharpness.
+fn luthier_with_peak(given: LuthierLobeShape) -> LuthierLobeShape {
+    var shape = given;
+    //? lobes_axes
+    shape.peak = luthier_lobe_determinant(given) * given.decay * (0.5 / LUTHIER_PI);
+    //? else
+    shape.peak = given.sharpness.x * given.sharpness.y * given.decay * (0.5 / LUTHIER_PI);
+    //? end
+    return shape;
+}
+
 //? end
+//? lobes_axes
+/// Tiles of rows from the first to the azimuth of an eye in axes, of which a quarter of a circle has so many; and the sign of the shear there.
+/// With v, the tangent of the angle from the diagonal, tiles are nearly at equal angles.
+fn luthier_lobes_azimuth(eye: vec2<f32>, quarter: f32) -> vec2<f32> {
+    let size = abs(eye.x) + abs(eye.y);
+    let v = (abs(eye.y) - abs(eye.x)) / max(size, 1e-20);
+    let place = quarter * (0.5 + 0.5 * v * (1.241 - 0.241 * v * v));
+    let is_crossed = eye.x * eye.y < 0.0;
+    // Those of a stack that is its own mirror image go over one quarter, others over two.
+    let is_mirrored = quarter > 5.0;
+    let tiles = select(place, 7.0 - place, is_crossed && !is_mirrored);
+    return vec2<f32>(select(0.0, tiles, size > 0.0), select(1.0, -1.0, is_crossed && is_mirrored));
+}
+
+//? end
+
+/// A direction along the surface, in a frame of this azimuth.
+fn luthier_in_frame(azimuth: vec2<f32>, across: vec2<f32>) -> vec2<f32> {
+    return vec2<f32>(dot(azimuth, across), azimuth.x * across.y - azimuth.y * across.x);
+}
 
 /// A material as seen from wo, above the horizon.
 fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> LuthierPreparedLobes {
@@ -112,10 +235,10 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     // Rows over a factor lie one below the other, at equal distances of its root from 1: to 0 on the slab, to a step before it on slopes.
     let over = luthier_materials[header + $word_phong_diffuse];
     let away = 1.0 - sqrt(saturate(vec2<f32>(place.alpha_factor, place.slab_factor)));
-    let tile = luthier_materials[header].w + min(away.x * (over.x + 1.0), over.x) + away.y * over.y;
+    let first_tile = luthier_materials[header].w + min(away.x * (over.x + 1.0), over.x) + away.y * over.y;
     let spread = max(place.alpha_factor, over.z);
     //? else
-    let tile = luthier_materials[header].w;
+    let first_tile = luthier_materials[header].w;
     //? end
     // Along the normal the azimuth is 0.
     let across = vec2<f32>(wo.x + 1e-15, wo.y);
@@ -124,12 +247,23 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     let sin_theta = sin_theta_sq * inverse_sin;
     var prepared: LuthierPreparedLobes;
     prepared.coat = $layer(material, 0u);
-    //? anisotropic
-    prepared.coat.alpha_xy = vec2<f32>(prepared.coat.alpha);
-    //? end
     prepared.wo = wo;
+    //? anisotropic
+    prepared.masking = 1.0 + luthier_slope_lambda(prepared.coat, luthier_coat_slope(prepared.coat, wo));
+    //? else
     prepared.masking = 1.0 + luthier_slope_lambda(prepared.coat, prepared.coat.alpha * sin_theta / wo.z);
+    //? end
+    //? lobes_axes
+    let axes = luthier_materials[header + $word_glitter_tilt];
+    let is_turned = axes.w > 0.0;
+    prepared.azimuth = select(across * inverse_sin, axes.yz, is_turned);
+    let eye = luthier_in_frame(prepared.azimuth, wo.xy);
+    let around = select(vec2<f32>(0.0), luthier_lobes_azimuth(eye, axes.w), is_turned);
+    let tile = first_tile + around.x;
+    //? else
     prepared.azimuth = across * inverse_sin;
+    let tile = first_tile;
+    //? end
     prepared.medium = luthier_materials[header + $word_veil];
     prepared.inside_cos = sqrt(luthier_inside_cos_sq(prepared.medium, wo.z));
     //? lobes_tilted
@@ -137,7 +271,7 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     // Half vectors in the slab are shifted by the slope of the normal, those in another medium as much as the mirror direction is.
     let slab_cos = sqrt(max(prepared.coat.eta * prepared.coat.eta - sin_theta_sq, 0.0));
     let turned = place.flake_normal.xy * (slab_cos / (prepared.inside_cos * max(place.flake_normal.z, 1e-3)));
-    prepared.tilt = vec2<f32>(dot(prepared.azimuth, turned), prepared.azimuth.x * turned.y - prepared.azimuth.y * turned.x);
+    prepared.tilt = luthier_in_frame(prepared.azimuth, turned);
     //? end
     //? end
     //? critical_view
@@ -148,7 +282,8 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     let cos_theta = wo.z;
     //? end
     prepared.row = vec2<f32>(tile, cos_theta);
-    prepared.wide = luthier_lookup_lobes(tile, cos_theta, 0.0).rgb;
+    let wide = luthier_lookup_lobes(tile, cos_theta, 0.0);
+    prepared.wide = wide.rgb;
     //? one_lobe|two_lobes
     //? surface
     // A normal that leans by a slope shifts half vectors by as much of it as directions lean outside over those inside.
@@ -161,43 +296,58 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     //? end
     let first = luthier_lookup_lobes(tile, cos_theta, 1.0);
     prepared.first_strength = first.rgb;
-    let first_shape = vec4<f32>(first.a * sin_theta, luthier_lookup_lobes(tile, cos_theta, 2.0).rgb);
-    //? place
-    prepared.first_shape = luthier_spread(first_shape, spread, unresolved);
+    let first_numbers = luthier_lookup_lobes(tile, cos_theta, 2.0).rgb;
+    //? lobes_axes
+    let first_shape = luthier_lobe_shape(first.a, first_numbers, around.y * wide.a, eye, is_turned);
     //? else
-    prepared.first_shape = first_shape;
+    let first_shape = luthier_lobe_shape(first.a, first_numbers, sin_theta);
+    //? end
+    //? place
+    prepared.first_shape = luthier_with_peak(luthier_spread(first_shape, spread, unresolved));
+    //? else
+    prepared.first_shape = luthier_with_peak(first_shape);
     //? end
     //? end
     //? two_lobes
     let second = luthier_lookup_lobes(tile, cos_theta, 3.0);
     prepared.second_strength = second.rgb;
-    let second_shape = vec4<f32>(second.a * sin_theta, luthier_lookup_lobes(tile, cos_theta, 4.0).rgb);
-    //? place
-    prepared.second_shape = luthier_spread(second_shape, spread, unresolved);
+    let second_numbers = luthier_lookup_lobes(tile, cos_theta, 4.0).rgb;
+    //? lobes_axes
+    let second_shear = around.y * luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_ALBEDO).a;
+    let second_shape = luthier_lobe_shape(second.a, second_numbers, second_shear, eye, is_turned);
     //? else
-    prepared.second_shape = second_shape;
+    let second_shape = luthier_lobe_shape(second.a, second_numbers, sin_theta);
+    //? end
+    //? place
+    prepared.second_shape = luthier_with_peak(luthier_spread(second_shape, spread, unresolved));
+    //? else
+    prepared.second_shape = luthier_with_peak(second_shape);
     //? end
     //? end
     return prepared;
 }
 
 //? one_lobe|two_lobes
-/// Half the density of slopes of a lobe: z / (2 pi) (1 + q)^-(1 + z) with its decay z, q being the squared distance from the middle times the
+/// Half the density of slopes of a lobe: its peak times (1 + q)^-(1 + z) with its decay z, q being the squared distance from the middle times the
 /// sharpness; Student's, from GGX at 1 to Gaussians.
-fn luthier_half_slope_density(shape: vec4<f32>, slope: vec2<f32>) -> f32 {
-    let apart = vec2<f32>(slope.x - shape.x, slope.y) * shape.yz;
-    let falloff = (1.0 + shape.w) * log2(1.0 + dot(apart, apart));
-    return exp2(-falloff) * (shape.y * shape.z * shape.w * (0.5 / LUTHIER_PI));
+fn luthier_half_slope_density(shape: LuthierLobeShape, slope: vec2<f32>) -> f32 {
+    //? lobes_axes
+    let apart = shape.sharpness * slope + shape.shear * slope.yx - shape.middle;
+    //? else
+    let apart = vec2<f32>(slope.x * shape.sharpness.x - shape.middle, slope.y * shape.sharpness.y);
+    //? end
+    let falloff = (1.0 + shape.decay) * log2(1.0 + dot(apart, apart));
+    return exp2(-falloff) * shape.peak;
 }
 //? end
 
 //? one_lobe|two_lobes
-/// The half vector with light from wi between refracted directions: its slopes in the plane of the eye and across it, against the tilt, and the factor from half
+/// The half vector with light from wi between refracted directions: its slopes in the frame of the lobes, against the tilt, and the factor from half
 /// densities of slopes to densities of solid angle outside.
 fn luthier_place_below(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f32> {
     // Directions inside times the index.
     let sum = wi.xy + prepared.wo.xy;
-    let across = vec2<f32>(dot(prepared.azimuth, sum), prepared.azimuth.x * sum.y - prepared.azimuth.y * sum.x);
+    let across = luthier_in_frame(prepared.azimuth, sum);
     let inside_cos_sq = luthier_inside_cos_sq(prepared.medium, wi.z);
     let inverse_cos = inverseSqrt(inside_cos_sq);
     let z = inside_cos_sq * inverse_cos + prepared.inside_cos;
@@ -216,8 +366,7 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     let wo = prepared.wo;
     let sum = vec3<f32>(wi.xy + wo.xy, max(wi.z + wo.z, 1e-16));
     // One facet of the first interface. For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
-    let slope_i = prepared.coat.alpha * sqrt(dot(wi.xy, wi.xy)) / wi.z;
-    let masking = prepared.masking + luthier_slope_lambda(prepared.coat, slope_i);
+    let masking = prepared.masking + luthier_slope_lambda(prepared.coat, luthier_coat_slope(prepared.coat, wi));
     let facets = luthier_quarter_density(prepared.coat, sum) / (masking * wo.z);
     let cos_theta_d = min(0.5 * length(sum), 1.0);
     var value = luthier_fresnel_term(prepared.coat, cos_theta_d) * facets;
@@ -246,12 +395,13 @@ fn luthier_albedo_lobes(prepared: LuthierPreparedLobes) -> vec3<f32> {
     return luthier_lookup_lobes(prepared.row.x, prepared.row.y, LUTHIER_LOBES_ALBEDO).rgb;
 }
 
+//? one_lobe|two_lobes
 /// A lobe of a prepared material by number, below `LUTHIER_LOBES`.
 struct LuthierBelow {
     /// Energy, RGB.
     energy: vec3<f32>,
-    /// Its middle, its sharpness along the plane of the eye and across it, and its decay.
-    shape: vec4<f32>,
+    /// Its shape.
+    shape: LuthierLobeShape,
 }
 
 fn luthier_lobe_below(prepared: LuthierPreparedLobes, lobe: u32) -> LuthierBelow {
@@ -261,14 +411,11 @@ fn luthier_lobe_below(prepared: LuthierPreparedLobes, lobe: u32) -> LuthierBelow
         return LuthierBelow(prepared.second_strength * share, prepared.second_shape);
     }
     //? end
-    //? one_lobe|two_lobes
     let share = luthier_lookup_lobes(prepared.row.x, prepared.row.y, 2.0).a;
     return LuthierBelow(prepared.first_strength * share, prepared.first_shape);
-    //? else
-    return LuthierBelow(vec3<f32>(0.0), vec4<f32>(0.0, 1.0, 1.0, 1.0));
-    //? end
 }
 
+//? end
 //? end
 /// f cos_theta_i of the first interface, one bounce, and of the simulated light from below it.
 fn luthier_eval_lobes($place_parameter material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {

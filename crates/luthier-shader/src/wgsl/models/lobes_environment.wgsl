@@ -22,16 +22,25 @@ fn luthier_environment_diffuse(normal: vec3<f32>) -> vec3<f32> {
     return textureSampleLevel(luthier_irradiance_map, luthier_environment_sampler, normal, 0.0).rgb;
 }
 
-/// A lobe that the environment is shown in, in slopes of half vectors in the plane of the eye.
+/// A lobe that the environment is shown in, in slopes of half vectors in the plane of the eye and across it.
 struct LuthierShownLobe {
     /// The eye inside, times the index.
     eye: vec3<f32>,
-    /// Middle along the plane of the eye and across it.
+    /// Middle.
     middle: vec2<f32>,
-    /// Widths along that plane and across it.
+    //? lobes_axes
+    /// Cosine and sine of the azimuth of the eye.
+    azimuth: vec2<f32>,
+    /// Squared widths as a symmetric matrix: in the plane of the eye, across it, and between them.
+    width_sq: vec3<f32>,
+    /// The triangular root of the matrix within which directions lie: what their blurs leave.
+    spread: vec3<f32>,
+    //? else
+    /// Widths.
     width: vec2<f32>,
     /// Those within which directions lie: what their blurs leave.
     spread: vec2<f32>,
+    //? end
     /// 1 over the decay: near 0 Beckmann's distribution, 1 that of GGX.
     tail: f32,
     /// Whether facets of the first interface weigh the directions.
@@ -55,36 +64,110 @@ fn luthier_shown_stretch(up_z: f32, cos_theta_i: f32, cos_theta_d: f32, cos_thet
 /// are seen one by one in small bright lights.
 const LUTHIER_TAP_BLUR: f32 = 0.1880;
 
-//? one_lobe|two_lobes
-/// Middle of a lobe of rows.
-fn luthier_shown_middle(prepared: LuthierPreparedLobes, shape: vec4<f32>) -> vec2<f32> {
-    //? lobes_tilted
-    return vec2<f32>(shape.x, 0.0) + prepared.tilt;
+/// Standard deviation of the blur of a direction of a lobe, an angle: not wider than the lobe where it is narrow.
+fn luthier_shown_blur(lobe: LuthierShownLobe, stretch: vec2<f32>) -> f32 {
+    //? lobes_axes
+    let angle_sq = lobe.width_sq * vec3<f32>(stretch * stretch, stretch.x * stretch.y);
+    let mean = 0.5 * (angle_sq.x + angle_sq.y);
+    let half_difference = 0.5 * (angle_sq.x - angle_sq.y);
+    let narrow_sq = max(mean - sqrt(half_difference * half_difference + angle_sq.z * angle_sq.z), 1e-6 * mean);
+    let area_sq = max(angle_sq.x * angle_sq.y - angle_sq.z * angle_sq.z, 0.0);
+    return min(LUTHIER_TAP_BLUR * sqrt(sqrt(area_sq)), 0.70711 * sqrt(narrow_sq));
     //? else
-    return vec2<f32>(shape.x, 0.0);
+    let angles = lobe.width * stretch;
+    return min(LUTHIER_TAP_BLUR * sqrt(angles.x * angles.y), 0.70711 * min(angles.x, angles.y));
     //? end
 }
 
-//? end
-/// A lobe with this middle and these widths, seen in a medium whose squared index less 1 is the excess.
-fn luthier_shown_lobe(prepared: LuthierPreparedLobes, excess: f32, middle: vec2<f32>, width: vec2<f32>, tail: f32, turn: vec2<f32>) -> LuthierShownLobe {
-    let eye = vec3<f32>(dot(prepared.azimuth, prepared.wo.xy), 0.0, sqrt(prepared.wo.z * prepared.wo.z + excess));
-    let wh = vec3<f32>(middle, 1.0) * inverseSqrt(1.0 + dot(middle, middle));
-    let cos_theta_d = dot(wh, eye);
-    let up = 2.0 * cos_theta_d * wh - eye;
-    let angles = luthier_shown_stretch(up.z, sqrt(max(1.0 - up.x * up.x, 0.0)), cos_theta_d, wh.z) * width;
-    let blur = min(LUTHIER_TAP_BLUR * sqrt(angles.x * angles.y), 0.70711 * min(angles.x, angles.y));
-    let left = max(1.0 - 2.0 * (blur * blur) / (angles * angles), vec2<f32>(0.0));
-    return LuthierShownLobe(eye, middle, width, width * sqrt(left), tail, false, turn);
+/// The stretch of angles about the middle of a lobe.
+fn luthier_shown_middle_stretch(lobe: LuthierShownLobe) -> vec2<f32> {
+    let wh = vec3<f32>(lobe.middle, 1.0) * inverseSqrt(1.0 + dot(lobe.middle, lobe.middle));
+    let cos_theta_d = dot(wh, lobe.eye);
+    let up = 2.0 * cos_theta_d * wh - lobe.eye;
+    return luthier_shown_stretch(up.z, sqrt(max(1.0 - dot(up.xy, up.xy), 0.0)), cos_theta_d, wh.z);
 }
 
+//? lobes_axes
+/// A lobe with this middle and these squared widths, a symmetric matrix in the frame of the lobes, seen in a medium whose squared index less 1 is
+/// the excess.
+fn luthier_shown_lobe(prepared: LuthierPreparedLobes, excess: f32, middle: vec2<f32>, width_sq: vec3<f32>, tail: f32, turn: vec2<f32>) -> LuthierShownLobe {
+    var lobe: LuthierShownLobe;
+    let across = prepared.wo.xy + vec2<f32>(1e-15, 0.0);
+    let inverse_sin = inverseSqrt(dot(across, across));
+    lobe.azimuth = across * inverse_sin;
+    lobe.eye = vec3<f32>(dot(across, lobe.azimuth), 0.0, sqrt(prepared.wo.z * prepared.wo.z + excess));
+    // From the frame of the lobes.
+    let plane = luthier_in_frame(prepared.azimuth, lobe.azimuth);
+    lobe.middle = luthier_in_frame(plane, middle);
+    let square = plane * plane;
+    let both = plane.x * plane.y;
+    lobe.width_sq = vec3<f32>(
+        square.x * width_sq.x + square.y * width_sq.y + 2.0 * both * width_sq.z,
+        square.y * width_sq.x + square.x * width_sq.y - 2.0 * both * width_sq.z,
+        both * (width_sq.y - width_sq.x) + (square.x - square.y) * width_sq.z,
+    );
+    lobe.tail = tail;
+    lobe.is_coat = false;
+    lobe.turn = turn;
+    let stretch = luthier_shown_middle_stretch(lobe);
+    let blur = luthier_shown_blur(lobe, stretch);
+    let left = max(lobe.width_sq.xy - 2.0 * (blur * blur) / max(stretch * stretch, vec2<f32>(1e-12)), vec2<f32>(0.0));
+    let along = sqrt(left.x);
+    let between = lobe.width_sq.z / max(along, 1e-12);
+    lobe.spread = vec3<f32>(along, sqrt(max(left.y - between * between, 0.0)), between);
+    return lobe;
+}
+//? else
+/// A lobe with this middle and these widths, seen in a medium whose squared index less 1 is the excess.
+fn luthier_shown_lobe(prepared: LuthierPreparedLobes, excess: f32, middle: vec2<f32>, width: vec2<f32>, tail: f32, turn: vec2<f32>) -> LuthierShownLobe {
+    var lobe: LuthierShownLobe;
+    lobe.eye = vec3<f32>(dot(prepared.azimuth, prepared.wo.xy), 0.0, sqrt(prepared.wo.z * prepared.wo.z + excess));
+    lobe.middle = middle;
+    lobe.width = width;
+    lobe.tail = tail;
+    lobe.is_coat = false;
+    lobe.turn = turn;
+    let stretch = luthier_shown_middle_stretch(lobe);
+    let angles = width * stretch;
+    let blur = luthier_shown_blur(lobe, stretch);
+    lobe.spread = width * sqrt(max(1.0 - 2.0 * (blur * blur) / (angles * angles), vec2<f32>(0.0)));
+    return lobe;
+}
+//? end
+
+//? one_lobe|two_lobes
+/// A lobe of rows.
+fn luthier_shown_below(prepared: LuthierPreparedLobes, shape: LuthierLobeShape, turn: vec2<f32>) -> LuthierShownLobe {
+    let straight = luthier_lobe_slope(shape, vec2<f32>(0.0));
+    //? lobes_tilted
+    let middle = straight + prepared.tilt;
+    //? else
+    let middle = straight;
+    //? end
+    //? lobes_axes
+    // The square of the inverse of the sharpness, over the decay.
+    let determinant = luthier_lobe_determinant(shape);
+    let mixed = shape.sharpness.yx * shape.sharpness.yx + shape.shear * shape.shear;
+    let squares = vec3<f32>(mixed, -shape.shear * (shape.sharpness.x + shape.sharpness.y));
+    let width = squares / (determinant * determinant * shape.decay);
+    //? else
+    let width = inverseSqrt(shape.decay) / shape.sharpness;
+    //? end
+    return luthier_shown_lobe(prepared, prepared.medium.x, middle, width, 1.0 / shape.decay, turn);
+}
+
+//? end
 /// Light so far and that of one more direction of a lobe: beyond it lies this share of the lobe, and it lies towards a unit vector from the
 /// middle. What would not leave the surface weighs nothing.
 fn luthier_shown_tap(shown: LuthierShown, lobe: LuthierShownLobe, prepared: LuthierPreparedLobes, frame: mat3x3<f32>, beyond: f32, towards: vec2<f32>) -> LuthierShown {
     let fall = log2(beyond);
     let radius = sqrt((exp2(-lobe.tail * fall) - 1.0) / lobe.tail);
     let around = vec2<f32>(lobe.turn.x * towards.x - lobe.turn.y * towards.y, lobe.turn.y * towards.x + lobe.turn.x * towards.y);
+    //? lobes_axes
+    let slope = lobe.middle + radius * (lobe.spread.xy * around + vec2<f32>(0.0, lobe.spread.z * around.x));
+    //? else
     let slope = lobe.middle + radius * lobe.spread * around;
+    //? end
     let wh = vec3<f32>(slope, 1.0) * inverseSqrt(1.0 + dot(slope, slope));
     let cos_theta_d = dot(wh, lobe.eye);
     let up = 2.0 * cos_theta_d * wh - lobe.eye;
@@ -93,18 +176,25 @@ fn luthier_shown_tap(shown: LuthierShown, lobe: LuthierShownLobe, prepared: Luth
     let above = select(-1.0, 1.0, sin_sq < 1.0 && up.z > 0.0) * sqrt(abs(1.0 - sin_sq));
     let cos_theta_i = max(above, 1e-2);
     let across = up.xy * min(inverseSqrt(max(sin_sq, 1e-12)), 1.0);
-    let angles = luthier_shown_stretch(up.z, cos_theta_i, cos_theta_d, wh.z) * lobe.width;
-    let blur = min(LUTHIER_TAP_BLUR * sqrt(angles.x * angles.y), 0.70711 * min(angles.x, angles.y));
+    let blur = luthier_shown_blur(lobe, luthier_shown_stretch(up.z, cos_theta_i, cos_theta_d, wh.z));
     let width = min(blur * exp2(-0.5 * (1.0 + lobe.tail) * fall), 1.4);
     var weight = vec3<f32>(saturate(0.5 + 0.5 * above / max(width, 0.014)));
+    //? lobes_axes
+    let azimuth = lobe.azimuth;
+    //? else
+    let azimuth = prepared.azimuth;
+    //? end
+    let wi = vec3<f32>(azimuth.x * across.x - azimuth.y * across.y, azimuth.y * across.x + azimuth.x * across.y, cos_theta_i);
     if lobe.is_coat {
+        //? anisotropic
+        let slope_i = luthier_coat_slope(prepared.coat, wi);
+        //? else
         let slope_i = prepared.coat.alpha * sqrt(sin_sq) / cos_theta_i;
+        //? end
         let masking = prepared.masking + luthier_slope_lambda(prepared.coat, slope_i);
         let fresnel = luthier_fresnel_term(prepared.coat, clamp(cos_theta_d, 0.0, 1.0));
         weight *= max(fresnel, vec3<f32>(1e-6)) * (max(cos_theta_d, 1e-3) / (wh.z * masking * prepared.wo.z));
     }
-    let azimuth = prepared.azimuth;
-    let wi = vec3<f32>(azimuth.x * across.x - azimuth.y * across.y, azimuth.y * across.x + azimuth.x * across.y, cos_theta_i);
     let light = luthier_environment_around(frame * wi, width);
     return LuthierShown(shown.light + weight * light, shown.weight + weight);
 }
@@ -158,16 +248,12 @@ fn luthier_environment_lobes(prepared: LuthierPreparedLobes, frame: mat3x3<f32>,
     //? one_lobe|two_lobes
     let first = luthier_lobe_below(prepared, 0u);
     rest -= first.energy;
-    let first_width = inverseSqrt(first.shape.w) / first.shape.yz;
-    let first_lobe = luthier_shown_lobe(prepared, prepared.medium.x, luthier_shown_middle(prepared, first.shape), first_width, 1.0 / first.shape.w, turned);
-    total += first.energy * luthier_shown_mean(first_lobe, prepared, frame);
+    total += first.energy * luthier_shown_mean(luthier_shown_below(prepared, first.shape, turned), prepared, frame);
     //? end
     //? two_lobes
     let second = luthier_lobe_below(prepared, 1u);
     rest -= second.energy;
-    let second_width = inverseSqrt(second.shape.w) / second.shape.yz;
-    let second_lobe = luthier_shown_lobe(prepared, prepared.medium.x, luthier_shown_middle(prepared, second.shape), second_width, 1.0 / second.shape.w, turned);
-    total += second.energy * luthier_shown_mean(second_lobe, prepared, frame);
+    total += second.energy * luthier_shown_mean(luthier_shown_below(prepared, second.shape, turned), prepared, frame);
     //? end
     //? beckmann
     //? ggx
@@ -178,7 +264,19 @@ fn luthier_environment_lobes(prepared: LuthierPreparedLobes, frame: mat3x3<f32>,
     //? else
     let tail = 0.999;
     //? end
-    var coat = luthier_shown_lobe(prepared, 0.0, vec2<f32>(0.0), vec2<f32>(prepared.coat.alpha), tail, turned);
+    //? lobes_axes
+    //? anisotropic
+    let alpha_sq = prepared.coat.alpha_xy * prepared.coat.alpha_xy;
+    let axis = luthier_in_frame(prepared.azimuth, prepared.coat.rotation);
+    let square = axis * axis;
+    let width = vec3<f32>(dot(square, alpha_sq), dot(square.yx, alpha_sq), axis.x * axis.y * (alpha_sq.x - alpha_sq.y));
+    //? else
+    let width = vec3<f32>(vec2<f32>(prepared.coat.alpha * prepared.coat.alpha), 0.0);
+    //? end
+    //? else
+    let width = vec2<f32>(prepared.coat.alpha);
+    //? end
+    var coat = luthier_shown_lobe(prepared, 0.0, vec2<f32>(0.0), width, tail, turned);
     coat.is_coat = true;
     return total + max(rest, vec3<f32>(0.0)) * luthier_shown_mean(coat, prepared, frame);
 }
