@@ -5,7 +5,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use luthier_layers::lobes::{Lobes, Varied, Varying};
 use luthier_optics::color::Color;
-use luthier_optics::stack::Base;
+use luthier_optics::ior::Ior;
+use luthier_optics::stack::{Base, Film, FilmThickness};
 use luthier_report::{ModelSubject, Reference, Shown, ViewError};
 use luthier_terminal::{Bar, Failure, Outcome, deliver};
 use rayon::prelude::*;
@@ -38,7 +39,9 @@ pub(crate) fn run(options: &VaryingOptions) -> Outcome {
             let absorbs = matches!(&subject.stack.layers[0].base, Base::Dielectric { slab, .. } if slab.optical_depth() != [0.0; 3]);
             let slab = absorbs.then_some(Varying::Slab);
             let of = |varying| (ModelSubject { stack: subject.stack.clone(), name: subject.name.clone(), ..subject }, varying);
-            std::iter::once(Varying::Alpha).chain(slab).map(of).collect::<Vec<_>>()
+            let filmed = filmed(&subject);
+            let film = Varying::film(&filmed.stack).map(|varying| (filmed, varying));
+            std::iter::once(Varying::Alpha).chain(slab).map(of).chain(film).collect::<Vec<_>>()
         })
         .collect();
     let (bar, done) = (Bar::new("fitting and judging"), AtomicU64::new(0));
@@ -56,8 +59,8 @@ pub(crate) fn run(options: &VaryingOptions) -> Outcome {
 fn judge(subject: &ModelSubject, varying: Varying, options: &VaryingOptions) -> Judged {
     let color = Color::ThreeWavelengths(subject.wavelengths_nm);
     let varied = Varied::of(&subject.stack, &color, Some(varying));
-    let errors = |place: &f64| {
-        let factor = varying.factor(*place);
+    let errors = |of_eight: &f64| {
+        let factor = varying.factor(place(varying, *of_eight));
         let stack = varying.apply(&subject.stack, factor);
         let fits = [varied.at(factor), Lobes::of(&stack, &color)];
         let here = ModelSubject { stack, name: subject.name.clone(), ..*subject };
@@ -76,8 +79,11 @@ fn page(judged: &[Judged], options: &VaryingOptions) -> Result<String, std::fmt:
         options.random, options.precision.noise
     )?;
     out.push_str(INTRODUCTION);
-    for varying in [Varying::Alpha, Varying::Slab] {
-        let factors: Vec<String> = PLACES.iter().map(|place| format!("{:.3}", varying.factor(*place))).collect();
+    for varying in
+        [Varying::Alpha, Varying::Slab, Varying::Film(FILM_NM.map(|nm| 2.0 * nm / (FILM_NM[0] + FILM_NM[1])))]
+    {
+        let factor = |of_eight: &f64| format!("{:.3}", varying.factor(place(varying, *of_eight)));
+        let factors: Vec<String> = PLACES.iter().map(factor).collect();
         writeln!(out, "\nFactors on {}: {}.", words(varying), factors.join(", "))?;
     }
     for (title, error) in TABLES {
@@ -113,8 +119,32 @@ fn words(varying: Varying) -> &'static str {
     match varying {
         Varying::Alpha => "slopes",
         Varying::Slab => "thickness",
+        Varying::Film(_) => "film",
     }
 }
+
+/// The fractional number of a node of what varies, for one of eight nodes.
+fn place(varying: Varying, of_eight: f64) -> f64 {
+    match varying {
+        Varying::Alpha | Varying::Slab => of_eight,
+        Varying::Film(_) => 2.0 * of_eight + if of_eight.fract() == 0.0 { 0.0 } else { 0.5 },
+    }
+}
+
+/// The stack with a film of 100 to 500 nm on its first interface alone.
+fn filmed(subject: &ModelSubject) -> ModelSubject {
+    let mut stack = subject.stack.clone();
+    let film = |ior| Film { ior, thickness: FilmThickness { min_nm: FILM_NM[1], max_nm: FILM_NM[0] } };
+    let films = Ior::constant(FILM_INDEX, 0.0).map(film);
+    stack.layers[0].films = films.into_iter().collect();
+    ModelSubject { stack, name: subject.name.clone(), ..*subject }
+}
+
+/// Greatest and least thickness of the film, nm.
+const FILM_NM: [f64; 2] = [500.0, 100.0];
+
+/// Index of the film: titanium dioxide.
+const FILM_INDEX: f64 = 2.4;
 
 /// An error of a stack from those of its views.
 type Worst = fn(&[ViewError]) -> f64;
@@ -126,8 +156,9 @@ const TABLES: [(&str, Worst); 2] = [
 ];
 
 const INTRODUCTION: &str = "\
-A roughness map scales the slope parameters of all interfaces of a material, a thickness map its first slab. The model `lobes` fits such a stack at eight
-factors, and shaders mix the rows of two. This page compares them with a simulation of other random numbers at two nodes and half way between others.
+A roughness map scales the slope parameters of all interfaces of a material, a thickness map its first slab, and a film on the first interface may vary. The
+model `lobes` fits such a stack at eight factors, or at fifteen of the film, and shaders mix the rows of two. This page compares them with a simulation of other
+random numbers at two nodes and half way between others. Nodes are numbered as of eight; each stack is shown once with a film of index 2.4 and 100 to 500 nm.
 
 Errors are those of [lobes.md](lobes.md), the worst over three wavelengths and four angles of the eye. In brackets is the error of lobes that were fitted
 at that very factor. Stacks are the first random ones of that page with an interface above their base.

@@ -55,7 +55,8 @@ pub struct LobesRecord {
 }
 
 /// Tiles of lobes one after the other, over a factor that a texture has, at equal distances of its root. The first is that of 1. The last is
-/// that of 0 on the slab, and on slope parameters one step before it. Rows of two are mixed linearly in the root.
+/// that of 0 on the slab, and on slope parameters one step before it. Rows of two are mixed linearly in the root. Those over a film are at equal
+/// distances of the factor itself, between `factors`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct VaryingRecord {
     /// Factor of the texture.
@@ -64,6 +65,17 @@ pub struct VaryingRecord {
     pub tiles: u32,
     /// The least factor on slopes: rows have theirs divided by it.
     pub least_spread: f64,
+    /// Factors on the nominal thickness of the film at the first tile and at the last.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub factors: Option<[f64; 2]>,
+}
+
+impl VaryingRecord {
+    /// Fractional number of the tile of the nominal surface, where all factors are 1.
+    pub fn nominal(&self) -> f64 {
+        let [most, least] = self.factors.unwrap_or([1.0, 0.0]);
+        (most - 1.0) / (most - least) * (f64::from(self.tiles) - 1.0)
+    }
 }
 
 /// Tiles of lobes one after the other, over the azimuth of the eye in the axes of an anisotropic stack.
@@ -86,17 +98,31 @@ pub enum VaryingFactor {
     AlphaFactor,
     /// Factor on the thickness of the first slab.
     SlabFactor,
+    /// Factor on the thickness of the film on the first interface.
+    FilmFactor,
 }
 
 impl LobesRecord {
-    /// Tiles beyond the first over the factor on slope parameters and over that on the first slab, and the least factor on slopes.
+    /// Tiles beyond the first over the factor on slope parameters and over that on the first slab or film, and the least factor on slopes.
     fn varying(&self) -> [f64; 3] {
-        let Some(VaryingRecord { factor, tiles, least_spread }) = self.varying else { return [0.0, 0.0, SPREAD_MIN] };
+        let Some(VaryingRecord { factor, tiles, least_spread, .. }) = self.varying else {
+            return [0.0, 0.0, SPREAD_MIN];
+        };
         let beyond = f64::from(tiles) - 1.0;
         match factor {
             VaryingFactor::AlphaFactor => [beyond, 0.0, least_spread],
-            VaryingFactor::SlabFactor => [0.0, beyond, SPREAD_MIN],
+            VaryingFactor::SlabFactor | VaryingFactor::FilmFactor => [0.0, beyond, SPREAD_MIN],
         }
+    }
+
+    /// Numbers of the azimuth or of the film that tiles are over: cosine and sine of the first axis, and tiles beyond the first in a quarter of a
+    /// circle; or what the share of the tiles is per factor on the film and at none, and -1.
+    fn sheet(&self) -> [f64; 3] {
+        if let Some([most, least]) = self.varying.and_then(|varying| varying.factors) {
+            return [1.0 / (least - most), most / (most - least), -1.0];
+        }
+        let Some(AxesRecord { turn: [cos, sin], is_mirrored, tiles }) = self.axes else { return [0.0; 3] };
+        [cos, sin, (f64::from(tiles) - 1.0) / if is_mirrored { 1.0 } else { 2.0 }]
     }
 
     /// Numbers of the cosine inside: k, `4 w^2`, and factor and offset for the root to be 0 at the horizon and 1 at the normal.
@@ -166,7 +192,7 @@ impl MaterialConstants {
     ///
     /// | header word | x, y, z, w |
     /// |---|---|
-    /// | 1 | Phong's diffuse coefficient RGB, exponent; of lobes tiles beyond the first over `alpha_factor`, those over `slab_factor`, least factor on slopes, share of the cosine of the view in the axis of the rows |
+    /// | 1 | Phong's diffuse coefficient RGB, exponent; of lobes tiles beyond the first over `alpha_factor`, those over `slab_factor` or `film_factor`, least factor on slopes, share of the cosine of the view in the axis of the rows |
     /// | 2 | Phong's specular coefficient RGB; of lobes k, 4 w^2, and factor and offset of the root that is the cosine inside |
     /// | 3 | internal reflectance RGB, upward loss; of lobes the squared index less 1, a, b, and 1 over pi and the integral of S |
     /// | 4 | flakes: low and high 16 bits of the seed, cells, tiling; all 0 without flakes |
@@ -175,7 +201,7 @@ impl MaterialConstants {
     /// | 7 | patina: diffuse albedo RGB, 0 |
     /// | 8 | patina: tarnish RGB, 0 |
     /// | 9 | glitter: low and high 16 bits of the seed, frequency, filled; all 0 without glitter |
-    /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; all 0 without |
+    /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -1; all 0 without |
     pub fn words(&self) -> [[f32; 4]; Self::WORDS] {
         let with = |[r, g, b]: [f64; 3], w: f64| [r as f32, g as f32, b as f32, w as f32];
         let mut words = [[0.0; 4]; Self::WORDS];
@@ -202,10 +228,8 @@ impl MaterialConstants {
             words[8] = [half(g.seed), half(g.seed >> 16), g.frequency as f32, g.filled as f32];
             words[9][0] = (1.0 - libm::cos(g.tilt)) as f32;
         }
-        if let Some(AxesRecord { turn: [cos, sin], is_mirrored, tiles }) = self.lobes.and_then(|lobes| lobes.axes) {
-            let quarters = if is_mirrored { 1.0 } else { 2.0 };
-            words[9] = [words[9][0], cos as f32, sin as f32, ((f64::from(tiles) - 1.0) / quarters) as f32];
-        }
+        let [y, z, w] = self.lobes.map_or([0.0; 3], |lobes| lobes.sheet()).map(|x| x as f32);
+        words[9] = [words[9][0], y, z, w];
         words
     }
 }
@@ -274,9 +298,15 @@ mod tests {
         let without = LobesRecord { critical_cot_sq: 0.0, critical_width: 0.0, ..lobes };
         assert_eq!(words(without)[1], [0.0, 0.0, 1.0, 0.0]);
         let over = |factor| {
-            let varying = Some(VaryingRecord { factor, tiles: 9, least_spread: 0.5 });
+            let varying = Some(VaryingRecord { factor, tiles: 9, least_spread: 0.5, factors: None });
             words(LobesRecord { varying, ..lobes })[0]
         };
+        let film =
+            VaryingRecord { factor: VaryingFactor::FilmFactor, tiles: 9, least_spread: 1.0, factors: Some([1.5, 0.5]) };
+        let of_film = words(LobesRecord { varying: Some(film), ..lobes });
+        assert_eq!([of_film[0], of_film[9]], [[0.0, 8.0, 1e-3, 0.25], [0.0, -1.0, 1.5, -1.0]]);
+        assert_eq!(film.nominal(), 4.0);
+        assert_eq!(VaryingRecord { factors: None, ..film }.nominal(), 0.0);
         assert_eq!(over(VaryingFactor::AlphaFactor), [8.0, 0.0, 0.5, 0.25]);
         assert_eq!(over(VaryingFactor::SlabFactor), [0.0, 8.0, 1e-3, 0.25]);
         let around = |is_mirrored| {

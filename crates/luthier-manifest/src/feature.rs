@@ -104,9 +104,7 @@ impl ShadingModel {
                 matches!(self, Self::Phong | Self::Lobes) || form == Form::Baked && self != Self::GranierHeidrich
             }
             // Albedos are tabulated at the nominal thickness.
-            Feature::FilmVariation => {
-                !(matches!(self, Self::Phong | Self::Lobes) || is_statistical && form == Form::Baked)
-            }
+            Feature::FilmVariation => !(self == Self::Phong || is_statistical && form == Form::Baked),
             Feature::DiffuseSlopes => is_chain || is_statistical || matches!(self, Self::Microfacet | Self::Lobes),
             Feature::Anisotropy => {
                 matches!(self, Self::WeidlichWilkie | Self::Yamaguchi | Self::Microfacet | Self::Lobes)
@@ -143,7 +141,7 @@ mod tests {
             (ShadingModel::GranierHeidrich, ".#..#.#...##...#"),
             (ShadingModel::Phong, "###.##....##...#"),
             (ShadingModel::Microfacet, "....#b######...#"),
-            (ShadingModel::Lobes, "######.#######.#"),
+            (ShadingModel::Lobes, "##############.#"),
         ] {
             assert_eq!(shown(model), expected, "{model}");
         }

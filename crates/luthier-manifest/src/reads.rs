@@ -24,9 +24,8 @@ impl ShadingModel {
             Self::Phong => false,
             // They look at the first layer alone.
             Self::Microfacet | Self::GranierHeidrich | Self::Lobes if number > 0 => false,
-            // Films have their nominal thickness.
-            Self::Lobes => matches!(kind, TableKind::Fresnel | TableKind::Distribution | TableKind::Lobes),
-            Self::Elek | Self::WeidlichWilkie | Self::Microfacet => match kind {
+            Self::Elek | Self::WeidlichWilkie | Self::Microfacet | Self::Lobes => match kind {
+                TableKind::Lobes => self == Self::Lobes,
                 TableKind::Fresnel => !layer.varies(),
                 TableKind::Film => layer.varies(),
                 TableKind::Thickness => layer.varies() && number == 0,
@@ -86,7 +85,7 @@ mod tests {
             (&[Microfacet], vec![coat(), metal()], ["fresnel distribution", ""]),
             (&[Phong], vec![coat(), metal()], ["", ""]),
             (&[Lobes], vec![coat(), metal()], ["fresnel distribution lobes", ""]),
-            (&[Lobes], vec![varying(), diffuse()], ["fresnel distribution lobes", ""]),
+            (&[Lobes], vec![varying(), diffuse()], ["distribution thickness film lobes", ""]),
             (&[Lobes], vec![diffuse()], ["", ""]),
             (statistical, vec![coat(), metal()], ["fgd escape", "fgd"]),
             (statistical, vec![down(), metal()], ["fgd", "fgd"]),

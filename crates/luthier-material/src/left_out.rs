@@ -1,7 +1,7 @@
 //! Features of a material that its model leaves out.
 
 use luthier_manifest::{Feature, Form, ShadingModel};
-use luthier_optics::stack::{Base, Distribution, Layer};
+use luthier_optics::stack::{Base, Distribution, Film, Layer};
 
 use crate::material::Material;
 
@@ -47,7 +47,7 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
             continue;
         }
         let film = layer.films.first();
-        let varies = film.is_some_and(|film| film.thickness.min_nm < film.thickness.max_nm);
+        let varies = film.is_some_and(Film::varies);
         let slopes = layer.surface;
         let (absorbs, deviates, is_facetted) = match &layer.base {
             Base::Dielectric { slab, .. } => (slab.optical_depth() != [0.0; 3], false, true),
@@ -88,9 +88,11 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
         // Rows are over one factor, or over the azimuth.
         let is_turned = layers.iter().any(Layer::is_anisotropic);
         let (roughness, thickness) = (maps.roughness.is_some(), maps.thickness.is_some());
+        let film = layers.first().and_then(|first| first.films.first()).is_some_and(Film::varies);
         for (lacks, feature, key) in [
             (roughness && is_turned, Feature::RoughnessMap, "layer.0.maps.roughness"),
             (thickness && (is_turned || roughness), Feature::ThicknessMap, "layer.0.maps.thickness"),
+            (film && (is_turned || roughness || thickness), Feature::FilmVariation, "layer.0.film.0.thickness_nm"),
         ] {
             if lacks {
                 found.push(LeftOut { feature, key: key.to_owned(), forms: Form::ALL.to_vec() });

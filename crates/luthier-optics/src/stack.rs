@@ -94,6 +94,11 @@ impl Film {
     pub fn at(&self, wavelength_nm: f64) -> FilmLayer {
         FilmLayer { ior: self.ior.at(wavelength_nm), waves: self.thickness.nominal_nm() / wavelength_nm }
     }
+
+    /// Whether its thickness varies over the surface.
+    pub fn varies(&self) -> bool {
+        self.thickness.min_nm < self.thickness.max_nm
+    }
 }
 
 /// Thickness of a film, constant or varying over the surface.

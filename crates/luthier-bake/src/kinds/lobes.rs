@@ -49,11 +49,11 @@ impl Kind for Table {
     }
 }
 
-/// The part of a material that a map scales and rows are over: they are over one factor alone.
+/// The part of a material that a texture scales and rows are over: they are over one factor alone.
 fn varying(material: &Material) -> Option<Varying> {
     let maps = &material.layers.first()?.maps;
     let thickness = maps.thickness.as_ref().map(|_| Varying::Slab);
-    maps.roughness.as_ref().map(|_| Varying::Alpha).or(thickness)
+    maps.roughness.as_ref().map(|_| Varying::Alpha).or(thickness).or_else(|| Varying::film(&material.stack))
 }
 
 /// The shape of tiles for so many lobes.
@@ -109,6 +109,11 @@ pub(crate) fn record(material: &Material, results: &Results) -> LobesRecord {
         factor: match varying {
             Varying::Alpha => VaryingFactor::AlphaFactor,
             Varying::Slab => VaryingFactor::SlabFactor,
+            Varying::Film(_) => VaryingFactor::FilmFactor,
+        },
+        factors: match varying {
+            Varying::Film(factors) => Some(factors),
+            Varying::Alpha | Varying::Slab => None,
         },
         tiles: varied.nodes.len() as u32,
         least_spread: varied.least_spread(),
@@ -148,7 +153,7 @@ impl Job for FitJob {
             "rows": rows,
             "paths": paths,
             "seed": seed,
-            "varying": self.varying.map(factor_name),
+            "varying": self.varying.map(|varying| json!([factor_name(varying), varying.factor(0.0), varying.factor(1.0)])),
         })
     }
 
@@ -162,6 +167,7 @@ fn factor_name(varying: Varying) -> &'static str {
     match varying {
         Varying::Alpha => "slope parameters",
         Varying::Slab => "thickness of the first slab",
+        Varying::Film(_) => "thickness of the film",
     }
 }
 

@@ -6,7 +6,6 @@
 //! identity from view to view. An anisotropic stack is seen from several azimuths, all of them in one fit ([`Basis`]).
 
 use luthier_optics::color::Color;
-use luthier_optics::interface::Interface;
 use luthier_optics::stack::{Base, Stack, Surface};
 
 use super::ellipse::{Numbers, Plane, logarithm};
@@ -15,7 +14,7 @@ use super::problem::{Lobed, Problem, ViewProblem, seen_from};
 use super::solve::{LeastSquares, Place};
 use super::tally::{Cells, Tally};
 use super::{Axes, Critical, FirstInterface, Lobes, ViewAxis};
-use crate::facets::{ALPHA_MIN, Facets};
+use crate::facets::ALPHA_MIN;
 use crate::layered_mc::ColorPaths;
 
 /// Settings of a simulation and of the fit to it. The same settings give the same numbers.
@@ -140,18 +139,22 @@ impl Views {
     }
 }
 
+impl ViewAxis {
+    /// The axis of so many rows of a stack.
+    pub(super) fn of(stack: &Stack, rows: usize) -> Self {
+        Self::new(rows, critical(stack, rows))
+    }
+}
+
 impl Simulation {
     /// Traces the paths of a stack, for every row.
     pub fn new(stack: &Stack, color: &Color, settings: FitSettings) -> Self {
-        Self::along(ViewAxis::new(settings.rows, critical(stack, settings.rows)), stack, color, settings)
+        Self::along(ViewAxis::of(stack, settings.rows), stack, color, settings)
     }
 
     /// [`Self::new`] with rows over an axis.
     pub(super) fn along(axis: ViewAxis, stack: &Stack, color: &Color, settings: FitSettings) -> Self {
-        let first = Interface::of(stack, 0).map(|interface| FirstInterface {
-            facets: Facets::new(&stack.layers[0].surface),
-            reflectance: interface.sampled(color),
-        });
+        let first = FirstInterface::of(stack, color);
         let axes = Axes::of(stack);
         let rough: Vec<Covariance> = (stack.layers.iter())
             .filter(|layer| !matches!(layer.base, Base::Diffuse(_)))

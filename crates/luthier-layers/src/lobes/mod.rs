@@ -58,7 +58,7 @@ pub use varied::{Varied, Varying};
 use glam::DVec3;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
-use luthier_optics::interface::Sampled;
+use luthier_optics::interface::{Interface, Sampled};
 use luthier_optics::ior::{Ior, IorSample};
 use luthier_optics::stack::{Base, Stack};
 
@@ -97,6 +97,14 @@ pub struct Frame {
 pub(crate) struct FirstInterface {
     pub(crate) facets: Facets,
     pub(crate) reflectance: Sampled,
+}
+
+impl FirstInterface {
+    /// The first interface of a stack in colour; none for a diffuse base alone.
+    fn of(stack: &Stack, color: &Color) -> Option<Self> {
+        let interface = Interface::of(stack, 0)?;
+        Some(Self { facets: Facets::new(&stack.layers[0].surface), reflectance: interface.sampled(color) })
+    }
 }
 
 /// The name of the model.

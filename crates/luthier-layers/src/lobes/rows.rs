@@ -282,7 +282,8 @@ impl Row {
     }
 
     /// The row between two others.
-    pub(super) fn between(&self, other: &Self, t: f64) -> Self {
+    #[must_use]
+    pub fn between(&self, other: &Self, t: f64) -> Self {
         let mix = |a: &[f64; 4], b: &[f64; 4]| [0, 1, 2, 3].map(|i: usize| a[i] + t * (b[i] - a[i]));
         let parts: Vec<[f64; 4]> = self.to_parts().iter().zip(&other.to_parts()).map(|(a, b)| mix(a, b)).collect();
         Self::of_parts(&parts)

@@ -1,54 +1,101 @@
 //! Lobes of a stack of which a texture scales something: nodes over its factor.
 
 use luthier_optics::color::Color;
-use luthier_optics::stack::{Base, Stack, Surface};
+use luthier_optics::stack::{Base, FilmThickness, Stack, Surface};
 
 use super::fit::{Found, Simulation};
 use super::parameters::Basis;
-use super::{Axes, EXCESS, FitSettings, LOBES, Lobes, Row, shown};
+use super::{Axes, EXCESS, FirstInterface, FitSettings, LOBES, Lobes, Row, ViewAxis, shown};
 use crate::elek::ALPHA_MIN;
-use crate::facets::Facets;
 
 /// The part of a stack that a texture scales.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Varying {
     /// The slope parameters of all interfaces.
     Alpha,
     /// The thickness of the slab below the first interface.
     Slab,
+    /// The thickness of the top film of the first interface, between the factors on its nominal thickness that are given: the greatest and the least.
+    Film([f64; 2]),
 }
 
 impl Varying {
+    /// The film of a stack that varies, if it has one.
+    pub fn film(stack: &Stack) -> Option<Self> {
+        let film = stack.layers.first()?.films.first().filter(|film| film.varies())?;
+        let FilmThickness { min_nm, max_nm } = film.thickness;
+        Some(Self::Film([max_nm, min_nm].map(|nm| nm / film.thickness.nominal_nm())))
+    }
+
+    /// Number of nodes.
+    pub fn nodes(self) -> usize {
+        match self {
+            Self::Alpha | Self::Slab => 8,
+            // Interference has a period of half a wavelength or so. The number is odd: the nominal thickness is in the middle.
+            Self::Film(_) => 15,
+        }
+    }
+
+    /// Paths of a fit over those of a node beside the nominal one: under a film many nodes see nearly the same.
+    fn path_share(self) -> u64 {
+        match self {
+            Self::Alpha | Self::Slab => 1,
+            Self::Film(_) => 2,
+        }
+    }
+
+    /// The node of the factor 1.
+    pub fn nominal(self) -> usize {
+        match self {
+            Self::Alpha | Self::Slab => 0,
+            Self::Film(_) => self.nodes() / 2,
+        }
+    }
+
     /// The factor at the fractional number of a node. Roots of factors on slope parameters end one step before 0: from there on lobes grow narrower,
     /// and their energies hardly change.
     pub fn factor(self, place: f64) -> f64 {
-        let root = 1.0 - place / self.steps();
-        root * root
+        let share = place / self.steps();
+        match self {
+            Self::Alpha | Self::Slab => (1.0 - share) * (1.0 - share),
+            Self::Film([most, least]) => most + share * (least - most),
+        }
     }
 
-    /// Steps between nodes from a root of 1 to one of 0.
+    /// Steps between nodes from a root of 1 to one of 0, or from the greatest factor to the least.
     fn steps(self) -> f64 {
         match self {
-            Self::Alpha => NODES as f64,
-            Self::Slab => (NODES - 1) as f64,
+            Self::Alpha => self.nodes() as f64,
+            Self::Slab | Self::Film(_) => (self.nodes() - 1) as f64,
         }
     }
 
     /// The fractional number of the node of a factor.
-    fn place(self, factor: f64) -> f64 {
-        ((1.0 - factor.clamp(0.0, 1.0).sqrt()) * self.steps()).min((NODES - 1) as f64)
+    pub fn place(self, factor: f64) -> f64 {
+        let share = match self {
+            Self::Alpha | Self::Slab => 1.0 - factor.clamp(0.0, 1.0).sqrt(),
+            Self::Film([most, least]) => ((most - factor) / (most - least)).clamp(0.0, 1.0),
+        };
+        (share * self.steps()).min((self.nodes() - 1) as f64)
     }
 
     /// The stack at a factor.
     pub fn apply(self, stack: &Stack, factor: f64) -> Stack {
         let mut here = stack.clone();
+        let first = here.layers.first_mut();
         match self {
             Self::Alpha => {
                 here.layers.iter_mut().for_each(|layer| layer.surface = scaled_surface(layer.surface, factor));
             }
             Self::Slab => {
-                if let Some(Base::Dielectric { slab, .. }) = here.layers.first_mut().map(|layer| &mut layer.base) {
+                if let Some(Base::Dielectric { slab, .. }) = first.map(|layer| &mut layer.base) {
                     slab.thickness_um *= factor;
+                }
+            }
+            Self::Film(_) => {
+                if let Some(film) = first.and_then(|layer| layer.films.first_mut()) {
+                    let nm = factor * film.thickness.nominal_nm();
+                    film.thickness = FilmThickness { min_nm: nm, max_nm: nm };
                 }
             }
         }
@@ -56,22 +103,36 @@ impl Varying {
     }
 }
 
-/// Nodes over the factor.
-const NODES: usize = 8;
-
-/// Lobes at factors from 1 down. Between two nodes, rows are linear in the root of the factor.
+/// Lobes at factors, the greatest first. Between two nodes, rows are linear in the root of the factor, and over films in the factor.
 ///
 /// Factors on slope parameters make lobes narrower by about as much. So rows are mixed after their slopes were divided by that factor, and are
 /// multiplied by it again.
 #[derive(Debug, Clone)]
 pub struct Varied {
-    /// The lobes of each node, at the factor 1 first; one where nothing varies. They have the axis, the medium and the shape of the remainder
-    /// in common, and the number of lobes.
+    /// The lobes of each node; one where nothing varies. They have the axis, the medium and the shape of the remainder in common, and the number
+    /// of lobes.
     pub nodes: Vec<Lobes>,
-    /// The part that varies, and the factor by which slopes are divided at least.
-    varying: Option<(Varying, f64)>,
-    /// The first surface.
-    surface: Option<Surface>,
+    varying: Option<Over>,
+}
+
+/// What varies over the nodes.
+#[derive(Debug, Clone)]
+struct Over {
+    varying: Varying,
+    /// The factor by which slopes are divided at least.
+    least: f64,
+    stack: Stack,
+    color: Color,
+}
+
+impl Over {
+    /// The factor on slopes at a factor.
+    fn spread(&self, factor: f64) -> f64 {
+        match self.varying {
+            Varying::Alpha => factor.max(self.least),
+            Varying::Slab | Varying::Film(_) => 1.0,
+        }
+    }
 }
 
 impl Varied {
@@ -82,42 +143,44 @@ impl Varied {
 
     /// [`Self::of`] with settings.
     pub fn with(stack: &Stack, color: &Color, varying: Option<Varying>, settings: FitSettings) -> Self {
-        let shown = shown(stack);
-        let nominal = Simulation::new(&shown, color, settings);
-        let surface = nominal.first.is_some().then(|| shown.layers[0].surface);
-        let Some(varying) = over(&shown, varying) else {
-            return Self { nodes: vec![nominal.fit_fewest(LOBES, EXCESS)], varying: None, surface };
+        let Some(varying) = over(stack, varying) else {
+            return Self { nodes: vec![Lobes::with(stack, color, settings)], varying: None };
         };
-        let alphas = (shown.layers.iter())
+        let stack = shown(stack);
+        let alphas = (stack.layers.iter())
             .filter(|layer| !matches!(layer.base, Base::Diffuse(_)))
             .map(|layer| layer.surface.alpha_x.clamp(ALPHA_MIN, 1.0));
         let least = ALPHA_MIN / alphas.fold(ALPHA_MIN, f64::max);
-        let axis = nominal.axis;
-        let mut simulations = vec![nominal];
-        for node in 1..NODES {
-            let here = varying.apply(&shown, varying.factor(node as f64));
-            simulations.push(Simulation::along(axis, &here, color, settings));
-        }
-        let spread = |node: usize| spread_of(varying, least, varying.factor(node as f64));
-        // Where the lobes are farther apart, more of them may be seen.
-        let (first, middle) = (simulations[0].fewest(LOBES, EXCESS), simulations[NODES / 2].fewest(LOBES, EXCESS));
+        let (count, nominal) = (varying.nodes(), varying.nominal());
+        let axis = ViewAxis::of(&stack, settings.rows);
+        let simulate = |node: usize| {
+            let here = varying.apply(&stack, varying.factor(node as f64));
+            let paths = if node == nominal { settings.paths } else { settings.paths / varying.path_share() };
+            Simulation::along(axis, &here, color, FitSettings { paths, ..settings })
+        };
+        let simulations: Vec<Simulation> = (0..count).map(simulate).collect();
+        let over = Over { varying, least, stack, color: *color };
+        let spread = |node: usize| over.spread(varying.factor(node as f64));
+        let best = |node: usize| (node, simulations[node].fewest(LOBES, EXCESS));
         let lobes = |found: &Found| found.starts(Basis::Isotropic).len();
-        let (seed, start) = if lobes(&middle) > lobes(&first) { (NODES / 2, middle) } else { (0, first) };
-        let mut found: Vec<Option<Found>> = (0..NODES).map(|_| None).collect();
+        // Where the lobes are farther apart, more of them may be seen.
+        let (here, middle) = (best(nominal), best(count / 2));
+        let (seed, start) = if lobes(&middle.1) > lobes(&here.1) { middle } else { here };
+        let mut found: Vec<Option<Found>> = (0..count).map(|_| None).collect();
         found[seed] = Some(start);
-        let pairs = (seed + 1..NODES).map(|node| (node, node - 1)).chain((0..seed).rev().map(|node| (node, node + 1)));
+        let pairs = (seed + 1..count).map(|node| (node, node - 1)).chain((0..seed).rev().map(|node| (node, node + 1)));
         for (node, beside) in pairs {
             let from = found[beside].as_ref();
             found[node] = from.map(|from| simulations[node].follow(from, spread(node) / spread(beside)));
         }
         let lobes = |(simulation, found): (&Simulation, &Option<Found>)| Some(simulation.lobes(found.as_ref()?));
         let nodes = simulations.iter().zip(&found).filter_map(lobes).collect();
-        Self { nodes, varying: Some((varying, least)), surface }
+        Self { nodes, varying: Some(over) }
     }
 
     /// Number of the tiles of a stack: over what varies, or over the azimuth.
     pub fn tiles_of(stack: &Stack, varying: Option<Varying>) -> usize {
-        if Axes::of(stack).is_some() { Axes::TILES } else { over(stack, varying).map_or(1, |_| NODES) }
+        if Axes::of(stack).is_some() { Axes::TILES } else { varying.map_or(1, Varying::nodes) }
     }
 
     /// The lobes of a tile, and the number of the tile in them.
@@ -127,18 +190,17 @@ impl Varied {
 
     /// The part that varies.
     pub fn varying(&self) -> Option<Varying> {
-        self.varying.map(|(varying, _)| varying)
+        self.varying.as_ref().map(|over| over.varying)
     }
 
     /// The least factor on slopes that rows are divided by; 1 where slopes do not vary.
     pub fn least_spread(&self) -> f64 {
-        self.varying.map_or(1.0, |(varying, least)| spread_of(varying, least, 0.0))
+        self.varying.as_ref().map_or(1.0, |over| over.spread(0.0))
     }
 
     /// A row of a tile, as tables have it: with slopes divided by the factor on them.
     pub fn stored(&self, tile: usize, row: usize) -> Row {
-        let spread =
-            self.varying.map_or(1.0, |(varying, least)| spread_of(varying, least, varying.factor(tile as f64)));
+        let spread = self.varying.as_ref().map_or(1.0, |over| over.spread(over.varying.factor(tile as f64)));
         let (lobes, tile) = self.tile(tile);
         lobes.tile(tile)[row].clone().spread(1.0 / spread)
     }
@@ -146,18 +208,15 @@ impl Varied {
     /// The lobes at a factor.
     pub fn at(&self, factor: f64) -> Lobes {
         let mut lobes = self.nodes[0].clone();
-        let Some((varying, least)) = self.varying else { return lobes };
-        let place = varying.place(factor);
+        let Some(over) = &self.varying else { return lobes };
+        let place = over.varying.place(factor);
         let first = (place as usize).min(self.nodes.len() - 2);
-        let spread = spread_of(varying, least, factor);
         let row = |row: usize| {
             let ends = [first, first + 1].map(|node| self.stored(node, row));
-            ends[0].between(&ends[1], place - first as f64).spread(spread)
+            ends[0].between(&ends[1], place - first as f64).spread(over.spread(factor))
         };
         lobes.rows = (0..lobes.rows.len()).map(row).collect();
-        if let (Varying::Alpha, Some(surface), Some(first)) = (varying, self.surface, &mut lobes.first) {
-            first.facets = Facets::new(&scaled_surface(surface, factor));
-        }
+        lobes.first = FirstInterface::of(&over.varying.apply(&over.stack, factor), &over.color);
         lobes
     }
 }
@@ -165,14 +224,6 @@ impl Varied {
 /// The factor that rows are over: that of an isotropic stack.
 fn over(stack: &Stack, varying: Option<Varying>) -> Option<Varying> {
     varying.filter(|_| Axes::of(stack).is_none())
-}
-
-/// The factor on slopes.
-fn spread_of(varying: Varying, least: f64, factor: f64) -> f64 {
-    match varying {
-        Varying::Alpha => factor.max(least),
-        Varying::Slab => 1.0,
-    }
 }
 
 /// A surface with a factor on its slope parameters: those of layer records.
@@ -210,13 +261,14 @@ mod tests {
 
     #[test]
     fn factors_and_places_are_inverse() {
-        for (varying, last) in [(Varying::Alpha, 1.0 / 64.0), (Varying::Slab, 0.0)] {
-            assert_eq!(varying.factor(0.0), 1.0);
+        let film = Varying::Film([1.5, 0.5]);
+        for (varying, last) in [(Varying::Alpha, 1.0 / 64.0), (Varying::Slab, 0.0), (film, 1.0)] {
+            assert_eq!(varying.factor(varying.nominal() as f64), 1.0);
             assert!((varying.factor(7.0) - last).abs() < 1e-15, "{varying:?}");
             for place in [0.0, 0.25, 3.5, 7.0] {
                 assert!((varying.place(varying.factor(place)) - place).abs() < 1e-12, "{varying:?} {place}");
             }
-            assert_eq!(varying.place(0.0), 7.0);
+            assert_eq!(varying.place(0.0), (varying.nodes() - 1) as f64);
         }
     }
 

@@ -128,7 +128,8 @@ fn at(stack: &Stack, model: &str, place: &Place, patina: Option<Growth>) -> Stac
     let factors = &place.sample;
     if model == lobes::MODEL {
         let here = Varying::Alpha.apply(&lobes::shown(stack), factors.alpha_factor);
-        return Varying::Slab.apply(&here, factors.slab_factor);
+        let here = Varying::Slab.apply(&here, factors.slab_factor);
+        return Varying::film(stack).map_or_else(|| here.clone(), |film| film.apply(&here, factors.film_factor));
     }
     let mut here = stack.clone();
     for (i, layer) in here.layers.iter_mut().enumerate() {

@@ -261,7 +261,15 @@ impl ShaderTerms for TableTerms<'_> {
         let axes = lobes.axes.map(|axes| Axes { turn: axes.turn, is_mirrored: axes.is_mirrored });
         let frame = Frame { index: lobes.index, wide: Wide::new(lobes.falloff, axis), axes };
         let row = |tile: u32| table.row(tile, axis.cosine(wo.z), self.weights);
-        let row = axes.map_or_else(|| row(tile), |axes| axes.row(wo, |number| row(tile + number as u32)));
+        let row = match (axes, lobes.varying) {
+            (Some(axes), _) => axes.row(wo, |number| row(tile + number as u32)),
+            (None, Some(varying)) => {
+                let place = varying.nominal();
+                let first = (place as u32).min(varying.tiles.saturating_sub(2));
+                row(tile + first).between(&row(tile + first + 1), place - f64::from(first))
+            }
+            (None, None) => row(tile),
+        };
         Some(Below::new(frame, row, wo))
     }
 }

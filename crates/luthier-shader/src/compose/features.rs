@@ -3,7 +3,9 @@
 use std::collections::BTreeSet;
 
 use luthier_lut::TableKind;
-use luthier_manifest::{FunctionGroup, LayerKind, LayerRecord, MaterialEntry, ShadingModel};
+use luthier_manifest::{
+    FunctionGroup, LayerKind, LayerRecord, LobesRecord, MaterialEntry, ShadingModel, VaryingFactor,
+};
 
 use crate::{Form, MaterialSet};
 
@@ -16,7 +18,7 @@ impl Features {
     #[cfg(test)]
     const ALL: &str = "absorption anisotropic bare beckmann below bilinear chain chain_diffuse clamped closed coat conductor critical_view diffuse environment \
     face film film_table flakes full ggx glitter granier granier_bare granier_base \
-    granier_film granier_transparent interface lobes_axes lobes_diffuse lobes_tilted media microfacet_diffuse mixed one_lobe oren_nayar patina phong \
+    granier_film granier_transparent interface lobes_axes lobes_diffuse lobes_film lobes_tilted media microfacet_diffuse mixed one_lobe oren_nayar patina phong \
     place powers schlick_base several smith split_root statistics statistics_base surface theta_axis tilted total_reflection two_lobes visible";
 
     pub(crate) fn of(set: &MaterialSet<'_>, form: Form) -> Self {
@@ -161,6 +163,9 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
         if material.model == ShadingModel::Lobes && material.constants.lobes.is_some_and(|lobes| lobes.axes.is_some()) {
             names.insert("lobes_axes");
         }
+        if material.model == ShadingModel::Lobes && material.constants.lobes.is_some_and(|lobes| is_over_film(&lobes)) {
+            names.insert("lobes_film");
+        }
         if material.model.reads_distribution() && layer.tiles[TableKind::Distribution].is_none() {
             names.insert("closed");
         }
@@ -230,6 +235,11 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
         _ => false,
     };
     names
+}
+
+/// Whether rows are over the thickness of a film.
+fn is_over_film(lobes: &LobesRecord) -> bool {
+    lobes.varying.is_some_and(|varying| varying.factor == VaryingFactor::FilmFactor)
 }
 
 /// Whether lobes come from below a slab, in which what is there may be tilted.

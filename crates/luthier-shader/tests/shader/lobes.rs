@@ -119,25 +119,38 @@ fn rows_over_a_factor_are_those_of_the_twin() {
             image.texel_mut(x, y).copy_from_slice(&texel.map(|value| value as f32));
         }
     }
-    for (factor, member, first) in [(VaryingFactor::AlphaFactor, 0, 1), (VaryingFactor::SlabFactor, 1, 0)] {
+    let film = Some([1.2, 0.2]);
+    for (factor, member, first, factors) in [
+        (VaryingFactor::AlphaFactor, 0, 1, None),
+        (VaryingFactor::SlabFactor, 1, 0, None),
+        (VaryingFactor::FilmFactor, 2, 1, film),
+    ] {
         let mut material = set("lobes-place")[0].clone();
         material.layers[0].tiles[TableKind::Lobes] = Some(first);
         let record = material.constants.lobes.as_mut().unwrap();
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
         record.integral = wide.integral();
-        record.varying = Some(VaryingRecord { factor, tiles: 4, least_spread: 0.1 });
+        record.varying = Some(VaryingRecord { factor, tiles: 4, least_spread: 0.1, factors });
         let frame = Frame { index: record.index, wide, axes: None };
         let materials = [material];
         let text = emit(&MaterialSet::new(&materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap();
         let machine = lit_from_below(&text, &materials, &image);
         let Value::Many(neutral) = machine.call("luthier_place", Vec::new()) else { panic!("a place is a structure") };
-        // By hand: roots 1, .7, .41, 0; of four tiles, the last on slopes is that of 1/4.
-        for (scale, over_alpha, over_slab) in
-            [(1.0, 0.0, 0.0), (0.49, 1.2, 0.9), (0.1681, 2.36, 1.77), (0.0025, 3.0, 2.85), (0.0, 3.0, 3.0)]
-        {
+        // By hand: roots 1, .7, .41, 0; of four tiles, the last on slopes is that of 1/4. Films are at equal distances from 1.2 to .2.
+        for (scale, over_alpha, over_slab, over_film) in [
+            (1.0, 0.0, 0.0, 0.6),
+            (0.49, 1.2, 0.9, 2.13),
+            (0.1681, 2.36, 1.77, 3.0),
+            (0.0025, 3.0, 2.85, 3.0),
+            (0.0, 3.0, 3.0, 3.0),
+        ] {
             let mut place = neutral.clone();
             place[1 + member] = Value::F(scale as f32);
-            let (over, spread) = if member == 0 { (over_alpha, f64::max(scale, 0.1)) } else { (over_slab, 1.0) };
+            let (over, spread) = match member {
+                0 => (over_alpha, f64::max(scale, 0.1)),
+                1 => (over_slab, 1.0),
+                _ => (over_film, 1.0),
+            };
             let tile = f64::from(first) + over;
             let low = (tile as u32).min(3);
             for (wi, wo) in directions(60) {

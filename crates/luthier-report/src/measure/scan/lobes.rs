@@ -2,7 +2,7 @@
 
 use luthier_layers::terms::Exact;
 
-use super::{Measured, Scan, User, coordinates};
+use super::{Measured, Scan, User, coordinates, run};
 use crate::Subject;
 use crate::judge::report::Curves;
 use crate::measure::subject::Table;
@@ -25,7 +25,9 @@ pub(super) fn scan(
     // Users of one tile have one stack.
     let &(material, layer) = users.first()?;
     let lobes = exact.get(material)?.lobes();
-    let number = (tile - subject.manifest.materials[material].layers[layer].tiles[table.entry.kind]?) as usize;
+    let entry = &subject.manifest.materials[material];
+    let first = entry.layers[layer].tiles[table.entry.kind]? + run(entry, table.entry.kind).start;
+    let number = (tile - first) as usize;
     for u in coordinates(x, POINTS_PER_CELL) {
         let c = x.decode(u);
         let (expected, sampled) =

@@ -9,6 +9,8 @@ mod lobes;
 mod phase;
 mod thickness;
 
+use std::ops::Range;
+
 use luthier_layers::terms::Exact;
 use luthier_lut::{Axis, ErrorStats, TableKind, Worst};
 use luthier_manifest::MaterialEntry;
@@ -88,10 +90,12 @@ pub(crate) fn scan(
 /// A layer that reads a tile: numbers of the material and of the layer.
 type User = (usize, usize);
 
-/// Number of the tiles that a layer of a material reads, one after the other: lobes of an anisotropic stack are over the azimuth.
-fn run(material: &MaterialEntry, kind: TableKind) -> u32 {
-    let axes = material.constants.lobes.and_then(|lobes| lobes.axes);
-    axes.filter(|_| kind == TableKind::Lobes).map_or(1, |axes| axes.tiles)
+/// The tiles from its own on that the nominal surface of a layer reads: lobes of an anisotropic stack are over the azimuth, those under a film that
+/// varies have the nominal thickness in the middle.
+pub(super) fn run(material: &MaterialEntry, kind: TableKind) -> Range<u32> {
+    let lobes = material.constants.lobes.filter(|_| kind == TableKind::Lobes);
+    let nominal = lobes.and_then(|lobes| lobes.varying).map_or(0, |varying| varying.nominal() as u32);
+    nominal..nominal + lobes.and_then(|lobes| lobes.axes).map_or(1, |axes| axes.tiles)
 }
 
 fn users(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<User> {
@@ -99,7 +103,7 @@ fn users(subject: &Subject<'_>, kind: TableKind, tile: u32) -> Vec<User> {
     for (m, material) in subject.manifest.materials.iter().enumerate() {
         let run = run(material, kind);
         let reads = |l: &usize| {
-            material.layers[*l].tiles[kind].is_some_and(|first| (first..first.saturating_add(run)).contains(&tile))
+            material.layers[*l].tiles[kind].is_some_and(|first| tile >= first && run.contains(&(tile - first)))
         };
         out.extend((0..material.layers.len()).filter(reads).map(|l| (m, l)));
     }

@@ -234,7 +234,14 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     //? place
     // Rows over a factor lie one below the other, at equal distances of its root from 1: to 0 on the slab, to a step before it on slopes.
     let over = luthier_materials[header + $word_phong_diffuse];
+    //? lobes_film
+    // Or at equal distances of the factor on the film, from the greatest to the least.
+    let sheet = luthier_materials[header + $word_glitter_tilt];
+    let roots = 1.0 - sqrt(saturate(vec2<f32>(place.alpha_factor, place.slab_factor)));
+    let away = vec2<f32>(roots.x, select(roots.y, saturate(place.film_factor * sheet.y + sheet.z), sheet.w < 0.0));
+    //? else
     let away = 1.0 - sqrt(saturate(vec2<f32>(place.alpha_factor, place.slab_factor)));
+    //? end
     let first_tile = luthier_materials[header].w + min(away.x * (over.x + 1.0), over.x) + away.y * over.y;
     let spread = max(place.alpha_factor, over.z);
     //? else
