@@ -13,7 +13,7 @@ use super::parameters::{Basis, NODES, Start, parameters};
 use super::problem::{Lobed, Problem, ViewProblem, seen_from};
 use super::solve::{LeastSquares, Place};
 use super::tally::{Cells, Tally};
-use super::{Axes, Critical, FirstInterface, Lobes, ViewAxis};
+use super::{Axes, Critical, FirstInterface, Lobes, Row, ViewAxis};
 use crate::facets::ALPHA_MIN;
 use crate::layered_mc::ColorPaths;
 
@@ -181,8 +181,14 @@ impl Simulation {
                 settings.seed.wrapping_mul(views.azimuths() as u64 * axis.size() as u64).wrapping_add(number as u64);
             paths.trace(seed, count, outside, |path| {
                 let wi = axes.map_or(path.wi, |axes| axes.inside(path.wi));
-                tally.add(&cells, [wi, wo], path.weight.map(|w| w / count as f64), path.is_first_facet);
+                // That of one facet of the first interface is known.
+                if !path.is_first_facet {
+                    tally.add(&cells, [wi, wo], path.weight.map(|w| w / count as f64));
+                }
             });
+            if let Some(first) = &first {
+                tally.first_facet = first.energy(outside);
+            }
             tally
         };
         let tallies = views.all().enumerate().map(view).collect();
@@ -255,7 +261,9 @@ impl Simulation {
 
     /// The lobes of a place.
     pub(super) fn lobes(&self, found: &Found) -> Lobes {
-        Problem::new(self, found.set).lobes(found)
+        let mut lobes = Problem::new(self, found.set).lobes(found);
+        lobes.rows.iter_mut().for_each(Row::bound);
+        lobes
     }
 
     fn problems(&self) -> Vec<Problem<'_>> {

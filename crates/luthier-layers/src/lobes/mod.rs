@@ -63,7 +63,7 @@ use luthier_optics::ior::{Ior, IorSample};
 use luthier_optics::stack::{Base, Stack};
 
 use crate::domain::INDEX_MAX;
-use crate::facets::Facets;
+use crate::facets::{Facets, Masking};
 use crate::model::{Claims, Kind, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 use crate::oren_nayar;
@@ -105,7 +105,24 @@ impl FirstInterface {
         let interface = Interface::of(stack, 0)?;
         Some(Self { facets: Facets::new(&stack.layers[0].surface), reflectance: interface.sampled(color) })
     }
+
+    /// Energy that one facet sends to `wo`, by channel: over [`SIDE`]^2 visible normals, which leaves an error of some 1e-4.
+    fn energy(&self, wo: DVec3) -> Rgb {
+        let mut sum = [0.0; 3];
+        for (i, j) in (0..SIDE).flat_map(|i| (0..SIDE).map(move |j| (i, j))) {
+            let wh = self.facets.sample(wo, [i, j].map(|x| (f64::from(x) + 0.5) / f64::from(SIDE)));
+            let wi = 2.0 * wh.dot(wo) * wh - wo;
+            let Some(lobe) = self.facets.lobe(Masking::Smith, wi, wo) else { continue };
+            let weight = lobe.value / self.facets.pdf_solid_angle(wi, wo) / f64::from(SIDE * SIDE);
+            let reflected = self.reflectance.rgb(lobe.cos_theta_d);
+            (0..3).for_each(|c| sum[c] += weight * reflected[c]);
+        }
+        sum
+    }
 }
+
+/// Visible normals along either number that they are drawn from.
+const SIDE: u32 = 32;
 
 /// The name of the model.
 pub const MODEL: &str = "lobes";

@@ -281,6 +281,20 @@ impl Row {
             .map(|c: usize| (self.albedo_dir[c] - energies[1..].iter().map(|energy| energy[c]).sum::<f64>()).max(0.0))
     }
 
+    /// Takes from what comes from below where more light returns than falls in: by the noise of paths it may.
+    pub(super) fn bound(&mut self) {
+        for c in 0..3 {
+            let excess = self.albedo_dir[c] - 1.0;
+            if excess > 0.0 {
+                let below = self.albedo_dir[c] - self.first_facet()[c];
+                let left = if below > excess { 1.0 - excess / below } else { 0.0 };
+                self.wide[c] *= left;
+                self.lobes.iter_mut().for_each(|lobe| lobe.strength[c] *= left);
+                self.albedo_dir[c] = 1.0;
+            }
+        }
+    }
+
     /// The row between two others.
     #[must_use]
     pub fn between(&self, other: &Self, t: f64) -> Self {
@@ -343,6 +357,16 @@ mod tests {
             let parts = row.to_parts();
             assert_eq!((parts.len(), Row::of_parts(&parts)), (Row::parts(row.lobes.len()), row));
         }
+    }
+
+    #[test]
+    fn no_row_returns_more_than_falls_in() {
+        let lobe = Lobe { strength: [0.5, 0.5, 0.0], share: 0.8, shift: 0.0, sharpness: [1.0; 2], shear: 0.0, tail: 0.0 };
+        let mut row = Row { albedo_dir: [1.25, 0.75, 1.5], lobes: vec![lobe], wide: [0.1, 0.1, 0.0] };
+        row.bound();
+        // Below are .5 and .25 too much; the third channel has nothing there.
+        assert_eq!((row.albedo_dir, row.lobes[0].strength), ([1.0, 0.75, 1.0], [0.25, 0.5, 0.0]));
+        assert!((row.wide[0] - 0.05).abs() < 1e-15 && (row.first_facet()[0] - 0.75).abs() < 1e-12);
     }
 
     /// Oracle: the matrix itself, for the squared distance and the determinant.

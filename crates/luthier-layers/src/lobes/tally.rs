@@ -128,14 +128,14 @@ impl Cells {
     }
 }
 
-/// Light of one view: what met one facet of the first interface alone, and the rest in cells.
+/// Light of one view: that of one facet of the first interface, and the rest in cells.
 #[derive(Debug, Clone)]
 pub(super) struct Tally {
     /// Energy by cell and channel, for each set of cells.
     pub(super) rest: Vec<Vec<Rgb>>,
     /// Their sum.
     pub(super) total: Rgb,
-    /// Energy of the light that met one facet alone.
+    /// Energy of the light that met one facet alone, in closed form.
     pub(super) first_facet: Rgb,
 }
 
@@ -145,12 +145,9 @@ impl Tally {
         Self { rest, total: [0.0; 3], first_facet: [0.0; 3] }
     }
 
-    /// Counts light with a weight.
-    pub(super) fn add(&mut self, cells: &[Cells], [wi, wo]: [DVec3; 2], weight: Rgb, is_first_facet: bool) {
+    /// Counts light of the rest with a weight.
+    pub(super) fn add(&mut self, cells: &[Cells], [wi, wo]: [DVec3; 2], weight: Rgb) {
         let plus = |sum: &mut Rgb| (0..3).for_each(|c| sum[c] += weight[c]);
-        if is_first_facet {
-            return plus(&mut self.first_facet);
-        }
         plus(&mut self.total);
         for (cells, rest) in cells.iter().zip(&mut self.rest) {
             plus(&mut rest[cells.cell(wi, wo)]);
