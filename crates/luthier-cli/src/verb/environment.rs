@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use luthier_environment::{Environment, Layout, Level};
-use luthier_export::{GENERATOR, publish, sha256};
+use luthier_export::{ENVIRONMENT, GENERATOR, publish, sha256};
 use luthier_lut::{Image, TexelFormat};
 use luthier_terminal::{Failure, Outcome, complain, print};
 use luthier_texture::ktx2::{Levels, encode_levels};
@@ -61,7 +61,7 @@ pub(crate) fn run(options: &EnvironmentOptions) -> Outcome {
         "textures": textures,
     });
     let text = format!("{manifest:#}\n");
-    files.push(("environment.json".to_owned(), text.clone().into_bytes()));
+    files.push((ENVIRONMENT.to_owned(), text.clone().into_bytes()));
     let listed: Vec<(&str, &[u8])> = files.iter().map(|(path, bytes)| (path.as_str(), bytes.as_slice())).collect();
     publish(&options.out, &listed)?;
     if clamped > 0 {

@@ -21,14 +21,20 @@ pub(crate) const READY: &str = ".luthier-ready";
 /// File that a program locks while it publishes, on systems where it cannot lock the folder.
 const LOCK: &str = ".luthier.lock";
 
+/// Name of the file that lists the textures of an environment.
+pub const ENVIRONMENT: &str = "environment.json";
+
+/// Files that name others with their hashes.
+const LISTS: [&str; 2] = [MANIFEST, ENVIRONMENT];
+
 /// Folder of the report beside the manifest.
 pub const REPORT_FOLDER: &str = "report";
 
 /// The report: for programs, for pull requests, and for people.
 pub const REPORT_FILES: [&str; 3] = ["report/report.json", "report/report.md", "report/index.html"];
 
-/// Writes files into a folder, which is made if it does not exist: all of them, or none. Where one is a manifest, what the manifest before
-/// it named is removed unless it is written again, the report on that bake too.
+/// Writes files into a folder, which is made if it does not exist: all of them, or none. Where one is a manifest or the list of an environment, what
+/// the one before it named is removed unless it is written again, the report on that bake too.
 ///
 /// # Errors
 /// [`PackageError::Write`]; the folder then holds the files that it held.
@@ -91,32 +97,34 @@ fn settle(folder: &Path) -> Result<(), PackageError> {
     let mut files = Vec::new();
     at("list", &ready, list(&ready, &mut files))?;
     let relative = |file: &PathBuf| file.strip_prefix(&ready).map(Path::to_owned).unwrap_or_default();
-    let (mut manifest, others): (Vec<_>, Vec<_>) =
-        files.iter().map(relative).partition(|path| path == Path::new(MANIFEST));
+    let (lists, others): (Vec<_>, Vec<_>) =
+        files.iter().map(relative).partition(|path| LISTS.iter().any(|list| path == Path::new(list)));
     for path in &others {
         at("write", &folder.join(path), std::fs::rename(ready.join(path), folder.join(path)))?;
     }
-    if let Some(path) = manifest.pop() {
-        remove_stale(folder, &ready.join(&path))?;
+    for path in lists {
+        remove_stale(folder, &path, &ready.join(&path))?;
         at("write", &folder.join(&path), std::fs::rename(ready.join(&path), folder.join(&path)))?;
     }
     at("remove", &ready, std::fs::remove_dir_all(&ready))
 }
 
-/// Removes what the manifest in place names and the next one does not.
-fn remove_stale(folder: &Path, next: &Path) -> Result<(), PackageError> {
+/// Removes what the list in place names and the next one does not.
+fn remove_stale(folder: &Path, list: &Path, next: &Path) -> Result<(), PackageError> {
     // Unreadable is as good as none: it names nothing.
-    let [old, next] = [&folder.join(MANIFEST), next].map(|path| std::fs::read_to_string(path).unwrap_or_default());
+    let [old, next] = [&folder.join(list), next].map(|path| std::fs::read_to_string(path).unwrap_or_default());
     if old == next {
         return Ok(());
     }
-    let current: BTreeSet<PathBuf> = named_by(&next).into_iter().chain([PathBuf::from(MANIFEST)]).collect();
+    let current: BTreeSet<PathBuf> = named_by(&next).into_iter().chain([list.to_owned()]).collect();
     let mut stale = named_by(&old);
     if stale.is_empty() {
         return Ok(());
     }
     stale.retain(|path| !current.contains(path));
-    stale.extend(REPORT_FILES.map(PathBuf::from));
+    if list == Path::new(MANIFEST) {
+        stale.extend(REPORT_FILES.map(PathBuf::from));
+    }
     for path in stale.iter().map(|path| folder.join(path)).filter(|path| path.is_file()) {
         at("remove", &path, std::fs::remove_file(&path))?;
     }

@@ -83,6 +83,23 @@ fn a_publication_that_was_interrupted_is_read_and_completed() {
     }
 }
 
+/// Textures of an environment beside a bake: each list removes what it named before, and nothing of the other.
+#[test]
+fn lists_remove_what_they_named() {
+    let folder = folder();
+    put(folder.path(), &generation("a.wgsl", "first")).unwrap();
+    let list = |name: &str| {
+        format!(r#"{{"generator": "luthier 0", "textures": [{{"path": "{name}", "sha256": "0"}}]}}"#).into_bytes()
+    };
+    for name in ["cube.ktx2", "equirect.ktx2"] {
+        publish(folder.path(), &[(name, b"texels"), (ENVIRONMENT, &list(name))]).unwrap();
+    }
+    publish(folder.path(), &[(REPORT_FILES[1], b"judged")]).unwrap();
+    assert_eq!(names(folder.path()), ["a.wgsl", ENVIRONMENT, "equirect.ktx2", "manifest.json", REPORT_FILES[1]]);
+    put(folder.path(), &generation("b.wgsl", "second")).unwrap();
+    assert_eq!(names(folder.path()), ["b.wgsl", ENVIRONMENT, "equirect.ktx2", "manifest.json"]);
+}
+
 #[test]
 fn a_folder_in_the_place_of_a_file_stops_a_publication_before_it_begins() {
     let folder = folder();
