@@ -44,7 +44,7 @@ pub struct LobesRecord {
     pub critical_cot_sq: f64,
     /// Half the width w over which the cosine inside turns at the critical angle, in squared cosines.
     pub critical_width: f64,
-    /// Share of the cosine of the view in the axis of the rows; the rest is the cosine inside.
+    /// Share of `5 cos / (1 + 4 cos)` of the view in the axis of the rows; the rest is the cosine inside.
     pub critical_plain_share: f64,
     /// Tiles over a factor that a texture has, where rows are over one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -125,12 +125,15 @@ impl LobesRecord {
         [cos, sin, (f64::from(tiles) - 1.0) / if is_mirrored { 1.0 } else { 2.0 }]
     }
 
-    /// Numbers of the cosine inside: k, `4 w^2`, and factor and offset for the root to be 0 at the horizon and 1 at the normal.
+    /// Numbers of the cosine inside, whose x is `(1 + k) (cos^2 - k / (1 + k))`: the squared cosine `k / (1 + k)` of the critical angle,
+    /// `4 w^2 / (1 + k)^2`, and factor and offset for the root to be 0 at the horizon and 1 at the normal.
     fn inside(&self) -> [f64; 4] {
-        let four_width_sq = 4.0 * self.critical_width * self.critical_width;
-        let root = |x: f64| (0.5 * (x + (x * x + four_width_sq).sqrt())).max(0.0).sqrt();
-        let [horizon, normal] = [root(-self.critical_cot_sq), root(1.0)];
-        [self.critical_cot_sq, four_width_sq, 1.0 / (normal - horizon), (0.0 - horizon) / (normal - horizon)]
+        let scale = 1.0 + self.critical_cot_sq;
+        let (cos_sq, width) = (self.critical_cot_sq / scale, self.critical_width / scale);
+        let four_width_sq = 4.0 * width * width;
+        let root = |x: f64| (x + (x * x + four_width_sq).sqrt()).max(0.0).sqrt();
+        let [horizon, normal] = [root(-cos_sq), root(1.0 - cos_sq)];
+        [cos_sq, four_width_sq, 1.0 / (normal - horizon), (0.0 - horizon) / (normal - horizon)]
     }
 }
 
@@ -291,12 +294,13 @@ mod tests {
             axes: None,
         };
         let words = |lobes| MaterialConstants { lobes: Some(lobes), ..MaterialConstants::default() }.words();
-        // Roots: of (-3 + sqrt(9 + 16)) / 2 = 1, and of (1 + sqrt(17)) / 2.
-        let range = f64::sqrt(0.5 * (1.0 + f64::sqrt(17.0))) - 1.0;
-        let inside = [3.0, 16.0, (1.0 / range) as f32, (-1.0 / range) as f32];
+        // Roots: of -3/4 + sqrt(9/16 + 1) = 1/2, and of 1/4 + sqrt(1/16 + 1).
+        let horizon = f64::sqrt(0.5);
+        let range = f64::sqrt(0.25 * (1.0 + f64::sqrt(17.0))) - horizon;
+        let inside = [0.75, 1.0, (1.0 / range) as f32, (-horizon / range) as f32];
         assert_eq!(words(lobes)[..3], [[0.0, 0.0, 1e-3, 0.25], inside, [0.5625, 0.5, 0.75, 1.0]]);
         let without = LobesRecord { critical_cot_sq: 0.0, critical_width: 0.0, ..lobes };
-        assert_eq!(words(without)[1], [0.0, 0.0, 1.0, 0.0]);
+        assert_eq!(words(without)[1], [0.0, 0.0, f32::sqrt(0.5), 0.0]);
         let over = |factor| {
             let varying = Some(VaryingRecord { factor, tiles: 9, least_spread: 0.5, factors: None });
             words(LobesRecord { varying, ..lobes })[0]

@@ -407,7 +407,8 @@ fn indices(stack: &Stack) -> Vec<f64> {
     indices
 }
 
-/// The critical angle of the view for the medium of the least index, blurred by the interfaces above that medium.
+/// The critical angle of the view for the medium of the least index, blurred by the interfaces above that medium. A sharp kink of a medium
+/// above it counts before a blurred one.
 fn critical(stack: &Stack, rows: usize) -> Critical {
     let exterior = stack.exterior.at(REFERENCE_NM).re;
     let mut found = (1.0, 0.0);
@@ -417,7 +418,8 @@ fn critical(stack: &Stack, rows: usize) -> Critical {
         let alpha = layer.surface.alpha_isotropic().max(ALPHA_MIN);
         joined_sq += alpha * alpha;
         let index = ior.at(REFERENCE_NM).re / exterior;
-        if index < found.0 {
+        let is_sharp = found.0 == 1.0 || joined_sq.sqrt() < SHARPEST * found.1;
+        if index < found.0 && is_sharp {
             found = (index, joined_sq.sqrt());
         }
     }
@@ -426,6 +428,9 @@ fn critical(stack: &Stack, rows: usize) -> Critical {
     let width = 2.0 * BLUR * alpha * ((1.0 - index) * (1.0 + index)).sqrt() / index;
     Critical::new(index, width, rows)
 }
+
+/// Blur of a kink over that of another from which on it does not need the rows.
+const SHARPEST: f64 = 2.0;
 
 /// The wavelength at which directions are refracted: the sodium D line.
 const REFERENCE_NM: f64 = 589.3;

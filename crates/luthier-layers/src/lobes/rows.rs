@@ -14,12 +14,21 @@ pub struct Critical {
     pub cot_sq: f64,
     /// Half the width w over which rough interfaces blur the kink, in squared cosines.
     pub width: f64,
-    /// Share of the cosine of the view in that of the axis; the rest is the cosine inside.
+    /// Share of the view's own part in the cosine of the axis; the rest is the cosine inside.
     pub plain_share: f64,
 }
 
-/// Share of the cosine of the view, about.
+/// Share of the view's own part, about.
 const PLAIN_SHARE: f64 = 0.25;
+
+/// The view's own part of the axis: `(1 + b) c / (b + c)` of its cosine c. Reflectances are steepest at the horizon, where it is five times as
+/// steep as c.
+fn plain(cos_theta: f64) -> f64 {
+    cos_theta * ((1.0 + PLAIN_BEND) / (cos_theta + PLAIN_BEND))
+}
+
+/// The b of [`plain`].
+const PLAIN_BEND: f64 = 0.25;
 
 impl Critical {
     /// The critical angle of a medium of relative index below 1; none for another. A node of the rows is at the kink.
@@ -33,7 +42,7 @@ impl Critical {
         let outside = ((1.0 - index) * (1.0 + index)).sqrt();
         let (inside, last) = (axis.inside(outside), (axis.size - 1) as f64);
         let u = libm::round(axis.place(outside)).max(1.0) / last;
-        let share = (u / (2.0 - u) - inside) / (outside - inside);
+        let share = (u / (2.0 - u) - inside) / (plain(outside) - inside);
         // Where the kink is beside an end of the axis, no node can be.
         if share > 0.5 * PLAIN_SHARE && share < 2.0 * PLAIN_SHARE {
             Self { plain_share: share, ..critical }
@@ -46,8 +55,8 @@ impl Critical {
 /// The axis of rows over the view: nodes at equal distances in `2c / (1 + c)`, up to the normal.
 ///
 /// c is the cosine of the view. Where a medium reflects flat light totally, everything from below has a kink at the critical angle. There
-/// c is a mean of the cosine inside ([`Self::inside`]), whose slope is steep at the kink, and of that of the view, which tells flatter views
-/// apart.
+/// c is a mean of the cosine inside ([`Self::inside`]), whose slope is steep at the kink, and of `5 cos / (1 + 4 cos)` of the view, which
+/// tells flatter views apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ViewAxis {
     size: usize,
@@ -87,7 +96,7 @@ impl ViewAxis {
     pub fn cosine(self, cos_theta: f64) -> f64 {
         if self.critical.cot_sq > 0.0 {
             let inside = self.inside(cos_theta);
-            inside + self.critical.plain_share * (cos_theta - inside)
+            inside + self.critical.plain_share * (plain(cos_theta) - inside)
         } else {
             cos_theta.clamp(0.0, 1.0)
         }
@@ -323,7 +332,8 @@ mod tests {
         let soft = critical(0.01);
         let [horizon, normal] = [root(-cot_sq, 0.01), root(1.0, 0.01)];
         assert!((soft.inside(critical_cos) - (0.1 - horizon) / (normal - horizon)).abs() < 1e-12);
-        assert!((soft.cosine(critical_cos) - (0.75 * soft.inside(critical_cos) + 0.25 * critical_cos)).abs() < 1e-12);
+        let plain = 5.0 * critical_cos / (1.0 + 4.0 * critical_cos);
+        assert!((soft.cosine(critical_cos) - (0.75 * soft.inside(critical_cos) + 0.25 * plain)).abs() < 1e-12);
         assert_eq!([soft.cosine(0.0), soft.cosine(1.0)], [0.0, 1.0]);
         // With a node at the kink.
         let kinked = ViewAxis::new(20, Critical::new(2.0 / 3.0, 0.01, 20));

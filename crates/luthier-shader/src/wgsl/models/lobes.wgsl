@@ -107,12 +107,11 @@ fn luthier_coat_slope(coat: LuthierLayer, w: vec3<f32>) -> f32 {
 
 //? critical_view
 /// The cosine of a refracted direction where a medium reflects flat light totally: its kink at the critical angle is rounded off, and it goes
-/// from 0 at the horizon to 1 at the normal. The numbers: squared cotangent of the angle, four times the squared width of the kink, factor
+/// from 0 at the horizon to 1 at the normal. The numbers: squared cosine of the angle, four times the squared width of the kink, factor
 /// and offset.
 fn luthier_inside_cosine(inside: vec4<f32>, cos_theta: f32) -> f32 {
-    let cos_theta_sq = cos_theta * cos_theta;
-    let refracted = cos_theta_sq - inside.x * (1.0 - cos_theta_sq);
-    let root = sqrt(max(0.5 * (refracted + sqrt(refracted * refracted + inside.y)), 0.0));
+    let beyond = cos_theta * cos_theta - inside.x;
+    let root = sqrt(max(beyond + sqrt(beyond * beyond + inside.y), 0.0));
     return root * inside.z + inside.w;
 }
 //? end
@@ -283,8 +282,9 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     //? end
     //? critical_view
     prepared.inside = luthier_materials[header + $word_phong_specular];
-    // Rows are over a mean of it and of the cosine outside.
-    let cos_theta = mix(luthier_inside_cosine(prepared.inside, wo.z), wo.z, luthier_materials[header + $word_phong_diffuse].w);
+    // Rows are over a mean of it and of a cosine outside that is steeper at the horizon.
+    let plain = wo.z * (1.25 / (wo.z + 0.25));
+    let cos_theta = mix(luthier_inside_cosine(prepared.inside, wo.z), plain, luthier_materials[header + $word_phong_diffuse].w);
     //? else
     let cos_theta = wo.z;
     //? end
