@@ -22,7 +22,7 @@ use crate::layered_mc::ColorPaths;
 pub struct FitSettings {
     /// Rows over the view.
     pub rows: usize,
-    /// Paths for each row; a third at each azimuth of an anisotropic stack.
+    /// Paths for each row: half of them for each view where there are two; a third at each azimuth of an anisotropic stack.
     pub paths: u64,
     /// Family of random numbers.
     pub seed: u64,
@@ -53,8 +53,9 @@ const LAST_STEPS: u32 = 20;
 /// Places that are followed to the end.
 const FOLLOWED: usize = 2;
 
-/// Paths of a row over those at each azimuth.
+/// Paths of a row over those at each azimuth, and over those of each of two views.
 const AZIMUTH_SHARE: u64 = 3;
+const VIEW_SHARE: u64 = 2;
 
 /// Steps of an anisotropic fit with all views.
 const POLISH_STEPS: u32 = 4;
@@ -66,7 +67,9 @@ const START_WIDTHS: [f64; 2] = [1e-3, 0.8];
 #[derive(Debug, Clone)]
 pub struct Simulation {
     pub(super) first: Option<FirstInterface>,
+    /// The axis of the rows, and that of the views.
     pub(super) axis: ViewAxis,
+    pub(super) seen: ViewAxis,
     /// Tangents of an anisotropic stack.
     pub(super) axes: Option<Axes>,
     pub(super) cells: Vec<Cells>,
@@ -77,7 +80,7 @@ pub struct Simulation {
     pub(super) views: Vec<Tally>,
 }
 
-/// Numbers of views: rows from grazing views up, one azimuth after the other, without that along the normal; and last that.
+/// Numbers of views: rows of them from grazing views up, one azimuth after the other, without that along the normal; and last that.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Views {
     pub(super) rows: usize,
@@ -152,7 +155,8 @@ impl Simulation {
         Self::along(ViewAxis::of(stack, settings.rows), stack, color, settings)
     }
 
-    /// [`Self::new`] with rows over an axis.
+    /// [`Self::new`] with rows over an axis. With a critical angle, where rows are far apart, the stack is seen half way between them, too, so that
+    /// what is linear can err as much at them as there. Elsewhere that would be no gain over the noise.
     pub(super) fn along(axis: ViewAxis, stack: &Stack, color: &Color, settings: FitSettings) -> Self {
         let first = FirstInterface::of(stack, color);
         let axes = Axes::of(stack);
@@ -169,16 +173,23 @@ impl Simulation {
         }
         let cells: Vec<Cells> = indices(stack).into_iter().map(|index| cells(index, &rough, axes)).collect();
         let (paths, count) = (ColorPaths::new(stack, color), settings.paths);
-        let views = Views { rows: axis.size(), axes };
+        let is_half = axes.is_none() && axis.critical().cot_sq > 0.0;
+        let seen = if is_half { ViewAxis::new(2 * axis.size() - 1, axis.critical()) } else { axis };
+        let views = Views { rows: seen.size(), axes };
         let view = |(number, (azimuth, row)): (usize, (usize, usize))| {
-            let wo = seen_from(axis, views.azimuth(azimuth), row);
+            let wo = seen_from(seen, views.azimuth(azimuth), row);
             // The light is traced in the tangents of the stack.
             let outside = axes.map_or(wo, |axes| axes.outside(wo));
-            let count = if axes.is_some() && row + 1 < axis.size() { count / AZIMUTH_SHARE } else { count };
+            let count = match axes {
+                None if is_half => count / VIEW_SHARE,
+                None => count,
+                Some(_) if row + 1 < seen.size() => count / AZIMUTH_SHARE,
+                Some(_) => count,
+            };
             let mut tally = Tally::new(&cells);
-            // A family of its own for every row.
+            // A family of its own for every view.
             let seed =
-                settings.seed.wrapping_mul(views.azimuths() as u64 * axis.size() as u64).wrapping_add(number as u64);
+                settings.seed.wrapping_mul(views.azimuths() as u64 * seen.size() as u64).wrapping_add(number as u64);
             paths.trace(seed, count, outside, |path| {
                 let wi = axes.map_or(path.wi, |axes| axes.inside(path.wi));
                 // That of one facet of the first interface is known.
@@ -192,7 +203,7 @@ impl Simulation {
             tally
         };
         let tallies = views.all().enumerate().map(view).collect();
-        Self { first, axis, axes, cells, starts, widths: widths(&rough), views: tallies }
+        Self { first, axis, seen, axes, cells, starts, widths: widths(&rough), views: tallies }
     }
 
     /// The unknowns of a lobe.
@@ -202,7 +213,7 @@ impl Simulation {
 
     /// The numbers of the views.
     pub(super) fn numbers(&self) -> Views {
-        Views { rows: self.axis.size(), axes: self.axes }
+        Views { rows: self.seen.size(), axes: self.axes }
     }
 
     /// The lobes, so many, that are nearest to the light that was traced.

@@ -123,12 +123,12 @@ impl<'a> Problem<'a> {
     pub(super) fn coarse(simulation: &'a Simulation, set: usize) -> Self {
         let Some(axes) = simulation.axes else { return Self::new(simulation, set) };
         let kept: &[usize] = if axes.is_mirrored { &[0, 3, 7] } else { &[0, 2, 4, 5] };
-        let last = simulation.axis.size() - 1;
+        let last = simulation.seen.size() - 1;
         Self::of(simulation, set, |azimuth, row| (last - row).is_multiple_of(2) && kept.contains(&azimuth))
     }
 
     fn of(simulation: &'a Simulation, set: usize, keep: impl Fn(usize, usize) -> bool) -> Self {
-        let (axis, basis, numbers) = (simulation.axis, simulation.basis(), simulation.numbers());
+        let (axis, basis, numbers) = (simulation.seen, simulation.basis(), simulation.numbers());
         let nodes = ViewAxis::new(NODES, axis.critical());
         let cells = &simulation.cells[set];
         let mean = |rgb: Rgb| rgb.iter().sum::<f64>() / 3.0;
@@ -191,7 +191,7 @@ impl<'a> Problem<'a> {
         let p = &found.place.parameters;
         let count = p.len() / self.basis.per_lobe();
         let energies = self.energies(p, count);
-        let Simulation { first, axis, axes, cells, .. } = self.simulation;
+        let Simulation { first, axis, seen, axes, cells, .. } = self.simulation;
         let index = cells[self.set].index;
         let row = |((view, tally), energies): ((&ViewProblem, &Tally), &Vec<Rgb>)| {
             let lobe = |lobe: usize| {
@@ -214,12 +214,14 @@ impl<'a> Problem<'a> {
         let numbers = self.simulation.numbers();
         let tiles = axes.map_or(1, |_| Axes::TILES);
         let of_tile = |tile: usize| (0..axis.size()).map(move |row| (tile % numbers.azimuths(), row));
-        Lobes {
-            first: first.clone(),
-            frame: Frame { index, wide: wide_of(p, *axis), axes: *axes },
-            axis: *axis,
-            rows: (0..tiles).flat_map(of_tile).map(|(azimuth, row)| balanced(&rows, numbers, azimuth, row)).collect(),
-        }
+        let rows = if seen == axis {
+            let views = (0..tiles).flat_map(of_tile);
+            views.map(|(azimuth, row)| balanced(&rows, numbers, azimuth, row)).collect()
+        } else {
+            let cosines: Vec<f64> = self.views.iter().map(|view| view.wo.z).collect();
+            axis.nearest(&rows, &cosines)
+        };
+        Lobes { first: first.clone(), frame: Frame { index, wide: wide_of(p, *axis), axes: *axes }, axis: *axis, rows }
     }
 }
 

@@ -3,6 +3,7 @@
 use luthier_optics::Rgb;
 
 use super::shape::{Shape, TAIL_MIN};
+use super::solve::solve;
 
 /// Cosine of the view that stands for all that are flatter, where rows are traced: at 89.9 degrees.
 const FLATTEST: f64 = 0.001_745;
@@ -125,6 +126,30 @@ impl ViewAxis {
             *if self.cosine(middle) < c { &mut low } else { &mut high } = middle;
         }
         f64::max(0.5 * (low + high), FLATTEST)
+    }
+
+    /// Rows at the nodes for those of more views, given by their cosines: what is linear between them is as near as it can be, by least squares.
+    /// A curve errs half as much between nodes as between rows that lie on it, and as much at them.
+    pub(super) fn nearest(self, rows: &[Row], cosines: &[f64]) -> Vec<Row> {
+        let ends = |cos_theta: f64| {
+            let place = self.place(cos_theta);
+            let first = (place as usize).min(self.size - 2);
+            [(first, 1.0 - (place - first as f64)), (first + 1, place - first as f64)]
+        };
+        let mut matrix = vec![vec![0.0; self.size]; self.size];
+        for ends in cosines.iter().map(|cos_theta| ends(*cos_theta)) {
+            ends.iter().for_each(|(i, x)| ends.iter().for_each(|(j, y)| matrix[*i][*j] += x * y));
+        }
+        let given: Vec<Vec<[f64; 4]>> = rows.iter().map(Row::to_parts).collect();
+        let mut parts = vec![given[0].clone(); self.size];
+        for (part, c) in (0..given[0].len()).flat_map(|part| [0, 1, 2, 3].map(|c: usize| (part, c))) {
+            let mut right = vec![0.0; self.size];
+            for (row, cos_theta) in given.iter().zip(cosines) {
+                ends(*cos_theta).iter().for_each(|(i, x)| right[*i] += x * row[part][c]);
+            }
+            parts.iter_mut().zip(solve(matrix.clone(), right)).for_each(|(parts, x)| parts[part][c] = x);
+        }
+        parts.iter().map(|parts| Row::of_parts(parts).bounded()).collect()
     }
 }
 
@@ -304,6 +329,16 @@ impl Row {
         }
     }
 
+    /// The row without light below 0 and shares above 1.
+    fn bounded(mut self) -> Self {
+        let positive = |rgb: Rgb| rgb.map(|x| x.max(0.0));
+        (self.wide, self.albedo_dir) = (positive(self.wide), positive(self.albedo_dir));
+        for lobe in &mut self.lobes {
+            (lobe.strength, lobe.share) = (positive(lobe.strength), lobe.share.clamp(0.0, 1.0));
+        }
+        self
+    }
+
     /// The row between two others.
     #[must_use]
     pub fn between(&self, other: &Self, t: f64) -> Self {
@@ -350,6 +385,29 @@ mod tests {
         assert!((libm::acos(axis.cos_theta(0.0)).to_degrees() - 89.9).abs() < 1e-3);
         // 2/3 of 1/2 over 3/2: two thirds of the way.
         assert!((ViewAxis::new(4, Critical::default()).place(0.5) - 2.0).abs() < 1e-15);
+    }
+
+    /// Oracle: rows on a line, which are found again; and a parabola, whose chords are off by an eighth of its second difference.
+    #[test]
+    fn nearest_rows_err_half_as_much_as_those_on_a_curve() {
+        let axis = ViewAxis::new(10, Critical::default());
+        let seen = ViewAxis::new(19, Critical::default());
+        let cosines: Vec<f64> = (0..19).map(|row| seen.cos_theta(f64::from(row))).collect();
+        let row = |albedo: f64| Row { albedo_dir: [albedo; 3], lobes: vec![], wide: [0.0; 3] };
+        let nearest = |of: &dyn Fn(f64) -> f64| {
+            let rows: Vec<Row> = cosines.iter().map(|cos_theta| row(of(axis.place(*cos_theta)))).collect();
+            axis.nearest(&rows, &cosines)
+        };
+        for (i, row) in nearest(&|place| 1.0 + 2.0 * place).iter().enumerate() {
+            assert!((row.albedo_dir[0] - (1.0 + 2.0 * i as f64)).abs() < 1e-9, "{i} {row:?}");
+        }
+        let curved = nearest(&|place| place * place);
+        // Not at the ends, where there is one side alone.
+        for i in 3..7 {
+            let [here, next] = [i, i + 1].map(|i: usize| curved[i].albedo_dir[0] - (i * i) as f64);
+            let between = 0.5 * (here + next) + 0.25;
+            assert!((here + 0.125).abs() < 0.02 && (between - 0.125).abs() < 0.02, "{i}: {here} {between}");
+        }
     }
 
     #[test]
