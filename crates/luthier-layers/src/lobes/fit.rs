@@ -121,6 +121,13 @@ impl Views {
         }
     }
 
+    /// Views around one, without itself: of so many rows above and below, and of the next azimuths.
+    pub(super) fn around(self, azimuth: usize, row: usize, rows: usize) -> Vec<usize> {
+        let along = (row.saturating_sub(rows)..(row + rows + 1).min(self.rows)).map(|row| self.number(azimuth, row));
+        let across = self.next_azimuths(azimuth).map(|azimuth| self.number(azimuth, row));
+        along.chain(across).filter(|view| *view != self.number(azimuth, row)).collect()
+    }
+
     /// Views beside each: of the next rows, and of the next azimuths.
     pub(super) fn beside(self) -> Vec<Vec<usize>> {
         let (azimuths, last) = (self.azimuths(), self.rows - 1);

@@ -10,7 +10,7 @@ use super::fit::{Found, Simulation, Views};
 use super::half_vector::{outside, refracted};
 use super::parameters::{Basis, NODES, SHIFT, Term};
 use super::solve::{Amounts, Column, Guess, Residuals};
-use super::tally::{Point, Tally};
+use super::tally::{Cells, Point, Tally};
 use super::{Axes, Frame, Lobe, Lobes, Row, Shape, TAIL_MIN, ViewAxis, Wide};
 
 /// Share of a shape above the horizon below which the fit is held back.
@@ -26,6 +26,12 @@ const BESIDE_WEIGHT: f64 = 0.05;
 
 /// Energy that is added to that of a cell, over the mean, where residuals are weighed.
 const WEIGHT_FLOOR: f64 = 0.05;
+
+/// Paths of a cell, on average, of which half of its weight is its own.
+const MANY_PATHS: f64 = 64.0;
+
+/// Rows above and below a view, in steps of the axis of the lobes, whose light weighs its residuals.
+const WEIGHT_ROWS: usize = 2;
 
 /// Step of the differences that slopes of amounts are.
 const DIFFERENCE: f64 = 1e-5;
@@ -52,7 +58,7 @@ pub(super) struct ViewProblem {
     /// Brightness of the cells: means of the channels, over that of all light of the view.
     found: Vec<f64>,
     total: f64,
-    /// Weights of squared residuals, and their roots.
+    /// Weights of squared residuals, see [`expected`], and their roots.
     weights: Vec<f64>,
     roots: Vec<f64>,
 }
@@ -129,16 +135,20 @@ impl<'a> Problem<'a> {
 
     fn of(simulation: &'a Simulation, set: usize, keep: impl Fn(usize, usize) -> bool) -> Self {
         let (axis, basis, numbers) = (simulation.seen, simulation.basis(), simulation.numbers());
+        let found: Vec<Vec<f64>> = simulation.views.iter().map(|tally| brightness(tally, set)).collect();
         let nodes = ViewAxis::new(NODES, axis.critical());
         let cells = &simulation.cells[set];
-        let mean = |rgb: Rgb| rgb.iter().sum::<f64>() / 3.0;
-        let view = |((azimuth, row), tally): ((usize, usize), &Tally)| {
+        let view = |(azimuth, row): (usize, usize)| {
             let [cos, sin] = numbers.azimuth(azimuth);
             let wo = seen_from(axis, [cos, sin], row);
             let sin_theta = direction(wo.z).x;
-            let all = (mean(tally.total) + mean(tally.first_facet)).max(f64::MIN_POSITIVE);
-            let found: Vec<f64> = tally.rest[set].iter().map(|rgb| mean(*rgb).max(0.0) / all).collect();
-            let weights: Vec<f64> = found.iter().map(|r| 1.0 / (r + WEIGHT_FLOOR / cells.count() as f64)).collect();
+            let number = numbers.number(azimuth, row);
+            let around = numbers.around(azimuth, row, WEIGHT_ROWS * (axis.size() - 1) / (simulation.axis.size() - 1));
+            let around: Vec<&[f64]> = around.iter().map(|view| found[*view].as_slice()).collect();
+            let expected = expected(cells, &found[number], &around, simulation.views[number].paths());
+            let floor = WEIGHT_FLOOR / cells.count() as f64;
+            let weights: Vec<f64> = expected.iter().map(|energy| 1.0 / (energy + floor)).collect();
+            let found = found[number].clone();
             let terms = basis.terms(sin_theta * sin_theta, [(cos - sin) * (cos + sin), 2.0 * cos * sin]);
             let of_number = |number| terms.iter().copied().filter(|term| term.number == number).collect();
             ViewProblem {
@@ -159,7 +169,7 @@ impl<'a> Problem<'a> {
                 weights,
             }
         };
-        let views = numbers.all().zip(&simulation.views).filter(|((azimuth, row), _)| keep(*azimuth, *row));
+        let views = numbers.all().filter(|(azimuth, row)| keep(*azimuth, *row));
         Self { simulation, set, basis, views: views.map(view).collect() }
     }
 
@@ -223,6 +233,26 @@ impl<'a> Problem<'a> {
         };
         Lobes { first: first.clone(), frame: Frame { index, wide: wide_of(p, *axis), axes: *axes }, axis: *axis, rows }
     }
+}
+
+/// Brightness of the cells: means of the channels, over that of all light of the view.
+fn brightness(tally: &Tally, set: usize) -> Vec<f64> {
+    let mean = |rgb: Rgb| rgb.iter().sum::<f64>() / 3.0;
+    let all = (mean(tally.total) + mean(tally.first_facet)).max(f64::MIN_POSITIVE);
+    tally.rest[set].iter().map(|rgb| mean(*rgb).max(0.0) / all).collect()
+}
+
+/// Brightness that the cells of a view are expected to have, by which residuals are weighed: what was found in them, or where paths are few
+/// the mean of other views around, and of the cells around each.
+///
+/// By what is found alone, a cell that happens to have too little light weighs more than one that has too much. Where a cell has a few paths, the
+/// light of many such cells then comes out too dark (Baker and Cousins 1984, of Neyman's chi-square), and that of others too bright.
+fn expected(cells: &Cells, found: &[f64], around: &[&[f64]], paths: f64) -> Vec<f64> {
+    let mean = |cell: usize| around.iter().map(|view| view[cell]).sum::<f64>() / around.len() as f64;
+    let smooth = cells.smoothed(&(0..cells.count()).map(mean).collect::<Vec<_>>());
+    let many = paths / (MANY_PATHS * cells.count() as f64);
+    let share = 1.0 / (1.0 + many * many);
+    found.iter().zip(smooth).map(|(found, smooth)| found + share * (smooth - found)).collect()
 }
 
 /// The row of an azimuth, moved so that what is linear between azimuths errs as much there as half way between them.
@@ -526,6 +556,19 @@ mod tests {
         let metal = Base::Conductor { ior: Ior::constant(0.3, 3.0).unwrap() };
         let layers = vec![layer(coat_alphas, coat_rotation, coat), layer(base_alphas, 0.0, metal)];
         Stack { exterior: Ior::vacuum(), layers }
+    }
+
+    /// Light in every cell by its own paths alone, by those around it alone, and in a view without light.
+    #[test]
+    fn cells_with_few_paths_are_expected_to_have_the_light_around_them() {
+        let cells = Cells::new(1.0, 0.2);
+        let [own, other] = [2.0, 4.0].map(|value| vec![value; cells.count()]);
+        let energy = |paths: f64| expected(&cells, &own, &[&other, &other], paths)[7];
+        assert!((energy(1e9) - 2.0).abs() < 1e-3 && (energy(1.0) - 4.0).abs() < 1e-3);
+        assert!((energy(MANY_PATHS * cells.count() as f64) - 3.0).abs() < 1e-12);
+        let dark = Tally::new(&[cells]);
+        assert_eq!((dark.paths(), brightness(&dark, 0)[7]), (0.0, 0.0));
+        assert_eq!(expected(&cells, &vec![0.0; cells.count()], &[&own], dark.paths())[7], 2.0);
     }
 
     /// Oracle: differences of the residuals.

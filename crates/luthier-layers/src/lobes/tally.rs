@@ -66,6 +66,25 @@ impl Cells {
         1 + RINGS * self.sectors()
     }
 
+    /// Means of values over the rings and sectors around each cell.
+    pub(super) fn smoothed(&self, values: &[f64]) -> Vec<f64> {
+        let sectors = self.sectors();
+        let around = |sector: usize| match self.stretch {
+            None => [sector.saturating_sub(1), sector, (sector + 1).min(sectors - 1)],
+            Some(_) => [(sector + sectors - 1) % sectors, sector, (sector + 1) % sectors],
+        };
+        let mean = |cell: usize| {
+            // The innermost disc has no neighbours that are like it.
+            let Some(number) = cell.checked_sub(1) else { return values[0] };
+            let ring = number / sectors;
+            let rings = ring.saturating_sub(1)..(ring + 2).min(RINGS);
+            let count = 3 * rings.len();
+            let sum = |ring: usize| around(number % sectors).map(|sector| values[1 + ring * sectors + sector]);
+            rings.flat_map(sum).sum::<f64>() / count as f64
+        };
+        (0..values.len()).map(mean).collect()
+    }
+
     fn sectors(&self) -> usize {
         if self.stretch.is_some() { SECTORS_OF_TURN } else { SECTORS }
     }
@@ -137,27 +156,53 @@ pub(super) struct Tally {
     pub(super) total: Rgb,
     /// Energy of the light that met one facet alone, in closed form.
     pub(super) first_facet: Rgb,
+    /// Sum of the squared energies of the paths in cells, means of the channels.
+    squares: f64,
 }
 
 impl Tally {
     pub(super) fn new(sets: &[Cells]) -> Self {
         let rest = sets.iter().map(|cells| vec![[0.0; 3]; cells.count()]).collect();
-        Self { rest, total: [0.0; 3], first_facet: [0.0; 3] }
+        Self { rest, total: [0.0; 3], first_facet: [0.0; 3], squares: 0.0 }
     }
 
     /// Counts light of the rest with a weight.
     pub(super) fn add(&mut self, cells: &[Cells], [wi, wo]: [DVec3; 2], weight: Rgb) {
         let plus = |sum: &mut Rgb| (0..3).for_each(|c| sum[c] += weight[c]);
         plus(&mut self.total);
+        let mean = weight.iter().sum::<f64>() / 3.0;
+        self.squares += mean * mean;
         for (cells, rest) in cells.iter().zip(&mut self.rest) {
             plus(&mut rest[cells.cell(wi, wo)]);
         }
+    }
+
+    /// Number of paths in cells, as many alike ones as have the noise of their sum.
+    pub(super) fn paths(&self) -> f64 {
+        let total = self.total.iter().sum::<f64>() / 3.0;
+        if self.squares > 0.0 { total * total / self.squares } else { 0.0 }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn cells_are_smoothed_over_those_around_them() {
+        let round = Shape { middle: [0.0; 2], width: [0.3; 2], turn: [1.0, 0.0], tail: 0.0 };
+        for cells in [Cells::new(1.0, 0.2), Cells::stretched(1.0, round)] {
+            let sectors = cells.sectors();
+            let mut values = vec![0.0; cells.count()];
+            values[1 + 4 * sectors] = 9.0;
+            let smoothed = cells.smoothed(&values);
+            // Where both halves count together, the first sector is its own neighbour.
+            let (own, behind) = if cells.stretch.is_none() { (2.0, 0.0) } else { (1.0, 1.0) };
+            let at = |ring: usize, sector: usize| smoothed[1 + ring * sectors + sector];
+            assert_eq!([at(4, 0), at(3, 0), at(5, 1), at(4, sectors - 1), at(6, 0)], [own, own, 1.0, behind, 0.0]);
+            assert_eq!(cells.smoothed(&vec![2.0; cells.count()]), vec![2.0; cells.count()]);
+        }
+    }
 
     /// Oracle: the solid angle and the projected area of the hemisphere.
     #[test]
