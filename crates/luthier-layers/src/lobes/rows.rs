@@ -429,7 +429,8 @@ mod tests {
 
     #[test]
     fn no_row_returns_more_than_falls_in() {
-        let lobe = Lobe { strength: [0.5, 0.5, 0.0], share: 0.8, shift: 0.0, sharpness: [1.0; 2], shear: 0.0, tail: 0.0 };
+        let lobe =
+            Lobe { strength: [0.5, 0.5, 0.0], share: 0.8, shift: 0.0, sharpness: [1.0; 2], shear: 0.0, tail: 0.0 };
         let mut row = Row { albedo_dir: [1.25, 0.75, 1.5], lobes: vec![lobe], wide: [0.1, 0.1, 0.0] };
         row.bound();
         // Below are .5 and .25 too much; the third channel has nothing there.

@@ -115,7 +115,7 @@ pub struct Varied {
     varying: Option<Over>,
 }
 
-/// What varies over the nodes.
+/// The part of a stack that varies over the nodes.
 #[derive(Debug, Clone)]
 struct Over {
     varying: Varying,
