@@ -24,7 +24,8 @@ pub fn shape_of(model: ShadingModel, shape: &str) -> String {
     match model {
         ShadingModel::Phong => String::new(),
         ShadingModel::Microfacet => first(),
-        ShadingModel::Lobes => first().replace('a', ""),
+        // Lobes are in axes as soon as any layer has some.
+        ShadingModel::Lobes => first().replace('a', "") + if shape.contains('a') { "a" } else { "" },
         ShadingModel::GranierHeidrich => {
             let base = shape.rsplit('/').next().filter(|base| base.starts_with(['l', 'o']));
             [Some(first().replace('a', "")), base.map(|_| "l".to_owned())]
@@ -80,6 +81,10 @@ mod tests {
         assert_eq!(shape_of(ShadingModel::Phong, shape), "");
         assert_eq!(shape_of(ShadingModel::Microfacet, shape), "dga");
         assert_eq!(shape_of(ShadingModel::Elek, shape), "dgx/cbf");
+        assert_eq!(
+            ["dgax/cbf", "dgx/cba", "dgx/cb"].map(|shape| shape_of(ShadingModel::Lobes, shape)),
+            ["dga", "dga", "dg"]
+        );
         assert_eq!(shape_of(ShadingModel::Yamaguchi, shape), shape);
         assert_eq!(shape_of(ShadingModel::GranierHeidrich, "dgax/o"), "dg/l");
     }

@@ -53,8 +53,10 @@ const LAST_STEPS: u32 = 20;
 /// Places that are followed to the end.
 const FOLLOWED: usize = 2;
 
-/// Paths of a row over those at each azimuth, and over those of each of two views.
+/// Paths of a row over those at each azimuth.
 const AZIMUTH_SHARE: u64 = 3;
+
+/// Paths of a row over those of each of its two views.
 const VIEW_SHARE: u64 = 2;
 
 /// Steps of an anisotropic fit with all views.
@@ -67,8 +69,9 @@ const START_WIDTHS: [f64; 2] = [1e-3, 0.8];
 #[derive(Debug, Clone)]
 pub struct Simulation {
     pub(super) first: Option<FirstInterface>,
-    /// The axis of the rows, and that of the views.
+    /// The axis of the rows.
     pub(super) axis: ViewAxis,
+    /// The axis of the views.
     pub(super) seen: ViewAxis,
     /// Tangents of an anisotropic stack.
     pub(super) axes: Option<Axes>,
@@ -199,7 +202,7 @@ impl Simulation {
                 settings.seed.wrapping_mul(views.azimuths() as u64 * seen.size() as u64).wrapping_add(number as u64);
             paths.trace(seed, count, outside, |path| {
                 let wi = axes.map_or(path.wi, |axes| axes.inside(path.wi));
-                // That of one facet of the first interface is known.
+                // The light of one facet of the first interface is known.
                 if !path.is_first_facet {
                     tally.add(&cells, [wi, wo], path.weight.map(|w| w / count as f64));
                 }
@@ -280,7 +283,7 @@ impl Simulation {
     /// The lobes of a place.
     pub(super) fn lobes(&self, found: &Found) -> Lobes {
         let mut lobes = Problem::new(self, found.set).lobes(found);
-        lobes.rows.iter_mut().for_each(Row::bound);
+        lobes.rows = lobes.rows.into_iter().map(Row::bounded).collect();
         lobes
     }
 

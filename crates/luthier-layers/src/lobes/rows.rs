@@ -149,7 +149,7 @@ impl ViewAxis {
             }
             parts.iter_mut().zip(solve(matrix.clone(), right)).for_each(|(parts, x)| parts[part][c] = x);
         }
-        parts.iter().map(|parts| Row::of_parts(parts).bounded()).collect()
+        parts.iter().map(|parts| Row::of_parts(parts)).collect()
     }
 }
 
@@ -315,26 +315,23 @@ impl Row {
             .map(|c: usize| (self.albedo_dir[c] - energies[1..].iter().map(|energy| energy[c]).sum::<f64>()).max(0.0))
     }
 
-    /// Takes from what comes from below where more light returns than falls in: by the noise of paths it may.
-    pub(super) fn bound(&mut self) {
-        for c in 0..3 {
-            let excess = self.albedo_dir[c] - 1.0;
-            if excess > 0.0 {
-                let below = self.albedo_dir[c] - self.first_facet()[c];
-                let left = if below > excess { 1.0 - excess / below } else { 0.0 };
-                self.wide[c] *= left;
-                self.lobes.iter_mut().for_each(|lobe| lobe.strength[c] *= left);
-                self.albedo_dir[c] = 1.0;
-            }
-        }
-    }
-
-    /// The row without light below 0 and shares above 1.
-    fn bounded(mut self) -> Self {
+    /// The row without light below 0, shares above 1, and more light than falls in, as noise and least squares may leave: of what comes from below
+    /// is so much less.
+    pub(super) fn bounded(mut self) -> Self {
         let positive = |rgb: Rgb| rgb.map(|x| x.max(0.0));
         (self.wide, self.albedo_dir) = (positive(self.wide), positive(self.albedo_dir));
         for lobe in &mut self.lobes {
             (lobe.strength, lobe.share) = (positive(lobe.strength), lobe.share.clamp(0.0, 1.0));
+        }
+        let first = self.first_facet();
+        for c in 0..3 {
+            let below = self.albedo_dir[c] - first[c];
+            if self.albedo_dir[c] > 1.0 {
+                let left = if below > 0.0 { (1.0 - first[c]).max(0.0) / below } else { 0.0 };
+                self.wide[c] *= left;
+                self.lobes.iter_mut().for_each(|lobe| lobe.strength[c] *= left);
+                self.albedo_dir[c] = 1.0;
+            }
         }
         self
     }
@@ -431,9 +428,8 @@ mod tests {
     fn no_row_returns_more_than_falls_in() {
         let lobe =
             Lobe { strength: [0.5, 0.5, 0.0], share: 0.8, shift: 0.0, sharpness: [1.0; 2], shear: 0.0, tail: 0.0 };
-        let mut row = Row { albedo_dir: [1.25, 0.75, 1.5], lobes: vec![lobe], wide: [0.1, 0.1, 0.0] };
-        row.bound();
-        // Below are .5 and .25 too much; the third channel has nothing there.
+        let row = Row { albedo_dir: [1.25, 0.75, 1.5], lobes: vec![lobe], wide: [0.1, 0.1, -0.2] }.bounded();
+        // Of .5 from below .25 are too much; the third channel has nothing there.
         assert_eq!((row.albedo_dir, row.lobes[0].strength), ([1.0, 0.75, 1.0], [0.25, 0.5, 0.0]));
         assert!((row.wide[0] - 0.05).abs() < 1e-15 && (row.first_facet()[0] - 0.75).abs() < 1e-12);
     }

@@ -6,7 +6,8 @@ use luthier_optics::ior::Ior;
 use luthier_optics::quadrature::gauss_legendre;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Slab, Stack, Surface};
 
-use super::{FitSettings, Lobes, Simulation};
+use super::{FirstInterface, FitSettings, Lobes, Simulation};
+use crate::facets::Masking;
 use crate::layered_mc::{InterfaceMode, LayeredMc};
 use crate::monochrome::Monochrome;
 
@@ -189,4 +190,26 @@ fn flat_views_see_nothing_below_a_thinner_medium() {
 fn settings_decide_everything() {
     let stack = lacquered();
     assert_eq!(fitted(&stack, 1).rows, fitted(&stack, 1).rows);
+}
+
+/// Oracle: a quadrature over half vectors, in place of drawn normals.
+#[test]
+fn energy_of_the_first_facet_is_its_integral() {
+    let color = Color::ThreeWavelengths(NM);
+    for distribution in [Distribution::Ggx, Distribution::Beckmann] {
+        for [alpha_x, alpha_y] in [[0.02; 2], [0.2; 2], [0.8; 2], [0.05, 0.4]] {
+            let surface = Surface { alpha_x, alpha_y, ..Surface::isotropic(distribution, 0.0) };
+            let layers = vec![Layer { films: Vec::new(), surface, base: metal() }];
+            let first = FirstInterface::of(&stack(layers), &color).unwrap();
+            for theta_deg in [0.0, 40.0, 70.0, 80.0, 85.0, 89.0] {
+                let wo = direction(theta_deg, 0.7);
+                let expected = integral(wo, |wi| {
+                    let lobe = first.facets.lobe(Masking::Smith, wi, wo);
+                    lobe.map_or(0.0, |lobe| lobe.value * first.reflectance.rgb(lobe.cos_theta_d)[1])
+                });
+                let error = (first.energy(wo)[1] - expected).abs();
+                assert!(error < 4e-4, "{distribution:?} {alpha_x} {alpha_y} {theta_deg}: {error:.1e} of {expected}");
+            }
+        }
+    }
 }

@@ -214,9 +214,9 @@ fn luthier_lobes_azimuth(eye: vec2<f32>, quarter: f32) -> vec2<f32> {
     let v = (abs(eye.y) - abs(eye.x)) / max(size, 1e-20);
     let place = quarter * (0.5 + 0.5 * v * (1.241 - 0.241 * v * v));
     let is_crossed = eye.x * eye.y < 0.0;
-    // Those of a stack that is its own mirror image go over one quarter, others over two.
+    // Of a stack that is its own mirror image a quarter has all seven, of others half of them: these go over two quarters.
     let is_mirrored = quarter > 5.0;
-    let tiles = select(place, 7.0 - place, is_crossed && !is_mirrored);
+    let tiles = select(place, 2.0 * quarter - place, is_crossed && !is_mirrored);
     return vec2<f32>(select(0.0, tiles, size > 0.0), select(1.0, -1.0, is_crossed && is_mirrored));
 }
 
