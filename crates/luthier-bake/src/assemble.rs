@@ -17,6 +17,7 @@ use crate::search;
 use crate::settings::{Settings, Shape};
 use crate::tile::apron;
 use crate::{AIM, BakeError, DEFAULT_BUDGET, MemoryStore, Store};
+use luthier_layers::lobes::LOBES;
 
 /// Tables, records and maps that a set of materials needs at run time.
 #[derive(Debug, Clone, PartialEq)]
@@ -107,12 +108,12 @@ pub fn outline_with(
 ) -> Result<Outline, BakeError> {
     let planned = plan(materials, options, read_image, &Silent, &MemoryStore::default())?;
     let tables = layouts(&planned.plan)?;
-    let Plan { tiles, records, .. } = planned.plan;
+    let Plan { tiles, records, settings, .. } = planned.plan;
     let keys = used(&tiles).map(|(_, tiles)| tiles.tiles.iter().map(|(_, key)| *key).collect()).collect();
     Ok(Outline {
         tables,
         keys,
-        materials: baked_materials(materials, records, &planned.results),
+        materials: baked_materials(materials, records, &settings, &planned.results),
         searches: planned.searches,
     })
 }
@@ -126,7 +127,7 @@ pub fn kinked_rows(material: &Material, read_image: ImageReader<'_>) -> Result<V
     let is_kinked = |layer: usize| Interface::of(&material.stack, layer).is_some_and(|i| i.has_kink(&color(material)));
     let layers: Vec<usize> = (0..material.stack.layers.len()).filter(|&layer| is_kinked(layer)).collect();
     let materials = std::slice::from_ref(material);
-    if layers.is_empty() || !budget(materials, &Budget::default())?.is_empty() {
+    if layers.is_empty() || !budget(materials, &Budget::default())?.of_texels().is_empty() {
         return Ok(Vec::new());
     }
     let Planned { plan, results, .. } =
@@ -167,6 +168,12 @@ pub fn check(materials: &[Material], options: &Options) -> Result<(), Vec<BakeEr
     }
     errors.extend(Settings::of(materials).err());
     errors.extend(budget(materials, &options.budget).err());
+    let limits = [("max_lobe_err", options.budget.max_lobe_err), ("max_albedo_err", options.budget.max_albedo_err)];
+    if let Some((name, _)) = limits.into_iter().find(|(_, limit)| limit.is_some())
+        && materials.iter().all(|material| material.model() != ShadingModel::Lobes)
+    {
+        errors.push(BakeError::NoLobes { name });
+    }
     if errors.is_empty() { Ok(()) } else { Err(errors) }
 }
 
@@ -194,11 +201,11 @@ pub fn bake_with(
     let layouts = layouts(&plan)?;
     let Plan { settings, graph, tiles, records } = plan;
     let results = graph.run(observer, store, results);
-    let is_asked = !options.search || !budget(materials, &options.budget)?.is_empty();
+    let is_asked = !options.search || !budget(materials, &options.budget)?.of_texels().is_empty();
     let aim = |kind: TableKind| (!is_asked && settings.leaves(kind)).then_some(AIM);
     let atlas = |(kind, layout, format)| atlas(kind, layout, format, &tiles[kind as usize], &results, aim(kind));
     let atlases = layouts.into_iter().map(atlas).collect();
-    Ok(Baked { atlases, materials: baked_materials(materials, records, &results), searches })
+    Ok(Baked { atlases, materials: baked_materials(materials, records, &settings, &results), searches })
 }
 
 /// A plan whose settings are final, results that were needed to find them, and what the search found.
@@ -224,19 +231,21 @@ fn plan(
     if let Some(rows) = options.rows {
         settings.take_rows(rows);
     }
+    let asked = budget(materials, &options.budget)?;
+    settings.lobes = (options.search && asked.limits_lobes()).then_some(LOBES);
     let mut fixed = Plan::new(materials, settings.clone(), read_image)?;
     let mut results = Results::default();
+    let mut searches = Vec::new();
     if let Some(fits) = lobes::fits(&fixed.graph).filter(|_| options.fits) {
-        // Tiles have as many parts as the material with the most lobes needs.
         results = fits.run(observer, store, results);
-        settings.take_lobes(lobes::most_lobes(&fixed.graph, &results));
+        searches.extend(lobes::decide(&mut settings, &fixed, &results, &asked.of_lobes())?);
         fixed = Plan::new(materials, settings.clone(), read_image)?;
     }
     let fixed_layouts = layouts(&fixed)?;
     if !options.search {
-        return Ok(Planned { plan: fixed, results, searches: Vec::new() });
+        return Ok(Planned { plan: fixed, results, searches });
     }
-    let asked = budget(materials, &options.budget)?;
+    let asked = asked.of_texels();
     let is_asked = !asked.is_empty();
     let budget = if is_asked { asked } else { DEFAULT_BUDGET };
     // Costly tables are made once; candidates are compared with them.
@@ -295,7 +304,7 @@ fn plan(
     if let Some(error) = refusal {
         return Err(error);
     }
-    let searches = found.iter().zip(&chosen).map(|(f, &choice)| search::report(f, choice, &budget)).collect();
+    searches.extend(found.iter().zip(&chosen).map(|(f, &choice)| search::report(f, choice, &budget)));
     Ok(Planned { plan, results, searches })
 }
 
@@ -320,6 +329,8 @@ fn budget(materials: &[Material], given: &Budget) -> Result<Budget, BakeError> {
         delta_e: given.delta_e.or(stated.delta_e),
         max_bytes: given.max_bytes.or(stated.max_bytes),
         max_cost: given.max_cost.or(stated.max_cost),
+        max_lobe_err: given.max_lobe_err.or(stated.max_lobe_err),
+        max_albedo_err: given.max_albedo_err.or(stated.max_albedo_err),
     };
     for (name, value, example) in [
         ("max_abs", budget.max_abs, "1e-3"),
@@ -327,6 +338,8 @@ fn budget(materials: &[Material], given: &Budget) -> Result<Budget, BakeError> {
         ("delta_e", budget.delta_e, "0.5"),
         ("max_bytes", budget.max_bytes.map(|bytes| bytes as f64), "65536"),
         ("max_cost", budget.max_cost, "200"),
+        ("max_lobe_err", budget.max_lobe_err, "0.05"),
+        ("max_albedo_err", budget.max_albedo_err, "0.01"),
     ] {
         if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
             return Err(BakeError::BudgetValue { name, value, example });
@@ -339,8 +352,13 @@ fn used(tiles: &[TileList; TableKind::ALL.len()]) -> impl Iterator<Item = (Table
     TableKind::ALL.into_iter().zip(tiles).filter(|(_, tiles)| !tiles.tiles.is_empty())
 }
 
-fn baked_materials(materials: &[Material], records: Vec<PlannedLayers>, results: &Results) -> Vec<BakedMaterial> {
-    let lobes = |m: &Material| (m.model() == ShadingModel::Lobes).then(|| lobes::record(m, results));
+fn baked_materials(
+    materials: &[Material],
+    records: Vec<PlannedLayers>,
+    settings: &Settings,
+    results: &Results,
+) -> Vec<BakedMaterial> {
+    let lobes = |m: &Material| (m.model() == ShadingModel::Lobes).then(|| lobes::record(m, settings, results));
     let baked = |(m, planned): (&Material, PlannedLayers)| BakedMaterial {
         model: m.model(),
         color: color_mode(m),

@@ -103,6 +103,14 @@ pub enum BakeError {
         /// Value that could be met, as text.
         example: &'static str,
     },
+    /// A limit on fitted lobes where no material has any.
+    #[error(
+        "`{name}` limits the model lobes, which no material of this bake has: leave the limit out, or add `--model lobes`"
+    )]
+    NoLobes {
+        /// The limit.
+        name: &'static str,
+    },
     /// An image that a material names cannot be used.
     #[error("{material}: cannot use the thickness map {path}: {reason}")]
     Map {
@@ -128,6 +136,7 @@ impl BakeError {
             | Self::TooManyLayers { .. }
             | Self::Budget { .. }
             | Self::BudgetValue { .. }
+            | Self::NoLobes { .. }
             | Self::Map { .. } => None,
         }
     }

@@ -122,7 +122,8 @@ impl Plan {
                 let Some(shape) = self.settings.shape(kind) else { continue };
                 let (fixed, record) = (self.settings.fixed(kind), &records[i]);
                 let (extras, interface) = (extras.get(i), &interface);
-                let site = Site { material, layer, extras, record, interface, color, shape, fixed, read_image };
+                let lobes = self.settings.lobes;
+                let site = Site { material, layer, extras, record, interface, color, shape, fixed, lobes, read_image };
                 let Some(job) = kinds::of(kind).job(&site)? else { continue };
                 let key = self.graph.add(job);
                 let own = || kinds::of(kind).name(layer).map(str::to_owned);

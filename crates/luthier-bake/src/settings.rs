@@ -81,6 +81,8 @@ pub(crate) struct Settings {
     asked: [Asked; TableKind::ALL.len()],
     /// Formats that tables may have, see [`crate::Options::formats`].
     pub(crate) formats: FormatSet,
+    /// The number of lobes that a search takes at most; none without a search, where each material has as many as it needs.
+    pub(crate) lobes: Option<usize>,
 }
 
 impl Settings {
@@ -99,7 +101,7 @@ impl Settings {
             let of = |m: &Material| kinds::of(kind).asked(&m.bake);
             materials.iter().map(of).fold(Asked::default(), Asked::or)
         });
-        Ok(Self { shapes: fixed.clone().map(Some), fixed, asked, formats: FormatSet::CORE })
+        Ok(Self { shapes: fixed.clone().map(Some), fixed, asked, formats: FormatSet::CORE, lobes: None })
     }
 
     /// The shape of the tables of a kind; none where values are computed.
@@ -127,10 +129,10 @@ impl Settings {
         self.shapes[kind as usize] = Shape::of(form);
     }
 
-    /// Tiles of so many lobes.
-    pub(crate) fn take_lobes(&mut self, lobes: usize) {
+    /// Tiles of lobes of this shape.
+    pub(crate) fn take_lobes(&mut self, shape: Shape) {
         let kind = TableKind::Lobes as usize;
-        self.fixed[kind] = kinds::lobes::shape(lobes);
+        self.fixed[kind] = shape;
         self.shapes[kind] = Some(self.fixed[kind].clone());
     }
 

@@ -52,6 +52,23 @@ pub struct LobesRecord {
     /// Axes of an anisotropic stack, with tiles over the azimuth; lobes of others are in the plane of the eye.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub axes: Option<AxesRecord>,
+    /// Errors against the simulated stack at views that no fit saw; absent where nothing was fitted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error: Option<LobesError>,
+}
+
+/// Errors of fitted lobes against the simulated stack, the largest of a few views half way between rows, and between the tiles of a factor or
+/// of azimuths. The noise of the paths that judge is in them.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct LobesError {
+    /// Lobe error, the largest channel.
+    pub lobe: f64,
+    /// Lobe error that noise alone makes on average.
+    pub lobe_noise: f64,
+    /// Absolute error of the directional albedo, the largest channel.
+    pub albedo: f64,
+    /// Standard error of the albedo that judges.
+    pub albedo_noise: f64,
 }
 
 /// Tiles of lobes one after the other, over a factor that a texture has, at equal distances of its root. The first is that of 1. The last is
@@ -292,6 +309,7 @@ mod tests {
             critical_plain_share: 0.25,
             varying: None,
             axes: None,
+            error: None,
         };
         let words = |lobes| MaterialConstants { lobes: Some(lobes), ..MaterialConstants::default() }.words();
         // Roots: of -3/4 + sqrt(9/16 + 1) = 1/2, and of 1/4 + sqrt(1/16 + 1).

@@ -386,7 +386,7 @@ mod tests {
                     form: CandidateForm::ClosedForm,
                     bytes: 0,
                     cost: 12.0,
-                    error: MeasuredError { max_abs: 1.0 / 3.0, max_rel: 0.1, delta_e: None },
+                    error: MeasuredError { max_abs: 1.0 / 3.0, max_rel: 0.1, ..MeasuredError::default() },
                 }],
                 measured: 12,
             }],

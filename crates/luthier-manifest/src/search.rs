@@ -16,6 +16,12 @@ pub struct Budget {
     pub max_bytes: Option<u64>,
     /// Estimated cost of one read of every table, see [`Candidate::cost`].
     pub max_cost: Option<f64>,
+    /// Largest lobe error of fitted lobes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_lobe_err: Option<f64>,
+    /// Largest error of the directional albedo of fitted lobes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_albedo_err: Option<f64>,
 }
 
 /// Values below this count as this in relative errors.
@@ -29,7 +35,24 @@ impl Budget {
 
     /// Whether errors are limited.
     pub fn limits_errors(&self) -> bool {
-        self.max_abs.is_some() || self.max_rel.is_some() || self.delta_e.is_some()
+        self.max_abs.is_some() || self.max_rel.is_some() || self.delta_e.is_some() || self.limits_lobes()
+    }
+
+    /// Whether errors of fitted lobes are limited.
+    pub fn limits_lobes(&self) -> bool {
+        self.max_lobe_err.is_some() || self.max_albedo_err.is_some()
+    }
+
+    /// The limits on fitted lobes alone.
+    #[must_use]
+    pub fn of_lobes(&self) -> Self {
+        Self { max_lobe_err: self.max_lobe_err, max_albedo_err: self.max_albedo_err, ..Self::default() }
+    }
+
+    /// The limits on texels alone.
+    #[must_use]
+    pub fn of_texels(&self) -> Self {
+        Self { max_lobe_err: None, max_albedo_err: None, ..*self }
     }
 
     /// The tighter of two budgets, limit by limit.
@@ -42,6 +65,8 @@ impl Budget {
             delta_e: least(self.delta_e, other.delta_e),
             max_bytes: self.max_bytes.into_iter().chain(other.max_bytes).min(),
             max_cost: least(self.max_cost, other.max_cost),
+            max_lobe_err: least(self.max_lobe_err, other.max_lobe_err),
+            max_albedo_err: least(self.max_albedo_err, other.max_albedo_err),
         }
     }
 
@@ -51,6 +76,8 @@ impl Budget {
         ratio(self.max_abs, Some(error.max_abs))
             .max(ratio(self.max_rel, Some(error.max_rel)))
             .max(ratio(self.delta_e, error.delta_e))
+            .max(ratio(self.max_lobe_err, error.lobe))
+            .max(ratio(self.max_albedo_err, error.albedo))
     }
 }
 
@@ -63,16 +90,25 @@ pub struct MeasuredError {
     pub max_rel: f64,
     /// CIEDE2000 under D65; absent where it was not asked for, or where values are no colours.
     pub delta_e: Option<f64>,
+    /// Lobe error of fitted lobes against the simulated stack; absent for other tables.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lobe: Option<f64>,
+    /// Error of their directional albedo.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub albedo: Option<f64>,
 }
 
 impl MeasuredError {
     /// The larger of each error.
     #[must_use]
     pub fn max(&self, other: &Self) -> Self {
+        let greatest = |a: Option<f64>, b: Option<f64>| a.into_iter().chain(b).reduce(f64::max);
         Self {
             max_abs: self.max_abs.max(other.max_abs),
             max_rel: self.max_rel.max(other.max_rel),
-            delta_e: self.delta_e.into_iter().chain(other.delta_e).reduce(f64::max),
+            delta_e: greatest(self.delta_e, other.delta_e),
+            lobe: greatest(self.lobe, other.lobe),
+            albedo: greatest(self.albedo, other.albedo),
         }
     }
 }
@@ -158,14 +194,14 @@ mod tests {
     #[test]
     fn excess_is_that_of_the_tightest_limit() {
         let budget = Budget { max_abs: Some(1e-3), max_rel: Some(1e-2), ..Budget::default() };
-        let error = MeasuredError { max_abs: 5e-4, max_rel: 2e-2, delta_e: Some(9.0) };
+        let error = MeasuredError { max_abs: 5e-4, max_rel: 2e-2, delta_e: Some(9.0), ..MeasuredError::default() };
         assert_eq!(budget.excess(&error), 2.0);
         assert_eq!(Budget::default().excess(&error), 0.0);
     }
 
     #[test]
     fn excess_counts_each_limit() {
-        let error = MeasuredError { max_abs: 0.5, max_rel: 0.25, delta_e: Some(3.0) };
+        let error = MeasuredError { max_abs: 0.5, max_rel: 0.25, delta_e: Some(3.0), ..MeasuredError::default() };
         for (budget, expected) in [
             (Budget { max_abs: Some(0.25), ..Budget::default() }, 2.0),
             (Budget { max_rel: Some(0.0625), ..Budget::default() }, 4.0),
@@ -181,9 +217,9 @@ mod tests {
 
     #[test]
     fn the_larger_of_two_errors_is_so_in_each_measure() {
-        let one = MeasuredError { max_abs: 1.0, max_rel: 4.0, delta_e: None };
-        let two = MeasuredError { max_abs: 2.0, max_rel: 3.0, delta_e: Some(5.0) };
-        let both = MeasuredError { max_abs: 2.0, max_rel: 4.0, delta_e: Some(5.0) };
+        let one = MeasuredError { max_abs: 1.0, max_rel: 4.0, delta_e: None, ..MeasuredError::default() };
+        let two = MeasuredError { max_abs: 2.0, max_rel: 3.0, delta_e: Some(5.0), ..MeasuredError::default() };
+        let both = MeasuredError { max_abs: 2.0, max_rel: 4.0, delta_e: Some(5.0), ..MeasuredError::default() };
         assert_eq!((one.max(&two), two.max(&one), one.max(&one)), (both, both, one));
     }
 

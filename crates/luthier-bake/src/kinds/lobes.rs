@@ -2,11 +2,16 @@
 
 use std::sync::Arc;
 
-use luthier_layers::lobes::{Axes, Critical, EXCESS, FitSettings, LOBES, Row, Varied, Varying, shown};
-use luthier_lut::{
-    Axis, Comparison, ErrorStats, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan,
+use luthier_layers::lobes::{
+    Axes, Critical, EXCESS, FitError, FitSettings, Judge, LOBES, Row, Traced, Varied, Varying, shown,
 };
-use luthier_manifest::{AxesRecord, LobesRecord, VaryingFactor, VaryingRecord};
+use luthier_lut::{
+    AtlasLayout, Axis, Comparison, ErrorStats, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan,
+};
+use luthier_manifest::{
+    AxesRecord, Budget, Candidate, CandidateForm, LobesError, LobesRecord, MeasuredError, Search, VaryingFactor,
+    VaryingRecord,
+};
 use luthier_material::Material;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
@@ -14,13 +19,20 @@ use serde_json::{Value, json};
 
 use super::{Kind, Site};
 use crate::graph::{Graph, Inputs, Job, JobKind, Output, Results};
-use crate::plan::color;
-use crate::settings::{Ask, Shape, axis};
-use crate::tile::{TileData, color_in_words, lone_tile};
+use crate::plan::{Plan, color};
+use crate::search::{self, Found};
+use crate::settings::{Ask, Settings, Shape, axis};
+use crate::tile::{TileData, apron, color_in_words, lone_tile};
 use crate::{BakeError, json};
 
 /// Points of the error scan per texel interval.
 const PER_CELL: u32 = 8;
+
+/// Rows of a fit.
+const ROWS: usize = FitSettings::DEFAULT_ROWS;
+
+/// Every so many of the rows, among which a search chooses.
+const STEPS: [usize; 4] = [1, 2, 3, 6];
 
 /// Jobs that fit lobes.
 const FIT: JobKind = JobKind::part("fit");
@@ -30,21 +42,28 @@ pub(crate) struct Table;
 
 impl Kind for Table {
     fn fixed(&self, _: Ask<'_>) -> Result<Shape, BakeError> {
-        Ok(shape(LOBES))
+        Ok(shape(LOBES, 1))
     }
 
     /// A tile for the first layer: the others are in it.
     fn job(&self, site: &Site<'_>) -> Result<Option<Arc<dyn Job>>, BakeError> {
         let Site { material, layer, shape, .. } = site;
         let is_first = material.stack.layers.first().is_some_and(|first| std::ptr::eq(first, *layer));
-        let job = || LobesJob { fit: fit(material), tile: 0, axes: shape.axes(), format: shape.format };
+        let job = || LobesJob {
+            fit: fit(material, site.lobes.is_some()),
+            most: site.lobes,
+            tile: 0,
+            axes: shape.axes(),
+            format: shape.format,
+        };
         Ok(is_first.then(|| Arc::new(job()) as Arc<dyn Job>))
     }
 
     /// A tile for every other node over what a texture scales, or over the azimuth.
     fn followers(&self, site: &Site<'_>) -> Vec<Arc<dyn Job>> {
-        let fit = fit(site.material);
-        let job = |tile| LobesJob { fit: fit.clone(), tile, axes: site.shape.axes(), format: site.shape.format };
+        let Site { material, shape, lobes: most, .. } = *site;
+        let fit = fit(material, most.is_some());
+        let job = |tile| LobesJob { fit: fit.clone(), most, tile, axes: shape.axes(), format: shape.format };
         (1..Varied::tiles_of(&fit.stack, fit.varying)).map(|tile| Arc::new(job(tile)) as Arc<dyn Job>).collect()
     }
 }
@@ -56,14 +75,19 @@ fn varying(material: &Material) -> Option<Varying> {
     maps.roughness.as_ref().map(|_| Varying::Alpha).or(thickness).or_else(|| Varying::film(&material.stack))
 }
 
-/// The shape of tiles for so many lobes.
-pub(crate) fn shape(lobes: usize) -> Shape {
-    let (rows, parts) = (FitSettings::default().rows as u32, Row::parts(lobes) as u32);
+/// The shape of tiles for so many lobes, with every so many of the rows.
+fn shape(lobes: usize, step: usize) -> Shape {
+    let (rows, parts) = ((ROWS - 1) / step + 1, Row::parts(lobes) as u32);
     let axes = [
-        axis("cos_theta", "", [0.0, 1.0], rows, Mapping::Rational { bend: 1.0 }),
+        axis("cos_theta", "", [0.0, 1.0], rows as u32, Mapping::Rational { bend: 1.0 }),
         axis("part", "", [0.0, f64::from(parts - 1)], parts, Mapping::Apart),
     ];
     Shape::grid(axes, TexelFormat::Rgba16Float)
+}
+
+/// The rows between two nodes of an axis of so many.
+fn step(size: u32) -> usize {
+    (ROWS - 1) / (size as usize - 1)
 }
 
 /// The graph of the fits alone, if there are any.
@@ -72,15 +96,48 @@ pub(crate) fn fits(graph: &Graph) -> Option<Graph> {
     Some(graph.only(|job| job.kind() == FIT))
 }
 
-/// The most lobes that any fit of a graph has found.
-pub(crate) fn most_lobes(graph: &Graph, results: &Results) -> usize {
-    let lobes = |job: &FitJob| Some(results.get::<Varied>(job.key())?.nodes[0].rows[0].lobes.len());
-    graph.of::<FitJob>().filter_map(lobes).max().unwrap_or(0)
+/// Decides the shape of the tiles, from the fits of a plan: of as many parts as the material with the most lobes needs, or where the budget limits
+/// errors of lobes the smallest that hold it, and then reports the search.
+///
+/// # Errors
+/// [`BakeError::Budget`] where none holds.
+pub(crate) fn decide(
+    settings: &mut Settings,
+    plan: &Plan,
+    results: &Results,
+    budget: &Budget,
+) -> Result<Option<Search>, BakeError> {
+    let fits: Vec<&Fits> = plan.graph.of::<FitJob>().filter_map(|job| results.get(job.key())).collect();
+    let most_lobes = |most: Option<usize>| fits.iter().map(|fits| fits.of(most).lobes()).max().unwrap_or(0);
+    if settings.lobes.is_none() {
+        settings.take_lobes(shape(most_lobes(None), 1));
+        return Ok(None);
+    }
+    let tiles = plan.tiles[TableKind::Lobes as usize].tiles.len() as u32;
+    let choices: Vec<(usize, usize)> = (0..=LOBES).flat_map(|most| (0..STEPS.len()).map(move |i| (most, i))).collect();
+    let candidate = |&(most, i): &(usize, usize)| {
+        let error = fits.iter().map(|fits| fits.of(Some(most)).errors[i]).fold(FitError::default(), FitError::max);
+        let Shape { x, y, base, format } = shape(most_lobes(Some(most)), STEPS[i]);
+        let cost = search::cost::axis(&x) + y.as_ref().map_or(1.0, |y| f64::from(y.size)) * search::cost::read(format);
+        let apron = apron(std::iter::once(&x).chain(&y));
+        let layout = AtlasLayout { x: x.clone(), y: y.clone(), apron, columns: 1, tiles, base };
+        let bytes = layout.size().map(u64::from).iter().product::<u64>() * u64::from(format.texel_bytes());
+        let form = CandidateForm::Table { x, y, format, base };
+        let error = MeasuredError { lobe: Some(error.lobe), albedo: Some(error.albedo), ..MeasuredError::default() };
+        Candidate { form, bytes, cost, error }
+    };
+    let found = Found::new(TableKind::Lobes, 0.0, choices.iter().map(candidate).collect());
+    let chosen = search::choose(std::slice::from_ref(&found), budget, 0)?[0];
+    let (most, i) = choices[chosen];
+    settings.lobes = Some(most);
+    settings.take_lobes(shape(most_lobes(Some(most)), STEPS[i]));
+    Ok(Some(search::report(&found, chosen, budget)))
 }
 
-/// The fit of a material.
-fn fit(material: &Material) -> Arc<FitJob> {
-    Arc::new(FitJob { stack: shown(&material.stack), color: color(material), varying: varying(material) })
+/// The fit of a material; with lobes of every number, where a search chooses among them.
+fn fit(material: &Material, is_searched: bool) -> Arc<FitJob> {
+    let (stack, color, varying) = (shown(&material.stack), color(material), varying(material));
+    Arc::new(FitJob { stack, color, varying, is_searched })
 }
 
 /// Numbers that stand in where nothing was fitted.
@@ -93,16 +150,26 @@ const UNFITTED: LobesRecord = LobesRecord {
     critical_plain_share: 0.0,
     varying: None,
     axes: None,
+    error: None,
 };
 
 /// The numbers of a material's lobes that hold at all views; [`UNFITTED`] in an outline without fits.
-pub(crate) fn record(material: &Material, results: &Results) -> LobesRecord {
+pub(crate) fn record(material: &Material, settings: &Settings, results: &Results) -> LobesRecord {
     let axes = Axes::of(&material.stack).map(|Axes { turn, is_mirrored }| AxesRecord {
         turn,
         is_mirrored,
         tiles: Axes::TILES as u32,
     });
-    let Some(varied) = results.get::<Varied>(fit(material).key()) else { return LobesRecord { axes, ..UNFITTED } };
+    let fits = results.get::<Fits>(fit(material, settings.lobes.is_some()).key());
+    let Some((fits, shape)) = fits.zip(settings.shape(TableKind::Lobes)) else {
+        return LobesRecord { axes, ..UNFITTED };
+    };
+    let Fit { varied, errors } = fits.of(settings.lobes);
+    let step = step(shape.x.size);
+    let error = STEPS.iter().position(|known| *known == step).map(|i| {
+        let FitError { lobe, lobe_noise, albedo, albedo_noise } = errors[i];
+        LobesError { lobe, lobe_noise, albedo, albedo_noise }
+    });
     let lobes = &varied.nodes[0];
     let (wide, Critical { cot_sq, width, plain_share }) = (lobes.frame.wide, lobes.axis.critical());
     let over = |varying| VaryingRecord {
@@ -127,15 +194,42 @@ pub(crate) fn record(material: &Material, results: &Results) -> LobesRecord {
         critical_plain_share: plain_share,
         varying: varied.varying().map(over),
         axes,
+        error,
     }
 }
 
-/// The simulation of a stack, and the fit to it: [`Varied`].
+/// Lobes of a material, and their errors with every so many rows of [`STEPS`].
+#[derive(Debug)]
+struct Fit {
+    varied: Varied,
+    errors: [FitError; STEPS.len()],
+}
+
+impl Fit {
+    /// Number of lobes.
+    fn lobes(&self) -> usize {
+        self.varied.nodes[0].rows[0].lobes.len()
+    }
+}
+
+/// Result of a [`FitJob`]: the lobes of bakes without a search, or those of up to no lobe, one, and so on.
+#[derive(Debug)]
+struct Fits(Vec<Fit>);
+
+impl Fits {
+    /// The lobes, so many at most where a search decided it.
+    fn of(&self, most: Option<usize>) -> &Fit {
+        &self.0[most.unwrap_or(0).min(self.0.len() - 1)]
+    }
+}
+
+/// The simulation of a stack, and the fits to it: [`Fits`].
 #[derive(Debug)]
 struct FitJob {
     stack: Stack,
     color: Color,
     varying: Option<Varying>,
+    is_searched: bool,
 }
 
 impl Job for FitJob {
@@ -154,11 +248,21 @@ impl Job for FitJob {
             "paths": paths,
             "seed": seed,
             "varying": self.varying.map(|varying| json!([factor_name(varying), varying.factor(0.0), varying.factor(1.0)])),
+            "is_searched": self.is_searched,
         })
     }
 
     fn run(&self, _: &Inputs<'_>) -> Output {
-        Box::new(Varied::of(&self.stack, &self.color, self.varying))
+        let Self { stack, color, varying, is_searched } = self;
+        let traced = Traced::new(stack, color, *varying, FitSettings::default());
+        let judge = Judge::new(stack, color, *varying);
+        let fit = |(most, excess)| {
+            let varied: Varied = traced.fit(most, excess);
+            Fit { errors: STEPS.map(|step| judge.error(&varied.clone().thinned(step))), varied }
+        };
+        let wanted: Vec<(usize, f64)> =
+            if *is_searched { (0..=LOBES).map(|most| (most, 0.0)).collect() } else { vec![(LOBES, EXCESS)] };
+        Box::new(Fits(wanted.into_iter().map(fit).collect()))
     }
 }
 
@@ -174,6 +278,8 @@ fn factor_name(varying: Varying) -> &'static str {
 #[derive(Debug)]
 struct LobesJob {
     fit: Arc<FitJob>,
+    /// The number of lobes that a search decided, at most.
+    most: Option<usize>,
     /// Number over what varies, or over the azimuth.
     tile: usize,
     /// Cosine of the view, and part.
@@ -189,6 +295,7 @@ impl Job for LobesJob {
     fn inputs(&self) -> Value {
         json!({
             "fit": self.fit.key().to_string(),
+            "most": self.most,
             "tile": self.tile,
             "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
             "format": self.format.name(),
@@ -200,9 +307,10 @@ impl Job for LobesJob {
     }
 
     fn run(&self, inputs: &Inputs<'_>) -> Output {
-        let varied: &Varied = inputs.part(self.fit.as_ref());
-        let (lobes, tile) = varied.tile(self.tile);
         let [x, y] = &self.axes;
+        let fits: &Fits = inputs.part(self.fit.as_ref());
+        let varied = fits.of(self.most).varied.clone().thinned(step(x.size));
+        let (lobes, tile) = varied.tile(self.tile);
         let most = (y.size as usize - Row::parts(0)) / (Row::parts(1) - Row::parts(0));
         // Parts are side by side; the first and the last node of each stand there twice.
         let mut truth = Image::zeros((x.size + 2) * y.size, 1, 4);

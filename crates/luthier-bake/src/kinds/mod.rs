@@ -36,6 +36,8 @@ pub(crate) struct Site<'a> {
     pub(crate) shape: &'a Shape,
     /// Shape that it would have without a search.
     pub(crate) fixed: &'a Shape,
+    /// The number of lobes that a search takes at most, where there is one.
+    pub(crate) lobes: Option<usize>,
     pub(crate) read_image: ImageReader<'a>,
 }
 

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use luthier_manifest::{Budget, Candidate, CandidateForm};
+use luthier_manifest::{Budget, Candidate, CandidateForm, MeasuredError};
 
 use super::Found;
 use crate::BakeError;
@@ -123,13 +123,15 @@ fn nearest(found: &[Found], budget: &Budget, fixed_bytes: u64) -> BakeError {
             limit("max_abs", budget.max_abs, Some(best.error.max_abs));
             limit("max_rel", budget.max_rel, Some(best.error.max_rel));
             limit("delta_e", budget.delta_e, best.error.delta_e);
+            limit("max_lobe_err", budget.max_lobe_err, best.error.lobe);
+            limit("max_albedo_err", budget.max_albedo_err, best.error.albedo);
             return BakeError::Budget {
                 reason: format!(
-                    "no {} table is good enough; nearest: {}, {} bytes, error {:.2e}",
+                    "no {} table is good enough; nearest: {}, {} bytes, {}",
                     kind.kind.name(),
                     in_words(&best.form),
                     best.bytes,
-                    best.error.max_abs
+                    errors_in_words(&best.error)
                 ),
                 hint: would.join(" and "),
             };
@@ -180,15 +182,22 @@ fn in_words(form: &CandidateForm) -> String {
     }
 }
 
+/// The errors of a candidate, for messages.
+fn errors_in_words(error: &MeasuredError) -> String {
+    match (error.lobe, error.albedo) {
+        (Some(lobe), Some(albedo)) => format!("lobe error {lobe:.3}, error of the albedo {albedo:.4}"),
+        _ => format!("error {:.2e}", error.max_abs),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use luthier_lut::TableKind;
-    use luthier_manifest::MeasuredError;
 
     use super::*;
 
     fn candidate(bytes: u64, cost: f64, max_abs: f64) -> Candidate {
-        let error = MeasuredError { max_abs, max_rel: max_abs, delta_e: None };
+        let error = MeasuredError { max_abs, max_rel: max_abs, ..MeasuredError::default() };
         Candidate { form: CandidateForm::ClosedForm, bytes, cost, error }
     }
 

@@ -4,7 +4,8 @@
 //! measured as a device samples them, against one fine truth per tile, in the same order whatever the budget: a tighter budget chooses
 //! among fewer, so never fewer bytes. Of those that hold, the fewest bytes win, then the lowest cost.
 //!
-//! Not searched: thickness textures, which are pictures, and escape tiles.
+//! Not searched: thickness textures, which are pictures, and escape tiles. Lobes come first and have limits of their own ([`kinds::lobes::decide`]): their
+//! errors are those of the fit, not of texels.
 
 mod choice;
 pub mod goals;
@@ -21,8 +22,15 @@ use crate::kinds;
 use crate::plan::Plan;
 
 /// Budget of tables for which none is stated: errors that a fixed row of 128 half floats has too.
-pub const DEFAULT_BUDGET: Budget =
-    Budget { max_abs: Some(5e-4), max_rel: None, delta_e: None, max_bytes: None, max_cost: None };
+pub const DEFAULT_BUDGET: Budget = Budget {
+    max_abs: Some(5e-4),
+    max_rel: None,
+    delta_e: None,
+    max_bytes: None,
+    max_cost: None,
+    max_lobe_err: None,
+    max_albedo_err: None,
+};
 
 /// The candidates for one kind.
 #[derive(Debug, Clone)]

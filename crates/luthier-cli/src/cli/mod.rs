@@ -181,16 +181,23 @@ pub(crate) struct Limits {
     /// Estimated cost of one read of every table, in operations
     #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) max_cost: Option<f64>,
+    /// Largest lobe error of fitted lobes against the simulated stack, noise of the judge included
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) max_lobe_err: Option<f64>,
+    /// Largest error of the directional albedo of fitted lobes
+    #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) max_albedo_err: Option<f64>,
     /// Take fixed sizes, mappings and formats, whatever the budget
-    #[arg(long, conflicts_with_all = ["max_abs", "max_rel", "delta_e", "max_bytes", "max_cost"])]
+    #[arg(long, conflicts_with_all = ["max_abs", "max_rel", "delta_e", "max_bytes", "max_cost", "max_lobe_err", "max_albedo_err"])]
     pub(crate) no_search: bool,
 }
 
 impl Limits {
     /// The options of the baker under these limits.
     pub(crate) fn options(&self) -> luthier_bake::Options {
-        let &Self { max_abs, max_rel, delta_e, max_bytes, max_cost, no_search } = self;
-        let budget = luthier_manifest::Budget { max_abs, max_rel, delta_e, max_bytes, max_cost };
+        let &Self { max_abs, max_rel, delta_e, max_bytes, max_cost, max_lobe_err, max_albedo_err, no_search } = self;
+        let budget =
+            luthier_manifest::Budget { max_abs, max_rel, delta_e, max_bytes, max_cost, max_lobe_err, max_albedo_err };
         luthier_bake::Options { budget, search: !no_search, ..luthier_bake::Options::default() }
     }
 }

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use luthier_bake::{Observer, Silent};
 use luthier_export::{Bake, Compression, MANIFEST, MemoryStore, Package, Source, read, refuse};
-use luthier_manifest::{CandidateForm, Functions, Manifest};
+use luthier_manifest::{CandidateForm, Functions, LobesError, Manifest};
 use luthier_material::Diagnostic;
 use luthier_shader::{Form, Target};
 use luthier_terminal::{Failure, Outcome, bytes, print, valid};
@@ -118,10 +118,25 @@ fn text(options: &BakeOptions, manifest: &Manifest, progress: &BakeProgress, sta
         let chosen = &search.front[search.chosen];
         let what = match &chosen.form {
             CandidateForm::ClosedForm => "computed, no table".to_owned(),
-            CandidateForm::Table { .. } => format!("{} bytes, error {:.1e}", chosen.bytes, chosen.error.max_abs),
+            CandidateForm::Table { .. } => {
+                let error = chosen.error.lobe.map_or_else(
+                    || format!("error {:.1e}", chosen.error.max_abs),
+                    |lobe| format!("lobe error {lobe:.3}"),
+                );
+                format!("{} bytes, {error}", chosen.bytes)
+            }
         };
         let (kind, front, measured) = (search.kind.name(), search.front.len(), search.measured);
         out.push_str(&format!("{kind:<13} {what}; cost {:.0}; {front} on the front of {measured}\n", chosen.cost));
+    }
+    let lobes = manifest.materials.iter().filter_map(|m| Some((&m.name, m.constants.lobes?.error?)));
+    for (number, (name, LobesError { lobe, lobe_noise, albedo, albedo_noise })) in lobes.enumerate() {
+        if number == 0 {
+            out.push_str("\nlobes against the simulated stack, of unseen views the worst\n");
+        }
+        out.push_str(&format!(
+            "{name:<30} lobe error {lobe:.3}, of noise {lobe_noise:.3}; error of the albedo {albedo:.4}, standard error {albedo_noise:.4}\n"
+        ));
     }
     let jobs: Vec<String> = progress.seconds().iter().map(|(kind, s)| format!("{} {s:.2}", kind.name())).collect();
     out.push_str(&format!("\nseconds: {}; all {:.2}\n", jobs.join(", "), start.elapsed().as_secs_f64()));
@@ -145,12 +160,16 @@ fn summary(options: &BakeOptions, manifest: &Manifest, progress: &BakeProgress, 
             })
         })
         .collect();
+    let lobes: Vec<Value> = (manifest.materials.iter())
+        .filter_map(|m| Some(json!({ "material": m.name, "error": m.constants.lobes?.error? })))
+        .collect();
     let seconds: Value = progress.seconds().iter().map(|(kind, s)| (kind.name().to_owned(), json!(s))).collect();
     json!({
         "manifest": options.out.join(MANIFEST).to_string_lossy(),
         "materials": manifest.materials.iter().map(|m| &m.name).collect::<Vec<_>>(),
         "tables": tables,
         "searches": &manifest.searches,
+        "lobes": lobes,
         "seconds": seconds,
         "seconds_all": start.elapsed().as_secs_f64(),
     })

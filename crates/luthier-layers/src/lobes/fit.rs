@@ -28,10 +28,15 @@ pub struct FitSettings {
     pub seed: u64,
 }
 
+impl FitSettings {
+    /// Rows by default: the 18 steps between them are divided by 2, 3 and 6.
+    pub const DEFAULT_ROWS: usize = 19;
+}
+
 impl Default for FitSettings {
-    /// 19 rows, 32,768 paths for each.
+    /// [`Self::DEFAULT_ROWS`], 32,768 paths for each.
     fn default() -> Self {
-        Self { rows: 19, paths: 32_768, seed: 0 }
+        Self { rows: Self::DEFAULT_ROWS, paths: 32_768, seed: 0 }
     }
 }
 
@@ -170,10 +175,7 @@ impl Simulation {
     pub(super) fn along(axis: ViewAxis, stack: &Stack, color: &Color, settings: FitSettings) -> Self {
         let first = FirstInterface::of(stack, color);
         let axes = Axes::of(stack);
-        let rough: Vec<Covariance> = (stack.layers.iter())
-            .filter(|layer| !matches!(layer.base, Base::Diffuse(_)))
-            .map(|layer| covariance(&layer.surface, axes))
-            .collect();
+        let rough = covariances(stack, axes);
         let joined = rough.iter().fold([0.0; 3], |sum, own| plus(sum, own, 1.0));
         let last = rough.last().copied().unwrap_or([0.09, 0.09, 0.0]);
         let joined_alone = alpha(&last) >= 0.7 * alpha(&joined).clamp(START_WIDTHS[0], START_WIDTHS[1]);
@@ -351,7 +353,13 @@ fn nearest(problems: &[Problem<'_>], starts: Vec<(usize, Vec<Start>, [f64; 2])>)
 }
 
 /// Squares of slope parameters, as a matrix: along x, along y, and between them.
-type Covariance = [f64; 3];
+pub(super) type Covariance = [f64; 3];
+
+/// Covariances of the interfaces of a stack in axes.
+pub(super) fn covariances(stack: &Stack, axes: Option<Axes>) -> Vec<Covariance> {
+    let rough = stack.layers.iter().filter(|layer| !matches!(layer.base, Base::Diffuse(_)));
+    rough.map(|layer| covariance(&layer.surface, axes)).collect()
+}
 
 /// The covariance of a surface in axes.
 fn covariance(surface: &Surface, axes: Option<Axes>) -> Covariance {
@@ -395,7 +403,7 @@ const BLURRED: f64 = 1.0 / 16.0;
 const STRETCH: f64 = 1.04;
 
 /// Cells in the half vectors of a medium. Those of an anisotropic stack are stretched as the narrowest lobe from below.
-fn cells(index: f64, surfaces: &[Covariance], axes: Option<Axes>) -> Cells {
+pub(super) fn cells(index: f64, surfaces: &[Covariance], axes: Option<Axes>) -> Cells {
     if axes.is_none() {
         return Cells::new(index, surfaces.iter().map(alpha).fold(1.0, f64::min).max(1e-3));
     }
@@ -412,7 +420,7 @@ fn cells(index: f64, surfaces: &[Covariance], axes: Option<Axes>) -> Cells {
 }
 
 /// The relative indices in whose half vectors lobes may be: 1, that of the first medium, and that of the last.
-fn indices(stack: &Stack) -> Vec<f64> {
+pub(super) fn indices(stack: &Stack) -> Vec<f64> {
     let exterior = stack.exterior.at(REFERENCE_NM).re;
     let media = stack.layers.iter().filter_map(|layer| match &layer.base {
         Base::Dielectric { ior, .. } => Some(ior.at(REFERENCE_NM).re / exterior),

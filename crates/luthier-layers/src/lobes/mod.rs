@@ -19,6 +19,8 @@
 //! - **Rows.** All that hangs on the view is in rows over [`ViewAxis`], linear between. An anisotropic stack has such rows at several azimuths of the
 //!   eye ([`Axes`]), linear between, too; its shapes are in the tangents of its axes, where they hardly change with the azimuth.
 //!
+//! [`Judge`] compares lobes with paths that no fit saw, between rows and nodes: bakes state these errors, and budgets limit them.
+//!
 //! Sampling is exact: draw a lobe, draw a slope, mirror the eye about it, refract. What is drawn beyond the horizon has no weight.
 //!
 //! Simplifications: the lobes are not reciprocal. Out of scope: anisotropic surfaces that vary, which keep the rows of the surface that does not.
@@ -31,6 +33,7 @@ mod ellipse;
 mod fit;
 mod fitted;
 mod half_vector;
+mod judge;
 mod parameters;
 mod prepared;
 mod problem;
@@ -50,10 +53,11 @@ pub use axes::Axes;
 pub use below::Below;
 pub use fit::{FitSettings, Simulation};
 pub use fitted::Fitted;
+pub use judge::{FitError, Judge};
 pub use prepared::{Prepared, Sample};
 pub use rows::{Critical, Lobe, Row, ViewAxis};
 pub use shape::{Shape, TAIL_MIN, Wide};
-pub use varied::{Varied, Varying};
+pub use varied::{Traced, Varied, Varying};
 
 use glam::DVec3;
 use luthier_optics::Rgb;

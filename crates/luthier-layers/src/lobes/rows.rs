@@ -78,6 +78,11 @@ impl ViewAxis {
         self.size
     }
 
+    /// The axis of as many nodes less, every so many of these: the first, the last and those between.
+    pub(super) fn thinned(self, step: usize) -> Self {
+        Self::new((self.size - 1) / step + 1, self.critical)
+    }
+
     /// The critical angle.
     pub fn critical(self) -> Critical {
         self.critical

@@ -15,6 +15,8 @@ const RINGS: usize = 20;
 /// Sectors of half a turn, where halves count together, and of a turn.
 const SECTORS: usize = 12;
 const SECTORS_OF_TURN: usize = 16;
+/// Eighths of a turn.
+const EIGHTHS: usize = 8;
 /// Discs and rings inside the innermost ring.
 const INNER: usize = 6;
 /// Points of a cell along either side.
@@ -89,8 +91,16 @@ impl Cells {
         if self.stretch.is_some() { SECTORS_OF_TURN } else { SECTORS }
     }
 
+    /// The number of a cell among those whose sectors are eighths of a turn.
+    pub(super) fn wider(&self, cell: usize) -> usize {
+        let Some(number) = cell.checked_sub(1) else { return 0 };
+        let sectors = self.sectors();
+        let eighths = if self.stretch.is_some() { EIGHTHS } else { EIGHTHS / 2 };
+        1 + number / sectors * eighths + number % sectors * eighths / sectors
+    }
+
     /// The cell of light from `wi` seen from `wo`. Where both halves count together, the plane of `wo` is that of x and z.
-    fn cell(&self, wi: DVec3, wo: DVec3) -> usize {
+    pub(super) fn cell(&self, wi: DVec3, wo: DVec3) -> usize {
         let (at, _) = slope(wi, refracted(wi, self.index), refracted(wo, self.index), self.index);
         let ([x, y], least_angle, turn) = match &self.stretch {
             None => ([at[0], at[1].abs()], 0.0, PI),

@@ -143,39 +143,19 @@ impl Varied {
 
     /// [`Self::of`] with settings.
     pub fn with(stack: &Stack, color: &Color, varying: Option<Varying>, settings: FitSettings) -> Self {
-        let Some(varying) = over(stack, varying) else {
-            return Self { nodes: vec![Lobes::with(stack, color, settings)], varying: None };
-        };
-        let stack = shown(stack);
-        let alphas = (stack.layers.iter())
-            .filter(|layer| !matches!(layer.base, Base::Diffuse(_)))
-            .map(|layer| layer.surface.alpha_x.clamp(ALPHA_MIN, 1.0));
-        let least = ALPHA_MIN / alphas.fold(ALPHA_MIN, f64::max);
-        let (count, nominal) = (varying.nodes(), varying.nominal());
-        let axis = ViewAxis::of(&stack, settings.rows);
-        let simulate = |node: usize| {
-            let here = varying.apply(&stack, varying.factor(node as f64));
-            let paths = if node == nominal { settings.paths } else { settings.paths / varying.path_share() };
-            Simulation::along(axis, &here, color, FitSettings { paths, ..settings })
-        };
-        let simulations: Vec<Simulation> = (0..count).map(simulate).collect();
-        let over = Over { varying, least, stack, color: *color };
-        let spread = |node: usize| over.spread(varying.factor(node as f64));
-        let best = |node: usize| (node, simulations[node].fewest(LOBES, EXCESS));
-        let lobes = |found: &Found| found.starts(Basis::Isotropic).len();
-        // Where the lobes are farther apart, more of them may be seen.
-        let (here, middle) = (best(nominal), best(count / 2));
-        let (seed, start) = if lobes(&middle.1) > lobes(&here.1) { middle } else { here };
-        let mut found: Vec<Option<Found>> = (0..count).map(|_| None).collect();
-        found[seed] = Some(start);
-        let pairs = (seed + 1..count).map(|node| (node, node - 1)).chain((0..seed).rev().map(|node| (node, node + 1)));
-        for (node, beside) in pairs {
-            let from = found[beside].as_ref();
-            found[node] = from.map(|from| simulations[node].follow(from, spread(node) / spread(beside)));
+        Traced::new(stack, color, varying, settings).fit(LOBES, EXCESS)
+    }
+
+    /// Every so many of the rows, a divisor of the steps between them.
+    #[must_use]
+    pub fn thinned(mut self, step: usize) -> Self {
+        for lobes in &mut self.nodes {
+            let size = lobes.axis.size();
+            let kept = lobes.rows.chunks(size).flat_map(|tile| tile.iter().step_by(step));
+            lobes.rows = kept.cloned().collect();
+            lobes.axis = lobes.axis.thinned(step);
         }
-        let lobes = |(simulation, found): (&Simulation, &Option<Found>)| Some(simulation.lobes(found.as_ref()?));
-        let nodes = simulations.iter().zip(&found).filter_map(lobes).collect();
-        Self { nodes, varying: Some(over) }
+        self
     }
 
     /// Number of the tiles of a stack: over what varies, or over the azimuth.
@@ -218,6 +198,59 @@ impl Varied {
         lobes.rows = (0..lobes.rows.len()).map(row).collect();
         lobes.first = FirstInterface::of(&over.varying.apply(&over.stack, factor), &over.color);
         lobes
+    }
+}
+
+/// The light of a stack, at every node.
+#[derive(Debug)]
+pub struct Traced {
+    simulations: Vec<Simulation>,
+    varying: Option<Over>,
+}
+
+impl Traced {
+    /// Traces the paths of a stack.
+    pub fn new(stack: &Stack, color: &Color, varying: Option<Varying>, settings: FitSettings) -> Self {
+        let stack = shown(stack);
+        let Some(varying) = over(&stack, varying) else {
+            return Self { simulations: vec![Simulation::new(&stack, color, settings)], varying: None };
+        };
+        let alphas = (stack.layers.iter())
+            .filter(|layer| !matches!(layer.base, Base::Diffuse(_)))
+            .map(|layer| layer.surface.alpha_x.clamp(ALPHA_MIN, 1.0));
+        let least = ALPHA_MIN / alphas.fold(ALPHA_MIN, f64::max);
+        let axis = ViewAxis::of(&stack, settings.rows);
+        let simulate = |node: usize| {
+            let here = varying.apply(&stack, varying.factor(node as f64));
+            let share = if node == varying.nominal() { 1 } else { varying.path_share() };
+            Simulation::along(axis, &here, color, FitSettings { paths: settings.paths / share, ..settings })
+        };
+        let simulations = (0..varying.nodes()).map(simulate).collect();
+        Self { simulations, varying: Some(Over { varying, least, stack, color: *color }) }
+    }
+
+    /// The fewest lobes, so many at most, that are no more than `excess` farther from the light than the best: see [`Simulation::fit_fewest`].
+    pub fn fit(&self, most: usize, excess: f64) -> Varied {
+        let Some(over) = &self.varying else {
+            return Varied { nodes: vec![self.simulations[0].fit_fewest(most, excess)], varying: None };
+        };
+        let (count, nominal) = (self.simulations.len(), over.varying.nominal());
+        let spread = |node: usize| over.spread(over.varying.factor(node as f64));
+        let best = |node: usize| (node, self.simulations[node].fewest(most, excess));
+        let lobes = |found: &Found| found.starts(Basis::Isotropic).len();
+        // Where the lobes are farther apart, more of them may be seen.
+        let (here, middle) = (best(nominal), best(count / 2));
+        let (seed, start) = if lobes(&middle.1) > lobes(&here.1) { middle } else { here };
+        let mut found: Vec<Option<Found>> = (0..count).map(|_| None).collect();
+        found[seed] = Some(start);
+        let pairs = (seed + 1..count).map(|node| (node, node - 1)).chain((0..seed).rev().map(|node| (node, node + 1)));
+        for (node, beside) in pairs {
+            let from = found[beside].as_ref();
+            found[node] = from.map(|from| self.simulations[node].follow(from, spread(node) / spread(beside)));
+        }
+        let lobes = |(simulation, found): (&Simulation, &Option<Found>)| Some(simulation.lobes(found.as_ref()?));
+        let nodes = self.simulations.iter().zip(&found).filter_map(lobes).collect();
+        Varied { nodes, varying: self.varying.clone() }
     }
 }
 

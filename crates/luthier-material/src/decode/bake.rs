@@ -8,6 +8,7 @@ use crate::bake_settings::{
     GridSettings, RowSettings,
 };
 use crate::diagnostic::Sink;
+use crate::material::Material;
 use crate::section::Section;
 
 /// The settings that the file asks of its tables.
@@ -36,6 +37,19 @@ pub(super) fn budget(document: &Section<'_>) -> Budget {
         delta_e: at.number("delta_e"),
         max_bytes: at.number("max_bytes").map(|bytes| bytes as u64),
         max_cost: at.number("max_cost"),
+        max_lobe_err: at.number("max_lobe_err"),
+        max_albedo_err: at.number("max_albedo_err"),
+    }
+}
+
+/// Limits on fitted lobes in a file whose model has none.
+pub(super) fn check_limits(material: &Material, document: &Section<'_>, sink: &mut Sink<'_>) {
+    let Some(at) = document.section("budget").filter(|_| material.model() != ShadingModel::Lobes) else { return };
+    for key in ["max_lobe_err", "max_albedo_err"].into_iter().filter(|key| at.number(key).is_some()) {
+        let message =
+            format!("`{key}` limits the model lobes, but the model of this material is {}", material.model().name());
+        let hint = "leave the limit out, or name the model: `[bake] model = \"lobes\"`".to_owned();
+        sink.error(at.value_span(key), message, Some(hint));
     }
 }
 

@@ -63,6 +63,9 @@ pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read
     files.extend(material.images().iter().map(|image| image.path.to_owned()));
     material.files = files.into_iter().collect();
     if !sink.has_errors() {
+        bake::check_limits(&material, document, sink);
+    }
+    if !sink.has_errors() {
         doubt::report(&material, &spectra, sink);
     }
     material

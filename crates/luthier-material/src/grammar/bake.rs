@@ -76,6 +76,16 @@ pub(super) static BUDGET: Table = Table {
         ),
         Key::optional("max_bytes", Kind::Integer(1, i64::MAX), "Bytes of the texels of all tables of a bake."),
         Key::optional("max_cost", Kind::Number(POSITIVE), "Estimated cost of one read of every table, in operations."),
+        Key::optional(
+            "max_lobe_err",
+            Kind::Number(POSITIVE),
+            "Largest lobe error of fitted lobes against the simulated stack.",
+        ),
+        Key::optional(
+            "max_albedo_err",
+            Kind::Number(POSITIVE),
+            "Largest error of the directional albedo of fitted lobes.",
+        ),
     ],
     exactly_one: None,
 };

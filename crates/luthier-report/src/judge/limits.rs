@@ -80,6 +80,8 @@ pub fn limits(report: &Report, files: &[FileBudget], asked: &Asked) -> Vec<Limit
         let cost = report.searches.iter().filter_map(|s| s.front.get(s.chosen)).map(|c| c.cost).sum();
         let cost = Some(cost).filter(|_| !report.searches.is_empty());
         add("estimated cost of one read of every searched table", budget.max_cost, cost, BAKER);
+        add("lobes: largest lobe error", budget.max_lobe_err, searched(|c| c.error.lobe), BAKER);
+        add("lobes: largest error of the albedo", budget.max_albedo_err, searched(|c| c.error.albedo), BAKER);
     }
     // Random directions may pass by what a tile misses.
     let missed = report.tables.iter().flat_map(|table| table.tiles.iter().map(|tile| (table.kind.name(), tile)));

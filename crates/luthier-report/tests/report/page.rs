@@ -39,7 +39,7 @@ pub(crate) fn filled(report: &mut Report) -> Exhibits {
         let (quantity, unit) = ("cos_theta".to_owned(), String::new());
         let x = Axis { quantity, unit, min: 0.0, max: 1.0, size, mapping: Mapping::Power { exponent: 2.0 } };
         let (format, base) = (TexelFormat::Rgba16Float, RowBase::Schlick);
-        let error = MeasuredError { max_abs, max_rel: 2.0 * max_abs, delta_e: Some(0.1) };
+        let error = MeasuredError { max_abs, max_rel: 2.0 * max_abs, delta_e: Some(0.1), ..MeasuredError::default() };
         Candidate { form: CandidateForm::Table { x, y: None, format, base }, bytes, cost: 40.0 + bytes as f64, error }
     };
     let closed = CandidateForm::ClosedForm;
@@ -52,7 +52,7 @@ pub(crate) fn filled(report: &mut Report) -> Exhibits {
                 form: closed,
                 bytes: 0,
                 cost: 9.0,
-                error: MeasuredError { max_abs: 0.2, max_rel: 0.4, delta_e: None },
+                error: MeasuredError { max_abs: 0.2, max_rel: 0.4, ..MeasuredError::default() },
             },
             candidate(32, 256, 5e-4),
             candidate(64, 512, 1e-4),

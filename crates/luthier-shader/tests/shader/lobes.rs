@@ -67,6 +67,7 @@ fn light_from_below_is_that_of_the_twin() {
             critical_plain_share: 0.25,
             varying: None,
             axes: None,
+            error: None,
         };
         let axis = ViewAxis::new(2, Critical { cot_sq, width, plain_share: 0.25 });
         let wide = Wide::new(lobes.falloff, axis);
@@ -408,6 +409,7 @@ fn directions_are_drawn_as_their_density_says() {
             critical_plain_share: 0.0,
             varying: None,
             axes,
+            error: None,
         };
         materials[0].constants.lobes = Some(lobes);
         let first = &mut materials[0].layers[0];

@@ -49,7 +49,7 @@ pub(super) fn candidates(plan: &Plan) -> Option<Found> {
         let [x, y] = axes;
         let form = CandidateForm::Table { x, y: Some(y), format, base: RowBase::Zero };
         // Values are relative to the peak of D already.
-        let error = MeasuredError { max_abs: error, max_rel: error, delta_e: None };
+        let error = MeasuredError { max_abs: error, max_rel: error, ..MeasuredError::default() };
         Candidate { bytes: form.bytes(jobs.len() as u32), cost: price, error, form }
     }));
     Some(Found::new(TableKind::Distribution, price(&axes(8.0, 512), TexelFormat::Rg16Float), candidates))

@@ -39,7 +39,7 @@ pub(super) fn candidates(plan: &Plan) -> Option<Found> {
             .fold(0.0, f64::max);
         let form = row_form(axis, format, RowBase::Zero);
         // A swing of 2 either way passes through 0: relative errors are those to its reach.
-        let error = MeasuredError { max_abs: error, max_rel: 0.5 * error, delta_e: None };
+        let error = MeasuredError { max_abs: error, max_rel: 0.5 * error, ..MeasuredError::default() };
         Candidate { bytes: form.bytes(jobs.len() as u32), cost: price(format), error, form }
     }));
     Some(Found::new(TableKind::Phase, price(TexelFormat::Rgba16Float), candidates))

@@ -26,6 +26,60 @@ fn lobes_have_a_tile_a_record_and_one_form() {
     assert_eq!(workshop.text("out/manifest.json"), before);
 }
 
+/// The fewest bytes that hold the limit are baked, tighter limits cost no less, and what none holds is refused with the limit that would do: which
+/// does.
+#[test]
+fn lobes_are_as_small_as_their_budget_allows() {
+    let plain = lacquer("a").replace("\"elek\"", "\"lobes\"");
+    let limited = |limit: &str| plain.replace("schema = 1\n", &format!("schema = 1\nbudget = {{ {limit} }}\n"));
+    let workshop = Workshop::with(&[("a.toml", &plain)]);
+    let mut bytes = Vec::new();
+    for limit in [0.6, 0.1, 0.04] {
+        workshop.write("a.toml", limited(&format!("max_lobe_err = {limit}")));
+        let run = workshop.run(&["bake", "a.toml", "--target", "wgsl"]).exits(0);
+        assert!(run.stdout.contains("lobes against the simulated stack"), "{}", run.stdout);
+        let manifest = workshop.json("out/manifest.json");
+        let error = &manifest["materials"][0]["constants"]["lobes"]["error"];
+        let search = manifest["searches"].as_array().unwrap().iter().find(|search| search["kind"] == "lobes").unwrap();
+        let chosen = &search["front"][search["chosen"].as_u64().unwrap() as usize];
+        assert!(
+            error["lobe"].as_f64().unwrap() <= limit && error["lobe"] == chosen["error"]["lobe"],
+            "{error} {chosen}"
+        );
+        let table = manifest["tables"].as_array().unwrap().iter().find(|table| table["kind"] == "lobes").unwrap();
+        assert_eq!(table["texel_bytes"], chosen["bytes"]);
+        bytes.push(chosen["bytes"].as_u64().unwrap());
+        let report = workshop.run(&["report", "--no-device", "--pairs", "8", "--json"]).exits(0).json();
+        let limits = report["limits"].as_array().unwrap();
+        assert!(
+            limits.iter().any(|l| l["quantity"] == "lobes: largest lobe error" && l["found"] == error["lobe"]),
+            "{limits:?}"
+        );
+    }
+    assert!(bytes[0] <= bytes[1] && bytes[1] < bytes[2], "{bytes:?}");
+    workshop.write("a.toml", plain.clone());
+    let before = workshop.text("out/manifest.json");
+    let refused = ["bake", "a.toml", "--target", "wgsl", "--max-lobe-err", "1e-4"];
+    let message = workshop.run(&refused).fails(1, &["no lobes table is good enough", "lobe error"]).stderr;
+    assert_eq!(workshop.text("out/manifest.json"), before);
+    let would = message.split("max_lobe_err = ").nth(1).unwrap().split('`').next().unwrap();
+    workshop.run(&["bake", "a.toml", "--target", "wgsl", "-q", "--max-lobe-err", would]).exits(0);
+    let albedo = ["bake", "a.toml", "--target", "wgsl", "-q", "--max-albedo-err", "0.02"];
+    workshop.run(&albedo).exits(0);
+}
+
+/// Limits on lobes where there are none are refused: in a file with its line, as an option.
+#[test]
+fn limits_on_lobes_need_lobes() {
+    let text = lacquer("a").replace("schema = 1\n", "schema = 1\nbudget = { max_albedo_err = 0.01 }\n");
+    let workshop = Workshop::with(&[("a.toml", &text), ("b.toml", &lacquer("b"))]);
+    let stderr = workshop.run(&["check", "a.toml"]).exits(1).stderr;
+    let words = ["a.toml:2:29", "`max_albedo_err` limits the model lobes", "is elek", "leave the limit out"];
+    assert!(words.iter().all(|word| stderr.contains(word)), "{stderr}");
+    let option = ["bake", "b.toml", "--model", "elek", "--max-lobe-err", "0.1"];
+    workshop.run(&option).fails(1, &["`max_lobe_err` limits the model lobes", "--model lobes"]);
+}
+
 /// Oracle: paths of the reference with other random numbers, four standard errors and what the model itself is off.
 #[test]
 fn the_albedo_of_lobes_is_that_of_the_reference() {

@@ -293,6 +293,8 @@ fn asked(budget: &Budget) -> String {
         ("CIEDE2000", budget.delta_e.map(number)),
         ("bytes", budget.max_bytes.map(bytes)),
         ("cost", budget.max_cost.map(number)),
+        ("lobe error", budget.max_lobe_err.map(error)),
+        ("error of the albedo of lobes", budget.max_albedo_err.map(error)),
     ];
     let stated: Vec<String> =
         parts.into_iter().filter_map(|(name, limit)| Some(format!("{name} at most {}", limit?))).collect();

@@ -1,0 +1,217 @@
+//! Errors of lobes against paths that no fit has seen, at views between their rows.
+
+use std::f64::consts::FRAC_2_PI;
+
+use glam::DVec3;
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use luthier_optics::stack::Stack;
+
+use super::fit::{cells, covariances, indices};
+use super::half_vector::{outside, refracted};
+use super::tally::Cells;
+use super::{Axes, FirstInterface, FitSettings, Varied, Varying, ViewAxis, shown};
+use crate::layered_mc::ColorPaths;
+
+/// Views, and paths of each.
+const VIEWS: usize = 5;
+const PATHS: u64 = 65_536;
+
+/// Flatter views than that after this row are not judged: those beyond 86 degrees, but for a critical angle.
+const FIRST_ROW: usize = 2;
+
+/// Families of random numbers of a judge begin here, so that they are none of a fit.
+const SEEDS: u64 = 1 << 40;
+
+/// Errors of lobes against the simulated stack, the largest of a few views half way between rows, and between nodes of a factor or azimuths. The
+/// noise of the judge's paths is in them.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FitError {
+    /// Lobe error, the largest channel: half the sum of the differences of energies in cells, over the albedo. Cells are rings and eighths of a turn
+    /// around the mirror direction.
+    pub lobe: f64,
+    /// The lobe error that noise alone makes on average.
+    pub lobe_noise: f64,
+    /// Absolute error of the directional albedo, the largest channel.
+    pub albedo: f64,
+    /// Standard error of the judge's albedo.
+    pub albedo_noise: f64,
+}
+
+impl FitError {
+    /// The larger of each.
+    #[must_use]
+    pub fn max(self, other: Self) -> Self {
+        Self {
+            lobe: self.lobe.max(other.lobe),
+            lobe_noise: self.lobe_noise.max(other.lobe_noise),
+            albedo: self.albedo.max(other.albedo),
+            albedo_noise: self.albedo_noise.max(other.albedo_noise),
+        }
+    }
+}
+
+/// Light of a stack at a few views, as many paths show it.
+#[derive(Debug)]
+pub struct Judge {
+    cells: Cells,
+    axes: Option<Axes>,
+    views: Vec<View>,
+}
+
+/// Light of one view.
+#[derive(Debug)]
+struct View {
+    /// The factor on what varies.
+    factor: f64,
+    wo: DVec3,
+    /// Energy by cell and channel, without that of one facet of the first interface.
+    energies: Vec<Rgb>,
+    /// Sum of the squared energies of the paths by cell, means of the channels.
+    squares: Vec<f64>,
+    first_facet: Rgb,
+}
+
+impl Judge {
+    /// Traces the paths.
+    pub fn new(stack: &Stack, color: &Color, varying: Option<Varying>) -> Self {
+        let (stack, axes) = (shown(stack), Axes::of(stack));
+        let varying = varying.filter(|_| axes.is_none());
+        let index = indices(&stack).last().copied().unwrap_or(1.0);
+        let cells = cells(index, &covariances(&stack, axes), axes);
+        let axis = ViewAxis::of(&stack, FitSettings::default().rows);
+        let view = |number: usize| {
+            let share = number as f64 / (VIEWS - 1) as f64;
+            let between =
+                |first: usize, steps: usize| first as f64 + libm::floor(share * (steps - 1 - first) as f64) + 0.5;
+            let theta = libm::acos(axis.cos_theta(between(FIRST_ROW, axis.size() - 1)));
+            let wo = {
+                let (sin, cos) = libm::sincos(theta);
+                let azimuth = axes.map_or([1.0, 0.0], |axes| axes.azimuth(between(0, Axes::TILES - 1)));
+                let inside = DVec3::new(sin * azimuth[0], sin * azimuth[1], cos);
+                axes.map_or(inside, |axes| axes.outside(inside))
+            };
+            // Another order than that of the views.
+            let factor = varying.map_or(1.0, |varying| {
+                let steps = varying.nodes() - 1;
+                varying.factor(((2 * number) % VIEWS * (steps - 1) / (VIEWS - 1)) as f64 + 0.5)
+            });
+            let here = varying.map_or_else(|| stack.clone(), |varying| varying.apply(&stack, factor));
+            View::new(&here, color, SEEDS + number as u64, (factor, wo), &cells, axes)
+        };
+        Self { cells, axes, views: (0..VIEWS).map(view).collect() }
+    }
+
+    /// The errors of lobes of the stack, over the same factor.
+    pub fn error(&self, varied: &Varied) -> FitError {
+        self.views.iter().map(|view| self.error_at(view, varied)).fold(FitError::default(), FitError::max)
+    }
+
+    fn error_at(&self, view: &View, varied: &Varied) -> FitError {
+        let lobes = varied.at(view.factor);
+        let Some(below) = lobes.below(view.wo) else { return FitError::default() };
+        let at = self.axes.map_or(view.wo, |axes| axes.inside(view.wo));
+        let eye = refracted(at, self.cells.index);
+        let mut found = vec![[0.0; 3]; view.energies.len()];
+        for point in self.cells.points(at) {
+            let Some(wi) = outside(point.slope, eye, self.cells.index) else { continue };
+            let value = below.eval(self.axes.map_or(wi, |axes| axes.outside(wi)));
+            let cell = &mut found[self.cells.wider(point.cell)];
+            (0..3).for_each(|c| cell[c] += value[c] * point.solid_angle);
+        }
+        let stated = below.row().albedo_dir;
+        let of = |c: usize| {
+            let albedo = view.first_facet[c] + view.energies.iter().map(|rgb| rgb[c]).sum::<f64>();
+            let differences = found.iter().zip(&view.energies).map(|(found, energy)| (found[c] - energy[c]).abs());
+            (0.5 * differences.sum::<f64>() / albedo.max(f64::MIN_POSITIVE), (stated[c] - albedo).abs(), albedo)
+        };
+        let channels = [0, 1, 2].map(of);
+        let mean = channels.iter().map(|(_, _, albedo)| albedo).sum::<f64>() / 3.0;
+        // The mean of the absolute value of a normal number is sqrt(2 / pi) of its deviation.
+        let deviations: f64 = view.squares.iter().map(|squares| (FRAC_2_PI * squares).sqrt()).sum();
+        let rest = mean - view.first_facet.iter().sum::<f64>() / 3.0;
+        let variance = view.squares.iter().sum::<f64>() - rest * rest / PATHS as f64;
+        FitError {
+            lobe: channels.iter().map(|(lobe, ..)| *lobe).fold(0.0, f64::max),
+            lobe_noise: 0.5 * deviations / mean.max(f64::MIN_POSITIVE),
+            albedo: channels.iter().map(|(_, albedo, _)| *albedo).fold(0.0, f64::max),
+            albedo_noise: variance.max(0.0).sqrt(),
+        }
+    }
+}
+
+impl View {
+    fn new(
+        stack: &Stack,
+        color: &Color,
+        seed: u64,
+        (factor, wo): (f64, DVec3),
+        cells: &Cells,
+        axes: Option<Axes>,
+    ) -> Self {
+        let count = cells.wider(cells.count() - 1) + 1;
+        let (mut energies, mut squares) = (vec![[0.0; 3]; count], vec![0.0; count]);
+        let at = axes.map_or(wo, |axes| axes.inside(wo));
+        ColorPaths::new(stack, color).trace(seed, PATHS, wo, |path| {
+            if !path.is_first_facet {
+                let wi = axes.map_or(path.wi, |axes| axes.inside(path.wi));
+                let cell = cells.wider(cells.cell(wi, at));
+                let weight = path.weight.map(|weight| weight / PATHS as f64);
+                (0..3).for_each(|c| energies[cell][c] += weight[c]);
+                let mean = weight.iter().sum::<f64>() / 3.0;
+                squares[cell] += mean * mean;
+            }
+        });
+        let first_facet = FirstInterface::of(stack, color).map_or([0.0; 3], |first| first.energy(wo));
+        Self { factor, wo, energies, squares, first_facet }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use luthier_optics::ior::Ior;
+    use luthier_optics::stack::{Base, Distribution, Layer, Slab, Surface};
+
+    use super::super::{LOBES, Traced};
+    use super::*;
+
+    const COLOR: Color = Color::ThreeWavelengths([650.0, 550.0, 450.0]);
+
+    fn lacquered(absorption_per_um: [f64; 3], [alpha_x, alpha_y]: [f64; 2]) -> Stack {
+        let slab = Slab { thickness_um: 1.0, absorption_per_um };
+        let coat = Base::Dielectric { ior: Ior::constant(1.5, 0.0).unwrap(), slab };
+        let metal = Base::Conductor { ior: Ior::constant(0.3, 3.0).unwrap() };
+        let layer = |alpha_x, alpha_y, base| Layer {
+            films: vec![],
+            surface: Surface { alpha_x, alpha_y, rotation: 0.3, ..Surface::isotropic(Distribution::Ggx, 0.0) },
+            base,
+        };
+        Stack { exterior: Ior::vacuum(), layers: vec![layer(0.1, 0.1, coat), layer(alpha_x, alpha_y, metal)] }
+    }
+
+    /// Lobes of another number, with an energy that is off, or of other rows have the errors that they must.
+    #[test]
+    fn errors_are_those_that_were_made() {
+        for (alphas, varying) in [([0.2; 2], None), ([0.2; 2], Some(Varying::Slab)), ([0.1, 0.3], None)] {
+            let stack = lacquered([0.1, 0.2, 0.6], alphas);
+            let judge = Judge::new(&stack, &COLOR, varying);
+            let settings = FitSettings { paths: 8192, ..FitSettings::default() };
+            let traced = Traced::new(&stack, &COLOR, varying, settings);
+            let good = traced.fit(LOBES, 0.0);
+            let error = judge.error(&good);
+            // Noise of the fit and of the judge.
+            assert!(error.lobe < 0.06 && error.albedo < 0.02, "{alphas:?} {error:?}");
+            assert!(error.lobe_noise < 0.02 && error.albedo_noise < 2e-3 && error.lobe > 0.5 * error.lobe_noise);
+            assert!(judge.error(&traced.fit(0, 0.0)).lobe > 0.2);
+            let mut dark = good.clone();
+            dark.nodes.iter_mut().flat_map(|node| &mut node.rows).for_each(|row| {
+                row.lobes.iter_mut().for_each(|lobe| lobe.strength[0] *= 0.8);
+                row.albedo_dir[0] -= 0.1;
+            });
+            let off = judge.error(&dark);
+            assert!(off.lobe > 0.05 && (0.08..0.12).contains(&off.albedo), "{alphas:?} {off:?}");
+            // Three rows: energies between them are off.
+            assert!(judge.error(&good.thinned(9)).albedo > error.albedo);
+        }
+    }
+}
