@@ -24,8 +24,8 @@ mod tiles;
 
 pub use choice::{MaterialChoice, SceneBudget, SceneCandidate, SceneChoice, SceneDirection, SceneError, Verdict};
 pub use constants::{
-    AxesRecord, FlakesRecord, GlitterRecord, LobesError, LobesRecord, MaterialConstants, PatinaRecord, VaryingFactor,
-    VaryingRecord,
+    AxesRecord, BaseRecord, FlakesRecord, GlitterRecord, LobesError, LobesRecord, MaterialConstants, PatinaRecord,
+    VaryingFactor, VaryingRecord,
 };
 pub use error::ManifestError;
 pub use feature::Feature;

@@ -3,14 +3,14 @@
 use std::sync::Arc;
 
 use luthier_layers::lobes::{
-    Axes, Critical, EXCESS, FitError, FitSettings, Judge, LOBES, Row, Traced, Varied, Varying, shown,
+    Axes, BaseLight, Critical, EXCESS, FitError, FitSettings, Judge, LOBES, Row, Traced, Varied, Varying, shown,
 };
 use luthier_lut::{
     AtlasLayout, Axis, Comparison, ErrorStats, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan,
 };
 use luthier_manifest::{
-    AxesRecord, Budget, Candidate, CandidateForm, LobesError, LobesRecord, MeasuredError, Search, VaryingFactor,
-    VaryingRecord,
+    AxesRecord, BaseRecord, Budget, Candidate, CandidateForm, LobesError, LobesRecord, MeasuredError, Search,
+    VaryingFactor, VaryingRecord,
 };
 use luthier_material::Material;
 use luthier_optics::color::Color;
@@ -150,6 +150,7 @@ const UNFITTED: LobesRecord = LobesRecord {
     critical_plain_share: 0.0,
     varying: None,
     axes: None,
+    base: None,
     error: None,
 };
 
@@ -194,6 +195,7 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
         critical_plain_share: plain_share,
         varying: varied.varying().map(over),
         axes,
+        base: lobes.frame.base.map(|BaseLight { albedo, share, internal }| BaseRecord { albedo, share, internal }),
         error,
     }
 }

@@ -76,6 +76,19 @@ impl Below {
         self
     }
 
+    /// The light over a diffuse base of another albedo, RGB; the light itself where there is no such base.
+    #[must_use]
+    pub fn over_base(mut self, albedo: Rgb) -> Self {
+        let Some(base) = &self.frame.base else { return self };
+        let factor = base.factor(albedo);
+        for (c, factor) in factor.into_iter().enumerate() {
+            let more = (factor - 1.0) * self.row.wide[c];
+            self.row.wide[c] += more;
+            self.row.albedo_dir[c] += more;
+        }
+        self
+    }
+
     /// The row of the view.
     pub fn row(&self) -> &Row {
         &self.row

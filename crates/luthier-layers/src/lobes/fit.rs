@@ -5,15 +5,16 @@
 //! projection, Golub and Pereyra 1973). Residuals are those of cells, `(e - r) / sqrt(r + c)`, all views together, so that lobes keep their
 //! identity from view to view. An anisotropic stack is seen from several azimuths, all of them in one fit ([`Basis`]).
 
+use luthier_optics::Rgb;
 use luthier_optics::color::Color;
-use luthier_optics::stack::{Base, Stack, Surface};
+use luthier_optics::stack::{Base, Diffuse, Layer, Stack, Surface};
 
 use super::ellipse::{Numbers, Plane, logarithm};
 use super::parameters::{Basis, NODES, Start, parameters};
 use super::problem::{Lobed, Problem, ViewProblem, seen_from};
 use super::solve::{LeastSquares, Place};
 use super::tally::{Cells, Tally};
-use super::{Axes, Critical, FirstInterface, Lobes, Row, ViewAxis};
+use super::{Axes, BaseLight, Critical, FirstInterface, Lobes, Row, ViewAxis};
 use crate::facets::ALPHA_MIN;
 use crate::layered_mc::ColorPaths;
 
@@ -86,6 +87,8 @@ pub struct Simulation {
     widths: Vec<Numbers>,
     /// Light by view, in the order of [`Views`].
     pub(super) views: Vec<Tally>,
+    /// Albedo of a diffuse base below interfaces.
+    base_albedo: Option<Rgb>,
 }
 
 /// Numbers of views: rows of them from grazing views up, one azimuth after the other, without that along the normal; and last that.
@@ -206,7 +209,7 @@ impl Simulation {
                 let wi = axes.map_or(path.wi, |axes| axes.inside(path.wi));
                 // The light of one facet of the first interface is known.
                 if !path.is_first_facet {
-                    tally.add(&cells, [wi, wo], path.weight.map(|w| w / count as f64));
+                    tally.add(&cells, [wi, wo], path.weight.map(|w| w / count as f64), path.base_visits);
                 }
             });
             if let Some(first) = &first {
@@ -215,7 +218,8 @@ impl Simulation {
             tally
         };
         let tallies = views.all().enumerate().map(view).collect();
-        Self { first, axis, seen, axes, cells, starts, widths: widths(&rough), views: tallies }
+        let base_albedo = base_albedo(stack);
+        Self { first, axis, seen, axes, cells, starts, widths: widths(&rough), views: tallies, base_albedo }
     }
 
     /// The unknowns of a lobe.
@@ -286,7 +290,33 @@ impl Simulation {
     pub(super) fn lobes(&self, found: &Found) -> Lobes {
         let mut lobes = Problem::new(self, found.set).lobes(found);
         lobes.rows = lobes.rows.into_iter().map(Row::bounded).collect();
+        lobes.frame.base = self.base_light(&lobes);
         lobes
+    }
+
+    /// The light of the diffuse base in the remainder of lobes.
+    ///
+    /// Light that has met a Lambertian base does not remember from where: of what leaves it, the layers send back the same share, whatever the view and
+    /// however often it came back. So that share is one less the light that met the base once over all that met it, over the albedo. Its share of
+    /// the remainder hangs on the view but little, and is that which is the nearest.
+    fn base_light(&self, lobes: &Lobes) -> Option<BaseLight> {
+        let albedo = self.base_albedo?;
+        let (mut once, mut all, mut joint, mut squares) = ([0.0; 3], [0.0; 3], [0.0; 3], [0.0; 3]);
+        let numbers = self.numbers();
+        for ((azimuth, row), tally) in numbers.all().zip(&self.views) {
+            let wo = seen_from(self.seen, numbers.azimuth(azimuth), row);
+            let wide = lobes.row(self.axes.map_or(wo, |axes| axes.outside(wo))).wide;
+            for c in 0..3 {
+                once[c] += tally.base_once[c];
+                all[c] += tally.base[c];
+                joint[c] += tally.base[c] * wide[c];
+                squares[c] += wide[c] * wide[c];
+            }
+        }
+        let over = |a: f64, b: f64| if b > 0.0 { a / b } else { 0.0 };
+        let share = [0, 1, 2].map(|c: usize| over(joint[c], squares[c]));
+        let internal = [0, 1, 2].map(|c: usize| over(over(all[c] - once[c], all[c]), albedo[c]).clamp(0.0, 1.0));
+        Some(BaseLight { albedo, share, internal })
     }
 
     fn problems(&self) -> Vec<Problem<'_>> {
@@ -463,6 +493,14 @@ const SHARPEST: f64 = 2.0;
 
 /// The wavelength at which directions are refracted: the sodium D line.
 const REFERENCE_NM: f64 = 589.3;
+
+/// Albedo of a diffuse base below interfaces.
+fn base_albedo(stack: &Stack) -> Option<Rgb> {
+    let [_, .., Layer { base: Base::Diffuse(Diffuse { albedo, .. }), .. }] = stack.layers.as_slice() else {
+        return None;
+    };
+    Some(*albedo)
+}
 
 /// A place that a search came to.
 pub(super) struct Found {

@@ -94,6 +94,32 @@ pub struct Frame {
     pub wide: Wide,
     /// Axes of an anisotropic stack, in which its lobes are; others are in the plane of the eye.
     pub axes: Option<Axes>,
+    /// The light of a diffuse base below interfaces.
+    pub base: Option<BaseLight>,
+}
+
+/// The light of a diffuse base in the remainder of lobes, in closed form in the albedo.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BaseLight {
+    /// Albedo with which the stack was simulated, RGB.
+    pub albedo: Rgb,
+    /// Its light over the remainder, RGB. Above 1 where lobes have some of it.
+    pub share: Rgb,
+    /// Share of the light from the base that the layers send back to it, RGB.
+    pub internal: Rgb,
+}
+
+impl BaseLight {
+    /// The factor on the remainder for a base of another albedo R: its light is in proportion to `R / (1 - r R)`, r being what the layers send back. Not
+    /// below 0.
+    pub fn factor(&self, albedo: Rgb) -> Rgb {
+        [0, 1, 2].map(|c: usize| {
+            let light = |albedo: f64| albedo / (1.0 - self.internal[c] * albedo).max(1e-3);
+            let own = light(self.albedo[c]);
+            let ratio = if own > 0.0 { light(albedo[c]) / own } else { 1.0 };
+            (1.0 + self.share[c] * (ratio - 1.0)).max(0.0)
+        })
+    }
 }
 
 /// The first interface: its facets, and its reflectance by channel.

@@ -231,7 +231,12 @@ impl<'a> Problem<'a> {
             let cosines: Vec<f64> = self.views.iter().map(|view| view.wo.z).collect();
             axis.nearest(&rows, &cosines)
         };
-        Lobes { first: first.clone(), frame: Frame { index, wide: wide_of(p, *axis), axes: *axes }, axis: *axis, rows }
+        Lobes {
+            first: first.clone(),
+            frame: Frame { index, wide: wide_of(p, *axis), axes: *axes, base: None },
+            axis: *axis,
+            rows,
+        }
     }
 }
 

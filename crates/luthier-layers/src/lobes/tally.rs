@@ -166,6 +166,9 @@ pub(super) struct Tally {
     pub(super) total: Rgb,
     /// Energy of the light that met one facet alone, in closed form.
     pub(super) first_facet: Rgb,
+    /// Energy of the light that met the diffuse base, and of that which met it once.
+    pub(super) base: Rgb,
+    pub(super) base_once: Rgb,
     /// Sum of the squared energies of the paths in cells, means of the channels.
     squares: f64,
 }
@@ -173,13 +176,19 @@ pub(super) struct Tally {
 impl Tally {
     pub(super) fn new(sets: &[Cells]) -> Self {
         let rest = sets.iter().map(|cells| vec![[0.0; 3]; cells.count()]).collect();
-        Self { rest, total: [0.0; 3], first_facet: [0.0; 3], squares: 0.0 }
+        Self { rest, total: [0.0; 3], first_facet: [0.0; 3], base: [0.0; 3], base_once: [0.0; 3], squares: 0.0 }
     }
 
-    /// Counts light of the rest with a weight.
-    pub(super) fn add(&mut self, cells: &[Cells], [wi, wo]: [DVec3; 2], weight: Rgb) {
+    /// Counts light of the rest with a weight, that has met a diffuse base so often.
+    pub(super) fn add(&mut self, cells: &[Cells], [wi, wo]: [DVec3; 2], weight: Rgb, base_visits: u32) {
         let plus = |sum: &mut Rgb| (0..3).for_each(|c| sum[c] += weight[c]);
         plus(&mut self.total);
+        if base_visits > 0 {
+            plus(&mut self.base);
+        }
+        if base_visits == 1 {
+            plus(&mut self.base_once);
+        }
         let mean = weight.iter().sum::<f64>() / 3.0;
         self.squares += mean * mean;
         for (cells, rest) in cells.iter().zip(&mut self.rest) {

@@ -8,7 +8,7 @@ use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Slab, Stack, Sur
 
 use super::{FirstInterface, FitSettings, Lobes, Simulation};
 use crate::facets::Masking;
-use crate::layered_mc::{InterfaceMode, LayeredMc};
+use crate::layered_mc::{ColorPaths, InterfaceMode, LayeredMc};
 use crate::monochrome::Monochrome;
 
 const NM: [f64; 3] = [650.0, 550.0, 450.0];
@@ -190,6 +190,44 @@ fn flat_views_see_nothing_below_a_thinner_medium() {
 fn settings_decide_everything() {
     let stack = lacquered();
     assert_eq!(fitted(&stack, 1).rows, fitted(&stack, 1).rows);
+}
+
+/// Oracle: paths of the same coats over a base of another albedo. What the base sends back to itself is closed form for a Lambertian base.
+#[test]
+fn a_base_of_another_albedo_has_its_light() {
+    let color = Color::ThreeWavelengths(NM);
+    let clear = Base::Dielectric {
+        ior: Ior::constant(1.8, 0.0).unwrap(),
+        slab: Slab { thickness_um: 1.0, absorption_per_um: [0.0; 3] },
+    };
+    for (coats, tolerance) in [
+        (vec![layer(0.0, coat([0.05, 0.1, 0.4]))], 4e-3),
+        (vec![layer(0.15, coat([0.05, 0.1, 0.4]))], 0.02),
+        (vec![layer(0.15, coat([0.0; 3])), layer(0.3, clear)], 0.025),
+    ] {
+        let over = |albedo: [f64; 3]| {
+            stack([&coats[..], &[layer(0.0, Base::Diffuse(Diffuse { albedo, sigma: 0.0 }))]].concat())
+        };
+        let settings = FitSettings { paths: 16_384, ..FitSettings::default() };
+        let lobes = Simulation::new(&over([0.8, 0.5, 0.3]), &color, settings).fit_fewest(2, 0.03);
+        for albedo in [[0.0; 3], [0.2, 0.5, 0.8], [0.95; 3]] {
+            for theta_deg in [0.0, 45.0, 80.0] {
+                let wo = direction(theta_deg, 0.3);
+                let mut expected = [0.0; 3];
+                ColorPaths::new(&over(albedo), &color).trace(99, 60_000, wo, |path| {
+                    (0..3).for_each(|c| expected[c] += path.weight[c] / 60_000.0);
+                });
+                let found = lobes.below(wo).unwrap().over_base(albedo).row().albedo_dir;
+                for c in 0..3 {
+                    let error = (found[c] - expected[c]).abs();
+                    assert!(error < tolerance, "{albedo:?} {theta_deg} {c}: {} {}", found[c], expected[c]);
+                }
+            }
+        }
+        let wo = direction(30.0, 0.0);
+        let (own, other) = (lobes.below(wo).unwrap(), lobes.below(wo).unwrap().over_base([0.8, 0.5, 0.3]));
+        assert!((0..3).all(|c| (own.row().wide[c] - other.row().wide[c]).abs() < 1e-12));
+    }
 }
 
 /// Oracle: a quadrature over half vectors, in place of drawn normals.

@@ -35,11 +35,14 @@ pub struct Under {
     pub inner_normal: DVec3,
     /// Variance of the slopes of normals in a pixel, which widens what comes from below; for `lobes`. Others have it in their slope parameters.
     pub slope_variance: f64,
+    /// Albedo of the diffuse base, where it is not that of the stack; for `lobes`. Others have it in their layers.
+    pub base_color: Option<Rgb>,
 }
 
 impl Under {
     /// Normals of the surface itself.
-    pub const NONE: Self = Self { flake_normal: DVec3::Z, inner_normal: DVec3::Z, slope_variance: 0.0 };
+    pub const NONE: Self =
+        Self { flake_normal: DVec3::Z, inner_normal: DVec3::Z, slope_variance: 0.0, base_color: None };
 }
 
 /// The twin of a shader, for one surface.
@@ -103,7 +106,7 @@ impl Twin {
 
     /// [`Twin::eval`] with other normals below the first interface.
     pub fn eval_over(&self, terms: &impl ShaderTerms, under: &Under, wi: DVec3, wo: DVec3) -> Rgb {
-        let &Under { flake_normal, inner_normal, slope_variance } = under;
+        let &Under { flake_normal, inner_normal, slope_variance, base_color } = under;
         match &self.0 {
             Kind::Elek(layers) => elek::eval_below(layers, terms, wi, wo, flake_normal),
             Kind::WeidlichWilkie(stacks) => each(terms, stacks, |stack, optics| {
@@ -122,6 +125,10 @@ impl Twin {
                 let below = below.map(|below| match slope_variance > 0.0 {
                     true => below.widened(wo, slope_variance),
                     false => below,
+                });
+                let below = below.map(|below| match base_color {
+                    Some(albedo) => below.over_base(albedo),
+                    None => below,
                 });
                 let below = below.map_or([0.0; 3], |below| match one.1[1].layers[0].below {
                     MonochromeBelow::Dielectric { ior, .. } if flake_normal != DVec3::Z => {

@@ -6,7 +6,7 @@ use glam::DVec3;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
-use luthier_optics::stack::{Base, Distribution, Stack, Surface};
+use luthier_optics::stack::{Base, Distribution, Layer, Stack, Surface};
 
 use crate::elek::{self, ALPHA_MIN};
 use crate::frame;
@@ -26,11 +26,13 @@ pub struct Place {
     pub under: Under,
     /// Patina; `None` where all layers are there, without its diffuse term and tarnish.
     pub patina: Option<Growth>,
+    /// Albedo of a diffuse base; `None` leaves that of the material. Phong's coefficients do not follow it.
+    pub base_color: Option<Rgb>,
 }
 
 impl Place {
     /// A place without textures and effects.
-    pub const NONE: Self = Self { sample: TextureSample::NONE, under: Under::NONE, patina: None };
+    pub const NONE: Self = Self { sample: TextureSample::NONE, under: Under::NONE, patina: None, base_color: None };
 }
 
 /// Patina at a place (Elek 2010, section 4.2): the first layer has grown over the others.
@@ -81,7 +83,7 @@ impl Shaded {
         };
         let here = at(stack, model, place, patina);
         let bare = patina.map(|_| layers(&Stack { layers: here.layers[1..].to_vec(), ..here.clone() }));
-        let under = Under { slope_variance: place.sample.slope_variance, ..place.under };
+        let under = Under { slope_variance: place.sample.slope_variance, base_color: place.base_color, ..place.under };
         Some(Self { place: Place { patina, under, ..*place }, layers: layers(&here)?, bare: bare.flatten() })
     }
 
@@ -127,11 +129,21 @@ fn widen(surface: &mut Surface, sample: &TextureSample) {
 fn at(stack: &Stack, model: &str, place: &Place, patina: Option<Growth>) -> Stack {
     let factors = &place.sample;
     if model == lobes::MODEL {
-        let here = Varying::Alpha.apply(&lobes::shown(stack), factors.alpha_factor);
+        let mut here = Varying::Alpha.apply(&lobes::shown(stack), factors.alpha_factor);
+        // A base alone has a closed form; below interfaces it is in the lobes.
+        if let ([Layer { base: Base::Diffuse(base), .. }], Some(color)) = (here.layers.as_mut_slice(), place.base_color)
+        {
+            base.albedo = color;
+        }
         let here = Varying::Slab.apply(&here, factors.slab_factor);
         return Varying::film(stack).map_or_else(|| here.clone(), |film| film.apply(&here, factors.film_factor));
     }
     let mut here = stack.clone();
+    if let (Some(color), Some(Base::Diffuse(base))) =
+        (place.base_color, here.layers.last_mut().map(|layer| &mut layer.base))
+    {
+        base.albedo = if model == "phong" { base.albedo } else { color };
+    }
     for (i, layer) in here.layers.iter_mut().enumerate() {
         let base_alpha = patina.filter(|_| i == 1).and_then(|p| Some((p.base_alpha?, p.amount)));
         if factors.alpha_factor == 1.0 && factors.slope_variance == 0.0 && base_alpha.is_none() {

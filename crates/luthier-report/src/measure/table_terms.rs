@@ -1,12 +1,12 @@
 //! The model's terms as a shader reads them: from texels.
 
 use glam::DVec3;
-use luthier_layers::lobes::{Axes, Below, Critical, Frame, Row, ViewAxis, Wide};
+use luthier_layers::lobes::{Axes, BaseLight, Below, Critical, Frame, Row, ViewAxis, Wide};
 use luthier_layers::statistics::diffuse_base::Veil;
 use luthier_layers::statistics::energy::Energy;
 use luthier_layers::terms::{ShaderTerms, Terms};
 use luthier_lut::{TableKind, TexelFormat, Values, WeightBits, read};
-use luthier_manifest::{LayerRecord, LobesRecord, MaterialEntry};
+use luthier_manifest::{BaseRecord, LayerRecord, LobesRecord, MaterialEntry};
 use luthier_optics::Rgb;
 use luthier_optics::microfacet::scaled_distribution;
 use luthier_optics::stack::Distribution;
@@ -259,7 +259,8 @@ impl ShaderTerms for TableTerms<'_> {
         };
         let axis = ViewAxis::new(2, critical);
         let axes = lobes.axes.map(|axes| Axes { turn: axes.turn, is_mirrored: axes.is_mirrored });
-        let frame = Frame { index: lobes.index, wide: Wide::new(lobes.falloff, axis), axes };
+        let base = lobes.base.map(|BaseRecord { albedo, share, internal }| BaseLight { albedo, share, internal });
+        let frame = Frame { index: lobes.index, wide: Wide::new(lobes.falloff, axis), axes, base };
         let row = |tile: u32| table.row(tile, axis.cosine(wo.z), self.weights);
         let row = match (axes, lobes.varying) {
             (Some(axes), _) => axes.row(wo, |number| row(tile + number as u32)),

@@ -16,9 +16,9 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is but the names of tables, for the check that modules name no other.
     #[cfg(test)]
-    const ALL: &str = "absorption anisotropic bare beckmann below bilinear chain chain_diffuse clamped closed coat conductor critical_view diffuse environment \
+    const ALL: &str = "absorption anisotropic bare base_color beckmann below bilinear chain chain_diffuse clamped closed coat conductor critical_view diffuse environment \
     face film film_table flakes full ggx glitter granier granier_bare granier_base \
-    granier_film granier_transparent interface lobes_axes lobes_diffuse lobes_film lobes_tilted media microfacet_diffuse mixed one_lobe oren_nayar patina phong \
+    granier_film granier_transparent interface lobes_axes lobes_base lobes_diffuse lobes_film lobes_tilted media microfacet_diffuse mixed one_lobe oren_nayar patina phong \
     place powers schlick_base several smith split_root statistics statistics_base surface theta_axis tilted total_reflection two_lobes visible";
 
     pub(crate) fn of(set: &MaterialSet<'_>, form: Form) -> Self {
@@ -48,6 +48,12 @@ impl Features {
             }
             if set.materials.iter().any(has_coat) {
                 names.extend(["flakes", "lobes_tilted"]);
+            }
+            if set.materials.iter().any(has_base_light) {
+                names.insert("lobes_base");
+            }
+            if ["diffuse", "granier_base", "lobes_base"].iter().any(|name| names.contains(name)) {
+                names.insert("base_color");
             }
         }
         if form == Form::Full {
@@ -240,6 +246,11 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
 /// Whether rows are over the thickness of a film.
 fn is_over_film(lobes: &LobesRecord) -> bool {
     lobes.varying.is_some_and(|varying| varying.factor == VaryingFactor::FilmFactor)
+}
+
+/// Whether the base below lobes may have another colour.
+fn has_base_light(material: &MaterialEntry) -> bool {
+    material.constants.patina.is_none() && material.constants.lobes.is_some_and(|lobes| lobes.base.is_some())
 }
 
 /// Whether lobes come from below a slab, in which what is there may be tilted.

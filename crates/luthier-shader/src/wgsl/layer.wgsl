@@ -4,7 +4,7 @@ const LUTHIER_DIELECTRIC: u32 = 0u;
 //? granier_bare
 const LUTHIER_CONDUCTOR: u32 = 1u;
 //? end
-//? mixed|granier_base
+//? mixed|granier_base|base_color, diffuse|granier_base
 const LUTHIER_DIFFUSE: u32 = 2u;
 //? end
 const LUTHIER_MATERIAL_WORDS: u32 = $words_material;

@@ -9,13 +9,13 @@ use luthier_layers::heterogeneous::Map;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 use luthier_layers::patina::Patina;
 use luthier_layers::voronoi::Voronoi;
-use luthier_manifest::{LayerRecord, MaterialEntry, material_buffer};
+use luthier_manifest::{FunctionGroup, LayerRecord, MaterialEntry, ShadingModel, material_buffer};
 use luthier_optics::stack::Surface;
 use luthier_shader::{Form, MaterialSet, Target, emit};
 use num_complex::Complex64;
 
 use crate::machine::{Machine, Value, vector};
-use crate::scenes::{FLAKES, GLITTER, conductor, dielectric, flaked, glitter, material, patina, tables};
+use crate::scenes::{FLAKES, GLITTER, conductor, dielectric, diffuse, flaked, glitter, material, patina, tables};
 
 /// Sines, logarithms and square roots of f32, a few operations deep.
 const NORMAL_TOLERANCE: f64 = 2e-6;
@@ -263,6 +263,39 @@ fn patina_without_transition_is_a_step() {
     let machine = machine(&[material]);
     for (map, expected) in [(0.0, 1.0), (0.5, 1.0), (0.500_001, 0.0), (1.0, 0.0f32)] {
         assert_eq!(machine.call("luthier_patina_amount", vec![Value::U(0), Value::F(map)]), Value::F(expected));
+    }
+}
+
+/// Every model of the group `surface` that reads a diffuse base shows another colour of it as the material of that albedo.
+#[test]
+fn a_base_color_is_the_albedo_of_the_base() {
+    let color = [0.1, 0.5, 0.9];
+    for model in [ShadingModel::Elek, ShadingModel::WeidlichWilkie, ShadingModel::Belcour, ShadingModel::Microfacet] {
+        let coats = if model == ShadingModel::Microfacet { vec![] } else { vec![dielectric()] };
+        let over = |base: LayerRecord| {
+            let layers = [&coats[..], &[base]].concat();
+            MaterialEntry { model, ..material("painted", &layers) }
+        };
+        let painted = LayerRecord { albedo: color, ..diffuse(0.4) };
+        let [machine, expected] = [diffuse(0.4), painted].map(|base| {
+            let materials = [over(base)];
+            let functions = [FunctionGroup::Surface].into_iter().collect();
+            let set = MaterialSet { functions, ..MaterialSet::new(&materials, Vec::new()) };
+            Machine::new(&emit(&set, Form::Full, Target::Wgsl).unwrap(), &material_buffer(&materials), BTreeMap::new())
+        });
+        let neutral = machine.call("luthier_place", Vec::new());
+        let mut moved = 0.0f64;
+        for (wi, wo) in directions(100) {
+            // After the normal, three factors and the variance.
+            let place = with(&neutral, 5, vector(&color.map(|x| x as f32)));
+            let found = machine.call("luthier_eval_at", vec![place, Value::U(0), single(wi), single(wo)]);
+            let arguments = || vec![Value::U(0), single(wi), single(wo)];
+            let own = expected.call("luthier_eval", arguments()).floats();
+            assert!(error(&found, [0, 1, 2].map(|c: usize| f64::from(own[c]))) < 1e-5, "{model:?} {wi} {wo}");
+            let plain = machine.call("luthier_eval", arguments()).floats();
+            moved = moved.max((0..3).map(|c| f64::from(plain[c] - own[c]).abs()).fold(0.0, f64::max));
+        }
+        assert!(moved > 0.01, "{model:?}: {moved}");
     }
 }
 

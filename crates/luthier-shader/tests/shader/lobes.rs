@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use luthier_layers::lobes::{Axes, Below, Critical, Frame, Row, ViewAxis, Wide};
+use luthier_layers::lobes::{Axes, BaseLight, Below, Critical, Frame, Row, ViewAxis, Wide};
 use luthier_lut::{AtlasLayout, Image, TableKind, WeightBits, bilinear};
 use luthier_manifest::{
-    AxesRecord, FunctionGroup, LobesRecord, MaterialConstants, MaterialEntry, VaryingFactor, VaryingRecord,
+    AxesRecord, BaseRecord, FunctionGroup, LobesRecord, MaterialConstants, MaterialEntry, VaryingFactor, VaryingRecord,
     material_buffer,
 };
 use luthier_optics::microfacet;
@@ -67,6 +67,7 @@ fn light_from_below_is_that_of_the_twin() {
             critical_plain_share: 0.25,
             varying: None,
             axes: None,
+            base: None,
             error: None,
         };
         let axis = ViewAxis::new(2, Critical { cot_sq, width, plain_share: 0.25 });
@@ -86,7 +87,8 @@ fn light_from_below_is_that_of_the_twin() {
                 bilinear(&image, at, WeightBits::Exact)
             };
             let row = Row::of_parts(&(0..6).map(part).collect::<Vec<_>>());
-            let expected = Below::new(Frame { index: 1.4f32.into(), wide, axes: None }, row, eye).eval(light);
+            let expected =
+                Below::new(Frame { index: 1.4f32.into(), wide, axes: None, base: None }, row, eye).eval(light);
             let prepared = machine.call("luthier_prepare_lobes", vec![Value::U(0), vector(&wo.map(|w| w as f32))]);
             let found = machine.call("luthier_light_lobes", vec![prepared, vector(&wi.map(|w| w as f32))]).floats();
             for (found, expected) in found.iter().zip(expected) {
@@ -132,7 +134,7 @@ fn rows_over_a_factor_are_those_of_the_twin() {
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
         record.integral = wide.integral();
         record.varying = Some(VaryingRecord { factor, tiles: 4, least_spread: 0.1, factors });
-        let frame = Frame { index: record.index, wide, axes: None };
+        let frame = Frame { index: record.index, wide, axes: None, base: None };
         let materials = [material];
         let text = emit(&MaterialSet::new(&materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap();
         let machine = lit_from_below(&text, &materials, &image);
@@ -235,7 +237,7 @@ fn lobes_in_axes_are_those_of_the_twin() {
         let record = materials[number].constants.lobes.unwrap();
         let axes = record.axes.map(|AxesRecord { turn, is_mirrored, .. }| Axes { turn, is_mirrored });
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
-        let frame = Frame { index: record.index, wide, axes };
+        let frame = Frame { index: record.index, wide, axes, base: None };
         let groups = if variance > 0.0 { &[FunctionGroup::Surface][..] } else { &[] };
         let set = MaterialSet {
             functions: groups.iter().copied().collect(),
@@ -273,10 +275,10 @@ fn lobes_in_axes_are_those_of_the_twin() {
     }
 }
 
-/// The normal of flakes shifts lobes, and the variance of normals widens them, as they do in the twin, whose own oracles are a walk and a mean
-/// (`luthier-layers/src/lobes/tilt_tests.rs`).
+/// The normal of flakes shifts lobes, the variance of normals widens them, and the colour of a base has its light, as in the twin, whose own oracles
+/// are a walk, a mean and paths (`luthier-layers/src/lobes/tilt_tests.rs`, `tests.rs`).
 #[test]
-fn normals_below_and_in_a_pixel_change_lobes_as_in_the_twin() {
+fn values_of_a_place_change_lobes_as_in_the_twin() {
     let (layout, image) = rows();
     for (name, groups, variance) in [("lobes-flakes", &[][..], 0.0), ("lobes", &[FunctionGroup::Surface], 0.02)] {
         let given = set(name).swap_remove(0);
@@ -285,8 +287,14 @@ fn normals_below_and_in_a_pixel_change_lobes_as_in_the_twin() {
             index: record.index,
             wide: Wide::new(record.falloff, ViewAxis::new(2, Critical::default())),
             axes: None,
+            base: (!groups.is_empty()).then_some(BaseLight {
+                albedo: [0.3, 0.5, 0.7],
+                share: [0.9, 0.8, 1.1],
+                internal: [0.4, 0.3, 0.2],
+            }),
         };
-        let lobes = Some(LobesRecord { integral: frame.wide.integral(), ..record });
+        let base = frame.base.map(|BaseLight { albedo, share, internal }| BaseRecord { albedo, share, internal });
+        let lobes = Some(LobesRecord { integral: frame.wide.integral(), base, ..record });
         let materials =
             [MaterialEntry { constants: MaterialConstants { lobes, ..given.constants.clone() }, ..given.clone() }];
         let set = MaterialSet { functions: groups.iter().copied().collect(), ..MaterialSet::new(&materials, tables()) };
@@ -302,14 +310,17 @@ fn normals_below_and_in_a_pixel_change_lobes_as_in_the_twin() {
             let normal = DVec3::new(0.3, -0.2, 1.0 + 0.1 * k as f64).normalize().as_vec3();
             let mut place = neutral.clone();
             // After the normal and three factors.
+            let color = [0.0, 0.6, 1.0].map(|x: f64| (x + 0.01 * k as f64) % 1.0);
             if !groups.is_empty() {
                 place[4] = Value::F(variance as f32);
+                place[5] = vector(&color.map(|x| x as f32));
             }
             *place.last_mut().unwrap() = vector(&normal.to_array());
             let part = |part: u32| bilinear(&image, layout.position(0, [eye.z, f64::from(part)]), WeightBits::Exact);
             let below = Below::new(frame, Row::of_parts(&(0..6).map(part).collect::<Vec<_>>()), eye);
             let straight = below.eval(light);
-            let there = below.widened(eye, variance).tilted(normal.as_dvec3(), given.layers[0].eta).eval(light);
+            let there = below.widened(eye, variance).tilted(normal.as_dvec3(), given.layers[0].eta).over_base(color);
+            let there = there.eval(light);
             let arguments = vec![Value::Many(place), Value::U(0), vector(&wo.map(|w| w as f32))];
             let prepared = machine.call("luthier_prepare_lobes", arguments);
             let found = machine.call("luthier_light_lobes", vec![prepared, vector(&wi.map(|w| w as f32))]).floats();
@@ -409,6 +420,7 @@ fn directions_are_drawn_as_their_density_says() {
             critical_plain_share: 0.0,
             varying: None,
             axes,
+            base: None,
             error: None,
         };
         materials[0].constants.lobes = Some(lobes);

@@ -181,6 +181,7 @@ fn with_lobes(mut material: MaterialEntry) -> MaterialEntry {
         critical_plain_share: 0.25,
         varying: None,
         axes: None,
+        base: None,
         error: None,
     });
     material

@@ -44,6 +44,8 @@ pub struct JointPath {
     pub weight: Rgb,
     /// Whether it met one facet of the first interface and nothing else.
     pub is_first_facet: bool,
+    /// How often it met a diffuse base.
+    pub base_visits: u32,
 }
 
 #[derive(Debug, Clone)]
@@ -111,15 +113,17 @@ impl JointPaths {
     /// One path.
     pub(super) fn path(&self, stream: &mut Stream, wo: DVec3) -> Option<JointPath> {
         let mut from = Sided { side: Side::Above, direction: wo };
-        let (mut number, mut events) = (0, 0);
+        let (mut number, mut events, mut base_visits) = (0, 0, 0);
         let mut weight = [0, 1, 2].map(|c: usize| if self.channels[c] { 1.0 } else { 0.0 });
         loop {
             let interface = self.interfaces.get(number)?;
             let (to, kept, is_single) = interface.scatter(stream, from)?;
+            base_visits += u32::from(matches!(interface.kind, Kind::Diffuse(_)));
             weight = weight.times(kept);
             let (next, slab, side) = match to.side {
                 Side::Above if number == 0 => {
-                    return Some(JointPath { wi: to.direction, weight, is_first_facet: events == 0 && is_single });
+                    let is_first_facet = events == 0 && is_single;
+                    return Some(JointPath { wi: to.direction, weight, is_first_facet, base_visits });
                 }
                 Side::Above => (number - 1, number - 1, Side::Below),
                 Side::Below => (number + 1, number, Side::Above),

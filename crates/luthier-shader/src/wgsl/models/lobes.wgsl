@@ -66,6 +66,10 @@ struct LuthierPreparedLobes {
     //? end
     /// Energy of the remainder, RGB.
     wide: vec3<f32>,
+    //? lobes_base
+    /// The part of it by which a base of another colour is brighter, RGB.
+    painted: vec3<f32>,
+    //? end
     //? one_lobe|two_lobes
     /// Energy of the first lobe over its share above the horizon, RGB.
     first_strength: vec3<f32>,
@@ -290,7 +294,15 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     //? end
     prepared.row = vec2<f32>(tile, cos_theta);
     let wide = luthier_lookup_lobes(tile, cos_theta, 0.0);
+    //? lobes_base
+    // The base has its light times R / (1 - r R), r being what the layers send back.
+    let mirrored = max(1.0 - luthier_materials[header + $word_patina_tarnish].xyz * place.base_color, vec3<f32>(1e-3));
+    let painted = luthier_materials[header + $word_patina_diffuse_albedo].xyz * place.base_color / mirrored - luthier_materials[header + $word_patina].xyz;
+    prepared.painted = select(vec3<f32>(0.0), max(painted, vec3<f32>(-1.0)) * wide.rgb, place.base_color.x >= 0.0);
+    prepared.wide = wide.rgb + prepared.painted;
+    //? else
     prepared.wide = wide.rgb;
+    //? end
     //? one_lobe|two_lobes
     //? surface
     // A normal that leans by a slope shifts half vectors by as much of it as directions lean outside over those inside.
@@ -399,7 +411,12 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
 
 /// Directional albedo of a prepared material, RGB.
 fn luthier_albedo_lobes(prepared: LuthierPreparedLobes) -> vec3<f32> {
-    return luthier_lookup_lobes(prepared.row.x, prepared.row.y, LUTHIER_LOBES_ALBEDO).rgb;
+    let albedo = luthier_lookup_lobes(prepared.row.x, prepared.row.y, LUTHIER_LOBES_ALBEDO).rgb;
+    //? lobes_base
+    return albedo + prepared.painted;
+    //? else
+    return albedo;
+    //? end
 }
 
 //? one_lobe|two_lobes
@@ -428,14 +445,14 @@ fn luthier_lobe_below(prepared: LuthierPreparedLobes, lobe: u32) -> LuthierBelow
 fn luthier_eval_lobes($place_parameter material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
     //? lobes
     //? lobes_diffuse
-    let layer = luthier_layer(material, 0u);
+    let layer = $layer(material, 0u);
     if layer.kind == LUTHIER_DIFFUSE {
         return wi.z * $diffuse(layer, wi, wo);
     }
     //? end
     return luthier_light_lobes(luthier_prepare_lobes($place_argument material, wo), wi);
     //? else
-    let layer = luthier_layer(material, 0u);
+    let layer = $layer(material, 0u);
     return wi.z * $diffuse(layer, wi, wo);
     //? end
 }

@@ -12,6 +12,10 @@ struct LuthierPlace {
     /// Variance, along either axis, of the slopes of the normals that a pixel sees: of a normal map whose texels it averages.
     slope_variance: f32,
     //? end
+    //? base_color
+    /// Albedo of diffuse bases, RGB; below 0 that of each material.
+    base_color: vec3<f32>,
+    //? end
     //? granier
     /// Normal of the lower boundary of that film, unit, in the frame of `normal`.
     inner_normal: vec3<f32>,
@@ -36,6 +40,7 @@ fn luthier_place() -> LuthierPlace {
     place.inner_normal = vec3<f32>(0.0, 0.0, 1.0);
     place.flake_normal = vec3<f32>(0.0, 0.0, 1.0);
     place.patina = -1.0;
+    place.base_color = vec3<f32>(-1.0);
     return place;
 }
 
@@ -61,6 +66,11 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
         layer.optical_depth_log2 *= place.slab_factor;
         layer.film_thickness_waves *= place.film_factor;
         layer.film_thickness_nm *= place.film_factor;
+    }
+    //? end
+    //? base_color, diffuse|granier_base
+    if place.base_color.x >= 0.0 && layer.kind == LUTHIER_DIFFUSE {
+        layer.lambert = place.base_color / LUTHIER_PI;
     }
     //? end
     //? patina
