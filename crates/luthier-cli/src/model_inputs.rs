@@ -9,7 +9,8 @@ use luthier_layers::inputs::{Input, Inputs};
 use luthier_layers::model::Model;
 use luthier_layers::registry::models;
 use luthier_layers::textured::{TextureSample, Textured};
-use luthier_material::Effects;
+use luthier_manifest::{Feature, ShadingModel};
+use luthier_material::{Effects, Material, left_out};
 use luthier_terminal::{Failure, Outcome};
 
 use crate::directions::Angles;
@@ -120,19 +121,24 @@ impl ModelInputs {
     }
 
     /// The effects of a file that a model shows, and the names of those that it does not.
-    pub(crate) fn shown(&self, effects: &Effects, model: &dyn Model) -> (Effects, Vec<&'static str>) {
+    pub(crate) fn shown(&self, material: &Material, model: &dyn Model) -> (Effects, Vec<&'static str>) {
         if self.no_effects {
             return Default::default();
         }
         // As in the shaders: what lies below the first interface is theirs, and a particle's normal is anybody's.
+        let effects = &material.effects;
         let is_chain = ["elek", "weidlich-wilkie"].contains(&model.info().name);
-        let has_flakes = is_chain || model.info().name == "lobes";
+        let has_lobes = model.info().name == "lobes";
+        let lacks_patina =
+            || left_out(material, ShadingModel::Lobes).iter().any(|part| part.feature == Feature::Patina);
+        let has_flakes = is_chain || has_lobes;
+        let has_patina = is_chain || has_lobes && !lacks_patina();
         let below =
-            [("flakes", effects.flakes.is_some() && !has_flakes), ("patina", effects.patina.is_some() && !is_chain)];
+            [("flakes", effects.flakes.is_some() && !has_flakes), ("patina", effects.patina.is_some() && !has_patina)];
         let dropped = below.into_iter().filter(|(_, is_dropped)| *is_dropped).map(|(name, _)| name).collect();
         let shown = Effects {
             flakes: effects.flakes.clone().filter(|_| has_flakes),
-            patina: effects.patina.clone().filter(|_| is_chain),
+            patina: effects.patina.clone().filter(|_| has_patina),
             glitter: effects.glitter,
         };
         (shown, dropped)
@@ -169,11 +175,10 @@ impl ModelInputs {
         let takers: Vec<&str> = infos.filter(|i| i.inputs.contains(&input)).map(|i| i.name).collect();
         let effects = match input {
             Input::Uv => {
-                "; and `elek`, `weidlich-wilkie` and `lobes` for a file with flakes, the first two for one with patina, \
-                 any model for one with glitter"
+                "; and `elek`, `weidlich-wilkie` and `lobes` for a file with flakes or patina, any model for one with glitter"
             }
             Input::Distance => "; and `elek`, `weidlich-wilkie` and `lobes` for a file with flakes",
-            Input::Extent | Input::Map => "; and `elek` and `weidlich-wilkie` for a file with patina",
+            Input::Extent | Input::Map => "; and `elek`, `weidlich-wilkie` and `lobes` for a file with patina",
             _ => "",
         };
         Err(Failure::Usage(anyhow::anyhow!(

@@ -120,13 +120,14 @@ fn words(varying: Varying) -> &'static str {
         Varying::Alpha => "slopes",
         Varying::Slab => "thickness",
         Varying::Film(_) => "film",
+        Varying::Patina(_) => "patina",
     }
 }
 
 /// The fractional number of a node of what varies, for one of eight nodes.
 fn place(varying: Varying, of_eight: f64) -> f64 {
     match varying {
-        Varying::Alpha | Varying::Slab => of_eight,
+        Varying::Alpha | Varying::Slab | Varying::Patina(_) => of_eight,
         Varying::Film(_) => 2.0 * of_eight + if of_eight.fract() == 0.0 { 0.0 } else { 0.5 },
     }
 }

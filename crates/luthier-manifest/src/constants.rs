@@ -104,6 +104,9 @@ pub struct LobesError {
 /// Tiles of lobes one after the other, over a factor that a texture has, at equal distances of its root. The first is that of 1. The last is
 /// that of 0 on the slab, and on slope parameters one step before it. Rows of two are mixed linearly in the root. Those over a film are at equal
 /// distances of the factor itself, between `factors`.
+///
+/// Over patina the last is that of bare layers, and the one before it that of patina grown whole; the tile of an amount lies so far before the last. Where
+/// scattering, tarnish or another base come with patina there are three, and the first is that of all layers without these.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct VaryingRecord {
     /// Factor of the texture.
@@ -147,10 +150,13 @@ pub enum VaryingFactor {
     SlabFactor,
     /// Factor on the thickness of the film on the first interface.
     FilmFactor,
+    /// Amount of patina; see [`VaryingRecord`].
+    Patina,
 }
 
 impl LobesRecord {
-    /// Tiles beyond the first over the factor on slope parameters and over that on the first slab or film, and the least factor on slopes.
+    /// Tiles beyond the first over the factor on slope parameters and over that on the first slab or film, and the least factor on slopes. Those over patina
+    /// are [`Self::beyond_cover`].
     fn varying(&self) -> [f64; 3] {
         let Some(VaryingRecord { factor, tiles, least_spread, .. }) = self.varying else {
             return [0.0, 0.0, SPREAD_MIN];
@@ -159,7 +165,14 @@ impl LobesRecord {
         match factor {
             VaryingFactor::AlphaFactor => [beyond, 0.0, least_spread],
             VaryingFactor::SlabFactor | VaryingFactor::FilmFactor => [0.0, beyond, SPREAD_MIN],
+            VaryingFactor::Patina => [0.0, 0.0, SPREAD_MIN],
         }
+    }
+
+    /// Tiles beyond the first over the amount of patina; 0 where rows are not over it.
+    fn beyond_cover(&self) -> f64 {
+        let over = self.varying.filter(|varying| varying.factor == VaryingFactor::Patina);
+        over.map_or(0.0, |varying| f64::from(varying.tiles) - 1.0)
     }
 
     /// Numbers of the azimuth or of the film that tiles are over: cosine and sine of the first axis, and tiles beyond the first in a quarter of a
@@ -249,7 +262,7 @@ impl MaterialConstants {
     /// | 5 | flakes: spread, scale, fade start, 0 |
     /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; of lobes over a diffuse base without patina its share s RGB, 0 |
     /// | 7 | patina: diffuse albedo RGB, 0; of such lobes s / q(albedo) RGB, 0 |
-    /// | 8 | patina: tarnish RGB, 0; of such lobes r RGB, 0: see [`BaseRecord`] |
+    /// | 8 | patina: tarnish RGB, of lobes over patina tiles beyond the first; of lobes over a diffuse base r RGB, 0: see [`BaseRecord`] |
     /// | 9 | glitter: low and high 16 bits of the seed, frequency, filled; all 0 without glitter |
     /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -1; all 0 without |
     pub fn words(&self) -> [[f32; 4]; Self::WORDS] {
@@ -277,7 +290,7 @@ impl MaterialConstants {
         if let Some(p) = &self.patina {
             words[5] = with([p.extent, p.transition, p.base_alpha.unwrap_or(-1.0)], 1.0);
             words[6] = with(p.diffuse_albedo, 0.0);
-            words[7] = with(p.tarnish, 0.0);
+            words[7] = with(p.tarnish, self.lobes.map_or(0.0, |lobes| lobes.beyond_cover()));
         }
         if let Some(g) = &self.glitter {
             words[8] = [half(g.seed), half(g.seed >> 16), g.frequency as f32, g.filled as f32];
@@ -370,6 +383,14 @@ mod tests {
         assert_eq!(VaryingRecord { factors: None, ..film }.nominal(), 0.0);
         assert_eq!(over(VaryingFactor::AlphaFactor), [8.0, 0.0, 0.5, 0.25]);
         assert_eq!(over(VaryingFactor::SlabFactor), [0.0, 8.0, 1e-3, 0.25]);
+        let over_patina = VaryingRecord { factor: VaryingFactor::Patina, tiles: 3, least_spread: 1.0, factors: None };
+        let of_patina = MaterialConstants {
+            lobes: Some(LobesRecord { varying: Some(over_patina), ..lobes }),
+            patina: constants.patina.clone(),
+            ..MaterialConstants::default()
+        };
+        assert_eq!(of_patina.words()[0], [0.0, 0.0, 1e-3, 0.25]);
+        assert_eq!(of_patina.words()[7], [14.0, 15.0, 16.0, 2.0]);
         let around = |is_mirrored| {
             let axes = Some(AxesRecord { turn: [0.6, 0.8], is_mirrored, tiles: 8 });
             words(LobesRecord { axes, ..lobes })[9]

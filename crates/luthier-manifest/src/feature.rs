@@ -111,8 +111,7 @@ impl ShadingModel {
             }
             Feature::Beckmann => is_chain || matches!(self, Self::Microfacet | Self::Lobes),
             Feature::ThicknessMap => is_chain || is_statistical || self == Self::Lobes,
-            Feature::Flakes => is_chain || self == Self::Lobes,
-            Feature::Patina => is_chain,
+            Feature::Flakes | Feature::Patina => is_chain || self == Self::Lobes,
         }
     }
 }
@@ -141,7 +140,7 @@ mod tests {
             (ShadingModel::GranierHeidrich, ".#..#.#...##...#"),
             (ShadingModel::Phong, "###.##....##...#"),
             (ShadingModel::Microfacet, "....#b######...#"),
-            (ShadingModel::Lobes, "##############.#"),
+            (ShadingModel::Lobes, "################"),
         ] {
             assert_eq!(shown(model), expected, "{model}");
         }

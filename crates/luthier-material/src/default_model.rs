@@ -104,7 +104,24 @@ mod tests {
             (VARYING.to_owned() + COAT + rough + WHITE, "lobes", "elek", None),
             (VARYING.to_owned() + COAT + scratched + WHITE, "elek", "elek", Some("layer.0.film.0.thickness_nm")),
             (COAT.to_owned() + smooth + GOLD + rough + FLAKES, "lobes", "elek", None),
-            (COAT.to_owned() + smooth + GOLD + rough + PATINA, "elek", "elek", Some("effects.patina")),
+            (COAT.to_owned() + smooth + GOLD + rough + PATINA, "lobes", "elek", None),
+            (COAT.to_owned() + beckmann + WHITE + PATINA, "lobes", "elek", None),
+            (COAT.to_owned() + scratched + GOLD + rough + PATINA, "elek", "elek", Some("effects.patina")),
+            (COAT.to_owned() + stained + GOLD + rough + PATINA, "elek", "elek", Some("effects.patina")),
+            (VARYING.to_owned() + COAT + rough + WHITE + PATINA, "elek", "elek", Some("effects.patina")),
+            (
+                COAT.to_owned() + smooth + GOLD + brushed + PATINA,
+                "weidlich-wilkie",
+                "weidlich-wilkie",
+                Some("effects.patina"),
+            ),
+            (COAT.to_owned() + smooth + GOLD + rough + FLAKES + PATINA, "lobes", "elek", None),
+            (
+                COAT.to_owned() + smooth + COAT + rough + GOLD + rough + FLAKES + PATINA,
+                "elek",
+                "elek",
+                Some("effects.patina"),
+            ),
             (COAT.to_owned() + smooth + GOLD + brushed + FLAKES, "lobes", "weidlich-wilkie", None),
         ] {
             let found = material(&body);

@@ -85,14 +85,22 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
         }
     }
     if let (ShadingModel::Lobes, Some(maps)) = (model, maps) {
-        // Rows are over one factor, or over the azimuth.
+        // Rows are over one factor, over the amount of patina, or over the azimuth.
         let is_turned = layers.iter().any(Layer::is_anisotropic);
         let (roughness, thickness) = (maps.roughness.is_some(), maps.thickness.is_some());
         let film = layers.first().and_then(|first| first.films.first()).is_some_and(Film::varies);
+        // Flakes lie below the patina alone, and rows do not tell its lobes from those of several layers that are bare.
+        let has_flakes_above_lobes = effects.flakes.is_some() && layers.len() > 2;
+        let covers = effects.patina.is_some() && layers.len() > 1;
         for (lacks, feature, key) in [
             (roughness && is_turned, Feature::RoughnessMap, "layer.0.maps.roughness"),
             (thickness && (is_turned || roughness), Feature::ThicknessMap, "layer.0.maps.thickness"),
             (film && (is_turned || roughness || thickness), Feature::FilmVariation, "layer.0.film.0.thickness_nm"),
+            (
+                covers && (is_turned || roughness || thickness || film || has_flakes_above_lobes),
+                Feature::Patina,
+                "effects.patina",
+            ),
         ] {
             if lacks {
                 found.push(LeftOut { feature, key: key.to_owned(), forms: Form::ALL.to_vec() });

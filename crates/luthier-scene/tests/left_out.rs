@@ -149,7 +149,7 @@ fn effects_and_maps_are_told() {
     assert_eq!(told(ShadingModel::Elek), []);
     assert_eq!(told(ShadingModel::Belcour), [Feature::Flakes, Feature::Patina]);
     // Rows of lobes are over one factor.
-    assert_eq!(told(ShadingModel::Lobes), [Feature::Patina, Feature::ThicknessMap]);
+    assert_eq!(told(ShadingModel::Lobes), [Feature::ThicknessMap, Feature::Patina]);
     assert_eq!(told(ShadingModel::Phong), [Feature::ThicknessMap, Feature::Flakes, Feature::Patina]);
     // Of the layer that is left out, and of the slab above it, nothing else is told.
     let expected = [Feature::InnerInterface, Feature::ThicknessMap, Feature::Flakes, Feature::Patina];

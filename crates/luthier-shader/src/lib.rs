@@ -12,7 +12,7 @@
 //! unit directions and slope parameters from 0.001 to 1. GLSL, HLSL and MSL are naga's output with our names and comments put back;
 //! nothing on Linux can check MSL, and the snippet says so.
 //!
-//! Effects: flakes tilt what lies below the first interface, and patina covers it, in the models `elek` and `weidlich-wilkie`;
+//! Effects: flakes tilt what lies below the first interface, and patina covers it, in the models `elek`, `weidlich-wilkie` and `lobes`;
 //! models without such a layer (`granier-heidrich`, `phong`, `microfacet`) or that mix all layers into a few lobes (`belcour`,
 //! `yamaguchi`) leave both out. Glitter turns the whole surface, for any model. A shader fills a `LuthierPlace` with
 //! `luthier_flake_normal`, `luthier_patina_amount`, `luthier_glitter_normal` and `luthier_film_place`, and calls

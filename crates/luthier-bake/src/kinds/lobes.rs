@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use luthier_layers::lobes::{
-    Axes, BaseLight, Critical, EXCESS, FitError, FitSettings, Judge, LOBES, Row, Traced, Varied, Varying, shown,
+    Axes, BaseLight, Cover, Critical, EXCESS, FitError, FitSettings, Judge, LOBES, Row, Traced, Varied, Varying, shown,
 };
 use luthier_lut::{
     AtlasLayout, Axis, Comparison, ErrorStats, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan,
@@ -12,7 +12,7 @@ use luthier_manifest::{
     AxesRecord, BaseRecord, Budget, Candidate, CandidateForm, LobesError, LobesRecord, MeasuredError, Search,
     VaryingFactor, VaryingRecord,
 };
-use luthier_material::Material;
+use luthier_material::{Material, Patina};
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
 use serde_json::{Value, json};
@@ -68,11 +68,17 @@ impl Kind for Table {
     }
 }
 
-/// The part of a material that a texture scales and rows are over: they are over one factor alone.
+/// The part of a material that a texture decides and rows are over: they are over one factor alone.
 fn varying(material: &Material) -> Option<Varying> {
     let maps = &material.layers.first()?.maps;
     let thickness = maps.thickness.as_ref().map(|_| Varying::Slab);
-    maps.roughness.as_ref().map(|_| Varying::Alpha).or(thickness).or_else(|| Varying::film(&material.stack))
+    let scaled =
+        maps.roughness.as_ref().map(|_| Varying::Alpha).or(thickness).or_else(|| Varying::film(&material.stack));
+    let covers = material.effects.patina.as_ref().filter(|_| material.stack.layers.len() > 1);
+    scaled.or_else(|| {
+        let Patina { diffuse_albedo, base_alpha, tarnish, .. } = *covers?;
+        Some(Varying::Patina(Cover { diffuse_albedo, base_alpha, tarnish }))
+    })
 }
 
 /// The shape of tiles for so many lobes, with every so many of the rows.
@@ -178,10 +184,11 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
             Varying::Alpha => VaryingFactor::AlphaFactor,
             Varying::Slab => VaryingFactor::SlabFactor,
             Varying::Film(_) => VaryingFactor::FilmFactor,
+            Varying::Patina(_) => VaryingFactor::Patina,
         },
         factors: match varying {
             Varying::Film(factors) => Some(factors),
-            Varying::Alpha | Varying::Slab => None,
+            Varying::Alpha | Varying::Slab | Varying::Patina(_) => None,
         },
         tiles: varied.nodes.len() as u32,
         least_spread: varied.least_spread(),
@@ -249,7 +256,7 @@ impl Job for FitJob {
             "rows": rows,
             "paths": paths,
             "seed": seed,
-            "varying": self.varying.map(|varying| json!([factor_name(varying), varying.factor(0.0), varying.factor(1.0)])),
+            "varying": self.varying.map(|varying| json!([factor_name(varying), numbers(varying)])),
             "is_searched": self.is_searched,
         })
     }
@@ -268,12 +275,21 @@ impl Job for FitJob {
     }
 }
 
+/// Numbers that decide what rows are over.
+fn numbers(varying: Varying) -> Value {
+    match varying {
+        Varying::Alpha | Varying::Slab | Varying::Film(_) => json!([varying.factor(0.0), varying.factor(1.0)]),
+        Varying::Patina(Cover { diffuse_albedo, base_alpha, tarnish }) => json!([diffuse_albedo, base_alpha, tarnish]),
+    }
+}
+
 /// Words on what varies.
 fn factor_name(varying: Varying) -> &'static str {
     match varying {
         Varying::Alpha => "slope parameters",
         Varying::Slab => "thickness of the first slab",
         Varying::Film(_) => "thickness of the film",
+        Varying::Patina(_) => "patina",
     }
 }
 
@@ -318,7 +334,11 @@ impl Job for LobesJob {
         let mut truth = Image::zeros((x.size + 2) * y.size, 1, 4);
         for i in 0..x.size + 2 {
             let row = varied.stored(self.tile, (i.max(1) - 1).min(x.size - 1) as usize);
-            for (j, part) in (0..y.size).zip(row.filled(most).to_parts()) {
+            let mut parts = row.filled(most).to_parts();
+            if let (Some(Varying::Patina(_)), Some([.., free])) = (varied.varying(), parts.last_mut()) {
+                *free = varied.bare_facets(self.tile, (i.max(1) - 1).min(x.size - 1) as usize);
+            }
+            for (j, part) in (0..y.size).zip(parts) {
                 truth.texel_mut(j * (x.size + 2) + i, 0).copy_from_slice(&part.map(|value| value as f32));
             }
         }
@@ -344,8 +364,12 @@ impl Job for LobesJob {
         };
         let error = (1..most + 2).map(energies).fold(energies(0), ErrorStats::with_worst_of);
         let over = if lobes.axis.critical().cot_sq > 0.0 { ", rows close together at its critical angle" } else { "" };
-        let factor =
-            |varying: Varying| format!(" with {:.4} of its {}", varying.factor(self.tile as f64), factor_name(varying));
+        let factor = |varying: Varying| match (varying, varying.factor(self.tile as f64)) {
+            (Varying::Patina(_), amount) if amount > 1.0 => {
+                " with all layers, and none of the light of its patina".to_owned()
+            }
+            (_, factor) => format!(" with {factor:.4} of its {}", factor_name(varying)),
+        };
         let azimuth = |axes: Axes| {
             let [cos, sin] = axes.azimuth(tile as f64);
             format!(

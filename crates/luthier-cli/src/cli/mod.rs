@@ -420,7 +420,7 @@ Prints f cos theta_i in linear Rec.709, spectral by default. Models with a shade
 yamaguchi, phong, microfacet) are its f64 twin: one index at 589.3 nm bends the directions of all channels, colours are those of \
 each term. --three-wavelengths stands for the `full` form, spectral colour for the `baked` one.
 
-Effects of the file count at the place of --uv and --distance: flakes and patina for elek and weidlich-wilkie, glitter for all; JSON says \
+Effects of the file count at the place of --uv and --distance: flakes and patina for elek, weidlich-wilkie and lobes, glitter for all; JSON says \
 what is there. That is `luthier_eval_at`; --no-effects is `luthier_eval`. Other maps of the file do not count: the options on textures \
 say what they hold.
 

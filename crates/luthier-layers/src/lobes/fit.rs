@@ -176,6 +176,11 @@ impl Simulation {
     /// [`Self::new`] with rows over an axis. With a critical angle, where rows are far apart, the stack is seen half way between them, too, so that
     /// what is linear can err as much at them as there. Elsewhere that would be no gain over the noise.
     pub(super) fn along(axis: ViewAxis, stack: &Stack, color: &Color, settings: FitSettings) -> Self {
+        Self::within(&indices(stack), axis, stack, color, settings)
+    }
+
+    /// [`Self::along`] with lobes in the half vectors of media of these relative indices.
+    pub(super) fn within(indices: &[f64], axis: ViewAxis, stack: &Stack, color: &Color, settings: FitSettings) -> Self {
         let first = FirstInterface::of(stack, color);
         let axes = Axes::of(stack);
         let rough = covariances(stack, axes);
@@ -186,7 +191,7 @@ impl Simulation {
         if !joined_alone {
             starts.push(logarithm(last, [START_WIDTHS[0], 1.0]));
         }
-        let cells: Vec<Cells> = indices(stack).into_iter().map(|index| cells(index, &rough, axes)).collect();
+        let cells: Vec<Cells> = indices.iter().map(|&index| cells(index, &rough, axes)).collect();
         let (paths, count) = (ColorPaths::new(stack, color), settings.paths);
         let is_half = axes.is_none() && axis.critical().cot_sq > 0.0;
         let seen = if is_half { ViewAxis::new(2 * axis.size() - 1, axis.critical()) } else { axis };
@@ -220,6 +225,16 @@ impl Simulation {
         let tallies = views.all().enumerate().map(view).collect();
         let base_albedo = base_albedo(stack);
         Self { first, axis, seen, axes, cells, starts, widths: widths(&rough), views: tallies, base_albedo }
+    }
+
+    /// The light in one set of its cells.
+    pub(super) fn in_cells(&self, set: usize) -> Self {
+        let mut alone = self.clone();
+        alone.cells = vec![self.cells[set]];
+        for view in &mut alone.views {
+            view.rest = vec![view.rest.swap_remove(set)];
+        }
+        alone
     }
 
     /// The unknowns of a lobe.
@@ -284,6 +299,15 @@ impl Simulation {
         let lobed = Lobed { problem: &problem, lobes: count, beside: Some(&beside) };
         let place = Place::new(beside.clone(), &lobed);
         Found { set: from.set, place: SEARCH.descend(place, &lobed, LAST_STEPS) }
+    }
+
+    /// The place that a search comes to from another with a given shape of the remainder, which it keeps.
+    pub(super) fn with_falloff(&self, from: &Found, falloff: [f64; 2]) -> Found {
+        let problem = Problem::new(self, from.set);
+        let lobes = from.starts(self.basis());
+        let lobed = Lobed::new(&problem, lobes.len());
+        let place = Place::new(parameters(lobes, falloff), &lobed);
+        self.follow(&Found { set: from.set, place }, 1.0)
     }
 
     /// The lobes of a place.

@@ -10,7 +10,7 @@ use luthier_optics::stack::Stack;
 use super::fit::{cells, covariances, indices};
 use super::half_vector::{outside, refracted};
 use super::tally::Cells;
-use super::{Axes, FirstInterface, FitSettings, Varied, Varying, ViewAxis, shown};
+use super::{Axes, FirstInterface, FitSettings, Varied, Varying, ViewAxis, patina, shown};
 use crate::layered_mc::ColorPaths;
 
 /// Views, and paths of each.
@@ -93,6 +93,12 @@ impl Judge {
             };
             // Another order than that of the views.
             let factor = varying.map_or(1.0, |varying| {
+                // Light is linear between the ends of a patina, of which the grown one has scattering that no path shows. Diffuse bases are closed forms.
+                if matches!(varying, Varying::Patina(_)) {
+                    let has_lobes = FirstInterface::of(&patina::bare(&stack), color).is_some();
+                    let last = (varying.nodes() - 1) as f64;
+                    return varying.factor(if has_lobes && number % 2 == 1 { last } else { 0.0 });
+                }
                 let steps = varying.nodes() - 1;
                 varying.factor(((2 * number) % VIEWS * (steps - 1) / (VIEWS - 1)) as f64 + 0.5)
             });

@@ -329,10 +329,10 @@ impl Row {
             (lobe.strength, lobe.share) = (positive(lobe.strength), lobe.share.clamp(0.0, 1.0));
         }
         let first = self.first_facet();
-        for (c, first) in first.into_iter().enumerate() {
-            let below = self.albedo_dir[c] - first;
+        for (c, facet) in first.into_iter().enumerate() {
+            let below = self.albedo_dir[c] - facet;
             if self.albedo_dir[c] > 1.0 {
-                let left = if below > 0.0 { (1.0 - first).max(0.0) / below } else { 0.0 };
+                let left = if below > 0.0 { (1.0 - facet).max(0.0) / below } else { 0.0 };
                 self.wide[c] *= left;
                 self.lobes.iter_mut().for_each(|lobe| lobe.strength[c] *= left);
                 self.albedo_dir[c] = 1.0;

@@ -1,14 +1,14 @@
-//! Lobes of a stack of which a texture scales something: nodes over its factor.
+//! Lobes of a stack of which a texture scales or covers something: nodes over its factor, or over the amount of a patina.
 
 use luthier_optics::color::Color;
 use luthier_optics::stack::{Base, FilmThickness, Stack, Surface};
 
 use super::fit::{Found, Simulation};
 use super::parameters::Basis;
-use super::{Axes, EXCESS, FirstInterface, FitSettings, LOBES, Lobes, Row, ViewAxis, shown};
+use super::{Axes, Cover, EXCESS, FirstInterface, FitSettings, LOBES, Lobes, Row, ViewAxis, patina, shown};
 use crate::elek::ALPHA_MIN;
 
-/// The part of a stack that a texture scales.
+/// The part of a stack that a texture decides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Varying {
     /// The slope parameters of all interfaces.
@@ -17,6 +17,9 @@ pub enum Varying {
     Slab,
     /// The thickness of the top film of the first interface, between the factors on its nominal thickness that are given: the greatest and the least.
     Film([f64; 2]),
+    /// The amount of the first layer, a patina. A factor is that amount in 0..=1; the first node, where all layers are there without the numbers of the
+    /// patina, is one step beyond 1, or 1 where there are none.
+    Patina(Cover),
 }
 
 impl Varying {
@@ -33,21 +36,22 @@ impl Varying {
             Self::Alpha | Self::Slab => 8,
             // Interference has a period of half a wavelength or so. The number is odd: the nominal thickness is in the middle.
             Self::Film(_) => 15,
+            Self::Patina(cover) => cover.nodes(),
         }
     }
 
     /// Paths of a fit over those of a node beside the nominal one: under a film many nodes see nearly the same.
     fn path_share(self) -> u64 {
         match self {
-            Self::Alpha | Self::Slab => 1,
+            Self::Alpha | Self::Slab | Self::Patina(_) => 1,
             Self::Film(_) => 2,
         }
     }
 
-    /// The node of the factor 1.
+    /// The node of the stack as it is given: of the factor 1, or of all layers.
     pub fn nominal(self) -> usize {
         match self {
-            Self::Alpha | Self::Slab => 0,
+            Self::Alpha | Self::Slab | Self::Patina(_) => 0,
             Self::Film(_) => self.nodes() / 2,
         }
     }
@@ -59,6 +63,7 @@ impl Varying {
         match self {
             Self::Alpha | Self::Slab => (1.0 - share) * (1.0 - share),
             Self::Film([most, least]) => most + share * (least - most),
+            Self::Patina(_) => self.steps() - place,
         }
     }
 
@@ -66,7 +71,7 @@ impl Varying {
     fn steps(self) -> f64 {
         match self {
             Self::Alpha => self.nodes() as f64,
-            Self::Slab | Self::Film(_) => (self.nodes() - 1) as f64,
+            Self::Slab | Self::Film(_) | Self::Patina(_) => (self.nodes() - 1) as f64,
         }
     }
 
@@ -75,11 +80,12 @@ impl Varying {
         let share = match self {
             Self::Alpha | Self::Slab => 1.0 - factor.clamp(0.0, 1.0).sqrt(),
             Self::Film([most, least]) => ((most - factor) / (most - least)).clamp(0.0, 1.0),
+            Self::Patina(_) => (1.0 - factor / self.steps()).clamp(0.0, 1.0),
         };
         (share * self.steps()).min((self.nodes() - 1) as f64)
     }
 
-    /// The stack at a factor.
+    /// The stack at a factor; of a patina, without its numbers, all layers or the bare ones.
     pub fn apply(self, stack: &Stack, factor: f64) -> Stack {
         let mut here = stack.clone();
         let first = here.layers.first_mut();
@@ -98,6 +104,8 @@ impl Varying {
                     film.thickness = FilmThickness { min_nm: nm, max_nm: nm };
                 }
             }
+            Self::Patina(_) if factor > 0.0 => {}
+            Self::Patina(_) => return patina::bare(stack),
         }
         here
     }
@@ -130,7 +138,7 @@ impl Over {
     fn spread(&self, factor: f64) -> f64 {
         match self.varying {
             Varying::Alpha => factor.max(self.least),
-            Varying::Slab | Varying::Film(_) => 1.0,
+            Varying::Slab | Varying::Film(_) | Varying::Patina(_) => 1.0,
         }
     }
 }
@@ -185,7 +193,16 @@ impl Varied {
         lobes.tile(tile)[row].clone().spread(1.0 / spread)
     }
 
-    /// The lobes at a factor.
+    /// Energy of the facets of the layer below a patina in a row of a tile, the mean of the channels: that of one facet where the layer is bare, and 0
+    /// elsewhere. Shaders draw directions by it.
+    pub fn bare_facets(&self, tile: usize, row: usize) -> f64 {
+        let is_bare = matches!(self.varying(), Some(Varying::Patina(_))) && tile + 1 == self.nodes.len();
+        let facets =
+            |lobes: &Lobes| lobes.first.is_some().then(|| lobes.rows[row].first_facet().iter().sum::<f64>() / 3.0);
+        is_bare.then(|| facets(&self.nodes[tile])).flatten().unwrap_or(0.0)
+    }
+
+    /// The lobes at a factor. Their first interface is that of a patina where any of it has grown.
     pub fn at(&self, factor: f64) -> Lobes {
         let mut lobes = self.nodes[0].clone();
         let Some(over) = &self.varying else { return lobes };
@@ -220,6 +237,10 @@ impl Traced {
             .map(|layer| layer.surface.alpha_x.clamp(ALPHA_MIN, 1.0));
         let least = ALPHA_MIN / alphas.fold(ALPHA_MIN, f64::max);
         let axis = ViewAxis::of(&stack, settings.rows);
+        if let Varying::Patina(cover) = varying {
+            let simulations = patina::simulations(&cover, axis, &stack, color, settings);
+            return Self { simulations, varying: Some(Over { varying, least: 1.0, stack, color: *color }) };
+        }
         let simulate = |node: usize| {
             let here = varying.apply(&stack, varying.factor(node as f64));
             let share = if node == varying.nominal() { 1 } else { varying.path_share() };
@@ -234,6 +255,10 @@ impl Traced {
         let Some(over) = &self.varying else {
             return Varied { nodes: vec![self.simulations[0].fit_fewest(most, excess)], varying: None };
         };
+        if let Varying::Patina(cover) = over.varying {
+            let nodes = patina::nodes(&cover, &self.simulations, most, excess);
+            return Varied { nodes, varying: self.varying.clone() };
+        }
         let (count, nominal) = (self.simulations.len(), over.varying.nominal());
         let spread = |node: usize| over.spread(over.varying.factor(node as f64));
         let best = |node: usize| (node, self.simulations[node].fewest(most, excess));
@@ -302,6 +327,16 @@ mod tests {
                 assert!((varying.place(varying.factor(place)) - place).abs() < 1e-12, "{varying:?} {place}");
             }
             assert_eq!(varying.place(0.0), (varying.nodes() - 1) as f64);
+        }
+        let grown = Cover { diffuse_albedo: [0.0; 3], base_alpha: Some(0.3), tarnish: [1.0; 3] };
+        for (cover, last) in [(grown, 2.0), (Cover { base_alpha: None, ..grown }, 1.0)] {
+            let varying = Varying::Patina(cover);
+            // Bare layers come last; the nominal stack is the first.
+            assert_eq!(
+                [0.0, 0.25, 1.0, last].map(|amount| varying.place(amount)),
+                [last, last - 0.25, last - 1.0, 0.0]
+            );
+            assert!((varying.factor(varying.place(0.25)) - 0.25).abs() < 1e-15);
         }
     }
 

@@ -6,11 +6,11 @@ use glam::DVec3;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
-use luthier_optics::stack::{Base, Distribution, Layer, Stack, Surface};
+use luthier_optics::stack::{Base, Distribution, Film, Layer, Stack, Surface};
 
 use crate::elek::{self, ALPHA_MIN};
 use crate::frame;
-use crate::lobes::{self, Below, Varying};
+use crate::lobes::{self, Below, Cover, Varied, Varying};
 use crate::real_time::{Twin, Under};
 use crate::statistics::diffuse_base::Veil;
 use crate::statistics::energy::Energy;
@@ -55,6 +55,8 @@ pub struct Shaded {
     layers: Layers,
     /// The layers below the first, where patina leaves them bare.
     bare: Option<Layers>,
+    /// Whether the model is `lobes`, whose light is linear in the amount of patina.
+    has_lobes: bool,
 }
 
 #[derive(Debug)]
@@ -68,10 +70,12 @@ impl Shaded {
     /// form, or three wavelengths as in the form without tables. Belcour's and Yamaguchi's models have the energies of rough
     /// interfaces, as in the baked form.
     ///
-    /// Effects are those of the model's shader: flakes and patina in `elek` and `weidlich-wilkie`, flakes in `lobes`, deviated films in `granier-heidrich`.
+    /// Effects are those of the model's shader: flakes and patina in `elek`, `weidlich-wilkie` and `lobes`, deviated films in `granier-heidrich`. `lobes` has
+    /// patina where its rows are over nothing else: no film varies, and no interface is anisotropic.
     pub fn new(model: &str, stack: &Stack, wavelengths_nm: [f64; 3], color: Color, place: &Place) -> Option<Self> {
         let is_chain = [elek::MODEL, "weidlich-wilkie"].contains(&model);
-        let patina = place.patina.filter(|_| is_chain && stack.layers.len() > 1);
+        let is_shown = is_chain || model == lobes::MODEL && !is_over_another(stack);
+        let patina = place.patina.filter(|_| is_shown && stack.layers.len() > 1);
         let layers = |stack: &Stack| {
             // Lobes are widened one by one, and the first interface beside them.
             let mut first = stack.clone();
@@ -82,9 +86,20 @@ impl Shaded {
             Some(Layers { twin, terms: Exact::new(stack, color) })
         };
         let here = at(stack, model, place, patina);
-        let bare = patina.map(|_| layers(&Stack { layers: here.layers[1..].to_vec(), ..here.clone() }));
         let under = Under { slope_variance: place.sample.slope_variance, base_color: place.base_color, ..place.under };
-        Some(Self { place: Place { patina, under, ..*place }, layers: layers(&here)?, bare: bare.flatten() })
+        let place = Place { patina, under, ..*place };
+        let (mut grown, bare) = (layers(&here)?, lobes::bare(&here));
+        let mut bare = if patina.is_some() { Some(layers(&bare)?) } else { None };
+        if let (Some(Growth { diffuse_albedo, base_alpha, tarnish, .. }), Some(bare), false) =
+            (patina, &mut bare, is_chain)
+        {
+            let over = Varying::Patina(Cover { diffuse_albedo, base_alpha, tarnish });
+            let mut ends = Varied::of(&here, &color, Some(over)).nodes.into_iter().rev();
+            for (layers, stack) in [(bare, lobes::bare(&here)), (&mut grown, here.clone())] {
+                layers.terms = Exact::with_lobes(&stack, color, ends.next()?);
+            }
+        }
+        Some(Self { place, layers: grown, bare, has_lobes: model == lobes::MODEL })
     }
 
     /// `f cos_theta_i`, RGB; the cosine is that against the place's normal. Zero where either direction is at or below the horizon of the
@@ -100,6 +115,12 @@ impl Shaded {
             return twin.eval_over(terms, under, wi, wo);
         };
         let amount = patina.amount;
+        if let Some(variance) = self.has_lobes.then_some(under.slope_variance) {
+            // Scattering and tarnish are in the lobes of the grown end.
+            let covered = twin.eval_over(terms, under, wi, wo);
+            let bare = bare.twin.eval_over(&bare.terms, &Under { slope_variance: variance, ..Under::NONE }, wi, wo);
+            return [0, 1, 2].map(|c: usize| amount * covered[c] + (1.0 - amount) * bare[c]);
+        }
         let dull = patina.tarnish.map(|tarnish| 1.0 + (tarnish - 1.0) * amount);
         let passed = terms.fresnel(0, frame::cos_theta_d(wi, wo)).map(|reflected| 1.0 - reflected);
         let mut value = [0, 1, 2].map(|c| amount * passed[c] * patina.diffuse_albedo[c] * FRAC_1_PI * wi.z);
@@ -114,6 +135,12 @@ impl Shaded {
         add(amount, &self.layers, [1.0; 3], under);
         value
     }
+}
+
+/// Whether rows of lobes are over something beside patina.
+fn is_over_another(stack: &Stack) -> bool {
+    let film = stack.layers.first().and_then(|layer| layer.films.first());
+    stack.layers.iter().any(Layer::is_anisotropic) || film.is_some_and(Film::varies)
 }
 
 /// The surface with the variance of the normals of a pixel.
@@ -231,7 +258,7 @@ impl ShaderTerms for Tarnished<'_> {
 #[cfg(test)]
 mod tests {
     use luthier_optics::ior::IorSample;
-    use luthier_optics::stack::{Layer, Slab};
+    use luthier_optics::stack::{Diffuse, Layer, Slab};
 
     use super::*;
     use crate::flakes::Flakes;
@@ -291,6 +318,34 @@ mod tests {
             assert!((found[c] / expected - 1.0).abs() < 1e-12, "{} {expected}", found[c]);
             assert!((found[c] / plain[c] - 1.0).abs() > 1e-3);
         }
+    }
+
+    /// Where none has grown, oracles are the stack of the other layers by itself, and the closed form of a base; and light is linear in the amount.
+    #[test]
+    fn lobes_under_patina_are_those_of_both_ends() {
+        let (wi, wo) = directions();
+        let color = Color::ThreeWavelengths(WAVELENGTHS_NM);
+        let growth = Growth { amount: 0.0, diffuse_albedo: [0.3; 3], base_alpha: Some(0.4), tarnish: [0.6; 3] };
+        let at = |stack: &Stack, patina: Option<Growth>| {
+            Shaded::new("lobes", stack, WAVELENGTHS_NM, color, &Place { patina, ..Place::NONE }).unwrap().eval(wi, wo)
+        };
+        let mut painted = copper();
+        painted.layers[1].base = Base::Diffuse(Diffuse { albedo: [0.8, 0.5, 0.2], sigma: 0.0 });
+        for stack in [copper(), painted] {
+            let [none, half, whole] = [0.0, 0.4, 1.0].map(|amount| at(&stack, Some(Growth { amount, ..growth })));
+            let bare = at(&lobes::bare(&stack), None);
+            let all = at(&stack, None);
+            for c in 0..3 {
+                assert!((none[c] / bare[c] - 1.0).abs() < 0.02, "{none:?} {bare:?}");
+                assert!((half[c] - 0.6 * none[c] - 0.4 * whole[c]).abs() < 1e-12, "{half:?}");
+                // Scattering and tarnish change what is seen, and a whole patina covers the base.
+                assert!((whole[c] / all[c] - 1.0).abs() > 0.02, "{whole:?} {all:?}");
+            }
+        }
+        // Rows of an anisotropic stack are over the azimuth.
+        let mut brushed = copper();
+        brushed.layers[1].surface.alpha_y = 0.4;
+        assert_eq!(at(&brushed, Some(growth)), at(&brushed, None));
     }
 
     /// Oracle: the model of that wavelength with its textures.

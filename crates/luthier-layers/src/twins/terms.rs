@@ -78,6 +78,11 @@ impl Exact {
         Self::with(stack, color, Energies::Level(veil))
     }
 
+    /// The terms of a stack whose lobes are given.
+    pub fn with_lobes(stack: &Stack, color: Color, lobes: Lobes) -> Self {
+        Self { lobes: OnceLock::from(lobes), ..Self::new(stack, color) }
+    }
+
     fn with(stack: &Stack, color: Color, energies: Energies) -> Self {
         let interfaces = (0..stack.layers.len())
             .map(|i| Interface::of(stack, i).map(|interface| interface.sampled(&color)))

@@ -14,7 +14,7 @@ use crate::languages::text::rename;
 pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, features: &Features) -> String {
     let name = function(model);
     let layers: Vec<_> = set.materials.iter().filter(|m| m.model == model).map(|m| m.layers.as_slice()).collect();
-    let has_patina = features.has("patina");
+    let has_patina = features.has("chain_patina");
     let (name, bare) =
         if has_patina { (name.replace("luthier_eval", "luthier_stack"), " is_bare: bool,") } else { (name, "") };
     let without = if has_patina { "; where it is bare, without the first layer" } else { "" };
@@ -78,7 +78,7 @@ pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, 
 
 /// The function of a model where a material of the set has patina: with and without the first layer, blended.
 fn patina(model: ShadingModel, features: &Features) -> String {
-    if !features.has("patina") {
+    if !features.has("chain_patina") {
         return String::new();
     }
     let name = function(model);
@@ -131,7 +131,7 @@ pub(crate) fn parts(set: &MaterialSet<'_>, model: ShadingModel, features: &Featu
         let base = "let layer = $layer(material, 0u);\n    prepared.wide = LUTHIER_PI * $diffuse(layer, light, wo);";
         return format!("{out}    {base}\n    return prepared;\n}}\n");
     }
-    let has_patina = features.has("patina");
+    let has_patina = features.has("chain_patina");
     let depths = || layers.iter().map(|layers| layers.len());
     if depths().min() < depths().max() || has_patina {
         out.push_str("    let count = luthier_layer_count(material);\n");
@@ -261,6 +261,6 @@ fn walk(
         lines.extend(step.iter().map(|line| format!("    {}", of_layer(line, walk.first_part + i))));
         lines.push("}".to_owned());
     }
-    let indent = if features.has("patina") { "        " } else { "    " };
+    let indent = if features.has("chain_patina") { "        " } else { "    " };
     lines.iter().map(|line| format!("{indent}{line}\n")).collect()
 }

@@ -77,7 +77,7 @@ fn count(set: &MaterialSet<'_>, features: &Features) -> usize {
                 _ => 2,
             },
             ShadingModel::Elek | ShadingModel::WeidlichWilkie => {
-                chain::parts_count(set, material.model, features.has("patina"))
+                chain::parts_count(set, material.model, features.has("chain_patina"))
             }
             ShadingModel::Belcour | ShadingModel::Yamaguchi => {
                 material.layers.iter().rposition(is_interface).map_or(0, |i| i + 1)

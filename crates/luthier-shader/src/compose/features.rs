@@ -16,10 +16,12 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is but the names of tables, for the check that modules name no other.
     #[cfg(test)]
-    const ALL: &str = "absorption anisotropic bare base_color beckmann below bilinear chain chain_diffuse clamped closed coat conductor critical_view diffuse environment \
-    face film film_table flakes full ggx glitter granier granier_bare granier_base \
-    granier_film granier_transparent interface lobes_axes lobes_base lobes_diffuse lobes_film lobes_tilted media microfacet_diffuse mixed one_lobe oren_nayar patina phong \
-    place powers schlick_base several smith split_root statistics statistics_base surface theta_axis tilted total_reflection two_lobes visible";
+    const ALL: &str = "absorption anisotropic bare base_color beckmann below bilinear chain chain_diffuse chain_patina clamped closed \
+        coat conductor critical_view diffuse environment face film film_table flakes full ggx glitter granier \
+        granier_bare granier_base granier_film granier_transparent interface lobes_axes lobes_bare_base lobes_base \
+        lobes_diffuse lobes_film lobes_patina lobes_tilted media microfacet_diffuse mixed one_lobe oren_nayar patina \
+        phong place powers schlick_base several smith split_root statistics statistics_base surface theta_axis tilted \
+        total_reflection two_lobes visible";
 
     pub(crate) fn of(set: &MaterialSet<'_>, form: Form) -> Self {
         let mut names = BTreeSet::new();
@@ -145,7 +147,9 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
         }
     };
     let is_chain = matches!(material.model, ShadingModel::Elek | ShadingModel::WeidlichWilkie);
-    let bare = material.constants.patina.as_ref().filter(|_| is_chain).map(|patina| &patina.bare);
+    let is_covered = is_under_patina(material);
+    let shows_patina = is_chain || is_covered;
+    let bare = material.constants.patina.as_ref().filter(|_| shows_patina).map(|patina| &patina.bare);
     for layer in layers.iter().chain(bare) {
         if is_diffuse(layer) && material.model == ShadingModel::GranierHeidrich {
             continue;
@@ -198,6 +202,12 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
             if material.constants.flakes.is_some() && has_coat(material) {
                 names.extend(["flakes", "lobes_tilted"]);
             }
+            if is_covered {
+                names.extend(["patina", "lobes_patina"]);
+            }
+            if is_covered && has_diffuse {
+                names.insert("lobes_bare_base");
+            }
             names.insert("coat")
         }
         ShadingModel::Lobes => names.insert("lobes_diffuse"),
@@ -216,7 +226,7 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
                 names.insert("flakes");
             }
             if material.constants.patina.is_some() {
-                names.insert("patina");
+                names.extend(["patina", "chain_patina"]);
             }
             names.insert("chain")
         }
@@ -243,6 +253,13 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
     names
 }
 
+/// Whether rows are over the amount of patina, so that the layer below it is seen bare.
+fn is_under_patina(material: &MaterialEntry) -> bool {
+    let lobes = material.constants.lobes.filter(|_| material.model == ShadingModel::Lobes);
+    lobes.and_then(|lobes| lobes.varying).is_some_and(|varying| varying.factor == VaryingFactor::Patina)
+        && material.constants.patina.is_some()
+}
+
 /// Whether rows are over the thickness of a film.
 fn is_over_film(lobes: &LobesRecord) -> bool {
     lobes.varying.is_some_and(|varying| varying.factor == VaryingFactor::FilmFactor)
@@ -251,6 +268,11 @@ fn is_over_film(lobes: &LobesRecord) -> bool {
 /// Whether the base below lobes may have another colour.
 fn has_base_light(material: &MaterialEntry) -> bool {
     material.constants.patina.is_none() && material.constants.lobes.is_some_and(|lobes| lobes.base.is_some())
+}
+
+/// Whether what lies below patina is a diffuse base alone.
+fn is_bare_base(material: &MaterialEntry) -> bool {
+    material.constants.patina.as_ref().is_some_and(|patina| patina.bare.kind == LayerKind::Diffuse)
 }
 
 /// Whether lobes come from below a slab, in which what is there may be tilted.
@@ -291,7 +313,7 @@ fn is_mixed(set: &MaterialSet<'_>, model: ShadingModel) -> bool {
     (0..depth).any(|i| {
         let kinds = || layers().filter_map(|layers| layers.get(i)).map(|layer| layer.kind == LayerKind::Diffuse);
         kinds().any(|diffuse| diffuse) && kinds().any(|diffuse| !diffuse)
-    })
+    }) || set.materials.iter().filter(|m| m.model == model && is_under_patina(m)).any(is_bare_base)
 }
 
 #[cfg(test)]

@@ -83,7 +83,7 @@ struct LuthierLayer {
     /// Greatest thickness of the film, nm; 0 without a film.
     film_thickness_max_nm: f32,
     //? end
-    //? patina
+    //? chain_patina
     /// Factor on its reflectance, RGB: tarnish under patina.
     tarnish: vec3<f32>,
     //? end

@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use luthier_layers::lobes::{Axes, BaseLight, Below, Critical, Frame, Row, ViewAxis, Wide};
+use luthier_layers::oren_nayar;
 use luthier_lut::{AtlasLayout, Image, TableKind, WeightBits, bilinear};
 use luthier_manifest::{
-    AxesRecord, BaseRecord, FunctionGroup, LobesRecord, MaterialConstants, MaterialEntry, VaryingFactor, VaryingRecord,
-    material_buffer,
+    AxesRecord, BaseRecord, FunctionGroup, LayerKind, LayerRecord, LobesRecord, MaterialConstants, MaterialEntry,
+    VaryingFactor, VaryingRecord, material_buffer,
 };
 use luthier_optics::microfacet;
-use luthier_optics::stack::Distribution;
+use luthier_optics::stack::{Diffuse, Distribution};
 use luthier_shader::{Form, MaterialSet, ShaderError, TableFace, Target, emit};
 
 use crate::arithmetic::directions;
@@ -275,6 +276,116 @@ fn lobes_in_axes_are_those_of_the_twin() {
     }
 }
 
+/// Patina mixes the rows of two tiles, and the facets of its interface with those of the layer below it, or with a diffuse base: as much light of both
+/// as there is surface. Rows of a bare base have its light in their remainder. Beside patina of chains, and where a place has no patina, all layers
+/// are there. Oracles: the twin of rows, closed forms of D, Lambda and a rough base.
+#[test]
+fn patina_mixes_the_light_of_two_ends() {
+    let (layout, image) = covered_rows();
+    for (name, number) in [
+        ("lobes-patina", 0),
+        ("lobes-patina-base", 0),
+        ("lobes-patina-mixed", 1),
+        ("lobes-patina-mixed", 2),
+        ("lobes-patina-chains", 0),
+        ("lobes-patina-chains", 2),
+    ] {
+        let mut materials = set(name);
+        for material in &mut materials {
+            let patina = material.constants.patina.as_mut().map(|patina| &mut patina.bare);
+            material.layers.iter_mut().chain(patina).for_each(|layer| layer.tiles[TableKind::Distribution] = None);
+            let Some(record) = &mut material.constants.lobes else { continue };
+            material.layers[0].tiles[TableKind::Lobes] = Some(1);
+            record.integral = Wide::new(record.falloff, ViewAxis::new(2, Critical::default())).integral();
+        }
+        let given = materials[number].clone();
+        let record = given.constants.lobes.unwrap();
+        let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
+        let frame = Frame { index: record.index, wide, axes: None, base: None };
+        let bare = given.constants.patina.map(|patina| patina.bare);
+        let text = emit(&MaterialSet::new(&materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap();
+        let gray = Image { data: vec![GRAY; 36], ..Image::zeros(3, 3, 4) };
+        let textures = [("luthier_fresnel", gray), ("luthier_lobes", image.clone())];
+        let textures = BTreeMap::from(textures.map(|(name, image)| (name.to_owned(), image)));
+        let machine = Machine::new(&text, &material_buffer(&materials), textures);
+        let Value::Many(neutral) = machine.call("luthier_place", Vec::new()) else { panic!("a place is a structure") };
+        for (patina, tile, cover) in [(-1.0, 1.0, 1.0), (1.0, 2.0, 1.0), (0.3, 2.7, 0.3), (0.0, 3.0, 0.0)] {
+            let (tile, cover) = if bare.is_some() { (tile, cover) } else { (1.0, 1.0) };
+            let mut place = neutral.clone();
+            *place.last_mut().unwrap() = Value::F(patina as f32);
+            for (wi, wo) in directions(100) {
+                let [light, eye] = [wi, wo].map(DVec3::from);
+                if light.z <= 0.0 || eye.z <= 0.0 {
+                    continue;
+                }
+                let low = (tile as u32).min(3);
+                let read = |tile, part| bilinear(&image, layout.position(tile, [eye.z, part]), WeightBits::Exact);
+                let mixed = |part: u32| {
+                    let (a, b, t) = (read(low, part.into()), read(low + 1, part.into()), tile - f64::from(low));
+                    [0, 1, 2, 3].map(|i: usize| a[i] + t * (b[i] - a[i]))
+                };
+                let mut row = Row::of_parts(&(0..6).map(mixed).collect::<Vec<_>>());
+                let facets = |layer: &LayerRecord| {
+                    let half = (light + eye).normalize();
+                    let sin_sq = half.x * half.x + half.y * half.y;
+                    let d = microfacet::distribution(layer.distribution, layer.alpha, half.z, sin_sq);
+                    let lambda = |w: DVec3| microfacet::lambda(layer.distribution, layer.alpha, w.z);
+                    [f64::from(GRAY) * d / (4.0 * eye.z * (1.0 + lambda(light) + lambda(eye))); 3]
+                };
+                let first = facets(&given.layers[0]);
+                let seen = bare.as_ref().map_or([0.0; 3], |bare| match bare.kind {
+                    LayerKind::Diffuse => {
+                        let of_base = read(3, 0.0);
+                        (0..3).for_each(|c| row.wide[c] -= (1.0 - cover) * of_base[c]);
+                        let base = Diffuse { albedo: bare.albedo, sigma: bare.sigma };
+                        oren_nayar::brdf(&base, light, eye).map(|f| f * light.z)
+                    }
+                    _ => facets(bare),
+                });
+                let below = Below::new(frame, row, eye).eval(light);
+                let arguments = vec![
+                    Value::Many(place.clone()),
+                    Value::U(number as u32),
+                    vector(&wi.map(|w| w as f32)),
+                    vector(&wo.map(|w| w as f32)),
+                ];
+                let found = machine.call("luthier_eval_at", arguments).floats();
+                for c in 0..3 {
+                    let expected = cover * first[c] + (1.0 - cover) * seen[c] + below[c];
+                    let error = (f64::from(found[c]) - expected).abs() / expected.abs().max(0.03);
+                    assert!(error < 1e-3, "{name} {number} {patina} {wi:?} {wo:?}: {} {expected}", found[c]);
+                }
+            }
+        }
+    }
+}
+
+/// Reflectance of all interfaces, for all channels.
+const GRAY: f32 = 0.1;
+
+/// Rows of a patina after another's tile: all layers, grown, and bare; shapes of the last two are alike.
+fn covered_rows() -> (AtlasLayout, Image) {
+    let layout = AtlasLayout { tiles: 5, ..rows().0 };
+    let [width, height] = layout.size();
+    let mut image = Image::zeros(width, height, 4);
+    for tile in 0..5 {
+        let ([_, y], k) = (layout.origin(tile), f64::from(tile));
+        let end = k.min(2.0);
+        for x in 0..width {
+            let texel = match x / layout.row_size() {
+                0 => [0.2 + 0.1 * k, 0.3, 0.5 - 0.1 * k, 0.0],
+                1 => [1.2 - 0.4 * k, 0.4, 0.3 * k, 0.2 + 0.05 * end],
+                2 => [6.0 + end, 9.0 - end, 2.0 + end, 0.9],
+                3 => [0.1 * k, 0.2, 0.3, -0.1],
+                4 => [0.7, 0.9, 40.0, 0.8],
+                _ => [2.0, 2.0, 2.0, if tile == 3 { 0.1 } else { 0.0 }],
+            };
+            image.texel_mut(x, y).copy_from_slice(&texel.map(|value| value as f32));
+        }
+    }
+    (layout, image)
+}
+
 /// The normal of flakes shifts lobes, the variance of normals widens them, and the colour of a base has its light, as in the twin, whose own oracles
 /// are a walk, a mean and paths (`luthier-layers/src/lobes/tilt_tests.rs`, `tests.rs`).
 #[test]
@@ -409,8 +520,11 @@ fn directions_are_drawn_as_their_density_says() {
         ("lobes", [0.3; 2], None, rows()),
         ("lobes-inward", [0.2; 2], None, rows()),
         ("lobes-axes", [0.1, 0.4], Some(AxesRecord { turn: [0.6, 0.8], is_mirrored: false, tiles: 8 }), turned_rows()),
+        ("lobes-patina", [0.3; 2], None, covered_rows()),
+        ("lobes-patina-base", [0.3; 2], None, covered_rows()),
     ] {
         let mut materials = set(name);
+        let varying = materials[0].constants.lobes.unwrap().varying;
         let lobes = LobesRecord {
             index: 1.4,
             falloff: [0.6, 0.3],
@@ -418,12 +532,15 @@ fn directions_are_drawn_as_their_density_says() {
             critical_cot_sq: 0.0,
             critical_width: 0.0,
             critical_plain_share: 0.0,
-            varying: None,
+            varying,
             axes,
             base: None,
             error: None,
         };
         materials[0].constants.lobes = Some(lobes);
+        if let Some(patina) = &mut materials[0].constants.patina {
+            patina.bare.tiles[TableKind::Distribution] = None;
+        }
         let first = &mut materials[0].layers[0];
         (first.alpha, first.alpha_xy) = (libm::sqrt(coat[0] * coat[1]), coat);
         first.tiles[TableKind::Distribution] = None;
@@ -436,7 +553,14 @@ fn directions_are_drawn_as_their_density_says() {
             Machine::new(&text, &material_buffer(&materials), BTreeMap::from(textures.map(|(n, i)| (n.to_owned(), i))));
         for theta in [0.0, 0.7, 1.3_f64] {
             let wo = [theta.sin() * 0.8, theta.sin() * 0.6, theta.cos()].map(|w| w as f32);
-            let prepared = machine.call("luthier_prepare", vec![Value::U(0), vector(&wo)]);
+            let prepared = match varying {
+                None => machine.call("luthier_prepare", vec![Value::U(0), vector(&wo)]),
+                Some(_) => {
+                    let Value::Many(mut place) = machine.call("luthier_place", vec![]) else { panic!("a structure") };
+                    *place.last_mut().unwrap() = Value::F(0.4);
+                    machine.call("luthier_prepare_at", vec![Value::Many(place), Value::U(0), vector(&wo)])
+                }
+            };
             let call =
                 |function: &str, arguments: &[f32]| machine.call(function, vec![prepared.clone(), vector(arguments)]);
             let mut counts = [0.0; RINGS * SECTORS];

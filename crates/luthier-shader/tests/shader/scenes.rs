@@ -3,7 +3,7 @@
 use luthier_lut::{AtlasLayout, Axis, Mapping, TableKind, TexelFormat};
 use luthier_manifest::{
     AxesRecord, Distribution, FlakesRecord, GlitterRecord, LayerKind, LayerRecord, LobesRecord, MaterialConstants,
-    MaterialEntry, PatinaRecord, ShadingModel, Tiles,
+    MaterialEntry, PatinaRecord, ShadingModel, Tiles, VaryingFactor, VaryingRecord,
 };
 use luthier_shader::{Form, TableFace};
 
@@ -187,6 +187,31 @@ fn with_lobes(mut material: MaterialEntry) -> MaterialEntry {
     material
 }
 
+/// The material with rows over the amount of its patina, which are all that its three tiles have.
+pub(crate) fn covered(material: MaterialEntry) -> MaterialEntry {
+    let mut material = with_lobes(material);
+    material.layers[0].alpha_xy = [material.layers[0].alpha; 2];
+    let over = VaryingRecord { factor: VaryingFactor::Patina, tiles: 3, least_spread: 1.0, factors: None };
+    material.constants.lobes = material.constants.lobes.map(|lobes| LobesRecord { varying: Some(over), ..lobes });
+    material
+}
+
+/// Paint under a patina.
+pub(crate) fn covered_paint(sigma: f64) -> MaterialEntry {
+    let mut material = covered(patina());
+    "covered-paint".clone_into(&mut material.name);
+    material.layers[1] = diffuse(sigma);
+    if let Some(patina) = &mut material.constants.patina {
+        patina.bare = diffuse(sigma);
+    }
+    material
+}
+
+/// The material by another name.
+fn named(name: &str, material: MaterialEntry) -> MaterialEntry {
+    MaterialEntry { name: name.to_owned(), ..material }
+}
+
 /// The material with lobes in axes of its own.
 fn with_axes(material: MaterialEntry) -> MaterialEntry {
     let mut material = with_lobes(material);
@@ -280,6 +305,10 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
                 lacquer(),
             ],
         ),
+        ("lobes-patina", vec![covered(patina())]),
+        ("lobes-patina-base", vec![covered_paint(0.3)]),
+        ("lobes-patina-mixed", vec![house(), covered_paint(0.0), covered(patina()), with_axes(coated_brushed())]),
+        ("lobes-patina-chains", vec![covered(patina()), named("grown", patina()), with_lobes(house())]),
         ("lobes-inward", vec![with_lobes(material("inward", &[inward(), diffuse(0.0)]))]),
         ("everything", vec![lacquer(), house(), gold(), oil(), material("clay", &[diffuse(0.3)])]),
     ]

@@ -92,7 +92,7 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
     let inputs = &options.inputs;
     let files = std::iter::once(&options.file).chain(&inputs.other);
     let mut materials = valid(files.map(|file| read_one(file)).collect::<Result<_, _>>()?, false)?;
-    let (shown, dropped) = inputs.shown(&materials[0].effects, known.as_ref());
+    let (shown, dropped) = inputs.shown(&materials[0], known.as_ref());
     inputs.check(known.as_ref(), &shown, options.environment)?;
     let mut model = inputs.give(known);
 

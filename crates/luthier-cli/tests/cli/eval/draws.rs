@@ -25,7 +25,7 @@ const MATERIALS: [&str; 8] = [
     "polished-gold",
 ];
 /// Of these, those of which simulations are fitted.
-pub(super) const FITTED: [&str; 3] = ["car-paint", "red-lacquer", "varnished-brass"];
+pub(super) const FITTED: [&str; 4] = ["car-paint", "red-lacquer", "varnished-brass", "copper-patina"];
 
 /// Angles of the eye, degrees.
 const EYES: [f64; 3] = [0.0, 40.0, 75.0];

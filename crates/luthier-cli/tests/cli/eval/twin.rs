@@ -16,6 +16,8 @@ use crate::workshop::Workshop;
 
 /// Largest difference between the device and `eval`, relative to the larger of the value and a tenth of a white Lambert surface's BRDF.
 const TOLERANCE: f64 = 1e-4;
+/// That of rows of lobes as half floats, linear between nodes of other sums.
+const ROWS: f64 = 2e-3;
 const FLOOR: f64 = 0.1 * std::f64::consts::FRAC_1_PI;
 
 /// The models whose `full` form is `eval`'s at three wavelengths. That of `belcour` and `yamaguchi` takes facets as level, and nothing
@@ -57,16 +59,17 @@ pub(super) fn shipped(model: &str) -> Vec<Material> {
     paths.iter().map(material).collect()
 }
 
-/// The `full` form of some materials with another body of `luthier_eval`, if there is one, over the emitted functions.
+/// The form `full` of some materials, or that of lobes, with another body of `luthier_eval`, if there is one, over the emitted functions.
 fn scene(gpu: &Gpu, materials: &[Material], body: Option<&str>) -> luthier_gpu::Scene {
-    let bake = Bake { refuses: false, ..Bake::wgsl(&[Form::Full]) };
+    let form = if materials.iter().all(|material| material.model().has(Form::Full)) { Form::Full } else { Form::Baked };
+    let bake = Bake { refuses: false, ..Bake::wgsl(&[form]) };
     let mut package = Package::new(materials, &bake, &MemoryStore::default()).unwrap();
     if let Some(body) = body {
-        let wgsl = package.wgsl(Form::Full).unwrap().replace("fn luthier_eval(", "fn emitted_eval(")
+        let wgsl = package.wgsl(form).unwrap().replace("fn luthier_eval(", "fn emitted_eval(")
             + &format!("\nfn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n{body}\n}}\n");
-        package.shaders = vec![Shader::wgsl(Form::Full, wgsl)];
+        package.shaders = vec![Shader::wgsl(form, wgsl)];
     }
-    gpu.scene(&package, Form::Full).unwrap()
+    gpu.scene(&package, form).unwrap()
 }
 
 fn unit(z: f64, phi: f64) -> DVec3 {
@@ -153,10 +156,10 @@ fn effects_of_the_file_are_those_of_the_shader() {
         .iter()
         .map(|&[a, b, c, d]| (direction(a, b).as_vec3().to_array(), direction(c, d).as_vec3().to_array()))
         .collect();
-    for model in ["elek", "weidlich-wilkie"] {
+    for (model, tolerance) in [("elek", TOLERANCE), ("weidlich-wilkie", TOLERANCE), ("lobes", ROWS)] {
         for material in shipped(model) {
             let effects = &material.effects;
-            let (flakes, patina) = (effects.flakes.is_some(), effects.patina.is_some());
+            let (flakes, patina) = (effects.flakes.is_some() && model != "lobes", effects.patina.is_some());
             // What the device makes of the place, and how the command is told: the middle of a cell of flakes; a value of the map.
             let uv = "0.00132,0.00223";
             let (make, more): (&str, &[&str]) = match (flakes, patina) {
@@ -189,7 +192,7 @@ fn effects_of_the_file_are_those_of_the_shader() {
             let worst = found.iter().zip(&with).map(|(f, e)| error(*f, *e)).fold(0.0, f64::max);
             let ignored = found.iter().zip(&without).map(|(f, e)| error(*f, *e)).fold(0.0, f64::max);
             eprintln!("{model}, {}: {worst:.1e}; without effects {ignored:.1e}", material.name);
-            assert!(worst < TOLERANCE && ignored > 100.0 * TOLERANCE, "{model}, {}: {worst} {ignored}", material.name);
+            assert!(worst < tolerance && ignored > 0.1, "{model}, {}: {worst} {ignored}", material.name);
         }
     }
 }

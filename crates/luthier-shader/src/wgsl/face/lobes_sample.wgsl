@@ -3,6 +3,9 @@ fn luthier_chances_lobes(prepared: LuthierPreparedLobes) -> vec4<f32> {
     let third = vec3<f32>(1.0 / 3.0);
     let wide = dot(prepared.wide, third);
     var rest = dot(luthier_albedo_lobes(prepared), third) - wide;
+    //? lobes_patina
+    rest -= luthier_bare_energy(prepared);
+    //? end
     // A material that reflects nothing has a remainder without light.
     let least = vec4<f32>(0.0, 0.0, 0.0, 1e-6);
     //? one_lobe|two_lobes
@@ -162,19 +165,36 @@ fn luthier_density_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> f32 {
     //? two_lobes
     density += chances.z * luthier_lobe_density(prepared, prepared.second_shape, wi);
     //? end
+    //? lobes_patina
+    let bare = luthier_bare_energy(prepared);
+    density += bare * luthier_facet_density(luthier_bare_lobes(prepared), wi);
+    return density / (dot(chances, vec4<f32>(1.0)) + bare);
+    //? else
     return density / dot(chances, vec4<f32>(1.0));
+    //? end
 }
 
-/// Direction and part of a draw, without its density and weight: 0 the first facet, 1 and 2 the lobes, 3 the wide remainder.
+/// Direction and part of a draw, without its density and weight: 0 the first facet, that of a bare layer too, 1 and 2 the lobes, 3 the wide remainder.
 fn luthier_draw_lobes(prepared: LuthierPreparedLobes, u: vec3<f32>) -> LuthierSample {
     let chances = luthier_chances_lobes(prepared);
+    //? lobes_patina
+    let total = dot(chances, vec4<f32>(1.0));
+    let choice = u.x * (total + luthier_bare_energy(prepared));
+    //? else
     let choice = u.x * dot(chances, vec4<f32>(1.0));
+    //? end
     let phi = 2.0 * LUTHIER_PI * u.z;
     var drawn = LuthierSample(vec3<f32>(sqrt(u.y) * vec2<f32>(cos(phi), sin(phi)), sqrt(1.0 - u.y)), 0.0, vec3<f32>(0.0), 3u);
     if choice < chances.x {
         drawn.wi = luthier_draw_facet(prepared, u.yz);
         drawn.part = 0u;
     }
+    //? lobes_patina
+    if choice > total {
+        drawn.wi = luthier_draw_facet(luthier_bare_lobes(prepared), u.yz);
+        drawn.part = 0u;
+    }
+    //? end
     //? one_lobe|two_lobes
     let first = chances.x + chances.y;
     if choice >= chances.x && choice < first {

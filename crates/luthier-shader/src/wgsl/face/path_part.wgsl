@@ -5,7 +5,7 @@ fn luthier_path_part(
 ) -> LuthierPart {
     var part = luthier_no_part();
     let index = eta * inner_eta;
-    //? patina
+    //? chain_patina
     let fresnel = layer.tarnish * luthier_fresnel_term(layer, min(path.wo_local.z, 1.0));
     //? else
     let fresnel = luthier_fresnel_term(layer, min(path.wo_local.z, 1.0));

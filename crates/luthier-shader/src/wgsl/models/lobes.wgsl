@@ -70,6 +70,17 @@ struct LuthierPreparedLobes {
     /// The part of it by which a base of another colour is brighter, RGB.
     painted: vec3<f32>,
     //? end
+    //? lobes_patina
+    /// Share of the surface that the first interface covers.
+    cover: f32,
+    /// The layer that is bare elsewhere, and 1 + Lambda of the eye there.
+    bare: LuthierLayer,
+    bare_masking: f32,
+    //? lobes_bare_base
+    /// Energy of the remainder that a bare diffuse base has, RGB.
+    base: vec3<f32>,
+    //? end
+    //? end
     //? one_lobe|two_lobes
     /// Energy of the first lobe over its share above the horizon, RGB.
     first_strength: vec3<f32>,
@@ -245,7 +256,16 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     //? else
     let away = 1.0 - sqrt(saturate(vec2<f32>(place.alpha_factor, place.slab_factor)));
     //? end
+    //? lobes_patina
+    // Of the last two tiles one is that of patina grown whole, and the other that of bare layers.
+    let bare_tile = luthier_materials[header + $word_patina_tarnish].w;
+    let is_grown = bare_tile > 0.0 && place.patina >= 0.0;
+    let cover = select(1.0, saturate(place.patina), is_grown);
+    let nominal_tile = luthier_materials[header].w + min(away.x * (over.x + 1.0), over.x) + away.y * over.y;
+    let first_tile = nominal_tile + select(0.0, bare_tile - cover, is_grown);
+    //? else
     let first_tile = luthier_materials[header].w + min(away.x * (over.x + 1.0), over.x) + away.y * over.y;
+    //? end
     let spread = max(place.alpha_factor, over.z);
     //? else
     let first_tile = luthier_materials[header].w;
@@ -262,6 +282,16 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     prepared.masking = 1.0 + luthier_slope_lambda(prepared.coat, luthier_coat_slope(prepared.coat, wo));
     //? else
     prepared.masking = 1.0 + luthier_slope_lambda(prepared.coat, prepared.coat.alpha * sin_theta / wo.z);
+    //? end
+    //? lobes_patina
+    prepared.cover = cover;
+    var bare_place = place;
+    bare_place.patina = -1.0;
+    //? base_color
+    bare_place.base_color = vec3<f32>(-1.0);
+    //? end
+    prepared.bare = luthier_layer_at(bare_place, material, select(0u, luthier_layer_count(material), is_grown));
+    prepared.bare_masking = 1.0 + luthier_slope_lambda(prepared.bare, luthier_coat_slope(prepared.bare, wo));
     //? end
     //? lobes_axes
     let axes = luthier_materials[header + $word_glitter_tilt];
@@ -297,11 +327,19 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     //? lobes_base
     // The base has its light times R / (1 - r R), r being what the layers send back.
     let mirrored = max(1.0 - luthier_materials[header + $word_patina_tarnish].xyz * place.base_color, vec3<f32>(1e-3));
-    let painted = luthier_materials[header + $word_patina_diffuse_albedo].xyz * place.base_color / mirrored - luthier_materials[header + $word_patina].xyz;
-    prepared.painted = select(vec3<f32>(0.0), max(painted, vec3<f32>(-1.0)) * wide.rgb, place.base_color.x >= 0.0);
+    let of_base = luthier_materials[header + $word_patina];
+    let painted = luthier_materials[header + $word_patina_diffuse_albedo].xyz * place.base_color / mirrored - of_base.xyz;
+    // Under patina these words are patina's.
+    let is_painted = place.base_color.x >= 0.0 && of_base.w < 0.5;
+    prepared.painted = select(vec3<f32>(0.0), max(painted, vec3<f32>(-1.0)) * wide.rgb, is_painted);
     prepared.wide = wide.rgb + prepared.painted;
     //? else
     prepared.wide = wide.rgb;
+    //? end
+    //? lobes_bare_base
+    let is_base = is_grown && prepared.bare.kind == LUTHIER_DIFFUSE;
+    let base = (1.0 - cover) * luthier_lookup_lobes(nominal_tile + bare_tile, cos_theta, 0.0).rgb;
+    prepared.base = select(vec3<f32>(0.0), base, is_base);
     //? end
     //? one_lobe|two_lobes
     //? surface
@@ -380,6 +418,35 @@ fn luthier_place_below(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
 }
 //? end
 
+//? lobes_patina
+/// f cos_theta_i of the layer that is bare where no patina has grown, without lobes; `sum` is that of the directions.
+fn luthier_light_bare(prepared: LuthierPreparedLobes, wi: vec3<f32>, sum: vec3<f32>, cos_theta_d: f32) -> vec3<f32> {
+    let layer = prepared.bare;
+    //? lobes_bare_base
+    if layer.kind == LUTHIER_DIFFUSE {
+        return wi.z * $diffuse(layer, wi, prepared.wo);
+    }
+    //? end
+    let masking = prepared.bare_masking + luthier_slope_lambda(layer, luthier_coat_slope(layer, wi));
+    let facets = luthier_quarter_density(layer, sum) / (masking * prepared.wo.z);
+    return luthier_fresnel_term(layer, cos_theta_d) * facets;
+}
+
+/// The material with the facets of the bare layer in place of those of the first interface.
+fn luthier_bare_lobes(prepared: LuthierPreparedLobes) -> LuthierPreparedLobes {
+    var bare = prepared;
+    bare.coat = prepared.bare;
+    bare.masking = prepared.bare_masking;
+    return bare;
+}
+
+/// Energy that the facets of the bare layer send to the eye, the mean of the channels: rows of isotropic stacks have it beside the albedo.
+fn luthier_bare_energy(prepared: LuthierPreparedLobes) -> f32 {
+    let energy = luthier_lookup_lobes(prepared.row.x, prepared.row.y, LUTHIER_LOBES_ALBEDO).a;
+    return select(0.0, max(energy, 0.0), prepared.cover < 1.0);
+}
+
+//? end
 /// f cos_theta_i of a prepared material for light from wi, above the horizon.
 fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f32> {
     let wo = prepared.wo;
@@ -389,6 +456,9 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     let facets = luthier_quarter_density(prepared.coat, sum) / (masking * wo.z);
     let cos_theta_d = min(0.5 * length(sum), 1.0);
     var value = luthier_fresnel_term(prepared.coat, cos_theta_d) * facets;
+    //? lobes_patina
+    value = mix(luthier_light_bare(prepared, wi, sum, cos_theta_d), value, prepared.cover);
+    //? end
     let medium = prepared.medium;
     // The wide remainder.
     //? critical_view
@@ -398,7 +468,11 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     //? end
     let away_sq = away * away;
     let wide = max(1.0 - medium.y * (away_sq * away_sq * away) - medium.z * away_sq, 0.0);
+    //? lobes_bare_base
+    value += (prepared.wide - prepared.base) * (wide * wi.z * medium.w);
+    //? else
     value += prepared.wide * (wide * wi.z * medium.w);
+    //? end
     //? one_lobe|two_lobes
     let place = luthier_place_below(prepared, wi);
     value += prepared.first_strength * (luthier_half_slope_density(prepared.first_shape, place.xy) * place.z);

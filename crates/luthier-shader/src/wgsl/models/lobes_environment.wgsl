@@ -238,23 +238,8 @@ fn luthier_shown_mean(lobe: LuthierShownLobe, prepared: LuthierPreparedLobes, fr
     return shown.light / shown.weight;
 }
 
-/// Radiance that a prepared material sends to the eye from a prefiltered environment. The columns of the frame are tangent, bitangent and normal in
-/// the world of the environment. A turn in 0..1 moves the directions: samples of a pixel with turns of their own see more of them.
-fn luthier_environment_lobes(prepared: LuthierPreparedLobes, frame: mat3x3<f32>, turn: f32) -> vec3<f32> {
-    let angle = 2.0 * LUTHIER_PI * turn;
-    let turned = vec2<f32>(cos(angle), sin(angle));
-    var rest = luthier_albedo_lobes(prepared) - prepared.wide;
-    var total = prepared.wide * luthier_environment_diffuse(frame[2]);
-    //? one_lobe|two_lobes
-    let first = luthier_lobe_below(prepared, 0u);
-    rest -= first.energy;
-    total += first.energy * luthier_shown_mean(luthier_shown_below(prepared, first.shape, turned), prepared, frame);
-    //? end
-    //? two_lobes
-    let second = luthier_lobe_below(prepared, 1u);
-    rest -= second.energy;
-    total += second.energy * luthier_shown_mean(luthier_shown_below(prepared, second.shape, turned), prepared, frame);
-    //? end
+/// Mean radiance in the facets of the first interface.
+fn luthier_shown_coat(prepared: LuthierPreparedLobes, frame: mat3x3<f32>, turn: vec2<f32>) -> vec3<f32> {
     //? beckmann
     //? ggx
     let tail = 0.001 + 0.998 * prepared.coat.distribution;
@@ -276,7 +261,34 @@ fn luthier_environment_lobes(prepared: LuthierPreparedLobes, frame: mat3x3<f32>,
     //? else
     let width = vec2<f32>(prepared.coat.alpha);
     //? end
-    var coat = luthier_shown_lobe(prepared, 0.0, vec2<f32>(0.0), width, tail, turned);
+    var coat = luthier_shown_lobe(prepared, 0.0, vec2<f32>(0.0), width, tail, turn);
     coat.is_coat = true;
-    return total + max(rest, vec3<f32>(0.0)) * luthier_shown_mean(coat, prepared, frame);
+    return luthier_shown_mean(coat, prepared, frame);
+}
+
+/// Radiance that a prepared material sends to the eye from a prefiltered environment. The columns of the frame are tangent, bitangent and normal in
+/// the world of the environment. A turn in 0..1 moves the directions: samples of a pixel with turns of their own see more of them.
+fn luthier_environment_lobes(prepared: LuthierPreparedLobes, frame: mat3x3<f32>, turn: f32) -> vec3<f32> {
+    let angle = 2.0 * LUTHIER_PI * turn;
+    let turned = vec2<f32>(cos(angle), sin(angle));
+    var rest = luthier_albedo_lobes(prepared) - prepared.wide;
+    var total = prepared.wide * luthier_environment_diffuse(frame[2]);
+    //? one_lobe|two_lobes
+    let first = luthier_lobe_below(prepared, 0u);
+    rest -= first.energy;
+    total += first.energy * luthier_shown_mean(luthier_shown_below(prepared, first.shape, turned), prepared, frame);
+    //? end
+    //? two_lobes
+    let second = luthier_lobe_below(prepared, 1u);
+    rest -= second.energy;
+    total += second.energy * luthier_shown_mean(luthier_shown_below(prepared, second.shape, turned), prepared, frame);
+    //? end
+    //? lobes_patina
+    // The bare layer has the colour of its reflectance in the mirrored direction.
+    let tint = luthier_fresnel_term(prepared.bare, min(prepared.wo.z, 1.0));
+    let bare = tint * (luthier_bare_energy(prepared) / max(dot(tint, vec3<f32>(1.0 / 3.0)), 1e-6));
+    rest -= bare;
+    total += bare * luthier_shown_coat(luthier_bare_lobes(prepared), frame, turned);
+    //? end
+    return total + max(rest, vec3<f32>(0.0)) * luthier_shown_coat(prepared, frame, turned);
 }

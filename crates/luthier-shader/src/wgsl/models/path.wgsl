@@ -45,7 +45,7 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
     let secant_d = 2.0 * inverseSqrt(length_sq);
     let cos_theta_d = min(0.25 * length_sq * secant_d, 1.0);
-    //? patina
+    //? chain_patina
     let fresnel = layer.tarnish * luthier_fresnel_term(layer, cos_theta_d);
     //? else
     let fresnel = luthier_fresnel_term(layer, cos_theta_d);

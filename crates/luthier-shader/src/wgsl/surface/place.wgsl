@@ -73,7 +73,7 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
         layer.lambert = place.base_color / LUTHIER_PI;
     }
     //? end
-    //? patina
+    //? chain_patina
     if place.patina >= 0.0 && index > 0u {
         let count = luthier_layer_count(material);
         let base_alpha = luthier_materials[luthier_header(material) + $word_patina].z;
