@@ -237,7 +237,7 @@ pub(crate) struct AnisotropicOptions {
 pub(crate) struct EnvironmentOptions {
     #[command(flatten)]
     pub(crate) sources: Sources,
-    /// Pixels along a side of the picture of a ball whose pixels are compared
+    /// Places along a side of a grid over the picture of a ball
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(4..=64))]
     pub(crate) size: u32,
     /// Rows of the maps

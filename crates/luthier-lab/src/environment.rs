@@ -7,8 +7,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use luthier_environment::{Environment, Scenery};
 use luthier_export::{Package, lit, read};
-use luthier_gpu::{Gpu, RenderSettings, Scene, Shape};
-use luthier_lut::Image;
+use luthier_gpu::{Camera, Gpu, RenderSettings, Scene, Shape};
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::Material;
 use luthier_terminal::{Bar, Failure, Outcome, deliver, open, valid};
@@ -17,6 +16,9 @@ use crate::cli::EnvironmentOptions;
 
 /// Models whose pictures stand beside those of lobes.
 const PAPERS: [ShadingModel; 2] = [ShadingModel::Elek, ShadingModel::Belcour];
+
+/// Half the side of what a pixel sees: one place.
+const HALF_EXTENT: f32 = 1e-4;
 
 /// Compares pictures of materials.
 pub(crate) fn run(options: &EnvironmentOptions) -> Outcome {
@@ -32,23 +34,25 @@ pub(crate) fn run(options: &EnvironmentOptions) -> Outcome {
     let bar = Bar::new("materials");
     let mut rows = Vec::new();
     for (i, material) in materials.iter().enumerate() {
-        let lobes = Pictures::new(&gpu, material, ShadingModel::Lobes, options.size, &points, &skies, &texels)?;
+        let lobes = Pictures::new(&gpu, material, ShadingModel::Lobes, &points, &skies, &texels)?;
         let papers: Vec<Pictures> = PAPERS
             .iter()
-            .map(|model| Pictures::new(&gpu, material, *model, options.size, &points, &skies, &texels))
+            .map(|model| Pictures::new(&gpu, material, *model, &points, &skies, &texels))
             .collect::<Outcome<_>>()?;
         for (sky, scenery) in Scenery::ALL.into_iter().enumerate() {
             let truth = &lobes.summed[sky];
             let mut row = format!(
-                "| {} | {:.3} | {} | {:.3} | {:.4} |",
+                "| {} | {:.3} | {} | {:.3} | {:.4} | {:.4} |",
                 material.name,
                 lobes.alpha,
                 scenery.name(),
                 mean(truth),
-                error(&lobes.shown[sky], truth)
+                error(&lobes.shown[sky].of_all, truth),
+                error(&lobes.shown[sky].of_one, truth)
             );
             for paper in &papers {
-                let (own, lobes) = (error(&paper.shown[sky], &paper.summed[sky]), error(&paper.shown[sky], truth));
+                let shown = &paper.shown[sky].of_all;
+                let (own, lobes) = (error(shown, &paper.summed[sky]), error(shown, truth));
                 let _ = write!(row, " {own:.3} | {lobes:.3} |");
             }
             rows.push(row);
@@ -59,14 +63,13 @@ pub(crate) fn run(options: &EnvironmentOptions) -> Outcome {
     deliver(&page(&rows, points.len(), options), options.destination.output.as_deref())
 }
 
-/// A place on the ball: pixel, normal, direction to the eye.
+/// A place on the ball: normal, direction to the eye.
 struct Point {
-    pixel: [u32; 2],
     normal: DVec3,
     wo: DVec3,
 }
 
-/// The places under the middles of the pixels of a picture, as the renderer meets them.
+/// Places under the middles of the pixels of a picture with so many along a side.
 fn points(size: u32) -> Vec<Point> {
     let camera = Shape::Sphere.camera();
     let (eye, half) = (f64::from(camera.eye[2]), f64::from(camera.half_extent));
@@ -79,7 +82,7 @@ fn points(size: u32) -> Vec<Point> {
         // Away from the silhouette, where f32 and f64 may disagree on a hit.
         if discriminant > 1e-3 {
             let t = -b - discriminant.sqrt();
-            points.push(Point { pixel: [x, y], normal: t * ray + eye * DVec3::Z, wo: -ray });
+            points.push(Point { normal: t * ray + eye * DVec3::Z, wo: -ray });
         }
     }
     points
@@ -107,10 +110,16 @@ fn texels(skies: &[Arc<Environment>]) -> Vec<Texel> {
     texels
 }
 
-/// Radiance of all places under each sky: as a picture shows it, and as a sum over all texels.
+/// Radiance of all places in pictures: with the samples of a pixel that pictures have by default, and with one.
+struct Shown {
+    of_all: Vec<[f64; 3]>,
+    of_one: Vec<[f64; 3]>,
+}
+
+/// Radiance of all places under each sky: as pictures show it, and as a sum over all texels.
 struct Pictures {
     alpha: f64,
-    shown: Vec<Vec<[f64; 3]>>,
+    shown: Vec<Shown>,
     summed: Vec<Vec<[f64; 3]>>,
 }
 
@@ -119,7 +128,6 @@ impl Pictures {
         gpu: &Gpu,
         material: &Material,
         model: ShadingModel,
-        size: u32,
         points: &[Point],
         skies: &[Arc<Environment>],
         texels: &[Texel],
@@ -131,15 +139,19 @@ impl Pictures {
         let mut shown = Vec::new();
         for sky in skies {
             let environment = Arc::clone(sky);
-            let settings = RenderSettings {
-                size,
-                samples: 1,
-                lights: Vec::new(),
-                environment,
-                ..RenderSettings::new(Shape::Sphere)?
+            let settings =
+                RenderSettings { size: 1, lights: Vec::new(), environment, ..RenderSettings::new(Shape::Sphere)? };
+            let places = |samples: u32| -> Outcome<Vec<[f64; 3]>> {
+                let place = |point: &Point| {
+                    let target = point.normal.as_vec3().to_array();
+                    let camera = Camera { target, half_extent: HALF_EXTENT, ..settings.camera };
+                    let image = scene.render(&[0], &RenderSettings { camera, samples, ..settings.clone() })?;
+                    Ok([0, 1, 2].map(|c| f64::from(image.texel(0, 0)[c])))
+                };
+                points.iter().map(place).collect()
             };
-            let image = scene.render(&[0], &settings)?;
-            shown.push(points.iter().map(|point| texel(&image, point.pixel)).collect());
+            let of_one = places(1)?;
+            shown.push(Shown { of_all: places(settings.samples)?, of_one });
         }
         let mut summed = vec![Vec::new(); skies.len()];
         for point in points {
@@ -168,11 +180,6 @@ fn sums(scene: &Scene, point: &Point, texels: &[Texel], skies: usize) -> Outcome
     Ok(sums)
 }
 
-fn texel(image: &Image, [x, y]: [u32; 2]) -> [f64; 3] {
-    let texel = image.texel(x, y);
-    [0, 1, 2].map(|c| f64::from(texel[c]))
-}
-
 fn mean(values: &[[f64; 3]]) -> f64 {
     values.iter().flatten().sum::<f64>() / (3 * values.len()) as f64
 }
@@ -194,11 +201,11 @@ fn page(rows: &[String], points: usize, options: &EnvironmentOptions) -> String 
     );
     page.push_str(INTRODUCTION);
     let _ = writeln!(page, "Places: {points}.\n");
-    let mut head = "| material | alpha | sky | mean | lobes |".to_owned();
+    let mut head = "| material | alpha | sky | mean | lobes | lobes, one sample |".to_owned();
     for model in PAPERS {
         let _ = write!(head, " {0}, own sum | {0}, sum of lobes |", model.name());
     }
-    let _ = writeln!(page, "{head}\n|---|--:|---|--:|--:|{}", "--:|--:|".repeat(PAPERS.len()));
+    let _ = writeln!(page, "{head}\n|---|--:|---|--:|--:|--:|{}", "--:|--:|".repeat(PAPERS.len()));
     for row in rows {
         let _ = writeln!(page, "{row}");
     }
@@ -211,7 +218,8 @@ map, each through `luthier_eval`. Sums have no noise. Skies are those of `luthie
 
 Figures are roots of the mean squared difference over all places and channels, over the mean of the sum. `lobes` is the model `lobes` against its own
 sum. Of other models the first figure is against their own sum, and the second against that of lobes, which the simulation of the stack made: what a
-picture of that model is off in all. `alpha` is the slope parameter of the first interface. Pictures have one sample a pixel, the fewest directions
-that the look-up takes. Sums resolve no lobes narrower than a texel of the map, so that smooth materials are not here.
+picture of that model is off in all. `alpha` is the slope parameter of the first interface. Pictures have as many samples of a pixel as those of `luthier preview`
+by default, 16, each of which turns the directions of the look-up. With one sample there are no directions but those of a call of `luthier_environment`.
+Sums resolve no lobes narrower than a texel of the map, so that smooth materials are not here.
 
 ";
