@@ -1,5 +1,7 @@
 //! Cubes: six square faces around a direction, in the order and orientation that graphics interfaces and KTX2 give to cube maps.
 
+use std::f64::consts::PI;
+
 use luthier_lut::Image;
 
 use crate::vector::unit;
@@ -114,6 +116,11 @@ impl Cube {
     /// Texels along a side.
     pub(crate) fn size(&self) -> u32 {
         self.size
+    }
+
+    /// Side of a square as large as the mean texel, radians: those in the middle of a face have 2 over the size, those in its corners half of that.
+    pub(crate) fn texel(&self) -> f64 {
+        (4.0 * PI / 6.0).sqrt() / f64::from(self.size)
     }
 }
 

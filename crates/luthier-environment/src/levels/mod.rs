@@ -123,9 +123,9 @@ impl Environment {
             let images = if k == 0 {
                 layout.images(size, |direction| self.radiance(direction))
             } else {
-                let kernel = Kernel::new(width, layout.texel(size));
-                let sources: Vec<&Cube> = kernel.sides().map(|side| nearest(sources, side)).collect();
-                layout.images(size, |middle| kernel.mean(middle, |direction, i| sources[i].read(direction)))
+                let source = nearest(sources, Kernel::side(width));
+                let kernel = Kernel::new(width, layout.texel(size), source.texel());
+                layout.images(size, |middle| kernel.mean(middle, |direction| source.read(direction)))
             };
             Level { width, images }
         };

@@ -40,7 +40,7 @@ fn an_even_map_stays_even() {
 }
 
 /// A soft light is a lobe of the same kind: blurred, its mean cosine is the product of both (Mardia and Jupp 2000, section 9.3), with what
-/// texels blur when they are read. Measured: 0.034 at most up to a width of 1/4, 0.086 at 1/2, of which the width is half.
+/// texels blur when they are read. Measured: 0.065 at most.
 #[test]
 fn a_light_has_the_second_moment_of_the_blur() {
     let centre = unit([0.3, 0.5, -1.0]);
@@ -63,7 +63,7 @@ fn a_light_has_the_second_moment_of_the_blur() {
             let expected = mean_cosine(1.0 / variance) * mean_cosine(sharpness);
             let error = (1.0 - cosines / sum) / (1.0 - expected) - 1.0;
             eprintln!("{layout:?}, width {:.4}: second moment off by {error:.4}", level.width);
-            assert!(error.abs() < 0.1, "{layout:?} {}: {error}", level.width);
+            assert!(error.abs() < 0.075, "{layout:?} {}: {error}", level.width);
         }
     }
 }

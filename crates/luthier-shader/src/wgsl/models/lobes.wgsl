@@ -447,6 +447,17 @@ fn luthier_bare_energy(prepared: LuthierPreparedLobes) -> f32 {
 }
 
 //? end
+/// Shape of the remainder: its radiance towards a cosine, over that along the normal.
+fn luthier_wide_shape(prepared: LuthierPreparedLobes, cos_theta: f32) -> f32 {
+    //? critical_view
+    let away = 1.0 - luthier_inside_cosine(prepared.inside, cos_theta);
+    //? else
+    let away = 1.0 - cos_theta;
+    //? end
+    let away_sq = away * away;
+    return max(1.0 - prepared.medium.y * (away_sq * away_sq * away) - prepared.medium.z * away_sq, 0.0);
+}
+
 /// f cos_theta_i of a prepared material for light from wi, above the horizon.
 fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f32> {
     let wo = prepared.wo;
@@ -459,19 +470,11 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     //? lobes_patina
     value = mix(luthier_light_bare(prepared, wi, sum, cos_theta_d), value, prepared.cover);
     //? end
-    let medium = prepared.medium;
-    // The wide remainder.
-    //? critical_view
-    let away = 1.0 - luthier_inside_cosine(prepared.inside, wi.z);
-    //? else
-    let away = 1.0 - wi.z;
-    //? end
-    let away_sq = away * away;
-    let wide = max(1.0 - medium.y * (away_sq * away_sq * away) - medium.z * away_sq, 0.0);
+    let wide = luthier_wide_shape(prepared, wi.z) * wi.z * prepared.medium.w;
     //? lobes_bare_base
-    value += (prepared.wide - prepared.base) * (wide * wi.z * medium.w);
+    value += (prepared.wide - prepared.base) * wide;
     //? else
-    value += prepared.wide * (wide * wi.z * medium.w);
+    value += prepared.wide * wide;
     //? end
     //? one_lobe|two_lobes
     let place = luthier_place_below(prepared, wi);

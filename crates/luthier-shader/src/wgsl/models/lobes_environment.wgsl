@@ -60,22 +60,26 @@ fn luthier_shown_stretch(up_z: f32, cos_theta_i: f32, cos_theta_d: f32, cos_thet
     return 2.0 * cos_theta_h * vec2<f32>(cos_theta_h * max(up_z, 0.0) / max(cos_theta_i, 0.02), max(cos_theta_d, 1e-3));
 }
 
-/// Standard deviation of the blur of a direction over the widths of its lobe, of which it has a thirty-second part: with less the directions
-/// are seen one by one in small bright lights.
-const LUTHIER_TAP_BLUR: f32 = 0.1880;
+/// Standard deviation of the blur of a direction over the widths of its lobe, for Beckmann's distribution: with less the directions are seen one by one in
+/// small bright lights. Gaussians about the points of a Gaussian are one; lobes with longer tails want narrower ones in the middle, and wider ones the farther
+/// out they are.
+const LUTHIER_TAP_BLUR: f32 = 0.3;
 
 /// Standard deviation of the blur of a direction of a lobe, an angle: not wider than the lobe where it is narrow.
 fn luthier_shown_blur(lobe: LuthierShownLobe, stretch: vec2<f32>) -> f32 {
+    let tail = min(lobe.tail, 1.0);
+    let share = LUTHIER_TAP_BLUR - 0.08 * tail;
+    let narrowest = 0.70711 - 0.4 * tail;
     //? lobes_axes
     let angle_sq = lobe.width_sq * vec3<f32>(stretch * stretch, stretch.x * stretch.y);
     let mean = 0.5 * (angle_sq.x + angle_sq.y);
     let half_difference = 0.5 * (angle_sq.x - angle_sq.y);
     let narrow_sq = max(mean - sqrt(half_difference * half_difference + angle_sq.z * angle_sq.z), 1e-6 * mean);
     let area_sq = max(angle_sq.x * angle_sq.y - angle_sq.z * angle_sq.z, 0.0);
-    return min(LUTHIER_TAP_BLUR * sqrt(sqrt(area_sq)), 0.70711 * sqrt(narrow_sq));
+    return min(share * sqrt(sqrt(area_sq)), narrowest * sqrt(narrow_sq));
     //? else
     let angles = lobe.width * stretch;
-    return min(LUTHIER_TAP_BLUR * sqrt(angles.x * angles.y), 0.70711 * min(angles.x, angles.y));
+    return min(share * sqrt(angles.x * angles.y), narrowest * min(angles.x, angles.y));
     //? end
 }
 
@@ -177,7 +181,7 @@ fn luthier_shown_tap(shown: LuthierShown, lobe: LuthierShownLobe, prepared: Luth
     let cos_theta_i = max(above, 1e-2);
     let across = up.xy * min(inverseSqrt(max(sin_sq, 1e-12)), 1.0);
     let blur = luthier_shown_blur(lobe, luthier_shown_stretch(up.z, cos_theta_i, cos_theta_d, wh.z));
-    let width = min(blur * exp2(-0.5 * (1.0 + lobe.tail) * fall), 1.4);
+    let width = min(blur * exp2(-0.56 * lobe.tail * fall), 1.4);
     var weight = vec3<f32>(saturate(0.5 + 0.5 * above / max(width, 0.014)));
     //? lobes_axes
     let azimuth = lobe.azimuth;
@@ -266,13 +270,51 @@ fn luthier_shown_coat(prepared: LuthierPreparedLobes, frame: mat3x3<f32>, turn: 
     return luthier_shown_mean(coat, prepared, frame);
 }
 
+/// Standard deviation of the blur of a direction of the remainder, an angle.
+const LUTHIER_WIDE_BLUR: f32 = 0.2;
+
+/// Light that was read in some directions of the remainder: in its shape, and in that of a cosine.
+struct LuthierShownWide {
+    shaped: vec3<f32>,
+    plain: vec3<f32>,
+    weight: f32,
+}
+
+/// Light so far and that of one more direction of a cosine about the normal.
+fn luthier_shown_wide_tap(shown: LuthierShownWide, prepared: LuthierPreparedLobes, frame: mat3x3<f32>, turn: vec2<f32>, wi: vec3<f32>) -> LuthierShownWide {
+    let turned = vec3<f32>(turn.x * wi.x - turn.y * wi.y, turn.y * wi.x + turn.x * wi.y, wi.z);
+    let light = luthier_environment_around(frame * turned, LUTHIER_WIDE_BLUR);
+    let shape = luthier_wide_shape(prepared, wi.z);
+    return LuthierShownWide(shown.shaped + shape * light, shown.plain + light, shown.weight + shape);
+}
+
+/// Mean radiance in the remainder: the irradiance, and what its shape is brighter by in a few directions.
+fn luthier_shown_wide(prepared: LuthierPreparedLobes, frame: mat3x3<f32>, turn: vec2<f32>) -> vec3<f32> {
+    var shown = LuthierShownWide(vec3<f32>(0.0), vec3<f32>(0.0), 1e-6);
+    shown = luthier_shown_wide_tap(shown, prepared, frame, turn, vec3<f32>(0.968246, 0.000000, 0.250000));
+    shown = luthier_shown_wide_tap(shown, prepared, frame, turn, vec3<f32>(-0.664655, 0.608879, 0.433013));
+    shown = luthier_shown_wide_tap(shown, prepared, frame, turn, vec3<f32>(0.072490, -0.825981, 0.559017));
+    shown = luthier_shown_wide_tap(shown, prepared, frame, turn, vec3<f32>(0.456329, 0.595201, 0.661438));
+    shown = luthier_shown_wide_tap(shown, prepared, frame, turn, vec3<f32>(-0.651327, -0.115211, 0.750000));
+    shown = luthier_shown_wide_tap(shown, prepared, frame, turn, vec3<f32>(0.471674, -0.300040, 0.829156));
+    shown = luthier_shown_wide_tap(shown, prepared, frame, turn, vec3<f32>(-0.112412, 0.418167, 0.901388));
+    shown = luthier_shown_wide_tap(shown, prepared, frame, turn, vec3<f32>(-0.115227, -0.221862, 0.968246));
+    let brighter = shown.shaped / shown.weight - 0.125 * shown.plain;
+    return max(luthier_environment_diffuse(frame[2]) + brighter, vec3<f32>(0.0));
+}
+
 /// Radiance that a prepared material sends to the eye from a prefiltered environment. The columns of the frame are tangent, bitangent and normal in
 /// the world of the environment. A turn in 0..1 moves the directions: samples of a pixel with turns of their own see more of them.
 fn luthier_environment_lobes(prepared: LuthierPreparedLobes, frame: mat3x3<f32>, turn: f32) -> vec3<f32> {
     let angle = 2.0 * LUTHIER_PI * turn;
     let turned = vec2<f32>(cos(angle), sin(angle));
     var rest = luthier_albedo_lobes(prepared) - prepared.wide;
-    var total = prepared.wide * luthier_environment_diffuse(frame[2]);
+    //? lobes_bare_base
+    var total = prepared.base * luthier_environment_diffuse(frame[2]);
+    total += (prepared.wide - prepared.base) * luthier_shown_wide(prepared, frame, turned);
+    //? else
+    var total = prepared.wide * luthier_shown_wide(prepared, frame, turned);
+    //? end
     //? one_lobe|two_lobes
     let first = luthier_lobe_below(prepared, 0u);
     rest -= first.energy;
