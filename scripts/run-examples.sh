@@ -31,6 +31,11 @@ step "wgpu"
 materials=(car-paint soap-film granier-film yamaguchi-brushed copper-patina)
 for name in "${materials[@]}"; do example luthier-example-wgpu "$bake" "$(scene "$name")" "$out/wgpu-$name.png"; done
 
+step "wgpu, with surroundings"
+luthier environment --sky strip-studio --size 128 --layout cube --out "$out/studio"
+luthier bake materials/red-lacquer.toml --model lobes --functions environment --target wgsl --out "$out/lit" --quiet
+example luthier-example-wgpu "$out/lit" "$(scene red-lacquer)" "$out/wgpu-surroundings.png" "$out/studio"
+
 step "plain WebGL 2"
 for name in "${materials[@]}"; do
   node examples/browser.mjs examples/plain-webgl "$plain" "$(scene "$name")" "$out/plain-$name.png"

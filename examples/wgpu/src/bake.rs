@@ -18,16 +18,20 @@ pub struct Binding {
     pub number: u32,
     /// `luthier_` and, for a texture, the kind of its table.
     pub name: String,
-    /// `texture_2d<f32>`, `sampler` or `buffer`.
+    /// `texture_2d<f32>`, `texture_cube<f32>`, `sampler` or `buffer`.
     pub resource: String,
 }
 
-/// A table as it is uploaded.
+/// A texture as it is uploaded.
 pub struct Texels {
     pub width: u32,
     pub height: u32,
+    /// 1, or 6 of a cube.
+    pub faces: u32,
+    pub levels: u32,
     /// WebGPU's name: `rgba16float`.
     pub format: String,
+    /// Level by level, face by face.
     pub bytes: Vec<u8>,
 }
 
@@ -70,15 +74,30 @@ impl Bake {
         Ok(fs::read(self.folder.join(text(&self.manifest["material_buffer"]["path"])?))?)
     }
 
-    /// The texels of a table: one level, two dimensions, zstd.
+    /// The texels of a table: one level, two dimensions.
     pub fn table(&self, kind: &str) -> Result<Texels> {
         let found = self.entries("tables")?.iter().find(|table| table["kind"] == kind);
         let entry = found.with_context(|| format!("no table `{kind}` in the bake"))?;
-        let file = fs::read(self.folder.join(text(&entry["texture"]["path"])?))?;
-        let ktx2 = ktx2::Reader::new(file.as_slice())?;
-        let header = ktx2.header();
-        let level = ktx2.levels().next().context("a texture without a level")?;
-        let mut bytes = Vec::new();
+        texels(&self.folder.join(text(&entry["texture"]["path"])?), text(&entry["format"])?)
+    }
+
+    fn entries(&self, field: &str) -> Result<&[Value]> {
+        Ok(self.manifest[field].as_array().with_context(|| format!("no list `{field}` in the manifest"))?)
+    }
+}
+
+/// A cube of `luthier environment`: `environment` with its levels, or `irradiance`.
+pub fn cube(folder: &Path, content: &str) -> Result<Texels> {
+    texels(&folder.join(format!("{content}-cube.ktx2")), "rgba16float")
+}
+
+/// The texels of a file, of which each level may be compressed with zstd.
+fn texels(path: &Path, format: &str) -> Result<Texels> {
+    let file = fs::read(path).with_context(|| path.display().to_string())?;
+    let ktx2 = ktx2::Reader::new(file.as_slice())?;
+    let header = ktx2.header();
+    let mut bytes = Vec::new();
+    for level in ktx2.levels() {
         match header.supercompression_scheme {
             None => bytes.extend_from_slice(level.data),
             Some(ktx2::SupercompressionScheme::Zstandard) => {
@@ -86,17 +105,15 @@ impl Bake {
             }
             Some(other) => bail!("{other:?} supercompression"),
         }
-        Ok(Texels {
-            width: header.pixel_width,
-            height: header.pixel_height,
-            format: text(&entry["format"])?.to_owned(),
-            bytes,
-        })
     }
-
-    fn entries(&self, field: &str) -> Result<&[Value]> {
-        Ok(self.manifest[field].as_array().with_context(|| format!("no list `{field}` in the manifest"))?)
-    }
+    Ok(Texels {
+        width: header.pixel_width,
+        height: header.pixel_height,
+        faces: header.face_count,
+        levels: header.level_count.max(1),
+        format: format.to_owned(),
+        bytes,
+    })
 }
 
 fn text(value: &Value) -> Result<&str> {

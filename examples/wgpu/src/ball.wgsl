@@ -1,4 +1,4 @@
-// Follows the text of the bake: luthier_eval is declared there.
+// Follows the text of the bake, which declares luthier_eval, and surroundings.wgsl or no_surroundings.wgsl.
 
 struct Light {
     /// To the light, unit.
@@ -41,7 +41,7 @@ fn ball_fragment(in: Varying) -> @location(0) vec4<f32> {
 
     // A vector times a matrix is the transposed matrix times the vector: from the world into the frame.
     let wo = normalize(vec3<f32>(0.0, 0.0, scene.eye_distance) - in.position) * frame;
-    var radiance = vec3<f32>(0.0);
+    var radiance = ball_surroundings(scene.material, wo, frame);
     for (var i = 0u; i < scene.light_count; i++) {
         let wi = scene.lights[i].direction.xyz * frame;
         radiance += scene.lights[i].irradiance.rgb * luthier_eval(scene.material, wi, wo);

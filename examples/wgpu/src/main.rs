@@ -1,6 +1,7 @@
 //! A ball of a baked material, rendered with wgpu into a PNG.
 //!
-//! `luthier-example-wgpu BAKE SCENE PNG`: the folder of `luthier bake`, `scene.json`, the picture to write.
+//! `luthier-example-wgpu BAKE SCENE PNG [ENVIRONMENT]`: the folder of `luthier bake`, `scene.json`, the picture to write; for a bake with
+//! `--functions environment` the folder of `luthier environment`.
 
 mod bake;
 mod materials;
@@ -22,9 +23,10 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
 fn main() -> Result<()> {
     let arguments: Vec<String> = env::args().skip(1).collect();
-    let [folder, scene, picture] = arguments.as_slice() else {
-        bail!("usage: luthier-example-wgpu BAKE SCENE PNG");
+    let [folder, scene, picture, surroundings @ ..] = arguments.as_slice() else {
+        bail!("usage: luthier-example-wgpu BAKE SCENE PNG [ENVIRONMENT]");
     };
+    let surroundings = surroundings.first().map(Path::new);
     let bake = Bake::open(Path::new(folder))?;
     let scene = Scene::open(Path::new(scene))?;
     let material = bake.material(&scene.material)?;
@@ -35,8 +37,8 @@ fn main() -> Result<()> {
     eprintln!("{} ({}), material {material}: {}", info.name, info.backend, scene.material);
     let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
 
-    let materials = Materials::upload(&device, &queue, &bake)?;
-    let pixels = render(&device, &queue, &bake, &materials, &scene, material)?;
+    let materials = Materials::upload(&device, &queue, &bake, surroundings)?;
+    let pixels = render(&device, &queue, &shader(&bake, surroundings.is_some())?, &materials, &scene, material)?;
 
     let mut encoder = png::Encoder::new(File::create(picture)?, scene.size, scene.size);
     encoder.set_color(png::ColorType::Rgba);
@@ -46,19 +48,25 @@ fn main() -> Result<()> {
     Ok(())
 }
 
+/// The text of the bake, and that of the program, with or without surroundings.
+fn shader(bake: &Bake, has_surroundings: bool) -> Result<String> {
+    let surroundings =
+        if has_surroundings { include_str!("surroundings.wgsl") } else { include_str!("no_surroundings.wgsl") };
+    Ok([&bake.wgsl()?, surroundings, include_str!("ball.wgsl")].join("\n"))
+}
+
 /// Renders the ball; RGBA, row by row from the top.
 fn render(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
-    bake: &Bake,
+    shader: &str,
     materials: &Materials,
     scene: &Scene,
     material: u32,
 ) -> Result<Vec<u8>> {
-    // The text of the bake is pasted in front of the program's own.
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("ball"),
-        source: wgpu::ShaderSource::Wgsl(format!("{}\n{}", bake.wgsl()?, include_str!("ball.wgsl")).into()),
+        source: wgpu::ShaderSource::Wgsl(shader.into()),
     });
     let scene_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("scene"),

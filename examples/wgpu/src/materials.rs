@@ -1,9 +1,11 @@
 //! Group 0 of the shader, bound as the manifest says.
 
+use std::path::Path;
+
 use anyhow::{Context, Result, bail};
 use wgpu::util::{BufferInitDescriptor, DeviceExt, TextureDataOrder};
 
-use crate::bake::{Bake, Binding, Texels};
+use crate::bake::{Bake, Binding, Texels, cube};
 
 /// The tables, the sampler and the material buffer on a device.
 pub struct Materials {
@@ -13,15 +15,22 @@ pub struct Materials {
 
 enum Resource {
     Table(wgpu::TextureView),
+    Cube(wgpu::TextureView),
     Sampler(wgpu::Sampler),
     Buffer(wgpu::Buffer),
 }
 
 impl Materials {
-    pub fn upload(device: &wgpu::Device, queue: &wgpu::Queue, bake: &Bake) -> Result<Self> {
+    /// `surroundings` is a folder of `luthier environment`, for a bake with `--functions environment`.
+    pub fn upload(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        bake: &Bake,
+        surroundings: Option<&Path>,
+    ) -> Result<Self> {
         let mut resources = Vec::new();
         for binding in bake.bindings()? {
-            resources.push((binding.number, upload(device, queue, bake, &binding)?));
+            resources.push((binding.number, upload(device, queue, bake, surroundings, &binding)?));
         }
         let layout_entries: Vec<_> =
             resources.iter().map(|(number, resource)| layout_entry(*number, resource)).collect();
@@ -39,17 +48,31 @@ impl Materials {
     }
 }
 
-fn upload(device: &wgpu::Device, queue: &wgpu::Queue, bake: &Bake, binding: &Binding) -> Result<Resource> {
+fn upload(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    bake: &Bake,
+    surroundings: Option<&Path>,
+    binding: &Binding,
+) -> Result<Resource> {
     match binding.resource.as_str() {
         "texture_2d<f32>" => {
             let kind = binding.name.strip_prefix("luthier_").context("a table without its prefix")?;
-            Ok(Resource::Table(upload_table(device, queue, kind, &bake.table(kind)?)?))
+            Ok(Resource::Table(upload_texture(device, queue, kind, &bake.table(kind)?)?))
         }
-        // Clamped to the edge and without mipmaps, which are the defaults.
+        "texture_cube<f32>" => {
+            let folder =
+                surroundings.context("this bake shows surroundings: name a folder of `luthier environment`")?;
+            let content = binding.name.strip_prefix("luthier_").and_then(|name| name.strip_suffix("_map"));
+            let texels = cube(folder, content.context("a map without its suffix")?)?;
+            Ok(Resource::Cube(upload_texture(device, queue, &binding.name, &texels)?))
+        }
+        // Clamped to the edge, which is the default. Tables have one level.
         "sampler" => Ok(Resource::Sampler(device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some(&binding.name),
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
+            mipmap_filter: wgpu::MipmapFilterMode::Linear,
             ..Default::default()
         }))),
         "buffer" => Ok(Resource::Buffer(device.create_buffer_init(&BufferInitDescriptor {
@@ -61,7 +84,12 @@ fn upload(device: &wgpu::Device, queue: &wgpu::Queue, bake: &Bake, binding: &Bin
     }
 }
 
-fn upload_table(device: &wgpu::Device, queue: &wgpu::Queue, kind: &str, texels: &Texels) -> Result<wgpu::TextureView> {
+fn upload_texture(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    label: &str,
+    texels: &Texels,
+) -> Result<wgpu::TextureView> {
     let format = match texels.format.as_str() {
         "r16float" => wgpu::TextureFormat::R16Float,
         "rg16float" => wgpu::TextureFormat::Rg16Float,
@@ -73,26 +101,29 @@ fn upload_table(device: &wgpu::Device, queue: &wgpu::Queue, kind: &str, texels: 
         other => bail!("this program does not upload `{other}`"),
     };
     let descriptor = wgpu::TextureDescriptor {
-        label: Some(kind),
-        size: wgpu::Extent3d { width: texels.width, height: texels.height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
+        label: Some(label),
+        size: wgpu::Extent3d { width: texels.width, height: texels.height, depth_or_array_layers: texels.faces },
+        mip_level_count: texels.levels,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format,
         usage: wgpu::TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
     };
-    let texture = device.create_texture_with_data(queue, &descriptor, TextureDataOrder::LayerMajor, &texels.bytes);
-    Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+    let texture = device.create_texture_with_data(queue, &descriptor, TextureDataOrder::MipMajor, &texels.bytes);
+    let dimension = (texels.faces == 6).then_some(wgpu::TextureViewDimension::Cube);
+    Ok(texture.create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() }))
 }
 
 fn layout_entry(binding: u32, resource: &Resource) -> wgpu::BindGroupLayoutEntry {
+    let texture = |view_dimension| wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: true },
+        view_dimension,
+        multisampled: false,
+    };
     let ty = match resource {
-        Resource::Table(_) => wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: true },
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        },
+        Resource::Table(_) => texture(wgpu::TextureViewDimension::D2),
+        Resource::Cube(_) => texture(wgpu::TextureViewDimension::Cube),
         Resource::Sampler(_) => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
         Resource::Buffer(_) => wgpu::BindingType::Buffer {
             ty: wgpu::BufferBindingType::Storage { read_only: true },
@@ -105,7 +136,7 @@ fn layout_entry(binding: u32, resource: &Resource) -> wgpu::BindGroupLayoutEntry
 
 fn group_entry(binding: u32, resource: &Resource) -> wgpu::BindGroupEntry<'_> {
     let resource = match resource {
-        Resource::Table(view) => wgpu::BindingResource::TextureView(view),
+        Resource::Table(view) | Resource::Cube(view) => wgpu::BindingResource::TextureView(view),
         Resource::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
         Resource::Buffer(buffer) => buffer.as_entire_binding(),
     };
