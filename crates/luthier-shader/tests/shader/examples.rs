@@ -3,8 +3,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use luthier_manifest::{FunctionGroup, MaterialEntry};
+use luthier_shader::{Form, MaterialSet, Target, bindings, emit, validate};
+
 use crate::scenes::{forms, sets, tables};
-use luthier_shader::{MaterialSet, Target, emit, validate};
 
 /// A shader of an example, with a place for the text of the bake.
 struct Shader {
@@ -80,19 +82,52 @@ fn paste(shader: &Shader, bake: &str) -> String {
     format!("{BEVY}\n{own}\n{bake}").replace(BEVY_GROUP, "3")
 }
 
+/// What a shader of an example calls that is in a file beside it.
+const SURROUNDINGS: &str = "ball_surroundings(";
+
+/// The files beside a shader that define its surroundings: none of them, and those of a bake.
+const SURROUNDINGS_FILES: [&str; 2] = ["no_surroundings.wgsl", "surroundings.wgsl"];
+
+/// The shader after a file of its folder that defines its surroundings.
+fn surrounded(shader: &Shader, file: &str) -> Shader {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(&shader.file).with_file_name(file);
+    let text = fs::read_to_string(path).unwrap() + "\n" + &shader.text;
+    Shader { file: format!("{} after {file}", shader.file), text, ..*shader }
+}
+
 /// Every shader of the examples in a language, around the text of every set of materials, with what it is.
 pub(crate) fn composed(language: Target) -> Vec<(String, String)> {
-    let shaders: Vec<Shader> = shaders().into_iter().filter(|shader| shader.language == language).collect();
+    let mut shaders: Vec<Shader> = shaders().into_iter().filter(|shader| shader.language == language).collect();
     assert!(!shaders.is_empty(), "no example is in {language}");
+    let mut lit = Vec::new();
+    for shader in &mut shaders {
+        if shader.text.contains(SURROUNDINGS) {
+            lit.push(surrounded(shader, SURROUNDINGS_FILES[1]));
+            *shader = surrounded(shader, SURROUNDINGS_FILES[0]);
+        }
+    }
     let mut texts = Vec::new();
+    let mut add = |shaders: &[Shader], set: &MaterialSet<'_>, name: &str, form| {
+        let bake = emit(set, form, language).unwrap();
+        texts.extend(shaders.iter().map(|shader| (format!("{} {name} {form}", shader.file), paste(shader, &bake))));
+    };
     for (name, materials) in sets() {
         let set = MaterialSet::new(&materials, tables());
         for form in forms(&materials) {
-            let bake = emit(&set, form, language).unwrap();
-            texts.extend(shaders.iter().map(|shader| (format!("{} {name} {form}", shader.file), paste(shader, &bake))));
+            add(&shaders, &set, name, form);
+        }
+        if let Some(set) = with_environment(&materials) {
+            add(&lit, &set, name, Form::Baked);
         }
     }
     texts
+}
+
+/// The materials with the functions of an environment, where they have a prefiltered one.
+fn with_environment(materials: &[MaterialEntry]) -> Option<MaterialSet<'_>> {
+    let functions = [FunctionGroup::Environment].into_iter().collect();
+    let set = MaterialSet { functions, ..MaterialSet::new(materials, tables()) };
+    bindings(&set, Form::Baked).iter().any(|entry| entry.name == "luthier_environment_map").then_some(set)
 }
 
 #[test]
