@@ -202,6 +202,12 @@ impl Varied {
         is_bare.then(|| facets(&self.nodes[tile])).flatten().unwrap_or(0.0)
     }
 
+    /// The lobes of the stack as it is given.
+    pub fn nominal(mut self) -> Lobes {
+        let node = self.varying().map_or(0, Varying::nominal);
+        self.nodes.swap_remove(node)
+    }
+
     /// The lobes at a factor. Their first interface is that of a patina where any of it has grown.
     pub fn at(&self, factor: f64) -> Lobes {
         let mut lobes = self.nodes[0].clone();

@@ -9,7 +9,7 @@ use luthier_optics::interface::{Interface, Sampled};
 use luthier_optics::microfacet;
 use luthier_optics::stack::{Distribution, Stack};
 
-use crate::lobes::{Below, Lobes};
+use crate::lobes::{Below, Lobes, Varied, Varying};
 use crate::statistics::diffuse_base::Veil;
 use crate::statistics::energy::{ColorEnergy, Energy};
 use crate::statistics::layers::Layers;
@@ -50,13 +50,14 @@ pub trait ShaderTerms: Terms + Energy<3> {
 }
 
 /// Exact terms. Fresnel and distribution terms are evaluated at every call. Energies are prepared at the first, see [`ColorEnergy`]; so are
-/// lobes, which are simulated then ([`Lobes::of`]).
+/// lobes, which are simulated then ([`Varied::of`]).
 #[derive(Debug, Clone)]
 pub struct Exact {
     stack: Stack,
     color: Color,
     interfaces: Vec<Option<Sampled>>,
     energies: Energies,
+    varying: Option<Varying>,
     lobes: OnceLock<Lobes>,
 }
 
@@ -78,6 +79,11 @@ impl Exact {
         Self::with(stack, color, Energies::Level(veil))
     }
 
+    /// The terms of a stack whose lobes are fitted together with those that it has where something varies.
+    pub fn varying(stack: &Stack, color: Color, varying: Option<Varying>) -> Self {
+        Self { varying, ..Self::new(stack, color) }
+    }
+
     /// The terms of a stack whose lobes are given.
     pub fn with_lobes(stack: &Stack, color: Color, lobes: Lobes) -> Self {
         Self { lobes: OnceLock::from(lobes), ..Self::new(stack, color) }
@@ -87,12 +93,12 @@ impl Exact {
         let interfaces = (0..stack.layers.len())
             .map(|i| Interface::of(stack, i).map(|interface| interface.sampled(&color)))
             .collect();
-        Self { stack: stack.clone(), color, interfaces, energies, lobes: OnceLock::new() }
+        Self { stack: stack.clone(), color, interfaces, energies, varying: None, lobes: OnceLock::new() }
     }
 
     /// The lobes of the stack.
     pub fn lobes(&self) -> &Lobes {
-        self.lobes.get_or_init(|| Lobes::of(&self.stack, &self.color))
+        self.lobes.get_or_init(|| Varied::of(&self.stack, &self.color, self.varying).nominal())
     }
 
     fn facets<'a>(&self, prepared: &'a OnceLock<(ColorEnergy, Veil<3>)>) -> &'a (ColorEnergy, Veil<3>) {

@@ -11,9 +11,12 @@ use std::fmt;
 
 use glam::DVec3;
 use luthier_layers::elek::{self, Layer};
+use luthier_layers::lobes::{Cover, Varying};
 use luthier_layers::real_time::Twin;
 use luthier_layers::terms::{Exact, ShaderTerms};
-use luthier_manifest::{ColorMode, LayerKind, LayerRecord, Manifest, MaterialEntry, ShadingModel};
+use luthier_manifest::{
+    ColorMode, LayerKind, LayerRecord, Manifest, MaterialEntry, PatinaRecord, ShadingModel, VaryingFactor,
+};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
@@ -243,12 +246,13 @@ impl References {
         let three = Color::ThreeWavelengths(material.wavelengths_nm);
         let color = color(material);
         let model = material.model;
+        let varying = varying(material);
         let twin = Twin::new(model.name(), stack, material.wavelengths_nm, color);
         Ok(Self {
             layers: elek::layers(stack),
             twin: twin.ok_or_else(|| ReportError::Model { material: material.name.clone(), model })?,
-            spectral: Exact::new(stack, Color::Spectral),
-            three: Exact::new(stack, three),
+            spectral: Exact::varying(stack, Color::Spectral, varying),
+            three: Exact::varying(stack, three, varying),
             level: model.is_statistical().then(|| Exact::level(stack, three, recorded_veil(material))),
             color: material.color,
         })
@@ -264,6 +268,20 @@ impl References {
         match self.color {
             ColorMode::Spectral => &self.spectral,
             ColorMode::ThreeWavelengths => &self.three,
+        }
+    }
+}
+
+/// The part of a material that its rows of lobes are over.
+fn varying(material: &MaterialEntry) -> Option<Varying> {
+    let record = material.constants.lobes?.varying?;
+    match record.factor {
+        VaryingFactor::AlphaFactor => Some(Varying::Alpha),
+        VaryingFactor::SlabFactor => Some(Varying::Slab),
+        VaryingFactor::FilmFactor => record.factors.map(Varying::Film),
+        VaryingFactor::Patina => {
+            let PatinaRecord { diffuse_albedo, base_alpha, tarnish, .. } = *material.constants.patina.as_ref()?;
+            Some(Varying::Patina(Cover { diffuse_albedo, base_alpha, tarnish }))
         }
     }
 }
