@@ -218,8 +218,9 @@ map, each through `luthier_eval`. Sums have no noise. Skies are those of `luthie
 
 Figures are roots of the mean squared difference over all places and channels, over the mean of the sum. `lobes` is the model `lobes` against its own
 sum. Of other models the first figure is against their own sum, and the second against that of lobes, which the simulation of the stack made: what a
-picture of that model is off in all. `alpha` is the slope parameter of the first interface. Pictures have as many samples of a pixel as those of `luthier preview`
-by default, 16, each of which turns the directions of the look-up. With one sample there are no directions but those of a call of `luthier_environment`.
+picture of that model is off in all. All models but `lobes` show the same light of surroundings, so that their second figures are equal.
+`alpha` is the slope parameter of the first interface. Pictures have as many samples of a pixel as those of `luthier preview` by default, 16, each of
+which turns the directions of the look-up. With one sample there are no directions but those of a call of `luthier_environment`.
 Sums resolve no lobes narrower than a texel of the map, so that smooth materials are not here.
 
 ";
