@@ -36,6 +36,7 @@ fn main() -> ExitCode {
         Verb::Check(options) => verb::check::run(options),
         Verb::Report(options) => verb::report::run(options),
         Verb::Audit(options) => verb::audit::run(options),
+        Verb::Table(options) => verb::table::run(options),
         #[cfg(feature = "gpu")]
         Verb::Preview(options) => verb::preview::run(options),
         #[cfg(feature = "gpu")]

@@ -9,6 +9,7 @@
 
 mod atlas;
 mod axis;
+mod balance;
 mod base;
 mod bc6h;
 mod critical;
@@ -23,6 +24,7 @@ mod sampler;
 
 pub use atlas::{Atlas, AtlasLayout, Tile, read};
 pub use axis::{Axis, Mapping};
+pub use balance::balance;
 pub use base::{RowBase, SchlickBase};
 pub use critical::{incident_cosine, refracted_cosine};
 pub use encoding::Encoding;

@@ -388,23 +388,6 @@ impl Microsurface {
     }
 }
 
-/// Quadrature over the facets that reflect light from `cos_theta_i` above the horizon: `visit` is given the cosine at the facet, the
-/// cosine of the reflected direction, and the weight D max(0, wi.wh) / cos_theta_i dwh, which any masking G turns into reflected
-/// light. Nodes are those of the first bounce in [`FacetStatistics`]. `alpha` is above [`ALPHA_MIN`].
-pub(crate) fn reflecting_facets(
-    distribution: Distribution,
-    alpha: f64,
-    cos_theta_i: f64,
-    points: usize,
-    mut visit: impl FnMut(f64, f64, f64),
-) {
-    let surface = Microsurface::new(distribution, alpha, cos_theta_i.clamp(COS_THETA_MIN, 1.0));
-    let unmasked = 1.0 + surface.lambda_i;
-    surface.first_facets(points, Horizon::Above, |facet| {
-        visit(facet.cos_theta_d, facet.reflected.z.min(1.0), facet.weight * unmasked);
-    });
-}
-
 /// Radius at which Gaussian slopes end.
 const BECKMANN_RADIUS: f64 = 6.0;
 

@@ -1,4 +1,4 @@
-//! Gauss-Legendre quadrature.
+//! Gauss-Legendre quadrature, even and graded towards one end.
 
 use std::f64::consts::PI;
 
@@ -26,6 +26,54 @@ pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
     rule
 }
 
+/// Gauss-Legendre rules on 0..=1 whose nodes crowd at 0: for integrands that change fastest there, on a known scale.
+///
+/// A node `u` of the even rule moves to `sinh(L u) / sinh(L)`, which spreads decades evenly: L is the inverse hyperbolic sine of the reach, the
+/// length of the interval over the scale.
+#[derive(Debug, Clone)]
+pub struct GradedRules {
+    /// Rules for the squares of reaches from 1 on, four to a doubling.
+    rules: Vec<Vec<(f64, f64)>>,
+}
+
+/// Bits of the mantissa that tell rules apart.
+const RULE_BITS: u32 = 2;
+/// Largest power of two of the square of a reach: scales down to 2^-30 of the interval.
+const LAST_EXPONENT: u64 = 60;
+/// Longest reach of a rule over the shortest that it serves, rounded up: the fourth of a doubling of squares is at most 5/4 long.
+const REACH_WITHIN: f64 = 1.06;
+
+impl GradedRules {
+    /// Rules of `first + per_fold L` nodes, rounded up.
+    pub fn new(first: f64, per_fold: f64) -> Self {
+        let rule = |index: u64| {
+            let squared = f64::from_bits(1.0f64.to_bits() + (index << (52 - RULE_BITS)));
+            let length = libm::asinh(REACH_WITHIN * libm::sqrt(squared));
+            let graded = |(u, weight): (f64, f64)| {
+                let end = libm::sinh(length);
+                (libm::sinh(length * u) / end, weight * length * libm::cosh(length * u) / end)
+            };
+            gauss_legendre(libm::ceil(first + per_fold * length) as usize).into_iter().map(graded).collect()
+        };
+        Self { rules: (0..LAST_EXPONENT << RULE_BITS).map(rule).collect() }
+    }
+
+    /// Nodes and weights for an interval of which the integrand changes fastest within the part `1 / reach` at its start.
+    pub fn for_reach_squared(&self, reach_squared: f64) -> &[(f64, f64)] {
+        // The highest bits of a positive number are its logarithm, as good as needed here.
+        let index = (reach_squared.max(1.0).to_bits() - 1.0f64.to_bits()) >> (52 - RULE_BITS);
+        &self.rules[(index as usize).min(self.rules.len() - 1)]
+    }
+
+    /// Rules with every node and weight changed, and more nodes behind.
+    pub fn map(self, change: impl Fn(f64, f64) -> (f64, f64), behind: &[(f64, f64)]) -> Self {
+        let changed = |rule: Vec<(f64, f64)>| {
+            rule.into_iter().map(|(node, weight)| change(node, weight)).chain(behind.iter().copied()).collect()
+        };
+        Self { rules: self.rules.into_iter().map(changed).collect() }
+    }
+}
+
 /// The Legendre polynomial of degree n and its derivative.
 fn legendre(n: usize, x: f64) -> (f64, f64) {
     let (mut before, mut p) = (0.0, 1.0);
@@ -48,6 +96,17 @@ mod tests {
                 let sum: f64 = rule.iter().map(|(x, w)| w * libm::pow(*x, degree as f64)).sum();
                 assert!((sum * (degree as f64 + 1.0) - 1.0).abs() < 1e-12, "n = {n}, degree {degree}: {sum}");
             }
+        }
+    }
+
+    /// A Lorentzian peak at the start, against its antiderivative, an arc tangent.
+    #[test]
+    fn graded_rules_integrate_narrow_peaks() {
+        let rules = GradedRules::new(6.0, 4.0);
+        for scale in [1.0, 0.3, 0.02, 1e-3, 1e-5, 1e-8] {
+            let rule = rules.for_reach_squared(1.0 / (scale * scale));
+            let sum: f64 = rule.iter().map(|(x, w)| w * scale / (x * x + scale * scale)).sum();
+            assert!((sum - libm::atan(1.0 / scale)).abs() < 1e-6, "{scale}: {sum}");
         }
     }
 }

@@ -36,10 +36,7 @@ mod parity;
 mod picture;
 pub mod stability;
 
-pub use audit::{
-    Audit, AuditError, AuditVerdict, AxisSpec, Candidate, Layout, Mistake, Model, Nodes, Quantity as AxisQuantity,
-    Statement, Term, audit,
-};
+pub use audit::{Audit, AuditError, AuditVerdict, Candidate, Mistake, Model, Statement, Term, audit};
 pub use error::ReportError;
 pub use judge::ball::{BallPicture, DistantLight, render_ball};
 pub use judge::evidence::{

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use luthier_table::Preset;
 
 const AUDIT_EXAMPLES: &str = "\
 Judges a table of another program: DDS, KTX2, EXR, PNG, Radiance HDR, or raw values with --size. The verdict says whether it is as \
@@ -43,8 +44,8 @@ pub(crate) struct AuditOptions {
     #[arg(long, value_name = "r,g,b,a", value_enum, value_delimiter = ',')]
     pub(crate) channel: Option<Vec<ChannelName>>,
     /// Model, axes, nodes and values of an engine; other options override it
-    #[arg(long, value_enum)]
-    pub(crate) preset: Option<PresetName>,
+    #[arg(long, value_name = "NAME", value_parser = preset)]
+    pub(crate) preset: Option<&'static Preset>,
     /// Index of the medium below: a data set of `luthier ior`, N, or N,K
     #[arg(long, value_name = "NAME|N[,K]")]
     pub(crate) ior: Option<String>,
@@ -96,21 +97,15 @@ pub(crate) enum SamplesName {
     Float,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(crate) enum PresetName {
-    /// cmgen of Filament, --ibl-dfg-multiscatter
-    Filament,
-    /// PreintegratedGF of Unreal Engine 4
-    Unreal,
-    /// glTF-IBL-Sampler of Khronos
-    Gltf,
-    /// FGD_GGXAndDisneyDiffuse of Unity's HDRP
-    Hdrp,
-}
-
-fn unit(text: &str) -> Result<f64, String> {
+pub(super) fn unit(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if (0.0..1.0).contains(&value) => Ok(value),
         _ => Err("expected a number from 0 up to 1, such as 0.01".to_owned()),
     }
+}
+
+/// The preset of a name.
+pub(super) fn preset(name: &str) -> Result<&'static Preset, String> {
+    let names = || Preset::ALL.iter().map(|preset| preset.name).collect::<Vec<_>>().join(", ");
+    Preset::named(name).ok_or_else(|| format!("there is no such preset; there are {}", names()))
 }

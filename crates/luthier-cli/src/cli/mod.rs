@@ -55,6 +55,8 @@ pub(crate) enum Verb {
     Report(ReportOptions),
     /// Judge a table of another program, and find the mistake in it
     Audit(Box<AuditOptions>),
+    /// Bake a table that engines read beside a material: the split sum of image-based lighting
+    Table(TableOptions),
     /// Render a material off screen
     #[cfg(feature = "gpu")]
     Preview(PreviewOptions),
@@ -275,7 +277,10 @@ mod environment;
 pub(crate) use environment::{EnvironmentOptions, LayoutName};
 
 mod audit;
-pub(crate) use audit::{AuditOptions, NodesName, PresetName, SamplesName};
+pub(crate) use audit::{AuditOptions, NodesName, SamplesName};
+
+mod table;
+pub(crate) use table::{DistributionName, FunctionName, TableOptions};
 
 #[cfg(feature = "gpu")]
 mod render;

@@ -21,5 +21,6 @@ pub(crate) mod report;
 pub(crate) mod scene;
 pub(crate) mod schema;
 pub(crate) mod shader;
+pub(crate) mod table;
 #[cfg(feature = "view")]
 pub(crate) mod view;

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::axes::{AxisSpec, Layout, Nodes};
 use super::truth::{Term, Truth};
+use luthier_table::{AxisSpec, Layout, Nodes};
 
 /// Encoding of values before they were stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

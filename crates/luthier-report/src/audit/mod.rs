@@ -5,7 +5,6 @@
 //! Simplifications: a mistake that changes less than the table's noise is not found. Mistakes that cancel are not found either.
 //! Angle and alpha of a one-row table are not looked for across rows.
 
-mod axes;
 mod hypothesis;
 mod page;
 mod search;
@@ -18,9 +17,9 @@ use luthier_lut::{Comparison, ErrorStats, Image, Scan, WeightBits, bilinear, mea
 use serde::Serialize;
 use thiserror::Error;
 
-pub use axes::{AxisSpec, Layout, Nodes, Quantity};
 pub use hypothesis::Mistake;
 use hypothesis::{Encoding, Hypothesis};
+use luthier_table::Layout;
 use search::{Subject, search};
 use truth::Truth;
 pub use truth::{Model, Term};
@@ -34,16 +33,6 @@ const NO_FIT: f64 = 0.03;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum AuditError {
-    /// An axis that does not parse.
-    #[error(
-        "`{0}` is no axis; write [-]QUANTITY[=MIN..MAX][^EXPONENT|@log] with cos_theta, theta, cos_theta_sq, sqrt_cos_theta, roughness, alpha, alpha_sq or sqrt_roughness"
-    )]
-    Axis(String),
-    /// Axes other than one of the direction and at most one of the micro-surface.
-    #[error(
-        "`{0}`: a table has an axis of the angle and at most one of the roughness, such as \"cos_theta,roughness\""
-    )]
-    Axes(String),
     /// A channel that the file does not have.
     #[error("there is no channel {channel}: the file has {found}")]
     Channel {

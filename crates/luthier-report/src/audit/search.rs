@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use luthier_lut::{Image, Mapping};
 use rayon::prelude::*;
 
-use super::axes::{AxisSpec, Layout, Nodes, Quantity};
 use super::hypothesis::{Encoding, Hypothesis, arrangements};
 use super::truth::Truth;
+use luthier_table::{AxisSpec, Layout, Nodes, Quantity};
 
 /// Most that a value counts in a fit: a value that is wildly wrong in a corner does not decide about the rest.
 const CAP: f64 = 0.25;
@@ -184,7 +184,7 @@ fn judge(
 
 /// Swapped or not, both flips, nodes alike on both axes, any quantity of each axis.
 fn layouts(stated: &Layout, size: [u32; 2]) -> Vec<Layout> {
-    let nodes = &Nodes::ALL[..4];
+    let nodes = &Nodes::MISTAKEN[..4];
     let mut all = vec![*stated];
     let turned = [false, true].map(|turn| stated.transposed != turn);
     for transposed in if stated.slope.is_some() { &turned[..] } else { &turned[..1] } {
@@ -225,7 +225,7 @@ fn neighbours(h: &Hypothesis, stated: &Hypothesis) -> Vec<Hypothesis> {
     let mut all = Vec::new();
     let mut add = |layout: Layout| all.push(Hypothesis { layout, ..h.clone() });
     let layout = h.layout;
-    for nodes in Nodes::ALL {
+    for nodes in Nodes::MISTAKEN {
         let angle = AxisSpec { nodes, ..layout.angle };
         add(Layout { angle, ..layout });
         if let Some(slope) = layout.slope {

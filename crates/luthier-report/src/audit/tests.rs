@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use luthier_lut::{Image, TexelFormat};
 use luthier_optics::split_sum::{Masking, SplitSum, split_sums};
 use luthier_optics::stack::Distribution;
+use luthier_table::Nodes;
 
 use super::*;
 
@@ -39,7 +40,7 @@ fn table(plant: Plant) -> Image {
     for y in 0..n {
         for x in 0..n {
             let (cos, alpha) = (plant.place)((plant.node)(x, n), (plant.node)(y, n));
-            let sum = split_sums(Distribution::Ggx, alpha, cos, 24)[which];
+            let sum = split_sums(Distribution::Ggx, alpha, cos)[which];
             let [a, b] = (plant.store)(sum);
             image.texel_mut(x, y).copy_from_slice(&[a as f32, b as f32]);
         }
@@ -185,7 +186,7 @@ fn two_and_three_mistakes_at_once() {
     for y in 0..n {
         let coordinate = ((f64::from(n - y) + 0.5) / f64::from(n)).min(1.0);
         for x in 0..n {
-            let sum = split_sums(Distribution::Ggx, coordinate * coordinate, centres(x, n), 24)[0];
+            let sum = split_sums(Distribution::Ggx, coordinate * coordinate, centres(x, n))[0];
             image.texel_mut(x, y).copy_from_slice(&[sum.bias as f32, sum.albedo() as f32]);
         }
     }

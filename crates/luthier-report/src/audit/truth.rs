@@ -113,8 +113,6 @@ impl Model {
     }
 }
 
-/// Gauss-Legendre points of split sums.
-const POINTS: usize = 24;
 /// Effort of albedos with all bounces: only the noise of the walks is left.
 const EFFORT: Effort = Effort { first: 24, later: 24 };
 /// Wavelengths of the three-wavelength values, nm: CONVENTIONS.md.
@@ -177,7 +175,7 @@ impl<'a> Truth<'a> {
         let cos = libm::cos(theta).max(0.0);
         match self.model {
             Model::SplitSum { distribution, .. } => {
-                split_sums(*distribution, alpha, cos, POINTS).map(|sum| [sum.scale, sum.bias, 0.0]).into()
+                split_sums(*distribution, alpha, cos).map(|sum| [sum.scale, sum.bias, 0.0]).into()
             }
             Model::Density { .. } => {
                 let sin = libm::sin(theta);
@@ -211,7 +209,7 @@ impl<'a> Truth<'a> {
         match self.model {
             Model::SplitSum { distribution, .. } => {
                 let cos = libm::cos(at[0]).max(0.0);
-                let sum = split_sum(*distribution, Masking::ALL[variant], at[1], cos, POINTS);
+                let sum = split_sum(*distribution, Masking::ALL[variant], at[1], cos);
                 [sum.scale, sum.bias, 0.0]
             }
             _ => self.exact_all(at)[variant],

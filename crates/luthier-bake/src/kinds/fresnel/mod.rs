@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use luthier_lut::{
     Atlas, AtlasLayout, Axis, Comparison, Image, Mapping, RowBase, Scan, SchlickBase, TableKind, TexelFormat,
-    WeightBits, incident_cosine, measure_scan,
+    WeightBits, balance, incident_cosine, measure_scan,
 };
 use luthier_material::{BakeSettings, FresnelMapping};
 use luthier_optics::Rgb;
@@ -20,7 +20,7 @@ use crate::graph::{Inputs, Job, JobKind, Output, Results};
 use crate::plan::Plan;
 use crate::search::Found;
 use crate::settings::{Ask, Asked, Shape, axis};
-use crate::tile::{TileData, balance, color_in_words, lone_tile};
+use crate::tile::{TileData, color_in_words, lone_tile};
 use crate::{BakeError, json};
 
 /// Points of the error scan per texel interval.

@@ -5,51 +5,42 @@ use luthier_optics::interface::Interface;
 use luthier_optics::ior::Ior;
 use luthier_optics::split_sum::Masking;
 use luthier_optics::stack::Distribution;
-use luthier_report::{Layout, Model, Nodes, Statement, Term};
+use luthier_report::{Model, Statement, Term};
+use luthier_table::{Layout, Nodes, Preset, Value};
 use luthier_terminal::{Failure, Outcome};
 use luthier_texture::table::Table;
 
-use crate::cli::{AuditOptions, NodesName, PresetName};
+use crate::cli::{AuditOptions, NodesName};
 
-/// Contents of an engine's tables.
-struct Preset {
-    model: &'static str,
-    axes: &'static str,
-    nodes: NodesName,
-    values: &'static [Term],
-}
-
-/// Conventions, each as its source says; docs/audit.md cites them.
-fn preset(name: PresetName) -> Preset {
-    use NodesName::{Centres, Ends};
-    let (model, axes, nodes, values): (_, _, _, &[Term]) = match name {
-        // libs/ibl/src/CubemapIBL.cpp, DFG() and DFV_Multiscatter(): rows fall from roughness 1.
-        PresetName::Filament => ("ggx-correlated", "cos_theta,-roughness", Centres, &[Term::Bias, Term::Albedo]),
-        // SystemTextures.cpp, PreintegratedGF.
-        PresetName::Unreal => ("ggx-joint-approx", "cos_theta,roughness", Centres, &[Term::Scale, Term::Bias]),
-        // lib/source/shaders/filter.frag, LUT().
-        PresetName::Gltf => ("ggx-correlated", "cos_theta,roughness", Centres, &[Term::Scale, Term::Bias]),
-        // preIntegratedFGD_GGXDisneyDiffuse.shader.
-        PresetName::Hdrp => ("ggx-correlated", "sqrt_cos_theta,roughness", Ends, &[Term::Bias, Term::Albedo]),
+/// Terms of the channels of a preset that hold a split sum.
+fn preset_terms(preset: &Preset) -> Vec<Term> {
+    let term = |value: &Value| match value {
+        Value::Scale => Some(Term::Scale),
+        Value::Bias => Some(Term::Bias),
+        Value::Albedo => Some(Term::Albedo),
+        Value::Loss | Value::Zero => None,
     };
-    Preset { model, axes, nodes, values }
+    preset.values.iter().filter_map(term).collect()
 }
 
 /// The statement that the options make about a file, and the same in words.
 pub(super) fn statement(options: &AuditOptions, table: &Table) -> Outcome<(Statement, String)> {
-    let preset = options.preset.map(preset);
-    let name = options.model.as_deref().or(preset.as_ref().map(|p| p.model)).unwrap_or("ggx-correlated");
+    let preset = options.preset;
+    let preset_model = preset.map(|preset| format!("ggx-{}", preset.masking.name()));
+    let name = options.model.as_deref().or(preset_model.as_deref()).unwrap_or("ggx-correlated");
     let model = model(name, options.ior.as_deref())?;
     let default_axes = if model.has_slope() { "cos_theta,roughness" } else { "cos_theta" };
-    let axes = options.axes.as_deref().or(preset.as_ref().map(|p| p.axes)).unwrap_or(default_axes);
-    let (nodes, nodes_name) = match options.nodes.or(preset.as_ref().map(|p| p.nodes)).unwrap_or(NodesName::Centres) {
-        NodesName::Centres => (Nodes::CENTRES, "centres"),
-        NodesName::Ends => (Nodes::Ends, "ends"),
+    let axes = options.axes.as_deref().or(preset.map(|preset| preset.axes)).unwrap_or(default_axes);
+    let nodes = match options.nodes {
+        Some(NodesName::Centres) => Nodes::CENTRES,
+        Some(NodesName::Ends) => Nodes::Ends,
+        None => preset.map_or(Nodes::CENTRES, |preset| preset.nodes),
     };
+    let nodes_name = if nodes == Nodes::Ends { "ends" } else { "centres" };
     let layout = Layout::parse(axes, nodes).map_err(|source| Failure::Usage(source.into()))?;
     let terms = match (&options.values, &preset) {
         (Some(names), _) => names.iter().map(|name| term(name, &model)).collect::<Outcome<Vec<Term>>>()?,
-        (None, Some(preset)) => preset.values.to_vec(),
+        (None, Some(preset)) => preset_terms(preset),
         (None, None) => terms(&model, options.channel.as_ref().map_or(table.image.channels as usize, Vec::len)),
     };
     let channels = options

@@ -7,3 +7,4 @@ mod kinds;
 mod pipes;
 mod schema;
 mod sources;
+mod table;

@@ -18,7 +18,7 @@ fn table(masking: Masking, channels: u32, place: impl Fn(f64, f64) -> (f64, f64)
         for x in 0..SIZE {
             let [u, v] = [x, y].map(|i| (f64::from(i) + 0.5) / f64::from(SIZE));
             let (cos, alpha) = place(u, v);
-            let sum = split_sums(Distribution::Ggx, alpha, cos, 24)[which];
+            let sum = split_sums(Distribution::Ggx, alpha, cos)[which];
             image.texel_mut(x, y)[..2].copy_from_slice(&[sum.scale as f32, sum.bias as f32]);
         }
     }

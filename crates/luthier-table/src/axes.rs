@@ -1,12 +1,28 @@
-//! Axes of a table under audit: quantity, mapping, position of nodes.
+//! Axes of a table: quantity, mapping, position of nodes.
 
 use std::f64::consts::FRAC_PI_2;
+use std::fmt;
 use std::str::FromStr;
 
 use luthier_lut::{Axis, Mapping};
 use serde::Serialize;
+use thiserror::Error;
 
-use super::AuditError;
+/// Words that name no axes.
+#[derive(Debug, Error, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum AxesError {
+    /// An axis that does not parse.
+    #[error(
+        "`{0}` is no axis; write [-]QUANTITY[=MIN..MAX][^EXPONENT|@log] with cos_theta, theta, cos_theta_sq, sqrt_cos_theta, roughness, alpha, alpha_sq or sqrt_roughness"
+    )]
+    Axis(String),
+    /// Axes other than one of the direction and at most one of the micro-surface.
+    #[error(
+        "`{0}`: a table has an axis of the angle and at most one of the roughness, such as \"cos_theta,roughness\""
+    )]
+    Axes(String),
+}
 
 /// Quantity of an axis of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -77,7 +93,7 @@ impl Quantity {
     }
 
     /// The value of a theta or an alpha.
-    pub(super) fn of_canonical(self, canonical: f64) -> f64 {
+    pub fn of_canonical(self, canonical: f64) -> f64 {
         match self {
             Self::CosTheta => libm::cos(canonical),
             Self::CosThetaSq => libm::cos(canonical) * libm::cos(canonical),
@@ -105,7 +121,7 @@ impl Nodes {
     /// Texel centres.
     pub const CENTRES: Self = Self::Offset(0.5);
     /// Texel centres and ends, and what mistakes make of them: half a texel off to both sides, and a whole one.
-    pub(super) const ALL: [Self; 6] =
+    pub const MISTAKEN: [Self; 6] =
         [Self::CENTRES, Self::Ends, Self::Offset(0.0), Self::Offset(1.0), Self::Offset(1.5), Self::Offset(-0.5)];
 
     fn coordinate(self, texel: u32, size: u32) -> f64 {
@@ -162,31 +178,49 @@ impl AxisSpec {
         self.quantity.to_canonical(self.axis().decode(u).max(self.floor))
     }
 
-    pub(super) fn canonical(&self, texel: u32, size: u32) -> f64 {
+    pub(crate) fn canonical(&self, texel: u32, size: u32) -> f64 {
         self.canonical_at(self.nodes.coordinate(texel, size))
     }
 
-    pub(super) fn position(&self, canonical: f64, size: u32) -> f64 {
+    pub(crate) fn position(&self, canonical: f64, size: u32) -> f64 {
         let u = self.axis().encode(self.quantity.of_canonical(canonical));
         self.nodes.position(if self.descending { 1.0 - u } else { u }, size)
     }
 
     /// The value as it reads in the axis' own words, and the coordinate of a theta or alpha, ascending or not.
-    pub(super) fn coordinate(&self, canonical: f64) -> f64 {
+    pub fn coordinate(&self, canonical: f64) -> f64 {
         self.axis().encode(self.quantity.of_canonical(canonical))
     }
 
-    pub(super) fn canonical_of_coordinate(&self, u: f64) -> f64 {
+    /// Theta or alpha at a coordinate, ascending or not.
+    pub fn canonical_of_coordinate(&self, u: f64) -> f64 {
         self.quantity.to_canonical(self.axis().decode(u))
     }
 }
 
+impl fmt::Display for AxisSpec {
+    /// The grammar of [`AxisSpec::from_str`].
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { quantity, min, max, mapping, descending, .. } = *self;
+        write!(f, "{}{}", if descending { "-" } else { "" }, quantity.name())?;
+        let whole = Self::whole(quantity, self.nodes);
+        if (min, max) != (whole.min, whole.max) {
+            write!(f, "={min}..{max}")?;
+        }
+        match mapping {
+            Mapping::Power { exponent } => write!(f, "^{exponent}"),
+            Mapping::Logarithmic => write!(f, "@log"),
+            _ => Ok(()),
+        }
+    }
+}
+
 impl FromStr for AxisSpec {
-    type Err = AuditError;
+    type Err = AxesError;
 
     /// `[-]QUANTITY[=MIN..MAX][^EXPONENT|@log]`: `cos_theta`, `-roughness`, `theta_h=0..1.5707963^8`, `alpha=0.01..1@log`.
-    fn from_str(text: &str) -> Result<Self, AuditError> {
-        let bad = || AuditError::Axis(text.to_owned());
+    fn from_str(text: &str) -> Result<Self, AxesError> {
+        let bad = || AxesError::Axis(text.to_owned());
         let number = |text: &str| text.trim().parse::<f64>().ok().filter(|v| v.is_finite()).ok_or_else(bad);
         let rest = text.trim();
         let (descending, rest) = rest.strip_prefix('-').map_or((false, rest), |rest| (true, rest));
@@ -227,9 +261,9 @@ impl Layout {
     /// The layout of `--axes`: one or two axes, across first, separated by a comma.
     ///
     /// # Errors
-    /// [`AuditError::Axis`] for an axis that does not parse, [`AuditError::Axes`] unless there is one of the direction and at most one
+    /// [`AxesError::Axis`] for an axis that does not parse, [`AxesError::Axes`] unless there is one of the direction and at most one
     /// of the micro-surface.
-    pub fn parse(text: &str, nodes: Nodes) -> Result<Self, AuditError> {
+    pub fn parse(text: &str, nodes: Nodes) -> Result<Self, AxesError> {
         let axes: Vec<AxisSpec> = text.split(',').map(str::parse).collect::<Result<_, _>>()?;
         let with = |axis: AxisSpec| AxisSpec { nodes, ..axis };
         match *axes.as_slice() {
@@ -240,19 +274,30 @@ impl Layout {
             [x, y] if y.quantity.is_angle() && !x.quantity.is_angle() => {
                 Ok(Self { angle: with(y), slope: Some(with(x)), transposed: true })
             }
-            _ => Err(AuditError::Axes(text.to_owned())),
+            _ => Err(AxesError::Axes(text.to_owned())),
         }
     }
 
+    /// Cosines across and alphas down, each from its minimum to 1 by a power of the coordinate.
+    pub fn powers([min_cos, min_alpha]: [f64; 2], [cos, alpha]: [f64; 2], nodes: Nodes) -> Self {
+        let axis = |quantity, min: f64, exponent: f64| AxisSpec {
+            min,
+            mapping: Mapping::Power { exponent },
+            ..AxisSpec::whole(quantity, nodes)
+        };
+        let angle = axis(Quantity::CosTheta, min_cos, cos);
+        Self { angle, slope: Some(axis(Quantity::Alpha, min_alpha, alpha)), transposed: false }
+    }
+
     /// Theta and alpha of a texel; alpha is 0 where there is no such axis.
-    pub(super) fn at_texel(&self, size: [u32; 2], texel: [u32; 2]) -> [f64; 2] {
+    pub fn at_texel(&self, size: [u32; 2], texel: [u32; 2]) -> [f64; 2] {
         let [a, s] = self.order();
         let slope = self.slope.map_or(0.0, |axis| axis.canonical(texel[s], size[s]));
         [self.angle.canonical(texel[a], size[a]), slope]
     }
 
     /// Position at which a shader that knows this layout reads, in texels.
-    pub(super) fn position(&self, size: [u32; 2], [theta, alpha]: [f64; 2]) -> [f64; 2] {
+    pub fn position(&self, size: [u32; 2], [theta, alpha]: [f64; 2]) -> [f64; 2] {
         let [a, s] = self.order();
         let mut position = [0.5; 2];
         position[a] = self.angle.position(theta, size[a]);
@@ -263,8 +308,19 @@ impl Layout {
     }
 
     /// The image axes of direction and micro-surface.
-    pub(super) fn order(&self) -> [usize; 2] {
+    pub fn order(&self) -> [usize; 2] {
         if self.transposed { [1, 0] } else { [0, 1] }
+    }
+}
+
+impl fmt::Display for Layout {
+    /// The grammar of [`Layout::parse`].
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.slope {
+            Some(slope) if self.transposed => write!(f, "{slope},{}", self.angle),
+            Some(slope) => write!(f, "{},{slope}", self.angle),
+            None => write!(f, "{}", self.angle),
+        }
     }
 }
 
@@ -299,6 +355,7 @@ mod tests {
                 "cos_theta_sq^2,sqrt_roughness=0.1..1",
             ] {
                 let layout = Layout::parse(text, nodes).unwrap();
+                assert_eq!(layout.to_string(), text);
                 for texel in [[1, 1], [3, 2], [6, 4]] {
                     let [x, y] = layout.position([8, 6], layout.at_texel([8, 6], texel));
                     let off = (x - f64::from(texel[0]) - 0.5).abs().max((y - f64::from(texel[1]) - 0.5).abs());

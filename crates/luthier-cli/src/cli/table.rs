@@ -1,0 +1,70 @@
+//! Options of `table`.
+
+use std::path::PathBuf;
+
+use clap::{ArgGroup, Args, ValueEnum};
+use luthier_table::Preset;
+
+use super::audit::{preset, unit};
+
+const EXAMPLES: &str = "\
+Bakes the split-sum table of image-based lighting (DFG, environment BRDF) by quadrature: reflectance is f0 * scale + bias. With --preset in the \
+layout of an engine; with --max-abs the smallest table of half floats whose filtered reads hold this error, as KTX2. The output says \
+the layout and the error as sampled: bilinear, 8-bit weights, over cosines from --min-cos and alphas from --min-alpha. docs/engines.md \
+has the presets and how each engine takes its table.
+
+Exits with 1 when no table holds --max-abs: the output has the best.
+
+Examples:
+  luthier table dfg --preset bevy -o dfg.ktx2
+  luthier table dfg --preset three -o DFGLUTData.js --json
+  luthier table dfg --max-abs 1e-3 -o dfg.ktx2
+  luthier table dfg --max-abs 5e-4 --distribution beckmann --masking separable -o dfg.ktx2";
+
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES, group(ArgGroup::new("aim").required(true).args(["preset", "max_abs"])))]
+pub(crate) struct TableOptions {
+    /// The function
+    #[arg(value_name = "FUNCTION", value_enum)]
+    pub(crate) function: FunctionName,
+    /// The engine whose layout the table has
+    #[arg(long, value_name = "NAME", value_parser = preset)]
+    pub(crate) preset: Option<&'static Preset>,
+    /// Find the smallest table whose reads err by this at most, absolutely
+    #[arg(long, value_name = "X", value_parser = super::positive, allow_hyphen_values = true)]
+    pub(crate) max_abs: Option<f64>,
+    /// Slope distribution
+    #[arg(long, value_enum, default_value_t = DistributionName::Ggx, conflicts_with = "preset")]
+    pub(crate) distribution: DistributionName,
+    /// Masking term: correlated, separable, joint-approx, schlick-half, schlick-karis, schlick, v-cavity, kelemen or implicit
+    #[arg(long, value_name = "NAME", default_value = "correlated", conflicts_with = "preset")]
+    pub(crate) masking: String,
+    /// Lowest cosine that counts in the error, and at which the axis of a searched table begins
+    #[arg(long, value_name = "X", default_value_t = 0.01, value_parser = unit)]
+    pub(crate) min_cos: f64,
+    /// Lowest alpha likewise
+    #[arg(long, value_name = "X", default_value_t = 0.01, value_parser = unit)]
+    pub(crate) min_alpha: f64,
+    /// File to write
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+    /// Leave the texels of KTX2 files uncompressed, for programs that decode no zstd
+    #[arg(long)]
+    pub(crate) no_zstd: bool,
+    /// Print what was made as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Functions of tables.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum FunctionName {
+    /// Split sum of image-based lighting under Schlick's Fresnel
+    Dfg,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum DistributionName {
+    Ggx,
+    Beckmann,
+}
