@@ -103,6 +103,9 @@ pub enum TextureError {
     /// The PNG encoder refused.
     #[error("cannot encode PNG")]
     PngEncode(#[source] ::image::ImageError),
+    /// The PNG encoder of tables refused.
+    #[error("cannot encode PNG")]
+    PngTable(#[source] ::png::EncodingError),
     /// A grey-scale map was expected.
     #[error("the image has colours; a map needs equal red, green and blue, as at ({x}, {y}) they are not")]
     NotGrey {

@@ -1,8 +1,8 @@
-//! Metadata of EXR files: rules for keys and values.
+//! Metadata of EXR, KTX2 and PNG files: rules for keys and values.
 
 use crate::TextureError;
 
-/// Statements of an EXR file about itself: key and value, sorted by key in the file. Keys are 1 to 64 ASCII letters, digits, `.`, `_` and
+/// Statements of a file about itself: key and value, sorted by key in the file. Keys are 1 to 64 ASCII letters, digits, `.`, `_` and
 /// `-`, and distinct; values hold no NUL and are at most 1 MiB.
 pub type Metadata = Vec<(String, String)>;
 

@@ -111,5 +111,6 @@ fn stored(levels: &[Level]) -> Levels<'static> {
         height: first.images[0].height,
         faces: first.images.len() as u32,
         levels: levels.iter().map(|level| level.images.iter().flat_map(face).collect::<Vec<u8>>().into()).collect(),
+        metadata: Vec::new(),
     }
 }

@@ -1,7 +1,8 @@
 //! KTX2 (Khronos KTX file format 2.0): one level, or levels of maps and cubes to write; zstd-supercompressed or plain, with a basic data format descriptor.
 //!
-//! `KTXwriter` is the only key that is written: Khronos' validator warns about every key that the specification does not list,
-//! whatever its prefix, so that a file with one would not pass `ktx validate --warnings-as-errors`.
+//! Textures of bakes have the key `KTXwriter` and no other: Khronos' validator warns about every key that the specification does not list,
+//! whatever its prefix, so that a file with one would not pass `ktx validate --warnings-as-errors`. Tables that travel alone say what they are
+//! in keys of their own ([`Levels::metadata`]).
 
 use ::ktx2::dfd::{Basic, Block};
 use ::ktx2::{Format, Header, Index, LevelIndex, ParseError, SupercompressionScheme};
@@ -10,7 +11,7 @@ use luthier_lut::{Image, TexelFormat};
 use crate::error::Container;
 use crate::limits::checked_bytes;
 use crate::texels::TexelLayout;
-use crate::{Samples, Texture, TextureError, zstd};
+use crate::{Metadata, Samples, Texture, TextureError, metadata, zstd};
 
 /// Value of the `KTXwriter` entry.
 const WRITER: &str = concat!("luthier ", env!("CARGO_PKG_VERSION"));
@@ -38,7 +39,8 @@ pub fn encode_plain(texture: &Texture) -> Result<Vec<u8>, TextureError> {
 /// A KTX2 file of a map or a cube with levels, the smallest first, as the specification wants them; with zstd or without.
 ///
 /// # Errors
-/// As [`encode`]; and [`TextureError::Length`] for faces of another number than 1 or 6, or more levels than halve the sides.
+/// As [`encode`]; [`TextureError::Length`] for faces of another number than 1 or 6, or more levels than halve the sides; and
+/// [`TextureError::Metadata`].
 pub fn encode_levels(levels: &Levels<'_>, is_compressed: bool) -> Result<Vec<u8>, TextureError> {
     write(levels, is_compressed.then_some(SupercompressionScheme::Zstandard))
 }
@@ -56,12 +58,15 @@ pub struct Levels<'a> {
     pub faces: u32,
     /// The faces of each level one after another, the largest level first.
     pub levels: Vec<std::borrow::Cow<'a, [u8]>>,
+    /// Statements of the file about itself beside its writer; their keys begin with a small letter.
+    pub metadata: Metadata,
 }
 
 impl<'a> Levels<'a> {
-    fn one(texture: &'a Texture) -> Self {
+    /// A texture of one level.
+    pub fn one(texture: &'a Texture) -> Self {
         let Texture { format, width, height, ref bytes } = *texture;
-        Self { format, width, height, faces: 1, levels: vec![bytes.as_slice().into()] }
+        Self { format, width, height, faces: 1, levels: vec![bytes.as_slice().into()], metadata: Metadata::new() }
     }
 }
 
@@ -82,7 +87,7 @@ fn write(texture: &Levels<'_>, scheme: Option<SupercompressionScheme>) -> Result
     }
 
     let (descriptor, type_size) = descriptor_section(texture.format)?;
-    let key_values = key_value_section();
+    let key_values = key_value_section(&texture.metadata)?;
     let alignment = if scheme.is_some() { 1 } else { block_bytes(texture.format) };
     let stored: Vec<std::borrow::Cow<'_, [u8]>> = match scheme {
         Some(_) => {
@@ -306,12 +311,26 @@ fn describes(found: &[u8], expected: &[u8]) -> bool {
     found.len() == expected.len() && found.iter().zip(expected).enumerate().all(|(i, (a, b))| a == b || free(i))
 }
 
-/// One entry by section 3.11 of the specification: length, key, NUL, value, NUL, padding to 4 bytes.
-fn key_value_section() -> Vec<u8> {
-    let entry = ["KTXwriter", "\0", WRITER, "\0"].concat();
-    let mut section = [&(entry.len() as u32).to_le_bytes(), entry.as_bytes()].concat();
-    section.resize(section.len().next_multiple_of(4), 0);
-    section
+/// Entries by section 3.11 of the specification, sorted by key: length, key, NUL, value, NUL, padding to 4 bytes.
+fn key_value_section(metadata: &Metadata) -> Result<Vec<u8>, TextureError> {
+    metadata::check(metadata)?;
+    if let Some((key, _)) = metadata.iter().find(|(key, _)| !key.starts_with(|c: char| c.is_ascii_lowercase())) {
+        return Err(TextureError::Metadata {
+            key: key.clone(),
+            reason: "a key of KTX2 begins with a small letter here",
+        });
+    }
+    let mut entries: Vec<(&str, &str)> = metadata.iter().map(|(key, value)| (key.as_str(), value.as_str())).collect();
+    entries.push(("KTXwriter", WRITER));
+    entries.sort_unstable();
+    let mut section = Vec::new();
+    for (key, value) in entries {
+        let entry = [key, "\0", value, "\0"].concat();
+        section.extend_from_slice(&(entry.len() as u32).to_le_bytes());
+        section.extend_from_slice(entry.as_bytes());
+        section.resize(section.len().next_multiple_of(4), 0);
+    }
+    Ok(section)
 }
 
 /// Whether the key/value data hold whole entries, and rows go from the top down, which is what a file without a word of it means.

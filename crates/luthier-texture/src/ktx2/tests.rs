@@ -224,7 +224,8 @@ fn levels_of_a_cube() {
     let level =
         |side: u32, first: u8| (0..side * side * 6 * 8).map(|i| first.wrapping_add(i as u8)).collect::<Vec<u8>>();
     let levels = vec![level(4, 1).into(), level(2, 7).into(), level(1, 9).into()];
-    let cube = Levels { format: TexelFormat::Rgba16Float, width: 4, height: 4, faces: 6, levels };
+    let cube =
+        Levels { format: TexelFormat::Rgba16Float, width: 4, height: 4, faces: 6, levels, metadata: Metadata::new() };
     for is_compressed in [true, false] {
         let file = encode_levels(&cube, is_compressed).unwrap();
         let reader = ::ktx2::Reader::new(&file).unwrap();
@@ -248,4 +249,19 @@ fn levels_of_a_cube() {
     ] {
         assert!(encode_levels(&wrong, true).is_err());
     }
+}
+
+/// What a file says of itself is found by another reader; keys that the specification has for others are refused.
+#[test]
+fn metadata_are_entries_of_their_own() {
+    let texture = texture(TexelFormat::Rg16Float, 3, 2);
+    let with =
+        |key: &str| Levels { metadata: vec![(key.to_owned(), "a, \u{3b1} = 0.5".to_owned())], ..Levels::one(&texture) };
+    let file = encode_levels(&with("luthier.table"), true).unwrap();
+    let reader = ::ktx2::Reader::new(&file).unwrap();
+    let keys: Vec<_> = reader.key_value_data().collect();
+    assert_eq!(keys[0].0, "KTXwriter");
+    assert_eq!(keys[1], ("luthier.table", "a, \u{3b1} = 0.5\0".as_bytes()));
+    assert_eq!(decode(&file).unwrap(), texture);
+    assert!(encode_levels(&with("KTXorientation"), true).is_err());
 }

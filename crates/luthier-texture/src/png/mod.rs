@@ -1,4 +1,4 @@
-//! PNG: pictures to look at, and maps made by others to read.
+//! PNG: pictures to look at, tables of 8 bits, and maps made by others to read.
 
 use std::io::Cursor;
 
@@ -8,7 +8,7 @@ use luthier_lut::Image;
 
 use crate::error::Container;
 use crate::limits::{check_image, checked_bytes};
-use crate::{TextureError, srgb};
+use crate::{Metadata, TextureError, metadata, srgb};
 
 /// Deflate expands by at most 1032 (RFC 1951: a match of 258 bytes in two bits); a file that promises more is damaged.
 const MAX_EXPANSION: u64 = 1032;
@@ -39,6 +39,33 @@ pub fn encode_rgb(width: u32, height: u32, rgb8: &[u8]) -> Result<Vec<u8>, Textu
 pub fn encode_image(image: &Image) -> Result<Vec<u8>, TextureError> {
     check_image(image)?;
     encode_rgb(image.width, image.height, &srgb::rgb8(image))
+}
+
+/// A PNG of a table: one to four channels, linear values clipped to 0..=1, as 8 bits without a colour space; statements about it as text.
+///
+/// # Errors
+/// [`TextureError::Size`], [`TextureError::Channels`], [`TextureError::Length`], [`TextureError::Metadata`], [`TextureError::PngTable`].
+pub fn encode_table(table: &Image, metadata: &Metadata) -> Result<Vec<u8>, TextureError> {
+    check_image(table)?;
+    metadata::check(metadata)?;
+    let bytes: Vec<u8> = table.data.iter().map(|value| (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8).collect();
+    let mut file = Vec::new();
+    let mut encoder = ::png::Encoder::new(&mut file, table.width, table.height);
+    encoder.set_depth(::png::BitDepth::Eight);
+    encoder.set_color(match table.channels {
+        1 => ::png::ColorType::Grayscale,
+        2 => ::png::ColorType::GrayscaleAlpha,
+        3 => ::png::ColorType::Rgb,
+        _ => ::png::ColorType::Rgba,
+    });
+    encoder.set_compression(::png::Compression::High);
+    for (key, value) in metadata {
+        encoder.add_itxt_chunk(key.clone(), value.clone()).map_err(TextureError::PngTable)?;
+    }
+    let mut writer = encoder.write_header().map_err(TextureError::PngTable)?;
+    writer.write_image_data(&bytes).map_err(TextureError::PngTable)?;
+    writer.finish().map_err(TextureError::PngTable)?;
+    Ok(file)
 }
 
 /// A PNG of a map: one channel, linear values clipped to 0..=1, as 8 bits of grey, which every engine filters.

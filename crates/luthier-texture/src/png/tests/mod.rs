@@ -87,3 +87,20 @@ proptest! {
         }
     }
 }
+
+/// Values of a table are not encoded as colours, and its statements are text that the reader of the `png` crate finds.
+#[test]
+fn tables_are_linear_and_say_what_they_are() {
+    for channels in 1..=4 {
+        let data: Vec<f32> = (0..6 * channels).map(|i| (i * 11 % 256) as f32 / 255.0).collect();
+        let table = Image { width: 3, height: 2, channels, data };
+        let metadata = vec![("luthier.table".to_owned(), "max 5e-4, \u{3b1} from 0.01".to_owned())];
+        let file = encode_table(&table, &metadata).unwrap();
+        assert_eq!(decode_table(&file).unwrap(), (table.clone(), 8));
+        let reader = ::png::Decoder::new(Cursor::new(&file)).read_info().unwrap();
+        let text = &reader.info().utf8_text[0];
+        assert_eq!((text.keyword.as_str(), text.get_text().unwrap()), ("luthier.table", metadata[0].1.clone()));
+        assert!(reader.info().srgb.is_none() && reader.info().gama_chunk.is_none());
+        assert!(encode_table(&table, &vec![("two words".to_owned(), String::new())]).is_err());
+    }
+}
