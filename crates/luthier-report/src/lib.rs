@@ -20,6 +20,7 @@
 //! The caller puts the rest of a page (searches, costs, pictures, models against the reference) into the report: [`Costs`],
 //! [`Exhibits`], [`judge_shading_models`]. [`limits()`] holds the report against budgets.
 //! [`judge_models`] compares every reflectance model with the Monte Carlo simulation of whole stacks.
+//! [`Certificate`] is the page of one table that travels alone.
 //! [`stability`] runs every method on stacks where methods fail, and finds the domain of each.
 //!
 //! Simplifications: of thickness maps only the properties that follow from the stack are checked (range, normalisation), because
@@ -27,6 +28,7 @@
 //! the baker (both are of `luthier-optics`), not their seeds, number or colour treatment.
 
 mod audit;
+mod certificate;
 mod error;
 mod judge;
 mod measure;
@@ -37,6 +39,7 @@ mod picture;
 pub mod stability;
 
 pub use audit::{Audit, AuditError, AuditVerdict, Candidate, Mistake, Model, Statement, Term, audit};
+pub use certificate::{Certificate, ErrorMap};
 pub use error::ReportError;
 pub use judge::ball::{BallPicture, DistantLight, render_ball};
 pub use judge::evidence::{

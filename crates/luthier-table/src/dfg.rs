@@ -83,6 +83,15 @@ impl Stored {
         }
     }
 
+    /// Bytes of one value; three values of ten bits share four.
+    pub fn bytes(self) -> usize {
+        match self {
+            Self::Unorm8 | Self::Unorm10 => 1,
+            Self::Unorm16 | Self::Half => 2,
+            Self::Float => 4,
+        }
+    }
+
     /// The values that a shader reads, of an image of up to four channels.
     pub fn quantise(self, image: &Image) -> Image {
         let format = match self {
@@ -158,6 +167,13 @@ impl DfgTable {
     pub fn error(&self, texels: &Image, min_cos: f64, min_alpha: f64) -> ErrorStats {
         let exact = |alpha: f64, cos: f64| split_sum(self.distribution, self.masking, alpha, cos);
         self.error_against(texels, [min_cos, min_alpha], SCAN_POINTS, exact)
+    }
+
+    /// The largest error of all channels of a read at one cosine and alpha, against quadrature.
+    pub fn error_at(&self, texels: &Image, cos_theta: f64, alpha: f64) -> f64 {
+        let texel = bilinear(texels, self.layout.position(self.size, [libm::acos(cos_theta), alpha]), WEIGHTS);
+        let sum = split_sum(self.distribution, self.masking, alpha, cos_theta);
+        self.values.iter().zip(texel).fold(0.0, |worst, (value, read)| (value.of(sum) - read).abs().max(worst))
     }
 
     pub(crate) fn error_against(

@@ -280,7 +280,7 @@ mod audit;
 pub(crate) use audit::{AuditOptions, NodesName, SamplesName};
 
 mod table;
-pub(crate) use table::{DistributionName, FunctionName, TableOptions};
+pub(crate) use table::{Delivery, DfgOptions, DistributionName, Function, TableOptions};
 
 #[cfg(feature = "gpu")]
 mod render;

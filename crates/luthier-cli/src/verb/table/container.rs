@@ -1,0 +1,54 @@
+//! Files of tables, in the containers that engines take.
+
+use luthier_lut::{Image, TexelFormat};
+use luthier_table::{Container, Stored};
+use luthier_terminal::{Failure, Outcome};
+use luthier_texture::ktx2::{Levels, encode_levels};
+use luthier_texture::{Metadata, Texture, png};
+
+/// Key of the statement in the metadata of a file.
+const STATEMENT: &str = "luthier.table";
+
+/// A file of texels: `statement` (JSON) stands in its metadata, `words` in the comments of source code. Raw texels hold neither.
+pub(super) fn encode(
+    container: Container,
+    texels: &Image,
+    stored: Stored,
+    words: &str,
+    statement: &str,
+    no_zstd: bool,
+) -> Outcome<Vec<u8>> {
+    let metadata: Metadata = vec![(STATEMENT.to_owned(), statement.to_owned())];
+    match container {
+        Container::Ktx2 => {
+            let format = if texels.channels <= 2 { TexelFormat::Rg16Float } else { TexelFormat::Rgba16Float };
+            let Image { width, height, .. } = *texels;
+            let texture = Texture { format, width, height, bytes: format.encode(texels) };
+            let levels = Levels { metadata, ..Levels::one(&texture) };
+            encode_levels(&levels, !no_zstd).map_err(Failure::input)
+        }
+        Container::Png => png::encode_table(texels, &metadata).map_err(Failure::input),
+        Container::Raw => Ok(raw(texels, stored)),
+        Container::JavaScript => Ok(javascript(texels, words).into_bytes()),
+    }
+}
+
+fn raw(texels: &Image, stored: Stored) -> Vec<u8> {
+    let values = texels.data.iter();
+    match stored {
+        Stored::Unorm16 => values.flat_map(|v| ((v * 65535.0).round() as u16).to_le_bytes()).collect(),
+        Stored::Unorm8 | Stored::Unorm10 => values.map(|v| (v * 255.0).round() as u8).collect(),
+        Stored::Half => values.flat_map(|v| half::f16::from_f32(*v).to_le_bytes()).collect(),
+        Stored::Float => values.flat_map(|v| v.to_le_bytes()).collect(),
+    }
+}
+
+/// The module of three.js: the words of half floats, row by row.
+fn javascript(texels: &Image, words: &str) -> String {
+    let row = |row: &[f32]| {
+        let words: Vec<String> = row.iter().map(|v| format!("0x{:04x}", half::f16::from_f32(*v).to_bits())).collect();
+        format!("\t{}", words.join(", "))
+    };
+    let rows: Vec<String> = texels.data.chunks_exact((texels.width * texels.channels) as usize).map(row).collect();
+    format!("// {words}\nexport const DFG_LUT_DATA = new Uint16Array( [\n{}\n] );\n", rows.join(",\n"))
+}
