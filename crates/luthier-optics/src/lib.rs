@@ -14,9 +14,11 @@
 //! the same bits on every platform.
 
 pub mod albedo;
+pub mod cloth;
 pub mod color;
 pub mod color_difference;
 pub mod constants;
+pub mod diffuse_albedo;
 pub mod f0_table;
 pub mod film_color;
 pub mod fresnel;
