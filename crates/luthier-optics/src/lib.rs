@@ -14,6 +14,7 @@
 //! the same bits on every platform.
 
 pub mod albedo;
+mod chebyshev;
 pub mod cloth;
 pub mod color;
 pub mod color_difference;

@@ -3,11 +3,15 @@
 //! The lobe is D V without Fresnel; V = G / (4 cos_theta_i cos_theta_o). It is single-scattering and gains energy where alpha is low and light
 //! grazes: albedos exceed 1 there.
 
+mod row;
+
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
 use crate::albedo::COS_THETA_MIN;
 use crate::quadrature::GradedRules;
+
+pub use row::ClothRow;
 
 /// Lowest alpha of a cloth lobe; lower ones are evaluated as this one.
 pub const CLOTH_ALPHA_MIN: f64 = 1e-6;
@@ -125,7 +129,34 @@ const SMOOTH_POWER: f64 = 3.0;
 fn albedos_of<const N: usize>(rules: &Rules, terms: [ClothVisibility; N], alpha: f64, cos_theta: f64) -> [f64; N] {
     let alpha = alpha.max(CLOTH_ALPHA_MIN);
     let cos_v = cos_theta.clamp(COS_THETA_MIN, 1.0);
-    let ring = Ring { cos_v, sin_v_sq: (1.0 - cos_v) * (1.0 + cos_v), power: 0.5 / alpha };
+    let scale = libm::exp(ln_largest(alpha, cos_v));
+    if scale < NEGLIGIBLE {
+        return [0.0; N];
+    }
+    over_largest(rules, terms, alpha, cos_v).map(|over| scale * over)
+}
+
+/// Largest D below which albedos, at most pi/2 of it, are 0.
+const NEGLIGIBLE: f64 = 1e-12;
+
+/// The logarithm of the largest D over all directions of light: at the horizon below the view.
+fn ln_largest(alpha: f64, cos_v: f64) -> f64 {
+    libm::log((2.0 + 1.0 / alpha) / (2.0 * PI)) + 0.5 / alpha * ln_largest_sine_sq(cos_v)
+}
+
+/// The logarithm of the half vector's squared sine there; its cosine is the sine of half the view's elevation.
+fn ln_largest_sine_sq(cos_v: f64) -> f64 {
+    libm::log1p(-0.5 * cos_v * cos_v / (1.0 + libm::sqrt((1.0 - cos_v) * (1.0 + cos_v))))
+}
+
+/// Albedos over the largest D, for cosines and alphas within their limits.
+fn over_largest<const N: usize>(rules: &Rules, terms: [ClothVisibility; N], alpha: f64, cos_v: f64) -> [f64; N] {
+    let ring = Ring {
+        cos_v,
+        sin_v_sq: (1.0 - cos_v) * (1.0 + cos_v),
+        power: 0.5 / alpha,
+        ln_reference: ln_largest_sine_sq(cos_v),
+    };
     let lambda_v = charlie_lambda(alpha, cos_v);
     let mut sums = [0.0; N];
     let mut add = |cos_l: f64, weight: f64| {
@@ -159,8 +190,7 @@ fn albedos_of<const N: usize>(rules: &Rules, terms: [ClothVisibility; N], alpha:
     panel(cos_v, below, below / mirror_reach, &rules.mirror);
     panel(cos_v, above, (above - cos_v) / mirror_reach, &rules.mirror);
     panel(above, 1.0, from_horizon.max(cos_v), &rules.horizon);
-    let scale = (2.0 + 1.0 / alpha) / (2.0 * PI);
-    sums.map(|sum| scale * sum)
+    sums
 }
 
 /// Directions of light of one polar angle.
@@ -169,10 +199,12 @@ struct Ring {
     sin_v_sq: f64,
     /// D goes with the squared sine of the half vector's angle to this power.
     power: f64,
+    /// The logarithm of the largest squared sine of all rings.
+    ln_reference: f64,
 }
 
 impl Ring {
-    /// The integral over the azimuth of that power of the squared sine.
+    /// The integral over the azimuth of that power of the squared sine, over the largest.
     fn around(&self, rules: &Rules, cos_l: f64) -> f64 {
         let sin_l_sq = (1.0 - cos_l) * (1.0 + cos_l);
         let sines = libm::sqrt(self.sin_v_sq) + libm::sqrt(sin_l_sq);
@@ -190,10 +222,11 @@ impl Ring {
             if cos_sq < 0.5 { libm::log1p(-cos_sq) } else { libm::log(sin_part / length_sq) }
         };
         let largest = ln_of(1.0, 0.0);
-        if self.power * largest < SMALLEST_LN {
+        if self.power * (largest - self.ln_reference) < SMALLEST_LN {
             return 0.0;
         }
-        let value = |near_part: f64, far_part: f64| libm::exp(self.power * ln_of(near_part, far_part));
+        let value =
+            |near_part: f64, far_part: f64| libm::exp(self.power * (ln_of(near_part, far_part) - self.ln_reference));
         // With t the tangent of half the azimuth: the scale of t on which the logarithm falls, and that of 1/t on which it rises.
         let fall = self.power * cosines_sq * (near - far) / (near * (near + cosines_sq));
         let rise_of_length = (near + cosines_sq) / (far + cosines_sq);
@@ -211,7 +244,7 @@ impl Ring {
     }
 }
 
-/// Logarithm below which a ring is left out: e^-50 is below rounding even of 1/alpha.
+/// Logarithm below which a ring is left out: e^-50 is below rounding.
 const SMALLEST_LN: f64 = -50.0;
 
 #[cfg(test)]
