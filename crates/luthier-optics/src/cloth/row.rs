@@ -46,7 +46,7 @@ impl ClothRow {
             return cloth_albedo(ClothVisibility::Neubelt, *alpha, cos_theta);
         }
         let [value] = clenshaw(coordinate.of(cos_theta), polynomial.iter().copied());
-        if *alpha < LOGARITHMIC_BELOW { libm::exp(value + ln_largest(*alpha, cos_theta)) } else { value }
+        if *alpha < LOGARITHMIC_BELOW { libm::exp(value + ln_largest(*alpha, cos_theta)) } else { value.max(0.0) }
     }
 }
 
