@@ -14,9 +14,12 @@
 //! the same bits on every platform.
 
 pub mod albedo;
+mod chebyshev;
+pub mod cloth;
 pub mod color;
 pub mod color_difference;
 pub mod constants;
+pub mod diffuse_albedo;
 pub mod f0_table;
 pub mod film_color;
 pub mod fresnel;

@@ -1,11 +1,12 @@
 //! Tables of the split sum: what they state, their texels, their error.
 
-use luthier_lut::{Comparison, ErrorStats, Image, Scan, TexelFormat, WeightBits, balance, bilinear, measure_scan};
-use luthier_optics::split_sum::{Masking, SplitSum, SplitSumSurface, split_sum};
+use luthier_lut::{Comparison, ErrorStats, Image, Scan, WeightBits, balance, bilinear, measure_scan};
+use luthier_optics::split_sum::{Masking, SplitSum, SplitSumSurface};
 use luthier_optics::stack::Distribution;
 use rayon::prelude::*;
 
-use crate::Layout;
+use crate::value::{Line, Needs, Parts};
+use crate::{Layout, Stored, Value};
 
 /// Fraction bits of the sampler's weights.
 const WEIGHTS: WeightBits = WeightBits::Fixed(8);
@@ -13,100 +14,6 @@ const WEIGHTS: WeightBits = WeightBits::Fixed(8);
 const SCAN_POINTS: u32 = 96;
 /// Halvings of the climb to the worst error.
 const REFINEMENTS: u32 = 8;
-
-/// Content of one channel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Value {
-    /// Factor of f0.
-    Scale,
-    /// Summand beside the factor of f0.
-    Bias,
-    /// Sum of scale and bias: the albedo for f0 = 1.
-    Albedo,
-    /// 1 less the albedo: small where the albedo is near 1, so that half floats hold it more closely.
-    Loss,
-    /// 0: a channel that the engine keeps for something else.
-    Zero,
-}
-
-impl Value {
-    /// All contents.
-    pub const ALL: [Self; 5] = [Self::Scale, Self::Bias, Self::Albedo, Self::Loss, Self::Zero];
-
-    /// Its name in files and on command lines.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Scale => "scale",
-            Self::Bias => "bias",
-            Self::Albedo => "albedo",
-            Self::Loss => "loss",
-            Self::Zero => "zero",
-        }
-    }
-
-    /// The content for a split sum.
-    pub fn of(self, sum: SplitSum) -> f64 {
-        match self {
-            Self::Scale => sum.scale,
-            Self::Bias => sum.bias,
-            Self::Albedo => sum.albedo(),
-            Self::Loss => 1.0 - sum.albedo(),
-            Self::Zero => 0.0,
-        }
-    }
-}
-
-/// Number type of texels.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stored {
-    /// A byte over 255.
-    Unorm8,
-    /// Ten bits over 1023.
-    Unorm10,
-    /// Two bytes over 65535.
-    Unorm16,
-    /// Half float.
-    Half,
-    /// 32-bit float.
-    Float,
-}
-
-impl Stored {
-    /// Its name in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Unorm8 => "unorm8",
-            Self::Unorm10 => "unorm10",
-            Self::Unorm16 => "unorm16",
-            Self::Half => "half",
-            Self::Float => "float",
-        }
-    }
-
-    /// Bytes of one value; three values of ten bits share four.
-    pub fn bytes(self) -> usize {
-        match self {
-            Self::Unorm8 | Self::Unorm10 => 1,
-            Self::Unorm16 | Self::Half => 2,
-            Self::Float => 4,
-        }
-    }
-
-    /// The values that a shader reads, of an image of up to four channels.
-    pub fn quantise(self, image: &Image) -> Image {
-        let format = match self {
-            Self::Unorm8 => TexelFormat::Rgba8Unorm,
-            Self::Unorm10 => TexelFormat::Rgb10a2Unorm,
-            Self::Unorm16 => TexelFormat::Rgba16Unorm,
-            Self::Half => TexelFormat::Rgba16Float,
-            Self::Float => return image.clone(),
-        };
-        let read = format.quantise(image);
-        let channels = image.channels as usize;
-        let data = read.texels().flat_map(|texel| texel[..channels].iter().copied()).collect();
-        Image { channels: image.channels, data, ..read }
-    }
-}
 
 /// A table of the split sum of image-based lighting (Karis 2013): a statement, from which its texels follow.
 #[derive(Debug, Clone, PartialEq)]
@@ -126,17 +33,26 @@ pub struct DfgTable {
 }
 
 impl DfgTable {
-    /// The texels, as a shader reads them: values at the nodes within 2e-6 (GGX) or 2e-4 (Beckmann), moved by a sixteenth of their second differences, so
-    /// that reads between them err to both sides alike, then rounded. Deterministic, whatever the number of threads.
-    pub fn bake(&self) -> Image {
-        self.bake_from(&SplitSumSurface::new(self.distribution, self.masking))
+    /// The content of each channel at an alpha and a cosine, by quadrature; 0 from the last channel on.
+    pub fn at(&self, alpha: f64, cos_theta: f64) -> [f64; 4] {
+        let needs = Needs::of(&self.values);
+        self.contents(&Parts::exact(needs, self.distribution, self.masking, alpha, cos_theta))
     }
 
-    /// As [`Self::bake`], from the surface of this distribution and masking term.
-    pub(crate) fn bake_from(&self, surface: &SplitSumSurface) -> Image {
+    /// The texels, as a shader reads them: values at the nodes, moved by a sixteenth of their second differences, so that reads between them err
+    /// to both sides alike, then rounded. Values are within 2e-6 (GGX and cloth) or 2e-4 (Beckmann), cloth where it is below 1; beyond relatively.
+    /// Deterministic, whatever the number of threads.
+    pub fn bake(&self) -> Image {
+        let surface = Needs::of(&self.values).split_sum.then(|| SplitSumSurface::new(self.distribution, self.masking));
+        self.bake_from(surface.as_ref())
+    }
+
+    /// As [`Self::bake`], from the surface of this distribution and masking term; none where no value needs a split sum.
+    pub(crate) fn bake_from(&self, surface: Option<&SplitSumSurface>) -> Image {
         let [width, height] = self.size;
         let [angles, slopes] = self.layout.order();
         let channels = self.values.len();
+        let needs = Needs::of(&self.values);
         // Lines of one slope: rows, or columns of a transposed table.
         let lines: Vec<Vec<f32>> = (0..self.size[slopes])
             .into_par_iter()
@@ -146,9 +62,10 @@ impl DfgTable {
                     (texel[angles], texel[slopes]) = (along, line);
                     self.layout.at_texel(self.size, texel)
                 };
-                let row = surface.row(at(0)[1]);
-                let values = (0..self.size[angles]).map(|along| row.at(libm::cos(at(along)[0]).max(0.0)));
-                values.flat_map(|sum| self.values.iter().map(move |value| value.of(sum) as f32)).collect()
+                let row = Line::new(needs, surface, at(0)[1]);
+                let contents = |along: u32| self.contents(&row.at(libm::cos(at(along)[0]).max(0.0)));
+                let texels = (0..self.size[angles]).map(contents);
+                texels.flat_map(|texel| texel.into_iter().take(channels).map(|value| value as f32)).collect()
             })
             .collect();
         let mut image = Image::zeros(width, height, channels as u32);
@@ -165,15 +82,37 @@ impl DfgTable {
     /// The error of reads (bilinear, 8-bit weights) from texels of this statement, over cosines and alphas from the given ones on: absolute, of
     /// every channel, against quadrature.
     pub fn error(&self, texels: &Image, min_cos: f64, min_alpha: f64) -> ErrorStats {
-        let exact = |alpha: f64, cos: f64| split_sum(self.distribution, self.masking, alpha, cos);
-        self.error_against(texels, [min_cos, min_alpha], SCAN_POINTS, exact)
+        self.error_against(texels, [min_cos, min_alpha], SCAN_POINTS, |alpha, cos| self.at(alpha, cos))
+    }
+
+    /// As [`Self::error`], of each channel apart: a channel of cloth errs by far the most.
+    pub fn channel_errors(&self, texels: &Image, min_cos: f64, min_alpha: f64) -> Vec<ErrorStats> {
+        let one = |(channel, value): (usize, &Value)| {
+            let values = texels.texels().map(|texel| texel[channel]).collect();
+            let alone = Image { width: texels.width, height: texels.height, channels: 1, data: values };
+            Self { values: vec![*value], ..self.clone() }.error(&alone, min_cos, min_alpha)
+        };
+        self.values.iter().enumerate().map(one).collect()
+    }
+
+    /// The content of each channel for a split sum, where no value needs more.
+    pub(crate) fn of_split_sum(&self, sum: SplitSum) -> [f64; 4] {
+        self.contents(&sum.into())
+    }
+
+    fn contents(&self, parts: &Parts) -> [f64; 4] {
+        let mut contents = [0.0; 4];
+        for (content, value) in contents.iter_mut().zip(&self.values) {
+            *content = value.of(parts);
+        }
+        contents
     }
 
     /// The largest error of all channels of a read at one cosine and alpha, against quadrature.
     pub fn error_at(&self, texels: &Image, cos_theta: f64, alpha: f64) -> f64 {
         let texel = bilinear(texels, self.layout.position(self.size, [libm::acos(cos_theta), alpha]), WEIGHTS);
-        let sum = split_sum(self.distribution, self.masking, alpha, cos_theta);
-        self.values.iter().zip(texel).fold(0.0, |worst, (value, read)| (value.of(sum) - read).abs().max(worst))
+        let exact = self.at(alpha, cos_theta);
+        exact.iter().zip(texel).take(self.values.len()).fold(0.0, |worst, (value, read)| (value - read).abs().max(worst))
     }
 
     pub(crate) fn error_against(
@@ -181,7 +120,7 @@ impl DfgTable {
         texels: &Image,
         [min_cos, min_alpha]: [f64; 2],
         points: u32,
-        exact: impl Fn(f64, f64) -> SplitSum + Sync,
+        exact: impl Fn(f64, f64) -> [f64; 4] + Sync,
     ) -> ErrorStats {
         let Layout { angle, slope, .. } = self.layout;
         let ends = |a: f64, b: f64| (a.min(b), a.max(b));
@@ -198,12 +137,10 @@ impl DfgTable {
         let compare = |u: [f64; 2]| {
             let at = canonical(u);
             let texel = bilinear(texels, self.layout.position(self.size, at), WEIGHTS);
-            let sum = exact(at[1], libm::cos(at[0]).max(0.0));
-            let mut result = Comparison { expected: [0.0; 4], sampled: [0.0; 4] };
-            for (c, value) in self.values.iter().enumerate() {
-                (result.expected[c], result.sampled[c]) = (value.of(sum), texel[c]);
-            }
-            result
+            let expected = exact(at[1], libm::cos(at[0]).max(0.0));
+            let mut sampled = [0.0; 4];
+            sampled[..self.values.len()].copy_from_slice(&texel[..self.values.len()]);
+            Comparison { expected, sampled }
         };
         measure_scan(&scan, compare, |u| {
             let [theta, alpha] = canonical(u);
@@ -214,6 +151,9 @@ impl DfgTable {
 
 #[cfg(test)]
 mod tests {
+    use luthier_optics::cloth::{ClothVisibility, cloth_albedo};
+    use luthier_optics::diffuse_albedo::disney_albedo;
+
     use super::*;
     use crate::Nodes;
 
@@ -239,10 +179,10 @@ mod tests {
             }
         }
         // The corner is not moved along either axis.
-        let expected = split_sum(Distribution::Ggx, Masking::SmithCorrelated, 0.9375 * 0.9375, 31.0 / 32.0);
-        let corner = plain.texel(15, 7);
-        for (value, found) in Value::ALL.into_iter().zip(corner) {
-            assert!((value.of(expected) - f64::from(*found)).abs() < 3e-6, "{value:?} {found}");
+        let statement = table("cos_theta,roughness", Nodes::CENTRES, [16, 8]);
+        let expected = statement.at(0.9375 * 0.9375, 31.0 / 32.0);
+        for ((expected, found), value) in expected.into_iter().zip(plain.texel(15, 7)).zip(statement.values) {
+            assert!((expected - f64::from(*found)).abs() < 3e-6, "{value:?} {found}");
         }
     }
 
@@ -257,20 +197,37 @@ mod tests {
         assert!((3.0..5.0).contains(&(coarse / fine)), "{coarse:e} {fine:e}");
     }
 
+    /// Channels beside the split sum, against the functions that they are of.
     #[test]
-    fn texels_are_rounded_as_stored() {
-        let image = Image { width: 1, height: 1, channels: 2, data: vec![0.3, 0.700_1] };
-        for stored in [Stored::Unorm8, Stored::Unorm10, Stored::Unorm16, Stored::Half, Stored::Float] {
-            let read = stored.quantise(&image);
-            assert_eq!(read.channels, 2);
-            let step = match stored {
-                Stored::Unorm8 => 1.0 / 255.0,
-                Stored::Unorm10 => 1.0 / 1023.0,
-                Stored::Unorm16 => 1.0 / 65535.0,
-                Stored::Half => 1.0 / 2048.0,
-                Stored::Float => 0.0,
-            };
-            assert!((read.data[1] - 0.700_1).abs() <= 0.5 * step + 1e-7, "{stored:?}");
+    fn other_channels_hold_what_they_say() {
+        let axes = Layout::parse("cos_theta,roughness", Nodes::CENTRES).unwrap();
+        let values = vec![Value::Cloth, Value::Sheen, Value::Disney, Value::One];
+        let table =
+            DfgTable { values, ..DfgTable { layout: axes, ..table("cos_theta,alpha", Nodes::CENTRES, [8, 8]) } };
+        let texels = table.bake();
+        // The corner is not moved along either axis.
+        let (roughness, cos) = (15.0 / 16.0, 15.0 / 16.0);
+        let alpha = roughness * roughness;
+        let expected = [
+            cloth_albedo(ClothVisibility::Neubelt, alpha, cos),
+            cloth_albedo(ClothVisibility::EstevezKulla, alpha, cos),
+            disney_albedo(roughness, cos) / 1.035_714_285_714_285_7 - 0.5,
+            1.0,
+        ];
+        for (expected, found) in expected.into_iter().zip(texels.texel(7, 7)) {
+            assert!((expected - f64::from(*found)).abs() < 3e-6, "{expected} {found}");
         }
+        assert_eq!(table.at(alpha, cos)[3], 1.0);
+    }
+
+    /// Each channel's error is the error of a table of this channel alone, and the largest of all is that of the whole.
+    #[test]
+    fn channels_err_apart() {
+        let values = vec![Value::Bias, Value::Cloth];
+        let table = DfgTable { values, ..table("cos_theta,roughness", Nodes::CENTRES, [16, 16]) };
+        let texels = table.bake();
+        let [bias, cloth] = table.channel_errors(&texels, 0.1, 0.1).try_into().unwrap();
+        let all = table.error(&texels, 0.1, 0.1).max_abs_err;
+        assert!(bias.max_abs_err < 0.5 * cloth.max_abs_err && (all - cloth.max_abs_err).abs() < 0.1 * all);
     }
 }

@@ -12,9 +12,14 @@
 mod axes;
 mod dfg;
 mod preset;
+pub mod rgbd;
 mod search;
+mod stored;
+mod value;
 
 pub use axes::{AxesError, AxisSpec, Layout, Nodes, Quantity};
-pub use dfg::{DfgTable, Stored, Value};
+pub use dfg::DfgTable;
 pub use preset::{Container, Preset};
 pub use search::{Found, search};
+pub use stored::Stored;
+pub use value::Value;

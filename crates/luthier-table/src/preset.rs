@@ -16,6 +16,10 @@ pub enum Container {
     Raw,
     /// A JavaScript module that exports the words of half floats as `DFG_LUT_DATA`.
     JavaScript,
+    /// PNG of 8 bits and four channels: the bytes of [`crate::rgbd`].
+    RgbdPng,
+    /// OpenEXR.
+    Exr,
 }
 
 /// The split-sum table of an engine.
@@ -35,8 +39,8 @@ pub struct Preset {
     pub size: [u32; 2],
     /// Number type of the texels.
     pub stored: Stored,
-    /// How the table reaches the engine; none where a channel holds more than a split sum.
-    pub container: Option<Container>,
+    /// How the table reaches the engine.
+    pub container: Container,
     /// Where the layout was read.
     pub source: &'static str,
 }
@@ -49,11 +53,11 @@ impl Preset {
             masking: Masking::SmithCorrelated,
             axes: "cos_theta,roughness",
             nodes: Nodes::CENTRES,
-            values: &[Value::Bias, Value::Albedo],
+            values: &[Value::Bias, Value::Albedo, Value::Cloth],
             size: [256, 256],
-            stored: Stored::Unorm8,
-            container: None,
-            source: "npm @babylonjs/core 9.35.0: environmentBRDFTexture; RGBD, so that rgb = pow(c, 2.2) / a",
+            stored: Stored::Rgbd,
+            container: Container::RgbdPng,
+            source: "npm @babylonjs/core 9.35.0, Misc/brdfTextureTools.js: environmentBRDFTexture; Shaders/ShadersInclude/helperFunctions.js: fromRGBD",
         },
         Self {
             name: "bevy",
@@ -63,52 +67,52 @@ impl Preset {
             values: &[Value::Scale, Value::Bias],
             size: [64, 64],
             stored: Stored::Half,
-            container: Some(Container::Ktx2),
+            container: Container::Ktx2,
             source: "bevyengine/bevy: the resource DfgLut of bevy_pbr, dfg.ktx2",
         },
         Self {
             name: "filament",
             masking: Masking::SmithCorrelated,
-            axes: "cos_theta,-roughness",
+            axes: "cos_theta,roughness",
             nodes: Nodes::CENTRES,
-            values: &[Value::Bias, Value::Albedo],
+            values: &[Value::Bias, Value::Albedo, Value::Cloth],
             size: [128, 128],
             stored: Stored::Half,
-            container: None,
-            source: "google/filament, libs/ibl/src/CubemapIBL.cpp: DFG, DFV_Multiscatter",
+            container: Container::Raw,
+            source: "google/filament, filament/src/DFG.cpp, shaders/src/surface_light_indirect.fs: PrefilteredDFG_LUT; libs/ibl/src/CubemapIBL.cpp: DFG",
         },
         Self {
             name: "gltf",
             masking: Masking::SmithCorrelated,
             axes: "cos_theta,roughness",
             nodes: Nodes::CENTRES,
-            values: &[Value::Scale, Value::Bias, Value::Zero],
+            values: &[Value::Scale, Value::Bias, Value::Cloth],
             size: [1024, 1024],
             stored: Stored::Unorm8,
-            container: Some(Container::Png),
-            source: "KhronosGroup/glTF-IBL-Sampler, lib/source/shaders/filter.frag: LUT; lut_ggx.png of glTF-Sample-Viewer",
+            container: Container::Png,
+            source: "KhronosGroup/glTF-IBL-Sampler, lib/shaders/filter.frag: LUT_GGX, LUT_CharlieUniform; lut_ggx.png and lut_charlie.png of glTF-Sample-Viewer",
         },
         Self {
             name: "godot",
             masking: Masking::SchlickHalf,
             axes: "cos_theta,-roughness",
             nodes: Nodes::CENTRES,
-            values: &[Value::Bias, Value::Albedo],
+            values: &[Value::Bias, Value::Albedo, Value::Cloth, Value::One],
             size: [128, 128],
             stored: Stored::Half,
-            container: None,
+            container: Container::Raw,
             source: "godotengine/godot, servers/rendering/renderer_rd/shaders/forward_clustered/integrate_dfg.glsl",
         },
         Self {
             name: "hdrp",
             masking: Masking::SmithCorrelated,
-            axes: "sqrt_cos_theta,roughness",
+            axes: "sqrt_cos_theta,-roughness",
             nodes: Nodes::Ends,
-            values: &[Value::Bias, Value::Albedo],
+            values: &[Value::Bias, Value::Albedo, Value::Disney, Value::One],
             size: [64, 64],
             stored: Stored::Unorm10,
-            container: None,
-            source: "Unity-Technologies/Graphics, preIntegratedFGD_GGXDisneyDiffuse.shader",
+            container: Container::Exr,
+            source: "Unity-Technologies/Graphics, preIntegratedFGD_GGXDisneyDiffuse.shader, PreIntegratedFGD.cs; images of Unity have v = 0 at the bottom",
         },
         Self {
             name: "three",
@@ -118,7 +122,7 @@ impl Preset {
             values: &[Value::Scale, Value::Bias],
             size: [16, 16],
             stored: Stored::Half,
-            container: Some(Container::JavaScript),
+            container: Container::JavaScript,
             source: "npm three 0.187.0, src/renderers/shaders/DFGLUTData.js",
         },
         Self {
@@ -129,7 +133,7 @@ impl Preset {
             values: &[Value::Scale, Value::Bias],
             size: [128, 32],
             stored: Stored::Unorm16,
-            container: Some(Container::Raw),
+            container: Container::Raw,
             source: "Unreal Engine 4, SystemTextures.cpp: PreintegratedGF, Vis_SmithJointApprox; the idea in Karis 2013",
         },
     ];
@@ -156,16 +160,38 @@ impl Preset {
 mod tests {
     use super::*;
 
+    /// Of 256 x 256 texels at the most.
     #[test]
     fn every_preset_bakes() {
-        for preset in Preset::ALL.iter().filter(|preset| preset.size[0] <= 128) {
-            let table = preset.table();
+        for preset in &Preset::ALL {
+            let mut table = preset.table();
+            table.size = table.size.map(|side| side.min(256));
             let texels = table.bake();
-            assert_eq!([texels.width, texels.height], preset.size, "{}", preset.name);
+            assert_eq!([texels.width, texels.height], table.size, "{}", preset.name);
+            assert_eq!(texels.channels as usize, preset.values.len());
+            assert!(texels.data.iter().all(|value| value.is_finite() && *value >= 0.0), "{}", preset.name);
             // Engines' axes are linear: what they miss at grazing angles on smooth surfaces is theirs.
-            let error = table.error(&texels, 0.1, 0.1).max_abs_err;
+            let error = table.error_against(&texels, [0.1, 0.1], 24, |alpha, cos| table.at(alpha, cos)).max_abs_err;
             assert!(error < 0.05, "{}: {error:e}", preset.name);
         }
         assert!(Preset::ALL.is_sorted_by_key(|preset| preset.name));
+    }
+
+    /// Texels of the table that Babylon.js 9.35.0 ships, as its own decoding reads them: bytes of 8 bits, sampled, and half a texel off at places.
+    #[test]
+    fn babylon_ships_this_table() {
+        let texels = Preset::named("babylon").unwrap().table().bake();
+        for (x, y, expected) in [
+            (64, 64, [0.1975, 0.9574, 0.3941]),
+            (64, 128, [0.0781, 0.8355, 0.4313]),
+            (128, 128, [0.0220, 0.8513, 0.2310]),
+            (255, 128, [0.0, 0.9075, 0.0329]),
+            (64, 200, [0.0242, 0.7227, 0.4045]),
+            (255, 255, [0.0, 0.3066, 0.1420]),
+        ] {
+            for (found, expected) in texels.texel(x, y).iter().zip(expected) {
+                assert!((f64::from(*found) - expected).abs() < 0.02, "{x} {y}: {found} {expected}");
+            }
+        }
     }
 }

@@ -54,8 +54,8 @@ pub fn search(distribution: Distribution, masking: Masking, max_abs: f64, min_co
         let errors: Vec<f64> = candidates
             .par_iter()
             .map(|table| {
-                let exact = |alpha: f64, cos: f64| surface.row(alpha).at(cos);
-                let texels = table.bake_from(&surface);
+                let exact = |alpha: f64, cos: f64| table.of_split_sum(surface.row(alpha).at(cos));
+                let texels = table.bake_from(Some(&surface));
                 table.error_against(&texels, [min_cos, min_alpha], POINTS, exact).max_abs_err
             })
             .collect();
@@ -67,7 +67,7 @@ pub fn search(distribution: Distribution, masking: Masking, max_abs: f64, min_co
         let promising = order.into_iter().filter(|&i| is_last || errors[i] <= max_abs);
         for i in promising.take(if is_last { 1 } else { 6 }) {
             let table = candidates[i].clone();
-            let texels = table.bake_from(&surface);
+            let texels = table.bake_from(Some(&surface));
             let error = table.error(&texels, min_cos, min_alpha);
             let held = error.max_abs_err <= max_abs;
             let found = Found { table, texels, error, held };

@@ -1,8 +1,7 @@
 //! A split sum over all directions and roughnesses as a polynomial: for tables and searches, which ask a hundred thousand times.
 
-use std::f64::consts::PI;
-
 use super::{Masking, SplitSum, split_sum};
+use crate::chebyshev::{clenshaw, coefficients, nodes};
 use crate::stack::Distribution;
 
 /// Lowest cosine and lowest alpha of the polynomial.
@@ -27,7 +26,7 @@ pub struct SplitSumSurface {
 impl SplitSumSurface {
     /// Interpolates 784 split sums.
     pub fn new(distribution: Distribution, masking: Masking) -> Self {
-        let nodes: [f64; NODES] = std::array::from_fn(|i| libm::cos(PI * (i as f64 + 0.5) / NODES as f64));
+        let nodes: [f64; NODES] = nodes();
         let row = |x: f64| -> [[f64; 2]; NODES] {
             let alpha = libm::exp(libm::log(LOWEST) * 0.5 * (1.0 - x));
             let scale = scale(alpha);
@@ -35,15 +34,15 @@ impl SplitSumSurface {
                 let sum = split_sum(distribution, masking, alpha, scale.cosine(x));
                 [sum.scale, sum.bias]
             });
-            chebyshev(&values)
+            coefficients(&values)
         };
         let rows: [[[f64; 2]; NODES]; NODES] = nodes.map(row);
-        let mut coefficients = vec![[[0.0; 2]; NODES]; NODES];
+        let mut over_both = vec![[[0.0; 2]; NODES]; NODES];
         for degree in 0..NODES {
-            let down = chebyshev(&std::array::from_fn(|j| rows[j][degree]));
-            (0..NODES).for_each(|j| coefficients[j][degree] = down[j]);
+            let down: [_; NODES] = coefficients(&std::array::from_fn(|j| rows[j][degree]));
+            (0..NODES).for_each(|j| over_both[j][degree] = down[j]);
         }
-        Self { distribution, masking, coefficients }
+        Self { distribution, masking, coefficients: over_both }
     }
 
     /// The split sums of one alpha, 0..=1.
@@ -104,31 +103,6 @@ impl Scale {
     fn coordinate(&self, cos_theta: f64) -> f64 {
         2.0 * (libm::asinh(cos_theta / self.linear_below) - self.from) / (self.to - self.from) - 1.0
     }
-}
-
-/// Coefficients of the Chebyshev polynomial through values at the nodes cos(pi (i + 1/2) / n).
-fn chebyshev(values: &[[f64; 2]; NODES]) -> [[f64; 2]; NODES] {
-    std::array::from_fn(|degree| {
-        let factor = if degree == 0 { 1.0 } else { 2.0 } / NODES as f64;
-        let mut sum = [0.0; 2];
-        for (i, value) in values.iter().enumerate() {
-            let weight = factor * libm::cos(PI * degree as f64 * (i as f64 + 0.5) / NODES as f64);
-            sum[0] += weight * value[0];
-            sum[1] += weight * value[1];
-        }
-        sum
-    })
-}
-
-/// The sum of Chebyshev polynomials at x (Clenshaw 1955).
-fn clenshaw(x: f64, coefficients: impl DoubleEndedIterator<Item = [f64; 2]>) -> [f64; 2] {
-    let (mut after, mut next) = ([0.0; 2], [0.0; 2]);
-    for c in coefficients.rev() {
-        let this = [0, 1].map(|k: usize| c[k] + 2.0 * x * next[k] - after[k]);
-        (after, next) = (next, this);
-    }
-    // The recurrence has doubled the first polynomial but one.
-    [0, 1].map(|k: usize| next[k] - x * after[k])
 }
 
 #[cfg(test)]
