@@ -7,6 +7,7 @@ use std::path::Path;
 use luthier_export::input;
 use luthier_lut::Image;
 use luthier_report::{Audit, audit};
+use luthier_table::{Stored, rgbd};
 use luthier_terminal::{Failure, Outcome, files, print};
 use luthier_texture::{Samples, table};
 use serde_json::json;
@@ -18,6 +19,9 @@ use crate::cli::{AuditOptions, SamplesName};
 pub(crate) fn run(options: &AuditOptions) -> Outcome {
     let bytes = input::image(&options.file).map_err(files(&options.file, "read"))?;
     let mut table = read(options, &bytes)?;
+    if options.preset.is_some_and(|preset| preset.stored == Stored::Rgbd) && table.format.starts_with("PNG") {
+        table.image = decoded(&table.image);
+    }
     if let Some(crop) = &options.crop {
         table.image = cropped(&table.image, crop)?;
     }
@@ -39,6 +43,13 @@ pub(crate) fn run(options: &AuditOptions) -> Outcome {
         print(&text(&options.file, &table.format, &words, &found, options.max_error, held))?;
     }
     if held { Ok(()) } else { Err(Failure::Verdict) }
+}
+
+/// The values of an image whose texels are RGBD.
+fn decoded(image: &Image) -> Image {
+    let byte = |value: Option<&f32>| value.map_or(u8::MAX, |value| (value * 255.0).round() as u8);
+    let decode = |texel: &[f32]| rgbd::decode(std::array::from_fn(|c| byte(texel.get(c)))).map(|value| value as f32);
+    Image { channels: 3, data: image.texels().flat_map(decode).collect(), ..*image }
 }
 
 fn read(options: &AuditOptions, bytes: &[u8]) -> Outcome<table::Table> {

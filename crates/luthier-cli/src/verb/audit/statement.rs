@@ -12,15 +12,15 @@ use luthier_texture::table::Table;
 
 use crate::cli::{AuditOptions, NodesName};
 
-/// Terms of the channels of a preset that hold a split sum.
+/// Terms of the channels of a preset that hold a split sum: the first ones.
 fn preset_terms(preset: &Preset) -> Vec<Term> {
     let term = |value: &Value| match value {
         Value::Scale => Some(Term::Scale),
         Value::Bias => Some(Term::Bias),
         Value::Albedo => Some(Term::Albedo),
-        Value::Loss | Value::Zero => None,
+        _ => None,
     };
-    preset.values.iter().filter_map(term).collect()
+    preset.values.iter().map_while(term).collect()
 }
 
 /// The statement that the options make about a file, and the same in words.

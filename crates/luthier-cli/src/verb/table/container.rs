@@ -1,10 +1,10 @@
 //! Files of tables, in the containers that engines take.
 
 use luthier_lut::{Image, TexelFormat};
-use luthier_table::{Container, Stored};
+use luthier_table::{Container, Stored, rgbd};
 use luthier_terminal::{Failure, Outcome};
 use luthier_texture::ktx2::{Levels, encode_levels};
-use luthier_texture::{Metadata, Texture, png};
+use luthier_texture::{Metadata, Texture, exr, png};
 
 /// Key of the statement in the metadata of a file.
 const STATEMENT: &str = "luthier.table";
@@ -28,19 +28,37 @@ pub(super) fn encode(
             encode_levels(&levels, !no_zstd).map_err(Failure::input)
         }
         Container::Png => png::encode_table(texels, &metadata).map_err(Failure::input),
-        Container::Raw => Ok(raw(texels, stored)),
+        Container::RgbdPng => {
+            let data = rgbd::texels(texels).into_iter().map(|byte| f32::from(byte) / 255.0).collect();
+            png::encode_table(&Image { channels: 4, data, ..texels.clone() }, &metadata).map_err(Failure::input)
+        }
+        Container::Exr => {
+            exr::encode(texels, &["R", "G", "B", "A"][..texels.channels as usize], &metadata).map_err(Failure::input)
+        }
+        Container::Raw => raw(texels, stored),
         Container::JavaScript => Ok(javascript(texels, words).into_bytes()),
     }
 }
 
-fn raw(texels: &Image, stored: Stored) -> Vec<u8> {
+fn raw(texels: &Image, stored: Stored) -> Outcome<Vec<u8>> {
     let values = texels.data.iter();
-    match stored {
+    Ok(match stored {
         Stored::Unorm16 => values.flat_map(|v| ((v * 65535.0).round() as u16).to_le_bytes()).collect(),
-        Stored::Unorm8 | Stored::Unorm10 => values.map(|v| (v * 255.0).round() as u8).collect(),
+        Stored::Unorm8 => values.map(|v| (v * 255.0).round() as u8).collect(),
+        Stored::Unorm10 => {
+            let texture = TexelFormat::Rgb10a2Unorm;
+            texture.encode(&rgba(texels))
+        }
         Stored::Half => values.flat_map(|v| half::f16::from_f32(*v).to_le_bytes()).collect(),
         Stored::Float => values.flat_map(|v| v.to_le_bytes()).collect(),
-    }
+        Stored::Rgbd => rgbd::texels(texels),
+    })
+}
+
+/// The image with four channels; those that it has not are 0.
+fn rgba(texels: &Image) -> Image {
+    let data = texels.texels().flat_map(|texel| (0..4).map(move |c| texel.get(c).copied().unwrap_or(0.0))).collect();
+    Image { channels: 4, data, ..texels.clone() }
 }
 
 /// The module of three.js: the words of half floats, row by row.

@@ -17,7 +17,7 @@ use crate::cli::{DfgOptions, DistributionName};
 /// Bakes or finds the table that the options ask for.
 pub(super) fn product(options: &DfgOptions) -> Outcome<Product> {
     let (Found { table, texels, error, .. }, container) = match options.preset {
-        Some(preset) => of_preset(preset, options)?,
+        Some(preset) => (of_preset(preset, options), preset.container),
         None => (searched(options)?, Container::Ktx2),
     };
     let from = [options.min_cos, options.min_alpha];
@@ -50,7 +50,7 @@ pub(super) fn product(options: &DfgOptions) -> Outcome<Product> {
     let certificate = Certificate {
         title: options.preset.map_or("Split-sum table".to_owned(), |preset| format!("Split-sum table of {}", preset.name)),
         verdict: verdict(options, &error),
-        facts: facts(options, &table, &texels, &error),
+        facts: facts(options, &table, &error),
         maps,
         method: "Reads are bilinear with 8-bit weights and texels as stored. They are compared with quadrature over reflected directions, \
                  which is within 1e-6 for GGX and Beckmann with smooth masking terms, and within 4e-3 with V-cavities. A map shows the largest \
@@ -68,19 +68,11 @@ fn verdict(options: &DfgOptions, error: &ErrorStats) -> (String, bool) {
     }
 }
 
-fn of_preset(preset: &Preset, options: &DfgOptions) -> Outcome<(Found, Container)> {
-    let Some(container) = preset.container else {
-        let known: Vec<&str> = Preset::ALL.iter().filter(|p| p.container.is_some()).map(|p| p.name).collect();
-        let name = preset.name;
-        let known = known.join(", ");
-        return Err(Failure::Usage(anyhow::anyhow!(
-            "{name} takes its table from no file; `luthier audit --preset {name}` judges one. There are {known}"
-        )));
-    };
+fn of_preset(preset: &Preset, options: &DfgOptions) -> Found {
     let table = preset.table();
     let texels = table.bake();
     let error = table.error(&texels, options.min_cos, options.min_alpha);
-    Ok((Found { table, texels, error, held: true }, container))
+    Found { table, texels, error, held: true }
 }
 
 fn searched(options: &DfgOptions) -> Outcome<Found> {
@@ -120,7 +112,7 @@ fn statement(table: &DfgTable) -> serde_json::Value {
     })
 }
 
-fn facts(options: &DfgOptions, table: &DfgTable, texels: &Image, error: &ErrorStats) -> Vec<(String, String)> {
+fn facts(options: &DfgOptions, table: &DfgTable, error: &ErrorStats) -> Vec<(String, String)> {
     let fact = |name: &str, value: String| (name.to_owned(), value);
     let [width, height] = table.size;
     let mut facts = vec![
@@ -129,7 +121,7 @@ fn facts(options: &DfgOptions, table: &DfgTable, texels: &Image, error: &ErrorSt
         fact("Channels", table.values.iter().map(|value| value.name()).collect::<Vec<_>>().join(", ")),
         fact(
             "Texels",
-            format!("{width} x {height}, {}: {} bytes", table.stored.name(), texels.data.len() * table.stored.bytes()),
+            format!("{width} x {height}, {}: {} bytes", table.stored.name(), width as usize * height as usize * table.stored.texel_bytes(table.values.len())),
         ),
         fact(
             "Errors",
