@@ -187,6 +187,15 @@ impl AxisSpec {
         self.nodes.position(if self.descending { 1.0 - u } else { u }, size)
     }
 
+    /// Theta or alpha at the end of the axis where it is normal incidence or the roughest surface, for the texel next to it: where nodes are texel
+    /// centres, all reads between are of this texel.
+    pub(crate) fn beyond(&self, texel: u32, size: u32) -> Option<f64> {
+        let rises = self.quantity != Quantity::Theta;
+        let is_last = texel == if self.descending == rises { 0 } else { size - 1 };
+        (is_last && size > 1 && self.nodes == Nodes::CENTRES)
+            .then(|| self.quantity.to_canonical(if rises { self.max } else { self.min }))
+    }
+
     /// The value as it reads in the axis' own words, and the coordinate of a theta or alpha, ascending or not.
     pub fn coordinate(&self, canonical: f64) -> f64 {
         self.axis().encode(self.quantity.of_canonical(canonical))

@@ -40,7 +40,8 @@ impl DfgTable {
     }
 
     /// The texels, as a shader reads them: values at the nodes, moved by a sixteenth of their second differences, so that reads between them err
-    /// to both sides alike, then rounded. Values are within 2e-6 (GGX and cloth) or 2e-4 (Beckmann), cloth where it is below 1; beyond relatively.
+    /// to both sides alike, then rounded. Where the last node is a texel centre, so that reads beyond it are constant, its value is the mean of those
+    /// there and at a cosine or alpha of 1. Values are within 2e-6 (GGX and cloth) or 2e-4 (Beckmann), cloth where it is below 1; beyond relatively.
     /// Deterministic, whatever the number of threads.
     pub fn bake(&self) -> Image {
         let surface = Needs::of(&self.values).split_sum.then(|| SplitSumSurface::new(self.distribution, self.masking));
@@ -62,10 +63,25 @@ impl DfgTable {
                     (texel[angles], texel[slopes]) = (along, line);
                     self.layout.at_texel(self.size, texel)
                 };
-                let row = Line::new(needs, surface, at(0)[1]);
-                let contents = |along: u32| self.contents(&row.at(libm::cos(at(along)[0]).max(0.0)));
+                let alpha = at(0)[1];
+                let row = Line::new(needs, surface, alpha);
+                let beyond = self.layout.slope.and_then(|axis| axis.beyond(line, self.size[slopes]));
+                let beyond_row = beyond.map(|alpha| Line::new(needs, surface, alpha));
+                let contents = |along: u32| {
+                    let cosine = |theta: f64| libm::cos(theta).max(0.0);
+                    let cos = cosine(at(along)[0]);
+                    let here = self.contents(&row.at(cos));
+                    let across = beyond_row.as_ref().map(|row| self.contents(&row.at(cos)));
+                    let end = self.layout.angle.beyond(along, self.size[angles]);
+                    let ahead = end.map(|theta| self.contents(&row.at(cosine(theta))));
+                    // Halfway to what the end holds, so that both err alike.
+                    std::array::from_fn(|c| {
+                        let step = |other: Option<[f64; 4]>| other.map_or(0.0, |other| 0.5 * (other[c] - here[c]));
+                        here[c] + step(across) + step(ahead)
+                    })
+                };
                 let texels = (0..self.size[angles]).map(contents);
-                texels.flat_map(|texel| texel.into_iter().take(channels).map(|value| value as f32)).collect()
+                texels.flat_map(|texel: [f64; 4]| texel.into_iter().take(channels).map(|value| value as f32)).collect()
             })
             .collect();
         let mut image = Image::zeros(width, height, channels as u32);
@@ -112,7 +128,11 @@ impl DfgTable {
     pub fn error_at(&self, texels: &Image, cos_theta: f64, alpha: f64) -> f64 {
         let texel = bilinear(texels, self.layout.position(self.size, [libm::acos(cos_theta), alpha]), WEIGHTS);
         let exact = self.at(alpha, cos_theta);
-        exact.iter().zip(texel).take(self.values.len()).fold(0.0, |worst, (value, read)| (value - read).abs().max(worst))
+        exact
+            .iter()
+            .zip(texel)
+            .take(self.values.len())
+            .fold(0.0, |worst, (value, read)| (value - read).abs().max(worst))
     }
 
     pub(crate) fn error_against(
@@ -178,11 +198,16 @@ mod tests {
                 assert_eq!(plain.texel(x, y), turned.texel(7 - y, x));
             }
         }
-        // The corner is not moved along either axis.
+        // The lower corner is not moved along either axis; the upper one halfway to each end.
         let statement = table("cos_theta,roughness", Nodes::CENTRES, [16, 8]);
-        let expected = statement.at(0.9375 * 0.9375, 31.0 / 32.0);
-        for ((expected, found), value) in expected.into_iter().zip(plain.texel(15, 7)).zip(statement.values) {
-            assert!((expected - f64::from(*found)).abs() < 3e-6, "{value:?} {found}");
+        let lower = statement.at(0.0625 * 0.0625, 1.0 / 32.0);
+        let (alpha, cos) = (0.9375 * 0.9375, 31.0 / 32.0);
+        let [here, ahead, across] = [statement.at(alpha, cos), statement.at(alpha, 1.0), statement.at(1.0, cos)];
+        for (c, value) in statement.values.iter().enumerate() {
+            let upper = 0.5 * (ahead[c] + across[c]);
+            for (expected, found) in [(lower[c], plain.texel(0, 0)[c]), (upper, plain.texel(15, 7)[c])] {
+                assert!((expected - f64::from(found)).abs() < 3e-6, "{value:?} {found} {here:?}");
+            }
         }
     }
 
@@ -200,13 +225,13 @@ mod tests {
     /// Channels beside the split sum, against the functions that they are of.
     #[test]
     fn other_channels_hold_what_they_say() {
-        let axes = Layout::parse("cos_theta,roughness", Nodes::CENTRES).unwrap();
+        let axes = Layout::parse("cos_theta=0.1..0.9,roughness=0.1..0.9", Nodes::Ends).unwrap();
         let values = vec![Value::Cloth, Value::Sheen, Value::Disney, Value::One];
         let table =
             DfgTable { values, ..DfgTable { layout: axes, ..table("cos_theta,alpha", Nodes::CENTRES, [8, 8]) } };
         let texels = table.bake();
         // The corner is not moved along either axis.
-        let (roughness, cos) = (15.0 / 16.0, 15.0 / 16.0);
+        let (roughness, cos) = (0.9, 0.9);
         let alpha = roughness * roughness;
         let expected = [
             cloth_albedo(ClothVisibility::Neubelt, alpha, cos),

@@ -50,6 +50,9 @@ pub(crate) struct DfgOptions {
     /// The engine whose layout the table has
     #[arg(long, value_name = "NAME", value_parser = preset)]
     pub(crate) preset: Option<&'static Preset>,
+    /// Another size than the engine's own table has: three.js, Babylon.js, Bevy and the glTF Sample Viewer read any
+    #[arg(long, value_name = "WxH", value_parser = size, requires = "preset")]
+    pub(crate) size: Option<[u32; 2]>,
     /// Find the smallest table whose reads err by this at most, absolutely
     #[arg(long, value_name = "X", value_parser = super::positive, allow_hyphen_values = true)]
     pub(crate) max_abs: Option<f64>,
@@ -93,4 +96,12 @@ pub(crate) struct Delivery {
 pub(crate) enum DistributionName {
     Ggx,
     Beckmann,
+}
+
+/// Texels across and down.
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let wrong = || "expected texels across and down, 4 to 1024 each, such as 64x64".to_owned();
+    let (width, height) = text.split_once('x').ok_or_else(wrong)?;
+    let side = |text: &str| text.parse::<u32>().ok().filter(|side| (4..=1024).contains(side)).ok_or_else(wrong);
+    Ok([side(width)?, side(height)?])
 }

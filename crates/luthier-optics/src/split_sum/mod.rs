@@ -123,13 +123,13 @@ impl Rules {
 
 /// The rules of [`split_sums`]: some 800 points for GGX, 1200 for Beckmann, whose azimuths are as narrow but end more abruptly.
 fn rules(distribution: Distribution) -> &'static Rules {
-    static RULES: OnceLock<[Rules; 2]> = OnceLock::new();
-    let [ggx, beckmann] =
-        RULES.get_or_init(|| [[5.0, 2.5], [8.0, 4.0]].map(|azimuth| Rules::new([6.0, 4.0], azimuth, 5)));
-    match distribution {
-        Distribution::Ggx => ggx,
-        Distribution::Beckmann => beckmann,
-    }
+    static GGX: OnceLock<Rules> = OnceLock::new();
+    static BECKMANN: OnceLock<Rules> = OnceLock::new();
+    let (rules, azimuth) = match distribution {
+        Distribution::Ggx => (&GGX, [5.0, 2.5]),
+        Distribution::Beckmann => (&BECKMANN, [8.0, 4.0]),
+    };
+    rules.get_or_init(|| Rules::new([6.0, 4.0], azimuth, 5))
 }
 
 /// Slope, over alpha, beyond which Gaussian slopes are left out: exp(-36) is below rounding.

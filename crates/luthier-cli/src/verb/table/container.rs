@@ -61,12 +61,21 @@ fn rgba(texels: &Image) -> Image {
     Image { channels: 4, data, ..texels.clone() }
 }
 
-/// The module of three.js: the words of half floats, row by row.
+/// The module of three.js: the words of half floats, row by row, and the function that the renderer imports.
 fn javascript(texels: &Image, words: &str) -> String {
     let row = |row: &[f32]| {
         let words: Vec<String> = row.iter().map(|v| format!("0x{:04x}", half::f16::from_f32(*v).to_bits())).collect();
         format!("\t{}", words.join(", "))
     };
-    let rows: Vec<String> = texels.data.chunks_exact((texels.width * texels.channels) as usize).map(row).collect();
-    format!("// {words}\nexport const DFG_LUT_DATA = new Uint16Array( [\n{}\n] );\n", rows.join(",\n"))
+    let Image { width, height, channels, .. } = *texels;
+    let rows: Vec<String> = texels.data.chunks_exact((width * channels) as usize).map(row).collect();
+    format!(
+        "// {words}\nimport {{ DataTexture }} from '../../textures/DataTexture.js';\nimport {{ ClampToEdgeWrapping, HalfFloatType, LinearFilter, \
+         RGFormat }} from '../../constants.js';\n\nexport const DFG_LUT_DATA = new Uint16Array( [\n{}\n] );\n\nlet texture = \
+         null;\n\nexport function getDFGLUT() {{\n\n\tif ( texture === null ) {{\n\n\t\ttexture = new DataTexture( DFG_LUT_DATA, {width}, {height}, \
+         RGFormat, HalfFloatType );\n\t\ttexture.name = 'DFG_LUT';\n\t\ttexture.minFilter = texture.magFilter = LinearFilter;\n\t\ttexture.wrapS = \
+         texture.wrapT = ClampToEdgeWrapping;\n\t\ttexture.generateMipmaps = false;\n\t\ttexture.needsUpdate = \
+         true;\n\n\t}}\n\n\treturn texture;\n\n}}\n",
+        rows.join(",\n")
+    )
 }

@@ -69,7 +69,8 @@ fn verdict(options: &DfgOptions, error: &ErrorStats) -> (String, bool) {
 }
 
 fn of_preset(preset: &Preset, options: &DfgOptions) -> Found {
-    let table = preset.table();
+    let mut table = preset.table();
+    table.size = options.size.unwrap_or(table.size);
     let texels = table.bake();
     let error = table.error(&texels, options.min_cos, options.min_alpha);
     Found { table, texels, error, held: true }
@@ -121,7 +122,11 @@ fn facts(options: &DfgOptions, table: &DfgTable, error: &ErrorStats) -> Vec<(Str
         fact("Channels", table.values.iter().map(|value| value.name()).collect::<Vec<_>>().join(", ")),
         fact(
             "Texels",
-            format!("{width} x {height}, {}: {} bytes", table.stored.name(), width as usize * height as usize * table.stored.texel_bytes(table.values.len())),
+            format!(
+                "{width} x {height}, {}: {} bytes",
+                table.stored.name(),
+                width as usize * height as usize * table.stored.texel_bytes(table.values.len())
+            ),
         ),
         fact(
             "Errors",
