@@ -17,6 +17,7 @@ pub mod albedo;
 pub mod color;
 pub mod color_difference;
 pub mod constants;
+pub mod dielectric_albedo;
 pub mod f0_table;
 pub mod film_color;
 pub mod fresnel;
