@@ -1,4 +1,4 @@
-//! Tables that real-time renderers read beside a material: the split sum of image-based lighting.
+//! Tables that renderers read beside a material: the split sum of image-based lighting, energy compensation.
 //!
 #![doc = include_str!("../README.md")]
 //! # In detail
@@ -6,15 +6,22 @@
 //! A [`DfgTable`] states a function, axes, values and texels; [`DfgTable::bake`] fills it, [`DfgTable::error`] measures what a sampler reads from
 //! it, [`search`] finds the smallest. [`Preset`]s are the statements of engines.
 //!
-//! Simplifications: tables have one level and are read by bilinear filtering. Out of scope: light from below the surface, and
-//! reflectances other than Schlick's.
+//! An [`EnergyTable`] does likewise for the albedos that energy compensation takes, of metals and of dielectrics from both sides;
+//! [`EnergyPreset`]s are the statements of renderers.
+//!
+//! Simplifications: tables have one level and are read by linear filtering along each axis. Split sums are of light from above and of Schlick's
+//! reflectance.
 
 mod axes;
 mod dfg;
+mod energy;
 mod preset;
 mod search;
 
 pub use axes::{AxesError, AxisSpec, Layout, Nodes, Quantity};
 pub use dfg::{DfgTable, Stored, Value};
+pub use energy::{
+    EnergyContainer, EnergyDomain, EnergyFile, EnergyLayout, EnergyPreset, EnergySurface, EnergyTable, EnergyValue,
+};
 pub use preset::{Container, Preset};
 pub use search::{Found, search};
