@@ -14,7 +14,7 @@ use thiserror::Error;
 pub enum AxesError {
     /// An axis that does not parse.
     #[error(
-        "`{0}` is no axis; write [-]QUANTITY[=MIN..MAX][^EXPONENT|@log] with cos_theta, theta, cos_theta_sq, sqrt_cos_theta, roughness, alpha, alpha_sq, sqrt_roughness, ior, inverse_ior, f0, sqrt_f0 or fourth_root_f0"
+        "`{0}` is no axis; write [-]QUANTITY[=MIN..MAX][^EXPONENT|@log] with cos_theta, theta, cos_theta_sq, sqrt_cos_theta, roughness, alpha, alpha_sq, sqrt_roughness, ior, inverse_ior, f0, sqrt_f0, fourth_root_f0 or thickness_nm"
     )]
     Axis(String),
     /// Axes other than one of the direction and at most one of the micro-surface.
@@ -27,6 +27,11 @@ pub enum AxesError {
         "`{0}`: a table of energy has an axis of the roughness, at most one of the angle, and one of the index for dielectrics, such as \"roughness,cos_theta,ior\""
     )]
     EnergyAxes(String),
+    /// Axes other than one of the direction and one of the thickness.
+    #[error(
+        "`{0}`: a table of a film has an axis of the angle and one of the thickness, such as \"cos_theta,thickness_nm=0..800\""
+    )]
+    FilmAxes(String),
 }
 
 /// Quantity of an axis of a table.
@@ -59,7 +64,12 @@ pub enum Quantity {
     SqrtF0,
     /// The fourth root of the reflectance at normal incidence.
     FourthRootF0,
+    /// Thickness of a film.
+    ThicknessNm,
 }
+
+/// Largest thickness of an axis: beyond, fringes are finer than the steps of the spectral integral.
+const THICKNESS_MAX_NM: f64 = 5000.0;
 
 /// Largest index of an axis: f0 is within 4e-6 of 1.
 const IOR_MAX: f64 = 1e6;
@@ -89,6 +99,7 @@ impl Quantity {
             Self::F0 => "f0",
             Self::SqrtF0 => "sqrt_f0",
             Self::FourthRootF0 => "fourth_root_f0",
+            Self::ThicknessNm => "thickness_nm",
         }
     }
 
@@ -109,7 +120,8 @@ impl Quantity {
 
     fn from_name(name: &str) -> Option<Self> {
         let name = name.strip_suffix("_h").unwrap_or(name);
-        Self::ANGLES.into_iter().chain(Self::SLOPES).chain(Self::INDICES).find(|quantity| quantity.name() == name)
+        let mut all = Self::ANGLES.into_iter().chain(Self::SLOPES).chain(Self::INDICES).chain([Self::ThicknessNm]);
+        all.find(|quantity| quantity.name() == name)
     }
 
     /// Least and largest value of an axis.
@@ -118,11 +130,12 @@ impl Quantity {
             Self::Theta => [0.0, FRAC_PI_2 + 1e-6],
             Self::Ior => [1.0, IOR_MAX],
             Self::InverseIor => [1.0 / IOR_MAX, 1.0],
+            Self::ThicknessNm => [0.0, THICKNESS_MAX_NM],
             _ => [0.0, 1.0],
         }
     }
 
-    /// Theta, alpha or index of a value.
+    /// Theta, alpha, index or thickness of a value.
     fn to_canonical(self, value: f64) -> f64 {
         let angle = |cos: f64| libm::acos(cos.clamp(0.0, 1.0));
         let value = value.max(0.0);
@@ -141,10 +154,11 @@ impl Quantity {
             Self::F0 => index(value.sqrt()),
             Self::SqrtF0 => index(value),
             Self::FourthRootF0 => index(value * value),
+            Self::ThicknessNm => value,
         }
     }
 
-    /// The value of a theta, an alpha or an index.
+    /// The value of a theta, an alpha, an index or a thickness.
     pub fn of_canonical(self, canonical: f64) -> f64 {
         let sqrt_f0 = || ((canonical - 1.0) / (canonical + 1.0)).max(0.0);
         match self {
@@ -161,6 +175,7 @@ impl Quantity {
             Self::F0 => sqrt_f0() * sqrt_f0(),
             Self::SqrtF0 => sqrt_f0(),
             Self::FourthRootF0 => sqrt_f0().sqrt(),
+            Self::ThicknessNm => canonical,
         }
     }
 }
@@ -222,12 +237,13 @@ pub struct AxisSpec {
 }
 
 impl AxisSpec {
-    /// The whole range of a quantity, linear and ascending; indices up to 3.
+    /// The whole range of a quantity, linear and ascending; indices up to 3, films up to 1200 nm.
     pub fn whole(quantity: Quantity, nodes: Nodes) -> Self {
         let (min, max) = match quantity {
             Quantity::Theta => (0.0, FRAC_PI_2),
             Quantity::Ior => (1.0, 3.0),
             Quantity::InverseIor => (1.0 / 3.0, 1.0),
+            Quantity::ThicknessNm => (0.0, 1200.0),
             _ => (0.0, 1.0),
         };
         let (floor, ceiling) = (0.0, f64::INFINITY);
@@ -253,12 +269,12 @@ impl AxisSpec {
         self.nodes.position(if self.descending { 1.0 - u } else { u }, size)
     }
 
-    /// The value as it reads in the axis' own words, and the coordinate of a theta, alpha or index, ascending or not.
+    /// The value as it reads in the axis' own words, and the coordinate of a theta, alpha, index or thickness, ascending or not.
     pub fn coordinate(&self, canonical: f64) -> f64 {
         self.axis().encode(self.quantity.of_canonical(canonical))
     }
 
-    /// Theta, alpha or index at a coordinate, ascending or not.
+    /// Theta, alpha, index or thickness at a coordinate, ascending or not.
     pub fn canonical_of_coordinate(&self, u: f64) -> f64 {
         self.quantity.to_canonical(self.axis().decode(u))
     }
@@ -414,7 +430,8 @@ mod tests {
             assert!(bad.parse::<AxisSpec>().is_err(), "{bad}");
         }
         assert!(Layout::parse("roughness,cos_theta", Nodes::CENTRES).unwrap().transposed);
-        for bad in ["roughness", "cos_theta,theta", "cos_theta,alpha,alpha", "cos_theta,ior"] {
+        for bad in ["roughness", "cos_theta,theta", "cos_theta,alpha,alpha", "cos_theta,ior", "cos_theta,thickness_nm"]
+        {
             assert!(Layout::parse(bad, Nodes::CENTRES).is_err(), "{bad}");
         }
     }

@@ -9,12 +9,15 @@
 //! An [`EnergyTable`] does likewise for the albedos that energy compensation takes, of metals and of dielectrics from both sides;
 //! [`EnergyPreset`]s are the statements of renderers.
 //!
+//! A [`FilmTable`] holds the colour that a plane reflects under a thin film, over angle and thickness.
+//!
 //! Simplifications: tables have one level and are read by linear filtering along each axis. Split sums are of light from above and of Schlick's
 //! reflectance.
 
 mod axes;
 mod dfg;
 mod energy;
+mod film;
 mod preset;
 mod search;
 
@@ -23,5 +26,6 @@ pub use dfg::{DfgTable, Stored, Value};
 pub use energy::{
     EnergyContainer, EnergyDomain, EnergyFile, EnergyLayout, EnergyPreset, EnergySurface, EnergyTable, EnergyValue,
 };
+pub use film::{FilmLayout, FilmTable};
 pub use preset::{Container, Preset};
 pub use search::{Found, search};
