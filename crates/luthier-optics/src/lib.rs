@@ -19,6 +19,7 @@ pub mod cloth;
 pub mod color;
 pub mod color_difference;
 pub mod constants;
+pub mod dielectric_albedo;
 pub mod diffuse_albedo;
 pub mod f0_table;
 pub mod film_color;

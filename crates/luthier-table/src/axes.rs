@@ -14,7 +14,7 @@ use thiserror::Error;
 pub enum AxesError {
     /// An axis that does not parse.
     #[error(
-        "`{0}` is no axis; write [-]QUANTITY[=MIN..MAX][^EXPONENT|@log] with cos_theta, theta, cos_theta_sq, sqrt_cos_theta, roughness, alpha, alpha_sq or sqrt_roughness"
+        "`{0}` is no axis; write [-]QUANTITY[=MIN..MAX][^EXPONENT|@log] with cos_theta, theta, cos_theta_sq, sqrt_cos_theta, roughness, alpha, alpha_sq, sqrt_roughness, ior, inverse_ior, f0, sqrt_f0, fourth_root_f0 or thickness_nm"
     )]
     Axis(String),
     /// Axes other than one of the direction and at most one of the micro-surface.
@@ -22,6 +22,16 @@ pub enum AxesError {
         "`{0}`: a table has an axis of the angle and at most one of the roughness, such as \"cos_theta,roughness\""
     )]
     Axes(String),
+    /// Axes other than one of the micro-surface, at most one of the direction, and one of the index where the function has it.
+    #[error(
+        "`{0}`: a table of energy has an axis of the roughness, at most one of the angle, and one of the index for dielectrics, such as \"roughness,cos_theta,ior\""
+    )]
+    EnergyAxes(String),
+    /// Axes other than one of the direction and one of the thickness.
+    #[error(
+        "`{0}`: a table of a film has an axis of the angle and one of the thickness, such as \"cos_theta,thickness_nm=0..800\""
+    )]
+    FilmAxes(String),
 }
 
 /// Quantity of an axis of a table.
@@ -44,13 +54,34 @@ pub enum Quantity {
     AlphaSq,
     /// The root of the roughness, alpha = its fourth power.
     SqrtRoughness,
+    /// The index of the denser side over that of the rarer.
+    Ior,
+    /// 1 over the index.
+    InverseIor,
+    /// The reflectance at normal incidence, ((ior - 1)/(ior + 1))^2.
+    F0,
+    /// The root of the reflectance at normal incidence.
+    SqrtF0,
+    /// The fourth root of the reflectance at normal incidence.
+    FourthRootF0,
+    /// Thickness of a film.
+    ThicknessNm,
 }
+
+/// Largest thickness of an axis: beyond, fringes are finer than the steps of the spectral integral.
+const THICKNESS_MAX_NM: f64 = 5000.0;
+
+/// Largest index of an axis: f0 is within 4e-6 of 1.
+const IOR_MAX: f64 = 1e6;
 
 impl Quantity {
     /// Quantities of the direction.
     pub const ANGLES: [Self; 4] = [Self::CosTheta, Self::Theta, Self::CosThetaSq, Self::SqrtCosTheta];
     /// Quantities of the micro-surface.
     pub const SLOPES: [Self; 4] = [Self::Roughness, Self::Alpha, Self::AlphaSq, Self::SqrtRoughness];
+
+    /// Quantities of the index.
+    pub const INDICES: [Self; 5] = [Self::Ior, Self::InverseIor, Self::F0, Self::SqrtF0, Self::FourthRootF0];
 
     /// Its name in an axis; those of the half vector's angle may also end in `_h`.
     pub fn name(self) -> &'static str {
@@ -63,6 +94,12 @@ impl Quantity {
             Self::Alpha => "alpha",
             Self::AlphaSq => "alpha_sq",
             Self::SqrtRoughness => "sqrt_roughness",
+            Self::Ior => "ior",
+            Self::InverseIor => "inverse_ior",
+            Self::F0 => "f0",
+            Self::SqrtF0 => "sqrt_f0",
+            Self::FourthRootF0 => "fourth_root_f0",
+            Self::ThicknessNm => "thickness_nm",
         }
     }
 
@@ -71,15 +108,38 @@ impl Quantity {
         Self::ANGLES.contains(&self)
     }
 
-    fn from_name(name: &str) -> Option<Self> {
-        let name = name.strip_suffix("_h").unwrap_or(name);
-        Self::ANGLES.into_iter().chain(Self::SLOPES).find(|quantity| quantity.name() == name)
+    /// Whether it is of the micro-surface.
+    pub fn is_slope(self) -> bool {
+        Self::SLOPES.contains(&self)
     }
 
-    /// Theta or alpha of a value.
+    /// Whether it is of the index.
+    pub fn is_index(self) -> bool {
+        Self::INDICES.contains(&self)
+    }
+
+    fn from_name(name: &str) -> Option<Self> {
+        let name = name.strip_suffix("_h").unwrap_or(name);
+        let mut all = Self::ANGLES.into_iter().chain(Self::SLOPES).chain(Self::INDICES).chain([Self::ThicknessNm]);
+        all.find(|quantity| quantity.name() == name)
+    }
+
+    /// Least and largest value of an axis.
+    fn range(self) -> [f64; 2] {
+        match self {
+            Self::Theta => [0.0, FRAC_PI_2 + 1e-6],
+            Self::Ior => [1.0, IOR_MAX],
+            Self::InverseIor => [1.0 / IOR_MAX, 1.0],
+            Self::ThicknessNm => [0.0, THICKNESS_MAX_NM],
+            _ => [0.0, 1.0],
+        }
+    }
+
+    /// Theta, alpha, index or thickness of a value.
     fn to_canonical(self, value: f64) -> f64 {
         let angle = |cos: f64| libm::acos(cos.clamp(0.0, 1.0));
         let value = value.max(0.0);
+        let index = |sqrt_f0: f64| (1.0 + sqrt_f0) / (1.0 - sqrt_f0).max(2.0 / IOR_MAX);
         match self {
             Self::CosTheta => angle(value),
             Self::CosThetaSq => angle(value.sqrt()),
@@ -89,11 +149,18 @@ impl Quantity {
             Self::Alpha => value,
             Self::AlphaSq => value.sqrt(),
             Self::SqrtRoughness => (value * value) * (value * value),
+            Self::Ior => value.max(1.0),
+            Self::InverseIor => 1.0 / value.clamp(1.0 / IOR_MAX, 1.0),
+            Self::F0 => index(value.sqrt()),
+            Self::SqrtF0 => index(value),
+            Self::FourthRootF0 => index(value * value),
+            Self::ThicknessNm => value,
         }
     }
 
-    /// The value of a theta or an alpha.
+    /// The value of a theta, an alpha, an index or a thickness.
     pub fn of_canonical(self, canonical: f64) -> f64 {
+        let sqrt_f0 = || ((canonical - 1.0) / (canonical + 1.0)).max(0.0);
         match self {
             Self::CosTheta => libm::cos(canonical),
             Self::CosThetaSq => libm::cos(canonical) * libm::cos(canonical),
@@ -103,6 +170,12 @@ impl Quantity {
             Self::Alpha => canonical,
             Self::AlphaSq => canonical * canonical,
             Self::SqrtRoughness => canonical.sqrt().sqrt(),
+            Self::Ior => canonical,
+            Self::InverseIor => 1.0 / canonical,
+            Self::F0 => sqrt_f0() * sqrt_f0(),
+            Self::SqrtF0 => sqrt_f0(),
+            Self::FourthRootF0 => sqrt_f0().sqrt(),
+            Self::ThicknessNm => canonical,
         }
     }
 }
@@ -159,13 +232,22 @@ pub struct AxisSpec {
     pub nodes: Nodes,
     /// Lowest value: lower ones are evaluated as this one.
     pub floor: f64,
+    /// Highest value: higher ones are evaluated as this one.
+    pub ceiling: f64,
 }
 
 impl AxisSpec {
-    /// The whole range of a quantity, linear and ascending.
+    /// The whole range of a quantity, linear and ascending; indices up to 3, films up to 1200 nm.
     pub fn whole(quantity: Quantity, nodes: Nodes) -> Self {
-        let max = if quantity == Quantity::Theta { FRAC_PI_2 } else { 1.0 };
-        Self { quantity, min: 0.0, max, mapping: Mapping::Linear, descending: false, nodes, floor: 0.0 }
+        let (min, max) = match quantity {
+            Quantity::Theta => (0.0, FRAC_PI_2),
+            Quantity::Ior => (1.0, 3.0),
+            Quantity::InverseIor => (1.0 / 3.0, 1.0),
+            Quantity::ThicknessNm => (0.0, 1200.0),
+            _ => (0.0, 1.0),
+        };
+        let (floor, ceiling) = (0.0, f64::INFINITY);
+        Self { quantity, min, max, mapping: Mapping::Linear, descending: false, nodes, floor, ceiling }
     }
 
     fn axis(&self) -> Axis {
@@ -175,7 +257,7 @@ impl AxisSpec {
 
     fn canonical_at(&self, u: f64) -> f64 {
         let u = if self.descending { 1.0 - u } else { u };
-        self.quantity.to_canonical(self.axis().decode(u).max(self.floor))
+        self.quantity.to_canonical(self.axis().decode(u).max(self.floor).min(self.ceiling))
     }
 
     pub(crate) fn canonical(&self, texel: u32, size: u32) -> f64 {
@@ -196,12 +278,12 @@ impl AxisSpec {
             .then(|| self.quantity.to_canonical(if rises { self.max } else { self.min }))
     }
 
-    /// The value as it reads in the axis' own words, and the coordinate of a theta or alpha, ascending or not.
+    /// The value as it reads in the axis' own words, and the coordinate of a theta, alpha, index or thickness, ascending or not.
     pub fn coordinate(&self, canonical: f64) -> f64 {
         self.axis().encode(self.quantity.of_canonical(canonical))
     }
 
-    /// Theta or alpha at a coordinate, ascending or not.
+    /// Theta, alpha, index or thickness at a coordinate, ascending or not.
     pub fn canonical_of_coordinate(&self, u: f64) -> f64 {
         self.quantity.to_canonical(self.axis().decode(u))
     }
@@ -247,9 +329,9 @@ impl FromStr for AxisSpec {
             (spec.min, spec.max) = (number(min)?, number(max)?);
         }
         (spec.mapping, spec.descending) = (mapping, descending);
-        let limit = if spec.quantity == Quantity::Theta { FRAC_PI_2 + 1e-6 } else { 1.0 };
+        let [least, limit] = spec.quantity.range();
         let exponent_ok = !matches!(mapping, Mapping::Power { exponent } if exponent <= 0.0);
-        let range_ok = 0.0 <= spec.min && spec.min < spec.max && spec.max <= limit;
+        let range_ok = least <= spec.min && spec.min < spec.max && spec.max <= limit;
         let logarithmic_ok = mapping != Mapping::Logarithmic || spec.min > 0.0;
         if exponent_ok && range_ok && logarithmic_ok { Ok(spec) } else { Err(bad()) }
     }
@@ -277,10 +359,10 @@ impl Layout {
         let with = |axis: AxisSpec| AxisSpec { nodes, ..axis };
         match *axes.as_slice() {
             [angle] if angle.quantity.is_angle() => Ok(Self { angle: with(angle), slope: None, transposed: false }),
-            [x, y] if x.quantity.is_angle() && !y.quantity.is_angle() => {
+            [x, y] if x.quantity.is_angle() && y.quantity.is_slope() => {
                 Ok(Self { angle: with(x), slope: Some(with(y)), transposed: false })
             }
-            [x, y] if y.quantity.is_angle() && !x.quantity.is_angle() => {
+            [x, y] if y.quantity.is_angle() && x.quantity.is_slope() => {
                 Ok(Self { angle: with(y), slope: Some(with(x)), transposed: true })
             }
             _ => Err(AxesError::Axes(text.to_owned())),
@@ -343,12 +425,22 @@ mod tests {
         assert_eq!((axis.quantity, axis.mapping), (Quantity::Theta, Mapping::Power { exponent: 8.0 }));
         let axis: AxisSpec = "-alpha=0.01..1@log".parse().unwrap();
         assert!(axis.descending && axis.min == 0.01);
-        for bad in ["", "cosine", "alpha=1..0", "alpha@log", "cos_theta=0..2", "roughness^0", "alpha=nan..1", "alpha=0"]
-        {
+        for bad in [
+            "",
+            "cosine",
+            "alpha=1..0",
+            "alpha@log",
+            "cos_theta=0..2",
+            "roughness^0",
+            "alpha=nan..1",
+            "alpha=0",
+            "ior=0.5..2",
+        ] {
             assert!(bad.parse::<AxisSpec>().is_err(), "{bad}");
         }
         assert!(Layout::parse("roughness,cos_theta", Nodes::CENTRES).unwrap().transposed);
-        for bad in ["roughness", "cos_theta,theta", "cos_theta,alpha,alpha"] {
+        for bad in ["roughness", "cos_theta,theta", "cos_theta,alpha,alpha", "cos_theta,ior", "cos_theta,thickness_nm"]
+        {
             assert!(Layout::parse(bad, Nodes::CENTRES).is_err(), "{bad}");
         }
     }

@@ -1,4 +1,4 @@
-//! Tables that real-time renderers read beside a material: the split sum of image-based lighting.
+//! Tables that renderers read beside a material: the split sum of image-based lighting, energy compensation.
 //!
 #![doc = include_str!("../README.md")]
 //! # In detail
@@ -7,12 +7,19 @@
 //! it, [`search`] finds the smallest. [`Preset`]s are the statements of engines. [`ClosedForm::fit`] finds a form without a table: two quotients of polynomials and
 //! a fifth power.
 //!
-//! Simplifications: tables have one level and are read by bilinear filtering. Out of scope: light from below the surface, and
-//! reflectances other than Schlick's.
+//! An [`EnergyTable`] does likewise for the albedos that energy compensation takes, of metals and of dielectrics from both sides;
+//! [`EnergyPreset`]s are the statements of renderers.
+//!
+//! A [`FilmTable`] holds the colour that a plane reflects under a thin film, over angle and thickness.
+//!
+//! Simplifications: tables have one level and are read by linear filtering along each axis. Split sums are of light from above and of Schlick's
+//! reflectance.
 
 mod axes;
 mod closed;
 mod dfg;
+mod energy;
+mod film;
 mod preset;
 pub mod rgbd;
 mod search;
@@ -22,6 +29,10 @@ mod value;
 pub use axes::{AxesError, AxisSpec, Layout, Nodes, Quantity};
 pub use closed::{ClosedForm, Cost, FittedForm, Polynomial, Rational, measure_form};
 pub use dfg::DfgTable;
+pub use energy::{
+    EnergyContainer, EnergyDomain, EnergyFile, EnergyLayout, EnergyPreset, EnergySurface, EnergyTable, EnergyValue,
+};
+pub use film::{FilmLayout, FilmTable};
 pub use preset::{Container, Preset};
 pub use search::{Found, search};
 pub use stored::Stored;

@@ -18,9 +18,6 @@ use luthier_table::{DfgTable, Layout, Nodes, Stored, Value};
 const SIDE: u32 = 128;
 /// Lowest cosine and lowest alpha that count in errors.
 const FROM: [f64; 2] = [0.01, 0.01];
-/// Exponents of curved axes, of cosines and of alpha: of those that [`luthier_table::search`] tries, good ones for 64 x 64 texels and for 128 x 128.
-const EXPONENTS: [f64; 2] = [2.0, 3.0];
-
 fn main() -> Result<(), Box<dyn Error>> {
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     if env::args().nth(1).as_deref() == Some(times::FIRST) {
@@ -44,12 +41,18 @@ fn forge_texels() -> Result<Image, Box<dyn Error>> {
 
 /// Half floats on the axes that most engines have, nodes at texel centres.
 fn linear(masking: Masking, side: u32) -> DfgTable {
-    let layout = Layout::parse("cos_theta,roughness", Nodes::CENTRES).unwrap_or_else(|error| unreachable!("{error}"));
+    let layout = layout("cos_theta,roughness", Nodes::CENTRES);
     let values = vec![Value::Scale, Value::Bias];
     DfgTable { distribution: Distribution::Ggx, masking, layout, values, size: [side; 2], stored: Stored::Half }
 }
 
-/// Half floats on axes of powers, whose first and last nodes are their ends.
+/// Half floats on logarithmic axes, whose first and last nodes are their ends.
 fn curved(masking: Masking, side: u32) -> DfgTable {
-    DfgTable { layout: Layout::powers(FROM, EXPONENTS, Nodes::Ends), ..linear(masking, side) }
+    let [cos, alpha] = FROM;
+    let axes = format!("cos_theta={cos}..1@log,alpha={alpha}..1@log");
+    DfgTable { layout: layout(&axes, Nodes::Ends), ..linear(masking, side) }
+}
+
+fn layout(axes: &str, nodes: Nodes) -> Layout {
+    Layout::parse(axes, nodes).unwrap_or_else(|error| unreachable!("{error}"))
 }

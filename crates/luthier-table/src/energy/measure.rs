@@ -1,0 +1,120 @@
+//! Error of reads from a table of energy.
+
+use luthier_lut::{Comparison, ErrorStats, Image, Scan, WeightBits, bilinear, measure_at, measure_scan};
+use rayon::prelude::*;
+
+use super::{EnergyTable, Place};
+use crate::AxisSpec;
+
+/// Fraction bits of the sampler's weights.
+const BITS: u32 = 8;
+/// Points of a scan along each of one, two or three axes.
+const POINTS: [u32; 3] = [512, 48, 20];
+/// Halvings of the climb to the worst error.
+const REFINEMENTS: u32 = 6;
+
+/// Where the error of a table of energy is measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EnergyDomain {
+    /// Least cosine.
+    pub min_cos: f64,
+    /// Least alpha.
+    pub min_alpha: f64,
+    /// Least and largest index.
+    pub ior: [f64; 2],
+}
+
+impl EnergyDomain {
+    /// Ends of the coordinate of an axis.
+    fn ends(&self, axis: &AxisSpec) -> [f64; 2] {
+        let canonical = if axis.quantity.is_angle() {
+            [0.0, libm::acos(self.min_cos.clamp(0.0, 1.0))]
+        } else if axis.quantity.is_slope() {
+            [self.min_alpha, 1.0]
+        } else {
+            self.ior
+        };
+        let [a, b] = canonical.map(|value| axis.coordinate(value));
+        [a.min(b), a.max(b)]
+    }
+}
+
+impl EnergyTable {
+    /// The error of reads from texels of this statement (linear between the nodes of each axis, weights of 8 bits), over a domain: absolute, of
+    /// every channel, against quadrature. Axis values of the worst point are the cosine, alpha and index, as far as the table has them.
+    ///
+    /// A scan of points between nodes, then a climb from the worst ones; over three axes the climb keeps to the worst of the slices.
+    pub fn error(&self, texels: &Image, domain: EnergyDomain) -> ErrorStats {
+        let axes = self.layout.axes();
+        let ends: Vec<[f64; 2]> = axes.iter().map(|axis| domain.ends(axis)).collect();
+        let points = POINTS[axes.len() - 1];
+        let scan = |count: u32| {
+            let mut scan =
+                Scan { points: [1; 2], from: [0.5; 2], to: [0.5; 2], nodes: [0, 0], refinements: REFINEMENTS };
+            for (k, [from, to]) in ends.iter().take(2).enumerate() {
+                (scan.points[k], scan.from[k], scan.to[k]) = (count, *from, *to);
+            }
+            scan
+        };
+        let slice = |third: f64, count: u32| {
+            let u3 = |u: [f64; 2]| [u[0], u[1], third];
+            measure_scan(&scan(count), |u| self.compare(texels, u3(u)), |u| self.named(u3(u)))
+        };
+        let Some([from, to]) = ends.get(2).copied() else {
+            return slice(0.5, points);
+        };
+        let thirds: Vec<f64> =
+            (0..points).map(|i| from + (to - from) * (f64::from(i) + 0.5) / f64::from(points)).collect();
+        let flat: Vec<[f64; 2]> = scan(points).coordinates().collect();
+        let all: Vec<(Vec<f64>, Comparison)> = (0..thirds.len() * flat.len())
+            .into_par_iter()
+            .map(|i| {
+                let [u, v] = flat[i % flat.len()];
+                let u = [u, v, thirds[i / flat.len()]];
+                (u.to_vec(), self.compare(texels, u))
+            })
+            .collect();
+        let mut stats = measure_at(all);
+        let worst = stats.worst.at.clone();
+        let third = worst.get(2).copied().unwrap_or(0.5);
+        stats.worst.at = self.named([0, 1, 2].map(|k: usize| worst.get(k).copied().unwrap_or(0.5)));
+        stats.with_worst_of(slice(third, points))
+    }
+
+    fn place_of(&self, u: [f64; 3]) -> Place {
+        self.layout.place(|k, axis| axis.canonical_of_coordinate(u[k]))
+    }
+
+    fn named(&self, u: [f64; 3]) -> Vec<f64> {
+        let Place { cos_theta, alpha, ior } = self.place_of(u);
+        [cos_theta, Some(alpha), ior].into_iter().flatten().collect()
+    }
+
+    fn compare(&self, texels: &Image, u: [f64; 3]) -> Comparison {
+        let albedo = self.exact(self.place_of(u));
+        let sampled = self.sample(texels, u);
+        let mut comparison = Comparison { expected: [0.0; 4], sampled: [0.0; 4] };
+        for (c, value) in self.values.iter().enumerate() {
+            (comparison.expected[c], comparison.sampled[c]) = (value.of(albedo), sampled[c]);
+        }
+        comparison
+    }
+
+    /// What a sampler reads: bilinear in two slices, then between them.
+    fn sample(&self, texels: &Image, u: [f64; 3]) -> [f64; 4] {
+        let mut position = [0.5; 3];
+        for (k, axis) in self.layout.axes().iter().enumerate() {
+            position[k] = axis.position(axis.canonical_of_coordinate(u[k]), self.size[k]);
+        }
+        let rows = f64::from(self.size[1]);
+        let y = position[1].clamp(0.5, rows - 0.5);
+        let read = |slice: f64| bilinear(texels, [position[0], slice * rows + y], WeightBits::Fixed(BITS));
+        let last = f64::from(self.size[2] - 1);
+        let z = (position[2] - 0.5).clamp(0.0, last);
+        let low = libm::floor(z);
+        let scale = f64::from(1u32 << BITS);
+        let t = libm::round((z - low) * scale) / scale;
+        let (near, far) = (read(low), read((low + 1.0).min(last)));
+        [0, 1, 2, 3].map(|c: usize| near[c] + (far[c] - near[c]) * t)
+    }
+}

@@ -1,0 +1,265 @@
+//! Tables of energy compensation: albedos of rough surfaces after one facet, over roughness, angle and index.
+
+mod container;
+mod measure;
+mod preset;
+
+use std::f64::consts::SQRT_2;
+
+use luthier_lut::Image;
+use luthier_optics::dielectric_albedo::{
+    InterfaceAlbedo, JointMasking, albedo_avg, albedo_dir, reflected_avg, reflected_dir,
+};
+use luthier_optics::stack::Distribution;
+use rayon::prelude::*;
+
+use crate::{AxesError, AxisSpec, Nodes, Stored};
+
+pub use container::EnergyContainer;
+pub use measure::EnergyDomain;
+pub use preset::{EnergyFile, EnergyPreset};
+
+/// The surface whose albedo a table holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EnergySurface {
+    /// Facets that reflect everything: metals, whose colour comes in by the average Fresnel (Kulla and Conty 2017) or by the factor
+    /// `1 + f0 (1 - E)/E` (Turquin 2019).
+    Reflector,
+    /// An interface between transparent media with exact Fresnel, lit from the rarer side.
+    FromRarer,
+    /// The same lit from the denser side, with total reflection.
+    FromDenser,
+}
+
+impl EnergySurface {
+    /// All surfaces.
+    pub const ALL: [Self; 3] = [Self::Reflector, Self::FromRarer, Self::FromDenser];
+
+    /// Its name in files and on command lines.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Reflector => "reflector",
+            Self::FromRarer => "from-rarer",
+            Self::FromDenser => "from-denser",
+        }
+    }
+}
+
+/// Content of one channel of a table of energy.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EnergyValue {
+    /// E: light reflected and transmitted.
+    Albedo,
+    /// 1 - E: what multiple scattering carries.
+    Loss,
+    /// (1 - E)/E: what a factor on the single scattering adds (Turquin 2019).
+    Compensation,
+    /// Light reflected.
+    Reflected,
+    /// 1 less the light reflected.
+    Unreflected,
+    /// Light transmitted.
+    Transmitted,
+}
+
+impl EnergyValue {
+    /// All contents.
+    pub const ALL: [Self; 6] =
+        [Self::Albedo, Self::Loss, Self::Compensation, Self::Reflected, Self::Unreflected, Self::Transmitted];
+
+    /// Its name in files and on command lines.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Albedo => "albedo",
+            Self::Loss => "loss",
+            Self::Compensation => "compensation",
+            Self::Reflected => "reflected",
+            Self::Unreflected => "unreflected",
+            Self::Transmitted => "transmitted",
+        }
+    }
+
+    /// The content for an albedo.
+    pub fn of(self, albedo: InterfaceAlbedo) -> f64 {
+        let total = albedo.total();
+        match self {
+            Self::Albedo => total.min(1.0),
+            Self::Loss => (1.0 - total).max(0.0),
+            Self::Compensation => ((1.0 - total) / total).max(0.0),
+            Self::Reflected => albedo.reflected,
+            Self::Unreflected => 1.0 - albedo.reflected,
+            Self::Transmitted => albedo.transmitted,
+        }
+    }
+}
+
+/// A table of energy compensation: a statement, from which its texels follow.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnergyTable {
+    /// Slope distribution.
+    pub distribution: Distribution,
+    /// Masking and shadowing.
+    pub masking: JointMasking,
+    /// Whose albedo.
+    pub surface: EnergySurface,
+    /// Axes and nodes: the fastest in memory first.
+    pub layout: EnergyLayout,
+    /// Nodes along each axis; 1 where there is none.
+    pub size: [u32; 3],
+    /// Content of each channel, one to four.
+    pub values: Vec<EnergyValue>,
+    /// Number type of the texels.
+    pub stored: Stored,
+    /// Whether texels are moved by a sixteenth of their second differences, so that reads between them err to both sides alike.
+    pub balanced: bool,
+    /// Indices nearer to 1 than this let all light pass, as renderers have it that treat such an interface as a plane; 0 for none.
+    pub clear_within: f64,
+}
+
+/// Axes of a table of energy: one of the micro-surface, at most one of the direction, and one of the index where the surface has one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnergyLayout {
+    axes: Vec<AxisSpec>,
+}
+
+impl EnergyLayout {
+    /// One to three axes, separated by commas, the fastest in memory first, in the grammar of [`AxisSpec`].
+    ///
+    /// # Errors
+    /// [`AxesError::Axis`] for an axis that does not parse, [`AxesError::EnergyAxes`] unless there is one of the micro-surface and at most one
+    /// each of the direction and the index.
+    pub fn parse(text: &str, nodes: Nodes) -> Result<Self, AxesError> {
+        let axes: Vec<AxisSpec> = text
+            .split(',')
+            .map(|axis| axis.parse().map(|axis: AxisSpec| AxisSpec { nodes, ..axis }))
+            .collect::<Result<_, _>>()?;
+        Self::new(axes).ok_or_else(|| AxesError::EnergyAxes(text.to_owned()))
+    }
+
+    /// The layout of these axes, or none for axes that make no table.
+    pub fn new(axes: Vec<AxisSpec>) -> Option<Self> {
+        let count = |is: fn(crate::Quantity) -> bool| axes.iter().filter(|axis| is(axis.quantity)).count();
+        let is_fit = count(crate::Quantity::is_slope) == 1
+            && count(crate::Quantity::is_angle) <= 1
+            && count(crate::Quantity::is_index) <= 1;
+        is_fit.then_some(Self { axes })
+    }
+
+    /// The axes, the fastest in memory first.
+    pub fn axes(&self) -> &[AxisSpec] {
+        &self.axes
+    }
+
+    /// The axes with lowest and highest values.
+    #[must_use]
+    pub fn clamped(mut self, limits: &[[f64; 2]]) -> Self {
+        for (axis, [floor, ceiling]) in self.axes.iter_mut().zip(limits) {
+            (axis.floor, axis.ceiling) = (*floor, *ceiling);
+        }
+        self
+    }
+
+    /// Cosine, alpha and index of a place, each axis' canonical value given by a function of its number; none for a missing axis.
+    fn place(&self, canonical: impl Fn(usize, &AxisSpec) -> f64) -> Place {
+        let mut place = Place { cos_theta: None, alpha: 0.0, ior: None };
+        for (k, axis) in self.axes.iter().enumerate() {
+            let value = canonical(k, axis);
+            if axis.quantity.is_angle() {
+                place.cos_theta = Some(libm::cos(value).max(0.0));
+            } else if axis.quantity.is_slope() {
+                place.alpha = value;
+            } else {
+                place.ior = Some(value);
+            }
+        }
+        place
+    }
+}
+
+impl std::fmt::Display for EnergyLayout {
+    /// The grammar of [`EnergyLayout::parse`].
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for (k, axis) in self.axes.iter().enumerate() {
+            write!(f, "{}{axis}", if k > 0 { "," } else { "" })?;
+        }
+        Ok(())
+    }
+}
+
+/// Where a table is evaluated. Without a cosine, the average over the hemisphere is meant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Place {
+    cos_theta: Option<f64>,
+    alpha: f64,
+    ior: Option<f64>,
+}
+
+impl EnergyTable {
+    /// The texels as they are stored: slices of the third axis one below the other. Values at the nodes within 1e-6 (averages 2e-6), then moved if
+    /// [`balanced`](Self::balanced), then rounded. Deterministic, whatever the number of threads.
+    pub fn bake(&self) -> Image {
+        let [nx, ny, nz] = self.size;
+        let texels: Vec<Vec<f64>> = (0..nx * ny * nz)
+            .into_par_iter()
+            .map(|i| {
+                let texel = [i % nx, i / nx % ny, i / nx / ny];
+                let albedo = self.at_texel(texel);
+                self.values.iter().map(|value| value.of(albedo)).collect()
+            })
+            .collect();
+        let texels = if self.balanced { balance(self.size, &texels) } else { texels };
+        let data = texels.iter().flatten().map(|value| *value as f32).collect();
+        let image = Image { width: nx, height: ny * nz, channels: self.values.len() as u32, data };
+        self.stored.quantise(&image)
+    }
+
+    /// The albedo at a node.
+    fn at_texel(&self, texel: [u32; 3]) -> InterfaceAlbedo {
+        self.exact(self.layout.place(|k, axis| axis.canonical(texel[k], self.size[k])))
+    }
+
+    /// The albedo itself.
+    fn exact(&self, place: Place) -> InterfaceAlbedo {
+        let Self { distribution, masking, surface, .. } = *self;
+        let Place { cos_theta, alpha, ior } = place;
+        let ior = ior.unwrap_or(SQRT_2);
+        let reflector = || InterfaceAlbedo {
+            reflected: match cos_theta {
+                Some(cos) => reflected_dir(distribution, masking, alpha, cos, |_| 1.0),
+                None => reflected_avg(distribution, masking, alpha, |_| 1.0),
+            },
+            transmitted: 0.0,
+        };
+        let interface = |eta_ti: f64| match cos_theta {
+            _ if ior - 1.0 < self.clear_within => InterfaceAlbedo { reflected: 0.0, transmitted: 1.0 },
+            Some(cos) => albedo_dir(distribution, masking, alpha, eta_ti, cos),
+            None => albedo_avg(distribution, masking, alpha, eta_ti),
+        };
+        match surface {
+            EnergySurface::Reflector => reflector(),
+            EnergySurface::FromRarer => interface(ior),
+            EnergySurface::FromDenser => interface(1.0 / ior),
+        }
+    }
+}
+
+/// Texels between which linear interpolation errs evenly: see [`luthier_lut::balance`], here over three axes.
+fn balance(size: [u32; 3], texels: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let [nx, ny, nz] = size.map(|n| n as usize);
+    let strides = [1, nx, nx * ny];
+    let moved = |i: usize, c: usize| {
+        let at = [i % nx, i / nx % ny, i / nx / ny];
+        let here = texels[i][c];
+        let mut curvature = 0.0;
+        for ((at, n), stride) in at.into_iter().zip([nx, ny, nz]).zip(strides) {
+            if at > 0 && at + 1 < n {
+                curvature += texels[i - stride][c] - 2.0 * here + texels[i + stride][c];
+            }
+        }
+        (here - curvature / 16.0).clamp(0.0, here.max(1.0))
+    };
+    (0..texels.len()).map(|i| (0..texels[i].len()).map(|c| moved(i, c)).collect()).collect()
+}
+
+#[cfg(test)]
+mod tests;
