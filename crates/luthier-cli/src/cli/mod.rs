@@ -55,8 +55,8 @@ pub(crate) enum Verb {
     Report(ReportOptions),
     /// Judge a table of another program, and find the mistake in it
     Audit(Box<AuditOptions>),
-    /// Bake a table that engines read beside a material: the split sum of image-based lighting
-    Table(TableOptions),
+    /// Bake a table that engines read beside a material: split sums, energy compensation, cloth, thin films
+    Table(Box<TableOptions>),
     /// Render a material off screen
     #[cfg(feature = "gpu")]
     Preview(PreviewOptions),
@@ -280,7 +280,9 @@ mod audit;
 pub(crate) use audit::{AuditOptions, NodesName, SamplesName};
 
 mod table;
-pub(crate) use table::{Delivery, DfgOptions, DistributionName, Function, TableOptions};
+pub(crate) use table::{
+    ClothName, ClothOptions, Delivery, DfgOptions, DistributionName, Domain, EnergyOptions, FilmOptions, Function, TableOptions,
+};
 
 #[cfg(feature = "gpu")]
 mod render;

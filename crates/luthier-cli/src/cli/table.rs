@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, Subcommand, ValueEnum};
-use luthier_table::Preset;
+use luthier_table::{EnergyPreset, Preset};
 
-use super::audit::{preset, unit};
+use super::audit::{NodesName, preset, unit};
 
 const EXAMPLES: &str = "\
 Every function comes by quadrature. The output says the layout and the error as sampled: bilinear, 8-bit weights. docs/engines.md has the \
@@ -13,7 +13,9 @@ presets, and how each engine takes its table.
 
 Examples:
   luthier table dfg --preset bevy -o dfg.ktx2
-  luthier table dfg --max-abs 1e-3 -o dfg.ktx2 --shader wgsl --report dfg.html";
+  luthier table dfg --max-abs 1e-3 -o dfg.ktx2 --report dfg.html
+  luthier table energy --preset cycles -o tables
+  luthier table film --film 1.33 --base 1.5 -o film.ktx2";
 
 const DFG_EXAMPLES: &str = "\
 Bakes the split sum of image-based lighting (DFG, environment BRDF): reflectance is f0 * scale + bias. With --preset in the layout of an \
@@ -42,6 +44,12 @@ pub(crate) struct TableOptions {
 pub(crate) enum Function {
     /// Split sum of image-based lighting under Schlick's Fresnel
     Dfg(DfgOptions),
+    /// Directional albedo of cloth: Charlie's distribution, which sheen layers scale by
+    Cloth(ClothOptions),
+    /// Albedos of rough metals and dielectrics, by which energy compensation restores lost light
+    Energy(EnergyOptions),
+    /// Colour that an interface reflects under a thin film
+    Film(FilmOptions),
 }
 
 #[derive(Debug, Args)]
@@ -75,6 +83,148 @@ pub(crate) struct DfgOptions {
     pub(crate) delivery: Delivery,
 }
 
+const CLOTH_EXAMPLES: &str = "\
+Bakes the directional albedo of Charlie's distribution (Estevez and Kulla 2017) by quadrature, into KTX2 of half floats. The page and \
+the error are over cosines from --min-cos and alphas from --min-alpha.
+
+Examples:
+  luthier table cloth --size 64x64 -o cloth.ktx2
+  luthier table cloth --visibility estevez-kulla --axes cos_theta^2,roughness --nodes ends --size 32x32 -o sheen.ktx2";
+
+#[derive(Debug, Args)]
+#[command(after_help = CLOTH_EXAMPLES)]
+pub(crate) struct ClothOptions {
+    /// Visibility term
+    #[arg(long, value_enum, default_value_t = ClothName::Neubelt)]
+    pub(crate) visibility: ClothName,
+    #[command(flatten)]
+    pub(crate) grid: Grid,
+    #[command(flatten)]
+    pub(crate) domain: Domain,
+    #[command(flatten)]
+    pub(crate) delivery: Delivery,
+}
+
+/// Visibility terms of cloth.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum ClothName {
+    /// 1 / (4 (l + v - l v)) of Ashikhmin and Neubelt: Filament, Godot, Babylon.js, glTF's own
+    Neubelt,
+    /// Smith's masking with Lambda as Estevez and Kulla fitted it
+    EstevezKulla,
+}
+
+const ENERGY_EXAMPLES: &str = "\
+Bakes the albedo E of rough surfaces after one facet, by quadrature from either side. Kulla and Conty 2017 need E and its average, which \
+is the table without the axis of the direction; Turquin 2019 needs the value `compensation`, (1 - E)/E. Slices of a third axis lie one \
+below the other. With --preset all tables of a renderer are written into the folder --output. Other files are KTX2 of half floats, or EXR \
+of floats where the name ends in .exr.
+
+Examples:
+  luthier table energy --preset cycles -o tables
+  luthier table energy -o metal.ktx2
+  luthier table energy --axes roughness --size 32x1 -o metal-average.ktx2
+  luthier table energy --values compensation -o turquin.ktx2
+  luthier table energy --surface from-denser --axes cos_theta,roughness,sqrt_f0 --size 32x32x16 -o glass-inside.exr";
+
+#[derive(Debug, Args)]
+#[command(after_help = ENERGY_EXAMPLES)]
+pub(crate) struct EnergyOptions {
+    /// The renderer whose tables are baked: cycles, openpbr, ospray
+    #[arg(long, value_name = "NAME", value_parser = energy_preset, conflicts_with_all = ["surface", "values", "axes", "size", "nodes", "distribution", "masking", "report"])]
+    pub(crate) preset: Option<&'static EnergyPreset>,
+    /// Facets that reflect everything, or an interface between transparent media and the side that light comes from: reflector, from-rarer or from-denser
+    #[arg(long, value_name = "NAME", default_value = "reflector")]
+    pub(crate) surface: String,
+    /// Contents of the channels: albedo, loss, compensation, reflected, unreflected, transmitted
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_value = "albedo")]
+    pub(crate) values: Vec<String>,
+    /// Axes, the fastest first: roughness or alpha, cos_theta unless the average is wanted, and ior, f0, sqrt_f0 or fourth_root_f0 where the surface has an index
+    #[arg(long, value_name = "AXIS,...", default_value = "cos_theta,roughness")]
+    pub(crate) axes: String,
+    /// Nodes along each axis
+    #[arg(long, value_name = "WxH[xD]", default_value = "32x32", value_parser = size3)]
+    pub(crate) size: [u32; 3],
+    /// Where nodes are
+    #[arg(long, value_enum, default_value_t = NodesName::Ends)]
+    pub(crate) nodes: NodesName,
+    /// Slope distribution
+    #[arg(long, value_enum, default_value_t = DistributionName::Ggx)]
+    pub(crate) distribution: DistributionName,
+    /// Smith's masking of both directions: correlated or separable
+    #[arg(long, value_name = "NAME", default_value = "correlated")]
+    pub(crate) masking: String,
+    #[command(flatten)]
+    pub(crate) domain: Domain,
+    #[command(flatten)]
+    pub(crate) delivery: Delivery,
+}
+
+const FILM_EXAMPLES: &str = "\
+Bakes the colour that a plane reflects under a thin film: the exact sum of all interference, over angle and thickness, as linear Rec.709 \
+under D65. For a rough surface the cosine is that against the half vector. Indices are N or N,K.
+
+Examples:
+  luthier table film --film 1.33 --base 1.5 -o film.ktx2
+  luthier table film --film 1.33 --base 1 --axes cos_theta,thickness_nm=100..1200 --size 32x128 -o soap.ktx2 --report soap.html
+  luthier table film --film 2.4 --base 2.5,3.3 -o anodised.exr";
+
+#[derive(Debug, Args)]
+#[command(after_help = FILM_EXAMPLES)]
+pub(crate) struct FilmOptions {
+    /// Index of the film: N or N,K
+    #[arg(long, value_name = "N[,K]", value_parser = index)]
+    pub(crate) film: [f64; 2],
+    /// Index below the film
+    #[arg(long, value_name = "N[,K]", value_parser = index)]
+    pub(crate) base: [f64; 2],
+    /// Index above the film
+    #[arg(long, value_name = "N", value_parser = super::positive, default_value_t = 1.0)]
+    pub(crate) above: f64,
+    /// Axes, the one across first: of the direction and of thickness_nm
+    #[arg(long, value_name = "X,Y", default_value = "cos_theta,thickness_nm=0..1000")]
+    pub(crate) axes: String,
+    /// Texels across and down
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "32x128")]
+    pub(crate) size: [u32; 2],
+    /// Where nodes are
+    #[arg(long, value_enum, default_value_t = NodesName::Ends)]
+    pub(crate) nodes: NodesName,
+    /// Three wavelengths (680, 550, 440 nm) in place of spectra: no colour leaves 0..1
+    #[arg(long)]
+    pub(crate) three_wavelengths: bool,
+    /// Lowest cosine that counts in the error
+    #[arg(long, value_name = "X", default_value_t = 0.01, value_parser = unit)]
+    pub(crate) min_cos: f64,
+    #[command(flatten)]
+    pub(crate) delivery: Delivery,
+}
+
+/// Axes and texels of a table over direction and roughness.
+#[derive(Debug, Args)]
+pub(crate) struct Grid {
+    /// Axes, the one across first, in the words of `luthier audit --axes`
+    #[arg(long, value_name = "X,Y", default_value = "cos_theta,roughness")]
+    pub(crate) axes: String,
+    /// Where nodes are
+    #[arg(long, value_enum, default_value_t = NodesName::Centres)]
+    pub(crate) nodes: NodesName,
+    /// Texels across and down
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "64x64")]
+    pub(crate) size: [u32; 2],
+}
+
+/// Where errors count.
+#[derive(Debug, Args)]
+pub(crate) struct Domain {
+    /// Lowest cosine that counts in the error
+    #[arg(long, value_name = "X", default_value_t = 0.01, value_parser = unit)]
+    pub(crate) min_cos: f64,
+    /// Lowest alpha likewise
+    #[arg(long, value_name = "X", default_value_t = 0.01, value_parser = unit)]
+    pub(crate) min_alpha: f64,
+}
+
 /// Where a table goes, and in which company.
 #[derive(Debug, Args)]
 pub(crate) struct Delivery {
@@ -104,4 +254,36 @@ fn size(text: &str) -> Result<[u32; 2], String> {
     let (width, height) = text.split_once('x').ok_or_else(wrong)?;
     let side = |text: &str| text.parse::<u32>().ok().filter(|side| (4..=1024).contains(side)).ok_or_else(wrong);
     Ok([side(width)?, side(height)?])
+}
+
+/// Nodes along one to three axes.
+fn size3(text: &str) -> Result<[u32; 3], String> {
+    let wrong = || "expected nodes along each axis, 1 to 1024 each, such as 32x32 or 16x16x16".to_owned();
+    let sides: Option<Vec<u32>> = text.split('x').map(|side| side.parse().ok()).collect();
+    let mut size = [1; 3];
+    match sides.as_deref() {
+        Some(sides @ ([_] | [_, _] | [_, _, _])) if sides.iter().all(|side| (1..=1024).contains(side)) => {
+            size[..sides.len()].copy_from_slice(sides);
+            Ok(size)
+        }
+        _ => Err(wrong()),
+    }
+}
+
+/// An index of refraction, n or n,k.
+fn index(text: &str) -> Result<[f64; 2], String> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    let [n, k] = match numbers.as_deref() {
+        Some([n]) => [*n, 0.0],
+        Some([n, k]) => [*n, *k],
+        _ => [0.0; 2],
+    };
+    let is_index = n > 0.0 && n <= 100.0 && (0.0..=100.0).contains(&k);
+    if is_index { Ok([n, k]) } else { Err("expected an index of refraction, N or N,K, such as 1.5 or 0.27,2.9".to_owned()) }
+}
+
+/// The tables of energy of a name.
+fn energy_preset(name: &str) -> Result<&'static EnergyPreset, String> {
+    let names = || EnergyPreset::ALL.iter().map(|preset| preset.name).collect::<Vec<_>>().join(", ");
+    EnergyPreset::named(name).ok_or_else(|| format!("there is no such preset; there are {}", names()))
 }
