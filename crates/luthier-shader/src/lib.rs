@@ -20,7 +20,10 @@
 //!
 //! [`MaterialSet::functions`] asks for more: `luthier_prepare` and `luthier_light`, drawn directions, albedos.
 //!
-//! Simplifications: bindings are in group 0; the full form knows one film per interface.
+//! [`library`] puts any WGSL module of functions, textures and samplers into these languages, and [`library_spirv`] into SPIR-V: look-ups of
+//! tables that are no material's.
+//!
+//! Simplifications: bindings of materials are in group 0; the full form knows one film per interface.
 //!
 //! Sums of `luthier_eval` over lights go through `luthier_bounded` where they are written. Numbers of group 0 from
 //! [`RESERVED_BINDINGS`] up are the caller's.
@@ -29,13 +32,15 @@ mod compose;
 mod emit;
 mod error;
 mod languages;
+mod library;
 mod set;
 mod style;
 mod validate;
 
 pub use emit::{complete, emit, emit_constant};
 pub use error::ShaderError;
-pub use languages::spirv::{complete_spirv, emit_spirv, spirv_words};
+pub use languages::spirv::{complete_spirv, emit_spirv, library_spirv, spirv_words};
+pub use library::library;
 pub use luthier_manifest::{Form, Target};
 pub use set::{MaterialSet, RESERVED_BINDINGS, TableFace, bindings, identifier};
 pub use style::style_name;

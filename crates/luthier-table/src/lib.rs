@@ -5,7 +5,7 @@
 //!
 //! A [`DfgTable`] states a function, axes, values and texels; [`DfgTable::bake`] fills it, [`DfgTable::error`] measures what a sampler reads from
 //! it, [`search`] finds the smallest. [`Preset`]s are the statements of engines. [`ClosedForm::fit`] finds a form without a table: two quotients of polynomials and
-//! a fifth power.
+//! a fifth power. [`DfgTable::wgsl`] and [`ClosedForm::wgsl`] write the function that a shader calls, `luthier_dfg`.
 //!
 //! An [`EnergyTable`] does likewise for the albedos that energy compensation takes, of metals and of dielectrics from both sides;
 //! [`EnergyPreset`]s are the statements of renderers.
@@ -20,6 +20,7 @@ mod closed;
 mod dfg;
 mod energy;
 mod film;
+mod lookup;
 mod preset;
 pub mod rgbd;
 mod search;
@@ -33,6 +34,7 @@ pub use energy::{
     EnergyContainer, EnergyDomain, EnergyFile, EnergyLayout, EnergyPreset, EnergySurface, EnergyTable, EnergyValue,
 };
 pub use film::{FilmLayout, FilmTable};
+pub use lookup::{Bindings, LOOKUP, SAMPLER, TEXTURE};
 pub use preset::{Container, Preset};
 pub use search::{Found, search};
 pub use stored::Stored;

@@ -5,7 +5,7 @@ mod manual;
 use self::manual::manual;
 use crate::compose::{Buffer, compose};
 use crate::languages::{glsl, hlsl, msl};
-use crate::{Form, MaterialSet, ShaderError, Target, validate};
+use crate::{Form, MaterialSet, ShaderError, Target, bindings, validate};
 
 /// The entry point of a complete shader, in WGSL.
 pub(crate) const FRAGMENT: &str = include_str!("../wgsl/fragment.wgsl");
@@ -72,9 +72,11 @@ fn text(set: &MaterialSet<'_>, form: Form, target: Target, part: Part) -> Result
             validate(&wgsl)?;
             wgsl.clone()
         }
-        Target::Glsl450 | Target::GlslEs300 => glsl::from_wgsl(&wgsl, set, form, target)?,
-        Target::Hlsl => hlsl::from_wgsl(&wgsl, set, form)?,
-        Target::Msl => msl::from_wgsl(&wgsl, set, form)?,
+        Target::Glsl450 | Target::GlslEs300 => {
+            glsl::from_wgsl(&wgsl, &bindings(set, form), 0, &glsl::calls(set, form), target)?
+        }
+        Target::Hlsl => hlsl::from_wgsl(&wgsl, &bindings(set, form), 0)?,
+        Target::Msl => msl::from_wgsl(&wgsl, &bindings(set, form))?,
         Target::SpirV => return Err(ShaderError::NotText),
     };
     Ok(format!("{}\n{body}", manual(set, form, target, part, &wgsl)?))

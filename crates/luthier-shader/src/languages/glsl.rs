@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use luthier_manifest::BindingEntry;
 use naga::back::glsl::{Options, PipelineOptions, ReflectionInfo, Version, Writer, WriterFlags};
 use naga::proc::BoundsCheckPolicies;
 use naga::{GlobalVariable, Handle, Module, ResourceBinding, ShaderStage};
@@ -10,7 +11,7 @@ use naga::{GlobalVariable, Handle, Module, ResourceBinding, ShaderStage};
 use crate::compose::lookup_signature;
 use crate::languages::text::{layout, rename};
 use crate::validate::module;
-use crate::{Form, MaterialSet, ShaderError, Target, bindings};
+use crate::{Form, MaterialSet, ShaderError, Target};
 
 /// naga writes GLSL for an entry point only; this one is cut off again.
 const ENTRY: &str = "luthier_entry";
@@ -18,14 +19,22 @@ const ENTRY: &str = "luthier_entry";
 const BLOCK: &str = "LuthierMaterials";
 
 /// Functions, blocks and uniforms in GLSL, without `#version`, precision and `main`.
-pub(crate) fn from_wgsl(wgsl: &str, set: &MaterialSet<'_>, form: Form, target: Target) -> Result<String, ShaderError> {
-    let (module, info) = module(&format!("{wgsl}\n{}", entry_point(set, form)))?;
+///
+/// `calls` are statements that together use every binding.
+pub(crate) fn from_wgsl(
+    wgsl: &str,
+    bindings: &[BindingEntry],
+    group: u32,
+    calls: &str,
+    target: Target,
+) -> Result<String, ShaderError> {
+    let (module, info) = module(&format!("{wgsl}\n@fragment fn {ENTRY}() {{\n{calls}}}\n"))?;
     let version = if target == Target::GlslEs300 { Version::new_gles(300) } else { Version::Desktop(450) };
-    let slot = |binding: u32| (ResourceBinding { group: 0, binding }, binding as u8);
+    let slot = |binding: u32| (ResourceBinding { group, binding }, binding as u8);
     let options = Options {
         version,
         writer_flags: WriterFlags::INCLUDE_UNUSED_ITEMS,
-        binding_map: bindings(set, form).iter().map(|e| slot(e.binding)).collect(),
+        binding_map: bindings.iter().map(|e| slot(e.binding)).collect(),
         zero_initialize_workgroup_memory: false,
     };
     let pipeline =
@@ -37,16 +46,15 @@ pub(crate) fn from_wgsl(wgsl: &str, set: &MaterialSet<'_>, form: Form, target: T
     let names = names(&module, &writer.write().map_err(refused)?);
     let body = body(&text).ok_or_else(|| ShaderError::untranslatable(target, "no entry point"))?;
     let body = rename(body, |word| names.get(word).map(String::as_str));
-    if body.contains("_group_0_") {
+    if body.contains(&format!("_group_{group}_")) {
         return Err(ShaderError::untranslatable(target, "a binding without a name"));
     }
     Ok(layout(&body, &module, wgsl))
 }
 
-/// An entry point that uses every binding, so that naga reports the name it gives to each.
-fn entry_point(set: &MaterialSet<'_>, form: Form) -> String {
-    let mut out = format!("@fragment fn {ENTRY}() {{\n");
-    out.push_str("    _ = luthier_eval(0u, vec3<f32>(), vec3<f32>());\n");
+/// Calls that use every binding of a set, so that naga reports the name it gives to each.
+pub(crate) fn calls(set: &MaterialSet<'_>, form: Form) -> String {
+    let mut out = "    _ = luthier_eval(0u, vec3<f32>(), vec3<f32>());\n".to_owned();
     for table in set.tables_read(form) {
         let arguments: Vec<String> = lookup_signature(table.kind).0.iter().map(|kind| format!("{kind}()")).collect();
         let _ = writeln!(out, "    _ = luthier_lookup_{}({});", table.kind.name(), arguments.join(", "));
@@ -54,7 +62,6 @@ fn entry_point(set: &MaterialSet<'_>, form: Form) -> String {
     if set.shows_environment(form) {
         out.push_str("    _ = luthier_environment(luthier_prepare(0u, vec3<f32>()), mat3x3<f32>(), 0.0);\n");
     }
-    out.push_str("}\n");
     out
 }
 

@@ -1,13 +1,14 @@
 //! HLSL of a composed module: naga's output, with our names and comments and a plain sampler.
 
+use luthier_manifest::BindingEntry;
 use naga::back::hlsl::{Options, PipelineOptions, ShaderModel, Writer};
 
 use crate::languages::text::{helper, layout, rename};
 use crate::validate::module;
-use crate::{Form, MaterialSet, ShaderError, Target, bindings};
+use crate::{ShaderError, Target};
 
-/// The module in shader model 5.1. Registers are binding numbers, in space 0.
-pub(crate) fn from_wgsl(wgsl: &str, set: &MaterialSet<'_>, form: Form) -> Result<String, ShaderError> {
+/// The module in shader model 5.1. Registers are binding numbers, in the space of the group.
+pub(crate) fn from_wgsl(wgsl: &str, bindings: &[BindingEntry], group: u32) -> Result<String, ShaderError> {
     let (module, info) = module(wgsl)?;
     let options = Options { shader_model: ShaderModel::V5_1, restrict_indexing: false, ..Options::default() };
     let refused = |e: &dyn ToString| ShaderError::untranslatable(Target::Hlsl, e.to_string());
@@ -17,7 +18,7 @@ pub(crate) fn from_wgsl(wgsl: &str, set: &MaterialSet<'_>, form: Form) -> Result
     for name in written.entry_point_names {
         name.map_err(|e| refused(&e))?;
     }
-    let body = plain_sampler(&text.replace("\n{\n", " {\n"), set, form);
+    let body = plain_sampler(&text.replace("\n{\n", " {\n"), bindings, group);
     let body = rename(&without_ceremony(&body), helper);
     if body.to_ascii_lowercase().contains("naga") {
         return Err(refused(&"a name of naga's is left"));
@@ -26,14 +27,17 @@ pub(crate) fn from_wgsl(wgsl: &str, set: &MaterialSet<'_>, form: Form) -> Result
 }
 
 /// The sampler as a declaration of its own instead of an index into naga's heap of samplers.
-fn plain_sampler(text: &str, set: &MaterialSet<'_>, form: Form) -> String {
+fn plain_sampler(text: &str, bindings: &[BindingEntry], group: u32) -> String {
+    let space = if group == 0 { String::new() } else { format!(", space{group}") };
     let mut out = String::with_capacity(text.len());
     for line in text.lines() {
         let declared =
             line.strip_prefix("static const SamplerState ").and_then(|rest| rest.split_once(" = nagaSamplerHeap["));
         if let Some((name, _)) = declared {
-            for entry in bindings(set, form).iter().filter(|entry| entry.name == name) {
-                out.push_str(&format!("SamplerState {name} : register(s{});\n", entry.binding));
+            // A name that HLSL keeps for itself has an underscore more.
+            let of = |entry: &&BindingEntry| entry.name == name || name.strip_suffix('_') == Some(&entry.name);
+            for entry in bindings.iter().filter(of) {
+                out.push_str(&format!("SamplerState {name} : register(s{}{space});\n", entry.binding));
             }
         } else if !(line.contains(" nagaSamplerHeap[")
             || line.contains(" nagaComparisonSamplerHeap[")

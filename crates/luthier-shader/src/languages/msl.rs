@@ -2,12 +2,13 @@
 //!
 //! Nothing here can compile it.
 
+use luthier_manifest::BindingEntry;
 use naga::ResourceBinding;
 use naga::back::msl::{BindSamplerTarget, BindTarget, EntryPointResources, Options, PipelineOptions, write_string};
 
 use crate::languages::text::{helper, layout, rename};
 use crate::validate::module;
-use crate::{Form, MaterialSet, ShaderError, Target, bindings};
+use crate::{ShaderError, Target};
 
 /// Name of the type of the material buffer.
 const BUFFER: &str = "LuthierMaterials";
@@ -15,10 +16,9 @@ const BUFFER: &str = "LuthierMaterials";
 const WIDTH: usize = 120;
 
 /// The module in MSL 2.0. Argument indices of entry points are binding numbers.
-pub(crate) fn from_wgsl(wgsl: &str, set: &MaterialSet<'_>, form: Form) -> Result<String, ShaderError> {
+pub(crate) fn from_wgsl(wgsl: &str, bindings: &[BindingEntry]) -> Result<String, ShaderError> {
     let (module, info) = module(wgsl)?;
-    let resources =
-        EntryPointResources { resources: bindings(set, form).iter().map(slot).collect(), ..Default::default() };
+    let resources = EntryPointResources { resources: bindings.iter().map(slot).collect(), ..Default::default() };
     let options = Options {
         lang_version: (2, 0),
         per_entry_point_map: module.entry_points.iter().map(|e| (e.name.clone(), resources.clone())).collect(),
@@ -42,7 +42,7 @@ pub(crate) fn from_wgsl(wgsl: &str, set: &MaterialSet<'_>, form: Form) -> Result
 }
 
 /// Where an entry point finds a binding.
-fn slot(entry: &luthier_manifest::BindingEntry) -> (ResourceBinding, BindTarget) {
+fn slot(entry: &BindingEntry) -> (ResourceBinding, BindTarget) {
     let at = entry.binding as u8;
     let target = match entry.resource.as_str() {
         "buffer" => BindTarget { buffer: Some(at), ..BindTarget::default() },

@@ -24,7 +24,15 @@ const HEADER_WORDS: usize = 5;
 /// # Errors
 /// As [`emit`](crate::emit).
 pub fn emit_spirv(set: &MaterialSet<'_>, form: Form) -> Result<Vec<u8>, ShaderError> {
-    Ok(bytes(&with_exports(&spirv_words(&body(set, form, Target::SpirV, "")?)?)))
+    library_spirv(&body(set, form, Target::SpirV, "")?)
+}
+
+/// A library in SPIR-V of any WGSL module, as [`emit_spirv`] writes it.
+///
+/// # Errors
+/// When naga refuses the module.
+pub fn library_spirv(wgsl: &str) -> Result<Vec<u8>, ShaderError> {
+    Ok(bytes(&with_exports(&spirv_words(wgsl)?)))
 }
 
 /// A complete fragment shader in SPIR-V 1.3 (Vulkan 1.1), little endian, with the entry point `main`.

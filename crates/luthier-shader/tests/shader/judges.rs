@@ -16,7 +16,7 @@ use crate::scenes::{clear, conductor, forms, material, sets, tables};
 const VULKAN: &str = "vulkan1.1";
 
 /// Whether a program can be started. On a build server it must be.
-fn is_installed(program: &str, package: &str) -> bool {
+pub(crate) fn is_installed(program: &str, package: &str) -> bool {
     if Command::new(program).arg("--version").output().is_ok() {
         return true;
     }
@@ -58,7 +58,7 @@ fn set(materials: &[MaterialEntry]) -> MaterialSet<'_> {
 }
 
 /// Compiles with glslang into `shader.spv` of the folder.
-fn compile(text: &str, folder: &Path, what: &str, options: &[&str]) -> PathBuf {
+pub(crate) fn compile(text: &str, folder: &Path, what: &str, options: &[&str]) -> PathBuf {
     let (source, module) = (folder.join("shader.txt"), folder.join("shader.spv"));
     fs::write(&source, text).unwrap();
     let mut command = Command::new("glslangValidator");
@@ -68,7 +68,7 @@ fn compile(text: &str, folder: &Path, what: &str, options: &[&str]) -> PathBuf {
 }
 
 /// Has spirv-val judge a module.
-fn validate_spirv(module: &Path, environment: &str, what: &str, source: &str) {
+pub(crate) fn validate_spirv(module: &Path, environment: &str, what: &str, source: &str) {
     let output = Command::new("spirv-val").args(["--target-env", environment]).arg(module).output().unwrap();
     expect_success(&output, &format!("{what} {environment}"), source);
 }
@@ -89,7 +89,7 @@ fn khronos_tools_accept_complete_glsl() {
 }
 
 /// Has glslang read a fragment shader. GLSL ES 3.00 has no locations for what the vertex shader hands over, so it makes no SPIR-V.
-fn accept_glsl_es(what: &str, text: &str, folder: &Path) {
+pub(crate) fn accept_glsl_es(what: &str, text: &str, folder: &Path) {
     let source = folder.join("shader.frag");
     fs::write(&source, text).unwrap();
     expect_success(&Command::new("glslangValidator").arg(&source).output().unwrap(), what, text);

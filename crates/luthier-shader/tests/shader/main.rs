@@ -10,6 +10,7 @@ mod face;
 mod features;
 mod golden;
 mod judges;
+mod library;
 mod lobes;
 mod machine;
 mod manual;

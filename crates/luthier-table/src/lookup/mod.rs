@@ -1,0 +1,138 @@
+//! Look-ups as WGSL: text of a function that gives scale and bias.
+
+mod axis;
+mod closed;
+
+use std::fmt::Write as _;
+
+use crate::{DfgTable, Nodes, Value};
+
+/// Name of the function.
+pub const LOOKUP: &str = "luthier_dfg";
+/// Name of the texture.
+pub const TEXTURE: &str = "luthier_dfg_table";
+/// Name of the sampler.
+pub const SAMPLER: &str = "luthier_dfg_sampler";
+
+/// Where a shader finds a table and its sampler.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Bindings {
+    /// Bind group, or register space, or descriptor set.
+    pub group: u32,
+    /// Number of the texture.
+    pub texture: u32,
+    /// Number of the sampler.
+    pub sampler: u32,
+}
+
+impl DfgTable {
+    /// WGSL of `fn luthier_dfg(cos_theta: f32, alpha: f32) -> vec2<f32>`, which reads this table and gives scale and bias; none where the channels do
+    /// not determine them, or an axis is periodic.
+    ///
+    /// It declares the texture [`TEXTURE`] and the sampler [`SAMPLER`], which has to filter linearly and clamp to the edge. Inputs are clamped to
+    /// 0..1. Channels that are not stored follow from the others: albedo = scale + bias = 1 - loss.
+    pub fn wgsl(&self, bindings: Bindings) -> Option<String> {
+        let result = result(&self.values)?;
+        let Bindings { group, texture, sampler } = bindings;
+        let mut out = format!(
+            "@group({group}) @binding({texture}) var {TEXTURE}: texture_2d<f32>;\n\
+             @group({group}) @binding({sampler}) var {SAMPLER}: sampler;\n\n"
+        );
+        for line in self.comment() {
+            let _ = writeln!(out, "/// {line}");
+        }
+        let _ = writeln!(out, "fn {LOOKUP}(cos_theta: f32, alpha: f32) -> vec2<f32> {{");
+        let [angles, slopes] = self.layout.order();
+        let names = ["x", "y"];
+        let angle = &self.layout.angle;
+        axis::write(&mut out, names[angles], angle, "cos_theta", self.size[angles])?;
+        match &self.layout.slope {
+            Some(slope) => axis::write(&mut out, names[slopes], slope, "alpha", self.size[slopes])?,
+            None => {
+                let _ = writeln!(out, "    let {} = 0.5;", names[slopes]);
+            }
+        }
+        let _ = writeln!(out, "    let texel = textureSampleLevel({TEXTURE}, {SAMPLER}, vec2<f32>(x, y), 0.0);");
+        let _ = writeln!(out, "    return {result};\n}}");
+        Some(out)
+    }
+
+    fn comment(&self) -> [String; 3] {
+        let Self { distribution, masking, layout, values, size: [width, height], stored } = self;
+        let values: Vec<&str> = values.iter().map(|value| value.name()).collect();
+        let nodes = match layout.angle.nodes {
+            Nodes::Ends => "ends".to_owned(),
+            Nodes::CENTRES => "centres".to_owned(),
+            Nodes::Offset(offset) => format!("offset {offset}"),
+        };
+        [
+            "Scale and bias of the split sum: a rough surface reflects f0 * scale + bias of light from all around (f90 = 1).".to_owned(),
+            format!("{}, masking {}. Linear filter, clamp to edge.", distribution.name(), masking.name()),
+            format!("Table: {} over {layout}, nodes at {nodes}; {width} x {height}, {}.", values.join(", "), stored.name()),
+        ]
+    }
+}
+
+/// Scale and bias as an expression of a texel.
+fn result(values: &[Value]) -> Option<String> {
+    let channel = |value: Value| {
+        values.iter().take(4).position(|v| *v == value).map(|i| format!("texel.{}", ["r", "g", "b", "a"][i]))
+    };
+    let [scale, bias, albedo, loss] = [Value::Scale, Value::Bias, Value::Albedo, Value::Loss].map(channel);
+    let albedo = albedo.or_else(|| loss.map(|loss| format!("1.0 - {loss}")));
+    Some(match (scale, bias, albedo) {
+        (Some(scale), Some(bias), _) => format!("vec2<f32>({scale}, {bias})"),
+        (None, Some(bias), Some(albedo)) => format!("vec2<f32>({albedo} - {bias}, {bias})"),
+        (Some(scale), None, Some(albedo)) => format!("vec2<f32>({scale}, {albedo} - {scale})"),
+        _ => return None,
+    })
+}
+
+/// A number as a WGSL literal that reads back as the same f32.
+fn float(value: f64) -> String {
+    format!("{:?}", value as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Layout, Preset};
+
+    #[test]
+    fn a_plain_table_has_a_plain_look_up() {
+        let text = Preset::named("bevy").unwrap().table().wgsl(Bindings { group: 2, texture: 3, sampler: 4 }).unwrap();
+        let code: Vec<&str> = text.lines().filter(|line| !line.starts_with("///") && !line.is_empty()).collect();
+        let expected = [
+            "@group(2) @binding(3) var luthier_dfg_table: texture_2d<f32>;",
+            "@group(2) @binding(4) var luthier_dfg_sampler: sampler;",
+            "fn luthier_dfg(cos_theta: f32, alpha: f32) -> vec2<f32> {",
+            "    let x = saturate(cos_theta);",
+            "    let y = sqrt(saturate(alpha));",
+            "    let texel = textureSampleLevel(luthier_dfg_table, luthier_dfg_sampler, vec2<f32>(x, y), 0.0);",
+            "    return vec2<f32>(texel.r, texel.g);",
+            "}",
+        ];
+        assert_eq!(code, expected);
+    }
+
+    #[test]
+    fn channels_that_say_too_little_have_no_look_up() {
+        let table = |values: &[Value]| DfgTable { values: values.to_vec(), ..Preset::named("bevy").unwrap().table() };
+        for values in [&[Value::Scale][..], &[Value::Albedo, Value::Loss], &[Value::Bias, Value::Zero], &[]] {
+            assert_eq!(table(values).wgsl(Bindings::default()), None);
+        }
+        for (values, expected) in [
+            (&[Value::Bias, Value::Loss][..], "vec2<f32>(1.0 - texel.g - texel.r, texel.r)"),
+            (&[Value::Zero, Value::Albedo, Value::Scale], "vec2<f32>(texel.b, texel.g - texel.b)"),
+        ] {
+            assert!(table(values).wgsl(Bindings::default()).unwrap().contains(expected));
+        }
+    }
+
+    #[test]
+    fn a_row_is_read_in_its_middle() {
+        let layout = Layout::parse("theta", Nodes::CENTRES).unwrap();
+        let row = DfgTable { layout, size: [16, 1], ..Preset::named("bevy").unwrap().table() };
+        assert!(row.wgsl(Bindings::default()).unwrap().contains("    let y = 0.5;\n"));
+    }
+}
