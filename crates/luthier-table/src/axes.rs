@@ -1,6 +1,6 @@
 //! Axes of a table: quantity, mapping, position of nodes.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, SQRT_2};
 use std::fmt;
 use std::str::FromStr;
 
@@ -14,7 +14,7 @@ use thiserror::Error;
 pub enum AxesError {
     /// An axis that does not parse.
     #[error(
-        "`{0}` is no axis; write [-]QUANTITY[=MIN..MAX][^EXPONENT|@log] with cos_theta, theta, cos_theta_sq, sqrt_cos_theta, roughness, alpha, alpha_sq or sqrt_roughness"
+        "`{0}` is no axis; write [-]QUANTITY[=MIN..MAX][^EXPONENT|@log] with cos_theta, theta, cos_theta_sq, sqrt_cos_theta, sqrt_one_minus_cos_theta, roughness, alpha, alpha_sq or sqrt_roughness"
     )]
     Axis(String),
     /// Axes other than one of the direction and at most one of the micro-surface.
@@ -34,6 +34,8 @@ pub enum Quantity {
     CosThetaSq,
     /// The square root of the cosine.
     SqrtCosTheta,
+    /// The square root of one less the cosine: the axis of area-light tables.
+    SqrtOneMinusCosTheta,
     /// Angle against the normal, radians.
     Theta,
     /// The artist's roughness, alpha = roughness^2.
@@ -48,7 +50,8 @@ pub enum Quantity {
 
 impl Quantity {
     /// Quantities of the direction.
-    pub const ANGLES: [Self; 4] = [Self::CosTheta, Self::Theta, Self::CosThetaSq, Self::SqrtCosTheta];
+    pub const ANGLES: [Self; 5] =
+        [Self::CosTheta, Self::Theta, Self::CosThetaSq, Self::SqrtCosTheta, Self::SqrtOneMinusCosTheta];
     /// Quantities of the micro-surface.
     pub const SLOPES: [Self; 4] = [Self::Roughness, Self::Alpha, Self::AlphaSq, Self::SqrtRoughness];
 
@@ -58,6 +61,7 @@ impl Quantity {
             Self::CosTheta => "cos_theta",
             Self::CosThetaSq => "cos_theta_sq",
             Self::SqrtCosTheta => "sqrt_cos_theta",
+            Self::SqrtOneMinusCosTheta => "sqrt_one_minus_cos_theta",
             Self::Theta => "theta",
             Self::Roughness => "roughness",
             Self::Alpha => "alpha",
@@ -84,6 +88,8 @@ impl Quantity {
             Self::CosTheta => angle(value),
             Self::CosThetaSq => angle(value.sqrt()),
             Self::SqrtCosTheta => angle(value * value),
+            // 1 - cos = 2 sin^2 of the half angle: the arc sine is exact at normal incidence, where the arc cosine is not.
+            Self::SqrtOneMinusCosTheta => 2.0 * libm::asin((value / SQRT_2).min(FRAC_1_SQRT_2)),
             Self::Theta => value.min(FRAC_PI_2),
             Self::Roughness => value * value,
             Self::Alpha => value,
@@ -98,6 +104,7 @@ impl Quantity {
             Self::CosTheta => libm::cos(canonical),
             Self::CosThetaSq => libm::cos(canonical) * libm::cos(canonical),
             Self::SqrtCosTheta => libm::cos(canonical).max(0.0).sqrt(),
+            Self::SqrtOneMinusCosTheta => SQRT_2 * libm::sin(0.5 * canonical),
             Self::Theta => canonical,
             Self::Roughness => canonical.sqrt(),
             Self::Alpha => canonical,
@@ -353,6 +360,7 @@ mod tests {
                 "alpha,-theta",
                 "-sqrt_cos_theta,alpha_sq",
                 "cos_theta_sq^2,sqrt_roughness=0.1..1",
+                "roughness,sqrt_one_minus_cos_theta",
             ] {
                 let layout = Layout::parse(text, nodes).unwrap();
                 assert_eq!(layout.to_string(), text);

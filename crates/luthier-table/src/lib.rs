@@ -11,10 +11,12 @@
 
 mod axes;
 mod dfg;
+mod ltc;
 mod preset;
 mod search;
 
 pub use axes::{AxesError, AxisSpec, Layout, Nodes, Quantity};
 pub use dfg::{DfgTable, Stored, Value};
+pub use ltc::{IrradianceError, Lobe, LtcError, LtcTable, LtcTexels, PlacedError, clipped_sphere_form_factor};
 pub use preset::{Container, Preset};
 pub use search::{Found, search};
