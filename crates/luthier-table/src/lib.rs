@@ -17,6 +17,8 @@ mod search;
 
 pub use axes::{AxesError, AxisSpec, Layout, Nodes, Quantity};
 pub use dfg::{DfgTable, Stored, Value};
-pub use ltc::{IrradianceError, Lobe, LtcError, LtcTable, LtcTexels, PlacedError, clipped_sphere_form_factor};
+pub use ltc::{
+    IrradianceError, Lobe, LtcError, LtcTable, LtcTexels, PlacedError, SheenTable, clipped_sphere_form_factor,
+};
 pub use preset::{Container, Preset};
 pub use search::{Found, search};

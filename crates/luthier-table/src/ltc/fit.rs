@@ -1,16 +1,15 @@
 //! Fits of lobes to reflections.
 
 use super::Lobe;
+use super::simplex::minimise;
 use super::target::Target;
 
 /// Width of the first simplex: in logarithms of scales, in widths of the lobe, in radians.
 const STEPS: [f64; 4] = [0.15, 0.15, 0.3, 0.15];
-/// Searches end where the values of the simplex differ by less than this.
-const SPREAD: f64 = 1e-9;
+/// Loss of shared energy from one shape to the next beyond which a second search starts.
+const JUMP: f64 = 0.004;
 /// Turn of the second start, over the mirror direction's angle.
 const MIRROR_TURN: f64 = 0.6;
-/// Steps of one search.
-const STEPS_MAX: usize = 240;
 
 /// A lobe in words that fits change: M is a rotation about y, of a matrix of scales and skew (section 4 of the paper, whose rotation is not fitted).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,14 +78,15 @@ pub(super) fn fit_upright(target: &Target) -> Shape {
 
 /// The shape that shares most energy with a reflection, found from another: the simplex search of Nelder and Mead 1965, twice.
 pub(super) fn fit_from(target: &Target, start: Shape) -> Shape {
-    let first = simplex(target, start, STEPS);
-    simplex(target, first, STEPS.map(|step| 0.3 * step))
+    let first = search(target, start, STEPS);
+    search(target, first, STEPS.map(|step| 0.3 * step))
 }
 
-/// Shapes of one roughness, from normal to grazing incidence: the better of two searches, from the last shape and from the mirror direction.
+/// Shapes of one roughness, from normal to grazing incidence, each found from the last; where that one shares less energy than the last by more than
+/// [`JUMP`], the better of two searches, the other from the mirror direction.
 pub(super) fn fit_column(targets: impl Iterator<Item = Target>) -> Vec<Shape> {
     let mut shapes: Vec<Shape> = Vec::new();
-    let (mut upright, mut last_theta, mut last_cos) = (0.0, 0.0, 1.0);
+    let (mut upright, mut last_theta, mut last_cos, mut last_shared) = (0.0, 0.0, 1.0, 1.0);
     for target in targets {
         let (theta, cos) = (libm::acos(target.cos_theta_o), target.cos_theta_o);
         let shape = match shapes.last() {
@@ -94,76 +94,39 @@ pub(super) fn fit_column(targets: impl Iterator<Item = Target>) -> Vec<Shape> {
                 // A reflected lobe narrows across by the cosine.
                 let across = last.ln_across + libm::log(cos / last_cos);
                 let next = Shape { ln_across: across, ..last.turned(theta - last_theta) };
-                let mirror = Shape {
-                    ln_along: upright,
-                    ln_across: upright + libm::log(cos),
-                    centre: theta,
-                    turn: MIRROR_TURN * theta,
-                };
-                let found = [next, mirror].map(|start| fit_from(&target, start));
-                let [after_next, after_mirror] = found.map(|shape| target.shared(shape.lobe(), 1.0));
-                found[usize::from(after_mirror > after_next)]
+                let found = fit_from(&target, next);
+                let shared = target.shared(found.lobe(), 1.0);
+                if shared + JUMP > last_shared {
+                    found
+                } else {
+                    let mirror = Shape {
+                        ln_along: upright,
+                        ln_across: upright + libm::log(cos),
+                        centre: theta,
+                        turn: MIRROR_TURN * theta,
+                    };
+                    let other = fit_from(&target, mirror);
+                    if target.shared(other.lobe(), 1.0) > shared { other } else { found }
+                }
             }
             None => fit_upright(&target),
         };
         if shapes.is_empty() {
             upright = shape.ln_along;
         }
-        (last_theta, last_cos) = (theta, cos);
+        (last_theta, last_cos, last_shared) = (theta, cos, target.shared(shape.lobe(), 1.0));
         shapes.push(shape);
     }
     shapes
 }
 
-fn simplex(target: &Target, start: Shape, steps: [f64; 4]) -> Shape {
+fn search(target: &Target, start: Shape, steps: [f64; 4]) -> Shape {
     let loss = |by: [f64; 4]| {
         let lobe = start.moved(by).lobe();
         // Lobes that are turned inside out, or away from the normal, are none that reads between texels could pass.
         if lobe.determinant() > 0.0 && lobe.m11 > 0.0 && lobe.m33 > 0.0 { 1.0 - target.shared(lobe, 1.0) } else { 1.0 }
     };
-    let mut corners: Vec<([f64; 4], f64)> = (0..5)
-        .map(|i| {
-            let mut at = [0.0; 4];
-            if i > 0 {
-                at[i - 1] = steps[i - 1];
-            }
-            (at, loss(at))
-        })
-        .collect();
-    for _ in 0..STEPS_MAX {
-        corners.sort_by(|a, b| a.1.total_cmp(&b.1));
-        if corners[4].1 - corners[0].1 < SPREAD {
-            break;
-        }
-        let centre: [f64; 4] =
-            std::array::from_fn(|k| corners[..4].iter().map(|corner| corner.0[k]).sum::<f64>() / 4.0);
-        let along = |t: f64| {
-            let at: [f64; 4] = std::array::from_fn(|k| centre[k] + t * (corners[4].0[k] - centre[k]));
-            (at, loss(at))
-        };
-        let reflected = along(-1.0);
-        let replacement = if reflected.1 < corners[0].1 {
-            let expanded = along(-2.0);
-            Some(if expanded.1 < reflected.1 { expanded } else { reflected })
-        } else if reflected.1 < corners[3].1 {
-            Some(reflected)
-        } else {
-            let contracted = along(if reflected.1 < corners[4].1 { -0.5 } else { 0.5 });
-            (contracted.1 < corners[4].1.min(reflected.1)).then_some(contracted)
-        };
-        match replacement {
-            Some(corner) => corners[4] = corner,
-            None => {
-                let best = corners[0].0;
-                for corner in &mut corners[1..] {
-                    let at = std::array::from_fn(|k| 0.5 * (best[k] + corner.0[k]));
-                    *corner = (at, loss(at));
-                }
-            }
-        }
-    }
-    corners.sort_by(|a, b| a.1.total_cmp(&b.1));
-    start.moved(corners[0].0)
+    start.moved(minimise(steps, loss))
 }
 
 #[cfg(test)]

@@ -7,9 +7,10 @@ use rayon::prelude::*;
 
 use super::target::{COS_MIN, Rules, Target};
 use super::{Lobe, LtcTable, LtcTexels};
+use crate::Layout;
 
 /// Fraction bits of the sampler's weights.
-const WEIGHTS: WeightBits = WeightBits::Fixed(8);
+pub(super) const WEIGHTS: WeightBits = WeightBits::Fixed(8);
 
 /// An error and where it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,7 +44,7 @@ pub struct IrradianceError {
 }
 
 impl LtcError {
-    fn of(mut errors: Vec<PlacedError>) -> Self {
+    pub(super) fn of(mut errors: Vec<PlacedError>) -> Self {
         errors.sort_by(|a, b| a.error.total_cmp(&b.error));
         let at = |part: f64| errors[((errors.len() - 1) as f64 * part) as usize];
         Self { median: at(0.5).error, p95: at(0.95).error, max: at(1.0) }
@@ -54,7 +55,7 @@ impl LtcTable {
     /// Differences of energy at the texels themselves, from the given cosine and alpha on.
     ///
     /// The difference is half the integral of |lobe times albedo - BRDF times cosine| over the albedo: no light errs more than that, and some light errs as much.
-    /// 0 is perfect, 1 is a lobe beside the reflection. Against a quadrature of its own, within 1e-3.
+    /// 0 is perfect, 1 is a lobe beside the reflection; an albedo read too large adds to that. Against a quadrature of its own, within 1e-3.
     pub fn error_at_texels(&self, texels: &LtcTexels, min_cos: f64, min_alpha: f64) -> LtcError {
         self.error_at(texels, min_cos, min_alpha, [0.0; 2])
     }
@@ -71,7 +72,7 @@ impl LtcTable {
             .into_par_iter()
             .filter_map(|index| {
                 let texel = [index % columns, index / columns];
-                let [theta, alpha] = self.at_fraction(texel, offset);
+                let [theta, alpha] = place(&self.layout, self.size, texel, offset);
                 let cos = libm::cos(theta).max(0.0);
                 if cos < min_cos || alpha < min_alpha {
                     return None;
@@ -82,23 +83,6 @@ impl LtcTable {
             })
             .collect();
         LtcError::of(errors)
-    }
-
-    /// Theta and alpha of a place between texels.
-    fn at_fraction(&self, texel: [u32; 2], offset: [f64; 2]) -> [f64; 2] {
-        let here = self.layout.at_texel(self.size, texel);
-        if offset == [0.0; 2] {
-            return here;
-        }
-        let [from, to] = [texel, texel.map(|i| i + 1)].map(|texel| {
-            let [theta, alpha] = self.layout.at_texel(self.size, texel);
-            [self.layout.angle.coordinate(theta), self.layout.slope.map_or(0.0, |slope| slope.coordinate(alpha))]
-        });
-        let middle = [0, 1].map(|k: usize| 0.5 * (from[k] + to[k]));
-        [
-            self.layout.angle.canonical_of_coordinate(middle[0]),
-            self.layout.slope.map_or(0.0, |slope| slope.canonical_of_coordinate(middle[1])),
-        ]
     }
 
     /// What a shader reads: the lobe, and the albedo.
@@ -147,8 +131,22 @@ impl LtcTable {
     }
 }
 
+/// Theta and alpha at a texel, or half-way to the next across and down.
+pub(super) fn place(layout: &Layout, size: [u32; 2], texel: [u32; 2], offset: [f64; 2]) -> [f64; 2] {
+    if offset == [0.0; 2] {
+        return layout.at_texel(size, texel);
+    }
+    let [from, to] = [texel, texel.map(|i| i + 1)].map(|texel| {
+        let [theta, alpha] = layout.at_texel(size, texel);
+        [layout.angle.coordinate(theta), layout.slope.map_or(0.0, |slope| slope.coordinate(alpha))]
+    });
+    let middle = [0, 1].map(|k: usize| 0.5 * (from[k] + to[k]));
+    let theta = layout.angle.canonical_of_coordinate(middle[0]);
+    [theta, layout.slope.map_or(0.0, |slope| slope.canonical_of_coordinate(middle[1]))]
+}
+
 /// Half the L1 distance of a lobe times its albedo from a reflection, over that one's albedo.
-fn difference((lobe, albedo): (Lobe, f64), target: &Target) -> f64 {
+pub(super) fn difference((lobe, albedo): (Lobe, f64), target: &Target) -> f64 {
     let amplitude = albedo / target.albedo_dir;
     0.5 * (1.0 + amplitude) - target.shared(lobe, amplitude)
 }
