@@ -1,6 +1,6 @@
 //! Axes of a table: quantity, mapping, position of nodes.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, SQRT_2};
 use std::fmt;
 use std::str::FromStr;
 
@@ -14,7 +14,7 @@ use thiserror::Error;
 pub enum AxesError {
     /// An axis that does not parse.
     #[error(
-        "`{0}` is no axis; write [-]QUANTITY[=MIN..MAX][^EXPONENT|@log] with cos_theta, theta, cos_theta_sq, sqrt_cos_theta, roughness, alpha, alpha_sq, sqrt_roughness, ior, inverse_ior, f0, sqrt_f0, fourth_root_f0 or thickness_nm"
+        "`{0}` is no axis; write [-]QUANTITY[=MIN..MAX][^EXPONENT|@log] with cos_theta, theta, cos_theta_sq, sqrt_cos_theta, sqrt_one_minus_cos_theta, roughness, alpha, alpha_sq, sqrt_roughness, ior, inverse_ior, f0, sqrt_f0, fourth_root_f0 or thickness_nm"
     )]
     Axis(String),
     /// Axes other than one of the direction and at most one of the micro-surface.
@@ -44,6 +44,8 @@ pub enum Quantity {
     CosThetaSq,
     /// The square root of the cosine.
     SqrtCosTheta,
+    /// The square root of one less the cosine: the axis of area-light tables.
+    SqrtOneMinusCosTheta,
     /// Angle against the normal, radians.
     Theta,
     /// The artist's roughness, alpha = roughness^2.
@@ -76,7 +78,8 @@ const IOR_MAX: f64 = 1e6;
 
 impl Quantity {
     /// Quantities of the direction.
-    pub const ANGLES: [Self; 4] = [Self::CosTheta, Self::Theta, Self::CosThetaSq, Self::SqrtCosTheta];
+    pub const ANGLES: [Self; 5] =
+        [Self::CosTheta, Self::Theta, Self::CosThetaSq, Self::SqrtCosTheta, Self::SqrtOneMinusCosTheta];
     /// Quantities of the micro-surface.
     pub const SLOPES: [Self; 4] = [Self::Roughness, Self::Alpha, Self::AlphaSq, Self::SqrtRoughness];
 
@@ -89,6 +92,7 @@ impl Quantity {
             Self::CosTheta => "cos_theta",
             Self::CosThetaSq => "cos_theta_sq",
             Self::SqrtCosTheta => "sqrt_cos_theta",
+            Self::SqrtOneMinusCosTheta => "sqrt_one_minus_cos_theta",
             Self::Theta => "theta",
             Self::Roughness => "roughness",
             Self::Alpha => "alpha",
@@ -144,6 +148,8 @@ impl Quantity {
             Self::CosTheta => angle(value),
             Self::CosThetaSq => angle(value.sqrt()),
             Self::SqrtCosTheta => angle(value * value),
+            // 1 - cos = 2 sin^2 of the half angle: the arc sine is exact at normal incidence, where the arc cosine is not.
+            Self::SqrtOneMinusCosTheta => 2.0 * libm::asin((value / SQRT_2).min(FRAC_1_SQRT_2)),
             Self::Theta => value.min(FRAC_PI_2),
             Self::Roughness => value * value,
             Self::Alpha => value,
@@ -165,6 +171,7 @@ impl Quantity {
             Self::CosTheta => libm::cos(canonical),
             Self::CosThetaSq => libm::cos(canonical) * libm::cos(canonical),
             Self::SqrtCosTheta => libm::cos(canonical).max(0.0).sqrt(),
+            Self::SqrtOneMinusCosTheta => SQRT_2 * libm::sin(0.5 * canonical),
             Self::Theta => canonical,
             Self::Roughness => canonical.sqrt(),
             Self::Alpha => canonical,
@@ -272,7 +279,7 @@ impl AxisSpec {
     /// Theta or alpha at the end of the axis where it is normal incidence or the roughest surface, for the texel next to it: where nodes are texel
     /// centres, all reads between are of this texel.
     pub(crate) fn beyond(&self, texel: u32, size: u32) -> Option<f64> {
-        let rises = self.quantity != Quantity::Theta;
+        let rises = !matches!(self.quantity, Quantity::Theta | Quantity::SqrtOneMinusCosTheta);
         let is_last = texel == if self.descending == rises { 0 } else { size - 1 };
         (is_last && size > 1 && self.nodes == Nodes::CENTRES)
             .then(|| self.quantity.to_canonical(if rises { self.max } else { self.min }))
@@ -454,6 +461,7 @@ mod tests {
                 "alpha,-theta",
                 "-sqrt_cos_theta,alpha_sq",
                 "cos_theta_sq^2,sqrt_roughness=0.1..1",
+                "roughness,sqrt_one_minus_cos_theta",
             ] {
                 let layout = Layout::parse(text, nodes).unwrap();
                 assert_eq!(layout.to_string(), text);

@@ -21,6 +21,7 @@ mod dfg;
 mod energy;
 mod film;
 mod lookup;
+mod ltc;
 mod preset;
 pub mod rgbd;
 mod search;
@@ -35,6 +36,9 @@ pub use energy::{
 };
 pub use film::{FilmLayout, FilmTable};
 pub use lookup::{Bindings, LOOKUP, SAMPLER, TEXTURE};
+pub use ltc::{
+    IrradianceError, Lobe, LtcError, LtcTable, LtcTexels, PlacedError, SheenTable, clipped_sphere_form_factor,
+};
 pub use preset::{Container, Preset};
 pub use search::{Found, search};
 pub use stored::Stored;

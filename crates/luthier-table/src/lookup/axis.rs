@@ -8,9 +8,9 @@ use super::float;
 use crate::{AxisSpec, Nodes, Quantity};
 
 /// `let NAME = ...;`: the coordinate in 0..1 at which a texture of `size` texels along this axis is read, the WGSL of
-/// [`Layout::position`](crate::Layout::position) over the size; none of a periodic axis.
+/// [`Layout::position`](crate::Layout::position) over the size; none of a periodic axis or one of an index or thickness.
 pub(super) fn write(out: &mut String, name: &str, axis: &AxisSpec, input: &str, size: u32) -> Option<()> {
-    let (quantity, is_within) = quantity(out, axis.quantity, input);
+    let (quantity, is_within) = quantity(out, axis.quantity, input)?;
     let AxisSpec { min, max, .. } = *axis;
     let is_whole = is_within && min == 0.0 && max == 1.0;
     let part = if is_whole {
@@ -52,10 +52,10 @@ pub(super) fn write(out: &mut String, name: &str, axis: &AxisSpec, input: &str, 
     Some(())
 }
 
-/// A quantity of a cosine or an alpha, and whether it lies in 0..1.
-fn quantity(out: &mut String, quantity: Quantity, input: &str) -> (String, bool) {
+/// A quantity of a cosine or an alpha, and whether it lies in 0..1; none of other quantities.
+fn quantity(out: &mut String, quantity: Quantity, input: &str) -> Option<(String, bool)> {
     let input = format!("saturate({input})");
-    match quantity {
+    Some(match quantity {
         Quantity::CosTheta | Quantity::Alpha => (input, true),
         Quantity::CosThetaSq | Quantity::AlphaSq => (format!("{input} * {input}"), true),
         Quantity::SqrtCosTheta | Quantity::Roughness => (format!("sqrt({input})"), true),
@@ -65,7 +65,9 @@ fn quantity(out: &mut String, quantity: Quantity, input: &str) -> (String, bool)
             let _ = writeln!(out, "    let cosine = {input};");
             ("atan2(sqrt((1.0 - cosine) * (1.0 + cosine)), cosine)".to_owned(), false)
         }
-    }
+        Quantity::SqrtOneMinusCosTheta => (format!("sqrt(1.0 - {input})"), true),
+        _ => return None,
+    })
 }
 
 /// The root of an expression in 0..1 by square roots where the exponent is a power of two up to 8, else by a power.
