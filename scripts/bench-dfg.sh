@@ -5,7 +5,8 @@
 set -eu
 cd "$(dirname "$0")/.."
 
-cargo build --locked --release --quiet --manifest-path scripts/bench-dfg/Cargo.toml
+# Without --locked: crates of luthier may have come to need others since the lock file was written.
+cargo build --release --quiet --manifest-path scripts/bench-dfg/Cargo.toml
 
 cpu=$(sed -n 's/^model name[[:space:]]*: *//p' /proc/cpuinfo 2>/dev/null | head -n 1)
 [ -n "$cpu" ] || cpu=$(sysctl -n machdep.cpu.brand_string 2>/dev/null) || cpu=$(uname -m)

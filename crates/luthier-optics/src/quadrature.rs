@@ -46,14 +46,20 @@ const REACH_WITHIN: f64 = 1.06;
 impl GradedRules {
     /// Rules of `first + per_fold L` nodes, rounded up.
     pub fn new(first: f64, per_fold: f64) -> Self {
+        // Neighbours often have as many nodes.
+        let mut even = Vec::new();
         let rule = |index: u64| {
             let squared = f64::from_bits(1.0f64.to_bits() + (index << (52 - RULE_BITS)));
             let length = libm::asinh(REACH_WITHIN * libm::sqrt(squared));
-            let graded = |(u, weight): (f64, f64)| {
-                let end = libm::sinh(length);
+            let end = libm::sinh(length);
+            let graded = |&(u, weight): &(f64, f64)| {
                 (libm::sinh(length * u) / end, weight * length * libm::cosh(length * u) / end)
             };
-            gauss_legendre(libm::ceil(first + per_fold * length) as usize).into_iter().map(graded).collect()
+            let nodes = libm::ceil(first + per_fold * length) as usize;
+            if even.len() != nodes {
+                even = gauss_legendre(nodes);
+            }
+            even.iter().map(graded).collect()
         };
         Self { rules: (0..LAST_EXPONENT << RULE_BITS).map(rule).collect() }
     }

@@ -16,6 +16,9 @@ const FRAME: f64 = 300.0;
 const LEFT: f64 = 46.0;
 const BELOW: f64 = 40.0;
 
+/// Values that axes name.
+const TICKS: [f64; 13] = [0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0];
+
 /// An error over two quantities, on a grid that is even in the logarithms.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorMap {
@@ -78,7 +81,7 @@ impl ErrorMap {
                 x += run;
             }
         }
-        for tick in [0.01, 0.03, 0.1, 0.3, 1.0] {
+        for tick in TICKS {
             if let Some(at) = self.place(0, tick) {
                 let (x, y) = (LEFT + FRAME * at, 4.0 + FRAME + 13.0);
                 let _ = write!(out, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\">{tick}</text>");

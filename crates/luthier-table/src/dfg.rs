@@ -145,11 +145,12 @@ impl DfgTable {
         let Layout { angle, slope, .. } = self.layout;
         let ends = |a: f64, b: f64| (a.min(b), a.max(b));
         let (from, to) = ends(angle.coordinate(0.0), angle.coordinate(libm::acos(min_cos.clamp(0.0, 1.0))));
-        let mut scan =
-            Scan { points: [points, 1], from: [from, 0.5], to: [to, 0.5], nodes: [0, 0], refinements: REFINEMENTS };
+        // Nodes too, of which the first and last are the ends of the axes: errors are largest there.
+        let nodes = [points, 0];
+        let mut scan = Scan { points: [points, 1], from: [from, 0.5], to: [to, 0.5], nodes, refinements: REFINEMENTS };
         if let Some(slope) = slope {
             let (from, to) = ends(slope.coordinate(min_alpha), slope.coordinate(1.0));
-            (scan.points[1], scan.from[1], scan.to[1]) = (points, from, to);
+            (scan.points[1], scan.nodes[1], scan.from[1], scan.to[1]) = (points, points, from, to);
         }
         let canonical = |u: [f64; 2]| {
             [angle.canonical_of_coordinate(u[0]), slope.map_or(0.0, |slope| slope.canonical_of_coordinate(u[1]))]

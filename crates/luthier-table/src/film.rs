@@ -132,6 +132,26 @@ impl FilmTable {
         measure_scan(&scan, compare, |u| self.layout.place(canonical(u)).to_vec())
     }
 
+    /// Least and largest thickness of the table, nm.
+    pub fn thicknesses(&self) -> [f64; 2] {
+        let axis = self.layout.axes.into_iter().find(|axis| !axis.quantity.is_angle());
+        axis.map_or([0.0; 2], |axis| [axis.min, axis.max])
+    }
+
+    /// The largest error of all channels of reads from texels of this statement, as a function of cosine and thickness.
+    pub fn errors(&self, texels: &Image) -> impl Fn(f64, f64) -> f64 {
+        let wavelengths = self.color.nodes();
+        move |cos_theta, thickness_nm| {
+            let canonical =
+                |axis: &AxisSpec| if axis.quantity.is_angle() { libm::acos(cos_theta) } else { thickness_nm };
+            let axes = self.layout.axes;
+            let position = [0, 1].map(|k: usize| axes[k].position(canonical(&axes[k]), self.size[k]));
+            let read = bilinear(texels, position, WEIGHTS);
+            let exact = self.rgb(&wavelengths, [cos_theta, thickness_nm]);
+            exact.iter().zip(read).fold(0.0, |worst, (a, b)| (a - b).abs().max(worst))
+        }
+    }
+
     fn rgb(&self, wavelengths: &[WavelengthNode], [cos_theta, thickness_nm]: [f64; 2]) -> Rgb {
         let above = Complex64::new(self.above, 0.0);
         let mut rgb = [0.0; 3];

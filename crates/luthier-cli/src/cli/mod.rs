@@ -281,7 +281,8 @@ pub(crate) use audit::{AuditOptions, NodesName, SamplesName};
 
 mod table;
 pub(crate) use table::{
-    ClothName, ClothOptions, Delivery, DfgOptions, DistributionName, Domain, EnergyOptions, FilmOptions, Function, TableOptions,
+    ClothName, ClothOptions, Delivery, DfgOptions, DistributionName, EnergyOptions, FilmOptions, Function, LtcOptions,
+    SheenOptions, TableOptions,
 };
 
 #[cfg(feature = "gpu")]

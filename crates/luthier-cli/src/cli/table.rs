@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, Subcommand, ValueEnum};
+use luthier_shader::Target;
 use luthier_table::{EnergyPreset, Preset};
 
 use super::audit::{NodesName, preset, unit};
@@ -19,16 +20,17 @@ Examples:
 
 const DFG_EXAMPLES: &str = "\
 Bakes the split sum of image-based lighting (DFG, environment BRDF): reflectance is f0 * scale + bias. With --preset in the layout of an \
-engine; with --max-abs the smallest table of half floats whose filtered reads hold this error, as KTX2. Errors are over cosines from \
---min-cos and alphas from --min-alpha.
+engine; with --max-abs the smallest table of half floats whose filtered reads hold this error, as KTX2; with --closed the cheapest closed form that \
+holds it. Errors are over cosines from --min-cos and alphas from --min-alpha.
 
-Exits with 1 when no table holds --max-abs, and writes nothing then.
+Exits with 1 when no table, or no closed form, holds --max-abs, and writes nothing then.
 
 Examples:
   luthier table dfg --preset bevy -o dfg.ktx2
   luthier table dfg --preset three -o DFGLUTData.js --json
   luthier table dfg --preset three -o DFGLUTData.js --report dfg.html --beside theirs.exr
-  luthier table dfg --max-abs 1e-3 -o dfg.ktx2
+  luthier table dfg --max-abs 1e-3 -o dfg.ktx2 --shader wgsl,hlsl
+  luthier table dfg --max-abs 1e-3 --closed -o dfg.wgsl
   luthier table dfg --max-abs 5e-4 --distribution beckmann --masking separable -o dfg.ktx2";
 
 #[derive(Debug, Args)]
@@ -50,6 +52,10 @@ pub(crate) enum Function {
     Energy(EnergyOptions),
     /// Colour that an interface reflects under a thin film
     Film(FilmOptions),
+    /// Linearly transformed cosines of a rough metal: light of polygons, in closed form
+    Ltc(LtcOptions),
+    /// Linearly transformed cosines of a layer of fibres, which reflects as sheen does
+    Sheen(SheenOptions),
 }
 
 #[derive(Debug, Args)]
@@ -76,6 +82,15 @@ pub(crate) struct DfgOptions {
     /// Lowest alpha likewise
     #[arg(long, value_name = "X", default_value_t = 0.01, value_parser = unit)]
     pub(crate) min_alpha: f64,
+    /// A closed form in place of a table: the shader function itself, in the language of the ending of --output (.wgsl, .450.glsl, .es300.glsl, .hlsl, .metal, .spv)
+    #[arg(long, requires = "max_abs")]
+    pub(crate) closed: bool,
+    /// Write the look-up function too, beside the table, in these languages
+    #[arg(long, value_name = "LANGUAGE,...", value_delimiter = ',', value_parser = super::named::<Target>(Target::NAMES))]
+    pub(crate) shader: Vec<Target>,
+    /// Bind group of the look-up, and the numbers of the texture and the sampler
+    #[arg(long, value_name = "GROUP,TEXTURE,SAMPLER", value_delimiter = ',', num_args = 3, requires = "shader", default_values_t = [0, 0, 1])]
+    pub(crate) bind: Vec<u32>,
     /// A table of another maker in the layout of the preset, whose errors the report shows beside
     #[arg(long, value_name = "FILE", requires = "preset", requires = "report")]
     pub(crate) beside: Option<PathBuf>,
@@ -200,6 +215,45 @@ pub(crate) struct FilmOptions {
     pub(crate) delivery: Delivery,
 }
 
+const LTC_EXAMPLES: &str = "\
+Fits linearly transformed cosines (Heitz, Dupuy, Hill and Neubelt 2016) and writes two tables into the folder --output: ltc_1.ktx2 has the inverse \
+matrices (m11, m31, m13, m33 in the order that engines read), ltc_2.ktx2 the albedo, the bias of the split sum, 0 and the form factor of a sphere \
+cut by the horizon. Roughness runs across, the square root of 1 - cos_theta down; nodes are at the ends. The error is half the L1 distance of the \
+light that lobe and BRDF reflect, over the albedo. Takes half a minute of one core.
+
+Examples:
+  luthier table ltc -o ltc
+  luthier table ltc --distribution beckmann -o ltc --no-zstd";
+
+#[derive(Debug, Args)]
+#[command(after_help = LTC_EXAMPLES)]
+pub(crate) struct LtcOptions {
+    /// Slope distribution
+    #[arg(long, value_enum, default_value_t = DistributionName::Ggx)]
+    pub(crate) distribution: DistributionName,
+    /// Smith's masking: correlated or separable
+    #[arg(long, value_name = "NAME", default_value = "correlated")]
+    pub(crate) masking: String,
+    #[command(flatten)]
+    pub(crate) delivery: Delivery,
+}
+
+const SHEEN_EXAMPLES: &str = "\
+Bakes the table of Zeltner, Burley and Chiang 2022: a layer of fibres by adding and doubling, and the linearly transformed cosine nearest to its \
+reflection. Channels are a and b of the inverse matrix [a 0 b; 0 a 0; 0 0 1] and the albedo; 32 x 32 texels, the cosine across, the roughness down, \
+nodes at the ends.
+
+Examples:
+  luthier table sheen -o sheen.ktx2
+  luthier table sheen -o sheen.exr";
+
+#[derive(Debug, Args)]
+#[command(after_help = SHEEN_EXAMPLES)]
+pub(crate) struct SheenOptions {
+    #[command(flatten)]
+    pub(crate) delivery: Delivery,
+}
+
 /// Axes and texels of a table over direction and roughness.
 #[derive(Debug, Args)]
 pub(crate) struct Grid {
@@ -279,7 +333,11 @@ fn index(text: &str) -> Result<[f64; 2], String> {
         _ => [0.0; 2],
     };
     let is_index = n > 0.0 && n <= 100.0 && (0.0..=100.0).contains(&k);
-    if is_index { Ok([n, k]) } else { Err("expected an index of refraction, N or N,K, such as 1.5 or 0.27,2.9".to_owned()) }
+    if is_index {
+        Ok([n, k])
+    } else {
+        Err("expected an index of refraction, N or N,K, such as 1.5 or 0.27,2.9".to_owned())
+    }
 }
 
 /// The tables of energy of a name.

@@ -76,6 +76,13 @@ impl ClosedForm {
         })
     }
 
+    /// The largest error of bias and albedo in single precision at one place, against quadrature.
+    pub fn error_at(&self, cos_theta: f64, alpha: f64) -> f64 {
+        let exact = split_sum(self.distribution, self.masking, alpha, cos_theta);
+        let [scale, bias] = self.eval_f32(cos_theta as f32, alpha as f32).map(f64::from);
+        (bias - exact.bias).abs().max((scale + bias - exact.albedo()).abs())
+    }
+
     /// What a read costs.
     pub fn cost(&self) -> Cost {
         let quotients = [&self.loss, &self.cosine];

@@ -81,6 +81,16 @@ impl EnergyTable {
         stats.with_worst_of(slice(third, points))
     }
 
+    /// The largest error of all channels of a read at one cosine and alpha, of a table over these two.
+    pub fn error_at(&self, texels: &Image, cos_theta: f64, alpha: f64) -> f64 {
+        let mut u = [0.5; 3];
+        for (u, axis) in u.iter_mut().zip(self.layout.axes()) {
+            *u = axis.coordinate(if axis.quantity.is_angle() { libm::acos(cos_theta) } else { alpha });
+        }
+        let Comparison { expected, sampled } = self.compare(texels, u);
+        expected.iter().zip(sampled).fold(0.0, |worst, (a, b)| (a - b).abs().max(worst))
+    }
+
     fn place_of(&self, u: [f64; 3]) -> Place {
         self.layout.place(|k, axis| axis.canonical_of_coordinate(u[k]))
     }

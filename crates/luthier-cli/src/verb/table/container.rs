@@ -1,10 +1,25 @@
 //! Files of tables, in the containers that engines take.
 
+use std::path::Path;
+
 use luthier_lut::{Image, TexelFormat};
 use luthier_table::{Container, Stored, rgbd};
 use luthier_terminal::{Failure, Outcome};
 use luthier_texture::ktx2::{Levels, encode_levels};
 use luthier_texture::{Metadata, Texture, exr, png};
+
+/// Container and texels of a file by its ending, where no engine decides: KTX2 and raw texels are half floats, EXR is floats.
+pub(super) fn by_ending(path: &Path) -> Outcome<(Container, Stored)> {
+    match path.extension().and_then(|ending| ending.to_str()) {
+        Some("ktx2") => Ok((Container::Ktx2, Stored::Half)),
+        Some("exr") => Ok((Container::Exr, Stored::Float)),
+        Some("bin") => Ok((Container::Raw, Stored::Half)),
+        _ => Err(Failure::Usage(anyhow::anyhow!(
+            "{}: the ending tells the format: .ktx2 and .bin (texels alone) are half floats, .exr is floats",
+            path.display()
+        ))),
+    }
+}
 
 /// Key of the statement in the metadata of a file.
 const STATEMENT: &str = "luthier.table";
@@ -21,7 +36,11 @@ pub(super) fn encode(
     let metadata: Metadata = vec![(STATEMENT.to_owned(), statement.to_owned())];
     match container {
         Container::Ktx2 => {
-            let format = if texels.channels <= 2 { TexelFormat::Rg16Float } else { TexelFormat::Rgba16Float };
+            let format = match texels.channels {
+                1 => TexelFormat::R16Float,
+                2 => TexelFormat::Rg16Float,
+                _ => TexelFormat::Rgba16Float,
+            };
             let Image { width, height, .. } = *texels;
             let texture = Texture { format, width, height, bytes: format.encode(texels) };
             let levels = Levels { metadata, ..Levels::one(&texture) };

@@ -1,71 +1,146 @@
-//! `table dfg`: the split sum of image-based lighting.
+//! `table dfg`: the split sum of image-based lighting, as a table or in closed form.
+
+use std::path::{Path, PathBuf};
 
 use luthier_export::input;
 use luthier_lut::{ErrorStats, Image};
 use luthier_optics::split_sum::Masking;
-use luthier_optics::stack::Distribution;
 use luthier_report::{Certificate, ErrorMap};
-use luthier_table::{Container, DfgTable, Found, Preset, search};
+use luthier_shader::{Target, library, library_spirv};
+use luthier_table::{Bindings, ClosedForm, Container, DfgTable, FittedForm, Found, Preset, search};
 use luthier_terminal::{Failure, Outcome, files};
 use luthier_texture::table;
-use serde_json::json;
+use serde_json::{Value as Json, json};
 
 use super::container::encode;
-use super::product::{Product, error_json, nodes, words};
-use crate::cli::{DfgOptions, DistributionName};
+use super::product::{Product, distribution, domain, error_facts, error_json, error_text, fact, nodes_name};
+use crate::cli::DfgOptions;
 
-/// Bakes or finds the table that the options ask for.
+const QUANTITIES: [&str; 2] = ["cos_theta", "alpha"];
+/// How errors of tables are measured, for the page.
+const METHOD: &str = "Reads are bilinear with 8-bit weights and texels as stored. They are compared with quadrature over reflected directions, \
+    which is within 1e-6 for GGX and Beckmann with smooth masking terms, and within 4e-3 with V-cavities. A map shows the largest error of all \
+    channels; a circle marks the largest of the scan.";
+
+/// Bakes, finds or fits what the options ask for.
 pub(super) fn product(options: &DfgOptions) -> Outcome<Product> {
+    if options.closed {
+        return closed(options);
+    }
     let (Found { table, texels, error, .. }, container) = match options.preset {
         Some(preset) => (of_preset(preset, options), preset.container),
         None => (searched(options)?, Container::Ktx2),
     };
     let from = [options.min_cos, options.min_alpha];
-    let words = words(&table);
-    let statement = statement(&table);
-    let measured = error_json(&error, from);
+    let domain = domain(from[0], from[1]);
+    let (words, statement, measured) = (words(&table), statement(&table), error_json(&error, &domain));
     let preset = options.preset.map(|preset| json!({ "name": preset.name, "source": preset.source }));
-    let mut json = serde_json::Map::new();
-    json.insert("table".to_owned(), statement.clone());
-    json.insert("preset".to_owned(), json!(preset));
-    json.insert("max_abs".to_owned(), json!(options.max_abs));
-    json.insert("error".to_owned(), measured.clone());
+    let channels = table.channel_errors(&texels, from[0], from[1]);
+    let channels: Vec<(&str, f64)> =
+        table.values.iter().zip(&channels).map(|(value, error)| (value.name(), error.max_abs_err)).collect();
     let metadata = json!({ "table": statement, "error": measured }).to_string();
-    let comment = format!("{words}. Largest error as sampled: {:.2e}.", error.max_abs_err);
+    let comment = format!("{words}. Largest error as sampled: {:.2e}, over {domain}.", error.max_abs_err);
     let bytes = encode(container, &texels, table.stored, &comment, &metadata, options.delivery.no_zstd)?;
-
-    let maps = maps(options, &table, &texels, &error)?;
-    let at = &error.worst.at;
-    let text = format!(
-        "{words}\nerror as sampled: max {:.2e} at cos_theta {:.3}, alpha {:.3}; rms {:.2e}\n  over cos_theta >= {}, alpha >= {}; bilinear, \
-         8-bit weights{}\n",
-        error.max_abs_err,
-        at[0],
-        at[1],
-        error.rms_err,
-        from[0],
-        from[1],
-        options.max_abs.map_or(String::new(), |limit| format!("\nholds {limit}")),
-    );
+    let mut written = vec![(options.delivery.output.clone(), bytes)];
+    if !options.shader.is_empty() {
+        let text = table.wgsl(bindings(options)).ok_or_else(|| {
+            Failure::Usage(anyhow::anyhow!(
+                "the channels of this table do not determine scale and bias: there is no look-up"
+            ))
+        })?;
+        written.extend(shaders(options, &text)?);
+    }
+    let each: String = channels.iter().map(|(name, largest)| format!("{name} {largest:.2e}  ")).collect();
+    let held = options.max_abs.map_or(String::new(), |limit| format!("holds {limit}\n"));
+    let text = format!("{words}\n{}  {}\n{held}", error_text(&error, &QUANTITIES, &domain), each.trim_end());
     let certificate = Certificate {
-        title: options.preset.map_or("Split-sum table".to_owned(), |preset| format!("Split-sum table of {}", preset.name)),
+        title: options
+            .preset
+            .map_or("Split-sum table".to_owned(), |preset| format!("Split-sum table of {}", preset.name)),
         verdict: verdict(options, &error),
-        facts: facts(options, &table, &error),
+        facts: facts(options, &table, &error, &channels),
+        maps: maps(options, &table, &texels, &error)?,
+        method: METHOD.to_owned(),
+    };
+    let json = json!({
+        "table": statement, "preset": preset, "max_abs": options.max_abs, "error": measured,
+        "channels": channels.iter().map(|(name, largest)| json!({ "value": name, "max_abs_err": largest })).collect::<Vec<_>>(),
+    });
+    Ok(Product { files: written, certificate, json, text })
+}
+
+/// The closed form that holds the limit at the least cost.
+fn closed(options: &DfgOptions) -> Outcome<Product> {
+    let output = &options.delivery.output;
+    let target = language(output)?;
+    let masking = masking(options)?;
+    let max_abs = options.max_abs.unwrap_or(f64::INFINITY);
+    let FittedForm { form, error, held } =
+        ClosedForm::fit(distribution(options.distribution), masking, max_abs, options.min_cos, options.min_alpha);
+    let domain = domain(form.floor[0], form.floor[1]);
+    if !held {
+        let nearest = error.max_abs_err;
+        return Err(Failure::Input(anyhow::anyhow!(
+            "no closed form holds {max_abs} over {domain}: the nearest errs by {nearest:.2e}; a table may hold it: leave out --closed"
+        )));
+    }
+    let cost = form.cost();
+    let words = format!(
+        "Split sum in closed form, {}, masking {}: {} multiply-adds, {} clamps, {} divisions and roots",
+        form.distribution.name(),
+        masking.name(),
+        cost.multiply_adds,
+        cost.clamps,
+        cost.specials
+    );
+    let text = form.wgsl();
+    let mut written = vec![(output.clone(), shader(&text, target)?)];
+    written.extend(shaders(options, &text)?);
+    let mut facts = vec![
+        fact("Model", format!("{} distribution, masking {}", form.distribution.name(), masking.name())),
+        fact(
+            "Cost",
+            format!(
+                "{} multiply-adds, {} clamps, {} divisions and roots",
+                cost.multiply_adds, cost.clamps, cost.specials
+            ),
+        ),
+        fact("Domain", format!("{domain}; lower ones are read as these")),
+    ];
+    facts.extend(error_facts(&error, &QUANTITIES));
+    let mut maps = Vec::new();
+    if options.delivery.report.is_some() {
+        let worst = (error.max_abs_err, [error.worst.at[0], error.worst.at[1]]);
+        let ranges = form.floor.map(|lowest| [lowest, 1.0]);
+        maps.push(ErrorMap::sample("this form", QUANTITIES, ranges, worst, |[cos, alpha]| form.error_at(cos, alpha)));
+    }
+    let certificate = Certificate {
+        title: "Split sum in closed form".to_owned(),
+        verdict: verdict(options, &error),
+        facts,
         maps,
-        method: "Reads are bilinear with 8-bit weights and texels as stored. They are compared with quadrature over reflected directions, \
-                 which is within 1e-6 for GGX and Beckmann with smooth masking terms, and within 4e-3 with V-cavities. A map shows the largest \
-                 error of all channels; a circle marks the largest of the scan."
+        method: "The form is evaluated in single precision, as a shader does, and compared with quadrature over reflected directions: the largest error of bias \
+                 and albedo, which are the reflectances for f0 = 0 and 1."
             .to_owned(),
     };
-    Ok(Product { files: vec![(options.delivery.output.clone(), bytes)], certificate, json, text })
+    let measured = json!({
+        "max_abs_err": error.max_abs_err, "rms_err": error.rms_err, "p99_abs_err": error.p99_abs_err, "worst": error.worst,
+        "points": error.points, "domain": domain,
+    });
+    let cost = json!({ "multiply_adds": cost.multiply_adds, "clamps": cost.clamps, "specials": cost.specials });
+    let form =
+        json!({ "function": "dfg", "model": format!("{}-{}", form.distribution.name(), masking.name()), "cost": cost });
+    let json = json!({ "closed_form": form, "max_abs": options.max_abs, "error": measured });
+    let text = format!(
+        "{words}\nerror in single precision: max {:.2e} at cos_theta {:.3}, alpha {:.3}; rms {:.2e}\n  over {domain}\nholds {max_abs}\n",
+        error.max_abs_err, error.worst.at[0], error.worst.at[1], error.rms_err
+    );
+    Ok(Product { files: written, certificate, json, text })
 }
 
 fn verdict(options: &DfgOptions, error: &ErrorStats) -> (String, bool) {
-    let largest = format!("largest error as sampled {:.2e}", error.max_abs_err);
-    match options.max_abs {
-        Some(limit) => (format!("holds {limit}: {largest}"), true),
-        None => (largest, true),
-    }
+    let largest = format!("largest error {:.2e}", error.max_abs_err);
+    (options.max_abs.map_or(largest.clone(), |limit| format!("holds {limit}: {largest}")), true)
 }
 
 fn of_preset(preset: &Preset, options: &DfgOptions) -> Found {
@@ -76,72 +151,119 @@ fn of_preset(preset: &Preset, options: &DfgOptions) -> Found {
     Found { table, texels, error, held: true }
 }
 
-fn searched(options: &DfgOptions) -> Outcome<Found> {
-    let masking = Masking::ALL
+fn masking(options: &DfgOptions) -> Outcome<Masking> {
+    Masking::ALL
         .into_iter()
         .find(|masking| masking.name() == options.masking)
-        .ok_or_else(|| Failure::unknown("masking term", &options.masking, &Masking::ALL.map(Masking::name)))?;
-    let distribution = match options.distribution {
-        DistributionName::Ggx => Distribution::Ggx,
-        DistributionName::Beckmann => Distribution::Beckmann,
-    };
+        .ok_or_else(|| Failure::unknown("masking term", &options.masking, &Masking::ALL.map(Masking::name)))
+}
+
+fn searched(options: &DfgOptions) -> Outcome<Found> {
     let max_abs = options.max_abs.unwrap_or(f64::INFINITY);
-    let found = search(distribution, masking, max_abs, options.min_cos, options.min_alpha);
+    let masking = masking(options)?;
+    let found = search(distribution(options.distribution), masking, max_abs, options.min_cos, options.min_alpha);
     if found.held {
         return Ok(found);
     }
     let [width, height] = found.table.size;
+    let domain = domain(options.min_cos, options.min_alpha);
     Err(Failure::Input(anyhow::anyhow!(
-        "no table of half floats up to {width} x {height} holds {max_abs} over cos_theta >= {}, alpha >= {}: the nearest errs by {:.2e}",
-        options.min_cos,
-        options.min_alpha,
+        "no table of half floats up to {width} x {height} holds {max_abs} over {domain}: the nearest errs by {:.2e}",
         found.error.max_abs_err
     )))
 }
 
+/// The language of a file, by its ending.
+fn language(path: &Path) -> Outcome<Target> {
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let all = Target::ALL;
+    let found = all.iter().filter(|target| name.ends_with(&format!(".{}", target.extension())));
+    found.max_by_key(|target| target.extension().len()).copied().ok_or_else(|| {
+        let endings = all.iter().map(|target| format!(".{}", target.extension())).collect::<Vec<_>>().join(", ");
+        Failure::Usage(anyhow::anyhow!(
+            "{}: a closed form is a shader; its language is told by the ending: {endings}",
+            path.display()
+        ))
+    })
+}
+
+fn bindings(options: &DfgOptions) -> Bindings {
+    match *options.bind.as_slice() {
+        [group, texture, sampler] => Bindings { group, texture, sampler },
+        _ => Bindings::default(),
+    }
+}
+
+/// The function in each language that the options name, in files beside the output.
+fn shaders(options: &DfgOptions, wgsl: &str) -> Outcome<Vec<(PathBuf, Vec<u8>)>> {
+    let beside = |target: &Target| {
+        let path = options.delivery.output.with_extension(target.extension());
+        Ok((path, shader(wgsl, *target)?))
+    };
+    options.shader.iter().map(beside).collect()
+}
+
+fn shader(wgsl: &str, target: Target) -> Outcome<Vec<u8>> {
+    match target {
+        Target::SpirV => library_spirv(wgsl),
+        _ => library(wgsl, target).map(String::into_bytes),
+    }
+    .map_err(Failure::input)
+}
+
+/// The table in words.
+fn words(table: &DfgTable) -> String {
+    let DfgTable { distribution, masking, layout, values, size: [width, height], stored } = table;
+    let values = values.iter().map(|value| value.name()).collect::<Vec<_>>().join(",");
+    let (name, masking, stored) = (distribution.name(), masking.name(), stored.name());
+    let nodes = nodes_name(layout.angle.nodes);
+    format!(
+        "Split sum, {name}, masking {masking}; {values} over {layout}, nodes at {nodes}; {width} x {height}, {stored}"
+    )
+}
+
 /// The table in the words of `luthier audit`.
-fn statement(table: &DfgTable) -> serde_json::Value {
+fn statement(table: &DfgTable) -> Json {
     let DfgTable { distribution, masking, layout, values, size, stored } = table;
     json!({
         "function": "dfg",
         "model": format!("{}-{}", distribution.name(), masking.name()),
         "axes": layout.to_string(),
-        "nodes": nodes(layout),
+        "nodes": nodes_name(layout.angle.nodes),
         "values": values.iter().map(|value| value.name()).collect::<Vec<_>>(),
         "size": size,
         "stored": stored.name(),
     })
 }
 
-fn facts(options: &DfgOptions, table: &DfgTable, error: &ErrorStats) -> Vec<(String, String)> {
-    let fact = |name: &str, value: String| (name.to_owned(), value);
+fn facts(
+    options: &DfgOptions,
+    table: &DfgTable,
+    error: &ErrorStats,
+    channels: &[(&str, f64)],
+) -> Vec<(String, String)> {
     let [width, height] = table.size;
+    let bytes = width as usize * height as usize * table.stored.texel_bytes(table.values.len());
+    let channels = channels.iter().map(|(name, largest)| format!("{name} {largest:.2e}")).collect::<Vec<_>>();
     let mut facts = vec![
         fact("Model", format!("{} distribution, masking {}", table.distribution.name(), table.masking.name())),
-        fact("Axes", format!("{}, nodes at {}", table.layout, nodes(&table.layout))),
-        fact("Channels", table.values.iter().map(|value| value.name()).collect::<Vec<_>>().join(", ")),
-        fact(
-            "Texels",
-            format!(
-                "{width} x {height}, {}: {} bytes",
-                table.stored.name(),
-                width as usize * height as usize * table.stored.texel_bytes(table.values.len())
-            ),
-        ),
-        fact(
-            "Errors",
-            format!(
-                "largest {:.2e}, 99 % below {:.2e}, rms {:.2e}",
-                error.max_abs_err, error.p99_abs_err, error.rms_err
-            ),
-        ),
-        fact("Largest at", format!("cos_theta {:.4}, alpha {:.4}", error.worst.at[0], error.worst.at[1])),
-        fact("Domain", format!("cos_theta from {}, alpha from {}", options.min_cos, options.min_alpha)),
+        fact("Axes", format!("{}, nodes at {}", table.layout, nodes_name(table.layout.angle.nodes))),
+        fact("Texels", format!("{width} x {height}, {}: {bytes} bytes", table.stored.name())),
+        fact("Domain", domain(options.min_cos, options.min_alpha)),
     ];
+    facts.extend(error_facts(error, &QUANTITIES));
+    facts.push(fact("Channels, largest errors", channels.join(", ")));
     if let Some(preset) = options.preset {
-        facts.push(fact("Layout read in", preset.source.to_owned()));
+        facts.push(fact("Layout read in", preset.source));
     }
     facts
+}
+
+/// Map of the errors of a table.
+pub(super) fn map(title: &str, table: &DfgTable, texels: &Image, error: &ErrorStats, from: [f64; 2]) -> ErrorMap {
+    let worst = (error.max_abs_err, [error.worst.at[0], error.worst.at[1]]);
+    let ranges = from.map(|lowest| [lowest.max(1e-3), 1.0]);
+    ErrorMap::sample(title, QUANTITIES, ranges, worst, |[cos, alpha]| table.error_at(texels, cos, alpha))
 }
 
 /// Maps of the errors, of the table and of the one beside it.
@@ -149,19 +271,13 @@ fn maps(options: &DfgOptions, table: &DfgTable, texels: &Image, error: &ErrorSta
     if options.delivery.report.is_none() {
         return Ok(Vec::new());
     }
-    let ranges = [[options.min_cos.max(1e-3), 1.0], [options.min_alpha.max(1e-3), 1.0]];
-    let map = |title: &str, table: &DfgTable, texels: &Image, error: &ErrorStats| {
-        let worst = (error.max_abs_err, [error.worst.at[0], error.worst.at[1]]);
-        ErrorMap::sample(title, ["cos_theta", "alpha"], ranges, worst, |[cos, alpha]| {
-            table.error_at(texels, cos, alpha)
-        })
-    };
-    let mut maps = vec![map("this table", table, texels, error)];
+    let from = [options.min_cos, options.min_alpha];
+    let mut maps = vec![map("this table", table, texels, error, from)];
     if let Some(path) = &options.beside {
         let bytes = input::image(path).map_err(files(path, "read"))?;
-        let other = table::read(&bytes)
-            .map_err(|source| Failure::Input(anyhow::anyhow!("{}: {source}", path.display())))?
-            .image;
+        let read =
+            table::read(&bytes).map_err(|source| Failure::Input(anyhow::anyhow!("{}: {source}", path.display())));
+        let other = read?.image;
         let channels = table.values.len();
         if (other.channels as usize) < channels {
             return Err(Failure::Input(anyhow::anyhow!(
@@ -171,8 +287,9 @@ fn maps(options: &DfgOptions, table: &DfgTable, texels: &Image, error: &ErrorSta
             )));
         }
         let beside = DfgTable { size: [other.width, other.height], ..table.clone() };
-        let error = beside.error(&other, options.min_cos, options.min_alpha);
-        maps.push(map(&format!("{} ({} x {})", path.display(), other.width, other.height), &beside, &other, &error));
+        let error = beside.error(&other, from[0], from[1]);
+        let title = format!("{} ({} x {})", path.display(), other.width, other.height);
+        maps.push(map(&title, &beside, &other, &error, from));
     }
     Ok(maps)
 }
