@@ -1,4 +1,4 @@
-//! Tables that renderers read beside a material: the split sum of image-based lighting, energy compensation.
+//! Tables that renderers read beside a material: split sums, energy compensation, cloth, thin films, area lights, sheen.
 //!
 #![doc = include_str!("../README.md")]
 //! # In detail
@@ -10,7 +10,8 @@
 //! An [`EnergyTable`] does likewise for the albedos that energy compensation takes, of metals and of dielectrics from both sides;
 //! [`EnergyPreset`]s are the statements of renderers.
 //!
-//! A [`FilmTable`] holds the colour that a plane reflects under a thin film, over angle and thickness.
+//! A [`FilmTable`] holds the colour that a plane reflects under a thin film, over angle and thickness. [`LtcTable`] and [`SheenTable`] hold linearly
+//! transformed cosines: of rough metals for area lights, and of a layer of fibres.
 //!
 //! Simplifications: tables have one level and are read by linear filtering along each axis. Split sums are of light from above and of Schlick's
 //! reflectance.

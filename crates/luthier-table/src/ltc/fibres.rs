@@ -4,6 +4,8 @@ use std::f64::consts::PI;
 
 use luthier_optics::quadrature::{GradedRules, gauss_legendre};
 
+use super::matrix::Matrix;
+
 /// Fourier modes over the azimuth.
 const MODES: usize = 24;
 /// Midpoints over half the azimuth, for the kernels' modes.
@@ -197,77 +199,6 @@ impl Kernels {
 fn fibre_distribution(sigma: f64, cos_h_sq: f64) -> f64 {
     let sum = sigma * sigma * (1.0 - cos_h_sq) + cos_h_sq;
     sigma * sigma * sigma / (PI * sum * sum)
-}
-
-/// A square matrix.
-#[derive(Debug, Clone)]
-struct Matrix {
-    size: usize,
-    data: Vec<f64>,
-}
-
-impl Matrix {
-    fn zeros(size: usize) -> Self {
-        Self { size, data: vec![0.0; size * size] }
-    }
-
-    fn add(&mut self, other: &Self) {
-        self.data.iter_mut().zip(&other.data).for_each(|(a, b)| *a += b);
-    }
-
-    fn times(&self, other: &Self) -> Self {
-        let mut product = Self::zeros(self.size);
-        for (row, into) in self.data.chunks_exact(self.size).zip(product.data.chunks_exact_mut(self.size)) {
-            for (factor, from) in row.iter().zip(other.data.chunks_exact(self.size)) {
-                into.iter_mut().zip(from).for_each(|(a, b)| *a += factor * b);
-            }
-        }
-        product
-    }
-
-    /// The inverse of the identity less this, times another: elimination without pivots, as rows of this sum to less than 1.
-    fn identity_less_inverse_times(mut self, other: &Self) -> Self {
-        let n = self.size;
-        self.data.iter_mut().for_each(|value| *value = -*value);
-        (0..n).for_each(|i| self[(i, i)] += 1.0);
-        let mut solution = other.clone();
-        for pivot in 0..n {
-            let inverse = 1.0 / self[(pivot, pivot)];
-            for row in 0..n {
-                let factor = self[(row, pivot)] * inverse;
-                if row == pivot || factor == 0.0 {
-                    continue;
-                }
-                for k in pivot..n {
-                    let value = self[(pivot, k)];
-                    self[(row, k)] -= factor * value;
-                }
-                for k in 0..n {
-                    let value = solution[(pivot, k)];
-                    solution[(row, k)] -= factor * value;
-                }
-            }
-        }
-        for row in 0..n {
-            let inverse = 1.0 / self[(row, row)];
-            (0..n).for_each(|k| solution[(row, k)] *= inverse);
-        }
-        solution
-    }
-}
-
-impl std::ops::Index<(usize, usize)> for Matrix {
-    type Output = f64;
-
-    fn index(&self, (row, column): (usize, usize)) -> &f64 {
-        &self.data[row * self.size + column]
-    }
-}
-
-impl std::ops::IndexMut<(usize, usize)> for Matrix {
-    fn index_mut(&mut self, (row, column): (usize, usize)) -> &mut f64 {
-        &mut self.data[row * self.size + column]
-    }
 }
 
 #[cfg(test)]

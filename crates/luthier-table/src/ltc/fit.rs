@@ -53,7 +53,7 @@ impl Shape {
     }
 }
 
-/// The lobe about the normal that shares most energy with a reflection at normal incidence: a golden-section search.
+/// The lobe about the normal that shares most energy with a reflection: a golden-section search, for normal incidence.
 pub(super) fn fit_upright(target: &Target) -> Shape {
     let loss = |ln_scale: f64| 1.0 - target.shared(Shape::upright(ln_scale).lobe(), 1.0);
     let golden = 0.5 * (libm::sqrt(5.0) - 1.0);
@@ -109,11 +109,12 @@ pub(super) fn fit_column(targets: impl Iterator<Item = Target>) -> Vec<Shape> {
                     if target.shared(other.lobe(), 1.0) > shared { other } else { found }
                 }
             }
-            None => fit_upright(&target),
+            None => {
+                let shape = fit_upright(&target);
+                upright = shape.ln_along;
+                if cos == 1.0 { shape } else { fit_from(&target, shape.turned(theta)) }
+            }
         };
-        if shapes.is_empty() {
-            upright = shape.ln_along;
-        }
         (last_theta, last_cos, last_shared) = (theta, cos, target.shared(shape.lobe(), 1.0));
         shapes.push(shape);
     }

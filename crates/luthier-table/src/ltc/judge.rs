@@ -56,6 +56,7 @@ impl LtcTable {
     ///
     /// The difference is half the integral of |lobe times albedo - BRDF times cosine| over the albedo: no light errs more than that, and some light errs as much.
     /// 0 is perfect, 1 is a lobe beside the reflection; an albedo read too large adds to that. Against a quadrature of its own, within 1e-3.
+    /// At least one texel must be in that range.
     pub fn error_at_texels(&self, texels: &LtcTexels, min_cos: f64, min_alpha: f64) -> LtcError {
         self.error_at(texels, min_cos, min_alpha, [0.0; 2])
     }
@@ -227,6 +228,10 @@ mod tests {
         assert!(error.median < 0.03 && error.max.error < 0.2, "{error:?}");
         let light = table.irradiance_error(&texels);
         assert!(light.absolute.median < 0.01 && light.absolute.max.error < 0.08, "{light:?}");
+        let centres =
+            LtcTable { layout: Layout::parse("theta,alpha", crate::Nodes::CENTRES).unwrap(), ..table.clone() };
+        let error = centres.error_at_texels(&centres.bake(), 0.1, 0.01);
+        assert!(error.median < 0.03 && error.max.error < 0.2, "{error:?}");
         let wrong = constant(table.size, Lobe::COSINE, 1.0);
         assert!(table.error_at_texels(&wrong, 0.1, 0.01).median > 0.3);
         assert!(table.irradiance_error(&wrong).absolute.median > 0.05);

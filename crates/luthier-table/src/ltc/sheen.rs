@@ -37,7 +37,8 @@ pub struct SheenTable {
 }
 
 impl SheenTable {
-    /// The layout of the paper's table, which Blender's Cycles and MaterialX's viewers hold: 32 x 32 floats, the cosine across, the roughness down, ends at texel centres.
+    /// The layout of the paper's table: 32 x 32 floats, the cosine across, the roughness down, ends at texel centres. Blender's Cycles reads the three channels
+    /// as planes, one after the other.
     pub fn of_engines() -> Self {
         let layout = Layout::parse("cos_theta,roughness", Nodes::Ends).unwrap_or_else(|error| unreachable!("{error}"));
         Self { layout, size: [32, 32], stored: Stored::Float }
@@ -76,6 +77,10 @@ impl SheenTable {
     /// Albedo and reflection come by adding and doubling, where the paper samples random walks (of at most 16 bounces). Of all lobes of this form the one that
     /// shares most energy with the reflection is taken, from rough to smooth; the paper minimises the third power of the difference. Deterministic, whatever the
     /// number of threads.
+    ///
+    /// Energy differs by 0.030 in the median and 0.21 at worst where the albedo is 0.01 or more; that of the paper's own table by 0.031 and 0.44. The
+    /// albedo follows random walks within their noise of 0.002; the paper's is too low by up to 0.23 for thin fibres at grazing angles, which scatter
+    /// light more than 16 times. The example `judge_sheen` measures these.
     pub fn bake(&self) -> Image {
         let [a, s] = self.layout.order();
         let targets = self.targets([0.0; 2]);

@@ -36,8 +36,10 @@ pub struct LtcTexels {
 }
 
 impl LtcTable {
-    /// The layout that engines read (three.js and Babylon.js among them, after the code of the paper): 64 x 64 half floats, roughness across, the square root of
-    /// one less the cosine down, ends at texel centres.
+    /// The layout that engines read: 64 x 64 half floats, roughness across, the square root of one less the cosine down, ends at texel centres.
+    ///
+    /// Read in the shaders of three.js (npm three 0.187.0, `RectAreaLightTexturesLib`), Babylon.js (npm @babylonjs/core 9.35.0, `ltcHelperFunctions`, whose file has
+    /// the eight channels of a texel side by side) and Bevy (bevy_pbr 0.20.1, `ltc.ktx2`, an array of two layers; the same half floats as three.js's).
     pub fn of_engines(distribution: Distribution) -> Self {
         Self {
             distribution,
