@@ -179,7 +179,7 @@ fn average(rules: &Rules, alpha: f64, eta_ti: f64, mut visit: impl FnMut(f64, f6
         Feature { at: eta_ti.min(1.0), width: 0.1 },
         Feature { at: 1.0, width: 1.0 },
     ];
-    visit_nodes(&rules.rings, [0.0, 1.0], features, |cos, weight| visit(2.0 * cos * weight, cos));
+    visit_nodes(&rules.averages, [0.0, 1.0], features, |cos, weight| visit(2.0 * cos * weight, cos));
 }
 
 #[cfg(test)]
