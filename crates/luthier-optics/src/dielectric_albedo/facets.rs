@@ -29,25 +29,28 @@ const TINY: f64 = 1e-300;
 
 /// Graded rules over the angle against the light and over the azimuth.
 pub(super) struct Rules {
-    pub(super) rings: GradedRules,
+    rings: GradedRules,
     azimuths: GradedRules,
+    /// Over cosines of incidence.
+    pub(super) averages: GradedRules,
 }
 
 impl Rules {
     /// `[first, per_fold]` nodes of [`GradedRules::new`], each for half a piece.
-    pub(super) fn new(rings: [f64; 2], azimuths: [f64; 2]) -> Self {
+    pub(super) fn new(rings: [f64; 2], azimuths: [f64; 2], averages: [f64; 2]) -> Self {
         // Squared: pieces start like square roots where a circle of facets begins to be cut.
         let squared = |x: f64, weight: f64| (x * x, 2.0 * x * weight);
         Self {
             rings: GradedRules::new(rings[0], rings[1]).map(squared, &[]),
             azimuths: GradedRules::new(azimuths[0], azimuths[1]),
+            averages: GradedRules::new(averages[0], averages[1]).map(squared, &[]),
         }
     }
 
     /// The rules in use.
     pub(super) fn usual() -> &'static Self {
         static RULES: OnceLock<Rules> = OnceLock::new();
-        RULES.get_or_init(|| Self::new([8.0, 6.0], [6.0, 4.0]))
+        RULES.get_or_init(|| Self::new([8.0, 6.0], [6.0, 4.0], [6.0, 4.0]))
     }
 }
 

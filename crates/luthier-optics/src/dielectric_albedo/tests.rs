@@ -13,7 +13,7 @@ const BOUND: f64 = 1e-6;
 
 #[test]
 fn agrees_with_rules_of_twice_the_nodes() {
-    let fine = Rules::new([16.0, 12.0], [12.0, 8.0]);
+    let fine = Rules::new([16.0, 12.0], [12.0, 8.0], [1.0, 1.0]);
     for kind in BOTH {
         for eta in [1.5, 1.0001, 99.5, 1.0 / 1.5, 0.9999, 0.01] {
             for alpha in [1e-5, 1e-3, 0.01, 0.2, 1.0] {
@@ -155,7 +155,7 @@ fn transmission_is_reciprocal() {
         for masking in [JointMasking::Correlated, JointMasking::Separable] {
             let rarer = albedo_avg(Distribution::Ggx, masking, alpha, eta).transmitted;
             let denser = albedo_avg(Distribution::Ggx, masking, alpha, 1.0 / eta).transmitted;
-            assert!((rarer - eta * eta * denser).abs() < 1e-9, "{eta} {alpha} {masking:?}: {rarer} {denser}");
+            assert!((rarer - eta * eta * denser).abs() < BOUND, "{eta} {alpha} {masking:?}: {rarer} {denser}");
         }
     }
 }
@@ -173,8 +173,8 @@ fn averages_of_planes_are_the_closed_form() {
             + 8.0 * n_sq * n_sq * (n_sq * n_sq + 1.0) / (up * (n_sq * n_sq - 1.0) * (n_sq * n_sq - 1.0)) * libm::log(n);
         let from_air = albedo_avg(Distribution::Ggx, JointMasking::Correlated, 0.0, n).reflected;
         let from_inside = albedo_avg(Distribution::Ggx, JointMasking::Correlated, 0.0, 1.0 / n).reflected;
-        assert!((from_air - closed).abs() < 1e-9, "{n}: {from_air} {closed}");
-        assert!((from_inside - (1.0 - (1.0 - closed) / n_sq)).abs() < 1e-9, "{n}: {from_inside}");
+        assert!((from_air - closed).abs() < 1e-8, "{n}: {from_air} {closed}");
+        assert!((from_inside - (1.0 - (1.0 - closed) / n_sq)).abs() < 1e-8, "{n}: {from_inside}");
     }
 }
 
@@ -190,5 +190,35 @@ fn averages_of_reflectors_agree_with_a_plain_rule() {
             .sum();
         let found = reflected_avg(Distribution::Ggx, JointMasking::Correlated, alpha, |_| 1.0);
         assert!((found - plain).abs() < BOUND, "{alpha}: {found} {plain}");
+    }
+}
+
+#[test]
+fn averages_agree_with_rules_of_twice_the_nodes() {
+    let fine = Rules::new([1.0, 1.0], [1.0, 1.0], [12.0, 8.0]);
+    for (eta, alpha) in [(1.5, 0.05), (1.0 / 1.5, 1e-3), (1.0 / 1.01, 0.05), (1.0 / 3.0, 1.0), (0.01, 0.01)] {
+        let (mut reflected, mut transmitted) = (0.0, 0.0);
+        average(&fine, alpha, eta, |weight, cos| {
+            let albedo = albedo_dir(Distribution::Ggx, JointMasking::Correlated, alpha, eta, cos);
+            reflected += weight * albedo.reflected;
+            transmitted += weight * albedo.transmitted;
+        });
+        let found = albedo_avg(Distribution::Ggx, JointMasking::Correlated, alpha, eta);
+        let off = (found.reflected - reflected).abs().max((found.transmitted - transmitted).abs());
+        assert!(off < 2.0 * BOUND, "{eta} {alpha}: {off:e}");
+    }
+}
+
+/// At the end of an axis of f0 an interface is a mirror.
+#[test]
+fn large_indices_make_reflectors() {
+    for alpha in [0.01, 0.3, 1.0] {
+        for cos in [0.05, 0.5, 1.0] {
+            let mirror = reflected_dir(Distribution::Ggx, JointMasking::Correlated, alpha, cos, |_| 1.0);
+            for eta in [1e6, 1e-6] {
+                let found = albedo_dir(Distribution::Ggx, JointMasking::Correlated, alpha, eta, cos).total();
+                assert!((found - mirror).abs() < 1e-5, "{eta} {alpha} {cos}: {found} {mirror}");
+            }
+        }
     }
 }

@@ -10,6 +10,8 @@ use crate::AxisSpec;
 const BITS: u32 = 8;
 /// Points of a scan along each of one, two or three axes.
 const POINTS: [u32; 3] = [512, 48, 20];
+/// The same for averages over the hemisphere, each of which takes a hundred albedos.
+const POINTS_OF_AVERAGES: [u32; 2] = [64, 14];
 /// Halvings of the climb to the worst error.
 const REFINEMENTS: u32 = 6;
 
@@ -47,10 +49,16 @@ impl EnergyTable {
     pub fn error(&self, texels: &Image, domain: EnergyDomain) -> ErrorStats {
         let axes = self.layout.axes();
         let ends: Vec<[f64; 2]> = axes.iter().map(|axis| domain.ends(axis)).collect();
-        let points = POINTS[axes.len() - 1];
+        let is_average = !axes.iter().any(|axis| axis.quantity.is_angle());
+        let points = if is_average { POINTS_OF_AVERAGES[axes.len() - 1] } else { POINTS[axes.len() - 1] };
         let scan = |count: u32| {
-            let mut scan =
-                Scan { points: [1; 2], from: [0.5; 2], to: [0.5; 2], nodes: [0, 0], refinements: REFINEMENTS };
+            let mut scan = Scan {
+                points: [1; 2],
+                from: [0.5; 2],
+                to: [0.5; 2],
+                nodes: [0, 0],
+                refinements: if is_average { 1 } else { REFINEMENTS },
+            };
             for (k, [from, to]) in ends.iter().take(2).enumerate() {
                 (scan.points[k], scan.from[k], scan.to[k]) = (count, *from, *to);
             }

@@ -82,7 +82,7 @@ const OSPRAY_AVG: &[Part] = &[part(EnergySurface::FromRarer, "inverse_ior,roughn
 
 impl EnergyPreset {
     /// All presets, by name.
-    pub const ALL: [Self; 3] = [
+    pub const ALL: [Self; 4] = [
         Self {
             name: "cycles",
             files: &[
@@ -105,6 +105,31 @@ impl EnergyPreset {
             stored: Stored::Float,
             container: EnergyContainer::CArray,
             source: "blender/cycles, src/app/cycles_precompute.cpp and src/scene/shader.tables (July 2026)",
+            limits: [[1e-4, 1.0], [1e-4, 1.0], [1e-4, 0.99]],
+            clear_within: 1e-4,
+        },
+        Self {
+            name: "cycles-32",
+            files: &[
+                cycles("ggx_E", &[part(EnergySurface::Reflector, "roughness,sqrt_cos_theta", [32, 32, 1])]),
+                cycles("ggx_Eavg", &[part(EnergySurface::Reflector, "roughness", [32, 1, 1])]),
+                cycles(
+                    "ggx_glass_E",
+                    &[part(EnergySurface::FromRarer, "roughness,sqrt_cos_theta,fourth_root_f0", [32, 32, 32])],
+                ),
+                cycles("ggx_glass_Eavg", &[part(EnergySurface::FromRarer, "roughness,fourth_root_f0", [32, 32, 1])]),
+                cycles(
+                    "ggx_glass_inv_E",
+                    &[part(EnergySurface::FromDenser, "roughness,sqrt_cos_theta,fourth_root_f0", [32, 32, 32])],
+                ),
+                cycles(
+                    "ggx_glass_inv_Eavg",
+                    &[part(EnergySurface::FromDenser, "roughness,fourth_root_f0", [32, 32, 1])],
+                ),
+            ],
+            stored: Stored::Float,
+            container: EnergyContainer::CArray,
+            source: "blender/blender after July 2026, intern/cycles/app/cycles_precompute.cpp and scene/shader.tables: glass of 32^3, over the root of the cosine",
             limits: [[1e-4, 1.0], [1e-4, 1.0], [1e-4, 0.99]],
             clear_within: 1e-4,
         },
