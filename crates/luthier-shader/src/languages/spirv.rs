@@ -12,7 +12,8 @@ use crate::{Form, MaterialSet, ShaderError, Target};
 const OP_NAME: u32 = 5;
 const OP_FUNCTION: u32 = 54;
 const OP_DECORATE: u32 = 71;
-const OP_MEMBER_DECORATE: u32 = 72;
+/// Types, constants, variables and functions, which follow all decorations.
+const DECLARATIONS: std::ops::Range<u32> = 19..OP_DECORATE;
 const DECORATION_LINKAGE_ATTRIBUTES: u32 = 41;
 const LINKAGE_TYPE_EXPORT: u32 = 0;
 /// Words before the first instruction.
@@ -65,19 +66,18 @@ fn with_exports(words: &[u32]) -> Vec<u32> {
     let functions: BTreeSet<u32> = instructions(words).filter(|i| i[0] & 0xffff == OP_FUNCTION).map(|i| i[2]).collect();
     let mut exports = Vec::new();
     let mut before_types = HEADER_WORDS;
-    let mut at = HEADER_WORDS;
     for instruction in instructions(words) {
-        at += instruction.len();
-        match instruction[0] & 0xffff {
-            OP_NAME if functions.contains(&instruction[1]) => {
-                let name = &instruction[2..];
-                exports.push(((name.len() as u32 + 4) << 16) | OP_DECORATE);
-                exports.extend([instruction[1], DECORATION_LINKAGE_ATTRIBUTES]);
-                exports.extend(name);
-                exports.push(LINKAGE_TYPE_EXPORT);
-            }
-            OP_DECORATE | OP_MEMBER_DECORATE => before_types = at,
-            _ => {}
+        let code = instruction[0] & 0xffff;
+        if DECLARATIONS.contains(&code) {
+            break;
+        }
+        before_types += instruction.len();
+        if code == OP_NAME && functions.contains(&instruction[1]) {
+            let name = &instruction[2..];
+            exports.push(((name.len() as u32 + 4) << 16) | OP_DECORATE);
+            exports.extend([instruction[1], DECORATION_LINKAGE_ATTRIBUTES]);
+            exports.extend(name);
+            exports.push(LINKAGE_TYPE_EXPORT);
         }
     }
     [&words[..before_types], &exports, &words[before_types..]].concat()

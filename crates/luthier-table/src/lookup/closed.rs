@@ -69,7 +69,10 @@ fn nested(terms: Vec<String>, variable: &str, space: &str) -> String {
     let last = terms.next().map(|(_, last)| last).unwrap_or_default();
     terms.fold(last, |sum, (i, term)| {
         let sum = if i > 1 { format!("({sum})") } else { sum };
-        format!("{sum} * {variable}{space}+ {term}")
+        match term.strip_prefix('-') {
+            Some(term) => format!("{sum} * {variable}{space}- {term}"),
+            None => format!("{sum} * {variable}{space}+ {term}"),
+        }
     })
 }
 
@@ -80,7 +83,7 @@ mod tests {
     #[test]
     fn polynomials_are_nested() {
         let plane = Polynomial { degrees: [2, 0], coefficients: vec![1.0, -2.0, 0.5] };
-        assert_eq!(horner(&plane, "a"), "(0.5 * t\n        + -2.0) * t\n        + 1.0");
+        assert_eq!(horner(&plane, "a"), "(0.5 * t\n        - 2.0) * t\n        + 1.0");
         let both = Polynomial { degrees: [1, 2], coefficients: vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0] };
         assert_eq!(horner(&both, "a"), "((6.0 * a + 5.0) * a + 4.0) * t\n        + ((3.0 * a + 2.0) * a + 1.0)");
     }

@@ -15,7 +15,7 @@ pub const TEXTURE: &str = "luthier_dfg_table";
 pub const SAMPLER: &str = "luthier_dfg_sampler";
 
 /// Where a shader finds a table and its sampler.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bindings {
     /// Bind group, or register space, or descriptor set.
     pub group: u32,
@@ -23,6 +23,13 @@ pub struct Bindings {
     pub texture: u32,
     /// Number of the sampler.
     pub sampler: u32,
+}
+
+impl Default for Bindings {
+    /// Texture 0 and sampler 1 of group 0.
+    fn default() -> Self {
+        Self { group: 0, texture: 0, sampler: 1 }
+    }
 }
 
 impl DfgTable {
