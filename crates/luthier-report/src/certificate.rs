@@ -126,8 +126,8 @@ impl ErrorMap {
 pub struct Certificate {
     /// Title: the table in words.
     pub title: String,
-    /// The verdict in a line, and whether it is good.
-    pub verdict: (String, bool),
+    /// The verdict in a line, and whether a limit is held, where one is stated.
+    pub verdict: (String, Option<bool>),
     /// Facts: name and value.
     pub facts: Vec<(String, String)>,
     /// Maps of the error; the first is the table's.
@@ -146,8 +146,8 @@ impl Certificate {
         out.push_str(include_str!("pages/page/style.css"));
         out.push_str(include_str!("certificate.css"));
         out.push_str("</style></head>\n<body><main>\n");
-        let (verdict, is_good) = &self.verdict;
-        let class = if *is_good { "good" } else { "bad" };
+        let (verdict, held) = &self.verdict;
+        let class = held.map_or("", |held| if held { "good" } else { "bad" });
         let _ = write!(
             out,
             "<h1>{}</h1>\n<div class=\"verdict {class}\"><p class=\"figure\">{}</p></div>\n<div class=\"maps\">",
@@ -212,7 +212,7 @@ mod tests {
         let facts = vec![("size".to_owned(), "8 x 8 <half>".to_owned())];
         let certificate = Certificate {
             title: "A table".to_owned(),
-            verdict: ("holds 0.05".to_owned(), true),
+            verdict: ("holds 0.05".to_owned(), Some(true)),
             facts,
             maps: vec![map.clone(), map],
             method: "bilinear".to_owned(),

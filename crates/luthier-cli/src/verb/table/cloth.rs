@@ -53,7 +53,7 @@ pub(super) fn product(options: &ClothOptions) -> Outcome<Product> {
     facts.push(fact("Domain", domain.clone()));
     let certificate = Certificate {
         title: "Table of cloth".to_owned(),
-        verdict: (format!("largest error as sampled {:.2e}", error.max_abs_err), true),
+        verdict: (format!("largest error as sampled {:.2e}", error.max_abs_err), None),
         facts,
         maps,
         method: "Reads are bilinear with 8-bit weights and texels as stored. They are compared with quadrature over directions, which is within 1e-6 \

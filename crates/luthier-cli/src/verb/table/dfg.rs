@@ -138,9 +138,12 @@ fn closed(options: &DfgOptions) -> Outcome<Product> {
     Ok(Product { files: written, certificate, json, text })
 }
 
-fn verdict(options: &DfgOptions, error: &ErrorStats) -> (String, bool) {
+fn verdict(options: &DfgOptions, error: &ErrorStats) -> (String, Option<bool>) {
     let largest = format!("largest error {:.2e}", error.max_abs_err);
-    (options.max_abs.map_or(largest.clone(), |limit| format!("holds {limit}: {largest}")), true)
+    match options.max_abs {
+        Some(limit) => (format!("holds {limit}: {largest}"), Some(true)),
+        None => (largest, None),
+    }
 }
 
 fn of_preset(preset: &Preset, options: &DfgOptions) -> Found {

@@ -56,7 +56,7 @@ fn of_preset(preset: &EnergyPreset, options: &EnergyOptions) -> Product {
     }
     let certificate = Certificate {
         title: format!("Tables of energy of {}", preset.name),
-        verdict: (String::new(), true),
+        verdict: (String::new(), None),
         facts: Vec::new(),
         maps: Vec::new(),
         method: String::new(),
@@ -134,7 +134,7 @@ fn one(options: &EnergyOptions) -> Outcome<Product> {
     facts.push(fact("Domain", domain.clone()));
     let certificate = Certificate {
         title: "Table of energy compensation".to_owned(),
-        verdict: (format!("largest error as sampled {:.2e}", error.max_abs_err), true),
+        verdict: (format!("largest error as sampled {:.2e}", error.max_abs_err), None),
         facts,
         maps,
         method: "Reads are linear between the nodes of each axis, with 8-bit weights and texels as stored. They are compared with quadrature \

@@ -60,7 +60,7 @@ pub(super) fn product(options: &FilmOptions) -> Outcome<Product> {
     facts.push(fact("Domain", domain.clone()));
     let certificate = Certificate {
         title: "Table of a thin film".to_owned(),
-        verdict: (format!("largest error as sampled {:.2e}", error.max_abs_err), true),
+        verdict: (format!("largest error as sampled {:.2e}", error.max_abs_err), None),
         facts,
         maps,
         method: "Reads are bilinear with 8-bit weights and texels as stored. They are compared with the sum of all interference (Airy) at every \

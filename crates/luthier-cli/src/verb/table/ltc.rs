@@ -65,7 +65,7 @@ pub(super) fn product(options: &LtcOptions) -> Outcome<Product> {
     facts.extend(rows.map(|(name, error)| fact(name, in_words(&error))));
     let certificate = Certificate {
         title: "Linearly transformed cosines".to_owned(),
-        verdict: (format!("half of all reads err by less than {:.2e} of the light, 95 % by less than {:.2e}", between.median, between.p95), true),
+        verdict: (format!("half of all reads err by less than {:.2e} of the light, 95 % by less than {:.2e}", between.median, between.p95), None),
         facts,
         maps: Vec::new(),
         method: "The error of a lobe is half the L1 distance of the light that lobe and BRDF reflect, over the albedo: no light errs by more. Rectangles are \

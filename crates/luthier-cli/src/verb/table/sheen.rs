@@ -41,7 +41,7 @@ pub(super) fn product(options: &SheenOptions) -> Outcome<Product> {
     ];
     let certificate = Certificate {
         title: "Table of sheen".to_owned(),
-        verdict: (format!("half of all reads err by less than {:.2e} of the light, 95 % by less than {:.2e}", lobe.median, lobe.p95), true),
+        verdict: (format!("half of all reads err by less than {:.2e} of the light, 95 % by less than {:.2e}", lobe.median, lobe.p95), None),
         facts,
         maps: Vec::new(),
         method: "The error of a lobe is half the L1 distance of the light that lobe and layer reflect, over the albedo. The layer is computed by adding and \
