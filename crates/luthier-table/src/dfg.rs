@@ -6,7 +6,7 @@ use luthier_optics::stack::Distribution;
 use rayon::prelude::*;
 
 use crate::value::{Line, Needs, Parts};
-use crate::{Layout, Stored, Value};
+use crate::{Base, Layout, Stored, Value};
 
 /// Fraction bits of the sampler's weights.
 const WEIGHTS: WeightBits = WeightBits::Fixed(8);
@@ -30,6 +30,8 @@ pub struct DfgTable {
     pub size: [u32; 2],
     /// Number type of the texels.
     pub stored: Stored,
+    /// The closed form to which the texels are added, where they hold what it lacks; for channels of the split sum.
+    pub base: Option<Base>,
 }
 
 impl DfgTable {
@@ -70,10 +72,10 @@ impl DfgTable {
                 let contents = |along: u32| {
                     let cosine = |theta: f64| libm::cos(theta).max(0.0);
                     let cos = cosine(at(along)[0]);
-                    let here = self.contents(&row.at(cos));
-                    let across = beyond_row.as_ref().map(|row| self.contents(&row.at(cos)));
+                    let here = self.texel_of(&row, cos);
+                    let across = beyond_row.as_ref().map(|row| self.texel_of(row, cos));
                     let end = self.layout.angle.beyond(along, self.size[angles]);
-                    let ahead = end.map(|theta| self.contents(&row.at(cosine(theta))));
+                    let ahead = end.map(|theta| self.texel_of(&row, cosine(theta)));
                     // Halfway to what the end holds, so that both err alike.
                     std::array::from_fn(|c| {
                         let step = |other: Option<[f64; 4]>| other.map_or(0.0, |other| 0.5 * (other[c] - here[c]));
@@ -124,15 +126,54 @@ impl DfgTable {
         contents
     }
 
+    /// What a texel holds of a line at a cosine.
+    fn texel_of(&self, line: &Line, cos: f64) -> [f64; 4] {
+        let contents = self.contents(&line.at(cos));
+        let Some(base) = &self.base else { return contents };
+        let form = self.of_split_sum(base.sum(line.alpha, cos));
+        self.beside(contents, form, |content, form| base.texel(content, form))
+    }
+
+    /// The content of each channel as a shader reads it from the texels (bilinear, 8-bit weights) and adds the base, if any; 0 from the last channel
+    /// on.
+    pub fn read(&self, texels: &Image, cos_theta: f64, alpha: f64) -> [f64; 4] {
+        self.read_at(texels, [libm::acos(cos_theta), alpha])
+    }
+
+    fn read_at(&self, texels: &Image, [theta, alpha]: [f64; 2]) -> [f64; 4] {
+        let form = self.base.as_ref().map(|base| base.sum(alpha, libm::cos(theta).max(0.0)));
+        self.read_beside(texels, [theta, alpha], form.unwrap_or_default())
+    }
+
+    /// As [`Self::read`], where the base has a split sum that is known.
+    pub(crate) fn read_beside(&self, texels: &Image, at: [f64; 2], form: SplitSum) -> [f64; 4] {
+        let texel = bilinear(texels, self.layout.position(self.size, at), WEIGHTS);
+        let mut contents = [0.0; 4];
+        contents[..self.values.len()].copy_from_slice(&texel[..self.values.len()]);
+        let Some(base) = &self.base else { return contents };
+        self.beside(contents, self.of_split_sum(form), |texel, form| base.content(texel, form))
+    }
+
+    /// Channels of the split sum beside those of the base; other channels as they are.
+    fn beside(&self, mut contents: [f64; 4], form: [f64; 4], of: impl Fn(f64, f64) -> f64) -> [f64; 4] {
+        for (c, value) in self.values.iter().enumerate() {
+            if value.is_split_sum() {
+                contents[c] = of(contents[c], form[c]);
+            }
+        }
+        contents
+    }
+
+    /// Bytes of the texels.
+    pub fn bytes(&self) -> usize {
+        self.size[0] as usize * self.size[1] as usize * self.stored.texel_bytes(self.values.len())
+    }
+
     /// The largest error of all channels of a read at one cosine and alpha, against quadrature.
     pub fn error_at(&self, texels: &Image, cos_theta: f64, alpha: f64) -> f64 {
-        let texel = bilinear(texels, self.layout.position(self.size, [libm::acos(cos_theta), alpha]), WEIGHTS);
+        let read = self.read(texels, cos_theta, alpha);
         let exact = self.at(alpha, cos_theta);
-        exact
-            .iter()
-            .zip(texel)
-            .take(self.values.len())
-            .fold(0.0, |worst, (value, read)| (value - read).abs().max(worst))
+        exact.iter().zip(read).take(self.values.len()).fold(0.0, |worst, (value, read)| (value - read).abs().max(worst))
     }
 
     pub(crate) fn error_against(
@@ -157,11 +198,7 @@ impl DfgTable {
         };
         let compare = |u: [f64; 2]| {
             let at = canonical(u);
-            let texel = bilinear(texels, self.layout.position(self.size, at), WEIGHTS);
-            let expected = exact(at[1], libm::cos(at[0]).max(0.0));
-            let mut sampled = [0.0; 4];
-            sampled[..self.values.len()].copy_from_slice(&texel[..self.values.len()]);
-            Comparison { expected, sampled }
+            Comparison { expected: exact(at[1], libm::cos(at[0]).max(0.0)), sampled: self.read_at(texels, at) }
         };
         measure_scan(&scan, compare, |u| {
             let [theta, alpha] = canonical(u);
@@ -186,6 +223,7 @@ mod tests {
             values: vec![Value::Scale, Value::Bias, Value::Albedo, Value::Loss],
             size,
             stored: Stored::Float,
+            base: None,
         }
     }
 

@@ -5,7 +5,7 @@
 //!
 //! A [`DfgTable`] states a function, axes, values and texels; [`DfgTable::bake`] fills it, [`DfgTable::error`] measures what a sampler reads from
 //! it, [`search`] finds the smallest. [`Preset`]s are the statements of engines. [`ClosedForm::fit`] finds a form without a table: two quotients of polynomials and
-//! a fifth power. [`DfgTable::wgsl`] and [`ClosedForm::wgsl`] write the function that a shader calls, `luthier_dfg`.
+//! a fifth power. [`search_beside_form`] finds the cheapest form that a table of so many bytes brings within an error. [`DfgTable::wgsl`] and [`ClosedForm::wgsl`] write the function that a shader calls, `luthier_dfg`.
 //!
 //! An [`EnergyTable`] does likewise for the albedos that energy compensation takes, of metals and of dielectrics from both sides;
 //! [`EnergyPreset`]s are the statements of renderers.
@@ -17,6 +17,7 @@
 //! reflectance.
 
 mod axes;
+mod base;
 mod closed;
 mod dfg;
 mod energy;
@@ -30,6 +31,7 @@ mod stored;
 mod value;
 
 pub use axes::{AxesError, AxisSpec, Layout, Nodes, Quantity};
+pub use base::Base;
 pub use closed::{ClosedForm, Cost, FittedForm, Polynomial, Rational, measure_form};
 pub use dfg::DfgTable;
 pub use energy::{
@@ -41,6 +43,6 @@ pub use ltc::{
     IrradianceError, Lobe, LtcError, LtcTable, LtcTexels, PlacedError, SheenTable, clipped_sphere_form_factor,
 };
 pub use preset::{Container, Preset};
-pub use search::{Found, search};
+pub use search::{Found, search, search_beside_form};
 pub use stored::Stored;
 pub use value::Value;

@@ -152,6 +152,7 @@ impl Preset {
             values: self.values.to_vec(),
             size: self.size,
             stored: self.stored,
+            base: None,
         }
     }
 }

@@ -141,7 +141,7 @@ impl Parts {
 /// Functions along a line of one alpha.
 pub(crate) struct Line {
     needs: Needs,
-    alpha: f64,
+    pub(crate) alpha: f64,
     sum: Option<SplitSumRow>,
     cloth: Option<ClothRow>,
 }

@@ -34,6 +34,7 @@ fn tables() -> Vec<DfgTable> {
         values: values.to_vec(),
         size,
         stored: Stored::Half,
+        base: None,
     });
     Preset::ALL.iter().map(Preset::table).chain(custom).collect()
 }

@@ -97,7 +97,7 @@ impl ClosedForm {
 }
 
 /// Operations of a shader function, for one pixel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Cost {
     /// Products, sums, and products with a sum.
     pub multiply_adds: u32,
@@ -111,6 +111,18 @@ impl Cost {
     /// Slots of a scheduler: a special function takes four, being issued at a quarter of the rate, the rest one.
     pub fn slots(self) -> u32 {
         self.multiply_adds + self.clamps + 4 * self.specials
+    }
+}
+
+impl std::ops::Add for Cost {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            multiply_adds: self.multiply_adds + other.multiply_adds,
+            clamps: self.clamps + other.clamps,
+            specials: self.specials + other.specials,
+        }
     }
 }
 

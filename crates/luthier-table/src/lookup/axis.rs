@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use luthier_lut::Mapping;
 
 use super::float;
-use crate::{AxisSpec, Nodes, Quantity};
+use crate::{AxisSpec, Cost, Nodes, Quantity};
 
 /// `let NAME = ...;`: the coordinate in 0..1 at which a texture of `size` texels along this axis is read, the WGSL of
 /// [`Layout::position`](crate::Layout::position) over the size; none of a periodic axis or one of an index or thickness.
@@ -52,6 +52,41 @@ pub(super) fn write(out: &mut String, name: &str, axis: &AxisSpec, input: &str, 
     Some(())
 }
 
+/// What the text of [`write()`] costs; none where there is none.
+pub(super) fn cost(axis: &AxisSpec) -> Option<Cost> {
+    let of = |multiply_adds, clamps, specials| Cost { multiply_adds, clamps, specials };
+    let (quantity, is_within) = match axis.quantity {
+        Quantity::CosTheta | Quantity::Alpha => (of(0, 1, 0), true),
+        Quantity::CosThetaSq | Quantity::AlphaSq => (of(1, 1, 0), true),
+        Quantity::SqrtCosTheta | Quantity::Roughness => (of(0, 1, 1), true),
+        Quantity::SqrtRoughness => (of(0, 1, 2), true),
+        // The root, and an arc tangent as compilers write it: a quotient of minimum and maximum, a polynomial, two choices.
+        Quantity::Theta => (of(11, 5, 2), false),
+        Quantity::SqrtOneMinusCosTheta => (of(1, 1, 1), true),
+        _ => return None,
+    };
+    let is_whole = is_within && axis.min == 0.0 && axis.max == 1.0;
+    // The shift and the scale are one product with a sum.
+    let part = if is_whole { Cost::default() } else { of(1, 1, 0) };
+    let mapping = match axis.mapping {
+        Mapping::Linear | Mapping::Apart => part,
+        Mapping::Power { exponent } => part + exponents_cost(exponent),
+        Mapping::Rational { .. } => part + of(2, 0, 1),
+        Mapping::Logarithmic => of(2, 1, 1),
+        Mapping::Periodic => return None,
+    };
+    let is_plain = axis.nodes == Nodes::CENTRES && !axis.descending;
+    Some(quantity + mapping + of(u32::from(!is_plain), 0, 0))
+}
+
+/// What [`root`] costs: roots, or a logarithm, a product and an exponential.
+fn exponents_cost(exponent: f64) -> Cost {
+    match ROOTS.into_iter().position(|power| power == exponent) {
+        Some(count) => Cost { specials: count as u32, ..Cost::default() },
+        None => Cost { multiply_adds: 1, specials: 2, ..Cost::default() },
+    }
+}
+
 /// A quantity of a cosine or an alpha, and whether it lies in 0..1; none of other quantities.
 fn quantity(out: &mut String, quantity: Quantity, input: &str) -> Option<(String, bool)> {
     let input = format!("saturate({input})");
@@ -70,9 +105,12 @@ fn quantity(out: &mut String, quantity: Quantity, input: &str) -> Option<(String
     })
 }
 
+/// Exponents whose roots are square roots: none, one, two, three.
+const ROOTS: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
+
 /// The root of an expression in 0..1 by square roots where the exponent is a power of two up to 8, else by a power.
 fn root(part: &str, exponent: f64) -> String {
-    let roots = [1.0, 2.0, 4.0, 8.0].into_iter().position(|power| power == exponent);
+    let roots = ROOTS.into_iter().position(|power| power == exponent);
     match roots {
         Some(count) => format!("{}{part}{}", "sqrt(".repeat(count), ")".repeat(count)),
         None => format!("pow({part}, {})", float(1.0 / exponent)),

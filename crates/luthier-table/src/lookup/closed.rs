@@ -9,11 +9,16 @@ use crate::{ClosedForm, Polynomial, Rational};
 impl ClosedForm {
     /// WGSL of `fn luthier_dfg(cos_theta: f32, alpha: f32) -> vec2<f32>`, which computes scale and bias as [`Self::eval_f32`] does.
     pub fn wgsl(&self) -> String {
+        self.wgsl_named(LOOKUP)
+    }
+
+    /// As [`Self::wgsl`], of a function of another name.
+    pub(super) fn wgsl_named(&self, name: &str) -> String {
         let Self { distribution, masking, floor, .. } = self;
         let mut out = format!(
             "/// Scale and bias of the split sum: a rough surface reflects f0 * scale + bias of light from all around (f90 = 1).\n\
              /// {}, masking {}. Closed form over cos_theta >= {} and alpha >= {}; lower ones are read as these.\n\
-             fn {LOOKUP}(cos_theta: f32, alpha: f32) -> vec2<f32> {{\n",
+             fn {name}(cos_theta: f32, alpha: f32) -> vec2<f32> {{\n",
             distribution.name(),
             masking.name(),
             floor[0],

@@ -5,7 +5,7 @@ mod closed;
 
 use std::fmt::Write as _;
 
-use crate::{DfgTable, Nodes, Value};
+use crate::{Cost, DfgTable, Nodes, Value};
 
 /// Name of the function.
 pub const LOOKUP: &str = "luthier_dfg";
@@ -13,6 +13,9 @@ pub const LOOKUP: &str = "luthier_dfg";
 pub const TEXTURE: &str = "luthier_dfg_table";
 /// Name of the sampler.
 pub const SAMPLER: &str = "luthier_dfg_sampler";
+
+/// Name of the function of a table's base.
+const FORM: &str = "luthier_dfg_form";
 
 /// Where a shader finds a table and its sampler.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,14 +40,19 @@ impl DfgTable {
     /// not determine them, or an axis is periodic.
     ///
     /// It declares the texture [`TEXTURE`] and the sampler [`SAMPLER`], which has to filter linearly and clamp to the edge. Inputs are clamped to
-    /// 0..1. Channels that are not stored follow from the others: albedo = scale + bias = 1 - loss.
+    /// 0..1. Channels that are not stored follow from the others: albedo = scale + bias = 1 - loss. A base is a function of its own,
+    /// `luthier_dfg_form`; with what the texels add to it, neither scale nor bias falls below 0, and the albedo stays.
     pub fn wgsl(&self, bindings: Bindings) -> Option<String> {
-        let result = result(&self.values)?;
+        let result = result(&self.values, self.base.is_some())?;
         let Bindings { group, texture, sampler } = bindings;
         let mut out = format!(
             "@group({group}) @binding({texture}) var {TEXTURE}: texture_2d<f32>;\n\
              @group({group}) @binding({sampler}) var {SAMPLER}: sampler;\n\n"
         );
+        if let Some(base) = &self.base {
+            out.push_str(&base.form.wgsl_named(FORM));
+            out.push('\n');
+        }
         for line in self.comment() {
             let _ = writeln!(out, "/// {line}");
         }
@@ -59,34 +67,69 @@ impl DfgTable {
                 let _ = writeln!(out, "    let {} = 0.5;", names[slopes]);
             }
         }
-        let _ = writeln!(out, "    let texel = textureSampleLevel({TEXTURE}, {SAMPLER}, vec2<f32>(x, y), 0.0);");
-        let _ = writeln!(out, "    return {result};\n}}");
+        let _ = write!(out, "    let texel = textureSampleLevel({TEXTURE}, {SAMPLER}, vec2<f32>(x, y), 0.0)");
+        if let Some(base) = &self.base {
+            let [factor, less] = [2.0, 1.0].map(|times| float(times * base.amplitude));
+            let _ = writeln!(out, " * {factor} - {less};");
+            let _ = writeln!(out, "    let sum = {FORM}(cos_theta, alpha) + {result};");
+            out.push_str("    return vec2<f32>(max(sum.x + min(sum.y, 0.0), 0.0), max(sum.y, 0.0));\n}\n");
+        } else {
+            let _ = writeln!(out, ";\n    return {result};\n}}");
+        }
         Some(out)
     }
 
-    fn comment(&self) -> [String; 3] {
-        let Self { distribution, masking, layout, values, size: [width, height], stored } = self;
+    /// What a read costs beside the texture; none where there is no look-up.
+    pub fn cost(&self) -> Option<Cost> {
+        result(&self.values, false)?;
+        let has = |value: Value| self.values.contains(&value);
+        let axes = [Some(&self.layout.angle), self.layout.slope.as_ref()];
+        let mut cost =
+            axes.into_iter().flatten().try_fold(Cost::default(), |sum, axis| Some(sum + axis::cost(axis)?))?;
+        cost.multiply_adds += match (has(Value::Scale) && has(Value::Bias), has(Value::Albedo)) {
+            (true, _) => 0,
+            (false, true) => 1,
+            (false, false) => 2,
+        };
+        if let Some(base) = &self.base {
+            // Each channel times the amplitude, scale and bias added to the form's, what the scale gives for a bias below 0.
+            let multiply_adds = self.values.iter().filter(|value| value.is_split_sum()).count() as u32 + 3;
+            cost = cost + base.form.cost() + Cost { multiply_adds, clamps: 3, specials: 0 };
+        }
+        Some(cost)
+    }
+
+    fn comment(&self) -> Vec<String> {
+        let Self { distribution, masking, layout, values, size: [width, height], stored, base } = self;
         let values: Vec<&str> = values.iter().map(|value| value.name()).collect();
         let nodes = match layout.angle.nodes {
             Nodes::Ends => "ends".to_owned(),
             Nodes::CENTRES => "centres".to_owned(),
             Nodes::Offset(offset) => format!("offset {offset}"),
         };
-        [
+        let mut lines = vec![
             "Scale and bias of the split sum: a rough surface reflects f0 * scale + bias of light from all around (f90 = 1).".to_owned(),
             format!("{}, masking {}. Linear filter, clamp to edge.", distribution.name(), masking.name()),
             format!("Table: {} over {layout}, nodes at {nodes}; {width} x {height}, {}.", values.join(", "), stored.name()),
-        ]
+        ];
+        if let Some(base) = base {
+            lines.push(format!(
+                "Texels are (rest + {0}) / {1} of what {FORM} lacks.",
+                base.amplitude,
+                2.0 * base.amplitude
+            ));
+        }
+        lines
     }
 }
 
-/// Scale and bias as an expression of a texel.
-fn result(values: &[Value]) -> Option<String> {
+/// Scale and bias as an expression of a texel, or of what its channels add.
+fn result(values: &[Value], is_rest: bool) -> Option<String> {
     let channel = |value: Value| {
         values.iter().take(4).position(|v| *v == value).map(|i| format!("texel.{}", ["r", "g", "b", "a"][i]))
     };
     let [scale, bias, albedo, loss] = [Value::Scale, Value::Bias, Value::Albedo, Value::Loss].map(channel);
-    let albedo = albedo.or_else(|| loss.map(|loss| format!("1.0 - {loss}")));
+    let albedo = albedo.or_else(|| loss.map(|loss| format!("{}{loss}", if is_rest { "-" } else { "1.0 - " })));
     Some(match (scale, bias, albedo) {
         (Some(scale), Some(bias), _) => format!("vec2<f32>({scale}, {bias})"),
         (None, Some(bias), Some(albedo)) => format!("vec2<f32>({albedo} - {bias}, {bias})"),
@@ -102,8 +145,11 @@ fn float(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use luthier_optics::split_sum::Masking;
+    use luthier_optics::stack::Distribution;
+
     use super::*;
-    use crate::{Layout, Preset};
+    use crate::{Base, ClosedForm, Layout, Preset};
 
     #[test]
     fn a_plain_table_has_a_plain_look_up() {
@@ -134,6 +180,26 @@ mod tests {
         ] {
             assert!(table(values).wgsl(Bindings::default()).unwrap().contains(expected));
         }
+    }
+
+    #[test]
+    fn a_base_is_added_to() {
+        let form = ClosedForm::fit(Distribution::Ggx, Masking::SmithCorrelated, 0.1, 0.01, 0.01).form;
+        let bevy = Preset::named("bevy").unwrap().table();
+        let values = vec![Value::Bias, Value::Loss];
+        let base = Some(Base { form: form.clone(), amplitude: 0.125 });
+        let table = DfgTable { values: values.clone(), base, ..bevy.clone() };
+        let text = table.wgsl(Bindings::default()).unwrap();
+        for line in [
+            "fn luthier_dfg_form(cos_theta: f32, alpha: f32) -> vec2<f32> {",
+            "    let texel = textureSampleLevel(luthier_dfg_table, luthier_dfg_sampler, vec2<f32>(x, y), 0.0) * 0.25 - 0.125;",
+            "    let sum = luthier_dfg_form(cos_theta, alpha) + vec2<f32>(-texel.g - texel.r, texel.r);",
+        ] {
+            assert!(text.contains(&format!("{line}\n")), "{line}\n{text}");
+        }
+        let plain = DfgTable { values, ..bevy };
+        let [both, alone] = [&table, &plain].map(|table| table.cost().unwrap());
+        assert_eq!(both, alone + form.cost() + Cost { multiply_adds: 5, clamps: 3, specials: 0 });
     }
 
     #[test]

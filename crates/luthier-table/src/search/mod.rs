@@ -1,11 +1,15 @@
 //! The smallest table that holds an error.
 
+mod beside;
+
 use luthier_lut::{ErrorStats, Image};
 use luthier_optics::split_sum::{Masking, SplitSumSurface};
 use luthier_optics::stack::Distribution;
 use rayon::prelude::*;
 
 use crate::{DfgTable, Layout, Nodes, Stored, Value};
+
+pub use beside::search_beside_form;
 
 /// Exponents of the axes that are tried: of cosines, and of alpha.
 const EXPONENTS: [&[f64]; 2] = [&[1.5, 2.0, 2.5, 3.0], &[2.0, 2.5, 3.0, 4.0]];
@@ -49,6 +53,7 @@ pub fn search(distribution: Distribution, masking: Masking, max_abs: f64, min_co
                 values: vec![Value::Bias, Value::Loss],
                 size,
                 stored: Stored::Half,
+                base: None,
             })
             .collect();
         let errors: Vec<f64> = candidates
