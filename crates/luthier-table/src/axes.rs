@@ -377,12 +377,17 @@ impl Layout {
     }
 
     /// Cosines across and alphas down, each from its minimum to 1 by a power of the coordinate.
-    pub fn powers([min_cos, min_alpha]: [f64; 2], [cos, alpha]: [f64; 2], nodes: Nodes) -> Self {
-        let axis = |quantity, min: f64, exponent: f64| AxisSpec {
-            min,
-            mapping: Mapping::Power { exponent },
-            ..AxisSpec::whole(quantity, nodes)
-        };
+    pub fn powers(lowest: [f64; 2], [cos, alpha]: [f64; 2], nodes: Nodes) -> Self {
+        Self::from_lowest(lowest, [cos, alpha].map(|exponent| Mapping::Power { exponent }), nodes)
+    }
+
+    /// Cosines across and alphas down, each from its minimum, above 0, to 1 in equal ratios.
+    pub fn logarithms(lowest: [f64; 2], nodes: Nodes) -> Self {
+        Self::from_lowest(lowest, [Mapping::Logarithmic; 2], nodes)
+    }
+
+    fn from_lowest([min_cos, min_alpha]: [f64; 2], [cos, alpha]: [Mapping; 2], nodes: Nodes) -> Self {
+        let axis = |quantity, min, mapping| AxisSpec { min, mapping, ..AxisSpec::whole(quantity, nodes) };
         let angle = axis(Quantity::CosTheta, min_cos, cos);
         Self { angle, slope: Some(axis(Quantity::Alpha, min_alpha, alpha)), transposed: false }
     }

@@ -98,12 +98,19 @@ impl DfgTable {
     }
 
     /// The error of reads (bilinear, 8-bit weights) from texels of this statement, over cosines and alphas from the given ones on: absolute, of
-    /// every channel, against quadrature.
+    /// every channel, against quadrature. The search for the largest climbs in every channel by itself.
     pub fn error(&self, texels: &Image, min_cos: f64, min_alpha: f64) -> ErrorStats {
-        self.error_against(texels, [min_cos, min_alpha], SCAN_POINTS, |alpha, cos| self.at(alpha, cos))
+        let all = self.error_against(texels, [min_cos, min_alpha], SCAN_POINTS, |alpha, cos| self.at(alpha, cos));
+        if self.values.len() < 2 {
+            return all;
+        }
+        (0..).zip(self.channel_errors(texels, min_cos, min_alpha)).fold(all, |all, (channel, mut alone)| {
+            alone.worst.channel = channel;
+            all.with_worst_of(alone)
+        })
     }
 
-    /// As [`Self::error`], of each channel apart: a channel of cloth errs by far the most.
+    /// As [`Self::error`], of each channel apart: cloth errs by far the most.
     pub fn channel_errors(&self, texels: &Image, min_cos: f64, min_alpha: f64) -> Vec<ErrorStats> {
         let one = |(channel, value): (usize, &Value)| {
             let values = texels.texels().map(|texel| texel[channel]).collect();

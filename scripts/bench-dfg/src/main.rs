@@ -18,11 +18,19 @@ use luthier_table::{DfgTable, Layout, Nodes, Stored, Value};
 const SIDE: u32 = 128;
 /// Lowest cosine and lowest alpha that count in errors.
 const FROM: [f64; 2] = [0.01, 0.01];
+/// Argument before the file into which the texels of `forge-ibl-bake` are written: half floats and nothing else.
+const WRITE: &str = "--write";
+
 fn main() -> Result<(), Box<dyn Error>> {
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     if env::args().nth(1).as_deref() == Some(times::FIRST) {
         println!("{}", one.install(times::first));
         return Ok(());
+    }
+    if let [_, option, file] = env::args().collect::<Vec<_>>().as_slice()
+        && option == WRITE
+    {
+        return Ok(std::fs::write(file, forge())?);
     }
     one.install(times::print)?;
     errors::print()
@@ -43,7 +51,7 @@ fn forge_texels() -> Result<Image, Box<dyn Error>> {
 fn linear(masking: Masking, side: u32) -> DfgTable {
     let layout = layout("cos_theta,roughness", Nodes::CENTRES);
     let values = vec![Value::Scale, Value::Bias];
-    DfgTable { distribution: Distribution::Ggx, masking, layout, values, size: [side; 2], stored: Stored::Half }
+    DfgTable { distribution: Distribution::Ggx, masking, layout, values, size: [side; 2], stored: Stored::Half, base: None }
 }
 
 /// Half floats on logarithmic axes, whose first and last nodes are their ends.

@@ -31,6 +31,7 @@ Examples:
   luthier table dfg --preset three -o DFGLUTData.js --report dfg.html --beside theirs.exr
   luthier table dfg --max-abs 1e-3 -o dfg.ktx2 --shader wgsl,hlsl
   luthier table dfg --max-abs 1e-3 --closed -o dfg.wgsl
+  luthier table dfg --max-abs 5e-4 --max-bytes 2048 -o dfg.ktx2 --shader wgsl
   luthier table dfg --max-abs 5e-4 --distribution beckmann --masking separable -o dfg.ktx2";
 
 #[derive(Debug, Args)]
@@ -70,6 +71,9 @@ pub(crate) struct DfgOptions {
     /// Find the smallest table whose reads err by this at most, absolutely
     #[arg(long, value_name = "X", value_parser = super::positive, allow_hyphen_values = true)]
     pub(crate) max_abs: Option<f64>,
+    /// Most bytes of texels: where no table alone fits, the smallest beside a closed form that its look-up computes. The output is KTX2 or, ending in .bin, texels of two bytes
+    #[arg(long, value_name = "N", requires = "max_abs", conflicts_with = "closed")]
+    pub(crate) max_bytes: Option<usize>,
     /// Slope distribution
     #[arg(long, value_enum, default_value_t = DistributionName::Ggx, conflicts_with = "preset")]
     pub(crate) distribution: DistributionName,
@@ -89,8 +93,8 @@ pub(crate) struct DfgOptions {
     #[arg(long, value_name = "LANGUAGE,...", value_delimiter = ',', value_parser = super::named::<Target>(Target::NAMES))]
     pub(crate) shader: Vec<Target>,
     /// Bind group of the look-up, and the numbers of the texture and the sampler
-    #[arg(long, value_name = "GROUP,TEXTURE,SAMPLER", value_delimiter = ',', num_args = 3, requires = "shader", default_values_t = [0, 0, 1])]
-    pub(crate) bind: Vec<u32>,
+    #[arg(long, value_name = "GROUP,TEXTURE,SAMPLER", value_parser = numbers, requires = "shader", default_value = "0,0,1")]
+    pub(crate) bind: [u32; 3],
     /// A table of another maker in the layout of the preset, whose errors the report shows beside
     #[arg(long, value_name = "FILE", requires = "preset", requires = "report")]
     pub(crate) beside: Option<PathBuf>,
@@ -344,4 +348,11 @@ fn index(text: &str) -> Result<[f64; 2], String> {
 fn energy_preset(name: &str) -> Result<&'static EnergyPreset, String> {
     let names = || EnergyPreset::ALL.iter().map(|preset| preset.name).collect::<Vec<_>>().join(", ");
     EnergyPreset::named(name).ok_or_else(|| format!("there is no such preset; there are {}", names()))
+}
+
+/// Three numbers.
+fn numbers(text: &str) -> Result<[u32; 3], String> {
+    let numbers: Option<Vec<u32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    let three = numbers.and_then(|numbers| <[u32; 3]>::try_from(numbers).ok());
+    three.ok_or_else(|| "expected three numbers, such as 0,0,1".to_owned())
 }

@@ -34,7 +34,7 @@ pub struct Found {
 /// The table of half floats with the fewest texels whose reads err by `max_abs` at most over cosines and alphas from the given ones on; of tables
 /// of one size the most accurate. Where none does, the most accurate of 128 x 128 texels.
 ///
-/// Axes are powers, from the lowest cosine and alpha on: lower ones read as these. Channels are [`Value::Bias`] and [`Value::Loss`].
+/// Axes are powers or logarithms, from the lowest cosine and alpha on: lower ones read as these. Channels are [`Value::Bias`] and [`Value::Loss`].
 pub fn search(distribution: Distribution, masking: Masking, max_abs: f64, min_cos: f64, min_alpha: f64) -> Found {
     let surface = SplitSumSurface::new(distribution, masking);
     let mut best: Option<Found> = None;
@@ -89,7 +89,9 @@ fn layouts(min_cos: f64, min_alpha: f64) -> impl Iterator<Item = Layout> + Clone
     let layout = move |cos_exponent: f64, alpha_exponent: f64| {
         Layout::powers([min_cos, min_alpha], [cos_exponent, alpha_exponent], Nodes::Ends)
     };
-    EXPONENTS[0].iter().flat_map(move |&cos| EXPONENTS[1].iter().map(move |&alpha| layout(cos, alpha)))
+    let powers = EXPONENTS[0].iter().flat_map(move |&cos| EXPONENTS[1].iter().map(move |&alpha| layout(cos, alpha)));
+    let has_logarithms = min_cos > 0.0 && min_alpha > 0.0;
+    powers.chain(has_logarithms.then(|| Layout::logarithms([min_cos, min_alpha], Nodes::Ends)))
 }
 
 #[cfg(test)]

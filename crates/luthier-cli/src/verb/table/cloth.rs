@@ -25,7 +25,7 @@ pub(super) fn product(options: &ClothOptions) -> Outcome<Product> {
     let (container, stored) = by_ending(&options.delivery.output)?;
     // The distribution and the masking are of split sums, which this table does not hold.
     let (distribution, masking) = (Distribution::Ggx, Masking::SmithCorrelated);
-    let table = DfgTable { distribution, masking, layout, values: vec![value], size: grid.size, stored };
+    let table = DfgTable { distribution, masking, layout, values: vec![value], size: grid.size, stored, base: None };
     let texels = table.bake();
     let from = [options.domain.min_cos, options.domain.min_alpha];
     let error = table.error(&texels, from[0], from[1]);

@@ -7,12 +7,14 @@ use luthier_lut::{ErrorStats, Image};
 use luthier_optics::split_sum::Masking;
 use luthier_report::{Certificate, ErrorMap};
 use luthier_shader::{Target, library, library_spirv};
-use luthier_table::{Bindings, ClosedForm, Container, DfgTable, FittedForm, Found, Preset, search};
+use luthier_table::{
+    Bindings, ClosedForm, Container, DfgTable, FittedForm, Found, Preset, Stored, search, search_beside_form,
+};
 use luthier_terminal::{Failure, Outcome, files};
 use luthier_texture::table;
 use serde_json::{Value as Json, json};
 
-use super::container::encode;
+use super::container::{by_ending, encode};
 use super::product::{Product, distribution, domain, error_facts, error_json, error_text, fact, nodes_name};
 use crate::cli::DfgOptions;
 
@@ -29,7 +31,7 @@ pub(super) fn product(options: &DfgOptions) -> Outcome<Product> {
     }
     let (Found { table, texels, error, .. }, container) = match options.preset {
         Some(preset) => (of_preset(preset, options), preset.container),
-        None => (searched(options)?, Container::Ktx2),
+        None => searched(options)?,
     };
     let from = [options.min_cos, options.min_alpha];
     let domain = domain(from[0], from[1]);
@@ -42,13 +44,16 @@ pub(super) fn product(options: &DfgOptions) -> Outcome<Product> {
     let comment = format!("{words}. Largest error as sampled: {:.2e}, over {domain}.", error.max_abs_err);
     let bytes = encode(container, &texels, table.stored, &comment, &metadata, options.delivery.no_zstd)?;
     let mut written = vec![(options.delivery.output.clone(), bytes)];
-    if !options.shader.is_empty() {
+    // A table beside a closed form means nothing without its look-up.
+    let languages =
+        if table.base.is_some() && options.shader.is_empty() { &[Target::Wgsl][..] } else { &options.shader };
+    if !languages.is_empty() {
         let text = table.wgsl(bindings(options)).ok_or_else(|| {
             Failure::Usage(anyhow::anyhow!(
                 "the channels of this table do not determine scale and bias: there is no look-up"
             ))
         })?;
-        written.extend(shaders(options, &text)?);
+        written.extend(shaders(options, languages, &text)?);
     }
     let each: String = channels.iter().map(|(name, largest)| format!("{name} {largest:.2e}  ")).collect();
     let held = options.max_abs.map_or(String::new(), |limit| format!("holds {limit}\n"));
@@ -95,7 +100,7 @@ fn closed(options: &DfgOptions) -> Outcome<Product> {
     );
     let text = form.wgsl();
     let mut written = vec![(output.clone(), shader(&text, target)?)];
-    written.extend(shaders(options, &text)?);
+    written.extend(shaders(options, &options.shader, &text)?);
     let mut facts = vec![
         fact("Model", format!("{} distribution, masking {}", form.distribution.name(), masking.name())),
         fact(
@@ -161,19 +166,52 @@ fn masking(options: &DfgOptions) -> Outcome<Masking> {
         .ok_or_else(|| Failure::unknown("masking term", &options.masking, &Masking::ALL.map(Masking::name)))
 }
 
-fn searched(options: &DfgOptions) -> Outcome<Found> {
+/// The smallest table, and its container.
+fn searched(options: &DfgOptions) -> Outcome<(Found, Container)> {
     let max_abs = options.max_abs.unwrap_or(f64::INFINITY);
-    let masking = masking(options)?;
-    let found = search(distribution(options.distribution), masking, max_abs, options.min_cos, options.min_alpha);
-    if found.held {
-        return Ok(found);
-    }
-    let [width, height] = found.table.size;
+    let (masking, distribution) = (masking(options)?, distribution(options.distribution));
+    let (container, stored) = match by_ending(&options.delivery.output)? {
+        (Container::Exr, _) => (Container::Exr, Stored::Float),
+        (container, _) => (container, Stored::Half),
+    };
+    let mut found = search(distribution, masking, max_abs, options.min_cos, options.min_alpha);
     let domain = domain(options.min_cos, options.min_alpha);
+    if stored == Stored::Float {
+        found = restored(found, stored, options, max_abs);
+    }
+    let Some(max_bytes) = options.max_bytes.filter(|max_bytes| !found.held || found.table.bytes() > *max_bytes) else {
+        if found.held {
+            return Ok((found, container));
+        }
+        let [width, height] = found.table.size;
+        return Err(Failure::Input(anyhow::anyhow!(
+            "no table of half floats up to {width} x {height} holds {max_abs} over {domain}: the nearest errs by {:.2e}",
+            found.error.max_abs_err
+        )));
+    };
+    // The search is for texels of two bytes; KTX2 holds two half floats.
+    let is_raw = container == Container::Raw;
+    let bytes = if is_raw { max_bytes } else { max_bytes / 2 };
+    let mut found = search_beside_form(distribution, masking, max_abs, [options.min_cos, options.min_alpha], bytes);
+    if !is_raw {
+        found = restored(found, stored, options, max_abs);
+    }
+    if found.held && found.table.bytes() <= max_bytes {
+        return Ok((found, container));
+    }
     Err(Failure::Input(anyhow::anyhow!(
-        "no table of half floats up to {width} x {height} holds {max_abs} over {domain}: the nearest errs by {:.2e}",
+        "no table of {max_bytes} bytes beside a closed form holds {max_abs} over {domain}: the nearest, of {} bytes, errs by {:.2e}",
+        found.table.bytes(),
         found.error.max_abs_err
     )))
+}
+
+/// The table in texels of another type.
+fn restored(found: Found, stored: Stored, options: &DfgOptions, max_abs: f64) -> Found {
+    let table = DfgTable { stored, ..found.table };
+    let texels = table.bake();
+    let error = table.error(&texels, options.min_cos, options.min_alpha);
+    Found { held: error.max_abs_err <= max_abs, table, texels, error }
 }
 
 /// The language of a file, by its ending.
@@ -191,19 +229,17 @@ fn language(path: &Path) -> Outcome<Target> {
 }
 
 fn bindings(options: &DfgOptions) -> Bindings {
-    match *options.bind.as_slice() {
-        [group, texture, sampler] => Bindings { group, texture, sampler },
-        _ => Bindings::default(),
-    }
+    let [group, texture, sampler] = options.bind;
+    Bindings { group, texture, sampler }
 }
 
-/// The function in each language that the options name, in files beside the output.
-fn shaders(options: &DfgOptions, wgsl: &str) -> Outcome<Vec<(PathBuf, Vec<u8>)>> {
+/// The function in each language, in files beside the output.
+fn shaders(options: &DfgOptions, languages: &[Target], wgsl: &str) -> Outcome<Vec<(PathBuf, Vec<u8>)>> {
     let beside = |target: &Target| {
         let path = options.delivery.output.with_extension(target.extension());
         Ok((path, shader(wgsl, *target)?))
     };
-    options.shader.iter().map(beside).collect()
+    languages.iter().map(beside).collect()
 }
 
 fn shader(wgsl: &str, target: Target) -> Outcome<Vec<u8>> {
@@ -216,18 +252,19 @@ fn shader(wgsl: &str, target: Target) -> Outcome<Vec<u8>> {
 
 /// The table in words.
 fn words(table: &DfgTable) -> String {
-    let DfgTable { distribution, masking, layout, values, size: [width, height], stored } = table;
+    let DfgTable { distribution, masking, layout, values, size: [width, height], stored, base } = table;
     let values = values.iter().map(|value| value.name()).collect::<Vec<_>>().join(",");
     let (name, masking, stored) = (distribution.name(), masking.name(), stored.name());
     let nodes = nodes_name(layout.angle.nodes);
+    let beside = if base.is_some() { ", beside a closed form in its look-up" } else { "" };
     format!(
-        "Split sum, {name}, masking {masking}; {values} over {layout}, nodes at {nodes}; {width} x {height}, {stored}"
+        "Split sum, {name}, masking {masking}; {values} over {layout}, nodes at {nodes}; {width} x {height}, {stored}{beside}"
     )
 }
 
 /// The table in the words of `luthier audit`.
 fn statement(table: &DfgTable) -> Json {
-    let DfgTable { distribution, masking, layout, values, size, stored } = table;
+    let DfgTable { distribution, masking, layout, values, size, stored, base } = table;
     json!({
         "function": "dfg",
         "model": format!("{}-{}", distribution.name(), masking.name()),
@@ -236,6 +273,8 @@ fn statement(table: &DfgTable) -> Json {
         "values": values.iter().map(|value| value.name()).collect::<Vec<_>>(),
         "size": size,
         "stored": stored.name(),
+        "bytes": table.bytes(),
+        "beside_form": base.as_ref().map(|base| json!({ "amplitude": base.amplitude, "multiply_adds": base.form.cost().multiply_adds })),
     })
 }
 
@@ -246,7 +285,7 @@ fn facts(
     channels: &[(&str, f64)],
 ) -> Vec<(String, String)> {
     let [width, height] = table.size;
-    let bytes = width as usize * height as usize * table.stored.texel_bytes(table.values.len());
+    let bytes = table.bytes();
     let channels = channels.iter().map(|(name, largest)| format!("{name} {largest:.2e}")).collect::<Vec<_>>();
     let mut facts = vec![
         fact("Model", format!("{} distribution, masking {}", table.distribution.name(), table.masking.name())),
@@ -256,6 +295,13 @@ fn facts(
     ];
     facts.extend(error_facts(error, &QUANTITIES));
     facts.push(fact("Channels, largest errors", channels.join(", ")));
+    if let Some(cost) = table.cost().filter(|_| table.base.is_some()) {
+        let cost = format!(
+            "{} multiply-adds, {} clamps, {} divisions and roots",
+            cost.multiply_adds, cost.clamps, cost.specials
+        );
+        facts.push(fact("Look-up", format!("a closed form and one read: {cost}")));
+    }
     if let Some(preset) = options.preset {
         facts.push(fact("Layout read in", preset.source));
     }
