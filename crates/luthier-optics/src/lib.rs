@@ -14,7 +14,6 @@
 //! the same bits on every platform.
 
 pub mod albedo;
-mod chebyshev;
 pub mod cloth;
 pub mod color;
 pub mod color_difference;

@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     const TEXTURE: &str = "@group(1) @binding(2) var image: texture_2d<f32>;\n@group(1) @binding(3) var linear: sampler;\n\n\
-        /// What is read.\nfn look(at: vec2<f32>, lod: f32) -> vec4<f32> {\n    let texel = textureSampleLevel(image, linear, at, lod);\n    \
+        /// The texel that is read.\nfn look(at: vec2<f32>, lod: f32) -> vec4<f32> {\n    let texel = textureSampleLevel(image, linear, at, lod);\n    \
         return texel;\n}\n";
 
     #[test]
@@ -102,7 +102,7 @@ mod tests {
             (Target::Msl, &["metal::float4 look(", "metal::texture2d<float> image"]),
         ] {
             let text = library(TEXTURE, target).unwrap();
-            for part in expected.iter().chain(&["// What is read."]) {
+            for part in expected.iter().chain(&["// The texel that is read."]) {
                 assert!(text.contains(part), "{target}: no `{part}` in\n{text}");
             }
             assert!(!text.to_lowercase().contains("naga") && !text.contains("luthier_entry"), "{target}:\n{text}");

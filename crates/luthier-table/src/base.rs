@@ -17,7 +17,7 @@ pub struct Base {
 }
 
 impl Base {
-    /// What a texel holds of a content, where the form has another.
+    /// The value of a texel for a content, where the form has another.
     pub(crate) fn texel(&self, content: f64, of_form: f64) -> f64 {
         0.5 + 0.5 * (content - of_form) / self.amplitude
     }

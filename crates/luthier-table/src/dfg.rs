@@ -133,7 +133,7 @@ impl DfgTable {
         contents
     }
 
-    /// What a texel holds of a line at a cosine.
+    /// Values of a texel of a line at a cosine.
     fn texel_of(&self, line: &Line, cos: f64) -> [f64; 4] {
         let contents = self.contents(&line.at(cos));
         let Some(base) = &self.base else { return contents };

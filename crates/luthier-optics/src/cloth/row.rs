@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::{CLOTH_ALPHA_MIN, ClothVisibility, NEGLIGIBLE, cloth_albedo, ln_largest, over_largest, rules};
-use crate::chebyshev::{clenshaw, coefficients, nodes};
+use crate::interpolation::chebyshev::{clenshaw, coefficients, nodes};
 
 /// Lowest cosine of the polynomial.
 const LOWEST_COS: f64 = 1e-3;

@@ -1,3 +1,5 @@
+//! Tests of albedos: doubled rules, drawn normals, closed forms.
+
 use glam::DVec3;
 
 use super::*;
@@ -8,7 +10,7 @@ use crate::visible_normals;
 
 const BOTH: [Distribution; 2] = [Distribution::Ggx, Distribution::Beckmann];
 
-/// What the documentation states.
+/// The bound that the documentation states.
 const BOUND: f64 = 1e-6;
 
 #[test]

@@ -1,7 +1,7 @@
 //! A split sum over all directions and roughnesses as a polynomial: for tables and searches, which ask a hundred thousand times.
 
 use super::{ALPHA_MIN, Masking, SplitSum, split_sum};
-use crate::chebyshev::{clenshaw, coefficients, nodes};
+use crate::interpolation::chebyshev::{clenshaw, coefficients, nodes};
 use crate::stack::Distribution;
 
 /// Lowest cosine and lowest alpha of the polynomial.

@@ -83,7 +83,7 @@ impl ClosedForm {
         (bias - exact.bias).abs().max((scale + bias - exact.albedo()).abs())
     }
 
-    /// What a read costs.
+    /// Operations of a read.
     pub fn cost(&self) -> Cost {
         let quotients = [&self.loss, &self.cosine];
         let polynomials = quotients.iter().map(|q| q.numerator.multiply_adds() + q.denominator.multiply_adds());

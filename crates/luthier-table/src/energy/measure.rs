@@ -10,7 +10,7 @@ use crate::AxisSpec;
 const BITS: u32 = 8;
 /// Points of a scan along each of one, two or three axes.
 const POINTS: [u32; 3] = [512, 48, 20];
-/// The same for averages over the hemisphere, each of which takes a hundred albedos.
+/// Points of averages over the hemisphere, each of which takes a hundred albedos.
 const POINTS_OF_AVERAGES: [u32; 2] = [64, 14];
 /// Halvings of the climb to the worst error.
 const REFINEMENTS: u32 = 6;
@@ -118,7 +118,7 @@ impl EnergyTable {
         comparison
     }
 
-    /// What a sampler reads: bilinear in two slices, then between them.
+    /// A sampler's read: bilinear in two slices, then between them.
     fn sample(&self, texels: &Image, u: [f64; 3]) -> [f64; 4] {
         let mut position = [0.5; 3];
         for (k, axis) in self.layout.axes().iter().enumerate() {

@@ -27,7 +27,7 @@ pub enum EnergySurface {
     Reflector,
     /// An interface between transparent media with exact Fresnel, lit from the rarer side.
     FromRarer,
-    /// The same lit from the denser side, with total reflection.
+    /// An interface between transparent media lit from the denser side, with total reflection.
     FromDenser,
 }
 

@@ -1,3 +1,5 @@
+//! Tests of tables of energy: figures that renderers ship, drawn normals, reads.
+
 use luthier_optics::glam::DVec3;
 use luthier_optics::microfacet::lambda;
 use luthier_optics::visible_normals;
@@ -255,7 +257,7 @@ fn presets_bake() {
     }
 }
 
-/// The same number of texels on an axis that crowds at grazing angles: a fifth of the error of Cycles' layout from the rarer side.
+/// As many texels on an axis that crowds at grazing angles: a fifth of the error of Cycles' layout from the rarer side.
 #[test]
 fn curved_axes_hold_more() {
     let domain = EnergyDomain { min_cos: 0.05, min_alpha: 0.01, ior: [1.05, 2.5] };

@@ -52,7 +52,7 @@ pub(super) fn write(out: &mut String, name: &str, axis: &AxisSpec, input: &str, 
     Some(())
 }
 
-/// What the text of [`write()`] costs; none where there is none.
+/// Operations of the text of [`write()`]; none where there is none.
 pub(super) fn cost(axis: &AxisSpec) -> Option<Cost> {
     let of = |multiply_adds, clamps, specials| Cost { multiply_adds, clamps, specials };
     let (quantity, is_within) = match axis.quantity {
@@ -79,7 +79,7 @@ pub(super) fn cost(axis: &AxisSpec) -> Option<Cost> {
     Some(quantity + mapping + of(u32::from(!is_plain), 0, 0))
 }
 
-/// What [`root`] costs: roots, or a logarithm, a product and an exponential.
+/// Operations of [`root`]: roots, or a logarithm, a product and an exponential.
 fn exponents_cost(exponent: f64) -> Cost {
     match ROOTS.into_iter().position(|power| power == exponent) {
         Some(count) => Cost { specials: count as u32, ..Cost::default() },

@@ -79,7 +79,7 @@ impl DfgTable {
         Some(out)
     }
 
-    /// What a read costs beside the texture; none where there is no look-up.
+    /// Operations of a read beside the texture; none where there is no look-up.
     pub fn cost(&self) -> Option<Cost> {
         result(&self.values, false)?;
         let has = |value: Value| self.values.contains(&value);

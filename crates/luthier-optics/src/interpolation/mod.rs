@@ -1,4 +1,6 @@
-//! Interpolation between nodes of equal distance.
+//! Interpolation: cubics between nodes of equal distance, and Chebyshev polynomials.
+
+pub(crate) mod chebyshev;
 
 /// The first of the four nodes around a fractional index, of `nodes` nodes, and the weights of Lagrange's cubic through
 /// them. Fewer than four are joined by straight lines: the weights beyond are 0.
