@@ -26,3 +26,17 @@ percentile, the root mean square. Axes have their nodes at texel centres, or in 
 TEXT
 
 scripts/bench-dfg/target/release/luthier-bench-dfg
+
+cat <<TEXT
+
+## Tables, closed forms, and tables beside forms
+
+Made by \`cargo run --release -p luthier-table --example dfg_sizes\`: GGX with correlated masking, errors as sampled over cos_theta >= 0.01 and
+alpha >= 0.01. Cells have the size, the bytes of texels and the operations of a look-up beside the fetch: a multiply-add or a clamp counts 1, a
+division, root or exponential 4. Plain tables are half floats (\`luthier table dfg --max-abs\`); those beside a form, in as many bytes as the column
+says, have two bytes a texel (\`--max-bytes\`, output .bin); the last column is a form alone (\`--closed\`). A dash: none holds.
+
+| error | table | form, table <= 512 B | <= 1,024 B | <= 2,048 B | form |
+|--:|--:|--:|--:|--:|--:|
+TEXT
+cargo run --quiet --release --locked -p luthier-table --example dfg_sizes

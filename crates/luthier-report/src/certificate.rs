@@ -142,7 +142,7 @@ impl Certificate {
         let mut out = String::with_capacity(128 << 10);
         out.push_str("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>");
         out.push_str("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>");
-        let _ = write!(out, "<title>luthier: {}</title><style>\n", escape(&self.title));
+        let _ = writeln!(out, "<title>luthier: {}</title><style>", escape(&self.title));
         out.push_str(include_str!("pages/page/style.css"));
         out.push_str(include_str!("certificate.css"));
         out.push_str("</style></head>\n<body><main>\n");
@@ -156,9 +156,9 @@ impl Certificate {
         );
         for map in &self.maps {
             let (largest, [x, y]) = map.worst;
-            let _ = write!(
+            let _ = writeln!(
                 out,
-                "<figure class=\"map\">{}<figcaption><b>{}</b><br/>largest {} at {} {}, {} {}</figcaption></figure>\n",
+                "<figure class=\"map\">{}<figcaption><b>{}</b><br/>largest {} at {} {}, {} {}</figcaption></figure>",
                 map.svg(),
                 escape(&map.title),
                 error(largest),

@@ -1,6 +1,6 @@
 //! Single-scattering directional albedo of a rough interface between transparent media, from either side, by quadrature.
 //!
-//! What energy-compensation tables hold (Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks"; Turquin 2019,
+//! Albedos that energy-compensation tables hold (Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks"; Turquin 2019,
 //! "Practical multiple scattering compensation for microfacet models"). Facets reflect and refract by Fresnel's formulas (Walter et al. 2007,
 //! "Microfacet Models for Refraction through Rough Surfaces", eq. 20 and 21, integrated over the facets instead of directions). Albedos
 //! are of power: radiance that changes with the square of the index is no part of them.

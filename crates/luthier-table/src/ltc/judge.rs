@@ -86,7 +86,7 @@ impl LtcTable {
         LtcError::of(errors)
     }
 
-    /// What a shader reads: the lobe, and the albedo.
+    /// A shader's read: the lobe, and the albedo.
     fn read(&self, texels: &LtcTexels, theta: f64, alpha: f64) -> (Lobe, f64) {
         let position = self.layout.position(self.size, [theta, alpha]);
         let lobe = Lobe::of_texel(bilinear(&texels.matrices, position, WEIGHTS));

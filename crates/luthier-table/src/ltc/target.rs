@@ -1,4 +1,4 @@
-//! What a lobe is fitted to: the reflection of a rough surface at the nodes of a quadrature.
+//! The target of a fit: the reflection of a rough surface at the nodes of a quadrature.
 
 use std::f64::consts::PI;
 

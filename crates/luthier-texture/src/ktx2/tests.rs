@@ -251,7 +251,7 @@ fn levels_of_a_cube() {
     }
 }
 
-/// What a file says of itself is found by another reader; keys that the specification has for others are refused.
+/// Statements of a file about itself are found by another reader; keys that the specification has for others are refused.
 #[test]
 fn metadata_are_entries_of_their_own() {
     let texture = texture(TexelFormat::Rg16Float, 3, 2);
