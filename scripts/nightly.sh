@@ -7,12 +7,13 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-steps=(tests random release examples kind packages scale)
+steps=(tests random release examples engines kind packages scale)
 declare -A says=(
   [tests]='tests that are ignored elsewhere: the whole stability suite, and audits of tables with planted mistakes'
   [random]='property tests with new random seeds'
   [release]='release builds write the bytes of debug builds, and name the Cargo feature of a verb that they lack'
   [examples]='the renderers in `examples` show the shipped tables, in a browser too'
+  [engines]='three.js and Babylon.js read the tables of `luthier table`, in furnaces in a browser'
   [kind]='a kind of table is added by the six files of CONTRIBUTING.md, baked and judged'
   [packages]='every crate is packed, and built from its package'
   [scale]='libraries of 100 and 1,000 generated materials are baked'
@@ -36,6 +37,10 @@ release() {
 examples() {
   cargo build --locked --release -p luthier-cli
   LUTHIER=$PWD/target/release/luthier ./scripts/run-examples.sh
+}
+engines() {
+  cargo build --locked --release -p luthier-cli
+  LUTHIER=$PWD/target/release/luthier ./scripts/engines/furnace.sh
 }
 kind() { ./scripts/add-kind.sh; }
 packages() { ./scripts/package.sh --verify; }

@@ -52,8 +52,10 @@ bench() { luthier bench materials/car-paint.toml materials/red-lacquer.toml --js
 shader-size() { scripts/shader-size.sh >docs/pages/shader-size.md; }
 distribution-table() { scripts/compare-distribution.sh >docs/pages/distribution-table.md; }
 speed() { scripts/bench-table.sh >docs/pages/speed.md; }
+dfg() { scripts/bench-dfg.sh >docs/pages/dfg.md; }
+engine-tables() { scripts/engine-tables.sh >docs/pages/engine-tables.md; }
 
-all=(materials shapes cost papers budgets scenes parity stability figures models lobes varying anisotropic environment bench shader-size distribution-table speed)
+all=(materials shapes cost papers budgets scenes parity stability figures models lobes varying anisotropic environment bench shader-size distribution-table speed dfg engine-tables)
 case ${1-} in
   "") pages=("${all[@]}") ;;
   --cheap) pages=(shader-size) ;;
