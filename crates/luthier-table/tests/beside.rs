@@ -13,11 +13,12 @@ fn beside_form(max_abs: f64, max_bytes: usize) -> Found {
     let found = search_beside_form(GGX, CORRELATED, max_abs, LOWEST, max_bytes);
     let (cost, base) = (found.table.cost().unwrap(), found.table.base.as_ref().unwrap());
     eprintln!(
-        "{max_abs} in {max_bytes}: {} bytes, {}, {} slots, amplitude {:.2e}: max {:.2e} at {:?}, rms {:.2e}, {}",
+        "{max_abs} in {max_bytes}: {} bytes ({}), {}, {} slots, scale {:.2e}: max {:.2e} at {:?}, rms {:.2e}, {}",
         found.table.bytes(),
+        found.table.stored.name(),
         found.table.layout,
         cost.slots(),
-        base.amplitude,
+        base.scale,
         found.error.max_abs_err,
         found.error.worst.at,
         found.error.rms_err,
