@@ -1,5 +1,7 @@
 //! What a split sum of GGX costs at each error, over cosines and alphas from 0.01 on: as a table, as a table beside a closed form, as a closed form.
 
+#![expect(clippy::print_stdout, reason = "an example speaks on the terminal")]
+
 use luthier_optics::split_sum::Masking;
 use luthier_optics::stack::Distribution;
 use luthier_table::{ClosedForm, Cost, Found, search, search_beside_form};

@@ -5,10 +5,11 @@ use luthier_optics::stack::Distribution;
 use rayon::prelude::*;
 
 use super::Found;
-use crate::{Base, ClosedForm, DfgTable, Layout, Nodes, Stored, Value};
+use crate::{Base, ClosedForm, Cost, DfgTable, Layout, Nodes, Stored, Value};
 
 /// Degrees of the forms with straight rests that are tried: of the loss in t and alpha, of the cosine in t and r.
-const STRAIGHT: [[[usize; 2]; 2]; 3] = [[[2, 1], [1, 1]], [[2, 2], [1, 2]], [[3, 2], [2, 2]]];
+const STRAIGHT: [[[usize; 2]; 2]; 5] =
+    [[[2, 1], [1, 1]], [[2, 2], [1, 2]], [[3, 2], [1, 3]], [[3, 2], [2, 2]], [[3, 3], [2, 3]]];
 /// Errors of the forms with small rests that are tried. All cost more than those with straight rests.
 const SMALL: [f64; 3] = [5e-3, 2e-3, 1e-3];
 /// Exponents of the axes that are tried, of cosines and of alpha, the cheaper to read first: by square roots.
@@ -16,7 +17,7 @@ const EXPONENTS: [[f64; 2]; 4] = [[2.0, 2.0], [2.0, 4.0], [4.0, 2.0], [4.0, 4.0]
 /// Number types that are tried, the smaller first.
 const STORED: [Stored; 2] = [Stored::Unorm8, Stored::Half];
 /// Sides that are tried.
-const SIDES: [u32; 16] = [3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 48, 64];
+const SIDES: [u32; 18] = [3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 18, 20, 22, 24, 28, 32, 48, 64];
 /// Points at which candidates are judged, along each axis.
 const POINTS: u32 = 64;
 /// Candidates beside one form that are measured at the most.
@@ -34,6 +35,7 @@ struct Candidate {
 struct Judge {
     distribution: Distribution,
     masking: Masking,
+    /// Cosine and alpha.
     lowest: [f64; 2],
     surface: SplitSumSurface,
     /// At thetas and alphas.
@@ -106,7 +108,7 @@ impl Judge {
         let mut all: Vec<_> =
             STRAIGHT.into_iter().flat_map(|degrees| EXPONENTS.map(|exponents| one(degrees, exponents))).collect();
         let slots = |form: &ClosedForm, layout: Layout| {
-            self.table(form, layout, SIDES[0], SIDES[0], Stored::Half).cost().map(crate::Cost::slots)
+            self.table(form, layout, SIDES[0], SIDES[0], Stored::Half).cost().map(Cost::slots)
         };
         all.sort_by_key(|(form, layouts)| slots(form, layouts[0]));
         all
