@@ -10,7 +10,7 @@ use crate::{Base, ClosedForm, Cost, DfgTable, Layout, Nodes, Stored, Value};
 /// Degrees of the forms with straight rests that are tried: of the loss in t and alpha, of the cosine in t and r.
 const STRAIGHT: [[[usize; 2]; 2]; 5] =
     [[[2, 1], [1, 1]], [[2, 2], [1, 2]], [[3, 2], [1, 3]], [[3, 2], [2, 2]], [[3, 3], [2, 3]]];
-/// Errors of the forms with small rests that are tried. All cost more than those with straight rests.
+/// Errors of the forms with small rests that are tried. They cost more than those with straight rests.
 const SMALL: [f64; 3] = [5e-3, 2e-3, 1e-3];
 /// Exponents of the axes that are tried, of cosines and of alpha, the cheaper to read first: by square roots.
 const EXPONENTS: [[f64; 2]; 4] = [[2.0, 2.0], [2.0, 4.0], [4.0, 2.0], [4.0, 4.0]];
@@ -42,9 +42,9 @@ struct Judge {
     points: Vec<([f64; 2], SplitSum)>,
 }
 
-/// The table beside a closed form ([`DfgTable::base`]) that costs the fewest operations of those whose texels take `max_bytes` at most and whose reads
-/// err by `max_abs` at most over cosines and alphas from the given ones on; of tables beside one form the smallest. Where none does, the most accurate
-/// of those that were measured.
+/// The table beside a closed form ([`DfgTable::base`]) that is cheapest to read ([`DfgTable::cost`], to a few operations) of those whose texels take
+/// `max_bytes` at most and whose reads err by `max_abs` at most over cosines and alphas from the given ones on; of tables beside one form the
+/// smallest. Where none does, the most accurate of those that were measured.
 ///
 /// Forms are of two kinds: polynomials with straight rests, of half floats or bytes, and beyond their reach those of [`ClosedForm::fit`] with small
 /// rests. Axes are powers that are read with square roots, from the lowest cosine and alpha on. Channels are [`Value::Bias`] and [`Value::Loss`].
