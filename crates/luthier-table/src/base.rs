@@ -6,25 +6,42 @@ use crate::ClosedForm;
 
 /// A closed form to which the texels of a table are added.
 ///
-/// A channel is the form's content of it and (2 texel - 1) amplitude, so that rests to both sides of 0 have texels in 0..1, which bytes hold: the rest
-/// of a form that errs by 5e-3 is rounded by 2e-5. A rest is also smoother than the function, hence takes fewer texels.
+/// A channel is the form's content of it and texel * scale + offset. A rest is straighter than the function, hence takes fewer texels; and where it is
+/// small, bytes hold it: the rest of a form that errs by 5e-3 is rounded by 2e-5.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Base {
     /// The form, which is computed in single precision.
     pub form: ClosedForm,
-    /// The largest rest that a texel in 0..1 holds, above 0.
-    pub amplitude: f64,
+    /// Factor of texels, above 0.
+    pub scale: f64,
+    /// Summand beside texels times the factor.
+    pub offset: f64,
 }
 
 impl Base {
+    /// Texels that are the rests, for floats.
+    pub fn plain(form: ClosedForm) -> Self {
+        Self { form, scale: 1.0, offset: 0.0 }
+    }
+
+    /// Texels in 0..1 that hold rests up to an amplitude to both sides of 0.
+    pub fn normalised(form: ClosedForm, amplitude: f64) -> Self {
+        Self { form, scale: 2.0 * amplitude, offset: -amplitude }
+    }
+
+    /// Whether texels are the rests.
+    pub fn is_plain(&self) -> bool {
+        self.scale == 1.0 && self.offset == 0.0
+    }
+
     /// The value of a texel for a content, where the form has another.
     pub(crate) fn texel(&self, content: f64, of_form: f64) -> f64 {
-        0.5 + 0.5 * (content - of_form) / self.amplitude
+        (content - of_form - self.offset) / self.scale
     }
 
     /// The content that a texel makes of the form's.
     pub(crate) fn content(&self, texel: f64, of_form: f64) -> f64 {
-        of_form + (2.0 * texel - 1.0) * self.amplitude
+        of_form + (texel * self.scale + self.offset)
     }
 
     /// The split sum of the form.

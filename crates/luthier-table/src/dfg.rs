@@ -94,7 +94,9 @@ impl DfgTable {
                 image.texel_mut(place[0], place[1]).copy_from_slice(texel);
             }
         }
-        self.stored.quantise(&balance(&image, 0.0))
+        // Rests have both signs.
+        let floor = if self.base.is_some() { f64::NEG_INFINITY } else { 0.0 };
+        self.stored.quantise(&balance(&image, floor))
     }
 
     /// The error of reads (bilinear, 8-bit weights) from texels of this statement, over cosines and alphas from the given ones on: absolute, of

@@ -43,6 +43,6 @@ pub use ltc::{
     IrradianceError, Lobe, LtcError, LtcTable, LtcTexels, PlacedError, SheenTable, clipped_sphere_form_factor,
 };
 pub use preset::{Container, Preset};
-pub use search::{Found, search, search_beside_form};
+pub use search::{Found, SPLIT_SUM, search, search_beside_form};
 pub use stored::Stored;
 pub use value::Value;

@@ -6,7 +6,7 @@ use forge_ibl_bake::sample::integrate_brdf;
 use luthier_lut::{ErrorStats, Image};
 use luthier_optics::split_sum::{Masking, SplitSum, SplitSumSurface, split_sum};
 use luthier_optics::stack::Distribution;
-use luthier_table::{DfgTable, Preset, search};
+use luthier_table::{DfgTable, Preset, SPLIT_SUM, search};
 
 use crate::{FROM, SIDE, curved, forge_texels, linear};
 
@@ -42,7 +42,7 @@ pub fn print() -> Result<(), Box<dyn Error>> {
     println!("|---|---|--:|--:|--:|--:|--:|---|");
     let square = curved(Masking::SmithCorrelated, 64);
     let of_square = sized_row("64 x 64", &square, &square.bake());
-    let found = search(Distribution::Ggx, Masking::SmithCorrelated, LIMIT, FROM[0], FROM[1]);
+    let found = search(Distribution::Ggx, Masking::SmithCorrelated, &SPLIT_SUM, LIMIT, FROM[0], FROM[1]);
     let bytes = sized_row("fewest texels of the search", &found.table, &found.texels);
     for preset in Preset::ALL {
         let table = preset.table();

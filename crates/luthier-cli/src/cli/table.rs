@@ -142,6 +142,7 @@ of floats where the name ends in .exr.
 Examples:
   luthier table energy --preset cycles -o tables
   luthier table energy -o metal.ktx2
+  luthier table energy --values loss --max-abs 1e-3 -o metal.ktx2
   luthier table energy --axes roughness --size 32x1 -o metal-average.ktx2
   luthier table energy --values compensation -o turquin.ktx2
   luthier table energy --surface from-denser --axes cos_theta,roughness,sqrt_f0 --size 32x32x16 -o glass-inside.exr";
@@ -152,6 +153,9 @@ pub(crate) struct EnergyOptions {
     /// The renderer whose tables are baked: cycles, openpbr, ospray
     #[arg(long, value_name = "NAME", value_parser = energy_preset, conflicts_with_all = ["surface", "values", "axes", "size", "nodes", "distribution", "masking", "report"])]
     pub(crate) preset: Option<&'static EnergyPreset>,
+    /// Find the smallest table of a metal whose reads err by this at most, absolutely
+    #[arg(long, value_name = "X", value_parser = super::positive, conflicts_with_all = ["preset", "axes", "size", "nodes"])]
+    pub(crate) max_abs: Option<f64>,
     /// Facets that reflect everything, or an interface between transparent media and the side that light comes from: reflector, from-rarer or from-denser
     #[arg(long, value_name = "NAME", default_value = "reflector")]
     pub(crate) surface: String,

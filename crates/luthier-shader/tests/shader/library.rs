@@ -6,7 +6,9 @@ use luthier_lut::{Image, WeightBits, bilinear};
 use luthier_optics::split_sum::Masking;
 use luthier_optics::stack::Distribution;
 use luthier_shader::{Target, library, library_spirv};
-use luthier_table::{Bindings, ClosedForm, DfgTable, LOOKUP, Layout, Nodes, Preset, SAMPLER, Stored, TEXTURE, Value};
+use luthier_table::{
+    Base, Bindings, ClosedForm, DfgTable, LOOKUP, Layout, Nodes, Preset, SAMPLER, Stored, TEXTURE, Value,
+};
 
 use crate::judges::{accept_glsl_es, compile, is_installed, validate_spirv};
 use crate::machine::Machine;
@@ -67,7 +69,9 @@ fn khronos_tools_accept_look_ups() {
     let form = ClosedForm::fit(Distribution::Ggx, Masking::SmithCorrelated, 0.1, 0.01, 0.01).form;
     let tables = tables();
     let texts = tables.iter().map(|table| table.wgsl(Bindings { group: 0, ..BINDINGS }).unwrap());
-    for wgsl in texts.chain([form.wgsl()]) {
+    let beside = beside_form("cos_theta^4,alpha^2", &[Value::Bias, Value::Loss]);
+    let beside = beside.wgsl(Bindings { group: 0, ..BINDINGS }).unwrap();
+    for wgsl in texts.chain([form.wgsl(), beside]) {
         let glsl = |target, head: &str| {
             let body = library(&wgsl, target).unwrap();
             let out = "layout(location = 0) out vec4 color;\nvoid main() {\n    color = vec4(luthier_dfg(0.5, 0.5), 0.0, 1.0);\n}";
@@ -134,6 +138,64 @@ fn look_ups_read_as_tables_are_judged() {
             }
         }
     }
+}
+
+/// A table of bytes beside a form.
+fn beside_form(axes: &str, values: &[Value]) -> DfgTable {
+    let form = ClosedForm::fit(Distribution::Ggx, Masking::SmithCorrelated, 0.1, 0.01, 0.01).form;
+    DfgTable {
+        distribution: Distribution::Ggx,
+        masking: Masking::SmithCorrelated,
+        layout: Layout::parse(axes, Nodes::Ends).unwrap(),
+        values: values.to_vec(),
+        size: [9, 7],
+        stored: Stored::Unorm8,
+        base: Some(Base::normalised(form, 0.06)),
+    }
+}
+
+/// Scale and bias are the form's and what the texels add; a bias below 0 is 0 at the same albedo.
+#[test]
+fn tables_are_added_to_forms() {
+    let layouts = [
+        ("cos_theta=0.01..1^4,alpha=0.01..1^2", &[Value::Bias, Value::Loss][..]),
+        ("theta,-roughness", &[Value::Albedo, Value::Zero, Value::Scale]),
+        ("alpha,-cos_theta", &[Value::Scale, Value::Bias]),
+    ];
+    let mut clamped = 0;
+    for (axes, values) in layouts {
+        let table = beside_form(axes, values);
+        let wgsl = table.wgsl(BINDINGS).unwrap();
+        in_every_language(&wgsl, true);
+        let texels = uneven(&table);
+        let textures = BTreeMap::from([(TEXTURE.to_owned(), texels.clone())]);
+        let machine = Machine::new(&wgsl, &[], textures);
+        let Base { form, scale: factor, offset } = table.base.as_ref().unwrap();
+        for (i, j) in (0..=12).flat_map(|i| (0..=12).map(move |j| (i, j))) {
+            let [cos_theta, alpha] = [i, j].map(|k| (f64::from(k) / 12.0 + 0.003).min(1.0));
+            let found = machine.call(LOOKUP, [cos_theta, alpha].map(|v| F(v as f32)).to_vec()).floats();
+            let position = table.layout.position(table.size, [cos_theta.acos(), alpha]);
+            let rests = bilinear(&texels, position, WeightBits::Exact).map(|texel| texel * factor + offset);
+            let rest = |value: Value| values.iter().position(|v| *v == value).map(|c| rests[c]);
+            let albedo = || rest(Value::Albedo).or_else(|| Some(-rest(Value::Loss)?)).unwrap();
+            let [scale, bias] = match (rest(Value::Scale), rest(Value::Bias)) {
+                (Some(scale), Some(bias)) => [scale, bias],
+                (Some(scale), None) => [scale, albedo() - scale],
+                (_, bias) => [albedo() - bias.unwrap(), bias.unwrap()],
+            };
+            let of_form = form.eval_f32(cos_theta as f32, alpha as f32).map(f64::from);
+            let [scale, bias] = [of_form[0] + scale, of_form[1] + bias];
+            clamped += u32::from(bias < 0.0);
+            let expected = [(scale + bias.min(0.0)).max(0.0), bias.max(0.0)];
+            for (found, expected) in found.iter().zip(expected) {
+                assert!(
+                    (f64::from(*found) - expected).abs() < 1e-5,
+                    "{axes} at {cos_theta} {alpha}: {found} {expected}"
+                );
+            }
+        }
+    }
+    assert!(clamped > 0, "no bias below 0");
 }
 
 #[test]

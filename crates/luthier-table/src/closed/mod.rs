@@ -4,6 +4,7 @@ mod fit;
 mod linear_program;
 mod minimax;
 mod rational;
+mod smooth;
 
 use luthier_lut::{Comparison, ErrorStats, Scan, measure_scan};
 use luthier_optics::split_sum::{Masking, SplitSum, split_sum};

@@ -5,7 +5,7 @@ mod closed;
 
 use std::fmt::Write as _;
 
-use crate::{Cost, DfgTable, Nodes, Value};
+use crate::{Base, Cost, DfgTable, Nodes, Value};
 
 /// Name of the function.
 pub const LOOKUP: &str = "luthier_dfg";
@@ -69,8 +69,10 @@ impl DfgTable {
         }
         let _ = write!(out, "    let texel = textureSampleLevel({TEXTURE}, {SAMPLER}, vec2<f32>(x, y), 0.0)");
         if let Some(base) = &self.base {
-            let [factor, less] = [2.0, 1.0].map(|times| float(times * base.amplitude));
-            let _ = writeln!(out, " * {factor} - {less};");
+            if !base.is_plain() {
+                let _ = write!(out, " * {} + {}", float(base.scale), float(base.offset));
+            }
+            out.push_str(";\n");
             let _ = writeln!(out, "    let sum = {FORM}(cos_theta, alpha) + {result};");
             out.push_str("    return vec2<f32>(max(sum.x + min(sum.y, 0.0), 0.0), max(sum.y, 0.0));\n}\n");
         } else {
@@ -92,8 +94,9 @@ impl DfgTable {
             (false, false) => 2,
         };
         if let Some(base) = &self.base {
-            // Each channel times the amplitude, scale and bias added to the form's, what the scale gives for a bias below 0.
-            let multiply_adds = self.values.iter().filter(|value| value.is_split_sum()).count() as u32 + 3;
+            // Each channel times the factor, scale and bias added to the form's, what the scale gives for a bias below 0.
+            let channels = self.values.iter().filter(|value| value.is_split_sum()).count() as u32;
+            let multiply_adds = 3 + if base.is_plain() { 0 } else { channels };
             cost = cost + base.form.cost() + Cost { multiply_adds, clamps: 3, specials: 0 };
         }
         Some(cost)
@@ -113,11 +116,8 @@ impl DfgTable {
             format!("Table: {} over {layout}, nodes at {nodes}; {width} x {height}, {}.", values.join(", "), stored.name()),
         ];
         if let Some(base) = base {
-            lines.push(format!(
-                "Texels are (rest + {0}) / {1} of what {FORM} lacks.",
-                base.amplitude,
-                2.0 * base.amplitude
-            ));
+            let Base { scale, offset, .. } = base;
+            lines.push(format!("Texels times {scale} and {offset} are what {FORM} lacks."));
         }
         lines
     }
@@ -149,7 +149,7 @@ mod tests {
     use luthier_optics::stack::Distribution;
 
     use super::*;
-    use crate::{Base, ClosedForm, Layout, Preset};
+    use crate::{ClosedForm, Layout, Preset};
 
     #[test]
     fn a_plain_table_has_a_plain_look_up() {
@@ -187,12 +187,12 @@ mod tests {
         let form = ClosedForm::fit(Distribution::Ggx, Masking::SmithCorrelated, 0.1, 0.01, 0.01).form;
         let bevy = Preset::named("bevy").unwrap().table();
         let values = vec![Value::Bias, Value::Loss];
-        let base = Some(Base { form: form.clone(), amplitude: 0.125 });
+        let base = Some(Base::normalised(form.clone(), 0.125));
         let table = DfgTable { values: values.clone(), base, ..bevy.clone() };
         let text = table.wgsl(Bindings::default()).unwrap();
         for line in [
             "fn luthier_dfg_form(cos_theta: f32, alpha: f32) -> vec2<f32> {",
-            "    let texel = textureSampleLevel(luthier_dfg_table, luthier_dfg_sampler, vec2<f32>(x, y), 0.0) * 0.25 - 0.125;",
+            "    let texel = textureSampleLevel(luthier_dfg_table, luthier_dfg_sampler, vec2<f32>(x, y), 0.0) * 0.25 + -0.125;",
             "    let sum = luthier_dfg_form(cos_theta, alpha) + vec2<f32>(-texel.g - texel.r, texel.r);",
         ] {
             assert!(text.contains(&format!("{line}\n")), "{line}\n{text}");

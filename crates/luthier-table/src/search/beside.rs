@@ -5,14 +5,19 @@ use luthier_optics::stack::Distribution;
 use rayon::prelude::*;
 
 use super::Found;
-use crate::{Base, ClosedForm, DfgTable, Layout, Nodes, Stored, Value};
+use crate::{Base, ClosedForm, Cost, DfgTable, Layout, Nodes, Stored, Value};
 
-/// Errors of the forms that are tried, from the cheapest form on.
-const FORMS: [f64; 6] = [0.05, 0.02, 0.01, 5e-3, 2e-3, 1e-3];
-/// Exponents of the axes that are tried, which need nothing but square roots to be read: of cosines, and of alpha.
-const EXPONENTS: [f64; 3] = [1.0, 2.0, 4.0];
+/// Degrees of the forms with straight rests that are tried: of the loss in t and alpha, of the cosine in t and r.
+const STRAIGHT: [[[usize; 2]; 2]; 5] =
+    [[[2, 1], [1, 1]], [[2, 2], [1, 2]], [[3, 2], [1, 3]], [[3, 2], [2, 2]], [[3, 3], [2, 3]]];
+/// Errors of the forms with small rests that are tried. They cost more than those with straight rests.
+const SMALL: [f64; 3] = [5e-3, 2e-3, 1e-3];
+/// Exponents of the axes that are tried, of cosines and of alpha, the cheaper to read first: by square roots.
+const EXPONENTS: [[f64; 2]; 4] = [[2.0, 2.0], [2.0, 4.0], [4.0, 2.0], [4.0, 4.0]];
+/// Number types that are tried, the smaller first.
+const STORED: [Stored; 2] = [Stored::Unorm8, Stored::Half];
 /// Sides that are tried.
-const SIDES: [u32; 16] = [3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 48, 64];
+const SIDES: [u32; 18] = [3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 18, 20, 22, 24, 28, 32, 48, 64];
 /// Points at which candidates are judged, along each axis.
 const POINTS: u32 = 64;
 /// Candidates beside one form that are measured at the most.
@@ -30,17 +35,20 @@ struct Candidate {
 struct Judge {
     distribution: Distribution,
     masking: Masking,
+    /// Cosine and alpha.
     lowest: [f64; 2],
     surface: SplitSumSurface,
+    /// At thetas and alphas.
     points: Vec<([f64; 2], SplitSum)>,
 }
 
-/// The table of bytes beside a closed form ([`DfgTable::base`]) that costs the fewest operations of those whose texels take `max_bytes` at most and
-/// whose reads err by `max_abs` at most over cosines and alphas from the given ones on; of tables beside one form the smallest. Where none does, the
-/// most accurate of those that were measured.
+/// The table beside a closed form ([`DfgTable::base`]) that is cheapest to read ([`DfgTable::cost`], to a few operations) of those whose texels take
+/// `max_bytes` at most and whose reads err by `max_abs` at most over cosines and alphas from the given ones on; of tables beside one form the
+/// smallest. Where none does, the most accurate of those that were measured.
 ///
-/// Forms are those of [`ClosedForm::fit`] for six errors from 0.05 to 0.001. Axes are powers that are read with square roots, from the lowest
-/// cosine and alpha on. Channels are [`Value::Bias`] and [`Value::Loss`]. There is always a table of 3 x 3 texels, whatever `max_bytes` is.
+/// Forms are of two kinds: polynomials with straight rests, of half floats or bytes, and beyond their reach those of [`ClosedForm::fit`] with small
+/// rests. Axes are powers that are read with square roots, from the lowest cosine and alpha on. Channels are [`Value::Bias`] and [`Value::Loss`].
+/// There is always a table of 3 x 3 texels, whatever `max_bytes` is.
 pub fn search_beside_form(
     distribution: Distribution,
     masking: Masking,
@@ -50,12 +58,11 @@ pub fn search_beside_form(
 ) -> Found {
     let judge = Judge::new(distribution, masking, [min_cos, min_alpha]);
     let mut best: Option<Found> = None;
-    for limit in FORMS {
-        let form = ClosedForm::fit(distribution, masking, limit, min_cos, min_alpha).form;
-        let mut candidates = judge.candidates(&Base { form, amplitude: 1.0 }, max_bytes);
+    for (form, layouts) in judge.straight().into_iter().chain(judge.small()) {
+        let mut candidates = judge.candidates(&form, &layouts, max_bytes);
         candidates.sort_by(|a, b| a.error.total_cmp(&b.error));
         let held = candidates.partition_point(|candidate| candidate.error <= max_abs);
-        // Those that may hold by size; else the most accurate.
+        // Those that may hold, by size; else the most accurate.
         candidates.truncate(held.max(1));
         candidates.sort_by_key(|candidate| candidate.table.bytes());
         for Candidate { table, .. } in candidates.into_iter().take(MEASURED) {
@@ -85,42 +92,79 @@ impl Judge {
             .flat_map(|j| {
                 let alpha = at(1, j);
                 let row = surface.row(alpha);
-                (0..POINTS).map(move |i| ([at(0, i), alpha], row.at(at(0, i))))
+                (0..POINTS).map(move |i| ([libm::acos(at(0, i)), alpha], row.at(at(0, i))))
             })
             .collect();
         Self { distribution, masking, lowest, surface, points }
     }
 
+    /// Polynomials with straight rests, each with its axes, by what a read costs.
+    fn straight(&self) -> Vec<(ClosedForm, Vec<Layout>)> {
+        let one = |degrees, exponents| {
+            let layout = self.layout(exponents);
+            let form = ClosedForm::straightest(self.distribution, self.masking, &self.surface, &layout, degrees);
+            (form, vec![layout])
+        };
+        let mut all: Vec<_> =
+            STRAIGHT.into_iter().flat_map(|degrees| EXPONENTS.map(|exponents| one(degrees, exponents))).collect();
+        let slots = |form: &ClosedForm, layout: Layout| {
+            self.table(form, layout, SIDES[0], SIDES[0], Stored::Half).cost().map(Cost::slots)
+        };
+        all.sort_by_key(|(form, layouts)| slots(form, layouts[0]));
+        all
+    }
+
+    /// Forms with small rests, with all axes.
+    fn small(&self) -> impl Iterator<Item = (ClosedForm, Vec<Layout>)> {
+        let layouts = EXPONENTS.map(|exponents| self.layout(exponents)).to_vec();
+        SMALL.into_iter().map(move |limit| {
+            let [min_cos, min_alpha] = self.lowest;
+            (ClosedForm::fit(self.distribution, self.masking, limit, min_cos, min_alpha).form, layouts.clone())
+        })
+    }
+
+    fn layout(&self, exponents: [f64; 2]) -> Layout {
+        Layout::powers(self.lowest, exponents, Nodes::Ends)
+    }
+
+    fn table(&self, form: &ClosedForm, layout: Layout, width: u32, height: u32, stored: Stored) -> DfgTable {
+        DfgTable {
+            distribution: self.distribution,
+            masking: self.masking,
+            layout,
+            values: vec![Value::Bias, Value::Loss],
+            size: [width, height],
+            stored,
+            base: Some(Base::plain(form.clone())),
+        }
+    }
+
     /// Tables beside a form, up to a size.
-    fn candidates(&self, base: &Base, max_bytes: usize) -> Vec<Candidate> {
-        let sizes = SIDES.into_iter().flat_map(|width| SIDES.map(|height| [width, height]));
-        let exponents = EXPONENTS.into_iter().flat_map(|cos| EXPONENTS.map(|alpha| [cos, alpha]));
+    fn candidates(&self, form: &ClosedForm, layouts: &[Layout], max_bytes: usize) -> Vec<Candidate> {
+        let sizes = SIDES.into_iter().flat_map(|width| SIDES.map(|height| (width, height)));
         let statements: Vec<DfgTable> = sizes
-            .flat_map(|size| exponents.clone().map(move |exponents| (size, exponents)))
-            .map(|(size, exponents)| DfgTable {
-                distribution: self.distribution,
-                masking: self.masking,
-                layout: Layout::powers(self.lowest, exponents, Nodes::Ends),
-                values: vec![Value::Bias, Value::Loss],
-                size,
-                stored: Stored::Unorm8,
-                base: Some(base.clone()),
+            .flat_map(|(width, height)| STORED.map(|stored| (width, height, stored)))
+            .flat_map(|(width, height, stored)| {
+                layouts.iter().map(move |&layout| self.table(form, layout, width, height, stored))
             })
             .filter(|table| table.bytes() <= max_bytes || table.size == [SIDES[0]; 2])
             .collect();
-        let sums: Vec<SplitSum> = self.points.iter().map(|&([cos, alpha], _)| base.sum(alpha, cos)).collect();
-        statements.into_par_iter().map(|table| self.candidate(table, base, &sums)).collect()
+        let base = Base::plain(form.clone());
+        let sums: Vec<SplitSum> =
+            self.points.iter().map(|&([theta, alpha], _)| base.sum(alpha, libm::cos(theta))).collect();
+        statements.into_par_iter().map(|table| self.candidate(table, form, &sums)).collect()
     }
 
-    /// The table with the amplitude that its texels need, judged.
-    fn candidate(&self, mut table: DfgTable, base: &Base, sums: &[SplitSum]) -> Candidate {
-        let texels = DfgTable { stored: Stored::Float, ..table.clone() }.bake_from(Some(&self.surface));
-        let rest = texels.data.iter().fold(0.0, |most, v| f64::max(most, (2.0 * f64::from(*v) - 1.0).abs()));
-        table.base = Some(Base { amplitude: base.amplitude * rest * MARGIN, ..base.clone() });
+    /// The table, with the amplitude that its bytes need, judged.
+    fn candidate(&self, mut table: DfgTable, form: &ClosedForm, sums: &[SplitSum]) -> Candidate {
+        if table.stored == Stored::Unorm8 {
+            let rests = DfgTable { stored: Stored::Float, ..table.clone() }.bake_from(Some(&self.surface));
+            let most = rests.data.iter().fold(0.0, |most, rest| f64::max(most, f64::from(*rest).abs()));
+            table.base = Some(Base::normalised(form.clone(), most * MARGIN));
+        }
         let texels = table.bake_from(Some(&self.surface));
-        let worst = |worst: f64, (&([cos, alpha], exact), &form): (&([f64; 2], SplitSum), &SplitSum)| {
-            let read = table.read_beside(&texels, [libm::acos(cos), alpha], form);
-            let exact = table.of_split_sum(exact);
+        let worst = |worst: f64, (&(at, exact), &form): (&([f64; 2], SplitSum), &SplitSum)| {
+            let (read, exact) = (table.read_beside(&texels, at, form), table.of_split_sum(exact));
             read.iter().zip(exact).fold(worst, |worst, (read, exact)| worst.max((read - exact).abs()))
         };
         let error = self.points.iter().zip(sums).fold(0.0, worst);

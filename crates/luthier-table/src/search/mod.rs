@@ -18,6 +18,9 @@ const SIDES: [u32; 17] = [8, 10, 12, 14, 16, 18, 20, 22, 24, 28, 32, 40, 48, 56,
 /// Points of the scans of candidates, along each axis.
 const POINTS: u32 = 48;
 
+/// Channels from which scale and bias follow, near 0 where half floats are fine.
+pub const SPLIT_SUM: [Value; 2] = [Value::Bias, Value::Loss];
+
 /// The outcome of a search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
@@ -34,8 +37,16 @@ pub struct Found {
 /// The table of half floats with the fewest texels whose reads err by `max_abs` at most over cosines and alphas from the given ones on; of tables
 /// of one size the most accurate. Where none does, the most accurate of 128 x 128 texels.
 ///
-/// Axes are powers or logarithms, from the lowest cosine and alpha on: lower ones read as these. Channels are [`Value::Bias`] and [`Value::Loss`].
-pub fn search(distribution: Distribution, masking: Masking, max_abs: f64, min_cos: f64, min_alpha: f64) -> Found {
+/// Axes are powers or logarithms, from the lowest cosine and alpha on: lower ones read as these. Channels are of the
+/// split sum, such as [`SPLIT_SUM`].
+pub fn search(
+    distribution: Distribution,
+    masking: Masking,
+    values: &[Value],
+    max_abs: f64,
+    min_cos: f64,
+    min_alpha: f64,
+) -> Found {
     let surface = SplitSumSurface::new(distribution, masking);
     let mut best: Option<Found> = None;
     for (index, side) in SIDES.into_iter().enumerate() {
@@ -50,7 +61,7 @@ pub fn search(distribution: Distribution, masking: Masking, max_abs: f64, min_co
                 distribution,
                 masking,
                 layout,
-                values: vec![Value::Bias, Value::Loss],
+                values: values.to_vec(),
                 size,
                 stored: Stored::Half,
                 base: None,
@@ -101,7 +112,7 @@ mod tests {
     #[test]
     fn smaller_limits_take_larger_tables() {
         let bytes = |max_abs: f64| {
-            let found = search(Distribution::Ggx, Masking::SmithCorrelated, max_abs, 0.02, 0.02);
+            let found = search(Distribution::Ggx, Masking::SmithCorrelated, &SPLIT_SUM, max_abs, 0.02, 0.02);
             assert!(found.held && found.error.max_abs_err <= max_abs);
             found.table.size[0] * found.table.size[1]
         };
@@ -110,7 +121,7 @@ mod tests {
 
     #[test]
     fn an_error_beyond_half_floats_is_not_held() {
-        let found = search(Distribution::Ggx, Masking::SmithCorrelated, 1e-6, 0.02, 0.02);
+        let found = search(Distribution::Ggx, Masking::SmithCorrelated, &SPLIT_SUM, 1e-6, 0.02, 0.02);
         assert!(!found.held && found.error.max_abs_err > 1e-6);
         assert_eq!(found.table.size, [128, 128]);
     }

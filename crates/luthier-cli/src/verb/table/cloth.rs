@@ -2,14 +2,13 @@
 
 use luthier_optics::split_sum::Masking;
 use luthier_optics::stack::Distribution;
-use luthier_report::Certificate;
 use luthier_table::{DfgTable, Layout, Value};
 use luthier_terminal::{Failure, Outcome};
 use serde_json::json;
 
-use super::container::{by_ending, encode};
+use super::container::by_ending;
 use super::dfg::map;
-use super::product::{Product, domain, error_facts, error_json, error_text, fact, nodes, nodes_name};
+use super::product::{Product, Sampled, domain, fact, nodes, nodes_name, sampled};
 use crate::cli::{ClothName, ClothOptions};
 
 const QUANTITIES: [&str; 2] = ["cos_theta", "alpha"];
@@ -29,7 +28,6 @@ pub(super) fn product(options: &ClothOptions) -> Outcome<Product> {
     let texels = table.bake();
     let from = [options.domain.min_cos, options.domain.min_alpha];
     let error = table.error(&texels, from[0], from[1]);
-    let domain = domain(from[0], from[1]);
     let [width, height] = grid.size;
     let at = nodes_name(nodes(grid.nodes));
     let words = format!(
@@ -40,27 +38,24 @@ pub(super) fn product(options: &ClothOptions) -> Outcome<Product> {
         "function": "cloth", "distribution": "charlie", "visibility": visibility, "axes": layout.to_string(), "nodes": at,
         "values": [value.name()], "size": grid.size, "stored": stored.name(),
     });
-    let measured = error_json(&error, &domain);
-    let metadata = json!({ "table": statement, "error": measured }).to_string();
-    let bytes = encode(container, &texels, stored, &words, &metadata, options.delivery.no_zstd)?;
     let maps = options.delivery.report.iter().map(|_| map("this table", &table, &texels, &error, from)).collect();
-    let mut facts = vec![
+    let facts = vec![
         fact("Model", format!("Charlie's distribution, visibility of {visibility}")),
         fact("Axes", format!("{layout}, nodes at {at}")),
         fact("Texels", format!("{width} x {height}, {}", stored.name())),
     ];
-    facts.extend(error_facts(&error, &QUANTITIES));
-    facts.push(fact("Domain", domain.clone()));
-    let certificate = Certificate {
-        title: "Table of cloth".to_owned(),
-        verdict: (format!("largest error as sampled {:.2e}", error.max_abs_err), None),
+    let table = Sampled {
+        title: "Table of cloth",
+        words,
+        statement,
+        texels: &texels,
+        file: (container, stored),
+        error: (error, &QUANTITIES, domain(from[0], from[1])),
+        max_abs: None,
         facts,
         maps,
         method: "Reads are bilinear with 8-bit weights and texels as stored. They are compared with quadrature over directions, which is within 1e-6 \
-                 of the albedo or of 1, whichever is larger. The albedo exceeds 1 where light grazes smooth cloth: Charlie's lobe is not energy-conserving there."
-            .to_owned(),
+                 of the albedo or of 1, whichever is larger. The albedo exceeds 1 where light grazes smooth cloth: Charlie's lobe is not energy-conserving there.",
     };
-    let text = format!("{words}\n{}", error_text(&error, &QUANTITIES, &domain));
-    let json = json!({ "table": statement, "error": measured });
-    Ok(Product { files: vec![(options.delivery.output.clone(), bytes)], certificate, json, text })
+    sampled(table, &options.delivery)
 }

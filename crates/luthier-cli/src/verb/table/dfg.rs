@@ -8,14 +8,15 @@ use luthier_optics::split_sum::Masking;
 use luthier_report::{Certificate, ErrorMap};
 use luthier_shader::{Target, library, library_spirv};
 use luthier_table::{
-    Bindings, ClosedForm, Container, DfgTable, FittedForm, Found, Preset, Stored, search, search_beside_form,
+    Bindings, ClosedForm, Container, Cost, DfgTable, FittedForm, Found, Preset, SPLIT_SUM, Stored, search,
+    search_beside_form,
 };
 use luthier_terminal::{Failure, Outcome, files};
 use luthier_texture::table;
 use serde_json::{Value as Json, json};
 
-use super::container::{by_ending, encode};
-use super::product::{Product, distribution, domain, error_facts, error_json, error_text, fact, nodes_name};
+use super::container::by_ending;
+use super::product::{Product, Sampled, distribution, domain, error_facts, fact, nodes_name, sampled};
 use crate::cli::DfgOptions;
 
 const QUANTITIES: [&str; 2] = ["cos_theta", "alpha"];
@@ -34,44 +35,43 @@ pub(super) fn product(options: &DfgOptions) -> Outcome<Product> {
         None => searched(options)?,
     };
     let from = [options.min_cos, options.min_alpha];
-    let domain = domain(from[0], from[1]);
-    let (words, statement, measured) = (words(&table), statement(&table), error_json(&error, &domain));
     let preset = options.preset.map(|preset| json!({ "name": preset.name, "source": preset.source }));
     let channels = table.channel_errors(&texels, from[0], from[1]);
     let channels: Vec<(&str, f64)> =
         table.values.iter().zip(&channels).map(|(value, error)| (value.name(), error.max_abs_err)).collect();
-    let metadata = json!({ "table": statement, "error": measured }).to_string();
-    let comment = format!("{words}. Largest error as sampled: {:.2e}, over {domain}.", error.max_abs_err);
-    let bytes = encode(container, &texels, table.stored, &comment, &metadata, options.delivery.no_zstd)?;
-    let mut written = vec![(options.delivery.output.clone(), bytes)];
     // A table beside a closed form means nothing without its look-up.
     let languages =
         if table.base.is_some() && options.shader.is_empty() { &[Target::Wgsl][..] } else { &options.shader };
-    if !languages.is_empty() {
-        let text = table.wgsl(bindings(options)).ok_or_else(|| {
-            Failure::Usage(anyhow::anyhow!(
-                "the channels of this table do not determine scale and bias: there is no look-up"
-            ))
-        })?;
-        written.extend(shaders(options, languages, &text)?);
-    }
-    let each: String = channels.iter().map(|(name, largest)| format!("{name} {largest:.2e}  ")).collect();
-    let held = options.max_abs.map_or(String::new(), |limit| format!("holds {limit}\n"));
-    let text = format!("{words}\n{}  {}\n{held}", error_text(&error, &QUANTITIES, &domain), each.trim_end());
-    let certificate = Certificate {
-        title: options
+    let look_ups = match languages {
+        [] => Vec::new(),
+        languages => {
+            let reason = "the channels of this table do not determine scale and bias: there is no look-up";
+            let text = table.wgsl(bindings(options)).ok_or_else(|| Failure::Usage(anyhow::anyhow!(reason)))?;
+            shaders(options, languages, &text)?
+        }
+    };
+    let each = channels.iter().map(|(name, largest)| format!("{name} {largest:.2e}")).collect::<Vec<_>>().join(", ");
+    let product = Sampled {
+        title: &options
             .preset
             .map_or("Split-sum table".to_owned(), |preset| format!("Split-sum table of {}", preset.name)),
-        verdict: verdict(options, &error),
-        facts: facts(options, &table, &error, &channels),
+        words: words(&table),
+        statement: statement(&table),
+        texels: &texels,
+        file: (container, table.stored),
+        error: (error.clone(), &QUANTITIES, domain(from[0], from[1])),
+        max_abs: options.max_abs,
+        facts: facts(options, &table, &each),
         maps: maps(options, &table, &texels, &error)?,
-        method: METHOD.to_owned(),
+        method: METHOD,
     };
-    let json = json!({
-        "table": statement, "preset": preset, "max_abs": options.max_abs, "error": measured,
-        "channels": channels.iter().map(|(name, largest)| json!({ "value": name, "max_abs_err": largest })).collect::<Vec<_>>(),
-    });
-    Ok(Product { files: written, certificate, json, text })
+    let mut product = sampled(product, &options.delivery)?;
+    product.files.extend(look_ups);
+    product.text.push_str(&format!("channels: {each}\n"));
+    product.json["preset"] = json!(preset);
+    product.json["channels"] =
+        channels.iter().map(|(name, largest)| json!({ "value": name, "max_abs_err": largest })).collect();
+    Ok(product)
 }
 
 /// The closed form that holds the limit at the least cost.
@@ -91,25 +91,17 @@ fn closed(options: &DfgOptions) -> Outcome<Product> {
     }
     let cost = form.cost();
     let words = format!(
-        "Split sum in closed form, {}, masking {}: {} multiply-adds, {} clamps, {} divisions and roots",
+        "Split sum in closed form, {}, masking {}: {}",
         form.distribution.name(),
         masking.name(),
-        cost.multiply_adds,
-        cost.clamps,
-        cost.specials
+        operations(cost)
     );
     let text = form.wgsl();
     let mut written = vec![(output.clone(), shader(&text, target)?)];
     written.extend(shaders(options, &options.shader, &text)?);
     let mut facts = vec![
         fact("Model", format!("{} distribution, masking {}", form.distribution.name(), masking.name())),
-        fact(
-            "Cost",
-            format!(
-                "{} multiply-adds, {} clamps, {} divisions and roots",
-                cost.multiply_adds, cost.clamps, cost.specials
-            ),
-        ),
+        fact("Cost", operations(cost)),
         fact("Domain", format!("{domain}; lower ones are read as these")),
     ];
     facts.extend(error_facts(&error, &QUANTITIES));
@@ -174,7 +166,7 @@ fn searched(options: &DfgOptions) -> Outcome<(Found, Container)> {
         (Container::Exr, _) => (Container::Exr, Stored::Float),
         (container, _) => (container, Stored::Half),
     };
-    let mut found = search(distribution, masking, max_abs, options.min_cos, options.min_alpha);
+    let mut found = search(distribution, masking, &SPLIT_SUM, max_abs, options.min_cos, options.min_alpha);
     let domain = domain(options.min_cos, options.min_alpha);
     if stored == Stored::Float {
         found = restored(found, stored, options, max_abs);
@@ -274,38 +266,31 @@ fn statement(table: &DfgTable) -> Json {
         "size": size,
         "stored": stored.name(),
         "bytes": table.bytes(),
-        "beside_form": base.as_ref().map(|base| json!({ "amplitude": base.amplitude, "multiply_adds": base.form.cost().multiply_adds })),
+        "beside_form": base.as_ref().map(|base| json!({ "scale": base.scale, "offset": base.offset, "multiply_adds": base.form.cost().multiply_adds })),
     })
 }
 
-fn facts(
-    options: &DfgOptions,
-    table: &DfgTable,
-    error: &ErrorStats,
-    channels: &[(&str, f64)],
-) -> Vec<(String, String)> {
+fn facts(options: &DfgOptions, table: &DfgTable, channels: &str) -> Vec<(String, String)> {
     let [width, height] = table.size;
-    let bytes = table.bytes();
-    let channels = channels.iter().map(|(name, largest)| format!("{name} {largest:.2e}")).collect::<Vec<_>>();
     let mut facts = vec![
         fact("Model", format!("{} distribution, masking {}", table.distribution.name(), table.masking.name())),
         fact("Axes", format!("{}, nodes at {}", table.layout, nodes_name(table.layout.angle.nodes))),
-        fact("Texels", format!("{width} x {height}, {}: {bytes} bytes", table.stored.name())),
-        fact("Domain", domain(options.min_cos, options.min_alpha)),
+        fact("Texels", format!("{width} x {height}, {}: {} bytes", table.stored.name(), table.bytes())),
+        fact("Channels, largest errors", channels),
     ];
-    facts.extend(error_facts(error, &QUANTITIES));
-    facts.push(fact("Channels, largest errors", channels.join(", ")));
     if let Some(cost) = table.cost().filter(|_| table.base.is_some()) {
-        let cost = format!(
-            "{} multiply-adds, {} clamps, {} divisions and roots",
-            cost.multiply_adds, cost.clamps, cost.specials
-        );
-        facts.push(fact("Look-up", format!("a closed form and one read: {cost}")));
+        facts.push(fact("Look-up", format!("a closed form and one read: {}", operations(cost))));
     }
     if let Some(preset) = options.preset {
         facts.push(fact("Layout read in", preset.source));
     }
     facts
+}
+
+/// A cost in words.
+fn operations(cost: Cost) -> String {
+    let Cost { multiply_adds, clamps, specials } = cost;
+    format!("{multiply_adds} multiply-adds, {clamps} clamps, {specials} divisions and roots")
 }
 
 /// Map of the errors of a table.

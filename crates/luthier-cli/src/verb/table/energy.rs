@@ -1,23 +1,33 @@
 //! `table energy`: albedos by which energy compensation restores lost light.
 
 use luthier_optics::dielectric_albedo::JointMasking;
+use luthier_optics::split_sum::Masking;
 use luthier_report::{Certificate, ErrorMap};
-use luthier_table::{EnergyDomain, EnergyLayout, EnergyPreset, EnergySurface, EnergyTable, EnergyValue, Stored};
+use luthier_table::{
+    Container, EnergyDomain, EnergyLayout, EnergyPreset, EnergySurface, EnergyTable, EnergyValue, Found, Stored, Value,
+    search,
+};
 use luthier_terminal::{Failure, Outcome};
 use serde_json::{Value as Json, json};
 
-use super::container::{by_ending, encode};
-use super::product::{Product, distribution, domain, error_facts, error_json, error_text, fact, nodes, nodes_name};
+use super::container::by_ending;
+use super::dfg::map;
+use super::product::{Product, Sampled, distribution, domain, fact, nodes, nodes_name, sampled};
 use crate::cli::EnergyOptions;
 
+const TITLE: &str = "Table of energy compensation";
+/// How errors are measured, for the page.
+const METHOD: &str = "Reads are linear between the nodes of each axis, with 8-bit weights and texels as stored. They are compared with quadrature, \
+    which is within 1e-6 (averages 2e-6).";
 /// Indices over which errors count.
 const INDICES: [f64; 2] = [1.05, 2.5];
 
 /// Bakes the table that the options ask for, or all of a renderer.
 pub(super) fn product(options: &EnergyOptions) -> Outcome<Product> {
-    match options.preset {
-        Some(preset) => Ok(of_preset(preset, options)),
-        None => one(options),
+    match (options.preset, options.max_abs) {
+        (Some(preset), _) => Ok(of_preset(preset, options)),
+        (None, Some(max_abs)) => searched(options, max_abs),
+        (None, None) => one(options),
     }
 }
 
@@ -108,10 +118,6 @@ fn one(options: &EnergyOptions) -> Outcome<Product> {
     let texels = table.bake();
     let (of, domain, quantities) = errors_count(options, &table);
     let error = table.error(&texels, of);
-    let (statement, words) = (statement(&table), words(&table));
-    let measured = error_json(&error, &domain);
-    let metadata = json!({ "table": statement, "error": measured }).to_string();
-    let bytes = encode(container, &texels, stored, &words, &metadata, options.delivery.no_zstd)?;
     let mut maps = Vec::new();
     if options.delivery.report.is_some() && quantities == ["cos_theta", "alpha"] {
         let ranges = [[of.min_cos.max(1e-3), 1.0], [of.min_alpha.max(1e-3), 1.0]];
@@ -121,7 +127,7 @@ fn one(options: &EnergyOptions) -> Outcome<Product> {
         }));
     }
     let [width, height] = [texels.width, texels.height];
-    let mut facts = vec![
+    let facts = vec![
         fact(
             "Model",
             format!("{} distribution, masking {}, {}", table.distribution.name(), masking.name(), surface.name()),
@@ -130,20 +136,70 @@ fn one(options: &EnergyOptions) -> Outcome<Product> {
         fact("Channels", options.values.join(", ")),
         fact("Texels", format!("{width} x {height}, {}", stored.name())),
     ];
-    facts.extend(error_facts(&error, &quantities));
-    facts.push(fact("Domain", domain.clone()));
-    let certificate = Certificate {
-        title: "Table of energy compensation".to_owned(),
-        verdict: (format!("largest error as sampled {:.2e}", error.max_abs_err), None),
+    let product = Sampled {
+        title: TITLE,
+        words: words(&table),
+        statement: statement(&table),
+        texels: &texels,
+        file: (container, stored),
+        error: (error, &quantities, domain),
+        max_abs: None,
         facts,
         maps,
-        method: "Reads are linear between the nodes of each axis, with 8-bit weights and texels as stored. They are compared with quadrature \
-                 over facets, which is within 1e-6 (averages 2e-6)."
-            .to_owned(),
+        method: METHOD,
     };
-    let text = format!("{words}\n{}", error_text(&error, &quantities, &domain));
-    let json = json!({ "table": statement, "error": measured });
-    Ok(Product { files: vec![(options.delivery.output.clone(), bytes)], certificate, json, text })
+    sampled(product, &options.delivery)
+}
+
+/// The smallest table of a metal.
+fn searched(options: &EnergyOptions, max_abs: f64) -> Outcome<Product> {
+    let (container, _) = by_ending(&options.delivery.output)?;
+    if options.surface != EnergySurface::Reflector.name() || container == Container::Exr {
+        let reason = "--max-abs searches tables of half floats of the surface reflector";
+        return Err(Failure::Usage(anyhow::anyhow!("{reason}; state --axes and --size of others")));
+    }
+    let value = |name: &String| find(&[Value::Albedo, Value::Loss], Value::name, "value of a search", name);
+    let values = options.values.iter().map(value).collect::<Outcome<Vec<_>>>()?;
+    let known = [Masking::SmithCorrelated, Masking::SmithSeparable];
+    let masking = find(&known, Masking::name, "masking term", &options.masking)?;
+    let from = [options.domain.min_cos, options.domain.min_alpha];
+    let Found { table, texels, error, held } =
+        search(distribution(options.distribution), masking, &values, max_abs, from[0], from[1]);
+    let domain = domain(from[0], from[1]);
+    let [width, height] = table.size;
+    if !held {
+        return Err(Failure::Input(anyhow::anyhow!(
+            "no table of half floats up to {width} x {height} holds {max_abs} over {domain}: the nearest errs by {:.2e}",
+            error.max_abs_err
+        )));
+    }
+    let names = values.iter().map(|value| value.name()).collect::<Vec<_>>();
+    let (model, layout) = (table.distribution.name(), &table.layout);
+    let maps = options.delivery.report.iter().map(|_| map("this table", &table, &texels, &error, from)).collect();
+    let product = Sampled {
+        title: TITLE,
+        words: format!(
+            "Energy of a reflector, {model}, masking {}; {} over {layout}, nodes at ends; {width} x {height}, half",
+            masking.name(),
+            names.join(",")
+        ),
+        statement: json!({
+            "function": "energy", "surface": "reflector", "distribution": model, "masking": masking.name(), "axes": layout.to_string(),
+            "nodes": "ends", "values": names, "size": table.size, "stored": "half",
+        }),
+        texels: &texels,
+        file: (container, table.stored),
+        error: (error, &["cos_theta", "alpha"], domain),
+        max_abs: Some(max_abs),
+        facts: vec![
+            fact("Model", format!("{model} distribution, masking {}, reflector", masking.name())),
+            fact("Axes", format!("{layout}, nodes at ends")),
+            fact("Texels", format!("{width} x {height}, half: {} bytes", table.bytes())),
+        ],
+        maps,
+        method: METHOD,
+    };
+    sampled(product, &options.delivery)
 }
 
 /// The one of a name.

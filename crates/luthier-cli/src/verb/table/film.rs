@@ -2,13 +2,13 @@
 
 use luthier_optics::color::Color;
 use luthier_optics::num_complex::Complex64;
-use luthier_report::{Certificate, ErrorMap};
+use luthier_report::ErrorMap;
 use luthier_table::{FilmLayout, FilmTable};
 use luthier_terminal::{Failure, Outcome};
 use serde_json::json;
 
-use super::container::{by_ending, encode};
-use super::product::{Product, error_facts, error_json, error_text, fact, nodes, nodes_name};
+use super::container::by_ending;
+use super::product::{Product, Sampled, fact, nodes, nodes_name, sampled};
 use crate::cli::FilmOptions;
 
 /// Wavelengths of the three-wavelength values, nm: CONVENTIONS.md.
@@ -26,7 +26,6 @@ pub(super) fn product(options: &FilmOptions) -> Outcome<Product> {
     let table = FilmTable { above: options.above, film, below, color, layout, size: options.size, stored };
     let texels = table.bake();
     let error = table.error(&texels, options.min_cos);
-    let domain = format!("cos_theta >= {}", options.min_cos);
     let [width, height] = options.size;
     let indices = format!("{} / {film} / {below}", options.above);
     let words =
@@ -37,9 +36,6 @@ pub(super) fn product(options: &FilmOptions) -> Outcome<Product> {
         "axes": layout.to_string(), "nodes": nodes_name(nodes(options.nodes)), "values": ["r", "g", "b"],
         "size": options.size, "stored": stored.name(),
     });
-    let measured = error_json(&error, &domain);
-    let metadata = json!({ "table": statement, "error": measured }).to_string();
-    let bytes = encode(container, &texels, stored, &words, &metadata, options.delivery.no_zstd)?;
     let mut maps = Vec::new();
     if options.delivery.report.is_some() {
         let [least, most] = table.thicknesses();
@@ -50,24 +46,24 @@ pub(super) fn product(options: &FilmOptions) -> Outcome<Product> {
             error_at(cos, thickness)
         }));
     }
-    let mut facts = vec![
+    let facts = vec![
         fact("Indices", format!("above {}, film {film}, below {below}", options.above)),
         fact("Colour", format!("linear Rec.709, {colour}")),
         fact("Axes", format!("{layout}, nodes at {}", nodes_name(nodes(options.nodes)))),
         fact("Texels", format!("{width} x {height}, {}", stored.name())),
     ];
-    facts.extend(error_facts(&error, &QUANTITIES));
-    facts.push(fact("Domain", domain.clone()));
-    let certificate = Certificate {
-        title: "Table of a thin film".to_owned(),
-        verdict: (format!("largest error as sampled {:.2e}", error.max_abs_err), None),
+    let table = Sampled {
+        title: "Table of a thin film",
+        words,
+        statement,
+        texels: &texels,
+        file: (container, stored),
+        error: (error, &QUANTITIES, format!("cos_theta >= {}", options.min_cos)),
+        max_abs: None,
         facts,
         maps,
         method: "Reads are bilinear with 8-bit weights and texels as stored. They are compared with the sum of all interference (Airy) at every \
-                 wavelength. A map shows the largest error of all channels; a circle marks the largest of the scan."
-            .to_owned(),
+                 wavelength. A map shows the largest error of all channels; a circle marks the largest of the scan.",
     };
-    let text = format!("{words}\n{}", error_text(&error, &QUANTITIES, &domain));
-    let json = json!({ "table": statement, "error": measured });
-    Ok(Product { files: vec![(options.delivery.output.clone(), bytes)], certificate, json, text })
+    sampled(table, &options.delivery)
 }

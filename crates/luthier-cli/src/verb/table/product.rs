@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
-use luthier_lut::ErrorStats;
+use luthier_lut::{ErrorStats, Image};
 use luthier_optics::stack::Distribution;
-use luthier_report::Certificate;
-use luthier_table::Nodes;
+use luthier_report::{Certificate, ErrorMap};
+use luthier_table::{Container, Nodes, Stored};
 use luthier_terminal::{Outcome, files, print};
 use serde_json::{Value as Json, json};
 
+use super::container::encode;
 use crate::cli::{Delivery, DistributionName, NodesName};
 
 /// Files of a table, and all that is said of them.
@@ -42,6 +43,53 @@ pub(super) fn deliver(product: Product, delivery: &Delivery) -> Outcome {
     let listed: String =
         written.iter().map(|(path, bytes)| format!("{}: {} bytes\n", path.display(), bytes.len())).collect();
     print(&format!("{listed}{text}"))
+}
+
+/// A table whose reads are measured, before it becomes files.
+pub(super) struct Sampled<'a> {
+    /// Title of the page.
+    pub(super) title: &'a str,
+    /// The table in words.
+    pub(super) words: String,
+    /// The table for programs.
+    pub(super) statement: Json,
+    /// Texels as they are read.
+    pub(super) texels: &'a Image,
+    /// Container and number type.
+    pub(super) file: (Container, Stored),
+    /// Error of reads, the names of the quantities of its worst place, and where it counts.
+    pub(super) error: (ErrorStats, &'a [&'a str], String),
+    /// Most that errors may be, where that is asked for.
+    pub(super) max_abs: Option<f64>,
+    /// Rows of the page before those of the error.
+    pub(super) facts: Vec<(String, String)>,
+    /// Maps of the errors.
+    pub(super) maps: Vec<ErrorMap>,
+    /// How errors were measured.
+    pub(super) method: &'a str,
+}
+
+/// The file of a table, its page and its words.
+pub(super) fn sampled(table: Sampled<'_>, delivery: &Delivery) -> Outcome<Product> {
+    let Sampled { title, words, statement, texels, file: (container, stored), error, max_abs, mut facts, maps, method } =
+        table;
+    let (error, quantities, domain) = error;
+    let measured = error_json(&error, &domain);
+    let metadata = json!({ "table": statement, "error": measured }).to_string();
+    let comment = format!("{words}. Largest error as sampled: {:.2e}, over {domain}.", error.max_abs_err);
+    let bytes = encode(container, texels, stored, &comment, &metadata, delivery.no_zstd)?;
+    facts.push(fact("Domain", domain.clone()));
+    facts.extend(error_facts(&error, quantities));
+    let largest = format!("largest error as sampled {:.2e}", error.max_abs_err);
+    let verdict = match max_abs {
+        Some(limit) => (format!("holds {limit}: {largest}"), Some(true)),
+        None => (largest, None),
+    };
+    let certificate = Certificate { title: title.to_owned(), verdict, facts, maps, method: method.to_owned() };
+    let held = max_abs.map_or(String::new(), |limit| format!("holds {limit}\n"));
+    let text = format!("{words}\n{}{held}", error_text(&error, quantities, &domain));
+    let json = json!({ "table": statement, "max_abs": max_abs, "error": measured });
+    Ok(Product { files: vec![(delivery.output.clone(), bytes)], certificate, json, text })
 }
 
 /// A row of the page.

@@ -151,6 +151,23 @@ fn values_are_read_back() {
     assert!(metadata.iter().any(|(key, value)| key == "luthier.table" && value.contains("\"energy\"")));
 }
 
+/// Limits on the error and on the bytes: a metal's table, and a split sum beside a closed form, whose look-up is written without being asked for.
+#[test]
+fn limits_are_held() {
+    let workshop = Workshop::new();
+    let metal = ["table", "energy", "--values", "loss", "--max-abs", "5e-3", "-o", "metal.ktx2", "--json"];
+    let metal = workshop.run(&metal).exits(0).json();
+    assert!(metal["error"]["max_abs_err"].as_f64().unwrap() <= 5e-3 && metal["table"]["nodes"] == "ends");
+    let small = ["table", "dfg", "--max-abs", "2e-3", "--max-bytes", "1200", "-o", "small.bin", "--json"];
+    let small = workshop.run(&small).exits(0).json();
+    assert!(small["error"]["max_abs_err"].as_f64().unwrap() <= 2e-3 && small["table"]["beside_form"].is_object());
+    let bytes = std::fs::metadata(workshop.path("small.bin")).unwrap().len();
+    assert!(bytes <= 1200 && small["table"]["bytes"] == bytes, "{bytes}");
+    assert!(std::fs::read_to_string(workshop.path("small.wgsl")).unwrap().contains("fn luthier_dfg_form("));
+    workshop.run(&["table", "dfg", "--max-abs", "1e-5", "--max-bytes", "64", "-o", "none.bin"]).fails(1, &["64 bytes"]);
+    assert!(!workshop.path("none.bin").exists() && !workshop.path("none.wgsl").exists());
+}
+
 #[test]
 fn what_cannot_be_baked_is_refused() {
     let workshop = Workshop::new();
@@ -168,6 +185,7 @@ fn what_cannot_be_baked_is_refused() {
     refused(&["energy", "--surface", "from-rarer"], 2, "sqrt_f0");
     refused(&["energy", "--axes", "cos_theta"], 2, "cos_theta");
     refused(&["energy", "--preset", "maya"], 2, "cycles");
+    refused(&["energy", "--surface", "from-denser", "--max-abs", "1e-3"], 2, "reflector");
     refused(&["film", "--film", "water", "--base", "1.5"], 2, "index of refraction");
     refused(&["film", "--film", "1.3", "--base", "1.5", "--axes", "cos_theta,roughness"], 2, "thickness");
     workshop.run(&["table", "cloth", "-o", "cloth.tga"]).fails(2, &[".ktx2"]);

@@ -1,0 +1,223 @@
+//! Closed forms whose rests bend little, for tables beside them.
+
+use luthier_optics::split_sum::{Masking, SplitSum, SplitSumSurface};
+use luthier_optics::stack::Distribution;
+
+use super::rational::{Polynomial, Rational};
+use super::{ClosedForm, STRETCH};
+use crate::Layout;
+
+/// Nodes of the grid along each axis: about as many as the tables have that are read beside these forms.
+const NODES: u32 = 24;
+/// Rounds of the fit of the cosine, the first half with half steps.
+const ROUNDS: u32 = 12;
+/// Least loss of a form at the nodes.
+const LEAST_LOSS: f64 = 1e-3;
+/// Part of the largest diagonal element that is added to each of the normal equations: polynomials that the data do not tell apart stay small.
+const RIDGE: f64 = 1e-8;
+
+impl ClosedForm {
+    /// The form of polynomials of some degrees, of the loss and of the cosine, that leaves the straightest rests over the axes of a layout: the least
+    /// sum of squares of second differences between nodes, in whose proportion linear interpolation errs. Rests may be large.
+    ///
+    /// Linear least squares for the loss; for the cosine Gauss's and Newton's rounds, since the bias follows its fifth power.
+    pub(crate) fn straightest(
+        distribution: Distribution,
+        masking: Masking,
+        surface: &SplitSumSurface,
+        layout: &Layout,
+        degrees: [[usize; 2]; 2],
+    ) -> Self {
+        let grid = Grid::new(surface, layout);
+        let loss = grid.loss(degrees[0]);
+        let cosine = grid.cosine(degrees[1], &loss);
+        Self {
+            distribution,
+            masking,
+            floor: [layout.angle.min, layout.slope.map_or(0.0, |slope| slope.min)],
+            loss,
+            cosine,
+        }
+    }
+}
+
+/// Split sums at the nodes of a square table.
+struct Grid {
+    /// t, r and alpha.
+    variables: Vec<[f64; 3]>,
+    sums: Vec<SplitSum>,
+}
+
+impl Grid {
+    fn new(surface: &SplitSumSurface, layout: &Layout) -> Self {
+        let (mut variables, mut sums) = (Vec::new(), Vec::new());
+        let at = |i, j| layout.at_texel([NODES; 2], [i, j]);
+        for j in 0..NODES {
+            let row = surface.row(at(0, j)[1]);
+            for i in 0..NODES {
+                let [theta, alpha] = at(i, j);
+                let cos_theta = libm::cos(theta);
+                let r = (cos_theta * cos_theta + STRETCH * alpha * alpha).sqrt();
+                variables.push([cos_theta / r, r, alpha]);
+                sums.push(row.at(cos_theta));
+            }
+        }
+        Self { variables, sums }
+    }
+
+    fn loss(&self, degrees: [usize; 2]) -> Rational {
+        let loss: Vec<f64> = self.sums.iter().map(|sum| 1.0 - sum.albedo()).collect();
+        let columns = columns(self.variables.iter().map(|&[t, _, alpha]| Polynomial::powers(degrees, [t, alpha])));
+        // A constant has no second differences.
+        let bends: Vec<Vec<f64>> = columns[1..].iter().map(|column| second_differences(column)).collect();
+        let mut coefficients = vec![0.0];
+        coefficients.extend(least_squares(&bends, &second_differences(&loss)));
+        let lowest = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
+        let form = |i: usize| value(&columns, &coefficients, i);
+        let nodes = 0..loss.len();
+        let least_rest = lowest(&mut nodes.clone().map(|i| loss[i] - form(i)));
+        let most_rest = -lowest(&mut nodes.clone().map(|i| form(i) - loss[i]));
+        // Rests to both sides alike, but no albedo above 1: the form would bend where it is clamped.
+        coefficients[0] = f64::max(0.5 * (least_rest + most_rest), LEAST_LOSS - lowest(&mut nodes.map(form)));
+        polynomial(degrees, &coefficients)
+    }
+
+    fn cosine(&self, degrees: [usize; 2], loss: &Rational) -> Rational {
+        let albedos: Vec<f64> = self.variables.iter().map(|&[t, _, alpha]| 1.0 - loss.at([t, alpha])).collect();
+        let columns = columns(self.variables.iter().map(|&[t, r, _]| Polynomial::powers(degrees, [t, r])));
+        let slope = |albedo: f64, rest: f64| 5.0 * albedo * (rest * rest) * (rest * rest);
+        // The start: the cosine itself, where it counts.
+        let rests: Vec<f64> =
+            self.sums.iter().map(|sum| libm::pow((sum.bias / sum.albedo().max(1e-6)).clamp(0.0, 1.0), 0.2)).collect();
+        let weights: Vec<f64> = self.sums.iter().zip(&rests).map(|(sum, rest)| slope(sum.albedo(), *rest)).collect();
+        let weighted = |column: &[f64]| column.iter().zip(&weights).map(|(v, weight)| v * weight).collect::<Vec<f64>>();
+        let cosines: Vec<f64> = rests.iter().map(|rest| 1.0 - rest).collect();
+        let start: Vec<Vec<f64>> = columns.iter().map(|column| weighted(column)).collect();
+        let mut coefficients = least_squares(&start, &weighted(&cosines));
+        for round in 0..ROUNDS {
+            let rest = |i| (1.0 - value(&columns, &coefficients, i)).clamp(0.0, 1.0);
+            let rests: Vec<f64> = (0..cosines.len()).map(rest).collect();
+            let slopes: Vec<f64> = albedos.iter().zip(&rests).map(|(albedo, rest)| -slope(*albedo, *rest)).collect();
+            // The bias of the form is a fifth of its slope, times the rest.
+            let lacking: Vec<f64> = self
+                .sums
+                .iter()
+                .zip(slopes.iter().zip(&rests))
+                .map(|(sum, (s, rest))| sum.bias + 0.2 * s * rest)
+                .collect();
+            let bends: Vec<Vec<f64>> = columns
+                .iter()
+                .map(|column| second_differences(&column.iter().zip(&slopes).map(|(v, s)| v * s).collect::<Vec<f64>>()))
+                .collect();
+            let step = least_squares(&bends, &second_differences(&lacking));
+            let part = if 2 * round < ROUNDS { 0.5 } else { 1.0 };
+            coefficients.iter_mut().zip(step).for_each(|(c, step)| *c += part * step);
+        }
+        polynomial(degrees, &coefficients)
+    }
+}
+
+fn polynomial(degrees: [usize; 2], coefficients: &[f64]) -> Rational {
+    let polynomial = |degrees, coefficients: &[f64]| Polynomial {
+        degrees,
+        coefficients: coefficients.iter().map(|c| *c as f32).collect(),
+    };
+    Rational { numerator: polynomial(degrees, coefficients), denominator: polynomial([0, 0], &[1.0]) }
+}
+
+/// Powers at all nodes, by power.
+fn columns(rows: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
+    let rows: Vec<Vec<f64>> = rows.collect();
+    (0..rows[0].len()).map(|c| rows.iter().map(|row| row[c]).collect()).collect()
+}
+
+/// A sum of columns times coefficients, at a node.
+fn value(columns: &[Vec<f64>], coefficients: &[f64], node: usize) -> f64 {
+    columns.iter().zip(coefficients).map(|(column, coefficient)| coefficient * column[node]).sum()
+}
+
+/// Second differences of values at the nodes, along both axes.
+fn second_differences(values: &[f64]) -> Vec<f64> {
+    let n = NODES as usize;
+    let along = |step: usize, across: usize| {
+        (1..n - 1).flat_map(move |i| (0..n).map(move |j| i * step + j * across)).map(move |i| (i, step))
+    };
+    along(1, n).chain(along(n, 1)).map(|(i, step)| values[i - step] - 2.0 * values[i] + values[i + step]).collect()
+}
+
+/// Factors of columns whose sum is nearest to the target: the normal equations by Cholesky's factors.
+fn least_squares(columns: &[Vec<f64>], target: &[f64]) -> Vec<f64> {
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let n = columns.len();
+    let mut factor: Vec<Vec<f64>> = columns.iter().map(|a| columns.iter().map(|b| product(a, b)).collect()).collect();
+    let mut x: Vec<f64> = columns.iter().map(|a| product(a, target)).collect();
+    let ridge = RIDGE * (0..n).map(|i| factor[i][i]).fold(0.0, f64::max);
+    for i in 0..n {
+        factor[i][i] += ridge;
+        for j in 0..=i {
+            let inner: f64 = (0..j).map(|k| factor[i][k] * factor[j][k]).sum();
+            let left = factor[i][j] - inner;
+            factor[i][j] = if i == j { left.sqrt() } else { left / factor[j][j] };
+        }
+        let inner: f64 = (0..i).map(|k| factor[i][k] * x[k]).sum();
+        x[i] = (x[i] - inner) / factor[i][i];
+    }
+    for i in (0..n).rev() {
+        let inner: f64 = (i + 1..n).map(|k| factor[k][i] * x[k]).sum();
+        x[i] = (x[i] - inner) / factor[i][i];
+    }
+    x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Nodes;
+
+    #[test]
+    fn least_squares_find_what_is_there() {
+        let columns: Vec<Vec<f64>> =
+            (0..3).map(|k| (0..9).map(|i| libm::pow(f64::from(i) / 8.0, f64::from(k))).collect()).collect();
+        let target: Vec<f64> = (0..9).map(|i| value(&columns, &[0.5, -1.0, 2.0], i)).collect();
+        let found = least_squares(&columns, &target);
+        for (found, expected) in found.iter().zip([0.5, -1.0, 2.0]) {
+            assert!((found - expected).abs() < 1e-4, "{found} {expected}");
+        }
+    }
+
+    /// The rests of bias and loss bend a quarter as much as these, in the mean.
+    #[test]
+    fn rests_are_straighter() {
+        let (distribution, masking) = (Distribution::Ggx, Masking::SmithCorrelated);
+        let surface = SplitSumSurface::new(distribution, masking);
+        let layout = Layout::powers([0.01; 2], [4.0, 2.0], Nodes::Ends);
+        let form = ClosedForm::straightest(distribution, masking, &surface, &layout, [[3, 2], [2, 2]]);
+        let grid = Grid::new(&surface, &layout);
+        let bend = |of: &dyn Fn(SplitSum) -> f64, part: f64| {
+            let values: Vec<f64> = (0..NODES * NODES)
+                .map(|i| {
+                    let [theta, alpha] = layout.at_texel([NODES; 2], [i % NODES, i / NODES]);
+                    of(grid.sums[i as usize]) - part * of(form.eval(libm::cos(theta), alpha))
+                })
+                .collect();
+            second_differences(&values).into_iter().map(|d| d * d).sum::<f64>().sqrt()
+        };
+        for of in [&|sum: SplitSum| sum.bias, &|sum: SplitSum| sum.albedo()] as [&dyn Fn(SplitSum) -> f64; 2] {
+            let (before, after) = (bend(of, 0.0), bend(of, 1.0));
+            assert!(after < 0.25 * before, "{before:e} {after:e}");
+        }
+    }
+
+    /// Of x^2 + 3 y^2 at whole x and y.
+    #[test]
+    fn second_differences_are_of_both_axes() {
+        let values: Vec<f64> = (0..NODES * NODES)
+            .map(|i| (f64::from(i % NODES), f64::from(i / NODES)))
+            .map(|(x, y)| x * x + 3.0 * y * y)
+            .collect();
+        let found = second_differences(&values);
+        let half = found.len() / 2;
+        assert_eq!(half, (NODES * (NODES - 2)) as usize);
+        assert!(found[..half].iter().all(|d| *d == 2.0) && found[half..].iter().all(|d| *d == 6.0));
+    }
+}
