@@ -36,20 +36,6 @@ function table({ name, bytes, judged, ...facts }) {
   console.log(JSON.stringify({ ...facts, file, audit: judged && [file, ...raw, ...judged] }));
 }
 
-/** Texels of a table whose rows run along the root of 1 - cos theta, read at cosines from 0 to 1. */
-function alongCosine({ data, width, height }, rows) {
-  const values = new Float32Array(rows * width * 4);
-  for (let row = 0; row < rows; row++) {
-    const position = (height - 1) * Math.sqrt(1 - row / (rows - 1));
-    const low = Math.min(Math.floor(position), height - 2);
-    for (let i = 0; i < width * 4; i++) {
-      const [a, b] = [data[low * width * 4 + i], data[(low + 1) * width * 4 + i]];
-      values[row * width * 4 + i] = a + (b - a) * (position - low);
-    }
-  }
-  return floatBytes(values);
-}
-
 // three.js, the split sum: half floats in a module.
 {
   const source = "src/renderers/shaders/DFGLUTData.js";
@@ -78,18 +64,8 @@ function alongCosine({ data, width, height }, rows) {
   const matrix = { ...shared, ...image(LTC_FLOAT_1.image), holds: "inverse matrix: m00, m02, m20, m22" };
   table({ name: "three-ltc-1", ...matrix, table: "ltc matrix", judged: null });
   const norm = { ...shared, ...image(LTC_FLOAT_2.image), holds: "albedo, bias, 0, sphere's form factor" };
-  table({ name: "three-ltc-2", ...norm, table: "ltc norm", judged: null });
-  // Rows of that table run along the root of 1 - cos theta, an axis that the audit has no name for: it gets the reads of a shader
-  // at many cosines.
-  const rows = 1024;
-  table({
-    name: "three-ltc-2-cosines",
-    ...norm,
-    table: `ltc norm, read at ${rows} cosines`,
-    bytes: alongCosine(LTC_FLOAT_2.image, rows),
-    size: [norm.size[0], rows],
-    judged: ["--model", "ggx-correlated", "--axes", "roughness,cos_theta", "--nodes", "ends", "--values", "albedo,bias", "--channel", "r,g"],
-  });
+  const judged = ["--model", "ggx-correlated", "--axes", "roughness,sqrt_one_minus_cos_theta", "--nodes", "ends"];
+  table({ name: "three-ltc-2", ...norm, table: "ltc norm", judged: [...judged, "--values", "albedo,bias", "--channel", "r,g"] });
 }
 
 // Babylon.js: PNG with RGBD, which it expands to half floats when it starts.

@@ -34,6 +34,13 @@ pub fn texels(image: &Image) -> Vec<u8> {
     image.texels().flat_map(|texel| encode(color(texel))).collect()
 }
 
+/// The values of an image of bytes over 255, RGBD each.
+pub fn decode_image(bytes: &Image) -> Image {
+    let byte = |value: Option<&f32>| value.map_or(u8::MAX, |value| libm::roundf(value * 255.0) as u8);
+    let read = |texel: &[f32]| decode(std::array::from_fn(|c| byte(texel.get(c)))).map(|value| value as f32);
+    Image { channels: 3, data: bytes.texels().flat_map(read).collect(), ..*bytes }
+}
+
 /// The values that a shader reads once it has decoded an image of up to three channels.
 pub(crate) fn quantise(image: &Image) -> Image {
     let channels = image.channels as usize;

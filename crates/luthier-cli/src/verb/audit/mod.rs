@@ -20,7 +20,7 @@ pub(crate) fn run(options: &AuditOptions) -> Outcome {
     let bytes = input::image(&options.file).map_err(files(&options.file, "read"))?;
     let mut table = read(options, &bytes)?;
     if options.preset.is_some_and(|preset| preset.stored == Stored::Rgbd) && table.format.starts_with("PNG") {
-        table.image = decoded(&table.image);
+        table.image = rgbd::decode_image(&table.image);
     }
     if let Some(crop) = &options.crop {
         table.image = cropped(&table.image, crop)?;
@@ -43,13 +43,6 @@ pub(crate) fn run(options: &AuditOptions) -> Outcome {
         print(&text(&options.file, &table.format, &words, &found, options.max_error, held))?;
     }
     if held { Ok(()) } else { Err(Failure::Verdict) }
-}
-
-/// The values of an image whose texels are RGBD.
-fn decoded(image: &Image) -> Image {
-    let byte = |value: Option<&f32>| value.map_or(u8::MAX, |value| (value * 255.0).round() as u8);
-    let decode = |texel: &[f32]| rgbd::decode(std::array::from_fn(|c| byte(texel.get(c)))).map(|value| value as f32);
-    Image { channels: 3, data: image.texels().flat_map(decode).collect(), ..*image }
 }
 
 fn read(options: &AuditOptions, bytes: &[u8]) -> Outcome<table::Table> {

@@ -8,7 +8,7 @@ use luthier_optics::split_sum::Masking;
 use luthier_report::{Certificate, ErrorMap};
 use luthier_shader::{Target, library, library_spirv};
 use luthier_table::{
-    Bindings, ClosedForm, Container, Cost, DfgTable, FittedForm, Found, Preset, SPLIT_SUM, Stored, search,
+    Bindings, ClosedForm, Container, Cost, DfgTable, FittedForm, Found, Preset, SPLIT_SUM, Stored, rgbd, search,
     search_beside_form,
 };
 use luthier_terminal::{Failure, Outcome, files};
@@ -311,7 +311,9 @@ fn maps(options: &DfgOptions, table: &DfgTable, texels: &Image, error: &ErrorSta
         let bytes = input::image(path).map_err(files(path, "read"))?;
         let read =
             table::read(&bytes).map_err(|source| Failure::Input(anyhow::anyhow!("{}: {source}", path.display())));
-        let other = read?.image;
+        let read = read?;
+        let is_encoded = table.stored == Stored::Rgbd && read.format.starts_with("PNG");
+        let other = if is_encoded { rgbd::decode_image(&read.image) } else { read.image };
         let channels = table.values.len();
         if (other.channels as usize) < channels {
             return Err(Failure::Input(anyhow::anyhow!(
