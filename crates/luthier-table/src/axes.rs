@@ -243,6 +243,9 @@ pub struct AxisSpec {
     pub ceiling: f64,
 }
 
+/// The lowest cosine that counts where texels are balanced at grazing angles.
+const GRAZING: f64 = 0.01;
+
 impl AxisSpec {
     /// The whole range of a quantity, linear and ascending; indices up to 3, films up to 1200 nm.
     pub fn whole(quantity: Quantity, nodes: Nodes) -> Self {
@@ -276,13 +279,20 @@ impl AxisSpec {
         self.nodes.position(if self.descending { 1.0 - u } else { u }, size)
     }
 
-    /// Theta or alpha at the end of the axis where it is normal incidence or the roughest surface, for the texel next to it: where nodes are texel
-    /// centres, all reads between are of this texel.
+    /// Theta or alpha up to which reads are of this texel alone: the end of the axis at normal incidence or at the roughest surface, or a cosine of
+    /// [`GRAZING`], where nodes are texel centres and the texel is the one beside that end.
     pub(crate) fn beyond(&self, texel: u32, size: u32) -> Option<f64> {
+        if self.nodes != Nodes::CENTRES || size < 2 {
+            return None;
+        }
         let rises = !matches!(self.quantity, Quantity::Theta | Quantity::SqrtOneMinusCosTheta);
-        let is_last = texel == if self.descending == rises { 0 } else { size - 1 };
-        (is_last && size > 1 && self.nodes == Nodes::CENTRES)
-            .then(|| self.quantity.to_canonical(if rises { self.max } else { self.min }))
+        let [low, high] = if self.descending == rises { [size - 1, 0] } else { [0, size - 1] };
+        let is_coarse = self.quantity.is_angle() && libm::cos(self.canonical(low, size)) > GRAZING;
+        if texel == high {
+            Some(self.quantity.to_canonical(if rises { self.max } else { self.min }))
+        } else {
+            (texel == low && is_coarse).then(|| libm::acos(GRAZING))
+        }
     }
 
     /// The value as it reads in the axis' own words, and the coordinate of a theta, alpha, index or thickness, ascending or not.

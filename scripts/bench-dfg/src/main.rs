@@ -51,7 +51,15 @@ fn forge_texels() -> Result<Image, Box<dyn Error>> {
 fn linear(masking: Masking, side: u32) -> DfgTable {
     let layout = layout("cos_theta,roughness", Nodes::CENTRES);
     let values = vec![Value::Scale, Value::Bias];
-    DfgTable { distribution: Distribution::Ggx, masking, layout, values, size: [side; 2], stored: Stored::Half, base: None }
+    DfgTable {
+        distribution: Distribution::Ggx,
+        masking,
+        layout,
+        values,
+        size: [side; 2],
+        stored: Stored::Half,
+        base: None,
+    }
 }
 
 /// Half floats on logarithmic axes, whose first and last nodes are their ends.
