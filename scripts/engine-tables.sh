@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Audits the tables that engines ship in packages of npm and crates.io, renders furnaces with three.js and Babylon.js, and prints a page:
 #   scripts/engine-tables.sh > docs/pages/engine-tables.md
-# Takes two minutes after the first build. Needs npm and Chromium (on Debian apt-get install npm chromium). LUTHIER names the program that
+# Takes four minutes after the first build. Needs npm, Chromium, Python and a C compiler (on Debian apt-get install npm chromium python3-venv gcc). LUTHIER names the program that
 # bakes, by default cargo builds it. Furnaces of Bevy, whose build takes a quarter of an hour, are apart: scripts/engines-bevy.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -64,6 +64,19 @@ bilinear reads of the file: it shows that the engine reads it.
 TEXT
 scripts/engines/furnace.sh 2>/dev/null
 cat <<'TEXT'
+
+## Other readers
+
+Files of the presets, read by programs that know nothing of luthier (`scripts/engines/readers.py`), and values in their middle against a quadrature over
+visible normals in Python. Texels are moved by up to 1e-3, so that reads between them err less, and rounded to the type of the file.
+
+TEXT
+[ -d "$out/venv" ] || python3 -m venv "$out/venv"
+"$out/venv/bin/pip" install --quiet --disable-pip-version-check OpenImageIO==3.2.2.0 numpy==2.4.6
+"$out/venv/bin/python" scripts/engines/readers.py "$LUTHIER"
+cat <<'TEXT'
+
+## Bevy
 
 Bevy is a program of its own (`cargo run --manifest-path scripts/engines-bevy/Cargo.toml -- dfg.ktx2`, a quarter of an hour of building):
 

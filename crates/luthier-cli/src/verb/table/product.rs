@@ -30,10 +30,11 @@ pub(super) fn deliver(product: Product, delivery: &Delivery) -> Outcome {
     if let Some(path) = &delivery.report {
         written.push((path.clone(), certificate.html().into_bytes()));
     }
+    let folder = &delivery.output;
+    if written.iter().any(|(path, _)| path.parent() == Some(folder)) {
+        std::fs::create_dir_all(folder).map_err(files(folder, "create"))?;
+    }
     for (path, bytes) in &written {
-        if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-            std::fs::create_dir_all(folder).map_err(files(folder, "create"))?;
-        }
         std::fs::write(path, bytes).map_err(files(path, "write"))?;
     }
     if delivery.json {

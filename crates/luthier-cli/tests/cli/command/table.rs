@@ -189,4 +189,5 @@ fn what_cannot_be_baked_is_refused() {
     refused(&["film", "--film", "water", "--base", "1.5"], 2, "index of refraction");
     refused(&["film", "--film", "1.3", "--base", "1.5", "--axes", "cos_theta,roughness"], 2, "thickness");
     workshop.run(&["table", "cloth", "-o", "cloth.tga"]).fails(2, &[".ktx2"]);
+    workshop.run(&["table", "cloth", "--size", "8x8", "-o", "nowhere/cloth.bin"]).fails(3, &["nowhere"]);
 }
