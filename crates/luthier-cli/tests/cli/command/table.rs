@@ -137,6 +137,22 @@ fn other_functions_are_baked() {
     assert_eq!((size("film.bin"), film["table"]["color"].as_str()), (8 * 16 * 3 * 2, Some("spectral, D65")));
 }
 
+/// Linearly transformed cosines: both tables of engines in a folder, and sheen, with the errors of the paper's kind.
+#[test]
+fn lobes_are_fitted() {
+    let workshop = Workshop::new();
+    let ltc = workshop.run(&["table", "ltc", "-o", "ltc", "--no-zstd", "--json"]).exits(0).json();
+    for file in ["ltc/ltc_1.ktx2", "ltc/ltc_2.ktx2"] {
+        let texture = luthier_texture::ktx2::decode(&std::fs::read(workshop.path(file)).unwrap()).unwrap();
+        assert_eq!((texture.width, texture.height, texture.bytes.len()), (64, 64, 64 * 64 * 8));
+    }
+    let median = |value: &Value| value["median"].as_f64().unwrap();
+    assert!(median(&ltc["error"]["between_texels"]) < 0.025 && median(&ltc["error"]["rectangles_absolute"]) < 0.005);
+    let sheen = workshop.run(&["table", "sheen", "-o", "sheen.bin", "--json"]).exits(0).json();
+    assert!(median(&sheen["error"]["lobe"]) < 0.035);
+    assert_eq!(std::fs::metadata(workshop.path("sheen.bin")).unwrap().len(), 32 * 32 * 3 * 2);
+}
+
 /// The albedo of a metal in a file, read back: at normal incidence on the roughest surface it is 1 - ln 2, by hand.
 #[test]
 fn values_are_read_back() {
