@@ -59,5 +59,5 @@ for (const table of tables) {
     scientific(remaining?.max_abs_err)} | ${ours} |`);
 }
 rmSync(work, { recursive: true });
-console.log(`\nSources: ${[...new Set(tables.map((t) => `${t.engine} ${t.version}: \`${t.source}\``))].join("; ")}.`);
+console.log(`\nSources: ${[...new Set(tables.map((t) => `${t.engine} ${t.version}: ${t.source}`))].join("; ")}.`);
 if (notes.length > 0) console.log(`\n${notes.join("\n")}`);
