@@ -136,4 +136,27 @@ get.restype = ctypes.POINTER(ctypes.c_float * 1024)
 metal = np.array(get().contents).reshape(32, 32, 1)
 judge(f"cycles, {len(files)} C arrays of {', '.join(map(str, sizes))} floats; ggx_E", "cc", metal, ["albedo"],
       lambda t, n: (t[1] / (n[1] - 1), (t[0] / (n[0] - 1)) ** 2), 2e-5)
+
+# OpenPBR: the compiler includes the words; what a metal loses, whose masking is separable and whose least cosine is .001.
+run(luthier, "table", "energy", "--preset", "openpbr", "-o", "openpbr")
+files = sorted(os.listdir("openpbr"))
+with open("openpbr.c", "w") as out:
+    for name in files:
+        array = name.removesuffix(".h")
+        out.write(f'static const unsigned short table_{array}[] = {{\n#include "openpbr/{name}"\n}};\n')
+        out.write(f"const unsigned short *get_{array}(void) {{ return table_{array}; }}\n")
+        out.write(f"int size_{array}(void) {{ return sizeof table_{array} / 2; }}\n")
+run("cc", "-Wall", "-Werror", "-shared", "-fPIC", "-o", "openpbr.so", "openpbr.c")
+library = ctypes.CDLL("./openpbr.so")
+sizes = [getattr(library, "size_" + name.removesuffix(".h"))() for name in files]
+get = library.get_openpbr_ideal_metal_energy_complement_data
+get.restype = ctypes.POINTER(ctypes.c_ushort * 1024)
+metal = np.array(get().contents).reshape(32, 32, 1) / 65535
+along = lambda t, n: (t[0] / (n[0] - 1), (t[1] / (n[1] - 1)) ** 2)
+judge(f"openpbr, {len(files)} C arrays of {', '.join(map(str, sizes))} words; ideal_metal", "cc", metal, ["loss"], along, 3e-5, "separable")
+
+# OSPRay: raw floats.
+run(luthier, "table", "energy", "--preset", "ospray", "-o", "ospray")
+metal = np.fromfile("ospray/albedo_dir.bin", "<f4").reshape(32, 32, 1)
+judge(f"ospray, {len(os.listdir('ospray'))} files; albedo_dir", f"numpy {np.__version__}", metal, ["albedo"], along, 2e-5)
 sys.exit(failed)

@@ -44,7 +44,7 @@ pub(crate) fn color_in_words(color: &Color) -> String {
 
 /// The texels that ship for the values of one tile: encoded, balanced, quantised; as bytes, and as read from these.
 ///
-/// What is not negative stays so.
+/// Values that are not negative stay so.
 pub(crate) fn texels(kind: TableKind, format: TexelFormat, truth: &Image) -> (Vec<u8>, Image) {
     let roots = Encoding::of(kind, format).to_root(truth);
     let balanced = match kind.facts().values {
