@@ -198,17 +198,18 @@ fn check(image: &Image, statement: &Statement) -> Result<(), AuditError> {
     }
 }
 
-/// The error of reads through a sampler, at points off the nodes, with the climb of [`measure_scan`] to the worst.
+/// The error of reads through a sampler, at points off the nodes and at the ends of the axes, with the climb of [`measure_scan`] to the worst.
 fn sampled(subject: &Subject, statement: &Statement, truth: &Truth, h: &Hypothesis) -> ErrorStats {
     // Coordinates of the scan are the statement's, whatever the hypothesis: both are asked at the same places.
     let (angle, slope) = (statement.layout.angle, statement.layout.slope);
     let (points, refinements) = truth.scan();
     let ends = |a: f64, b: f64| (a.min(b), a.max(b));
     let (from, to) = ends(angle.coordinate(0.0), angle.coordinate(libm::acos(statement.min_cos.clamp(0.0, 1.0))));
-    let mut scan = Scan { points: [points * points, 1], from: [from, 0.5], to: [to, 0.5], nodes: [0, 0], refinements };
+    let mut scan =
+        Scan { points: [points * points, 1], from: [from, 0.5], to: [to, 0.5], nodes: [points, 0], refinements };
     if let Some(slope) = slope {
         let (from, to) = ends(slope.coordinate(statement.min_alpha), slope.coordinate(1.0));
-        (scan.points, scan.from[1], scan.to[1]) = ([points; 2], from, to);
+        (scan.points, scan.nodes, scan.from[1], scan.to[1]) = ([points; 2], [points; 2], from, to);
     }
     let canonical = |u: [f64; 2]| {
         [angle.canonical_of_coordinate(u[0]), slope.map_or(0.0, |slope| slope.canonical_of_coordinate(u[1]))]

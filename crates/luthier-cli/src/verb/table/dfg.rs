@@ -228,8 +228,15 @@ fn bindings(options: &DfgOptions) -> Bindings {
 /// The function in each language, in files beside the output.
 fn shaders(options: &DfgOptions, languages: &[Target], wgsl: &str) -> Outcome<Vec<(PathBuf, Vec<u8>)>> {
     let beside = |target: &Target| {
-        let path = options.delivery.output.with_extension(target.extension());
-        Ok((path, shader(wgsl, *target)?))
+        let output = &options.delivery.output;
+        let name = output.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        // A language's ending may have a point of its own.
+        let ending =
+            Target::ALL.iter().map(|target| format!(".{}", target.extension())).find(|ending| name.ends_with(ending));
+        let stem = ending
+            .map_or(output.with_extension(""), |ending| output.with_file_name(&name[..name.len() - ending.len()]));
+        let stem = stem.to_string_lossy();
+        Ok((PathBuf::from(format!("{stem}.{}", target.extension())), shader(wgsl, *target)?))
     };
     languages.iter().map(beside).collect()
 }

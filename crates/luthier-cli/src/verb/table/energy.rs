@@ -19,6 +19,8 @@ const TITLE: &str = "Table of energy compensation";
 /// How errors are measured, for the page.
 const METHOD: &str = "Reads are linear between the nodes of each axis, with 8-bit weights and texels as stored. They are compared with quadrature, \
     which is within 1e-6 (averages 2e-6).";
+/// Most nodes of a table: some take a fiftieth of a second each. Slices of as many nodes, one below the other, are also within the sides of textures.
+const MAX_NODES: u64 = 1 << 16;
 /// Indices over which errors count.
 const INDICES: [f64; 2] = [1.05, 2.5];
 
@@ -101,6 +103,12 @@ fn one(options: &EnergyOptions) -> Outcome<Product> {
     if options.size[count..].iter().any(|side| *side > 1) || options.size[..count].iter().any(|side| *side < 2) {
         return Err(Failure::Usage(anyhow::anyhow!(
             "--size states 2 nodes at least for each of the {count} axes and no more sides"
+        )));
+    }
+    let [width, height, depth] = options.size.map(u64::from);
+    if width * height * depth > MAX_NODES {
+        return Err(Failure::Usage(anyhow::anyhow!(
+            "--size states {width} x {height} x {depth} nodes; a table has {MAX_NODES} at most"
         )));
     }
     let (container, stored) = by_ending(&options.delivery.output)?;

@@ -99,6 +99,7 @@ fn shaders_are_written_in_the_languages_asked_for() {
     let closed = ["table", "dfg", "--max-abs", "1e-2", "--closed", "-o", "closed.es300.glsl", "--shader", "wgsl,hlsl"];
     let said = workshop.run(&closed).exits(0);
     assert!(said.stdout.contains("multiply-adds") && said.stdout.contains("holds 0.01"), "{}", said.stdout);
+    assert!(text("closed.wgsl").contains("fn luthier_dfg(") && text("closed.hlsl").contains("luthier_dfg("));
     assert!(text("closed.es300.glsl").contains("vec2 luthier_dfg(float cos_theta, float alpha) {"));
     let table = ["table", "dfg", "--preset", "bevy", "-o", "dfg.ktx2", "--shader", "wgsl,msl,spirv", "--bind", "1,4,5"];
     workshop.run(&table).exits(0);
@@ -201,6 +202,7 @@ fn what_cannot_be_baked_is_refused() {
     refused(&["energy", "--surface", "from-rarer"], 2, "sqrt_f0");
     refused(&["energy", "--axes", "cos_theta"], 2, "cos_theta");
     refused(&["energy", "--preset", "maya"], 2, "cycles");
+    refused(&["energy", "--size", "1024x1024"], 2, "65536 at most");
     refused(&["energy", "--surface", "from-denser", "--max-abs", "1e-3"], 2, "reflector");
     refused(&["film", "--film", "water", "--base", "1.5"], 2, "index of refraction");
     refused(&["film", "--film", "1.3", "--base", "1.5", "--axes", "cos_theta,roughness"], 2, "thickness");
