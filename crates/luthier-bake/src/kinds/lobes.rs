@@ -15,10 +15,11 @@ use luthier_manifest::{
 use luthier_material::{Material, Patina};
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::{Kind, Site};
-use crate::graph::{Graph, Inputs, Job, JobKind, Output, Results};
+use crate::graph::{Artefact, Graph, Inputs, Job, JobKind, Results};
 use crate::plan::{Plan, color};
 use crate::search::{self, Found};
 use crate::settings::{Ask, Settings, Shape, axis};
@@ -208,7 +209,7 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
 }
 
 /// Lobes of a material, and their errors with every so many rows of [`STEPS`].
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 struct Fit {
     varied: Varied,
     errors: [FitError; STEPS.len()],
@@ -222,7 +223,7 @@ impl Fit {
 }
 
 /// Result of a [`FitJob`]: the lobes of bakes without a search, or those of up to no lobe, one, and so on.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 struct Fits(Vec<Fit>);
 
 impl Fits {
@@ -261,7 +262,7 @@ impl Job for FitJob {
         })
     }
 
-    fn run(&self, _: &Inputs<'_>) -> Output {
+    fn run(&self, _: &Inputs<'_>) -> Artefact {
         let Self { stack, color, varying, is_searched } = self;
         let traced = Traced::new(stack, color, *varying, FitSettings::default());
         let judge = Judge::new(stack, color, *varying);
@@ -271,7 +272,11 @@ impl Job for FitJob {
         };
         let wanted: Vec<(usize, f64)> =
             if *is_searched { (0..=LOBES).map(|most| (most, 0.0)).collect() } else { vec![(LOBES, EXCESS)] };
-        Box::new(Fits(wanted.into_iter().map(fit).collect()))
+        Artefact::new(Fits(wanted.into_iter().map(fit).collect()))
+    }
+
+    fn decode(&self, bytes: &[u8]) -> Option<Artefact> {
+        Artefact::decode::<Fits>(bytes)
     }
 }
 
@@ -324,7 +329,7 @@ impl Job for LobesJob {
         vec![self.fit.clone()]
     }
 
-    fn run(&self, inputs: &Inputs<'_>) -> Output {
+    fn run(&self, inputs: &Inputs<'_>) -> Artefact {
         let [x, y] = &self.axes;
         let fits: &Fits = inputs.part(self.fit.as_ref());
         let varied = fits.of(self.most).varied.clone().thinned(step(x.size));
@@ -385,6 +390,6 @@ impl Job for LobesJob {
             lobes.frame.index,
             color_in_words(&self.fit.color)
         );
-        Box::new(TileData { model, truth, texels: atlas.texels, bytes: atlas.bytes, error })
+        Artefact::new(TileData { model, truth, texels: atlas.texels, bytes: atlas.bytes, error })
     }
 }

@@ -13,6 +13,7 @@ use luthier_terminal::{Sources, named};
 
 use crate::directions::Angles;
 use crate::model_inputs::ModelInputs;
+use crate::store::StoreOptions;
 
 const AFTER_HELP: &str = "\
 Exit codes:
@@ -39,6 +40,8 @@ Examples:
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) verb: Verb,
+    #[command(flatten)]
+    pub(crate) store: StoreOptions,
 }
 
 /// Verbs that a cargo feature brings, and the feature.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::time::Instant;
 
 use luthier_bake::{Observer, Silent};
-use luthier_export::{Bake, Compression, MANIFEST, MemoryStore, Package, Source, read, refuse};
+use luthier_export::{Bake, Compression, MANIFEST, Package, Source, read, refuse};
 use luthier_manifest::{CandidateForm, Functions, LobesError, Manifest};
 use luthier_material::Diagnostic;
 use luthier_shader::{Form, Target};
@@ -16,6 +16,7 @@ use crate::interrupt::whole;
 use crate::materials::{refuse_environment, shaded, shows_environment};
 use crate::misses;
 use crate::progress::BakeProgress;
+use crate::store::store;
 use crate::verb::check::diagnostics;
 use crate::verb::scene;
 
@@ -48,11 +49,12 @@ pub(crate) fn run(options: &BakeOptions) -> Outcome {
         .num_threads(options.threads.map_or(0, usize::from))
         .build()
         .map_err(|source| Failure::Files(anyhow::Error::new(source).context("cannot start threads")))?;
+    let store = store()?;
     let encoded = pool.install(|| {
         let observer: &dyn Observer = if options.quiet { &Silent } else { &progress };
         let (targets, functions) = (options.emission.targets(), options.emission.functions());
         let bake = Bake { options: limits, targets, forms, functions, observer, ..Bake::default() };
-        Ok::<_, Failure>(Package::new(&materials, &bake, &MemoryStore::default())?.encode(options.compression())?)
+        Ok::<_, Failure>(Package::new(&materials, &bake, store)?.encode(options.compression())?)
     })?;
     whole(|| encoded.write(&options.out))?;
     let manifest = &encoded.manifest;

@@ -64,7 +64,7 @@ fn classes(studio: &Studio) -> Outcome<Made> {
     for (name, _, text) in CLASSES {
         materials.push(shaded(&material(name, text)?, name, ShadingModel::WeidlichWilkie));
     }
-    let package = Package::for_renderer(&materials)?;
+    let package = Package::for_renderer(&materials, &MemoryStore::default())?;
     let baked = studio.rendered(&package, Form::Baked, Shape::Sphere, |_, _| {})?;
     let full = studio.rendered(&package, Form::Full, Shape::Sphere, |_, _| {})?;
     for ((material, baked), full) in materials.iter().zip(&baked).zip(&full) {
