@@ -36,6 +36,8 @@ fn main() -> ExitCode {
     store::configure(&line.store);
     let outcome = match &line.verb {
         Verb::Bake(options) => verb::bake::run(options),
+        Verb::Merge(options) => verb::bake::merge(options),
+        Verb::Cache(verb) => verb::cache::run(verb),
         Verb::Check(options) => verb::check::run(options),
         Verb::Report(options) => verb::report::run(options),
         Verb::Audit(options) => verb::audit::run(options),

@@ -133,6 +133,19 @@ fn remove_stale(folder: &Path, list: &Path, next: &Path) -> Result<(), PackageEr
     Ok(())
 }
 
+/// The bytes of a file of the generation that a folder holds, wherever an interrupted publication left it.
+pub(crate) fn current(folder: &Path, path: &str) -> Option<Vec<u8>> {
+    [folder.join(READY), folder.to_owned()].iter().find_map(|folder| std::fs::read(folder.join(path)).ok())
+}
+
+/// The files that the manifest of a folder names and that are there, with forward slashes.
+pub(crate) fn named(folder: &Path) -> Vec<String> {
+    let Some(manifest) = current(folder, MANIFEST) else { return Vec::new() };
+    let named = named_by(&String::from_utf8_lossy(&manifest));
+    let there = named.into_iter().filter(|path| folder.join(path).is_file());
+    there.map(|path| path.to_string_lossy().replace('\\', "/")).collect()
+}
+
 /// The files that a manifest of luthier, of any schema, names with a hash, as far as they lie inside its folder.
 fn named_by(manifest: &str) -> Vec<PathBuf> {
     let Ok(manifest) = serde_json::from_str::<Value>(manifest) else { return Vec::new() };
