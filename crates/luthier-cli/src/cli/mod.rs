@@ -4,7 +4,7 @@
 use std::num::NonZeroU32;
 use std::path::PathBuf;
 
-use clap::{ArgGroup, Args, Parser, Subcommand};
+use clap::{ArgGroup, Args, Command, CommandFactory, Parser, Subcommand};
 #[cfg(feature = "cost")]
 use luthier_cost::Family;
 use luthier_lut::TableKind;
@@ -25,6 +25,10 @@ Exit codes:
 With --json a failure is one JSON object on standard output, besides the sentence on standard error:
   {\"error\": {\"code\": 1, \"kind\": \"input\", \"message\": \"...\", \"diagnostics\": []}}
 The kinds are input (1), usage (2), files (3) and device (4); diagnostics are those of `luthier check --json`.
+
+Environment variables:
+  NO_COLOR  with a value, nothing is coloured
+  TERM      dumb: nothing is coloured, and there are no progress bars
 
 Examples:
   luthier bake materials            tables, manifest and shaders into out/
@@ -72,7 +76,6 @@ pub(crate) enum Verb {
     /// Time every shader of every material on the graphics adapter of this machine
     #[cfg(feature = "gpu")]
     Bench(BenchOptions),
-    /// Open a window: turn, light and edit materials, and see them change with their files
     #[cfg(feature = "view")]
     View(ViewOptions),
     /// Print the shader of some materials, or write it to a file
@@ -94,6 +97,18 @@ pub(crate) enum Verb {
         #[arg(long)]
         scene: bool,
     },
+    /// Print a script that completes verbs and options in a shell
+    Completions(CompletionsOptions),
+    /// Print the manual page, write the pages of all verbs, or print the reference of all options
+    Man(ManOptions),
+}
+
+/// The command with all verbs whose definition this build has. The window takes long to build, its options do not: they are here without it.
+pub(crate) fn with_all_verbs() -> Command {
+    let command = Cli::command();
+    #[cfg(all(feature = "gpu", not(feature = "view")))]
+    let command = command.subcommand(ViewOptions::augment_args(Command::new("view")));
+    command
 }
 
 /// The model of the shaders, and the tables beside them.
@@ -273,6 +288,9 @@ pub(crate) struct ReportOptions {
     pub(crate) json: bool,
 }
 
+mod manual;
+pub(crate) use manual::{CompletionsOptions, ManOptions};
+
 mod environment;
 pub(crate) use environment::{EnvironmentOptions, LayoutName};
 
@@ -378,10 +396,13 @@ pub(crate) struct BenchOptions {
 #[cfg(feature = "gpu")]
 const BENCH_REPEATS: NonZeroU32 = NonZeroU32::new(30).expect("not zero");
 
-#[cfg(feature = "view")]
+#[cfg(feature = "gpu")]
+#[cfg_attr(not(feature = "view"), expect(dead_code, reason = "the reference lists these options without a window too"))]
 mod view;
 #[cfg(feature = "view")]
-pub(crate) use view::{ThemeName, ViewOptions};
+pub(crate) use view::ThemeName;
+#[cfg(feature = "gpu")]
+pub(crate) use view::ViewOptions;
 
 #[derive(Debug, Args)]
 #[command(
@@ -549,8 +570,6 @@ fn positive(text: &str) -> Result<f64, String> {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
-
     use super::*;
 
     /// The table of features and the attributes of the verbs say the same.
