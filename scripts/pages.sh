@@ -54,11 +54,12 @@ distribution-table() { scripts/compare-distribution.sh >docs/pages/distribution-
 speed() { scripts/bench-table.sh >docs/pages/speed.md; }
 dfg() { scripts/bench-dfg.sh >docs/pages/dfg.md; }
 engine-tables() { scripts/engine-tables.sh >docs/pages/engine-tables.md; }
+reference() { luthier man --markdown >docs/reference.md; }
 
-all=(materials shapes cost papers budgets scenes parity stability figures models lobes varying anisotropic environment bench shader-size distribution-table speed dfg engine-tables)
+all=(materials shapes cost papers budgets scenes parity stability figures models lobes varying anisotropic environment bench shader-size distribution-table speed dfg engine-tables reference)
 case ${1-} in
   "") pages=("${all[@]}") ;;
-  --cheap) pages=(shader-size) ;;
+  --cheap) pages=(shader-size reference) ;;
   *) pages=("$@") ;;
 esac
 for page in "${pages[@]}"; do

@@ -60,6 +60,8 @@ fn main() -> ExitCode {
         Verb::Eval(options) => verb::eval::run(options),
         Verb::Ior(options) => verb::ior::run(options),
         Verb::Schema { scene } => verb::schema::run(*scene),
+        Verb::Completions(options) => verb::completions::run(options),
+        Verb::Man(options) => verb::man::run(options),
     };
     store::close();
     match outcome {

@@ -4,7 +4,7 @@
 use std::num::NonZeroU32;
 use std::path::PathBuf;
 
-use clap::{ArgGroup, Args, Parser, Subcommand};
+use clap::{ArgGroup, Args, Command, CommandFactory, Parser, Subcommand};
 #[cfg(feature = "cost")]
 use luthier_cost::Family;
 use luthier_lut::TableKind;
@@ -26,6 +26,11 @@ Exit codes:
 With --json a failure is one JSON object on standard output, besides the sentence on standard error:
   {\"error\": {\"code\": 1, \"kind\": \"input\", \"message\": \"...\", \"diagnostics\": []}}
 The kinds are input (1), usage (2), files (3) and device (4); diagnostics are those of `luthier check --json`.
+
+Environment variables:
+  LUTHIER_CACHE  folder of the results of earlier runs; empty: none are kept
+  NO_COLOR       with a value, nothing is coloured
+  TERM           dumb: nothing is coloured, and there are no progress bars
 
 Examples:
   luthier bake materials            tables, manifest and shaders into out/
@@ -51,11 +56,15 @@ pub(crate) const OF_FEATURES: [(&str, &str); 6] =
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
     /// Bake materials: textures, manifest and shaders
-    Bake(BakeOptions),
+    Bake(Box<BakeOptions>),
     /// Bake from what the shares of `luthier bake --shard` left in the store
-    Merge(BakeOptions),
+    #[command(after_help = "Examples:\n  luthier merge materials --cache /shared/luthier --out build/luts")]
+    Merge(Box<BakeOptions>),
     /// Show, check or empty the store of results
-    #[command(subcommand)]
+    #[command(
+        subcommand,
+        after_help = "Examples:\n  luthier cache stats\n  luthier cache verify --cache /shared/luthier\n  luthier cache clear"
+    )]
     Cache(CacheVerb),
     /// Validate materials and scenes as `bake` would, without baking, and print the class of each surface
     Check(CheckOptions),
@@ -80,7 +89,6 @@ pub(crate) enum Verb {
     /// Time every shader of every material on the graphics adapter of this machine
     #[cfg(feature = "gpu")]
     Bench(BenchOptions),
-    /// Open a window: turn, light and edit materials, and see them change with their files
     #[cfg(feature = "view")]
     View(ViewOptions),
     /// Print the shader of some materials, or write it to a file
@@ -102,6 +110,18 @@ pub(crate) enum Verb {
         #[arg(long)]
         scene: bool,
     },
+    /// Print a script that completes verbs and options in a shell
+    Completions(CompletionsOptions),
+    /// Print the manual page, write the pages of all verbs, or print the reference of all options
+    Man(ManOptions),
+}
+
+/// The command with all verbs whose definition this build has. The window takes long to build, its options do not: they are here without it.
+pub(crate) fn with_all_verbs() -> Command {
+    let command = Cli::command();
+    #[cfg(all(feature = "gpu", not(feature = "view")))]
+    let command = command.subcommand(ViewOptions::augment_args(Command::new("view")));
+    command
 }
 
 /// The model of the shaders, and the tables beside them.
@@ -333,6 +353,9 @@ pub(crate) struct ReportOptions {
     pub(crate) json: bool,
 }
 
+mod manual;
+pub(crate) use manual::{CompletionsOptions, ManOptions};
+
 mod environment;
 pub(crate) use environment::{EnvironmentOptions, LayoutName};
 
@@ -438,10 +461,13 @@ pub(crate) struct BenchOptions {
 #[cfg(feature = "gpu")]
 const BENCH_REPEATS: NonZeroU32 = NonZeroU32::new(30).expect("not zero");
 
-#[cfg(feature = "view")]
+#[cfg(feature = "gpu")]
+#[cfg_attr(not(feature = "view"), expect(dead_code, reason = "the reference lists these options without a window too"))]
 mod view;
 #[cfg(feature = "view")]
-pub(crate) use view::{ThemeName, ViewOptions};
+pub(crate) use view::ThemeName;
+#[cfg(feature = "gpu")]
+pub(crate) use view::ViewOptions;
 
 #[derive(Debug, Args)]
 #[command(
@@ -609,8 +635,6 @@ fn positive(text: &str) -> Result<f64, String> {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
-
     use super::*;
 
     /// The table of features and the attributes of the verbs say the same.

@@ -15,7 +15,16 @@ use crate::cli::BakeOptions;
 const PERIOD: Duration = Duration::from_millis(200);
 
 /// Time of the last change and length of each file; `None` where it cannot be read.
-type State = BTreeMap<PathBuf, Option<(SystemTime, u64)>>;
+type Files = BTreeMap<PathBuf, Option<(SystemTime, u64)>>;
+
+/// The files that matter.
+#[derive(PartialEq)]
+struct State {
+    /// Materials that are found now.
+    found: Files,
+    /// Files that the last bake read.
+    read: Files,
+}
 
 /// Bakes, and again whenever files have changed and then rested for a while, until the process is ended. Files that cannot be used are named, and waited for.
 pub(super) fn run(options: &BakeOptions) -> Outcome {
@@ -38,9 +47,9 @@ pub(super) fn run(options: &BakeOptions) -> Outcome {
 /// Waits until files are others than before, and stay so for a period.
 fn settled(options: &BakeOptions, read: &[PathBuf], before: &State) {
     let mut last = state(options, read);
-    // The bake may have taken so long that files changed meanwhile.
-    let is_known = |(path, state): (&PathBuf, &Option<_>)| before.get(path).is_none_or(|then| then == state);
-    let mut is_changed = !last.iter().all(is_known);
+    // The bake may have taken so long that files changed meanwhile, or came.
+    let is_known = |(path, state): (&PathBuf, &Option<_>)| before.read.get(path).is_none_or(|then| then == state);
+    let mut is_changed = last.found != before.found || !last.read.iter().all(is_known);
     loop {
         sleep(PERIOD);
         let now = state(options, read);
@@ -52,12 +61,11 @@ fn settled(options: &BakeOptions, read: &[PathBuf], before: &State) {
     }
 }
 
-/// The files that matter: those that are found now, and those that were read last.
 fn state(options: &BakeOptions, read: &[PathBuf]) -> State {
-    let found = find(&options.sources.paths).unwrap_or_default();
     let metadata = |path: PathBuf| {
         let state = std::fs::metadata(&path).and_then(|m| Ok((m.modified()?, m.len()))).ok();
         (path, state)
     };
-    found.into_iter().chain(read.iter().cloned()).map(metadata).collect()
+    let found = find(&options.sources.paths).unwrap_or_default();
+    State { found: found.into_iter().map(metadata).collect(), read: read.iter().cloned().map(metadata).collect() }
 }
