@@ -54,7 +54,7 @@ pub(crate) fn run(options: &BakeOptions) -> Outcome {
         let bake = Bake { options: limits, targets, forms, functions, observer, ..Bake::default() };
         Ok::<_, Failure>(Package::new(&materials, &bake, &MemoryStore::default())?.encode(options.compression())?)
     })?;
-    whole(|| encoded.write(&options.out))?;
+    whole(&options.out, || encoded.write(&options.out))?;
     let manifest = &encoded.manifest;
     told.extend(misses::name(manifest, options.quiet)?);
 
