@@ -81,7 +81,7 @@ fn publish_where(
     let (_lock, published) = match lock(folder, &mut made) {
         Ok(lock) => {
             let settled = settle::settle(folder).and_then(|()| allowed());
-            (Some(lock), settled.and_then(|()| replace(folder, files, &mut made)))
+            (Some(lock), settled.and_then(|()| replace(folder, files)))
         }
         Err(error) => (None, Err(error)),
     };
@@ -106,20 +106,18 @@ fn lock(folder: &Path, made: &mut Vec<PathBuf>) -> Result<File, PackageError> {
 }
 
 /// Stages the files that are not in place yet, and publishes them.
-fn replace(folder: &Path, files: &[(&str, &[u8])], made: &mut Vec<PathBuf>) -> Result<(), PackageError> {
+fn replace(folder: &Path, files: &[(&str, &[u8])]) -> Result<(), PackageError> {
     let is_new = |(path, bytes): &&(&str, &[u8])| !stage::holds(&folder.join(path), bytes);
     let files: Vec<_> = files.iter().filter(is_new).copied().collect();
     if files.is_empty() {
         return Ok(());
     }
     let (new, ready) = (folder.join(NEW), folder.join(READY));
-    let staged = stage::stage(folder, &files, made);
+    let staged = stage::stage(folder, &files);
     if let Err(error) = staged.and_then(|()| at("write to", folder, std::fs::rename(&new, &ready))) {
-        let _ = std::fs::remove_dir_all(&new);
+        let _ = settle::sweep(folder);
         return Err(error);
     }
-    // From here on they are folders of the new generation.
-    made.clear();
     settle::settle(folder)
 }
 

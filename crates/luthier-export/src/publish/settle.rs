@@ -1,6 +1,7 @@
 //! Files at their places: what is ready is moved there, and what it replaces goes.
 
 use std::collections::BTreeSet;
+use std::io;
 use std::path::{Component, Path, PathBuf};
 
 use serde_json::Value;
@@ -10,10 +11,8 @@ use crate::{MANIFEST, PackageError};
 
 /// Moves what is ready to its places, the manifest last, and removes what an interrupted program left.
 pub(super) fn settle(folder: &Path) -> Result<(), PackageError> {
-    let (new, ready) = (folder.join(NEW), folder.join(READY));
-    if new.exists() {
-        at("remove", &new, std::fs::remove_dir_all(&new))?;
-    }
+    sweep(folder)?;
+    let ready = folder.join(READY);
     if !ready.exists() {
         return Ok(());
     }
@@ -34,6 +33,33 @@ pub(super) fn settle(folder: &Path) -> Result<(), PackageError> {
         place(&list)?;
     }
     at("remove", &ready, std::fs::remove_dir_all(&ready))
+}
+
+/// Removes files that were not published, and the folders at their places that were made for them.
+pub(super) fn sweep(folder: &Path) -> Result<(), PackageError> {
+    let new = folder.join(NEW);
+    if !new.exists() {
+        return Ok(());
+    }
+    let mut folders = Vec::new();
+    at("list", &new, list_folders(&new, &mut folders))?;
+    // The innermost come last. One that holds something stays.
+    for inner in folders.iter().rev().filter_map(|inner| inner.strip_prefix(&new).ok()) {
+        let _ = std::fs::remove_dir(folder.join(inner));
+    }
+    at("remove", &new, std::fs::remove_dir_all(&new))
+}
+
+/// All folders below a folder.
+fn list_folders(folder: &Path, folders: &mut Vec<PathBuf>) -> io::Result<()> {
+    for entry in std::fs::read_dir(folder)? {
+        let entry = entry?;
+        if entry.file_type()?.is_dir() {
+            folders.push(entry.path());
+            list_folders(&entry.path(), folders)?;
+        }
+    }
+    Ok(())
 }
 
 /// Removes what the list in place names and the next one does not, and the folders that this empties.

@@ -17,10 +17,19 @@ pub(super) fn make(folder: &Path, made: &mut Vec<PathBuf>) -> Result<(), Package
             Ok(()) => made.push(missing.to_owned()),
             // Another program was faster.
             Err(error) if error.kind() == ErrorKind::AlreadyExists && missing.is_dir() => {}
-            Err(error) => return at("make the folder", missing, Err(error)),
+            Err(error) => return at("make the folder", missing, Err(in_the_way(missing, error))),
         }
     }
     Ok(())
+}
+
+/// What is in the way of a folder, in words that do not depend on the system.
+fn in_the_way(folder: &Path, error: io::Error) -> io::Error {
+    match std::fs::symlink_metadata(folder) {
+        Ok(found) if found.is_symlink() => io::Error::other("a broken link is in its place"),
+        Ok(_) => io::Error::other("a file is in its place"),
+        Err(_) => error,
+    }
 }
 
 /// Whether a place holds a regular file of these bytes.
@@ -30,7 +39,7 @@ pub(super) fn holds(place: &Path, bytes: &[u8]) -> bool {
 }
 
 /// Writes all files into a folder of their own, and makes sure that nothing will be in the way of any.
-pub(super) fn stage(folder: &Path, files: &[(&str, &[u8])], made: &mut Vec<PathBuf>) -> Result<(), PackageError> {
+pub(super) fn stage(folder: &Path, files: &[(&str, &[u8])]) -> Result<(), PackageError> {
     let new = folder.join(NEW);
     at("write to", folder, std::fs::create_dir(&new))?;
     let mut parents = BTreeSet::new();
@@ -39,9 +48,8 @@ pub(super) fn stage(folder: &Path, files: &[(&str, &[u8])], made: &mut Vec<PathB
         if place.is_dir() {
             return at("write", &place, Err(ErrorKind::IsADirectory.into()));
         }
-        for (parent, made) in [(file.parent(), &mut Vec::new()), (place.parent(), &mut *made)] {
-            parent.map_or(Ok(()), |parent| make(parent, made))?;
-        }
+        // First the one that tells which others were made, should this end here.
+        [file.parent(), place.parent()].into_iter().flatten().try_for_each(|parent| make(parent, &mut Vec::new()))?;
         parents.extend(place.parent().map(Path::to_owned));
         at("write", &place, std::fs::write(&file, bytes))?;
     }

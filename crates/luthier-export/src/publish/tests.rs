@@ -61,6 +61,20 @@ fn unfinished_files_are_swept() {
     assert_eq!(names(folder.path()), ["a.wgsl", "manifest.json"]);
 }
 
+/// Killed after it had made a folder for a file: the folder goes, unless something is in it.
+#[test]
+fn folders_for_unfinished_files_are_swept() {
+    let folder = folder();
+    for at in [NEW, ""] {
+        std::fs::create_dir_all(folder.path().join(at).join("maps/deep")).unwrap();
+        std::fs::create_dir_all(folder.path().join(at).join("mine")).unwrap();
+    }
+    std::fs::write(folder.path().join("mine/note.txt"), "mine").unwrap();
+    put(folder.path(), &generation("a.wgsl", "first")).unwrap();
+    assert_eq!(names(folder.path()), ["a.wgsl", "manifest.json", "mine/note.txt"]);
+    assert!(!folder.path().join("maps").exists());
+}
+
 /// Killed after every single move of a publication: readers see the new generation whole, and the next one finds its place.
 #[test]
 fn a_publication_that_was_interrupted_is_read_and_completed() {
