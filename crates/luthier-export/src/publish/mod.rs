@@ -6,6 +6,10 @@
 //! removed. One program publishes into a folder at a time: others wait for its lock on the folder.
 //!
 //! A file whose bytes are in place already is not staged: it keeps its time of modification, and build systems see that it did not change.
+//!
+//! Nothing is flushed to the disk (`fsync`) before it is published. That cost 150 ms to 200 ms for the 30 files of a bake of `materials` on
+//! ext4, against 3 ms to 8 ms without. After a loss of power files may be empty: readers know them by their hashes, and the next bake
+//! writes them again, because it compares bytes and not times.
 
 mod settle;
 mod stage;

@@ -75,6 +75,24 @@ fn folders_for_unfinished_files_are_swept() {
     assert!(!folder.path().join("maps").exists());
 }
 
+/// Files that were not on the disk yet when power was lost are empty, in place or on their way: the next bake writes them.
+#[test]
+fn files_that_a_power_loss_emptied_are_written_again() {
+    for emptied in ["a.wgsl", MANIFEST] {
+        for at in ["", READY] {
+            let folder = folder();
+            put(folder.path(), &generation("a.wgsl", "first")).unwrap();
+            std::fs::create_dir_all(folder.path().join(at)).unwrap();
+            std::fs::write(folder.path().join(at).join(emptied), "").unwrap();
+            let read = Folder::open(folder.path()).and_then(|f| f.read(&f.manifest().shaders[0].file));
+            assert!(read.is_err(), "{emptied} in {at:?} is noticed");
+            put(folder.path(), &generation("a.wgsl", "first")).unwrap();
+            assert_eq!(text(folder.path()), "first");
+            assert_eq!(names(folder.path()), ["a.wgsl", "manifest.json"]);
+        }
+    }
+}
+
 /// Killed after every single move of a publication: readers see the new generation whole, and the next one finds its place.
 #[test]
 fn a_publication_that_was_interrupted_is_read_and_completed() {
