@@ -22,6 +22,11 @@ together() {
   children=()
 }
 
+readers=()
+tidy() {
+  local reader
+  for reader in "${readers[@]}"; do kill "$reader" 2>/dev/null || true; done
+}
 cp -a ref-old out
 for kind in '' --no-lock; do
   "$python" -S "$crash/generation.py" watch out "$work/end$kind" old=ref-old new=ref-new $kind >"read$kind" &
