@@ -23,7 +23,7 @@ pub(super) fn make(folder: &Path, made: &mut Vec<PathBuf>) -> Result<(), Package
     Ok(())
 }
 
-/// What is in the way of a folder, in words that do not depend on the system.
+/// Error of a folder that cannot be made; where something is in its way, in words that do not depend on the system.
 fn in_the_way(folder: &Path, error: io::Error) -> io::Error {
     match std::fs::symlink_metadata(folder) {
         Ok(found) if found.is_symlink() => io::Error::other("a broken link is in its place"),
