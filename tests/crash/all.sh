@@ -18,7 +18,7 @@ fi
 
 said=$(mktemp -d)
 trap 'rm -rf "$said"' EXIT
-tests=(kill-at-rename kill-at-random signals concurrent faults)
+tests=(kill-at-rename kill-at-random signals concurrent store faults)
 failed=()
 for test in "${tests[@]}"; do
   words=("${quick[@]}")

@@ -4,9 +4,10 @@ use luthier_lut::{
     Atlas, AtlasLayout, Axis, Encoding, ErrorStats, Image, Mapping, RowBase, TableKind, TexelFormat, Values, balance,
 };
 use luthier_optics::color::Color;
+use serde::{Deserialize, Serialize};
 
 /// One tile, apron included: its values, its texels, and its error as sampled.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct TileData {
     pub(crate) model: String,
     pub(crate) truth: Image,

@@ -15,6 +15,7 @@ mod model_inputs;
 mod picture;
 mod progress;
 mod reradiation;
+mod store;
 mod surroundings;
 mod verb;
 #[cfg(feature = "view")]
@@ -31,8 +32,12 @@ fn main() -> ExitCode {
         return code;
     }
     interrupt::watch();
-    let outcome = match &luthier_terminal::parse::<Cli>(&OF_FEATURES).verb {
+    let line = luthier_terminal::parse::<Cli>(&OF_FEATURES);
+    store::configure(&line.store);
+    let outcome = match &line.verb {
         Verb::Bake(options) => verb::bake::run(options),
+        Verb::Merge(options) => verb::bake::merge(options),
+        Verb::Cache(verb) => verb::cache::run(verb),
         Verb::Check(options) => verb::check::run(options),
         Verb::Report(options) => verb::report::run(options),
         Verb::Audit(options) => verb::audit::run(options),
@@ -56,6 +61,7 @@ fn main() -> ExitCode {
         Verb::Ior(options) => verb::ior::run(options),
         Verb::Schema { scene } => verb::schema::run(*scene),
     };
+    store::close();
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.exit(),

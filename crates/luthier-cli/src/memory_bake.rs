@@ -8,13 +8,14 @@ use luthier_terminal::{Failure, Outcome};
 
 use crate::cli::Shading;
 use crate::materials::bakeable;
+use crate::store::store;
 
 /// A material by file, which is baked for pictures in some forms, or by its name in a bake on disk, shaded as that was; and its number.
 pub(crate) fn find(material: &str, shading: &Shading, forms: &[Form], out: &Path) -> Outcome<(Package, u32)> {
     let file = Path::new(material);
     if file.extension().is_some_and(|e| e == "toml") {
         let materials = bakeable(vec![read_one(file)?], shading, forms, false)?;
-        return Ok((Package::for_renderer(&lit(&materials))?, 0));
+        return Ok((Package::for_renderer(&lit(&materials), store()?)?, 0));
     }
     let package = Package::read(out)?;
     let number = package.manifest.material_index(material).ok_or_else(|| {

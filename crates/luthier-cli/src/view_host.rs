@@ -9,9 +9,12 @@ use std::time::SystemTime;
 use luthier_export::{Bake, MemoryStore, Package, Source, find, lit, lit_functions, read_one};
 use luthier_manifest::ShadingModel;
 use luthier_material::Material;
+use luthier_store::Layers;
 use luthier_terminal::{Failure, Outcome};
 use luthier_texture::png;
 use luthier_view::{Form, Host, MaterialFile, Screenshot};
+
+use crate::store::store;
 
 /// Time of the last change and length of each file that matters; `None` where it cannot be read.
 type Stamps = BTreeMap<PathBuf, Option<(SystemTime, u64)>>;
@@ -34,8 +37,8 @@ impl ViewHost {
 
     fn package(&self, material: &Material, form: Form) -> Outcome<Package> {
         let materials = lit(std::slice::from_ref(material));
-        let package =
-            Package::new(&materials, &Bake { functions: lit_functions(), ..Bake::wgsl(&[form]) }, &self.store)?;
+        let store = Layers(&[&self.store, store()?]);
+        let package = Package::new(&materials, &Bake { functions: lit_functions(), ..Bake::wgsl(&[form]) }, &store)?;
         self.store.sweep();
         Ok(package)
     }

@@ -35,7 +35,7 @@ pub use publish::{ENVIRONMENT, REPORT_FILES, REPORT_FOLDER, publish, publish_bes
 #[cfg(feature = "bake")]
 pub use doubts::{of_domain, of_model};
 #[cfg(feature = "bake")]
-pub use luthier_bake::{MemoryStore, Store};
+pub use luthier_bake::{MemoryStore, Missing, Share, Store};
 #[cfg(feature = "bake")]
 pub use luthier_material::{LeftOut, left_out};
 #[cfg(feature = "bake")]
@@ -45,7 +45,7 @@ pub use refusals::{refuse, refuse_too_many};
 #[cfg(feature = "bake")]
 pub use renderer::{lit, lit_functions};
 #[cfg(feature = "bake")]
-pub use sources::{Source, find, label, parse, read, read_image, read_one};
+pub use sources::{Source, find, label, parse, read, read_all, read_image, read_one};
 
 pub(crate) use publish::READY;
 

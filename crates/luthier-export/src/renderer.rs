@@ -1,6 +1,6 @@
 //! Packages for a renderer: in memory, with shaders in WGSL.
 
-use luthier_bake::MemoryStore;
+use luthier_bake::Store;
 use luthier_lut::TableKind;
 use luthier_manifest::{FunctionGroup, Functions, ShadingModel};
 use luthier_material::Material;
@@ -11,12 +11,12 @@ use crate::{Bake, ExportError, Package};
 const ENVIRONMENT_TABLES: [TableKind; 3] = [TableKind::Fresnel, TableKind::Fgd, TableKind::Film];
 
 impl Package {
-    /// Bakes materials for a renderer: both forms of the shader in WGSL, with what shows an environment. Nothing is kept for the next package.
+    /// Bakes materials for a renderer: both forms of the shader in WGSL, with what shows an environment.
     ///
     /// # Errors
     /// Those of [`Package::new`].
-    pub fn for_renderer(materials: &[Material]) -> Result<Self, ExportError> {
-        Self::new(materials, &Bake { functions: lit_functions(), ..Bake::wgsl(&[]) }, &MemoryStore::default())
+    pub fn for_renderer(materials: &[Material], store: &dyn Store) -> Result<Self, ExportError> {
+        Self::new(materials, &Bake { functions: lit_functions(), ..Bake::wgsl(&[]) }, store)
     }
 }
 

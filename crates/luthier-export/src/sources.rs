@@ -6,6 +6,7 @@ use std::string::FromUtf8Error;
 
 use luthier_lut::Image;
 use luthier_material::{Diagnostic, Material, Parsed, Severity};
+use rayon::prelude::*;
 
 use crate::make::file;
 use crate::{ExportError, input};
@@ -51,7 +52,15 @@ pub fn parse(label: &str, text: &str) -> Result<Material, ExportError> {
 /// # Errors
 /// [`ExportError::File`], [`ExportError::NoFiles`].
 pub fn read(paths: &[PathBuf]) -> Result<Vec<Source>, ExportError> {
-    find(paths)?.iter().map(|path| read_one(path)).collect()
+    read_all(&find(paths)?)
+}
+
+/// Reads files, side by side, in the order given.
+///
+/// # Errors
+/// [`ExportError::File`], of the first that cannot be read.
+pub fn read_all(paths: &[PathBuf]) -> Result<Vec<Source>, ExportError> {
+    paths.par_iter().map(|path| read_one(path)).collect::<Vec<_>>().into_iter().collect()
 }
 
 /// The files that [`read`] reads.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use luthier_environment::{Environment, Scenery};
-use luthier_export::{Package, lit, read};
+use luthier_export::{MemoryStore, Package, lit, read};
 use luthier_gpu::{Camera, Gpu, RenderSettings, Scene, Shape};
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::Material;
@@ -134,7 +134,7 @@ impl Pictures {
     ) -> Outcome<Self> {
         let mut shaded = material.clone();
         shaded.bake.model = Some(model);
-        let package = Package::for_renderer(&lit(&[shaded]))?;
+        let package = Package::for_renderer(&lit(&[shaded]), &MemoryStore::default())?;
         let scene = gpu.scene(&package, Form::Baked)?;
         let mut shown = Vec::new();
         for sky in skies {

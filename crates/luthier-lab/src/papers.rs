@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use luthier_bake::Options;
 use luthier_cost::{CostReport, Counts, Family, Harness, Kernel, Style, compile_apart};
-use luthier_export::{GENERATOR, Package, Shader, outline, read};
+use luthier_export::{GENERATOR, MemoryStore, Package, Shader, outline, read};
 use luthier_lut::TexelFormat;
 use luthier_manifest::{ColorMode, ShadingModel};
 use luthier_material::{FresnelMapping, FresnelSettings, Material};
@@ -141,7 +141,7 @@ const PAIRS: u32 = 20_000;
 /// [`FLOOR`] where that is darker. Nothing where there is no device.
 fn errors(material: &Material, texts: &[String]) -> Outcome<Vec<Option<f64>>> {
     let Ok(gpu) = luthier_gpu::Gpu::open() else { return Ok(vec![None; texts.len()]) };
-    let mut package = Package::for_renderer(std::slice::from_ref(material))?;
+    let mut package = Package::for_renderer(std::slice::from_ref(material), &MemoryStore::default())?;
     // Phong's shader would read another buffer.
     let is_elek = |text: &&String| text.contains("fn luthier_eval_elek");
     let pairs: Vec<Pair> = ParitySet::ALL

@@ -1,7 +1,9 @@
 //! Images of 32-bit floats, the unquantised form of tables and maps.
 
+use serde::{Deserialize, Serialize};
+
 /// A rectangle of texels in f32, row by row from the top, channels interleaved.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Image {
     /// Texels across.
     pub width: u32,

@@ -125,6 +125,7 @@ impl Effort {
 
 /// Encounters of the light from one direction with the facets of a perfectly reflecting micro-surface.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FacetStatistics {
     /// Weight of the first bounce per cosine node; the sum is the single-scattering albedo for F = 1.
     first: Vec<f64>,

@@ -12,6 +12,7 @@ pub const LUMINANCE: Rgb = [0.2126, 0.7152, 0.0722];
 
 /// Rule by which a function of wavelength becomes three numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Color {
     /// Integrated over 360 to 830 nm in 5 nm steps against the CIE 1931 2-degree observer under D65, in linear Rec.709.
     /// A perfect reflector is exactly (1, 1, 1). Channels may leave 0..1: real colours exceed the gamut.

@@ -22,6 +22,7 @@ impl Polarised {
 
 /// A film as the formulas see it: complex index and thickness over vacuum wavelength.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FilmLayer {
     /// Complex index of the film.
     pub ior: Complex64,

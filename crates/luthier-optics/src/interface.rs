@@ -75,6 +75,7 @@ impl Interface {
 
 /// An interface at one wavelength.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Monochrome {
     /// Index above, real.
     pub above: Complex64,
@@ -93,6 +94,7 @@ impl Monochrome {
 
 /// An interface at the wavelengths of a colour mode, ready to evaluate.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sampled {
     /// Channel weights and the interface at each wavelength.
     pub nodes: Vec<(Rgb, Monochrome)>,

@@ -5,6 +5,7 @@ use thiserror::Error;
 
 /// One sample of a complex index `n + i k` (`k >= 0` absorbs; phase convention e^{+i beta}).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct IorSample {
     /// Vacuum wavelength.
     pub wavelength_nm: f64,
@@ -42,6 +43,7 @@ pub enum IorError {
 /// Linear in wavelength is what the built-in data were resampled with; against a monotone cubic the
 /// normal-incidence reflectance of the built-in metals moves by at most 0.004.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ior {
     samples: Vec<IorSample>,
 }

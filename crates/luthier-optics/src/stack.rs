@@ -11,6 +11,7 @@ use crate::ior::Ior;
 
 /// A layered surface, from the exterior down.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Stack {
     /// The medium above the first layer; transparent (k = 0 everywhere).
     pub exterior: Ior,
@@ -20,6 +21,7 @@ pub struct Stack {
 
 /// One interface and what lies below it.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Layer {
     /// Coherent thin films on the interface, from the top down; they share its micro-surface.
     pub films: Vec<Film>,
@@ -38,6 +40,7 @@ impl Layer {
 
 /// Material below an interface.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Base {
     /// A transparent or absorbing medium, and the slab of it down to the next layer.
     Dielectric {
@@ -57,6 +60,7 @@ pub enum Base {
 
 /// A medium between two interfaces; it absorbs but does not scatter.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Slab {
     /// Thickness along the normal.
     pub thickness_um: f64,
@@ -73,6 +77,7 @@ impl Slab {
 
 /// An opaque diffuse reflector (Oren and Nayar 1994, full model; Lambert at `sigma = 0`).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Diffuse {
     /// Diffuse albedo per channel (linear Rec.709), each in 0..1.
     pub albedo: Rgb,
@@ -82,6 +87,7 @@ pub struct Diffuse {
 
 /// A coherent thin film.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Film {
     /// Index of the film.
     pub ior: Ior,
@@ -103,6 +109,7 @@ impl Film {
 
 /// Thickness of a film, constant or varying over the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FilmThickness {
     /// Thinnest.
     pub min_nm: f64,
@@ -119,6 +126,7 @@ impl FilmThickness {
 
 /// Slope distribution of a micro-surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Distribution {
     /// Beckmann and Spizzichino 1963: Gaussian slopes.
     Beckmann,
@@ -144,6 +152,7 @@ impl Distribution {
 
 /// A micro-surface: slope parameters along two tangents. `alpha_x == alpha_y == 0` is smooth.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Surface {
     /// Slope distribution.
     pub distribution: Distribution,

@@ -1,6 +1,6 @@
 //! Bakes of scenes: a model for each material, and only the code and the tables that these models need.
 
-use luthier_bake::{BakeError, MemoryStore, Options};
+use luthier_bake::{BakeError, Options, Store};
 use luthier_export::{Bake, ExportError, Package, PackageError, sha256};
 use luthier_lut::{FormatSet, TexelFormat};
 use luthier_manifest::{Budget, Functions, MaterialChoice, SceneBudget, SceneChoice, SceneError, ShadingModel, Target};
@@ -22,7 +22,7 @@ pub struct Director<'a> {
     materials: &'a [Material],
     targets: Vec<Target>,
     functions: Functions,
-    store: MemoryStore,
+    store: &'a dyn Store,
     costs: CostTable,
     baked: Option<Vec<Judge>>,
     full: Option<Vec<Judge>>,
@@ -91,8 +91,9 @@ enum Refusal {
 }
 
 impl<'a> Director<'a> {
-    /// `targets` are the languages of the shaders; their form is chosen with the models.
-    pub fn new(scene: &'a Scene, materials: &'a [Material], targets: Vec<Target>) -> Self {
+    /// `targets` are the languages of the shaders; their form is chosen with the models. What the store has is not
+    /// computed again.
+    pub fn new(scene: &'a Scene, materials: &'a [Material], targets: Vec<Target>, store: &'a dyn Store) -> Self {
         // Rows of lobes have one format.
         let has_rows = scene.target.formats.is_none_or(|formats| formats.has(TexelFormat::Rgba16Float));
         let costs = CostTable::shipped();
@@ -101,7 +102,7 @@ impl<'a> Director<'a> {
             materials,
             targets,
             functions: Functions::default(),
-            store: MemoryStore::default(),
+            store,
             costs: if has_rows { costs } else { costs.without(ShadingModel::Lobes) },
             baked: None,
             full: None,
@@ -188,11 +189,11 @@ impl<'a> Director<'a> {
         let (targets, functions) = (self.targets.clone(), self.functions.clone());
         let bake = Bake { targets, forms: vec![form], functions, refuses: false, ..Bake::default() };
         let package = match form {
-            Form::Full => Package::new(&materials, &bake, &self.store)?,
+            Form::Full => Package::new(&materials, &bake, self.store)?,
             Form::Baked => {
                 let formats = scene.target.formats.unwrap_or(FormatSet::CORE);
                 let bake = Bake { options: Options { formats, ..bake.options }, ..bake };
-                match tables(&materials, &bake, &self.store, judges, &mut choices, budgets, allow_miss)? {
+                match tables(&materials, &bake, self.store, judges, &mut choices, budgets, allow_miss)? {
                     Ok(package) => package,
                     Err(reason) => return Ok(Err(Refusal::Tables(reason))),
                 }
@@ -229,7 +230,7 @@ fn unfit(scene: &Scene, made: &Made) -> Option<String> {
 fn tables(
     materials: &[Material],
     bake: &Bake<'_>,
-    store: &MemoryStore,
+    store: &dyn Store,
     judges: &[Judge],
     choices: &mut [MaterialChoice],
     budgets: &[SceneBudget],

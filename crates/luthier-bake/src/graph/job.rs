@@ -8,14 +8,34 @@ use luthier_lut::TableKind;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
-use crate::graph::Inputs;
+use crate::graph::{Artefact, Inputs};
+use crate::tile::TileData;
 
-/// Changes whenever the same inputs give other bytes than before; part of every key.
+/// The revision of kinds of jobs that have none of their own.
 const REVISION: u32 = 5;
 
 /// SHA-256 of a job's inputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Key([u8; 32]);
+
+impl Key {
+    /// The SHA-256 of some bytes.
+    pub fn of(bytes: &[u8]) -> Self {
+        Self(Sha256::digest(bytes).into())
+    }
+
+    /// The hash of 64 hexadecimal digits, as [`fmt::Display`] writes it.
+    pub fn parse(hex: &str) -> Option<Self> {
+        let digits: Vec<u8> = hex.chars().map(|c| c.to_digit(16).map(|digit| digit as u8)).collect::<Option<_>>()?;
+        let bytes: Vec<u8> = digits.chunks_exact(2).map(|pair| pair[0] << 4 | pair[1]).collect();
+        Some(Self(bytes.try_into().ok().filter(|_| digits.len() == 64)?))
+    }
+
+    /// The bytes of the hash.
+    pub fn bytes(&self) -> &[u8; 32] {
+        &self.0
+    }
+}
 
 impl fmt::Display for Key {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -44,13 +64,16 @@ impl JobKind {
     }
 }
 
-/// Result of a job: `TileData` for tiles, a type of its own for intermediate results.
-pub(crate) type Output = Box<dyn Any + Send + Sync>;
-
 /// A computation, with everything that decides the result.
 pub(crate) trait Job: Any + fmt::Debug + Send + Sync {
     /// The kind, part of the key.
     fn kind(&self) -> JobKind;
+
+    /// Number that changes whenever the same inputs give other bytes than before; part of the key. That of a job on which this one depends need not
+    /// change it: stores go by the keys of both.
+    fn revision(&self) -> u32 {
+        REVISION
+    }
 
     /// Everything that decides the result.
     fn inputs(&self) -> Value;
@@ -61,11 +84,22 @@ pub(crate) trait Job: Any + fmt::Debug + Send + Sync {
     }
 
     /// The result, from those of the dependencies.
-    fn run(&self, inputs: &Inputs<'_>) -> Output;
+    fn run(&self, inputs: &Inputs<'_>) -> Artefact;
+
+    /// The result of bytes that a store kept; `None` where they are of something else.
+    fn decode(&self, bytes: &[u8]) -> Option<Artefact> {
+        Artefact::decode::<TileData>(bytes)
+    }
+
+    /// Whether stores on disk keep the result: not where reading it takes as long as making it.
+    fn is_kept(&self) -> bool {
+        true
+    }
 
     /// The hash of kind and inputs.
     fn key(&self) -> Key {
-        let text = json!({"kind": self.kind().name(), "revision": REVISION, "inputs": self.inputs()}).to_string();
-        Key(Sha256::digest(text.as_bytes()).into())
+        let text =
+            json!({"kind": self.kind().name(), "revision": self.revision(), "inputs": self.inputs()}).to_string();
+        Key::of(text.as_bytes())
     }
 }

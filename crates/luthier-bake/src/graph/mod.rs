@@ -1,17 +1,19 @@
 //! The graph of jobs and its execution.
 
+mod artefact;
 mod job;
 mod store;
 
 use std::any::Any;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
-pub(crate) use self::job::{Job, Output};
+pub use self::artefact::Artefact;
+pub(crate) use self::job::Job;
 pub use self::job::{JobKind, Key};
-pub use self::store::{Artefact, MemoryStore, Store};
+pub use self::store::{MemoryStore, Store, Task};
 use crate::tile::TileData;
 
 /// Told what happens, from any thread. It cannot change what is computed.
@@ -22,6 +24,8 @@ pub trait Observer: Sync {
     fn finished(&self, kind: JobKind);
     /// All jobs of one kind in one batch are about to run, or have run.
     fn batch(&self, kind: JobKind, running: bool);
+    /// So many jobs of a kind need not run, because a store has their results.
+    fn found(&self, _kind: JobKind, _jobs: usize) {}
 }
 
 /// An observer that does nothing.
@@ -34,10 +38,37 @@ impl Observer for Silent {
     fn batch(&self, _: JobKind, _: bool) {}
 }
 
-/// Distinct jobs, dependencies before dependants: by the longest way down to a job without dependencies, then by kind.
+/// A share of the jobs of a bake.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Share {
+    /// Number of the share, from 1.
+    pub index: u32,
+    /// Number of shares.
+    pub count: u32,
+}
+
+/// A job in a graph.
+#[derive(Debug)]
+struct Entry {
+    job: Arc<dyn Job>,
+    address: Key,
+    /// Place in the graph and key of each job that this one needs.
+    needs: Vec<(Place, Key)>,
+}
+
+impl Entry {
+    fn task(&self) -> Task<'_> {
+        Task::of(self.job.as_ref(), self.address)
+    }
+}
+
+/// The longest way down to a job without dependencies, and the kind.
+type Place = (u32, JobKind);
+
+/// Distinct jobs, dependencies before dependants.
 #[derive(Debug, Default)]
 pub(crate) struct Graph {
-    jobs: BTreeMap<(u32, JobKind), BTreeMap<Key, Arc<dyn Job>>>,
+    jobs: BTreeMap<Place, BTreeMap<Key, Entry>>,
 }
 
 /// Results by key.
@@ -54,15 +85,35 @@ impl Graph {
         self.insert(job).1
     }
 
-    fn insert(&mut self, job: Arc<dyn Job>) -> (u32, Key) {
-        let depth = job.dependencies().into_iter().map(|needed| 1 + self.insert(needed).0).max().unwrap_or(0);
+    fn insert(&mut self, job: Arc<dyn Job>) -> (Place, Key) {
+        let needs: Vec<(Place, Key)> = job.dependencies().into_iter().map(|needed| self.insert(needed)).collect();
+        let place = (needs.iter().map(|((depth, _), _)| depth + 1).max().unwrap_or(0), job.kind());
         let key = job.key();
-        self.jobs.entry((depth, job.kind())).or_default().entry(key).or_insert(job);
-        (depth, key)
+        if !self.jobs.get(&place).is_some_and(|jobs| jobs.contains_key(&key)) {
+            let address = self.address(key, &needs);
+            self.jobs.entry(place).or_default().insert(key, Entry { job, address, needs });
+        }
+        (place, key)
+    }
+
+    /// The hash of a key, the addresses of the jobs that it needs, and the version of this crate.
+    fn address(&self, key: Key, needs: &[(Place, Key)]) -> Key {
+        let mut text = format!("luthier-bake {} {key}", env!("CARGO_PKG_VERSION"));
+        for (place, needed) in needs {
+            if let Some(entry) = self.jobs.get(place).and_then(|jobs| jobs.get(needed)) {
+                text.push_str(&entry.address.to_string());
+            }
+        }
+        Key::of(text.as_bytes())
     }
 
     fn all(&self) -> impl Iterator<Item = (Key, &Arc<dyn Job>)> {
-        self.jobs.values().flatten().map(|(key, job)| (*key, job))
+        self.jobs.values().flatten().map(|(key, entry)| (*key, &entry.job))
+    }
+
+    /// The addresses of all jobs.
+    pub(crate) fn addresses(&self) -> impl Iterator<Item = Key> {
+        self.jobs.values().flat_map(BTreeMap::values).map(|entry| entry.address)
     }
 
     /// The graph of some of its jobs, with all that these need.
@@ -72,6 +123,33 @@ impl Graph {
             some.add(job.clone());
         }
         some
+    }
+
+    /// The graph of a share of its jobs, with all that these need: of those that no other needs, one after the other for each share.
+    pub(crate) fn share(&self, share: Share, is_one: impl Fn(&dyn Job) -> bool) -> Self {
+        let inner = self.inner();
+        let outer =
+            self.jobs.iter().flat_map(|(&place, jobs)| jobs.iter().map(move |(&key, entry)| (place, key, entry)));
+        let outer = outer.filter(|(place, key, entry)| is_one(entry.job.as_ref()) && !inner.contains(&(*place, *key)));
+        let mut some = Self::default();
+        for (_, _, entry) in outer.skip(share.index as usize - 1).step_by(share.count as usize) {
+            some.add(entry.job.clone());
+        }
+        some
+    }
+
+    /// The jobs that others need.
+    fn inner(&self) -> BTreeSet<(Place, Key)> {
+        self.jobs.values().flat_map(BTreeMap::values).flat_map(|entry| entry.needs.iter().copied()).collect()
+    }
+
+    /// The number of jobs by kind whose results neither `results` nor the store has, and that would run.
+    pub(crate) fn count_missing(&self, store: &dyn Store, results: &mut Results) -> BTreeMap<JobKind, usize> {
+        let mut counts = BTreeMap::new();
+        for ((_, kind), _) in self.missing(store, results, &Silent) {
+            *counts.entry(kind).or_default() += 1;
+        }
+        counts
     }
 
     /// The graph of the jobs whose results are intermediate.
@@ -90,22 +168,47 @@ impl Graph {
 
     /// A job of a type by its key.
     pub(crate) fn get<J: Job>(&self, key: Key) -> Option<&J> {
-        let job = self.jobs.values().find_map(|jobs| jobs.get(&key))?;
-        (job.as_ref() as &dyn Any).downcast_ref()
+        let entry = self.jobs.values().find_map(|jobs| jobs.get(&key))?;
+        (entry.job.as_ref() as &dyn Any).downcast_ref()
     }
 
-    /// Runs everything that has no result yet on the rayon pool. Kinds run in their order, which puts dependencies first; jobs of one
-    /// kind run side by side.
-    pub(crate) fn run(mut self, observer: &dyn Observer, store: &dyn Store, mut results: Results) -> Results {
-        for jobs in self.jobs.values_mut() {
-            jobs.retain(|&key, _| {
-                if let Some(artefact) = store.get(key) {
-                    results.0.entry(key).or_insert(artefact);
+    /// The jobs that would run: those without a result that something needs which has none. Results that a store has are fetched.
+    fn missing(&self, store: &dyn Store, results: &mut Results, observer: &dyn Observer) -> BTreeSet<(Place, Key)> {
+        let inner = self.inner();
+        let mut missing: BTreeSet<(Place, Key)> = BTreeSet::new();
+        for (&place, jobs) in self.jobs.iter().rev() {
+            let is_needed = |key: Key| !inner.contains(&(place, key)) || missing.contains(&(place, key));
+            let open: Vec<(Key, &Entry)> = (jobs.iter().map(|(key, entry)| (*key, entry)))
+                .filter(|(key, _)| is_needed(*key) && !results.0.contains_key(key))
+                .collect();
+            let tasks: Vec<Task<'_>> = open.iter().map(|(_, entry)| entry.task()).collect();
+            let fetched = store.get_all(&tasks);
+            missing.retain(|(at, _)| *at != place);
+            let mut found = 0;
+            for ((key, entry), fetched) in open.into_iter().zip(fetched) {
+                if let Some(artefact) = fetched {
+                    results.0.insert(key, artefact);
+                    found += 1;
+                } else {
+                    missing.insert((place, key));
+                    missing.extend(entry.needs.iter().copied());
                 }
-                !results.0.contains_key(&key)
-            });
+            }
+            if found > 0 {
+                observer.found(place.1, found);
+            }
         }
-        observer.planned(self.jobs.values().map(BTreeMap::len).sum());
+        missing
+    }
+
+    /// Runs everything on the rayon pool that has no result yet, and of which the result is wanted: all but that of a job which only others need whose results
+    /// the store has. Kinds run in their order, which puts dependencies first; jobs of one kind run side by side.
+    pub(crate) fn run(mut self, observer: &dyn Observer, store: &dyn Store, mut results: Results) -> Results {
+        let missing = self.missing(store, &mut results, observer);
+        for (&place, jobs) in &mut self.jobs {
+            jobs.retain(|&key, _| missing.contains(&(place, key)));
+        }
+        observer.planned(missing.len());
         for ((_, kind), jobs) in self.jobs {
             if jobs.is_empty() {
                 continue;
@@ -113,9 +216,9 @@ impl Graph {
             observer.batch(kind, true);
             let done: Vec<(Key, Arc<Artefact>)> = jobs
                 .into_par_iter()
-                .map(|(key, job)| {
-                    let artefact = Arc::new(Artefact(job.run(&Inputs(&results))));
-                    store.put(key, &artefact);
+                .map(|(key, entry)| {
+                    let artefact = Arc::new(entry.job.run(&Inputs(&results)));
+                    store.put(&entry.task(), &artefact);
                     observer.finished(kind);
                     (key, artefact)
                 })
@@ -130,7 +233,7 @@ impl Graph {
 impl Results {
     /// The result of a job of which it has the type, if the job has run.
     pub(crate) fn get<T: Any>(&self, key: Key) -> Option<&T> {
-        self.0.get(&key)?.0.downcast_ref()
+        self.0.get(&key)?.get()
     }
 
     /// The tile of a planned job.

@@ -4,18 +4,74 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::graph::{Key, Output};
+use rayon::prelude::*;
 
-/// Result of a job: a function of the inputs whose hash is its [`Key`].
-#[derive(Debug)]
-pub struct Artefact(pub(crate) Output);
+use crate::graph::{Artefact, Job, JobKind, Key};
 
-/// Results by their keys. A job whose result is here is not run; a store may forget at any time.
+/// A job as stores know it.
+#[derive(Debug, Clone, Copy)]
+pub struct Task<'a> {
+    kind: JobKind,
+    address: Key,
+    result: Form<'a>,
+}
+
+/// How the bytes of a result are read.
+#[derive(Debug, Clone, Copy)]
+enum Form<'a> {
+    Job(&'a dyn Job),
+    Function(fn(&[u8]) -> Option<Artefact>),
+}
+
+impl<'a> Task<'a> {
+    /// A task without a job: bytes at this address are read by a function.
+    pub(crate) fn new(kind: JobKind, address: Key, decode: fn(&[u8]) -> Option<Artefact>) -> Self {
+        Self { kind, address, result: Form::Function(decode) }
+    }
+
+    pub(crate) fn of(job: &'a dyn Job, address: Key) -> Self {
+        Self { kind: job.kind(), address, result: Form::Job(job) }
+    }
+
+    /// Kind of the job.
+    pub fn kind(&self) -> JobKind {
+        self.kind
+    }
+
+    /// Hash of all that decides the bytes of the result: kind, inputs and revision of the job and of all on which it depends, and the version of this crate.
+    pub fn address(&self) -> Key {
+        self.address
+    }
+
+    /// Whether the result is worth keeping beyond the process.
+    pub fn is_kept(&self) -> bool {
+        match self.result {
+            Form::Job(job) => job.is_kept(),
+            Form::Function(_) => true,
+        }
+    }
+
+    /// The result of bytes that [`Artefact::encode`] has made of it; `None` where they are something else.
+    pub fn decode(&self, bytes: &[u8]) -> Option<Artefact> {
+        match self.result {
+            Form::Job(job) => job.decode(bytes),
+            Form::Function(decode) => decode(bytes),
+        }
+    }
+}
+
+/// Results by their addresses. A job whose result is here is not run; a store may forget at any time.
 pub trait Store: Sync {
-    /// The result of a key.
-    fn get(&self, key: Key) -> Option<Arc<Artefact>>;
+    /// The result of a job.
+    fn get(&self, task: &Task<'_>) -> Option<Arc<Artefact>>;
+
     /// Keeps a result.
-    fn put(&self, key: Key, artefact: &Arc<Artefact>);
+    fn put(&self, task: &Task<'_>, artefact: &Arc<Artefact>);
+
+    /// The results of some jobs, in their order: stores that are far away fetch them at once.
+    fn get_all(&self, tasks: &[Task<'_>]) -> Vec<Option<Arc<Artefact>>> {
+        tasks.par_iter().map(|task| self.get(task)).collect()
+    }
 }
 
 /// A store in memory.
@@ -48,16 +104,19 @@ impl MemoryStore {
 }
 
 impl Store for MemoryStore {
-    fn get(&self, key: Key) -> Option<Arc<Artefact>> {
+    fn get(&self, task: &Task<'_>) -> Option<Arc<Artefact>> {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        let found = kept.get_mut(&key)?;
+        let found = kept.get_mut(&task.address())?;
         found.is_used = true;
         Some(Arc::clone(&found.artefact))
     }
 
-    fn put(&self, key: Key, artefact: &Arc<Artefact>) {
+    fn put(&self, task: &Task<'_>, artefact: &Arc<Artefact>) {
         let artefact = Arc::clone(artefact);
-        self.kept.lock().unwrap_or_else(PoisonError::into_inner).insert(key, Kept { artefact, is_used: true });
+        self.kept
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .insert(task.address(), Kept { artefact, is_used: true });
     }
 }
 

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::fgd::{DOMAIN_ALPHA, DOMAIN_COS_THETA};
 use super::{Kind, Site};
-use crate::graph::{Inputs, Job, JobKind, Output};
+use crate::graph::{Artefact, Inputs, Job, JobKind};
 use crate::settings::{Ask, Shape, axis};
 use crate::tile::{TileData, lone_tile};
 use crate::{BakeError, json};
@@ -57,7 +57,7 @@ impl Job for EscapeJob {
         })
     }
 
-    fn run(&self, _: &Inputs<'_>) -> Output {
+    fn run(&self, _: &Inputs<'_>) -> Artefact {
         let [x, y] = &self.axes;
         let mut truth = Image::zeros(x.size, y.size, 1);
         for j in 0..y.size {
@@ -88,7 +88,7 @@ impl Job for EscapeJob {
              {DOMAIN_ALPHA}",
             self.eta
         );
-        Box::new(TileData { model, truth, texels: atlas.texels, bytes: atlas.bytes, error })
+        Artefact::new(TileData { model, truth, texels: atlas.texels, bytes: atlas.bytes, error })
     }
 }
 

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::{Kind, Site};
-use crate::graph::{Inputs, Job, JobKind, Output, Results};
+use crate::graph::{Artefact, Inputs, Job, JobKind, Results};
 use crate::plan::Plan;
 use crate::search::{Found, grids};
 use crate::settings::{Ask, Shape, axis};
@@ -78,8 +78,8 @@ impl Job for FilmJob {
         })
     }
 
-    fn run(&self, _: &Inputs<'_>) -> Output {
-        Box::new(self.tile())
+    fn run(&self, _: &Inputs<'_>) -> Artefact {
+        Artefact::new(self.tile())
     }
 }
 

@@ -9,16 +9,17 @@ use luthier_lut::{
     AtlasLayout, Axis, Comparison, ErrorStats, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan,
 };
 use luthier_manifest::{
-    AxesRecord, BaseRecord, Budget, Candidate, CandidateForm, LobesError, LobesRecord, MeasuredError, Search,
+    AxesRecord, BaseRecord, Budget, Candidate, CandidateForm, Decision, LobesError, LobesRecord, MeasuredError, Search,
     VaryingFactor, VaryingRecord,
 };
 use luthier_material::{Material, Patina};
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::{Kind, Site};
-use crate::graph::{Graph, Inputs, Job, JobKind, Output, Results};
+use crate::graph::{Artefact, Graph, Inputs, Job, JobKind, Results};
 use crate::plan::{Plan, color};
 use crate::search::{self, Found};
 use crate::settings::{Ask, Settings, Shape, axis};
@@ -35,7 +36,7 @@ const ROWS: usize = FitSettings::DEFAULT_ROWS;
 const STEPS: [usize; 4] = [1, 2, 3, 6];
 
 /// Jobs that fit lobes.
-const FIT: JobKind = JobKind::part("fit");
+pub(crate) const FIT: JobKind = JobKind::part("fit");
 
 /// Lobes tables.
 pub(crate) struct Table;
@@ -112,6 +113,7 @@ pub(crate) fn decide(
     plan: &Plan,
     results: &Results,
     budget: &Budget,
+    lock: &[Decision],
 ) -> Result<Option<Search>, BakeError> {
     let fits: Vec<&Fits> = plan.graph.of::<FitJob>().filter_map(|job| results.get(job.key())).collect();
     let most_lobes = |most: Option<usize>| fits.iter().map(|fits| fits.of(most).lobes()).max().unwrap_or(0);
@@ -133,11 +135,12 @@ pub(crate) fn decide(
         Candidate { form, bytes, cost, error }
     };
     let found = Found::new(TableKind::Lobes, 0.0, choices.iter().map(candidate).collect());
-    let chosen = search::choose(std::slice::from_ref(&found), budget, 0)?[0];
+    let found = std::slice::from_ref(&found);
+    let chosen = search::locked(found, lock, budget, 0).map_or_else(|| search::choose(found, budget, 0), Ok)?[0];
     let (most, i) = choices[chosen];
     settings.lobes = Some(most);
     settings.take_lobes(shape(most_lobes(Some(most)), STEPS[i]));
-    Ok(Some(search::report(&found, chosen, budget)))
+    Ok(Some(search::report(&found[0], chosen, budget)))
 }
 
 /// The fit of a material; with lobes of every number, where a search chooses among them.
@@ -208,7 +211,7 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
 }
 
 /// Lobes of a material, and their errors with every so many rows of [`STEPS`].
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 struct Fit {
     varied: Varied,
     errors: [FitError; STEPS.len()],
@@ -222,7 +225,7 @@ impl Fit {
 }
 
 /// Result of a [`FitJob`]: the lobes of bakes without a search, or those of up to no lobe, one, and so on.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 struct Fits(Vec<Fit>);
 
 impl Fits {
@@ -261,7 +264,7 @@ impl Job for FitJob {
         })
     }
 
-    fn run(&self, _: &Inputs<'_>) -> Output {
+    fn run(&self, _: &Inputs<'_>) -> Artefact {
         let Self { stack, color, varying, is_searched } = self;
         let traced = Traced::new(stack, color, *varying, FitSettings::default());
         let judge = Judge::new(stack, color, *varying);
@@ -271,7 +274,11 @@ impl Job for FitJob {
         };
         let wanted: Vec<(usize, f64)> =
             if *is_searched { (0..=LOBES).map(|most| (most, 0.0)).collect() } else { vec![(LOBES, EXCESS)] };
-        Box::new(Fits(wanted.into_iter().map(fit).collect()))
+        Artefact::new(Fits(wanted.into_iter().map(fit).collect()))
+    }
+
+    fn decode(&self, bytes: &[u8]) -> Option<Artefact> {
+        Artefact::decode::<Fits>(bytes)
     }
 }
 
@@ -324,7 +331,7 @@ impl Job for LobesJob {
         vec![self.fit.clone()]
     }
 
-    fn run(&self, inputs: &Inputs<'_>) -> Output {
+    fn run(&self, inputs: &Inputs<'_>) -> Artefact {
         let [x, y] = &self.axes;
         let fits: &Fits = inputs.part(self.fit.as_ref());
         let varied = fits.of(self.most).varied.clone().thinned(step(x.size));
@@ -385,6 +392,6 @@ impl Job for LobesJob {
             lobes.frame.index,
             color_in_words(&self.fit.color)
         );
-        Box::new(TileData { model, truth, texels: atlas.texels, bytes: atlas.bytes, error })
+        Artefact::new(TileData { model, truth, texels: atlas.texels, bytes: atlas.bytes, error })
     }
 }

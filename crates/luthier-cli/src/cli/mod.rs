@@ -13,6 +13,7 @@ use luthier_terminal::{Sources, named};
 
 use crate::directions::Angles;
 use crate::model_inputs::ModelInputs;
+use crate::store::StoreOptions;
 
 const AFTER_HELP: &str = "\
 Exit codes:
@@ -40,6 +41,8 @@ Examples:
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) verb: Verb,
+    #[command(flatten)]
+    pub(crate) store: StoreOptions,
 }
 
 /// Verbs that a cargo feature brings, and the feature.
@@ -50,6 +53,11 @@ pub(crate) const OF_FEATURES: [(&str, &str); 6] =
 pub(crate) enum Verb {
     /// Bake materials: textures, manifest and shaders
     Bake(BakeOptions),
+    /// Bake from what the shares of `luthier bake --shard` left in the store
+    Merge(BakeOptions),
+    /// Show, check or empty the store of results
+    #[command(subcommand)]
+    Cache(CacheVerb),
     /// Validate materials and scenes as `bake` would, without baking, and print the class of each surface
     Check(CheckOptions),
     /// Judge a bake: tables and shaders against the full evaluation in f64
@@ -129,6 +137,8 @@ pub(crate) struct BakeOptions {
     pub(crate) limits: Limits,
     #[command(flatten)]
     pub(crate) emission: Emission,
+    #[command(flatten)]
+    pub(crate) pipeline: Pipeline,
     /// Of a scene: if no model holds the budget, take the most accurate one
     #[arg(long)]
     pub(crate) allow_miss: bool,
@@ -150,6 +160,41 @@ pub(crate) struct BakeOptions {
     /// Print errors only
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+/// Options for build pipelines.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Build pipelines")]
+pub(crate) struct Pipeline {
+    /// Write nothing: exit with 1 and list what is stale where a bake would change the folder
+    #[arg(long, conflicts_with_all = ["dry_run", "watch", "shard", "relock", "depfile"])]
+    pub(crate) check: bool,
+    /// Write nothing: count the jobs that would run
+    #[arg(long, conflicts_with_all = ["watch", "shard", "relock", "depfile"])]
+    pub(crate) dry_run: bool,
+    /// Write the files that the bake depends on to FILE, as a rule of Make that Ninja reads, too
+    #[arg(long, value_name = "FILE", conflicts_with = "shard")]
+    pub(crate) depfile: Option<PathBuf>,
+    /// Bake again whenever a file changes
+    #[arg(long, conflicts_with = "shard")]
+    pub(crate) watch: bool,
+    /// Compute share I of N of the jobs into the store and publish nothing; `luthier merge` bakes from the shares
+    #[arg(long, value_name = "I/N", value_parser = share)]
+    pub(crate) shard: Option<luthier_bake::Share>,
+    /// Search sizes, axes and formats anew, and write them to luthier.lock beside the materials: later bakes keep them until a budget breaks
+    #[arg(long, conflicts_with_all = ["shard", "no_search"])]
+    pub(crate) relock: bool,
+    /// Print what happens as lines of JSON on standard error
+    #[arg(long)]
+    pub(crate) events: bool,
+}
+
+fn share(text: &str) -> Result<luthier_bake::Share, String> {
+    let numbers = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
+    match numbers {
+        Some((index, count)) if 1 <= index && index <= count => Ok(luthier_bake::Share { index, count }),
+        _ => Err("expected a share such as 2/8: a number from 1 on, and the number of shares".to_owned()),
+    }
 }
 
 /// The shaders to write.
@@ -197,12 +242,27 @@ pub(crate) struct Limits {
 
 impl Limits {
     /// The options of the baker under these limits.
-    pub(crate) fn options(&self) -> luthier_bake::Options {
+    pub(crate) fn options(&self) -> luthier_bake::Options<'static> {
         let &Self { max_abs, max_rel, delta_e, max_bytes, max_cost, max_lobe_err, max_albedo_err, no_search } = self;
         let budget =
             luthier_manifest::Budget { max_abs, max_rel, delta_e, max_bytes, max_cost, max_lobe_err, max_albedo_err };
         luthier_bake::Options { budget, search: !no_search, ..luthier_bake::Options::default() }
     }
+}
+
+/// Work on the store of results.
+#[derive(Debug, Subcommand)]
+pub(crate) enum CacheVerb {
+    /// Print the folder, the number of results and their bytes
+    Stats {
+        /// Print as JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// Read all results, remove those that are damaged, and exit with 1 if there were any
+    Verify,
+    /// Remove all results
+    Clear,
 }
 
 #[derive(Debug, Args)]

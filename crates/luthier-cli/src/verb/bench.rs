@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use crate::cli::BenchOptions;
 use crate::materials::models;
+use crate::store::store;
 
 /// Pairs of directions, near the mirror direction and anywhere by halves: few enough for any cache.
 const PAIRS: u32 = 1024;
@@ -132,7 +133,7 @@ fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -> Outcome<V
     for model in models {
         let mut shaded = material.clone();
         shaded.bake.model = Some(model);
-        let mut package = Package::for_renderer(std::slice::from_ref(&shaded))?;
+        let mut package = Package::for_renderer(std::slice::from_ref(&shaded), store()?)?;
         let reads_d = model.reads_distribution();
         let styles = [(Form::Full, true), (Form::Baked, !reads_d), (Form::Baked, true)];
         // Without a table of D to read, closed or not is the same.

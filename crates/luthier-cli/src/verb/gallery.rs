@@ -8,6 +8,7 @@ use luthier_terminal::{Failure, Outcome, open};
 use crate::cli::{GalleryOptions, ShapeName};
 use crate::materials::bakeable;
 use crate::picture::{Format, settings};
+use crate::store::store;
 
 /// Renders many materials side by side.
 pub(crate) fn run(options: &GalleryOptions) -> Outcome {
@@ -18,7 +19,7 @@ pub(crate) fn run(options: &GalleryOptions) -> Outcome {
         )));
     }
     let materials = bakeable(read(&options.sources.paths)?, &options.shading, &[], false)?;
-    let package = Package::for_renderer(&lit(&materials))?;
+    let package = Package::for_renderer(&lit(&materials), store()?)?;
     let look = &options.look;
     let settings = settings(look, options.shape.into(), options.size)?;
     let gpu = open(look.adapter.as_deref())?;

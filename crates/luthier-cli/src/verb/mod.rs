@@ -4,6 +4,7 @@ pub(crate) mod audit;
 pub(crate) mod bake;
 #[cfg(feature = "gpu")]
 pub(crate) mod bench;
+pub(crate) mod cache;
 pub(crate) mod check;
 #[cfg(feature = "gpu")]
 pub(crate) mod compare;

@@ -7,6 +7,7 @@ use luthier_terminal::{Failure, Outcome, open};
 
 use crate::cli::{PreviewOptions, ShapeName};
 use crate::picture::{Format, settings};
+use crate::store::store;
 use crate::verb::compare::ENVIRONMENT_SAMPLES;
 use crate::{grid, memory_bake};
 
@@ -15,7 +16,7 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
     let format = Format::of(&options.output)?;
     let (package, parts) = match (&options.material, options.shape) {
         (None, ShapeName::Grid) => {
-            let package = Package::for_renderer(&lit(&grid::materials()?))?;
+            let package = Package::for_renderer(&lit(&grid::materials()?), store()?)?;
             let parts = (0..Shape::Grid.materials() as u32).collect();
             (package, parts)
         }

@@ -125,6 +125,19 @@ fn replace(folder: &Path, files: &[(&str, &[u8])]) -> Result<(), PackageError> {
     settle::settle(folder)
 }
 
+/// The bytes of a file of the generation that a folder holds, wherever an interrupted publication left it.
+pub(crate) fn current(folder: &Path, path: &str) -> Option<Vec<u8>> {
+    [folder.join(READY), folder.to_owned()].iter().find_map(|folder| std::fs::read(folder.join(path)).ok())
+}
+
+/// The files that the manifest of a folder names and that are there, with forward slashes.
+pub(crate) fn named(folder: &Path) -> Vec<String> {
+    let Some(manifest) = current(folder, MANIFEST) else { return Vec::new() };
+    let named = settle::named_by(&String::from_utf8_lossy(&manifest));
+    let there = named.into_iter().filter(|path| folder.join(path).is_file());
+    there.map(|path| path.to_string_lossy().replace('\\', "/")).collect()
+}
+
 /// The file by which a folder is locked: the folder itself, or, where folders are no files, one inside it.
 fn handle(folder: &Path) -> io::Result<File> {
     if cfg!(unix) {

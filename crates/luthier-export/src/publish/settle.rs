@@ -91,7 +91,7 @@ pub(super) fn stale(folder: &Path, list: &Path, next: &str) -> Vec<PathBuf> {
 }
 
 /// The files that a manifest of luthier, of any schema, names with a hash, as far as they lie inside its folder.
-fn named_by(manifest: &str) -> Vec<PathBuf> {
+pub(super) fn named_by(manifest: &str) -> Vec<PathBuf> {
     let Ok(manifest) = serde_json::from_str::<Value>(manifest) else { return Vec::new() };
     if !manifest["generator"].as_str().is_some_and(|g| g.starts_with("luthier ")) {
         return Vec::new();

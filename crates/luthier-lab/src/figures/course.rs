@@ -1,5 +1,6 @@
 //! Figures of the course of Weidlich and Wilkie.
 
+use luthier_export::MemoryStore;
 use luthier_gpu::{Package, Shape};
 use luthier_lut::Image;
 use luthier_manifest::{Form, ShadingModel};
@@ -64,7 +65,7 @@ fn classes(studio: &Studio) -> Outcome<Made> {
     for (name, _, text) in CLASSES {
         materials.push(shaded(&material(name, text)?, name, ShadingModel::WeidlichWilkie));
     }
-    let package = Package::for_renderer(&materials)?;
+    let package = Package::for_renderer(&materials, &MemoryStore::default())?;
     let baked = studio.rendered(&package, Form::Baked, Shape::Sphere, |_, _| {})?;
     let full = studio.rendered(&package, Form::Full, Shape::Sphere, |_, _| {})?;
     for ((material, baked), full) in materials.iter().zip(&baked).zip(&full) {

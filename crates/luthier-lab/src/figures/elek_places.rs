@@ -1,6 +1,6 @@
 //! Figures of Elek 2010 about surfaces that vary.
 
-use luthier_export::{Package, lit};
+use luthier_export::{MemoryStore, Package, lit};
 use luthier_gpu::Shape;
 use luthier_lut::Image;
 use luthier_manifest::{Form, MapSlot, ShadingModel};
@@ -56,7 +56,7 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
     };
     let near = f64::from(DISTANCES[0]);
     let materials = [variant("fading", near, 1.0)?, variant("not-fading", 1e6, 1.0)?, variant("smooth", near, 0.0)?];
-    let package = Package::for_renderer(&lit(&materials))?;
+    let package = Package::for_renderer(&lit(&materials), &MemoryStore::default())?;
     let mut rows = [Vec::new(), Vec::new()];
     for (step, distance) in DISTANCES.into_iter().enumerate() {
         // A pixel is always as wide at the eye; what is far away is smaller, and enlarged.
@@ -125,7 +125,7 @@ fn patina(studio: &Studio) -> Outcome<Made> {
         (patina.extent, patina.transition) = (extent, TRANSITION);
         materials.push(stage);
     }
-    let package = Package::for_renderer(&materials)?;
+    let package = Package::for_renderer(&materials, &MemoryStore::default())?;
     let map = package.maps.iter().find(|map| map.slot == MapSlot::Patina).map(|map| &map.image);
     for extent in EXTENTS {
         let amounts = map

@@ -4,7 +4,7 @@ use std::cell::OnceCell;
 use std::io::ErrorKind;
 use std::sync::Arc;
 
-use luthier_export::Package;
+use luthier_export::{MemoryStore, Package};
 use luthier_gpu::{Environment, Gpu, RenderSettings, Shape};
 use luthier_layers::inputs::Inputs;
 use luthier_layers::model::Model;
@@ -73,7 +73,7 @@ impl Studio {
         shape: Shape,
         adjust: impl Fn(usize, &mut RenderSettings),
     ) -> Outcome<Vec<Image>> {
-        self.rendered(&Package::for_renderer(materials)?, form, shape, adjust)
+        self.rendered(&Package::for_renderer(materials, &MemoryStore::default())?, form, shape, adjust)
     }
 
     /// Renders each material of a bake, linear.

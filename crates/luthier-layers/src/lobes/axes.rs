@@ -12,6 +12,7 @@ use super::Row;
 /// Turned by half a circle, every stack is itself. One whose anisotropic interfaces have the same axes is its own mirror image in both, besides:
 /// a quarter of a circle is all of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Axes {
     /// Cosine and sine of the angle from the tangent of the stack to the first axis.
     pub turn: [f64; 2],

@@ -26,6 +26,7 @@ const SEEDS: u64 = 1 << 40;
 /// Errors of lobes against the simulated stack, the largest of a few views half way between rows, and between nodes of a factor or azimuths. The
 /// noise of the judge's paths is in them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FitError {
     /// Lobe error, the largest channel: half the sum of the differences of energies in cells, over the albedo. Cells are rings and eighths of a turn
     /// around the mirror direction.

@@ -76,6 +76,7 @@ use crate::oren_nayar;
 
 /// A stack in lobes, in the colour in which it was simulated.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lobes {
     /// The first interface; none for a diffuse base alone.
     pub(crate) first: Option<FirstInterface>,
@@ -89,6 +90,7 @@ pub struct Lobes {
 
 /// Numbers of lobes that hold at all views.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Frame {
     /// Relative index n of the medium in whose half vectors the lobes are.
     pub index: f64,
@@ -102,6 +104,7 @@ pub struct Frame {
 
 /// The light of a diffuse base in the remainder of lobes, in closed form in the albedo.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BaseLight {
     /// Albedo with which the stack was simulated, RGB.
     pub albedo: Rgb,
@@ -126,6 +129,7 @@ impl BaseLight {
 
 /// The first interface: its facets, and its reflectance by channel.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct FirstInterface {
     pub(crate) facets: Facets,
     pub(crate) reflectance: Sampled,

@@ -10,6 +10,7 @@ const FLATTEST: f64 = 0.001_745;
 
 /// A critical angle of the view, beyond which a medium that is optically thinner than the exterior lets nothing through.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Critical {
     /// Squared cotangent k of the angle; 0 where there is none.
     pub cot_sq: f64,
@@ -59,6 +60,7 @@ impl Critical {
 /// c is a mean of the cosine inside ([`Self::inside`]), whose slope is steep at the kink, and of `5 cos / (1 + 4 cos)` of the view, which
 /// tells flatter views apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ViewAxis {
     size: usize,
     critical: Critical,
@@ -171,6 +173,7 @@ fn root(x: f64, width: f64) -> f64 {
 
 /// Energies and shapes at a view.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Row {
     /// Directional albedo.
     pub albedo_dir: Rgb,
@@ -182,6 +185,7 @@ pub struct Row {
 
 /// A lobe at a view.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lobe {
     /// Energy over the share of the shape above the horizon.
     pub strength: Rgb,

@@ -71,6 +71,7 @@ impl Shape {
 ///
 /// The fifth power is Schlick's, for light that crosses an interface; the square is for whatever else darkens grazing light.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Wide {
     falloff: [f64; 2],
     axis: ViewAxis,

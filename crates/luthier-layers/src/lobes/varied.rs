@@ -10,6 +10,7 @@ use crate::elek::ALPHA_MIN;
 
 /// The part of a stack that a texture decides.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Varying {
     /// The slope parameters of all interfaces.
     Alpha,
@@ -116,6 +117,7 @@ impl Varying {
 /// Factors on slope parameters make lobes narrower by about as much. So rows are mixed after their slopes were divided by that factor, and are
 /// multiplied by it again.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Varied {
     /// The lobes of each node; one where nothing varies. They have the axis, the medium and the shape of the remainder in common, and the number
     /// of lobes.
@@ -125,6 +127,7 @@ pub struct Varied {
 
 /// The part of a stack that varies over the nodes.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Over {
     varying: Varying,
     /// The factor by which slopes are divided at least.

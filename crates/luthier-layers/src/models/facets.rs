@@ -63,6 +63,7 @@ impl Masking {
 
 /// The micro-surface in its own frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Facets {
     distribution: Distribution,
     alpha_x: f64,

@@ -12,11 +12,12 @@ use luthier_optics::ior::Ior;
 use luthier_optics::microsurface::TransparentFacets;
 use luthier_optics::stack::Distribution;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::crossed_curves;
 use super::smooth::savitzky_golay;
-use crate::graph::{Inputs, Job, JobKind, Output};
+use crate::graph::{Artefact, Inputs, Job, JobKind};
 use crate::json;
 
 /// Effort at the nodes, where neighbours share their noise, and at the points of the error scan.
@@ -48,7 +49,7 @@ pub(crate) struct FacetGridJob {
 }
 
 /// Statistics at the nodes of a table (row by row), and at the points of its error scan.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct FacetGrid {
     pub(crate) nodes: Vec<FacetStatistics>,
     /// Coordinates, and the statistics there.
@@ -68,8 +69,17 @@ impl Job for FacetGridJob {
         })
     }
 
-    fn run(&self, _: &Inputs<'_>) -> Output {
-        Box::new(self.grid())
+    fn run(&self, _: &Inputs<'_>) -> Artefact {
+        Artefact::new(self.grid())
+    }
+
+    /// It has 300 MB, and the truth of every interface that was made of it is kept.
+    fn is_kept(&self) -> bool {
+        false
+    }
+
+    fn decode(&self, bytes: &[u8]) -> Option<Artefact> {
+        Artefact::decode::<FacetGrid>(bytes)
     }
 }
 
@@ -159,7 +169,7 @@ const CROSSED_PROBES: u32 = 6;
 const CROSSED_FAMILIES: u32 = 4;
 
 /// The crossed part over coordinates `u` of the table.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct CrossedGrid {
     side: usize,
     values: [Vec<f64>; 3],
@@ -183,8 +193,12 @@ impl Job for CrossedJob {
         })
     }
 
-    fn run(&self, _: &Inputs<'_>) -> Output {
-        Box::new(self.grid())
+    fn run(&self, _: &Inputs<'_>) -> Artefact {
+        Artefact::new(self.grid())
+    }
+
+    fn decode(&self, bytes: &[u8]) -> Option<Artefact> {
+        Artefact::decode::<CrossedGrid>(bytes)
     }
 }
 

@@ -13,13 +13,14 @@ use luthier_optics::color::{Color, WavelengthNode, luminance};
 use luthier_optics::interface::{Interface, Sampled};
 use luthier_optics::stack::{Base, Distribution};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use self::facet_grid::{CrossedGrid, CrossedJob, FacetGrid, FacetGridJob};
 pub(crate) use self::facet_grid::{DOMAIN_ALPHA, DOMAIN_COS_THETA};
 use self::smooth::savitzky_golay;
 use super::{Kind, Site};
-use crate::graph::{Inputs, Job, JobKind, Output, Results};
+use crate::graph::{Artefact, Inputs, Job, JobKind, Results};
 use crate::grid::resampled;
 use crate::plan::Plan;
 use crate::search::{Found, grids};
@@ -107,7 +108,7 @@ pub(crate) struct FgdTruthJob {
 }
 
 /// Values at the nodes of a grid, RGB and never-crossed luminance, and at the points of an error scan.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct FgdTruth {
     pub(crate) image: Image,
     /// Axis values, and the function there.
@@ -141,8 +142,12 @@ impl Job for FgdTruthJob {
         jobs
     }
 
-    fn run(&self, inputs: &Inputs<'_>) -> Output {
-        Box::new(self.truth(inputs))
+    fn run(&self, inputs: &Inputs<'_>) -> Artefact {
+        Artefact::new(self.truth(inputs))
+    }
+
+    fn decode(&self, bytes: &[u8]) -> Option<Artefact> {
+        Artefact::decode::<FgdTruth>(bytes)
     }
 }
 
@@ -249,7 +254,7 @@ impl Job for FgdJob {
         vec![Arc::new(self.truth.clone())]
     }
 
-    fn run(&self, inputs: &Inputs<'_>) -> Output {
+    fn run(&self, inputs: &Inputs<'_>) -> Artefact {
         let FgdTruth { image, probes, kinks, slack, slack_rms } = inputs.part(&self.truth);
         let [x, y] = &self.axes;
         let truth =
@@ -271,7 +276,7 @@ impl Job for FgdJob {
             self.truth.distribution.name(),
             color_in_words(&self.truth.color)
         );
-        Box::new(TileData { model, truth, texels: atlas.texels, bytes: atlas.bytes, error })
+        Artefact::new(TileData { model, truth, texels: atlas.texels, bytes: atlas.bytes, error })
     }
 }
 

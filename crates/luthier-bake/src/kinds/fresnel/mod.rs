@@ -16,7 +16,7 @@ use luthier_optics::interface::{Interface, Sampled};
 use serde_json::{Value, json};
 
 use super::{Kind, Site};
-use crate::graph::{Inputs, Job, JobKind, Output, Results};
+use crate::graph::{Artefact, Inputs, Job, JobKind, Results};
 use crate::plan::Plan;
 use crate::search::Found;
 use crate::settings::{Ask, Asked, Shape, axis};
@@ -104,8 +104,8 @@ impl Job for FresnelJob {
         })
     }
 
-    fn run(&self, _: &Inputs<'_>) -> Output {
-        Box::new(self.tile())
+    fn run(&self, _: &Inputs<'_>) -> Artefact {
+        Artefact::new(self.tile())
     }
 }
 

@@ -11,7 +11,7 @@ use luthier_optics::ior::Ior;
 use serde_json::{Value, json};
 
 use super::{Kind, Site};
-use crate::graph::{Inputs, Job, JobKind, Output, Results};
+use crate::graph::{Artefact, Inputs, Job, JobKind, Results};
 use crate::plan::Plan;
 use crate::search::Found;
 use crate::settings::{Ask, Asked, Shape, axis};
@@ -76,8 +76,8 @@ impl Job for PhaseJob {
         })
     }
 
-    fn run(&self, _: &Inputs<'_>) -> Output {
-        Box::new(self.tile())
+    fn run(&self, _: &Inputs<'_>) -> Artefact {
+        Artefact::new(self.tile())
     }
 }
 

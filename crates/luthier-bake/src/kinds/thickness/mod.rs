@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 use self::relief::{Field, Relief};
 use super::{Kind, Site};
-use crate::graph::{Inputs, Job, JobKind, Output};
+use crate::graph::{Artefact, Inputs, Job, JobKind};
 use crate::settings::{Ask, Shape, axis};
 use crate::tile::{TileData, lone_tile};
 use crate::{BakeError, json};
@@ -86,7 +86,7 @@ impl Job for ThicknessJob {
         })
     }
 
-    fn run(&self, _: &Inputs<'_>) -> Output {
+    fn run(&self, _: &Inputs<'_>) -> Artefact {
         let [x, y] = &self.axes;
         let surface = Surface::new(self);
         let channels = self.format.channels();
@@ -111,7 +111,7 @@ impl Job for ThicknessJob {
             },
             |u| u.to_vec(),
         );
-        Box::new(TileData {
+        Artefact::new(TileData {
             model: match channels {
                 1 => "d/(2 d_max); Granier and Heidrich 2003 sec. 6".into(),
                 _ => "d/(2 d_max), slopes dd/dx and dd/dy, sqrt(1 + slopes^2); Granier and Heidrich 2003 sec. 6".into(),

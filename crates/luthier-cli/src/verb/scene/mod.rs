@@ -15,6 +15,7 @@ use crate::cli::BakeOptions;
 use crate::interrupt::whole;
 use crate::materials::refuse_environment;
 use crate::misses;
+use crate::store::store;
 use crate::verb::check::diagnostics;
 
 /// The scenes among the files; `None` where there is none, and files are materials.
@@ -37,10 +38,10 @@ pub(super) fn find(paths: &[PathBuf]) -> Outcome<Option<Vec<PathBuf>>> {
     }
 }
 
-fn director<'a>(options: &BakeOptions, scene: &'a Scene, materials: &'a [Material]) -> Director<'a> {
-    let director = Director::new(scene, materials, options.emission.targets());
+fn director<'a>(options: &BakeOptions, scene: &'a Scene, materials: &'a [Material]) -> Outcome<Director<'a>> {
+    let director = Director::new(scene, materials, options.emission.targets(), store()?);
     let director = director.with_functions(options.emission.functions());
-    if options.shading.no_fit { director.without_fits() } else { director }
+    Ok(if options.shading.no_fit { director.without_fits() } else { director })
 }
 
 /// Bakes a scene, or prints what budgets would choose for some.
@@ -69,7 +70,7 @@ pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
         return Err(Failure::Usage(anyhow::anyhow!(text)));
     };
     let (scene, materials) = read(path, options.quiet)?;
-    let mut director = director(options, &scene, &materials);
+    let mut director = director(options, &scene, &materials)?;
     let made = pool.install(|| director.step(None, options.allow_miss)).map_err(failure)?;
     let is_shown = made.package.manifest.materials.iter().any(|m| m.model == ShadingModel::Lobes);
     refuse_environment(&options.emission.functions, is_shown)?;
@@ -107,7 +108,7 @@ fn tighten(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
     let mut tightened = Vec::new();
     for path in scenes {
         let (scene, materials) = read(path, options.quiet)?;
-        let mut director = director(options, &scene, &materials);
+        let mut director = director(options, &scene, &materials)?;
         let mut step = |&limit: &f64| director.step(Some(limit), options.allow_miss).map_err(failure);
         let steps: Vec<Made> = budgets.iter().map(&mut step).collect::<Outcome<_>>()?;
         tightened.push((scene, steps));

@@ -17,6 +17,7 @@ use crate::elek::ALPHA_MIN;
 
 /// A patina where it has grown whole.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Cover {
     /// Share of the light that enters it which scattering in it sends back, as wide light.
     pub diffuse_albedo: Rgb,

@@ -1,0 +1,192 @@
+//! The store in a folder.
+
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, SystemTime};
+
+use luthier_bake::{Artefact, Key, Store, Task};
+use tempfile::NamedTempFile;
+use thiserror::Error;
+
+use crate::entry::{pack, unpack};
+
+/// Folder of the entries.
+pub(crate) const OBJECTS: &str = "objects";
+
+/// Folder of entries that are being written.
+pub(crate) const TEMPORARY: &str = "tmp";
+
+/// An entry that was read is marked as used where its last mark is older than this.
+const MARK_AGE: Duration = Duration::from_secs(3600);
+
+/// Files of writers that were killed are removed when they are as old as this.
+const LEFT_AGE: Duration = Duration::from_secs(3600);
+
+/// Why a store cannot be used.
+#[derive(Debug, Error)]
+#[error("cannot {action} {path}: {source}")]
+pub struct StoreError {
+    /// The action in words.
+    action: &'static str,
+    /// The file or folder.
+    path: PathBuf,
+    /// Error of the system.
+    source: io::Error,
+}
+
+/// An error of the system about a path of the store.
+pub(crate) fn at<T>(action: &'static str, path: &Path, result: io::Result<T>) -> Result<T, StoreError> {
+    result.map_err(|source| StoreError { action, path: path.to_owned(), source })
+}
+
+/// Results of jobs in a folder.
+///
+/// A store never makes a bake fail: an entry that cannot be read is computed again, and one that cannot be written is not kept.
+/// [`Self::problem`] has the first reason.
+#[derive(Debug)]
+pub struct DiskStore {
+    pub(crate) root: PathBuf,
+    /// Bytes that entries may have together.
+    pub(crate) limit: u64,
+    /// Bytes that this process has written.
+    pub(crate) written: AtomicU64,
+    problem: Mutex<Option<StoreError>>,
+}
+
+impl DiskStore {
+    /// Opens the store in a folder, which is made if it does not exist. Entries of more than `limit` bytes together are removed by [`Self::close`], those first that
+    /// were not used for the longest time.
+    ///
+    /// # Errors
+    /// [`StoreError`] where the folder can be neither made nor listed.
+    pub fn open(root: &Path, limit: u64) -> Result<Self, StoreError> {
+        let temporary = root.join(TEMPORARY);
+        at("make the folder", &temporary, fs::create_dir_all(&temporary))?;
+        let store = Self { root: root.to_owned(), limit, written: AtomicU64::new(0), problem: Mutex::new(None) };
+        store.sweep(&temporary)?;
+        Ok(store)
+    }
+
+    /// The folder.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// The first thing that went wrong, once.
+    pub fn problem(&self) -> Option<StoreError> {
+        self.problem.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    /// Bytes that are no result of a job, by the hash of all that decides them.
+    pub fn bytes(&self, kind: &str, address: Key) -> Option<Vec<u8>> {
+        self.read(kind, address)
+    }
+
+    /// Keeps such bytes.
+    pub fn put_bytes(&self, kind: &str, address: Key, bytes: &[u8]) {
+        self.write(kind, address, bytes);
+    }
+
+    /// Removes what writers left that were killed.
+    fn sweep(&self, temporary: &Path) -> Result<(), StoreError> {
+        for file in at("list", temporary, fs::read_dir(temporary))?.flatten() {
+            let age = file.metadata().and_then(|m| m.modified()).ok().and_then(|time| time.elapsed().ok());
+            if age.is_some_and(|age| age > LEFT_AGE) {
+                // Another process may have removed it.
+                let _ = fs::remove_file(file.path());
+            }
+        }
+        Ok(())
+    }
+
+    fn path(&self, kind: &str, address: Key) -> PathBuf {
+        let hex = address.to_string();
+        self.root.join(OBJECTS).join(&hex[..2]).join(format!("{}-{kind}", &hex[2..]))
+    }
+
+    /// The result at an address. A damaged entry is removed.
+    fn read(&self, kind: &str, address: Key) -> Option<Vec<u8>> {
+        let path = self.path(kind, address);
+        let bytes = match fs::read(&path) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return None,
+            Err(error) => return self.note(at("read", &path, Err(error))),
+        };
+        let Some(result) = unpack(address, &bytes) else {
+            return self.note(
+                at("read", &path, Err(io::Error::other("the entry is damaged, and is made anew")))
+                    .or_else(|damaged| at("remove", &path, fs::remove_file(&path)).and(Err(damaged))),
+            );
+        };
+        let result = result.to_vec();
+        mark(&path);
+        Some(result)
+    }
+
+    fn write(&self, kind: &str, address: Key, result: &[u8]) {
+        let bytes = pack(address, result);
+        if self.note(self.place(&self.path(kind, address), &bytes)).is_some() {
+            self.written.fetch_add(bytes.len() as u64, Ordering::Relaxed);
+        }
+    }
+
+    /// Writes a file beside its place, and renames it.
+    fn place(&self, path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
+        let temporary = self.root.join(TEMPORARY);
+        let mut file = at("write into", &temporary, temporary_file(&temporary))?;
+        at("write into", &temporary, file.write_all(bytes))?;
+        if let Some(folder) = path.parent().filter(|folder| !folder.is_dir()) {
+            at("make the folder", folder, fs::create_dir_all(folder))?;
+        }
+        at("write", path, file.persist(path).map(drop).map_err(|error| error.error))
+    }
+
+    /// Keeps the first error.
+    fn note<T>(&self, result: Result<T, StoreError>) -> Option<T> {
+        let keep = |error| {
+            self.problem.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+        };
+        result.map_err(keep).ok()
+    }
+}
+
+/// A file with a name that no other has, which goes away unless it is renamed. Others may read it as they may any new file.
+fn temporary_file(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    let builder = builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
+}
+
+/// Marks an entry as used now, where the last mark is old.
+fn mark(path: &Path) {
+    let is_old = |time: SystemTime| time.elapsed().is_ok_and(|age| age > MARK_AGE);
+    let is_due = fs::metadata(path).and_then(|m| m.modified()).is_ok_and(is_old);
+    if is_due && let Ok(file) = File::options().append(true).open(path) {
+        let _ = file.set_modified(SystemTime::now());
+    }
+}
+
+impl Store for DiskStore {
+    fn get(&self, task: &Task<'_>) -> Option<Arc<Artefact>> {
+        if !task.is_kept() {
+            return None;
+        }
+        let bytes = self.read(task.kind().name(), task.address())?;
+        task.decode(&bytes).map(Arc::new)
+    }
+
+    fn put(&self, task: &Task<'_>, artefact: &Arc<Artefact>) {
+        if task.is_kept()
+            && let Some(bytes) = artefact.encode()
+        {
+            self.write(task.kind().name(), task.address(), &bytes);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,36 @@
+//! Stores one above the other: the first is the nearest.
+
+use std::sync::Arc;
+
+use luthier_bake::{Artefact, Store, Task};
+
+/// Stores one above the other, the nearest first. A result that a store has is kept by those above it, too; a new one by all.
+#[derive(Clone, Copy)]
+pub struct Layers<'a>(pub &'a [&'a dyn Store]);
+
+impl Store for Layers<'_> {
+    fn get(&self, task: &Task<'_>) -> Option<Arc<Artefact>> {
+        let (depth, found) = self.0.iter().enumerate().find_map(|(depth, store)| Some((depth, store.get(task)?)))?;
+        self.0[..depth].iter().for_each(|store| store.put(task, &found));
+        Some(found)
+    }
+
+    fn get_all(&self, tasks: &[Task<'_>]) -> Vec<Option<Arc<Artefact>>> {
+        let mut found: Vec<Option<Arc<Artefact>>> = vec![None; tasks.len()];
+        for (depth, store) in self.0.iter().enumerate() {
+            let open: Vec<usize> = (0..tasks.len()).filter(|&i| found[i].is_none()).collect();
+            let asked: Vec<Task<'_>> = open.iter().map(|&i| tasks[i]).collect();
+            for (i, artefact) in open.into_iter().zip(store.get_all(&asked)) {
+                if let Some(artefact) = &artefact {
+                    self.0[..depth].iter().for_each(|above| above.put(&tasks[i], artefact));
+                }
+                found[i] = artefact;
+            }
+        }
+        found
+    }
+
+    fn put(&self, task: &Task<'_>, artefact: &Arc<Artefact>) {
+        self.0.iter().for_each(|store| store.put(task, artefact));
+    }
+}

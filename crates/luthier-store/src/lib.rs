@@ -1,0 +1,23 @@
+//! Results of jobs on disk, by the hash of all that decides them.
+//!
+#![doc = include_str!("../README.md")]
+//! # In detail
+//!
+//! [`DiskStore`] is a [`Store`](luthier_bake::Store). An entry is a file `objects/ab/cdef…-kind`, named by its address. It is written beside its place and
+//! renamed, so that others see it whole or not at all, and any number of processes may use a folder at once. A reader compares the hash in the
+//! entry with its bytes: a damaged entry is removed, and its job runs again.
+//!
+//! Simplifications: two processes that miss one entry at once both compute it. An entry that says that it is the result of a job is believed: who may write into
+//! the folder may change what bakes write.
+
+mod disk;
+mod entry;
+mod layers;
+mod usage;
+
+pub use disk::{DiskStore, StoreError};
+pub use layers::Layers;
+pub use usage::{KindUsage, Usage, Verified};
+
+/// Bytes that a store may hold, unless another limit is given: 4 GiB.
+pub const DEFAULT_LIMIT: u64 = 4 << 30;

@@ -1,0 +1,190 @@
+//! How much a store holds, and what is removed when that is too much.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+use std::time::SystemTime;
+
+use luthier_bake::Key;
+
+use crate::disk::{DiskStore, OBJECTS, StoreError, TEMPORARY, at};
+use crate::entry::unpack;
+
+/// File with the bytes of all entries, as the last process that wrote some left it.
+const USAGE: &str = "usage";
+
+/// File that is locked while that file is brought up to date, and entries are removed.
+const LOCK: &str = "lock";
+
+/// Share of the limit that is left after entries were removed, in percent.
+const KEPT: u64 = 90;
+
+/// Entries of a store, and their bytes.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Usage {
+    /// By kind of job.
+    pub kinds: BTreeMap<String, KindUsage>,
+}
+
+/// Entries of one kind.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct KindUsage {
+    /// Number of entries.
+    pub entries: u64,
+    /// Their bytes.
+    pub bytes: u64,
+}
+
+impl Usage {
+    /// All entries together.
+    pub fn all(&self) -> KindUsage {
+        let add = |a: KindUsage, b: &KindUsage| KindUsage { entries: a.entries + b.entries, bytes: a.bytes + b.bytes };
+        self.kinds.values().fold(KindUsage::default(), add)
+    }
+}
+
+/// What a check of all entries found.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Verified {
+    /// Entries that are whole.
+    pub whole: u64,
+    /// Entries that were damaged, and have been removed.
+    pub damaged: Vec<PathBuf>,
+}
+
+/// An entry on disk.
+struct Found {
+    path: PathBuf,
+    kind: String,
+    address: Option<Key>,
+    bytes: u64,
+    used: SystemTime,
+}
+
+impl DiskStore {
+    /// Counts all entries.
+    ///
+    /// # Errors
+    /// [`StoreError`] where the folder cannot be listed.
+    pub fn usage(&self) -> Result<Usage, StoreError> {
+        let mut usage = Usage::default();
+        for Found { kind, bytes, .. } in self.found()? {
+            let KindUsage { entries, bytes: sum } = usage.kinds.entry(kind).or_default();
+            *entries += 1;
+            *sum += bytes;
+        }
+        Ok(usage)
+    }
+
+    /// Reads all entries, and removes those that are damaged.
+    ///
+    /// # Errors
+    /// [`StoreError`] where the folder cannot be listed, or an entry not be read or removed.
+    pub fn verify(&self) -> Result<Verified, StoreError> {
+        let mut verified = Verified::default();
+        for Found { path, address, .. } in self.found()? {
+            // Another process may have removed it.
+            let bytes = match fs::read(&path) {
+                Err(error) if error.kind() == ErrorKind::NotFound => continue,
+                read => at("read", &path, read)?,
+            };
+            if address.is_some_and(|address| unpack(address, &bytes).is_some()) {
+                verified.whole += 1;
+            } else {
+                at("remove", &path, fs::remove_file(&path))?;
+                verified.damaged.push(path);
+            }
+        }
+        Ok(verified)
+    }
+
+    /// Removes all entries; returns what there was.
+    ///
+    /// # Errors
+    /// [`StoreError`] where the folder cannot be listed, or an entry not be removed.
+    pub fn clear(&self) -> Result<Usage, StoreError> {
+        let _lock = self.lock()?;
+        let usage = self.usage()?;
+        for folder in [OBJECTS, TEMPORARY].map(|name| self.root.join(name)).iter().filter(|folder| folder.exists()) {
+            at("remove", folder, fs::remove_dir_all(folder))?;
+        }
+        self.save(0)?;
+        Ok(usage)
+    }
+
+    /// Adds up what this process has written, and removes entries where the store has grown beyond its limit: those first that were not used for the
+    /// longest time. To be called when a bake is done.
+    ///
+    /// # Errors
+    /// [`StoreError`] where files of the store cannot be read, written or removed.
+    pub fn close(&self) -> Result<(), StoreError> {
+        let written = self.written.swap(0, Ordering::Relaxed);
+        if written == 0 {
+            return Ok(());
+        }
+        let _lock = self.lock()?;
+        let before = fs::read_to_string(self.root.join(USAGE)).ok().and_then(|text| text.trim().parse::<u64>().ok());
+        let all = match before {
+            Some(before) => before.saturating_add(written),
+            None => self.usage()?.all().bytes,
+        };
+        if all <= self.limit {
+            return self.save(all);
+        }
+        let mut found = self.found()?;
+        found.sort_by(|a, b| (a.used, &a.path).cmp(&(b.used, &b.path)));
+        let mut left: u64 = found.iter().map(|found| found.bytes).sum();
+        let wanted = if left > self.limit { self.limit / 100 * KEPT } else { left };
+        for Found { path, bytes, .. } in found {
+            if left <= wanted {
+                break;
+            }
+            at("remove", &path, fs::remove_file(&path))?;
+            left -= bytes;
+        }
+        self.save(left)
+    }
+
+    fn save(&self, bytes: u64) -> Result<(), StoreError> {
+        let path = self.root.join(USAGE);
+        at("write", &path, fs::write(&path, format!("{bytes}\n")))
+    }
+
+    fn lock(&self) -> Result<File, StoreError> {
+        let path = self.root.join(LOCK);
+        let file = at("write", &path, File::options().create(true).append(true).open(&path))?;
+        at("lock", &path, file.lock())?;
+        Ok(file)
+    }
+
+    fn found(&self) -> Result<Vec<Found>, StoreError> {
+        let objects = self.root.join(OBJECTS);
+        let mut found = Vec::new();
+        if !objects.exists() {
+            return Ok(found);
+        }
+        for folder in at("list", &objects, fs::read_dir(&objects))?.flatten().map(|folder| folder.path()) {
+            for file in at("list", &folder, fs::read_dir(&folder))?.flatten() {
+                // Another process may have removed it.
+                let Ok(metadata) = file.metadata() else { continue };
+                let (path, name) = (file.path(), file.file_name().to_string_lossy().into_owned());
+                let (hex, kind) = name.split_once('-').unwrap_or((&name, ""));
+                found.push(Found {
+                    address: address(&folder, hex),
+                    kind: kind.to_owned(),
+                    bytes: metadata.len(),
+                    used: metadata.modified().unwrap_or(SystemTime::UNIX_EPOCH),
+                    path,
+                });
+            }
+        }
+        Ok(found)
+    }
+}
+
+/// The address of a file in a folder.
+fn address(folder: &Path, hex: &str) -> Option<Key> {
+    Key::parse(&format!("{}{hex}", folder.file_name()?.to_str()?))
+}
