@@ -7,7 +7,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-steps=(tests random release examples engines kind packages scale)
+steps=(tests random release examples engines kind packages scale crash)
 declare -A says=(
   [tests]='tests that are ignored elsewhere: the whole stability suite, and audits of tables with planted mistakes'
   [random]='property tests with new random seeds'
@@ -16,6 +16,7 @@ declare -A says=(
   [engines]='three.js and Babylon.js read the tables of `luthier table`, in furnaces in a browser'
   [kind]='a kind of table is added by the six files of CONTRIBUTING.md, baked and judged'
   [packages]='every crate is packed, and built from its package'
+  [crash]='bakes are killed at every call that changes files and at random moments, interrupted, run side by side, and given faulty files'
   [scale]='libraries of 100 and 1,000 generated materials are baked'
 )
 
@@ -44,6 +45,10 @@ engines() {
 }
 kind() { ./scripts/add-kind.sh; }
 packages() { ./scripts/package.sh --verify; }
+crash() {
+  cargo build --locked --release -p luthier-cli
+  LUTHIER=$PWD/target/release/luthier ./tests/crash/all.sh
+}
 scale() { ./scripts/many.sh 100 1000 >/dev/null; }
 
 results=docs/measurements/nightly.tsv

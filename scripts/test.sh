@@ -66,6 +66,9 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 ./scripts/golden.sh --keep "$work/golden"
 
+step "kills, signals, bakes side by side, and faults of files"
+./tests/crash/all.sh --quick
+
 step "pages are up to date"
 ./scripts/nightly.sh --check
 cp -r docs/pages docs/reference.md "$work"

@@ -30,7 +30,7 @@ pub use encode::{Compression, Encoded, sha256};
 pub use error::PackageError;
 pub use folder::{Folder, MANIFEST, MAX_FILE_BYTES};
 pub use package::{Map, Package, Shader, Table};
-pub use publish::{ENVIRONMENT, REPORT_FILES, REPORT_FOLDER, publish};
+pub use publish::{ENVIRONMENT, REPORT_FILES, REPORT_FOLDER, publish, publish_beside, shared, wait};
 
 #[cfg(feature = "bake")]
 pub use doubts::{of_domain, of_model};

@@ -137,10 +137,26 @@ fn toml_files(folder: &Path) -> Result<Vec<PathBuf>, ExportError> {
     let mut paths = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(|source| file("list", folder, source))? {
         let path = entry.map_err(|source| file("list", folder, source))?.path();
-        if path.extension().is_some_and(|e| e == "toml") && path.is_file() {
+        // A broken link is a file that cannot be read, not one to leave out in silence.
+        if path.extension().is_some_and(|e| e == "toml") && !path.is_dir() {
             paths.push(path);
         }
     }
     paths.sort();
     Ok(paths)
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    /// A folder of a build that lacks a material is not baked without it.
+    #[test]
+    fn a_broken_link_is_not_left_out() {
+        let folder = tempfile::tempdir().unwrap();
+        std::os::unix::fs::symlink("nowhere.toml", folder.path().join("a.toml")).unwrap();
+        std::fs::create_dir(folder.path().join("b.toml")).unwrap();
+        let error = read(&[folder.path().to_owned()]).unwrap_err();
+        assert!(matches!(&error, ExportError::File { .. }) && error.to_string().contains("a.toml"), "{error}");
+    }
 }

@@ -22,6 +22,7 @@ Exit codes:
   2  the command line is wrong
   3  a file cannot be read or written
   4  no usable graphics adapter, driver or display, or it failed
+  130  interrupted by SIGINT, SIGTERM or SIGHUP; no file is half written
 
 With --json a failure is one JSON object on standard output, besides the sentence on standard error:
   {\"error\": {\"code\": 1, \"kind\": \"input\", \"message\": \"...\", \"diagnostics\": []}}

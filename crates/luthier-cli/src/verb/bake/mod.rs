@@ -123,7 +123,7 @@ fn once(options: &BakeOptions) -> Outcome<Vec<std::path::PathBuf>> {
         pipeline::check(options, &encoded, lock.stale(manifest))?;
         return Ok(read);
     }
-    whole(|| encoded.write(&options.out))?;
+    whole(&options.out, || encoded.write(&options.out))?;
     if let Some(why) = lock.write(manifest)? {
         complain(&why);
     }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
 use luthier_bake::Key;
-use luthier_export::{Encoded, GENERATOR, MANIFEST, input};
+use luthier_export::{Encoded, GENERATOR, MANIFEST, input, shared};
 use luthier_material::Material;
 use luthier_terminal::{Outcome, complain, print};
 use rayon::prelude::*;
@@ -18,8 +18,8 @@ use crate::store::disk;
 /// The kind of stamps in the store.
 const KIND: &str = "stamp";
 
-/// Folder of files that a bake was about to move to their places when it was interrupted.
-const READY: &str = ".luthier-ready";
+/// Folders that a bake leaves which was killed: the next one sweeps them.
+const LEFT: [&str; 2] = [".luthier-new", ".luthier-ready"];
 
 /// The inputs of a bake, and the place of its stamp.
 pub(super) struct Stamp {
@@ -63,7 +63,7 @@ impl Stamp {
         let kept: Kept = serde_json::from_slice(&bytes).ok()?;
         let is_same = kept.inputs == self.inputs
             && kept.named_hash == hash(&kept.named)
-            && !self.out.join(READY).exists()
+            && !LEFT.iter().any(|left| self.out.join(left).exists())
             && kept.outputs.iter().all(|(path, then)| then.is_some() && *then == state(&self.out.join(path)));
         is_same.then_some(kept)
     }
@@ -73,9 +73,13 @@ impl Stamp {
         files.iter().chain(&kept.named).cloned().collect()
     }
 
-    /// Keeps the stamp of a bake.
+    /// Keeps the stamp of a bake, if the folder still holds it and not one that another program has published since.
     pub(super) fn keep(&self, encoded: &Encoded, materials: &[Material], summary: &Value, warnings: usize) {
         let (Ok(Some(store)), Some(address)) = (disk(), self.address()) else { return };
+        let _lock = shared(&self.out);
+        if !encoded.stale(&self.out).is_ok_and(|stale| stale.is_empty()) {
+            return;
+        }
         let mut named: Vec<PathBuf> = materials.iter().flat_map(named).collect();
         named.sort();
         named.dedup();
