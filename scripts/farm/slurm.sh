@@ -1,0 +1,105 @@
+#!/usr/bin/env bash
+# Bakes materials/ by a Slurm job array on two nodes, once undisturbed and once with a node killed half-way, and compares both
+# packages with a bake by one process, byte for byte. Starts munged, slurmctld and two slurmd of its own (scripts/farm/cluster.sh)
+# and ends them. Needs Slurm; on Debian: apt-get install --no-install-recommends slurm-wlm munge. Takes three minutes.
+#   scripts/farm/slurm.sh [MATERIALS... [OPTIONS OF BAKE]]
+# The environment variable LUTHIER names the program; by default cargo builds it. KEEP=FOLDER keeps logs, stores and packages there.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+source scripts/farm/cluster.sh
+
+shards=4
+arguments=("$@")
+[ ${#arguments[@]} -gt 0 ] || arguments=("$PWD/materials")
+
+for program in munged slurmctld slurmd sbatch squeue sinfo scontrol; do
+  command -v $program >/dev/null || {
+    echo "error: $program is missing. On Debian: apt-get install --no-install-recommends slurm-wlm munge" >&2
+    exit 1
+  }
+done
+if [ -z "${LUTHIER-}" ]; then
+  cargo build --locked --quiet --release -p luthier-cli
+  LUTHIER=target/release/luthier
+fi
+LUTHIER=$(realpath "$LUTHIER")
+export LUTHIER
+
+work=$(mktemp -d)
+finish() {
+  local code=$?
+  stop_cluster
+  if [ -n "${KEEP-}" ]; then
+    mkdir -p "$KEEP" && cp -r "$work/." "$KEEP/"
+  elif [ $code != 0 ]; then
+    tail -n 20 "$work"/*/*.log 2>/dev/null || true
+  fi
+  rm -rf "$work"
+  exit $code
+}
+trap finish EXIT
+trap 'exit 130' INT TERM HUP
+chmod 711 "$work"
+
+step() { printf '\n== %s\n' "$1"; }
+fail() {
+  echo "error: $1" >&2
+  exit 1
+}
+entries() { find "$1" -type f 2>/dev/null | wc -l; }
+# A file that is written anew gets another inode.
+inodes() { (cd "$1" && find . -type f -printf '%p %i\n' | sort); }
+ended() { [ -z "$(squeue -h -j "$1" 2>/dev/null)" ]; }
+running_on() { squeue -h -t R -w "$1" -o %i 2>/dev/null; }
+# What Slurm says of the tasks of an array: task, state, node, restarts.
+tasks() {
+  scontrol -o show job "$1" | grep -o 'ArrayTaskId=.*' |
+    sed -E 's/^ArrayTaskId=([0-9]+) .*JobState=([A-Z_]+) .*Restarts=([0-9]+) .* NodeList=([^ ]+) .*/\1 \2 \4 \3/' | sort -n
+}
+# submit NAME: bakes into $work/NAME with a store of that run, by the files that users copy. Sets bake and merge.
+submit() {
+  mkdir -p "$work/$1/store"
+  read -r bake merge < <(cd "$work/$1" && LUTHIER_CACHE=$work/$1/store SHARDS=$shards \
+    "$OLDPWD/examples/farm/slurm/submit.sh" "$work/$1/out" "${arguments[@]}")
+  echo "submitted: array $bake, merge $merge"
+}
+# check NAME: all jobs ended well, and the package has the bytes of the bake by one process.
+check() {
+  wait_for "end of the jobs" 900 ended "$bake,$merge"
+  echo "task state node restarts"
+  tasks "$bake"
+  [ "$(tasks "$bake" | grep -c COMPLETED)" = $shards ] || fail "Slurm did not complete all $shards tasks"
+  scontrol -o show job "$merge" | grep -q 'JobState=COMPLETED' || fail "Slurm did not complete the merge"
+  diff -r "$work/single" "$work/$1/out" || fail "the merged package differs from the bake by one process"
+  echo "$(find "$work/$1/out" -type f | wc -l) files, equal to those of the bake by one process"
+  cat "$work/$1"/luthier-*.log
+}
+
+step "one process"
+LUTHIER_CACHE="" "$LUTHIER" bake "${arguments[@]}" --out "$work/single" --quiet
+
+step "a controller and two nodes"
+start_cluster "$work/cluster"
+sinfo -N -o '%N %t %c'
+
+step "a job array on two nodes"
+submit undisturbed
+check undisturbed
+[ "$(tasks "$bake" | cut -d ' ' -f 3 | sort -u | xargs)" = "node1 node2" ] || fail "Slurm did not use both nodes"
+all=$(entries "$work/undisturbed/store")
+echo "$all entries in the store"
+
+step "a node killed half-way"
+submit killed
+half_way() { [ -n "$(running_on node2)" ] && [ "$(entries "$work/killed/store")" -ge $((all / 4)) ]; }
+wait_for "task on node2 with a quarter of the results in the store" 600 half_way
+victim=$(running_on node2)
+kill_node node2
+echo "killed during task $victim"
+inodes "$work/killed/store" >"$work/killed/before"
+check killed
+inodes "$work/killed/store" >"$work/killed/after"
+comm -23 "$work/killed/before" "$work/killed/after" | (! grep .) || fail "results that were in the store have been written again"
+tasks "$bake" | grep -q "^${victim#*_} COMPLETED node1 1\$" || fail "task $victim was not started again on node1"
+grep -q "JobState=NODE_FAIL.*NodeList=node2.*ArrayJobId=$bake ArrayTaskId=${victim#*_} " "$work/cluster/completed" ||
+  fail "Slurm has no record that node2 failed"
