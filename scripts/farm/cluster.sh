@@ -127,15 +127,16 @@ kill_node() {
   kill -KILL "${found[@]}"
 }
 
-# Ends what start_cluster started, and waits for it.
+# Ends what start_cluster started: first the jobs, then the daemons, and by force what has not ended ten seconds later.
 stop_cluster() {
   [ -n "${cluster-}" ] || return 0
-  local node found
+  local found deadline=$((SECONDS + 10))
   scancel --me 2>/dev/null || true
+  until [ -z "$(squeue -h --me 2>/dev/null)" ] || [ $SECONDS -ge $deadline ]; do sleep 0.2; done
   kill "${daemons[@]}" 2>/dev/null || true
+  deadline=$((SECONDS + 10))
+  while [ -n "$(jobs -rp)" ] && [ $SECONDS -lt $deadline ]; do sleep 0.2; done
+  mapfile -t found < <(for conf in "$cluster"/*.conf; do processes_of "$conf"; done)
+  if [ ${#found[@]} -gt 0 ]; then kill -KILL "${found[@]}" 2>/dev/null || true; fi
   wait "${daemons[@]}" 2>/dev/null || true
-  for node in "${nodes[@]}"; do
-    mapfile -t found < <(processes_of "$cluster/$node.conf")
-    if [ ${#found[@]} -gt 0 ]; then kill -KILL "${found[@]}" 2>/dev/null || true; fi
-  done
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Bakes materials/ by a Slurm job array on two nodes, once undisturbed and once with a node killed half-way, and compares both
-# packages with a bake by one process, byte for byte. Starts munged, slurmctld and two slurmd of its own (scripts/farm/cluster.sh)
-# and ends them. Needs Slurm; on Debian: apt-get install --no-install-recommends slurm-wlm munge. Takes three minutes.
+# Bakes materials/ on two Slurm nodes: by a job array, by Ninja's graph whose commands Slurm runs, and by a job array during which a
+# node is killed. Compares the packages with a bake by one process, byte for byte. Starts munged, slurmctld and two slurmd of its own (scripts/farm/cluster.sh)
+# and ends them. Needs Slurm; on Debian: apt-get install --no-install-recommends slurm-wlm munge ninja-build. Takes three minutes.
 #   scripts/farm/slurm.sh [MATERIALS... [OPTIONS OF BAKE]]
 # The environment variable LUTHIER names the program; by default cargo builds it. KEEP=FOLDER keeps logs, stores and packages there.
 set -euo pipefail
@@ -12,9 +12,9 @@ shards=4
 arguments=("$@")
 [ ${#arguments[@]} -gt 0 ] || arguments=("$PWD/materials")
 
-for program in munged slurmctld slurmd sbatch squeue sinfo scontrol; do
+for program in munged slurmctld slurmd sbatch srun squeue sinfo scontrol ninja; do
   command -v $program >/dev/null || {
-    echo "error: $program is missing. On Debian: apt-get install --no-install-recommends slurm-wlm munge" >&2
+    echo "error: $program is missing. On Debian: apt-get install --no-install-recommends slurm-wlm munge ninja-build" >&2
     exit 1
   }
 done
@@ -88,6 +88,16 @@ check undisturbed
 [ "$(tasks "$bake" | cut -d ' ' -f 3 | sort -u | xargs)" = "node1 node2" ] || fail "Slurm did not use both nodes"
 all=$(entries "$work/undisturbed/store")
 echo "$all entries in the store"
+
+step "Ninja's graph, whose commands Slurm runs"
+mkdir "$work/ninja"
+(
+  cd "$work/ninja"
+  LAUNCH="srun --ntasks=1 --job-name=luthier-ninja" SHARDS=$shards "$OLDPWD/examples/farm/ninja/configure.sh" "${arguments[@]}"
+  ninja -j $shards
+)
+diff -r "$work/single" "$work/ninja/out" || fail "the package of Ninja differs from the bake by one process"
+grep -o 'Name=luthier-ninja JobState=[A-Z]*\|NodeList=node.' "$work/cluster/completed" | tail -n 10
 
 step "a node killed half-way"
 submit killed
