@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
-# Bakes materials/ with the program of another architecture, aarch64, under an emulator, without fits and with them, and compares
-# the bytes with those of the program of this machine. Needs the target of the toolchain (rustup target add
+# Bakes materials/ with the program of another architecture, aarch64, under an emulator, without fits and with them, and two of them
+# with the model of fitted lobes, and compares the bytes with those of the program of this machine. Needs the target of the toolchain (rustup target add
 # aarch64-unknown-linux-gnu) and an emulator with a C library; on Debian: apt-get install --no-install-recommends qemu-user-static
-# gcc-aarch64-linux-gnu libc6-dev-arm64-cross. Takes half an hour on two cores: the emulator is slow.
+# gcc-aarch64-linux-gnu libc6-dev-arm64-cross. It builds luthier, and an emulator takes twenty times as long as the machine.
 #   scripts/other-architecture.sh [MATERIALS... [OPTIONS OF BAKE]]
-# By default materials/ is baked. The environment variable LUTHIER names the program of this machine; by default cargo builds it.
+# With arguments there is one bake, of these. The environment variable LUTHIER names the program of this machine; by default cargo builds it.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 target=aarch64-unknown-linux-gnu
 folder=target/other-architecture
 sysroot=/usr/aarch64-linux-gnu
-arguments=("$@")
-[ ${#arguments[@]} -gt 0 ] || arguments=(materials)
+bakes=("materials --no-fit" "materials" "materials/car-paint.toml materials/red-lacquer.toml --model lobes")
+[ $# = 0 ] || bakes=("$*")
 
 need() { # COMMAND HINT
   command -v "$1" >/dev/null || {
@@ -50,11 +50,12 @@ trap 'rm -rf "$work"' EXIT
 export LUTHIER_CACHE=
 
 differ=0
-for fit in --no-fit ""; do
-  step "bake${fit:+ $fit}"
-  "$LUTHIER" bake "${arguments[@]}" $fit --out "$work/here" --quiet 2>/dev/null
+for arguments in "${bakes[@]}"; do
+  step "bake $arguments"
+  read -ra words <<<"$arguments"
+  "$LUTHIER" bake "${words[@]}" --out "$work/here" --quiet 2>/dev/null
   begin=$SECONDS
-  qemu-aarch64-static -L $sysroot "$other" bake "${arguments[@]}" $fit --out "$work/other" --quiet 2>/dev/null
+  qemu-aarch64-static -L $sysroot "$other" bake "${words[@]}" --out "$work/other" --quiet 2>/dev/null
   echo "$((SECONDS - begin)) s under the emulator"
   sums "$work/here" >"$work/here.sums"
   sums "$work/other" >"$work/other.sums"
