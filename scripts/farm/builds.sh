@@ -82,7 +82,7 @@ expect() {
       ;;
   esac
   LUTHIER_CACHE="$work/plain-store" "$program" bake "$work/materials" "${options[@]}" --out "$work/plain" --quiet 2>/dev/null
-  diff -r "$work/plain" "$work/$system/$package" >&2 || fail "other bytes than those of a plain bake: $2"
+  diff -rq "$work/plain" "$work/$system/$package" >&2 || fail "other bytes than those of a plain bake: $2"
   printf '%-14s %s calls: %s\n' "$system" "$calls" "$2"
 }
 
@@ -113,6 +113,9 @@ for system in "${systems[@]}"; do
   expect none "again"
   cp materials/red-lacquer.toml "$work/materials"
   expect all "a new material"
+  expect none "again"
+  LUTHIER_CACHE="$work/plain-store" "$program" bake "$work/materials" "${options[@]}" --relock --out "$work/locked" --quiet 2>/dev/null
+  expect all "sizes written into a lock"
   expect none "again"
   rm "$work/materials/soap-film.toml"
   expect some "a material removed"

@@ -23,7 +23,7 @@ def run(command, folder, **environment):
 
 def compare(name, plain, merged):
     """Ends the program unless both folders hold the same bytes."""
-    if subprocess.run(["diff", "-r", plain, merged]).returncode != 0:
+    if subprocess.run(["diff", "-rq", plain, merged]).returncode != 0:
         sys.exit(f"error: {name}: other bytes than those of a plain bake")
     print(f"{name}: the commands give the bytes of a plain bake")
 

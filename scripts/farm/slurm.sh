@@ -78,7 +78,7 @@ check() {
   tasks "$bake"
   [ "$(tasks "$bake" | grep -c COMPLETED)" = $shards ] || fail "Slurm did not complete all $shards tasks"
   scontrol -o show job "$merge" | grep -q 'JobState=COMPLETED' || fail "Slurm did not complete the merge"
-  diff -r "$work/single" "$work/$1/out" || fail "the merged package differs from the bake by one process"
+  diff -rq "$work/single" "$work/$1/out" || fail "the merged package differs from the bake by one process"
   echo "$(find "$work/$1/out" -type f | wc -l) files, equal to those of the bake by one process"
   grep -hE '^(share|merge) ' "$work/$1"/luthier-*.log
 }
@@ -103,7 +103,7 @@ mkdir "$work/ninja"
   LAUNCH="srun --ntasks=1 --job-name=luthier-ninja" SHARDS=$shards "$OLDPWD/examples/farm/ninja/configure.sh" "${arguments[@]}"
   ninja -j $shards
 )
-diff -r "$work/single" "$work/ninja/out" || fail "the package of Ninja differs from the bake by one process"
+diff -rq "$work/single" "$work/ninja/out" || fail "the package of Ninja differs from the bake by one process"
 grep -o 'Name=luthier-ninja JobState=[A-Z]*\|NodeList=node.' "$work/cluster/completed" | tail -n 10
 
 step "a node killed half-way"

@@ -18,8 +18,8 @@ function(luthier_materials target)
   endif()
   get_filename_component(folder ${arg_FOLDER} ABSOLUTE)
   get_filename_component(out ${arg_OUT} ABSOLUTE BASE_DIR ${CMAKE_CURRENT_BINARY_DIR})
-  # A material that comes or goes configures the build anew.
-  file(GLOB inputs CONFIGURE_DEPENDS ${folder}/*.toml)
+  # A material or a lock that comes or goes configures the build anew.
+  file(GLOB inputs CONFIGURE_DEPENDS ${folder}/*.toml ${folder}/luthier.lock)
 
   set(shares "")
   foreach(index RANGE 1 ${arg_SHARDS})

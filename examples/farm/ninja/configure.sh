@@ -17,7 +17,9 @@ path() { sed -E 's/[$ :]/$&/g' <<<"$1"; }
 words() { [ $# = 0 ] || printf '%q ' "$@" | sed 's/\$/$$/g'; }
 
 inputs=
-for file in "$materials"/*.toml; do inputs+=" $(path "$file")"; done
+for file in "$materials"/*.toml "$materials"/luthier.lock; do
+  [ ! -e "$file" ] || inputs+=" $(path "$file")"
+done
 
 {
   cat <<GRAPH
@@ -36,7 +38,7 @@ rule merge
   deps = gcc
   description = merge
 
-# The date of the folder changes when a material comes or goes.
+# The date of the folder changes when a material or the lock comes or goes.
 rule configure
   command = LUTHIER=$(words "$program") LUTHIER_CACHE=$(words "$store") SHARDS=$shards LAUNCH=$(words "${LAUNCH-}") $(words "$(realpath "$0")" "$materials" "${options[@]}")
   generator = 1
