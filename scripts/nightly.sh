@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Checks that take too long for every change, and a page with their results: docs/pages/nightly.md.
-#   scripts/nightly.sh            all: an hour on two cores; scripts/pages.sh makes the long pages
+#   scripts/nightly.sh            all: an hour and a half on two cores; scripts/pages.sh makes the long pages
 #   scripts/nightly.sh STEP...    some, by the names of the functions below
 #   scripts/nightly.sh --check    fails where a step has not passed since the bytes of bakes last changed (tests/golden.sha256)
-# Wants what scripts/test.sh installs, and GNU time.
+# Wants what scripts/test.sh installs, GNU time, and the packages that scripts/farm/*.sh and scripts/other-architecture.sh name.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-steps=(tests random release examples engines kind packages scale crash)
+steps=(tests random release examples engines kind packages scale crash farm architecture)
 declare -A says=(
   [tests]='tests that are ignored elsewhere: the whole stability suite, and audits of tables with planted mistakes'
   [random]='property tests with new random seeds'
@@ -18,6 +18,8 @@ declare -A says=(
   [packages]='every crate is packed, and built from its package'
   [crash]='bakes are killed at every call that changes files and at random moments, interrupted, run side by side, and given faulty files'
   [scale]='libraries of 100 and 1,000 generated materials are baked'
+  [farm]='Slurm, Ninja, CMake and Make bake shares and merge them, a Slurm node is killed, and jobs for Kubernetes and OpenCue are checked'
+  [architecture]='a program for aarch64, emulated, writes the bytes of one for x86-64'
 )
 
 tests() { CI=true cargo test --locked --workspace --features luthier-cli/view --tests -- --ignored; }
@@ -50,6 +52,14 @@ crash() {
   LUTHIER=$PWD/target/release/luthier ./tests/crash/all.sh
 }
 scale() { ./scripts/many.sh 100 1000 >/dev/null; }
+farm() {
+  cargo build --locked --release -p luthier-cli
+  for script in slurm builds descriptions; do LUTHIER=$PWD/target/release/luthier "./scripts/farm/$script.sh"; done
+}
+architecture() {
+  cargo build --locked --release -p luthier-cli
+  LUTHIER=$PWD/target/release/luthier ./scripts/other-architecture.sh
+}
 
 results=docs/measurements/nightly.tsv
 page=docs/pages/nightly.md
