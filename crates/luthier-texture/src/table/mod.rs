@@ -82,6 +82,7 @@ fn exr_table(file: &[u8]) -> Result<Table, TextureError> {
         }
         checked_bytes(side(header.layer_size.0), side(header.layer_size.1), 4 * channels)?;
     }
+    exr::dwa::check(file)?;
     let image = read_exr()
         .no_deep_data()
         .largest_resolution_level()
