@@ -3,14 +3,15 @@
 #   scripts/nightly.sh            all: an hour on two cores; scripts/pages.sh makes the long pages
 #   scripts/nightly.sh STEP...    some, by the names of the functions below
 #   scripts/nightly.sh --check    fails where a step has not passed since the bytes of bakes last changed (tests/golden.sha256)
-# Wants what scripts/test.sh installs, and GNU time.
+# Wants what scripts/test.sh installs, GNU time, and a C++ compiler (Debian: g++).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-steps=(tests random release examples engines kind packages scale)
+steps=(tests random fuzz release examples engines kind packages scale)
 declare -A says=(
   [tests]='tests that are ignored elsewhere: the whole stability suite, and audits of tables with planted mistakes'
   [random]='property tests with new random seeds'
+  [fuzz]='ten minutes of search for inputs that bring a parser down (`docs/fuzzing.md`)'
   [release]='release builds write the bytes of debug builds, and name the Cargo feature of a verb that they lack'
   [examples]='the renderers in `examples` show the shipped tables, in a browser too'
   [engines]='three.js and Babylon.js read the tables of `luthier table`, in furnaces in a browser'
@@ -21,6 +22,7 @@ declare -A says=(
 
 tests() { CI=true cargo test --locked --workspace --features luthier-cli/view --tests -- --ignored; }
 random() { ./scripts/random-tests.sh 1; }
+fuzz() { ./scripts/fuzz.sh 600; }
 release() {
   local work said
   work=$(mktemp -d)

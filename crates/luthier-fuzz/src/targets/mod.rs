@@ -125,7 +125,7 @@ pub const TARGETS: [Target; 16] = [
     Target {
         name: "png",
         parser: "luthier_texture::png::{decode, decode_gray}",
-        reads: "maps of materials, maps of a bake, `eval --map`",
+        reads: "maps of materials and of bakes",
         holds: "values are in 0..1 and as many as the size needs; a map that is written is read as an equal one",
         folders: &[],
         run: images::png,
