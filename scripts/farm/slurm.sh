@@ -104,7 +104,10 @@ mkdir "$work/ninja"
   ninja -j $shards
 )
 diff -rq "$work/single" "$work/ninja/out" || fail "the package of Ninja differs from the bake by one process"
-grep -o 'Name=luthier-ninja JobState=[A-Z]*\|NodeList=node.' "$work/cluster/completed" | tail -n 10
+nodes_of_ninja=$(sed -n 's/.*Name=luthier-ninja JobState=COMPLETED .*NodeList=\([^ ]*\) .*/\1/p' "$work/cluster/completed")
+[ "$(wc -l <<<"$nodes_of_ninja")" = 5 ] || fail "Slurm did not complete four shares and a merge for Ninja"
+[ "$(sort -u <<<"$nodes_of_ninja" | xargs)" = "node1 node2" ] || fail "Slurm did not use both nodes for Ninja"
+echo "Slurm's record of the nodes: $(xargs <<<"$nodes_of_ninja")"
 
 step "a node killed half-way"
 submit killed
