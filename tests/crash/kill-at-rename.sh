@@ -90,7 +90,7 @@ printf '%-8s %-6s %-6s %6s %6s %6s %6s %6s %6s\n' start how when points old new 
 if [ "${1-}" = --quick ]; then
   sweep bake before "$removals" new
   sweep bake after "$removals" new
-  sweep bake 28 rename,mkdir,open,write new
+  sweep bake 28 rename,mkdir,open new
   exit
 fi
 
