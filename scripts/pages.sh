@@ -6,6 +6,8 @@
 # Wants the software Vulkan drivers of Debian's mesa-vulkan-drivers. LUTHIER and LUTHIER_LAB name the programs; by default cargo builds them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+# Everything is computed: no results of earlier runs.
+export LUTHIER_CACHE=
 
 luthier() { if [ -n "${LUTHIER-}" ]; then "$LUTHIER" "$@"; else cargo run --quiet --release --locked -p luthier-cli -- "$@"; fi; }
 luthier-lab() { if [ -n "${LUTHIER_LAB-}" ]; then "$LUTHIER_LAB" "$@"; else cargo run --quiet --release --locked -p luthier-lab -- "$@"; fi; }

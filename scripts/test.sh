@@ -3,6 +3,8 @@
 # display without a screen, a browser, shells, groff, and Tint from npm); elsewhere it says what is missing. Needs nothing but a Rust toolchain otherwise.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+# Everything is computed: no results of earlier runs.
+export LUTHIER_CACHE=
 
 packages=(mesa-vulkan-drivers libvulkan1 glslang-tools spirv-tools xvfb libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0 chromium groff-base zsh fish)
 

@@ -185,6 +185,7 @@ tests_of_targets!(
     axes,
     directions,
     reradiation,
+    lock,
     manifest,
     report,
     stability,

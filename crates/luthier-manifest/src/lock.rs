@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Candidate, Manifest};
 
-/// What a search decided for one kind of table.
+/// The decision of a search for one kind of table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Decision {
     /// The kind.

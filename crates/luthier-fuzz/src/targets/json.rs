@@ -2,13 +2,22 @@
 
 use luthier_export::{Package, Table};
 use luthier_lut::AtlasLayout;
-use luthier_manifest::{Form, Manifest, TableEntry, material_buffer};
+use luthier_manifest::{Form, Lock, Manifest, TableEntry, material_buffer};
 use luthier_report::stability::Stability;
 use luthier_report::{Costs, Report, StabilitySummary};
 use luthier_texture::Texture;
 
 /// Bytes of the largest texture that is made for an entry of a manifest.
 const TEXELS_MAX: u64 = 1 << 20;
+
+/// The lock of a folder of materials.
+pub(super) fn lock(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    let Ok(lock) = Lock::from_json(&text) else { return };
+    let printed = lock.to_json().unwrap_or_else(|error| panic!("read, but not written: {error}"));
+    assert_eq!(Lock::from_json(&printed).ok().as_ref(), Some(&lock));
+    assert!(lock.decides_as(&lock.clone()));
+}
 
 /// The manifest of a bake.
 pub(super) fn manifest(bytes: &[u8]) {

@@ -25,7 +25,7 @@ pub struct Target {
 }
 
 /// All targets.
-pub const TARGETS: [Target; 16] = [
+pub const TARGETS: [Target; 17] = [
     Target {
         name: "material",
         parser: "luthier_material::parse",
@@ -73,6 +73,14 @@ pub const TARGETS: [Target; 16] = [
         holds: "a matrix has a share for each pair of bins; a matrix that is printed parses to an equal one",
         folders: &[],
         run: lines::reradiation,
+    },
+    Target {
+        name: "lock",
+        parser: "luthier_manifest::Lock::from_json",
+        reads: "`luthier.lock` beside materials",
+        holds: "a lock that is printed parses to an equal one",
+        folders: &[],
+        run: json::lock,
     },
     Target {
         name: "manifest",

@@ -56,7 +56,7 @@ impl LockFile {
     }
 
     /// The file as a bake would leave it, where that is another one: a lock that is there or asked for, whose decisions a budget broke.
-    fn next(&self, manifest: &Manifest) -> Option<Lock> {
+    pub(super) fn next(&self, manifest: &Manifest) -> Option<Lock> {
         let next = Lock::of(manifest);
         match &self.lock {
             Some(lock) => (!lock.decides_as(&next)).then_some(next),
@@ -76,7 +76,7 @@ impl LockFile {
     pub(super) fn write(&self, manifest: &Manifest) -> Outcome<Option<String>> {
         let Some(next) = self.next(manifest) else { return Ok(None) };
         let text = next.to_json().map_err(|reason| Failure::Input(anyhow::anyhow!("{reason}")))?;
-        let part = self.path.with_extension("lock.part");
+        let part = self.path.with_extension(format!("lock.{}", std::process::id()));
         let written = std::fs::write(&part, text).and_then(|()| std::fs::rename(&part, &self.path));
         written.map_err(files(&self.path, "write"))?;
         let path = self.path.display();

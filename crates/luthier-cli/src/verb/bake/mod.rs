@@ -116,8 +116,15 @@ fn once(options: &BakeOptions) -> Outcome<Vec<std::path::PathBuf>> {
         return Ok(read);
     }
     let store = store()?;
-    let encoded =
-        pool.install(|| Ok::<_, Failure>(Package::new(&materials, &bake, store)?.encode(options.compression())?))?;
+    let encoded = pool.install(|| {
+        let mut package = Package::new(&materials, &bake, store)?;
+        // A bake that writes a lock is the bake that the lock gives: the next one finds nothing to do.
+        if let Some(next) = lock.next(&package.manifest) {
+            let locked = luthier_bake::Options { locked: &next.decisions, ..bake.options };
+            package = Package::new(&materials, &Bake { options: locked, ..bake.clone() }, store)?;
+        }
+        Ok::<_, Failure>(package.encode(options.compression())?)
+    })?;
     let manifest = &encoded.manifest;
     if options.pipeline.check {
         pipeline::check(options, &encoded, lock.stale(manifest))?;

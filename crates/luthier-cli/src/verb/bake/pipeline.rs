@@ -1,4 +1,4 @@
-//! What build pipelines ask of a bake: whether it is up to date, what it would do, what it depends on, a share of it.
+//! Questions of build pipelines about a bake: whether it is up to date, what it would do, what it depends on, a share of it.
 
 use std::path::{Path, PathBuf};
 

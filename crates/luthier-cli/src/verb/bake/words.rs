@@ -57,6 +57,7 @@ pub(super) fn text(options: &BakeOptions, manifest: &Manifest, progress: &BakePr
     }
     let jobs: Vec<String> = progress.seconds().iter().map(|(kind, s)| format!("{} {s:.2}", kind.name())).collect();
     out.push_str(&format!("\nseconds: {}; all {:.2}\n", jobs.join(", "), start.elapsed().as_secs_f64()));
+    out.push_str(&format!("jobs: {} run, {} found in the store\n", progress.run(), progress.had()));
     out.push_str(&format!("wrote {}\n", options.out.join(MANIFEST).display()));
     out
 }
@@ -87,6 +88,7 @@ pub(super) fn summary(options: &BakeOptions, manifest: &Manifest, progress: &Bak
         "tables": tables,
         "searches": &manifest.searches,
         "lobes": lobes,
+        "jobs": { "run": progress.run(), "found": progress.had() },
         "seconds": seconds,
         "seconds_all": start.elapsed().as_secs_f64(),
     })
