@@ -20,29 +20,85 @@ size_of() { # bytes of some files together
 }
 mega() { awk -v bytes="$1" 'BEGIN { printf "%.1f", bytes / 1e6 }'; }
 
+seconds() { awk '{ print $1 }' "$1"; }
+processor() { awk '{ print $2 + $3 }' "$1"; }
+bake() { # NAME ARGUMENT...: bakes without fits, and keeps the time, the processor time and the memory that it took in a file
+  local name=$1
+  shift
+  /usr/bin/time -f '%e %U %S %M' -o "$here/$name.time" "$luthier" bake "$@" --no-fit --quiet --cache "$here/store" 2>/dev/null
+}
+median() { sort -n | awk '{ v[NR] = $1 } END { print v[int((NR + 1) / 2)] }'; }
+
 {
-  echo "# Many materials"
-  echo
-  echo "Made by \`scripts/many.sh\`: libraries of generated materials (\`crates/luthier-material/examples/library\`, seed 1) of one to four"
-  echo "layers, baked by \`luthier bake FOLDER --no-fit\` with \`$(nproc)\` cores. Time is that of the whole command, and memory its largest resident set."
-  echo "The column tables has the KTX2 files of the package. Sizes are in MB of 10^6 bytes. [manifest.md](../manifest.md) states the limits."
-  echo
-  echo "| materials | layers | seconds | processor seconds | memory MB | tables | truth and pictures | material buffer | manifest | shaders |"
-  echo "|---|---|---|---|---|---|---|---|---|---|"
+  cat <<HEAD
+# Many materials
+
+\`scripts/many.sh\` made this page: libraries of generated materials (\`crates/luthier-material/examples/library\`, seed 1) of one to four layers,
+baked by \`luthier bake FOLDER --no-fit\` with \`$(nproc)\` cores. Times are those of the whole command. Sizes are in MB of 10^6 bytes.
+[manifest.md](../manifest.md) states the limits.
+
+## Time
+
+- *Cold*: the store is empty, and everything is computed.
+- *All kept*: into another folder, with all results in the store. This is what a bake costs beside its jobs: reading files, planning, assembling,
+  encoding, shaders, publishing.
+- *Nothing changed*: into the first folder again; the median of nine. The files are read and compared, the outputs looked at.
+- *One changed*: one material has another index, and \`luthier.lock\` keeps sizes, axes and formats. All files that hold its tiles are written
+  anew, and these are all tables, because each is one texture for all materials.
+- *One changed, no lock*: the search for sizes, axes and formats is made anew as well.
+
+| materials | layers | cold s | processor s | ms each | memory MB | all kept s | ms each | nothing changed ms | one changed s | no lock s |
+|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|
+HEAD
 } >"$page.new"
+sizes_table=$(mktemp)
 
 for count in "${sizes[@]}"; do
-  rm -rf "$out/$count" && mkdir -p "$out/$count"
-  cargo run --locked --quiet -p luthier-material --example library -- "$count" "$out/$count/materials"
-  layers=$(cat "$out/$count/materials/"*.toml | grep -c '^type = "\(dielectric\|conductor\|diffuse\)"')
-  /usr/bin/time -f '%e %U %S %M' -o "$out/$count/time" "$luthier" bake "$out/$count/materials" --out "$out/$count/out" --no-fit --quiet 2>/dev/null
-  read -r elapsed user system kib <"$out/$count/time"
-  bake=$out/$count/out
-  printf '| %s | %s | %s | %s | %s | %s | %s | %s | %s | %s |\n' "$count" "$layers" "$elapsed" \
-    "$(awk -v u="$user" -v s="$system" 'BEGIN { print u + s }')" "$(mega $((kib * 1024)))" \
-    "$(mega "$(size_of "$bake/tables" -name '*.ktx2')")" "$(mega "$(size_of "$bake/tables" -not -name '*.ktx2')")" \
-    "$(mega "$(size_of "$bake/materials.bin")")" "$(mega "$(size_of "$bake/manifest.json")")" \
-    "$(mega "$(size_of "$bake/shaders")")" | tee -a "$page.new"
+  here=$out/$count
+  rm -rf "$here" && mkdir -p "$here"
+  cargo run --locked --quiet -p luthier-material --example library -- "$count" "$here/materials"
+  layers=$(cat "$here/materials/"*.toml | grep -c '^type = "\(dielectric\|conductor\|diffuse\)"')
+  bake cold "$here/materials" --out "$here/out"
+  bake kept "$here/materials" --out "$here/kept"
+  diff -r "$here/out" "$here/kept"
+  nothing=$(for _ in 1 2 3 4 5 6 7 8 9; do
+    started=$(date +%s%N)
+    bake nothing "$here/materials" --out "$here/out"
+    echo $((($(date +%s%N) - started) / 1000))
+  done | median)
+  first=$here/materials/$(ls "$here/materials" | sed -n 1p)
+  sed -i '0,/^ior = [0-9.]*$/s//ior = 1.4321/' "$first"
+  grep -q 'ior = 1.4321' "$first"
+  bake unlocked "$here/materials" --out "$here/kept"
+  bake locking "$here/materials" --out "$here/out" --relock
+  sed -i 's/ior = 1.4321/ior = 1.4322/' "$first"
+  bake changed "$here/materials" --out "$here/out"
+  bake=$here/out
+  printf '| %s | %s | %s | %s | %s | %s | %s | %s | %s | %s | %s |\n' "$count" "$layers" "$(seconds "$here/cold.time")" \
+    "$(processor "$here/cold.time")" "$(awk -v n="$count" '{ printf "%.1f", 1000 * ($2 + $3) / n }' "$here/cold.time")" \
+    "$(mega $(($(awk '{ print $4 }' "$here/cold.time") * 1024)))" "$(seconds "$here/kept.time")" \
+    "$(awk -v n="$count" '{ printf "%.2f", 1000 * ($2 + $3) / n }' "$here/kept.time")" \
+    "$(awk -v us="$nothing" 'BEGIN { printf "%.0f", us / 1000 }')" "$(seconds "$here/changed.time")" "$(seconds "$here/unlocked.time")" |
+    tee -a "$page.new"
+  printf '| %s | %s | %s | %s | %s | %s | %s |\n' "$count" "$(mega "$(size_of "$bake/tables" -name '*.ktx2')")" \
+    "$(mega "$(size_of "$bake/tables" -not -name '*.ktx2')")" "$(mega "$(size_of "$bake/materials.bin")")" \
+    "$(mega "$(size_of "$bake/manifest.json")")" "$(mega "$(size_of "$bake/shaders")")" \
+    "$(mega "$(size_of "$here/store/objects")")" >>"$sizes_table"
 done
 
+{
+  cat <<'HEAD'
+
+Milliseconds each are of processor time, for each material.
+
+## Sizes
+
+The column tables has the KTX2 files of the package.
+
+| materials | tables | truth and pictures | material buffer | manifest | shaders | store |
+|--:|--:|--:|--:|--:|--:|--:|
+HEAD
+  cat "$sizes_table"
+} >>"$page.new"
+rm "$sizes_table"
 mv "$page.new" "$page"
