@@ -6,5 +6,6 @@ mod help;
 mod kinds;
 mod pipes;
 mod schema;
+mod shared_store;
 mod sources;
 mod table;
