@@ -57,7 +57,10 @@ pub(crate) fn store() -> Outcome<&'static dyn Store> {
         Opened::Disk(store) => store,
         Opened::Memory(store) => store,
     };
-    shared_store::below(near, OPTIONS.get().unwrap_or(&StoreOptions::default()))
+    match OPTIONS.get() {
+        Some(options) => shared_store::below(near, options),
+        None => Ok(near),
+    }
 }
 
 /// The store on disk, if there is one.
