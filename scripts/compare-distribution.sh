@@ -3,6 +3,8 @@
 # scripts/compare-distribution.sh > docs/pages/distribution-table.md. Takes a minute; needs python3 for the JSON.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+# Everything is computed: no results of earlier runs.
+export LUTHIER_CACHE=
 cargo build --release --locked -p luthier-cli >&2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

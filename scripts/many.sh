@@ -3,6 +3,8 @@
 # docs/pages/scale.md. Needs GNU time (on Debian: apt-get install time).
 set -euo pipefail
 cd "$(dirname "$0")/.."
+# Everything is computed: no results of earlier runs.
+export LUTHIER_CACHE=
 
 sizes=("$@")
 [ ${#sizes[@]} -gt 0 ] || sizes=(100 1000 10000)

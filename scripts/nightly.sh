@@ -1,26 +1,34 @@
 #!/usr/bin/env bash
 # Checks that take too long for every change, and a page with their results: docs/pages/nightly.md.
-#   scripts/nightly.sh            all: an hour on two cores; scripts/pages.sh makes the long pages
+#   scripts/nightly.sh            all: an hour and a half on two cores; scripts/pages.sh makes the long pages
 #   scripts/nightly.sh STEP...    some, by the names of the functions below
 #   scripts/nightly.sh --check    fails where a step has not passed since the bytes of bakes last changed (tests/golden.sha256)
-# Wants what scripts/test.sh installs, and GNU time.
+# Wants what scripts/test.sh installs, GNU time, a C++ compiler (Debian: g++), and the packages that scripts/farm/*.sh and
+# scripts/other-architecture.sh name.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+# Everything is computed: no results of earlier runs.
+export LUTHIER_CACHE=
 
-steps=(tests random release examples engines kind packages scale)
+steps=(tests random fuzz release examples engines kind packages scale crash farm architecture)
 declare -A says=(
   [tests]='tests that are ignored elsewhere: the whole stability suite, and audits of tables with planted mistakes'
   [random]='property tests with new random seeds'
+  [fuzz]='ten minutes of search for inputs that bring a parser down (`docs/fuzzing.md`)'
   [release]='release builds write the bytes of debug builds, and name the Cargo feature of a verb that they lack'
   [examples]='the renderers in `examples` show the shipped tables, in a browser too'
   [engines]='three.js and Babylon.js read the tables of `luthier table`, in furnaces in a browser'
   [kind]='a kind of table is added by the six files of CONTRIBUTING.md, baked and judged'
   [packages]='every crate is packed, and built from its package'
+  [crash]='bakes are killed at every call that changes files and at random moments, interrupted, run side by side, and given faulty files'
   [scale]='libraries of 100 and 1,000 generated materials are baked'
+  [farm]='Slurm, Ninja, CMake and Make bake shares and merge them, a Slurm node is killed, and jobs for Kubernetes and OpenCue are checked'
+  [architecture]='a program for aarch64, emulated, writes the bytes of one for x86-64'
 )
 
 tests() { CI=true cargo test --locked --workspace --features luthier-cli/view --tests -- --ignored; }
 random() { ./scripts/random-tests.sh 1; }
+fuzz() { ./scripts/fuzz.sh 600; }
 release() {
   local work said
   work=$(mktemp -d)
@@ -44,7 +52,19 @@ engines() {
 }
 kind() { ./scripts/add-kind.sh; }
 packages() { ./scripts/package.sh --verify; }
+crash() {
+  cargo build --locked --release -p luthier-cli
+  LUTHIER=$PWD/target/release/luthier ./tests/crash/all.sh
+}
 scale() { ./scripts/many.sh 100 1000 >/dev/null; }
+farm() {
+  cargo build --locked --release -p luthier-cli
+  for script in slurm builds descriptions; do LUTHIER=$PWD/target/release/luthier "./scripts/farm/$script.sh"; done
+}
+architecture() {
+  cargo build --locked --release -p luthier-cli
+  LUTHIER=$PWD/target/release/luthier ./scripts/other-architecture.sh
+}
 
 results=docs/measurements/nightly.tsv
 page=docs/pages/nightly.md

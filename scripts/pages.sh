@@ -6,6 +6,8 @@
 # Wants the software Vulkan drivers of Debian's mesa-vulkan-drivers. LUTHIER and LUTHIER_LAB name the programs; by default cargo builds them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+# Everything is computed: no results of earlier runs.
+export LUTHIER_CACHE=
 
 luthier() { if [ -n "${LUTHIER-}" ]; then "$LUTHIER" "$@"; else cargo run --quiet --release --locked -p luthier-cli -- "$@"; fi; }
 luthier-lab() { if [ -n "${LUTHIER_LAB-}" ]; then "$LUTHIER_LAB" "$@"; else cargo run --quiet --release --locked -p luthier-lab -- "$@"; fi; }
@@ -54,11 +56,12 @@ distribution-table() { scripts/compare-distribution.sh >docs/pages/distribution-
 speed() { scripts/bench-table.sh >docs/pages/speed.md; }
 dfg() { scripts/bench-dfg.sh >docs/pages/dfg.md; }
 engine-tables() { scripts/engine-tables.sh >docs/pages/engine-tables.md; }
+reference() { luthier man --markdown >docs/reference.md; }
 
-all=(materials shapes cost papers budgets scenes parity stability figures models lobes varying anisotropic environment bench shader-size distribution-table speed dfg engine-tables)
+all=(materials shapes cost papers budgets scenes parity stability figures models lobes varying anisotropic environment bench shader-size distribution-table speed dfg engine-tables reference)
 case ${1-} in
   "") pages=("${all[@]}") ;;
-  --cheap) pages=(shader-size) ;;
+  --cheap) pages=(shader-size reference) ;;
   *) pages=("$@") ;;
 esac
 for page in "${pages[@]}"; do

@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
 # All tests. On Debian and its relatives it installs what they need (the software Vulkan driver, the shader validators, a
-# display without a screen, a browser, and Tint from npm); elsewhere it says what is missing. Needs nothing but a Rust toolchain otherwise.
+# display without a screen, a browser, shells, groff, and Tint from npm); elsewhere it says what is missing. Needs nothing but a Rust toolchain otherwise.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+# Everything is computed: no results of earlier runs.
+export LUTHIER_CACHE=
 
-packages=(mesa-vulkan-drivers libvulkan1 glslang-tools spirv-tools xvfb libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0 chromium)
+packages=(mesa-vulkan-drivers libvulkan1 glslang-tools spirv-tools xvfb libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0 chromium groff-base zsh fish)
 
 step() { printf '\n== %s\n' "$1"; }
 
@@ -15,6 +17,9 @@ missing() {
   compgen -G '/usr/share/vulkan/icd.d/*.json' >/dev/null || compgen -G '/etc/vulkan/icd.d/*.json' >/dev/null ||
     echo 'a Vulkan driver'
   command -v Xvfb >/dev/null || echo Xvfb
+  for program in groff zsh fish; do
+    command -v "$program" >/dev/null || echo "$program"
+  done
   command -v chromium chromium-browser google-chrome >/dev/null || echo Chromium
   for library in libX11-xcb libXcursor libXi libxkbcommon-x11; do
     ldconfig -p 2>/dev/null | grep "$library\.so" >/dev/null || echo "$library"
@@ -63,11 +68,14 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 ./scripts/golden.sh --keep "$work/golden"
 
+step "kills, signals, bakes side by side, and faults of files"
+./tests/crash/all.sh --quick
+
 step "pages are up to date"
 ./scripts/nightly.sh --check
-cp -r docs/pages "$work/pages"
+cp -r docs/pages docs/reference.md "$work"
 ./scripts/pages.sh --cheap
-if ! diff -r "$work/pages" docs/pages; then
+if ! diff -r "$work/pages" docs/pages || ! diff "$work/reference.md" docs/reference.md; then
   echo "error: these pages were out of date, and have been made anew: commit them"
   exit 1
 fi

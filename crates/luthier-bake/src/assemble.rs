@@ -3,21 +3,18 @@
 use std::collections::BTreeMap;
 
 use luthier_lut::{Atlas, AtlasLayout, FormatSet, Image, RowBase, TableKind, TexelFormat, Tile};
-use luthier_manifest::{Budget, CandidateForm, ColorMode, LayerRecord, MaterialConstants, Search, ShadingModel, Tiles};
+use luthier_manifest::{Budget, ColorMode, Decision, LayerRecord, MaterialConstants, Search, ShadingModel, Tiles};
 use luthier_material::Material;
 use luthier_optics::interface::Interface;
 
 use crate::constants::constants;
+use crate::decide::{Planned, budget, layouts, plan, used};
 use crate::graph::{JobKind, Key, Observer, Results, Silent};
 use crate::kinds::lobes;
-use crate::limits;
 use crate::maps::{MaterialMap, maps};
 use crate::plan::{ImageReader, Plan, PlannedLayers, TileList, color, color_mode};
-use crate::search;
-use crate::settings::{Settings, Shape};
-use crate::tile::apron;
-use crate::{AIM, BakeError, DEFAULT_BUDGET, MemoryStore, Store};
-use luthier_layers::lobes::LOBES;
+use crate::settings::Settings;
+use crate::{AIM, BakeError, MemoryStore, Store};
 
 /// Tables, records and maps that a set of materials needs at run time.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,7 +65,7 @@ pub struct Outline {
 
 /// How a bake is to be made, beside what the materials say.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
+pub struct Options<'a> {
     /// Limits, each in place of those that materials state.
     pub budget: Budget,
     /// Whether sizes, mappings and formats that no material decides are searched for; otherwise they are fixed defaults, and budgets
@@ -80,11 +77,13 @@ pub struct Options {
     pub formats: FormatSet,
     /// Whether an outline fits lobes, which takes seconds: their number decides tables and shaders. A bake always does.
     pub fits: bool,
+    /// Decisions of an earlier search, which stay as long as they hold the budget.
+    pub locked: &'a [Decision],
 }
 
-impl Default for Options {
+impl Default for Options<'_> {
     fn default() -> Self {
-        Self { budget: Budget::default(), search: true, rows: None, formats: FormatSet::CORE, fits: true }
+        Self { budget: Budget::default(), search: true, rows: None, formats: FormatSet::CORE, fits: true, locked: &[] }
     }
 }
 
@@ -103,7 +102,7 @@ pub fn outline(materials: &[Material], read_image: ImageReader<'_>) -> Result<Ou
 /// See [`BakeError`].
 pub fn outline_with(
     materials: &[Material],
-    options: &Options,
+    options: &Options<'_>,
     read_image: ImageReader<'_>,
 ) -> Result<Outline, BakeError> {
     let planned = plan(materials, options, read_image, &Silent, &MemoryStore::default())?;
@@ -152,7 +151,7 @@ pub fn kinked_rows(material: &Material, read_image: ImageReader<'_>) -> Result<V
 ///
 /// # Errors
 /// All that is wrong, at least one.
-pub fn check(materials: &[Material], options: &Options) -> Result<(), Vec<BakeError>> {
+pub fn check(materials: &[Material], options: &Options<'_>) -> Result<(), Vec<BakeError>> {
     let mut errors = Vec::new();
     if materials.is_empty() {
         errors.push(BakeError::Empty);
@@ -191,7 +190,7 @@ pub fn bake(materials: &[Material], read_image: ImageReader<'_>, observer: &dyn 
 /// See [`BakeError`].
 pub fn bake_with(
     materials: &[Material],
-    options: &Options,
+    options: &Options<'_>,
     read_image: ImageReader<'_>,
     observer: &dyn Observer,
     store: &dyn Store,
@@ -206,150 +205,6 @@ pub fn bake_with(
     let atlas = |(kind, layout, format)| atlas(kind, layout, format, &tiles[kind as usize], &results, aim(kind));
     let atlases = layouts.into_iter().map(atlas).collect();
     Ok(Baked { atlases, materials: baked_materials(materials, records, &settings, &results), searches })
-}
-
-/// A plan whose settings are final, results that were needed to find them, and what the search found.
-struct Planned {
-    plan: Plan,
-    results: Results,
-    searches: Vec<Search>,
-}
-
-/// Often enough for the error of every choice to be confirmed or refuted by the exact measurement.
-const ROUNDS: usize = 24;
-
-fn plan(
-    materials: &[Material],
-    options: &Options,
-    read_image: ImageReader<'_>,
-    observer: &dyn Observer,
-    store: &dyn Store,
-) -> Result<Planned, BakeError> {
-    check(materials, options).map_err(|mut errors| errors.swap_remove(0))?;
-    let mut settings = Settings::of(materials)?;
-    settings.formats = options.formats;
-    if let Some(rows) = options.rows {
-        settings.take_rows(rows);
-    }
-    let asked = budget(materials, &options.budget)?;
-    settings.lobes = (options.search && asked.limits_lobes()).then_some(LOBES);
-    let mut fixed = Plan::new(materials, settings.clone(), read_image)?;
-    let mut results = Results::default();
-    let mut searches = Vec::new();
-    if let Some(fits) = lobes::fits(&fixed.graph).filter(|_| options.fits) {
-        results = fits.run(observer, store, results);
-        searches.extend(lobes::decide(&mut settings, &fixed, &results, &asked.of_lobes())?);
-        fixed = Plan::new(materials, settings.clone(), read_image)?;
-    }
-    let fixed_layouts = layouts(&fixed)?;
-    if !options.search {
-        return Ok(Planned { plan: fixed, results, searches });
-    }
-    let asked = asked.of_texels();
-    let is_asked = !asked.is_empty();
-    let budget = if is_asked { asked } else { DEFAULT_BUDGET };
-    // Costly tables are made once; candidates are compared with them.
-    if is_asked {
-        results = fixed.graph.intermediate().run(observer, store, results);
-    }
-    let mut found = if is_asked { search::candidates(&fixed, &results, &budget) } else { search::by_default(&fixed) };
-    found.iter_mut().for_each(|found| fitting(found, &fixed));
-    found.retain(|found| !found.candidates.is_empty());
-    let searched: Vec<TableKind> = found.iter().map(|f| f.kind).collect();
-    let fixed_bytes = fixed_layouts
-        .iter()
-        .filter(|(kind, ..)| !searched.contains(kind))
-        .map(|(_, layout, format)| {
-            let [width, height] = layout.size();
-            u64::from(width) * u64::from(height) * u64::from(format.texel_bytes())
-        })
-        .sum();
-    let mut plan = fixed;
-    let (mut chosen, mut refusal) = (Vec::new(), None);
-    for _ in 0..ROUNDS {
-        // What a refusal says would do is confirmed too, before it is said.
-        refusal = None;
-        chosen = if is_asked {
-            match search::choose(&found, &budget, fixed_bytes) {
-                Ok(chosen) => chosen,
-                Err(error) => {
-                    let unlimited = Budget { max_bytes: None, max_cost: None, ..budget };
-                    let Ok(would) = search::choose(&found, &unlimited, fixed_bytes) else { return Err(error) };
-                    refusal = Some(error);
-                    would
-                }
-            }
-        } else {
-            search::best_effort(&found, &budget)
-        };
-        let mut settings = settings.clone();
-        for (kind, &choice) in found.iter().zip(&chosen) {
-            settings.apply(kind.kind, &kind.candidates[choice].form);
-        }
-        plan = Plan::new(materials, settings, read_image)?;
-        // The measurement of the bake itself climbs to the worst points; it has the last word.
-        let exact = plan.graph.only(|job| searched.iter().any(|&kind| job.kind() == JobKind::tile(kind)));
-        results = exact.run(observer, store, results);
-        let mut is_confirmed = true;
-        for (kind, &choice) in found.iter_mut().zip(&chosen) {
-            let tiles = plan.tiles[kind.kind as usize].tiles.iter().enumerate();
-            let counted = tiles.filter(|(tile, _)| !kind.left_out.contains(tile)).map(|(_, (_, key))| *key);
-            let exact = counted.filter_map(|key| results.find(key)).map(|t| t.error.max_abs_err);
-            is_confirmed &= kind.confirm(choice, exact.fold(0.0, f64::max));
-        }
-        if is_confirmed {
-            break;
-        }
-    }
-    if let Some(error) = refusal {
-        return Err(error);
-    }
-    searches.extend(found.iter().zip(&chosen).map(|(f, &choice)| search::report(f, choice, &budget)));
-    Ok(Planned { plan, results, searches })
-}
-
-/// Drops the candidates whose table no texture holds.
-fn fitting(found: &mut search::Found, plan: &Plan) {
-    let tiles = plan.tiles[found.kind as usize].tiles.len() as u32;
-    found.candidates.retain(|candidate| match &candidate.form {
-        CandidateForm::ClosedForm => true,
-        CandidateForm::Table { x, y, base, .. } => {
-            let layout = AtlasLayout { x: x.clone(), y: y.clone(), apron: 0, columns: 1, tiles, base: *base };
-            limits::columns(&layout).is_some()
-        }
-    });
-}
-
-/// The limits of the materials, the tightest of each; those of the options in their place.
-fn budget(materials: &[Material], given: &Budget) -> Result<Budget, BakeError> {
-    let stated = materials.iter().map(|material| material.budget).fold(Budget::default(), |a, b| a.tighter(&b));
-    let budget = Budget {
-        max_abs: given.max_abs.or(stated.max_abs),
-        max_rel: given.max_rel.or(stated.max_rel),
-        delta_e: given.delta_e.or(stated.delta_e),
-        max_bytes: given.max_bytes.or(stated.max_bytes),
-        max_cost: given.max_cost.or(stated.max_cost),
-        max_lobe_err: given.max_lobe_err.or(stated.max_lobe_err),
-        max_albedo_err: given.max_albedo_err.or(stated.max_albedo_err),
-    };
-    for (name, value, example) in [
-        ("max_abs", budget.max_abs, "1e-3"),
-        ("max_rel", budget.max_rel, "1e-2"),
-        ("delta_e", budget.delta_e, "0.5"),
-        ("max_bytes", budget.max_bytes.map(|bytes| bytes as f64), "65536"),
-        ("max_cost", budget.max_cost, "200"),
-        ("max_lobe_err", budget.max_lobe_err, "0.05"),
-        ("max_albedo_err", budget.max_albedo_err, "0.01"),
-    ] {
-        if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
-            return Err(BakeError::BudgetValue { name, value, example });
-        }
-    }
-    Ok(budget)
-}
-
-fn used(tiles: &[TileList; TableKind::ALL.len()]) -> impl Iterator<Item = (TableKind, &TileList)> {
-    TableKind::ALL.into_iter().zip(tiles).filter(|(_, tiles)| !tiles.tiles.is_empty())
 }
 
 fn baked_materials(
@@ -367,21 +222,6 @@ fn baked_materials(
         maps: maps(m),
     };
     materials.iter().zip(records).map(baked).collect()
-}
-
-/// Kind, layout and texel format of each table of a plan, in binding order.
-fn layouts(plan: &Plan) -> Result<Vec<(TableKind, AtlasLayout, TexelFormat)>, BakeError> {
-    let layout = |(kind, tiles): (TableKind, &TileList)| {
-        let Shape { x, y, base, format } = plan.settings.shape(kind)?.clone();
-        let (apron, count) = (apron(std::iter::once(&x).chain(&y)), tiles.tiles.len() as u32);
-        let layout = AtlasLayout { x, y, apron, columns: 1, tiles: count, base };
-        let columns = if tiles.has_runs { limits::one_column(&layout) } else { limits::columns(&layout) };
-        Some(match columns {
-            Some(columns) => Ok((kind, AtlasLayout { columns, ..layout }, format)),
-            None => Err(limits::too_many_tiles(kind, &layout)),
-        })
-    };
-    used(&plan.tiles).filter_map(layout).collect()
 }
 
 fn atlas(

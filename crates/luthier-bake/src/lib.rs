@@ -13,6 +13,7 @@
 
 mod assemble;
 mod constants;
+mod decide;
 mod error;
 mod graph;
 mod grid;
@@ -24,6 +25,7 @@ mod plan;
 mod records;
 mod search;
 mod settings;
+mod share;
 mod tile;
 mod veil;
 
@@ -31,7 +33,8 @@ pub use assemble::{
     Baked, BakedMaterial, Options, Outline, bake, bake_with, check, kinked_rows, outline, outline_with,
 };
 pub use error::BakeError;
-pub use graph::{Artefact, JobKind, Key, MemoryStore, Observer, Silent, Store, Task};
+pub use graph::{Artefact, JobKind, Key, MemoryStore, Observer, Share, Silent, Store, Task};
 pub use maps::{MapSource, MaterialMap};
 pub use plan::ImageReader;
 pub use search::{AIM, DEFAULT_BUDGET, goals};
+pub use share::{Missing, bake_share, missing};

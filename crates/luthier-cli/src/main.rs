@@ -37,6 +37,8 @@ fn main() -> ExitCode {
     store::configure(&line.store);
     let outcome = match &line.verb {
         Verb::Bake(options) => verb::bake::run(options),
+        Verb::Merge(options) => verb::bake::merge(options),
+        Verb::Cache(verb) => verb::cache::run(verb),
         Verb::Check(options) => verb::check::run(options),
         Verb::Report(options) => verb::report::run(options),
         Verb::Audit(options) => verb::audit::run(options),
@@ -59,6 +61,8 @@ fn main() -> ExitCode {
         Verb::Eval(options) => verb::eval::run(options),
         Verb::Ior(options) => verb::ior::run(options),
         Verb::Schema { scene } => verb::schema::run(*scene),
+        Verb::Completions(options) => verb::completions::run(options),
+        Verb::Man(options) => verb::man::run(options),
     };
     store::close();
     match outcome {

@@ -1,15 +1,19 @@
 //! Progress of a bake, and the time that each kind of job took.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use luthier_bake::{JobKind, Observer};
-use luthier_terminal::Bar;
+use luthier_terminal::{Bar, complain};
+use serde_json::{Value, json};
 
 /// Follows a bake.
 pub(crate) struct BakeProgress {
     bar: Bar,
+    /// Whether events go to standard error as lines of JSON.
+    has_events: bool,
     state: Mutex<State>,
 }
 
@@ -17,13 +21,35 @@ pub(crate) struct BakeProgress {
 struct State {
     planned: u64,
     finished: u64,
+    found: u64,
     running: Option<Instant>,
     seconds: BTreeMap<JobKind, f64>,
 }
 
 impl BakeProgress {
-    pub(crate) fn new() -> Self {
-        Self { bar: Bar::new("baking"), state: Mutex::default() }
+    pub(crate) fn new(has_events: bool) -> Self {
+        Self { bar: Bar::new("baking"), has_events, state: Mutex::default() }
+    }
+
+    /// Number of jobs that have run.
+    pub(crate) fn run(&self) -> u64 {
+        self.lock().finished
+    }
+
+    /// Number of jobs whose results a store had.
+    pub(crate) fn had(&self) -> u64 {
+        self.lock().found
+    }
+
+    /// Tells of a file.
+    pub(crate) fn event(&self, name: &str, path: &Path) {
+        self.tell(&json!({ "event": name, "path": path.to_string_lossy() }));
+    }
+
+    fn tell(&self, event: &Value) {
+        if self.has_events {
+            complain(&event.to_string());
+        }
     }
 
     /// Wall-clock seconds per kind of job, in the order in which they ran.
@@ -38,13 +64,23 @@ impl BakeProgress {
 
 impl Observer for BakeProgress {
     fn planned(&self, jobs: usize) {
-        self.lock().planned = jobs as u64;
+        let mut state = self.lock();
+        state.planned = state.finished + jobs as u64;
+        self.tell(&json!({ "event": "planned", "jobs": jobs }));
     }
 
-    fn finished(&self, _: JobKind) {
+    fn found(&self, kind: JobKind, jobs: usize) {
+        self.lock().found += jobs as u64;
+        self.tell(&json!({ "event": "found", "kind": kind.name(), "jobs": jobs }));
+    }
+
+    fn finished(&self, kind: JobKind) {
         let mut state = self.lock();
         state.finished += 1;
-        self.bar.set(state.finished, state.planned);
+        self.tell(&json!({ "event": "finished", "kind": kind.name() }));
+        if !self.has_events {
+            self.bar.set(state.finished, state.planned);
+        }
     }
 
     fn batch(&self, kind: JobKind, running: bool) {

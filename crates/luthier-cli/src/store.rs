@@ -71,11 +71,19 @@ pub(crate) fn disk() -> Outcome<Option<&'static DiskStore>> {
     })
 }
 
+/// Bytes that the store may have.
+pub(crate) fn limit() -> u64 {
+    OPTIONS.get().map_or(luthier_store::DEFAULT_LIMIT, |options| options.cache_size << 20)
+}
+
 fn opened() -> Outcome<&'static Opened> {
     if let Some(opened) = STORE.get() {
         return Ok(opened);
     }
-    let opened = open(OPTIONS.get().unwrap_or(&StoreOptions::default()))?;
+    let opened = match OPTIONS.get() {
+        Some(options) => open(options)?,
+        None => Opened::Memory(MemoryStore::default()),
+    };
     Ok(STORE.get_or_init(|| opened))
 }
 

@@ -1,5 +1,6 @@
 //! A package as files.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use luthier_lut::{AtlasLayout, Axis, Image, Mapping, RowBase, TableKind, Tile, Values};
@@ -88,6 +89,24 @@ impl Encoded {
             self.files.iter().map(|(path, bytes)| (path.as_str(), bytes.as_slice())).collect();
         files.push((MANIFEST, manifest.as_bytes()));
         publish::publish(folder, &files)
+    }
+}
+
+impl Encoded {
+    /// The files that a folder lacks, or has with other bytes, and those that its manifest names and that would go: in the order of their paths. Empty where
+    /// [`Self::write`] would change nothing.
+    ///
+    /// # Errors
+    /// [`PackageError::Table`] for a manifest that is no JSON.
+    pub fn stale(&self, folder: &Path) -> Result<Vec<String>, PackageError> {
+        let manifest = self.manifest.to_json()?;
+        let files = self.files.iter().map(|(path, bytes)| (path.as_str(), bytes.as_slice()));
+        let all: BTreeMap<&str, &[u8]> = files.chain([(MANIFEST, manifest.as_bytes())]).collect();
+        let is_other = |(path, bytes): &(&&str, &&[u8])| publish::current(folder, path).as_deref() != Some(**bytes);
+        let mut stale: Vec<String> = all.iter().filter(is_other).map(|(path, _)| (*path).to_owned()).collect();
+        stale.extend(publish::named(folder).into_iter().filter(|path| !all.contains_key(path.as_str())));
+        stale.sort();
+        Ok(stale)
     }
 }
 

@@ -101,6 +101,12 @@ pub enum PackageError {
         /// Error of the system.
         source: io::Error,
     },
+    /// Another bake has been published since this one was read.
+    #[error("{} holds another bake than the one that was read: run it again", folder.display())]
+    Rebaked {
+        /// The folder.
+        folder: PathBuf,
+    },
     /// The manifest cannot be written, or a table is not the one that it states.
     #[error(transparent)]
     Table(#[from] ManifestError),

@@ -30,12 +30,12 @@ pub use encode::{Compression, Encoded, sha256};
 pub use error::PackageError;
 pub use folder::{Folder, MANIFEST, MAX_FILE_BYTES};
 pub use package::{Map, Package, Shader, Table};
-pub use publish::{ENVIRONMENT, REPORT_FILES, REPORT_FOLDER, publish};
+pub use publish::{ENVIRONMENT, REPORT_FILES, REPORT_FOLDER, publish, publish_beside, shared, wait};
 
 #[cfg(feature = "bake")]
 pub use doubts::{of_domain, of_model};
 #[cfg(feature = "bake")]
-pub use luthier_bake::{MemoryStore, Store};
+pub use luthier_bake::{MemoryStore, Missing, Share, Store};
 #[cfg(feature = "bake")]
 pub use luthier_material::{LeftOut, left_out};
 #[cfg(feature = "bake")]
@@ -45,7 +45,7 @@ pub use refusals::{refuse, refuse_too_many};
 #[cfg(feature = "bake")]
 pub use renderer::{lit, lit_functions};
 #[cfg(feature = "bake")]
-pub use sources::{Source, find, label, parse, read, read_image, read_one};
+pub use sources::{Source, find, label, parse, read, read_all, read_image, read_one};
 
 pub(crate) use publish::READY;
 

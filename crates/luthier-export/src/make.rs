@@ -1,10 +1,14 @@
 //! Packages made from materials.
 
+use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::io;
 use std::ops::Range;
 use std::path::Path;
 
-use luthier_bake::{BakeError, BakedMaterial, ImageReader, MapSource, MaterialMap, Observer, Options, Silent, Store};
+use luthier_bake::{
+    BakeError, BakedMaterial, ImageReader, MapSource, MaterialMap, Missing, Observer, Options, Share, Silent, Store,
+};
 use luthier_lut::{Atlas, AtlasLayout, Image, TableKind, TexelFormat};
 use luthier_manifest::{
     FileEntry, Form, Functions, Manifest, MapEntry, MaterialEntry, MaterialTexture, TableEntry, Target, material_buffer,
@@ -21,7 +25,7 @@ use crate::{GENERATOR, Map, Package, PackageError, Shader, Table, input, of_doma
 #[derive(Clone)]
 pub struct Bake<'a> {
     /// Limits, formats, whether tables are searched for.
-    pub options: Options,
+    pub options: Options<'a>,
     /// Languages of the shaders.
     pub targets: Vec<Target>,
     /// Forms of the shaders, or none for all that the models have; with [`Form::Full`] alone the package has no tables.
@@ -51,6 +55,41 @@ impl Bake<'_> {
     /// A package for a renderer: shaders in WGSL only.
     pub fn wgsl(forms: &[Form]) -> Self {
         Self { targets: vec![Target::Wgsl], forms: forms.to_vec(), ..Self::default() }
+    }
+
+    /// The materials as they are baked, and this with the forms that they have.
+    fn settled<'m>(&self, materials: &'m [Material]) -> Result<(Cow<'m, [Material]>, Self), ExportError> {
+        let is_closed = self.forms.contains(&Form::Full);
+        let materials = if is_closed { Cow::Owned(unfitted(materials)) } else { Cow::Borrowed(materials) };
+        if self.refuses {
+            refuse_foreign(&materials)?;
+        }
+        let forms = forms(&materials, &self.forms)?;
+        Ok((materials, Self { forms, ..self.clone() }))
+    }
+
+    /// Computes a share of the jobs of a bake into a store: the bake that follows finds the results there.
+    ///
+    /// # Errors
+    /// [`ExportError`].
+    pub fn share(&self, materials: &[Material], store: &dyn Store, share: Share) -> Result<(), ExportError> {
+        let (materials, bake) = self.settled(materials)?;
+        if bake.forms == [Form::Full] {
+            return Ok(());
+        }
+        Ok(luthier_bake::bake_share(&materials, &bake.options, &sources::read_image, bake.observer, store, share)?)
+    }
+
+    /// The jobs that a bake would run because a store lacks their results.
+    ///
+    /// # Errors
+    /// [`ExportError`].
+    pub fn missing(&self, materials: &[Material], store: &dyn Store) -> Result<Missing, ExportError> {
+        let (materials, bake) = self.settled(materials)?;
+        if bake.forms == [Form::Full] {
+            return Ok(Missing { jobs: BTreeMap::new(), is_all: true });
+        }
+        Ok(luthier_bake::missing(&materials, &bake.options, &sources::read_image, store)?)
     }
 }
 
@@ -111,14 +150,8 @@ impl Package {
     /// # Errors
     /// [`ExportError`]. The bytes depend on nothing but the arguments and the files.
     pub fn new(materials: &[Material], bake: &Bake<'_>, store: &dyn Store) -> Result<Self, ExportError> {
-        let closed = bake.forms.contains(&Form::Full).then(|| unfitted(materials));
-        let materials = closed.as_deref().unwrap_or(materials);
-        if bake.refuses {
-            refuse_foreign(materials)?;
-        }
+        let (materials, bake) = &bake.settled(materials)?;
         let read = &sources::read_image as ImageReader<'_>;
-        let forms = forms(materials, &bake.forms)?;
-        let bake = &Bake { forms, ..bake.clone() };
         if bake.forms == [Form::Full] {
             // Without a shader that reads them there are no tables.
             let options = Options { search: false, ..bake.options };
@@ -206,7 +239,7 @@ impl Package {
 ///
 /// # Errors
 /// [`ExportError`].
-pub fn outline(materials: &[Material], options: &Options) -> Result<Manifest, ExportError> {
+pub fn outline(materials: &[Material], options: &Options<'_>) -> Result<Manifest, ExportError> {
     let outline = luthier_bake::outline_with(materials, options, &sources::read_image)?;
     let (entries, _) = material_entries(materials, &outline.materials)?;
     let tables = outline.tables.iter().map(|(kind, layout, format)| table_entry(*kind, layout, *format)).collect();

@@ -129,6 +129,6 @@ impl Package {
 
     /// Bytes of the texels of all tables.
     pub fn texel_bytes(&self) -> u64 {
-        self.manifest.tables.iter().map(|table| table.texel_bytes).sum()
+        self.manifest.tables.iter().fold(0, |sum: u64, table| sum.saturating_add(table.texel_bytes))
     }
 }

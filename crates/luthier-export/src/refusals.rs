@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use luthier_bake::BakeError;
 use luthier_material::{Diagnostic, Material, NamedImage, Severity};
+use rayon::prelude::*;
 
 use crate::input;
 use crate::sources::{Source, beside, read_image};
@@ -12,13 +13,13 @@ use crate::sources::{Source, beside, read_image};
 const FILM_MAP: &str = "layer.0.film.0.thickness_nm.map.image";
 
 /// Adds `doubts`, and makes files unusable that cannot be baked: one by one, then, where each is usable, as a set.
-pub fn refuse(sources: &mut [Source], doubts: impl Fn(&Material) -> Vec<Diagnostic>) {
-    for source in sources.iter_mut() {
-        let Ok(parsed) = &source.parsed else { continue };
+pub fn refuse(sources: &mut [Source], doubts: impl Fn(&Material) -> Vec<Diagnostic> + Sync) {
+    sources.par_iter_mut().for_each(|source| {
+        let Ok(parsed) = &source.parsed else { return };
         let mut found = doubts(&parsed.material);
         found.extend(parsed.material.images().iter().filter_map(|image| unreadable(&parsed.material, image)));
         add(source, found);
-    }
+    });
     let Some(materials) = usable(sources) else { return };
     for (number, diagnostic) in of_set(&materials) {
         add(&mut sources[number], vec![diagnostic]);

@@ -6,6 +6,7 @@ use std::string::FromUtf8Error;
 
 use luthier_lut::Image;
 use luthier_material::{Diagnostic, Material, Parsed, Severity};
+use rayon::prelude::*;
 
 use crate::make::file;
 use crate::{ExportError, input};
@@ -51,7 +52,15 @@ pub fn parse(label: &str, text: &str) -> Result<Material, ExportError> {
 /// # Errors
 /// [`ExportError::File`], [`ExportError::NoFiles`].
 pub fn read(paths: &[PathBuf]) -> Result<Vec<Source>, ExportError> {
-    find(paths)?.iter().map(|path| read_one(path)).collect()
+    read_all(&find(paths)?)
+}
+
+/// Reads files, side by side, in the order given.
+///
+/// # Errors
+/// [`ExportError::File`], of the first that cannot be read.
+pub fn read_all(paths: &[PathBuf]) -> Result<Vec<Source>, ExportError> {
+    paths.par_iter().map(|path| read_one(path)).collect::<Vec<_>>().into_iter().collect()
 }
 
 /// The files that [`read`] reads.
@@ -128,10 +137,26 @@ fn toml_files(folder: &Path) -> Result<Vec<PathBuf>, ExportError> {
     let mut paths = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(|source| file("list", folder, source))? {
         let path = entry.map_err(|source| file("list", folder, source))?.path();
-        if path.extension().is_some_and(|e| e == "toml") && path.is_file() {
+        // A broken link is a file that cannot be read, not one to leave out in silence.
+        if path.extension().is_some_and(|e| e == "toml") && !path.is_dir() {
             paths.push(path);
         }
     }
     paths.sort();
     Ok(paths)
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    /// A folder of a build that lacks a material is not baked without it.
+    #[test]
+    fn a_broken_link_is_not_left_out() {
+        let folder = tempfile::tempdir().unwrap();
+        std::os::unix::fs::symlink("nowhere.toml", folder.path().join("a.toml")).unwrap();
+        std::fs::create_dir(folder.path().join("b.toml")).unwrap();
+        let error = read(&[folder.path().to_owned()]).unwrap_err();
+        assert!(matches!(&error, ExportError::File { .. }) && error.to_string().contains("a.toml"), "{error}");
+    }
 }

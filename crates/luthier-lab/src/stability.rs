@@ -56,7 +56,7 @@ struct Tables {
     /// Name of the tables; `None` for those that ship by default.
     name: Option<&'static str>,
     /// Options of the bake that makes them.
-    options: Options,
+    options: Options<'static>,
     /// Models that are run with them.
     models: &'static [ShadingModel],
 }

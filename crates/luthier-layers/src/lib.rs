@@ -28,6 +28,7 @@ mod noise;
 mod references;
 mod twins;
 
+pub mod angles;
 pub mod directional_albedo;
 pub mod domain;
 pub mod frame;
@@ -46,7 +47,7 @@ pub use luthier_optics;
 pub use num_complex;
 
 pub use self::noise::{perlin, voronoi};
-pub use effects::{flakes, fluorescence, heterogeneous, patina, textured};
+pub use effects::{flakes, fluorescence, heterogeneous, patina, reradiation, textured};
 pub use models::{
     belcour, densities, diffuse, elek, elek_model, facets, granier_heidrich, interface_fresnel, microfacet, normals,
     oren_nayar, phong, refraction, statistics, weidlich_wilkie, weidlich_wilkie_corrected, weidlich_wilkie_sampling,

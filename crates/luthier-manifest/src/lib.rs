@@ -14,6 +14,7 @@ mod feature;
 mod form;
 mod functions;
 mod limits;
+mod lock;
 mod manifest;
 mod model;
 mod reads;
@@ -32,6 +33,7 @@ pub use feature::Feature;
 pub use form::Form;
 pub use functions::{FunctionGroup, Functions};
 pub use limits::{BUFFER_WORDS_MAX, MaterialTexture, SIDE, SIDE_MAX};
+pub use lock::{Decision, Lock};
 pub use luthier_optics::stack::Distribution;
 pub use manifest::{
     BindingEntry, ColorMode, FileEntry, MANIFEST_SCHEMA, Manifest, MapEntry, MapSlot, MaterialEntry, ShaderEntry,

@@ -45,7 +45,7 @@ impl Usage {
     }
 }
 
-/// What a check of all entries found.
+/// Result of a check of all entries.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Verified {
     /// Entries that are whole.
@@ -93,7 +93,7 @@ impl DiskStore {
             if address.is_some_and(|address| unpack(address, &bytes).is_some()) {
                 verified.whole += 1;
             } else {
-                at("remove", &path, fs::remove_file(&path))?;
+                remove(&path)?;
                 verified.damaged.push(path);
             }
         }
@@ -141,7 +141,7 @@ impl DiskStore {
             if left <= wanted {
                 break;
             }
-            at("remove", &path, fs::remove_file(&path))?;
+            remove(&path)?;
             left -= bytes;
         }
         self.save(left)
@@ -181,6 +181,14 @@ impl DiskStore {
             }
         }
         Ok(found)
+    }
+}
+
+/// Removes an entry, unless another process did.
+fn remove(path: &Path) -> Result<(), StoreError> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
+        removed => at("remove", path, removed),
     }
 }
 

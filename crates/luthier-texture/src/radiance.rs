@@ -9,6 +9,7 @@ use luthier_lut::Image;
 
 use crate::TextureError;
 use crate::error::Container;
+use crate::exr::dwa;
 use crate::limits::checked_bytes;
 
 const EXR_MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -36,6 +37,7 @@ fn decode_exr(file: &[u8]) -> Result<Image, TextureError> {
         let side = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
         checked_bytes(side(header.layer_size.0), side(header.layer_size.1), 12)?;
     }
+    dwa::check(file)?;
     let image = read()
         .no_deep_data()
         .largest_resolution_level()

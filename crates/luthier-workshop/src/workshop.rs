@@ -85,6 +85,8 @@ impl<P: Program> Workshop<P> {
     /// Runs the command in any folder; its streams are pipes.
     pub fn run_in(folder: &Path, args: &[&str]) -> Run {
         let mut command = assert_cmd::Command::new(P::PATH);
+        // Tests compute what they judge, and leave nothing in the caches of who runs them.
+        command.env("LUTHIER_CACHE", "");
         let output = command.current_dir(folder).args(args).timeout(PATIENCE).output().unwrap();
         let text = |bytes| String::from_utf8(bytes).unwrap();
         let (stdout, stderr) = (text(output.stdout), text(output.stderr));

@@ -38,6 +38,15 @@ impl Observer for Silent {
     fn batch(&self, _: JobKind, _: bool) {}
 }
 
+/// A share of the jobs of a bake.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Share {
+    /// Number of the share, from 1.
+    pub index: u32,
+    /// Number of shares.
+    pub count: u32,
+}
+
 /// A job in a graph.
 #[derive(Debug)]
 struct Entry {
@@ -49,7 +58,7 @@ struct Entry {
 
 impl Entry {
     fn task(&self) -> Task<'_> {
-        Task { job: self.job.as_ref(), address: self.address }
+        Task::of(self.job.as_ref(), self.address)
     }
 }
 
@@ -102,6 +111,11 @@ impl Graph {
         self.jobs.values().flatten().map(|(key, entry)| (*key, &entry.job))
     }
 
+    /// The addresses of all jobs.
+    pub(crate) fn addresses(&self) -> impl Iterator<Item = Key> {
+        self.jobs.values().flat_map(BTreeMap::values).map(|entry| entry.address)
+    }
+
     /// The graph of some of its jobs, with all that these need.
     pub(crate) fn only(&self, is_one: impl Fn(&dyn Job) -> bool) -> Self {
         let mut some = Self::default();
@@ -109,6 +123,33 @@ impl Graph {
             some.add(job.clone());
         }
         some
+    }
+
+    /// The graph of a share of its jobs, with all that these need: of those that no other needs, one after the other for each share.
+    pub(crate) fn share(&self, share: Share, is_one: impl Fn(&dyn Job) -> bool) -> Self {
+        let inner = self.inner();
+        let outer =
+            self.jobs.iter().flat_map(|(&place, jobs)| jobs.iter().map(move |(&key, entry)| (place, key, entry)));
+        let outer = outer.filter(|(place, key, entry)| is_one(entry.job.as_ref()) && !inner.contains(&(*place, *key)));
+        let mut some = Self::default();
+        for (_, _, entry) in outer.skip(share.index as usize - 1).step_by(share.count as usize) {
+            some.add(entry.job.clone());
+        }
+        some
+    }
+
+    /// The jobs that others need.
+    fn inner(&self) -> BTreeSet<(Place, Key)> {
+        self.jobs.values().flat_map(BTreeMap::values).flat_map(|entry| entry.needs.iter().copied()).collect()
+    }
+
+    /// The number of jobs by kind whose results neither `results` nor the store has, and that would run.
+    pub(crate) fn count_missing(&self, store: &dyn Store, results: &mut Results) -> BTreeMap<JobKind, usize> {
+        let mut counts = BTreeMap::new();
+        for ((_, kind), _) in self.missing(store, results, &Silent) {
+            *counts.entry(kind).or_default() += 1;
+        }
+        counts
     }
 
     /// The graph of the jobs whose results are intermediate.
@@ -133,8 +174,7 @@ impl Graph {
 
     /// The jobs that would run: those without a result that something needs which has none. Results that a store has are fetched.
     fn missing(&self, store: &dyn Store, results: &mut Results, observer: &dyn Observer) -> BTreeSet<(Place, Key)> {
-        let inner: BTreeSet<(Place, Key)> =
-            self.jobs.values().flat_map(BTreeMap::values).flat_map(|entry| entry.needs.iter().copied()).collect();
+        let inner = self.inner();
         let mut missing: BTreeSet<(Place, Key)> = BTreeSet::new();
         for (&place, jobs) in self.jobs.iter().rev() {
             let is_needed = |key: Key| !inner.contains(&(place, key)) || missing.contains(&(place, key));

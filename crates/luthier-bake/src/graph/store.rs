@@ -11,14 +11,31 @@ use crate::graph::{Artefact, Job, JobKind, Key};
 /// A job as stores know it.
 #[derive(Debug, Clone, Copy)]
 pub struct Task<'a> {
-    pub(crate) job: &'a dyn Job,
-    pub(crate) address: Key,
+    kind: JobKind,
+    address: Key,
+    result: Form<'a>,
 }
 
-impl Task<'_> {
+/// How the bytes of a result are read.
+#[derive(Debug, Clone, Copy)]
+enum Form<'a> {
+    Job(&'a dyn Job),
+    Function(fn(&[u8]) -> Option<Artefact>),
+}
+
+impl<'a> Task<'a> {
+    /// A task without a job: bytes at this address are read by a function.
+    pub(crate) fn new(kind: JobKind, address: Key, decode: fn(&[u8]) -> Option<Artefact>) -> Self {
+        Self { kind, address, result: Form::Function(decode) }
+    }
+
+    pub(crate) fn of(job: &'a dyn Job, address: Key) -> Self {
+        Self { kind: job.kind(), address, result: Form::Job(job) }
+    }
+
     /// Kind of the job.
     pub fn kind(&self) -> JobKind {
-        self.job.kind()
+        self.kind
     }
 
     /// Hash of all that decides the bytes of the result: kind, inputs and revision of the job and of all on which it depends, and the version of this crate.
@@ -28,12 +45,18 @@ impl Task<'_> {
 
     /// Whether the result is worth keeping beyond the process.
     pub fn is_kept(&self) -> bool {
-        self.job.is_kept()
+        match self.result {
+            Form::Job(job) => job.is_kept(),
+            Form::Function(_) => true,
+        }
     }
 
     /// The result of bytes that [`Artefact::encode`] has made of it; `None` where they are something else.
     pub fn decode(&self, bytes: &[u8]) -> Option<Artefact> {
-        self.job.decode(bytes)
+        match self.result {
+            Form::Job(job) => job.decode(bytes),
+            Form::Function(decode) => decode(bytes),
+        }
     }
 }
 

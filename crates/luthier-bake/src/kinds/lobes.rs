@@ -9,7 +9,7 @@ use luthier_lut::{
     AtlasLayout, Axis, Comparison, ErrorStats, Image, Mapping, Scan, TableKind, TexelFormat, WeightBits, measure_scan,
 };
 use luthier_manifest::{
-    AxesRecord, BaseRecord, Budget, Candidate, CandidateForm, LobesError, LobesRecord, MeasuredError, Search,
+    AxesRecord, BaseRecord, Budget, Candidate, CandidateForm, Decision, LobesError, LobesRecord, MeasuredError, Search,
     VaryingFactor, VaryingRecord,
 };
 use luthier_material::{Material, Patina};
@@ -36,7 +36,7 @@ const ROWS: usize = FitSettings::DEFAULT_ROWS;
 const STEPS: [usize; 4] = [1, 2, 3, 6];
 
 /// Jobs that fit lobes.
-const FIT: JobKind = JobKind::part("fit");
+pub(crate) const FIT: JobKind = JobKind::part("fit");
 
 /// Lobes tables.
 pub(crate) struct Table;
@@ -113,6 +113,7 @@ pub(crate) fn decide(
     plan: &Plan,
     results: &Results,
     budget: &Budget,
+    lock: &[Decision],
 ) -> Result<Option<Search>, BakeError> {
     let fits: Vec<&Fits> = plan.graph.of::<FitJob>().filter_map(|job| results.get(job.key())).collect();
     let most_lobes = |most: Option<usize>| fits.iter().map(|fits| fits.of(most).lobes()).max().unwrap_or(0);
@@ -134,11 +135,12 @@ pub(crate) fn decide(
         Candidate { form, bytes, cost, error }
     };
     let found = Found::new(TableKind::Lobes, 0.0, choices.iter().map(candidate).collect());
-    let chosen = search::choose(std::slice::from_ref(&found), budget, 0)?[0];
+    let found = std::slice::from_ref(&found);
+    let chosen = search::locked(found, lock, budget, 0).map_or_else(|| search::choose(found, budget, 0), Ok)?[0];
     let (most, i) = choices[chosen];
     settings.lobes = Some(most);
     settings.take_lobes(shape(most_lobes(Some(most)), STEPS[i]));
-    Ok(Some(search::report(&found, chosen, budget)))
+    Ok(Some(search::report(&found[0], chosen, budget)))
 }
 
 /// The fit of a material; with lobes of every number, where a search chooses among them.

@@ -8,14 +8,17 @@
 //! errors are those of the fit, not of texels.
 
 mod choice;
+mod decisions;
 pub mod goals;
 pub(crate) mod grids;
 
 use luthier_lut::{Axis, Mapping, RowBase, TableKind, TexelFormat, WeightBits};
 use luthier_manifest::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR, Search};
 use luthier_optics::color_difference::{ciede2000, lab};
+use serde::{Deserialize, Serialize};
 
 pub(crate) use choice::{best_effort, choose, front};
+pub(crate) use decisions::{kept, kept_decisions, locked};
 
 use crate::graph::Results;
 use crate::kinds;
@@ -33,7 +36,7 @@ pub const DEFAULT_BUDGET: Budget = Budget {
 };
 
 /// The candidates for one kind.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Found {
     pub(crate) kind: TableKind,
     /// Cost of the fixed default.
@@ -90,15 +93,17 @@ impl Found {
     }
 }
 
+/// The kinds that are searched where no budget is stated.
+pub(crate) const SEARCHED_BY_DEFAULT: [TableKind; 2] = [TableKind::Fresnel, TableKind::Distribution];
+
 /// The candidates that come near the default budget. A row that none serves does not count.
 pub(crate) fn by_default(plan: &Plan) -> Vec<Found> {
-    let found = TableKind::ALL.into_iter().filter_map(|kind| kinds::of(kind).candidates_by_default(plan));
+    let found = SEARCHED_BY_DEFAULT.into_iter().filter_map(|kind| kinds::of(kind).candidates_by_default(plan));
     found.filter(|f| f.comes_near(&DEFAULT_BUDGET)).collect()
 }
 
 /// Measures the candidates of the kinds that a plan has. `results` has the intermediate ones of its graph.
-pub(crate) fn candidates(plan: &Plan, results: &Results, budget: &Budget) -> Vec<Found> {
-    let colors = budget.delta_e.is_some();
+pub(crate) fn candidates(plan: &Plan, results: &Results, colors: bool) -> Vec<Found> {
     let found = TableKind::ALL.into_iter().filter_map(|kind| kinds::of(kind).candidates(plan, results, colors));
     found.filter(|f| !f.candidates.is_empty()).collect()
 }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use luthier_table::Preset;
 
@@ -44,7 +45,7 @@ pub(crate) struct AuditOptions {
     #[arg(long, value_name = "r,g,b,a", value_enum, value_delimiter = ',')]
     pub(crate) channel: Option<Vec<ChannelName>>,
     /// Model, axes, nodes and values of an engine; other options override it
-    #[arg(long, value_name = "NAME", value_parser = preset)]
+    #[arg(long, value_name = "NAME", value_parser = preset())]
     pub(crate) preset: Option<&'static Preset>,
     /// Index of the medium below: a data set of `luthier ior`, N, or N,K
     #[arg(long, value_name = "NAME|N[,K]")]
@@ -104,8 +105,8 @@ pub(super) fn unit(text: &str) -> Result<f64, String> {
     }
 }
 
-/// The preset of a name.
-pub(super) fn preset(name: &str) -> Result<&'static Preset, String> {
-    let names = || Preset::ALL.iter().map(|preset| preset.name).collect::<Vec<_>>().join(", ");
-    Preset::named(name).ok_or_else(|| format!("there is no such preset; there are {}", names()))
+/// A preset by its name, one of those listed.
+pub(super) fn preset() -> impl TypedValueParser<Value = &'static Preset> {
+    let names = Preset::ALL.iter().map(|preset| preset.name);
+    PossibleValuesParser::new(names).map(|name| Preset::named(&name).expect("only names of presets come here"))
 }

@@ -4,7 +4,7 @@
 use std::num::NonZeroU32;
 use std::path::PathBuf;
 
-use clap::{ArgGroup, Args, Parser, Subcommand};
+use clap::{ArgGroup, Args, Command, CommandFactory, Parser, Subcommand};
 #[cfg(feature = "cost")]
 use luthier_cost::Family;
 use luthier_lut::TableKind;
@@ -22,10 +22,16 @@ Exit codes:
   2  the command line is wrong
   3  a file cannot be read or written
   4  no usable graphics adapter, driver or display, or it failed
+  130  interrupted by SIGINT, SIGTERM or SIGHUP; no file is half written
 
 With --json a failure is one JSON object on standard output, besides the sentence on standard error:
   {\"error\": {\"code\": 1, \"kind\": \"input\", \"message\": \"...\", \"diagnostics\": []}}
 The kinds are input (1), usage (2), files (3) and device (4); diagnostics are those of `luthier check --json`.
+
+Environment variables:
+  LUTHIER_CACHE  folder of the results of earlier runs; empty: none are kept
+  NO_COLOR       with a value, nothing is coloured
+  TERM           dumb: nothing is coloured, and there are no progress bars
 
 Examples:
   luthier bake materials            tables, manifest and shaders into out/
@@ -51,7 +57,16 @@ pub(crate) const OF_FEATURES: [(&str, &str); 6] =
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
     /// Bake materials: textures, manifest and shaders
-    Bake(BakeOptions),
+    Bake(Box<BakeOptions>),
+    /// Bake from what the shares of `luthier bake --shard` left in the store
+    #[command(after_help = "Examples:\n  luthier merge materials --cache /shared/luthier --out build/luts")]
+    Merge(Box<BakeOptions>),
+    /// Show, check or empty the store of results
+    #[command(
+        subcommand,
+        after_help = "Examples:\n  luthier cache stats\n  luthier cache verify --cache /shared/luthier\n  luthier cache clear"
+    )]
+    Cache(CacheVerb),
     /// Validate materials and scenes as `bake` would, without baking, and print the class of each surface
     Check(CheckOptions),
     /// Judge a bake: tables and shaders against the full evaluation in f64
@@ -75,7 +90,6 @@ pub(crate) enum Verb {
     /// Time every shader of every material on the graphics adapter of this machine
     #[cfg(feature = "gpu")]
     Bench(BenchOptions),
-    /// Open a window: turn, light and edit materials, and see them change with their files
     #[cfg(feature = "view")]
     View(ViewOptions),
     /// Print the shader of some materials, or write it to a file
@@ -97,6 +111,18 @@ pub(crate) enum Verb {
         #[arg(long)]
         scene: bool,
     },
+    /// Print a script that completes verbs and options in a shell
+    Completions(CompletionsOptions),
+    /// Print the manual page, write the pages of all verbs, or print the reference of all options
+    Man(ManOptions),
+}
+
+/// The command with all verbs whose definition this build has. The window takes long to build, its options do not: they are here without it.
+pub(crate) fn with_all_verbs() -> Command {
+    let command = Cli::command();
+    #[cfg(all(feature = "gpu", not(feature = "view")))]
+    let command = command.subcommand(ViewOptions::augment_args(Command::new("view")));
+    command
 }
 
 /// The model of the shaders, and the tables beside them.
@@ -131,6 +157,8 @@ pub(crate) struct BakeOptions {
     pub(crate) limits: Limits,
     #[command(flatten)]
     pub(crate) emission: Emission,
+    #[command(flatten)]
+    pub(crate) pipeline: Pipeline,
     /// Of a scene: if no model holds the budget, take the most accurate one
     #[arg(long)]
     pub(crate) allow_miss: bool,
@@ -152,6 +180,41 @@ pub(crate) struct BakeOptions {
     /// Print errors only
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+/// Options for build pipelines.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Build pipelines")]
+pub(crate) struct Pipeline {
+    /// Write nothing: exit with 1 and list what is stale where a bake would change the folder
+    #[arg(long, conflicts_with_all = ["dry_run", "watch", "shard", "relock", "depfile"])]
+    pub(crate) check: bool,
+    /// Write nothing: count the jobs that would run
+    #[arg(long, conflicts_with_all = ["watch", "shard", "relock", "depfile"])]
+    pub(crate) dry_run: bool,
+    /// Write the files that the bake depends on to FILE, as a rule of Make that Ninja reads, too
+    #[arg(long, value_name = "FILE", conflicts_with = "shard")]
+    pub(crate) depfile: Option<PathBuf>,
+    /// Bake again whenever a file changes
+    #[arg(long, conflicts_with = "shard")]
+    pub(crate) watch: bool,
+    /// Compute share I of N of the jobs into the store and publish nothing; `luthier merge` bakes from the shares
+    #[arg(long, value_name = "I/N", value_parser = share)]
+    pub(crate) shard: Option<luthier_bake::Share>,
+    /// Search sizes, axes and formats anew, and write them to luthier.lock beside the materials: later bakes keep them until a budget breaks
+    #[arg(long, conflicts_with_all = ["shard", "no_search"])]
+    pub(crate) relock: bool,
+    /// Print what happens as lines of JSON on standard error
+    #[arg(long)]
+    pub(crate) events: bool,
+}
+
+fn share(text: &str) -> Result<luthier_bake::Share, String> {
+    let numbers = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
+    match numbers {
+        Some((index, count)) if 1 <= index && index <= count => Ok(luthier_bake::Share { index, count }),
+        _ => Err("expected a share such as 2/8: a number from 1 on, and the number of shares".to_owned()),
+    }
 }
 
 /// The shaders to write.
@@ -199,12 +262,27 @@ pub(crate) struct Limits {
 
 impl Limits {
     /// The options of the baker under these limits.
-    pub(crate) fn options(&self) -> luthier_bake::Options {
+    pub(crate) fn options(&self) -> luthier_bake::Options<'static> {
         let &Self { max_abs, max_rel, delta_e, max_bytes, max_cost, max_lobe_err, max_albedo_err, no_search } = self;
         let budget =
             luthier_manifest::Budget { max_abs, max_rel, delta_e, max_bytes, max_cost, max_lobe_err, max_albedo_err };
         luthier_bake::Options { budget, search: !no_search, ..luthier_bake::Options::default() }
     }
+}
+
+/// Work on the store of results.
+#[derive(Debug, Subcommand)]
+pub(crate) enum CacheVerb {
+    /// Print the folder, the number of results and their bytes
+    Stats {
+        /// Print as JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// Read all results, remove those that are damaged, and exit with 1 if there were any
+    Verify,
+    /// Remove all results
+    Clear,
 }
 
 #[derive(Debug, Args)]
@@ -275,6 +353,9 @@ pub(crate) struct ReportOptions {
     #[arg(long)]
     pub(crate) json: bool,
 }
+
+mod manual;
+pub(crate) use manual::{CompletionsOptions, ManOptions};
 
 mod environment;
 pub(crate) use environment::{EnvironmentOptions, LayoutName};
@@ -381,10 +462,13 @@ pub(crate) struct BenchOptions {
 #[cfg(feature = "gpu")]
 const BENCH_REPEATS: NonZeroU32 = NonZeroU32::new(30).expect("not zero");
 
-#[cfg(feature = "view")]
+#[cfg(feature = "gpu")]
+#[cfg_attr(not(feature = "view"), expect(dead_code, reason = "the reference lists these options without a window too"))]
 mod view;
 #[cfg(feature = "view")]
-pub(crate) use view::{ThemeName, ViewOptions};
+pub(crate) use view::ThemeName;
+#[cfg(feature = "gpu")]
+pub(crate) use view::ViewOptions;
 
 #[derive(Debug, Args)]
 #[command(
@@ -552,8 +636,6 @@ fn positive(text: &str) -> Result<f64, String> {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
-
     use super::*;
 
     /// The table of features and the attributes of the verbs say the same.

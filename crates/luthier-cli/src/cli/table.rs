@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args, Subcommand, ValueEnum};
 use luthier_shader::Target;
 use luthier_table::{EnergyPreset, Preset};
@@ -63,7 +64,7 @@ pub(crate) enum Function {
 #[command(after_help = DFG_EXAMPLES, group(ArgGroup::new("aim").required(true).args(["preset", "max_abs"])))]
 pub(crate) struct DfgOptions {
     /// The engine whose layout the table has
-    #[arg(long, value_name = "NAME", value_parser = preset)]
+    #[arg(long, value_name = "NAME", value_parser = preset())]
     pub(crate) preset: Option<&'static Preset>,
     /// Another size than the engine's own table has: three.js, Babylon.js, Bevy and the glTF Sample Viewer read any
     #[arg(long, value_name = "WxH", value_parser = size, requires = "preset")]
@@ -150,8 +151,8 @@ Examples:
 #[derive(Debug, Args)]
 #[command(after_help = ENERGY_EXAMPLES)]
 pub(crate) struct EnergyOptions {
-    /// The renderer whose tables are baked: cycles, openpbr, ospray
-    #[arg(long, value_name = "NAME", value_parser = energy_preset, conflicts_with_all = ["surface", "values", "axes", "size", "nodes", "distribution", "masking", "report"])]
+    /// The renderer whose tables are baked
+    #[arg(long, value_name = "NAME", value_parser = energy_preset(), conflicts_with_all = ["surface", "values", "axes", "size", "nodes", "distribution", "masking", "report"])]
     pub(crate) preset: Option<&'static EnergyPreset>,
     /// Find the smallest table of a metal whose reads err by this at most, absolutely
     #[arg(long, value_name = "X", value_parser = super::positive, conflicts_with_all = ["preset", "axes", "size", "nodes"])]
@@ -348,10 +349,10 @@ fn index(text: &str) -> Result<[f64; 2], String> {
     }
 }
 
-/// The tables of energy of a name.
-fn energy_preset(name: &str) -> Result<&'static EnergyPreset, String> {
-    let names = || EnergyPreset::ALL.iter().map(|preset| preset.name).collect::<Vec<_>>().join(", ");
-    EnergyPreset::named(name).ok_or_else(|| format!("there is no such preset; there are {}", names()))
+/// Tables of energy by their name, one of those listed.
+fn energy_preset() -> impl TypedValueParser<Value = &'static EnergyPreset> {
+    let names = EnergyPreset::ALL.iter().map(|preset| preset.name);
+    PossibleValuesParser::new(names).map(|name| EnergyPreset::named(&name).expect("only names of presets come here"))
 }
 
 /// Three numbers.

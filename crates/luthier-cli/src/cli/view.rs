@@ -22,6 +22,7 @@ Examples:
   luthier view mine.toml --form full --shape torus
   luthier view mine.toml --screenshot window.png --frames 3";
 
+/// Open a window: turn, light and edit materials, and see them change with their files
 #[derive(Debug, Args)]
 #[command(after_help = VIEW_EXAMPLES)]
 pub(crate) struct ViewOptions {

@@ -10,6 +10,7 @@ use luthier_texture::ktx2::{Levels, encode_levels};
 use serde_json::{Value, json};
 
 use crate::cli::{EnvironmentOptions, LayoutName};
+use crate::interrupt::whole;
 use crate::surroundings::{self, Surroundings};
 
 /// The largest half float.
@@ -63,7 +64,7 @@ pub(crate) fn run(options: &EnvironmentOptions) -> Outcome {
     let text = format!("{manifest:#}\n");
     files.push((ENVIRONMENT.to_owned(), text.clone().into_bytes()));
     let listed: Vec<(&str, &[u8])> = files.iter().map(|(path, bytes)| (path.as_str(), bytes.as_slice())).collect();
-    publish(&options.out, &listed)?;
+    whole(&options.out, || publish(&options.out, &listed))?;
     if clamped > 0 {
         complain(&format!(
             "warning: {clamped} texels are brighter than half floats hold and are stored as {LARGEST}; blurs know the whole"

@@ -4,9 +4,11 @@ pub(crate) mod audit;
 pub(crate) mod bake;
 #[cfg(feature = "gpu")]
 pub(crate) mod bench;
+pub(crate) mod cache;
 pub(crate) mod check;
 #[cfg(feature = "gpu")]
 pub(crate) mod compare;
+pub(crate) mod completions;
 #[cfg(feature = "cost")]
 pub(crate) mod cost;
 pub(crate) mod environment;
@@ -14,6 +16,7 @@ pub(crate) mod eval;
 #[cfg(feature = "gpu")]
 pub(crate) mod gallery;
 pub(crate) mod ior;
+pub(crate) mod man;
 pub(crate) mod models;
 #[cfg(feature = "gpu")]
 pub(crate) mod preview;

@@ -12,6 +12,7 @@ mod library;
 mod machine;
 #[cfg(feature = "gpu")]
 mod pictures;
+mod pipeline;
 mod report;
 mod shader;
 mod workshop;

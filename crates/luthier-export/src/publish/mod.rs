@@ -4,13 +4,19 @@
 //! holds the old generation, after it [`crate::Folder`] reads the new one. Then every file is moved to its place, the manifest last. A
 //! program that was killed between leaves `.luthier-ready/`, whose files the next publication moves before its own; a `.luthier-new/` is
 //! removed. One program publishes into a folder at a time: others wait for its lock on the folder.
+//!
+//! A file whose bytes are in place already is not staged: it keeps its time of modification, and build systems see that it did not change.
+//!
+//! Nothing is flushed to the disk (`fsync`) before it is published. That cost 150 ms to 200 ms for the 30 files of a bake of `materials` on
+//! ext4, against 3 ms to 8 ms without. After a loss of power files may be empty: readers know them by their hashes, and the next bake
+//! writes them again, because it compares bytes and not times.
 
-use std::collections::BTreeSet;
+mod settle;
+mod stage;
+
 use std::fs::{File, OpenOptions};
-use std::io::{self, ErrorKind};
-use std::path::{Component, Path, PathBuf};
-
-use serde_json::Value;
+use std::io;
+use std::path::{Path, PathBuf};
 
 use crate::{MANIFEST, PackageError};
 
@@ -34,30 +40,102 @@ pub const REPORT_FOLDER: &str = "report";
 pub const REPORT_FILES: [&str; 3] = ["report/report.json", "report/report.md", "report/index.html"];
 
 /// Writes files into a folder, which is made if it does not exist: all of them, or none. Where one is a manifest or the list of an environment, what
-/// the one before it named is removed unless it is written again, the report on that bake too.
+/// the one before it named is removed unless it is written again, the report on that bake too. Files that the folder holds already stay as they are.
 ///
 /// # Errors
 /// [`PackageError::Write`]; the folder then holds the files that it held.
 pub fn publish(folder: &Path, files: &[(&str, &[u8])]) -> Result<(), PackageError> {
-    at("make the folder", folder, std::fs::create_dir_all(folder))?;
-    let handle = at("write to", folder, handle(folder))?;
-    at("lock", folder, handle.lock())?;
-    settle(folder)?;
-    let new = folder.join(NEW);
-    let staged = stage(folder, &new, files);
-    if staged.is_err() {
-        let _ = std::fs::remove_dir_all(&new);
-    }
-    staged?;
-    at("write to", folder, std::fs::rename(&new, folder.join(READY)))?;
-    settle(folder)
+    publish_where(folder, files, || Ok(()))
 }
 
-/// A lock that keeps others from publishing into a folder; `None` where the folder cannot be locked.
-pub(crate) fn shared(folder: &Path) -> Option<File> {
+/// Writes files beside the bake that the manifest with this SHA-256 describes, as [`publish`] does: a report on it.
+///
+/// # Errors
+/// [`PackageError::Rebaked`] where another bake has taken its place; [`PackageError::Write`].
+pub fn publish_beside(folder: &Path, manifest_sha256: &str, files: &[(&str, &[u8])]) -> Result<(), PackageError> {
+    publish_where(folder, files, || {
+        let manifest = std::fs::read(folder.join(MANIFEST)).unwrap_or_default();
+        let rebaked = || PackageError::Rebaked { folder: folder.to_owned() };
+        (crate::sha256(&manifest) == manifest_sha256).then_some(()).ok_or_else(rebaked)
+    })
+}
+
+/// Waits while another program publishes into a folder. [`publish`] waits, too: programs that must not be held up there call this before.
+pub fn wait(folder: &Path) {
+    if let Ok(handle) = handle(folder) {
+        let _ = handle.lock();
+    }
+}
+
+/// A lock that keeps others from publishing into a folder until it is dropped; `None` where the folder cannot be locked. Whoever holds it must not
+/// publish into that folder.
+pub fn shared(folder: &Path) -> Option<File> {
     let handle = handle(folder).ok()?;
     handle.lock_shared().ok()?;
     Some(handle)
+}
+
+/// Publishes under the lock, if the folder is as it should be. Folders that were made for nothing go.
+fn publish_where(
+    folder: &Path,
+    files: &[(&str, &[u8])],
+    allowed: impl FnOnce() -> Result<(), PackageError>,
+) -> Result<(), PackageError> {
+    let mut made = Vec::new();
+    let (_lock, published) = match lock(folder, &mut made) {
+        Ok(lock) => {
+            let settled = settle::settle(folder).and_then(|()| allowed());
+            (Some(lock), settled.and_then(|()| replace(folder, files)))
+        }
+        Err(error) => (None, Err(error)),
+    };
+    if published.is_err() {
+        // The innermost was made last. One that holds something stays.
+        made.iter().rev().for_each(|folder| drop(std::fs::remove_dir(folder)));
+    }
+    published
+}
+
+/// Locks a folder, which is made if it does not exist.
+fn lock(folder: &Path, made: &mut Vec<PathBuf>) -> Result<File, PackageError> {
+    loop {
+        stage::make(folder, made)?;
+        let handle = at("write to", folder, handle(folder))?;
+        at("lock", folder, handle.lock())?;
+        // While this waited, the folder may have been removed, and made again.
+        if stage::is_at(&handle, folder) {
+            return Ok(handle);
+        }
+    }
+}
+
+/// Stages the files that are not in place yet, and publishes them.
+fn replace(folder: &Path, files: &[(&str, &[u8])]) -> Result<(), PackageError> {
+    let is_new = |(path, bytes): &&(&str, &[u8])| !stage::holds(&folder.join(path), bytes);
+    let files: Vec<_> = files.iter().filter(is_new).copied().collect();
+    if files.is_empty() {
+        return Ok(());
+    }
+    let (new, ready) = (folder.join(NEW), folder.join(READY));
+    let staged = stage::stage(folder, &files);
+    if let Err(error) = staged.and_then(|()| at("write to", folder, std::fs::rename(&new, &ready))) {
+        let _ = settle::sweep(folder);
+        return Err(error);
+    }
+    settle::settle(folder)
+}
+
+/// The bytes of a file of the generation that a folder holds, wherever an interrupted publication left it.
+pub(crate) fn current(folder: &Path, path: &str) -> Option<Vec<u8>> {
+    [folder.join(READY), folder.to_owned()].iter().find_map(|folder| std::fs::read(folder.join(path)).ok())
+}
+
+/// The files that the manifest of a folder names and that are there, with forward slashes.
+pub(crate) fn named(folder: &Path) -> Vec<String> {
+    let Some(manifest) = current(folder, MANIFEST) else { return Vec::new() };
+    let named = settle::named_by(&String::from_utf8_lossy(&manifest));
+    let there = named.into_iter().filter(|path| folder.join(path).is_file());
+    there.map(|path| path.to_string_lossy().replace('\\', "/")).collect()
 }
 
 /// The file by which a folder is locked: the folder itself, or, where folders are no files, one inside it.
@@ -69,94 +147,8 @@ fn handle(folder: &Path) -> io::Result<File> {
     }
 }
 
-/// Writes all files into a folder of their own, and makes sure that nothing is in the way of any.
-fn stage(folder: &Path, new: &Path, files: &[(&str, &[u8])]) -> Result<(), PackageError> {
-    at("write to", folder, std::fs::create_dir(new))?;
-    for (path, bytes) in files {
-        let (file, place) = (new.join(path), folder.join(path));
-        for parent in [file.parent(), place.parent()].into_iter().flatten() {
-            at("make the folder", parent, std::fs::create_dir_all(parent))?;
-        }
-        if place.is_dir() {
-            return at("write", &place, Err(ErrorKind::IsADirectory.into()));
-        }
-        at("write", &place, std::fs::write(&file, bytes))?;
-    }
-    Ok(())
-}
-
-/// Moves what is ready to its places, the manifest last, and removes what an interrupted program left.
-fn settle(folder: &Path) -> Result<(), PackageError> {
-    let (new, ready) = (folder.join(NEW), folder.join(READY));
-    if new.exists() {
-        at("remove", &new, std::fs::remove_dir_all(&new))?;
-    }
-    if !ready.exists() {
-        return Ok(());
-    }
-    let mut files = Vec::new();
-    at("list", &ready, list(&ready, &mut files))?;
-    let relative = |file: &PathBuf| file.strip_prefix(&ready).map(Path::to_owned).unwrap_or_default();
-    let (lists, others): (Vec<_>, Vec<_>) =
-        files.iter().map(relative).partition(|path| LISTS.iter().any(|list| path == Path::new(list)));
-    for path in &others {
-        at("write", &folder.join(path), std::fs::rename(ready.join(path), folder.join(path)))?;
-    }
-    for path in lists {
-        remove_stale(folder, &path, &ready.join(&path))?;
-        at("write", &folder.join(&path), std::fs::rename(ready.join(&path), folder.join(&path)))?;
-    }
-    at("remove", &ready, std::fs::remove_dir_all(&ready))
-}
-
-/// Removes what the list in place names and the next one does not.
-fn remove_stale(folder: &Path, list: &Path, next: &Path) -> Result<(), PackageError> {
-    // Unreadable is as good as none: it names nothing.
-    let [old, next] = [&folder.join(list), next].map(|path| std::fs::read_to_string(path).unwrap_or_default());
-    if old == next {
-        return Ok(());
-    }
-    let current: BTreeSet<PathBuf> = named_by(&next).into_iter().chain([list.to_owned()]).collect();
-    let mut stale = named_by(&old);
-    if stale.is_empty() {
-        return Ok(());
-    }
-    stale.retain(|path| !current.contains(path));
-    if list == Path::new(MANIFEST) {
-        stale.extend(REPORT_FILES.map(PathBuf::from));
-    }
-    for path in stale.iter().map(|path| folder.join(path)).filter(|path| path.is_file()) {
-        at("remove", &path, std::fs::remove_file(&path))?;
-    }
-    // Stays if something else is in it.
-    let _ = std::fs::remove_dir(folder.join(REPORT_FOLDER));
-    Ok(())
-}
-
-/// The files that a manifest of luthier, of any schema, names with a hash, as far as they lie inside its folder.
-fn named_by(manifest: &str) -> Vec<PathBuf> {
-    let Ok(manifest) = serde_json::from_str::<Value>(manifest) else { return Vec::new() };
-    if !manifest["generator"].as_str().is_some_and(|g| g.starts_with("luthier ")) {
-        return Vec::new();
-    }
-    let mut paths = Vec::new();
-    let mut open = vec![&manifest];
-    while let Some(value) = open.pop() {
-        match value {
-            Value::Array(items) => open.extend(items),
-            Value::Object(entries) => {
-                if let (Some(Value::String(path)), Some(Value::String(_))) =
-                    (entries.get("path"), entries.get("sha256"))
-                {
-                    paths.push(PathBuf::from(path));
-                }
-                open.extend(entries.values());
-            }
-            _ => {}
-        }
-    }
-    paths.retain(|path| path.components().all(|part| matches!(part, Component::Normal(_))));
-    paths
+fn at<T>(action: &'static str, path: &Path, result: io::Result<T>) -> Result<T, PackageError> {
+    result.map_err(|source| PackageError::Write { action, path: path.to_owned(), source })
 }
 
 /// All files below a folder.
@@ -167,10 +159,6 @@ fn list(folder: &Path, files: &mut Vec<PathBuf>) -> io::Result<()> {
     }
     files.sort();
     Ok(())
-}
-
-fn at<T>(action: &'static str, path: &Path, result: io::Result<T>) -> Result<T, PackageError> {
-    result.map_err(|source| PackageError::Write { action, path: path.to_owned(), source })
 }
 
 #[cfg(test)]

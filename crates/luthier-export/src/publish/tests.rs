@@ -61,6 +61,38 @@ fn unfinished_files_are_swept() {
     assert_eq!(names(folder.path()), ["a.wgsl", "manifest.json"]);
 }
 
+/// Killed after it had made a folder for a file: the folder goes, unless something is in it.
+#[test]
+fn folders_for_unfinished_files_are_swept() {
+    let folder = folder();
+    for at in [NEW, ""] {
+        std::fs::create_dir_all(folder.path().join(at).join("maps/deep")).unwrap();
+        std::fs::create_dir_all(folder.path().join(at).join("mine")).unwrap();
+    }
+    std::fs::write(folder.path().join("mine/note.txt"), "mine").unwrap();
+    put(folder.path(), &generation("a.wgsl", "first")).unwrap();
+    assert_eq!(names(folder.path()), ["a.wgsl", "manifest.json", "mine/note.txt"]);
+    assert!(!folder.path().join("maps").exists());
+}
+
+/// Files that were not on the disk yet when power was lost are empty, in place or on their way: the next bake writes them.
+#[test]
+fn files_that_a_power_loss_emptied_are_written_again() {
+    for emptied in ["a.wgsl", MANIFEST] {
+        for at in ["", READY] {
+            let folder = folder();
+            put(folder.path(), &generation("a.wgsl", "first")).unwrap();
+            std::fs::create_dir_all(folder.path().join(at)).unwrap();
+            std::fs::write(folder.path().join(at).join(emptied), "").unwrap();
+            let read = Folder::open(folder.path()).and_then(|f| f.read(&f.manifest().shaders[0].file));
+            assert!(read.is_err(), "{emptied} in {at:?} is noticed");
+            put(folder.path(), &generation("a.wgsl", "first")).unwrap();
+            assert_eq!(text(folder.path()), "first");
+            assert_eq!(names(folder.path()), ["a.wgsl", "manifest.json"]);
+        }
+    }
+}
+
 /// Killed after every single move of a publication: readers see the new generation whole, and the next one finds its place.
 #[test]
 fn a_publication_that_was_interrupted_is_read_and_completed() {
@@ -136,4 +168,113 @@ fn nothing_outside_the_folder_is_removed() {
     std::fs::write(folder.join(MANIFEST), manifest).unwrap();
     put(&folder, &generation("b.wgsl", "second")).unwrap();
     assert_eq!(std::fs::read_to_string(around.path().join("secret")).unwrap(), "mine");
+}
+
+/// Files of a second publication that are there already keep their time, so that build systems do not build what reads them again.
+#[test]
+fn unchanged_files_keep_their_time() {
+    let folder = folder();
+    let long_ago = std::time::SystemTime::UNIX_EPOCH + std::time::Duration::from_secs(1);
+    let time = |name: &str| folder.path().join(name).metadata().unwrap().modified().unwrap();
+    let age = |name: &str| File::options().write(true).open(folder.path().join(name)).unwrap().set_modified(long_ago);
+    let put = |texts: [&str; 2]| {
+        let files = [("tables/a", texts[0].as_bytes()), ("b", texts[1].as_bytes())];
+        publish(folder.path(), &files).unwrap();
+    };
+    put(["first", "first"]);
+    ["tables/a", "b"].iter().for_each(|name| age(name).unwrap());
+    put(["first", "first"]);
+    assert_eq!([time("tables/a"), time("b")], [long_ago; 2]);
+    // Of the same length.
+    put(["first", "other"]);
+    assert_eq!(time("tables/a"), long_ago);
+    assert_ne!(time("b"), long_ago);
+    assert_eq!(names(folder.path()), ["b", "tables/a"]);
+    assert_eq!(std::fs::read(folder.path().join("b")).unwrap(), b"other");
+}
+
+/// A link to a file of the right bytes is not that file: readers refuse links that leave the folder.
+#[cfg(unix)]
+#[test]
+fn links_are_replaced_by_files() {
+    let (folder, elsewhere) = (folder(), folder());
+    std::fs::write(elsewhere.path().join("a"), "bytes").unwrap();
+    std::os::unix::fs::symlink(elsewhere.path().join("a"), folder.path().join("a")).unwrap();
+    publish(folder.path(), &[("a", b"bytes")]).unwrap();
+    assert!(folder.path().join("a").symlink_metadata().unwrap().is_file());
+    assert!(elsewhere.path().join("a").exists());
+}
+
+#[test]
+fn folders_that_a_generation_empties_go_and_others_stay() {
+    let folder = folder();
+    put(folder.path(), &generation("maps/deep/a.png", "first")).unwrap();
+    std::fs::write(folder.path().join("maps/note.txt"), "mine").unwrap();
+    put(folder.path(), &generation("b.wgsl", "second")).unwrap();
+    assert!(folder.path().join("maps/note.txt").exists());
+    assert!(!folder.path().join("maps/deep").exists());
+    put(folder.path(), &generation("maps/deep/a.png", "first")).unwrap();
+    std::fs::remove_file(folder.path().join("maps/note.txt")).unwrap();
+    put(folder.path(), &generation("b.wgsl", "second")).unwrap();
+    assert!(!folder.path().join("maps").exists());
+}
+
+/// A publication that fails leaves none of the folders that it made, and those that were there.
+#[test]
+fn a_failure_leaves_no_folder() {
+    let around = folder();
+    let out = around.path().join("build/out");
+    // The second file wants a folder where the first one is.
+    let files: [(&str, &[u8]); 3] = [("tables/a", b"1"), ("shaders", b"2"), ("shaders/b", b"3")];
+    assert!(publish(&out, &files).is_err());
+    assert!(names(around.path()).is_empty());
+    assert!(!around.path().join("build").exists());
+    std::fs::create_dir_all(&out).unwrap();
+    assert!(publish(&out, &files).is_err());
+    assert_eq!(std::fs::read_dir(&out).unwrap().count(), 0);
+}
+
+/// Someone removed folders after a publication was interrupted.
+#[test]
+fn an_interrupted_publication_makes_the_folders_that_it_needs() {
+    let folder = folder();
+    let ready = folder.path().join(READY);
+    std::fs::create_dir_all(ready.join("tables")).unwrap();
+    std::fs::write(ready.join("tables/a"), "ready").unwrap();
+    publish(folder.path(), &[("b", b"next")]).unwrap();
+    assert_eq!(names(folder.path()), ["b", "tables/a"]);
+}
+
+/// A report on a bake whose place another has taken is not written.
+#[test]
+fn a_report_lies_beside_its_bake_only() {
+    let folder = folder();
+    let report: [(&str, &[u8]); 1] = [(REPORT_FILES[0], b"{}")];
+    put(folder.path(), &generation("a.wgsl", "first")).unwrap();
+    let first = Folder::open(folder.path()).unwrap().sha256().to_owned();
+    publish_beside(folder.path(), &first, &report).unwrap();
+    put(folder.path(), &generation("a.wgsl", "second")).unwrap();
+    let error = publish_beside(folder.path(), &first, &report).unwrap_err();
+    assert!(matches!(error, PackageError::Rebaked { .. }), "{error}");
+    assert_eq!(names(folder.path()), ["a.wgsl", "manifest.json"]);
+}
+
+/// The folder that a program waited for may be gone when it gets its lock.
+#[cfg(unix)]
+#[test]
+fn a_folder_that_vanishes_while_it_is_waited_for_is_made_again() {
+    let around = folder();
+    let out = around.path().join("out");
+    std::fs::create_dir(&out).unwrap();
+    let held = handle(&out).unwrap();
+    held.lock().unwrap();
+    std::thread::scope(|scope| {
+        let waiting = scope.spawn(|| put(&out, &generation("a.wgsl", "first")));
+        // It waits, or will find no folder: the end is the same.
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        std::fs::remove_dir(&out).unwrap();
+        drop(held);
+        waiting.join().unwrap().unwrap();
+    });
+    assert_eq!(text(&out), "first");
 }

@@ -1,5 +1,6 @@
 //! Figures of the course of Weidlich and Wilkie.
 
+use luthier_export::MemoryStore;
 use luthier_gpu::{Package, Shape};
 use luthier_lut::Image;
 use luthier_manifest::{Form, ShadingModel};

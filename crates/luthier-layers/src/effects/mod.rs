@@ -4,4 +4,5 @@ pub mod flakes;
 pub mod fluorescence;
 pub mod heterogeneous;
 pub mod patina;
+pub mod reradiation;
 pub mod textured;

@@ -3,6 +3,8 @@
 //! The `exr` crate keeps custom attributes in a hash map, whose order differs from run to run. So that the bytes do not, all
 //! metadata are one attribute: `luthier`, a string that holds a JSON object of strings, sorted by key.
 
+pub(crate) mod dwa;
+
 use std::collections::BTreeMap;
 use std::io::Cursor;
 

@@ -141,6 +141,7 @@ struct Pixels {
 fn read(file: &[u8], channels_wanted: u32) -> Result<Pixels, TextureError> {
     let mut limits = Limits::default();
     limits.max_alloc = Some(MAX_DECODER_BYTES);
+    check_palette(file)?;
     // Palettes, 1 to 4 bits and colour keys become 8-bit channels.
     let decoder = PngDecoder::with_limits(Cursor::new(file), limits).map_err(TextureError::PngDecode)?;
     let (width, height) = decoder.dimensions();
@@ -161,6 +162,20 @@ fn read(file: &[u8], channels_wanted: u32) -> Result<Pixels, TextureError> {
         bytes.as_chunks().0.iter().map(|&b| f32::from(u16::from_ne_bytes(b)) / 65535.0).collect()
     };
     Ok(Pixels { width, height, channels: channels.into(), bits, values })
+}
+
+/// Refuses palettes that do not consist of 1 to 256 colours (section 11.2.2 of the PNG specification): the decoder reads beyond their end.
+fn check_palette(file: &[u8]) -> Result<(), TextureError> {
+    // Chunks: length, kind, data, sum.
+    let mut rest = file.get(8..).unwrap_or_default();
+    while let Some((length, chunk)) = rest.split_first_chunk() {
+        let length = u32::from_be_bytes(*length) as usize;
+        if chunk.starts_with(b"PLTE") && !(length.is_multiple_of(3) && (3..=768).contains(&length)) {
+            return Err(TextureError::malformed(Container::Png, "the palette does not consist of 1 to 256 colours"));
+        }
+        rest = chunk.get(length.saturating_add(8)..).unwrap_or_default();
+    }
+    Ok(())
 }
 
 #[cfg(test)]

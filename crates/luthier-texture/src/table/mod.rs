@@ -56,7 +56,8 @@ pub fn read(file: &[u8]) -> Result<Table, TextureError> {
 /// # Errors
 /// [`TextureError::Size`], [`TextureError::Channels`], and [`TextureError::Length`] (in values) when the bytes do not fit.
 pub fn raw(file: &[u8], width: u32, height: u32, channels: u32, samples: Samples) -> Result<Table, TextureError> {
-    if !(1..=4).contains(&channels) {
+    // Ten bits come in words of four values.
+    if !(1..=4).contains(&channels) || samples == Samples::Unorm10 && channels != 4 {
         return Err(TextureError::Channels(channels));
     }
     let layout = TexelLayout::of(samples, channels);
@@ -81,6 +82,7 @@ fn exr_table(file: &[u8]) -> Result<Table, TextureError> {
         }
         checked_bytes(side(header.layer_size.0), side(header.layer_size.1), 4 * channels)?;
     }
+    exr::dwa::check(file)?;
     let image = read_exr()
         .no_deep_data()
         .largest_resolution_level()

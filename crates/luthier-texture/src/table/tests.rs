@@ -86,6 +86,10 @@ fn exr_of_two_channels_png_and_raw() {
     assert_eq!(raw(&bytes, 1, 1, 2, Samples::Float).unwrap().image.data, [0.25, 4.0]);
     assert!(matches!(raw(&bytes, 2, 1, 2, Samples::Float), Err(TextureError::Length { found: 2, expected: 4 })));
     assert!(matches!(raw(&bytes, 1, 1, 5, Samples::Float), Err(TextureError::Channels(5))));
+    assert!(
+        matches!(raw(&bytes[..2], 2, 1, 1, Samples::Unorm10), Err(TextureError::Channels(1))),
+        "words of four values"
+    );
     assert!(matches!(read(b"GIF89a"), Err(TextureError::UnknownContainer)));
 }
 

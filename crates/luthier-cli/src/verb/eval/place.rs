@@ -64,7 +64,7 @@ fn particle(&Glitter { seed, frequency, filled, tilt }: &Glitter, uv: DVec2) -> 
 
 fn image(material: &Material, path: &str) -> Outcome<Image> {
     let path = Path::new(&material.source).parent().unwrap_or(Path::new("")).join(path);
-    let bytes = std::fs::read(&path).map_err(files(&path, "read"))?;
+    let bytes = luthier_export::input::image(&path).map_err(files(&path, "read"))?;
     luthier_texture::png::decode(&bytes)
         .map_err(|source| Failure::Input(anyhow::anyhow!("{}: {source}", path.display())))
 }

@@ -6,7 +6,7 @@ mod pictures;
 
 use std::path::Path;
 
-use luthier_export::{Folder, GENERATOR, REPORT_FILES, publish, read_one, source_hash};
+use luthier_export::{Folder, GENERATOR, REPORT_FILES, publish_beside, read_one, shared, source_hash};
 use luthier_manifest::Manifest;
 use luthier_material::{Material, Parsed};
 use luthier_report::{Asked, Device, Exhibits, FileBudget, Report, Settings, Subject, judge, limits};
@@ -18,12 +18,15 @@ use crate::interrupt::whole;
 
 /// Judges a bake and writes the report beside it.
 pub(crate) fn run(options: &ReportOptions) -> Outcome {
+    // No bake is published while files of this one are read.
+    let lock = shared(&options.out);
     let folder = Folder::open(&options.out)?;
     let manifest = folder.manifest();
     let textures = folder.textures()?;
     let materials = materials(manifest)?;
     let given = evidence::given(options)?;
     let device = device(&folder, options)?;
+    drop(lock);
     let stacks = materials.iter().map(|m| m.stack.clone()).collect();
     let subject = Subject { manifest, textures, stacks };
     let bar = Bar::new("judging");
@@ -47,7 +50,7 @@ pub(crate) fn run(options: &ReportOptions) -> Outcome {
     let json = report.to_json().map_err(Failure::input)?;
     let contents = [json.clone(), report.to_markdown(), report.to_html(&exhibits)];
     let written: Vec<(&str, &[u8])> = REPORT_FILES.into_iter().zip(contents.iter().map(String::as_bytes)).collect();
-    whole(|| publish(&options.out, &written))?;
+    whole(&options.out, || publish_beside(&options.out, folder.sha256(), &written))?;
 
     print(&if options.json { json } else { text(&report, &options.out) })?;
     if report.is_within_budget() == Some(false) { Err(Failure::Verdict) } else { Ok(()) }

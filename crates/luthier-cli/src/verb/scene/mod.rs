@@ -75,7 +75,7 @@ pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
     let is_shown = made.package.manifest.materials.iter().any(|m| m.model == ShadingModel::Lobes);
     refuse_environment(&options.emission.functions, is_shown)?;
     let encoded = made.package.encode(options.compression())?;
-    whole(|| encoded.write(&options.out))?;
+    whole(&options.out, || encoded.write(&options.out))?;
     let missed = misses::name(&made.package.manifest, options.quiet)?;
     if options.json {
         let manifest = options.out.join(MANIFEST);

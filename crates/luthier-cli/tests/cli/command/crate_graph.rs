@@ -107,7 +107,7 @@ fn some_dependencies_have_owners() {
 #[test]
 fn nothing_depends_on_commands() {
     for (name, uses) in internal(&dependencies()) {
-        for end in ["luthier-cli", "luthier-lab", "luthier-workshop"] {
+        for end in ["luthier-cli", "luthier-lab", "luthier-fuzz", "luthier-workshop"] {
             assert!(!uses.contains(end), "{name} uses {end}");
         }
     }

@@ -4,7 +4,21 @@ use crate::workshop::Workshop;
 
 /// The verbs that `--help` lists: in every build, with a device, with a driver's compiler, and with a window.
 pub(crate) fn verbs() -> impl Iterator<Item = &'static str> {
-    let always = ["bake", "check", "report", "audit", "shader", "models", "eval", "ior", "schema"];
+    let always = [
+        "bake",
+        "merge",
+        "cache",
+        "check",
+        "report",
+        "audit",
+        "shader",
+        "models",
+        "eval",
+        "ior",
+        "schema",
+        "completions",
+        "man",
+    ];
     let gpu = ["preview", "gallery", "compare", "bench"].into_iter().filter(|_| cfg!(feature = "gpu"));
     let others = cfg!(feature = "cost").then_some("cost").into_iter().chain(cfg!(feature = "view").then_some("view"));
     always.into_iter().chain(gpu).chain(others)

@@ -1,9 +1,10 @@
-//! The command as a whole: help, failures, streams, schemas, and the crates that it is made of.
+//! The command as a whole: help, failures, streams, schemas, manual pages, and the crates that it is made of.
 
 mod crate_graph;
 mod failures;
 mod help;
 mod kinds;
+mod manual;
 mod pipes;
 mod schema;
 mod shared_store;

@@ -20,8 +20,10 @@ fn broken_pipe() -> Stdio {
 
 #[test]
 fn a_closed_standard_output_is_no_failure() {
-    let cases: [&[&str]; 7] = [
+    let cases: [&[&str]; 9] = [
         &["schema"],
+        &["completions", "zsh"],
+        &["man"],
         &["ior"],
         &["ior", "au", "--json"],
         &["check", "materials"],

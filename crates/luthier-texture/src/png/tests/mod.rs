@@ -65,6 +65,19 @@ fn a_promise_that_the_file_cannot_keep_is_refused() {
     assert!(matches!(decode(&file), Err(TextureError::Size { .. })));
 }
 
+/// PALETTE with seven bytes of colours, checksum by Python's zlib.crc32: the decoder looks for the third byte of the third colour.
+#[test]
+fn a_palette_of_parts_of_colours_is_refused() {
+    let mut file = PALETTE[..33].to_vec();
+    file.extend([0, 0, 0, 7, 80, 76, 84, 69, 255, 0, 51, 102, 102, 102, 9]);
+    file.extend([181, 167, 180, 187]);
+    file.extend(&PALETTE[51..]);
+    assert_eq!(
+        decode(&file).unwrap_err().to_string(),
+        "not a valid PNG file: the palette does not consist of 1 to 256 colours"
+    );
+}
+
 proptest! {
     #[test]
     fn truncated_files_are_errors(keep in 0.0..1.0f64) {

@@ -1,0 +1,77 @@
+//! Decisions that stay: those of a lock, and searches that a store has.
+
+use std::sync::Arc;
+
+use luthier_manifest::{Budget, Candidate, CandidateForm, Decision, Search};
+
+use super::Found;
+use crate::decide::worst;
+use crate::graph::{Artefact, JobKind, Key, Results, Task};
+use crate::plan::Plan;
+use crate::{AIM, DEFAULT_BUDGET, Store};
+
+/// Changes whenever the same plan gives other candidates, or other errors of them, than before.
+const REVISION: u32 = 1;
+
+/// The kind of searches in stores.
+const SEARCH: JobKind = JobKind::part("search");
+
+/// The candidates that a search finds for a plan, from the store where it has been made before. Its truths are those of the jobs of the plan.
+pub(crate) fn kept(
+    plan: &Plan,
+    is_asked: bool,
+    colors: bool,
+    store: &dyn Store,
+    search: &dyn Fn() -> Vec<Found>,
+) -> Vec<Found> {
+    let mut text =
+        format!("luthier-bake {} search {REVISION} {is_asked} {colors} {:?}", env!("CARGO_PKG_VERSION"), plan.settings);
+    plan.graph.addresses().for_each(|address| text.push_str(&address.to_string()));
+    // As text: the names of forms are part of the values.
+    let task = Task::new(SEARCH, Key::of(text.as_bytes()), Artefact::decode::<String>);
+    let read = |artefact: Arc<Artefact>| serde_json::from_str(artefact.get::<String>()?).ok();
+    if let Some(found) = store.get(&task).and_then(read) {
+        return found;
+    }
+    let found = search();
+    if let Ok(text) = serde_json::to_string(&found) {
+        store.put(&task, &Arc::new(Artefact::new(text)));
+    }
+    found
+}
+
+/// The candidates of a lock, where it has one of each kind and together they hold a budget.
+pub(crate) fn locked(found: &[Found], lock: &[Decision], budget: &Budget, fixed_bytes: u64) -> Option<Vec<usize>> {
+    let place = |found: &Found| {
+        let decision = lock.iter().find(|decision| decision.kind == found.kind)?;
+        found.candidates.iter().position(|candidate| candidate.form == decision.candidate.form)
+    };
+    let places: Vec<usize> = found.iter().map(place).collect::<Option<_>>()?;
+    let chosen: Vec<&Candidate> = found.iter().zip(&places).map(|(found, &place)| &found.candidates[place]).collect();
+    let bytes = fixed_bytes + chosen.iter().map(|candidate| candidate.bytes).sum::<u64>();
+    let cost = chosen.iter().map(|candidate| candidate.cost).sum::<f64>();
+    let holds = chosen.iter().all(|candidate| budget.excess(&candidate.error) <= 1.0)
+        && budget.max_bytes.is_none_or(|most| bytes <= most)
+        && budget.max_cost.is_none_or(|most| cost <= most);
+    (holds && !places.is_empty()).then_some(places)
+}
+
+/// The reports of decisions of a lock on a plan that has taken them, where no budget is stated: none where a table is off by more than bakes aim at, and by more
+/// than when it was locked.
+pub(crate) fn kept_decisions(plan: &Plan, results: &Results, decisions: &[Decision]) -> Option<Vec<Search>> {
+    let report = |decision: &Decision| {
+        let Candidate { form, cost, error, .. } = &decision.candidate;
+        let found = worst(plan, results, decision.kind, &[]);
+        if found > error.max_abs.max(AIM) {
+            return None;
+        }
+        let tiles = plan.tiles[decision.kind as usize].tiles.len() as u32;
+        let error = match form {
+            CandidateForm::ClosedForm => *error,
+            CandidateForm::Table { .. } => luthier_manifest::MeasuredError { max_abs: found, ..*error },
+        };
+        let candidate = Candidate { form: form.clone(), bytes: form.bytes(tiles), cost: *cost, error };
+        Some(Search { kind: decision.kind, budget: DEFAULT_BUDGET, chosen: 0, front: vec![candidate], measured: 1 })
+    };
+    decisions.iter().map(report).collect()
+}

@@ -1,0 +1,91 @@
+//! A bake that many machines make: each computes a share of the jobs into a store, and the bake that follows finds the results there.
+
+use std::collections::BTreeMap;
+
+use luthier_lut::TableKind;
+use luthier_material::Material;
+
+use crate::decide::{Fixed, plan};
+use crate::graph::{Graph, Job, JobKind, Observer, Results, Share};
+use crate::kinds::lobes;
+use crate::plan::{ImageReader, Plan};
+use crate::{BakeError, Options, Store};
+
+/// Jobs that a bake would run.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Missing {
+    /// Number of jobs by kind.
+    pub jobs: BTreeMap<JobKind, usize>,
+    /// Whether these are all: what a search under a stated budget will try, and the tiles of lobes that are not fitted yet, is not known before.
+    pub is_all: bool,
+}
+
+/// Whether a job needs no fit of another material.
+fn is_apart(job: &dyn Job) -> bool {
+    job.kind() != JobKind::tile(TableKind::Lobes) && job.kind() != lobes::FIT
+}
+
+/// The jobs of a plan that a bake runs whatever the fits say: with the shapes that a search tries first, or under a stated budget those
+/// that all its candidates need.
+fn certain(
+    fixed: &Fixed,
+    materials: &[Material],
+    options: &Options<'_>,
+    read_image: ImageReader<'_>,
+    store: &dyn Store,
+) -> Result<Graph, BakeError> {
+    let (_, is_asked) = fixed.budget();
+    Ok(match (options.search, is_asked) {
+        (true, true) => fixed.plan.graph.intermediate(),
+        (true, false) => Plan::new(materials, fixed.first_choice(options, store), read_image)?.graph,
+        (false, _) => fixed.plan.graph.only(|_| true),
+    })
+}
+
+/// Runs a share of the jobs of a bake, for the store alone. The shares together are all jobs but those that a search adds under a stated budget, and the tiles of
+/// lobes, which take next to nothing.
+///
+/// # Errors
+/// See [`BakeError`].
+pub fn bake_share(
+    materials: &[Material],
+    options: &Options<'_>,
+    read_image: ImageReader<'_>,
+    observer: &dyn Observer,
+    store: &dyn Store,
+    share: Share,
+) -> Result<(), BakeError> {
+    let fixed = Fixed::new(materials, options, read_image)?;
+    if let Some(fits) = lobes::fits(&fixed.plan.graph) {
+        fits.share(share, |_| true).run(observer, store, Results::default());
+    }
+    let graph = certain(&fixed, materials, options, read_image, store)?;
+    graph.share(share, is_apart).run(observer, store, Results::default());
+    Ok(())
+}
+
+/// The jobs that a bake would run, because the store does not have their results.
+///
+/// # Errors
+/// See [`BakeError`].
+pub fn missing(
+    materials: &[Material],
+    options: &Options<'_>,
+    read_image: ImageReader<'_>,
+    store: &dyn Store,
+) -> Result<Missing, BakeError> {
+    let fixed = Fixed::new(materials, options, read_image)?;
+    let mut results = Results::default();
+    let fits = lobes::fits(&fixed.plan.graph).map(|fits| fits.count_missing(store, &mut results)).unwrap_or_default();
+    let mut jobs =
+        certain(&fixed, materials, options, read_image, store)?.only(is_apart).count_missing(store, &mut results);
+    if jobs.is_empty() && fits.is_empty() {
+        // Nothing is computed but what a search refuses: the plan is that of the bake.
+        let planned = plan(materials, options, read_image, &crate::Silent, store)?;
+        let mut results = planned.results;
+        return Ok(Missing { jobs: planned.plan.graph.count_missing(store, &mut results), is_all: true });
+    }
+    let is_all = fits.is_empty() && !(options.search && fixed.budget().1);
+    jobs.extend(fits);
+    Ok(Missing { jobs, is_all })
+}

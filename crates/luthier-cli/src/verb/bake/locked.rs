@@ -1,0 +1,91 @@
+//! The lock beside the materials: decisions of a search that stay until a budget breaks.
+
+use std::path::{Path, PathBuf};
+
+use luthier_export::input;
+use luthier_manifest::{Decision, Lock, Manifest};
+use luthier_terminal::{Failure, Outcome, files};
+
+/// Name of the file.
+const NAME: &str = "luthier.lock";
+
+/// The lock of a folder of materials; empty where there is none.
+pub(super) struct LockFile {
+    path: PathBuf,
+    text: Option<String>,
+    lock: Option<Lock>,
+    /// Whether the decisions are to be made anew.
+    is_asked: bool,
+}
+
+impl LockFile {
+    /// The lock in the folder of the first path.
+    ///
+    /// # Errors
+    /// [`Failure::Files`] where it cannot be read, [`Failure::Input`] where it is no lock.
+    pub(super) fn beside(paths: &[PathBuf], is_asked: bool) -> Outcome<Self> {
+        let first = paths.first().map_or(Path::new(""), PathBuf::as_path);
+        let folder = if first.is_dir() { first } else { first.parent().unwrap_or(Path::new("")) };
+        let path = folder.join(NAME);
+        let text = if path.exists() { Some(input::text(&path).map_err(files(&path, "read"))?) } else { None };
+        let lock = match &text {
+            Some(text) if !is_asked => Some(Lock::from_json(text).map_err(|reason| {
+                let path = path.display();
+                Failure::Input(anyhow::anyhow!(
+                    "{path}: it is no lock of luthier: {reason}\nhint: write it anew with --relock"
+                ))
+            })?),
+            _ => None,
+        };
+        Ok(Self { path, text, lock, is_asked })
+    }
+
+    /// The file, if it is there.
+    pub(super) fn file(&self) -> Option<&Path> {
+        self.text.as_ref().map(|_| self.path.as_path())
+    }
+
+    /// The text of the file.
+    pub(super) fn text(&self) -> &str {
+        self.text.as_deref().unwrap_or_default()
+    }
+
+    /// The decisions that stay.
+    pub(super) fn decisions(&self) -> &[Decision] {
+        self.lock.as_ref().map_or(&[], |lock| &lock.decisions)
+    }
+
+    /// The file as a bake would leave it, where that is another one: a lock that is there or asked for, whose decisions a budget broke.
+    pub(super) fn next(&self, manifest: &Manifest) -> Option<Lock> {
+        let next = Lock::of(manifest);
+        match &self.lock {
+            Some(lock) => (!lock.decides_as(&next)).then_some(next),
+            None => self.is_asked.then_some(next),
+        }
+    }
+
+    /// The path of the file where a bake would write it.
+    pub(super) fn stale(&self, manifest: &Manifest) -> Option<String> {
+        self.next(manifest).map(|_| self.path.display().to_string())
+    }
+
+    /// Writes the decisions of a bake, where there is a lock that does not have them; a sentence that says so.
+    ///
+    /// # Errors
+    /// [`Failure::Files`].
+    pub(super) fn write(&self, manifest: &Manifest) -> Outcome<Option<String>> {
+        let Some(next) = self.next(manifest) else { return Ok(None) };
+        let text = next.to_json().map_err(|reason| Failure::Input(anyhow::anyhow!("{reason}")))?;
+        let part = self.path.with_extension(format!("lock.{}", std::process::id()));
+        let written = std::fs::write(&part, text).and_then(|()| std::fs::rename(&part, &self.path));
+        written.map_err(files(&self.path, "write"))?;
+        let path = self.path.display();
+        Ok(Some(if self.is_asked {
+            format!("wrote {path}")
+        } else {
+            format!(
+                "warning: the tables that {path} decides no longer serve all materials: they were searched anew, and it was written anew"
+            )
+        }))
+    }
+}

@@ -1,0 +1,133 @@
+//! Stamps: what a bake read and wrote, so that the next one knows at once that nothing has changed.
+
+use std::path::{Path, PathBuf};
+use std::time::UNIX_EPOCH;
+
+use luthier_bake::Key;
+use luthier_export::{Encoded, GENERATOR, MANIFEST, input, shared};
+use luthier_material::Material;
+use luthier_terminal::{Outcome, complain, print};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use super::named;
+use crate::cli::BakeOptions;
+use crate::store::disk;
+
+/// The kind of stamps in the store.
+const KIND: &str = "stamp";
+
+/// Folders that a bake leaves which was killed: the next one sweeps them.
+const LEFT: [&str; 2] = [".luthier-new", ".luthier-ready"];
+
+/// The inputs of a bake, and the place of its stamp.
+pub(super) struct Stamp {
+    out: PathBuf,
+    /// The options, the program, the lock, and the hash of each material file.
+    inputs: String,
+}
+
+/// A stamp as it is kept.
+#[derive(Serialize, Deserialize)]
+pub(super) struct Kept {
+    inputs: String,
+    /// Other files that materials name, and the hash of all of them.
+    named: Vec<PathBuf>,
+    named_hash: String,
+    /// Files of the bake: path, length, and time of the last change.
+    outputs: Vec<(String, Option<State>)>,
+    warnings: usize,
+    summary: Value,
+}
+
+/// Length of a file, and nanoseconds of its last change.
+type State = (u64, u128);
+
+impl Stamp {
+    pub(super) fn new(options: &BakeOptions, files: &[PathBuf], lock: &str) -> Self {
+        let BakeOptions { shading, limits, emission, no_zstd, .. } = options;
+        let program = std::env::current_exe().ok().and_then(|path| state(&path));
+        let decided = format!("{GENERATOR} {program:?} {shading:?} {limits:?} {emission:?} {no_zstd} {lock}");
+        Self { out: options.out.clone(), inputs: Key::of(format!("{decided} {}", hash(files)).as_bytes()).to_string() }
+    }
+
+    /// The address of the stamp: one for each folder.
+    fn address(&self) -> Option<Key> {
+        Some(Key::of(self.out.canonicalize().ok()?.to_string_lossy().as_bytes()))
+    }
+
+    /// The stamp of the last bake into the folder, where it read the same and all that it wrote is as it was.
+    pub(super) fn current(&self) -> Option<Kept> {
+        let bytes = disk().ok()??.bytes(KIND, self.address()?)?;
+        let kept: Kept = serde_json::from_slice(&bytes).ok()?;
+        let is_same = kept.inputs == self.inputs
+            && kept.named_hash == hash(&kept.named)
+            && !LEFT.iter().any(|left| self.out.join(left).exists())
+            && kept.outputs.iter().all(|(path, then)| then.is_some() && *then == state(&self.out.join(path)));
+        is_same.then_some(kept)
+    }
+
+    /// All files that the bake of a stamp read.
+    pub(super) fn files(&self, files: &[PathBuf], kept: &Kept) -> Vec<PathBuf> {
+        files.iter().chain(&kept.named).cloned().collect()
+    }
+
+    /// Keeps the stamp of a bake, if the folder still holds it and not one that another program has published since.
+    pub(super) fn keep(&self, encoded: &Encoded, materials: &[Material], summary: &Value, warnings: usize) {
+        let (Ok(Some(store)), Some(address)) = (disk(), self.address()) else { return };
+        let _lock = shared(&self.out);
+        if !encoded.stale(&self.out).is_ok_and(|stale| stale.is_empty()) {
+            return;
+        }
+        let mut named: Vec<PathBuf> = materials.iter().flat_map(named).collect();
+        named.sort();
+        named.dedup();
+        let paths = encoded.files.iter().map(|(path, _)| path.as_str()).chain([MANIFEST]);
+        let kept = Kept {
+            inputs: self.inputs.clone(),
+            named_hash: hash(&named),
+            named,
+            outputs: paths.map(|path| (path.to_owned(), state(&self.out.join(path)))).collect(),
+            warnings,
+            summary: summary.clone(),
+        };
+        if let Ok(bytes) = serde_json::to_vec(&kept) {
+            store.put_bytes(KIND, address, &bytes);
+        }
+    }
+}
+
+impl Kept {
+    /// Says that nothing had to be done.
+    pub(super) fn say(&self, options: &BakeOptions) -> Outcome {
+        if options.json {
+            let mut summary = self.summary.clone();
+            summary["up_to_date"] = json!(true);
+            return print(&format!("{summary:#}"));
+        }
+        if options.quiet {
+            return Ok(());
+        }
+        if self.warnings > 0 {
+            let (count, s) = (self.warnings, if self.warnings == 1 { "" } else { "s" });
+            complain(&format!("{count} warning{s}, as before: `luthier check` shows all of materials"));
+        }
+        print(&format!("up to date: {}", options.out.join(MANIFEST).display()))
+    }
+}
+
+/// A hash of the paths and bytes of some files.
+fn hash(files: &[PathBuf]) -> String {
+    let one = |path: &PathBuf| {
+        let bytes = input::image(path).map(|bytes| Key::of(&bytes).to_string());
+        format!("{} {}\n", path.display(), bytes.unwrap_or_else(|error| error.to_string()))
+    };
+    Key::of(files.par_iter().map(one).collect::<Vec<_>>().concat().as_bytes()).to_string()
+}
+
+fn state(path: &Path) -> Option<State> {
+    let metadata = std::fs::metadata(path).ok()?;
+    let changed = metadata.modified().ok()?.duration_since(UNIX_EPOCH).ok()?;
+    Some((metadata.len(), changed.as_nanos()))
+}

@@ -1,0 +1,71 @@
+//! `bake --watch`: again whenever a file changes.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::thread::sleep;
+use std::time::{Duration, SystemTime};
+
+use luthier_export::find;
+use luthier_terminal::{Failure, Outcome, complain};
+
+use super::once;
+use crate::cli::BakeOptions;
+
+/// Time between two looks at the files.
+const PERIOD: Duration = Duration::from_millis(200);
+
+/// Time of the last change and length of each file; `None` where it cannot be read.
+type Files = BTreeMap<PathBuf, Option<(SystemTime, u64)>>;
+
+/// The files that matter.
+#[derive(PartialEq)]
+struct State {
+    /// Materials that are found now.
+    found: Files,
+    /// Files that the last bake read.
+    read: Files,
+}
+
+/// Bakes, and again whenever files have changed and then rested for a while, until the process is ended. Files that cannot be used are named, and waited for.
+pub(super) fn run(options: &BakeOptions) -> Outcome {
+    let mut read = Vec::new();
+    loop {
+        let before = state(options, &read);
+        match once(options) {
+            Ok(files) => read = files,
+            Err(failure @ (Failure::Usage(_) | Failure::BrokenPipe)) => return Err(failure),
+            Err(failure) => complain(&format!("error: {}", failure.sentence())),
+        }
+        crate::store::close();
+        if !options.quiet {
+            complain("watching: changed files are baked; end with Ctrl-C");
+        }
+        settled(options, &read, &before);
+    }
+}
+
+/// Waits until files are others than before, and stay so for a period.
+fn settled(options: &BakeOptions, read: &[PathBuf], before: &State) {
+    let mut last = state(options, read);
+    // The bake may have taken so long that files changed meanwhile, or came.
+    let is_known = |(path, state): (&PathBuf, &Option<_>)| before.read.get(path).is_none_or(|then| then == state);
+    let mut is_changed = last.found != before.found || !last.read.iter().all(is_known);
+    loop {
+        sleep(PERIOD);
+        let now = state(options, read);
+        if now != last {
+            (last, is_changed) = (now, true);
+        } else if is_changed {
+            return;
+        }
+    }
+}
+
+fn state(options: &BakeOptions, read: &[PathBuf]) -> State {
+    let metadata = |path: PathBuf| {
+        let state = std::fs::metadata(&path).and_then(|m| Ok((m.modified()?, m.len()))).ok();
+        (path, state)
+    };
+    let found = find(&options.sources.paths).unwrap_or_default();
+    State { found: found.into_iter().map(metadata).collect(), read: read.iter().cloned().map(metadata).collect() }
+}

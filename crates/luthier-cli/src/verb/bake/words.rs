@@ -1,0 +1,95 @@
+//! The result of a bake in words, and as JSON.
+
+use std::time::Instant;
+
+use luthier_export::MANIFEST;
+use luthier_manifest::{CandidateForm, LobesError, Manifest};
+use luthier_terminal::bytes;
+use serde_json::{Value, json};
+
+use crate::cli::BakeOptions;
+use crate::progress::BakeProgress;
+
+pub(super) fn text(options: &BakeOptions, manifest: &Manifest, progress: &BakeProgress, start: Instant) -> String {
+    let mut out = format!("{} materials, {} tables\n\n", manifest.materials.len(), manifest.tables.len());
+    out.push_str(&format!(
+        "{:<13} {:>6}  {:>11}  {:<11} {:>10}  {:>9}\n",
+        "table", "tiles", "texels", "format", "size", "max error"
+    ));
+    for table in &manifest.tables {
+        let [width, height] = table.layout.size();
+        let worst = table.tiles.iter().map(|t| t.error.max_abs_err).fold(0.0, f64::max);
+        out.push_str(&format!(
+            "{:<13} {:>6}  {:>11}  {:<11} {:>10}  {worst:>9.1e}\n",
+            table.kind.name(),
+            table.layout.tiles,
+            format!("{width}x{height}"),
+            table.format.name(),
+            bytes(table.texel_bytes),
+        ));
+    }
+    if !manifest.searches.is_empty() {
+        out.push_str("\nsearched\n");
+    }
+    for search in &manifest.searches {
+        let chosen = &search.front[search.chosen];
+        let what = match &chosen.form {
+            CandidateForm::ClosedForm => "computed, no table".to_owned(),
+            CandidateForm::Table { .. } => {
+                let error = chosen.error.lobe.map_or_else(
+                    || format!("error {:.1e}", chosen.error.max_abs),
+                    |lobe| format!("lobe error {lobe:.3}"),
+                );
+                format!("{} bytes, {error}", chosen.bytes)
+            }
+        };
+        let (kind, front, measured) = (search.kind.name(), search.front.len(), search.measured);
+        out.push_str(&format!("{kind:<13} {what}; cost {:.0}; {front} on the front of {measured}\n", chosen.cost));
+    }
+    let lobes = manifest.materials.iter().filter_map(|m| Some((&m.name, m.constants.lobes?.error?)));
+    for (number, (name, LobesError { lobe, lobe_noise, albedo, albedo_noise })) in lobes.enumerate() {
+        if number == 0 {
+            out.push_str("\nlobes against the simulated stack, of unseen views the worst\n");
+        }
+        out.push_str(&format!(
+            "{name:<30} lobe error {lobe:.3}, of noise {lobe_noise:.3}; error of the albedo {albedo:.4}, standard error {albedo_noise:.4}\n"
+        ));
+    }
+    let jobs: Vec<String> = progress.seconds().iter().map(|(kind, s)| format!("{} {s:.2}", kind.name())).collect();
+    out.push_str(&format!("\nseconds: {}; all {:.2}\n", jobs.join(", "), start.elapsed().as_secs_f64()));
+    out.push_str(&format!("jobs: {} run, {} found in the store\n", progress.run(), progress.had()));
+    out.push_str(&format!("wrote {}\n", options.out.join(MANIFEST).display()));
+    out
+}
+
+pub(super) fn summary(options: &BakeOptions, manifest: &Manifest, progress: &BakeProgress, start: Instant) -> Value {
+    let tables: Vec<Value> = manifest
+        .tables
+        .iter()
+        .map(|t| {
+            let worst = t.tiles.iter().map(|t| t.error.max_abs_err).fold(0.0, f64::max);
+            json!({
+                "kind": t.kind.name(),
+                "tiles": t.layout.tiles,
+                "size": t.layout.size(),
+                "format": t.format.name(),
+                "texel_bytes": t.texel_bytes,
+                "max_abs_err": worst,
+            })
+        })
+        .collect();
+    let lobes: Vec<Value> = (manifest.materials.iter())
+        .filter_map(|m| Some(json!({ "material": m.name, "error": m.constants.lobes?.error? })))
+        .collect();
+    let seconds: Value = progress.seconds().iter().map(|(kind, s)| (kind.name().to_owned(), json!(s))).collect();
+    json!({
+        "manifest": options.out.join(MANIFEST).to_string_lossy(),
+        "materials": manifest.materials.iter().map(|m| &m.name).collect::<Vec<_>>(),
+        "tables": tables,
+        "searches": &manifest.searches,
+        "lobes": lobes,
+        "jobs": { "run": progress.run(), "found": progress.had() },
+        "seconds": seconds,
+        "seconds_all": start.elapsed().as_secs_f64(),
+    })
+}

@@ -1,0 +1,88 @@
+//! Locks: tables keep their sizes, axes and formats until a budget breaks.
+
+use serde_json::Value;
+
+use crate::workshop::Workshop;
+
+/// Size of a Fresnel row.
+fn row_size(workshop: &Workshop) -> Value {
+    let manifest = workshop.json("out/manifest.json");
+    let tables = manifest["tables"].as_array().unwrap();
+    let fresnel = tables.iter().find(|table| table["kind"] == "fresnel").unwrap();
+    fresnel["layout"]["x"].clone()
+}
+
+const BARE: &str = "schema = 1\nname = \"bare\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nroughness = 0.3\n\
+                    [[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\n[bake]\nmodel = \"elek\"\n";
+
+/// A thick film, whose row needs more nodes than one of glass.
+const FILM: &str = "schema = 1\nname = \"film\"\n[[layer]]\ntype = \"thin-film\"\nior = 1.6\nthickness_nm = 700\n\
+                    [[layer]]\ntype = \"conductor\"\nior = \"au\"\nroughness = 0.3\n[bake]\nmodel = \"elek\"\n";
+
+#[test]
+fn a_lock_keeps_tables_until_their_budget_breaks() {
+    let workshop = Workshop::with(&[("a/bare.toml", BARE)]);
+    workshop.run(&["bake", "a", "--quiet"]).exits(0);
+    assert!(!workshop.path("a/luthier.lock").exists());
+    let small = row_size(&workshop);
+    let without = workshop.tree("out/tables");
+    let run = workshop.run(&["bake", "a", "--relock", "--quiet"]).exits(0);
+    assert!(run.stderr.contains("wrote a/luthier.lock"), "{}", run.stderr);
+    assert_eq!(workshop.tree("out/tables"), without);
+    let lock = workshop.text("a/luthier.lock");
+    // From the lock: no candidates were compared, and the bake is the one that wrote it.
+    workshop.run(&["bake", "a", "--out", "again", "--quiet"]).exits(0);
+    assert_eq!(workshop.tree("again"), workshop.tree("out"));
+    let searches = workshop.json("out/manifest.json")["searches"].clone();
+    assert!(searches.as_array().unwrap().iter().all(|search| search["measured"] == 1), "{searches}");
+    // Glass beside glass would have another search; the lock stays.
+    workshop.write("a/other.toml", BARE.replace("bare", "other").replace("1.5", "1.7"));
+    workshop.run(&["bake", "a", "--quiet"]).exits(0);
+    assert_eq!((row_size(&workshop), workshop.text("a/luthier.lock")), (small.clone(), lock.clone()));
+    // A film breaks it: the bake says so.
+    workshop.write("a/film.toml", FILM);
+    let stale = workshop.run(&["bake", "a", "--check"]).exits(1).stdout;
+    assert!(stale.contains("stale: a/luthier.lock"), "{stale}");
+    assert_eq!(workshop.text("a/luthier.lock"), lock);
+    let run = workshop.run(&["bake", "a", "--quiet"]).exits(0);
+    assert!(run.stderr.contains("warning: the tables that a/luthier.lock decides"), "{}", run.stderr);
+    assert_ne!(row_size(&workshop), small);
+    assert_ne!(workshop.text("a/luthier.lock"), lock);
+    let large = row_size(&workshop);
+    // Without the film the larger rows stay, unless the lock is made anew.
+    std::fs::remove_file(workshop.path("a/film.toml")).unwrap();
+    workshop.run(&["bake", "a", "--quiet"]).exits(0);
+    assert_eq!(row_size(&workshop), large);
+    std::fs::remove_file(workshop.path("a/other.toml")).unwrap();
+    workshop.run(&["bake", "a", "--relock", "--quiet"]).exits(0);
+    assert_eq!(row_size(&workshop), small);
+}
+
+/// A stated budget is held whatever the lock says.
+#[test]
+fn a_lock_never_breaks_a_budget() {
+    let workshop = Workshop::with(&[("a/bare.toml", BARE)]);
+    let bake = |limit: &str, more: &[&str]| {
+        let args = ["bake", "a", "--max-abs", limit, "--json"];
+        workshop.run(&[&args[..], more].concat()).exits(0).json()
+    };
+    bake("1e-2", &["--relock"]);
+    let coarse = row_size(&workshop);
+    bake("2e-2", &[]);
+    assert_eq!(row_size(&workshop), coarse);
+    let fine = bake("1e-3", &[]);
+    assert_ne!(row_size(&workshop), coarse);
+    for table in fine["tables"].as_array().unwrap() {
+        assert!(table["max_abs_err"].as_f64().unwrap() <= 1e-3, "{table}");
+    }
+}
+
+#[test]
+fn a_broken_lock_is_refused() {
+    let workshop = Workshop::with(&[("a/bare.toml", BARE), ("a/luthier.lock", "{")]);
+    workshop.run(&["bake", "a"]).fails(1, &["a/luthier.lock: it is no lock"]).says(&["--relock"]);
+    workshop.write("a/luthier.lock", "{\"schema\": 9, \"decisions\": []}");
+    workshop.run(&["bake", "a"]).fails(1, &["schema is 9"]);
+    workshop.run(&["bake", "a", "--relock", "--quiet"]).exits(0);
+    workshop.run(&["bake", "a", "--quiet"]).exits(0);
+}

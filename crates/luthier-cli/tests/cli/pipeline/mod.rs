@@ -1,0 +1,7 @@
+//! Build pipelines: the store of results, stamps, locks, shares, dependencies, watching.
+
+mod lock;
+mod shares;
+mod store;
+mod up_to_date;
+mod watch;

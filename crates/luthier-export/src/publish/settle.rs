@@ -1,0 +1,117 @@
+//! Files at their places: what is ready is moved there, and what it replaces goes.
+
+use std::collections::BTreeSet;
+use std::io;
+use std::path::{Component, Path, PathBuf};
+
+use serde_json::Value;
+
+use super::{LISTS, NEW, READY, REPORT_FILES, at, list};
+use crate::{MANIFEST, PackageError};
+
+/// Moves what is ready to its places, the manifest last, and removes what an interrupted program left.
+pub(super) fn settle(folder: &Path) -> Result<(), PackageError> {
+    sweep(folder)?;
+    let ready = folder.join(READY);
+    if !ready.exists() {
+        return Ok(());
+    }
+    let mut files = Vec::new();
+    at("list", &ready, list(&ready, &mut files))?;
+    let relative = |file: &PathBuf| file.strip_prefix(&ready).map(Path::to_owned).unwrap_or_default();
+    let (lists, others): (Vec<_>, Vec<_>) =
+        files.iter().map(relative).partition(|path| LISTS.iter().any(|list| path == Path::new(list)));
+    let place = |path: &Path| {
+        let place = folder.join(path);
+        // Someone may have tidied up between an interrupted publication and this one.
+        place.parent().map_or(Ok(()), |parent| at("make the folder", parent, std::fs::create_dir_all(parent)))?;
+        at("write", &place, std::fs::rename(ready.join(path), &place))
+    };
+    others.iter().try_for_each(|path| place(path))?;
+    for list in lists {
+        remove_stale(folder, &list, &std::fs::read_to_string(ready.join(&list)).unwrap_or_default())?;
+        place(&list)?;
+    }
+    at("remove", &ready, std::fs::remove_dir_all(&ready))
+}
+
+/// Removes files that were not published, and the folders at their places that were made for them.
+pub(super) fn sweep(folder: &Path) -> Result<(), PackageError> {
+    let new = folder.join(NEW);
+    if !new.exists() {
+        return Ok(());
+    }
+    let mut folders = Vec::new();
+    at("list", &new, list_folders(&new, &mut folders))?;
+    // The innermost come last. One that holds something stays.
+    for inner in folders.iter().rev().filter_map(|inner| inner.strip_prefix(&new).ok()) {
+        let _ = std::fs::remove_dir(folder.join(inner));
+    }
+    at("remove", &new, std::fs::remove_dir_all(&new))
+}
+
+/// All folders below a folder.
+fn list_folders(folder: &Path, folders: &mut Vec<PathBuf>) -> io::Result<()> {
+    for entry in std::fs::read_dir(folder)? {
+        let entry = entry?;
+        if entry.file_type()?.is_dir() {
+            folders.push(entry.path());
+            list_folders(&entry.path(), folders)?;
+        }
+    }
+    Ok(())
+}
+
+/// Removes what the list in place names and the next one does not, and the folders that this empties.
+fn remove_stale(folder: &Path, list: &Path, next: &str) -> Result<(), PackageError> {
+    for path in stale(folder, list, next) {
+        if path.is_file() {
+            at("remove", &path, std::fs::remove_file(&path))?;
+        }
+        // A folder stays if something else is in it.
+        path.ancestors().skip(1).take_while(|f| *f != folder).take_while(|f| std::fs::remove_dir(f).is_ok()).count();
+    }
+    Ok(())
+}
+
+/// The files that the list in place names and the next one does not. Some of them may be gone.
+pub(super) fn stale(folder: &Path, list: &Path, next: &str) -> Vec<PathBuf> {
+    // Unreadable is as good as none: it names nothing.
+    let old = std::fs::read_to_string(folder.join(list)).unwrap_or_default();
+    let mut stale = if old == next { Vec::new() } else { named_by(&old) };
+    if stale.is_empty() {
+        return stale;
+    }
+    let current: BTreeSet<PathBuf> = named_by(next).into_iter().chain([list.to_owned()]).collect();
+    stale.retain(|path| !current.contains(path));
+    if list == Path::new(MANIFEST) {
+        stale.extend(REPORT_FILES.map(PathBuf::from));
+    }
+    stale.iter().map(|path| folder.join(path)).collect()
+}
+
+/// The files that a manifest of luthier, of any schema, names with a hash, as far as they lie inside its folder.
+pub(super) fn named_by(manifest: &str) -> Vec<PathBuf> {
+    let Ok(manifest) = serde_json::from_str::<Value>(manifest) else { return Vec::new() };
+    if !manifest["generator"].as_str().is_some_and(|g| g.starts_with("luthier ")) {
+        return Vec::new();
+    }
+    let mut paths = Vec::new();
+    let mut open = vec![&manifest];
+    while let Some(value) = open.pop() {
+        match value {
+            Value::Array(items) => open.extend(items),
+            Value::Object(entries) => {
+                if let (Some(Value::String(path)), Some(Value::String(_))) =
+                    (entries.get("path"), entries.get("sha256"))
+                {
+                    paths.push(PathBuf::from(path));
+                }
+                open.extend(entries.values());
+            }
+            _ => {}
+        }
+    }
+    paths.retain(|path| path.components().all(|part| matches!(part, Component::Normal(_))));
+    paths
+}

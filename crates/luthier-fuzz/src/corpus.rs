@@ -1,0 +1,47 @@
+//! Inputs that are checked in: `corpus/TARGET/`, a file each, and files that the repository has for other ends.
+
+use std::path::{Path, PathBuf};
+use std::{fs, io};
+
+use crate::Target;
+
+/// Bytes of the longest input that tests change: a longer one would take the time that others need.
+const LENGTH_MAX: u64 = 16 << 10;
+
+/// An input of the corpus.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Input {
+    /// The file.
+    pub path: PathBuf,
+    /// Its bytes.
+    pub bytes: Vec<u8>,
+}
+
+/// The inputs of a target: its own by name, then those of its other folders, without what is too long.
+///
+/// # Errors
+/// Those of the system, with the path. Every target has a folder.
+pub fn corpus(target: &Target) -> io::Result<Vec<Input>> {
+    let mut inputs = Vec::new();
+    for folder in folders(target) {
+        let named = |error: io::Error| io::Error::new(error.kind(), format!("{}: {error}", folder.display()));
+        let mut paths = fs::read_dir(&folder)
+            .and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>())
+            .map_err(named)?;
+        paths.sort();
+        for path in paths {
+            let about = path.metadata().map_err(named)?;
+            if about.is_file() && about.len() <= LENGTH_MAX {
+                inputs.push(Input { bytes: fs::read(&path).map_err(named)?, path });
+            }
+        }
+    }
+    Ok(inputs)
+}
+
+/// The folders of a target, its own first.
+pub fn folders(target: &Target) -> Vec<PathBuf> {
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus").join(target.name);
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    std::iter::once(own).chain(target.folders.iter().map(|folder| root.join(folder))).collect()
+}

@@ -1,0 +1,130 @@
+//! Images and textures.
+
+use luthier_lut::Image;
+use luthier_texture::{
+    MAX_BYTES, Samples, TextureError, exr as openexr, ktx2 as khronos, png as portable, radiance as light,
+    table as tables,
+};
+
+/// First bytes of a PNG file.
+const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
+
+/// Values of the largest image that is written again: larger ones would take the time that others need.
+const WRITTEN_MAX: usize = 1 << 16;
+
+/// A texture of a bake.
+pub(super) fn ktx2(bytes: &[u8]) {
+    let Some(texture) = read(khronos::decode(bytes)) else { return };
+    if let Some(image) = read(texture.image()) {
+        is_whole(&image);
+    }
+    if texture.bytes.len() <= WRITTEN_MAX {
+        for encode in [khronos::encode, khronos::encode_plain] {
+            let written = encode(&texture).unwrap_or_else(|error| panic!("read, but not written: {error}"));
+            assert_eq!(khronos::decode(&written).ok().as_ref(), Some(&texture));
+        }
+    }
+}
+
+/// An image of a bake.
+pub(super) fn exr(bytes: &[u8]) {
+    let Some((image, _)) = read(openexr::decode(bytes)) else { return };
+    is_whole(&image);
+    if image.data.len() > WRITTEN_MAX {
+        return;
+    }
+    let names = ["R", "G", "B", "A"];
+    let written = openexr::encode(&image, &names[..image.channels as usize], &Vec::new())
+        .unwrap_or_else(|error| panic!("read, but not written: {error}"));
+    let Ok((again, _)) = openexr::decode(&written) else { panic!("written, but not read") };
+    assert_eq!(bits(&again), bits(&image));
+}
+
+/// A map. Its sums are put right first: nearly every change breaks one, and the parser would look no further.
+pub(super) fn png(bytes: &[u8]) {
+    assert!(bytes.starts_with(SIGNATURE) || portable::decode(bytes).is_err());
+    let bytes = &with_sums(bytes);
+    if let Some(image) = read(portable::decode(bytes)) {
+        is_whole(&image);
+        assert!(image.channels == 4 && image.data.iter().all(|value| (0.0..=1.0).contains(value)));
+    }
+    if let Some(map) = read(portable::decode_gray(bytes)) {
+        is_whole(&map);
+        if map.data.len() <= WRITTEN_MAX {
+            let written = portable::encode_gray(&map).unwrap_or_else(|error| panic!("read, but not written: {error}"));
+            let Ok(again) = portable::decode_gray(&written) else { panic!("written, but not read") };
+            let near = again.data.iter().zip(&map.data).all(|(a, b)| (a - b).abs() <= 0.5001 / 255.0);
+            assert!(near && again.data.len() == map.data.len());
+        }
+    }
+}
+
+/// A picture of an environment.
+pub(super) fn radiance(bytes: &[u8]) {
+    if let Some(image) = read(light::decode(bytes)) {
+        is_whole(&image);
+        assert_eq!(image.channels, 3);
+    }
+}
+
+/// A table of another maker.
+pub(super) fn table(bytes: &[u8]) {
+    if let Some(table) = read(tables::read(&with_sums(bytes))) {
+        is_whole(&table.image);
+        assert!(!table.format.is_empty() && table.samples.step() > 0.0);
+    }
+}
+
+/// Values without a header: width, height, channels and their kind in five bytes, then the file.
+pub(super) fn raw(bytes: &[u8]) {
+    let Some((&[width, height, channels, kind, shift], file)) = bytes.split_first_chunk() else { return };
+    let kinds = [Samples::Unorm8, Samples::Unorm10, Samples::Unorm16, Samples::Half, Samples::Float];
+    let side = |side: u8| u32::from(side).checked_shl((shift % 40).into()).unwrap_or(u32::MAX);
+    let samples = kinds[usize::from(kind) % kinds.len()];
+    if let Some(table) = read(tables::raw(file, side(width), side(height), (channels % 8).into(), samples)) {
+        is_whole(&table.image);
+    }
+}
+
+/// What was read, or nothing where it was refused in words.
+fn read<T>(result: Result<T, TextureError>) -> Option<T> {
+    result.inspect_err(|error| assert!(!error.to_string().is_empty())).ok()
+}
+
+fn is_whole(image: &Image) {
+    let texels = u64::from(image.width) * u64::from(image.height) * u64::from(image.channels);
+    assert!(
+        (1..=4).contains(&image.channels) && image.data.len() as u64 == texels,
+        "{} x {}",
+        image.width,
+        image.height
+    );
+    assert!(4 * texels <= 4 * MAX_BYTES);
+}
+
+fn bits(image: &Image) -> Vec<u32> {
+    image.data.iter().map(|value| value.to_bits()).collect()
+}
+
+/// A file whose chunks have the sums that they should, if it is a PNG file; other bytes as they are.
+pub fn with_sums(bytes: &[u8]) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    let mut at = SIGNATURE.len();
+    while let Some(length) =
+        bytes.get(at..).filter(|_| bytes.starts_with(SIGNATURE)).and_then(|rest| rest.first_chunk())
+    {
+        let end = (u32::from_be_bytes(*length) as usize).saturating_add(at + 8);
+        let Some(body) = bytes.get(at + 4..end) else { break };
+        let sum = crc32(body).to_be_bytes();
+        let Some(place) = bytes.get_mut(end..end + 4) else { break };
+        place.copy_from_slice(&sum);
+        at = end + 4;
+    }
+    bytes
+}
+
+/// CRC-32 of ISO 3309, bit by bit.
+fn crc32(bytes: &[u8]) -> u32 {
+    let step = |sum: u32, _| if sum & 1 == 1 { sum >> 1 ^ 0xedb8_8320 } else { sum >> 1 };
+    !bytes.iter().fold(!0, |sum, byte| (0..8).fold(sum ^ u32::from(*byte), step))
+}

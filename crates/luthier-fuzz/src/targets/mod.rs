@@ -1,0 +1,170 @@
+//! The targets: a function for each parser, which checks what should hold for whatever the parser accepts.
+
+mod images;
+mod json;
+mod lines;
+mod toml;
+
+pub use images::with_sums;
+
+/// A parser, and what is fed to it.
+#[derive(Debug, Clone, Copy)]
+pub struct Target {
+    /// Name of the target and of its folder in the corpus.
+    pub name: &'static str,
+    /// The parser, as a path of Rust.
+    pub parser: &'static str,
+    /// Inputs that reach the parser, and the commands that read them.
+    pub reads: &'static str,
+    /// Checks of what the parser accepts.
+    pub holds: &'static str,
+    /// Folders of the repository that have inputs beside those of the corpus.
+    pub folders: &'static [&'static str],
+    /// Feeds bytes to the parser. It panics where something does not hold.
+    pub run: fn(&[u8]),
+}
+
+/// All targets.
+pub const TARGETS: [Target; 17] = [
+    Target {
+        name: "material",
+        parser: "luthier_material::parse",
+        reads: "material files, and the index files that they name",
+        holds: "diagnostics lie in the text and can be shown; slopes, films and bases keep their ranges; reading again gives an equal material",
+        folders: &["materials", "materials/scenes/still-life", "tests/broken"],
+        run: toml::material,
+    },
+    Target {
+        name: "scene",
+        parser: "luthier_material::parse_scene, is_scene",
+        reads: "scene files",
+        holds: "diagnostics lie in the text and can be shown; a scene is recognised as one; angles and budgets keep their ranges",
+        folders: &["materials/scenes"],
+        run: toml::scene,
+    },
+    Target {
+        name: "index",
+        parser: "luthier_optics::constants::parse_csv",
+        reads: "CSV files of optical constants",
+        holds: "samples ascend and are finite; so is the index between them and beyond",
+        folders: &["crates/luthier-optics/data"],
+        run: lines::index,
+    },
+    Target {
+        name: "axes",
+        parser: "luthier_table::Layout::parse",
+        reads: "`--axes` of `table` and `audit`",
+        holds: "a layout that is printed parses to an equal one; its nodes are finite",
+        folders: &[],
+        run: lines::axes,
+    },
+    Target {
+        name: "directions",
+        parser: "luthier_layers::angles::pairs",
+        reads: "`eval --directions`",
+        holds: "directions are unit and not below the surface; a list that is printed parses to an equal one",
+        folders: &[],
+        run: lines::directions,
+    },
+    Target {
+        name: "reradiation",
+        parser: "luthier_layers::reradiation::Matrix::parse",
+        reads: "`eval --matrix`",
+        holds: "a matrix has a share for each pair of bins; a matrix that is printed parses to an equal one",
+        folders: &[],
+        run: lines::reradiation,
+    },
+    Target {
+        name: "lock",
+        parser: "luthier_manifest::Lock::from_json",
+        reads: "`luthier.lock` beside materials",
+        holds: "a lock that is printed parses to an equal one",
+        folders: &[],
+        run: json::lock,
+    },
+    Target {
+        name: "manifest",
+        parser: "luthier_manifest::Manifest::from_json, luthier_export::Package::from_parts",
+        reads: "`manifest.json` of a bake",
+        holds: "a manifest that is printed parses to an equal one; texels that fit it make a package, whose buffer and tiles can be reached",
+        folders: &[],
+        run: json::manifest,
+    },
+    Target {
+        name: "report",
+        parser: "luthier_report::Report::from_json",
+        reads: "`report.json`",
+        holds: "a report that is printed parses to an equal one; its summary can be written",
+        folders: &[],
+        run: json::report,
+    },
+    Target {
+        name: "stability",
+        parser: "luthier_report::stability::Stability::from_json",
+        reads: "`report --stability`",
+        holds: "a suite that is printed parses to an equal one; it can be summed up",
+        folders: &[],
+        run: json::stability,
+    },
+    Target {
+        name: "costs",
+        parser: "luthier_report::Costs",
+        reads: "`report --cost`",
+        holds: "costs that are printed parse to equal ones",
+        folders: &[],
+        run: json::costs,
+    },
+    Target {
+        name: "ktx2",
+        parser: "luthier_texture::ktx2::decode",
+        reads: "textures of a bake",
+        holds: "a texture that is written is read as an equal one; it has the values that its size needs",
+        folders: &[],
+        run: images::ktx2,
+    },
+    Target {
+        name: "exr",
+        parser: "luthier_texture::exr::decode",
+        reads: "EXR files of a bake",
+        holds: "an image that is written is read as an equal one",
+        folders: &[],
+        run: images::exr,
+    },
+    Target {
+        name: "png",
+        parser: "luthier_texture::png::{decode, decode_gray}",
+        reads: "maps of materials and of bakes",
+        holds: "values are in 0..1 and as many as the size needs; a map that is written is read as an equal one",
+        folders: &[],
+        run: images::png,
+    },
+    Target {
+        name: "radiance",
+        parser: "luthier_texture::radiance::decode",
+        reads: "environments: OpenEXR and Radiance HDR of any maker",
+        holds: "values are as many as the size needs",
+        folders: &[],
+        run: images::radiance,
+    },
+    Target {
+        name: "table",
+        parser: "luthier_texture::table::read",
+        reads: "tables of any maker: DDS, KTX2, EXR, PNG, Radiance HDR",
+        holds: "values are as many as size and channels need",
+        folders: &[],
+        run: images::table,
+    },
+    Target {
+        name: "raw",
+        parser: "luthier_texture::table::raw",
+        reads: "tables without a header; the first bytes stand for the options",
+        holds: "values are as many as size and channels need",
+        folders: &[],
+        run: images::raw,
+    },
+];
+
+/// The target of a name.
+pub fn target(name: &str) -> Option<&'static Target> {
+    TARGETS.iter().find(|target| target.name == name)
+}

@@ -1,0 +1,106 @@
+//! Texts in TOML: materials and scenes.
+
+use std::io;
+use std::ops::RangeInclusive;
+
+use luthier_manifest::ShadingModel;
+use luthier_material::{Diagnostic, Light, Material, Severity, SurfaceClass, is_scene, left_out, parse, parse_scene};
+use luthier_optics::stack::{Base, Stack};
+
+/// Errors and warnings that are listed at most: 20 of each, and how many more there are.
+const LISTED_MAX: usize = 42;
+
+/// Characters of the longest message.
+const MESSAGE_MAX: usize = 700;
+
+/// A material file; behind a NUL, the contents of whatever CSV file it names.
+pub(super) fn material(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    let (text, csv) = text.split_once('\0').unwrap_or((&text, ""));
+    let read = |_: &str| if csv.is_empty() { Err(io::Error::other("none")) } else { Ok(csv.to_owned()) };
+    match parse("m.toml", text, &read) {
+        Ok(parsed) => {
+            can_be_shown(&parsed.warnings, text);
+            assert!(parsed.warnings.iter().all(|d| d.severity == Severity::Warning));
+            holds(&parsed.material);
+            let again =
+                parse("m.toml", text, &read).unwrap_or_else(|errors| panic!("refused the second time: {errors:?}"));
+            assert_eq!(again, parsed);
+        }
+        Err(diagnostics) => refused(&diagnostics, text),
+    }
+}
+
+/// A scene file.
+pub(super) fn scene(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    let claims = is_scene(&text);
+    match parse_scene("s.toml", &text) {
+        Ok(scene) => {
+            assert!(claims, "a scene that is not recognised");
+            assert!(!scene.materials.is_empty() && !scene.lights.is_empty());
+            for material in &scene.materials {
+                assert!(text.get(material.span.clone()).is_some());
+                can_be_shown(&[scene.diagnostic(material, "cannot be read")], &text);
+            }
+            ascends(scene.view.angles_deg, 0.0..=85.0);
+            for light in &scene.lights {
+                match *light {
+                    Light::Directional { from_eye_deg } => ascends([from_eye_deg; 2], 0.0..=180.0),
+                    Light::Point { from_eye_deg } => ascends(from_eye_deg, 0.0..=180.0),
+                    Light::Environment => {}
+                }
+            }
+            assert!(scene.view.footprint_deg.is_finite() && scene.target.max_cost.is_none_or(f64::is_finite));
+        }
+        Err(diagnostics) => refused(&diagnostics, &text),
+    }
+}
+
+fn ascends([from, to]: [f64; 2], range: RangeInclusive<f64>) {
+    assert!(from <= to && range.contains(&from) && range.contains(&to), "{from} to {to}");
+}
+
+fn holds(material: &Material) {
+    let stack: &Stack = &material.stack;
+    assert!(!stack.layers.is_empty() && stack.layers.len() == material.layers.len());
+    assert!(stack.exterior.samples().iter().all(|sample| sample.k == 0.0));
+    for (number, layer) in stack.layers.iter().enumerate() {
+        for alpha in [layer.surface.alpha_x, layer.surface.alpha_y] {
+            assert!((0.0..=1.0).contains(&alpha), "slope parameter {alpha}");
+        }
+        for film in &layer.films {
+            assert!(film.thickness.min_nm <= film.thickness.max_nm, "{:?}", film.thickness);
+        }
+        assert!(matches!(layer.base, Base::Dielectric { .. }) || number + 1 == stack.layers.len());
+    }
+    assert!(material.bake.wavelengths_nm().iter().all(|nm| nm.is_finite()));
+    let (_, _) = (material.model(), material.model_without_fit());
+    for model in ShadingModel::ALL {
+        for feature in left_out(material, model) {
+            assert!(!feature.forms.is_empty());
+            assert!(material.text.get(material.places.span(&feature.key)).is_some(), "{}", feature.key);
+        }
+    }
+    assert!(!SurfaceClass::of(stack).name().is_empty());
+    for image in material.images() {
+        assert!(!image.path.is_empty());
+    }
+}
+
+fn refused(diagnostics: &[Diagnostic], text: &str) {
+    assert!(diagnostics.iter().any(|d| d.severity == Severity::Error), "refused without an error");
+    can_be_shown(diagnostics, text);
+}
+
+fn can_be_shown(diagnostics: &[Diagnostic], text: &str) {
+    assert!(diagnostics.len() <= LISTED_MAX);
+    for d in diagnostics {
+        assert!(d.message.chars().count() <= MESSAGE_MAX);
+        let before = text.get(..d.span.start).unwrap_or_else(|| panic!("outside the text: {d:?}"));
+        assert!(text.get(d.span.clone()).is_some(), "outside the text: {d:?}");
+        assert_eq!(d.line, 1 + before.matches('\n').count());
+        assert!(d.column >= 1);
+        assert!(d.render(text).contains(d.severity.name()) && !d.render_coloured(text).is_empty());
+    }
+}

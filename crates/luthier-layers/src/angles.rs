@@ -1,0 +1,114 @@
+//! Directions as people write them: degrees, on command lines and in lists.
+
+use std::str::FromStr;
+
+use glam::DVec3;
+
+/// Angle from the normal and around it, in degrees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Angles {
+    /// Angle from the normal, 0 to 90.
+    pub theta_deg: f64,
+    /// Angle around the normal.
+    pub phi_deg: f64,
+}
+
+/// Why a text is no direction.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct AnglesError(String);
+
+/// Why a text is no list of directions: the line, counted from 1, if it is about one, and the reason.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{}: {reason}", line.map(|line| format!(":{line}")).unwrap_or_default())]
+pub struct PairsError {
+    /// Line of the text.
+    pub line: Option<usize>,
+    /// The reason.
+    pub reason: String,
+}
+
+impl Angles {
+    fn new(theta: &str, phi: &str) -> Result<Self, AnglesError> {
+        let number = |name: &str, text: &str| match text.trim().parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(AnglesError(format!("{name} is `{}`, expected degrees", text.trim()))),
+        };
+        let (theta_deg, phi_deg) = (number("theta", theta)?, number("phi", phi)?);
+        if !(0.0..=90.0).contains(&theta_deg) {
+            return Err(AnglesError(format!("theta is {theta_deg}, expected 0 to 90 degrees")));
+        }
+        Ok(Self { theta_deg, phi_deg })
+    }
+
+    /// The unit direction.
+    pub fn direction(self) -> DVec3 {
+        let (sin_theta, cos_theta) = libm::sincos(self.theta_deg.to_radians());
+        let (sin_phi, cos_phi) = libm::sincos(self.phi_deg.to_radians());
+        DVec3::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
+    }
+
+    /// Both angles, that from the normal first.
+    pub fn to_array(self) -> [f64; 2] {
+        [self.theta_deg, self.phi_deg]
+    }
+}
+
+impl FromStr for Angles {
+    type Err = AnglesError;
+
+    /// `theta,phi`.
+    fn from_str(text: &str) -> Result<Self, AnglesError> {
+        let expected = || AnglesError("expected theta,phi in degrees, such as 30,0".to_owned());
+        let (theta, phi) = text.split_once(',').ok_or_else(expected)?;
+        Self::new(theta, phi)
+    }
+}
+
+/// Pairs (wi, wo) of a CSV text, a pair in a line. Empty lines and lines that begin with `#` do not count.
+///
+/// ```
+/// let pairs = luthier_layers::angles::pairs("# mirror\n30,0,30,180\n").unwrap();
+/// assert_eq!(pairs[0].map(|angles| angles.to_array()), [[30.0, 0.0], [30.0, 180.0]]);
+/// ```
+///
+/// # Errors
+/// [`PairsError`], whose text continues the name of the file.
+pub fn pairs(text: &str) -> Result<Vec<[Angles; 2]>, PairsError> {
+    let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty() && !line.trim().starts_with('#'));
+    let pairs: Vec<_> = lines
+        .map(|(i, line)| pair(line).map_err(|reason| PairsError { line: Some(i + 1), reason }))
+        .collect::<Result<_, _>>()?;
+    if pairs.is_empty() {
+        return Err(PairsError { line: None, reason: "no directions".to_owned() });
+    }
+    Ok(pairs)
+}
+
+fn pair(line: &str) -> Result<[Angles; 2], String> {
+    let fields: Vec<&str> = line.split(',').collect();
+    let [theta_i, phi_i, theta_o, phi_o] = fields[..] else {
+        return Err(format!("expected theta_i,phi_i,theta_o,phi_o, found {} fields", fields.len()));
+    };
+    let named = |which: &'static str| move |what: AnglesError| format!("{which}: {what}");
+    let wi = Angles::new(theta_i, phi_i).map_err(named("wi"))?;
+    Ok([wi, Angles::new(theta_o, phi_o).map_err(named("wo"))?])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mistakes_are_pointed_at() {
+        for (text, expected) in [
+            ("# nothing\n", ": no directions"),
+            ("\n30,0,30\n", ":2: expected theta_i,phi_i,theta_o,phi_o, found 3 fields"),
+            ("30,0,91,0\n", ":1: wo: theta is 91, expected 0 to 90 degrees"),
+            ("30,0,1,nan\n", ":1: wo: phi is `nan`, expected degrees"),
+        ] {
+            assert_eq!(pairs(text).unwrap_err().to_string(), expected);
+        }
+        assert_eq!("30".parse::<Angles>().unwrap_err().to_string(), "expected theta,phi in degrees, such as 30,0");
+    }
+}

@@ -1,0 +1,136 @@
+//! Re-radiation matrices of fluorescent bases as texts.
+//!
+//! CSV: the first row has the wavelengths of the light, in nm, ascending, after a first field that is free; each row below
+//! has a wavelength that comes out, the same ones in the same order, and for each wavelength of the light the share of its power that
+//! comes out there. Shares are not negative; no column sums to more than 1. Empty lines and lines that begin with `#` do not
+//! count.
+
+/// A matrix and the wavelengths of its bins.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Matrix {
+    /// Wavelengths in nm, ascending; at least one.
+    pub wavelengths_nm: Vec<f64>,
+    /// Shares of power: entry `to * bins + from`. [`Fluorescent::new`](crate::fluorescence::Fluorescent::new) checks their sums.
+    pub shares: Vec<f64>,
+}
+
+/// Why a text is no matrix: the line, counted from 1, if it is about one, and the reason.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{}: {reason}", line.map(|line| format!(":{line}")).unwrap_or_default())]
+pub struct MatrixError {
+    /// Line of the text.
+    pub line: Option<usize>,
+    /// The reason.
+    pub reason: String,
+}
+
+impl Matrix {
+    /// Reads a matrix.
+    ///
+    /// ```
+    /// let matrix = luthier_layers::reradiation::Matrix::parse("nm,530,600\n530,0.1,0\n600,0.7,0.2\n").unwrap();
+    /// assert_eq!(matrix.wavelengths_nm, [530.0, 600.0]);
+    /// assert_eq!(matrix.shares, [0.1, 0.0, 0.7, 0.2]);
+    /// ```
+    ///
+    /// # Errors
+    /// [`MatrixError`], whose text continues the name of the file.
+    pub fn parse(text: &str) -> Result<Self, MatrixError> {
+        let whole = |reason: String| MatrixError { line: None, reason };
+        let lines = text.lines().map(str::trim).enumerate();
+        let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#')).map(|(i, l)| (i + 1, l));
+        let (at, head) = lines.next().ok_or_else(|| whole("no matrix".to_owned()))?;
+        let wrong = |line: usize| move |reason: String| MatrixError { line: Some(line), reason };
+        let (_, head) = head
+            .split_once(',')
+            .ok_or_else(|| wrong(at)("expected the wavelengths of the light after a comma".to_owned()))?;
+        let wavelengths_nm = numbers(head).map_err(wrong(at))?;
+        if !wavelengths_nm.is_sorted_by(|a, b| a < b) {
+            return Err(wrong(at)("wavelengths have to ascend".to_owned()));
+        }
+        let bins = wavelengths_nm.len();
+        // Grows with the rows: the head alone may promise a matrix that no memory holds.
+        let mut shares = Vec::new();
+        for (row, (at, line)) in lines.enumerate() {
+            let fields = numbers(line).map_err(wrong(at))?;
+            match (fields.split_first(), wavelengths_nm.get(row)) {
+                (_, None) => {
+                    return Err(wrong(at)(format!("expected {bins} rows, as many as there are wavelengths")));
+                }
+                (Some((nm, _)), Some(expected)) if nm != expected => {
+                    return Err(wrong(at)(format!("the row is for {nm} nm, expected {expected} nm")));
+                }
+                (Some((_, row)), _) if row.len() == bins => shares.extend(row),
+                _ => {
+                    let found = fields.len().saturating_sub(1);
+                    return Err(wrong(at)(format!("expected {bins} shares after the wavelength, found {found}")));
+                }
+            }
+        }
+        let rows = shares.len() / bins;
+        if rows < bins {
+            return Err(whole(format!("expected {bins} rows, as many as there are wavelengths, found {rows}")));
+        }
+        Ok(Self { wavelengths_nm, shares })
+    }
+
+    /// The bin that is nearest to a wavelength; `None` outside all bins.
+    pub fn bin(&self, nm: f64) -> Option<usize> {
+        let away = |bin: &usize| (self.wavelengths_nm[*bin] - nm).abs();
+        let nearest = (0..self.wavelengths_nm.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
+        let [first, last] = self.ends();
+        nearest.filter(|_| (first..=last).contains(&nm))
+    }
+
+    /// The first and the last wavelength.
+    pub fn ends(&self) -> [f64; 2] {
+        [self.wavelengths_nm.first(), self.wavelengths_nm.last()].map(|nm| nm.copied().unwrap_or(f64::NAN))
+    }
+}
+
+fn numbers(line: &str) -> Result<Vec<f64>, String> {
+    let number = |field: &str| match field.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err(format!("`{}` is not a number", field.trim())),
+    };
+    line.split(',').map(number).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_matrix_is_read_row_by_row() {
+        let text = "# green to orange\nnm,530,600\n530, 0.1, 0\n\n600, 0.7, 0.2\n";
+        let matrix = Matrix::parse(text).unwrap();
+        assert_eq!(matrix.wavelengths_nm, [530.0, 600.0]);
+        assert_eq!(matrix.shares, [0.1, 0.0, 0.7, 0.2]);
+        assert_eq!([530.0, 564.0, 566.0, 600.0].map(|nm| matrix.bin(nm).unwrap()), [0, 0, 1, 1]);
+        assert!(matrix.bin(529.0).is_none() && matrix.bin(601.0).is_none());
+    }
+
+    #[test]
+    fn mistakes_are_pointed_at() {
+        for (text, expected) in [
+            ("# nothing\n", ": no matrix"),
+            ("530\n", ":1: expected the wavelengths of the light after a comma"),
+            ("nm,530,green\n", ":1: `green` is not a number"),
+            ("nm,600,530\n", ":1: wavelengths have to ascend"),
+            ("nm,530,600\n530,0,0\n", ": expected 2 rows, as many as there are wavelengths, found 1"),
+            ("nm,530,600\n600,0,0\n", ":2: the row is for 600 nm, expected 530 nm"),
+            ("nm,530,600\n530,0\n", ":2: expected 2 shares after the wavelength, found 1"),
+            ("nm,530\n530,0\n600,0\n", ":3: expected 1 rows, as many as there are wavelengths"),
+        ] {
+            assert_eq!(Matrix::parse(text).unwrap_err().to_string(), expected);
+        }
+    }
+
+    /// A head of half a megabyte that promises eighty gigabytes.
+    #[test]
+    fn a_promise_takes_no_memory() {
+        let head: String = (1..=100_000).map(|nm| format!(",{nm}")).collect();
+        let error = Matrix::parse(&format!("nm{head}\n")).unwrap_err();
+        assert_eq!(error.reason, "expected 100000 rows, as many as there are wavelengths, found 0");
+    }
+}

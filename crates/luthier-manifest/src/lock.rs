@@ -1,0 +1,106 @@
+//! Decisions of a search that stay.
+
+use luthier_lut::TableKind;
+use serde::{Deserialize, Serialize};
+
+use crate::{Candidate, Manifest};
+
+/// The decision of a search for one kind of table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Decision {
+    /// The kind.
+    pub kind: TableKind,
+    /// The candidate that it took, with its bytes and errors when it was taken.
+    pub candidate: Candidate,
+}
+
+/// A lock file: the sizes, axes and formats that bakes of a folder keep until a budget breaks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Lock {
+    /// Number of the form of the file: [`Lock::SCHEMA`].
+    pub schema: u32,
+    /// Decisions in the order of their kinds.
+    pub decisions: Vec<Decision>,
+}
+
+impl Lock {
+    /// The form of the file that this crate reads and writes.
+    pub const SCHEMA: u32 = 1;
+
+    /// The decisions of the searches of a bake.
+    pub fn of(manifest: &Manifest) -> Self {
+        let decision = |search: &crate::Search| {
+            let candidate = search.front.get(search.chosen)?.clone();
+            Some(Decision { kind: search.kind, candidate })
+        };
+        let mut decisions: Vec<Decision> = manifest.searches.iter().filter_map(decision).collect();
+        decisions.sort_by_key(|decision| decision.kind);
+        Self { schema: Self::SCHEMA, decisions }
+    }
+
+    /// The lock of a text.
+    ///
+    /// # Errors
+    /// In words: what is not JSON, not a lock, or of another schema.
+    pub fn from_json(text: &str) -> Result<Self, String> {
+        let lock: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        if lock.schema == Self::SCHEMA {
+            Ok(lock)
+        } else {
+            Err(format!("its schema is {}, and this program reads {}", lock.schema, Self::SCHEMA))
+        }
+    }
+
+    /// The text of the lock file.
+    ///
+    /// # Errors
+    /// In words: numbers that are not finite.
+    pub fn to_json(&self) -> Result<String, String> {
+        let text = serde_json::to_string_pretty(self).map_err(|error| error.to_string())?;
+        Ok(text + "\n")
+    }
+
+    /// Whether the decisions are those of another lock, whatever errors were measured when they were taken.
+    pub fn decides_as(&self, other: &Self) -> bool {
+        let forms = |lock: &Self| -> Vec<_> {
+            lock.decisions.iter().map(|decision| (decision.kind, decision.candidate.form.clone())).collect()
+        };
+        forms(self) == forms(other)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Budget, CandidateForm, MeasuredError, Search};
+
+    #[test]
+    fn a_lock_reads_what_it_wrote() {
+        let candidate = |bytes| Candidate {
+            form: CandidateForm::ClosedForm,
+            bytes,
+            cost: 18.0,
+            error: MeasuredError { max_abs: 0.1 + 0.2, ..MeasuredError::default() },
+        };
+        let search = |kind, chosen| Search {
+            kind,
+            budget: Budget::default(),
+            chosen,
+            front: vec![candidate(0), candidate(1)],
+            measured: 2,
+        };
+        let searches = vec![search(TableKind::Distribution, 0), search(TableKind::Fresnel, 1)];
+        let manifest = Manifest { searches, ..Manifest::new("luthier test", Vec::new(), Vec::new()) };
+        let lock = Lock::of(&manifest);
+        assert_eq!(lock.decisions.iter().map(|d| d.candidate.bytes).collect::<Vec<_>>(), [1, 0]);
+        let text = lock.to_json().unwrap();
+        assert_eq!(Lock::from_json(&text), Ok(lock.clone()));
+        assert!(Lock::from_json(&text.replace("\"schema\": 1", "\"schema\": 9")).unwrap_err().contains("schema is 9"));
+        assert!(Lock::from_json("[]").is_err());
+        let mut other = lock.clone();
+        other.decisions[0].candidate.error.max_abs = 1.0;
+        assert!(lock.decides_as(&other));
+        other.decisions.pop();
+        assert!(!lock.decides_as(&other));
+    }
+}
