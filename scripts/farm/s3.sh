@@ -2,7 +2,7 @@
 # Bakes on several "machines" (folders of their own) that share a store of the S3 protocol, and compares every package with a bake by
 # one machine alone, byte for byte: the second machine computes nothing; a server that lies, refuses, is gone or never answers costs
 # one warning. Starts a server of its own (moto, from PyPI, with the versions of scripts/farm/s3-requirements.txt) and ends it.
-# Needs Python 3.10 or later with venv, and the network of packages; on Debian: apt-get install python3-venv. Takes three minutes.
+# Needs Python 3.10 or later with venv, and the network of packages; on Debian: apt-get install python3-venv. Takes one minute.
 #   scripts/farm/s3.sh [MATERIALS... [OPTIONS OF BAKE]]
 # The environment variable LUTHIER names a program with the Cargo feature `remote`; by default cargo builds it. PYTHON names an
 # interpreter that has the packages already.
@@ -73,7 +73,7 @@ serve() {
 # kinds of jobs that it ran.
 bake() {
   local machine=$1 start=$EPOCHREALTIME
-  "$LUTHIER" bake "${arguments[@]}" --cache "$work/$machine.cache" --out "$work/$machine" --json "${@:2}" \
+  "$LUTHIER" "${verb-bake}" "${arguments[@]}" --cache "$work/$machine.cache" --out "$work/$machine" --json "${@:2}" \
     >"$work/$machine.json" 2>"$work/$machine.err" || fail "$machine: the bake has failed"
   said=$(grep -vxF -f "$work/alone.err" "$work/$machine.err" || true)
   ran=$(python3 -c 'import json, sys; print(*json.load(open(sys.argv[1]))["seconds"])' "$work/$machine.json")
@@ -84,6 +84,7 @@ bake() {
 }
 # The results of jobs that a machine has. Stamps of bakes stay on their machine.
 results() { (cd "$work/$1.cache/objects" && find . -type f ! -name '*-stamp' | sort); }
+hashes() { (cd "$work/$1.cache/objects" && results "$1" | xargs sha256sum); }
 entries() { results "$1" | wc -l; }
 # warned TEXT: the last bake has written one line, a warning that says so.
 warned() {
@@ -111,7 +112,7 @@ python list luthier farm >"$work/sent"
 results one | sed 's,^\./,farm/,' | diff "$work/sent" - || fail "names of objects differ from those of entries"
 bake two --store $store
 computed_nothing
-diff -r -x '*-stamp' "$work/one.cache/objects" "$work/two.cache/objects" || fail "entries differ from those of the other machine"
+diff <(hashes one) <(hashes two) || fail "entries differ from those of the other machine"
 echo "$(entries two) entries fetched, equal to those of the first machine"
 
 step "the variable LUTHIER_STORE names the store, and --no-cache wants none"
@@ -120,6 +121,17 @@ computed_nothing
 "$LUTHIER" bake "${arguments[0]}" --out "$work/no-cache" --quiet --no-cache --store $store 2>"$work/refused.log" && fail "--store beside --no-cache is not refused"
 "$LUTHIER" bake "${arguments[0]}" --out "$work/no-cache" --quiet --store ftp://host/store 2>"$work/refused.log" && fail "an address of no store is not refused"
 grep -h '^error: ' "$work/refused.log"
+
+step "shares of two machines, merged by a third"
+store=s3://luthier/shares
+for share in 1 2; do
+  "$LUTHIER" bake "${arguments[@]}" --shard $share/2 --cache "$work/share-$share.cache" --store $store 2>"$work/share-$share.err"
+done
+verb=merge bake merged --store $store
+quiet
+# Rows of lobes wait for the fits of all shares.
+[[ " $ran " != *" fit "* ]] || fail "a fit ran that a share has computed"
+store=s3://luthier/farm
 
 step "a server that lies: objects exchanged, damaged, cut short and emptied"
 python lie luthier farm
