@@ -22,7 +22,7 @@ declare -A says=(
   [packages]='every crate is packed, and built from its package'
   [crash]='bakes are killed at every call that changes files and at random moments, interrupted, run side by side, and given faulty files'
   [scale]='libraries of 100 and 1,000 generated materials are baked'
-  [farm]='Slurm, Ninja, CMake and Make bake shares and merge them, a Slurm node is killed, and jobs for Kubernetes and OpenCue are checked'
+  [farm]='Slurm, Ninja, CMake and Make bake shares and merge them, a Slurm node is killed, jobs for Kubernetes and OpenCue are checked, and machines share a store of the S3 protocol that lies, refuses and is gone'
   [architecture]='a program for aarch64, emulated, writes the bytes of one for x86-64'
 )
 
@@ -60,6 +60,7 @@ scale() { ./scripts/many.sh 100 1000 >/dev/null; }
 farm() {
   cargo build --locked --release -p luthier-cli
   for script in slurm builds descriptions; do LUTHIER=$PWD/target/release/luthier "./scripts/farm/$script.sh"; done
+  ./scripts/farm/s3.sh
 }
 architecture() {
   cargo build --locked --release -p luthier-cli

@@ -15,6 +15,7 @@ mod model_inputs;
 mod picture;
 mod progress;
 mod reradiation;
+mod shared_store;
 mod store;
 mod surroundings;
 mod verb;

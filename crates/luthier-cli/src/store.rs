@@ -8,6 +8,8 @@ use luthier_export::{MemoryStore, Store};
 use luthier_store::DiskStore;
 use luthier_terminal::{Failure, Outcome, complain};
 
+use crate::shared_store;
+
 /// Variable with the folder of the store; empty for none.
 const VARIABLE: &str = "LUTHIER_CACHE";
 
@@ -24,6 +26,9 @@ pub(crate) struct StoreOptions {
     /// Size of the store in MiB: beyond it, results go that were not used for longest
     #[arg(long, value_name = "MIB", global = true, default_value_t = luthier_store::DEFAULT_LIMIT >> 20, value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) cache_size: u64,
+    /// Store that machines share, below the folder: s3://BUCKET/PREFIX, gs://, az:// or https://. By default that of the variable LUTHIER_STORE. Needs the Cargo feature `remote`
+    #[arg(long, value_name = "URL", global = true, conflicts_with = "no_cache", value_parser = shared_store::address)]
+    pub(crate) store: Option<String>,
 }
 
 /// The options of this process.
@@ -42,15 +47,20 @@ pub(crate) fn configure(options: &StoreOptions) {
     let _ = OPTIONS.set(options.clone());
 }
 
-/// The store of this process: on disk, or in memory where there is none.
+/// The store of this process: on disk, or in memory where there is none, and what machines share below it.
 ///
 /// # Errors
+/// [`Failure::Usage`] where what machines share has no address of a store, or this build has no such stores.
 /// [`Failure::Files`] where the folder that was asked for cannot be used. The folder that was not asked for does no harm: a line says why it is not used.
 pub(crate) fn store() -> Outcome<&'static dyn Store> {
-    Ok(match opened()? {
+    let near: &dyn Store = match opened()? {
         Opened::Disk(store) => store,
         Opened::Memory(store) => store,
-    })
+    };
+    match OPTIONS.get() {
+        Some(options) => shared_store::below(near, options),
+        None => Ok(near),
+    }
 }
 
 /// The store on disk, if there is one.
@@ -108,6 +118,7 @@ pub(crate) fn folder(options: &StoreOptions) -> Option<(PathBuf, bool)> {
 
 /// Counts what was written, and says what went wrong. To be called when the work is done.
 pub(crate) fn close() {
+    shared_store::close();
     let Some(Opened::Disk(store)) = STORE.get() else { return };
     let closed = store.close().err();
     if let Some(problem) = store.problem().or(closed) {

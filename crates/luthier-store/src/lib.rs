@@ -7,16 +7,22 @@
 //! renamed, so that others see it whole or not at all, and any number of processes may use a folder at once. A reader compares the hash in the
 //! entry with its bytes: a damaged entry is removed, and its job runs again.
 //!
+//! With the feature `remote`, `RemoteStore` keeps entries in a store that machines share. [`Layers`] puts one store above the other.
+//!
 //! Simplifications: two processes that miss one entry at once both compute it. An entry that says that it is the result of a job is believed: who may write into
 //! the folder may change what bakes write.
 
 mod disk;
 mod entry;
 mod layers;
+#[cfg(feature = "remote")]
+mod remote;
 mod usage;
 
 pub use disk::{DiskStore, StoreError};
 pub use layers::Layers;
+#[cfg(feature = "remote")]
+pub use remote::{RemoteError, RemoteStore};
 pub use usage::{KindUsage, Usage, Verified};
 
 /// Bytes that a store may hold, unless another limit is given: 4 GiB.

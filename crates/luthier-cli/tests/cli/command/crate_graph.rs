@@ -13,7 +13,7 @@ type Edges = BTreeMap<String, BTreeSet<String>>;
 const COMMANDS: [&str; 3] = ["luthier-cli", "luthier-lab", "luthier-terminal"];
 
 /// Crates that only some of ours may depend on, tests aside.
-const OWNERS: [(&str, &[&str]); 11] = [
+const OWNERS: [(&str, &[&str]); 12] = [
     ("ash", &["luthier-cost"]),
     ("toml", &["luthier-material"]),
     ("naga", &["luthier-shader"]),
@@ -22,6 +22,7 @@ const OWNERS: [(&str, &[&str]); 11] = [
     ("exr", &["luthier-texture"]),
     ("image", &["luthier-texture"]),
     ("ktx2", &["luthier-texture"]),
+    ("object_store", &["luthier-store"]),
     ("indicatif", &["luthier-terminal"]),
     ("clap", &COMMANDS),
     ("anyhow", &COMMANDS),

@@ -7,5 +7,6 @@ mod kinds;
 mod manual;
 mod pipes;
 mod schema;
+mod shared_store;
 mod sources;
 mod table;

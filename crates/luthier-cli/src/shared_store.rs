@@ -1,0 +1,99 @@
+//! The store that machines share, below that of the process.
+
+use std::env::{self, VarError};
+
+use luthier_export::Store;
+use luthier_terminal::{Failure, Outcome};
+
+#[cfg(feature = "remote")]
+pub(crate) use self::remote::{below, close};
+use crate::store::StoreOptions;
+
+/// Variable with the address of the store; empty for none.
+const VARIABLE: &str = "LUTHIER_STORE";
+
+/// The address that an option or the variable states. A build without such stores refuses every address.
+pub(crate) fn address(text: &str) -> Result<String, String> {
+    if cfg!(feature = "remote") {
+        Ok(text.to_owned())
+    } else {
+        Err("this build has no shared stores: build it with `--features remote`".to_owned())
+    }
+}
+
+/// The address that is asked for.
+fn asked(options: &StoreOptions) -> Outcome<Option<String>> {
+    let refused = |reason| Failure::Usage(anyhow::anyhow!("variable {VARIABLE}: {reason}"));
+    match &options.store {
+        _ if options.no_cache => Ok(None),
+        Some(url) => Ok(Some(url.clone())),
+        None => match env::var(VARIABLE) {
+            Ok(url) if !url.is_empty() => address(&url).map(Some).map_err(refused),
+            Ok(_) | Err(VarError::NotPresent) => Ok(None),
+            Err(error) => Err(refused(error.to_string())),
+        },
+    }
+}
+
+/// The store of the process, because this build has no other.
+#[cfg(not(feature = "remote"))]
+pub(crate) fn below(near: &'static dyn Store, options: &StoreOptions) -> Outcome<&'static dyn Store> {
+    asked(options).map(|_| near)
+}
+
+/// Nothing: this build has no shared stores.
+#[cfg(not(feature = "remote"))]
+pub(crate) fn close() {}
+
+#[cfg(feature = "remote")]
+mod remote {
+    use std::sync::{Arc, OnceLock};
+
+    use luthier_bake::{Artefact, Task};
+    use luthier_store::{Layers, RemoteStore};
+    use luthier_terminal::complain;
+
+    use super::*;
+
+    /// The two stores, once they were asked for.
+    static BOTH: OnceLock<Both> = OnceLock::new();
+
+    /// The store of the process, and what machines share.
+    struct Both {
+        near: &'static dyn Store,
+        far: RemoteStore,
+    }
+
+    impl Store for Both {
+        fn get(&self, task: &Task<'_>) -> Option<Arc<Artefact>> {
+            Layers(&[self.near, &self.far]).get(task)
+        }
+
+        fn get_all(&self, tasks: &[Task<'_>]) -> Vec<Option<Arc<Artefact>>> {
+            Layers(&[self.near, &self.far]).get_all(tasks)
+        }
+
+        fn put(&self, task: &Task<'_>, artefact: &Arc<Artefact>) {
+            Layers(&[self.near, &self.far]).put(task, artefact);
+        }
+    }
+
+    /// The store of the process, with what machines share below it where that is asked for.
+    pub(crate) fn below(near: &'static dyn Store, options: &StoreOptions) -> Outcome<&'static dyn Store> {
+        if let Some(both) = BOTH.get() {
+            return Ok(both);
+        }
+        let Some(url) = asked(options)? else { return Ok(near) };
+        let far = RemoteStore::open(&url).map_err(|error| Failure::Usage(error.into()))?;
+        Ok(BOTH.get_or_init(|| Both { near, far }))
+    }
+
+    /// Waits for uploads, and says what went wrong.
+    pub(crate) fn close() {
+        let Some(Both { far, .. }) = BOTH.get() else { return };
+        far.close();
+        if let Some(problem) = far.problem() {
+            complain(&format!("warning: {problem}"));
+        }
+    }
+}
