@@ -199,11 +199,13 @@ pub fn bake_with(
     let Planned { plan, results, searches } = plan(materials, &options, read_image, observer, store)?;
     let layouts = layouts(&plan)?;
     let Plan { settings, graph, tiles, records } = plan;
-    let results = graph.run(observer, store, results);
+    let mut results = graph.run(observer, store, results);
     let is_asked = !options.search || !budget(materials, &options.budget)?.of_texels().is_empty();
     let aim = |kind: TableKind| (!is_asked && settings.leaves(kind)).then_some(AIM);
-    let atlas = |(kind, layout, format)| atlas(kind, layout, format, &tiles[kind as usize], &results, aim(kind));
-    let atlases = layouts.into_iter().map(atlas).collect();
+    let mut atlases = Vec::with_capacity(layouts.len());
+    for (kind, layout, format) in layouts {
+        atlases.push(atlas(kind, layout, format, &tiles[kind as usize], &mut results, aim(kind)));
+    }
     Ok(Baked { atlases, materials: baked_materials(materials, records, &settings, &results), searches })
 }
 
@@ -224,12 +226,13 @@ fn baked_materials(
     materials.iter().zip(records).map(baked).collect()
 }
 
+/// The atlas of the tiles of a kind, whose results are forgotten one by one: of many materials they are as large as the atlas.
 fn atlas(
     kind: TableKind,
     layout: AtlasLayout,
     format: TexelFormat,
     tiles: &TileList,
-    results: &Results,
+    results: &mut Results,
     aim: Option<f64>,
 ) -> Atlas {
     let channels = tiles.tiles.first().map_or(1, |(_, key)| results.tile(*key).truth.channels);
@@ -251,6 +254,7 @@ fn atlas(
             error: data.error.clone(),
             aim,
         });
+        results.forget(*key);
     }
     Atlas { kind, layout, format, tiles: entries, truth, texels, bytes }
 }

@@ -236,6 +236,11 @@ impl Results {
         self.0.get(&key)?.get()
     }
 
+    /// Forgets a result that nothing needs any more.
+    pub(crate) fn forget(&mut self, key: Key) {
+        self.0.remove(&key);
+    }
+
     /// The tile of a planned job.
     pub(crate) fn tile(&self, key: Key) -> &TileData {
         self.find(key).unwrap_or_else(|| unreachable!("every planned tile job has run"))
