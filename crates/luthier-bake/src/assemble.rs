@@ -238,15 +238,13 @@ fn atlas(
     let channels = tiles.tiles.first().map_or(1, |(_, key)| results.tile(*key).truth.channels);
     let [width, height] = layout.size();
     let mut truth = Image::zeros(width, height, channels);
-    let mut texels = Image::zeros(width, height, format.channels());
     let mut bytes = vec![0; width as usize * height as usize * format.texel_bytes() as usize];
     let mut entries = Vec::with_capacity(tiles.tiles.len());
     for (index, (name, key)) in tiles.tiles.iter().enumerate() {
         let data = results.tile(*key);
         let origin = layout.origin(index as u32);
         place(&mut truth, origin, &data.truth);
-        place(&mut texels, origin, &data.texels);
-        place_bytes(&mut bytes, width, format, origin, &data.texels, &data.bytes);
+        place_bytes(&mut bytes, width, format, origin, data.size[0], &data.bytes);
         entries.push(Tile {
             name: name.clone(),
             model: data.model.clone(),
@@ -256,12 +254,13 @@ fn atlas(
         });
         results.forget(*key);
     }
+    let texels = format.decode(width, height, &bytes).unwrap_or_else(|_| unreachable!("the bytes are those of tiles"));
     Atlas { kind, layout, format, tiles: entries, truth, texels, bytes }
 }
 
-/// Copies the bytes of a tile into those of an atlas of this width, a row of texels or blocks at a time.
-fn place_bytes(atlas: &mut [u8], width: u32, format: TexelFormat, [x, y]: [u32; 2], tile: &Image, bytes: &[u8]) {
-    let [row, pitch, left] = [tile.width, width, x].map(|texels| format.row_bytes(texels) as usize);
+/// Copies the bytes of a tile, so many texels across, into those of an atlas of this width, a row of texels or blocks at a time.
+fn place_bytes(atlas: &mut [u8], width: u32, format: TexelFormat, [x, y]: [u32; 2], across: u32, bytes: &[u8]) {
+    let [row, pitch, left] = [across, width, x].map(|texels| format.row_bytes(texels) as usize);
     let top = (y / format.block_side()) as usize;
     for (j, source) in (top..).zip(bytes.chunks_exact(row)) {
         atlas[j * pitch + left..][..row].copy_from_slice(source);

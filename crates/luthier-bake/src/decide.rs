@@ -149,7 +149,9 @@ pub(crate) fn plan(
             u64::from(width) * u64::from(height) * u64::from(format.texel_bytes())
         })
         .sum();
-    let Fixed { settings, mut plan, .. } = fixed;
+    let Fixed { settings, plan, .. } = fixed;
+    // One plan at a time: of many materials it is large.
+    let mut last = Some(plan);
     let (mut chosen, mut refusal) = (Vec::new(), None);
     for _ in 0..ROUNDS {
         // What a refusal says would do is confirmed too, before it is said.
@@ -173,12 +175,13 @@ pub(crate) fn plan(
         for (kind, &choice) in found.iter().zip(&chosen) {
             settings.apply(kind.kind, &kind.candidates[choice].form);
         }
-        plan = Plan::new(materials, settings, read_image)?;
+        drop(last.take());
+        let plan = last.insert(Plan::new(materials, settings, read_image)?);
         // The measurement of the bake itself climbs to the worst points; it has the last word.
-        results = exact(&plan, &searched).run(observer, store, results);
+        results = exact(plan, &searched).run(observer, store, results);
         let mut is_confirmed = true;
         for (kind, &choice) in found.iter_mut().zip(&chosen) {
-            is_confirmed &= kind.confirm(choice, worst(&plan, &results, kind.kind, &kind.left_out));
+            is_confirmed &= kind.confirm(choice, worst(plan, &results, kind.kind, &kind.left_out));
         }
         if is_confirmed {
             break;
@@ -188,6 +191,7 @@ pub(crate) fn plan(
         return Err(error);
     }
     searches.extend(found.iter().zip(&chosen).map(|(f, &choice)| search::report(f, choice, &budget)));
+    let plan = last.unwrap_or_else(|| unreachable!("there is a plan after each round"));
     Ok(Planned { plan, results, searches })
 }
 

@@ -11,7 +11,8 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct TileData {
     pub(crate) model: String,
     pub(crate) truth: Image,
-    pub(crate) texels: Image,
+    /// Texels across and down, those of a base included.
+    pub(crate) size: [u32; 2],
     pub(crate) bytes: Vec<u8>,
     pub(crate) error: ErrorStats,
 }

@@ -16,6 +16,11 @@ pub struct Image {
 }
 
 impl Image {
+    /// Texels across and down.
+    pub fn size(&self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
     /// An image of zeros.
     pub fn zeros(width: u32, height: u32, channels: u32) -> Self {
         Self { width, height, channels, data: vec![0.0; width as usize * height as usize * channels as usize] }

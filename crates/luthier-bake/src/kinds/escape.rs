@@ -88,7 +88,7 @@ impl Job for EscapeJob {
              {DOMAIN_ALPHA}",
             self.eta
         );
-        Artefact::new(TileData { model, truth, texels: atlas.texels, bytes: atlas.bytes, error })
+        Artefact::new(TileData { model, truth, size: atlas.texels.size(), bytes: atlas.bytes, error })
     }
 }
 

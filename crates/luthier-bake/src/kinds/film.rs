@@ -160,7 +160,7 @@ impl FilmJob {
                 color_in_words(&self.color)
             ),
             truth,
-            texels: atlas.texels,
+            size: atlas.texels.size(),
             bytes: atlas.bytes,
             error,
         }

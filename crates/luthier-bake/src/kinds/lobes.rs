@@ -392,6 +392,6 @@ impl Job for LobesJob {
             lobes.frame.index,
             color_in_words(&self.fit.color)
         );
-        Artefact::new(TileData { model, truth, texels: atlas.texels, bytes: atlas.bytes, error })
+        Artefact::new(TileData { model, truth, size: atlas.texels.size(), bytes: atlas.bytes, error })
     }
 }

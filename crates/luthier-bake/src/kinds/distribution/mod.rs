@@ -122,7 +122,7 @@ impl DistributionJob {
             |u| vec![angle.decode(u[0]), slope.decode(u[1])],
         );
         let model = format!("pi alpha^2 D, {}; errors are relative to the peak of D", self.distribution.name());
-        TileData { model, truth: atlas.truth, texels: atlas.texels, bytes: atlas.bytes, error }
+        TileData { model, truth: atlas.truth, size: atlas.texels.size(), bytes: atlas.bytes, error }
     }
 
     fn value(&self, angle: f64, alpha: f64) -> f64 {

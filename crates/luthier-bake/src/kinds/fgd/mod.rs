@@ -276,7 +276,7 @@ impl Job for FgdJob {
             self.truth.distribution.name(),
             color_in_words(&self.truth.color)
         );
-        Artefact::new(TileData { model, truth, texels: atlas.texels, bytes: atlas.bytes, error })
+        Artefact::new(TileData { model, truth, size: atlas.texels.size(), bytes: atlas.bytes, error })
     }
 }
 

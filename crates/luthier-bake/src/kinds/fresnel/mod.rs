@@ -142,7 +142,7 @@ impl FresnelJob {
         TileData {
             model: format!("exact complex Fresnel, unpolarised; {films}{over}; {}", color_in_words(&self.color)),
             truth,
-            texels: atlas.texels,
+            size: atlas.texels.size(),
             bytes: atlas.bytes,
             error,
         }

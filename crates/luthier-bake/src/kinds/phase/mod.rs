@@ -103,7 +103,7 @@ impl PhaseJob {
         TileData {
             model: format!("2 cos(2 Phi) at {r}, {g} and {b} nm, Granier and Heidrich 2003 eq. 19"),
             truth,
-            texels: atlas.texels,
+            size: atlas.texels.size(),
             bytes: atlas.bytes,
             error,
         }

@@ -117,7 +117,7 @@ impl Job for ThicknessJob {
                 _ => "d/(2 d_max), slopes dd/dx and dd/dy, sqrt(1 + slopes^2); Granier and Heidrich 2003 sec. 6".into(),
             },
             truth,
-            texels: atlas.texels,
+            size: atlas.texels.size(),
             bytes: atlas.bytes,
             error,
         })
