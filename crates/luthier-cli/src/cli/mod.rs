@@ -274,14 +274,17 @@ impl Limits {
 #[derive(Debug, Subcommand)]
 pub(crate) enum CacheVerb {
     /// Print the folder, the number of results and their bytes
+    #[command(after_help = "Examples:\n  luthier cache stats\n  luthier cache stats --json")]
     Stats {
         /// Print as JSON
         #[arg(long)]
         json: bool,
     },
     /// Read all results, remove those that are damaged, and exit with 1 if there were any
+    #[command(after_help = "Examples:\n  luthier cache verify --cache /shared/luthier")]
     Verify,
     /// Remove all results
+    #[command(after_help = "Examples:\n  luthier cache clear")]
     Clear,
 }
 

@@ -86,7 +86,7 @@ pub(super) fn raw(bytes: &[u8]) {
     }
 }
 
-/// What was read, or nothing where it was refused in words.
+/// The value that was read; nothing where it was refused in words.
 fn read<T>(result: Result<T, TextureError>) -> Option<T> {
     result.inspect_err(|error| assert!(!error.to_string().is_empty())).ok()
 }
