@@ -30,6 +30,10 @@ impl Store for Layers<'_> {
         found
     }
 
+    fn touch(&self, task: &Task<'_>) {
+        self.0.iter().for_each(|store| store.touch(task));
+    }
+
     fn put(&self, task: &Task<'_>, artefact: &Arc<Artefact>) {
         self.0.iter().for_each(|store| store.put(task, artefact));
     }

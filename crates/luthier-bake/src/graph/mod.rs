@@ -178,6 +178,8 @@ impl Graph {
         let mut missing: BTreeSet<(Place, Key)> = BTreeSet::new();
         for (&place, jobs) in self.jobs.iter().rev() {
             let is_needed = |key: Key| !inner.contains(&(place, key)) || missing.contains(&(place, key));
+            let idle = jobs.iter().filter(|(key, _)| !is_needed(**key));
+            idle.for_each(|(_, entry)| store.touch(&entry.task()));
             let open: Vec<(Key, &Entry)> = (jobs.iter().map(|(key, entry)| (*key, entry)))
                 .filter(|(key, _)| is_needed(*key) && !results.0.contains_key(key))
                 .collect();

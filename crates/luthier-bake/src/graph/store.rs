@@ -68,6 +68,9 @@ pub trait Store: Sync {
     /// Keeps a result.
     fn put(&self, task: &Task<'_>, artefact: &Arc<Artefact>);
 
+    /// A result is of use that is not read now, because that of a job above it is there.
+    fn touch(&self, _task: &Task<'_>) {}
+
     /// The results of some jobs, in their order: stores that are far away fetch them at once.
     fn get_all(&self, tasks: &[Task<'_>]) -> Vec<Option<Arc<Artefact>>> {
         tasks.par_iter().map(|task| self.get(task)).collect()
@@ -96,7 +99,7 @@ impl MemoryStore {
         self.len() == 0
     }
 
-    /// Forgets what was neither read nor kept since the last call.
+    /// Forgets what was neither read, touched nor kept since the last call.
     pub fn sweep(&self) {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         kept.retain(|_, kept| std::mem::take(&mut kept.is_used));
@@ -109,6 +112,12 @@ impl Store for MemoryStore {
         let found = kept.get_mut(&task.address())?;
         found.is_used = true;
         Some(Arc::clone(&found.artefact))
+    }
+
+    fn touch(&self, task: &Task<'_>) {
+        if let Some(kept) = self.kept.lock().unwrap_or_else(PoisonError::into_inner).get_mut(&task.address()) {
+            kept.is_used = true;
+        }
     }
 
     fn put(&self, task: &Task<'_>, artefact: &Arc<Artefact>) {
