@@ -26,7 +26,7 @@ pub(super) struct Address {
     pub(super) name: String,
     /// Where the objects are, or why they cannot be asked for.
     pub(super) objects: Result<Arc<dyn ObjectStore>, String>,
-    /// What the names of all objects begin with.
+    /// The beginning of the names of all objects.
     pub(super) prefix: Path,
 }
 

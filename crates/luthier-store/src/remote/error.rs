@@ -1,4 +1,4 @@
-//! What may be wrong with a shared store, each in one line.
+//! Faults of a shared store, each in one line.
 
 use std::error::Error as StdError;
 

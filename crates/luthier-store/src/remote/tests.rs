@@ -18,7 +18,7 @@ use crate::{DEFAULT_LIMIT, DiskStore, Layers};
 /// Time of a request where all is well, long enough for a busy machine.
 const PATIENT: Duration = Duration::from_secs(60);
 
-/// What is wrong with a server.
+/// Faults of a server.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Fault {
     None,

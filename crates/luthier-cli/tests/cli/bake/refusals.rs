@@ -84,7 +84,9 @@ fn text_in_another_encoding() {
 fn outputs_that_cannot_be() {
     let workshop = Workshop::with(&[("matte.toml", &matte("matte")), ("file", "mine")]);
     workshop.run(&["bake", "matte.toml", "--out", "file"]).fails(3, &["file"]);
-    workshop.run(&["bake", "matte.toml", "--out", "file/deeper"]).fails(3, &["file/deeper"]);
+    workshop
+        .run(&["bake", "matte.toml", "--out", "file/deeper"])
+        .fails(3, &["cannot make the folder file", "a file is in its place"]);
     assert_eq!(workshop.text("file"), "mine");
     // Where the folder of the shaders should be there is a file: found out before anything is moved.
     workshop.write("half/shaders", "mine");
