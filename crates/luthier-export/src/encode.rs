@@ -90,9 +90,13 @@ impl Encoded {
         files.push((MANIFEST, manifest.as_bytes()));
         publish::publish(folder, &files)
     }
-}
 
-impl Encoded {
+    /// Whether a folder holds this generation, and not another that a program has published since.
+    pub fn is_in(&self, folder: &Path) -> bool {
+        let manifest = self.manifest.to_json();
+        manifest.is_ok_and(|manifest| publish::current(folder, MANIFEST).as_deref() == Some(manifest.as_bytes()))
+    }
+
     /// The files that a folder lacks, or has with other bytes, and those that its manifest names and that would go: in the order of their paths. Empty where
     /// [`Self::write`] would change nothing.
     ///

@@ -11,6 +11,7 @@
 //! ext4, against 3 ms to 8 ms without. After a loss of power files may be empty: readers know them by their hashes, and the next bake
 //! writes them again, because it compares bytes and not times.
 
+mod names;
 mod settle;
 mod stage;
 
@@ -18,7 +19,7 @@ use std::fs::{File, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::{MANIFEST, PackageError};
+use crate::{MANIFEST, PackageError, input};
 
 /// Folder of the files that are being written.
 const NEW: &str = ".luthier-new";
@@ -54,7 +55,7 @@ pub fn publish(folder: &Path, files: &[(&str, &[u8])]) -> Result<(), PackageErro
 /// [`PackageError::Rebaked`] where another bake has taken its place; [`PackageError::Write`].
 pub fn publish_beside(folder: &Path, manifest_sha256: &str, files: &[(&str, &[u8])]) -> Result<(), PackageError> {
     publish_where(folder, files, || {
-        let manifest = std::fs::read(folder.join(MANIFEST)).unwrap_or_default();
+        let manifest = input::image(&folder.join(MANIFEST)).unwrap_or_default();
         let rebaked = || PackageError::Rebaked { folder: folder.to_owned() };
         (crate::sha256(&manifest) == manifest_sha256).then_some(()).ok_or_else(rebaked)
     })
@@ -127,13 +128,13 @@ fn replace(folder: &Path, files: &[(&str, &[u8])]) -> Result<(), PackageError> {
 
 /// The bytes of a file of the generation that a folder holds, wherever an interrupted publication left it.
 pub(crate) fn current(folder: &Path, path: &str) -> Option<Vec<u8>> {
-    [folder.join(READY), folder.to_owned()].iter().find_map(|folder| std::fs::read(folder.join(path)).ok())
+    [folder.join(READY), folder.to_owned()].iter().find_map(|folder| input::image(&folder.join(path)).ok())
 }
 
 /// The files that the manifest of a folder names and that are there, with forward slashes.
 pub(crate) fn named(folder: &Path) -> Vec<String> {
     let Some(manifest) = current(folder, MANIFEST) else { return Vec::new() };
-    let named = settle::named_by(&String::from_utf8_lossy(&manifest));
+    let named = names::named_by(&String::from_utf8_lossy(&manifest));
     let there = named.into_iter().filter(|path| folder.join(path).is_file());
     there.map(|path| path.to_string_lossy().replace('\\', "/")).collect()
 }

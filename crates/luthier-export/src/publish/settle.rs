@@ -2,10 +2,9 @@
 
 use std::collections::BTreeSet;
 use std::io;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
-use serde_json::Value;
-
+use super::names::named_by;
 use super::{LISTS, NEW, READY, REPORT_FILES, at, list};
 use crate::{MANIFEST, PackageError};
 
@@ -88,30 +87,4 @@ pub(super) fn stale(folder: &Path, list: &Path, next: &str) -> Vec<PathBuf> {
         stale.extend(REPORT_FILES.map(PathBuf::from));
     }
     stale.iter().map(|path| folder.join(path)).collect()
-}
-
-/// The files that a manifest of luthier, of any schema, names with a hash, as far as they lie inside its folder.
-pub(super) fn named_by(manifest: &str) -> Vec<PathBuf> {
-    let Ok(manifest) = serde_json::from_str::<Value>(manifest) else { return Vec::new() };
-    if !manifest["generator"].as_str().is_some_and(|g| g.starts_with("luthier ")) {
-        return Vec::new();
-    }
-    let mut paths = Vec::new();
-    let mut open = vec![&manifest];
-    while let Some(value) = open.pop() {
-        match value {
-            Value::Array(items) => open.extend(items),
-            Value::Object(entries) => {
-                if let (Some(Value::String(path)), Some(Value::String(_))) =
-                    (entries.get("path"), entries.get("sha256"))
-                {
-                    paths.push(PathBuf::from(path));
-                }
-                open.extend(entries.values());
-            }
-            _ => {}
-        }
-    }
-    paths.retain(|path| path.components().all(|part| matches!(part, Component::Normal(_))));
-    paths
 }
