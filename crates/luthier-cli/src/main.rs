@@ -21,6 +21,7 @@ mod surroundings;
 mod verb;
 #[cfg(feature = "view")]
 mod view_host;
+mod watched;
 
 use std::process::ExitCode;
 

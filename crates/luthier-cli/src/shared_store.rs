@@ -76,6 +76,10 @@ mod remote {
         fn put(&self, task: &Task<'_>, artefact: &Arc<Artefact>) {
             Layers(&[self.near, &self.far]).put(task, artefact);
         }
+
+        fn touch(&self, task: &Task<'_>) {
+            Layers(&[self.near, &self.far]).touch(task);
+        }
     }
 
     /// The store of the process, with what machines share below it where that is asked for.

@@ -4,7 +4,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::SystemTime;
 
 use luthier_export::{Bake, MemoryStore, Package, Source, find, lit, lit_functions, read_one};
 use luthier_manifest::ShadingModel;
@@ -15,9 +14,10 @@ use luthier_texture::png;
 use luthier_view::{Form, Host, MaterialFile, Screenshot};
 
 use crate::store::store;
+use crate::watched::{State, named, state};
 
-/// Time of the last change and length of each file that matters; `None` where it cannot be read.
-type Stamps = BTreeMap<PathBuf, Option<(SystemTime, u64)>>;
+/// Each file that matters; `None` where it cannot be read.
+type Stamps = BTreeMap<PathBuf, Option<State>>;
 
 /// The command, as the window sees it.
 pub(crate) struct ViewHost {
@@ -119,21 +119,10 @@ fn stamps(paths: &[PathBuf], files: &[MaterialFile]) -> Stamps {
         watched.extend(entries.map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "csv")));
     }
     let stamped = |path: PathBuf| {
-        let stamp = stamp(&path);
-        (path, stamp)
+        let state = state(&path);
+        (path, state)
     };
     watched.into_iter().map(stamped).collect()
-}
-
-fn stamp(path: &Path) -> Option<(SystemTime, u64)> {
-    let metadata = std::fs::metadata(path).ok()?;
-    Some((metadata.modified().ok()?, metadata.len()))
-}
-
-/// The files that a material names.
-fn named(material: &Material) -> impl Iterator<Item = PathBuf> {
-    let folder = folder(Path::new(&material.source));
-    material.files.iter().map(move |name| folder.join(name))
 }
 
 fn folder(path: &Path) -> PathBuf {
@@ -145,7 +134,7 @@ fn folder(path: &Path) -> PathBuf {
 
 fn revision(material: &Material) -> u64 {
     let mut hasher = DefaultHasher::new();
-    named(material).for_each(|path| stamp(&path).hash(&mut hasher));
+    named(material).for_each(|path| state(&path).hash(&mut hasher));
     hasher.finish()
 }
 

@@ -7,12 +7,13 @@ mod watch;
 mod words;
 
 use std::collections::BTreeSet;
+use std::path::PathBuf;
 use std::time::Instant;
 
 use luthier_bake::{Observer, Silent};
 use luthier_export::{Bake, Compression, MANIFEST, Package, Source, find, read_all, refuse};
-use luthier_manifest::{Functions, Manifest};
-use luthier_material::{Diagnostic, Material};
+use luthier_manifest::Functions;
+use luthier_material::Diagnostic;
 use luthier_shader::{Form, Target};
 use luthier_terminal::{Failure, Outcome, complain, print, valid};
 
@@ -57,7 +58,7 @@ fn need_store(user: &str) -> Outcome {
 }
 
 /// Bakes once; the files that the bake read.
-fn once(options: &BakeOptions) -> Outcome<Vec<std::path::PathBuf>> {
+fn once(options: &BakeOptions) -> Outcome<Vec<PathBuf>> {
     let start = Instant::now();
     if let Some(scenes) = scene::find(&options.sources.paths)? {
         if options.pipeline.is_any() {
@@ -137,37 +138,17 @@ fn once(options: &BakeOptions) -> Outcome<Vec<std::path::PathBuf>> {
     progress.event("published", &options.out.join(MANIFEST));
     told.extend(misses::name(manifest, options.quiet)?);
     pipeline::write_depfile(options, &read, &lock)?;
-    say(options, manifest, &progress, start, &told)?;
-    // The lock may be another one now.
-    let lock = LockFile::beside(&options.sources.paths, false)?;
     let mut summary = words::summary(options, manifest, &progress, start);
     summary["diagnostics"] = diagnostics(&told);
+    if options.json {
+        print(&format!("{summary:#}"))?;
+    } else if !options.quiet {
+        print(&words::text(options, manifest, &progress, start))?;
+    }
+    // The lock may be another one now.
+    let lock = LockFile::beside(&options.sources.paths, false)?;
     Stamp::new(options, &files, lock.text()).keep(&encoded, &materials, &summary, told.len());
     Ok(read)
-}
-
-fn say(
-    options: &BakeOptions,
-    manifest: &Manifest,
-    progress: &BakeProgress,
-    start: Instant,
-    told: &[Diagnostic],
-) -> Outcome {
-    if options.json {
-        let mut summary = words::summary(options, manifest, progress, start);
-        summary["diagnostics"] = diagnostics(told);
-        print(&format!("{summary:#}"))
-    } else if options.quiet {
-        Ok(())
-    } else {
-        print(&words::text(options, manifest, progress, start))
-    }
-}
-
-/// The files that materials name, beside their own.
-fn named(material: &Material) -> impl Iterator<Item = std::path::PathBuf> + '_ {
-    let folder = std::path::Path::new(&material.source).parent().unwrap_or(std::path::Path::new(""));
-    material.files.iter().map(move |file| folder.join(file))
 }
 
 impl Emission {

@@ -9,9 +9,9 @@ use luthier_terminal::{Failure, Outcome, files, print};
 use serde_json::{Value, json};
 
 use super::locked::LockFile;
-use super::named;
 use crate::cli::{BakeOptions, Pipeline};
 use crate::progress::BakeProgress;
+use crate::watched::all_named;
 
 impl Pipeline {
     /// Whether anything but events is asked for.
@@ -27,10 +27,7 @@ impl Pipeline {
 
 /// All files that a bake of these materials reads.
 pub(super) fn read_files(files: &[PathBuf], materials: &[Material]) -> Vec<PathBuf> {
-    let mut named: Vec<PathBuf> = materials.iter().flat_map(named).collect();
-    named.sort();
-    named.dedup();
-    files.iter().cloned().chain(named).collect()
+    files.iter().cloned().chain(all_named(materials)).collect()
 }
 
 /// Writes the files that a bake depends on, as a rule of Make, where it is asked for.

@@ -1,7 +1,6 @@
 //! Stamps: what a bake read and wrote, so that the next one knows at once that nothing has changed.
 
-use std::path::{Path, PathBuf};
-use std::time::UNIX_EPOCH;
+use std::path::PathBuf;
 
 use luthier_bake::Key;
 use luthier_export::{Encoded, GENERATOR, MANIFEST, input, shared};
@@ -11,9 +10,9 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::named;
 use crate::cli::BakeOptions;
 use crate::store::disk;
+use crate::watched::{State, all_named, state};
 
 /// The kind of stamps in the store.
 const KIND: &str = "stamp";
@@ -35,14 +34,11 @@ pub(super) struct Kept {
     /// Other files that materials name, and the hash of all of them.
     named: Vec<PathBuf>,
     named_hash: String,
-    /// Files of the bake: path, length, and time of the last change.
+    /// Files of the bake.
     outputs: Vec<(String, Option<State>)>,
     warnings: usize,
     summary: Value,
 }
-
-/// Length of a file, and nanoseconds of its last change.
-type State = (u64, u128);
 
 impl Stamp {
     pub(super) fn new(options: &BakeOptions, files: &[PathBuf], lock: &str) -> Self {
@@ -77,12 +73,10 @@ impl Stamp {
     pub(super) fn keep(&self, encoded: &Encoded, materials: &[Material], summary: &Value, warnings: usize) {
         let (Ok(Some(store)), Some(address)) = (disk(), self.address()) else { return };
         let _lock = shared(&self.out);
-        if !encoded.stale(&self.out).is_ok_and(|stale| stale.is_empty()) {
+        if !encoded.is_in(&self.out) {
             return;
         }
-        let mut named: Vec<PathBuf> = materials.iter().flat_map(named).collect();
-        named.sort();
-        named.dedup();
+        let named = all_named(materials);
         let paths = encoded.files.iter().map(|(path, _)| path.as_str()).chain([MANIFEST]);
         let kept = Kept {
             inputs: self.inputs.clone(),
@@ -124,10 +118,4 @@ fn hash(files: &[PathBuf]) -> String {
         format!("{} {}\n", path.display(), bytes.unwrap_or_else(|error| error.to_string()))
     };
     Key::of(files.par_iter().map(one).collect::<Vec<_>>().concat().as_bytes()).to_string()
-}
-
-fn state(path: &Path) -> Option<State> {
-    let metadata = std::fs::metadata(path).ok()?;
-    let changed = metadata.modified().ok()?.duration_since(UNIX_EPOCH).ok()?;
-    Some((metadata.len(), changed.as_nanos()))
 }

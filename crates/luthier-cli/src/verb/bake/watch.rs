@@ -3,19 +3,20 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::thread::sleep;
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
 use luthier_export::find;
 use luthier_terminal::{Failure, Outcome, complain};
 
 use super::once;
 use crate::cli::BakeOptions;
+use crate::watched;
 
 /// Time between two looks at the files.
 const PERIOD: Duration = Duration::from_millis(200);
 
-/// Time of the last change and length of each file; `None` where it cannot be read.
-type Files = BTreeMap<PathBuf, Option<(SystemTime, u64)>>;
+/// Files; `None` for those that cannot be read.
+type Files = BTreeMap<PathBuf, Option<watched::State>>;
 
 /// The files that matter.
 #[derive(PartialEq)]
@@ -62,10 +63,10 @@ fn settled(options: &BakeOptions, read: &[PathBuf], before: &State) {
 }
 
 fn state(options: &BakeOptions, read: &[PathBuf]) -> State {
-    let metadata = |path: PathBuf| {
-        let state = std::fs::metadata(&path).and_then(|m| Ok((m.modified()?, m.len()))).ok();
+    let seen = |path: PathBuf| {
+        let state = watched::state(&path);
         (path, state)
     };
     let found = find(&options.sources.paths).unwrap_or_default();
-    State { found: found.into_iter().map(metadata).collect(), read: read.iter().cloned().map(metadata).collect() }
+    State { found: found.into_iter().map(seen).collect(), read: read.iter().cloned().map(seen).collect() }
 }

@@ -1,0 +1,29 @@
+//! Files that are looked at again: whether they have changed.
+
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use luthier_material::Material;
+
+/// Time of the last change and length of a file.
+pub(crate) type State = (SystemTime, u64);
+
+/// The state of a file; `None` where it cannot be read.
+pub(crate) fn state(path: &Path) -> Option<State> {
+    let metadata = std::fs::metadata(path).ok()?;
+    Some((metadata.modified().ok()?, metadata.len()))
+}
+
+/// The files that a material names, beside its own.
+pub(crate) fn named(material: &Material) -> impl Iterator<Item = PathBuf> {
+    let folder = Path::new(&material.source).parent().unwrap_or(Path::new(""));
+    material.files.iter().map(move |file| folder.join(file))
+}
+
+/// The files that materials name, each once, by their paths.
+pub(crate) fn all_named(materials: &[Material]) -> Vec<PathBuf> {
+    let mut all: Vec<PathBuf> = materials.iter().flat_map(named).collect();
+    all.sort();
+    all.dedup();
+    all
+}
