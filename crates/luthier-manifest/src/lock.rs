@@ -10,7 +10,7 @@ use crate::{Candidate, Manifest};
 pub struct Decision {
     /// The kind.
     pub kind: TableKind,
-    /// The candidate that it took, with its bytes and errors when it was taken.
+    /// The candidate that it took, with its bytes when it was taken, and the largest error of any of its tiles then.
     pub candidate: Candidate,
 }
 
@@ -30,7 +30,10 @@ impl Lock {
     /// The decisions of the searches of a bake.
     pub fn of(manifest: &Manifest) -> Self {
         let decision = |search: &crate::Search| {
-            let candidate = search.front.get(search.chosen)?.clone();
+            let mut candidate = search.front.get(search.chosen)?.clone();
+            // A search leaves out tiles that no candidate serves; a lock takes them as they are.
+            let tiles = manifest.table(search.kind).map_or(&[][..], |table| &table.tiles);
+            candidate.error.max_abs = tiles.iter().map(|t| t.error.max_abs_err).fold(candidate.error.max_abs, f64::max);
             Some(Decision { kind: search.kind, candidate })
         };
         let mut decisions: Vec<Decision> = manifest.searches.iter().filter_map(decision).collect();

@@ -58,6 +58,20 @@ fn a_lock_keeps_tables_until_their_budget_breaks() {
     assert_eq!(row_size(&workshop), small);
 }
 
+/// Such a row does not count for the search, and does not break the lock that it is in.
+#[test]
+fn a_row_that_no_table_serves_breaks_no_lock() {
+    let thick = FILM.replace("= 700", "= 20000");
+    let workshop = Workshop::with(&[("a/bare.toml", BARE), ("a/film.toml", &thick)]);
+    workshop.run(&["bake", "a", "--relock", "--quiet"]).exits(0);
+    workshop.run(&["bake", "a", "--quiet"]).exits(0);
+    let manifest = workshop.json("out/manifest.json");
+    let worst = manifest["tables"][0]["tiles"][1]["error"]["max_abs_err"].as_f64().unwrap();
+    assert!(worst > 0.05, "{worst}");
+    let searches = manifest["searches"].as_array().unwrap();
+    assert!(searches.iter().all(|search| search["measured"] == 1), "{searches:?}");
+}
+
 /// A stated budget is held whatever the lock says.
 #[test]
 fn a_lock_never_breaks_a_budget() {

@@ -81,7 +81,7 @@ fn a_store_that_cannot_be_used_is_named() {
     assert!(!workshop.path("out").exists());
 }
 
-/// A store of a size that holds nothing keeps nothing.
+/// Oracle: a store without such a limit, which holds more.
 #[test]
 fn a_small_store_stays_small() {
     let texts: Vec<(String, String)> = (0..4).map(|i| (format!("a/{i}.toml"), lacquer(&format!("m{i}")))).collect();
@@ -92,6 +92,9 @@ fn a_small_store_stays_small() {
         workshop.edit(&format!("a/{i}.toml"), |text| text.replace("distribution = { size = [32, 32] }\n", ""));
     }
     workshop.edit("a/0.toml", |text| text + "tables = [\"distribution\"]\n");
+    workshop.run(&["bake", "a", "--cache", "large", "--out", "other", "--quiet"]).exits(0);
+    let large = workshop.run(&["cache", "stats", "--json", "--cache", "large"]).exits(0).json();
+    assert!(large["bytes"].as_u64().unwrap() > 1 << 20, "{large}");
     workshop.run(&["bake", "a", "--cache", "store", "--cache-size", "1", "--quiet"]).exits(0);
     let stats = workshop.run(&["cache", "stats", "--json", "--cache", "store", "--cache-size", "1"]).exits(0).json();
     assert_eq!(stats["limit"], 1 << 20);
