@@ -6,27 +6,19 @@
 # The environment variable LUTHIER names the program; by default cargo builds it.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
+source scripts/farm/program.sh
 
 systems=("$@")
 [ ${#systems[@]} -gt 0 ] || systems=(ninja cmake-ninja cmake-make make)
-for program in cmake ninja make; do
-  command -v $program >/dev/null || {
-    echo "error: $program is missing. On Debian: apt-get install cmake ninja-build make" >&2
-    exit 1
-  }
-done
-if [ -z "${LUTHIER-}" ]; then
-  cargo build --locked --quiet --release -p luthier-cli
-  LUTHIER=target/release/luthier
-fi
-program=$(realpath "$LUTHIER")
+need 'cmake ninja-build make' cmake ninja make
+take_luthier --release
+program=$LUTHIER
 examples=$PWD/examples/farm
 options=(--no-fit --target wgsl)
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-step() { printf '\n== %s\n' "$1"; }
 fail() {
   echo "error: $system: $1" >&2
   [ ! -f "$work/log" ] || tail -n 20 "$work/log" >&2

@@ -6,17 +6,13 @@
 # The environment variable LUTHIER names the program; by default cargo builds it.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
+source scripts/farm/program.sh
 
 python3 -c 'import venv, ensurepip' 2>/dev/null || {
   echo "error: Python cannot make virtual environments. On Debian: apt-get install python3-venv" >&2
   exit 1
 }
-if [ -z "${LUTHIER-}" ]; then
-  cargo build --locked --quiet --release -p luthier-cli
-  LUTHIER=target/release/luthier
-fi
-LUTHIER=$(realpath "$LUTHIER")
-export LUTHIER
+take_luthier --release
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -8,6 +8,7 @@
 # interpreter that has the packages already.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
+source scripts/farm/program.sh
 
 arguments=("$@")
 if [ ${#arguments[@]} = 0 ]; then
@@ -20,14 +21,9 @@ fail() {
   echo "error: $1" >&2
   exit 1
 }
-step() { printf '\n== %s\n' "$1"; }
 
-command -v python3 >/dev/null || fail "python3 is missing. On Debian: apt-get install python3-venv"
-if [ -z "${LUTHIER-}" ]; then
-  cargo build --locked --quiet -p luthier-cli --no-default-features --features remote
-  LUTHIER=${CARGO_TARGET_DIR:-target}/debug/luthier
-fi
-LUTHIER=$(realpath "$LUTHIER")
+need python3-venv python3
+take_luthier --no-default-features --features remote
 
 work=$(mktemp -d)
 started=()

@@ -7,22 +7,14 @@
 # The environment variable LUTHIER names the program; by default cargo builds it. KEEP=FOLDER keeps logs, stores and packages there.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
+source scripts/farm/program.sh
 source scripts/farm/cluster.sh
 
 shards=4
 
-for program in munged slurmctld slurmd sbatch srun squeue sinfo scontrol ninja; do
-  command -v $program >/dev/null || {
-    echo "error: $program is missing. On Debian: apt-get install --no-install-recommends slurm-wlm munge ninja-build" >&2
-    exit 1
-  }
-done
-if [ -z "${LUTHIER-}" ]; then
-  cargo build --locked --quiet --release -p luthier-cli
-  LUTHIER=target/release/luthier
-fi
-LUTHIER=$(realpath "$LUTHIER")
-export LUTHIER
+need '--no-install-recommends slurm-wlm munge ninja-build' \
+  munged slurmctld slurmd sbatch srun squeue sinfo scontrol ninja
+take_luthier --release
 
 work=$(mktemp -d)
 finish() {
@@ -50,7 +42,6 @@ else
   arguments=("$work/materials" --model lobes)
 fi
 
-step() { printf '\n== %s\n' "$1"; }
 fail() {
   echo "error: $1" >&2
   exit 1
