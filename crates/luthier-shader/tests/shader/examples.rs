@@ -25,11 +25,15 @@ const BEVY: &str = include_str!("bevy.wgsl");
 /// The group of a material in Bevy.
 const BEVY_GROUP: &str = "#{MATERIAL_BIND_GROUP}";
 
-/// The shaders that call `luthier_eval`, of every folder of `examples/`.
+/// Folder of `examples/` with jobs for build farms, which render nothing.
+const JOBS: &str = "farm";
+
+/// The shaders that call `luthier_eval`, of every folder of `examples/` with a renderer.
 fn shaders() -> Vec<Shader> {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
     let mut shaders = Vec::new();
-    for example in fs::read_dir(&examples).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()) {
+    let folders = fs::read_dir(&examples).unwrap().map(|entry| entry.unwrap().path());
+    for example in folders.filter(|path| path.is_dir() && !path.ends_with(JOBS)) {
         let mut found = Vec::new();
         for path in files(&example) {
             let name = path.strip_prefix(&examples).unwrap().display().to_string();
