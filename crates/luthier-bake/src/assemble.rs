@@ -6,6 +6,7 @@ use luthier_lut::{Atlas, AtlasLayout, FormatSet, Image, RowBase, TableKind, Texe
 use luthier_manifest::{Budget, ColorMode, Decision, LayerRecord, MaterialConstants, Search, ShadingModel, Tiles};
 use luthier_material::Material;
 use luthier_optics::interface::Interface;
+use rayon::prelude::*;
 
 use crate::constants::constants;
 use crate::decide::{Planned, budget, layouts, plan, used};
@@ -223,7 +224,7 @@ fn baked_materials(
         records: planned.layers,
         maps: maps(m),
     };
-    materials.iter().zip(records).map(baked).collect()
+    materials.par_iter().zip(records).map(baked).collect()
 }
 
 /// The atlas of the tiles of a kind, whose results are forgotten one by one: of many materials they are as large as the atlas.

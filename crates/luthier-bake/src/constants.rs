@@ -1,6 +1,6 @@
 //! Constants of a whole surface for shaders.
 
-use luthier_layers::monochrome::{Monochrome, in_color};
+use luthier_layers::monochrome::Monochrome;
 use luthier_layers::phong::Coefficients;
 use luthier_manifest::{FlakesRecord, GlitterRecord, LayerRecord, LobesRecord, MaterialConstants, PatinaRecord};
 use luthier_material::{Effects, FlakeSource, Glitter, Material};
@@ -18,9 +18,10 @@ pub(crate) fn constants(
     let (stack, color) = (&material.stack, color(material));
     let (internal_reflectance, upward_loss) =
         if material.model().is_statistical() { veil(stack, &color) } else { ([0.0; 3], 0.0) };
+    let [phong_diffuse, phong_specular] = Coefficients::in_color(stack, &color);
     MaterialConstants {
-        phong_diffuse: in_color(stack, &color, |one| Coefficients::of(one).diffuse),
-        phong_specular: in_color(stack, &color, |one| Coefficients::of(one).specular),
+        phong_diffuse,
+        phong_specular,
         phong_exponent: exponent(stack, material.bake.wavelengths_nm()),
         internal_reflectance,
         upward_loss,

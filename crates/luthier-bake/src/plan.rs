@@ -8,6 +8,7 @@ use luthier_material::{LayerExtras, Material};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::stack::Stack;
+use rayon::prelude::*;
 
 use crate::graph::{Graph, Key};
 use crate::kinds::{self, Site};
@@ -25,9 +26,9 @@ pub(crate) struct TileList {
 }
 
 impl TileList {
-    fn tile(&mut self, key: Key, name: impl FnOnce() -> String) -> u32 {
+    fn tile(&mut self, key: Key, name: String) -> u32 {
         *self.numbers.entry(key).or_insert_with(|| {
-            self.tiles.push((name(), key));
+            self.tiles.push((name, key));
             self.tiles.len() as u32 - 1
         })
     }
@@ -66,7 +67,35 @@ pub(crate) fn color_mode(material: &Material) -> ColorMode {
 }
 
 /// Reads an image that a material names: material file, path as written there.
-pub type ImageReader<'a> = &'a dyn Fn(&str, &str) -> Result<Image, String>;
+pub type ImageReader<'a> = &'a (dyn Fn(&str, &str) -> Result<Image, String> + Sync);
+
+/// The plan of one material.
+#[derive(Default)]
+struct Part {
+    graph: Graph,
+    layers: Vec<LayerRecord>,
+    bare: Option<LayerRecord>,
+    /// Tiles in the order in which they stand in their tables.
+    tiles: Vec<Wanted>,
+}
+
+/// A tile that a material reads.
+struct Wanted {
+    kind: TableKind,
+    key: Key,
+    name: String,
+    reader: Reader,
+}
+
+/// What reads a tile.
+enum Reader {
+    /// The record of a layer.
+    Layer(usize),
+    /// That of the layer below a patina where none has grown.
+    Bare,
+    /// A look-up in the tile before.
+    Run,
+}
 
 impl Plan {
     pub(crate) fn new(
@@ -74,35 +103,55 @@ impl Plan {
         settings: Settings,
         read_image: ImageReader<'_>,
     ) -> Result<Self, BakeError> {
+        let part = |material: &Material| Part::new(material, &settings, read_image);
+        let parts: Vec<Result<Part, BakeError>> = materials.par_iter().map(part).collect();
         let mut plan = Self { settings, graph: Graph::default(), tiles: Default::default(), records: Vec::new() };
-        for material in materials {
-            let records = plan.material(material, read_image)?;
-            plan.records.push(records);
+        for part in parts {
+            plan.take(part?);
         }
         limits::check_buffer(&plan.records)?;
         Ok(plan)
     }
 
-    fn material(&mut self, material: &Material, read: ImageReader<'_>) -> Result<PlannedLayers, BakeError> {
-        let layers = self.layers(material, &material.stack, material.layers.as_slice(), "", read)?;
-        let bare = match &material.effects.patina {
-            Some(_) if material.stack.layers.len() > 1 => {
-                let stack =
-                    Stack { exterior: material.stack.exterior.clone(), layers: vec![material.stack.layers[1].clone()] };
-                self.layers(material, &stack, &material.layers[1..2], "bare-", read)?.into_iter().next()
+    /// Adds the plan of a material, and numbers its tiles.
+    fn take(&mut self, part: Part) {
+        let Part { graph, mut layers, mut bare, tiles } = part;
+        self.graph.merge(graph);
+        for Wanted { kind, key, name, reader } in tiles {
+            let list = &mut self.tiles[kind as usize];
+            let tile = Some(list.tile(key, name));
+            match reader {
+                Reader::Layer(i) => layers[i].tiles[kind] = tile,
+                Reader::Bare => bare.iter_mut().for_each(|record| record.tiles[kind] = tile),
+                // The jobs of a run are those of no other material, or all of another's: their tiles follow each other.
+                Reader::Run => list.has_runs = true,
             }
-            _ => None,
-        };
-        Ok(PlannedLayers { layers, bare })
+        }
+        self.records.push(PlannedLayers { layers, bare });
+    }
+}
+
+impl Part {
+    fn new(material: &Material, settings: &Settings, read_image: ImageReader<'_>) -> Result<Self, BakeError> {
+        let mut part = Self::default();
+        part.layers = part.records(material, settings, &material.stack, &material.layers, None, read_image)?;
+        if material.effects.patina.is_some() && material.stack.layers.len() > 1 {
+            let stack =
+                Stack { exterior: material.stack.exterior.clone(), layers: vec![material.stack.layers[1].clone()] };
+            let extras = &material.layers[1..2];
+            part.bare = part.records(material, settings, &stack, extras, Some("bare-"), read_image)?.into_iter().next();
+        }
+        Ok(part)
     }
 
-    /// The records of a stack of a material; names of tiles are the material's and `label`, then the layer's number.
-    fn layers(
+    /// The records of a stack of a material; names of tiles are the material's and the label of the layer below a patina, then the layer's number.
+    fn records(
         &mut self,
         material: &Material,
+        settings: &Settings,
         stack: &Stack,
         extras: &[LayerExtras],
-        label: &str,
+        bare: Option<&str>,
         read_image: ImageReader<'_>,
     ) -> Result<Vec<LayerRecord>, BakeError> {
         let (color, model) = (color(material), material.model());
@@ -111,7 +160,7 @@ impl Plan {
             let Some(interface) = Interface::of(stack, i) else { continue };
             let wanted = TableKind::ALL.map(|kind| {
                 // Where some materials ask for D as a table, it is computed for the others.
-                let is_offered = kind != TableKind::Distribution || !self.settings.asked(kind).is_any();
+                let is_offered = kind != TableKind::Distribution || !settings.asked(kind).is_any();
                 material.bake.asks_for(kind) || is_offered && model.reads(kind, &records, i)
             });
             let wants = |kind: TableKind| wanted[kind as usize];
@@ -119,23 +168,19 @@ impl Plan {
                 records[i].critical_cot_sq = interface.sampled(&color).critical_cot_sq();
             }
             for kind in TableKind::ALL.into_iter().filter(|&kind| wants(kind)) {
-                let Some(shape) = self.settings.shape(kind) else { continue };
-                let (fixed, record) = (self.settings.fixed(kind), &records[i]);
+                let Some(shape) = settings.shape(kind) else { continue };
+                let (fixed, record) = (settings.fixed(kind), &records[i]);
                 let (extras, interface) = (extras.get(i), &interface);
-                let lobes = self.settings.lobes;
+                let lobes = settings.lobes;
                 let site = Site { material, layer, extras, record, interface, color, shape, fixed, lobes, read_image };
                 let Some(job) = kinds::of(kind).job(&site)? else { continue };
-                let key = self.graph.add(job);
-                let own = || kinds::of(kind).name(layer).map(str::to_owned);
-                let name = || own().unwrap_or_else(|| format!("{}/{label}{i}", material.name));
-                let followers = kinds::of(kind).followers(&site);
-                let tiles = &mut self.tiles[kind as usize];
-                records[i].tiles[kind] = Some(tiles.tile(key, name));
-                // The jobs of a run are those of no other material, or all of another's: their tiles follow each other.
-                tiles.has_runs |= !followers.is_empty();
-                for (node, job) in (1..).zip(followers) {
-                    let key = self.graph.add(job);
-                    tiles.tile(key, || format!("{}/{label}{i}-{node}", material.name));
+                let place = format!("{}/{}{i}", material.name, bare.unwrap_or_default());
+                let name = kinds::of(kind).name(layer).map_or_else(|| place.clone(), str::to_owned);
+                let reader = if bare.is_some() { Reader::Bare } else { Reader::Layer(i) };
+                self.tiles.push(Wanted { kind, key: self.graph.add(job), name, reader });
+                for (node, job) in (1..).zip(kinds::of(kind).followers(&site)) {
+                    let (key, name) = (self.graph.add(job), format!("{place}-{node}"));
+                    self.tiles.push(Wanted { kind, key, name, reader: Reader::Run });
                 }
             }
         }

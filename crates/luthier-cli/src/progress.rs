@@ -24,11 +24,14 @@ struct State {
     found: u64,
     running: Option<Instant>,
     seconds: BTreeMap<JobKind, f64>,
+    phase: Option<Instant>,
+    phases: Vec<(&'static str, f64)>,
 }
 
 impl BakeProgress {
     pub(crate) fn new(has_events: bool) -> Self {
-        Self { bar: Bar::new("baking"), has_events, state: Mutex::default() }
+        let state = State { phase: Some(Instant::now()), ..State::default() };
+        Self { bar: Bar::new("baking"), has_events, state: Mutex::new(state) }
     }
 
     /// Number of jobs that have run.
@@ -55,6 +58,19 @@ impl BakeProgress {
     /// Wall-clock seconds per kind of job, in the order in which they ran.
     pub(crate) fn seconds(&self) -> Vec<(JobKind, f64)> {
         self.lock().seconds.iter().map(|(kind, seconds)| (*kind, *seconds)).collect()
+    }
+
+    /// A phase of the command ends, and the next begins.
+    pub(crate) fn ends(&self, phase: &'static str) {
+        let mut state = self.lock();
+        if let Some(start) = state.phase.replace(Instant::now()) {
+            state.phases.push((phase, start.elapsed().as_secs_f64()));
+        }
+    }
+
+    /// Wall-clock seconds per phase of the command, in their order.
+    pub(crate) fn phases(&self) -> Vec<(&'static str, f64)> {
+        self.lock().phases.clone()
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, State> {

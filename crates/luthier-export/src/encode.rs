@@ -37,14 +37,14 @@ impl Package {
     pub fn encode(&self, compression: Compression) -> Result<Encoded, PackageError> {
         let mut manifest = self.manifest.clone();
         let mut files = Files::default();
-        for (entry, table) in
-            manifest.tables.iter_mut().zip(each(&self.tables, |table| self.encode_table(table, compression)))
-        {
-            let name = entry.kind.name();
-            let [texture, truth, picture] = table?;
-            entry.texture = files.add(format!("tables/{name}.ktx2"), texture);
-            entry.truth = files.add(format!("tables/{name}.exr"), truth);
-            entry.picture = files.add(format!("tables/{name}.png"), picture);
+        let parts = self.tables.iter().flat_map(|table| Part::ALL.map(|part| (table, part))).collect::<Vec<_>>();
+        let encoded = each(&parts, |&(table, part)| self.encode_part(table, part, compression));
+        let mut encoded = encoded.into_iter();
+        for entry in &mut manifest.tables {
+            let TableEntry { kind, texture, truth, picture, .. } = entry;
+            for ((part, file), bytes) in Part::ALL.into_iter().zip([texture, truth, picture]).zip(&mut encoded) {
+                *file = files.add(format!("tables/{}.{}", kind.name(), part.extension()), bytes?);
+            }
         }
         for (entry, map) in manifest.materials.iter_mut().flat_map(|m| &mut m.maps).zip(&self.maps) {
             entry.file = files.add(entry.file.path.clone(), map.png.clone());
@@ -62,19 +62,43 @@ impl Package {
         Ok(Encoded { manifest, files: files.0 })
     }
 
-    /// The texture, the truth and the picture of a table.
-    fn encode_table(&self, table: &Table, compression: Compression) -> Result<[Vec<u8>; 3], PackageError> {
+    /// A file of a table.
+    fn encode_part(&self, table: &Table, part: Part, compression: Compression) -> Result<Vec<u8>, PackageError> {
         let kind = table.kind;
         let (Some(truth), Some(entry)) = (&table.truth, self.manifest.table(kind)) else {
             return Err(PackageError::NoTruth { kind });
         };
         // Thickness without slopes is one channel of the kind's four.
         let channels = if truth.channels == 1 { &["Y"] } else { kind.facts().channels };
-        let texture = match compression {
-            Compression::Zstd => ktx2::encode(&table.texture)?,
-            Compression::None => ktx2::encode_plain(&table.texture)?,
-        };
-        Ok([texture, exr::encode(truth, channels, &metadata(entry))?, png::encode_image(&picture(kind, truth))?])
+        Ok(match (part, compression) {
+            (Part::Texture, Compression::Zstd) => ktx2::encode(&table.texture)?,
+            (Part::Texture, Compression::None) => ktx2::encode_plain(&table.texture)?,
+            (Part::Truth, _) => exr::encode(truth, channels, &metadata(entry))?,
+            (Part::Picture, _) => png::encode_image(&picture(kind, truth))?,
+        })
+    }
+}
+
+/// The files of a table.
+#[derive(Debug, Clone, Copy)]
+enum Part {
+    /// Texels as devices read them.
+    Texture,
+    /// Values before they were rounded.
+    Truth,
+    /// Something to look at.
+    Picture,
+}
+
+impl Part {
+    const ALL: [Self; 3] = [Self::Texture, Self::Truth, Self::Picture];
+
+    fn extension(self) -> &'static str {
+        match self {
+            Self::Texture => "ktx2",
+            Self::Truth => "exr",
+            Self::Picture => "png",
+        }
     }
 }
 
@@ -131,16 +155,16 @@ impl Files {
     }
 }
 
-/// The results of a function for each table, side by side where threads are at hand.
+/// The results of a function of some values, side by side where threads are at hand.
 #[cfg(feature = "bake")]
-fn each<T: Send>(tables: &[Table], f: impl Fn(&Table) -> T + Sync + Send) -> Vec<T> {
+fn each<T: Sync, U: Send>(values: &[T], f: impl Fn(&T) -> U + Sync + Send) -> Vec<U> {
     use rayon::prelude::*;
-    tables.par_iter().map(f).collect()
+    values.par_iter().map(f).collect()
 }
 
 #[cfg(not(feature = "bake"))]
-fn each<T>(tables: &[Table], f: impl Fn(&Table) -> T) -> Vec<T> {
-    tables.iter().map(f).collect()
+fn each<T, U>(values: &[T], f: impl Fn(&T) -> U) -> Vec<U> {
+    values.iter().map(f).collect()
 }
 
 /// Metadata of the unquantised values of a table.

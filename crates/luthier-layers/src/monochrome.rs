@@ -163,13 +163,20 @@ impl MonochromeLayer {
 
 /// The value of a function of the monochrome stack in colour.
 pub fn in_color(stack: &Stack, color: &Color, mut f: impl FnMut(&Monochrome) -> f64) -> Rgb {
-    let mut rgb = [0.0; 3];
+    let [rgb] = in_colors(stack, color, |one| [f(one)]);
+    rgb
+}
+
+/// The values of some functions of the monochrome stack in colour.
+pub fn in_colors<const N: usize>(stack: &Stack, color: &Color, mut f: impl FnMut(&Monochrome) -> [f64; N]) -> [Rgb; N] {
+    let mut colors = [[0.0; 3]; N];
     for node in color.nodes() {
-        for (channel, sum) in rgb.iter_mut().enumerate() {
-            if node.weight[channel] != 0.0 {
-                *sum += node.weight[channel] * f(&Monochrome::new(stack, node.wavelength_nm, channel));
+        for channel in (0..3).filter(|&channel| node.weight[channel] != 0.0) {
+            let values = f(&Monochrome::new(stack, node.wavelength_nm, channel));
+            for (rgb, value) in colors.iter_mut().zip(values) {
+                rgb[channel] += node.weight[channel] * value;
             }
         }
     }
-    rgb
+    colors
 }

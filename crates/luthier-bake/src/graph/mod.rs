@@ -96,6 +96,13 @@ impl Graph {
         (place, key)
     }
 
+    /// Adds the jobs of another graph.
+    pub(crate) fn merge(&mut self, other: Self) {
+        for (place, jobs) in other.jobs {
+            self.jobs.entry(place).or_default().extend(jobs);
+        }
+    }
+
     /// The hash of a key, the addresses of the jobs that it needs, and the version of this crate.
     fn address(&self, key: Key, needs: &[(Place, Key)]) -> Key {
         let mut text = format!("luthier-bake {} {key}", env!("CARGO_PKG_VERSION"));

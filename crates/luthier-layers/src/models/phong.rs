@@ -3,10 +3,13 @@
 use std::f64::consts::{FRAC_1_PI, PI};
 
 use glam::DVec3;
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use luthier_optics::stack::Stack;
 
 use crate::facets::ALPHA_MIN;
 use crate::model::{Claims, Kind, Model, ModelInfo};
-use crate::monochrome::{Monochrome, MonochromeBelow};
+use crate::monochrome::{Monochrome, MonochromeBelow, in_colors};
 use crate::plane_stack::seen_from_above;
 
 /// B. T. Phong, "Illumination for computer generated pictures", 1975: the single-layer shader of Elek's Table 1.
@@ -55,6 +58,14 @@ impl Coefficients {
             }
         }
         Self { diffuse, specular, exponent: 0.25 * exponent(alpha) }
+    }
+
+    /// The diffuse and the specular coefficient in colour.
+    pub fn in_color(stack: &Stack, color: &Color) -> [Rgb; 2] {
+        in_colors(stack, color, |one| {
+            let Self { diffuse, specular, .. } = Self::of(one);
+            [diffuse, specular]
+        })
     }
 
     /// `f cos_theta_i`; zero unless both directions are above the horizon.

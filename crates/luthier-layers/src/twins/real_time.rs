@@ -16,7 +16,7 @@ use crate::elek::{self, ALPHA_MIN};
 use crate::granier_heidrich::GranierHeidrich;
 use crate::lobes;
 use crate::microfacet::{Components, Microfacet};
-use crate::monochrome::{Monochrome, MonochromeBelow, Optics, in_color};
+use crate::monochrome::{Monochrome, MonochromeBelow, Optics};
 use crate::phong::Coefficients;
 use crate::refraction::REFRACTION_WAVELENGTH_NM;
 use crate::statistics::diffuse_base::DiffuseBase;
@@ -193,8 +193,7 @@ fn bend_alike(mut one: Monochrome, stack: &Stack) -> Monochrome {
 
 /// Phong's coefficients in colour; one lobe has one exponent, that of the green wavelength.
 fn coefficients(stack: &Stack, wavelengths_nm: [f64; 3], color: Color) -> [Coefficients; 3] {
-    let diffuse = in_color(stack, &color, |one| Coefficients::of(one).diffuse);
-    let specular = in_color(stack, &color, |one| Coefficients::of(one).specular);
+    let [diffuse, specular] = Coefficients::in_color(stack, &color);
     let Coefficients { exponent, .. } = Coefficients::of(&Monochrome::new(stack, wavelengths_nm[1], 1));
     [0, 1, 2].map(|c| Coefficients { diffuse: diffuse[c], specular: specular[c], exponent })
 }

@@ -98,6 +98,7 @@ fn once(options: &BakeOptions) -> Outcome<Vec<PathBuf>> {
             "limits are those of tables, and a bake of --form full has no tables"
         )));
     }
+    progress.ends("read");
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads.map_or(0, usize::from))
         .build()
@@ -124,14 +125,17 @@ fn once(options: &BakeOptions) -> Outcome<Vec<PathBuf>> {
             let locked = luthier_bake::Options { locked: &next.decisions, ..bake.options };
             package = Package::new(&materials, &Bake { options: locked, ..bake.clone() }, store)?;
         }
+        progress.ends("make");
         Ok::<_, Failure>(package.encode(options.compression())?)
     })?;
+    progress.ends("encode");
     let manifest = &encoded.manifest;
     if options.pipeline.check {
         pipeline::check(options, &encoded, lock.stale(manifest))?;
         return Ok(read);
     }
     whole(&options.out, || encoded.write(&options.out))?;
+    progress.ends("write");
     if let Some(why) = lock.write(manifest)? {
         complain(&why);
     }

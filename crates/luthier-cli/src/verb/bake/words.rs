@@ -82,6 +82,7 @@ pub(super) fn summary(options: &BakeOptions, manifest: &Manifest, progress: &Bak
         .filter_map(|m| Some(json!({ "material": m.name, "error": m.constants.lobes?.error? })))
         .collect();
     let seconds: Value = progress.seconds().iter().map(|(kind, s)| (kind.name().to_owned(), json!(s))).collect();
+    let phases: Value = progress.phases().iter().map(|(phase, s)| ((*phase).to_owned(), json!(s))).collect();
     json!({
         "manifest": options.out.join(MANIFEST).to_string_lossy(),
         "materials": manifest.materials.iter().map(|m| &m.name).collect::<Vec<_>>(),
@@ -90,6 +91,7 @@ pub(super) fn summary(options: &BakeOptions, manifest: &Manifest, progress: &Bak
         "lobes": lobes,
         "jobs": { "run": progress.run(), "found": progress.had() },
         "seconds": seconds,
+        "phases": phases,
         "seconds_all": start.elapsed().as_secs_f64(),
     })
 }
