@@ -175,7 +175,7 @@ impl FacetStatistics {
                 }
                 later += onward;
                 facets.push((facet.cos_theta_d as f32, 0.0));
-                walk_after_first_facet(distribution, alpha, cos_theta_i, facet.reflected, walk, |next| {
+                walk_after_first_facet(distribution, alpha, surface.lambda_i, facet.reflected, walk, |next| {
                     facets.push((next.cos_theta_d as f32, (onward * next.leaving) as f32));
                 });
                 if let Some(last) = facets.last_mut() {
@@ -375,7 +375,7 @@ impl Microsurface {
                         Horizon::Below => (1.0 - (1.0 - y) * (1.0 - y), 2.0 * (1.0 - y)),
                     };
                     let phi = phi_from + span * part;
-                    let (cos_phi, sin_phi) = (libm::cos(phi), libm::sin(phi));
+                    let (sin_phi, cos_phi) = libm::sincos(phi);
                     let projected = (cos_i - slope * cos_phi * sin_i).max(0.0);
                     let cos_theta_d = projected * normal_z;
                     let measure = density * (to - from) * stretch * x_weight * span * y_stretch * y_weight / PI;

@@ -54,12 +54,13 @@ pub struct Facet {
 /// up to each, times what leaves there. `alpha` > 0, `cos_theta_i` > 0.
 pub fn reflecting_walk(distribution: Distribution, alpha: f64, cos_theta_i: f64, walk: Walk, visit: impl FnMut(Facet)) {
     let ray = -incident(cos_theta_i);
-    let depth = drop_in(distribution, alpha, ray, 0.0, walk.numbers(0)[0]);
-    walk_from(distribution, alpha, Start { ray, depth, facet: 0 }, walk, visit);
+    let numbers = walk.numbers(0);
+    let depth = Passage::new(distribution, alpha, ray, 0.0).next_depth(numbers[0]);
+    walk_from(distribution, alpha, Start { ray, depth, facet: 0, numbers }, walk, visit);
 }
 
-/// The rest of a walk whose first facet is known: light from `cos_theta_i` has left the facet along `ray` and will meet the
-/// surface again.
+/// The rest of a walk whose first facet is known: light from `cos_theta_i`, whose Lambda is `lambda_i`, has left the facet along `ray` and will
+/// meet the surface again.
 ///
 /// First facets lie at heights of density `(1 + Lambda_i) c^Lambda_i`; a share `1 - c^Lambda_o` of the light goes on. In
 /// `-ln c` the product of the two is the density of a sum of two exponential variables, of rates `1 + Lambda_i` and
@@ -67,39 +68,40 @@ pub fn reflecting_walk(distribution: Distribution, alpha: f64, cos_theta_i: f64,
 pub fn walk_after_first_facet(
     distribution: Distribution,
     alpha: f64,
-    cos_theta_i: f64,
+    lambda_i: f64,
     ray: DVec3,
     walk: Walk,
     visit: impl FnMut(Facet),
 ) {
-    let rate = 1.0 + lambda(distribution, alpha, cos_theta_i);
+    let rate = 1.0 + lambda_i;
     let [first, .., second] = walk.numbers(0);
-    let mut depth = -libm::log(1.0 - first) / rate;
-    if ray.z > 0.0 {
-        depth -= libm::log(1.0 - second) / (rate + lambda(distribution, alpha, ray.z));
+    let mut passage = Passage::new(distribution, alpha, ray, -libm::log(1.0 - first) / rate);
+    if passage.is_up {
+        passage.depth -= libm::log(1.0 - second) / (rate + passage.lambda);
     }
-    let escape = escape(distribution, alpha, ray, depth);
-    let depth = next_depth(distribution, alpha, ray, depth, walk.numbers(1)[0] * (1.0 - escape));
-    walk_from(distribution, alpha, Start { ray, depth, facet: 1 }, walk, visit);
+    let numbers = walk.numbers(1);
+    let depth = passage.next_depth(numbers[0] * (1.0 - passage.escape()));
+    walk_from(distribution, alpha, Start { ray, depth, facet: 1, numbers }, walk, visit);
 }
 
-/// A ray about to meet facet number `facet` at `depth`.
+/// A ray about to meet facet number `facet` at `depth`, and the numbers of that facet.
 struct Start {
     ray: DVec3,
     depth: f64,
     facet: u32,
+    numbers: [f64; 4],
 }
 
 fn walk_from(distribution: Distribution, alpha: f64, start: Start, walk: Walk, mut visit: impl FnMut(Facet)) {
-    let Start { mut ray, mut depth, facet: first } = start;
+    let Start { mut ray, mut depth, facet: first, mut numbers } = start;
     let mut light = 1.0;
-    let mut numbers = walk.numbers(first);
     for facet in first..MAX_FACETS {
         let w = -ray;
         let m = visible_normals::sample(distribution, alpha, w, [numbers[1], numbers[2]]);
         let cos_theta_d = w.dot(m).max(0.0);
         ray = (2.0 * cos_theta_d * m - w).normalize();
-        let escape = escape(distribution, alpha, ray, depth);
+        let passage = Passage::new(distribution, alpha, ray, depth);
+        let escape = passage.escape();
         let left = light * (1.0 - escape);
         if left < REMAINDER || facet + 1 == MAX_FACETS {
             visit(Facet { cos_theta_d, leaving: light });
@@ -108,7 +110,7 @@ fn walk_from(distribution: Distribution, alpha: f64, start: Start, walk: Walk, m
         visit(Facet { cos_theta_d, leaving: light * escape });
         light = left;
         numbers = walk.numbers(facet + 1);
-        depth = next_depth(distribution, alpha, ray, depth, numbers[0] * (1.0 - escape));
+        depth = passage.next_depth(numbers[0] * (1.0 - escape));
     }
 }
 
@@ -153,7 +155,7 @@ pub fn crossed_and_returned(
     walk: Walk,
 ) -> f64 {
     let ray = -incident(cos_theta_i);
-    let depth = drop_in(distribution, alpha, ray, 0.0, walk.numbers(0)[0]);
+    let depth = Passage::new(distribution, alpha, ray, 0.0).next_depth(walk.numbers(0)[0]);
     let mut branches = vec![Branch { ray, depth, light: 1.0, facet: 0, above: true, crossed: false }];
     let mut returned = 0.0;
     while let Some(branch) = branches.pop() {
@@ -185,14 +187,15 @@ pub fn crossed_and_returned(
             [None, Some(Branch { light, ..through })]
         };
         for next in both.into_iter().flatten() {
-            let escape = escape(distribution, alpha, next.ray, next.depth);
+            let passage = Passage::new(distribution, alpha, next.ray, next.depth);
+            let escape = passage.escape();
             if next.above && next.crossed {
                 returned += next.light * escape;
             }
             let left = next.light * (1.0 - escape);
             if left > REMAINDER && facet + 1 < MAX_FACETS {
                 let u = walk.numbers(facet + 1)[0] * (1.0 - escape);
-                let depth = next_depth(distribution, alpha, next.ray, next.depth, u);
+                let depth = passage.next_depth(u);
                 branches.push(Branch { depth, light: left, facet: facet + 1, ..next });
             }
         }
@@ -215,24 +218,34 @@ fn incident(cos_theta_i: f64) -> DVec3 {
     DVec3::new(libm::sqrt((1.0 - cos_theta_i * cos_theta_i).max(0.0)), 0.0, cos_theta_i)
 }
 
-/// Probability that a ray leaves the surface from a depth without meeting it again (Heitz et al. 2016, eq. 20).
-fn escape(distribution: Distribution, alpha: f64, ray: DVec3, depth: f64) -> f64 {
-    if ray.z <= 0.0 { 0.0 } else { libm::exp(-depth * lambda(distribution, alpha, ray.z)) }
+/// A ray that goes from a depth to the next facet, or out.
+struct Passage {
+    depth: f64,
+    /// Whether it goes up.
+    is_up: bool,
+    /// Lambda of its slope, up or down.
+    lambda: f64,
 }
 
-/// Depth at which a ray meets the surface again, given that it does: `u` is uniform in 0..(1 - probability to leave).
-fn next_depth(distribution: Distribution, alpha: f64, ray: DVec3, depth: f64, u: f64) -> f64 {
-    if ray.z > 0.0 {
-        let lambda = lambda(distribution, alpha, ray.z);
-        if lambda == 0.0 { 0.0 } else { (depth + libm::log(1.0 - u) / lambda).max(0.0) }
-    } else {
-        drop_in(distribution, alpha, ray, depth, u)
+impl Passage {
+    fn new(distribution: Distribution, alpha: f64, ray: DVec3, depth: f64) -> Self {
+        Self { depth, is_up: ray.z > 0.0, lambda: lambda(distribution, alpha, ray.z.abs()) }
     }
-}
 
-/// Depth at which a ray that goes down meets the surface.
-fn drop_in(distribution: Distribution, alpha: f64, ray: DVec3, depth: f64, u: f64) -> f64 {
-    depth - libm::log(1.0 - u) / (1.0 + lambda(distribution, alpha, -ray.z))
+    /// Probability that it leaves the surface without meeting it again (Heitz et al. 2016, eq. 20).
+    fn escape(&self) -> f64 {
+        if self.is_up { libm::exp(-self.depth * self.lambda) } else { 0.0 }
+    }
+
+    /// Depth at which it meets the surface again, given that it does: `u` is uniform in 0..(1 - probability to leave).
+    fn next_depth(&self, u: f64) -> f64 {
+        let Self { depth, is_up, lambda } = *self;
+        match (is_up, lambda) {
+            (false, _) => depth - libm::log(1.0 - u) / (1.0 + lambda),
+            (true, 0.0) => 0.0,
+            (true, _) => (depth + libm::log(1.0 - u) / lambda).max(0.0),
+        }
+    }
 }
 
 /// The depth of a place in the frame of the other side: from `-ln c` to `-ln(1 - c)`.

@@ -20,7 +20,8 @@ pub fn sample(distribution: Distribution, alpha: f64, w: DVec3, u: [f64; 2]) -> 
             let phi = 2.0 * PI * u[1];
             let z = (1.0 - u[0]) * (1.0 + stretched.z) - stretched.z;
             let sin = libm::sqrt((1.0 - z * z).max(0.0));
-            let h = DVec3::new(sin * libm::cos(phi), sin * libm::sin(phi), z) + stretched;
+            let (sin_phi, cos_phi) = libm::sincos(phi);
+            let h = DVec3::new(sin * cos_phi, sin * sin_phi, z) + stretched;
             DVec3::new(alpha * h.x, alpha * h.y, h.z.max(1e-300)).normalize()
         }
         Distribution::Beckmann => {
