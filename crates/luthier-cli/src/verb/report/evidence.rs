@@ -17,6 +17,7 @@ use serde_json::json;
 
 use crate::cli::ReportOptions;
 use crate::input;
+use crate::store::store;
 
 /// First family of random numbers of the paths.
 const SEED: u64 = 1;
@@ -77,9 +78,10 @@ pub(super) fn add(
     report.stability = given.stability.as_ref().map(StabilitySummary::of);
     // Fixed defaults were not searched for, whatever a search would find.
     if !manifest.searches.is_empty() && manifest.generator == GENERATOR {
+        let (options, store) = (Options { fits: false, ..Options::default() }, store()?);
         let alone: Vec<_> = materials
             .par_iter()
-            .map(|material| outline(std::slice::from_ref(material), &Options { fits: false, ..Options::default() }))
+            .map(|material| outline(std::slice::from_ref(material), &options, store))
             .collect::<Result<_, _>>()?;
         for (material, outline) in report.materials.iter_mut().zip(alone) {
             material.alone = outline.searches;
