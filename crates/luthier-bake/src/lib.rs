@@ -34,6 +34,7 @@ pub use assemble::{
 };
 pub use error::BakeError;
 pub use graph::{Artefact, JobKind, Key, MemoryStore, Observer, Share, Silent, Store, Task};
+pub use kinds::lobes::fitted;
 pub use maps::{MapSource, MaterialMap};
 pub use plan::ImageReader;
 pub use search::{AIM, DEFAULT_BUDGET, goals};
