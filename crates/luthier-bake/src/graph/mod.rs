@@ -14,6 +14,7 @@ use rayon::prelude::*;
 pub use self::artefact::Artefact;
 pub(crate) use self::job::Job;
 pub use self::job::{JobKind, Key};
+pub use self::kept::kept;
 pub(crate) use self::kept::result_of;
 pub use self::store::{MemoryStore, Store, Task};
 use crate::tile::TileData;

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use luthier_workshop::material_texts::lacquer;
+use luthier_workshop::material_texts::{gold, lacquer};
 
 use super::store::{entries, kinds};
 use crate::workshop::Workshop;
@@ -10,6 +10,7 @@ use crate::workshop::Workshop;
 const EVAL: [&str; 8] = ["eval", "lacquer.toml", "--model", "lobes", "--wi", "30,0", "--wo", "40,180"];
 const FURNACE: [&str; 7] = ["eval", "lacquer.toml", "--model", "lobes", "--furnace", "--angles", "45"];
 const SHADER: [&str; 4] = ["shader", "lacquer.toml", "--model", "lobes"];
+const REPORT: [&str; 5] = ["report", "--no-device", "--pairs", "64", "--reference=16"];
 
 /// Number of results of a kind.
 fn count(workshop: &Workshop, kind: &str) -> u64 {
@@ -60,4 +61,23 @@ fn lobes_are_fitted_once_for_values_shaders_and_bakes() {
         assert_eq!(printed(&workshop, &FURNACE), furnace);
         assert_eq!(count(&workshop, "fit"), 2);
     }
+}
+
+/// Oracle: the errors without a store.
+#[test]
+fn models_are_compared_with_their_reference_once() {
+    let workshop = Workshop::with(&[("gold.toml", &gold("gold"))]);
+    workshop.run(&["bake", "gold.toml", "--quiet"]).exits(0);
+    workshop.run(&[&REPORT[..], &["--no-cache"]].concat()).exits(0);
+    let report = workshop.text("out/report/report.json");
+    for _ in 0..2 {
+        printed(&workshop, &REPORT);
+        assert_eq!(workshop.text("out/report/report.json"), report);
+        assert_eq!(count(&workshop, "reference"), 1);
+    }
+    repairs(&workshop, "reference", &REPORT);
+    assert_eq!(workshop.text("out/report/report.json"), report);
+    // Other paths are another reference.
+    printed(&workshop, &["report", "--no-device", "--pairs", "64", "--reference=17"]);
+    assert_eq!(count(&workshop, "reference"), 2);
 }
