@@ -94,10 +94,10 @@ impl Default for Options<'_> {
 /// # Errors
 /// See [`BakeError`].
 pub fn outline(materials: &[Material], read_image: ImageReader<'_>) -> Result<Outline, BakeError> {
-    outline_with(materials, &Options::default(), read_image)
+    outline_with(materials, &Options::default(), read_image, &MemoryStore::default())
 }
 
-/// [`outline`] with options; without a search and without fits nothing is computed.
+/// [`outline`] with options and a store, as [`bake_with`] takes them; without a search and without fits nothing is computed.
 ///
 /// # Errors
 /// See [`BakeError`].
@@ -105,8 +105,9 @@ pub fn outline_with(
     materials: &[Material],
     options: &Options<'_>,
     read_image: ImageReader<'_>,
+    store: &dyn Store,
 ) -> Result<Outline, BakeError> {
-    let planned = plan(materials, options, read_image, &Silent, &MemoryStore::default())?;
+    let planned = plan(materials, options, read_image, &Silent, store)?;
     let tables = layouts(&planned.plan)?;
     let Plan { tiles, records, settings, .. } = planned.plan;
     let keys = used(&tiles).map(|(_, tiles)| tiles.tiles.iter().map(|(_, key)| *key).collect()).collect();

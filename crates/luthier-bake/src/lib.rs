@@ -33,7 +33,8 @@ pub use assemble::{
     Baked, BakedMaterial, Options, Outline, bake, bake_with, check, kinked_rows, outline, outline_with,
 };
 pub use error::BakeError;
-pub use graph::{Artefact, JobKind, Key, MemoryStore, Observer, Share, Silent, Store, Task};
+pub use graph::{Artefact, JobKind, Key, MemoryStore, Observer, Share, Silent, Store, Task, kept};
+pub use kinds::lobes::fitted;
 pub use maps::{MapSource, MaterialMap};
 pub use plan::ImageReader;
 pub use search::{AIM, DEFAULT_BUDGET, goals};

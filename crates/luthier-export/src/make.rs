@@ -155,7 +155,7 @@ impl Package {
         if bake.forms == [Form::Full] {
             // Without a shader that reads them there are no tables.
             let options = Options { search: false, ..bake.options };
-            let mut outline = luthier_bake::outline_with(materials, &options, read)?;
+            let mut outline = luthier_bake::outline_with(materials, &options, read, store)?;
             outline.materials.iter_mut().for_each(BakedMaterial::forget_tables);
             return Self::assemble(materials, &outline.materials, Vec::new(), bake);
         }
@@ -235,12 +235,12 @@ impl Package {
 }
 
 /// The manifest that a bake of these materials would have, without its files: materials, tables without tiles, searches. Takes little
-/// computing, unless a material has a budget.
+/// computing, unless a material has a budget or lobes, of which the store has what was computed before.
 ///
 /// # Errors
 /// [`ExportError`].
-pub fn outline(materials: &[Material], options: &Options<'_>) -> Result<Manifest, ExportError> {
-    let outline = luthier_bake::outline_with(materials, options, &sources::read_image)?;
+pub fn outline(materials: &[Material], options: &Options<'_>, store: &dyn Store) -> Result<Manifest, ExportError> {
+    let outline = luthier_bake::outline_with(materials, options, &sources::read_image, store)?;
     let (entries, _) = material_entries(materials, &outline.materials)?;
     let tables = outline.tables.iter().map(|(kind, layout, format)| table_entry(*kind, layout, *format)).collect();
     Ok(Manifest { searches: outline.searches, ..Manifest::new(GENERATOR, entries, tables) })

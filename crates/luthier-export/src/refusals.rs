@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use luthier_bake::BakeError;
+use luthier_bake::{BakeError, MemoryStore};
 use luthier_material::{Diagnostic, Material, NamedImage, Severity};
 use rayon::prelude::*;
 
@@ -33,7 +33,7 @@ pub fn refuse_too_many(sources: &mut [Source], shaded: impl Fn(Vec<Material>) ->
     let options = luthier_bake::Options { search: false, fits: false, ..luthier_bake::Options::default() };
     // Anything else has been told.
     if let Err(error @ (BakeError::TooManyTiles { .. } | BakeError::TooManyLayers { .. })) =
-        luthier_bake::outline_with(&materials, &options, &read_image)
+        luthier_bake::outline_with(&materials, &options, &read_image, &MemoryStore::default())
     {
         let diagnostic = materials[0].diagnostic(Severity::Error, "name", error.to_string(), None);
         add(&mut sources[0], vec![diagnostic]);

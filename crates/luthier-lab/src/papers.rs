@@ -108,8 +108,8 @@ fn case(material: &Material) -> Outcome<PaperCase> {
         material
     };
     let (elek, phong) = (with(ShadingModel::Elek), with(ShadingModel::Phong));
-    let [of_elek, of_phong] =
-        [&elek, &phong].map(|material| outline(std::slice::from_ref(material), &Options::default()));
+    let [of_elek, of_phong] = [&elek, &phong]
+        .map(|material| outline(std::slice::from_ref(material), &Options::default(), &MemoryStore::default()));
     let (of_elek, of_phong) = (of_elek?, of_phong?);
     let mut variants = Vec::new();
     let mut texts = Vec::new();

@@ -2,7 +2,7 @@
 
 use luthier_bake::Options;
 use luthier_cost::{Family, Harness, Kernel, Style, compile_apart};
-use luthier_export::{outline, read};
+use luthier_export::{MemoryStore, outline, read};
 use luthier_manifest::ShadingModel;
 use luthier_shader::{Form, MaterialSet};
 use luthier_terminal::{Failure, Outcome, deliver, valid};
@@ -28,7 +28,7 @@ pub(crate) fn run(options: &ShapesOptions) -> Outcome {
             }
             // Without a fit, lobes are as many as there may be: the dearest.
             let options = Options { fits: false, ..Options::default() };
-            let manifest = outline(std::slice::from_ref(&material), &options)?;
+            let manifest = outline(std::slice::from_ref(&material), &options, &MemoryStore::default())?;
             let set = MaterialSet::from_manifest(&manifest);
             for form in Form::ALL.into_iter().filter(|&form| model.has(form)) {
                 let style = Style { form, constant: false, approximate: false };

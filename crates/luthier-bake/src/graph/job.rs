@@ -24,6 +24,11 @@ impl Key {
         Self(Sha256::digest(bytes).into())
     }
 
+    /// The hash of all that decides a result.
+    pub(super) fn of_inputs(kind: JobKind, revision: u32, inputs: &Value) -> Self {
+        Self::of(json!({"kind": kind.name(), "revision": revision, "inputs": inputs}).to_string().as_bytes())
+    }
+
     /// The hash of 64 hexadecimal digits, as [`fmt::Display`] writes it.
     pub fn parse(hex: &str) -> Option<Self> {
         let digits: Vec<u8> = hex.chars().map(|c| c.to_digit(16).map(|digit| digit as u8)).collect::<Option<_>>()?;
@@ -98,8 +103,6 @@ pub(crate) trait Job: Any + fmt::Debug + Send + Sync {
 
     /// The hash of kind and inputs.
     fn key(&self) -> Key {
-        let text =
-            json!({"kind": self.kind().name(), "revision": self.revision(), "inputs": self.inputs()}).to_string();
-        Key::of(text.as_bytes())
+        Key::of_inputs(self.kind(), self.revision(), &self.inputs())
     }
 }

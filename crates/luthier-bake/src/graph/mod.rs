@@ -2,6 +2,7 @@
 
 mod artefact;
 mod job;
+mod kept;
 mod store;
 
 use std::any::Any;
@@ -13,6 +14,8 @@ use rayon::prelude::*;
 pub use self::artefact::Artefact;
 pub(crate) use self::job::Job;
 pub use self::job::{JobKind, Key};
+pub use self::kept::kept;
+pub(crate) use self::kept::result_of;
 pub use self::store::{MemoryStore, Store, Task};
 use crate::tile::TileData;
 
@@ -79,6 +82,13 @@ pub(crate) struct Results(BTreeMap<Key, Arc<Artefact>>);
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Inputs<'a>(&'a Results);
 
+/// The hash of a key, the addresses of the jobs that it needs, and the version of this crate.
+fn address(key: Key, needed: impl Iterator<Item = Key>) -> Key {
+    let mut text = format!("luthier-bake {} {key}", env!("CARGO_PKG_VERSION"));
+    needed.for_each(|address| text.push_str(&address.to_string()));
+    Key::of(text.as_bytes())
+}
+
 impl Graph {
     /// Adds a job and all that it needs; a job that is already there is not added again.
     pub(crate) fn add(&mut self, job: Arc<dyn Job>) -> Key {
@@ -90,7 +100,8 @@ impl Graph {
         let place = (needs.iter().map(|((depth, _), _)| depth + 1).max().unwrap_or(0), job.kind());
         let key = job.key();
         if !self.jobs.get(&place).is_some_and(|jobs| jobs.contains_key(&key)) {
-            let address = self.address(key, &needs);
+            let addresses = needs.iter().filter_map(|(place, needed)| Some(self.jobs.get(place)?.get(needed)?.address));
+            let address = address(key, addresses);
             self.jobs.entry(place).or_default().insert(key, Entry { job, address, needs });
         }
         (place, key)
@@ -101,17 +112,6 @@ impl Graph {
         for (place, jobs) in other.jobs {
             self.jobs.entry(place).or_default().extend(jobs);
         }
-    }
-
-    /// The hash of a key, the addresses of the jobs that it needs, and the version of this crate.
-    fn address(&self, key: Key, needs: &[(Place, Key)]) -> Key {
-        let mut text = format!("luthier-bake {} {key}", env!("CARGO_PKG_VERSION"));
-        for (place, needed) in needs {
-            if let Some(entry) = self.jobs.get(place).and_then(|jobs| jobs.get(needed)) {
-                text.push_str(&entry.address.to_string());
-            }
-        }
-        Key::of(text.as_bytes())
     }
 
     fn all(&self) -> impl Iterator<Item = (Key, &Arc<dyn Job>)> {

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::{Kind, Site};
-use crate::graph::{Artefact, Graph, Inputs, Job, JobKind, Results};
+use crate::graph::{Artefact, Graph, Inputs, Job, JobKind, Results, Store, result_of};
 use crate::plan::{Plan, color};
 use crate::search::{self, Found};
 use crate::settings::{Ask, Settings, Shape, axis};
@@ -147,6 +147,14 @@ pub(crate) fn decide(
 fn fit(material: &Material, is_searched: bool) -> Arc<FitJob> {
     let (stack, color, varying) = (shown(&material.stack), color(material), varying(material));
     Arc::new(FitJob { stack, color, varying, is_searched })
+}
+
+/// The lobes of a stack as bakes without limits on their errors have them: the store's, or such as are fitted now and kept.
+pub fn fitted(stack: &Stack, color: &Color, varying: Option<Varying>, store: &dyn Store) -> Varied {
+    let job = FitJob { stack: shown(stack), color: *color, varying, is_searched: false };
+    let fits = result_of(&job, store);
+    let fits: &Fits = fits.get().unwrap_or_else(|| unreachable!("results at the address of a fit are fits"));
+    fits.of(None).varied.clone()
 }
 
 /// Numbers that stand in where nothing was fitted.

@@ -11,6 +11,7 @@ use luthier_terminal::{Failure, Outcome, deliver, print, valid};
 
 use crate::cli::CostOptions;
 use crate::materials::models;
+use crate::store::store;
 
 /// Compiles shaders for GPUs that are not here, and prints what they cost.
 pub(crate) fn run(options: &CostOptions) -> Outcome {
@@ -76,7 +77,7 @@ fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Varian
             shaded.iter().map(|m| (m.name.clone(), std::slice::from_ref(m))).collect()
         };
         for (name, group) in groups {
-            let manifest = outline(group, &Options::default())?;
+            let manifest = outline(group, &Options::default(), store()?)?;
             // Those that are asked for by name are refused where there are none.
             let is_there = |form: &&Form| !options.form.is_empty() || model.has(**form);
             for &form in forms.iter().filter(is_there) {

@@ -1,6 +1,7 @@
 //! The model at one wavelength, for stacks that it fits itself.
 
 use std::collections::VecDeque;
+use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
@@ -10,7 +11,7 @@ use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Film, FilmThickness, Layer, Slab, Stack};
 use num_complex::Complex64;
 
-use super::{INFO, Lobes, bare_diffuse};
+use super::{Fit, INFO, Lobes, Varied, bare_diffuse};
 use crate::model::{Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 
@@ -24,12 +25,29 @@ const INDEX_MIN: f64 = 1e-9;
 const WAVELENGTH_NM: f64 = 550.0;
 
 /// The model `lobes`. It simulates a stack when it first meets it, for a second or so; the last eight stacks are kept.
-#[derive(Debug, Default)]
 pub struct Fitted {
+    fit: Arc<Fit<'static>>,
     kept: Mutex<VecDeque<(Monochrome, Arc<Lobes>)>>,
 }
 
+impl Default for Fitted {
+    fn default() -> Self {
+        Self::by(Arc::new(Varied::of))
+    }
+}
+
+impl fmt::Debug for Fitted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Fitted").field("kept", &self.kept).finish_non_exhaustive()
+    }
+}
+
 impl Fitted {
+    /// The model with the lobes of a function that fits them.
+    pub fn by(fit: Arc<Fit<'static>>) -> Self {
+        Self { fit, kept: Mutex::default() }
+    }
+
     /// The lobes of a stack; `None` where an index is infinite or not a number.
     fn lobes(&self, stack: &Monochrome) -> Option<Arc<Lobes>> {
         // Under the lock: others that ask for a stack wait for its lobes.
@@ -37,7 +55,8 @@ impl Fitted {
         if let Some((_, lobes)) = kept.iter().find(|(known, _)| known == stack) {
             return Some(lobes.clone());
         }
-        let lobes = Arc::new(Lobes::of(&in_all_colors(stack)?, &Color::ThreeWavelengths([WAVELENGTH_NM; 3])));
+        let color = Color::ThreeWavelengths([WAVELENGTH_NM; 3]);
+        let lobes = Arc::new((self.fit)(&in_all_colors(stack)?, &color, None).nominal());
         kept.truncate(KEPT - 1);
         kept.push_front((stack.clone(), lobes.clone()));
         Some(lobes)

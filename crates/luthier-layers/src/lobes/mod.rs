@@ -59,7 +59,7 @@ pub use patina::{Cover, bare};
 pub use prepared::{Prepared, Sample};
 pub use rows::{Critical, Lobe, Row, ViewAxis};
 pub use shape::{Shape, TAIL_MIN, Wide};
-pub use varied::{Traced, Varied, Varying};
+pub use varied::{Fit, Traced, Varied, Varying};
 
 use glam::DVec3;
 use luthier_optics::Rgb;

@@ -146,6 +146,9 @@ impl Over {
     }
 }
 
+/// A function that fits lobes as [`Varied::of`] does; it may have kept what it found before.
+pub type Fit<'a> = dyn Fn(&Stack, &Color, Option<Varying>) -> Varied + Send + Sync + 'a;
+
 impl Varied {
     /// The lobes of a stack as bakes have them, see [`Lobes::of`]. An anisotropic stack has its rows over the azimuth, and none over a factor.
     pub fn of(stack: &Stack, color: &Color, varying: Option<Varying>) -> Self {

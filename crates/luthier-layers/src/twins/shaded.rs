@@ -5,12 +5,13 @@ use std::f64::consts::FRAC_1_PI;
 use glam::DVec3;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
+use luthier_optics::interface::Interface;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Distribution, Film, Layer, Stack, Surface};
 
 use crate::elek::{self, ALPHA_MIN};
 use crate::frame;
-use crate::lobes::{self, Below, Cover, Varied, Varying};
+use crate::lobes::{self, Below, Cover, Fit, Varied, Varying};
 use crate::real_time::{Twin, Under};
 use crate::statistics::diffuse_base::Veil;
 use crate::statistics::energy::Energy;
@@ -73,6 +74,18 @@ impl Shaded {
     /// Effects are those of the model's shader: flakes and patina in `elek`, `weidlich-wilkie` and `lobes`, deviated films in `granier-heidrich`. `lobes` has
     /// patina where its rows are over nothing else: no film varies, and no interface is anisotropic.
     pub fn new(model: &str, stack: &Stack, wavelengths_nm: [f64; 3], color: Color, place: &Place) -> Option<Self> {
+        Self::fitted_by(&Varied::of, model, stack, wavelengths_nm, color, place)
+    }
+
+    /// [`Self::new`] with the lobes of a function that fits them, where the model has some.
+    pub fn fitted_by(
+        fit: &Fit<'_>,
+        model: &str,
+        stack: &Stack,
+        wavelengths_nm: [f64; 3],
+        color: Color,
+        place: &Place,
+    ) -> Option<Self> {
         let is_chain = [elek::MODEL, "weidlich-wilkie"].contains(&model);
         let is_shown = is_chain || model == lobes::MODEL && !is_over_another(stack);
         let patina = place.patina.filter(|_| is_shown && stack.layers.len() > 1);
@@ -88,18 +101,23 @@ impl Shaded {
         let here = at(stack, model, place, patina);
         let under = Under { slope_variance: place.sample.slope_variance, base_color: place.base_color, ..place.under };
         let place = Place { patina, under, ..*place };
+        let has_lobes = model == lobes::MODEL;
         let (mut grown, bare) = (layers(&here)?, lobes::bare(&here));
         let mut bare = if patina.is_some() { Some(layers(&bare)?) } else { None };
-        if let (Some(Growth { diffuse_albedo, base_alpha, tarnish, .. }), Some(bare), false) =
-            (patina, &mut bare, is_chain)
-        {
-            let over = Varying::Patina(Cover { diffuse_albedo, base_alpha, tarnish });
-            let mut ends = Varied::of(&here, &color, Some(over)).nodes.into_iter().rev();
-            for (layers, stack) in [(bare, lobes::bare(&here)), (&mut grown, here.clone())] {
-                layers.terms = Exact::with_lobes(&stack, color, ends.next()?);
+        match (patina, &mut bare) {
+            (Some(Growth { diffuse_albedo, base_alpha, tarnish, .. }), Some(bare)) if has_lobes => {
+                let over = Varying::Patina(Cover { diffuse_albedo, base_alpha, tarnish });
+                let mut ends = fit(&here, &color, Some(over)).nodes.into_iter().rev();
+                for (layers, stack) in [(bare, lobes::bare(&here)), (&mut grown, here.clone())] {
+                    layers.terms = Exact::with_lobes(&stack, color, ends.next()?);
+                }
             }
+            _ if has_lobes && Interface::of(&here, 0).is_some() => {
+                grown.terms = Exact::with_lobes(&here, color, fit(&here, &color, None).nominal());
+            }
+            _ => {}
         }
-        Some(Self { place, layers: grown, bare, has_lobes: model == lobes::MODEL })
+        Some(Self { place, layers: grown, bare, has_lobes })
     }
 
     /// `f cos_theta_i`, RGB; the cosine is that against the place's normal. Zero where either direction is at or below the horizon of the

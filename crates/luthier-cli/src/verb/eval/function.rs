@@ -173,12 +173,13 @@ impl<'a> Function<'a> {
 /// energies take seconds in colour, and effects are none of theirs.
 fn shaded(subject: &Subject, kind: &Kind) -> Option<How> {
     let (stack, name, place) = (&subject.material.stack, subject.model.info().name, &subject.place);
+    let fit = subject.fit.as_ref();
     match *kind {
         Kind::Reradiated(_) => None,
         Kind::Wavelength(_) if ["belcour", "yamaguchi"].contains(&name) => None,
         Kind::Wavelength(nm) => {
             let color = Color::ThreeWavelengths([nm; 3]);
-            let shaded = Shaded::new(name, &at_wavelength(stack, nm), [nm; 3], color, place)?;
+            let shaded = Shaded::fitted_by(fit, name, &at_wavelength(stack, nm), [nm; 3], color, place)?;
             Some(How::Shader(Box::new(shaded), nearest_channel(nm)))
         }
         Kind::Color(color) => {
@@ -189,7 +190,7 @@ fn shaded(subject: &Subject, kind: &Kind) -> Option<How> {
                 Some(ColorMode::ThreeWavelengths) => Color::ThreeWavelengths(wavelengths_nm),
                 Some(ColorMode::Spectral) | None => Color::Spectral,
             };
-            Some(How::Shader(Box::new(Shaded::new(name, stack, wavelengths_nm, color, place)?), 0))
+            Some(How::Shader(Box::new(Shaded::fitted_by(fit, name, stack, wavelengths_nm, color, place)?), 0))
         }
     }
 }

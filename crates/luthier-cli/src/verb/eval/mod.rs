@@ -6,7 +6,11 @@ mod polarised;
 mod sweep;
 mod values;
 
+use std::sync::Arc;
+
+use luthier_bake::fitted;
 use luthier_layers::layered_mc::Estimate;
+use luthier_layers::lobes::{self, Fit, Fitted, Varied};
 use luthier_layers::model::Model;
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::registry::{model, models};
@@ -20,6 +24,7 @@ use crate::cli::EvalOptions;
 use crate::directions;
 use crate::model_inputs::ModelInputs;
 use crate::reradiation::Reradiation;
+use crate::store::store;
 use function::Kind;
 use luthier_export::read_one;
 use luthier_terminal::{Failure, Outcome, complain, valid};
@@ -34,6 +39,8 @@ const WAVELENGTH_NM: f64 = 550.0;
 struct Subject {
     model: Box<dyn Model>,
     material: Material,
+    /// Gives the model `lobes` its lobes.
+    fit: Arc<Fit<'static>>,
     place: Place,
     /// Whether effects of the file are in the place.
     has_effects: bool,
@@ -85,13 +92,19 @@ pub(crate) fn run(options: &EvalOptions) -> Outcome {
 }
 
 fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
-    let known = model(name).ok_or_else(|| {
+    let mut known = model(name).ok_or_else(|| {
         let names: Vec<&str> = models().iter().map(|model| model.info().name).collect();
         Failure::unknown("model", name, &names)
     })?;
     let inputs = &options.inputs;
     let files = std::iter::once(&options.file).chain(&inputs.other);
     let mut materials = valid(files.map(|file| read_one(file)).collect::<Result<_, _>>()?, false)?;
+    let mut fit: Arc<Fit<'static>> = Arc::new(Varied::of);
+    if name == lobes::MODEL {
+        let store = store()?;
+        fit = Arc::new(|stack, color, varying| fitted(stack, color, varying, store));
+        known = Box::new(Fitted::by(fit.clone()));
+    }
     let (shown, dropped) = inputs.shown(&materials[0], known.as_ref());
     inputs.check(known.as_ref(), &shown, options.environment)?;
     let mut model = inputs.give(known);
@@ -112,7 +125,7 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
     }
     let place = place(&material, inputs, &shown)?;
     let has_effects = shown != luthier_material::Effects::default();
-    Ok(Subject { model: ModelInputs::textured(place.sample, model), material, place, has_effects, bins_nm })
+    Ok(Subject { model: ModelInputs::textured(place.sample, model), material, fit, place, has_effects, bins_nm })
 }
 
 /// The channel whose absorption and albedo are those at a wavelength.

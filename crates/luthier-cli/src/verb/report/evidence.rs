@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use luthier_bake::Options;
-use luthier_export::{GENERATOR, outline, sha256};
+use luthier_bake::{Options, kept};
+use luthier_export::{GENERATOR, Store, outline, sha256};
 use luthier_manifest::{Form, Manifest, ShadingModel};
 use luthier_material::Material;
 use luthier_report::stability::Stability;
 use luthier_report::{
-    Costs, ModelSettings, ModelSubject, ReferencePaths, Report, ShapeCost, StabilitySummary, judge_shading_models,
+    AgainstReference, Costs, ModelSettings, ModelSubject, ReferencePaths, Report, ShapeCost, StabilitySummary,
+    judge_shading_models,
 };
 use luthier_scene::CostTable;
 use luthier_terminal::{Failure, Outcome};
@@ -17,9 +18,13 @@ use serde_json::json;
 
 use crate::cli::ReportOptions;
 use crate::input;
+use crate::store::store;
 
 /// First family of random numbers of the paths.
 const SEED: u64 = 1;
+
+/// Changes whenever a model, the paths, or what is measured of them gives other errors than before.
+const REVISION: u32 = 1;
 
 /// Contents of the files that the command line names.
 pub(super) struct Given {
@@ -77,9 +82,10 @@ pub(super) fn add(
     report.stability = given.stability.as_ref().map(StabilitySummary::of);
     // Fixed defaults were not searched for, whatever a search would find.
     if !manifest.searches.is_empty() && manifest.generator == GENERATOR {
+        let (options, store) = (Options { fits: false, ..Options::default() }, store()?);
         let alone: Vec<_> = materials
             .par_iter()
-            .map(|material| outline(std::slice::from_ref(material), &Options { fits: false, ..Options::default() }))
+            .map(|material| outline(std::slice::from_ref(material), &options, store))
             .collect::<Result<_, _>>()?;
         for (material, outline) in report.materials.iter_mut().zip(alone) {
             material.alone = outline.searches;
@@ -93,14 +99,26 @@ pub(super) fn add(
             stack: material.stack.clone(),
             wavelengths_nm: entry.wavelengths_nm,
         });
-        let subjects: Vec<ModelSubject> = subjects.collect();
-        let judged: Vec<_> = subjects.par_iter().map(|subject| judge_shading_models(subject, settings)).collect();
+        let (subjects, store): (Vec<ModelSubject>, _) = (subjects.collect(), store()?);
+        let judged: Vec<_> = subjects.par_iter().map(|subject| against_reference(subject, settings, store)).collect();
         for (material, judged) in report.materials.iter_mut().zip(judged) {
             material.against_reference = judged;
         }
         report.reference = Some(ReferencePaths { paths: samples.get(), seed: SEED });
     }
     Ok(())
+}
+
+/// The errors of all models of a material, from the store where they were found before.
+fn against_reference(subject: &ModelSubject, settings: ModelSettings, store: &dyn Store) -> Vec<AgainstReference> {
+    let ModelSubject { stack, wavelengths_nm, .. } = subject;
+    let inputs = json!({
+        "stack": stack,
+        "wavelengths_nm": wavelengths_nm,
+        "paths": settings.samples,
+        "seed": settings.seed,
+    });
+    kept("reference", REVISION, &inputs, store, || judge_shading_models(subject, settings))
 }
 
 /// Cost of the shader of a material, from the table that scenes choose by.

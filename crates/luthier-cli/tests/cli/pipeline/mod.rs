@@ -1,6 +1,7 @@
 //! Build pipelines: the store of results, stamps, locks, shares, dependencies, watching.
 
 mod lock;
+mod readers;
 mod shares;
 mod store;
 mod up_to_date;

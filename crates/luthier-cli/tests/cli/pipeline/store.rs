@@ -7,14 +7,14 @@ use luthier_workshop::material_texts::{gold, lacquer};
 use crate::workshop::Workshop;
 
 /// The number of results of each kind.
-fn kinds(workshop: &Workshop) -> Vec<(String, u64)> {
+pub(super) fn kinds(workshop: &Workshop) -> Vec<(String, u64)> {
     let stats = workshop.run(&["cache", "stats", "--json", "--cache", "store"]).exits(0).json();
     let kinds = stats["kinds"].as_object().unwrap();
     kinds.iter().map(|(kind, usage)| (kind.clone(), usage["entries"].as_u64().unwrap())).collect()
 }
 
 /// The files of all results, of a kind.
-fn entries(workshop: &Workshop, kind: &str) -> Vec<String> {
+pub(super) fn entries(workshop: &Workshop, kind: &str) -> Vec<String> {
     workshop.files("store/objects").into_iter().filter(|path| path.ends_with(&format!("-{kind}"))).collect()
 }
 

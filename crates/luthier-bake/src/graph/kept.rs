@@ -1,0 +1,66 @@
+//! Results that are asked for one by one, without a graph.
+
+use std::any::Any;
+use std::iter;
+use std::sync::Arc;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+use super::{Artefact, Inputs, Job, JobKind, Key, Results, Store, Task, address};
+
+/// The value of a pure function that is no part of a bake: the store's, or one that is computed now and kept. `revision` changes whenever the same inputs
+/// give another value than before.
+pub fn kept<T>(kind: &'static str, revision: u32, inputs: &Value, store: &dyn Store, compute: impl FnOnce() -> T) -> T
+where
+    T: Any + Clone + Send + Sync + Serialize + DeserializeOwned,
+{
+    let kind = JobKind::part(kind);
+    let task = Task::new(kind, address(Key::of_inputs(kind, revision, inputs), iter::empty()), Artefact::decode::<T>);
+    if let Some(value) = store.get(&task).and_then(|artefact| artefact.get::<T>().cloned()) {
+        return value;
+    }
+    let value = compute();
+    store.put(&task, &Arc::new(Artefact::new(value.clone())));
+    value
+}
+
+/// The result of a job that needs no other: the store's, or one that is made now and kept.
+pub(crate) fn result_of(job: &dyn Job, store: &dyn Store) -> Arc<Artefact> {
+    let task = Task::of(job, address(job.key(), iter::empty()));
+    store.get(&task).unwrap_or_else(|| {
+        let artefact = Arc::new(job.run(&Inputs(&Results::default())));
+        store.put(&task, &artefact);
+        artefact
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use serde_json::json;
+
+    use super::*;
+    use crate::MemoryStore;
+
+    #[test]
+    fn values_are_computed_once_for_all_that_decides_them() {
+        let (store, calls) = (MemoryStore::default(), Cell::new(0));
+        let value = |kind, revision, input: f64| {
+            kept(kind, revision, &json!([input]), &store, || {
+                calls.set(calls.get() + 1);
+                (input, calls.get())
+            })
+        };
+        for _ in 0..2 {
+            assert_eq!(value("one", 1, 0.1), (0.1, 1));
+        }
+        assert_eq!(value("one", 1, 0.2), (0.2, 2));
+        assert_eq!(value("one", 2, 0.1), (0.1, 3));
+        assert_eq!(value("two", 1, 0.1), (0.1, 4));
+        assert_eq!(value("one", 1, 0.1), (0.1, 1));
+        assert_eq!(store.len(), 4);
+    }
+}

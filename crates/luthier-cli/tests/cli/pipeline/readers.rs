@@ -1,0 +1,83 @@
+//! Verbs that write no bake, and read the store of those that do.
+
+use std::fs;
+
+use luthier_workshop::material_texts::{gold, lacquer};
+
+use super::store::{entries, kinds};
+use crate::workshop::Workshop;
+
+const EVAL: [&str; 8] = ["eval", "lacquer.toml", "--model", "lobes", "--wi", "30,0", "--wo", "40,180"];
+const FURNACE: [&str; 7] = ["eval", "lacquer.toml", "--model", "lobes", "--furnace", "--angles", "45"];
+const SHADER: [&str; 4] = ["shader", "lacquer.toml", "--model", "lobes"];
+const REPORT: [&str; 5] = ["report", "--no-device", "--pairs", "64", "--reference=16"];
+
+/// Number of results of a kind.
+fn count(workshop: &Workshop, kind: &str) -> u64 {
+    kinds(workshop).into_iter().find(|(name, _)| name == kind).map_or(0, |(_, entries)| entries)
+}
+
+/// Standard output of a command with the store.
+fn printed(workshop: &Workshop, words: &[&str]) -> String {
+    let run = workshop.run(&[words, &["--cache", "store"]].concat()).exits(0);
+    assert_eq!(run.stderr, "", "{words:?}");
+    run.stdout
+}
+
+/// Damages the one result of a kind: the command says so, and makes it anew.
+fn repairs(workshop: &Workshop, kind: &str, words: &[&str]) -> String {
+    let [entry] = entries(workshop, kind).try_into().unwrap();
+    let path = format!("store/objects/{entry}");
+    let whole = fs::read(workshop.path(&path)).unwrap();
+    let mut damaged = whole.clone();
+    *damaged.last_mut().unwrap() ^= 1;
+    workshop.write(&path, &damaged);
+    let run =
+        workshop.run(&[words, &["--cache", "store"]].concat()).exits(0).says(&["warning: cannot read", "damaged"]);
+    assert_eq!(fs::read(workshop.path(&path)).unwrap(), whole);
+    run.stdout
+}
+
+/// Oracle: the fit without a store.
+#[test]
+fn lobes_are_fitted_once_for_values_shaders_and_bakes() {
+    let workshop = Workshop::with(&[("lacquer.toml", &lacquer("lacquer"))]);
+    let [value, furnace, shader] =
+        [&EVAL[..], &FURNACE, &SHADER].map(|words| workshop.run(&[words, &["--no-cache"]].concat()).exits(0).stdout);
+    assert_eq!(workshop.files("."), ["lacquer.toml"]);
+    for _ in 0..2 {
+        assert_eq!(printed(&workshop, &EVAL), value);
+        assert_eq!(count(&workshop, "fit"), 1);
+    }
+    assert_eq!(repairs(&workshop, "fit", &EVAL), value);
+    assert_eq!(printed(&workshop, &SHADER), shader);
+    let bake = ["bake", "lacquer.toml", "--model", "lobes", "--cache", "store", "--json"];
+    let baked = workshop.run(&bake).exits(0).json();
+    let seconds = baked["seconds"].as_object().unwrap();
+    assert!(seconds.contains_key("lobes") && !seconds.contains_key("fit"), "{baked}");
+    assert_eq!(count(&workshop, "fit"), 1);
+    // The furnace has another stack: it absorbs nothing.
+    for _ in 0..2 {
+        assert_eq!(printed(&workshop, &FURNACE), furnace);
+        assert_eq!(count(&workshop, "fit"), 2);
+    }
+}
+
+/// Oracle: the errors without a store.
+#[test]
+fn models_are_compared_with_their_reference_once() {
+    let workshop = Workshop::with(&[("gold.toml", &gold("gold"))]);
+    workshop.run(&["bake", "gold.toml", "--quiet"]).exits(0);
+    workshop.run(&[&REPORT[..], &["--no-cache"]].concat()).exits(0);
+    let report = workshop.text("out/report/report.json");
+    for _ in 0..2 {
+        printed(&workshop, &REPORT);
+        assert_eq!(workshop.text("out/report/report.json"), report);
+        assert_eq!(count(&workshop, "reference"), 1);
+    }
+    repairs(&workshop, "reference", &REPORT);
+    assert_eq!(workshop.text("out/report/report.json"), report);
+    // Other paths are another reference.
+    printed(&workshop, &["report", "--no-device", "--pairs", "64", "--reference=17"]);
+    assert_eq!(count(&workshop, "reference"), 2);
+}
