@@ -87,11 +87,11 @@ struct Wanted {
     reader: Reader,
 }
 
-/// What reads a tile.
+/// Reader of a tile.
 enum Reader {
     /// The record of a layer.
     Layer(usize),
-    /// That of the layer below a patina where none has grown.
+    /// The record of the layer below a patina where none has grown.
     Bare,
     /// A look-up in the tile before.
     Run,
