@@ -22,10 +22,10 @@ mega() { awk -v bytes="$1" 'BEGIN { printf "%.1f", bytes / 1e6 }'; }
 
 seconds() { awk '{ print $1 }' "$1"; }
 processor() { awk '{ print $2 + $3 }' "$1"; }
-bake() { # NAME ARGUMENT...: bakes without fits, and keeps the time, the processor time and the memory that it took in a file
+bake() { # NAME ARGUMENT...: bakes without fits, and keeps the time, the processor time and the memory that it took in a file, and what it told in another
   local name=$1
   shift
-  /usr/bin/time -f '%e %U %S %M' -o "$here/$name.time" "$luthier" bake "$@" --no-fit --cache "$here/store" 2>/dev/null
+  /usr/bin/time -f '%e %U %S %M' -o "$here/$name.time" "$luthier" bake "$@" --no-fit --json --cache "$here/store" 2>/dev/null >"$here/$name.json"
 }
 median() { sort -n | awk '{ v[NR] = $1 } END { print v[int((NR + 1) / 2)] }'; }
 
@@ -75,7 +75,7 @@ for count in "${sizes[@]}"; do
   bake unlocked "$here/materials" --out "$here/kept"
   bake locking "$here/materials" --out "$here/out" --relock
   sed -i 's/ior = 1.4321/ior = 1.4322/' "$first"
-  bake changed "$here/materials" --out "$here/out" --json >"$here/changed.json"
+  bake changed "$here/materials" --out "$here/out"
   apart=$(python3 -c 'import json, sys
 told = json.load(sys.stdin)
 phases, jobs = told["phases"], sum(told["seconds"].values())

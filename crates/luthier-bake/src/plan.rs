@@ -69,6 +69,9 @@ pub(crate) fn color_mode(material: &Material) -> ColorMode {
 /// Reads an image that a material names: material file, path as written there.
 pub type ImageReader<'a> = &'a (dyn Fn(&str, &str) -> Result<Image, String> + Sync);
 
+/// Materials that are planned side by side: few beside all that a large bake has.
+const SIDE_BY_SIDE: usize = 256;
+
 /// The plan of one material.
 #[derive(Default)]
 struct Part {
@@ -103,11 +106,13 @@ impl Plan {
         settings: Settings,
         read_image: ImageReader<'_>,
     ) -> Result<Self, BakeError> {
-        let part = |material: &Material| Part::new(material, &settings, read_image);
-        let parts: Vec<Result<Part, BakeError>> = materials.par_iter().map(part).collect();
         let mut plan = Self { settings, graph: Graph::default(), tiles: Default::default(), records: Vec::new() };
-        for part in parts {
-            plan.take(part?);
+        for materials in materials.chunks(SIDE_BY_SIDE) {
+            let part = |material: &Material| Part::new(material, &plan.settings, read_image);
+            let parts: Vec<Result<Part, BakeError>> = materials.par_iter().map(part).collect();
+            for part in parts {
+                plan.take(part?);
+            }
         }
         limits::check_buffer(&plan.records)?;
         Ok(plan)

@@ -51,7 +51,7 @@ pub struct Share {
 }
 
 /// A job in a graph.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Entry {
     job: Arc<dyn Job>,
     address: Key,
@@ -114,40 +114,43 @@ impl Graph {
         }
     }
 
-    fn all(&self) -> impl Iterator<Item = (Key, &Arc<dyn Job>)> {
-        self.jobs.values().flatten().map(|(key, entry)| (*key, &entry.job))
-    }
-
     /// The addresses of all jobs.
     pub(crate) fn addresses(&self) -> impl Iterator<Item = Key> {
-        self.jobs.values().flat_map(BTreeMap::values).map(|entry| entry.address)
+        self.entries().map(|(_, entry)| entry.address)
     }
 
     /// The graph of some of its jobs, with all that these need.
     pub(crate) fn only(&self, is_one: impl Fn(&dyn Job) -> bool) -> Self {
-        let mut some = Self::default();
-        for (_, job) in self.all().filter(|(_, job)| is_one(job.as_ref())) {
-            some.add(job.clone());
-        }
-        some
+        self.with_needs(self.entries().filter(|(_, entry)| is_one(entry.job.as_ref())).map(|(at, _)| at))
     }
 
     /// The graph of a share of its jobs, with all that these need: of those that no other needs, one after the other for each share.
     pub(crate) fn share(&self, share: Share, is_one: impl Fn(&dyn Job) -> bool) -> Self {
         let inner = self.inner();
-        let outer =
-            self.jobs.iter().flat_map(|(&place, jobs)| jobs.iter().map(move |(&key, entry)| (place, key, entry)));
-        let outer = outer.filter(|(place, key, entry)| is_one(entry.job.as_ref()) && !inner.contains(&(*place, *key)));
+        let outer = self.entries().filter(|(at, entry)| is_one(entry.job.as_ref()) && !inner.contains(at));
+        self.with_needs(outer.map(|(at, _)| at).skip(share.index as usize - 1).step_by(share.count as usize))
+    }
+
+    /// The graph of some of its jobs by their places and keys, with all that these need.
+    fn with_needs(&self, wanted: impl Iterator<Item = (Place, Key)>) -> Self {
         let mut some = Self::default();
-        for (_, _, entry) in outer.skip(share.index as usize - 1).step_by(share.count as usize) {
-            some.add(entry.job.clone());
+        let mut open: Vec<(Place, Key)> = wanted.collect();
+        while let Some((place, key)) = open.pop() {
+            let Some(entry) = self.jobs.get(&place).and_then(|jobs| jobs.get(&key)) else { continue };
+            if some.jobs.entry(place).or_default().insert(key, entry.clone()).is_none() {
+                open.extend(&entry.needs);
+            }
         }
         some
     }
 
+    fn entries(&self) -> impl Iterator<Item = ((Place, Key), &Entry)> {
+        self.jobs.iter().flat_map(|(&place, jobs)| jobs.iter().map(move |(&key, entry)| ((place, key), entry)))
+    }
+
     /// The jobs that others need.
     fn inner(&self) -> BTreeSet<(Place, Key)> {
-        self.jobs.values().flat_map(BTreeMap::values).flat_map(|entry| entry.needs.iter().copied()).collect()
+        self.entries().flat_map(|(_, entry)| entry.needs.iter().copied()).collect()
     }
 
     /// The number of jobs by kind whose results neither `results` nor the store has, and that would run.
@@ -161,16 +164,12 @@ impl Graph {
 
     /// The graph of the jobs whose results are intermediate.
     pub(crate) fn intermediate(&self) -> Self {
-        let mut some = Self::default();
-        for job in self.all().flat_map(|(_, job)| job.dependencies()) {
-            some.add(job);
-        }
-        some
+        self.with_needs(self.inner().into_iter())
     }
 
     /// The jobs of a type, in the order of their keys.
     pub(crate) fn of<J: Job>(&self) -> impl Iterator<Item = &J> {
-        self.all().filter_map(|(_, job)| (job.as_ref() as &dyn Any).downcast_ref())
+        self.entries().filter_map(|(_, entry)| (entry.job.as_ref() as &dyn Any).downcast_ref())
     }
 
     /// A job of a type by its key.
