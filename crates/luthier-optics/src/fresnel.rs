@@ -55,10 +55,11 @@ pub fn coated(above: Complex64, films: &[FilmLayer], below: Complex64, cos_theta
         |boundary, inner, q, waves| {
             // The wave crosses the film down and up.
             let round_trip = exp_i(q * (4.0 * PI * waves));
-            [0, 1].map(|p: usize| {
-                let echo = inner[p] * round_trip;
-                ratio(boundary[p] + echo, Complex64::ONE + boundary[p] * echo)
-            })
+            let [echo_s, echo_p] = [inner[0] * round_trip, inner[1] * round_trip];
+            [
+                ratio(boundary[0] + echo_s, Complex64::ONE + boundary[0] * echo_s),
+                ratio(boundary[1] + echo_p, Complex64::ONE + boundary[1] * echo_p),
+            ]
         },
     );
     Polarised { refl_s: r_s.norm_sqr().min(1.0), refl_p: r_p.norm_sqr().min(1.0) }
@@ -149,7 +150,8 @@ fn airy<A>(
     inner
 }
 
-/// a / b, and 0 for 0/0: an index-matched interface at grazing incidence reflects nothing.
+/// a / b, and 0 for 0/0: an index-matched interface at grazing incidence reflects nothing. Inlined, as is the root: these take most of the time.
+#[inline(always)]
 fn ratio(a: Complex64, b: Complex64) -> Complex64 {
     if b == Complex64::ZERO {
         return Complex64::ZERO;
@@ -164,6 +166,7 @@ fn ratio(a: Complex64, b: Complex64) -> Complex64 {
 
 /// Principal square root, real part not negative; for the arguments here, Im >= 0, the imaginary part is not negative
 /// either, which is the decaying branch.
+#[inline(always)]
 fn sqrt(z: Complex64) -> Complex64 {
     let modulus = libm::hypot(z.re, z.im);
     if modulus == 0.0 {
@@ -181,7 +184,8 @@ fn sqrt(z: Complex64) -> Complex64 {
 /// e^{i z}.
 fn exp_i(z: Complex64) -> Complex64 {
     let amplitude = libm::exp(-z.im);
-    Complex64::new(amplitude * libm::cos(z.re), amplitude * libm::sin(z.re))
+    let (sin, cos) = libm::sincos(z.re);
+    Complex64::new(amplitude * cos, amplitude * sin)
 }
 
 /// Cosine-weighted mean reflectance of a dielectric seen from outside, in closed form, for `eta` > 1 (Walsh 1926; printed
