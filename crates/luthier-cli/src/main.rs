@@ -18,6 +18,8 @@ mod reradiation;
 mod shared_store;
 mod store;
 mod surroundings;
+#[cfg(feature = "gpu")]
+mod variations;
 mod verb;
 #[cfg(feature = "view")]
 mod view_host;

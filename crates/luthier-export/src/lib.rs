@@ -45,7 +45,7 @@ pub use refusals::{refuse, refuse_too_many};
 #[cfg(feature = "bake")]
 pub use renderer::{lit, lit_functions};
 #[cfg(feature = "bake")]
-pub use sources::{Source, find, label, parse, read, read_all, read_image, read_one};
+pub use sources::{Source, find, label, of_text, parse, read, read_all, read_image, read_one};
 
 pub(crate) use publish::READY;
 

@@ -91,9 +91,15 @@ pub fn read_one(path: &Path) -> Result<Source, ExportError> {
         Ok(text) => text,
         Err(source) => return Ok(not_utf8(label, &source)),
     };
-    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    Ok(of_text(path, text))
+}
+
+/// Validates a text in the place of a file's. Files that it names are beside that file.
+pub fn of_text(path: &Path, text: String) -> Source {
+    let label = label(path);
+    let folder = path.parent().unwrap_or(Path::new(""));
     let parsed = luthier_material::parse(&label, &text, &|name| input::text(&folder.join(name)));
-    Ok(Source { label, text, parsed })
+    Source { label, text, parsed }
 }
 
 /// A file of other bytes than text: they are shown as replacement characters.

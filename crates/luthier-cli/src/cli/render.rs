@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::{Args, ValueEnum};
+use clap::{ArgAction, Args, ValueEnum};
 use luthier_gpu::{Shape, ToneMapping};
 use luthier_lut::UnknownName;
 use luthier_manifest::{Form, ShadingModel};
@@ -12,6 +12,7 @@ use luthier_manifest::{Form, ShadingModel};
 use luthier_terminal::Sources;
 
 use super::Shading;
+use crate::variations::Range;
 
 const PREVIEW_EXAMPLES: &str = "\
 MATERIAL is a material file, or the name of a material in the bake. Directions and positions have +y up and +z to the eye;
@@ -82,7 +83,8 @@ pub(crate) struct PreviewOptions {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  luthier gallery -o sheet.png\n  luthier gallery materials mine.toml -o sheet.png --columns 6"
+    after_help = "Examples:\n  luthier gallery -o sheet.png\n  luthier gallery materials mine.toml -o sheet.png --columns 6
+  luthier gallery materials/red-lacquer.toml -o grid.png --grid slope_deg=1..30 layer.1.albedo.0=0.1..0.9"
 )]
 pub(crate) struct GalleryOptions {
     #[command(flatten)]
@@ -101,6 +103,13 @@ pub(crate) struct GalleryOptions {
     /// Pictures in a row; by default about as many as rows
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     pub(crate) columns: Option<u32>,
+    /// One file with other numbers at two keys: the first grows along the rows, the second down the columns. A key with dots leads from the top of
+    /// the file, as in layer.1.albedo.0, and counts from 0; one without is that of the topmost layer that has it
+    #[arg(long, action = ArgAction::Set, num_args = 2, value_names = ["KEY=FROM..TO", "KEY=FROM..TO"], conflicts_with = "columns")]
+    pub(crate) grid: Vec<Range>,
+    /// Numbers of each key of the grid
+    #[arg(long, value_name = "N", default_value_t = 5, requires = "grid", value_parser = clap::value_parser!(u32).range(2..=16))]
+    pub(crate) steps: u32,
     #[command(flatten)]
     pub(crate) look: Look,
 }

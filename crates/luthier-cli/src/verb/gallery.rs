@@ -1,6 +1,6 @@
 //! `gallery`: many materials side by side.
 
-use luthier_export::{Package, lit, read};
+use luthier_export::{Package, Source, find, lit, read};
 use luthier_manifest::Form;
 use luthier_report::sheet;
 use luthier_terminal::{Failure, Outcome, open};
@@ -9,6 +9,7 @@ use crate::cli::{GalleryOptions, ShapeName};
 use crate::materials::bakeable;
 use crate::picture::{Format, settings};
 use crate::store::store;
+use crate::variations::variations;
 
 /// Renders many materials side by side.
 pub(crate) fn run(options: &GalleryOptions) -> Outcome {
@@ -18,7 +19,9 @@ pub(crate) fn run(options: &GalleryOptions) -> Outcome {
             "a gallery shows one material per picture, the grid 25 of its own"
         )));
     }
-    let materials = bakeable(read(&options.sources.paths)?, &options.shading, &[], false)?;
+    let (titles, sources) = sources(options)?;
+    // The warnings of a grid would be those of one file many times.
+    let materials = bakeable(sources, &options.shading, &[], !options.grid.is_empty())?;
     let package = Package::for_renderer(&lit(&materials), store()?)?;
     let look = &options.look;
     let settings = settings(look, options.shape.into(), options.size)?;
@@ -26,8 +29,22 @@ pub(crate) fn run(options: &GalleryOptions) -> Outcome {
     let scene = gpu.scene(&package, Form::Baked)?;
     let mut pictures = Vec::with_capacity(materials.len());
     for (i, material) in materials.iter().enumerate() {
-        pictures.push((material.name.clone(), scene.render(&[i as u32], &settings)?));
+        let title = titles.get(i).unwrap_or(&material.name);
+        pictures.push((title.clone(), scene.render(&[i as u32], &settings)?));
     }
     let columns = options.columns.unwrap_or_else(|| (pictures.len() as f64).sqrt().ceil() as u32);
     format.write(&options.output, sheet(&pictures, columns), look.tone.into())
+}
+
+/// The files, or the variations of one with their titles.
+fn sources(options: &GalleryOptions) -> Outcome<(Vec<String>, Vec<Source>)> {
+    let paths = &options.sources.paths;
+    let [along, down] = options.grid.as_slice() else { return Ok((Vec::new(), read(paths)?)) };
+    match find(paths)?.as_slice() {
+        [file] => Ok(variations(file, [along, down], options.steps)?.into_iter().unzip()),
+        files => Err(Failure::Input(anyhow::anyhow!(
+            "a grid is of one material file, and here are {}: name one",
+            files.len()
+        ))),
+    }
 }

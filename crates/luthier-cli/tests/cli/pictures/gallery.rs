@@ -37,3 +37,52 @@ fn what_a_gallery_cannot_show() {
     workshop.run(&["gallery", "missing.toml", "-o", "no.png"]).fails(3, &["missing.toml"]);
     assert!(!workshop.path("no.png").exists());
 }
+
+/// Rows of a grid differ in the second key, its columns in the first.
+#[test]
+fn a_grid_of_one_file() {
+    let workshop = Workshop::with(&[("lacquer.toml", &lacquer("lacquer"))]);
+    let before = std::fs::read_to_string(workshop.path("lacquer.toml")).unwrap();
+    let run = workshop.run(&[
+        "gallery",
+        "lacquer.toml",
+        "-o",
+        "grid.png",
+        "--size",
+        "32",
+        "--samples",
+        "1",
+        "--no-fit",
+        "--steps",
+        "2",
+        "--grid",
+        "ior=1.1..2.5",
+        "layer.1.albedo.0=0.0..0.9",
+    ]);
+    if run.lacks_adapter() {
+        return;
+    }
+    run.exits(0);
+    let grid = image::open(workshop.path("grid.png")).unwrap().into_rgb8();
+    assert_eq!(grid.dimensions(), (2 * 40 + 8, 2 * (32 + 16 + 8) + 8));
+    let red = |column: u32, row: u32| grid.get_pixel(24 + 40 * column, 24 + 56 * row)[0];
+    for column in 0..2 {
+        assert!(red(column, 1) > red(column, 0) + 40, "{} {}", red(column, 0), red(column, 1));
+    }
+    let row = |row: u32| [0, 1].map(|column| *grid.get_pixel(24 + 40 * column, 24 + 56 * row));
+    assert!(row(0)[0] != row(0)[1] && row(1)[0] != row(1)[1]);
+    assert_eq!(std::fs::read_to_string(workshop.path("lacquer.toml")).unwrap(), before);
+}
+
+#[test]
+fn grids_that_cannot_be() {
+    let workshop = Workshop::with(&[("a.toml", &lacquer("a")), ("b.toml", &lacquer("b"))]);
+    let grid = |file: &str, ranges: [&str; 2]| {
+        workshop.run(&["gallery", file, "-o", "no.png", "--grid", ranges[0], ranges[1]])
+    };
+    grid(".", ["ior=1.1..2", "ior=1.1..2"]).fails(1, &["2", "name one"]);
+    grid("a.toml", ["ior=1.1..2", "layer.7.ior=1..2"]).fails(1, &["a.toml", "layer.7.ior"]);
+    grid("a.toml", ["ior=1.1..2", "shine=0..1"]).exits(1).says(&["a.toml", "shine"]);
+    grid("a.toml", ["ior=1.1..2", "ior"]).exits(2).says(&["KEY=FROM..TO"]);
+    assert!(!workshop.path("no.png").exists());
+}

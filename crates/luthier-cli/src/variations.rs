@@ -1,0 +1,181 @@
+//! One material file with other numbers at two of its keys: the grid of `gallery --grid`.
+
+use std::path::Path;
+use std::str::FromStr;
+
+use luthier_export::{Source, of_text, read_one};
+use luthier_terminal::{Failure, Outcome};
+use toml_edit::{DocumentMut, Formatted, Item, TableLike, Value};
+
+/// A key of a material file, and the numbers that it takes.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Range {
+    key: String,
+    from: f64,
+    to: f64,
+}
+
+impl FromStr for Range {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("`{text}` is no KEY=FROM..TO, for instance roughness=0.1..1");
+        let (key, range) = text.split_once('=').ok_or_else(wrong)?;
+        let (from, to) = range.split_once("..").ok_or_else(wrong)?;
+        let number = |text: &str| text.parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(wrong);
+        let (from, to) = (number(from)?, number(to)?);
+        if key.is_empty() || key.split('.').any(str::is_empty) {
+            return Err(wrong());
+        }
+        Ok(Self { key: key.to_owned(), from, to })
+    }
+}
+
+impl Range {
+    /// The number at one of some equal steps, rounded to millionths so that it is written as people write it.
+    fn at(&self, step: u32, steps: u32) -> f64 {
+        let t = f64::from(step) / f64::from(steps - 1);
+        ((self.from * (1.0 - t) + self.to * t) * 1e6).round() / 1e6
+    }
+}
+
+/// A file whose first key grows along the rows and whose second grows down the columns, row by row from the top left; with the two numbers of each.
+/// If one of them is no material, it is the only one that is returned.
+///
+/// # Errors
+/// The file cannot be read, or has no place for a key.
+pub(crate) fn variations(file: &Path, ranges: [&Range; 2], steps: u32) -> Outcome<Vec<(String, Source)>> {
+    let original = read_one(file)?;
+    let Ok(parsed) = &original.parsed else { return Ok(vec![(String::new(), original)]) };
+    let document: DocumentMut = original.text.parse().map_err(|error| Failure::Input(anyhow::anyhow!("{error}")))?;
+    let mut variations = Vec::new();
+    for (row, column) in (0..steps).flat_map(|row| (0..steps).map(move |column| (row, column))) {
+        let numbers = [ranges[0].at(column, steps), ranges[1].at(row, steps)];
+        let mut document = document.clone();
+        document["name"] = toml_edit::value(format!("{}-{row}-{column}", parsed.material.name));
+        for (range, number) in ranges.into_iter().zip(numbers) {
+            set(&mut document, &range.key, number)
+                .map_err(|why| Failure::Input(anyhow::anyhow!("{}: {why}", original.label)))?;
+        }
+        let source = of_text(file, document.to_string());
+        let title = format!("{} {}", numbers[0], numbers[1]);
+        if source.parsed.is_err() {
+            return Ok(vec![(title, source)]);
+        }
+        variations.push((title, source));
+    }
+    Ok(variations)
+}
+
+/// Writes a number at a key. A key with dots leads from the top of the file, and counts elements of arrays from 0. One without is that of the
+/// topmost layer that has it, or else a new one of the first layer.
+fn set(document: &mut DocumentMut, key: &str, number: f64) -> Result<(), String> {
+    let path: Vec<String> = if key.contains('.') {
+        key.split('.').map(str::to_owned).collect()
+    } else {
+        let layers = document.get("layer").and_then(Item::as_array_of_tables);
+        let layer = layers.and_then(|layers| layers.iter().position(|layer| layer.contains_key(key))).unwrap_or(0);
+        vec!["layer".to_owned(), layer.to_string(), key.to_owned()]
+    };
+    let (last, above) = path.split_last().ok_or("an empty key")?;
+    let mut here = Place::Table(document.as_table_mut());
+    for segment in above {
+        here = here.step(segment).ok_or_else(|| format!("nothing is at `{segment}` of `{key}`"))?;
+    }
+    here.write(last, number).ok_or_else(|| format!("no number can be at `{key}`"))
+}
+
+/// What a key leads through.
+enum Place<'a> {
+    Table(&'a mut dyn TableLike),
+    Tables(&'a mut toml_edit::ArrayOfTables),
+    Array(&'a mut toml_edit::Array),
+}
+
+impl<'a> Place<'a> {
+    fn step(self, segment: &str) -> Option<Self> {
+        match self {
+            Self::Table(table) => match table.get_mut(segment)? {
+                Item::ArrayOfTables(tables) => Some(Self::Tables(tables)),
+                Item::Table(table) => Some(Self::Table(table)),
+                Item::Value(value) => Self::of(value),
+                Item::None => None,
+            },
+            Self::Tables(tables) => Some(Self::Table(tables.get_mut(segment.parse().ok()?)?)),
+            Self::Array(array) => Self::of(array.get_mut(segment.parse().ok()?)?),
+        }
+    }
+
+    fn of(value: &'a mut Value) -> Option<Self> {
+        match value {
+            Value::InlineTable(table) => Some(Self::Table(table)),
+            Value::Array(array) => Some(Self::Array(array)),
+            _ => None,
+        }
+    }
+
+    /// A whole number stays one where one was.
+    fn write(self, last: &str, number: f64) -> Option<()> {
+        let float = || Value::Float(Formatted::new(number));
+        let like = |old: &Value| match old {
+            Value::Integer(_) if number.fract() == 0.0 => Value::Integer(Formatted::new(number as i64)),
+            _ => float(),
+        };
+        match self {
+            Self::Table(table) => {
+                let value = match table.get(last) {
+                    None | Some(Item::None) => float(),
+                    Some(item) => like(item.as_value()?),
+                };
+                table.insert(last, Item::Value(value));
+            }
+            Self::Tables(_) => return None,
+            Self::Array(array) => {
+                let old = array.get_mut(last.parse().ok()?)?;
+                *old = like(old);
+            }
+        }
+        Some(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FILE: &str = "[[layer]]\ntype = \"dielectric\" # a coat\nior = 1.5\nfilms = [{ thickness_nm = 300 }]\n\
+                        [[layer]]\ntype = \"diffuse\"\nalbedo = [0.1, 0.2, 0.3]\nroughness = 0.5\n";
+
+    fn with(key: &str, number: f64) -> Result<String, String> {
+        let mut document: DocumentMut = FILE.parse().unwrap();
+        set(&mut document, key, number).map(|()| document.to_string())
+    }
+
+    #[test]
+    fn ranges_are_read() {
+        let range: Range = "layer.0.alpha=0.1..1".parse().unwrap();
+        assert_eq!(range, Range { key: "layer.0.alpha".to_owned(), from: 0.1, to: 1.0 });
+        assert_eq!([0, 1, 2, 3].map(|step| range.at(step, 4)), [0.1, 0.4, 0.7, 1.0]);
+        for wrong in ["alpha", "alpha=1", "alpha=1..", "=0..1", "alpha=0..nan", "a..b=0..1"] {
+            let range: Result<Range, String> = wrong.parse();
+            assert!(range.is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn only_the_number_changes() {
+        assert_eq!(with("ior", 1.6).unwrap(), FILE.replace("1.5", "1.6"));
+        assert_eq!(with("roughness", 0.25).unwrap(), FILE.replace("0.5\n", "0.25\n"));
+        assert_eq!(with("layer.1.albedo.2", 0.9).unwrap(), FILE.replace("0.3]", "0.9]"));
+        assert!(with("layer.0.films.0.thickness_nm", 400.0).unwrap().contains("thickness_nm = 400 "));
+        assert!(with("layer.0.films.0.thickness_nm", 400.5).unwrap().contains("thickness_nm = 400.5 "));
+        assert!(with("alpha", 0.5).unwrap().contains("films = [{ thickness_nm = 300 }]\nalpha = 0.5\n"));
+    }
+
+    #[test]
+    fn a_key_that_leads_nowhere() {
+        for key in ["layer.2.ior", "layer.x.ior", "bake.fgd.size", "layer.1.albedo.3", "layer.0", "layer.0.ior.0"] {
+            assert!(with(key, 1.0).is_err(), "{key}");
+        }
+    }
+}
