@@ -4,6 +4,8 @@
 //! are products and sums of f64, and `divisions` and `roots` of f64, each per second in independent chains, with the instructions that the
 //! compiler may use by default. `bytes` per second are read from memory, in one pass over 256 MiB.
 
+#![allow(clippy::print_stdout, reason = "an example")]
+
 use std::hint::black_box;
 use std::time::Instant;
 
