@@ -3,7 +3,7 @@
 #   scripts/pages.sh              all: half an hour on two cores
 #   scripts/pages.sh NAME...      some, by the names of the functions below
 #   scripts/pages.sh --cheap      those that take seconds and are alike on every machine; the tests make them too, and compare
-# Wants the software Vulkan drivers of Debian's mesa-vulkan-drivers. LUTHIER and LUTHIER_LAB name the programs; by default cargo builds them.
+# Wants the software Vulkan drivers of Debian's mesa-vulkan-drivers, and Python 3. LUTHIER and LUTHIER_LAB name the programs; by default cargo builds them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # Everything is computed: no results of earlier runs.
@@ -57,9 +57,13 @@ distribution-table() { scripts/compare-distribution.sh >docs/pages/distribution-
 speed() { scripts/bench-table.sh >docs/pages/speed.md; }
 dfg() { scripts/bench-dfg.sh >docs/pages/dfg.md; }
 engine-tables() { scripts/engine-tables.sh >docs/pages/engine-tables.md; }
+by-hand() {
+  [ -n "${LUTHIER-}" ] || cargo build --quiet --release --locked -p luthier-cli
+  python3 scripts/independent/papers.py "${LUTHIER-target/release/luthier}" >docs/pages/by-hand.md
+}
 reference() { luthier man --markdown >docs/reference.md; }
 
-all=(materials shapes cost papers budgets scenes parity stability figures models lobes varying anisotropic environment bench shader-size distribution-table speed dfg engine-tables reference)
+all=(materials shapes cost papers budgets scenes parity stability figures models lobes varying anisotropic environment bench shader-size distribution-table speed dfg engine-tables by-hand reference)
 case ${1-} in
   "") pages=("${all[@]}") ;;
   --cheap) pages=(shader-size reference) ;;
