@@ -7,6 +7,7 @@ use luthier_lut::{
 };
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
+use luthier_optics::fresnel::coated;
 use luthier_optics::interface::{Interface, Sampled};
 use luthier_optics::stack::FilmThickness;
 use rayon::prelude::*;
@@ -108,8 +109,8 @@ impl FilmJob {
         let rows: Vec<Vec<f32>> = (0..y.size)
             .into_par_iter()
             .map(|j| {
-                let here = at_fraction(&thickest, y.node(j));
-                (0..x.size).flat_map(|i| here.rgb(incident_cosine(cot_sq, x.node(i))).map(|c| c as f32)).collect()
+                let at = |i| reflectance(&thickest, y.node(j), incident_cosine(cot_sq, x.node(i)));
+                (0..x.size).flat_map(|i| at(i).map(|c| c as f32)).collect()
             })
             .collect();
         Image { width: x.size, height: y.size, channels: 3, data: rows.concat() }
@@ -124,7 +125,7 @@ impl FilmJob {
             .map(|i| {
                 let [a, b] = R2.map(|r| (0.5 + f64::from(i) * r).fract());
                 let (cos_theta, fraction) = (a * a, least + (1.0 - least) * b);
-                let [r, g, b] = at_fraction(&thickest, fraction).rgb(incident_cosine(cot_sq, cos_theta));
+                let [r, g, b] = reflectance(&thickest, fraction, incident_cosine(cot_sq, cos_theta));
                 ([cos_theta, fraction], [r, g, b, 1.0])
             })
             .collect()
@@ -147,7 +148,7 @@ impl FilmJob {
             },
             |u| {
                 let values = [x.decode(u[0]), y.decode(u[1])];
-                let [r, g, b]: Rgb = at_fraction(&thickest, values[1]).rgb(incident_cosine(cot_sq, values[0]));
+                let [r, g, b]: Rgb = reflectance(&thickest, values[1], incident_cosine(cot_sq, values[0]));
                 let read = atlas.sample(0, values, WeightBits::Fixed(8));
                 Comparison { expected: [r, g, b, 0.0], sampled: [read[0], read[1], read[2], 0.0] }
             },
@@ -167,11 +168,14 @@ impl FilmJob {
     }
 }
 
-/// The interface where the top film has a fraction of its greatest thickness.
-fn at_fraction(thickest: &Sampled, fraction: f64) -> Sampled {
-    let mut here = thickest.clone();
-    for film in here.nodes.iter_mut().filter_map(|(_, interface)| interface.films.first_mut()) {
-        film.waves *= fraction;
-    }
-    here
+/// The reflectance where the top film has a fraction of its greatest thickness.
+fn reflectance(thickest: &Sampled, fraction: f64, cos_theta_i: f64) -> Rgb {
+    let mut films = Vec::new();
+    thickest.sum(|at| {
+        films.clone_from(&at.films);
+        if let Some(film) = films.first_mut() {
+            film.waves *= fraction;
+        }
+        coated(at.above, &films, at.below, cos_theta_i).unpolarised()
+    })
 }
