@@ -85,7 +85,7 @@ fn set(document: &mut DocumentMut, key: &str, number: f64) -> Result<(), String>
     here.write(last, number).ok_or_else(|| format!("no number can be at `{key}`"))
 }
 
-/// What a key leads through.
+/// Table or list on the way to a key.
 enum Place<'a> {
     Table(&'a mut dyn TableLike),
     Tables(&'a mut toml_edit::ArrayOfTables),

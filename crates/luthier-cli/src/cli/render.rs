@@ -84,7 +84,7 @@ pub(crate) struct PreviewOptions {
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples:\n  luthier gallery -o sheet.png\n  luthier gallery materials mine.toml -o sheet.png --columns 6
-  luthier gallery materials/red-lacquer.toml -o grid.png --grid slope_deg=1..30 layer.1.albedo.0=0.1..0.9"
+  luthier gallery lacquer.toml -o grid.png --grid roughness=0.1..1 layer.1.albedo.0=0.1..0.9"
 )]
 pub(crate) struct GalleryOptions {
     #[command(flatten)]
