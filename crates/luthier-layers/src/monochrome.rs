@@ -3,6 +3,7 @@
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::fresnel::{FilmLayer, Polarised, coated};
+use luthier_optics::interface::Interface;
 use luthier_optics::microfacet;
 use luthier_optics::stack::{Base, Layer, Stack, Surface};
 use num_complex::Complex64;
@@ -170,9 +171,14 @@ pub fn in_color(stack: &Stack, color: &Color, mut f: impl FnMut(&Monochrome) -> 
 /// The values of some functions of the monochrome stack in colour.
 pub fn in_colors<const N: usize>(stack: &Stack, color: &Color, mut f: impl FnMut(&Monochrome) -> [f64; N]) -> [Rgb; N] {
     let mut colors = [[0.0; 3]; N];
+    // A stack without a spectrum has one value per channel.
+    let is_gray = (0..stack.layers.len()).filter_map(|l| Interface::of(stack, l)).all(|i| i.is_achromatic());
+    let mut known = [None; 3];
     for node in color.nodes() {
         for channel in (0..3).filter(|&channel| node.weight[channel] != 0.0) {
-            let values = f(&Monochrome::new(stack, node.wavelength_nm, channel));
+            let kept = known[channel].filter(|_| is_gray);
+            let values = kept.unwrap_or_else(|| f(&Monochrome::new(stack, node.wavelength_nm, channel)));
+            known[channel] = Some(values);
             for (rgb, value) in colors.iter_mut().zip(values) {
                 rgb[channel] += node.weight[channel] * value;
             }
