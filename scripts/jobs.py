@@ -27,7 +27,8 @@ KINDS = {"FgdJob": "fgd", "FgdTruthJob": "fgd-truth", "FacetGridJob": "facet-gri
 LIMITS = """
 ## What holds them back
 
-- No job is held back by memory: what it touches is in the caches.
+- No job is held back by memory. If all that a job touches came from there, one after the other, the rate above would do for all kinds but `thickness`,
+  which reads the same small tables of Perlin's noise again and again.
 - `facet-grid`, `crossed` and `fit` are walks of light. Each step needs the direction of the step before, and its `exp`, `log` and `sincos` are chains of
   products that wait for each other: fewer than two instructions a cycle. Several walks side by side in the lanes of one register would use what is idle. This
   needs versions of these functions over lanes that round alike on every processor, because bytes must not depend on the machine.
@@ -137,11 +138,11 @@ def main():
     )
     print("## The jobs\n")
     print(
-        "- *Per cycle* are instructions; this core finishes no more than six.\n"
+        "- *Per cycle* are instructions.\n"
         "- *Sums* is the share of the time that sums and products need at the core's rate, *quotients* that of divisions and roots. These have units of their own,"
-        " and no job can be faster than the larger share.\n"
+        " and with these instructions no job can be faster than the larger share.\n"
         "- *Times the limit* is the time over the larger share.\n"
-        "- *Touched* are bytes that the instructions read and write, in GB a second. They stay in the caches: all tables of one job are below 10 MB.\n"
+        "- *Touched* are bytes that the instructions read and write, in GB a second, wherever those are: most are in the caches.\n"
     )
     print("| kind | jobs | seconds | unit | units | ns each | instructions each | per cycle | sums | quotients | times the limit | touched |")
     print("|---|--:|--:|---|--:|--:|--:|--:|--:|--:|--:|--:|")

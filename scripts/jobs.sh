@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Counts and times each kind of job on one core, and writes how far it is from the limits of the machine to docs/pages/jobs.md: ten minutes on two
+# Counts and times each kind of job on one core, and writes how far it is from the limits of the machine to docs/pages/jobs.md: three minutes on two
 # cores. Needs valgrind, objdump and Python 3 (on Debian: apt-get install valgrind binutils python3).
 set -euo pipefail
 cd "$(dirname "$0")/.."

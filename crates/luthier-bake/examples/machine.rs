@@ -4,7 +4,7 @@
 //! are products and sums of f64, and `divisions` and `roots` of f64, each per second in independent chains, with the instructions that the
 //! compiler may use by default. `bytes` per second are read from memory, in one pass over 256 MiB.
 
-#![allow(clippy::print_stdout, reason = "an example")]
+#![expect(clippy::print_stdout, reason = "an example speaks on the terminal")]
 
 use std::hint::black_box;
 use std::time::Instant;

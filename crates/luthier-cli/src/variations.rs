@@ -32,10 +32,11 @@ impl FromStr for Range {
 }
 
 impl Range {
-    /// The number at one of some equal steps, rounded to millionths so that it is written as people write it.
+    /// The number at one of some equal steps, to ten digits so that it is written as people write it.
     fn at(&self, step: u32, steps: u32) -> f64 {
         let t = f64::from(step) / f64::from(steps - 1);
-        ((self.from * (1.0 - t) + self.to * t) * 1e6).round() / 1e6
+        let number = self.from * (1.0 - t) + self.to * t;
+        format!("{number:.9e}").parse().unwrap_or(number)
     }
 }
 
@@ -73,8 +74,8 @@ fn set(document: &mut DocumentMut, key: &str, number: f64) -> Result<(), String>
     let path: Vec<String> = if key.contains('.') {
         key.split('.').map(str::to_owned).collect()
     } else {
-        let layers = document.get("layer").and_then(Item::as_array_of_tables);
-        let layer = layers.and_then(|layers| layers.iter().position(|layer| layer.contains_key(key))).unwrap_or(0);
+        let layers = (0..).map_while(|number| document.get("layer")?.get(number));
+        let layer = layers.into_iter().position(|layer| layer.get(key).is_some()).unwrap_or(0);
         vec!["layer".to_owned(), layer.to_string(), key.to_owned()]
     };
     let (last, above) = path.split_last().ok_or("an empty key")?;
@@ -170,6 +171,19 @@ mod tests {
         assert!(with("layer.0.films.0.thickness_nm", 400.0).unwrap().contains("thickness_nm = 400 "));
         assert!(with("layer.0.films.0.thickness_nm", 400.5).unwrap().contains("thickness_nm = 400.5 "));
         assert!(with("alpha", 0.5).unwrap().contains("films = [{ thickness_nm = 300 }]\nalpha = 0.5\n"));
+    }
+
+    #[test]
+    fn layers_may_be_an_array() {
+        let mut document: DocumentMut = "layer = [{ ior = 1.5 }, { roughness = 0.5 }]\n".parse().unwrap();
+        set(&mut document, "roughness", 0.25).unwrap();
+        assert!(document.to_string().contains("{ ior = 1.5 }, { roughness = 0.25 }"), "{document}");
+    }
+
+    #[test]
+    fn small_numbers_stay() {
+        let range: Range = "k=1e-8..3e-8".parse().unwrap();
+        assert_eq!([0, 1, 2].map(|step| range.at(step, 3)), [1e-8, 2e-8, 3e-8]);
     }
 
     #[test]

@@ -186,3 +186,38 @@ pub fn in_colors<const N: usize>(stack: &Stack, color: &Color, mut f: impl FnMut
     }
     colors
 }
+
+#[cfg(test)]
+mod tests {
+    use luthier_optics::ior::{Ior, IorSample};
+    use luthier_optics::stack::Slab;
+
+    use super::*;
+
+    /// Stacks with a spectrum and without are the weighted sum over the wavelengths of each channel.
+    #[test]
+    fn colours_are_sums_over_wavelengths() {
+        let glass = |ior| {
+            let slab = Slab { thickness_um: 1.0, absorption_per_um: [0.1, 0.5, 0.9] };
+            let layer = Layer { films: Vec::new(), surface: Surface::smooth(), base: Base::Dielectric { ior, slab } };
+            Stack { exterior: Ior::vacuum(), layers: vec![layer] }
+        };
+        let value = |one: &Monochrome| {
+            let MonochromeBelow::Dielectric { optical_depth, .. } = one.layers[0].below else { return 0.0 };
+            one.reflectance(0, 0.7) * optical_depth
+        };
+        let sample = |wavelength_nm, n| IorSample { wavelength_nm, n, k: 0.0 };
+        let spectral = Ior::sampled(vec![sample(400.0, 1.7), sample(700.0, 1.4)]).unwrap();
+        for ior in [Ior::constant(1.5, 0.0).unwrap(), spectral] {
+            let stack = glass(ior);
+            let mut expected = [0.0; 3];
+            for node in Color::Spectral.nodes() {
+                for channel in 0..3 {
+                    expected[channel] +=
+                        node.weight[channel] * value(&Monochrome::new(&stack, node.wavelength_nm, channel));
+                }
+            }
+            assert_eq!(in_color(&stack, &Color::Spectral, value), expected);
+        }
+    }
+}
