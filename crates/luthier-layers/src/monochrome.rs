@@ -212,9 +212,8 @@ mod tests {
             let stack = glass(ior);
             let mut expected = [0.0; 3];
             for node in Color::Spectral.nodes() {
-                for channel in 0..3 {
-                    expected[channel] +=
-                        node.weight[channel] * value(&Monochrome::new(&stack, node.wavelength_nm, channel));
+                for (channel, sum) in expected.iter_mut().enumerate() {
+                    *sum += node.weight[channel] * value(&Monochrome::new(&stack, node.wavelength_nm, channel));
                 }
             }
             assert_eq!(in_color(&stack, &Color::Spectral, value), expected);
