@@ -11,6 +11,7 @@ use luthier_layers::registry::models;
 use luthier_layers::textured::{TextureSample, Textured};
 use luthier_manifest::{Feature, ShadingModel};
 use luthier_material::{Effects, Material, left_out};
+use luthier_optics::Rgb;
 use luthier_terminal::{Failure, Outcome};
 
 use crate::directions::Angles;
@@ -76,6 +77,9 @@ struct Textures {
     /// Variance, along either axis, of the slopes of the normals that a pixel sees
     #[arg(long, value_name = "X", value_parser = not_negative, allow_hyphen_values = true)]
     slope_variance: Option<f64>,
+    /// Albedo of the diffuse base, in place of that of the file, for models with a shader
+    #[arg(long, value_name = "R,G,B", conflicts_with_all = ["furnace", "environment"])]
+    base_color: Option<BaseColor>,
 }
 
 impl Textures {
@@ -113,6 +117,11 @@ impl ModelInputs {
 
     pub(crate) fn has_normal(&self) -> bool {
         self.textures.normal.is_some()
+    }
+
+    /// The albedo of the diffuse base at the place.
+    pub(crate) fn base_color(&self) -> Option<Rgb> {
+        self.textures.base_color.map(|BaseColor(rgb)| rgb)
     }
 
     /// The values of the textures at the place.
@@ -167,6 +176,15 @@ impl ModelInputs {
             (Input::Seed, self.seed.is_some()),
         ];
         let info = model.info();
+        let takes_base_color = |name: &str| ShadingModel::NAMES.contains(&name) && name != ShadingModel::Phong.name();
+        if self.base_color().is_some() && !takes_base_color(info.name) {
+            let takers: Vec<&str> = ShadingModel::NAMES.iter().copied().filter(|name| takes_base_color(name)).collect();
+            return Err(Failure::Usage(anyhow::anyhow!(
+                "model `{}` does not take --base-color; those that do: {}",
+                info.name,
+                takers.join(", ")
+            )));
+        }
         let refused = given
             .into_iter()
             .find(|(input, is_given)| *is_given && !info.inputs.contains(input) && !by_effects(*input));
@@ -222,6 +240,19 @@ impl FromStr for Uv {
             (Ok(u), Ok(v)) => Ok(Self(DVec2::new(u, v))),
             _ => Err(expected()),
         }
+    }
+}
+
+#[derive(Debug, Clone, Copy)]
+struct BaseColor(Rgb);
+
+impl FromStr for BaseColor {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let values: Result<Vec<f64>, String> = text.split(',').map(|part| share(part.trim())).collect();
+        let rgb = values.ok().and_then(|values| Rgb::try_from(values).ok());
+        rgb.map(Self).ok_or_else(|| "expected three numbers from 0 to 1, such as 0.8,0.3,0.1".to_owned())
     }
 }
 

@@ -11,6 +11,8 @@ mod library;
 #[path = "../../../luthier-shader/tests/shader/machine.rs"]
 mod machine;
 #[cfg(feature = "gpu")]
+mod papers;
+#[cfg(feature = "gpu")]
 mod pictures;
 mod pipeline;
 mod report;

@@ -176,7 +176,7 @@ fn shaded(subject: &Subject, kind: &Kind) -> Option<How> {
     let fit = subject.fit.as_ref();
     match *kind {
         Kind::Reradiated(_) => None,
-        Kind::Wavelength(_) if ["belcour", "yamaguchi"].contains(&name) => None,
+        Kind::Wavelength(_) if ["belcour", "yamaguchi"].contains(&name) && place.base_color.is_none() => None,
         Kind::Wavelength(nm) => {
             let color = Color::ThreeWavelengths([nm; 3]);
             let shaded = Shaded::fitted_by(fit, name, &at_wavelength(stack, nm), [nm; 3], color, place)?;

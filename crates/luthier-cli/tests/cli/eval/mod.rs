@@ -11,5 +11,5 @@ mod ior;
 mod models;
 mod polarised;
 #[cfg(feature = "gpu")]
-mod twin;
+pub(crate) mod twin;
 mod values;

@@ -29,7 +29,7 @@ const PAIRS: u32 = 150;
 
 type Pair = ([f32; 3], [f32; 3]);
 
-pub(super) fn gpu() -> Option<Gpu> {
+pub(crate) fn gpu() -> Option<Gpu> {
     match Gpu::open() {
         Ok(gpu) => Some(gpu),
         Err(error @ GpuError::NoAdapter) if std::env::var_os("CI").is_none() => {
