@@ -1,13 +1,17 @@
 //! The figures of the papers, made anew.
 
 mod course;
+mod course_appearance;
+mod course_shader;
 mod elek;
+mod elek_examples;
 mod elek_places;
 mod figure;
 mod granier;
 mod page;
 mod studio;
 mod yamaguchi;
+mod yamaguchi_balls;
 
 use luthier_terminal::{Bar, Failure, Outcome, files, print};
 use luthier_texture::png;
@@ -18,7 +22,18 @@ use studio::Studio;
 
 /// All figures, in the order of the page.
 fn figures() -> Vec<Figure> {
-    [elek::FIGURES.as_slice(), &elek_places::FIGURES, &granier::FIGURES, &yamaguchi::FIGURES, &course::FIGURES].concat()
+    [
+        elek::FIGURES.as_slice(),
+        &elek_places::FIGURES,
+        &elek_examples::FIGURES,
+        &granier::FIGURES,
+        &yamaguchi::FIGURES,
+        &yamaguchi_balls::FIGURES,
+        &course::FIGURES,
+        &course_shader::FIGURES,
+        &course_appearance::FIGURES,
+    ]
+    .concat()
 }
 
 /// Makes some figures or all, and the page about them.

@@ -116,6 +116,11 @@ pub(crate) fn material(label: &str, text: &str) -> Outcome<Material> {
     Ok(parsed.map_err(wrong)?.material)
 }
 
+/// A material whose maps are those of the lab, in `maps/`.
+pub(crate) fn mapped(material: Material) -> Material {
+    Material { source: concat!(env!("CARGO_MANIFEST_DIR"), "/maps/material.toml").to_owned(), ..material }
+}
+
 /// A material under another name and model.
 pub(crate) fn shaded(material: &Material, name: &str, model: ShadingModel) -> Material {
     let mut shaded = material.clone();

@@ -3,19 +3,31 @@
 use crate::workshop::Workshop;
 
 /// The figures that the project promises, one by one.
-const NAMES: [&str; 12] = [
+const NAMES: [&str; 24] = [
     "elek-2",
     "elek-4",
     "elek-5",
     "elek-7",
     "elek-8",
+    "elek-3",
+    "elek-9",
+    "elek-10",
     "granier-3",
     "granier-4",
     "granier-5",
     "granier-6",
     "yamaguchi-4",
+    "yamaguchi-1",
+    "yamaguchi-3",
     "course-classes",
     "course-varnish",
+    "course-3-3",
+    "course-3-5",
+    "course-3-6",
+    "course-3-8",
+    "course-3-9",
+    "course-4-1",
+    "course-5-7",
 ];
 
 /// The smallest picture, and more values of a channel than a plain picture has.

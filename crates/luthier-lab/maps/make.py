@@ -1,0 +1,70 @@
+"""The maps of figures, by periodic noise: thickness.png, a grey map, and bumps.png, a normal map of a field of bumps.
+
+    python3 crates/luthier-lab/maps/make.py
+"""
+
+import math
+import os
+import random
+import struct
+import zlib
+
+SIZE = 128
+
+
+def noise(seed, cells):
+    """Smooth noise from 0 to 1 that repeats: cubic between random values of a grid."""
+    rng = random.Random(seed)
+    grid = [[rng.random() for _ in range(cells)] for _ in range(cells)]
+
+    def value(u, v):
+        x, y = u * cells, v * cells
+        i, j = int(x), int(y)
+        s, t = (lambda f: f * f * (3 - 2 * f))(x - i), (lambda f: f * f * (3 - 2 * f))(y - j)
+        at = lambda a, b: grid[(j + b) % cells][(i + a) % cells]
+        return (at(0, 0) * (1 - s) + at(1, 0) * s) * (1 - t) + (at(0, 1) * (1 - s) + at(1, 1) * s) * t
+
+    return value
+
+
+def octaves(seed, cells, count):
+    layers = [(noise(seed + k, cells << k), 0.5**k) for k in range(count)]
+    total = sum(weight for _, weight in layers)
+    return lambda u, v: sum(weight * value(u, v) for value, weight in layers) / total
+
+
+def png(name, kind, rows):
+    chunk = lambda tag, data: struct.pack(">I", len(data)) + tag + data + struct.pack(">I", zlib.crc32(tag + data))
+    head = struct.pack(">IIBBBBB", SIZE, SIZE, 8, kind, 0, 0, 0)
+    body = zlib.compress(b"".join(b"\0" + bytes(row) for row in rows), 9)
+    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), name)
+    with open(path, "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", body) + chunk(b"IEND", b""))
+
+
+def byte(x):
+    return max(0, min(255, round(255 * x)))
+
+
+def at(i):
+    return (i + 0.5) / SIZE
+
+
+def bump(u, v):
+    """Height of round bumps on a grid of eight by eight."""
+    x, y = 8 * u % 1 - 0.5, 8 * v % 1 - 0.5
+    return 0.006 * max(0.0, 1 - (x * x + y * y) / 0.16) ** 2
+
+
+def normal(u, v):
+    step = 0.5 / SIZE
+    slope = lambda a, b: (bump(u + a, v + b) - bump(u - a, v - b)) / (2 * step)
+    x, y = -slope(step, 0), -slope(0, step)
+    length = math.sqrt(x * x + y * y + 1)
+    return [byte(0.5 + 0.5 * c / length) for c in (x, y, 1.0)]
+
+
+thickness = octaves(5, 4, 4)
+stretched = lambda u, v: min(1, max(0, 0.5 + 1.8 * (thickness(u, v) - 0.5)))
+png("thickness.png", 0, [[byte(stretched(at(i), at(j))) for i in range(SIZE)] for j in range(SIZE)])
+png("bumps.png", 2, [[c for i in range(SIZE) for c in normal(at(i), at(j))] for j in range(SIZE)])

@@ -1,0 +1,197 @@
+//! Figures of the course of Weidlich and Wilkie about its shader: absorption, bases, varnishes, bumps.
+
+use std::sync::Arc;
+
+use luthier_gpu::{Environment, Light, Shape};
+use luthier_lut::Image;
+use luthier_manifest::{Form, ShadingModel};
+use luthier_material::Material;
+use luthier_report::lightness_chroma_hue;
+use luthier_terminal::{Failure, Outcome};
+
+use super::figure::{Figure, Labelled, Made, TONE};
+use super::studio::{Studio, mapped, material, shaded};
+
+pub(crate) const FIGURES: [Figure; 5] = [
+    Figure {
+        name: "course-3-3",
+        title: "a lacquer with and without absorption",
+        source: "A. Weidlich and A. Wilkie, Exploring the Potential of Layered BRDF Models, SIGGRAPH Asia 2009 Courses, figure 3.3",
+        caption: "The first ball has a red lacquer that absorbs, the second a clear coat over a base whose albedo has the colour of the first ball's \
+                  middle. The other pictures are the differences of hue, chroma and lightness (CIE 1976), grey where there is none and brighter where the \
+                  absorbing lacquer has more. Chroma and lightness differ most at the rim, where paths in the lacquer are long, and hue least, as the course says.",
+        make: absorption,
+    },
+    Figure {
+        name: "course-3-5",
+        title: "bases of Oren and Nayar",
+        source: "Weidlich and Wilkie 2009, figure 3.5",
+        caption: "Balls with sigma 0, 0.2, 0.4, 0.6, 0.8 and 1.0 under a light from the eye. Sigma 0 falls off towards the rim as Lambert's cosine; with \
+                  sigma the ball gets flat like the full Moon. The numbers are the radiance at 0.9 of the radius over that of the middle.",
+        make: bases,
+    },
+    Figure {
+        name: "course-3-6",
+        title: "silver under a blue varnish that gets thicker",
+        source: "Weidlich and Wilkie 2009, figure 3.6",
+        caption: "The varnish of the course in six thicknesses, from none to opaque, over silver. The mirrored surroundings get blue and dark, while the \
+                  reflection of the varnish itself stays white. The absorption is luthier's.",
+        make: silver,
+    },
+    Figure {
+        name: "course-3-8",
+        title: "parts of the shader",
+        source: "Weidlich and Wilkie 2009, figure 3.8",
+        caption: "From left to right: the coat alone, over black; the base alone; the base through a clear coat; through the coat that absorbs; all of it. \
+                  The course's figure adds an ambient term and an environment; here the surroundings are seen by all parts.",
+        make: parts,
+    },
+    Figure {
+        name: "course-3-9",
+        title: "a torus under four varnishes",
+        source: "Weidlich and Wilkie 2009, figure 3.9",
+        caption: "A smooth clear varnish on a diffuse base (a), a smooth tinted one (b), a varnish whose thickness a map varies (c), and a matt varnish over aluminium with \
+                  bumps (d): the normal map tilts only what lies below the varnish, whose own reflection runs over the bumps undisturbed. In (e), which the course does not show, \
+                  the varnish has the bumps, too. Maps and numbers are luthier's.",
+        make: varnishes,
+    },
+];
+
+/// A material by Weidlich and Wilkie's model.
+fn by_course(name: &str, layers: &str) -> Outcome<Material> {
+    let text = format!("schema = 1\nname = \"{name}\"\n{layers}[bake]\ncolor = \"three-wavelengths\"\n");
+    Ok(shaded(&material(name, &text)?, name, ShadingModel::WeidlichWilkie))
+}
+
+fn coat(thickness_um: f64, absorption: &str) -> String {
+    format!(
+        "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nslope_deg = 1.5\ndistribution = \"beckmann\"\n\
+         thickness_um = {thickness_um}\nabsorption_per_um = {absorption}\n"
+    )
+}
+
+fn diffuse(albedo: &str) -> String {
+    format!("[[layer]]\ntype = \"diffuse\"\nalbedo = {albedo}\n")
+}
+
+const RED: &str = "[0.05, 0.9, 0.7]";
+const CLEAR: &str = "0";
+
+fn absorption(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let tinted = by_course("tinted", &(coat(0.6, RED) + &diffuse("0.8")))?;
+    let render = |material: Material| studio.pictures(&[material], Form::Full, Shape::Sphere, |_, _| {});
+    let with = render(tinted)?.swap_remove(0);
+    // The colour of the base seen straight on: twice through 0.6 um at the normal.
+    let base = [0.05, 0.9, 0.7].map(|a: f64| 0.8 * libm::exp(-2.0 * 0.6 * a));
+    let without = render(by_course("clear", &(coat(0.6, CLEAR) + &diffuse(&format!("{base:?}"))))?)?.swap_remove(0);
+    let mut pictures: Labelled =
+        vec![("absorbs".to_owned(), TONE.image(with.clone())), ("clear".to_owned(), TONE.image(without.clone()))];
+    for (c, (name, scale)) in [("hue", 8.0), ("chroma", 12.0), ("lightness", 8.0)].into_iter().enumerate() {
+        let mut apart = Image::zeros(with.width, with.height, 3);
+        let (mut sum, mut count) = (0.0, 0.0);
+        for y in 0..with.height {
+            for x in 0..with.width {
+                let [a, b] = [&with, &without].map(|image| lightness_chroma_hue(rgb(image, x, y)));
+                // In the order of the course: hue, chroma, lightness.
+                let (mut d, seen) = (a[2 - c] - b[2 - c], a[1].min(b[1]) > 5.0);
+                if c == 0 {
+                    d -= 360.0 * (d / 360.0).round();
+                    d = if seen { d } else { 0.0 };
+                }
+                (sum, count) = if seen { (sum + d.abs(), count + 1.0) } else { (sum, count) };
+                let shade = (0.5 + 0.5 * d / scale).clamp(0.0, 1.0) as f32;
+                let at = 3 * (y * with.width + x) as usize;
+                apart.data[at..at + 3].fill(shade * shade);
+            }
+        }
+        made.measure(format!("mean difference of {name}, where both have a colour"), sum / f64::max(count, 1.0));
+        pictures.push((format!("d {name}"), apart));
+    }
+    made.shown("course-3-3", pictures, 5);
+    Ok(made)
+}
+
+fn rgb(image: &Image, x: u32, y: u32) -> [f64; 3] {
+    let texel = image.texel(x, y);
+    [0, 1, 2].map(|c: usize| f64::from(texel[c]))
+}
+
+fn bases(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let sigmas = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
+    let mut materials = Vec::new();
+    for (i, sigma) in sigmas.into_iter().enumerate() {
+        let layers = format!("{}sigma = {sigma}\n", diffuse("[0.5, 0.35, 0.25]"));
+        materials.push(by_course(&format!("sigma-{i}"), &layers)?);
+    }
+    let dark = Arc::new(Environment::new(Image::zeros(16, 8, 3)).map_err(Failure::device)?);
+    let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| {
+        settings.environment = dark.clone();
+        settings.lights = vec![Light::Directional { direction: [0.0, 0.0, 1.0], irradiance: [2.0; 3] }];
+    })?;
+    for (sigma, picture) in sigmas.into_iter().zip(&pictures) {
+        let middle = picture.width / 2;
+        let edge = middle + (f64::from(middle) * 0.8) as u32 * 9 / 10;
+        let ratio = rgb(picture, edge, middle)[1] / rgb(picture, middle, middle)[1].max(1e-9);
+        made.measure(format!("sigma {sigma}: radiance near the rim over that of the middle"), ratio);
+    }
+    made.sheet("course-3-5", sigmas.iter().map(|sigma| format!("sigma {sigma}")).zip(pictures).collect(), 6);
+    Ok(made)
+}
+
+fn silver(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let thicknesses = [0.0, 0.2, 0.5, 1.0, 2.0, 5.0];
+    let mut materials = Vec::new();
+    for (i, thickness) in thicknesses.into_iter().enumerate() {
+        let metal = "[[layer]]\ntype = \"conductor\"\nior = \"ag\"\nslope_deg = 3\ndistribution = \"beckmann\"\n";
+        materials.push(by_course(&format!("silver-{i}"), &(coat(thickness, "[0.6, 0.35, 0.05]") + metal))?);
+    }
+    let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, _| {})?;
+    made.sheet("course-3-6", thicknesses.iter().map(|d| format!("{d} um")).zip(pictures).collect(), 6);
+    Ok(made)
+}
+
+fn parts(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let base = diffuse("[0.7, 0.55, 0.3]");
+    let all = [
+        ("coat", coat(0.5, CLEAR) + &diffuse("0")),
+        ("base", base.clone()),
+        ("clear coat", coat(0.5, CLEAR) + &base),
+        ("absorbs", coat(0.5, RED) + &base),
+        ("and rough", coat(0.5, RED).replace("slope_deg = 1.5", "slope_deg = 8") + &base),
+    ];
+    let mut materials = Vec::new();
+    for (i, (_, layers)) in all.iter().enumerate() {
+        materials.push(by_course(&format!("part-{i}"), layers)?);
+    }
+    let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, _| {})?;
+    made.sheet("course-3-8", all.iter().map(|(name, _)| (*name).to_owned()).zip(pictures).collect(), 5);
+    Ok(made)
+}
+
+const METAL: &str = "[[layer]]\ntype = \"conductor\"\nior = \"al\"\nslope_deg = 6\ndistribution = \"beckmann\"\n";
+
+fn varnishes(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let white = diffuse("[0.75, 0.72, 0.65]");
+    let matt = coat(0.3, CLEAR).replace("slope_deg = 1.5", "slope_deg = 7");
+    let map = |coat: String, key: &str, file: &str| coat + &format!("[layer.maps]\n{key} = \"{file}\"\n");
+    let bumps = "[effects.flakes]\nnormal_map = \"bumps.png\"\ntiling = 4\nscale = 1\nfade_start = 1000\n";
+    let all = [
+        ("a clear", coat(0.5, CLEAR) + &white),
+        ("b tinted", coat(0.5, RED) + &white),
+        ("c thickness", map(coat(2.0, RED), "thickness", "thickness.png") + &white),
+        ("d below", matt.clone() + METAL + bumps),
+        ("e above", map(matt, "normal", "bumps.png") + METAL),
+    ];
+    let mut materials = Vec::new();
+    for (i, (_, layers)) in all.iter().enumerate() {
+        materials.push(mapped(by_course(&format!("varnish-{i}"), layers)?));
+    }
+    let pictures = studio.pictures(&materials, Form::Full, Shape::Torus, |_, _| {})?;
+    made.sheet("course-3-9", all.iter().map(|(name, _)| (*name).to_owned()).zip(pictures).collect(), 5);
+    Ok(made)
+}
