@@ -114,10 +114,12 @@ fn shaders(element: &Element) -> Option<Package> {
     Some(package_of(element, &element.with()?))
 }
 
-/// A folder with a file, and a map that it may name.
+/// A folder with a file, and maps that it may name.
 fn folder(text: &str) -> Workshop {
     let workshop = Workshop::with(&[("m.toml", text)]);
-    image::RgbImage::from_pixel(4, 4, image::Rgb([128, 128, 255])).save(workshop.path("map.png")).unwrap();
+    for (name, texel) in [("map.png", [128, 128, 255]), ("bumps.png", [153, 140, 252])] {
+        image::RgbImage::from_pixel(4, 4, image::Rgb(texel)).save(workshop.path(name)).unwrap();
+    }
     workshop
 }
 

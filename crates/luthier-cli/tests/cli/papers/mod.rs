@@ -12,10 +12,10 @@ use measured::{Number, measured};
 use rayon::prelude::*;
 
 /// Gaps that are known: columns of elements that still begin with `open`. The number may fall only.
-const OPEN: usize = 44;
+const OPEN: usize = 37;
 
 /// Elements without a gap, and with a number of their own.
-const ALL: usize = 113;
+const ALL: usize = 114;
 
 const HEAD: &str = "\
 # Elements of the papers
