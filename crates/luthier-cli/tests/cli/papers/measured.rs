@@ -108,7 +108,7 @@ fn form(element: &Element) -> Form {
 
 /// The shaders of the file with the element, unless no shader has it.
 fn shaders(element: &Element) -> Option<Package> {
-    if element.cell("function").starts_with("open") {
+    if ["open", "none"].iter().any(|word| element.cell("function").starts_with(word)) {
         return None;
     }
     Some(package_of(element, &element.with()?))
