@@ -24,7 +24,12 @@ impl Shading {
     /// Doubts about a material in some forms, and refusals.
     pub(crate) fn doubts(&self, material: &Material, forms: &[Form]) -> Vec<Diagnostic> {
         let model = self.model_of(material, forms);
-        let mut doubts = of_model(material, model);
+        let chosen = self.fresnel.map(|_| {
+            let mut chosen = material.clone();
+            chosen.bake.reflectance = self.fresnel;
+            chosen
+        });
+        let mut doubts = of_model(chosen.as_ref().unwrap_or(material), model);
         if self.no_fit && model == Some(ShadingModel::Lobes) {
             let message = "the model `lobes` is fitted to a simulation, and `--no-fit` makes none";
             let hint = "leave out `--no-fit`, or write `--model elek` in its place".to_owned();
@@ -50,6 +55,7 @@ pub(crate) fn bakeable(
 pub(crate) fn shaded(mut materials: Vec<Material>, shading: &Shading, forms: &[Form]) -> Vec<Material> {
     for material in &mut materials {
         material.bake.model = shading.model_of(material, forms).or(material.bake.model);
+        material.bake.reflectance = shading.fresnel.or(material.bake.reflectance);
         material.bake.tables.extend(&shading.tables);
     }
     materials

@@ -132,7 +132,7 @@ fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -> Outcome<V
     let mut subjects = Vec::new();
     for model in models {
         let mut shaded = material.clone();
-        shaded.bake.model = Some(model);
+        shaded.shade_by(model);
         let mut package = Package::for_renderer(std::slice::from_ref(&shaded), store()?)?;
         let reads_d = model.reads_distribution();
         let styles = [(Form::Full, true), (Form::Baked, !reads_d), (Form::Baked, true)];

@@ -69,7 +69,7 @@ fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Varian
     for model in models {
         let mut shaded = materials.to_vec();
         for material in &mut shaded {
-            material.bake.model = Some(model);
+            material.shade_by(model);
         }
         let groups: Vec<(String, &[Material])> = if options.set {
             vec![(format!("set of {}", shaded.len()), shaded.as_slice())]

@@ -88,13 +88,7 @@ impl Twin {
     }
 
     /// [`Twin::new`] with parts that a material chooses. `color` is that of curves that stand for reflectances, too.
-    pub fn with(
-        model: &str,
-        stack: &Stack,
-        wavelengths_nm: [f64; 3],
-        color: Color,
-        parts: Parts,
-    ) -> Option<Self> {
+    pub fn with(model: &str, stack: &Stack, wavelengths_nm: [f64; 3], color: Color, parts: Parts) -> Option<Self> {
         let has_choice = [elek::MODEL, "weidlich-wilkie", "microfacet"].contains(&model);
         let is_chosen = has_choice && parts.reflectance != Reflectance::Terms;
         let reflectances = is_chosen.then(|| Reflectances::of(stack, wavelengths_nm, color, parts.reflectance));

@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 
 use luthier_lut::TableKind;
 use luthier_manifest::{
-    FunctionGroup, LayerKind, LayerRecord, LobesRecord, Masking, MaterialEntry, Reflectance, ShadingModel, VaryingFactor,
+    FunctionGroup, LayerKind, LayerRecord, LobesRecord, Masking, MaterialEntry, Reflectance, ShadingModel,
+    VaryingFactor,
 };
 
 use crate::compose::masking;
@@ -122,9 +123,8 @@ fn of_parts(set: &MaterialSet<'_>, form: Form, names: &BTreeSet<&'static str>) -
     let maskings = masking::used(set);
     let is_masked = maskings.iter().any(|masking| *masking != Masking::default());
     let mut records = set.materials.iter().flat_map(MaterialEntry::records);
-    let is_packed = |record: &LayerRecord| {
-        (record.masking, record.reflectance) != (Masking::default(), Reflectance::default())
-    };
+    let is_packed =
+        |record: &LayerRecord| (record.masking, record.reflectance) != (Masking::default(), Reflectance::default());
     let words = [
         ("rows", is_read),
         ("computed", is_computed),

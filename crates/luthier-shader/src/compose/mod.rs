@@ -121,7 +121,14 @@ pub(crate) fn text(module: &str, features: &Features) -> String {
 /// The functions that give the reflectance of a layer: `luthier_fresnel_term` where a set has one of them, else it chooses among them.
 fn reflectances(text: &str, features: &Features) -> String {
     let is_one = !features.has("several_reflectances");
-    ["read", "computed", "fitted"].iter().fold(text.to_owned(), |text, how| {
+    // Tables have the names of these functions.
+    let text = match features.has("computed") && !features.has("full") {
+        true => {
+            text.replace("luthier_fresnel(", "luthier_fresnel_exact(").replace("luthier_film(", "luthier_film_exact(")
+        }
+        false => text.to_owned(),
+    };
+    ["read", "computed", "fitted"].iter().fold(text, |text, how| {
         let name = if is_one { "luthier_fresnel_term".to_owned() } else { format!("luthier_fresnel_{how}") };
         text.replace(&format!("$fresnel_{how}"), &name)
     })

@@ -5,8 +5,9 @@ use luthier_layers::directional_albedo::over_hemisphere;
 use luthier_layers::layered_mc::Estimate;
 use luthier_layers::model::{Estimator, Model};
 use luthier_layers::monochrome::Monochrome;
+use luthier_layers::parts::Parts;
 use luthier_layers::shaded::{Shaded, at_wavelength};
-use luthier_manifest::ColorMode;
+use luthier_manifest::{ColorMode, ShadingModel};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
@@ -174,23 +175,34 @@ impl<'a> Function<'a> {
 fn shaded(subject: &Subject, kind: &Kind) -> Option<How> {
     let (stack, name, place) = (&subject.material.stack, subject.model.info().name, &subject.place);
     let fit = subject.fit.as_ref();
+    // What the file chooses of its shader's model, where that is the model.
+    let bake = &subject.material.bake;
+    let has = |choice: fn(ShadingModel) -> bool| ShadingModel::from_name(name).is_some_and(choice);
+    let masking = bake.masking.filter(|_| has(ShadingModel::has_masking)).unwrap_or_default();
+    let reflectance = bake.reflectance.filter(|_| has(ShadingModel::has_reflectance)).unwrap_or_default();
+    let parts = Parts::named(masking.name(), reflectance.name()).unwrap_or(Parts::PLAIN);
+    let made = |stack: &Stack, wavelengths_nm: [f64; 3], color: Color| match parts {
+        Parts::PLAIN => Shaded::fitted_by(fit, name, stack, wavelengths_nm, color, place),
+        _ => Shaded::with(name, stack, wavelengths_nm, color, place, parts),
+    };
     match *kind {
         Kind::Reradiated(_) => None,
         Kind::Wavelength(_) if ["belcour", "yamaguchi"].contains(&name) => None,
         Kind::Wavelength(nm) => {
             let color = Color::ThreeWavelengths([nm; 3]);
-            let shaded = Shaded::fitted_by(fit, name, &at_wavelength(stack, nm), [nm; 3], color, place)?;
+            let shaded = made(&at_wavelength(stack, nm), [nm; 3], color)?;
             Some(How::Shader(Box::new(shaded), nearest_channel(nm)))
         }
         Kind::Color(color) => {
             let wavelengths_nm = subject.material.bake.wavelengths_nm();
-            // Phong's coefficients are in the material's colour, in both forms of its shader.
+            // Phong's coefficients and curves of reflectances are in the material's colour, in both forms of its shader.
+            let is_own = name == "phong" || reflectance.is_fitted();
             let color = match subject.material.bake.color {
-                _ if name != "phong" => color,
+                _ if !is_own => color,
                 Some(ColorMode::ThreeWavelengths) => Color::ThreeWavelengths(wavelengths_nm),
                 Some(ColorMode::Spectral) | None => Color::Spectral,
             };
-            Some(How::Shader(Box::new(Shaded::fitted_by(fit, name, stack, wavelengths_nm, color, place)?), 0))
+            Some(How::Shader(Box::new(made(stack, wavelengths_nm, color)?), 0))
         }
     }
 }
