@@ -1,6 +1,10 @@
 //! Materials that a command works on.
 
+#[cfg(any(feature = "cost", feature = "gpu"))]
+use luthier_export::of_parts;
 use luthier_export::{Source, of_model, refuse};
+#[cfg(any(feature = "cost", feature = "gpu"))]
+use luthier_manifest::Reflectance;
 use luthier_manifest::{Form, FunctionGroup, ShadingModel};
 use luthier_material::{Diagnostic, Material, Severity};
 use luthier_optics::stack::{Base, Layer};
@@ -76,6 +80,17 @@ pub(crate) fn refuse_environment(functions: &[FunctionGroup], is_shown: bool) ->
 pub(crate) fn shows_environment(material: &Material) -> bool {
     let is_interface = |layer: &Layer| !matches!(layer.base, Base::Diffuse(_));
     material.model() == ShadingModel::Lobes && material.stack.layers.iter().any(is_interface)
+}
+
+/// Has a material shaded by one of several models that are compared: each with the parts that it has, of the file or the command line.
+#[cfg(any(feature = "cost", feature = "gpu"))]
+pub(crate) fn shade_by(material: &mut Material, model: ShadingModel, fresnel: Option<Reflectance>) -> Outcome {
+    material.bake.reflectance = fresnel.or(material.bake.reflectance);
+    material.shade_by(model);
+    match of_parts(material, None).into_iter().find(|doubt| doubt.severity == Severity::Error) {
+        Some(error) => Err(Failure::Input(anyhow::anyhow!("{}: {}", error.label, error.message))),
+        None => Ok(()),
+    }
 }
 
 /// The models that are asked for, or all; without a fit, all but `lobes`.

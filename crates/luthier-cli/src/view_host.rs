@@ -41,7 +41,8 @@ impl ViewHost {
 
     fn package(&self, material: &Material, form: Form) -> Outcome<Package> {
         let mut materials = lit(std::slice::from_ref(material));
-        for material in materials.iter_mut().filter(|_| self.fresnel.is_some()) {
+        let is_chosen = |material: &Material| self.fresnel.is_some() && material.model().has_reflectance();
+        for material in materials.iter_mut().filter(|material| is_chosen(material)) {
             material.bake.reflectance = self.fresnel;
         }
         let store = Layers(&[&self.store, store()?]);

@@ -37,7 +37,7 @@ luthier_lut::named! {
         Exact = "exact",
         /// Schlick's form with the F0 of the complex index: the `FresnelTermNP` of Elek 2010, appendix B.
         Approximate = "approximate",
-        /// That, less the correction `a cos (1 - cos)^alpha` of Lazanyi and Szirmay-Kalos 2005.
+        /// Schlick's form less the correction `a cos (1 - cos)^alpha` of Lazanyi and Szirmay-Kalos 2005.
         Lazanyi = "lazanyi",
     }
 }

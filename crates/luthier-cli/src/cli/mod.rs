@@ -406,6 +406,9 @@ pub(crate) struct CostOptions {
     /// Leave out `lobes`, whose shader takes a simulation of each material
     #[arg(long, conflicts_with = "model")]
     pub(crate) no_fit: bool,
+    /// How models come by the reflectance of an interface, where they have a choice: table, exact, approximate or lazanyi
+    #[arg(long, value_name = "NAME", value_parser = named::<Reflectance>(Reflectance::NAMES))]
+    pub(crate) fresnel: Option<Reflectance>,
     /// Form to compile; may be given again. By default both
     #[arg(long, value_parser = named::<Form>(Form::NAMES), value_name = "FORM")]
     pub(crate) form: Vec<Form>,
@@ -446,6 +449,9 @@ pub(crate) struct BenchOptions {
     /// Leave out `lobes`, whose tables take a simulation of each material
     #[arg(long, conflicts_with = "model")]
     pub(crate) no_fit: bool,
+    /// How models come by the reflectance of an interface, where they have a choice: table, exact, approximate or lazanyi
+    #[arg(long, value_name = "NAME", value_parser = named::<Reflectance>(Reflectance::NAMES))]
+    pub(crate) fresnel: Option<Reflectance>,
     /// Least number of evaluations in one run
     #[arg(long, value_name = "N", default_value_t = 1 << 20, value_parser = clap::value_parser!(u32).range(1..=60_000_000))]
     pub(crate) evaluations: u32,

@@ -31,7 +31,7 @@ pub enum Reflectance {
     Exact,
     /// Schlick's form through the reflectance at normal incidence: the `FresnelTermNP` of Elek 2010, appendix B.
     Approximate,
-    /// That, less the correction of Lazanyi and Szirmay-Kalos 2005, fitted to the reflectance.
+    /// Schlick's form less the correction of Lazanyi and Szirmay-Kalos 2005, fitted to the reflectance.
     Lazanyi,
 }
 
@@ -75,7 +75,7 @@ enum Own {
     Exact(Sampled),
     /// Schlick's form, channel by channel.
     Schlick([Lazanyi; 3]),
-    /// That less a correction, within 0 and 1.
+    /// Schlick's form less a correction, within 0 and 1.
     Corrected([Lazanyi; 3]),
 }
 

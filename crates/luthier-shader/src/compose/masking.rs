@@ -56,3 +56,68 @@ pub(crate) fn module(set: &MaterialSet<'_>, features: &Features) -> String {
     let _ = write!(out, "    // {}.\n    return {};\n}}\n", last.title(), expression(*last));
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use luthier_manifest::{LayerRecord, Manifest, MaterialEntry, Reflectance, ReflectanceCurve};
+
+    use crate::{Form, MaterialSet, Target, emit};
+
+    use super::*;
+
+    fn text(layers: &[LayerRecord]) -> String {
+        let material = |(number, layer): (usize, &LayerRecord)| MaterialEntry {
+            name: format!("m{number}"),
+            model: ShadingModel::Microfacet,
+            layers: vec![layer.clone()],
+            ..MaterialEntry::default()
+        };
+        let materials = layers.iter().enumerate().map(material).collect();
+        emit(&MaterialSet::from_manifest(&Manifest::new("test", materials, Vec::new())), Form::Full, Target::Wgsl)
+            .unwrap()
+    }
+
+    fn metal(masking: Masking) -> LayerRecord {
+        let kind = LayerKind::Conductor;
+        LayerRecord {
+            kind,
+            alpha: 0.3,
+            alpha_xy: [0.3; 2],
+            ior_n: [0.2; 3],
+            ior_k: [3.0; 3],
+            masking,
+            ..LayerRecord::default()
+        }
+    }
+
+    #[test]
+    fn a_set_has_the_maskings_that_it_uses() {
+        let plain = text(&[metal(Masking::Smith)]);
+        assert!(!["luthier_masking", "masking:", "& 3u"].iter().any(|word| plain.contains(word)), "{plain}");
+        for masking in Masking::ALL {
+            let alone = text(&[metal(masking)]);
+            assert!(alone.contains(if masking == Masking::Smith { "luthier_lambda" } else { expression(masking) }));
+            assert!(!alone.contains("layer.masking"), "{alone}");
+        }
+        let all = text(&Masking::ALL.map(metal));
+        assert!(Masking::ALL.iter().all(|masking| all.contains(expression(*masking))), "{all}");
+        assert_eq!(all.matches("if layer.masking == ").count(), Masking::ALL.len() - 1);
+    }
+
+    #[test]
+    fn a_set_has_the_reflectances_that_it_uses() {
+        let fitted = |reflectance| LayerRecord {
+            reflectance,
+            curve: Some(ReflectanceCurve { f0: [0.5; 3], weight: [0.1; 3], exponent: [6.0; 3] }),
+            ..metal(Masking::Smith)
+        };
+        let [approximate, lazanyi] = [Reflectance::Approximate, Reflectance::Lazanyi].map(fitted);
+        let alone = text(std::slice::from_ref(&approximate));
+        let words = ["luthier_normal_index", "pow(", "layer.reflectance", "ior_n"];
+        assert!(!words.iter().any(|word| alone.contains(word)), "{alone}");
+        let both = text(&[approximate, lazanyi.clone()]);
+        assert!(both.contains("pow(") && !both.contains("layer.reflectance"), "{both}");
+        let mixed = text(&[lazanyi, metal(Masking::Smith)]);
+        assert!(mixed.contains("luthier_fresnel_fitted(") && mixed.contains("if layer.reflectance > 1u"), "{mixed}");
+    }
+}
