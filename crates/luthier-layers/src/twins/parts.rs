@@ -8,7 +8,9 @@ use luthier_optics::schlick::Lazanyi;
 use luthier_optics::stack::{Distribution, Stack};
 
 use crate::facets::Masking;
+use crate::interface_fresnel::Fresnel;
 use crate::lobes::Below;
+use crate::microfacet::Components;
 use crate::statistics::diffuse_base::Veil;
 use crate::statistics::energy::Energy;
 use crate::terms::{ShaderTerms, Terms};
@@ -65,6 +67,18 @@ impl Parts {
             _ => return None,
         };
         Some(Self { masking, reflectance })
+    }
+}
+
+impl Parts {
+    /// The components of the model `microfacet`, for one wavelength.
+    pub const fn components(self) -> Components {
+        let fresnel = match self.reflectance {
+            Reflectance::Terms | Reflectance::Exact => Fresnel::Exact,
+            Reflectance::Approximate => Fresnel::ComplexF0,
+            Reflectance::Lazanyi => Fresnel::Lazanyi,
+        };
+        Components { masking: self.masking, fresnel, ..Components::PLAIN }
     }
 }
 

@@ -7,7 +7,7 @@ use luthier_layers::model::{Estimator, Model};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::parts::Parts;
 use luthier_layers::shaded::{Shaded, at_wavelength};
-use luthier_manifest::{ColorMode, ShadingModel};
+use luthier_manifest::{ColorMode, Reflectance, ShadingModel};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
@@ -170,17 +170,21 @@ impl<'a> Function<'a> {
     }
 }
 
+/// The parts of its shader's model that the file chooses, as far as the model that is evaluated has them.
+pub(super) fn parts(subject: &Subject) -> (Parts, Reflectance) {
+    let (bake, model) = (&subject.material.bake, ShadingModel::from_name(subject.model.info().name));
+    let masking = bake.masking.filter(|_| model.is_some_and(ShadingModel::has_masking)).unwrap_or_default();
+    let has_reflectance = model.is_some_and(ShadingModel::has_reflectance);
+    let reflectance = bake.reflectance.filter(|_| has_reflectance).unwrap_or_default();
+    (Parts::named(masking.name(), reflectance.name()).unwrap_or(Parts::PLAIN), reflectance)
+}
+
 /// The twin of the model's shader, where it has one. At one wavelength the models of Belcour and Yamaguchi are evaluated by themselves: their
 /// energies take seconds in colour, and effects are none of theirs.
 fn shaded(subject: &Subject, kind: &Kind) -> Option<How> {
     let (stack, name, place) = (&subject.material.stack, subject.model.info().name, &subject.place);
     let fit = subject.fit.as_ref();
-    // What the file chooses of its shader's model, where that is the model.
-    let bake = &subject.material.bake;
-    let has = |choice: fn(ShadingModel) -> bool| ShadingModel::from_name(name).is_some_and(choice);
-    let masking = bake.masking.filter(|_| has(ShadingModel::has_masking)).unwrap_or_default();
-    let reflectance = bake.reflectance.filter(|_| has(ShadingModel::has_reflectance)).unwrap_or_default();
-    let parts = Parts::named(masking.name(), reflectance.name()).unwrap_or(Parts::PLAIN);
+    let (parts, reflectance) = parts(subject);
     let made = |stack: &Stack, wavelengths_nm: [f64; 3], color: Color| match parts {
         Parts::PLAIN => Shaded::fitted_by(fit, name, stack, wavelengths_nm, color, place),
         _ => Shaded::with(name, stack, wavelengths_nm, color, place, parts),
