@@ -61,9 +61,13 @@ by-hand() {
   [ -n "${LUTHIER-}" ] || cargo build --quiet --release --locked -p luthier-cli
   python3 scripts/independent/papers.py "${LUTHIER-target/release/luthier}" >docs/pages/by-hand.md
 }
+choices() {
+  [ -n "${LUTHIER-}" ] || cargo build --quiet --release --locked -p luthier-cli
+  python3 scripts/choices.py "${LUTHIER-target/release/luthier}" >docs/pages/choices.md
+}
 reference() { luthier man --markdown >docs/reference.md; }
 
-all=(materials shapes cost papers budgets scenes parity stability figures models lobes varying anisotropic environment bench shader-size distribution-table speed dfg engine-tables by-hand reference)
+all=(materials shapes cost papers budgets scenes parity stability figures models lobes varying anisotropic environment bench shader-size distribution-table speed dfg engine-tables by-hand choices reference)
 case ${1-} in
   "") pages=("${all[@]}") ;;
   --cheap) pages=(shader-size reference) ;;

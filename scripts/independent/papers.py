@@ -82,6 +82,22 @@ def f0_of(n):
     return abs((n - 1) / (n + 1)) ** 2
 
 
+def lazanyi(n, cosines=256):
+    """Schlick's form less a c (1 - c)^e: e in eighths from 1 to 16, a by least squares over midpoints of the cosine."""
+    f0 = f0_of(n)
+    points = [((i + 0.5) / cosines) for i in range(cosines)]
+    excess = [schlick(f0, c) - fresnel(n, c) for c in points]
+    best = None
+    for e in (k / 8 for k in range(8, 129)):
+        shape = [c * (1 - c) ** e for c in points]
+        a = sum(s * x for s, x in zip(shape, excess)) / sum(s * s for s in shape)
+        left = sum((x - a * s) ** 2 for s, x in zip(shape, excess))
+        if best is None or left < best[0]:
+            best = (left, a, e)
+    _, a, e = best
+    return lambda cos: min(max(schlick(f0, cos) - a * cos * (1 - cos) ** e, 0.0), max(f0, 1.0))
+
+
 def f82(n, cos):
     """Schlick's form with the term that makes it exact at a cosine of 1/7."""
     f0, at = f0_of(n), 1 / 7
@@ -423,6 +439,9 @@ def compare():
         (LECTURE, "F82", "Kutz et al. 2021", "f82", lambda cos: f82(METAL, cos)),
     ]:
         values(paper, element, where, base, f"microfacet-{model}", facets(*ggx_smith, reflectance))
+    for reflectance, by_hand in [("approximate", lambda cos: schlick(f0_of(METAL), cos)), ("exact", plain), ("lazanyi", lazanyi(METAL))]:
+        chosen = f'{base}distribution = "ggx"\n[bake]\nmodel = "microfacet"\nreflectance = "{reflectance}"\n'
+        values(ELEK, f"reflectance of a file, {reflectance}", "appendix B", chosen, "microfacet", facets(*ggx_smith, by_hand))
     coated = film(*soap) + metal(rough)
     values(GRANIER, "two beams of a film", "eq. 5", coated, "microfacet-granier-film", facets(*ggx_smith, lambda cos: two_beams(*soap, cos)))
     values(GRANIER, "orders of a film, two", "Belcour and Barla 2017", coated, "microfacet-belcour-barla", facets(*ggx_smith, lambda cos: belcour_barla(*soap, METAL, cos)))
@@ -452,6 +471,9 @@ def compare():
         (LECTURE, "masking, Smith separable", "slides on G", "smith-separable", smith_separable(lambda_ggx, a)),
     ]:
         values(paper, element, where, base, f"microfacet-{model}", facets(ggx(a), masking, plain))
+        # The part as a file chooses it, for a shader.
+        chosen = f'{base}distribution = "ggx"\n[bake]\nmodel = "microfacet"\nmasking = "{model}"\n'
+        values(paper, f"{element}, of a file", where, chosen, "microfacet", facets(ggx(a), masking, plain))
 
     # Bases.
     values(LECTURE, "Lambert", "slides on diffuse light", matte(0.6), "lambert", lambert(0.6))

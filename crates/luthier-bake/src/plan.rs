@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use crate::graph::{Graph, Key};
 use crate::kinds::{self, Site};
-use crate::records::records;
+use crate::records::{Parts, records};
 use crate::settings::Settings;
 use crate::{BakeError, limits};
 
@@ -160,7 +160,7 @@ impl Part {
         read_image: ImageReader<'_>,
     ) -> Result<Vec<LayerRecord>, BakeError> {
         let (color, model) = (color(material), material.model());
-        let mut records = records(stack, material.bake.wavelengths_nm());
+        let mut records = records(stack, material.bake.wavelengths_nm(), &Parts::of(material));
         for (i, layer) in stack.layers.iter().enumerate() {
             let Some(interface) = Interface::of(stack, i) else { continue };
             let wanted = TableKind::ALL.map(|kind| {

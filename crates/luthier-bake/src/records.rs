@@ -2,11 +2,14 @@
 
 use luthier_layers::domain::INDEX_MAX;
 use luthier_layers::elek::{self, ALPHA_MIN, Below};
-use luthier_manifest::{LayerKind, LayerRecord};
+use luthier_manifest::{LayerKind, LayerRecord, Masking, Reflectance, ReflectanceCurve};
+use luthier_material::Material;
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::stack::Stack;
 use num_complex::Complex64;
+
+use crate::plan::color;
 
 /// Least modulus of a relative index: at normal incidence on a lesser one Fresnel's formulas in single precision are 0/0.
 const INDEX_MIN: f64 = 1e-3;
@@ -21,8 +24,43 @@ fn storable(ior: Complex64) -> (f64, f64) {
 /// Optical depth beyond which nothing comes through, in any precision; without it a shader would meet infinities.
 const DEPTH_MAX: f64 = 1e4;
 
+/// Parts of its model that a material chooses, as far as the model has a choice, and the colour of curves.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Parts {
+    pub(crate) masking: Masking,
+    pub(crate) reflectance: Reflectance,
+    pub(crate) color: Color,
+}
+
+impl Parts {
+    /// The parts of a material.
+    pub(crate) fn of(material: &Material) -> Self {
+        let (model, bake) = (material.model(), &material.bake);
+        Self {
+            masking: bake.masking.filter(|_| model.has_masking()).unwrap_or_default(),
+            reflectance: bake.reflectance.filter(|_| model.has_reflectance()).unwrap_or_default(),
+            color: color(material),
+        }
+    }
+
+    /// Writes down what the shader of an interface needs of them.
+    fn write(&self, interface: &Interface, record: &mut LayerRecord) {
+        (record.masking, record.reflectance) = (self.masking, self.reflectance);
+        let curves = match self.reflectance {
+            Reflectance::Table | Reflectance::Exact => return,
+            Reflectance::Approximate => interface.sampled(&self.color).schlick(),
+            Reflectance::Lazanyi => interface.sampled(&self.color).lazanyi(),
+        };
+        record.curve = Some(ReflectanceCurve {
+            f0: curves.map(|curve| curve.f0),
+            weight: curves.map(|curve| curve.a),
+            exponent: curves.map(|curve| curve.exponent),
+        });
+    }
+}
+
 /// The records of a stack, without tiles.
-pub(crate) fn records(stack: &Stack, wavelengths_nm: [f64; 3]) -> Vec<LayerRecord> {
+pub(crate) fn records(stack: &Stack, wavelengths_nm: [f64; 3], parts: &Parts) -> Vec<LayerRecord> {
     let nodes = Color::ThreeWavelengths(wavelengths_nm).nodes();
     elek::layers(stack)
         .iter()
@@ -53,6 +91,7 @@ pub(crate) fn records(stack: &Stack, wavelengths_nm: [f64; 3]) -> Vec<LayerRecor
                 }
             }
             if let Some(interface) = Interface::of(stack, i) {
+                parts.write(&interface, &mut record);
                 for (c, node) in nodes.iter().enumerate() {
                     let here = interface.at(node.wavelength_nm);
                     let below = here.below / here.above;

@@ -1,6 +1,10 @@
 //! Materials that a command works on.
 
+#[cfg(any(feature = "cost", feature = "gpu"))]
+use luthier_export::of_parts;
 use luthier_export::{Source, of_model, refuse};
+#[cfg(any(feature = "cost", feature = "gpu"))]
+use luthier_manifest::Reflectance;
 use luthier_manifest::{Form, FunctionGroup, ShadingModel};
 use luthier_material::{Diagnostic, Material, Severity};
 use luthier_optics::stack::{Base, Layer};
@@ -24,7 +28,12 @@ impl Shading {
     /// Doubts about a material in some forms, and refusals.
     pub(crate) fn doubts(&self, material: &Material, forms: &[Form]) -> Vec<Diagnostic> {
         let model = self.model_of(material, forms);
-        let mut doubts = of_model(material, model);
+        let chosen = self.fresnel.map(|_| {
+            let mut chosen = material.clone();
+            chosen.bake.reflectance = self.fresnel;
+            chosen
+        });
+        let mut doubts = of_model(chosen.as_ref().unwrap_or(material), model);
         if self.no_fit && model == Some(ShadingModel::Lobes) {
             let message = "the model `lobes` is fitted to a simulation, and `--no-fit` makes none";
             let hint = "leave out `--no-fit`, or write `--model elek` in its place".to_owned();
@@ -50,6 +59,7 @@ pub(crate) fn bakeable(
 pub(crate) fn shaded(mut materials: Vec<Material>, shading: &Shading, forms: &[Form]) -> Vec<Material> {
     for material in &mut materials {
         material.bake.model = shading.model_of(material, forms).or(material.bake.model);
+        material.bake.reflectance = shading.fresnel.or(material.bake.reflectance);
         material.bake.tables.extend(&shading.tables);
     }
     materials
@@ -70,6 +80,17 @@ pub(crate) fn refuse_environment(functions: &[FunctionGroup], is_shown: bool) ->
 pub(crate) fn shows_environment(material: &Material) -> bool {
     let is_interface = |layer: &Layer| !matches!(layer.base, Base::Diffuse(_));
     material.model() == ShadingModel::Lobes && material.stack.layers.iter().any(is_interface)
+}
+
+/// Has a material shaded by one of several models that are compared: each with the parts that it has, of the file or the command line.
+#[cfg(any(feature = "cost", feature = "gpu"))]
+pub(crate) fn shade_by(material: &mut Material, model: ShadingModel, fresnel: Option<Reflectance>) -> Outcome {
+    material.bake.reflectance = fresnel.or(material.bake.reflectance);
+    material.shade_by(model);
+    match of_parts(material, None).into_iter().find(|doubt| doubt.severity == Severity::Error) {
+        Some(error) => Err(Failure::Input(anyhow::anyhow!("{}: {}", error.label, error.message))),
+        None => Ok(()),
+    }
 }
 
 /// The models that are asked for, or all; without a fit, all but `lobes`.

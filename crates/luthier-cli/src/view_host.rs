@@ -6,13 +6,14 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use luthier_export::{Bake, MemoryStore, Package, Source, find, lit, lit_functions, read_one};
-use luthier_manifest::ShadingModel;
+use luthier_manifest::{Reflectance, ShadingModel};
 use luthier_material::Material;
 use luthier_store::Layers;
 use luthier_terminal::{Failure, Outcome};
 use luthier_texture::png;
 use luthier_view::{Form, Host, MaterialFile, Screenshot};
 
+use crate::cli::Shading;
 use crate::store::store;
 use crate::watched::{State, named, state};
 
@@ -25,18 +26,25 @@ pub(crate) struct ViewHost {
     screenshot: Option<PathBuf>,
     /// Whether lobes may be fitted.
     fits: bool,
+    /// Reflectances in place of those of files.
+    fresnel: Option<Reflectance>,
     seen: Mutex<Option<(Stamps, Vec<MaterialFile>)>>,
     /// Results of the jobs of the last bake: most serve the next.
     store: MemoryStore,
 }
 
 impl ViewHost {
-    pub(crate) fn new(paths: Vec<PathBuf>, screenshot: Option<PathBuf>, fits: bool) -> Self {
-        Self { paths, screenshot, fits, seen: Mutex::new(None), store: MemoryStore::default() }
+    pub(crate) fn new(paths: Vec<PathBuf>, screenshot: Option<PathBuf>, shading: &Shading) -> Self {
+        let (fits, fresnel) = (!shading.no_fit, shading.fresnel);
+        Self { paths, screenshot, fits, fresnel, seen: Mutex::new(None), store: MemoryStore::default() }
     }
 
     fn package(&self, material: &Material, form: Form) -> Outcome<Package> {
-        let materials = lit(std::slice::from_ref(material));
+        let mut materials = lit(std::slice::from_ref(material));
+        let is_chosen = |material: &Material| self.fresnel.is_some() && material.model().has_reflectance();
+        for material in materials.iter_mut().filter(|material| is_chosen(material)) {
+            material.bake.reflectance = self.fresnel;
+        }
         let store = Layers(&[&self.store, store()?]);
         let package = Package::new(&materials, &Bake { functions: lit_functions(), ..Bake::wgsl(&[form]) }, &store)?;
         self.store.sweep();

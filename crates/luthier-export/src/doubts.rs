@@ -4,6 +4,8 @@ use luthier_layers::domain::{Outside, Quantity, outside};
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::{Diagnostic, LeftOut, Material, Severity, left_out};
 
+use crate::parts::of_parts;
+
 /// Warnings, and an error for what would be wrong beyond use. `asked` is the model of the command line.
 pub fn of_model(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {
     let model = asked.unwrap_or_else(|| material.model());
@@ -11,6 +13,7 @@ pub fn of_model(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnos
     let mut doubts = of_domain(material, asked);
     doubts.extend(material.unfit_for_lobes().filter(|_| asked.is_none()).map(|part| instead(material, &part)));
     doubts.extend(dropped.iter().map(|part| dropped_part(material, model, part)));
+    doubts.extend(of_parts(material, asked));
     doubts
 }
 

@@ -20,6 +20,8 @@ mod doubts;
 #[cfg(feature = "bake")]
 mod make;
 #[cfg(feature = "bake")]
+mod parts;
+#[cfg(feature = "bake")]
 mod refusals;
 #[cfg(feature = "bake")]
 mod renderer;
@@ -40,6 +42,8 @@ pub use luthier_bake::{MemoryStore, Missing, Share, Store};
 pub use luthier_material::{LeftOut, left_out};
 #[cfg(feature = "bake")]
 pub use make::{Bake, ExportError, outline, source_hash, unfitted};
+#[cfg(feature = "bake")]
+pub use parts::{of_parts, of_scene};
 #[cfg(feature = "bake")]
 pub use refusals::{refuse, refuse_too_many};
 #[cfg(feature = "bake")]

@@ -19,7 +19,7 @@ use luthier_texture::{Texture, TextureError, png};
 use rayon::prelude::*;
 use thiserror::Error;
 
-use crate::{GENERATOR, Map, Package, PackageError, Shader, Table, input, of_domain, sha256, sources};
+use crate::{GENERATOR, Map, Package, PackageError, Shader, Table, input, of_domain, of_parts, sha256, sources};
 
 /// How a package is made, beside what its materials say. The default is all that `luthier bake` writes.
 #[derive(Clone)]
@@ -265,9 +265,9 @@ pub fn unfitted(materials: &[Material]) -> Vec<Material> {
     unfitted
 }
 
-/// Refuses materials outside the domain of their model.
+/// Refuses materials outside the domain of their model, and parts that their model does not have.
 fn refuse_foreign(materials: &[Material]) -> Result<(), ExportError> {
-    let doubts = materials.iter().flat_map(|material| of_domain(material, None));
+    let doubts = materials.iter().flat_map(|material| [of_domain(material, None), of_parts(material, None)].concat());
     let diagnostics: Vec<Diagnostic> = doubts.filter(|d| d.severity == Severity::Error).collect();
     let Some(first) = diagnostics.first() else { return Ok(()) };
     Err(ExportError::Refused { sentence: format!("{}: {}", first.label, first.message), diagnostics })

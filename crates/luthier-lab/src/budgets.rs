@@ -73,9 +73,10 @@ These are not among the candidates:
 
 /// A material with rows and albedos of every interface, whatever its shader reads, of which its file decides nothing.
 fn open(mut material: Material) -> Material {
-    let BakeSettings { model, color, wavelengths_nm, .. } = material.bake;
+    let BakeSettings { model, masking, reflectance, color, wavelengths_nm, .. } = material.bake;
     let tables = vec![TableKind::Fresnel, TableKind::Fgd];
-    material.bake = BakeSettings { model, color, wavelengths_nm, tables, ..BakeSettings::default() };
+    material.bake =
+        BakeSettings { model, masking, reflectance, color, wavelengths_nm, tables, ..BakeSettings::default() };
     material
 }
 

@@ -7,7 +7,7 @@
 //! |---|---|
 //! | `models` | every reflectance model under its name, with its facets, refraction and statistics of light |
 //! | `effects` | flakes, patina, particles, textures, fluorescence |
-//! | `twins` | models as the shaders evaluate them, in three channels: [`real_time`], [`shaded`], and the [`terms`] of tables |
+//! | `twins` | models as the shaders evaluate them, in three channels: [`real_time`], [`shaded`], their [`parts`], and the [`terms`] of tables |
 //! | [`lobes`] | the stack as it was simulated, in a few lobes |
 //! | `references` | [`random_walk`] for one rough interface, [`layered_mc`] for a rough stack, [`closed_form`] for a smooth one |
 //! | `noise` | gradient noise and cells |
@@ -54,4 +54,4 @@ pub use models::{
     yamaguchi,
 };
 pub use references::{closed_form, layered_mc, plane_stack, random_walk, transfer_matrix};
-pub use twins::{real_time, shaded, terms};
+pub use twins::{parts, real_time, shaded, terms};

@@ -17,6 +17,7 @@ mod limits;
 mod lock;
 mod manifest;
 mod model;
+mod parts;
 mod reads;
 mod record;
 mod search;
@@ -40,6 +41,7 @@ pub use manifest::{
     TableEntry,
 };
 pub use model::ShadingModel;
+pub use parts::{Masking, Reflectance, ReflectanceCurve};
 pub use record::{LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, material_buffer};
 pub use search::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR, Search};
 pub use target::Target;

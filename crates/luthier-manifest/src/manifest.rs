@@ -4,8 +4,8 @@ use luthier_lut::{AtlasLayout, TableKind, TexelFormat, Tile};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Form, Functions, LayerRecord, ManifestError, MaterialConstants, MaterialTexture, SceneChoice, Search, ShadingModel,
-    Target,
+    Form, Functions, LayerKind, LayerRecord, ManifestError, Masking, MaterialConstants, MaterialTexture, Reflectance,
+    SceneChoice, Search, ShadingModel, Target,
 };
 
 /// Version of the manifest's shape. A reader refuses any other.
@@ -174,6 +174,12 @@ impl MaterialEntry {
         let MaterialConstants { flakes, patina, glitter, .. } = &self.constants;
         let has_effect = flakes.is_some() || patina.is_some() || glitter.is_some();
         has_effect || !self.maps.is_empty() || self.layers.iter().any(LayerRecord::varies)
+    }
+
+    /// Masking and reflectance of the model: those of its first interface.
+    pub fn parts(&self) -> (Masking, Reflectance) {
+        let first = self.layers.iter().find(|layer| layer.kind != LayerKind::Diffuse);
+        first.map(|layer| (layer.masking, layer.reflectance)).unwrap_or_default()
     }
 
     /// The layers, then the bare layer of a patina: what the material buffer holds.

@@ -2,7 +2,7 @@
 
 use luthier_lut::TableKind;
 
-use crate::{LayerKind, LayerRecord, ShadingModel};
+use crate::{LayerKind, LayerRecord, Reflectance, ShadingModel};
 
 impl ShadingModel {
     /// Whether the model follows light through the layers as statistics of lobes.
@@ -26,6 +26,7 @@ impl ShadingModel {
             Self::Microfacet | Self::GranierHeidrich | Self::Lobes if number > 0 => false,
             Self::Elek | Self::WeidlichWilkie | Self::Microfacet | Self::Lobes => match kind {
                 TableKind::Lobes => self == Self::Lobes,
+                TableKind::Fresnel | TableKind::Film if layer.reflectance != Reflectance::Table => false,
                 TableKind::Fresnel => !layer.varies(),
                 TableKind::Film => layer.varies(),
                 TableKind::Thickness => layer.varies() && number == 0,
@@ -63,6 +64,20 @@ mod tests {
     fn varying() -> LayerRecord {
         let film = LayerRecord { film_ior_n: [1.4; 3], film_thickness_nm: 300.0, ..layer(LayerKind::Dielectric, 1.5) };
         LayerRecord { film_thickness_max_nm: 400.0, ..film }
+    }
+
+    /// A coat and a metal whose reflectances have no tables.
+    #[test]
+    fn reflectances_that_are_computed_have_no_rows() {
+        for reflectance in [Reflectance::Exact, Reflectance::Approximate, Reflectance::Lazanyi] {
+            let computed = |record: LayerRecord| LayerRecord { reflectance, ..record };
+            let layers = [computed(layer(LayerKind::Dielectric, 1.5)), computed(layer(LayerKind::Conductor, 1.0))];
+            for model in [ShadingModel::Elek, ShadingModel::WeidlichWilkie] {
+                assert_eq!([0, 1].map(|number| read(model, &layers, number)), ["distribution"; 2]);
+            }
+        }
+        let film = LayerRecord { reflectance: Reflectance::Exact, ..varying() };
+        assert_eq!(read(ShadingModel::Microfacet, &[film], 0), "distribution thickness");
     }
 
     fn read(model: ShadingModel, layers: &[LayerRecord], number: usize) -> String {

@@ -6,7 +6,7 @@ use luthier_lut::{TableKind, refracted_cosine};
 use luthier_optics::stack::Distribution;
 use serde::{Deserialize, Serialize};
 
-use crate::{MaterialConstants, MaterialEntry, Tiles};
+use crate::{Masking, MaterialConstants, MaterialEntry, Reflectance, ReflectanceCurve, Tiles};
 
 /// `vec4` words of a material's header in the material buffer.
 pub const MATERIAL_WORDS: usize = 11;
@@ -80,9 +80,22 @@ pub struct LayerRecord {
     /// those of interfaces with total reflection are; else 0.
     #[serde(default)]
     pub critical_cot_sq: f64,
+    /// Masking of the model `microfacet`; absent where it is the default.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub masking: Masking,
+    /// Computation of the reflectance of the interface; absent where it is the default.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub reflectance: Reflectance,
+    /// Curve that stands for the reflectance, where it is an approximation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve: Option<ReflectanceCurve>,
     /// The tiles that serve the layer: fields `fresnel_tile` and so on.
     #[serde(flatten)]
     pub tiles: Tiles,
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 impl LayerRecord {
@@ -107,11 +120,14 @@ impl LayerRecord {
     /// | 3 | albedo RGB over pi, distribution (0 beckmann, 1 ggx) |
     /// | 4 | ior_n RGB, film thickness nm |
     /// | 5 | ior_k RGB, film thickness max nm |
-    /// | 6 | film_ior_n RGB, film tile |
-    /// | 7 | film_ior_k RGB, squared cotangent of the critical angle |
-    /// | 8 | film thickness in waves RGB, escape tile |
+    /// | 6 | film_ior_n RGB, film tile; of a curve f0 RGB |
+    /// | 7 | film_ior_k RGB, squared cotangent of the critical angle; of a curve its weights RGB |
+    /// | 8 | film thickness in waves RGB, escape tile; of a curve its exponents RGB |
     /// | 9 | alpha_x, alpha_y, cosine and sine of the rotation |
-    /// | 10 | kind (0 dielectric, 1 conductor, 2 diffuse), alpha, eta, sigma |
+    /// | 10 | kind (0 dielectric, 1 conductor, 2 diffuse) plus 4 times the number of the reflectance (0 table, 1 exact, 2 approximate, 3 lazanyi) and 16 times that of the masking, alpha, eta, sigma |
+    ///
+    /// Masking is numbered 0 smith, 1 smith-separable, 2 schlick-smith, 3 v-cavity, 4 kelemen, 5 implicit. An interface with a curve ([`ReflectanceCurve`])
+    /// has no film.
     ///
     /// The falloff of D with the squared slope is 1 / alpha^2, over ln 2 for Beckmann, whose D is a power of two then; its peak,
     /// 1 / (4 pi alpha^2), is a quarter of the greatest D, as every lobe has it. A reciprocal of 0 is 0: what has no slopes, or lets
@@ -121,6 +137,11 @@ impl LayerRecord {
             LayerKind::Dielectric => 0,
             LayerKind::Conductor => 1,
             LayerKind::Diffuse => 2,
+        };
+        let parts = 4 * self.reflectance.number() + 16 * self.masking.number();
+        let [first, second, third] = match self.curve {
+            Some(ReflectanceCurve { f0, weight, exponent }) => [f0, weight, exponent],
+            None => [self.film_ior_n, self.film_ior_k, self.film_thickness_waves],
         };
         let is_ggx = self.distribution == Distribution::Ggx;
         let distribution = if is_ggx { 1.0 } else { 0.0 };
@@ -140,16 +161,16 @@ impl LayerRecord {
             rgbw(self.albedo.map(|albedo| albedo * FRAC_1_PI), distribution),
             rgbw(self.ior_n, self.film_thickness_nm as f32),
             rgbw(self.ior_k, self.film_thickness_max_nm as f32),
-            rgbw(self.film_ior_n, 0.0),
-            rgbw(self.film_ior_k, self.critical_cot_sq as f32),
-            rgbw(self.film_thickness_waves, 0.0),
+            rgbw(first, 0.0),
+            rgbw(second, self.critical_cot_sq as f32),
+            rgbw(third, 0.0),
             [
                 self.alpha_xy[0] as f32,
                 self.alpha_xy[1] as f32,
                 libm::cos(self.rotation) as f32,
                 libm::sin(self.rotation) as f32,
             ],
-            [whole(kind), self.alpha as f32, self.eta as f32, self.sigma as f32],
+            [whole(kind + parts as usize), self.alpha as f32, self.eta as f32, self.sigma as f32],
         ];
         let mut words = [[0.0; 4]; LAYER_WORDS];
         words[..numbers.len()].copy_from_slice(&numbers);
@@ -219,6 +240,9 @@ mod tests {
             film_thickness_nm: 25.0,
             film_thickness_max_nm: 26.0,
             critical_cot_sq: 35.0,
+            masking: Masking::Smith,
+            reflectance: Reflectance::Table,
+            curve: None,
             tiles: Tiles::default().with([
                 (TableKind::Fresnel, Some(27)),
                 (TableKind::Distribution, Some(28)),
@@ -254,6 +278,27 @@ mod tests {
         assert_eq!(numbered(LayerKind::Diffuse).words()[10][0], 8_388_610.0);
         let beckmann = LayerRecord { distribution: Distribution::Beckmann, ..numbered(LayerKind::Diffuse) };
         assert_eq!((beckmann.words()[3][3], beckmann.words()[0][0]), (0.0, 0.360_673_76));
+    }
+
+    /// By hand: a metal is 1, Lazanyi's reflectance 3, V-cavities 3.
+    #[test]
+    fn chosen_parts_lie_where_the_documentation_says() {
+        let plain = numbered(LayerKind::Conductor);
+        let curve = ReflectanceCurve { f0: [0.1, 0.2, 0.3], weight: [1.1, 1.2, 1.3], exponent: [6.1, 6.2, 6.3] };
+        let chosen = LayerRecord {
+            masking: Masking::VCavity,
+            reflectance: Reflectance::Lazanyi,
+            curve: Some(curve),
+            ..plain.clone()
+        };
+        let words = chosen.words();
+        assert_eq!(words[6..9], [[0.1, 0.2, 0.3, 33.0], [1.1, 1.2, 1.3, 35.0], [6.1, 6.2, 6.3, 34.0]]);
+        assert_eq!(words[10][0].to_bits() & 0x7f_ffff, 1 + 4 * 3 + 16 * 3);
+        let json = serde_json::to_value(&chosen).unwrap();
+        assert_eq!((&json["masking"], &json["reflectance"]), (&"v-cavity".into(), &"lazanyi".into()));
+        assert_eq!(serde_json::from_value::<LayerRecord>(json).unwrap(), chosen);
+        let json = serde_json::to_value(plain).unwrap();
+        assert!(["masking", "reflectance", "curve"].iter().all(|key| json.get(key).is_none()), "{json}");
     }
 
     #[test]

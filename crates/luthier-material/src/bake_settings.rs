@@ -1,7 +1,7 @@
 //! Settings that a material file asks of its tables.
 
 use luthier_lut::{TableKind, TexelFormat, named};
-use luthier_manifest::{ColorMode, ShadingModel};
+use luthier_manifest::{ColorMode, Masking, Reflectance, ShadingModel};
 
 /// The three wavelengths of a material that names none, as R, G and B (Granier and Heidrich 2003).
 pub const DEFAULT_WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
@@ -45,6 +45,10 @@ named! {
 pub struct BakeSettings {
     /// The reflectance model of the shader.
     pub model: Option<ShadingModel>,
+    /// Masking of the model `microfacet`.
+    pub masking: Option<Masking>,
+    /// Computation of reflectances, of models that have a choice.
+    pub reflectance: Option<Reflectance>,
     /// Kinds of tables to bake beside those that the shader reads.
     pub tables: Vec<TableKind>,
     /// Spectral or at three wavelengths.

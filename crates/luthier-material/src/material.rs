@@ -2,7 +2,7 @@
 
 use luthier_optics::stack::Stack;
 
-use luthier_manifest::Budget;
+use luthier_manifest::{Budget, ShadingModel};
 
 use crate::bake_settings::BakeSettings;
 use crate::class::SurfaceClass;
@@ -60,6 +60,13 @@ impl Material {
         hint: Option<String>,
     ) -> Diagnostic {
         Sink::one(&self.source, &self.text, severity, self.places.span(key), message.into(), hint)
+    }
+
+    /// Has the material shaded by a model, without the parts of others that its file chooses: for comparisons of models.
+    pub fn shade_by(&mut self, model: ShadingModel) {
+        self.bake.model = Some(model);
+        self.bake.masking = self.bake.masking.filter(|_| model.has_masking());
+        self.bake.reflectance = self.bake.reflectance.filter(|_| model.has_reflectance());
     }
 
     /// File and line of a value: `gilding.toml:8`.

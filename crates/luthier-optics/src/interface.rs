@@ -6,6 +6,7 @@ use crate::Rgb;
 use crate::color::{Color, WavelengthNode};
 use crate::fresnel::{FilmLayer, coated};
 use crate::ior::Ior;
+use crate::schlick::Lazanyi;
 use crate::stack::{Base, Film, Stack};
 
 /// The optics of one interface: the medium above, films, the medium below. No micro-surface.
@@ -120,6 +121,19 @@ impl Sampled {
     /// Unpolarised reflectance per channel.
     pub fn rgb(&self, cos_theta_i: f64) -> Rgb {
         self.sum(|interface| interface.reflectance(cos_theta_i))
+    }
+
+    /// Schlick's form of each channel: through its reflectance at normal incidence. Linear in the reflectances at the wavelengths, so that in
+    /// spectral colour it is the sum of their forms.
+    pub fn schlick(&self) -> [Lazanyi; 3] {
+        self.rgb(1.0).map(|f0| Lazanyi { f0, a: 0.0, exponent: 1.0 })
+    }
+
+    /// Lazanyi and Szirmay-Kalos' curve of each channel, fitted to the reflectance of the channel.
+    pub fn lazanyi(&self) -> [Lazanyi; 3] {
+        let f0 = self.rgb(1.0);
+        let values: Vec<Rgb> = Lazanyi::cosines().map(|cos| self.rgb(cos)).collect();
+        [0, 1, 2].map(|c: usize| Lazanyi::through(f0[c], &values.iter().map(|rgb| rgb[c]).collect::<Vec<_>>()))
     }
 
     /// Weighted sum over the wavelengths of any function of the interface.

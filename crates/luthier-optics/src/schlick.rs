@@ -68,14 +68,20 @@ impl Lazanyi {
     /// The least-squares correction for an interface: for each exponent the weight in closed form, over equal steps of the
     /// cosine; the best exponent to an eighth.
     pub fn fit(above: f64, below: Complex64) -> Self {
-        let f0 = f0(above, below);
-        let angles: Vec<(f64, f64)> = (0..FIT_ANGLES)
-            .map(|i| {
-                let cos = (f64::from(i) + 0.5) / f64::from(FIT_ANGLES);
-                let exact = fresnel::interface(Complex64::new(above, 0.0), below, cos).unpolarised();
-                (cos, schlick(f0, cos) - exact)
-            })
-            .collect();
+        let exact = |cos: f64| fresnel::interface(Complex64::new(above, 0.0), below, cos).unpolarised();
+        let angles: Vec<f64> = Self::cosines().map(exact).collect();
+        Self::through(f0(above, below), &angles)
+    }
+
+    /// The cosines that a fit looks at.
+    pub fn cosines() -> impl Iterator<Item = f64> {
+        (0..FIT_ANGLES).map(|i| (f64::from(i) + 0.5) / f64::from(FIT_ANGLES))
+    }
+
+    /// [`Lazanyi::fit`] to any reflectance, from its values at normal incidence and at [`Lazanyi::cosines`].
+    pub fn through(f0: f64, values: &[f64]) -> Self {
+        let excess = |(cos, exact): (f64, &f64)| (cos, schlick(f0, cos) - exact);
+        let angles: Vec<(f64, f64)> = Self::cosines().zip(values).map(excess).collect();
         let mut best = (f64::INFINITY, Self { f0, a: 0.0, exponent: 1.0 });
         for exponent in FIT_EXPONENTS.map(|e| f64::from(e) / 8.0) {
             let (mut cross, mut square) = (0.0, 0.0);

@@ -309,7 +309,10 @@ impl App {
     /// Gives the threads what has changed.
     fn order(&mut self, ui: &Ui, rect: Rect, moving: bool) {
         if let Some(mut material) = self.material().cloned() {
-            material.bake.model = Some(self.model.unwrap_or_else(|| self.own_model(&material)));
+            match self.model {
+                Some(model) => material.shade_by(model),
+                None => material.bake.model = Some(self.own_model(&material)),
+            }
             let (form, revision) = (self.form, self.files.selected().map_or(0, |entry| entry.revision));
             let is_same =
                 |last: &BakeOrder| last.material == material && (last.form, last.revision) == (form, revision);

@@ -8,7 +8,7 @@ use clap::{ArgGroup, Args, Command, CommandFactory, Parser, Subcommand};
 #[cfg(feature = "cost")]
 use luthier_cost::Family;
 use luthier_lut::TableKind;
-use luthier_manifest::{Form, FunctionGroup, ShadingModel, Target};
+use luthier_manifest::{Form, FunctionGroup, Reflectance, ShadingModel, Target};
 use luthier_terminal::{Sources, named};
 
 use crate::directions::Angles;
@@ -135,6 +135,11 @@ pub(crate) struct Shading {
     /// Simulate nothing: files that ask for no model take a closed form, `elek` for most. Those that ask for `lobes` are refused
     #[arg(long, conflicts_with = "model")]
     pub(crate) no_fit: bool,
+    /// How the models `elek`, `weidlich-wilkie` and `microfacet` come by the reflectance of an interface, in place of what material files say:
+    /// `table` reads rows, `exact` is Fresnel's equations, `approximate` Schlick's form with the F0 of n and k (Elek 2010), `lazanyi` has a
+    /// correction of that
+    #[arg(long, value_name = "NAME", value_parser = named::<Reflectance>(Reflectance::NAMES))]
+    pub(crate) fresnel: Option<Reflectance>,
     /// Kinds of tables to bake and bind for every material, beside those that its shader reads
     #[arg(long, value_name = "KIND,...", value_delimiter = ',', value_parser = named::<TableKind>(TableKind::NAMES))]
     pub(crate) tables: Vec<TableKind>,
@@ -145,7 +150,7 @@ pub(crate) struct Shading {
     after_help = "Examples:\n  luthier bake materials\n  luthier bake a.toml b.toml --out build/luts --threads 1 --json\n  \
                   luthier bake a.toml --max-abs 1e-3 --max-cost 200\n  \
                   luthier bake materials --target wgsl,msl --form baked\n  \
-                  luthier bake a.toml --tables fgd,fresnel\n  \
+                  luthier bake a.toml --tables fgd,fresnel\n  luthier bake a.toml --model elek --fresnel approximate\n  \
                   luthier bake materials/scenes/showroom.toml\n  luthier bake materials/scenes/still-life.toml --budgets 0.3,0.1,0.03"
 )]
 pub(crate) struct BakeOptions {
@@ -401,6 +406,9 @@ pub(crate) struct CostOptions {
     /// Leave out `lobes`, whose shader takes a simulation of each material
     #[arg(long, conflicts_with = "model")]
     pub(crate) no_fit: bool,
+    /// How models come by the reflectance of an interface, where they have a choice: table, exact, approximate or lazanyi
+    #[arg(long, value_name = "NAME", value_parser = named::<Reflectance>(Reflectance::NAMES))]
+    pub(crate) fresnel: Option<Reflectance>,
     /// Form to compile; may be given again. By default both
     #[arg(long, value_parser = named::<Form>(Form::NAMES), value_name = "FORM")]
     pub(crate) form: Vec<Form>,
@@ -441,6 +449,9 @@ pub(crate) struct BenchOptions {
     /// Leave out `lobes`, whose tables take a simulation of each material
     #[arg(long, conflicts_with = "model")]
     pub(crate) no_fit: bool,
+    /// How models come by the reflectance of an interface, where they have a choice: table, exact, approximate or lazanyi
+    #[arg(long, value_name = "NAME", value_parser = named::<Reflectance>(Reflectance::NAMES))]
+    pub(crate) fresnel: Option<Reflectance>,
     /// Least number of evaluations in one run
     #[arg(long, value_name = "N", default_value_t = 1 << 20, value_parser = clap::value_parser!(u32).range(1..=60_000_000))]
     pub(crate) evaluations: u32,

@@ -10,7 +10,7 @@ use luthier_terminal::{Bar, Failure, Outcome, deliver, open, valid};
 use serde::Serialize;
 
 use crate::cli::BenchOptions;
-use crate::materials::models;
+use crate::materials::{models, shade_by};
 use crate::store::store;
 
 /// Pairs of directions, near the mirror direction and anywhere by halves: few enough for any cache.
@@ -132,7 +132,7 @@ fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -> Outcome<V
     let mut subjects = Vec::new();
     for model in models {
         let mut shaded = material.clone();
-        shaded.bake.model = Some(model);
+        shade_by(&mut shaded, model, options.fresnel)?;
         let mut package = Package::for_renderer(std::slice::from_ref(&shaded), store()?)?;
         let reads_d = model.reads_distribution();
         let styles = [(Form::Full, true), (Form::Baked, !reads_d), (Form::Baked, true)];

@@ -10,7 +10,7 @@ use luthier_shader::{Form, MaterialSet};
 use luthier_terminal::{Failure, Outcome, deliver, print, valid};
 
 use crate::cli::CostOptions;
-use crate::materials::models;
+use crate::materials::{models, shade_by};
 use crate::store::store;
 
 /// Compiles shaders for GPUs that are not here, and prints what they cost.
@@ -69,7 +69,7 @@ fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Varian
     for model in models {
         let mut shaded = materials.to_vec();
         for material in &mut shaded {
-            material.bake.model = Some(model);
+            shade_by(material, model, options.fresnel)?;
         }
         let groups: Vec<(String, &[Material])> = if options.set {
             vec![(format!("set of {}", shaded.len()), shaded.as_slice())]
@@ -118,6 +118,7 @@ fn command(options: &CostOptions) -> String {
     words.extend(options.sources.paths.iter().map(|path| path.display().to_string()));
     words.extend(options.model.iter().map(|model| format!("--model {}", model.name())));
     words.extend(options.form.iter().map(|&form| format!("--form {}", form.name())));
+    words.extend(options.fresnel.iter().map(|reflectance| format!("--fresnel {reflectance}")));
     words.extend(options.family.iter().map(|family| format!("--family {}", family)));
     let flags = [
         ("--no-fit", options.no_fit),

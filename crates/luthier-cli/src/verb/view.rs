@@ -39,7 +39,7 @@ pub(crate) fn run(options: &ViewOptions) -> Outcome {
         dark: options.theme.map(|theme| theme == ThemeName::Dark),
         shots: options.screenshot.is_some().then_some(Shots { frames: options.frames, count: options.shots }),
     };
-    let host = ViewHost::new(options.sources.paths.clone(), options.screenshot.clone(), !options.shading.no_fit);
+    let host = ViewHost::new(options.sources.paths.clone(), options.screenshot.clone(), &options.shading);
     luthier_view::run(Arc::new(host), gpu, window).map_err(|error| match error {
         ViewError::Renderer(source) => source.into(),
         ViewError::Screenshot(_) => Failure::Files(error.into()),

@@ -17,6 +17,7 @@ use crate::granier_heidrich::GranierHeidrich;
 use crate::lobes;
 use crate::microfacet::{Components, Microfacet};
 use crate::monochrome::{Monochrome, MonochromeBelow, Optics};
+use crate::parts::{Parts, Reflectance, Reflectances};
 use crate::phong::Coefficients;
 use crate::refraction::REFRACTION_WAVELENGTH_NM;
 use crate::statistics::diffuse_base::DiffuseBase;
@@ -47,7 +48,11 @@ impl Under {
 
 /// The twin of a shader, for one surface.
 #[derive(Debug)]
-pub struct Twin(Kind);
+pub struct Twin {
+    kind: Kind,
+    /// Reflectances in place of those of terms, where a material chooses them.
+    reflectances: Option<Reflectances>,
+}
 
 #[derive(Debug)]
 enum Kind {
@@ -79,15 +84,26 @@ impl Twin {
     /// three channels. `color` says how Phong's coefficients come by their colour, which both forms of the shader read from the
     /// material; the colour of everything else is that of the [`Terms`].
     pub fn new(model: &str, stack: &Stack, wavelengths_nm: [f64; 3], color: Color) -> Option<Self> {
+        Self::with(model, stack, wavelengths_nm, color, Parts::PLAIN)
+    }
+
+    /// [`Twin::new`] with parts that a material chooses. `color` is that of curves that stand for reflectances, too.
+    pub fn with(model: &str, stack: &Stack, wavelengths_nm: [f64; 3], color: Color, parts: Parts) -> Option<Self> {
+        let has_choice = [elek::MODEL, "weidlich-wilkie", "microfacet"].contains(&model);
+        let is_chosen = has_choice && parts.reflectance != Reflectance::Terms;
+        let reflectances = is_chosen.then(|| Reflectances::of(stack, wavelengths_nm, color, parts.reflectance));
         let channels = || channels(stack, wavelengths_nm).map(|one| bend_alike(one, stack));
-        Some(Self(match model {
+        let kind = match model {
             elek::MODEL => Kind::Elek(elek::layers(stack)),
             "weidlich-wilkie" => Kind::WeidlichWilkie(channels()),
             "granier-heidrich" => Kind::GranierHeidrich(granier_channels(stack, wavelengths_nm)),
             "phong" => Kind::Phong(coefficients(stack, wavelengths_nm, color)),
             "belcour" => Kind::Belcour(Layers::rgb(stack)),
             "yamaguchi" => Kind::Yamaguchi(Layers::rgb(stack)),
-            "microfacet" => Kind::Microfacet(Box::new((Microfacet::new(Components::PLAIN), channels()))),
+            "microfacet" => {
+                let components = Components { masking: parts.masking, ..Components::PLAIN };
+                Kind::Microfacet(Box::new((Microfacet::new(components), channels())))
+            }
             lobes::MODEL => {
                 let is_interface = stack.layers.first().is_some_and(|layer| !matches!(layer.base, Base::Diffuse(_)));
                 let first = self::channels(&lobes::shown(stack), wavelengths_nm);
@@ -95,7 +111,8 @@ impl Twin {
                 Kind::Lobes(Box::new((Microfacet::new(Components::PLAIN), first)), is_interface)
             }
             _ => return None,
-        }))
+        };
+        Some(Self { kind, reflectances })
     }
 
     /// `f cos_theta_i`, RGB. Zero when either direction is at or below the horizon. Terms are asked once for every value, however many
@@ -106,8 +123,15 @@ impl Twin {
 
     /// [`Twin::eval`] with other normals below the first interface.
     pub fn eval_over(&self, terms: &impl ShaderTerms, under: &Under, wi: DVec3, wo: DVec3) -> Rgb {
+        match &self.reflectances {
+            Some(reflectances) => self.eval_on(&reflectances.over(terms), under, wi, wo),
+            None => self.eval_on(terms, under, wi, wo),
+        }
+    }
+
+    fn eval_on(&self, terms: &impl ShaderTerms, under: &Under, wi: DVec3, wo: DVec3) -> Rgb {
         let &Under { flake_normal, inner_normal, slope_variance, base_color } = under;
-        match &self.0 {
+        match &self.kind {
             Kind::Elek(layers) => elek::eval_below(layers, terms, wi, wo, flake_normal),
             Kind::WeidlichWilkie(stacks) => each(terms, stacks, |stack, optics| {
                 WeidlichWilkie::default().eval_below(stack, optics, wi, wo, flake_normal)

@@ -12,6 +12,7 @@ use luthier_optics::stack::{Base, Distribution, Film, Layer, Stack, Surface};
 use crate::elek::{self, ALPHA_MIN};
 use crate::frame;
 use crate::lobes::{self, Below, Cover, Fit, Varied, Varying};
+use crate::parts::{Chosen, Parts, Reflectance, Reflectances};
 use crate::real_time::{Twin, Under};
 use crate::statistics::diffuse_base::Veil;
 use crate::statistics::energy::Energy;
@@ -64,6 +65,13 @@ pub struct Shaded {
 struct Layers {
     twin: Twin,
     terms: Exact,
+    reflectances: Reflectances,
+}
+
+impl Layers {
+    fn terms(&self) -> Chosen<'_, Exact> {
+        self.reflectances.over(&self.terms)
+    }
 }
 
 impl Shaded {
@@ -77,6 +85,18 @@ impl Shaded {
         Self::fitted_by(&Varied::of, model, stack, wavelengths_nm, color, place)
     }
 
+    /// [`Self::new`] with parts that a material chooses; curves that stand for reflectances are in `color`.
+    pub fn with(
+        model: &str,
+        stack: &Stack,
+        wavelengths_nm: [f64; 3],
+        color: Color,
+        place: &Place,
+        parts: Parts,
+    ) -> Option<Self> {
+        Self::made(&Varied::of, model, stack, wavelengths_nm, color, place, parts)
+    }
+
     /// [`Self::new`] with the lobes of a function that fits them, where the model has some.
     pub fn fitted_by(
         fit: &Fit<'_>,
@@ -85,6 +105,18 @@ impl Shaded {
         wavelengths_nm: [f64; 3],
         color: Color,
         place: &Place,
+    ) -> Option<Self> {
+        Self::made(fit, model, stack, wavelengths_nm, color, place, Parts::PLAIN)
+    }
+
+    fn made(
+        fit: &Fit<'_>,
+        model: &str,
+        stack: &Stack,
+        wavelengths_nm: [f64; 3],
+        color: Color,
+        place: &Place,
+        parts: Parts,
     ) -> Option<Self> {
         let is_chain = [elek::MODEL, "weidlich-wilkie"].contains(&model);
         let is_shown = is_chain || model == lobes::MODEL && !is_over_another(stack);
@@ -95,8 +127,13 @@ impl Shaded {
             if model == lobes::MODEL {
                 first.layers.iter_mut().for_each(|layer| widen(&mut layer.surface, &place.sample));
             }
-            let twin = Twin::new(model, &first, wavelengths_nm, color)?;
-            Some(Layers { twin, terms: Exact::new(stack, color) })
+            // Tarnish dims reflectances that are chosen, too: the twin takes them from its terms.
+            let facets = Parts { reflectance: Reflectance::Terms, ..parts };
+            let twin = Twin::with(model, &first, wavelengths_nm, color, facets)?;
+            let has_choice = is_chain || model == "microfacet";
+            let reflectance = if has_choice { parts.reflectance } else { Reflectance::Terms };
+            let reflectances = Reflectances::of(stack, wavelengths_nm, color, reflectance);
+            Some(Layers { twin, terms: Exact::new(stack, color), reflectances })
         };
         let here = at(stack, model, place, patina);
         let under = Under { slope_variance: place.sample.slope_variance, base_color: place.base_color, ..place.under };
@@ -128,7 +165,7 @@ impl Shaded {
             return [0.0; 3];
         }
         let (wi, wo, under) = (wi_here, wo_here, &self.place.under);
-        let Layers { twin, terms } = &self.layers;
+        let (twin, terms) = (&self.layers.twin, &self.layers.terms());
         let (Some(patina), Some(bare)) = (&self.place.patina, &self.bare) else {
             return twin.eval_over(terms, under, wi, wo);
         };
@@ -144,7 +181,7 @@ impl Shaded {
         let mut value = [0, 1, 2].map(|c| amount * passed[c] * patina.diffuse_albedo[c] * FRAC_1_PI * wi.z);
         let mut add = |share: f64, layers: &Layers, first: Rgb, under: &Under| {
             if share > 0.0 {
-                let tarnished = Tarnished { terms: &layers.terms, first, below: dull };
+                let tarnished = Tarnished { terms: layers.terms(), first, below: dull };
                 let part = layers.twin.eval_over(&tarnished, under, wi, wo);
                 (0..3).for_each(|c| value[c] += share * part[c]);
             }
@@ -240,7 +277,7 @@ pub fn at_wavelength(stack: &Stack, wavelength_nm: f64) -> Stack {
 
 /// Terms whose reflectances are dimmed, those of the first layer and those of the layers below.
 struct Tarnished<'a> {
-    terms: &'a Exact,
+    terms: Chosen<'a, Exact>,
     first: Rgb,
     below: Rgb,
 }

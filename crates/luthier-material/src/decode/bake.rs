@@ -1,7 +1,7 @@
 //! Bake settings and budgets of a file.
 
 use luthier_lut::{TableKind, TexelFormat};
-use luthier_manifest::{Budget, ColorMode, ShadingModel};
+use luthier_manifest::{Budget, ColorMode, Masking, Reflectance, ShadingModel};
 
 use crate::bake_settings::{
     AlphaMapping, BakeSettings, DistributionMapping, DistributionSettings, FresnelMapping, FresnelSettings,
@@ -17,6 +17,8 @@ pub(super) fn decode(document: &Section<'_>, sink: &mut Sink<'_>) -> BakeSetting
     let wavelengths_nm = at.rgb("wavelengths_nm").filter(|w| distinct(w, &at, sink));
     BakeSettings {
         model: at.text("model").and_then(ShadingModel::from_name),
+        masking: at.text("masking").and_then(Masking::from_name),
+        reflectance: at.text("reflectance").and_then(Reflectance::from_name),
         tables: at.texts("tables").iter().filter_map(|name| TableKind::from_name(name)).collect(),
         color: at.text("color").and_then(ColorMode::from_name),
         wavelengths_nm,

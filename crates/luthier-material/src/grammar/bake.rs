@@ -1,7 +1,7 @@
 //! Keys of `[bake]` and `[budget]`.
 
 use luthier_lut::TableKind;
-use luthier_manifest::{ColorMode, ShadingModel};
+use luthier_manifest::{ColorMode, Masking, Reflectance, ShadingModel};
 
 use super::{Key, Kind, POSITIVE, Range, Table};
 use crate::bake_settings::{AlphaMapping, DistributionMapping, FresnelMapping};
@@ -33,6 +33,19 @@ pub(super) static BAKE: Table = Table {
             Kind::Choice(ShadingModel::NAMES),
             "\"elek\"",
             "The reflectance model that the shader evaluates.",
+        ),
+        Key::with_default(
+            "masking",
+            Kind::Choice(Masking::NAMES),
+            "\"smith\"",
+            "Masking and shadowing of the model microfacet.",
+        ),
+        Key::with_default(
+            "reflectance",
+            Kind::Choice(Reflectance::NAMES),
+            "\"table\"",
+            "How the models elek, weidlich-wilkie and microfacet come by the reflectance of an interface: rows of a table, Fresnel's equations, \
+             Schlick's form with the F0 of n and k, or Lazanyi's correction of it.",
         ),
         Key::optional(
             "tables",

@@ -12,6 +12,7 @@ use std::fmt;
 use glam::DVec3;
 use luthier_layers::elek::{self, Layer};
 use luthier_layers::lobes::{Cover, Varying};
+use luthier_layers::parts::Parts;
 use luthier_layers::real_time::Twin;
 use luthier_layers::terms::{Exact, ShaderTerms};
 use luthier_manifest::{
@@ -247,7 +248,9 @@ impl References {
         let color = color(material);
         let model = material.model;
         let varying = varying(material);
-        let twin = Twin::new(model.name(), stack, material.wavelengths_nm, color);
+        let (masking, reflectance) = material.parts();
+        let parts = Parts::named(masking.name(), reflectance.name()).unwrap_or(Parts::PLAIN);
+        let twin = Twin::with(model.name(), stack, material.wavelengths_nm, color, parts);
         Ok(Self {
             layers: elek::layers(stack),
             twin: twin.ok_or_else(|| ReportError::Model { material: material.name.clone(), model })?,

@@ -4,9 +4,11 @@ use std::collections::BTreeSet;
 
 use luthier_lut::TableKind;
 use luthier_manifest::{
-    FunctionGroup, LayerKind, LayerRecord, LobesRecord, MaterialEntry, ShadingModel, VaryingFactor,
+    FunctionGroup, LayerKind, LayerRecord, LobesRecord, Masking, MaterialEntry, Reflectance, ShadingModel,
+    VaryingFactor,
 };
 
+use crate::compose::masking;
 use crate::{Form, MaterialSet};
 
 /// Features that the materials of a set use: the words that conditions in the modules may name.
@@ -17,10 +19,11 @@ impl Features {
     /// Every word there is but the names of tables, for the check that modules name no other.
     #[cfg(test)]
     const ALL: &str = "absorption anisotropic bare base_color beckmann below bilinear chain chain_diffuse chain_patina clamped closed \
-        coat conductor critical_view diffuse environment face film film_table flakes full ggx glitter granier \
-        granier_bare granier_base granier_film granier_transparent interface lobes_axes lobes_bare_base lobes_base \
-        lobes_diffuse lobes_film lobes_patina lobes_tilted media microfacet_diffuse mixed one_lobe oren_nayar patina \
-        phong place powers schlick_base several smith split_root statistics statistics_base surface theta_axis tilted \
+        coat computed conductor critical_view diffuse environment exact face film film_table fitted flakes full ggx glitter granier \
+        granier_bare granier_base granier_film granier_transparent interface lazanyi lobes_axes lobes_bare_base lobes_base \
+        lobes_diffuse lobes_film lobes_patina lobes_tilted mask_implicit mask_kelemen \
+        mask_schlick_smith mask_smith mask_smith_separable mask_v_cavity masked media microfacet_diffuse mixed one_lobe \
+        oren_nayar packed patina phong place powers rows schlick_base several several_maskings several_reflectances smith split_root statistics statistics_base surface tabled theta_axis tilted \
         total_reflection two_lobes visible";
 
     pub(crate) fn of(set: &MaterialSet<'_>, form: Form) -> Self {
@@ -90,6 +93,7 @@ impl Features {
         if set.shows_environment(form) {
             names.insert("environment");
         }
+        names.extend(of_parts(set, form, &names));
         if !set.functions.is_eval_alone() {
             names.extend(of_face(set, &names));
         }
@@ -108,6 +112,29 @@ impl Features {
         }
         Self(names)
     }
+}
+
+/// Words for the parts that materials choose: the maskings of lobes, and where reflectances come from, of which each layer has one.
+fn of_parts(set: &MaterialSet<'_>, form: Form, names: &BTreeSet<&'static str>) -> Vec<&'static str> {
+    let has = |name| names.contains(name);
+    let is_read = has("tabled") && (has("fresnel") || has("film_table"));
+    let is_computed = has("exact") || form == Form::Full && has("tabled");
+    let sources = [is_read, is_computed, has("fitted")].iter().filter(|holds| **holds).count();
+    let maskings = masking::used(set);
+    let is_masked = maskings.iter().any(|masking| *masking != Masking::default());
+    let mut records = set.materials.iter().flat_map(MaterialEntry::records);
+    let is_packed =
+        |record: &LayerRecord| (record.masking, record.reflectance) != (Masking::default(), Reflectance::default());
+    let words = [
+        ("rows", is_read),
+        ("computed", is_computed),
+        ("several_reflectances", sources > 1),
+        ("masked", is_masked),
+        ("several_maskings", maskings.len() > 1),
+        ("packed", records.any(is_packed)),
+    ];
+    let chosen = words.into_iter().filter(|(_, holds)| *holds).map(|(name, _)| name);
+    chosen.chain(maskings.into_iter().filter(|_| is_masked).map(masking::word)).collect()
 }
 
 /// Words for functions beside `luthier_eval`: lobes of visible normals, and of powers of a cosine; whether some are below boundaries, and
@@ -163,6 +190,12 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
         }
         names.insert("interface");
         names.insert(layer.distribution.name());
+        names.extend(match layer.reflectance {
+            Reflectance::Table => &["tabled"][..],
+            Reflectance::Exact => &["exact"],
+            Reflectance::Approximate => &["fitted"],
+            Reflectance::Lazanyi => &["fitted", "lazanyi"],
+        });
         names.insert(if layer.film_ior_n[0] > 0.0 { "film" } else { "bare" });
         if layer.critical_cot_sq > 0.0 {
             names.insert("total_reflection");

@@ -5,6 +5,7 @@ mod chain;
 mod face;
 mod features;
 mod lookup;
+mod masking;
 mod members;
 mod statistics;
 mod words;
@@ -46,6 +47,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     }
     // D is a function of the layers' own slope parameters; the statistics have lobes of others.
     let facets = has("chain") || has("smith") || has("coat");
+    let masking = masking::module(set, &features);
     let modules = [
         (has("bilinear"), include_str!("../wgsl/tables/bilinear.wgsl")),
         (true, include_str!("../wgsl/layer.wgsl")),
@@ -58,15 +60,17 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         (has("phong") || has("granier") && has("interface"), include_str!("../wgsl/interface/power_lobe.wgsl")),
         (has("oren_nayar"), include_str!("../wgsl/base/oren_nayar.wgsl")),
         (has("diffuse") && !has("oren_nayar"), include_str!("../wgsl/base/lambert.wgsl")),
-        (has("full") && has("interface"), include_str!("../wgsl/interface/complex.wgsl")),
-        (has("full") && has("bare"), include_str!("../wgsl/interface/fresnel.wgsl")),
-        (has("full") && has("film"), include_str!("../wgsl/interface/film.wgsl")),
+        (has("computed"), include_str!("../wgsl/interface/complex.wgsl")),
+        (has("computed") && has("bare"), include_str!("../wgsl/interface/fresnel.wgsl")),
+        (has("computed") && has("film"), include_str!("../wgsl/interface/film.wgsl")),
         (has("closed") && has("beckmann") && facets, include_str!("../wgsl/interface/beckmann.wgsl")),
         (has("closed") && has("ggx") && facets, include_str!("../wgsl/interface/ggx.wgsl")),
-        (has("full") && has("interface"), include_str!("../wgsl/interface/full_terms.wgsl")),
+        (has("computed"), include_str!("../wgsl/interface/full_terms.wgsl")),
         (has("closed") && facets, include_str!("../wgsl/interface/closed_terms.wgsl")),
         (!has("full") && (facets || has("granier_bare")), include_str!("../wgsl/interface/baked_terms.wgsl")),
+        (has("fitted") || has("several_reflectances"), include_str!("../wgsl/interface/chosen_reflectance.wgsl")),
         (facets, include_str!("../wgsl/interface/slopes.wgsl")),
+        (!masking.is_empty(), masking.as_str()),
         (has("smith"), include_str!("../wgsl/interface/smith.wgsl")),
         (has("chain"), include_str!("../wgsl/models/path.wgsl")),
         (has("statistics"), include_str!("../wgsl/models/statistics.wgsl")),
@@ -105,13 +109,29 @@ pub(crate) fn text(module: &str, features: &Features) -> String {
     let text =
         text.replace("$place_parameter ", parameter).replace("$place_argument ", argument).replace("$layer(", layer);
     let term = if features.has("closed") { "luthier_distribution_read" } else { "luthier_distribution_term" };
-    let text = numbered(&text).replace("$distribution_read", term);
+    let text = reflectances(&numbered(&text).replace("$distribution_read", term), features);
     if features.has("oren_nayar") {
         return text.replace("$diffuse(", "luthier_diffuse(");
     }
     let mut parts = text.split("$diffuse(layer");
     let first = parts.next().unwrap_or_default().to_owned();
     parts.filter_map(|part| part.split_once(')')).fold(first, |out, (_, after)| out + "luthier_diffuse(layer)" + after)
+}
+
+/// The functions that give the reflectance of a layer: `luthier_fresnel_term` where a set has one of them, else it chooses among them.
+fn reflectances(text: &str, features: &Features) -> String {
+    let is_one = !features.has("several_reflectances");
+    // Tables have the names of these functions.
+    let text = match features.has("computed") && !features.has("full") {
+        true => {
+            text.replace("luthier_fresnel(", "luthier_fresnel_exact(").replace("luthier_film(", "luthier_film_exact(")
+        }
+        false => text.to_owned(),
+    };
+    ["read", "computed", "fitted"].iter().fold(text, |text, how| {
+        let name = if is_one { "luthier_fresnel_term".to_owned() } else { format!("luthier_fresnel_{how}") };
+        text.replace(&format!("$fresnel_{how}"), &name)
+    })
 }
 
 /// The members of a layer that say where in the tables it is.

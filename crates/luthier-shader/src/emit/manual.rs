@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use luthier_lut::{Axis, Mapping, TableKind};
-use luthier_manifest::{BindingEntry, MaterialTexture, ShadingModel};
+use luthier_manifest::{BindingEntry, Masking, MaterialTexture, Reflectance, ShadingModel};
 
 use super::Part;
 use crate::{Form, MaterialSet, RESERVED_BINDINGS, ShaderError, Target, bindings};
@@ -130,7 +130,30 @@ fn models(set: &MaterialSet<'_>, form: Form) -> Vec<String> {
         }
     };
     texts.extend([terms, statistics].iter().filter(|text| !text.is_empty()).map(|text| (*text).to_owned()));
+    texts.extend(parts(set));
     texts
+}
+
+/// Parts that materials choose in place of the defaults, each once, with the first of these materials.
+fn parts(set: &MaterialSet<'_>) -> Vec<String> {
+    let chosen = || set.materials.iter().map(|material| (material.name.as_str(), material.parts()));
+    let line = |what: &str, title: &str, names: Vec<&str>| match names.as_slice() {
+        [first, others @ ..] => {
+            let more = if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
+            Some(format!("{what} of {first}{more}: {title}."))
+        }
+        [] => None,
+    };
+    let maskings = Masking::ALL.into_iter().filter(|masking| *masking != Masking::default()).filter_map(|masking| {
+        let names = chosen().filter(|(_, parts)| parts.0 == masking).map(|(name, _)| name);
+        line("Masking", masking.title(), names.collect())
+    });
+    let is_other = |reflectance: &Reflectance| *reflectance != Reflectance::default();
+    let reflectances = Reflectance::ALL.into_iter().filter(is_other).filter_map(|reflectance| {
+        let names = chosen().filter(|(_, parts)| parts.1 == reflectance).map(|(name, _)| name);
+        line("Reflectance", reflectance.title(), names.collect())
+    });
+    maskings.chain(reflectances).collect()
 }
 
 fn functions(set: &MaterialSet<'_>, form: Form, target: Target, part: Part, wgsl: &str) -> Vec<String> {

@@ -33,7 +33,7 @@ struct LuthierLayer {
     /// Cosine and sine of the angle from the surface's tangent to the layer's.
     rotation: vec2<f32>,
     //? end
-    //? full|granier
+    //? computed|granier
     /// Real part of the index below, at three wavelengths.
     ior_n: vec3<f32>,
     /// Imaginary part of it.
@@ -45,6 +45,24 @@ struct LuthierLayer {
     film_ior_k: vec3<f32>,
     /// Thickness of the film in wavelengths of the medium above.
     film_thickness_waves: vec3<f32>,
+    //? end
+    //? end
+    //? several_maskings
+    /// Masking: 0 Smith, 1 Smith for each direction, 2 Schlick's fit, 3 V-cavities, 4 Kelemen and Szirmay-Kalos, 5 implicit.
+    masking: u32,
+    //? end
+    //? several_reflectances
+    /// Reflectance: 0 a table, 1 Fresnel's equations, 2 Schlick's form, 3 with Lazanyi's correction.
+    reflectance: u32,
+    //? end
+    //? fitted
+    /// Reflectance at normal incidence, where it is a curve.
+    f0: vec3<f32>,
+    //? lazanyi
+    /// Weight of the curve's correction.
+    edge_weight: vec3<f32>,
+    /// Exponent of it.
+    edge_exponent: vec3<f32>,
     //? end
     //? end
     //? end
@@ -115,7 +133,14 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     let imaginary_part = luthier_materials[first + $word_ior_k];
     let numbers = luthier_materials[first + $word_numbers];
     var layer: LuthierLayer;
+    //? packed
+    let kind = luthier_whole(numbers.x);
+    layer.kind = kind & 3u;
+    layer.reflectance = (kind >> 2u) & 3u;
+    layer.masking = kind >> 4u;
+    //? else
     layer.kind = luthier_whole(numbers.x);
+    //? end
     layer.alpha = numbers.y;
     layer.falloff = head.x;
     layer.peak = head.y;
@@ -135,6 +160,9 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     layer.film_ior_n = luthier_materials[first + $word_film_ior_n].xyz;
     layer.film_ior_k = luthier_materials[first + $word_film_ior_k].xyz;
     layer.film_thickness_waves = luthier_materials[first + $word_film_thickness_waves].xyz;
+    layer.f0 = luthier_materials[first + $word_film_ior_n].xyz;
+    layer.edge_weight = luthier_materials[first + $word_film_ior_k].xyz;
+    layer.edge_exponent = luthier_materials[first + $word_film_thickness_waves].xyz;
     layer.alpha_xy = luthier_materials[first + $word_tangent].xy;
     layer.rotation = luthier_materials[first + $word_tangent].zw;
     layer.tarnish = vec3<f32>(1.0);

@@ -5,8 +5,9 @@ use luthier_layers::directional_albedo::over_hemisphere;
 use luthier_layers::layered_mc::Estimate;
 use luthier_layers::model::{Estimator, Model};
 use luthier_layers::monochrome::Monochrome;
+use luthier_layers::parts::Parts;
 use luthier_layers::shaded::{Shaded, at_wavelength};
-use luthier_manifest::ColorMode;
+use luthier_manifest::{ColorMode, Reflectance, ShadingModel};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
@@ -169,28 +170,43 @@ impl<'a> Function<'a> {
     }
 }
 
+/// The parts of its shader's model that the file chooses, as far as the model that is evaluated has them.
+pub(super) fn parts(subject: &Subject) -> (Parts, Reflectance) {
+    let (bake, model) = (&subject.material.bake, ShadingModel::from_name(subject.model.info().name));
+    let masking = bake.masking.filter(|_| model.is_some_and(ShadingModel::has_masking)).unwrap_or_default();
+    let has_reflectance = model.is_some_and(ShadingModel::has_reflectance);
+    let reflectance = bake.reflectance.filter(|_| has_reflectance).unwrap_or_default();
+    (Parts::named(masking.name(), reflectance.name()).unwrap_or(Parts::PLAIN), reflectance)
+}
+
 /// The twin of the model's shader, where it has one. At one wavelength the models of Belcour and Yamaguchi are evaluated by themselves: their
 /// energies take seconds in colour, and effects are none of theirs.
 fn shaded(subject: &Subject, kind: &Kind) -> Option<How> {
     let (stack, name, place) = (&subject.material.stack, subject.model.info().name, &subject.place);
     let fit = subject.fit.as_ref();
+    let (parts, reflectance) = parts(subject);
+    let made = |stack: &Stack, wavelengths_nm: [f64; 3], color: Color| match parts {
+        Parts::PLAIN => Shaded::fitted_by(fit, name, stack, wavelengths_nm, color, place),
+        _ => Shaded::with(name, stack, wavelengths_nm, color, place, parts),
+    };
     match *kind {
         Kind::Reradiated(_) => None,
         Kind::Wavelength(_) if ["belcour", "yamaguchi"].contains(&name) && place.base_color.is_none() => None,
         Kind::Wavelength(nm) => {
             let color = Color::ThreeWavelengths([nm; 3]);
-            let shaded = Shaded::fitted_by(fit, name, &at_wavelength(stack, nm), [nm; 3], color, place)?;
+            let shaded = made(&at_wavelength(stack, nm), [nm; 3], color)?;
             Some(How::Shader(Box::new(shaded), nearest_channel(nm)))
         }
         Kind::Color(color) => {
             let wavelengths_nm = subject.material.bake.wavelengths_nm();
-            // Phong's coefficients are in the material's colour, in both forms of its shader.
+            // Phong's coefficients and curves of reflectances are in the material's colour, in both forms of its shader.
+            let is_own = name == "phong" || reflectance.is_fitted();
             let color = match subject.material.bake.color {
-                _ if name != "phong" => color,
+                _ if !is_own => color,
                 Some(ColorMode::ThreeWavelengths) => Color::ThreeWavelengths(wavelengths_nm),
                 Some(ColorMode::Spectral) | None => Color::Spectral,
             };
-            Some(How::Shader(Box::new(Shaded::fitted_by(fit, name, stack, wavelengths_nm, color, place)?), 0))
+            Some(How::Shader(Box::new(made(stack, wavelengths_nm, color)?), 0))
         }
     }
 }

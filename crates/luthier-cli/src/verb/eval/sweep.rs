@@ -4,14 +4,19 @@ use luthier_layers::directional_albedo::DirectionalAlbedo;
 use luthier_layers::elek_model::environment;
 use luthier_layers::furnace::furnace;
 use luthier_layers::layered_mc::Estimate;
-use luthier_terminal::{Outcome, print};
+use luthier_layers::microfacet::Microfacet;
+use luthier_layers::model::Model;
+use luthier_layers::parts::Parts;
+use luthier_manifest::ShadingModel;
+use luthier_terminal::{Failure, Outcome, print};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use super::function::{Albedo, Function, Kind};
+use super::function::{Albedo, Function, Kind, parts};
 use super::{Subject, WAVELENGTH_NM, at, error, significant};
 use crate::cli::EvalOptions;
 use crate::directions::Angles;
+use crate::model_inputs::ModelInputs;
 
 /// Angles, in degrees, unless others are given.
 const THETAS_DEG: [f64; 18] =
@@ -40,6 +45,26 @@ pub(crate) fn thetas_deg(options: &EvalOptions) -> Vec<f64> {
     if options.angles.is_empty() { THETAS_DEG.to_vec() } else { options.angles.clone() }
 }
 
+/// The model with the parts that the file chooses, where it chooses some.
+fn of_file(subject: &Subject) -> Outcome<Option<Box<dyn Model>>> {
+    let (parts, reflectance) = parts(subject);
+    if parts == Parts::PLAIN {
+        return Ok(None);
+    }
+    let name = subject.model.info().name;
+    if name == ShadingModel::Microfacet.name() {
+        let model = Box::new(Microfacet::new(parts.components()));
+        return Ok(Some(ModelInputs::textured(subject.place.sample, model)));
+    }
+    if reflectance.is_fitted() {
+        let text = format!(
+            "`--furnace` of `{name}` has Fresnel's equations, and the file chooses `{reflectance}`: leave that out"
+        );
+        return Err(Failure::Input(anyhow::anyhow!(text)));
+    }
+    Ok(None)
+}
+
 /// Prints a table.
 pub(crate) fn sweep(subject: &Subject, what: Sweep, kind: &Kind, options: &EvalOptions) -> Outcome {
     let wavelength_nm = match kind {
@@ -47,7 +72,8 @@ pub(crate) fn sweep(subject: &Subject, what: Sweep, kind: &Kind, options: &EvalO
         Kind::Color(_) => WAVELENGTH_NM,
     };
     let stack = at(&subject.material.stack, wavelength_nm);
-    let model = subject.model.as_ref();
+    let own = if what == Sweep::Furnace { of_file(subject)? } else { None };
+    let model = own.as_deref().unwrap_or(subject.model.as_ref());
     let function = (what == Sweep::Albedo).then(|| Function::new(subject, kind));
     let single = |row: DirectionalAlbedo| Albedo {
         values: vec![if row.is_estimate { Estimate::known(row.value, row.error) } else { Estimate::exact(row.value) }],

@@ -122,6 +122,9 @@ fn materials(manifest: &Manifest) -> Outcome<Vec<Material>> {
                 return Err(changed(&entry.source));
             };
             material.bake.model = Some(entry.model);
+            let (masking, reflectance) = entry.parts();
+            material.bake.masking = entry.model.has_masking().then_some(masking);
+            material.bake.reflectance = Some(reflectance);
             if source_hash(&material)? != entry.source_hash {
                 return Err(changed(&entry.source));
             }

@@ -4,7 +4,7 @@ mod page;
 
 use std::path::{Component, Path, PathBuf};
 
-use luthier_export::{MANIFEST, Source, find as find_files, input, label, of_domain, read_one, refuse};
+use luthier_export::{MANIFEST, Source, find as find_files, input, label, of_domain, of_scene, read_one, refuse};
 use luthier_manifest::{MaterialChoice, SceneChoice, ShadingModel};
 use luthier_material::{Diagnostic, Material, Scene, is_scene, parse_scene};
 use luthier_scene::{Director, Made, SceneFailure, label as candidate_label};
@@ -53,8 +53,13 @@ pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
         )));
     }
     let shading = &options.shading;
-    if shading.model.is_some() || !shading.tables.is_empty() || !limits.search || !limits.budget.is_empty() {
-        let text = "a scene has its limits in its [budget] and [target], and its models are chosen: leave out --model, --tables, \
+    if shading.model.is_some()
+        || shading.fresnel.is_some()
+        || !shading.tables.is_empty()
+        || !limits.search
+        || !limits.budget.is_empty()
+    {
+        let text = "a scene has its limits in its [budget] and [target], and its models are chosen: leave out --model, --fresnel, --tables, \
                     --no-search and limits on tables";
         return Err(Failure::Usage(anyhow::anyhow!(text)));
     }
@@ -149,7 +154,7 @@ impl SceneSource {
                 }
             }
             if missing.is_empty() {
-                refuse(&mut materials, |material| of_domain(material, None));
+                refuse(&mut materials, |material| [of_domain(material, None), of_scene(material)].concat());
             } else {
                 parsed = Err(missing);
             }

@@ -153,3 +153,81 @@ fn scenes() {
     let json = workshop.run(&["check", "shelf.toml", "--json"]).exits(1).json();
     assert_eq!((&json[0]["file"], &json[0]["diagnostics"][0]["line"]), (&"shelf.toml".into(), &8.into()));
 }
+
+/// A material that chooses parts of a model.
+fn choosing(layers: &str, bake: &str) -> String {
+    format!("schema = 1\nname = \"x\"\n\n{layers}\n[bake]\n{bake}\n")
+}
+
+#[test]
+fn parts_that_a_model_does_not_have() {
+    let workshop = workshop();
+    let coat = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.2\n";
+    let metal = "[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.2\n";
+    let film = "[[layer]]\ntype = \"thin-film\"\nior = 1.3\nthickness_nm = 300\n";
+    for (layers, bake, words) in [
+        (metal.to_owned(), "masking = \"kelemen\"", ["the masking `kelemen`", "has `elek`", "x.toml:10:11"]),
+        (format!("{coat}{metal}"), "masking = \"smith\"", ["the masking `smith`", "has `lobes`", "x.toml:14:11"]),
+        (metal.to_owned(), "masking = \"smiht\"", ["`smiht`", "is no value of `masking`", "x.toml:10:11"]),
+        (
+            format!("{coat}{metal}"),
+            "reflectance = \"lazanyi\"",
+            ["model `lobes` of this material has", "no reflectance `lazanyi`", "x.toml:14:15"],
+        ),
+        (
+            format!("{film}{metal}"),
+            "model = \"elek\"\nreflectance = \"approximate\"",
+            ["`approximate`", "knows of no films", "x.toml:5:8"],
+        ),
+    ] {
+        workshop.write("x.toml", choosing(&layers, bake));
+        refused(&workshop, &["x.toml"], &words);
+    }
+    // Films below what a model reads do not count, and `table` is what every model has.
+    for (layers, bake, warnings) in [
+        (format!("{coat}{film}{metal}"), "model = \"microfacet\"\nreflectance = \"lazanyi\"", 2),
+        (format!("{film}{metal}"), "model = \"elek\"\nreflectance = \"exact\"", 0),
+        (metal.to_owned(), "model = \"phong\"\nreflectance = \"table\"", 0),
+        (metal.to_owned(), "model = \"microfacet\"\nmasking = \"smith\"", 0),
+        (metal.to_owned(), "model = \"microfacet\"\nmasking = \"implicit\"", 1),
+        (metal.to_owned(), "model = \"microfacet\"\nmasking = \"v-cavity\"\nreflectance = \"approximate\"", 2),
+    ] {
+        workshop.write("x.toml", choosing(&layers, bake));
+        let json = workshop.run(&["check", "x.toml", "--json"]).exits(0).json();
+        assert_eq!(json[0]["diagnostics"].as_array().unwrap().len(), warnings, "{json}");
+    }
+    // Options of the command have their refusals, too.
+    workshop.write("x.toml", choosing(metal, "model = \"microfacet\"\nmasking = \"implicit\""));
+    workshop.run(&["check", "x.toml", "--model", "elek"]).exits(1);
+    workshop.write("x.toml", choosing(&format!("{coat}{metal}"), ""));
+    workshop.run(&["check", "x.toml", "--fresnel", "approximate"]).exits(1);
+    workshop.run(&["check", "x.toml", "--fresnel", "approximate", "--model", "elek"]).exits(0);
+    workshop.run(&["check", "x.toml", "--fresnel", "table"]).exits(0);
+    // A scene chooses models, and would drop what some of them have.
+    workshop.write("b.toml", choosing(&format!("{coat}{metal}"), "model = \"elek\"\nreflectance = \"exact\""));
+    workshop.write("matte.toml", matte("matte"));
+    workshop.write("shelf.toml", SCENE);
+    refused(&workshop, &["shelf.toml"], &["a scene chooses the models", "`reflectance`", "b.toml:15:15"]);
+}
+
+/// The chosen parts are in the bake: no rows without the table, the numbers of a curve, and a note at the top of shaders.
+#[test]
+fn parts_are_written_down() {
+    let workshop = workshop();
+    let metal = "[[layer]]\ntype = \"conductor\"\nior = { n = 0.2, k = 3.4 }\nalpha = 0.2\n";
+    workshop.write("x.toml", choosing(metal, "model = \"microfacet\"\nmasking = \"kelemen\""));
+    workshop.run(&["bake", "x.toml", "--fresnel", "approximate", "--out", "out"]).exits(0);
+    let manifest: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(workshop.path("out/manifest.json")).unwrap()).unwrap();
+    let layer = &manifest["materials"][0]["layers"][0];
+    assert_eq!((&layer["masking"], &layer["reflectance"]), (&"kelemen".into(), &"approximate".into()));
+    // |(n - 1) / (n + 1)|^2, by hand.
+    let f0 = (0.8 * 0.8 + 3.4 * 3.4) / (1.2 * 1.2 + 3.4 * 3.4);
+    assert!((layer["curve"]["f0"][1].as_f64().unwrap() - f0).abs() < 1e-12, "{layer}");
+    assert!(manifest["tables"].as_array().unwrap().iter().all(|table| table["kind"] != "fresnel"));
+    for form in ["baked", "full"] {
+        let text = fs::read_to_string(workshop.path(&format!("out/shaders/{form}.wgsl"))).unwrap();
+        assert!(text.contains("// Masking of x: ") && text.contains("FresnelTermNP"), "{text}");
+        assert!(!text.contains("luthier_normal_index") && !text.contains("luthier_lambda"), "{text}");
+    }
+}

@@ -216,14 +216,14 @@ pub(super) fn mean(value: [f32; 3]) -> f64 {
 
 /// What was found of a model.
 #[derive(Default)]
-struct Found {
+pub(super) struct Found {
     misfit: f64,
     share: f64,
     weight: f64,
     greatest: f64,
-    albedo: f64,
+    pub(super) albedo: f64,
     lost: f64,
-    faults: Vec<String>,
+    pub(super) faults: Vec<String>,
 }
 
 #[test]
@@ -262,7 +262,7 @@ fn directions_are_drawn_as_the_density_says() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-fn judge(scene: &Scene, material: u32, theta: f64, seed: u64, what: &str, found: &mut Found) {
+pub(super) fn judge(scene: &Scene, material: u32, theta: f64, seed: u64, what: &str, found: &mut Found) {
     let (sin, cos) = libm::sincos(theta.to_radians());
     let wo = [sin * 0.8, sin * 0.6, cos].map(|w| w as f32);
     let disc = Disc::new(wo);

@@ -46,6 +46,25 @@ fn single_scattering_loses_what_facets_scatter_again() {
     assert_eq!(first["deviation"].as_f64().unwrap(), first["radiance"].as_f64().unwrap() - 1.0);
 }
 
+/// Oracles, by hand: at alpha 1 the D of GGX is 1 / pi. With the masking `implicit` the albedo is then the mean of cos_theta_i / 4 over the
+/// hemisphere times 2, which is 1/4 at all angles; with Kelemen's it is 1 - ln 2 from the normal, as with Smith's.
+#[test]
+fn maskings_of_files_lose_as_much_as_by_hand() {
+    let text = |masking: &str| {
+        let metal = "[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 1\n";
+        format!("schema = 1\nname = \"g\"\n{metal}[bake]\nmodel = \"microfacet\"\nmasking = \"{masking}\"\n")
+    };
+    let of = |masking: &str| {
+        let workshop = Workshop::with(&[("g.toml", &text(masking))]);
+        let args = ["eval", "g.toml", "--model", "microfacet", "--furnace", "--angles", "0,40,85"];
+        rows(&workshop.run(&args).exits(0).stdout)
+    };
+    assert!(of("implicit").iter().all(|row| (row[1] - 0.25).abs() < 1e-6), "{:?}", of("implicit"));
+    for masking in ["kelemen", "smith"] {
+        assert!((of(masking)[0][1] - (1.0 - std::f64::consts::LN_2)).abs() < 1e-6, "{:?}", of(masking));
+    }
+}
+
 /// The model as printed gains at grazing angles and loses at the normal, over a white base under a rough coat; the walk of light through
 /// the whole stack does neither, within its noise.
 #[test]

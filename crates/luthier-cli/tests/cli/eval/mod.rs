@@ -9,6 +9,8 @@ mod furnace;
 mod inputs;
 mod ior;
 mod models;
+#[cfg(feature = "gpu")]
+mod parts;
 mod polarised;
 #[cfg(feature = "gpu")]
 pub(crate) mod twin;

@@ -1,3 +1,28 @@
+//? mask_implicit|mask_schlick_smith
+/// Share of a lobe that a masking leaves beyond what Smith's takes away, as an estimate for albedos.
+fn luthier_masked_share(layer: LuthierLayer, cos_theta: f32) -> f32 {
+    //? several_maskings
+    //? mask_implicit
+    if layer.masking == 5u {
+        return mix(cos_theta * cos_theta, 0.5, layer.alpha);
+    }
+    //? end
+    //? mask_schlick_smith
+    if layer.masking == 2u {
+        return luthier_schlick_masking(layer, max(cos_theta, 0.5 * layer.alpha));
+    }
+    //? end
+    return 1.0;
+    //? else
+    //? mask_implicit
+    return mix(cos_theta * cos_theta, 0.5, layer.alpha);
+    //? else
+    return luthier_schlick_masking(layer, max(cos_theta, 0.5 * layer.alpha));
+    //? end
+    //? end
+}
+//? end
+
 /// The part of the model `microfacet`: its lobe, or its diffuse base.
 fn luthier_parts_microfacet(given: LuthierPrepared, $place_parameter material: u32, wo: vec3<f32>) -> LuthierPrepared {
     var prepared = given;
@@ -17,6 +42,9 @@ fn luthier_parts_microfacet(given: LuthierPrepared, $place_parameter material: u
     //? smith
     var part = luthier_no_part();
     part.energy = luthier_fresnel_term(layer, min(wo.z, 1.0));
+    //? mask_implicit|mask_schlick_smith
+    part.energy *= luthier_masked_share(layer, min(wo.z, 1.0));
+    //? end
     //? anisotropic
     part.alpha = layer.alpha_xy;
     part.axis = layer.rotation;

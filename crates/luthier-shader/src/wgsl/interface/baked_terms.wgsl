@@ -1,11 +1,12 @@
+//? rows
 /// Fresnel reflectance of a layer, from its row or, under a film that varies, its tile of the tables.
 //? total_reflection
-fn luthier_fresnel_term(layer: LuthierLayer, cos_theta_i: f32) -> vec3<f32> {
+fn $fresnel_read(layer: LuthierLayer, cos_theta_i: f32) -> vec3<f32> {
     // Where light is totally reflected, tables are over the cosine of the refracted direction.
     let sin_theta_i_sq = (1.0 - cos_theta_i) * (1.0 + cos_theta_i);
     let cos_theta_d = sqrt(max(cos_theta_i * cos_theta_i - layer.critical_cot_sq * sin_theta_i_sq, 0.0));
 //? else
-fn luthier_fresnel_term(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
+fn $fresnel_read(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
 //? end
     //? fresnel
     //? film_table
@@ -20,6 +21,7 @@ fn luthier_fresnel_term(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
     return luthier_lookup_film(layer.film_tile, cos_theta_d, fraction);
     //? end
 }
+//? end
 
 //? distribution, chain|smith|coat
 //? anisotropic

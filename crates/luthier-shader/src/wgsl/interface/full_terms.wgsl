@@ -1,5 +1,5 @@
 /// Fresnel reflectance of a layer at three wavelengths, its film included.
-fn luthier_fresnel_term(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
+fn $fresnel_computed(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
     //? bare
     //? film
     if layer.film_ior_n.x > 0.0 {

@@ -6,6 +6,7 @@ struct LuthierLobe {
     value: f32,
 }
 
+//? !masked|mask_smith|mask_smith_separable
 /// Smith's Lambda of a direction above the horizon (Walter et al. 2007, eq. 34 for GGX; Heitz 2014, table 1).
 fn luthier_lambda(layer: LuthierLayer, w: vec3<f32>) -> f32 {
     //? anisotropic
@@ -32,8 +33,13 @@ fn luthier_lambda(layer: LuthierLayer, w: vec3<f32>) -> f32 {
     return 0.5 * (sqrt(1.0 + slope_sq) - 1.0);
     //? end
 }
+//? end
 
+//? masked
+/// The lobe of a layer.
+//? else
 /// The lobe of a layer, with height-correlated masking 1 / (1 + Lambda_i + Lambda_o) (Heitz 2014, eq. 99).
+//? end
 fn luthier_smith_lobe(layer: LuthierLayer, wi: vec3<f32>, wo: vec3<f32>) -> LuthierLobe {
     // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
     let bisector = vec3<f32>(wi.xy + wo.xy, max(wi.z + wo.z, 1e-16));
@@ -41,6 +47,10 @@ fn luthier_smith_lobe(layer: LuthierLayer, wi: vec3<f32>, wo: vec3<f32>) -> Luth
     if length_sq < 1e-24 {
         return LuthierLobe(0.0, 0.0);
     }
+    //? masked
+    let masking = luthier_masking(layer, wi, wo, bisector, length_sq);
+    //? else
     let masking = 1.0 / (1.0 + luthier_lambda(layer, wi) + luthier_lambda(layer, wo));
+    //? end
     return LuthierLobe(min(0.5 * sqrt(length_sq), 1.0), luthier_quarter_density(layer, bisector) * (masking / wo.z));
 }

@@ -1,0 +1,195 @@
+//! Parts of a model that a file chooses, on the device: maskings and reflectances against their f64 twins, and drawn directions.
+
+use glam::DVec3;
+use luthier_export::{Bake, MemoryStore, Package, Shader};
+use luthier_layers::parts::Parts;
+use luthier_layers::shaded::{Place, Shaded};
+use luthier_manifest::{ColorMode, Form, Masking, Reflectance, ShadingModel};
+use luthier_material::{Material, parse};
+use luthier_optics::color::Color;
+use luthier_shader::{MaterialSet, Target, emit};
+
+use super::draws::{Found, judge, scene};
+use super::twin::{error, gpu, pairs, wide};
+
+/// Largest difference between a device and its twin: reflectances as f32, and D in closed form.
+const TOLERANCE: f64 = 2e-5;
+
+const CHROMIUM: &str = "[[layer]]\ntype = \"conductor\"\nior = { n = [3.2, 3.18, 2.9], k = [4.2, 4.41, 4.0], wavelengths_nm = [400, 550, 700] }\n";
+const COPPER: &str = "[[layer]]\ntype = \"conductor\"\nior = \"cu\"\n";
+const COAT: &str =
+    "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nthickness_um = 10\nabsorption_per_um = [0.01, 0.02, 0.03]\n";
+const BRUSHED: &str = "alpha_x = 0.4\nalpha_y = 0.15\nrotation_deg = 20\ndistribution = \"beckmann\"\n";
+
+fn material(name: &str, layers: &str, bake: &str) -> Material {
+    let text = format!("schema = 1\nname = \"{name}\"\n{layers}\n[bake]\n{bake}\n");
+    let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+    parse(&format!("{name}.toml"), &text, &no_files).unwrap_or_else(|errors| panic!("{errors:?}: {text}")).material
+}
+
+/// A metal, smooth and brushed, for each masking.
+fn masked() -> Vec<Material> {
+    let one = |masking: &Masking| {
+        let bake = |reflectance: &str| {
+            format!("model = \"microfacet\"\nmasking = \"{}\"\nreflectance = \"{reflectance}\"", masking.name())
+        };
+        let isotropic = format!("{CHROMIUM}alpha = 0.3\n");
+        [
+            material(&format!("{}-round", masking.name()), &isotropic, &bake("exact")),
+            material(&format!("{}-brushed", masking.name()), &format!("{COPPER}{BRUSHED}"), &bake("lazanyi")),
+        ]
+    };
+    Masking::ALL.iter().flat_map(one).collect()
+}
+
+/// Metals and coats of each model, for each reflectance, in both colours; films where they are known.
+fn reflecting() -> Vec<Material> {
+    let mut materials = Vec::new();
+    for model in [ShadingModel::Elek, ShadingModel::WeidlichWilkie, ShadingModel::Microfacet] {
+        for reflectance in [Reflectance::Exact, Reflectance::Approximate, Reflectance::Lazanyi] {
+            for color in ColorMode::NAMES {
+                let film = if reflectance == Reflectance::Exact {
+                    "[[layer]]\ntype = \"thin-film\"\nior = 1.35\nthickness_nm = 300\n"
+                } else {
+                    ""
+                };
+                let layers = format!("{COAT}roughness = 0.5\n{film}{COPPER}roughness = 0.6\n");
+                let (reflectance, model) = (reflectance.name(), model.name());
+                let bake = format!("model = \"{model}\"\nreflectance = \"{reflectance}\"\ncolor = \"{color}\"");
+                materials.push(material(&format!("{model}-{reflectance}-{color}"), &layers, &bake));
+            }
+        }
+    }
+    materials
+}
+
+fn parts(material: &Material) -> (Parts, Reflectance) {
+    let (masking, reflectance) =
+        (material.bake.masking.unwrap_or_default(), material.bake.reflectance.unwrap_or_default());
+    (Parts::named(masking.name(), reflectance.name()).unwrap(), reflectance)
+}
+
+/// Compares a set in both forms, D in closed form; what is read from rows has the errors of rows, and is left out.
+fn compare(materials: &[Material], worst: &mut f64) {
+    let Some(gpu) = gpu() else { return };
+    let pairs = pairs();
+    let mut package =
+        Package::new(materials, &Bake::wgsl(&[Form::Baked, Form::Full]), &MemoryStore::default()).unwrap();
+    let set = MaterialSet::from_manifest(&package.manifest).with_closed_distribution();
+    let baked = emit(&set, Form::Baked, Target::Wgsl).unwrap();
+    let full = package.wgsl(Form::Full).unwrap().to_owned();
+    package.shaders = vec![Shader::wgsl(Form::Full, full), Shader::wgsl(Form::Baked, baked)];
+    for form in [Form::Full, Form::Baked] {
+        let scene = gpu.scene(&package, form).unwrap();
+        for (number, material) in (0..).zip(materials) {
+            let (parts, reflectance) = parts(material);
+            if form == Form::Baked && reflectance == Reflectance::Table {
+                continue;
+            }
+            let wavelengths_nm = material.bake.wavelengths_nm();
+            let is_spectral = reflectance.is_fitted() && material.bake.color != Some(ColorMode::ThreeWavelengths);
+            let color = if is_spectral { Color::Spectral } else { Color::ThreeWavelengths(wavelengths_nm) };
+            let model = material.model().name();
+            let twin = Shaded::with(model, &material.stack, wavelengths_nm, color, &Place::NONE, parts).unwrap();
+            let found = scene.evaluate(number, &pairs).unwrap();
+            let mut most: f64 = 0.0;
+            for (&(wi, wo), found) in pairs.iter().zip(found) {
+                let expected: [f64; 3] = twin.eval(wide(wi), wide(wo));
+                let error = error(found, expected);
+                assert!(error < TOLERANCE, "{form} {}: {wi:?} {wo:?}: {found:?}, {expected:?}", material.name);
+                most = most.max(error);
+            }
+            eprintln!("{form} {}: at most {most:.1e}", material.name);
+            *worst = worst.max(most);
+        }
+    }
+}
+
+#[test]
+fn maskings_of_files_are_those_of_their_twins() {
+    let (materials, mut worst) = (masked(), 0.0);
+    // Side by side with the default and with rows of a table, and each alone.
+    let plain = material("plain", &format!("{COAT}roughness = 0.5\n{COPPER}roughness = 0.3\n"), "model = \"elek\"");
+    compare(&[materials.clone(), vec![plain]].concat(), &mut worst);
+    materials.iter().for_each(|material| compare(std::slice::from_ref(material), &mut worst));
+    eprintln!("maskings: at most {worst:.1e}");
+}
+
+#[test]
+fn reflectances_of_files_are_those_of_their_twins() {
+    let (materials, mut worst) = (reflecting(), 0.0);
+    let plain = material("plain", &format!("{COAT}roughness = 0.5\n{COPPER}roughness = 0.3\n"), "model = \"elek\"");
+    compare(&[materials.clone(), vec![plain]].concat(), &mut worst);
+    // Sets of one source of reflectances, and of two curves.
+    let fitted = |material: &&Material| material.bake.reflectance.is_some_and(Reflectance::is_fitted);
+    compare(&materials.iter().filter(fitted).cloned().collect::<Vec<_>>(), &mut worst);
+    materials.iter().for_each(|material| compare(std::slice::from_ref(material), &mut worst));
+    eprintln!("reflectances: at most {worst:.1e}");
+}
+
+/// Effects go on above chosen reflectances: patina dims them, and has some of its own.
+#[test]
+fn tarnish_dims_chosen_reflectances() {
+    let effects = "[effects.patina]\nextent = 0.5\ntransition = 0.4\ndiffuse_albedo = [0.1, 0.3, 0.2]\ntarnish = [0.5, 0.6, 0.7]\n\
+                   map = { noise = { seed = 1, frequency = 4, octaves = 2 } }\n";
+    let layers = format!("{COAT}roughness = 0.5\n{COPPER}roughness = 0.6\n{effects}");
+    for reflectance in ["exact", "approximate", "lazanyi"] {
+        let bake = format!("model = \"elek\"\nreflectance = \"{reflectance}\"");
+        let grown = material("grown", &layers, &bake);
+        let Some(gpu) = gpu() else { return };
+        let mut package =
+            Package::new(std::slice::from_ref(&grown), &Bake::wgsl(&[Form::Full]), &MemoryStore::default()).unwrap();
+        let body =
+            "var place = luthier_place();\nplace.patina = 0.4;\nreturn luthier_eval_at(place, material, wi, wo);";
+        let wgsl = package.wgsl(Form::Full).unwrap().replace("fn luthier_eval(", "fn emitted_eval(")
+            + &format!("\nfn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n{body}\n}}\n");
+        package.shaders = vec![Shader::wgsl(Form::Full, wgsl)];
+        let found = gpu.scene(&package, Form::Full).unwrap().evaluate(0, &pairs()).unwrap();
+        let (parts, reflectance) = parts(&grown);
+        let wavelengths_nm = grown.bake.wavelengths_nm();
+        let color = if reflectance.is_fitted() { Color::Spectral } else { Color::ThreeWavelengths(wavelengths_nm) };
+        let growth = luthier_layers::shaded::Growth {
+            amount: 0.4,
+            diffuse_albedo: [0.1, 0.3, 0.2],
+            base_alpha: None,
+            tarnish: [0.5, 0.6, 0.7],
+        };
+        let place = Place { patina: Some(growth), ..Place::NONE };
+        let twin = Shaded::with("elek", &grown.stack, wavelengths_nm, color, &place, parts).unwrap();
+        for ((wi, wo), found) in pairs().into_iter().zip(found) {
+            let expected = twin.eval(wide(wi), wide(wo));
+            assert!(error(found, expected) < 5.0 * TOLERANCE, "{reflectance}: {found:?} {expected:?}");
+        }
+    }
+}
+
+/// Weights are f cos over the density whatever the masking, so that their mean is the integral.
+#[test]
+fn directions_are_drawn_without_bias_under_each_masking() {
+    let materials: Vec<Material> = masked().into_iter().step_by(2).collect();
+    let Some(scene) = scene(&materials) else { return };
+    let mut found = Found::default();
+    for (number, material) in (0..).zip(&materials) {
+        for theta in [20.0, 70.0] {
+            judge(&scene, number, theta, 1000 + u64::from(number), &format!("{} {theta}", material.name), &mut found);
+        }
+    }
+    assert!(found.faults.is_empty(), "{}", found.faults.join("\n"));
+    assert!(found.albedo < 0.15, "{}", found.albedo);
+}
+
+#[test]
+fn a_masking_changes_what_is_seen() {
+    let materials = masked();
+    let (wi, wo) = (DVec3::new(0.8, 0.1, 0.4).normalize(), DVec3::new(-0.6, 0.2, 0.5).normalize());
+    let value = |material: &Material| {
+        let (parts, _) = parts(material);
+        let nm = material.bake.wavelengths_nm();
+        let color = Color::ThreeWavelengths(nm);
+        Shaded::with("microfacet", &material.stack, nm, color, &Place::NONE, parts).unwrap().eval(wi, wo)[1]
+    };
+    let values: Vec<f64> = materials.iter().step_by(2).map(value).collect();
+    for (i, a) in values.iter().enumerate() {
+        assert!(values[..i].iter().all(|b| (a / b - 1.0).abs() > 1e-3), "{values:?}");
+    }
+}

@@ -1,0 +1,118 @@
+//! Doubts about the parts of a model that a material chooses: those that its model does not have, and errors of approximations.
+
+use luthier_manifest::{ColorMode, Masking, Reflectance, ShadingModel};
+use luthier_material::{Diagnostic, Material, Severity};
+use luthier_optics::color::Color;
+use luthier_optics::interface::Interface;
+use luthier_optics::schlick::schlick;
+
+/// Errors for parts that a model does not have, and for films of which a curve knows nothing; warnings of what the others do. `asked` is the
+/// model of the command line.
+pub fn of_parts(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {
+    let model = asked.unwrap_or_else(|| material.model());
+    let mut doubts = Vec::new();
+    doubts.extend(material.bake.masking.and_then(|masking| of_masking(material, model, masking)));
+    let chosen = material.bake.reflectance.filter(|reflectance| *reflectance != Reflectance::Table);
+    doubts.extend(chosen.and_then(|reflectance| of_reflectance(material, model, reflectance)));
+    doubts
+}
+
+/// Cosines at which a curve is compared with the reflectance.
+const COSINES: u32 = 100;
+
+/// Errors for parts that a material of a scene chooses: its model is the scene's choice.
+pub fn of_scene(material: &Material) -> Vec<Diagnostic> {
+    let keys = [
+        ("masking", material.bake.masking.is_some()),
+        ("reflectance", material.bake.reflectance.is_some_and(|reflectance| reflectance != Reflectance::Table)),
+    ];
+    let chosen = keys.into_iter().filter(|(_, is_chosen)| *is_chosen);
+    let refusal = |(key, _): (&str, bool)| {
+        let message = format!("a scene chooses the models of its materials, and `{key}` is a part of some models");
+        let hint = "leave it out, or bake the material by itself".to_owned();
+        material.diagnostic(Severity::Error, &format!("bake.{key}"), message, Some(hint))
+    };
+    chosen.map(refusal).collect()
+}
+
+fn of_masking(material: &Material, model: ShadingModel, masking: Masking) -> Option<Diagnostic> {
+    let (name, key) = (masking.name(), "bake.masking");
+    if !model.has_masking() {
+        let message =
+            format!("the masking `{name}` is a part of the model `microfacet`, and this material has `{model}`");
+        let hint = "leave it out, or write `[bake] model = \"microfacet\"`".to_owned();
+        return Some(material.diagnostic(Severity::Error, key, message, Some(hint)));
+    }
+    // Of a perfect mirror, alpha 0.5, at 0 and 85 degrees, by `luthier eval --furnace`.
+    let effect = match masking {
+        Masking::Smith => return None,
+        Masking::SmithSeparable => {
+            "takes the heights of facets twice: a mirror of alpha 0.5 returns 0.69 to 0.78 of the light, with `smith` 0.69 to 0.87"
+        }
+        Masking::SchlickSmith => {
+            "is a fit that loses light: a mirror of alpha 0.5 returns 0.45 to 0.62, with `smith` 0.69 to 0.87"
+        }
+        Masking::VCavity => {
+            "hides nothing in mirror directions, so that highlights at grazing angles are too bright: f grows as 1 / cos^2"
+        }
+        Masking::Kelemen => {
+            "does not depend on the roughness: a mirror of alpha 0.5 returns 0.60 to 0.81, with `smith` 0.69 to 0.87"
+        }
+        Masking::Implicit => {
+            "is too dark: a mirror of alpha 0.1 returns 0.93 of the light from above, and 0.03 at 85 degrees"
+        }
+    };
+    let hint = "`smith`, the default, is the masking that a rough surface without correlation has".to_owned();
+    Some(material.diagnostic(Severity::Warning, key, format!("the masking `{name}` {effect}"), Some(hint)))
+}
+
+fn of_reflectance(material: &Material, model: ShadingModel, reflectance: Reflectance) -> Option<Diagnostic> {
+    let (name, key) = (reflectance.name(), "bake.reflectance");
+    if !model.has_reflectance() {
+        let message = format!("the model `{model}` of this material has no reflectance `{name}`");
+        let hint =
+            "leave it out, or write `[bake] model = \"elek\"`, `\"weidlich-wilkie\"` or `\"microfacet\"`".to_owned();
+        return Some(material.diagnostic(Severity::Error, key, message, Some(hint)));
+    }
+    if !reflectance.is_fitted() {
+        return None;
+    }
+    let layers = &material.stack.layers;
+    let read = if model == ShadingModel::Microfacet { layers.len().min(1) } else { layers.len() };
+    if let Some(layer) = layers[..read].iter().position(|layer| !layer.films.is_empty()) {
+        let message = format!("the reflectance `{name}` knows of no films, and this interface has one");
+        let hint = "leave the film out, or write `[bake] reflectance = \"exact\"` or `\"table\"`".to_owned();
+        return Some(material.diagnostic(Severity::Error, &format!("layer.{layer}.film.0.type"), message, Some(hint)));
+    }
+    let (layer, error, cos) = worst(material, reflectance, read)?;
+    let message = format!(
+        "the reflectance `{name}` is an approximation: of layer {} it is up to {error:.3} off, where the cosine is {cos:.2}",
+        layer + 1
+    );
+    let hint = "`table`, the default, and `exact` have the reflectance itself".to_owned();
+    Some(material.diagnostic(Severity::Warning, key, message, Some(hint)))
+}
+
+/// The layer whose curve is farthest off, the error of its worst channel, and the cosine there.
+fn worst(material: &Material, reflectance: Reflectance, layers: usize) -> Option<(usize, f64, f64)> {
+    let color = match material.bake.color.unwrap_or_default() {
+        ColorMode::Spectral => Color::Spectral,
+        ColorMode::ThreeWavelengths => Color::ThreeWavelengths(material.bake.wavelengths_nm()),
+    };
+    let mut worst: Option<(usize, f64, f64)> = None;
+    for layer in 0..layers {
+        let Some(interface) = Interface::of(&material.stack, layer) else { continue };
+        let sampled = interface.sampled(&color);
+        let curves = if reflectance == Reflectance::Lazanyi { sampled.lazanyi() } else { sampled.schlick() };
+        for cos in (1..=COSINES).map(|i| f64::from(i) / f64::from(COSINES)) {
+            let exact = sampled.rgb(cos);
+            let found =
+                curves.map(|c| if reflectance == Reflectance::Lazanyi { c.eval(cos) } else { schlick(c.f0, cos) });
+            let error = (0..3).map(|c| (found[c] - exact[c]).abs()).fold(0.0, f64::max);
+            if worst.is_none_or(|(_, most, _)| error > most) {
+                worst = Some((layer, error, cos));
+            }
+        }
+    }
+    worst
+}

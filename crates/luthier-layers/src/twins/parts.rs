@@ -1,0 +1,241 @@
+//! Parts of the model that a material chooses: the masking of `microfacet`, and how interfaces come by their reflectances.
+
+use glam::DVec3;
+use luthier_optics::Rgb;
+use luthier_optics::color::Color;
+use luthier_optics::interface::{Interface, Sampled};
+use luthier_optics::schlick::Lazanyi;
+use luthier_optics::stack::{Distribution, Stack};
+
+use crate::facets::Masking;
+use crate::interface_fresnel::Fresnel;
+use crate::lobes::Below;
+use crate::microfacet::Components;
+use crate::statistics::diffuse_base::Veil;
+use crate::statistics::energy::Energy;
+use crate::terms::{ShaderTerms, Terms};
+
+/// Parts of the model of a shader; each is ignored by models that have no choice of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Parts {
+    /// Masking of `microfacet`.
+    pub masking: Masking,
+    /// Reflectances of `elek`, `weidlich-wilkie` and `microfacet`.
+    pub reflectance: Reflectance,
+}
+
+/// Computation of reflectances.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reflectance {
+    /// Those of the [`Terms`]: of a table, or exact ones.
+    Terms,
+    /// Fresnel's equations at the three wavelengths.
+    Exact,
+    /// Schlick's form through the reflectance at normal incidence: the `FresnelTermNP` of Elek 2010, appendix B.
+    Approximate,
+    /// Schlick's form less the correction of Lazanyi and Szirmay-Kalos 2005, fitted to the reflectance.
+    Lazanyi,
+}
+
+impl Parts {
+    /// The parts of a material that chooses none.
+    pub const PLAIN: Self = Self { masking: Masking::Smith, reflectance: Reflectance::Terms };
+
+    /// The parts by their names in material files and manifests; `None` for an unknown name.
+    ///
+    /// ```
+    /// use luthier_layers::parts::Parts;
+    ///
+    /// assert_eq!(Parts::named("smith", "table"), Some(Parts::PLAIN));
+    /// assert_eq!(Parts::named("smith", "none"), None);
+    /// ```
+    pub fn named(masking: &str, reflectance: &str) -> Option<Self> {
+        let masking = match masking {
+            "smith" => Masking::Smith,
+            "smith-separable" => Masking::SmithSeparable,
+            "schlick-smith" => Masking::SchlickSmith,
+            "v-cavity" => Masking::VCavity,
+            "kelemen" => Masking::Kelemen,
+            "implicit" => Masking::Implicit,
+            _ => return None,
+        };
+        let reflectance = match reflectance {
+            "table" => Reflectance::Terms,
+            "exact" => Reflectance::Exact,
+            "approximate" => Reflectance::Approximate,
+            "lazanyi" => Reflectance::Lazanyi,
+            _ => return None,
+        };
+        Some(Self { masking, reflectance })
+    }
+}
+
+impl Parts {
+    /// The components of the model `microfacet`, for one wavelength.
+    pub const fn components(self) -> Components {
+        let fresnel = match self.reflectance {
+            Reflectance::Terms | Reflectance::Exact => Fresnel::Exact,
+            Reflectance::Approximate => Fresnel::ComplexF0,
+            Reflectance::Lazanyi => Fresnel::Lazanyi,
+        };
+        Components { masking: self.masking, fresnel, ..Components::PLAIN }
+    }
+}
+
+/// Reflectance of an interface that stands in place of that of the terms.
+#[derive(Debug, Clone)]
+enum Own {
+    /// Fresnel's equations at three wavelengths.
+    Exact(Sampled),
+    /// Schlick's form, channel by channel.
+    Schlick([Lazanyi; 3]),
+    /// Schlick's form less a correction, within 0 and 1.
+    Corrected([Lazanyi; 3]),
+}
+
+impl Own {
+    fn rgb(&self, cos_theta_d: f64) -> Rgb {
+        match self {
+            Self::Exact(sampled) => sampled.rgb(cos_theta_d),
+            Self::Schlick(curves) => curves.map(|curve| luthier_optics::schlick::schlick(curve.f0, cos_theta_d)),
+            Self::Corrected(curves) => curves.map(|curve| curve.eval(cos_theta_d)),
+        }
+    }
+}
+
+/// Reflectances of the interfaces of a stack in place of those of terms.
+#[derive(Debug, Clone, Default)]
+pub struct Reflectances(Vec<Option<Own>>);
+
+impl Reflectances {
+    /// The reflectances of a model that chooses them; curves leave films out. `color` is the colour of curves, `wavelengths_nm` those of
+    /// Fresnel's equations.
+    pub fn of(stack: &Stack, wavelengths_nm: [f64; 3], color: Color, reflectance: Reflectance) -> Self {
+        let bare = |interface: Interface| Interface { films: Vec::new(), ..interface }.sampled(&color);
+        let own = |interface: Interface| match reflectance {
+            Reflectance::Terms => None,
+            Reflectance::Exact => Some(Own::Exact(interface.sampled(&Color::ThreeWavelengths(wavelengths_nm)))),
+            Reflectance::Approximate => Some(Own::Schlick(bare(interface).schlick())),
+            Reflectance::Lazanyi => Some(Own::Corrected(bare(interface).lazanyi())),
+        };
+        Self((0..stack.layers.len()).map(|layer| Interface::of(stack, layer).and_then(own)).collect())
+    }
+
+    /// Terms with these reflectances.
+    pub fn over<'a, T>(&'a self, terms: &'a T) -> Chosen<'a, T> {
+        Chosen { terms, reflectances: self }
+    }
+}
+
+/// Terms with reflectances of their own.
+#[derive(Debug, Clone, Copy)]
+pub struct Chosen<'a, T> {
+    terms: &'a T,
+    reflectances: &'a Reflectances,
+}
+
+impl<T: Terms> Terms for Chosen<'_, T> {
+    fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
+        match self.reflectances.0.get(layer) {
+            Some(Some(own)) => own.rgb(cos_theta_d),
+            _ => self.terms.fresnel(layer, cos_theta_d),
+        }
+    }
+
+    fn distribution(&self, layer: usize, d: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
+        self.terms.distribution(layer, d, alpha, cos_theta_h, sin_theta_h_sq)
+    }
+
+    fn interference(&self, layer: usize, channel: usize, cosines: f64) -> Option<f64> {
+        self.terms.interference(layer, channel, cosines)
+    }
+}
+
+impl<T: Energy<3>> Energy<3> for Chosen<'_, T> {
+    fn fgd(&self, layer: usize, cos_theta_i: f64, alpha: f64) -> Rgb {
+        self.terms.fgd(layer, cos_theta_i, alpha)
+    }
+
+    fn escaping(&self, layer: usize, cos_theta_i: f64, alpha: f64, eta: f64) -> f64 {
+        self.terms.escaping(layer, cos_theta_i, alpha, eta)
+    }
+}
+
+impl<T: ShaderTerms> ShaderTerms for Chosen<'_, T> {
+    fn veil(&self) -> Veil<3> {
+        self.terms.veil()
+    }
+
+    fn below(&self, wo: DVec3) -> Option<Below> {
+        self.terms.below(wo)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use luthier_optics::ior::Ior;
+    use luthier_optics::stack::{Base, Layer, Surface};
+
+    use super::*;
+    use crate::model::Model;
+    use crate::monochrome::Monochrome;
+    use crate::real_time::Twin;
+    use crate::registry;
+    use crate::terms::Exact;
+
+    const WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
+
+    fn metal() -> Stack {
+        let surface = Surface { distribution: Distribution::Ggx, alpha_x: 0.4, alpha_y: 0.2, rotation: 0.3 };
+        let base = Base::Conductor { ior: Ior::constant(3.18, 4.41).unwrap() };
+        Stack { exterior: Ior::vacuum(), layers: vec![Layer { films: Vec::new(), surface, base }] }
+    }
+
+    fn directions() -> (DVec3, DVec3) {
+        (DVec3::new(0.7, 0.1, 0.3).normalize(), DVec3::new(-0.8, 0.2, 0.25).normalize())
+    }
+
+    /// Oracle: the models of the registry that have one other part each.
+    #[test]
+    fn parts_are_those_of_the_models_by_name() {
+        let (wi, wo) = directions();
+        let color = Color::ThreeWavelengths(WAVELENGTHS_NM);
+        let exact = Exact::new(&metal(), color);
+        for (masking, reflectance, name) in [
+            ("smith", "table", "microfacet"),
+            ("smith", "exact", "microfacet"),
+            ("smith-separable", "table", "microfacet-smith-separable"),
+            ("schlick-smith", "table", "microfacet-schlick-smith"),
+            ("v-cavity", "table", "microfacet-v-cavity"),
+            ("kelemen", "table", "microfacet-kelemen"),
+            ("implicit", "table", "microfacet-implicit"),
+            ("smith", "approximate", "microfacet-complex-f0"),
+            ("smith", "lazanyi", "microfacet-lazanyi"),
+        ] {
+            let parts = Parts::named(masking, reflectance).unwrap();
+            let twin = Twin::with("microfacet", &metal(), WAVELENGTHS_NM, color, parts).unwrap();
+            let expected = registry::model(name).unwrap().eval(&Monochrome::new(&metal(), 525.0, 1), wi, wo);
+            let found = twin.eval(&exact, wi, wo);
+            assert!(expected > 1e-3 && found.iter().all(|f| (f / expected - 1.0).abs() < 1e-12), "{name}: {found:?}");
+            let plain = Twin::new("microfacet", &metal(), WAVELENGTHS_NM, color).unwrap().eval(&exact, wi, wo);
+            assert_eq!((plain[1] - found[1]).abs() < 1e-9, name == "microfacet", "{name}");
+        }
+    }
+
+    /// Oracle: Schlick's form is linear in F0, so that its colour is the sum over wavelengths.
+    #[test]
+    fn curves_have_the_colour_of_the_stack() {
+        let samples = [(400.0, 1.2, 1.0), (500.0, 0.9, 2.0), (700.0, 0.2, 4.0)];
+        let samples = samples.map(|(wavelength_nm, n, k)| luthier_optics::ior::IorSample { wavelength_nm, n, k });
+        let mut stack = metal();
+        stack.layers[0].base = Base::Conductor { ior: Ior::sampled(samples.to_vec()).unwrap() };
+        let here = Reflectances::of(&stack, WAVELENGTHS_NM, Color::Spectral, Reflectance::Approximate);
+        let exact = Exact::new(&stack, Color::Spectral);
+        let sampled = Interface::of(&stack, 0).unwrap().sampled(&Color::Spectral);
+        for cos in [0.1, 0.4, 1.0] {
+            let expected = sampled.sum(|at| luthier_optics::schlick::complex_f0(1.0, at.below, cos));
+            let found = here.over(&exact).fresnel(0, cos);
+            assert!((0..3).all(|c| (found[c] - expected[c]).abs() < 1e-6), "{found:?} {expected:?}");
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Parts of a facet model that a material may choose: the masking of the model `microfacet`, and how reflectances are computed.
+
+use serde::{Deserialize, Serialize};
+
+use crate::ShadingModel;
+
+luthier_lut::named! {
+    /// Masking and shadowing of the model `microfacet`.
+    #[derive(Default, Serialize, Deserialize)]
+    #[serde(into = "&'static str", try_from = "String")]
+    pub enum Masking("masking") {
+        /// Smith's, height-correlated: `1 / (1 + Lambda_i + Lambda_o)` (Heitz 2014, eq. 99).
+        #[default]
+        Smith = "smith",
+        /// Smith's for each direction, multiplied (Walter et al. 2007, eq. 23).
+        SmithSeparable = "smith-separable",
+        /// Schlick's fit to Smith's (1994), `cos / (cos (1 - k) + k)` with `k = alpha sqrt(2 / pi)`, multiplied.
+        SchlickSmith = "schlick-smith",
+        /// V-cavities (Torrance and Sparrow 1967; Cook and Torrance 1982, eq. 9).
+        VCavity = "v-cavity",
+        /// `cos_theta_i cos_theta_o / cos_theta_d^2` (Kelemen and Szirmay-Kalos 2001).
+        Kelemen = "kelemen",
+        /// `cos_theta_i cos_theta_o`, which cancels the denominator (Hoffman 2013).
+        Implicit = "implicit",
+    }
+}
+
+luthier_lut::named! {
+    /// Computation of the reflectance of interfaces, of the models `elek`, `weidlich-wilkie` and `microfacet`.
+    #[derive(Default, Serialize, Deserialize)]
+    #[serde(into = "&'static str", try_from = "String")]
+    pub enum Reflectance("reflectance") {
+        /// Rows of the Fresnel table; in the form `full`, which has none, Fresnel's equations.
+        #[default]
+        Table = "table",
+        /// Fresnel's equations at three wavelengths, in both forms.
+        Exact = "exact",
+        /// Schlick's form with the F0 of the complex index: the `FresnelTermNP` of Elek 2010, appendix B.
+        Approximate = "approximate",
+        /// Schlick's form less the correction `a cos (1 - cos)^alpha` of Lazanyi and Szirmay-Kalos 2005.
+        Lazanyi = "lazanyi",
+    }
+}
+
+impl Masking {
+    /// Formula and source, for headers and messages.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Smith => "Smith, height-correlated (Heitz 2014)",
+            Self::SmithSeparable => "Smith for each direction, multiplied (Walter et al. 2007)",
+            Self::SchlickSmith => "Schlick's fit to Smith (1994)",
+            Self::VCavity => "V-cavities (Torrance and Sparrow 1967)",
+            Self::Kelemen => "cos_theta_i cos_theta_o / cos_theta_d^2 (Kelemen and Szirmay-Kalos 2001)",
+            Self::Implicit => "cos_theta_i cos_theta_o (Hoffman 2013)",
+        }
+    }
+
+    /// Its number in the material buffer.
+    pub fn number(self) -> u32 {
+        self as u32
+    }
+}
+
+impl Reflectance {
+    /// Formula and source, for headers and messages.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Table => "rows of a table",
+            Self::Exact => "Fresnel's equations at three wavelengths",
+            Self::Approximate => "Schlick's form with the F0 of n and k (Elek 2010, FresnelTermNP), an approximation",
+            Self::Lazanyi => {
+                "Schlick's form less a cos (1 - cos)^alpha (Lazanyi and Szirmay-Kalos 2005), an approximation"
+            }
+        }
+    }
+
+    /// Whether it is a curve through a few numbers: see [`ReflectanceCurve`].
+    pub fn is_fitted(self) -> bool {
+        matches!(self, Self::Approximate | Self::Lazanyi)
+    }
+
+    /// Its number in the material buffer.
+    pub fn number(self) -> u32 {
+        self as u32
+    }
+}
+
+/// Reflectance of an interface as a curve, RGB: `f0 + (1 - f0) (1 - c)^5 - weight c (1 - c)^exponent`, c the cosine.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct ReflectanceCurve {
+    /// Reflectance at normal incidence.
+    pub f0: [f64; 3],
+    /// Weight of the correction; 0 is Schlick's form.
+    pub weight: [f64; 3],
+    /// Exponent of the correction, at least 1.
+    pub exponent: [f64; 3],
+}
+
+impl ShadingModel {
+    /// Whether a material may choose the masking of the model.
+    pub fn has_masking(self) -> bool {
+        self == Self::Microfacet
+    }
+
+    /// Whether a material may choose how the model computes reflectances.
+    pub fn has_reflectance(self) -> bool {
+        matches!(self, Self::Elek | Self::WeidlichWilkie | Self::Microfacet)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn defaults_are_the_first_and_have_the_number_0() {
+        assert_eq!((Masking::default(), Masking::default().number()), (Masking::ALL[0], 0));
+        assert_eq!((Reflectance::default(), Reflectance::default().number()), (Reflectance::ALL[0], 0));
+        // Two bits and three of a word: see `LayerRecord::words`.
+        assert!(Reflectance::ALL.iter().all(|reflectance| reflectance.number() < 4));
+        assert!(Masking::ALL.iter().all(|masking| masking.number() < 8));
+    }
+}
