@@ -7,6 +7,7 @@ mod effects;
 mod films;
 mod ior;
 mod layers;
+mod schlick;
 mod surface;
 
 use std::cell::RefCell;
@@ -36,7 +37,7 @@ pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read
         read(path)
     };
     let exterior = exterior(document, read, sink, &mut sources);
-    let (layers, extras) = layers::decode(document, read, sink, &mut sources);
+    let (layers, extras) = layers::decode(document, &exterior, read, sink, &mut sources);
     if !sink.has_errors() {
         sources.places.add("", document);
     }
