@@ -96,7 +96,7 @@ fn channel_of(weight: Rgb, channel: usize) -> Rgb {
 
 /// An interface at one wavelength.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(from = "Stored", into = "Stored"))]
 pub struct Monochrome {
     /// Index above, real.
     pub above: Complex64,
@@ -115,6 +115,37 @@ impl Monochrome {
             return schlick(f0, cos_theta_i);
         }
         coated(self.above, &self.films, self.below, cos_theta_i).unpolarised()
+    }
+}
+
+/// An interface in the form in which stores keep it, which has no place for an F0: it is the imaginary part of the index above, and that
+/// of the index below is -1 then.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Stored {
+    above: Complex64,
+    films: Vec<FilmLayer>,
+    below: Complex64,
+}
+
+#[cfg(feature = "serde")]
+impl From<Monochrome> for Stored {
+    fn from(Monochrome { mut above, films, mut below, f0 }: Monochrome) -> Self {
+        if let Some(f0) = f0 {
+            (above.im, below.im) = (f0, -1.0);
+        }
+        Self { above, films, below }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Stored> for Monochrome {
+    fn from(Stored { mut above, films, mut below }: Stored) -> Self {
+        let f0 = (below.im == -1.0).then_some(above.im);
+        if f0.is_some() {
+            (above.im, below.im) = (0.0, 0.0);
+        }
+        Self { above, films, below, f0 }
     }
 }
 
@@ -160,5 +191,53 @@ impl Sampled {
             }
         }
         rgb
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const F0: Rgb = [0.955, 0.638, 0.538];
+
+    fn schlick_on(above: Ior, below: Ior) -> Interface {
+        Interface { above, films: Vec::new(), below: below.with_f0(F0) }
+    }
+
+    /// Schlick 1994 by hand at 60 degrees, where (1 - cos)^5 = 1/32; in every colour mode, whatever lies above.
+    #[test]
+    fn an_f0_is_a_colour_in_every_mode() {
+        let glass = Ior::constant(1.5, 0.0).unwrap();
+        let sample = |wavelength_nm, n| crate::ior::IorSample { wavelength_nm, n, k: 0.0 };
+        let dispersive = Ior::sampled(vec![sample(400.0, 1.54), sample(700.0, 1.5)]).unwrap();
+        for above in [Ior::vacuum(), glass, dispersive] {
+            let interface = schlick_on(above, Ior::vacuum());
+            for color in [Color::Spectral, Color::ThreeWavelengths([645.0, 525.0, 445.0])] {
+                let found = interface.sampled(&color).rgb(0.5);
+                for (found, f0) in found.into_iter().zip(F0) {
+                    assert!((found - (f0 + (1.0 - f0) / 32.0)).abs() < 1e-12, "{color:?}: {found} {f0}");
+                }
+                assert!(!interface.has_kink(&color) && interface.sampled(&color).critical_cot_sq() == 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn one_channel_is_one_node_and_three_are_three() {
+        let nodes = |f0| {
+            let below = Ior::constant(1.5, 0.0).unwrap().with_f0(f0);
+            Interface { above: Ior::vacuum(), films: Vec::new(), below }.sampled(&Color::Spectral).nodes.len()
+        };
+        assert_eq!([nodes([0.04; 3]), nodes(F0)], [1, 3]);
+    }
+
+    #[cfg(feature = "serde")]
+    #[test]
+    fn stores_keep_an_f0() {
+        let with = schlick_on(Ior::vacuum(), Ior::constant(1.5, 0.0).unwrap()).at(550.0, 1);
+        let without = Interface { above: Ior::vacuum(), films: Vec::new(), below: Ior::constant(0.2, 3.0).unwrap() };
+        for one in [with, without.at(550.0, 1)] {
+            assert_eq!(Monochrome::from(Stored::from(one.clone())), one);
+        }
     }
 }

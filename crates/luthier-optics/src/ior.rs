@@ -102,6 +102,14 @@ impl Ior {
         self.f0
     }
 
+    /// An index of other samples in strictly ascending wavelength, with the F0 of this one.
+    ///
+    /// # Errors
+    /// See [`IorError`].
+    pub fn with_samples(&self, samples: Vec<IorSample>) -> Result<Self, IorError> {
+        Ok(Self { f0: self.f0, ..Self::sampled(samples)? })
+    }
+
     /// The samples, ascending in wavelength.
     pub fn samples(&self) -> &[IorSample] {
         &self.samples
