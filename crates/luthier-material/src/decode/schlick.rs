@@ -2,7 +2,7 @@
 
 use luthier_optics::Rgb;
 use luthier_optics::ior::{Ior, IorSample};
-use luthier_optics::schlick::index_of_f0;
+use luthier_optics::schlick::{index_of_f0, schlick_average};
 use luthier_optics::stack::{Base, Diffuse, Slab};
 
 use super::films;
@@ -55,9 +55,13 @@ pub(super) fn dielectric(at: &Section<'_>, given: Option<Ior>, above: &Ior, sink
 
 /// The interface of a `metallic-roughness` layer, and the diffuse base below it, which a metal has not:
 ///
-/// - F0 is `0.04 + metallic (base_color - 0.04)`;
-/// - the albedo of the base is `base_color (1 - metallic)`;
-/// - the index is that of F0 0.04: 1.5 times the index above.
+/// - F0 is `f = 0.04 + metallic (base_color - 0.04)`;
+/// - the index is that of F0 0.04, n = 1.5 times the index above;
+/// - the base has the albedo with which it shows `c = base_color (1 - metallic)` of the light that enters: `c / (t + c (1 - t))`, where
+///   `t = (1 - f)(20/21) / n^2` is the share of the base's light that the smooth interface passes.
+///
+/// By Saunderson 1942 the surface then reflects `F(cos) + (1 - F(cos)) c` of the light from any direction, as the model of engines does, and
+/// its diffuse term is that of Kelemen and Szirmay-Kalos 2001, `c (1 - F(i))(1 - F(o)) / (pi (1 - (f + (1 - f)/21)))`.
 pub(super) fn metallic_roughness(at: &Section<'_>, above: &Ior) -> (Base, Option<Diffuse>) {
     let color = at.rgb("base_color").unwrap_or([0.0; 3]);
     let metallic = at.number("metallic").unwrap_or(0.0);
@@ -67,7 +71,11 @@ pub(super) fn metallic_roughness(at: &Section<'_>, above: &Ior) -> (Base, Option
     let f0 = color.map(|color| DIELECTRIC_F0 + metallic * (color - DIELECTRIC_F0));
     let ior = relative(above, DIELECTRIC_INDEX).unwrap_or_else(Ior::vacuum).with_f0(f0);
     let slab = Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
-    let albedo = color.map(|color| color * (1.0 - metallic));
+    let albedo = [0, 1, 2].map(|i: usize| {
+        let seen = color[i] * (1.0 - metallic);
+        let passed = (1.0 - schlick_average(f0[i])) / (DIELECTRIC_INDEX * DIELECTRIC_INDEX);
+        seen / (passed + seen * (1.0 - passed))
+    });
     (Base::Dielectric { ior, slab }, Some(Diffuse { albedo, sigma: at.number("sigma").unwrap_or(0.0) }))
 }
 

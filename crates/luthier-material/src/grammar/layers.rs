@@ -195,13 +195,13 @@ pub(super) static METALLIC_ROUGHNESS: Table = Table {
         Key::required(
             "base_color",
             UNIT_RGB,
-            "F0 of the metal and albedo of the dielectric: a number, or one for each of R, G, B (linear Rec.709).",
+            "F0 of the metal and diffuse colour of the dielectric: a number, or one for each of R, G, B (linear Rec.709).",
         ),
         Key::with_default(
             "metallic",
             Kind::Number(UNIT),
             "0",
-            "0 is a dielectric of F0 0.04 over a diffuse base, 1 a metal; in between F0 and albedo are mixed.",
+            "0 is a dielectric of F0 0.04 over a diffuse base, 1 a metal; in between F0 and diffuse colour are mixed.",
         ),
         ROUGHNESS,
         ALPHA,

@@ -11,5 +11,7 @@ mod ior;
 mod models;
 mod polarised;
 #[cfg(feature = "gpu")]
+mod schlick;
+#[cfg(feature = "gpu")]
 mod twin;
 mod values;

@@ -27,7 +27,7 @@ const MODELS: [&str; 5] = ["elek", "weidlich-wilkie", "granier-heidrich", "phong
 /// Pairs of directions of each kind.
 const PAIRS: u32 = 150;
 
-type Pair = ([f32; 3], [f32; 3]);
+pub(super) type Pair = ([f32; 3], [f32; 3]);
 
 pub(super) fn gpu() -> Option<Gpu> {
     match Gpu::open() {
@@ -78,7 +78,7 @@ fn unit(z: f64, phi: f64) -> DVec3 {
 }
 
 /// Directions over the hemisphere, and near the mirror direction by 0.1 to 20 degrees; as a device has them.
-fn pairs() -> Vec<Pair> {
+pub(super) fn pairs() -> Vec<Pair> {
     let part = |i: u32, step: f64| (f64::from(i) * step).fract();
     let narrow = |w: DVec3| w.as_vec3().to_array();
     let one = |i: u32| {
@@ -95,11 +95,11 @@ fn pairs() -> Vec<Pair> {
     (1..=PAIRS).flat_map(one).collect()
 }
 
-fn wide(w: [f32; 3]) -> DVec3 {
+pub(super) fn wide(w: [f32; 3]) -> DVec3 {
     DVec3::from(w.map(f64::from))
 }
 
-fn error(found: [f32; 3], expected: Rgb) -> f64 {
+pub(super) fn error(found: [f32; 3], expected: Rgb) -> f64 {
     let brightest = expected.iter().fold(FLOOR, |most, value| most.max(*value));
     let apart = |c: usize| (f64::from(found[c]) - expected[c]).abs() / brightest;
     (0..3).map(apart).fold(0.0, f64::max)
