@@ -44,6 +44,9 @@ pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read
     let stack = Stack { exterior, layers };
     let bake = bake::decode(document, sink);
     let effects = effects::decode(document, &stack, sink);
+    if effects.patina.is_some() {
+        schlick::check_bare(document, &stack, sink);
+    }
     let Sources { spectra, places } = sources;
     let mut material = Material {
         name: document.text("name").unwrap_or_default().to_owned(),

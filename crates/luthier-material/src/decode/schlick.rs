@@ -3,7 +3,7 @@
 use luthier_optics::Rgb;
 use luthier_optics::ior::{Ior, IorSample};
 use luthier_optics::schlick::{index_of_f0, schlick_average};
-use luthier_optics::stack::{Base, Diffuse, Slab};
+use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Stack};
 
 use super::films;
 use crate::diagnostic::Sink;
@@ -41,7 +41,7 @@ pub(super) fn dielectric(at: &Section<'_>, given: Option<Ior>, above: &Ior, sink
     };
     let n = ior.at(SODIUM_D_NM).re;
     let is_plain = ior.is_constant() && ior.samples().iter().all(|s| s.k == 0.0);
-    let most_above = above.samples().iter().fold(0.0, |most: f64, s| most.max(s.n));
+    let most_above = most(above);
     if !is_plain {
         let message = "beside `f0` an index bends directions only: it is one real number";
         sink.error(at.value_span("ior"), message, Some(format!("write `ior = {}`, or leave `f0` out", short(n))));
@@ -79,6 +79,17 @@ pub(super) fn metallic_roughness(at: &Section<'_>, above: &Ior) -> (Base, Option
     (Base::Dielectric { ior, slab }, Some(Diffuse { albedo, sigma: at.number("sigma").unwrap_or(0.0) }))
 }
 
+/// Reports a patina over an interface with an F0 that would lie below a denser medium where no patina has grown.
+pub(super) fn check_bare(document: &Section<'_>, stack: &Stack, sink: &mut Sink<'_>) {
+    let Some(Layer { base: Base::Dielectric { ior, .. }, .. }) = stack.layers.get(1) else { return };
+    let least = ior.samples().iter().fold(f64::INFINITY, |least: f64, s| least.min(s.n));
+    if ior.f0().is_some() && least < most(&stack.exterior) {
+        let span = document.section("effects").map_or(0..0, |effects| effects.key_span("patina"));
+        let message = "the layer below the patina has an `f0` and a lower index than the exterior, which it meets where none has grown";
+        sink.error(span, message, Some("give that layer an `ior` in place of its `f0`".to_owned()));
+    }
+}
+
 /// Reports films on an interface that they cannot coat.
 pub(super) fn uncoatable(kind: &str, films: &[films::Pending<'_>], sink: &mut Sink<'_>) {
     for film in films {
@@ -98,6 +109,11 @@ pub(super) fn uncoatable(kind: &str, films: &[films::Pending<'_>], sink: &mut Si
 
 fn f0(at: &Section<'_>) -> Rgb {
     at.rgb("f0").unwrap_or([0.0; 3])
+}
+
+/// The largest real index of a medium.
+fn most(ior: &Ior) -> f64 {
+    ior.samples().iter().fold(0.0, |most: f64, s| most.max(s.n))
 }
 
 /// The real index of a medium times a factor; `None` where that is no index.
