@@ -98,7 +98,7 @@ fn a_smooth_coat_on_lambert_is_its_closed_form() {
 /// is the matte term c (1 - F(i))(1 - F(o)) / (pi (1 - mean F)), whatever the index.
 #[test]
 fn the_base_of_engines_is_the_matte_term_of_kelemen() {
-    for (ior, f0, c) in [(1.5, 0.04, 0.955), (1.5, 0.4975, 0.4775), (1.2, 0.3, 0.6)] {
+    for (ior, f0, c) in [(1.0, 0.04, 0.955), (1.0, 0.4975, 0.4775), (1.5, 0.3, 0.6)] {
         let mean = f0 + (1.0 - f0) / 21.0;
         let passed = (1.0 - mean) / (ior * ior);
         let stack = coat(Surface::smooth(), ior, f0, lambert(c / (passed + c * (1.0 - passed))));

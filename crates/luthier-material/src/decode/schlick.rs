@@ -15,9 +15,6 @@ use crate::suggest::short;
 /// F0 of the dielectric of a `metallic-roughness` surface (glTF 2.0, appendix B).
 const DIELECTRIC_F0: f64 = 0.04;
 
-/// Index that has this F0, against the medium above.
-const DIELECTRIC_INDEX: f64 = 1.5;
-
 /// The opaque medium of a conductor with an `f0`.
 pub(super) fn conductor(at: &Section<'_>) -> Ior {
     Ior::vacuum().with_f0(f0(at))
@@ -56,9 +53,9 @@ pub(super) fn dielectric(at: &Section<'_>, given: Option<Ior>, above: &Ior, sink
 /// The interface of a `metallic-roughness` layer, and the diffuse base below it, which a metal has not:
 ///
 /// - F0 is `f = 0.04 + metallic (base_color - 0.04)`;
-/// - the index is that of F0 0.04, n = 1.5 times the index above;
+/// - the index is that of the medium above: engines bend no light;
 /// - the base has the albedo with which it shows `c = base_color (1 - metallic)` of the light that enters: `c / (t + c (1 - t))`, where
-///   `t = (1 - f)(20/21) / n^2` is the share of the base's light that the smooth interface passes.
+///   `t = (1 - f)(20/21)` is the share of the base's light that the smooth interface passes.
 ///
 /// By Saunderson 1942 the surface then reflects `F(cos) + (1 - F(cos)) c` of the light from any direction, as the model of engines does, and
 /// its diffuse term is that of Kelemen and Szirmay-Kalos 2001, `c (1 - F(i))(1 - F(o)) / (pi (1 - (f + (1 - f)/21)))`.
@@ -69,11 +66,11 @@ pub(super) fn metallic_roughness(at: &Section<'_>, above: &Ior) -> (Base, Option
         return (Base::Conductor { ior: Ior::vacuum().with_f0(color) }, None);
     }
     let f0 = color.map(|color| DIELECTRIC_F0 + metallic * (color - DIELECTRIC_F0));
-    let ior = relative(above, DIELECTRIC_INDEX).unwrap_or_else(Ior::vacuum).with_f0(f0);
+    let ior = relative(above, 1.0).unwrap_or_else(Ior::vacuum).with_f0(f0);
     let slab = Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
     let albedo = [0, 1, 2].map(|i: usize| {
         let seen = color[i] * (1.0 - metallic);
-        let passed = (1.0 - schlick_average(f0[i])) / (DIELECTRIC_INDEX * DIELECTRIC_INDEX);
+        let passed = 1.0 - schlick_average(f0[i]);
         seen / (passed + seen * (1.0 - passed))
     });
     (Base::Dielectric { ior, slab }, Some(Diffuse { albedo, sigma: at.number("sigma").unwrap_or(0.0) }))
