@@ -442,6 +442,12 @@ def compare():
     for reflectance, by_hand in [("approximate", lambda cos: schlick(f0_of(METAL), cos)), ("exact", plain), ("lazanyi", lazanyi(METAL))]:
         chosen = f'{base}distribution = "ggx"\n[bake]\nmodel = "microfacet"\nreflectance = "{reflectance}"\n'
         values(ELEK, f"reflectance of a file, {reflectance}", "appendix B", chosen, "microfacet", facets(*ggx_smith, by_hand))
+    # At 550 nm the green channel counts.
+    for element, text, f0 in [
+        ("F0 of a metal", f'[[layer]]\ntype = "conductor"\nf0 = [0.955, 0.638, 0.538]\n{rough}', 0.638),
+        ("F0 half metallic", f'[[layer]]\ntype = "metallic-roughness"\nbase_color = [0.955, 0.638, 0.538]\nmetallic = 0.5\n{rough}', 0.04 + 0.5 * (0.638 - 0.04)),
+    ]:
+        values(LECTURE, element, "slide on Schlick, exercise", text, "microfacet", facets(*ggx_smith, lambda cos, f0=f0: schlick(f0, cos)))
     coated = film(*soap) + metal(rough)
     values(GRANIER, "two beams of a film", "eq. 5", coated, "microfacet-granier-film", facets(*ggx_smith, lambda cos: two_beams(*soap, cos)))
     values(GRANIER, "orders of a film, two", "Belcour and Barla 2017", coated, "microfacet-belcour-barla", facets(*ggx_smith, lambda cos: belcour_barla(*soap, METAL, cos)))
@@ -479,6 +485,10 @@ def compare():
     values(LECTURE, "Lambert", "slides on diffuse light", matte(0.6), "lambert", lambert(0.6))
     values(COURSE, "Oren and Nayar", "section 2.1.2", matte(0.6, 0.5), "oren-nayar", oren_nayar(0.6, 0.5))
     values(ELEK, "Phong", "table 1", base, "phong", phong_of_metal(METAL, a))
+
+    f0, c = 0.04 + 0.5 * (0.638 - 0.04), 0.5 * 0.638
+    smooth_engine = f'[[layer]]\ntype = "metallic-roughness"\nbase_color = [0.955, 0.638, 0.538]\nmetallic = 0.5\n{smooth}'
+    albedos(LECTURE, "half metallic, smooth: specular and diffuse light", "exercise", smooth_engine, "closed-form", lambda cos: schlick(f0, cos) + (1 - schlick(f0, cos)) * c, 1e-6)
 
     # Layers.
     two = coat(COAT, "alpha = 0.2\ndistribution = \"beckmann\"\n", DEPTH) + metal("alpha = 0.3\n")

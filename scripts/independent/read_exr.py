@@ -270,7 +270,8 @@ def relative_index(name, layer, colour, options):
         below, _, above = spec.partition("/")
         above = index_at(above, colour.wavelengths, options.data) if above else 1.0
         return index_at(below, colour.wavelengths, options.data) / above
-    if layer["film_thickness_max_nm"] > 0.0:
+    # Schlick's formula takes the place of an index.
+    if layer["film_thickness_max_nm"] > 0.0 or "f0" in layer:
         return None
     if len(colour.wavelengths) == 3:
         return np.array(layer["ior_n"]) + 1j * np.array(layer["ior_k"])

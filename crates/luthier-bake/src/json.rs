@@ -8,7 +8,11 @@ use luthier_optics::stack::{Base, Film, Layer, Stack, Surface};
 use serde_json::{Value, json};
 
 pub(crate) fn ior(ior: &Ior) -> Value {
-    ior.samples().iter().map(|s| json!([s.wavelength_nm, s.n, s.k])).collect()
+    let samples: Value = ior.samples().iter().map(|s| json!([s.wavelength_nm, s.n, s.k])).collect();
+    match ior.f0() {
+        Some(f0) => json!({"samples": samples, "f0": f0}),
+        None => samples,
+    }
 }
 
 pub(crate) fn interface(interface: &Interface) -> Value {

@@ -91,9 +91,10 @@ pub(crate) fn records(stack: &Stack, wavelengths_nm: [f64; 3], parts: &Parts) ->
                 }
             }
             if let Some(interface) = Interface::of(stack, i) {
+                record.f0 = interface.below.f0();
                 parts.write(&interface, &mut record);
                 for (c, node) in nodes.iter().enumerate() {
-                    let here = interface.at(node.wavelength_nm);
+                    let here = interface.at(node.wavelength_nm, c);
                     let below = here.below / here.above;
                     (record.ior_n[c], record.ior_k[c]) = storable(below);
                     if let Some(film) = here.films.first() {

@@ -45,7 +45,7 @@ fn wavelengths(stack: &Stack, base: usize, color: &Color) -> Vec<WavelengthNode>
         interfaces
             .iter()
             .map(move |i| (i, cos))
-            .map(|(i, cos)| nodes.iter().map(|n| i.at(n.wavelength_nm).reflectance(cos)).collect::<Vec<f64>>())
+            .map(|(i, cos)| nodes.iter().map(|n| i.at(n.wavelength_nm, 0).reflectance(cos)).collect::<Vec<f64>>())
             .collect::<Vec<_>>()
     };
     let spectra: Vec<Vec<f64>> = SPECTRUM_COS_THETA.into_iter().flat_map(reflectances).collect();

@@ -7,9 +7,6 @@ use luthier_terminal::{Failure, Outcome};
 /// Base colour: F0 of copper as the lecture prints it.
 const BASE: [f64; 3] = [0.955, 0.638, 0.538];
 
-/// F0 of dielectrics.
-const DIELECTRIC: f64 = 0.04;
-
 /// Smoothest and roughest.
 const ROUGHNESS: [f64; 2] = [0.1, 1.0];
 
@@ -34,30 +31,21 @@ pub(crate) fn materials() -> Outcome<Vec<Material>> {
     Ok(materials)
 }
 
-/// The common model in layers: an interface whose F0 goes from 0.04 to the base colour, over a diffuse base whose albedo goes
-/// from the base colour to nothing. A metal has no base and takes its F0 from absorption, anything else from a real index.
+/// A model that follows all bounces: in it the base shows the base colour.
 fn text(name: &str, metallic: f64, roughness: f64) -> String {
-    let metal = metallic >= 1.0;
-    let list = |f: &dyn Fn(f64) -> f64| BASE.map(|base| format!("{:.6}", f(base))).join(", ");
-    let f0 = |base: f64| DIELECTRIC + metallic * (base - DIELECTRIC);
-    // |n + i k - 1|^2 / |n + i k + 1|^2 at n = 1, and at k = 0.
-    let (kind, n, k) = if metal {
-        ("conductor", list(&|_| 1.0), list(&|base| 2.0 * (f0(base) / (1.0 - f0(base))).sqrt()))
-    } else {
-        ("dielectric", list(&|base| (1.0 + f0(base).sqrt()) / (1.0 - f0(base).sqrt())), list(&|_| 0.0))
-    };
-    let albedo = list(&|base| base * (1.0 - metallic));
-    let base = if metal { String::new() } else { format!("[[layer]]\ntype = \"diffuse\"\nalbedo = [{albedo}]\n") };
     format!(
-        "schema = 1\nname = \"{name}\"\n[[layer]]\ntype = \"{kind}\"\nroughness = {roughness:.3}\n\
-         ior = {{ n = [{n}], k = [{k}], wavelengths_nm = [645, 525, 445] }}\n{base}\
-         [bake]\nmodel = \"elek\"\ncolor = \"three-wavelengths\"\nwavelengths_nm = [645, 525, 445]\n"
+        "schema = 1\nname = \"{name}\"\n[[layer]]\ntype = \"metallic-roughness\"\nbase_color = {BASE:?}\n\
+         metallic = {metallic:.3}\nroughness = {roughness:.3}\n[bake]\nmodel = \"belcour\"\n"
     )
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    use luthier_optics::color::Color;
+    use luthier_optics::interface::Interface;
+    use luthier_optics::stack::Base;
 
     #[test]
     fn all_are_materials() {
@@ -66,16 +54,23 @@ mod tests {
         assert_eq!(materials[0].name, "grid-0-0");
     }
 
-    /// Reflectance at normal incidence in the middle of the range: half way between 0.04 and copper's.
+    /// Reflectance at normal incidence in the middle of the range: half way between 0.04 and copper's. The albedo of the base by hand, red of a
+    /// dielectric and of the middle: .955/(.91429 + .955 .08571) and .4775/(.47857 + .4775 .52143).
     #[test]
-    fn f0_is_interpolated() {
+    fn f0_and_albedo_are_interpolated() {
         let materials = materials().unwrap();
         for (material, metallic) in [(&materials[0], 1.0), (&materials[10], 0.5), (&materials[20], 0.0)] {
-            for (wavelength, base) in [645.0, 525.0, 445.0].into_iter().zip(BASE) {
-                let interface = luthier_optics::interface::Interface::of(&material.stack, 0).unwrap();
-                let f0 = interface.at(wavelength).reflectance(1.0);
+            let f0 = Interface::of(&material.stack, 0).unwrap().sampled(&Color::Spectral).rgb(1.0);
+            for (f0, base) in f0.into_iter().zip(BASE) {
                 let expected = 0.04 + metallic * (base - 0.04);
-                assert!((f0 - expected).abs() < 1e-5, "{} {wavelength}: {f0} {expected}", material.name);
+                assert!((f0 - expected).abs() < 1e-12, "{}: {f0} {expected}", material.name);
+            }
+            match &material.stack.layers.last().unwrap().base {
+                Base::Diffuse(diffuse) => {
+                    let expected = if metallic == 0.0 { 0.95870 } else { 0.65631 };
+                    assert!((diffuse.albedo[0] - expected).abs() < 1e-5, "{}: {:?}", material.name, diffuse.albedo);
+                }
+                base => assert!(matches!(base, Base::Conductor { .. }) && metallic == 1.0, "{base:?}"),
             }
         }
     }

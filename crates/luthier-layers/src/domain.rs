@@ -164,19 +164,24 @@ const DIM: f64 = 1.0;
 /// Light that comes back at normal incidence from below the dielectric of a layer, once, in the channel that absorbs least: `(1 - F)^2
 /// e^(-2 depth) R`; R counts as 1 where the next layer is transparent.
 fn returned(stack: &Stack, layer: usize) -> f64 {
-    let mirrored = |layer| {
-        Interface::of(stack, layer).map_or(0.0, |interface| interface.at(REFRACTION_WAVELENGTH_NM).reflectance(1.0))
+    let mirrored = |layer, channel| {
+        let interface = Interface::of(stack, layer);
+        interface.map_or(0.0, |interface| interface.at(REFRACTION_WAVELENGTH_NM, channel).reflectance(1.0))
     };
     let Some(Base::Dielectric { slab, .. }) = stack.layers.get(layer).map(|here| &here.base) else { return 0.0 };
-    let below = match stack.layers.get(layer + 1).map(|next| &next.base) {
-        Some(Base::Conductor { .. }) => mirrored(layer + 1),
+    let below = |channel| match stack.layers.get(layer + 1).map(|next| &next.base) {
+        Some(Base::Conductor { .. }) => mirrored(layer + 1, channel),
         Some(Base::Diffuse(diffuse)) => diffuse.albedo.into_iter().fold(0.0, f64::max),
         Some(Base::Dielectric { .. }) => 1.0,
         None => 0.0,
     };
-    let crossed = 1.0 - mirrored(layer);
     let depth = slab.optical_depth().into_iter().fold(f64::INFINITY, f64::min);
-    crossed * crossed * libm::exp(-2.0 * depth) * below
+    let at = |channel| {
+        let crossed = 1.0 - mirrored(layer, channel);
+        crossed * crossed * libm::exp(-2.0 * depth) * below(channel)
+    };
+    // Channels of interfaces that have indices are alike.
+    (0..3).map(at).fold(0.0, f64::max)
 }
 
 /// Quantities of a stack outside the domain of a model.

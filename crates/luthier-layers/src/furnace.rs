@@ -35,7 +35,13 @@ pub fn lossless(stack: &Monochrome) -> Monochrome {
     }
     if let Some(MonochromeBelow::Dielectric { ior, .. }) = white.layers.last().map(|layer| layer.below) {
         let below = MonochromeBelow::Diffuse { albedo: 1.0, sigma: 0.0 };
-        white.layers.push(MonochromeLayer { surface: Surface::smooth(), above: ior, films: Vec::new(), below });
+        white.layers.push(MonochromeLayer {
+            surface: Surface::smooth(),
+            above: ior,
+            films: Vec::new(),
+            below,
+            f0: None,
+        });
     }
     white
 }
@@ -48,6 +54,7 @@ pub fn lossless_interface(stack: &Monochrome) -> Monochrome {
         without_absorption(layer);
         if matches!(layer.below, MonochromeBelow::Dielectric { .. }) {
             layer.below = MIRROR;
+            layer.f0 = None;
         }
     }
     white
@@ -61,7 +68,10 @@ fn without_absorption(layer: &mut MonochromeLayer) {
         MonochromeBelow::Dielectric { ior, complex_ior, optical_depth } => {
             (*complex_ior, *optical_depth) = (Complex64::new(*ior, 0.0), 0.0);
         }
-        MonochromeBelow::Conductor { .. } => layer.below = MIRROR,
+        MonochromeBelow::Conductor { .. } => {
+            layer.below = MIRROR;
+            layer.f0 = layer.f0.map(|_| 1.0);
+        }
         MonochromeBelow::Diffuse { albedo, .. } => *albedo = 1.0,
     }
 }

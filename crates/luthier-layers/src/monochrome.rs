@@ -5,6 +5,7 @@ use luthier_optics::color::Color;
 use luthier_optics::fresnel::{FilmLayer, Polarised, coated};
 use luthier_optics::interface::Interface;
 use luthier_optics::microfacet;
+use luthier_optics::schlick::schlick;
 use luthier_optics::stack::{Base, Layer, Stack, Surface};
 use num_complex::Complex64;
 use std::f64::consts::PI;
@@ -46,6 +47,9 @@ pub struct MonochromeLayer {
     pub films: Vec<FilmLayer>,
     /// Material below the interface.
     pub below: MonochromeBelow,
+    /// Reflectance at normal incidence, where Schlick's formula takes the place of Fresnel's; there are no films then, and no index below
+    /// is lower than that above.
+    pub f0: Option<f64>,
 }
 
 /// Material below an interface, at one wavelength.
@@ -84,7 +88,7 @@ impl MonochromeBelow {
 impl Monochrome {
     /// Interfaces without films under vacuum, from the top down: the micro-surface of each, and the material below it.
     pub fn bare(interfaces: &[(Surface, MonochromeBelow)]) -> Self {
-        let layer = |&(surface, below)| MonochromeLayer { surface, above: 1.0, films: Vec::new(), below };
+        let layer = |&(surface, below)| MonochromeLayer { surface, above: 1.0, films: Vec::new(), below, f0: None };
         Self::joined(1.0, interfaces.iter().map(layer).collect())
     }
 
@@ -114,7 +118,11 @@ impl Monochrome {
                 Base::Diffuse(d) => MonochromeBelow::Diffuse { albedo: d.albedo[channel], sigma: d.sigma },
             };
             let films = layer.films.iter().map(|film| film.at(wavelength_nm)).collect();
-            MonochromeLayer { surface: layer.surface, above: exterior, films, below }
+            let f0 = match &layer.base {
+                Base::Dielectric { ior, .. } | Base::Conductor { ior } => ior.f0().map(|f0| f0[channel]),
+                Base::Diffuse(_) => None,
+            };
+            MonochromeLayer { surface: layer.surface, above: exterior, films, below, f0 }
         };
         Self::joined(exterior, stack.layers.iter().map(layer).collect())
     }
@@ -140,16 +148,23 @@ impl Optics for Monochrome {
 impl MonochromeLayer {
     /// Unpolarised reflectance of the interface for light from above; 0 for a diffuse base, which has none.
     pub fn reflectance(&self, cos_theta_i: f64) -> f64 {
-        self.polarised(cos_theta_i).map_or(0.0, |powers| powers.unpolarised())
+        match self.f0 {
+            Some(f0) => schlick(f0, cos_theta_i),
+            None => self.polarised(cos_theta_i).map_or(0.0, |powers| powers.unpolarised()),
+        }
     }
 
-    /// Reflectance of either polarisation; `None` for a diffuse base, which has no interface.
+    /// Reflectance of either polarisation by the indices; `None` for a diffuse base, which has no interface, and where Schlick's formula,
+    /// which knows no polarisation, takes their place.
     pub fn polarised(&self, cos_theta_i: f64) -> Option<Polarised> {
         let below = match self.below {
             MonochromeBelow::Dielectric { complex_ior, .. } => complex_ior,
             MonochromeBelow::Conductor { ior } => ior,
             MonochromeBelow::Diffuse { .. } => return None,
         };
+        if self.f0.is_some() {
+            return None;
+        }
         Some(coated(Complex64::new(self.above, 0.0), &self.films, below, cos_theta_i))
     }
 

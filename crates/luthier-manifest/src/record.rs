@@ -66,6 +66,10 @@ pub struct LayerRecord {
     pub ior_n: [f64; 3],
     /// Imaginary part.
     pub ior_k: [f64; 3],
+    /// Reflectance at normal incidence, RGB, where the interface reflects by Schlick's formula, f0 + (1 - f0)(1 - cos)^5, and not by its
+    /// index; the index then bends directions only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub f0: Option<[f64; 3]>,
     /// Real part of the film's relative index; 0 without a film.
     pub film_ior_n: [f64; 3],
     /// Imaginary part.
@@ -118,8 +122,8 @@ impl LayerRecord {
     /// | 1 | Fresnel tile, distribution tile, FGD tile, phase tile |
     /// | 2 | optical depth RGB over ln 2, thickness tile |
     /// | 3 | albedo RGB over pi, distribution (0 beckmann, 1 ggx) |
-    /// | 4 | ior_n RGB, film thickness nm |
-    /// | 5 | ior_k RGB, film thickness max nm |
+    /// | 4 | ior_n RGB, of an interface of Schlick's f0 RGB; film thickness nm |
+    /// | 5 | ior_k RGB, of an interface of Schlick's -1; film thickness max nm |
     /// | 6 | film_ior_n RGB, film tile; of a curve f0 RGB |
     /// | 7 | film_ior_k RGB, squared cotangent of the critical angle; of a curve its weights RGB |
     /// | 8 | film thickness in waves RGB, escape tile; of a curve its exponents RGB |
@@ -159,8 +163,8 @@ impl LayerRecord {
             [0.0; 4],
             rgbw(self.optical_depth.map(|depth| depth * LOG2_E), 0.0),
             rgbw(self.albedo.map(|albedo| albedo * FRAC_1_PI), distribution),
-            rgbw(self.ior_n, self.film_thickness_nm as f32),
-            rgbw(self.ior_k, self.film_thickness_max_nm as f32),
+            rgbw(self.f0.unwrap_or(self.ior_n), self.film_thickness_nm as f32),
+            rgbw(self.f0.map_or(self.ior_k, |_| [-1.0; 3]), self.film_thickness_max_nm as f32),
             rgbw(first, 0.0),
             rgbw(second, self.critical_cot_sq as f32),
             rgbw(third, 0.0),
@@ -234,6 +238,7 @@ mod tests {
             sigma: 9.0,
             ior_n: [10.0, 11.0, 12.0],
             ior_k: [13.0, 14.0, 15.0],
+            f0: None,
             film_ior_n: [16.0, 17.0, 18.0],
             film_ior_k: [19.0, 20.0, 21.0],
             film_thickness_waves: [22.0, 23.0, 24.0],
@@ -278,6 +283,8 @@ mod tests {
         assert_eq!(numbered(LayerKind::Diffuse).words()[10][0], 8_388_610.0);
         let beckmann = LayerRecord { distribution: Distribution::Beckmann, ..numbered(LayerKind::Diffuse) };
         assert_eq!((beckmann.words()[3][3], beckmann.words()[0][0]), (0.0, 0.360_673_76));
+        let schlick = LayerRecord { f0: Some([0.25, 0.5, 0.75]), ..numbered(LayerKind::Conductor) };
+        assert_eq!(schlick.words()[4..6], [[0.25, 0.5, 0.75, 25.0], [-1.0, -1.0, -1.0, 26.0]]);
     }
 
     /// By hand: a metal is 1, Lazanyi's reflectance 3, V-cavities 3.

@@ -7,7 +7,7 @@ use toml::de::DeValue;
 
 use crate::correct::corrected;
 use crate::diagnostic::Sink;
-use crate::grammar::{Key, Kind, NAME_MAX, PATH_MAX, Range, Table, TextForm};
+use crate::grammar::{Alternatives, Key, Kind, NAME_MAX, PATH_MAX, Range, Table, TextForm};
 use crate::section::{Section, integer, number, section};
 use crate::suggest::{did_you_mean, one_of, short};
 
@@ -26,7 +26,9 @@ pub(crate) fn check_table(table: &'static Table, siblings: &[&'static Table], at
     for key in table.keys.iter().filter(|k| k.required && !present(k.name)) {
         sink.error(at.span.clone(), format!("`{}` is missing from this {}", key.name, table.name), Some(add(key)));
     }
-    check_alternatives(table, at, &present, sink);
+    for alternatives in table.alternatives() {
+        check_alternatives(alternatives, table, at, &present, sink);
+    }
 }
 
 /// Checks one key of a table alone, if it is there.
@@ -36,8 +38,13 @@ pub(crate) fn check_key(table: &'static Table, name: &str, at: &Section<'_>, sin
     }
 }
 
-fn check_alternatives(table: &'static Table, at: &Section<'_>, present: &dyn Fn(&str) -> bool, sink: &mut Sink<'_>) {
-    let Some(alternatives) = &table.exactly_one else { return };
+fn check_alternatives(
+    alternatives: &Alternatives,
+    table: &'static Table,
+    at: &Section<'_>,
+    present: &dyn Fn(&str) -> bool,
+    sink: &mut Sink<'_>,
+) {
     let given: Vec<_> = alternatives.forms.iter().filter(|form| form.iter().any(|name| present(name))).collect();
     match given.as_slice() {
         [] => sink.error(
@@ -51,6 +58,7 @@ fn check_alternatives(table: &'static Table, at: &Section<'_>, present: &dyn Fn(
                 sink.error(at.key_span(there), format!("`{there}` needs `{name}` beside it"), table.key(name).map(add));
             }
         }
+        [_, ..] if alternatives.together => {}
         [first, others @ ..] => {
             let first = first.iter().find(|name| at.has(name)).copied().unwrap_or(first[0]);
             for second in others.iter().filter_map(|form| form.iter().find(|name| at.has(name))) {
@@ -100,10 +108,18 @@ fn unknown_key(
 
 /// Other words for some keys, from neighbouring tools and papers.
 fn synonym(table: &'static Table, name: &str) -> Option<&'static str> {
-    const SYNONYMS: [(&str, &str); 9] = [
+    const SYNONYMS: [(&str, &str); 17] = [
         ("color", "albedo"),
         ("colour", "albedo"),
         ("reflectance", "albedo"),
+        ("reflectance", "f0"),
+        ("specular", "f0"),
+        ("F0", "f0"),
+        ("color", "base_color"),
+        ("colour", "base_color"),
+        ("albedo", "base_color"),
+        ("metalness", "metallic"),
+        ("metallicness", "metallic"),
         ("eta", "ior"),
         ("kappa", "k"),
         ("m", "alpha"),

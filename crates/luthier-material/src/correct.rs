@@ -30,7 +30,7 @@ pub(crate) fn corrected(name: &str, range: Range, value: f64, in_list: bool) -> 
         "sigma" if value > 0.0 && value <= 90.0 => {
             return Some(format!("sigma is in radians: {} degrees is {}", short(value), write(value.to_radians())));
         }
-        "albedo" | "diffuse_albedo" | "tarnish" if value > 1.5 && value <= 255.0 => {
+        "albedo" | "base_color" | "diffuse_albedo" | "f0" | "tarnish" if value > 1.5 && value <= 255.0 => {
             let linear = write(srgb_to_linear(value / 255.0));
             return Some(format!("linear reflectance is wanted: the 8-bit sRGB value {} is {linear}", short(value)));
         }

@@ -31,6 +31,9 @@ const FILM_MAX_NM: f64 = 5000.0;
 /// Two indices that differ by less than this reflect less than 1e-8 at normal incidence.
 const SAME_INDEX: f64 = 2e-4;
 
+/// Clear media reflect less: rutile, of index 2.6, has 0.2.
+const DIELECTRIC_F0_MAX: f64 = 0.2;
+
 /// A sampled spectrum that may be too short: name, range in nm, place.
 pub(crate) type Spectrum = (String, (f64, f64), Span<usize>);
 
@@ -99,7 +102,7 @@ pub(crate) fn report(material: &Material, spectra: &[Spectrum], sink: &mut Sink<
                 above = ior;
                 roughest = roughest.max(layer.surface.alpha_isotropic());
             }
-            Base::Conductor { ior } if ior.samples().iter().all(|s| s.k == 0.0) => {
+            Base::Conductor { ior } if ior.f0().is_none() && ior.samples().iter().all(|s| s.k == 0.0) => {
                 let hint = "metals have k above 1; was a dielectric meant?".to_owned();
                 sink.warn(at.span("ior"), "this conductor has k = 0 at every wavelength", Some(hint));
             }
@@ -198,7 +201,16 @@ fn films(layer: &Layer, at: &At<'_>, sink: &mut Sink<'_>) {
 }
 
 fn dielectric(above: &Ior, layer: &Layer, ior: &Ior, at: &At<'_>, sink: &mut Sink<'_>) {
-    let same = |nm: f64| (ior.at(nm) - above.at(nm)).norm_sqr() < SAME_INDEX * SAME_INDEX;
+    if let Some(f0) = ior.f0().filter(|_| at.has("f0")) {
+        let most = f0.iter().fold(0.0, |a: f64, b| a.max(*b));
+        if most > DIELECTRIC_F0_MAX {
+            let message = format!("an F0 of {} is that of no clear medium: diamond has 0.17", short(most));
+            let hint = "was a conductor meant, or `type = \"metallic-roughness\"`?".to_owned();
+            sink.warn(at.span("f0"), message, Some(hint));
+        }
+    }
+    // By Schlick's formula an interface reflects whatever its index.
+    let same = |nm: f64| ior.f0().is_none() && (ior.at(nm) - above.at(nm)).norm_sqr() < SAME_INDEX * SAME_INDEX;
     if layer.films.is_empty() && [450.0, 550.0, 650.0].into_iter().all(same) {
         let hint = "the index is relative to nothing: give it as tables do, against vacuum".to_owned();
         sink.warn(

@@ -52,9 +52,15 @@ fn table(table: &'static Table, definitions: &mut Definitions) -> Value {
         "required": required,
         "additionalProperties": false,
     });
-    if let (Some(alternatives), Value::Object(schema)) = (&table.exactly_one, &mut schema) {
+    for (number, alternatives) in table.alternatives().enumerate() {
+        let Value::Object(schema) = &mut schema else { continue };
         let forms: Vec<Value> = alternatives.forms.iter().map(|form| json!({ "required": form })).collect();
-        schema.insert("oneOf".to_owned(), forms.into());
+        let word = if alternatives.together { "anyOf" } else { "oneOf" };
+        if number == 0 {
+            schema.insert(word.to_owned(), forms.into());
+        } else if let Value::Array(all) = schema.entry("allOf").or_insert_with(|| json!([])) {
+            all.push(json!({ word: forms }));
+        }
         // Keys that go together.
         let together = alternatives.forms.iter().filter(|form| form.len() > 1);
         let dependent: Map<String, Value> =
@@ -149,5 +155,8 @@ mod tests {
         assert_eq!(schema.pointer("/$defs/dielectric/oneOf/4/required"), Some(&json!(["alpha_x", "alpha_y"])));
         assert_eq!(schema.pointer("/$defs/noise/properties/octaves/default"), Some(&json!(4)));
         assert_eq!(schema.pointer("/$defs/thin-film/properties/roughness"), None);
+        let index_or_f0 = json!([{ "required": ["ior"] }, { "required": ["f0"] }]);
+        assert_eq!(schema.pointer("/$defs/conductor/allOf/0/oneOf"), Some(&index_or_f0));
+        assert_eq!(schema.pointer("/$defs/dielectric/allOf/0/anyOf"), Some(&index_or_f0));
     }
 }

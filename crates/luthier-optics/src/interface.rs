@@ -6,7 +6,7 @@ use crate::Rgb;
 use crate::color::{Color, WavelengthNode};
 use crate::fresnel::{FilmLayer, coated};
 use crate::ior::Ior;
-use crate::schlick::Lazanyi;
+use crate::schlick::{Lazanyi, schlick};
 use crate::stack::{Base, Film, Stack};
 
 /// The optics of one interface: the medium above, films, the medium below. No micro-surface.
@@ -16,7 +16,7 @@ pub struct Interface {
     pub above: Ior,
     /// Films from the top down, at their nominal thickness.
     pub films: Vec<Film>,
-    /// Medium below.
+    /// Medium below. Where it has an F0 ([`Ior::with_f0`]), the interface reflects by Schlick's formula, and has no films.
     pub below: Ior,
 }
 
@@ -36,9 +36,11 @@ impl Interface {
         Some(Self { above, films: here.films.clone(), below })
     }
 
-    /// Index above, films and index below at one wavelength.
-    pub fn at(&self, wavelength_nm: f64) -> Monochrome {
+    /// Index above, films and index below at one wavelength, for colour channel 0, 1 or 2: those of an interface of Schlick's differ by
+    /// its F0 alone.
+    pub fn at(&self, wavelength_nm: f64, channel: usize) -> Monochrome {
         Monochrome {
+            f0: self.below.f0().map(|f0| f0[channel]),
             above: Complex64::new(self.above.at(wavelength_nm).re, 0.0),
             films: self.films.iter().map(|film| film.at(wavelength_nm)).collect(),
             below: self.below.at(wavelength_nm),
@@ -49,13 +51,14 @@ impl Interface {
     /// reflectance then has kinks over the cosine of incidence and over that of the refracted direction.
     pub fn has_kink(&self, color: &Color) -> bool {
         let sampled = self.sampled(color);
-        let clear = || sampled.nodes.iter().map(|(_, at)| at).filter(|at| at.below.im <= NO_KINK);
+        // Schlick's formula has none.
+        let clear = || sampled.nodes.iter().map(|(_, at)| at).filter(|at| at.f0.is_none() && at.below.im <= NO_KINK);
         let etas = || clear().map(|at| at.below.re / at.above.re);
         let (least, most) = etas().fold((f64::INFINITY, 0.0), |(a, b), eta| (f64::min(a, eta), f64::max(b, eta)));
         least < 1.0 && (least < most || sampled.critical_cot_sq() == 0.0)
     }
 
-    /// Whether the reflectance is the same at every wavelength.
+    /// Whether the reflectance of each channel is the same at every wavelength.
     pub fn is_achromatic(&self) -> bool {
         self.films.is_empty() && self.above.is_constant() && self.below.is_constant()
     }
@@ -67,16 +70,33 @@ impl Interface {
 
     /// The interface at given wavelength nodes; a single node when it is achromatic.
     pub fn at_nodes(&self, nodes: &[WavelengthNode]) -> Sampled {
-        if self.is_achromatic() {
-            return Sampled { nodes: vec![([1.0; 3], self.at(550.0))] };
+        let is_achromatic = self.is_achromatic();
+        match self.below.f0() {
+            // Each channel by itself, of one wavelength or of all.
+            Some([r, g, b]) if r != g || g != b => {
+                let channels = |weight: Rgb, nm: f64| (0..3).map(move |c| (channel_of(weight, c), self.at(nm, c)));
+                let nodes = match is_achromatic {
+                    true => channels([1.0; 3], 550.0).collect(),
+                    false => nodes.iter().flat_map(|n| channels(n.weight, n.wavelength_nm)).collect(),
+                };
+                Sampled { nodes }
+            }
+            _ if is_achromatic => Sampled { nodes: vec![([1.0; 3], self.at(550.0, 0))] },
+            _ => Sampled { nodes: nodes.iter().map(|n| (n.weight, self.at(n.wavelength_nm, 0))).collect() },
         }
-        Sampled { nodes: nodes.iter().map(|n| (n.weight, self.at(n.wavelength_nm))).collect() }
     }
+}
+
+/// A weight of one channel alone.
+fn channel_of(weight: Rgb, channel: usize) -> Rgb {
+    let mut one = [0.0; 3];
+    one[channel] = weight[channel];
+    one
 }
 
 /// An interface at one wavelength.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(from = "Stored", into = "Stored"))]
 pub struct Monochrome {
     /// Index above, real.
     pub above: Complex64,
@@ -84,12 +104,48 @@ pub struct Monochrome {
     pub films: Vec<FilmLayer>,
     /// Index below.
     pub below: Complex64,
+    /// Reflectance at normal incidence, where Schlick's formula takes the place of Fresnel's. There are no films then.
+    pub f0: Option<f64>,
 }
 
 impl Monochrome {
-    /// Unpolarised reflectance.
+    /// Unpolarised reflectance: Fresnel's formulas, with the films by Airy's; or `f0 + (1 - f0)(1 - cos)^5` (Schlick 1994).
     pub fn reflectance(&self, cos_theta_i: f64) -> f64 {
+        if let Some(f0) = self.f0 {
+            return schlick(f0, cos_theta_i);
+        }
         coated(self.above, &self.films, self.below, cos_theta_i).unpolarised()
+    }
+}
+
+/// An interface in the form in which stores keep it, which has no place for an F0: it is the imaginary part of the index above, and that
+/// of the index below is -1 then.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Stored {
+    above: Complex64,
+    films: Vec<FilmLayer>,
+    below: Complex64,
+}
+
+#[cfg(feature = "serde")]
+impl From<Monochrome> for Stored {
+    fn from(Monochrome { mut above, films, mut below, f0 }: Monochrome) -> Self {
+        if let Some(f0) = f0 {
+            (above.im, below.im) = (f0, -1.0);
+        }
+        Self { above, films, below }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Stored> for Monochrome {
+    fn from(Stored { mut above, films, mut below }: Stored) -> Self {
+        let f0 = (below.im == -1.0).then_some(above.im);
+        if f0.is_some() {
+            (above.im, below.im) = (0.0, 0.0);
+        }
+        Self { above, films, below, f0 }
     }
 }
 
@@ -109,10 +165,12 @@ const TRACE_OF_ABSORPTION: f64 = 1e-6;
 
 impl Sampled {
     /// Squared cotangent of the critical angle, `1 / eta^2 - 1`, at the wavelength of the largest index below over that above: all light
-    /// flatter than that is totally reflected. 0 where some wavelength never is, and where films or the medium below absorb.
+    /// flatter than that is totally reflected. 0 where some wavelength never is, where films or the medium below absorb, and for interfaces
+    /// of Schlick's, which media of no lower index lie below.
     pub fn critical_cot_sq(&self) -> f64 {
         let is_clear = |index: Complex64| index.im <= TRACE_OF_ABSORPTION;
-        let is_total = |at: &Monochrome| is_clear(at.below) && at.films.iter().all(|film| is_clear(film.ior));
+        let is_total =
+            |at: &Monochrome| at.f0.is_none() && is_clear(at.below) && at.films.iter().all(|film| is_clear(film.ior));
         let interfaces = || self.nodes.iter().map(|(_, at)| at);
         let eta = interfaces().map(|at| at.below.re / at.above.re).fold(0.0, f64::max);
         if eta > 0.0 && eta < 1.0 && interfaces().all(is_total) { 1.0 / (eta * eta) - 1.0 } else { 0.0 }
@@ -146,5 +204,53 @@ impl Sampled {
             }
         }
         rgb
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const F0: Rgb = [0.955, 0.638, 0.538];
+
+    fn schlick_on(above: Ior, below: Ior) -> Interface {
+        Interface { above, films: Vec::new(), below: below.with_f0(F0) }
+    }
+
+    /// Schlick 1994 by hand at 60 degrees, where (1 - cos)^5 = 1/32; in every colour mode, whatever lies above.
+    #[test]
+    fn an_f0_is_a_colour_in_every_mode() {
+        let glass = Ior::constant(1.5, 0.0).unwrap();
+        let sample = |wavelength_nm, n| crate::ior::IorSample { wavelength_nm, n, k: 0.0 };
+        let dispersive = Ior::sampled(vec![sample(400.0, 1.54), sample(700.0, 1.5)]).unwrap();
+        for above in [Ior::vacuum(), glass, dispersive] {
+            let interface = schlick_on(above, Ior::vacuum());
+            for color in [Color::Spectral, Color::ThreeWavelengths([645.0, 525.0, 445.0])] {
+                let found = interface.sampled(&color).rgb(0.5);
+                for (found, f0) in found.into_iter().zip(F0) {
+                    assert!((found - (f0 + (1.0 - f0) / 32.0)).abs() < 1e-12, "{color:?}: {found} {f0}");
+                }
+                assert!(!interface.has_kink(&color) && interface.sampled(&color).critical_cot_sq() == 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn one_channel_is_one_node_and_three_are_three() {
+        let nodes = |f0| {
+            let below = Ior::constant(1.5, 0.0).unwrap().with_f0(f0);
+            Interface { above: Ior::vacuum(), films: Vec::new(), below }.sampled(&Color::Spectral).nodes.len()
+        };
+        assert_eq!([nodes([0.04; 3]), nodes(F0)], [1, 3]);
+    }
+
+    #[cfg(feature = "serde")]
+    #[test]
+    fn stores_keep_an_f0() {
+        let with = schlick_on(Ior::vacuum(), Ior::constant(1.5, 0.0).unwrap()).at(550.0, 1);
+        let without = Interface { above: Ior::vacuum(), films: Vec::new(), below: Ior::constant(0.2, 3.0).unwrap() };
+        for one in [with, without.at(550.0, 1)] {
+            assert_eq!(Monochrome::from(Stored::from(one.clone())), one);
+        }
     }
 }

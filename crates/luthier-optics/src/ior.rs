@@ -3,6 +3,8 @@
 use num_complex::Complex64;
 use thiserror::Error;
 
+use crate::Rgb;
+
 /// One sample of a complex index `n + i k` (`k >= 0` absorbs; phase convention e^{+i beta}).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -42,16 +44,20 @@ pub enum IorError {
 ///
 /// Linear in wavelength is what the built-in data were resampled with; against a monotone cubic the
 /// normal-incidence reflectance of the built-in metals moves by at most 0.004.
+///
+/// An index may carry an F0 ([`Ior::with_f0`]). The interface to its medium then reflects by Schlick's formula, and the index bends
+/// directions only.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ior {
     samples: Vec<IorSample>,
+    f0: Option<Rgb>,
 }
 
 impl Ior {
     /// Vacuum, and air for our purposes.
     pub fn vacuum() -> Self {
-        Self { samples: vec![IorSample { wavelength_nm: 550.0, n: 1.0, k: 0.0 }] }
+        Self { samples: vec![IorSample { wavelength_nm: 550.0, n: 1.0, k: 0.0 }], f0: None }
     }
 
     /// An index that is equal at every wavelength.
@@ -81,7 +87,27 @@ impl Ior {
                 return Err(IorError::NotPhysical { wavelength_nm: s.wavelength_nm, n: s.n, k: s.k });
             }
         }
-        Ok(Self { samples })
+        Ok(Self { samples, f0: None })
+    }
+
+    /// The index of a medium whose interface reflects `f0 + (1 - f0)(1 - cos)^5` (Schlick 1994), by colour channel (linear Rec.709,
+    /// each in 0..=1), whatever lies above it.
+    #[must_use]
+    pub fn with_f0(self, f0: Rgb) -> Self {
+        Self { f0: Some(f0), ..self }
+    }
+
+    /// The reflectance at normal incidence by colour channel, where Schlick's formula stands in for the index; else `None`.
+    pub fn f0(&self) -> Option<Rgb> {
+        self.f0
+    }
+
+    /// An index of other samples in strictly ascending wavelength, with the F0 of this one.
+    ///
+    /// # Errors
+    /// See [`IorError`].
+    pub fn with_samples(&self, samples: Vec<IorSample>) -> Result<Self, IorError> {
+        Ok(Self { f0: self.f0, ..Self::sampled(samples)? })
     }
 
     /// The samples, ascending in wavelength.

@@ -25,6 +25,12 @@ pub fn schlick(f0: f64, cos_theta: f64) -> f64 {
     f0 + (1.0 - f0) * fifth(1.0 - cos_theta)
 }
 
+/// Real index over that above whose reflectance at normal incidence is `f0`, in 0..1: `(1 + sqrt f0) / (1 - sqrt f0)`.
+pub fn index_of_f0(f0: f64) -> f64 {
+    let root = libm::sqrt(f0);
+    (1.0 + root) / (1.0 - root)
+}
+
 /// Schlick's cosine-weighted mean over the hemisphere: F0 + (1 - F0)/21.
 pub fn schlick_average(f0: f64) -> f64 {
     f0 + (1.0 - f0) / 21.0
@@ -228,6 +234,13 @@ mod tests {
             let exact = fresnel::interface(Complex64::ONE, below, cos).unpolarised();
             assert!((f82.eval(cos) - exact).abs() < 1e-14, "{cos}");
         }
+    }
+
+    /// Glass by hand: (0.5 / 2.5)^2 = 0.04.
+    #[test]
+    fn an_f0_has_an_index() {
+        assert!((index_of_f0(0.04) - 1.5).abs() < 1e-15);
+        assert_eq!(index_of_f0(0.0), 1.0);
     }
 
     #[test]

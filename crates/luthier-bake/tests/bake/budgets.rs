@@ -48,7 +48,7 @@ fn fresnel_error(materials: &[Material], bake: &Baked) -> f64 {
     let mut worst = 0.0_f64;
     for (material, baked) in materials.iter().zip(&bake.materials) {
         for (i, record) in baked.records.iter().enumerate() {
-            let exact = Interface::of(&material.stack, i).unwrap().at(550.0);
+            let exact = Interface::of(&material.stack, i).unwrap().at(550.0, 1);
             for step in 0..10_000 {
                 let u = f64::from(step) / 9999.0;
                 for cos_theta in [u, u.powi(4)] {

@@ -110,7 +110,7 @@ fn a_row_that_none_serves_is_named_and_decides_nothing() {
     let missed: Vec<&str> = rows.tiles.iter().filter(|t| t.miss().is_some()).map(|t| t.name.as_str()).collect();
     assert_eq!(missed, ["frustrated/0"]);
 
-    let interface = Interface::of(&frustrated.stack, 0).unwrap().at(550.0);
+    let interface = Interface::of(&frustrated.stack, 0).unwrap().at(550.0, 1);
     let (found, stated) = errors(&bake, 2, 0, |c| interface.reflectance(c), &cosines(1.5, 1.0));
     eprintln!("frustrated: {found:.2e}, stated {stated:.2e}");
     assert!(found > AIM && (found / stated - 1.0).abs() < 0.1, "{found} {stated}");

@@ -598,7 +598,7 @@ pub(crate) struct EvalOptions {
     /// Spectral colour: the default for values; for output against angle, instead of one wavelength
     #[arg(long, conflicts_with_all = ["furnace", "environment"])]
     pub(crate) rgb: bool,
-    /// One wavelength, 360 to 830 nm. Absorption and diffuse albedo are those of the channel nearest to it (645, 525, 445 nm)
+    /// One wavelength, 360 to 830 nm. Absorption, diffuse albedo and `f0` are those of the channel nearest to it (645, 525, 445 nm)
     #[arg(long, value_name = "NM", value_parser = wavelength, conflicts_with_all = ["rgb", "three_wavelengths"])]
     pub(crate) wavelength: Option<f64>,
     /// The material's three wavelengths taken as R, G, B instead of spectral colour

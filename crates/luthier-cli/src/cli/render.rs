@@ -16,7 +16,7 @@ use crate::variations::Range;
 
 const PREVIEW_EXAMPLES: &str = "\
 MATERIAL is a material file, or the name of a material in the bake. Directions and positions have +y up and +z to the eye;
-the shapes are about 1 in radius. The grid takes no material: it shows F0 from 0.04 to that of copper against roughness.
+the shapes are about 1 in radius. The grid takes no material: it is of `metallic-roughness` surfaces in the colour of copper.
 
 Examples:
   luthier preview materials/red-lacquer.toml -o ball.png
@@ -84,7 +84,8 @@ pub(crate) struct PreviewOptions {
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples:\n  luthier gallery -o sheet.png\n  luthier gallery materials mine.toml -o sheet.png --columns 6
-  luthier gallery lacquer.toml -o grid.png --grid roughness=0.1..1 layer.1.albedo.0=0.1..0.9"
+  luthier gallery lacquer.toml -o grid.png --grid roughness=0.1..1 layer.1.albedo.0=0.1..0.9
+  luthier gallery copper.toml -o grid.png --grid roughness=0..1 metallic=0..1"
 )]
 pub(crate) struct GalleryOptions {
     #[command(flatten)]

@@ -317,7 +317,7 @@ fn combined(studio: &Studio) -> Outcome<Made> {
 
 /// A film in air, `waves` wavelengths of vacuum thick.
 fn film(ior: f64, waves: f64, exponent: f64) -> Film {
-    Film { eta: ior, waves_inside: Some(ior * waves), inner_normal: DVec3::Z, exponents: [exponent; 2] }
+    Film { eta: ior, f0: None, waves_inside: Some(ior * waves), inner_normal: DVec3::Z, exponents: [exponent; 2] }
 }
 
 fn axis(label: &str, range: [f64; 2], step: f64) -> PlotAxis {

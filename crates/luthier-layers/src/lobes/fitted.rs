@@ -85,12 +85,16 @@ fn in_all_colors(stack: &Monochrome) -> Option<Stack> {
             let thickness = FilmThickness { min_nm: thickness_nm, max_nm: thickness_nm };
             Some(Film { ior: constant(film.ior)?, thickness })
         };
+        let of = |ior: Complex64| {
+            let ior = constant(ior)?;
+            Some(layer.f0.map_or_else(|| ior.clone(), |f0| ior.clone().with_f0([f0; 3])))
+        };
         let base = match layer.below {
             MonochromeBelow::Dielectric { complex_ior, optical_depth, .. } => {
                 let slab = Slab { thickness_um: 1.0, absorption_per_um: [optical_depth; 3] };
-                Base::Dielectric { ior: constant(complex_ior)?, slab }
+                Base::Dielectric { ior: of(complex_ior)?, slab }
             }
-            MonochromeBelow::Conductor { ior } => Base::Conductor { ior: constant(ior)? },
+            MonochromeBelow::Conductor { ior } => Base::Conductor { ior: of(ior)? },
             MonochromeBelow::Diffuse { albedo, sigma } => Base::Diffuse(Diffuse { albedo: [albedo; 3], sigma }),
         };
         Some(Layer { films: layer.films.iter().map(film).collect::<Option<_>>()?, surface: layer.surface, base })
@@ -116,6 +120,7 @@ mod tests {
             (surface, MonochromeBelow::Conductor { ior: Complex64::new(0.2, 3.0) }),
         ]);
         stack.layers[0].films.push(film);
+        stack.layers[1].f0 = Some(0.7);
         let colored = in_all_colors(&stack).unwrap();
         for (nm, channel) in [(WAVELENGTH_NM, 0), (WAVELENGTH_NM, 2)] {
             assert_eq!(Monochrome::new(&colored, nm, channel), stack);

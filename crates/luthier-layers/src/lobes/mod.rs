@@ -65,7 +65,7 @@ use glam::DVec3;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::{Interface, Sampled};
-use luthier_optics::ior::{Ior, IorSample};
+use luthier_optics::ior::IorSample;
 use luthier_optics::stack::{Base, Stack};
 
 use crate::domain::INDEX_MAX;
@@ -247,7 +247,7 @@ pub fn shown(stack: &Stack) -> Stack {
         if let Base::Conductor { ior } = &mut layer.base {
             let bounded = |s: &IorSample| IorSample { n: s.n.min(INDEX_MAX), k: s.k.min(INDEX_MAX), ..*s };
             // Smaller numbers in the same order: an index still.
-            *ior = Ior::sampled(ior.samples().iter().map(bounded).collect()).unwrap_or_else(|_| ior.clone());
+            *ior = ior.with_samples(ior.samples().iter().map(bounded).collect()).unwrap_or_else(|_| ior.clone());
         }
     }
     stack

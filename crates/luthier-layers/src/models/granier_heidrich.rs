@@ -33,6 +33,7 @@
 use std::f64::consts::{FRAC_1_PI, PI};
 
 use glam::DVec3;
+use luthier_optics::schlick::schlick_average;
 
 use crate::inputs::{Input, Inputs};
 use crate::model::{Claims, Kind, Model, ModelInfo};
@@ -45,6 +46,8 @@ use crate::refraction::refract;
 pub struct Film {
     /// Index r_1 over the index outside r_0.
     pub eta: f64,
+    /// Reflectance at normal incidence of the outer boundary, f in eq. 8; `None` takes that of `eta`.
+    pub f0: Option<f64>,
     /// `r_1 d / lambda`, lambda in vacuum: wavelengths in the film across its thickness; `None` for a layer too thick to interfere.
     pub waves_inside: Option<f64>,
     /// Normal n_1 of the inner boundary; n_0 is +z.
@@ -71,7 +74,7 @@ impl Film {
     /// The reflectance at normal incidence of the outer boundary, f in eq. 8.
     fn normal_reflectance(&self) -> f64 {
         let r = (1.0 - self.eta) / (1.0 + self.eta);
-        r * r
+        self.f0.unwrap_or(r * r)
     }
 
     /// Eq. 3, 6 and 10. No transmitted beam in the cases of eq. 11, and under total reflection.
@@ -120,6 +123,9 @@ impl Film {
 
     /// Eq. 14: the cosine-weighted mean of Schlick's reflectance.
     pub fn diffuse_reflectance(&self) -> f64 {
+        if let Some(f0) = self.f0 {
+            return schlick_average(f0);
+        }
         let (n, sum) = (self.eta, 1.0 + self.eta);
         (21.0 * (n * n + 1.0) - 38.0 * n) / (21.0 * sum * sum)
     }
@@ -162,6 +168,7 @@ impl GranierHeidrich {
         let exponents = self.exponents.unwrap_or([exponent(layer.surface.alpha_isotropic()); 2]);
         let film = |ior: f64, waves_inside| Film {
             eta: ior / layer.above,
+            f0: layer.f0,
             waves_inside,
             inner_normal: self.inner_normal,
             exponents,

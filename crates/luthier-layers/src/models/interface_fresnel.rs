@@ -39,9 +39,13 @@ const ORDERS: u32 = 2;
 pub(crate) type LazanyiMemo = Memo<[u64; 3], Lazanyi>;
 
 impl Fresnel {
-    /// Reflectance of an interface for light from above; 0 for a diffuse base, which has none.
+    /// Reflectance of an interface for light from above; 0 for a diffuse base, which has none. An interface of Schlick's is that to all:
+    /// it has no index that they could differ by.
     pub(crate) fn reflectance(self, fits: &LazanyiMemo, layer: &MonochromeLayer, cos_theta_i: f64) -> f64 {
         let Some(below) = index_below(layer) else { return 0.0 };
+        if layer.f0.is_some() {
+            return layer.reflectance(cos_theta_i);
+        }
         let above = layer.above;
         match self {
             Self::Exact => layer.reflectance(cos_theta_i),
@@ -119,7 +123,13 @@ mod tests {
 
     fn layer(films: &[(f64, f64)], ior: Complex64) -> MonochromeLayer {
         let films = films.iter().map(|&(n, waves)| FilmLayer { ior: Complex64::new(n, 0.0), waves }).collect();
-        MonochromeLayer { surface: Surface::smooth(), above: 1.0, films, below: MonochromeBelow::Conductor { ior } }
+        MonochromeLayer {
+            surface: Surface::smooth(),
+            above: 1.0,
+            films,
+            below: MonochromeBelow::Conductor { ior },
+            f0: None,
+        }
     }
 
     /// All formulas agree at normal incidence without films: |(n - 1)/(n + 1)|^2, by hand.

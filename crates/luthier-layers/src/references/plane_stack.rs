@@ -79,7 +79,7 @@ fn add(powers: Powers, layer: &MonochromeLayer, [cos_above, cos_below]: [f64; 2]
     };
     let down = layer.reflectance(cos_above);
     // Without absorption, reflectances of the two sides are the same.
-    let up = if complex_ior.im == 0.0 && layer.films.iter().all(|f| f.ior.im == 0.0) {
+    let up = if layer.f0.is_some() || complex_ior.im == 0.0 && layer.films.iter().all(|f| f.ior.im == 0.0) {
         down
     } else {
         let films: Vec<_> = layer.films.iter().rev().copied().collect();

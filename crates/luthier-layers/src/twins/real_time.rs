@@ -2,7 +2,8 @@
 //!
 //! No model is written here: a twin evaluates the model of its module, channel by channel, with what is particular to shaders: one
 //! set of slope parameters, at least [`ALPHA_MIN`]; one index at [`REFRACTION_WAVELENGTH_NM`] that bends the directions of all
-//! channels, except in Granier and Heidrich's model, which bends each by the index of its own wavelength; reflectances from
+//! channels, except in Granier and Heidrich's model, which bends each by the index of its own wavelength unless the first interface is
+//! Schlick's; reflectances from
 //! [`Terms`]. Belcour's and Yamaguchi's models have one spread for all three channels, too.
 
 use std::cell::RefCell;
@@ -200,7 +201,9 @@ fn granier_channels(stack: &Stack, wavelengths_nm: [f64; 3]) -> [Monochrome; 3] 
             layer.surface = Surface::isotropic(given.surface.distribution, alpha);
         }
     }
-    channels
+    // A record of Schlick's interface has one index.
+    let has_f0 = channels[0].layers.first().is_some_and(|layer| layer.f0.is_some());
+    channels.map(|one| if has_f0 { bend_alike(one, stack) } else { one })
 }
 
 /// The stack with the real indices of the common wavelength, which bend directions. Reflectances come from elsewhere.

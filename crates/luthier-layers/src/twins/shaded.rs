@@ -6,7 +6,7 @@ use glam::DVec3;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
-use luthier_optics::ior::Ior;
+use luthier_optics::ior::{Ior, IorSample};
 use luthier_optics::stack::{Base, Distribution, Film, Layer, Stack, Surface};
 
 use crate::elek::{self, ALPHA_MIN};
@@ -261,7 +261,7 @@ pub fn at_wavelength(stack: &Stack, wavelength_nm: f64) -> Stack {
     let still = |ior: &Ior| {
         let here = ior.at(wavelength_nm);
         // The index was valid in its file, and is at every wavelength.
-        Ior::constant(here.re, here.im).unwrap_or_else(|_| ior.clone())
+        ior.with_samples(vec![IorSample { wavelength_nm, n: here.re, k: here.im }]).unwrap_or_else(|_| ior.clone())
     };
     let mut here = stack.clone();
     here.exterior = still(&here.exterior);
@@ -312,7 +312,6 @@ impl ShaderTerms for Tarnished<'_> {
 
 #[cfg(test)]
 mod tests {
-    use luthier_optics::ior::IorSample;
     use luthier_optics::stack::{Diffuse, Layer, Slab};
 
     use super::*;

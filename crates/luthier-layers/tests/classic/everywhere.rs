@@ -34,6 +34,7 @@ fn layer(below: impl Strategy<Value = MonochromeBelow>) -> impl Strategy<Value =
         above: 1.0,
         films: films.into_iter().map(|(n, k, waves)| FilmLayer { ior: Complex64::new(n, k), waves }).collect(),
         below,
+        f0: None,
     })
 }
 

@@ -14,7 +14,7 @@ use crate::sphere::{at, furnace, mirrored};
 use crate::stacks::{dielectric, ggx, lambert};
 
 fn film(eta: f64, waves_inside: Option<f64>) -> Film {
-    Film { eta, waves_inside, inner_normal: DVec3::Z, exponents: [90.0, 170.0] }
+    Film { eta, f0: None, waves_inside, inner_normal: DVec3::Z, exponents: [90.0, 170.0] }
 }
 
 fn close(found: f64, expected: f64, tolerance: f64) {
@@ -55,7 +55,7 @@ fn the_diffuse_term_is_that_of_the_paper() {
 fn a_deviated_inner_normal_disperses() {
     let peak = |eta: f64, deviation: f64| {
         let inner_normal = at(deviation);
-        let film = Film { eta, waves_inside: None, inner_normal, exponents: [0.0, 1e5] };
+        let film = Film { eta, f0: None, waves_inside: None, inner_normal, exponents: [0.0, 1e5] };
         (-8900..8900)
             .map(|i| f64::from(i) * 0.01)
             .max_by(|a, b| {

@@ -44,6 +44,7 @@ fn layer(losses: Losses, below: impl Strategy<Value = MonochromeBelow>) -> impl 
         above: 1.0,
         films: film.into_iter().collect(),
         below,
+        f0: None,
     })
 }
 

@@ -3,7 +3,7 @@
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Surface};
 
-use super::{Read, films, ior, surface};
+use super::{Read, films, ior, schlick, surface};
 use crate::diagnostic::Sink;
 use crate::doubt::Sources;
 use crate::grammar::LAYERS_MAX;
@@ -13,6 +13,7 @@ use crate::section::Section;
 /// The layers of the stack, and what each has beyond its physics.
 pub(super) fn decode(
     document: &Section<'_>,
+    exterior: &Ior,
     read: Read<'_>,
     sink: &mut Sink<'_>,
     sources: &mut Sources,
@@ -29,7 +30,7 @@ pub(super) fn decode(
             pending.push(films::decode(at.clone(), read, sink, sources));
             continue;
         }
-        let opaque = matches!(kind, "conductor" | "diffuse");
+        let opaque = matches!(kind, "conductor" | "diffuse" | "metallic-roughness");
         let below = sections.len() - 1 - i;
         if opaque && below > 0 {
             let layers = if below == 1 { "the layer".to_owned() } else { format!("the {below} layers") };
@@ -40,9 +41,24 @@ pub(super) fn decode(
         let index = |sink: &mut Sink<'_>, sources: &mut Sources| {
             ior::decode(at, "ior", read, sink, sources).unwrap_or_else(Ior::vacuum)
         };
+        let above = match layers.last() {
+            Some(Layer { base: Base::Dielectric { ior, .. }, .. }) => ior,
+            _ => exterior,
+        };
+        let mut below = None;
         let base = match kind {
+            "dielectric" if at.has("f0") => {
+                let ior = at.has("ior").then(|| index(sink, sources));
+                Base::Dielectric { ior: schlick::dielectric(at, ior, above, sink), slab: slab(at) }
+            }
             "dielectric" => Base::Dielectric { ior: index(sink, sources), slab: slab(at) },
+            "conductor" if at.has("f0") => Base::Conductor { ior: schlick::conductor(at) },
             "conductor" => Base::Conductor { ior: index(sink, sources) },
+            "metallic-roughness" => {
+                let (interface, diffuse) = schlick::metallic_roughness(at, above);
+                below = diffuse;
+                interface
+            }
             "diffuse" => Base::Diffuse(Diffuse {
                 albedo: at.rgb("albedo").unwrap_or([0.0; 3]),
                 sigma: at.number("sigma").unwrap_or(0.0),
@@ -51,8 +67,12 @@ pub(super) fn decode(
             _ => continue,
         };
         let films = std::mem::take(&mut pending);
-        if kind == "diffuse" {
-            uncoatable(&films, sink);
+        match &base {
+            Base::Diffuse(_) => uncoatable(&films, sink),
+            Base::Dielectric { ior, .. } | Base::Conductor { ior } if ior.f0().is_some() => {
+                schlick::uncoatable(kind, &films, sink);
+            }
+            _ => {}
         }
         let surface = if kind == "diffuse" { Surface::smooth() } else { surface::decode(at, sink) };
         let number = layers.len();
@@ -67,6 +87,14 @@ pub(super) fn decode(
         }
         extras.push(extra);
         layers.push(Layer { films: films.into_iter().map(|f| f.film).collect(), surface, base });
+        if let Some(diffuse) = below {
+            if !sink.has_errors() {
+                sources.places.add(&format!("layer.{}", layers.len()), at);
+            }
+            extras.push(LayerExtras::default());
+            let base = Base::Diffuse(diffuse);
+            layers.push(Layer { films: Vec::new(), surface: Surface::smooth(), base });
+        }
     }
     if let Some(last) = pending.last() {
         let hint = "add the dielectric or the conductor that it lies on".to_owned();

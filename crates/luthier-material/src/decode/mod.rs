@@ -7,6 +7,7 @@ mod effects;
 mod films;
 mod ior;
 mod layers;
+mod schlick;
 mod surface;
 
 use std::cell::RefCell;
@@ -36,13 +37,16 @@ pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read
         read(path)
     };
     let exterior = exterior(document, read, sink, &mut sources);
-    let (layers, extras) = layers::decode(document, read, sink, &mut sources);
+    let (layers, extras) = layers::decode(document, &exterior, read, sink, &mut sources);
     if !sink.has_errors() {
         sources.places.add("", document);
     }
     let stack = Stack { exterior, layers };
     let bake = bake::decode(document, sink);
     let effects = effects::decode(document, &stack, sink);
+    if effects.patina.is_some() {
+        schlick::check_bare(document, &stack, sink);
+    }
     let Sources { spectra, places } = sources;
     let mut material = Material {
         name: document.text("name").unwrap_or_default().to_owned(),

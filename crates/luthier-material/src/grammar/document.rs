@@ -2,7 +2,7 @@
 
 use super::bake::{BAKE, BUDGET};
 use super::effects::EFFECTS;
-use super::layers::{CONDUCTOR, DIELECTRIC, DIFFUSE, IOR, THIN_FILM};
+use super::layers::{CONDUCTOR, DIELECTRIC, DIFFUSE, IOR, METALLIC_ROUGHNESS, THIN_FILM};
 use super::{Key, Kind, LAYERS_MAX, SCHEMA_VERSION, Table, TextForm};
 
 /// The whole file.
@@ -21,7 +21,11 @@ pub(crate) static DOCUMENT: Table = Table {
         Key::with_default("exterior", IOR, "1.0", "Index of the medium above the first layer; it must be transparent."),
         Key::required(
             "layer",
-            Kind::Tagged { tag: "type", variants: &[&DIELECTRIC, &THIN_FILM, &CONDUCTOR, &DIFFUSE], max: LAYERS_MAX },
+            Kind::Tagged {
+                tag: "type",
+                variants: &[&DIELECTRIC, &THIN_FILM, &CONDUCTOR, &DIFFUSE, &METALLIC_ROUGHNESS],
+                max: LAYERS_MAX,
+            },
             "The layers from the top down: each an interface and what is below it.",
         ),
         Key::optional("effects", Kind::Table(&EFFECTS), "Effects on top of the layered model."),

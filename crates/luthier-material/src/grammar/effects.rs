@@ -51,6 +51,8 @@ static FLAKES: Table = Table {
         what: "source of flakes",
         forms: &[&["normal_map"], &["cells"]],
         examples: "`cells = {}` or `normal_map = \"flakes.png\"`",
+        together: false,
+        and: None,
     }),
 };
 

@@ -60,11 +60,29 @@ static IOR_TABLE: Table = Table {
 const IOR_DOC: &str = "Index of refraction: a number, a table { n, k, wavelengths_nm }, the name of a built-in data set, \
                        or the path of a CSV file with the columns wavelength_nm, n, k.";
 
-const SURFACE: Option<Alternatives> = Some(Alternatives {
+const SURFACE: Alternatives = Alternatives {
     what: "surface",
     forms: &[&["roughness"], &["alpha"], &["slope_deg"], &["smooth"], &["alpha_x", "alpha_y"]],
     examples: "`smooth = true`, `roughness`, `alpha`, `slope_deg`, or `alpha_x` with `alpha_y`",
-});
+    together: false,
+    and: None,
+};
+
+/// An index gives the reflectance of an interface; an F0 does, by Schlick's formula.
+const REFLECTANCE: Alternatives = Alternatives {
+    what: "reflectance",
+    forms: &[&["ior"], &["f0"]],
+    examples: "`ior` and `f0`",
+    together: false,
+    and: None,
+};
+static OPAQUE: Alternatives = REFLECTANCE;
+/// The index of a medium that light enters bends directions beside an F0, too.
+static TRANSPARENT: Alternatives = Alternatives { together: true, ..REFLECTANCE };
+
+const F0_DOC: &str = "Reflectance at normal incidence, for Schlick's formula in place of an index: a number, or one for each of R, G, B \
+                      (linear Rec.709).";
+const F0: Key = Key::optional("f0", UNIT_RGB, F0_DOC);
 
 const TYPE_DOC: &str = "What the layer is.";
 const ROUGHNESS: Key =
@@ -106,7 +124,8 @@ pub(super) static DIELECTRIC: Table = Table {
     doc: "A transparent interface and the slab below it, down to the next layer.",
     keys: &[
         Key::required("type", Kind::Choice(&["dielectric"]), TYPE_DOC),
-        Key::required("ior", IOR, IOR_DOC),
+        Key::optional("ior", IOR, IOR_DOC),
+        F0,
         ROUGHNESS,
         ALPHA,
         SLOPE,
@@ -124,7 +143,7 @@ pub(super) static DIELECTRIC: Table = Table {
         ),
         Key::optional("maps", Kind::Table(&DIELECTRIC_MAPS), MAPS_DOC),
     ],
-    exactly_one: SURFACE,
+    exactly_one: Some(Alternatives { and: Some(&TRANSPARENT), ..SURFACE }),
 };
 
 pub(super) static CONDUCTOR: Table = Table {
@@ -132,7 +151,8 @@ pub(super) static CONDUCTOR: Table = Table {
     doc: "An opaque metal or semiconductor; the last layer.",
     keys: &[
         Key::required("type", Kind::Choice(&["conductor"]), TYPE_DOC),
-        Key::required("ior", IOR, IOR_DOC),
+        Key::optional("ior", IOR, IOR_DOC),
+        F0,
         ROUGHNESS,
         ALPHA,
         SLOPE,
@@ -143,7 +163,7 @@ pub(super) static CONDUCTOR: Table = Table {
         DISTRIBUTION,
         Key::optional("maps", Kind::Table(&CONDUCTOR_MAPS), MAPS_DOC),
     ],
-    exactly_one: SURFACE,
+    exactly_one: Some(Alternatives { and: Some(&OPAQUE), ..SURFACE }),
 };
 
 pub(super) static DIFFUSE: Table = Table {
@@ -165,6 +185,41 @@ pub(super) static DIFFUSE: Table = Table {
         Key::optional("maps", Kind::Table(&DIFFUSE_MAPS), MAPS_DOC),
     ],
     exactly_one: None,
+};
+
+pub(super) static METALLIC_ROUGHNESS: Table = Table {
+    name: "metallic-roughness",
+    doc: "The usual surface of engines (glTF 2.0): a conductor, a dielectric over a diffuse base, or a mixture; the last layer.",
+    keys: &[
+        Key::required("type", Kind::Choice(&["metallic-roughness"]), TYPE_DOC),
+        Key::required(
+            "base_color",
+            UNIT_RGB,
+            "F0 of the metal and diffuse colour of the dielectric: a number, or one for each of R, G, B (linear Rec.709).",
+        ),
+        Key::with_default(
+            "metallic",
+            Kind::Number(UNIT),
+            "0",
+            "0 is a dielectric of F0 0.04 over a diffuse base, 1 a metal; in between F0 and diffuse colour are mixed.",
+        ),
+        ROUGHNESS,
+        ALPHA,
+        SLOPE,
+        SMOOTH,
+        ALPHA_X,
+        ALPHA_Y,
+        ROTATION,
+        DISTRIBUTION,
+        Key::with_default(
+            "sigma",
+            Kind::Number(SIGMA),
+            "0",
+            "Standard deviation of the slope angle of the diffuse base's facets in radians; 0 is Lambert.",
+        ),
+        Key::optional("maps", Kind::Table(&CONDUCTOR_MAPS), MAPS_DOC),
+    ],
+    exactly_one: Some(SURFACE),
 };
 
 pub(super) static THIN_FILM: Table = Table {
@@ -206,6 +261,8 @@ pub(super) static VARIATION: Table = Table {
         what: "map",
         forms: &[&["noise"], &["image"]],
         examples: "`noise = {}` or `image = \"map.png\"`",
+        together: false,
+        and: None,
     }),
 };
 

@@ -34,6 +34,10 @@ pub(crate) struct Alternatives {
     pub(crate) forms: &'static [&'static [&'static str]],
     /// The ways as a reader would write them.
     pub(crate) examples: &'static str,
+    /// Whether several ways may be given together, so that only one is needed.
+    pub(crate) together: bool,
+    /// Alternatives that the table has besides.
+    pub(crate) and: Option<&'static Alternatives>,
 }
 
 /// A key of a table.
@@ -137,6 +141,11 @@ impl Key {
 }
 
 impl Table {
+    /// Every group of alternatives.
+    pub(crate) fn alternatives(&self) -> impl Iterator<Item = &Alternatives> {
+        std::iter::successors(self.exactly_one.as_ref(), |alternatives| alternatives.and)
+    }
+
     pub(crate) fn key(&self, name: &str) -> Option<&'static Key> {
         self.keys.iter().find(|k| k.name == name)
     }
@@ -158,7 +167,7 @@ mod tests {
             assert!(!key.required || key.default.is_empty(), "{}.{}", table.name, key.name);
             visit_kind(&key.kind, seen);
         }
-        for form in table.exactly_one.iter().flat_map(|a| a.forms) {
+        for form in table.alternatives().flat_map(|a| a.forms) {
             assert!(form.iter().all(|name| table.key(name).is_some_and(|k| !k.required)), "{}: {form:?}", table.name);
         }
     }

@@ -66,7 +66,8 @@ fn sparse_wavelengths_keep_the_colours_of_metals() {
     let mut worst = 0f64;
     for (id, _) in F0 {
         let interface = bare(id);
-        let spectrum = |cos| nodes.iter().map(|n| interface.at(n.wavelength_nm).reflectance(cos)).collect::<Vec<f64>>();
+        let spectrum =
+            |cos| nodes.iter().map(|n| interface.at(n.wavelength_nm, 0).reflectance(cos)).collect::<Vec<f64>>();
         let spectra: Vec<Vec<f64>> = [1.0, 0.3]
             .into_iter()
             .flat_map(|cos| {

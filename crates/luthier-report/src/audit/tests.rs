@@ -304,7 +304,7 @@ fn reflectance_rows() {
     assert_eq!(line(&make(&|c| sampled.rgb(c))), "as stated");
     assert_eq!(line(&make(&|c| sampled.rgb(1.0 - c))), "fits better as: flipped in x");
     assert_eq!(line(&make(&|c| f0.map(|f0| schlick(f0, c)))), "fits better as: Schlick's Fresnel");
-    let three = |c| [645.0, 525.0, 445.0].map(|nm| gold.at(nm).reflectance(c));
+    let three = |c| [645.0, 525.0, 445.0].map(|nm| gold.at(nm, 0).reflectance(c));
     assert_eq!(line(&make(&three)), "fits better as: three wavelengths for red, green, blue");
     let bgr = |c| {
         let [r, g, b] = sampled.rgb(c);

@@ -186,7 +186,7 @@ impl<'a> Truth<'a> {
             Model::Reflectance { interface } => {
                 let sampled = interface.sampled(&Color::Spectral);
                 let f0 = sampled.rgb(1.0);
-                let three = WAVELENGTHS.map(|nm| interface.at(nm).reflectance(cos));
+                let three = WAVELENGTHS.map(|nm| interface.at(nm, 0).reflectance(cos));
                 vec![sampled.rgb(cos), f0.map(|f0| schlick(f0, cos)), three]
             }
             Model::Albedo { distribution, .. } => {

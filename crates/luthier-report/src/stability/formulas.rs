@@ -426,7 +426,13 @@ fn median_alpha(coat: f64, base: f64) -> f64 {
     let mut lights: Vec<(f64, f64)> = Vec::new();
     // A base of the coat's own index is black.
     for (sign, ior) in [(1.0, Complex64::new(0.0, 1.0)), (-1.0, Complex64::new(1.5, 0.0))] {
-        let layer = |alpha, above, below| MonochromeLayer { surface: surface(alpha), above, films: Vec::new(), below };
+        let layer = |alpha, above, below| MonochromeLayer {
+            surface: surface(alpha),
+            above,
+            films: Vec::new(),
+            below,
+            f0: None,
+        };
         let layers = vec![layer(coat, 1.0, glass), layer(base, 1.5, MonochromeBelow::Conductor { ior })];
         let stack = Monochrome { exterior: 1.0, layers };
         let paths = LayeredMc { mode: InterfaceMode::SmithWalk, samples: 20_000, seed: 3 };

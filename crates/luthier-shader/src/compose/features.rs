@@ -18,12 +18,12 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is but the names of tables, for the check that modules name no other.
     #[cfg(test)]
-    const ALL: &str = "absorption anisotropic bare base_color beckmann below bilinear chain chain_diffuse chain_patina clamped closed \
+    const ALL: &str = "absorption anisotropic bare base_color beckmann below bent bilinear chain chain_diffuse chain_patina clamped closed \
         coat computed conductor critical_view diffuse environment exact face film film_table fitted flakes full ggx glitter granier \
-        granier_bare granier_base granier_film granier_transparent interface lazanyi lobes_axes lobes_bare_base lobes_base \
+        granier_bare granier_base granier_film granier_schlick granier_transparent interface lazanyi lobes_axes lobes_bare_base lobes_base \
         lobes_diffuse lobes_film lobes_patina lobes_tilted mask_implicit mask_kelemen \
         mask_schlick_smith mask_smith mask_smith_separable mask_v_cavity masked media microfacet_diffuse mixed one_lobe \
-        oren_nayar packed patina phong place powers rows schlick_base several several_maskings several_reflectances smith split_root statistics statistics_base surface tabled theta_axis tilted \
+        oren_nayar packed patina phong place powers rows schlick schlick_base several several_maskings several_reflectances smith split_root statistics statistics_base surface tabled theta_axis tilted \
         total_reflection two_lobes visible";
 
     pub(crate) fn of(set: &MaterialSet<'_>, form: Form) -> Self {
@@ -63,6 +63,10 @@ impl Features {
         }
         if form == Form::Full {
             names.insert("full");
+        }
+        let has = |name| names.contains(name);
+        if has("lobes_tilted") || has("below") && has("statistics") || has("granier_schlick") {
+            names.insert("bent");
         }
         for table in set.tables_read(form) {
             names.insert(feature(table.kind));
@@ -196,7 +200,11 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
             Reflectance::Approximate => &["fitted"],
             Reflectance::Lazanyi => &["fitted", "lazanyi"],
         });
-        names.insert(if layer.film_ior_n[0] > 0.0 { "film" } else { "bare" });
+        names.insert(match layer.f0 {
+            Some(_) => "schlick",
+            None if layer.film_ior_n[0] > 0.0 => "film",
+            None => "bare",
+        });
         if layer.critical_cot_sq > 0.0 {
             names.insert("total_reflection");
         }
@@ -269,6 +277,9 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
             let has_film = first.film_ior_n[0] > 0.0;
             if has_film {
                 names.insert("granier_film");
+            }
+            if first.f0.is_some() && first.kind == LayerKind::Dielectric {
+                names.insert("granier_schlick");
             }
             match first.kind {
                 _ if has_film => names.insert("granier_transparent"),

@@ -34,10 +34,17 @@ struct LuthierLayer {
     rotation: vec2<f32>,
     //? end
     //? computed|granier
+    //? schlick
+    /// Real part of the index below, at three wavelengths; F0 of an interface of Schlick's, RGB.
+    ior_n: vec3<f32>,
+    /// Imaginary part of it; -1 of an interface of Schlick's.
+    ior_k: vec3<f32>,
+    //? else
     /// Real part of the index below, at three wavelengths.
     ior_n: vec3<f32>,
     /// Imaginary part of it.
     ior_k: vec3<f32>,
+    //? end
     //? film
     /// Real part of the index of the film; 0 without a film.
     film_ior_n: vec3<f32>,
@@ -66,11 +73,11 @@ struct LuthierLayer {
     //? end
     //? end
     //? end
-    //? below|lobes_tilted
-    //? statistics|lobes_tilted
+    //? bent
     /// Index below over index above, for the refracted directions.
     eta: f32,
     //? end
+    //? below|lobes_tilted
     //? chain
     /// Index above over index below, for the refracted directions.
     inverse_eta: f32,

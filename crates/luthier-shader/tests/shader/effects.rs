@@ -188,7 +188,7 @@ fn monochrome(layers: &[LayerRecord], channel: usize) -> Monochrome {
                 },
                 _ => MonochromeBelow::Conductor { ior },
             };
-            let layer = MonochromeLayer { surface, above, films: Vec::new(), below };
+            let layer = MonochromeLayer { surface, above, films: Vec::new(), below, f0: None };
             above = ior.re;
             layer
         })

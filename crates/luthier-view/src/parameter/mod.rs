@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::RangeInclusive;
 
 use luthier_material::{FlakeSource, Material, SurfaceClass};
-use luthier_optics::ior::Ior;
+use luthier_optics::ior::{Ior, IorSample};
 use luthier_optics::stack::{Base, Surface};
 
 /// One number of a material. Layers count from the top; a handle that a material does not have reads as `None`.
@@ -22,6 +22,8 @@ pub enum Handle {
     IorN(usize),
     /// Imaginary part of a constant index of a conductor.
     IorK(usize),
+    /// Reflectance at normal incidence of an interface without an index: red, green or blue.
+    F0(usize, usize),
     /// Thickness of a slab in um: what absorbs.
     SlabThickness(usize),
     /// Absorption of a slab in 1/um: red, green or blue.
@@ -124,13 +126,17 @@ fn layer(material: &Material, i: usize) -> Group {
     }
     let kind = match &layer.base {
         Base::Dielectric { ior, .. } => {
-            if ior.is_constant() {
+            if ior.f0().is_some() {
+                parameters.extend(f0(i));
+            } else if ior.is_constant() {
                 parameters.push(plain(Handle::IorN(i), "index", "", DIELECTRIC_N));
             }
             "dielectric"
         }
         Base::Conductor { ior } => {
-            if ior.is_constant() {
+            if ior.f0().is_some() {
+                parameters.extend(f0(i));
+            } else if ior.is_constant() {
                 parameters.push(logarithmic(Handle::IorN(i), "index n", "", 0.02..=8.0));
                 parameters.push(plain(Handle::IorK(i), "index k", "", 0.0..=10.0));
             }
@@ -165,6 +171,12 @@ fn layer(material: &Material, i: usize) -> Group {
         _ => {}
     }
     Group { title: format!("{} · {kind}", i + 1), parameters }
+}
+
+/// The channels of the F0 of a layer.
+fn f0(i: usize) -> [Parameter; 3] {
+    let labels = ["F0 r", "F0 g", "F0 b"];
+    [0, 1, 2].map(|c| plain(Handle::F0(i, c), labels[c], "", 0.0..=1.0))
 }
 
 fn effects(material: &Material) -> Vec<Group> {
@@ -214,6 +226,7 @@ impl Handle {
         match self {
             Self::IorN(i) => Some(constant_ior(base_ior(material, i)?)?[0]),
             Self::IorK(i) => Some(constant_ior(base_ior(material, i)?)?[1]),
+            Self::F0(i, c) => base_ior(material, i)?.f0()?.get(c).copied(),
             Self::FilmIor(i, j) => Some(constant_ior(&material.stack.layers.get(i)?.films.get(j)?.ior)?[0]),
             // Everything else is a number that lies somewhere in the material.
             _ => self.place(&mut material.clone()).map(|(number, scale)| *number * scale),
@@ -227,7 +240,7 @@ impl Handle {
         let Some(parameter) = known.filter(|_| value.is_finite()) else { return };
         let value = value.clamp(*parameter.range.start(), *parameter.range.end());
         match self {
-            Self::IorN(_) | Self::IorK(_) | Self::FilmIor(..) => self.set_ior(material, value),
+            Self::IorN(_) | Self::IorK(_) | Self::F0(..) | Self::FilmIor(..) => self.set_ior(material, value),
             _ => {
                 if let Some((number, scale)) = self.place(material) {
                     *number = value / scale;
@@ -244,6 +257,15 @@ impl Handle {
             Self::Alpha(i) => {
                 let surface = &mut material.stack.layers[i].surface;
                 surface.alpha_y = surface.alpha_x;
+            }
+            // An interface with an F0 lies below no denser medium.
+            Self::IorN(i) => {
+                let above = base_ior(material, i).and_then(constant_ior);
+                let below = base_ior_mut(material, i + 1).filter(|ior| ior.f0().is_some());
+                if let (Some([least, _]), Some(ior)) = (above, below) {
+                    let raised = ior.samples().iter().map(|s| IorSample { n: s.n.max(least), ..*s }).collect();
+                    *ior = ior.with_samples(raised).unwrap_or_else(|_| ior.clone());
+                }
             }
             Self::FilmThickness(i, j) => {
                 let thickness = &mut material.stack.layers[i].films[j].thickness;
@@ -273,13 +295,15 @@ impl Handle {
             Self::FilmIor(i, j) => {
                 material.stack.layers.get_mut(i).and_then(|l| l.films.get_mut(j)).map(|f| &mut f.ior)
             }
-            Self::IorN(i) | Self::IorK(i) => material.stack.layers.get_mut(i).and_then(|l| match &mut l.base {
-                Base::Dielectric { ior, .. } | Base::Conductor { ior } => Some(ior),
-                Base::Diffuse(_) => None,
-            }),
+            Self::IorN(i) | Self::IorK(i) | Self::F0(i, _) => base_ior_mut(material, i),
             _ => None,
         };
         let Some(ior) = ior else { return };
+        if let (Self::F0(_, c), Some(mut f0)) = (self, ior.f0()) {
+            f0[c] = value;
+            *ior = ior.clone().with_f0(f0);
+            return;
+        }
         let Some([n, k]) = constant_ior(ior) else { return };
         let [n, k] = if matches!(self, Self::IorK(_)) { [n, value] } else { [value, k] };
         if let Ok(changed) = Ior::constant(n, k) {
@@ -314,7 +338,7 @@ impl Handle {
                 (&mut layers.get_mut(i)?.films.get_mut(j)?.thickness.min_nm, 1.0)
             }
             Self::FilmMax(i, j) => (&mut layers.get_mut(i)?.films.get_mut(j)?.thickness.max_nm, 1.0),
-            Self::IorN(_) | Self::IorK(_) | Self::FilmIor(..) => return None,
+            Self::IorN(_) | Self::IorK(_) | Self::F0(..) | Self::FilmIor(..) => return None,
             Self::PatinaExtent => (&mut effects.patina.as_mut()?.extent, 1.0),
             Self::PatinaTransition => (&mut effects.patina.as_mut()?.transition, 1.0),
             Self::PatinaBaseAlpha => (effects.patina.as_mut()?.base_alpha.as_mut()?, 1.0),
@@ -334,6 +358,13 @@ impl Handle {
 
 fn base_ior(material: &Material, layer: usize) -> Option<&Ior> {
     match &material.stack.layers.get(layer)?.base {
+        Base::Dielectric { ior, .. } | Base::Conductor { ior } => Some(ior),
+        Base::Diffuse(_) => None,
+    }
+}
+
+fn base_ior_mut(material: &mut Material, layer: usize) -> Option<&mut Ior> {
+    match &mut material.stack.layers.get_mut(layer)?.base {
         Base::Dielectric { ior, .. } | Base::Conductor { ior } => Some(ior),
         Base::Diffuse(_) => None,
     }

@@ -146,3 +146,20 @@ fn handles_that_a_material_lacks_change_nothing() {
     assert_eq!(Handle::PatinaExtent.get(&edited), None);
     assert_eq!(Handle::Albedo(0, 3).get(&edited), None);
 }
+
+/// An F0 has three numbers and no index; a medium above it does not become the denser one.
+#[test]
+fn an_f0_is_edited_by_channel() {
+    let coat = |lines: &str| format!("[[layer]]\ntype = \"dielectric\"\nsmooth = true\n{lines}\n");
+    let two = coat("ior = 1.5") + &coat("f0 = 0.04\nior = 1.6");
+    let mut two = material(&format!("schema = 1\nname = \"two\"\n{two}"));
+    let handles: Vec<Handle> = all(&two).into_iter().map(|parameter| parameter.handle).collect();
+    assert!((0..3).all(|c| handles.contains(&Handle::F0(1, c))) && !handles.contains(&Handle::IorN(1)));
+    Handle::F0(1, 1).set(&mut two, 0.5);
+    assert_eq!([0, 1, 2].map(|c| Handle::F0(1, c).get(&two)), [0.04, 0.5, 0.04].map(Some));
+    let index = |material: &Material| base_ior(material, 1).and_then(constant_ior).map(|[n, _]| n);
+    assert_eq!(index(&two), Some(1.6));
+    Handle::IorN(0).set(&mut two, 2.0);
+    assert_eq!(index(&two), Some(2.0));
+    assert_eq!(Handle::F0(1, 1).get(&two), Some(0.5));
+}

@@ -160,9 +160,9 @@ impl FgdTruthJob {
     /// The cosines below which all light is totally reflected, at the wavelengths that have one.
     fn critical_cosines(&self) -> Vec<f64> {
         let critical = |node: &WavelengthNode| {
-            let at = self.interface.at(node.wavelength_nm);
+            let at = self.interface.at(node.wavelength_nm, 0);
             let eta = at.below.re / at.above.re;
-            (eta < 1.0).then(|| ((1.0 - eta) * (1.0 + eta)).sqrt())
+            (eta < 1.0 && at.f0.is_none()).then(|| ((1.0 - eta) * (1.0 + eta)).sqrt())
         };
         self.color.nodes().iter().filter_map(critical).collect()
     }
@@ -351,7 +351,7 @@ fn sparse(interface: &Interface, color: &Color, tolerance: f64) -> Vec<Wavelengt
     let nodes = color.nodes();
     let mut spectra = Vec::new();
     for cos in SPECTRUM_COS_THETA {
-        let reflectance: Vec<f64> = nodes.iter().map(|n| interface.at(n.wavelength_nm).reflectance(cos)).collect();
+        let reflectance: Vec<f64> = nodes.iter().map(|n| interface.at(n.wavelength_nm, 0).reflectance(cos)).collect();
         let mut power = vec![1.0; nodes.len()];
         for _ in 0..SPECTRUM_POWERS {
             power.iter_mut().zip(&reflectance).for_each(|(p, r)| *p *= r);
@@ -361,9 +361,12 @@ fn sparse(interface: &Interface, color: &Color, tolerance: f64) -> Vec<Wavelengt
     color.sparse_nodes(&spectra, tolerance)
 }
 
-/// The curves that stand for an interface in its crossed part. Films colour it strongly and get a curve per wavelength; for
-/// bare interfaces, whose index varies little, the mean by luminance serves all channels.
+/// The curves that stand for an interface in its crossed part. Films colour it strongly and get a curve per wavelength, and an F0 in
+/// colour one per channel; for other bare interfaces, whose index varies little, the mean by luminance serves all channels.
 pub(crate) fn crossed_curves(interface: &Interface, color: &Color) -> Weighted {
+    if interface.below.f0().is_some_and(|[r, g, b]| r != g || g != b) {
+        return Weighted::new(interface.at_nodes(&sparse(interface, color, CROSSED_SPECTRUM_TOLERANCE)));
+    }
     if interface.films.is_empty() {
         let sampled = interface.sampled(color);
         let mean = ReflectanceCurves::new(1, |_, cos| luminance(sampled.rgb(cos)).clamp(0.0, 1.0));

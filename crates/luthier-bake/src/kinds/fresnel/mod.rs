@@ -140,7 +140,10 @@ impl FresnelJob {
         let films = if self.interface.films.is_empty() { "bare interface" } else { "films, Airy" };
         let over = if curve.critical_cot_sq > 0.0 { ", over the cosine of the refracted direction" } else { "" };
         TileData {
-            model: format!("exact complex Fresnel, unpolarised; {films}{over}; {}", color_in_words(&self.color)),
+            model: match self.interface.below.f0() {
+                Some(_) => "Schlick 1994, from F0 by channel; bare interface".to_owned(),
+                None => format!("exact complex Fresnel, unpolarised; {films}{over}; {}", color_in_words(&self.color)),
+            },
             truth,
             size: atlas.texels.size(),
             bytes: atlas.bytes,

@@ -64,6 +64,11 @@ fn coherent(stack: &Stack) -> Result<(), String> {
     if matches!(only.base, Base::Diffuse(_)) {
         return Err("its base is diffuse".to_owned());
     }
+    if let Base::Dielectric { ior, .. } | Base::Conductor { ior } = &only.base
+        && ior.f0().is_some()
+    {
+        return Err("its `f0` stands for Schlick's formula, which knows no polarisation (give an index)".to_owned());
+    }
     if !only.surface.is_smooth() {
         return Err("its interface is rough, and facets turn the plane of incidence (write `smooth = true`)".to_owned());
     }

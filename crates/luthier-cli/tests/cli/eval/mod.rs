@@ -13,5 +13,7 @@ mod models;
 mod parts;
 mod polarised;
 #[cfg(feature = "gpu")]
+mod schlick;
+#[cfg(feature = "gpu")]
 pub(crate) mod twin;
 mod values;

@@ -174,7 +174,8 @@ pub struct FresnelEnergy {
 impl FresnelEnergy {
     /// The energies of a stack at three wavelengths.
     pub fn new(stack: &Stack, wavelengths_nm: [f64; 3]) -> Self {
-        let at = |i| Interface::of(stack, i).map(|interface| wavelengths_nm.map(|nm| interface.at(nm)));
+        let at =
+            |i| Interface::of(stack, i).map(|interface| [0, 1, 2].map(|c: usize| interface.at(wavelengths_nm[c], c)));
         Self { interfaces: (0..stack.layers.len()).map(at).collect() }
     }
 }

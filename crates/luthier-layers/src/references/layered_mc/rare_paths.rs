@@ -35,7 +35,7 @@ fn interface(above: f64, below: Complex64, surface: Surface) -> MonochromeLayer 
     } else {
         MonochromeBelow::dielectric(below.re, 0.0)
     };
-    MonochromeLayer { surface, above, films: Vec::new(), below }
+    MonochromeLayer { surface, above, films: Vec::new(), below, f0: None }
 }
 
 fn above(direction: DVec3) -> Sided {

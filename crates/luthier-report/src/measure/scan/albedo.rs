@@ -158,7 +158,7 @@ fn crossing(interface: &Interface, color: &Color) -> Vec<Crossing> {
     let nodes = color.nodes();
     let mut spectra = Vec::new();
     for cos_theta in CROSSED_COS_THETA {
-        let once: Vec<f64> = nodes.iter().map(|n| interface.at(n.wavelength_nm).reflectance(cos_theta)).collect();
+        let once: Vec<f64> = nodes.iter().map(|n| interface.at(n.wavelength_nm, 0).reflectance(cos_theta)).collect();
         let twice = once.iter().map(|r| r * r).collect();
         spectra.extend([once, twice]);
     }

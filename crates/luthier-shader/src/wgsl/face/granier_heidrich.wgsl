@@ -25,13 +25,29 @@ fn luthier_parts_granier_heidrich(given: LuthierPrepared, $place_parameter mater
     //? granier_film
     let has_film = layer.film_ior_n.x > 0.0;
     if layer.kind == LUTHIER_DIELECTRIC || has_film {
+        //? granier_schlick
+        let of_index = select(layer.ior_n, layer.film_ior_n, has_film);
+        //? else
         let eta = select(layer.ior_n, layer.film_ior_n, has_film);
+        //? end
     //? else
     if layer.kind == LUTHIER_DIELECTRIC {
+        //? granier_schlick
+        let of_index = layer.ior_n;
+        //? else
         let eta = layer.ior_n;
+        //? end
     //? end
+        //? granier_schlick
+        let is_schlick = layer.ior_k.x < 0.0;
+        let eta = select(of_index, vec3<f32>(layer.eta), is_schlick);
+        let root = (eta - 1.0) / (eta + 1.0);
+        let f0 = select(root * root, layer.ior_n, is_schlick);
+        mirror.energy = luthier_schlick(f0, wo.z);
+        //? else
         let root = (eta - 1.0) / (eta + 1.0);
         mirror.energy = luthier_schlick(root * root, wo.z);
+        //? end
         let leaving = 1.0 - mirror.energy;
         // The beams interfere as they do along the mirrored direction.
         let inside = sqrt(max(wo.z * wo.z + (eta - 1.0) * (eta + 1.0), vec3<f32>(0.0))) / eta;
@@ -45,7 +61,11 @@ fn luthier_parts_granier_heidrich(given: LuthierPrepared, $place_parameter mater
         prepared.parts[1] = luthier_beam_part(energy, mirror.exponent, eta.y, vec3<f32>(0.0, 0.0, 1.0));
         //? end
         //? granier_base
+        //? granier_schlick
+        let diffuse_reflectance = (20.0 * f0 + 1.0) / 21.0;
+        //? else
         let diffuse_reflectance = (21.0 * (eta * eta + 1.0) - 38.0 * eta) / (21.0 * (eta + 1.0) * (eta + 1.0));
+        //? end
         diffuse = luthier_superpose(layer, diffuse_reflectance, 1.0 - diffuse_reflectance, vec3<f32>(2.0));
         //? end
     }

@@ -1,5 +1,15 @@
 /// Fresnel reflectance of a layer at three wavelengths, its film included.
 fn $fresnel_computed(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
+    //? schlick
+    //? bare|film
+    if layer.ior_k.x < 0.0 {
+        return luthier_schlick(layer.ior_n, cos_theta_d);
+    }
+    //? else
+    return luthier_schlick(layer.ior_n, cos_theta_d);
+    //? end
+    //? end
+    //? bare|film
     //? bare
     //? film
     if layer.film_ior_n.x > 0.0 {
@@ -9,5 +19,6 @@ fn $fresnel_computed(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
     return luthier_fresnel(layer.ior_n, layer.ior_k, cos_theta_d);
     //? else
     return luthier_film(layer, cos_theta_d);
+    //? end
     //? end
 }

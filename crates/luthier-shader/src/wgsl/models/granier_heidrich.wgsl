@@ -8,7 +8,7 @@ struct LuthierBeam {
 }
 //? end
 
-//? interface
+//? interface, !schlick
 /// Schlick 1994.
 fn luthier_schlick(normal: vec3<f32>, cos_theta: f32) -> vec3<f32> {
     let q = 1.0 - cos_theta;
@@ -17,8 +17,14 @@ fn luthier_schlick(normal: vec3<f32>, cos_theta: f32) -> vec3<f32> {
 //? end
 
 //? granier_transparent
+//? granier_schlick
+/// The beam through a film whose index over that outside is `eta`, and whose outer boundary reflects `normal` of light at the normal;
+/// `inner_normal` is that of its inner boundary.
+fn luthier_beam(wi: vec3<f32>, wo: vec3<f32>, eta: f32, normal: f32, exponent: f32, inner_normal: vec3<f32>) -> LuthierBeam {
+//? else
 /// The beam through a film whose index over that outside is `eta`; `inner_normal` is that of its inner boundary.
 fn luthier_beam(wi: vec3<f32>, wo: vec3<f32>, eta: f32, exponent: f32, inner_normal: vec3<f32>) -> LuthierBeam {
+//? end
     let cosines_sq = (vec2<f32>(wi.z * wi.z, wo.z * wo.z) + (eta - 1.0) * (eta + 1.0)) / (eta * eta);
     if min(cosines_sq.x, cosines_sq.y) <= 0.0 {
         return LuthierBeam(0.0, 0.0);
@@ -36,11 +42,19 @@ fn luthier_beam(wi: vec3<f32>, wo: vec3<f32>, eta: f32, exponent: f32, inner_nor
         2.0 * across * tilt - (wi.xy + wo.xy) / eta,
         2.0 * (dot(ti.xy, tilt) * inner_normal.z - ti.z * dot(tilt, tilt)) + rise,
     );
+    //? granier_schlick
+    let leaving = 1.0 - luthier_schlick(vec3<f32>(normal), min(to.z, 1.0)).x;
+    //? else
     let root = (eta - 1.0) / (eta + 1.0);
     let leaving = 1.0 - luthier_schlick(vec3<f32>(root * root), min(to.z, 1.0)).x;
+    //? end
     // The same of the way in, multiplied out: at grazing angles it is small.
     let c = wi.z;
+    //? granier_schlick
+    let entering = (1.0 - normal) * c * (5.0 + c * (-10.0 + c * (10.0 + c * (-5.0 + c))));
+    //? else
     let entering = (1.0 - root * root) * c * (5.0 + c * (-10.0 + c * (10.0 + c * (-5.0 + c))));
+    //? end
     // Directions crowd in the film by cos_theta_i / (eta^2 cos_theta_t).
     let compression = wi.z / (eta * eta * ti.z);
     let lobe = (exponent + 1.0) / (2.0 * LUTHIER_PI) * luthier_power_lobe(0.5 * dot(apart, apart), exponent);
@@ -87,26 +101,53 @@ fn luthier_eval_granier_heidrich($place_parameter material: u32, wi: vec3<f32>, 
     //? granier_film
     let has_film = layer.film_ior_n.x > 0.0;
     if layer.kind == LUTHIER_DIELECTRIC || has_film {
+        //? granier_schlick
+        let of_index = select(layer.ior_n, layer.film_ior_n, has_film);
+        //? else
         let eta = select(layer.ior_n, layer.film_ior_n, has_film);
+        //? end
     //? else
     if layer.kind == LUTHIER_DIELECTRIC {
+        //? granier_schlick
+        let of_index = layer.ior_n;
+        //? else
         let eta = layer.ior_n;
+        //? end
     //? end
+        //? granier_schlick
+        // Schlick's interface has its F0 in place of the index.
+        let is_schlick = layer.ior_k.x < 0.0;
+        let eta = select(of_index, vec3<f32>(layer.eta), is_schlick);
         let root = (eta - 1.0) / (eta + 1.0);
+        let normal = select(root * root, layer.ior_n, is_schlick);
+        //? else
+        let root = (eta - 1.0) / (eta + 1.0);
+        //? end
         //? place
         let inner_normal = place.inner_normal;
         //? else
         let inner_normal = vec3<f32>(0.0, 0.0, 1.0);
         //? end
+        //? granier_schlick
+        let red = luthier_beam(wi, wo, eta.x, normal.x, exponent, inner_normal);
+        let green = luthier_beam(wi, wo, eta.y, normal.y, exponent, inner_normal);
+        let blue = luthier_beam(wi, wo, eta.z, normal.z, exponent, inner_normal);
+        let r = luthier_schlick(normal, wi.z) * mirror;
+        //? else
         let red = luthier_beam(wi, wo, eta.x, exponent, inner_normal);
         let green = luthier_beam(wi, wo, eta.y, exponent, inner_normal);
         let blue = luthier_beam(wi, wo, eta.z, exponent, inner_normal);
         let r = luthier_schlick(root * root, wi.z) * mirror;
+        //? end
         let t = vec3<f32>(red.transmitted, green.transmitted, blue.transmitted);
         specular = luthier_superpose(layer, r, t, vec3<f32>(red.cosines, green.cosines, blue.cosines));
         //? granier_base
         // The mean of Schlick's reflectance (eq. 14).
+        //? granier_schlick
+        let diffuse_reflectance = (20.0 * normal + 1.0) / 21.0;
+        //? else
         let diffuse_reflectance = (21.0 * (eta * eta + 1.0) - 38.0 * eta) / (21.0 * (eta + 1.0) * (eta + 1.0));
+        //? end
         diffuse = luthier_superpose(layer, diffuse_reflectance, 1.0 - diffuse_reflectance, vec3<f32>(2.0));
         //? end
     }

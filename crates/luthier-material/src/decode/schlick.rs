@@ -1,0 +1,120 @@
+//! Decoder of interfaces that reflect by Schlick's formula: an F0 in place of an index, and the surface of engines.
+
+use luthier_optics::Rgb;
+use luthier_optics::ior::{Ior, IorSample};
+use luthier_optics::schlick::{index_of_f0, schlick_average};
+use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Stack};
+
+use super::films;
+use crate::diagnostic::Sink;
+use crate::doubt::SODIUM_D_NM;
+use crate::grammar::INDEX;
+use crate::section::Section;
+use crate::suggest::short;
+
+/// F0 of the dielectric of a `metallic-roughness` surface (glTF 2.0, appendix B).
+const DIELECTRIC_F0: f64 = 0.04;
+
+/// The opaque medium of a conductor with an `f0`.
+pub(super) fn conductor(at: &Section<'_>) -> Ior {
+    Ior::vacuum().with_f0(f0(at))
+}
+
+/// The medium of a dielectric with an `f0`: of the index that the file gives beside it, or else of the one whose reflectance against the
+/// medium above is the mean of the three numbers.
+pub(super) fn dielectric(at: &Section<'_>, given: Option<Ior>, above: &Ior, sink: &mut Sink<'_>) -> Ior {
+    let f0 = f0(at);
+    let Some(ior) = given else {
+        let mean = f0.iter().sum::<f64>() / 3.0;
+        let found = relative(above, index_of_f0(mean));
+        if let Some(ior) = found.filter(|ior| ior.samples().iter().all(|s| INDEX.contains(s.n))) {
+            return ior.with_f0(f0);
+        }
+        if !sink.has_error_in(&at.value_span("f0")) {
+            let hint = "give it beside `f0` as `ior`, or write `type = \"conductor\"`".to_owned();
+            sink.error(at.value_span("f0"), "a medium that reflects everything has no index", Some(hint));
+        }
+        return Ior::vacuum().with_f0(f0);
+    };
+    let n = ior.at(SODIUM_D_NM).re;
+    let is_plain = ior.is_constant() && ior.samples().iter().all(|s| s.k == 0.0);
+    let most_above = most(above);
+    if !is_plain {
+        let message = "beside `f0` an index bends directions only: it is one real number";
+        sink.error(at.value_span("ior"), message, Some(format!("write `ior = {}`, or leave `f0` out", short(n))));
+    } else if n < most_above && !sink.has_error_in(&at.value_span("ior")) {
+        let message = format!("`f0` is for media of no lower index than that above, {}", short(most_above));
+        let hint = "leave `ior` out, or leave `f0` out: an index has total reflection, Schlick's formula none";
+        sink.error(at.value_span("ior"), message, Some(hint.to_owned()));
+    }
+    ior.with_f0(f0)
+}
+
+/// The interface of a `metallic-roughness` layer, and the diffuse base below it, which a metal has not:
+///
+/// - F0 is `f = 0.04 + metallic (base_color - 0.04)`;
+/// - the index is that of the medium above: engines bend no light;
+/// - the base has the albedo with which it shows `c = base_color (1 - metallic)` of the light that enters: `c / (t + c (1 - t))`, where
+///   `t = (1 - f)(20/21)` is the share of the base's light that the smooth interface passes.
+///
+/// By Saunderson 1942 the surface then reflects `F(cos) + (1 - F(cos)) c` of the light from any direction, as the model of engines does, and
+/// its diffuse term is that of Kelemen and Szirmay-Kalos 2001, `c (1 - F(i))(1 - F(o)) / (pi (1 - (f + (1 - f)/21)))`.
+pub(super) fn metallic_roughness(at: &Section<'_>, above: &Ior) -> (Base, Option<Diffuse>) {
+    let color = at.rgb("base_color").unwrap_or([0.0; 3]);
+    let metallic = at.number("metallic").unwrap_or(0.0);
+    if metallic >= 1.0 {
+        return (Base::Conductor { ior: Ior::vacuum().with_f0(color) }, None);
+    }
+    let f0 = color.map(|color| DIELECTRIC_F0 + metallic * (color - DIELECTRIC_F0));
+    let ior = relative(above, 1.0).unwrap_or_else(Ior::vacuum).with_f0(f0);
+    let slab = Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
+    let albedo = [0, 1, 2].map(|i: usize| {
+        let seen = color[i] * (1.0 - metallic);
+        let passed = 1.0 - schlick_average(f0[i]);
+        seen / (passed + seen * (1.0 - passed))
+    });
+    (Base::Dielectric { ior, slab }, Some(Diffuse { albedo, sigma: at.number("sigma").unwrap_or(0.0) }))
+}
+
+/// Reports a patina over an interface with an F0 that would lie below a denser medium where no patina has grown.
+pub(super) fn check_bare(document: &Section<'_>, stack: &Stack, sink: &mut Sink<'_>) {
+    let Some(Layer { base: Base::Dielectric { ior, .. }, .. }) = stack.layers.get(1) else { return };
+    let least = ior.samples().iter().fold(f64::INFINITY, |least: f64, s| least.min(s.n));
+    if ior.f0().is_some() && least < most(&stack.exterior) {
+        let span = document.section("effects").map_or(0..0, |effects| effects.key_span("patina"));
+        let message = "the layer below the patina has an `f0` and a lower index than the exterior, which it meets where none has grown";
+        sink.error(span, message, Some("give that layer an `ior` in place of its `f0`".to_owned()));
+    }
+}
+
+/// Reports films on an interface that they cannot coat.
+pub(super) fn uncoatable(kind: &str, films: &[films::Pending<'_>], sink: &mut Sink<'_>) {
+    for film in films {
+        let (message, hint) = match kind {
+            "metallic-roughness" => (
+                "a film interferes by the index below it, and a metallic-roughness surface has none",
+                "leave the film out, or write the surface as a conductor, or as a dielectric over a diffuse base, by its `ior`",
+            ),
+            _ => (
+                "a film interferes by the index below it: the `f0` of the next layer has no phase",
+                "give that layer an `ior` in place of its `f0`, or leave the film out",
+            ),
+        };
+        sink.error(film.span.clone(), message, Some(hint.to_owned()));
+    }
+}
+
+fn f0(at: &Section<'_>) -> Rgb {
+    at.rgb("f0").unwrap_or([0.0; 3])
+}
+
+/// The largest real index of a medium.
+fn most(ior: &Ior) -> f64 {
+    ior.samples().iter().fold(0.0, |most: f64, s| most.max(s.n))
+}
+
+/// The real index of a medium times a factor; `None` where that is no index.
+fn relative(above: &Ior, factor: f64) -> Option<Ior> {
+    let times = |s: &IorSample| IorSample { n: s.n * factor, k: 0.0, ..*s };
+    Ior::sampled(above.samples().iter().map(times).collect()).ok()
+}

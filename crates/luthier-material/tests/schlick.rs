@@ -1,0 +1,95 @@
+//! Reflectances in place of indices: what `f0` and `metallic-roughness` become.
+
+use luthier_material::{Parsed, parse};
+use luthier_optics::color::Color;
+use luthier_optics::interface::Interface;
+use luthier_optics::stack::{Base, Stack};
+
+const COPPER: &str = "[0.955, 0.638, 0.538]";
+
+fn parsed(body: &str) -> Parsed {
+    let text = format!("schema = 1\nname = \"x\"\n{body}");
+    let parsed = parse("x.toml", &text, &|_| Err(std::io::Error::other("none")));
+    parsed.unwrap_or_else(|errors| panic!("{}", errors[0].render(&text)))
+}
+
+fn stack(body: &str) -> Stack {
+    let Parsed { material, warnings } = parsed(body);
+    assert!(warnings.is_empty(), "{body}: {warnings:?}");
+    material.stack
+}
+
+fn reflectance(stack: &Stack, layer: usize, cos_theta: f64) -> [f64; 3] {
+    Interface::of(stack, layer).unwrap().sampled(&Color::Spectral).rgb(cos_theta)
+}
+
+fn index(stack: &Stack, layer: usize) -> f64 {
+    match &stack.layers[layer].base {
+        Base::Dielectric { ior, .. } => ior.at(589.3).re,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn close(found: f64, expected: f64) {
+    assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+}
+
+#[test]
+fn a_conductor_takes_an_f0() {
+    let metal = stack(&format!("[[layer]]\ntype = \"conductor\"\nf0 = {COPPER}\nsmooth = true\n"));
+    // (1 - cos 60)^5 = 1/32.
+    for (found, f0) in reflectance(&metal, 0, 0.5).into_iter().zip([0.955, 0.638, 0.538]) {
+        close(found, f0 + (1.0 - f0) / 32.0);
+    }
+}
+
+/// The index is the given one, or that of the mean F0: (1 + .2)/(1 - .2) = 1.5 times the index above.
+#[test]
+fn a_dielectric_has_an_index_beside_its_f0() {
+    let base = "[[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\n";
+    let coat = |lines: &str| format!("[[layer]]\ntype = \"dielectric\"\nsmooth = true\n{lines}\n");
+    close(index(&stack(&(coat("f0 = [0.03, 0.04, 0.05]") + base)), 0), 1.5);
+    close(index(&stack(&(coat("f0 = 0.04\nior = 1.33") + base)), 0), 1.33);
+    let under_water = stack(&("exterior = 1.33\n".to_owned() + &coat("f0 = 0.04") + base));
+    close(index(&under_water, 0), 1.5 * 1.33);
+    let two = stack(&(coat("ior = 1.4") + &coat("f0 = 0.04") + base));
+    close(index(&two, 1), 1.5 * 1.4);
+    close(reflectance(&two, 1, 1.0)[1], 0.04);
+}
+
+/// glTF 2.0, appendix B, and the exercise of the lecture: F0 goes from 0.04 to the base colour, and what shows of the base is the base colour
+/// times 1 - metallic. The reflectance of the whole by hand: with t = (1 - f)(20/21) the base returns r t / (1 - r (1 - t)).
+#[test]
+fn the_surface_of_engines_is_two_layers() {
+    for metallic in [0.0, 0.25, 0.5, 0.75] {
+        let surface = stack(&format!(
+            "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = {COPPER}\nmetallic = {metallic}\nroughness = 0.4\nsigma = 0.2\n"
+        ));
+        assert_eq!(surface.layers.len(), 2);
+        assert!((surface.layers[0].surface.alpha_x - 0.16).abs() < 1e-12);
+        close(index(&surface, 0), 1.0);
+        let Base::Diffuse(base) = &surface.layers[1].base else { panic!("{surface:?}") };
+        close(base.sigma, 0.2);
+        for (i, color) in [0.955, 0.638, 0.538].into_iter().enumerate() {
+            let f0 = reflectance(&surface, 0, 1.0)[i];
+            close(f0, 0.04 + metallic * (color - 0.04));
+            let (r, t) = (base.albedo[i], (1.0 - f0) * (20.0 / 21.0));
+            close(r * t / (1.0 - r * (1.0 - t)), color * (1.0 - metallic));
+        }
+    }
+    // The lecture's middle of the grid: red .4975 + .5025 .4775 = .737.
+    let metal =
+        stack(&format!("[[layer]]\ntype = \"metallic-roughness\"\nbase_color = {COPPER}\nmetallic = 1\nalpha = 0.1\n"));
+    assert!(matches!(metal.layers.as_slice(), [only] if matches!(only.base, Base::Conductor { .. })), "{metal:?}");
+    close(reflectance(&metal, 0, 1.0)[1], 0.638);
+    let coated = stack(
+        "[[layer]]\ntype = \"dielectric\"\nior = 1.6\nsmooth = true\n[[layer]]\ntype = \"metallic-roughness\"\nbase_color = 0.5\nalpha = 0.1\n",
+    );
+    close(index(&coated, 1), 1.6);
+}
+
+#[test]
+fn an_f0_of_no_clear_medium_is_doubted() {
+    let warnings = parsed("[[layer]]\ntype = \"dielectric\"\nf0 = [0.9, 0.6, 0.3]\nsmooth = true\n").warnings;
+    assert!(warnings.len() == 1 && warnings[0].message.contains("0.9"), "{warnings:?}");
+}
