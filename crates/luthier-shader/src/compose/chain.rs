@@ -181,6 +181,7 @@ fn walk(
     const LEVEL: &str = "vec3<f32>(0.0, 0.0, 1.0)";
     let is_diffuse = |layer: &luthier_manifest::LayerRecord| layer.kind == LayerKind::Diffuse;
     let (has_flakes, is_clamped) = (features.has("flakes"), features.has("clamped"));
+    let is_folded = features.has("folded") && features.has("media");
     let (interface, alpha, axis) = match model {
         ShadingModel::Elek if is_clamped => {
             ("luthier_elek_interface", "vec2<f32>(next.alpha_above)", "vec2<f32>(1.0, 0.0)")
@@ -208,6 +209,9 @@ fn walk(
         if has_flakes {
             lines.push("var outer_eta = 1.0;".to_owned());
         }
+        if is_folded {
+            lines.push("var least = 1.0;".to_owned());
+        }
     }
     for i in first..depth {
         let here = || layers.iter().filter_map(|layers| layers.get(i));
@@ -217,10 +221,15 @@ fn walk(
             (false, false) => format!("eta, {LEVEL}, 1.0"),
             (false, true) => format!("outer_eta, {normal}, eta"),
         };
+        let narrowest = match (is_folded, i == first) {
+            (false, _) => "",
+            (true, true) => ", 1.0",
+            (true, false) => ", least",
+        };
         let mut add = vec![
             format!("let next = {interface}(path, layer);"),
             format!(
-                "prepared.parts[{}] = luthier_path_part(path, layer, {alpha}, {axis}, {media});",
+                "prepared.parts[{}] = luthier_path_part(path, layer, {alpha}, {axis}, {media}{narrowest});",
                 walk.first_part + i - first
             ),
             "if mean.open {".to_owned(),
@@ -231,6 +240,9 @@ fn walk(
         if i + 1 < depth {
             let eta = if i == first && has_flakes { "outer_eta" } else { "eta" };
             add.push(format!("{eta} = {eta} / layer.inverse_eta;"));
+            if is_folded {
+                add.push(format!("least = min(least, {eta});"));
+            }
         }
         let base = [
             "if mean.open {",

@@ -22,8 +22,9 @@ pub(crate) fn modules(set: &MaterialSet<'_>, features: &Features) -> Vec<String>
         return Vec::new();
     }
     let parts = count(set, features);
+    let least = if features.has("folded") && features.has("media") { ", least: f32" } else { "" };
     let module = |wgsl: &str| {
-        let wgsl = wgsl.replace("$parts", &format!("{parts}u")).replace("$model_base", BASE);
+        let wgsl = wgsl.replace("$parts", &format!("{parts}u")).replace("$model_base", BASE).replace("$least", least);
         text(&wgsl.replace("$model_lobes", &number(ShadingModel::Lobes)), features)
     };
     let mut modules = vec![module(include_str!("../wgsl/face/prepared.wgsl"))];

@@ -111,15 +111,20 @@ impl Features {
 }
 
 /// Words for functions beside `luthier_eval`: lobes of visible normals, and of powers of a cosine; whether some are below boundaries, and
-/// tilted there; whether a material has to say which model it is of.
+/// tilted there; whether draws that do not leave are folded back; whether a material has to say which model it is of.
 fn of_face(set: &MaterialSet<'_>, names: &BTreeSet<&'static str>) -> Vec<&'static str> {
     let has = |name| names.contains(name);
+    let visible = has("chain") || has("smith") || has("statistics");
+    let powers = has("phong") || has("granier") && has("interface");
+    let tilted = has("flakes") || has("granier_transparent") && has("place");
     let words = [
         ("face", true),
-        ("visible", has("chain") || has("smith") || has("statistics")),
-        ("powers", has("phong") || has("granier") && has("interface")),
+        ("visible", visible),
+        ("powers", powers),
         ("media", has("chain") && has("below") || has("granier_transparent")),
-        ("tilted", has("flakes") || has("granier_transparent") && has("place")),
+        ("tilted", tilted),
+        // Tilted boundaries have no cone about one normal through which all light leaves.
+        ("folded", set.functions.has(FunctionGroup::Sample) && (visible || powers) && !tilted),
         ("several", set.models().count() > 1 || has("lobes") && has("lobes_diffuse")),
     ];
     words.into_iter().filter(|(_, holds)| *holds).map(|(name, _)| name).collect()
