@@ -50,6 +50,9 @@ pub(crate) fn modules(set: &MaterialSet<'_>, features: &Features) -> Vec<String>
             modules.push(module(include_str!("../wgsl/face/lobes_sample.wgsl")));
         }
         modules.push(module(&unrolled(include_str!("../wgsl/face/sample.wgsl"), parts, features)));
+        if set.functions.has(FunctionGroup::Propose) {
+            modules.push(module(&unrolled(include_str!("../wgsl/face/propose.wgsl"), parts, features)));
+        }
     }
     if features.has("environment") {
         modules.push(module(include_str!("../wgsl/face/environment.wgsl")));
@@ -219,10 +222,23 @@ fn unrolled(module: &str, parts: usize, features: &Features) -> String {
              below += luthier_chance(prepared.parts[{i}]);\n"
         )
     });
+    let proposed = each(&|i| {
+        format!(
+            "    if luthier_chance(prepared.parts[{i}]) > 0.0 {{\n        \
+             density += luthier_part_density(prepared.parts[{i}], prepared.wo, wi);\n    }}\n"
+        )
+    });
+    let part = each(&|i| format!("        if part == {i}u {{\n            lobe = prepared.parts[{i}];\n        }}\n"));
+    // Of `lobes` alone the draw of the whole is the only proposal.
+    let is_whole = features.has("lobes") && !features.has("several");
+    let proposals = if is_whole { 1 } else { parts + 1 };
     let end = "    if choice >= below {\n        drawn.part = $parts;\n    }\n";
     module
         .replace("    $each_spill\n", &spill)
         .replace("    $each_density\n", &density)
         .replace("    $each_total\n", &total)
+        .replace("    $each_proposed\n", &proposed)
+        .replace("        $each_part\n", &part)
+        .replace("$proposals", &format!("{proposals}u"))
         .replace("    $each_choice\n", &format!("{choice}{end}"))
 }

@@ -14,7 +14,7 @@ const WIDTH: usize = 140;
 const LISTED: usize = 6;
 
 /// Functions of the face, by their calls, and what they give.
-const FUNCTIONS: [(&str, &str); 16] = [
+const FUNCTIONS: [(&str, &str); 17] = [
     ("luthier_eval(material, wi, wo)", "f cos_theta_i, linear Rec.709; a light adds its irradiance times this"),
     (
         "luthier_prepare(material, wo), luthier_light(prepared, wi)",
@@ -27,6 +27,10 @@ const FUNCTIONS: [(&str, &str); 16] = [
         "a direction of light from three numbers in 0..1, its density, its weight f cos_theta_i / density, and its lobe",
     ),
     ("luthier_pdf(prepared, wi)", "the density in solid angle of a direction that luthier_sample draws"),
+    (
+        "luthier_propose(prepared, part, u)",
+        "a direction that one of LUTHIER_PROPOSALS parts proposes, its density, and its weight, f cos_theta_i over the densities of all parts",
+    ),
     (
         "luthier_environment(prepared, frame, turn)",
         "what the prefiltered environment sends to the eye; the columns of frame are tangent, bitangent and normal in the world of the environment, \
