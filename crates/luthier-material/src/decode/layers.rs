@@ -3,7 +3,7 @@
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Surface};
 
-use super::{Read, films, ior, surface};
+use super::{Read, films, ior, reradiation, surface};
 use crate::diagnostic::Sink;
 use crate::doubt::Sources;
 use crate::grammar::LAYERS_MAX;
@@ -40,11 +40,12 @@ pub(super) fn decode(
         let index = |sink: &mut Sink<'_>, sources: &mut Sources| {
             ior::decode(at, "ior", read, sink, sources).unwrap_or_else(Ior::vacuum)
         };
+        let matrix = if kind == "diffuse" { reradiation::decode(at, read, sink) } else { None };
         let base = match kind {
             "dielectric" => Base::Dielectric { ior: index(sink, sources), slab: slab(at) },
             "conductor" => Base::Conductor { ior: index(sink, sources) },
             "diffuse" => Base::Diffuse(Diffuse {
-                albedo: at.rgb("albedo").unwrap_or([0.0; 3]),
+                albedo: matrix.map(reradiation::albedo).or_else(|| at.rgb("albedo")).unwrap_or([0.0; 3]),
                 sigma: at.number("sigma").unwrap_or(0.0),
             }),
             // The checker has reported it.
@@ -61,7 +62,7 @@ pub(super) fn decode(
             sources.places.add(&key, at);
             films.iter().enumerate().for_each(|(i, film)| sources.places.add(&format!("{key}.film.{i}"), &film.at));
         }
-        let extra = LayerExtras { film_variation: variation(&films, sink), maps: maps(at) };
+        let extra = LayerExtras { reradiation: matrix, film_variation: variation(&films, sink), maps: maps(at) };
         if number > 0 {
             only_the_first_varies(at, &films, sink);
         }

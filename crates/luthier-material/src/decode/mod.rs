@@ -7,6 +7,7 @@ mod effects;
 mod films;
 mod ior;
 mod layers;
+mod reradiation;
 mod surface;
 
 use std::cell::RefCell;
@@ -42,7 +43,8 @@ pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read
     }
     let stack = Stack { exterior, layers };
     let bake = bake::decode(document, sink);
-    let effects = effects::decode(document, &stack, sink);
+    let is_fluorescent = extras.iter().any(|layer| layer.reradiation.is_some());
+    let effects = effects::decode(document, &stack, is_fluorescent, sink);
     let Sources { spectra, places } = sources;
     let mut material = Material {
         name: document.text("name").unwrap_or_default().to_owned(),
