@@ -29,11 +29,15 @@ pub struct Place {
     pub patina: Option<Growth>,
     /// Albedo of a diffuse base; `None` leaves that of the material. Phong's coefficients do not follow it.
     pub base_color: Option<Rgb>,
+    /// Rows of the matrix from light to light of a fluorescent base, see [`Twin::reradiating`]; of no effect beside a base color, and under
+    /// patina.
+    pub reradiation: Option<[Rgb; 3]>,
 }
 
 impl Place {
     /// A place without textures and effects.
-    pub const NONE: Self = Self { sample: TextureSample::NONE, under: Under::NONE, patina: None, base_color: None };
+    pub const NONE: Self =
+        Self { sample: TextureSample::NONE, under: Under::NONE, patina: None, base_color: None, reradiation: None };
 }
 
 /// Patina at a place (Elek 2010, section 4.2): the first layer has grown over the others.
@@ -89,13 +93,14 @@ impl Shaded {
         let is_chain = [elek::MODEL, "weidlich-wilkie"].contains(&model);
         let is_shown = is_chain || model == lobes::MODEL && !is_over_another(stack);
         let patina = place.patina.filter(|_| is_shown && stack.layers.len() > 1);
+        let reradiation = place.reradiation.filter(|_| place.base_color.is_none() && patina.is_none());
         let layers = |stack: &Stack| {
             // Lobes are widened one by one, and the first interface beside them.
             let mut first = stack.clone();
             if model == lobes::MODEL {
                 first.layers.iter_mut().for_each(|layer| widen(&mut layer.surface, &place.sample));
             }
-            let twin = Twin::new(model, &first, wavelengths_nm, color)?;
+            let twin = Twin::new(model, &first, wavelengths_nm, color)?.reradiating(reradiation);
             Some(Layers { twin, terms: Exact::new(stack, color) })
         };
         let here = at(stack, model, place, patina);
@@ -118,6 +123,16 @@ impl Shaded {
             _ => {}
         }
         Some(Self { place, layers: grown, bare, has_lobes })
+    }
+
+    /// [`Shaded::eval`] times light of a colour, see [`Twin::eval_lit`]; a place with patina has no fluorescent base.
+    pub fn eval_lit(&self, light: Rgb, wi: DVec3, wo: DVec3) -> Rgb {
+        let [wi_here, wo_here] = [wi, wo].map(|w| frame::local(self.place.sample.normal, w));
+        if self.bare.is_some() || [wi, wo, wi_here, wo_here].iter().any(|w| w.z <= 0.0) {
+            let plain = self.eval(wi, wo);
+            return [0, 1, 2].map(|c| plain[c] * light[c]);
+        }
+        self.layers.twin.eval_lit(&self.layers.terms, &self.place.under, light, wi_here, wo_here)
     }
 
     /// `f cos_theta_i`, RGB; the cosine is that against the place's normal. Zero where either direction is at or below the horizon of the

@@ -154,6 +154,7 @@ fn light(set: &MaterialSet<'_>, features: &Features) -> String {
         "wi"
     };
     let place = if features.has("place") { "prepared.place, " } else { "" };
+    let lit = if features.has("fluorescent") { light_of_a_colour(set, &out, place, wi) } else { String::new() };
     let eval = |model| format!("return {}({place}prepared.material, {wi}, prepared.wo);", function(model));
     let call = |model: ShadingModel| match model {
         ShadingModel::Lobes if features.has("lobes") => format!("return luthier_light_lobes(prepared.lobes, {wi});"),
@@ -174,7 +175,26 @@ fn light(set: &MaterialSet<'_>, features: &Features) -> String {
         }
         let _ = writeln!(out, "    {}\n}}", call(*first));
     }
-    out
+    if lit.is_empty() { out } else { format!("{out}\n{lit}") }
+}
+
+/// `luthier_light_lit`; `light` is the beginning of `luthier_light`.
+fn light_of_a_colour(set: &MaterialSet<'_>, light: &str, place: &str, wi: &str) -> String {
+    let mut out = String::from(
+        "/// Light that a prepared material sends from wi to the eye, RGB, of light of a colour: that of `luthier_eval_lit`.\n\
+         fn luthier_light_lit(prepared: LuthierPrepared, wi: vec3<f32>, light: vec3<f32>) -> vec3<f32> {\n",
+    );
+    out.extend(light.lines().skip(2).flat_map(|line| [line, "\n"]));
+    let models: Vec<ShadingModel> = set.models().collect();
+    let is_alone = models.len() == 1;
+    for model in models.into_iter().filter(|&model| chain::is_chain(model)) {
+        let call = format!("return {}_lit({place}prepared.material, {wi}, prepared.wo, light);", function(model));
+        if is_alone {
+            return format!("{out}    {call}\n}}\n");
+        }
+        let _ = write!(out, "    if prepared.model == {} {{\n        {call}\n    }}\n", number(model));
+    }
+    out + "    return light * luthier_light(prepared, wi);\n}\n"
 }
 
 /// `luthier_albedo`.

@@ -17,7 +17,7 @@ impl Features {
     /// Every word there is but the names of tables, for the check that modules name no other.
     #[cfg(test)]
     const ALL: &str = "absorption anisotropic bare base_color beckmann below bilinear chain chain_diffuse chain_patina clamped closed \
-        coat conductor critical_view diffuse environment face film film_table flakes full ggx glitter granier \
+        coat conductor critical_view diffuse environment face film film_table flakes fluorescent folded full ggx glitter granier \
         granier_bare granier_base granier_film granier_transparent interface lobes_axes lobes_bare_base lobes_base \
         lobes_diffuse lobes_film lobes_patina lobes_tilted media microfacet_diffuse mixed one_lobe oren_nayar patina \
         phong place powers schlick_base several smith split_root statistics statistics_base surface theta_axis tilted \
@@ -163,6 +163,9 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
             names.insert("diffuse");
             if layer.sigma != 0.0 {
                 names.insert("oren_nayar");
+            }
+            if layer.reradiation.is_some() && is_chain {
+                names.insert("fluorescent");
             }
             continue;
         }

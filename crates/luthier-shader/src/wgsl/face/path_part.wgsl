@@ -10,7 +10,11 @@ fn luthier_path_part(
     //? else
     let fresnel = luthier_fresnel_term(layer, min(path.wo_local.z, 1.0));
     //? end
+    //? fluorescent
+    part.energy = path.throughput * path.lit * fresnel * (index * index);
+    //? else
     part.energy = path.throughput * fresnel * (index * index);
+    //? end
     part.alpha = alpha;
     part.axis = axis;
     part.eta = eta;
