@@ -164,6 +164,9 @@ impl Part {
         // Models that do not show it have the base's colour under white light, as an albedo.
         if let (Some(last), true) = (records.last_mut(), model.honours(Feature::Reradiation, Form::Baked)) {
             last.reradiation = extras.last().and_then(|extras| extras.reradiation);
+            if let Some(rows) = last.reradiation {
+                last.albedo = rows.map(|row| row.iter().sum::<f64>().max(0.0));
+            }
         }
         for (i, layer) in stack.layers.iter().enumerate() {
             let Some(interface) = Interface::of(stack, i) else { continue };
