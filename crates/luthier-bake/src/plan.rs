@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use luthier_lut::{Image, TableKind};
-use luthier_manifest::{ColorMode, LayerRecord};
+use luthier_manifest::{ColorMode, Feature, Form, LayerRecord};
 use luthier_material::{LayerExtras, Material};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
@@ -161,6 +161,13 @@ impl Part {
     ) -> Result<Vec<LayerRecord>, BakeError> {
         let (color, model) = (color(material), material.model());
         let mut records = records(stack, material.bake.wavelengths_nm(), &Parts::of(material));
+        // Models that do not show it have the base's colour under white light, as an albedo.
+        if let (Some(last), true) = (records.last_mut(), model.honours(Feature::Reradiation, Form::Baked)) {
+            last.reradiation = extras.last().and_then(|extras| extras.reradiation);
+            if let Some(rows) = last.reradiation {
+                last.albedo = rows.map(|row| row.iter().sum::<f64>().max(0.0));
+            }
+        }
         for (i, layer) in stack.layers.iter().enumerate() {
             let Some(interface) = Interface::of(stack, i) else { continue };
             let wanted = TableKind::ALL.map(|kind| {

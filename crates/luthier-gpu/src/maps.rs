@@ -33,9 +33,19 @@ impl Scene {
 
     /// `ShadingSurface`, what the emitted shader takes for a place, and the functions that fill, read and use it.
     pub(crate) fn surface_functions(&self) -> String {
+        // What fluorescent bases send out is no factor times the light.
+        let takes_light = self.has("fn luthier_eval_lit(");
         if !self.has("struct LuthierPlace") {
-            return include_str!("wgsl/surface_even.wgsl").to_owned();
+            let lit = match takes_light {
+                true => "luthier_eval_lit(material, wi, wo, light)",
+                false => "luthier_eval(material, wi, wo) * light",
+            };
+            return include_str!("wgsl/surface_even.wgsl").replace("$lit", lit);
         }
+        let lit = match takes_light {
+            true => "luthier_eval_lit_at(surface, material, wi, wo, light)",
+            false => "luthier_eval_at(surface, material, wi, wo) * light",
+        };
         let lines = [
             (self.has("fn luthier_film_place("), "surface = luthier_film_place(surface, material, maps.uv);"),
             (
@@ -62,6 +72,7 @@ impl Scene {
         let patina = if self.has("patina: f32,") { "surface.patina" } else { "-1.0" };
         include_str!("wgsl/surface.wgsl")
             .replace("$fill", &fill.join("\n    "))
+            .replace("$lit", lit)
             .replace("$below", below)
             .replace("$patina", patina)
     }

@@ -47,7 +47,9 @@ pub use luthier_optics;
 pub use num_complex;
 
 pub use self::noise::{perlin, voronoi};
-pub use effects::{flakes, fluorescence, heterogeneous, patina, reradiation, textured};
+pub use effects::{flakes, fluorescence, heterogeneous, patina, textured};
+/// Re-radiation matrices of fluorescent bases.
+pub use luthier_optics::reradiation;
 pub use models::{
     belcour, densities, diffuse, elek, elek_model, facets, granier_heidrich, interface_fresnel, microfacet, normals,
     oren_nayar, phong, refraction, statistics, weidlich_wilkie, weidlich_wilkie_corrected, weidlich_wilkie_sampling,

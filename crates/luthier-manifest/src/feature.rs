@@ -37,11 +37,13 @@ pub enum Feature {
     Patina,
     /// Glitter: particles that are tilted.
     Glitter,
+    /// Fluorescence: a base that moves light to other wavelengths.
+    Reradiation,
 }
 
 impl Feature {
     /// All features.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::InnerInterface,
         Self::Base,
         Self::Absorption,
@@ -58,6 +60,7 @@ impl Feature {
         Self::Flakes,
         Self::Patina,
         Self::Glitter,
+        Self::Reradiation,
     ];
 
     /// The name in messages and manifests.
@@ -79,6 +82,7 @@ impl Feature {
             Self::Flakes => "flakes",
             Self::Patina => "patina",
             Self::Glitter => "glitter",
+            Self::Reradiation => "re-radiation",
         }
     }
 }
@@ -112,6 +116,7 @@ impl ShadingModel {
             Feature::Beckmann => is_chain || matches!(self, Self::Microfacet | Self::Lobes),
             Feature::ThicknessMap => is_chain || is_statistical || self == Self::Lobes,
             Feature::Flakes | Feature::Patina => is_chain || self == Self::Lobes,
+            Feature::Reradiation => is_chain,
         }
     }
 }
@@ -133,14 +138,14 @@ mod tests {
             Feature::ALL.into_iter().map(column).collect()
         };
         for (model, expected) in [
-            (ShadingModel::Elek, "#####b##.#######"),
-            (ShadingModel::WeidlichWilkie, "#####b##########"),
-            (ShadingModel::Belcour, "#####bf#..###..#"),
-            (ShadingModel::Yamaguchi, "#####bf##.###..#"),
-            (ShadingModel::GranierHeidrich, ".#..#.#...##...#"),
-            (ShadingModel::Phong, "###.##....##...#"),
-            (ShadingModel::Microfacet, "....#b######...#"),
-            (ShadingModel::Lobes, "################"),
+            (ShadingModel::Elek, "#####b##.########"),
+            (ShadingModel::WeidlichWilkie, "#####b###########"),
+            (ShadingModel::Belcour, "#####bf#..###..#."),
+            (ShadingModel::Yamaguchi, "#####bf##.###..#."),
+            (ShadingModel::GranierHeidrich, ".#..#.#...##...#."),
+            (ShadingModel::Phong, "###.##....##...#."),
+            (ShadingModel::Microfacet, "....#b######...#."),
+            (ShadingModel::Lobes, "################."),
         ] {
             assert_eq!(shown(model), expected, "{model}");
         }

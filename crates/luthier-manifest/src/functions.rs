@@ -15,6 +15,8 @@ luthier_lut::named! {
         Light = "light",
         /// `luthier_sample` and `luthier_pdf`; they bring `light`.
         Sample = "sample",
+        /// `luthier_propose`: a direction for each lobe, of which a path follows one; it brings `sample`.
+        Propose = "propose",
         /// `luthier_albedo`; it brings `light`.
         Albedo = "albedo",
         /// `luthier_environment`, which shows a prefiltered environment; it brings `light`.
@@ -54,6 +56,9 @@ impl FromIterator<FunctionGroup> for Functions {
     fn from_iter<T: IntoIterator<Item = FunctionGroup>>(asked: T) -> Self {
         let mut groups: BTreeSet<FunctionGroup> = asked.into_iter().collect();
         groups.insert(FunctionGroup::Eval);
+        if groups.contains(&FunctionGroup::Propose) {
+            groups.insert(FunctionGroup::Sample);
+        }
         if groups.len() > 1 {
             groups.insert(FunctionGroup::Light);
         }
@@ -84,6 +89,7 @@ mod tests {
         assert_eq!(json(&[]), r#"["eval"]"#);
         assert_eq!(json(&[FunctionGroup::Light]), r#"["eval","light"]"#);
         assert_eq!(json(&[FunctionGroup::Sample]), r#"["eval","light","sample"]"#);
+        assert_eq!(json(&[FunctionGroup::Propose]), r#"["eval","light","sample","propose"]"#);
         assert_eq!(json(&[FunctionGroup::Albedo]), r#"["eval","light","albedo"]"#);
         assert!(Functions::default().is_eval_alone());
         let read: Functions = serde_json::from_str(r#"["sample"]"#).unwrap();

@@ -62,6 +62,10 @@ pub struct LayerRecord {
     pub albedo: [f64; 3],
     /// Oren-Nayar slope deviation, radians; 0 is Lambert.
     pub sigma: f64,
+    /// Rows of the matrix from light to light of a fluorescent base, linear Rec.709 under D65, whose sums are its colour under white
+    /// light; absent where the base returns light at its own wavelength alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reradiation: Option<[[f64; 3]; 3]>,
     /// Real part of the relative index at the three wavelengths.
     pub ior_n: [f64; 3],
     /// Imaginary part.
@@ -133,6 +137,8 @@ impl LayerRecord {
     /// Masking is numbered 0 smith, 1 smith-separable, 2 schlick-smith, 3 v-cavity, 4 kelemen, 5 implicit. An interface with a curve ([`ReflectanceCurve`])
     /// has no film.
     ///
+    /// A fluorescent base has the rows of its re-radiation matrix over pi in words 4, 5 and 6, red, green and blue, and 1 in x of word 8.
+    ///
     /// The falloff of D with the squared slope is 1 / alpha^2, over ln 2 for Beckmann, whose D is a power of two then; its peak,
     /// 1 / (4 pi alpha^2), is a quarter of the greatest D, as every lobe has it. A reciprocal of 0 is 0: what has no slopes, or lets
     /// nothing through, has no use for it.
@@ -178,6 +184,12 @@ impl LayerRecord {
         ];
         let mut words = [[0.0; 4]; LAYER_WORDS];
         words[..numbers.len()].copy_from_slice(&numbers);
+        if let Some(rows) = self.reradiation {
+            for (word, row) in words[4..7].iter_mut().zip(rows) {
+                *word = rgbw(row.map(|share| share * FRAC_1_PI), word[3]);
+            }
+            words[8][0] = 1.0;
+        }
         for kind in TableKind::ALL {
             if let Some([word, component]) = kind.facts().slot {
                 words[word][component] = self.tiles[kind].map_or(-1.0, |tile| tile as f32);
@@ -236,6 +248,7 @@ mod tests {
             optical_depth: [3.0, 4.0, 5.0],
             albedo: [6.0, 7.0, 8.0],
             sigma: 9.0,
+            reradiation: None,
             ior_n: [10.0, 11.0, 12.0],
             ior_k: [13.0, 14.0, 15.0],
             f0: None,
@@ -281,6 +294,17 @@ mod tests {
         );
         assert_eq!(numbered(LayerKind::Dielectric).words()[10][0], 8_388_608.0);
         assert_eq!(numbered(LayerKind::Diffuse).words()[10][0], 8_388_610.0);
+        let rows = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0, 9.0]];
+        let glowing = LayerRecord { reradiation: Some(rows), ..numbered(LayerKind::Diffuse) };
+        let plain = numbered(LayerKind::Diffuse).words();
+        for (i, (word, plain)) in glowing.words().iter().zip(plain).enumerate() {
+            let expected = match i {
+                4..=6 => [0, 1, 2, 3].map(|c| if c < 3 { (rows[i - 4][c] * FRAC_1_PI) as f32 } else { plain[c] }),
+                8 => [1.0, plain[1], plain[2], plain[3]],
+                _ => plain,
+            };
+            assert_eq!(*word, expected);
+        }
         let beckmann = LayerRecord { distribution: Distribution::Beckmann, ..numbered(LayerKind::Diffuse) };
         assert_eq!((beckmann.words()[3][3], beckmann.words()[0][0]), (0.0, 0.360_673_76));
         let schlick = LayerRecord { f0: Some([0.25, 0.5, 0.75]), ..numbered(LayerKind::Conductor) };

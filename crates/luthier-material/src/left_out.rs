@@ -64,6 +64,7 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
             (absorbs && lights(number, Feature::InnerInterface), Feature::Absorption, "absorption_per_um"),
             (absorbs && lights(number, Feature::Base), Feature::BaseAbsorption, "absorption_per_um"),
             (deviates, Feature::DiffuseSlopes, "sigma"),
+            (material.layers[number].reradiation.is_some(), Feature::Reradiation, "reradiation"),
         ] {
             if asked {
                 tell(feature, key(name));

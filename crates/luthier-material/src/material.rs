@@ -1,5 +1,6 @@
 //! The validated material, with the places of its values in the file.
 
+use luthier_optics::Rgb;
 use luthier_optics::stack::Stack;
 
 use luthier_manifest::{Budget, ShadingModel};
@@ -27,7 +28,7 @@ pub struct Material {
     pub references: Vec<String>,
     /// The physics: interfaces from the top down.
     pub stack: Stack,
-    /// Properties of each layer beyond physics; parallel to `stack.layers`. Only the first has any.
+    /// Properties of each layer beyond physics; parallel to `stack.layers`. Only the first has maps, and only a base re-radiates.
     pub layers: Vec<LayerExtras>,
     /// Effects on top of the layered model.
     pub effects: Effects,
@@ -75,10 +76,15 @@ impl Material {
         format!("{label}:{line}")
     }
 
+    /// The re-radiation of its base, if that is fluorescent.
+    pub fn reradiation(&self) -> Option<[Rgb; 3]> {
+        self.layers.last().and_then(|layer| layer.reradiation)
+    }
+
     /// The images that it names: of the first layer, then of effects.
     pub fn images(&self) -> Vec<NamedImage<'_>> {
         let mut found: Vec<(&'static str, Option<&str>)> = Vec::new();
-        if let Some(LayerExtras { film_variation, maps }) = self.layers.first() {
+        if let Some(LayerExtras { film_variation, maps, .. }) = self.layers.first() {
             let film = film_variation.as_ref().and_then(|variation| variation.source.image());
             found.extend([
                 ("layer.0.maps.normal", maps.normal.as_deref()),
@@ -100,6 +106,9 @@ impl Material {
 /// Properties of a layer beyond its physics.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct LayerExtras {
+    /// Rows of the matrix from light to light of a fluorescent base, linear Rec.709 under D65 ([`luthier_optics::reradiation::rgb`]). The
+    /// albedo in the stack is its colour under white light, within 0..1.
+    pub reradiation: Option<[Rgb; 3]>,
     /// How the thickness of the top film varies over the surface.
     pub film_variation: Option<FilmVariation>,
     /// Texture slots.

@@ -31,6 +31,7 @@ pub mod microfacet;
 pub mod microsurface;
 pub mod ndf;
 pub mod quadrature;
+pub mod reradiation;
 pub mod sampling;
 pub mod schlick;
 pub mod split_sum;

@@ -140,6 +140,11 @@ fn leave_out_feature(material: &mut Material, feature: Feature) -> bool {
         Feature::Flakes => found = effects.flakes.take().is_some(),
         Feature::Patina => found = effects.patina.take().is_some(),
         Feature::Glitter => found = effects.glitter.take().is_some(),
+        Feature::Reradiation => {
+            for extras in &mut material.layers {
+                found |= extras.reradiation.take().is_some();
+            }
+        }
     }
     found
 }

@@ -68,7 +68,7 @@ pub const TARGETS: [Target; 17] = [
     },
     Target {
         name: "reradiation",
-        parser: "luthier_layers::reradiation::Matrix::parse",
+        parser: "luthier_optics::reradiation::Matrix::parse",
         reads: "`eval --matrix`",
         holds: "a matrix has a share for each pair of bins; a matrix that is printed parses to an equal one",
         folders: &[],

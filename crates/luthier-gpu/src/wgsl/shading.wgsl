@@ -305,8 +305,8 @@ fn shading_sampled(material: u32, surface: ShadingSurface, frame: mat3x3<f32>, w
                     density += shading_density(other_alpha, wi, wo);
                 }
             }
-            let f_cos = shading_eval(material, surface, wi, wo);
-            total += f_cos * environment_radiance(frame * wi) / (density * f32(count));
+            let seen = shading_lit(material, surface, wi, wo, environment_radiance(frame * wi));
+            total += seen / (density * f32(count));
         }
     }
     return total;
@@ -329,7 +329,7 @@ fn shading_radiance(part: u32, place: Place, wo_world: vec3<f32>, seed: u32) -> 
         let distance_sq = dot(to_light, to_light);
         let wi = (to_light * inverseSqrt(distance_sq)) * frame;
         // The second half of the materials has its slopes widened by the size of the lights.
-        total += shading_eval(material + kernel_inputs.material_count, surface, wi, wo) * color / distance_sq;
+        total += shading_lit(material + kernel_inputs.material_count, surface, wi, wo, color) / distance_sq;
     }
     if kernel_inputs.environment_samples > 0u {
         return total + shading_sampled(material, surface, frame, wo, seed);

@@ -17,6 +17,7 @@ fn shading_factors(surface: ShadingSurface) -> ShadingFactors {
     );
 }
 
-fn shading_eval(material: u32, surface: ShadingSurface, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
-    return luthier_eval_at(surface, material, wi, wo);
+// What a light of a colour sends to the eye.
+fn shading_lit(material: u32, surface: ShadingSurface, wi: vec3<f32>, wo: vec3<f32>, light: vec3<f32>) -> vec3<f32> {
+    return $lit;
 }

@@ -10,6 +10,7 @@ fn shading_factors(surface: ShadingSurface) -> ShadingFactors {
     return ShadingFactors(up, 1.0, 1.0, 1.0, up, -1.0);
 }
 
-fn shading_eval(material: u32, surface: ShadingSurface, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
-    return luthier_eval(material, wi, wo);
+// What a light of a colour sends to the eye.
+fn shading_lit(material: u32, surface: ShadingSurface, wi: vec3<f32>, wo: vec3<f32>, light: vec3<f32>) -> vec3<f32> {
+    return $lit;
 }

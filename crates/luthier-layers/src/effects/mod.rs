@@ -4,5 +4,4 @@ pub mod flakes;
 pub mod fluorescence;
 pub mod heterogeneous;
 pub mod patina;
-pub mod reradiation;
 pub mod textured;

@@ -95,18 +95,49 @@ pub fn eval(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3) -> Rgb {
 /// (Elek 2010, section 4.1). The refracted directions are measured against it, the path lengths of the first slab included, as
 /// in the paper's code; layers below see nothing when it hides either of them.
 pub fn eval_below(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3, normal_below: DVec3) -> Rgb {
+    let Walked { mut interfaces, base } = walk(layers, terms, wi, wo, normal_below);
+    if let Some(AtBase { diffuse, wi_local, wo_local, passed, .. }) = base {
+        add(&mut interfaces, passed, oren_nayar::brdf(&diffuse, wi_local, wo_local));
+    }
+    interfaces
+}
+
+/// A way down through the layers.
+pub(crate) struct Walked {
+    /// f cos_theta_i of the interfaces.
+    pub(crate) interfaces: Rgb,
+    /// Light at the diffuse base, where the layers end with one and light comes there and back.
+    pub(crate) base: Option<AtBase>,
+}
+
+/// Light at a diffuse base below interfaces.
+pub(crate) struct AtBase {
+    diffuse: Diffuse,
+    wi_local: DVec3,
+    wo_local: DVec3,
+    /// The cosine of the light outside times `down` times `up`.
+    passed: Rgb,
+    /// Share that comes down: T_12 of each interface, and what slabs leave on the way of `wi`.
+    pub(crate) down: Rgb,
+    /// Share of what the base sends up that comes out: t of each interface, and what slabs leave on the way of `wo`.
+    pub(crate) up: Rgb,
+}
+
+/// The way down to the base and back: what interfaces send to `wo`, and what is left of the light at a diffuse base.
+pub(crate) fn walk(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3, normal_below: DVec3) -> Walked {
     if wi.z <= 0.0 || wo.z <= 0.0 {
-        return [0.0; 3];
+        return Walked { interfaces: [0.0; 3], base: None };
     }
     let (mut wi_local, mut wo_local) = (wi, wo);
     let mut throughput = [wi.z; 3];
+    let (mut down, mut up) = ([1.0; 3], [1.0; 3]);
     let mut total = [0.0; 3];
     let mut alpha_above = ALPHA_MIN;
 
     for (i, layer) in layers.iter().enumerate() {
         if let Below::Diffuse(diffuse) = layer.below {
-            add(&mut total, throughput, oren_nayar::brdf(&diffuse, wi_local, wo_local));
-            break;
+            let base = AtBase { diffuse, wi_local, wo_local, passed: throughput, down, up };
+            return Walked { interfaces: total, base: Some(base) };
         }
         let alpha = layer.alpha.max(alpha_above);
         alpha_above = alpha;
@@ -131,11 +162,14 @@ pub fn eval_below(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3, no
         for c in 0..3 {
             let transmitted = 1.0 - f[c];
             let absorbed = libm::exp(-optical_depth[c] * path);
-            throughput[c] *= transmitted * absorbed * ((1.0 - g) + transmitted * g);
+            let left = (1.0 - g) + transmitted * g;
+            throughput[c] *= transmitted * absorbed * left;
+            down[c] *= transmitted * libm::exp(-optical_depth[c] / wi_below.z);
+            up[c] *= left * libm::exp(-optical_depth[c] / wo_below.z);
         }
         (wi_local, wo_local) = (wi_below, wo_below);
     }
-    total
+    Walked { interfaces: total, base: None }
 }
 
 fn add(total: &mut Rgb, weight: Rgb, value: Rgb) {

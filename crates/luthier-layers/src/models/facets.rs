@@ -141,9 +141,15 @@ impl Facets {
     }
 
     /// Density in solid angle of the reflection of `wo` at a sampled facet: `G1 D / (4 cos_theta_o)`. Zero below the horizon,
-    /// where reflections at sampled facets may go too.
+    /// where reflections at sampled facets may go too; [`Facets::pdf_of_mirrored`] counts them.
     pub fn pdf_solid_angle(&self, wi: DVec3, wo: DVec3) -> f64 {
-        if wi.z <= 0.0 || wo.z <= 0.0 {
+        if wi.z <= 0.0 { 0.0 } else { self.pdf_of_mirrored(wi, wo) }
+    }
+
+    /// [`Facets::pdf_solid_angle`] over the whole sphere, whose integral is 1: facets lean by less than 90 degrees, so that their
+    /// reflections reach down to `wi.z = -wo.z`.
+    pub fn pdf_of_mirrored(&self, wi: DVec3, wo: DVec3) -> f64 {
+        if wi.z + wo.z <= 0.0 || wo.z <= 0.0 {
             return 0.0;
         }
         let wh = (wi + wo).normalize();

@@ -117,16 +117,36 @@ impl WeidlichWilkie {
         wo: DVec3,
         normal_below: DVec3,
     ) -> f64 {
+        let Walked { interfaces, base } = self.walk(stack, optics, wi, wo, normal_below);
+        match base {
+            Some(AtBase { albedo, sigma, wi_local, wo_local, passed, .. }) => {
+                interfaces + passed * wi.z * oren_nayar::brdf_scalar(albedo, sigma, wi_local, wo_local)
+            }
+            None => interfaces,
+        }
+    }
+
+    /// The way down to the base and back: what interfaces send to `wo`, and what is left of the light at a diffuse base.
+    pub(crate) fn walk(
+        self,
+        stack: &Monochrome,
+        optics: &impl Optics,
+        wi: DVec3,
+        wo: DVec3,
+        normal_below: DVec3,
+    ) -> Walked {
         if wi.z <= 0.0 || wo.z <= 0.0 {
-            return 0.0;
+            return Walked { interfaces: 0.0, base: None };
         }
         let (mut wi_local, mut wo_local) = (wi, wo);
         let (mut throughput, mut total) = (1.0, 0.0);
+        let (mut down, mut up) = (1.0, 1.0);
         for (i, layer) in stack.layers.iter().enumerate() {
             // f_cos below carries the local cosine; the model wants that of the exterior.
             let cosines = wi.z / wi_local.z;
             if let MonochromeBelow::Diffuse { albedo, sigma } = layer.below {
-                return total + throughput * wi.z * oren_nayar::brdf_scalar(albedo, sigma, wi_local, wo_local);
+                let base = AtBase { albedo, sigma, wi_local, wo_local, passed: throughput, down, up };
+                return Walked { interfaces: total, base: Some(base) };
             }
             let facets = Facets::new(&layer.surface);
             let Some(lobe) = facets.lobe_of(optics, i, Masking::VCavity, wi_local, wo_local) else { break };
@@ -141,20 +161,43 @@ impl WeidlichWilkie {
                     break;
                 }
             }
-            let passed = match self.transmission {
+            let (entered, left) = match self.transmission {
                 Transmission::HalfVector => {
                     let transmitted = 1.0 - reflected;
-                    transmitted * ((1.0 - lobe.masking) + transmitted * lobe.masking)
+                    (transmitted, (1.0 - lobe.masking) + transmitted * lobe.masking)
                 }
                 Transmission::Directions => {
-                    (1.0 - optics.reflectance(i, wi_local.z.min(1.0)))
-                        * (1.0 - optics.reflectance(i, wo_local.z.min(1.0)))
+                    (1.0 - optics.reflectance(i, wi_local.z.min(1.0)), 1.0 - optics.reflectance(i, wo_local.z.min(1.0)))
                 }
             };
             let absorbed = libm::exp(-optical_depth * (1.0 / wi_below.z + 1.0 / wo_below.z));
-            throughput *= passed * absorbed;
+            throughput *= entered * left * absorbed;
+            down *= entered * libm::exp(-optical_depth / wi_below.z);
+            up *= left * libm::exp(-optical_depth / wo_below.z);
             (wi_local, wo_local) = (wi_below, wo_below);
         }
-        total
+        Walked { interfaces: total, base: None }
     }
+}
+
+/// A way down through a stack.
+pub(crate) struct Walked {
+    /// f cos_theta_i of the interfaces.
+    pub(crate) interfaces: f64,
+    /// Light at the diffuse base, where the stack has one and light comes there and back.
+    pub(crate) base: Option<AtBase>,
+}
+
+/// Light at a diffuse base below interfaces.
+pub(crate) struct AtBase {
+    albedo: f64,
+    sigma: f64,
+    wi_local: DVec3,
+    wo_local: DVec3,
+    /// Share of the light that comes down to the base and back out: `down` times `up`.
+    passed: f64,
+    /// Share that comes down: T_12 of each interface, and what slabs leave on the way of `wi`.
+    pub(crate) down: f64,
+    /// Share of what the base sends up that comes out: t of each interface, and what slabs leave on the way of `wo`.
+    pub(crate) up: f64,
 }

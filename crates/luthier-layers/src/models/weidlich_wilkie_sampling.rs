@@ -1,13 +1,25 @@
 //! Sampling of a layered surface, by the two methods of Weidlich and Wilkie 2009, sec. 3.2.
 //!
 //! - *Global* (3.2.2): every layer proposes one direction for a path to go on; one of them is followed, with a probability
-//!   in proportion to what it carries.
-//! - *Local* (3.2.4, eq. 3.6): one direction for the whole surface, with the mixture density `sum w_k p_k`.
+//!   in proportion to what it carries ([`Sampler::propose`], [`Sampler::follow`]).
+//! - *Local* (3.2.4, eq. 3.6): one direction for the whole surface ([`Sampler::sample`]), with the mixture density
+//!   `p = sum w_k p_k`, `sum w_k = 1`.
 //!
-//! Layer k is sampled where it lies: `wo` is refracted down at the surface normal, reflected at a visible facet (cosine
-//! density for a diffuse base), and refracted up. Solid angles grow on the way: `d omega' = d omega cos_theta / (n^2
-//! cos_theta')` per interface. Light that cannot leave through an interface above, and reflections below the horizon, give no
-//! direction; densities integrate to one less that share.
+//! Every draw leaves the surface: each `p_k` integrates to 1, and so does `p`. Layer k lies in a medium of the index `n_k`, that of the
+//! exterior being 1. The product `n sin_theta` is the same in all media, so that light leaves whose `n_k sin_theta` is below the
+//! least index m on its way, and which goes up. In the medium of the layer that is a cone about the normal,
+//! `cos_theta > c_k = sqrt(1 - m^2 / n_k^2)`. Solid angles grow on the way out: `d omega' = d omega cos_theta / (n_k^2 cos_theta')`, the prime
+//! for the medium of the layer.
+//!
+//! - *A diffuse base* is drawn by the cosine inside the cone. Outside that is
+//!   `p_k = cos_theta / (pi m^2)` up to `sin_theta = m`: for m = 1, the cosine over the hemisphere.
+//! - *An interface* mirrors `wo'` at a visible facet. The density `q = G1 D / (4 cos_theta_o')` integrates to 1 over the sphere, and
+//!   reaches from `z = cos_theta' = 1` down to `-cos_theta_o'`. The part outside the cone is folded into it at its edge:
+//!   `z -> c_k + s (c_k - z)`, the azimuth is kept, and s = min(1, (1 - c_k) / (c_k + cos_theta_o')) makes it fit. Solid angle is
+//!   `dz d phi`, so that inside the cone the density is `q(z) + q(c_k - (z - c_k) / s) / s`, and outside
+//!   `p_k = d omega' / d omega` times that.
+//!
+//! The fold only adds to the density where light leaves, so that it never makes an estimate noisier than a draw that is lost.
 
 use std::f64::consts::PI;
 
@@ -43,6 +55,8 @@ struct Sampled {
     wo: DVec3,
     /// Indices, below over above, of the interfaces above the layer.
     etas: Vec<f64>,
+    /// Cosine, there, of the edge of the cone of directions that leave.
+    edge: f64,
     /// Part of the samples.
     weight: f64,
 }
@@ -50,11 +64,13 @@ struct Sampled {
 impl Sampler {
     /// The sampler for a direction above the horizon; without layers, and so without samples, for others.
     ///
-    /// The weights of the mixture are what smooth layers would send to `wo`: power passed by the interfaces above, both
-    /// ways, times the reflectance.
+    /// The weights of the mixture are what smooth layers would send to `wo` in the model of the course: power passed by the interfaces
+    /// above, both ways, times the reflectance; and of an interface times `n_k^2`, for that model spreads a lobe over as much
+    /// more solid angle on its way out and does not dim it.
     pub fn new(stack: &Monochrome, wo: DVec3) -> Self {
         let mut layers: Vec<Sampled> = Vec::with_capacity(stack.layers.len());
         let (mut wo_local, mut etas) = (wo, Vec::new());
+        let (mut index, mut least) = (1.0, 1.0_f64);
         if wo.z <= 0.0 {
             return Self { layers };
         }
@@ -66,12 +82,16 @@ impl Sampler {
                     Some(Facets::new(&layer.surface))
                 }
             };
-            let weight = powers.transmittance * powers.transmittance * reflectance(layer, wo_local.z);
-            layers.push(Sampled { facets, wo: wo_local, etas: etas.clone(), weight });
+            let spread = if facets.is_some() { index * index } else { 1.0 };
+            let weight = powers.transmittance * powers.transmittance * reflectance(layer, wo_local.z) * spread;
+            let edge = libm::sqrt((index - least) * (index + least)) / index;
+            layers.push(Sampled { facets, wo: wo_local, etas: etas.clone(), edge, weight });
             let MonochromeBelow::Dielectric { .. } = layer.below else { break };
             let Some(below) = refract(wo_local, layer.eta()) else { break };
             etas.push(layer.eta());
             wo_local = below;
+            index *= layer.eta();
+            least = least.min(index);
         }
         let sum: f64 = layers.iter().map(|l| l.weight).sum();
         let count = layers.len() as f64;
@@ -146,17 +166,15 @@ impl Sampled {
         let mut w = match &self.facets {
             Some(facets) => {
                 let m = facets.sample(self.wo, u);
-                2.0 * self.wo.dot(m) * m - self.wo
+                self.folded(2.0 * self.wo.dot(m) * m - self.wo)
             }
             None => {
-                let (radius, phi) = (libm::sqrt(u[0]), 2.0 * PI * u[1]);
-                DVec3::new(radius * libm::cos(phi), radius * libm::sin(phi), libm::sqrt(1.0 - u[0]))
+                let sin_sq = u[0] * (1.0 - self.edge * self.edge);
+                let (radius, phi) = (libm::sqrt(sin_sq), 2.0 * PI * u[1]);
+                DVec3::new(radius * libm::cos(phi), radius * libm::sin(phi), libm::sqrt(1.0 - sin_sq))
             }
         };
         for eta in self.etas.iter().rev() {
-            if w.z <= 0.0 {
-                return None;
-            }
             w = refract(w, 1.0 / eta)?;
         }
         (w.z > 0.0).then(|| w.normalize())
@@ -172,8 +190,44 @@ impl Sampled {
             jacobian *= w.z / (eta * eta * below.z);
             w = below;
         }
-        jacobian * self.facets.map_or(w.z / PI, |facets| facets.pdf_solid_angle(w, self.wo))
+        jacobian
+            * match &self.facets {
+                Some(facets) => self.pdf_of_facets(facets, w),
+                None => w.z / (PI * (1.0 - self.edge * self.edge)),
+            }
     }
+
+    /// Cosines outside the cone that reflections reach, and the factor that fits them into it.
+    fn fold(&self) -> (f64, f64) {
+        let reach = self.edge + self.wo.z;
+        (reach, ((1.0 - self.edge) / reach).min(1.0))
+    }
+
+    /// A direction as it leaves: one that does not is folded into the cone.
+    fn folded(&self, w: DVec3) -> DVec3 {
+        if w.z > self.edge {
+            return w;
+        }
+        with_cosine(w, self.edge + self.fold().1 * (self.edge - w.z))
+    }
+
+    fn pdf_of_facets(&self, facets: &Facets, w: DVec3) -> f64 {
+        let (reach, scale) = self.fold();
+        let beyond = (w.z - self.edge).max(0.0) / scale;
+        let unfolded = facets.pdf_of_mirrored(w, self.wo);
+        if beyond >= reach {
+            return unfolded;
+        }
+        unfolded + facets.pdf_of_mirrored(with_cosine(w, self.edge - beyond), self.wo) / scale
+    }
+}
+
+/// The direction of the same azimuth and another cosine.
+fn with_cosine(w: DVec3, cos_theta: f64) -> DVec3 {
+    let cos_theta = cos_theta.min(1.0);
+    let across = libm::hypot(w.x, w.y);
+    let scale = libm::sqrt((1.0 - cos_theta) * (1.0 + cos_theta)) / across.max(f64::MIN_POSITIVE);
+    DVec3::new(w.x * scale, w.y * scale, cos_theta)
 }
 
 fn reflectance(layer: &MonochromeLayer, cos_theta: f64) -> f64 {

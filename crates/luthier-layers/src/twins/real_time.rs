@@ -7,6 +7,7 @@
 //! [`Terms`]. Belcour's and Yamaguchi's models have one spread for all three channels, too.
 
 use std::cell::RefCell;
+use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
 use luthier_optics::Rgb;
@@ -53,6 +54,8 @@ pub struct Twin {
     kind: Kind,
     /// Reflectances in place of those of terms, where a material chooses them.
     reflectances: Option<Reflectances>,
+    /// Rows of the matrix from light to light of a fluorescent base.
+    reradiation: Option<[Rgb; 3]>,
 }
 
 #[derive(Debug)]
@@ -113,7 +116,15 @@ impl Twin {
             }
             _ => return None,
         };
-        Some(Self { kind, reflectances })
+        Some(Self { kind, reflectances, reradiation: None })
+    }
+
+    /// The twin over a base that is fluorescent, if there are rows of a matrix from light to light (linear Rec.709,
+    /// [`luthier_optics::reradiation::rgb`]), which take the place of its albedo in `elek` and `weidlich-wilkie`.
+    #[must_use]
+    pub fn reradiating(self, rows: Option<[Rgb; 3]>) -> Self {
+        let is_chain = matches!(self.kind, Kind::Elek(_) | Kind::WeidlichWilkie(_));
+        Self { reradiation: rows.filter(|_| is_chain), ..self }
     }
 
     /// `f cos_theta_i`, RGB. Zero when either direction is at or below the horizon. Terms are asked once for every value, however many
@@ -122,8 +133,59 @@ impl Twin {
         self.eval_over(terms, &Under::NONE, wi, wo)
     }
 
-    /// [`Twin::eval`] with other normals below the first interface.
+    /// [`Twin::eval`] times light of a colour, linear Rec.709: what comes to the eye from light of that irradiance on a plane across `wi`. Where
+    /// the base is fluorescent, light of one channel comes out in others: with the rows M of [`Twin::reradiating`], and the shares
+    /// `down` and `up` that come down to the base and out again,
+    ///
+    /// ```text
+    /// L_i = f_i cos_theta_i light_i + cos_theta_i / pi up_i sum over j of M_ij down_j light_j
+    /// ```
+    ///
+    /// f being that of the interfaces. It is linear in the light; [`Twin::eval_over`] is that for white light.
+    pub fn eval_lit(&self, terms: &impl ShaderTerms, under: &Under, light: Rgb, wi: DVec3, wo: DVec3) -> Rgb {
+        match &self.reflectances {
+            Some(reflectances) => self.lit_on(&reflectances.over(terms), under, light, wi, wo),
+            None => self.lit_on(terms, under, light, wi, wo),
+        }
+    }
+
+    fn lit_on(&self, terms: &impl ShaderTerms, under: &Under, light: Rgb, wi: DVec3, wo: DVec3) -> Rgb {
+        let normal = under.flake_normal;
+        let (interfaces, passages) = match (&self.kind, self.reradiation) {
+            (Kind::Elek(layers), Some(_)) => {
+                let elek::Walked { interfaces, base } = elek::walk(layers, terms, wi, wo, normal);
+                (interfaces, base.map(|base| (base.down, base.up)))
+            }
+            (Kind::WeidlichWilkie(stacks), Some(_)) => {
+                let walk = |stack: &Monochrome, optics: &Channel<'_, _>| {
+                    WeidlichWilkie::default().walk(stack, optics, wi, wo, normal)
+                };
+                let [r, g, b] = each(terms, stacks, walk);
+                let interfaces = [r.interfaces, g.interfaces, b.interfaces];
+                let (down, up) = match (&r.base, &g.base, &b.base) {
+                    (Some(r), Some(g), Some(b)) => ([r.down, g.down, b.down], [r.up, g.up, b.up]),
+                    _ => ([0.0; 3], [0.0; 3]),
+                };
+                (interfaces, Some((down, up)))
+            }
+            _ => {
+                let plain = self.eval_on(terms, under, wi, wo);
+                return [0, 1, 2].map(|c| plain[c] * light[c]);
+            }
+        };
+        let rows = self.reradiation.unwrap_or_default();
+        let (down, up) = passages.unwrap_or_default();
+        [0, 1, 2].map(|i: usize| {
+            let emitted: f64 = (0..3).map(|j| rows[i][j] * down[j] * light[j]).sum();
+            interfaces[i] * light[i] + wi.z * FRAC_1_PI * up[i] * emitted
+        })
+    }
+
+    /// [`Twin::eval`] with other normals below the first interface, and a base that may be fluorescent, under white light.
     pub fn eval_over(&self, terms: &impl ShaderTerms, under: &Under, wi: DVec3, wo: DVec3) -> Rgb {
+        if self.reradiation.is_some() {
+            return self.eval_lit(terms, under, [1.0; 3], wi, wo);
+        }
         match &self.reflectances {
             Some(reflectances) => self.eval_on(&reflectances.over(terms), under, wi, wo),
             None => self.eval_on(terms, under, wi, wo),
@@ -175,7 +237,7 @@ fn statistical<S: Spread>(layers: &Layers<3>, terms: &impl ShaderTerms, wi: DVec
 }
 
 /// A model at each channel's wavelength.
-fn each<T: Terms>(terms: &T, stacks: &[Monochrome; 3], eval: impl Fn(&Monochrome, &Channel<'_, T>) -> f64) -> Rgb {
+fn each<T: Terms, R>(terms: &T, stacks: &[Monochrome; 3], eval: impl Fn(&Monochrome, &Channel<'_, T>) -> R) -> [R; 3] {
     let memory = Memory::default();
     [0, 1, 2].map(|channel| eval(&stacks[channel], &Channel { terms, stacks, channel, memory: &memory }))
 }

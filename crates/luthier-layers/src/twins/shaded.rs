@@ -30,11 +30,15 @@ pub struct Place {
     pub patina: Option<Growth>,
     /// Albedo of a diffuse base; `None` leaves that of the material. Phong's coefficients do not follow it.
     pub base_color: Option<Rgb>,
+    /// Rows of the matrix from light to light of a fluorescent base, see [`Twin::reradiating`]; of no effect beside a base color, and under
+    /// patina.
+    pub reradiation: Option<[Rgb; 3]>,
 }
 
 impl Place {
     /// A place without textures and effects.
-    pub const NONE: Self = Self { sample: TextureSample::NONE, under: Under::NONE, patina: None, base_color: None };
+    pub const NONE: Self =
+        Self { sample: TextureSample::NONE, under: Under::NONE, patina: None, base_color: None, reradiation: None };
 }
 
 /// Patina at a place (Elek 2010, section 4.2): the first layer has grown over the others.
@@ -121,6 +125,7 @@ impl Shaded {
         let is_chain = [elek::MODEL, "weidlich-wilkie"].contains(&model);
         let is_shown = is_chain || model == lobes::MODEL && !is_over_another(stack);
         let patina = place.patina.filter(|_| is_shown && stack.layers.len() > 1);
+        let reradiation = place.reradiation.filter(|_| place.base_color.is_none() && patina.is_none());
         let layers = |stack: &Stack| {
             // Lobes are widened one by one, and the first interface beside them.
             let mut first = stack.clone();
@@ -129,7 +134,7 @@ impl Shaded {
             }
             // Tarnish dims reflectances that are chosen, too: the twin takes them from its terms.
             let facets = Parts { reflectance: Reflectance::Terms, ..parts };
-            let twin = Twin::with(model, &first, wavelengths_nm, color, facets)?;
+            let twin = Twin::with(model, &first, wavelengths_nm, color, facets)?.reradiating(reradiation);
             let has_choice = is_chain || model == "microfacet";
             let reflectance = if has_choice { parts.reflectance } else { Reflectance::Terms };
             let reflectances = Reflectances::of(stack, wavelengths_nm, color, reflectance);
@@ -155,6 +160,16 @@ impl Shaded {
             _ => {}
         }
         Some(Self { place, layers: grown, bare, has_lobes })
+    }
+
+    /// [`Shaded::eval`] times light of a colour, see [`Twin::eval_lit`]; a place with patina has no fluorescent base.
+    pub fn eval_lit(&self, light: Rgb, wi: DVec3, wo: DVec3) -> Rgb {
+        let [wi_here, wo_here] = [wi, wo].map(|w| frame::local(self.place.sample.normal, w));
+        if self.bare.is_some() || [wi, wo, wi_here, wo_here].iter().any(|w| w.z <= 0.0) {
+            let plain = self.eval(wi, wo);
+            return [0, 1, 2].map(|c| plain[c] * light[c]);
+        }
+        self.layers.twin.eval_lit(&self.layers.terms, &self.place.under, light, wi_here, wo_here)
     }
 
     /// `f cos_theta_i`, RGB; the cosine is that against the place's normal. Zero where either direction is at or below the horizon of the

@@ -8,6 +8,7 @@ mod everywhere;
 mod granier_heidrich;
 mod random;
 mod sampling;
+mod sampling_shares;
 mod schlick;
 mod smooth_coats;
 mod sphere;

@@ -1,6 +1,7 @@
 //! Samples of layered surfaces against their densities, by Pearson's test.
 //!
-//! Cells are graded around the mirror direction, so that one grid serves lobes of any width. Draws without a direction are a cell too.
+//! Cells are graded around the mirror direction, so that one grid serves lobes of any width. Draws without a direction are a cell too, in which
+//! none belong.
 
 use std::f64::consts::PI;
 
@@ -18,8 +19,8 @@ const RINGS: usize = 40;
 const SECTORS: usize = 16;
 const SAMPLES: usize = 100_000;
 
-/// Standard normal deviate that a test may reach: p = 0.01 shared by 25 tests (Sidak).
-const LIMIT: f64 = 3.35;
+/// Standard normal deviate that a test may reach: p = 0.01 shared by 27 tests (Sidak).
+const LIMIT: f64 = 3.37;
 
 /// Uniform numbers: SplitMix64.
 struct Numbers(u64);
@@ -49,8 +50,8 @@ fn deviate(centre: DVec3, mut sample: impl FnMut() -> Option<DVec3>, pdf: impl F
     }
     let mut expected: Vec<f64> = (0..RINGS * SECTORS)
         .map(|cell| {
-            // Outer cells are wide and may be cut by the horizon.
-            let n = if cell / SECTORS > RINGS - 6 { 48 } else { 12 };
+            // Outer cells are wide and may be cut by the horizon, or by the edge of what passes a medium of a small index.
+            let n = if cell / SECTORS > RINGS - 12 { 96 } else { 12 };
             let mut sum = 0.0;
             for i in 0..n {
                 let u = ((cell / SECTORS) as f64 + (f64::from(i) + 0.5) / f64::from(n)) / RINGS as f64;
@@ -64,8 +65,8 @@ fn deviate(centre: DVec3, mut sample: impl FnMut() -> Option<DVec3>, pdf: impl F
         })
         .collect();
     let found: f64 = expected.iter().sum();
-    assert!(found < 1.002 * SAMPLES as f64, "the density integrates to {}", found / SAMPLES as f64);
-    expected.push((SAMPLES as f64 - found).max(0.0));
+    assert!((found / SAMPLES as f64 - 1.0).abs() < 5e-3, "the density integrates to {}", found / SAMPLES as f64);
+    expected.push(0.0);
 
     let (mut statistic, mut cells) = (0.0, 0.0);
     let (mut pool_observed, mut pool_expected) = (0.0, 0.0);
@@ -90,6 +91,13 @@ fn stacks() -> Vec<Monochrome> {
         Monochrome::bare(&[(ggx(0.005), dielectric(1.5, 0.2)), (ggx(0.2), WHITE)]),
         Monochrome::bare(&[(ggx(0.4), dielectric(1.5, 0.0)), (ggx(0.0), lambert(0.8))]),
         Monochrome::bare(&[(ggx(0.1), dielectric(1.3, 0.1)), (brushed, dielectric(1.7, 0.1)), (ggx(0.3), WHITE)]),
+        Monochrome::bare(&[
+            (ggx(0.1), dielectric(1.5, 0.0)),
+            (ggx(0.2), dielectric(0.9, 0.0)),
+            (ggx(0.4), dielectric(1.4, 0.0)),
+            (ggx(0.0), lambert(0.6)),
+        ]),
+        Monochrome::bare(&[(ggx(0.3), dielectric(0.8, 0.0)), (ggx(0.0), lambert(0.6))]),
     ]
 }
 
@@ -116,7 +124,7 @@ fn local_samples_follow_their_density() {
 #[test]
 fn proposals_of_each_layer_follow_their_density() {
     for (number, stack) in stacks().iter().enumerate() {
-        let wo = at(60.0);
+        let wo = at(50.0);
         let sampler = Sampler::new(stack, wo);
         assert_eq!(sampler.count(), stack.layers.len());
         for layer in 0..sampler.count() {

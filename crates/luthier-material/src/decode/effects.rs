@@ -10,13 +10,17 @@ use crate::section::Section;
 use crate::suggest::short;
 
 /// The effects of a material.
-pub(super) fn decode(document: &Section<'_>, stack: &Stack, sink: &mut Sink<'_>) -> Effects {
+pub(super) fn decode(document: &Section<'_>, stack: &Stack, is_fluorescent: bool, sink: &mut Sink<'_>) -> Effects {
     let Some(at) = document.section("effects") else { return Effects::default() };
     for effect in ["flakes", "patina"] {
         if at.has(effect) && stack.layers.len() == 1 {
             let hint = "add a dielectric `[[layer]]` on top".to_owned();
             sink.error(at.key_span(effect), format!("`{effect}` needs a layer below the first interface"), Some(hint));
         }
+    }
+    if is_fluorescent && at.has("patina") {
+        let hint = "give the base an `albedo` in place of `reradiation`, or leave the patina out".to_owned();
+        sink.error(at.key_span("patina"), "no model has patina over a base with `reradiation`", Some(hint));
     }
     Effects {
         flakes: at.section("flakes").and_then(|at| flakes(&at)),

@@ -3,7 +3,7 @@
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Surface};
 
-use super::{Read, films, ior, schlick, surface};
+use super::{Read, films, ior, reradiation, schlick, surface};
 use crate::diagnostic::Sink;
 use crate::doubt::Sources;
 use crate::grammar::LAYERS_MAX;
@@ -46,6 +46,7 @@ pub(super) fn decode(
             _ => exterior,
         };
         let mut below = None;
+        let matrix = if kind == "diffuse" { reradiation::decode(at, read, sink) } else { None };
         let base = match kind {
             "dielectric" if at.has("f0") => {
                 let ior = at.has("ior").then(|| index(sink, sources));
@@ -60,7 +61,7 @@ pub(super) fn decode(
                 interface
             }
             "diffuse" => Base::Diffuse(Diffuse {
-                albedo: at.rgb("albedo").unwrap_or([0.0; 3]),
+                albedo: matrix.map(reradiation::albedo).or_else(|| at.rgb("albedo")).unwrap_or([0.0; 3]),
                 sigma: at.number("sigma").unwrap_or(0.0),
             }),
             // The checker has reported it.
@@ -81,7 +82,7 @@ pub(super) fn decode(
             sources.places.add(&key, at);
             films.iter().enumerate().for_each(|(i, film)| sources.places.add(&format!("{key}.film.{i}"), &film.at));
         }
-        let extra = LayerExtras { film_variation: variation(&films, sink), maps: maps(at) };
+        let extra = LayerExtras { reradiation: matrix, film_variation: variation(&films, sink), maps: maps(at) };
         if number > 0 {
             only_the_first_varies(at, &films, sink);
         }

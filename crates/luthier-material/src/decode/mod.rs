@@ -7,6 +7,7 @@ mod effects;
 mod films;
 mod ior;
 mod layers;
+mod reradiation;
 mod schlick;
 mod surface;
 
@@ -43,7 +44,8 @@ pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read
     }
     let stack = Stack { exterior, layers };
     let bake = bake::decode(document, sink);
-    let effects = effects::decode(document, &stack, sink);
+    let is_fluorescent = extras.iter().any(|layer| layer.reradiation.is_some());
+    let effects = effects::decode(document, &stack, is_fluorescent, sink);
     if effects.patina.is_some() {
         schlick::check_bare(document, &stack, sink);
     }

@@ -166,15 +166,29 @@ pub(super) static CONDUCTOR: Table = Table {
     exactly_one: Some(Alternatives { and: Some(&OPAQUE), ..SURFACE }),
 };
 
+const DIFFUSE_REFLECTANCE: Alternatives = Alternatives {
+    what: "reflectance",
+    forms: &[&["albedo"], &["reradiation"]],
+    examples: "`albedo` and `reradiation`",
+    together: false,
+    and: None,
+};
+
 pub(super) static DIFFUSE: Table = Table {
     name: "diffuse",
     doc: "An opaque diffuse base (Lambert, or Oren and Nayar); the last layer. It has no interface.",
     keys: &[
         Key::required("type", Kind::Choice(&["diffuse"]), TYPE_DOC),
-        Key::required(
+        Key::optional(
             "albedo",
             UNIT_RGB,
             "Diffuse reflectance: a number, or one for each of R, G, B (linear Rec.709).",
+        ),
+        Key::optional(
+            "reradiation",
+            PATH,
+            "In place of albedo, path of a CSV file with the re-radiation matrix of a fluorescent base: the first row has the wavelengths of the \
+             light in nm, each row below a wavelength that comes out and the share of the power of each light that does.",
         ),
         Key::with_default(
             "sigma",
@@ -184,7 +198,7 @@ pub(super) static DIFFUSE: Table = Table {
         ),
         Key::optional("maps", Kind::Table(&DIFFUSE_MAPS), MAPS_DOC),
     ],
-    exactly_one: None,
+    exactly_one: Some(DIFFUSE_REFLECTANCE),
 };
 
 pub(super) static METALLIC_ROUGHNESS: Table = Table {

@@ -253,7 +253,9 @@ impl References {
         let twin = Twin::with(model.name(), stack, material.wavelengths_nm, color, parts);
         Ok(Self {
             layers: elek::layers(stack),
-            twin: twin.ok_or_else(|| ReportError::Model { material: material.name.clone(), model })?,
+            twin: twin
+                .ok_or_else(|| ReportError::Model { material: material.name.clone(), model })?
+                .reradiating(material.layers.last().and_then(|layer| layer.reradiation)),
             spectral: Exact::varying(stack, Color::Spectral, varying),
             three: Exact::varying(stack, three, varying),
             level: model.is_statistical().then(|| Exact::level(stack, three, recorded_veil(material))),

@@ -10,6 +10,11 @@ use crate::compose::features::Features;
 use crate::compose::function;
 use crate::languages::text::rename;
 
+/// Whether a model goes through the layers one by one.
+pub(crate) fn is_chain(model: ShadingModel) -> bool {
+    matches!(model, ShadingModel::Elek | ShadingModel::WeidlichWilkie)
+}
+
 /// `luthier_eval_<model>` of a model, whose function `interface` adds an interface to a `LuthierPath`.
 pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, features: &Features) -> String {
     let name = function(model);
@@ -18,15 +23,21 @@ pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, 
     let (name, bare) =
         if has_patina { (name.replace("luthier_eval", "luthier_stack"), " is_bare: bool,") } else { (name, "") };
     let without = if has_patina { "; where it is bare, without the first layer" } else { "" };
+    let is_lit = features.has("fluorescent");
+    let (lit, given, what) = match is_lit {
+        true => ("_lit", ", light: vec3<f32>", "Light to the eye, of light of a colour, by"),
+        false => ("", "", "f cos_theta_i of"),
+    };
     let mut out = format!(
-        "/// f cos_theta_i of the model `{}`, both directions above the horizon{without}.\n\
-         fn {name}($place_parameter material: u32,{bare} wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n",
+        "/// {what} the model `{}`, both directions above the horizon{without}.\n\
+         fn {name}{lit}($place_parameter material: u32,{bare} wi: vec3<f32>, wo: vec3<f32>{given}) -> vec3<f32> {{\n",
         model.name()
     );
     let is_diffuse = |layer: &luthier_manifest::LayerRecord| layer.kind == LayerKind::Diffuse;
     if layers.iter().all(|layers| layers.first().is_some_and(is_diffuse)) {
-        out.push_str("    let layer = $layer(material, 0u);\n    return wi.z * $diffuse(layer, wi, wo);\n}\n");
-        return out + &patina(model, features);
+        let base = if is_lit { "luthier_reradiated(layer, wi, wo, light)" } else { "$diffuse(layer, wi, wo)" };
+        let _ = write!(out, "    let layer = $layer(material, 0u);\n    return wi.z * {base};\n}}\n");
+        return out + &patina(model, features) + &white(model, features);
     }
     let depth = layers.iter().map(|layers| layers.len()).max().unwrap_or(0);
     let least = layers.iter().map(|layers| layers.len()).min().unwrap_or(0);
@@ -39,12 +50,13 @@ pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, 
         (true, true) => ", select(place.flake_normal, vec3<f32>(0.0, 0.0, 1.0), is_bare)",
     };
     let alpha = if features.has("clamped") { "0.0, " } else { "" };
+    let light = if is_lit { ", light" } else { "" };
     let _ = writeln!(
         out,
         "    // Products of lower cosines would underflow; the outer one stays as it is.\n    \
              let down = vec3<f32>(wi.xy, max(wi.z, 1e-16));\n    \
              let up = vec3<f32>(wo.xy, max(wo.z, 1e-16));\n    \
-             var path = LuthierPath(down, up, wi.xy + wo.xy, vec3<f32>(1.0), vec3<f32>(0.0), {alpha}true{below});"
+             var path = LuthierPath(down, up, wi.xy + wo.xy, vec3<f32>(1.0){light}, vec3<f32>(0.0), {alpha}true{below});"
     );
     for i in 0..depth {
         let here = || layers.iter().filter_map(|layers| layers.get(i));
@@ -73,7 +85,21 @@ pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, 
         };
     }
     out.push_str("    return wi.z * path.total;\n}\n");
-    out + &patina(model, features)
+    out + &patina(model, features) + &white(model, features)
+}
+
+/// The function of a model for white light, where one of the set takes light of a colour and other functions than `luthier_eval` call it.
+fn white(model: ShadingModel, features: &Features) -> String {
+    if !(features.has("fluorescent") && features.has("face")) {
+        return String::new();
+    }
+    let name = function(model);
+    format!(
+        "\n/// f cos_theta_i of the model `{}`, both directions above the horizon.\n\
+         fn {name}($place_parameter material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n    \
+         return {name}_lit($place_argument material, wi, wo, vec3<f32>(1.0));\n}}\n",
+        model.name()
+    )
 }
 
 /// The function of a model where a material of the set has patina: with and without the first layer, blended.
@@ -83,16 +109,20 @@ fn patina(model: ShadingModel, features: &Features) -> String {
     }
     let name = function(model);
     let stack = name.replace("luthier_eval", "luthier_stack");
+    let (lit, given, light, factor) = match features.has("fluorescent") {
+        true => ("_lit", ", light: vec3<f32>", ", light", "light * "),
+        false => ("", "", "", ""),
+    };
     format!(
         "\n/// f cos_theta_i of the model `{}` with patina (Elek 2010, section 4.2).\n\
-         fn {name}(place: LuthierPlace, material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n    \
-             var value = luthier_patina_diffuse(place, material, wi, wo);\n    \
+         fn {name}{lit}(place: LuthierPlace, material: u32, wi: vec3<f32>, wo: vec3<f32>{given}) -> vec3<f32> {{\n    \
+             var value = {factor}luthier_patina_diffuse(place, material, wi, wo);\n    \
              let amount = select(1.0, place.patina, place.patina >= 0.0);\n    \
              if amount < 1.0 {{\n        \
-                 value += (1.0 - amount) * {stack}(place, material, true, wi, wo);\n    \
+                 value += (1.0 - amount) * {stack}{lit}(place, material, true, wi, wo{light});\n    \
              }}\n    \
              if amount > 0.0 {{\n        \
-                 value += amount * {stack}(place, material, false, wi, wo);\n    \
+                 value += amount * {stack}{lit}(place, material, false, wi, wo{light});\n    \
              }}\n    \
              return value;\n\
          }}\n",
@@ -128,7 +158,11 @@ pub(crate) fn parts(set: &MaterialSet<'_>, model: ShadingModel, features: &Featu
     let layers = layers(set, model);
     let count = parts_count(set, model, false);
     if count == 0 {
-        let base = "let layer = $layer(material, 0u);\n    prepared.wide = LUTHIER_PI * $diffuse(layer, light, wo);";
+        let diffuse = match features.has("fluorescent") {
+            true => "luthier_reradiated(layer, light, wo, vec3<f32>(1.0))",
+            false => "$diffuse(layer, light, wo)",
+        };
+        let base = format!("let layer = $layer(material, 0u);\n    prepared.wide = LUTHIER_PI * {diffuse};");
         return format!("{out}    {base}\n    return prepared;\n}}\n");
     }
     let has_patina = features.has("chain_patina");
@@ -181,6 +215,7 @@ fn walk(
     const LEVEL: &str = "vec3<f32>(0.0, 0.0, 1.0)";
     let is_diffuse = |layer: &luthier_manifest::LayerRecord| layer.kind == LayerKind::Diffuse;
     let (has_flakes, is_clamped) = (features.has("flakes"), features.has("clamped"));
+    let is_folded = features.has("folded") && features.has("media");
     let (interface, alpha, axis) = match model {
         ShadingModel::Elek if is_clamped => {
             ("luthier_elek_interface", "vec2<f32>(next.alpha_above)", "vec2<f32>(1.0, 0.0)")
@@ -193,8 +228,12 @@ fn walk(
     let normal = if walk.is_bare { LEVEL } else { "place.flake_normal" };
     let below = if has_flakes { format!(", {normal}") } else { String::new() };
     let clamp = if is_clamped { "0.0, " } else { "" };
+    let lit = if features.has("fluorescent") { ", vec3<f32>(1.0)" } else { "" };
     let start = |light: &str, across: &str| {
-        format!("LuthierPath({light}, wo, {across}, vec3<f32>({}), vec3<f32>(0.0), {clamp}true{below})", walk.share)
+        format!(
+            "LuthierPath({light}, wo, {across}, vec3<f32>({}){lit}, vec3<f32>(0.0), {clamp}true{below})",
+            walk.share
+        )
     };
     let mut lines = vec![
         format!("var path = {};", start("vec3<f32>(-wo.xy, wo.z)", "vec2<f32>(0.0)")),
@@ -208,6 +247,9 @@ fn walk(
         if has_flakes {
             lines.push("var outer_eta = 1.0;".to_owned());
         }
+        if is_folded {
+            lines.push("var least = 1.0;".to_owned());
+        }
     }
     for i in first..depth {
         let here = || layers.iter().filter_map(|layers| layers.get(i));
@@ -217,10 +259,15 @@ fn walk(
             (false, false) => format!("eta, {LEVEL}, 1.0"),
             (false, true) => format!("outer_eta, {normal}, eta"),
         };
+        let narrowest = match (is_folded, i == first) {
+            (false, _) => "",
+            (true, true) => ", 1.0",
+            (true, false) => ", least",
+        };
         let mut add = vec![
             format!("let next = {interface}(path, layer);"),
             format!(
-                "prepared.parts[{}] = luthier_path_part(path, layer, {alpha}, {axis}, {media});",
+                "prepared.parts[{}] = luthier_path_part(path, layer, {alpha}, {axis}, {media}{narrowest});",
                 walk.first_part + i - first
             ),
             "if mean.open {".to_owned(),
@@ -231,6 +278,9 @@ fn walk(
         if i + 1 < depth {
             let eta = if i == first && has_flakes { "outer_eta" } else { "eta" };
             add.push(format!("{eta} = {eta} / layer.inverse_eta;"));
+            if is_folded {
+                add.push(format!("least = min(least, {eta});"));
+            }
         }
         let base = [
             "if mean.open {",

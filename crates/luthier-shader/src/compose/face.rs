@@ -22,8 +22,9 @@ pub(crate) fn modules(set: &MaterialSet<'_>, features: &Features) -> Vec<String>
         return Vec::new();
     }
     let parts = count(set, features);
+    let least = if features.has("folded") && features.has("media") { ", least: f32" } else { "" };
     let module = |wgsl: &str| {
-        let wgsl = wgsl.replace("$parts", &format!("{parts}u")).replace("$model_base", BASE);
+        let wgsl = wgsl.replace("$parts", &format!("{parts}u")).replace("$model_base", BASE).replace("$least", least);
         text(&wgsl.replace("$model_lobes", &number(ShadingModel::Lobes)), features)
     };
     let mut modules = vec![module(include_str!("../wgsl/face/prepared.wgsl"))];
@@ -49,6 +50,9 @@ pub(crate) fn modules(set: &MaterialSet<'_>, features: &Features) -> Vec<String>
             modules.push(module(include_str!("../wgsl/face/lobes_sample.wgsl")));
         }
         modules.push(module(&unrolled(include_str!("../wgsl/face/sample.wgsl"), parts, features)));
+        if set.functions.has(FunctionGroup::Propose) {
+            modules.push(module(&unrolled(include_str!("../wgsl/face/propose.wgsl"), parts, features)));
+        }
     }
     if features.has("environment") {
         modules.push(module(include_str!("../wgsl/face/environment.wgsl")));
@@ -150,6 +154,7 @@ fn light(set: &MaterialSet<'_>, features: &Features) -> String {
         "wi"
     };
     let place = if features.has("place") { "prepared.place, " } else { "" };
+    let lit = if features.has("fluorescent") { light_of_a_colour(set, &out, place, wi) } else { String::new() };
     let eval = |model| format!("return {}({place}prepared.material, {wi}, prepared.wo);", function(model));
     let call = |model: ShadingModel| match model {
         ShadingModel::Lobes if features.has("lobes") => format!("return luthier_light_lobes(prepared.lobes, {wi});"),
@@ -170,7 +175,26 @@ fn light(set: &MaterialSet<'_>, features: &Features) -> String {
         }
         let _ = writeln!(out, "    {}\n}}", call(*first));
     }
-    out
+    if lit.is_empty() { out } else { format!("{out}\n{lit}") }
+}
+
+/// `luthier_light_lit`; `light` is the beginning of `luthier_light`.
+fn light_of_a_colour(set: &MaterialSet<'_>, light: &str, place: &str, wi: &str) -> String {
+    let mut out = String::from(
+        "/// Light that a prepared material sends from wi to the eye, RGB, of light of a colour: that of `luthier_eval_lit`.\n\
+         fn luthier_light_lit(prepared: LuthierPrepared, wi: vec3<f32>, light: vec3<f32>) -> vec3<f32> {\n",
+    );
+    out.extend(light.lines().skip(2).flat_map(|line| [line, "\n"]));
+    let models: Vec<ShadingModel> = set.models().collect();
+    let is_alone = models.len() == 1;
+    for model in models.into_iter().filter(|&model| chain::is_chain(model)) {
+        let call = format!("return {}_lit({place}prepared.material, {wi}, prepared.wo, light);", function(model));
+        if is_alone {
+            return format!("{out}    {call}\n}}\n");
+        }
+        let _ = write!(out, "    if prepared.model == {} {{\n        {call}\n    }}\n", number(model));
+    }
+    out + "    return light * luthier_light(prepared, wi);\n}\n"
 }
 
 /// `luthier_albedo`.
@@ -218,10 +242,23 @@ fn unrolled(module: &str, parts: usize, features: &Features) -> String {
              below += luthier_chance(prepared.parts[{i}]);\n"
         )
     });
+    let proposed = each(&|i| {
+        format!(
+            "    if luthier_chance(prepared.parts[{i}]) > 0.0 {{\n        \
+             density += luthier_part_density(prepared.parts[{i}], prepared.wo, wi);\n    }}\n"
+        )
+    });
+    let part = each(&|i| format!("        if part == {i}u {{\n            lobe = prepared.parts[{i}];\n        }}\n"));
+    // Of `lobes` alone the draw of the whole is the only proposal.
+    let is_whole = features.has("lobes") && !features.has("several");
+    let proposals = if is_whole { 1 } else { parts + 1 };
     let end = "    if choice >= below {\n        drawn.part = $parts;\n    }\n";
     module
         .replace("    $each_spill\n", &spill)
         .replace("    $each_density\n", &density)
         .replace("    $each_total\n", &total)
+        .replace("    $each_proposed\n", &proposed)
+        .replace("        $each_part\n", &part)
+        .replace("$proposals", &format!("{proposals}u"))
         .replace("    $each_choice\n", &format!("{choice}{end}"))
 }

@@ -19,7 +19,7 @@ impl Features {
     /// Every word there is but the names of tables, for the check that modules name no other.
     #[cfg(test)]
     const ALL: &str = "absorption anisotropic bare base_color beckmann below bent bilinear chain chain_diffuse chain_patina clamped closed \
-        coat computed conductor critical_view diffuse environment exact face film film_table fitted flakes full ggx glitter granier \
+        coat computed conductor critical_view diffuse environment exact face film film_table fitted flakes fluorescent folded full ggx glitter granier \
         granier_bare granier_base granier_film granier_schlick granier_transparent interface lazanyi lobes_axes lobes_bare_base lobes_base \
         lobes_diffuse lobes_film lobes_patina lobes_tilted mask_implicit mask_kelemen \
         mask_schlick_smith mask_smith mask_smith_separable mask_v_cavity masked media microfacet_diffuse mixed one_lobe \
@@ -142,15 +142,20 @@ fn of_parts(set: &MaterialSet<'_>, form: Form, names: &BTreeSet<&'static str>) -
 }
 
 /// Words for functions beside `luthier_eval`: lobes of visible normals, and of powers of a cosine; whether some are below boundaries, and
-/// tilted there; whether a material has to say which model it is of.
+/// tilted there; whether draws that do not leave are folded back; whether a material has to say which model it is of.
 fn of_face(set: &MaterialSet<'_>, names: &BTreeSet<&'static str>) -> Vec<&'static str> {
     let has = |name| names.contains(name);
+    let visible = has("chain") || has("smith") || has("statistics");
+    let powers = has("phong") || has("granier") && has("interface");
+    let tilted = has("flakes") || has("granier_transparent") && has("place");
     let words = [
         ("face", true),
-        ("visible", has("chain") || has("smith") || has("statistics")),
-        ("powers", has("phong") || has("granier") && has("interface")),
+        ("visible", visible),
+        ("powers", powers),
         ("media", has("chain") && has("below") || has("granier_transparent")),
-        ("tilted", has("flakes") || has("granier_transparent") && has("place")),
+        ("tilted", tilted),
+        // Tilted boundaries have no cone about one normal through which all light leaves.
+        ("folded", set.functions.has(FunctionGroup::Sample) && (visible || powers) && !tilted),
         ("several", set.models().count() > 1 || has("lobes") && has("lobes_diffuse")),
     ];
     words.into_iter().filter(|(_, holds)| *holds).map(|(name, _)| name).collect()
@@ -189,6 +194,9 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
             names.insert("diffuse");
             if layer.sigma != 0.0 {
                 names.insert("oren_nayar");
+            }
+            if layer.reradiation.is_some() && is_chain {
+                names.insert("fluorescent");
             }
             continue;
         }

@@ -60,6 +60,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         (has("phong") || has("granier") && has("interface"), include_str!("../wgsl/interface/power_lobe.wgsl")),
         (has("oren_nayar"), include_str!("../wgsl/base/oren_nayar.wgsl")),
         (has("diffuse") && !has("oren_nayar"), include_str!("../wgsl/base/lambert.wgsl")),
+        (has("fluorescent"), include_str!("../wgsl/base/reradiated.wgsl")),
         (has("computed") && (has("bare") || has("film")), include_str!("../wgsl/interface/complex.wgsl")),
         (has("computed") && has("bare"), include_str!("../wgsl/interface/fresnel.wgsl")),
         (has("computed") && has("film"), include_str!("../wgsl/interface/film.wgsl")),
@@ -261,7 +262,11 @@ fn eval(set: &MaterialSet<'_>, features: &Features) -> String {
     let call = |model: ShadingModel| {
         let name = function(model);
         let arguments = if turned { "place, material, wi_here, wo_here" } else { "material, wi, wo" };
-        format!("{name}({arguments})")
+        match (features.has("fluorescent"), chain::is_chain(model)) {
+            (false, _) => format!("{name}({arguments})"),
+            (true, true) => format!("{name}_lit({arguments}, light)"),
+            (true, false) => format!("light * {name}({arguments})"),
+        }
     };
     let models: Vec<ShadingModel> = set.models().collect();
     if let [first, others @ ..] = models.as_slice() {
@@ -275,6 +280,9 @@ fn eval(set: &MaterialSet<'_>, features: &Features) -> String {
         let _ = writeln!(body, "    return {};", call(*first));
     }
     let parameters = "material: u32, wi: vec3<f32>, wo: vec3<f32>";
+    if features.has("fluorescent") {
+        return lit(&body, turned, parameters, SUMMARY);
+    }
     if turned {
         format!(
             "{SUMMARY}fn luthier_eval_at(place: LuthierPlace, {parameters}) -> vec3<f32> {{\n{body}}}\n\n\
@@ -283,6 +291,30 @@ fn eval(set: &MaterialSet<'_>, features: &Features) -> String {
         )
     } else {
         format!("{SUMMARY}fn luthier_eval({parameters}) -> vec3<f32> {{\n{body}}}\n")
+    }
+}
+
+/// [`eval`] where a base is fluorescent: the light goes in, because what leaves is not a factor times it.
+fn lit(body: &str, turned: bool, parameters: &str, summary: &str) -> String {
+    const SUMMARY: &str = "/// Light that a material sends from wi to wo, RGB: `luthier_eval` for light of a colour, of which a fluorescent base\n\
+         /// sends some out in other channels. Linear in the light; `luthier_eval` is that of white light, (1, 1, 1), D65.\n";
+    if turned {
+        format!(
+            "{SUMMARY}fn luthier_eval_lit_at(place: LuthierPlace, {parameters}, light: vec3<f32>) -> vec3<f32> {{\n{body}}}\n\n\
+             /// `luthier_eval_lit_at` at a place without textures.\n\
+             fn luthier_eval_lit({parameters}, light: vec3<f32>) -> vec3<f32> {{\n    \
+             return luthier_eval_lit_at(luthier_place(), material, wi, wo, light);\n}}\n\n\
+             {summary}fn luthier_eval_at(place: LuthierPlace, {parameters}) -> vec3<f32> {{\n    \
+             return luthier_eval_lit_at(place, material, wi, wo, vec3<f32>(1.0));\n}}\n\n\
+             /// f cos_theta_i of a material, RGB, at a place without textures: `luthier_eval_at` there.\n\
+             fn luthier_eval({parameters}) -> vec3<f32> {{\n    return luthier_eval_at(luthier_place(), material, wi, wo);\n}}\n"
+        )
+    } else {
+        format!(
+            "{SUMMARY}fn luthier_eval_lit({parameters}, light: vec3<f32>) -> vec3<f32> {{\n{body}}}\n\n\
+             {summary}fn luthier_eval({parameters}) -> vec3<f32> {{\n    \
+             return luthier_eval_lit(material, wi, wo, vec3<f32>(1.0));\n}}\n"
+        )
     }
 }
 

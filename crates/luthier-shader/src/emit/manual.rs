@@ -14,8 +14,14 @@ const WIDTH: usize = 140;
 const LISTED: usize = 6;
 
 /// Functions of the face, by their calls, and what they give.
-const FUNCTIONS: [(&str, &str); 16] = [
+const FUNCTIONS: [(&str, &str); 20] = [
     ("luthier_eval(material, wi, wo)", "f cos_theta_i, linear Rec.709; a light adds its irradiance times this"),
+    (
+        "luthier_eval_lit(material, wi, wo, light)",
+        "luthier_eval for light of a colour: what a fluorescent base sends out is no factor times the light, and luthier_eval is for white light",
+    ),
+    ("luthier_eval_lit_at(place, material, wi, wo, light)", "luthier_eval_lit at a place of a surface that varies"),
+    ("luthier_light_lit(prepared, wi, light)", "luthier_eval_lit of a prepared material"),
     (
         "luthier_prepare(material, wo), luthier_light(prepared, wi)",
         "luthier_eval in two steps, of which the first is the same for all lights",
@@ -27,6 +33,10 @@ const FUNCTIONS: [(&str, &str); 16] = [
         "a direction of light from three numbers in 0..1, its density, its weight f cos_theta_i / density, and its lobe",
     ),
     ("luthier_pdf(prepared, wi)", "the density in solid angle of a direction that luthier_sample draws"),
+    (
+        "luthier_propose(prepared, part, u)",
+        "a direction that one of LUTHIER_PROPOSALS parts proposes, its density, and its weight, f cos_theta_i over the densities of all parts",
+    ),
     (
         "luthier_environment(prepared, frame, turn)",
         "what the prefiltered environment sends to the eye; the columns of frame are tangent, bitangent and normal in the world of the environment, \

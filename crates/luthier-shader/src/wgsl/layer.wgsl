@@ -4,7 +4,7 @@ const LUTHIER_DIELECTRIC: u32 = 0u;
 //? granier_bare
 const LUTHIER_CONDUCTOR: u32 = 1u;
 //? end
-//? mixed|granier_base|base_color, diffuse|granier_base
+//? mixed|granier_base|base_color|fluorescent, diffuse|granier_base
 const LUTHIER_DIFFUSE: u32 = 2u;
 //? end
 const LUTHIER_MATERIAL_WORDS: u32 = $words_material;
@@ -96,6 +96,14 @@ struct LuthierLayer {
     /// Oren-Nayar slope deviation in radians; 0 is Lambert.
     sigma: f32,
     //? end
+    //? fluorescent
+    /// Whether it is a base that sends light of one channel out in others.
+    fluoresces: bool,
+    /// Rows of its matrix from light to light, over pi.
+    reradiated_red: vec3<f32>,
+    reradiated_green: vec3<f32>,
+    reradiated_blue: vec3<f32>,
+    //? end
     //? end
     $tiles
     //? total_reflection, fresnel|film_table
@@ -157,6 +165,10 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     layer.optical_depth_log2 = slab.xyz;
     layer.lambert = base.xyz;
     layer.sigma = numbers.w;
+    layer.fluoresces = layer.kind == LUTHIER_DIFFUSE && luthier_materials[first + $word_film_thickness_waves].x > 0.5;
+    layer.reradiated_red = real_part.xyz;
+    layer.reradiated_green = imaginary_part.xyz;
+    layer.reradiated_blue = luthier_materials[first + $word_film_ior_n].xyz;
     layer.critical_cot_sq = luthier_materials[first + $word_film_ior_k].w;
     $assign_tiles
     layer.film_thickness_nm = real_part.w;

@@ -135,6 +135,7 @@ fn a_shader_has_the_groups_that_were_asked_for() {
     let names = [
         (FunctionGroup::Light, &["fn luthier_prepare(", "fn luthier_light("][..]),
         (FunctionGroup::Sample, &["fn luthier_sample(", "fn luthier_pdf("]),
+        (FunctionGroup::Propose, &["fn luthier_propose(", "const LUTHIER_PROPOSALS"]),
         (FunctionGroup::Albedo, &["fn luthier_albedo("]),
         (FunctionGroup::Surface, &["    slope_variance: f32,"]),
     ];
@@ -143,6 +144,7 @@ fn a_shader_has_the_groups_that_were_asked_for() {
             &[][..],
             &[FunctionGroup::Light],
             &[FunctionGroup::Sample],
+            &[FunctionGroup::Propose],
             &[FunctionGroup::Albedo],
             &[FunctionGroup::Surface],
         ] {

@@ -11,7 +11,9 @@ use luthier_shader::{Form, MaterialSet, TableFace, Target, emit};
 
 use crate::arithmetic::directions;
 use crate::machine::{Machine, Value, vector};
-use crate::scenes::{FLAKES, GLITTER, clear, conductor, dielectric, diffuse, filmed, material, patina, tables};
+use crate::scenes::{
+    FLAKES, GLITTER, clear, conductor, dielectric, diffuse, filmed, fluorescent, material, patina, tables,
+};
 
 /// Change of values that a shown feature exceeds; a feature that is not shown moves none.
 const SHOWN: f32 = 0.02;
@@ -188,6 +190,9 @@ fn change(model: ShadingModel, feature: Feature, form: Form) -> Option<f32> {
             let material = || mapped(of(model, &[coat(), diffuse(0.0)]));
             moved(&Shader::new(material(), form).at(member, value), &Shader::new(material(), form))
         }
+        // The baker writes no matrix for models that do not show it.
+        Feature::Reradiation if !model.honours(feature, form) => return None,
+        Feature::Reradiation => moved(&shader(&[coat(), fluorescent()]), &shader(&[coat(), diffuse(0.0)])),
         Feature::Flakes | Feature::Patina | Feature::Glitter => {
             let plain = || of(model, &[coat(), gold()]);
             let patina = || LayerRecord { tiles: gold().tiles.with([(TableKind::Fgd, Some(2))]), ..gold() };

@@ -8,6 +8,7 @@ mod emission;
 mod examples;
 mod face;
 mod features;
+mod fluorescent;
 mod golden;
 mod judges;
 mod library;

@@ -63,29 +63,33 @@ fn oren_nayar(rho: f64, sigma: f64, wi: V, wo: V) -> f64 {
     (rho / PI * first + rho * rho / PI * second).max(0.0)
 }
 
-/// Elek 2010, eq. 2: the BRDF of these layers in a channel; `alpha` is the greatest above them.
-fn brdf(layers: &[LayerRecord], channel: usize, alpha: f64, wi: V, wo: V) -> f64 {
-    let Some(layer) = layers.first() else { return 0.0 };
+/// Elek 2010, eq. 2: what these layers send of light, RGB, without the cosine outside; `alpha` is the greatest above them. The light
+/// goes down channel by channel, is sent on by the base, and what the base sends goes up channel by channel.
+fn sent(layers: &[LayerRecord], light: V, alpha: f64, wi: V, wo: V) -> V {
+    let Some(layer) = layers.first() else { return [0.0; 3] };
     if layer.kind == LayerKind::Diffuse {
-        return oren_nayar(layer.albedo[channel], layer.sigma, wi, wo);
+        let shares = |rows: [V; 3]| rows.map(|row| dot(row, light) / PI);
+        let plain = || [0, 1, 2].map(|c| light[c] * oren_nayar(layer.albedo[c], layer.sigma, wi, wo));
+        return layer.reradiation.map_or_else(plain, shares);
     }
     let alpha = alpha.max(layer.alpha);
     let sum = [wi[0] + wo[0], wi[1] + wo[1], wi[2] + wo[2]];
     let wh = sum.map(|v| v / dot(sum, sum).sqrt());
     let cos_d = dot(wo, wh);
-    let f = fresnel(layer, channel, cos_d);
+    let f: V = [0, 1, 2].map(|c| fresnel(layer, c, cos_d));
     let g = (2.0 * wh[2] * wi[2] / cos_d).min(2.0 * wh[2] * wo[2] / cos_d).min(1.0);
     let d = slopes(layer, alpha, wh[2], wh[0] * wh[0] + wh[1] * wh[1]);
-    let own = f * d * g / (4.0 * wi[2] * wo[2]);
+    let own = [0, 1, 2].map(|c| light[c] * f[c] * d * g / (4.0 * wi[2] * wo[2]));
     let bend = |w: V| {
         let cos_sq = 1.0 - (1.0 - w[2] * w[2]) / (layer.eta * layer.eta);
         (cos_sq > 0.0).then(|| [w[0] / layer.eta, w[1] / layer.eta, cos_sq.sqrt()])
     };
     match (layer.kind, bend(wi), bend(wo)) {
         (LayerKind::Dielectric, Some(wi), Some(wo)) => {
-            let absorbed = (-layer.optical_depth[channel] * (1.0 / wi[2] + 1.0 / wo[2])).exp();
-            let returned = (1.0 - g) + (1.0 - f) * g;
-            own + (1.0 - f) * brdf(&layers[1..], channel, alpha, wi, wo) * absorbed * returned
+            let absorbed = |c: usize, w: V| (-layer.optical_depth[c] / w[2]).exp();
+            let down = [0, 1, 2].map(|c| light[c] * (1.0 - f[c]) * absorbed(c, wi));
+            let below = sent(&layers[1..], down, alpha, wi, wo);
+            [0, 1, 2].map(|c| own[c] + below[c] * absorbed(c, wo) * ((1.0 - g) + (1.0 - f[c]) * g))
         }
         _ => own,
     }
@@ -93,5 +97,10 @@ fn brdf(layers: &[LayerRecord], channel: usize, alpha: f64, wi: V, wo: V) -> f64
 
 /// f cos_theta_i of a stack, RGB.
 pub(crate) fn eval(layers: &[LayerRecord], wi: V, wo: V) -> V {
-    [0, 1, 2].map(|channel| wi[2] * brdf(layers, channel, 0.0, wi, wo))
+    eval_lit(layers, [1.0; 3], wi, wo)
+}
+
+/// [`eval`] for light of a colour.
+pub(crate) fn eval_lit(layers: &[LayerRecord], light: V, wi: V, wo: V) -> V {
+    sent(layers, light, 0.0, wi, wo).map(|value| wi[2] * value)
 }

@@ -64,6 +64,12 @@ pub(crate) fn diffuse(sigma: f64) -> LayerRecord {
     }
 }
 
+/// A fluorescent base, whose red is brighter than white light, and has a little less than no blue.
+pub(crate) fn fluorescent() -> LayerRecord {
+    let rows = [[0.7, 0.3, 0.4], [0.02, 0.5, 0.1], [-0.01, 0.03, 0.2]];
+    LayerRecord { albedo: [1.0, 0.62, 0.22], reradiation: Some(rows), ..diffuse(0.0) }
+}
+
 /// An interface under a film of varying thickness.
 pub(crate) fn filmed() -> LayerRecord {
     LayerRecord {
@@ -253,6 +259,22 @@ pub(crate) fn sets() -> Vec<(&'static str, Vec<MaterialEntry>)> {
         (
             "weidlich-wilkie",
             vec![of(ShadingModel::WeidlichWilkie, house()), of(ShadingModel::WeidlichWilkie, brushed())],
+        ),
+        ("fluorescent", vec![material("dye", &[dielectric(), fluorescent()])]),
+        ("fluorescent-bare", vec![material("dye", &[fluorescent()])]),
+        (
+            "fluorescent-mixed",
+            vec![
+                of(ShadingModel::WeidlichWilkie, material("dye", &[clear(), dielectric(), fluorescent()])),
+                material("bare-dye", &[fluorescent()]),
+                MaterialEntry {
+                    constants: flaked().constants,
+                    ..material("flaked-dye", &[dielectric(), fluorescent()])
+                },
+                patina(),
+                house(),
+                of(ShadingModel::Belcour, material("blue-house", &[dielectric(), diffuse(0.4)])),
+            ],
         ),
         ("granier-film", vec![of(ShadingModel::GranierHeidrich, oil())]),
         ("granier-coat", vec![of(ShadingModel::GranierHeidrich, house())]),

@@ -18,7 +18,8 @@ use crate::model_inputs::ModelInputs;
 /// The place; `shows` are the effects that count.
 pub(crate) fn place(material: &Material, inputs: &ModelInputs, shows: &Effects) -> Outcome<Place> {
     let uv = inputs.uv().unwrap_or(DVec2::ZERO);
-    let mut place = Place { sample: inputs.sample(), base_color: inputs.base_color(), ..Place::NONE };
+    let (base_color, reradiation) = (inputs.base_color(), material.reradiation());
+    let mut place = Place { sample: inputs.sample(), base_color, reradiation, ..Place::NONE };
     if let Some(normal) = inputs.inner_normal() {
         place.under.inner_normal = normal;
     }

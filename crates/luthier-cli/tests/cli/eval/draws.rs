@@ -47,6 +47,8 @@ pub(super) enum Call {
     Direction,
     Weight,
     Albedo,
+    /// Sum of the weights of the proposals of all parts.
+    Proposed,
 }
 
 /// `luthier_eval` with the number of another call in the length of the direction to the eye.
@@ -62,6 +64,13 @@ const BODY: &str = "
     if call == 4u {
         return luthier_albedo(prepared);
     }
+    if call == 5u {
+        var sum = vec3<f32>(0.0);
+        for (var part = 0u; part < LUTHIER_PROPOSALS; part++) {
+            sum += luthier_propose(prepared, part, wi).weight;
+        }
+        return sum;
+    }
     let drawn = luthier_sample(prepared, wi);
     if call == 2u {
         return select(vec3<f32>(0.0, 0.0, -1.0), drawn.wi, drawn.pdf > 0.0);
@@ -71,7 +80,7 @@ const BODY: &str = "
 /// A package of materials, for a place whose flakes are tilted and whose patina is half grown.
 pub(super) fn scene(materials: &[Material]) -> Option<Scene> {
     let gpu = gpu()?;
-    let functions = [FunctionGroup::Sample, FunctionGroup::Albedo].into_iter().collect();
+    let functions = [FunctionGroup::Propose, FunctionGroup::Albedo].into_iter().collect();
     let bake = Bake { functions, refuses: false, ..Bake::wgsl(&[Form::Baked]) };
     let mut package = Package::new(materials, &bake, &MemoryStore::default()).unwrap();
     let wgsl = package.wgsl(Form::Baked).unwrap().replace("fn luthier_eval(", "fn emitted_eval(");
@@ -223,6 +232,7 @@ pub(super) struct Found {
     greatest: f64,
     pub(super) albedo: f64,
     lost: f64,
+    variance: f64,
     pub(super) faults: Vec<String>,
 }
 
@@ -248,12 +258,13 @@ fn directions_are_drawn_as_the_density_says() {
             }
         }
         eprintln!(
-            "| `{}` | {:.1} | {:.1e} | {:.2} | {:.0}% | {:.3} | {:.2e} |",
+            "| `{}` | {:.1} | {:.1e} | {:.2} | {:.0}% | {:.2} | {:.3} | {:.2e} |",
             model.name(),
             found.misfit,
             found.share,
             found.greatest,
             100.0 * found.lost,
+            found.variance,
             found.albedo,
             found.weight
         );
@@ -298,17 +309,23 @@ pub(super) fn judge(scene: &Scene, material: u32, theta: f64, seed: u64, what: &
     let weights = call(Call::Weight, &draws);
     let mut sum = [0.0; 3];
     let mut greatest = 0.0_f64;
+    let mut square = 0.0;
     for weight in &weights {
+        square += mean(*weight) * mean(*weight) / f64::from(DRAWS);
         sum.iter_mut().zip(weight).for_each(|(sum, &value)| *sum += f64::from(value) / f64::from(DRAWS));
         greatest = greatest.max(mean(*weight));
     }
     let energy = reflected.iter().sum::<f64>() / 3.0;
     let apart = (0..3).map(|c| (sum[c] - reflected[c]).abs()).fold(0.0, f64::max) / energy.max(1e-3);
+    let variance = (square / (energy * energy).max(1e-12) - 1.0).max(0.0);
+    let proposed = call(Call::Proposed, &draws).iter().map(|&weight| mean(weight)).sum::<f64>() / f64::from(DRAWS);
+    let proposed = (proposed - energy).abs() / energy.max(1e-3);
     let albedo = call(Call::Albedo, &draws[..1])[0];
     let off = (0..3).map(|c| (f64::from(albedo[c]) - reflected[c]).abs()).fold(0.0, f64::max);
     let share = (above + lost - 1.0).abs();
     eprintln!(
-        "{what}: misfit {misfit:.1}, above {above:.4}, lost {lost:.4}, weights {apart:.1e} off, greatest {:.2}, reflects {energy:.3}, \
+        "{what}: misfit {misfit:.1}, above {above:.4}, lost {lost:.4}, weights {apart:.1e} off, proposals {proposed:.1e}, \
+         variance {variance:.3}, greatest {:.2}, reflects {energy:.3}, \
          albedo {off:.3} off",
         greatest / energy.max(1e-6)
     );
@@ -326,6 +343,9 @@ pub(super) fn judge(scene: &Scene, material: u32, theta: f64, seed: u64, what: &
     if apart > 0.01 {
         found.faults.push(format!("{what}: weights have the mean {sum:?}, and f cos the integral {reflected:?}"));
     }
+    if proposed > 0.01 {
+        found.faults.push(format!("{what}: the weights of all proposals are off by {proposed}"));
+    }
     // Lobes draw each part from what it is made of; more than 1 are reflectances that grow towards grazing light, and colours.
     if what.starts_with("lobes") && greatest * above > 1.5 * energy {
         found.faults.push(format!("{what}: a weight is {} of the mean above the horizon", greatest * above / energy));
@@ -336,4 +356,5 @@ pub(super) fn judge(scene: &Scene, material: u32, theta: f64, seed: u64, what: &
     found.greatest = found.greatest.max(greatest / energy.max(1e-6));
     found.albedo = found.albedo.max(off);
     found.lost = found.lost.max(lost);
+    found.variance = found.variance.max(variance);
 }

@@ -70,8 +70,8 @@ fn matrices_and_materials_that_do_not_serve() {
     for (text, part) in [
         ("nm,530,600\n530,0.1,0\n", "dye.csv: expected 2 rows"),
         ("nm,530,600\n530,0.1,0\n600,0.7\n", "dye.csv:3: expected 2 shares after the wavelength, found 1"),
-        ("nm,530,600\n530,0.5,0\n600,0.7,0\n", "dye.csv: bin 0 re-radiates 1.2"),
-        ("nm,530,600\n530,-0.5,0\n600,0.7,0\n", "dye.csv: re-radiation from bin 0 to bin 0 is -0.5"),
+        ("nm,530,600\n530,0.5,0\n600,0.7,0\n", "dye.csv:1: 1.2 of the power of the light at 530 nm comes out"),
+        ("nm,530,600\n530,-0.5,0\n600,0.7,0\n", "dye.csv:2: the share -0.5 of the light at 530 nm is negative"),
     ] {
         workshop.write("dye.csv", text);
         run("c.toml", "fluorescence", &GREEN_TO_ORANGE).fails(1, &[part]);

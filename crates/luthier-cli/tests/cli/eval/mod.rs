@@ -6,6 +6,8 @@ mod ball;
 mod draws;
 mod fluorescence;
 mod furnace;
+#[cfg(feature = "gpu")]
+mod glow;
 mod inputs;
 mod ior;
 mod models;

@@ -5,6 +5,9 @@ fn luthier_beam_part(energy: vec3<f32>, exponent: f32, eta: f32, normal: vec3<f3
     part.energy = energy;
     part.exponent = exponent;
     part.eta = eta;
+    //? folded
+    part.edge = sqrt(max((eta - 1.0) * (eta + 1.0), 0.0)) / eta;
+    //? end
     part.normal = normal;
     return part;
 }

@@ -1,7 +1,7 @@
 /// The part of an interface, whose energy is that in the mirrored direction. These models spread it over eta^2 the solid angle without
 /// dimming it.
 fn luthier_path_part(
-    path: LuthierPath, layer: LuthierLayer, alpha: vec2<f32>, axis: vec2<f32>, eta: f32, normal: vec3<f32>, inner_eta: f32,
+    path: LuthierPath, layer: LuthierLayer, alpha: vec2<f32>, axis: vec2<f32>, eta: f32, normal: vec3<f32>, inner_eta: f32$least,
 ) -> LuthierPart {
     var part = luthier_no_part();
     let index = eta * inner_eta;
@@ -10,10 +10,18 @@ fn luthier_path_part(
     //? else
     let fresnel = luthier_fresnel_term(layer, min(path.wo_local.z, 1.0));
     //? end
+    //? fluorescent
+    part.energy = path.throughput * path.lit * fresnel * (index * index);
+    //? else
     part.energy = path.throughput * fresnel * (index * index);
+    //? end
     part.alpha = alpha;
     part.axis = axis;
     part.eta = eta;
+    //? folded, media
+    // Snell: sines times the index are the least index at most.
+    part.edge = sqrt(max((eta - least) * (eta + least), 0.0)) / eta;
+    //? end
     part.normal = normal;
     part.inner_eta = inner_eta;
     return part;

@@ -16,6 +16,10 @@ struct LuthierPart {
     //? media
     /// Index of the medium that it is in over that outside.
     eta: f32,
+    //? folded
+    /// Cosine, there, of the edge of the cone of directions that leave.
+    edge: f32,
+    //? end
     //? end
     //? tilted
     /// Normal of what lies in that medium, in the frame above it, and the index of the medium there over that of this one.
@@ -31,6 +35,7 @@ fn luthier_no_part() -> LuthierPart {
     part.axis = vec2<f32>(1.0, 0.0);
     part.exponent = -1.0;
     part.eta = 1.0;
+    part.edge = 0.0;
     part.normal = vec3<f32>(0.0, 0.0, 1.0);
     part.inner_eta = 1.0;
     return part;

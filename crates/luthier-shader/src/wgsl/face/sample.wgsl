@@ -60,6 +60,45 @@ fn luthier_into_part(part: LuthierPart, w: vec3<f32>) -> vec3<f32> {
 }
 //? end
 
+/// Density in solid angle of directions mirrored at a part, over the whole sphere, in the medium of the part.
+fn luthier_mirrored_density(part: LuthierPart, eye: vec3<f32>, light: vec3<f32>) -> f32 {
+    //? powers
+    //? visible
+    if part.exponent < 0.0 {
+        return luthier_visible_density(part.alpha, part.axis, eye, light);
+    }
+    //? end
+    let apart = vec3<f32>(light.xy + eye.xy, light.z - eye.z);
+    let lobe = luthier_power_lobe(0.5 * dot(apart, apart), part.exponent);
+    return (part.exponent + 1.0) * lobe / (2.0 * LUTHIER_PI);
+    //? else
+    return luthier_visible_density(part.alpha, part.axis, eye, light);
+    //? end
+}
+
+//? folded
+/// Cosines outside the cone of directions that leave which mirrored ones reach, and the factor that fits them into it. Visible normals lean by less than
+/// 90 degrees, so that no cosine is below that of the eye, negative.
+fn luthier_fold(part: LuthierPart, eye: vec3<f32>, edge: f32) -> vec2<f32> {
+    //? powers
+    //? visible
+    let reach = edge + select(1.0, eye.z, part.exponent < 0.0);
+    //? else
+    let reach = edge + 1.0;
+    //? end
+    //? else
+    let reach = edge + eye.z;
+    //? end
+    return vec2<f32>(reach, min((1.0 - edge) / reach, 1.0));
+}
+
+/// The direction of the same azimuth and another cosine.
+fn luthier_with_cosine(w: vec3<f32>, cosine: f32) -> vec3<f32> {
+    let across = sqrt(max((1.0 - cosine) * (1.0 + cosine), 0.0)) * inverseSqrt(max(dot(w.xy, w.xy), 1e-30));
+    return vec3<f32>(w.xy * across, cosine);
+}
+//? end
+
 /// Density in solid angle, outside, of directions that are drawn for a part.
 fn luthier_part_density(part: LuthierPart, wo: vec3<f32>, wi: vec3<f32>) -> f32 {
     //? media
@@ -85,17 +124,21 @@ fn luthier_part_density(part: LuthierPart, wo: vec3<f32>, wi: vec3<f32>) -> f32 
     let eye = wo;
     let crowding = 1.0;
     //? end
-    //? powers
-    //? visible
-    if part.exponent < 0.0 {
-        return crowding * luthier_visible_density(part.alpha, part.axis, eye, light);
-    }
-    //? end
-    let apart = vec3<f32>(light.xy + eye.xy, light.z - eye.z);
-    let lobe = luthier_power_lobe(0.5 * dot(apart, apart), part.exponent);
-    return crowding * ((part.exponent + 1.0) * lobe / (2.0 * LUTHIER_PI));
+    //? folded
+    //? media
+    let edge = part.edge;
     //? else
-    return crowding * luthier_visible_density(part.alpha, part.axis, eye, light);
+    let edge = 0.0;
+    //? end
+    let fold = luthier_fold(part, eye, edge);
+    let beyond = max(light.z - edge, 0.0) / fold.y;
+    var density = luthier_mirrored_density(part, eye, light);
+    if beyond < fold.x {
+        density += luthier_mirrored_density(part, eye, luthier_with_cosine(light, edge - beyond)) / fold.y;
+    }
+    return crowding * density;
+    //? else
+    return crowding * luthier_mirrored_density(part, eye, light);
     //? end
 }
 
@@ -123,18 +166,33 @@ fn luthier_draw_part(part: LuthierPart, wo: vec3<f32>, u: vec2<f32>) -> vec3<f32
     let eye = wo;
     //? end
     //? powers, visible
-    var drawn: vec3<f32>;
+    var mirrored: vec3<f32>;
     if part.exponent < 0.0 {
-        drawn = luthier_draw_visible(part.alpha, part.axis, eye, u);
+        mirrored = luthier_draw_visible(part.alpha, part.axis, eye, u);
     } else {
-        drawn = luthier_draw_power(part.exponent, eye, u);
+        mirrored = luthier_draw_power(part.exponent, eye, u);
     }
     //? else
     //? powers
-    let drawn = luthier_draw_power(part.exponent, eye, u);
+    let mirrored = luthier_draw_power(part.exponent, eye, u);
     //? else
-    let drawn = luthier_draw_visible(part.alpha, part.axis, eye, u);
+    let mirrored = luthier_draw_visible(part.alpha, part.axis, eye, u);
     //? end
+    //? end
+    //? folded
+    // What does not leave is folded into the cone of directions that do, at its edge.
+    //? media
+    let edge = part.edge;
+    //? else
+    let edge = 0.0;
+    //? end
+    var drawn = mirrored;
+    if mirrored.z <= edge {
+        let fold = luthier_fold(part, eye, edge);
+        drawn = luthier_with_cosine(mirrored, min(edge + fold.y * (edge - mirrored.z), 1.0));
+    }
+    //? else
+    let drawn = mirrored;
     //? end
     //? media
     //? tilted
@@ -202,7 +260,12 @@ fn luthier_draw(prepared: LuthierPrepared, u: vec3<f32>) -> LuthierSample {
     //? end
 }
 
+//? folded, !lobes
+/// Density in solid angle with which `luthier_sample` draws a direction. Its integral is 1: what would not leave the surface is folded
+/// back to where it does.
+//? else
 /// Density in solid angle with which `luthier_sample` draws a direction. Its integral is 1 less the share of draws that have no weight.
+//? end
 fn luthier_pdf(prepared: LuthierPrepared, wi: vec3<f32>) -> f32 {
     if wi.z <= 0.0 || !prepared.open {
         return 0.0;

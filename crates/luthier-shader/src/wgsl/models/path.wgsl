@@ -8,6 +8,10 @@ struct LuthierPath {
     across: vec2<f32>,
     /// Share of the light that comes down to the next layer and back out.
     throughput: vec3<f32>,
+    //? fluorescent
+    /// Light that comes down to the next layer; `throughput` is the share of what goes up there that comes out.
+    lit: vec3<f32>,
+    //? end
     /// f of the layers so far.
     total: vec3<f32>,
     //? clamped
@@ -25,9 +29,17 @@ struct LuthierPath {
 //? chain_diffuse
 /// Adds what a diffuse base reflects. It ends the stack.
 fn luthier_add_diffuse(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
+    //? fluorescent
+    let sent = luthier_reradiated(layer, path.wi_local, path.wo_local, path.lit);
+    //? else
     let brdf = $diffuse(layer, path.wi_local, path.wo_local);
+    //? end
     var next = path;
+    //? fluorescent
+    next.total = path.total + path.throughput * sent;
+    //? else
     next.total = path.total + path.throughput * brdf;
+    //? end
     next.open = false;
     return next;
 }
@@ -53,7 +65,11 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     // G of V-cavities: 2 cos_theta_h / cos_theta_d times the lower cosine, at most 1.
     let masking = min(bisector.z * min(cosines.x, cosines.y) * (secant_d * secant_d), 1.0);
     let geometry = luthier_quarter_density(layer, bisector) * masking / (cosines.x * cosines.y);
+    //? fluorescent
+    next.total = path.total + path.throughput * path.lit * fresnel * geometry;
+    //? else
     next.total = path.total + path.throughput * fresnel * geometry;
+    //? end
 
     //? below
     //? conductor
@@ -81,6 +97,22 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     //? end
     // (1 - F) down, (1 - F) up, and part of what the cavities block comes back: (1 - F) (1 - G + (1 - F) G).
     let returned = 1.0 - masking * fresnel;
+    //? fluorescent
+    // On the way down light has the channels in which it came, on the way up those in which it leaves.
+    //? absorption
+    //? flakes
+    let ways = 1.0 / vec2<f32>(next.wi_local.z, next.wo_local.z);
+    //? else
+    let ways = secants;
+    //? end
+    let down = exp2(-layer.optical_depth_log2 * ways.x);
+    next.lit = path.lit * (down - down * fresnel);
+    next.throughput = path.throughput * exp2(-layer.optical_depth_log2 * ways.y) * returned;
+    //? else
+    next.lit = path.lit * (1.0 - fresnel);
+    next.throughput = path.throughput * returned;
+    //? end
+    //? else
     //? absorption
     //? flakes
     let absorbed = exp2(-layer.optical_depth_log2 * (1.0 / next.wi_local.z + 1.0 / next.wo_local.z));
@@ -90,6 +122,7 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     next.throughput = path.throughput * (absorbed - absorbed * fresnel) * returned;
     //? else
     next.throughput = path.throughput * (1.0 - fresnel) * returned;
+    //? end
     //? end
     //? end
     return next;

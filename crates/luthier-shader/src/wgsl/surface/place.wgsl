@@ -71,6 +71,7 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
     //? base_color, diffuse|granier_base
     if place.base_color.x >= 0.0 && layer.kind == LUTHIER_DIFFUSE {
         layer.lambert = place.base_color / LUTHIER_PI;
+        layer.fluoresces = false;
     }
     //? end
     //? chain_patina

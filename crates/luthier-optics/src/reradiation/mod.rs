@@ -5,12 +5,19 @@
 //! comes out there. Shares are not negative; no column sums to more than 1. Empty lines and lines that begin with `#` do not
 //! count.
 
+mod rgb;
+
+pub use self::rgb::rgb;
+
+/// Shares of a column may sum to this little above 1.
+const GAIN_TOLERANCE: f64 = 1e-9;
+
 /// A matrix and the wavelengths of its bins.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Matrix {
     /// Wavelengths in nm, ascending; at least one.
     pub wavelengths_nm: Vec<f64>,
-    /// Shares of power: entry `to * bins + from`. [`Fluorescent::new`](crate::fluorescence::Fluorescent::new) checks their sums.
+    /// Shares of power: entry `to * bins + from`.
     pub shares: Vec<f64>,
 }
 
@@ -28,7 +35,7 @@ impl Matrix {
     /// Reads a matrix.
     ///
     /// ```
-    /// let matrix = luthier_layers::reradiation::Matrix::parse("nm,530,600\n530,0.1,0\n600,0.7,0.2\n").unwrap();
+    /// let matrix = luthier_optics::reradiation::Matrix::parse("nm,530,600\n530,0.1,0\n600,0.7,0.2\n").unwrap();
     /// assert_eq!(matrix.wavelengths_nm, [530.0, 600.0]);
     /// assert_eq!(matrix.shares, [0.1, 0.0, 0.7, 0.2]);
     /// ```
@@ -60,7 +67,13 @@ impl Matrix {
                 (Some((nm, _)), Some(expected)) if nm != expected => {
                     return Err(wrong(at)(format!("the row is for {nm} nm, expected {expected} nm")));
                 }
-                (Some((_, row)), _) if row.len() == bins => shares.extend(row),
+                (Some((_, row)), _) if row.len() == bins => {
+                    if let Some((from, share)) = row.iter().enumerate().find(|(_, share)| **share < 0.0) {
+                        let nm = wavelengths_nm[from];
+                        return Err(wrong(at)(format!("the share {share} of the light at {nm} nm is negative")));
+                    }
+                    shares.extend(row);
+                }
                 _ => {
                     let found = fields.len().saturating_sub(1);
                     return Err(wrong(at)(format!("expected {bins} shares after the wavelength, found {found}")));
@@ -70,6 +83,15 @@ impl Matrix {
         let rows = shares.len() / bins;
         if rows < bins {
             return Err(whole(format!("expected {bins} rows, as many as there are wavelengths, found {rows}")));
+        }
+        for (from, nm) in wavelengths_nm.iter().enumerate() {
+            let power: f64 = shares.iter().skip(from).step_by(bins).sum();
+            if power > 1.0 + GAIN_TOLERANCE {
+                // Sums of decimals have more digits than a reader needs.
+                let power = (power * 1e6).round() / 1e6;
+                let reason = format!("{power} of the power of the light at {nm} nm comes out; it has to be 1 at most");
+                return Err(wrong(at)(reason));
+            }
         }
         Ok(Self { wavelengths_nm, shares })
     }
@@ -121,6 +143,11 @@ mod tests {
             ("nm,530,600\n600,0,0\n", ":2: the row is for 600 nm, expected 530 nm"),
             ("nm,530,600\n530,0\n", ":2: expected 2 shares after the wavelength, found 1"),
             ("nm,530\n530,0\n600,0\n", ":3: expected 1 rows, as many as there are wavelengths"),
+            ("nm,530,600\n530,0,0\n600,0.5,-0.1\n", ":3: the share -0.1 of the light at 600 nm is negative"),
+            (
+                "nm,530,600\n530,0.5,0\n600,0.7,0\n",
+                ":1: 1.2 of the power of the light at 530 nm comes out; it has to be 1 at most",
+            ),
         ] {
             assert_eq!(Matrix::parse(text).unwrap_err().to_string(), expected);
         }
