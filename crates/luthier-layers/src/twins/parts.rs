@@ -177,7 +177,6 @@ mod tests {
     use luthier_optics::stack::{Base, Layer, Surface};
 
     use super::*;
-    use crate::model::Model;
     use crate::monochrome::Monochrome;
     use crate::real_time::Twin;
     use crate::registry;
