@@ -28,7 +28,7 @@ const MATERIALS: [&str; 8] = [
 pub(super) const FITTED: [&str; 4] = ["car-paint", "red-lacquer", "varnished-brass", "copper-patina"];
 
 /// Angles of the eye, degrees.
-const EYES: [f64; 3] = [0.0, 40.0, 75.0];
+pub(super) const EYES: [f64; 3] = [0.0, 40.0, 75.0];
 const DRAWS: u32 = 1 << 16;
 /// Nodes of the integrals along radii and around, and of them in one bin.
 pub(super) const NODES: [u32; 2] = [192, 512];
@@ -216,14 +216,14 @@ pub(super) fn mean(value: [f32; 3]) -> f64 {
 
 /// What was found of a model.
 #[derive(Default)]
-struct Found {
+pub(super) struct Found {
     misfit: f64,
     share: f64,
     weight: f64,
     greatest: f64,
     albedo: f64,
     lost: f64,
-    faults: Vec<String>,
+    pub(super) faults: Vec<String>,
 }
 
 #[test]
@@ -262,7 +262,8 @@ fn directions_are_drawn_as_the_density_says() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-fn judge(scene: &Scene, material: u32, theta: f64, seed: u64, what: &str, found: &mut Found) {
+/// Draws of a material that is seen from an angle, with what is wrong with them.
+pub(super) fn judge(scene: &Scene, material: u32, theta: f64, seed: u64, what: &str, found: &mut Found) {
     let (sin, cos) = libm::sincos(theta.to_radians());
     let wo = [sin * 0.8, sin * 0.6, cos].map(|w| w as f32);
     let disc = Disc::new(wo);
