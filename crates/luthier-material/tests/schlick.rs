@@ -89,6 +89,14 @@ fn the_surface_of_engines_is_two_layers() {
 }
 
 #[test]
+fn a_sigma_of_a_metal_is_doubted() {
+    let metal =
+        "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = 0.9\nmetallic = 1\nsmooth = true\nsigma = 0.2\n";
+    let warnings = parsed(metal).warnings;
+    assert!(warnings.len() == 1 && warnings[0].message.contains("sigma"), "{warnings:?}");
+}
+
+#[test]
 fn an_f0_of_no_clear_medium_is_doubted() {
     let warnings = parsed("[[layer]]\ntype = \"dielectric\"\nf0 = [0.9, 0.6, 0.3]\nsmooth = true\n").warnings;
     assert!(warnings.len() == 1 && warnings[0].message.contains("0.9"), "{warnings:?}");

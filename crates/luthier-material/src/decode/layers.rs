@@ -56,7 +56,7 @@ pub(super) fn decode(
             "conductor" if at.has("f0") => Base::Conductor { ior: schlick::conductor(at) },
             "conductor" => Base::Conductor { ior: index(sink, sources) },
             "metallic-roughness" => {
-                let (interface, diffuse) = schlick::metallic_roughness(at, above);
+                let (interface, diffuse) = schlick::metallic_roughness(at, above, sink);
                 below = diffuse;
                 interface
             }

@@ -59,10 +59,18 @@ pub(super) fn dielectric(at: &Section<'_>, given: Option<Ior>, above: &Ior, sink
 ///
 /// By Saunderson 1942 the surface then reflects `F(cos) + (1 - F(cos)) c` of the light from any direction, as the model of engines does, and
 /// its diffuse term is that of Kelemen and Szirmay-Kalos 2001, `c (1 - F(i))(1 - F(o)) / (pi (1 - (f + (1 - f)/21)))`.
-pub(super) fn metallic_roughness(at: &Section<'_>, above: &Ior) -> (Base, Option<Diffuse>) {
+pub(super) fn metallic_roughness(at: &Section<'_>, above: &Ior, sink: &mut Sink<'_>) -> (Base, Option<Diffuse>) {
     let color = at.rgb("base_color").unwrap_or([0.0; 3]);
     let metallic = at.number("metallic").unwrap_or(0.0);
     if metallic >= 1.0 {
+        if at.has("sigma") {
+            let hint = "leave it out, or give a `metallic` below 1".to_owned();
+            sink.warn(
+                at.key_span("sigma"),
+                "a metal has no diffuse base: its `sigma` is of no consequence",
+                Some(hint),
+            );
+        }
         return (Base::Conductor { ior: Ior::vacuum().with_f0(color) }, None);
     }
     let f0 = color.map(|color| DIELECTRIC_F0 + metallic * (color - DIELECTRIC_F0));

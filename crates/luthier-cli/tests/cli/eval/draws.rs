@@ -28,7 +28,7 @@ const MATERIALS: [&str; 8] = [
 pub(super) const FITTED: [&str; 4] = ["car-paint", "red-lacquer", "varnished-brass", "copper-patina"];
 
 /// Angles of the eye, degrees.
-const EYES: [f64; 3] = [0.0, 40.0, 75.0];
+pub(super) const EYES: [f64; 3] = [0.0, 40.0, 75.0];
 const DRAWS: u32 = 1 << 16;
 /// Nodes of the integrals along radii and around, and of them in one bin.
 pub(super) const NODES: [u32; 2] = [192, 512];
@@ -273,6 +273,7 @@ fn directions_are_drawn_as_the_density_says() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
+/// Draws of a material that is seen from an angle, with what is wrong with them.
 pub(super) fn judge(scene: &Scene, material: u32, theta: f64, seed: u64, what: &str, found: &mut Found) {
     let (sin, cos) = libm::sincos(theta.to_radians());
     let wo = [sin * 0.8, sin * 0.6, cos].map(|w| w as f32);

@@ -6,6 +6,7 @@ use luthier_manifest::{Form, FunctionGroup, ShadingModel};
 use luthier_material::{Material, parse};
 use luthier_optics::color::Color;
 
+use super::draws;
 use super::twin::{error, gpu, pairs, wide};
 use crate::workshop::Workshop;
 
@@ -92,6 +93,23 @@ fn every_model_has_its_shaders() {
         // Energies and simulations of rough layers are slow.
         let some = if ["belcour", "yamaguchi", "lobes"].contains(model) { &materials[1..2] } else { &materials };
         Package::new(some, &bake, &store).unwrap();
+    }
+}
+
+/// Directions are drawn as the density says: of beams, which take the F0 in place of the index, and of facets.
+#[test]
+fn directions_are_drawn_as_the_density_says() {
+    for model in ["granier-heidrich", "elek"] {
+        let materials = &materials(model)[..4];
+        let Some(scene) = draws::scene(materials) else { return };
+        let mut found = draws::Found::default();
+        for (number, material) in (0..).zip(materials) {
+            for (seed, theta) in (0..).zip(draws::EYES) {
+                let what = format!("{model} {} {theta}", material.name);
+                draws::judge(&scene, number, theta, 1000 + u64::from(number) * 8 + seed, &what, &mut found);
+            }
+        }
+        assert!(found.faults.is_empty(), "{}", found.faults.join("\n"));
     }
 }
 
