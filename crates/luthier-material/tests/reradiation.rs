@@ -57,7 +57,11 @@ fn the_default_model_shows_it() {
 fn mistakes_are_pointed_at() {
     let patina = "[effects.patina]\nextent = 0.5\ntransition = 0.2\n[effects.patina.map.noise]\n";
     for (base, more, expected) in [
-        ("reradiation = \"gain.csv\"", "", "`gain.csv`:2: 1.2 of the power of the light at 450 nm comes out; it has to be 1 at most"),
+        (
+            "reradiation = \"gain.csv\"",
+            "",
+            "`gain.csv`:2: 1.2 of the power of the light at 450 nm comes out; it has to be 1 at most",
+        ),
         ("reradiation = \"short.csv\"", "", "`short.csv`:2: expected 2 shares after the wavelength, found 1"),
         ("reradiation = \"none.csv\"", "", "cannot read `none.csv`: no such file"),
         ("reradiation = \"dye.csv\"\nalbedo = 0.5", "", "a second reflectance: `albedo` is given already"),

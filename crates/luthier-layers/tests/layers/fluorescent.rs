@@ -20,10 +20,8 @@ fn base(albedo: Rgb) -> Layer {
 }
 
 fn coat(absorption_per_um: Rgb) -> Layer {
-    let base = Base::Dielectric {
-        ior: Ior::constant(1.5, 0.0).unwrap(),
-        slab: Slab { thickness_um: 1.0, absorption_per_um },
-    };
+    let base =
+        Base::Dielectric { ior: Ior::constant(1.5, 0.0).unwrap(), slab: Slab { thickness_um: 1.0, absorption_per_um } };
     Layer { films: Vec::new(), surface: Surface::isotropic(Distribution::Ggx, 0.3), base }
 }
 

@@ -108,7 +108,7 @@ mod tests {
         (0..95).map(|i| 360.0 + 5.0 * f64::from(i)).collect()
     }
 
-    /// What the method of Mallett and Yuksel asks of the data file.
+    /// Conditions that the method of Mallett and Yuksel puts on the data file.
     #[test]
     fn primaries_sum_to_d65_and_have_their_colours() {
         assert_eq!(d65().len(), 95);
