@@ -61,10 +61,12 @@ pub fn rgb(matrix: &Matrix) -> [Rgb; 3] {
         .collect();
     let mut out = [[0.0; 3]; 3];
     for (to, (power, _, weight)) in bins.iter().enumerate().filter(|(_, bin)| bin.0 > 0.0) {
-        for j in 0..3 {
-            let emitted: f64 = (0..count).map(|from| matrix.shares[to * count + from] * bins[from].1[j]).sum();
-            for i in 0..3 {
-                out[i][j] += weight[i] * emitted / power;
+        let row = &matrix.shares[to * count..][..count];
+        let emitted = |j: usize| row.iter().zip(&bins).map(|(share, (_, lights, _))| share * lights[j]).sum::<f64>();
+        let emitted = [0, 1, 2].map(emitted);
+        for (sums, weight) in out.iter_mut().zip(weight) {
+            for (sum, emitted) in sums.iter_mut().zip(emitted) {
+                *sum += weight * emitted / power;
             }
         }
     }
@@ -108,7 +110,7 @@ mod tests {
         (0..95).map(|i| 360.0 + 5.0 * f64::from(i)).collect()
     }
 
-    /// What the method of Mallett and Yuksel asks of the data file.
+    /// Conditions that the method of Mallett and Yuksel puts on the data file.
     #[test]
     fn primaries_sum_to_d65_and_have_their_colours() {
         assert_eq!(d65().len(), 95);

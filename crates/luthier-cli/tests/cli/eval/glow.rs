@@ -41,11 +41,16 @@ fn file(model: &str, coat: &str) -> String {
 const COAT: &str = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.2\nthickness_um = 10\nabsorption_per_um = [0.01, 0.03, 0.08]\n";
 
 fn material(model: &str, coat: &str) -> Material {
+    parsed("dye.toml", model, coat)
+}
+
+/// The material of a file of this name, beside which lies the matrix.
+fn parsed(label: &str, model: &str, coat: &str) -> Material {
     let read = |name: &str| match name {
         "dye.csv" => Ok(dye()),
         _ => Err(std::io::Error::other("no such file")),
     };
-    parse("dye.toml", &file(model, coat), &read).unwrap().material
+    parse(label, &file(model, coat), &read).unwrap().material
 }
 
 fn directions() -> Vec<([f32; 3], [f32; 3])> {
@@ -62,10 +67,13 @@ fn directions() -> Vec<([f32; 3], [f32; 3])> {
 #[test]
 fn device_and_twin_agree_for_lights_of_all_colours() {
     let Some(gpu) = gpu() else { return };
+    let workshop = Workshop::new();
+    workshop.write("dye.csv", dye());
+    let label = workshop.path("dye.toml").display().to_string();
     let mut compared = 0;
     for model in ["elek", "weidlich-wilkie"] {
         for coat in [String::new(), COAT.to_owned(), format!("{COAT}{COAT}")] {
-            let material = material(model, &coat);
+            let material = parsed(&label, model, &coat);
             for light in [[1.0f32, 1.0, 1.0], [0.0, 0.0, 2.0], [0.1, 1.5, 0.7]] {
                 let functions = [FunctionGroup::Light].into_iter().collect();
                 let bake = Bake { functions, ..Bake::wgsl(&[Form::Full]) };
@@ -107,7 +115,7 @@ fn a_fluorescent_base_goes_from_file_to_pixel() {
     workshop.write("dye.csv", dye());
     workshop.write("dye.toml", file("elek", COAT));
     workshop.run(&["check", "dye.toml"]).exits(0);
-    workshop.run(&["bake", "dye.toml", "-o", "out", "--form", "full"]).exits(0);
+    workshop.run(&["bake", "dye.toml", "--out", "out", "--form", "full"]).exits(0);
     let manifest = std::fs::read_to_string(workshop.path("out/manifest.json")).unwrap();
     let manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();
     let base = &manifest["materials"][0]["layers"][1];
@@ -136,7 +144,8 @@ fn a_fluorescent_base_goes_from_file_to_pixel() {
     workshop.write("bad.toml", file("elek", COAT).replace("dye.csv", "bad.csv"));
     workshop
         .run(&["check", "bad.toml"])
-        .fails(1, &["`bad.csv`:1: 1.2 of the power of the light at 450 nm comes out", "bad.toml:12"]);
+        .exits(1)
+        .says(&["`bad.csv`:1: 1.2 of the power of the light at 450 nm comes out", "bad.toml:11"]);
     workshop.write("other.toml", file("belcour", COAT));
     workshop.run(&["check", "other.toml"]).exits(0).says(&["re-radiation"]);
     assert_eq!(material("belcour", COAT).model(), ShadingModel::Belcour);
