@@ -8,6 +8,7 @@ mod elek_examples;
 mod elek_places;
 mod figure;
 mod granier;
+mod lecture;
 mod page;
 mod studio;
 mod yamaguchi;
@@ -29,6 +30,7 @@ fn figures() -> Vec<Figure> {
         &granier::FIGURES,
         &yamaguchi::FIGURES,
         &yamaguchi_balls::FIGURES,
+        &lecture::FIGURES,
         &course::FIGURES,
         &course_shader::FIGURES,
         &course_appearance::FIGURES,

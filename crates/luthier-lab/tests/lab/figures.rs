@@ -3,7 +3,7 @@
 use crate::workshop::Workshop;
 
 /// The figures that the project promises, one by one.
-const NAMES: [&str; 24] = [
+const NAMES: [&str; 25] = [
     "elek-2",
     "elek-4",
     "elek-5",
@@ -19,6 +19,7 @@ const NAMES: [&str; 24] = [
     "yamaguchi-4",
     "yamaguchi-1",
     "yamaguchi-3",
+    "lecture-25",
     "course-classes",
     "course-varnish",
     "course-3-3",

@@ -114,9 +114,12 @@ fn shaders(element: &Element) -> Option<Package> {
     Some(package_of(element, &element.with()?))
 }
 
-/// A folder with a file, and maps that it may name.
-fn folder(text: &str) -> Workshop {
+/// A folder with a file, and all that it may name.
+fn folder(element: &Element, text: &str) -> Workshop {
     let workshop = Workshop::with(&[("m.toml", text)]);
+    if let Some(matrix) = element.get("matrix") {
+        workshop.write("matrix.csv", matrix.trim_start());
+    }
     for (name, texel) in [("map.png", [128, 128, 255]), ("bumps.png", [153, 140, 252])] {
         image::RgbImage::from_pixel(4, 4, image::Rgb(texel)).save(workshop.path(name)).unwrap();
     }
@@ -141,7 +144,7 @@ fn package_of(element: &Element, text: &str) -> Package {
         forms.push(Form::Baked);
     }
     let bake = Bake { refuses: false, functions, ..Bake::wgsl(&forms) };
-    let workshop = folder(text);
+    let workshop = folder(element, text);
     Package::new(&[material(element, &workshop)], &bake, &MemoryStore::default())
         .unwrap_or_else(|error| panic!("{}: {error}", element.name()))
 }
@@ -171,7 +174,7 @@ fn direction(theta: f64, phi: f64) -> [f32; 3] {
 /// Values of `luthier eval` at all pairs, channel by channel.
 fn in_f64(element: &Element, with: bool) -> Vec<f64> {
     let text = if with { element.with() } else { element.without() };
-    let workshop = folder(&text.unwrap());
+    let workshop = folder(element, &text.unwrap());
     workshop.write("pairs.csv", PAIRS.map(|pair| pair.map(|angle| angle.to_string()).join(",")).join("\n"));
     let mut extra: Vec<&str> = element.list(if with { "options" } else { "options_without" });
     let model = match (with, element.get("other_model")) {
@@ -185,9 +188,6 @@ fn in_f64(element: &Element, with: bool) -> Vec<f64> {
     if let Some(other) = element.get("other").filter(|_| alone) {
         workshop.write("other.toml", format!("schema = 1\nname = \"other\"\n{other}"));
         extra.extend(["--other", "other.toml"]);
-    }
-    if let Some(matrix) = element.get("matrix") {
-        workshop.write("matrix.csv", matrix.trim_start());
     }
     let mut arguments = vec!["eval", "m.toml", "--model", model, "--json", "--directions", "pairs.csv"];
     if !extra.contains(&"--wavelength") {

@@ -1,0 +1,58 @@
+//! The exercise of Palubicki's lecture: 25 balls.
+
+use luthier_export::{MemoryStore, Package, lit};
+use luthier_gpu::{GRID_SIDE, Shape};
+use luthier_manifest::Form;
+use luthier_optics::color::Color;
+use luthier_optics::interface::Interface;
+use luthier_terminal::{Failure, Outcome};
+
+use super::figure::{Figure, Made};
+use super::studio::{Studio, material};
+
+pub(crate) const FIGURES: [Figure; 1] = [Figure {
+    name: "lecture-25",
+    title: "25 balls, metallic against roughness",
+    source: "W. Palubicki, lecture GRK 7, exercise",
+    caption: "Metallic falls from 1 to 0 down the rows, roughness grows from 0.1 to 1 along them. The files are of type `metallic-roughness` with the lecture's F0 of \
+              copper as base colour (0.955, 0.638, 0.538), and F0 of 0.04 where nothing is metallic; F0 lies on the straight line between. The model is \
+              `belcour`, which follows all bounces, so that the base shows its colour. The numbers are F0 down the rows, R, G, B, as the interface of the file has it.",
+    make: balls,
+}];
+
+/// The lecture's F0 of copper.
+const COPPER: [f64; 3] = [0.955, 0.638, 0.538];
+
+fn balls(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let last = f64::from(GRID_SIDE - 1);
+    let mut materials = Vec::new();
+    for row in 0..GRID_SIDE {
+        for column in 0..GRID_SIDE {
+            let (metallic, roughness) = (1.0 - f64::from(row) / last, 0.1 + 0.9 * f64::from(column) / last);
+            let name = format!("ball-{row}-{column}");
+            let text = format!(
+                "schema = 1\nname = \"{name}\"\n[[layer]]\ntype = \"metallic-roughness\"\nbase_color = {COPPER:?}\n\
+                 metallic = {metallic:.3}\nroughness = {roughness:.3}\n[bake]\nmodel = \"belcour\"\n"
+            );
+            let material = material(&name, &text)?;
+            if let Some(interface) = Interface::of(&material.stack, 0).filter(|_| column == 0) {
+                for (channel, f0) in ["R", "G", "B"].into_iter().zip(interface.sampled(&Color::Spectral).rgb(1.0)) {
+                    made.measure(format!("metallic {metallic}: F0, {channel}"), f0);
+                }
+            }
+            materials.push(material);
+        }
+    }
+    let package = Package::for_renderer(&lit(&materials), &MemoryStore::default())?;
+    let scene = studio.gpu()?.scene(&package, Form::Baked)?;
+    let mut settings = studio.settings(Shape::Grid)?;
+    // One picture holds all balls.
+    settings.size = 4 * studio.size;
+    settings.samples = 4;
+    settings.environment_samples = 0;
+    let all: Vec<u32> = (0..materials.len() as u32).collect();
+    let picture = scene.render(&all, &settings).map_err(Failure::device)?;
+    made.sheet("lecture-25", vec![("metallic down, roughness to the right".to_owned(), picture)], 1);
+    Ok(made)
+}
