@@ -185,7 +185,7 @@ mod tests {
             std::fs::write(&path, text).unwrap();
         };
         write("0.5");
-        let host = ViewHost::new(vec![folder.path().to_owned()], None, true);
+        let host = ViewHost::new(vec![folder.path().to_owned()], None, &Shading::default());
         assert!(host.changed().unwrap()[0].material.is_ok());
         assert!(host.changed().is_none());
         write("0.25");
@@ -211,7 +211,7 @@ mod tests {
                     [bake]\nfgd = { size = [8, 8] }\ndistribution = { size = [16, 16] }\ncolor = \"three-wavelengths\"\n";
         let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
         let mut material = luthier_material::parse("m.toml", text, &no_files).unwrap().material;
-        let host = ViewHost::new(Vec::new(), None, true);
+        let host = ViewHost::new(Vec::new(), None, &Shading::default());
         let first = host.bake(&material, Form::Baked).unwrap();
         luthier_view::Handle::Alpha(0).set(&mut material, 0.4);
         let jobs = host.store.len();

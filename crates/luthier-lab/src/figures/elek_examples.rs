@@ -91,7 +91,7 @@ fn edges(studio: &Studio) -> Outcome<Made> {
         pictures.push(("map".to_owned(), scaled(&map.image, studio.size)));
         for transition in TRANSITIONS {
             let amount = |texel: &[f32]| (0.5 + (0.45 - f64::from(texel[0])) / (2.0 * transition)).clamp(0.0, 1.0);
-            let amounts: Vec<f64> = map.image.texels().map(|texel| amount(&texel)).collect();
+            let amounts: Vec<f64> = map.image.texels().map(amount).collect();
             let half = amounts.iter().filter(|amount| (0.02..0.98).contains(*amount)).count();
             let share = half as f64 / amounts.len() as f64;
             made.measure(format!("transition {transition}: share of the map where patina has half grown"), share);
