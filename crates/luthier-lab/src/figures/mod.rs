@@ -2,6 +2,7 @@
 
 mod course;
 mod course_appearance;
+mod course_fluorescent;
 mod course_shader;
 mod elek;
 mod elek_examples;
@@ -34,6 +35,7 @@ fn figures() -> Vec<Figure> {
         &course::FIGURES,
         &course_shader::FIGURES,
         &course_appearance::FIGURES,
+        &course_fluorescent::FIGURES,
     ]
     .concat()
 }

@@ -1,0 +1,69 @@
+//! The figure of the course of Weidlich and Wilkie about a fluorescent base under a rough varnish.
+
+use glam::DVec3;
+use luthier_layers::fluorescence::Fluorescent;
+use luthier_layers::monochrome::Monochrome;
+use luthier_lut::Image;
+use luthier_terminal::{Failure, Outcome};
+
+use super::figure::{Figure, Made};
+use super::studio::{Studio, material};
+
+pub(crate) const FIGURES: [Figure; 1] = [Figure {
+    name: "course-5-6",
+    title: "a green laser on orange day-glo cardboard",
+    source: "Weidlich and Wilkie 2009, figures 5.4 to 5.6",
+    caption: "Light of 532 nm falls in from the left at 5, 20 and 60 degrees on a rough varnish, slope 17 degrees, over a base that sends 0.7 of it out at 600 nm and 0.05 at \
+              532 nm. Each picture is the hemisphere of the eye seen from above: its middle is the normal, its edge the horizon. The facets of the varnish mirror in green, \
+              around the mirror direction, and the base glows orange everywhere. At 5 and 20 degrees the green light makes a faint yellow spot; at 60 degrees it \
+              is bright and has moved to the horizon. The course's photograph at 60 degrees has almost no green, which this model does not explain. The numbers are the shares of the light that leave in green and in orange. Matrix and index (1.5) are luthier's.",
+    make: cardboard,
+}];
+
+/// Angles of the light, degrees.
+const ANGLES: [f64; 3] = [5.0, 20.0, 60.0];
+
+/// Factor on radiance under light of irradiance 1.
+const EXPOSURE: f64 = 4.0;
+
+/// Green and orange of the two wavelengths, linear Rec.709.
+const COLORS: [[f64; 3]; 2] = [[0.0, 1.0, 0.15], [1.0, 0.32, 0.0]];
+
+fn cardboard(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let text = "schema = 1\nname = \"cardboard\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nslope_deg = 17\ndistribution = \"beckmann\"\n\
+                [[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\n";
+    let stack = material("cardboard", text)?.stack;
+    let coats = [532.0, 600.0].map(|nm| Monochrome::new(&stack, nm, 1)).to_vec();
+    // Rows are the bin that comes out, columns that of the light.
+    let surface = Fluorescent::new(coats, &[0.05, 0.0, 0.7, 0.7]).map_err(Failure::input)?;
+    let size = studio.size;
+    let mut pictures = Vec::new();
+    for angle in ANGLES {
+        let (sin, cos) = libm::sincos(angle.to_radians());
+        let wi = DVec3::new(-sin, 0.0, cos);
+        let mut image = Image::zeros(size, size, 3);
+        let mut leaving = [0.0; 2];
+        for (texel, i) in image.data.chunks_mut(3).zip(0..) {
+            let [x, y] = [i % size, i / size].map(|i: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0);
+            let z_sq = 1.0 - x * x - y * y;
+            if z_sq <= 0.0 {
+                continue;
+            }
+            let wo = DVec3::new(x, -y, z_sq.sqrt());
+            for (bin, color) in COLORS.iter().enumerate() {
+                let radiance = surface.eval(wi, 0, wo, bin);
+                // A pixel of the disk is a projected solid angle.
+                leaving[bin] += radiance * (2.0 / f64::from(size)).powi(2);
+                for (value, color) in texel.iter_mut().zip(color) {
+                    *value += (EXPOSURE * radiance / cos * color) as f32;
+                }
+            }
+        }
+        made.measure(format!("{angle} degrees: leaves in green"), leaving[0] / cos);
+        made.measure(format!("{angle} degrees: leaves in orange"), leaving[1] / cos);
+        pictures.push((format!("{angle} degrees"), image));
+    }
+    made.sheet("course-5-6", pictures, 3);
+    Ok(made)
+}
