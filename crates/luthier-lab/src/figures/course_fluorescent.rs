@@ -54,7 +54,7 @@ fn cardboard(studio: &Studio) -> Outcome<Made> {
             for (bin, color) in COLORS.iter().enumerate() {
                 let radiance = surface.eval(wi, 0, wo, bin);
                 // A pixel of the disk is a projected solid angle.
-                leaving[bin] += radiance * (2.0 / f64::from(size)).powi(2);
+                leaving[bin] += 4.0 * radiance / f64::from(size * size);
                 for (value, color) in texel.iter_mut().zip(color) {
                     *value += (EXPOSURE * radiance / cos * color) as f32;
                 }
