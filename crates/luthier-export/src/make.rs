@@ -11,7 +11,8 @@ use luthier_bake::{
 };
 use luthier_lut::{Atlas, AtlasLayout, Image, TableKind, TexelFormat};
 use luthier_manifest::{
-    FileEntry, Form, Functions, Manifest, MapEntry, MaterialEntry, MaterialTexture, SurfaceEntry, TableEntry, Target, material_buffer,
+    FileEntry, Form, Functions, Manifest, MapEntry, MaterialEntry, MaterialTexture, SurfaceEntry, TableEntry, Target,
+    material_buffer,
 };
 use luthier_material::{Diagnostic, Material, Severity};
 use luthier_shader::{MaterialSet, ShaderError};

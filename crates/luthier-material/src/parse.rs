@@ -57,7 +57,8 @@ pub fn parse(
         return Err(sink.into_diagnostics());
     }
     if document.has("surface") && !document.has("schema") {
-        let hint = Some("`check`, `bake`, `preview` and `eval` take surfaces; give other commands its materials".to_owned());
+        let hint =
+            Some("`check`, `bake`, `preview` and `eval` take surfaces; give other commands its materials".to_owned());
         sink.error(document.key_span("surface"), "this is a surface, not a material", hint);
         return Err(sink.into_diagnostics());
     }

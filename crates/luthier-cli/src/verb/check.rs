@@ -38,7 +38,11 @@ pub(crate) fn run(options: &CheckOptions) -> Outcome {
         || sources.iter().map(|source| (source, source.parsed.as_ref().ok().map(|p| shading.model(&p.material))));
     let all = || alone().chain(of_scenes());
     if options.json {
-        let entries = scenes.iter().map(scene_entry).chain(surfaces.iter().map(surface_entry)).chain(all().map(|(source, model)| entry(source, model)));
+        let entries = scenes
+            .iter()
+            .map(scene_entry)
+            .chain(surfaces.iter().map(surface_entry))
+            .chain(all().map(|(source, model)| entry(source, model)));
         print(&format!("{:#}", Value::from_iter(entries)))?;
     } else {
         let mut lines = String::new();

@@ -4,7 +4,9 @@ mod page;
 
 use std::path::{Path, PathBuf};
 
-use luthier_export::{MANIFEST, Source, find as find_files, input, label, of_domain, of_scene, plain, read_one, refuse};
+use luthier_export::{
+    MANIFEST, Source, find as find_files, input, label, of_domain, of_scene, plain, read_one, refuse,
+};
 use luthier_manifest::{MaterialChoice, SceneChoice, ShadingModel};
 use luthier_material::{Diagnostic, Material, Scene, is_scene, parse_scene};
 use luthier_scene::{Director, Made, SceneFailure, label as candidate_label};
