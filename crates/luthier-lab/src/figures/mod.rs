@@ -3,6 +3,7 @@
 mod course;
 mod course_appearance;
 mod course_shader;
+mod course_surfaces;
 mod elek;
 mod elek_examples;
 mod elek_places;
@@ -32,6 +33,7 @@ fn figures() -> Vec<Figure> {
         &course::FIGURES,
         &course_shader::FIGURES,
         &course_appearance::FIGURES,
+        &course_surfaces::FIGURES,
     ]
     .concat()
 }

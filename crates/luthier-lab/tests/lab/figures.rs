@@ -3,7 +3,7 @@
 use crate::workshop::Workshop;
 
 /// The figures that the project promises, one by one.
-const NAMES: [&str; 24] = [
+const NAMES: [&str; 25] = [
     "elek-2",
     "elek-4",
     "elek-5",
@@ -28,6 +28,7 @@ const NAMES: [&str; 24] = [
     "course-3-9",
     "course-4-1",
     "course-5-7",
+    "course-5-1",
 ];
 
 /// The smallest picture, and more values of a channel than a plain picture has.
