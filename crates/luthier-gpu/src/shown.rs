@@ -1,4 +1,4 @@
-//! What is seen on a part of a shape: a material, or a surface of several.
+//! Parts of a shape: each shows a material, or a surface of several.
 
 use crate::{GpuError, Scene};
 
