@@ -17,7 +17,7 @@ pub(super) fn pick(set: &MaterialSet<'_>) -> Option<String> {
     for (number, surface) in set.surfaces[..set.surfaces.len() - 1].iter().enumerate() {
         let _ = write!(out, "    if surface == {number}u {{\n{}    }}\n", indented(&body(surface)));
     }
-    let _ = write!(out, "{}}}\n", body(last));
+    let _ = writeln!(out, "{}}}", body(last));
     Some(out)
 }
 

@@ -146,8 +146,11 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
     })
 }
 
+/// Name of a surface, and the normal at the place.
+type Picked = (String, DVec3);
+
 /// The material of the file, and that of `--other`; of a surface the material at the place, with the name of the surface and the normal there.
-fn materials(options: &EvalOptions) -> Outcome<(Vec<Material>, Option<(String, DVec3)>)> {
+fn materials(options: &EvalOptions) -> Outcome<(Vec<Material>, Option<Picked>)> {
     let inputs = &options.inputs;
     let mut found = gather(std::slice::from_ref(&options.file))?;
     if found.surfaces.is_empty() {
