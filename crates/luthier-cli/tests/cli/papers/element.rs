@@ -123,7 +123,7 @@ impl Element {
 
     /// The material file with the element.
     pub(super) fn with(&self) -> Option<String> {
-        self.get("layers").map(|layers| headed(layers))
+        self.get("layers").map(headed)
     }
 
     /// The material file without the element.
