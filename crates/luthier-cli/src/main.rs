@@ -63,7 +63,7 @@ fn main() -> ExitCode {
         Verb::Models(options) => verb::models::run(options),
         Verb::Eval(options) => verb::eval::run(options),
         Verb::Ior(options) => verb::ior::run(options),
-        Verb::Schema { scene } => verb::schema::run(*scene),
+        Verb::Schema { scene, surface } => verb::schema::run(*scene, *surface),
         Verb::Completions(options) => verb::completions::run(options),
         Verb::Man(options) => verb::man::run(options),
     };

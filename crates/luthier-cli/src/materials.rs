@@ -1,14 +1,16 @@
-//! Materials that a command works on.
+//! Materials and surfaces that a command works on.
+
+use std::path::PathBuf;
 
 #[cfg(any(feature = "cost", feature = "gpu"))]
 use luthier_export::of_parts;
-use luthier_export::{Source, of_model, refuse};
+use luthier_export::{Source, SurfaceSource, gather, of_model, read_all, refuse, refuse_surfaces};
 #[cfg(any(feature = "cost", feature = "gpu"))]
 use luthier_manifest::Reflectance;
-use luthier_manifest::{Form, FunctionGroup, ShadingModel};
+use luthier_manifest::{Form, FunctionGroup, ShadingModel, SurfaceEntry};
 use luthier_material::{Diagnostic, Material, Severity};
 use luthier_optics::stack::{Base, Layer};
-use luthier_terminal::{Failure, Outcome, valid};
+use luthier_terminal::{Broken, Failure, Outcome, print_diagnostics, valid};
 
 use crate::cli::Shading;
 
@@ -53,6 +55,37 @@ pub(crate) fn bakeable(
 ) -> Outcome<Vec<Material>> {
     refuse(&mut sources, |material| shading.doubts(material, forms));
     Ok(shaded(valid(sources, quiet)?, shading, forms))
+}
+
+/// The materials and surfaces of files that can be baked, as [`bakeable`]; the materials of surfaces are among them.
+pub(crate) fn bakeable_with_surfaces(
+    files: &[PathBuf],
+    shading: &Shading,
+    forms: &[Form],
+    quiet: bool,
+) -> Outcome<(Vec<Material>, Vec<SurfaceEntry>)> {
+    let mut found = gather(files)?;
+    let mut sources = read_all(&found.materials)?;
+    refuse(&mut sources, |material| shading.doubts(material, forms));
+    refuse_surfaces(&mut found.surfaces, &sources);
+    let surfaces = valid_surfaces(&found.surfaces)?;
+    Ok((shaded(valid(sources, quiet)?, shading, forms), surfaces))
+}
+
+/// The surfaces of all files; or, when any is invalid, its diagnostics and a failure.
+pub(crate) fn valid_surfaces(surfaces: &[SurfaceSource]) -> Outcome<Vec<SurfaceEntry>> {
+    let mut diagnostics = Vec::new();
+    for source in surfaces {
+        let errors = source.parsed.as_ref().err().into_iter().flatten();
+        print_diagnostics(errors.clone(), &source.text);
+        diagnostics.extend(errors.cloned());
+    }
+    if diagnostics.is_empty() {
+        return Ok(surfaces.iter().filter_map(SurfaceSource::entry).collect());
+    }
+    let broken = surfaces.iter().filter(|source| source.parsed.is_err()).count();
+    let sentence = format!("{broken} of {} surface files cannot be used; nothing was written", surfaces.len());
+    Err(Failure::input(Broken { sentence, diagnostics }))
 }
 
 /// The materials, shaded by the model that the command line asks for, with its tables.

@@ -3,12 +3,29 @@
 use std::path::Path;
 
 use luthier_export::{Package, lit, read_one};
+use luthier_gpu::Shown;
 use luthier_manifest::Form;
 use luthier_terminal::{Failure, Outcome};
 
 use crate::cli::Shading;
-use crate::materials::bakeable;
+use crate::materials::{bakeable, bakeable_with_surfaces};
 use crate::store::store;
+
+/// A material or surface to look at: by file, which is baked for pictures, or by its name in a bake on disk, shaded as that was.
+pub(crate) fn shown(subject: &str, shading: &Shading, out: &Path) -> Outcome<(Package, Shown)> {
+    let file = Path::new(subject);
+    if file.extension().is_some_and(|e| e == "toml") {
+        let (materials, surfaces) = bakeable_with_surfaces(&[file.to_owned()], shading, &[], false)?;
+        let shown = if surfaces.is_empty() { Shown::Material(0) } else { Shown::Surface(0) };
+        return Ok((Package::of_surfaces(&lit(&materials), surfaces, store()?)?, shown));
+    }
+    let package = Package::read(out)?;
+    if let Some(number) = package.manifest.surface_index(subject) {
+        return Ok((package, Shown::Surface(number)));
+    }
+    let (package, number) = find(subject, shading, &[], out)?;
+    Ok((package, Shown::Material(number)))
+}
 
 /// A material by file, which is baked for pictures in some forms, or by its name in a bake on disk, shaded as that was; and its number.
 pub(crate) fn find(material: &str, shading: &Shading, forms: &[Form], out: &Path) -> Outcome<(Package, u32)> {

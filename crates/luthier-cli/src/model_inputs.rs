@@ -153,11 +153,11 @@ impl ModelInputs {
         (shown, dropped)
     }
 
-    /// Refuses options that neither the model nor the effects that it shows take.
-    pub(crate) fn check(&self, model: &dyn Model, shown: &Effects, environment: bool) -> Outcome {
+    /// Refuses options that neither the model, nor the effects that it shows, nor the choice of a surface take.
+    pub(crate) fn check(&self, model: &dyn Model, shown: &Effects, is_surface: bool, environment: bool) -> Outcome {
         let (flakes, patina) = (shown.flakes.is_some(), shown.patina.is_some());
         let by_effects = |input: Input| match input {
-            Input::Uv => flakes || patina || shown.glitter.is_some(),
+            Input::Uv => is_surface || flakes || patina || shown.glitter.is_some(),
             Input::Distance => flakes,
             Input::Extent | Input::Map => patina,
             _ => false,
@@ -193,7 +193,7 @@ impl ModelInputs {
         let takers: Vec<&str> = infos.filter(|i| i.inputs.contains(&input)).map(|i| i.name).collect();
         let effects = match input {
             Input::Uv => {
-                "; and `elek`, `weidlich-wilkie` and `lobes` for a file with flakes or patina, any model for one with glitter"
+                "; and `elek`, `weidlich-wilkie` and `lobes` for a file with flakes or patina, any model for one with glitter and for a surface"
             }
             Input::Distance => "; and `elek`, `weidlich-wilkie` and `lobes` for a file with flakes",
             Input::Extent | Input::Map => "; and `elek`, `weidlich-wilkie` and `lobes` for a file with patina",

@@ -134,6 +134,12 @@ pub enum PackageError {
         /// The material.
         name: String,
     },
+    /// A surface of a material that the bake does not have.
+    #[error("the surface `{surface}` names a material that is not in the bake")]
+    NoSurfaceMaterial {
+        /// The surface.
+        surface: String,
+    },
     /// No WGSL shader of the form asked for.
     #[error("the bake holds no WGSL shader of the form `{form}`; it has: {known}")]
     NoShader {

@@ -27,6 +27,8 @@ mod refusals;
 mod renderer;
 #[cfg(feature = "bake")]
 mod sources;
+#[cfg(feature = "bake")]
+mod surfaces;
 
 pub use encode::{Compression, Encoded, sha256};
 pub use error::PackageError;
@@ -49,7 +51,9 @@ pub use refusals::{refuse, refuse_too_many};
 #[cfg(feature = "bake")]
 pub use renderer::{lit, lit_functions};
 #[cfg(feature = "bake")]
-pub use sources::{Source, find, label, of_text, parse, read, read_all, read_image, read_one};
+pub use sources::{Source, find, label, of_text, parse, plain, read, read_all, read_image, read_one};
+#[cfg(feature = "bake")]
+pub use surfaces::{Gathered, SurfaceSource, gather, refuse_surfaces};
 
 pub(crate) use publish::READY;
 

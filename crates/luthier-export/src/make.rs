@@ -11,7 +11,8 @@ use luthier_bake::{
 };
 use luthier_lut::{Atlas, AtlasLayout, Image, TableKind, TexelFormat};
 use luthier_manifest::{
-    FileEntry, Form, Functions, Manifest, MapEntry, MaterialEntry, MaterialTexture, TableEntry, Target, material_buffer,
+    FileEntry, Form, Functions, Manifest, MapEntry, MaterialEntry, MaterialTexture, SurfaceEntry, TableEntry, Target,
+    material_buffer,
 };
 use luthier_material::{Diagnostic, Material, Severity};
 use luthier_shader::{MaterialSet, ShaderError};
@@ -32,6 +33,8 @@ pub struct Bake<'a> {
     pub forms: Vec<Form>,
     /// Groups of functions of each shader.
     pub functions: Functions,
+    /// Surfaces of the materials, by their numbers.
+    pub surfaces: Vec<SurfaceEntry>,
     /// Told what happens.
     pub observer: &'a dyn Observer,
     /// Whether materials outside the domain of their model are refused; tests at the limits of models take them.
@@ -45,6 +48,7 @@ impl Default for Bake<'_> {
             targets: vec![Target::Wgsl, Target::Glsl450, Target::GlslEs300],
             forms: Vec::new(),
             functions: Functions::default(),
+            surfaces: Vec::new(),
             observer: &Silent,
             refuses: true,
         }
@@ -177,7 +181,8 @@ impl Package {
             ..table_entry(atlas.kind, &atlas.layout, atlas.format)
         };
         let tables = atlases.iter().map(entry).collect();
-        let manifest = Manifest { functions: bake.functions.clone(), ..Manifest::new(GENERATOR, entries, tables) };
+        let (functions, surfaces) = (bake.functions.clone(), bake.surfaces.clone());
+        let manifest = Manifest { functions, surfaces, ..Manifest::new(GENERATOR, entries, tables) };
         let table =
             |atlas: Atlas| Table { kind: atlas.kind, texture: Texture::from_atlas(&atlas), truth: Some(atlas.truth) };
         let tables = atlases.into_iter().map(table).collect();
@@ -207,13 +212,14 @@ impl Package {
         Ok(())
     }
 
-    /// The package of some of the materials, by their numbers: with all tables, and with shaders for these materials alone.
+    /// The package of some of the materials, by their numbers: with all tables, without surfaces, and with shaders for these materials alone.
     ///
     /// # Errors
     /// [`ExportError`].
     pub fn of_materials(&self, numbers: Range<usize>) -> Result<Self, ExportError> {
         let mut package = self.clone();
         package.manifest.materials = self.manifest.materials[numbers.clone()].to_vec();
+        package.manifest.surfaces.clear();
         let kept = |map: &Map| numbers.contains(&(map.material as usize));
         package.maps = self.maps.iter().filter(|map| kept(map)).cloned().collect();
         package.maps.iter_mut().for_each(|map| map.material -= numbers.start as u32);

@@ -91,6 +91,10 @@ impl Package {
         if let Some(MaterialEntry { name, .. }) = manifest.materials.iter().find(|m| m.layers.is_empty()) {
             return Err(PackageError::NoLayers { name: name.clone() });
         }
+        let is_foreign = |number: &u32| *number as usize >= manifest.materials.len();
+        if let Some(surface) = manifest.surfaces.iter().find(|s| s.materials().iter().any(is_foreign)) {
+            return Err(PackageError::NoSurfaceMaterial { surface: surface.name.clone() });
+        }
         let mut ordered = Vec::with_capacity(manifest.tables.len());
         for entry in &manifest.tables {
             let position = tables.iter().position(|t| t.kind == entry.kind);

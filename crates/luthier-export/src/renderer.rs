@@ -2,7 +2,7 @@
 
 use luthier_bake::Store;
 use luthier_lut::TableKind;
-use luthier_manifest::{FunctionGroup, Functions, ShadingModel};
+use luthier_manifest::{FunctionGroup, Functions, ShadingModel, SurfaceEntry};
 use luthier_material::Material;
 
 use crate::{Bake, ExportError, Package};
@@ -17,6 +17,18 @@ impl Package {
     /// Those of [`Package::new`].
     pub fn for_renderer(materials: &[Material], store: &dyn Store) -> Result<Self, ExportError> {
         Self::new(materials, &Bake { functions: lit_functions(), ..Bake::wgsl(&[]) }, store)
+    }
+
+    /// Bakes materials for a renderer as [`Package::for_renderer`] does, with surfaces of them.
+    ///
+    /// # Errors
+    /// Those of [`Package::new`].
+    pub fn of_surfaces(
+        materials: &[Material],
+        surfaces: Vec<SurfaceEntry>,
+        store: &dyn Store,
+    ) -> Result<Self, ExportError> {
+        Self::new(materials, &Bake { functions: lit_functions(), surfaces, ..Bake::wgsl(&[]) }, store)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Material files on disk.
 
 use std::collections::BTreeSet;
-use std::path::{MAIN_SEPARATOR, Path, PathBuf};
+use std::path::{Component, MAIN_SEPARATOR, Path, PathBuf};
 use std::string::FromUtf8Error;
 
 use luthier_lut::Image;
@@ -137,6 +137,21 @@ pub(crate) fn beside(material: &str, path: &str) -> PathBuf {
 /// A path as messages and manifests have it: with forward slashes everywhere.
 pub fn label(path: &Path) -> String {
     path.to_string_lossy().replace(MAIN_SEPARATOR, "/")
+}
+
+/// A path without the folders that `..` leaves again.
+pub fn plain(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        let leaves =
+            part == Component::ParentDir && matches!(plain.components().next_back(), Some(Component::Normal(_)));
+        if leaves {
+            plain.pop();
+        } else {
+            plain.push(part);
+        }
+    }
+    plain
 }
 
 fn toml_files(folder: &Path) -> Result<Vec<PathBuf>, ExportError> {

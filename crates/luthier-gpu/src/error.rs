@@ -94,6 +94,14 @@ pub enum GpuError {
         /// Number of materials.
         count: usize,
     },
+    /// No such surface.
+    #[error("no surface {surface}: the bake has {count}")]
+    NoSurface {
+        /// The number asked for.
+        surface: u32,
+        /// Surfaces of the bake.
+        count: usize,
+    },
     /// A table that the bake, or this form of the shader, does not have.
     #[error("no {} table in the `{form}` shader of this bake", kind.name())]
     NoTable {

@@ -11,7 +11,7 @@ use crate::context::Pass;
 use crate::error::setting;
 use crate::maps::MAP_WORDS;
 use crate::surroundings::Surroundings;
-use crate::{Camera, GpuError, Light, Scene, Shape, Sky};
+use crate::{Camera, GpuError, Light, Scene, Shape, Shown, Sky};
 
 /// Evaluations per submission: about a second on a software adapter.
 const EVALUATIONS_PER_PASS: u32 = 1 << 21;
@@ -114,7 +114,15 @@ impl Scene {
     /// [`GpuError::Prefiltered`] for another form than `baked` without samples, [`GpuError::NoReflectance`] for a material without
     /// the tables that this takes, [`GpuError::Setting`], [`GpuError::NoMaterial`], and whatever the device reports.
     pub fn render(&self, materials: &[u32], settings: &RenderSettings) -> Result<Image, GpuError> {
-        let image = self.render_passes(materials, settings, &|| false, EVALUATIONS_PER_PASS)?;
+        self.render_shown(&parts(materials), settings)
+    }
+
+    /// Renders as [`Scene::render`] does, parts that may be surfaces. Particles of a surface turn the frame as a normal map does.
+    ///
+    /// # Errors
+    /// As [`Scene::render`], and [`GpuError::NoSurface`].
+    pub fn render_shown(&self, parts: &[Shown], settings: &RenderSettings) -> Result<Image, GpuError> {
+        let image = self.render_passes(parts, settings, &|| false, EVALUATIONS_PER_PASS)?;
         Ok(image.expect("nobody stops it"))
     }
 
@@ -151,20 +159,18 @@ impl Scene {
         settings: &RenderSettings,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<Image>, GpuError> {
-        self.render_passes(materials, settings, stop, EVALUATIONS_PER_SHORT_PASS)
+        self.render_passes(&parts(materials), settings, stop, EVALUATIONS_PER_SHORT_PASS)
     }
 
     fn render_passes(
         &self,
-        materials: &[u32],
+        parts: &[Shown],
         settings: &RenderSettings,
         stop: &dyn Fn() -> bool,
         evaluations: u32,
     ) -> Result<Option<Image>, GpuError> {
-        settings.check(materials)?;
-        for &material in materials {
-            self.layers(material)?;
-        }
+        settings.check(parts)?;
+        let materials = &self.materials_of(parts)?;
         if self.form() != Form::Baked && settings.environment_samples == 0 {
             return Err(GpuError::Prefiltered { form: self.form() });
         }
@@ -184,7 +190,7 @@ impl Scene {
         let words = self.widened_words(settings.light_angular_radius);
         let group = self.bindings.group(&self.context, &words, &surroundings)?;
         let pipeline = self.pipeline(&self.render, &self.render_kernel())?;
-        let mut inputs = self.inputs(materials, settings);
+        let mut inputs = self.inputs(parts, materials, settings);
 
         let size = settings.size;
         let lobes = 1 + self.manifest.materials.iter().map(|m| m.layers.len()).max().unwrap_or(0) as u32;
@@ -264,16 +270,17 @@ impl Scene {
             &lookups,
             &lobes,
             &self.surface_functions(),
+            self.pick_function(),
         ]
         .join("\n")
     }
 
     /// The words of `Render` in `render.wgsl`.
-    fn inputs(&self, materials: &[u32], settings: &RenderSettings) -> Vec<[u32; 4]> {
+    fn inputs(&self, parts: &[Shown], materials: &[u32], settings: &RenderSettings) -> Vec<[u32; 4]> {
         let used = self.blurs();
         // Maps: the environment, irradiance, then a chain for each distribution in use.
         let chain_of = |layer: &LayerRecord| first_map(&used, blur_of(layer)) as f32;
-        let mut words: Vec<[u32; 4]> = materials.iter().map(|&m| [m, 0, 0, 0]).collect();
+        let mut words: Vec<[u32; 4]> = parts.iter().map(|part| part.word()).collect();
         let lights = words.len();
         words.extend(settings.lights.iter().flat_map(Light::words).map(bits));
 
@@ -373,6 +380,11 @@ fn shares(settings: &RenderSettings, lobes: u32) -> Vec<[u32; 4]> {
     (0..samples).flat_map(|sample| parts.clone().map(move |(first, count)| [sample, 1, first, count])).collect()
 }
 
+/// Materials as what is seen.
+fn parts(materials: &[u32]) -> Vec<Shown> {
+    materials.iter().copied().map(Shown::Material).collect()
+}
+
 /// Whether the surroundings that a material shows are read where its lobes are.
 fn shows_lobes(entry: &MaterialEntry) -> bool {
     entry.model == ShadingModel::Lobes && entry.layers.first().is_some_and(|layer| layer.kind != LayerKind::Diffuse)
@@ -434,9 +446,9 @@ fn wider(alpha: f64, angular_radius: f32) -> f64 {
 }
 
 impl RenderSettings {
-    fn check(&self, materials: &[u32]) -> Result<(), GpuError> {
-        if materials.len() != self.shape.materials() {
-            return Err(setting("materials", materials.len().to_string(), "one for each part of the shape"));
+    fn check(&self, parts: &[Shown]) -> Result<(), GpuError> {
+        if parts.len() != self.shape.materials() {
+            return Err(setting("materials", parts.len().to_string(), "one for each part of the shape"));
         }
         if !(1..=4096).contains(&self.size) {
             return Err(setting("size", self.size.to_string(), "1 to 4096 pixels"));

@@ -21,6 +21,7 @@ mod parts;
 mod reads;
 mod record;
 mod search;
+mod surface;
 mod target;
 mod tiles;
 
@@ -44,5 +45,6 @@ pub use model::ShadingModel;
 pub use parts::{Masking, Reflectance, ReflectanceCurve};
 pub use record::{LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, material_buffer};
 pub use search::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR, Search};
+pub use surface::{CellsRecord, ParticlesRecord, SurfaceEntry};
 pub use target::Target;
 pub use tiles::Tiles;

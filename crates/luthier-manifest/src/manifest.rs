@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     Form, Functions, LayerKind, LayerRecord, ManifestError, Masking, MaterialConstants, MaterialTexture, Reflectance,
-    SceneChoice, Search, ShadingModel, Target,
+    SceneChoice, Search, ShadingModel, SurfaceEntry, Target,
 };
 
 /// Version of the manifest's shape. A reader refuses any other.
@@ -20,6 +20,9 @@ pub struct Manifest {
     pub generator: String,
     /// The materials, in the order of their numbers in the shader.
     pub materials: Vec<MaterialEntry>,
+    /// Surfaces of several materials, in the order of their numbers in the shader; absent where there is none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub surfaces: Vec<SurfaceEntry>,
     /// The tables, at most one of each kind, in binding order.
     pub tables: Vec<TableEntry>,
     /// How the tables came by their sizes, mappings and formats, where these were searched for.
@@ -228,6 +231,7 @@ impl Manifest {
             schema: MANIFEST_SCHEMA,
             generator: generator.to_owned(),
             materials,
+            surfaces: Vec::new(),
             tables,
             searches: Vec::new(),
             choice: None,
@@ -258,6 +262,11 @@ impl Manifest {
     /// The table of a kind, if the bake has one.
     pub fn table(&self, kind: TableKind) -> Option<&TableEntry> {
         self.tables.iter().find(|t| t.kind == kind)
+    }
+
+    /// The number of a surface in the shader.
+    pub fn surface_index(&self, name: &str) -> Option<u32> {
+        self.surfaces.iter().position(|surface| surface.name == name).map(|i| i as u32)
     }
 
     /// The number of a material in the shader.
@@ -380,6 +389,7 @@ mod tests {
                     },
                 ],
             }],
+            surfaces: Vec::new(),
             tables: vec![
                 table(TableKind::Distribution, Mapping::Power { exponent: 8.0 }),
                 table(TableKind::Thickness, Mapping::Periodic),

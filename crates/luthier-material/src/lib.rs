@@ -5,7 +5,8 @@
 //!
 //! [`parse`] reads one file. A declarative grammar (keys, types, ranges, alternatives) checks it first, a decoder then
 //! builds the [`Stack`](luthier_optics::stack::Stack); both report as much as they can in one run. [`schema`] is the same
-//! grammar as JSON Schema. [`parse_scene`] and [`scene_schema`] do the same for scenes, which name materials.
+//! grammar as JSON Schema. [`parse_scene`] and [`scene_schema`] do the same for scenes, which name materials, and
+//! [`parse_surface`] and [`surface_schema`] for surfaces, which say where materials are.
 //!
 //! Physical nonsense is an error, doubtful physics a warning. This crate crosses the units of files (degrees, artist's
 //! roughness) into those of the optics (radians, slope parameters), once.
@@ -28,6 +29,7 @@ mod scene;
 mod schema;
 mod section;
 mod suggest;
+mod surface;
 
 pub use bake_settings::{
     AlphaMapping, BakeSettings, DEFAULT_WAVELENGTHS_NM, DistributionMapping, DistributionSettings, FresnelMapping,
@@ -41,5 +43,6 @@ pub use material::{FilmVariation, LayerExtras, Maps, Material, NamedImage, Varia
 pub use parse::{Parsed, parse};
 pub use places::Places;
 pub use scene::{Light, Scene, SceneMaterial, SceneTarget, View, is_scene, parse_scene};
-pub use schema::{scene_schema, schema};
+pub use schema::{scene_schema, schema, surface_schema};
 pub use suggest::did_you_mean;
+pub use surface::{NamedMaterial, Surface, SurfaceCells, SurfaceGlitter, is_surface, parse_surface};

@@ -56,6 +56,12 @@ pub fn parse(
         sink.error(document.key_span("scene"), "this is a scene, not a material", hint);
         return Err(sink.into_diagnostics());
     }
+    if document.has("surface") && !document.has("schema") {
+        let hint =
+            Some("`check`, `bake`, `preview` and `eval` take surfaces; give other commands its materials".to_owned());
+        sink.error(document.key_span("surface"), "this is a surface, not a material", hint);
+        return Err(sink.into_diagnostics());
+    }
     check_key(&DOCUMENT, "schema", &document, &mut sink);
     if sink.has_errors() {
         // A file of another version has other rules: only that is worth saying.

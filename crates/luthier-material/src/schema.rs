@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
-use crate::grammar::{DOCUMENT, Kind, NAME_MAX, SCENE, Table, TextForm};
+use crate::grammar::{DOCUMENT, Kind, NAME_MAX, SCENE, SURFACE, Table, TextForm};
 
 /// The grammar of material files as JSON Schema (draft 2020-12), generated from the tables that files are checked against.
 ///
@@ -16,6 +16,11 @@ pub fn schema() -> Value {
 /// The grammar of scene files as JSON Schema (draft 2020-12).
 pub fn scene_schema() -> Value {
     document(&SCENE, "luthier scene")
+}
+
+/// The grammar of surface files as JSON Schema (draft 2020-12).
+pub fn surface_schema() -> Value {
+    document(&SURFACE, "luthier surface")
 }
 
 fn document(of: &'static Table, title: &str) -> Value {
@@ -141,7 +146,7 @@ mod tests {
                 _ => {}
             }
         }
-        for schema in [schema(), scene_schema()] {
+        for schema in [schema(), scene_schema(), surface_schema()] {
             visit(&schema, &schema);
         }
     }

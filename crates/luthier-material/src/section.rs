@@ -79,6 +79,12 @@ impl<'t> Section<'t> {
         array.into_iter().flat_map(|a| a.iter()).filter_map(|v| Some(v.get_ref().as_str()?.to_owned())).collect()
     }
 
+    /// The strings of an array, and where they stand.
+    pub(crate) fn spanned_texts(&self, key: &str) -> impl Iterator<Item = (String, Span<usize>)> {
+        let array = self.array(key);
+        array.into_iter().flat_map(|a| a.iter()).filter_map(|v| Some((v.get_ref().as_str()?.to_owned(), v.span())))
+    }
+
     /// A number, or an array of numbers.
     pub(crate) fn numbers(&self, key: &str) -> Option<Numbers> {
         let value = self.value(key)?.get_ref();

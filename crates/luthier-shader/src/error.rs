@@ -23,7 +23,7 @@ pub enum ShaderError {
     #[error("`{0}` makes no shader identifier: names are letters, digits and hyphens")]
     Name(String),
     /// Two names that make the same identifier.
-    #[error("materials `{first}` and `{second}` are both `{constant}` in a shader; rename one")]
+    #[error("`{first}` and `{second}` are both `{constant}` in a shader; rename one")]
     NameClash {
         /// The earlier material.
         first: String,
@@ -31,6 +31,24 @@ pub enum ShaderError {
         second: String,
         /// The identifier.
         constant: String,
+    },
+    /// Cells of a surface that choose among no material, or among too many.
+    #[error("cells of the surface `{surface}` take 1 to {limit} materials")]
+    Choices {
+        /// The surface.
+        surface: String,
+        /// The most.
+        limit: usize,
+    },
+    /// A surface names a material that the set does not have.
+    #[error("the surface `{surface}` has material {material}, and there are {count}")]
+    NoMaterial {
+        /// The surface.
+        surface: String,
+        /// The number.
+        material: u32,
+        /// Materials of the set.
+        count: u32,
     },
     /// A form that the model of a material does not have.
     #[error(

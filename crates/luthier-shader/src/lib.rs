@@ -42,6 +42,6 @@ pub use error::ShaderError;
 pub use languages::spirv::{complete_spirv, emit_spirv, library_spirv, spirv_words};
 pub use library::library;
 pub use luthier_manifest::{Form, Target};
-pub use set::{MaterialSet, RESERVED_BINDINGS, TableFace, bindings, identifier};
+pub use set::{MaterialSet, RESERVED_BINDINGS, TableFace, bindings, identifier, surface_identifier};
 pub use style::style_name;
 pub use validate::validate;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use luthier_lut::{AtlasLayout, TableKind, TexelFormat, Values};
 use luthier_manifest::{
     BUFFER_WORDS_MAX, BindingEntry, FunctionGroup, Functions, LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS,
-    Manifest, MaterialEntry, ShadingModel,
+    Manifest, MaterialEntry, ShadingModel, SurfaceEntry,
 };
 
 use crate::{Form, ShaderError};
@@ -13,6 +13,9 @@ use crate::{Form, ShaderError};
 /// Binding numbers that luthier keeps for itself. What a caller puts into the same group, where an engine leaves him no other, goes
 /// to this number and above.
 pub const RESERVED_BINDINGS: u32 = 16;
+
+/// Materials of one kind of cells; numbers of cells have 24 bits, which such a count takes to 32.
+const CHOICES_MAX: usize = 256;
 
 /// Binding of the sampler.
 const SAMPLER_BINDING: u32 = 5;
@@ -51,6 +54,8 @@ pub struct TableFace {
 pub struct MaterialSet<'a> {
     /// The materials.
     pub materials: &'a [MaterialEntry],
+    /// Surfaces of these materials, in the order of their numbers.
+    pub surfaces: &'a [SurfaceEntry],
     /// The tables, at most one of a kind; of several the first counts. The `baked` form evaluates D in closed form for layers without a
     /// tile of a distribution table.
     pub tables: Vec<TableFace>,
@@ -61,7 +66,7 @@ pub struct MaterialSet<'a> {
 impl<'a> MaterialSet<'a> {
     /// Materials and tables, for shaders of `luthier_eval` alone.
     pub fn new(materials: &'a [MaterialEntry], tables: Vec<TableFace>) -> Self {
-        Self { materials, tables, functions: Functions::default() }
+        Self { materials, surfaces: &[], tables, functions: Functions::default() }
     }
 
     /// All materials, tables and groups of functions of a bake.
@@ -69,7 +74,12 @@ impl<'a> MaterialSet<'a> {
         let face =
             |t: &luthier_manifest::TableEntry| TableFace { kind: t.kind, layout: t.layout.clone(), format: t.format };
         let tables = manifest.tables.iter().map(face).collect();
-        Self { materials: &manifest.materials, tables, functions: manifest.functions.clone() }
+        Self {
+            materials: &manifest.materials,
+            surfaces: &manifest.surfaces,
+            tables,
+            functions: manifest.functions.clone(),
+        }
     }
 
     /// All records of all materials, in the order of the buffer.
@@ -123,11 +133,42 @@ impl<'a> MaterialSet<'a> {
         Ok(constants)
     }
 
+    /// The identifiers of the surfaces, in order.
+    pub(crate) fn surface_constants(&self) -> Result<Vec<String>, ShaderError> {
+        let mut constants: Vec<String> = Vec::with_capacity(self.surfaces.len());
+        for surface in self.surfaces {
+            let constant = surface_identifier(&surface.name)?;
+            if let Some(first) = constants.iter().position(|other| *other == constant) {
+                let (first, second) = (self.surfaces[first].name.clone(), surface.name.clone());
+                return Err(ShaderError::NameClash { first, second, constant });
+            }
+            constants.push(constant);
+        }
+        Ok(constants)
+    }
+
+    /// Whether surfaces have materials of the set.
+    fn check_surfaces(&self) -> Result<(), ShaderError> {
+        let count = self.materials.len() as u32;
+        for surface in self.surfaces {
+            let glitter = surface.glitter.iter().map(|glitter| &glitter.cells);
+            let lists = std::iter::once(&surface.cells).chain(glitter).map(|cells| cells.materials.as_slice());
+            if lists.clone().any(|list| list.is_empty() || list.len() > CHOICES_MAX) {
+                return Err(ShaderError::Choices { surface: surface.name.clone(), limit: CHOICES_MAX });
+            }
+            if let Some(&material) = lists.flatten().find(|material| **material >= count) {
+                return Err(ShaderError::NoMaterial { surface: surface.name.clone(), material, count });
+            }
+        }
+        Ok(())
+    }
+
     /// Whether every layer is one that the emitted functions can evaluate.
     pub(crate) fn check(&self, form: Form) -> Result<(), ShaderError> {
         if self.materials.is_empty() {
             return Err(ShaderError::NoMaterials);
         }
+        self.check_surfaces()?;
         let words = self.words();
         if words > BUFFER_WORDS_MAX {
             return Err(ShaderError::BufferTooLarge { words, limit: BUFFER_WORDS_MAX });
@@ -217,12 +258,25 @@ pub fn bindings(set: &MaterialSet<'_>, form: Form) -> Vec<BindingEntry> {
 /// # Errors
 /// [`ShaderError::Name`] for a name of other characters than letters, digits and hyphens.
 pub fn identifier(name: &str) -> Result<String, ShaderError> {
+    constant("MATERIAL", name)
+}
+
+/// The constant that shaders have for a surface of this name: for `lepidolite` it is `LUTHIER_SURFACE_LEPIDOLITE`, otherwise as
+/// [`identifier`].
+///
+/// # Errors
+/// [`ShaderError::Name`] for a name of other characters than letters, digits and hyphens.
+pub fn surface_identifier(name: &str) -> Result<String, ShaderError> {
+    constant("SURFACE", name)
+}
+
+fn constant(kind: &str, name: &str) -> Result<String, ShaderError> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     let words: Vec<&str> = name.split(['-', '_']).filter(|word| !word.is_empty()).collect();
     if words.is_empty() || !name.chars().all(is_plain) {
         return Err(ShaderError::Name(name.to_owned()));
     }
-    let mut constant = format!("LUTHIER_MATERIAL_{}", words.join("_").to_ascii_uppercase());
+    let mut constant = format!("LUTHIER_{kind}_{}", words.join("_").to_ascii_uppercase());
     if constant.ends_with(|c: char| c.is_ascii_digit()) {
         constant.push_str("_ID");
     }
@@ -241,6 +295,7 @@ mod tests {
             ("a--b-", "LUTHIER_MATERIAL_A_B"),
         ] {
             assert_eq!(identifier(name).unwrap(), expected);
+            assert_eq!(surface_identifier(name).unwrap(), expected.replace("MATERIAL", "SURFACE"));
         }
         for name in ["", "-", "sp ace", "émail", "a;b"] {
             assert!(matches!(identifier(name), Err(ShaderError::Name(_))), "{name}");

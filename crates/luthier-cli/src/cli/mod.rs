@@ -67,7 +67,7 @@ pub(crate) enum Verb {
         after_help = "Examples:\n  luthier cache stats\n  luthier cache verify --cache /shared/luthier\n  luthier cache clear"
     )]
     Cache(CacheVerb),
-    /// Validate materials and scenes as `bake` would, without baking, and print the class of each surface
+    /// Validate materials, surfaces and scenes as `bake` would, without baking, and print the class of each surface
     Check(CheckOptions),
     /// Judge a bake: tables and shaders against the full evaluation in f64
     Report(ReportOptions),
@@ -102,14 +102,17 @@ pub(crate) enum Verb {
     Eval(Box<EvalOptions>),
     /// List the built-in optical constants, or show one set
     Ior(IorOptions),
-    /// Print the JSON Schema of material files, or of scenes
+    /// Print the JSON Schema of material files, of scenes or of surfaces
     #[command(
-        after_help = "Examples:\n  luthier schema > material.schema.json\n  luthier schema --scene > scene.schema.json"
+        after_help = "Examples:\n  luthier schema > material.schema.json\n  luthier schema --scene > scene.schema.json\n  luthier schema --surface > surface.schema.json"
     )]
     Schema {
         /// Print the schema of scene files
         #[arg(long)]
         scene: bool,
+        /// Print the schema of surface files
+        #[arg(long, conflicts_with = "scene")]
+        surface: bool,
     },
     /// Print a script that completes verbs and options in a shell
     Completions(CompletionsOptions),
@@ -530,7 +533,7 @@ yamaguchi, phong, microfacet) are its f64 twin: one index at 589.3 nm bends the 
 each term. --three-wavelengths stands for the `full` form, spectral colour for the `baked` one.
 
 Effects of the file count at the place of --uv and --distance: flakes and patina for elek, weidlich-wilkie and lobes, glitter for all; JSON says \
-what is there. That is `luthier_eval_at`; --no-effects is `luthier_eval`. Other maps of the file do not count: the options on textures \
+what is there. That is `luthier_eval_at`; --no-effects is `luthier_eval`. Of a surface file, the material at that place is evaluated, with the normal there. Other maps of the file do not count: the options on textures \
 say what they hold.
 
 Estimates come with their standard error. It is `not-settled`, in JSON null beside `settled` false, where rare paths carry the light and too \
@@ -551,6 +554,7 @@ Examples:
   luthier eval materials/car-paint.toml --model elek --albedo
   luthier eval materials/car-paint.toml --model elek --albedo --angles 0,60 --normal 10,0
   luthier eval materials/copper-patina.toml --model elek --uv 0.2,0.7 --wi 30,0 --wo 45,180
+  luthier eval materials/surfaces/sunstone.toml --model elek --uv 0.2,0.7 --wi 30,0 --wo 45,180
   luthier eval film.toml --polarised --angles 0,60 --wavelength 550
   luthier eval materials/car-paint.toml --model weidlich-wilkie --furnace
   luthier eval materials/car-paint.toml --model flakes --uv 0.2,0.7 --wi 30,0 --wo 45,180

@@ -15,13 +15,14 @@ use super::Shading;
 use crate::variations::Range;
 
 const PREVIEW_EXAMPLES: &str = "\
-MATERIAL is a material file, or the name of a material in the bake. Directions and positions have +y up and +z to the eye;
+MATERIAL is a material file or a surface file, or the name of either in the bake. Directions and positions have +y up and +z to the eye;
 the shapes are about 1 in radius. The grid takes no material: it is of `metallic-roughness` surfaces in the colour of copper.
 
 Examples:
   luthier preview materials/red-lacquer.toml -o ball.png
   luthier preview red-lacquer -o ball.png --size 1024
   luthier preview materials/car-paint.toml -o ring.png --shape torus --environment studio.hdr
+  luthier preview materials/surfaces/sunstone.toml -o stone.png
   luthier preview --shape grid -o grid.png";
 
 /// How pictures are lit, sampled and written.
@@ -60,7 +61,7 @@ pub(crate) struct Look {
 #[derive(Debug, Args)]
 #[command(after_help = PREVIEW_EXAMPLES)]
 pub(crate) struct PreviewOptions {
-    /// A material file, or the name of a material in the bake
+    /// A material file or a surface file, or the name of either in the bake
     #[arg(value_name = "MATERIAL")]
     pub(crate) material: Option<String>,
     #[command(flatten)]

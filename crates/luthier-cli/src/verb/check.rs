@@ -1,8 +1,10 @@
 //! `check`: what is wrong with files, without a bake.
 
-use luthier_export::{Source, find, input, read_one, refuse, refuse_too_many};
+use std::collections::BTreeSet;
+
+use luthier_export::{Source, SurfaceSource, find, gather, input, read_all, refuse, refuse_surfaces, refuse_too_many};
 use luthier_manifest::ShadingModel;
-use luthier_material::{Diagnostic, is_scene};
+use luthier_material::{Diagnostic, Surface, is_scene};
 use luthier_terminal::{Failure, Outcome, diagnostic, files, print, print_diagnostics};
 use serde_json::{Value, json};
 
@@ -13,17 +15,21 @@ use crate::verb::scene::SceneSource;
 
 /// Validates files, materials as one set; diagnostics go to standard error, one line per file to standard output.
 pub(crate) fn run(options: &CheckOptions) -> Outcome {
-    let (mut sources, mut scenes) = (Vec::new(), Vec::new());
+    let (mut others, mut scenes) = (Vec::new(), Vec::new());
     for path in find(&options.sources.paths)? {
         let bytes = input::bytes(&path).map_err(files(&path, "read"))?;
         if is_scene(&String::from_utf8_lossy(&bytes)) {
             scenes.push(SceneSource::read(&path)?);
         } else {
-            sources.push(read_one(&path)?);
+            others.push(path);
         }
     }
+    let mut found = gather(&others)?;
+    let mut sources = read_all(&found.materials)?;
+    let surfaces = &mut found.surfaces;
     let shading = &options.shading;
     refuse(&mut sources, |material| shading.doubts(material, &[]));
+    refuse_surfaces(surfaces, &sources);
     refuse_too_many(&mut sources, |materials| shaded(materials, shading, &[]));
     misses::foresee(&mut sources);
     // Models of materials of a scene are the scene's to choose.
@@ -32,7 +38,11 @@ pub(crate) fn run(options: &CheckOptions) -> Outcome {
         || sources.iter().map(|source| (source, source.parsed.as_ref().ok().map(|p| shading.model(&p.material))));
     let all = || alone().chain(of_scenes());
     if options.json {
-        let entries = scenes.iter().map(scene_entry).chain(all().map(|(source, model)| entry(source, model)));
+        let entries = scenes
+            .iter()
+            .map(scene_entry)
+            .chain(surfaces.iter().map(surface_entry))
+            .chain(all().map(|(source, model)| entry(source, model)));
         print(&format!("{:#}", Value::from_iter(entries)))?;
     } else {
         let mut lines = String::new();
@@ -40,13 +50,19 @@ pub(crate) fn run(options: &CheckOptions) -> Outcome {
             scene.print_diagnostics();
             lines.push_str(&scene_line(scene));
         }
+        for surface in surfaces.iter() {
+            print_diagnostics(surface.parsed.as_ref().err().into_iter().flatten(), &surface.text);
+            lines.push_str(&surface_line(surface));
+        }
         for (source, model) in all() {
             print_diagnostics(source.diagnostics(), &source.text);
             lines.push_str(&line(source, model));
         }
         print(&lines)?;
     }
-    let is_usable = sources.iter().all(|s| s.parsed.is_ok()) && scenes.iter().all(SceneSource::is_usable);
+    let is_usable = sources.iter().all(|s| s.parsed.is_ok())
+        && surfaces.iter().all(|s| s.parsed.is_ok())
+        && scenes.iter().all(SceneSource::is_usable);
     if is_usable { Ok(()) } else { Err(Failure::Verdict) }
 }
 
@@ -79,6 +95,30 @@ fn scene_line(scene: &SceneSource) -> String {
             format!("{}: {verdict}, scene of {} materials\n", scene.label, parsed.materials.len())
         }
     }
+}
+
+fn surface_line(surface: &SurfaceSource) -> String {
+    match &surface.parsed {
+        Err(errors) => format!("{}: {}\n", surface.label, count(errors, "error")),
+        Ok(parsed) => format!("{}: ok, surface of {}\n", surface.label, listed(parsed)),
+    }
+}
+
+/// The materials of a surface, each once.
+fn listed(surface: &Surface) -> String {
+    let named: BTreeSet<&str> = surface.materials().map(|material| material.file.as_str()).collect();
+    match named.len() {
+        1 => "1 material".to_owned(),
+        count => format!("{count} materials"),
+    }
+}
+
+fn surface_entry(surface: &SurfaceSource) -> Value {
+    let (parsed, errors) = (surface.parsed.as_ref().ok(), surface.parsed.as_ref().err());
+    let named = parsed
+        .map(|s| json!({"name": s.name, "materials": s.materials().map(|m| m.file.as_str()).collect::<Vec<_>>()}));
+    let all = diagnostics(errors.map(Vec::as_slice).unwrap_or_default());
+    json!({"file": surface.label, "surface": named, "diagnostics": all})
 }
 
 fn entry(source: &Source, model: Option<ShadingModel>) -> Value {

@@ -1,7 +1,7 @@
 //! `preview`: a picture of one material, or of the grid.
 
 use luthier_export::{Package, lit};
-use luthier_gpu::Shape;
+use luthier_gpu::{Shape, Shown};
 use luthier_manifest::Form;
 use luthier_terminal::{Failure, Outcome, open};
 
@@ -14,10 +14,10 @@ use crate::{grid, memory_bake};
 /// Renders one material, or the grid.
 pub(crate) fn run(options: &PreviewOptions) -> Outcome {
     let format = Format::of(&options.output)?;
-    let (package, parts) = match (&options.material, options.shape) {
+    let (package, parts): (Package, Vec<Shown>) = match (&options.material, options.shape) {
         (None, ShapeName::Grid) => {
             let package = Package::for_renderer(&lit(&grid::materials()?), store()?)?;
-            let parts = (0..Shape::Grid.materials() as u32).collect();
+            let parts = (0..Shape::Grid.materials() as u32).map(Shown::Material).collect();
             (package, parts)
         }
         (Some(_), ShapeName::Grid) => {
@@ -25,20 +25,20 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
         }
         (None, _) => return Err(Failure::Input(anyhow::anyhow!("name a material, or take --shape grid"))),
         (Some(material), _) => {
-            let (package, number) = memory_bake::find(material, &options.shading, &[], &options.out)?;
-            (package, vec![number])
+            let (package, shown) = memory_bake::shown(material, &options.shading, &options.out)?;
+            (package, vec![shown])
         }
     };
     let look = &options.look;
     let mut settings = settings(look, options.shape.into(), options.size)?;
     let gpu = open(look.adapter.as_deref())?;
     let scene = gpu.scene(&package, Form::Baked)?;
-    for &part in &parts {
+    for material in scene.materials_of(&parts)? {
         // A bake on disk has albedos only where a shader reads them, or where they were asked for.
-        if look.environment_samples.is_none() && !scene.has_albedo(part)? {
+        if look.environment_samples.is_none() && !scene.has_albedo(material)? {
             settings.environment_samples = ENVIRONMENT_SAMPLES;
         }
     }
-    let image = scene.render(&parts, &settings)?;
+    let image = scene.render_shown(&parts, &settings)?;
     format.write(&options.output, image, look.tone.into())
 }

@@ -1,21 +1,23 @@
 //! `shader`: the shader of some materials, without a bake.
 
 use luthier_bake::Options;
-use luthier_export::{outline, read};
+use luthier_export::{find, outline};
 use luthier_manifest::Form;
 use luthier_shader::{MaterialSet, Target, complete, complete_spirv, emit, emit_constant, emit_spirv};
 use luthier_terminal::{Failure, Outcome, files, print_bytes};
 
 use crate::cli::ShaderOptions;
-use crate::materials::{bakeable, refuse_environment, shows_environment};
+use crate::materials::{bakeable_with_surfaces, refuse_environment, shows_environment};
 use crate::store::store;
 
 /// Prints or writes the shader of some materials, without baking them.
 pub(crate) fn run(options: &ShaderOptions) -> Outcome {
-    let materials = bakeable(read(&options.sources.paths)?, &options.shading, &[options.form], false)?;
+    let found = find(&options.sources.paths)?;
+    let (materials, surfaces) = bakeable_with_surfaces(&found, &options.shading, &[options.form], false)?;
     let is_shown = materials.iter().any(shows_environment) && options.form == Form::Baked;
     refuse_environment(&options.functions, is_shown)?;
     let mut manifest = outline(&materials, &Options::default(), store()?)?;
+    manifest.surfaces = surfaces;
     manifest.functions = options.functions.iter().copied().collect();
     let set = MaterialSet::from_manifest(&manifest);
     let set = if options.closed { set.with_closed_distribution() } else { set };

@@ -36,10 +36,10 @@ pub const TARGETS: [Target; 17] = [
     },
     Target {
         name: "scene",
-        parser: "luthier_material::parse_scene, is_scene",
-        reads: "scene files",
-        holds: "diagnostics lie in the text and can be shown; a scene is recognised as one; angles and budgets keep their ranges",
-        folders: &["materials/scenes"],
+        parser: "luthier_material::parse_scene, is_scene, parse_surface, is_surface",
+        reads: "scene files and surface files",
+        holds: "diagnostics lie in the text and can be shown; a scene or surface is recognised as one; angles, budgets and shares keep their ranges",
+        folders: &["materials/scenes", "materials/surfaces"],
         run: toml::scene,
     },
     Target {

@@ -4,7 +4,10 @@ use std::io;
 use std::ops::RangeInclusive;
 
 use luthier_manifest::ShadingModel;
-use luthier_material::{Diagnostic, Light, Material, Severity, SurfaceClass, is_scene, left_out, parse, parse_scene};
+use luthier_material::{
+    Diagnostic, Light, Material, Severity, SurfaceClass, is_scene, is_surface, left_out, parse, parse_scene,
+    parse_surface,
+};
 use luthier_optics::stack::{Base, Stack};
 
 /// Errors and warnings that are listed at most: 20 of each, and how many more there are.
@@ -31,9 +34,10 @@ pub(super) fn material(bytes: &[u8]) {
     }
 }
 
-/// A scene file.
+/// A scene file or a surface file.
 pub(super) fn scene(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
+    surface(&text);
     let claims = is_scene(&text);
     match parse_scene("s.toml", &text) {
         Ok(scene) => {
@@ -54,6 +58,25 @@ pub(super) fn scene(bytes: &[u8]) {
             assert!(scene.view.footprint_deg.is_finite() && scene.target.max_cost.is_none_or(f64::is_finite));
         }
         Err(diagnostics) => refused(&diagnostics, &text),
+    }
+}
+
+/// A surface file.
+fn surface(text: &str) {
+    let claims = is_surface(text);
+    match parse_surface("s.toml", text) {
+        Ok(surface) => {
+            assert!(claims, "a surface that is not recognised");
+            assert!(!surface.cells.materials.is_empty() && surface.cells.frequency > 0.0);
+            for material in surface.materials() {
+                can_be_shown(&[surface.diagnostic(material, "cannot be read", "look")], text);
+            }
+            can_be_shown(&[surface.of_name("taken")], text);
+            if let Some(glitter) = &surface.glitter {
+                assert!((0.0..=1.0).contains(&glitter.filled) && (0.0..=0.8).contains(&glitter.tilt));
+            }
+        }
+        Err(diagnostics) => refused(&diagnostics, text),
     }
 }
 

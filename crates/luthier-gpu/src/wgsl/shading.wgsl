@@ -34,6 +34,12 @@ struct ShadingMaps {
     has_flakes: bool,
 }
 
+// What a part shows at a place: a material, and the normal of a particle.
+struct ShadingPick {
+    material: u32,
+    normal: vec3<f32>,
+}
+
 // The same as the blurred environment takes it.
 struct ShadingFactors {
     normal: vec3<f32>,
@@ -314,11 +320,16 @@ fn shading_sampled(material: u32, surface: ShadingSurface, frame: mat3x3<f32>, w
 
 // Radiance along the ray that left the eye in the direction -wo_world.
 fn shading_radiance(part: u32, place: Place, wo_world: vec3<f32>, seed: u32) -> vec3<f32> {
-    let material = bitcast<u32>(kernel_inputs.words[kernel_inputs.parts + part].x);
+    let pick = shading_pick(bitcast<vec4<u32>>(kernel_inputs.words[kernel_inputs.parts + part]), place.uv);
+    let material = pick.material;
+    var maps = shading_maps(material, place.uv);
+    if pick.normal.z < 1.0 {
+        maps.normal = pick.normal;
+    }
     let normal = place.normal;
     let frame = mat3x3<f32>(place.tangent, cross(normal, place.tangent), normal);
     let wo = wo_world * frame;
-    let surface = shading_surface(material, shading_maps(material, place.uv), length(kernel_inputs.eye - place.position));
+    let surface = shading_surface(material, maps, length(kernel_inputs.eye - place.position));
     var total = vec3<f32>(0.0);
     let light_count = select(0u, kernel_inputs.light_count, kernel_inputs.first_direction == 0u);
     for (var i = 0u; i < light_count; i++) {

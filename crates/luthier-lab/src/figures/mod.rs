@@ -4,6 +4,7 @@ mod course;
 mod course_appearance;
 mod course_fluorescent;
 mod course_shader;
+mod course_surfaces;
 mod elek;
 mod elek_examples;
 mod elek_places;
@@ -36,6 +37,7 @@ fn figures() -> Vec<Figure> {
         &course_shader::FIGURES,
         &course_appearance::FIGURES,
         &course_fluorescent::FIGURES,
+        &course_surfaces::FIGURES,
     ]
     .concat()
 }

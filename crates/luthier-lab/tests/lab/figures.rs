@@ -3,7 +3,7 @@
 use crate::workshop::Workshop;
 
 /// The figures that the project promises, one by one.
-const NAMES: [&str; 26] = [
+const NAMES: [&str; 27] = [
     "elek-2",
     "elek-4",
     "elek-5",
@@ -30,6 +30,7 @@ const NAMES: [&str; 26] = [
     "course-4-1",
     "course-5-7",
     "course-5-6",
+    "course-5-1",
 ];
 
 /// The smallest picture, and more values of a channel than a plain picture has.

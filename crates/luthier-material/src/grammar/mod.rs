@@ -6,10 +6,12 @@ mod document;
 mod effects;
 mod layers;
 mod scene;
+mod surface;
 
 pub(crate) use document::DOCUMENT;
 pub(crate) use layers::{INDEX, SAMPLED_NM};
 pub(crate) use scene::SCENE;
+pub(crate) use surface::SURFACE;
 
 /// Version of the grammar that this crate reads.
 pub(crate) const SCHEMA_VERSION: i64 = 1;

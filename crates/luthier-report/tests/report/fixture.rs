@@ -102,6 +102,7 @@ impl Bake {
             schema: MANIFEST_SCHEMA,
             generator: "fixture 1".to_owned(),
             materials,
+            surfaces: Vec::new(),
             tables: vec![fresnel_table, distribution_table],
             searches: Vec::new(),
             choice: None,

@@ -23,7 +23,7 @@ impl Features {
         granier_bare granier_base granier_film granier_schlick granier_transparent interface lazanyi lobes_axes lobes_bare_base lobes_base \
         lobes_diffuse lobes_film lobes_patina lobes_tilted mask_implicit mask_kelemen \
         mask_schlick_smith mask_smith mask_smith_separable mask_v_cavity masked media microfacet_diffuse mixed one_lobe \
-        oren_nayar packed patina phong place powers rows schlick schlick_base several several_maskings several_reflectances smith split_root statistics statistics_base surface tabled theta_axis tilted \
+        oren_nayar packed particles patina phong picks place powers rows schlick schlick_base several several_maskings several_reflectances smith split_root statistics statistics_base surface tabled theta_axis tilted \
         total_reflection two_lobes visible";
 
     pub(crate) fn of(set: &MaterialSet<'_>, form: Form) -> Self {
@@ -36,6 +36,12 @@ impl Features {
             if material.constants.glitter.is_some() {
                 names.insert("glitter");
             }
+        }
+        if !set.surfaces.is_empty() {
+            names.extend(["picks", "place"]);
+        }
+        if set.surfaces.iter().any(|surface| surface.glitter.is_some()) {
+            names.insert("particles");
         }
         if [ShadingModel::Belcour, ShadingModel::Yamaguchi].into_iter().any(|model| has_base(set, model)) {
             names.insert("statistics_base");

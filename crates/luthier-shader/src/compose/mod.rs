@@ -7,6 +7,7 @@ mod features;
 mod lookup;
 mod masking;
 mod members;
+mod pick;
 mod statistics;
 mod words;
 
@@ -53,10 +54,11 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         (true, include_str!("../wgsl/layer.wgsl")),
         (has("place"), include_str!("../wgsl/surface/place.wgsl")),
         (has("place") || has("powers"), include_str!("../wgsl/surface/local.wgsl")),
-        (has("flakes") || has("glitter"), include_str!("../wgsl/surface/hash.wgsl")),
+        (has("flakes") || has("glitter") || has("picks"), include_str!("../wgsl/surface/hash.wgsl")),
         (has("flakes"), include_str!("../wgsl/surface/flakes.wgsl")),
         (has("patina"), include_str!("../wgsl/surface/patina.wgsl")),
-        (has("glitter"), include_str!("../wgsl/surface/glitter.wgsl")),
+        (has("glitter") || has("picks"), include_str!("../wgsl/surface/glitter.wgsl")),
+        (has("picks"), include_str!("../wgsl/surface/pick.wgsl")),
         (has("phong") || has("granier") && has("interface"), include_str!("../wgsl/interface/power_lobe.wgsl")),
         (has("oren_nayar"), include_str!("../wgsl/base/oren_nayar.wgsl")),
         (has("diffuse") && !has("oren_nayar"), include_str!("../wgsl/base/lambert.wgsl")),
@@ -82,6 +84,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         parts.extend(self::model(set, model, &features));
     }
     parts.extend(face::modules(set, &features));
+    parts.extend(pick::pick(set));
     parts.push(eval(set, &features));
     parts.push(include_str!("../wgsl/bounded.wgsl").to_owned());
     if parts.iter().any(|part| part.contains("LUTHIER_PI")) {
@@ -179,10 +182,13 @@ fn model(set: &MaterialSet<'_>, model: ShadingModel, features: &Features) -> Vec
     }
 }
 
-/// Numbers of the materials, by name, and of the models if there are several.
+/// Numbers of the materials and surfaces, by name.
 fn constants(set: &MaterialSet<'_>) -> Result<String, ShaderError> {
     let mut out = String::new();
     for (i, constant) in set.constants()?.iter().enumerate() {
+        let _ = writeln!(out, "const {constant}: u32 = {i}u;");
+    }
+    for (i, constant) in set.surface_constants()?.iter().enumerate() {
         let _ = writeln!(out, "const {constant}: u32 = {i}u;");
     }
     Ok(out)

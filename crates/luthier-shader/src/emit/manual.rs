@@ -14,7 +14,7 @@ const WIDTH: usize = 140;
 const LISTED: usize = 6;
 
 /// Functions of the face, by their calls, and what they give.
-const FUNCTIONS: [(&str, &str); 20] = [
+const FUNCTIONS: [(&str, &str); 21] = [
     ("luthier_eval(material, wi, wo)", "f cos_theta_i, linear Rec.709; a light adds its irradiance times this"),
     (
         "luthier_eval_lit(material, wi, wo, light)",
@@ -49,6 +49,7 @@ const FUNCTIONS: [(&str, &str); 20] = [
     ("luthier_flake_tilt(material, flake, distance)", "flake_normal for the normal of a flake in a texture"),
     ("luthier_patina_amount(material, map_value)", "patina of a place for the value of a texture"),
     ("luthier_glitter_normal(material, uv)", "normal of a place"),
+    ("luthier_pick(surface, uv)", "the material of a place of a surface, and normal of that place"),
     ("luthier_film_place(place, material, uv)", "the place with a film as thick as its table says"),
     ("luthier_layer(material, index), luthier_layer_count(material)", "the layers as records, from the top"),
 ];

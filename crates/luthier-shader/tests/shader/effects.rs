@@ -1,4 +1,4 @@
-//! Flakes, patina and glitter in f32, run without a GPU, against their f64 twins in luthier-layers.
+//! Flakes, patina, glitter and picks of surfaces in f32, run without a GPU, against their f64 twins in luthier-layers.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -9,7 +9,10 @@ use luthier_layers::heterogeneous::Map;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 use luthier_layers::patina::Patina;
 use luthier_layers::voronoi::Voronoi;
-use luthier_manifest::{FunctionGroup, LayerRecord, MaterialEntry, ShadingModel, material_buffer};
+use luthier_manifest::{
+    CellsRecord, FunctionGroup, LayerRecord, MaterialEntry, ParticlesRecord, ShadingModel, SurfaceEntry,
+    material_buffer,
+};
 use luthier_optics::stack::Surface;
 use luthier_shader::{Form, MaterialSet, Target, emit};
 use num_complex::Complex64;
@@ -169,6 +172,72 @@ fn glitter_is_that_of_f64() {
         assert!((found - pick.normal).length() < NORMAL_TOLERANCE, "{uv}: {found} {}", pick.normal);
     }
     assert!((300..600).contains(&tilted), "{tilted}");
+}
+
+/// Materials by number are equal, normals near. The other languages take the functions, too.
+#[test]
+fn picks_of_surfaces_are_those_of_f64() {
+    let record = |seed, frequency, materials: &[u32]| CellsRecord { seed, frequency, materials: materials.to_vec() };
+    let entry = |name: &str, cells: CellsRecord, glitter: Option<ParticlesRecord>| SurfaceEntry {
+        name: name.to_owned(),
+        source: String::new(),
+        source_hash: String::new(),
+        cells,
+        glitter,
+    };
+    let glitter = ParticlesRecord { cells: record(u32::MAX, 25.0, &[2, 0]), filled: 0.3, tilt: 0.4 };
+    let surfaces = [
+        entry("flat-7", record(5, 12.0, &[0, 1, 1]), None),
+        entry("granite", record(6, 9.5, &[1, 2, 0]), Some(glitter.clone())),
+    ];
+    let layers = [&[conductor()][..], &[dielectric(), diffuse(0.0)], &[diffuse(0.0)]];
+    let materials: Vec<MaterialEntry> =
+        layers.iter().enumerate().map(|(i, layers)| material(&format!("m-{i}-x"), layers)).collect();
+    let set = MaterialSet { surfaces: &surfaces, ..MaterialSet::new(&materials, Vec::new()) };
+    for target in Target::TEXT {
+        let text = emit(&set, Form::Full, target).unwrap();
+        assert!(text.contains("luthier_pick(") && text.contains("LUTHIER_SURFACE_FLAT_7_ID"), "{target}");
+    }
+    let wgsl = emit(&set, Form::Full, Target::Wgsl).unwrap();
+    let machine = Machine::new(&wgsl, &material_buffer(&materials), BTreeMap::new());
+    let voronoi = |cells: &CellsRecord| Voronoi { seed: cells.seed, frequency: cells.frequency };
+    let cells = |cells: &CellsRecord| Map::Cells {
+        cells: voronoi(cells),
+        stacks: cells.materials.iter().map(|&i| i as usize).collect(),
+    };
+    let maps = [
+        cells(&surfaces[0].cells),
+        Map::Glitter {
+            cells: voronoi(&glitter.cells),
+            stacks: vec![2, 0],
+            filled: glitter.filled,
+            tilt: glitter.tilt,
+            under: Box::new(cells(&surfaces[1].cells)),
+        },
+    ];
+    let (mut counts, mut tilted) = ([[0; 3]; 2], 0);
+    for (number, map) in maps.iter().enumerate() {
+        for uv in points(1500).map(|uv| (4.0 * uv - 2.0).as_vec2().as_dvec2()) {
+            let pick = map.pick(uv);
+            let near = |d: DVec2| map.pick(uv + 1e-5 * d) == pick;
+            if ![DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y].iter().all(|&d| near(d)) {
+                continue;
+            }
+            let Value::Many(found) = machine.call("luthier_pick", vec![Value::U(number as u32), pair(uv)]) else {
+                panic!()
+            };
+            assert_eq!(found[0], Value::U(pick.stack as u32), "{number} {uv}");
+            assert!((vec3(&found[1]) - pick.normal).length() < NORMAL_TOLERANCE, "{number} {uv}: {found:?}");
+            counts[number][pick.stack] += 1;
+            tilted += usize::from(pick.normal.z < 1.0);
+        }
+    }
+    let [[a, b, c], granite] = counts;
+    assert!(
+        (350..650).contains(&a) && (850..1150).contains(&b) && c == 0 && granite.iter().all(|n| *n > 300),
+        "{counts:?}"
+    );
+    assert!((350..550).contains(&tilted), "{tilted}");
 }
 
 /// The layers at one of the three wavelengths. Every coat has one index.

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use luthier_bake::{Observer, Silent};
-use luthier_export::{Bake, Compression, MANIFEST, Package, Source, find, read_all, refuse};
+use luthier_export::{Bake, Compression, MANIFEST, Package, Source, find, gather, read_all, refuse, refuse_surfaces};
 use luthier_manifest::Functions;
 use luthier_material::Diagnostic;
 use luthier_shader::{Form, Target};
@@ -21,7 +21,7 @@ use self::locked::LockFile;
 use self::stamp::Stamp;
 use crate::cli::{BakeOptions, Emission};
 use crate::interrupt::whole;
-use crate::materials::{refuse_environment, shaded, shows_environment};
+use crate::materials::{refuse_environment, shaded, shows_environment, valid_surfaces};
 use crate::misses;
 use crate::progress::BakeProgress;
 use crate::store::{disk, store};
@@ -74,7 +74,8 @@ fn once(options: &BakeOptions) -> Outcome<Vec<PathBuf>> {
             "--allow-miss and --budgets are for scenes (docs/pages/scenes.md)"
         )));
     }
-    let files = find(&options.sources.paths)?;
+    let mut found = gather(&find(&options.sources.paths)?)?;
+    let files = [found.materials.as_slice(), &found.surface_files].concat();
     let lock = LockFile::beside(&options.sources.paths, options.pipeline.relock)?;
     let stamp = Stamp::new(options, &files, lock.text());
     let progress = BakeProgress::new(options.pipeline.events);
@@ -86,9 +87,11 @@ fn once(options: &BakeOptions) -> Outcome<Vec<PathBuf>> {
         return Ok(read);
     }
     let forms = options.emission.forms();
-    let mut sources = read_all(&files)?;
+    let mut sources = read_all(&found.materials)?;
     refuse(&mut sources, |material| options.shading.doubts(material, &forms));
     let mut told: Vec<Diagnostic> = sources.iter().flat_map(Source::diagnostics).cloned().collect();
+    refuse_surfaces(&mut found.surfaces, &sources);
+    let surfaces = valid_surfaces(&found.surfaces)?;
     let materials = shaded(valid(sources, options.quiet)?, &options.shading, &forms);
     let is_shown = materials.iter().any(shows_environment) && forms != [Form::Full];
     refuse_environment(&options.emission.functions, is_shown)?;
@@ -105,7 +108,7 @@ fn once(options: &BakeOptions) -> Outcome<Vec<PathBuf>> {
         .map_err(|source| Failure::Files(anyhow::Error::new(source).context("cannot start threads")))?;
     let observer: &(dyn Observer + Sync) = if options.quiet && !options.pipeline.events { &Silent } else { &progress };
     let (targets, functions) = (options.emission.targets(), options.emission.functions());
-    let bake = Bake { options: limits, targets, forms, functions, observer, ..Bake::default() };
+    let bake = Bake { options: limits, targets, forms, functions, surfaces, observer, ..Bake::default() };
     let read = pipeline::read_files(&files, &materials);
     if options.pipeline.dry_run {
         let missing = pool.install(|| bake.missing(&materials, store()?).map_err(Failure::from))?;

@@ -8,6 +8,7 @@ mod values;
 
 use std::sync::Arc;
 
+use glam::{DVec2, DVec3};
 use luthier_bake::fitted;
 use luthier_layers::layered_mc::Estimate;
 use luthier_layers::lobes::{self, Fit, Fitted, Varied};
@@ -22,13 +23,14 @@ use serde_json::{Value, json};
 
 use crate::cli::EvalOptions;
 use crate::directions;
+use crate::materials::valid_surfaces;
 use crate::model_inputs::ModelInputs;
 use crate::reradiation::Reradiation;
 use crate::store::store;
 use function::Kind;
-use luthier_export::read_one;
+use luthier_export::{gather, read_all, read_one, refuse_surfaces};
 use luthier_terminal::{Failure, Outcome, complain, valid};
-use place::place;
+use place::{pick, place};
 use sweep::{Sweep, sweep};
 use values::values;
 
@@ -42,6 +44,8 @@ struct Subject {
     /// Gives the model `lobes` its lobes.
     fit: Arc<Fit<'static>>,
     place: Place,
+    /// Name of the surface whose material at the place it is.
+    surface: Option<String>,
     /// Whether effects of the file are in the place.
     has_effects: bool,
     /// Wavelengths of the light and of what is seen, where these are two.
@@ -52,7 +56,10 @@ impl Subject {
     /// The head of what is printed as JSON.
     fn head(&self) -> Value {
         let mut head = json!({"model": self.model.info().name, "material": self.material.name});
-        if self.has_effects {
+        if let Some(surface) = &self.surface {
+            head["surface"] = json!(surface);
+        }
+        if self.has_effects || self.surface.is_some() {
             head["place"] = json!({
                 "normal": self.place.sample.normal.to_array(),
                 "flake_normal": self.place.under.flake_normal.to_array(),
@@ -97,8 +104,7 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
         Failure::unknown("model", name, &names)
     })?;
     let inputs = &options.inputs;
-    let files = std::iter::once(&options.file).chain(&inputs.other);
-    let mut materials = valid(files.map(|file| read_one(file)).collect::<Result<_, _>>()?, false)?;
+    let (mut materials, picked) = materials(options)?;
     let mut fit: Arc<Fit<'static>> = Arc::new(Varied::of);
     if name == lobes::MODEL {
         let store = store()?;
@@ -106,7 +112,7 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
         known = Box::new(Fitted::by(fit.clone()));
     }
     let (shown, dropped) = inputs.shown(&materials[0], known.as_ref());
-    inputs.check(known.as_ref(), &shown, options.environment)?;
+    inputs.check(known.as_ref(), &shown, picked.is_some(), options.environment)?;
     let mut model = inputs.give(known);
 
     // Without another material, the first is everywhere.
@@ -123,9 +129,44 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
         let (reradiated, bins) = matrix.between(excitation, seen, |nm| at(&material.stack, nm))?;
         (model, bins_nm) = (Box::new(reradiated), Some(bins));
     }
-    let place = place(&material, inputs, &shown)?;
+    let mut place = place(&material, inputs, &shown)?;
+    if let Some((_, normal)) = picked.as_ref().filter(|(_, normal)| !inputs.has_normal() && normal.z < 1.0) {
+        place.sample.normal = *normal;
+    }
+    let surface = picked.map(|(surface, _)| surface);
     let has_effects = shown != luthier_material::Effects::default();
-    Ok(Subject { model: ModelInputs::textured(place.sample, model), material, fit, place, has_effects, bins_nm })
+    Ok(Subject {
+        model: ModelInputs::textured(place.sample, model),
+        material,
+        fit,
+        place,
+        surface,
+        has_effects,
+        bins_nm,
+    })
+}
+
+/// Name of a surface, and the normal at the place.
+type Picked = (String, DVec3);
+
+/// The material of the file, and that of `--other`; of a surface the material at the place, with the name of the surface and the normal there.
+fn materials(options: &EvalOptions) -> Outcome<(Vec<Material>, Option<Picked>)> {
+    let inputs = &options.inputs;
+    let mut found = gather(std::slice::from_ref(&options.file))?;
+    if found.surfaces.is_empty() {
+        let files = std::iter::once(&options.file).chain(&inputs.other);
+        return Ok((valid(files.map(|file| read_one(file)).collect::<Result<_, _>>()?, false)?, None));
+    }
+    if inputs.other.is_some() {
+        let text = "a surface has materials of its own: leave out `--other`";
+        return Err(Failure::Usage(anyhow::anyhow!(text)));
+    }
+    let sources = read_all(&found.materials)?;
+    refuse_surfaces(&mut found.surfaces, &sources);
+    let surface = valid_surfaces(&found.surfaces)?.swap_remove(0);
+    let mut materials = valid(sources, false)?;
+    let pick = pick(&surface, inputs.uv().unwrap_or(DVec2::ZERO));
+    Ok((vec![materials.swap_remove(pick.stack)], Some((surface.name, pick.normal))))
 }
 
 /// The channel whose absorption and albedo are those at a wavelength.

@@ -5,11 +5,12 @@ use std::path::Path;
 use glam::{DVec2, DVec3};
 use luthier_bake::MapSource;
 use luthier_layers::flakes::Flakes;
-use luthier_layers::heterogeneous::Map;
+use luthier_layers::heterogeneous::{Map, Pick};
 use luthier_layers::patina::Patina;
 use luthier_layers::shaded::{Growth, Place};
 use luthier_layers::voronoi::Voronoi;
 use luthier_lut::Image;
+use luthier_manifest::{CellsRecord, SurfaceEntry};
 use luthier_material::{Effects, FlakeSource, Glitter, Material, VariationSource};
 use luthier_terminal::{Failure, Outcome, files};
 
@@ -55,6 +56,24 @@ pub(crate) fn place(material: &Material, inputs: &ModelInputs, shows: &Effects) 
         place.patina = Some(Growth { amount: grown.amount(map), diffuse_albedo, base_alpha, tarnish });
     }
     Ok(place)
+}
+
+/// The material by number and the normal at a place of a surface: the f64 twin of `luthier_pick`.
+pub(crate) fn pick(surface: &SurfaceEntry, uv: DVec2) -> Pick {
+    let voronoi = |cells: &CellsRecord| Voronoi { seed: cells.seed, frequency: cells.frequency };
+    let stacks = |cells: &CellsRecord| cells.materials.iter().map(|&material| material as usize).collect();
+    let cells = Map::Cells { cells: voronoi(&surface.cells), stacks: stacks(&surface.cells) };
+    let map = match &surface.glitter {
+        None => cells,
+        Some(glitter) => Map::Glitter {
+            cells: voronoi(&glitter.cells),
+            stacks: stacks(&glitter.cells),
+            filled: glitter.filled,
+            tilt: glitter.tilt,
+            under: Box::new(cells),
+        },
+    };
+    map.pick(uv)
 }
 
 /// The normal of the particle of a glittering surface.

@@ -2,9 +2,11 @@
 
 mod page;
 
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
-use luthier_export::{MANIFEST, Source, find as find_files, input, label, of_domain, of_scene, read_one, refuse};
+use luthier_export::{
+    MANIFEST, Source, find as find_files, input, label, of_domain, of_scene, plain, read_one, refuse,
+};
 use luthier_manifest::{MaterialChoice, SceneChoice, ShadingModel};
 use luthier_material::{Diagnostic, Material, Scene, is_scene, parse_scene};
 use luthier_scene::{Director, Made, SceneFailure, label as candidate_label};
@@ -182,21 +184,6 @@ fn read(path: &Path, quiet: bool) -> Outcome<(Scene, Vec<Material>)> {
         Failure::input(Broken { sentence, diagnostics })
     })?;
     Ok((scene, valid(source.materials, quiet)?))
-}
-
-/// A path without the folders that `..` leaves again.
-fn plain(path: &Path) -> PathBuf {
-    let mut plain = PathBuf::new();
-    for part in path.components() {
-        let leaves =
-            part == Component::ParentDir && matches!(plain.components().next_back(), Some(Component::Normal(_)));
-        if leaves {
-            plain.pop();
-        } else {
-            plain.push(part);
-        }
-    }
-    plain
 }
 
 fn text(options: &BakeOptions, made: &Made) -> String {

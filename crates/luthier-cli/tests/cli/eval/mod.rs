@@ -16,6 +16,7 @@ mod parts;
 mod polarised;
 #[cfg(feature = "gpu")]
 mod schlick;
+mod surfaces;
 #[cfg(feature = "gpu")]
 pub(crate) mod twin;
 mod values;

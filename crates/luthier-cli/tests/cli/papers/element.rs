@@ -11,6 +11,7 @@
 //! | `f64_model` | the model in f64 that has the element, where no shader has |
 //! | `options`, `options_without` | more options of `luthier eval`, with the element and without it |
 //! | `other`, `matrix` | a second file, and a matrix of re-radiation, for the models that take one |
+//! | `surface` | a surface file without its head, of the materials `m.toml` and `other.toml`: `eval` and the shader are of its place |
 //! | `form`, `functions` | the form of the shader, `full` unless given, and its groups of functions |
 //! | `place`, `device_place` | statements that make the place on the device; the second has no twin among the options of `eval` |
 //! | `measured` | `device` where a table is the element: both values are those of the shader |
@@ -41,7 +42,7 @@ pub(super) struct Paper {
 }
 
 /// Keys that may stand in an element.
-const KEYS: [&str; 23] = [
+const KEYS: [&str; 24] = [
     "name",
     "where",
     "key",
@@ -54,6 +55,7 @@ const KEYS: [&str; 23] = [
     "options_without",
     "other",
     "matrix",
+    "surface",
     "form",
     "functions",
     "place",
@@ -132,9 +134,15 @@ impl Element {
         Some(headed(&layers.replace(find, replacement)))
     }
 
+    /// The surface file with the element, where it is one of surfaces.
+    pub(super) fn surface(&self) -> Option<String> {
+        self.get("surface").map(|text| format!("surface = 1\nname = \"s\"\n{text}"))
+    }
+
     /// Everything that decides its values.
     pub(super) fn subject(&self) -> String {
-        let keys = ["layers", "other", "matrix", "model", "f64_model", "other_model", "form", "page", "says"];
+        let keys =
+            ["layers", "other", "matrix", "surface", "model", "f64_model", "other_model", "form", "page", "says"];
         let texts = keys.map(|key| self.get(key).unwrap_or_default());
         let lists = ["without", "options", "options_without"].map(|key| self.list(key).join("|"));
         format!("{texts:?}{lists:?}{:?}", self.get("function").filter(|_| self.get("page").is_some()))

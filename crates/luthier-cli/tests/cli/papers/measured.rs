@@ -1,9 +1,10 @@
 //! Values of an element: with it and without it, in f64 and on the device.
 
+use std::path::Path;
 use std::sync::LazyLock;
 
 use glam::DVec3;
-use luthier_export::{Bake, MemoryStore, Package, Shader, read_one};
+use luthier_export::{Bake, MemoryStore, Package, Shader, SurfaceSource, gather, read_one};
 use luthier_gpu::Gpu;
 use luthier_manifest::{Form, FunctionGroup, Functions, ShadingModel};
 use luthier_material::Material;
@@ -126,8 +127,18 @@ fn folder(element: &Element, text: &str) -> Workshop {
     workshop
 }
 
-fn material(element: &Element, workshop: &Workshop) -> Material {
-    let read = read_one(&workshop.path("m.toml")).unwrap().parsed;
+/// Writes the second material and the surface, where an element has them.
+fn write_other(element: &Element, workshop: &Workshop) {
+    if let Some(other) = element.get("other") {
+        workshop.write("other.toml", format!("schema = 1\nname = \"other\"\n{other}"));
+    }
+    if let Some(surface) = element.surface() {
+        workshop.write("s.toml", surface);
+    }
+}
+
+fn material(element: &Element, path: &Path) -> Material {
+    let read = read_one(path).unwrap().parsed;
     let material = read.unwrap_or_else(|errors| panic!("{}: {errors:?}", element.name()));
     let mut material = material.material;
     material.bake.model = ShadingModel::from_name(element.cell("model"));
@@ -143,9 +154,16 @@ fn package_of(element: &Element, text: &str) -> Package {
     if !element.cell("table").contains(' ') && forms[0] == Form::Full {
         forms.push(Form::Baked);
     }
-    let bake = Bake { refuses: false, functions, ..Bake::wgsl(&forms) };
     let workshop = folder(element, text);
-    Package::new(&[material(element, &workshop)], &bake, &MemoryStore::default())
+    write_other(element, &workshop);
+    let (mut files, mut surfaces) = (vec![workshop.path("m.toml")], Vec::new());
+    if element.surface().is_some() {
+        let found = gather(&[workshop.path("s.toml")]).unwrap();
+        (files, surfaces) = (found.materials, found.surfaces.iter().filter_map(SurfaceSource::entry).collect());
+    }
+    let materials: Vec<Material> = files.iter().map(|path| material(element, path)).collect();
+    let bake = Bake { refuses: false, functions, surfaces, ..Bake::wgsl(&forms) };
+    Package::new(&materials, &bake, &MemoryStore::default())
         .unwrap_or_else(|error| panic!("{}: {error}", element.name()))
 }
 
@@ -154,7 +172,8 @@ fn device(element: &Element, gpu: &Gpu, package: &Package) -> Vec<f64> {
     let form = form(element);
     let mut package = package.clone();
     if let Some(make) = element.get("place").or(element.get("device_place")) {
-        let body = format!("var place = luthier_place();\n{make}\nreturn luthier_eval_at(place, material, wi, wo);");
+        let material = if element.surface().is_some() { "pick.material" } else { "material" };
+        let body = format!("var place = luthier_place();\n{make}\nreturn luthier_eval_at(place, {material}, wi, wo);");
         let wgsl = package.wgsl(form).unwrap().replace("fn luthier_eval(", "fn emitted_eval(")
             + &format!("\nfn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n{body}\n}}\n");
         package.shaders = vec![Shader::wgsl(form, wgsl)];
@@ -185,11 +204,13 @@ fn in_f64(element: &Element, with: bool) -> Vec<f64> {
         _ => element.get("f64_model").unwrap_or(element.cell("model")),
     };
     let alone = model == element.get("f64_model").unwrap_or(element.cell("model"));
-    if let Some(other) = element.get("other").filter(|_| alone) {
-        workshop.write("other.toml", format!("schema = 1\nname = \"other\"\n{other}"));
+    write_other(element, &workshop);
+    let is_surface = element.surface().is_some();
+    if element.get("other").is_some() && alone && !is_surface {
         extra.extend(["--other", "other.toml"]);
     }
-    let mut arguments = vec!["eval", "m.toml", "--model", model, "--json", "--directions", "pairs.csv"];
+    let file = if is_surface && with { "s.toml" } else { "m.toml" };
+    let mut arguments = vec!["eval", file, "--model", model, "--json", "--directions", "pairs.csv"];
     if !extra.contains(&"--wavelength") {
         arguments.push("--three-wavelengths");
     }

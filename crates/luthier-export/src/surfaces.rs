@@ -1,0 +1,157 @@
+//! Surface files on disk, and the material files that they name.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use luthier_manifest::{CellsRecord, ParticlesRecord, SurfaceEntry};
+use luthier_material::{Diagnostic, Material, NamedMaterial, Surface, SurfaceCells, is_surface, parse_surface};
+
+use crate::make::file;
+use crate::sources::{Source, label, plain};
+use crate::{ExportError, input, sha256};
+
+/// A surface file that was read, and what became of it.
+#[derive(Debug, Clone)]
+pub struct SurfaceSource {
+    /// The file, as it was named or found.
+    pub label: String,
+    /// Its text.
+    pub text: String,
+    /// The surface, or why it is none.
+    pub parsed: Result<Surface, Vec<Diagnostic>>,
+    /// The numbers of its materials among [`Gathered::materials`], in the order of [`Surface::materials`].
+    numbers: Vec<usize>,
+}
+
+/// Files of a bake by what they are.
+#[derive(Debug, Clone, Default)]
+pub struct Gathered {
+    /// Surface files.
+    pub surface_files: Vec<PathBuf>,
+    /// Material files: those that were given, then others that surfaces name. Each once.
+    pub materials: Vec<PathBuf>,
+    /// The surfaces.
+    pub surfaces: Vec<SurfaceSource>,
+}
+
+/// Tells surfaces from other files, and adds the materials that they name.
+///
+/// # Errors
+/// [`ExportError::File`], of a file that was given. A file that a surface names and that cannot be read is in [`SurfaceSource::parsed`].
+pub fn gather(files: &[PathBuf]) -> Result<Gathered, ExportError> {
+    let mut gathered = Gathered::default();
+    for path in files {
+        let bytes = input::bytes(path).map_err(|source| file("read", path, source))?;
+        match String::from_utf8(bytes) {
+            Ok(text) if is_surface(&text) => {
+                let label = label(path);
+                let parsed = parse_surface(&label, &text);
+                gathered.surface_files.push(path.clone());
+                gathered.surfaces.push(SurfaceSource { label, text, parsed, numbers: Vec::new() });
+            }
+            _ => gathered.materials.push(path.clone()),
+        }
+    }
+    let same = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let mut numbers: BTreeMap<PathBuf, usize> =
+        gathered.materials.iter().enumerate().map(|(number, path)| (same(path), number)).collect();
+    for (path, source) in gathered.surface_files.iter().zip(&mut gathered.surfaces) {
+        let Ok(surface) = &source.parsed else { continue };
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut errors: Vec<Diagnostic> = Vec::new();
+        for named in surface.materials() {
+            let path = plain(&folder.join(&named.file));
+            match unusable(&path) {
+                Some((message, hint)) => errors.push(surface.diagnostic(named, message, hint)),
+                None => source.numbers.push(*numbers.entry(same(&path)).or_insert_with(|| {
+                    gathered.materials.push(path);
+                    gathered.materials.len() - 1
+                })),
+            }
+        }
+        if !errors.is_empty() {
+            source.parsed = Err(errors);
+        }
+    }
+    Ok(gathered)
+}
+
+/// Why a file that a surface names is no material, and what to do.
+fn unusable(path: &Path) -> Option<(String, &'static str)> {
+    match input::bytes(path) {
+        Err(error) => {
+            Some((format!("cannot read {}: {error}", label(path)), "the path is relative to the surface file"))
+        }
+        Ok(bytes) if is_surface(&String::from_utf8_lossy(&bytes)) => Some((
+            format!("{} is a surface, and surfaces are made of materials", label(path)),
+            "name the materials of that surface instead",
+        )),
+        Ok(_) => None,
+    }
+}
+
+/// Makes surfaces unusable that cannot be baked with these materials, the sources of [`Gathered::materials`]: names that others have, and
+/// particles whose normal something else says.
+pub fn refuse_surfaces(surfaces: &mut [SurfaceSource], materials: &[Source]) {
+    let parsed: Vec<Option<&Material>> =
+        materials.iter().map(|source| source.parsed.as_ref().ok().map(|parsed| &parsed.material)).collect();
+    let mut names: BTreeMap<String, String> = BTreeMap::new();
+    for material in parsed.iter().flatten() {
+        let constant = luthier_shader::surface_identifier(&material.name).unwrap_or_default();
+        names.insert(constant, format!("the material of {}", material.place("name")));
+    }
+    for source in surfaces {
+        let Ok(surface) = &source.parsed else { continue };
+        let mut errors = Vec::new();
+        match luthier_shader::surface_identifier(&surface.name) {
+            Err(error) => errors.push(surface.of_name(error.to_string())),
+            Ok(constant) => {
+                if let Some(other) = names.get(&constant) {
+                    errors.push(surface.of_name(format!("{other} has this name, or one that is the same in a shader")));
+                }
+                names.insert(constant, format!("the surface {}", source.label));
+            }
+        }
+        let particles = surface.materials().zip(&source.numbers).skip(surface.cells.materials.len());
+        errors.extend(particles.filter_map(|(named, number)| turned(surface, named, parsed.get(*number).copied()??)));
+        if !errors.is_empty() {
+            source.parsed = Err(errors);
+        }
+    }
+}
+
+/// An error about a particle that has a normal of its own.
+fn turned(surface: &Surface, named: &NamedMaterial, material: &Material) -> Option<Diagnostic> {
+    let has_map = material.layers.first().is_some_and(|layer| layer.maps.normal.is_some());
+    let what = match (has_map, material.effects.glitter.is_some()) {
+        (true, _) => "a normal map",
+        (_, true) => "glitter",
+        _ => return None,
+    };
+    let message = format!("{} has {what}, and a particle has the normal of its tilt", named.file);
+    Some(surface.diagnostic(named, message, "name a material without it, or put this one into `cells`"))
+}
+
+impl SurfaceSource {
+    /// The surface as the manifest has it; `None` where it is unusable.
+    pub fn entry(&self) -> Option<SurfaceEntry> {
+        let surface = self.parsed.as_ref().ok()?;
+        let mut numbers = self.numbers.iter().map(|&number| number as u32);
+        let mut cells = |cells: &SurfaceCells| CellsRecord {
+            seed: cells.seed,
+            frequency: cells.frequency,
+            materials: numbers.by_ref().take(cells.materials.len()).collect(),
+        };
+        Some(SurfaceEntry {
+            name: surface.name.clone(),
+            source: self.label.clone(),
+            source_hash: sha256(self.text.as_bytes()),
+            cells: cells(&surface.cells),
+            glitter: surface.glitter.as_ref().map(|glitter| ParticlesRecord {
+                cells: cells(&glitter.cells),
+                filled: glitter.filled,
+                tilt: glitter.tilt,
+            }),
+        })
+    }
+}

@@ -1,0 +1,190 @@
+//! Surface files: which material is at each place.
+
+use std::ops::Range;
+
+use toml::de::DeTable;
+
+use crate::check::check_table;
+use crate::diagnostic::{Diagnostic, Severity, Sink};
+use crate::grammar::SURFACE;
+use crate::section::{Section, parse_toml};
+
+/// A validated surface: grains of several materials, and particles on top of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    /// Name: letters, digits and hyphens.
+    pub name: String,
+    /// Label of the file that it was read from.
+    pub source: String,
+    /// Text of that file.
+    pub text: String,
+    /// One or two sentences; empty when the file has none.
+    pub description: String,
+    /// Grains that cover it.
+    pub cells: SurfaceCells,
+    /// Particles on top of them.
+    pub glitter: Option<SurfaceGlitter>,
+    name_span: Range<usize>,
+}
+
+/// Voronoi cells, each of one of some materials (Weidlich and Wilkie 2009, section 5.2.1).
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurfaceCells {
+    /// Seed of the cells.
+    pub seed: u32,
+    /// Cells per unit of texture coordinate.
+    pub frequency: f64,
+    /// The materials, all as likely; at least one.
+    pub materials: Vec<NamedMaterial>,
+}
+
+/// A share of the Voronoi cells of a map of its own, each of one of some materials and tilted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurfaceGlitter {
+    /// The cells, and the materials of those that glitter.
+    pub cells: SurfaceCells,
+    /// Share of the cells that glitter, 0..=1.
+    pub filled: f64,
+    /// Largest tilt, in radians.
+    pub tilt: f64,
+}
+
+/// A material that a surface names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NamedMaterial {
+    /// The material file, relative to the surface's.
+    pub file: String,
+    /// Bytes of the text that name it.
+    pub span: Range<usize>,
+}
+
+impl Surface {
+    /// The materials that it names, those of the cells first, in the order of the file; some more than once.
+    pub fn materials(&self) -> impl Iterator<Item = &NamedMaterial> {
+        self.cells.materials.iter().chain(self.glitter.iter().flat_map(|glitter| &glitter.cells.materials))
+    }
+
+    /// An error about a material that the surface names.
+    pub fn diagnostic(&self, material: &NamedMaterial, message: impl Into<String>, hint: &str) -> Diagnostic {
+        let hint = Some(hint.to_owned());
+        Sink::one(&self.source, &self.text, Severity::Error, material.span.clone(), message.into(), hint)
+    }
+
+    /// An error about its name.
+    pub fn of_name(&self, message: impl Into<String>) -> Diagnostic {
+        let hint = Some("give one of the two another name".to_owned());
+        Sink::one(&self.source, &self.text, Severity::Error, self.name_span.clone(), message.into(), hint)
+    }
+}
+
+/// Whether a text is meant to be a surface: it has the key `surface` of surface files, or their cells, and no layers.
+pub fn is_surface(text: &str) -> bool {
+    let (document, _) = DeTable::parse_recoverable(text);
+    let table = document.get_ref();
+    let has = |key: &str| table.get(key).is_some();
+    !has("schema") && (has("surface") || has("cells") && !has("layer") && !has("scene"))
+}
+
+/// Reads a surface file. `label` names it in diagnostics. The materials that it names are not read.
+///
+/// ```
+/// let text = r#"
+/// surface = 1
+/// name = "lepidolite"
+///
+/// [cells]
+/// frequency = 40
+/// materials = ["lilac.toml", "pink.toml"]
+/// "#;
+/// let surface = luthier_material::parse_surface("lepidolite.toml", text).unwrap();
+/// assert_eq!(surface.materials().map(|m| m.file.as_str()).collect::<Vec<_>>(), ["lilac.toml", "pink.toml"]);
+///
+/// let wrong = text.replace("frequency", "frequence");
+/// let diagnostics = luthier_material::parse_surface("lepidolite.toml", &wrong).unwrap_err();
+/// assert_eq!((diagnostics[0].line, diagnostics[0].column), (6, 1));
+/// assert_eq!(diagnostics[0].hint.as_deref(), Some("did you mean `frequency`?"));
+/// ```
+///
+/// # Errors
+/// All diagnostics, in the order of the text.
+pub fn parse_surface(label: &str, text: &str) -> Result<Surface, Vec<Diagnostic>> {
+    let mut sink = Sink::new(label, text);
+    let Some(document) = parse_toml(text, &mut sink) else { return Err(sink.into_diagnostics()) };
+    let document = Section::document(&document);
+    check_table(&SURFACE, &[], &document, &mut sink);
+    let cells = document.section("cells").filter(|_| !sink.has_errors());
+    let Some(at) = cells else { return Err(sink.into_diagnostics()) };
+    Ok(Surface {
+        name: document.text("name").unwrap_or_default().to_owned(),
+        source: label.to_owned(),
+        text: text.to_owned(),
+        description: document.text("description").unwrap_or_default().to_owned(),
+        cells: cells_of(&at, 20.0),
+        glitter: document.section("glitter").map(|at| SurfaceGlitter {
+            cells: cells_of(&at, 60.0),
+            filled: at.number("filled").unwrap_or(0.1),
+            tilt: at.number("tilt_deg").unwrap_or(15.0).to_radians(),
+        }),
+        name_span: document.value_span("name"),
+    })
+}
+
+fn cells_of(at: &Section<'_>, frequency: f64) -> SurfaceCells {
+    SurfaceCells {
+        seed: at.integer("seed").unwrap_or(0),
+        frequency: at.number("frequency").unwrap_or(frequency),
+        materials: at.spanned_texts("materials").map(|(file, span)| NamedMaterial { file, span }).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MICA: &str = "surface = 1\nname = \"mica\"\n\n[cells]\nseed = 3\nfrequency = 40\nmaterials = [\"a.toml\", \
+                        \"b.toml\", \"a.toml\"]\n\n[glitter]\nfilled = 0.2\ntilt_deg = 20\nmaterials = [\"c.toml\"]\n";
+
+    #[test]
+    fn a_surface_is_read() {
+        let surface = parse_surface("mica.toml", MICA).unwrap();
+        assert_eq!((surface.cells.seed, surface.cells.frequency), (3, 40.0));
+        let glitter = surface.glitter.as_ref().unwrap();
+        assert_eq!((glitter.cells.seed, glitter.cells.frequency, glitter.filled), (0, 60.0, 0.2));
+        assert!((glitter.tilt - 0.349_065_850_398_865_9).abs() < 1e-15, "{}", glitter.tilt);
+        let named: Vec<&str> = surface.materials().map(|material| material.file.as_str()).collect();
+        assert_eq!(named, ["a.toml", "b.toml", "a.toml", "c.toml"]);
+        for material in surface.materials() {
+            assert_eq!(MICA[material.span.clone()], format!("\"{}\"", material.file));
+        }
+    }
+
+    #[test]
+    fn files_say_what_they_are() {
+        assert!(is_surface(MICA) && is_surface("surface = 2") && is_surface("[cells]"));
+        assert!(!is_surface("schema = 1\nsurface = 1") && !is_surface("") && !crate::is_scene(MICA));
+        let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+        let found = crate::parse("mica.toml", MICA, &no_files).unwrap_err();
+        assert_eq!((found.len(), found[0].line), (1, 1));
+        assert_eq!(found[0].message, "this is a surface, not a material");
+    }
+
+    /// Each mistake has one message, at its place, with a way out.
+    #[test]
+    fn mistakes_are_pointed_at() {
+        for (from, to, line, message, hint) in [
+            ("surface = 1", "surface = 2", 1, "`surface` must be 1", "surface = 1"),
+            ("frequency = 40", "frequency = 0", 6, "`frequency` must be", ""),
+            ("filled = 0.2", "filled = 20", 10, "`filled` must be", ""),
+            ("tilt_deg = 20", "tilt_deg = 60", 11, "must be from 0 to 45", ""),
+            ("tilt_deg", "tilt", 11, "unknown key `tilt`", "tilt_deg"),
+            ("[\"c.toml\"]", "[]", 12, "", ""),
+            ("[\"c.toml\"]", "\"c.toml\"", 12, "", ""),
+            ("[cells]", "[cell]", 4, "unknown key `cell`", "did you mean `cells`?"),
+        ] {
+            let found = parse_surface("mica.toml", &MICA.replacen(from, to, 1)).unwrap_err();
+            let first = found.iter().find(|one| one.line == line).unwrap_or_else(|| panic!("{to}: {found:?}"));
+            assert!(first.message.contains(message), "{to}: {found:?}");
+            assert!(first.hint.clone().unwrap_or_default().contains(hint), "{to}: {found:?}");
+        }
+    }
+}
