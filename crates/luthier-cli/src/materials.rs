@@ -2,9 +2,11 @@
 
 use std::path::PathBuf;
 
+#[cfg(feature = "gpu")]
+use luthier_export::Source;
 #[cfg(any(feature = "cost", feature = "gpu"))]
 use luthier_export::of_parts;
-use luthier_export::{Source, SurfaceSource, gather, of_model, read_all, refuse, refuse_surfaces};
+use luthier_export::{SurfaceSource, gather, of_model, read_all, refuse, refuse_surfaces};
 #[cfg(any(feature = "cost", feature = "gpu"))]
 use luthier_manifest::Reflectance;
 use luthier_manifest::{Form, FunctionGroup, ShadingModel, SurfaceEntry};
@@ -47,6 +49,7 @@ impl Shading {
 
 /// The materials that can be baked, shaded by the model that the command line asks for; or, when anything is refused, its diagnostics
 /// and a failure.
+#[cfg(feature = "gpu")]
 pub(crate) fn bakeable(
     mut sources: Vec<Source>,
     shading: &Shading,
@@ -57,7 +60,7 @@ pub(crate) fn bakeable(
     Ok(shaded(valid(sources, quiet)?, shading, forms))
 }
 
-/// The materials and surfaces of files that can be baked, as [`bakeable`]; the materials of surfaces are among them.
+/// The materials and surfaces of files that can be baked, or a failure, as `bakeable` has it; the materials of surfaces are among them.
 pub(crate) fn bakeable_with_surfaces(
     files: &[PathBuf],
     shading: &Shading,
