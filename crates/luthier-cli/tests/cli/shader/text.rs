@@ -68,7 +68,7 @@ fn functions_are_asked_for() {
     let manifest: serde_json::Value = serde_json::from_str(&workshop.text("out/manifest.json")).unwrap();
     assert_eq!(manifest["functions"], serde_json::json!(["eval", "light", "sample", "albedo"]));
     let refusal = workshop.run(&["shader", "all", "--functions", "smaple"]).exits(2).stderr;
-    assert!(refusal.contains("possible values: eval, light, sample, albedo"), "{refusal}");
+    assert!(refusal.contains("possible values: eval, light, sample, propose, albedo"), "{refusal}");
 }
 
 /// What no shader has is refused, not left out: the environment of other models, of a base alone, of the form `full`.
