@@ -9,7 +9,7 @@ use luthier_report::{Curve, Plot, PlotAxis, PlotColor, lightness_chroma_hue};
 use luthier_terminal::Outcome;
 
 use super::figure::{Figure, Made, compared};
-use super::studio::{Studio, material, shaded};
+use super::studio::{Studio, layered, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 2] = [
     Figure {
@@ -81,23 +81,35 @@ fn classes(studio: &Studio) -> Outcome<Made> {
 /// The thicknesses of figure 3.4, in a unit that the course does not name; um here.
 const THICKNESSES: [f64; 12] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.2, 1.6, 3.0, 5.0, 7.5, 10.0, 15.0];
 
+/// A material of some layers by Weidlich and Wilkie's model.
+pub(super) fn by_course(name: &str, layers: &str) -> Outcome<Material> {
+    layered(name, layers, ShadingModel::WeidlichWilkie)
+}
+
 /// White under a yellow varnish. The absorption is ours.
-fn varnished(thickness: f64) -> Outcome<Material> {
-    let text = format!(
-        "schema = 1\nname = \"varnished\"\n\
-         [[layer]]\ntype = \"dielectric\"\nior = 1.5\nslope_deg = 2\ndistribution = \"beckmann\"\n\
-         thickness_um = {thickness}\nabsorption_per_um = [0.02, 0.1, 0.8]\n\
-         [[layer]]\ntype = \"diffuse\"\nalbedo = 0.9\n\
-         [bake]\ncolor = \"three-wavelengths\"\n"
-    );
-    material("varnished", &text)
+fn varnished(thickness: f64) -> String {
+    format!(
+        "[[layer]]
+type = \"dielectric\"
+ior = 1.5
+slope_deg = 2
+distribution = \"beckmann\"
+\
+         thickness_um = {thickness}
+absorption_per_um = [0.02, 0.1, 0.8]
+\
+         [[layer]]
+type = \"diffuse\"
+albedo = 0.9
+"
+    )
 }
 
 fn varnish(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let mut materials = Vec::new();
     for (i, thickness) in THICKNESSES.into_iter().enumerate() {
-        materials.push(shaded(&varnished(thickness)?, &format!("varnish-{i}"), ShadingModel::WeidlichWilkie));
+        materials.push(by_course(&format!("varnish-{i}"), &varnished(thickness))?);
     }
     let pictures = studio.pictures(&materials, Form::Baked, Shape::Sphere, |_, _| {})?;
     let names = [("lightness L*", PlotColor::Ink), ("chroma C*", PlotColor::Red), ("hue, degrees", PlotColor::Blue)];

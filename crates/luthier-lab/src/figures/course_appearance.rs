@@ -7,6 +7,7 @@ use luthier_optics::color::luminance;
 use luthier_report::lightness_chroma_hue;
 use luthier_terminal::Outcome;
 
+use super::course::by_course;
 use super::figure::{Figure, Labelled, Made};
 use super::studio::{Studio, material, shaded};
 
@@ -31,13 +32,6 @@ pub(crate) const FIGURES: [Figure; 2] = [
         make: samples,
     },
 ];
-
-const HEAD: &str = "[bake]\ncolor = \"three-wavelengths\"\n";
-
-fn by_course(name: &str, layers: &str) -> Outcome<Material> {
-    let text = format!("schema = 1\nname = \"{name}\"\n{layers}{HEAD}");
-    Ok(shaded(&material(name, &text)?, name, ShadingModel::WeidlichWilkie))
-}
 
 fn metal(ior: &str) -> String {
     format!("[[layer]]\ntype = \"conductor\"\nior = \"{ior}\"\nslope_deg = 4\ndistribution = \"beckmann\"\n")

@@ -4,13 +4,14 @@ use std::sync::Arc;
 
 use luthier_gpu::{Environment, Light, Shape};
 use luthier_lut::Image;
-use luthier_manifest::{Form, ShadingModel};
+use luthier_manifest::Form;
 use luthier_material::Material;
 use luthier_report::lightness_chroma_hue;
 use luthier_terminal::{Failure, Outcome};
 
+use super::course::by_course;
 use super::figure::{Figure, Labelled, Made, TONE};
-use super::studio::{Studio, mapped, material, shaded};
+use super::studio::{Studio, mapped};
 
 pub(crate) const FIGURES: [Figure; 5] = [
     Figure {
@@ -56,12 +57,6 @@ pub(crate) const FIGURES: [Figure; 5] = [
         make: varnishes,
     },
 ];
-
-/// A material by Weidlich and Wilkie's model.
-fn by_course(name: &str, layers: &str) -> Outcome<Material> {
-    let text = format!("schema = 1\nname = \"{name}\"\n{layers}[bake]\ncolor = \"three-wavelengths\"\n");
-    Ok(shaded(&material(name, &text)?, name, ShadingModel::WeidlichWilkie))
-}
 
 fn coat(thickness_um: f64, absorption: &str) -> String {
     format!(

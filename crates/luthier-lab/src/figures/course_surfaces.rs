@@ -1,13 +1,14 @@
 //! Figures of the course of Weidlich and Wilkie about surfaces of several materials.
 
-use luthier_export::{MemoryStore, lit};
-use luthier_gpu::{Package, Shape, Shown};
-use luthier_manifest::{CellsRecord, Form, ParticlesRecord, SurfaceEntry};
-use luthier_material::{Surface, SurfaceCells, parse_surface};
-use luthier_terminal::{Failure, Outcome};
+use std::path::Path;
+
+use luthier_export::{MemoryStore, Package, SurfaceSource, gather, lit, read_all};
+use luthier_gpu::{Shape, Shown};
+use luthier_manifest::Form;
+use luthier_terminal::{Outcome, valid};
 
 use super::figure::{Figure, Made};
-use super::studio::{Studio, material};
+use super::studio::Studio;
 
 pub(crate) const FIGURES: [Figure; 1] = [Figure {
     name: "course-5-1",
@@ -19,57 +20,22 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
     make: stones,
 }];
 
-macro_rules! texts {
-    ($folder:literal: $($name:literal),*) => {
-        (
-            include_str!(concat!("../../../../materials/surfaces/", $folder, ".toml")),
-            &[$((
-                concat!($folder, "/", $name, ".toml"),
-                include_str!(concat!("../../../../materials/surfaces/", $folder, "/", $name, ".toml")),
-            )),*],
-        )
-    };
-}
-
-/// A surface file, and the materials that it names.
-type Texts = (&'static str, &'static [(&'static str, &'static str)]);
-
-const STONES: [Texts; 2] =
-    [texts!("sunstone": "stone", "copper", "pale-copper"), texts!("lepidolite": "lilac", "pink", "violet", "silver")];
+/// Surface files of the repository.
+const STONES: [&str; 2] = ["sunstone", "lepidolite"];
 
 fn stones(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let mut pictures = Vec::new();
-    for (text, files) in STONES {
-        let wrong = |errors: Vec<_>| Failure::Input(anyhow::anyhow!("{errors:?}"));
-        let surface = parse_surface("stone.toml", text).map_err(wrong)?;
-        let materials = files.iter().map(|(name, text)| material(name, text)).collect::<Outcome<Vec<_>>>()?;
-        let entries = vec![entry(&surface, files)];
-        let package = Package::of_surfaces(&lit(&materials), entries, &MemoryStore::default())?;
+    for name in STONES {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../materials/surfaces/{name}.toml"));
+        let found = gather(&[path])?;
+        let materials = valid(read_all(&found.materials)?, true)?;
+        let surfaces = found.surfaces.iter().filter_map(SurfaceSource::entry).collect();
+        let package = Package::of_surfaces(&lit(&materials), surfaces, &MemoryStore::default())?;
         let scene = studio.gpu()?.scene(&package, Form::Baked)?;
         let picture = scene.render_shown(&[Shown::Surface(0)], &studio.settings(Shape::Sphere)?)?;
-        pictures.push((surface.name, picture));
+        pictures.push((name.to_owned(), picture));
     }
     made.sheet("course-5-1", pictures, 2);
     Ok(made)
-}
-
-fn entry(surface: &Surface, files: &[(&str, &str)]) -> SurfaceEntry {
-    let number = |file: &str| files.iter().position(|(name, _)| *name == file).unwrap_or(0) as u32;
-    let cells = |cells: &SurfaceCells| CellsRecord {
-        seed: cells.seed,
-        frequency: cells.frequency,
-        materials: cells.materials.iter().map(|named| number(&named.file)).collect(),
-    };
-    SurfaceEntry {
-        name: surface.name.clone(),
-        source: surface.source.clone(),
-        source_hash: String::new(),
-        cells: cells(&surface.cells),
-        glitter: surface.glitter.as_ref().map(|glitter| ParticlesRecord {
-            cells: cells(&glitter.cells),
-            filled: glitter.filled,
-            tilt: glitter.tilt,
-        }),
-    }
 }

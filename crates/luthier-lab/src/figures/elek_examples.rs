@@ -8,7 +8,7 @@ use luthier_material::Material;
 use luthier_terminal::{Failure, Outcome};
 
 use super::figure::{Figure, Labelled, Made, TONE, compared};
-use super::studio::{Studio, mapped, material, shaded};
+use super::studio::{Studio, layered, mapped, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 3] = [
     Figure {
@@ -119,10 +119,9 @@ fn scaled(map: &Image, size: u32) -> Image {
 }
 
 fn by_elek(name: &str, layers: &str) -> Outcome<Material> {
-    let text = format!(
-        "schema = 1\nname = \"{name}\"\n{layers}[bake]\ncolor = \"three-wavelengths\"\nwavelengths_nm = [690, 550, 450]\n"
-    );
-    Ok(shaded(&material(name, &text)?, name, ShadingModel::Elek))
+    let mut material = layered(name, layers, ShadingModel::Elek)?;
+    material.bake.wavelengths_nm = Some([690.0, 550.0, 450.0]);
+    Ok(material)
 }
 
 /// Chromium of the paper's appendix A.

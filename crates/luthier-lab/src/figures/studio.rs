@@ -116,6 +116,12 @@ pub(crate) fn material(label: &str, text: &str) -> Outcome<Material> {
     Ok(parsed.map_err(wrong)?.material)
 }
 
+/// A material of some layers by a model, its colours at three wavelengths.
+pub(crate) fn layered(name: &str, layers: &str, model: ShadingModel) -> Outcome<Material> {
+    let text = format!("schema = 1\nname = \"{name}\"\n{layers}[bake]\ncolor = \"three-wavelengths\"\n");
+    Ok(shaded(&material(name, &text)?, name, model))
+}
+
 /// A material whose maps are those of the lab, in `maps/`.
 pub(crate) fn mapped(material: Material) -> Material {
     Material { source: concat!(env!("CARGO_MANIFEST_DIR"), "/maps/material.toml").to_owned(), ..material }

@@ -23,8 +23,8 @@ const FLOOR: f64 = 0.1 * std::f64::consts::FRAC_1_PI;
 /// The least difference that an element has to make.
 const SEEN: f64 = 1e-3;
 
-/// One adapter for all elements.
-static GPU: LazyLock<Option<Gpu>> = LazyLock::new(gpu);
+/// One adapter for all elements; `None` where there is none and the test may be skipped.
+pub(super) static GPU: LazyLock<Option<Gpu>> = LazyLock::new(gpu);
 
 /// Numbers of an element.
 #[derive(Debug)]
@@ -39,7 +39,7 @@ pub(super) enum Number {
 
 /// Measures an element, and asserts that it is there: its values differ from those without it, its function and its table are in the shader,
 /// and the device agrees with f64.
-pub(super) fn measured(element: &Element) -> Number {
+pub(super) fn measured(element: &Element, gpu: &Gpu) -> Number {
     let name = element.name();
     if !element.is_measured() {
         return Number::Open;
@@ -58,30 +58,23 @@ pub(super) fn measured(element: &Element) -> Number {
         assert!(text.contains(says), "{name}: {page} does not say `{says}`");
         return Number::Page(page.to_owned());
     }
-    let (with, without, compared) = match (element.get("measured"), &*GPU) {
-        (Some(_), None) => (vec![1.0], vec![0.0], "not compared".to_owned()),
-        (Some(_), Some(gpu)) => {
-            let with = device(element, gpu, package.as_ref().unwrap());
-            let coarse = package_of(element, &element.without().unwrap());
-            let without = device(element, gpu, &coarse);
-            let compared = if element.get("device_place").is_some() {
-                "the table on the device".to_owned()
-            } else {
-                within(element, &with, &in_f64(element, true))
-            };
-            (with, without, compared)
-        }
-        (None, gpu) => {
-            let (with, without) = (in_f64(element, true), in_f64(element, false));
-            let compared = match (gpu, &package) {
-                (Some(gpu), Some(package)) if element.get("f64_model").is_none() => {
-                    within(element, &device(element, gpu, package), &with)
-                }
-                (None, Some(_)) if element.get("f64_model").is_none() => "not compared".to_owned(),
-                _ => "f64 alone".to_owned(),
-            };
-            (with, without, compared)
-        }
+    let (with, without, compared) = if element.get("measured").is_some() {
+        let with = device(element, gpu, package.as_ref().unwrap());
+        let without = device(element, gpu, &package_of(element, &element.without().unwrap()));
+        let compared = match element.get("device_place") {
+            Some(_) => "the table on the device".to_owned(),
+            None => within(element, &with, &in_f64(element, true)),
+        };
+        (with, without, compared)
+    } else {
+        let (with, without) = (in_f64(element, true), in_f64(element, false));
+        let compared = match &package {
+            Some(package) if element.get("f64_model").is_none() => {
+                within(element, &device(element, gpu, package), &with)
+            }
+            _ => "f64 alone".to_owned(),
+        };
+        (with, without, compared)
     };
     let apart = |i: usize| (with[i] - without[i]).abs() / with[i].abs().max(without[i].abs()).max(FLOOR);
     let most = (0..with.len()).max_by(|&a, &b| apart(a).total_cmp(&apart(b))).unwrap();
