@@ -66,9 +66,13 @@ choices() {
   [ -n "${LUTHIER-}" ] || cargo build --quiet --release --locked -p luthier-cli
   python3 scripts/choices.py "${LUTHIER-target/release/luthier}" >docs/pages/choices.md
 }
+reflectance-table() {
+  [ -n "${LUTHIER-}" ] || cargo build --quiet --release --locked -p luthier-cli
+  python3 scripts/reflectance-table.py "${LUTHIER-target/release/luthier}" >docs/pages/reflectance-table.md
+}
 reference() { luthier man --markdown >docs/reference.md; }
 
-all=(materials shapes cost papers budgets scenes parity stability figures models lobes varying anisotropic environment bench shader-size distribution-table speed dfg engine-tables by-hand choices reference)
+all=(materials shapes cost papers budgets scenes parity stability figures models lobes varying anisotropic environment bench shader-size distribution-table speed dfg engine-tables by-hand choices reflectance-table reference)
 case ${1-} in
   "") pages=("${all[@]}") ;;
   --cheap) pages=(shader-size reference) ;;

@@ -14,7 +14,7 @@ use thiserror::Error;
 pub enum AxesError {
     /// An axis that does not parse.
     #[error(
-        "`{0}` is no axis; write [-]QUANTITY[=MIN..MAX][^EXPONENT|@log] with cos_theta, theta, cos_theta_sq, sqrt_cos_theta, sqrt_one_minus_cos_theta, roughness, alpha, alpha_sq, sqrt_roughness, ior, inverse_ior, f0, sqrt_f0, fourth_root_f0 or thickness_nm"
+        "`{0}` is no axis; write [-]QUANTITY[=MIN..MAX][^EXPONENT|@log] with cos_theta, theta, cos_theta_sq, sqrt_cos_theta, sqrt_one_minus_cos_theta, roughness, alpha, alpha_sq, sqrt_roughness, ior, inverse_ior, f0, sqrt_f0, fourth_root_f0, ior_n, ior_k or thickness_nm"
     )]
     Axis(String),
     /// Axes other than one of the direction and at most one of the micro-surface.
@@ -32,6 +32,11 @@ pub enum AxesError {
         "`{0}`: a table of a film has an axis of the angle and one of the thickness, such as \"cos_theta,thickness_nm=0..800\""
     )]
     FilmAxes(String),
+    /// Axes other than one of the direction, one of the index and one of the absorption index.
+    #[error(
+        "`{0}`: a table of reflectances has an axis of the angle, ior_n and ior_k, such as \"cos_theta,ior_n=0.05..5,ior_k=0..10\""
+    )]
+    FresnelAxes(String),
 }
 
 /// Quantity of an axis of a table.
@@ -66,6 +71,10 @@ pub enum Quantity {
     SqrtF0,
     /// The fourth root of the reflectance at normal incidence.
     FourthRootF0,
+    /// Index of refraction of any material, the real part.
+    IorN,
+    /// Absorption index, the imaginary part.
+    IorK,
     /// Thickness of a film.
     ThicknessNm,
 }
@@ -75,6 +84,10 @@ const THICKNESS_MAX_NM: f64 = 5000.0;
 
 /// Largest index of an axis: f0 is within 4e-6 of 1.
 const IOR_MAX: f64 = 1e6;
+
+/// Ends of axes of a complex index: no metal at visible wavelengths lies beyond.
+const COMPLEX_N_MIN: f64 = 1e-3;
+const COMPLEX_MAX: f64 = 100.0;
 
 impl Quantity {
     /// Quantities of the direction.
@@ -103,6 +116,8 @@ impl Quantity {
             Self::F0 => "f0",
             Self::SqrtF0 => "sqrt_f0",
             Self::FourthRootF0 => "fourth_root_f0",
+            Self::IorN => "ior_n",
+            Self::IorK => "ior_k",
             Self::ThicknessNm => "thickness_nm",
         }
     }
@@ -124,7 +139,8 @@ impl Quantity {
 
     fn from_name(name: &str) -> Option<Self> {
         let name = name.strip_suffix("_h").unwrap_or(name);
-        let mut all = Self::ANGLES.into_iter().chain(Self::SLOPES).chain(Self::INDICES).chain([Self::ThicknessNm]);
+        let others = [Self::IorN, Self::IorK, Self::ThicknessNm];
+        let mut all = Self::ANGLES.into_iter().chain(Self::SLOPES).chain(Self::INDICES).chain(others);
         all.find(|quantity| quantity.name() == name)
     }
 
@@ -134,6 +150,8 @@ impl Quantity {
             Self::Theta => [0.0, FRAC_PI_2 + 1e-6],
             Self::Ior => [1.0, IOR_MAX],
             Self::InverseIor => [1.0 / IOR_MAX, 1.0],
+            Self::IorN => [COMPLEX_N_MIN, COMPLEX_MAX],
+            Self::IorK => [0.0, COMPLEX_MAX],
             Self::ThicknessNm => [0.0, THICKNESS_MAX_NM],
             _ => [0.0, 1.0],
         }
@@ -160,7 +178,7 @@ impl Quantity {
             Self::F0 => index(value.sqrt()),
             Self::SqrtF0 => index(value),
             Self::FourthRootF0 => index(value * value),
-            Self::ThicknessNm => value,
+            Self::IorN | Self::IorK | Self::ThicknessNm => value,
         }
     }
 
@@ -182,7 +200,7 @@ impl Quantity {
             Self::F0 => sqrt_f0() * sqrt_f0(),
             Self::SqrtF0 => sqrt_f0(),
             Self::FourthRootF0 => sqrt_f0().sqrt(),
-            Self::ThicknessNm => canonical,
+            Self::IorN | Self::IorK | Self::ThicknessNm => canonical,
         }
     }
 }
@@ -247,12 +265,14 @@ pub struct AxisSpec {
 const GRAZING: f64 = 0.01;
 
 impl AxisSpec {
-    /// The whole range of a quantity, linear and ascending; indices up to 3, films up to 1200 nm.
+    /// The whole range of a quantity, linear and ascending; indices up to 3, complex ones 0.05 to 5 and 0 to 10, films up to 1200 nm.
     pub fn whole(quantity: Quantity, nodes: Nodes) -> Self {
         let (min, max) = match quantity {
             Quantity::Theta => (0.0, FRAC_PI_2),
             Quantity::Ior => (1.0, 3.0),
             Quantity::InverseIor => (1.0 / 3.0, 1.0),
+            Quantity::IorN => (0.05, 5.0),
+            Quantity::IorK => (0.0, 10.0),
             Quantity::ThicknessNm => (0.0, 1200.0),
             _ => (0.0, 1.0),
         };

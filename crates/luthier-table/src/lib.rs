@@ -10,7 +10,8 @@
 //! An [`EnergyTable`] does likewise for the albedos that energy compensation takes, of metals and of dielectrics from both sides;
 //! [`EnergyPreset`]s are the statements of renderers.
 //!
-//! A [`FilmTable`] holds the colour that a plane reflects under a thin film, over angle and thickness. [`LtcTable`] and [`SheenTable`] hold linearly
+//! A [`FilmTable`] holds the colour that a plane reflects under a thin film, over angle and thickness. A [`FresnelTable`] holds the reflectance of a
+//! plane of any index, over angle, n and k. [`LtcTable`] and [`SheenTable`] hold linearly
 //! transformed cosines: of rough metals for area lights, and of a layer of fibres.
 //!
 //! Simplifications: tables have one level and are read by linear filtering along each axis. Split sums are of light from above and of Schlick's
@@ -22,11 +23,13 @@ mod closed;
 mod dfg;
 mod energy;
 mod film;
+mod fresnel;
 mod lookup;
 mod ltc;
 mod preset;
 pub mod rgbd;
 mod search;
+mod slices;
 mod stored;
 mod value;
 
@@ -38,7 +41,8 @@ pub use energy::{
     EnergyContainer, EnergyDomain, EnergyFile, EnergyLayout, EnergyPreset, EnergySurface, EnergyTable, EnergyValue,
 };
 pub use film::{FilmLayout, FilmTable};
-pub use lookup::{Bindings, LOOKUP, SAMPLER, TEXTURE};
+pub use fresnel::{FresnelLayout, FresnelTable};
+pub use lookup::{Bindings, LOOKUP, REFLECTANCE, REFLECTANCE_SAMPLER, REFLECTANCE_TEXTURE, SAMPLER, TEXTURE};
 pub use ltc::{
     IrradianceError, Lobe, LtcError, LtcTable, LtcTexels, PlacedError, SheenTable, clipped_sphere_form_factor,
 };

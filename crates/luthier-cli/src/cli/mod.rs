@@ -376,8 +376,8 @@ pub(crate) use audit::{AuditOptions, NodesName, SamplesName};
 
 mod table;
 pub(crate) use table::{
-    ClothName, ClothOptions, Delivery, DfgOptions, DistributionName, EnergyOptions, FilmOptions, Function, LtcOptions,
-    SheenOptions, TableOptions,
+    ClothName, ClothOptions, Delivery, DfgOptions, DistributionName, EnergyOptions, FilmOptions, FresnelOptions,
+    Function, LtcOptions, SheenOptions, TableOptions,
 };
 
 #[cfg(feature = "gpu")]

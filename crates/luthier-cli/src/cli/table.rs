@@ -54,6 +54,8 @@ pub(crate) enum Function {
     Energy(EnergyOptions),
     /// Colour that an interface reflects under a thin film
     Film(FilmOptions),
+    /// Fresnel's reflectance of any material over angle, n and k
+    Fresnel(FresnelOptions),
     /// Linearly transformed cosines of a rough metal: light of polygons, in closed form
     Ltc(LtcOptions),
     /// Linearly transformed cosines of a layer of fibres, which reflects as sheen does
@@ -224,6 +226,40 @@ pub(crate) struct FilmOptions {
     pub(crate) delivery: Delivery,
 }
 
+const FRESNEL_EXAMPLES: &str = "\
+Bakes the reflectance of a smooth surface of index n + ik in air for unpolarised light, over three axes (Weidlich and Wilkie 2009, section 3.4.1). \
+One table serves all materials: a shader reads it once for each channel. Slices of the third axis lie one below the other. The default is the \
+layout that the authors propose; the error says how far linear axes carry.
+
+Examples:
+  luthier table fresnel -o fresnel.ktx2 --shader wgsl
+  luthier table fresnel --axes cos_theta,ior_n=0.05..5@log,ior_k=0..10^2 --size 64x64x64 -o fresnel.exr";
+
+#[derive(Debug, Args)]
+#[command(after_help = FRESNEL_EXAMPLES)]
+pub(crate) struct FresnelOptions {
+    /// Axes, the fastest first: of the direction, ior_n and ior_k
+    #[arg(long, value_name = "X,Y,Z", default_value = "cos_theta,ior_n,ior_k")]
+    pub(crate) axes: String,
+    /// Nodes along each axis
+    #[arg(long, value_name = "WxHxD", default_value = "128x32x32", value_parser = volume)]
+    pub(crate) size: [u32; 3],
+    /// Where nodes are
+    #[arg(long, value_enum, default_value_t = NodesName::Ends)]
+    pub(crate) nodes: NodesName,
+    /// Lowest cosine that counts in the error
+    #[arg(long, value_name = "X", default_value_t = 0.01, value_parser = unit)]
+    pub(crate) min_cos: f64,
+    /// Write the look-up function too, beside the table, in these languages
+    #[arg(long, value_name = "LANGUAGE,...", value_delimiter = ',', value_parser = super::named::<Target>(Target::NAMES))]
+    pub(crate) shader: Vec<Target>,
+    /// Bind group of the look-up, and the numbers of the texture and the sampler
+    #[arg(long, value_name = "GROUP,TEXTURE,SAMPLER", value_parser = numbers, requires = "shader", default_value = "0,0,1")]
+    pub(crate) bind: [u32; 3],
+    #[command(flatten)]
+    pub(crate) delivery: Delivery,
+}
+
 const LTC_EXAMPLES: &str = "\
 Fits linearly transformed cosines (Heitz, Dupuy, Hill and Neubelt 2016) and writes two tables into the folder --output: ltc_1.ktx2 has the inverse \
 matrices (m11, m31, m13, m33 in the order that engines read), ltc_2.ktx2 the albedo, the bias of the split sum, 0 and the form factor of a sphere \
@@ -317,6 +353,24 @@ fn size(text: &str) -> Result<[u32; 2], String> {
     let (width, height) = text.split_once('x').ok_or_else(wrong)?;
     let side = |text: &str| text.parse::<u32>().ok().filter(|side| (4..=1024).contains(side)).ok_or_else(wrong);
     Ok([side(width)?, side(height)?])
+}
+
+/// Most rows of all slices together: what every device takes as a side of a texture.
+const ROWS_MAX: u32 = 8192;
+
+/// Nodes along three axes.
+fn volume(text: &str) -> Result<[u32; 3], String> {
+    let sides: Vec<u32> = text.split('x').map_while(|side| side.parse().ok()).collect();
+    match *sides.as_slice() {
+        [x, y, z] if text.split('x').count() == 3 && sides.iter().all(|side| (2..=1024).contains(side)) => {
+            if y * z <= ROWS_MAX {
+                Ok([x, y, z])
+            } else {
+                Err(format!("{y} x {z} rows lie one below the other, and a texture has {ROWS_MAX} at most"))
+            }
+        }
+        _ => Err("expected nodes along three axes, 2 to 1024 each, such as 128x32x32".to_owned()),
+    }
 }
 
 /// Nodes along one to three axes.

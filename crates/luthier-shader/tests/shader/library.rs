@@ -7,7 +7,8 @@ use luthier_optics::split_sum::Masking;
 use luthier_optics::stack::Distribution;
 use luthier_shader::{Target, library, library_spirv};
 use luthier_table::{
-    Base, Bindings, ClosedForm, DfgTable, LOOKUP, Layout, Nodes, Preset, SAMPLER, Stored, TEXTURE, Value,
+    Base, Bindings, ClosedForm, DfgTable, FresnelLayout, FresnelTable, LOOKUP, Layout, Nodes, Preset, REFLECTANCE,
+    REFLECTANCE_TEXTURE, SAMPLER, Stored, TEXTURE, Value,
 };
 
 use crate::judges::{accept_glsl_es, compile, is_installed, validate_spirv};
@@ -137,6 +138,56 @@ fn look_ups_read_as_tables_are_judged() {
                 assert!(off < limit, "{} at {cos_theta} {alpha}: {found} {expected}", table.layout);
             }
         }
+    }
+}
+
+/// The look-up of a table of three axes, run in single precision: at nodes it gives Fresnel's equations, between them what the judge of the table
+/// reads, within its weights of 8 bits, and beyond an axis its end.
+#[test]
+fn reflectances_are_read_in_their_slices() {
+    for (axes, nodes) in [
+        ("cos_theta,ior_n,ior_k", Nodes::Ends),
+        ("ior_k=0..8^2,-theta,ior_n=0.1..4@log", Nodes::CENTRES),
+        ("ior_n=0.5..3,cos_theta_sq,-ior_k=1..4", Nodes::Ends),
+    ] {
+        let layout = FresnelLayout::parse(axes, nodes).unwrap();
+        let table = FresnelTable { layout, size: [12, 9, 7], stored: Stored::Float };
+        let texels = table.bake();
+        let wgsl = table.wgsl(BINDINGS).unwrap();
+        for target in Target::TEXT {
+            assert!(library(&wgsl, target).unwrap().contains(&format!("{REFLECTANCE}(")), "{target}");
+        }
+        let machine = Machine::new(&wgsl, &[], BTreeMap::from([(REFLECTANCE_TEXTURE.to_owned(), texels.clone())]));
+        let read = |place: [f64; 3]| {
+            let found = machine.call(REFLECTANCE, place.map(|v| F(v as f32)).to_vec());
+            f64::from(found.floats()[0])
+        };
+        let mut largest: f64 = 0.0;
+        for i in 0..9 * 9 * 9 {
+            let [c, n, k] = [i % 9, i / 9 % 9, i / 81].map(|v| f64::from(v) / 8.0);
+            let place = [0.02 + 0.98 * c, 0.5 + 2.5 * n, 1.0 + 3.0 * k];
+            let (found, expected) = (read(place), table.sample(&texels, place));
+            // Half a step of a weight on each axis, of texels that differ by less than 1.
+            assert!((found - expected).abs() < 1.5 / 256.0, "{axes} at {place:?}: {found} {expected}");
+            largest = largest.max((found - FresnelTable::exact(place)).abs());
+        }
+        assert!(largest > 1e-4, "{axes}: a table so small errs");
+        assert_eq!(
+            read([0.5, 500.0, 2.0]),
+            read([0.5, layout.axes().iter().find(|a| a.quantity.name() == "ior_n").unwrap().max, 2.0])
+        );
+    }
+    // Nodes alone: the corners of the default layout.
+    let layout = FresnelLayout::parse("cos_theta,ior_n=1..3,ior_k=0..4", Nodes::Ends).unwrap();
+    let table = FresnelTable { layout, size: [5, 5, 5], stored: Stored::Float };
+    let textures = BTreeMap::from([(REFLECTANCE_TEXTURE.to_owned(), table.bake())]);
+    let machine = Machine::new(&table.wgsl(BINDINGS).unwrap(), &[], textures);
+    for i in 0..125 {
+        let [c, n, k] = [i % 5, i / 5 % 5, i / 25].map(f64::from);
+        let place = [c / 4.0, 1.0 + n / 2.0, k];
+        let found = machine.call(REFLECTANCE, place.map(|v| F(v as f32)).to_vec()).floats()[0];
+        let expected = FresnelTable::exact(place);
+        assert!((f64::from(found) - expected).abs() < 2e-6, "{place:?}: {found} {expected}");
     }
 }
 

@@ -1,13 +1,10 @@
 //! Error of reads from a table of energy.
 
-use luthier_lut::{Comparison, ErrorStats, Image, Scan, WeightBits, bilinear, measure_at, measure_scan};
-use rayon::prelude::*;
+use luthier_lut::{Comparison, ErrorStats, Image, Scan, measure_scan};
 
 use super::{EnergyTable, Place};
-use crate::AxisSpec;
+use crate::{AxisSpec, slices};
 
-/// Fraction bits of the sampler's weights.
-const BITS: u32 = 8;
 /// Points of a scan along each of one, two or three axes.
 const POINTS: [u32; 3] = [512, 48, 20];
 /// Points of averages over the hemisphere, each of which takes a hundred albedos.
@@ -68,25 +65,10 @@ impl EnergyTable {
             let u3 = |u: [f64; 2]| [u[0], u[1], third];
             measure_scan(&scan(count), |u| self.compare(texels, u3(u)), |u| self.named(u3(u)))
         };
-        let Some([from, to]) = ends.get(2).copied() else {
+        let &[x, y, z] = ends.as_slice() else {
             return slice(0.5, points);
         };
-        let thirds: Vec<f64> =
-            (0..points).map(|i| from + (to - from) * (f64::from(i) + 0.5) / f64::from(points)).collect();
-        let flat: Vec<[f64; 2]> = scan(points).coordinates().collect();
-        let all: Vec<(Vec<f64>, Comparison)> = (0..thirds.len() * flat.len())
-            .into_par_iter()
-            .map(|i| {
-                let [u, v] = flat[i % flat.len()];
-                let u = [u, v, thirds[i / flat.len()]];
-                (u.to_vec(), self.compare(texels, u))
-            })
-            .collect();
-        let mut stats = measure_at(all);
-        let worst = stats.worst.at.clone();
-        let third = worst.get(2).copied().unwrap_or(0.5);
-        stats.worst.at = self.named([0, 1, 2].map(|k: usize| worst.get(k).copied().unwrap_or(0.5)));
-        stats.with_worst_of(slice(third, points))
+        slices::measure(points, [x, y, z], REFINEMENTS, |u| self.compare(texels, u), |u| self.named(u))
     }
 
     /// The largest error of all channels of a read at one cosine and alpha, of a table over these two.
@@ -118,21 +100,11 @@ impl EnergyTable {
         comparison
     }
 
-    /// A sampler's read: bilinear in two slices, then between them.
     fn sample(&self, texels: &Image, u: [f64; 3]) -> [f64; 4] {
         let mut position = [0.5; 3];
         for (k, axis) in self.layout.axes().iter().enumerate() {
             position[k] = axis.position(axis.canonical_of_coordinate(u[k]), self.size[k]);
         }
-        let rows = f64::from(self.size[1]);
-        let y = position[1].clamp(0.5, rows - 0.5);
-        let read = |slice: f64| bilinear(texels, [position[0], slice * rows + y], WeightBits::Fixed(BITS));
-        let last = f64::from(self.size[2] - 1);
-        let z = (position[2] - 0.5).clamp(0.0, last);
-        let low = libm::floor(z);
-        let scale = f64::from(1u32 << BITS);
-        let t = libm::round((z - low) * scale) / scale;
-        let (near, far) = (read(low), read((low + 1.0).min(last)));
-        [0, 1, 2, 3].map(|c: usize| near[c] + (far[c] - near[c]) * t)
+        slices::read(texels, position, self.size)
     }
 }

@@ -8,7 +8,7 @@ use super::float;
 use crate::{AxisSpec, Cost, Nodes, Quantity};
 
 /// `let NAME = ...;`: the coordinate in 0..1 at which a texture of `size` texels along this axis is read, the WGSL of
-/// [`Layout::position`](crate::Layout::position) over the size; none of a periodic axis or one of an index or thickness.
+/// [`Layout::position`](crate::Layout::position) over the size; none of a periodic axis or one of a real index or a thickness.
 pub(super) fn write(out: &mut String, name: &str, axis: &AxisSpec, input: &str, size: u32) -> Option<()> {
     let (quantity, is_within) = quantity(out, axis.quantity, input)?;
     let AxisSpec { min, max, .. } = *axis;
@@ -87,8 +87,11 @@ fn exponents_cost(exponent: f64) -> Cost {
     }
 }
 
-/// A quantity of a cosine or an alpha, and whether it lies in 0..1; none of other quantities.
+/// A quantity of a cosine, an alpha, or a part of a complex index, and whether it lies in 0..1; none of other quantities.
 fn quantity(out: &mut String, quantity: Quantity, input: &str) -> Option<(String, bool)> {
+    if matches!(quantity, Quantity::IorN | Quantity::IorK) {
+        return Some((input.to_owned(), false));
+    }
     let input = format!("saturate({input})");
     Some(match quantity {
         Quantity::CosTheta | Quantity::Alpha => (input, true),

@@ -2,10 +2,13 @@
 
 mod axis;
 mod closed;
+mod fresnel;
 
 use std::fmt::Write as _;
 
 use crate::{Base, Cost, DfgTable, Nodes, Value};
+
+pub use fresnel::{REFLECTANCE, REFLECTANCE_SAMPLER, REFLECTANCE_TEXTURE};
 
 /// Name of the function.
 pub const LOOKUP: &str = "luthier_dfg";

@@ -1,14 +1,14 @@
 //! `table dfg`: the split sum of image-based lighting, as a table or in closed form.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use luthier_export::input;
 use luthier_lut::{ErrorStats, Image};
 use luthier_optics::split_sum::Masking;
 use luthier_report::{Certificate, ErrorMap};
-use luthier_shader::{Target, library, library_spirv};
+use luthier_shader::Target;
 use luthier_table::{
-    Bindings, ClosedForm, Container, Cost, DfgTable, FittedForm, Found, Preset, SPLIT_SUM, Stored, rgbd, search,
+    ClosedForm, Container, Cost, DfgTable, FittedForm, Found, Preset, SPLIT_SUM, Stored, rgbd, search,
     search_beside_form,
 };
 use luthier_terminal::{Failure, Outcome, files};
@@ -16,6 +16,7 @@ use luthier_texture::table;
 use serde_json::{Value as Json, json};
 
 use super::container::by_ending;
+use super::look_up;
 use super::product::{Product, Sampled, distribution, domain, error_facts, fact, nodes_name, sampled};
 use crate::cli::DfgOptions;
 
@@ -46,8 +47,9 @@ pub(super) fn product(options: &DfgOptions) -> Outcome<Product> {
         [] => Vec::new(),
         languages => {
             let reason = "the channels of this table do not determine scale and bias: there is no look-up";
-            let text = table.wgsl(bindings(options)).ok_or_else(|| Failure::Usage(anyhow::anyhow!(reason)))?;
-            shaders(options, languages, &text)?
+            let text =
+                table.wgsl(look_up::bindings(options.bind)).ok_or_else(|| Failure::Usage(anyhow::anyhow!(reason)))?;
+            look_up::beside(&options.delivery.output, languages, &text)?
         }
     };
     let each = channels.iter().map(|(name, largest)| format!("{name} {largest:.2e}")).collect::<Vec<_>>().join(", ");
@@ -97,8 +99,8 @@ fn closed(options: &DfgOptions) -> Outcome<Product> {
         operations(cost)
     );
     let text = form.wgsl();
-    let mut written = vec![(output.clone(), shader(&text, target)?)];
-    written.extend(shaders(options, &options.shader, &text)?);
+    let mut written = vec![(output.clone(), look_up::text(&text, target)?)];
+    written.extend(look_up::beside(output, &options.shader, &text)?);
     let mut facts = vec![
         fact("Model", format!("{} distribution, masking {}", form.distribution.name(), masking.name())),
         fact("Cost", operations(cost)),
@@ -218,35 +220,6 @@ fn language(path: &Path) -> Outcome<Target> {
             path.display()
         ))
     })
-}
-
-fn bindings(options: &DfgOptions) -> Bindings {
-    let [group, texture, sampler] = options.bind;
-    Bindings { group, texture, sampler }
-}
-
-/// The function in each language, in files beside the output.
-fn shaders(options: &DfgOptions, languages: &[Target], wgsl: &str) -> Outcome<Vec<(PathBuf, Vec<u8>)>> {
-    let beside = |target: &Target| {
-        let output = &options.delivery.output;
-        let name = output.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        // A language's ending may have a point of its own.
-        let ending =
-            Target::ALL.iter().map(|target| format!(".{}", target.extension())).find(|ending| name.ends_with(ending));
-        let stem = ending
-            .map_or(output.with_extension(""), |ending| output.with_file_name(&name[..name.len() - ending.len()]));
-        let stem = stem.to_string_lossy();
-        Ok((PathBuf::from(format!("{stem}.{}", target.extension())), shader(wgsl, *target)?))
-    };
-    languages.iter().map(beside).collect()
-}
-
-fn shader(wgsl: &str, target: Target) -> Outcome<Vec<u8>> {
-    match target {
-        Target::SpirV => library_spirv(wgsl),
-        _ => library(wgsl, target).map(String::into_bytes),
-    }
-    .map_err(Failure::input)
 }
 
 /// The table in words.

@@ -5,6 +5,8 @@ mod container;
 mod dfg;
 mod energy;
 mod film;
+mod fresnel;
+mod look_up;
 mod ltc;
 mod product;
 mod sheen;
@@ -20,6 +22,7 @@ pub(crate) fn run(options: &TableOptions) -> Outcome {
         Function::Cloth(options) => (cloth::product(options)?, &options.delivery),
         Function::Energy(options) => (energy::product(options)?, &options.delivery),
         Function::Film(options) => (film::product(options)?, &options.delivery),
+        Function::Fresnel(options) => (fresnel::product(options)?, &options.delivery),
         Function::Ltc(options) => (ltc::product(options)?, &options.delivery),
         Function::Sheen(options) => (sheen::product(options)?, &options.delivery),
     };

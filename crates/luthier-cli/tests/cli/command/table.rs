@@ -138,6 +138,27 @@ fn other_functions_are_baked() {
     assert_eq!((size("film.bin"), film["table"]["color"].as_str()), (8 * 16 * 3 * 2, Some("spectral, D65")));
 }
 
+/// One table of reflectance for all materials, in the layout of Weidlich and Wilkie 2009: a node at normal incidence, by hand.
+#[test]
+fn reflectances_of_all_materials_are_baked() {
+    let workshop = Workshop::new();
+    let told = workshop.run(&["table", "fresnel", "-o", "f.exr", "--shader", "wgsl,hlsl", "--json"]).exits(0).json();
+    assert_eq!(told["table"]["size"], serde_json::json!([128, 32, 32]));
+    let (image, _) = luthier_texture::exr::decode(&std::fs::read(workshop.path("f.exr")).unwrap()).unwrap();
+    assert_eq!((image.width, image.height, image.channels), (128, 32 * 32, 1));
+    // Normal incidence, n of the 4th node, k of the 11th: ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2).
+    let [n, k] = [0.05 + 4.95 * 3.0 / 31.0, 10.0 * 10.0 / 31.0];
+    let f0 = ((n - 1.0) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k);
+    assert!((f64::from(image.texel(127, 32 * 10 + 3)[0]) - f0).abs() < 1e-6);
+    for (file, text) in [("f.wgsl", "fn luthier_reflectance("), ("f.hlsl", "float luthier_reflectance(")] {
+        assert!(std::fs::read_to_string(workshop.path(file)).unwrap().contains(text), "{file}");
+    }
+    let page = ["table", "fresnel", "--size", "16x8x8", "-o", "f.bin", "--report", "f.html"];
+    workshop.run(&page).exits(0);
+    assert!(std::fs::read_to_string(workshop.path("f.html")).unwrap().contains("Table of reflectances"));
+    assert_eq!(std::fs::metadata(workshop.path("f.bin")).unwrap().len(), 16 * 8 * 8 * 2);
+}
+
 /// Linearly transformed cosines: both tables of engines in a folder, and sheen, with the errors of the paper's kind.
 #[test]
 fn lobes_are_fitted() {
@@ -207,6 +228,9 @@ fn what_cannot_be_baked_is_refused() {
     refused(&["energy", "--surface", "from-denser", "--max-abs", "1e-3"], 2, "reflector");
     refused(&["film", "--film", "water", "--base", "1.5"], 2, "index of refraction");
     refused(&["film", "--film", "1.3", "--base", "1.5", "--axes", "cos_theta,roughness"], 2, "thickness");
+    refused(&["fresnel", "--axes", "cos_theta,ior_n"], 2, "ior_k");
+    refused(&["fresnel", "--size", "128x128x128"], 2, "one below the other");
+    refused(&["fresnel", "--size", "128x32"], 2, "three axes");
     workshop.run(&["table", "cloth", "-o", "cloth.tga"]).fails(2, &[".ktx2"]);
     workshop.run(&["table", "cloth", "--size", "8x8", "-o", "nowhere/cloth.bin"]).fails(3, &["nowhere"]);
 }
