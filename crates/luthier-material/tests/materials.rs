@@ -105,3 +105,16 @@ fn a_film_joins_the_layer_that_it_coats() {
     // sqrt(2 / 92)
     assert!((material.stack.layers[0].surface.alpha_x - 0.147_442).abs() < 1e-5);
 }
+
+/// Of 0.7 of the light, a channel keeps exp(-absorption thickness): numbers by another calculator.
+#[test]
+fn a_patina_may_scatter_what_its_absorption_leaves() {
+    let text = fs::read_to_string(folder().join("copper-patina.toml")).unwrap();
+    let tied = text.replace("diffuse_albedo = [0.25, 0.55, 0.42]", "diffuse_remainder = 0.7");
+    assert_ne!(text, tied);
+    let parsed = parse("tied.toml", &tied, &|path| fs::read_to_string(folder().join(path))).unwrap();
+    let found = parsed.material.effects.patina.unwrap().diffuse_albedo;
+    for (found, expected) in found.into_iter().zip([0.284_599, 0.545_161, 0.424_571]) {
+        assert!((found - expected).abs() < 1e-6, "{found} {expected}");
+    }
+}

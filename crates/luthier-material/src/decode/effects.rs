@@ -1,6 +1,7 @@
 //! Decoder of the section `[effects]`.
 
-use luthier_optics::stack::Stack;
+use luthier_optics::Rgb;
+use luthier_optics::stack::{Base, Stack};
 
 use super::films;
 use crate::diagnostic::Sink;
@@ -24,7 +25,7 @@ pub(super) fn decode(document: &Section<'_>, stack: &Stack, is_fluorescent: bool
     }
     Effects {
         flakes: at.section("flakes").and_then(|at| flakes(&at)),
-        patina: at.section("patina").and_then(|at| patina(&at, sink)),
+        patina: at.section("patina").and_then(|at| patina(&at, stack, sink)),
         glitter: at.section("glitter").map(|at| glitter(&at)),
     }
 }
@@ -58,7 +59,7 @@ fn flakes(at: &Section<'_>) -> Option<Flakes> {
     })
 }
 
-fn patina(at: &Section<'_>, sink: &mut Sink<'_>) -> Option<Patina> {
+fn patina(at: &Section<'_>, stack: &Stack, sink: &mut Sink<'_>) -> Option<Patina> {
     let (extent, transition) = (at.number("extent")?, at.number("transition")?);
     let (least, most) = (-transition, 1.0 + transition);
     // What is no number, or no softness, has been reported by itself.
@@ -72,8 +73,22 @@ fn patina(at: &Section<'_>, sink: &mut Sink<'_>) -> Option<Patina> {
         extent,
         transition,
         map: films::map(&at.section("map")?)?,
-        diffuse_albedo: at.rgb("diffuse_albedo").unwrap_or([0.0; 3]),
+        diffuse_albedo: scattered(at, stack, sink),
         base_alpha: at.number("base_alpha"),
         tarnish: at.rgb("tarnish").unwrap_or([1.0; 3]),
     })
+}
+
+/// The diffuse reflectance of a patina: stated, or a part of what the absorption of the first layer leaves over (Elek 2010, section 4.2).
+fn scattered(at: &Section<'_>, stack: &Stack, sink: &mut Sink<'_>) -> Rgb {
+    let Some(part) = at.number("diffuse_remainder") else { return at.rgb("diffuse_albedo").unwrap_or([0.0; 3]) };
+    if at.has("diffuse_albedo") {
+        let message = "a second diffuse reflectance: `diffuse_albedo` is given already";
+        let hint = "keep one of `diffuse_albedo` and `diffuse_remainder`, which takes its colour from the first layer's absorption";
+        sink.error(at.key_span("diffuse_remainder"), message, Some(hint.to_owned()));
+    }
+    match stack.layers.first().map(|layer| &layer.base) {
+        Some(Base::Dielectric { slab, .. }) => slab.optical_depth().map(|depth| part * libm::exp(-depth)),
+        _ => [part; 3],
+    }
 }

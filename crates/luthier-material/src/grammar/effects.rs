@@ -85,6 +85,11 @@ static PATINA: Table = Table {
             "0",
             "Diffuse reflectance that stands for scattering in the patina.",
         ),
+        Key::optional(
+            "diffuse_remainder",
+            Kind::Number(UNIT),
+            "In place of `diffuse_albedo`: this part of what the first layer's absorption leaves over, exp(-absorption_per_um thickness_um).",
+        ),
         Key::optional("base_alpha", Kind::Number(UNIT), "Slope parameter of the layer below, where patina has grown."),
         Key::with_default(
             "tarnish",
