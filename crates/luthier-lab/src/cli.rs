@@ -29,6 +29,8 @@ pub(crate) enum Verb {
     Figures(FiguresOptions),
     /// Compare every shader of every material with its f64 twin: a page in Markdown
     Parity(ParityOptions),
+    /// Compare shaders at places of surfaces that vary with their f64 twins: a page in Markdown
+    Places(PlacesOptions),
     /// Run every method on stacks where methods fail, and find the domain of each: a page in Markdown
     Stability(StabilityOptions),
     /// Compare every reflectance model with the layered-mc reference on materials: a page in Markdown
@@ -131,6 +133,20 @@ pub(crate) struct ParityOptions {
     pub(crate) destination: Destination,
     #[command(flatten)]
     pub(crate) format: Format,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Exits with 1 when an error exceeds what the page allows.\n\nExamples:\n  luthier-lab places -o docs/pages/places.md"
+)]
+pub(crate) struct PlacesOptions {
+    /// Pairs of directions at each place
+    #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub(crate) pairs: u32,
+    #[command(flatten)]
+    pub(crate) adapter: Adapter,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
 }
 
 #[derive(Debug, Args)]

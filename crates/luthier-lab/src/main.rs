@@ -9,6 +9,7 @@ mod judge;
 mod lobes;
 mod papers;
 mod parity;
+mod places;
 mod shapes;
 mod stability;
 mod varying;
@@ -25,6 +26,7 @@ fn main() -> ExitCode {
     let outcome = match &luthier_terminal::parse::<Cli>(&[]).verb {
         Verb::Figures(options) => figures::run(options),
         Verb::Parity(options) => parity::run(options),
+        Verb::Places(options) => places::run(options),
         Verb::Stability(options) => stability::run(options),
         Verb::Judge(options) => judge::run(options),
         Verb::Varying(options) => varying::run(options),

@@ -1,0 +1,294 @@
+//! Kinds of places, and what the shader and its twin are told of each.
+
+use std::f64::consts::TAU;
+
+use glam::{DVec2, DVec3};
+use luthier_layers::flakes::Flakes;
+use luthier_layers::heterogeneous::Map;
+use luthier_layers::patina::Patina;
+use luthier_layers::shaded::{Growth, Place};
+use luthier_layers::voronoi::Voronoi;
+use luthier_manifest::ShadingModel::{self, Belcour, Elek, GranierHeidrich, Microfacet, WeidlichWilkie, Yamaguchi};
+use luthier_manifest::{CellsRecord, ParticlesRecord, SurfaceEntry};
+use luthier_material::{FlakeSource, Material, parse};
+use luthier_optics::Rgb;
+
+use super::at_three_wavelengths;
+
+/// What varies over a surface, and the models that show it.
+pub(super) struct Case {
+    /// In words.
+    pub(super) name: &'static str,
+    /// The field of a place, the key of a file, or the function.
+    pub(super) key: &'static str,
+    pub(super) models: &'static [ShadingModel],
+    /// The layers and effects of each material.
+    files: &'static [&'static str],
+    spot: fn(&[Material], usize) -> Spot,
+}
+
+/// One place: the statements that make it on the device, and its twin.
+pub(super) struct Spot {
+    /// Statements that may set `place` and `material`.
+    pub(super) make: String,
+    /// The material's number.
+    pub(super) material: usize,
+    pub(super) place: Place,
+    /// Colour of the light, for fluorescent bases.
+    pub(super) light: Option<Rgb>,
+}
+
+const COATED: &str = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\nthickness_um = 20\nabsorption_per_um = [0.01, 0.02, 0.05]\n\
+    [[layer]]\ntype = \"conductor\"\nior = { n = [0.2, 0.92, 1.1], k = [3.9, 2.5, 2.4], wavelengths_nm = [645, 525, 445] }\nalpha = 0.25\n";
+const PAINTED: &str = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.15\nthickness_um = 20\nabsorption_per_um = [0.01, 0.02, 0.05]\n\
+    [[layer]]\ntype = \"diffuse\"\nalbedo = [0.8, 0.5, 0.2]\nsigma = 0.3\n";
+const LACQUERED: &str = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.15\nthickness_um = 20\nabsorption_per_um = [0.01, 0.02, 0.05]\n\
+    [[layer]]\ntype = \"diffuse\"\nalbedo = [0.8, 0.5, 0.2]\n";
+const FILMED: &str = "[[layer]]\ntype = \"thin-film\"\nior = 2.3\n\
+    thickness_nm = { min = 60, max = 240, extent_um = 20000, map = { noise = { seed = 3, frequency = 4, octaves = 3 } } }\n\
+    [[layer]]\ntype = \"conductor\"\nior = { n = 2.5, k = 3.1 }\nalpha = 0.2\n";
+const BUBBLE: &str = "[[layer]]\ntype = \"thin-film\"\nior = 1.4\n\
+    thickness_nm = { min = 200, max = 600, extent_um = 20000, map = { noise = { seed = 3, frequency = 4, octaves = 3 } } }\n\
+    [[layer]]\ntype = \"dielectric\"\nior = 1.6\nalpha = 0.2\n\
+    [[layer]]\ntype = \"diffuse\"\nalbedo = [0.8, 0.5, 0.2]\n";
+const GREEN: &str = "[effects.patina]\nextent = 0.45\ntransition = 0.65\nmap = { noise = { seed = 4, frequency = 3, octaves = 5 } }\n\
+    diffuse_albedo = [0.25, 0.55, 0.42]\nbase_alpha = 0.45\ntarnish = [0.8, 0.45, 0.25]\n";
+const FLAKES: &str =
+    "[effects.flakes]\ncells = { seed = 5, count = 64, spread_deg = 12 }\ntiling = 40\nscale = 0.8\nfade_start = 2\n";
+const GLITTER: &str = "[effects.glitter]\nseed = 9\nfrequency = 60\nfilled = 0.5\ntilt_deg = 20\n";
+const DYED: &str = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.2\n[[layer]]\ntype = \"diffuse\"\nreradiation = \"dye.csv\"\n";
+const DYE: &str = include_str!("../../maps/dye.csv");
+
+const PATH: &[ShadingModel] = &[Elek, WeidlichWilkie];
+const MAPPED: &[ShadingModel] = &[Elek, WeidlichWilkie, GranierHeidrich, Microfacet, Belcour, Yamaguchi];
+
+/// All kinds.
+pub(super) fn all() -> Vec<Case> {
+    let case = |name, key, models, files, spot| Case { name, key, models, files, spot };
+    vec![
+        case("normal map", "place.normal", MAPPED, &[COATED], normal),
+        case(
+            "roughness map",
+            "place.alpha_factor",
+            &[Elek, WeidlichWilkie, Microfacet, Belcour, Yamaguchi],
+            &[COATED],
+            roughness,
+        ),
+        case(
+            "thickness map of a slab",
+            "place.slab_factor",
+            &[Elek, WeidlichWilkie, Belcour, Yamaguchi],
+            &[LACQUERED],
+            slab,
+        ),
+        case("thickness map of a film", "place.film_factor", &[Elek, WeidlichWilkie, Microfacet], &[FILMED], film),
+        case("thickness map of a film, and its lean", "place.inner_normal", &[GranierHeidrich], &[BUBBLE], lean),
+        case("map of the base's colour", "place.base_color", PATH, &[PAINTED], color),
+        case("colour of the base under a film", "place.base_color", &[GranierHeidrich], &[BUBBLE], color),
+        case("flakes", "luthier_flake_normal", PATH, &[COATED, FLAKES], flakes),
+        case("flakes as a normal map", "luthier_flake_tilt", PATH, &[COATED, FLAKES], flake_map),
+        case("patina", "luthier_patina_amount", PATH, &[COATED, GREEN], patina),
+        case("glitter", "luthier_glitter_normal", &[Elek, WeidlichWilkie, Microfacet], &[COATED, GLITTER], glitter),
+        case("surface of several materials", "luthier_pick", MAPPED, &["", ""], pick),
+        case("fluorescent base", "luthier_eval_lit_at", PATH, &[DYED], dyed),
+    ]
+}
+
+impl Case {
+    /// The materials of the case, shaded by a model.
+    pub(super) fn materials(&self, model: ShadingModel) -> Vec<Material> {
+        let texts: Vec<String> = if self.key == "luthier_pick" {
+            vec![COATED.to_owned(), LACQUERED.to_owned()]
+        } else {
+            vec![self.files.concat()]
+        };
+        let material = |(n, text): (usize, &String)| {
+            let text = format!("schema = 1\nname = \"m{n}\"\n{text}");
+            let parsed = parse("m.toml", &text, &|_| Ok(DYE.to_owned()));
+            let mut material = parsed.unwrap_or_else(|errors| panic!("{}", errors[0].render(&text))).material;
+            concat!(env!("CARGO_MANIFEST_DIR"), "/maps/material.toml").clone_into(&mut material.source);
+            at_three_wavelengths(&mut material, model);
+            material
+        };
+        texts.iter().enumerate().map(material).collect()
+    }
+
+    /// The surfaces of the bake.
+    pub(super) fn surfaces(&self) -> Vec<SurfaceEntry> {
+        if self.key == "luthier_pick" { vec![surface()] } else { Vec::new() }
+    }
+
+    /// The n-th place.
+    pub(super) fn spot(&self, materials: &[Material], n: usize) -> Spot {
+        (self.spot)(materials, n)
+    }
+}
+
+/// A place where nothing varies.
+pub(super) fn plain(materials: &[Material]) -> Spot {
+    let light = materials[0].reradiation().map(|_| LIGHT);
+    // The shader's base is fluorescent at a place without textures, too.
+    Spot { light, ..at(String::new(), Place::NONE) }
+}
+
+fn at(make: String, place: Place) -> Spot {
+    Spot { make, material: 0, place, light: None }
+}
+
+/// The n-th number in 0..1 of a sequence that fills evenly, as f32 holds it.
+fn part(n: usize, step: f64) -> f64 {
+    f64::from(((n + 1) as f64 * step).fract() as f32)
+}
+
+const STEPS: [f64; 3] = [0.754_877_666, 0.569_840_291, 0.819_172_513];
+
+/// A normal up to 25 degrees off, unit to single precision, and its text.
+fn leaning(n: usize) -> (DVec3, String) {
+    let (theta, phi) = (0.44 * part(n, STEPS[0]), TAU * part(n, STEPS[1]));
+    let exact = DVec3::new(libm::sin(theta) * libm::cos(phi), libm::sin(theta) * libm::sin(phi), libm::cos(theta));
+    let [x, y, z] = exact.as_vec3().to_array();
+    (DVec3::from([x, y, z].map(f64::from)), format!("vec3<f32>({x:?}, {y:?}, {z:?})"))
+}
+
+/// A texture coordinate, and its text.
+fn coordinate(n: usize) -> (DVec2, String) {
+    let [u, v] = [STEPS[0], STEPS[1]].map(|step| part(n, step));
+    (DVec2::new(u, v), format!("vec2<f32>({:?}, {:?})", u as f32, v as f32))
+}
+
+fn factor(n: usize, from: f64, to: f64) -> f64 {
+    f64::from((from + (to - from) * part(n, STEPS[2])) as f32)
+}
+
+fn normal(_: &[Material], n: usize) -> Spot {
+    let (normal, text) = leaning(n);
+    let mut place = Place::NONE;
+    place.sample.normal = normal;
+    at(format!("place.normal = {text};"), place)
+}
+
+fn roughness(_: &[Material], n: usize) -> Spot {
+    let mut place = Place::NONE;
+    place.sample.alpha_factor = factor(n, 0.2, 2.5);
+    at(format!("place.alpha_factor = {:?};", place.sample.alpha_factor as f32), place)
+}
+
+fn slab(_: &[Material], n: usize) -> Spot {
+    let mut place = Place::NONE;
+    place.sample.slab_factor = factor(n, 0.0, 3.0);
+    at(format!("place.slab_factor = {:?};", place.sample.slab_factor as f32), place)
+}
+
+fn film(_: &[Material], n: usize) -> Spot {
+    let mut place = Place::NONE;
+    place.sample.film_factor = factor(n, 0.4, 1.6);
+    at(format!("place.film_factor = {:?};", place.sample.film_factor as f32), place)
+}
+
+fn lean(_: &[Material], n: usize) -> Spot {
+    let (normal, text) = leaning(n);
+    let mut place = Place::NONE;
+    place.sample.film_factor = factor(n, 0.5, 1.5);
+    place.under.inner_normal = normal;
+    at(format!("place.film_factor = {:?}; place.inner_normal = {text};", place.sample.film_factor as f32), place)
+}
+
+fn color(_: &[Material], n: usize) -> Spot {
+    let color = STEPS.map(|step| part(n, step));
+    let [r, g, b] = color.map(|c| c as f32);
+    let place = Place { base_color: Some(color), ..Place::NONE };
+    at(format!("place.base_color = vec3<f32>({r:?}, {g:?}, {b:?});"), place)
+}
+
+fn all_flakes(material: &Material) -> Flakes {
+    let flakes = material.effects.flakes.as_ref().expect("the file has flakes");
+    let FlakeSource::Cells { seed, count, spread } = flakes.source else { unreachable!("the file has cells") };
+    Flakes { seed, count, tiling: flakes.tiling, spread, scale: flakes.scale, fade_start: flakes.fade_start }
+}
+
+fn flakes(materials: &[Material], n: usize) -> Spot {
+    let flakes = all_flakes(&materials[0]);
+    let cells = flakes.tiling * f64::from(flakes.count);
+    // In the middle of a cell, whose edges single precision may miss.
+    let uv = (coordinate(n).0 * cells).floor() + 0.5;
+    let uv = (uv / cells).as_vec2();
+    let distance = factor(n, 0.0, 5.0);
+    let mut place = Place::NONE;
+    place.under.flake_normal = flakes.normal(uv.as_dvec2(), distance);
+    let make = format!(
+        "place.flake_normal = luthier_flake_normal(material, vec2<f32>({:?}, {:?}), {:?});",
+        uv.x, uv.y, distance as f32
+    );
+    at(make, place)
+}
+
+fn flake_map(materials: &[Material], n: usize) -> Spot {
+    let (flake, text) = leaning(n);
+    let distance = factor(n, 0.0, 5.0);
+    let mut place = Place::NONE;
+    place.under.flake_normal = all_flakes(&materials[0]).tilted(flake, distance);
+    at(format!("place.flake_normal = luthier_flake_tilt(material, {text}, {:?});", distance as f32), place)
+}
+
+fn patina(materials: &[Material], n: usize) -> Spot {
+    let patina = materials[0].effects.patina.as_ref().expect("the file has patina");
+    let value = part(n, STEPS[0]);
+    let (extent, transition, base_alpha) = (patina.extent, patina.transition, patina.base_alpha);
+    let grown = Patina { extent, transition, diffuse_albedo: 0.0, base_alpha, tarnish: 1.0 };
+    let (diffuse_albedo, tarnish) = (patina.diffuse_albedo, patina.tarnish);
+    let growth = Growth { amount: grown.amount(value), diffuse_albedo, base_alpha, tarnish };
+    let make = format!("place.patina = luthier_patina_amount(material, {:?});", value as f32);
+    at(make, Place { patina: Some(growth), ..Place::NONE })
+}
+
+fn glitter(materials: &[Material], n: usize) -> Spot {
+    let glitter = materials[0].effects.glitter.as_ref().expect("the file glitters");
+    let (uv, text) = coordinate(n);
+    let cells = Voronoi { seed: glitter.seed, frequency: glitter.frequency };
+    let under = Box::new(Map::Uniform(0));
+    let map = Map::Glitter { cells, stacks: vec![0], filled: glitter.filled, tilt: glitter.tilt, under };
+    let mut place = Place::NONE;
+    place.sample.normal = map.pick(uv).normal;
+    at(format!("place.normal = luthier_glitter_normal(material, {text});"), place)
+}
+
+/// Grains of two materials, and particles of the second on top.
+fn surface() -> SurfaceEntry {
+    let cells = |seed, frequency, materials: &[u32]| CellsRecord { seed, frequency, materials: materials.to_vec() };
+    SurfaceEntry {
+        name: "s".to_owned(),
+        source: "s.toml".to_owned(),
+        source_hash: String::new(),
+        cells: cells(11, 8.0, &[0, 1]),
+        glitter: Some(ParticlesRecord { cells: cells(12, 70.0, &[0]), filled: 0.4, tilt: 0.4 }),
+    }
+}
+
+fn pick(_: &[Material], n: usize) -> Spot {
+    let (uv, text) = coordinate(n);
+    let SurfaceEntry { cells, glitter, .. } = surface();
+    let voronoi = |cells: &CellsRecord| Voronoi { seed: cells.seed, frequency: cells.frequency };
+    let stacks = |cells: &CellsRecord| cells.materials.iter().map(|&number| number as usize).collect();
+    let under = Map::Cells { cells: voronoi(&cells), stacks: stacks(&cells) };
+    let map = match glitter {
+        Some(ParticlesRecord { cells, filled, tilt }) => {
+            Map::Glitter { cells: voronoi(&cells), stacks: stacks(&cells), filled, tilt, under: Box::new(under) }
+        }
+        None => under,
+    };
+    let found = map.pick(uv);
+    let mut place = Place::NONE;
+    place.sample.normal = found.normal;
+    let make = format!("let pick = luthier_pick(0u, {text}); place.normal = pick.normal; material = pick.material;");
+    Spot { material: found.stack, ..at(make, place) }
+}
+
+/// A light of a colour; one of equal energy at a place where nothing varies.
+const LIGHT: Rgb = [0.9, 0.5, 0.25];
+
+fn dyed(materials: &[Material], n: usize) -> Spot {
+    let (normal, text) = leaning(n);
+    let mut place = Place { reradiation: materials[0].reradiation(), ..Place::NONE };
+    place.sample.normal = normal;
+    Spot { light: Some(LIGHT), ..at(format!("place.normal = {text};"), place) }
+}
