@@ -117,7 +117,11 @@ fn of_internal_reflection(
     let layers = &material.stack.layers;
     let has_below = layers.len() > 1;
     let message = match has_below {
-        true => "the internal reflection `none` lets out what facets would reflect back: TODO".to_owned(),
+        true => {
+            "the internal reflection `none` lets out what facets would reflect back: over a mirror, coats of alpha 0.1 return 2.06 of the light, with \
+             `facets` 1.98 (index 1.5), and 4.33, with `facets` 3.58 (index 2.5)"
+                .to_owned()
+        }
         false => "the internal reflection `none` changes nothing here: no layer lies below the first".to_owned(),
     };
     let hint = "`facets`, the default, is the term t of the papers".to_owned();
