@@ -167,7 +167,7 @@ fn inside(studio: &Studio) -> Outcome<Made> {
     let mut materials = Vec::new();
     for index in indices {
         for internal in [InternalReflection::Facets, InternalReflection::None] {
-            let coat = coat(0.4, "[0.6, 0.35, 0.05]").replace("ior = 1.5", &format!("ior = {index}"));
+            let coat = coat(1.0, "[0.6, 0.35, 0.05]").replace("ior = 1.5", &format!("ior = {index}"));
             let coat = coat.replace("slope_deg = 1.5", &format!("slope_deg = {slope_deg}"));
             let metal = format!(
                 "[[layer]]\ntype = \"conductor\"\nior = \"ag\"\nslope_deg = {slope_deg}\ndistribution = \"beckmann\"\n"
@@ -177,7 +177,7 @@ fn inside(studio: &Studio) -> Outcome<Made> {
             materials.push(material);
         }
     }
-    let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, _| {})?;
+    let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| settings.exposure = 0.6)?;
     let mut shown: Labelled = Vec::new();
     for (index, pair) in indices.into_iter().zip(pictures.chunks_exact(2)) {
         let mean = |image: &Image| image.data.iter().map(|v| f64::from(*v)).sum::<f64>();

@@ -189,7 +189,10 @@ fn deviation(studio: &Studio) -> Outcome<Made> {
         coating("no-dispersion", [1.45; 3], 170.0, TILT_DEG),
         coating("rough", rising, 20.0, TILT_DEG),
     ];
-    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, |_, settings| look(settings))?;
+    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, |_, settings| {
+        look(settings);
+        settings.environment_samples = 512;
+    })?;
     let labels = ["parallel", "14 degrees", "one index", "90 and 20"];
     for (label, picture) in labels.iter().zip(&pictures) {
         made.measure(format!("{label}: spread of the channels"), spread(picture));

@@ -106,6 +106,19 @@ impl Film {
         superpose(reflected, transmitted, self.interference(cosines))
     }
 
+    /// [`Film::specular`] with lobes that carry their coefficients, as [`GranierHeidrich`] has them.
+    pub fn scaled_specular(&self, wi: DVec3, wo: DVec3) -> f64 {
+        let beams = self.beams(wi, wo);
+        let [r, t] = self.scaled(&beams);
+        superpose(r, t, self.interference(beams.cosines))
+    }
+
+    /// Both powers, each lobe times `(e + 1) / (2 pi)`, that of the transmitted beam over solid angles in the film.
+    fn scaled(&self, beams: &Beams) -> [f64; 2] {
+        let [outer, inner] = self.exponents.map(|e| (e + 1.0) / (2.0 * PI));
+        [outer * beams.reflected, inner * beams.compression * beams.transmitted]
+    }
+
     /// Eq. 13 with eq. 14, 15 and 17: the paper's eq. 18.
     pub fn diffuse(&self) -> f64 {
         self.diffuse_by(self.interference(2.0))
@@ -253,21 +266,23 @@ impl GranierHeidrich {
             Some(MonochromeBelow::Diffuse { albedo, .. }) => albedo,
             _ => 0.0,
         };
-        let scale = |e: f64| (e + 1.0) / (2.0 * PI);
         let (specular, diffuse) = match (self.film(stack), stack.layers.first()) {
             (Some(film), _) => {
-                let [e0, e1] = film.exponents;
-                let Beams { reflected, transmitted, cosines, compression } = film.beams(wi, wo);
-                let (r, t) = (scale(e0) * reflected, scale(e1) * compression * transmitted);
+                let beams = film.beams(wi, wo);
+                let [r, t] = film.scaled(&beams);
                 let interference = |cosines| film.waves_inside.map_or(0.0, |_| optics.interference(0, cosines));
-                (superpose(r, t, interference(cosines)), film.diffuse_by(interference(2.0)))
+                (superpose(r, t, interference(beams.cosines)), film.diffuse_by(interference(2.0)))
             }
             (None, Some(layer)) => {
                 let [e, _] = self.exponents_of(layer.surface.alpha_isotropic());
                 let f = optics.reflectance(0, 1.0);
                 let reflected = match layer.below {
                     MonochromeBelow::Diffuse { .. } => 0.0,
-                    _ => schlick(f, wi.z.min(1.0)) * scale(e) * lobe(DVec3::new(-wi.x, -wi.y, wi.z), wo, e),
+                    _ => {
+                        schlick(f, wi.z.min(1.0))
+                            * ((e + 1.0) / (2.0 * PI))
+                            * lobe(DVec3::new(-wi.x, -wi.y, wi.z), wo, e)
+                    }
                 };
                 (reflected, 1.0)
             }
