@@ -16,7 +16,6 @@ The file says how near the lobe is: the root of the mean square of these, and th
 not be those of the object: thicknesses repeat themselves, and an index and a weight may stand for each other.
 
 Examples:
-  luthier eval gold.toml --model layered-mc --directions pairs.csv --three-wavelengths > lobe.csv
   luthier fit lobe.csv -o fitted.toml
   luthier fit lobe.csv --film 50,800 --lean -o fitted.toml
   luthier fit - --json";
