@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Errors and costs of the maskings and reflectances that a material file may choose, as a page in Markdown.
+"""Errors and costs of the maskings, reflectances and internal reflections that a material file may choose, as a page in Markdown.
 
     python3 scripts/choices.py [PROGRAM] >docs/pages/choices.md
 """
@@ -70,7 +70,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         with open(os.path.join(folder, "pairs.csv"), "w") as file:
             file.write("\n".join(",".join(map(str, pair)) for pair in pairs()))
-        print("# Maskings and reflectances of files\n")
+        print("# Maskings, reflectances and internal reflections of files\n")
         print(
             "`scripts/choices.py` made this page. [materials.md](../materials.md#parts-of-facet-models) says what the choices are. An error is the largest difference of"
             " f cos theta_i to the default, over 2,000 pairs of directions up to 88 degrees, half of them within 5 degrees of the mirrored one; it is relative to the brightest"
@@ -119,6 +119,26 @@ def main():
             told = run(folder, metal("cu", 0.5), bake, "eval", "--model", "microfacet", "--furnace", "--angles", ",".join(map(str, ANGLES)))
             shares = [entry["radiance"] for entry in told["furnace"]]
             print(f"| `{choice}` | {' | '.join(f'{share:.3f}' for share in shares)} | `{bar(shares[-1], 1)}` |")
+        inside(folder)
+
+
+def inside(folder):
+    """Light with and without the term of internal reflection."""
+    print(
+        "\n## Internal reflections\n\nErrors of `none` against `facets`, in the model `elek`, of a clear coat of alpha 0.1 over copper of alpha 0.25; and shares of the light from everywhere"
+        " that the coat over a mirror of alpha 0.1 returns, by `luthier eval FILE --model elek --furnace --angles 0,45,75`. Both are too bright, because the model lacks 1 / n^2:\n"
+    )
+    print("| index of the coat | error | `facets` at 0, 45, 75 degrees | `none` | `none` at 0 as a bar |\n|--:|--:|---|---|---|")
+    for index in (1.1, 1.3, 1.5, 2.0, 2.5):
+        coat = layer("dielectric", index, 0.1)
+        choices = [f'internal_reflection = "{choice}"' for choice in ("facets", "none")]
+        expected, found = (values(folder, coat + metal("cu"), "elek", choice) for choice in choices)
+        shares = []
+        for choice in choices:
+            told = run(folder, coat + metal("cu", 0.1), f'model = "elek"\n{choice}', "eval", "--model", "elek", "--furnace", "--angles", "0,45,75")
+            shares.append([entry["radiance"] for entry in told["furnace"]])
+        row = " | ".join(", ".join(f"{share:.3f}" for share in choice) for choice in shares)
+        print(f"| {index} | {error(found, expected):.3f} | {row} | `{bar(shares[1][0], 4.5)}` |")
 
 
 main()

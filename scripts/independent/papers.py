@@ -272,7 +272,7 @@ def oren_nayar(rho, sigma):
     return value
 
 
-def layers(surfaces, base, transmit="half", clamp=False):
+def layers(surfaces, base, transmit="half", clamp=False, inside=True):
     """The recursion of Weidlich and Wilkie, eq. 3.1 to 3.3, in Elek's form: surfaces are (eta, alpha, optical depth, distribution, index below over vacuum)."""
 
     def value(i, o):
@@ -289,7 +289,7 @@ def layers(surfaces, base, transmit="half", clamp=False):
             ti, to = refracted(wi, eta), refracted(wo, eta)
             if transmit == "half":
                 t = 1 - f
-                through *= t * ((1 - g) + t * g)
+                through *= t * ((1 - g) + t * g if inside else 1)
             else:
                 through *= (1 - fresnel(index, wi[2], above)) * (1 - fresnel(index, wo[2], above))
             through *= math.exp(-depth * (1 / ti[2] + 1 / to[2]))
@@ -308,23 +308,25 @@ def phong_of_metal(n, alpha):
     return lambda i, o: f0_of(n) * (e + 1) / (2 * PI) * max(0.0, dot((-i[0], -i[1], i[2]), o)) ** e
 
 
-def granier(n, thickness, alpha, rho, lean=(0.0, 0.0)):
+def granier(n, thickness, alpha, rho, lean=(0.0, 0.0), exponents=None, weights=(1.0, 1.0)):
     """Eq. 3 to 18 of Granier and Heidrich, each lobe times (e + 1) / (2 pi), that of the film over solid angles in it; no thickness, no interference."""
-    e, f = 2 / alpha**2 - 2, f0_of(n)
+    e0, e1 = exponents or (2 / alpha**2 - 2,) * 2
+    f = f0_of(n)
     inner = direction(*lean)
 
     def value(i, o):
         fi = schlick(f, i[2])
-        r = (e + 1) / (2 * PI) * fi * max(0.0, dot((-i[0], -i[1], i[2]), o)) ** e
+        r = (e0 + 1) / (2 * PI) * fi * max(0.0, dot((-i[0], -i[1], i[2]), o)) ** e0
         ti, to = refracted(i, n), refracted(o, n)
         along = dot(ti, inner)
         mirrored = tuple(2 * along * m - x for m, x in zip(inner, ti))
-        t = (1 - fi) * (1 - schlick(f, to[2])) * max(0.0, dot(mirrored, to)) ** e
-        t *= (e + 1) / (2 * PI) * i[2] / (n * n * ti[2])
+        t = (1 - fi) * (1 - schlick(f, to[2])) * max(0.0, dot(mirrored, to)) ** e1
+        t *= (e1 + 1) / (2 * PI) * i[2] / (n * n * ti[2])
         rd = (21 * (n * n + 1) - 38 * n) / (21 * (n + 1) ** 2)
         phase = lambda cosines: 0 if thickness is None else 2 * math.cos(2 * PI * n * thickness / NM * cosines)
         diffuse = max(0.0, 1 + phase(2) * math.sqrt(rd * (1 - rd)))
-        return max(0.0, r + t + phase(ti[2] + to[2]) * math.sqrt(r * t)) + rho * diffuse / PI * i[2]
+        specular = max(0.0, r + t + phase(ti[2] + to[2]) * math.sqrt(r * t))
+        return weights[0] * specular + weights[1] * rho * diffuse / PI * i[2]
 
     return value
 
@@ -502,6 +504,8 @@ def compare():
         values(paper, f"{model}: tinted coat on metal", where, two, model, layers(below_two, none, clamp=clamp))
         values(paper, f"{model}: two coats on metal", where, three, model, layers(below_three, none, clamp=clamp))
         values(paper, f"{model}: tinted coat on a diffuse base", where, on_matte, model, layers(below_matte, oren_nayar(0.6, 0.5), clamp=clamp))
+        whole = f'{two}[bake]\nmodel = "{model}"\ninternal_reflection = "none"\n'
+        values(paper, f"{model}: no internal reflection", "eq. 4, t = 1" if clamp else "eq. 3.3, t = 1", whole, model, layers(below_two, none, clamp=clamp, inside=False))
     values(COURSE, "transmission at the directions' angles", "eq. 3.2", three, "weidlich-wilkie-directions", layers(below_three, none, "directions"))
 
     # Granier and Heidrich.
@@ -510,6 +514,9 @@ def compare():
     values(GRANIER, "inner boundary leans", "eq. 10", thin, "granier-heidrich", granier(*soap, a, 0, (8, 30)), extra=("--inner-normal", "8,30"))
     slab = coat(COAT, rough) + matte(0.6)
     values(GRANIER, "thick layer on a diffuse base", "eq. 13 to 18", slab, "granier-heidrich", granier(COAT, None, a, 0.6))
+    own = film(*soap) + coat(1.8, "exponents = [90, 170]\n") + matte(0.6)
+    own += '[bake]\nmodel = "granier-heidrich"\n[bake.granier-heidrich]\nspecular_weight = 0.9\ndiffuse_weight = 0.5\ninner_tilt_deg = 14\ninner_azimuth_deg = 30\n'
+    values(GRANIER, "granier-heidrich: exponents, weights and lean", "eq. 6 and 10; section 7", own, "granier-heidrich", granier(*soap, a, 0.6, (14, 30), (90, 170), (0.9, 0.5)))
 
     # Albedos of smooth stacks.
     clear, mirror = coat(COAT, smooth) + matte(0.5), coat(COAT, smooth, DEPTH) + metal(smooth)

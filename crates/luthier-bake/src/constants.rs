@@ -26,6 +26,7 @@ pub(crate) fn constants(
         internal_reflectance,
         upward_loss,
         lobes,
+        beams: material.beams().filter(|_| material.model().has_beams()),
         flakes: flakes(&material.effects),
         patina: bare.and_then(|bare| patina(&material.effects, bare)),
         glitter: glitter(&material.effects),

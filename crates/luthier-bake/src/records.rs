@@ -2,7 +2,7 @@
 
 use luthier_layers::domain::INDEX_MAX;
 use luthier_layers::elek::{self, ALPHA_MIN, Below};
-use luthier_manifest::{LayerKind, LayerRecord, Masking, Reflectance, ReflectanceCurve};
+use luthier_manifest::{InternalReflection, LayerKind, LayerRecord, Masking, Reflectance, ReflectanceCurve};
 use luthier_material::Material;
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
@@ -29,6 +29,7 @@ const DEPTH_MAX: f64 = 1e4;
 pub(crate) struct Parts {
     pub(crate) masking: Masking,
     pub(crate) reflectance: Reflectance,
+    pub(crate) internal_reflection: InternalReflection,
     pub(crate) color: Color,
 }
 
@@ -39,6 +40,10 @@ impl Parts {
         Self {
             masking: bake.masking.filter(|_| model.has_masking()).unwrap_or_default(),
             reflectance: bake.reflectance.filter(|_| model.has_reflectance()).unwrap_or_default(),
+            internal_reflection: bake
+                .internal_reflection
+                .filter(|_| model.has_internal_reflection())
+                .unwrap_or_default(),
             color: color(material),
         }
     }
@@ -46,6 +51,7 @@ impl Parts {
     /// Writes down what the shader of an interface needs of them.
     fn write(&self, interface: &Interface, record: &mut LayerRecord) {
         (record.masking, record.reflectance) = (self.masking, self.reflectance);
+        record.internal_reflection = self.internal_reflection;
         let curves = match self.reflectance {
             Reflectance::Table | Reflectance::Exact => return,
             Reflectance::Approximate => interface.sampled(&self.color).schlick(),

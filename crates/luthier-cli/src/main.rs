@@ -62,6 +62,7 @@ fn main() -> ExitCode {
         Verb::Environment(options) => verb::environment::run(options),
         Verb::Models(options) => verb::models::run(options),
         Verb::Eval(options) => verb::eval::run(options),
+        Verb::Fit(options) => verb::fit::run(options),
         Verb::Ior(options) => verb::ior::run(options),
         Verb::Schema { scene, surface } => verb::schema::run(*scene, *surface),
         Verb::Completions(options) => verb::completions::run(options),

@@ -16,6 +16,7 @@ mod package;
 mod publish;
 
 #[cfg(feature = "bake")]
+mod beams;
 mod doubts;
 #[cfg(feature = "bake")]
 mod make;

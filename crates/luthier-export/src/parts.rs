@@ -1,10 +1,12 @@
 //! Doubts about the parts of a model that a material chooses: those that its model does not have, and errors of approximations.
 
-use luthier_manifest::{ColorMode, Masking, Reflectance, ShadingModel};
+use luthier_manifest::{ColorMode, InternalReflection, Masking, Reflectance, ShadingModel};
 use luthier_material::{Diagnostic, Material, Severity};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::schlick::schlick;
+
+use crate::beams::{self, of_beams};
 
 /// Errors for parts that a model does not have, and for films of which a curve knows nothing; warnings of what the others do. `asked` is the
 /// model of the command line.
@@ -14,6 +16,9 @@ pub fn of_parts(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnos
     doubts.extend(material.bake.masking.and_then(|masking| of_masking(material, model, masking)));
     let chosen = material.bake.reflectance.filter(|reflectance| *reflectance != Reflectance::Table);
     doubts.extend(chosen.and_then(|reflectance| of_reflectance(material, model, reflectance)));
+    doubts.extend(of_beams(material, model));
+    let internal = material.bake.internal_reflection;
+    doubts.extend(internal.and_then(|internal| of_internal_reflection(material, model, internal)));
     doubts
 }
 
@@ -25,14 +30,16 @@ pub fn of_scene(material: &Material) -> Vec<Diagnostic> {
     let keys = [
         ("masking", material.bake.masking.is_some()),
         ("reflectance", material.bake.reflectance.is_some_and(|reflectance| reflectance != Reflectance::Table)),
+        ("internal_reflection", material.bake.internal_reflection.is_some()),
     ];
-    let chosen = keys.into_iter().filter(|(_, is_chosen)| *is_chosen);
-    let refusal = |(key, _): (&str, bool)| {
+    let parts = keys.into_iter().filter(|(_, is_chosen)| *is_chosen).map(|(key, _)| format!("bake.{key}"));
+    let refusal = |place: String| {
+        let key = place.rsplit_once('.').map_or(place.as_str(), |(_, key)| key);
         let message = format!("a scene chooses the models of its materials, and `{key}` is a part of some models");
         let hint = "leave it out, or bake the material by itself".to_owned();
-        material.diagnostic(Severity::Error, &format!("bake.{key}"), message, Some(hint))
+        material.diagnostic(Severity::Error, &place, message, Some(hint))
     };
-    chosen.map(refusal).collect()
+    parts.chain(beams::keys(material).map(str::to_owned)).map(refusal).collect()
 }
 
 fn of_masking(material: &Material, model: ShadingModel, masking: Masking) -> Option<Diagnostic> {
@@ -90,6 +97,34 @@ fn of_reflectance(material: &Material, model: ShadingModel, reflectance: Reflect
         layer + 1
     );
     let hint = "`table`, the default, and `exact` have the reflectance itself".to_owned();
+    Some(material.diagnostic(Severity::Warning, key, message, Some(hint)))
+}
+
+fn of_internal_reflection(
+    material: &Material,
+    model: ShadingModel,
+    internal: InternalReflection,
+) -> Option<Diagnostic> {
+    let (name, key) = (internal.name(), "bake.internal_reflection");
+    if !model.has_internal_reflection() {
+        let message = format!("the model `{model}` of this material has no internal reflection `{name}`");
+        let hint = "leave it out, or write `[bake] model = \"elek\"` or `\"weidlich-wilkie\"`".to_owned();
+        return Some(material.diagnostic(Severity::Error, key, message, Some(hint)));
+    }
+    if internal == InternalReflection::Facets {
+        return None;
+    }
+    let layers = &material.stack.layers;
+    let has_below = layers.len() > 1;
+    let message = match has_below {
+        true => {
+            "the internal reflection `none` lets out what facets would reflect back: over a mirror, coats of alpha 0.1 return 2.06 of the light, with \
+             `facets` 1.98 (index 1.5), and 4.33, with `facets` 3.58 (index 2.5)"
+                .to_owned()
+        }
+        false => "the internal reflection `none` changes nothing here: no layer lies below the first".to_owned(),
+    };
+    let hint = "`facets`, the default, is the term t of the papers".to_owned();
     Some(material.diagnostic(Severity::Warning, key, message, Some(hint)))
 }
 

@@ -184,6 +184,7 @@ tests_of_targets!(
     index,
     axes,
     directions,
+    lobe,
     reradiation,
     lock,
     manifest,

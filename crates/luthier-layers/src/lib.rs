@@ -11,6 +11,7 @@
 //! | [`lobes`] | the stack as it was simulated, in a few lobes |
 //! | `references` | [`random_walk`] for one rough interface, [`layered_mc`] for a rough stack, [`closed_form`] for a smooth one |
 //! | `noise` | gradient noise and cells |
+//! | `beam_fit` | with the feature `fit`: numbers of Granier and Heidrich's model for a lobe that values give |
 //!
 //! A [`model::Model`] evaluates a [`monochrome::Monochrome`] stack at one wavelength; [`registry`] lists all by name.
 //!
@@ -29,6 +30,8 @@ mod references;
 mod twins;
 
 pub mod angles;
+#[cfg(feature = "fit")]
+pub mod beam_fit;
 pub mod directional_albedo;
 pub mod domain;
 pub mod frame;

@@ -37,7 +37,7 @@ pub fn models() -> Vec<Box<dyn Model>> {
         Box::new(WeidlichWilkie { transmission: Transmission::Directions, ..WeidlichWilkie::default() }),
         Box::new(WeidlichWilkie { refraction: Refraction::Facet, ..WeidlichWilkie::default() }),
         Box::new(WeidlichWilkieCorrected),
-        Box::new(Elek),
+        Box::new(Elek::default()),
         Box::new(GranierHeidrich::default()),
         Box::new(Belcour::new(Follow::Eye)),
         Box::new(Belcour::new(Follow::HalfVector)),

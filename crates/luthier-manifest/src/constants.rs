@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_1_PI;
 
 use serde::{Deserialize, Serialize};
 
-use crate::LayerRecord;
+use crate::{BeamsRecord, LayerRecord};
 
 /// Constants of a whole surface that a shader needs beside its layers; those that a model does not use are zero.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -23,6 +23,9 @@ pub struct MaterialConstants {
     /// Lobes, for the model that reads these.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lobes: Option<LobesRecord>,
+    /// Numbers of the model `granier-heidrich`, where its material has some of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub beams: Option<BeamsRecord>,
     /// Flakes in the coat.
     pub flakes: Option<FlakesRecord>,
     /// Patina: the first layer has grown over the others in places.
@@ -255,8 +258,8 @@ impl MaterialConstants {
     ///
     /// | header word | x, y, z, w |
     /// |---|---|
-    /// | 1 | Phong's diffuse coefficient RGB, exponent; of lobes tiles beyond the first over `alpha_factor`, those over `slab_factor` or `film_factor`, least factor on slopes, share of the cosine of the view in the axis of the rows |
-    /// | 2 | Phong's specular coefficient RGB; of lobes k, 4 w^2, and factor and offset of the root that is the cosine inside |
+    /// | 1 | Phong's diffuse coefficient RGB, exponent; of lobes tiles beyond the first over `alpha_factor`, those over `slab_factor` or `film_factor`, least factor on slopes, share of the cosine of the view in the axis of the rows; of beams the ratio of the slope parameters, the weights of the specular and the diffuse part, 0 |
+    /// | 2 | Phong's specular coefficient RGB; of lobes k, 4 w^2, and factor and offset of the root that is the cosine inside; of beams the normal of the inner boundary, 1 |
     /// | 3 | internal reflectance RGB, upward loss; of lobes the squared index less 1, a, b, and 1 over pi and the integral of S |
     /// | 4 | flakes: low and high 16 bits of the seed, cells, tiling; all 0 without flakes |
     /// | 5 | flakes: spread, scale, fade start, 0 |
@@ -276,6 +279,9 @@ impl MaterialConstants {
             words[0] = with(lobes.varying(), lobes.critical_plain_share);
             words[1] = lobes.inside().map(|x| x as f32);
             words[2] = with([(index - 1.0) * (index + 1.0), a, b], FRAC_1_PI / integral);
+        }
+        if let Some(beams) = &self.beams {
+            words[..2].copy_from_slice(&beams.words());
         }
         let half = |bits: u32| (bits & 0xffff) as f32;
         if let Some(f) = &self.flakes {
@@ -328,6 +334,7 @@ mod tests {
             internal_reflectance: [27.0, 28.0, 29.0],
             upward_loss: 30.0,
             lobes: None,
+            beams: None,
             flakes: Some(flakes),
             patina: Some(patina),
             glitter: Some(glitter),
@@ -347,6 +354,14 @@ mod tests {
                 [0.5, 0.0, 0.0, 0.0],
             ]
         );
+        let beams = BeamsRecord {
+            inner_alpha_ratio: 0.5,
+            specular_weight: 0.75,
+            diffuse_weight: 0.25,
+            inner_normal: [0.0, 0.6, 0.8],
+        };
+        let of_beams = MaterialConstants { beams: Some(beams), ..constants.clone() }.words();
+        assert_eq!(of_beams[..3], [[0.5, 0.75, 0.25, 0.0], [0.0, 0.6, 0.8, 1.0], [27.0, 28.0, 29.0, 30.0]]);
         assert_eq!(MaterialConstants::default().words(), [[0.0; 4]; MaterialConstants::WORDS]);
         let lobes = LobesRecord {
             index: 1.25,

@@ -6,6 +6,7 @@
 //!
 //! Every crate that reads or writes a bake says these things with the types of this crate.
 
+mod beams;
 mod choice;
 mod constants;
 mod distribution;
@@ -25,6 +26,7 @@ mod surface;
 mod target;
 mod tiles;
 
+pub use beams::BeamsRecord;
 pub use choice::{MaterialChoice, SceneBudget, SceneCandidate, SceneChoice, SceneDirection, SceneError, Verdict};
 pub use constants::{
     AxesRecord, BaseRecord, FlakesRecord, GlitterRecord, LobesError, LobesRecord, MaterialConstants, PatinaRecord,
@@ -42,7 +44,7 @@ pub use manifest::{
     TableEntry,
 };
 pub use model::ShadingModel;
-pub use parts::{Masking, Reflectance, ReflectanceCurve};
+pub use parts::{InternalReflection, Masking, Reflectance, ReflectanceCurve};
 pub use record::{LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, material_buffer};
 pub use search::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR, Search};
 pub use surface::{CellsRecord, ParticlesRecord, SurfaceEntry};

@@ -4,8 +4,8 @@ use luthier_lut::{AtlasLayout, TableKind, TexelFormat, Tile};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Form, Functions, LayerKind, LayerRecord, ManifestError, Masking, MaterialConstants, MaterialTexture, Reflectance,
-    SceneChoice, Search, ShadingModel, SurfaceEntry, Target,
+    Form, Functions, InternalReflection, LayerKind, LayerRecord, ManifestError, Masking, MaterialConstants,
+    MaterialTexture, Reflectance, SceneChoice, Search, ShadingModel, SurfaceEntry, Target,
 };
 
 /// Version of the manifest's shape. A reader refuses any other.
@@ -183,6 +183,12 @@ impl MaterialEntry {
     pub fn parts(&self) -> (Masking, Reflectance) {
         let first = self.layers.iter().find(|layer| layer.kind != LayerKind::Diffuse);
         first.map(|layer| (layer.masking, layer.reflectance)).unwrap_or_default()
+    }
+
+    /// Internal reflection of the model: that of its first interface.
+    pub fn internal_reflection(&self) -> InternalReflection {
+        let first = self.layers.iter().find(|layer| layer.kind != LayerKind::Diffuse);
+        first.map(|layer| layer.internal_reflection).unwrap_or_default()
     }
 
     /// The layers, then the bare layer of a patina: what the material buffer holds.

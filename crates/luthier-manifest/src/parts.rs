@@ -1,4 +1,5 @@
-//! Parts of a facet model that a material may choose: the masking of the model `microfacet`, and how reflectances are computed.
+//! Parts of a facet model that a material may choose: the masking of the model `microfacet`, how reflectances are computed, and the term of
+//! internal reflection.
 
 use serde::{Deserialize, Serialize};
 
@@ -39,6 +40,19 @@ luthier_lut::named! {
         Approximate = "approximate",
         /// Schlick's form less the correction `a cos (1 - cos)^alpha` of Lazanyi and Szirmay-Kalos 2005.
         Lazanyi = "lazanyi",
+    }
+}
+
+luthier_lut::named! {
+    /// Light from below that an interface lets out, of the models `elek` and `weidlich-wilkie` (the term t of Elek 2010, eq. 4).
+    #[derive(Default, Serialize, Deserialize)]
+    #[serde(into = "&'static str", try_from = "String")]
+    pub enum InternalReflection("internal reflection") {
+        /// `t = (1 - G) + T_21 G`: facets reflect a part back, and let out what they hide from each other (the course, eq. 3.3).
+        #[default]
+        Facets = "facets",
+        /// `t = 1`: all of it comes out (the right half of figure 3.7 of the course).
+        None = "none",
     }
 }
 
@@ -85,6 +99,21 @@ impl Reflectance {
     }
 }
 
+impl InternalReflection {
+    /// Formula and source, for headers and messages.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Facets => "t = (1 - G) + T_21 G (Elek 2010, eq. 4)",
+            Self::None => "t = 1, none",
+        }
+    }
+
+    /// Its number in the material buffer.
+    pub fn number(self) -> u32 {
+        self as u32
+    }
+}
+
 /// Reflectance of an interface as a curve, RGB: `f0 + (1 - f0) (1 - c)^5 - weight c (1 - c)^exponent`, c the cosine.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct ReflectanceCurve {
@@ -106,6 +135,16 @@ impl ShadingModel {
     pub fn has_reflectance(self) -> bool {
         matches!(self, Self::Elek | Self::WeidlichWilkie | Self::Microfacet)
     }
+
+    /// Whether a material may give exponents, weights and a lean of the inner boundary.
+    pub fn has_beams(self) -> bool {
+        self == Self::GranierHeidrich
+    }
+
+    /// Whether a material may leave out the term of internal reflection, `t = (1 - G) + T_21 G` (Elek 2010, eq. 4; the course, eq. 3.3).
+    pub fn has_internal_reflection(self) -> bool {
+        matches!(self, Self::Elek | Self::WeidlichWilkie)
+    }
 }
 
 #[cfg(test)]
@@ -116,6 +155,7 @@ mod tests {
     fn defaults_are_the_first_and_have_the_number_0() {
         assert_eq!((Masking::default(), Masking::default().number()), (Masking::ALL[0], 0));
         assert_eq!((Reflectance::default(), Reflectance::default().number()), (Reflectance::ALL[0], 0));
+        assert_eq!(InternalReflection::default().number(), 0);
         // Two bits and three of a word: see `LayerRecord::words`.
         assert!(Reflectance::ALL.iter().all(|reflectance| reflectance.number() < 4));
         assert!(Masking::ALL.iter().all(|masking| masking.number() < 8));

@@ -6,7 +6,7 @@ use luthier_lut::{TableKind, refracted_cosine};
 use luthier_optics::stack::Distribution;
 use serde::{Deserialize, Serialize};
 
-use crate::{Masking, MaterialConstants, MaterialEntry, Reflectance, ReflectanceCurve, Tiles};
+use crate::{InternalReflection, Masking, MaterialConstants, MaterialEntry, Reflectance, ReflectanceCurve, Tiles};
 
 /// `vec4` words of a material's header in the material buffer.
 pub const MATERIAL_WORDS: usize = 11;
@@ -97,6 +97,9 @@ pub struct LayerRecord {
     /// Curve that stands for the reflectance, where it is an approximation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub curve: Option<ReflectanceCurve>,
+    /// Light from below that the interface lets out, of the models `elek` and `weidlich-wilkie`; absent where it is the default.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub internal_reflection: InternalReflection,
     /// The tiles that serve the layer: fields `fresnel_tile` and so on.
     #[serde(flatten)]
     pub tiles: Tiles,
@@ -132,7 +135,7 @@ impl LayerRecord {
     /// | 7 | film_ior_k RGB, squared cotangent of the critical angle; of a curve its weights RGB |
     /// | 8 | film thickness in waves RGB, escape tile; of a curve its exponents RGB |
     /// | 9 | alpha_x, alpha_y, cosine and sine of the rotation |
-    /// | 10 | kind (0 dielectric, 1 conductor, 2 diffuse) plus 4 times the number of the reflectance (0 table, 1 exact, 2 approximate, 3 lazanyi) and 16 times that of the masking, alpha, eta, sigma |
+    /// | 10 | kind (0 dielectric, 1 conductor, 2 diffuse) plus 4 times the number of the reflectance (0 table, 1 exact, 2 approximate, 3 lazanyi) and 16 times that of the masking and 128 times that of the internal reflection (0 facets, 1 none), alpha, eta, sigma |
     ///
     /// Masking is numbered 0 smith, 1 smith-separable, 2 schlick-smith, 3 v-cavity, 4 kelemen, 5 implicit. An interface with a curve ([`ReflectanceCurve`])
     /// has no film.
@@ -148,7 +151,8 @@ impl LayerRecord {
             LayerKind::Conductor => 1,
             LayerKind::Diffuse => 2,
         };
-        let parts = 4 * self.reflectance.number() + 16 * self.masking.number();
+        let parts =
+            4 * self.reflectance.number() + 16 * self.masking.number() + 128 * self.internal_reflection.number();
         let [first, second, third] = match self.curve {
             Some(ReflectanceCurve { f0, weight, exponent }) => [f0, weight, exponent],
             None => [self.film_ior_n, self.film_ior_k, self.film_thickness_waves],
@@ -261,6 +265,7 @@ mod tests {
             masking: Masking::Smith,
             reflectance: Reflectance::Table,
             curve: None,
+            internal_reflection: InternalReflection::Facets,
             tiles: Tiles::default().with([
                 (TableKind::Fresnel, Some(27)),
                 (TableKind::Distribution, Some(28)),
@@ -311,7 +316,7 @@ mod tests {
         assert_eq!(schlick.words()[4..6], [[0.25, 0.5, 0.75, 25.0], [-1.0, -1.0, -1.0, 26.0]]);
     }
 
-    /// By hand: a metal is 1, Lazanyi's reflectance 3, V-cavities 3.
+    /// By hand: a metal is 1, Lazanyi's reflectance 3, V-cavities 3, no internal reflection 128.
     #[test]
     fn chosen_parts_lie_where_the_documentation_says() {
         let plain = numbered(LayerKind::Conductor);
@@ -320,16 +325,20 @@ mod tests {
             masking: Masking::VCavity,
             reflectance: Reflectance::Lazanyi,
             curve: Some(curve),
+            internal_reflection: InternalReflection::None,
             ..plain.clone()
         };
         let words = chosen.words();
         assert_eq!(words[6..9], [[0.1, 0.2, 0.3, 33.0], [1.1, 1.2, 1.3, 35.0], [6.1, 6.2, 6.3, 34.0]]);
-        assert_eq!(words[10][0].to_bits() & 0x7f_ffff, 1 + 4 * 3 + 16 * 3);
+        assert_eq!(words[10][0].to_bits() & 0x7f_ffff, 1 + 4 * 3 + 16 * 3 + 128);
         let json = serde_json::to_value(&chosen).unwrap();
         assert_eq!((&json["masking"], &json["reflectance"]), (&"v-cavity".into(), &"lazanyi".into()));
         assert_eq!(serde_json::from_value::<LayerRecord>(json).unwrap(), chosen);
         let json = serde_json::to_value(plain).unwrap();
-        assert!(["masking", "reflectance", "curve"].iter().all(|key| json.get(key).is_none()), "{json}");
+        assert!(
+            ["masking", "reflectance", "curve", "internal_reflection"].iter().all(|key| json.get(key).is_none()),
+            "{json}"
+        );
     }
 
     #[test]

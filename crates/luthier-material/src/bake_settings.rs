@@ -1,7 +1,7 @@
 //! Settings that a material file asks of its tables.
 
 use luthier_lut::{TableKind, TexelFormat, named};
-use luthier_manifest::{ColorMode, Masking, Reflectance, ShadingModel};
+use luthier_manifest::{ColorMode, InternalReflection, Masking, Reflectance, ShadingModel};
 
 /// The three wavelengths of a material that names none, as R, G and B (Granier and Heidrich 2003).
 pub const DEFAULT_WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
@@ -49,6 +49,10 @@ pub struct BakeSettings {
     pub masking: Option<Masking>,
     /// Computation of reflectances, of models that have a choice.
     pub reflectance: Option<Reflectance>,
+    /// Internal reflection of the models `elek` and `weidlich-wilkie`.
+    pub internal_reflection: Option<InternalReflection>,
+    /// Numbers of the model `granier-heidrich`.
+    pub beams: Option<Beams>,
     /// Kinds of tables to bake beside those that the shader reads.
     pub tables: Vec<TableKind>,
     /// Spectral or at three wavelengths.
@@ -65,6 +69,25 @@ pub struct BakeSettings {
     pub phase: RowSettings,
     /// Thickness textures of films; square.
     pub thickness: RowSettings,
+}
+
+/// Numbers of the model `granier-heidrich` that are none of a layer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Beams {
+    /// Weight of the specular part.
+    pub specular_weight: f64,
+    /// Weight of the diffuse part, beside the albedo of the base.
+    pub diffuse_weight: f64,
+    /// Lean of the inner boundary, in radians.
+    pub inner_tilt: f64,
+    /// Azimuth to which its normal leans, in radians.
+    pub inner_azimuth: f64,
+}
+
+impl Default for Beams {
+    fn default() -> Self {
+        Self { specular_weight: 1.0, diffuse_weight: 1.0, inner_tilt: 0.0, inner_azimuth: 0.0 }
+    }
 }
 
 impl BakeSettings {

@@ -32,8 +32,8 @@ mod suggest;
 mod surface;
 
 pub use bake_settings::{
-    AlphaMapping, BakeSettings, DEFAULT_WAVELENGTHS_NM, DistributionMapping, DistributionSettings, FresnelMapping,
-    FresnelSettings, GridSettings, RowSettings,
+    AlphaMapping, BakeSettings, Beams, DEFAULT_WAVELENGTHS_NM, DistributionMapping, DistributionSettings,
+    FresnelMapping, FresnelSettings, GridSettings, RowSettings,
 };
 pub use class::{SMOOTH_SLOPE_DEG, SurfaceClass};
 pub use diagnostic::{Diagnostic, Severity};

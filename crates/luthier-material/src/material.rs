@@ -3,9 +3,9 @@
 use luthier_optics::Rgb;
 use luthier_optics::stack::Stack;
 
-use luthier_manifest::{Budget, ShadingModel};
+use luthier_manifest::{BeamsRecord, Budget, ShadingModel};
 
-use crate::bake_settings::BakeSettings;
+use crate::bake_settings::{BakeSettings, Beams};
 use crate::class::SurfaceClass;
 use crate::diagnostic::{Diagnostic, Severity, Sink};
 use crate::effects::{Effects, FlakeSource};
@@ -68,6 +68,25 @@ impl Material {
         self.bake.model = Some(model);
         self.bake.masking = self.bake.masking.filter(|_| model.has_masking());
         self.bake.reflectance = self.bake.reflectance.filter(|_| model.has_reflectance());
+        self.bake.internal_reflection = self.bake.internal_reflection.filter(|_| model.has_internal_reflection());
+        if !model.has_beams() {
+            self.bake.beams = None;
+            self.layers.iter_mut().for_each(|layer| layer.exponents = None);
+        }
+    }
+
+    /// Numbers of the model `granier-heidrich`, where the file gives some that are not those of every material.
+    pub fn beams(&self) -> Option<BeamsRecord> {
+        let Beams { specular_weight, diffuse_weight, inner_tilt, inner_azimuth } = self.bake.beams.unwrap_or_default();
+        let exponents = self.layers.first().and_then(|first| first.exponents);
+        let (sin, cos) = (libm::sin(inner_tilt), libm::cos(inner_tilt));
+        let beams = BeamsRecord {
+            inner_alpha_ratio: exponents.map_or(1.0, |[outer, inner]| libm::sqrt((outer + 2.0) / (inner + 2.0))),
+            specular_weight,
+            diffuse_weight,
+            inner_normal: [sin * libm::cos(inner_azimuth), sin * libm::sin(inner_azimuth), cos],
+        };
+        (beams != BeamsRecord::PLAIN).then_some(beams)
     }
 
     /// File and line of a value: `gilding.toml:8`.
@@ -111,6 +130,8 @@ pub struct LayerExtras {
     pub reradiation: Option<[Rgb; 3]>,
     /// How the thickness of the top film varies over the surface.
     pub film_variation: Option<FilmVariation>,
+    /// Exponents of the lobes of the outer boundary, whose slope parameter the surface has, and of the inner one.
+    pub exponents: Option<[f64; 2]>,
     /// Texture slots.
     pub maps: Maps,
 }

@@ -100,6 +100,8 @@ pub(crate) enum Verb {
     Models(ModelsOptions),
     /// Evaluate a reflectance model of a material in f64
     Eval(Box<EvalOptions>),
+    /// Fit the model granier-heidrich to a lobe that a CSV file gives, and write a material file
+    Fit(FitOptions),
     /// List the built-in optical constants, or show one set
     Ior(IorOptions),
     /// Print the JSON Schema of material files, of scenes or of surfaces
@@ -370,6 +372,9 @@ pub(crate) use manual::{CompletionsOptions, ManOptions};
 
 mod environment;
 pub(crate) use environment::{EnvironmentOptions, LayoutName};
+
+mod fit;
+pub(crate) use fit::FitOptions;
 
 mod audit;
 pub(crate) use audit::{AuditOptions, NodesName, SamplesName};

@@ -13,6 +13,7 @@ pub(crate) mod completions;
 pub(crate) mod cost;
 pub(crate) mod environment;
 pub(crate) mod eval;
+pub(crate) mod fit;
 #[cfg(feature = "gpu")]
 pub(crate) mod gallery;
 pub(crate) mod ior;

@@ -1,6 +1,7 @@
 //! Texts of one line, or of lines: optical constants, axes, directions, re-radiation.
 
 use luthier_layers::angles::pairs;
+use luthier_layers::beam_fit::samples;
 use luthier_layers::reradiation::Matrix;
 use luthier_optics::constants::parse_csv;
 use luthier_table::{Layout, Nodes};
@@ -56,6 +57,22 @@ pub(super) fn directions(bytes: &[u8]) {
             };
             let printed: String = list.iter().map(line).collect();
             assert_eq!(pairs(&printed), Ok(list));
+        }
+        Err(error) => assert!(!error.reason.is_empty() && error.line != Some(0)),
+    }
+}
+
+/// Values of a lobe.
+pub(super) fn lobe(bytes: &[u8]) {
+    match samples(&String::from_utf8_lossy(bytes)) {
+        Ok(list) => {
+            assert!(!list.is_empty());
+            for sample in list {
+                for direction in [sample.wi, sample.wo] {
+                    assert!((direction.length() - 1.0).abs() < 1e-12 && direction.z > 0.0, "{direction}");
+                }
+                assert!(sample.value.iter().all(|value| value.is_finite() && *value >= 0.0), "{sample:?}");
+            }
         }
         Err(error) => assert!(!error.reason.is_empty() && error.line != Some(0)),
     }

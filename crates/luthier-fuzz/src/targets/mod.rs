@@ -25,7 +25,7 @@ pub struct Target {
 }
 
 /// All targets.
-pub const TARGETS: [Target; 17] = [
+pub const TARGETS: [Target; 18] = [
     Target {
         name: "material",
         parser: "luthier_material::parse",
@@ -65,6 +65,14 @@ pub const TARGETS: [Target; 17] = [
         holds: "directions are unit and not below the surface; a list that is printed parses to an equal one",
         folders: &[],
         run: lines::directions,
+    },
+    Target {
+        name: "lobe",
+        parser: "luthier_layers::beam_fit::samples",
+        reads: "`fit LOBE.csv`",
+        holds: "directions are unit and above the surface, values finite and not negative",
+        folders: &[],
+        run: lines::lobe,
     },
     Target {
         name: "reradiation",

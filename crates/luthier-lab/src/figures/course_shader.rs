@@ -1,11 +1,14 @@
-//! Figures of the course of Weidlich and Wilkie about its shader: absorption, bases, varnishes, bumps.
+//! Figures of the course of Weidlich and Wilkie about its shader: absorption, bases, internal reflection, varnishes, bumps.
 
 use std::sync::Arc;
 
+use glam::DVec3;
 use luthier_gpu::{Environment, Light, Shape};
 use luthier_lut::Image;
-use luthier_manifest::Form;
+use luthier_manifest::{Form, InternalReflection};
 use luthier_material::Material;
+use luthier_optics::fresnel::transmitted;
+use luthier_optics::masking::v_cavity;
 use luthier_report::lightness_chroma_hue;
 use luthier_terminal::{Failure, Outcome};
 
@@ -13,7 +16,7 @@ use super::course::by_course;
 use super::figure::{Figure, Labelled, Made, TONE};
 use super::studio::{Studio, mapped};
 
-pub(crate) const FIGURES: [Figure; 5] = [
+pub(crate) const FIGURES: [Figure; 6] = [
     Figure {
         name: "course-3-3",
         title: "a lacquer with and without absorption",
@@ -38,6 +41,16 @@ pub(crate) const FIGURES: [Figure; 5] = [
         caption: "The varnish of the course in six thicknesses, from none to opaque, over silver. The mirrored surroundings get blue and dark, while the \
                   reflection of the varnish itself stays white. The absorption is luthier's.",
         make: silver,
+    },
+    Figure {
+        name: "course-3-7",
+        title: "with and without internal reflection",
+        source: "Weidlich and Wilkie 2009, figure 3.7",
+        caption: "Silver under a blue lacquer with the internal reflection t (left) and without it (middle, `internal_reflection = \"none\"`), and the t of a light \
+                  from the upper left, white where it is 1 (right). The index of the lacquer is 1.3 above and 2.5 below. The term darkens a lacquer of a low index \
+                  by a few hundredths, and that of a high index by a fifth. At the rim facets hide each other, and t is 1 again. The course names neither the indices \
+                  nor the slope; its picture of a low index has t between 0.95 and 1.",
+        make: inside,
     },
     Figure {
         name: "course-3-8",
@@ -146,6 +159,66 @@ fn silver(studio: &Studio) -> Outcome<Made> {
     let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, _| {})?;
     made.sheet("course-3-6", thicknesses.iter().map(|d| format!("{d} um")).zip(pictures).collect(), 6);
     Ok(made)
+}
+
+fn inside(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let (indices, slope_deg) = ([1.3, 2.5], 8.0);
+    let mut materials = Vec::new();
+    for index in indices {
+        for internal in [InternalReflection::Facets, InternalReflection::None] {
+            let coat = coat(1.0, "[0.6, 0.35, 0.05]").replace("ior = 1.5", &format!("ior = {index}"));
+            let coat = coat.replace("slope_deg = 1.5", &format!("slope_deg = {slope_deg}"));
+            let metal = format!(
+                "[[layer]]\ntype = \"conductor\"\nior = \"ag\"\nslope_deg = {slope_deg}\ndistribution = \"beckmann\"\n"
+            );
+            let mut material = by_course(&format!("inside-{}", materials.len()), &(coat + &metal))?;
+            material.bake.internal_reflection = Some(internal);
+            materials.push(material);
+        }
+    }
+    let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| settings.exposure = 0.6)?;
+    let mut shown: Labelled = Vec::new();
+    for (index, pair) in indices.into_iter().zip(pictures.chunks_exact(2)) {
+        let mean = |image: &Image| image.data.iter().map(|v| f64::from(*v)).sum::<f64>();
+        if let [with, without] = pair {
+            made.measure(format!("index {index}: light with the term over that without"), mean(with) / mean(without));
+            shown.push((format!("{index} with"), TONE.image(with.clone())));
+            shown.push((format!("{index} without"), TONE.image(without.clone())));
+        }
+        let (image, least) = seen_inside(studio.size, index);
+        made.measure(format!("index {index}: least t of the light from the upper left"), least);
+        shown.push(("t".to_owned(), image));
+    }
+    made.shown("course-3-7", shown, 3);
+    Ok(made)
+}
+
+/// The term t of eq. 3.3 on a ball under one light, white where it is 1, and its least value.
+fn seen_inside(size: u32, index: f64) -> (Image, f64) {
+    let light = DVec3::new(-0.45, 0.7, 0.6).normalize();
+    let eye = DVec3::Z;
+    let wh = (light + eye).normalize();
+    let cos_theta_d = eye.dot(wh);
+    let passed = transmitted(1.0, &[], index, cos_theta_d);
+    let (mut image, mut least) = (Image::zeros(size, size, 3), 1.0);
+    for y in 0..size {
+        for x in 0..size {
+            let at = |i: u32| (2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0) / 0.8;
+            let (nx, ny) = (at(x), -at(y));
+            let normal = DVec3::new(nx, ny, (1.0 - nx * nx - ny * ny).max(0.0).sqrt());
+            let (cos_i, cos_o) = (normal.dot(light), normal.z);
+            if cos_i <= 0.0 || cos_o <= 0.0 {
+                continue;
+            }
+            let g = v_cavity(cos_i, cos_o, normal.dot(wh), cos_theta_d);
+            let t = (1.0 - g) + passed * g;
+            least = f64::min(least, t);
+            let first = 3 * (y * size + x) as usize;
+            image.data[first..first + 3].fill(t as f32);
+        }
+    }
+    (image, least)
 }
 
 fn parts(studio: &Studio) -> Outcome<Made> {

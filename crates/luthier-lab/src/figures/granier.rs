@@ -30,13 +30,13 @@ pub(crate) const FIGURES: [Figure; 4] = [
         name: "granier-4",
         title: "boundaries that are not parallel",
         source: "Granier and Heidrich 2003, figure 4",
-        caption: "The parameters are the printed ones: indices 1.4, 1.45, 1.6, thickness 66 to 76 nm, exponent 90, \
-                  diffuse weight 0.7. With parallel boundaries, both beams leave in the mirror direction. In the \
+        caption: "The parameters are the printed ones: indices 1.4, 1.45, 1.6, thickness 66 to 76 nm, exponents 90 \
+                  and 170, weights 1 and 0.7. With parallel boundaries, both beams leave in the mirror direction. In the \
                   other pictures the inner boundary is tilted by a constant 14 degrees (the angle of figure 6), \
                   which turns the transmitted beam to the side. Each light then has a second highlight to the right \
                   of the first, with a bluish and a yellow edge, and the right of the ball darkens. With one index \
-                  for all colours, the second highlight has no coloured edges. Here one exponent serves both \
-                  boundaries; the paper has 170 for the inner one.",
+                  for all colours, the second highlight has no coloured edges. With an exponent of 20 for the inner \
+                  boundary, it is wide, and its colours blur into each other.",
         make: deviation,
     },
     Figure {
@@ -53,8 +53,8 @@ pub(crate) const FIGURES: [Figure; 4] = [
         name: "granier-6",
         title: "specular and diffuse part together",
         source: "Granier and Heidrich 2003, figure 6",
-        caption: "The parameters are the printed ones: indices 1.5, 1.6, 1.8, exponent 130, deviation 14 degrees, \
-                  diffuse weight 0.5. The ranges of thickness and the index of the object are luthier's. Thin films \
+        caption: "The parameters are the printed ones: indices 1.5, 1.6, 1.8, exponents 130, deviation 14 degrees, \
+                  weights 1 and 0.5. The ranges of thickness and the index of the object are luthier's. Thin films \
                   are brown, and thicker ones blue, then yellow. A wide range of thickness shows all orders of \
                   interference at once. Coloured highlights stand beside the white ones. The charts compare the \
                   model with the exact film in the mirror direction. Both have their extremes at the same \
@@ -67,8 +67,8 @@ pub(crate) const FIGURES: [Figure; 4] = [
 /// The wavelengths of the paper.
 const WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
 
-/// Slope of the inner boundary at the constant deviation of figure 6, 14 degrees.
-const TILT: f32 = 0.249_328;
+/// The constant deviation of figure 6.
+const TILT_DEG: f64 = 14.0;
 
 /// Width of one repeat of the thickness map: so wide that the boundary is flat, or so narrow that it is hilly.
 const FLAT_UM: f64 = 2e4;
@@ -86,10 +86,12 @@ struct Coating {
     /// Index of the film, for R, G and B.
     ior: [f64; 3],
     thickness_nm: [f64; 2],
-    /// Phong's exponent of both boundaries.
-    exponent: f64,
-    /// Weight of the diffuse part.
+    /// Phong's exponents of the boundaries.
+    exponents: [f64; 2],
+    /// Weight of the diffuse part; that of the specular one is 1.
     diffuse: f64,
+    /// Lean of the inner boundary.
+    tilt_deg: f64,
     extent_um: f64,
     /// Cells of the noise along one repeat.
     frequency: u32,
@@ -98,16 +100,17 @@ struct Coating {
 impl Coating {
     /// The material. The object's index is not in the paper: 2 keeps indices rising, which its formula needs.
     fn material(&self) -> Outcome<Material> {
-        let Self { name, ior: [r, g, b], thickness_nm: [min, max], exponent, diffuse, extent_um, frequency } = self;
-        let alpha = (2.0 / (exponent + 2.0)).sqrt();
+        let Self { name, ior: [r, g, b], thickness_nm: [min, max], exponents, diffuse, tilt_deg, extent_um, frequency } =
+            self;
         let text = format!(
             "schema = 1\nname = \"{name}\"\n\
              [[layer]]\ntype = \"thin-film\"\nior = {{ n = [{r}, {g}, {b}], wavelengths_nm = [645, 525, 445] }}\n\
              [layer.thickness_nm]\nmin = {min}\nmax = {max}\nextent_um = {extent_um}\n\
              map = {{ noise = {{ seed = 7, frequency = {frequency}, octaves = 4 }} }}\n\
-             [[layer]]\ntype = \"dielectric\"\nior = 2.0\nalpha = {alpha}\ndistribution = \"beckmann\"\n\
-             [[layer]]\ntype = \"diffuse\"\nalbedo = {diffuse}\n\
-             [bake]\ncolor = \"three-wavelengths\"\nwavelengths_nm = [645, 525, 445]\n"
+             [[layer]]\ntype = \"dielectric\"\nior = 2.0\nexponents = {exponents:?}\n\
+             [[layer]]\ntype = \"diffuse\"\nalbedo = 1\n\
+             [bake]\nmodel = \"granier-heidrich\"\ncolor = \"three-wavelengths\"\nwavelengths_nm = [645, 525, 445]\n\
+             [bake.granier-heidrich]\ndiffuse_weight = {diffuse}\ninner_tilt_deg = {tilt_deg}\n"
         );
         Ok(shaded(&material(name, &text)?, name, ShadingModel::GranierHeidrich))
     }
@@ -120,8 +123,8 @@ fn materials(coatings: &[Coating]) -> Outcome<Vec<Material>> {
 fn diffuse(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let coating = |name, thickness_nm, diffuse| {
-        let (ior, exponent, extent_um, frequency) = (COMBINED_IOR, 130.0, FLAT_UM, 6);
-        Coating { name, ior, thickness_nm, exponent, diffuse, extent_um, frequency }
+        let (ior, exponents, extent_um, frequency) = (COMBINED_IOR, [130.0; 2], FLAT_UM, 6);
+        Coating { name, ior, thickness_nm, exponents, diffuse, tilt_deg: 0.0, extent_um, frequency }
     };
     let ranges = [("old metal", [52.0, 84.0]), ("coloured", [200.0, 700.0]), ("clay", [40.0, 58.0])];
     let names = [["metal", "metal-0"], ["coloured", "coloured-0"], ["clay", "clay-0"]];
@@ -169,26 +172,32 @@ fn diffuse(studio: &Studio) -> Outcome<Made> {
 
 fn deviation(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
-    let coating = |name, ior| Coating {
+    let coating = |name, ior, inner, tilt_deg| Coating {
         name,
         ior,
         thickness_nm: [66.0, 76.0],
-        exponent: 90.0,
+        exponents: [90.0, inner],
         diffuse: 0.7,
+        tilt_deg,
         extent_um: FLAT_UM,
         frequency: 4,
     };
     let rising = [1.4, 1.45, 1.6];
-    let coatings = [coating("parallel", rising), coating("deviated", rising), coating("no-dispersion", [1.45; 3])];
-    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, |n, settings| {
+    let coatings = [
+        coating("parallel", rising, 170.0, 0.0),
+        coating("deviated", rising, 170.0, TILT_DEG),
+        coating("no-dispersion", [1.45; 3], 170.0, TILT_DEG),
+        coating("rough", rising, 20.0, TILT_DEG),
+    ];
+    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, |_, settings| {
         look(settings);
-        settings.film_tilt = [if n == 0 { 0.0 } else { TILT }, 0.0];
+        settings.environment_samples = 512;
     })?;
-    let labels = ["parallel", "14 degrees", "one index"];
+    let labels = ["parallel", "14 degrees", "one index", "90 and 20"];
     for (label, picture) in labels.iter().zip(&pictures) {
         made.measure(format!("{label}: spread of the channels"), spread(picture));
     }
-    made.sheet("granier-4", labels.map(str::to_owned).into_iter().zip(pictures).collect(), 3);
+    made.sheet("granier-4", labels.map(str::to_owned).into_iter().zip(pictures).collect(), 4);
     Ok(made)
 }
 
@@ -198,8 +207,9 @@ fn correlated(studio: &Studio) -> Outcome<Made> {
         name,
         ior: [1.4, 1.45, 1.6],
         thickness_nm,
-        exponent: 90.0,
+        exponents: [90.0; 2],
         diffuse: 0.0,
+        tilt_deg: 0.0,
         extent_um,
         frequency: 4,
     };
@@ -231,15 +241,13 @@ fn combined(studio: &Studio) -> Outcome<Made> {
         name,
         ior: COMBINED_IOR,
         thickness_nm,
-        exponent: 130.0,
+        exponents: [130.0; 2],
         diffuse: 0.5,
+        tilt_deg: TILT_DEG,
         extent_um: FLAT_UM,
         frequency: 4,
     });
-    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, |_, settings| {
-        look(settings);
-        settings.film_tilt = [TILT, 0.0];
-    })?;
+    let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, |_, settings| look(settings))?;
     let mut shown = Vec::new();
     for ((_, [min, max]), picture) in ranges.iter().zip(pictures) {
         made.measure(format!("{min} to {max} nm: spread of the channels"), spread(&picture));
@@ -251,8 +259,9 @@ fn combined(studio: &Studio) -> Outcome<Made> {
         name: "green",
         ior: [1.6; 3],
         thickness_nm: [100.0, 100.0],
-        exponent: 130.0,
+        exponents: [130.0; 2],
         diffuse: 0.0,
+        tilt_deg: 0.0,
         extent_um: FLAT_UM,
         frequency: 1,
     };

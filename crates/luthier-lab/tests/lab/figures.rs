@@ -3,7 +3,7 @@
 use crate::workshop::Workshop;
 
 /// The figures that the project promises, one by one.
-const NAMES: [&str; 27] = [
+const NAMES: [&str; 28] = [
     "elek-2",
     "elek-4",
     "elek-5",
@@ -25,6 +25,7 @@ const NAMES: [&str; 27] = [
     "course-3-3",
     "course-3-5",
     "course-3-6",
+    "course-3-7",
     "course-3-8",
     "course-3-9",
     "course-4-1",

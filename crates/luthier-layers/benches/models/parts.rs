@@ -41,7 +41,7 @@ fn textured_elek(bencher: Bencher<'_, '_>) {
     each(bencher, &draws(), |draw| {
         let texture =
             TextureSample { alpha_factor: 0.5 + draw.u[0], slab_factor: 0.5 + draw.u[1], ..TextureSample::NONE };
-        texture.eval(&Elek, &stack, draw.wi, draw.wo)
+        texture.eval(&Elek::default(), &stack, draw.wi, draw.wo)
     });
 }
 
@@ -77,7 +77,9 @@ fn switched_by_noise(bencher: Bencher<'_, '_>) {
 
 fn heterogeneous(bencher: Bencher<'_, '_>, map: &Map) {
     let stacks = [bare_conductor(), coated_conductor()].map(|stack| green(&stack));
-    each(bencher, &draws(), |draw| heterogeneous::eval(&Elek, &stacks, map.pick(place(draw)), draw.wi, draw.wo));
+    each(bencher, &draws(), |draw| {
+        heterogeneous::eval(&Elek::default(), &stacks, map.pick(place(draw)), draw.wi, draw.wo)
+    });
 }
 
 /// One pair of eight bins.
@@ -135,5 +137,5 @@ fn belcour_preparation(bencher: Bencher<'_, '_>) {
 #[divan::bench(sample_size = 1, sample_count = 16, max_time = 2)]
 fn elek_directional_albedo(bencher: Bencher<'_, '_>) {
     let stack = green(&coated_conductor());
-    each(bencher, &draws(), |draw| directional_albedo(&Elek, &stack, draw.wo));
+    each(bencher, &draws(), |draw| directional_albedo(&Elek::default(), &stack, draw.wo));
 }

@@ -157,10 +157,10 @@ mod tests {
         let (wi, wo) = (DVec3::new(0.2, 0.1, 0.9).normalize(), DVec3::new(-0.3, 0.2, 0.8).normalize());
         let stack = copper();
         let bare = Monochrome::joined(1.0, vec![stack.layers[1].clone()]);
-        assert_eq!(PATINA.eval(&stack, 1.0, wi, wo), Elek.eval(&bare, wi, wo));
-        assert_eq!(PATINA.eval(&stack, 0.0, wi, wo), Elek.eval(&stack, wi, wo));
+        assert_eq!(PATINA.eval(&stack, 1.0, wi, wo), Elek::default().eval(&bare, wi, wo));
+        assert_eq!(PATINA.eval(&stack, 0.0, wi, wo), Elek::default().eval(&stack, wi, wo));
         // Halfway there: the mean.
-        let mean = 0.5 * (Elek.eval(&bare, wi, wo) + Elek.eval(&stack, wi, wo));
+        let mean = 0.5 * (Elek::default().eval(&bare, wi, wo) + Elek::default().eval(&stack, wi, wo));
         assert!((PATINA.eval(&stack, 0.4, wi, wo) - mean).abs() < 1e-15);
         // Tarnish takes its part of a bare metal's light where the patina is about to grow.
         let dark = Patina { tarnish: 0.5, extent: 0.4, ..PATINA };

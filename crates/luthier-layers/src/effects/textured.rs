@@ -144,8 +144,8 @@ mod tests {
             let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|e| frame::local(turned.normal, e));
             DVec3::new(x.dot(w), y.dot(w), z.dot(w))
         };
-        let expected = Elek.eval(&stack, wi, wo);
-        assert!((turned.eval(&Elek, &stack, back(wi), back(wo)) / expected - 1.0).abs() < 1e-12);
+        let expected = Elek::default().eval(&stack, wi, wo);
+        assert!((turned.eval(&Elek::default(), &stack, back(wi), back(wo)) / expected - 1.0).abs() < 1e-12);
     }
 
     /// A textured model is the model at the place: estimators keep their error, and colour of its own is that of the film at the place.

@@ -24,6 +24,7 @@ use luthier_optics::stack::{Base, Diffuse, Distribution, Stack};
 
 use crate::refraction::{REFRACTION_WAVELENGTH_NM, refract};
 use crate::terms::Terms;
+use crate::weidlich_wilkie::InternalReflection;
 use crate::{frame, oren_nayar};
 
 /// Smallest slope parameter of the model. Smoother surfaces are evaluated with this one: a lobe 0.06 degrees wide, well
@@ -42,6 +43,8 @@ pub struct Layer {
     pub alpha: f64,
     /// Material below the interface.
     pub below: Below,
+    /// Light from below that the interface lets out.
+    pub internal_reflection: InternalReflection,
 }
 
 /// Material that follows below an interface.
@@ -79,6 +82,7 @@ pub fn layers(stack: &Stack) -> Vec<Layer> {
             distribution: layer.surface.distribution,
             alpha: layer.surface.alpha_isotropic().clamp(ALPHA_MIN, 1.0),
             below,
+            internal_reflection: InternalReflection::Facets,
         });
     }
     out
@@ -162,7 +166,10 @@ pub(crate) fn walk(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3, n
         for c in 0..3 {
             let transmitted = 1.0 - f[c];
             let absorbed = libm::exp(-optical_depth[c] * path);
-            let left = (1.0 - g) + transmitted * g;
+            let left = match layer.internal_reflection {
+                InternalReflection::Facets => (1.0 - g) + transmitted * g,
+                InternalReflection::None => 1.0,
+            };
             throughput[c] *= transmitted * absorbed * left;
             down[c] *= transmitted * libm::exp(-optical_depth[c] / wi_below.z);
             up[c] *= left * libm::exp(-optical_depth[c] / wo_below.z);

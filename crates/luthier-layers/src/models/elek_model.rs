@@ -9,11 +9,15 @@ use crate::inputs::Input;
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow};
 use crate::terms::Terms;
+use crate::weidlich_wilkie::InternalReflection;
 
 /// The real-time model of [`elek`] with exact terms at one wavelength: the index that bends the directions is the wavelength's
 /// own, where the colour form has one scalar.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Elek;
+pub struct Elek {
+    /// Light from below that interfaces let out.
+    pub internal_reflection: InternalReflection,
+}
 
 impl Model for Elek {
     fn info(&self) -> ModelInfo {
@@ -29,7 +33,10 @@ impl Model for Elek {
     }
 
     fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
-        eval_below(stack, [1.0; 2], wi, wo, DVec3::Z)
+        let one = |layer| Layer { internal_reflection: self.internal_reflection, ..layer };
+        let layers: Vec<Layer> = layers(stack).into_iter().map(one).collect();
+        let [value, ..] = elek::eval(&layers, &Exact { stack, tint: [1.0; 2] }, wi, wo);
+        value
     }
 }
 
@@ -68,6 +75,7 @@ pub(crate) fn layers(stack: &Monochrome) -> Vec<Layer> {
                 MonochromeBelow::Conductor { .. } => Below::Conductor,
                 MonochromeBelow::Diffuse { albedo, sigma } => Below::Diffuse(Diffuse { albedo: [albedo; 3], sigma }),
             },
+            internal_reflection: InternalReflection::Facets,
         })
         .collect()
 }
@@ -115,7 +123,7 @@ mod tests {
         let exact = terms::Exact::new(&stack, Color::ThreeWavelengths([645.0, 525.0, 445.0]));
         let rgb = elek::eval(&elek::layers(&stack), &exact, wi, wo);
         for (channel, wavelength) in [645.0, 525.0, 445.0].into_iter().enumerate() {
-            let found = Elek.eval(&Monochrome::new(&stack, wavelength, channel), wi, wo);
+            let found = Elek::default().eval(&Monochrome::new(&stack, wavelength, channel), wi, wo);
             assert!((found - rgb[channel]).abs() < 1e-15 + 1e-13 * found, "{found} {}", rgb[channel]);
         }
     }

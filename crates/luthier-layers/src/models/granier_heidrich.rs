@@ -35,6 +35,7 @@ use std::f64::consts::{FRAC_1_PI, PI};
 use glam::DVec3;
 use luthier_optics::schlick::schlick_average;
 
+use crate::elek::ALPHA_MIN;
 use crate::inputs::{Input, Inputs};
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow, Optics};
@@ -105,6 +106,19 @@ impl Film {
         superpose(reflected, transmitted, self.interference(cosines))
     }
 
+    /// [`Film::specular`] with lobes that carry their coefficients, as [`GranierHeidrich`] has them.
+    pub fn scaled_specular(&self, wi: DVec3, wo: DVec3) -> f64 {
+        let beams = self.beams(wi, wo);
+        let [r, t] = self.scaled(&beams);
+        superpose(r, t, self.interference(beams.cosines))
+    }
+
+    /// Both powers, each lobe times `(e + 1) / (2 pi)`, that of the transmitted beam over solid angles in the film.
+    fn scaled(&self, beams: &Beams) -> [f64; 2] {
+        let [outer, inner] = self.exponents.map(|e| (e + 1.0) / (2.0 * PI));
+        [outer * beams.reflected, inner * beams.compression * beams.transmitted]
+    }
+
     /// Eq. 13 with eq. 14, 15 and 17: the paper's eq. 18.
     pub fn diffuse(&self) -> f64 {
         self.diffuse_by(self.interference(2.0))
@@ -141,7 +155,7 @@ fn superpose(r: f64, t: f64, interference: f64) -> f64 {
 /// The film is the first coherent one of the first interface, or its slab, then without interference: the mean over thicknesses.
 /// Lobes are Phong's of 1975, without a cosine, times `(e + 1) / (2 pi)`, that of the transmitted beam over solid angles in the
 /// film: what an eye sees of a white sky by each is its coefficient, at any angle, but for what falls below the horizon.
-/// Exponents are `2/alpha^2 - 2` unless given, which is how the material of the paper's figure 4 states them; about the mirror
+/// Exponents are `2/alpha^2 - 2` unless given, that of the inner boundary with its own alpha, which is how the material of the paper's figure 4 states them; about the mirror
 /// direction such a lobe is half as wide as the surface's. The diffuse weight is the albedo of the diffuse base, zero without one. A
 /// first interface with neither film nor slab (a bare conductor) has the reflected beam alone, with its own reflectance at normal
 /// incidence. Layers and slabs below the film do not count.
@@ -151,21 +165,59 @@ pub struct GranierHeidrich {
     pub inner_normal: DVec3,
     /// Exponents instead of those of the surface.
     pub exponents: Option<[f64; 2]>,
+    /// Slope parameter of the inner boundary over that of the outer one, which the exponents of a surface follow from.
+    pub inner_alpha_ratio: f64,
     /// Weight of the specular part.
     pub specular_weight: f64,
+    /// Weight of the diffuse part, beside the albedo of the base.
+    pub diffuse_weight: f64,
 }
 
 impl Default for GranierHeidrich {
     fn default() -> Self {
-        Self { inner_normal: DVec3::Z, exponents: None, specular_weight: 1.0 }
+        Self::PLAIN
     }
 }
 
 impl GranierHeidrich {
+    /// Boundaries that are parallel and alike, both parts at full weight.
+    pub const PLAIN: Self = Self {
+        inner_normal: DVec3::Z,
+        exponents: None,
+        inner_alpha_ratio: 1.0,
+        specular_weight: 1.0,
+        diffuse_weight: 1.0,
+    };
+
+    /// The model with an inner boundary that leans at a place: slopes of heights add up, so that those of `normal` (unit, above the surface)
+    /// come on top of the model's own.
+    #[must_use]
+    pub fn leaning(self, normal: DVec3) -> Self {
+        if self.inner_normal == DVec3::Z || normal == DVec3::Z {
+            let inner_normal = if normal == DVec3::Z { self.inner_normal } else { normal };
+            return Self { inner_normal, ..self };
+        }
+        let [own, here] = [self.inner_normal, normal].map(|n| n.truncate() / n.z);
+        Self { inner_normal: (own + here).extend(1.0).normalize(), ..self }
+    }
+
+    /// The exponents e_0 and e_1 of a surface of a slope parameter.
+    fn exponents_of(&self, alpha: f64) -> [f64; 2] {
+        self.exponents.unwrap_or_else(|| {
+            // Those of shaders are within these limits.
+            let inner = if self.inner_alpha_ratio == 1.0 {
+                alpha
+            } else {
+                (alpha * self.inner_alpha_ratio).clamp(ALPHA_MIN, 1.0)
+            };
+            [exponent(alpha), exponent(inner)]
+        })
+    }
+
     /// The film of a stack, or `None` when its first interface has none and nothing transparent below.
     pub fn film(&self, stack: &Monochrome) -> Option<Film> {
         let layer = stack.layers.first()?;
-        let exponents = self.exponents.unwrap_or([exponent(layer.surface.alpha_isotropic()); 2]);
+        let exponents = self.exponents_of(layer.surface.alpha_isotropic());
         let film = |ior: f64, waves_inside| Film {
             eta: ior / layer.above,
             f0: layer.f0,
@@ -214,27 +266,29 @@ impl GranierHeidrich {
             Some(MonochromeBelow::Diffuse { albedo, .. }) => albedo,
             _ => 0.0,
         };
-        let scale = |e: f64| (e + 1.0) / (2.0 * PI);
         let (specular, diffuse) = match (self.film(stack), stack.layers.first()) {
             (Some(film), _) => {
-                let [e0, e1] = film.exponents;
-                let Beams { reflected, transmitted, cosines, compression } = film.beams(wi, wo);
-                let (r, t) = (scale(e0) * reflected, scale(e1) * compression * transmitted);
+                let beams = film.beams(wi, wo);
+                let [r, t] = film.scaled(&beams);
                 let interference = |cosines| film.waves_inside.map_or(0.0, |_| optics.interference(0, cosines));
-                (superpose(r, t, interference(cosines)), film.diffuse_by(interference(2.0)))
+                (superpose(r, t, interference(beams.cosines)), film.diffuse_by(interference(2.0)))
             }
             (None, Some(layer)) => {
-                let e = self.exponents.map_or_else(|| exponent(layer.surface.alpha_isotropic()), |e| e[0]);
+                let [e, _] = self.exponents_of(layer.surface.alpha_isotropic());
                 let f = optics.reflectance(0, 1.0);
                 let reflected = match layer.below {
                     MonochromeBelow::Diffuse { .. } => 0.0,
-                    _ => schlick(f, wi.z.min(1.0)) * scale(e) * lobe(DVec3::new(-wi.x, -wi.y, wi.z), wo, e),
+                    _ => {
+                        schlick(f, wi.z.min(1.0))
+                            * ((e + 1.0) / (2.0 * PI))
+                            * lobe(DVec3::new(-wi.x, -wi.y, wi.z), wo, e)
+                    }
                 };
                 (reflected, 1.0)
             }
             (None, None) => (0.0, 0.0),
         };
-        self.specular_weight * specular + base * diffuse * FRAC_1_PI * wi.z
+        self.specular_weight * specular + self.diffuse_weight * base * diffuse * FRAC_1_PI * wi.z
     }
 }
 

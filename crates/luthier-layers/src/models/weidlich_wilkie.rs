@@ -47,6 +47,16 @@ pub enum Transmission {
     Directions,
 }
 
+/// Light from below that an interface lets out, beside the transmission on the way in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum InternalReflection {
+    /// `t = (1 - G) + T_21 G`.
+    #[default]
+    Facets,
+    /// `t = 1`: all of it comes out, as in the right half of the course's figure 3.7.
+    None,
+}
+
 /// The recursive model, faithful to the course.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct WeidlichWilkie {
@@ -54,6 +64,8 @@ pub struct WeidlichWilkie {
     pub refraction: Refraction,
     /// Angles at which T_12 and T_21 are taken.
     pub transmission: Transmission,
+    /// Light that comes out, where the transmission is at the half vector.
+    pub internal_reflection: InternalReflection,
 }
 
 impl WeidlichWilkie {
@@ -164,7 +176,10 @@ impl WeidlichWilkie {
             let (entered, left) = match self.transmission {
                 Transmission::HalfVector => {
                     let transmitted = 1.0 - reflected;
-                    (transmitted, (1.0 - lobe.masking) + transmitted * lobe.masking)
+                    match self.internal_reflection {
+                        InternalReflection::Facets => (transmitted, (1.0 - lobe.masking) + transmitted * lobe.masking),
+                        InternalReflection::None => (transmitted, 1.0),
+                    }
                 }
                 Transmission::Directions => {
                     (1.0 - optics.reflectance(i, wi_local.z.min(1.0)), 1.0 - optics.reflectance(i, wo_local.z.min(1.0)))

@@ -1,4 +1,5 @@
-//! Parts of the model that a material chooses: the masking of `microfacet`, and how interfaces come by their reflectances.
+//! Parts of the model that a material chooses: the masking of `microfacet`, how interfaces come by their reflectances, and the term of internal
+//! reflection, and the numbers of `granier-heidrich`.
 
 use glam::DVec3;
 use luthier_optics::Rgb;
@@ -8,20 +9,26 @@ use luthier_optics::schlick::Lazanyi;
 use luthier_optics::stack::{Distribution, Stack};
 
 use crate::facets::Masking;
+use crate::granier_heidrich::GranierHeidrich;
 use crate::interface_fresnel::Fresnel;
 use crate::lobes::Below;
 use crate::microfacet::Components;
 use crate::statistics::diffuse_base::Veil;
 use crate::statistics::energy::Energy;
 use crate::terms::{ShaderTerms, Terms};
+pub use crate::weidlich_wilkie::InternalReflection;
 
 /// Parts of the model of a shader; each is ignored by models that have no choice of it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parts {
     /// Masking of `microfacet`.
     pub masking: Masking,
     /// Reflectances of `elek`, `weidlich-wilkie` and `microfacet`.
     pub reflectance: Reflectance,
+    /// Internal reflection of `elek` and `weidlich-wilkie`.
+    pub internal_reflection: InternalReflection,
+    /// Numbers of `granier-heidrich`.
+    pub beams: GranierHeidrich,
 }
 
 /// Computation of reflectances.
@@ -39,17 +46,22 @@ pub enum Reflectance {
 
 impl Parts {
     /// The parts of a material that chooses none.
-    pub const PLAIN: Self = Self { masking: Masking::Smith, reflectance: Reflectance::Terms };
+    pub const PLAIN: Self = Self {
+        masking: Masking::Smith,
+        reflectance: Reflectance::Terms,
+        internal_reflection: InternalReflection::Facets,
+        beams: GranierHeidrich::PLAIN,
+    };
 
     /// The parts by their names in material files and manifests; `None` for an unknown name.
     ///
     /// ```
     /// use luthier_layers::parts::Parts;
     ///
-    /// assert_eq!(Parts::named("smith", "table"), Some(Parts::PLAIN));
-    /// assert_eq!(Parts::named("smith", "none"), None);
+    /// assert_eq!(Parts::named("smith", "table", "facets"), Some(Parts::PLAIN));
+    /// assert_eq!(Parts::named("smith", "none", "facets"), None);
     /// ```
-    pub fn named(masking: &str, reflectance: &str) -> Option<Self> {
+    pub fn named(masking: &str, reflectance: &str, internal_reflection: &str) -> Option<Self> {
         let masking = match masking {
             "smith" => Masking::Smith,
             "smith-separable" => Masking::SmithSeparable,
@@ -66,11 +78,27 @@ impl Parts {
             "lazanyi" => Reflectance::Lazanyi,
             _ => return None,
         };
-        Some(Self { masking, reflectance })
+        let internal_reflection = match internal_reflection {
+            "facets" => InternalReflection::Facets,
+            "none" => InternalReflection::None,
+            _ => return None,
+        };
+        Some(Self { masking, reflectance, internal_reflection, ..Self::PLAIN })
     }
 }
 
 impl Parts {
+    /// The parts with numbers of `granier-heidrich`: the slope parameter of the inner boundary over that of the outer one, the weights of the
+    /// specular and the diffuse part, and the normal of the inner boundary.
+    #[must_use]
+    pub fn with_beams(self, inner_alpha_ratio: f64, weights: [f64; 2], inner_normal: [f64; 3]) -> Self {
+        let [specular_weight, diffuse_weight] = weights;
+        let inner_normal = DVec3::from_array(inner_normal);
+        let beams =
+            GranierHeidrich { inner_normal, exponents: None, inner_alpha_ratio, specular_weight, diffuse_weight };
+        Self { beams, ..self }
+    }
+
     /// The components of the model `microfacet`, for one wavelength.
     pub const fn components(self) -> Components {
         let fresnel = match self.reflectance {
@@ -211,7 +239,7 @@ mod tests {
             ("smith", "approximate", "microfacet-complex-f0"),
             ("smith", "lazanyi", "microfacet-lazanyi"),
         ] {
-            let parts = Parts::named(masking, reflectance).unwrap();
+            let parts = Parts::named(masking, reflectance, "facets").unwrap();
             let twin = Twin::with("microfacet", &metal(), WAVELENGTHS_NM, color, parts).unwrap();
             let expected = registry::model(name).unwrap().eval(&Monochrome::new(&metal(), 525.0, 1), wi, wo);
             let found = twin.eval(&exact, wi, wo);

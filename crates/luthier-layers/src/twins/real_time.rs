@@ -61,8 +61,8 @@ pub struct Twin {
 #[derive(Debug)]
 enum Kind {
     Elek(Vec<elek::Layer>),
-    WeidlichWilkie([Monochrome; 3]),
-    GranierHeidrich([Monochrome; 3]),
+    WeidlichWilkie(WeidlichWilkie, [Monochrome; 3]),
+    GranierHeidrich(GranierHeidrich, [Monochrome; 3]),
     Phong([Coefficients; 3]),
     Microfacet(Box<(Microfacet, [Monochrome; 3])>),
     /// The first interface, with light from below where there is an interface.
@@ -98,9 +98,15 @@ impl Twin {
         let reflectances = is_chosen.then(|| Reflectances::of(stack, wavelengths_nm, color, parts.reflectance));
         let channels = || channels(stack, wavelengths_nm).map(|one| bend_alike(one, stack));
         let kind = match model {
-            elek::MODEL => Kind::Elek(elek::layers(stack)),
-            "weidlich-wilkie" => Kind::WeidlichWilkie(channels()),
-            "granier-heidrich" => Kind::GranierHeidrich(granier_channels(stack, wavelengths_nm)),
+            elek::MODEL => {
+                let one = |layer| elek::Layer { internal_reflection: parts.internal_reflection, ..layer };
+                Kind::Elek(elek::layers(stack).into_iter().map(one).collect())
+            }
+            "weidlich-wilkie" => {
+                let Parts { internal_reflection, .. } = parts;
+                Kind::WeidlichWilkie(WeidlichWilkie { internal_reflection, ..WeidlichWilkie::default() }, channels())
+            }
+            "granier-heidrich" => Kind::GranierHeidrich(parts.beams, granier_channels(stack, wavelengths_nm)),
             "phong" => Kind::Phong(coefficients(stack, wavelengths_nm, color)),
             "belcour" => Kind::Belcour(Layers::rgb(stack)),
             "yamaguchi" => Kind::Yamaguchi(Layers::rgb(stack)),
@@ -123,7 +129,7 @@ impl Twin {
     /// [`luthier_optics::reradiation::rgb`]), which take the place of its albedo in `elek` and `weidlich-wilkie`.
     #[must_use]
     pub fn reradiating(self, rows: Option<[Rgb; 3]>) -> Self {
-        let is_chain = matches!(self.kind, Kind::Elek(_) | Kind::WeidlichWilkie(_));
+        let is_chain = matches!(self.kind, Kind::Elek(_) | Kind::WeidlichWilkie(..));
         Self { reradiation: rows.filter(|_| is_chain), ..self }
     }
 
@@ -156,10 +162,8 @@ impl Twin {
                 let elek::Walked { interfaces, base } = elek::walk(layers, terms, wi, wo, normal);
                 (interfaces, base.map(|base| (base.down, base.up)))
             }
-            (Kind::WeidlichWilkie(stacks), Some(_)) => {
-                let walk = |stack: &Monochrome, optics: &Channel<'_, _>| {
-                    WeidlichWilkie::default().walk(stack, optics, wi, wo, normal)
-                };
+            (Kind::WeidlichWilkie(model, stacks), Some(_)) => {
+                let walk = |stack: &Monochrome, optics: &Channel<'_, _>| model.walk(stack, optics, wi, wo, normal);
                 let [r, g, b] = each(terms, stacks, walk);
                 let interfaces = [r.interfaces, g.interfaces, b.interfaces];
                 let (down, up) = match (&r.base, &g.base, &b.base) {
@@ -196,11 +200,11 @@ impl Twin {
         let &Under { flake_normal, inner_normal, slope_variance, base_color } = under;
         match &self.kind {
             Kind::Elek(layers) => elek::eval_below(layers, terms, wi, wo, flake_normal),
-            Kind::WeidlichWilkie(stacks) => each(terms, stacks, |stack, optics| {
-                WeidlichWilkie::default().eval_below(stack, optics, wi, wo, flake_normal)
-            }),
-            Kind::GranierHeidrich(stacks) => {
-                let model = GranierHeidrich { inner_normal, ..GranierHeidrich::default() };
+            Kind::WeidlichWilkie(model, stacks) => {
+                each(terms, stacks, |stack, optics| model.eval_below(stack, optics, wi, wo, flake_normal))
+            }
+            Kind::GranierHeidrich(model, stacks) => {
+                let model = model.leaning(inner_normal);
                 each(terms, stacks, |stack, optics| model.eval_with(stack, optics, wi, wo))
             }
             Kind::Belcour(layers) => statistical::<f64>(layers, terms, wi, wo),

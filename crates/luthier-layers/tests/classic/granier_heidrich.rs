@@ -138,3 +138,31 @@ fn printed_lobes_carry_a_small_share() {
     close(carried(|f, wi| f.beams(wi, DVec3::Z).reflected) / 0.04, 1.0 / 91.0, 1e-5);
     close(carried(|f, wi| f.beams(wi, DVec3::Z).transmitted) / (0.96 * 0.96), 1.0 / 76.0, 1e-4);
 }
+
+/// Oracle: exponents that are given, 90 and 170, in place of slope parameters that stand for them. Weights are factors on either part.
+#[test]
+fn slope_parameters_of_both_boundaries_are_their_exponents() {
+    let alpha = (2.0f64 / 92.0).sqrt();
+    let stack = |albedo: f64| Monochrome::bare(&[(ggx(alpha), dielectric(1.5, 0.0)), (ggx(0.0), lambert(albedo))]);
+    let own = GranierHeidrich { inner_alpha_ratio: (92.0f64 / 172.0).sqrt(), ..GranierHeidrich::default() };
+    let given = GranierHeidrich { exponents: Some([90.0, 170.0]), ..GranierHeidrich::default() };
+    let weighed = GranierHeidrich { specular_weight: 0.3, diffuse_weight: 0.2, ..own };
+    for (theta_i, theta_o) in [(0.0, 10.0), (30.0, 35.0), (60.0, 50.0), (80.0, 75.0)] {
+        let (wi, wo) = (at(theta_i), mirrored(at(theta_o)));
+        let value = |model: &GranierHeidrich, albedo| model.eval(&stack(albedo), wi, wo);
+        close(value(&own, 0.5), value(&given, 0.5), 1e-10 * value(&given, 0.5));
+        let (specular, whole) = (value(&own, 0.0), value(&own, 0.5));
+        close(value(&weighed, 0.5), 0.3 * specular + 0.2 * (whole - specular), 1e-12);
+    }
+}
+
+/// Slopes of heights add up: a boundary of slope 0.25 that leans by 0.1 more at a place, and by 0.3 across.
+#[test]
+fn a_lean_at_a_place_comes_on_top() {
+    let normal = |x: f64, y: f64| DVec3::new(x, y, 1.0).normalize();
+    let model = GranierHeidrich { inner_normal: normal(0.25, 0.0), ..GranierHeidrich::default() };
+    let found = model.leaning(normal(0.1, -0.3)).inner_normal;
+    assert!((found - normal(0.35, -0.3)).length() < 1e-15, "{found}");
+    assert_eq!(model.leaning(DVec3::Z), model);
+    assert_eq!(GranierHeidrich::default().leaning(model.inner_normal), model);
+}

@@ -99,7 +99,7 @@ fn the_faithful_model_lacks_one_over_n_squared() {
     close(albedo(&WeidlichWilkie::default(), &stack, at(0.0)), 1.9807, 5e-4);
     close(compressed(&WeidlichWilkie::default(), &stack, 0.0), 0.9025, 5e-4);
     // Without a roughness clamp to act, the real-time form is the same.
-    close(albedo(&Elek, &stack, at(0.0)), 1.9807, 5e-4);
+    close(albedo(&Elek::default(), &stack, at(0.0)), 1.9807, 5e-4);
 }
 
 /// F + (1-F)^2 at 45 degrees instead of 1, and n^2 times the second part as printed.

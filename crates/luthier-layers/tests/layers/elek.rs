@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use luthier_layers::elek::{self, ALPHA_MIN, Below, Layer};
+use luthier_layers::parts::InternalReflection;
 use luthier_layers::terms::{Exact, Terms};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
@@ -41,14 +42,25 @@ const LAMBERT: Layer = Layer {
     distribution: Distribution::Ggx,
     alpha: ALPHA_MIN,
     below: Below::Diffuse(Diffuse { albedo: [0.2, 0.5, 0.8], sigma: 0.0 }),
+    internal_reflection: InternalReflection::Facets,
 };
 
 fn coat(alpha: f64, eta: f64, optical_depth: Rgb) -> Layer {
-    Layer { distribution: Distribution::Beckmann, alpha, below: Below::Dielectric { eta, optical_depth } }
+    Layer {
+        distribution: Distribution::Beckmann,
+        alpha,
+        below: Below::Dielectric { eta, optical_depth },
+        internal_reflection: InternalReflection::Facets,
+    }
 }
 
 fn mirror(alpha: f64) -> Layer {
-    Layer { distribution: Distribution::Ggx, alpha, below: Below::Conductor }
+    Layer {
+        distribution: Distribution::Ggx,
+        alpha,
+        below: Below::Conductor,
+        internal_reflection: InternalReflection::Facets,
+    }
 }
 
 fn pairs() -> Vec<(DVec3, DVec3)> {
@@ -82,6 +94,32 @@ fn an_index_matched_clear_coat_cannot_be_seen() {
             }
         }
     }
+}
+
+/// Oracle: eq. 4 with the masking of Torrance and Sparrow written out, and 1.
+#[test]
+fn internal_reflection_is_a_factor_on_what_lies_below() {
+    let f = 0.3;
+    let hidden = |wi: DVec3, wo: DVec3| {
+        let wh = (wi + wo).normalize();
+        let [i, o] = [wi, wo].map(|w| 2.0 * wh.z * w.z / wo.dot(wh));
+        i.min(o).min(1.0)
+    };
+    let mut least: f64 = 1.0;
+    for (wi, wo) in pairs() {
+        let bare = elek::eval(&[LAMBERT], &Plain([]), wi, wo);
+        let facets = coat(0.3, 1.0, [0.0; 3]);
+        let none = Layer { internal_reflection: InternalReflection::None, ..facets };
+        let g = hidden(wi, wo);
+        least = least.min(g);
+        for (top, t) in [(facets, (1.0 - g) + (1.0 - f) * g), (none, 1.0)] {
+            let coated = elek::eval(&[top, LAMBERT], &Plain([f]), wi, wo);
+            for (found, bare) in coated.into_iter().zip(bare) {
+                assert!((found - (1.0 - f) * t * bare).abs() <= 1e-13 * bare, "{found} {bare} {t}");
+            }
+        }
+    }
+    assert!(least < 0.5, "{least}");
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! Bake settings and budgets of a file.
 
 use luthier_lut::{TableKind, TexelFormat};
-use luthier_manifest::{Budget, ColorMode, Masking, Reflectance, ShadingModel};
+use luthier_manifest::{Budget, ColorMode, InternalReflection, Masking, Reflectance, ShadingModel};
 
 use crate::bake_settings::{
-    AlphaMapping, BakeSettings, DistributionMapping, DistributionSettings, FresnelMapping, FresnelSettings,
+    AlphaMapping, BakeSettings, Beams, DistributionMapping, DistributionSettings, FresnelMapping, FresnelSettings,
     GridSettings, RowSettings,
 };
 use crate::diagnostic::Sink;
@@ -19,6 +19,8 @@ pub(super) fn decode(document: &Section<'_>, sink: &mut Sink<'_>) -> BakeSetting
         model: at.text("model").and_then(ShadingModel::from_name),
         masking: at.text("masking").and_then(Masking::from_name),
         reflectance: at.text("reflectance").and_then(Reflectance::from_name),
+        internal_reflection: at.text("internal_reflection").and_then(InternalReflection::from_name),
+        beams: at.section("granier-heidrich").map(|at| beams(&at, sink)),
         tables: at.texts("tables").iter().filter_map(|name| TableKind::from_name(name)).collect(),
         color: at.text("color").and_then(ColorMode::from_name),
         wavelengths_nm,
@@ -66,6 +68,21 @@ fn distinct(wavelengths: &[f64; 3], at: &Section<'_>, sink: &mut Sink<'_>) -> bo
         sink.error(span, "the wavelengths of R, G and B must descend", Some(hint));
     }
     false
+}
+
+fn beams(at: &Section<'_>, sink: &mut Sink<'_>) -> Beams {
+    let plain = Beams::default();
+    let angle = |key: &str| at.number(key).map(f64::to_radians);
+    if at.has("inner_azimuth_deg") && !at.has("inner_tilt_deg") {
+        let hint = "give `inner_tilt_deg`, or leave it out".to_owned();
+        sink.error(at.key_span("inner_azimuth_deg"), "a boundary that does not lean has no azimuth", Some(hint));
+    }
+    Beams {
+        specular_weight: at.number("specular_weight").unwrap_or(plain.specular_weight),
+        diffuse_weight: at.number("diffuse_weight").unwrap_or(plain.diffuse_weight),
+        inner_tilt: angle("inner_tilt_deg").unwrap_or(plain.inner_tilt),
+        inner_azimuth: angle("inner_azimuth_deg").unwrap_or(plain.inner_azimuth),
+    }
 }
 
 fn format(at: &Section<'_>) -> Option<TexelFormat> {

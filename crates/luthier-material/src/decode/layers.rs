@@ -82,7 +82,12 @@ pub(super) fn decode(
             sources.places.add(&key, at);
             films.iter().enumerate().for_each(|(i, film)| sources.places.add(&format!("{key}.film.{i}"), &film.at));
         }
-        let extra = LayerExtras { reradiation: matrix, film_variation: variation(&films, sink), maps: maps(at) };
+        let extra = LayerExtras {
+            reradiation: matrix,
+            film_variation: variation(&films, sink),
+            exponents: surface::exponents(at),
+            maps: maps(at),
+        };
         if number > 0 {
             only_the_first_varies(at, &films, sink);
         }
@@ -140,6 +145,11 @@ fn only_the_first_varies(at: &Section<'_>, films: &[films::Pending<'_>], sink: &
             _ => "leave it out: only the first slab varies in thickness",
         };
         sink.error(maps.value_span(name), message, Some(hint.to_owned()));
+    }
+    if at.has("exponents") {
+        let message = "exponents belong to the first layer: the model granier-heidrich has lobes of no other";
+        let hint = "write `smooth = true`: its surface is not seen".to_owned();
+        sink.error(at.value_span("exponents"), message, Some(hint));
     }
     if let Some(film) = films.first().filter(|film| film.variation.is_some()) {
         let message = "only the film of the first layer may vary in thickness: shaders read no map of another";

@@ -1,9 +1,9 @@
 //! Keys of `[bake]` and `[budget]`.
 
 use luthier_lut::TableKind;
-use luthier_manifest::{ColorMode, Masking, Reflectance, ShadingModel};
+use luthier_manifest::{ColorMode, InternalReflection, Masking, Reflectance, ShadingModel};
 
-use super::{Key, Kind, POSITIVE, Range, Table};
+use super::{Key, Kind, NOT_NEGATIVE, POSITIVE, Range, Table};
 use crate::bake_settings::{AlphaMapping, DistributionMapping, FresnelMapping};
 
 /// Wavelengths that the colour matching functions cover.
@@ -47,6 +47,12 @@ pub(super) static BAKE: Table = Table {
             "How the models elek, weidlich-wilkie and microfacet come by the reflectance of an interface: rows of a table, Fresnel's equations, \
              Schlick's form with the F0 of n and k, or Lazanyi's correction of it.",
         ),
+        Key::with_default(
+            "internal_reflection",
+            Kind::Choice(InternalReflection::NAMES),
+            "\"facets\"",
+            "Light from below that interfaces let out, in the models elek and weidlich-wilkie: less what facets reflect back, or all of it.",
+        ),
         Key::optional(
             "tables",
             Kind::List { item: &Kind::Choice(TableKind::NAMES), min: 1, max: TableKind::NAMES.len() },
@@ -63,6 +69,7 @@ pub(super) static BAKE: Table = Table {
             "[645, 525, 445]",
             "The wavelengths taken as R, G and B, in nm.",
         ),
+        Key::optional("granier-heidrich", Kind::Table(&BEAMS), "Numbers of the model granier-heidrich."),
         Key::optional("fresnel", Kind::Table(&FRESNEL), "Fresnel rows."),
         Key::optional("distribution", Kind::Table(&DISTRIBUTION), "Table of the slope distribution."),
         Key::optional("fgd", Kind::Table(&FGD), "Energy of the rough interface, all bounces."),
@@ -98,6 +105,36 @@ pub(super) static BUDGET: Table = Table {
             "max_albedo_err",
             Kind::Number(POSITIVE),
             "Largest error of the directional albedo of fitted lobes.",
+        ),
+    ],
+    exactly_one: None,
+};
+
+/// Lean of a boundary: at 90 degrees it would stand upright.
+const TILT_DEG: Range = Range { min: 0.0, max: 80.0, above: false };
+
+static BEAMS: Table = Table {
+    name: "beams",
+    doc: "Numbers of the model granier-heidrich.",
+    keys: &[
+        Key::with_default("specular_weight", Kind::Number(NOT_NEGATIVE), "1", "Weight of the two beams."),
+        Key::with_default(
+            "diffuse_weight",
+            Kind::Number(NOT_NEGATIVE),
+            "1",
+            "Weight of the diffuse part, beside the albedo of the base.",
+        ),
+        Key::with_default(
+            "inner_tilt_deg",
+            Kind::Number(TILT_DEG),
+            "0",
+            "Lean of the inner boundary against the outer one in degrees.",
+        ),
+        Key::with_default(
+            "inner_azimuth_deg",
+            Kind::Number(super::ANY),
+            "0",
+            "Azimuth to which the normal of the inner boundary leans, in degrees from the tangent; with inner_tilt_deg.",
         ),
     ],
     exactly_one: None,

@@ -18,6 +18,9 @@ const EXTINCTION: Range = Range { above: false, ..INDEX };
 /// Cells along one repeat, of the first of up to twelve octaves: the finest still has coordinates of whole numbers.
 const NOISE_FREQUENCY: Range = Range { min: 0.0, max: 65536.0, above: true };
 
+/// A slope parameter of 1, to one above the least that shaders have.
+const EXPONENT: Range = Range { min: 0.0, max: 1e6, above: false };
+
 const SIGMA: Range = Range { min: 0.0, max: std::f64::consts::FRAC_PI_2, above: false };
 
 /// Enough for any table of samples that is still written by hand.
@@ -62,8 +65,8 @@ const IOR_DOC: &str = "Index of refraction: a number, a table { n, k, wavelength
 
 const SURFACE: Alternatives = Alternatives {
     what: "surface",
-    forms: &[&["roughness"], &["alpha"], &["slope_deg"], &["smooth"], &["alpha_x", "alpha_y"]],
-    examples: "`smooth = true`, `roughness`, `alpha`, `slope_deg`, or `alpha_x` with `alpha_y`",
+    forms: &[&["roughness"], &["alpha"], &["slope_deg"], &["smooth"], &["exponents"], &["alpha_x", "alpha_y"]],
+    examples: "`smooth = true`, `roughness`, `alpha`, `slope_deg`, `exponents`, or `alpha_x` with `alpha_y`",
     together: false,
     and: None,
 };
@@ -91,6 +94,11 @@ const ALPHA: Key = Key::optional("alpha", Kind::Number(UNIT), "Slope parameter o
 const SLOPE: Key =
     Key::optional("slope_deg", Kind::Number(SLOPE_DEG), "Mean slope in degrees, 0 to 45: alpha is its tangent.");
 const SMOOTH: Key = Key::optional("smooth", Kind::True, "A perfectly smooth surface.");
+const EXPONENTS: Key = Key::optional(
+    "exponents",
+    Kind::List { item: &Kind::Number(EXPONENT), min: 2, max: 2 },
+    "Exponents of the lobes of the outer boundary and of the inner one, for the model granier-heidrich.",
+);
 const ALPHA_X: Key =
     Key::optional("alpha_x", Kind::Number(UNIT_ABOVE_ZERO), "Slope parameter along the tangent; with alpha_y.");
 const ALPHA_Y: Key =
@@ -130,6 +138,7 @@ pub(super) static DIELECTRIC: Table = Table {
         ALPHA,
         SLOPE,
         SMOOTH,
+        EXPONENTS,
         ALPHA_X,
         ALPHA_Y,
         ROTATION,
@@ -157,6 +166,7 @@ pub(super) static CONDUCTOR: Table = Table {
         ALPHA,
         SLOPE,
         SMOOTH,
+        EXPONENTS,
         ALPHA_X,
         ALPHA_Y,
         ROTATION,
@@ -221,6 +231,7 @@ pub(super) static METALLIC_ROUGHNESS: Table = Table {
         ALPHA,
         SLOPE,
         SMOOTH,
+        EXPONENTS,
         ALPHA_X,
         ALPHA_Y,
         ROTATION,

@@ -249,7 +249,12 @@ impl References {
         let model = material.model;
         let varying = varying(material);
         let (masking, reflectance) = material.parts();
-        let parts = Parts::named(masking.name(), reflectance.name()).unwrap_or(Parts::PLAIN);
+        let parts = Parts::named(masking.name(), reflectance.name(), material.internal_reflection().name());
+        let parts = parts.unwrap_or(Parts::PLAIN);
+        let parts = material.constants.beams.map_or(parts, |beams| {
+            let weights = [beams.specular_weight, beams.diffuse_weight];
+            parts.with_beams(beams.inner_alpha_ratio, weights, beams.inner_normal)
+        });
         let twin = Twin::with(model.name(), stack, material.wavelengths_nm, color, parts);
         Ok(Self {
             layers: elek::layers(stack),

@@ -162,6 +162,7 @@ pub(crate) fn rounded(w: DVec3, smallest_cos: f64) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use luthier_layers::elek::ALPHA_MIN;
+    use luthier_layers::parts::InternalReflection;
     use luthier_optics::stack::Distribution;
 
     use super::*;
@@ -169,8 +170,18 @@ mod tests {
     fn coat_on_metal(alpha: f64) -> Vec<Layer> {
         let coat = Below::Dielectric { eta: 1.5, optical_depth: [0.0; 3] };
         vec![
-            Layer { distribution: Distribution::Ggx, alpha: ALPHA_MIN, below: coat },
-            Layer { distribution: Distribution::Beckmann, alpha, below: Below::Conductor },
+            Layer {
+                distribution: Distribution::Ggx,
+                alpha: ALPHA_MIN,
+                below: coat,
+                internal_reflection: InternalReflection::Facets,
+            },
+            Layer {
+                distribution: Distribution::Beckmann,
+                alpha,
+                below: Below::Conductor,
+                internal_reflection: InternalReflection::Facets,
+            },
         ]
     }
 
@@ -219,7 +230,12 @@ mod tests {
 
     #[test]
     fn highlights_stay_within_the_reach_of_the_widest_lobe() {
-        let layers = vec![Layer { distribution: Distribution::Ggx, alpha: 0.02, below: Below::Conductor }];
+        let layers = vec![Layer {
+            distribution: Distribution::Ggx,
+            alpha: 0.02,
+            below: Below::Conductor,
+            internal_reflection: InternalReflection::Facets,
+        }];
         for (wi, wo) in DirectionSet::Highlight.pairs(2000, &layers) {
             let wh = DVec3::from(wi.map(f64::from)) + DVec3::from(wo.map(f64::from));
             let slope = libm::hypot(wh.x, wh.y) / wh.z;

@@ -133,7 +133,7 @@ mod tests {
     fn albedos_are_those_of_another_quadrature() {
         let brushed = Surface { distribution: Distribution::Beckmann, alpha_x: 0.4, alpha_y: 0.1, rotation: 0.3 };
         let surfaces = [brushed, Surface::isotropic(Distribution::Ggx, 0.3)];
-        let models: [&dyn Model; 3] = [&Microfacet::new(Components::PLAIN), &Elek, &Phong];
+        let models: [&dyn Model; 3] = [&Microfacet::new(Components::PLAIN), &Elek::default(), &Phong];
         for stack in surfaces.map(metal) {
             for theta_deg in THETAS_DEG {
                 let cells = Cells::new(direction(theta_deg, 30.0));

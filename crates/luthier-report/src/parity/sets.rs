@@ -147,12 +147,23 @@ mod tests {
     use luthier_optics::stack::Distribution;
 
     use super::*;
+    use luthier_layers::parts::InternalReflection;
 
     fn layers() -> Vec<Layer> {
         let coat = Below::Dielectric { eta: 1.5, optical_depth: [0.0; 3] };
         vec![
-            Layer { distribution: Distribution::Ggx, alpha: 0.2, below: coat },
-            Layer { distribution: Distribution::Beckmann, alpha: 0.05, below: Below::Conductor },
+            Layer {
+                distribution: Distribution::Ggx,
+                alpha: 0.2,
+                below: coat,
+                internal_reflection: InternalReflection::Facets,
+            },
+            Layer {
+                distribution: Distribution::Beckmann,
+                alpha: 0.05,
+                below: Below::Conductor,
+                internal_reflection: InternalReflection::Facets,
+            },
         ]
     }
 

@@ -77,7 +77,7 @@ fn count(set: &MaterialSet<'_>, features: &Features) -> usize {
                 Some(layer) if layer.kind == LayerKind::Diffuse => 0,
                 Some(_) if !features.has("granier_transparent") => 1,
                 // With a tilted inner boundary the beams of the channels part.
-                _ if features.has("place") => 4,
+                _ if features.has("granier_tilted") => 4,
                 _ => 2,
             },
             ShadingModel::Elek | ShadingModel::WeidlichWilkie => {

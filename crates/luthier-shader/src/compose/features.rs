@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use luthier_lut::TableKind;
 use luthier_manifest::{
-    FunctionGroup, LayerKind, LayerRecord, LobesRecord, Masking, MaterialEntry, Reflectance, ShadingModel,
-    VaryingFactor,
+    FunctionGroup, InternalReflection, LayerKind, LayerRecord, LobesRecord, Masking, MaterialEntry, Reflectance,
+    ShadingModel, VaryingFactor,
 };
 
 use crate::compose::masking;
@@ -20,7 +20,7 @@ impl Features {
     #[cfg(test)]
     const ALL: &str = "absorption anisotropic bare base_color beckmann below bent bilinear chain chain_diffuse chain_patina clamped closed \
         coat computed conductor critical_view diffuse environment exact face film film_table fitted flakes fluorescent folded full ggx glitter granier \
-        granier_bare granier_base granier_film granier_schlick granier_transparent interface lazanyi lobes_axes lobes_bare_base lobes_base \
+        granier_bare granier_base granier_film granier_own granier_schlick granier_tilted granier_transparent interface internal lazanyi lobes_axes lobes_bare_base lobes_base \
         lobes_diffuse lobes_film lobes_patina lobes_tilted mask_implicit mask_kelemen \
         mask_schlick_smith mask_smith mask_smith_separable mask_v_cavity masked media microfacet_diffuse mixed one_lobe \
         oren_nayar packed particles patina phong picks place powers rows schlick schlick_base several several_maskings several_reflectances smith split_root statistics statistics_base surface tabled theta_axis tilted \
@@ -69,6 +69,10 @@ impl Features {
         }
         if form == Form::Full {
             names.insert("full");
+        }
+        // The inner boundary of a film leans where a material says so, and where a place does.
+        if names.contains("granier_transparent") && names.contains("place") {
+            names.insert("granier_tilted");
         }
         let has = |name| names.contains(name);
         if has("lobes_tilted") || has("below") && has("statistics") || has("granier_schlick") {
@@ -132,16 +136,19 @@ fn of_parts(set: &MaterialSet<'_>, form: Form, names: &BTreeSet<&'static str>) -
     let sources = [is_read, is_computed, has("fitted")].iter().filter(|holds| **holds).count();
     let maskings = masking::used(set);
     let is_masked = maskings.iter().any(|masking| *masking != Masking::default());
-    let mut records = set.materials.iter().flat_map(MaterialEntry::records);
+    let records = || set.materials.iter().flat_map(MaterialEntry::records);
     let is_packed =
         |record: &LayerRecord| (record.masking, record.reflectance) != (Masking::default(), Reflectance::default());
+    let is_whole = |record: &LayerRecord| record.internal_reflection != InternalReflection::default();
+    let has_whole = records().any(is_whole);
     let words = [
         ("rows", is_read),
         ("computed", is_computed),
         ("several_reflectances", sources > 1),
         ("masked", is_masked),
         ("several_maskings", maskings.len() > 1),
-        ("packed", records.any(is_packed)),
+        ("packed", has_whole || records().any(is_packed)),
+        ("internal", has_whole && has("chain") && has("below")),
     ];
     let chosen = words.into_iter().filter(|(_, holds)| *holds).map(|(name, _)| name);
     chosen.chain(maskings.into_iter().filter(|_| is_masked).map(masking::word)).collect()
@@ -153,7 +160,7 @@ fn of_face(set: &MaterialSet<'_>, names: &BTreeSet<&'static str>) -> Vec<&'stati
     let has = |name| names.contains(name);
     let visible = has("chain") || has("smith") || has("statistics");
     let powers = has("phong") || has("granier") && has("interface");
-    let tilted = has("flakes") || has("granier_transparent") && has("place");
+    let tilted = has("flakes") || has("granier_tilted");
     let words = [
         ("face", true),
         ("visible", visible),
@@ -294,6 +301,12 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
             }
             if first.f0.is_some() && first.kind == LayerKind::Dielectric {
                 names.insert("granier_schlick");
+            }
+            if let Some(beams) = &material.constants.beams {
+                names.insert("granier_own");
+                if beams.inner_normal[2] < 1.0 {
+                    names.insert("granier_tilted");
+                }
             }
             match first.kind {
                 _ if has_film => names.insert("granier_transparent"),

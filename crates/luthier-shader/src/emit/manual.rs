@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use luthier_lut::{Axis, Mapping, TableKind};
-use luthier_manifest::{BindingEntry, Masking, MaterialTexture, Reflectance, ShadingModel};
+use luthier_manifest::{BindingEntry, InternalReflection, Masking, MaterialTexture, Reflectance, ShadingModel};
 
 use super::Part;
 use crate::{Form, MaterialSet, RESERVED_BINDINGS, ShaderError, Target, bindings};
@@ -164,7 +164,13 @@ fn parts(set: &MaterialSet<'_>) -> Vec<String> {
         let names = chosen().filter(|(_, parts)| parts.1 == reflectance).map(|(name, _)| name);
         line("Reflectance", reflectance.title(), names.collect())
     });
-    maskings.chain(reflectances).collect()
+    let without = set.materials.iter().filter(|material| material.internal_reflection() == InternalReflection::None);
+    let names = without.map(|material| material.name.as_str()).collect();
+    let internal = line("Internal reflection", InternalReflection::None.title(), names);
+    let beams = set.materials.iter().filter(|material| material.constants.beams.is_some());
+    let names = beams.map(|material| material.name.as_str()).collect();
+    let beams = line("Exponents, weights and inner boundary", "its own, in words 1 and 2 of its header", names);
+    maskings.chain(reflectances).chain(internal).chain(beams).collect()
 }
 
 fn functions(set: &MaterialSet<'_>, form: Form, target: Target, part: Part, wgsl: &str) -> Vec<String> {

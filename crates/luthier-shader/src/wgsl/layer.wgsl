@@ -62,6 +62,10 @@ struct LuthierLayer {
     /// Reflectance: 0 a table, 1 Fresnel's equations, 2 Schlick's form, 3 with Lazanyi's correction.
     reflectance: u32,
     //? end
+    //? internal
+    /// Part of the light from below that facets reflect back: 1, or 0 where all of it comes out.
+    internal_reflection: f32,
+    //? end
     //? fitted
     /// Reflectance at normal incidence, where it is a curve.
     f0: vec3<f32>,
@@ -152,7 +156,12 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     let kind = luthier_whole(numbers.x);
     layer.kind = kind & 3u;
     layer.reflectance = (kind >> 2u) & 3u;
+    //? internal
+    layer.masking = (kind >> 4u) & 7u;
+    layer.internal_reflection = select(1.0, 0.0, kind >= 128u);
+    //? else
     layer.masking = kind >> 4u;
+    //? end
     //? else
     layer.kind = luthier_whole(numbers.x);
     //? end

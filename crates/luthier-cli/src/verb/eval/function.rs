@@ -7,7 +7,7 @@ use luthier_layers::model::{Estimator, Model};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::parts::Parts;
 use luthier_layers::shaded::{Shaded, at_wavelength};
-use luthier_manifest::{ColorMode, Reflectance, ShadingModel};
+use luthier_manifest::{BeamsRecord, ColorMode, Reflectance, ShadingModel};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
@@ -176,7 +176,16 @@ pub(super) fn parts(subject: &Subject) -> (Parts, Reflectance) {
     let masking = bake.masking.filter(|_| model.is_some_and(ShadingModel::has_masking)).unwrap_or_default();
     let has_reflectance = model.is_some_and(ShadingModel::has_reflectance);
     let reflectance = bake.reflectance.filter(|_| has_reflectance).unwrap_or_default();
-    (Parts::named(masking.name(), reflectance.name()).unwrap_or(Parts::PLAIN), reflectance)
+    let internal = bake.internal_reflection.filter(|_| model.is_some_and(ShadingModel::has_internal_reflection));
+    let parts = Parts::named(masking.name(), reflectance.name(), internal.unwrap_or_default().name());
+    let parts = parts.unwrap_or(Parts::PLAIN);
+    let beams = subject.material.beams().filter(|_| model.is_some_and(ShadingModel::has_beams));
+    (
+        beams.map_or(parts, |BeamsRecord { inner_alpha_ratio, specular_weight, diffuse_weight, inner_normal }| {
+            parts.with_beams(inner_alpha_ratio, [specular_weight, diffuse_weight], inner_normal)
+        }),
+        reflectance,
+    )
 }
 
 /// The twin of the model's shader, where it has one. At one wavelength the models of Belcour and Yamaguchi are evaluated by themselves: their
@@ -185,9 +194,9 @@ fn shaded(subject: &Subject, kind: &Kind) -> Option<How> {
     let (stack, name, place) = (&subject.material.stack, subject.model.info().name, &subject.place);
     let fit = subject.fit.as_ref();
     let (parts, reflectance) = parts(subject);
-    let made = |stack: &Stack, wavelengths_nm: [f64; 3], color: Color| match parts {
-        Parts::PLAIN => Shaded::fitted_by(fit, name, stack, wavelengths_nm, color, place),
-        _ => Shaded::with(name, stack, wavelengths_nm, color, place, parts),
+    let made = |stack: &Stack, wavelengths_nm: [f64; 3], color: Color| match parts == Parts::PLAIN {
+        true => Shaded::fitted_by(fit, name, stack, wavelengths_nm, color, place),
+        false => Shaded::with(name, stack, wavelengths_nm, color, place, parts),
     };
     match *kind {
         Kind::Reradiated(_) => None,

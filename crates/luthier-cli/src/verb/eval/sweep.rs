@@ -1,12 +1,13 @@
 //! Tables against the angle of the eye.
 
 use luthier_layers::directional_albedo::DirectionalAlbedo;
-use luthier_layers::elek_model::environment;
+use luthier_layers::elek_model::{Elek, environment};
 use luthier_layers::furnace::furnace;
 use luthier_layers::layered_mc::Estimate;
 use luthier_layers::microfacet::Microfacet;
 use luthier_layers::model::Model;
 use luthier_layers::parts::Parts;
+use luthier_layers::weidlich_wilkie::WeidlichWilkie;
 use luthier_manifest::ShadingModel;
 use luthier_terminal::{Failure, Outcome, print};
 use rayon::prelude::*;
@@ -56,11 +57,22 @@ fn of_file(subject: &Subject) -> Outcome<Option<Box<dyn Model>>> {
         let model = Box::new(Microfacet::new(parts.components()));
         return Ok(Some(ModelInputs::textured(subject.place.sample, model)));
     }
+    let at_place = |model: Box<dyn Model>| Ok(Some(ModelInputs::textured(subject.place.sample, model)));
+    if name == ShadingModel::GranierHeidrich.name() {
+        return at_place(Box::new(parts.beams.leaning(subject.place.under.inner_normal)));
+    }
     if reflectance.is_fitted() {
         let text = format!(
             "`--furnace` of `{name}` has Fresnel's equations, and the file chooses `{reflectance}`: leave that out"
         );
         return Err(Failure::Input(anyhow::anyhow!(text)));
+    }
+    let Parts { internal_reflection, .. } = parts;
+    if name == ShadingModel::Elek.name() {
+        return at_place(Box::new(Elek { internal_reflection }));
+    }
+    if name == ShadingModel::WeidlichWilkie.name() {
+        return at_place(Box::new(WeidlichWilkie { internal_reflection, ..WeidlichWilkie::default() }));
     }
     Ok(None)
 }

@@ -179,6 +179,46 @@ fn parts_that_a_model_does_not_have() {
             "model = \"elek\"\nreflectance = \"approximate\"",
             ["`approximate`", "knows of no films", "x.toml:5:8"],
         ),
+        (
+            format!("{coat}{metal}"),
+            "model = \"belcour\"\ninternal_reflection = \"none\"",
+            ["model `belcour` of this material has", "no internal reflection `none`", "x.toml:15:23"],
+        ),
+        (
+            metal.replace("alpha = 0.2", "exponents = [90, 170]"),
+            "model = \"elek\"",
+            ["`exponents` gives lobes of the model `granier-heidrich`", "has `elek`", "x.toml:7:13"],
+        ),
+        (
+            metal.to_owned(),
+            "model = \"elek\"\n[bake.granier-heidrich]\nspecular_weight = 0.5",
+            ["gives numbers of the model", "has `elek`", "x.toml:11:1"],
+        ),
+        (
+            metal.to_owned(),
+            "model = \"granier-heidrich\"\n[bake.granier-heidrich]\ndiffuse_weight = 0.5",
+            ["no diffuse base", "this weight", "x.toml:12:18"],
+        ),
+        (
+            metal.to_owned(),
+            "model = \"granier-heidrich\"\n[bake.granier-heidrich]\ninner_tilt_deg = 5",
+            ["neither film nor slab", "could lean", "x.toml:12:18"],
+        ),
+        (
+            metal.to_owned(),
+            "model = \"granier-heidrich\"\n[bake.granier-heidrich]\ninner_azimuth_deg = 5",
+            ["does not lean", "azimuth", "x.toml:12:1"],
+        ),
+        (
+            metal.replace("alpha = 0.2", "exponents = [90, 170]"),
+            "model = \"granier-heidrich\"",
+            ["neither film nor slab", "no inner boundary has a lobe of exponent 170", "x.toml:7:13"],
+        ),
+        (
+            format!("{coat}{}", metal.replace("alpha = 0.2", "exponents = [90, 170]")),
+            "model = \"granier-heidrich\"",
+            ["exponents belong to the first layer", "lobes of no other", "x.toml:11:13"],
+        ),
     ] {
         workshop.write("x.toml", choosing(&layers, bake));
         refused(&workshop, &["x.toml"], &words);
@@ -188,6 +228,9 @@ fn parts_that_a_model_does_not_have() {
         (format!("{coat}{film}{metal}"), "model = \"microfacet\"\nreflectance = \"lazanyi\"", 2),
         (format!("{film}{metal}"), "model = \"elek\"\nreflectance = \"exact\"", 0),
         (metal.to_owned(), "model = \"phong\"\nreflectance = \"table\"", 0),
+        (format!("{coat}{metal}"), "model = \"elek\"\ninternal_reflection = \"facets\"", 0),
+        (format!("{coat}{metal}"), "model = \"elek\"\ninternal_reflection = \"none\"", 1),
+        (metal.to_owned(), "model = \"weidlich-wilkie\"\ninternal_reflection = \"none\"", 1),
         (metal.to_owned(), "model = \"microfacet\"\nmasking = \"smith\"", 0),
         (metal.to_owned(), "model = \"microfacet\"\nmasking = \"implicit\"", 1),
         (metal.to_owned(), "model = \"microfacet\"\nmasking = \"v-cavity\"\nreflectance = \"approximate\"", 2),
@@ -208,6 +251,8 @@ fn parts_that_a_model_does_not_have() {
     workshop.write("matte.toml", matte("matte"));
     workshop.write("shelf.toml", SCENE);
     refused(&workshop, &["shelf.toml"], &["a scene chooses the models", "`reflectance`", "b.toml:15:15"]);
+    workshop.write("b.toml", choosing(&coat.replace("alpha = 0.2", "exponents = [90, 170]"), ""));
+    refused(&workshop, &["shelf.toml"], &["a scene chooses the models", "`exponents`", "b.toml:7:13"]);
 }
 
 /// The chosen parts are in the bake: no rows without the table, the numbers of a curve, and a note at the top of shaders.

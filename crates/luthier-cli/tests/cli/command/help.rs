@@ -14,6 +14,7 @@ pub(crate) fn verbs() -> impl Iterator<Item = &'static str> {
         "shader",
         "models",
         "eval",
+        "fit",
         "ior",
         "schema",
         "completions",

@@ -4,6 +4,7 @@
 mod ball;
 #[cfg(feature = "gpu")]
 mod draws;
+mod fit;
 mod fluorescence;
 mod furnace;
 #[cfg(feature = "gpu")]

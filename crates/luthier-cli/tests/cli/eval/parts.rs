@@ -4,7 +4,7 @@ use glam::DVec3;
 use luthier_export::{Bake, MemoryStore, Package, Shader};
 use luthier_layers::parts::Parts;
 use luthier_layers::shaded::{Place, Shaded};
-use luthier_manifest::{ColorMode, Form, Masking, Reflectance, ShadingModel};
+use luthier_manifest::{BeamsRecord, ColorMode, Form, Masking, Reflectance, ShadingModel};
 use luthier_material::{Material, parse};
 use luthier_optics::color::Color;
 use luthier_shader::{MaterialSet, Target, emit};
@@ -63,10 +63,17 @@ fn reflecting() -> Vec<Material> {
     materials
 }
 
+fn of_beams(parts: Parts, beams: &BeamsRecord) -> Parts {
+    let weights = [beams.specular_weight, beams.diffuse_weight];
+    parts.with_beams(beams.inner_alpha_ratio, weights, beams.inner_normal)
+}
+
 fn parts(material: &Material) -> (Parts, Reflectance) {
     let (masking, reflectance) =
         (material.bake.masking.unwrap_or_default(), material.bake.reflectance.unwrap_or_default());
-    (Parts::named(masking.name(), reflectance.name()).unwrap(), reflectance)
+    let internal = material.bake.internal_reflection.unwrap_or_default();
+    let parts = Parts::named(masking.name(), reflectance.name(), internal.name()).unwrap();
+    (material.beams().map_or(parts, |beams| of_beams(parts, &beams)), reflectance)
 }
 
 /// Compares a set in both forms, D in closed form; what is read from rows has the errors of rows, and is left out.
@@ -125,6 +132,137 @@ fn reflectances_of_files_are_those_of_their_twins() {
     compare(&materials.iter().filter(fitted).cloned().collect::<Vec<_>>(), &mut worst);
     materials.iter().for_each(|material| compare(std::slice::from_ref(material), &mut worst));
     eprintln!("reflectances: at most {worst:.1e}");
+}
+
+/// Coats over metals and bases of both models, exact and from rows, without their internal reflection.
+fn whole() -> Vec<Material> {
+    let base = "[[layer]]\ntype = \"diffuse\"\nalbedo = [0.8, 0.5, 0.3]\nsigma = 0.3\n";
+    let metal = format!("{COPPER}{BRUSHED}");
+    let mut materials = Vec::new();
+    for model in ["elek", "weidlich-wilkie"] {
+        for (name, below) in [("metal", metal.as_str()), ("base", base)] {
+            for reflectance in ["exact", "lazanyi"] {
+                let layers =
+                    format!("{COAT}alpha = 0.5\n[[layer]]\ntype = \"dielectric\"\nior = 2.4\nalpha = 0.3\n{below}");
+                let bake =
+                    format!("model = \"{model}\"\nreflectance = \"{reflectance}\"\ninternal_reflection = \"none\"");
+                materials.push(material(&format!("{model}-{name}-{reflectance}"), &layers, &bake));
+            }
+        }
+    }
+    materials
+}
+
+#[test]
+fn what_is_not_reflected_inside_is_that_of_the_twin() {
+    let (materials, mut worst) = (whole(), 0.0);
+    let layers = format!("{COAT}roughness = 0.5\n{COPPER}roughness = 0.3\n");
+    let plain = material("plain", &layers, "model = \"weidlich-wilkie\"\nreflectance = \"exact\"");
+    compare(&[materials.clone(), vec![plain.clone()], masked()].concat(), &mut worst);
+    materials.iter().for_each(|material| compare(std::slice::from_ref(material), &mut worst));
+    eprintln!("internal reflection: at most {worst:.1e}");
+    // Light of a fluorescent base and behind flakes goes the same ways.
+    let (wi, wo) = (DVec3::new(0.8, 0.1, 0.4).normalize(), DVec3::new(-0.6, 0.2, 0.5).normalize());
+    let nm = plain.bake.wavelengths_nm();
+    let value = |parts| {
+        let color = Color::ThreeWavelengths(nm);
+        Shaded::with("weidlich-wilkie", &plain.stack, nm, color, &Place::NONE, parts).unwrap().eval(wi, wo)[1]
+    };
+    let (facets, none) = (value(Parts::PLAIN), value(parts(&materials[0]).0));
+    assert!(none > 1.01 * facets, "{none} {facets}");
+}
+
+/// Films, slabs and metals with numbers of Granier and Heidrich's model; some alike, some not.
+fn beams() -> Vec<Material> {
+    let film = "[[layer]]\ntype = \"thin-film\"\nior = { n = [1.6, 1.45, 1.4], wavelengths_nm = [445, 525, 645] }\nthickness_nm = 400\n";
+    let slab = "[[layer]]\ntype = \"dielectric\"\nior = { n = [1.8, 1.6, 1.5], wavelengths_nm = [445, 525, 645] }\n";
+    let schlick = "[[layer]]\ntype = \"dielectric\"\nf0 = [0.05, 0.08, 0.1]\n";
+    let base = "[[layer]]\ntype = \"diffuse\"\nalbedo = [0.8, 0.5, 0.3]\n";
+    let metal = "[[layer]]\ntype = \"conductor\"\nior = { n = 0.2, k = 3 }\n";
+    let weights = "specular_weight = 0.9\ndiffuse_weight = 0.4\n";
+    let lean = "inner_tilt_deg = 14\ninner_azimuth_deg = 30\n";
+    let rows = [
+        ("all-film", format!("{film}{slab}exponents = [90, 170]\n{base}"), format!("{weights}{lean}")),
+        ("all-slab", format!("{slab}exponents = [300, 20]\n{base}"), format!("{weights}{lean}")),
+        ("all-schlick", format!("{schlick}exponents = [90, 9000]\n{base}"), format!("{weights}{lean}")),
+        ("lean-alone", format!("{slab}alpha = 0.15\n{base}"), lean.to_owned()),
+        ("weights-alone", format!("{film}{metal}alpha = 0.2\n"), "specular_weight = 0.5\n".to_owned()),
+        ("exponents-alone", format!("{film}{metal}exponents = [130, 40]\n"), String::new()),
+        ("metal", format!("{metal}alpha = 0.2\n"), "specular_weight = 0.5\n".to_owned()),
+        ("alike", format!("{slab}exponents = [130, 130]\n{base}"), String::new()),
+    ];
+    let one = |(name, layers, numbers): (&str, String, String)| {
+        let table = if numbers.is_empty() { String::new() } else { format!("[bake.granier-heidrich]\n{numbers}") };
+        material(name, &layers, &format!("model = \"granier-heidrich\"\n{table}"))
+    };
+    rows.into_iter().map(one).collect()
+}
+
+#[test]
+fn exponents_weights_and_leans_are_those_of_the_twin() {
+    let (materials, mut worst) = (beams(), 0.0);
+    let alike = materials.last().unwrap();
+    assert!(alike.beams().is_none() && materials[..7].iter().all(|material| material.beams().is_some()));
+    compare(&materials, &mut worst);
+    let plain = material("plain", &format!("{COAT}roughness = 0.5\n{COPPER}roughness = 0.3\n"), "model = \"elek\"");
+    compare(&[plain, materials[0].clone(), alike.clone()], &mut worst);
+    materials.iter().for_each(|material| compare(std::slice::from_ref(material), &mut worst));
+    eprintln!("beams: at most {worst:.1e}");
+}
+
+/// A place has a factor on both slope parameters, and its lean comes on top.
+#[test]
+fn places_roughen_and_tilt_both_boundaries() {
+    let lean = DVec3::new(0.1, -0.05, 1.0).normalize();
+    let body = format!(
+        "var place = luthier_place();\nplace.alpha_factor = 1.5;\nplace.inner_normal = vec3<f32>({}, {}, {});\n\
+         return luthier_eval_at(place, material, wi, wo);",
+        lean.x as f32, lean.y as f32, lean.z as f32
+    );
+    let Some(gpu) = gpu() else { return };
+    let varying = "[[layer]]\ntype = \"thin-film\"\nior = 1.4\nthickness_nm = { min = 100, max = 300, extent_um = 10, map = { noise = { seed = 1, \
+                   frequency = 4, octaves = 1 } } }\n";
+    let varying = material("varying", &format!("{varying}{COPPER}alpha = 0.2\n"), "model = \"granier-heidrich\"");
+    for own in beams() {
+        let set = [own.clone(), varying.clone()];
+        let mut package = Package::new(&set, &Bake::wgsl(&[Form::Full]), &MemoryStore::default()).unwrap();
+        let wgsl = package.wgsl(Form::Full).unwrap().replace("fn luthier_eval(", "fn emitted_eval(")
+            + &format!("\nfn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n{body}\n}}\n");
+        package.shaders = vec![Shader::wgsl(Form::Full, wgsl)];
+        let found = gpu.scene(&package, Form::Full).unwrap().evaluate(0, &pairs()).unwrap();
+        let mut place = Place::NONE;
+        place.sample.alpha_factor = 1.5;
+        place.under.inner_normal = lean;
+        let nm = own.bake.wavelengths_nm();
+        let color = Color::ThreeWavelengths(nm);
+        let twin = Shaded::with("granier-heidrich", &own.stack, nm, color, &place, parts(&own).0).unwrap();
+        for ((wi, wo), found) in pairs().into_iter().zip(found) {
+            let expected = twin.eval(wide(wi), wide(wo));
+            assert!(error(found, expected) < TOLERANCE, "{}: {wi:?} {wo:?} {found:?} {expected:?}", own.name);
+        }
+    }
+}
+
+#[test]
+fn directions_are_drawn_without_bias_from_leaning_beams() {
+    let materials = beams();
+    let mut found = Found::default();
+    for set in [materials.clone(), vec![materials[1].clone()], vec![materials[5].clone()]] {
+        let Some(scene) = scene(&set) else { return };
+        for (number, material) in (0..).zip(&set) {
+            for theta in [20.0, 70.0] {
+                judge(
+                    &scene,
+                    number,
+                    theta,
+                    1000 + u64::from(number),
+                    &format!("{} {theta}", material.name),
+                    &mut found,
+                );
+            }
+        }
+    }
+    assert!(found.faults.is_empty(), "{}", found.faults.join("\n"));
 }
 
 /// Effects go on above chosen reflectances: patina dims them, and has some of its own.

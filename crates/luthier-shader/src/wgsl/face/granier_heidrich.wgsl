@@ -20,6 +20,13 @@ fn luthier_parts_granier_heidrich(given: LuthierPrepared, $place_parameter mater
     //? granier_base
     var diffuse = vec3<f32>(1.0);
     //? end
+    //? granier_own
+    //? interface
+    let own = luthier_own(material, layer.alpha);
+    //? else
+    let own = luthier_own(material, 1.0);
+    //? end
+    //? end
     //? interface
     var mirror = luthier_no_part();
     mirror.exponent = 2.0 / (layer.alpha * layer.alpha) - 2.0;
@@ -54,6 +61,22 @@ fn luthier_parts_granier_heidrich(given: LuthierPrepared, $place_parameter mater
         let leaving = 1.0 - mirror.energy;
         // The beams interfere as they do along the mirrored direction.
         let inside = sqrt(max(wo.z * wo.z + (eta - 1.0) * (eta + 1.0), vec3<f32>(0.0))) / eta;
+        //? granier_own
+        let energy = own.weights.x * (luthier_superpose(layer, mirror.energy, leaving * leaving, 2.0 * inside) - mirror.energy);
+        let exponent = own.inner_exponent;
+        //? granier_tilted
+        //? place
+        let normal = luthier_leaning(own.inner_normal, place.inner_normal);
+        //? else
+        let normal = own.inner_normal;
+        //? end
+        prepared.parts[1] = luthier_beam_part(energy * vec3<f32>(1.0, 0.0, 0.0), exponent, eta.x, normal);
+        prepared.parts[2] = luthier_beam_part(energy * vec3<f32>(0.0, 1.0, 0.0), exponent, eta.y, normal);
+        prepared.parts[3] = luthier_beam_part(energy * vec3<f32>(0.0, 0.0, 1.0), exponent, eta.z, normal);
+        //? else
+        prepared.parts[1] = luthier_beam_part(energy, exponent, eta.y, vec3<f32>(0.0, 0.0, 1.0));
+        //? end
+        //? else
         let energy = luthier_superpose(layer, mirror.energy, leaving * leaving, 2.0 * inside) - mirror.energy;
         //? place
         let normal = place.inner_normal;
@@ -62,6 +85,7 @@ fn luthier_parts_granier_heidrich(given: LuthierPrepared, $place_parameter mater
         prepared.parts[3] = luthier_beam_part(energy * vec3<f32>(0.0, 0.0, 1.0), mirror.exponent, eta.z, normal);
         //? else
         prepared.parts[1] = luthier_beam_part(energy, mirror.exponent, eta.y, vec3<f32>(0.0, 0.0, 1.0));
+        //? end
         //? end
         //? granier_base
         //? granier_schlick
@@ -83,12 +107,19 @@ fn luthier_parts_granier_heidrich(given: LuthierPrepared, $place_parameter mater
     }
     //? end
     //? interface
+    //? granier_own
+    mirror.energy *= own.weights.x;
+    //? end
     prepared.parts[0] = mirror;
     //? end
     //? granier_base
     let last = luthier_layer(material, luthier_layer_count(material) - 1u);
     if last.kind == LUTHIER_DIFFUSE {
+        //? granier_own
+        prepared.wide = (LUTHIER_PI * own.weights.y) * diffuse * last.lambert;
+        //? else
         prepared.wide = LUTHIER_PI * diffuse * last.lambert;
+        //? end
     }
     //? end
     return prepared;

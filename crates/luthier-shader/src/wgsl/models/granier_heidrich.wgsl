@@ -85,12 +85,52 @@ fn luthier_superpose(layer: LuthierLayer, r: vec3<f32>, t: vec3<f32>, cosines: v
 }
 //? end
 
+//? granier_own
+/// Numbers of a material that are none of its layers.
+struct LuthierOwn {
+    /// Exponent of the inner boundary.
+    inner_exponent: f32,
+    /// Weights of the specular and the diffuse part.
+    weights: vec2<f32>,
+    /// Normal of the inner boundary, unit.
+    inner_normal: vec3<f32>,
+}
+
+/// The numbers of a material whose outer boundary has the slope parameter `alpha`; those of all others where it has none of its own.
+fn luthier_own(material: u32, alpha: f32) -> LuthierOwn {
+    let header = luthier_header(material);
+    let numbers = luthier_materials[header + $word_phong_diffuse];
+    let normal = luthier_materials[header + $word_phong_specular];
+    let is_own = normal.w > 0.5;
+    let inner = clamp(alpha * select(1.0, numbers.x, is_own), 0.001, 1.0);
+    return LuthierOwn(
+        2.0 / (inner * inner) - 2.0,
+        select(vec2<f32>(1.0), numbers.yz, is_own),
+        select(vec3<f32>(0.0, 0.0, 1.0), normal.xyz, is_own),
+    );
+}
+
+//? granier_transparent, place
+/// The normal of a boundary of two slopes, which add up.
+fn luthier_leaning(own: vec3<f32>, here: vec3<f32>) -> vec3<f32> {
+    return normalize(vec3<f32>(own.xy * here.z + here.xy * own.z, own.z * here.z));
+}
+//? end
+//? end
+
 /// f cos_theta_i of two beams, their interference and a diffuse term (Granier and Heidrich 2003, eq. 5-18).
 fn luthier_eval_granier_heidrich($place_parameter material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
     let layer = $layer(material, 0u);
     var specular = vec3<f32>(0.0);
     //? granier_base
     var diffuse = vec3<f32>(1.0);
+    //? end
+    //? granier_own
+    //? interface
+    let own = luthier_own(material, layer.alpha);
+    //? else
+    let own = luthier_own(material, 1.0);
+    //? end
     //? end
     //? interface
     let exponent = 2.0 / (layer.alpha * layer.alpha) - 2.0;
@@ -123,10 +163,19 @@ fn luthier_eval_granier_heidrich($place_parameter material: u32, wi: vec3<f32>, 
         //? else
         let root = (eta - 1.0) / (eta + 1.0);
         //? end
+        //? granier_own
+        let exponent = own.inner_exponent;
+        //? place
+        let inner_normal = luthier_leaning(own.inner_normal, place.inner_normal);
+        //? else
+        let inner_normal = own.inner_normal;
+        //? end
+        //? else
         //? place
         let inner_normal = place.inner_normal;
         //? else
         let inner_normal = vec3<f32>(0.0, 0.0, 1.0);
+        //? end
         //? end
         //? granier_schlick
         let red = luthier_beam(wi, wo, eta.x, normal.x, exponent, inner_normal);
@@ -164,8 +213,16 @@ fn luthier_eval_granier_heidrich($place_parameter material: u32, wi: vec3<f32>, 
     //? granier_base
     let last = luthier_layer(material, luthier_layer_count(material) - 1u);
     if last.kind == LUTHIER_DIFFUSE {
+        //? granier_own
+        return own.weights.x * specular + own.weights.y * wi.z * (diffuse * last.lambert);
+        //? else
         specular += diffuse * last.lambert * wi.z;
+        //? end
     }
     //? end
+    //? granier_own
+    return own.weights.x * specular;
+    //? else
     return specular;
+    //? end
 }

@@ -96,7 +96,11 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     next.open = min(cosines_sq.x, cosines_sq.y) > 0.0;
     //? end
     // (1 - F) down, (1 - F) up, and part of what the cavities block comes back: (1 - F) (1 - G + (1 - F) G).
+    //? internal
+    let returned = 1.0 - (layer.internal_reflection * masking) * fresnel;
+    //? else
     let returned = 1.0 - masking * fresnel;
+    //? end
     //? fluorescent
     // On the way down light has the channels in which it came, on the way up those in which it leaves.
     //? absorption

@@ -1,0 +1,41 @@
+//! Options of `fit`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::verb::fit::Thicknesses;
+
+const EXAMPLES: &str = "\
+The lobe is a CSV file as `luthier eval` prints one: a line of names, theta_i,phi_i,theta_o,phi_o,r,g,b, then angles in degrees and f cos theta_i in each. \
+Other columns do not count. Values are those of 645, 525 and 445 nm, as --three-wavelengths gives them.
+
+The numbers are the index in three channels, both exponents, the weight of the specular part and the diffuse coefficients; with --film the thickness of \
+a film that interferes, with --lean a lean of the inner boundary. Differences count over the mean of a value's channels plus a tenth of the mean of all values. \
+The file says how near the lobe is: the root of the mean square of these, and the sum of the absolute differences over the sum of the values. The numbers need \
+not be those of the object: thicknesses repeat themselves, and an index and a weight may stand for each other.
+
+Examples:
+  luthier fit lobe.csv -o fitted.toml
+  luthier fit lobe.csv --film 50,800 --lean -o fitted.toml
+  luthier fit - --json";
+
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct FitOptions {
+    /// The lobe, a CSV file; `-` is standard input
+    #[arg(value_name = "LOBE")]
+    pub(crate) lobe: PathBuf,
+    /// A film that interferes, of a thickness between two, in nm; by default a layer too thick for it
+    #[arg(long, value_name = "MIN,MAX")]
+    pub(crate) film: Option<Thicknesses>,
+    /// The inner boundary may lean
+    #[arg(long)]
+    pub(crate) lean: bool,
+    /// File to write to; by default standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Print the numbers as JSON in place of a material file
+    #[arg(long, conflicts_with = "output")]
+    pub(crate) json: bool,
+}

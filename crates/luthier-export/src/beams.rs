@@ -1,0 +1,57 @@
+//! Errors of the numbers of the model `granier-heidrich`: of files whose model is another, and of parts that a material does not have.
+
+use luthier_manifest::ShadingModel;
+use luthier_material::{Diagnostic, Material, Severity};
+use luthier_optics::stack::Base;
+
+const TABLE: &str = "bake.granier-heidrich";
+const EXPONENTS: &str = "layer.0.exponents";
+
+/// The keys that give numbers of the model: exponents of the first layer, and the table of `[bake]`.
+pub(crate) fn keys(material: &Material) -> impl Iterator<Item = &'static str> {
+    let has_exponents = material.layers.first().is_some_and(|first| first.exponents.is_some());
+    let given = [(EXPONENTS, has_exponents), (TABLE, material.bake.beams.is_some())];
+    given.into_iter().filter(|(_, is_given)| *is_given).map(|(key, _)| key)
+}
+
+/// Errors for a material that `model` shades.
+pub(crate) fn of_beams(material: &Material, model: ShadingModel) -> Vec<Diagnostic> {
+    let error = |key: &str, message: String, hint: &str| {
+        material.diagnostic(Severity::Error, key, message, Some(hint.to_owned()))
+    };
+    if !model.has_beams() {
+        let refused = |key: &'static str| {
+            let name = key.rsplit_once('.').map_or(key, |(_, name)| name);
+            let (what, hint) = match key {
+                TABLE => ("numbers", "leave the table out, or write `[bake] model = \"granier-heidrich\"`"),
+                _ => ("lobes", "write `alpha` or `roughness`, or `[bake] model = \"granier-heidrich\"`"),
+            };
+            let message =
+                format!("`{name}` gives {what} of the model `granier-heidrich`, and this material has `{model}`");
+            error(key, message, hint)
+        };
+        return keys(material).map(refused).collect();
+    }
+    let mut errors = Vec::new();
+    let Some(first) = material.stack.layers.first() else { return errors };
+    let has_inner = !first.films.is_empty() || matches!(first.base, Base::Dielectric { .. });
+    let tilt = format!("{TABLE}.inner_tilt_deg");
+    if !has_inner && material.bake.beams.is_some_and(|beams| beams.inner_tilt != 0.0) {
+        let message = "the first interface has neither film nor slab, so that no inner boundary could lean".to_owned();
+        errors.push(error(&tilt, message, "leave it out, or put a film or a dielectric on top"));
+    }
+    if let (false, Some([outer, inner])) = (has_inner, material.layers.first().and_then(|first| first.exponents)) {
+        let message = format!(
+            "the first interface has neither film nor slab, so that no inner boundary has a lobe of exponent {inner}"
+        );
+        let hint = format!("write `alpha = {:.6}`, which is the exponent {outer}", (2.0 / (outer + 2.0)).sqrt());
+        errors.push(error(EXPONENTS, message, &hint));
+    }
+    let weight = format!("{TABLE}.diffuse_weight");
+    let has_base = material.stack.layers.last().is_some_and(|last| matches!(last.base, Base::Diffuse(_)));
+    if !has_base && material.places.has(&weight) {
+        let message = "the material has no diffuse base, whose light this weight is a factor on".to_owned();
+        errors.push(error(&weight, message, "leave it out, or add a layer of type `diffuse`"));
+    }
+    errors
+}

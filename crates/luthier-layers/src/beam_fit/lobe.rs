@@ -1,0 +1,75 @@
+//! Lobes as lists of values.
+
+use glam::DVec3;
+use luthier_optics::Rgb;
+
+use crate::angles::Angles;
+
+/// A value of a lobe.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// Direction to the light, unit.
+    pub wi: DVec3,
+    /// Direction to the eye, unit.
+    pub wo: DVec3,
+    /// f cos_theta_i, RGB.
+    pub value: Rgb,
+}
+
+/// Why a text is no lobe: the line, counted from 1, if it is about one, and the reason.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{}: {reason}", line.map(|line| format!(":{line}")).unwrap_or_default())]
+pub struct LobeError {
+    /// Line of the text.
+    pub line: Option<usize>,
+    /// The reason.
+    pub reason: String,
+}
+
+/// Columns that a lobe has, in any order; others are passed over.
+const COLUMNS: [&str; 7] = ["theta_i", "phi_i", "theta_o", "phi_o", "r", "g", "b"];
+
+/// The samples of a CSV text, as `luthier eval` prints one: a line of names, `theta_i,phi_i,theta_o,phi_o,r,g,b`, then angles in degrees and
+/// f cos_theta_i in each. Other columns do not count, nor do empty lines and lines that begin with `#`.
+///
+/// ```
+/// let lobe = luthier_layers::beam_fit::samples("theta_i,phi_i,theta_o,phi_o,r,g,b\n30,0,30,180,1,0.9,0.8\n").unwrap();
+/// assert_eq!(lobe[0].value, [1.0, 0.9, 0.8]);
+/// ```
+///
+/// # Errors
+/// [`LobeError`], whose text continues the name of the file.
+pub fn samples(text: &str) -> Result<Vec<Sample>, LobeError> {
+    let wrong = |line: usize, reason: String| LobeError { line: Some(line + 1), reason };
+    let mut lines = text.lines().enumerate().filter(|(_, l)| !l.trim().is_empty() && !l.trim().starts_with('#'));
+    let empty = LobeError { line: None, reason: "no values".to_owned() };
+    let (first, names) = lines.next().ok_or_else(|| empty.clone())?;
+    let names: Vec<&str> = names.split(',').map(str::trim).collect();
+    let mut places = [0; 7];
+    for (place, column) in places.iter_mut().zip(COLUMNS) {
+        let found = names.iter().position(|name| *name == column);
+        *place = found.ok_or_else(|| wrong(first, format!("no column `{column}`; expected {}", COLUMNS.join(","))))?;
+    }
+    let sample = |(number, line): (usize, &str)| {
+        let fields: Vec<&str> = line.split(',').map(str::trim).collect();
+        let mut numbers = [0.0; 7];
+        for ((number_here, place), column) in numbers.iter_mut().zip(places).zip(COLUMNS) {
+            let field = fields.get(place).copied().unwrap_or_default();
+            let value = field.parse::<f64>().ok().filter(|value| value.is_finite());
+            *number_here = value.ok_or_else(|| wrong(number, format!("{column} is `{field}`, expected a number")))?;
+        }
+        let [theta_i, phi_i, theta_o, phi_o, r, g, b] = numbers;
+        for (name, theta) in [("theta_i", theta_i), ("theta_o", theta_o)] {
+            if !(0.0..90.0).contains(&theta) {
+                return Err(wrong(number, format!("{name} is {theta}, expected 0 to less than 90 degrees")));
+            }
+        }
+        if [r, g, b].iter().any(|value| *value < 0.0) {
+            return Err(wrong(number, "a value is negative, which no lobe of the model is".to_owned()));
+        }
+        let direction = |theta_deg, phi_deg| Angles { theta_deg, phi_deg }.direction();
+        Ok(Sample { wi: direction(theta_i, phi_i), wo: direction(theta_o, phi_o), value: [r, g, b] })
+    };
+    let found: Vec<Sample> = lines.map(sample).collect::<Result<_, _>>()?;
+    if found.is_empty() { Err(empty) } else { Ok(found) }
+}

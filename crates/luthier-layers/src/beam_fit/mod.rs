@@ -1,0 +1,71 @@
+//! Fit of the numbers of Granier and Heidrich's model to a lobe that values give (section 8 of their paper names it as future work).
+//!
+//! The numbers are the index of the film in three channels, its thickness, both exponents, the weight of the specular part, the diffuse
+//! coefficients, and the lean of the inner boundary. The method of Levenberg and Marquardt finds a least sum of
+//!
+//! ```text
+//! ((model - value) / (mean of the value's channels + a tenth of the mean of all values))^2
+//! ```
+//!
+//! over samples and channels, from the best of a grid of starts, whose weight and diffuse coefficients are those of linear least squares. The sum
+//! has many minima: thicknesses repeat themselves, and beams of equal exponents that are not apart do not tell an index from a weight. Numbers
+//! that are found need not be those of the object; the error says how near the lobe is.
+
+mod lobe;
+mod problem;
+#[cfg(test)]
+mod tests;
+
+use levenberg_marquardt::LevenbergMarquardt;
+use luthier_optics::Rgb;
+
+pub use lobe::{LobeError, Sample, samples};
+use problem::Problem;
+
+/// Form of the layer that is fitted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Form {
+    /// Wavelengths of the channels.
+    pub wavelengths_nm: [f64; 3],
+    /// Thinnest and thickest film that is tried; `None` for a layer too thick to interfere.
+    pub thickness_nm: Option<[f64; 2]>,
+    /// Whether the inner boundary may lean.
+    pub leans: bool,
+}
+
+/// Numbers that were found, and how near the lobe is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fitted {
+    /// Index of the film or the layer in three channels.
+    pub index: Rgb,
+    /// Thickness of the film, nm.
+    pub thickness_nm: Option<f64>,
+    /// Exponents of the outer boundary and of the inner one.
+    pub exponents: [f64; 2],
+    /// Weight of the specular part.
+    pub specular_weight: f64,
+    /// Coefficients of the diffuse part, RGB: weight times albedo.
+    pub diffuse: Rgb,
+    /// Lean of the inner boundary: slopes of its height along x and y, with the signs of its normal.
+    pub lean: [f64; 2],
+    /// Mean square of the weighted differences, its root.
+    pub rms_err: f64,
+    /// Sum of the absolute differences over the sum of the values.
+    pub lobe_err: f64,
+}
+
+/// Starts that are taken to their minimum.
+const STARTS: usize = 8;
+
+/// The numbers whose lobe is nearest to the samples; `None` for fewer samples than numbers, or for values that are all 0.
+pub fn fit(samples: &[Sample], form: &Form) -> Option<Fitted> {
+    let problem = Problem::new(samples, form)?;
+    let mut starts = problem.starts();
+    starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let found = starts.into_iter().take(STARTS).map(|(_, start)| {
+        let (found, _) = LevenbergMarquardt::new().with_patience(40).minimize(start);
+        (found.sum_of_squares(), found)
+    });
+    let (_, best) = found.filter(|(sum, _)| sum.is_finite()).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(best.fitted())
+}
