@@ -156,7 +156,10 @@ impl Scene {
         render.check(parts)?;
         for part in parts {
             if let Shown::Surface(_) = part {
-                return Err(GpuError::NotSimulated { material: "a surface".to_owned(), what: "surfaces of several materials" });
+                return Err(GpuError::NotSimulated {
+                    material: "a surface".to_owned(),
+                    what: "surfaces of several materials",
+                });
             }
         }
         let materials = self.materials_of(parts)?;
@@ -172,7 +175,16 @@ impl Scene {
         let group = self.bindings.group(&self.context, &words, &Surroundings::black(&self.context)?)?;
         let inputs = self.inputs(parts, &materials, &render);
         let sums = vec![Sums::default(); (render.size * render.size) as usize];
-        Ok(Simulation { scene: self, pipeline, group, inputs, size: render.size, seed: settings.seed, samples: 0, sums })
+        Ok(Simulation {
+            scene: self,
+            pipeline,
+            group,
+            inputs,
+            size: render.size,
+            seed: settings.seed,
+            samples: 0,
+            sums,
+        })
     }
 
     fn simulation_pipeline(
