@@ -10,6 +10,7 @@ mod lobes;
 mod papers;
 mod parity;
 mod shapes;
+mod simulation;
 mod stability;
 mod varying;
 
@@ -30,6 +31,7 @@ fn main() -> ExitCode {
         Verb::Varying(options) => varying::run(options),
         Verb::Anisotropic(options) => anisotropic::run(options),
         Verb::Environment(options) => environment::run(options),
+        Verb::Simulation(options) => simulation::run(options),
         Verb::Lobes(options) => lobes::run(options),
         Verb::Budgets(options) => budgets::run(options),
         Verb::Papers(options) => papers::run(options),
