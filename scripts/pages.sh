@@ -52,6 +52,9 @@ anisotropic() {
 environment() {
   luthier-lab environment materials/{silver-paint,latex,frosted-acrylic}.toml --size 12 --rows 128 -o docs/pages/environment.md
 }
+simulation() {
+  luthier-lab simulation materials/{yamaguchi-brushed,silver-paint,red-lacquer}.toml --data docs/measurements/simulation-llvmpipe.json -o docs/pages/simulation.md
+}
 bench() { luthier bench materials/car-paint.toml materials/red-lacquer.toml --json -o docs/measurements/bench-llvmpipe.json; }
 shader-size() { scripts/shader-size.sh >docs/pages/shader-size.md; }
 distribution-table() { scripts/compare-distribution.sh >docs/pages/distribution-table.md; }
@@ -68,7 +71,7 @@ choices() {
 }
 reference() { luthier man --markdown >docs/reference.md; }
 
-all=(materials shapes cost papers budgets scenes parity stability figures models lobes varying anisotropic environment bench shader-size distribution-table speed dfg engine-tables by-hand choices reference)
+all=(materials shapes cost papers budgets scenes parity stability figures models lobes varying anisotropic environment simulation bench shader-size distribution-table speed dfg engine-tables by-hand choices reference)
 case ${1-} in
   "") pages=("${all[@]}") ;;
   --cheap) pages=(shader-size reference) ;;

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use luthier_export::{Package, read_one, refuse};
+use luthier_export::{Package, gather, read_one, refuse};
 use luthier_gpu::{Gpu, RenderSettings, Shown, SimulationSettings};
 use luthier_lut::Image;
 use luthier_manifest::{Feature, Form, ShadingModel};
 use luthier_material::{Diagnostic, Material, Severity};
-use luthier_terminal::{Bar, Outcome, valid};
+use luthier_terminal::{Bar, Failure, Outcome, valid};
 
 use crate::cli::Shading;
 use crate::memory_bake;
@@ -18,6 +18,10 @@ pub(crate) fn find(material: &str, out: &Path) -> Outcome<(Package, u32)> {
     let file = Path::new(material);
     if file.extension().is_none_or(|e| e != "toml") {
         return memory_bake::find(material, &Shading::default(), &[], out);
+    }
+    if !gather(&[file.to_owned()])?.surfaces.is_empty() {
+        let text = format!("{material} is a surface; the simulation on the device takes one of its materials");
+        return Err(Failure::Input(anyhow::anyhow!(text)));
     }
     let mut sources = vec![read_one(file)?];
     refuse(&mut sources, beyond);
