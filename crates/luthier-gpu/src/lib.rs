@@ -1,5 +1,5 @@
 //! The runtime: takes the package of a bake, and nothing else, binds the emitted shader on a wgpu device, evaluates it
-//! for arrays of directions, reads its tables, and renders pictures.
+//! for arrays of directions, reads its tables, renders pictures, and simulates the layers that the package records.
 //!
 #![doc = include_str!("../README.md")]
 //! # In detail

@@ -81,7 +81,7 @@ pub(crate) fn run(options: &SimulationOptions) -> Outcome {
         let data = data(&gpu, options, &times, &errors);
         deliver(&format!("{data:#}\n"), Some(file))?;
     }
-    deliver(&page::page(options, &adapter, &times, &errors), options.destination.output.as_deref())
+    deliver(&page::page(options, &adapter, gpu.is_software(), &times, &errors), options.destination.output.as_deref())
 }
 
 /// The surroundings at each turn.

@@ -8,7 +8,13 @@ use crate::cli::SimulationOptions;
 /// Ratio of the paper, at 2,048 samples: 587.8 ms over 45.1 ms.
 const PAPER: f64 = 587.8 / 45.1;
 
-pub(super) fn page(options: &SimulationOptions, adapter: &str, times: &[Time], errors: &[Error]) -> String {
+pub(super) fn page(
+    options: &SimulationOptions,
+    adapter: &str,
+    is_software: bool,
+    times: &[Time],
+    errors: &[Error],
+) -> String {
     let mut words = vec!["luthier-lab simulation".to_owned()];
     words.extend(options.sources.paths.iter().map(|path| path.display().to_string()));
     let mut page = format!(
@@ -20,6 +26,9 @@ pub(super) fn page(options: &SimulationOptions, adapter: &str, times: &[Time], e
         options.repeats
     );
     page.push_str(INTRODUCTION);
+    if is_software {
+        page.push_str(SOFTWARE);
+    }
     ratios(&mut page, times);
     curves(&mut page, times);
     pictures(&mut page, errors);
@@ -29,8 +38,13 @@ pub(super) fn page(options: &SimulationOptions, adapter: &str, times: &[Time], e
 const INTRODUCTION: &str = "\
 `luthier preview --simulated` follows light through the layers of a material on the graphics adapter, in place of a model: random walks
 between the facets of each interface (Heitz et al. 2016) on paths without positions (Guo, Hasan and Zhao 2018), at three wavelengths. Its f64
-twin is `layered-mc`; a test of luthier-gpu compares both, on ten stacks. *One facet* is the simulation without walks: light that a second facet catches
-is lost, as in `layered-mc-one-facet`.
+twin is `layered-mc`; tests of luthier-gpu compare both. *One facet* is the simulation without walks: light that a second facet catches is lost, as in
+`layered-mc-one-facet`.
+
+";
+
+const SOFTWARE: &str = "\
+The adapter is a program on the CPU. Times vary with what else the machine does; all ways of a material were timed in turn, so that ratios vary less.
 
 ";
 
@@ -55,7 +69,7 @@ fn ratios(page: &mut String, times: &[Time]) {
     let _ = write!(
         page,
         "## Time over that of the model\n\nA ball under surroundings with {most} samples of each pixel. The simulation takes so many paths. A model draws so many directions for \
-         each interface and for the cosine, and evaluates each. Milliseconds are medians by the clock of the host, all ways in turn. \
+         each interface and for the cosine, and evaluates each: three evaluations for a path, of two layers. Milliseconds are medians by the clock of the host. \
          Ratios are those of the simulation with walks, and with one facet. Yamaguchi et al. 2019 print 587.8 ms for the simulation and 45.1 ms for their model: {PAPER:.1} times. They do not \
          say which simulation theirs is.\n\n\
          | material | way | ms | deviation | simulation over it | one facet over it | the paper |\n|---|---|--:|--:|--:|--:|--:|\n"
@@ -104,8 +118,8 @@ fn curves(page: &mut String, times: &[Time]) {
 fn pictures(page: &mut String, errors: &[Error]) {
     let _ = write!(
         page,
-        "## Error of models in surroundings\n\nRoot of the mean squared difference of a model's picture and the simulated one, over the mean of the latter; the noise of the \
-         simulation is taken out. Models draw {DIRECTIONS} directions a lobe and sample. The surroundings are `strip-studio` of `luthier environment --sky`, turned about the vertical axis.\n\n\
+        "## Error of models in surroundings\n\nRoot of the mean squared difference of a model's picture and the simulated one, over the mean of the latter. `noise` is that of the \
+         simulation over this mean; it is taken out of the others. Models draw {DIRECTIONS} directions a lobe and sample. The surroundings are `strip-studio` of `luthier environment --sky`, turned about the vertical axis.\n\n\
          | material | turn (degrees) | mean | noise |"
     );
     for model in MODELS {
