@@ -85,9 +85,10 @@ impl Scene {
     /// light through its stack at three wavelengths; zero where a direction is below the horizon. Equal arguments give equal values on
     /// one device.
     ///
-    /// Paths are position-free (Guo, Hasan and Zhao 2018) over Smith micro-surfaces, with indices, slopes, turns, slabs and the
-    /// diffuse base of the layer records; it is unbiased but for single precision, which tells on slope parameters below 0.01 (records have none
-    /// below 0.001). Transparent layers whose index hangs on the wavelength take three paths a sample.
+    /// Paths are position-free (Guo, Hasan and Zhao 2018) over Smith micro-surfaces, with indices, slopes, turns, slabs and the diffuse base of the
+    /// layer records. The mean is unbiased but for single precision, and for what paths of more than 512 events or walks of more than 256 facets
+    /// would bring: less than one part in a million. Slope parameters are at least 0.001, as records have them. Transparent layers whose index
+    /// hangs on the wavelength take three paths a sample.
     ///
     /// # Errors
     /// [`GpuError::NotSimulated`] for films, fluorescent bases and surfaces that vary; [`GpuError::NoMaterial`], [`GpuError::Setting`] for no

@@ -200,6 +200,38 @@ fn balls_under_a_sun_have_their_closed_forms() {
     });
 }
 
+/// Oracle: the formula of Torrance and Sparrow in f64, of the directions that the device gets. What is off is single precision.
+#[test]
+fn narrow_facets_have_their_closed_form() {
+    let metal = Complex64::new(0.2, 3.5);
+    let wo = at(40.0, 20.0);
+    for alpha in [0.1, 0.01, 0.001] {
+        let record = conductor(alpha, [metal.re; 3], [metal.im; 3]);
+        let Some(scene) = scene(vec![record]) else { return };
+        // Half vectors within two slopes of the normal.
+        let lights: Vec<DVec3> = (0..64)
+            .map(|i| {
+                let (radius, phi) = (alpha * f64::from(i % 8) / 4.0, f64::from(i / 8));
+                let wh = DVec3::new(radius * phi.cos(), radius * phi.sin(), 1.0).normalize();
+                2.0 * wo.dot(wh) * wh - wo
+            })
+            .collect();
+        let pairs: Vec<_> = lights.iter().map(|wi| (single(*wi), single(wo))).collect();
+        let one = SimulationSettings { facets: Facets::One, seed: 1 };
+        let mut worst: f64 = 0.0;
+        for ((wi, wo), found) in pairs.iter().zip(scene.simulate(0, &pairs, 1, &one).unwrap()) {
+            let [wi, wo] = [wi, wo].map(|d| DVec3::from_array(d.map(f64::from)));
+            let wh = (wi + wo).normalize();
+            let d = distribution(Distribution::Ggx, alpha, wh.z, wh.x * wh.x + wh.y * wh.y);
+            let g2 = 1.0 / (1.0 + lambda(Distribution::Ggx, alpha, wi.z) + lambda(Distribution::Ggx, alpha, wo.z));
+            let fresnel = interface(Complex64::new(1.0, 0.0), metal, wo.dot(wh)).unpolarised();
+            worst = worst.max((found.mean[0] / (d * g2 * fresnel / (4.0 * wo.z)) - 1.0).abs());
+        }
+        eprintln!("alpha {alpha}: {worst:.2e}");
+        assert!(worst < 1e-5, "alpha {alpha}: {worst}");
+    }
+}
+
 /// Oracle: a stack that absorbs nothing is invisible in even surroundings.
 #[test]
 fn white_stacks_are_invisible() {

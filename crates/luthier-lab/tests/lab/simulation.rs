@@ -15,7 +15,9 @@ fn a_matte_ball_is_one_to_all() {
         return;
     }
     let page = run.exits(0).stdout;
-    for part in ["luthier-lab simulation m.toml --size 16", "Time over that of the model", "| m | 2048 |", "| m | 240 |"] {
+    for part in
+        ["luthier-lab simulation m.toml --size 16", "Time over that of the model", "| m | 2048 |", "| m | 240 |"]
+    {
         assert!(page.contains(part), "no {part} in {page}");
     }
     let data: Value = serde_json::from_str(&workshop.text("data.json")).unwrap();
