@@ -86,22 +86,28 @@ pub(crate) struct Picture {
 /// Samples that are added at once.
 const STEP: u32 = 32;
 
-/// Simulates a picture with so many samples of each pixel.
+/// Simulates a picture with so many samples of each pixel. Shows it to `so_far` whenever they have doubled.
 pub(crate) fn picture(
     gpu: &Gpu,
     package: &Package,
     parts: &[Shown],
     settings: &RenderSettings,
     samples: u32,
+    mut so_far: impl FnMut(Image) -> Outcome,
 ) -> Outcome<Picture> {
     // The simulation reads the material buffer, which every form binds.
     let form = Form::ALL.into_iter().find(|form| package.wgsl(*form).is_ok()).unwrap_or(Form::Baked);
     let scene = gpu.scene(package, form)?;
     let mut simulation = scene.simulation(parts, settings, &SimulationSettings::default())?;
     let bar = Bar::new("simulating");
+    let mut next = 2 * STEP;
     while simulation.samples() < samples {
         simulation.add(STEP.min(samples - simulation.samples()))?;
         bar.set(simulation.samples().into(), samples.into());
+        if simulation.samples() >= next && next < samples {
+            so_far(simulation.image())?;
+            next *= 2;
+        }
     }
     let squares: f64 = simulation.noise().data.iter().map(|error| f64::from(*error) * f64::from(*error)).sum();
     let image = simulation.image();

@@ -36,7 +36,7 @@ pub(crate) fn run(options: &CompareOptions) -> Outcome {
                 Ok(Picture { image, noise: 0.0 })
             }
             Way::Simulated(samples) => {
-                simulated::picture(&gpu, package, &[Shown::Material(*material)], &settings, samples)
+                simulated::picture(&gpu, package, &[Shown::Material(*material)], &settings, samples, |_| Ok(()))
             }
         }
     };

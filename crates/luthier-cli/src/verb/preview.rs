@@ -62,8 +62,10 @@ fn simulate(options: &PreviewOptions, samples: u32, format: Format) -> Outcome {
     };
     let look = &options.look;
     let settings = settings(look, options.shape.into(), options.size)?;
-    let picture = simulated::picture(&open(look.adapter.as_deref())?, &package, &parts, &settings, samples)?;
-    format.write(&options.output, picture.image, look.tone.into())
+    let gpu = open(look.adapter.as_deref())?;
+    let write = |image| format.write(&options.output, image, look.tone.into());
+    let picture = simulated::picture(&gpu, &package, &parts, &settings, samples, write)?;
+    write(picture.image)
 }
 
 fn grid_alone() -> Failure {
