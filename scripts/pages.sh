@@ -53,7 +53,8 @@ environment() {
   luthier-lab environment materials/{silver-paint,latex,frosted-acrylic}.toml --size 12 --rows 128 -o docs/pages/environment.md
 }
 simulation() {
-  luthier-lab simulation materials/{yamaguchi-brushed,silver-paint,red-lacquer}.toml --data docs/measurements/simulation-llvmpipe.json -o docs/pages/simulation.md
+  luthier-lab simulation materials/{yamaguchi-brushed,silver-paint}.toml --size 32 --samples 512 --time-size 16 \
+    --data docs/measurements/simulation-llvmpipe.json -o docs/pages/simulation.md
 }
 bench() { luthier bench materials/car-paint.toml materials/red-lacquer.toml --json -o docs/measurements/bench-llvmpipe.json; }
 shader-size() { scripts/shader-size.sh >docs/pages/shader-size.md; }
