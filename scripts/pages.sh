@@ -38,6 +38,7 @@ papers() { luthier-lab papers materials -o docs/pages/papers-cost.md; }
 budgets() { luthier-lab budgets materials -o docs/pages/budgets.md; }
 scenes() { luthier bake materials/scenes --budgets 1,0.3,0.1,0.03 --allow-miss >docs/pages/scenes.md; }
 parity() { luthier-lab parity materials -o docs/pages/parity.md; }
+places() { luthier-lab places -o docs/pages/places.md; }
 stability() {
   luthier-lab stability --json -o docs/measurements/stability.json
   luthier-lab stability -o docs/pages/stability.md
@@ -51,6 +52,10 @@ anisotropic() {
 }
 environment() {
   luthier-lab environment materials/{silver-paint,latex,frosted-acrylic}.toml --size 12 --rows 128 -o docs/pages/environment.md
+}
+simulation() {
+  luthier-lab simulation materials/{yamaguchi-brushed,silver-paint}.toml --size 32 --samples 512 --time-size 16 \
+    --data docs/measurements/simulation-llvmpipe.json -o docs/pages/simulation.md
 }
 bench() { luthier bench materials/car-paint.toml materials/red-lacquer.toml --json -o docs/measurements/bench-llvmpipe.json; }
 shader-size() { scripts/shader-size.sh >docs/pages/shader-size.md; }
@@ -72,7 +77,7 @@ reflectance-table() {
 }
 reference() { luthier man --markdown >docs/reference.md; }
 
-all=(materials shapes cost papers budgets scenes parity stability figures models lobes varying anisotropic environment bench shader-size distribution-table speed dfg engine-tables by-hand choices reflectance-table reference)
+all=(materials shapes cost papers budgets scenes parity places stability figures models lobes varying anisotropic environment simulation bench shader-size distribution-table speed dfg engine-tables by-hand choices reflectance-table reference)
 case ${1-} in
   "") pages=("${all[@]}") ;;
   --cheap) pages=(shader-size reference) ;;

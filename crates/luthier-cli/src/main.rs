@@ -16,6 +16,8 @@ mod picture;
 mod progress;
 mod reradiation;
 mod shared_store;
+#[cfg(feature = "gpu")]
+mod simulated;
 mod store;
 mod surroundings;
 #[cfg(feature = "gpu")]

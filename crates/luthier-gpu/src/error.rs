@@ -135,6 +135,14 @@ pub enum GpuError {
         /// Name of the material.
         material: String,
     },
+    /// A part of a material that the simulation does not know.
+    #[error("`{material}`: the simulation takes no {what}")]
+    NotSimulated {
+        /// Name of the material.
+        material: String,
+        /// The part.
+        what: &'static str,
+    },
     /// An environment that cannot be made.
     #[error("environment: {0}")]
     Environment(#[from] EnvironmentError),

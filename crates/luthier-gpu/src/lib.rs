@@ -1,5 +1,5 @@
 //! The runtime: takes the package of a bake, and nothing else, binds the emitted shader on a wgpu device, evaluates it
-//! for arrays of directions, reads its tables, and renders pictures.
+//! for arrays of directions, reads its tables, renders pictures, and simulates the layers that the package records.
 //!
 #![doc = include_str!("../README.md")]
 //! # In detail
@@ -23,6 +23,7 @@ mod render;
 mod scene;
 mod shape;
 mod shown;
+mod simulate;
 mod surroundings;
 mod time;
 mod tone;
@@ -36,5 +37,6 @@ pub use render::{Backdrop, RenderSettings};
 pub use scene::Scene;
 pub use shape::{Camera, GRID_SIDE, Shape};
 pub use shown::Shown;
+pub use simulate::{Facets, Simulated, Simulation, SimulationSettings};
 pub use time::Stopwatch;
 pub use tone::ToneMapping;

@@ -42,7 +42,7 @@ impl Light {
         Err(setting("lights", format!("{color:?}"), "irradiance and intensity are finite and not negative"))
     }
 
-    /// The words of a light in `render.wgsl`: direction and 0, or position and 1; then its colour.
+    /// The words of a light in `picture.wgsl`: direction and 0, or position and 1; then its colour.
     pub(crate) fn words(&self) -> [[f32; 4]; 2] {
         let word = |[x, y, z]: [f32; 3], w: f32| [x, y, z, w];
         match self {

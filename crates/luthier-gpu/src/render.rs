@@ -20,10 +20,10 @@ const EVALUATIONS_PER_PASS: u32 = 1 << 21;
 const EVALUATIONS_PER_SHORT_PASS: u32 = 1 << 18;
 
 /// Side of a workgroup, pixels.
-const WORKGROUP: u32 = 8;
+pub(crate) const PIXELS_PER_WORKGROUP: u32 = 8;
 
-/// `vec4` words before `words` in `render.wgsl`.
-const HEADER_WORDS: usize = 9;
+/// `vec4` words before `words` in `picture.wgsl`.
+pub(crate) const HEADER_WORDS: usize = 9;
 
 /// Turns of loops that one thread makes in a submission, by a generous count. Software adapters end loops after 65,535 turns in all, without a
 /// word.
@@ -211,7 +211,7 @@ impl Scene {
                 what: "rendering",
                 pipeline,
                 shader_group: &group,
-                workgroups: [size.div_ceil(WORKGROUP), rows.div_ceil(WORKGROUP)],
+                workgroups: [size.div_ceil(PIXELS_PER_WORKGROUP), rows.div_ceil(PIXELS_PER_WORKGROUP)],
                 inputs: bytemuck::cast_slice(&inputs),
                 output_words: (size * rows) as usize,
             })?;
@@ -224,7 +224,7 @@ impl Scene {
     }
 
     /// The material buffer: all materials as they are, then all again with slopes widened by the lights.
-    fn widened_words(&self, angular_radius: f32) -> Vec<[f32; 4]> {
+    pub(crate) fn widened_words(&self, angular_radius: f32) -> Vec<[f32; 4]> {
         let widen = |m: &MaterialEntry| {
             let mut entry = MaterialEntry { layers: widened(&m.layers, angular_radius), ..m.clone() };
             if let Some(patina) = &mut entry.constants.patina {
@@ -266,6 +266,7 @@ impl Scene {
             include_str!("wgsl/shape.wgsl"),
             include_str!("wgsl/environment.wgsl"),
             include_str!("wgsl/shading.wgsl"),
+            include_str!("wgsl/picture.wgsl"),
             include_str!("wgsl/render.wgsl"),
             &lookups,
             &lobes,
@@ -275,8 +276,8 @@ impl Scene {
         .join("\n")
     }
 
-    /// The words of `Render` in `render.wgsl`.
-    fn inputs(&self, parts: &[Shown], materials: &[u32], settings: &RenderSettings) -> Vec<[u32; 4]> {
+    /// The words of `Render` in `picture.wgsl`.
+    pub(crate) fn inputs(&self, parts: &[Shown], materials: &[u32], settings: &RenderSettings) -> Vec<[u32; 4]> {
         let used = self.blurs();
         // Maps: the environment, irradiance, then a chain for each distribution in use.
         let chain_of = |layer: &LayerRecord| first_map(&used, blur_of(layer)) as f32;
@@ -446,7 +447,7 @@ fn wider(alpha: f64, angular_radius: f32) -> f64 {
 }
 
 impl RenderSettings {
-    fn check(&self, parts: &[Shown]) -> Result<(), GpuError> {
+    pub(crate) fn check(&self, parts: &[Shown]) -> Result<(), GpuError> {
         if parts.len() != self.shape.materials() {
             return Err(setting("materials", parts.len().to_string(), "one for each part of the shape"));
         }

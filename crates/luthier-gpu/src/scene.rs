@@ -9,6 +9,7 @@ use crate::bindings::{ShaderBindings, kernel_layout, material_words};
 use crate::context::Context;
 use luthier_export::{Map, Package};
 
+use crate::simulate::Pipelines;
 use crate::surroundings::Surroundings;
 use crate::{GpuError, evaluate};
 
@@ -27,6 +28,7 @@ pub struct Scene {
     pub(crate) evaluate: wgpu::ComputePipeline,
     pub(crate) lookups: [OnceLock<wgpu::ComputePipeline>; TableKind::ALL.len()],
     pub(crate) render: OnceLock<wgpu::ComputePipeline>,
+    pub(crate) simulations: Pipelines,
 }
 
 impl Scene {
@@ -55,6 +57,7 @@ impl Scene {
             evaluate,
             lookups: Default::default(),
             render: OnceLock::new(),
+            simulations: Pipelines::default(),
         })
     }
 
@@ -82,6 +85,7 @@ impl Scene {
             evaluate: self.evaluate.clone(),
             lookups: self.lookups.clone(),
             render: self.render.clone(),
+            simulations: self.simulations.clone(),
         }))
     }
 

@@ -77,7 +77,7 @@ impl Camera {
         Err(setting("camera.half_extent", self.half_extent.to_string(), "finite and positive"))
     }
 
-    /// The words of the camera in `render.wgsl`: eye; target; half the picture to the right; half the picture up.
+    /// The words of the camera in `picture.wgsl`: eye; target; half the picture to the right; half the picture up.
     pub(crate) fn words(&self) -> [[f32; 4]; 4] {
         let forward = unit(self.sight());
         let right = unit(cross(forward, [0.0, 1.0, 0.0]));

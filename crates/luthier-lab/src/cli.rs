@@ -43,6 +43,8 @@ pub(crate) enum Verb {
     Anisotropic(AnisotropicOptions),
     /// Compare the environment that pictures show with sums over all directions: a page in Markdown
     Environment(EnvironmentOptions),
+    /// Time the simulation on the device beside models, and compare their pictures with it: a page in Markdown
+    Simulation(SimulationOptions),
     /// Measure the tables that searches find against fixed ones: a page in Markdown
     Budgets(BudgetsOptions),
     /// Count the cycles of the papers' shaders on today's chips, without the chips: a page in Markdown
@@ -259,6 +261,34 @@ pub(crate) struct EnvironmentOptions {
     /// Rows of the maps
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(32..=512))]
     pub(crate) rows: u32,
+    #[command(flatten)]
+    pub(crate) adapter: Adapter,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  luthier-lab simulation materials/yamaguchi-brushed.toml -o docs/pages/simulation.md"
+)]
+pub(crate) struct SimulationOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Side of the pictures that are compared, in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 64, value_parser = clap::value_parser!(u32).range(8..=1024))]
+    pub(crate) size: u32,
+    /// Samples of each of their pixels
+    #[arg(long, value_name = "N", default_value = "1024")]
+    pub(crate) samples: NonZeroU32,
+    /// Side of the pictures that are timed, in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 32, value_parser = clap::value_parser!(u32).range(8..=1024))]
+    pub(crate) time_size: u32,
+    /// Times that each of these is made
+    #[arg(long, value_name = "N", default_value = "3")]
+    pub(crate) repeats: NonZeroU32,
+    /// File to write the numbers to, as JSON
+    #[arg(long, value_name = "FILE")]
+    pub(crate) data: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) adapter: Adapter,
     #[command(flatten)]

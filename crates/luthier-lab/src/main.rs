@@ -11,6 +11,7 @@ mod papers;
 mod parity;
 mod places;
 mod shapes;
+mod simulation;
 mod stability;
 mod varying;
 
@@ -32,6 +33,7 @@ fn main() -> ExitCode {
         Verb::Varying(options) => varying::run(options),
         Verb::Anisotropic(options) => anisotropic::run(options),
         Verb::Environment(options) => environment::run(options),
+        Verb::Simulation(options) => simulation::run(options),
         Verb::Lobes(options) => lobes::run(options),
         Verb::Budgets(options) => budgets::run(options),
         Verb::Papers(options) => papers::run(options),

@@ -388,7 +388,7 @@ pub(crate) use table::{
 #[cfg(feature = "gpu")]
 mod render;
 #[cfg(feature = "gpu")]
-pub(crate) use render::{CompareOptions, GalleryOptions, Look, PreviewOptions, ShaderChoice, ShapeName};
+pub(crate) use render::{CompareOptions, GalleryOptions, Look, PreviewOptions, ShapeName, Side};
 
 #[cfg(feature = "cost")]
 const COST_EXAMPLES: &str = "\

@@ -23,6 +23,7 @@ Examples:
   luthier preview red-lacquer -o ball.png --size 1024
   luthier preview materials/car-paint.toml -o ring.png --shape torus --environment studio.hdr
   luthier preview materials/surfaces/sunstone.toml -o stone.png
+  luthier preview materials/yamaguchi-brushed.toml -o ball.png --simulated 256
   luthier preview --shape grid -o grid.png";
 
 /// How pictures are lit, sampled and written.
@@ -78,6 +79,10 @@ pub(crate) struct PreviewOptions {
     /// Side of the picture in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 512, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub(crate) size: u32,
+    /// Simulate light in the stack on the graphics adapter, with so many samples of each pixel, in place of a model: no fit, no tables. It takes
+    /// no films, maps, flakes, patina, glitter and re-radiation. Multiples of the square of --samples cover pixels evenly
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 20), conflicts_with_all = ["model", "no_fit", "fresnel", "tables", "environment_samples"])]
+    pub(crate) simulated: Option<u32>,
     #[command(flatten)]
     pub(crate) look: Look,
 }
@@ -120,10 +125,13 @@ const COMPARE_EXAMPLES: &str = "\
 Writes a.png, b.png, difference.png (absolute, of what a display shows, brightened as printed) and flip.png (0 black, 1 white)
 into a folder. RMSE is of linear radiance over all pixels and channels; FLIP is of the displayed pictures at 67 pixels per
 degree. The environment goes through both shaders with the same 64 directions unless told otherwise.
+`simulated` in place of a shader is what `luthier preview --simulated` shows, and simulated/N that with N samples of each pixel (256 by default).
+The noise of its samples is part of the RMSE; it is printed beside it.
 
 Examples:
   luthier compare materials/car-paint.toml --a baked --b full -o comparison
   luthier compare materials/car-paint.toml --a elek --b microfacet/full -o comparison
+  luthier compare materials/yamaguchi-brushed.toml --a yamaguchi --b simulated/512 -o comparison
   luthier compare red-lacquer --b full -o comparison --json";
 
 #[derive(Debug, Args)]
@@ -132,12 +140,12 @@ pub(crate) struct CompareOptions {
     /// A material file, or the name of a material in the bake
     #[arg(value_name = "MATERIAL")]
     pub(crate) material: String,
-    /// The first shader: a form as the manifest names it, a model, or both as MODEL/FORM
+    /// The first shader: a form as the manifest names it, a model, both as MODEL/FORM, or `simulated`
     #[arg(long, value_name = "SHADER", default_value = "baked")]
-    pub(crate) a: ShaderChoice,
+    pub(crate) a: Side,
     /// The second shader
     #[arg(long, value_name = "SHADER", default_value = "full")]
-    pub(crate) b: ShaderChoice,
+    pub(crate) b: Side,
     /// Simulate nothing: a file that asks for no model takes a closed form, which it does as well where a form is `full`
     #[arg(long)]
     pub(crate) no_fit: bool,
@@ -158,6 +166,48 @@ pub(crate) struct CompareOptions {
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) look: Look,
+}
+
+/// One side of a comparison.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Side {
+    Shader(ShaderChoice),
+    /// The simulation on the device, with so many samples of each pixel.
+    Simulated(u32),
+}
+
+/// Samples of a simulated pixel where none are asked for.
+const SIMULATED_SAMPLES: u32 = 256;
+
+impl Side {
+    /// The shader, if it is one.
+    pub(crate) fn shader(&self) -> Option<&ShaderChoice> {
+        if let Self::Shader(choice) = self { Some(choice) } else { None }
+    }
+}
+
+impl FromStr for Side {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let Some(rest) = text.strip_prefix("simulated") else { return Ok(Self::Shader(text.parse()?)) };
+        let samples = match rest.strip_prefix('/') {
+            None if rest.is_empty() => Some(SIMULATED_SAMPLES),
+            number => number.and_then(|n| n.parse().ok()).filter(|samples| (1..=1 << 20).contains(samples)),
+        };
+        samples
+            .map(Self::Simulated)
+            .ok_or_else(|| "expected simulated, or simulated/N with 1 to 1048576 samples".to_owned())
+    }
+}
+
+impl fmt::Display for Side {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Shader(choice) => choice.fmt(f),
+            Self::Simulated(samples) => write!(f, "simulated/{samples}"),
+        }
+    }
 }
 
 /// A shader to compare: what is left out is the material's model, or the baked form.

@@ -3,16 +3,16 @@
 use std::path::Path;
 
 use luthier_export::Package;
-use luthier_gpu::{GpuError, ToneMapping};
-use luthier_lut::Image;
+use luthier_gpu::{Shown, ToneMapping};
 use luthier_manifest::{Form, ShadingModel};
 use luthier_report::{PIXELS_PER_DEGREE, PictureComparison, brightened_difference, compare_pictures};
 use luthier_terminal::{Failure, Outcome, files, open, print};
 use serde_json::{Value, json};
 
-use crate::cli::{CompareOptions, ShaderChoice, Shading, ShapeName};
+use crate::cli::{CompareOptions, Shading, ShapeName, Side};
 use crate::memory_bake;
 use crate::picture::{Format, settings};
+use crate::simulated::{self, Picture};
 
 /// Directions of the environment where none are asked for.
 pub(crate) const ENVIRONMENT_SAMPLES: u32 = 64;
@@ -22,17 +22,27 @@ pub(crate) fn run(options: &CompareOptions) -> Outcome {
     if options.shape == ShapeName::Grid {
         return Err(Failure::Input(anyhow::anyhow!("a comparison is of one material; the grid has 25 of its own")));
     }
-    let [a, b] = [&options.a, &options.b].map(|choice| Subject::of(options, choice));
+    let [a, b] = [&options.a, &options.b].map(|side| Subject::of(options, side));
     let (a, b) = (a?, b?);
     let look = &options.look;
     let mut settings = settings(look, options.shape.into(), options.size)?;
     settings.environment_samples = look.environment_samples.unwrap_or(ENVIRONMENT_SAMPLES);
     let gpu = open(look.adapter.as_deref())?;
-    let render = |subject: &Subject| -> Result<Image, GpuError> {
-        gpu.scene(&subject.package, subject.form)?.render(&[subject.material], &settings)
+    let render = |subject: &Subject| -> Outcome<Picture> {
+        let Subject { package, material, way } = subject;
+        match *way {
+            Way::Shader(form) => {
+                let image = gpu.scene(package, form)?.render(&[*material], &settings)?;
+                Ok(Picture { image, noise: 0.0 })
+            }
+            Way::Simulated(samples) => {
+                simulated::picture(&gpu, package, &[Shown::Material(*material)], &settings, samples, |_| Ok(()))
+            }
+        }
     };
-    let a = render(&a)?;
-    let b = render(&b)?;
+    let Picture { image: a, noise: noise_a } = render(&a)?;
+    let Picture { image: b, noise: noise_b } = render(&b)?;
+    let noise = libm::hypot(noise_a, noise_b);
 
     let tone = ToneMapping::from(look.tone);
     let compared = compare_pictures(&a, &b, |v| tone.value(v)).map_err(Failure::input)?;
@@ -48,12 +58,13 @@ pub(crate) fn run(options: &CompareOptions) -> Outcome {
         Format::Png.write(&options.output.join(name), image, tone)?;
     }
     if options.json {
-        return print(&format!("{:#}", json(options, &compared, gain)));
+        return print(&format!("{:#}", json(options, &compared, gain, noise)));
     }
+    let of_which = if noise > 0.0 { format!(", of which noise {noise:.3e}") } else { String::new() };
     let PictureComparison { rms_err, max_abs_err, flip_mean, flip_max, .. } = compared;
     print(&format!(
         "a {}, b {}: {} pixels square\n\
-         rmse {rms_err:.3e}, largest difference {max_abs_err:.3e} (linear radiance)\n\
+         rmse {rms_err:.3e}{of_which}, largest difference {max_abs_err:.3e} (linear radiance)\n\
          flip {flip_mean:.4} mean, {flip_max:.4} largest ({PIXELS_PER_DEGREE:.2} pixels per degree)\n\
          wrote a.png, b.png, difference.png (times {gain}), flip.png to {}",
         options.a,
@@ -67,11 +78,25 @@ pub(crate) fn run(options: &CompareOptions) -> Outcome {
 struct Subject {
     package: Package,
     material: u32,
-    form: Form,
+    way: Way,
+}
+
+/// How a picture comes about.
+enum Way {
+    Shader(Form),
+    /// With so many samples of each pixel.
+    Simulated(u32),
 }
 
 impl Subject {
-    fn of(options: &CompareOptions, choice: &ShaderChoice) -> Outcome<Self> {
+    fn of(options: &CompareOptions, side: &Side) -> Outcome<Self> {
+        let choice = match side {
+            Side::Shader(choice) => choice,
+            Side::Simulated(samples) => {
+                let (package, material) = simulated::find(&options.material, &options.out)?;
+                return Ok(Self { package, material, way: Way::Simulated(*samples) });
+            }
+        };
         let is_file = Path::new(&options.material).extension().is_some_and(|e| e == "toml");
         if choice.model.is_some() && !is_file {
             return Err(Failure::Input(anyhow::anyhow!(
@@ -83,16 +108,17 @@ impl Subject {
         }
         let shading = Shading { model: choice.model, no_fit: options.no_fit, ..Shading::default() };
         // Both sides have the material's model, if neither names another: one that both forms have.
-        let own = [&options.a, &options.b].into_iter().filter(|choice| choice.model.is_none());
+        let sides = [&options.a, &options.b].into_iter().filter_map(Side::shader);
+        let own = sides.filter(|choice| choice.model.is_none());
         let forms: Vec<Form> = own.map(|choice| choice.form).collect();
         let (package, material) = memory_bake::find(&options.material, &shading, &forms, &options.out)?;
         package.wgsl(choice.form)?;
-        Ok(Self { package, material, form: choice.form })
+        Ok(Self { package, material, way: Way::Shader(choice.form) })
     }
 }
 
-fn json(options: &CompareOptions, compared: &PictureComparison, gain: u32) -> Value {
-    json!({
+fn json(options: &CompareOptions, compared: &PictureComparison, gain: u32, noise: f64) -> Value {
+    let mut json = json!({
         "material": options.material,
         "a": options.a.to_string(),
         "b": options.b.to_string(),
@@ -103,5 +129,9 @@ fn json(options: &CompareOptions, compared: &PictureComparison, gain: u32) -> Va
         "flip_max": compared.flip_max,
         "flip_pixels_per_degree": PIXELS_PER_DEGREE,
         "difference_gain": gain,
-    })
+    });
+    if noise > 0.0 {
+        json["noise"] = noise.into();
+    }
+    json
 }

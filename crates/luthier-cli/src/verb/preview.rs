@@ -9,11 +9,14 @@ use crate::cli::{PreviewOptions, ShapeName};
 use crate::picture::{Format, settings};
 use crate::store::store;
 use crate::verb::compare::ENVIRONMENT_SAMPLES;
-use crate::{grid, memory_bake};
+use crate::{grid, memory_bake, simulated};
 
 /// Renders one material, or the grid.
 pub(crate) fn run(options: &PreviewOptions) -> Outcome {
     let format = Format::of(&options.output)?;
+    if let Some(samples) = options.simulated {
+        return simulate(options, samples, format);
+    }
     let (package, parts): (Package, Vec<Shown>) = match (&options.material, options.shape) {
         (None, ShapeName::Grid) => {
             let package = Package::for_renderer(&lit(&grid::materials()?), store()?)?;
@@ -21,9 +24,9 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
             (package, parts)
         }
         (Some(_), ShapeName::Grid) => {
-            return Err(Failure::Input(anyhow::anyhow!("the grid makes its own materials; name none")));
+            return Err(grid_alone());
         }
-        (None, _) => return Err(Failure::Input(anyhow::anyhow!("name a material, or take --shape grid"))),
+        (None, _) => return Err(nothing()),
         (Some(material), _) => {
             let (package, shown) = memory_bake::shown(material, &options.shading, &options.out)?;
             (package, vec![shown])
@@ -41,4 +44,34 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
     }
     let image = scene.render_shown(&parts, &settings)?;
     format.write(&options.output, image, look.tone.into())
+}
+
+/// The picture by random walks of light through the stack of each material.
+fn simulate(options: &PreviewOptions, samples: u32, format: Format) -> Outcome {
+    let (package, parts): (Package, Vec<Shown>) = match (&options.material, options.shape) {
+        (None, ShapeName::Grid) => {
+            let parts = (0..Shape::Grid.materials() as u32).map(Shown::Material).collect();
+            (simulated::package(grid::materials()?)?, parts)
+        }
+        (Some(_), ShapeName::Grid) => return Err(grid_alone()),
+        (None, _) => return Err(nothing()),
+        (Some(material), _) => {
+            let (package, number) = simulated::find(material, &options.out)?;
+            (package, vec![Shown::Material(number)])
+        }
+    };
+    let look = &options.look;
+    let settings = settings(look, options.shape.into(), options.size)?;
+    let gpu = open(look.adapter.as_deref())?;
+    let write = |image| format.write(&options.output, image, look.tone.into());
+    let picture = simulated::picture(&gpu, &package, &parts, &settings, samples, write)?;
+    write(picture.image)
+}
+
+fn grid_alone() -> Failure {
+    Failure::Input(anyhow::anyhow!("the grid makes its own materials; name none"))
+}
+
+fn nothing() -> Failure {
+    Failure::Input(anyhow::anyhow!("name a material, or take --shape grid"))
 }

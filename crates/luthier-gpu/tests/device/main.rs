@@ -16,3 +16,4 @@ mod record_terms;
 mod refusal;
 mod render;
 mod reuse;
+mod simulate;

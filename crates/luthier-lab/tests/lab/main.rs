@@ -6,5 +6,6 @@ mod figures;
 mod judge;
 mod lobes;
 mod parity;
+mod simulation;
 mod stability;
 mod workshop;

@@ -38,6 +38,31 @@ fn tables_and_arithmetic_look_alike() {
     assert!(text.contains("a baked, b full") && text.contains("rmse") && text.contains("flip"), "{text}");
 }
 
+/// More samples are nearer to another simulation, and no nearer to a model than its error.
+#[test]
+fn a_simulation_in_place_of_a_shader() {
+    let workshop = Workshop::with(&[("lacquer.toml", &lacquer("lacquer"))]);
+    let compare = |a: &str, b: &str, more: &[&str]| {
+        let args = ["compare", "lacquer.toml", "--a", a, "--b", b, "-o", "seen"];
+        workshop.run(&[&args[..], &SMALL, more].concat())
+    };
+    let run = compare("elek", "simulated/64", &["--json"]);
+    if run.lacks_adapter() {
+        return;
+    }
+    let few = run.exits(0).json();
+    let many = compare("elek", "simulated/1024", &["--json"]).exits(0).json();
+    assert_eq!((few["a"].as_str(), few["b"].as_str()), (Some("elek/baked"), Some("simulated/64")));
+    let number = |json: &serde_json::Value, key: &str| json[key].as_f64().unwrap();
+    assert!(number(&many, "noise") < 0.4 * number(&few, "noise"), "{few} {many}");
+    assert!(number(&many, "rms_err") > number(&many, "noise"), "{many}");
+    let text = compare("simulated", "full", &[]).exits(0).stdout;
+    assert!(text.contains("a simulated/256, b full") && text.contains("of which noise"), "{text}");
+    for bad in ["simulated/0", "simulated/x", "simulatedly"] {
+        workshop.run(&["compare", "lacquer.toml", "--b", bad, "-o", "no"]).fails(2, &[bad, "simulated/N"]);
+    }
+}
+
 #[test]
 fn what_cannot_be_compared() {
     let workshop = Workshop::with(&[("a.toml", &matte("ash"))]);

@@ -79,6 +79,48 @@ fn a_material_needs_no_bake() {
     assert!(!workshop.path("out").exists());
 }
 
+/// A film on a metal, which the simulation on the device does not take.
+const FILMED: &str = "schema = 1
+name = \"filmed\"
+[[layer]]
+type = \"thin-film\"
+ior = 1.4
+thickness_nm = 300
+[[layer]]
+type = \"conductor\"
+alpha = 0.2
+ior = { n = 0.2, k = 3.4 }
+";
+
+/// Oracle: a matte ball has no layers to simulate, and is what its model shows.
+#[test]
+fn a_simulated_ball() {
+    let workshop = baked();
+    let sampled = ["--environment-samples", "64"];
+    let Some(model) = preview(&workshop, "matte.toml", "model.png", &sampled) else { return };
+    let simulated = preview(&workshop, "matte.toml", "simulated.png", &["--simulated", "64"]).unwrap();
+    let middle = [12, 12, 24, 24];
+    let share = mean(&simulated, middle) / mean(&model, middle);
+    assert!((share - 1.0).abs() < 0.01 && simulated != model, "{share}");
+
+    let by_file = preview(&workshop, "lacquer.toml", "file.png", &["--simulated", "16"]).unwrap();
+    let by_name = preview(&workshop, "lacquer", "name.png", &["--simulated", "16"]).unwrap();
+    assert!(by_file == by_name, "models play no part");
+    let [red, green, _] = by_file.get_pixel(24, 30).0;
+    assert!(red > green, "the lacquer is red: {:?}", by_file.get_pixel(24, 30));
+
+    workshop.write("filmed.toml", FILMED);
+    let refused = ["preview", "filmed.toml", "-o", "no.png", "--simulated", "4"];
+    workshop.run(&refused).exits(1).says(&["filmed.toml:4", "does not take films", "leave out `--simulated`"]);
+    let surface = root().join("materials/surfaces/sunstone.toml");
+    let surface = ["preview", surface.to_str().unwrap(), "-o", "no.png", "--simulated", "4"];
+    workshop.run(&surface).fails(1, &["sunstone.toml is a surface"]);
+    for bad in [&["--simulated", "0"][..], &["--simulated", "4", "--model", "elek"]] {
+        workshop.run(&[&["preview", "lacquer", "-o", "no.png"], bad].concat()).fails(2, &["--simulated"]);
+    }
+    assert!(!workshop.path("no.png").exists());
+}
+
 #[test]
 fn exposure_is_in_stops() {
     let workshop = baked();

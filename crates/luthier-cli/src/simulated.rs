@@ -1,0 +1,116 @@
+//! Materials whose stacks are simulated on the device.
+
+use std::path::Path;
+
+use luthier_export::{Package, gather, read_one, refuse};
+use luthier_gpu::{Gpu, RenderSettings, Shown, SimulationSettings};
+use luthier_lut::Image;
+use luthier_manifest::{Feature, Form, ShadingModel};
+use luthier_material::{Diagnostic, Material, Severity};
+use luthier_terminal::{Bar, Failure, Outcome, valid};
+
+use crate::cli::Shading;
+use crate::memory_bake;
+use crate::store::store;
+
+/// A material by file, or by its name in a bake on disk, ready to be simulated; and its number.
+pub(crate) fn find(material: &str, out: &Path) -> Outcome<(Package, u32)> {
+    let file = Path::new(material);
+    if file.extension().is_none_or(|e| e != "toml") {
+        return memory_bake::find(material, &Shading::default(), &[], out);
+    }
+    if !gather(&[file.to_owned()])?.surfaces.is_empty() {
+        let text = format!("{material} is a surface; the simulation on the device takes one of its materials");
+        return Err(Failure::Input(anyhow::anyhow!(text)));
+    }
+    let mut sources = vec![read_one(file)?];
+    refuse(&mut sources, beyond);
+    Ok((package(valid(sources, false)?)?, 0))
+}
+
+/// Materials, ready to be simulated: models play no part, so that nothing is fitted and no table is baked.
+pub(crate) fn package(mut materials: Vec<Material>) -> Outcome<Package> {
+    for material in &mut materials {
+        material.shade_by(ShadingModel::Phong);
+        material.bake.tables.clear();
+    }
+    Ok(Package::for_renderer(&materials, store()?)?)
+}
+
+/// Refusals of the parts of a material that the simulation on the device does not take.
+fn beyond(material: &Material) -> Vec<Diagnostic> {
+    let mut found: Vec<(String, Feature)> = Vec::new();
+    for (number, layer) in material.stack.layers.iter().enumerate() {
+        let key = |name: &str| format!("layer.{number}.{name}");
+        if !layer.films.is_empty() {
+            found.push((key("film.0.type"), Feature::Films));
+        }
+        if material.layers[number].reradiation.is_some() {
+            found.push((key("reradiation"), Feature::Reradiation));
+        }
+        let maps = &material.layers[number].maps;
+        for (is_there, name, feature) in [
+            (maps.normal.is_some(), "maps.normal", Feature::NormalMap),
+            (maps.roughness.is_some(), "maps.roughness", Feature::RoughnessMap),
+            (maps.thickness.is_some(), "maps.thickness", Feature::ThicknessMap),
+        ] {
+            if is_there {
+                found.push((key(name), feature));
+            }
+        }
+    }
+    let effects = &material.effects;
+    for (is_there, key, feature) in [
+        (effects.flakes.is_some(), "effects.flakes", Feature::Flakes),
+        (effects.patina.is_some(), "effects.patina", Feature::Patina),
+        (effects.glitter.is_some(), "effects.glitter", Feature::Glitter),
+    ] {
+        if is_there {
+            found.push((key.to_owned(), feature));
+        }
+    }
+    let refusal = |(key, feature): (String, Feature)| {
+        let message = format!("the simulation on the device does not take {}", feature.name());
+        let hint = "leave it out for the simulation, or render the material by a model: leave out `--simulated`";
+        material.diagnostic(Severity::Error, &key, message, Some(hint.to_owned()))
+    };
+    found.into_iter().map(refusal).collect()
+}
+
+/// A simulated picture, and the root of the mean square of the standard errors of its pixels.
+pub(crate) struct Picture {
+    pub(crate) image: Image,
+    pub(crate) noise: f64,
+}
+
+/// Samples that are added at once.
+const STEP: u32 = 32;
+
+/// Simulates a picture with so many samples of each pixel. Shows it to `so_far` whenever they have doubled.
+pub(crate) fn picture(
+    gpu: &Gpu,
+    package: &Package,
+    parts: &[Shown],
+    settings: &RenderSettings,
+    samples: u32,
+    mut so_far: impl FnMut(Image) -> Outcome,
+) -> Outcome<Picture> {
+    // The simulation reads the material buffer, which every form binds.
+    let form = Form::ALL.into_iter().find(|form| package.wgsl(*form).is_ok()).unwrap_or(Form::Baked);
+    let scene = gpu.scene(package, form)?;
+    let mut simulation = scene.simulation(parts, settings, &SimulationSettings::default())?;
+    let bar = Bar::new("simulating");
+    let mut next = 2 * STEP;
+    while simulation.samples() < samples {
+        simulation.add(STEP.min(samples - simulation.samples()))?;
+        bar.set(simulation.samples().into(), samples.into());
+        if simulation.samples() >= next && next < samples {
+            so_far(simulation.image())?;
+            next *= 2;
+        }
+    }
+    let squares: f64 = simulation.noise().data.iter().map(|error| f64::from(*error) * f64::from(*error)).sum();
+    let image = simulation.image();
+    let noise = (squares / image.data.len() as f64).sqrt();
+    Ok(Picture { image, noise })
+}

@@ -1,0 +1,306 @@
+//! Simulation of stacks by random walks of light: values for pairs of directions, and pictures that gather samples.
+
+use std::sync::OnceLock;
+
+use luthier_lut::Image;
+use luthier_manifest::{LAYER_WORDS, LayerRecord, MATERIAL_WORDS, MaterialEntry};
+
+use crate::context::Pass;
+use crate::error::setting;
+use crate::evaluate::WORKGROUP;
+use crate::render::{HEADER_WORDS, PIXELS_PER_WORKGROUP};
+use crate::surroundings::Surroundings;
+use crate::{GpuError, RenderSettings, Scene, Shown};
+
+/// The most layers of a stack, as the kernels have room for.
+const LAYERS_MOST: usize = 8;
+
+/// Samples of one thread in a submission: far from the 65,535 turns of loops after which software adapters end them.
+const SAMPLES_PER_THREAD: u32 = 32;
+
+/// Samples per submission: a second or two on a software adapter.
+const SAMPLES_PER_PASS: u32 = 1 << 19;
+
+/// Light at a rough interface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Facets {
+    /// It walks between facets until it leaves, and none is lost: `layered-mc` of luthier-layers.
+    #[default]
+    Walk,
+    /// It meets one facet, and what others block is lost: `layered-mc-one-facet`.
+    One,
+}
+
+/// How light is followed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SimulationSettings {
+    /// Light at rough interfaces.
+    pub facets: Facets,
+    /// Family of random numbers.
+    pub seed: u32,
+}
+
+/// Mean of samples, linear RGB.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Simulated {
+    /// The mean.
+    pub mean: [f64; 3],
+    /// Standard error of the mean, by the spread of the samples.
+    pub std_err: [f64; 3],
+}
+
+/// Sums over samples, and over their squares.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    values: [f64; 3],
+    squares: [f64; 3],
+}
+
+impl Sums {
+    fn add(&mut self, words: &[[f32; 4]]) {
+        let [values, squares] = words else { return };
+        for c in 0..3 {
+            self.values[c] += f64::from(values[c]);
+            self.squares[c] += f64::from(squares[c]);
+        }
+    }
+
+    fn of(&self, samples: u32) -> Simulated {
+        let n = f64::from(samples);
+        let mean = self.values.map(|sum| sum / n);
+        let variance = |c: usize| (self.squares[c] / n - mean[c] * mean[c]).max(0.0) / (n - 1.0).max(1.0);
+        Simulated { mean, std_err: [0, 1, 2].map(|c: usize| variance(c).sqrt()) }
+    }
+}
+
+/// The pipelines of the simulation, compiled at their first use.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Pipelines {
+    /// Of pairs and of pictures, each with walks and with one facet.
+    cells: [OnceLock<wgpu::ComputePipeline>; 4],
+}
+
+impl Scene {
+    /// `f cos_theta_i` of a material for pairs `(wi, wo)`: unit vectors in the local frame, away from the surface. The mean of random walks of
+    /// light through its stack at three wavelengths; zero where a direction is below the horizon. Equal arguments give equal values on
+    /// one device.
+    ///
+    /// Paths are position-free (Guo, Hasan and Zhao 2018) over Smith micro-surfaces, with indices, slopes, turns, slabs and the diffuse base of the
+    /// layer records. The mean is unbiased but for single precision, and for what paths of more than 512 events or walks of more than 256 facets
+    /// would bring: less than one part in a million. Slope parameters are at least 0.001, as records have them. Transparent layers whose index
+    /// hangs on the wavelength take three paths a sample.
+    ///
+    /// # Errors
+    /// [`GpuError::NotSimulated`] for films, fluorescent bases and surfaces that vary; [`GpuError::NoMaterial`], [`GpuError::Setting`] for no
+    /// samples, and whatever the device reports.
+    pub fn simulate(
+        &self,
+        material: u32,
+        pairs: &[([f32; 3], [f32; 3])],
+        samples: u32,
+        settings: &SimulationSettings,
+    ) -> Result<Vec<Simulated>, GpuError> {
+        self.layers(material)?;
+        self.check_simulated(material)?;
+        if samples == 0 {
+            return Err(setting("samples", samples.to_string(), "at least 1"));
+        }
+        let pipeline = self.simulation_pipeline(settings.facets, 0, &[include_str!("wgsl/simulation/pairs.wgsl")])?;
+        let mut all = Vec::with_capacity(pairs.len());
+        for (number, chunk) in pairs.chunks(WORKGROUP * 256).enumerate() {
+            let mut sums = vec![Sums::default(); chunk.len()];
+            let blocks = (SAMPLES_PER_PASS / SAMPLES_PER_THREAD / chunk.len() as u32).max(1);
+            let mut done = 0;
+            while done < samples {
+                // Whole threads, or one block of what is left.
+                let left = samples - done;
+                let per_thread = left.min(SAMPLES_PER_THREAD);
+                let blocks = (left / per_thread).min(blocks);
+                // Chunks have seeds of their own: their pairs count from 0.
+                let seed = settings.seed ^ (number as u32).wrapping_mul(0x9e37_79b9);
+                let mut words = vec![[material, seed, done, per_thread]];
+                for (wi, wo) in chunk {
+                    let word = |d: &[f32; 3]| [d[0].to_bits(), d[1].to_bits(), d[2].to_bits(), 0];
+                    words.extend([word(wi), word(wo)]);
+                }
+                let threads = blocks as usize * chunk.len();
+                let out = self.context.run(&Pass {
+                    what: "simulation",
+                    pipeline,
+                    shader_group: &self.group,
+                    workgroups: [threads.div_ceil(WORKGROUP) as u32, 1],
+                    inputs: bytemuck::cast_slice(&words),
+                    output_words: 2 * threads,
+                })?;
+                for (thread, words) in out.chunks(2).enumerate() {
+                    sums[thread % chunk.len()].add(words);
+                }
+                done += blocks * per_thread;
+            }
+            all.extend(sums.iter().map(|sums| sums.of(samples)));
+        }
+        Ok(all)
+    }
+
+    /// A picture of a shape to simulate, one material for each of its parts, lit and seen as [`Scene::render`] has it: lights widen slopes, and the environment is met by paths that
+    /// leave the stack. `environment_samples` counts for nothing. No sample is taken yet.
+    ///
+    /// # Errors
+    /// As [`Scene::simulate`] and [`Scene::render`].
+    pub fn simulation(
+        &self,
+        parts: &[Shown],
+        render: &RenderSettings,
+        settings: &SimulationSettings,
+    ) -> Result<Simulation<'_>, GpuError> {
+        let render = RenderSettings { environment_samples: 1, ..render.clone() };
+        render.check(parts)?;
+        for part in parts {
+            if let Shown::Surface(_) = part {
+                return Err(GpuError::NotSimulated {
+                    material: "a surface".to_owned(),
+                    what: "surfaces of several materials",
+                });
+            }
+        }
+        let materials = self.materials_of(parts)?;
+        materials.iter().try_for_each(|material| self.check_simulated(*material))?;
+        let kernel = [
+            include_str!("wgsl/shape.wgsl"),
+            include_str!("wgsl/environment.wgsl"),
+            include_str!("wgsl/picture.wgsl"),
+            include_str!("wgsl/simulation/picture.wgsl"),
+        ];
+        let pipeline = self.simulation_pipeline(settings.facets, 2, &kernel)?;
+        let words = self.widened_words(render.light_angular_radius);
+        let group = self.bindings.group(&self.context, &words, &Surroundings::black(&self.context)?)?;
+        let inputs = self.inputs(parts, &materials, &render);
+        let sums = vec![Sums::default(); (render.size * render.size) as usize];
+        Ok(Simulation {
+            scene: self,
+            pipeline,
+            group,
+            inputs,
+            size: render.size,
+            seed: settings.seed,
+            samples: 0,
+            sums,
+        })
+    }
+
+    fn simulation_pipeline(
+        &self,
+        facets: Facets,
+        first: usize,
+        kernel: &[&str],
+    ) -> Result<&wgpu::ComputePipeline, GpuError> {
+        let walks = facets == Facets::Walk;
+        let text = [
+            include_str!("wgsl/simulation/random.wgsl"),
+            include_str!("wgsl/simulation/layer.wgsl"),
+            include_str!("wgsl/simulation/facets.wgsl"),
+            include_str!("wgsl/simulation/interface.wgsl"),
+            include_str!("wgsl/simulation/path.wgsl"),
+        ];
+        let text = [text.as_slice(), kernel].concat().join("\n");
+        let text = text
+            .replace("$layer_words", &LAYER_WORDS.to_string())
+            .replace("$material_words", &MATERIAL_WORDS.to_string())
+            .replace("$layers", &LAYERS_MOST.to_string())
+            .replace("$walks", if walks { "true" } else { "false" });
+        self.pipeline(&self.simulations.cells[first + usize::from(walks)], &text)
+    }
+
+    fn check_simulated(&self, material: u32) -> Result<(), GpuError> {
+        let entry = &self.manifest.materials[material as usize];
+        let refused = |what| Err(GpuError::NotSimulated { material: entry.name.clone(), what });
+        match beyond(entry) {
+            Some(what) => refused(what),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The part of a material that the simulation does not know.
+fn beyond(entry: &MaterialEntry) -> Option<&'static str> {
+    let has_film = |layer: &LayerRecord| layer.film_thickness_max_nm > 0.0 || layer.film_thickness_nm > 0.0;
+    if entry.layers.iter().any(has_film) {
+        return Some("films");
+    }
+    if entry.layers.iter().any(|layer| layer.reradiation.is_some()) {
+        return Some("fluorescent bases");
+    }
+    if entry.varies() {
+        return Some("textures, flakes, patina and glitter");
+    }
+    (entry.layers.len() > LAYERS_MOST).then_some("more than 8 layers")
+}
+
+/// A picture that gathers samples.
+#[derive(Debug)]
+pub struct Simulation<'a> {
+    scene: &'a Scene,
+    pipeline: &'a wgpu::ComputePipeline,
+    group: wgpu::BindGroup,
+    inputs: Vec<[u32; 4]>,
+    size: u32,
+    seed: u32,
+    samples: u32,
+    sums: Vec<Sums>,
+}
+
+impl Simulation<'_> {
+    /// Adds samples to every pixel. Samples go over the squares of a pixel in turn, so that multiples of the square of
+    /// [`RenderSettings::samples`] cover it evenly. Samples in several calls are those of one.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn add(&mut self, samples: u32) -> Result<(), GpuError> {
+        let size = self.size;
+        let mut left = samples;
+        while left > 0 {
+            let count = left.min(SAMPLES_PER_THREAD);
+            let rows = (SAMPLES_PER_PASS / (size * count)).clamp(1, size);
+            for row in (0..size).step_by(rows as usize) {
+                let rows = rows.min(size - row);
+                self.inputs[5][1] = row;
+                self.inputs[HEADER_WORDS - 1] = [self.samples, count, self.seed, 0];
+                let pixels = self.scene.context.run(&Pass {
+                    what: "simulation",
+                    pipeline: self.pipeline,
+                    shader_group: &self.group,
+                    workgroups: [size.div_ceil(PIXELS_PER_WORKGROUP), rows.div_ceil(PIXELS_PER_WORKGROUP)],
+                    inputs: bytemuck::cast_slice(&self.inputs),
+                    output_words: 2 * (size * rows) as usize,
+                })?;
+                let first = (row * size) as usize;
+                for (sums, words) in self.sums[first..].iter_mut().zip(pixels.chunks(2)) {
+                    sums.add(words);
+                }
+            }
+            self.samples += count;
+            left -= count;
+        }
+        Ok(())
+    }
+
+    /// Samples of each pixel so far.
+    pub fn samples(&self) -> u32 {
+        self.samples
+    }
+
+    /// The picture so far: linear RGB, as [`Scene::render`] gives it; black before the first sample.
+    pub fn image(&self) -> Image {
+        self.picture(|simulated| simulated.mean)
+    }
+
+    /// Standard error of every pixel and channel, by the spread of its samples. Where samples cover a pixel evenly it is a little too large.
+    pub fn noise(&self) -> Image {
+        self.picture(|simulated| simulated.std_err)
+    }
+
+    fn picture(&self, value: impl Fn(Simulated) -> [f64; 3]) -> Image {
+        let of = |sums: &Sums| value(sums.of(self.samples.max(1))).map(|v| v as f32);
+        Image { width: self.size, height: self.size, channels: 3, data: self.sums.iter().flat_map(of).collect() }
+    }
+}

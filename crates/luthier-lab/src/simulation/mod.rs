@@ -1,0 +1,220 @@
+//! `simulation`: time and picture of the simulation on the device, beside those of models.
+
+mod page;
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use luthier_environment::{Environment, Scenery};
+use luthier_export::{GENERATOR, MemoryStore, Package, lit, read};
+use luthier_gpu::{Facets, Gpu, RenderSettings, Scene, Shape, Shown, SimulationSettings};
+use luthier_lut::Image;
+use luthier_manifest::{ColorMode, Form, ShadingModel};
+use luthier_material::Material;
+use luthier_report::{Spread, compare_pictures};
+use luthier_terminal::{Bar, Failure, Outcome, adapter_label, deliver, open, valid};
+use serde_json::{Value, json};
+
+use crate::cli::SimulationOptions;
+
+/// Version of the JSON.
+const SCHEMA: u32 = 1;
+
+/// Models beside the simulation: the papers' two, and the one that is fitted to a simulation.
+const MODELS: [ShadingModel; 3] = [ShadingModel::Yamaguchi, ShadingModel::Belcour, ShadingModel::Lobes];
+
+/// Samples of a pixel that times are for; the last is the paper's.
+const SAMPLES: [u32; 4] = [32, 128, 512, 2048];
+
+/// Rows of the map of the surroundings.
+const ROWS: u32 = 128;
+
+/// Turns of the surroundings about the vertical axis, as shares of a whole one.
+const TURNS: [(&str, u32); 3] = [("0", 0), ("120", 1), ("240", 2)];
+
+/// Directions of the environment for each lobe and sample of a pixel, of models in pictures: with 16 samples 1,024.
+const DIRECTIONS: u32 = 64;
+
+/// Median milliseconds of a picture, and their median deviation.
+struct Time {
+    material: String,
+    way: String,
+    samples: u32,
+    spread: Spread,
+}
+
+/// How far a model is from the simulation.
+struct Error {
+    material: String,
+    turn: &'static str,
+    /// Mean of the simulation over the picture.
+    mean: f64,
+    /// Its noise.
+    noise: f64,
+    /// Root mean square difference of each of [`MODELS`], the noise taken out.
+    rms: Vec<f64>,
+}
+
+/// A material on the device: the scene of its stack, and that of each model.
+struct Subject {
+    name: String,
+    stack: Scene,
+    models: Vec<Scene>,
+}
+
+/// Measures materials.
+pub(crate) fn run(options: &SimulationOptions) -> Outcome {
+    let gpu = open(options.adapter.name.as_deref())?;
+    let materials = valid(read(&options.sources.paths)?, false)?;
+    let skies = skies()?;
+    let bar = Bar::new("simulation");
+    let (mut times, mut errors) = (Vec::new(), Vec::new());
+    for (i, material) in materials.iter().enumerate() {
+        let subject = Subject::new(&gpu, material)?;
+        times.extend(subject.times(options, &skies[0])?);
+        errors.extend(subject.errors(options, &skies)?);
+        bar.set(i as u64 + 1, materials.len() as u64);
+    }
+    drop(bar);
+    let adapter = adapter_label(&gpu);
+    if let Some(file) = &options.data {
+        let data = data(&gpu, options, &times, &errors);
+        deliver(&format!("{data:#}\n"), Some(file))?;
+    }
+    deliver(&page::page(options, &adapter, gpu.is_software(), &times, &errors), options.destination.output.as_deref())
+}
+
+/// The surroundings at each turn.
+fn skies() -> Outcome<Vec<Arc<Environment>>> {
+    let map = Scenery::StripStudio.map(ROWS).map_err(Failure::input)?;
+    let turned = |(_, third): &(&str, u32)| {
+        let (width, shift) = (map.width, map.width * third / 3);
+        let mut turned = map.clone();
+        for (y, x) in (0..map.height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+            turned.texel_mut((x + shift) % width, y).copy_from_slice(map.texel(x, y));
+        }
+        Environment::new(turned).map(Arc::new).map_err(Failure::input)
+    };
+    TURNS.iter().map(turned).collect()
+}
+
+impl Subject {
+    fn new(gpu: &Gpu, material: &Material) -> Outcome<Self> {
+        let scene = |model: ShadingModel| -> Outcome<Scene> {
+            let mut shaded = material.clone();
+            shaded.shade_by(model);
+            // Those of the simulation.
+            shaded.bake.color = Some(ColorMode::ThreeWavelengths);
+            let package = Package::for_renderer(&lit(&[shaded]), &MemoryStore::default())?;
+            Ok(gpu.scene(&package, Form::Baked)?)
+        };
+        let models = MODELS.iter().map(|model| scene(*model)).collect::<Outcome<_>>()?;
+        Ok(Self { name: material.name.clone(), stack: scene(ShadingModel::Phong)?, models })
+    }
+
+    /// Times of a picture under surroundings alone; all ways in turn, so that they share what else the machine does.
+    fn times(&self, options: &SimulationOptions, sky: &Arc<Environment>) -> Outcome<Vec<Time>> {
+        let mut times = Vec::new();
+        for samples in SAMPLES {
+            let mut runs: Vec<(String, Vec<f64>)> = Vec::new();
+            // The first round compiles.
+            for round in 0..=options.repeats.get() {
+                let mut next = 0;
+                let mut note = |way: &str, started: Instant| {
+                    let milliseconds = started.elapsed().as_secs_f64() * 1e3;
+                    if round == 0 {
+                        runs.push((way.to_owned(), Vec::new()));
+                    } else {
+                        runs[next].1.push(milliseconds);
+                    }
+                    next += 1;
+                };
+                let settings = settings(options.time_size, sky)?;
+                let per_pixel = settings.samples * settings.samples;
+                for (way, facets) in [("simulation", Facets::Walk), ("simulation, one facet", Facets::One)] {
+                    let started = Instant::now();
+                    let simulation = SimulationSettings { facets, seed: 0 };
+                    let mut picture = self.stack.simulation(&[Shown::Material(0)], &settings, &simulation)?;
+                    picture.add(if round == 0 { 1 } else { samples })?;
+                    note(way, started);
+                }
+                for (model, scene) in MODELS.iter().zip(&self.models) {
+                    let environment_samples = if round == 0 { 1 } else { samples.div_ceil(per_pixel) };
+                    let started = Instant::now();
+                    scene.render(&[0], &RenderSettings { environment_samples, ..settings.clone() })?;
+                    note(model.name(), started);
+                }
+            }
+            let time = |(way, runs): (String, Vec<f64>)| Time {
+                material: self.name.clone(),
+                way,
+                samples,
+                spread: Spread::of(&runs),
+            };
+            times.extend(runs.into_iter().map(time));
+        }
+        Ok(times)
+    }
+
+    /// Pictures of the models against the simulated one.
+    fn errors(&self, options: &SimulationOptions, skies: &[Arc<Environment>]) -> Outcome<Vec<Error>> {
+        let error = |((turn, _), sky): (&(&'static str, u32), &Arc<Environment>)| -> Outcome<Error> {
+            let settings = settings(options.size, sky)?;
+            let mut simulation =
+                self.stack.simulation(&[Shown::Material(0)], &settings, &SimulationSettings::default())?;
+            simulation.add(options.samples.get())?;
+            let (truth, noise) = (simulation.image(), mean_square(&simulation.noise()));
+            let rms = |scene: &Scene| -> Outcome<f64> {
+                let settings = RenderSettings { environment_samples: DIRECTIONS, ..settings.clone() };
+                let image = scene.render(&[0], &settings)?;
+                let compared = compare_pictures(&image, &truth, |v| v).map_err(Failure::input)?;
+                Ok((compared.rms_err * compared.rms_err - noise).max(0.0).sqrt())
+            };
+            let mean = truth.data.iter().map(|v| f64::from(*v)).sum::<f64>() / truth.data.len() as f64;
+            let rms = self.models.iter().map(rms).collect::<Outcome<_>>()?;
+            Ok(Error { material: self.name.clone(), turn, mean, noise: noise.sqrt(), rms })
+        };
+        TURNS.iter().zip(skies).map(error).collect()
+    }
+}
+
+/// A ball under surroundings alone, before black.
+fn settings(size: u32, sky: &Arc<Environment>) -> Outcome<RenderSettings> {
+    Ok(RenderSettings {
+        size,
+        lights: Vec::new(),
+        environment: Arc::clone(sky),
+        backdrop: luthier_gpu::Backdrop::Plain([0.0; 3]),
+        ..RenderSettings::new(Shape::Sphere)?
+    })
+}
+
+fn mean_square(image: &Image) -> f64 {
+    image.data.iter().map(|v| f64::from(*v) * f64::from(*v)).sum::<f64>() / image.data.len() as f64
+}
+
+fn data(gpu: &Gpu, options: &SimulationOptions, times: &[Time], errors: &[Error]) -> Value {
+    let time = |Time { material, way, samples, spread }: &Time| json!({ "material": material, "way": way, "samples": samples, "median_ms": spread.median, "mad_ms": spread.mad });
+    let error = |Error { material, turn, mean, noise, rms }: &Error| {
+        let models: serde_json::Map<String, Value> =
+            MODELS.iter().zip(rms).map(|(model, rms)| (model.name().to_owned(), json!(rms))).collect();
+        json!({ "material": material, "turn_deg": turn, "mean": mean, "noise": noise, "rms_err": models })
+    };
+    json!({
+        "schema": SCHEMA,
+        "generator": GENERATOR,
+        "adapter": {
+            "name": gpu.adapter_name(),
+            "driver": gpu.driver(),
+            "backend": gpu.backend(),
+            "software": gpu.is_software(),
+        },
+        "clock": "host",
+        "time_size": options.time_size,
+        "repeats": options.repeats,
+        "size": options.size,
+        "samples": options.samples,
+        "times": times.iter().map(time).collect::<Vec<_>>(),
+        "errors": errors.iter().map(error).collect::<Vec<_>>(),
+    })
+}
