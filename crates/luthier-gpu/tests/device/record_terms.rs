@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use luthier_layers::elek::{Below, Layer};
+use luthier_layers::elek::{Below, InternalReflection, Layer};
 use luthier_layers::terms::Terms;
 use luthier_manifest::{LayerKind, LayerRecord};
 use luthier_optics::Rgb;
@@ -79,6 +79,7 @@ pub(crate) fn model_layers(records: &[LayerRecord]) -> Vec<Layer> {
                 LayerKind::Conductor => Below::Conductor,
                 LayerKind::Diffuse => Below::Diffuse(Diffuse { albedo: r.albedo, sigma: r.sigma }),
             },
+            internal_reflection: InternalReflection::Facets,
         })
         .collect()
 }
