@@ -3,7 +3,8 @@
 
 use std::f64::consts::PI;
 
-use luthier_layers::elek::{Below, InternalReflection, Layer};
+use luthier_layers::elek::{Below, Layer};
+use luthier_layers::parts::InternalReflection;
 use luthier_layers::terms::Terms;
 use luthier_manifest::{LayerKind, LayerRecord};
 use luthier_optics::Rgb;
