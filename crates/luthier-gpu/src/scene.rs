@@ -1,12 +1,13 @@
 //! A package on a device: its textures and buffer, and the pipelines of the kernels.
 
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock};
 
 use luthier_lut::TableKind;
 use luthier_manifest::{Form, LayerRecord, Manifest};
 
 use crate::bindings::{ShaderBindings, kernel_layout, material_words};
 use crate::context::Context;
+use crate::mesh::Grounded;
 use luthier_export::{Map, Package};
 
 use crate::surroundings::Surroundings;
@@ -27,6 +28,8 @@ pub struct Scene {
     pub(crate) evaluate: wgpu::ComputePipeline,
     pub(crate) lookups: [OnceLock<wgpu::ComputePipeline>; TableKind::ALL.len()],
     pub(crate) render: OnceLock<wgpu::ComputePipeline>,
+    pub(crate) render_mesh: OnceLock<wgpu::ComputePipeline>,
+    pub(crate) grounded: Mutex<Option<Grounded>>,
 }
 
 impl Scene {
@@ -55,6 +58,8 @@ impl Scene {
             evaluate,
             lookups: Default::default(),
             render: OnceLock::new(),
+            render_mesh: OnceLock::new(),
+            grounded: Mutex::default(),
         })
     }
 
@@ -82,6 +87,8 @@ impl Scene {
             evaluate: self.evaluate.clone(),
             lookups: self.lookups.clone(),
             render: self.render.clone(),
+            render_mesh: self.render_mesh.clone(),
+            grounded: Mutex::default(),
         }))
     }
 

@@ -2,21 +2,23 @@
 
 use std::f64::consts::PI;
 
-use crate::Mesh;
+use rayon::prelude::*;
+
 use crate::vector::{V, across, along, cross};
+use crate::{Mesh, Vertex};
 
 /// Rays of all vertices together: about a second.
 const RAYS: usize = 1 << 20;
 
 /// The openness of each vertex, from rays in fixed directions with the density of the cosine.
 pub(crate) fn openness(mesh: &Mesh) -> Vec<f32> {
-    let count = (RAYS / mesh.vertices.len().max(1)).clamp(16, 128);
+    let count = (RAYS / mesh.vertices.len().max(1)).clamp(4, 128);
     let directions: Vec<V> = (0..count).map(|i| cosine_weighted(i, count)).collect();
     let mut part = vec![0; mesh.vertices.len()];
     for triangle in &mesh.triangles {
         triangle.corners.iter().for_each(|&i| part[i as usize] = triangle.part);
     }
-    let open = |(vertex, part): (&crate::Vertex, u32)| {
+    let open = |(vertex, part): (&Vertex, u32)| {
         let n = vertex.normal;
         let t = across(n);
         let b = cross(n, t);
@@ -27,7 +29,7 @@ pub(crate) fn openness(mesh: &Mesh) -> Vec<f32> {
         };
         directions.iter().filter(is_open).count() as f32 / count as f32
     };
-    mesh.vertices.iter().zip(part).map(open).collect()
+    mesh.vertices.par_iter().zip(part).map(open).collect()
 }
 
 impl Mesh {

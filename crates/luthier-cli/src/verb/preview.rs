@@ -30,7 +30,7 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
         }
     };
     let look = &options.look;
-    let mut settings = settings(look, options.shape.into(), options.size)?;
+    let mut settings = settings(look, options.shape, options.mesh.as_deref(), options.size)?;
     let gpu = open(look.adapter.as_deref())?;
     let scene = gpu.scene(&package, Form::Baked)?;
     for material in scene.materials_of(&parts)? {
