@@ -19,7 +19,12 @@ pub(crate) fn settings(look: &Look, shape: ShapeName, mesh: Option<&Path>, size:
     let mut settings = match mesh {
         Some(path) => {
             let mesh = Some(Arc::new(meshes::read(path)?));
-            RenderSettings { shape: Shape::Mesh, camera: Shape::Mesh.camera(), mesh, ..RenderSettings::new(Shape::Sphere)? }
+            RenderSettings {
+                shape: Shape::Mesh,
+                camera: Shape::Mesh.camera(),
+                mesh,
+                ..RenderSettings::new(Shape::Sphere)?
+            }
         }
         None => RenderSettings::new(shape.into())?,
     };

@@ -123,6 +123,9 @@ fn has_area([a, b, c]: [[f32; 3]; 3]) -> bool {
     dot(normal, normal) > 0.0
 }
 
+/// Plain parts are no further away than this.
+const FAR: f64 = 1e6;
+
 /// Moves the shown part to the origin and scales it.
 fn fit(soup: &mut Soup) -> Result<(), MeshError> {
     let shown = || soup.triangles.iter().filter(|t| t.part == 0).flat_map(|t| t.corners);
@@ -138,7 +141,8 @@ fn fit(soup: &mut Soup) -> Result<(), MeshError> {
     let length = |at: [f64; 3]| (0..3).map(|c| (at[c] - centre[c]) * (at[c] - centre[c])).sum::<f64>().sqrt();
     let radius = shown().map(|i| length(position(i))).fold(0.0, f64::max);
     for vertex in &mut soup.vertices {
-        vertex.position = [0, 1, 2].map(|c| ((f64::from(vertex.position[c]) - centre[c]) / radius) as f32);
+        let far = |c: usize| ((f64::from(vertex.position[c]) - centre[c]) / radius).clamp(-FAR, FAR);
+        vertex.position = [0, 1, 2].map(|c| far(c) as f32);
     }
     Ok(())
 }

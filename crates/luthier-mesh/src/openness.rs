@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use crate::vector::{V, across, along, cross};
 use crate::{Mesh, Vertex};
 
-/// Rays of all vertices together: about a second.
-const RAYS: usize = 1 << 20;
+/// Rays of all vertices together: about half a second.
+const RAYS: usize = 1 << 19;
 
 /// The openness of each vertex, from rays in fixed directions with the density of the cosine.
 pub(crate) fn openness(mesh: &Mesh) -> Vec<f32> {

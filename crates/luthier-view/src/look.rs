@@ -102,9 +102,8 @@ impl Surroundings {
     /// The environment of a number; the first where there is none.
     pub(crate) fn environment(&self, number: usize) -> &Arc<Environment> {
         match number.checked_sub(self.ready.len()).and_then(|number| self.made.get(number)) {
-            Some((scenery, made)) => {
-                made.get_or_init(|| scenery.environment(SKY_ROWS).map_or_else(|_| Arc::clone(&self.ready[0].1), Arc::new))
-            }
+            Some((scenery, made)) => made
+                .get_or_init(|| scenery.environment(SKY_ROWS).map_or_else(|_| Arc::clone(&self.ready[0].1), Arc::new)),
             None => &self.ready.get(number).unwrap_or(&self.ready[0]).1,
         }
     }

@@ -23,7 +23,7 @@ Examples:
   luthier preview red-lacquer -o ball.png --size 1024
   luthier preview materials/car-paint.toml -o ring.png --shape torus --environment studio.hdr
   luthier preview materials/surfaces/sunstone.toml -o stone.png
-  luthier preview materials/polished-gold.toml -o gold.png --sky night-street --background
+  luthier preview materials/polished-gold.toml -o gold.png --sky evening-room --background
   luthier preview materials/soap-film.toml -o cat.png --mesh cat.glb
   luthier preview --shape grid -o grid.png";
 

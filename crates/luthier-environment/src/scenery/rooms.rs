@@ -64,6 +64,11 @@ fn softbox([u, v]: [f64; 2], radiance: V) -> V {
 }
 
 pub(super) fn softbox_studio(d: V) -> V {
+    // So that a white patch which faces the camera is nearly white.
+    scaled(softboxes(d), 1.7)
+}
+
+fn softboxes(d: V) -> V {
     let room = Room { low: [-4.0, -1.0, -4.5], high: [4.0, 3.2, 4.5] };
     // Before the left wall, above; a tall narrow one on the right; a small one behind, for edges.
     let key = ([-2.3, 1.75, 1.7], [0.72, 0.15, 0.78], [-0.45, 0.78, 0.27], [7.5, 7.4, 7.1]);
@@ -149,7 +154,11 @@ pub(super) fn evening_room(d: V) -> V {
     let paint = match place.normal {
         // The window on the right: dusk over roofs, with curtains beside it.
         [-1.0, ..] if (-1.7..0.7).contains(&z) && (-0.35..1.45).contains(&y) => {
-            let cross = (z + 0.5).abs() < 0.03 || (y - 0.75).abs() < 0.025 || y < -0.3 || y > 1.4 || !(-1.65..0.65).contains(&z);
+            let cross = (z + 0.5).abs() < 0.03
+                || (y - 0.75).abs() < 0.025
+                || y < -0.3
+                || y > 1.4
+                || !(-1.65..0.65).contains(&z);
             if cross {
                 [0.6, 0.57, 0.52]
             } else {
@@ -197,7 +206,11 @@ fn books([x, y]: [f64; 2]) -> V {
         return [0.035, 0.022, 0.014];
     }
     let spine = (place - place.floor() - 0.5).abs();
-    let cloth = mix(mix([0.5, 0.07, 0.05], [0.06, 0.16, 0.34], smooth(0.2, 0.5, hue)), [0.62, 0.55, 0.4], smooth(0.6, 0.8, hue));
+    let cloth = mix(
+        mix([0.5, 0.07, 0.05], [0.06, 0.16, 0.34], smooth(0.2, 0.5, hue)),
+        [0.62, 0.55, 0.4],
+        smooth(0.6, 0.8, hue),
+    );
     let label = (0.35..0.42).contains(&above) && spine < 0.32;
     if label { [0.75, 0.62, 0.25] } else { scaled(cloth, (0.35 + 0.65 * tone) * (1.0 - 1.2 * spine * spine)) }
 }
