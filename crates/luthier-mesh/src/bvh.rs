@@ -1,6 +1,6 @@
 //! A tree of boxes about triangles, flat, for rays on the host and on a device.
 
-use crate::vector::{V, cross, dot, sub};
+use crate::vector::{V, along, cross, dot, sub};
 
 /// Triangles of a leaf at most.
 const LEAF_MAX: usize = 4;
@@ -134,19 +134,24 @@ fn meets(node: &Node, origin: V, inverse: V, limit: f32) -> bool {
     near <= far * 1.000_001 + 1e-9
 }
 
-/// Distance and weights where a line meets a triangle (Moeller and Trumbore 1997).
-pub(crate) fn meeting([a, b, c]: [V; 3], origin: V, direction: V) -> Option<(f32, [f32; 2])> {
-    let (ab, ac) = (sub(b, a), sub(c, a));
-    let p = cross(direction, ac);
-    let determinant = dot(ab, p);
-    if determinant == 0.0 {
+/// Distance and weights where a line meets a triangle. The corners are seen across the line: edges that triangles have in common have areas that differ in
+/// sign alone, so that no line slips through between them, as with Woop et al. 2013.
+fn meeting(corners: [V; 3], origin: V, direction: V) -> Option<(f32, [f32; 2])> {
+    let length_sq = dot(direction, direction);
+    let places = corners.map(|corner| {
+        let to = sub(corner, origin);
+        let t = dot(to, direction) / length_sq;
+        (along(to, -t, direction), t)
+    });
+    let area = |i: usize, j: usize| dot(direction, cross(places[i].0, places[j].0));
+    let areas = [area(2, 1), area(0, 2), area(1, 0)];
+    let sum: f32 = areas.iter().sum();
+    let is_inside = areas.iter().all(|area| area / sum >= -2e-6);
+    if !is_inside || sum == 0.0 {
         return None;
     }
-    let s = sub(origin, a);
-    let u = dot(s, p) / determinant;
-    let q = cross(s, ab);
-    let v = dot(direction, q) / determinant;
-    (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then(|| (dot(ac, q) / determinant, [u, v]))
+    let t = (0..3).map(|i| areas[i] * places[i].1).sum::<f32>() / sum;
+    Some((t, [areas[1] / sum, areas[2] / sum]))
 }
 
 impl Builder<'_> {

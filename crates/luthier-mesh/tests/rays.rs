@@ -57,7 +57,7 @@ fn the_tree_finds_what_a_search_finds() {
             None => assert!(expected.is_infinite(), "missed at {expected}"),
         }
     }
-    assert!((1000..3900).contains(&met), "{met}");
+    assert!((300..3900).contains(&met), "{met}");
 }
 
 /// A sphere of triangles about a point, as fine as asked for.
@@ -103,7 +103,7 @@ fn openness_under_a_sphere_is_lamberts() {
         let found = f64::from(mesh.openness()[i as usize]);
         assert!((found - expected).abs() < 0.03, "{x}: {found} for {expected}");
     }
-    assert_eq!(mesh.floor(), Some(-1.0));
+    assert!((mesh.floor().unwrap() + 1.0).abs() < 1e-6);
     assert!(
         mesh.openness()[..first as usize].iter().all(|&open| open > 0.95),
         "the floor does not hide the sphere's surroundings"

@@ -56,7 +56,7 @@ fn mesh_position(head: vec4<u32>, corner: u32) -> vec3<f32> {
     return kernel_inputs.words[head.w + 3u * corner].xyz;
 }
 
-// The nearest triangle before `farthest`, or any where `is_shadow`. Plain parts shade nothing.
+// The nearest triangle before `farthest`, or any where `is_shadow`, along a unit ray. Plain parts shade nothing.
 fn mesh_nearest(origin: vec3<f32>, ray: vec3<f32>, farthest: f32, is_shadow: bool) -> MeshMeeting {
     let head = mesh_head();
     let inverse = 1.0 / select(ray, vec3<f32>(1e-12), abs(ray) < vec3<f32>(1e-12));
@@ -65,10 +65,10 @@ fn mesh_nearest(origin: vec3<f32>, ray: vec3<f32>, farthest: f32, is_shadow: boo
     while node < head.y {
         let low = kernel_inputs.words[head.x + 2u * node];
         let high = kernel_inputs.words[head.x + 2u * node + 1u];
-        let a = (low.xyz - origin) * inverse;
-        let b = (high.xyz - origin) * inverse;
-        let enter = min(a, b);
-        let leave = max(a, b);
+        let first = (low.xyz - origin) * inverse;
+        let second = (high.xyz - origin) * inverse;
+        let enter = min(first, second);
+        let leave = max(first, second);
         let near = max(max(enter.x, enter.y), max(enter.z, 0.0));
         let far = min(min(leave.x, leave.y), min(leave.z, best.t));
         if !(near <= far * 1.000001 + 1e-9) {
@@ -84,20 +84,29 @@ fn mesh_nearest(origin: vec3<f32>, ray: vec3<f32>, farthest: f32, is_shadow: boo
             if is_shadow && triangle.w > 0u {
                 continue;
             }
-            // Moeller and Trumbore 1997.
-            let corner = mesh_position(head, triangle.x);
-            let ab = mesh_position(head, triangle.y) - corner;
-            let ac = mesh_position(head, triangle.z) - corner;
-            let p = cross(ray, ac);
-            let determinant = dot(ab, p);
-            if determinant == 0.0 {
+            // Corners across the ray: edges that triangles have in common have sums that differ in sign alone, so that no ray slips through.
+            let a = mesh_position(head, triangle.x) - origin;
+            let b = mesh_position(head, triangle.y) - origin;
+            let c = mesh_position(head, triangle.z) - origin;
+            let along = vec3<f32>(dot(a, ray), dot(b, ray), dot(c, ray));
+            let a_across = a - along.x * ray;
+            let b_across = b - along.y * ray;
+            let c_across = c - along.z * ray;
+            let areas = vec3<f32>(
+                dot(ray, cross(c_across, b_across)), dot(ray, cross(a_across, c_across)), dot(ray, cross(b_across, a_across)),
+            );
+            let sum = areas.x + areas.y + areas.z;
+            if sum == 0.0 {
                 continue;
             }
-            let s = origin - corner;
-            let q = cross(s, ab);
-            let weights = vec2<f32>(dot(s, p), dot(ray, q)) / determinant;
-            let t = dot(ac, q) / determinant;
-            if min(weights.x, weights.y) >= 0.0 && weights.x + weights.y <= 1.0 && t > 0.0 && t < best.t {
+            // Devices may fuse a product with a sum, so that the two signs need not differ.
+            let shares = areas / sum;
+            if min(min(shares.x, shares.y), shares.z) < -2e-6 {
+                continue;
+            }
+            let weights = shares.yz;
+            let t = dot(areas, along) / sum;
+            if t > 0.0 && t < best.t {
                 best = MeshMeeting(t, number, weights);
                 if is_shadow {
                     return best;

@@ -231,7 +231,9 @@ fn meshes_are_refused_with_a_reason() {
     bad("matte.toml", "matte.toml", 1, &["matte.toml", "no glTF"]);
     bad("matte.toml", "beside.gltf", 1, &["beside.gltf", "beside.bin"]);
     bad("brushed.toml", "square.gltf", 1, &["no texture coordinates", "`brushed`", "anisotropic"]);
-    workshop.run(&["preview", "matte.toml", "-o", "no.png", "--mesh", "a.glb", "--shape", "torus"]).fails(2, &["--mesh"]);
+    workshop
+        .run(&["preview", "matte.toml", "-o", "no.png", "--mesh", "a.glb", "--shape", "torus"])
+        .fails(2, &["--mesh"]);
     workshop.run(&["preview", "matte.toml", "-o", "no.png", "--sky", "moon"]).fails(2, &["moon", "clear-day"]);
 }
 
