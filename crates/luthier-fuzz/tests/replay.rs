@@ -194,6 +194,7 @@ tests_of_targets!(
     exr,
     png,
     radiance,
+    gltf,
     table,
     raw
 );
