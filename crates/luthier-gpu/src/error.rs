@@ -142,7 +142,7 @@ pub enum GpuError {
     NoTextureCoordinates {
         /// Name of the material.
         material: String,
-        /// What needs them.
+        /// Property that needs them.
         reason: &'static str,
     },
     /// An environment that cannot be made.

@@ -29,7 +29,7 @@ const MARKERS: [(&str, &str, &str); 9] = [
     ),
 ];
 
-/// What a mesh adds to the kernel of pictures.
+/// A function that a mesh adds to the kernel of pictures.
 const BEHIND: &str = "fn render_behind(hit: Hit, ray: vec3<f32>, behind: vec3<f32>, seed: u32) -> vec3<f32> {\n    \
      if hit.found {\n        return mesh_plain(hit, ray, behind, seed);\n    }\n    return behind;\n}\n";
 

@@ -17,7 +17,7 @@ pub enum MeshError {
     Buffer {
         /// The buffer, as the file names it.
         uri: String,
-        /// What is wrong with it.
+        /// The mistake in it.
         reason: String,
     },
     /// Numbers that are not as glTF has them.
@@ -27,7 +27,7 @@ pub enum MeshError {
         what: &'static str,
         /// Name or number of the mesh.
         mesh: String,
-        /// What is wrong with them.
+        /// The mistake in them.
         reason: String,
     },
     /// Nothing to show.

@@ -22,7 +22,7 @@ const NODES_MAX: usize = 1 << 16;
 /// Extensions that change nothing of what is read, or that readers of numbers of any type know.
 const KNOWN_EXTENSIONS: [&str; 2] = ["KHR_mesh_quantization", "KHR_materials_unlit"];
 
-/// What a glTF file holds.
+/// Contents of a glTF file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct File {
     /// Its triangles.
@@ -51,18 +51,27 @@ pub fn soup(bytes: &[u8], files: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Result
     if bytes.starts_with(b"glTF") && length.is_none_or(|length| length < 12) {
         return Err(MeshError::Gltf("it ends in its header".to_owned()));
     }
-    let file = gltf::Gltf::from_slice(bytes).map_err(|error| MeshError::Gltf(error.to_string()))?;
-    let unknown = file.extensions_required().find(|name| !KNOWN_EXTENSIONS.contains(name));
+    let invalid = |error: gltf::Error| MeshError::Gltf(error.to_string());
+    let gltf::Gltf { document, blob } = gltf::Gltf::from_slice_without_validation(bytes).map_err(invalid)?;
+    let root = document.into_json();
+    // The validation takes it for granted that these are there.
+    let mut named =
+        root.meshes.iter().flat_map(|mesh| &mesh.primitives).flat_map(|primitive| primitive.attributes.values());
+    if named.any(|accessor| accessor.value() >= root.accessors.len()) {
+        return Err(MeshError::Gltf("a mesh names an accessor that is not there".to_owned()));
+    }
+    let document = gltf::Document::from_json(root).map_err(invalid)?;
+    let unknown = document.extensions_required().find(|name| !KNOWN_EXTENSIONS.contains(name));
     if let Some(extension) = unknown {
         return Err(MeshError::Extension(extension.to_owned()));
     }
-    let buffers = buffers(&file.document, file.blob.as_deref(), files)?;
+    let buffers = buffers(&document, blob.as_deref(), files)?;
     let mut reader =
         Reader { buffers: &buffers, soup: Soup { has_uv: true, ..Soup::default() }, left_out: Vec::new(), nodes: 0 };
-    if file.animations().next().is_some() {
+    if document.animations().next().is_some() {
         reader.leave_out("animations");
     }
-    let scene = file.default_scene().or_else(|| file.scenes().next()).ok_or(MeshError::Empty)?;
+    let scene = document.default_scene().or_else(|| document.scenes().next()).ok_or(MeshError::Empty)?;
     for node in scene.nodes() {
         reader.node(&node, IDENTITY, 0)?;
     }
@@ -217,7 +226,7 @@ fn triangles(numbers: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     }
 }
 
-/// What a node does to its meshes.
+/// The transformation of a node.
 struct Turn {
     matrix: Matrix,
     /// Cofactors of the linear part: they turn normals.

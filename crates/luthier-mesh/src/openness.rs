@@ -33,7 +33,7 @@ pub(crate) fn openness(mesh: &Mesh) -> Vec<f32> {
 }
 
 impl Mesh {
-    /// What hides a direction from a part: the shown part hides it from all, plain parts from plain ones.
+    /// The triangle that hides a direction from a part: the shown part hides it from all, plain parts from plain ones.
     fn hidden_by(&self, origin: V, direction: V, part: u32) -> Option<crate::Meeting> {
         let counts = |i: u32| part > 0 || self.triangles[i as usize].part == 0;
         self.bvh.nearest(origin, direction, f32::INFINITY, |i| counts(i).then(|| self.corners(i)))

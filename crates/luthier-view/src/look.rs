@@ -73,7 +73,7 @@ const SKY_ROWS: u32 = 256;
 #[derive(Debug)]
 pub(crate) struct Surroundings {
     ready: Vec<(&'static str, Arc<Environment>)>,
-    /// What takes a moment to make, and is made when it is chosen.
+    /// Those that take a moment to make, and are made when they are chosen.
     made: Vec<(Scenery, OnceLock<Arc<Environment>>)>,
 }
 

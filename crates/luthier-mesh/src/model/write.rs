@@ -60,7 +60,7 @@ pub(super) fn glb(shown: &Part, floor: &Part, albedo: f64) -> Vec<u8> {
     chunks.concat()
 }
 
-/// What a buffer view is for: attributes of vertices, or indices.
+/// Targets of buffer views: attributes of vertices, and indices.
 const ARRAY: u32 = 34962;
 const ELEMENTS: u32 = 34963;
 
