@@ -11,6 +11,9 @@ use crate::{Light, RenderSettings, Scene, Shape};
 /// Distances from the axis at which a floor begins to fade into what is behind, and has faded.
 const FADE: [f32; 2] = [2.5, 9.0];
 
+/// Squared radius of the sphere that shades a floor in place of the shown part, which fills about so much of the unit sphere.
+const BALL_SQ: f64 = 0.4;
+
 /// The parts of the kernel that depend on the shape: markers in `shading.wgsl` and `render.wgsl`, and what stands there for closed shapes and for
 /// meshes.
 const MARKERS: [(&str, &str, &str); 9] = [
@@ -115,7 +118,7 @@ impl Scene {
 }
 
 /// An environment whose lower half shows a matte floor at a depth below the origin, as it is seen from there: lit by the upper half and by lights, shaded by
-/// a unit sphere about the origin, and fading into the environment with the distance. Radiance and albedo are linear RGB.
+/// a sphere about the origin, and fading into the environment with the distance. Radiance and albedo are linear RGB.
 fn with_floor(
     from: &Environment,
     lights: &[Light],
@@ -135,7 +138,7 @@ fn with_floor(
         };
         // The sphere hides sin^2 of its radius times the cosine to its centre (Lambert).
         let to_centre_sq = depth * depth + distance * distance;
-        let open = 1.0 - (depth / (to_centre_sq * to_centre_sq.sqrt())).min(1.0);
+        let open = 1.0 - (BALL_SQ * depth / (to_centre_sq * to_centre_sq.sqrt())).min(1.0);
         for x in 0..map.width {
             let azimuth = 2.0 * std::f64::consts::PI * ((f64::from(x) + 0.5) / f64::from(map.width) - 0.5);
             let (s, c) = libm::sincos(azimuth);

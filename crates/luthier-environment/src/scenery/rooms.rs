@@ -156,8 +156,7 @@ pub(super) fn evening_room(d: V) -> V {
         [-1.0, ..] if (-1.7..0.7).contains(&z) && (-0.35..1.45).contains(&y) => {
             let cross = (z + 0.5).abs() < 0.03
                 || (y - 0.75).abs() < 0.025
-                || y < -0.3
-                || y > 1.4
+                || !(-0.3..=1.4).contains(&y)
                 || !(-1.65..0.65).contains(&z);
             if cross {
                 [0.6, 0.57, 0.52]
