@@ -26,7 +26,7 @@ materials() {
   awk '/^```toml$/ { on = 1; next } /^```$/ { on = 0 } on' README.md >"$work/enamel.toml"
   luthier preview "$work/enamel.toml" -o docs/images/enamel.png --size 192
   luthier gallery materials/red-lacquer.toml -o docs/images/grid.png --grid slope_deg=1..30 layer.1.albedo.0=0.1..0.9 --steps 4 --size 96 --no-fit
-  luthier preview materials/surfaces/lepidolite.toml -o docs/images/lepidolite.png --size 192
+  luthier preview materials/surfaces/lepidolite.toml -o docs/images/lepidolite.png --size 192 --shape sphere
 }
 # Scenes choose by these costs: they are part of the program.
 shapes() { luthier-lab shapes materials materials/scenes/still-life -o crates/luthier-scene/data/cost.json; }

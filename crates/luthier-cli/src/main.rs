@@ -9,6 +9,8 @@ mod interrupt;
 mod materials;
 #[cfg(feature = "gpu")]
 mod memory_bake;
+#[cfg(feature = "gpu")]
+mod meshes;
 mod misses;
 mod model_inputs;
 #[cfg(feature = "gpu")]

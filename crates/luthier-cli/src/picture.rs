@@ -8,18 +8,35 @@ use luthier_lut::Image;
 use luthier_terminal::{Failure, Outcome, files};
 use luthier_texture::{Metadata, exr, png};
 
-use crate::cli::Look;
-use crate::surroundings;
+use crate::cli::{Look, ShapeName};
+use crate::{meshes, surroundings};
 
-/// The settings that options ask for.
-pub(crate) fn settings(look: &Look, shape: Shape, size: u32) -> Outcome<RenderSettings> {
-    let mut settings = RenderSettings::new(shape)?;
+/// Rows of the maps of surroundings that luthier makes.
+const SKY_ROWS: u32 = 512;
+
+/// The settings that options ask for. A file takes the place of the shape.
+pub(crate) fn settings(look: &Look, shape: ShapeName, mesh: Option<&Path>, size: u32) -> Outcome<RenderSettings> {
+    let mut settings = match mesh {
+        Some(path) => {
+            let mesh = Some(Arc::new(meshes::read(path)?));
+            RenderSettings {
+                shape: Shape::Mesh,
+                camera: Shape::Mesh.camera(),
+                mesh,
+                ..RenderSettings::new(Shape::Sphere)?
+            }
+        }
+        None => RenderSettings::new(shape.into())?,
+    };
     settings.size = size;
     settings.samples = look.samples;
     settings.exposure = libm::exp2f(look.exposure);
     settings.environment_samples = look.environment_samples.unwrap_or(0);
     if let Some(path) = &look.environment {
         settings.environment = Arc::new(surroundings::read(path)?.environment);
+    }
+    if let Some(sky) = look.sky {
+        settings.environment = Arc::new(sky.environment(SKY_ROWS).map_err(Failure::input)?);
     }
     if look.background {
         settings.backdrop = Backdrop::Environment;
@@ -31,7 +48,7 @@ pub(crate) fn settings(look: &Look, shape: Shape, size: u32) -> Outcome<RenderSe
         let distance_sq: f32 = v.0.iter().map(|x| x * x).sum();
         Light::Point { position: v.0, intensity: irradiance.map(|e| e * distance_sq) }
     }));
-    if settings.lights.is_empty() && look.environment.is_none() {
+    if settings.lights.is_empty() && look.environment.is_none() && look.sky.is_none() {
         settings.lights.extend(default);
     }
     Ok(settings)

@@ -10,12 +10,23 @@ pub const TEXT_MAX: u64 = 64 << 20;
 /// Bytes of the largest image that is read: maps, environments, tables.
 const IMAGE_MAX: u64 = 1 << 30;
 
+/// Bytes of the largest file of a mesh: many times what triangles take that pictures show.
+const MESH_MAX: u64 = 256 << 20;
+
 /// The bytes of an image.
 ///
 /// # Errors
 /// Those of the system, and what is no regular file of bounded size.
 pub fn image(path: &Path) -> io::Result<Vec<u8>> {
     read(path, IMAGE_MAX)
+}
+
+/// The bytes of a mesh, or of a buffer of one.
+///
+/// # Errors
+/// Those of the system, and what is no regular file of bounded size.
+pub fn mesh(path: &Path) -> io::Result<Vec<u8>> {
+    read(path, MESH_MAX)
 }
 
 /// The bytes of what should be a text.

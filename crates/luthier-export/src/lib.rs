@@ -17,6 +17,7 @@ mod publish;
 
 #[cfg(feature = "bake")]
 mod beams;
+#[cfg(feature = "bake")]
 mod doubts;
 #[cfg(feature = "bake")]
 mod make;

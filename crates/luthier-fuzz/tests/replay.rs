@@ -195,6 +195,7 @@ tests_of_targets!(
     exr,
     png,
     radiance,
+    gltf,
     table,
     raw
 );

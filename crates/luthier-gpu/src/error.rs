@@ -143,6 +143,16 @@ pub enum GpuError {
         /// The part.
         what: &'static str,
     },
+    /// A material that varies over its surface, or has a direction on it, and a mesh that has no coordinates there.
+    #[error(
+        "the mesh has no texture coordinates, and `{material}` needs them: {reason}. Export the mesh with UVs, or take another material"
+    )]
+    NoTextureCoordinates {
+        /// Name of the material.
+        material: String,
+        /// Property that needs them.
+        reason: &'static str,
+    },
     /// An environment that cannot be made.
     #[error("environment: {0}")]
     Environment(#[from] EnvironmentError),

@@ -8,8 +8,8 @@
 //! belongs to the kernels of this crate (`src/wgsl`), which are appended to the text of the shader.
 //!
 //! Simplifications: one device at a time, compute passes only (the renderer is a compute kernel, so that it runs wherever
-//! evaluation does), shapes that rays meet in closed form, no shadows and no light between parts of a shape, and a timeout
-//! per submission in place of cancellation.
+//! evaluation does), shapes that rays meet in closed form without shadows, meshes with shadows and with little light between their parts, and a
+//! timeout per submission in place of cancellation.
 
 mod bindings;
 mod context;
@@ -19,6 +19,7 @@ mod gpu;
 mod light;
 mod lookup;
 mod maps;
+mod mesh;
 mod render;
 mod scene;
 mod shape;
@@ -31,8 +32,9 @@ mod tone;
 pub use error::GpuError;
 pub use gpu::Gpu;
 pub use light::Light;
-pub use luthier_environment::{Blur, Environment, EnvironmentError, Sky, SoftLight};
+pub use luthier_environment::{Blur, Environment, EnvironmentError, Scenery, Sky, SoftLight};
 pub use luthier_export::{Map, Package, PackageError, Shader, Table};
+pub use luthier_mesh::{Mesh, MeshError, model, soup};
 pub use render::{Backdrop, RenderSettings};
 pub use scene::Scene;
 pub use shape::{Camera, GRID_SIDE, Shape};

@@ -42,6 +42,18 @@ impl Light {
         Err(setting("lights", format!("{color:?}"), "irradiance and intensity are finite and not negative"))
     }
 
+    /// Irradiance that the light gives to a place with a unit normal.
+    pub(crate) fn irradiance(&self, at: [f64; 3], normal: [f64; 3]) -> [f64; 3] {
+        let (to_light, color, falls) = match self {
+            Self::Directional { direction, irradiance } => (direction.map(f64::from), irradiance, false),
+            Self::Point { position, intensity } => ([0, 1, 2].map(|c| f64::from(position[c]) - at[c]), intensity, true),
+        };
+        let length_sq: f64 = to_light.iter().map(|v| v * v).sum();
+        let cosine = (0..3).map(|c| to_light[c] * normal[c]).sum::<f64>() / length_sq.sqrt();
+        let factor = cosine.max(0.0) / if falls { length_sq } else { 1.0 };
+        color.map(|v| f64::from(v) * factor)
+    }
+
     /// The words of a light in `picture.wgsl`: direction and 0, or position and 1; then its colour.
     pub(crate) fn words(&self) -> [[f32; 4]; 2] {
         let word = |[x, y, z]: [f32; 3], w: f32| [x, y, z, w];

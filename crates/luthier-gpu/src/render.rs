@@ -1,6 +1,7 @@
 //! Rendering of a shape under lights and an environment, in passes of bounded length.
 
 use luthier_manifest::{Distribution, Form};
+use luthier_mesh::{Mesh, model};
 use std::sync::Arc;
 
 use luthier_environment::{ALPHAS, Blur, Environment};
@@ -10,6 +11,7 @@ use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry, ShadingModel, mate
 use crate::context::Pass;
 use crate::error::setting;
 use crate::maps::MAP_WORDS;
+use crate::mesh;
 use crate::surroundings::Surroundings;
 use crate::{Camera, GpuError, Light, Scene, Shape, Shown, Sky};
 
@@ -28,6 +30,9 @@ pub(crate) const HEADER_WORDS: usize = 9;
 /// Turns of loops that one thread makes in a submission, by a generous count. Software adapters end loops after 65,535 turns in all, without a
 /// word.
 const TURNS_PER_PASS: u32 = 1 << 15;
+
+/// Of these, what a ray through a mesh takes: a few hundred at most in meshes of a million triangles.
+const RAY_TURNS: u32 = 256;
 
 /// Background behind the shape. It takes no part in the light.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,9 +53,11 @@ pub struct RenderSettings {
     pub samples: u32,
     /// Shape that is rendered.
     pub shape: Shape,
+    /// Triangles of [`Shape::Mesh`]; [`RenderSettings::new`] takes [`luthier_mesh::model`].
+    pub mesh: Option<Arc<Mesh>>,
     /// Camera that sees the shape.
     pub camera: Camera,
-    /// Lights without a body, at most 64. Nothing casts a shadow.
+    /// Lights without a body, at most 64. Meshes alone cast shadows.
     pub lights: Vec<Light>,
     /// Angular radius of the lights in radians, 0 to 0.5. For them, the squares of all slope parameters grow by the square
     /// of half of it, so that the highlight of a smooth surface has a size; the reflected energy stays the same.
@@ -81,6 +88,7 @@ impl RenderSettings {
             size: 512,
             samples: 4,
             shape,
+            mesh: (shape == Shape::Mesh).then(|| Arc::new(model::mesh())),
             camera: shape.camera(),
             lights: vec![Light::Directional { direction: [-0.45, 0.7, 0.6], irradiance: [1.75, 1.7, 1.62] }],
             light_angular_radius: 0.05,
@@ -141,6 +149,23 @@ impl Scene {
         Ok(self.interfaces(material).all(|layer| has_reflectance(layer) && is_known(layer)))
     }
 
+    /// Whether a mesh has the texture coordinates that the materials need.
+    fn check_coordinates(&self, parts: &[Shown], materials: &[u32], settings: &RenderSettings) -> Result<(), GpuError> {
+        let lacks_uv = settings.mesh.as_ref().is_some_and(|mesh| settings.shape == Shape::Mesh && !mesh.has_uv());
+        let is_surface = parts.iter().any(|part| matches!(part, Shown::Surface(_)));
+        for entry in materials.iter().filter(|_| lacks_uv).map(|&i| &self.manifest.materials[i as usize]) {
+            let is_anisotropic = entry.records().any(|layer| layer.alpha_xy[0] != layer.alpha_xy[1]);
+            let reason = match (is_surface, entry.varies(), is_anisotropic) {
+                (true, ..) => "it is of a surface",
+                (_, true, _) => "it varies from place to place",
+                (_, _, true) => "it is anisotropic, and its tangents follow them",
+                _ => continue,
+            };
+            return Err(GpuError::NoTextureCoordinates { material: entry.name.clone(), reason });
+        }
+        Ok(())
+    }
+
     /// The interfaces whose reflectance the blurred environment takes from tables.
     fn interfaces(&self, material: u32) -> impl Iterator<Item = &LayerRecord> {
         let entry = self.manifest.materials.get(material as usize);
@@ -171,6 +196,7 @@ impl Scene {
     ) -> Result<Option<Image>, GpuError> {
         settings.check(parts)?;
         let materials = &self.materials_of(parts)?;
+        self.check_coordinates(parts, materials, settings)?;
         if self.form() != Form::Baked && settings.environment_samples == 0 {
             return Err(GpuError::Prefiltered { form: self.form() });
         }
@@ -182,6 +208,11 @@ impl Scene {
             let material = self.manifest.materials[material as usize].name.clone();
             return Err(GpuError::NoReflectance { material });
         }
+        let mut settings = settings.clone();
+        if settings.environment_samples == 0 && settings.shape == Shape::Mesh {
+            settings.environment = self.grounded(&settings)?;
+        }
+        let settings = &settings;
         let surroundings = if self.bindings.has_surroundings() && settings.environment_samples == 0 {
             Surroundings::new(&self.context, &settings.environment)?
         } else {
@@ -189,7 +220,10 @@ impl Scene {
         };
         let words = self.widened_words(settings.light_angular_radius);
         let group = self.bindings.group(&self.context, &words, &surroundings)?;
-        let pipeline = self.pipeline(&self.render, &self.render_kernel())?;
+        let pipeline = match settings.shape {
+            Shape::Mesh => self.pipeline(&self.render_mesh, &self.render_kernel(settings.shape))?,
+            _ => self.pipeline(&self.render, &self.render_kernel(settings.shape))?,
+        };
         let mut inputs = self.inputs(parts, materials, settings);
 
         let size = settings.size;
@@ -197,7 +231,9 @@ impl Scene {
         let shares = shares(settings, lobes);
         let per_pixel =
             shares.iter().map(|[_, samples, _, directions]| samples * (1 + directions * lobes)).max().unwrap_or(1);
-        let rows = (evaluations / size.saturating_mul(per_pixel).max(1)).clamp(1, size);
+        // Rays take longer than what they are for.
+        let cost = if settings.shape == Shape::Mesh { 4 } else { 1 };
+        let rows = (evaluations / size.saturating_mul(per_pixel).saturating_mul(cost).max(1)).clamp(1, size);
         let mut data = vec![0.0; (size * size * 3) as usize];
         let blocks = (0..size).step_by(rows as usize).flat_map(|row| shares.iter().map(move |share| (row, *share)));
         for (row, share) in blocks {
@@ -240,7 +276,7 @@ impl Scene {
     }
 
     /// The kernel, with the look-ups that the shader has. A set of diffuse bases has no Fresnel table, and needs none.
-    fn render_kernel(&self) -> String {
+    fn render_kernel(&self, shape: Shape) -> String {
         let body = |kind, call| if self.reads(kind) { call } else { "vec3<f32>(0.0)" };
         let fresnel = body(TableKind::Fresnel, "luthier_lookup_fresnel(tile, cos_theta)");
         let fgd = body(TableKind::Fgd, "luthier_lookup_fgd(tile, cos_theta, alpha).rgb");
@@ -262,12 +298,13 @@ impl Scene {
             "fn lobes_environment(\n    material: u32, surface: ShadingSurface, frame: mat3x3<f32>, wo: vec3<f32>, turn: f32,\n\
              ) -> vec3<f32> {{\n    return {shown};\n}}\n"
         );
+        let [rays, shading, render] = mesh::kernel(shape);
         [
-            include_str!("wgsl/shape.wgsl"),
+            &rays,
             include_str!("wgsl/environment.wgsl"),
-            include_str!("wgsl/shading.wgsl"),
+            &shading,
             include_str!("wgsl/picture.wgsl"),
-            include_str!("wgsl/render.wgsl"),
+            &render,
             &lookups,
             &lobes,
             &self.surface_functions(),
@@ -305,8 +342,10 @@ impl Scene {
         let prefiltered = settings.environment_samples == 0;
         let environment = &settings.environment;
         let mut maps = vec![environment.map()];
-        if prefiltered {
+        if prefiltered || settings.shape == Shape::Mesh {
             maps.push(environment.irradiance_map());
+        }
+        if prefiltered {
             maps.extend(used.iter().flat_map(|&blur| environment.chain(blur)));
         }
         let map_headers = words.len();
@@ -317,6 +356,11 @@ impl Scene {
         }
         for map in &maps {
             words.extend(map.texels().map(|t| bits([t[0], t[1], t[2], 0.0])));
+        }
+        if let Some(mesh) = settings.mesh.as_deref().filter(|_| settings.shape == Shape::Mesh) {
+            let first = words.len();
+            words[0][2] = first as u32;
+            words.extend(mesh::words(mesh, settings.light_angular_radius, first));
         }
         let starts = [lights, headers, map_headers].map(|at| at as u32);
         let mut inputs = self.header(settings, starts);
@@ -366,9 +410,12 @@ impl Scene {
 /// has so many lobes, the cosine counted.
 fn shares(settings: &RenderSettings, lobes: u32) -> Vec<[u32; 4]> {
     let (samples, directions) = (settings.samples * settings.samples, settings.environment_samples);
-    // Densities of all lobes for each direction, and what an evaluation may turn.
-    let per_direction = lobes * (16 + lobes * lobes);
-    let per_sample = directions.saturating_mul(per_direction).saturating_add(256);
+    // Boxes and triangles that a ray goes through.
+    let ray = if settings.shape == Shape::Mesh { RAY_TURNS } else { 0 };
+    let lights = settings.lights.len() as u32;
+    // Densities of all lobes for each direction, and what an evaluation may turn. A place that a direction shows may look at all lights.
+    let per_direction = lobes * (16 + lobes * lobes) + lobes * ray * (1 + lights);
+    let per_sample = directions.saturating_mul(per_direction).saturating_add(256 + ray * (2 + lights));
     if per_sample <= TURNS_PER_PASS {
         let most = TURNS_PER_PASS / per_sample;
         return (0..samples)
@@ -450,6 +497,9 @@ impl RenderSettings {
     pub(crate) fn check(&self, parts: &[Shown]) -> Result<(), GpuError> {
         if parts.len() != self.shape.materials() {
             return Err(setting("materials", parts.len().to_string(), "one for each part of the shape"));
+        }
+        if self.shape == Shape::Mesh && self.mesh.is_none() {
+            return Err(setting("mesh", "None".to_owned(), "the shape `mesh` needs one"));
         }
         if !(1..=4096).contains(&self.size) {
             return Err(setting("size", self.size.to_string(), "1 to 4096 pixels"));

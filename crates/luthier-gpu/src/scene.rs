@@ -1,12 +1,13 @@
 //! A package on a device: its textures and buffer, and the pipelines of the kernels.
 
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock};
 
 use luthier_lut::TableKind;
 use luthier_manifest::{Form, LayerRecord, Manifest};
 
 use crate::bindings::{ShaderBindings, kernel_layout, material_words};
 use crate::context::Context;
+use crate::mesh::Grounded;
 use luthier_export::{Map, Package};
 
 use crate::simulate::Pipelines;
@@ -29,6 +30,8 @@ pub struct Scene {
     pub(crate) lookups: [OnceLock<wgpu::ComputePipeline>; TableKind::ALL.len()],
     pub(crate) render: OnceLock<wgpu::ComputePipeline>,
     pub(crate) simulations: Pipelines,
+    pub(crate) render_mesh: OnceLock<wgpu::ComputePipeline>,
+    pub(crate) grounded: Mutex<Option<Grounded>>,
 }
 
 impl Scene {
@@ -58,6 +61,8 @@ impl Scene {
             lookups: Default::default(),
             render: OnceLock::new(),
             simulations: Pipelines::default(),
+            render_mesh: OnceLock::new(),
+            grounded: Mutex::default(),
         })
     }
 
@@ -86,6 +91,8 @@ impl Scene {
             lookups: self.lookups.clone(),
             render: self.render.clone(),
             simulations: self.simulations.clone(),
+            render_mesh: self.render_mesh.clone(),
+            grounded: Mutex::default(),
         }))
     }
 

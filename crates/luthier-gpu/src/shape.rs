@@ -14,6 +14,8 @@ pub enum Shape {
     Plane,
     /// Five by five spheres in the plane z = 0: one material each, row by row from the top left.
     Grid,
+    /// The triangles of [`RenderSettings::mesh`](crate::RenderSettings::mesh), within the unit sphere: the shown part takes the material.
+    Mesh,
 }
 
 /// Spheres along a side of the grid.
@@ -46,6 +48,7 @@ impl Shape {
             Self::Torus => (7.0, 0.65, 1.14),
             Self::Plane => (7.0, 0.5, 1.35),
             Self::Grid => (16.0, 0.0, 2.75),
+            Self::Mesh => (7.0, 0.3, 1.1),
         };
         let (sin, cos) = libm::sincos(elevation);
         let eye = [0.0, distance * sin, distance * cos].map(|v| v as f32);
@@ -59,6 +62,7 @@ impl Shape {
             Self::Torus => 1,
             Self::Plane => 2,
             Self::Grid => 3,
+            Self::Mesh => 4,
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::error::setting;
 use crate::evaluate::WORKGROUP;
 use crate::render::{HEADER_WORDS, PIXELS_PER_WORKGROUP};
 use crate::surroundings::Surroundings;
-use crate::{GpuError, RenderSettings, Scene, Shown};
+use crate::{GpuError, RenderSettings, Scene, Shape, Shown};
 
 /// The most layers of a stack, as the kernels have room for.
 const LAYERS_MOST: usize = 8;
@@ -155,6 +155,10 @@ impl Scene {
     ) -> Result<Simulation<'_>, GpuError> {
         let render = RenderSettings { environment_samples: 1, ..render.clone() };
         render.check(parts)?;
+        if render.shape == Shape::Mesh {
+            let allowed = "sphere, torus, plane or grid: the simulation knows no triangles";
+            return Err(setting("shape", "model or mesh".to_owned(), allowed));
+        }
         for part in parts {
             if let Shown::Surface(_) = part {
                 return Err(GpuError::NotSimulated {

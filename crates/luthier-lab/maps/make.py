@@ -1,4 +1,5 @@
-"""The maps of figures, by periodic noise: thickness.png, a grey map, and bumps.png, a normal map of a field of bumps.
+"""The maps of figures, by periodic noise: thickness.png, a grey map, bumps.png, a normal map of a field of bumps, and patina.png, where patina grows
+first: in blotches and in streaks that water has left, every value as often as every other.
 
     python3 crates/luthier-lab/maps/make.py
 """
@@ -68,3 +69,9 @@ thickness = octaves(5, 4, 4)
 stretched = lambda u, v: min(1, max(0, 0.5 + 1.8 * (thickness(u, v) - 0.5)))
 png("thickness.png", 0, [[byte(stretched(at(i), at(j))) for i in range(SIZE)] for j in range(SIZE)])
 png("bumps.png", 2, [[c for i in range(SIZE) for c in normal(at(i), at(j))] for j in range(SIZE)])
+
+blotches, wander, streaks = octaves(21, 3, 5), octaves(40, 4, 3), octaves(60, 9, 3)
+patina = lambda u, v: 0.72 * blotches(u, v) + 0.28 * streaks((u + 0.05 * wander(u, v)) % 1, 0.31)
+grown = [patina(at(i), at(j)) for j in range(SIZE) for i in range(SIZE)]
+ranks = {place: rank for rank, place in enumerate(sorted(range(SIZE * SIZE), key=lambda place: grown[place]))}
+png("patina.png", 0, [[255 * ranks[j * SIZE + i] // (SIZE * SIZE - 1) for i in range(SIZE)] for j in range(SIZE)])

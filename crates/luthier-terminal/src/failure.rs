@@ -176,7 +176,9 @@ impl From<luthier_gpu::GpuError> for Failure {
         use luthier_gpu::GpuError;
         match error {
             GpuError::Package(error) => error.into(),
-            GpuError::NoReflectance { .. } | GpuError::Binding { .. } => Self::Input(error.into()),
+            GpuError::NoReflectance { .. } | GpuError::NoTextureCoordinates { .. } | GpuError::Binding { .. } => {
+                Self::Input(error.into())
+            }
             _ => Self::Device(error.into()),
         }
     }

@@ -26,8 +26,8 @@ use crate::watcher::Watcher;
 use crate::window::Options;
 
 /// Shapes to choose from.
-pub(crate) const SHAPES: [(Shape, &str); 3] =
-    [(Shape::Sphere, "sphere"), (Shape::Torus, "torus"), (Shape::Plane, "plane")];
+pub(crate) const SHAPES: [(Shape, &str); 4] =
+    [(Shape::Mesh, "model"), (Shape::Sphere, "sphere"), (Shape::Torus, "torus"), (Shape::Plane, "plane")];
 
 /// Points of the wheel's smooth motion that make a notch.
 const POINTS_PER_NOTCH: f32 = 40.0;
@@ -335,12 +335,11 @@ impl App {
             environment_samples: self.settings.environment_samples,
             moving,
         };
-        let (environments, chosen) = (&self.surroundings.0, self.look.surroundings);
-        let Some((_, environment)) = environments.get(chosen).or(environments.first()) else { return };
+        let environment = Arc::clone(self.surroundings.environment(self.look.surroundings));
         if self.paint_order.is_none_or(|(_, of, last)| of != *baked || last != view) {
             let version = self.paint_order.map_or(1, |(last, ..)| last + 1);
             self.paint_order = Some((version, *baked, view));
-            let (package, environment) = (Arc::clone(package), Arc::clone(environment));
+            let package = Arc::clone(package);
             self.painter.orders.put(PaintOrder { version, package, form: *form, environment, view });
         }
     }

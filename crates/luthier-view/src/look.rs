@@ -1,8 +1,8 @@
 //! Light, exposure and what is behind.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use luthier_gpu::{Backdrop, Environment, GpuError, Light, RenderSettings, Sky, ToneMapping};
+use luthier_gpu::{Backdrop, Environment, GpuError, Light, RenderSettings, Scenery, Sky, ToneMapping};
 
 /// Lighting and display of a material; edited in the window.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,26 +66,46 @@ impl Look {
     }
 }
 
+/// Rows of the maps of surroundings that are made of formulas.
+const SKY_ROWS: u32 = 256;
+
 /// Environments to choose from.
-#[derive(Debug, Clone)]
-pub(crate) struct Surroundings(pub(crate) Vec<(&'static str, Arc<Environment>)>);
+#[derive(Debug)]
+pub(crate) struct Surroundings {
+    ready: Vec<(&'static str, Arc<Environment>)>,
+    /// Those that take a moment to make, and are made when they are chosen.
+    made: Vec<(Scenery, OnceLock<Arc<Environment>>)>,
+}
 
 impl Surroundings {
     /// The environment of the settings first, then the built-in ones.
-    pub(crate) fn new(settings: &RenderSettings, is_file: bool) -> Result<Self, GpuError> {
+    pub(crate) fn new(settings: &RenderSettings, name: Option<&'static str>) -> Result<Self, GpuError> {
         let studio = Sky::default();
         let dark = Sky::uniform([0.0; 3]);
         let overcast = Sky { ground: [0.12; 3], horizon: [0.55; 3], zenith: [1.0, 1.0, 1.02], ..dark };
         let make = |sky: &Sky| Environment::sky(sky).map(Arc::new);
-        let first = if is_file { "file" } else { "studio" };
-        let mut all = vec![(first, Arc::clone(&settings.environment))];
-        if is_file {
+        let mut all = vec![(name.unwrap_or("studio"), Arc::clone(&settings.environment))];
+        if name.is_some() {
             all.push(("studio", make(&studio)?));
         }
         all.push(("overcast", make(&overcast)?));
         all.push(("white furnace", make(&Sky::uniform([1.0; 3]))?));
         all.push(("darkness", make(&dark)?));
-        Ok(Self(all))
+        let others = Scenery::ALL.into_iter().filter(|scenery| name != Some(scenery.name()));
+        Ok(Self { ready: all, made: others.map(|scenery| (scenery, OnceLock::new())).collect() })
+    }
+
+    pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> {
+        self.ready.iter().map(|(name, _)| *name).chain(self.made.iter().map(|(scenery, _)| scenery.name()))
+    }
+
+    /// The environment of a number; the first where there is none.
+    pub(crate) fn environment(&self, number: usize) -> &Arc<Environment> {
+        match number.checked_sub(self.ready.len()).and_then(|number| self.made.get(number)) {
+            Some((scenery, made)) => made
+                .get_or_init(|| scenery.environment(SKY_ROWS).map_or_else(|_| Arc::clone(&self.ready[0].1), Arc::new)),
+            None => &self.ready.get(number).unwrap_or(&self.ready[0]).1,
+        }
     }
 }
 

@@ -182,6 +182,7 @@ impl Worker {
             size: ((f64::from(window.side) * stage.scale).round() as u32).max(1),
             samples: stage.samples,
             shape: view.shape,
+            mesh: self.settings.mesh.clone(),
             camera: view.orbit.camera(view.shape, window.widening()),
             lights: view.look.lights(&self.settings),
             light_angular_radius: self.settings.light_angular_radius,

@@ -156,10 +156,10 @@ fn light(app: &mut App, ui: &mut Ui) {
         slider(ui, "azimuth", &mut look.azimuth_deg, -180.0..=180.0, "°");
         slider(ui, "elevation", &mut look.elevation_deg, -90.0..=90.0, "°");
         ui.label("surroundings");
-        let chosen = app.surroundings.0.get(look.surroundings).map_or("", |(name, _)| name);
+        let chosen = app.surroundings.names().nth(look.surroundings).unwrap_or_default();
         ComboBox::from_id_salt("surroundings").selected_text(chosen).show_ui(ui, |ui| {
-            for (i, (name, _)) in app.surroundings.0.iter().enumerate() {
-                ui.selectable_value(&mut look.surroundings, i, *name);
+            for (i, name) in app.surroundings.names().enumerate() {
+                ui.selectable_value(&mut look.surroundings, i, name);
             }
         });
         ui.end_row();

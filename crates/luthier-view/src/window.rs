@@ -18,8 +18,8 @@ pub struct Options {
     /// Light, environment, samples, exposure. Its size and camera do not count; environment samples of 0 become some in the
     /// full form.
     pub settings: RenderSettings,
-    /// Whether the environment of the settings is another than the built-in one.
-    pub environment_is_file: bool,
+    /// Name of the environment of the settings, where it is another than the default.
+    pub environment_name: Option<&'static str>,
     /// Tone curve.
     pub tone: ToneMapping,
     /// Shape; the grid becomes a sphere, because a window shows one material.
@@ -43,7 +43,7 @@ pub struct Options {
 /// # Errors
 /// [`ViewError::Display`] where there is no display; see [`ViewError`].
 pub fn run(host: Arc<dyn Host>, gpu: Gpu, options: Options) -> Result<(), ViewError> {
-    let surroundings = Surroundings::new(&options.settings, options.environment_is_file)?;
+    let surroundings = Surroundings::new(&options.settings, options.environment_name)?;
     let look = Look::of(&options.settings, options.tone);
     let failure = Arc::new(Mutex::new(None));
     let outcome = Arc::clone(&failure);

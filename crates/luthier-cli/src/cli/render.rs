@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{ArgAction, Args, ValueEnum};
-use luthier_gpu::{Shape, ToneMapping};
+use luthier_gpu::{Scenery, Shape, ToneMapping};
 use luthier_lut::UnknownName;
 use luthier_manifest::{Form, ShadingModel};
 
-use luthier_terminal::Sources;
+use luthier_terminal::{Sources, named};
 
 use super::Shading;
 use crate::variations::Range;
@@ -24,6 +24,8 @@ Examples:
   luthier preview materials/car-paint.toml -o ring.png --shape torus --environment studio.hdr
   luthier preview materials/surfaces/sunstone.toml -o stone.png
   luthier preview materials/yamaguchi-brushed.toml -o ball.png --simulated 256
+  luthier preview materials/polished-gold.toml -o gold.png --sky evening-room --background
+  luthier preview materials/soap-film.toml -o cat.png --mesh cat.glb
   luthier preview --shape grid -o grid.png";
 
 /// How pictures are lit, sampled and written.
@@ -39,8 +41,11 @@ pub(crate) struct Look {
     #[arg(long, value_enum, default_value_t = ToneName::Shoulder)]
     pub(crate) tone: ToneName,
     /// Light from all around: an equirectangular EXR or Radiance HDR file, up is its top. By default a built-in studio
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with = "sky")]
     pub(crate) environment: Option<PathBuf>,
+    /// Light from all around that luthier makes
+    #[arg(long, value_name = "NAME", value_parser = named::<Scenery>(Scenery::NAMES))]
+    pub(crate) sky: Option<Scenery>,
     /// Directions per sample and lobe in which the shader is asked for the environment; 0, the default, reads blurred maps and tables
     /// of albedos instead. Of a bake without these tables (`bake --tables fresnel,fgd,film` makes them) 64 is the default
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=4096))]
@@ -48,7 +53,7 @@ pub(crate) struct Look {
     /// Show the environment behind
     #[arg(long)]
     pub(crate) background: bool,
-    /// A light from this direction. With this, --point-light or --environment there is no default light
+    /// A light from this direction. With this, --point-light, --environment or --sky there is no default light
     #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true)]
     pub(crate) light: Vec<Triple>,
     /// A light at this position, as bright at the centre as --light
@@ -73,15 +78,18 @@ pub(crate) struct PreviewOptions {
     /// Folder of the bake, for materials by name
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(crate) out: PathBuf,
-    /// Shape to render
-    #[arg(long, value_enum, default_value_t = ShapeName::Sphere)]
-    pub(crate) shape: ShapeName,
+    /// Shape to render; by default `model`, and `sphere` with --simulated, which knows no triangles
+    #[arg(long, value_enum)]
+    pub(crate) shape: Option<ShapeName>,
+    /// Triangles to render instead: a glTF file. Parts whose glTF material is named `plain` keep its colour
+    #[arg(long, value_name = "FILE", conflicts_with = "shape")]
+    pub(crate) mesh: Option<PathBuf>,
     /// Side of the picture in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 512, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub(crate) size: u32,
     /// Simulate light in the stack on the graphics adapter, with so many samples of each pixel, in place of a model: no fit, no tables. It takes
     /// no films, maps, flakes, patina, glitter and re-radiation. Multiples of the square of --samples cover pixels evenly
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 20), conflicts_with_all = ["model", "no_fit", "fresnel", "tables", "environment_samples"])]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 20), conflicts_with_all = ["model", "no_fit", "fresnel", "tables", "environment_samples", "mesh"])]
     pub(crate) simulated: Option<u32>,
     #[command(flatten)]
     pub(crate) look: Look,
@@ -101,9 +109,12 @@ pub(crate) struct GalleryOptions {
     /// Picture to write: .png or .exr
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: PathBuf,
-    /// Shape to render: sphere, torus or plane
+    /// Shape to render: sphere, torus, plane or model
     #[arg(long, value_enum, default_value_t = ShapeName::Sphere)]
     pub(crate) shape: ShapeName,
+    /// Triangles to render instead: a glTF file
+    #[arg(long, value_name = "FILE", conflicts_with = "shape")]
+    pub(crate) mesh: Option<PathBuf>,
     /// Side of each picture in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 160, value_parser = clap::value_parser!(u32).range(16..=1024))]
     pub(crate) size: u32,
@@ -155,9 +166,12 @@ pub(crate) struct CompareOptions {
     /// Folder of the bake, for materials by name
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(crate) out: PathBuf,
-    /// Shape to render: sphere, torus or plane
+    /// Shape to render: sphere, torus, plane or model
     #[arg(long, value_enum, default_value_t = ShapeName::Sphere)]
     pub(crate) shape: ShapeName,
+    /// Triangles to render instead: a glTF file
+    #[arg(long, value_name = "FILE", conflicts_with = "shape")]
+    pub(crate) mesh: Option<PathBuf>,
     /// Side of the pictures in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub(crate) size: u32,
@@ -254,6 +268,8 @@ pub(crate) enum ShapeName {
     Plane,
     /// Five by five spheres, metallic against roughness
     Grid,
+    /// A ball with a cut on a stand, over a floor
+    Model,
 }
 
 impl From<ShapeName> for Shape {
@@ -263,6 +279,7 @@ impl From<ShapeName> for Shape {
             ShapeName::Torus => Self::Torus,
             ShapeName::Plane => Self::Plane,
             ShapeName::Grid => Self::Grid,
+            ShapeName::Model => Self::Mesh,
         }
     }
 }

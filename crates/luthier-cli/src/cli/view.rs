@@ -33,9 +33,12 @@ pub(crate) struct ViewOptions {
     /// Form of the shader: `baked` reads tables, `full` computes all terms
     #[arg(long, value_parser = named::<Form>(Form::NAMES), default_value_t = Form::Baked)]
     pub(crate) form: Form,
-    /// Shape to show: sphere, torus or plane
-    #[arg(long, value_enum, default_value_t = ShapeName::Sphere)]
+    /// Shape to show: sphere, torus, plane or model
+    #[arg(long, value_enum, default_value_t = ShapeName::Model)]
     pub(crate) shape: ShapeName,
+    /// Triangles to show instead: a glTF file
+    #[arg(long, value_name = "FILE", conflicts_with = "shape")]
+    pub(crate) mesh: Option<PathBuf>,
     /// Inner size of the window
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1120x760", value_parser = window_size)]
     pub(crate) window: WindowSize,

@@ -25,7 +25,7 @@ pub(crate) fn run(options: &CompareOptions) -> Outcome {
     let [a, b] = [&options.a, &options.b].map(|side| Subject::of(options, side));
     let (a, b) = (a?, b?);
     let look = &options.look;
-    let mut settings = settings(look, options.shape.into(), options.size)?;
+    let mut settings = settings(look, options.shape, options.mesh.as_deref(), options.size)?;
     settings.environment_samples = look.environment_samples.unwrap_or(ENVIRONMENT_SAMPLES);
     let gpu = open(look.adapter.as_deref())?;
     let render = |subject: &Subject| -> Outcome<Picture> {

@@ -24,7 +24,7 @@ pub(crate) fn run(options: &GalleryOptions) -> Outcome {
     let materials = bakeable(sources, &options.shading, &[], !options.grid.is_empty())?;
     let package = Package::for_renderer(&lit(&materials), store()?)?;
     let look = &options.look;
-    let settings = settings(look, options.shape.into(), options.size)?;
+    let settings = settings(look, options.shape, options.mesh.as_deref(), options.size)?;
     let gpu = open(look.adapter.as_deref())?;
     let scene = gpu.scene(&package, Form::Baked)?;
     let mut pictures = Vec::with_capacity(materials.len());

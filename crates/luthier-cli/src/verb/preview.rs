@@ -17,7 +17,8 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
     if let Some(samples) = options.simulated {
         return simulate(options, samples, format);
     }
-    let (package, parts): (Package, Vec<Shown>) = match (&options.material, options.shape) {
+    let shape = options.shape.unwrap_or(ShapeName::Model);
+    let (package, parts): (Package, Vec<Shown>) = match (&options.material, shape) {
         (None, ShapeName::Grid) => {
             let package = Package::for_renderer(&lit(&grid::materials()?), store()?)?;
             let parts = (0..Shape::Grid.materials() as u32).map(Shown::Material).collect();
@@ -33,7 +34,7 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
         }
     };
     let look = &options.look;
-    let mut settings = settings(look, options.shape.into(), options.size)?;
+    let mut settings = settings(look, shape, options.mesh.as_deref(), options.size)?;
     let gpu = open(look.adapter.as_deref())?;
     let scene = gpu.scene(&package, Form::Baked)?;
     for material in scene.materials_of(&parts)? {
@@ -48,7 +49,8 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
 
 /// The picture by random walks of light through the stack of each material.
 fn simulate(options: &PreviewOptions, samples: u32, format: Format) -> Outcome {
-    let (package, parts): (Package, Vec<Shown>) = match (&options.material, options.shape) {
+    let shape = options.shape.unwrap_or(ShapeName::Sphere);
+    let (package, parts): (Package, Vec<Shown>) = match (&options.material, shape) {
         (None, ShapeName::Grid) => {
             let parts = (0..Shape::Grid.materials() as u32).map(Shown::Material).collect();
             (simulated::package(grid::materials()?)?, parts)
@@ -61,7 +63,7 @@ fn simulate(options: &PreviewOptions, samples: u32, format: Format) -> Outcome {
         }
     };
     let look = &options.look;
-    let settings = settings(look, options.shape.into(), options.size)?;
+    let settings = settings(look, shape, None, options.size)?;
     let gpu = open(look.adapter.as_deref())?;
     let write = |image| format.write(&options.output, image, look.tone.into());
     let picture = simulated::picture(&gpu, &package, &parts, &settings, samples, write)?;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use luthier_export::read;
-use luthier_gpu::Shape;
+use luthier_gpu::{Scenery, model};
 use luthier_terminal::{Failure, Outcome, open};
 use luthier_view::{Options, Shots, ViewError};
 
@@ -23,13 +23,15 @@ pub(crate) fn run(options: &ViewOptions) -> Outcome {
     }
     // A path that is none is a mistake of the command line; what is in the files is shown in the window.
     read(&options.sources.paths)?;
-    let shape = Shape::from(options.shape);
     let look = &options.look;
-    let settings = settings(look, shape, 1)?;
+    let mut settings = settings(look, options.shape, options.mesh.as_deref(), 1)?;
+    // The window may come to it.
+    settings.mesh = settings.mesh.or_else(|| Some(Arc::new(model::mesh())));
+    let shape = settings.shape;
     let gpu = open(look.adapter.as_deref())?;
     let window = Options {
         settings,
-        environment_is_file: look.environment.is_some(),
+        environment_name: look.environment.as_ref().map(|_| "file").or(look.sky.map(Scenery::name)),
         tone: look.tone.into(),
         shape,
         form: options.form,

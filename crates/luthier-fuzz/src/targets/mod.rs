@@ -3,6 +3,7 @@
 mod images;
 mod json;
 mod lines;
+mod meshes;
 mod toml;
 
 pub use images::with_sums;
@@ -25,7 +26,7 @@ pub struct Target {
 }
 
 /// All targets.
-pub const TARGETS: [Target; 18] = [
+pub const TARGETS: [Target; 19] = [
     Target {
         name: "material",
         parser: "luthier_material::parse",
@@ -153,6 +154,14 @@ pub const TARGETS: [Target; 18] = [
         holds: "values are as many as the size needs",
         folders: &[],
         run: images::radiance,
+    },
+    Target {
+        name: "gltf",
+        parser: "luthier_mesh::soup, luthier_mesh::Mesh::new",
+        reads: "`--mesh`: glTF files, text and binary",
+        holds: "corners are numbers of vertices, and these are finite; a mesh made of them lies in the unit sphere, its openness in 0..1",
+        folders: &[],
+        run: meshes::gltf,
     },
     Target {
         name: "table",

@@ -5,16 +5,16 @@ fn render_radiance(at: vec2<f32>, seed: u32) -> vec3<f32> {
     let through = kernel_inputs.target_point + at.x * kernel_inputs.right + at.y * kernel_inputs.up;
     let ray = normalize(through - kernel_inputs.eye);
     let hit = shape_hit(kernel_inputs.shape, kernel_inputs.eye, ray);
-    if hit.found {
+    if hit.found$shown {
         return shading_radiance(hit.part, hit.place, -ray, seed);
     }
     if kernel_inputs.first_direction > 0u {
         return vec3<f32>(0.0);
     }
     if kernel_inputs.environment_behind == 1.0 {
-        return environment_radiance(ray);
+        return $behind_environment;
     }
-    return kernel_inputs.backdrop * (1.0 - 0.3 * min(dot(at, at), 2.0));
+    return $behind_plain;
 }
 
 @compute @workgroup_size(8, 8)

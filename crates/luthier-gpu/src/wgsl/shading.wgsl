@@ -283,7 +283,7 @@ fn shading_unit(x: u32) -> f32 {
 
 // The environment through luthier_eval: the same number of directions for each interface and for the cosine, Hammersley
 // points shifted by the seed, weighed by the balance heuristic (Veach 1997, eq. 9.8).
-fn shading_sampled(material: u32, surface: ShadingSurface, frame: mat3x3<f32>, wo: vec3<f32>, seed: u32) -> vec3<f32> {
+fn shading_sampled(material: u32, surface: ShadingSurface, frame: mat3x3<f32>, wo: vec3<f32>, seed: u32$place) -> vec3<f32> {
     let lobes = shading_layer_count(material) + 1u;
     let count = kernel_inputs.environment_samples;
     var total = vec3<f32>(0.0);
@@ -311,7 +311,7 @@ fn shading_sampled(material: u32, surface: ShadingSurface, frame: mat3x3<f32>, w
                     density += shading_density(other_alpha, wi, wo);
                 }
             }
-            let seen = shading_lit(material, surface, wi, wo, environment_radiance(frame * wi));
+            let seen = shading_lit(material, surface, wi, wo, $radiance);
             total += seen / (density * f32(count));
         }
     }
@@ -327,7 +327,7 @@ fn shading_radiance(part: u32, place: Place, wo_world: vec3<f32>, seed: u32) -> 
         maps.normal = pick.normal;
     }
     let normal = place.normal;
-    let frame = mat3x3<f32>(place.tangent, cross(normal, place.tangent), normal);
+    let frame = mat3x3<f32>(place.tangent, cross(normal, place.tangent)$sign, normal);
     let wo = wo_world * frame;
     let surface = shading_surface(material, maps, length(kernel_inputs.eye - place.position));
     var total = vec3<f32>(0.0);
@@ -340,10 +340,10 @@ fn shading_radiance(part: u32, place: Place, wo_world: vec3<f32>, seed: u32) -> 
         let distance_sq = dot(to_light, to_light);
         let wi = (to_light * inverseSqrt(distance_sq)) * frame;
         // The second half of the materials has its slopes widened by the size of the lights.
-        total += shading_lit(material + kernel_inputs.material_count, surface, wi, wo, color) / distance_sq;
+        total += shading_lit(material + kernel_inputs.material_count, surface, wi, wo, color) / distance_sq$sees;
     }
     if kernel_inputs.environment_samples > 0u {
-        return total + shading_sampled(material, surface, frame, wo, seed);
+        return total + shading_sampled(material, surface, frame, wo, seed$here);
     }
     let factors = shading_factors(surface);
     let turned = shading_turned_frame(frame, factors.normal);
@@ -351,7 +351,7 @@ fn shading_radiance(part: u32, place: Place, wo_world: vec3<f32>, seed: u32) -> 
         // The samples of a pixel share the directions of a circle.
         let samples = kernel_inputs.samples * kernel_inputs.samples;
         let turn = f32(seed % samples) / f32(samples);
-        return total + lobes_environment(material, surface, turned, wo_world * turned, turn);
+        return total + lobes_environment(material, surface, turned, wo_world * turned, turn)$open;
     }
-    return total + shading_environment(material, factors, turned, wo_world * turned);
+    return total + shading_environment(material, factors, turned, wo_world * turned)$open;
 }

@@ -12,6 +12,7 @@ mod loading;
 mod lobes;
 mod lookup;
 mod many;
+mod mesh;
 mod record_terms;
 mod refusal;
 mod render;

@@ -1,7 +1,7 @@
 //! Figures of the course of Weidlich and Wilkie.
 
 use luthier_export::MemoryStore;
-use luthier_gpu::{Package, Shape};
+use luthier_gpu::{Package, RenderSettings, Shape};
 use luthier_lut::Image;
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::Material;
@@ -22,7 +22,7 @@ pub(crate) const FIGURES: [Figure; 2] = [
                   highlight is left. The metal of d mirrors the room in colour. In e, a sharp white \
                   reflection of the light lies over a soft coloured one. In f, a rough coat lies over a metal that \
                   still mirrors sharply, because this model does not blur the light that crosses the coat (elek-2 \
-                  compares it with the simulation). The material of g is matt and bright. In h, two clear layers lie \
+                  compares it with the simulation). The material of g is matt and bright: its picture has half the exposure of the others. In h, two clear layers lie \
                   on a blue base, too rough to show the light. The numbers are the differences between the picture \
                   of the tables and that of the full evaluation.",
         make: classes,
@@ -59,6 +59,9 @@ const CLASSES: [(&str, &str, &str); 8] = [
     of_class!("house-paint", "house"),
 ];
 
+/// The material that is shown at half the exposure: silver is whiter than the light is meant for.
+const BRIGHT: &str = "silver-paint";
+
 fn classes(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let mut materials = Vec::new();
@@ -66,8 +69,11 @@ fn classes(studio: &Studio) -> Outcome<Made> {
         materials.push(shaded(&material(name, text)?, name, ShadingModel::WeidlichWilkie));
     }
     let package = Package::for_renderer(&materials, &MemoryStore::default())?;
-    let baked = studio.rendered(&package, Form::Baked, Shape::Sphere, |_, _| {})?;
-    let full = studio.rendered(&package, Form::Full, Shape::Sphere, |_, _| {})?;
+    let look = |n: usize, settings: &mut RenderSettings| {
+        settings.exposure = if CLASSES[n].0 == BRIGHT { 0.5 } else { 1.0 };
+    };
+    let baked = studio.rendered(&package, Form::Baked, Shape::Sphere, look)?;
+    let full = studio.rendered(&package, Form::Full, Shape::Sphere, look)?;
     for ((material, baked), full) in materials.iter().zip(&baked).zip(&full) {
         let flip = compared(baked, full)?.flip_mean;
         made.measure(format!("{} {}, tables against full: mean FLIP", material.class, material.name), flip);

@@ -1,10 +1,10 @@
 //! Figures of Elek 2010 with examples: against the simulation, edges of patina, car paint, lacquers, concrete.
 
-use luthier_export::{MemoryStore, Package};
+use luthier_export::{MemoryStore, Package, lit};
 use luthier_gpu::Shape;
 use luthier_lut::Image;
 use luthier_manifest::{Form, MapSlot, ShadingModel};
-use luthier_material::Material;
+use luthier_material::{Material, VariationSource};
 use luthier_terminal::{Failure, Outcome};
 
 use super::figure::{Figure, Labelled, Made, TONE, compared};
@@ -83,12 +83,13 @@ fn edges(studio: &Studio) -> Outcome<Made> {
         let missing = || Failure::Input(anyhow::anyhow!("copper-patina.toml has no patina"));
         let patina = stage.effects.patina.as_mut().ok_or_else(missing)?;
         (patina.extent, patina.transition) = (0.45, transition);
-        materials.push(stage);
+        patina.map = VariationSource::Image { path: "patina.png".to_owned() };
+        materials.push(mapped(stage));
     }
-    let package = Package::for_renderer(&materials, &MemoryStore::default())?;
+    let package = Package::for_renderer(&lit(&materials), &MemoryStore::default())?;
     let mut pictures: Labelled = Vec::new();
     if let Some(map) = package.maps.iter().find(|map| map.slot == MapSlot::Patina) {
-        pictures.push(("map".to_owned(), scaled(&map.image, studio.size)));
+        pictures.push(("map".to_owned(), scaled(&map.image, 2 * studio.size)));
         for transition in TRANSITIONS {
             let amount = |texel: &[f32]| (0.5 + (0.45 - f64::from(texel[0])) / (2.0 * transition)).clamp(0.0, 1.0);
             let amounts: Vec<f64> = map.image.texels().map(amount).collect();
@@ -97,7 +98,7 @@ fn edges(studio: &Studio) -> Outcome<Made> {
             made.measure(format!("transition {transition}: share of the map where patina has half grown"), share);
         }
     }
-    let rendered = studio.rendered(&package, Form::Baked, Shape::Sphere, |_, _| {})?;
+    let rendered = studio.staged(&package, |_, _| {})?;
     for (transition, picture) in TRANSITIONS.into_iter().zip(rendered) {
         pictures.push((format!("{transition}"), TONE.image(picture)));
     }

@@ -4,12 +4,12 @@ use luthier_export::{MemoryStore, Package, lit};
 use luthier_gpu::Shape;
 use luthier_lut::Image;
 use luthier_manifest::{Form, MapSlot, ShadingModel};
-use luthier_material::Material;
+use luthier_material::{Material, VariationSource};
 use luthier_optics::color::luminance;
 use luthier_terminal::{Failure, Outcome};
 
 use super::figure::{Figure, Made};
-use super::studio::{Studio, material, shaded};
+use super::studio::{Studio, mapped, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 2] = [
     Figure {
@@ -30,10 +30,10 @@ pub(crate) const FIGURES: [Figure; 2] = [
         title: "a growing patina",
         source: "Elek 2010, figure 8",
         caption: "The pictures show copper under cuprite at the six stages of the paper, with its width of the \
-                  transition. Patina grows first where the map is dark. The transition is so wide that no edge is \
-                  visible: the copper pales, turns green unevenly and ends as a matt green with the tarnish below. \
-                  The number is the mean amount of patina over the map. The map, the green and the tarnish are \
-                  luthier's; see `materials/copper-patina.toml`.",
+                  transition. Patina grows first where the map is dark: in blotches, and in streaks that water has left. The \
+                  transition is so wide that no edge is visible: the copper pales, turns green unevenly and ends as a matt \
+                  green with the tarnish below. The number is the mean amount of patina over the map. The map, the model, the \
+                  green and the tarnish are luthier's; see `materials/copper-patina.toml`.",
         make: patina,
     },
 ];
@@ -118,14 +118,15 @@ fn patina(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let copper = material("copper-patina.toml", PATINA)?;
     let mut materials = Vec::new();
+    let map = || VariationSource::Image { path: "patina.png".to_owned() };
     for (i, extent) in EXTENTS.into_iter().enumerate() {
         let mut stage = shaded(&copper, &format!("stage-{i}"), ShadingModel::Elek);
         let missing = || Failure::Input(anyhow::anyhow!("copper-patina.toml has no patina"));
         let patina = stage.effects.patina.as_mut().ok_or_else(missing)?;
-        (patina.extent, patina.transition) = (extent, TRANSITION);
-        materials.push(stage);
+        (patina.extent, patina.transition, patina.map) = (extent, TRANSITION, map());
+        materials.push(mapped(stage));
     }
-    let package = Package::for_renderer(&materials, &MemoryStore::default())?;
+    let package = Package::for_renderer(&lit(&materials), &MemoryStore::default())?;
     let map = package.maps.iter().find(|map| map.slot == MapSlot::Patina).map(|map| &map.image);
     for extent in EXTENTS {
         let amounts = map
@@ -135,8 +136,8 @@ fn patina(studio: &Studio) -> Outcome<Made> {
         let count = map.map_or(1, Image::texel_count);
         made.measure(format!("extent {extent}: mean amount of patina"), amounts.sum::<f64>() / count as f64);
     }
-    let pictures = studio.rendered(&package, Form::Baked, Shape::Torus, |_, _| {})?;
+    let pictures = studio.staged(&package, |_, _| {})?;
     let labels = EXTENTS.iter().map(|extent| format!("extent {extent}"));
-    made.sheet("elek-8", labels.zip(pictures).collect(), 6);
+    made.sheet("elek-8", labels.zip(pictures).collect(), 3);
     Ok(made)
 }

@@ -55,6 +55,11 @@ impl Made {
         self.files.push((format!("{file}.png"), Content::Picture(sheet(&pictures, columns))));
     }
 
+    /// Adds one linear picture without a name below.
+    pub(crate) fn picture(&mut self, file: &str, picture: Image) {
+        self.files.push((format!("{file}.png"), Content::Picture(TONE.image(picture))));
+    }
+
     pub(crate) fn plot(&mut self, file: &str, plot: Plot) {
         self.files.push((format!("{file}.svg"), Content::Plot(plot)));
     }

@@ -1,7 +1,8 @@
 //! Figures of Granier and Heidrich 2003.
 
 use glam::DVec3;
-use luthier_gpu::{RenderSettings, Shape};
+use luthier_export::MemoryStore;
+use luthier_gpu::{Package, RenderSettings, Shape};
 use luthier_layers::granier_heidrich::Film;
 use luthier_layers::monochrome::Monochrome;
 use luthier_lut::Image;
@@ -13,7 +14,7 @@ use luthier_terminal::Outcome;
 use super::figure::{Figure, Made, TONE};
 use super::studio::{Studio, material, shaded};
 
-pub(crate) const FIGURES: [Figure; 4] = [
+pub(crate) const FIGURES: [Figure; 5] = [
     Figure {
         name: "granier-3",
         title: "the diffuse part under a layer of varying thickness",
@@ -62,7 +63,59 @@ pub(crate) const FIGURES: [Figure; 4] = [
                   on it where both are in phase.",
         make: combined,
     },
+    Figure {
+        name: "granier-7",
+        title: "the model on a mesh",
+        source: "Granier and Heidrich 2003, section 7.4 and figure 7",
+        caption: "The paper shows a cat of 11,000 triangles on graphics hardware; here it is luthier's model of a ball on a stand, of about as many. \
+                  As there, the normals of the inner boundary follow the thickness of the layer, the phase has a table of 256 entries, the \
+                  thickness one of 256 by 256 of Perlin's noise, and pictures differ in the range of the thickness alone. The mesh casts shadows on \
+                  itself and on its floor. Ranges, indices and exponent are luthier's, the latter those of figure 6 and figure 4.",
+        make: on_a_mesh,
+    },
 ];
+
+/// Ranges of thickness of figure 7.
+const MESH_RANGES_NM: [[f64; 2]; 4] = [[60.0, 110.0], [140.0, 220.0], [220.0, 360.0], [200.0, 700.0]];
+
+/// Width of a repeat of the thickness map of figure 7: bumps that are seen, and do not hide the ball.
+const MESH_UM: f64 = 60.0;
+
+fn on_a_mesh(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let name = |i: usize| ["mesh-a", "mesh-b", "mesh-c", "mesh-d"][i];
+    let coating = |(i, thickness_nm): (usize, [f64; 2])| Coating {
+        name: name(i),
+        ior: COMBINED_IOR,
+        thickness_nm,
+        exponents: [90.0; 2],
+        diffuse: 0.5,
+        tilt_deg: 0.0,
+        extent_um: MESH_UM,
+        frequency: 5,
+    };
+    let coatings: Vec<Coating> = MESH_RANGES_NM.into_iter().enumerate().map(coating).collect();
+    let tables = "phase = { size = 256 }\nthickness = { size = 256 }\n";
+    let materials = coatings.iter().map(|coating| coating.with_tables(tables)).collect::<Outcome<Vec<_>>>()?;
+    let package = Package::for_renderer(&materials, &MemoryStore::default())?;
+    let look = |settings: &mut RenderSettings| {
+        settings.environment_samples = 8;
+        settings.exposure = 0.8;
+    };
+    let pictures = studio.staged(&package, |_, settings| look(settings))?;
+    let mut shown = Vec::new();
+    for ([min, max], picture) in MESH_RANGES_NM.into_iter().zip(pictures) {
+        made.measure(format!("{min} to {max} nm: spread of the channels"), spread(&picture));
+        shown.push((format!("{min}-{max} nm"), picture));
+    }
+    made.sheet("granier-7", shown, 2);
+    // One as large as a page is wide.
+    let mut settings = studio.stage()?;
+    look(&mut settings);
+    settings.size = studio.size * 16 / 3;
+    made.picture("granier-7-large", studio.gpu()?.scene(&package, Form::Baked)?.render(&[1], &settings)?);
+    Ok(made)
+}
 
 /// The wavelengths of the paper.
 const WAVELENGTHS_NM: [f64; 3] = [645.0, 525.0, 445.0];
@@ -100,6 +153,11 @@ struct Coating {
 impl Coating {
     /// The material. The object's index is not in the paper: 2 keeps indices rising, which its formula needs.
     fn material(&self) -> Outcome<Material> {
+        self.with_tables("")
+    }
+
+    /// The material with settings of its tables.
+    fn with_tables(&self, tables: &str) -> Outcome<Material> {
         let Self { name, ior: [r, g, b], thickness_nm: [min, max], exponents, diffuse, tilt_deg, extent_um, frequency } =
             self;
         let text = format!(
@@ -109,7 +167,7 @@ impl Coating {
              map = {{ noise = {{ seed = 7, frequency = {frequency}, octaves = 4 }} }}\n\
              [[layer]]\ntype = \"dielectric\"\nior = 2.0\nexponents = {exponents:?}\n\
              [[layer]]\ntype = \"diffuse\"\nalbedo = 1\n\
-             [bake]\nmodel = \"granier-heidrich\"\ncolor = \"three-wavelengths\"\nwavelengths_nm = [645, 525, 445]\n\
+             [bake]\nmodel = \"granier-heidrich\"\ncolor = \"three-wavelengths\"\nwavelengths_nm = [645, 525, 445]\n{tables}\
              [bake.granier-heidrich]\ndiffuse_weight = {diffuse}\ninner_tilt_deg = {tilt_deg}\n"
         );
         Ok(shaded(&material(name, &text)?, name, ShadingModel::GranierHeidrich))

@@ -5,7 +5,7 @@ use std::io::ErrorKind;
 use std::sync::Arc;
 
 use luthier_export::{MemoryStore, Package};
-use luthier_gpu::{Environment, Gpu, RenderSettings, Shape};
+use luthier_gpu::{Environment, Gpu, Mesh, RenderSettings, Shape, model};
 use luthier_layers::inputs::Inputs;
 use luthier_layers::model::Model;
 use luthier_layers::registry;
@@ -33,13 +33,14 @@ pub(crate) struct Studio {
     adapter: Option<String>,
     gpu: OnceCell<Gpu>,
     environment: OnceCell<Arc<Environment>>,
+    mesh: OnceCell<Arc<Mesh>>,
 }
 
 impl Studio {
     pub(crate) fn new(options: &FiguresOptions) -> Self {
         let FiguresOptions { size, samples, paths, adapter, .. } = options;
-        let (gpu, environment) = (OnceCell::new(), OnceCell::new());
-        Self { size: *size, samples: *samples, paths: *paths, adapter: adapter.name.clone(), gpu, environment }
+        let (gpu, environment, mesh) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
+        Self { size: *size, samples: *samples, paths: *paths, adapter: adapter.name.clone(), gpu, environment, mesh }
     }
 
     /// The adapter, opened when the first figure needs it.
@@ -63,6 +64,32 @@ impl Studio {
         settings.samples = self.samples;
         settings.environment_samples = ENVIRONMENT_SAMPLES;
         Ok(settings)
+    }
+
+    /// The studio with the model on its floor, twice as large as other pictures. Its environment is blurred beforehand.
+    pub(crate) fn stage(&self) -> Outcome<RenderSettings> {
+        let mesh = self.mesh.get_or_init(|| Arc::new(model::mesh())).clone();
+        let settings = self.settings(Shape::Sphere)?;
+        Ok(RenderSettings {
+            shape: Shape::Mesh,
+            camera: Shape::Mesh.camera(),
+            mesh: Some(mesh),
+            size: 2 * self.size,
+            samples: self.samples.max(3),
+            environment_samples: 0,
+            ..settings
+        })
+    }
+
+    /// Renders each material of a bake on the stage, linear. `adjust` may change the settings of the n-th.
+    pub(crate) fn staged(&self, package: &Package, adjust: impl Fn(usize, &mut RenderSettings)) -> Outcome<Vec<Image>> {
+        let scene = self.gpu()?.scene(package, Form::Baked)?;
+        let render = |n: usize| {
+            let mut settings = self.stage()?;
+            adjust(n, &mut settings);
+            Ok(scene.render(&[n as u32], &settings)?)
+        };
+        (0..package.manifest.materials.len()).map(render).collect()
     }
 
     /// Bakes materials and renders each, linear. `adjust` may change the settings of the n-th.

@@ -3,9 +3,11 @@
 use font8x8::legacy::BASIC_LEGACY;
 use luthier_lut::Image;
 
+/// Side of a picture from which names are twice as large.
+const LARGE: u32 = 192;
 /// Pixels between pictures.
 const GAP: u32 = 8;
-/// Height of a line of text and its surrounding.
+/// Height of a line of text and its surrounding, in small letters.
 const LABEL: u32 = 16;
 /// Side of a character.
 const GLYPH: u32 = 8;
@@ -17,7 +19,8 @@ const INK: f32 = 0.6;
 pub fn sheet(pictures: &[(String, Image)], columns: u32) -> Image {
     let size = pictures.first().map_or(0, |(_, image)| image.width);
     let rows = (pictures.len() as u32).div_ceil(columns);
-    let cell = [size + GAP, size + LABEL + GAP];
+    let scale = if size < LARGE { 1 } else { 2 };
+    let cell = [size + GAP, size + scale * LABEL + GAP];
     let mut sheet = Image::zeros(columns * cell[0] + GAP, rows * cell[1] + GAP, 3);
     sheet.data.fill(PAPER);
     for (i, (name, image)) in pictures.iter().enumerate() {
@@ -28,21 +31,24 @@ pub fn sheet(pictures: &[(String, Image)], columns: u32) -> Image {
                 sheet.texel_mut(left + x, top + y).copy_from_slice(image.texel(x, y));
             }
         }
-        write(&mut sheet, name, [left, top + size + (LABEL - GLYPH) / 2], size);
+        write(&mut sheet, name, [left, top + size + scale * (LABEL - GLYPH) / 2], size, scale);
     }
     sheet
 }
 
 /// Writes a line in the middle of a width; what does not fit is cut off.
-fn write(sheet: &mut Image, text: &str, [left, top]: [u32; 2], width: u32) {
-    let fitting = (width / GLYPH) as usize;
+fn write(sheet: &mut Image, text: &str, [left, top]: [u32; 2], width: u32, scale: u32) {
+    let side = scale * GLYPH;
+    let fitting = (width / side) as usize;
     let text: Vec<char> = text.chars().take(fitting).collect();
-    let start = left + (width - text.len() as u32 * GLYPH) / 2;
+    let start = left + (width - text.len() as u32 * side) / 2;
     for (i, character) in text.into_iter().enumerate() {
         let Some(rows) = BASIC_LEGACY.get(character as usize) else { continue };
         for (y, row) in rows.iter().enumerate() {
-            for x in (0..GLYPH).filter(|x| row & 1 << x != 0) {
-                sheet.texel_mut(start + i as u32 * GLYPH + x, top + y as u32).fill(INK);
+            for (x, dy) in
+                (0..side).filter(|x| row & 1 << (x / scale) != 0).flat_map(|x| (0..scale).map(move |dy| (x, dy)))
+            {
+                sheet.texel_mut(start + i as u32 * side + x, top + scale * y as u32 + dy).fill(INK);
             }
         }
     }

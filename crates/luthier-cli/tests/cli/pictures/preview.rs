@@ -14,7 +14,10 @@ fn baked() -> Workshop {
 
 fn preview(workshop: &Workshop, material: &str, picture: &str, more: &[&str]) -> Option<RgbImage> {
     let size = ["preview", material, "-o", picture, "--size", "48", "--samples", "2"];
-    let run: Run = workshop.run(&[&size[..], more].concat());
+    // Most look at places of a ball.
+    let chosen = more.iter().any(|option| ["--shape", "--mesh"].contains(option));
+    let shape: &[&str] = if chosen { &[] } else { &["--shape", "sphere"] };
+    let run: Run = workshop.run(&[&size[..], shape, more].concat());
     if run.lacks_adapter() {
         return None;
     }
@@ -214,7 +217,7 @@ fn an_environment_by_file() {
     assert!(mean(&picture, [12, 16, 8, 16]) > 1.2 * mean(&picture, [28, 16, 8, 16]));
 
     let more = ["--environment", "studio.hdr", "--background", "--tone", "none"];
-    let args = ["preview", "matte.toml", "-o", "ball.exr", "--size", "48", "--samples", "1"];
+    let args = ["preview", "matte.toml", "-o", "ball.exr", "--size", "48", "--samples", "1", "--shape", "sphere"];
     workshop.run(&[&args[..], &more[..]].concat()).exits(0);
     let (exr, _) = luthier_texture::exr::decode(&std::fs::read(workshop.path("ball.exr")).unwrap()).unwrap();
     assert!((exr.texel(0, 0)[0] / 8.0 - 1.0).abs() < 0.02 && (exr.texel(47, 0)[0] / 0.5 - 1.0).abs() < 0.02);
@@ -227,6 +230,57 @@ fn an_environment_by_file() {
     bad("matte.toml", 1, &["matte.toml", "neither OpenEXR nor Radiance"]);
     bad("missing.hdr", 3, &["missing.hdr"]);
 }
+
+/// The model is what is shown by default: its floor is in the picture, and the stand's shadow on it to the right of the ball.
+#[test]
+fn the_model_stands_on_its_floor() {
+    let workshop = Workshop::with(&[("matte.toml", &matte("matte"))]);
+    let run = workshop.run(&["preview", "matte.toml", "-o", "default.png", "--size", "48", "--samples", "2"]);
+    if run.lacks_adapter() {
+        return;
+    }
+    run.exits(0);
+    let named = preview(&workshop, "matte.toml", "model.png", &["--shape", "model"]).unwrap();
+    assert!(image::open(workshop.path("default.png")).unwrap().into_rgb8() == named);
+    let [left, right] = [mean(&named, [1, 31, 6, 4]), mean(&named, [41, 31, 4, 4])];
+    assert!(left > 1.3 * right, "{left} {right}");
+    // The same triangles by their file; a sky has no default light, and so the floor no sharp shadow.
+    workshop.write("model.glb", luthier_mesh_file());
+    assert!(preview(&workshop, "matte.toml", "file.png", &["--mesh", "model.glb"]).unwrap() == named);
+    let room = preview(&workshop, "matte.toml", "room.png", &["--shape", "model", "--sky", "evening-room"]).unwrap();
+    let [red, _, blue] = room.get_pixel(20, 20).0;
+    assert!(red > blue, "lamps are warm: {:?}", room.get_pixel(20, 20));
+}
+
+fn luthier_mesh_file() -> Vec<u8> {
+    std::fs::read(root().join("crates/luthier-mesh/assets/model.glb")).unwrap()
+}
+
+/// Files that are no meshes, and meshes that lack what a material needs.
+#[test]
+fn meshes_are_refused_with_a_reason() {
+    let workshop = Workshop::with(&[("matte.toml", &matte("matte")), ("brushed.toml", BRUSHED)]);
+    let corpus = root().join("crates/luthier-fuzz/corpus/gltf");
+    workshop.write("square.gltf", std::fs::read(corpus.join("square.gltf")).unwrap());
+    workshop.write("beside.gltf", std::fs::read(corpus.join("beside.gltf")).unwrap());
+    let bad = |material: &str, mesh: &str, code, parts: &[&str]| {
+        let run = workshop.run(&["preview", material, "-o", "no.png", "--size", "8", "--mesh", mesh]);
+        if !run.lacks_adapter() {
+            run.fails(code, parts);
+        }
+    };
+    bad("matte.toml", "missing.glb", 3, &["missing.glb"]);
+    bad("matte.toml", "matte.toml", 1, &["matte.toml", "no glTF"]);
+    bad("matte.toml", "beside.gltf", 1, &["beside.gltf", "beside.bin"]);
+    bad("brushed.toml", "square.gltf", 1, &["no texture coordinates", "`brushed`", "anisotropic"]);
+    workshop
+        .run(&["preview", "matte.toml", "-o", "no.png", "--mesh", "a.glb", "--shape", "torus"])
+        .fails(2, &["--mesh"]);
+    workshop.run(&["preview", "matte.toml", "-o", "no.png", "--sky", "moon"]).fails(2, &["moon", "clear-day"]);
+}
+
+const BRUSHED: &str = "schema = 1\nname = \"brushed\"\n[[layer]]\ntype = \"conductor\"\nior = \"ag\"\nalpha_x = 0.1\nalpha_y = 0.3\n\
+    [bake]\nmodel = \"elek\"\n";
 
 #[test]
 fn lights_and_tone_curves() {

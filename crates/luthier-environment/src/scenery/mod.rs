@@ -1,10 +1,14 @@
 //! Surroundings with detail, by formulas of the project's own: for tests, measurements, and whoever has no picture at hand.
 
+mod field;
+mod rooms;
+
 use crate::panorama::texel_direction;
 use crate::vector::{dot, unit};
 use crate::{Environment, EnvironmentError};
 
 use luthier_lut::Image;
+use rayon::prelude::*;
 
 luthier_lut::named! {
     /// Surroundings made of formulas and fixed random numbers.
@@ -15,6 +19,12 @@ luthier_lut::named! {
         StripStudio = "strip-studio",
         /// A street at night: a hundred lamps of half a degree to two, lit windows, a faint sky.
         NightStreet = "night-street",
+        /// A light studio: two large softboxes, a row of windows, a black flag.
+        SoftboxStudio = "softbox-studio",
+        /// A sun of half a degree in a clear sky over meadows, hills and a wood.
+        ClearDay = "clear-day",
+        /// A room at dusk: a lamp, a pendant, shelves of books, a window.
+        EveningRoom = "evening-room",
     }
 }
 
@@ -28,16 +38,17 @@ impl Scenery {
             return Err(crate::error::setting("rows", rows.to_string(), "2 to 4096"));
         }
         let lamps = lamps();
-        let fine = Image { data: Vec::new(), ..Image::zeros(8 * rows, 4 * rows, 3) };
+        let fine = Image { width: 8 * rows, height: 4 * rows, channels: 3, data: Vec::new() };
         let mut map = Image::zeros(2 * rows, rows, 3);
-        for (y, x) in (0..rows).flat_map(|y| (0..2 * rows).map(move |x| (y, x))) {
+        map.data.par_chunks_mut(3).enumerate().for_each(|(n, texel)| {
+            let (x, y) = (n as u32 % (2 * rows), n as u32 / (2 * rows));
             let mut sum = [0.0; 3];
             for i in 0..16 {
                 let value = self.radiance(texel_direction(&fine, 4 * x + i % 4, 4 * y + i / 4), &lamps);
                 (0..3).for_each(|c| sum[c] += value[c] / 16.0);
             }
-            map.texel_mut(x, y).copy_from_slice(&sum.map(|v| v as f32));
-        }
+            texel.copy_from_slice(&sum.map(|v| v as f32));
+        });
         Ok(map)
     }
 
@@ -54,6 +65,9 @@ impl Scenery {
             Self::CloudySun => cloudy_sun(d),
             Self::StripStudio => strip_studio(d),
             Self::NightStreet => night_street(d, lamps),
+            Self::SoftboxStudio => rooms::softbox_studio(d),
+            Self::ClearDay => field::clear_day(d),
+            Self::EveningRoom => rooms::evening_room(d),
         }
     }
 }

@@ -1,0 +1,32 @@
+//! Meshes.
+
+use luthier_mesh::{Mesh, TRIANGLES_MAX, soup};
+
+/// Triangles of the largest mesh that is made ready: larger ones would take the time that others need.
+const READY_MAX: usize = 1 << 12;
+
+/// A glTF file; the buffers beside it are the file itself.
+pub(super) fn gltf(bytes: &[u8]) {
+    let file = match soup(bytes, &|_| Ok(bytes.to_vec())) {
+        Ok(file) => file,
+        Err(error) => return assert!(!error.to_string().is_empty()),
+    };
+    let all = &file.soup;
+    assert!(all.triangles.len() <= TRIANGLES_MAX && all.has_tangents.len() == all.vertices.len());
+    for triangle in &all.triangles {
+        assert!(triangle.part as usize <= all.plain.len());
+        assert!(triangle.corners.iter().all(|&corner| (corner as usize) < all.vertices.len()));
+    }
+    assert!(all.vertices.iter().all(|vertex| vertex.position.iter().all(|value| value.is_finite())));
+    if all.triangles.len().max(all.vertices.len()) > READY_MAX {
+        return;
+    }
+    let Ok(mesh) = Mesh::new(file.soup) else { return };
+    assert!(mesh.openness().iter().all(|open| (0.0..=1.0).contains(open)));
+    assert!(mesh.vertices().iter().all(|vertex| vertex.tangent.iter().all(|value| value.is_finite())));
+    let inside = |vertex: &luthier_mesh::Vertex| vertex.position.iter().all(|value| value.abs() < 1.001);
+    for triangle in mesh.triangles().iter().filter(|triangle| triangle.part == 0) {
+        assert!(triangle.corners.iter().all(|&corner| inside(&mesh.vertices()[corner as usize])));
+    }
+    assert!(mesh.bvh().nodes().iter().all(|node| node.next as usize <= mesh.bvh().nodes().len()));
+}

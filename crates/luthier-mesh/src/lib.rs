@@ -1,0 +1,26 @@
+//! Triangles for pictures of materials.
+//!
+#![doc = include_str!("../README.md")]
+//! # In detail
+//!
+//! [`soup`] reads a glTF file, [`Mesh::new`] makes what it holds ready for rays: fitted into the unit sphere, with tangents, a tree of boxes
+//! and the openness of each vertex. [`model`] is a mesh of the project's own.
+//!
+//! Simplifications: textures, materials, lights and cameras of a file are not read, but for the colour of parts whose material is named `plain`;
+//! openness is a number of a vertex, between vertices it is linear.
+
+mod accessor;
+mod buffers;
+mod bvh;
+mod error;
+mod gltf_file;
+mod mesh;
+pub mod model;
+mod openness;
+mod tangents;
+mod vector;
+
+pub use bvh::{Bvh, Meeting, Node};
+pub use error::MeshError;
+pub use gltf_file::{File, soup};
+pub use mesh::{Mesh, Soup, TRIANGLES_MAX, Triangle, Vertex};
