@@ -9,7 +9,7 @@ use crate::workshop::Workshop;
 #[test]
 fn a_matte_ball_is_one_to_all() {
     let workshop = Workshop::with(&[("m.toml", &matte("m"))]);
-    let small = ["--size", "16", "--samples", "64", "--time-size", "8", "--repeats", "1", "--data", "data.json"];
+    let small = ["--size", "16", "--samples", "1024", "--time-size", "8", "--repeats", "1", "--data", "data.json"];
     let run = workshop.run(&[&["simulation", "m.toml"][..], &small].concat());
     if run.lacks_adapter() {
         return;
