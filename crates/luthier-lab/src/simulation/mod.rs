@@ -29,8 +29,8 @@ const SAMPLES: [u32; 4] = [32, 128, 512, 2048];
 /// Rows of the map of the surroundings.
 const ROWS: u32 = 128;
 
-/// Turns of the surroundings about the vertical axis, as shares of a whole one.
-const TURNS: [(&str, u32); 3] = [("0", 0), ("120", 1), ("240", 2)];
+/// Turns of the surroundings about the vertical axis: degrees, and thirds of a whole one.
+const TURNS: [(u32, u32); 3] = [(0, 0), (120, 1), (240, 2)];
 
 /// Directions of the environment for each lobe and sample of a pixel, of models in pictures: with 16 samples 1,024.
 const DIRECTIONS: u32 = 64;
@@ -46,7 +46,7 @@ struct Time {
 /// How far a model is from the simulation.
 struct Error {
     material: String,
-    turn: &'static str,
+    turn: u32,
     /// Mean of the simulation over the picture.
     mean: f64,
     /// Its noise.
@@ -87,7 +87,7 @@ pub(crate) fn run(options: &SimulationOptions) -> Outcome {
 /// The surroundings at each turn.
 fn skies() -> Outcome<Vec<Arc<Environment>>> {
     let map = Scenery::StripStudio.map(ROWS).map_err(Failure::input)?;
-    let turned = |(_, third): &(&str, u32)| {
+    let turned = |(_, third): &(u32, u32)| {
         let (width, shift) = (map.width, map.width * third / 3);
         let mut turned = map.clone();
         for (y, x) in (0..map.height).flat_map(|y| (0..width).map(move |x| (y, x))) {
@@ -158,7 +158,7 @@ impl Subject {
 
     /// Pictures of the models against the simulated one.
     fn errors(&self, options: &SimulationOptions, skies: &[Arc<Environment>]) -> Outcome<Vec<Error>> {
-        let error = |((turn, _), sky): (&(&'static str, u32), &Arc<Environment>)| -> Outcome<Error> {
+        let error = |((turn, _), sky): (&(u32, u32), &Arc<Environment>)| -> Outcome<Error> {
             let settings = settings(options.size, sky)?;
             let mut simulation =
                 self.stack.simulation(&[Shown::Material(0)], &settings, &SimulationSettings::default())?;
@@ -172,7 +172,7 @@ impl Subject {
             };
             let mean = truth.data.iter().map(|v| f64::from(*v)).sum::<f64>() / truth.data.len() as f64;
             let rms = self.models.iter().map(rms).collect::<Outcome<_>>()?;
-            Ok(Error { material: self.name.clone(), turn, mean, noise: noise.sqrt(), rms })
+            Ok(Error { material: self.name.clone(), turn: *turn, mean, noise: noise.sqrt(), rms })
         };
         TURNS.iter().zip(skies).map(error).collect()
     }

@@ -119,7 +119,7 @@ fn pictures(page: &mut String, errors: &[Error]) {
     let _ = write!(
         page,
         "## Error of models in surroundings\n\nRoot of the mean squared difference of a model's picture and the simulated one, over the mean of the latter. `noise` is that of the \
-         simulation over this mean; it is taken out of the others. Models draw {DIRECTIONS} directions a lobe and sample, whose noise stays in. The surroundings are `strip-studio` of `luthier environment --sky`, turned about the vertical axis.\n\n\
+         simulation over this mean; it is taken out of the others. Models draw {DIRECTIONS} directions a lobe and sample, all the same ones. Their noise stays in: it is at most the figure of `lobes`. The surroundings are `strip-studio` of `luthier environment --sky`, turned about the vertical axis.\n\n\
          | material | turn (degrees) | mean | noise |"
     );
     for model in MODELS {

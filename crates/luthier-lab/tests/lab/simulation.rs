@@ -9,7 +9,7 @@ use crate::workshop::Workshop;
 #[test]
 fn a_matte_ball_is_one_to_all() {
     let workshop = Workshop::with(&[("m.toml", &matte("m"))]);
-    let small = ["--size", "16", "--samples", "64", "--time-size", "8", "--repeats", "1", "--data", "data.json"];
+    let small = ["--size", "16", "--samples", "1024", "--time-size", "8", "--repeats", "1", "--data", "data.json"];
     let run = workshop.run(&[&["simulation", "m.toml"][..], &small].concat());
     if run.lacks_adapter() {
         return;
@@ -25,10 +25,11 @@ fn a_matte_ball_is_one_to_all() {
     assert_eq!((times.len(), errors.len()), (4 * 5, 3));
     assert!(times.iter().all(|time| time["median_ms"].as_f64().unwrap() > 0.0), "{data}");
     for error in errors {
-        let mean = error["mean"].as_f64().unwrap();
+        let noise = error["noise"].as_f64().unwrap();
         for model in ["yamaguchi", "belcour", "lobes"] {
-            let share = error["rms_err"][model].as_f64().unwrap() / mean;
-            assert!(share < 0.1, "{model}: {error}");
+            // Models draw as many directions as the simulation has samples: their noise is left.
+            let rms = error["rms_err"][model].as_f64().unwrap();
+            assert!(rms < 2.0 * noise && noise < 0.3 * error["mean"].as_f64().unwrap(), "{model}: {error}");
         }
     }
 }
