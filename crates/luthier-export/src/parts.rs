@@ -1,16 +1,20 @@
-//! Doubts about the parts of a model that a material chooses: those that its model does not have, and errors of approximations.
+//! Doubts about the parts of a model that a material chooses: those that its model does not have, distributions among them, and errors of
+//! approximations.
 
-use luthier_manifest::{ColorMode, Masking, Reflectance, ShadingModel};
-use luthier_material::{Diagnostic, Material, Severity};
+use luthier_lut::TableKind;
+use luthier_manifest::{ColorMode, Feature, Form, Masking, Reflectance, ShadingModel};
+use luthier_material::{Diagnostic, Material, Severity, distribution_key};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::schlick::schlick;
+use luthier_optics::stack::Surface;
 
 /// Errors for parts that a model does not have, and for films of which a curve knows nothing; warnings of what the others do. `asked` is the
 /// model of the command line.
 pub fn of_parts(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {
     let model = asked.unwrap_or_else(|| material.model());
     let mut doubts = Vec::new();
+    doubts.extend(of_distribution(material, model));
     doubts.extend(material.bake.masking.and_then(|masking| of_masking(material, model, masking)));
     let chosen = material.bake.reflectance.filter(|reflectance| *reflectance != Reflectance::Table);
     doubts.extend(chosen.and_then(|reflectance| of_reflectance(material, model, reflectance)));
@@ -32,7 +36,49 @@ pub fn of_scene(material: &Material) -> Vec<Diagnostic> {
         let hint = "leave it out, or bake the material by itself".to_owned();
         material.diagnostic(Severity::Error, &format!("bake.{key}"), message, Some(hint))
     };
-    chosen.map(refusal).collect()
+    let of_slopes = first_free(material, material.stack.layers.len()).map(|layer| {
+        let distribution = material.stack.layers[layer].surface.distribution;
+        let message = format!(
+            "a scene compares models with a simulation, which has no facets of the distribution `{}`",
+            distribution.name()
+        );
+        let hint = "take `ggx` or `beckmann`, or bake the material by itself".to_owned();
+        let key = format!("layer.{layer}.{}", distribution_key(distribution));
+        material.diagnostic(Severity::Error, &key, message, Some(hint))
+    });
+    chosen.map(refusal).chain(of_slopes).collect()
+}
+
+/// The first of so many layers whose distribution has no walks in closed form.
+fn first_free(material: &Material, layers: usize) -> Option<usize> {
+    let is_free = |surface: &Surface| !surface.is_smooth() && !surface.distribution.has_walks();
+    material.stack.layers.iter().take(layers).position(|layer| is_free(&layer.surface))
+}
+
+/// An error where a model, its masking or a table has no use for the distribution of a layer.
+fn of_distribution(material: &Material, model: ShadingModel) -> Option<Diagnostic> {
+    let is_read = |layers: usize| if model == ShadingModel::Microfacet { layers.min(1) } else { layers };
+    let layer = first_free(material, is_read(material.stack.layers.len()))?;
+    let distribution = material.stack.layers[layer].surface.distribution;
+    let (name, key) = (distribution.name(), format!("layer.{layer}.{}", distribution_key(distribution)));
+    if !model.honours(Feature::Distribution, Form::Baked) {
+        let message = format!("the model `{model}` has no distribution `{name}`: it needs facets as Beckmann's or those of GGX");
+        let hint = "take `ggx` or `beckmann`, or write `[bake] model = \"elek\"`, `\"weidlich-wilkie\"` or `\"microfacet\"`";
+        return Some(material.diagnostic(Severity::Error, &key, message, Some(hint.to_owned())));
+    }
+    let masking = material.bake.masking.unwrap_or_default();
+    if model.has_masking() && masking.needs_lambda() {
+        let is_named = material.bake.masking.is_some();
+        let message = format!("the masking `{}` of the distribution `{name}` has no closed form", masking.name());
+        let hint = "write `[bake] masking = \"v-cavity\"`, or `\"kelemen\"`, `\"implicit\"` or `\"schlick-smith\"`".to_owned();
+        let key = if is_named { "bake.masking" } else { key.as_str() };
+        return Some(material.diagnostic(Severity::Error, key, message, Some(hint)));
+    }
+    let walked = [TableKind::Fgd, TableKind::Escape];
+    let table = walked.into_iter().find(|kind| material.bake.asks_for(*kind))?;
+    let message = format!("the table `{}` holds walks between facets, of which the distribution `{name}` has none", table.name());
+    let hint = format!("leave the table out, or take `ggx` or `beckmann` for layer {}", layer + 1);
+    Some(material.diagnostic(Severity::Error, &key, message, Some(hint)))
 }
 
 fn of_masking(material: &Material, model: ShadingModel, masking: Masking) -> Option<Diagnostic> {
