@@ -55,6 +55,33 @@ fn first_free(material: &Material, layers: usize) -> Option<usize> {
     material.stack.layers.iter().take(layers).position(|layer| is_free(&layer.surface))
 }
 
+/// Beginnings of the names of functions in f64 that need no more of a distribution than D, or the names.
+const OF_ANY_SLOPES: [&str; 8] =
+    ["microfacet-", "weidlich-wilkie", "elek", "heterogeneous-", "flakes", "patina", "lambert", "oren-nayar"];
+
+/// An error where a function in f64, by its name, has no use for the distribution of a layer: of a model with a shader where that has none, of others
+/// where they walk between facets, draw visible normals or follow statistics of lobes.
+pub fn of_function(material: &Material, name: &str) -> Option<Diagnostic> {
+    if let Some(model) = ShadingModel::from_name(name) {
+        return of_distribution(material, model);
+    }
+    let layer = first_free(material, material.stack.layers.len())?;
+    if OF_ANY_SLOPES.iter().any(|known| name.starts_with(known)) {
+        return None;
+    }
+    Some(no_slopes(material, name, layer))
+}
+
+/// The error of a model that has no use for the distribution of a layer.
+fn no_slopes(material: &Material, model: &str, layer: usize) -> Diagnostic {
+    let distribution = material.stack.layers[layer].surface.distribution;
+    let name = distribution.name();
+    let message = format!("the model `{model}` has no distribution `{name}`: it needs facets as Beckmann's or those of GGX");
+    let hint = "take `ggx` or `beckmann`, or the model `elek`, `weidlich-wilkie` or `microfacet`".to_owned();
+    let key = format!("layer.{layer}.{}", distribution_key(distribution));
+    material.diagnostic(Severity::Error, &key, message, Some(hint))
+}
+
 /// An error where a model, its masking or a table has no use for the distribution of a layer.
 fn of_distribution(material: &Material, model: ShadingModel) -> Option<Diagnostic> {
     let is_read = |layers: usize| if model == ShadingModel::Microfacet { layers.min(1) } else { layers };
@@ -62,9 +89,7 @@ fn of_distribution(material: &Material, model: ShadingModel) -> Option<Diagnosti
     let distribution = material.stack.layers[layer].surface.distribution;
     let (name, key) = (distribution.name(), format!("layer.{layer}.{}", distribution_key(distribution)));
     if !model.honours(Feature::Distribution, Form::Baked) {
-        let message = format!("the model `{model}` has no distribution `{name}`: it needs facets as Beckmann's or those of GGX");
-        let hint = "take `ggx` or `beckmann`, or write `[bake] model = \"elek\"`, `\"weidlich-wilkie\"` or `\"microfacet\"`";
-        return Some(material.diagnostic(Severity::Error, &key, message, Some(hint.to_owned())));
+        return Some(no_slopes(material, model.name(), layer));
     }
     let masking = material.bake.masking.unwrap_or_default();
     if model.has_masking() && masking.needs_lambda() {
