@@ -76,7 +76,8 @@ pub fn of_function(material: &Material, name: &str) -> Option<Diagnostic> {
 fn no_slopes(material: &Material, model: &str, layer: usize) -> Diagnostic {
     let distribution = material.stack.layers[layer].surface.distribution;
     let name = distribution.name();
-    let message = format!("the model `{model}` has no distribution `{name}`: it needs facets as Beckmann's or those of GGX");
+    let message =
+        format!("the model `{model}` has no distribution `{name}`: it needs facets as Beckmann's or those of GGX");
     let hint = "take `ggx` or `beckmann`, or the model `elek`, `weidlich-wilkie` or `microfacet`".to_owned();
     let key = format!("layer.{layer}.{}", distribution_key(distribution));
     material.diagnostic(Severity::Error, &key, message, Some(hint))
@@ -95,13 +96,15 @@ fn of_distribution(material: &Material, model: ShadingModel) -> Option<Diagnosti
     if model.has_masking() && masking.needs_lambda() {
         let is_named = material.bake.masking.is_some();
         let message = format!("the masking `{}` of the distribution `{name}` has no closed form", masking.name());
-        let hint = "write `[bake] masking = \"v-cavity\"`, or `\"kelemen\"`, `\"implicit\"` or `\"schlick-smith\"`".to_owned();
+        let hint =
+            "write `[bake] masking = \"v-cavity\"`, or `\"kelemen\"`, `\"implicit\"` or `\"schlick-smith\"`".to_owned();
         let key = if is_named { "bake.masking" } else { key.as_str() };
         return Some(material.diagnostic(Severity::Error, key, message, Some(hint)));
     }
     let walked = [TableKind::Fgd, TableKind::Escape];
     let table = walked.into_iter().find(|kind| material.bake.asks_for(*kind))?;
-    let message = format!("the table `{}` holds walks between facets, of which the distribution `{name}` has none", table.name());
+    let message =
+        format!("the table `{}` holds walks between facets, of which the distribution `{name}` has none", table.name());
     let hint = format!("leave the table out, or take `ggx` or `beckmann` for layer {}", layer + 1);
     Some(material.diagnostic(Severity::Error, &key, message, Some(hint)))
 }

@@ -190,12 +190,7 @@ impl LayerRecord {
             rgbw(first, 0.0),
             rgbw(second, self.critical_cot_sq as f32),
             rgbw(third, 0.0),
-            [
-                tangent as f32,
-                bitangent as f32,
-                libm::cos(self.rotation) as f32,
-                libm::sin(self.rotation) as f32,
-            ],
+            [tangent as f32, bitangent as f32, libm::cos(self.rotation) as f32, libm::sin(self.rotation) as f32],
             [whole(kind + parts as usize), self.alpha as f32, self.eta as f32, self.sigma as f32],
         ];
         let mut words = [[0.0; 4]; LAYER_WORDS];
@@ -329,7 +324,13 @@ mod tests {
         assert_eq!((blinn.words()[3][3], blinn.words()[0][0]), (2.0, 0.25));
         let shaped = |shape: Shape, distribution: fn(Shape) -> Distribution| {
             let alpha = shape.alpha();
-            LayerRecord { distribution: distribution(shape), alpha, alpha_xy: [alpha; 2], ..numbered(LayerKind::Conductor) }.words()
+            LayerRecord {
+                distribution: distribution(shape),
+                alpha,
+                alpha_xy: [alpha; 2],
+                ..numbered(LayerKind::Conductor)
+            }
+            .words()
         };
         let abc = shaped(Shape::abc(100.0, 1.5).unwrap(), Distribution::Abc);
         assert_eq!((abc[3][3], abc[0][0], abc[9]), (3.0, 1.0, [100.0, 1.5, 1.0, 0.0]));

@@ -139,7 +139,7 @@ static ABC_TABLE: Table = Table {
         Key::required(
             "b",
             Kind::Number(Range { min: 0.0, max: 1e9, above: true }),
-            "Width: the larger, the narrower. Near the normal the slopes are as those of alpha^2 = 2/(b c).",
+            "Width: the larger, the narrower. Where it is large and c above 1, alpha is near sqrt(2/(b (c - 1))).",
         ),
         Key::required(
             "c",
@@ -159,7 +159,11 @@ static SGD_TABLE: Table = Table {
             Kind::Number(Range { min: 1e-6, max: 10.0, above: false }),
             "The paper's alpha, not the slope parameter of other distributions: slopes fall as exp(-tan^2 / alpha).",
         ),
-        Key::required("p", Kind::Number(Range { min: 0.0, max: 8.0, above: true }), "The paper's p: the larger, the sharper the peak."),
+        Key::required(
+            "p",
+            Kind::Number(Range { min: 0.0, max: 8.0, above: true }),
+            "The paper's p: the larger, the sharper the peak.",
+        ),
     ],
     exactly_one: None,
 };

@@ -43,7 +43,9 @@ pub enum NdfError {
     #[error("these parameters cannot be normalised in double precision")]
     NotNormalisable,
     /// D is less than 1/pi at the normal.
-    #[error("the distribution is wider than one that is even, 1/pi: its peak is that of a slope parameter of {alpha:.3}")]
+    #[error(
+        "the distribution is wider than one that is even, 1/pi: its peak is that of a slope parameter of {alpha:.3}"
+    )]
     TooWide {
         /// Slope parameter of the peak, above 1.
         alpha: f64,

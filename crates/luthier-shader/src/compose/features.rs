@@ -21,7 +21,7 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is but the names of tables, for the check that modules name no other.
     #[cfg(test)]
-    const ALL: &str = "abc absorption anisotropic bare base_color beckmann below bent bilinear blinn chain chain_diffuse chain_patina clamped closed \
+    const ALL: &str = "abc absorption anisotropic bare base_color beckmann below bent bilinear blinn cavities chain chain_diffuse chain_patina clamped closed \
         coat computed conductor critical_view diffuse environment exact face film film_table fitted flakes fluorescent folded free_slopes full ggx glitter granier \
         granier_bare granier_base granier_film granier_schlick granier_transparent interface lazanyi lobes_axes lobes_bare_base lobes_base \
         lobes_diffuse lobes_film lobes_patina lobes_tilted mask_implicit mask_kelemen \
@@ -157,7 +157,7 @@ fn of_parts(set: &MaterialSet<'_>, form: Form, names: &BTreeSet<&'static str>) -
     chosen.chain(maskings.into_iter().filter(|_| is_masked).map(masking::word)).collect()
 }
 
-/// Words for functions beside `luthier_eval`: lobes of visible normals, and of powers of a cosine; whether some are below boundaries, and
+/// Words for functions beside `luthier_eval`: lobes of visible normals, those of V-cavities, and of powers of a cosine; whether some are below boundaries, and
 /// tilted there; whether draws that do not leave are folded back; whether a material has to say which model it is of.
 fn of_face(set: &MaterialSet<'_>, names: &BTreeSet<&'static str>) -> Vec<&'static str> {
     let has = |name| names.contains(name);
@@ -167,6 +167,7 @@ fn of_face(set: &MaterialSet<'_>, names: &BTreeSet<&'static str>) -> Vec<&'stati
     let words = [
         ("face", true),
         ("visible", visible),
+        ("cavities", visible && has("blinn") && (has("chain") || has("smith"))),
         ("powers", powers),
         ("media", has("chain") && has("below") || has("granier_transparent")),
         ("tilted", tilted),

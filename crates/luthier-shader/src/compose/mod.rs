@@ -70,8 +70,11 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         (has("schlick") && (has("computed") || has("granier")), include_str!("../wgsl/interface/schlick.wgsl")),
         (has("closed") && has("beckmann") && facets, include_str!("../wgsl/interface/beckmann.wgsl")),
         (has("closed") && has("ggx") && facets, include_str!("../wgsl/interface/ggx.wgsl")),
-        (has("closed") && has("free_slopes") && facets, include_str!("../wgsl/interface/log_one_plus.wgsl")),
-        (has("closed") && has("blinn") && facets, include_str!("../wgsl/interface/blinn.wgsl")),
+        (
+            has("closed") && has("free_slopes") && facets || has("cavities"),
+            include_str!("../wgsl/interface/log_one_plus.wgsl"),
+        ),
+        (has("closed") && has("blinn") && facets || has("cavities"), include_str!("../wgsl/interface/blinn.wgsl")),
         (has("closed") && has("abc") && facets, include_str!("../wgsl/interface/abc.wgsl")),
         (has("closed") && has("sgd") && facets, include_str!("../wgsl/interface/sgd.wgsl")),
         (has("computed"), include_str!("../wgsl/interface/full_terms.wgsl")),

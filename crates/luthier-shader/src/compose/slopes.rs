@@ -21,7 +21,11 @@ pub(crate) fn returned(features: &Features) -> String {
         // The highest numbers first, so that each has one comparison.
         let _ = match i {
             0 => writeln!(out, "    return {value};"),
-            _ => writeln!(out, "    if layer.distribution > {:.1} {{\n        return {value};\n    }}", f64::from(*number) - 0.5),
+            _ => writeln!(
+                out,
+                "    if layer.distribution > {:.1} {{\n        return {value};\n    }}",
+                f64::from(*number) - 0.5
+            ),
         };
     }
     out

@@ -23,7 +23,7 @@ struct LuthierLayer {
     /// A quarter of the greatest D, 1 / (4 pi alpha^2).
     peak: f32,
     //? end
-    //? closed|smith|coat, several_slopes
+    //? closed|smith|coat|cavities, several_slopes
     //? free_slopes
     /// Slope distribution: 0 Beckmann, 1 GGX, 2 Blinn, 3 ABC, 4 SGD.
     distribution: f32,

@@ -2,9 +2,11 @@
 
 use std::f64::consts::PI;
 
-use luthier_export::{Bake, MemoryStore, Package};
+use luthier_export::{Bake, MemoryStore, Package, Shader};
 use luthier_layers::parts::Parts;
 use luthier_layers::shaded::{Place, Shaded};
+use luthier_layers::textured::TextureSample;
+use luthier_lut::TableKind;
 use luthier_manifest::{Form, FunctionGroup, ShadingModel};
 use luthier_material::{Material, parse};
 use luthier_optics::color::Color;
@@ -83,6 +85,78 @@ fn the_device_agrees_with_f64() {
             }
         }
         eprintln!("{model}: at most {worst:.1e}");
+    }
+}
+
+/// A factor of a roughness map changes the exponent of Blinn's distribution, and stretches the slopes of the others.
+#[test]
+fn roughness_maps_scale_all_of_them() {
+    let Some(gpu) = gpu() else { return };
+    let pairs = pairs();
+    let three = [645.0, 525.0, 445.0];
+    let materials = materials("weidlich-wilkie");
+    let bake = Bake { functions: [FunctionGroup::Surface].into_iter().collect(), ..Bake::wgsl(&[Form::Full]) };
+    let mut package = Package::new(&materials, &bake, &MemoryStore::default()).unwrap();
+    for (factor, variance) in [(0.5, 0.0), (1.8, 0.0), (1.0, 0.01)] {
+        let emitted = package.wgsl(Form::Full).unwrap().to_owned();
+        let wgsl = emitted.replace("fn luthier_eval(", "fn emitted_eval(")
+            + &format!(
+                "\nfn luthier_eval(material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n    var place = luthier_place();\n    \
+                 place.alpha_factor = {factor:?};\n    place.slope_variance = {variance:?};\n    \
+                 return luthier_eval_at(place, material, wi, wo);\n}}\n"
+            );
+        package.shaders = vec![Shader::wgsl(Form::Full, wgsl)];
+        let scene = gpu.scene(&package, Form::Full).unwrap();
+        let sample = TextureSample { alpha_factor: factor, slope_variance: variance, ..TextureSample::NONE };
+        let place = Place { sample, ..Place::NONE };
+        for (number, material) in (0..).zip(&materials) {
+            let twin =
+                Shaded::new("weidlich-wilkie", &material.stack, three, Color::ThreeWavelengths(three), &place).unwrap();
+            for (&(wi, wo), found) in pairs.iter().zip(scene.evaluate(number, &pairs).unwrap()) {
+                let expected = twin.eval(wide(wi), wide(wo));
+                let error = error(found, expected);
+                assert!(
+                    error < TOLERANCE,
+                    "{}, {factor} {variance}: {wi:?} {wo:?}: {found:?} {expected:?}",
+                    material.name
+                );
+            }
+        }
+        package.shaders = vec![Shader::wgsl(Form::Full, emitted)];
+    }
+}
+
+/// D from a table, within the error that the manifest states: relative to the peak, of which f has a quarter over the cosine.
+#[test]
+fn tables_hold_them() {
+    let Some(gpu) = gpu() else { return };
+    let table = "[bake.distribution]\nsize = [512, 512]\n";
+    let of = |(name, surface): &(&str, &str)| {
+        let mut found = material(name, "elek", &format!("{METAL}{surface}\n{table}"));
+        found.bake.model = Some(ShadingModel::Elek);
+        found
+    };
+    let materials: Vec<Material> = SURFACES.iter().map(of).collect();
+    let package = Package::new(&materials, &Bake::wgsl(&[Form::Baked]), &MemoryStore::default()).unwrap();
+    let tiles: Vec<_> =
+        package.manifest.materials.iter().map(|m| m.layers[0].tiles[TableKind::Distribution].unwrap()).collect();
+    // One tile for the three of Blinn, and one for each pair of parameters.
+    assert_eq!((tiles[0], tiles[1], tiles.iter().max()), (tiles[2], tiles[2], Some(&5)), "{tiles:?}");
+    let table = package.manifest.tables.iter().find(|table| table.kind == TableKind::Distribution).unwrap();
+    let scene = gpu.scene(&package, Form::Baked).unwrap();
+    let pairs = pairs();
+    for (number, material) in (0..).zip(&materials) {
+        let surface = material.stack.layers[0].surface;
+        let color = Color::ThreeWavelengths(material.bake.wavelengths_nm());
+        let twin = Shaded::new("elek", &material.stack, material.bake.wavelengths_nm(), color, &Place::NONE).unwrap();
+        let peak = 1.0 / (PI * surface.alpha_x * surface.alpha_x);
+        let stated = table.tiles[tiles[number as usize] as usize].error.max_abs_err;
+        for (&(wi, wo), found) in pairs.iter().zip(scene.evaluate(number, &pairs).unwrap()) {
+            let expected = twin.eval(wide(wi), wide(wo));
+            let bound = 1e-3 * expected[1] + stated * peak / (4.0 * f64::from(wo[2]));
+            let off = (f64::from(found[1]) - expected[1]).abs();
+            assert!(off < bound + 1e-4, "{}: {wi:?} {wo:?}: {found:?} {expected:?}", material.name);
+        }
     }
 }
 
@@ -177,7 +251,10 @@ fn what_does_not_take_them_refuses() {
         }
     };
     let eval = |model: &str| {
-        refused(&["eval", "x.toml", "--model", model, "--wi", "0,0", "--wo", "0,0"], &["`blinn`", &format!("`{model}`")]);
+        refused(
+            &["eval", "x.toml", "--model", model, "--wi", "0,0", "--wo", "0,0"],
+            &["`blinn`", &format!("`{model}`")],
+        );
     };
     for model in ShadingModel::NAMES.iter().filter(|model| !["elek", "weidlich-wilkie", "microfacet"].contains(model)) {
         file(&format!("{blinn}[bake]\nmodel = \"{model}\"\n"));

@@ -40,7 +40,12 @@ impl Facets {
             return None;
         }
         let (alpha_x, alpha_y) = (surface.alpha_x.max(ALPHA_MIN), surface.alpha_y.max(ALPHA_MIN));
-        Some(Self { distribution: surface.distribution.walked(), alpha_x, alpha_y, peak: 1.0 / (PI * alpha_x * alpha_y) })
+        Some(Self {
+            distribution: surface.distribution.walked(),
+            alpha_x,
+            alpha_y,
+            peak: 1.0 / (PI * alpha_x * alpha_y),
+        })
     }
 
     /// Product of the slopes: the scale of what bounces more than once.
