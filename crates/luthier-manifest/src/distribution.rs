@@ -5,7 +5,7 @@ use luthier_optics::stack::Distribution;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// What a manifest says.
+/// A distribution as a manifest has it.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
 enum Named {

@@ -1,4 +1,5 @@
-//! Slope distributions beyond the two that are baked, each normalised: the integral of D cos_theta_h over the hemisphere is 1.
+//! Slope distributions by their own parameters, each normalised: the integral of D cos_theta_h over the hemisphere is 1. Layers have them as a
+//! [`Distribution`] and a slope parameter; [`Shape`] is what is between the two.
 //!
 //! The isotropic ones are an [`Ndf`]; [`Anisotropic`] has two slope parameters. Masking for any of them is in
 //! [`masking`](crate::masking).
