@@ -10,6 +10,7 @@ use crate::materials::bakeable;
 use crate::picture::{Format, settings};
 use crate::store::store;
 use crate::variations::variations;
+use crate::verb::compare::ENVIRONMENT_SAMPLES;
 
 /// Renders many materials side by side.
 pub(crate) fn run(options: &GalleryOptions) -> Outcome {
