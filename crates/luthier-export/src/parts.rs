@@ -101,8 +101,7 @@ fn of_distribution(material: &Material, model: ShadingModel) -> Option<Diagnosti
         let key = if is_named { "bake.masking" } else { key.as_str() };
         return Some(material.diagnostic(Severity::Error, key, message, Some(hint)));
     }
-    let walked = [TableKind::Fgd, TableKind::Escape];
-    let table = walked.into_iter().find(|kind| material.bake.asks_for(*kind))?;
+    let table = Some(TableKind::Fgd).filter(|kind| material.bake.asks_for(*kind))?;
     let message =
         format!("the table `{}` holds walks between facets, of which the distribution `{name}` has none", table.name());
     let hint = format!("leave the table out, or take `ggx` or `beckmann` for layer {}", layer + 1);
