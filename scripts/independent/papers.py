@@ -154,7 +154,10 @@ def simpson(f, a, b, steps=4000):
 
 
 def abc(alpha):
-    b, c = 2 / alpha**2, 2.0
+    return abc_of(2 / alpha**2, 2.0)
+
+
+def abc_of(b, c):
     norm = 2 * PI * simpson(lambda cos: cos / (1 + b * (1 - cos)) ** c, 0, 1)
     return lambda h: 1 / (norm * (1 + b * (1 - h[2])) ** c)
 
@@ -167,6 +170,17 @@ def sgd(alpha):
     def density(h):
         x = a * a + 1 / h[2] ** 2 - 1
         return math.exp(-x / a) / (e1 * x) / (PI * h[2] ** 4)
+
+    return density
+
+
+def sgd_of(a, p):
+    # The norm is the incomplete gamma function of 1 - p and a.
+    gamma = simpson(lambda y: math.exp((1 - p) * y - math.exp(y)), math.log(a), math.log(60), 20000)
+
+    def density(h):
+        x = a * a + 1 / h[2] ** 2 - 1
+        return a ** (p - 1) / gamma * math.exp(-x / a) / x**p / (PI * h[2] ** 4)
 
     return density
 
@@ -482,6 +496,16 @@ def compare():
         # The part as a file chooses it, for a shader.
         chosen = f'{base}distribution = "ggx"\n[bake]\nmodel = "microfacet"\nmasking = "{model}"\n'
         values(paper, f"{element}, of a file", where, chosen, "microfacet", facets(ggx(a), masking, plain))
+
+    # Distributions as a file chooses them, for a shader; the course's surface is the first.
+    blinn_file = metal('alpha = 0.4\ndistribution = "blinn"\n')
+    values(COURSE, "distribution of a file, Blinn", "shaders blinnD and geom", blinn_file, "weidlich-wilkie", facets(blinn(a), v_cavity, plain))
+    cavities = '[bake]\nmodel = "microfacet"\nmasking = "v-cavity"\n'
+    for element, where, surface, density in [
+        ("distribution of a file, ABC", "Low et al. 2012", "abc = { b = 50, c = 1.2 }\n", abc_of(50, 1.2)),
+        ("distribution of a file, shifted gamma", "Bagher et al. 2012", "sgd = { alpha = 0.09, p = 0.8 }\n", sgd_of(0.09, 0.8)),
+    ]:
+        values(LECTURE, element, where, metal(surface) + cavities, "microfacet", facets(density, v_cavity, plain))
 
     # Bases.
     values(LECTURE, "Lambert", "slides on diffuse light", matte(0.6), "lambert", lambert(0.6))

@@ -4,7 +4,7 @@ use luthier_lut::Axis;
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::ior::Ior;
-use luthier_optics::stack::{Base, Film, Layer, Stack, Surface};
+use luthier_optics::stack::{Base, Distribution, Film, Layer, Stack, Surface};
 use serde_json::{Value, json};
 
 pub(crate) fn ior(ior: &Ior) -> Value {
@@ -34,11 +34,19 @@ pub(crate) fn stack(stack: &Stack) -> Value {
         };
         json!({
             "films": layer.films.iter().map(film).collect::<Vec<_>>(),
-            "surface": [json!(distribution.name()), json!(alpha_x), json!(alpha_y), json!(rotation)],
+            "surface": [distribution_of(distribution), json!(alpha_x), json!(alpha_y), json!(rotation)],
             "base": base,
         })
     };
     json!({"exterior": ior(&stack.exterior), "layers": stack.layers.iter().map(layer).collect::<Vec<_>>()})
+}
+
+/// A name, or a name with the parameters that make another surface.
+pub(crate) fn distribution_of(distribution: Distribution) -> Value {
+    match distribution {
+        Distribution::Abc(shape) | Distribution::Sgd(shape) => json!([distribution.name(), shape.parameters()]),
+        Distribution::Beckmann | Distribution::Ggx | Distribution::Blinn => json!(distribution.name()),
+    }
 }
 
 pub(crate) fn color(color: &Color) -> Value {

@@ -1,7 +1,7 @@
 //! Doubts about the model that shades a material: parts that it leaves out, quantities outside its domain.
 
 use luthier_layers::domain::{Outside, Quantity, outside};
-use luthier_manifest::{Form, ShadingModel};
+use luthier_manifest::{Feature, Form, ShadingModel};
 use luthier_material::{Diagnostic, LeftOut, Material, Severity, left_out};
 
 use crate::parts::of_parts;
@@ -12,7 +12,9 @@ pub fn of_model(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnos
     let dropped = left_out(material, model);
     let mut doubts = of_domain(material, asked);
     doubts.extend(material.unfit_for_lobes().filter(|_| asked.is_none()).map(|part| instead(material, &part)));
-    doubts.extend(dropped.iter().map(|part| dropped_part(material, model, part)));
+    // A model without the distribution of a layer is refused: an error says so.
+    let dropped = dropped.iter().filter(|part| part.feature != Feature::Distribution);
+    doubts.extend(dropped.map(|part| dropped_part(material, model, part)));
     doubts.extend(of_parts(material, asked));
     doubts
 }
@@ -67,7 +69,7 @@ fn domain(material: &Material, model: ShadingModel, outside: &Outside) -> Diagno
     let severity = if limit.refuses { Severity::Error } else { Severity::Warning };
     let key = match limit.quantity {
         Quantity::Alpha => {
-            let keys = ["roughness", "alpha", "slope_deg", "alpha_x"];
+            let keys = ["roughness", "alpha", "slope_deg", "alpha_x", "exponent", "abc", "sgd"];
             keys.into_iter().find(|key| material.places.has(&format!("layer.{layer}.{key}"))).unwrap_or("type")
         }
         Quantity::FilmNm => "film.0.thickness_nm",

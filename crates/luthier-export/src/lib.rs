@@ -47,7 +47,7 @@ pub use luthier_material::{LeftOut, left_out};
 #[cfg(feature = "bake")]
 pub use make::{Bake, ExportError, outline, source_hash, unfitted};
 #[cfg(feature = "bake")]
-pub use parts::{of_parts, of_scene};
+pub use parts::{of_function, of_parts, of_scene};
 #[cfg(feature = "bake")]
 pub use refusals::{refuse, refuse_too_many};
 #[cfg(feature = "bake")]

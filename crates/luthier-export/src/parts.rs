@@ -1,10 +1,13 @@
-//! Doubts about the parts of a model that a material chooses: those that its model does not have, and errors of approximations.
+//! Doubts about the parts of a model that a material chooses: those that its model does not have, distributions among them, and errors of
+//! approximations.
 
-use luthier_manifest::{ColorMode, InternalReflection, Masking, Reflectance, ShadingModel};
-use luthier_material::{Diagnostic, Material, Severity};
+use luthier_lut::TableKind;
+use luthier_manifest::{ColorMode, Feature, Form, InternalReflection, Masking, Reflectance, ShadingModel};
+use luthier_material::{Diagnostic, Material, Severity, distribution_key};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::schlick::schlick;
+use luthier_optics::stack::Surface;
 
 use crate::beams::{self, of_beams};
 
@@ -13,6 +16,7 @@ use crate::beams::{self, of_beams};
 pub fn of_parts(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {
     let model = asked.unwrap_or_else(|| material.model());
     let mut doubts = Vec::new();
+    doubts.extend(of_distribution(material, model));
     doubts.extend(material.bake.masking.and_then(|masking| of_masking(material, model, masking)));
     let chosen = material.bake.reflectance.filter(|reflectance| *reflectance != Reflectance::Table);
     doubts.extend(chosen.and_then(|reflectance| of_reflectance(material, model, reflectance)));
@@ -39,7 +43,77 @@ pub fn of_scene(material: &Material) -> Vec<Diagnostic> {
         let hint = "leave it out, or bake the material by itself".to_owned();
         material.diagnostic(Severity::Error, &place, message, Some(hint))
     };
-    parts.chain(beams::keys(material).map(str::to_owned)).map(refusal).collect()
+    let of_slopes = first_free(material, material.stack.layers.len()).map(|layer| {
+        let distribution = material.stack.layers[layer].surface.distribution;
+        let message = format!(
+            "a scene compares models with a simulation, which has no facets of the distribution `{}`",
+            distribution.name()
+        );
+        let hint = "take `ggx` or `beckmann`, or bake the material by itself".to_owned();
+        let key = format!("layer.{layer}.{}", distribution_key(distribution));
+        material.diagnostic(Severity::Error, &key, message, Some(hint))
+    });
+    let beams = beams::keys(material).map(str::to_owned);
+    parts.chain(beams).map(refusal).chain(of_slopes).collect()
+}
+
+/// The first of so many layers whose distribution has no walks in closed form.
+fn first_free(material: &Material, layers: usize) -> Option<usize> {
+    let is_free = |surface: &Surface| !surface.is_smooth() && !surface.distribution.has_walks();
+    material.stack.layers.iter().take(layers).position(|layer| is_free(&layer.surface))
+}
+
+/// Beginnings of the names of functions in f64 that need no more of a distribution than D, or the names.
+const OF_ANY_SLOPES: [&str; 8] =
+    ["microfacet-", "weidlich-wilkie", "elek", "heterogeneous-", "flakes", "patina", "lambert", "oren-nayar"];
+
+/// An error where a function in f64, by its name, has no use for the distribution of a layer: of a model with a shader where that has none, of others
+/// where they walk between facets, draw visible normals or follow statistics of lobes.
+pub fn of_function(material: &Material, name: &str) -> Option<Diagnostic> {
+    if let Some(model) = ShadingModel::from_name(name) {
+        return of_distribution(material, model);
+    }
+    let layer = first_free(material, material.stack.layers.len())?;
+    if OF_ANY_SLOPES.iter().any(|known| name.starts_with(known)) {
+        return None;
+    }
+    Some(no_slopes(material, name, layer))
+}
+
+/// The error of a model that has no use for the distribution of a layer.
+fn no_slopes(material: &Material, model: &str, layer: usize) -> Diagnostic {
+    let distribution = material.stack.layers[layer].surface.distribution;
+    let name = distribution.name();
+    let message =
+        format!("the model `{model}` has no distribution `{name}`: it needs facets as Beckmann's or those of GGX");
+    let hint = "take `ggx` or `beckmann`, or the model `elek`, `weidlich-wilkie` or `microfacet`".to_owned();
+    let key = format!("layer.{layer}.{}", distribution_key(distribution));
+    material.diagnostic(Severity::Error, &key, message, Some(hint))
+}
+
+/// An error where a model, its masking or a table has no use for the distribution of a layer.
+fn of_distribution(material: &Material, model: ShadingModel) -> Option<Diagnostic> {
+    let is_read = |layers: usize| if model == ShadingModel::Microfacet { layers.min(1) } else { layers };
+    let layer = first_free(material, is_read(material.stack.layers.len()))?;
+    let distribution = material.stack.layers[layer].surface.distribution;
+    let (name, key) = (distribution.name(), format!("layer.{layer}.{}", distribution_key(distribution)));
+    if !model.honours(Feature::Distribution, Form::Baked) {
+        return Some(no_slopes(material, model.name(), layer));
+    }
+    let masking = material.bake.masking.unwrap_or_default();
+    if model.has_masking() && masking.needs_lambda() {
+        let is_named = material.bake.masking.is_some();
+        let message = format!("the masking `{}` of the distribution `{name}` has no closed form", masking.name());
+        let hint =
+            "write `[bake] masking = \"v-cavity\"`, or `\"kelemen\"`, `\"implicit\"` or `\"schlick-smith\"`".to_owned();
+        let key = if is_named { "bake.masking" } else { key.as_str() };
+        return Some(material.diagnostic(Severity::Error, key, message, Some(hint)));
+    }
+    let table = Some(TableKind::Fgd).filter(|kind| material.bake.asks_for(*kind))?;
+    let message =
+        format!("the table `{}` holds walks between facets, of which the distribution `{name}` has none", table.name());
+    let hint = format!("leave the table out, or take `ggx` or `beckmann` for layer {}", layer + 1);
+    Some(material.diagnostic(Severity::Error, &key, message, Some(hint)))
 }
 
 fn of_masking(material: &Material, model: ShadingModel, masking: Masking) -> Option<Diagnostic> {

@@ -37,11 +37,16 @@ pub fn lit_functions() -> Functions {
     [FunctionGroup::Environment].into_iter().collect()
 }
 
-/// The materials, each asking for the tables that blurred environments read, too.
+/// The materials, each asking for the tables that blurred environments read, too, as far as its distributions of slopes have them.
 pub fn lit(materials: &[Material]) -> Vec<Material> {
     let mut lit = materials.to_vec();
     // Lobes have their own energies.
     let of_layers = |material: &&mut Material| material.model() != ShadingModel::Lobes;
-    lit.iter_mut().filter(of_layers).for_each(|material| material.bake.tables.extend(ENVIRONMENT_TABLES));
+    for material in lit.iter_mut().filter(of_layers) {
+        // Of facets without walks there are no albedos: renderers draw directions.
+        let has_walks = material.stack.layers.iter().all(|layer| layer.surface.distribution.has_walks());
+        let tables = ENVIRONMENT_TABLES.into_iter().filter(|kind| has_walks || *kind != TableKind::Fgd);
+        material.bake.tables.extend(tables);
+    }
     lit
 }

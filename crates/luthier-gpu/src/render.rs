@@ -448,7 +448,11 @@ fn has_reflectance(layer: &LayerRecord) -> bool {
 }
 
 fn blur_of(layer: &LayerRecord) -> Blur {
-    if layer.distribution == Distribution::Ggx { Blur::Ggx } else { Blur::Beckmann }
+    match layer.distribution {
+        Distribution::Ggx | Distribution::Abc(_) => Blur::Ggx,
+        // Blinn's is near Beckmann's; the shifted gamma distribution falls as it does far from the normal.
+        Distribution::Beckmann | Distribution::Blinn | Distribution::Sgd(_) => Blur::Beckmann,
+    }
 }
 
 fn bits(word: [f32; 4]) -> [u32; 4] {

@@ -39,11 +39,13 @@ pub enum Feature {
     Glitter,
     /// Fluorescence: a base that moves light to other wavelengths.
     Reradiation,
+    /// A distribution of slopes that has no walks in closed form: `blinn`, `abc`, `sgd`.
+    Distribution,
 }
 
 impl Feature {
     /// All features.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::InnerInterface,
         Self::Base,
         Self::Absorption,
@@ -61,6 +63,7 @@ impl Feature {
         Self::Patina,
         Self::Glitter,
         Self::Reradiation,
+        Self::Distribution,
     ];
 
     /// The name in messages and manifests.
@@ -83,6 +86,7 @@ impl Feature {
             Self::Patina => "patina",
             Self::Glitter => "glitter",
             Self::Reradiation => "re-radiation",
+            Self::Distribution => "the distribution of slopes",
         }
     }
 }
@@ -117,6 +121,8 @@ impl ShadingModel {
             Feature::ThicknessMap => is_chain || is_statistical || self == Self::Lobes,
             Feature::Flakes | Feature::Patina => is_chain || self == Self::Lobes,
             Feature::Reradiation => is_chain,
+            // V-cavities and the other maskings without Smith's Lambda need no more than D.
+            Feature::Distribution => is_chain || self == Self::Microfacet,
         }
     }
 }
@@ -138,14 +144,14 @@ mod tests {
             Feature::ALL.into_iter().map(column).collect()
         };
         for (model, expected) in [
-            (ShadingModel::Elek, "#####b##.########"),
-            (ShadingModel::WeidlichWilkie, "#####b###########"),
-            (ShadingModel::Belcour, "#####bf#..###..#."),
-            (ShadingModel::Yamaguchi, "#####bf##.###..#."),
-            (ShadingModel::GranierHeidrich, ".#..#.#...##...#."),
-            (ShadingModel::Phong, "###.##....##...#."),
-            (ShadingModel::Microfacet, "....#b######...#."),
-            (ShadingModel::Lobes, "################."),
+            (ShadingModel::Elek, "#####b##.#########"),
+            (ShadingModel::WeidlichWilkie, "#####b############"),
+            (ShadingModel::Belcour, "#####bf#..###..#.."),
+            (ShadingModel::Yamaguchi, "#####bf##.###..#.."),
+            (ShadingModel::GranierHeidrich, ".#..#.#...##...#.."),
+            (ShadingModel::Phong, "###.##....##...#.."),
+            (ShadingModel::Microfacet, "....#b######...#.#"),
+            (ShadingModel::Lobes, "################.."),
         ] {
             assert_eq!(shown(model), expected, "{model}");
         }

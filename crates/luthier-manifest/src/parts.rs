@@ -69,6 +69,11 @@ impl Masking {
         }
     }
 
+    /// Whether it is made of Smith's Lambda, which Beckmann's distribution and GGX have in closed form.
+    pub fn needs_lambda(self) -> bool {
+        matches!(self, Self::Smith | Self::SmithSeparable)
+    }
+
     /// Its number in the material buffer.
     pub fn number(self) -> u32 {
         self as u32

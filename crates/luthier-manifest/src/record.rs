@@ -45,7 +45,7 @@ pub enum LayerKind {
 pub struct LayerRecord {
     /// Kind of the layer.
     pub kind: LayerKind,
-    /// Slope distribution: `beckmann` or `ggx`.
+    /// Slope distribution: `beckmann`, `ggx`, `blinn`, or an object of the type `abc` or `sgd` with the parameters of a material file.
     #[serde(with = "crate::distribution")]
     pub distribution: Distribution,
     /// Isotropic slope parameter, clamped to the domain of the model.
@@ -128,13 +128,13 @@ impl LayerRecord {
     /// | 0 | falloff, peak, 1 / eta, 1 - 1 / eta^2 |
     /// | 1 | Fresnel tile, distribution tile, FGD tile, phase tile |
     /// | 2 | optical depth RGB over ln 2, thickness tile |
-    /// | 3 | albedo RGB over pi, distribution (0 beckmann, 1 ggx) |
+    /// | 3 | albedo RGB over pi, distribution (0 beckmann, 1 ggx, 2 blinn, 3 abc, 4 sgd) |
     /// | 4 | ior_n RGB, of an interface of Schlick's f0 RGB; film thickness nm |
     /// | 5 | ior_k RGB, of an interface of Schlick's -1; film thickness max nm |
     /// | 6 | film_ior_n RGB, film tile; of a curve f0 RGB |
     /// | 7 | film_ior_k RGB, squared cotangent of the critical angle; of a curve its weights RGB |
     /// | 8 | film thickness in waves RGB, escape tile; of a curve its exponents RGB |
-    /// | 9 | alpha_x, alpha_y, cosine and sine of the rotation |
+    /// | 9 | alpha_x, alpha_y, cosine and sine of the rotation; of abc b and c, of sgd 1 / alpha and p in x and y |
     /// | 10 | kind (0 dielectric, 1 conductor, 2 diffuse) plus 4 times the number of the reflectance (0 table, 1 exact, 2 approximate, 3 lazanyi) and 16 times that of the masking and 128 times that of the internal reflection (0 facets, 1 none), alpha, eta, sigma |
     ///
     /// Masking is numbered 0 smith, 1 smith-separable, 2 schlick-smith, 3 v-cavity, 4 kelemen, 5 implicit. An interface with a curve ([`ReflectanceCurve`])
@@ -142,7 +142,8 @@ impl LayerRecord {
     ///
     /// A fluorescent base has the rows of its re-radiation matrix over pi in words 4, 5 and 6, red, green and blue, and 1 in x of word 8.
     ///
-    /// The falloff of D with the squared slope is 1 / alpha^2, over ln 2 for Beckmann, whose D is a power of two then; its peak,
+    /// The falloff of D with the squared slope is 1 / alpha^2, over ln 2 for Beckmann, whose D is a power of two then. Of abc and sgd it is the square
+    /// of the slope parameter that their parameters have over alpha: 1 unless a map scales alpha, which stretches slopes. The peak,
     /// 1 / (4 pi alpha^2), is a quarter of the greatest D, as every lobe has it. A reciprocal of 0 is 0: what has no slopes, or lets
     /// nothing through, has no use for it.
     pub fn words(&self) -> [[f32; 4]; LAYER_WORDS] {
@@ -157,10 +158,25 @@ impl LayerRecord {
             Some(ReflectanceCurve { f0, weight, exponent }) => [f0, weight, exponent],
             None => [self.film_ior_n, self.film_ior_k, self.film_thickness_waves],
         };
-        let is_ggx = self.distribution == Distribution::Ggx;
-        let distribution = if is_ggx { 1.0 } else { 0.0 };
+        let distribution = match self.distribution {
+            Distribution::Beckmann => 0.0,
+            Distribution::Ggx => 1.0,
+            Distribution::Blinn => 2.0,
+            Distribution::Abc(_) => 3.0,
+            Distribution::Sgd(_) => 4.0,
+        };
         let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
-        let (sharpness, unit) = (inverse(self.alpha * self.alpha), if is_ggx { 1.0 } else { LOG2_E });
+        let sharpness = inverse(self.alpha * self.alpha);
+        let unit = match self.distribution {
+            Distribution::Beckmann => LOG2_E,
+            Distribution::Ggx | Distribution::Blinn => 1.0,
+            Distribution::Abc(shape) | Distribution::Sgd(shape) => shape.alpha() * shape.alpha(),
+        };
+        let [tangent, bitangent] = match self.distribution {
+            Distribution::Abc(shape) => shape.parameters(),
+            Distribution::Sgd(shape) => [inverse(shape.parameters()[0]), shape.parameters()[1]],
+            _ => self.alpha_xy,
+        };
         let grazing_cos_sq = (self.eta - 1.0) * (self.eta + 1.0) / (self.eta * self.eta).max(f64::MIN_POSITIVE);
         let rgbw = |rgb: [f64; 3], w: f32| [rgb[0] as f32, rgb[1] as f32, rgb[2] as f32, w];
         let numbers = [
@@ -178,12 +194,7 @@ impl LayerRecord {
             rgbw(first, 0.0),
             rgbw(second, self.critical_cot_sq as f32),
             rgbw(third, 0.0),
-            [
-                self.alpha_xy[0] as f32,
-                self.alpha_xy[1] as f32,
-                libm::cos(self.rotation) as f32,
-                libm::sin(self.rotation) as f32,
-            ],
+            [tangent as f32, bitangent as f32, libm::cos(self.rotation) as f32, libm::sin(self.rotation) as f32],
             [whole(kind + parts as usize), self.alpha as f32, self.eta as f32, self.sigma as f32],
         ];
         let mut words = [[0.0; 4]; LAYER_WORDS];
@@ -238,6 +249,8 @@ const _: () = assert!(MATERIAL_WORDS == 1 + MaterialConstants::WORDS, "one word,
 
 #[cfg(test)]
 mod tests {
+    use luthier_optics::ndf::Shape;
+
     use super::*;
     use crate::{PatinaRecord, ShadingModel};
 
@@ -312,6 +325,22 @@ mod tests {
         }
         let beckmann = LayerRecord { distribution: Distribution::Beckmann, ..numbered(LayerKind::Diffuse) };
         assert_eq!((beckmann.words()[3][3], beckmann.words()[0][0]), (0.0, 0.360_673_76));
+        let blinn = LayerRecord { distribution: Distribution::Blinn, ..numbered(LayerKind::Conductor) };
+        assert_eq!((blinn.words()[3][3], blinn.words()[0][0]), (2.0, 0.25));
+        let shaped = |shape: Shape, distribution: fn(Shape) -> Distribution| {
+            let alpha = shape.alpha();
+            LayerRecord {
+                distribution: distribution(shape),
+                alpha,
+                alpha_xy: [alpha; 2],
+                ..numbered(LayerKind::Conductor)
+            }
+            .words()
+        };
+        let abc = shaped(Shape::abc(100.0, 1.5).unwrap(), Distribution::Abc);
+        assert_eq!((abc[3][3], abc[0][0], abc[9]), (3.0, 1.0, [100.0, 1.5, 1.0, 0.0]));
+        let sgd = shaped(Shape::sgd(0.125, 0.5).unwrap(), Distribution::Sgd);
+        assert_eq!((sgd[3][3], sgd[0][0], sgd[9]), (4.0, 1.0, [8.0, 0.5, 1.0, 0.0]));
         let schlick = LayerRecord { f0: Some([0.25, 0.5, 0.75]), ..numbered(LayerKind::Conductor) };
         assert_eq!(schlick.words()[4..6], [[0.25, 0.5, 0.75, 25.0], [-1.0, -1.0, -1.0, 26.0]]);
     }

@@ -61,6 +61,11 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
             (layer.films.len() > 1, Feature::InnerFilms, "film.1.type"),
             (layer.is_anisotropic(), Feature::Anisotropy, "alpha_x"),
             (is_rough && slopes.distribution == Distribution::Beckmann, Feature::Beckmann, "distribution"),
+            (
+                is_rough && !slopes.distribution.has_walks(),
+                Feature::Distribution,
+                distribution_key(slopes.distribution),
+            ),
             (absorbs && lights(number, Feature::InnerInterface), Feature::Absorption, "absorption_per_um"),
             (absorbs && lights(number, Feature::Base), Feature::BaseAbsorption, "absorption_per_um"),
             (deviates, Feature::DiffuseSlopes, "sigma"),
@@ -109,4 +114,9 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
         }
     }
     found
+}
+
+/// The key of a layer that says which distribution its slopes have.
+pub fn distribution_key(distribution: Distribution) -> &'static str {
+    if distribution.own_alpha().is_some() { distribution.name() } else { "distribution" }
 }

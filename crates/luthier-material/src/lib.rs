@@ -38,7 +38,7 @@ pub use bake_settings::{
 pub use class::{SMOOTH_SLOPE_DEG, SurfaceClass};
 pub use diagnostic::{Diagnostic, Severity};
 pub use effects::{Effects, FlakeSource, Flakes, Glitter, Patina};
-pub use left_out::{LeftOut, left_out};
+pub use left_out::{LeftOut, distribution_key, left_out};
 pub use material::{FilmVariation, LayerExtras, Maps, Material, NamedImage, VariationSource};
 pub use parse::{Parsed, parse};
 pub use places::Places;

@@ -155,6 +155,7 @@ impl FacetStatistics {
             spread_fine(&mut first_fine, cos_theta_i, 1.0);
             return Self { first, first_fine, remaining: 0.0, facets: Vec::new(), later: 0.0 };
         }
+        let distribution = distribution.walked();
         let surface = Microsurface::new(distribution, alpha, cos_theta_i);
         surface.first_facets(effort.first, Horizon::Above, |facet| {
             let leaving = facet.weight * surface.leaving(&facet);
@@ -396,7 +397,7 @@ const BECKMANN_RADIUS: f64 = 6.0;
 fn radius_to_coordinate(distribution: Distribution, r: f64) -> f64 {
     match distribution {
         Distribution::Beckmann => r.min(BECKMANN_RADIUS),
-        Distribution::Ggx => libm::atan(r),
+        _ => libm::atan(r),
     }
 }
 
@@ -404,7 +405,7 @@ fn radius_to_coordinate(distribution: Distribution, r: f64) -> f64 {
 fn radius(distribution: Distribution, coordinate: f64) -> (f64, f64) {
     match distribution {
         Distribution::Beckmann => (coordinate, 2.0 * coordinate * libm::exp(-coordinate * coordinate)),
-        Distribution::Ggx => (libm::tan(coordinate), libm::sin(2.0 * coordinate)),
+        _ => (libm::tan(coordinate), libm::sin(2.0 * coordinate)),
     }
 }
 

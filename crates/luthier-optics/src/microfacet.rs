@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use crate::masking::smith_g1_of;
+use crate::ndf::Isotropic;
 use crate::stack::Distribution;
 
 /// `pi alpha^2 D(theta_h)`: the normalised distribution scaled so that it neither overflows nor vanishes as alpha goes to 0. At
@@ -10,7 +12,9 @@ use crate::stack::Distribution;
 /// Takes the cosine and the squared sine apart, because `1 - cos^2` has no digits left for small angles. Zero for
 /// `cos_theta_h <= 0`. At alpha = 0: 1 at the normal and 0 elsewhere.
 ///
-/// Beckmann: Elek 2010 sec. 2.1 as mended in CONVENTIONS.md. GGX: Walter et al. 2007, eq. 33.
+/// Beckmann: Elek 2010 sec. 2.1 as mended in CONVENTIONS.md. GGX: Walter et al. 2007, eq. 33. Blinn: cos^n with n = 2/alpha^2 - 2 (Walter et
+/// al. 2007, section 5.2), whose D is (n + 2)/(2 pi) cos^n = cos^n/(pi alpha^2). ABC and the shifted gamma distribution: [`Shape`](crate::ndf::Shape);
+/// the value at the normal is 1 as that of all others, and larger elsewhere for wide shifted gamma distributions alone.
 pub fn scaled_distribution(distribution: Distribution, alpha: f64, cos_theta_h: f64, sin_theta_h_sq: f64) -> f64 {
     if cos_theta_h <= 0.0 {
         return 0.0;
@@ -30,6 +34,14 @@ pub fn scaled_distribution(distribution: Distribution, alpha: f64, cos_theta_h: 
             let ratio = alpha_sq / (cos_sq * alpha_sq + sin_theta_h_sq);
             ratio * ratio
         }
+        Distribution::Blinn => {
+            // (cos^2)^(n/2), from the sine where the cosine rounds to 1.
+            let log = if sin_theta_h_sq < 0.5 { libm::log1p(-sin_theta_h_sq) } else { libm::log(cos_sq) };
+            let half_exponent = (1.0 / alpha_sq - 1.0).max(0.0);
+            if half_exponent == 0.0 { 1.0 } else { libm::exp(half_exponent * log) }
+        }
+        Distribution::Abc(shape) => shape.scaled_abc(alpha, cos_theta_h, sin_theta_h_sq),
+        Distribution::Sgd(shape) => shape.scaled_sgd(alpha, cos_theta_h, sin_theta_h_sq),
     }
 }
 
@@ -40,7 +52,8 @@ pub fn distribution(distribution: Distribution, alpha: f64, cos_theta_h: f64, si
 
 /// Smith's Lambda for a direction in the upper hemisphere, 0 <= `cos_theta` <= 1 (infinite at 0); G1 = 1 / (1 + Lambda).
 ///
-/// Beckmann: Walter et al. 2007 (exact, not the rational fit). GGX: Heitz 2014, eq. 72.
+/// Beckmann: Walter et al. 2007 (exact, not the rational fit). GGX: Heitz 2014, eq. 72. The others have no closed form and are integrated
+/// ([`smith_g1_of`]), which takes 256 values of D.
 pub fn lambda(distribution: Distribution, alpha: f64, cos_theta: f64) -> f64 {
     let sin_sq = (1.0 - cos_theta * cos_theta).max(0.0);
     if sin_sq == 0.0 || alpha == 0.0 {
@@ -59,6 +72,9 @@ pub fn lambda(distribution: Distribution, alpha: f64, cos_theta: f64) -> f64 {
         Distribution::Beckmann => {
             let nu = 1.0 / (alpha * libm::sqrt(tan_sq));
             beckmann_lambda(nu)
+        }
+        Distribution::Blinn | Distribution::Abc(_) | Distribution::Sgd(_) => {
+            Isotropic::new(distribution, alpha).map_or(0.0, |ndf| (1.0 / smith_g1_of(&ndf, cos_theta) - 1.0).max(0.0))
         }
     }
 }

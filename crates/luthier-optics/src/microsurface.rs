@@ -53,6 +53,7 @@ pub struct Facet {
 /// The walk depends on the geometry only, so one walk serves every Fresnel term: multiply the reflectances of the facets
 /// up to each, times what leaves there. `alpha` > 0, `cos_theta_i` > 0.
 pub fn reflecting_walk(distribution: Distribution, alpha: f64, cos_theta_i: f64, walk: Walk, visit: impl FnMut(Facet)) {
+    let distribution = distribution.walked();
     let ray = -incident(cos_theta_i);
     let numbers = walk.numbers(0);
     let depth = Passage::new(distribution, alpha, ray, 0.0).next_depth(numbers[0]);
@@ -73,6 +74,7 @@ pub fn walk_after_first_facet(
     walk: Walk,
     visit: impl FnMut(Facet),
 ) {
+    let distribution = distribution.walked();
     let rate = 1.0 + lambda_i;
     let [first, .., second] = walk.numbers(0);
     let mut passage = Passage::new(distribution, alpha, ray, -libm::log(1.0 - first) / rate);
@@ -154,6 +156,7 @@ pub fn crossed_and_returned(
     cos_theta_i: f64,
     walk: Walk,
 ) -> f64 {
+    let distribution = distribution.walked();
     let ray = -incident(cos_theta_i);
     let depth = Passage::new(distribution, alpha, ray, 0.0).next_depth(walk.numbers(0)[0]);
     let mut branches = vec![Branch { ray, depth, light: 1.0, facet: 0, above: true, crossed: false }];

@@ -8,6 +8,7 @@
 use crate::Rgb;
 use crate::fresnel::FilmLayer;
 use crate::ior::Ior;
+use crate::ndf::Shape;
 
 /// A layered surface, from the exterior down.
 #[derive(Debug, Clone, PartialEq)]
@@ -133,6 +134,12 @@ pub enum Distribution {
     /// Trowbridge and Reitz 1975; "GGX" in Walter et al. 2007.
     #[default]
     Ggx,
+    /// Blinn 1977, normalised: a power of the cosine, of exponent 2/alpha^2 - 2 (Walter et al. 2007).
+    Blinn,
+    /// Low et al. 2012, "ABC", normalised.
+    Abc(Shape),
+    /// Bagher et al. 2012: the shifted gamma distribution.
+    Sgd(Shape),
 }
 
 impl Distribution {
@@ -141,12 +148,35 @@ impl Distribution {
         match self {
             Self::Beckmann => "beckmann",
             Self::Ggx => "ggx",
+            Self::Blinn => "blinn",
+            Self::Abc(_) => "abc",
+            Self::Sgd(_) => "sgd",
         }
     }
 
-    /// The distribution of a name.
+    /// The distribution of a name; `None` for one that has parameters of its own.
     pub fn from_name(name: &str) -> Option<Self> {
-        [Self::Beckmann, Self::Ggx].into_iter().find(|distribution| distribution.name() == name)
+        [Self::Beckmann, Self::Ggx, Self::Blinn].into_iter().find(|distribution| distribution.name() == name)
+    }
+
+    /// Slope parameter that follows from the parameters of a distribution that has some of its own; others take any.
+    pub fn own_alpha(self) -> Option<f64> {
+        match self {
+            Self::Abc(shape) | Self::Sgd(shape) => Some(shape.alpha()),
+            Self::Beckmann | Self::Ggx | Self::Blinn => None,
+        }
+    }
+
+    /// Whether Smith's masking, visible normals and walks between facets have a closed form: Beckmann and GGX, whose slopes are stretched from
+    /// those of alpha 1.
+    pub fn has_walks(self) -> bool {
+        matches!(self, Self::Beckmann | Self::Ggx)
+    }
+
+    /// The distribution with walks that stands in for it: its own, or else GGX of its slope parameter.
+    #[must_use]
+    pub fn walked(self) -> Self {
+        if self.has_walks() { self } else { Self::Ggx }
     }
 }
 

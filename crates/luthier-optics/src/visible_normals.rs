@@ -12,18 +12,10 @@ use crate::stack::Distribution;
 /// facets do. GGX: Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", whose cap holds for
 /// directions from below too. Beckmann: Heitz and d'Eon 2014, the slope along the plane of incidence by inverting its
 /// cumulative distribution; slopes end at six times alpha, so a direction from below has to see such slopes (one that does
-/// not meets no facet). `alpha` > 0.
+/// not meets no facet). GGX stands in for other distributions ([`Distribution::walked`]). `alpha` > 0.
 pub fn sample(distribution: Distribution, alpha: f64, w: DVec3, u: [f64; 2]) -> DVec3 {
     let stretched = DVec3::new(alpha * w.x, alpha * w.y, w.z).normalize();
     match distribution {
-        Distribution::Ggx => {
-            let phi = 2.0 * PI * u[1];
-            let z = (1.0 - u[0]) * (1.0 + stretched.z) - stretched.z;
-            let sin = libm::sqrt((1.0 - z * z).max(0.0));
-            let (sin_phi, cos_phi) = libm::sincos(phi);
-            let h = DVec3::new(sin * cos_phi, sin * sin_phi, z) + stretched;
-            DVec3::new(alpha * h.x, alpha * h.y, h.z.max(1e-300)).normalize()
-        }
         Distribution::Beckmann => {
             let sin = libm::hypot(stretched.x, stretched.y);
             let along = invert_visible_slope(stretched.z, sin, u[0]);
@@ -32,6 +24,14 @@ pub fn sample(distribution: Distribution, alpha: f64, w: DVec3, u: [f64; 2]) -> 
             let x = cos_phi * along - sin_phi * across;
             let y = sin_phi * along + cos_phi * across;
             DVec3::new(-alpha * x, -alpha * y, 1.0).normalize()
+        }
+        _ => {
+            let phi = 2.0 * PI * u[1];
+            let z = (1.0 - u[0]) * (1.0 + stretched.z) - stretched.z;
+            let sin = libm::sqrt((1.0 - z * z).max(0.0));
+            let (sin_phi, cos_phi) = libm::sincos(phi);
+            let h = DVec3::new(sin * cos_phi, sin * sin_phi, z) + stretched;
+            DVec3::new(alpha * h.x, alpha * h.y, h.z.max(1e-300)).normalize()
         }
     }
 }

@@ -120,9 +120,16 @@ fn leave_out_feature(material: &mut Material, feature: Feature) -> bool {
             }
         }
         Feature::Beckmann => {
-            for surface in layers.iter_mut().map(|layer| &mut layer.surface) {
-                found |= surface.distribution == Distribution::Beckmann && !surface.is_smooth();
+            let surfaces = layers.iter_mut().map(|layer| &mut layer.surface);
+            for surface in surfaces.filter(|surface| surface.distribution == Distribution::Beckmann) {
+                found |= !surface.is_smooth();
                 surface.distribution = Distribution::Ggx;
+            }
+        }
+        Feature::Distribution => {
+            for surface in layers.iter_mut().map(|layer| &mut layer.surface) {
+                found |= !surface.distribution.has_walks() && !surface.is_smooth();
+                surface.distribution = surface.distribution.walked();
             }
         }
         Feature::NormalMap | Feature::RoughnessMap | Feature::ThicknessMap => {

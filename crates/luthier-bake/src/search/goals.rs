@@ -248,7 +248,7 @@ fn table_error(job: &DistributionJob) -> f64 {
     peak_error(job.distribution, |theta, m| atlas.sample(0, [theta, m], WEIGHTS)[0])
 }
 
-/// D scales: `pi m^2 D cos^4` depends on tan/m alone. A row of its sixteenth root, and the division by `cos^4` in the shader.
+/// D of Beckmann and of GGX scales: `pi m^2 D cos^4` depends on tan/m alone. A row of its sixteenth root, and the division by `cos^4` in the shader.
 fn slope_row_error(distribution: Distribution, size: u32) -> f64 {
     let encoding = Encoding::SplitSixteenthRoot;
     let mut row = Image::zeros(size, 1, 1);
@@ -257,8 +257,8 @@ fn slope_row_error(distribution: Distribution, size: u32) -> f64 {
         let slope = u / (1.0 - u);
         row.texel_mut(i, 0)[0] = match distribution {
             _ if i + 1 == size => 0.0,
-            Distribution::Ggx => libm::pow(1.0 + slope * slope, -2.0) as f32,
             Distribution::Beckmann => libm::exp(-slope * slope) as f32,
+            _ => libm::pow(1.0 + slope * slope, -2.0) as f32,
         };
     }
     let texels = TexelFormat::Rg16Float.quantise(&encoding.split(&encoding.to_root(&row)));

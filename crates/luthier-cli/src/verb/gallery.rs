@@ -10,6 +10,7 @@ use crate::materials::bakeable;
 use crate::picture::{Format, settings};
 use crate::store::store;
 use crate::variations::variations;
+use crate::verb::compare::ENVIRONMENT_SAMPLES;
 
 /// Renders many materials side by side.
 pub(crate) fn run(options: &GalleryOptions) -> Outcome {
@@ -30,6 +31,10 @@ pub(crate) fn run(options: &GalleryOptions) -> Outcome {
     let mut pictures = Vec::with_capacity(materials.len());
     for (i, material) in materials.iter().enumerate() {
         let title = titles.get(i).unwrap_or(&material.name);
+        let mut settings = settings.clone();
+        if look.environment_samples.is_none() && !scene.has_albedo(i as u32)? {
+            settings.environment_samples = ENVIRONMENT_SAMPLES;
+        }
         pictures.push((title.clone(), scene.render(&[i as u32], &settings)?));
     }
     let columns = options.columns.unwrap_or_else(|| (pictures.len() as f64).sqrt().ceil() as u32);

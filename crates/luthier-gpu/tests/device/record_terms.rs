@@ -36,6 +36,7 @@ impl Terms for RecordTerms<'_> {
         match distribution {
             Distribution::Beckmann => (-tan_sq_over_alpha_sq).exp() / (cos_sq * cos_sq),
             Distribution::Ggx => 1.0 / (cos_sq * (1.0 + tan_sq_over_alpha_sq)).powi(2),
+            other => panic!("no oracle of {}", other.name()),
         }
     }
 }

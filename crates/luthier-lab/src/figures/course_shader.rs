@@ -57,6 +57,7 @@ pub(crate) const FIGURES: [Figure; 6] = [
         title: "parts of the shader",
         source: "Weidlich and Wilkie 2009, figure 3.8",
         caption: "From left to right: the coat alone, over black; the base alone; the base through a clear coat; through the coat that absorbs; all of it. \
+                  The coat is the surface of the course's shader, Blinn's distribution with V-cavities. \
                   The course's figure adds an ambient term and an environment; here the surroundings are seen by all parts.",
         make: parts,
     },
@@ -224,6 +225,8 @@ fn seen_inside(size: u32, index: f64) -> (Image, f64) {
 fn parts(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let base = diffuse("[0.7, 0.55, 0.3]");
+    // The course's `blinnD`.
+    let coat = |thickness_um, absorption| coat(thickness_um, absorption).replace("beckmann", "blinn");
     let all = [
         ("coat", coat(0.5, CLEAR) + &diffuse("0")),
         ("base", base.clone()),

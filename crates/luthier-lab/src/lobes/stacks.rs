@@ -50,6 +50,7 @@ pub(crate) fn of(material: &Material, is_twin: bool) -> ModelSubject {
             layer.surface.distribution = match layer.surface.distribution {
                 Distribution::Beckmann => Distribution::Ggx,
                 Distribution::Ggx => Distribution::Beckmann,
+                other => other,
             };
         }
     }

@@ -114,8 +114,11 @@ impl Facets {
         scaled(alpha, wh.z, sin_sq) / (PI * area)
     }
 
-    /// Smith's Lambda of an upward direction.
+    /// Smith's Lambda of an upward direction; by quadrature, of the isotropic slope parameter, where the distribution has no closed form of it.
     pub fn lambda(&self, w: DVec3) -> f64 {
+        if !self.distribution.has_walks() {
+            return microfacet::lambda(self.distribution, libm::sqrt(self.alpha_x * self.alpha_y), w.z.clamp(0.0, 1.0));
+        }
         microfacet::lambda(self.distribution, 1.0, self.stretched(w).z.clamp(0.0, 1.0))
     }
 
@@ -132,9 +135,16 @@ impl Facets {
         masking.lobe([wi, wo], alpha, |wh| self.density_by(wh, scaled), |w| self.lambda(w))
     }
 
-    /// A facet normal that `w` sees, from two numbers in 0..1. `w.z > 0`.
+    /// The facets whose visible normals are drawn: its own, or GGX of its slope parameters in place of a distribution without visible normals
+    /// in closed form. Draws are weighed by the density that is drawn from, so that sums stay right.
+    fn drawn(&self) -> Self {
+        Self { distribution: self.distribution.walked(), ..*self }
+    }
+
+    /// A facet normal that `w` sees, from two numbers in 0..1: of the surface's own distribution, or of GGX for one without visible normals in
+    /// closed form. `w.z > 0`.
     pub fn sample(&self, w: DVec3, u: [f64; 2]) -> DVec3 {
-        let m = visible_normals::sample(self.distribution, 1.0, self.stretched(w), u);
+        let m = visible_normals::sample(self.drawn().distribution, 1.0, self.stretched(w), u);
         let m = DVec3::new(self.alpha_x * m.x, self.alpha_y * m.y, m.z).normalize();
         let (c, s) = (self.cos_rotation, self.sin_rotation);
         DVec3::new(c * m.x - s * m.y, s * m.x + c * m.y, m.z)
@@ -153,7 +163,8 @@ impl Facets {
             return 0.0;
         }
         let wh = (wi + wo).normalize();
-        self.density(wh) / (4.0 * wo.z * (1.0 + self.lambda(wo)))
+        let drawn = self.drawn();
+        drawn.density(wh) / (4.0 * wo.z * (1.0 + drawn.lambda(wo)))
     }
 
     fn turned(&self, w: DVec3) -> DVec3 {

@@ -33,7 +33,7 @@ impl<const N: usize> Terms for Plain<N> {
     ) -> f64 {
         match distribution {
             Distribution::Beckmann => 0.0,
-            Distribution::Ggx => scaled_distribution(distribution, alpha, cos_theta_h, sin_theta_h_sq),
+            _ => scaled_distribution(distribution, alpha, cos_theta_h, sin_theta_h_sq),
         }
     }
 }

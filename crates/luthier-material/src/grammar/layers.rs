@@ -19,7 +19,7 @@ const EXTINCTION: Range = Range { above: false, ..INDEX };
 const NOISE_FREQUENCY: Range = Range { min: 0.0, max: 65536.0, above: true };
 
 /// A slope parameter of 1, to one above the least that shaders have.
-const EXPONENT: Range = Range { min: 0.0, max: 1e6, above: false };
+const LOBE_EXPONENT: Range = Range { min: 0.0, max: 1e6, above: false };
 
 const SIGMA: Range = Range { min: 0.0, max: std::f64::consts::FRAC_PI_2, above: false };
 
@@ -65,8 +65,18 @@ const IOR_DOC: &str = "Index of refraction: a number, a table { n, k, wavelength
 
 const SURFACE: Alternatives = Alternatives {
     what: "surface",
-    forms: &[&["roughness"], &["alpha"], &["slope_deg"], &["smooth"], &["exponents"], &["alpha_x", "alpha_y"]],
-    examples: "`smooth = true`, `roughness`, `alpha`, `slope_deg`, `exponents`, or `alpha_x` with `alpha_y`",
+    forms: &[
+        &["roughness"],
+        &["alpha"],
+        &["slope_deg"],
+        &["smooth"],
+        &["alpha_x", "alpha_y"],
+        &["exponent"],
+        &["exponents"],
+        &["abc"],
+        &["sgd"],
+    ],
+    examples: "`smooth = true`, `roughness`, `alpha`, `slope_deg`, `alpha_x` with `alpha_y`, `exponent`, `exponents`, `abc` or `sgd`",
     together: false,
     and: None,
 };
@@ -96,7 +106,7 @@ const SLOPE: Key =
 const SMOOTH: Key = Key::optional("smooth", Kind::True, "A perfectly smooth surface.");
 const EXPONENTS: Key = Key::optional(
     "exponents",
-    Kind::List { item: &Kind::Number(EXPONENT), min: 2, max: 2 },
+    Kind::List { item: &Kind::Number(LOBE_EXPONENT), min: 2, max: 2 },
     "Exponents of the lobes of the outer boundary and of the inner one, for the model granier-heidrich.",
 );
 const ALPHA_X: Key =
@@ -109,8 +119,63 @@ const ROTATION: Key = Key::with_default(
     "0",
     "Angle from the surface's tangent to this layer's in degrees, counter-clockwise; with alpha_x and alpha_y.",
 );
-const DISTRIBUTION: Key =
-    Key::with_default("distribution", Kind::Choice(&["ggx", "beckmann"]), "\"ggx\"", "Distribution of the slopes.");
+const DISTRIBUTION: Key = Key::with_default(
+    "distribution",
+    Kind::Choice(&["ggx", "beckmann", "blinn"]),
+    "\"ggx\"",
+    "Distribution of the slopes. Of blinn, a power of the cosine, the exponent is 2/alpha^2 - 2. Beside abc and sgd there is none.",
+);
+const EXPONENT: Key = Key::optional(
+    "exponent",
+    Kind::Number(Range { min: 0.0, max: 2e6, above: false }),
+    "Exponent n of the distribution blinn, in place of alpha, which is sqrt(2/(n + 2)).",
+);
+const ABC: Key = Key::optional(
+    "abc",
+    Kind::Table(&ABC_TABLE),
+    "The distribution 1/(1 + b (1 - cos))^c of slopes, normalised (Low et al. 2012), in place of alpha.",
+);
+const SGD: Key = Key::optional(
+    "sgd",
+    Kind::Table(&SGD_TABLE),
+    "The shifted gamma distribution of slopes (Bagher et al. 2012), in place of alpha.",
+);
+
+static ABC_TABLE: Table = Table {
+    name: "abc",
+    doc: "The distribution ABC, D = K / (1 + b (1 - cos))^c, whose K follows from the projected area.",
+    keys: &[
+        Key::required(
+            "b",
+            Kind::Number(Range { min: 0.0, max: 1e9, above: true }),
+            "Width: the larger, the narrower. Where it is large and c above 1, alpha is near sqrt(2/(b (c - 1))).",
+        ),
+        Key::required(
+            "c",
+            Kind::Number(Range { min: 0.0, max: 32.0, above: true }),
+            "Fall-off: GGX falls as c = 2 around the normal.",
+        ),
+    ],
+    exactly_one: None,
+};
+
+static SGD_TABLE: Table = Table {
+    name: "sgd",
+    doc: "The shifted gamma distribution: slopes of density exp(-t) / t^p with t = alpha + tan^2 / alpha, normalised.",
+    keys: &[
+        Key::required(
+            "alpha",
+            Kind::Number(Range { min: 1e-6, max: 10.0, above: false }),
+            "The paper's alpha, not the slope parameter of other distributions: slopes fall as exp(-tan^2 / alpha).",
+        ),
+        Key::required(
+            "p",
+            Kind::Number(Range { min: 0.0, max: 8.0, above: true }),
+            "The paper's p: the larger, the sharper the peak.",
+        ),
+    ],
+    exactly_one: None,
+};
 
 const MAPS_DOC: &str = "Textures that modulate the layer.";
 const NORMAL_MAP: Key = Key::optional("normal", PATH, "Path of a tangent-space normal map.");
@@ -143,6 +208,9 @@ pub(super) static DIELECTRIC: Table = Table {
         ALPHA_Y,
         ROTATION,
         DISTRIBUTION,
+        EXPONENT,
+        ABC,
+        SGD,
         Key::with_default("thickness_um", Kind::Number(NOT_NEGATIVE), "0", "Thickness of the slab in um."),
         Key::with_default(
             "absorption_per_um",
@@ -171,6 +239,9 @@ pub(super) static CONDUCTOR: Table = Table {
         ALPHA_Y,
         ROTATION,
         DISTRIBUTION,
+        EXPONENT,
+        ABC,
+        SGD,
         Key::optional("maps", Kind::Table(&CONDUCTOR_MAPS), MAPS_DOC),
     ],
     exactly_one: Some(Alternatives { and: Some(&OPAQUE), ..SURFACE }),
@@ -236,6 +307,9 @@ pub(super) static METALLIC_ROUGHNESS: Table = Table {
         ALPHA_Y,
         ROTATION,
         DISTRIBUTION,
+        EXPONENT,
+        ABC,
+        SGD,
         Key::with_default(
             "sigma",
             Kind::Number(SIGMA),

@@ -131,10 +131,11 @@ impl<'a> Facets<'a> {
         cos_i: f64,
     ) -> Self {
         let sin_i = libm::sqrt((1.0 - cos_i) * (1.0 + cos_i));
+        let distribution = distribution.walked();
         let lambda_i = lambda(distribution, alpha, cos_i);
         let cos_theta_h_min = match distribution {
-            Distribution::Ggx => 0.0,
             Distribution::Beckmann => 1.0 / libm::sqrt(1.0 + BECKMANN_REACH * BECKMANN_REACH * alpha * alpha),
+            _ => 0.0,
         };
         let theta_i = libm::atan2(sin_i, cos_i);
         let horizon = alpha / (1.0 + 2.0 * lambda_i);

@@ -17,11 +17,13 @@ pub struct Anisotropic {
 }
 
 impl Anisotropic {
-    /// The distribution of slope parameters along the tangent (x) and the bitangent (y).
+    /// The distribution of slope parameters along the tangent (x) and the bitangent (y). GGX stands in for those that are no slopes of alpha 1,
+    /// stretched ([`Distribution::walked`]).
     ///
     /// # Errors
     /// [`NdfError::NotPositive`] unless both are positive and finite.
     pub fn new(distribution: Distribution, alpha_x: f64, alpha_y: f64) -> Result<Self, NdfError> {
+        let distribution = distribution.walked();
         Ok(Self { distribution, alpha_x: positive("alpha_x", alpha_x)?, alpha_y: positive("alpha_y", alpha_y)? })
     }
 
@@ -74,7 +76,7 @@ fn scaled_density(distribution: Distribution, cos: f64, scaled_sin_sq: f64) -> f
     let cos_sq = cos * cos;
     match distribution {
         Distribution::Beckmann => libm::exp(-scaled_sin_sq / cos_sq) / (cos_sq * cos_sq),
-        Distribution::Ggx => {
+        _ => {
             let sum = cos_sq + scaled_sin_sq;
             1.0 / (sum * sum)
         }

@@ -1,4 +1,5 @@
-//! Slope distributions beyond the two that are baked, each normalised: the integral of D cos_theta_h over the hemisphere is 1.
+//! Slope distributions by their own parameters, each normalised: the integral of D cos_theta_h over the hemisphere is 1. Layers have them as a
+//! [`Distribution`] and a slope parameter; [`Shape`] is what is between the two.
 //!
 //! The isotropic ones are an [`Ndf`]; [`Anisotropic`] has two slope parameters. Masking for any of them is in
 //! [`masking`](crate::masking).
@@ -7,11 +8,13 @@ mod abc;
 mod anisotropic;
 mod blinn_phong;
 mod sgd;
+mod shape;
 
 pub use abc::Abc;
 pub use anisotropic::{Anisotropic, to_layer};
 pub use blinn_phong::BlinnPhong;
 pub use sgd::Sgd;
+pub use shape::Shape;
 
 use thiserror::Error;
 
@@ -40,9 +43,17 @@ pub enum NdfError {
     /// The normalisation is not a positive finite number in double precision.
     #[error("these parameters cannot be normalised in double precision")]
     NotNormalisable,
+    /// D is less than 1/pi at the normal.
+    #[error(
+        "the distribution is wider than one that is even, 1/pi: its peak is that of a slope parameter of {alpha:.3}"
+    )]
+    TooWide {
+        /// Slope parameter of the peak, above 1.
+        alpha: f64,
+    },
 }
 
-/// Beckmann or GGX of one slope parameter, as an [`Ndf`].
+/// A distribution of a surface and its slope parameter, as an [`Ndf`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Isotropic {
     distribution: Distribution,
@@ -102,7 +113,7 @@ mod tests {
             let area = projected_area(&Sgd::new(alpha, p).unwrap());
             assert!((area - 1.0).abs() < 1e-7, "SGD {alpha} {p}: {area}");
         }
-        for distribution in [Distribution::Beckmann, Distribution::Ggx] {
+        for distribution in [Distribution::Beckmann, Distribution::Ggx, Distribution::Blinn] {
             let area = projected_area(&Isotropic::new(distribution, 0.1).unwrap());
             assert!((area - 1.0).abs() < 1e-9, "{distribution:?}: {area}");
         }

@@ -126,8 +126,8 @@ fn rules(distribution: Distribution) -> &'static Rules {
     static GGX: OnceLock<Rules> = OnceLock::new();
     static BECKMANN: OnceLock<Rules> = OnceLock::new();
     let (rules, azimuth) = match distribution {
-        Distribution::Ggx => (&GGX, [5.0, 2.5]),
         Distribution::Beckmann => (&BECKMANN, [8.0, 4.0]),
+        _ => (&GGX, [5.0, 2.5]),
     };
     rules.get_or_init(|| Rules::new([6.0, 4.0], azimuth, 5))
 }
@@ -142,6 +142,7 @@ fn sums_of<const N: usize>(
     alpha: f64,
     cos_theta: f64,
 ) -> [SplitSum; N] {
+    let distribution = distribution.walked();
     let cos_i = cos_theta.clamp(COS_THETA_MIN, 1.0);
     let mut sums = [SplitSum::default(); N];
     if alpha < ALPHA_MIN {
@@ -164,8 +165,8 @@ fn sums_of<const N: usize>(
     let to_normal = sin_i / (1.0 + cos_i);
     let to_horizon = cos_i / (1.0 + sin_i);
     let last = match distribution {
-        Distribution::Ggx => f64::INFINITY,
         Distribution::Beckmann => BECKMANN_REACH * alpha,
+        _ => f64::INFINITY,
     };
     for end in [-to_normal.min(last), to_horizon.min(last)] {
         let reach = end / scale;
@@ -184,8 +185,8 @@ fn sums_of<const N: usize>(
             let q = s * (1.0 + x_sq) / c;
             let ring = Ring { cos_i, cos_o, cos_d_sq_min: c, cos_d_sq_span: s };
             let rule = rules.azimuth.for_reach_squared(match distribution {
-                Distribution::Ggx => q / (x_sq + alpha_sq),
                 Distribution::Beckmann => q / alpha_sq,
+                _ => q / (x_sq + alpha_sq),
             });
             let density = Density { distribution, inverse_alpha_sq: 1.0 / alpha_sq, x_sq, q };
             // d(theta_o) = 2 dx / (1 + x^2), and both sides of the plane of incidence.
@@ -229,12 +230,12 @@ impl Density {
     /// Integrals over half the azimuth of pi alpha^2 D and of its product with (1 - cos_theta_d)^5, both times `factor(cos_theta_d^2)`.
     fn around(&self, ring: &Ring, rule: &[(f64, f64)], factor: impl Fn(f64) -> f64) -> [f64; 2] {
         match self.distribution {
-            Distribution::Ggx => self.sum(ring, rule, factor, |slope_sq| {
-                let root = (1.0 + slope_sq) / (1.0 + slope_sq * self.inverse_alpha_sq);
-                root * root
-            }),
             Distribution::Beckmann => self.sum(ring, rule, factor, |slope_sq| {
                 (1.0 + slope_sq) * (1.0 + slope_sq) * libm::exp(-slope_sq * self.inverse_alpha_sq)
+            }),
+            _ => self.sum(ring, rule, factor, |slope_sq| {
+                let root = (1.0 + slope_sq) / (1.0 + slope_sq * self.inverse_alpha_sq);
+                root * root
             }),
         }
     }

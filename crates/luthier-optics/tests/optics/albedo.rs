@@ -33,6 +33,7 @@ pub(crate) fn same(distribution: Distribution) -> Slopes {
     match distribution {
         Distribution::Beckmann => Slopes::Gaussian,
         Distribution::Ggx => Slopes::Ellipsoid,
+        other => panic!("no oracle of {}", other.name()),
     }
 }
 

@@ -45,6 +45,7 @@ fn expected(distribution: Distribution, alpha: f64, cos: f64) -> Vec<f64> {
         let slopes = match distribution {
             Distribution::Beckmann => (-r * r).exp(),
             Distribution::Ggx => (1.0 + r * r).powi(-2),
+            other => panic!("no oracle of {}", other.name()),
         };
         let weight = slopes * r * (1.0 + r * r);
         for j in 0..steps[1] {

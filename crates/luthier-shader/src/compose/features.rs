@@ -11,6 +11,9 @@ use luthier_manifest::{
 use crate::compose::masking;
 use crate::{Form, MaterialSet};
 
+/// Distributions beside those of Beckmann and of GGX.
+const FREE: [&str; 3] = ["blinn", "abc", "sgd"];
+
 /// Features that the materials of a set use: the words that conditions in the modules may name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Features(BTreeSet<&'static str>);
@@ -18,12 +21,10 @@ pub(crate) struct Features(BTreeSet<&'static str>);
 impl Features {
     /// Every word there is but the names of tables, for the check that modules name no other.
     #[cfg(test)]
-    const ALL: &str = "absorption anisotropic bare base_color beckmann below bent bilinear chain chain_diffuse chain_patina clamped closed \
-        coat computed conductor critical_view diffuse environment exact face film film_table fitted flakes fluorescent folded full ggx glitter granier \
-        granier_bare granier_base granier_film granier_own granier_schlick granier_tilted granier_transparent interface internal lazanyi lobes_axes lobes_bare_base lobes_base \
+    const ALL: &str = "abc absorption anisotropic bare base_color beckmann below bent bilinear blinn cavities chain chain_diffuse chain_patina clamped closed coat computed conductor critical_view diffuse environment exact face film film_table fitted flakes fluorescent folded free_slopes full ggx glitter granier granier_bare granier_base granier_film granier_own granier_schlick granier_tilted granier_transparent interface internal lazanyi lobes_axes lobes_bare_base lobes_base \
         lobes_diffuse lobes_film lobes_patina lobes_tilted mask_implicit mask_kelemen \
         mask_schlick_smith mask_smith mask_smith_separable mask_v_cavity masked media microfacet_diffuse mixed one_lobe \
-        oren_nayar packed particles patina phong picks place powers rows schlick schlick_base several several_maskings several_reflectances smith split_root statistics statistics_base surface tabled theta_axis tilted \
+        oren_nayar packed particles patina phong picks place powers rows schlick schlick_base several several_maskings several_reflectances several_slopes sgd smith split_root statistics statistics_base surface tabled theta_axis tilted \
         total_reflection two_lobes visible";
 
     pub(crate) fn of(set: &MaterialSet<'_>, form: Form) -> Self {
@@ -104,6 +105,13 @@ impl Features {
         if has_elek && names.contains("chain") && ["place", "anisotropic"].iter().any(|name| names.contains(name)) {
             names.insert("clamped");
         }
+        let free = FREE.iter().filter(|name| names.contains(**name)).count();
+        if free > 0 {
+            names.insert("free_slopes");
+        }
+        if free + ["beckmann", "ggx"].iter().filter(|name| names.contains(**name)).count() > 1 {
+            names.insert("several_slopes");
+        }
         if set.shows_environment(form) {
             names.insert("environment");
         }
@@ -154,7 +162,7 @@ fn of_parts(set: &MaterialSet<'_>, form: Form, names: &BTreeSet<&'static str>) -
     chosen.chain(maskings.into_iter().filter(|_| is_masked).map(masking::word)).collect()
 }
 
-/// Words for functions beside `luthier_eval`: lobes of visible normals, and of powers of a cosine; whether some are below boundaries, and
+/// Words for functions beside `luthier_eval`: lobes of visible normals, those of V-cavities, and of powers of a cosine; whether some are below boundaries, and
 /// tilted there; whether draws that do not leave are folded back; whether a material has to say which model it is of.
 fn of_face(set: &MaterialSet<'_>, names: &BTreeSet<&'static str>) -> Vec<&'static str> {
     let has = |name| names.contains(name);
@@ -164,6 +172,7 @@ fn of_face(set: &MaterialSet<'_>, names: &BTreeSet<&'static str>) -> Vec<&'stati
     let words = [
         ("face", true),
         ("visible", visible),
+        ("cavities", visible && has("blinn") && (has("chain") || has("smith"))),
         ("powers", powers),
         ("media", has("chain") && has("below") || has("granier_transparent")),
         ("tilted", tilted),

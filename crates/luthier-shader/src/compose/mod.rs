@@ -8,6 +8,7 @@ mod lookup;
 mod masking;
 mod members;
 mod pick;
+mod slopes;
 mod statistics;
 mod words;
 
@@ -69,6 +70,13 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         (has("schlick") && (has("computed") || has("granier")), include_str!("../wgsl/interface/schlick.wgsl")),
         (has("closed") && has("beckmann") && facets, include_str!("../wgsl/interface/beckmann.wgsl")),
         (has("closed") && has("ggx") && facets, include_str!("../wgsl/interface/ggx.wgsl")),
+        (
+            has("closed") && has("free_slopes") && facets || has("cavities"),
+            include_str!("../wgsl/interface/log_one_plus.wgsl"),
+        ),
+        (has("closed") && has("blinn") && facets || has("cavities"), include_str!("../wgsl/interface/blinn.wgsl")),
+        (has("closed") && has("abc") && facets, include_str!("../wgsl/interface/abc.wgsl")),
+        (has("closed") && has("sgd") && facets, include_str!("../wgsl/interface/sgd.wgsl")),
         (has("computed"), include_str!("../wgsl/interface/full_terms.wgsl")),
         (has("closed") && facets, include_str!("../wgsl/interface/closed_terms.wgsl")),
         (!has("full") && (facets || has("granier_bare")), include_str!("../wgsl/interface/baked_terms.wgsl")),
@@ -101,7 +109,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
 
 /// The lines of a module that a set keeps. Models take a `LuthierPlace` where a material of the set varies over its surface:
 /// `$place_parameter` declares it, `$place_argument` hands it on, and `$layer(` reads a layer as it is there. `$diffuse(` is the BRDF of a
-/// base, which directions decide where one is rough. `$tiles` are the members of a layer that point into tables, `$assign_tiles` reads them. `$distribution_read`
+/// base, which directions decide where one is rough. `$free_slopes` returns D of the distributions of the set. `$tiles` are the members of a layer that point into tables, `$assign_tiles` reads them. `$distribution_read`
 /// is pi alpha^2 D from the table, which is the distribution's term where no layer has it computed.
 pub(crate) fn text(module: &str, features: &Features) -> String {
     let [parameter, argument, layer] = if features.has("place") {
@@ -110,7 +118,7 @@ pub(crate) fn text(module: &str, features: &Features) -> String {
         ["", "", "luthier_layer("]
     };
     let text = module.replace("    $tiles\n", &tiles(features)).replace("    $assign_tiles\n", &assign_tiles());
-    let text = prune(&text, features);
+    let text = prune(&text, features).replace("    $free_slopes\n", &slopes::returned(features));
     let text =
         text.replace("$place_parameter ", parameter).replace("$place_argument ", argument).replace("$layer(", layer);
     let term = if features.has("closed") { "luthier_distribution_read" } else { "luthier_distribution_term" };

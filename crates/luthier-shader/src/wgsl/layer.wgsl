@@ -23,9 +23,18 @@ struct LuthierLayer {
     /// A quarter of the greatest D, 1 / (4 pi alpha^2).
     peak: f32,
     //? end
-    //? closed|smith|coat, beckmann, ggx
+    //? closed|smith|coat|cavities, several_slopes
+    //? free_slopes
+    /// Slope distribution: 0 Beckmann, 1 GGX, 2 Blinn, 3 ABC, 4 SGD.
+    distribution: f32,
+    //? else
     /// Slope distribution: 0 Beckmann, 1 GGX.
     distribution: f32,
+    //? end
+    //? end
+    //? abc|sgd
+    /// Parameters of its distribution: b and c of ABC, 1 / alpha and p of SGD.
+    shape: vec2<f32>,
     //? end
     //? anisotropic
     /// Slope parameters along the tangent and the bitangent of the layer.
@@ -191,7 +200,13 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     layer.f0 = luthier_materials[first + $word_film_ior_n].xyz;
     layer.edge_weight = luthier_materials[first + $word_film_ior_k].xyz;
     layer.edge_exponent = luthier_materials[first + $word_film_thickness_waves].xyz;
+    //? abc|sgd
+    let is_shaped = base.w > 2.5;
+    layer.shape = luthier_materials[first + $word_tangent].xy;
+    layer.alpha_xy = select(luthier_materials[first + $word_tangent].xy, vec2<f32>(numbers.y), is_shaped);
+    //? else
     layer.alpha_xy = luthier_materials[first + $word_tangent].xy;
+    //? end
     layer.rotation = luthier_materials[first + $word_tangent].zw;
     layer.tarnish = vec3<f32>(1.0);
     return layer;

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use luthier_lut::{Image, TableKind};
 use luthier_manifest::{
-    Distribution, Feature, FileEntry, LayerRecord, MapEntry, MapSlot, MaterialConstants, MaterialEntry, ShadingModel,
-    material_buffer,
+    Distribution, Feature, FileEntry, LayerRecord, MapEntry, MapSlot, Masking, MaterialConstants, MaterialEntry,
+    ShadingModel, material_buffer,
 };
 use luthier_shader::{Form, MaterialSet, TableFace, Target, emit};
 
@@ -180,6 +180,14 @@ fn change(model: ShadingModel, feature: Feature, form: Form) -> Option<f32> {
         Feature::Beckmann => {
             let beckmann = LayerRecord { distribution: Distribution::Beckmann, ..gold() };
             moved(&shader(&[beckmann]), &shader(&[gold()]))
+        }
+        // Other models refuse such layers.
+        Feature::Distribution if !model.honours(feature, form) => return None,
+        Feature::Distribution => {
+            // Smith's masking has no closed form for it.
+            let cavities = || LayerRecord { masking: Masking::VCavity, ..gold() };
+            let blinn = LayerRecord { distribution: Distribution::Blinn, ..cavities() };
+            moved(&shader(&[blinn]), &shader(&[cavities()]))
         }
         Feature::NormalMap | Feature::RoughnessMap | Feature::ThicknessMap => {
             let (member, value) = match feature {

@@ -58,7 +58,8 @@ impl Kind for Table {
     }
 
     fn name(&self, layer: &Layer) -> Option<&'static str> {
-        Some(layer.surface.distribution.name())
+        let distribution = layer.surface.distribution;
+        distribution.own_alpha().is_none().then(|| distribution.name())
     }
 
     fn candidates(&self, plan: &Plan, _: &Results, _: bool) -> Option<Found> {
@@ -84,7 +85,7 @@ impl Job for DistributionJob {
 
     fn inputs(&self) -> Value {
         json!({
-            "distribution": self.distribution.name(),
+            "distribution": json::distribution_of(self.distribution),
             "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
             "format": self.format.name(),
         })

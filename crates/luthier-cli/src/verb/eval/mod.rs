@@ -28,7 +28,7 @@ use crate::model_inputs::ModelInputs;
 use crate::reradiation::Reradiation;
 use crate::store::store;
 use function::Kind;
-use luthier_export::{gather, read_all, read_one, refuse_surfaces};
+use luthier_export::{gather, of_function, read_all, read_one, refuse_surfaces};
 use luthier_terminal::{Failure, Outcome, complain, valid};
 use place::{pick, place};
 use sweep::{Sweep, sweep};
@@ -118,6 +118,9 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
     // Without another material, the first is everywhere.
     let index = model.stack_index().min(materials.len() - 1);
     let material = materials.swap_remove(index);
+    if let Some(error) = of_function(&material, name) {
+        return Err(Failure::Input(anyhow::anyhow!("{}: {}", error.label, error.message)));
+    }
     if !dropped.is_empty() {
         let (names, file) = (dropped.join(" and "), &material.source);
         complain(&format!("note: model `{name}` does not show the {names} of {file}; `elek` and `weidlich-wilkie` do"));

@@ -3,6 +3,8 @@
 #[cfg(feature = "gpu")]
 mod ball;
 #[cfg(feature = "gpu")]
+mod distributions;
+#[cfg(feature = "gpu")]
 mod draws;
 mod fit;
 mod fluorescence;

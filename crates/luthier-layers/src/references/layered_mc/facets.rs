@@ -40,7 +40,12 @@ impl Facets {
             return None;
         }
         let (alpha_x, alpha_y) = (surface.alpha_x.max(ALPHA_MIN), surface.alpha_y.max(ALPHA_MIN));
-        Some(Self { distribution: surface.distribution, alpha_x, alpha_y, peak: 1.0 / (PI * alpha_x * alpha_y) })
+        Some(Self {
+            distribution: surface.distribution.walked(),
+            alpha_x,
+            alpha_y,
+            peak: 1.0 / (PI * alpha_x * alpha_y),
+        })
     }
 
     /// Product of the slopes: the scale of what bounces more than once.
@@ -57,8 +62,8 @@ impl Facets {
         let (x, y, z_sq) = (m.x / self.alpha_x, m.y / self.alpha_y, m.z * m.z);
         let slope_sq = x * x + y * y;
         match self.distribution {
-            Distribution::Ggx => self.peak / ((z_sq + slope_sq) * (z_sq + slope_sq)),
             Distribution::Beckmann => self.peak * libm::exp(-slope_sq / z_sq) / (z_sq * z_sq),
+            _ => self.peak / ((z_sq + slope_sq) * (z_sq + slope_sq)),
         }
     }
 
@@ -83,10 +88,10 @@ impl Facets {
     #[inline(always)]
     fn area(&self, s_sq: f64, z: f64, length: f64) -> f64 {
         match self.distribution {
-            // From below the difference cancels.
-            Distribution::Ggx if z < 0.0 => 0.5 * s_sq / (length - z),
-            Distribution::Ggx => 0.5 * (z + length),
             Distribution::Beckmann => beckmann_area(s_sq.sqrt(), z),
+            // From below the difference cancels.
+            _ if z < 0.0 => 0.5 * s_sq / (length - z),
+            _ => 0.5 * (z + length),
         }
     }
 
@@ -102,17 +107,17 @@ impl Facets {
     pub(crate) fn sample(&self, stream: &mut Stream, view: &View) -> DVec3 {
         let View { stretched, length, .. } = *view;
         let m = match self.distribution {
-            Distribution::Ggx => {
+            Distribution::Beckmann => {
+                let numbers = [stream.uniform(), stream.uniform()];
+                visible_normals::sample(Distribution::Beckmann, 1.0, stretched / length, numbers)
+            }
+            _ => {
                 // Dupuy and Benyoub 2023: the half vector of a uniform point of a spherical cap; here on a sphere as
                 // large as the stretched direction is long.
                 let (direction, u) = stream.direction_and_uniform();
                 let z = (1.0 - u) * (length + stretched.z) - stretched.z;
                 let radius = (length * length - z * z).max(0.0).sqrt();
                 DVec3::new(radius * direction.x, radius * direction.y, z) + stretched
-            }
-            Distribution::Beckmann => {
-                let numbers = [stream.uniform(), stream.uniform()];
-                visible_normals::sample(Distribution::Beckmann, 1.0, stretched / length, numbers)
             }
         };
         DVec3::new(self.alpha_x * m.x, self.alpha_y * m.y, m.z.max(1e-150))

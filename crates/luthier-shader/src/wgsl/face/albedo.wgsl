@@ -33,7 +33,12 @@ fn luthier_leaving_share(part: LuthierPart, wo: vec3<f32>) -> f32 {
         (sines.x * cosines.y + cosines.x * sines.y) / max(1.0 + products.x - products.y, 1e-6),
     );
     let slopes_sq = vec3<f32>(edges * edges, edges.x * edges.y);
+    //? cavities
+    let steep = pow(1.0 + slopes_sq, vec3<f32>(-0.5 * part.cavity_power));
+    let within = select(slopes_sq / (slopes_sq + part.alpha.x * part.alpha.y), 1.0 - steep, part.cavity_power > 0.0);
+    //? else
     let within = slopes_sq / (slopes_sq + part.alpha.x * part.alpha.y);
+    //? end
     return 0.25 * (within.x + within.y + 2.0 * within.z);
     //? end
 }

@@ -51,6 +51,9 @@ fn luthier_parts_microfacet(given: LuthierPrepared, $place_parameter material: u
     //? else
     part.alpha = vec2<f32>(layer.alpha);
     //? end
+    //? cavities
+    part.cavity_power = luthier_cavity_power(layer);
+    //? end
     prepared.parts[0] = part;
     //? end
     return prepared;

@@ -17,6 +17,9 @@ fn luthier_path_part(
     //? end
     part.alpha = alpha;
     part.axis = axis;
+    //? cavities
+    part.cavity_power = luthier_cavity_power(layer);
+    //? end
     part.eta = eta;
     //? folded, media
     // Snell: sines times the index are the least index at most.

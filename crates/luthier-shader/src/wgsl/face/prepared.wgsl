@@ -9,6 +9,10 @@ struct LuthierPart {
     /// Cosine and sine of the angle from the tangent to that axis.
     axis: vec2<f32>,
     //? end
+    //? cavities
+    /// Exponent plus 2 of Blinn's facets in V-cavities; 0 for visible normals of GGX.
+    cavity_power: f32,
+    //? end
     //? powers
     /// Exponent of the cosine to the mirrored direction; below 0 for visible normals.
     exponent: f32,
@@ -34,11 +38,23 @@ fn luthier_no_part() -> LuthierPart {
     part.alpha = vec2<f32>(1.0);
     part.axis = vec2<f32>(1.0, 0.0);
     part.exponent = -1.0;
+    part.cavity_power = 0.0;
     part.eta = 1.0;
     part.edge = 0.0;
     part.normal = vec3<f32>(0.0, 0.0, 1.0);
     part.inner_eta = 1.0;
     return part;
+}
+//? end
+
+//? cavities
+/// Exponent plus 2, 2 / alpha^2, of a layer whose distribution is Blinn's; 0 of another layer.
+fn luthier_cavity_power(layer: LuthierLayer) -> f32 {
+    //? several_slopes
+    return select(0.0, 2.0 * layer.falloff, abs(layer.distribution - 2.0) < 0.5);
+    //? else
+    return 2.0 * layer.falloff;
+    //? end
 }
 //? end
 

@@ -62,6 +62,11 @@ fn luthier_into_part(part: LuthierPart, w: vec3<f32>) -> vec3<f32> {
 
 /// Density in solid angle of directions mirrored at a part, over the whole sphere, in the medium of the part.
 fn luthier_mirrored_density(part: LuthierPart, eye: vec3<f32>, light: vec3<f32>) -> f32 {
+    //? cavities
+    if part.cavity_power > 0.0 {
+        return luthier_cavity_density(part.cavity_power, eye, light);
+    }
+    //? end
     //? powers
     //? visible
     if part.exponent < 0.0 {
@@ -167,7 +172,13 @@ fn luthier_draw_part(part: LuthierPart, wo: vec3<f32>, u: vec2<f32>) -> vec3<f32
     //? end
     //? powers, visible
     var mirrored: vec3<f32>;
+    //? cavities
+    if part.cavity_power > 0.0 {
+        mirrored = luthier_draw_cavity(part.cavity_power, eye, u);
+    } else if part.exponent < 0.0 {
+    //? else
     if part.exponent < 0.0 {
+    //? end
         mirrored = luthier_draw_visible(part.alpha, part.axis, eye, u);
     } else {
         mirrored = luthier_draw_power(part.exponent, eye, u);
@@ -176,7 +187,16 @@ fn luthier_draw_part(part: LuthierPart, wo: vec3<f32>, u: vec2<f32>) -> vec3<f32
     //? powers
     let mirrored = luthier_draw_power(part.exponent, eye, u);
     //? else
+    //? cavities
+    var mirrored: vec3<f32>;
+    if part.cavity_power > 0.0 {
+        mirrored = luthier_draw_cavity(part.cavity_power, eye, u);
+    } else {
+        mirrored = luthier_draw_visible(part.alpha, part.axis, eye, u);
+    }
+    //? else
     let mirrored = luthier_draw_visible(part.alpha, part.axis, eye, u);
+    //? end
     //? end
     //? end
     //? folded

@@ -23,3 +23,30 @@ fn luthier_draw_visible(alpha: vec2<f32>, axis: vec2<f32>, wo: vec3<f32>, u: vec
     let wi = 2.0 * dot(wh, eye) * wh - eye;
     return vec3<f32>(axis.x * wi.x - axis.y * wi.y, axis.y * wi.x + axis.x * wi.y, wi.z);
 }
+
+//? cavities
+/// Density of directions mirrored at the visible facets of V-cavities of Blinn's distribution, seen from wo: G1 D / (4 cos_theta_o).
+fn luthier_cavity_density(power: f32, wo: vec3<f32>, wi: vec3<f32>) -> f32 {
+    let bisector = vec3<f32>(wi.xy + wo.xy, max(wi.z + wo.z, 1e-16));
+    let across_sq = dot(bisector.xy, bisector.xy);
+    let z_sq = bisector.z * bisector.z;
+    let masking = min(4.0 * bisector.z * wo.z / (z_sq + across_sq), 1.0);
+    return luthier_blinn(0.5 * power, z_sq, across_sq) * masking * power / (8.0 * LUTHIER_PI * wo.z);
+}
+
+/// A direction mirrored at a visible facet of V-cavities (Heitz and d'Eon 2014, section 4): a facet is drawn by the power of its cosine, and it or
+/// the other side of its cavity is seen, by the areas that they show.
+fn luthier_draw_cavity(power: f32, wo: vec3<f32>, u: vec2<f32>) -> vec3<f32> {
+    // The squared sine, 1 - exp(-y) without cancellation.
+    let y = -log(1.0 - min(u.x, 0.9999999)) * (2.0 / power);
+    let series = y * (1.0 - y * (0.5 - y * (1.0 / 6.0)));
+    let sin_sq = select(1.0 - exp(-y), series, y < 0.02);
+    let phi = 2.0 * LUTHIER_PI * u.y;
+    let facet = vec3<f32>(sqrt(sin_sq) * vec2<f32>(cos(phi), sin(phi)), sqrt(max(1.0 - sin_sq, 1e-12)));
+    let seen = max(vec2<f32>(dot(facet, wo), facet.z * wo.z - dot(facet.xy, wo.xy)), vec2<f32>(0.0));
+    // The last digits of the number are independent of the azimuth.
+    let is_other = fract(4096.0 * u.y) * (seen.x + seen.y) >= seen.x;
+    let wh = select(facet, vec3<f32>(-facet.xy, facet.z), is_other);
+    return 2.0 * dot(wh, wo) * wh - wo;
+}
+//? end

@@ -17,6 +17,9 @@ fn luthier_distribution_term(layer: LuthierLayer, z_sq: f32, across_sq: f32) -> 
     //? end
     let falloff = layer.falloff;
 //? end
+    //? free_slopes
+    $free_slopes
+    //? else
     //? beckmann
     //? ggx
     if layer.distribution > 0.5 {
@@ -26,5 +29,6 @@ fn luthier_distribution_term(layer: LuthierLayer, z_sq: f32, across_sq: f32) -> 
     return luthier_beckmann(falloff, z_sq, across_sq);
     //? else
     return luthier_ggx(falloff, z_sq, across_sq);
+    //? end
     //? end
 }
