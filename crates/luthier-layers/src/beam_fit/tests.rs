@@ -27,7 +27,7 @@ fn stack(index: f64, waves: Option<f64>, albedo: f64) -> Monochrome {
 /// Directions over the hemisphere, and around the mirror direction, for a few directions of light.
 fn pairs() -> Vec<(DVec3, DVec3)> {
     let unit = |theta: f64, phi: f64| {
-        let ((sin, cos), (sin_phi, cos_phi)) = (theta.sin_cos(), phi.sin_cos());
+        let ((sin, cos), (sin_phi, cos_phi)) = (libm::sincos(theta), libm::sincos(phi));
         DVec3::new(sin * cos_phi, sin * sin_phi, cos)
     };
     let mut pairs = Vec::new();
