@@ -65,15 +65,10 @@ impl MapSource {
 
 /// The maps of a material: layers from the top down, then effects.
 pub(crate) fn maps(material: &Material) -> Vec<MaterialMap> {
-    let file = |slot, layer, path: &String| MaterialMap { slot, layer, source: MapSource::File(path.clone()) };
+    let file = |slot, layer, path: &str| MaterialMap { slot, layer, source: MapSource::File(path.to_owned()) };
     let mut maps = Vec::new();
     for (i, layer) in material.layers.iter().enumerate() {
-        let slots = [
-            (MapSlot::Normal, &layer.maps.normal),
-            (MapSlot::Roughness, &layer.maps.roughness),
-            (MapSlot::Thickness, &layer.maps.thickness),
-        ];
-        maps.extend(slots.iter().filter_map(|&(slot, path)| Some(file(slot, Some(i as u32), path.as_ref()?))));
+        maps.extend(layer.maps.named().map(|map| file(map.slot, Some(i as u32), map.path)));
     }
     if let Some(flakes) = &material.effects.flakes
         && let FlakeSource::NormalMap { path } = &flakes.source

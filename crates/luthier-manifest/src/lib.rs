@@ -16,6 +16,7 @@ mod functions;
 mod limits;
 mod lock;
 mod manifest;
+mod map;
 mod model;
 mod parts;
 mod reads;
@@ -38,9 +39,9 @@ pub use limits::{BUFFER_WORDS_MAX, MaterialTexture, SIDE, SIDE_MAX};
 pub use lock::{Decision, Lock};
 pub use luthier_optics::stack::Distribution;
 pub use manifest::{
-    BindingEntry, ColorMode, FileEntry, MANIFEST_SCHEMA, Manifest, MapEntry, MapSlot, MaterialEntry, ShaderEntry,
-    TableEntry,
+    BindingEntry, ColorMode, FileEntry, MANIFEST_SCHEMA, Manifest, MaterialEntry, ShaderEntry, TableEntry,
 };
+pub use map::{MapEntry, MapSlot};
 pub use model::ShadingModel;
 pub use parts::{Masking, Reflectance, ReflectanceCurve};
 pub use record::{LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, material_buffer};

@@ -4,8 +4,8 @@ use luthier_lut::{AtlasLayout, TableKind, TexelFormat, Tile};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Form, Functions, LayerKind, LayerRecord, ManifestError, Masking, MaterialConstants, MaterialTexture, Reflectance,
-    SceneChoice, Search, ShadingModel, SurfaceEntry, Target,
+    Form, Functions, LayerKind, LayerRecord, ManifestError, MapEntry, Masking, MaterialConstants, MaterialTexture,
+    Reflectance, SceneChoice, Search, ShadingModel, SurfaceEntry, Target,
 };
 
 /// Version of the manifest's shape. A reader refuses any other.
@@ -81,42 +81,6 @@ pub struct MaterialEntry {
     pub layers: Vec<LayerRecord>,
     /// Textures that vary the surface from place to place.
     pub maps: Vec<MapEntry>,
-}
-
-luthier_lut::named! {
-    /// Quantity that a map varies.
-    #[derive(Serialize, Deserialize)]
-    #[serde(into = "&'static str", try_from = "String")]
-    pub enum MapSlot("map") {
-        /// Tangent-space normal: RGB is (normal + 1) / 2.
-        Normal = "normal",
-        /// Factor on the roughness: on the slope parameters its square.
-        Roughness = "roughness",
-        /// Factor on the thickness of the slab below the layer.
-        Thickness = "thickness",
-        /// Order in which patina develops; dark places come first.
-        Patina = "patina",
-        /// Normals of flakes, RGB as for [`MapSlot::Normal`], to be read without filtering.
-        FlakeNormal = "flake-normal",
-    }
-}
-
-/// A map of a material: PNG, linear values in 0..=1, which repeats in both texture coordinates. Texel centres are at
-/// (i + 1/2) / size, the first row is at v = 0.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct MapEntry {
-    /// Quantity that the map varies.
-    pub slot: MapSlot,
-    /// The layer that it is of, from the top; null for maps of the whole surface.
-    pub layer: Option<u32>,
-    /// Where it came from: the path in the material file, or the noise that it was made of.
-    pub source: String,
-    /// The file.
-    pub file: FileEntry,
-    /// Texels across.
-    pub width: u32,
-    /// Texels down.
-    pub height: u32,
 }
 
 /// One table: a texture and its truth.

@@ -109,15 +109,30 @@ const NORMAL_MAP: Key = Key::optional("normal", PATH, "Path of a tangent-space n
 const ROUGHNESS_MAP: Key = Key::optional("roughness", PATH, "Path of a map that multiplies the roughness.");
 const THICKNESS_MAP: Key = Key::optional("thickness", PATH, "Path of a map that multiplies the slab's thickness.");
 
+const BUMPS: Key = Key::optional("bumps", PATH, "Path of a tangent-space normal map that tilts this layer alone.");
+const ALPHA_MAP: Key = Key::optional("alpha", PATH, "Path of a map that multiplies the slope parameters of this layer alone.");
+const ALPHA_X_MAP: Key = Key::optional("alpha_x", PATH, "Path of a map that multiplies alpha_x.");
+const ALPHA_Y_MAP: Key = Key::optional("alpha_y", PATH, "Path of a map that multiplies alpha_y.");
+const TANGENT_MAP: Key = Key::optional(
+    "tangent",
+    PATH,
+    "Path of a map of directions that turns the tangent of this layer: 2 RG - 1 is the cosine and the sine of twice the angle.",
+);
+
 static DIELECTRIC_MAPS: Table = Table {
     name: "dielectric-maps",
     doc: MAPS_DOC,
-    keys: &[NORMAL_MAP, ROUGHNESS_MAP, THICKNESS_MAP],
+    keys: &[NORMAL_MAP, ROUGHNESS_MAP, THICKNESS_MAP, BUMPS, ALPHA_MAP, ALPHA_X_MAP, ALPHA_Y_MAP, TANGENT_MAP],
     exactly_one: None,
 };
-static CONDUCTOR_MAPS: Table =
-    Table { name: "conductor-maps", doc: MAPS_DOC, keys: &[NORMAL_MAP, ROUGHNESS_MAP], exactly_one: None };
-static DIFFUSE_MAPS: Table = Table { name: "diffuse-maps", doc: MAPS_DOC, keys: &[NORMAL_MAP], exactly_one: None };
+static CONDUCTOR_MAPS: Table = Table {
+    name: "conductor-maps",
+    doc: MAPS_DOC,
+    keys: &[NORMAL_MAP, ROUGHNESS_MAP, BUMPS, ALPHA_MAP, ALPHA_X_MAP, ALPHA_Y_MAP, TANGENT_MAP],
+    exactly_one: None,
+};
+static DIFFUSE_MAPS: Table =
+    Table { name: "diffuse-maps", doc: MAPS_DOC, keys: &[NORMAL_MAP, BUMPS], exactly_one: None };
 
 pub(super) static DIELECTRIC: Table = Table {
     name: "dielectric",

@@ -49,10 +49,11 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     // D is a function of the layers' own slope parameters; the statistics have lobes of others.
     let facets = has("chain") || has("smith") || has("coat");
     let masking = masking::module(set, &features);
+    let place = place(set, form);
     let modules = [
         (has("bilinear"), include_str!("../wgsl/tables/bilinear.wgsl")),
         (true, include_str!("../wgsl/layer.wgsl")),
-        (has("place"), include_str!("../wgsl/surface/place.wgsl")),
+        (has("place"), place.as_str()),
         (has("place") || has("powers"), include_str!("../wgsl/surface/local.wgsl")),
         (has("flakes") || has("glitter") || has("picks"), include_str!("../wgsl/surface/hash.wgsl")),
         (has("flakes"), include_str!("../wgsl/surface/flakes.wgsl")),
@@ -97,6 +98,15 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         Buffer::Texture => read_from_texture(&wgsl),
         Buffer::Storage | Buffer::Sized => wgsl,
     })
+}
+
+/// The module of places, with the number of layers that have values of their own.
+fn place(set: &MaterialSet<'_>, form: Form) -> String {
+    let shown = set.materials.iter().flat_map(|material| material.shown_layer_maps(form));
+    let count = shown.map(|(layer, _)| layer + 1).max().unwrap_or(0);
+    let each: String = (0..count).map(|i| format!("    place.layers[{i}] = luthier_layer_place();\n")).collect();
+    let module = include_str!("../wgsl/surface/place.wgsl").replace("    $each_layer\n", &each);
+    module.replace("$layers", &format!("{count}u"))
 }
 
 /// The lines of a module that a set keeps. Models take a `LuthierPlace` where a material of the set varies over its surface:
