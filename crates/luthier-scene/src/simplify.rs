@@ -129,7 +129,8 @@ fn leave_out_feature(material: &mut Material, feature: Feature) -> bool {
             }
         }
         Feature::NormalMap | Feature::RoughnessMap | Feature::ThicknessMap => {
-            let Some(Maps { normal, roughness, thickness, .. }) = material.layers.first_mut().map(|first| &mut first.maps)
+            let Some(Maps { normal, roughness, thickness, .. }) =
+                material.layers.first_mut().map(|first| &mut first.maps)
             else {
                 return false;
             };
@@ -146,7 +147,9 @@ fn leave_out_feature(material: &mut Material, feature: Feature) -> bool {
             {
                 found |= match feature {
                     Feature::Bumps => bumps.take().is_some(),
-                    Feature::LayerAlpha => [alpha, alpha_x, alpha_y].into_iter().fold(false, |any, map| any | map.take().is_some()),
+                    Feature::LayerAlpha => {
+                        [alpha, alpha_x, alpha_y].into_iter().fold(false, |any, map| any | map.take().is_some())
+                    }
                     Feature::Tangents => tangent.take().is_some(),
                     _ => i > 0 && thickness.take().is_some(),
                 };

@@ -18,8 +18,8 @@
 
 use glam::DVec3;
 
-use crate::facets::{Facets, Masking};
 use crate::elek::Tilts;
+use crate::facets::{Facets, Masking};
 use crate::frame;
 use crate::layer_sample::{off, onto};
 use crate::model::{Claims, Kind, Model, ModelInfo};

@@ -205,9 +205,9 @@ impl Twin {
         let tilts = Tilts { below: flake_normal, own: &self.normals };
         match &self.kind {
             Kind::Elek(layers) => elek::eval_tilted(layers, terms, wi, wo, tilts),
-            Kind::WeidlichWilkie(stacks) => each(terms, stacks, |stack, optics| {
-                WeidlichWilkie::default().eval_tilted(stack, optics, wi, wo, tilts)
-            }),
+            Kind::WeidlichWilkie(stacks) => {
+                each(terms, stacks, |stack, optics| WeidlichWilkie::default().eval_tilted(stack, optics, wi, wo, tilts))
+            }
             Kind::GranierHeidrich(stacks) => {
                 let model = GranierHeidrich { inner_normal, ..GranierHeidrich::default() };
                 each(terms, stacks, |stack, optics| model.eval_with(stack, optics, wi, wo))

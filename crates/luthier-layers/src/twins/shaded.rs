@@ -145,7 +145,8 @@ impl Shaded {
             // Tarnish dims reflectances that are chosen, too: the twin takes them from its terms.
             let facets = Parts { reflectance: Reflectance::Terms, ..parts };
             let normals = place.layers.iter().map(|layer| layer.normal).collect();
-            let twin = Twin::with(model, &first, wavelengths_nm, color, facets)?.reradiating(reradiation).tilting(normals);
+            let twin =
+                Twin::with(model, &first, wavelengths_nm, color, facets)?.reradiating(reradiation).tilting(normals);
             let has_choice = is_chain || model == "microfacet";
             let reflectance = if has_choice { parts.reflectance } else { Reflectance::Terms };
             let reflectances = Reflectances::of(stack, wavelengths_nm, color, reflectance);

@@ -23,9 +23,10 @@ pub(super) fn decode(at: &Section<'_>) -> Maps {
 /// parameter.
 pub(super) fn check(at: &Section<'_>, number: usize, sink: &mut Sink<'_>) {
     let Some(maps) = at.section("maps") else { return };
-    for (name, own, does) in
-        [("normal", "bumps", "tilts this layer alone"), ("roughness", "alpha", "scales the slope parameter of this layer alone")]
-    {
+    for (name, own, does) in [
+        ("normal", "bumps", "tilts this layer alone"),
+        ("roughness", "alpha", "scales the slope parameter of this layer alone"),
+    ] {
         if number > 0 && maps.has(name) {
             let message = format!("a {name} map belongs to the first layer: it is that of the whole surface");
             let hint = format!("write `{own}`, which {does}, or move it to the first layer");

@@ -110,7 +110,8 @@ const ROUGHNESS_MAP: Key = Key::optional("roughness", PATH, "Path of a map that 
 const THICKNESS_MAP: Key = Key::optional("thickness", PATH, "Path of a map that multiplies the slab's thickness.");
 
 const BUMPS: Key = Key::optional("bumps", PATH, "Path of a tangent-space normal map that tilts this layer alone.");
-const ALPHA_MAP: Key = Key::optional("alpha", PATH, "Path of a map that multiplies the slope parameters of this layer alone.");
+const ALPHA_MAP: Key =
+    Key::optional("alpha", PATH, "Path of a map that multiplies the slope parameters of this layer alone.");
 const ALPHA_X_MAP: Key = Key::optional("alpha_x", PATH, "Path of a map that multiplies alpha_x.");
 const ALPHA_Y_MAP: Key = Key::optional("alpha_y", PATH, "Path of a map that multiplies alpha_y.");
 const TANGENT_MAP: Key = Key::optional(

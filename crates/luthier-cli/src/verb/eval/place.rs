@@ -6,15 +6,16 @@ use glam::{DVec2, DVec3};
 use luthier_bake::MapSource;
 use luthier_layers::flakes::Flakes;
 use luthier_layers::heterogeneous::{Map, Pick};
+use luthier_layers::layer_sample::LayerSample;
 use luthier_layers::patina::Patina;
 use luthier_layers::shaded::{Growth, Place};
 use luthier_layers::voronoi::Voronoi;
 use luthier_lut::Image;
-use luthier_manifest::{CellsRecord, SurfaceEntry};
+use luthier_manifest::{CellsRecord, MapSlot, SurfaceEntry};
 use luthier_material::{Effects, FlakeSource, Glitter, Material, VariationSource};
 use luthier_terminal::{Failure, Outcome, files};
 
-use crate::model_inputs::ModelInputs;
+use crate::model_inputs::{LayerMap, ModelInputs};
 
 /// The place; `shows` are the effects that count.
 pub(crate) fn place(material: &Material, inputs: &ModelInputs, shows: &Effects) -> Outcome<Place> {
@@ -58,6 +59,31 @@ pub(crate) fn place(material: &Material, inputs: &ModelInputs, shows: &Effects) 
     Ok(place)
 }
 
+/// The textures of single layers at the place, from the maps of the file that count: each with its layer.
+pub(crate) fn layers(material: &Material, inputs: &ModelInputs, maps: &[LayerMap]) -> Outcome<Vec<LayerSample>> {
+    let uv = inputs.uv().unwrap_or(DVec2::ZERO);
+    let count = maps.iter().map(|map| map.layer + 1).max().unwrap_or(0);
+    let mut layers = vec![LayerSample::NONE; count];
+    for map in maps {
+        let own = &mut layers[map.layer];
+        let image = image(material, &map.path)?;
+        let texel = |channel| filtered_channel(&image, uv, channel);
+        match map.slot {
+            MapSlot::Bumps => {
+                let [x, y, z] = [0, 1, 2].map(|c| 2.0 * texel(c) - 1.0);
+                own.normal = DVec3::new(x, y, z.max(1e-3)).normalize();
+            }
+            MapSlot::Alpha => own.alpha_factors = own.alpha_factors.map(|factor| factor * texel(0)),
+            MapSlot::AlphaX => own.alpha_factors[0] *= texel(0),
+            MapSlot::AlphaY => own.alpha_factors[1] *= texel(0),
+            MapSlot::Tangent => own.tangent = LayerSample::tangent_of([texel(0), texel(1)]),
+            MapSlot::Thickness => own.slab_factor = texel(0),
+            MapSlot::Normal | MapSlot::Roughness | MapSlot::Patina | MapSlot::FlakeNormal => {}
+        }
+    }
+    Ok(layers)
+}
+
 /// The material by number and the normal at a place of a surface: the f64 twin of `luthier_pick`.
 pub(crate) fn pick(surface: &SurfaceEntry, uv: DVec2) -> Pick {
     let voronoi = |cells: &CellsRecord| Voronoi { seed: cells.seed, frequency: cells.frequency };
@@ -98,6 +124,11 @@ fn texel(map: &Image, uv: DVec2) -> DVec3 {
 
 /// The first channel of a map that repeats, filtered as samplers do; centres of texels are at (i + 1/2) / size.
 fn filtered(map: &Image, uv: DVec2) -> f64 {
+    filtered_channel(map, uv, 0)
+}
+
+/// A channel of a map, as [`filtered`] has the first.
+fn filtered_channel(map: &Image, uv: DVec2, channel: usize) -> f64 {
     let axis = |x: f64, size: u32| {
         let at = (x - x.floor()) * f64::from(size) - 0.5;
         let low = at.floor();
@@ -107,7 +138,7 @@ fn filtered(map: &Image, uv: DVec2) -> f64 {
     let ([left, right], s) = axis(uv.x, map.width);
     let ([top, bottom], t) = axis(uv.y, map.height);
     let row = |y: u32| {
-        let [a, b] = [left, right].map(|x| f64::from(map.texel(x, y)[0]));
+        let [a, b] = [left, right].map(|x| f64::from(map.texel(x, y)[channel]));
         a + (b - a) * s
     };
     row(top) + (row(bottom) - row(top)) * t

@@ -108,7 +108,11 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
     if index < $layers {
         own = layers[index];
     }
+    //? end
+    //? own_normals
     layer.normal = own.normal;
+    //? end
+    //? own_slabs
     layer.optical_depth_log2 *= own.slab_factor;
     //? end
     //? own_alphas
