@@ -5,10 +5,10 @@ use luthier_manifest::{MapSlot, MaterialEntry};
 use crate::{GpuError, Scene};
 
 /// `vec4` words per material before its maps: see `ShadingMaps` in `shading.wgsl`.
-pub(crate) const MAP_WORDS: usize = 7;
+pub(crate) const MAP_WORDS: usize = 8;
 
 /// Words of each layer that has maps of its own, behind those.
-const OWN_WORDS: usize = 6;
+const OWN_WORDS: usize = 8;
 
 impl Scene {
     /// The words of a material's maps, then their texels. `first` is where they begin.
@@ -16,8 +16,10 @@ impl Scene {
         let mut headers = self.no_map_words();
         let mut texels = Vec::new();
         let behind = first + headers.len();
-        for map in self.maps.iter().filter(|map| map.material as usize == material) {
-            let own = map.layer.filter(|&layer| map.slot.layer_feature(layer).is_some());
+        let own = self.maps.iter().filter(|map| map.material as usize == material);
+        for (map, stated) in own.zip(&entry.maps) {
+            let is_own = |layer: &u32| map.slot != MapSlot::Albedo && map.slot.layer_feature(*layer).is_some();
+            let own = map.layer.filter(is_own);
             let word = match own {
                 None => slot_word(map.slot),
                 Some(layer) => MAP_WORDS + OWN_WORDS * layer as usize + own_word(map.slot),
@@ -25,7 +27,8 @@ impl Scene {
             // Layers that the model does not read have no words. Of whole surfaces the topmost map counts.
             let Some(header) = headers.get_mut(word).filter(|header| header[1] == 0) else { continue };
             *header = [(behind + texels.len()) as u32, map.image.width, map.image.height, 0];
-            texels.extend(map.image.texels().map(|t| [t[0], t[1], t[2], t[3]].map(f32::to_bits)));
+            let [r, g, b] = stated.factor.unwrap_or([1.0; 3]).map(|factor| factor as f32);
+            texels.extend(map.image.texels().map(|t| [r * t[0], g * t[1], b * t[2], t[3]].map(f32::to_bits)));
         }
         if let Some(patina) = &entry.constants.patina {
             let bits = |[r, g, b]: [f64; 3], w: f64| [r, g, b, w].map(|v| (v as f32).to_bits());
@@ -44,10 +47,11 @@ impl Scene {
     /// Number of layers that have a place of their own in the shader.
     fn layer_places(&self) -> usize {
         let shown = self.manifest.materials.iter().flat_map(|entry| entry.shown_layer_maps(self.form()));
+        let shown = shown.filter(|(_, slot)| *slot != MapSlot::Albedo);
         shown.map(|(layer, _)| layer as usize + 1).max().unwrap_or(0)
     }
 
-    /// Whether a material has maps of single layers, which the blurred environment does not show.
+    /// Whether a material has maps of single layers or of its albedo, which the blurred environment does not show.
     ///
     /// # Errors
     /// [`GpuError::NoMaterial`](crate::GpuError::NoMaterial).
@@ -87,7 +91,12 @@ impl Scene {
             .replace("$own", &format!("{OWN_WORDS}u"))
             .replace("$fill", &fill.join("\n    "));
         let call = |i| format!("surface.layers[{i}] = shading_layer_place(material, {i}u, maps.uv);");
-        (functions, (0..count).map(call).collect())
+        let mut calls: Vec<String> = (0..count).map(call).collect();
+        if self.has("fn luthier_metallic_place(") {
+            calls.push("surface = shading_metallic(surface, material, maps.uv);".to_owned());
+            return (functions + include_str!("wgsl/surface_metallic.wgsl"), calls);
+        }
+        (functions, calls)
     }
 
     /// `ShadingSurface`, what the emitted shader takes for a place, and the functions that fill, read and use it.
@@ -129,6 +138,12 @@ impl Scene {
         let (layers, calls) = self.layer_functions();
         let mut fill: Vec<&str> = lines.iter().filter(|(has, _)| *has).map(|(_, line)| *line).collect();
         fill.extend(calls.iter().map(String::as_str));
+        if self.has("base_color: vec3") {
+            fill.push(
+                "let albedo = shading_map_header(material, 7u);\n    if albedo.y > 0u {\n        \
+                 surface.base_color = shading_bilinear(albedo, maps.uv).xyz;\n    }",
+            );
+        }
         let below = if self.has("flake_normal: vec3") { "surface.flake_normal" } else { "vec3<f32>(0.0, 0.0, 1.0)" };
         let patina = if self.has("patina: f32,") { "surface.patina" } else { "-1.0" };
         let functions = include_str!("wgsl/surface.wgsl")
@@ -147,8 +162,15 @@ fn slot_word(slot: MapSlot) -> usize {
         MapSlot::Thickness => 2,
         MapSlot::Patina => 3,
         MapSlot::FlakeNormal => 4,
+        MapSlot::Albedo => 7,
         // No whole surface has these.
-        MapSlot::Bumps | MapSlot::Alpha | MapSlot::AlphaX | MapSlot::AlphaY | MapSlot::Tangent => usize::MAX,
+        MapSlot::Bumps
+        | MapSlot::Alpha
+        | MapSlot::AlphaX
+        | MapSlot::AlphaY
+        | MapSlot::Tangent
+        | MapSlot::BaseColor
+        | MapSlot::Metallic => usize::MAX,
     }
 }
 
@@ -160,6 +182,8 @@ fn own_word(slot: MapSlot) -> usize {
         MapSlot::AlphaX => 2,
         MapSlot::AlphaY => 3,
         MapSlot::Tangent => 4,
-        MapSlot::Normal | MapSlot::Roughness | MapSlot::Thickness | MapSlot::Patina | MapSlot::FlakeNormal => 5,
+        MapSlot::BaseColor => 6,
+        MapSlot::Metallic => 7,
+        _ => 5,
     }
 }

@@ -39,6 +39,10 @@ pub enum Feature {
     Tangents,
     /// A map of the thickness of a slab below the first.
     InnerThickness,
+    /// A map of the albedo of the diffuse base.
+    AlbedoMap,
+    /// Maps of base colour and metal of a metallic-roughness surface.
+    MetallicMap,
     /// Flakes below the first interface.
     Flakes,
     /// Patina: a first layer that covers the others in places only.
@@ -51,7 +55,7 @@ pub enum Feature {
 
 impl Feature {
     /// All features.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 23] = [
         Self::InnerInterface,
         Self::Base,
         Self::Absorption,
@@ -69,6 +73,8 @@ impl Feature {
         Self::LayerAlpha,
         Self::Tangents,
         Self::InnerThickness,
+        Self::AlbedoMap,
+        Self::MetallicMap,
         Self::Flakes,
         Self::Patina,
         Self::Glitter,
@@ -95,6 +101,8 @@ impl Feature {
             Self::LayerAlpha => "the alpha map of one layer",
             Self::Tangents => "the tangent map",
             Self::InnerThickness => "the thickness map of an inner slab",
+            Self::AlbedoMap => "the albedo map",
+            Self::MetallicMap => "maps of base colour and metal",
             Self::Flakes => "flakes",
             Self::Patina => "patina",
             Self::Glitter => "glitter",
@@ -136,6 +144,9 @@ impl ShadingModel {
             // Rows of lobes are over azimuths against axes that stay.
             Feature::Tangents => matches!(self, Self::WeidlichWilkie | Self::Yamaguchi | Self::Microfacet),
             Feature::InnerThickness => is_chain || is_statistical,
+            Feature::AlbedoMap => self != Self::Phong,
+            // Energies of rough interfaces, and rows of lobes, are tabulated for one F0.
+            Feature::MetallicMap => is_chain || self == Self::Microfacet,
             Feature::Flakes | Feature::Patina => is_chain || self == Self::Lobes,
             Feature::Reradiation => is_chain,
         }
@@ -159,14 +170,14 @@ mod tests {
             Feature::ALL.into_iter().map(column).collect()
         };
         for (model, expected) in [
-            (ShadingModel::Elek, "#####b##.######.#####"),
-            (ShadingModel::WeidlichWilkie, "#####b###############"),
-            (ShadingModel::Belcour, "#####bf#..###.#.#..#."),
-            (ShadingModel::Yamaguchi, "#####bf##.###.###..#."),
-            (ShadingModel::GranierHeidrich, ".#..#.#...##..#....#."),
-            (ShadingModel::Phong, "###.##....##.......#."),
-            (ShadingModel::Microfacet, "....#b######..##...#."),
-            (ShadingModel::Lobes, "#############....###."),
+            (ShadingModel::Elek, "#####b##.######.#######"),
+            (ShadingModel::WeidlichWilkie, "#####b#################"),
+            (ShadingModel::Belcour, "#####bf#..###.#.##...#."),
+            (ShadingModel::Yamaguchi, "#####bf##.###.####...#."),
+            (ShadingModel::GranierHeidrich, ".#..#.#...##..#..#...#."),
+            (ShadingModel::Phong, "###.##....##.........#."),
+            (ShadingModel::Microfacet, "....#b######..##.##..#."),
+            (ShadingModel::Lobes, "#############....#.###."),
         ] {
             assert_eq!(shown(model), expected, "{model}");
         }

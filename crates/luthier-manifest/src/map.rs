@@ -29,6 +29,12 @@ luthier_lut::named! {
         AlphaY = "alpha-y",
         /// Direction of the tangent of one layer: 2 RG - 1 is the cosine and the sine of twice the angle from the surface's tangent.
         Tangent = "tangent",
+        /// Factor on the albedo of a diffuse base, RGB.
+        Albedo = "albedo",
+        /// Factor on the base colour of a metallic-roughness surface, RGB.
+        BaseColor = "base-color",
+        /// Factor on how metallic such a surface is.
+        Metallic = "metallic",
     }
 }
 
@@ -48,6 +54,9 @@ pub struct MapEntry {
     pub width: u32,
     /// Texels down.
     pub height: u32,
+    /// Number of the material file that the texels multiply, of maps of a colour or of metal: one number three times, or RGB.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub factor: Option<[f64; 3]>,
 }
 
 impl MapSlot {
@@ -57,6 +66,8 @@ impl MapSlot {
             Self::Bumps => Some(Feature::Bumps),
             Self::Alpha | Self::AlphaX | Self::AlphaY => Some(Feature::LayerAlpha),
             Self::Tangent => Some(Feature::Tangents),
+            Self::Albedo => Some(Feature::AlbedoMap),
+            Self::BaseColor | Self::Metallic => Some(Feature::MetallicMap),
             Self::Thickness => (layer > 0).then_some(Feature::InnerThickness),
             Self::Normal | Self::Roughness | Self::Patina | Self::FlakeNormal => None,
         }
@@ -65,7 +76,7 @@ impl MapSlot {
 
 impl MaterialEntry {
     /// Layers with maps of their own that the model shows, and quantities that these vary, in the order of the maps. `LuthierPlace` has
-    /// values of these.
+    /// values of these, that of an albedo as its `base_color`.
     pub fn shown_layer_maps(&self, form: Form) -> impl Iterator<Item = (u32, MapSlot)> {
         let reads_all = !matches!(
             self.model,
@@ -74,7 +85,9 @@ impl MaterialEntry {
         self.maps.iter().filter_map(move |map| {
             let layer = map.layer?;
             let feature = map.slot.layer_feature(layer)?;
-            let is_shown = (layer == 0 || reads_all) && self.model.honours(feature, form);
+            // Models of the first interface may have the base, which is the last layer.
+            let is_base = map.slot == MapSlot::Albedo && self.model.honours(Feature::Base, form);
+            let is_shown = (layer == 0 || reads_all || is_base) && self.model.honours(feature, form);
             is_shown.then_some((layer, map.slot))
         })
     }

@@ -90,13 +90,16 @@ impl Material {
             found.push((format!("layer.{i}.film.0.thickness_nm.map.image"), film));
         }
         let flakes = self.effects.flakes.as_ref().and_then(|flakes| match &flakes.source {
-            FlakeSource::NormalMap { path } => Some(path.as_str()),
+            FlakeSource::NormalMap { path } => Some(("effects.flakes.normal_map", path.as_str())),
+            FlakeSource::HeightMap { path, .. } => Some(("effects.flakes.height_map.image", path.as_str())),
             FlakeSource::Cells { .. } => None,
         });
         let patina = self.effects.patina.as_ref().and_then(|patina| patina.map.image());
         found.extend(
-            [("effects.flakes.normal_map", flakes), ("effects.patina.map.image", patina)]
-                .map(|(key, path)| (key.to_owned(), path)),
+            [flakes, patina.map(|path| ("effects.patina.map.image", path))]
+                .into_iter()
+                .flatten()
+                .map(|(key, path)| (key.to_owned(), Some(path))),
         );
         found.into_iter().filter_map(|(key, path)| Some(NamedImage { key, path: path? })).collect()
     }
@@ -112,6 +115,17 @@ pub struct LayerExtras {
     pub film_variation: Option<FilmVariation>,
     /// Texture slots.
     pub maps: Maps,
+    /// Base colour and metal of a `metallic-roughness` surface where maps multiply them: the stack has that without metal.
+    pub metallic: Option<Metallic>,
+}
+
+/// Base colour and metal of a `metallic-roughness` surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Metallic {
+    /// F0 of the metal and diffuse colour of the dielectric, RGB.
+    pub base_color: Rgb,
+    /// 0 is a dielectric, 1 a metal.
+    pub metallic: f64,
 }
 
 /// Paths of the textures that modulate a layer, relative to the material file.
@@ -133,6 +147,12 @@ pub struct Maps {
     pub alpha_y: Option<String>,
     /// Directions of its tangent: cosine and sine of the doubled angle.
     pub tangent: Option<String>,
+    /// Multiplies the albedo of a diffuse base.
+    pub albedo: Option<String>,
+    /// Multiplies the base colour of a metallic-roughness surface.
+    pub base_color: Option<String>,
+    /// Multiplies how metallic it is.
+    pub metallic: Option<String>,
 }
 
 /// A map of a layer with its key in the file.
@@ -158,6 +178,9 @@ impl Maps {
             ("alpha_x", MapSlot::AlphaX, &self.alpha_x),
             ("alpha_y", MapSlot::AlphaY, &self.alpha_y),
             ("tangent", MapSlot::Tangent, &self.tangent),
+            ("albedo", MapSlot::Albedo, &self.albedo),
+            ("base_color", MapSlot::BaseColor, &self.base_color),
+            ("metallic", MapSlot::Metallic, &self.metallic),
         ]
         .into_iter()
         .filter_map(|(key, slot, path)| Some(NamedMap { key, slot, path: path.as_deref()? }))

@@ -155,6 +155,16 @@ fn leave_out_feature(material: &mut Material, feature: Feature) -> bool {
                 };
             }
         }
+        Feature::AlbedoMap => {
+            for maps in material.layers.iter_mut().map(|extras| &mut extras.maps) {
+                found |= maps.albedo.take().is_some();
+            }
+        }
+        Feature::MetallicMap => {
+            for maps in material.layers.iter_mut().map(|extras| &mut extras.maps) {
+                found |= maps.base_color.take().is_some() | maps.metallic.take().is_some();
+            }
+        }
         Feature::Flakes => found = effects.flakes.take().is_some(),
         Feature::Patina => found = effects.patina.take().is_some(),
         Feature::Glitter => found = effects.glitter.take().is_some(),

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
+use luthier_optics::Rgb;
 use luthier_optics::stack::{Base, Layer};
 
 use crate::frame;
@@ -21,11 +22,14 @@ pub struct LayerSample {
     pub tangent: DVec2,
     /// Factor on the thickness of the slab below it.
     pub slab_factor: f64,
+    /// F0 of its interface, one of Schlick's, in place of its own.
+    pub f0: Option<Rgb>,
 }
 
 impl LayerSample {
     /// The sample of a layer without textures.
-    pub const NONE: Self = Self { normal: DVec3::Z, alpha_factors: [1.0; 2], tangent: DVec2::X, slab_factor: 1.0 };
+    pub const NONE: Self =
+        Self { normal: DVec3::Z, alpha_factors: [1.0; 2], tangent: DVec2::X, slab_factor: 1.0, f0: None };
 
     /// The direction of a tangent from a texel of two channels, `2 texel - 1 = (cos 2 theta, sin 2 theta)`: a tangent is a line without an
     /// end, so that texels may be averaged across any turn. A texel without a direction turns nothing.
@@ -50,8 +54,11 @@ impl LayerSample {
             surface.rotation += libm::atan2(self.tangent.y, self.tangent.x);
             surface.rotation %= 2.0 * PI;
         }
-        if let Base::Dielectric { slab, .. } = &mut layer.base {
+        if let Base::Dielectric { slab, ior } = &mut layer.base {
             slab.thickness_um *= self.slab_factor;
+            if let (Some(f0), Some(_)) = (self.f0, ior.f0()) {
+                *ior = ior.clone().with_f0(f0);
+            }
         }
     }
 }

@@ -83,8 +83,13 @@ pub(super) fn decode(
             sources.places.add(&key, at);
             films.iter().enumerate().for_each(|(i, film)| sources.places.add(&format!("{key}.film.{i}"), &film.at));
         }
-        let extra =
-            LayerExtras { reradiation: matrix, film_variation: variation(&films, sink), maps: maps::decode(at) };
+        let metallic = if kind == "metallic-roughness" { schlick::textured(at) } else { None };
+        let extra = LayerExtras {
+            reradiation: matrix,
+            film_variation: variation(&films, sink),
+            maps: maps::decode(at),
+            metallic,
+        };
         if number > 0 {
             only_the_first_film_varies(&films, sink);
         }

@@ -16,6 +16,9 @@ pub(super) fn decode(at: &Section<'_>) -> Maps {
         alpha_x: maps.path("alpha_x"),
         alpha_y: maps.path("alpha_y"),
         tangent: maps.path("tangent"),
+        albedo: maps.path("albedo"),
+        base_color: maps.path("base_color"),
+        metallic: maps.path("metallic"),
     }
 }
 
@@ -33,6 +36,7 @@ pub(super) fn check(at: &Section<'_>, number: usize, sink: &mut Sink<'_>) {
             sink.error(maps.value_span(name), message, Some(hint));
         }
     }
+    check_metallic(at, &maps, sink);
     for name in ["alpha_x", "alpha_y", "tangent"] {
         if maps.has(name) && !(at.has("alpha_x") && at.has("alpha_y")) {
             let what = if name == "tangent" { "turns the axes" } else { "scales one of the two slope parameters" };
@@ -40,6 +44,24 @@ pub(super) fn check(at: &Section<'_>, number: usize, sink: &mut Sink<'_>) {
             let hint = "give the layer `alpha_x` and `alpha_y`, which may be equal".to_owned();
             sink.error(maps.value_span(name), message, Some(hint));
         }
+    }
+}
+
+/// Refuses maps of colour and metal that would say too little: a texture of the base colour alone leaves open how metallic a place is.
+fn check_metallic(at: &Section<'_>, maps: &Section<'_>, sink: &mut Sink<'_>) {
+    let metallic = at.number("metallic").unwrap_or(0.0);
+    if maps.has("base_color") && !maps.has("metallic") && metallic > 0.0 {
+        let message = "a map of `base_color` on a metal needs one of `metallic` beside it";
+        let hint = "write `metallic = \"white.png\"` under `maps`, a white picture, or `metallic = 0`".to_owned();
+        sink.error(maps.value_span("base_color"), message, Some(hint));
+    }
+    if maps.has("albedo") && at.has("reradiation") {
+        let message = "a map of the albedo needs an albedo, and this base has `reradiation`";
+        sink.error(
+            maps.value_span("albedo"),
+            message,
+            Some("give the base an `albedo`, or leave the map out".to_owned()),
+        );
     }
 }
 

@@ -132,8 +132,31 @@ static CONDUCTOR_MAPS: Table = Table {
     keys: &[NORMAL_MAP, ROUGHNESS_MAP, BUMPS, ALPHA_MAP, ALPHA_X_MAP, ALPHA_Y_MAP, TANGENT_MAP],
     exactly_one: None,
 };
-static DIFFUSE_MAPS: Table =
-    Table { name: "diffuse-maps", doc: MAPS_DOC, keys: &[NORMAL_MAP, BUMPS], exactly_one: None };
+static DIFFUSE_MAPS: Table = Table {
+    name: "diffuse-maps",
+    doc: MAPS_DOC,
+    keys: &[
+        NORMAL_MAP,
+        BUMPS,
+        Key::optional("albedo", PATH, "Path of a picture, RGB read as linear, that multiplies the albedo."),
+    ],
+    exactly_one: None,
+};
+static METALLIC_MAPS: Table = Table {
+    name: "metallic-maps",
+    doc: MAPS_DOC,
+    keys: &[
+        NORMAL_MAP,
+        ROUGHNESS_MAP,
+        ALPHA_MAP,
+        ALPHA_X_MAP,
+        ALPHA_Y_MAP,
+        TANGENT_MAP,
+        Key::optional("base_color", PATH, "Path of a picture, RGB read as linear, that multiplies the base colour."),
+        Key::optional("metallic", PATH, "Path of a map that multiplies `metallic`."),
+    ],
+    exactly_one: None,
+};
 
 pub(super) static DIELECTRIC: Table = Table {
     name: "dielectric",
@@ -247,7 +270,7 @@ pub(super) static METALLIC_ROUGHNESS: Table = Table {
             "0",
             "Standard deviation of the slope angle of the diffuse base's facets in radians; 0 is Lambert.",
         ),
-        Key::optional("maps", Kind::Table(&CONDUCTOR_MAPS), MAPS_DOC),
+        Key::optional("maps", Kind::Table(&METALLIC_MAPS), MAPS_DOC),
     ],
     exactly_one: Some(SURFACE),
 };

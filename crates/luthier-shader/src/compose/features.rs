@@ -23,7 +23,7 @@ impl Features {
         granier_bare granier_base granier_film granier_schlick granier_transparent interface lazanyi lobes_axes lobes_bare_base lobes_base \
         lobes_diffuse lobes_film lobes_patina lobes_tilted mask_implicit mask_kelemen \
         mask_schlick_smith mask_smith mask_smith_separable mask_v_cavity masked media microfacet_diffuse mixed one_lobe \
-        layered oren_nayar own_alphas own_normals own_slabs packed particles patina phong picks place powers rows schlick schlick_base several several_maskings several_reflectances smith split_root statistics statistics_base surface tabled tangents theta_axis tilted \
+        layered oren_nayar own_alphas own_f0 own_normals own_slabs packed particles patina phong picks place powers rows schlick schlick_base several several_maskings several_reflectances smith split_root statistics statistics_base surface tabled tangents theta_axis tilted \
         total_reflection two_lobes visible";
 
     pub(crate) fn of(set: &MaterialSet<'_>, form: Form) -> Self {
@@ -34,12 +34,14 @@ impl Features {
                 names.insert("place");
             }
             for (_, slot) in material.shown_layer_maps(form) {
-                names.insert("layered");
-                names.insert(match slot {
-                    MapSlot::Bumps => "own_normals",
-                    MapSlot::Tangent => "tangents",
-                    MapSlot::Thickness => "own_slabs",
-                    _ => "own_alphas",
+                names.extend(match slot {
+                    MapSlot::Albedo if has_base_light(material) => &["base_color", "lobes_base"][..],
+                    MapSlot::Albedo => &["base_color"],
+                    MapSlot::BaseColor | MapSlot::Metallic => &["layered", "own_f0", "base_color"],
+                    MapSlot::Bumps => &["layered", "own_normals"],
+                    MapSlot::Tangent => &["layered", "tangents"],
+                    MapSlot::Thickness => &["layered", "own_slabs"],
+                    _ => &["layered", "own_alphas"],
                 });
             }
             if material.constants.glitter.is_some() {

@@ -148,7 +148,7 @@ fn mapped(material: MaterialEntry) -> MaterialEntry {
 /// A material with a map of a layer.
 fn with_map(material: MaterialEntry, slot: MapSlot, layer: u32) -> MaterialEntry {
     let file = FileEntry::default();
-    let map = MapEntry { slot, layer: Some(layer), source: String::new(), file, width: 1, height: 1 };
+    let map = MapEntry { slot, layer: Some(layer), source: String::new(), file, width: 1, height: 1, factor: None };
     MaterialEntry { maps: vec![map], ..material }
 }
 
@@ -220,6 +220,18 @@ fn change(model: ShadingModel, feature: Feature, form: Form) -> Option<f32> {
             };
             let shader = || Shader::new(with_map(of(model, &layers), slot, layer), form);
             moved(&shader().at_layer(layer as usize, member, value), &shader())
+        }
+        Feature::AlbedoMap if model == ShadingModel::Microfacet => {
+            let shader = || Shader::new(with_map(of(model, &[diffuse(0.0)]), MapSlot::Albedo, 0), form);
+            moved(&shader().at("base_color", vector(&[0.9, 0.1, 0.5])), &shader())
+        }
+        Feature::AlbedoMap => {
+            let shader = || Shader::new(with_map(of(model, &[coat(), diffuse(0.0)]), MapSlot::Albedo, 1), form);
+            moved(&shader().at("base_color", vector(&[0.9, 0.1, 0.5])), &shader())
+        }
+        Feature::MetallicMap => {
+            let shader = || Shader::new(with_map(of(model, &[coat(), diffuse(0.0)]), MapSlot::Metallic, 0), form);
+            moved(&shader().at_layer(0, "passing", vector(&[0.2, 0.5, 0.9])), &shader())
         }
         // The baker writes no matrix for models that do not show it.
         Feature::Reradiation if !model.honours(feature, form) => return None,

@@ -31,7 +31,7 @@ use crate::store::store;
 use function::Kind;
 use luthier_export::{gather, read_all, read_one, refuse_surfaces};
 use luthier_terminal::{Failure, Outcome, complain, valid};
-use place::{layers, pick, place};
+use place::{add_layers, pick, place};
 use sweep::{Sweep, sweep};
 use values::values;
 
@@ -152,7 +152,7 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
         (model, bins_nm) = (Box::new(reradiated), Some(bins));
     }
     let mut place = place(&material, inputs, &shown)?;
-    place.layers = layers(&material, inputs, &maps)?;
+    add_layers(&mut place, &material, inputs, &maps)?;
     if let Some((_, normal)) = picked.as_ref().filter(|(_, normal)| !inputs.has_normal() && normal.z < 1.0) {
         place.sample.normal = *normal;
     }

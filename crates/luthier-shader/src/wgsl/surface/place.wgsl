@@ -17,6 +17,10 @@ struct LuthierLayerPlace {
     /// Factor on the thickness of the slab below it.
     slab_factor: f32,
     //? end
+    //? own_f0
+    /// Factor on what its interface does not reflect, RGB: 1 - F0 of the place over that of the material. See `luthier_metallic_place`.
+    passing: vec3<f32>,
+    //? end
 }
 
 /// A layer without textures.
@@ -26,6 +30,7 @@ fn luthier_layer_place() -> LuthierLayerPlace {
     own.alpha_factors = vec2<f32>(1.0);
     own.tangent = vec2<f32>(1.0, 0.0);
     own.slab_factor = 1.0;
+    own.passing = vec3<f32>(1.0);
     return own;
 }
 
@@ -115,6 +120,9 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
     //? own_slabs
     layer.optical_depth_log2 *= own.slab_factor;
     //? end
+    //? own_f0
+    layer.passing = own.passing;
+    //? end
     //? own_alphas
     let own_alphas = max(own.alpha_factors, vec2<f32>(1e-6));
     //? interface
@@ -169,6 +177,28 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
     //? end
     return layer;
 }
+
+//? own_f0
+/// A place with another base colour of a `metallic-roughness` material, and another `metallic`, 0 to 1: F0 of its interface and albedo of its base
+/// (glTF 2.0, appendix B).
+fn luthier_metallic_place(place: LuthierPlace, material: u32, base_color: vec3<f32>, metallic: f32) -> LuthierPlace {
+    // Its interface lies above the base, which is the last layer.
+    let index = luthier_layer_count(material) - 2u;
+    let first = luthier_whole(luthier_materials[luthier_header(material)].x) + index * LUTHIER_LAYER_WORDS;
+    let nominal = luthier_materials[first + $word_ior_n].xyz;
+    let f0 = 0.04 + metallic * (base_color - 0.04);
+    let shown = base_color * (1.0 - metallic);
+    let passed = (1.0 - f0) * (20.0 / 21.0);
+    var next = place;
+    next.base_color = shown / max(passed + shown * (1.0 - passed), vec3<f32>(1e-20));
+    var layers = place.layers;
+    if index < $layers {
+        layers[index].passing = (1.0 - f0) / max(1.0 - nominal, vec3<f32>(1e-6));
+    }
+    next.layers = layers;
+    return next;
+}
+//? end
 
 //? thickness
 /// A place with the film of a material as thick as its table says there. Repeats in uv.
