@@ -16,8 +16,7 @@ impl Scene {
         let mut headers = self.no_map_words();
         let mut texels = Vec::new();
         let behind = first + headers.len();
-        let own = self.maps.iter().filter(|map| map.material as usize == material);
-        for (map, stated) in own.zip(&entry.maps) {
+        for map in self.maps.iter().filter(|map| map.material as usize == material) {
             let is_own = |layer: &u32| map.slot != MapSlot::Albedo && map.slot.layer_feature(*layer).is_some();
             let own = map.layer.filter(is_own);
             let word = match own {
@@ -27,7 +26,9 @@ impl Scene {
             // Layers that the model does not read have no words. Of whole surfaces the topmost map counts.
             let Some(header) = headers.get_mut(word).filter(|header| header[1] == 0) else { continue };
             *header = [(behind + texels.len()) as u32, map.image.width, map.image.height, 0];
-            let [r, g, b] = stated.factor.unwrap_or([1.0; 3]).map(|factor| factor as f32);
+            let stated = entry.maps.iter().find(|stated| (stated.slot, stated.layer) == (map.slot, map.layer));
+            let factor = stated.and_then(|stated| stated.factor).unwrap_or([1.0; 3]);
+            let [r, g, b] = factor.map(|factor| factor as f32);
             texels.extend(map.image.texels().map(|t| [r * t[0], g * t[1], b * t[2], t[3]].map(f32::to_bits)));
         }
         if let Some(patina) = &entry.constants.patina {

@@ -342,6 +342,7 @@ mod tests {
                         file: file("maps/red-lacquer-flake-normal.png"),
                         width: 64,
                         height: 32,
+                        factor: None,
                     },
                     MapEntry {
                         slot: MapSlot::Roughness,
@@ -350,6 +351,7 @@ mod tests {
                         file: file("maps/red-lacquer-roughness-1.png"),
                         width: 1,
                         height: 1,
+                        factor: Some([0.1, 0.2, 0.3]),
                     },
                 ],
             }],
