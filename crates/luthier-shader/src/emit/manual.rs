@@ -14,7 +14,7 @@ const WIDTH: usize = 140;
 const LISTED: usize = 6;
 
 /// Functions of the face, by their calls, and what they give.
-const FUNCTIONS: [(&str, &str); 21] = [
+const FUNCTIONS: [(&str, &str); 24] = [
     ("luthier_eval(material, wi, wo)", "f cos_theta_i, linear Rec.709; a light adds its irradiance times this"),
     (
         "luthier_eval_lit(material, wi, wo, light)",
