@@ -1,7 +1,7 @@
 //! Figures with textures of single layers: crossed tangents, bumps of one interface, flakes of a height field, colours and metal.
 
 use luthier_export::{MemoryStore, Package};
-use luthier_gpu::Shape;
+use luthier_gpu::{RenderSettings, Shape};
 use luthier_lut::Image;
 use luthier_manifest::{Form, MapSlot, ShadingModel};
 use luthier_material::Material;
@@ -198,7 +198,9 @@ fn bumps(studio: &Studio) -> Outcome<Made> {
     let mut shown = Vec::new();
     for (label, coat, base) in all {
         let material = layered(&format!("bumps-{label}"), &layers(coat, base), ShadingModel::WeidlichWilkie)?;
-        shown.extend(pictures(studio, vec![material], Form::Full, Shape::Torus)?);
+        // Directions are drawn about the level surface: steep bumps need more.
+        let drawn = |_, settings: &mut RenderSettings| settings.environment_samples = 128;
+        shown.extend(studio.pictures(&[mapped(material)], Form::Full, Shape::Torus, drawn)?);
     }
     for (label, picture) in ["below", "above", "both"].into_iter().zip(&shown[1..]) {
         measure(&mut made, &format!("{label} against flat"), picture, &shown[0])?;
