@@ -248,7 +248,7 @@ mod tests {
     use luthier_optics::stack::Distribution;
 
     use crate::{
-        Budget, Candidate, CandidateForm, FlakesRecord, GlitterRecord, LayerKind, MeasuredError, PatinaRecord,
+        Budget, Candidate, CandidateForm, FlakesRecord, GlitterRecord, LayerKind, MapSlot, MeasuredError, PatinaRecord,
     };
 
     fn manifest() -> Manifest {

@@ -49,7 +49,8 @@ pub(crate) const FIGURES: [Figure; 5] = [
         title: "bumps of one interface",
         source: "Weidlich and Wilkie 2009, figure 3.9d and its reverse",
         caption: "A matt varnish over aluminium: bumps of the metal alone, bumps of the varnish alone above flat metal, and bumps of both. Where the metal is flat, its \
-                  reflection is bent by the bumps through which it is seen, less than a bumpy metal bends it. Map and numbers are luthier's.",
+                  reflection is bent by the bumps through which it is seen, less than a bumpy metal bends it. Dark spots are where light that is mirrored inside \
+                  would be totally reflected on its way out, which bumps of both avoid. Map and numbers are luthier's.",
         make: bumps,
     },
 ];

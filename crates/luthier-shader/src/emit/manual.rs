@@ -47,7 +47,10 @@ const FUNCTIONS: [(&str, &str); 24] = [
     ("luthier_place()", "a place without textures; what yours say goes into its members"),
     ("luthier_flake_normal(material, uv, distance)", "flake_normal of a place at a distance from the eye"),
     ("luthier_flake_tilt(material, flake, distance)", "flake_normal for the normal of a flake in a texture"),
-    ("luthier_layer_place()", "a layer without textures; what yours say of one layer goes into the members of layers of a place"),
+    (
+        "luthier_layer_place()",
+        "a layer without textures; what yours say of one layer goes into the members of layers of a place",
+    ),
     ("luthier_tangent(texel)", "tangent of a layer for a texel of a tangent map"),
     (
         "luthier_metallic_place(place, material, base_color, metallic)",
