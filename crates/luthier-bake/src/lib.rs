@@ -35,7 +35,7 @@ pub use assemble::{
 pub use error::BakeError;
 pub use graph::{Artefact, JobKind, Key, MemoryStore, Observer, Share, Silent, Store, Task, kept};
 pub use kinds::lobes::fitted;
-pub use maps::{MapSource, MaterialMap};
+pub use maps::{MapSource, MaterialMap, height_normals};
 pub use plan::ImageReader;
 pub use search::{AIM, DEFAULT_BUDGET, goals};
 pub use share::{Missing, bake_share, missing};

@@ -1,8 +1,10 @@
 //! Maps that vary a surface from place to place.
 
+use luthier_layers::flakes::Flakes;
 use luthier_lut::Image;
 use luthier_manifest::MapSlot;
 use luthier_material::{FlakeSource, Material, VariationSource};
+use luthier_optics::stack::Base;
 
 use crate::kinds::thickness::relief::{Field, Relief};
 
@@ -18,6 +20,8 @@ pub struct MaterialMap {
     pub layer: Option<u32>,
     /// Where it comes from.
     pub source: MapSource,
+    /// Number of the file that it multiplies, see [`luthier_manifest::MapEntry`].
+    pub factor: Option<[f64; 3]>,
 }
 
 /// Where a map comes from.
@@ -25,6 +29,13 @@ pub struct MaterialMap {
 pub enum MapSource {
     /// An image, by its path relative to the material file: shipped as it is.
     File(String),
+    /// Heights in an image, by its path relative to the material file: normals are made of them.
+    Heights {
+        /// The path.
+        path: String,
+        /// Height of white above black, as a share of the width of the picture.
+        height: f64,
+    },
     /// Fractal gradient noise.
     Noise {
         /// Seed of the noise.
@@ -41,6 +52,7 @@ impl MapSource {
     pub fn label(&self) -> String {
         match self {
             Self::File(path) => path.clone(),
+            Self::Heights { path, height } => format!("{path}, normals of heights up to {height}"),
             Self::Noise { seed, frequency, octaves } => {
                 format!("Perlin noise, seed {seed}, frequency {frequency}, {octaves} octaves")
             }
@@ -63,29 +75,59 @@ impl MapSource {
     }
 }
 
+/// Normals of a height field that repeats, in RGB as [`MapSlot::Normal`] has them, in steps of 1/255 as a PNG holds them. `height` is that of
+/// white, as a share of the width.
+pub fn height_normals(heights: &Image, height: f64) -> Image {
+    let (width, rows) = (heights.width, heights.height);
+    // Texels are square.
+    let side = 1.0 / f64::from(width);
+    let mut normals = Image::zeros(width, rows, 3);
+    let at = |x: u32, y: u32| height * f64::from(heights.texel(x % width, y % rows)[0]);
+    for y in 0..rows {
+        for x in 0..width {
+            let neighbours = [at(x + width - 1, y), at(x + 1, y), at(x, y + rows - 1), at(x, y + 1)];
+            let normal = Flakes::of_heights(neighbours, [side; 2]).to_array();
+            let texel = normal.map(|c| ((0.5 + 0.5 * c) * 255.0).round() as f32 / 255.0);
+            normals.texel_mut(x, y).copy_from_slice(&texel);
+        }
+    }
+    normals
+}
+
 /// The maps of a material: layers from the top down, then effects.
 pub(crate) fn maps(material: &Material) -> Vec<MaterialMap> {
-    let file = |slot, layer, path: &String| MaterialMap { slot, layer, source: MapSource::File(path.clone()) };
+    let file =
+        |slot, layer, path: &str| MaterialMap { slot, layer, source: MapSource::File(path.to_owned()), factor: None };
     let mut maps = Vec::new();
     for (i, layer) in material.layers.iter().enumerate() {
-        let slots = [
-            (MapSlot::Normal, &layer.maps.normal),
-            (MapSlot::Roughness, &layer.maps.roughness),
-            (MapSlot::Thickness, &layer.maps.thickness),
-        ];
-        maps.extend(slots.iter().filter_map(|&(slot, path)| Some(file(slot, Some(i as u32), path.as_ref()?))));
+        let albedo = match &material.stack.layers[i].base {
+            Base::Diffuse(diffuse) => Some(diffuse.albedo),
+            _ => None,
+        };
+        maps.extend(layer.maps.named().map(|map| MaterialMap {
+            factor: match map.slot {
+                MapSlot::Albedo => albedo,
+                MapSlot::BaseColor => layer.metallic.map(|surface| surface.base_color),
+                MapSlot::Metallic => layer.metallic.map(|surface| [surface.metallic; 3]),
+                _ => None,
+            },
+            ..file(map.slot, Some(i as u32), map.path)
+        }));
     }
-    if let Some(flakes) = &material.effects.flakes
-        && let FlakeSource::NormalMap { path } = &flakes.source
-    {
-        maps.push(file(MapSlot::FlakeNormal, None, path));
+    match material.effects.flakes.as_ref().map(|flakes| &flakes.source) {
+        Some(FlakeSource::NormalMap { path }) => maps.push(file(MapSlot::FlakeNormal, None, path)),
+        Some(FlakeSource::HeightMap { path, height }) => {
+            let source = MapSource::Heights { path: path.clone(), height: *height };
+            maps.push(MaterialMap { source, ..file(MapSlot::FlakeNormal, None, path) });
+        }
+        Some(FlakeSource::Cells { .. }) | None => {}
     }
     if let Some(patina) = &material.effects.patina {
         let source = match &patina.map {
             VariationSource::Image { path } => MapSource::File(path.clone()),
             &VariationSource::Noise { seed, frequency, octaves } => MapSource::Noise { seed, frequency, octaves },
         };
-        maps.push(MaterialMap { slot: MapSlot::Patina, layer: None, source });
+        maps.push(MaterialMap { slot: MapSlot::Patina, layer: None, source, factor: None });
     }
     maps
 }

@@ -9,7 +9,7 @@ use luthier_layers::inputs::{Input, Inputs};
 use luthier_layers::model::Model;
 use luthier_layers::registry::models;
 use luthier_layers::textured::{TextureSample, Textured};
-use luthier_manifest::{Feature, ShadingModel};
+use luthier_manifest::{Feature, Form, MapSlot, ShadingModel};
 use luthier_material::{Effects, Material, left_out};
 use luthier_optics::Rgb;
 use luthier_terminal::{Failure, Outcome};
@@ -19,7 +19,7 @@ use crate::directions::Angles;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Options of some models")]
 pub(crate) struct ModelInputs {
-    /// Texture coordinate of the place; 0,0 for effects of the file (flakes, heterogeneous and its kind)
+    /// Texture coordinate of the place; 0,0 for effects and maps of layers of the file (flakes, heterogeneous and its kind)
     #[arg(long, value_name = "U,V", allow_hyphen_values = true)]
     uv: Option<Uv>,
     /// Distance of the eye, in scene units; 0 for flakes of the file (flakes)
@@ -31,7 +31,7 @@ pub(crate) struct ModelInputs {
     /// Value of the patina's map at the place in place of the map's, 0 to 1; dark places come first (patina)
     #[arg(long, value_name = "X", value_parser = share, allow_hyphen_values = true)]
     map: Option<f64>,
-    /// Leave out what the file says under `effects`, as `luthier_eval` of the shaders does without a place
+    /// Leave out what the file says under `effects` and its maps of single layers, as `luthier_eval` of the shaders does without a place
     #[arg(long)]
     no_effects: bool,
     /// Normal of the inner boundary of the film (granier-heidrich)
@@ -153,11 +153,41 @@ impl ModelInputs {
         (shown, dropped)
     }
 
+    /// The maps of single layers of a file that a model shows, each with its layer, and the names of those that it does not.
+    pub(crate) fn layer_maps(&self, material: &Material, model: &dyn Model) -> (Vec<LayerMap>, Vec<&'static str>) {
+        if self.no_effects {
+            return Default::default();
+        }
+        let maps =
+            material.layers.iter().enumerate().flat_map(|(i, layer)| layer.maps.named().map(move |map| (i, map)));
+        let lacks = |feature: Feature| match ShadingModel::from_name(model.info().name) {
+            Some(shader) => !Form::ALL.iter().any(|&form| shader.honours(feature, form)),
+            None => true,
+        };
+        let (mut shown, mut dropped) = (Vec::new(), Vec::new());
+        for (layer, map) in maps {
+            match map.slot.layer_feature(layer as u32) {
+                Some(feature) if lacks(feature) => dropped.push(feature.name()),
+                Some(_) => shown.push(LayerMap { layer, slot: map.slot, path: map.path.to_owned() }),
+                None => {}
+            }
+        }
+        dropped.dedup();
+        (shown, dropped)
+    }
+
     /// Refuses options that neither the model, nor the effects that it shows, nor the choice of a surface take.
-    pub(crate) fn check(&self, model: &dyn Model, shown: &Effects, is_surface: bool, environment: bool) -> Outcome {
+    pub(crate) fn check(
+        &self,
+        model: &dyn Model,
+        shown: &Effects,
+        has_maps: bool,
+        is_surface: bool,
+        environment: bool,
+    ) -> Outcome {
         let (flakes, patina) = (shown.flakes.is_some(), shown.patina.is_some());
         let by_effects = |input: Input| match input {
-            Input::Uv => is_surface || flakes || patina || shown.glitter.is_some(),
+            Input::Uv => is_surface || has_maps || flakes || patina || shown.glitter.is_some(),
             Input::Distance => flakes,
             Input::Extent | Input::Map => patina,
             _ => false,
@@ -193,7 +223,7 @@ impl ModelInputs {
         let takers: Vec<&str> = infos.filter(|i| i.inputs.contains(&input)).map(|i| i.name).collect();
         let effects = match input {
             Input::Uv => {
-                "; and `elek`, `weidlich-wilkie` and `lobes` for a file with flakes or patina, any model for one with glitter and for a surface"
+                "; and `elek`, `weidlich-wilkie` and `lobes` for a file with flakes or patina, any model for one with glitter and for a surface; and models that show the maps of layers of a file"
             }
             Input::Distance => "; and `elek`, `weidlich-wilkie` and `lobes` for a file with flakes",
             Input::Extent | Input::Map => "; and `elek`, `weidlich-wilkie` and `lobes` for a file with patina",
@@ -225,6 +255,17 @@ impl ModelInputs {
     pub(crate) fn textured(sample: TextureSample, model: Box<dyn Model>) -> Box<dyn Model> {
         if sample == TextureSample::NONE { model } else { Box::new(Textured { sample, model }) }
     }
+}
+
+/// A map of one layer of a file.
+#[derive(Debug)]
+pub(crate) struct LayerMap {
+    /// The layer, from the top.
+    pub(crate) layer: usize,
+    /// Quantity that it varies.
+    pub(crate) slot: MapSlot,
+    /// Path relative to the file.
+    pub(crate) path: String,
 }
 
 #[derive(Debug, Clone, Copy)]

@@ -8,6 +8,7 @@ use std::path::Path;
 
 use luthier_bake::{
     BakeError, BakedMaterial, ImageReader, MapSource, MaterialMap, Missing, Observer, Options, Share, Silent, Store,
+    height_normals,
 };
 use luthier_lut::{Atlas, AtlasLayout, Image, TableKind, TexelFormat};
 use luthier_manifest::{
@@ -342,6 +343,11 @@ fn map(material: &Material, map: &MaterialMap) -> Result<(MapEntry, Image, Vec<u
     let unusable = |source| ExportError::Map { material: material.source.clone(), map: map.source.label(), source };
     let bytes = match &map.source {
         MapSource::File(path) => named_file(material, path)?,
+        MapSource::Heights { path, height } => {
+            let normals = height_normals(&png::decode(&named_file(material, path)?).map_err(unusable)?, *height);
+            let texels: Vec<u8> = normals.data.iter().map(|value| (255.0 * value).round() as u8).collect();
+            png::encode_rgb(normals.width, normals.height, &texels).map_err(unusable)?
+        }
         MapSource::Noise { .. } => {
             let texels = map.source.texels().unwrap_or_else(|| Image::zeros(1, 1, 1));
             png::encode_gray(&texels).map_err(unusable)?
@@ -352,7 +358,7 @@ fn map(material: &Material, map: &MaterialMap) -> Result<(MapEntry, Image, Vec<u
     let path = format!("maps/{}-{}{layer}.png", material.name, map.slot.name());
     let file = FileEntry { path, sha256: sha256(&bytes) };
     let (slot, layer, width, height) = (map.slot, map.layer, image.width, image.height);
-    Ok((MapEntry { slot, layer, source: label, file, width, height }, image, bytes))
+    Ok((MapEntry { slot, layer, source: label, file, width, height, factor: map.factor }, image, bytes))
 }
 
 /// A file that a material names.

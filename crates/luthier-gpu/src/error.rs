@@ -153,6 +153,12 @@ pub enum GpuError {
         /// Property that needs them.
         reason: &'static str,
     },
+    /// Blurred maps of the environment know nothing of the textures of single layers.
+    #[error("`{material}` has maps of single layers, which only samples of the environment show")]
+    LayerMaps {
+        /// Name of the material.
+        material: String,
+    },
     /// An environment that cannot be made.
     #[error("environment: {0}")]
     Environment(#[from] EnvironmentError),

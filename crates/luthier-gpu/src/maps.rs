@@ -2,33 +2,102 @@
 
 use luthier_manifest::{MapSlot, MaterialEntry};
 
-use crate::Scene;
+use crate::{GpuError, Scene};
 
 /// `vec4` words per material before its maps: see `ShadingMaps` in `shading.wgsl`.
-pub(crate) const MAP_WORDS: usize = 7;
+pub(crate) const MAP_WORDS: usize = 8;
+
+/// Words of each layer that has maps of its own, behind those.
+const OWN_WORDS: usize = 8;
 
 impl Scene {
     /// The words of a material's maps, then their texels. `first` is where they begin.
     pub(crate) fn map_words(&self, material: usize, entry: &MaterialEntry, first: usize) -> Vec<[u32; 4]> {
-        let mut headers = [[0; 4]; MAP_WORDS];
+        let mut headers = self.no_map_words();
         let mut texels = Vec::new();
+        let behind = first + headers.len();
         for map in self.maps.iter().filter(|map| map.material as usize == material) {
-            let header = &mut headers[slot_word(map.slot)];
-            // One place has one normal, one factor on all slope parameters and one on the first slab: the topmost map counts.
-            if header[1] > 0 || (map.slot == MapSlot::Thickness && map.layer != Some(0)) {
-                continue;
-            }
-            *header = [(first + MAP_WORDS + texels.len()) as u32, map.image.width, map.image.height, 0];
-            texels.extend(map.image.texels().map(|t| [t[0], t[1], t[2], t[3]].map(f32::to_bits)));
+            let is_own = |layer: &u32| map.slot != MapSlot::Albedo && map.slot.layer_feature(*layer).is_some();
+            let own = map.layer.filter(is_own);
+            let word = match own {
+                None => slot_word(map.slot),
+                Some(layer) => MAP_WORDS + OWN_WORDS * layer as usize + own_word(map.slot),
+            };
+            // Layers that the model does not read have no words. Of whole surfaces the topmost map counts.
+            let Some(header) = headers.get_mut(word).filter(|header| header[1] == 0) else { continue };
+            *header = [(behind + texels.len()) as u32, map.image.width, map.image.height, 0];
+            let stated = entry.maps.iter().find(|stated| (stated.slot, stated.layer) == (map.slot, map.layer));
+            let factor = stated.and_then(|stated| stated.factor).unwrap_or([1.0; 3]);
+            let [r, g, b] = factor.map(|factor| factor as f32);
+            texels.extend(map.image.texels().map(|t| [r * t[0], g * t[1], b * t[2], t[3]].map(f32::to_bits)));
         }
         if let Some(patina) = &entry.constants.patina {
             let bits = |[r, g, b]: [f64; 3], w: f64| [r, g, b, w].map(|v| (v as f32).to_bits());
             headers[5] = bits(patina.diffuse_albedo, patina.base_alpha.unwrap_or(-1.0));
             headers[6] = bits(patina.tarnish, 0.0);
         }
-        let mut words = headers.to_vec();
-        words.extend(texels);
-        words
+        headers.extend(texels);
+        headers
+    }
+
+    /// The words of a material without maps.
+    pub(crate) fn no_map_words(&self) -> Vec<[u32; 4]> {
+        vec![[0; 4]; MAP_WORDS + OWN_WORDS * self.layer_places()]
+    }
+
+    /// Number of layers that have a place of their own in the shader.
+    fn layer_places(&self) -> usize {
+        let shown = self.manifest.materials.iter().flat_map(|entry| entry.shown_layer_maps(self.form()));
+        let shown = shown.filter(|(_, slot)| *slot != MapSlot::Albedo);
+        shown.map(|(layer, _)| layer as usize + 1).max().unwrap_or(0)
+    }
+
+    /// Whether a material has maps of single layers or of its albedo, which the blurred environment does not show.
+    ///
+    /// # Errors
+    /// [`GpuError::NoMaterial`](crate::GpuError::NoMaterial).
+    pub fn has_layer_maps(&self, material: u32) -> Result<bool, GpuError> {
+        self.layers(material)?;
+        Ok(self.manifest.materials[material as usize].shown_layer_maps(self.form()).next().is_some())
+    }
+
+    /// The functions that fill the places of layers, and the lines that call them.
+    fn layer_functions(&self) -> (String, Vec<String>) {
+        let count = self.layer_places();
+        if count == 0 {
+            return Default::default();
+        }
+        let lines = [
+            (
+                self.has("fn luthier_onto("),
+                "let bumps = shading_own(material, layer, 0u);\n    if bumps.y > 0u {\n        \
+                 let n = 2.0 * shading_bilinear(bumps, uv).xyz - 1.0;\n        \
+                 own.normal = normalize(vec3<f32>(n.xy, max(n.z, 1e-3)));\n    }",
+            ),
+            (
+                self.has("alpha_factors: vec2"),
+                "own.alpha_factors = shading_own_factor(material, layer, 1u, uv)\n        * \
+                 vec2<f32>(shading_own_factor(material, layer, 2u, uv), shading_own_factor(material, layer, 3u, uv));",
+            ),
+            (
+                self.has("fn luthier_tangent("),
+                "let tangent = shading_own(material, layer, 4u);\n    if tangent.y > 0u {\n        \
+                 own.tangent = luthier_tangent(shading_bilinear(tangent, uv).xy);\n    }",
+            ),
+            (self.has("    slab_factor: f32,\n}"), "own.slab_factor = shading_own_factor(material, layer, 5u, uv);"),
+        ];
+        let fill: Vec<&str> = lines.iter().filter(|(has, _)| *has).map(|(_, line)| *line).collect();
+        let functions = include_str!("wgsl/surface_layers.wgsl")
+            .replace("$words", &format!("{MAP_WORDS}u"))
+            .replace("$own", &format!("{OWN_WORDS}u"))
+            .replace("$fill", &fill.join("\n    "));
+        let call = |i| format!("surface.layers[{i}] = shading_layer_place(material, {i}u, maps.uv);");
+        let mut calls: Vec<String> = (0..count).map(call).collect();
+        if self.has("fn luthier_metallic_place(") {
+            calls.push("surface = shading_metallic(surface, material, maps.uv);".to_owned());
+            return (functions + include_str!("wgsl/surface_metallic.wgsl"), calls);
+        }
+        (functions, calls)
     }
 
     /// `ShadingSurface`, what the emitted shader takes for a place, and the functions that fill, read and use it.
@@ -67,14 +136,23 @@ impl Scene {
                  surface.normal = select(surface.normal, glitter, glitter.z < 1.0);",
             ),
         ];
-        let fill: Vec<&str> = lines.iter().filter(|(has, _)| *has).map(|(_, line)| *line).collect();
+        let (layers, calls) = self.layer_functions();
+        let mut fill: Vec<&str> = lines.iter().filter(|(has, _)| *has).map(|(_, line)| *line).collect();
+        fill.extend(calls.iter().map(String::as_str));
+        if self.has("base_color: vec3") {
+            fill.push(
+                "let albedo = shading_map_header(material, 7u);\n    if albedo.y > 0u {\n        \
+                 surface.base_color = shading_bilinear(albedo, maps.uv).xyz;\n    }",
+            );
+        }
         let below = if self.has("flake_normal: vec3") { "surface.flake_normal" } else { "vec3<f32>(0.0, 0.0, 1.0)" };
         let patina = if self.has("patina: f32,") { "surface.patina" } else { "-1.0" };
-        include_str!("wgsl/surface.wgsl")
+        let functions = include_str!("wgsl/surface.wgsl")
             .replace("$fill", &fill.join("\n    "))
             .replace("$lit", lit)
             .replace("$below", below)
-            .replace("$patina", patina)
+            .replace("$patina", patina);
+        functions + &layers
     }
 }
 
@@ -85,5 +163,28 @@ fn slot_word(slot: MapSlot) -> usize {
         MapSlot::Thickness => 2,
         MapSlot::Patina => 3,
         MapSlot::FlakeNormal => 4,
+        MapSlot::Albedo => 7,
+        // No whole surface has these.
+        MapSlot::Bumps
+        | MapSlot::Alpha
+        | MapSlot::AlphaX
+        | MapSlot::AlphaY
+        | MapSlot::Tangent
+        | MapSlot::BaseColor
+        | MapSlot::Metallic => usize::MAX,
+    }
+}
+
+/// The word of a map of one layer among its words.
+fn own_word(slot: MapSlot) -> usize {
+    match slot {
+        MapSlot::Bumps => 0,
+        MapSlot::Alpha => 1,
+        MapSlot::AlphaX => 2,
+        MapSlot::AlphaY => 3,
+        MapSlot::Tangent => 4,
+        MapSlot::BaseColor => 6,
+        MapSlot::Metallic => 7,
+        _ => 5,
     }
 }

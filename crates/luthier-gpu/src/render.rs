@@ -120,7 +120,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`GpuError::Prefiltered`] for another form than `baked` without samples, [`GpuError::NoReflectance`] for a material without
-    /// the tables that this takes, [`GpuError::Setting`], [`GpuError::NoMaterial`], and whatever the device reports.
+    /// the tables that this takes, [`GpuError::LayerMaps`] for one with maps of single layers, [`GpuError::Setting`], [`GpuError::NoMaterial`], and whatever the device reports.
     pub fn render(&self, materials: &[u32], settings: &RenderSettings) -> Result<Image, GpuError> {
         self.render_shown(&parts(materials), settings)
     }
@@ -207,6 +207,12 @@ impl Scene {
         if let Some(&material) = materials.iter().find(lacks).filter(|_| settings.environment_samples == 0) {
             let material = self.manifest.materials[material as usize].name.clone();
             return Err(GpuError::NoReflectance { material });
+        }
+        for &material in materials.iter().filter(|_| settings.environment_samples == 0) {
+            if self.has_layer_maps(material)? {
+                let material = self.manifest.materials[material as usize].name.clone();
+                return Err(GpuError::LayerMaps { material });
+            }
         }
         let mut settings = settings.clone();
         if settings.environment_samples == 0 && settings.shape == Shape::Mesh {
@@ -336,7 +342,7 @@ impl Scene {
             let first = words.len();
             words[headers + i][2] = first as u32;
             let used = materials.contains(&(i as u32));
-            words.extend(if used { self.map_words(i, entry, first) } else { vec![[0; 4]; MAP_WORDS] });
+            words.extend(if used { self.map_words(i, entry, first) } else { self.no_map_words() });
         }
 
         let prefiltered = settings.environment_samples == 0;

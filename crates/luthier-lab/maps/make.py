@@ -1,5 +1,6 @@
-"""The maps of figures, by periodic noise: thickness.png, a grey map, bumps.png, a normal map of a field of bumps, and patina.png, where patina grows
-first: in blotches and in streaks that water has left, every value as often as every other.
+"""The maps of figures: thickness.png, a grey map of periodic noise; bumps.png, a normal map of a field of bumps; patina.png, where patina grows
+first: in blotches and in streaks that water has left, every value as often as every other; circles.png and rays.png, two fields of tangents that cross;
+heights.png, flakes that lie askew; paint.png, a picture in colours.
 
     python3 crates/luthier-lab/maps/make.py
 """
@@ -75,3 +76,41 @@ patina = lambda u, v: 0.72 * blotches(u, v) + 0.28 * streaks((u + 0.05 * wander(
 grown = [patina(at(i), at(j)) for j in range(SIZE) for i in range(SIZE)]
 ranks = {place: rank for rank, place in enumerate(sorted(range(SIZE * SIZE), key=lambda place: grown[place]))}
 png("patina.png", 0, [[255 * ranks[j * SIZE + i] // (SIZE * SIZE - 1) for i in range(SIZE)] for j in range(SIZE)])
+
+def tangents(turn):
+    """Lines around the middle of the map, which is the front of a ball, turned by an angle; v runs against the bitangent."""
+
+    def texel(u, v):
+        x, y = 2 * math.pi * (u - 0.5), -math.pi * (v - 0.5)
+        doubled = 2 * (math.atan2(y, x) + turn)
+        return [byte(0.5 + 0.5 * math.cos(doubled)), byte(0.5 + 0.5 * math.sin(doubled)), 128]
+
+    return texel
+
+
+def flakes(u, v):
+    """Height of flakes: planes that lie askew, each on a square of a grid of 32 by 32."""
+    i, j = int(32 * u), int(32 * v)
+    rng = random.Random(32 * j + i + 7)
+    x, y = 32 * u - i - 0.5, 32 * v - j - 0.5
+    return min(1, max(0, 0.5 + 0.8 * (rng.random() - 0.5) * x + 0.8 * (rng.random() - 0.5) * y))
+
+
+hue = octaves(11, 3, 3)
+
+
+def paint(u, v):
+    """Stripes of two colours that noise bends."""
+    stripe = 0.5 + 0.5 * math.sin(2 * math.pi * (6 * v + 1.5 * hue(u, v)))
+    share = min(1, max(0, 4 * (stripe - 0.5) + 0.5))
+    return [byte(a + share * (b - a)) for a, b in [(0.85, 0.1), (0.35, 0.3), (0.12, 0.6)]]
+
+
+def rgb(texel):
+    return [[c for i in range(SIZE) for c in texel(at(i), at(j))] for j in range(SIZE)]
+
+
+png("circles.png", 2, rgb(tangents(0.5 * math.pi)))
+png("rays.png", 2, rgb(tangents(0.0)))
+png("heights.png", 0, [[byte(flakes(at(i), at(j))) for i in range(SIZE)] for j in range(SIZE)])
+png("paint.png", 2, rgb(paint))

@@ -50,7 +50,7 @@ pub use luthier_optics;
 pub use num_complex;
 
 pub use self::noise::{perlin, voronoi};
-pub use effects::{flakes, fluorescence, heterogeneous, patina, textured};
+pub use effects::{flakes, fluorescence, heterogeneous, layer_sample, patina, textured};
 /// Re-radiation matrices of fluorescent bases.
 pub use luthier_optics::reradiation;
 pub use models::{

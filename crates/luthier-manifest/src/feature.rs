@@ -31,6 +31,18 @@ pub enum Feature {
     RoughnessMap,
     /// A map of the thickness of the first slab.
     ThicknessMap,
+    /// A normal map of one layer alone.
+    Bumps,
+    /// A map of the slope parameters of one layer.
+    LayerAlpha,
+    /// A map of the tangents of one layer.
+    Tangents,
+    /// A map of the thickness of a slab below the first.
+    InnerThickness,
+    /// A map of the albedo of the diffuse base.
+    AlbedoMap,
+    /// Maps of base colour and metal of a metallic-roughness surface.
+    MetallicMap,
     /// Flakes below the first interface.
     Flakes,
     /// Patina: a first layer that covers the others in places only.
@@ -45,7 +57,7 @@ pub enum Feature {
 
 impl Feature {
     /// All features.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 24] = [
         Self::InnerInterface,
         Self::Base,
         Self::Absorption,
@@ -59,6 +71,12 @@ impl Feature {
         Self::NormalMap,
         Self::RoughnessMap,
         Self::ThicknessMap,
+        Self::Bumps,
+        Self::LayerAlpha,
+        Self::Tangents,
+        Self::InnerThickness,
+        Self::AlbedoMap,
+        Self::MetallicMap,
         Self::Flakes,
         Self::Patina,
         Self::Glitter,
@@ -82,6 +100,12 @@ impl Feature {
             Self::NormalMap => "the normal map",
             Self::RoughnessMap => "the roughness map",
             Self::ThicknessMap => "the thickness map",
+            Self::Bumps => "the bumps of one layer",
+            Self::LayerAlpha => "the alpha map of one layer",
+            Self::Tangents => "the tangent map",
+            Self::InnerThickness => "the thickness map of an inner slab",
+            Self::AlbedoMap => "the albedo map",
+            Self::MetallicMap => "maps of base colour and metal",
             Self::Flakes => "flakes",
             Self::Patina => "patina",
             Self::Glitter => "glitter",
@@ -119,6 +143,14 @@ impl ShadingModel {
             }
             Feature::Beckmann => is_chain || matches!(self, Self::Microfacet | Self::Lobes),
             Feature::ThicknessMap => is_chain || is_statistical || self == Self::Lobes,
+            Feature::Bumps => is_chain,
+            Feature::LayerAlpha => !matches!(self, Self::Phong | Self::Lobes),
+            // Rows of lobes are over azimuths against axes that stay.
+            Feature::Tangents => matches!(self, Self::WeidlichWilkie | Self::Yamaguchi | Self::Microfacet),
+            Feature::InnerThickness => is_chain || is_statistical,
+            Feature::AlbedoMap => self != Self::Phong,
+            // Energies of rough interfaces, and rows of lobes, are tabulated for one F0.
+            Feature::MetallicMap => is_chain || self == Self::Microfacet,
             Feature::Flakes | Feature::Patina => is_chain || self == Self::Lobes,
             Feature::Reradiation => is_chain,
             // V-cavities and the other maskings without Smith's Lambda need no more than D.
@@ -144,14 +176,14 @@ mod tests {
             Feature::ALL.into_iter().map(column).collect()
         };
         for (model, expected) in [
-            (ShadingModel::Elek, "#####b##.#########"),
-            (ShadingModel::WeidlichWilkie, "#####b############"),
-            (ShadingModel::Belcour, "#####bf#..###..#.."),
-            (ShadingModel::Yamaguchi, "#####bf##.###..#.."),
-            (ShadingModel::GranierHeidrich, ".#..#.#...##...#.."),
-            (ShadingModel::Phong, "###.##....##...#.."),
-            (ShadingModel::Microfacet, "....#b######...#.#"),
-            (ShadingModel::Lobes, "################.."),
+            (ShadingModel::Elek, "#####b##.######.########"),
+            (ShadingModel::WeidlichWilkie, "#####b##################"),
+            (ShadingModel::Belcour, "#####bf#..###.#.##...#.."),
+            (ShadingModel::Yamaguchi, "#####bf##.###.####...#.."),
+            (ShadingModel::GranierHeidrich, ".#..#.#...##..#..#...#.."),
+            (ShadingModel::Phong, "###.##....##.........#.."),
+            (ShadingModel::Microfacet, "....#b######..##.##..#.#"),
+            (ShadingModel::Lobes, "#############....#.###.."),
         ] {
             assert_eq!(shown(model), expected, "{model}");
         }

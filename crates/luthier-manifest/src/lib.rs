@@ -17,6 +17,7 @@ mod functions;
 mod limits;
 mod lock;
 mod manifest;
+mod map;
 mod model;
 mod parts;
 mod reads;
@@ -40,9 +41,9 @@ pub use limits::{BUFFER_WORDS_MAX, MaterialTexture, SIDE, SIDE_MAX};
 pub use lock::{Decision, Lock};
 pub use luthier_optics::stack::Distribution;
 pub use manifest::{
-    BindingEntry, ColorMode, FileEntry, MANIFEST_SCHEMA, Manifest, MapEntry, MapSlot, MaterialEntry, ShaderEntry,
-    TableEntry,
+    BindingEntry, ColorMode, FileEntry, MANIFEST_SCHEMA, Manifest, MaterialEntry, ShaderEntry, TableEntry,
 };
+pub use map::{MapEntry, MapSlot};
 pub use model::ShadingModel;
 pub use parts::{InternalReflection, Masking, Reflectance, ReflectanceCurve};
 pub use record::{LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, material_buffer};

@@ -4,7 +4,7 @@ use luthier_lut::{AtlasLayout, TableKind, TexelFormat, Tile};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Form, Functions, InternalReflection, LayerKind, LayerRecord, ManifestError, Masking, MaterialConstants,
+    Form, Functions, InternalReflection, LayerKind, LayerRecord, ManifestError, MapEntry, Masking, MaterialConstants,
     MaterialTexture, Reflectance, SceneChoice, Search, ShadingModel, SurfaceEntry, Target,
 };
 
@@ -81,42 +81,6 @@ pub struct MaterialEntry {
     pub layers: Vec<LayerRecord>,
     /// Textures that vary the surface from place to place.
     pub maps: Vec<MapEntry>,
-}
-
-luthier_lut::named! {
-    /// Quantity that a map varies.
-    #[derive(Serialize, Deserialize)]
-    #[serde(into = "&'static str", try_from = "String")]
-    pub enum MapSlot("map") {
-        /// Tangent-space normal: RGB is (normal + 1) / 2.
-        Normal = "normal",
-        /// Factor on the roughness: on the slope parameters its square.
-        Roughness = "roughness",
-        /// Factor on the thickness of the slab below the layer.
-        Thickness = "thickness",
-        /// Order in which patina develops; dark places come first.
-        Patina = "patina",
-        /// Normals of flakes, RGB as for [`MapSlot::Normal`], to be read without filtering.
-        FlakeNormal = "flake-normal",
-    }
-}
-
-/// A map of a material: PNG, linear values in 0..=1, which repeats in both texture coordinates. Texel centres are at
-/// (i + 1/2) / size, the first row is at v = 0.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct MapEntry {
-    /// Quantity that the map varies.
-    pub slot: MapSlot,
-    /// The layer that it is of, from the top; null for maps of the whole surface.
-    pub layer: Option<u32>,
-    /// Where it came from: the path in the material file, or the noise that it was made of.
-    pub source: String,
-    /// The file.
-    pub file: FileEntry,
-    /// Texels across.
-    pub width: u32,
-    /// Texels down.
-    pub height: u32,
 }
 
 /// One table: a texture and its truth.
@@ -290,7 +254,7 @@ mod tests {
     use luthier_optics::stack::Distribution;
 
     use crate::{
-        Budget, Candidate, CandidateForm, FlakesRecord, GlitterRecord, LayerKind, MeasuredError, PatinaRecord,
+        Budget, Candidate, CandidateForm, FlakesRecord, GlitterRecord, LayerKind, MapSlot, MeasuredError, PatinaRecord,
     };
 
     fn manifest() -> Manifest {
@@ -384,6 +348,7 @@ mod tests {
                         file: file("maps/red-lacquer-flake-normal.png"),
                         width: 64,
                         height: 32,
+                        factor: None,
                     },
                     MapEntry {
                         slot: MapSlot::Roughness,
@@ -392,6 +357,7 @@ mod tests {
                         file: file("maps/red-lacquer-roughness-1.png"),
                         width: 1,
                         height: 1,
+                        factor: Some([0.1, 0.2, 0.3]),
                     },
                 ],
             }],

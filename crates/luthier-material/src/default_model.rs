@@ -84,6 +84,18 @@ mod tests {
             (COAT.to_owned() + smooth + WHITE, "lobes", "elek", None),
             (COAT.to_owned() + beckmann + GOLD + rough, "lobes", "elek", None),
             (COAT.to_owned() + bumpy + GOLD + rough, "lobes", "elek", None),
+            (
+                COAT.to_owned() + smooth + GOLD + brushed + "[layer.maps]\ntangent = \"t.png\"\n",
+                "yamaguchi",
+                "weidlich-wilkie",
+                Some("layer.1.maps.tangent"),
+            ),
+            (
+                COAT.to_owned() + smooth + GOLD + rough + "[layer.maps]\nbumps = \"n.png\"\n",
+                "elek",
+                "elek",
+                Some("layer.1.maps.bumps"),
+            ),
             (COAT.to_owned() + scratched + WHITE, "lobes", "elek", None),
             (COAT.to_owned() + stained + WHITE, "lobes", "elek", None),
             (COAT.to_owned() + worn + WHITE, "belcour", "elek", Some("layer.0.maps.thickness")),

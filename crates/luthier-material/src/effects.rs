@@ -49,6 +49,13 @@ pub enum FlakeSource {
         /// Path relative to the material file.
         path: String,
     },
+    /// Heights, of which normals are made by finite differences.
+    HeightMap {
+        /// Path relative to the material file.
+        path: String,
+        /// Height of white above black, as a share of the width of the picture.
+        height: f64,
+    },
     /// One random normal per cell of a grid.
     Cells {
         /// Seed of the cells.

@@ -75,6 +75,11 @@ pub fn left_out(material: &Material, model: ShadingModel) -> Vec<LeftOut> {
                 tell(feature, key(name));
             }
         }
+        for map in material.layers[number].maps.named() {
+            if let Some(feature) = map.slot.layer_feature(number as u32) {
+                tell(feature, key(&format!("maps.{}", map.key)));
+            }
+        }
     }
     let maps = material.layers.first().map(|first| &first.maps);
     let effects = &material.effects;

@@ -39,7 +39,7 @@ pub use class::{SMOOTH_SLOPE_DEG, SurfaceClass};
 pub use diagnostic::{Diagnostic, Severity};
 pub use effects::{Effects, FlakeSource, Flakes, Glitter, Patina};
 pub use left_out::{LeftOut, distribution_key, left_out};
-pub use material::{FilmVariation, LayerExtras, Maps, Material, NamedImage, VariationSource};
+pub use material::{FilmVariation, LayerExtras, Maps, Material, Metallic, NamedImage, NamedMap, VariationSource};
 pub use parse::{Parsed, parse};
 pub use places::Places;
 pub use scene::{Light, Scene, SceneMaterial, SceneTarget, View, is_scene, parse_scene};

@@ -3,7 +3,7 @@
 use luthier_optics::Rgb;
 use luthier_optics::stack::Stack;
 
-use luthier_manifest::{BeamsRecord, Budget, ShadingModel};
+use luthier_manifest::{BeamsRecord, Budget, MapSlot, ShadingModel};
 
 use crate::bake_settings::{BakeSettings, Beams};
 use crate::class::SurfaceClass;
@@ -28,7 +28,7 @@ pub struct Material {
     pub references: Vec<String>,
     /// The physics: interfaces from the top down.
     pub stack: Stack,
-    /// Properties of each layer beyond physics; parallel to `stack.layers`. Only the first has maps, and only a base re-radiates.
+    /// Properties of each layer beyond physics; parallel to `stack.layers`. Only a base re-radiates.
     pub layers: Vec<LayerExtras>,
     /// Effects on top of the layered model.
     pub effects: Effects,
@@ -43,10 +43,10 @@ pub struct Material {
 }
 
 /// An image that a material names.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NamedImage<'m> {
     /// The key that names it, as in [`Places`].
-    pub key: &'static str,
+    pub key: String,
     /// Path relative to the material file.
     pub path: &'m str,
 }
@@ -100,24 +100,26 @@ impl Material {
         self.layers.last().and_then(|layer| layer.reradiation)
     }
 
-    /// The images that it names: of the first layer, then of effects.
+    /// The images that it names: of layers from the top down, then of effects.
     pub fn images(&self) -> Vec<NamedImage<'_>> {
-        let mut found: Vec<(&'static str, Option<&str>)> = Vec::new();
-        if let Some(LayerExtras { film_variation, maps, .. }) = self.layers.first() {
+        let mut found: Vec<(String, Option<&str>)> = Vec::new();
+        for (i, LayerExtras { film_variation, maps, .. }) in self.layers.iter().enumerate() {
             let film = film_variation.as_ref().and_then(|variation| variation.source.image());
-            found.extend([
-                ("layer.0.maps.normal", maps.normal.as_deref()),
-                ("layer.0.maps.roughness", maps.roughness.as_deref()),
-                ("layer.0.maps.thickness", maps.thickness.as_deref()),
-                ("layer.0.film.0.thickness_nm.map.image", film),
-            ]);
+            found.extend(maps.named().map(|map| (format!("layer.{i}.maps.{}", map.key), Some(map.path))));
+            found.push((format!("layer.{i}.film.0.thickness_nm.map.image"), film));
         }
         let flakes = self.effects.flakes.as_ref().and_then(|flakes| match &flakes.source {
-            FlakeSource::NormalMap { path } => Some(path.as_str()),
+            FlakeSource::NormalMap { path } => Some(("effects.flakes.normal_map", path.as_str())),
+            FlakeSource::HeightMap { path, .. } => Some(("effects.flakes.height_map.image", path.as_str())),
             FlakeSource::Cells { .. } => None,
         });
         let patina = self.effects.patina.as_ref().and_then(|patina| patina.map.image());
-        found.extend([("effects.flakes.normal_map", flakes), ("effects.patina.map.image", patina)]);
+        found.extend(
+            [flakes, patina.map(|path| ("effects.patina.map.image", path))]
+                .into_iter()
+                .flatten()
+                .map(|(key, path)| (key.to_owned(), Some(path))),
+        );
         found.into_iter().filter_map(|(key, path)| Some(NamedImage { key, path: path? })).collect()
     }
 }
@@ -134,6 +136,17 @@ pub struct LayerExtras {
     pub exponents: Option<[f64; 2]>,
     /// Texture slots.
     pub maps: Maps,
+    /// Base colour and metal of a `metallic-roughness` surface where maps multiply them: the stack has that without metal.
+    pub metallic: Option<Metallic>,
+}
+
+/// Base colour and metal of a `metallic-roughness` surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Metallic {
+    /// F0 of the metal and diffuse colour of the dielectric, RGB.
+    pub base_color: Rgb,
+    /// 0 is a dielectric, 1 a metal.
+    pub metallic: f64,
 }
 
 /// Paths of the textures that modulate a layer, relative to the material file.
@@ -145,6 +158,54 @@ pub struct Maps {
     pub roughness: Option<String>,
     /// Multiplies the slab's thickness.
     pub thickness: Option<String>,
+    /// Tangent-space normal map of this layer alone.
+    pub bumps: Option<String>,
+    /// Multiplies the slope parameters of this layer alone.
+    pub alpha: Option<String>,
+    /// Multiplies its slope parameter along the tangent.
+    pub alpha_x: Option<String>,
+    /// Multiplies its slope parameter along the bitangent.
+    pub alpha_y: Option<String>,
+    /// Directions of its tangent: cosine and sine of the doubled angle.
+    pub tangent: Option<String>,
+    /// Multiplies the albedo of a diffuse base.
+    pub albedo: Option<String>,
+    /// Multiplies the base colour of a metallic-roughness surface.
+    pub base_color: Option<String>,
+    /// Multiplies how metallic it is.
+    pub metallic: Option<String>,
+}
+
+/// A map of a layer with its key in the file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NamedMap<'m> {
+    /// Key below `maps`.
+    pub key: &'static str,
+    /// Quantity that it varies.
+    pub slot: MapSlot,
+    /// Path relative to the material file.
+    pub path: &'m str,
+}
+
+impl Maps {
+    /// The maps that are there.
+    pub fn named(&self) -> impl Iterator<Item = NamedMap<'_>> {
+        [
+            ("normal", MapSlot::Normal, &self.normal),
+            ("roughness", MapSlot::Roughness, &self.roughness),
+            ("thickness", MapSlot::Thickness, &self.thickness),
+            ("bumps", MapSlot::Bumps, &self.bumps),
+            ("alpha", MapSlot::Alpha, &self.alpha),
+            ("alpha_x", MapSlot::AlphaX, &self.alpha_x),
+            ("alpha_y", MapSlot::AlphaY, &self.alpha_y),
+            ("tangent", MapSlot::Tangent, &self.tangent),
+            ("albedo", MapSlot::Albedo, &self.albedo),
+            ("base_color", MapSlot::BaseColor, &self.base_color),
+            ("metallic", MapSlot::Metallic, &self.metallic),
+        ]
+        .into_iter()
+        .filter_map(|(key, slot, path)| Some(NamedMap { key, slot, path: path.as_deref()? }))
+    }
 }
 
 /// How the thickness of a film varies between its extremes.

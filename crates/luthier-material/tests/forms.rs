@@ -169,9 +169,10 @@ fn a_file_of_another_version_says_only_that() {
     assert_eq!(diagnostics[0].message, "`schema` must be 1, found 2");
 }
 
-/// A place of a surface has one normal and one factor: shaders read those of the first layer. Each other is refused where it stands.
+/// A place of a surface has one normal and one factor on all roughnesses: maps of these belong to the first layer. Each other is refused where
+/// it stands, and any layer has those of its own.
 #[test]
-fn maps_belong_to_the_first_layer() {
+fn maps_of_the_whole_surface_belong_to_the_first_layer() {
     let coat = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\nthickness_um = 1\nabsorption_per_um = 1\n";
     let metal = "[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.2\n";
     let maps = |names: &[&str]| {
@@ -179,11 +180,12 @@ fn maps_belong_to_the_first_layer() {
         format!("maps = {{ {} }}\n", named.join(", "))
     };
     material(&format!("{coat}{}{metal}", maps(&["normal", "roughness", "thickness"])));
+    material(&format!("{coat}{coat}{}{metal}{}", maps(&["thickness", "alpha"]), maps(&["bumps", "alpha"])));
     let body = format!("{coat}{coat}{}{metal}{}", maps(&["thickness"]), maps(&["normal", "roughness"]));
     let found = parse("x.toml", &format!("schema = 1\nname = \"x\"\n{body}"), &read).unwrap_err();
     let places: Vec<(usize, String)> = found.iter().map(|d| (d.line, d.message.clone())).collect();
-    let expected = [(15, "thickness"), (20, "normal"), (20, "roughness")].map(|(line, name)| {
-        (line, format!("a {name} map belongs to the first layer: shaders read none of a layer below it"))
+    let expected = [(20, "normal"), (20, "roughness")].map(|(line, name)| {
+        (line, format!("a {name} map belongs to the first layer: it is that of the whole surface"))
     });
     assert_eq!(places, expected);
     assert!(found[1].hint.as_deref().is_some_and(|hint| hint.contains("move it to the first layer")), "{found:?}");

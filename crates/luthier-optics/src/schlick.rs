@@ -16,6 +16,7 @@
 //!
 //! Chromium's 0.215 is 35% of the reflectance there: "5% at most", which is said of the form, holds for few metals.
 
+use crate::Rgb;
 use num_complex::Complex64;
 
 use crate::fresnel;
@@ -30,6 +31,25 @@ pub fn index_of_f0(f0: f64) -> f64 {
     let root = libm::sqrt(f0);
     (1.0 + root) / (1.0 - root)
 }
+
+/// F0 of the interface of a `metallic-roughness` surface, and albedo of the diffuse base below it (glTF 2.0, appendix B):
+///
+/// - F0 is `f = 0.04 + metallic (base_color - 0.04)`;
+/// - the base has the albedo with which it shows `c = base_color (1 - metallic)` of the light that enters: `c / (t + c (1 - t))`, where
+///   `t = (1 - f)(20/21)` is the share of the base's light that the smooth interface passes (Saunderson 1942).
+pub fn metallic_roughness(base_color: Rgb, metallic: f64) -> (Rgb, Rgb) {
+    let f0 = base_color.map(|color| DIELECTRIC_F0 + metallic * (color - DIELECTRIC_F0));
+    let albedo = [0, 1, 2].map(|i: usize| {
+        let seen = base_color[i] * (1.0 - metallic);
+        let passed = 1.0 - schlick_average(f0[i]);
+        let sum = passed + seen * (1.0 - passed);
+        if sum > 0.0 { seen / sum } else { 0.0 }
+    });
+    (f0, albedo)
+}
+
+/// F0 of the dielectric of a `metallic-roughness` surface.
+const DIELECTRIC_F0: f64 = 0.04;
 
 /// Schlick's cosine-weighted mean over the hemisphere: F0 + (1 - F0)/21.
 pub fn schlick_average(f0: f64) -> f64 {

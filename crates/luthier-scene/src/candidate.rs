@@ -62,7 +62,10 @@ impl Candidate {
             (Feature::Flakes, material.effects.flakes.is_some()),
             (Feature::Patina, material.effects.patina.is_some()),
         ];
-        let shows = |model: ShadingModel| effects.iter().all(|&(effect, has)| !has || model.honours(effect, form));
+        let maps = (0..).zip(&material.layers).flat_map(|(i, layer)| layer.maps.named().map(move |map| (i, map.slot)));
+        let mut asked: Vec<Feature> = maps.filter_map(|(i, slot)| slot.layer_feature(i)).collect();
+        asked.extend(effects.iter().filter(|(_, has)| *has).map(|(effect, _)| *effect));
+        let shows = |model: ShadingModel| asked.iter().all(|&effect| model.honours(effect, form));
         let mut found: Vec<Self> = Vec::new();
         for model in ShadingModel::ALL.into_iter().filter(|&model| shows(model)) {
             let whole = costs.cost(model, form, &shape(&material.stack)).map_or(f64::INFINITY, |(cost, _)| cost);

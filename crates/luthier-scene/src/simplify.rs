@@ -118,6 +118,9 @@ fn leave_out_feature(material: &mut Material, feature: Feature) -> bool {
                 found |= alpha_x != alpha_y;
                 layer.surface = Surface::isotropic(distribution, (alpha_x * alpha_y).sqrt());
             }
+            for maps in material.layers.iter_mut().map(|extras| &mut extras.maps) {
+                (maps.alpha_x, maps.alpha_y, maps.tangent) = (None, None, None);
+            }
         }
         Feature::Beckmann => {
             let surfaces = layers.iter_mut().map(|layer| &mut layer.surface);
@@ -133,7 +136,8 @@ fn leave_out_feature(material: &mut Material, feature: Feature) -> bool {
             }
         }
         Feature::NormalMap | Feature::RoughnessMap | Feature::ThicknessMap => {
-            let Some(Maps { normal, roughness, thickness }) = material.layers.first_mut().map(|first| &mut first.maps)
+            let Some(Maps { normal, roughness, thickness, .. }) =
+                material.layers.first_mut().map(|first| &mut first.maps)
             else {
                 return false;
             };
@@ -143,6 +147,30 @@ fn leave_out_feature(material: &mut Material, feature: Feature) -> bool {
                 _ => thickness,
             };
             found = map.take().is_some();
+        }
+        Feature::Bumps | Feature::LayerAlpha | Feature::Tangents | Feature::InnerThickness => {
+            for (i, Maps { thickness, bumps, alpha, alpha_x, alpha_y, tangent, .. }) in
+                material.layers.iter_mut().map(|extras| &mut extras.maps).enumerate()
+            {
+                found |= match feature {
+                    Feature::Bumps => bumps.take().is_some(),
+                    Feature::LayerAlpha => {
+                        [alpha, alpha_x, alpha_y].into_iter().fold(false, |any, map| any | map.take().is_some())
+                    }
+                    Feature::Tangents => tangent.take().is_some(),
+                    _ => i > 0 && thickness.take().is_some(),
+                };
+            }
+        }
+        Feature::AlbedoMap => {
+            for maps in material.layers.iter_mut().map(|extras| &mut extras.maps) {
+                found |= maps.albedo.take().is_some();
+            }
+        }
+        Feature::MetallicMap => {
+            for maps in material.layers.iter_mut().map(|extras| &mut extras.maps) {
+                found |= maps.base_color.take().is_some() | maps.metallic.take().is_some();
+            }
         }
         Feature::Flakes => found = effects.flakes.take().is_some(),
         Feature::Patina => found = effects.patina.take().is_some(),

@@ -131,10 +131,10 @@ impl Worker {
         let scene = self.scene(order)?;
         let view = &order.view;
         let window = Window::of(view.size);
-        // Blurred maps need the tables.
+        // Blurred maps need the tables, and know no layer's own textures.
         let environment_samples = match order.form {
-            Form::Baked => view.environment_samples,
-            Form::Full => view.environment_samples.max(FULL_FORM_DIRECTIONS),
+            Form::Baked if !scene.has_layer_maps(0)? => view.environment_samples,
+            Form::Baked | Form::Full => view.environment_samples.max(FULL_FORM_DIRECTIONS),
         };
         let goal = Goal { side: window.side, samples: view.samples, environment_samples, moving: view.moving };
         let stages = goal.stages(self.seconds);

@@ -29,7 +29,10 @@ fn patina_brings_the_layer_below_as_it_is_in_air() {
 fn noise_becomes_a_map_that_fills_its_range_and_repeats() {
     let bake = bake_all(&[material("grown", &(coated() + PATINA), SMALL)]);
     let source = MapSource::Noise { seed: 4, frequency: 3.0, octaves: 2 };
-    assert_eq!(bake.materials[0].maps, [MaterialMap { slot: MapSlot::Patina, layer: None, source: source.clone() }]);
+    assert_eq!(
+        bake.materials[0].maps,
+        [MaterialMap { slot: MapSlot::Patina, layer: None, source: source.clone(), factor: None }]
+    );
     let image = source.texels().unwrap();
     let (low, high) = image.data.iter().fold((1f32, 0f32), |(l, h), &v| (l.min(v), h.max(v)));
     assert!(low < 0.01 && high > 0.99, "{low} {high}");

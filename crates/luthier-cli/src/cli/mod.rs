@@ -538,7 +538,7 @@ yamaguchi, phong, microfacet) are its f64 twin: one index at 589.3 nm bends the 
 each term. --three-wavelengths stands for the `full` form, spectral colour for the `baked` one.
 
 Effects of the file count at the place of --uv and --distance: flakes and patina for elek, weidlich-wilkie and lobes, glitter for all; JSON says \
-what is there. That is `luthier_eval_at`; --no-effects is `luthier_eval`. Of a surface file, the material at that place is evaluated, with the normal there. Other maps of the file do not count: the options on textures \
+what is there. That is `luthier_eval_at`; --no-effects is `luthier_eval`. Of a surface file, the material at that place is evaluated, with the normal there. Maps of single layers, of albedo, base colour and metal count there, too; those of the whole surface (normal, roughness, thickness of the first slab) do not: the options on textures \
 say what they hold.
 
 Estimates come with their standard error. It is `not-settled`, in JSON null beside `settled` false, where rare paths carry the light and too \

@@ -38,8 +38,8 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
     let gpu = open(look.adapter.as_deref())?;
     let scene = gpu.scene(&package, Form::Baked)?;
     for material in scene.materials_of(&parts)? {
-        // A bake on disk has albedos only where a shader reads them, or where they were asked for.
-        if look.environment_samples.is_none() && !scene.has_albedo(material)? {
+        // A bake on disk has albedos only where a shader reads them, or where they were asked for; blurred maps know no layer's own.
+        if look.environment_samples.is_none() && (!scene.has_albedo(material)? || scene.has_layer_maps(material)?) {
             settings.environment_samples = ENVIRONMENT_SAMPLES;
         }
     }

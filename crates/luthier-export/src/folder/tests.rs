@@ -122,6 +122,7 @@ fn maps_have_the_size_that_the_manifest_states() {
         file: FileEntry { path: "map.png".to_owned(), sha256: hex(&png) },
         width,
         height: 1,
+        factor: None,
     };
     let bake = Folder::open(&folder).unwrap();
     assert_eq!(bake.map(&map(2)).unwrap().1.width, 2);

@@ -218,6 +218,7 @@ fn normal_maps_tilt_the_surface_in_pictures() {
         file: FileEntry::default(),
         width: 1,
         height: 1,
+        factor: None,
     });
     let set = MaterialSet::from_manifest(&manifest);
     let wgsl = luthier_shader::emit(&set, Form::Baked, Target::Wgsl).unwrap();

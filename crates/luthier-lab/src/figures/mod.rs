@@ -13,6 +13,7 @@ mod granier;
 mod lecture;
 mod page;
 mod studio;
+mod textured;
 mod yamaguchi;
 mod yamaguchi_balls;
 
@@ -38,6 +39,7 @@ fn figures() -> Vec<Figure> {
         &course_appearance::FIGURES,
         &course_fluorescent::FIGURES,
         &course_surfaces::FIGURES,
+        &textured::FIGURES,
     ]
     .concat()
 }

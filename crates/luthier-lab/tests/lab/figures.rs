@@ -3,7 +3,7 @@
 use crate::workshop::Workshop;
 
 /// The figures that the project promises, one by one.
-const NAMES: [&str; 28] = [
+const NAMES: [&str; 33] = [
     "elek-2",
     "elek-4",
     "elek-5",
@@ -32,6 +32,11 @@ const NAMES: [&str; 28] = [
     "course-5-7",
     "course-5-6",
     "course-5-1",
+    "elek-6",
+    "elek-line-22",
+    "lecture-metal",
+    "yamaguchi-2",
+    "course-3-9-own",
 ];
 
 /// The smallest picture, and more values of a channel than a plain picture has.
@@ -49,7 +54,7 @@ fn all_are_listed() {
 #[test]
 fn an_unknown_name_is_refused_before_anything_is_written() {
     let workshop = Workshop::new();
-    workshop.run(&["figures", "elek-6", "-o", "seen"]).fails(2, &["`elek-6`", "did you mean `elek-", "yamaguchi-4"]);
+    workshop.run(&["figures", "elek-66", "-o", "seen"]).fails(2, &["`elek-66`", "did you mean `elek-", "yamaguchi-4"]);
     assert!(!workshop.path("seen").exists());
 }
 

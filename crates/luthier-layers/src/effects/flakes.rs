@@ -59,6 +59,13 @@ impl Flakes {
         (DVec3::new(0.0, 0.0, weight) + self.scale * flake).normalize_or(DVec3::Z)
     }
 
+    /// The normal of a texel of a height field, from the heights of its neighbours to the left, to the right, above and below (rows count
+    /// down, against the bitangent): central differences over two texels of the given sides, in units of the heights.
+    pub fn of_heights([left, right, above, below]: [f64; 4], [width, height]: [f64; 2]) -> DVec3 {
+        let (along, across) = ((right - left) / (2.0 * width), (above - below) / (2.0 * height));
+        DVec3::new(-along, -across, 1.0).normalize()
+    }
+
     /// `f cos_theta_i` of Elek's model with the flakes at a texture coordinate, seen from a distance. The flake tilts what lies
     /// below the first interface and nothing else.
     pub fn eval(&self, stack: &Monochrome, uv: DVec2, distance: f64, wi: DVec3, wo: DVec3) -> f64 {
@@ -155,6 +162,16 @@ mod tests {
         let variance = angles.iter().map(|a| a * a).sum::<f64>() / angles.len() as f64;
         // Standard error of the deviation of 4096 normal numbers: 1/sqrt(2 n) = 1.1%.
         assert!((libm::sqrt(variance) / 0.2 - 1.0).abs() < 0.045, "{variance}");
+    }
+
+    /// Oracle: a plane, whose normal is that of its gradient.
+    #[test]
+    fn normals_of_heights_are_those_of_planes() {
+        let (slope_x, slope_y, width, height) = (0.3, -0.2, 0.01, 0.02);
+        // Above is towards +y.
+        let at = |x: f64, y: f64| 0.5 + slope_x * x * width + slope_y * y * height;
+        let found = Flakes::of_heights([at(-1.0, 0.0), at(1.0, 0.0), at(0.0, 1.0), at(0.0, -1.0)], [width, height]);
+        assert!((found - DVec3::new(-slope_x, -slope_y, 1.0).normalize()).length() < 1e-12, "{found}");
     }
 
     #[test]

@@ -3,5 +3,6 @@
 pub mod flakes;
 pub mod fluorescence;
 pub mod heterogeneous;
+pub mod layer_sample;
 pub mod patina;
 pub mod textured;

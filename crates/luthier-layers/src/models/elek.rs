@@ -22,6 +22,7 @@ use luthier_optics::Rgb;
 use luthier_optics::masking::v_cavity;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Stack};
 
+use crate::layer_sample::{off, onto};
 use crate::refraction::{REFRACTION_WAVELENGTH_NM, refract};
 use crate::terms::Terms;
 use crate::weidlich_wilkie::InternalReflection;
@@ -99,11 +100,35 @@ pub fn eval(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3) -> Rgb {
 /// (Elek 2010, section 4.1). The refracted directions are measured against it, the path lengths of the first slab included, as
 /// in the paper's code; layers below see nothing when it hides either of them.
 pub fn eval_below(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3, normal_below: DVec3) -> Rgb {
-    let Walked { mut interfaces, base } = walk(layers, terms, wi, wo, normal_below);
+    eval_tilted(layers, terms, wi, wo, Tilts { below: normal_below, own: &[] })
+}
+
+/// [`eval`] with other normals of interfaces.
+pub(crate) fn eval_tilted(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3, tilts: Tilts<'_>) -> Rgb {
+    let Walked { mut interfaces, base } = walk(layers, terms, wi, wo, tilts);
     if let Some(AtBase { diffuse, wi_local, wo_local, passed, .. }) = base {
         add(&mut interfaces, passed, oren_nayar::brdf(&diffuse, wi_local, wo_local));
     }
     interfaces
+}
+
+/// Normals of interfaces that are not those of the surface, all unit.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Tilts<'a> {
+    /// Normal below the first interface, in its frame: all that lies there is turned.
+    pub(crate) below: DVec3,
+    /// Normals of interfaces alone, from the top down, in the frame of the surface; those that are missing are +z.
+    pub(crate) own: &'a [DVec3],
+}
+
+impl Tilts<'_> {
+    /// Nothing is tilted.
+    pub(crate) const NONE: Self = Self { below: DVec3::Z, own: &[] };
+
+    /// The own normal of an interface.
+    pub(crate) fn of(&self, layer: usize) -> DVec3 {
+        self.own.get(layer).copied().unwrap_or(DVec3::Z)
+    }
 }
 
 /// A way down through the layers.
@@ -128,7 +153,7 @@ pub(crate) struct AtBase {
 }
 
 /// The way down to the base and back: what interfaces send to `wo`, and what is left of the light at a diffuse base.
-pub(crate) fn walk(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3, normal_below: DVec3) -> Walked {
+pub(crate) fn walk(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3, tilts: Tilts<'_>) -> Walked {
     if wi.z <= 0.0 || wo.z <= 0.0 {
         return Walked { interfaces: [0.0; 3], base: None };
     }
@@ -139,6 +164,10 @@ pub(crate) fn walk(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3, n
     let mut alpha_above = ALPHA_MIN;
 
     for (i, layer) in layers.iter().enumerate() {
+        let normal = tilts.of(i);
+        let Some((wi_here, wo_here, facing)) = onto(normal, wi_local, wo_local) else { break };
+        (wi_local, wo_local) = (wi_here, wo_here);
+        (0..3).for_each(|c| (throughput[c], down[c]) = (throughput[c] * facing, down[c] * facing));
         if let Below::Diffuse(diffuse) = layer.below {
             let base = AtBase { diffuse, wi_local, wo_local, passed: throughput, down, up };
             return Walked { interfaces: total, base: Some(base) };
@@ -156,12 +185,14 @@ pub(crate) fn walk(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3, n
 
         let Below::Dielectric { eta, optical_depth } = layer.below else { break };
         let (Some(mut wi_below), Some(mut wo_below)) = (refract(wi_local, eta), refract(wo_local, eta)) else { break };
-        if i == 0 && normal_below != DVec3::Z {
-            (wi_below, wo_below) = (frame::local(normal_below, wi_below), frame::local(normal_below, wo_below));
+        if i == 0 && tilts.below != DVec3::Z {
+            (wi_below, wo_below) = (frame::local(tilts.below, wi_below), frame::local(tilts.below, wo_below));
             if wi_below.z <= 0.0 || wo_below.z <= 0.0 {
                 break;
             }
         }
+        let Some((wi_level, wo_level, facing)) = off(normal, wi_below, wo_below) else { break };
+        (wi_below, wo_below) = (wi_level, wo_level);
         let path = 1.0 / wi_below.z + 1.0 / wo_below.z;
         for c in 0..3 {
             let transmitted = 1.0 - f[c];
@@ -170,8 +201,8 @@ pub(crate) fn walk(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3, n
                 InternalReflection::Facets => (1.0 - g) + transmitted * g,
                 InternalReflection::None => 1.0,
             };
-            throughput[c] *= transmitted * absorbed * left;
-            down[c] *= transmitted * libm::exp(-optical_depth[c] / wi_below.z);
+            throughput[c] *= transmitted * absorbed * left * facing;
+            down[c] *= facing * transmitted * libm::exp(-optical_depth[c] / wi_below.z);
             up[c] *= left * libm::exp(-optical_depth[c] / wo_below.z);
         }
         (wi_local, wo_local) = (wi_below, wo_below);

@@ -18,8 +18,10 @@
 
 use glam::DVec3;
 
+use crate::elek::Tilts;
 use crate::facets::{Facets, Masking};
 use crate::frame;
+use crate::layer_sample::{off, onto};
 use crate::model::{Claims, Kind, Model, ModelInfo};
 use crate::monochrome::{Monochrome, MonochromeBelow, Optics};
 use crate::oren_nayar;
@@ -117,19 +119,19 @@ impl Model for WeidlichWilkie {
 impl WeidlichWilkie {
     /// [`Model::eval`] with optical terms that may come from elsewhere.
     pub fn eval_with(self, stack: &Monochrome, optics: &impl Optics, wi: DVec3, wo: DVec3) -> f64 {
-        self.eval_below(stack, optics, wi, wo, DVec3::Z)
+        self.eval_tilted(stack, optics, wi, wo, Tilts::NONE)
     }
 
-    /// [`Self::eval_with`] with another normal below the first interface, see [`eval_below`](crate::elek::eval_below).
-    pub(crate) fn eval_below(
+    /// [`Self::eval_with`] with other normals of interfaces, see [`eval_below`](crate::elek::eval_below).
+    pub(crate) fn eval_tilted(
         self,
         stack: &Monochrome,
         optics: &impl Optics,
         wi: DVec3,
         wo: DVec3,
-        normal_below: DVec3,
+        tilts: Tilts<'_>,
     ) -> f64 {
-        let Walked { interfaces, base } = self.walk(stack, optics, wi, wo, normal_below);
+        let Walked { interfaces, base } = self.walk(stack, optics, wi, wo, tilts);
         match base {
             Some(AtBase { albedo, sigma, wi_local, wo_local, passed, .. }) => {
                 interfaces + passed * wi.z * oren_nayar::brdf_scalar(albedo, sigma, wi_local, wo_local)
@@ -145,7 +147,7 @@ impl WeidlichWilkie {
         optics: &impl Optics,
         wi: DVec3,
         wo: DVec3,
-        normal_below: DVec3,
+        tilts: Tilts<'_>,
     ) -> Walked {
         if wi.z <= 0.0 || wo.z <= 0.0 {
             return Walked { interfaces: 0.0, base: None };
@@ -154,6 +156,11 @@ impl WeidlichWilkie {
         let (mut throughput, mut total) = (1.0, 0.0);
         let (mut down, mut up) = (1.0, 1.0);
         for (i, layer) in stack.layers.iter().enumerate() {
+            let normal = tilts.of(i);
+            let Some((wi_here, wo_here, facing)) = onto(normal, wi_local, wo_local) else { break };
+            (wi_local, wo_local) = (wi_here, wo_here);
+            throughput *= facing;
+            down *= facing;
             // f_cos below carries the local cosine; the model wants that of the exterior.
             let cosines = wi.z / wi_local.z;
             if let MonochromeBelow::Diffuse { albedo, sigma } = layer.below {
@@ -167,12 +174,14 @@ impl WeidlichWilkie {
 
             let MonochromeBelow::Dielectric { optical_depth, .. } = layer.below else { break };
             let Some((mut wi_below, mut wo_below)) = self.below(layer.eta(), wi_local, wo_local) else { break };
-            if i == 0 && normal_below != DVec3::Z {
-                (wi_below, wo_below) = (frame::local(normal_below, wi_below), frame::local(normal_below, wo_below));
+            if i == 0 && tilts.below != DVec3::Z {
+                (wi_below, wo_below) = (frame::local(tilts.below, wi_below), frame::local(tilts.below, wo_below));
                 if wi_below.z <= 0.0 || wo_below.z <= 0.0 {
                     break;
                 }
             }
+            let Some((wi_level, wo_level, facing)) = off(normal, wi_below, wo_below) else { break };
+            (wi_below, wo_below) = (wi_level, wo_level);
             let (entered, left) = match self.transmission {
                 Transmission::HalfVector => {
                     let transmitted = 1.0 - reflected;
@@ -186,8 +195,8 @@ impl WeidlichWilkie {
                 }
             };
             let absorbed = libm::exp(-optical_depth * (1.0 / wi_below.z + 1.0 / wo_below.z));
-            throughput *= entered * left * absorbed;
-            down *= entered * libm::exp(-optical_depth / wi_below.z);
+            throughput *= entered * left * absorbed * facing;
+            down *= facing * entered * libm::exp(-optical_depth / wi_below.z);
             up *= left * libm::exp(-optical_depth / wo_below.z);
             (wi_local, wo_local) = (wi_below, wo_below);
         }

@@ -14,7 +14,7 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::{Base, Stack, Surface};
 
-use crate::elek::{self, ALPHA_MIN};
+use crate::elek::{self, ALPHA_MIN, Tilts};
 use crate::granier_heidrich::GranierHeidrich;
 use crate::lobes;
 use crate::microfacet::{Components, Microfacet};
@@ -56,6 +56,8 @@ pub struct Twin {
     reflectances: Option<Reflectances>,
     /// Rows of the matrix from light to light of a fluorescent base.
     reradiation: Option<[Rgb; 3]>,
+    /// Own normals of interfaces, from the top down.
+    normals: Vec<DVec3>,
 }
 
 #[derive(Debug)]
@@ -122,7 +124,7 @@ impl Twin {
             }
             _ => return None,
         };
-        Some(Self { kind, reflectances, reradiation: None })
+        Some(Self { kind, reflectances, reradiation: None, normals: Vec::new() })
     }
 
     /// The twin over a base that is fluorescent, if there are rows of a matrix from light to light (linear Rec.709,
@@ -131,6 +133,12 @@ impl Twin {
     pub fn reradiating(self, rows: Option<[Rgb; 3]>) -> Self {
         let is_chain = matches!(self.kind, Kind::Elek(_) | Kind::WeidlichWilkie(..));
         Self { reradiation: rows.filter(|_| is_chain), ..self }
+    }
+
+    /// The twin with normals of single interfaces, from the top down, unit, in the frame of the surface; for `elek` and `weidlich-wilkie`.
+    #[must_use]
+    pub fn tilting(self, normals: Vec<DVec3>) -> Self {
+        Self { normals, ..self }
     }
 
     /// `f cos_theta_i`, RGB. Zero when either direction is at or below the horizon. Terms are asked once for every value, however many
@@ -156,14 +164,14 @@ impl Twin {
     }
 
     fn lit_on(&self, terms: &impl ShaderTerms, under: &Under, light: Rgb, wi: DVec3, wo: DVec3) -> Rgb {
-        let normal = under.flake_normal;
+        let tilts = Tilts { below: under.flake_normal, own: &self.normals };
         let (interfaces, passages) = match (&self.kind, self.reradiation) {
             (Kind::Elek(layers), Some(_)) => {
-                let elek::Walked { interfaces, base } = elek::walk(layers, terms, wi, wo, normal);
+                let elek::Walked { interfaces, base } = elek::walk(layers, terms, wi, wo, tilts);
                 (interfaces, base.map(|base| (base.down, base.up)))
             }
             (Kind::WeidlichWilkie(model, stacks), Some(_)) => {
-                let walk = |stack: &Monochrome, optics: &Channel<'_, _>| model.walk(stack, optics, wi, wo, normal);
+                let walk = |stack: &Monochrome, optics: &Channel<'_, _>| model.walk(stack, optics, wi, wo, tilts);
                 let [r, g, b] = each(terms, stacks, walk);
                 let interfaces = [r.interfaces, g.interfaces, b.interfaces];
                 let (down, up) = match (&r.base, &g.base, &b.base) {
@@ -198,10 +206,11 @@ impl Twin {
 
     fn eval_on(&self, terms: &impl ShaderTerms, under: &Under, wi: DVec3, wo: DVec3) -> Rgb {
         let &Under { flake_normal, inner_normal, slope_variance, base_color } = under;
+        let tilts = Tilts { below: flake_normal, own: &self.normals };
         match &self.kind {
-            Kind::Elek(layers) => elek::eval_below(layers, terms, wi, wo, flake_normal),
+            Kind::Elek(layers) => elek::eval_tilted(layers, terms, wi, wo, tilts),
             Kind::WeidlichWilkie(model, stacks) => {
-                each(terms, stacks, |stack, optics| model.eval_below(stack, optics, wi, wo, flake_normal))
+                each(terms, stacks, |stack, optics| model.eval_tilted(stack, optics, wi, wo, tilts))
             }
             Kind::GranierHeidrich(model, stacks) => {
                 let model = model.leaning(inner_normal);

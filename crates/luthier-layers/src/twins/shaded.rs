@@ -11,6 +11,7 @@ use luthier_optics::stack::{Base, Distribution, Film, Layer, Stack, Surface};
 
 use crate::elek::{self, ALPHA_MIN};
 use crate::frame;
+use crate::layer_sample::LayerSample;
 use crate::lobes::{self, Below, Cover, Fit, Varied, Varying};
 use crate::parts::{Chosen, Parts, Reflectance, Reflectances};
 use crate::real_time::{Twin, Under};
@@ -20,7 +21,7 @@ use crate::terms::{Exact, ShaderTerms, Terms};
 use crate::textured::TextureSample;
 
 /// Values of textures and effects at one place of a surface: `LuthierPlace` of the shaders.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Place {
     /// Normal and factors.
     pub sample: TextureSample,
@@ -33,12 +34,21 @@ pub struct Place {
     /// Rows of the matrix from light to light of a fluorescent base, see [`Twin::reradiating`]; of no effect beside a base color, and under
     /// patina.
     pub reradiation: Option<[Rgb; 3]>,
+    /// Textures of single layers, from the top down; layers that are missing have none. Models show those that they read: no model has them
+    /// beside patina, and `lobes` and `phong` have none.
+    pub layers: Vec<LayerSample>,
 }
 
 impl Place {
     /// A place without textures and effects.
-    pub const NONE: Self =
-        Self { sample: TextureSample::NONE, under: Under::NONE, patina: None, base_color: None, reradiation: None };
+    pub const NONE: Self = Self {
+        sample: TextureSample::NONE,
+        under: Under::NONE,
+        patina: None,
+        base_color: None,
+        reradiation: None,
+        layers: Vec::new(),
+    };
 }
 
 /// Patina at a place (Elek 2010, section 4.2): the first layer has grown over the others.
@@ -134,7 +144,9 @@ impl Shaded {
             }
             // Tarnish dims reflectances that are chosen, too: the twin takes them from its terms.
             let facets = Parts { reflectance: Reflectance::Terms, ..parts };
-            let twin = Twin::with(model, &first, wavelengths_nm, color, facets)?.reradiating(reradiation);
+            let normals = place.layers.iter().map(|layer| layer.normal).collect();
+            let twin =
+                Twin::with(model, &first, wavelengths_nm, color, facets)?.reradiating(reradiation).tilting(normals);
             let has_choice = is_chain || model == "microfacet";
             let reflectance = if has_choice { parts.reflectance } else { Reflectance::Terms };
             let reflectances = Reflectances::of(stack, wavelengths_nm, color, reflectance);
@@ -142,7 +154,7 @@ impl Shaded {
         };
         let here = at(stack, model, place, patina);
         let under = Under { slope_variance: place.sample.slope_variance, base_color: place.base_color, ..place.under };
-        let place = Place { patina, under, ..*place };
+        let place = Place { patina, under, ..place.clone() };
         let has_lobes = model == lobes::MODEL;
         let (mut grown, bare) = (layers(&here)?, lobes::bare(&here));
         let mut bare = if patina.is_some() { Some(layers(&bare)?) } else { None };
@@ -243,15 +255,23 @@ fn at(stack: &Stack, model: &str, place: &Place, patina: Option<Growth>) -> Stac
     }
     for (i, layer) in here.layers.iter_mut().enumerate() {
         let base_alpha = patina.filter(|_| i == 1).and_then(|p| Some((p.base_alpha?, p.amount)));
-        if factors.alpha_factor == 1.0 && factors.slope_variance == 0.0 && base_alpha.is_none() {
+        let own = place.layers.get(i).filter(|_| model != "phong").unwrap_or(&LayerSample::NONE);
+        own.apply(layer);
+        if factors.alpha_factor == 1.0
+            && factors.slope_variance == 0.0
+            && base_alpha.is_none()
+            && own.alpha_factors == [1.0; 2]
+        {
             continue;
         }
         if model == elek::MODEL {
             layer.surface = Surface::isotropic(layer.surface.distribution, layer.surface.alpha_isotropic());
         }
-        for alpha in [&mut layer.surface.alpha_x, &mut layer.surface.alpha_y] {
+        let one = own.alpha_factor();
+        let both = if is_isotropic(model, &layer.surface) { [one; 2] } else { own.alpha_factors };
+        for (alpha, own) in [&mut layer.surface.alpha_x, &mut layer.surface.alpha_y].into_iter().zip(both) {
             // Records are clamped before anything acts on them.
-            *alpha = factors.widened(alpha.clamp(ALPHA_MIN, 1.0) * factors.alpha_factor).clamp(ALPHA_MIN, 1.0);
+            *alpha = factors.widened(alpha.clamp(ALPHA_MIN, 1.0) * (factors.alpha_factor * own)).clamp(ALPHA_MIN, 1.0);
             if let Some((base_alpha, amount)) = base_alpha {
                 *alpha += (base_alpha - *alpha) * amount;
             }
@@ -268,6 +288,12 @@ fn at(stack: &Stack, model: &str, place: &Place, patina: Option<Growth>) -> Stac
         }
     }
     here
+}
+
+/// Whether a model takes one slope parameter of a surface.
+fn is_isotropic(model: &str, surface: &Surface) -> bool {
+    let has_one = [elek::MODEL, "belcour", "granier-heidrich"].contains(&model);
+    has_one && surface.alpha_x == surface.alpha_y
 }
 
 /// The stack with the indices that it has at one wavelength, at all of them: its shaders bend directions by those, and not by the common

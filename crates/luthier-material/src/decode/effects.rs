@@ -42,6 +42,10 @@ fn glitter(at: &Section<'_>) -> Glitter {
 fn flakes(at: &Section<'_>) -> Option<Flakes> {
     let source = match at.path("normal_map") {
         Some(path) => FlakeSource::NormalMap { path },
+        None if at.has("height_map") => {
+            let heights = at.section("height_map")?;
+            FlakeSource::HeightMap { path: heights.path("image")?, height: heights.number("height")? }
+        }
         None => {
             let cells = at.section("cells")?;
             FlakeSource::Cells {

@@ -3,11 +3,11 @@
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Surface};
 
-use super::{Read, films, ior, reradiation, schlick, surface};
+use super::{Read, films, ior, maps, reradiation, schlick, surface};
 use crate::diagnostic::Sink;
 use crate::doubt::Sources;
 use crate::grammar::LAYERS_MAX;
-use crate::material::{LayerExtras, Maps};
+use crate::material::LayerExtras;
 use crate::section::Section;
 
 /// The layers of the stack, and what each has beyond its physics.
@@ -76,20 +76,24 @@ pub(super) fn decode(
             _ => {}
         }
         let surface = if kind == "diffuse" { Surface::smooth() } else { surface::decode(at, sink) };
+        maps::check(at, layers.len(), sink);
         let number = layers.len();
         let key = format!("layer.{number}");
         if !sink.has_errors() {
             sources.places.add(&key, at);
             films.iter().enumerate().for_each(|(i, film)| sources.places.add(&format!("{key}.film.{i}"), &film.at));
         }
+        let metallic = if kind == "metallic-roughness" { schlick::textured(at) } else { None };
         let extra = LayerExtras {
             reradiation: matrix,
             film_variation: variation(&films, sink),
             exponents: surface::exponents(at),
-            maps: maps(at),
+            maps: maps::decode(at),
+            metallic,
         };
         if number > 0 {
-            only_the_first_varies(at, &films, sink);
+            only_the_first_has_exponents(at, sink);
+            only_the_first_film_varies(&films, sink);
         }
         extras.push(extra);
         layers.push(Layer { films: films.into_iter().map(|f| f.film).collect(), surface, base });
@@ -133,31 +137,19 @@ fn variation(films: &[films::Pending<'_>], sink: &mut Sink<'_>) -> Option<crate:
     top.variation.clone()
 }
 
-/// A place of a surface has one normal, one factor on all roughnesses and one on a thickness: shaders read those of the first layer.
-fn only_the_first_varies(at: &Section<'_>, films: &[films::Pending<'_>], sink: &mut Sink<'_>) {
-    let maps = at.section("maps");
-    for name in ["normal", "roughness", "thickness"] {
-        let Some(maps) = maps.as_ref().filter(|maps| maps.has(name)) else { continue };
-        let message = format!("a {name} map belongs to the first layer: shaders read none of a layer below it");
-        let hint = match name {
-            "normal" => "leave it out, or move it to the first layer, where it tilts the whole surface",
-            "roughness" => "leave it out, or move it to the first layer, where it scales the roughness of all layers",
-            _ => "leave it out: only the first slab varies in thickness",
-        };
-        sink.error(maps.value_span(name), message, Some(hint.to_owned()));
-    }
+/// Exponents are of the first layer, whose lobes the model has.
+fn only_the_first_has_exponents(at: &Section<'_>, sink: &mut Sink<'_>) {
     if at.has("exponents") {
         let message = "exponents belong to the first layer: the model granier-heidrich has lobes of no other";
         let hint = "write `smooth = true`: its surface is not seen".to_owned();
         sink.error(at.value_span("exponents"), message, Some(hint));
     }
+}
+
+/// A place of a surface has one factor on a film's thickness.
+fn only_the_first_film_varies(films: &[films::Pending<'_>], sink: &mut Sink<'_>) {
     if let Some(film) = films.first().filter(|film| film.variation.is_some()) {
         let message = "only the film of the first layer may vary in thickness: shaders read no map of another";
         sink.error(film.thickness_span.clone(), message, film.evened());
     }
-}
-
-fn maps(at: &Section<'_>) -> Maps {
-    let Some(maps) = at.section("maps") else { return Maps::default() };
-    Maps { normal: maps.path("normal"), roughness: maps.path("roughness"), thickness: maps.path("thickness") }
 }

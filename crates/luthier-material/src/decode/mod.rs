@@ -7,6 +7,7 @@ mod effects;
 mod films;
 mod ior;
 mod layers;
+mod maps;
 mod reradiation;
 mod schlick;
 mod surface;
@@ -46,6 +47,7 @@ pub(crate) fn decode(label: &str, text: &str, document: &Section<'_>, read: Read
     let bake = bake::decode(document, sink);
     let is_fluorescent = extras.iter().any(|layer| layer.reradiation.is_some());
     let effects = effects::decode(document, &stack, is_fluorescent, sink);
+    maps::check_effects(document, &extras, sink);
     if effects.patina.is_some() {
         schlick::check_bare(document, &stack, sink);
     }

@@ -2,18 +2,16 @@
 
 use luthier_optics::Rgb;
 use luthier_optics::ior::{Ior, IorSample};
-use luthier_optics::schlick::{index_of_f0, schlick_average};
+use luthier_optics::schlick::index_of_f0;
 use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Stack};
 
 use super::films;
 use crate::diagnostic::Sink;
 use crate::doubt::SODIUM_D_NM;
 use crate::grammar::INDEX;
+use crate::material::Metallic;
 use crate::section::Section;
 use crate::suggest::short;
-
-/// F0 of the dielectric of a `metallic-roughness` surface (glTF 2.0, appendix B).
-const DIELECTRIC_F0: f64 = 0.04;
 
 /// The opaque medium of a conductor with an `f0`.
 pub(super) fn conductor(at: &Section<'_>) -> Ior {
@@ -61,7 +59,8 @@ pub(super) fn dielectric(at: &Section<'_>, given: Option<Ior>, above: &Ior, sink
 /// its diffuse term is that of Kelemen and Szirmay-Kalos 2001, `c (1 - F(i))(1 - F(o)) / (pi (1 - (f + (1 - f)/21)))`.
 pub(super) fn metallic_roughness(at: &Section<'_>, above: &Ior, sink: &mut Sink<'_>) -> (Base, Option<Diffuse>) {
     let color = at.rgb("base_color").unwrap_or([0.0; 3]);
-    let metallic = at.number("metallic").unwrap_or(0.0);
+    // Textures make of it any other surface at a place; what is baked is that without metal.
+    let metallic = if textured(at).is_some() { 0.0 } else { at.number("metallic").unwrap_or(0.0) };
     if metallic >= 1.0 {
         if at.has("sigma") {
             let hint = "leave it out, or give a `metallic` below 1".to_owned();
@@ -73,15 +72,20 @@ pub(super) fn metallic_roughness(at: &Section<'_>, above: &Ior, sink: &mut Sink<
         }
         return (Base::Conductor { ior: Ior::vacuum().with_f0(color) }, None);
     }
-    let f0 = color.map(|color| DIELECTRIC_F0 + metallic * (color - DIELECTRIC_F0));
+    let (f0, albedo) = luthier_optics::schlick::metallic_roughness(color, metallic);
     let ior = relative(above, 1.0).unwrap_or_else(Ior::vacuum).with_f0(f0);
     let slab = Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
-    let albedo = [0, 1, 2].map(|i: usize| {
-        let seen = color[i] * (1.0 - metallic);
-        let passed = 1.0 - schlick_average(f0[i]);
-        seen / (passed + seen * (1.0 - passed))
-    });
     (Base::Dielectric { ior, slab }, Some(Diffuse { albedo, sigma: at.number("sigma").unwrap_or(0.0) }))
+}
+
+/// Base colour and metal of a `metallic-roughness` layer, where maps of the file multiply them.
+pub(super) fn textured(at: &Section<'_>) -> Option<Metallic> {
+    let maps = at.section("maps")?;
+    let has_maps = maps.has("base_color") || maps.has("metallic");
+    has_maps.then(|| Metallic {
+        base_color: at.rgb("base_color").unwrap_or([0.0; 3]),
+        metallic: at.number("metallic").unwrap_or(0.0),
+    })
 }
 
 /// Reports a patina over an interface with an F0 that would lie below a denser medium where no patina has grown.

@@ -37,6 +37,7 @@ static FLAKES: Table = Table {
     doc: "Metal flakes: normals that are perturbed below the first interface (Elek 2010, section 4.1).",
     keys: &[
         Key::optional("normal_map", PATH, "Path of a tangent-space normal map; it is sampled without filtering."),
+        Key::optional("height_map", Kind::Table(&FLAKE_HEIGHTS), "Heights of flakes, of which normals are made."),
         Key::optional("cells", Kind::Table(&FLAKE_CELLS), "A grid of cells, each with a random normal."),
         Key::with_default("tiling", Kind::Number(POSITIVE), "1000", "Repeats per unit of texture coordinate."),
         Key::with_default("scale", Kind::Number(NOT_NEGATIVE), "1", "Weight of the flakes' normal."),
@@ -49,11 +50,25 @@ static FLAKES: Table = Table {
     ],
     exactly_one: Some(Alternatives {
         what: "source of flakes",
-        forms: &[&["normal_map"], &["cells"]],
-        examples: "`cells = {}` or `normal_map = \"flakes.png\"`",
+        forms: &[&["normal_map"], &["height_map"], &["cells"]],
+        examples: "`cells = {}`, `normal_map = \"flakes.png\"` or `height_map = { image = \"heights.png\", height = 0.01 }`",
         together: false,
         and: None,
     }),
+};
+
+static FLAKE_HEIGHTS: Table = Table {
+    name: "flake-heights",
+    doc: "Heights of flakes; a texel has the normal of the differences of its neighbours' heights.",
+    keys: &[
+        Key::required("image", PATH, "Path of a picture whose red channel is the height, read as linear; it repeats."),
+        Key::required(
+            "height",
+            Kind::Number(POSITIVE),
+            "Height of white above black, as a share of the width of the picture.",
+        ),
+    ],
+    exactly_one: None,
 };
 
 static FLAKE_CELLS: Table = Table {

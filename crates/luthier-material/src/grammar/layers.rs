@@ -182,15 +182,54 @@ const NORMAL_MAP: Key = Key::optional("normal", PATH, "Path of a tangent-space n
 const ROUGHNESS_MAP: Key = Key::optional("roughness", PATH, "Path of a map that multiplies the roughness.");
 const THICKNESS_MAP: Key = Key::optional("thickness", PATH, "Path of a map that multiplies the slab's thickness.");
 
+const BUMPS: Key = Key::optional("bumps", PATH, "Path of a tangent-space normal map that tilts this layer alone.");
+const ALPHA_MAP: Key =
+    Key::optional("alpha", PATH, "Path of a map that multiplies the slope parameters of this layer alone.");
+const ALPHA_X_MAP: Key = Key::optional("alpha_x", PATH, "Path of a map that multiplies alpha_x.");
+const ALPHA_Y_MAP: Key = Key::optional("alpha_y", PATH, "Path of a map that multiplies alpha_y.");
+const TANGENT_MAP: Key = Key::optional(
+    "tangent",
+    PATH,
+    "Path of a map of directions that turns the tangent of this layer: 2 RG - 1 is the cosine and the sine of twice the angle.",
+);
+
 static DIELECTRIC_MAPS: Table = Table {
     name: "dielectric-maps",
     doc: MAPS_DOC,
-    keys: &[NORMAL_MAP, ROUGHNESS_MAP, THICKNESS_MAP],
+    keys: &[NORMAL_MAP, ROUGHNESS_MAP, THICKNESS_MAP, BUMPS, ALPHA_MAP, ALPHA_X_MAP, ALPHA_Y_MAP, TANGENT_MAP],
     exactly_one: None,
 };
-static CONDUCTOR_MAPS: Table =
-    Table { name: "conductor-maps", doc: MAPS_DOC, keys: &[NORMAL_MAP, ROUGHNESS_MAP], exactly_one: None };
-static DIFFUSE_MAPS: Table = Table { name: "diffuse-maps", doc: MAPS_DOC, keys: &[NORMAL_MAP], exactly_one: None };
+static CONDUCTOR_MAPS: Table = Table {
+    name: "conductor-maps",
+    doc: MAPS_DOC,
+    keys: &[NORMAL_MAP, ROUGHNESS_MAP, BUMPS, ALPHA_MAP, ALPHA_X_MAP, ALPHA_Y_MAP, TANGENT_MAP],
+    exactly_one: None,
+};
+static DIFFUSE_MAPS: Table = Table {
+    name: "diffuse-maps",
+    doc: MAPS_DOC,
+    keys: &[
+        NORMAL_MAP,
+        BUMPS,
+        Key::optional("albedo", PATH, "Path of a picture, RGB read as linear, that multiplies the albedo."),
+    ],
+    exactly_one: None,
+};
+static METALLIC_MAPS: Table = Table {
+    name: "metallic-maps",
+    doc: MAPS_DOC,
+    keys: &[
+        NORMAL_MAP,
+        ROUGHNESS_MAP,
+        ALPHA_MAP,
+        ALPHA_X_MAP,
+        ALPHA_Y_MAP,
+        TANGENT_MAP,
+        Key::optional("base_color", PATH, "Path of a picture, RGB read as linear, that multiplies the base colour."),
+        Key::optional("metallic", PATH, "Path of a map that multiplies `metallic`."),
+    ],
+    exactly_one: None,
+};
 
 pub(super) static DIELECTRIC: Table = Table {
     name: "dielectric",
@@ -316,7 +355,7 @@ pub(super) static METALLIC_ROUGHNESS: Table = Table {
             "0",
             "Standard deviation of the slope angle of the diffuse base's facets in radians; 0 is Lambert.",
         ),
-        Key::optional("maps", Kind::Table(&CONDUCTOR_MAPS), MAPS_DOC),
+        Key::optional("maps", Kind::Table(&METALLIC_MAPS), MAPS_DOC),
     ],
     exactly_one: Some(SURFACE),
 };

@@ -35,8 +35,20 @@ pub(crate) fn eval(set: &MaterialSet<'_>, model: ShadingModel, interface: &str, 
     );
     let is_diffuse = |layer: &luthier_manifest::LayerRecord| layer.kind == LayerKind::Diffuse;
     if layers.iter().all(|layers| layers.first().is_some_and(is_diffuse)) {
-        let base = if is_lit { "luthier_reradiated(layer, wi, wo, light)" } else { "$diffuse(layer, wi, wo)" };
-        let _ = write!(out, "    let layer = $layer(material, 0u);\n    return wi.z * {base};\n}}\n");
+        let here = if features.has("own_normals") { "_here" } else { "" };
+        let base = match is_lit {
+            true => format!("luthier_reradiated(layer, wi{here}, wo{here}, light)"),
+            false => format!("$diffuse(layer, wi{here}, wo{here})"),
+        };
+        out.push_str("    let layer = $layer(material, 0u);\n");
+        if features.has("own_normals") {
+            out.push_str(
+                "    let wi_here = luthier_local(layer.normal, wi);\n    \
+                 let wo_here = luthier_local(layer.normal, wo);\n    \
+                 if min(wi_here.z, wo_here.z) <= 0.0 {\n        return vec3<f32>(0.0);\n    }\n",
+            );
+        }
+        let _ = write!(out, "    return wi{here}.z * {base};\n}}\n");
         return out + &patina(model, features) + &white(model, features);
     }
     let depth = layers.iter().map(|layers| layers.len()).max().unwrap_or(0);
@@ -254,7 +266,11 @@ fn walk(
     for i in first..depth {
         let here = || layers.iter().filter_map(|layers| layers.get(i));
         let index = if walk.is_bare && i == 1 { "count".to_owned() } else { format!("{i}u") };
+        let has_own = features.has("own_normals");
         let media = match (i == first, has_flakes) {
+            // Above it, layers count as level.
+            (true, _) if has_own => "1.0, layer.normal, 1.0".to_owned(),
+            (false, false) if has_own => "eta, layer.normal, 1.0".to_owned(),
             (true, _) => format!("1.0, {LEVEL}, 1.0"),
             (false, false) => format!("eta, {LEVEL}, 1.0"),
             (false, true) => format!("outer_eta, {normal}, eta"),

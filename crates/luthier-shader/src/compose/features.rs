@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use luthier_lut::TableKind;
 use luthier_manifest::{
-    FunctionGroup, InternalReflection, LayerKind, LayerRecord, LobesRecord, Masking, MaterialEntry, Reflectance,
+    FunctionGroup, InternalReflection, LayerKind, LayerRecord, LobesRecord, MapSlot, Masking, MaterialEntry, Reflectance,
     ShadingModel, VaryingFactor,
 };
 
@@ -24,7 +24,7 @@ impl Features {
     const ALL: &str = "abc absorption anisotropic bare base_color beckmann below bent bilinear blinn cavities chain chain_diffuse chain_patina clamped closed coat computed conductor critical_view diffuse environment exact face film film_table fitted flakes fluorescent folded free_slopes full ggx glitter granier granier_bare granier_base granier_film granier_own granier_schlick granier_tilted granier_transparent interface internal lazanyi lobes_axes lobes_bare_base lobes_base \
         lobes_diffuse lobes_film lobes_patina lobes_tilted mask_implicit mask_kelemen \
         mask_schlick_smith mask_smith mask_smith_separable mask_v_cavity masked media microfacet_diffuse mixed one_lobe \
-        oren_nayar packed particles patina phong picks place powers rows schlick schlick_base several several_maskings several_reflectances several_slopes sgd smith split_root statistics statistics_base surface tabled theta_axis tilted \
+        layered oren_nayar own_alphas own_f0 own_normals own_slabs packed particles patina phong picks place powers rows schlick schlick_base several several_maskings several_reflectances several_slopes sgd smith split_root statistics statistics_base surface tabled tangents theta_axis tilted \
         total_reflection two_lobes visible";
 
     pub(crate) fn of(set: &MaterialSet<'_>, form: Form) -> Self {
@@ -33,6 +33,17 @@ impl Features {
             names.extend(of_model(material));
             if material.varies() {
                 names.insert("place");
+            }
+            for (_, slot) in material.shown_layer_maps(form) {
+                names.extend(match slot {
+                    MapSlot::Albedo if has_base_light(material) => &["base_color", "lobes_base"][..],
+                    MapSlot::Albedo => &["base_color"],
+                    MapSlot::BaseColor | MapSlot::Metallic => &["layered", "own_f0", "base_color"],
+                    MapSlot::Bumps => &["layered", "own_normals"],
+                    MapSlot::Tangent => &["layered", "tangents"],
+                    MapSlot::Thickness => &["layered", "own_slabs"],
+                    _ => &["layered", "own_alphas"],
+                });
             }
             if material.constants.glitter.is_some() {
                 names.insert("glitter");
@@ -168,7 +179,7 @@ fn of_face(set: &MaterialSet<'_>, names: &BTreeSet<&'static str>) -> Vec<&'stati
     let has = |name| names.contains(name);
     let visible = has("chain") || has("smith") || has("statistics");
     let powers = has("phong") || has("granier") && has("interface");
-    let tilted = has("flakes") || has("granier_tilted");
+    let tilted = has("flakes") || has("own_normals") || has("granier_tilted");
     let words = [
         ("face", true),
         ("visible", visible),
@@ -254,7 +265,9 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<&'static str> {
             names.insert("conductor");
         }
         let is_isotropic = matches!(material.model, ShadingModel::Elek | ShadingModel::Belcour);
-        if !is_isotropic && layer.alpha_xy[0] != layer.alpha_xy[1] {
+        let turns = [MapSlot::AlphaX, MapSlot::AlphaY, MapSlot::Tangent];
+        let is_turned = material.maps.iter().any(|map| turns.contains(&map.slot));
+        if !is_isotropic && (layer.alpha_xy[0] != layer.alpha_xy[1] || is_turned) {
             names.insert("anisotropic");
         }
     }

@@ -15,7 +15,7 @@ mod words;
 use std::fmt::Write as _;
 
 use luthier_lut::TableKind;
-use luthier_manifest::{MaterialTexture, SIDE, ShadingModel, material_buffer};
+use luthier_manifest::{MapSlot, MaterialTexture, SIDE, ShadingModel, material_buffer};
 
 use self::blocks::prune;
 use self::features::{Features, feature};
@@ -50,10 +50,11 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
     // D is a function of the layers' own slope parameters; the statistics have lobes of others.
     let facets = has("chain") || has("smith") || has("coat");
     let masking = masking::module(set, &features);
+    let place = place(set, form);
     let modules = [
         (has("bilinear"), include_str!("../wgsl/tables/bilinear.wgsl")),
         (true, include_str!("../wgsl/layer.wgsl")),
-        (has("place"), include_str!("../wgsl/surface/place.wgsl")),
+        (has("place"), place.as_str()),
         (has("place") || has("powers"), include_str!("../wgsl/surface/local.wgsl")),
         (has("flakes") || has("glitter") || has("picks"), include_str!("../wgsl/surface/hash.wgsl")),
         (has("flakes"), include_str!("../wgsl/surface/flakes.wgsl")),
@@ -81,6 +82,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         (has("closed") && facets, include_str!("../wgsl/interface/closed_terms.wgsl")),
         (!has("full") && (facets || has("granier_bare")), include_str!("../wgsl/interface/baked_terms.wgsl")),
         (has("fitted") || has("several_reflectances"), include_str!("../wgsl/interface/chosen_reflectance.wgsl")),
+        (has("own_f0"), include_str!("../wgsl/interface/textured_reflectance.wgsl")),
         (facets, include_str!("../wgsl/interface/slopes.wgsl")),
         (!masking.is_empty(), masking.as_str()),
         (has("smith"), include_str!("../wgsl/interface/smith.wgsl")),
@@ -105,6 +107,16 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         Buffer::Texture => read_from_texture(&wgsl),
         Buffer::Storage | Buffer::Sized => wgsl,
     })
+}
+
+/// The module of places, with the number of layers that have values of their own.
+fn place(set: &MaterialSet<'_>, form: Form) -> String {
+    let shown = set.materials.iter().flat_map(|material| material.shown_layer_maps(form));
+    let shown = shown.filter(|(_, slot)| *slot != MapSlot::Albedo);
+    let count = shown.map(|(layer, _)| layer + 1).max().unwrap_or(0);
+    let each: String = (0..count).map(|i| format!("    place.layers[{i}] = luthier_layer_place();\n")).collect();
+    let module = include_str!("../wgsl/surface/place.wgsl").replace("    $each_layer\n", &each);
+    module.replace("$layers", &format!("{count}u"))
 }
 
 /// The lines of a module that a set keeps. Models take a `LuthierPlace` where a material of the set varies over its surface:
@@ -141,8 +153,14 @@ fn reflectances(text: &str, features: &Features) -> String {
         }
         false => text.to_owned(),
     };
+    let chosen = if features.has("own_f0") { "luthier_fresnel_given" } else { "luthier_fresnel_term" };
+    let text = text.replace("$fresnel_chosen", chosen);
     ["read", "computed", "fitted"].iter().fold(text, |text, how| {
-        let name = if is_one { "luthier_fresnel_term".to_owned() } else { format!("luthier_fresnel_{how}") };
+        let name = match (is_one, features.has("own_f0")) {
+            (true, false) => "luthier_fresnel_term".to_owned(),
+            (true, true) => "luthier_fresnel_given".to_owned(),
+            (false, _) => format!("luthier_fresnel_{how}"),
+        };
         text.replace(&format!("$fresnel_{how}"), &name)
     })
 }

@@ -14,7 +14,7 @@ const WIDTH: usize = 140;
 const LISTED: usize = 6;
 
 /// Functions of the face, by their calls, and what they give.
-const FUNCTIONS: [(&str, &str); 21] = [
+const FUNCTIONS: [(&str, &str); 24] = [
     ("luthier_eval(material, wi, wo)", "f cos_theta_i, linear Rec.709; a light adds its irradiance times this"),
     (
         "luthier_eval_lit(material, wi, wo, light)",
@@ -47,6 +47,15 @@ const FUNCTIONS: [(&str, &str); 21] = [
     ("luthier_place()", "a place without textures; what yours say goes into its members"),
     ("luthier_flake_normal(material, uv, distance)", "flake_normal of a place at a distance from the eye"),
     ("luthier_flake_tilt(material, flake, distance)", "flake_normal for the normal of a flake in a texture"),
+    (
+        "luthier_layer_place()",
+        "a layer without textures; what yours say of one layer goes into the members of layers of a place",
+    ),
+    ("luthier_tangent(texel)", "tangent of a layer for a texel of a tangent map"),
+    (
+        "luthier_metallic_place(place, material, base_color, metallic)",
+        "the place with another base colour of a metallic-roughness surface, and another metallic",
+    ),
     ("luthier_patina_amount(material, map_value)", "patina of a place for the value of a texture"),
     ("luthier_glitter_normal(material, uv)", "normal of a place"),
     ("luthier_pick(surface, uv)", "the material of a place of a surface, and normal of that place"),

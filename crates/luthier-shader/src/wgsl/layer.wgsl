@@ -133,6 +133,14 @@ struct LuthierLayer {
     /// Factor on its reflectance, RGB: tarnish under patina.
     tarnish: vec3<f32>,
     //? end
+    //? own_f0
+    /// Factor on what its interface does not reflect, RGB.
+    passing: vec3<f32>,
+    //? end
+    //? own_normals
+    /// Normal of its interface at a place, unit, in the frame of the place.
+    normal: vec3<f32>,
+    //? end
 }
 
 /// A whole number n, which the buffer holds as 2^23 + n: its low bits are n.
@@ -209,6 +217,8 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     //? end
     layer.rotation = luthier_materials[first + $word_tangent].zw;
     layer.tarnish = vec3<f32>(1.0);
+    layer.passing = vec3<f32>(1.0);
+    layer.normal = vec3<f32>(0.0, 0.0, 1.0);
     return layer;
 }
 

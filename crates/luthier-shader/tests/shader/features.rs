@@ -71,6 +71,21 @@ impl Shader {
         self
     }
 
+    /// Sets a member of the place of a layer, if shaders of the set have it.
+    fn at_layer(mut self, layer: usize, member: &str, value: Value) -> Self {
+        let Some(text) = self.wgsl.split("struct LuthierLayerPlace {").nth(1) else { return self };
+        let text = text.split('}').next().unwrap();
+        let names = text.lines().filter_map(|line| line.trim().split_once(": ")).map(|(name, _)| name);
+        let index = names.filter(|name| !name.starts_with("//")).position(|name| name == member);
+        let layers = self.place.as_mut().and_then(|place| place.last_mut());
+        if let (Some(index), Some(Value::Many(layers))) = (index, layers)
+            && let Some(Value::Many(members)) = layers.get_mut(layer)
+        {
+            members[index] = value;
+        }
+        self
+    }
+
     fn values(&self) -> Vec<f32> {
         let value = |(wi, wo): ([f64; 3], [f64; 3])| {
             let [wi, wo] = [wi, wo].map(|w| vector(&w.map(|v| v as f32)));
@@ -127,8 +142,13 @@ fn of(model: ShadingModel, layers: &[LayerRecord]) -> MaterialEntry {
 
 /// A material whose surface varies.
 fn mapped(material: MaterialEntry) -> MaterialEntry {
+    with_map(material, MapSlot::Normal, 0)
+}
+
+/// A material with a map of a layer.
+fn with_map(material: MaterialEntry, slot: MapSlot, layer: u32) -> MaterialEntry {
     let file = FileEntry::default();
-    let map = MapEntry { slot: MapSlot::Normal, layer: Some(0), source: String::new(), file, width: 1, height: 1 };
+    let map = MapEntry { slot, layer: Some(layer), source: String::new(), file, width: 1, height: 1, factor: None };
     MaterialEntry { maps: vec![map], ..material }
 }
 
@@ -197,6 +217,29 @@ fn change(model: ShadingModel, feature: Feature, form: Form) -> Option<f32> {
             };
             let material = || mapped(of(model, &[coat(), diffuse(0.0)]));
             moved(&Shader::new(material(), form).at(member, value), &Shader::new(material(), form))
+        }
+        Feature::Bumps | Feature::LayerAlpha | Feature::Tangents | Feature::InnerThickness => {
+            let brushed = || LayerRecord { alpha_xy: [0.1, 0.9], rotation: 0.5, ..rough(conductor(), 0.3) };
+            let (layers, slot, layer, member, value) = match feature {
+                Feature::Bumps => (vec![coat(), gold()], MapSlot::Bumps, 1, "normal", tilted()),
+                Feature::LayerAlpha => (vec![gold()], MapSlot::Alpha, 0, "alpha_factors", vector(&[0.5, 0.5])),
+                Feature::Tangents => (vec![brushed()], MapSlot::Tangent, 0, "tangent", vector(&[0.6, 0.8])),
+                _ => (vec![coat(), coat(), diffuse(0.0)], MapSlot::Thickness, 1, "slab_factor", Value::F(3.0)),
+            };
+            let shader = || Shader::new(with_map(of(model, &layers), slot, layer), form);
+            moved(&shader().at_layer(layer as usize, member, value), &shader())
+        }
+        Feature::AlbedoMap if model == ShadingModel::Microfacet => {
+            let shader = || Shader::new(with_map(of(model, &[diffuse(0.0)]), MapSlot::Albedo, 0), form);
+            moved(&shader().at("base_color", vector(&[0.9, 0.1, 0.5])), &shader())
+        }
+        Feature::AlbedoMap => {
+            let shader = || Shader::new(with_map(of(model, &[coat(), diffuse(0.0)]), MapSlot::Albedo, 1), form);
+            moved(&shader().at("base_color", vector(&[0.9, 0.1, 0.5])), &shader())
+        }
+        Feature::MetallicMap => {
+            let shader = || Shader::new(with_map(of(model, &[coat(), diffuse(0.0)]), MapSlot::Metallic, 0), form);
+            moved(&shader().at_layer(0, "passing", vector(&[0.2, 0.5, 0.9])), &shader())
         }
         // The baker writes no matrix for models that do not show it.
         Feature::Reradiation if !model.honours(feature, form) => return None,

@@ -60,7 +60,7 @@ fn check(what: &str, set: &MaterialSet<'_>, form: Form, has_buffer: bool, text: 
 
 #[test]
 fn manuals_name_what_is_there() {
-    assert_eq!(face().len(), 31, "{:?}", face());
+    assert_eq!(face().len(), 34, "{:?}", face());
     for (name, materials) in sets() {
         let plain = MaterialSet::new(&materials, tables());
         let whole = MaterialSet { functions: FunctionGroup::ALL.into_iter().collect(), ..plain.clone() };

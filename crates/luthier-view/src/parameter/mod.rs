@@ -350,7 +350,7 @@ impl Handle {
             Self::FlakeFadeStart => (&mut effects.flakes.as_mut()?.fade_start, 1.0),
             Self::FlakeSpread => match &mut effects.flakes.as_mut()?.source {
                 FlakeSource::Cells { spread, .. } => (spread, DEGREES),
-                FlakeSource::NormalMap { .. } => return None,
+                FlakeSource::NormalMap { .. } | FlakeSource::HeightMap { .. } => return None,
             },
         })
     }

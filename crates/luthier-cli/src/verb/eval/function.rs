@@ -200,7 +200,11 @@ fn shaded(subject: &Subject, kind: &Kind) -> Option<How> {
     };
     match *kind {
         Kind::Reradiated(_) => None,
-        Kind::Wavelength(_) if ["belcour", "yamaguchi"].contains(&name) && place.base_color.is_none() => None,
+        Kind::Wavelength(_)
+            if ["belcour", "yamaguchi"].contains(&name) && place.base_color.is_none() && place.layers.is_empty() =>
+        {
+            None
+        }
         Kind::Wavelength(nm) => {
             let color = Color::ThreeWavelengths([nm; 3]);
             let shaded = made(&at_wavelength(stack, nm), [nm; 3], color)?;

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use luthier_bake::fitted;
+use luthier_layers::layer_sample::LayerSample;
 use luthier_layers::layered_mc::Estimate;
 use luthier_layers::lobes::{self, Fit, Fitted, Varied};
 use luthier_layers::model::Model;
@@ -30,7 +31,7 @@ use crate::store::store;
 use function::Kind;
 use luthier_export::{gather, of_function, read_all, read_one, refuse_surfaces};
 use luthier_terminal::{Failure, Outcome, complain, valid};
-use place::{pick, place};
+use place::{add_layers, pick, place};
 use sweep::{Sweep, sweep};
 use values::values;
 
@@ -65,6 +66,17 @@ impl Subject {
                 "flake_normal": self.place.under.flake_normal.to_array(),
                 "patina": self.place.patina.map(|patina| patina.amount),
             });
+            if !self.place.layers.is_empty() {
+                let layer = |own: &LayerSample| {
+                    json!({
+                        "normal": own.normal.to_array(),
+                        "alpha_factors": own.alpha_factors,
+                        "tangent": own.tangent.to_array(),
+                        "slab_factor": own.slab_factor,
+                    })
+                };
+                head["place"]["layers"] = self.place.layers.iter().map(layer).collect();
+            }
         }
         head
     }
@@ -112,7 +124,12 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
         known = Box::new(Fitted::by(fit.clone()));
     }
     let (shown, dropped) = inputs.shown(&materials[0], known.as_ref());
-    inputs.check(known.as_ref(), &shown, picked.is_some(), options.environment)?;
+    let (maps, unshown) = inputs.layer_maps(&materials[0], known.as_ref());
+    inputs.check(known.as_ref(), &shown, !maps.is_empty(), picked.is_some(), options.environment)?;
+    if !maps.is_empty() && (options.furnace || options.environment) {
+        let text = "a furnace and an environment have no place: leave the maps of layers out with `--no-effects`";
+        return Err(Failure::Usage(anyhow::anyhow!(text)));
+    }
     let mut model = inputs.give(known);
 
     // Without another material, the first is everywhere.
@@ -126,6 +143,11 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
         complain(&format!("note: model `{name}` does not show the {names} of {file}; `elek` and `weidlich-wilkie` do"));
     }
 
+    if !unshown.is_empty() {
+        let (names, file) = (unshown.join(" and "), &material.source);
+        complain(&format!("note: model `{name}` does not show {names} of {file}"));
+    }
+
     let mut bins_nm = None;
     if let (Some(path), Some(excitation), Some(seen)) = (&inputs.matrix, inputs.excitation, options.wavelength) {
         let matrix = Reradiation::read(path)?;
@@ -133,11 +155,12 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
         (model, bins_nm) = (Box::new(reradiated), Some(bins));
     }
     let mut place = place(&material, inputs, &shown)?;
+    add_layers(&mut place, &material, inputs, &maps)?;
     if let Some((_, normal)) = picked.as_ref().filter(|(_, normal)| !inputs.has_normal() && normal.z < 1.0) {
         place.sample.normal = *normal;
     }
     let surface = picked.map(|(surface, _)| surface);
-    let has_effects = shown != luthier_material::Effects::default();
+    let has_effects = shown != luthier_material::Effects::default() || !maps.is_empty();
     Ok(Subject {
         model: ModelInputs::textured(place.sample, model),
         material,

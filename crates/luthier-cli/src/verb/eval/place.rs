@@ -3,18 +3,21 @@
 use std::path::Path;
 
 use glam::{DVec2, DVec3};
-use luthier_bake::MapSource;
+use luthier_bake::{MapSource, height_normals};
 use luthier_layers::flakes::Flakes;
 use luthier_layers::heterogeneous::{Map, Pick};
+use luthier_layers::layer_sample::LayerSample;
 use luthier_layers::patina::Patina;
 use luthier_layers::shaded::{Growth, Place};
 use luthier_layers::voronoi::Voronoi;
 use luthier_lut::Image;
-use luthier_manifest::{CellsRecord, SurfaceEntry};
+use luthier_manifest::{CellsRecord, MapSlot, SurfaceEntry};
 use luthier_material::{Effects, FlakeSource, Glitter, Material, VariationSource};
+use luthier_optics::Rgb;
+use luthier_optics::stack::Base;
 use luthier_terminal::{Failure, Outcome, files};
 
-use crate::model_inputs::ModelInputs;
+use crate::model_inputs::{LayerMap, ModelInputs};
 
 /// The place; `shows` are the effects that count.
 pub(crate) fn place(material: &Material, inputs: &ModelInputs, shows: &Effects) -> Outcome<Place> {
@@ -30,13 +33,16 @@ pub(crate) fn place(material: &Material, inputs: &ModelInputs, shows: &Effects) 
     if let Some(flakes) = &shows.flakes {
         let (seed, count, spread) = match flakes.source {
             FlakeSource::Cells { seed, count, spread } => (seed, count, spread),
-            FlakeSource::NormalMap { .. } => (0, 1, 0.0),
+            FlakeSource::NormalMap { .. } | FlakeSource::HeightMap { .. } => (0, 1, 0.0),
         };
         let (tiling, scale, fade_start) = (flakes.tiling, flakes.scale, flakes.fade_start);
         let all = Flakes { seed, count, tiling, spread, scale, fade_start };
         let flake = match &flakes.source {
             FlakeSource::Cells { .. } => all.flake(uv),
             FlakeSource::NormalMap { path } => texel(&image(material, path)?, uv * tiling),
+            FlakeSource::HeightMap { path, height } => {
+                texel(&height_normals(&image(material, path)?, *height), uv * tiling)
+            }
         };
         place.under.flake_normal = all.tilted(flake, inputs.distance().unwrap_or(0.0));
     }
@@ -56,6 +62,51 @@ pub(crate) fn place(material: &Material, inputs: &ModelInputs, shows: &Effects) 
         place.patina = Some(Growth { amount: grown.amount(map), diffuse_albedo, base_alpha, tarnish });
     }
     Ok(place)
+}
+
+/// Has the place the textures of single layers, from the maps of the file that count, and of the albedo of its base.
+pub(crate) fn add_layers(place: &mut Place, material: &Material, inputs: &ModelInputs, maps: &[LayerMap]) -> Outcome {
+    let uv = inputs.uv().unwrap_or(DVec2::ZERO);
+    let count = maps.iter().map(|map| map.layer + 1).max().unwrap_or(0);
+    let mut layers = vec![LayerSample::NONE; count];
+    let mut metallic: Option<(usize, Rgb, f64)> = None;
+    for map in maps {
+        let own = &mut layers[map.layer];
+        let image = image(material, &map.path)?;
+        let texel = |channel| filtered_channel(&image, uv, channel);
+        match map.slot {
+            MapSlot::Bumps => {
+                let [x, y, z] = [0, 1, 2].map(|c| 2.0 * texel(c) - 1.0);
+                own.normal = DVec3::new(x, y, z.max(1e-3)).normalize();
+            }
+            MapSlot::Alpha => own.alpha_factors = own.alpha_factors.map(|factor| factor * texel(0)),
+            MapSlot::AlphaX => own.alpha_factors[0] *= texel(0),
+            MapSlot::AlphaY => own.alpha_factors[1] *= texel(0),
+            MapSlot::Tangent => own.tangent = LayerSample::tangent_of([texel(0), texel(1)]),
+            MapSlot::Thickness => own.slab_factor = texel(0),
+            MapSlot::Albedo => {
+                let Base::Diffuse(diffuse) = &material.stack.layers[map.layer].base else { continue };
+                let here = [0, 1, 2].map(|c: usize| diffuse.albedo[c] * texel(c));
+                place.base_color = place.base_color.or(Some(here));
+            }
+            MapSlot::BaseColor | MapSlot::Metallic => {
+                let Some(surface) = material.layers[map.layer].metallic else { continue };
+                let (_, color, metal) = metallic.get_or_insert((map.layer, surface.base_color, surface.metallic));
+                match map.slot {
+                    MapSlot::BaseColor => (0..3).for_each(|c| color[c] *= texel(c)),
+                    _ => *metal *= texel(0),
+                }
+            }
+            MapSlot::Normal | MapSlot::Roughness | MapSlot::Patina | MapSlot::FlakeNormal => {}
+        }
+    }
+    if let Some((layer, color, metal)) = metallic {
+        let (f0, albedo) = luthier_optics::schlick::metallic_roughness(color, metal);
+        layers[layer].f0 = Some(f0);
+        place.base_color = place.base_color.or(Some(albedo));
+    }
+    place.layers = layers;
+    Ok(())
 }
 
 /// The material by number and the normal at a place of a surface: the f64 twin of `luthier_pick`.
@@ -98,6 +149,11 @@ fn texel(map: &Image, uv: DVec2) -> DVec3 {
 
 /// The first channel of a map that repeats, filtered as samplers do; centres of texels are at (i + 1/2) / size.
 fn filtered(map: &Image, uv: DVec2) -> f64 {
+    filtered_channel(map, uv, 0)
+}
+
+/// A channel of a map, as [`filtered`] has the first.
+fn filtered_channel(map: &Image, uv: DVec2, channel: usize) -> f64 {
     let axis = |x: f64, size: u32| {
         let at = (x - x.floor()) * f64::from(size) - 0.5;
         let low = at.floor();
@@ -107,7 +163,7 @@ fn filtered(map: &Image, uv: DVec2) -> f64 {
     let ([left, right], s) = axis(uv.x, map.width);
     let ([top, bottom], t) = axis(uv.y, map.height);
     let row = |y: u32| {
-        let [a, b] = [left, right].map(|x| f64::from(map.texel(x, y)[0]));
+        let [a, b] = [left, right].map(|x| f64::from(map.texel(x, y)[channel]));
         a + (b - a) * s
     };
     row(top) + (row(bottom) - row(top)) * t

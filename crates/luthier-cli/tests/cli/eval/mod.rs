@@ -13,6 +13,8 @@ mod furnace;
 mod glow;
 mod inputs;
 mod ior;
+#[cfg(feature = "gpu")]
+mod layer_maps;
 mod models;
 #[cfg(feature = "gpu")]
 mod parts;

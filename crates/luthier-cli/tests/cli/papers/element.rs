@@ -10,6 +10,7 @@
 //! | `other_model` | instead: the model that lacks the element |
 //! | `f64_model` | the model in f64 that has the element, where no shader has |
 //! | `options`, `options_without` | more options of `luthier eval`, with the element and without it |
+//! | `wavelengths_without` | the values without it are those of each channel alone, at these wavelengths |
 //! | `other`, `matrix` | a second file, and a matrix of re-radiation, for the models that take one |
 //! | `surface` | a surface file without its head, of the materials `m.toml` and `other.toml`: `eval` and the shader are of its place |
 //! | `form`, `functions` | the form of the shader, `full` unless given, and its groups of functions |
@@ -42,7 +43,7 @@ pub(super) struct Paper {
 }
 
 /// Keys that may stand in an element.
-const KEYS: [&str; 24] = [
+const KEYS: [&str; 25] = [
     "name",
     "where",
     "key",
@@ -53,6 +54,7 @@ const KEYS: [&str; 24] = [
     "f64_model",
     "options",
     "options_without",
+    "wavelengths_without",
     "other",
     "matrix",
     "surface",
@@ -144,7 +146,8 @@ impl Element {
         let keys =
             ["layers", "other", "matrix", "surface", "model", "f64_model", "other_model", "form", "page", "says"];
         let texts = keys.map(|key| self.get(key).unwrap_or_default());
-        let lists = ["without", "options", "options_without"].map(|key| self.list(key).join("|"));
+        let lists =
+            ["without", "options", "options_without", "wavelengths_without"].map(|key| self.list(key).join("|"));
         format!("{texts:?}{lists:?}{:?}", self.get("function").filter(|_| self.get("page").is_some()))
     }
 

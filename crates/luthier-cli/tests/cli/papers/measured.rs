@@ -114,9 +114,17 @@ fn folder(element: &Element, text: &str) -> Workshop {
     if let Some(matrix) = element.get("matrix") {
         workshop.write("matrix.csv", matrix.trim_start());
     }
-    for (name, texel) in [("map.png", [128, 128, 255]), ("bumps.png", [153, 140, 252])] {
+    for (name, texel) in [
+        ("map.png", [128, 128, 255]),
+        ("bumps.png", [153, 140, 252]),
+        ("tangent.png", [64, 230, 128]),
+        ("colors.png", [128, 64, 200]),
+    ] {
         image::RgbImage::from_pixel(4, 4, image::Rgb(texel)).save(workshop.path(name)).unwrap();
     }
+    // At the middle of the second texel of both: slopes of (100 - 20) / 255 and (80 - 40) / 255 of the height over two texels.
+    let heights = image::GrayImage::from_fn(4, 4, |x, y| image::Luma([(40 * x + 20 * y) as u8]));
+    heights.save(workshop.path("heights.png")).unwrap();
     workshop
 }
 
@@ -204,10 +212,23 @@ fn in_f64(element: &Element, with: bool) -> Vec<f64> {
     }
     let file = if is_surface && with { "s.toml" } else { "m.toml" };
     let mut arguments = vec!["eval", file, "--model", model, "--json", "--directions", "pairs.csv"];
+    let single = if with { Vec::new() } else { element.list("wavelengths_without") };
+    if !single.is_empty() {
+        let channels: Vec<Vec<f64>> = single
+            .iter()
+            .map(|nm| listed(&workshop, &[&arguments[..], &["--wavelength", nm], &extra].concat()))
+            .collect();
+        return (0..PAIRS.len()).flat_map(|pair| channels.iter().map(move |channel| channel[pair])).collect();
+    }
     if !extra.contains(&"--wavelength") {
         arguments.push("--three-wavelengths");
     }
-    let json = workshop.run(&[&arguments[..], &extra].concat()).exits(0).json();
+    listed(&workshop, &[&arguments[..], &extra].concat())
+}
+
+/// The values that a command lists.
+fn listed(workshop: &Workshop, arguments: &[&str]) -> Vec<f64> {
+    let json = workshop.run(arguments).exits(0).json();
     let rows = json["values"].as_array().unwrap();
     rows.iter().flat_map(|row| row["value"].as_array().unwrap()).map(|value| value.as_f64().unwrap()).collect()
 }

@@ -21,7 +21,7 @@ fn $fresnel_fitted(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
 
 //? several_reflectances
 /// Reflectance of a layer, as its material has it.
-fn luthier_fresnel_term(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
+fn $fresnel_chosen(layer: LuthierLayer, cos_theta_d: f32) -> vec3<f32> {
     //? fitted
     if layer.reflectance > 1u {
         return luthier_fresnel_fitted(layer, cos_theta_d);

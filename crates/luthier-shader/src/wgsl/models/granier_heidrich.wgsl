@@ -211,7 +211,11 @@ fn luthier_eval_granier_heidrich($place_parameter material: u32, wi: vec3<f32>, 
     }
     //? end
     //? granier_base
+    //? base_color
+    let last = luthier_layer_at(place, material, luthier_layer_count(material) - 1u);
+    //? else
     let last = luthier_layer(material, luthier_layer_count(material) - 1u);
+    //? end
     if last.kind == LUTHIER_DIFFUSE {
         //? granier_own
         return own.weights.x * specular + own.weights.y * wi.z * (diffuse * last.lambert);

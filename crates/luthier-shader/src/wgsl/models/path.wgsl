@@ -26,9 +26,36 @@ struct LuthierPath {
     //? end
 }
 
+//? own_normals
+/// A path in the frame of an interface's own normal, closed where the interface turns away from either direction. The light that falls on it
+/// goes by its cosine there.
+fn luthier_onto(path: LuthierPath, normal: vec3<f32>) -> LuthierPath {
+    var next = path;
+    next.wi_local = luthier_local(normal, path.wi_local);
+    next.wo_local = luthier_local(normal, path.wo_local);
+    next.across = luthier_local(normal, vec3<f32>(path.across, path.wi_local.z + path.wo_local.z)).xy;
+    next.open = path.open && min(next.wi_local.z, next.wo_local.z) > 0.0;
+    let facing = next.wi_local.z / path.wi_local.z;
+    //? fluorescent
+    next.lit = path.lit * facing;
+    //? else
+    next.throughput = path.throughput * facing;
+    //? end
+    return next;
+}
+//? end
+
 //? chain_diffuse
 /// Adds what a diffuse base reflects. It ends the stack.
+//? own_normals
+fn luthier_add_diffuse(above: LuthierPath, layer: LuthierLayer) -> LuthierPath {
+    var path = luthier_onto(above, layer.normal);
+    if !path.open {
+        return path;
+    }
+//? else
 fn luthier_add_diffuse(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
+//? end
     //? fluorescent
     let sent = luthier_reradiated(layer, path.wi_local, path.wo_local, path.lit);
     //? else
@@ -47,7 +74,15 @@ fn luthier_add_diffuse(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
 
 /// Adds what a rough interface reflects (Torrance-Sparrow, F D G / (4 cos_theta_i cos_theta_o)) and goes on to the
 /// layer below it (Weidlich and Wilkie 2007; Elek 2010, eq. 2-4).
+//? own_normals
+fn luthier_add_interface(above: LuthierPath, layer: LuthierLayer) -> LuthierPath {
+    var path = luthier_onto(above, layer.normal);
+    if !path.open {
+        return path;
+    }
+//? else
 fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath {
+//? end
     var next = path;
     next.open = false;
 
@@ -95,6 +130,15 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     //? else
     next.open = min(cosines_sq.x, cosines_sq.y) > 0.0;
     //? end
+    //? own_normals
+    // Back to the frame of the place: slabs are as thick along its normal as without bumps.
+    next = luthier_onto(next, vec3<f32>(-layer.normal.xy, layer.normal.z));
+    //? fluorescent
+    path.lit = next.lit;
+    //? else
+    path.throughput = next.throughput;
+    //? end
+    //? end
     // (1 - F) down, (1 - F) up, and part of what the cavities block comes back: (1 - F) (1 - G + (1 - F) G).
     //? internal
     let returned = 1.0 - (layer.internal_reflection * masking) * fresnel;
@@ -104,7 +148,7 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     //? fluorescent
     // On the way down light has the channels in which it came, on the way up those in which it leaves.
     //? absorption
-    //? flakes
+    //? flakes|own_normals
     let ways = 1.0 / vec2<f32>(next.wi_local.z, next.wo_local.z);
     //? else
     let ways = secants;
@@ -118,7 +162,7 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     //? end
     //? else
     //? absorption
-    //? flakes
+    //? flakes|own_normals
     let absorbed = exp2(-layer.optical_depth_log2 * (1.0 / next.wi_local.z + 1.0 / next.wo_local.z));
     //? else
     let absorbed = exp2(-layer.optical_depth_log2 * (secants.x + secants.y));

@@ -1,3 +1,56 @@
+//? layered
+/// Values of textures of one layer at a place.
+struct LuthierLayerPlace {
+    //? own_normals
+    /// Normal of its interface alone, unit, in the frame of the place's normal.
+    normal: vec3<f32>,
+    //? end
+    //? own_alphas
+    /// Factors on its slope parameters along the tangent and along the bitangent.
+    alpha_factors: vec2<f32>,
+    //? end
+    //? tangents
+    /// Direction that its tangent is turned to, unit: (1, 0) is no turn. See `luthier_tangent`.
+    tangent: vec2<f32>,
+    //? end
+    //? own_slabs
+    /// Factor on the thickness of the slab below it.
+    slab_factor: f32,
+    //? end
+    //? own_f0
+    /// Factor on what its interface does not reflect, RGB: 1 - F0 of the place over that of the material. See `luthier_metallic_place`.
+    passing: vec3<f32>,
+    //? end
+}
+
+/// A layer without textures.
+fn luthier_layer_place() -> LuthierLayerPlace {
+    var own: LuthierLayerPlace;
+    own.normal = vec3<f32>(0.0, 0.0, 1.0);
+    own.alpha_factors = vec2<f32>(1.0);
+    own.tangent = vec2<f32>(1.0, 0.0);
+    own.slab_factor = 1.0;
+    own.passing = vec3<f32>(1.0);
+    return own;
+}
+
+//? tangents
+/// `LuthierLayerPlace::tangent` of a texel of a tangent map, 0 to 1: 2 texel - 1 is the cosine and the sine of twice the angle, because a
+/// tangent is a line without an end. A texel without a direction turns nothing.
+fn luthier_tangent(texel: vec2<f32>) -> vec2<f32> {
+    let doubled = 2.0 * texel - 1.0;
+    let length_sq = dot(doubled, doubled);
+    let cos_sin = doubled * inverseSqrt(max(length_sq, 1e-12));
+    // Half the angle: the larger of cosine and sine first.
+    let larger = sqrt(0.5 + 0.5 * abs(cos_sin.x));
+    let smaller = 0.5 * cos_sin.y / larger;
+    let beyond = vec2<f32>(abs(smaller), select(-larger, larger, cos_sin.y >= 0.0));
+    let turned = select(vec2<f32>(larger, smaller), beyond, cos_sin.x < 0.0);
+    return select(vec2<f32>(1.0, 0.0), turned, length_sq >= 0.0004);
+}
+//? end
+
+//? end
 /// Values of textures at one place of a surface. Factors multiply the numbers of the material.
 struct LuthierPlace {
     /// Normal, unit, in the frame of the directions.
@@ -28,6 +81,10 @@ struct LuthierPlace {
     /// Amount of patina, 0 to 1; below 0 all layers are there, without its diffuse term and tarnish.
     patina: f32,
     //? end
+    //? layered
+    /// Values of textures of single layers, from the top down.
+    layers: array<LuthierLayerPlace, $layers>,
+    //? end
 }
 
 /// A place without textures.
@@ -41,12 +98,44 @@ fn luthier_place() -> LuthierPlace {
     place.flake_normal = vec3<f32>(0.0, 0.0, 1.0);
     place.patina = -1.0;
     place.base_color = vec3<f32>(-1.0);
+    //? layered
+    $each_layer
+    //? end
     return place;
 }
 
 /// A layer of a material, counted from the top, as it is at a place.
 fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLayer {
     var layer = luthier_layer(material, index);
+    //? layered
+    var layers = place.layers;
+    var own = luthier_layer_place();
+    if index < $layers {
+        own = layers[index];
+    }
+    //? end
+    //? own_normals
+    layer.normal = own.normal;
+    //? end
+    //? own_slabs
+    layer.optical_depth_log2 *= own.slab_factor;
+    //? end
+    //? own_f0
+    layer.passing = own.passing;
+    //? end
+    //? own_alphas
+    let own_alphas = max(own.alpha_factors, vec2<f32>(1e-6));
+    //? interface
+    layer = luthier_with_alpha(layer, layer.alpha * sqrt(own_alphas.x * own_alphas.y));
+    //? end
+    layer.alpha_xy *= own_alphas;
+    //? end
+    //? tangents
+    let turn = own.tangent;
+    layer.rotation = vec2<f32>(
+        layer.rotation.x * turn.x - layer.rotation.y * turn.y, layer.rotation.y * turn.x + layer.rotation.x * turn.y,
+    );
+    //? end
     //? surface
     // Slope parameters are twice the variance of Beckmann's slopes, squared.
     let unresolved = 2.0 * max(place.slope_variance, 0.0);
@@ -88,6 +177,28 @@ fn luthier_layer_at(place: LuthierPlace, material: u32, index: u32) -> LuthierLa
     //? end
     return layer;
 }
+
+//? own_f0
+/// A place with another base colour of a `metallic-roughness` material, and another `metallic`, 0 to 1: F0 of its interface and albedo of its base
+/// (glTF 2.0, appendix B).
+fn luthier_metallic_place(place: LuthierPlace, material: u32, base_color: vec3<f32>, metallic: f32) -> LuthierPlace {
+    // Its interface lies above the base, which is the last layer.
+    let index = luthier_layer_count(material) - 2u;
+    let first = luthier_whole(luthier_materials[luthier_header(material)].x) + index * LUTHIER_LAYER_WORDS;
+    let nominal = luthier_materials[first + $word_ior_n].xyz;
+    let f0 = 0.04 + metallic * (base_color - 0.04);
+    let shown = base_color * (1.0 - metallic);
+    let passed = (1.0 - f0) * (20.0 / 21.0);
+    var next = place;
+    next.base_color = shown / max(passed + shown * (1.0 - passed), vec3<f32>(1e-20));
+    var layers = place.layers;
+    if index < $layers {
+        layers[index].passing = (1.0 - f0) / max(1.0 - nominal, vec3<f32>(1e-6));
+    }
+    next.layers = layers;
+    return next;
+}
+//? end
 
 //? thickness
 /// A place with the film of a material as thick as its table says there. Repeats in uv.

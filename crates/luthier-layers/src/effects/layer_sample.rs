@@ -1,0 +1,116 @@
+//! Textures of one layer: its own normal, slope parameters, tangent and slab.
+
+use std::f64::consts::PI;
+
+use glam::{DVec2, DVec3};
+use luthier_optics::Rgb;
+use luthier_optics::stack::{Base, Layer};
+
+use crate::frame;
+
+/// Length below which a texel of tangents has no direction: grey of eight bits is half a step, 0.004, from the middle.
+const NO_DIRECTION: f64 = 0.02;
+
+/// Values of the textures of one layer at one place: `LuthierLayerPlace` of the shaders.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LayerSample {
+    /// Normal of this layer's interface alone, unit, in the frame of the place; for `elek` and `weidlich-wilkie`.
+    pub normal: DVec3,
+    /// Factors on its slope parameters along the tangent and along the bitangent.
+    pub alpha_factors: [f64; 2],
+    /// Direction that its tangent is turned to, unit, in the plane of the surface: x is no turn.
+    pub tangent: DVec2,
+    /// Factor on the thickness of the slab below it.
+    pub slab_factor: f64,
+    /// F0 of its interface, one of Schlick's, in place of its own.
+    pub f0: Option<Rgb>,
+}
+
+impl LayerSample {
+    /// The sample of a layer without textures.
+    pub const NONE: Self =
+        Self { normal: DVec3::Z, alpha_factors: [1.0; 2], tangent: DVec2::X, slab_factor: 1.0, f0: None };
+
+    /// The direction of a tangent from a texel of two channels, `2 texel - 1 = (cos 2 theta, sin 2 theta)`: a tangent is a line without an
+    /// end, so that texels may be averaged across any turn. A texel without a direction turns nothing.
+    pub fn tangent_of(texel: [f64; 2]) -> DVec2 {
+        let doubled = DVec2::new(2.0 * texel[0] - 1.0, 2.0 * texel[1] - 1.0);
+        if doubled.length() < NO_DIRECTION {
+            return DVec2::X;
+        }
+        let half = 0.5 * libm::atan2(doubled.y, doubled.x);
+        DVec2::new(libm::cos(half), libm::sin(half))
+    }
+
+    /// The factor on both slope parameters where a model has one: their geometric mean.
+    pub(crate) fn alpha_factor(&self) -> f64 {
+        libm::sqrt(self.alpha_factors[0] * self.alpha_factors[1])
+    }
+
+    /// Turns the tangent of a layer, and scales its slab; its slope parameters depend on the model.
+    pub(crate) fn apply(&self, layer: &mut Layer) {
+        let surface = &mut layer.surface;
+        if self.tangent != DVec2::X {
+            surface.rotation += libm::atan2(self.tangent.y, self.tangent.x);
+            surface.rotation %= 2.0 * PI;
+        }
+        if let Base::Dielectric { slab, ior } = &mut layer.base {
+            slab.thickness_um *= self.slab_factor;
+            if let (Some(f0), Some(_)) = (self.f0, ior.f0()) {
+                *ior = ior.clone().with_f0(f0);
+            }
+        }
+    }
+}
+
+/// Both directions in the frame of an interface's own normal, and the factor on the light that falls on it: the cosine of `wi` there over
+/// its cosine in the frame of the place. `None` where the interface turns away from either.
+///
+/// A tilted facet of a surface gets `L cos(wi, n)` and not `L cos(wi, z)`, and a pixel sees its radiance. Slabs keep the thickness along the
+/// place's normal that they have without bumps.
+pub(crate) fn onto(normal: DVec3, wi: DVec3, wo: DVec3) -> Option<(DVec3, DVec3, f64)> {
+    if normal == DVec3::Z {
+        return Some((wi, wo, 1.0));
+    }
+    let [wi_here, wo_here] = [wi, wo].map(|w| frame::local(normal, w));
+    (wi_here.z > 0.0 && wo_here.z > 0.0).then(|| (wi_here, wo_here, wi_here.z / wi.z))
+}
+
+/// Directions below an interface, back in the frame of the place, and the factor on the light as in [`onto`].
+pub(crate) fn off(normal: DVec3, wi: DVec3, wo: DVec3) -> Option<(DVec3, DVec3, f64)> {
+    // The least rotation back is that to the normal's mirror image.
+    onto(DVec3::new(-normal.x, -normal.y, normal.z), wi, wo)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn off_undoes_onto() {
+        let n = DVec3::new(0.2, -0.3, 0.8).normalize();
+        let (wi, wo) = (DVec3::new(0.1, 0.2, 0.9).normalize(), DVec3::new(-0.4, 0.1, 0.7).normalize());
+        let (a, b, there) = onto(n, wi, wo).unwrap();
+        let (c, d, back) = off(n, a, b).unwrap();
+        assert!((c - wi).length() < 1e-15 && (d - wo).length() < 1e-15);
+        assert!((there * back - 1.0).abs() < 1e-15);
+        assert!((a.z - wi.dot(n)).abs() < 1e-15);
+    }
+
+    /// Lines at 179 degrees and at 1 degree are two degrees apart: their texels average to 0 degrees, which angles would not.
+    #[test]
+    fn tangents_average_across_the_turn() {
+        let texel = |degrees: f64| {
+            let doubled = (2.0 * degrees).to_radians();
+            [0.5 + 0.5 * libm::cos(doubled), 0.5 + 0.5 * libm::sin(doubled)]
+        };
+        let [a, b] = [texel(179.0), texel(1.0)];
+        let mean = LayerSample::tangent_of([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]);
+        assert!((mean - DVec2::X).length() < 1e-12, "{mean}");
+        for degrees in [0.0, 30.0, 89.0] {
+            let found = LayerSample::tangent_of(texel(degrees));
+            assert!((found - DVec2::from_angle(degrees.to_radians())).length() < 1e-12, "{degrees}: {found}");
+        }
+        assert_eq!(LayerSample::tangent_of([0.5; 2]), DVec2::X);
+    }
+}

@@ -1,0 +1,94 @@
+//! Maps of materials: which quantity each varies, and for which layer.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Feature, FileEntry, Form, MaterialEntry, ShadingModel};
+
+luthier_lut::named! {
+    /// Quantity that a map varies.
+    #[derive(Serialize, Deserialize)]
+    #[serde(into = "&'static str", try_from = "String")]
+    pub enum MapSlot("map") {
+        /// Tangent-space normal: RGB is (normal + 1) / 2.
+        Normal = "normal",
+        /// Factor on the roughness: on the slope parameters its square.
+        Roughness = "roughness",
+        /// Factor on the thickness of the slab below the layer.
+        Thickness = "thickness",
+        /// Order in which patina develops; dark places come first.
+        Patina = "patina",
+        /// Normals of flakes, RGB as for [`MapSlot::Normal`], to be read without filtering.
+        FlakeNormal = "flake-normal",
+        /// Tangent-space normal of the interface of one layer alone, RGB as for [`MapSlot::Normal`].
+        Bumps = "bumps",
+        /// Factor on the slope parameters of one layer.
+        Alpha = "alpha",
+        /// Factor on the slope parameter of one layer along its tangent.
+        AlphaX = "alpha-x",
+        /// Factor on the slope parameter of one layer along its bitangent.
+        AlphaY = "alpha-y",
+        /// Direction of the tangent of one layer: 2 RG - 1 is the cosine and the sine of twice the angle from the surface's tangent.
+        Tangent = "tangent",
+        /// Factor on the albedo of a diffuse base, RGB.
+        Albedo = "albedo",
+        /// Factor on the base colour of a metallic-roughness surface, RGB.
+        BaseColor = "base-color",
+        /// Factor on how metallic such a surface is.
+        Metallic = "metallic",
+    }
+}
+
+/// A map of a material: PNG, linear values in 0..=1, which repeats in both texture coordinates. Texel centres are at
+/// (i + 1/2) / size, the first row is at v = 0.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MapEntry {
+    /// Quantity that the map varies.
+    pub slot: MapSlot,
+    /// The layer that it is of, from the top; null for maps of the whole surface.
+    pub layer: Option<u32>,
+    /// Where it came from: the path in the material file, or the noise that it was made of.
+    pub source: String,
+    /// The file.
+    pub file: FileEntry,
+    /// Texels across.
+    pub width: u32,
+    /// Texels down.
+    pub height: u32,
+    /// Number of the material file that the texels multiply, of maps of a colour or of metal: one number three times, or RGB.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub factor: Option<[f64; 3]>,
+}
+
+impl MapSlot {
+    /// The feature of a map that is of one layer; `None` for those of the whole surface.
+    pub fn layer_feature(self, layer: u32) -> Option<Feature> {
+        match self {
+            Self::Bumps => Some(Feature::Bumps),
+            Self::Alpha | Self::AlphaX | Self::AlphaY => Some(Feature::LayerAlpha),
+            Self::Tangent => Some(Feature::Tangents),
+            Self::Albedo => Some(Feature::AlbedoMap),
+            Self::BaseColor | Self::Metallic => Some(Feature::MetallicMap),
+            Self::Thickness => (layer > 0).then_some(Feature::InnerThickness),
+            Self::Normal | Self::Roughness | Self::Patina | Self::FlakeNormal => None,
+        }
+    }
+}
+
+impl MaterialEntry {
+    /// Layers with maps of their own that the model shows, and quantities that these vary, in the order of the maps. `LuthierPlace` has
+    /// values of these, that of an albedo as its `base_color`.
+    pub fn shown_layer_maps(&self, form: Form) -> impl Iterator<Item = (u32, MapSlot)> {
+        let reads_all = !matches!(
+            self.model,
+            ShadingModel::GranierHeidrich | ShadingModel::Microfacet | ShadingModel::Phong | ShadingModel::Lobes
+        );
+        self.maps.iter().filter_map(move |map| {
+            let layer = map.layer?;
+            let feature = map.slot.layer_feature(layer)?;
+            // Models of the first interface may have the base, which is the last layer.
+            let is_base = map.slot == MapSlot::Albedo && self.model.honours(Feature::Base, form);
+            let is_shown = (layer == 0 || reads_all || is_base) && self.model.honours(feature, form);
+            is_shown.then_some((layer, map.slot))
+        })
+    }
+}

@@ -1,0 +1,90 @@
+//! Decoder of the maps of a layer.
+
+use crate::diagnostic::Sink;
+use crate::material::{LayerExtras, Maps};
+use crate::section::Section;
+
+/// The maps of a layer.
+pub(super) fn decode(at: &Section<'_>) -> Maps {
+    let Some(maps) = at.section("maps") else { return Maps::default() };
+    Maps {
+        normal: maps.path("normal"),
+        roughness: maps.path("roughness"),
+        thickness: maps.path("thickness"),
+        bumps: maps.path("bumps"),
+        alpha: maps.path("alpha"),
+        alpha_x: maps.path("alpha_x"),
+        alpha_y: maps.path("alpha_y"),
+        tangent: maps.path("tangent"),
+        albedo: maps.path("albedo"),
+        base_color: maps.path("base_color"),
+        metallic: maps.path("metallic"),
+    }
+}
+
+/// Refuses maps of the whole surface in a layer below the first, and maps of two slope parameters and a tangent where there is one slope
+/// parameter.
+pub(super) fn check(at: &Section<'_>, number: usize, sink: &mut Sink<'_>) {
+    let Some(maps) = at.section("maps") else { return };
+    for (name, own, does) in [
+        ("normal", "bumps", "tilts this layer alone"),
+        ("roughness", "alpha", "scales the slope parameter of this layer alone"),
+    ] {
+        if number > 0 && maps.has(name) {
+            let message = format!("a {name} map belongs to the first layer: it is that of the whole surface");
+            let hint = format!("write `{own}`, which {does}, or move it to the first layer");
+            sink.error(maps.value_span(name), message, Some(hint));
+        }
+    }
+    check_metallic(at, &maps, sink);
+    for name in ["alpha_x", "alpha_y", "tangent"] {
+        if maps.has(name) && !(at.has("alpha_x") && at.has("alpha_y")) {
+            let what = if name == "tangent" { "turns the axes" } else { "scales one of the two slope parameters" };
+            let message = format!("the map `{name}` {what} of an anisotropic surface, which this layer has not");
+            let hint = "give the layer `alpha_x` and `alpha_y`, which may be equal".to_owned();
+            sink.error(maps.value_span(name), message, Some(hint));
+        }
+    }
+}
+
+/// Refuses maps of colour and metal that would say too little: a texture of the base colour alone leaves open how metallic a place is.
+fn check_metallic(at: &Section<'_>, maps: &Section<'_>, sink: &mut Sink<'_>) {
+    let metallic = at.number("metallic").unwrap_or(0.0);
+    if maps.has("base_color") && !maps.has("metallic") && metallic > 0.0 {
+        let message = "a map of `base_color` on a metal needs one of `metallic` beside it";
+        let hint = "write `metallic = \"white.png\"` under `maps`, a white picture, or `metallic = 0`".to_owned();
+        sink.error(maps.value_span("base_color"), message, Some(hint));
+    }
+    if maps.has("albedo") && at.has("reradiation") {
+        let message = "a map of the albedo needs an albedo, and this base has `reradiation`";
+        sink.error(
+            maps.value_span("albedo"),
+            message,
+            Some("give the base an `albedo`, or leave the map out".to_owned()),
+        );
+    }
+}
+
+/// Refuses maps of single layers beside effects that say the same of them.
+pub(super) fn check_effects(document: &Section<'_>, extras: &[LayerExtras], sink: &mut Sink<'_>) {
+    let Some(effects) = document.section("effects") else { return };
+    let own = |is_own: &dyn Fn(usize, &str) -> bool| {
+        let mut maps = extras.iter().enumerate().flat_map(|(i, extra)| extra.maps.named().map(move |map| (i, map.key)));
+        maps.find(|&(i, key)| is_own(i, key))
+    };
+    let bumps = own(&|_, key| key == "bumps");
+    let any = own(&|i, key| match key {
+        "normal" | "roughness" => false,
+        "thickness" => i > 0,
+        _ => true,
+    });
+    for (effect, clash, why) in [
+        ("flakes", bumps, "both say which way the layers below the first interface face"),
+        ("patina", any, "no model has both"),
+    ] {
+        if let (true, Some((layer, key))) = (effects.has(effect), clash) {
+            let message = format!("`{effect}` beside the map `{key}` of layer {}: {why}", layer + 1);
+            sink.error(effects.key_span(effect), message, Some(format!("leave `{effect}` or `maps.{key}` out")));
+        }
+    }
+}
