@@ -10,7 +10,6 @@ use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry, ShadingModel, mate
 
 use crate::context::Pass;
 use crate::error::setting;
-use crate::maps::MAP_WORDS;
 use crate::mesh;
 use crate::surroundings::Surroundings;
 use crate::{Camera, GpuError, Light, Scene, Shape, Shown, Sky};

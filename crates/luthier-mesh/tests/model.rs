@@ -59,7 +59,8 @@ fn it_stands_on_its_floor() {
     assert!((-1.0..-0.5).contains(&floor) && mesh.plain().len() == 1 && mesh.has_uv());
     let mut corners: Vec<usize> =
         mesh.triangles().iter().filter(|t| t.part == 1).flat_map(|t| t.corners).map(|i| i as usize).collect();
-    corners.sort_by_key(|&i| (1e4 * mesh.vertices()[i].position[0].hypot(mesh.vertices()[i].position[2])) as u32);
+    corners
+        .sort_by_key(|&i| (1e4 * libm::hypotf(mesh.vertices()[i].position[0], mesh.vertices()[i].position[2])) as u32);
     let open = |i: usize| mesh.openness()[corners[i]];
     assert!(open(0) < 0.02 && open(corners.len() - 1) > 0.99, "{} {}", open(0), open(corners.len() - 1));
     let ray = mesh.nearest([0.0, 5.0, 0.0], [0.0, -1.0, 0.0]).unwrap();

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 use luthier_layers::flakes::Flakes;
 use luthier_layers::heterogeneous::Map;
+use luthier_layers::layer_sample::LayerSample;
 use luthier_layers::patina::Patina;
 use luthier_layers::shaded::{Growth, Place};
 use luthier_layers::voronoi::Voronoi;
@@ -59,6 +60,11 @@ const GLITTER: &str = "[effects.glitter]\nseed = 9\nfrequency = 60\nfilled = 0.5
 const DYED: &str = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.2\n[[layer]]\ntype = \"diffuse\"\nreradiation = \"dye.csv\"\n";
 const DYE: &str = include_str!("../../maps/dye.csv");
 
+/// For the end of [`COATED`]: maps of the metal alone.
+const OF_THE_METAL: &str = "maps = { bumps = \"bumps.png\", alpha = \"thickness.png\" }\n";
+const CROSSED: &str = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha_x = 0.08\nalpha_y = 0.3\nmaps = { tangent = \"circles.png\" }\n\
+    [[layer]]\ntype = \"conductor\"\nior = { n = 0.2, k = 3.4 }\nalpha_x = 0.35\nalpha_y = 0.12\nmaps = { tangent = \"rays.png\" }\n";
+
 const PATH: &[ShadingModel] = &[Elek, WeidlichWilkie];
 const MAPPED: &[ShadingModel] = &[Elek, WeidlichWilkie, GranierHeidrich, Microfacet, Belcour, Yamaguchi];
 
@@ -85,6 +91,21 @@ pub(super) fn all() -> Vec<Case> {
         case("thickness map of a film, and its lean", "place.inner_normal", &[GranierHeidrich], &[BUBBLE], lean),
         case("map of the base's colour", "place.base_color", PATH, &[PAINTED], color),
         case("colour of the base under a film", "place.base_color", &[GranierHeidrich], &[BUBBLE], color),
+        case("bumps of one interface", "place.layers[1].normal", PATH, &[COATED, OF_THE_METAL], bumps),
+        case(
+            "slope parameters of one interface",
+            "place.layers[1].alpha_factors",
+            &[Elek, WeidlichWilkie, Belcour, Yamaguchi],
+            &[COATED, OF_THE_METAL],
+            slopes,
+        ),
+        case(
+            "tangents of each layer",
+            "place.layers[i].tangent",
+            &[WeidlichWilkie, Microfacet, Yamaguchi],
+            &[CROSSED],
+            tangents,
+        ),
         case("flakes", "luthier_flake_normal", PATH, &[COATED, FLAKES], flakes),
         case("flakes as a normal map", "luthier_flake_tilt", PATH, &[COATED, FLAKES], flake_map),
         case("patina", "luthier_patina_amount", PATH, &[COATED, GREEN], patina),
@@ -198,6 +219,34 @@ fn color(_: &[Material], n: usize) -> Spot {
     let [r, g, b] = color.map(|c| c as f32);
     let place = Place { base_color: Some(color), ..Place::NONE };
     at(format!("place.base_color = vec3<f32>({r:?}, {g:?}, {b:?});"), place)
+}
+
+/// A place whose two layers have textures of their own.
+fn layered(upper: LayerSample, lower: LayerSample) -> Place {
+    Place { layers: vec![upper, lower], ..Place::NONE }
+}
+
+fn bumps(_: &[Material], n: usize) -> Spot {
+    let (normal, text) = leaning(n);
+    let place = layered(LayerSample::NONE, LayerSample { normal, ..LayerSample::NONE });
+    at(format!("place.layers[1].normal = {text};"), place)
+}
+
+fn slopes(_: &[Material], n: usize) -> Spot {
+    let alpha_factors = [0, 1].map(|k: usize| f64::from((0.4 + 2.0 * part(n, STEPS[k])) as f32));
+    let [x, y] = alpha_factors.map(|factor| factor as f32);
+    let place = layered(LayerSample::NONE, LayerSample { alpha_factors, ..LayerSample::NONE });
+    at(format!("place.layers[1].alpha_factors = vec2<f32>({x:?}, {y:?});"), place)
+}
+
+fn tangents(_: &[Material], n: usize) -> Spot {
+    // Any texels, of which the directions are the halved angles.
+    let texels = [[0, 1], [1, 2]].map(|[a, b]: [usize; 2]| [part(n, STEPS[a]), part(n, STEPS[b])]);
+    let own = texels.map(|texel| LayerSample { tangent: LayerSample::tangent_of(texel), ..LayerSample::NONE });
+    let set = |(i, [x, y]): (usize, [f64; 2])| {
+        format!("place.layers[{i}].tangent = luthier_tangent(vec2<f32>({:?}, {:?}));", x as f32, y as f32)
+    };
+    at(texels.into_iter().enumerate().map(set).collect::<Vec<_>>().join(" "), layered(own[0], own[1]))
 }
 
 fn all_flakes(material: &Material) -> Flakes {

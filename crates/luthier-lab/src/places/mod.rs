@@ -24,7 +24,7 @@ use cases::{Case, Spot};
 const PLACES: usize = 8;
 
 /// Largest difference of the form `full`: arithmetic in single precision, over the brightest channel.
-const FULL: f64 = 5e-5;
+const FULL: f64 = 2e-5;
 
 /// Largest difference of the form `baked`, whose tables are compared with exact terms: `FRESNEL_UNDER_A_COAT` of the parity page.
 const BAKED: f64 = 2e-2;

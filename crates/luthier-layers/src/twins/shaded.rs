@@ -91,7 +91,8 @@ impl Layers {
 impl Shaded {
     /// The model at a place; `None` for a model without a shader. `color` is that of the terms: spectral as in the tables of the baked
     /// form, or three wavelengths as in the form without tables. Belcour's and Yamaguchi's models have the energies of rough
-    /// interfaces, as in the baked form.
+    /// interfaces, as in the baked form, and over a diffuse base the light that layers of nominal thickness and slope return to it: a material's
+    /// record has no other.
     ///
     /// Effects are those of the model's shader: flakes and patina in `elek`, `weidlich-wilkie` and `lobes`, deviated films in `granier-heidrich`. `lobes` has
     /// patina where its rows are over nothing else: no film varies, and no interface is anisotropic.
@@ -136,6 +137,8 @@ impl Shaded {
         let is_shown = is_chain || model == lobes::MODEL && !is_over_another(stack);
         let patina = place.patina.filter(|_| is_shown && stack.layers.len() > 1);
         let reradiation = place.reradiation.filter(|_| place.base_color.is_none() && patina.is_none());
+        let is_statistical = ["belcour", "yamaguchi"].contains(&model);
+        let nominal = stack;
         let layers = |stack: &Stack| {
             // Lobes are widened one by one, and the first interface beside them.
             let mut first = stack.clone();
@@ -150,7 +153,9 @@ impl Shaded {
             let has_choice = is_chain || model == "microfacet";
             let reflectance = if has_choice { parts.reflectance } else { Reflectance::Terms };
             let reflectances = Reflectances::of(stack, wavelengths_nm, color, reflectance);
-            Some(Layers { twin, terms: Exact::new(stack, color), reflectances })
+            let terms = Exact::new(stack, color);
+            let terms = if is_statistical { terms.veiled_by(nominal) } else { terms };
+            Some(Layers { twin, terms, reflectances })
         };
         let here = at(stack, model, place, patina);
         let under = Under { slope_variance: place.sample.slope_variance, base_color: place.base_color, ..place.under };

@@ -59,6 +59,8 @@ pub struct Exact {
     energies: Energies,
     varying: Option<Varying>,
     lobes: OnceLock<Lobes>,
+    /// The stack whose layers veil a diffuse base, where it is another one.
+    nominal: Option<Box<Exact>>,
 }
 
 #[derive(Debug, Clone)]
@@ -84,6 +86,15 @@ impl Exact {
         Self { varying, ..Self::new(stack, color) }
     }
 
+    /// The terms of a stack whose diffuse base is veiled as by the layers of another, as shaders have it: the record of a material has what
+    /// layers return to a base at their nominal thickness and slope.
+    #[must_use]
+    pub(crate) fn veiled_by(mut self, nominal: &Stack) -> Self {
+        let is_other = self.stack != *nominal;
+        self.nominal = is_other.then(|| Box::new(Self::new(nominal, self.color)));
+        self
+    }
+
     /// The terms of a stack whose lobes are given.
     pub fn with_lobes(stack: &Stack, color: Color, lobes: Lobes) -> Self {
         Self { lobes: OnceLock::from(lobes), ..Self::new(stack, color) }
@@ -93,7 +104,7 @@ impl Exact {
         let interfaces = (0..stack.layers.len())
             .map(|i| Interface::of(stack, i).map(|interface| interface.sampled(&color)))
             .collect();
-        Self { stack: stack.clone(), color, interfaces, energies, varying: None, lobes: OnceLock::new() }
+        Self { stack: stack.clone(), color, interfaces, energies, varying: None, lobes: OnceLock::new(), nominal: None }
     }
 
     /// The lobes of the stack.
@@ -104,7 +115,10 @@ impl Exact {
     fn facets<'a>(&self, prepared: &'a OnceLock<(ColorEnergy, Veil<3>)>) -> &'a (ColorEnergy, Veil<3>) {
         prepared.get_or_init(|| {
             let energy = ColorEnergy::new(&self.stack, self.color);
-            let veil = Veil::new(&Layers::rgb(&self.stack), &energy).unwrap_or(Veil::NONE);
+            let veil = match &self.nominal {
+                Some(nominal) => nominal.veil(),
+                None => Veil::new(&Layers::rgb(&self.stack), &energy).unwrap_or(Veil::NONE),
+            };
             (energy, veil)
         })
     }

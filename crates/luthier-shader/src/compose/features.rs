@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use luthier_lut::TableKind;
 use luthier_manifest::{
-    FunctionGroup, InternalReflection, LayerKind, LayerRecord, LobesRecord, MapSlot, Masking, MaterialEntry, Reflectance,
-    ShadingModel, VaryingFactor,
+    FunctionGroup, InternalReflection, LayerKind, LayerRecord, LobesRecord, MapSlot, Masking, MaterialEntry,
+    Reflectance, ShadingModel, VaryingFactor,
 };
 
 use crate::compose::masking;
