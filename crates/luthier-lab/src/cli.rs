@@ -142,6 +142,9 @@ pub(crate) struct ParityOptions {
     after_help = "Exits with 1 when an error exceeds what the page allows.\n\nExamples:\n  luthier-lab places -o docs/pages/places.md"
 )]
 pub(crate) struct PlacesOptions {
+    /// Model to compare; may be given again. By default all
+    #[arg(long, value_name = "NAME", value_parser = named::<ShadingModel>(ShadingModel::NAMES))]
+    pub(crate) model: Vec<ShadingModel>,
     /// Pairs of directions at each place
     #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
     pub(crate) pairs: u32,

@@ -63,7 +63,7 @@ const DYE: &str = include_str!("../../maps/dye.csv");
 /// For the end of [`COATED`]: maps of the metal alone.
 const OF_THE_METAL: &str = "maps = { bumps = \"bumps.png\", alpha = \"thickness.png\" }\n";
 const CROSSED: &str = "[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha_x = 0.08\nalpha_y = 0.3\nmaps = { tangent = \"circles.png\" }\n\
-    [[layer]]\ntype = \"conductor\"\nior = { n = 0.2, k = 3.4 }\nalpha_x = 0.35\nalpha_y = 0.12\nmaps = { tangent = \"rays.png\" }\n";
+    [[layer]]\ntype = \"conductor\"\nior = { n = 0.2, k = 3.4 }\nalpha_x = 0.35\nalpha_y = 0.12\nmaps = { tangent = \"rays.png\", alpha_x = \"thickness.png\" }\n";
 
 const PATH: &[ShadingModel] = &[Elek, WeidlichWilkie];
 const MAPPED: &[ShadingModel] = &[Elek, WeidlichWilkie, GranierHeidrich, Microfacet, Belcour, Yamaguchi];
@@ -100,9 +100,9 @@ pub(super) fn all() -> Vec<Case> {
             slopes,
         ),
         case(
-            "tangents of each layer",
-            "place.layers[i].tangent",
-            &[WeidlichWilkie, Microfacet, Yamaguchi],
+            "tangents, and slope parameters along them",
+            "place.layers[i].tangent, .alpha_factors",
+            &[WeidlichWilkie, Yamaguchi],
             &[CROSSED],
             tangents,
         ),
@@ -232,21 +232,25 @@ fn bumps(_: &[Material], n: usize) -> Spot {
     at(format!("place.layers[1].normal = {text};"), place)
 }
 
+/// The factor of a map of both slope parameters.
 fn slopes(_: &[Material], n: usize) -> Spot {
-    let alpha_factors = [0, 1].map(|k: usize| f64::from((0.4 + 2.0 * part(n, STEPS[k])) as f32));
-    let [x, y] = alpha_factors.map(|factor| factor as f32);
-    let place = layered(LayerSample::NONE, LayerSample { alpha_factors, ..LayerSample::NONE });
-    at(format!("place.layers[1].alpha_factors = vec2<f32>({x:?}, {y:?});"), place)
+    let factor = factor(n, 0.4, 2.4);
+    let place = layered(LayerSample::NONE, LayerSample { alpha_factors: [factor; 2], ..LayerSample::NONE });
+    at(format!("place.layers[1].alpha_factors = vec2<f32>({:?});", factor as f32), place)
 }
 
 fn tangents(_: &[Material], n: usize) -> Spot {
     // Any texels, of which the directions are the halved angles.
     let texels = [[0, 1], [1, 2]].map(|[a, b]: [usize; 2]| [part(n, STEPS[a]), part(n, STEPS[b])]);
+    let alpha_factors = [factor(n, 0.4, 2.4), factor(n, 1.5, 0.5)];
     let own = texels.map(|texel| LayerSample { tangent: LayerSample::tangent_of(texel), ..LayerSample::NONE });
     let set = |(i, [x, y]): (usize, [f64; 2])| {
-        format!("place.layers[{i}].tangent = luthier_tangent(vec2<f32>({:?}, {:?}));", x as f32, y as f32)
+        format!("place.layers[{i}].tangent = luthier_tangent(vec2<f32>({:?}, {:?})); ", x as f32, y as f32)
     };
-    at(texels.into_iter().enumerate().map(set).collect::<Vec<_>>().join(" "), layered(own[0], own[1]))
+    let [x, y] = alpha_factors.map(|factor| factor as f32);
+    let make: String = texels.into_iter().enumerate().map(set).collect();
+    let make = format!("{make}place.layers[1].alpha_factors = vec2<f32>({x:?}, {y:?});");
+    at(make, layered(own[0], LayerSample { alpha_factors, ..own[1] }))
 }
 
 fn all_flakes(material: &Material) -> Flakes {

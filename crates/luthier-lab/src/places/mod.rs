@@ -52,11 +52,12 @@ impl Row {
 pub(crate) fn run(options: &PlacesOptions) -> Outcome {
     let gpu = open(options.adapter.name.as_deref())?;
     let cases = cases::all();
-    let total: usize = cases.iter().map(|case| case.models.len()).sum();
+    let is_asked = |model: &ShadingModel| options.model.is_empty() || options.model.contains(model);
+    let total: usize = cases.iter().map(|case| case.models.iter().filter(|model| is_asked(model)).count()).sum();
     let bar = Bar::new("comparing");
     let mut rows = Vec::new();
     for case in &cases {
-        for &model in case.models {
+        for &model in case.models.iter().filter(|model| is_asked(model)) {
             rows.push(measured(case, model, &gpu, options.pairs)?);
             bar.set(rows.len() as u64, total as u64);
         }

@@ -53,3 +53,31 @@ fn what_cannot_be_compared() {
     workshop.run(&["parity", "missing.toml"]).fails(3, &["missing.toml"]);
     workshop.run(&["parity", "a.toml", "--model", "no-such-model"]).fails(2, &["no-such-model"]);
 }
+
+/// Places of surfaces that vary: every kind that the models of a path and that of films have, within what the page allows.
+#[test]
+fn shaders_at_places_are_compared_with_their_twins() {
+    let workshop = Workshop::with(&[]);
+    let models = ["--model", "elek", "--model", "weidlich-wilkie", "--model", "granier-heidrich"];
+    let run = workshop.run(&[&["places", "--pairs", "40"][..], &models].concat());
+    if run.lacks_adapter() {
+        return;
+    }
+    let page = run.exits(0).stdout;
+    for (kind, model) in [
+        ("normal map", "granier-heidrich"),
+        ("bumps of one interface", "elek"),
+        ("patina", "weidlich-wilkie"),
+        ("glitter", "elek"),
+        ("surface of several materials", "granier-heidrich"),
+        ("fluorescent base", "weidlich-wilkie"),
+    ] {
+        let row = page.lines().find(|line| line.starts_with(&format!("| {kind} |")) && line.contains(model));
+        let cells: Vec<&str> = row.unwrap_or_else(|| panic!("{kind}, {model}: no row\n{page}")).split('|').collect();
+        let number = |cell: usize| cells[cell].trim().parse::<f64>().unwrap();
+        assert!(number(4) <= 2e-5 && number(4) > 0.0, "{kind}, {model}: {cells:?}");
+        // A shader that ignored the place would be off by more than the page allows.
+        assert!(number(8) > 0.1, "{kind}, {model}: {cells:?}");
+    }
+    assert!(!page.contains("`belcour` |"), "{page}");
+}
