@@ -157,8 +157,8 @@ mod tests {
         assert_eq!(schema.pointer("/properties/schema/const"), Some(&json!(1)));
         assert_eq!(schema.pointer("/required"), Some(&json!(["schema", "name", "layer"])));
         assert_eq!(schema.pointer("/$defs/dielectric/properties/alpha/maximum"), Some(&json!(1.0)));
-        assert_eq!(schema.pointer("/$defs/dielectric/oneOf/4/required"), Some(&json!(["exponents"])));
-        assert_eq!(schema.pointer("/$defs/dielectric/oneOf/5/required"), Some(&json!(["alpha_x", "alpha_y"])));
+        assert_eq!(schema.pointer("/$defs/dielectric/oneOf/6/required"), Some(&json!(["exponents"])));
+        assert_eq!(schema.pointer("/$defs/dielectric/oneOf/4/required"), Some(&json!(["alpha_x", "alpha_y"])));
         assert_eq!(schema.pointer("/$defs/noise/properties/octaves/default"), Some(&json!(4)));
         assert_eq!(schema.pointer("/$defs/thin-film/properties/roughness"), None);
         let index_or_f0 = json!([{ "required": ["ior"] }, { "required": ["f0"] }]);
