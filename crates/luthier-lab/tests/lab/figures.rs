@@ -3,7 +3,7 @@
 use crate::workshop::Workshop;
 
 /// The figures that the project promises, one by one.
-const NAMES: [&str; 33] = [
+const NAMES: [&str; 34] = [
     "elek-2",
     "elek-4",
     "elek-5",
@@ -16,6 +16,7 @@ const NAMES: [&str; 33] = [
     "granier-4",
     "granier-5",
     "granier-6",
+    "granier-7",
     "yamaguchi-4",
     "yamaguchi-1",
     "yamaguchi-3",
@@ -102,7 +103,7 @@ fn shaders_make_pictures_of_the_size_asked_for() {
     }
     run.exits(0);
     let picture = image::open(workshop.path("seen").join("granier-4.png")).unwrap().to_rgb8();
-    assert_eq!((picture.width(), picture.height()), (3 * 32 + 8, 48 + 8));
+    assert_eq!((picture.width(), picture.height()), (4 * 32 + 8, 48 + 8));
     // An inner boundary that leans shows other colours than one that does not.
     let at = |column: u32| -> Vec<[u8; 3]> {
         (0..24 * 24).map(|i| picture.get_pixel(8 + column * 32 + i % 24, 8 + i / 24).0).collect()
