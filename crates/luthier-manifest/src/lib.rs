@@ -6,7 +6,6 @@
 //!
 //! Every crate that reads or writes a bake says these things with the types of this crate.
 
-mod beams;
 mod choice;
 mod constants;
 mod distribution;
@@ -27,11 +26,10 @@ mod surface;
 mod target;
 mod tiles;
 
-pub use beams::BeamsRecord;
 pub use choice::{MaterialChoice, SceneBudget, SceneCandidate, SceneChoice, SceneDirection, SceneError, Verdict};
 pub use constants::{
-    AxesRecord, BaseRecord, FlakesRecord, GlitterRecord, LobesError, LobesRecord, MaterialConstants, PatinaRecord,
-    VaryingFactor, VaryingRecord,
+    AxesRecord, BaseRecord, BeamsRecord, FlakesRecord, GlitterRecord, LobesError, LobesRecord, MaterialConstants,
+    PatinaRecord, VaryingFactor, VaryingRecord,
 };
 pub use error::ManifestError;
 pub use feature::Feature;

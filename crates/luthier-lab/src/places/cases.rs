@@ -16,7 +16,7 @@ use luthier_optics::Rgb;
 
 use super::at_three_wavelengths;
 
-/// What varies over a surface, and the models that show it.
+/// Kind of variation over a surface, and the models that show it.
 pub(super) struct Case {
     /// In words.
     pub(super) name: &'static str,

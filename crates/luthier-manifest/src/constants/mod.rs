@@ -1,10 +1,14 @@
 //! Constants of a whole surface, beside its layers.
 
+mod beams;
+
 use std::f64::consts::FRAC_1_PI;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{BeamsRecord, LayerRecord};
+use crate::LayerRecord;
+
+pub use beams::BeamsRecord;
 
 /// Constants of a whole surface that a shader needs beside its layers; those that a model does not use are zero.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
