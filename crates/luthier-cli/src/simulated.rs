@@ -5,8 +5,8 @@ use std::path::Path;
 use luthier_export::{Package, gather, read_one, refuse};
 use luthier_gpu::{Gpu, RenderSettings, Shown, SimulationSettings};
 use luthier_lut::Image;
-use luthier_manifest::{Feature, Form, ShadingModel};
-use luthier_material::{Diagnostic, Material, Severity};
+use luthier_manifest::{Feature, Form, MapSlot, ShadingModel};
+use luthier_material::{Diagnostic, Material, Severity, distribution_key};
 use luthier_terminal::{Bar, Failure, Outcome, valid};
 
 use crate::cli::Shading;
@@ -48,15 +48,18 @@ fn beyond(material: &Material) -> Vec<Diagnostic> {
         if material.layers[number].reradiation.is_some() {
             found.push((key("reradiation"), Feature::Reradiation));
         }
-        let maps = &material.layers[number].maps;
-        for (is_there, name, feature) in [
-            (maps.normal.is_some(), "maps.normal", Feature::NormalMap),
-            (maps.roughness.is_some(), "maps.roughness", Feature::RoughnessMap),
-            (maps.thickness.is_some(), "maps.thickness", Feature::ThicknessMap),
-        ] {
-            if is_there {
-                found.push((key(name), feature));
-            }
+        let slopes = layer.surface.distribution;
+        if !layer.surface.is_smooth() && !slopes.has_walks() {
+            found.push((key(distribution_key(slopes)), Feature::Distribution));
+        }
+        for map in material.layers[number].maps.named() {
+            let of_surface = match map.slot {
+                MapSlot::Normal => Feature::NormalMap,
+                MapSlot::Roughness => Feature::RoughnessMap,
+                _ => Feature::ThicknessMap,
+            };
+            let feature = map.slot.layer_feature(number as u32).unwrap_or(of_surface);
+            found.push((key(&format!("maps.{}", map.key)), feature));
         }
     }
     let effects = &material.effects;

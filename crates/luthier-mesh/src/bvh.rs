@@ -24,7 +24,7 @@ pub struct Node {
 }
 
 /// A tree of boxes. Cuts are those of the least surface area (MacDonald and Booth 1990), among sixteen slabs of the widest axis of the centres.
-/// The same triangles give the same tree.
+/// A tree depends on its triangles alone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bvh {
     nodes: Vec<Node>,

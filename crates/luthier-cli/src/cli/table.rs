@@ -228,7 +228,7 @@ pub(crate) struct FilmOptions {
 
 const FRESNEL_EXAMPLES: &str = "\
 Bakes the reflectance of a smooth surface of index n + ik in air for unpolarised light, over three axes (Weidlich and Wilkie 2009, section 3.4.1). \
-One table serves all materials: a shader reads it once for each channel. Slices of the third axis lie one below the other. The default is the \
+One table serves all materials. Slices of the third axis lie one below the other, so that the look-up reads twice for each channel. The default is the \
 layout that the authors propose; the error says how far linear axes carry.
 
 Examples:

@@ -115,6 +115,14 @@ fn a_simulated_ball() {
     workshop.write("filmed.toml", FILMED);
     let refused = ["preview", "filmed.toml", "-o", "no.png", "--simulated", "4"];
     workshop.run(&refused).exits(1).says(&["filmed.toml:4", "does not take films", "leave out `--simulated`"]);
+    let blinn = FILMED.replace("type = \"thin-film\"\nior = 1.4\nthickness_nm = 300\n[[layer]]\n", "");
+    workshop.write("blinn.toml", format!("{blinn}distribution = \"blinn\"\n"));
+    workshop.write("bumps.toml", format!("{blinn}maps = {{ bumps = \"n.png\" }}\n"));
+    image::RgbImage::from_pixel(4, 4, image::Rgb([128, 128, 255])).save(workshop.path("n.png")).unwrap();
+    for (file, part) in [("blinn.toml", "distribution"), ("bumps.toml", "bumps")] {
+        let run = workshop.run(&["preview", file, "-o", "no.png", "--simulated", "4"]).exits(1);
+        run.says(&[&format!("{file}:"), "the simulation on the device does not take", part]);
+    }
     let surface = root().join("materials/surfaces/sunstone.toml");
     let surface = ["preview", surface.to_str().unwrap(), "-o", "no.png", "--simulated", "4"];
     workshop.run(&surface).fails(1, &["sunstone.toml is a surface"]);
