@@ -4,14 +4,16 @@ use std::path::PathBuf;
 
 #[cfg(feature = "gpu")]
 use luthier_export::Source;
-#[cfg(any(feature = "cost", feature = "gpu"))]
-use luthier_export::of_parts;
 use luthier_export::{SurfaceSource, gather, of_model, read_all, refuse, refuse_surfaces};
+#[cfg(any(feature = "cost", feature = "gpu"))]
+use luthier_export::{of_function, of_parts};
 #[cfg(any(feature = "cost", feature = "gpu"))]
 use luthier_manifest::Reflectance;
 use luthier_manifest::{Form, FunctionGroup, ShadingModel, SurfaceEntry};
 use luthier_material::{Diagnostic, Material, Severity};
 use luthier_optics::stack::{Base, Layer};
+#[cfg(any(feature = "cost", feature = "gpu"))]
+use luthier_terminal::complain;
 use luthier_terminal::{Broken, Failure, Outcome, print_diagnostics, valid};
 
 use crate::cli::Shading;
@@ -134,4 +136,14 @@ pub(crate) fn shade_by(material: &mut Material, model: ShadingModel, fresnel: Op
 pub(crate) fn models(asked: &[ShadingModel], no_fit: bool) -> Vec<ShadingModel> {
     let all = || ShadingModel::ALL.into_iter().filter(|model| !no_fit || *model != ShadingModel::Lobes).collect();
     if asked.is_empty() { all() } else { asked.to_vec() }
+}
+
+/// Whether a material can be shaded by a model. Where no model is asked for, one that has not its distribution of slopes is left out, and that is said.
+#[cfg(any(feature = "cost", feature = "gpu"))]
+pub(crate) fn is_shaded_by(material: &Material, model: ShadingModel, asked: &[ShadingModel]) -> bool {
+    let lack = of_function(material, model.name()).filter(|_| !asked.contains(&model));
+    if let Some(lack) = &lack {
+        complain(&format!("warning: {} is left out of {}: {}", material.name, model.name(), lack.message));
+    }
+    lack.is_none()
 }

@@ -10,7 +10,7 @@ use luthier_terminal::{Bar, Failure, Outcome, deliver, open, valid};
 use serde::Serialize;
 
 use crate::cli::BenchOptions;
-use crate::materials::{models, shade_by};
+use crate::materials::{is_shaded_by, models, shade_by};
 use crate::store::store;
 
 /// Pairs of directions, near the mirror direction and anywhere by halves: few enough for any cache.
@@ -124,13 +124,13 @@ struct Subject {
     scene: Scene,
 }
 
-/// The forms of every model of a material, Phong's model first: ratios are to it.
+/// The forms of every model of a material, Phong's model first where it has the material's facets: ratios are to it.
 fn subjects(gpu: &Gpu, material: &Material, options: &BenchOptions) -> Outcome<Vec<Subject>> {
     let mut models = vec![ShadingModel::Phong];
     models
         .extend(self::models(&options.model, options.no_fit).into_iter().filter(|&model| model != ShadingModel::Phong));
     let mut subjects = Vec::new();
-    for model in models {
+    for model in models.into_iter().filter(|&model| is_shaded_by(material, model, &options.model)) {
         let mut shaded = material.clone();
         shade_by(&mut shaded, model, options.fresnel)?;
         let mut package = Package::for_renderer(std::slice::from_ref(&shaded), store()?)?;
@@ -221,17 +221,22 @@ impl Bench {
         );
         for row in &self.rows {
             out.push_str(&format!(
-                "{:<24} {:<17} {:<16} {:>9.4} {:>8.4} {:>9.4} {:>7.2} {:>7.2}\n",
+                "{:<24} {:<17} {:<16} {:>9.4} {:>8.4} {:>9.4} {:>7} {:>7}\n",
                 row.material,
                 row.model.name(),
                 style_name(row.model, row.form, row.closed, false),
                 row.median_ns,
                 row.mad_ns,
                 row.net_ns,
-                row.of_phong,
-                row.of_full
+                ratio(row.of_phong),
+                ratio(row.of_full)
             ));
         }
         out
     }
+}
+
+/// A ratio to a shader; none where there is no such shader.
+fn ratio(value: f64) -> String {
+    if value.is_nan() { "-".to_owned() } else { format!("{value:.2}") }
 }

@@ -10,7 +10,7 @@ use luthier_shader::{Form, MaterialSet};
 use luthier_terminal::{Failure, Outcome, deliver, print, valid};
 
 use crate::cli::CostOptions;
-use crate::materials::{models, shade_by};
+use crate::materials::{is_shaded_by, models, shade_by};
 use crate::store::store;
 
 /// Compiles shaders for GPUs that are not here, and prints what they cost.
@@ -67,7 +67,11 @@ fn variants(options: &CostOptions, materials: &[Material]) -> Outcome<Vec<Varian
     let forms: Vec<Form> = if options.form.is_empty() { Form::ALL.to_vec() } else { options.form.clone() };
     let mut variants = Vec::new();
     for model in models {
-        let mut shaded = materials.to_vec();
+        let mut shaded: Vec<Material> =
+            materials.iter().filter(|material| is_shaded_by(material, model, &options.model)).cloned().collect();
+        if shaded.is_empty() {
+            continue;
+        }
         for material in &mut shaded {
             shade_by(material, model, options.fresnel)?;
         }

@@ -12,7 +12,7 @@ use luthier_material::{Material, parse};
 use luthier_optics::color::Color;
 
 use super::draws;
-use super::twin::{error, gpu, pairs, wide};
+use super::twin::{compare_sets, error, gpu, pairs, wide};
 use crate::workshop::Workshop;
 
 /// Largest difference between the device and f64, relative to the larger of the value and a tenth of a white Lambert surface's BRDF.
@@ -63,28 +63,12 @@ fn parts(model: &str) -> Parts {
 #[test]
 fn the_device_agrees_with_f64() {
     let Some(gpu) = gpu() else { return };
-    let pairs = pairs();
     let three = [645.0, 525.0, 445.0];
     for model in ["elek", "weidlich-wilkie", "microfacet"] {
-        let materials = materials(model);
-        let mut sets: Vec<&[Material]> = materials.iter().map(std::slice::from_ref).collect();
-        sets.push(&materials);
-        let mut worst: f64 = 0.0;
-        for set in sets {
-            let package = Package::new(set, &Bake::wgsl(&[Form::Full]), &MemoryStore::default()).unwrap();
-            let scene = gpu.scene(&package, Form::Full).unwrap();
-            for (number, material) in set.iter().enumerate() {
-                let color = Color::ThreeWavelengths(three);
-                let twin = Shaded::with(model, &material.stack, three, color, &Place::NONE, parts(model)).unwrap();
-                for (&(wi, wo), found) in pairs.iter().zip(scene.evaluate(number as u32, &pairs).unwrap()) {
-                    let expected = twin.eval(wide(wi), wide(wo));
-                    let error = error(found, expected);
-                    worst = worst.max(error);
-                    assert!(error < TOLERANCE, "{model}, {}: {wi:?} {wo:?}: {found:?} {expected:?}", material.name);
-                }
-            }
-        }
-        eprintln!("{model}: at most {worst:.1e}");
+        compare_sets(&gpu, model, &materials(model), |material| {
+            Shaded::with(model, &material.stack, three, Color::ThreeWavelengths(three), &Place::NONE, parts(model))
+                .unwrap()
+        });
     }
 }
 

@@ -2,16 +2,13 @@
 
 use luthier_export::{Bake, MemoryStore, Package};
 use luthier_layers::shaded::{Place, Shaded};
-use luthier_manifest::{Form, FunctionGroup, ShadingModel};
+use luthier_manifest::{FunctionGroup, ShadingModel};
 use luthier_material::{Material, parse};
 use luthier_optics::color::Color;
 
 use super::draws;
-use super::twin::{error, gpu, pairs, wide};
+use super::twin::{compare_sets, gpu};
 use crate::workshop::Workshop;
-
-/// Largest difference between the device and f64, relative to the larger of the value and a tenth of a white Lambert surface's BRDF.
-const TOLERANCE: f64 = 2e-5;
 
 const COPPER: &str = "[[layer]]\ntype = \"conductor\"\nf0 = [0.955, 0.638, 0.538]\n";
 
@@ -55,30 +52,13 @@ fn materials(model: &str) -> Vec<Material> {
 #[test]
 fn the_device_agrees_with_f64_in_every_model() {
     let Some(gpu) = gpu() else { return };
-    let pairs = pairs();
     let three = [645.0, 525.0, 445.0];
     for model in ["elek", "weidlich-wilkie", "granier-heidrich", "phong", "microfacet"] {
-        let materials = materials(model);
-        let mut sets: Vec<&[Material]> = materials.iter().map(std::slice::from_ref).collect();
-        sets.push(&materials);
-        let mut worst: f64 = 0.0;
-        for set in sets {
-            let bake = Bake { refuses: false, ..Bake::wgsl(&[Form::Full]) };
-            let package = Package::new(set, &bake, &MemoryStore::default()).unwrap();
-            let scene = gpu.scene(&package, Form::Full).unwrap();
-            for (number, material) in set.iter().enumerate() {
-                // Phong's coefficients are in the material's own colour.
-                let color = if model == "phong" { Color::Spectral } else { Color::ThreeWavelengths(three) };
-                let twin = Shaded::new(model, &material.stack, three, color, &Place::NONE).unwrap();
-                for (&(wi, wo), found) in pairs.iter().zip(scene.evaluate(number as u32, &pairs).unwrap()) {
-                    let expected = twin.eval(wide(wi), wide(wo));
-                    let error = error(found, expected);
-                    worst = worst.max(error);
-                    assert!(error < TOLERANCE, "{model}, {}: {wi:?} {wo:?}: {found:?} {expected:?}", material.name);
-                }
-            }
-        }
-        eprintln!("{model}: at most {worst:.1e}");
+        // Phong's coefficients are in the material's own colour.
+        let color = if model == "phong" { Color::Spectral } else { Color::ThreeWavelengths(three) };
+        compare_sets(&gpu, model, &materials(model), |material| {
+            Shaded::new(model, &material.stack, three, color, &Place::NONE).unwrap()
+        });
     }
 }
 

@@ -16,6 +16,8 @@ use crate::workshop::Workshop;
 
 /// Largest difference between the device and `eval`, relative to the larger of the value and a tenth of a white Lambert surface's BRDF.
 const TOLERANCE: f64 = 1e-4;
+/// The difference of sets of one kind of surface: reflectances as f32, and D in closed form.
+const SETS: f64 = 2e-5;
 /// That of rows of lobes as half floats, linear between nodes of other sums.
 const ROWS: f64 = 2e-3;
 const FLOOR: f64 = 0.1 * std::f64::consts::FRAC_1_PI;
@@ -103,6 +105,27 @@ pub(super) fn error(found: [f32; 3], expected: Rgb) -> f64 {
     let brightest = expected.iter().fold(FLOOR, |most, value| most.max(*value));
     let apart = |c: usize| (f64::from(found[c]) - expected[c]).abs() / brightest;
     (0..3).map(apart).fold(0.0, f64::max)
+}
+
+/// Compares the form `full` of materials with twins of them: each in a set of its own and all in one, whose shaders differ.
+pub(super) fn compare_sets(gpu: &Gpu, model: &str, materials: &[Material], twin: impl Fn(&Material) -> Shaded) {
+    let pairs = pairs();
+    let mut sets: Vec<&[Material]> = materials.iter().map(std::slice::from_ref).collect();
+    sets.push(materials);
+    let mut worst: f64 = 0.0;
+    for set in sets {
+        let scene = scene(gpu, set, None);
+        for (number, material) in set.iter().enumerate() {
+            let twin = twin(material);
+            for (&(wi, wo), found) in pairs.iter().zip(scene.evaluate(number as u32, &pairs).unwrap()) {
+                let expected = twin.eval(wide(wi), wide(wo));
+                let error = error(found, expected);
+                worst = worst.max(error);
+                assert!(error < SETS, "{model}, {}: {wi:?} {wo:?}: {found:?} {expected:?}", material.name);
+            }
+        }
+    }
+    eprintln!("{model}: at most {worst:.1e}");
 }
 
 /// The function that `eval --three-wavelengths --no-effects` prints, against `luthier_eval`.

@@ -131,3 +131,20 @@ fn the_page_has_every_model() {
         assert!(page.contains(part), "no `{part}` in\n{page}");
     }
 }
+
+/// Models without the distribution of a file are left out and named, unless they are asked for; one that is, is refused.
+#[test]
+fn models_without_a_distribution_are_left_out() {
+    let blinn = "schema = 1\nname = \"silver\"\n[[layer]]\ntype = \"conductor\"\nior = \"ag\"\nalpha = 0.2\ndistribution = \"blinn\"\n";
+    let workshop = Workshop::with(&[("silver.toml", blinn)]);
+    workshop.run(&["cost", "silver.toml", "--model", "belcour"]).fails(1, &["silver.toml", "`belcour`", "`blinn`"]);
+    let run = workshop.run(&["cost", "silver.toml", "--family", "rdna2", "--json"]);
+    if run.lacks_driver() {
+        return;
+    }
+    let run = run.exits(0).says(&["silver is left out of belcour", "silver is left out of phong"]);
+    let report = run.json();
+    let models = report["rows"].as_array().unwrap().iter().map(|row| row["model"].as_str().unwrap());
+    let models: std::collections::BTreeSet<&str> = models.collect();
+    assert_eq!(models.into_iter().collect::<Vec<_>>(), ["elek", "weidlich-wilkie"]);
+}
