@@ -286,7 +286,7 @@ def oren_nayar(rho, sigma):
     return value
 
 
-def layers(surfaces, base, transmit="half", clamp=False, inside=True):
+def layers(surfaces, base, transmit="half", clamp=False, inside=True, in_air=False):
     """The recursion of Weidlich and Wilkie, eq. 3.1 to 3.3, in Elek's form: surfaces are (eta, alpha, optical depth, distribution, index below over vacuum)."""
 
     def value(i, o):
@@ -295,7 +295,7 @@ def layers(surfaces, base, transmit="half", clamp=False, inside=True):
             least = max(least, alpha) if clamp else alpha
             h = half(wi, wo)
             cos_d = dot(wi, h)
-            f, g = fresnel(index, cos_d, above), v_cavity(wi, wo, h)
+            f, g = fresnel(index, cos_d, 1.0 if in_air else above), v_cavity(wi, wo, h)
             total += through * f * distribution(least)(h) * g / (4 * wi[2] * wo[2])
             if depth is None:
                 return total * i[2]
@@ -531,6 +531,10 @@ def compare():
         whole = f'{two}[bake]\nmodel = "{model}"\ninternal_reflection = "none"\n'
         values(paper, f"{model}: no internal reflection", "eq. 4, t = 1" if clamp else "eq. 3.3, t = 1", whole, model, layers(below_two, none, clamp=clamp, inside=False))
     values(COURSE, "transmission at the directions' angles", "eq. 3.2", three, "weidlich-wilkie-directions", layers(below_three, none, "directions"))
+    chosen = f'{three}[bake]\nmodel = "weidlich-wilkie"\ninternal_reflection = "directions"\n'
+    values(COURSE, "transmission at the directions' angles, of a file", "eq. 3.1, another reading", chosen, "weidlich-wilkie", layers(below_three, none, "directions"))
+    chosen = f'{two}[bake]\nmodel = "elek"\nlower_reflectance = "in-air"\n'
+    values(ELEK, "elek: F2 as in air", "algorithm 1, line 21", chosen, "elek", layers(below_two, none, clamp=True, in_air=True))
 
     # Granier and Heidrich.
     thin = film(*soap) + metal(rough)

@@ -139,7 +139,8 @@ impl Plan {
 impl Part {
     fn new(material: &Material, settings: &Settings, read_image: ImageReader<'_>) -> Result<Self, BakeError> {
         let mut part = Self::default();
-        part.layers = part.records(material, settings, &material.stack, &material.layers, None, read_image)?;
+        part.layers =
+            part.records(material, settings, &material.reflecting_stack(), &material.layers, None, read_image)?;
         if material.effects.patina.is_some() && material.stack.layers.len() > 1 {
             let stack =
                 Stack { exterior: material.stack.exterior.clone(), layers: vec![material.stack.layers[1].clone()] };

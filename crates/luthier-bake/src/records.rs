@@ -2,7 +2,9 @@
 
 use luthier_layers::domain::INDEX_MAX;
 use luthier_layers::elek::{self, ALPHA_MIN, Below};
-use luthier_manifest::{InternalReflection, LayerKind, LayerRecord, Masking, Reflectance, ReflectanceCurve};
+use luthier_manifest::{
+    InternalReflection, LayerKind, LayerRecord, LowerReflectance, Masking, Reflectance, ReflectanceCurve,
+};
 use luthier_material::Material;
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
@@ -30,6 +32,7 @@ pub(crate) struct Parts {
     pub(crate) masking: Masking,
     pub(crate) reflectance: Reflectance,
     pub(crate) internal_reflection: InternalReflection,
+    pub(crate) lower_reflectance: LowerReflectance,
     pub(crate) color: Color,
 }
 
@@ -40,10 +43,8 @@ impl Parts {
         Self {
             masking: bake.masking.filter(|_| model.has_masking()).unwrap_or_default(),
             reflectance: bake.reflectance.filter(|_| model.has_reflectance()).unwrap_or_default(),
-            internal_reflection: bake
-                .internal_reflection
-                .filter(|_| model.has_internal_reflection())
-                .unwrap_or_default(),
+            internal_reflection: bake.internal_reflection.filter(|_| model.has_path()).unwrap_or_default(),
+            lower_reflectance: bake.lower_reflectance.filter(|_| model.has_path()).unwrap_or_default(),
             color: color(material),
         }
     }
@@ -98,6 +99,9 @@ pub(crate) fn records(stack: &Stack, wavelengths_nm: [f64; 3], parts: &Parts) ->
             }
             if let Some(interface) = Interface::of(stack, i) {
                 record.f0 = interface.below.f0();
+                if i > 0 {
+                    record.lower_reflectance = parts.lower_reflectance;
+                }
                 parts.write(&interface, &mut record);
                 for (c, node) in nodes.iter().enumerate() {
                     let here = interface.at(node.wavelength_nm, c);

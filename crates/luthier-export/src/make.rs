@@ -325,7 +325,7 @@ fn material_entries(
             name: material.name.clone(),
             source: material.source.clone(),
             source_hash: source_hash(material)?,
-            class: material.class.letter().to_string(),
+            class: material.class.symbol().to_owned(),
             model: baked.model,
             color: baked.color,
             wavelengths_nm: material.bake.wavelengths_nm(),

@@ -2,12 +2,14 @@
 //! approximations.
 
 use luthier_lut::TableKind;
-use luthier_manifest::{ColorMode, Feature, Form, InternalReflection, Masking, Reflectance, ShadingModel};
+use luthier_manifest::{
+    ColorMode, Feature, Form, InternalReflection, LowerReflectance, Masking, Reflectance, ShadingModel,
+};
 use luthier_material::{Diagnostic, Material, Severity, distribution_key};
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::schlick::schlick;
-use luthier_optics::stack::Surface;
+use luthier_optics::stack::{Stack, Surface};
 
 use crate::beams::{self, of_beams};
 
@@ -23,6 +25,8 @@ pub fn of_parts(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnos
     doubts.extend(of_beams(material, model));
     let internal = material.bake.internal_reflection;
     doubts.extend(internal.and_then(|internal| of_internal_reflection(material, model, internal)));
+    let lower = material.bake.lower_reflectance;
+    doubts.extend(lower.and_then(|lower| of_lower_reflectance(material, model, lower)));
     doubts
 }
 
@@ -35,6 +39,7 @@ pub fn of_scene(material: &Material) -> Vec<Diagnostic> {
         ("masking", material.bake.masking.is_some()),
         ("reflectance", material.bake.reflectance.is_some_and(|reflectance| reflectance != Reflectance::Table)),
         ("internal_reflection", material.bake.internal_reflection.is_some()),
+        ("lower_reflectance", material.bake.lower_reflectance.is_some()),
     ];
     let parts = keys.into_iter().filter(|(_, is_chosen)| *is_chosen).map(|(key, _)| format!("bake.{key}"));
     let refusal = |place: String| {
@@ -180,7 +185,7 @@ fn of_internal_reflection(
     internal: InternalReflection,
 ) -> Option<Diagnostic> {
     let (name, key) = (internal.name(), "bake.internal_reflection");
-    if !model.has_internal_reflection() {
+    if !model.has_path() {
         let message = format!("the model `{model}` of this material has no internal reflection `{name}`");
         let hint = "leave it out, or write `[bake] model = \"elek\"` or `\"weidlich-wilkie\"`".to_owned();
         return Some(material.diagnostic(Severity::Error, key, message, Some(hint)));
@@ -188,29 +193,73 @@ fn of_internal_reflection(
     if internal == InternalReflection::Facets {
         return None;
     }
-    let layers = &material.stack.layers;
-    let has_below = layers.len() > 1;
-    let message = match has_below {
-        true => {
-            "the internal reflection `none` lets out what facets would reflect back: over a mirror, coats of alpha 0.1 return 2.06 of the light, with \
-             `facets` 1.98 (index 1.5), and 4.33, with `facets` 3.58 (index 2.5)"
-                .to_owned()
+    let has_below = material.stack.layers.len() > 1;
+    // Of a coat over a mirror, both of alpha 0.1, at 0 degrees, by `luthier eval --furnace`.
+    let effect = match internal {
+        InternalReflection::Facets => return None,
+        _ if !has_below => "changes nothing here: no layer lies below the first",
+        InternalReflection::None => {
+            "lets out what facets would reflect back: over a mirror, coats of alpha 0.1 return 2.06 of the light, with `facets` 1.98 (index 1.5), and \
+             4.33, with `facets` 3.58 (index 2.5)"
         }
-        false => "the internal reflection `none` changes nothing here: no layer lies below the first".to_owned(),
+        InternalReflection::Directions => {
+            "knows no facets that hide each other, and reflects for each direction as a smooth interface does: right for smooth coats alone"
+        }
     };
+    let message = format!("the internal reflection `{name}` {effect}");
     let hint = "`facets`, the default, is the term t of the papers".to_owned();
     Some(material.diagnostic(Severity::Warning, key, message, Some(hint)))
 }
 
-/// The layer whose curve is farthest off, the error of its worst channel, and the cosine there.
-fn worst(material: &Material, reflectance: Reflectance, layers: usize) -> Option<(usize, f64, f64)> {
-    let color = match material.bake.color.unwrap_or_default() {
+fn of_lower_reflectance(material: &Material, model: ShadingModel, lower: LowerReflectance) -> Option<Diagnostic> {
+    let (name, key) = (lower.name(), "bake.lower_reflectance");
+    if !model.has_path() {
+        let message = format!("the model `{model}` of this material has no lower reflectance `{name}`");
+        let hint = "leave it out, or write `[bake] model = \"elek\"` or `\"weidlich-wilkie\"`".to_owned();
+        return Some(material.diagnostic(Severity::Error, key, message, Some(hint)));
+    }
+    if lower == LowerReflectance::InPlace {
+        return None;
+    }
+    let (color, in_air) = (color(material), material.stack.with_lower_in_air());
+    let at_normal = |stack: &Stack, layer| Interface::of(stack, layer).map(|here| here.sampled(&color).rgb(1.0));
+    let mut worst: Option<(usize, f64, f64)> = None;
+    for layer in 1..material.stack.layers.len() {
+        let (Some(here), Some(air)) = (at_normal(&material.stack, layer), at_normal(&in_air, layer)) else { continue };
+        for (here, air) in here.into_iter().zip(air) {
+            if worst.is_none_or(|(_, a, b)| (air - here).abs() > (b - a).abs()) {
+                worst = Some((layer, here, air));
+            }
+        }
+    }
+    let effect = worst.map_or_else(
+        || "changes nothing here: no interface lies below the first".to_owned(),
+        |(layer, here, air)| {
+            format!(
+                "leaves out the medium above: layer {} reflects {air:.3} at normal incidence, and {here:.3} where it lies",
+                layer + 1
+            )
+        },
+    );
+    let hint = "`in-place`, the default, is the reflectance of the interface".to_owned();
+    Some(material.diagnostic(Severity::Warning, key, format!("the lower reflectance `{name}` {effect}"), Some(hint)))
+}
+
+/// The colour of the tables of a material.
+fn color(material: &Material) -> Color {
+    match material.bake.color.unwrap_or_default() {
         ColorMode::Spectral => Color::Spectral,
         ColorMode::ThreeWavelengths => Color::ThreeWavelengths(material.bake.wavelengths_nm()),
-    };
+    }
+}
+
+/// The layer whose curve is farthest off, the error of its worst channel, and the cosine there.
+fn worst(material: &Material, reflectance: Reflectance, layers: usize) -> Option<(usize, f64, f64)> {
+    let color = color(material);
+    let stack = material.reflecting_stack();
     let mut worst: Option<(usize, f64, f64)> = None;
     for layer in 0..layers {
-        let Some(interface) = Interface::of(&material.stack, layer) else { continue };
+        let Some(interface) = Interface::of(&stack, layer) else { continue };
         let sampled = interface.sampled(&color);
         let curves = if reflectance == Reflectance::Lazanyi { sampled.lazanyi() } else { sampled.schlick() };
         for cos in (1..=COSINES).map(|i| f64::from(i) / f64::from(COSINES)) {

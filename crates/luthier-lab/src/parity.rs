@@ -34,7 +34,7 @@ pub(crate) fn run(options: &ParityOptions) -> Outcome {
     let per_model = materials.len() * (1 + POLISHED_ALPHAS.len());
     for (index, _) in models.iter().enumerate() {
         let range = index * per_model..(index + 1) * per_model;
-        let stacks = all[range.clone()].iter().map(|m| m.stack.clone()).collect();
+        let stacks = all[range.clone()].iter().map(|m| m.reflecting_stack().into_owned()).collect();
         let compiled = Compiled::new(&gpu, &package, range, stacks)?;
         adapter = luthier_report::Device::name(&compiled.shaders);
         let cases: Vec<ParityCase> = (0..).zip(&materials).map(|(n, material)| case(n, material)).collect();

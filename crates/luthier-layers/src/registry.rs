@@ -19,7 +19,7 @@ use crate::patina::PatinaAt;
 use crate::phong::Phong;
 use crate::random_walk::RandomWalk;
 use crate::statistics::evaluate::Follow;
-use crate::weidlich_wilkie::{Refraction, Transmission, WeidlichWilkie};
+use crate::weidlich_wilkie::{InternalReflection, Refraction, WeidlichWilkie};
 use crate::weidlich_wilkie_corrected::WeidlichWilkieCorrected;
 use crate::yamaguchi::Yamaguchi;
 
@@ -34,7 +34,7 @@ pub fn models() -> Vec<Box<dyn Model>> {
     models.extend([Box::new(Lambert) as Box<dyn Model>, Box::new(OrenNayar), Box::new(Phong)]);
     models.extend([
         Box::new(WeidlichWilkie::default()) as Box<dyn Model>,
-        Box::new(WeidlichWilkie { transmission: Transmission::Directions, ..WeidlichWilkie::default() }),
+        Box::new(WeidlichWilkie { internal_reflection: InternalReflection::Directions, ..WeidlichWilkie::default() }),
         Box::new(WeidlichWilkie { refraction: Refraction::Facet, ..WeidlichWilkie::default() }),
         Box::new(WeidlichWilkieCorrected),
         Box::new(Elek::default()),

@@ -43,7 +43,7 @@ pub use manifest::{
 };
 pub use map::{MapEntry, MapSlot};
 pub use model::ShadingModel;
-pub use parts::{InternalReflection, Masking, Reflectance, ReflectanceCurve};
+pub use parts::{InternalReflection, LowerReflectance, Masking, Reflectance, ReflectanceCurve};
 pub use record::{LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, material_buffer};
 pub use search::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR, Search};
 pub use surface::{CellsRecord, ParticlesRecord, SurfaceEntry};

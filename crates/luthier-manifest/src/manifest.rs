@@ -4,8 +4,8 @@ use luthier_lut::{AtlasLayout, TableKind, TexelFormat, Tile};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Form, Functions, InternalReflection, LayerKind, LayerRecord, ManifestError, MapEntry, Masking, MaterialConstants,
-    MaterialTexture, Reflectance, SceneChoice, Search, ShadingModel, SurfaceEntry, Target,
+    Form, Functions, InternalReflection, LayerKind, LayerRecord, LowerReflectance, ManifestError, MapEntry, Masking,
+    MaterialConstants, MaterialTexture, Reflectance, SceneChoice, Search, ShadingModel, SurfaceEntry, Target,
 };
 
 /// Version of the manifest's shape. A reader refuses any other.
@@ -67,7 +67,7 @@ pub struct MaterialEntry {
     pub source: String,
     /// SHA-256, hex, of that file; of the file and, in the order of their names, the hashes of the files that it names, if any.
     pub source_hash: String,
-    /// Surface class a-h of Weidlich and Wilkie 2009, chapter 4.
+    /// Surface class a-h of Weidlich and Wilkie 2009, chapter 4; without a coat `metal`, `film`, `matte` or `glass`.
     pub class: String,
     /// The reflectance model that the shaders evaluate.
     pub model: ShadingModel,
@@ -153,6 +153,15 @@ impl MaterialEntry {
     pub fn internal_reflection(&self) -> InternalReflection {
         let first = self.layers.iter().find(|layer| layer.kind != LayerKind::Diffuse);
         first.map(|layer| layer.internal_reflection).unwrap_or_default()
+    }
+
+    /// Reflectance of the interfaces below the first.
+    pub fn lower_reflectance(&self) -> LowerReflectance {
+        self.layers
+            .iter()
+            .map(|layer| layer.lower_reflectance)
+            .find(|lower| *lower != LowerReflectance::default())
+            .unwrap_or_default()
     }
 
     /// The layers, then the bare layer of a patina: what the material buffer holds.

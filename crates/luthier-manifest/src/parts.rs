@@ -44,6 +44,19 @@ luthier_lut::named! {
 }
 
 luthier_lut::named! {
+    /// Reflectance of the interfaces below the first, of the models `elek` and `weidlich-wilkie`.
+    #[derive(Default, Serialize, Deserialize)]
+    #[serde(into = "&'static str", try_from = "String")]
+    pub enum LowerReflectance("lower reflectance") {
+        /// By the index below over that of the medium above.
+        #[default]
+        InPlace = "in-place",
+        /// By the index below alone, as if air lay above: the F2 of Elek 2010, Algorithm 1, line 21.
+        InAir = "in-air",
+    }
+}
+
+luthier_lut::named! {
     /// Light from below that an interface lets out, of the models `elek` and `weidlich-wilkie` (the term t of Elek 2010, eq. 4).
     #[derive(Default, Serialize, Deserialize)]
     #[serde(into = "&'static str", try_from = "String")]
@@ -53,6 +66,8 @@ luthier_lut::named! {
         Facets = "facets",
         /// `t = 1`: all of it comes out (the right half of figure 3.7 of the course).
         None = "none",
+        /// `t = T_21`, with T_12 at the angle of the light and T_21 at that of the eye, where both are taken at the half vector else.
+        Directions = "directions",
     }
 }
 
@@ -104,12 +119,23 @@ impl Reflectance {
     }
 }
 
+impl LowerReflectance {
+    /// Rule and source, for headers and messages.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::InPlace => "by the index over that of the medium above",
+            Self::InAir => "by the index alone, as in air (Elek 2010, Algorithm 1, line 21)",
+        }
+    }
+}
+
 impl InternalReflection {
     /// Formula and source, for headers and messages.
     pub fn title(self) -> &'static str {
         match self {
             Self::Facets => "t = (1 - G) + T_21 G (Elek 2010, eq. 4)",
             Self::None => "t = 1, none",
+            Self::Directions => "t = T_21, transmission at the directions' own angles",
         }
     }
 
@@ -146,8 +172,9 @@ impl ShadingModel {
         self == Self::GranierHeidrich
     }
 
-    /// Whether a material may leave out the term of internal reflection, `t = (1 - G) + T_21 G` (Elek 2010, eq. 4; the course, eq. 3.3).
-    pub fn has_internal_reflection(self) -> bool {
+    /// Whether the model goes down a path of refracted directions. A material may choose the term of internal reflection, `t = (1 - G) +
+    /// T_21 G` (Elek 2010, eq. 4; the course, eq. 3.3), and the reflectance of lower interfaces.
+    pub fn has_path(self) -> bool {
         matches!(self, Self::Elek | Self::WeidlichWilkie)
     }
 }
@@ -161,6 +188,7 @@ mod tests {
         assert_eq!((Masking::default(), Masking::default().number()), (Masking::ALL[0], 0));
         assert_eq!((Reflectance::default(), Reflectance::default().number()), (Reflectance::ALL[0], 0));
         assert_eq!(InternalReflection::default().number(), 0);
+        assert_eq!(LowerReflectance::default(), LowerReflectance::ALL[0]);
         // Two bits and three of a word: see `LayerRecord::words`.
         assert!(Reflectance::ALL.iter().all(|reflectance| reflectance.number() < 4));
         assert!(Masking::ALL.iter().all(|masking| masking.number() < 8));

@@ -6,7 +6,10 @@ use luthier_lut::{TableKind, refracted_cosine};
 use luthier_optics::stack::Distribution;
 use serde::{Deserialize, Serialize};
 
-use crate::{InternalReflection, Masking, MaterialConstants, MaterialEntry, Reflectance, ReflectanceCurve, Tiles};
+use crate::{
+    InternalReflection, LowerReflectance, Masking, MaterialConstants, MaterialEntry, Reflectance, ReflectanceCurve,
+    Tiles,
+};
 
 /// `vec4` words of a material's header in the material buffer.
 pub const MATERIAL_WORDS: usize = 11;
@@ -100,6 +103,9 @@ pub struct LayerRecord {
     /// Light from below that the interface lets out, of the models `elek` and `weidlich-wilkie`; absent where it is the default.
     #[serde(default, skip_serializing_if = "is_default")]
     pub internal_reflection: InternalReflection,
+    /// Medium above of which the reflectance of the interface is computed, and with it its indices here; absent where it is the default.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub lower_reflectance: LowerReflectance,
     /// The tiles that serve the layer: fields `fresnel_tile` and so on.
     #[serde(flatten)]
     pub tiles: Tiles,
@@ -135,7 +141,7 @@ impl LayerRecord {
     /// | 7 | film_ior_k RGB, squared cotangent of the critical angle; of a curve its weights RGB |
     /// | 8 | film thickness in waves RGB, escape tile; of a curve its exponents RGB |
     /// | 9 | alpha_x, alpha_y, cosine and sine of the rotation; of abc b and c, of sgd 1 / alpha and p in x and y |
-    /// | 10 | kind (0 dielectric, 1 conductor, 2 diffuse) plus 4 times the number of the reflectance (0 table, 1 exact, 2 approximate, 3 lazanyi) and 16 times that of the masking and 128 times that of the internal reflection (0 facets, 1 none), alpha, eta, sigma |
+    /// | 10 | kind (0 dielectric, 1 conductor, 2 diffuse) plus 4 times the number of the reflectance (0 table, 1 exact, 2 approximate, 3 lazanyi) and 16 times that of the masking and 128 times that of the internal reflection (0 facets, 1 none, 2 directions), alpha, eta, sigma |
     ///
     /// Masking is numbered 0 smith, 1 smith-separable, 2 schlick-smith, 3 v-cavity, 4 kelemen, 5 implicit. An interface with a curve ([`ReflectanceCurve`])
     /// has no film.
@@ -279,6 +285,7 @@ mod tests {
             reflectance: Reflectance::Table,
             curve: None,
             internal_reflection: InternalReflection::Facets,
+            lower_reflectance: LowerReflectance::InPlace,
             tiles: Tiles::default().with([
                 (TableKind::Fresnel, Some(27)),
                 (TableKind::Distribution, Some(28)),
@@ -355,6 +362,7 @@ mod tests {
             reflectance: Reflectance::Lazanyi,
             curve: Some(curve),
             internal_reflection: InternalReflection::None,
+            lower_reflectance: LowerReflectance::InAir,
             ..plain.clone()
         };
         let words = chosen.words();
@@ -365,7 +373,9 @@ mod tests {
         assert_eq!(serde_json::from_value::<LayerRecord>(json).unwrap(), chosen);
         let json = serde_json::to_value(plain).unwrap();
         assert!(
-            ["masking", "reflectance", "curve", "internal_reflection"].iter().all(|key| json.get(key).is_none()),
+            ["masking", "reflectance", "curve", "internal_reflection", "lower_reflectance"]
+                .iter()
+                .all(|key| json.get(key).is_none()),
             "{json}"
         );
     }

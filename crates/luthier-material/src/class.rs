@@ -1,10 +1,10 @@
-//! Classes of layered surfaces, a to h.
+//! Classes of layered surfaces, a to h, and of surfaces of one layer.
 
 use std::fmt;
 
 use luthier_optics::stack::{Base, Stack, Surface};
 
-/// The eight classes of layered surfaces of Weidlich and Wilkie 2009, chapter 4.
+/// The eight classes of layered surfaces of Weidlich and Wilkie 2009, chapter 4, and four of surfaces that have no coat.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum SurfaceClass {
     /// Smooth clear coat on a diffuse base.
@@ -23,6 +23,14 @@ pub enum SurfaceClass {
     G,
     /// More than two layers.
     H,
+    /// A metal without a coat.
+    Metal,
+    /// Films on a surface without a coat, or in a free sheet.
+    Film,
+    /// A diffuse base without a coat.
+    Matte,
+    /// A transparent medium with nothing below.
+    Glass,
 }
 
 /// Steepest slope, in degrees, of a surface that counts as smooth. The text calls 0.01 to 4 degrees smooth (glossy
@@ -33,24 +41,43 @@ pub const SMOOTH_SLOPE_DEG: f64 = 4.5;
 const TINT_DEPTH: f64 = 0.01;
 
 impl SurfaceClass {
-    /// All classes in order.
-    pub const ALL: [Self; 8] = [Self::A, Self::B, Self::C, Self::D, Self::E, Self::F, Self::G, Self::H];
+    /// All classes in order: those of the text, then those of one layer.
+    pub const ALL: [Self; 12] = [
+        Self::A,
+        Self::B,
+        Self::C,
+        Self::D,
+        Self::E,
+        Self::F,
+        Self::G,
+        Self::H,
+        Self::Metal,
+        Self::Film,
+        Self::Matte,
+        Self::Glass,
+    ];
 
     /// The class by the decision tree of chapter 4: metal or not; is the top smooth; is the base smooth; and h for more
-    /// than two layers. Films share a layer's surface and do not count.
+    /// than two layers. Films share a layer's surface and do not count below or on a coat. A dielectric base, glass for instance,
+    /// goes with the diffuse ones: a, b or c by its top.
     ///
-    /// The tree asks how a surface looks, so it extends to what the text leaves out. A surface of one layer is its own
-    /// top and base: a bare metal is d or g, a bare diffuse surface has no highlight and is c. A dielectric base, glass
-    /// for instance, goes with the diffuse ones: a, b or c by its top.
+    /// The text has coats on all its surfaces. A surface of one layer has a class of its own, by its films and its base.
     pub fn of(stack: &Stack) -> Self {
-        let (Some(top), Some(base)) = (stack.layers.first(), stack.layers.last()) else { return Self::C };
+        let (Some(top), Some(base)) = (stack.layers.first(), stack.layers.last()) else { return Self::Matte };
         if stack.layers.len() > 2 {
             return Self::H;
         }
-        let coated = stack.layers.len() == 2;
+        if stack.layers.len() == 1 {
+            return match &base.base {
+                _ if !base.films.is_empty() => Self::Film,
+                Base::Conductor { .. } => Self::Metal,
+                Base::Diffuse(_) => Self::Matte,
+                Base::Dielectric { .. } => Self::Glass,
+            };
+        }
         let top_smooth = is_smooth(&top.surface) && !matches!(top.base, Base::Diffuse(_));
         let tinted = match &top.base {
-            Base::Dielectric { slab, .. } => coated && slab.optical_depth().iter().any(|&d| d >= TINT_DEPTH),
+            Base::Dielectric { slab, .. } => slab.optical_depth().iter().any(|&d| d >= TINT_DEPTH),
             _ => false,
         };
         match (&base.base, top_smooth) {
@@ -64,21 +91,30 @@ impl SurfaceClass {
         }
     }
 
-    /// The letter that the text gives it.
-    pub fn letter(self) -> char {
+    /// The letter that the text gives it, or a word: as manifests have it.
+    pub fn symbol(self) -> &'static str {
         match self {
-            Self::A => 'a',
-            Self::B => 'b',
-            Self::C => 'c',
-            Self::D => 'd',
-            Self::E => 'e',
-            Self::F => 'f',
-            Self::G => 'g',
-            Self::H => 'h',
+            Self::A => "a",
+            Self::B => "b",
+            Self::C => "c",
+            Self::D => "d",
+            Self::E => "e",
+            Self::F => "f",
+            Self::G => "g",
+            Self::H => "h",
+            Self::Metal => "metal",
+            Self::Film => "film",
+            Self::Matte => "matte",
+            Self::Glass => "glass",
         }
     }
 
-    /// The name that the text gives it.
+    /// Whether it is one of the text's classes of layered surfaces.
+    pub fn is_layered(self) -> bool {
+        self <= Self::H
+    }
+
+    /// The name that the text gives it, or ours.
     pub fn name(self) -> &'static str {
         match self {
             Self::A => "Glossy Paint",
@@ -89,13 +125,20 @@ impl SurfaceClass {
             Self::F => "Frosted Metal",
             Self::G => "Patina",
             Self::H => "Multi-Layer",
+            Self::Metal => "Bare Metal",
+            Self::Film => "Thin Film",
+            Self::Matte => "Matte",
+            Self::Glass => "Glass",
         }
     }
 }
 
 impl fmt::Display for SurfaceClass {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}) {}", self.letter(), self.name())
+        match self.is_layered() {
+            true => write!(f, "{}) {}", self.symbol(), self.name()),
+            false => f.write_str(self.name()),
+        }
     }
 }
 
@@ -106,7 +149,7 @@ fn is_smooth(surface: &Surface) -> bool {
 #[cfg(test)]
 mod tests {
     use luthier_optics::ior::Ior;
-    use luthier_optics::stack::{Diffuse, Distribution, Layer, Slab};
+    use luthier_optics::stack::{Diffuse, Distribution, Film, FilmThickness, Layer, Slab};
 
     use super::*;
 
@@ -133,21 +176,21 @@ mod tests {
         Layer { films: Vec::new(), surface: Surface::smooth(), base }
     }
 
-    fn letter(layers: Vec<Layer>) -> char {
-        SurfaceClass::of(&Stack { exterior: Ior::vacuum(), layers }).letter()
+    fn symbol(layers: Vec<Layer>) -> &'static str {
+        SurfaceClass::of(&Stack { exterior: Ior::vacuum(), layers }).symbol()
     }
 
     /// The tree of figure 4.3 and the thresholds of the text, branch by branch.
     #[test]
     fn the_tree_has_eight_leaves() {
-        assert_eq!(letter(vec![coat(3.5, 0.0), diffuse()]), 'a');
-        assert_eq!(letter(vec![coat(1.5, 1.0), diffuse()]), 'b');
-        assert_eq!(letter(vec![coat(10.0, 1.0), diffuse()]), 'c');
-        assert_eq!(letter(vec![coat(1.0, 0.5), metal(4.0)]), 'd');
-        assert_eq!(letter(vec![coat(1.0, 0.5), metal(12.0)]), 'e');
-        assert_eq!(letter(vec![coat(17.0, 0.5), metal(1.0)]), 'f');
-        assert_eq!(letter(vec![coat(7.0, 0.0), metal(10.0)]), 'g');
-        assert_eq!(letter(vec![coat(30.0, 0.0), coat(7.0, 0.0), diffuse()]), 'h');
+        assert_eq!(symbol(vec![coat(3.5, 0.0), diffuse()]), "a");
+        assert_eq!(symbol(vec![coat(1.5, 1.0), diffuse()]), "b");
+        assert_eq!(symbol(vec![coat(10.0, 1.0), diffuse()]), "c");
+        assert_eq!(symbol(vec![coat(1.0, 0.5), metal(4.0)]), "d");
+        assert_eq!(symbol(vec![coat(1.0, 0.5), metal(12.0)]), "e");
+        assert_eq!(symbol(vec![coat(17.0, 0.5), metal(1.0)]), "f");
+        assert_eq!(symbol(vec![coat(7.0, 0.0), metal(10.0)]), "g");
+        assert_eq!(symbol(vec![coat(30.0, 0.0), coat(7.0, 0.0), diffuse()]), "h");
     }
 
     /// The labels of figure 4.4.
@@ -163,18 +206,27 @@ mod tests {
             "g) Patina",
             "h) Multi-Layer",
         ];
-        assert_eq!(SurfaceClass::ALL.map(|class| class.to_string()), labels);
         for (class, label) in SurfaceClass::ALL.into_iter().zip(labels) {
-            assert_eq!(format!("{}) {}", class.letter(), class.name()), label);
+            assert_eq!((class.to_string().as_str(), class.is_layered()), (label, true));
         }
     }
 
     #[test]
-    fn one_layer_is_its_own_top_and_base() {
-        assert_eq!(letter(vec![metal(0.0)]), 'd');
-        assert_eq!(letter(vec![metal(20.0)]), 'g');
-        assert_eq!(letter(vec![diffuse()]), 'c');
-        assert_eq!(letter(vec![coat(0.0, 1.0)]), 'a');
-        assert_eq!(letter(vec![coat(20.0, 0.0)]), 'c');
+    fn surfaces_without_a_coat_have_classes_of_their_own() {
+        let film =
+            Film { ior: Ior::constant(1.33, 0.0).unwrap(), thickness: FilmThickness { min_nm: 300.0, max_nm: 300.0 } };
+        let filmed = |layer: Layer| Layer { films: vec![film.clone()], ..layer };
+        assert_eq!(symbol(vec![metal(0.0)]), "metal");
+        assert_eq!(symbol(vec![metal(20.0)]), "metal");
+        assert_eq!(symbol(vec![filmed(metal(20.0))]), "film");
+        assert_eq!(symbol(vec![filmed(coat(0.0, 0.0))]), "film");
+        assert_eq!(symbol(vec![diffuse()]), "matte");
+        assert_eq!(symbol(vec![coat(0.0, 1.0)]), "glass");
+        // A coat makes a layered surface of them.
+        assert_eq!(symbol(vec![filmed(coat(0.0, 0.0)), metal(0.0)]), "d");
+        assert_eq!(
+            SurfaceClass::of(&Stack { exterior: Ior::vacuum(), layers: vec![metal(0.0)] }).to_string(),
+            "Bare Metal"
+        );
     }
 }

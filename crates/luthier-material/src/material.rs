@@ -1,9 +1,11 @@
 //! The validated material, with the places of its values in the file.
 
+use std::borrow::Cow;
+
 use luthier_optics::Rgb;
 use luthier_optics::stack::Stack;
 
-use luthier_manifest::{BeamsRecord, Budget, MapSlot, ShadingModel};
+use luthier_manifest::{BeamsRecord, Budget, LowerReflectance, MapSlot, ShadingModel};
 
 use crate::bake_settings::{BakeSettings, Beams};
 use crate::class::SurfaceClass;
@@ -68,10 +70,19 @@ impl Material {
         self.bake.model = Some(model);
         self.bake.masking = self.bake.masking.filter(|_| model.has_masking());
         self.bake.reflectance = self.bake.reflectance.filter(|_| model.has_reflectance());
-        self.bake.internal_reflection = self.bake.internal_reflection.filter(|_| model.has_internal_reflection());
+        self.bake.internal_reflection = self.bake.internal_reflection.filter(|_| model.has_path());
+        self.bake.lower_reflectance = self.bake.lower_reflectance.filter(|_| model.has_path());
         if !model.has_beams() {
             self.bake.beams = None;
             self.layers.iter_mut().for_each(|layer| layer.exponents = None);
+        }
+    }
+
+    /// The stack as its model reflects: as it is, but for lower interfaces that its file has reflect as in air.
+    pub fn reflecting_stack(&self) -> Cow<'_, Stack> {
+        match self.bake.lower_reflectance.unwrap_or_default() {
+            LowerReflectance::InPlace => Cow::Borrowed(&self.stack),
+            LowerReflectance::InAir => Cow::Owned(self.stack.with_lower_in_air()),
         }
     }
 

@@ -21,7 +21,7 @@ pub struct Interface {
 }
 
 impl Interface {
-    /// The interface at the top of a layer, or `None` for a diffuse base, which has none, and out of range.
+    /// The interface at the top of a layer, as far as it reflects, or `None` for a diffuse base, which has none, and out of range.
     pub fn of(stack: &Stack, layer: usize) -> Option<Self> {
         let here = stack.layers.get(layer)?;
         let below = match &here.base {
@@ -33,6 +33,7 @@ impl Interface {
             Some(Base::Dielectric { ior, .. }) => ior.clone(),
             Some(Base::Conductor { .. } | Base::Diffuse(_)) => return None,
         };
+        let above = if below.reflects_as_in_air() { Ior::vacuum() } else { above };
         Some(Self { above, films: here.films.clone(), below })
     }
 

@@ -52,12 +52,15 @@ pub enum IorError {
 pub struct Ior {
     samples: Vec<IorSample>,
     f0: Option<Rgb>,
+    // Stacks of which the interfaces reflect so are made from others for a model, and kept nowhere.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    in_air: bool,
 }
 
 impl Ior {
     /// Vacuum, and air for our purposes.
     pub fn vacuum() -> Self {
-        Self { samples: vec![IorSample { wavelength_nm: 550.0, n: 1.0, k: 0.0 }], f0: None }
+        Self { samples: vec![IorSample { wavelength_nm: 550.0, n: 1.0, k: 0.0 }], f0: None, in_air: false }
     }
 
     /// An index that is equal at every wavelength.
@@ -87,7 +90,7 @@ impl Ior {
                 return Err(IorError::NotPhysical { wavelength_nm: s.wavelength_nm, n: s.n, k: s.k });
             }
         }
-        Ok(Self { samples, f0: None })
+        Ok(Self { samples, f0: None, in_air: false })
     }
 
     /// The index of a medium whose interface reflects `f0 + (1 - f0)(1 - cos)^5` (Schlick 1994), by colour channel (linear Rec.709,
@@ -95,6 +98,18 @@ impl Ior {
     #[must_use]
     pub fn with_f0(self, f0: Rgb) -> Self {
         Self { f0: Some(f0), ..self }
+    }
+
+    /// The index of a medium whose interface reflects as if air lay above it; directions are bent by the medium that does. See
+    /// [`crate::stack::Stack::with_lower_in_air`].
+    #[must_use]
+    pub fn reflecting_as_in_air(self) -> Self {
+        Self { in_air: true, ..self }
+    }
+
+    /// Whether its interface reflects as if air lay above it.
+    pub fn reflects_as_in_air(&self) -> bool {
+        self.in_air
     }
 
     /// The reflectance at normal incidence by colour channel, where Schlick's formula stands in for the index; else `None`.
@@ -107,7 +122,7 @@ impl Ior {
     /// # Errors
     /// See [`IorError`].
     pub fn with_samples(&self, samples: Vec<IorSample>) -> Result<Self, IorError> {
-        Ok(Self { f0: self.f0, ..Self::sampled(samples)? })
+        Ok(Self { samples: Self::sampled(samples)?.samples, ..self.clone() })
     }
 
     /// The samples, ascending in wavelength.

@@ -20,6 +20,21 @@ pub struct Stack {
     pub layers: Vec<Layer>,
 }
 
+impl Stack {
+    /// The stack with interfaces below the first that reflect as if air lay above each: the F2 of O. Elek, "Layered Materials in Real-Time
+    /// Rendering", CESCG 2010, Algorithm 1, line 21. Directions are bent as before.
+    #[must_use]
+    pub fn with_lower_in_air(&self) -> Self {
+        let mut here = self.clone();
+        for layer in here.layers.iter_mut().skip(1) {
+            if let Base::Dielectric { ior, .. } | Base::Conductor { ior } = &mut layer.base {
+                *ior = ior.clone().reflecting_as_in_air();
+            }
+        }
+        here
+    }
+}
+
 /// One interface and what lies below it.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -81,7 +81,7 @@ fn line(source: &Source, model: Option<ShadingModel>) -> String {
                 warnings => format!(", {}", count(warnings, "warning")),
             };
             let model = model.map_or_else(String::new, |model| format!(", model {model}"));
-            format!("{}: ok, class {} ({}){model}{warnings}\n", source.label, class.letter(), class.name())
+            format!("{}: ok, class {} ({}){model}{warnings}\n", source.label, class.symbol(), class.name())
         }
     }
 }
@@ -124,7 +124,7 @@ fn surface_entry(surface: &SurfaceSource) -> Value {
 fn entry(source: &Source, model: Option<ShadingModel>) -> Value {
     let material = source.parsed.as_ref().ok().map(|parsed| {
         let m = &parsed.material;
-        let mut about = json!({"name": m.name, "class": m.class.letter().to_string(), "class_name": m.class.name()});
+        let mut about = json!({"name": m.name, "class": m.class.symbol(), "class_name": m.class.name()});
         if let Some(model) = model {
             about["model"] = json!(model.name());
         }

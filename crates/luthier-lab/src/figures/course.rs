@@ -79,7 +79,7 @@ fn classes(studio: &Studio) -> Outcome<Made> {
         made.measure(format!("{} {}, tables against full: mean FLIP", material.class, material.name), flip);
     }
     let label =
-        |(material, (_, label, _)): (&Material, &(&str, &str, &str))| format!("{} {label}", material.class.letter());
+        |(material, (_, label, _)): (&Material, &(&str, &str, &str))| format!("{} {label}", material.class.symbol());
     made.sheet("course-classes", materials.iter().zip(&CLASSES).map(label).zip(baked).collect(), 4);
     Ok(made)
 }

@@ -131,7 +131,7 @@ fn samples(studio: &Studio) -> Outcome<Made> {
             let [lightness, chroma, _] = lightness_chroma_hue([0, 1, 2].map(|c: usize| f64::from(middle[c])));
             made.measure(format!("{}, middle of the ball: lightness", material.name), lightness);
             made.measure(format!("{}, middle of the ball: chroma", material.name), chroma);
-            pictures.push((format!("{} {label}", material.class.letter()), picture));
+            pictures.push((format!("{} {label}", material.class.symbol()), picture));
         }
     }
     made.sheet("course-5-7", pictures, 8);

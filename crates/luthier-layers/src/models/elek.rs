@@ -194,16 +194,19 @@ pub(crate) fn walk(layers: &[Layer], terms: &impl Terms, wi: DVec3, wo: DVec3, t
         let Some((wi_level, wo_level, facing)) = off(normal, wi_below, wo_below) else { break };
         (wi_below, wo_below) = (wi_level, wo_level);
         let path = 1.0 / wi_below.z + 1.0 / wo_below.z;
+        let transmitted = f.map(|f| 1.0 - f);
+        let (entered, left) = match layer.internal_reflection {
+            InternalReflection::Facets => (transmitted, transmitted.map(|transmitted| (1.0 - g) + transmitted * g)),
+            InternalReflection::None => (transmitted, [1.0; 3]),
+            InternalReflection::Directions => {
+                [wi_local, wo_local].map(|w| terms.fresnel(i, w.z.min(1.0)).map(|f| 1.0 - f)).into()
+            }
+        };
         for c in 0..3 {
-            let transmitted = 1.0 - f[c];
             let absorbed = libm::exp(-optical_depth[c] * path);
-            let left = match layer.internal_reflection {
-                InternalReflection::Facets => (1.0 - g) + transmitted * g,
-                InternalReflection::None => 1.0,
-            };
-            throughput[c] *= transmitted * absorbed * left * facing;
-            down[c] *= facing * transmitted * libm::exp(-optical_depth[c] / wi_below.z);
-            up[c] *= left * libm::exp(-optical_depth[c] / wo_below.z);
+            throughput[c] *= entered[c] * absorbed * left[c] * facing;
+            down[c] *= facing * entered[c] * libm::exp(-optical_depth[c] / wi_below.z);
+            up[c] *= left[c] * libm::exp(-optical_depth[c] / wo_below.z);
         }
         (wi_local, wo_local) = (wi_below, wo_below);
     }

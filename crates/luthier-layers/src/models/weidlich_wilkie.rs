@@ -9,7 +9,7 @@
 //! ```
 //!
 //! f_2 is again a layered surface; T_12 = T_21 = 1 - F at the half vector (the course's shader takes both there, see
-//! [`Transmission`]); G is of V-cavities. Of the distributions the course leaves free, each surface brings its own.
+//! [`InternalReflection`]); G is of V-cavities. Of the distributions the course leaves free, each surface brings its own.
 //!
 //! The model errs in two ways, which the tests measure: radiance is not compressed by 1/n^2 on its way out, so that a smooth
 //! coat over a white base returns about twice what it receives; and light that comes back from the underside of an
@@ -38,25 +38,17 @@ pub enum Refraction {
     Facet,
 }
 
-/// Angles at which the transmission coefficients are taken.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Transmission {
-    /// Both coefficients at the half vector, as in the course's shader.
-    #[default]
-    HalfVector,
-    /// T_12 at the angle of `wi`, T_21 at that of `wo`, each with the normal, and `t = T_21`: the physics of a smooth
-    /// interface, which hides nothing.
-    Directions,
-}
-
-/// Light from below that an interface lets out, beside the transmission on the way in.
+/// Light from below that an interface lets out, and the angles of T_12 and T_21.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum InternalReflection {
-    /// `t = (1 - G) + T_21 G`.
+    /// `t = (1 - G) + T_21 G`, both coefficients at the half vector, as in the course's shader.
     #[default]
     Facets,
-    /// `t = 1`: all of it comes out, as in the right half of the course's figure 3.7.
+    /// `t = 1`: all of it comes out, as in the right half of the course's figure 3.7. T_12 is at the half vector.
     None,
+    /// `t = T_21`, T_12 at the angle of `wi` and T_21 at that of `wo`, each with the normal: the physics of a smooth interface, which
+    /// hides nothing.
+    Directions,
 }
 
 /// The recursive model, faithful to the course.
@@ -64,9 +56,7 @@ pub enum InternalReflection {
 pub struct WeidlichWilkie {
     /// Normal at which directions are refracted.
     pub refraction: Refraction,
-    /// Angles at which T_12 and T_21 are taken.
-    pub transmission: Transmission,
-    /// Light that comes out, where the transmission is at the half vector.
+    /// Light that comes out.
     pub internal_reflection: InternalReflection,
 }
 
@@ -86,17 +76,18 @@ impl WeidlichWilkie {
 
 impl Model for WeidlichWilkie {
     fn info(&self) -> ModelInfo {
-        let (name, domain) = match (self.refraction, self.transmission) {
-            (Refraction::Surface, Transmission::HalfVector) => {
+        let at_directions = self.internal_reflection == InternalReflection::Directions;
+        let (name, domain) = match (self.refraction, at_directions) {
+            (Refraction::Surface, false) => {
                 ("weidlich-wilkie", "any stack; refraction at the surface normal; alpha from 1e-4")
             }
-            (Refraction::Surface, Transmission::Directions) => {
+            (Refraction::Surface, true) => {
                 ("weidlich-wilkie-directions", "any stack; transmission at the directions' own angles; alpha from 1e-4")
             }
-            (Refraction::Facet, Transmission::HalfVector) => {
+            (Refraction::Facet, false) => {
                 ("weidlich-wilkie-facet", "any stack; refraction at the half vector; alpha from 1e-4")
             }
-            (Refraction::Facet, Transmission::Directions) => {
+            (Refraction::Facet, true) => {
                 ("weidlich-wilkie-facet-directions", "any stack; refraction at the half vector, transmission not")
             }
         };
@@ -182,15 +173,11 @@ impl WeidlichWilkie {
             }
             let Some((wi_level, wo_level, facing)) = off(normal, wi_below, wo_below) else { break };
             (wi_below, wo_below) = (wi_level, wo_level);
-            let (entered, left) = match self.transmission {
-                Transmission::HalfVector => {
-                    let transmitted = 1.0 - reflected;
-                    match self.internal_reflection {
-                        InternalReflection::Facets => (transmitted, (1.0 - lobe.masking) + transmitted * lobe.masking),
-                        InternalReflection::None => (transmitted, 1.0),
-                    }
-                }
-                Transmission::Directions => {
+            let transmitted = 1.0 - reflected;
+            let (entered, left) = match self.internal_reflection {
+                InternalReflection::Facets => (transmitted, (1.0 - lobe.masking) + transmitted * lobe.masking),
+                InternalReflection::None => (transmitted, 1.0),
+                InternalReflection::Directions => {
                     (1.0 - optics.reflectance(i, wi_local.z.min(1.0)), 1.0 - optics.reflectance(i, wo_local.z.min(1.0)))
                 }
             };

@@ -81,6 +81,7 @@ impl Parts {
         let internal_reflection = match internal_reflection {
             "facets" => InternalReflection::Facets,
             "none" => InternalReflection::None,
+            "directions" => InternalReflection::Directions,
             _ => return None,
         };
         Some(Self { masking, reflectance, internal_reflection, ..Self::PLAIN })

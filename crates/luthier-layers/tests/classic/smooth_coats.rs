@@ -9,7 +9,7 @@ use luthier_layers::microfacet::{Components, Microfacet};
 use luthier_layers::model::Model;
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow};
 use luthier_layers::oren_nayar;
-use luthier_layers::weidlich_wilkie::{Refraction, Transmission, WeidlichWilkie};
+use luthier_layers::weidlich_wilkie::{InternalReflection, Refraction, WeidlichWilkie};
 use luthier_layers::weidlich_wilkie_corrected::WeidlichWilkieCorrected;
 
 use crate::sphere::{albedo, at, mirrored};
@@ -93,7 +93,8 @@ fn the_corrected_model_keeps_energy_through_two_smooth_coats() {
 #[test]
 fn the_faithful_model_lacks_one_over_n_squared() {
     let stack = Monochrome::bare(&[coat(0.0), (ggx(0.1), WHITE)]);
-    let directions = WeidlichWilkie { transmission: Transmission::Directions, ..WeidlichWilkie::default() };
+    let directions =
+        WeidlichWilkie { internal_reflection: InternalReflection::Directions, ..WeidlichWilkie::default() };
     close(albedo(&directions, &stack, at(0.0)), 1.968, 1e-3);
     close(compressed(&directions, &stack, 0.0), 0.897, 1e-3);
     close(albedo(&WeidlichWilkie::default(), &stack, at(0.0)), 1.9807, 5e-4);

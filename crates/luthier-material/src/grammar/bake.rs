@@ -1,7 +1,7 @@
 //! Keys of `[bake]` and `[budget]`.
 
 use luthier_lut::TableKind;
-use luthier_manifest::{ColorMode, InternalReflection, Masking, Reflectance, ShadingModel};
+use luthier_manifest::{ColorMode, InternalReflection, LowerReflectance, Masking, Reflectance, ShadingModel};
 
 use super::{Key, Kind, NOT_NEGATIVE, POSITIVE, Range, Table};
 use crate::bake_settings::{AlphaMapping, DistributionMapping, FresnelMapping};
@@ -51,7 +51,15 @@ pub(super) static BAKE: Table = Table {
             "internal_reflection",
             Kind::Choice(InternalReflection::NAMES),
             "\"facets\"",
-            "Light from below that interfaces let out, in the models elek and weidlich-wilkie: less what facets reflect back, or all of it.",
+            "Light from below that interfaces let out, in the models elek and weidlich-wilkie: less what facets reflect back, all of it, or by the \
+             transmission at the directions' own angles.",
+        ),
+        Key::with_default(
+            "lower_reflectance",
+            Kind::Choice(LowerReflectance::NAMES),
+            "\"in-place\"",
+            "Reflectance of the interfaces below the first, in the models elek and weidlich-wilkie: below the medium that lies above them, or as in air, \
+             the F2 of Elek's Algorithm 1.",
         ),
         Key::optional(
             "tables",

@@ -159,6 +159,7 @@ fn of_parts(set: &MaterialSet<'_>, form: Form, names: &BTreeSet<&'static str>) -
     let is_packed =
         |record: &LayerRecord| (record.masking, record.reflectance) != (Masking::default(), Reflectance::default());
     let is_whole = |record: &LayerRecord| record.internal_reflection != InternalReflection::default();
+    let is_own = |record: &LayerRecord| record.internal_reflection == InternalReflection::Directions;
     let has_whole = records().any(is_whole);
     let words = [
         ("rows", is_read),
@@ -168,6 +169,7 @@ fn of_parts(set: &MaterialSet<'_>, form: Form, names: &BTreeSet<&'static str>) -
         ("several_maskings", maskings.len() > 1),
         ("packed", has_whole || records().any(is_packed)),
         ("internal", has_whole && has("chain") && has("below")),
+        ("own_angles", records().any(is_own) && has("chain") && has("below")),
     ];
     let chosen = words.into_iter().filter(|(_, holds)| *holds).map(|(name, _)| name);
     chosen.chain(maskings.into_iter().filter(|_| is_masked).map(masking::word)).collect()

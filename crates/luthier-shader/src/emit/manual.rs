@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 
 use luthier_lut::{Axis, Mapping, TableKind};
-use luthier_manifest::{BindingEntry, InternalReflection, Masking, MaterialTexture, Reflectance, ShadingModel};
+use luthier_manifest::{
+    BindingEntry, InternalReflection, LowerReflectance, Masking, MaterialTexture, Reflectance, ShadingModel,
+};
 
 use super::Part;
 use crate::{Form, MaterialSet, RESERVED_BINDINGS, ShaderError, Target, bindings};
@@ -173,13 +175,18 @@ fn parts(set: &MaterialSet<'_>) -> Vec<String> {
         let names = chosen().filter(|(_, parts)| parts.1 == reflectance).map(|(name, _)| name);
         line("Reflectance", reflectance.title(), names.collect())
     });
-    let without = set.materials.iter().filter(|material| material.internal_reflection() == InternalReflection::None);
-    let names = without.map(|material| material.name.as_str()).collect();
-    let internal = line("Internal reflection", InternalReflection::None.title(), names);
+    let is_other = |internal: &InternalReflection| *internal != InternalReflection::default();
+    let internals = InternalReflection::ALL.into_iter().filter(is_other).filter_map(|internal| {
+        let chosen = set.materials.iter().filter(|material| material.internal_reflection() == internal);
+        line("Internal reflection", internal.title(), chosen.map(|material| material.name.as_str()).collect())
+    });
+    let in_air = set.materials.iter().filter(|material| material.lower_reflectance() == LowerReflectance::InAir);
+    let names = in_air.map(|material| material.name.as_str()).collect();
+    let lower = line("Reflectance of lower interfaces", LowerReflectance::InAir.title(), names);
     let beams = set.materials.iter().filter(|material| material.constants.beams.is_some());
     let names = beams.map(|material| material.name.as_str()).collect();
     let beams = line("Exponents, weights and inner boundary", "its own, in words 1 and 2 of its header", names);
-    maskings.chain(reflectances).chain(internal).chain(beams).collect()
+    maskings.chain(reflectances).chain(internals).chain(lower).chain(beams).collect()
 }
 
 fn functions(set: &MaterialSet<'_>, form: Form, target: Target, part: Part, wgsl: &str) -> Vec<String> {

@@ -75,6 +75,10 @@ struct LuthierLayer {
     /// Part of the light from below that facets reflect back: 1, or 0 where all of it comes out.
     internal_reflection: f32,
     //? end
+    //? own_angles
+    /// Whether light passes by its own angles with the normal, and not by that of the half vector.
+    own_angles: bool,
+    //? end
     //? fitted
     /// Reflectance at normal incidence, where it is a curve.
     f0: vec3<f32>,
@@ -176,6 +180,9 @@ fn luthier_layer(material: u32, index: u32) -> LuthierLayer {
     //? internal
     layer.masking = (kind >> 4u) & 7u;
     layer.internal_reflection = select(1.0, 0.0, kind >= 128u);
+    //? own_angles
+    layer.own_angles = kind >= 256u;
+    //? end
     //? else
     layer.masking = kind >> 4u;
     //? end

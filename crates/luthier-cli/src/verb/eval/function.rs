@@ -1,5 +1,7 @@
 //! The function that is evaluated, in the columns that are asked for.
 
+use std::borrow::Cow;
+
 use glam::DVec3;
 use luthier_layers::directional_albedo::over_hemisphere;
 use luthier_layers::layered_mc::Estimate;
@@ -176,7 +178,7 @@ pub(super) fn parts(subject: &Subject) -> (Parts, Reflectance) {
     let masking = bake.masking.filter(|_| model.is_some_and(ShadingModel::has_masking)).unwrap_or_default();
     let has_reflectance = model.is_some_and(ShadingModel::has_reflectance);
     let reflectance = bake.reflectance.filter(|_| has_reflectance).unwrap_or_default();
-    let internal = bake.internal_reflection.filter(|_| model.is_some_and(ShadingModel::has_internal_reflection));
+    let internal = bake.internal_reflection.filter(|_| model.is_some_and(ShadingModel::has_path));
     let parts = Parts::named(masking.name(), reflectance.name(), internal.unwrap_or_default().name());
     let parts = parts.unwrap_or(Parts::PLAIN);
     let beams = subject.material.beams().filter(|_| model.is_some_and(ShadingModel::has_beams));
@@ -191,7 +193,11 @@ pub(super) fn parts(subject: &Subject) -> (Parts, Reflectance) {
 /// The twin of the model's shader, where it has one. At one wavelength the models of Belcour and Yamaguchi are evaluated by themselves: their
 /// energies take seconds in colour, and effects are none of theirs.
 fn shaded(subject: &Subject, kind: &Kind) -> Option<How> {
-    let (stack, name, place) = (&subject.material.stack, subject.model.info().name, &subject.place);
+    let (name, place) = (subject.model.info().name, &subject.place);
+    let is_path = ShadingModel::from_name(name).is_some_and(ShadingModel::has_path);
+    let material = &subject.material;
+    let stack = if is_path { material.reflecting_stack() } else { Cow::Borrowed(&material.stack) };
+    let stack = stack.as_ref();
     let fit = subject.fit.as_ref();
     let (parts, reflectance) = parts(subject);
     let made = |stack: &Stack, wavelengths_nm: [f64; 3], color: Color| match parts == Parts::PLAIN {

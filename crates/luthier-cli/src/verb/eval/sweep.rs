@@ -8,7 +8,7 @@ use luthier_layers::microfacet::Microfacet;
 use luthier_layers::model::Model;
 use luthier_layers::parts::Parts;
 use luthier_layers::weidlich_wilkie::WeidlichWilkie;
-use luthier_manifest::ShadingModel;
+use luthier_manifest::{LowerReflectance, ShadingModel};
 use luthier_terminal::{Failure, Outcome, print};
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -49,10 +49,17 @@ pub(crate) fn thetas_deg(options: &EvalOptions) -> Vec<f64> {
 /// The model with the parts that the file chooses, where it chooses some.
 fn of_file(subject: &Subject) -> Outcome<Option<Box<dyn Model>>> {
     let (parts, reflectance) = parts(subject);
+    let name = subject.model.info().name;
+    let lower = subject.material.bake.lower_reflectance.unwrap_or_default();
+    if lower == LowerReflectance::InAir && ShadingModel::from_name(name).is_some_and(ShadingModel::has_path) {
+        let text = format!(
+            "`--furnace` of `{name}` has interfaces in their places, and the file chooses `lower_reflectance = \"{lower}\"`: leave that out"
+        );
+        return Err(Failure::Input(anyhow::anyhow!(text)));
+    }
     if parts == Parts::PLAIN {
         return Ok(None);
     }
-    let name = subject.model.info().name;
     if name == ShadingModel::Microfacet.name() {
         let model = Box::new(Microfacet::new(parts.components()));
         return Ok(Some(ModelInputs::textured(subject.place.sample, model)));

@@ -27,7 +27,7 @@ pub(crate) fn run(options: &ReportOptions) -> Outcome {
     let given = evidence::given(options)?;
     let device = device(&folder, options)?;
     drop(lock);
-    let stacks = materials.iter().map(|m| m.stack.clone()).collect();
+    let stacks = materials.iter().map(|m| m.reflecting_stack().into_owned()).collect();
     let subject = Subject { manifest, textures, stacks };
     let bar = Bar::new("judging");
     let settings = Settings {

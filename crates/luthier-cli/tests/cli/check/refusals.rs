@@ -185,6 +185,11 @@ fn parts_that_a_model_does_not_have() {
             ["model `belcour` of this material has", "no internal reflection `none`", "x.toml:15:23"],
         ),
         (
+            format!("{coat}{metal}"),
+            "model = \"microfacet\"\nlower_reflectance = \"in-air\"",
+            ["model `microfacet` of this material has", "no lower reflectance `in-air`", "x.toml:15:21"],
+        ),
+        (
             metal.replace("alpha = 0.2", "exponents = [90, 170]"),
             "model = \"elek\"",
             ["`exponents` gives lobes of the model `granier-heidrich`", "has `elek`", "x.toml:7:13"],
@@ -231,6 +236,10 @@ fn parts_that_a_model_does_not_have() {
         (format!("{coat}{metal}"), "model = \"elek\"\ninternal_reflection = \"facets\"", 0),
         (format!("{coat}{metal}"), "model = \"elek\"\ninternal_reflection = \"none\"", 1),
         (metal.to_owned(), "model = \"weidlich-wilkie\"\ninternal_reflection = \"none\"", 1),
+        (format!("{coat}{metal}"), "model = \"elek\"\ninternal_reflection = \"directions\"", 1),
+        (format!("{coat}{metal}"), "model = \"elek\"\nlower_reflectance = \"in-place\"", 0),
+        (format!("{coat}{metal}"), "model = \"elek\"\nlower_reflectance = \"in-air\"", 1),
+        (metal.to_owned(), "model = \"elek\"\nlower_reflectance = \"in-air\"", 1),
         (metal.to_owned(), "model = \"microfacet\"\nmasking = \"smith\"", 0),
         (metal.to_owned(), "model = \"microfacet\"\nmasking = \"implicit\"", 1),
         (metal.to_owned(), "model = \"microfacet\"\nmasking = \"v-cavity\"\nreflectance = \"approximate\"", 2),

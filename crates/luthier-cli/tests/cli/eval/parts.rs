@@ -97,7 +97,8 @@ fn compare(materials: &[Material], worst: &mut f64) {
             let is_spectral = reflectance.is_fitted() && material.bake.color != Some(ColorMode::ThreeWavelengths);
             let color = if is_spectral { Color::Spectral } else { Color::ThreeWavelengths(wavelengths_nm) };
             let model = material.model().name();
-            let twin = Shaded::with(model, &material.stack, wavelengths_nm, color, &Place::NONE, parts).unwrap();
+            let stack = material.reflecting_stack();
+            let twin = Shaded::with(model, &stack, wavelengths_nm, color, &Place::NONE, parts).unwrap();
             let found = scene.evaluate(number, &pairs).unwrap();
             let mut most: f64 = 0.0;
             for (&(wi, wo), found) in pairs.iter().zip(found) {
@@ -134,8 +135,8 @@ fn reflectances_of_files_are_those_of_their_twins() {
     eprintln!("reflectances: at most {worst:.1e}");
 }
 
-/// Coats over metals and bases of both models, exact and from rows, without their internal reflection.
-fn whole() -> Vec<Material> {
+/// Coats over metals and bases of both models, exact and by a curve, with a choice of how light passes.
+fn passing(choice: &str) -> Vec<Material> {
     let base = "[[layer]]\ntype = \"diffuse\"\nalbedo = [0.8, 0.5, 0.3]\nsigma = 0.3\n";
     let metal = format!("{COPPER}{BRUSHED}");
     let mut materials = Vec::new();
@@ -144,8 +145,7 @@ fn whole() -> Vec<Material> {
             for reflectance in ["exact", "lazanyi"] {
                 let layers =
                     format!("{COAT}alpha = 0.5\n[[layer]]\ntype = \"dielectric\"\nior = 2.4\nalpha = 0.3\n{below}");
-                let bake =
-                    format!("model = \"{model}\"\nreflectance = \"{reflectance}\"\ninternal_reflection = \"none\"");
+                let bake = format!("model = \"{model}\"\nreflectance = \"{reflectance}\"\n{choice}");
                 materials.push(material(&format!("{model}-{name}-{reflectance}"), &layers, &bake));
             }
         }
@@ -155,7 +155,7 @@ fn whole() -> Vec<Material> {
 
 #[test]
 fn what_is_not_reflected_inside_is_that_of_the_twin() {
-    let (materials, mut worst) = (whole(), 0.0);
+    let (materials, mut worst) = (passing("internal_reflection = \"none\""), 0.0);
     let layers = format!("{COAT}roughness = 0.5\n{COPPER}roughness = 0.3\n");
     let plain = material("plain", &layers, "model = \"weidlich-wilkie\"\nreflectance = \"exact\"");
     compare(&[materials.clone(), vec![plain.clone()], masked()].concat(), &mut worst);
@@ -170,6 +170,39 @@ fn what_is_not_reflected_inside_is_that_of_the_twin() {
     };
     let (facets, none) = (value(Parts::PLAIN), value(parts(&materials[0]).0));
     assert!(none > 1.01 * facets, "{none} {facets}");
+}
+
+/// Transmission at the directions' own angles, and lower interfaces as in air, beside each other and alone.
+#[test]
+fn ways_through_interfaces_are_those_of_the_twin() {
+    let directions = passing("internal_reflection = \"directions\"");
+    let in_air = passing("lower_reflectance = \"in-air\"");
+    let both = passing("internal_reflection = \"directions\"\nlower_reflectance = \"in-air\"");
+    let mut worst = 0.0;
+    for set in [&directions, &in_air, &both] {
+        compare(set, &mut worst);
+        compare(&set[..1], &mut worst);
+    }
+    let named = |choice: &str, set: &[Material]| {
+        set.iter().map(|one| Material { name: format!("{}-{choice}", one.name), ..one.clone() }).collect::<Vec<_>>()
+    };
+    let whole = passing("internal_reflection = \"none\"");
+    compare(&[directions.clone(), named("air", &in_air), named("whole", &whole)].concat(), &mut worst);
+    eprintln!("ways through interfaces: at most {worst:.1e}");
+    let (wi, wo) = (DVec3::new(0.8, 0.1, 0.4).normalize(), DVec3::new(-0.6, 0.2, 0.5).normalize());
+    let value = |material: &Material| {
+        let nm = material.bake.wavelengths_nm();
+        let (color, stack) = (Color::ThreeWavelengths(nm), material.reflecting_stack());
+        let model = material.model().name();
+        Shaded::with(model, &stack, nm, color, &Place::NONE, parts(material).0).unwrap().eval(wi, wo)[1]
+    };
+    let plain = passing("");
+    for i in 0..plain.len() {
+        let values = [&plain, &directions, &in_air, &both].map(|set| value(&set[i]));
+        for (a, b) in [(0, 1), (0, 2), (1, 3), (2, 3)] {
+            assert!((values[a] / values[b] - 1.0).abs() > 1e-3, "{}: {values:?}", plain[i].name);
+        }
+    }
 }
 
 /// Films, slabs and metals with numbers of Granier and Heidrich's model; some alike, some not.
@@ -271,8 +304,13 @@ fn tarnish_dims_chosen_reflectances() {
     let effects = "[effects.patina]\nextent = 0.5\ntransition = 0.4\ndiffuse_albedo = [0.1, 0.3, 0.2]\ntarnish = [0.5, 0.6, 0.7]\n\
                    map = { noise = { seed = 1, frequency = 4, octaves = 2 } }\n";
     let layers = format!("{COAT}roughness = 0.5\n{COPPER}roughness = 0.6\n{effects}");
-    for reflectance in ["exact", "approximate", "lazanyi"] {
-        let bake = format!("model = \"elek\"\nreflectance = \"{reflectance}\"");
+    for (reflectance, way) in [
+        ("exact", ""),
+        ("approximate", ""),
+        ("lazanyi", ""),
+        ("exact", "internal_reflection = \"directions\"\nlower_reflectance = \"in-air\""),
+    ] {
+        let bake = format!("model = \"elek\"\nreflectance = \"{reflectance}\"\n{way}");
         let grown = material("grown", &layers, &bake);
         let Some(gpu) = gpu() else { return };
         let mut package =
@@ -293,7 +331,8 @@ fn tarnish_dims_chosen_reflectances() {
             tarnish: [0.5, 0.6, 0.7],
         };
         let place = Place { patina: Some(growth), ..Place::NONE };
-        let twin = Shaded::with("elek", &grown.stack, wavelengths_nm, color, &place, parts).unwrap();
+        let stack = grown.reflecting_stack();
+        let twin = Shaded::with("elek", &stack, wavelengths_nm, color, &place, parts).unwrap();
         for ((wi, wo), found) in pairs().into_iter().zip(found) {
             let expected = twin.eval(wide(wi), wide(wo));
             assert!(error(found, expected) < 5.0 * TOLERANCE, "{reflectance}: {found:?} {expected:?}");

@@ -92,10 +92,18 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
     let secant_d = 2.0 * inverseSqrt(length_sq);
     let cos_theta_d = min(0.25 * length_sq * secant_d, 1.0);
+    //? own_angles
+    //? chain_patina
+    var fresnel = layer.tarnish * luthier_fresnel_term(layer, cos_theta_d);
+    //? else
+    var fresnel = luthier_fresnel_term(layer, cos_theta_d);
+    //? end
+    //? else
     //? chain_patina
     let fresnel = layer.tarnish * luthier_fresnel_term(layer, cos_theta_d);
     //? else
     let fresnel = luthier_fresnel_term(layer, cos_theta_d);
+    //? end
     //? end
     // G of V-cavities: 2 cos_theta_h / cos_theta_d times the lower cosine, at most 1.
     let masking = min(bisector.z * min(cosines.x, cosines.y) * (secant_d * secant_d), 1.0);
@@ -141,7 +149,20 @@ fn luthier_add_interface(path: LuthierPath, layer: LuthierLayer) -> LuthierPath 
     //? end
     // (1 - F) down, (1 - F) up, and part of what the cavities block comes back: (1 - F) (1 - G + (1 - F) G).
     //? internal
+    //? own_angles
+    var returned = 1.0 - (layer.internal_reflection * masking) * fresnel;
+    if layer.own_angles {
+        //? chain_patina
+        fresnel = layer.tarnish * luthier_fresnel_term(layer, min(cosines.x, 1.0));
+        returned = 1.0 - layer.tarnish * luthier_fresnel_term(layer, min(cosines.y, 1.0));
+        //? else
+        fresnel = luthier_fresnel_term(layer, min(cosines.x, 1.0));
+        returned = 1.0 - luthier_fresnel_term(layer, min(cosines.y, 1.0));
+        //? end
+    }
+    //? else
     let returned = 1.0 - (layer.internal_reflection * masking) * fresnel;
+    //? end
     //? else
     let returned = 1.0 - masking * fresnel;
     //? end
