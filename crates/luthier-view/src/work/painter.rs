@@ -1,25 +1,29 @@
-//! The thread that renders.
+//! The thread that renders and simulates.
 
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 use std::time::Instant;
 
-use eframe::egui::{self, ecolor};
-use luthier_gpu::{Backdrop, Environment, Gpu, GpuError, Package, RenderSettings, Scene, Shape, ToneMapping};
+use eframe::egui;
+use luthier_gpu::{Backdrop, Environment, Gpu, GpuError, Package, RenderSettings, Scene, Shape};
 use luthier_lut::Image;
 use luthier_manifest::Form;
 
 use crate::error::ViewError;
-use crate::latest::Latest;
+use crate::host::{Differences, Host};
 use crate::look::Look;
 use crate::orbit::Orbit;
-use crate::stages::{Goal, Stage};
+use crate::work::baker::{Ready, Way};
+use crate::work::crop::{Crop, SIDE_MAX, shown};
+use crate::work::gathering::{Gathering, Progress};
+use crate::work::latest::Latest;
+use crate::work::stages::{Goal, MOVING_SECONDS, Stage, affordable};
 
-/// Longest side of a rendering, in pixels.
-const SIDE_MAX: u32 = 2048;
+/// Longest side of a rendering that is compared: the paths of every pixel are followed, and their sums kept.
+const COMPARED_SIDE_MAX: u32 = 1024;
 
-/// Seconds per evaluation before any was measured: those of a software adapter.
-const SECONDS_AT_FIRST: f64 = 5e-7;
+/// Seconds per evaluation, and per path, before any was measured: those of a software adapter.
+const SECONDS_AT_FIRST: [f64; 2] = [5e-7, 5e-6];
 
 /// View that is seen: the shape, its light, and the place of the eye.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,59 +43,73 @@ pub(crate) struct View {
     pub(crate) moving: bool,
 }
 
-/// A picture to make.
+/// A picture to make, and one to make beside it.
 #[derive(Debug, Clone)]
 pub(crate) struct PaintOrder {
     pub(crate) version: u64,
-    pub(crate) package: Arc<Package>,
-    pub(crate) form: Form,
+    pub(crate) side: Ready,
+    pub(crate) other: Option<Ready>,
+    /// Paths of each pixel of a simulated picture.
+    pub(crate) paths: u32,
     pub(crate) environment: Arc<Environment>,
     pub(crate) view: View,
 }
 
-/// A picture.
+/// Progress of an order.
 #[derive(Debug)]
-pub(crate) struct Picture {
+pub(crate) struct Painted {
     /// Version of the order.
     pub(crate) version: u64,
-    /// Whether the picture is the last of its order, or an error.
+    /// Whether nothing more of the order follows.
     pub(crate) finished: bool,
-    pub(crate) pixels: Result<Pixels, String>,
-    /// Time that the picture took.
+    /// Pictures so far: that of the material, and the one beside it; or why there is none.
+    pub(crate) pictures: [Option<Result<Picture, String>>; 2],
+    /// Progress of a simulated picture.
+    pub(crate) progress: Option<Progress>,
+    /// Distance of the two pictures, where both have all their pixels.
+    pub(crate) differences: Option<Differences>,
+    /// Time that the last picture took.
     pub(crate) seconds: f64,
 }
 
-/// sRGB pixels.
-#[derive(Debug)]
-pub(crate) struct Pixels {
-    pub(crate) size: [usize; 2],
-    pub(crate) rgb8: Vec<u8>,
+/// A picture: linear, and as a display shows it.
+#[derive(Debug, Clone)]
+pub(crate) struct Picture {
+    pub(crate) image: Arc<Image>,
+    pub(crate) rgb8: Arc<Vec<u8>>,
 }
 
 /// The thread, and the slots to and from it.
 #[derive(Debug)]
 pub(crate) struct Painter {
     pub(crate) orders: Arc<Latest<PaintOrder>>,
-    pub(crate) pictures: Arc<Latest<Picture>>,
+    pub(crate) painted: Arc<Latest<Painted>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Painter {
-    pub(crate) fn start(gpu: Gpu, settings: RenderSettings, context: egui::Context) -> Result<Self, ViewError> {
-        let (orders, pictures) = (Arc::new(Latest::default()), Arc::new(Latest::default()));
+    pub(crate) fn start(
+        host: Arc<dyn Host>,
+        gpu: Gpu,
+        settings: RenderSettings,
+        context: egui::Context,
+    ) -> Result<Self, ViewError> {
+        let (orders, painted) = (Arc::new(Latest::default()), Arc::new(Latest::default()));
         let mut worker = Worker {
+            host,
             gpu,
             settings,
             orders: Arc::clone(&orders),
-            pictures: Arc::clone(&pictures),
+            painted: Arc::clone(&painted),
             context,
-            scene: None,
+            scenes: [None, None],
+            gathering: Gathering::default(),
             seconds: SECONDS_AT_FIRST,
         };
         let work = move || worker.work();
         let thread =
             thread::Builder::new().name("luthier painter".to_owned()).spawn(work).map_err(ViewError::Thread)?;
-        Ok(Self { orders, pictures, thread: Some(thread) })
+        Ok(Self { orders, painted, thread: Some(thread) })
     }
 }
 
@@ -107,83 +125,224 @@ impl Drop for Painter {
 }
 
 struct Worker {
+    host: Arc<dyn Host>,
     gpu: Gpu,
     settings: RenderSettings,
     orders: Arc<Latest<PaintOrder>>,
-    pictures: Arc<Latest<Picture>>,
+    painted: Arc<Latest<Painted>>,
     context: egui::Context,
-    scene: Option<(Arc<Package>, Scene)>,
-    /// Per evaluation, as measured last.
+    /// Scenes of the two sides.
+    scenes: [Option<(Arc<Package>, Scene)>; 2],
+    gathering: Gathering,
+    /// Per evaluation, and per path, as measured last.
+    seconds: [f64; 2],
+}
+
+/// Pictures of an order so far.
+#[derive(Default)]
+struct Made {
+    pictures: [Option<Result<Picture, String>>; 2],
+    progress: Option<Progress>,
+    differences: Option<Differences>,
     seconds: f64,
 }
 
 impl Worker {
     fn work(&mut self) {
         while let Some(order) = self.orders.wait() {
-            if let Err(error) = self.paint(&order) {
-                let version = order.version;
-                self.show(Picture { version, finished: true, pixels: Err(error.to_string()), seconds: 0.0 });
+            let mut made = Made::default();
+            if let Err(error) = self.paint(&order, &mut made) {
+                made.pictures[0] = Some(Err(error.to_string()));
+                self.show(&order, &made, true);
             }
         }
     }
 
-    fn paint(&mut self, order: &PaintOrder) -> Result<(), GpuError> {
-        let scene = self.scene(order)?;
+    /// Renders the stages of the material, each followed by that of the other side; then gathers paths.
+    fn paint(&mut self, order: &PaintOrder, made: &mut Made) -> Result<(), GpuError> {
+        self.prepare(0, &order.side)?;
         let view = &order.view;
-        let window = Window::of(view.size);
-        // Blurred maps need the tables, and know no layer's own textures.
-        let environment_samples = match order.form {
-            Form::Baked if !scene.has_layer_maps(0)? => view.environment_samples,
-            Form::Baked | Form::Full => view.environment_samples.max(FULL_FORM_DIRECTIONS),
+        let crop = Crop::of(view.size, if order.other.is_some() { COMPARED_SIDE_MAX } else { SIDE_MAX });
+        let goal = Goal {
+            side: crop.side,
+            samples: view.samples,
+            environment_samples: self.directions(order)?,
+            moving: view.moving,
         };
-        let goal = Goal { side: window.side, samples: view.samples, environment_samples, moving: view.moving };
-        let stages = goal.stages(self.seconds);
+        let simulates = order.other.as_ref().is_some_and(|other| other.way == Way::Simulation);
+        if simulates && view.shape == Shape::Mesh {
+            let reason = "the simulation knows no triangles: choose the sphere, the torus or the plane";
+            made.pictures[1] = Some(Err(reason.to_owned()));
+        }
+        let stages = goal.stages(self.seconds[0]);
         let count = stages.len();
         for (i, stage) in stages.into_iter().enumerate() {
-            let begin = Instant::now();
-            let settings = self.settings(order, &window, &stage);
-            let Some(image) = scene.render_unless(&[0], &settings, &|| self.orders.is_outdated())? else {
-                return self.keep(order, scene);
-            };
-            let pixels = window.cut(&image, view.look.tone);
-            let seconds = begin.elapsed().as_secs_f64();
-            let evaluations = settings.size * settings.size * stage.samples * stage.samples;
-            self.seconds = seconds / (f64::from(evaluations) * f64::from(1 + stage.environment_samples));
-            let finished = i + 1 == count && !view.moving;
-            self.show(Picture { version: order.version, finished, pixels: Ok(pixels), seconds });
-        }
-        self.keep(order, scene)
-    }
-
-    /// The scene of an order: the one at hand where it serves, else with other materials, else compiled.
-    fn scene(&mut self, order: &PaintOrder) -> Result<Scene, GpuError> {
-        match self.scene.take() {
-            Some((package, scene)) if scene.form() == order.form => {
-                if Arc::ptr_eq(&package, &order.package) {
-                    return Ok(scene);
-                }
-                match scene.rebound(&order.package)? {
-                    Some(scene) => Ok(scene),
-                    None => self.gpu.scene(&order.package, order.form),
+            if !self.render(order, &crop, &stage, 0, made)? {
+                return Ok(());
+            }
+            let is_last = i + 1 == count;
+            if let Some(other) = order.other.as_ref().filter(|_| made.is_comparable()) {
+                self.show(order, made, false);
+                let is_in_time = match other.way {
+                    Way::Simulation if i == 0 => self.draft(order, &crop, made),
+                    // Some paths of each pixel before the long last stage.
+                    Way::Simulation if !is_last => self.gather(order, &crop, FEW_PATHS, made),
+                    Way::Simulation => Ok(true),
+                    Way::Shader(_) => self.prepare(1, other).and_then(|()| self.render(order, &crop, &stage, 1, made)),
+                };
+                if !made.unless_refused(is_in_time) {
+                    return Ok(());
                 }
             }
-            _ => self.gpu.scene(&order.package, order.form),
+            let gathers = simulates && made.is_comparable();
+            if is_last && !gathers && !view.moving {
+                self.compare(order, made);
+            }
+            self.show(order, made, is_last && !gathers && !view.moving);
         }
-    }
-
-    fn keep(&mut self, order: &PaintOrder, scene: Scene) -> Result<(), GpuError> {
-        self.scene = Some((Arc::clone(&order.package), scene));
+        if simulates && made.is_comparable() && !view.moving {
+            let is_in_time = self.gather(order, &crop, order.paths, made);
+            if made.unless_refused(is_in_time) {
+                self.compare(order, made);
+                self.show(order, made, true);
+            }
+        }
         Ok(())
     }
 
-    fn settings(&self, order: &PaintOrder, window: &Window, stage: &Stage) -> RenderSettings {
+    /// Renders one stage of a side. Returns whether there was time.
+    fn render(
+        &mut self,
+        order: &PaintOrder,
+        crop: &Crop,
+        stage: &Stage,
+        side: usize,
+        made: &mut Made,
+    ) -> Result<bool, GpuError> {
+        let begin = Instant::now();
+        let settings = self.settings(order, crop, stage);
+        let Some((_, scene)) = &self.scenes[side] else { return Ok(false) };
+        let Some(image) = scene.render_unless(&[0], &settings, &|| self.orders.is_outdated())? else {
+            return Ok(false);
+        };
+        made.pictures[side] = Some(Ok(picture(order, crop, &image)));
+        made.seconds = begin.elapsed().as_secs_f64();
+        let evaluations = settings.size * settings.size * stage.samples * stage.samples;
+        self.seconds[0] = made.seconds / (f64::from(evaluations) * f64::from(1 + stage.environment_samples));
+        Ok(true)
+    }
+
+    /// Simulates one path of each pixel of a small picture, unless the picture at hand is of this order. Returns whether there was time.
+    fn draft(&mut self, order: &PaintOrder, crop: &Crop, made: &mut Made) -> Result<bool, GpuError> {
+        let Some(other) = &order.other else { return Ok(true) };
+        self.prepare(1, other)?;
+        if self.gathering.serves(&other.package, &order.view, crop.side) {
+            self.simulated(order, crop, made);
+            return Ok(true);
+        }
+        let side = f64::from(crop.side);
+        let scale = affordable(side, MOVING_SECONDS / self.seconds[1]) / side;
+        let stage = Stage { scale, samples: order.view.samples, environment_samples: 1 };
+        self.add_paths(order, crop, &stage, 1, made)?;
+        Ok(!self.orders.is_outdated())
+    }
+
+    /// Gathers so many paths of each pixel, and shows and compares them on the way. Returns whether there was time.
+    fn gather(&mut self, order: &PaintOrder, crop: &Crop, goal: u32, made: &mut Made) -> Result<bool, GpuError> {
+        let stage = Stage { scale: 1.0, samples: order.view.samples, environment_samples: 1 };
+        let mut compared = 0;
+        while self.add_paths(order, crop, &stage, goal, made)? {
+            let paths = made.progress.map_or(0, |progress| progress.paths);
+            if paths >= 2 * compared {
+                self.compare(order, made);
+                compared = paths;
+            }
+            self.show(order, made, false);
+        }
+        Ok(!self.orders.is_outdated())
+    }
+
+    /// Adds paths to the simulated picture of a size, at most `goal`. Returns whether there are more than before.
+    fn add_paths(
+        &mut self,
+        order: &PaintOrder,
+        crop: &Crop,
+        stage: &Stage,
+        goal: u32,
+        made: &mut Made,
+    ) -> Result<bool, GpuError> {
+        let settings = self.settings(order, crop, stage);
+        let (Some(other), Some((_, scene))) = (&order.other, &self.scenes[1]) else { return Ok(false) };
+        self.gathering.restart(scene, &other.package, &order.view, &settings)?;
+        let before = self.gathering.picture(goal).map_or(0, |(_, progress)| progress.paths);
+        let begin = Instant::now();
+        let more = self.gathering.add(goal, &|| self.orders.is_outdated())?;
+        let seconds = begin.elapsed().as_secs_f64();
+        self.simulated(order, crop, made);
+        let added = made.progress.map_or(0, |progress| progress.paths.saturating_sub(before));
+        if added > 0 {
+            made.seconds = seconds;
+            self.seconds[1] = seconds / (f64::from(settings.size * settings.size) * f64::from(added));
+        }
+        Ok(more)
+    }
+
+    /// Takes the simulated picture at hand.
+    fn simulated(&self, order: &PaintOrder, crop: &Crop, made: &mut Made) {
+        if let Some((image, progress)) = self.gathering.picture(order.paths) {
+            made.pictures[1] = Some(Ok(picture(order, crop, &image)));
+            made.progress = Some(progress);
+        }
+    }
+
+    /// Compares the pictures, if they have the same pixels.
+    fn compare(&self, order: &PaintOrder, made: &mut Made) {
+        made.differences = match &made.pictures {
+            [Some(Ok(a)), Some(Ok(b))] if (a.image.width, a.image.height) == (b.image.width, b.image.height) => {
+                self.host.compare(&a.image, &b.image, order.view.look.tone)
+            }
+            _ => None,
+        };
+    }
+
+    /// Directions of the environment at rest: blurred maps need the tables, and know no layer's own textures; and pictures that are compared
+    /// differ by nothing but what they are compared for.
+    fn directions(&self, order: &PaintOrder) -> Result<u32, GpuError> {
+        let asked = order.view.environment_samples;
+        let Some((_, scene)) = &self.scenes[0] else { return Ok(asked) };
+        let reads_maps = scene.form() == Form::Baked && !scene.has_layer_maps(0)? && order.other.is_none();
+        Ok(if reads_maps { asked } else { asked.max(SAMPLED_DIRECTIONS) })
+    }
+
+    /// Makes the scene of a side: the one at hand where it serves, else with other materials, else compiled.
+    fn prepare(&mut self, side: usize, ready: &Ready) -> Result<(), GpuError> {
+        let form = match ready.way {
+            Way::Shader(form) => form,
+            // The simulation reads the material buffer, which every form binds.
+            Way::Simulation => {
+                Form::ALL.into_iter().find(|form| ready.package.wgsl(*form).is_ok()).unwrap_or(Form::Baked)
+            }
+        };
+        let scene = match self.scenes[side].take() {
+            Some((package, scene)) if scene.form() == form => {
+                let rebound =
+                    if Arc::ptr_eq(&package, &ready.package) { Some(scene) } else { scene.rebound(&ready.package)? };
+                rebound.map_or_else(|| self.gpu.scene(&ready.package, form), Ok)?
+            }
+            _ => self.gpu.scene(&ready.package, form)?,
+        };
+        self.scenes[side] = Some((Arc::clone(&ready.package), scene));
+        Ok(())
+    }
+
+    fn settings(&self, order: &PaintOrder, crop: &Crop, stage: &Stage) -> RenderSettings {
         let view = &order.view;
         RenderSettings {
-            size: ((f64::from(window.side) * stage.scale).round() as u32).max(1),
+            size: ((f64::from(crop.side) * stage.scale).round() as u32).max(1),
             samples: stage.samples,
             shape: view.shape,
             mesh: self.settings.mesh.clone(),
-            camera: view.orbit.camera(view.shape, window.widening()),
+            camera: view.orbit.camera(view.shape, crop.widening()),
             lights: view.look.lights(&self.settings),
             light_angular_radius: self.settings.light_angular_radius,
             environment: Arc::clone(&order.environment),
@@ -194,65 +353,44 @@ impl Worker {
         }
     }
 
-    fn show(&self, picture: Picture) {
-        self.pictures.put(picture);
+    fn show(&self, order: &PaintOrder, made: &Made, finished: bool) {
+        let Made { pictures, progress, differences, seconds } = made;
+        self.painted.put(Painted {
+            version: order.version,
+            finished,
+            pictures: pictures.clone(),
+            progress: *progress,
+            differences: *differences,
+            seconds: *seconds,
+        });
         self.context.request_repaint();
     }
 }
 
-/// Directions in which the full form asks for the environment at rest, at least: it reads no maps.
-const FULL_FORM_DIRECTIONS: u32 = 16;
-
-/// The part of a square rendering that the window shows: all of its longer side, the middle of the other.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Window {
-    side: u32,
-    /// Sides of the window over the longer one.
-    share: [f64; 2],
-}
-
-impl Window {
-    fn of([width, height]: [u32; 2]) -> Self {
-        let longer = width.max(height).max(1);
-        let share = [width, height].map(|length| f64::from(length.max(1)) / f64::from(longer));
-        Self { side: longer.min(SIDE_MAX), share }
+impl Made {
+    /// Keeps a refusal in place of the other picture. Returns whether there was time, which a refusal takes none of.
+    fn unless_refused(&mut self, is_in_time: Result<bool, GpuError>) -> bool {
+        is_in_time.unwrap_or_else(|error| {
+            self.pictures[1] = Some(Err(error.to_string()));
+            (self.progress, self.differences) = (None, None);
+            true
+        })
     }
 
-    fn widening(&self) -> f64 {
-        1.0 / self.share[0].min(self.share[1])
-    }
-
-    /// Cuts the part out, with tone curve and transfer function.
-    fn cut(&self, image: &Image, tone: ToneMapping) -> Pixels {
-        let size = self.share.map(|share| ((f64::from(image.width) * share).round() as u32).clamp(1, image.width));
-        let [left, top] = size.map(|length| (image.width - length) / 2);
-        let mut rgb8 = Vec::with_capacity((size[0] * size[1] * 3) as usize);
-        for y in top..top + size[1] {
-            for x in left..left + size[0] {
-                let texel = image.texel(x, y);
-                rgb8.extend(texel.iter().map(|&v| ecolor::gamma_u8_from_linear_f32(tone.value(v).min(1.0))));
-            }
-        }
-        Pixels { size: size.map(|length| length as usize), rgb8 }
+    /// Whether nothing speaks against the other side.
+    fn is_comparable(&self) -> bool {
+        !matches!(self.pictures[1], Some(Err(_)))
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// Paths of each pixel before the last stage of the first picture.
+const FEW_PATHS: u32 = 4;
 
-    #[test]
-    fn a_window_cuts_the_middle() {
-        let window = Window::of([4, 2]);
-        assert_eq!((window.side, window.widening()), (4, 2.0));
-        let mut image = Image::zeros(4, 4, 3);
-        image.texel_mut(0, 1).copy_from_slice(&[1.0, 0.5, 4.0]);
-        let pixels = window.cut(&image, ToneMapping::None);
-        assert_eq!(pixels.size, [4, 2]);
-        assert_eq!(pixels.rgb8[..6], [255, 188, 255, 0, 0, 0]);
-        let high = Window::of([2, 4]);
-        assert_eq!(high.cut(&image, ToneMapping::None).size, [2, 4]);
-        assert_eq!(Window::of([0, 0]).side, 1);
-        assert_eq!(Window::of([10_000, 100]).side, SIDE_MAX);
-    }
+/// Directions in which the environment is asked for at rest, at least, where no blurred maps are read.
+const SAMPLED_DIRECTIONS: u32 = 16;
+
+fn picture(order: &PaintOrder, crop: &Crop, image: &Image) -> Picture {
+    let image = crop.cut(image);
+    let rgb8 = Arc::new(shown(&image, order.view.look.tone));
+    Picture { image: Arc::new(image), rgb8 }
 }
