@@ -33,8 +33,8 @@ pub struct Part {
     pub label: String,
     /// Its numbers, each as a name and a value with its unit.
     pub numbers: Vec<PartNumber>,
-    /// Linear Rec.709 in 0..=1: the share of light that a slab passes along the normal; the reflectance at normal incidence of an opaque medium or
-    /// of a coated interface; the albedo of a diffuse base.
+    /// Linear Rec.709 in 0..=1: the share of light that a slab passes along the normal; the reflectance at normal incidence of an opaque medium
+    /// without films, and of the coated interface for a film; the albedo of a diffuse base.
     pub color: Rgb,
     /// Height, which grows as the logarithm of the thickness and has room for the outlines: no drawing could show films and coats to scale.
     pub height: f64,
@@ -73,9 +73,14 @@ pub struct PartNumber {
 /// Segments of an outline.
 const SEGMENTS: usize = 48;
 
-/// Step from one slope to that of the next segment, over the slopes in ascending order: near the golden section of their number, and without a
-/// common factor with it, so that steep segments lie apart and the outline stays level.
-const STRIDE: usize = 19;
+/// Ranks of the slopes of the segments, from the left: an irregular order in which the outline stays level.
+const RANKS: [usize; SEGMENTS] = [
+    10, 17, 20, 12, 44, 37, 9, 26, 32, 40, 41, 16, 33, 31, 6, 21, 25, 1, 5, 29, 7, 18, 38, 43, 42, 39, 24, 2, 47, 11,
+    13, 34, 36, 8, 0, 14, 30, 15, 19, 3, 46, 22, 27, 35, 4, 23, 28, 45,
+];
+
+/// Absorption that data sets of clear media have in the visible, and that no number tells.
+const TRACE_OF_K: f64 = 1e-6;
 
 /// Height of the exterior, and least heights of a film, of a slab and of what has no thickness.
 const EXTERIOR: f64 = 0.12;
@@ -135,7 +140,7 @@ impl Material {
             layer: Some(number),
             label: "thin film".to_owned(),
             numbers,
-            color: self.reflected(number),
+            color: self.reflected(number, true),
             height: FILM + FILM_DECADE * libm::log10(1.0 + thickness.nominal_nm() / FILM_UNIT_NM),
             outline,
         }
@@ -162,10 +167,10 @@ impl Material {
                 (PartKind::Slab, "dielectric", numbers, depth.map(|depth| libm::exp(-depth)), height)
             }
             Base::Dielectric { ior, .. } => {
-                (PartKind::HalfSpace, "dielectric", self.index(&key, ior), self.reflected(number), BASE)
+                (PartKind::HalfSpace, "dielectric", self.index(&key, ior), self.reflected(number, false), BASE)
             }
             Base::Conductor { ior } => {
-                (PartKind::Conductor, "conductor", self.index(&key, ior), self.reflected(number), BASE)
+                (PartKind::Conductor, "conductor", self.index(&key, ior), self.reflected(number, false), BASE)
             }
             Base::Diffuse(diffuse) => {
                 let mut numbers = vec![PartNumber { name: "albedo", value: rgb(diffuse.albedo) }];
@@ -190,14 +195,15 @@ impl Material {
         }
     }
 
-    /// Reflectance of an interface at normal incidence, with its films, in the colour of the bake.
-    fn reflected(&self, number: usize) -> Rgb {
+    /// Reflectance of an interface at normal incidence, with its films or without, in the colour of the bake.
+    fn reflected(&self, number: usize, has_films: bool) -> Rgb {
         let color = match self.bake.color.unwrap_or_default() {
             ColorMode::Spectral => Color::Spectral,
             ColorMode::ThreeWavelengths => Color::ThreeWavelengths(self.bake.wavelengths_nm()),
         };
-        let refl = Interface::of(&self.stack, number).map_or([0.0; 3], |interface| interface.sampled(&color).rgb(1.0));
-        refl.map(|c| c.clamp(0.0, 1.0))
+        let Some(mut interface) = Interface::of(&self.stack, number) else { return [0.0; 3] };
+        interface.films.truncate(if has_films { interface.films.len() } else { 0 });
+        interface.sampled(&color).rgb(1.0).map(|c| c.clamp(0.0, 1.0))
     }
 
     /// The index of a medium: F0, one number or two, or those of the sodium line with the name of the data set.
@@ -212,7 +218,7 @@ impl Material {
             numbers.push(PartNumber { name: "data", value: name.to_owned() });
         }
         numbers.push(PartNumber { name: "n", value: format!("{}{at}", short(index.re)) });
-        if index.im > 0.0 {
+        if index.im > TRACE_OF_K {
             numbers.push(PartNumber { name: "k", value: format!("{}{at}", short(index.im)) });
         }
         numbers
@@ -302,7 +308,7 @@ fn outline(surface: &Surface) -> Vec<[f64; 2]> {
     let step = 1.0 / SEGMENTS as f64;
     let mut heights = vec![0.0];
     for i in 0..SEGMENTS {
-        let rank = (i * STRIDE) % SEGMENTS;
+        let rank = RANKS[i];
         let u = 2.0 * (rank as f64 + 0.5) * step - 1.0;
         heights.push(heights[i] + surface.alpha_x * quantile(u) * step);
     }
@@ -375,6 +381,11 @@ distribution = "beckmann"
         assert_eq!([number(gold, "data"), number(gold, "distribution")], [Some("au"), Some("beckmann")]);
         assert!(number(gold, "n").unwrap().ends_with(" at 589.3 nm"));
         assert!(gold.color[0] > 1.5 * gold.color[2], "gold is yellow: {:?}", gold.color);
+        assert!(
+            film.color != slab.color && film.color[0] > 0.0,
+            "a film has the colour of interference: {:?}",
+            film.color
+        );
         assert_eq!(film.outline, slab.outline, "a film has the surface of the interface below");
     }
 
@@ -414,6 +425,13 @@ distribution = "beckmann"
             let quartile = 0.5 * (ggx[SEGMENTS * 3 / 4 - 1] + ggx[SEGMENTS * 3 / 4]);
             assert!((quartile / (alpha / 3.0_f64.sqrt()) - 1.0).abs() < 0.02, "{quartile}");
         }
+    }
+
+    #[test]
+    fn each_slope_is_drawn_once() {
+        let mut ranks = RANKS;
+        ranks.sort_unstable();
+        assert!(ranks.iter().enumerate().all(|(i, rank)| i == *rank));
     }
 
     #[test]

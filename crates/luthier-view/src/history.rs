@@ -118,7 +118,7 @@ mod tests {
     #[test]
     fn a_drag_is_one_step() {
         let (edits, mut history) = (Edits::default(), History::default());
-        (0..10).for_each(|i| edits.drag(&mut history, "a", 0.2 + 0.01 * f64::from(i)));
+        (0..10).for_each(|i| edits.drag(&mut history, "a", f64::from(20 + i) / 100.0));
         history.close();
         edits.drag(&mut history, "a", 0.9);
         history.close();

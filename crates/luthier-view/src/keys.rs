@@ -1,6 +1,6 @@
 //! Actions of keys.
 
-use eframe::egui::{Context, Key, Modifiers};
+use eframe::egui::{Context, Event, Key, Modifiers};
 
 /// An action of a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -63,15 +63,20 @@ pub(crate) fn actions(context: &Context) -> Vec<Action> {
     if context.text_edit_focused() {
         return Vec::new();
     }
-    context.input(|input| {
-        let is_asked = |modifiers, key| input.modifiers.matches_exact(modifiers) && input.key_pressed(key);
-        KEYS.iter().filter(|(modifiers, key, ..)| is_asked(*modifiers, *key)).map(|(.., action, _)| *action).collect()
-    })
+    let of_event = |event: &Event| match event {
+        // Modifiers as they were when the key was pressed.
+        Event::Key { key, pressed: true, modifiers, .. } => KEYS
+            .iter()
+            .find(|(with, of, ..)| of == key && modifiers.matches_exact(*with))
+            .map(|(.., action, _)| *action),
+        _ => None,
+    };
+    context.input(|input| input.events.iter().filter_map(of_event).collect())
 }
 
 #[cfg(test)]
 mod tests {
-    use eframe::egui::{Event, RawInput};
+    use eframe::egui::RawInput;
 
     use super::*;
 

@@ -4,7 +4,7 @@ mod compared;
 mod cross_section;
 
 use eframe::egui::{
-    Align, Align2, Button, CollapsingHeader, ComboBox, Context, Grid, Layout, RichText, ScrollArea, Slider,
+    Align, Align2, Button, CollapsingHeader, ComboBox, Context, Grid, Label, Layout, RichText, ScrollArea, Slider,
     SliderClamping, Ui, Window, vec2,
 };
 use luthier_gpu::ToneMapping;
@@ -56,9 +56,13 @@ fn title(app: &mut App, ui: &mut Ui) {
             }
         });
     app.files.selected = chosen;
-    ui.horizontal(|ui| {
-        ui.label(RichText::new(label).weak().size(11.5));
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| edits(app, ui));
+    // The buttons first: a long path has the room that they leave.
+    let row = vec2(ui.available_width(), ui.spacing().interact_size.y);
+    ui.allocate_ui_with_layout(row, Layout::right_to_left(Align::Center), |ui| {
+        edits(app, ui);
+        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            ui.add(Label::new(RichText::new(label).weak().size(11.5)).truncate());
+        });
     });
     if let Some(material) = app.material() {
         ui.label(RichText::new(&material.description).size(12.5));
