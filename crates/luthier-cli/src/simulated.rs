@@ -37,6 +37,13 @@ pub(crate) fn package(mut materials: Vec<Material>) -> Outcome<Package> {
     Ok(Package::for_renderer(&materials, store()?)?)
 }
 
+/// Reasons why a material is not simulated, each with its file and line; none where it is.
+#[cfg(feature = "view")]
+pub(crate) fn refusals(material: &Material) -> Vec<String> {
+    let sentence = |Diagnostic { message, label, line, .. }| format!("{message} ({label}:{line})");
+    beyond(material).into_iter().map(sentence).collect()
+}
+
 /// Refusals of the parts of a material that the simulation on the device does not take.
 fn beyond(material: &Material) -> Vec<Diagnostic> {
     let mut found: Vec<(String, Feature)> = Vec::new();

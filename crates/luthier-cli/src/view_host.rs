@@ -5,15 +5,19 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use luthier_export::{Bake, MemoryStore, Package, Source, find, lit, lit_functions, read_one};
+use luthier_export::{Bake, MemoryStore, Package, Source, find, lit, lit_functions, of_text, read_one};
+use luthier_gpu::ToneMapping;
+use luthier_lut::Image;
 use luthier_manifest::{Reflectance, ShadingModel};
-use luthier_material::Material;
+use luthier_material::{Diagnostic, Material};
+use luthier_report::{PictureComparison, compare_pictures};
 use luthier_store::Layers;
 use luthier_terminal::{Failure, Outcome};
 use luthier_texture::png;
-use luthier_view::{Form, Host, MaterialFile, Screenshot};
+use luthier_view::{Differences, Form, Host, MaterialFile, Screenshot};
 
 use crate::cli::Shading;
+use crate::simulated;
 use crate::store::store;
 use crate::watched::{State, named, state};
 
@@ -78,6 +82,24 @@ impl Host for ViewHost {
         self.package(material, form).map_err(|failure| failure.sentence())
     }
 
+    fn simulated(&self, material: &Material) -> Result<Package, String> {
+        let refusals = simulated::refusals(material);
+        if !refusals.is_empty() {
+            return Err(refusals.join("\n"));
+        }
+        simulated::package(vec![material.clone()]).map_err(|failure| failure.sentence())
+    }
+
+    fn parsed(&self, label: &str, text: &str) -> Result<Material, String> {
+        let Source { text, parsed, .. } = of_text(Path::new(label), text.to_owned());
+        parsed.map(|parsed| parsed.material).map_err(|diagnostics| rendered(&diagnostics, &text))
+    }
+
+    fn compare(&self, a: &Image, b: &Image, tone: ToneMapping) -> Option<Differences> {
+        let PictureComparison { rms_err, flip_mean, .. } = compare_pictures(a, b, |v| tone.value(v)).ok()?;
+        Some(Differences { rms_err, flip_mean })
+    }
+
     fn save(&self, screenshot: &Screenshot, number: u32, asked: bool) -> Result<String, String> {
         let path = match &self.screenshot {
             Some(path) if asked => numbered(path, number),
@@ -109,11 +131,12 @@ fn file(path: &Path) -> MaterialFile {
             let revision = revision(&parsed.material);
             MaterialFile { label, material: Ok(parsed.material), revision }
         }
-        Err(diagnostics) => {
-            let texts: Vec<String> = diagnostics.iter().map(|diagnostic| diagnostic.render(&text)).collect();
-            MaterialFile { label, material: Err(texts.join("\n\n")), revision: 0 }
-        }
+        Err(diagnostics) => MaterialFile { label, material: Err(rendered(&diagnostics, &text)), revision: 0 },
     }
+}
+
+fn rendered(diagnostics: &[Diagnostic], text: &str) -> String {
+    diagnostics.iter().map(|diagnostic| diagnostic.render(text)).collect::<Vec<_>>().join("\n\n")
 }
 
 /// Stamps of the files that may change the materials: the material files, the files that they name, and the CSV files beside these.

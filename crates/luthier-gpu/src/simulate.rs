@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use luthier_lut::Image;
 use luthier_manifest::{LAYER_WORDS, LayerRecord, MATERIAL_WORDS, MaterialEntry};
 
-use crate::context::Pass;
+use crate::context::{Context, Pass};
 use crate::error::setting;
 use crate::evaluate::WORKGROUP;
 use crate::render::{HEADER_WORDS, PIXELS_PER_WORKGROUP};
@@ -152,7 +152,7 @@ impl Scene {
         parts: &[Shown],
         render: &RenderSettings,
         settings: &SimulationSettings,
-    ) -> Result<Simulation<'_>, GpuError> {
+    ) -> Result<Simulation, GpuError> {
         let render = RenderSettings { environment_samples: 1, ..render.clone() };
         render.check(parts)?;
         if render.shape == Shape::Mesh {
@@ -181,8 +181,8 @@ impl Scene {
         let inputs = self.inputs(parts, &materials, &render);
         let sums = vec![Sums::default(); (render.size * render.size) as usize];
         Ok(Simulation {
-            scene: self,
-            pipeline,
+            context: self.context.clone(),
+            pipeline: pipeline.clone(),
             group,
             inputs,
             size: render.size,
@@ -242,9 +242,9 @@ fn beyond(entry: &MaterialEntry) -> Option<&'static str> {
 
 /// A picture that gathers samples.
 #[derive(Debug)]
-pub struct Simulation<'a> {
-    scene: &'a Scene,
-    pipeline: &'a wgpu::ComputePipeline,
+pub struct Simulation {
+    context: Context,
+    pipeline: wgpu::ComputePipeline,
     group: wgpu::BindGroup,
     inputs: Vec<[u32; 4]>,
     size: u32,
@@ -253,25 +253,39 @@ pub struct Simulation<'a> {
     sums: Vec<Sums>,
 }
 
-impl Simulation<'_> {
+impl Simulation {
     /// Adds samples to every pixel. Samples go over the squares of a pixel in turn, so that multiples of the square of
     /// [`RenderSettings::samples`] cover it evenly. Samples in several calls are those of one.
     ///
     /// # Errors
     /// Whatever the device reports.
     pub fn add(&mut self, samples: u32) -> Result<(), GpuError> {
+        self.add_unless(samples, &|| false).map(|_| ())
+    }
+
+    /// Adds samples as [`Simulation::add`] does, and asks between submissions whether to stop. Returns whether all were added; where they were not, the
+    /// picture is of those before this call.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn add_unless(&mut self, samples: u32, stop: &dyn Fn() -> bool) -> Result<bool, GpuError> {
         let size = self.size;
         let mut left = samples;
+        let before = (self.samples, self.sums.clone());
         while left > 0 {
             let count = left.min(SAMPLES_PER_THREAD);
             let rows = (SAMPLES_PER_PASS / (size * count)).clamp(1, size);
             for row in (0..size).step_by(rows as usize) {
+                if stop() {
+                    (self.samples, self.sums) = before;
+                    return Ok(false);
+                }
                 let rows = rows.min(size - row);
                 self.inputs[5][1] = row;
                 self.inputs[HEADER_WORDS - 1] = [self.samples, count, self.seed, 0];
-                let pixels = self.scene.context.run(&Pass {
+                let pixels = self.context.run(&Pass {
                     what: "simulation",
-                    pipeline: self.pipeline,
+                    pipeline: &self.pipeline,
                     shader_group: &self.group,
                     workgroups: [size.div_ceil(PIXELS_PER_WORKGROUP), rows.div_ceil(PIXELS_PER_WORKGROUP)],
                     inputs: bytemuck::cast_slice(&self.inputs),
@@ -285,7 +299,7 @@ impl Simulation<'_> {
             self.samples += count;
             left -= count;
         }
-        Ok(())
+        Ok(true)
     }
 
     /// Samples of each pixel so far.

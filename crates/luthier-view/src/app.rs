@@ -4,33 +4,34 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui::{
-    Align2, Area, CentralPanel, ColorImage, Context, Frame, Id, Margin, Panel, PointerButton, Rect, RichText, Sense,
-    TextureHandle, TextureOptions, Theme, Ui, ViewportCommand, pos2,
+    Align2, Area, CentralPanel, ColorImage, Context, Frame, Id, Margin, Panel, Rect, RichText, Theme, Ui,
+    ViewportCommand,
 };
-use luthier_gpu::{Gpu, Package, RenderSettings, Shape};
+use luthier_gpu::{Gpu, RenderSettings, Shape};
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::Material;
 
-use crate::baker::{BakeOrder, Baker};
+use crate::canvas::Canvas;
+use crate::clipboard::Clipboard;
+use crate::comparison::{Against, Comparison};
 use crate::error::ViewError;
 use crate::files::Files;
-use crate::host::{Host, Screenshot};
+use crate::history::History;
+use crate::host::{Differences, Host, Screenshot};
 use crate::keys::{Action, actions};
-use crate::latest::Latest;
 use crate::look::{Look, Surroundings};
 use crate::orbit::Orbit;
-use crate::painter::{PaintOrder, Painter, View};
 use crate::shots::Schedule;
-use crate::theme::LIGHT_BACKDROP;
-use crate::watcher::Watcher;
 use crate::window::Options;
+use crate::work::baker::{BakeOrder, Baker, Ready};
+use crate::work::gathering::Progress;
+use crate::work::latest::Latest;
+use crate::work::painter::{Painter, View};
+use crate::work::watcher::Watcher;
 
 /// Shapes to choose from.
 pub(crate) const SHAPES: [(Shape, &str); 4] =
     [(Shape::Mesh, "model"), (Shape::Sphere, "sphere"), (Shape::Torus, "torus"), (Shape::Plane, "plane")];
-
-/// Points of the wheel's smooth motion that make a notch.
-const POINTS_PER_NOTCH: f32 = 40.0;
 
 /// Width of the panel in points.
 const PANEL: f32 = 340.0;
@@ -44,8 +45,12 @@ pub(crate) struct App {
     pub(crate) files: Files,
     /// Materials that were edited, by the labels of their files.
     pub(crate) edits: BTreeMap<String, Material>,
+    pub(crate) history: History,
+    pub(crate) clipboard: Clipboard,
+    pub(crate) comparison: Comparison,
+    pub(crate) last_against: Option<Against>,
     pub(crate) model: Option<ShadingModel>,
-    fits: bool,
+    pub(crate) fits: bool,
     pub(crate) form: Form,
     pub(crate) shape: Shape,
     pub(crate) orbit: Orbit,
@@ -53,23 +58,29 @@ pub(crate) struct App {
     pub(crate) surroundings: Surroundings,
     pub(crate) help: bool,
     first_look: Look,
-    settings: RenderSettings,
+    pub(crate) settings: RenderSettings,
 
     // Threads, the latest orders to them, and what they gave.
-    host: Arc<dyn Host>,
+    pub(crate) host: Arc<dyn Host>,
     watcher: Watcher,
-    baker: Baker,
-    painter: Painter,
+    pub(crate) baker: Baker,
+    pub(crate) painter: Painter,
     files_seen: bool,
-    bake_order: Option<BakeOrder>,
-    baked: u64,
+    pub(crate) bake_order: Option<BakeOrder>,
+    pub(crate) baked: u64,
     bake_problem: Option<String>,
-    package: Option<(u64, Form, Arc<Package>)>,
-    paint_order: Option<(u64, u64, View)>,
+    pub(crate) ready: Option<(u64, Ready, Option<Ready>)>,
+    pub(crate) paint_order: Option<(u64, u64, u32, View)>,
     painted: u64,
     finished: bool,
     paint_problem: Option<String>,
-    texture: Option<TextureHandle>,
+    /// Reason why there is no second picture: of the bake, and of the painter.
+    pub(crate) against_problems: [Option<String>; 2],
+    pub(crate) progress: Option<Progress>,
+    pub(crate) differences: Option<Differences>,
+    pub(crate) canvas: Canvas,
+    /// Whether the mouse is at work on what changes no picture.
+    pub(crate) is_still: bool,
     pub(crate) adapter: String,
     pub(crate) status: String,
 
@@ -77,7 +88,7 @@ pub(crate) struct App {
     schedule: Option<Schedule>,
     by_hand: u32,
     shots: Arc<Latest<Taken>>,
-    message: Option<String>,
+    pub(crate) message: Option<String>,
     failure: Arc<Mutex<Option<String>>>,
 }
 
@@ -96,6 +107,10 @@ impl App {
         Ok(Self {
             files: Files::default(),
             edits: BTreeMap::new(),
+            history: History::default(),
+            clipboard: Clipboard::default(),
+            comparison: options.comparison,
+            last_against: None,
             model: options.model,
             fits: options.fits,
             form: options.form,
@@ -108,18 +123,22 @@ impl App {
             settings: options.settings.clone(),
             watcher: Watcher::start(Arc::clone(&host), context.clone())?,
             baker: Baker::start(Arc::clone(&host), context.clone())?,
-            painter: Painter::start(gpu, options.settings.clone(), context)?,
+            painter: Painter::start(Arc::clone(&host), gpu, options.settings.clone(), context)?,
             host,
             files_seen: false,
             bake_order: None,
             baked: 0,
             bake_problem: None,
-            package: None,
+            ready: None,
             paint_order: None,
             painted: 0,
             finished: false,
             paint_problem: None,
-            texture: None,
+            against_problems: [None, None],
+            progress: None,
+            differences: None,
+            canvas: Canvas::default(),
+            is_still: false,
             adapter,
             status: String::new(),
             schedule: options.shots.map(Schedule::new),
@@ -138,27 +157,8 @@ impl App {
 
     /// The model of a material where none is chosen: the form `full` has no tables, and so no fit.
     pub(crate) fn own_model(&self, material: &Material) -> ShadingModel {
-        if self.fits && self.form == Form::Baked { material.model() } else { material.model_without_fit() }
-    }
-
-    /// Keeps an edited material; one that is as in its file is no edit.
-    pub(crate) fn edit(&mut self, material: Material) {
-        let Some(entry) = self.files.selected() else { return };
-        if entry.material.as_ref() == Some(&material) {
-            self.edits.remove(&entry.label);
-        } else {
-            self.edits.insert(entry.label.clone(), material);
-        }
-    }
-
-    pub(crate) fn is_edited(&self) -> bool {
-        self.files.selected().is_some_and(|entry| self.edits.contains_key(&entry.label))
-    }
-
-    pub(crate) fn reset_edits(&mut self) {
-        if let Some(entry) = self.files.selected() {
-            self.edits.remove(&entry.label);
-        }
+        let has_fit = self.fits && self.form == Form::Baked && !self.comparison.is_of_forms(self.form);
+        if has_fit { material.model() } else { material.model_without_fit() }
     }
 
     pub(crate) fn reset_camera(&mut self) {
@@ -194,6 +194,7 @@ impl App {
             // What was edited is replaced by what was saved.
             for label in self.files.update(files) {
                 self.edits.remove(&label);
+                self.history.forget(&label);
             }
             self.files_seen = true;
             if let Some(schedule) = &mut self.schedule {
@@ -202,28 +203,43 @@ impl App {
         }
         if let Some(baked) = self.baker.results.take() {
             self.baked = baked.version;
-            match baked.package {
-                Ok(package) => {
-                    self.package = Some((baked.version, baked.form, package));
+            let [first, second] = baked.sides;
+            let (other, problem) = match second {
+                Some(Ok(ready)) => (Some(ready), None),
+                Some(Err(problem)) => (None, Some(problem)),
+                None => (None, None),
+            };
+            self.against_problems[0] = problem;
+            match first {
+                Some(Ok(ready)) => {
+                    self.ready = Some((baked.version, ready, other));
                     self.bake_problem = None;
                 }
-                Err(problem) => self.bake_problem = Some(problem),
+                Some(Err(problem)) => self.bake_problem = Some(problem),
+                None => {}
             }
         }
-        if let Some(picture) = self.painter.pictures.take() {
-            (self.painted, self.finished) = (picture.version, picture.finished);
-            match picture.pixels {
-                Ok(pixels) => {
-                    let [width, height] = pixels.size;
-                    self.status = format!("{width} × {height}, {:.0} ms", 1e3 * picture.seconds);
-                    let image = ColorImage::from_rgb(pixels.size, &pixels.rgb8);
-                    match &mut self.texture {
-                        Some(texture) => texture.set(image, TextureOptions::LINEAR),
-                        None => self.texture = Some(context.load_texture("picture", image, TextureOptions::LINEAR)),
+        if let Some(painted) = self.painter.painted.take() {
+            (self.painted, self.finished) = (painted.version, painted.finished);
+            (self.progress, self.differences) = (painted.progress, painted.differences);
+            self.against_problems[1] = None;
+            for (side, picture) in painted.pictures.into_iter().enumerate() {
+                match picture {
+                    Some(Ok(picture)) => {
+                        if side == 0 {
+                            let (width, height) = (picture.image.width, picture.image.height);
+                            self.status = format!("{width} × {height}, {:.0} ms", 1e3 * painted.seconds);
+                            self.paint_problem = None;
+                        }
+                        self.canvas.take(context, side, picture);
                     }
-                    self.paint_problem = None;
+                    Some(Err(problem)) if side == 0 => self.paint_problem = Some(problem),
+                    Some(Err(problem)) => self.against_problems[1] = Some(problem),
+                    None => {}
                 }
-                Err(problem) => self.paint_problem = Some(problem),
+            }
+            if self.against_problem().is_some() {
+                self.canvas.sides[1].clear();
             }
         }
         if let Some((number, asked, image)) = self.shots.take() {
@@ -266,6 +282,13 @@ impl App {
                 self.set_shape(SHAPES[(place + 1) % SHAPES.len()].0);
             }
             Action::Background => self.look.background = !self.look.background,
+            Action::Compare => self.toggle_comparison(),
+            Action::Difference => self.comparison.difference = !self.comparison.difference,
+            Action::DividerLeft => self.comparison.move_divider(-1.0),
+            Action::DividerRight => self.comparison.move_divider(1.0),
+            Action::Undo => self.undo(),
+            Action::Redo => self.redo(),
+            Action::Copy => self.copy(),
             Action::ResetCamera => self.reset_camera(),
             Action::ResetEdits => self.reset_edits(),
             Action::Theme => {
@@ -277,83 +300,8 @@ impl App {
         }
     }
 
-    /// The picture, and the mouse on it.
-    fn picture(&mut self, ui: &mut Ui) {
-        let rect = ui.available_rect_before_wrap();
-        let response = ui.allocate_rect(rect, Sense::click_and_drag());
-        let side = f64::from(rect.width().min(rect.height()).max(1.0));
-        let motion = response.drag_delta();
-        let share = [motion.x, motion.y].map(|points| f64::from(points) / side);
-        if response.dragged_by(PointerButton::Primary) {
-            self.orbit.drag(share[0], share[1]);
-        }
-        if response.dragged_by(PointerButton::Secondary) {
-            let [right, down] = share.map(|share| 180.0 * share as f32);
-            self.look.azimuth_deg = (self.look.azimuth_deg + right + 540.0).rem_euclid(360.0) - 180.0;
-            self.look.elevation_deg = (self.look.elevation_deg - down).clamp(-90.0, 90.0);
-        }
-        let scrolled = ui.input(|input| input.smooth_scroll_delta.y);
-        let zooming = response.hovered() && scrolled != 0.0;
-        if zooming {
-            self.orbit.wheel(f64::from(scrolled / POINTS_PER_NOTCH));
-        }
-        if let Some(texture) = &self.texture {
-            let all = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-            ui.painter().image(texture.id(), rect, all, eframe::egui::Color32::WHITE);
-        }
-        let moving = zooming || ui.input(|input| input.pointer.any_down());
-        self.order(ui, rect, moving);
-        self.problem(ui, rect);
-    }
-
-    /// Gives the threads what has changed.
-    fn order(&mut self, ui: &Ui, rect: Rect, moving: bool) {
-        if let Some(mut material) = self.material().cloned() {
-            match self.model {
-                Some(model) => material.shade_by(model),
-                None => material.bake.model = Some(self.own_model(&material)),
-            }
-            let (form, revision) = (self.form, self.files.selected().map_or(0, |entry| entry.revision));
-            let is_same =
-                |last: &BakeOrder| last.material == material && (last.form, last.revision) == (form, revision);
-            if !self.bake_order.as_ref().is_some_and(is_same) {
-                let version = self.bake_order.as_ref().map_or(1, |last| last.version + 1);
-                let order = BakeOrder { version, material, form, revision };
-                self.baker.orders.put(order.clone());
-                self.bake_order = Some(order);
-            }
-        }
-        let Some((baked, form, package)) = &self.package else { return };
-        let pixels = |points: f32| (points * ui.ctx().pixels_per_point()).round().max(1.0) as u32;
-        let view = View {
-            shape: self.shape,
-            orbit: self.orbit,
-            look: self.look,
-            backdrop: self.backdrop(ui.ctx().theme()),
-            size: [pixels(rect.width()), pixels(rect.height())],
-            samples: self.settings.samples,
-            environment_samples: self.settings.environment_samples,
-            moving,
-        };
-        let environment = Arc::clone(self.surroundings.environment(self.look.surroundings));
-        if self.paint_order.is_none_or(|(_, of, last)| of != *baked || last != view) {
-            let version = self.paint_order.map_or(1, |(last, ..)| last + 1);
-            self.paint_order = Some((version, *baked, view));
-            let package = Arc::clone(package);
-            self.painter.orders.put(PaintOrder { version, package, form: *form, environment, view });
-        }
-    }
-
-    fn backdrop(&self, theme: Theme) -> [f32; 3] {
-        match (theme, self.settings.backdrop) {
-            (Theme::Dark, luthier_gpu::Backdrop::Plain(color)) => color,
-            (Theme::Dark, luthier_gpu::Backdrop::Environment) => [0.13; 3],
-            (Theme::Light, _) => LIGHT_BACKDROP,
-        }
-    }
-
     /// Shows the problems over the picture, which stays.
-    fn problem(&self, ui: &Ui, rect: Rect) {
+    pub(crate) fn problem(&self, ui: &Ui, rect: Rect) {
         let of_file = self.files.selected().and_then(|entry| entry.problem.as_ref());
         let problems: Vec<&String> =
             [of_file, self.bake_problem.as_ref(), self.paint_problem.as_ref()].into_iter().flatten().collect();
@@ -374,7 +322,7 @@ impl App {
                     for problem in problems {
                         ui.label(RichText::new(problem.trim_end()).monospace().size(12.0));
                     }
-                    if self.texture.is_some() {
+                    if !self.canvas.sides[0].is_empty() {
                         ui.label(RichText::new("The picture is the last good one.").weak().size(11.0));
                     }
                 });
@@ -393,6 +341,7 @@ impl App {
             () if self.material().is_none() => "no material",
             () if ordered != self.baked && self.form == Form::Baked => "baking",
             () if ordered != self.baked => "preparing",
+            () if painting == self.painted && !self.finished && self.progress.is_some() => "simulating",
             () if painting != self.painted || !self.finished => "rendering",
             () => "ready",
         }
@@ -423,6 +372,7 @@ impl eframe::App for App {
         for action in actions {
             self.act(action, &context);
         }
+        self.is_still = false;
         let frame = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(12, 8));
         Panel::right("panel")
             .exact_size(PANEL)
@@ -430,8 +380,14 @@ impl eframe::App for App {
             .frame(frame)
             .show(ui, |ui| crate::panel::show(self, ui));
         Panel::bottom("status").show(ui, |ui| crate::panel::status(self, ui));
-        CentralPanel::default().frame(Frame::NONE.fill(ui.visuals().panel_fill)).show(ui, |ui| self.picture(ui));
+        CentralPanel::default()
+            .frame(Frame::NONE.fill(ui.visuals().panel_fill))
+            .show(ui, |ui| crate::canvas::show(self, ui));
         crate::panel::help(self, &context);
+        // An edit is one step until the mouse is released, or the number that is being typed is left.
+        if !context.input(|input| input.pointer.any_down()) && !context.text_edit_focused() {
+            self.history.close();
+        }
 
         let settled = self.settled();
         if let Some(schedule) = &mut self.schedule {

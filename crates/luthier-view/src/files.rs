@@ -57,6 +57,13 @@ impl Files {
         self.entries.get(self.selected)
     }
 
+    /// Selects the file of a label, if there is one.
+    pub(crate) fn select(&mut self, label: &str) {
+        if let Some(place) = self.entries.iter().position(|entry| entry.label == label) {
+            self.selected = place;
+        }
+    }
+
     /// Selects another file, around the ends.
     pub(crate) fn step(&mut self, by: isize) {
         let count = self.entries.len().max(1) as isize;

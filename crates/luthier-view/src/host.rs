@@ -1,6 +1,7 @@
 //! Interface to the program around the window: files, bakes, screenshots.
 
-use luthier_gpu::Package;
+use luthier_gpu::{Package, ToneMapping};
+use luthier_lut::Image;
 use luthier_manifest::Form;
 use luthier_material::Material;
 
@@ -15,12 +16,36 @@ pub trait Host: Send + Sync {
     /// A message for people.
     fn bake(&self, material: &Material, form: Form) -> Result<Package, String>;
 
+    /// The package with the layers of one material, for the simulation on the device.
+    ///
+    /// # Errors
+    /// A message for people: the parts of the material that the simulation does not take.
+    fn simulated(&self, material: &Material) -> Result<Package, String>;
+
+    /// The material that a file of this label would hold with another text.
+    ///
+    /// # Errors
+    /// A message for people.
+    fn parsed(&self, label: &str, text: &str) -> Result<Material, String>;
+
+    /// Distance of two pictures of one size, linear RGB, behind a tone curve where that counts. `None` where they cannot be compared.
+    fn compare(&self, a: &Image, b: &Image, tone: ToneMapping) -> Option<Differences>;
+
     /// Writes a screenshot. `number` counts from 1; `asked` says that it is one of those that the command line asks for, not
     /// one that somebody took by hand. Gives the path.
     ///
     /// # Errors
     /// A message for people.
     fn save(&self, screenshot: &Screenshot, number: u32, asked: bool) -> Result<String, String>;
+}
+
+/// Distance of two pictures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Differences {
+    /// Root of the mean squared difference over all pixels and channels, in linear radiance.
+    pub rms_err: f64,
+    /// Mean of the FLIP map, 0 to 1.
+    pub flip_mean: f64,
 }
 
 /// A material file as it is now.

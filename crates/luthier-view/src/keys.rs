@@ -1,6 +1,6 @@
 //! Actions of keys.
 
-use eframe::egui::{Context, Key};
+use eframe::egui::{Context, Event, Key, Modifiers};
 
 /// An action of a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -10,42 +10,102 @@ pub(crate) enum Action {
     Form,
     Model,
     Shape,
+    Compare,
+    Difference,
+    DividerLeft,
+    DividerRight,
     Background,
     ResetCamera,
     ResetEdits,
+    Undo,
+    Redo,
+    Copy,
     Theme,
     Screenshot,
     Help,
     Quit,
 }
 
-/// Key, its name, what it does in words.
-pub(crate) const KEYS: [(Key, &str, Action, &str); 12] = [
-    (Key::N, "N", Action::Next, "next material"),
-    (Key::P, "P", Action::Previous, "previous material"),
-    (Key::M, "M", Action::Model, "next model"),
-    (Key::F, "F", Action::Form, "baked or full form"),
-    (Key::G, "G", Action::Shape, "next shape"),
-    (Key::B, "B", Action::Background, "surroundings behind"),
-    (Key::C, "C", Action::ResetCamera, "camera as it was"),
-    (Key::R, "R", Action::ResetEdits, "material as in its file"),
-    (Key::T, "T", Action::Theme, "light or dark"),
-    (Key::S, "S", Action::Screenshot, "save a screenshot"),
-    (Key::H, "H", Action::Help, "this help"),
-    (Key::Q, "Q", Action::Quit, "quit"),
+const PLAIN: Modifiers = Modifiers::NONE;
+const COMMAND: Modifiers = Modifiers::COMMAND;
+const COMMAND_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
+
+/// Modifiers and key, their name, what they do in words.
+pub(crate) const KEYS: [(Modifiers, Key, &str, Action, &str); 20] = [
+    (PLAIN, Key::N, "N", Action::Next, "next material"),
+    (PLAIN, Key::P, "P", Action::Previous, "previous material"),
+    (PLAIN, Key::M, "M", Action::Model, "next model"),
+    (PLAIN, Key::F, "F", Action::Form, "baked or full form"),
+    (PLAIN, Key::G, "G", Action::Shape, "next shape"),
+    (PLAIN, Key::V, "V", Action::Compare, "comparison on or off"),
+    (PLAIN, Key::D, "D", Action::Difference, "difference or divider"),
+    (PLAIN, Key::Comma, ",", Action::DividerLeft, "divider to the left"),
+    (PLAIN, Key::Period, ".", Action::DividerRight, "divider to the right"),
+    (PLAIN, Key::B, "B", Action::Background, "surroundings behind"),
+    (PLAIN, Key::C, "C", Action::ResetCamera, "camera as it was"),
+    (PLAIN, Key::R, "R", Action::ResetEdits, "material as in its file"),
+    (COMMAND, Key::Z, "Ctrl+Z", Action::Undo, "undo"),
+    (COMMAND_SHIFT, Key::Z, "Ctrl+Shift+Z", Action::Redo, "redo; Ctrl+Y, too"),
+    (COMMAND, Key::Y, "Ctrl+Y", Action::Redo, ""),
+    (COMMAND_SHIFT, Key::C, "Ctrl+Shift+C", Action::Copy, "copy as TOML"),
+    (PLAIN, Key::T, "T", Action::Theme, "light or dark"),
+    (PLAIN, Key::S, "S", Action::Screenshot, "save a screenshot"),
+    (PLAIN, Key::H, "H", Action::Help, "this help"),
+    (PLAIN, Key::Q, "Q", Action::Quit, "quit"),
 ];
 
 /// Gestures of the mouse, and their effects.
-pub(crate) const MOUSE: [(&str, &str); 3] =
-    [("drag", "turn the shape"), ("right drag", "turn the light"), ("wheel", "zoom")];
+pub(crate) const MOUSE: [(&str, &str); 4] =
+    [("drag", "turn the shape"), ("right drag", "turn the light"), ("drag the divider", "move it"), ("wheel", "zoom")];
 
 /// The actions that were asked for since the last frame; none while a number is being typed.
 pub(crate) fn actions(context: &Context) -> Vec<Action> {
     if context.text_edit_focused() {
         return Vec::new();
     }
-    context.input(|input| {
-        let plain = !input.modifiers.any();
-        KEYS.iter().filter(|(key, ..)| plain && input.key_pressed(*key)).map(|(_, _, action, _)| *action).collect()
-    })
+    let of_event = |event: &Event| match event {
+        // Modifiers as they were when the key was pressed.
+        Event::Key { key, pressed: true, modifiers, .. } => KEYS
+            .iter()
+            .find(|(with, of, ..)| of == key && modifiers.matches_exact(*with))
+            .map(|(.., action, _)| *action),
+        _ => None,
+    };
+    context.input(|input| input.events.iter().filter_map(of_event).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use eframe::egui::RawInput;
+
+    use super::*;
+
+    fn pressed(key: Key, modifiers: Modifiers) -> Vec<Action> {
+        let context = Context::default();
+        let event = Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers };
+        let input = RawInput { events: vec![event], ..RawInput::default() };
+        let mut found = Vec::new();
+        let _ = context.run_ui(input, |ui| found = actions(ui.ctx()));
+        found
+    }
+
+    #[test]
+    fn modifiers_tell_actions_apart() {
+        let ctrl = Modifiers { ctrl: true, command: true, ..Modifiers::NONE };
+        let both = Modifiers { shift: true, ..ctrl };
+        assert_eq!(pressed(Key::Z, ctrl), [Action::Undo]);
+        assert_eq!(pressed(Key::Z, both), [Action::Redo]);
+        assert_eq!(pressed(Key::Y, ctrl), [Action::Redo]);
+        assert_eq!(pressed(Key::C, both), [Action::Copy]);
+        assert_eq!(pressed(Key::C, Modifiers::NONE), [Action::ResetCamera]);
+        assert!(pressed(Key::Z, Modifiers::NONE).is_empty() && pressed(Key::N, ctrl).is_empty());
+    }
+
+    #[test]
+    fn no_key_has_two_actions() {
+        for (i, (modifiers, key, name, ..)) in KEYS.iter().enumerate() {
+            let again = KEYS[i + 1..].iter().any(|(other, same, ..)| (other, same) == (modifiers, key));
+            assert!(!again, "{name}");
+        }
+    }
 }

@@ -4,35 +4,38 @@
 //! # In detail
 //!
 //! Three threads stand behind the one of the window, each with the latest order only: one looks whether files changed, one
-//! bakes the material that is shown, one renders it. While something moves the picture is small and coarse; at rest it is
-//! rendered again with more samples. A material that cannot be used leaves the last picture where it was, below the message.
+//! bakes the material that is shown, one renders it, and the picture beside it. While something moves the picture is small and coarse; at rest it is
+//! rendered again with more samples. A simulated picture gathers paths as long as nothing changes that it depends on. A material that cannot be used leaves the last picture where it was, below the message.
 //!
 //! Files, bakes and shaders come from a [`Host`]; this crate knows neither paths nor the baker.
 //!
 //! Simplifications: the renderer has a device of its own, and its pixels travel through memory to the window's, so that
-//! neither can bring down the other and both may use different adapters. Edits live in the window; nothing writes them to a
-//! file, and a change on disk replaces them. On Linux the window speaks X11, which Wayland desktops understand.
+//! neither can bring down the other and both may use different adapters. Edits live in the window, which can copy them as a
+//! text; nothing writes them to a file, and a change on disk replaces them and their history. On Linux the window speaks X11, which Wayland desktops understand.
 
 mod app;
-mod baker;
+mod canvas;
+mod clipboard;
+mod comparison;
+mod edits;
 mod error;
 mod files;
+mod history;
 mod host;
 mod keys;
-mod latest;
 mod look;
 mod orbit;
-mod painter;
 mod panel;
 mod parameter;
 mod shots;
-mod stages;
+mod sides;
 mod theme;
-mod watcher;
 mod window;
+mod work;
 
+pub use comparison::{Against, Comparison};
 pub use error::ViewError;
-pub use host::{Host, MaterialFile, Screenshot};
+pub use host::{Differences, Host, MaterialFile, Screenshot};
 pub use look::Look;
 pub use luthier_manifest::Form;
 pub use orbit::Orbit;

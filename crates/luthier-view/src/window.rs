@@ -7,6 +7,7 @@ use luthier_gpu::{Gpu, RenderSettings, Shape, ToneMapping};
 use luthier_manifest::{Form, ShadingModel};
 
 use crate::app::App;
+use crate::comparison::Comparison;
 use crate::error::ViewError;
 use crate::host::Host;
 use crate::look::{Look, Surroundings};
@@ -30,6 +31,8 @@ pub struct Options {
     pub model: Option<ShadingModel>,
     /// Whether files that ask for no model may have one that is fitted to a simulation.
     pub fits: bool,
+    /// The picture beside that of the material.
+    pub comparison: Comparison,
     /// Inner size of the window in points.
     pub size: [f32; 2],
     /// Dark; `None` is what the desktop says, or else dark.

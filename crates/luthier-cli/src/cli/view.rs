@@ -8,11 +8,15 @@ use luthier_manifest::Form;
 
 use luthier_terminal::{Sources, named};
 
-use super::{Look, Shading, ShapeName};
+use super::{Look, Shading, ShapeName, Side};
 
 const VIEW_EXAMPLES: &str = "\
 Drag turns the shape, a drag with the right button the light, the wheel zooms; H lists the keys. Files are read again when they
-change; a broken one shows its mistake over the last good picture. Edits stay in the window.
+change; a broken one shows its mistake over the last good picture. Edits stay in the window; Ctrl+Shift+C copies the edited material
+as TOML.
+
+The window compares the picture with that of another model, of the other form, or of the simulation, which gathers paths of light as
+long as nothing changes. A line that the mouse moves divides the two, or their difference is shown.
 
 The full form has no blurred maps: it asks for the environment in 16 directions per sample, or --environment-samples if that
 is more. Without a screen, put `xvfb-run -a` in front.
@@ -20,6 +24,7 @@ is more. Without a screen, put `xvfb-run -a` in front.
 Examples:
   luthier view materials
   luthier view mine.toml --form full --shape torus
+  luthier view mine.toml --against simulated --difference 16
   luthier view mine.toml --screenshot window.png --frames 3";
 
 /// Open a window: turn, light and edit materials, and see them change with their files
@@ -33,9 +38,15 @@ pub(crate) struct ViewOptions {
     /// Form of the shader: `baked` reads tables, `full` computes all terms
     #[arg(long, value_parser = named::<Form>(Form::NAMES), default_value_t = Form::Baked)]
     pub(crate) form: Form,
-    /// Shape to show: sphere, torus, plane or model
-    #[arg(long, value_enum, default_value_t = ShapeName::Model)]
-    pub(crate) shape: ShapeName,
+    /// Picture to compare with: simulated or simulated/N with N paths of each pixel, a model, a form, or MODEL/FORM
+    #[arg(long, value_name = "SIDE")]
+    pub(crate) against: Option<Side>,
+    /// Show the difference of the two in linear light, times a factor
+    #[arg(long, value_name = "FACTOR", requires = "against", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) difference: Option<u16>,
+    /// Shape to show: sphere, torus, plane or model; by default the model, or the sphere beside a simulation
+    #[arg(long, value_enum)]
+    pub(crate) shape: Option<ShapeName>,
     /// Triangles to show instead: a glTF file
     #[arg(long, value_name = "FILE", conflicts_with = "shape")]
     pub(crate) mesh: Option<PathBuf>,

@@ -5,15 +5,17 @@ use std::sync::Arc;
 use luthier_export::read;
 use luthier_gpu::{Scenery, model};
 use luthier_terminal::{Failure, Outcome, open};
-use luthier_view::{Options, Shots, ViewError};
+use luthier_view::{Against, Comparison, Options, Shots, ViewError};
 
-use crate::cli::{ShapeName, ThemeName, ViewOptions};
+use crate::cli::{ShapeName, Side, ThemeName, ViewOptions};
 use crate::picture::{Format, settings};
 use crate::view_host::ViewHost;
 
 /// Opens the window, and returns when it is closed.
 pub(crate) fn run(options: &ViewOptions) -> Outcome {
-    if options.shape == ShapeName::Grid {
+    let usual = if matches!(options.against, Some(Side::Simulated(_))) { ShapeName::Sphere } else { ShapeName::Model };
+    let shape = options.shape.unwrap_or(usual);
+    if shape == ShapeName::Grid {
         return Err(Failure::Input(anyhow::anyhow!("a window shows one material; the grid has 25 of its own")));
     }
     if let Some(path) = &options.screenshot
@@ -24,7 +26,7 @@ pub(crate) fn run(options: &ViewOptions) -> Outcome {
     // A path that is none is a mistake of the command line; what is in the files is shown in the window.
     read(&options.sources.paths)?;
     let look = &options.look;
-    let mut settings = settings(look, options.shape, options.mesh.as_deref(), 1)?;
+    let mut settings = settings(look, shape, options.mesh.as_deref(), 1)?;
     // The window may come to it.
     settings.mesh = settings.mesh.or_else(|| Some(Arc::new(model::mesh())));
     let shape = settings.shape;
@@ -37,6 +39,7 @@ pub(crate) fn run(options: &ViewOptions) -> Outcome {
         form: options.form,
         model: options.shading.model,
         fits: !options.shading.no_fit,
+        comparison: comparison(options),
         size: options.window.0.map(f32::from),
         dark: options.theme.map(|theme| theme == ThemeName::Dark),
         shots: options.screenshot.is_some().then_some(Shots { frames: options.frames, count: options.shots }),
@@ -47,4 +50,20 @@ pub(crate) fn run(options: &ViewOptions) -> Outcome {
         ViewError::Screenshot(_) => Failure::Files(error.into()),
         _ => Failure::Device(error.into()),
     })
+}
+
+/// The comparison that the options ask for.
+fn comparison(options: &ViewOptions) -> Comparison {
+    let mut comparison = Comparison::default();
+    comparison.against = options.against.as_ref().map(|side| match side {
+        Side::Simulated(paths) => {
+            comparison.paths = *paths;
+            Against::Simulation
+        }
+        Side::Shader(choice) => Against::Shader { model: choice.model, form: Some(choice.form) },
+    });
+    if let Some(factor) = options.difference {
+        (comparison.difference, comparison.gain) = (true, f32::from(factor));
+    }
+    comparison
 }

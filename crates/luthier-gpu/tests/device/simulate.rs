@@ -257,6 +257,12 @@ fn white_stacks_are_invisible() {
     again.add(64).unwrap();
     let apart = image.data.iter().zip(&again.image().data).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     assert!(apart < 1e-5, "{apart}");
+    // Samples that are called off between two submissions are none.
+    let (before, asked) = (again.image(), std::cell::Cell::new(0));
+    let is_late = || asked.replace(asked.get() + 1) == 2;
+    assert!(!again.add_unless(8192, &is_late).unwrap());
+    assert_eq!((asked.get(), again.samples()), (3, 64));
+    assert!(again.image() == before);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The numbers of a material that can be edited.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
 
 use luthier_material::{FlakeSource, Material, SurfaceClass};
@@ -214,11 +214,28 @@ fn effects(material: &Material) -> Vec<Group> {
     groups
 }
 
-/// A number behind a handle, and the number as the window shows it over the number as the material holds it.
-type Place<'a> = (&'a mut f64, f64);
+/// A number behind a handle, and how the window shows it.
+type Place<'a> = (&'a mut f64, Unit);
 
-/// Degrees per radian.
-const DEGREES: f64 = 180.0 / PI;
+/// Unit of a number in the window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Unit {
+    /// The material's own.
+    Own,
+    /// Degrees, of an angle in radians.
+    Degrees,
+}
+
+impl Unit {
+    fn shown(self, number: f64) -> f64 {
+        if self == Self::Degrees { number.to_degrees() } else { number }
+    }
+
+    /// The number of a material, as the reader of files makes it of this one.
+    fn held(self, shown: f64) -> f64 {
+        if self == Self::Degrees { shown.to_radians() } else { shown }
+    }
+}
 
 impl Handle {
     /// The number as the window shows it.
@@ -229,7 +246,7 @@ impl Handle {
             Self::F0(i, c) => base_ior(material, i)?.f0()?.get(c).copied(),
             Self::FilmIor(i, j) => Some(constant_ior(&material.stack.layers.get(i)?.films.get(j)?.ior)?[0]),
             // Everything else is a number that lies somewhere in the material.
-            _ => self.place(&mut material.clone()).map(|(number, scale)| *number * scale),
+            _ => self.place(&mut material.clone()).map(|(number, unit)| unit.shown(*number)),
         }
     }
 
@@ -242,8 +259,8 @@ impl Handle {
         match self {
             Self::IorN(_) | Self::IorK(_) | Self::F0(..) | Self::FilmIor(..) => self.set_ior(material, value),
             _ => {
-                if let Some((number, scale)) = self.place(material) {
-                    *number = value / scale;
+                if let Some((number, unit)) = self.place(material) {
+                    *number = unit.held(value);
                 }
             }
         }
@@ -315,41 +332,41 @@ impl Handle {
         let effects = &mut material.effects;
         let layers = &mut material.stack.layers;
         Some(match self {
-            Self::Alpha(i) | Self::AlphaX(i) => (&mut layers.get_mut(i)?.surface.alpha_x, 1.0),
-            Self::AlphaY(i) => (&mut layers.get_mut(i)?.surface.alpha_y, 1.0),
-            Self::Rotation(i) => (&mut layers.get_mut(i)?.surface.rotation, DEGREES),
+            Self::Alpha(i) | Self::AlphaX(i) => (&mut layers.get_mut(i)?.surface.alpha_x, Unit::Own),
+            Self::AlphaY(i) => (&mut layers.get_mut(i)?.surface.alpha_y, Unit::Own),
+            Self::Rotation(i) => (&mut layers.get_mut(i)?.surface.rotation, Unit::Degrees),
             Self::SlabThickness(i) => match &mut layers.get_mut(i)?.base {
-                Base::Dielectric { slab, .. } => (&mut slab.thickness_um, 1.0),
+                Base::Dielectric { slab, .. } => (&mut slab.thickness_um, Unit::Own),
                 _ => return None,
             },
             Self::Absorption(i, c) => match &mut layers.get_mut(i)?.base {
-                Base::Dielectric { slab, .. } => (slab.absorption_per_um.get_mut(c)?, 1.0),
+                Base::Dielectric { slab, .. } => (slab.absorption_per_um.get_mut(c)?, Unit::Own),
                 _ => return None,
             },
             Self::Albedo(i, c) => match &mut layers.get_mut(i)?.base {
-                Base::Diffuse(diffuse) => (diffuse.albedo.get_mut(c)?, 1.0),
+                Base::Diffuse(diffuse) => (diffuse.albedo.get_mut(c)?, Unit::Own),
                 _ => return None,
             },
             Self::Sigma(i) => match &mut layers.get_mut(i)?.base {
-                Base::Diffuse(diffuse) => (&mut diffuse.sigma, 1.0),
+                Base::Diffuse(diffuse) => (&mut diffuse.sigma, Unit::Own),
                 _ => return None,
             },
             Self::FilmThickness(i, j) | Self::FilmMin(i, j) => {
-                (&mut layers.get_mut(i)?.films.get_mut(j)?.thickness.min_nm, 1.0)
+                (&mut layers.get_mut(i)?.films.get_mut(j)?.thickness.min_nm, Unit::Own)
             }
-            Self::FilmMax(i, j) => (&mut layers.get_mut(i)?.films.get_mut(j)?.thickness.max_nm, 1.0),
+            Self::FilmMax(i, j) => (&mut layers.get_mut(i)?.films.get_mut(j)?.thickness.max_nm, Unit::Own),
             Self::IorN(_) | Self::IorK(_) | Self::F0(..) | Self::FilmIor(..) => return None,
-            Self::PatinaExtent => (&mut effects.patina.as_mut()?.extent, 1.0),
-            Self::PatinaTransition => (&mut effects.patina.as_mut()?.transition, 1.0),
-            Self::PatinaBaseAlpha => (effects.patina.as_mut()?.base_alpha.as_mut()?, 1.0),
-            Self::GlitterFilled => (&mut effects.glitter.as_mut()?.filled, 1.0),
-            Self::GlitterFrequency => (&mut effects.glitter.as_mut()?.frequency, 1.0),
-            Self::GlitterTilt => (&mut effects.glitter.as_mut()?.tilt, DEGREES),
-            Self::FlakeScale => (&mut effects.flakes.as_mut()?.scale, 1.0),
-            Self::FlakeTiling => (&mut effects.flakes.as_mut()?.tiling, 1.0),
-            Self::FlakeFadeStart => (&mut effects.flakes.as_mut()?.fade_start, 1.0),
+            Self::PatinaExtent => (&mut effects.patina.as_mut()?.extent, Unit::Own),
+            Self::PatinaTransition => (&mut effects.patina.as_mut()?.transition, Unit::Own),
+            Self::PatinaBaseAlpha => (effects.patina.as_mut()?.base_alpha.as_mut()?, Unit::Own),
+            Self::GlitterFilled => (&mut effects.glitter.as_mut()?.filled, Unit::Own),
+            Self::GlitterFrequency => (&mut effects.glitter.as_mut()?.frequency, Unit::Own),
+            Self::GlitterTilt => (&mut effects.glitter.as_mut()?.tilt, Unit::Degrees),
+            Self::FlakeScale => (&mut effects.flakes.as_mut()?.scale, Unit::Own),
+            Self::FlakeTiling => (&mut effects.flakes.as_mut()?.tiling, Unit::Own),
+            Self::FlakeFadeStart => (&mut effects.flakes.as_mut()?.fade_start, Unit::Own),
             Self::FlakeSpread => match &mut effects.flakes.as_mut()?.source {
-                FlakeSource::Cells { spread, .. } => (spread, DEGREES),
+                FlakeSource::Cells { spread, .. } => (spread, Unit::Degrees),
                 FlakeSource::NormalMap { .. } | FlakeSource::HeightMap { .. } => return None,
             },
         })

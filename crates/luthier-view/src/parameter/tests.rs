@@ -1,6 +1,8 @@
 //! Tests of the parameters that the window edits.
 
-use luthier_material::parse;
+use std::path::Path;
+
+use luthier_material::{parse, rewritten};
 
 use super::*;
 
@@ -162,4 +164,52 @@ fn an_f0_is_edited_by_channel() {
     Handle::IorN(0).set(&mut two, 2.0);
     assert_eq!(index(&two), Some(2.0));
     assert_eq!(Handle::F0(1, 1).get(&two), Some(0.5));
+}
+
+/// A text that holds another value of any parameter is that of the edited material.
+fn check_texts(label: &str, text: &str, read: &dyn Fn(&str) -> std::io::Result<String>) -> usize {
+    let parse = |text: &str| parse(label, text, read).map(|parsed| parsed.material);
+    let original = parse(text).unwrap();
+    let parameters = all(&original);
+    for Parameter { handle, range, logarithmic, .. } in &parameters {
+        let (low, high) = (*range.start(), *range.end());
+        // As a slider leaves it: a number of few digits.
+        let value = if *logarithmic { low.max(1e-3) * 1.25 } else { low + 0.375 * (high - low) };
+        let mut edited = original.clone();
+        handle.set(&mut edited, value);
+        let written =
+            rewritten(&original, &edited).unwrap_or_else(|refusal| panic!("{label}: {handle:?}: {refusal:?}"));
+        let found = parse(&written).unwrap_or_else(|errors| panic!("{label}: {handle:?}: {errors:?}\n{written}"));
+        assert_eq!(found.stack, edited.stack, "{label}: {handle:?}\n{written}");
+        assert_eq!(
+            (&found.layers, &found.effects),
+            (&edited.layers, &edited.effects),
+            "{label}: {handle:?}\n{written}"
+        );
+        assert_eq!((&found.bake, &found.budget), (&edited.bake, &edited.budget), "{label}: {handle:?}\n{written}");
+        assert_eq!(found.class, edited.class, "{label}: {handle:?}\n{written}");
+    }
+    parameters.len()
+}
+
+#[test]
+fn every_parameter_has_a_text() {
+    let no_files = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+    assert_eq!(check_texts("everything", EVERYTHING, &no_files), 26);
+    assert_eq!(check_texts("matte", MATTE, &no_files), 4);
+}
+
+#[test]
+fn shipped_materials_have_texts_of_their_edits() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../materials");
+    let mut parameters = 0;
+    for entry in std::fs::read_dir(&folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|e| e == "toml") {
+            let read = |name: &str| std::fs::read_to_string(folder.join(name));
+            let text = std::fs::read_to_string(&path).unwrap();
+            parameters += check_texts(&path.file_name().unwrap().to_string_lossy(), &text, &read);
+        }
+    }
+    assert!(parameters > 150, "{parameters}");
 }

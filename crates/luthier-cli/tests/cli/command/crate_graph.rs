@@ -13,11 +13,12 @@ type Edges = BTreeMap<String, BTreeSet<String>>;
 const COMMANDS: [&str; 3] = ["luthier-cli", "luthier-lab", "luthier-terminal"];
 
 /// Crates that only some of ours may depend on, tests aside.
-const OWNERS: [(&str, &[&str]); 13] = [
+const OWNERS: [(&str, &[&str]); 14] = [
     ("ash", &["luthier-cost"]),
     ("toml", &["luthier-material"]),
     ("naga", &["luthier-shader"]),
     ("wgpu", &["luthier-gpu"]),
+    ("arboard", &["luthier-view"]),
     ("eframe", &["luthier-view"]),
     ("exr", &["luthier-texture"]),
     ("gltf", &["luthier-mesh"]),

@@ -188,6 +188,70 @@ fn the_full_form_in_a_light_window() {
     window.ends();
 }
 
+/// A window of a file, its only screenshot. `None` for want of an adapter.
+fn once(display: &Display, file: &str, args: &[&str]) -> Option<RgbImage> {
+    let workshop = Workshop::with(&[("paint.toml", file)]);
+    let common = ["paint.toml", "--theme", "dark", "--shape", "sphere", "--screenshot", "w.png"];
+    let mut window = Window::open(&workshop, display, &[&common, args].concat());
+    let picture = window.shot("w.png")?;
+    window.ends();
+    Some(picture)
+}
+
+/// The difference of a picture to itself is black; to another model it is not.
+#[test]
+fn differences_are_shown() {
+    let Some(display) = Display::open() else { return };
+    let file = paint("[0.7, 0.05, 0.05]");
+    // The name of the difference is at the upper edge.
+    let brightest = |window: &RgbImage| {
+        let below = part(window, [0, 40, WINDOW[0] - PANEL, WINDOW[1] - STATUS - 40]);
+        below.pixels().flat_map(|pixel| pixel.0).max().unwrap()
+    };
+    let args = ["--model", "elek", "--difference", "1024", "--against"];
+    let Some(none) = once(&display, &file, &[&args[..], &["elek"]].concat()) else { return };
+    assert_eq!(brightest(&none), 0);
+    let some = once(&display, &file, &[&args[..], &["microfacet"]].concat()).unwrap();
+    assert!(brightest(&some) > 200, "{}", brightest(&some));
+    assert_eq!(alarms(&some), 0);
+}
+
+/// The first picture at the left of the divider, the simulated one at its right.
+#[test]
+fn a_simulation_beside_the_picture() {
+    let Some(display) = Display::open() else { return };
+    let file = paint("[0.7, 0.05, 0.05]");
+    let args = ["--model", "elek", "--environment-samples", "16"];
+    let Some(alone) = once(&display, &file, &args) else { return };
+    let beside = once(&display, &file, &[&args[..], &["--against", "simulated/8"]].concat()).unwrap();
+    let middle = (WINDOW[0] - PANEL) / 2;
+    let height = WINDOW[1] - STATUS - 60;
+    let left = |window: &RgbImage| part(window, [0, 40, middle - 4, height]);
+    let right = |window: &RgbImage| part(window, [middle + 4, 40, middle - 8, height]);
+    assert!(left(&alone) == left(&beside), "the first picture is as without a second");
+    assert!(right(&alone) != right(&beside));
+    // Both are pictures of the same ball.
+    let (model, simulated) = (mean(&right(&alone)), mean(&right(&beside)));
+    assert!((0..3).all(|c| (model[c] - simulated[c]).abs() < 12.0), "{model:?} {simulated:?}");
+    assert_eq!(alarms(&beside), 0);
+}
+
+/// A material that the simulation does not take has its picture, and the panel says why there is no second.
+#[test]
+fn a_film_is_not_simulated() {
+    let Some(display) = Display::open() else { return };
+    let film = "[[layer]]\ntype = \"thin-film\"\nior = 2.0\nthickness_nm = 300\n";
+    let file = paint("0.5").replacen("[[layer]]", &format!("{film}[[layer]]"), 1);
+    let args = ["--environment-samples", "16"];
+    let Some(alone) = once(&display, &file, &args) else { return };
+    let refused = once(&display, &file, &[&args[..], &["--against", "simulated"]].concat()).unwrap();
+    assert!(view(&alone) == view(&refused), "one picture, without a divider");
+    let panel = |window: &RgbImage| part(window, [WINDOW[0] - PANEL, 0, PANEL, WINDOW[1]]);
+    // The reason has the colour of warnings, which nothing else has.
+    let orange = |window: &RgbImage| panel(window).pixels().filter(|p| p.0 == [255, 143, 0]).count();
+    assert!(orange(&alone) == 0 && orange(&refused) > 20, "{} {}", orange(&alone), orange(&refused));
+}
+
 /// A file that was never a material: there is no picture to keep.
 #[test]
 fn a_window_may_begin_with_a_mistake() {
@@ -225,4 +289,6 @@ fn windows_that_cannot_be() {
     workshop.run(&["view", "paint.toml", "--screenshot", "w.exr"]).fails(1, &["w.exr", ".png"]);
     workshop.run(&["view", "paint.toml", "--window", "10x10"]).fails(2, &["--window"]);
     workshop.run(&["view", "paint.toml", "--frames", "3"]).fails(2, &["required"]);
+    workshop.run(&["view", "paint.toml", "--difference", "3"]).fails(2, &["required"]);
+    workshop.run(&["view", "paint.toml", "--against", "simulated/0"]).fails(2, &["simulated/N"]);
 }

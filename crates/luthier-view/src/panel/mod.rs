@@ -1,8 +1,11 @@
 //! The panel beside the picture, the line below it, and the help.
 
+mod compared;
+mod cross_section;
+
 use eframe::egui::{
-    Align, Align2, CollapsingHeader, ComboBox, Context, Grid, Layout, RichText, ScrollArea, Slider, SliderClamping, Ui,
-    Window, vec2,
+    Align, Align2, Button, CollapsingHeader, ComboBox, Context, Grid, Label, Layout, RichText, ScrollArea, Slider,
+    SliderClamping, Ui, Window, vec2,
 };
 use luthier_gpu::ToneMapping;
 use luthier_manifest::{Form, ShadingModel};
@@ -27,6 +30,9 @@ pub(crate) fn show(app: &mut App, ui: &mut Ui) {
     choices(app, ui);
     ui.separator();
     ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        if let Some(material) = app.material() {
+            folded(ui, "cross-section", "cross-section", |ui| cross_section::show(ui, &material.cross_section()));
+        }
         layers(app, ui);
         light(app, ui);
         ui.add_space(8.0);
@@ -50,19 +56,38 @@ fn title(app: &mut App, ui: &mut Ui) {
             }
         });
     app.files.selected = chosen;
-    ui.horizontal(|ui| {
-        ui.label(RichText::new(label).weak().size(11.5));
-        if app.is_edited() {
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                if ui.small_button("reset").on_hover_text("as in its file (R)").clicked() {
-                    app.reset_edits();
-                }
-                ui.label(RichText::new("edited").color(ui.visuals().hyperlink_color).size(11.5));
-            });
-        }
+    // The buttons first: a long path has the room that they leave.
+    let row = vec2(ui.available_width(), ui.spacing().interact_size.y);
+    ui.allocate_ui_with_layout(row, Layout::right_to_left(Align::Center), |ui| {
+        edits(app, ui);
+        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            ui.add(Label::new(RichText::new(label).weak().size(11.5)).truncate());
+        });
     });
     if let Some(material) = app.material() {
         ui.label(RichText::new(&material.description).size(12.5));
+    }
+}
+
+/// Buttons of edits, from right to left.
+fn edits(app: &mut App, ui: &mut Ui) {
+    if ui.small_button("copy").on_hover_text("the material as TOML, as edited (Ctrl+Shift+C)").clicked() {
+        app.copy();
+    }
+    let button = |ui: &mut Ui, is_enabled, name, hint| {
+        ui.add_enabled(is_enabled, Button::new(name).small()).on_hover_text(hint).clicked()
+    };
+    if button(ui, app.history.can_redo(), "redo", "Ctrl+Shift+Z or Ctrl+Y") {
+        app.redo();
+    }
+    if button(ui, app.history.can_undo(), "undo", "Ctrl+Z") {
+        app.undo();
+    }
+    if app.is_edited() {
+        if ui.small_button("reset").on_hover_text("as in its file (R)").clicked() {
+            app.reset_edits();
+        }
+        ui.label(RichText::new("edited").color(ui.visuals().hyperlink_color).size(11.5));
     }
 }
 
@@ -98,7 +123,9 @@ fn choices(app: &mut App, ui: &mut Ui) {
             }
         });
         ui.end_row();
+        compared::choice(app, ui);
     });
+    compared::show(app, ui);
 }
 
 /// One section per layer and effect.
@@ -125,9 +152,13 @@ fn layers(app: &mut App, ui: &mut Ui) {
 }
 
 fn section(ui: &mut Ui, id: impl std::hash::Hash + std::fmt::Debug, title: &str, contents: impl FnOnce(&mut Ui)) {
-    CollapsingHeader::new(RichText::new(title).strong()).id_salt(&id).default_open(true).show(ui, |ui| {
+    folded(ui, &id, title, |ui| {
         Grid::new(("grid", &id)).num_columns(2).min_col_width(84.0).show(ui, contents);
     });
+}
+
+fn folded(ui: &mut Ui, id: impl std::hash::Hash + std::fmt::Debug, title: &str, contents: impl FnOnce(&mut Ui)) {
+    CollapsingHeader::new(RichText::new(title).strong()).id_salt(&id).default_open(true).show(ui, contents);
 }
 
 fn number(ui: &mut Ui, parameter: &Parameter, value: &mut f64) -> bool {
@@ -208,9 +239,9 @@ pub(crate) fn help(app: &mut App, context: &Context) {
         .anchor(Align2::CENTER_CENTER, vec2(0.0, 0.0))
         .show(context, |ui| {
             Grid::new("keys").num_columns(2).spacing([24.0, 4.0]).show(ui, |ui| {
-                for (_, name, _, what) in KEYS {
-                    ui.label(RichText::new(name).monospace().strong());
-                    ui.label(what);
+                for (.., name, _, what) in KEYS.iter().filter(|(.., what)| !what.is_empty()) {
+                    ui.label(RichText::new(*name).monospace().strong());
+                    ui.label(*what);
                     ui.end_row();
                 }
                 for (gesture, what) in MOUSE {

@@ -25,7 +25,7 @@ pub(crate) struct Goal {
 }
 
 /// Seconds that a rendering may take while something moves.
-const MOVING_SECONDS: f64 = 0.05;
+pub(crate) const MOVING_SECONDS: f64 = 0.05;
 
 /// A first rendering that takes longer than this has a coarse one before it, in seconds.
 const PATIENCE: f64 = 0.25;
@@ -36,14 +36,22 @@ const COARSEST: f64 = 96.0;
 /// Directions of the environment in a coarse and in the first full rendering.
 const FEW_DIRECTIONS: [u32; 2] = [3, 8];
 
+/// Side of a picture of so many pixels: none is smaller than the coarsest, and none larger than `side`.
+pub(crate) fn affordable(side: f64, pixels: f64) -> f64 {
+    pixels.sqrt().clamp(COARSEST.min(side), side)
+}
+
 impl Goal {
     /// The stages, with `seconds` per evaluation of the shader as measured so far.
     pub(crate) fn stages(&self, seconds: f64) -> Vec<Stage> {
         let [coarse, first] = FEW_DIRECTIONS.map(|few| few.min(self.environment_samples));
         let side = f64::from(self.side);
         let pixel = seconds * f64::from(1 + coarse);
-        let affordable = (MOVING_SECONDS / pixel.max(1e-12)).sqrt().clamp(COARSEST.min(side), side);
-        let draft = Stage { scale: affordable / side, samples: 1, environment_samples: coarse };
+        let draft = Stage {
+            scale: affordable(side, MOVING_SECONDS / pixel.max(1e-12)) / side,
+            samples: 1,
+            environment_samples: coarse,
+        };
         if self.moving {
             return vec![draft];
         }

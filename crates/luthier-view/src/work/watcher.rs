@@ -8,7 +8,7 @@ use eframe::egui;
 
 use crate::error::ViewError;
 use crate::host::{Host, MaterialFile};
-use crate::latest::Latest;
+use crate::work::latest::Latest;
 
 /// Time between two looks: editors save less often, and a tenth of a second goes unnoticed.
 const INTERVAL: Duration = Duration::from_millis(150);

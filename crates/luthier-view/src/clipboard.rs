@@ -1,0 +1,28 @@
+//! The clipboard of the desktop. The window holds what it copied: desktops ask it for the text when somebody pastes.
+
+use arboard::Clipboard as System;
+
+/// The clipboard, opened at its first use.
+#[derive(Default)]
+pub(crate) struct Clipboard(Option<System>);
+
+impl Clipboard {
+    /// Puts a text on the clipboard.
+    ///
+    /// # Errors
+    /// A message for people.
+    pub(crate) fn copy(&mut self, text: &str) -> Result<(), String> {
+        let put = |system: &mut System| system.set_text(text);
+        let copied = match &mut self.0 {
+            Some(system) => put(system),
+            None => System::new().and_then(|system| put(self.0.insert(system))),
+        };
+        copied.map_err(|error| format!("cannot copy: {error}"))
+    }
+}
+
+impl std::fmt::Debug for Clipboard {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Clipboard").field("is_open", &self.0.is_some()).finish()
+    }
+}
