@@ -85,10 +85,11 @@ fn stones(studio: &Studio) -> Outcome<Made> {
     Ok(made)
 }
 
-/// A square of the plane, from above, that fills the picture.
+/// A square of the plane, from above, that fills the picture. Its environment is blurred beforehand, so that flakes have no grain.
 fn square(studio: &Studio) -> Outcome<RenderSettings> {
     let mut settings = studio.settings(Shape::Plane)?;
     settings.camera = Camera { eye: [0.0, 7.0, 0.7], target: [0.0; 3], half_extent: 0.97 };
+    settings.environment_samples = 0;
     Ok(settings)
 }
 
@@ -153,7 +154,7 @@ fn maps(studio: &Studio) -> Outcome<Made> {
         surface("bump", &grey, particles(&grey, glitter.tilt)),
         surface("combined", grains, particles(flakes, glitter.tilt)),
     ];
-    let labels = ["1 surface map", "2 glitter map", "3 surface-glitter", "4 bump map", "5 combined"];
+    let labels = ["1 surface", "2 glitter", "3 both", "4 bumps", "5 combined"];
     let all = pictures(studio, &materials, &surfaces, |_| square(studio))?;
     made.measure("cells of the surface map per cell of the glitter map", (SMALL / LARGE).powi(2));
     made.measure(format!("share of the square that glitters, {FILLED} of the cells"), shares(&surfaces[4])[1]);
@@ -199,7 +200,8 @@ fn lepidolite(studio: &Studio) -> Outcome<Made> {
             return square(studio);
         }
         let mut settings = studio.settings(Shape::Sphere)?;
-        settings.camera = Camera { target: [-0.1, 0.2, 0.0], half_extent: 0.6, ..settings.camera };
+        settings.camera = Camera { target: [0.25, -0.1, 0.0], half_extent: 0.65, ..settings.camera };
+        settings.environment_samples = 0;
         Ok(settings)
     };
     let all = pictures(studio, &materials, &surfaces, near)?;

@@ -9,6 +9,15 @@ fn luthier_rise(seed: u32, square: vec2<f32>, offset: vec2<f32>) -> f32 {
     return 1.4142135 * signs.y * select(offset.x, offset.y, (turn & 2u) != 0u);
 }
 
+/// The blend of the rises from the two lattice points of a row of a square.
+fn luthier_across(seed: u32, corner: vec2<f32>, t: vec2<f32>, blend: f32, row: f32) -> f32 {
+    let left = vec2<f32>(0.0, row);
+    let right = vec2<f32>(1.0, row);
+    let a = luthier_rise(seed, corner + left, t - left);
+    let b = luthier_rise(seed, corner + right, t - right);
+    return a + (b - a) * blend;
+}
+
 /// Perlin's noise (Perlin 2002, in the plane), summed over octaves of twice the frequency and half the weight: mean 0, within -1..=1. `p`
 /// is in lattice cells of the first.
 fn luthier_perlin(seed: u32, p: vec2<f32>, octaves: u32) -> f32 {
@@ -20,15 +29,9 @@ fn luthier_perlin(seed: u32, p: vec2<f32>, octaves: u32) -> f32 {
         let corner = floor(place);
         let t = place - corner;
         let blend = t * t * t * (t * (6.0 * t - 15.0) + 10.0);
-        var rows = array<f32, 2>(0.0, 0.0);
-        for (var j = 0; j < 2; j++) {
-            let left = vec2<f32>(0.0, f32(j));
-            let right = vec2<f32>(1.0, f32(j));
-            let a = luthier_rise(seed + octave, corner + left, t - left);
-            let b = luthier_rise(seed + octave, corner + right, t - right);
-            rows[j] = a + (b - a) * blend.x;
-        }
-        sum += amplitude * (rows[0] + (rows[1] - rows[0]) * blend.y);
+        let lower = luthier_across(seed + octave, corner, t, blend.x, 0.0);
+        let upper = luthier_across(seed + octave, corner, t, blend.x, 1.0);
+        sum += amplitude * (lower + (upper - lower) * blend.y);
         total += amplitude;
         place *= 2.0;
         amplitude *= 0.5;
