@@ -101,9 +101,9 @@ fn what_cannot_be_baked_is_pointed_at() {
         ("\"stone\"", "\"mica\"", ["has this name", "stone.toml:2:8"]),
         ("filled", "filed", ["did you mean `filled`?", "stone.toml:12:1"]),
         ("surface = 1", "surface = 2", ["`surface` must be 1", "stone.toml:1"]),
-        ("pale.toml", "paler.toml", ["cannot read paler.toml", "stone.toml:18:53"]),
-        ("[-0.1, 0.1]", "[0.1, -0.1]", ["between = [-0.1, 0.1]", "stone.toml:17:62"]),
-        ("share", "filled", ["unknown key `filled`", "stone.toml:21:40"]),
+        ("pale.toml", "paler.toml", ["cannot read paler.toml", "stone.toml:18:50"]),
+        ("[-0.1, 0.1]", "[0.1, -0.1]", ["between = [-0.1, 0.1]", "stone.toml:17:59"]),
+        ("share", "filled", ["unknown key `filled`", "stone.toml:21:36"]),
     ] {
         workshop.write("stone.toml", (STONE.to_owned() + SWITCHES).replace(from, to));
         for verb in ["check", "bake"] {
@@ -165,5 +165,5 @@ fn places_are_those_of_the_shader() {
         assert_eq!(json["surface"], "stone");
     }
     assert!(worst < 2e-5, "{worst}");
-    assert!(seen.len() == 4 && seen.values().all(|count| *count >= 10), "{seen:?}");
+    assert!(seen.len() == 4 && seen.values().all(|count| *count >= 5), "{seen:?}");
 }
