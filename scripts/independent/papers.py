@@ -388,11 +388,14 @@ def film(index, thickness):
 # What is compared.
 
 
-def ask(text, *arguments):
+def ask(text, *arguments, beside=None):
+    """What `eval` prints of layers, or of a surface file with its materials beside it."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "m.toml")
-        with open(path, "w") as file:
-            file.write(f'schema = 1\nname = "m"\n{text}')
+        files = {"m.toml": text if beside else f'schema = 1\nname = "m"\n{text}', **(beside or {})}
+        for name, content in files.items():
+            with open(os.path.join(folder, name), "w") as file:
+                file.write(content)
         command = [PROGRAM, "eval", path, "--json", "--wavelength", str(NM), *arguments]
         run = subprocess.run(command, capture_output=True, text=True)
         if run.returncode != 0:
@@ -433,6 +436,73 @@ def polarised(paper, element, where, text, by_hand):
 
 
 ELEK, GRANIER, YAMAGUCHI, LECTURE, COURSE = "Elek", "Granier and Heidrich", "Yamaguchi", "lecture", "course"
+
+
+# Surfaces of several materials: PCG numbers of lattice cells, Voronoi cells, Perlin noise.
+
+
+def mix(x):
+    """PCG's output function after one step (Jarzynski and Olano 2020)."""
+    state = (x * 747796405 + 2891336453) % 2**32
+    word = ((state >> ((state >> 28) + 4)) ^ state) * 277803737 % 2**32
+    return (word >> 22) ^ word
+
+
+def lattice(seed, x, y):
+    return mix((mix((mix(seed) + x) % 2**32) + y) % 2**32)
+
+
+def number(word, index):
+    return (mix((word + index * 0x9E3779B9) % 2**32) >> 8) / 2**24
+
+
+def voronoi(seed, x, y):
+    """The word of the nearest random point, one in each square of the lattice."""
+    squares = [(i, j) for j in range(math.floor(y) - 3, math.floor(y) + 4) for i in range(math.floor(x) - 3, math.floor(x) + 4)]
+    words = [(i, j, lattice(seed, i, j)) for i, j in squares]
+    return min(words, key=lambda s: math.hypot(s[0] + number(s[2], 0) - x, s[1] + number(s[2], 1) - y))[2]
+
+
+def perlin(seed, x, y, octaves):
+    """Perlin's noise: gradients of length sqrt(2) at multiples of 45 degrees, blended by the curve of 2002."""
+    total = 0.0
+    for octave in range(octaves):
+        u, v = x * 2**octave, y * 2**octave
+        i, j = math.floor(u), math.floor(v)
+        for di, dj in ((0, 0), (1, 0), (0, 1), (1, 1)):
+            turn = int(number(lattice(seed + octave, i + di, j + dj), 0) * 8)
+            s = 1 if turn & 4 else -1
+            # An even number is a diagonal, an odd one an axis.
+            gradient = ((1 if turn & 2 else -1), s) if turn % 2 == 0 else ((0, s * math.sqrt(2)) if turn & 2 else (s * math.sqrt(2), 0))
+            weight = 1.0
+            for d in (abs(u - i - di), abs(v - j - dj)):
+                weight *= 1 - (6 * d**5 - 15 * d**4 + 10 * d**3)
+            total += weight * (gradient[0] * (u - i - di) + gradient[1] * (v - j - dj)) / 2**octave
+    return total / sum(0.5**octave for octave in range(octaves))
+
+
+def switched():
+    """Bases of four albedos at forty places: two in the veins of noise, one in larger cells, and one elsewhere."""
+    albedos = {"ground": 0.2, "vein": 0.5, "pale": 0.9, "tile": 0.35}
+    surface = (
+        'surface = 1\nname = "s"\n[cells]\nmaterials = ["ground.toml"]\n'
+        "[[switch]]\nnoise = { seed = 8, frequency = 5, octaves = 3, between = [-0.12, 0.08] }\n"
+        'cells = { seed = 3, frequency = 30, materials = ["vein.toml", "pale.toml", "vein.toml"] }\n'
+        "[[switch]]\ntiles = { seed = 4, frequency = 6, share = 0.5 }\ncells = { materials = [\"tile.toml\"] }\n"
+    )
+    beside = {f"{name}.toml": f'schema = 1\nname = "{name}"\n{matte(rho)}' for name, rho in albedos.items()}
+    pairs, names = [], set()
+    for k in range(1, 41):
+        u, v = (k * 0.7548776662) % 1, (k * 0.5698402910) % 1
+        if -0.12 <= perlin(8, 5 * u, 5 * v, 3) <= 0.08:
+            name = ("vein", "pale", "vein")[int(number(voronoi(3, 30 * u, 30 * v), 2) * 3)]
+        else:
+            name = "tile" if number(voronoi(4, 6 * u, 6 * v), 2) < 0.5 else "ground"
+        [value] = ask(surface, "--model", "lambert", "--uv", f"{u},{v}", "--wi", "30,0", "--wo", "45,140", beside=beside)["values"][0]["value"]
+        pairs.append((albedos[name] / PI * math.cos(math.radians(30)), value))
+        names.add(name)
+    assert len(names) == 4, names
+    row(COURSE, "noise that switches between maps", "section 5.2.1, lepidolite", pairs, 1e-9)
 
 
 def compare():
@@ -516,6 +586,8 @@ def compare():
     smooth_engine = f'[[layer]]\ntype = "metallic-roughness"\nbase_color = [0.955, 0.638, 0.538]\nmetallic = 0.5\n{smooth}'
     albedos(LECTURE, "half metallic, smooth: specular and diffuse light", "exercise", smooth_engine, "closed-form", lambda cos: schlick(f0, cos) + (1 - schlick(f0, cos)) * c, 1e-6)
 
+    switched()
+
     # Layers.
     two = coat(COAT, "alpha = 0.2\ndistribution = \"beckmann\"\n", DEPTH) + metal("alpha = 0.3\n")
     below_two = [(COAT, 0.2, DEPTH, beckmann), (METAL, 0.3, None, ggx)]
@@ -575,7 +647,7 @@ def main():
     print("# Elements of the papers by hand\n")
     print(
         "`scripts/independent/papers.py` made this page. It works each element out from its formula, in Python and without luthier, and compares it with what"
-        " `luthier eval` prints. The wavelength is 550 nm. A value is for three pairs of directions or three or four angles: the first by hand stands here, and the largest"
+        " `luthier eval` prints. The wavelength is 550 nm. A value is for three pairs of directions, three or four angles, or forty places of a surface: the first by hand stands here, and the largest"
         " relative difference of all. *Where* is the place of the formula, in the paper or, where the paper only names it, in its own source. *Allowed* is the precision of the calculation by hand: closed forms, quadrature, or the noise of a simulation.\n"
     )
     print(f"{len(ROWS)} elements, {len(failed)} of them further off than allowed.\n")

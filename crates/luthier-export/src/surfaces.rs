@@ -3,7 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use luthier_manifest::{CellsRecord, ParticlesRecord, SurfaceEntry};
+use luthier_layers::heterogeneous::{Map, Switch};
+use luthier_layers::perlin::Perlin;
+use luthier_layers::voronoi::Voronoi;
+use luthier_manifest::{CellsRecord, ParticlesRecord, SurfaceEntry, SwitchBy, SwitchRecord};
 use luthier_material::{Diagnostic, Material, NamedMaterial, Surface, SurfaceCells, is_surface, parse_surface};
 
 use crate::make::file;
@@ -112,7 +115,8 @@ pub fn refuse_surfaces(surfaces: &mut [SurfaceSource], materials: &[Source]) {
                 names.insert(constant, format!("the surface {}", source.label));
             }
         }
-        let particles = surface.materials().zip(&source.numbers).skip(surface.cells.materials.len());
+        let grains = source.numbers.len() - surface.particles().len();
+        let particles = surface.particles().iter().zip(&source.numbers[grains..]);
         errors.extend(particles.filter_map(|(named, number)| turned(surface, named, parsed.get(*number).copied()??)));
         if !errors.is_empty() {
             source.parsed = Err(errors);
@@ -147,11 +151,54 @@ impl SurfaceSource {
             source: self.label.clone(),
             source_hash: sha256(self.text.as_bytes()),
             cells: cells(&surface.cells),
+            switches: surface
+                .switches
+                .iter()
+                .map(|switch| SwitchRecord { by: switch.by, cells: cells(&switch.cells) })
+                .collect(),
             glitter: surface.glitter.as_ref().map(|glitter| ParticlesRecord {
                 cells: cells(&glitter.cells),
                 filled: glitter.filled,
                 tilt: glitter.tilt,
             }),
         })
+    }
+}
+
+/// The f64 twin of `luthier_pick`: its picks have the numbers of materials.
+///
+/// ```
+/// use luthier_layers::heterogeneous::Map;
+/// use luthier_manifest::{CellsRecord, SurfaceEntry};
+///
+/// let cells = CellsRecord { seed: 1, frequency: 20.0, materials: vec![4, 2] };
+/// let (name, source, source_hash) = ("stone".to_owned(), "stone.toml".to_owned(), String::new());
+/// let surface = SurfaceEntry { name, source, source_hash, cells, switches: Vec::new(), glitter: None };
+/// assert!(matches!(luthier_export::surface_map(&surface), Map::Cells { stacks, .. } if stacks == [4, 2]));
+/// ```
+pub fn surface_map(surface: &SurfaceEntry) -> Map {
+    let voronoi = |cells: &CellsRecord| Voronoi { seed: cells.seed, frequency: cells.frequency };
+    let stacks = |cells: &CellsRecord| cells.materials.iter().map(|&material| material as usize).collect();
+    let grains = |cells: &CellsRecord| Map::Cells { cells: voronoi(cells), stacks: stacks(cells) };
+    // The first switch of the file is the outermost.
+    let map = surface.switches.iter().rev().fold(grains(&surface.cells), |under, switch| Map::Switch {
+        switch: match switch.by {
+            SwitchBy::Noise { seed, frequency, octaves, between } => {
+                Switch::Noise { noise: Perlin { seed, frequency, octaves }, between }
+            }
+            SwitchBy::Tiles { seed, frequency, share } => Switch::Tiles { cells: Voronoi { seed, frequency }, share },
+        },
+        inside: Box::new(grains(&switch.cells)),
+        outside: Box::new(under),
+    });
+    match &surface.glitter {
+        None => map,
+        Some(glitter) => Map::Glitter {
+            cells: voronoi(&glitter.cells),
+            stacks: stacks(&glitter.cells),
+            filled: glitter.filled,
+            tilt: glitter.tilt,
+            under: Box::new(map),
+        },
     }
 }

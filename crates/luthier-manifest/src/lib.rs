@@ -46,6 +46,6 @@ pub use model::ShadingModel;
 pub use parts::{InternalReflection, LowerReflectance, Masking, Reflectance, ReflectanceCurve};
 pub use record::{LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS, material_buffer};
 pub use search::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR, Search};
-pub use surface::{CellsRecord, ParticlesRecord, SurfaceEntry};
+pub use surface::{CellsRecord, ParticlesRecord, SurfaceEntry, SwitchBy, SwitchRecord};
 pub use target::Target;
 pub use tiles::Tiles;

@@ -14,7 +14,10 @@ pub struct SurfaceEntry {
     pub source_hash: String,
     /// Grains that cover it.
     pub cells: CellsRecord,
-    /// Particles on top of them.
+    /// Other grains at some places; the first that are there are seen.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub switches: Vec<SwitchRecord>,
+    /// Particles on top of all of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub glitter: Option<ParticlesRecord>,
 }
@@ -30,6 +33,42 @@ pub struct CellsRecord {
     pub materials: Vec<u32>,
 }
 
+/// Grains in place of others, and where.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SwitchRecord {
+    /// The places.
+    #[serde(flatten)]
+    pub by: SwitchBy,
+    /// The grains.
+    pub cells: CellsRecord,
+}
+
+/// Places where grains are in place of others.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SwitchBy {
+    /// Where Perlin's noise is within a range.
+    Noise {
+        /// Seed of the first octave; each has the next number.
+        seed: u32,
+        /// Lattice cells of the first octave per unit of texture coordinate.
+        frequency: f64,
+        /// Octaves, each of twice the frequency and half the weight.
+        octaves: u32,
+        /// The least value inside and the largest, -1..=1.
+        between: [f64; 2],
+    },
+    /// A share of larger Voronoi cells.
+    Tiles {
+        /// Seed of the cells.
+        seed: u32,
+        /// Cells per unit of texture coordinate.
+        frequency: f64,
+        /// Share of the cells that is inside, 0..=1.
+        share: f64,
+    },
+}
+
 /// Voronoi cells of which a share is tilted, each of one of some materials.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ParticlesRecord {
@@ -42,10 +81,15 @@ pub struct ParticlesRecord {
 }
 
 impl SurfaceEntry {
+    /// All its cells: those that cover it, those of its switches, and the particles.
+    pub fn all_cells(&self) -> impl Iterator<Item = &CellsRecord> + Clone {
+        let switched = self.switches.iter().map(|switch| &switch.cells);
+        std::iter::once(&self.cells).chain(switched).chain(self.glitter.iter().map(|glitter| &glitter.cells))
+    }
+
     /// The numbers of its materials, each once, ascending.
     pub fn materials(&self) -> Vec<u32> {
-        let of_glitter = self.glitter.iter().flat_map(|glitter| &glitter.cells.materials);
-        let mut all: Vec<u32> = self.cells.materials.iter().chain(of_glitter).copied().collect();
+        let mut all: Vec<u32> = self.all_cells().flat_map(|cells| &cells.materials).copied().collect();
         all.sort_unstable();
         all.dedup();
         all

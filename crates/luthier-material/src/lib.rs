@@ -49,4 +49,4 @@ pub use rewrite::rewritten;
 pub use scene::{Light, Scene, SceneMaterial, SceneTarget, View, is_scene, parse_scene};
 pub use schema::{scene_schema, schema, surface_schema};
 pub use suggest::did_you_mean;
-pub use surface::{NamedMaterial, Surface, SurfaceCells, SurfaceGlitter, is_surface, parse_surface};
+pub use surface::{NamedMaterial, Surface, SurfaceCells, SurfaceGlitter, SurfaceSwitch, is_surface, parse_surface};

@@ -2,14 +2,15 @@
 
 use std::ops::Range;
 
+use luthier_manifest::SwitchBy;
 use toml::de::DeTable;
 
 use crate::check::check_table;
 use crate::diagnostic::{Diagnostic, Severity, Sink};
 use crate::grammar::SURFACE;
-use crate::section::{Section, parse_toml};
+use crate::section::{Numbers, Section, parse_toml};
 
-/// A validated surface: grains of several materials, and particles on top of them.
+/// A validated surface: grains of several materials, others at some places, and particles on top of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
     /// Name: letters, digits and hyphens.
@@ -22,7 +23,9 @@ pub struct Surface {
     pub description: String,
     /// Grains that cover it.
     pub cells: SurfaceCells,
-    /// Particles on top of them.
+    /// Other grains at some places; the first that are there are seen.
+    pub switches: Vec<SurfaceSwitch>,
+    /// Particles on top of all of them.
     pub glitter: Option<SurfaceGlitter>,
     name_span: Range<usize>,
 }
@@ -36,6 +39,15 @@ pub struct SurfaceCells {
     pub frequency: f64,
     /// The materials, all as likely; at least one.
     pub materials: Vec<NamedMaterial>,
+}
+
+/// Grains in place of others, and where.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurfaceSwitch {
+    /// The places.
+    pub by: SwitchBy,
+    /// The grains.
+    pub cells: SurfaceCells,
 }
 
 /// A share of the Voronoi cells of a map of its own, each of one of some materials and tilted.
@@ -59,9 +71,16 @@ pub struct NamedMaterial {
 }
 
 impl Surface {
-    /// The materials that it names, those of the cells first, in the order of the file; some more than once.
+    /// The materials that it names: those of the cells, of each switch, and of the particles; some more than once.
     pub fn materials(&self) -> impl Iterator<Item = &NamedMaterial> {
-        self.cells.materials.iter().chain(self.glitter.iter().flat_map(|glitter| &glitter.cells.materials))
+        let switched = self.switches.iter().map(|switch| &switch.cells);
+        let grains = std::iter::once(&self.cells).chain(switched).flat_map(|cells| &cells.materials);
+        grains.chain(self.particles())
+    }
+
+    /// The materials of its particles, the last of all that it names.
+    pub fn particles(&self) -> &[NamedMaterial] {
+        self.glitter.as_ref().map_or(&[], |glitter| &glitter.cells.materials)
     }
 
     /// An error about a material that the surface names.
@@ -112,6 +131,9 @@ pub fn parse_surface(label: &str, text: &str) -> Result<Surface, Vec<Diagnostic>
     let Some(document) = parse_toml(text, &mut sink) else { return Err(sink.into_diagnostics()) };
     let document = Section::document(&document);
     check_table(&SURFACE, &[], &document, &mut sink);
+    for at in document.sections("switch").iter().filter_map(|at| at.section("noise")) {
+        check_range(&at, &mut sink);
+    }
     let cells = document.section("cells").filter(|_| !sink.has_errors());
     let Some(at) = cells else { return Err(sink.into_diagnostics()) };
     Ok(Surface {
@@ -120,6 +142,7 @@ pub fn parse_surface(label: &str, text: &str) -> Result<Surface, Vec<Diagnostic>
         text: text.to_owned(),
         description: document.text("description").unwrap_or_default().to_owned(),
         cells: cells_of(&at, 20.0),
+        switches: document.sections("switch").iter().filter_map(switch_of).collect(),
         glitter: document.section("glitter").map(|at| SurfaceGlitter {
             cells: cells_of(&at, 60.0),
             filled: at.number("filled").unwrap_or(0.1),
@@ -127,6 +150,40 @@ pub fn parse_surface(label: &str, text: &str) -> Result<Surface, Vec<Diagnostic>
         }),
         name_span: document.value_span("name"),
     })
+}
+
+/// A range of noise has a least value, and a larger one.
+fn check_range(noise: &Section<'_>, sink: &mut Sink<'_>) {
+    if let Some([least, most]) = range_of(noise).filter(|[least, most]| least >= most) {
+        let message = format!("`between` goes from {least} to {most}, where no noise is");
+        let hint = if least > most { format!("between = [{most}, {least}]") } else { "give it some width".to_owned() };
+        sink.error(noise.value_span("between"), message, Some(hint));
+    }
+}
+
+fn range_of(noise: &Section<'_>) -> Option<[f64; 2]> {
+    match noise.numbers("between")? {
+        Numbers::Many(ends) => ends.try_into().ok(),
+        Numbers::One(_) => None,
+    }
+}
+
+fn switch_of(at: &Section<'_>) -> Option<SurfaceSwitch> {
+    let by = match (at.section("noise"), at.section("tiles")) {
+        (Some(noise), _) => SwitchBy::Noise {
+            seed: noise.integer("seed").unwrap_or(0),
+            frequency: noise.number("frequency").unwrap_or(4.0),
+            octaves: noise.integer("octaves").unwrap_or(4),
+            between: range_of(&noise)?,
+        },
+        (None, Some(tiles)) => SwitchBy::Tiles {
+            seed: tiles.integer("seed").unwrap_or(0),
+            frequency: tiles.number("frequency").unwrap_or(5.0),
+            share: tiles.number("share").unwrap_or(0.5),
+        },
+        (None, None) => return None,
+    };
+    Some(SurfaceSwitch { by, cells: cells_of(&at.section("cells")?, 20.0) })
 }
 
 fn cells_of(at: &Section<'_>, frequency: f64) -> SurfaceCells {
@@ -155,6 +212,56 @@ mod tests {
         assert_eq!(named, ["a.toml", "b.toml", "a.toml", "c.toml"]);
         for material in surface.materials() {
             assert_eq!(MICA[material.span.clone()], format!("\"{}\"", material.file));
+        }
+    }
+
+    /// With defaults, and with all keys.
+    #[test]
+    fn switches_are_read() {
+        let noise = "[[switch]]\nnoise = { between = [-0.05, 0.05] }\ncells = { materials = [\"d.toml\"] }\n\n";
+        let tiles = "[[switch]]\ncells = { seed = 1, frequency = 80, materials = [\"e.toml\", \"a.toml\"] }\n\
+                     [switch.tiles]\nseed = 2\nfrequency = 3\nshare = 0.25\n\n";
+        let text = MICA.replace("[glitter]", &format!("{noise}{tiles}[glitter]"));
+        let surface = parse_surface("mica.toml", &text).unwrap();
+        let [first, second] = &surface.switches[..] else { panic!("{:?}", surface.switches) };
+        assert_eq!(first.by, SwitchBy::Noise { seed: 0, frequency: 4.0, octaves: 4, between: [-0.05, 0.05] });
+        assert_eq!((first.cells.seed, first.cells.frequency), (0, 20.0));
+        assert_eq!(second.by, SwitchBy::Tiles { seed: 2, frequency: 3.0, share: 0.25 });
+        assert_eq!((second.cells.seed, second.cells.frequency), (1, 80.0));
+        let named: Vec<&str> = surface.materials().map(|material| material.file.as_str()).collect();
+        assert_eq!(named, ["a.toml", "b.toml", "a.toml", "d.toml", "e.toml", "a.toml", "c.toml"]);
+        assert_eq!(surface.particles().iter().map(|one| one.file.as_str()).collect::<Vec<_>>(), ["c.toml"]);
+    }
+
+    #[test]
+    fn mistakes_of_switches_are_pointed_at() {
+        let good = MICA.to_owned()
+            + "[[switch]]\nnoise = { octaves = 3, between = [-0.1, 0.1] }\ncells = { materials = [\"d.toml\"] }\n";
+        assert!(parse_surface("mica.toml", &good).is_ok());
+        for (from, to, line, message, hint) in [
+            ("[-0.1, 0.1]", "[0.3, 0.1]", 14, "goes from 0.3 to 0.1", "between = [0.1, 0.3]"),
+            ("[-0.1, 0.1]", "[0.1, 0.1]", 14, "goes from 0.1 to 0.1", "width"),
+            ("[-0.1, 0.1]", "[0.1, 2]", 14, "must be from -1 to 1", ""),
+            ("[-0.1, 0.1]", "0.1", 14, "`between`", ""),
+            ("[-0.1, 0.1]", "[0.1]", 14, "`between`", ""),
+            (", between = [-0.1, 0.1]", "", 14, "`between` is missing", ""),
+            ("octaves = 3", "octaves = 0", 14, "`octaves` must be", ""),
+            ("noise =", "nose =", 14, "unknown key `nose`", "did you mean `noise`?"),
+            ("noise = { octaves = 3, between = [-0.1, 0.1] }", "", 13, "has no place", "tiles = { share = 0.5 }"),
+            (
+                "\ncells = { materials = [\"d.toml\"] }",
+                "\ntiles = {}\ncells = { materials = [\"d.toml\"] }",
+                15,
+                "a second place",
+                "keep one of",
+            ),
+            ("\ncells = { materials = [\"d.toml\"] }", "", 13, "`cells` is missing", ""),
+            ("[[switch]]", "[switch]", 13, "`switch`", ""),
+        ] {
+            let found = parse_surface("mica.toml", &good.replacen(from, to, 1)).unwrap_err();
+            let first = found.iter().find(|one| one.line == line).unwrap_or_else(|| panic!("{to}: {found:?}"));
+            assert!(first.message.contains(message), "{to}: {found:?}");
+            assert!(first.hint.clone().unwrap_or_default().contains(hint), "{to}: {found:?}");
         }
     }
 

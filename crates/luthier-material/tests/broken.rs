@@ -1,4 +1,5 @@
-//! Each broken file under `tests/broken/` gives exactly the messages in the `.expected` file beside it.
+//! Each broken file under `tests/broken/`, and each surface under `tests/broken-surfaces/`, gives exactly the messages in the `.expected` file
+//! beside it.
 //!
 //! `LUTHIER_ACCEPT=1 cargo test -p luthier-material --test broken` writes the expectations anew: read the difference.
 
@@ -6,18 +7,17 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use luthier_material::{Severity, parse};
+use luthier_material::{Severity, is_surface, parse, parse_surface};
 
-fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/broken")
+/// All files of both folders.
+fn files() -> impl Iterator<Item = PathBuf> {
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests");
+    let listed = |name: &str| fs::read_dir(tests.join(name)).unwrap().map(|entry| entry.unwrap().path());
+    listed("broken").chain(listed("broken-surfaces")).collect::<Vec<_>>().into_iter()
 }
 
 fn cases() -> Vec<PathBuf> {
-    let mut cases: Vec<PathBuf> = fs::read_dir(folder())
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
-        .collect();
+    let mut cases: Vec<PathBuf> = files().filter(|path| path.extension().is_some_and(|e| e == "toml")).collect();
     cases.sort();
     cases
 }
@@ -30,9 +30,13 @@ fn nothing_to_read(_: &str) -> io::Result<String> {
 fn rendered(path: &Path) -> String {
     let text = fs::read_to_string(path).unwrap();
     let label = path.file_name().unwrap().to_str().unwrap();
-    match parse(label, &text, &nothing_to_read) {
-        Ok(_) => panic!("{label} parses"),
-        Err(diagnostics) => {
+    let found = match is_surface(&text) {
+        true => parse_surface(label, &text).err(),
+        false => parse(label, &text, &nothing_to_read).err(),
+    };
+    match found {
+        None => panic!("{label} parses"),
+        Some(diagnostics) => {
             assert!(diagnostics.iter().any(|d| d.severity == Severity::Error), "{label} fails without an error");
             assert!(diagnostics.iter().all(|d| d.line >= 1 && d.column >= 1 && d.label == label), "{label}");
             diagnostics.iter().map(|d| d.render(&text) + "\n").collect()
@@ -61,8 +65,7 @@ fn messages_are_as_expected() {
 
 #[test]
 fn every_expectation_has_its_case() {
-    for entry in fs::read_dir(folder()).unwrap() {
-        let path = entry.unwrap().path();
+    for path in files() {
         if path.extension().is_some_and(|e| e == "expected") {
             assert!(path.with_extension("toml").exists(), "{}", path.display());
         }

@@ -151,8 +151,7 @@ impl<'a> MaterialSet<'a> {
     fn check_surfaces(&self) -> Result<(), ShaderError> {
         let count = self.materials.len() as u32;
         for surface in self.surfaces {
-            let glitter = surface.glitter.iter().map(|glitter| &glitter.cells);
-            let lists = std::iter::once(&surface.cells).chain(glitter).map(|cells| cells.materials.as_slice());
+            let lists = surface.all_cells().map(|cells| cells.materials.as_slice());
             if lists.clone().any(|list| list.is_empty() || list.len() > CHOICES_MAX) {
                 return Err(ShaderError::Choices { surface: surface.name.clone(), limit: CHOICES_MAX });
             }

@@ -40,7 +40,7 @@ pub const TARGETS: [Target; 19] = [
         parser: "luthier_material::parse_scene, is_scene, parse_surface, is_surface",
         reads: "scene files and surface files",
         holds: "diagnostics lie in the text and can be shown; a scene or surface is recognised as one; angles, budgets and shares keep their ranges",
-        folders: &["materials/scenes", "materials/surfaces"],
+        folders: &["materials/scenes", "materials/surfaces", "tests/broken-surfaces"],
         run: toml::scene,
     },
     Target {

@@ -3,7 +3,7 @@
 use std::io;
 use std::ops::RangeInclusive;
 
-use luthier_manifest::ShadingModel;
+use luthier_manifest::{ShadingModel, SwitchBy};
 use luthier_material::{
     Diagnostic, Light, Material, Severity, SurfaceClass, is_scene, is_surface, left_out, parse, parse_scene,
     parse_surface,
@@ -72,6 +72,13 @@ fn surface(text: &str) {
                 can_be_shown(&[surface.diagnostic(material, "cannot be read", "look")], text);
             }
             can_be_shown(&[surface.of_name("taken")], text);
+            for switch in &surface.switches {
+                assert!(!switch.cells.materials.is_empty() && switch.cells.frequency > 0.0);
+                if let SwitchBy::Noise { octaves, between, .. } = switch.by {
+                    assert!((1..=12).contains(&octaves));
+                    ascends(between, -1.0..=1.0);
+                }
+            }
             if let Some(glitter) = &surface.glitter {
                 assert!((0.0..=1.0).contains(&glitter.filled) && (0.0..=0.8).contains(&glitter.tilt));
             }

@@ -143,7 +143,7 @@ fn varnish(studio: &Studio) -> Outcome<Made> {
 }
 
 /// Mean colour of the middle fifth of a picture.
-fn middle(image: &Image) -> [f64; 3] {
+pub(super) fn middle(image: &Image) -> [f64; 3] {
     let range = image.width * 2 / 5..image.width * 3 / 5;
     let count = f64::from(range.end - range.start).max(1.0);
     let mut sum = [0.0; 3];

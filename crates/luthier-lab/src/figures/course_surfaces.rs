@@ -2,40 +2,216 @@
 
 use std::path::Path;
 
-use luthier_export::{MemoryStore, Package, SurfaceSource, gather, lit, read_all};
-use luthier_gpu::{Shape, Shown};
-use luthier_manifest::Form;
-use luthier_terminal::{Outcome, valid};
+use glam::DVec2;
+use luthier_export::{MemoryStore, Package, SurfaceSource, gather, lit, read_all, surface_map};
+use luthier_gpu::{Camera, RenderSettings, Shape, Shown};
+use luthier_lut::Image;
+use luthier_manifest::{CellsRecord, Form, ParticlesRecord, SurfaceEntry};
+use luthier_material::Material;
+use luthier_report::lightness_chroma_hue;
+use luthier_terminal::{Failure, Outcome, valid};
 
-use super::figure::{Figure, Made};
+use super::course::{by_course, middle};
+use super::figure::{Figure, Made, compared};
 use super::studio::Studio;
 
-pub(crate) const FIGURES: [Figure; 1] = [Figure {
-    name: "course-5-1",
-    title: "stones of grains and glitter",
-    source: "A. Weidlich and A. Wilkie, Exploring the Potential of Layered BRDF Models, SIGGRAPH Asia 2009 Courses, figure 5.1",
-    caption: "Sunstone has one colour, a varnish over a Lambertian base, and a glitter map of copper flakes below varnish of that colour. Lepidolite has \
-              a surface map of grains in three colours and of silver, and few flakes of silver on top. The noise that puts marble into the course's lepidolite \
-              is missing. Indices and slopes are the course's, colours and numbers of cells luthier's: the files are in `materials/surfaces`.",
-    make: stones,
-}];
+pub(crate) const FIGURES: [Figure; 3] = [
+    Figure {
+        name: "course-5-1",
+        title: "stones of grains and glitter",
+        source: "A. Weidlich and A. Wilkie, Exploring the Potential of Layered BRDF Models, SIGGRAPH Asia 2009 Courses, figure 5.1",
+        caption: "Sunstone has one colour, a varnish over a Lambertian base, and a glitter map of copper flakes below varnish of that colour. Lepidolite has \
+                  dark and bright tiles, veins of marble, and few flakes of silver on top; course-5-3 shows its maps one by one. Indices, slopes and numbers of entries are the \
+                  course's, colours and numbers of cells luthier's: the files are in `materials/surfaces`.",
+        make: stones,
+    },
+    Figure {
+        name: "course-5-2",
+        title: "cells, glitter and bumps, one over the other",
+        source: "Weidlich and Wilkie 2009, figure 5.2",
+        caption: "The course draws how maps of Voronoi cells lie one over the other; here each map is a square of a surface that the shader picks. \
+                  The surface map (1) has small cells, grains of the dark lepidolite. The glitter map (2) has fewer and larger cells, most of them transparent: here they are dark. \
+                  The surface-glitter map (3) is both. The bump map (4) tilts the cells of the glitter map that are not transparent, and no others: one grey material shows \
+                  it. The combined maps (5) are grains, with particles of which some sparkle. The figure has to show that the cells of 2 and of 4 are the same, that 3 has them over the cells of 1, \
+                  and that 5 differs from 3 in these cells alone. It does.",
+        make: maps,
+    },
+    Figure {
+        name: "course-5-3",
+        title: "lepidolite from near, and its maps",
+        source: "Weidlich and Wilkie 2009, figure 5.3",
+        caption: "Lepidolite has a surface map of dark tiles and one of bright tiles, nine entries each, of cells of one size. A map of larger tiles has either. The marble has three entries, \
+                  brighter than the bright tiles, and one of either kind of tiles, in much smaller cells. Perlin's noise near 0 puts it into veins: \
+                  that is the marble function here, because the course does not print its own. The close-up has \
+                  to show polygonal facets whose colour changes with the larger tiles, and pale lines that cross them. It does. Colours, numbers of cells and \
+                  the noise are luthier's.",
+        make: lepidolite,
+    },
+];
 
 /// Surface files of the repository.
 const STONES: [&str; 2] = ["sunstone", "lepidolite"];
 
+/// The materials and the surface of a file of the repository.
+fn stone(name: &str) -> Outcome<(Vec<Material>, SurfaceEntry)> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../materials/surfaces/{name}.toml"));
+    let found = gather(&[path])?;
+    let materials = valid(read_all(&found.materials)?, true)?;
+    let surface = found.surfaces.first().and_then(SurfaceSource::entry);
+    Ok((materials, surface.ok_or_else(|| Failure::Input(anyhow::anyhow!("{name} is no surface")))?))
+}
+
+/// Renders each surface of some materials, linear.
+fn pictures(
+    studio: &Studio,
+    materials: &[Material],
+    surfaces: &[SurfaceEntry],
+    settings: impl Fn(usize) -> Outcome<RenderSettings>,
+) -> Outcome<Vec<Image>> {
+    let package = Package::of_surfaces(&lit(materials), surfaces.to_vec(), &MemoryStore::default())?;
+    let scene = studio.gpu()?.scene(&package, Form::Baked)?;
+    (0..surfaces.len()).map(|n| Ok(scene.render_shown(&[Shown::Surface(n as u32)], &settings(n)?)?)).collect()
+}
+
 fn stones(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
-    let mut pictures = Vec::new();
+    let mut all = Vec::new();
     for name in STONES {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../materials/surfaces/{name}.toml"));
-        let found = gather(&[path])?;
-        let materials = valid(read_all(&found.materials)?, true)?;
-        let surfaces = found.surfaces.iter().filter_map(SurfaceSource::entry).collect();
-        let package = Package::of_surfaces(&lit(&materials), surfaces, &MemoryStore::default())?;
-        let scene = studio.gpu()?.scene(&package, Form::Baked)?;
-        let picture = scene.render_shown(&[Shown::Surface(0)], &studio.settings(Shape::Sphere)?)?;
-        pictures.push((name.to_owned(), picture));
+        let (materials, surface) = stone(name)?;
+        let picture = pictures(studio, &materials, &[surface], |_| studio.settings(Shape::Sphere))?;
+        all.extend(picture.into_iter().map(|picture| (name.to_owned(), picture)));
     }
-    made.sheet("course-5-1", pictures, 2);
+    made.sheet("course-5-1", all, 2);
+    Ok(made)
+}
+
+/// A square of the plane, from above, that fills the picture. Its environment is blurred beforehand, so that flakes have no grain.
+fn square(studio: &Studio) -> Outcome<RenderSettings> {
+    let mut settings = studio.settings(Shape::Plane)?;
+    settings.camera = Camera { eye: [0.0, 7.0, 0.7], target: [0.0; 3], half_extent: 0.97 };
+    settings.environment_samples = 0;
+    Ok(settings)
+}
+
+/// Places of the unit square in which shares are counted, along each side.
+const COUNTED: u32 = 512;
+
+/// Share of each map of a surface: the cells that cover it, those of its switches, and the particles.
+fn shares(surface: &SurfaceEntry) -> Vec<f64> {
+    let mut numbered = surface.clone();
+    let only = |cells: &mut CellsRecord, number: usize| cells.materials = vec![number as u32];
+    only(&mut numbered.cells, 0);
+    let switches = numbered.switches.len();
+    for (number, switch) in numbered.switches.iter_mut().enumerate() {
+        only(&mut switch.cells, number + 1);
+    }
+    if let Some(glitter) = &mut numbered.glitter {
+        only(&mut glitter.cells, switches + 1);
+    }
+    let map = surface_map(&numbered);
+    let mut counts = vec![0.0; switches + 2];
+    for i in 0..COUNTED * COUNTED {
+        let uv = (DVec2::new(f64::from(i % COUNTED), f64::from(i / COUNTED)) + 0.5) / f64::from(COUNTED);
+        counts[map.pick(uv).stack] += f64::from(COUNTED * COUNTED).recip();
+    }
+    counts
+}
+
+/// Cells of the schematic, in which single ones can be seen, and the share of larger ones that glitters.
+const SMALL: f64 = 16.0;
+const LARGE: f64 = 7.0;
+const FILLED: f64 = 0.3;
+
+fn maps(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let (mut materials, entry) = stone("lepidolite")?;
+    let mut plain = |name: &str, albedo: f64| -> Outcome<[u32; 1]> {
+        let layers = format!(
+            "[[layer]]\ntype = \"dielectric\"\nior = 1.56\nslope_deg = 4\n[[layer]]\ntype = \"diffuse\"\nalbedo = {albedo}\n"
+        );
+        materials.push(by_course(name, &layers)?);
+        Ok([materials.len() as u32 - 1])
+    };
+    let (transparent, grey) = (plain("transparent", 0.02)?, plain("grey", 0.5)?);
+    let glitter = entry.glitter.clone();
+    let glitter = glitter.ok_or_else(|| Failure::Input(anyhow::anyhow!("the lepidolite does not glitter")))?;
+    let particles = |materials: &[u32], tilt: f64| {
+        let cells = CellsRecord { frequency: LARGE, materials: materials.to_vec(), ..glitter.cells.clone() };
+        Some(ParticlesRecord { cells, filled: FILLED, tilt })
+    };
+    let surface = |name: &str, grains: &[u32], glitter: Option<ParticlesRecord>| SurfaceEntry {
+        name: name.to_owned(),
+        cells: CellsRecord { frequency: SMALL, materials: grains.to_vec(), ..entry.cells.clone() },
+        switches: Vec::new(),
+        glitter,
+        ..entry.clone()
+    };
+    let (grains, flakes) = (&entry.cells.materials, &glitter.cells.materials);
+    let surfaces = [
+        surface("surface", grains, None),
+        surface("glitter", &transparent, particles(flakes, 0.0)),
+        surface("surface-glitter", grains, particles(flakes, 0.0)),
+        surface("bump", &grey, particles(&grey, glitter.tilt)),
+        surface("combined", grains, particles(flakes, glitter.tilt)),
+    ];
+    let labels = ["1 surface", "2 glitter", "3 both", "4 bumps", "5 combined"];
+    let all = pictures(studio, &materials, &surfaces, |_| square(studio))?;
+    made.measure("cells of the surface map per cell of the glitter map", (SMALL / LARGE).powi(2));
+    made.measure(format!("share of the square that glitters, {FILLED} of the cells"), shares(&surfaces[4])[1]);
+    made.measure("3 against 1: mean FLIP", compared(&all[2], &all[0])?.flip_mean);
+    made.measure("5 against 3: mean FLIP", compared(&all[4], &all[2])?.flip_mean);
+    made.measure("share of pixels in which 5 differs from 3", differing(&all[4], &all[2]));
+    made.sheet("course-5-2", labels.map(str::to_owned).into_iter().zip(all).collect(), 5);
+    Ok(made)
+}
+
+/// Share of the pixels in which two pictures differ.
+fn differing(a: &Image, b: &Image) -> f64 {
+    let pixels = a.data.chunks_exact(a.channels as usize).zip(b.data.chunks_exact(a.channels as usize));
+    pixels.clone().filter(|(a, b)| a != b).count() as f64 / pixels.count().max(1) as f64
+}
+
+fn lepidolite(studio: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let (materials, whole) = stone("lepidolite")?;
+    let [marble, bright] = &whole.switches[..] else {
+        return Err(Failure::Input(anyhow::anyhow!("the lepidolite has other switches than marble and bright tiles")));
+    };
+    let map = |name: &str, cells: &CellsRecord| SurfaceEntry {
+        name: name.to_owned(),
+        cells: cells.clone(),
+        switches: Vec::new(),
+        glitter: None,
+        ..whole.clone()
+    };
+    let combined = SurfaceEntry { switches: whole.switches.clone(), ..map("combined", &whole.cells) };
+    let tiles = SurfaceEntry { switches: vec![bright.clone()], ..map("tiles", &whole.cells) };
+    let surfaces = [
+        whole.clone(),
+        map("dark", &whole.cells),
+        map("bright", &bright.cells),
+        tiles,
+        map("marble", &marble.cells),
+        combined,
+    ];
+    let labels = ["a close-up", "b dark tiles", "bright tiles", "larger tiles", "marble", "combined"];
+    let near = |n: usize| {
+        if n > 0 {
+            return square(studio);
+        }
+        let mut settings = studio.settings(Shape::Sphere)?;
+        settings.camera = Camera { target: [0.25, -0.1, 0.0], half_extent: 0.65, ..settings.camera };
+        settings.environment_samples = 0;
+        Ok(settings)
+    };
+    let all = pictures(studio, &materials, &surfaces, near)?;
+    for (label, picture) in labels.iter().zip(&all).skip(1).filter(|(label, _)| !label.contains("larger")) {
+        made.measure(format!("{label}: lightness L* of the middle"), lightness_chroma_hue(middle(picture))[0]);
+    }
+    let names = ["dark tiles", "marble", "bright tiles", "glitter"];
+    for (name, share) in names.iter().zip(shares(&whole)) {
+        made.measure(format!("share of the square: {name}"), share);
+    }
+    made.sheet("course-5-3", labels.map(str::to_owned).into_iter().zip(all).collect(), 3);
     Ok(made)
 }

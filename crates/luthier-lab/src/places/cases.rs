@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
+use luthier_export::surface_map;
 use luthier_layers::flakes::Flakes;
 use luthier_layers::heterogeneous::Map;
 use luthier_layers::layer_sample::LayerSample;
@@ -10,7 +11,7 @@ use luthier_layers::patina::Patina;
 use luthier_layers::shaded::{Growth, Place};
 use luthier_layers::voronoi::Voronoi;
 use luthier_manifest::ShadingModel::{self, Belcour, Elek, GranierHeidrich, Microfacet, WeidlichWilkie, Yamaguchi};
-use luthier_manifest::{CellsRecord, ParticlesRecord, SurfaceEntry};
+use luthier_manifest::{CellsRecord, ParticlesRecord, SurfaceEntry, SwitchBy, SwitchRecord};
 use luthier_material::{FlakeSource, Material, parse};
 use luthier_optics::Rgb;
 
@@ -26,6 +27,8 @@ pub(super) struct Case {
     /// The layers and effects of each material.
     files: &'static [&'static str],
     spot: fn(&[Material], usize) -> Spot,
+    /// The surface of a case of several materials.
+    surface: Option<fn() -> SurfaceEntry>,
 }
 
 /// One place: the statements that make it on the device, and its twin.
@@ -70,7 +73,11 @@ const MAPPED: &[ShadingModel] = &[Elek, WeidlichWilkie, GranierHeidrich, Microfa
 
 /// All kinds.
 pub(super) fn all() -> Vec<Case> {
-    let case = |name, key, models, files, spot| Case { name, key, models, files, spot };
+    let case = |name, key, models, files, spot| Case { name, key, models, files, spot, surface: None };
+    let of_surface = |name, key, models, surface: fn() -> SurfaceEntry, spot| Case {
+        surface: Some(surface),
+        ..case(name, key, models, &[], spot)
+    };
     vec![
         case("normal map", "place.normal", MAPPED, &[COATED], normal),
         case(
@@ -110,7 +117,8 @@ pub(super) fn all() -> Vec<Case> {
         case("flakes as a normal map", "luthier_flake_tilt", PATH, &[COATED, FLAKES], flake_map),
         case("patina", "luthier_patina_amount", PATH, &[COATED, GREEN], patina),
         case("glitter", "luthier_glitter_normal", &[Elek, WeidlichWilkie, Microfacet], &[COATED, GLITTER], glitter),
-        case("surface of several materials", "luthier_pick", MAPPED, &["", ""], pick),
+        of_surface("surface of several materials", "luthier_pick", MAPPED, grains, |_, n| pick(&grains(), n)),
+        of_surface("surface with switches", "luthier_perlin", MAPPED, switched, |_, n| pick(&switched(), n)),
         case("fluorescent base", "luthier_eval_lit_at", PATH, &[DYED], dyed),
     ]
 }
@@ -118,7 +126,7 @@ pub(super) fn all() -> Vec<Case> {
 impl Case {
     /// The materials of the case, shaded by a model.
     pub(super) fn materials(&self, model: ShadingModel) -> Vec<Material> {
-        let texts: Vec<String> = if self.key == "luthier_pick" {
+        let texts: Vec<String> = if self.surface.is_some() {
             vec![COATED.to_owned(), LACQUERED.to_owned()]
         } else {
             vec![self.files.concat()]
@@ -136,7 +144,7 @@ impl Case {
 
     /// The surfaces of the bake.
     pub(super) fn surfaces(&self) -> Vec<SurfaceEntry> {
-        if self.key == "luthier_pick" { vec![surface()] } else { Vec::new() }
+        self.surface.iter().map(|surface| surface()).collect()
     }
 
     /// The n-th place.
@@ -305,31 +313,35 @@ fn glitter(materials: &[Material], n: usize) -> Spot {
     at(format!("place.normal = luthier_glitter_normal(material, {text});"), place)
 }
 
-/// Grains of two materials, and particles of the second on top.
-fn surface() -> SurfaceEntry {
+/// Grains of two materials, and particles of the first on top.
+fn grains() -> SurfaceEntry {
     let cells = |seed, frequency, materials: &[u32]| CellsRecord { seed, frequency, materials: materials.to_vec() };
     SurfaceEntry {
         name: "s".to_owned(),
         source: "s.toml".to_owned(),
         source_hash: String::new(),
         cells: cells(11, 8.0, &[0, 1]),
+        switches: Vec::new(),
         glitter: Some(ParticlesRecord { cells: cells(12, 70.0, &[0]), filled: 0.4, tilt: 0.4 }),
     }
 }
 
-fn pick(_: &[Material], n: usize) -> Spot {
+/// One material, and the other where noise or larger cells say so.
+fn switched() -> SurfaceEntry {
+    let cells = |material| CellsRecord { seed: 11, frequency: 8.0, materials: vec![material] };
+    let noise = SwitchBy::Noise { seed: 13, frequency: 6.0, octaves: 4, between: [-0.05, 0.1] };
+    let tiles = SwitchBy::Tiles { seed: 14, frequency: 10.0, share: 0.4 };
+    SurfaceEntry {
+        cells: cells(0),
+        switches: [noise, tiles].map(|by| SwitchRecord { by, cells: cells(1) }).to_vec(),
+        glitter: None,
+        ..grains()
+    }
+}
+
+fn pick(surface: &SurfaceEntry, n: usize) -> Spot {
     let (uv, text) = coordinate(n);
-    let SurfaceEntry { cells, glitter, .. } = surface();
-    let voronoi = |cells: &CellsRecord| Voronoi { seed: cells.seed, frequency: cells.frequency };
-    let stacks = |cells: &CellsRecord| cells.materials.iter().map(|&number| number as usize).collect();
-    let under = Map::Cells { cells: voronoi(&cells), stacks: stacks(&cells) };
-    let map = match glitter {
-        Some(ParticlesRecord { cells, filled, tilt }) => {
-            Map::Glitter { cells: voronoi(&cells), stacks: stacks(&cells), filled, tilt, under: Box::new(under) }
-        }
-        None => under,
-    };
-    let found = map.pick(uv);
+    let found = surface_map(surface).pick(uv);
     let mut place = Place::NONE;
     place.sample.normal = found.normal;
     let make = format!("let pick = luthier_pick(0u, {text}); place.normal = pick.normal; material = pick.material;");

@@ -3,7 +3,7 @@
 use crate::workshop::Workshop;
 
 /// The figures that the project promises, one by one.
-const NAMES: [&str; 34] = [
+const NAMES: [&str; 36] = [
     "elek-2",
     "elek-4",
     "elek-5",
@@ -33,6 +33,8 @@ const NAMES: [&str; 34] = [
     "course-5-7",
     "course-5-6",
     "course-5-1",
+    "course-5-2",
+    "course-5-3",
     "elek-6",
     "elek-line-22",
     "lecture-metal",

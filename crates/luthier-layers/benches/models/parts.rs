@@ -9,7 +9,7 @@ use luthier_layers::elek;
 use luthier_layers::elek_model::Elek;
 use luthier_layers::flakes::FlakeMean;
 use luthier_layers::fluorescence::Fluorescent;
-use luthier_layers::heterogeneous::{self, Map};
+use luthier_layers::heterogeneous::{self, Map, Switch};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::oren_nayar;
 use luthier_layers::patina::PatinaAt;
@@ -71,8 +71,9 @@ fn glitter_over_cells(bencher: Bencher<'_, '_>) {
 #[divan::bench(sample_size = SOME, sample_count = SAMPLES)]
 fn switched_by_noise(bencher: Bencher<'_, '_>) {
     let noise = Perlin { seed: 1, frequency: 8.0, octaves: 4 };
-    let (below, above) = (Box::new(Map::Uniform(0)), Box::new(Map::Uniform(1)));
-    heterogeneous(bencher, &Map::Switch { noise, threshold: 0.0, below, above });
+    let switch = Switch::Noise { noise, between: [0.0, 1.0] };
+    let (inside, outside) = (Box::new(Map::Uniform(1)), Box::new(Map::Uniform(0)));
+    heterogeneous(bencher, &Map::Switch { switch, inside, outside });
 }
 
 fn heterogeneous(bencher: Bencher<'_, '_>, map: &Map) {

@@ -1,8 +1,8 @@
-//! Surfaces whose stack differs from place to place: cells, glitter, and noise between them.
+//! Surfaces whose stack differs from place to place: cells, glitter, and switches between maps.
 //!
 //! A. Weidlich and A. Wilkie, "Exploring the potential of layered BRDF models", SIGGRAPH Asia 2009 course, sec. 5.2.1: maps
 //! of Voronoi cells choose the stack of each particle, a sparse map of larger cells puts glitter on top, its cells tilted
-//! each its own way, and Perlin noise switches between whole maps. Any model evaluates what was picked.
+//! each its own way, and Perlin noise or larger cells switch between whole maps. Any model evaluates what was picked.
 
 use std::f64::consts::PI;
 
@@ -50,17 +50,47 @@ pub enum Map {
         /// Map that shows through the other cells.
         under: Box<Map>,
     },
-    /// A switch by noise: the map below the threshold, or the one above.
+    /// A switch between two maps.
     Switch {
+        /// Which of the two is where.
+        switch: Switch,
+        /// Map inside the switch.
+        inside: Box<Map>,
+        /// Map elsewhere.
+        outside: Box<Map>,
+    },
+}
+
+/// Places where one map takes the place of another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Switch {
+    /// Where noise is within a range: patches, or veins where the range is narrow.
+    Noise {
         /// The noise.
         noise: Perlin,
-        /// Its value at the boundary.
-        threshold: f64,
-        /// Map where the noise is below the threshold.
-        below: Box<Map>,
-        /// Map where it is not.
-        above: Box<Map>,
+        /// Its least and largest value inside, both included.
+        between: [f64; 2],
     },
+    /// A share of larger cells.
+    Tiles {
+        /// The cells.
+        cells: Voronoi,
+        /// Share of them that is inside, 0..=1.
+        share: f64,
+    },
+}
+
+impl Switch {
+    /// Whether a place is inside.
+    pub fn has(&self, uv: DVec2) -> bool {
+        match self {
+            Self::Noise { noise, between: [least, most] } => {
+                let value = noise.at(uv);
+                value >= *least && value <= *most
+            }
+            Self::Tiles { cells, share } => cells.cell(uv).number(0) < *share,
+        }
+    }
 }
 
 impl Map {
@@ -84,13 +114,7 @@ impl Map {
                     _ => under.pick(uv),
                 }
             }
-            Self::Switch { noise, threshold, below, above } => {
-                if noise.at(uv) < *threshold {
-                    below.pick(uv)
-                } else {
-                    above.pick(uv)
-                }
-            }
+            Self::Switch { switch, inside, outside } => if switch.has(uv) { inside } else { outside }.pick(uv),
         }
     }
 }
@@ -118,7 +142,7 @@ pub enum Pattern {
     Cells,
     /// A fifth of the Voronoi cells, 20 per unit of length, glitters: the other stack, tilted by up to 0.3 radians.
     Glitter,
-    /// Perlin noise of three octaves, the first with 4 cells per unit of length: the other stack where it is above 0.
+    /// Perlin noise of three octaves, the first with 4 cells per unit of length: the other stack where it is not below 0.
     Switch,
 }
 
@@ -134,10 +158,9 @@ impl Pattern {
                 Map::Glitter { cells, stacks: vec![1], filled: 0.2, tilt: 0.3, under: Box::new(Map::Uniform(0)) }
             }
             Self::Switch => Map::Switch {
-                noise: Perlin { seed: 0, frequency: 4.0, octaves: 3 },
-                threshold: 0.0,
-                below: Box::new(Map::Uniform(0)),
-                above: Box::new(Map::Uniform(1)),
+                switch: Switch::Noise { noise: Perlin { seed: 0, frequency: 4.0, octaves: 3 }, between: [0.0, 1.0] },
+                inside: Box::new(Map::Uniform(1)),
+                outside: Box::new(Map::Uniform(0)),
             },
         }
     }
@@ -239,12 +262,9 @@ mod tests {
     fn cells_share_the_surface_and_noise_switches() {
         let cells =
             |seed, stacks: &[usize]| Map::Cells { cells: Voronoi { seed, frequency: 50.0 }, stacks: stacks.to_vec() };
-        let map = Map::Switch {
-            noise: Perlin { seed: 4, frequency: 8.0, octaves: 3 },
-            threshold: 0.0,
-            below: Box::new(cells(1, &[0, 1])),
-            above: Box::new(cells(2, &[2, 3])),
-        };
+        let switch = Switch::Noise { noise: Perlin { seed: 4, frequency: 8.0, octaves: 3 }, between: [0.0, 1.0] };
+        let (inside, outside) = (Box::new(cells(2, &[2, 3])), Box::new(cells(1, &[0, 1])));
+        let map = Map::Switch { switch, inside, outside };
         let mut counts = [0u32; 4];
         for uv in places() {
             counts[map.pick(uv).stack] += 1;
@@ -253,6 +273,24 @@ mod tests {
             assert!((1700..3300).contains(&count), "{counts:?}");
         }
         assert_eq!(cells(1, &[]).pick(DVec2::ZERO).stack, 0);
+    }
+
+    /// A narrow range around 0 is a vein: it has little area, and the noise has both signs beside it. Tiles have their share.
+    #[test]
+    fn switches_are_veins_and_tiles() {
+        let noise = Perlin { seed: 4, frequency: 6.0, octaves: 3 };
+        let vein = Switch::Noise { noise, between: [-0.02, 0.02] };
+        let inside: Vec<DVec2> = places().filter(|&uv| vein.has(uv)).collect();
+        assert!((300..1200).contains(&inside.len()), "{}", inside.len());
+        for &uv in &inside {
+            let around = (0..16).map(|i| noise.at(uv + 0.04 * DVec2::from_angle(PI * f64::from(i) / 8.0)));
+            let (least, most) = around.fold((1.0f64, -1.0f64), |(a, b), v| (a.min(v), b.max(v)));
+            assert!(most > 0.02 || least < -0.02, "{uv}: {least} {most}");
+        }
+        let tiles = Switch::Tiles { cells: Voronoi { seed: 3, frequency: 40.0 }, share: 0.3 };
+        let share = places().filter(|&uv| tiles.has(uv)).count();
+        // 1600 tiles: standard error of the share 0.012, more by unequal areas.
+        assert!((2500..3500).contains(&share), "{share}");
     }
 
     #[test]

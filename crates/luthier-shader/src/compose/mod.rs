@@ -60,6 +60,7 @@ pub(crate) fn compose(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> Resu
         (has("flakes"), include_str!("../wgsl/surface/flakes.wgsl")),
         (has("patina"), include_str!("../wgsl/surface/patina.wgsl")),
         (has("glitter") || has("picks"), include_str!("../wgsl/surface/glitter.wgsl")),
+        (has("noise"), include_str!("../wgsl/surface/perlin.wgsl")),
         (has("picks"), include_str!("../wgsl/surface/pick.wgsl")),
         (has("phong") || has("granier") && has("interface"), include_str!("../wgsl/interface/power_lobe.wgsl")),
         (has("oren_nayar"), include_str!("../wgsl/base/oren_nayar.wgsl")),

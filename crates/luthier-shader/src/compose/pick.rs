@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use luthier_manifest::{CellsRecord, SurfaceEntry};
+use luthier_manifest::{CellsRecord, SurfaceEntry, SwitchBy};
 
 use crate::MaterialSet;
 
@@ -34,8 +34,28 @@ fn body(surface: &SurfaceEntry) -> String {
             indented(&chosen(&glitter.cells, "particle", &format!("luthier_tilted(particle, {lack:?})")))
         );
     }
-    out + &format!("    let cell = {};\n", cell(&surface.cells))
-        + &chosen(&surface.cells, "cell", "vec3<f32>(0.0, 0.0, 1.0)")
+    for switch in &surface.switches {
+        let _ = write!(out, "    if {} {{\n{}    }}\n", inside(&switch.by), indented(&grain(&switch.cells)));
+    }
+    out + &grain(&surface.cells)
+}
+
+/// The condition of a switch.
+fn inside(by: &SwitchBy) -> String {
+    match *by {
+        SwitchBy::Noise { seed, frequency, octaves, between: [least, most] } => format!(
+            "luthier_within(luthier_perlin({seed}u, uv * {:?}, {octaves}u), {:?}, {:?})",
+            frequency as f32, least as f32, most as f32
+        ),
+        SwitchBy::Tiles { seed, frequency, share } => {
+            format!("luthier_unit(luthier_voronoi({seed}u, uv * {:?}), 2u) < {:?}", frequency as f32, share as f32)
+        }
+    }
+}
+
+/// Statements that return the material of a grain, which is flat.
+fn grain(cells: &CellsRecord) -> String {
+    format!("    let cell = {};\n", cell(cells)) + &chosen(cells, "cell", "vec3<f32>(0.0, 0.0, 1.0)")
 }
 
 fn cell(cells: &CellsRecord) -> String {

@@ -5,13 +5,14 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 use luthier_layers::flakes::Flakes;
-use luthier_layers::heterogeneous::Map;
+use luthier_layers::heterogeneous::{Map, Switch};
 use luthier_layers::monochrome::{Monochrome, MonochromeBelow, MonochromeLayer};
 use luthier_layers::patina::Patina;
+use luthier_layers::perlin::Perlin;
 use luthier_layers::voronoi::Voronoi;
 use luthier_manifest::{
-    CellsRecord, FunctionGroup, LayerRecord, MaterialEntry, ParticlesRecord, ShadingModel, SurfaceEntry,
-    material_buffer,
+    CellsRecord, FunctionGroup, LayerRecord, MaterialEntry, ParticlesRecord, ShadingModel, SurfaceEntry, SwitchBy,
+    SwitchRecord, material_buffer,
 };
 use luthier_optics::stack::Surface;
 use luthier_shader::{Form, MaterialSet, Target, emit};
@@ -183,6 +184,7 @@ fn picks_of_surfaces_are_those_of_f64() {
         source: String::new(),
         source_hash: String::new(),
         cells,
+        switches: Vec::new(),
         glitter,
     };
     let glitter = ParticlesRecord { cells: record(u32::MAX, 25.0, &[2, 0]), filled: 0.3, tilt: 0.4 };
@@ -238,6 +240,78 @@ fn picks_of_surfaces_are_those_of_f64() {
         "{counts:?}"
     );
     assert!((350..550).contains(&tilted), "{tilted}");
+}
+
+/// Rounding of f32 over lattice coordinates of up to 50 in the last octave: gradients of up to 5.2 a cell, and a few operations.
+const NOISE_TOLERANCE: f64 = 2e-5;
+
+/// Veins, patches and tiles, in the order of the file. Places near an edge of any of them are left out, because rounding decides there.
+#[test]
+fn switches_of_surfaces_are_those_of_f64() {
+    let cells = |seed, frequency, materials: &[u32]| CellsRecord { seed, frequency, materials: materials.to_vec() };
+    let vein = Perlin { seed: 9, frequency: 2.5, octaves: 4 };
+    let patch = Perlin { seed: u32::MAX, frequency: 1.5, octaves: 2 };
+    let ranges = [[-0.06, 0.06], [0.2, 1.0]];
+    let tiles = Voronoi { seed: 7, frequency: 3.0 };
+    let noise =
+        |Perlin { seed, frequency, octaves }: Perlin, between| SwitchBy::Noise { seed, frequency, octaves, between };
+    let entry = SurfaceEntry {
+        name: "veined".to_owned(),
+        source: String::new(),
+        source_hash: String::new(),
+        cells: cells(5, 12.0, &[0]),
+        switches: vec![
+            SwitchRecord { by: noise(vein, ranges[0]), cells: cells(6, 20.0, &[1, 2]) },
+            SwitchRecord { by: noise(patch, ranges[1]), cells: cells(7, 20.0, &[2]) },
+            SwitchRecord {
+                by: SwitchBy::Tiles { seed: tiles.seed, frequency: tiles.frequency, share: 0.5 },
+                cells: cells(8, 20.0, &[3]),
+            },
+        ],
+        glitter: None,
+    };
+    let materials: Vec<MaterialEntry> = (0..4).map(|i| material(&format!("m-{i}-x"), &[conductor()])).collect();
+    let set = MaterialSet { surfaces: std::slice::from_ref(&entry), ..MaterialSet::new(&materials, Vec::new()) };
+    for target in Target::TEXT {
+        assert!(emit(&set, Form::Full, target).unwrap().contains("luthier_perlin("), "{target}");
+    }
+    let wgsl = emit(&set, Form::Full, Target::Wgsl).unwrap();
+    let machine = Machine::new(&wgsl, &material_buffer(&materials), BTreeMap::new());
+    let map = |seed, stacks: &[usize]| {
+        Box::new(Map::Cells { cells: Voronoi { seed, frequency: 20.0 }, stacks: stacks.to_vec() })
+    };
+    let switch = |switch, inside, outside| Box::new(Map::Switch { switch, inside, outside });
+    let of_noise = |noise, between| Switch::Noise { noise, between };
+    let tiled = switch(Switch::Tiles { cells: tiles, share: 0.5 }, map(8, &[3]), map(5, &[0]));
+    let patched = switch(of_noise(patch, ranges[1]), map(7, &[2]), tiled);
+    let map = switch(of_noise(vein, ranges[0]), map(6, &[1, 2]), patched);
+
+    let (mut counts, mut compared, mut worst) = ([0; 4], 0, 0.0f64);
+    for uv in points(1500).map(|uv| (4.0 * uv - 2.0).as_vec2().as_dvec2()) {
+        let mut is_near_edge = false;
+        for (noise, range) in [vein, patch].into_iter().zip(ranges) {
+            let Perlin { seed, frequency, octaves } = noise;
+            let place = pair(uv * frequency);
+            let Value::F(found) = machine.call("luthier_perlin", vec![Value::U(seed), place, Value::U(octaves)]) else {
+                panic!()
+            };
+            let expected = noise.at(uv);
+            worst = worst.max((f64::from(found) - expected).abs());
+            is_near_edge |= range.iter().any(|end| (expected - end).abs() < NOISE_TOLERANCE);
+        }
+        let pick = map.pick(uv);
+        let near = |d: DVec2| map.pick(uv + 1e-5 * d) == pick;
+        if is_near_edge || ![DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y].iter().all(|&d| near(d)) {
+            continue;
+        }
+        compared += 1;
+        let Value::Many(found) = machine.call("luthier_pick", vec![Value::U(0), pair(uv)]) else { panic!() };
+        assert_eq!(found[0], Value::U(pick.stack as u32), "{uv}");
+        assert_eq!(vec3(&found[1]), DVec3::Z, "{uv}");
+        counts[pick.stack] += 1;
+    }
+    assert!(worst < NOISE_TOLERANCE, "{worst:e}");
+    assert!(compared > 1450 && counts.iter().all(|count| *count > 100), "{compared}: {counts:?}");
 }
 
 /// The layers at one of the three wavelengths. Every coat has one index.

@@ -29,9 +29,9 @@ use crate::model_inputs::ModelInputs;
 use crate::reradiation::Reradiation;
 use crate::store::store;
 use function::Kind;
-use luthier_export::{gather, of_function, read_all, read_one, refuse_surfaces};
+use luthier_export::{gather, of_function, read_all, read_one, refuse_surfaces, surface_map};
 use luthier_terminal::{Failure, Outcome, complain, valid};
-use place::{add_layers, pick, place};
+use place::{add_layers, place};
 use sweep::{Sweep, sweep};
 use values::values;
 
@@ -191,7 +191,7 @@ fn materials(options: &EvalOptions) -> Outcome<(Vec<Material>, Option<Picked>)> 
     refuse_surfaces(&mut found.surfaces, &sources);
     let surface = valid_surfaces(&found.surfaces)?.swap_remove(0);
     let mut materials = valid(sources, false)?;
-    let pick = pick(&surface, inputs.uv().unwrap_or(DVec2::ZERO));
+    let pick = surface_map(&surface).pick(inputs.uv().unwrap_or(DVec2::ZERO));
     Ok((vec![materials.swap_remove(pick.stack)], Some((surface.name, pick.normal))))
 }
 

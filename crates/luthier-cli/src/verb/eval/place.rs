@@ -5,13 +5,13 @@ use std::path::Path;
 use glam::{DVec2, DVec3};
 use luthier_bake::{MapSource, height_normals};
 use luthier_layers::flakes::Flakes;
-use luthier_layers::heterogeneous::{Map, Pick};
+use luthier_layers::heterogeneous::Map;
 use luthier_layers::layer_sample::LayerSample;
 use luthier_layers::patina::Patina;
 use luthier_layers::shaded::{Growth, Place};
 use luthier_layers::voronoi::Voronoi;
 use luthier_lut::Image;
-use luthier_manifest::{CellsRecord, MapSlot, SurfaceEntry};
+use luthier_manifest::MapSlot;
 use luthier_material::{Effects, FlakeSource, Glitter, Material, VariationSource};
 use luthier_optics::Rgb;
 use luthier_optics::stack::Base;
@@ -107,24 +107,6 @@ pub(crate) fn add_layers(place: &mut Place, material: &Material, inputs: &ModelI
     }
     place.layers = layers;
     Ok(())
-}
-
-/// The material by number and the normal at a place of a surface: the f64 twin of `luthier_pick`.
-pub(crate) fn pick(surface: &SurfaceEntry, uv: DVec2) -> Pick {
-    let voronoi = |cells: &CellsRecord| Voronoi { seed: cells.seed, frequency: cells.frequency };
-    let stacks = |cells: &CellsRecord| cells.materials.iter().map(|&material| material as usize).collect();
-    let cells = Map::Cells { cells: voronoi(&surface.cells), stacks: stacks(&surface.cells) };
-    let map = match &surface.glitter {
-        None => cells,
-        Some(glitter) => Map::Glitter {
-            cells: voronoi(&glitter.cells),
-            stacks: stacks(&glitter.cells),
-            filled: glitter.filled,
-            tilt: glitter.tilt,
-            under: Box::new(cells),
-        },
-    };
-    map.pick(uv)
 }
 
 /// The normal of the particle of a glittering surface.

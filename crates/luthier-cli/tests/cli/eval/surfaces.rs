@@ -10,9 +10,22 @@ const STONE: &str = "surface = 1\nname = \"stone\"\n\n[cells]\nseed = 3\nfrequen
                      materials = [\"lilac.toml\", \"deep/grey.toml\"]\n\n\
                      [glitter]\nseed = 4\nfrequency = 25\nfilled = 0.4\ntilt_deg = 20\nmaterials = [\"mica.toml\"]\n";
 
+/// Veins in the stone, and larger cells without grains, for its end.
+const SWITCHES: &str = "\n[[switch]]\nnoise = { seed = 5, frequency = 5, octaves = 3, between = [-0.1, 0.1] }\n\
+                        cells = { seed = 6, frequency = 40, materials = [\"pale.toml\", \"mica.toml\"] }\n\n\
+                        [[switch]]\ntiles = { seed = 7, frequency = 6, share = 0.4 }\ncells = { materials = [\"lilac.toml\"] }\n";
+
 fn workshop() -> Workshop {
     let grey = LILAC.replace("lilac", "grey").replace("0.6, 0.5, 0.7", "0.2, 0.3, 0.1");
     Workshop::with(&[("lilac.toml", LILAC), ("deep/grey.toml", &grey), ("mica.toml", MICA), ("stone.toml", STONE)])
+}
+
+/// The stone with switches, and a material for its veins.
+fn veined() -> Workshop {
+    let workshop = workshop();
+    workshop.write("pale.toml", LILAC.replace("lilac", "pale").replace("0.6, 0.5, 0.7", "0.9, 0.9, 0.8"));
+    workshop.write("stone.toml", STONE.to_owned() + SWITCHES);
+    workshop
 }
 
 #[test]
@@ -44,8 +57,42 @@ fn surfaces_are_checked_and_baked_with_their_materials() {
 }
 
 #[test]
+fn switches_are_checked_and_baked() {
+    let workshop = veined();
+    let run = workshop.run(&["check", "stone.toml"]).exits(0);
+    assert!(run.stdout.starts_with("stone.toml: ok, surface of 4 materials"), "{}", run.stdout);
+    workshop.run(&["bake", "stone.toml", "--out", "out"]).exits(0);
+    let manifest = workshop.json("out/manifest.json");
+    let names: Vec<&str> =
+        manifest["materials"].as_array().unwrap().iter().map(|m| m["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["lilac", "grey", "pale", "mica"]);
+    assert_eq!(
+        manifest["surfaces"][0]["switches"],
+        serde_json::json!([
+            {
+                "noise": { "seed": 5, "frequency": 5.0, "octaves": 3, "between": [-0.1, 0.1] },
+                "cells": { "seed": 6, "frequency": 40.0, "materials": [2, 3] },
+            },
+            {
+                "tiles": { "seed": 7, "frequency": 6.0, "share": 0.4 },
+                "cells": { "seed": 0, "frequency": 20.0, "materials": [0] },
+            },
+        ])
+    );
+    assert_eq!(manifest["surfaces"][0]["glitter"]["cells"]["materials"], serde_json::json!([3]));
+    for target in ["wgsl", "glsl450", "hlsl", "msl", "glsl-es300"] {
+        let shader = workshop.run(&["shader", "stone.toml", "--target", target]).exits(0).stdout;
+        assert!(shader.contains("luthier_perlin("), "{target}");
+    }
+    workshop.write("stone.toml", STONE);
+    let without = workshop.run(&["bake", "stone.toml", "--out", "out"]).exits(0);
+    assert!(workshop.json("out/manifest.json")["surfaces"][0].get("switches").is_none(), "{}", without.stdout);
+    assert!(!workshop.run(&["shader", "stone.toml"]).exits(0).stdout.contains("luthier_perlin"));
+}
+
+#[test]
 fn what_cannot_be_baked_is_pointed_at() {
-    let workshop = workshop();
+    let workshop = veined();
     workshop.write("bumpy.toml", MICA.replace("\"mica\"", "\"bumpy\"") + "[effects.glitter]\n");
     for (from, to, words) in [
         ("lilac.toml", "violet.toml", ["cannot read violet.toml", "stone.toml:7:14"]),
@@ -54,8 +101,11 @@ fn what_cannot_be_baked_is_pointed_at() {
         ("\"stone\"", "\"mica\"", ["has this name", "stone.toml:2:8"]),
         ("filled", "filed", ["did you mean `filled`?", "stone.toml:12:1"]),
         ("surface = 1", "surface = 2", ["`surface` must be 1", "stone.toml:1"]),
+        ("pale.toml", "paler.toml", ["cannot read paler.toml", "stone.toml:18:50"]),
+        ("[-0.1, 0.1]", "[0.1, -0.1]", ["between = [-0.1, 0.1]", "stone.toml:17:59"]),
+        ("share", "filled", ["unknown key `filled`", "stone.toml:21:36"]),
     ] {
-        workshop.write("stone.toml", STONE.replace(from, to));
+        workshop.write("stone.toml", (STONE.to_owned() + SWITCHES).replace(from, to));
         for verb in ["check", "bake"] {
             workshop.run(&[verb, "stone.toml"]).exits(1).says(&words);
         }
@@ -67,21 +117,22 @@ fn what_cannot_be_baked_is_pointed_at() {
     workshop.run(&other).exits(2).says(&["a surface has materials of its own"]);
 }
 
-/// The command at places of the surface, against `luthier_pick` and `luthier_eval_at`. Places at the edges of cells are left out.
+/// The command at places of the surface, against `luthier_pick` and `luthier_eval_at`. Places at the edges of cells and of switches are left
+/// out.
 #[cfg(feature = "gpu")]
 #[test]
 fn places_are_those_of_the_shader() {
     use glam::{DVec2, DVec3};
-    use luthier_export::{Bake, MemoryStore, Package, Shader, gather, read_all};
-    use luthier_layers::voronoi::Voronoi;
+    use luthier_export::{Bake, MemoryStore, Package, Shader, gather, read_all, surface_map};
     use luthier_manifest::Form;
 
     let Some(gpu) = super::twin::gpu() else { return };
-    let workshop = workshop();
+    let workshop = veined();
     let found = gather(&[workshop.path("stone.toml")]).unwrap();
     let sources = read_all(&found.materials).unwrap();
     let materials: Vec<_> = sources.into_iter().map(|source| source.parsed.unwrap().material).collect();
-    let surfaces = found.surfaces.iter().filter_map(|surface| surface.entry()).collect();
+    let surfaces: Vec<_> = found.surfaces.iter().filter_map(|surface| surface.entry()).collect();
+    let map = surface_map(&surfaces[0]);
     let bake = Bake { surfaces, ..Bake::wgsl(&[Form::Full]) };
     let mut package = Package::new(&materials, &bake, &MemoryStore::default()).unwrap();
     // The place comes in as the direction of a light, which is the same for all.
@@ -92,16 +143,12 @@ fn places_are_those_of_the_shader() {
     package.shaders = vec![Shader::wgsl(Form::Full, wgsl)];
     let scene = gpu.scene(&package, Form::Full).unwrap();
 
-    let maps = [Voronoi { seed: 3, frequency: 20.0 }, Voronoi { seed: 4, frequency: 25.0 }];
     let (mut seen, mut worst) = (std::collections::BTreeMap::new(), 0.0f64);
-    for i in 1..=60u32 {
+    for i in 1..=80u32 {
         let part = |step: f64| f64::from((f64::from(i) * step).fract() as f32);
         let uv = DVec2::new(part(0.754_877_666), part(0.569_840_291));
-        let is_inside = |map: &Voronoi| {
-            let near = |d: DVec2| map.cell(uv + 1e-5 * d) == map.cell(uv);
-            [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y].iter().all(|&d| near(d))
-        };
-        if !maps.iter().all(is_inside) {
+        let near = |d: DVec2| map.pick(uv + 1e-5 * d) == map.pick(uv);
+        if ![DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y].iter().all(|&d| near(d)) {
             continue;
         }
         let (theta, phi) = (80.0 * part(0.819_172_513), 360.0 * part(0.671_043_606));
@@ -118,5 +165,5 @@ fn places_are_those_of_the_shader() {
         assert_eq!(json["surface"], "stone");
     }
     assert!(worst < 2e-5, "{worst}");
-    assert!(seen.len() == 3 && seen.values().all(|count| *count >= 10), "{seen:?}");
+    assert!(seen.len() == 4 && seen.values().all(|count| *count >= 5), "{seen:?}");
 }
