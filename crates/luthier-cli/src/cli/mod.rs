@@ -51,8 +51,8 @@ pub(crate) struct Cli {
 }
 
 /// Verbs that a cargo feature brings, and the feature.
-pub(crate) const OF_FEATURES: [(&str, &str); 6] =
-    [("preview", "gpu"), ("gallery", "gpu"), ("compare", "gpu"), ("bench", "gpu"), ("cost", "cost"), ("view", "view")];
+pub(crate) const OF_FEATURES: [(&str, &str); 5] =
+    [("preview", "gpu"), ("compare", "gpu"), ("bench", "gpu"), ("cost", "cost"), ("view", "view")];
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
@@ -78,9 +78,8 @@ pub(crate) enum Verb {
     /// Render a material off screen
     #[cfg(feature = "gpu")]
     Preview(PreviewOptions),
-    /// Render a contact sheet of many materials
-    #[cfg(feature = "gpu")]
-    Gallery(GalleryOptions),
+    /// Show many materials: a page for browsers, or a contact sheet
+    Gallery(Box<GalleryOptions>),
     /// Render a material with two shaders and compare the pictures
     #[cfg(feature = "gpu")]
     Compare(CompareOptions),
@@ -376,6 +375,9 @@ pub(crate) use environment::{EnvironmentOptions, LayoutName};
 mod fit;
 pub(crate) use fit::FitOptions;
 
+mod gallery;
+pub(crate) use gallery::GalleryOptions;
+
 mod audit;
 pub(crate) use audit::{AuditOptions, NodesName, SamplesName};
 
@@ -388,7 +390,7 @@ pub(crate) use table::{
 #[cfg(feature = "gpu")]
 mod render;
 #[cfg(feature = "gpu")]
-pub(crate) use render::{CompareOptions, GalleryOptions, Look, PreviewOptions, ShapeName, Side};
+pub(crate) use render::{CompareOptions, Look, PreviewOptions, ShapeName, SheetOptions, Side};
 
 #[cfg(feature = "cost")]
 const COST_EXAMPLES: &str = "\
