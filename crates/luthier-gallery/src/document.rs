@@ -5,7 +5,7 @@ use std::fmt::Write;
 use luthier_export::GENERATOR;
 use luthier_manifest::MaterialEntry;
 
-use crate::{Exhibit, Gallery};
+use crate::{Exhibit, Gallery, section};
 
 /// Parts of the script, in order.
 const SCRIPT: [&str; 6] = [
@@ -94,6 +94,9 @@ fn article(out: &mut String, gallery: &Gallery, number: usize, exhibit: &Exhibit
         let _ = write!(out, "<p class=\"sub\">{}</p>", escape(&exhibit.description));
     }
     out.push_str("<div class=\"columns\"><div class=\"place\"></div><div class=\"words\">\n");
+    if let Some(section) = &exhibit.section {
+        section::figure(out, &exhibit.name, section);
+    }
     if let Some(text) = &exhibit.text {
         let _ = write!(
             out,

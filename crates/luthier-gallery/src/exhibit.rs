@@ -2,6 +2,7 @@
 
 use luthier_lut::Image;
 use luthier_manifest::Form;
+use luthier_material::CrossSection;
 
 /// A material in a page.
 #[derive(Debug, Clone)]
@@ -12,6 +13,8 @@ pub struct Exhibit {
     pub description: String,
     /// Text of its file, if it is at hand.
     pub text: Option<String>,
+    /// Its layers, to be drawn.
+    pub section: Option<CrossSection>,
     /// The looks that can be compared; the first one is shown.
     pub looks: Vec<Look>,
     /// A picture by simulation to compare them with.
@@ -41,7 +44,7 @@ pub struct Simulated {
 impl Exhibit {
     /// A material with looks and nothing else.
     pub fn new(name: &str, looks: Vec<Look>) -> Self {
-        Self { name: name.to_owned(), description: String::new(), text: None, looks, simulated: None }
+        Self { name: name.to_owned(), description: String::new(), text: None, section: None, looks, simulated: None }
     }
 }
 

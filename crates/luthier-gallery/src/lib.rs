@@ -17,6 +17,7 @@ mod error;
 mod exhibit;
 mod maps;
 mod pack;
+mod section;
 mod sets;
 mod skies;
 

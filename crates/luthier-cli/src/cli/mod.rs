@@ -347,6 +347,9 @@ pub(crate) struct ReportOptions {
     /// Results of the stability suite: the output of `luthier-lab stability --json`
     #[arg(long, value_name = "FILE")]
     pub(crate) stability: Option<PathBuf>,
+    /// Address of a page of `luthier gallery --html`, as seen from the page of the report: each material links to its picture there
+    #[arg(long, value_name = "URL")]
+    pub(crate) gallery: Option<String>,
     /// Side of the pictures in pixels; 0 makes none
     #[cfg(feature = "gpu")]
     #[arg(long, value_name = "N", default_value_t = 144, value_parser = clap::value_parser!(u32).range(0..=512))]

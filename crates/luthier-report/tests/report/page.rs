@@ -106,7 +106,7 @@ pub(crate) fn filled(report: &mut Report) -> Exhibits {
     }
     report.costs = Some(Costs { generator: "luthier 0".to_owned(), driver: "radv <1>".to_owned(), rows });
     report.reference = Some(ReferencePaths { paths: 10, seed: 1 });
-    Exhibits { pictures, stability: None }
+    Exhibits { pictures, stability: None, gallery: Some("gallery.html".to_owned()) }
 }
 
 #[test]

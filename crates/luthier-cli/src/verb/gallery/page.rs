@@ -64,6 +64,7 @@ fn add(gallery: &mut Gallery, options: &GalleryOptions, materials: &[Material]) 
         let mut exhibit = Exhibit::new(&material.name, vec![look(gallery, number, material, &costs)]);
         exhibit.description.clone_from(&material.description);
         exhibit.text = Some(material.text.clone());
+        exhibit.section = Some(material.cross_section());
         gallery.exhibits.push(exhibit);
     }
     gallery.packages.push(own);
