@@ -179,7 +179,7 @@ const stage = {
     const chosen = this.chosen();
     const rows = [
       ["", choice => choice.label],
-      ["Cycles", ({ facts, form }) => (facts.cycles && facts.cycles[form]) || "–"],
+      ["Cycles, RDNA2", ({ facts, form }) => (facts.cycles && facts.cycles[form]) || "–"],
       ["Bytes of tables", ({ facts, form }) => (form === "baked" ? facts.bytes : form === "full" ? "0 B" : "–")],
       ["Error of tables", ({ facts, form }) => (form === "baked" && facts.table_error) || "–"],
       ["Error of lobes", ({ facts, form }) => (form === "baked" && facts.lobe_error) || "–"],

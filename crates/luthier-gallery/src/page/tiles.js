@@ -46,17 +46,19 @@ class Tile {
     const loaded = await painter.ready(picture);
     if (version !== this.version) return;
     const tile = this;
-    let samples = 1;
-    const rank = () => (tile.isTurning ? 1 : samples === 1 ? 2 : 3) + (tile.isSeen ? 0 : 0.5);
+    const left = this.isTurning ? [2] : [1, TILE_SAMPLES];
+    const rank = () => (tile.isTurning ? 1 : left[0] === 1 ? 2 : 3) + (tile.isSeen ? 0 : 0.5);
     const steps = function* () {
-      for (samples of tile.isTurning ? [2] : [1, TILE_SAMPLES]) {
+      while (left.length > 0) {
+        const samples = left[0];
         // All passes of a tile at once: tiles share their sums.
         tiles.sums.passes = 0;
         for (const pass of passes(picture.way, samples, TILE_DIRECTIONS, TILE_DIRECTIONS)) {
           painter.pass(tiles.sums, picture, loaded, pass);
         }
         tile.copy(1 / (samples * samples));
-        if (samples === 1) tiles.drawn(tile);
+        tiles.drawn(tile);
+        left.shift();
         yield;
       }
       if (tile.isTurning) tile.next();

@@ -171,3 +171,131 @@ fn pictures_of_the_page_are_those_of_the_device() {
         assert!(share(0.5) <= 2 && share(0.99) <= 6 && mean < 1.0, "{name}: mean {mean}");
     }
 }
+
+/// Helpers of scripts that use the page.
+const USE: &str = r#"
+const all = selector => [...document.querySelectorAll(selector)];
+const shown = selector => all(selector).filter(element => element.offsetHeight > 0);
+const drawn = async change => {
+  performance.clearMarks("luthier-stage");
+  change();
+  await marked("luthier-stage");
+  const canvas = document.getElementById("page-picture");
+  return [...canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data];
+};
+const choose = (id, value) => { const input = document.getElementById("page-" + id); input.value = value; input.dispatchEvent(new Event("change")); };
+const apart = (a, b) => a.length === b.length && a.reduce((sum, value, i) => sum + Math.abs(value - b[i]), 0) / a.length;
+const beyond = () => document.documentElement.scrollWidth - document.documentElement.clientWidth;
+"#;
+
+/// Addresses, keys, two pictures apart, and a filter, on a wide screen and a narrow one.
+#[test]
+fn the_page_is_used_by_mouse_and_keys() {
+    let Some(browser) = browser_or_skip() else { return };
+    let workshop = Workshop::with(&[
+        ("m/a.toml", &matte("ash")),
+        ("m/b.toml", &gold("gold")),
+        ("m/c.toml", &lacquer("lacquer")),
+        ("m/d.toml", &fine_lacquer("fine-lacquer")),
+    ]);
+    assert_eq!(workshop.run(&["gallery", "m", "--html", "page.html", "--no-fit"]).exits(0).stdout, "");
+    let script = [
+        USE,
+        r##"
+found.tiles = shown(".tiles li").length;
+found.unseen = shown("article").length;
+found.beyond = [beyond()];
+const front = await drawn(() => (location.hash = "#lacquer"));
+found.open = shown("article").map(article => article.id);
+found.tilesBeside = shown(".tiles li").length;
+found.layers = shown("figure.section li").length;
+found.text = shown("pre").map(pre => pre.textContent.includes('name = "lacquer"'));
+found.beyond.push(beyond());
+const canvas = document.getElementById("page-picture");
+canvas.focus();
+const side = await drawn(() => canvas.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowLeft", bubbles: true })));
+found.turned = apart(front, side);
+const again = await drawn(() => document.getElementById("page-reset").click());
+found.reset = apart(front, again);
+found.choices = all("#page-a option").map(option => option.textContent);
+const pair = await drawn(() => choose("mode", "slider"));
+choose("b", 1);
+const difference = await drawn(() => choose("mode", "difference"));
+found.same_model = difference.filter((value, i) => i % 4 < 3).reduce((most, value) => Math.max(most, value), 0);
+const models = await drawn(() => choose("b", 2));
+found.other_model = models.filter((value, i) => i % 4 < 3).reduce((most, value) => Math.max(most, value), 0);
+found.apart = document.getElementById("page-apart").textContent;
+found.facts = all("#page-facts tr").map(row => row.cells[0].textContent);
+dispatchEvent(new KeyboardEvent("keydown", { key: "Escape" }));
+await wait(50);
+found.back = [shown(".tiles li").length, document.activeElement.getAttribute("href")];
+const input = document.getElementById("page-filter");
+input.value = "GOLD"; input.dispatchEvent(new Event("input"));
+found.filtered = shown(".tiles li").map(item => item.querySelector("span").textContent);
+found.names = all("input, select, button").filter(control => !control.labels?.length && !control.textContent.trim() && !control.ariaLabel).map(control => control.id);
+"##,
+    ]
+    .concat();
+    for size in [[1280, 900], [500, 844]] {
+        let found = opened(&browser, &workshop, "page.html", size, "", &script);
+        assert_eq!((&found["tiles"], &found["unseen"], &found["tilesBeside"]), (&json!(4), &json!(0), &json!(0)));
+        assert_eq!((&found["open"], &found["text"]), (&json!(["lacquer"]), &json!([true])), "{found}");
+        assert!(found["layers"].as_u64().unwrap() >= 3, "exterior and layers: {found}");
+        assert_eq!(found["beyond"], json!([0, 0]), "scrolls sideways at {size:?}");
+        assert!(found["turned"].as_f64().unwrap() > 0.2 && found["reset"] == 0, "{found}");
+        let choices = ["elek, tables", "elek, no tables", "belcour, tables", "belcour, no tables"];
+        assert_eq!(found["choices"], json!(choices));
+        let [same, other] = ["same_model", "other_model"].map(|name| found[name].as_u64().unwrap());
+        assert!(same < 40 && other > 60, "forms of a model are near, models are not: {same} {other}");
+        assert!(found["apart"].as_str().unwrap().contains("Root mean square difference"), "{found}");
+        assert!(found["facts"].as_array().unwrap().contains(&json!("Bytes of tables")), "{found}");
+        assert_eq!(found["back"], json!([4, "#lacquer"]), "Escape leads back to where one was");
+        assert_eq!((&found["filtered"], &found["names"]), (&json!(["gold"]), &json!([])));
+    }
+    // An address leads to its material at once.
+    let script = r##"await marked("luthier-stage"); found.open = [...document.querySelectorAll("article.open")].map(article => article.id);"##;
+    let found = opened(&browser, &workshop, "page.html", [1280, 900], "#gold", script);
+    assert_eq!(found["open"], json!(["gold"]));
+}
+
+/// Sixty materials have their first pictures soon: the times are printed, because machines differ.
+#[test]
+fn a_page_of_sixty() {
+    let Some(browser) = browser_or_skip() else { return };
+    let texts: Vec<(String, String)> = (0..60)
+        .map(|i| {
+            let text = [matte, gold, lacquer][i % 3](&format!("m-{i}"));
+            (format!("m/{i}.toml"), text)
+        })
+        .collect();
+    let files: Vec<(&str, &str)> = texts.iter().map(|(file, text)| (file.as_str(), text.as_str())).collect();
+    let workshop = Workshop::with(&files);
+    workshop.run(&["gallery", "m", "--html", "page.html", "--no-fit"]).exits(0);
+    let size = workshop.text("page.html").len();
+    let found = opened(&browser, &workshop, "page.html", [1280, 900], "", "");
+    eprintln!("60 materials: {size} bytes, first picture {} ms, all {} ms", found["first_ms"], found["all_ms"]);
+    assert!(size < 5_000_000, "{size} bytes");
+}
+
+/// A folder of a bake is shown without material files, and nothing is lost in silence.
+#[test]
+fn a_page_of_a_bake() {
+    let Some(browser) = browser_or_skip() else { return };
+    let workshop = Workshop::with(&[("m/b.toml", &gold("gold")), ("m/c.toml", &lacquer("lacquer"))]);
+    workshop.run(&["bake", "m", "-q", "--no-fit"]).exits(0);
+    workshop.run(&["gallery", "--html", "page.html", "out"]).exits(0);
+    let script = r##"found.ways = JSON.parse(document.getElementById("page-data").textContent).materials.map(m => m.looks[0].is_blurred);
+found.texts = document.querySelectorAll("pre").length;"##;
+    let found = opened(&browser, &workshop, "page.html", [1280, 900], "", script);
+    assert_eq!((&found["ways"], &found["texts"]), (&json!([false, false]), &json!(0)));
+    workshop.run(&["gallery", "--html", "twice.html", "out", "m/b.toml"]).fails(1, &["gold", "rename"]);
+    workshop.run(&["gallery", "--html", "no.html", "m", "--compare", "nothing"]).exits(2);
+    workshop.run(&["gallery", "m"]).exits(2);
+    workshop.run(&["gallery", "m", "--html", "missing/no.html", "--no-fit"]).fails(3, &["missing/no.html"]);
+    #[cfg(feature = "gpu")]
+    for words in [["--size", "64"], ["-o", "a.png"], ["--exposure", "1"], ["--light", "0,1,0"], ["--adapter", "x"]] {
+        let run = workshop.run(&[&["gallery", "m", "--html", "no.html", "--no-fit"], words.as_slice()].concat());
+        run.exits(2);
+    }
+    assert!(!workshop.path("no.html").exists() && !workshop.path("twice.html").exists());
+}
