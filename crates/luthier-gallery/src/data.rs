@@ -17,7 +17,10 @@ use crate::{Exhibit, Gallery, GalleryError, Look, Simulated, pack};
 #[derive(Debug, Serialize)]
 pub(crate) struct PageData {
     glsl: BTreeMap<&'static str, String>,
-    packages: Vec<Vec<PageTable>>,
+    /// Tables, each once.
+    tables: Vec<PageTable>,
+    /// Numbers of the tables of each package.
+    packages: Vec<Vec<usize>>,
     sets: Vec<Set>,
     skies: Vec<PageSky>,
     materials: Vec<PageMaterial>,
@@ -76,13 +79,22 @@ impl PageData {
             let of_package = sets.iter().filter(move |set| set.is_of(package));
             of_package.flat_map(PageSet::tables).map(String::as_str).collect::<Vec<&str>>()
         };
-        let packages = numbered
+        let of_packages: Vec<Vec<PageTable>> = numbered
             .par_iter()
             .map(|(i, package)| {
                 let read = read(*i);
                 tables(package, |name| read.contains(&name))
             })
             .collect::<Result<_, GalleryError>>()?;
+        let mut all: Vec<PageTable> = Vec::new();
+        let mut number = |table: PageTable| {
+            let place = all.iter().position(|other| *other == table);
+            place.unwrap_or_else(|| {
+                all.push(table);
+                all.len() - 1
+            })
+        };
+        let packages = of_packages.into_iter().map(|tables| tables.into_iter().map(&mut number).collect()).collect();
         let shown = gallery.packages.iter().flat_map(|package| &package.manifest.materials);
         let reads = Reads::of(shown.filter(|entry| is_blurred(entry)));
         let mut skies = vec![PageSky::studio(reads)?];
@@ -92,7 +104,7 @@ impl PageData {
         let material = |exhibit: &Exhibit| PageMaterial::new(exhibit, gallery, &sets);
         let materials = gallery.exhibits.par_iter().map(material).collect::<Result<_, GalleryError>>()?;
         let sets = sets.into_iter().map(|set| Set { count: set.count(), set }).collect();
-        Ok(Self { glsl: glsl(), packages, sets, skies, materials })
+        Ok(Self { glsl: glsl(), tables: all, packages, sets, skies, materials })
     }
 
     /// JSON that can stand in a script of HTML.

@@ -49,7 +49,9 @@ fn head(out: &mut String, gallery: &Gallery) {
     let materials = if count == 1 { "1 material".to_owned() } else { format!("{count} materials") };
     let _ = write!(
         out,
-        "<header><div class=\"head\"><h1><a href=\"#\" id=\"page-title\">{}</a></h1><p class=\"sub\">{materials}, {GENERATOR}</p></div>",
+        "<header><div class=\"head\"><h1><a href=\"#\" id=\"page-title\">{}</a></h1><p class=\"sub\">{materials}, {GENERATOR}</p>\
+         <div class=\"wall\"><label class=\"sub\">Name <input id=\"page-filter\" type=\"search\" autocomplete=\"off\"/></label>\
+         <button id=\"page-turn\" type=\"button\" aria-pressed=\"false\">Turn tiles</button></div></div>",
         escape(&gallery.title)
     );
     out.push_str(include_str!("page/controls.html"));

@@ -24,7 +24,7 @@ const FORMATS: [TexelFormat; 8] = [
 ];
 
 /// A table of a bake.
-#[derive(Debug, Serialize)]
+#[derive(Debug, PartialEq, Serialize)]
 pub(crate) struct PageTable {
     name: String,
     format: TexelFormat,

@@ -7,8 +7,9 @@ use serde::Serialize;
 
 use crate::pack;
 
-/// Rows of the maps of sceneries.
+/// Rows of the maps of sceneries, and of those that are blurred.
 const ROWS: u32 = 128;
+const BLURRED_ROWS: u32 = 64;
 
 /// The filtered maps that materials read.
 #[derive(Debug, Clone, Copy, Default)]
@@ -58,16 +59,18 @@ pub(crate) struct PageSky {
 impl PageSky {
     /// The studio of pictures without surroundings of their own.
     pub(crate) fn studio(reads: Reads) -> Result<Self, EnvironmentError> {
-        Self::new("studio", true, &Environment::sky(&Sky::default())?, reads)
+        let sky = Environment::sky(&Sky::default())?;
+        Ok(Self::new("studio", true, sky.map(), &sky, reads))
     }
 
     /// Surroundings that luthier makes.
     pub(crate) fn scenery(scenery: Scenery, reads: Reads) -> Result<Self, EnvironmentError> {
-        Self::new(scenery.name(), false, &scenery.environment(ROWS)?, reads)
+        let [sharp, blurred] = [scenery.map(ROWS)?, scenery.map(BLURRED_ROWS)?];
+        Ok(Self::new(scenery.name(), false, &sharp, &Environment::new(blurred)?, reads))
     }
 
-    fn new(name: &str, has_light: bool, sky: &Environment, reads: Reads) -> Result<Self, EnvironmentError> {
-        let mut maps: Vec<&Image> = vec![sky.map(), sky.irradiance_map()];
+    fn new(name: &str, has_light: bool, sharp: &Image, sky: &Environment, reads: Reads) -> Self {
+        let mut maps: Vec<&Image> = vec![sharp, sky.irradiance_map()];
         let mut chains = [0; 2];
         for (chain, blur, is_read) in [(0, Blur::Beckmann, reads.beckmann), (1, Blur::Ggx, reads.ggx)] {
             if is_read {
@@ -86,6 +89,6 @@ impl PageSky {
             irradiance = even[0].width;
             cubes = pack::images(levels.iter().flat_map(|level| &level.images).chain(&even), false);
         }
-        Ok(Self { name: name.to_owned(), has_light, sizes, chains, maps, cube, irradiance, cubes })
+        Self { name: name.to_owned(), has_light, sizes, chains, maps, cube, irradiance, cubes }
     }
 }

@@ -393,7 +393,7 @@ pub(crate) use table::{
 #[cfg(feature = "gpu")]
 mod render;
 #[cfg(feature = "gpu")]
-pub(crate) use render::{CompareOptions, Look, PreviewOptions, ShapeName, SheetOptions, Side};
+pub(crate) use render::{CompareOptions, Look, PreviewOptions, ShapeName, Side};
 
 #[cfg(feature = "cost")]
 const COST_EXAMPLES: &str = "\

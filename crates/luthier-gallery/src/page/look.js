@@ -48,14 +48,17 @@ function* passes(way, samples, directions, together) {
   }
 }
 
-/** Milliseconds of a frame in which pictures are drawn, and passes at most: drivers queue them. */
+/** Milliseconds of a frame in which pictures are drawn, and steps at most. */
 const FRAME_MS = 12;
-const FRAME_PASSES = 24;
+const FRAME_STEPS = 32;
 
 /** Work by frames: generators, of which the one with the least rank goes on. */
 const work = {
   jobs: new Map(),
   isScheduled: false,
+  /** Steps of a frame: as many as the driver is through with before the next. */
+  steps: 1,
+  fence: null,
   /** Puts a job in the place of one with the same name. */
   put(name, rank, steps) {
     this.jobs.set(name, { rank, steps });
@@ -73,8 +76,13 @@ const work = {
   },
   frame() {
     this.isScheduled = false;
+    if (this.fence && !painter.isPast(this.fence)) {
+      this.steps = Math.max(1, this.steps / 2);
+      return this.schedule();
+    }
+    if (this.fence) this.steps = Math.min(FRAME_STEPS, this.steps * 2);
     const end = performance.now() + FRAME_MS;
-    for (let n = 0; n < FRAME_PASSES && this.jobs.size > 0 && performance.now() < end; n++) {
+    for (let n = 0; n < this.steps && this.jobs.size > 0 && performance.now() < end; n++) {
       let name;
       let job;
       for (const [other, candidate] of this.jobs) {
@@ -88,6 +96,7 @@ const work = {
       }
       if (isDone && this.jobs.get(name) === job) this.jobs.delete(name);
     }
+    this.fence = painter.fence();
     if (this.jobs.size > 0) this.schedule();
   },
 };

@@ -11,7 +11,6 @@ function open() {
   for (const article of document.querySelectorAll("article")) article.classList.toggle("open", article.id === (data.materials[material] || {}).name);
   document.title = material < 0 ? find("title").textContent : `${data.materials[material].name} – ${find("title").textContent}`;
   stage.open(material);
-  if (material >= 0) scrollTo(0, 0);
 }
 
 function redraw() {

@@ -94,7 +94,8 @@ class Painter {
     const { gl } = this;
     const formats = TABLE_FORMATS(gl);
     const tables = await Promise.all(
-      data.packages[number].map(async table => {
+      data.packages[number].map(async place => {
+        const table = data.tables[place];
         const [internal, format, type, Texels] = formats[table.format];
         const bytes = await inflateBytes(table.texels, { r16float: 2, rg16float: 4, rgba16float: 8, rgba32float: 16 }[table.format] || 4);
         const filter = type === gl.FLOAT ? gl.NEAREST : gl.LINEAR;
@@ -293,6 +294,17 @@ class Painter {
     gl.uniform1f(at("show_split"), split);
     gl.uniform1f(at("show_gain"), gain);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
+  }
+
+  /** A mark behind all that was asked of the driver. */
+  fence() {
+    const fence = this.gl.fenceSync(this.gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    this.gl.flush();
+    return fence;
+  }
+
+  isPast(fence) {
+    return this.gl.getSyncParameter(fence, this.gl.SYNC_STATUS) === this.gl.SIGNALED;
   }
 
   /** Radiance of sums, RGBA, from the bottom up. */

@@ -1,6 +1,8 @@
 // One material large, or two pictures of it side by side and apart.
 
 const STAGE_SAMPLES = 4;
+/** Of two pictures, which draw directions. */
+const PAIR_SAMPLES = 2;
 const STAGE_DIRECTIONS = 64;
 /** Directions of one pass: drivers end passes that take seconds. */
 const STAGE_TOGETHER = 8;
@@ -110,7 +112,7 @@ const stage = {
     if (version !== this.version) return;
     this.resize(size, sides);
     const together = isMoving ? 4 : STAGE_TOGETHER;
-    const plans = sides.map(side => side.picture && passes(side.picture.way, STAGE_SAMPLES, STAGE_DIRECTIONS, together));
+    const plans = sides.map(side => side.picture && passes(side.picture.way, isPair ? PAIR_SAMPLES : STAGE_SAMPLES, STAGE_DIRECTIONS, together));
     const steps = function* () {
       for (let left = true; left; ) {
         left = false;

@@ -104,8 +104,12 @@ const tiles = {
     for (const tile of this.all) watcher.observe(tile.element);
     this.draw();
   },
-  draw() {
-    for (const tile of this.all) tile.draw().catch(complain);
+  /** Draws all, each as soon as its shader is there. */
+  async draw() {
+    const version = (this.version = (this.version || 0) + 1);
+    for (const tile of this.all) {
+      if (version === this.version) await tile.draw().catch(complain);
+    }
   },
   /** All tiles have a picture. */
   drawn(tile) {

@@ -103,7 +103,13 @@ fn opened(browser: &Path, workshop: &Workshop, page: &str, size: [u32; 2], hash:
     workshop.write("used.html", used);
     let profile = tempfile::tempdir().unwrap();
     let mut child = Command::new(browser)
-        .args(["--headless=new", "--no-sandbox", "--no-first-run", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"])
+        .args([
+            "--headless=new",
+            "--no-sandbox",
+            "--no-first-run",
+            "--use-angle=swiftshader",
+            "--enable-unsafe-swiftshader",
+        ])
         .arg(format!("--user-data-dir={}", profile.path().display()))
         .arg(format!("--window-size={},{}", size[0], size[1]))
         .arg(format!("file://{}{hash}", workshop.path("used.html").display()))
