@@ -96,6 +96,7 @@ const work = {
       }
       if (isDone && this.jobs.get(name) === job) this.jobs.delete(name);
     }
+    painter.forget(this.fence);
     this.fence = painter.fence();
     if (this.jobs.size > 0) this.schedule();
   },

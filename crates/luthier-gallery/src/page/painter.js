@@ -307,6 +307,10 @@ class Painter {
     return this.gl.getSyncParameter(fence, this.gl.SYNC_STATUS) === this.gl.SIGNALED;
   }
 
+  forget(fence) {
+    this.gl.deleteSync(fence);
+  }
+
   /** Radiance of sums, RGBA, from the bottom up. */
   values(sums, scale) {
     const { gl } = this;

@@ -1,12 +1,13 @@
 // One material large, or two pictures of it side by side and apart.
 
 const STAGE_SAMPLES = 4;
-/** Of two pictures, which draw directions. */
-const PAIR_SAMPLES = 2;
-const STAGE_DIRECTIONS = 64;
+/** Pictures that draw directions: these are many, and drivers without a GPU are slow. */
+const DRAWN_SAMPLES = () => (work.steps >= FRAME_STEPS / 2 ? 4 : 2);
+const STAGE_DIRECTIONS = 16;
 /** Directions of one pass: drivers end passes that take seconds. */
 const STAGE_TOGETHER = 8;
 const MOST_PIXELS = 640;
+const MOST_DRAWN_PIXELS = 384;
 const KEY_STEP = Math.PI / 24;
 const HIGHEST = 1.5;
 
@@ -97,7 +98,7 @@ const stage = {
     const { simulated } = data.materials[this.material];
     const isFixed = this.isFixed();
     const shown = Math.round(this.canvas.clientWidth * Math.min(devicePixelRatio, 2)) || 480;
-    const size = isFixed ? simulated.size : Math.min(shown, MOST_PIXELS);
+    const size = isFixed ? simulated.size : shown;
     const fixed = { ...look, sky: 0, skyTurn: 0, showsSky: false, hasLight: true, ...defaultLight };
     const at = isFixed ? camera(0, 0) : camera(this.azimuth, this.height);
     // Two pictures are made alike, by the shaders alone.
@@ -110,9 +111,11 @@ const stage = {
       })
     );
     if (version !== this.version) return;
-    this.resize(size, sides);
+    const isDrawn = sides.some(side => side.picture && side.picture.way === "drawn");
+    const samples = isDrawn ? DRAWN_SAMPLES() : STAGE_SAMPLES;
+    this.resize(isFixed ? size : Math.min(size, isDrawn ? MOST_DRAWN_PIXELS : MOST_PIXELS), sides);
     const together = isMoving ? 4 : STAGE_TOGETHER;
-    const plans = sides.map(side => side.picture && passes(side.picture.way, isPair ? PAIR_SAMPLES : STAGE_SAMPLES, STAGE_DIRECTIONS, together));
+    const plans = sides.map(side => side.picture && passes(side.picture.way, samples, STAGE_DIRECTIONS, together));
     const steps = function* () {
       for (let left = true; left; ) {
         left = false;
