@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use luthier_export::Package;
 use luthier_lut::TableKind;
-use luthier_manifest::{Form, MaterialEntry};
+use luthier_manifest::{Form, LayerRecord, MaterialEntry};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -164,17 +164,17 @@ impl PageLook {
     }
 }
 
-/// The tiles of a kind that a material reads.
+/// The tiles of a kind that the shader of a material reads.
 fn tiles(entry: &MaterialEntry, kind: TableKind) -> Vec<usize> {
-    let mut tiles: Vec<usize> =
-        entry.records().filter_map(|layer| layer.tiles[kind]).map(|tile| tile as usize).collect();
+    let records: Vec<LayerRecord> = entry.records().cloned().collect();
+    let read = (0..records.len()).filter(|&i| entry.model.reads(kind, &records, i));
+    let mut tiles: Vec<usize> = read.filter_map(|i| records[i].tiles[kind]).map(|tile| tile as usize).collect();
     if kind == TableKind::Lobes {
         let lobes = entry.constants.lobes;
-        let more = lobes
-            .and_then(|lobes| lobes.varying)
-            .map_or(1, |varying| varying.tiles)
-            .max(lobes.and_then(|lobes| lobes.axes).map_or(1, |axes| axes.tiles)) as usize;
-        tiles = tiles.iter().flat_map(|&first| first..first + more).collect();
+        let varying = lobes.and_then(|lobes| lobes.varying).map_or(1, |varying| varying.tiles);
+        let axes = lobes.and_then(|lobes| lobes.axes).map_or(1, |axes| axes.tiles);
+        let count = varying.max(axes) as usize;
+        tiles = tiles.iter().flat_map(|&first| first..first + count).collect();
     }
     tiles.sort_unstable();
     tiles.dedup();

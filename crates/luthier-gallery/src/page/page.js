@@ -19,6 +19,7 @@ function redraw() {
 }
 
 function controls() {
+  document.querySelector(".controls").open = innerWidth >= 700;
   const select = find("sky");
   select.replaceChildren(...data.skies.map(({ name }, i) => new Option(name, i)));
   select.addEventListener("change", () => {

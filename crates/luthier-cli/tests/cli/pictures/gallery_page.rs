@@ -287,13 +287,15 @@ fn a_page_of_sixty() {
 #[test]
 fn a_page_of_a_bake() {
     let Some(browser) = browser_or_skip() else { return };
-    let workshop = Workshop::with(&[("m/b.toml", &gold("gold")), ("m/c.toml", &lacquer("lacquer"))]);
-    workshop.run(&["bake", "m", "-q", "--model", "phong"]).exits(0);
+    // Without a table of albedos.
+    let plain = "schema = 1\nname = \"gold\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nroughness = 0.5\n[bake]\nmodel = \"elek\"\n";
+    let workshop = Workshop::with(&[("m/b.toml", plain), ("m/c.toml", &lacquer("lacquer"))]);
+    workshop.run(&["bake", "m", "-q"]).exits(0);
     workshop.run(&["gallery", "--html", "page.html", "out"]).exits(0);
     let script = r##"found.ways = JSON.parse(document.getElementById("page-data").textContent).materials.map(m => m.looks[0].is_blurred);
 found.texts = document.querySelectorAll("pre").length;"##;
     let found = opened(&browser, &workshop, "page.html", [1280, 900], "", script);
-    assert_eq!((&found["ways"], &found["texts"]), (&json!([false, false]), &json!(0)));
+    assert_eq!((&found["ways"], &found["texts"]), (&json!([false, true]), &json!(0)));
     workshop.run(&["gallery", "--html", "twice.html", "out", "m/b.toml"]).fails(1, &["gold", "rename"]);
     workshop.run(&["gallery", "--html", "no.html", "m", "--compare", "nothing"]).exits(2);
     workshop.run(&["gallery", "m"]).exits(2);
