@@ -10,6 +10,17 @@ use super::Shading;
 #[cfg(feature = "gpu")]
 use super::render::SheetOptions;
 
+/// Examples of builds that draw nothing themselves.
+#[cfg(not(feature = "gpu"))]
+const EXAMPLES: &str = "\
+The page needs no program and no network: it draws in any browser with WebGL 2. PATH may be the folder of a bake, too.
+
+Examples:
+  luthier gallery --html gallery.html
+  luthier gallery --html gallery.html out
+  luthier gallery --html gallery.html materials --compare elek,microfacet";
+
+#[cfg(feature = "gpu")]
 const EXAMPLES: &str = "\
 The page needs no program and no network: it draws in any browser with WebGL 2. PATH may then be the folder of a bake, too.
 

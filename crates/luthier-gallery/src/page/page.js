@@ -7,10 +7,13 @@ const addressed = () => data.materials.findIndex(({ name }) => `#${name}` === de
 
 function open() {
   const material = addressed();
+  const before = data.materials[stage.material];
   document.body.classList.toggle("one", material >= 0);
   for (const article of document.querySelectorAll("article")) article.classList.toggle("open", article.id === (data.materials[material] || {}).name);
   document.title = material < 0 ? find("title").textContent : `${data.materials[material].name} – ${find("title").textContent}`;
   stage.open(material);
+  // Back among the tiles the keyboard is where it was.
+  if (material < 0 && before) document.querySelector(`.tiles a[href="#${CSS.escape(before.name)}"]`).focus();
 }
 
 function redraw() {
@@ -65,10 +68,7 @@ function controls() {
     for (const tile of tiles.all) tile.element.hidden = !data.materials[tile.material].name.toLowerCase().includes(text);
   });
   addEventListener("keydown", event => {
-    if (event.key !== "Escape" || addressed() < 0) return;
-    const { name } = data.materials[addressed()];
-    location.hash = "";
-    document.querySelector(`.tiles a[href="#${CSS.escape(name)}"]`)?.focus();
+    if (event.key === "Escape" && addressed() >= 0) location.hash = "";
   });
 }
 

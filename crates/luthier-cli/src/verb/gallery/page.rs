@@ -22,36 +22,68 @@ const SIMULATED_PIXELS: u32 = 192;
 
 /// Writes the page.
 pub(super) fn write(options: &GalleryOptions, html: &Path) -> Outcome {
+    #[cfg(feature = "gpu")]
+    if options.simulated.is_none() && options.sheet.look.adapter.is_some() {
+        return Err(Failure::Usage(anyhow::anyhow!("a page is drawn by a browser: --adapter is for --simulated")));
+    }
     let is_bake = |path: &&PathBuf| path.join(MANIFEST).is_file();
     let (bakes, rest): (Vec<&PathBuf>, Vec<&PathBuf>) = options.sources.paths.iter().partition(is_bake);
     let mut gallery =
         Gallery { title: title(options), packages: Vec::new(), exhibits: Vec::new(), skies: SKIES.to_vec() };
     for folder in bakes {
-        let package = Package::read(folder).map_err(|source| Failure::from(source))?;
+        let package = Package::read(folder)?;
         for (number, entry) in (0..).zip(&package.manifest.materials) {
             gallery.exhibits.push(Exhibit::new(&entry.name, vec![Look::new(gallery.packages.len(), number)]));
         }
         gallery.packages.push(package);
+    }
+    #[cfg(feature = "gpu")]
+    let is_simulated = options.simulated.is_some();
+    #[cfg(not(feature = "gpu"))]
+    let is_simulated = false;
+    if rest.is_empty() && (is_simulated || !options.compare.is_empty()) {
+        let text = "--compare and --simulated need material files: a bake has its models already";
+        return Err(Failure::Usage(anyhow::anyhow!(text)));
     }
     if !rest.is_empty() {
         let paths: Vec<PathBuf> = rest.into_iter().cloned().collect();
         let materials = bakeable(read(&paths)?, &options.shading, &[], false)?;
         add(&mut gallery, options, &materials)?;
     }
-    #[cfg(feature = "gpu")]
-    if options.simulated.is_none() && options.sheet.look.adapter.is_some() {
-        return Err(Failure::Usage(anyhow::anyhow!("a page is drawn by a browser: --adapter is for --simulated")));
-    }
+    left_out(&gallery);
     let page = gallery.html().map_err(Failure::input)?;
     std::fs::write(html, page).map_err(files(html, "write"))
 }
 
-/// The name of what is shown.
+/// Title of the page: the name of the only file or folder.
 fn title(options: &GalleryOptions) -> String {
-    let names: Vec<String> = options.sources.paths.iter().map(|path| path.display().to_string()).collect();
-    match names.as_slice() {
-        [one] if one != "materials" => one.clone(),
-        _ => "Materials".to_owned(),
+    let name = |path: &PathBuf| path.file_stem().map(|name| name.to_string_lossy().into_owned());
+    match options.sources.paths.as_slice() {
+        [one] => name(one).filter(|name| name != "materials"),
+        _ => None,
+    }
+    .unwrap_or_else(|| "Materials".to_owned())
+}
+
+/// Says which parts of materials the page does not show.
+fn left_out(gallery: &Gallery) {
+    for manifest in gallery.packages.iter().map(|package| &package.manifest) {
+        for surface in &manifest.surfaces {
+            complain(&format!(
+                "warning: {} is a surface of several materials; the page shows the materials",
+                surface.name
+            ));
+        }
+    }
+    for exhibit in &gallery.exhibits {
+        let Some(look) = exhibit.looks.first() else { continue };
+        let entry = &gallery.packages[look.package].manifest.materials[look.material as usize];
+        if let Some((layer, slot)) = entry.shown_layer_maps(Form::Baked).next() {
+            let (name, slot) = (&entry.name, slot.name());
+            complain(&format!(
+                "warning: {name}: the page does not show maps of single layers, such as `{slot}` of layer {layer}"
+            ));
+        }
     }
 }
 

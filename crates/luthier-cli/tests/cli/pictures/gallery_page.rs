@@ -298,6 +298,7 @@ found.texts = document.querySelectorAll("pre").length;"##;
     assert_eq!((&found["ways"], &found["texts"]), (&json!([false, true]), &json!(0)));
     workshop.run(&["gallery", "--html", "twice.html", "out", "m/b.toml"]).fails(1, &["gold", "rename"]);
     workshop.run(&["gallery", "--html", "no.html", "m", "--compare", "nothing"]).exits(2);
+    workshop.run(&["gallery", "--html", "no.html", "out", "--compare", "phong"]).exits(2).says(&["material files"]);
     workshop.run(&["gallery", "m"]).exits(2);
     workshop.run(&["gallery", "m", "--html", "missing/no.html", "--no-fit"]).fails(3, &["missing/no.html"]);
     #[cfg(feature = "gpu")]
