@@ -24,7 +24,7 @@ pub(crate) fn html(gallery: &Gallery, data: &str) -> String {
     out.push_str("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>");
     // Nothing is read from anywhere.
     out.push_str("<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:\"/>");
-    let _ = write!(out, "<title>{}</title><link rel=\"icon\" href=\"data:,\"/><style>\n", escape(&gallery.title));
+    let _ = writeln!(out, "<title>{}</title><link rel=\"icon\" href=\"data:,\"/><style>", escape(&gallery.title));
     out.push_str(include_str!("page/style.css"));
     out.push_str("</style></head>\n<body>\n");
     head(&mut out, gallery);
@@ -100,9 +100,9 @@ fn article(out: &mut String, gallery: &Gallery, number: usize, exhibit: &Exhibit
         section::figure(out, &exhibit.name, section);
     }
     if let Some(text) = &exhibit.text {
-        let _ = write!(
+        let _ = writeln!(
             out,
-            "<details open=\"\"><summary>Material file</summary><pre tabindex=\"0\"><code>{}</code></pre></details>\n",
+            "<details open=\"\"><summary>Material file</summary><pre tabindex=\"0\"><code>{}</code></pre></details>",
             escape(text)
         );
     } else {

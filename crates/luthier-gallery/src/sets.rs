@@ -76,7 +76,7 @@ impl PageSet {
         let (numbers, own): (Vec<usize>, Vec<MaterialEntry>) =
             all.filter(|(_, entry)| entry.model == model).map(|(i, entry)| (i, entry.clone())).unzip();
         let mut materials = own.clone();
-        materials.extend(own.iter().map(|entry| lit(entry)));
+        materials.extend(own.iter().map(lit));
         let shows_lobes = materials.iter().any(|entry| entry.shows_lobes());
         let mut manifest = Manifest { materials, surfaces: Vec::new(), ..manifest.clone() };
         manifest.functions = Default::default();

@@ -44,7 +44,7 @@ const stage = {
       { look, form: "baked", label: `${item.model}, tables`, facts: item },
       ...(data.sets[item.set].full ? [{ look, form: "full", label: `${item.model}, no tables`, facts: item }] : []),
     ]);
-    if (simulated) this.choices.push({ isSimulated: true, label: "simulated", facts: {} });
+    if (simulated) this.choices.push({ isSimulated: true, label: `simulated, ${simulated.samples} samples`, facts: {} });
     for (const [id, chosen] of [["a", 0], ["b", simulated ? this.choices.length - 1 : Math.min(1, this.choices.length - 1)]]) {
       const options = this.choices.map(({ label }, i) => new Option(label, i, i === chosen, i === chosen));
       find(id).replaceChildren(...options);
