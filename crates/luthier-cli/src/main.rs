@@ -52,7 +52,6 @@ fn main() -> ExitCode {
         Verb::Table(options) => verb::table::run(options),
         #[cfg(feature = "gpu")]
         Verb::Preview(options) => verb::preview::run(options),
-        #[cfg(feature = "gpu")]
         Verb::Gallery(options) => verb::gallery::run(options),
         #[cfg(feature = "gpu")]
         Verb::Compare(options) => verb::compare::run(options),

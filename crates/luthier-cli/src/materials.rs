@@ -2,19 +2,13 @@
 
 use std::path::PathBuf;
 
-#[cfg(feature = "gpu")]
-use luthier_export::Source;
-use luthier_export::{SurfaceSource, gather, of_model, read_all, refuse, refuse_surfaces};
-#[cfg(any(feature = "cost", feature = "gpu"))]
-use luthier_export::{of_function, of_parts};
-#[cfg(any(feature = "cost", feature = "gpu"))]
-use luthier_manifest::Reflectance;
-use luthier_manifest::{Form, FunctionGroup, ShadingModel, SurfaceEntry};
+use luthier_export::{
+    Source, SurfaceSource, gather, of_function, of_model, of_parts, read_all, refuse, refuse_surfaces,
+};
+use luthier_manifest::{Form, FunctionGroup, Reflectance, ShadingModel, SurfaceEntry};
 use luthier_material::{Diagnostic, Material, Severity};
 use luthier_optics::stack::{Base, Layer};
-#[cfg(any(feature = "cost", feature = "gpu"))]
-use luthier_terminal::complain;
-use luthier_terminal::{Broken, Failure, Outcome, print_diagnostics, valid};
+use luthier_terminal::{Broken, Failure, Outcome, complain, print_diagnostics, valid};
 
 use crate::cli::Shading;
 
@@ -51,7 +45,6 @@ impl Shading {
 
 /// The materials that can be baked, shaded by the model that the command line asks for; or, when anything is refused, its diagnostics
 /// and a failure.
-#[cfg(feature = "gpu")]
 pub(crate) fn bakeable(
     mut sources: Vec<Source>,
     shading: &Shading,
@@ -121,7 +114,6 @@ pub(crate) fn shows_environment(material: &Material) -> bool {
 }
 
 /// Has a material shaded by one of several models that are compared: each with the parts that it has, of the file or the command line.
-#[cfg(any(feature = "cost", feature = "gpu"))]
 pub(crate) fn shade_by(material: &mut Material, model: ShadingModel, fresnel: Option<Reflectance>) -> Outcome {
     material.bake.reflectance = fresnel.or(material.bake.reflectance);
     material.shade_by(model);
@@ -139,7 +131,6 @@ pub(crate) fn models(asked: &[ShadingModel], no_fit: bool) -> Vec<ShadingModel> 
 }
 
 /// Whether a material can be shaded by a model. Where no model is asked for, one that has not its distribution of slopes is left out, and that is said.
-#[cfg(any(feature = "cost", feature = "gpu"))]
 pub(crate) fn is_shaded_by(material: &Material, model: ShadingModel, asked: &[ShadingModel]) -> bool {
     let lack = of_function(material, model.name()).filter(|_| !asked.contains(&model));
     if let Some(lack) = &lack {

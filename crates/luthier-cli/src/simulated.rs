@@ -45,7 +45,7 @@ pub(crate) fn refusals(material: &Material) -> Vec<String> {
 }
 
 /// Refusals of the parts of a material that the simulation on the device does not take.
-fn beyond(material: &Material) -> Vec<Diagnostic> {
+pub(crate) fn beyond(material: &Material) -> Vec<Diagnostic> {
     let mut found: Vec<(String, Feature)> = Vec::new();
     for (number, layer) in material.stack.layers.iter().enumerate() {
         let key = |name: &str| format!("layer.{number}.{name}");

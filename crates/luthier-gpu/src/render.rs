@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use luthier_environment::{ALPHAS, Blur, Environment};
 use luthier_lut::{Image, TableKind};
-use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry, ShadingModel, material_buffer};
+use luthier_manifest::{LayerKind, LayerRecord, MaterialEntry, material_buffer};
 
 use crate::context::Pass;
 use crate::error::setting;
@@ -140,7 +140,7 @@ impl Scene {
     /// [`GpuError::NoMaterial`].
     pub fn has_albedo(&self, material: u32) -> Result<bool, GpuError> {
         self.layers(material)?;
-        if shows_lobes(&self.manifest.materials[material as usize]) {
+        if self.manifest.materials[material as usize].shows_lobes() {
             return Ok(self.bindings.has_surroundings());
         }
         let is_known =
@@ -168,7 +168,7 @@ impl Scene {
     /// The interfaces whose reflectance the blurred environment takes from tables.
     fn interfaces(&self, material: u32) -> impl Iterator<Item = &LayerRecord> {
         let entry = self.manifest.materials.get(material as usize);
-        let entry = entry.into_iter().filter(|entry| !shows_lobes(entry));
+        let entry = entry.into_iter().filter(|entry| !entry.shows_lobes());
         entry.flat_map(MaterialEntry::records).filter(|layer| layer.kind != LayerKind::Diffuse)
     }
 
@@ -200,7 +200,7 @@ impl Scene {
             return Err(GpuError::Prefiltered { form: self.form() });
         }
         let lacks = |material: &&u32| {
-            let hides = !self.bindings.has_surroundings() && shows_lobes(&self.manifest.materials[**material as usize]);
+            let hides = !self.bindings.has_surroundings() && self.manifest.materials[**material as usize].shows_lobes();
             hides || !self.interfaces(**material).all(has_reflectance)
         };
         if let Some(&material) = materials.iter().find(lacks).filter(|_| settings.environment_samples == 0) {
@@ -266,17 +266,8 @@ impl Scene {
 
     /// The material buffer: all materials as they are, then all again with slopes widened by the lights.
     pub(crate) fn widened_words(&self, angular_radius: f32) -> Vec<[f32; 4]> {
-        let widen = |m: &MaterialEntry| {
-            let mut entry = MaterialEntry { layers: widened(&m.layers, angular_radius), ..m.clone() };
-            if let Some(patina) = &mut entry.constants.patina {
-                let bare = widened(std::slice::from_ref(&patina.bare), angular_radius);
-                patina.bare = bare.into_iter().next().unwrap_or_default();
-                patina.base_alpha = patina.base_alpha.map(|alpha| wider(alpha, angular_radius));
-            }
-            entry
-        };
         let mut materials = self.manifest.materials.clone();
-        materials.extend(self.manifest.materials.iter().map(widen));
+        materials.extend(self.manifest.materials.iter().map(|m| m.widened(angular_radius.into())));
         material_buffer(&materials)
     }
 
@@ -331,7 +322,12 @@ impl Scene {
         let entries = &self.manifest.materials;
         let mut first = headers + entries.len();
         for entry in entries {
-            words.push([first as u32, entry.layers.len() as u32, 0, f32::from(u8::from(shows_lobes(entry))).to_bits()]);
+            words.push([
+                first as u32,
+                entry.layers.len() as u32,
+                0,
+                f32::from(u8::from(entry.shows_lobes())).to_bits(),
+            ]);
             first += entry.records().count() * 4;
         }
         for layer in entries.iter().flat_map(MaterialEntry::records) {
@@ -402,7 +398,7 @@ impl Scene {
             self.manifest
                 .materials
                 .iter()
-                .filter(|m| !shows_lobes(m))
+                .filter(|m| !m.shows_lobes())
                 .flat_map(MaterialEntry::records)
                 .filter(|l| l.kind != LayerKind::Diffuse)
         };
@@ -436,11 +432,6 @@ fn shares(settings: &RenderSettings, lobes: u32) -> Vec<[u32; 4]> {
 /// Materials as what is seen.
 fn parts(materials: &[u32]) -> Vec<Shown> {
     materials.iter().copied().map(Shown::Material).collect()
-}
-
-/// Whether the surroundings that a material shows are read where its lobes are.
-fn shows_lobes(entry: &MaterialEntry) -> bool {
-    entry.model == ShadingModel::Lobes && entry.layers.first().is_some_and(|layer| layer.kind != LayerKind::Diffuse)
 }
 
 /// Number of the first map that a slope distribution has blurred, where the maps of these follow the environment and its irradiance.
@@ -485,21 +476,6 @@ fn layer_words(layer: &LayerRecord, chain: f32) -> [[f32; 4]; 4] {
         rgbw(layer.optical_depth, layer.critical_cot_sq),
         rgbw(layer.albedo, 0.0),
     ]
-}
-
-/// Layers with slopes widened by a light of this angular radius: the half vector turns by half of what the light does.
-fn widened(layers: &[LayerRecord], angular_radius: f32) -> Vec<LayerRecord> {
-    let widen = |layer: &LayerRecord| LayerRecord {
-        alpha: wider(layer.alpha, angular_radius),
-        alpha_xy: layer.alpha_xy.map(|alpha| wider(alpha, angular_radius)),
-        ..layer.clone()
-    };
-    layers.iter().map(widen).collect()
-}
-
-fn wider(alpha: f64, angular_radius: f32) -> f64 {
-    let spread = 0.5 * f64::from(angular_radius);
-    libm::sqrt(alpha * alpha + spread * spread).min(1.0)
 }
 
 impl RenderSettings {

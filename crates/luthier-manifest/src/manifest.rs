@@ -164,6 +164,31 @@ impl MaterialEntry {
             .unwrap_or_default()
     }
 
+    /// Whether it has lobes below an interface, which know their surroundings: those of `luthier_environment`.
+    pub fn shows_lobes(&self) -> bool {
+        self.model == ShadingModel::Lobes && self.layers.first().is_some_and(|layer| layer.kind != LayerKind::Diffuse)
+    }
+
+    /// The material with slopes widened by a light of this angular radius, in radians, which gives a highlight of a smooth surface a size: the squares
+    /// of slope parameters grow by the square of half the radius, because the half vector turns by half of what the light does.
+    pub fn widened(&self, angular_radius: f64) -> Self {
+        let wider = |alpha: f64| {
+            let spread = 0.5 * angular_radius;
+            libm::sqrt(alpha * alpha + spread * spread).min(1.0)
+        };
+        let widened = |layer: &LayerRecord| LayerRecord {
+            alpha: wider(layer.alpha),
+            alpha_xy: layer.alpha_xy.map(wider),
+            ..layer.clone()
+        };
+        let mut entry = Self { layers: self.layers.iter().map(widened).collect(), ..self.clone() };
+        if let Some(patina) = &mut entry.constants.patina {
+            patina.bare = widened(&patina.bare);
+            patina.base_alpha = patina.base_alpha.map(wider);
+        }
+        entry
+    }
+
     /// The layers, then the bare layer of a patina: what the material buffer holds.
     pub fn records(&self) -> impl Iterator<Item = &LayerRecord> {
         self.layers.iter().chain(self.constants.patina.as_ref().map(|patina| &patina.bare))

@@ -51,8 +51,8 @@ pub(crate) struct Cli {
 }
 
 /// Verbs that a cargo feature brings, and the feature.
-pub(crate) const OF_FEATURES: [(&str, &str); 6] =
-    [("preview", "gpu"), ("gallery", "gpu"), ("compare", "gpu"), ("bench", "gpu"), ("cost", "cost"), ("view", "view")];
+pub(crate) const OF_FEATURES: [(&str, &str); 5] =
+    [("preview", "gpu"), ("compare", "gpu"), ("bench", "gpu"), ("cost", "cost"), ("view", "view")];
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
@@ -78,9 +78,8 @@ pub(crate) enum Verb {
     /// Render a material off screen
     #[cfg(feature = "gpu")]
     Preview(PreviewOptions),
-    /// Render a contact sheet of many materials
-    #[cfg(feature = "gpu")]
-    Gallery(GalleryOptions),
+    /// Show many materials: a page for browsers, or a contact sheet
+    Gallery(Box<GalleryOptions>),
     /// Render a material with two shaders and compare the pictures
     #[cfg(feature = "gpu")]
     Compare(CompareOptions),
@@ -348,6 +347,9 @@ pub(crate) struct ReportOptions {
     /// Results of the stability suite: the output of `luthier-lab stability --json`
     #[arg(long, value_name = "FILE")]
     pub(crate) stability: Option<PathBuf>,
+    /// Address of a page of `luthier gallery --html`, as seen from the page of the report: each material links to its picture there
+    #[arg(long, value_name = "URL")]
+    pub(crate) gallery: Option<String>,
     /// Side of the pictures in pixels; 0 makes none
     #[cfg(feature = "gpu")]
     #[arg(long, value_name = "N", default_value_t = 144, value_parser = clap::value_parser!(u32).range(0..=512))]
@@ -376,6 +378,9 @@ pub(crate) use environment::{EnvironmentOptions, LayoutName};
 mod fit;
 pub(crate) use fit::FitOptions;
 
+mod gallery;
+pub(crate) use gallery::GalleryOptions;
+
 mod audit;
 pub(crate) use audit::{AuditOptions, NodesName, SamplesName};
 
@@ -388,7 +393,7 @@ pub(crate) use table::{
 #[cfg(feature = "gpu")]
 mod render;
 #[cfg(feature = "gpu")]
-pub(crate) use render::{CompareOptions, GalleryOptions, Look, PreviewOptions, ShapeName, Side};
+pub(crate) use render::{CompareOptions, Look, PreviewOptions, ShapeName, Side};
 
 #[cfg(feature = "cost")]
 const COST_EXAMPLES: &str = "\

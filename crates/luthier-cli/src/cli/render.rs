@@ -9,7 +9,7 @@ use luthier_gpu::{Scenery, Shape, ToneMapping};
 use luthier_lut::UnknownName;
 use luthier_manifest::{Form, ShadingModel};
 
-use luthier_terminal::{Sources, named};
+use luthier_terminal::named;
 
 use super::Shading;
 use crate::variations::Range;
@@ -95,20 +95,9 @@ pub(crate) struct PreviewOptions {
     pub(crate) look: Look,
 }
 
+/// A contact sheet: a picture of many.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Examples:\n  luthier gallery -o sheet.png\n  luthier gallery materials mine.toml -o sheet.png --columns 6
-  luthier gallery lacquer.toml -o grid.png --grid roughness=0.1..1 layer.1.albedo.0=0.1..0.9
-  luthier gallery copper.toml -o grid.png --grid roughness=0..1 metallic=0..1"
-)]
-pub(crate) struct GalleryOptions {
-    #[command(flatten)]
-    pub(crate) sources: Sources,
-    #[command(flatten)]
-    pub(crate) shading: Shading,
-    /// Picture to write: .png or .exr
-    #[arg(long, short, value_name = "FILE")]
-    pub(crate) output: PathBuf,
+pub(crate) struct SheetOptions {
     /// Shape to render: sphere, torus, plane or model
     #[arg(long, value_enum, default_value_t = ShapeName::Sphere)]
     pub(crate) shape: ShapeName,

@@ -14,7 +14,6 @@ pub(crate) mod cost;
 pub(crate) mod environment;
 pub(crate) mod eval;
 pub(crate) mod fit;
-#[cfg(feature = "gpu")]
 pub(crate) mod gallery;
 pub(crate) mod ior;
 pub(crate) mod man;

@@ -148,6 +148,8 @@ pub struct Exhibits {
     pub pictures: Vec<Vec<Exhibit>>,
     /// A run of the stability suite.
     pub stability: Option<Stability>,
+    /// Address of a page where every material is shown under its name, as seen from the report.
+    pub gallery: Option<String>,
 }
 
 /// A picture.

@@ -106,7 +106,7 @@ pub(crate) fn filled(report: &mut Report) -> Exhibits {
     }
     report.costs = Some(Costs { generator: "luthier 0".to_owned(), driver: "radv <1>".to_owned(), rows });
     report.reference = Some(ReferencePaths { paths: 10, seed: 1 });
-    Exhibits { pictures, stability: None }
+    Exhibits { pictures, stability: None, gallery: None }
 }
 
 #[test]
@@ -177,6 +177,11 @@ fn charts_mark_what_was_chosen() {
     assert!(html.contains("the &lt;cheapest&gt; that holds"));
     // Once with the material, once at the top.
     assert_eq!(html.matches("data:image/png;base64,iVBORw==").count(), 2 * materials);
+    // Links to a page of pictures, where one is named.
+    assert!(!html.contains("in the gallery"));
+    let exhibits = Exhibits { gallery: Some("../a&b.html".to_owned()), ..exhibits };
+    let html = report.to_html(&exhibits);
+    assert_eq!(html.matches("<a href=\"../a&amp;b.html#").count(), materials);
 }
 
 /// The first thing behind the verdict: a mark for each material and form, by cost where costs were given, by bytes otherwise.

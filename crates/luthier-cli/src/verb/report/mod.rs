@@ -45,7 +45,7 @@ pub(crate) fn run(options: &ReportOptions) -> Outcome {
     let budgets: Vec<FileBudget> =
         (0..).zip(&materials).map(|(material, m)| FileBudget { material, budget: m.budget }).collect();
     report.limits = limits(&report, &budgets, &asked(options));
-    let exhibits = Exhibits { pictures, stability: given.stability };
+    let exhibits = Exhibits { pictures, stability: given.stability, gallery: options.gallery.clone() };
 
     let json = report.to_json().map_err(Failure::input)?;
     let contents = [json.clone(), report.to_markdown(), report.to_html(&exhibits)];
@@ -81,6 +81,7 @@ fn command(options: &ReportOptions) -> String {
     words.extend(options.reference.map(|paths| format!("--reference={paths}")));
     words.extend(limit("cost", options.cost.as_ref().map(|p| p.display().to_string())));
     words.extend(limit("stability", options.stability.as_ref().map(|p| p.display().to_string())));
+    words.extend(limit("gallery", options.gallery.clone()));
     words.extend(options.no_device.then(|| "--no-device".to_owned()));
     #[cfg(feature = "gpu")]
     {

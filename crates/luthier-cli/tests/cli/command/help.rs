@@ -10,6 +10,7 @@ pub(crate) fn verbs() -> impl Iterator<Item = &'static str> {
         "cache",
         "check",
         "report",
+        "gallery",
         "audit",
         "shader",
         "models",
@@ -20,7 +21,7 @@ pub(crate) fn verbs() -> impl Iterator<Item = &'static str> {
         "completions",
         "man",
     ];
-    let gpu = ["preview", "gallery", "compare", "bench"].into_iter().filter(|_| cfg!(feature = "gpu"));
+    let gpu = ["preview", "compare", "bench"].into_iter().filter(|_| cfg!(feature = "gpu"));
     let others = cfg!(feature = "cost").then_some("cost").into_iter().chain(cfg!(feature = "view").then_some("view"));
     always.into_iter().chain(gpu).chain(others)
 }

@@ -5,6 +5,7 @@ mod compare;
 mod environment;
 #[cfg(feature = "gpu")]
 mod gallery;
+mod gallery_page;
 #[cfg(feature = "gpu")]
 mod preview;
 #[cfg(feature = "view")]

@@ -3,4 +3,4 @@
 mod audit;
 mod judgement;
 mod outdated;
-mod page;
+pub(crate) mod page;

@@ -93,7 +93,7 @@ const beyond = d => d.documentElement.scrollWidth - d.documentElement.clientWidt
 })();
 </script></body></html>"#;
 
-fn browser() -> Option<PathBuf> {
+pub(crate) fn browser() -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     let files = std::env::split_paths(&path).flat_map(|folder| BROWSERS.map(|name| folder.join(name)));
     files.into_iter().find(|file| file.is_file())

@@ -37,6 +37,10 @@ pub(super) fn write(out: &mut String, report: &Report, exhibits: &Exhibits) {
             escape(material.source_hash.get(..12).unwrap_or(&material.source_hash)),
             escape(&material.layers.join(" / "))
         );
+        if let Some(gallery) = &exhibits.gallery {
+            let name = escape(&material.name);
+            let _ = write!(out, "<p><a href=\"{}#{name}\">{name} in the gallery</a></p>", escape(gallery));
+        }
         pictures::write(out, material, exhibits.pictures.get(index).map_or(&[], Vec::as_slice));
         out.push_str("<div class=\"split\"><figure>");
         if report.device.is_some() {

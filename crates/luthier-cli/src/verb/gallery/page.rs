@@ -1,0 +1,179 @@
+//! Many materials as a page for browsers.
+
+use std::path::{Path, PathBuf};
+
+use luthier_export::{Bake, MANIFEST, Package, lit, of_domain, read};
+use luthier_gallery::{Exhibit, Gallery, Look, Scenery};
+use luthier_manifest::{Form, ShadingModel};
+use luthier_material::{Material, Severity};
+use luthier_scene::CostTable;
+use luthier_terminal::{Failure, Outcome, complain, files};
+
+use crate::cli::GalleryOptions;
+use crate::materials::{bakeable, is_shaded_by, shade_by};
+use crate::store::store;
+
+/// Surroundings that a page has beside the studio.
+const SKIES: [Scenery; 2] = [Scenery::CloudySun, Scenery::EveningRoom];
+
+/// Side of a simulated picture.
+#[cfg(feature = "gpu")]
+const SIMULATED_PIXELS: u32 = 192;
+
+/// Writes the page.
+pub(super) fn write(options: &GalleryOptions, html: &Path) -> Outcome {
+    #[cfg(feature = "gpu")]
+    if options.simulated.is_none() && options.sheet.look.adapter.is_some() {
+        return Err(Failure::Usage(anyhow::anyhow!("a page is drawn by a browser: --adapter is for --simulated")));
+    }
+    let is_bake = |path: &&PathBuf| path.join(MANIFEST).is_file();
+    let (bakes, rest): (Vec<&PathBuf>, Vec<&PathBuf>) = options.sources.paths.iter().partition(is_bake);
+    let mut gallery =
+        Gallery { title: title(options), packages: Vec::new(), exhibits: Vec::new(), skies: SKIES.to_vec() };
+    for folder in bakes {
+        let package = Package::read(folder)?;
+        for (number, entry) in (0..).zip(&package.manifest.materials) {
+            gallery.exhibits.push(Exhibit::new(&entry.name, vec![Look::new(gallery.packages.len(), number)]));
+        }
+        gallery.packages.push(package);
+    }
+    #[cfg(feature = "gpu")]
+    let is_simulated = options.simulated.is_some();
+    #[cfg(not(feature = "gpu"))]
+    let is_simulated = false;
+    if rest.is_empty() && (is_simulated || !options.compare.is_empty()) {
+        let text = "--compare and --simulated need material files: a bake has its models already";
+        return Err(Failure::Usage(anyhow::anyhow!(text)));
+    }
+    if !rest.is_empty() {
+        let paths: Vec<PathBuf> = rest.into_iter().cloned().collect();
+        let materials = bakeable(read(&paths)?, &options.shading, &[], false)?;
+        add(&mut gallery, options, &materials)?;
+    }
+    left_out(&gallery);
+    let page = gallery.html().map_err(Failure::input)?;
+    std::fs::write(html, page).map_err(files(html, "write"))
+}
+
+/// Title of the page: the name of the only file or folder.
+fn title(options: &GalleryOptions) -> String {
+    let name = |path: &PathBuf| path.file_stem().map(|name| name.to_string_lossy().into_owned());
+    match options.sources.paths.as_slice() {
+        [one] => name(one).filter(|name| name != "materials"),
+        _ => None,
+    }
+    .unwrap_or_else(|| "Materials".to_owned())
+}
+
+/// Says which parts of materials the page does not show.
+fn left_out(gallery: &Gallery) {
+    for manifest in gallery.packages.iter().map(|package| &package.manifest) {
+        for surface in &manifest.surfaces {
+            complain(&format!(
+                "warning: {} is a surface of several materials; the page shows the materials",
+                surface.name
+            ));
+        }
+    }
+    for exhibit in &gallery.exhibits {
+        let Some(look) = exhibit.looks.first() else { continue };
+        let entry = &gallery.packages[look.package].manifest.materials[look.material as usize];
+        if let Some((layer, slot)) = entry.shown_layer_maps(Form::Baked).next() {
+            let (name, slot) = (&entry.name, slot.name());
+            complain(&format!(
+                "warning: {name}: the page does not show maps of single layers, such as `{slot}` of layer {layer}"
+            ));
+        }
+    }
+}
+
+/// Adds materials by their own models, and by those to compare.
+fn add(gallery: &mut Gallery, options: &GalleryOptions, materials: &[Material]) -> Outcome {
+    let costs = CostTable::shipped();
+    let first = gallery.exhibits.len();
+    let own = package(materials)?;
+    for (number, material) in (0..).zip(materials) {
+        let mut exhibit = Exhibit::new(&material.name, vec![look(gallery, number, material, &costs)]);
+        exhibit.description.clone_from(&material.description);
+        exhibit.text = Some(material.text.clone());
+        exhibit.section = Some(material.cross_section());
+        gallery.exhibits.push(exhibit);
+    }
+    gallery.packages.push(own);
+    for model in ShadingModel::ALL {
+        let is_wanted = |material: &Material| {
+            let other =
+                if material.model() == ShadingModel::Belcour { ShadingModel::Elek } else { ShadingModel::Belcour };
+            let asked = if options.compare.is_empty() { &[other] } else { options.compare.as_slice() };
+            material.model() != model && asked.contains(&model)
+        };
+        let (mut numbers, mut shaded) = (Vec::new(), Vec::new());
+        for (number, material) in materials.iter().enumerate().filter(|(_, material)| is_wanted(material)) {
+            if !is_shaded_by(material, model, &options.compare) {
+                continue;
+            }
+            let mut material = material.clone();
+            shade_by(&mut material, model, options.shading.fresnel)?;
+            if let Some(outside) =
+                of_domain(&material, None).into_iter().find(|doubt| doubt.severity == Severity::Error)
+            {
+                complain(&format!("warning: {} is left out of {}: {}", material.name, model.name(), outside.message));
+                continue;
+            }
+            numbers.push(first + number);
+            shaded.push(material);
+        }
+        if shaded.is_empty() {
+            continue;
+        }
+        let compared = package(&shaded)?;
+        for (i, (number, material)) in (0..).zip(numbers.into_iter().zip(&shaded)) {
+            let look = look(gallery, i, material, &costs);
+            gallery.exhibits[number].looks.push(look);
+        }
+        gallery.packages.push(compared);
+    }
+    #[cfg(feature = "gpu")]
+    if let Some(samples) = options.simulated {
+        simulate(&mut gallery.exhibits[first..], materials, samples, options.sheet.look.adapter.as_deref())?;
+    }
+    Ok(())
+}
+
+/// A bake for the page, which emits its own shaders: with the tables of blurred surroundings.
+fn package(materials: &[Material]) -> Outcome<Package> {
+    let bake = Bake { targets: Vec::new(), ..Bake::default() };
+    Ok(Package::new(&lit(materials), &bake, store()?)?)
+}
+
+/// A look of a material of the next package, with the cycles of its shaders.
+fn look(gallery: &Gallery, number: u32, material: &Material, costs: &CostTable) -> Look {
+    let shape = luthier_scene::shape(&material.stack);
+    let cycles = |form: Form| {
+        let (cycles, is_of_similar) = costs.cost(material.model(), form, &shape)?;
+        let about = if is_of_similar { "about " } else { "" };
+        Some((form, format!("{about}{cycles:.0}")))
+    };
+    Look { cycles: Form::ALL.into_iter().filter_map(cycles).collect(), ..Look::new(gallery.packages.len(), number) }
+}
+
+/// Adds pictures by simulation to the exhibits of materials.
+#[cfg(feature = "gpu")]
+fn simulate(exhibits: &mut [Exhibit], materials: &[Material], samples: u32, adapter: Option<&str>) -> Outcome {
+    use luthier_gpu::{RenderSettings, Shape, Shown};
+
+    use crate::simulated;
+
+    let gpu = luthier_terminal::open(adapter)?;
+    let settings = RenderSettings { size: SIMULATED_PIXELS, ..RenderSettings::new(Shape::Sphere)? };
+    for (exhibit, material) in exhibits.iter_mut().zip(materials) {
+        if let Some(refusal) = simulated::beyond(material).first() {
+            complain(&format!("warning: {} has no simulated picture: {}", material.name, refusal.message));
+            continue;
+        }
+        let package = simulated::package(vec![material.clone()])?;
+        let picture = simulated::picture(&gpu, &package, &[Shown::Material(0)], &settings, samples, |_| Ok(()))?;
+        exhibit.simulated = Some(luthier_gallery::Simulated { image: picture.image, samples });
+    }
+    Ok(())
+}

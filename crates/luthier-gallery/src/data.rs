@@ -1,0 +1,221 @@
+//! The data of a page: what its script reads.
+
+use std::collections::BTreeMap;
+
+use luthier_export::Package;
+use luthier_lut::TableKind;
+use luthier_manifest::{Form, LayerRecord, MaterialEntry};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::maps::PageMaps;
+use crate::sets::{PageSet, PageTable, constants, is_blurred, tables};
+use crate::skies::{PageSky, Reads};
+use crate::{Exhibit, Gallery, GalleryError, Look, Simulated, pack};
+
+/// All that the script of a page reads.
+#[derive(Debug, Serialize)]
+pub(crate) struct PageData {
+    glsl: BTreeMap<&'static str, String>,
+    /// Tables, each once.
+    tables: Vec<PageTable>,
+    /// Numbers of the tables of each package.
+    packages: Vec<Vec<usize>>,
+    sets: Vec<Set>,
+    skies: Vec<PageSky>,
+    materials: Vec<PageMaterial>,
+}
+
+#[derive(Debug, Serialize)]
+struct Set {
+    #[serde(flatten)]
+    set: PageSet,
+    count: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct PageMaterial {
+    name: String,
+    looks: Vec<PageLook>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    maps: Option<PageMaps>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    simulated: Option<PageSimulated>,
+}
+
+#[derive(Debug, Serialize)]
+struct PageLook {
+    set: usize,
+    /// Number in the set.
+    number: usize,
+    model: &'static str,
+    is_blurred: bool,
+    bytes: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    table_error: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lobe_error: Option<String>,
+    cycles: BTreeMap<&'static str, String>,
+}
+
+#[derive(Debug, Serialize)]
+struct PageSimulated {
+    size: u32,
+    samples: u32,
+    texels: String,
+}
+
+impl PageData {
+    pub(crate) fn new(gallery: &Gallery) -> Result<Self, GalleryError> {
+        let names: Vec<&str> = gallery.exhibits.iter().map(|exhibit| exhibit.name.as_str()).collect();
+        if let Some(i) = (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
+            return Err(GalleryError::Twice { name: names[i].to_owned() });
+        }
+        let numbered: Vec<(usize, &Package)> = gallery.packages.iter().enumerate().collect();
+        let sets: Vec<Vec<PageSet>> =
+            numbered.par_iter().map(|(i, package)| PageSet::of(*i, package)).collect::<Result<_, GalleryError>>()?;
+        let sets: Vec<PageSet> = sets.into_iter().flatten().collect();
+        let read = |package: usize| {
+            let of_package = sets.iter().filter(move |set| set.is_of(package));
+            of_package.flat_map(PageSet::tables).map(String::as_str).collect::<Vec<&str>>()
+        };
+        let of_packages: Vec<Vec<PageTable>> = numbered
+            .par_iter()
+            .map(|(i, package)| {
+                let read = read(*i);
+                tables(package, |name| read.contains(&name))
+            })
+            .collect::<Result<_, GalleryError>>()?;
+        let mut all: Vec<PageTable> = Vec::new();
+        let mut number = |table: PageTable| {
+            let place = all.iter().position(|other| *other == table);
+            place.unwrap_or_else(|| {
+                all.push(table);
+                all.len() - 1
+            })
+        };
+        let packages = of_packages.into_iter().map(|tables| tables.into_iter().map(&mut number).collect()).collect();
+        let shown = gallery.packages.iter().flat_map(|package| &package.manifest.materials);
+        let reads = Reads::of(shown.filter(|entry| is_blurred(entry)));
+        let mut skies = vec![PageSky::studio(reads)?];
+        for &scenery in &gallery.skies {
+            skies.push(PageSky::scenery(scenery, reads)?);
+        }
+        let material = |exhibit: &Exhibit| PageMaterial::new(exhibit, gallery, &sets);
+        let materials = gallery.exhibits.par_iter().map(material).collect::<Result<_, GalleryError>>()?;
+        let sets = sets.into_iter().map(|set| Set { count: set.count(), set }).collect();
+        Ok(Self { glsl: glsl(), tables: all, packages, sets, skies, materials })
+    }
+
+    /// JSON that can stand in a script of HTML.
+    pub(crate) fn json(&self) -> String {
+        let json = serde_json::to_string(self).expect("strings and numbers");
+        json.replace('<', "\\u003c")
+    }
+}
+
+/// The code around emitted shaders.
+fn glsl() -> BTreeMap<&'static str, String> {
+    let texts = [
+        ("view", include_str!("glsl/view.glsl")),
+        ("blurred", include_str!("glsl/blurred.glsl")),
+        ("drawn", include_str!("glsl/drawn.glsl")),
+        ("main", include_str!("glsl/main.glsl")),
+        ("show", include_str!("glsl/show.glsl")),
+    ];
+    let mut glsl: BTreeMap<&'static str, String> = texts.map(|(name, text)| (name, text.to_owned())).into();
+    glsl.insert("constants", constants());
+    glsl
+}
+
+impl PageMaterial {
+    fn new(exhibit: &Exhibit, gallery: &Gallery, sets: &[PageSet]) -> Result<Self, GalleryError> {
+        let missing = || GalleryError::NoLook { name: exhibit.name.clone() };
+        let first = exhibit.looks.first().ok_or_else(missing)?;
+        let look = |look: &Look| {
+            let package = gallery.packages.get(look.package).ok_or_else(missing)?;
+            PageLook::new(look, package, sets).ok_or_else(missing)
+        };
+        Ok(Self {
+            name: exhibit.name.clone(),
+            looks: exhibit.looks.iter().map(look).collect::<Result<_, GalleryError>>()?,
+            maps: PageMaps::of(&gallery.packages[first.package], first.material),
+            simulated: exhibit.simulated.as_ref().map(PageSimulated::new),
+        })
+    }
+}
+
+impl PageLook {
+    fn new(look: &Look, package: &Package, sets: &[PageSet]) -> Option<Self> {
+        let entry = package.manifest.materials.get(look.material as usize)?;
+        let in_set = |(i, set): (usize, &PageSet)| Some((i, set.place(look.package, look.material)?));
+        let (set, number) = sets.iter().enumerate().find_map(in_set)?;
+        let lobes = entry.constants.lobes.and_then(|lobes| lobes.error);
+        Some(Self {
+            set,
+            number,
+            model: entry.model.name(),
+            is_blurred: is_blurred(entry),
+            bytes: bytes(table_bytes(package, entry)),
+            table_error: table_error(package, entry).map(|error| format!("{error:.1e}")),
+            lobe_error: lobes.map(|error| format!("{:.3}", error.lobe)),
+            cycles: look.cycles.iter().map(|(form, text)| (Form::name(*form), text.clone())).collect(),
+        })
+    }
+}
+
+/// The tiles of a kind that the shader of a material reads.
+fn tiles(entry: &MaterialEntry, kind: TableKind) -> Vec<usize> {
+    let records: Vec<LayerRecord> = entry.records().cloned().collect();
+    let read = (0..records.len()).filter(|&i| entry.model.reads(kind, &records, i));
+    let mut tiles: Vec<usize> = read.filter_map(|i| records[i].tiles[kind]).map(|tile| tile as usize).collect();
+    if kind == TableKind::Lobes {
+        let lobes = entry.constants.lobes;
+        let varying = lobes.and_then(|lobes| lobes.varying).map_or(1, |varying| varying.tiles);
+        let axes = lobes.and_then(|lobes| lobes.axes).map_or(1, |axes| axes.tiles);
+        let count = varying.max(axes) as usize;
+        tiles = tiles.iter().flat_map(|&first| first..first + count).collect();
+    }
+    tiles.sort_unstable();
+    tiles.dedup();
+    tiles
+}
+
+/// Bytes of the tiles that a material reads.
+fn table_bytes(package: &Package, entry: &MaterialEntry) -> u64 {
+    let of = |table: &luthier_manifest::TableEntry| {
+        let [width, height] = table.layout.tile_size();
+        let tile = u64::from(width) * u64::from(height) * u64::from(table.format.texel_bytes());
+        tile * tiles(entry, table.kind).len() as u64
+    };
+    package.manifest.tables.iter().map(of).sum()
+}
+
+/// The largest error of the tiles that a material reads.
+fn table_error(package: &Package, entry: &MaterialEntry) -> Option<f64> {
+    let of = |table: &luthier_manifest::TableEntry| {
+        let errors =
+            tiles(entry, table.kind).into_iter().filter_map(|tile| Some(table.tiles.get(tile)?.error.max_abs_err));
+        errors.fold(None, |most: Option<f64>, error| Some(most.unwrap_or(0.0).max(error)))
+    };
+    package.manifest.tables.iter().filter_map(of).reduce(f64::max)
+}
+
+pub(crate) fn bytes(count: u64) -> String {
+    match count {
+        0..1024 => format!("{count} B"),
+        1024..1_048_576 => format!("{:.1} KiB", count as f64 / 1024.0),
+        _ => format!("{:.1} MiB", count as f64 / 1_048_576.0),
+    }
+}
+
+impl PageSimulated {
+    fn new(simulated: &Simulated) -> Self {
+        let Simulated { image, samples } = simulated;
+        // Pictures of WebGL begin at the bottom.
+        let mut flipped = image.clone();
+        let row = (image.width * image.channels) as usize;
+        flipped.data = image.data.chunks_exact(row).rev().flatten().copied().collect();
+        Self { size: image.width, samples: *samples, texels: pack::images([&flipped], false) }
+    }
+}

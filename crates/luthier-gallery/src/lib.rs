@@ -1,0 +1,55 @@
+//! Baked materials as one HTML file that draws them.
+//!
+#![doc = include_str!("../README.md")]
+//! # In detail
+//!
+//! A [`Gallery`] has packages and exhibits. Each [`Exhibit`] is a material with one look or several: its numbers in packages, which differ by model. The shaders are
+//! emitted anew in GLSL ES 3.00, one for each model of a package, so that a package needs none in that language.
+//!
+//! Pictures are those of luthier-gpu's ball: the same camera, light and surroundings, sample by sample. Surroundings that were blurred beforehand show what
+//! has tables of albedos (`luthier_export::lit`) or lobes; other materials draw directions.
+//!
+//! Simplifications: maps of single layers and surfaces of several materials are not shown; textures with more than 512 rows or columns are averaged down.
+
+mod data;
+mod document;
+mod error;
+mod exhibit;
+mod maps;
+mod pack;
+mod section;
+mod sets;
+mod skies;
+
+pub use error::GalleryError;
+pub use exhibit::{Exhibit, Look, Simulated};
+pub use luthier_environment::Scenery;
+
+use luthier_export::Package;
+
+/// Angular radius of the light in radians, that of luthier-gpu's pictures.
+const LIGHT_RADIUS: f64 = 0.05_f32 as f64;
+
+/// Materials for a page.
+#[derive(Debug, Clone)]
+pub struct Gallery {
+    /// Title of the page.
+    pub title: String,
+    /// Bakes, by number.
+    pub packages: Vec<Package>,
+    /// The materials, in the order of the page. Names are distinct.
+    pub exhibits: Vec<Exhibit>,
+    /// Surroundings beside the studio, which is the first.
+    pub skies: Vec<Scenery>,
+}
+
+impl Gallery {
+    /// The page: HTML, complete in itself.
+    ///
+    /// # Errors
+    /// [`GalleryError`] for names that are there twice, for looks of materials that no package has, and for shaders that cannot be emitted.
+    pub fn html(&self) -> Result<String, GalleryError> {
+        let data = data::PageData::new(self)?;
+        Ok(document::html(self, &data.json()))
+    }
+}
