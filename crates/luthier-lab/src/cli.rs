@@ -124,7 +124,7 @@ pub(crate) struct GrammarOptions {
     #[arg(long, value_name = "DIR")]
     pub(crate) pictures: Option<PathBuf>,
     /// Side of each ball in pixels
-    #[arg(long, value_name = "PIXELS", default_value_t = 112, value_parser = clap::value_parser!(u32).range(16..=1024))]
+    #[arg(long, value_name = "PIXELS", default_value_t = 96, value_parser = clap::value_parser!(u32).range(16..=1024))]
     pub(crate) size: u32,
     #[command(flatten)]
     pub(crate) adapter: Adapter,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use luthier_export::{Source, of_model, of_text};
-use luthier_manifest::{Form, ShadingModel};
+use luthier_manifest::{Form, Masking, ShadingModel};
 use luthier_material::{Diagnostic, Material, Severity, left_out};
 use luthier_terminal::{Outcome, valid};
 
@@ -25,36 +25,82 @@ pub(crate) fn sentence(sample: &Sample) -> Outcome<String> {
         return Ok("It is the model.".to_owned());
     }
     let materials = materials(sample)?;
-    let (mut shown, mut partly, mut refused, mut dropped) = (vec![], vec![], vec![], vec![]);
+    let (mut shown, mut partly, mut dropped, mut refused) = (vec![], vec![], vec![], vec![]);
     for model in ShadingModel::ALL {
         let name = format!("`{}`", model.name());
-        let forms: Vec<Vec<Form>> = materials.iter().map(|material| hidden(material, sample.at, model)).collect();
-        if materials.iter().any(|material| is_refused(material, sample.at, model)) {
-            refused.push(name);
-        } else if forms.iter().any(|forms| forms.len() == Form::ALL.len()) {
-            dropped.push(name);
-        } else if let Some(form) = forms.iter().flatten().next() {
-            let other = if *form == Form::Baked { Form::Full } else { Form::Baked };
-            partly.push(format!("{name} (in the form `{other}`)"));
-        } else {
+        let of_values: Vec<Shown> = materials.iter().map(|material| of_value(material, sample.at, model)).collect();
+        let has = |shown: Shown| of_values.contains(&shown);
+        if has(Shown::Refused) {
+            refused.push(name.clone() + &some(sample, &of_values, Shown::Refused));
+        }
+        if has(Shown::Not) {
+            dropped.push(name.clone() + &some(sample, &of_values, Shown::Not));
+        }
+        if has(Shown::WithMasking) {
+            partly.push(format!("{name} (with `masking = \"{}\"`)", MASKING.name()));
+        } else if let Some(form) = Form::ALL.into_iter().find(|form| has(Shown::In(*form))) {
+            partly.push(format!("{name} (in the form `{form}`)"));
+        } else if !has(Shown::Refused) && !has(Shown::Not) {
             shown.push(name);
         }
     }
-    let all = shown.len() == ShadingModel::ALL.len();
-    shown.extend(partly);
-    let mut sentence = if all { "All models show it.".to_owned() } else { format!("Shown by {}.", shown.join(", ")) };
-    if !dropped.is_empty() {
-        sentence.push_str(&format!(" Left out, with a warning, by {}.", dropped.join(", ")));
+    if shown.len() == ShadingModel::ALL.len() {
+        return Ok("All models show it.".to_owned());
     }
-    if !refused.is_empty() {
-        sentence.push_str(&format!(" Refused for {}.", refused.join(", ")));
+    shown.extend(partly);
+    let mut sentence = format!("Shown by {}.", shown.join(", "));
+    for (words, names) in [("Left out, with a warning, by", dropped), ("Refused for", refused)] {
+        if !names.is_empty() {
+            sentence.push_str(&format!(" {words} {}.", names.join(", ")));
+        }
     }
     Ok(sentence)
 }
 
-/// Forms in which a model leaves out what stands at a key.
-fn hidden(material: &Material, at: &str, model: ShadingModel) -> Vec<Form> {
-    left_out(material, model).into_iter().filter(|part| part.key == at).flat_map(|part| part.forms).collect()
+/// How a model shows a value.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Shown {
+    Whole,
+    /// In one form of the shader alone.
+    In(Form),
+    /// Where the file has another masking than its default.
+    WithMasking,
+    Not,
+    Refused,
+}
+
+/// A masking that any distribution has.
+const MASKING: Masking = Masking::VCavity;
+
+fn of_value(material: &Material, at: &str, model: ShadingModel) -> Shown {
+    if at.split('|').any(|key| is_refused(material, key, model)) {
+        let mut other = material.clone();
+        other.bake.masking = Some(MASKING);
+        let takes = model.has_masking() && material.bake.masking.is_none();
+        return if takes && !is_refused(&other, at, model) { Shown::WithMasking } else { Shown::Refused };
+    }
+    match left_out(material, model).into_iter().find(|part| at.split('|').any(|key| hides(&part.key, key))) {
+        None => Shown::Whole,
+        Some(part) if part.forms.len() == Form::ALL.len() => Shown::Not,
+        Some(part) => Form::ALL.into_iter().find(|form| !part.forms.contains(form)).map_or(Shown::Not, Shown::In),
+    }
+}
+
+/// Whether what a model leaves out is a key, or the layer that it belongs to.
+fn hides(left_out: &str, key: &str) -> bool {
+    let layer = |key: &str| key.strip_prefix("layer.").and_then(|rest| rest.split('.').next()?.parse::<usize>().ok());
+    left_out == key || left_out.ends_with(".type") && !left_out.contains("film") && layer(left_out) <= layer(key)
+}
+
+/// The values of a choice of which something holds, in brackets, unless it holds of all.
+fn some(sample: &Sample, of_values: &[Shown], which: Shown) -> String {
+    let is_choice = sample.labels().all(|label| label.starts_with('\''));
+    if !is_choice || of_values.iter().all(|shown| *shown == which) {
+        return String::new();
+    }
+    let named = sample.labels().zip(of_values).filter(|(_, shown)| **shown == which);
+    let values: Vec<String> = named.map(|(label, _)| format!("`{}`", label.replace('\'', "\""))).collect();
+    format!(" ({})", values.join(", "))
 }
 
 /// Whether a file with this model is refused because of the key.

@@ -94,7 +94,7 @@ fn of_strip(page: &mut String, key: &KeyReference, sample: &Sample) -> Outcome {
 
 /// A value as files have it; words of people stay words.
 fn label(value: &str) -> String {
-    let is_words = value.contains(' ') && !value.contains(['[', '{']) || value == "noise" || value == "absent";
+    let is_words = value != "true" && value.starts_with(|c: char| c.is_ascii_alphabetic());
     if is_words { value.to_owned() } else { format!("`{}`", value.replace('\'', "\"")) }
 }
 

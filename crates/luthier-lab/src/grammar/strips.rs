@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use luthier_export::{MemoryStore, Package, Source, SurfaceSource, gather, lit, read_all, refuse, sha256};
+use luthier_export::{MemoryStore, Package, Source, SurfaceSource, gather, read_all, refuse, sha256};
 use luthier_gpu::{Gpu, RenderSettings, Shape, Shown, ToneMapping};
 use luthier_lut::Image;
 use luthier_manifest::Form;
@@ -12,8 +12,8 @@ use luthier_texture::png;
 use super::samples::Sample;
 use super::{Entry, shown};
 
-/// Directions of the environment for materials that it cannot be blurred for.
-const ENVIRONMENT_SAMPLES: u32 = 48;
+/// Directions of the environment for a lobe and a sample of a pixel. Blurred environments would need albedos, whose tables take longer than all pictures.
+const ENVIRONMENT_SAMPLES: u32 = 64;
 
 /// Pixels between pictures.
 const GAP: u32 = 4;
@@ -50,10 +50,8 @@ pub(crate) fn render(entries: &[Entry], folder: &Path, size: u32, adapter: Optio
     std::fs::remove_dir_all(&work).map_err(files(&work, "remove"))
 }
 
-fn settings(size: u32, is_blurred: bool) -> Outcome<RenderSettings> {
-    let settings = RenderSettings::new(Shape::Sphere)?;
-    let environment_samples = if is_blurred { settings.environment_samples } else { ENVIRONMENT_SAMPLES };
-    Ok(RenderSettings { size, samples: 3, environment_samples, ..settings })
+fn settings(size: u32) -> Outcome<RenderSettings> {
+    Ok(RenderSettings { size, samples: 2, environment_samples: ENVIRONMENT_SAMPLES, ..RenderSettings::new(Shape::Sphere)? })
 }
 
 /// A ball of each material, baked by itself: materials of one bake share sizes of tables.
@@ -64,9 +62,8 @@ fn balls(sample: &Sample, gpu: &Gpu, size: u32) -> Outcome<Vec<Image>> {
         let mut sources: Vec<Source> = vec![luthier_export::of_text(&path, text)];
         refuse(&mut sources, |material| luthier_export::of_model(material, None));
         let materials = valid(sources, true)?;
-        let package = Package::for_renderer(&lit(&materials), &MemoryStore::default())?;
-        let scene = gpu.scene(&package, Form::Baked)?;
-        pictures.push(scene.render(&[0], &settings(size, scene.has_albedo(0)?)?)?);
+        let package = Package::for_renderer(&materials, &MemoryStore::default())?;
+        pictures.push(gpu.scene(&package, Form::Baked)?.render(&[0], &settings(size)?)?);
     }
     Ok(pictures)
 }
@@ -80,9 +77,8 @@ fn surfaces(sample: &Sample, gpu: &Gpu, size: u32, work: &Path) -> Outcome<Vec<I
         let found = gather(std::slice::from_ref(&path))?;
         let materials = valid(read_all(&found.materials)?, true)?;
         let entries = found.surfaces.iter().filter_map(SurfaceSource::entry).collect();
-        let package = Package::of_surfaces(&lit(&materials), entries, &MemoryStore::default())?;
-        let scene = gpu.scene(&package, Form::Baked)?;
-        pictures.push(scene.render_shown(&[Shown::Surface(0)], &settings(size, false)?)?);
+        let package = Package::of_surfaces(&materials, entries, &MemoryStore::default())?;
+        pictures.push(gpu.scene(&package, Form::Baked)?.render_shown(&[Shown::Surface(0)], &settings(size)?)?);
     }
     Ok(pictures)
 }

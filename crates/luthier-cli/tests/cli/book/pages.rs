@@ -72,9 +72,10 @@ impl Page {
         })
     }
 
-    /// The anchors of its headings, as GitHub and mdBook make them.
+    /// The anchors that it names, and those of its headings, as GitHub and mdBook make them.
     pub(crate) fn anchors(&self) -> Vec<String> {
-        let mut anchors: Vec<String> = Vec::new();
+        let named = self.text.split("<a id=\"").skip(1).filter_map(|rest| rest.split('"').next());
+        let mut anchors: Vec<String> = named.map(str::to_owned).collect();
         for line in self.prose().filter(|line| line.starts_with('#')) {
             let heading = line.trim_start_matches('#').trim();
             let plain = heading.to_lowercase().replace(' ', "-");

@@ -6,13 +6,13 @@ pub(super) static SAMPLES: [Sample; 36] = [
     sample(
         "material.exterior",
         "exterior",
-        "exterior = @\nlayer = [{ type = 'dielectric', ior = 1.5, alpha = 0.05 }, { type = 'diffuse', albedo = [0.5, 0.05, 0.04] }]",
+        "exterior = @\nlayer = [{ type = 'dielectric', ior = 1.5, alpha = 0.05 }, { type = 'diffuse', albedo = [0.5, 0.05, 0.04] }]\nbake = { model = 'elek' }",
         &["1", "1.2", "1.4"],
     ),
     sample(
         "material.layer",
         "layer.1.type",
-        "layer = [@]",
+        "layer = [@]\nbake = { model = 'elek' }",
         &[
             "a diffuse base|{ type = 'diffuse', albedo = [0.1, 0.2, 0.6] }",
             "under glass|{ type = 'dielectric', ior = 1.5, alpha = 0.05 }, { type = 'diffuse', albedo = [0.1, 0.2, 0.6] }",
@@ -40,19 +40,19 @@ pub(super) static SAMPLES: [Sample; 36] = [
     sample(
         "dielectric.ior",
         "layer.0.ior",
-        "layer = [{ type = 'dielectric', ior = @, alpha = 0.05 }, { type = 'diffuse', albedo = [0.5, 0.05, 0.04] }]",
+        "layer = [{ type = 'dielectric', ior = @, alpha = 0.05 }, { type = 'diffuse', albedo = [0.5, 0.05, 0.04] }]\nbake = { model = 'elek' }",
         &["1.2", "1.5", "2.4"],
     ),
     sample(
         "dielectric.f0",
         "layer.0.f0",
-        "layer = [{ type = 'dielectric', f0 = @, alpha = 0.05 }, { type = 'diffuse', albedo = [0.5, 0.05, 0.04] }]",
+        "layer = [{ type = 'dielectric', f0 = @, alpha = 0.05 }, { type = 'diffuse', albedo = [0.5, 0.05, 0.04] }]\nbake = { model = 'elek' }",
         &["0.02", "0.08", "0.17"],
     ),
     sample(
         "dielectric.roughness",
         "layer.0.roughness",
-        "layer = [{ type = 'dielectric', ior = 1.5, roughness = @ }, { type = 'diffuse', albedo = [0.5, 0.05, 0.04] }]",
+        "layer = [{ type = 'dielectric', ior = 1.5, roughness = @ }, { type = 'diffuse', albedo = [0.5, 0.05, 0.04] }]\nbake = { model = 'elek' }",
         &["0.1", "0.4", "0.8"],
     ),
     sample(
@@ -70,7 +70,7 @@ pub(super) static SAMPLES: [Sample; 36] = [
     sample(
         "dielectric.smooth",
         "layer.0.smooth",
-        "layer = [{ type = 'dielectric', ior = 1.5, @ }, { type = 'diffuse', albedo = [0.1, 0.2, 0.6] }]",
+        "layer = [{ type = 'dielectric', ior = 1.5, @ }, { type = 'diffuse', albedo = [0.1, 0.2, 0.6] }]\nbake = { model = 'elek' }",
         &["true|smooth = true", "absent, with alpha = 0.1|alpha = 0.1", "absent, with alpha = 0.4|alpha = 0.4"],
     ),
     sample(
@@ -135,14 +135,14 @@ pub(super) static SAMPLES: [Sample; 36] = [
     ),
     sample(
         "dielectric.thickness_um",
-        "layer.0.absorption_per_um",
-        "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.05, thickness_um = @, absorption_per_um = [0.002, 0.012, 0.03] }, { type = 'diffuse', albedo = 0.8 }]",
+        "layer.0.absorption_per_um|layer.1.type",
+        "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.05, thickness_um = @, absorption_per_um = [0.002, 0.012, 0.03] }, { type = 'diffuse', albedo = 0.8 }]\nbake = { model = 'elek' }",
         &["5", "30", "120"],
     ),
     sample(
         "dielectric.absorption_per_um",
-        "layer.0.absorption_per_um",
-        "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.05, thickness_um = 50, absorption_per_um = @ }, { type = 'diffuse', albedo = 0.8 }]",
+        "layer.0.absorption_per_um|layer.1.type",
+        "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.05, thickness_um = 50, absorption_per_um = @ }, { type = 'diffuse', albedo = 0.8 }]\nbake = { model = 'elek' }",
         &["[0.001, 0.006, 0.015]", "[0.03, 0.004, 0.02]", "0.02"],
     ),
     sample(
@@ -202,19 +202,19 @@ pub(super) static SAMPLES: [Sample; 36] = [
     sample(
         "metallic-roughness.base_color",
         "layer.0.base_color",
-        "layer = [{ type = 'metallic-roughness', base_color = @, metallic = 1, roughness = 0.4 }]",
+        "layer = [{ type = 'metallic-roughness', base_color = @, metallic = 1, roughness = 0.4 }]\nbake = { model = 'elek' }",
         &["[0.955, 0.638, 0.538]", "[0.56, 0.57, 0.58]", "[1, 0.77, 0.34]"],
     ),
     sample(
         "metallic-roughness.metallic",
         "layer.0.metallic",
-        "layer = [{ type = 'metallic-roughness', base_color = [0.955, 0.638, 0.538], metallic = @, roughness = 0.4 }]",
+        "layer = [{ type = 'metallic-roughness', base_color = [0.955, 0.638, 0.538], metallic = @, roughness = 0.4 }]\nbake = { model = 'elek' }",
         &["0", "0.5", "1"],
     ),
     sample(
         "metallic-roughness.sigma",
         "layer.1.sigma",
-        "layer = [{ type = 'metallic-roughness', base_color = [0.8, 0.6, 0.4], roughness = 0.8, sigma = @ }]",
+        "layer = [{ type = 'metallic-roughness', base_color = [0.8, 0.6, 0.4], roughness = 0.8, sigma = @ }]\nbake = { model = 'elek' }",
         &["0", "0.4", "1.2"],
     ),
     sample(

@@ -14,7 +14,7 @@ pub(crate) use unseen::UNSEEN;
 pub(crate) struct Sample {
     /// The key, as `table.key`.
     pub(crate) key: &'static str,
-    /// Key of the file by which a model that leaves the feature out is found, as in `luthier_material::LeftOut`.
+    /// Key of the file by which a model that leaves the feature out is found, as in `luthier_material::LeftOut`; or several, with bars.
     pub(crate) at: &'static str,
     /// The file without `schema` and `name`; `@` is the place of the value, `%` of the root of the repository.
     pub(crate) text: &'static str,
