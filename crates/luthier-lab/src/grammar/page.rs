@@ -26,7 +26,8 @@ that the model of a file leaves out.
 /// The page.
 pub(crate) fn write(entries: &[Entry]) -> Outcome<String> {
     let mut page = HEAD.to_owned();
-    let count = |is: fn(&Sight) -> bool| entries.iter().flat_map(|entry| &entry.sights).filter(|sight| is(sight)).count();
+    let count =
+        |is: fn(&Sight) -> bool| entries.iter().flat_map(|entry| &entry.sights).filter(|sight| is(sight)).count();
     let (strips, nothing) =
         (count(|sight| matches!(sight, Sight::Strip(_))), count(|sight| matches!(sight, Sight::Nothing(_))));
     let _ = writeln!(

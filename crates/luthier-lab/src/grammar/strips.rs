@@ -39,7 +39,8 @@ pub(crate) fn render(entries: &[Entry], folder: &Path, size: u32, adapter: Optio
     let work = std::env::temp_dir().join(format!("luthier-grammar-{}", std::process::id()));
     std::fs::create_dir_all(&work).map_err(files(&work, "make"))?;
     for (done, sample) in samples.iter().enumerate() {
-        let pictures = if sample.is_surface() { surfaces(sample, &gpu, size, &work) } else { balls(sample, &gpu, size) }?;
+        let pictures =
+            if sample.is_surface() { surfaces(sample, &gpu, size, &work) } else { balls(sample, &gpu, size) }?;
         let path = folder.join(sample.picture());
         let bytes = png::encode_image(&strip(&pictures)).map_err(Failure::input)?;
         std::fs::write(&path, bytes).map_err(files(&path, "write"))?;
@@ -51,7 +52,12 @@ pub(crate) fn render(entries: &[Entry], folder: &Path, size: u32, adapter: Optio
 }
 
 fn settings(size: u32) -> Outcome<RenderSettings> {
-    Ok(RenderSettings { size, samples: 2, environment_samples: ENVIRONMENT_SAMPLES, ..RenderSettings::new(Shape::Sphere)? })
+    Ok(RenderSettings {
+        size,
+        samples: 2,
+        environment_samples: ENVIRONMENT_SAMPLES,
+        ..RenderSettings::new(Shape::Sphere)?
+    })
 }
 
 /// A ball of each material, baked by itself: materials of one bake share sizes of tables.

@@ -10,7 +10,10 @@ use crate::workshop::Workshop;
 fn the_page_is_up_to_date() {
     let page = Workshop::new().run(&["grammar"]).exits(0).stdout;
     let kept = fs::read_to_string(root().join("docs/grammar.md")).unwrap().replace("\r\n", "\n");
-    assert!(page.trim_end() == kept.trim_end(), "docs/grammar.md is out of date: luthier-lab grammar -o docs/grammar.md");
+    assert!(
+        page.trim_end() == kept.trim_end(),
+        "docs/grammar.md is out of date: luthier-lab grammar -o docs/grammar.md"
+    );
 }
 
 /// No key lacks its sentence, values, unit, default, and pictures with the models that show it, or the reason why there is nothing to see.

@@ -70,7 +70,9 @@ pub(crate) fn unit(table: &Table, key: &Key) -> Option<&'static str> {
     }
     let suffix = SUFFIXES.iter().find(|(ending, _)| key.name.ends_with(ending)).map(|(_, unit)| *unit);
     let named = || {
-        let is_it = |(owner, name, _): &&(&str, &str, &'static str)| *name == key.name && (owner.is_empty() || *owner == table.name);
+        let is_it = |(owner, name, _): &&(&str, &str, &'static str)| {
+            *name == key.name && (owner.is_empty() || *owner == table.name)
+        };
         NAMES.iter().find(is_it).map(|(_, _, unit)| *unit)
     };
     suffix.or_else(named).or_else(|| PURES.contains(&key.name).then_some(PURE))

@@ -57,7 +57,8 @@ fn run(folder: &Path, command: &str) -> Vec<String> {
 
 /// What a page has under `LUTHIER_ACCEPT=1`: lines that still match stay as they are.
 fn accepted(step: &Step, found: &[String]) -> String {
-    let same = |line: &String| step.expected.iter().find(|expected| is_as_printed(expected, line)).unwrap_or(line).clone();
+    let same =
+        |line: &String| step.expected.iter().find(|expected| is_as_printed(expected, line)).unwrap_or(line).clone();
     let lines: Vec<String> = found.iter().map(same).collect();
     std::iter::once(format!("$ {}", step.command)).chain(lines).map(|line| line + "\n").collect()
 }
@@ -124,6 +125,10 @@ fn every_command_prints_what_the_page_says() {
         for picture in pictures {
             assert_alike(&made(picture), &page.folder().join(picture));
         }
-        assert!(wrong.is_empty(), "docs/tutorial.md says something else (LUTHIER_ACCEPT=1 takes these):\n{}", wrong.join("\n\n"));
+        assert!(
+            wrong.is_empty(),
+            "docs/tutorial.md says something else (LUTHIER_ACCEPT=1 takes these):\n{}",
+            wrong.join("\n\n")
+        );
     }
 }

@@ -105,7 +105,11 @@ pub(super) static SAMPLES: [Sample; 21] = [
         "patina.map",
         PATINA,
         "layer = [{ type = 'dielectric', ior = 1.5, alpha = 0.4, thickness_um = 10, absorption_per_um = [0.1, 0.02, 0.05] }, { type = 'conductor', ior = 'cu', alpha = 0.15 }]\nbake = { model = 'elek' }\neffects.patina = { extent = 0.5, transition = 0.1, diffuse_albedo = [0.2, 0.5, 0.4], map = @ }",
-        &["noise|{ noise = {} }", "'patina.png'|{ image = 'patina.png' }", "'thickness.png'|{ image = 'thickness.png' }"],
+        &[
+            "noise|{ noise = {} }",
+            "'patina.png'|{ image = 'patina.png' }",
+            "'thickness.png'|{ image = 'thickness.png' }",
+        ],
     ),
     sample(
         "patina.diffuse_albedo",

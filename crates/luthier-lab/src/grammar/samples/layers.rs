@@ -179,7 +179,11 @@ pub(super) static SAMPLES: [Sample; 36] = [
         "film-thickness.map",
         "layer.0.film.0.thickness_nm",
         "layer = [{ type = 'thin-film', ior = 2.3, thickness_nm = { min = 40, max = 200, extent_um = 20000, map = @ } }, { type = 'conductor', ior = 'ti', alpha = 0.1 }]",
-        &["noise|{ noise = { frequency = 3, octaves = 2 } }", "'thickness.png'|{ image = 'thickness.png' }", "'patina.png'|{ image = 'patina.png' }"],
+        &[
+            "noise|{ noise = { frequency = 3, octaves = 2 } }",
+            "'thickness.png'|{ image = 'thickness.png' }",
+            "'patina.png'|{ image = 'patina.png' }",
+        ],
     ),
     sample(
         "diffuse.albedo",
@@ -191,7 +195,11 @@ pub(super) static SAMPLES: [Sample; 36] = [
         "diffuse.reradiation",
         "layer.0.reradiation",
         "layer = [{ type = 'diffuse', @ }]\nbake = { model = 'elek' }",
-        &["absent, with albedo = 0.5|albedo = 0.5", "'dye.csv'|reradiation = 'dye.csv'", "'brightener.csv'|reradiation = 'brightener.csv'"],
+        &[
+            "absent, with albedo = 0.5|albedo = 0.5",
+            "'dye.csv'|reradiation = 'dye.csv'",
+            "'brightener.csv'|reradiation = 'brightener.csv'",
+        ],
     ),
     sample(
         "diffuse.sigma",

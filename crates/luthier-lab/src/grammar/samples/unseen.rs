@@ -48,10 +48,7 @@ pub(crate) static UNSEEN: [Unseen; 7] = [
         keys: &["dielectric.type", "thin-film.type", "conductor.type", "diffuse.type", "metallic-roughness.type"],
     },
     Unseen { why: "a limit, within which tables look alike", keys: &["material.budget", "budget.*"] },
-    Unseen {
-        why: "it adds tables that the shader does not read",
-        keys: &["bake.tables"],
-    },
+    Unseen { why: "it adds tables that the shader does not read", keys: &["bake.tables"] },
     Unseen {
         why: "it decides the size and the error of a table, in the last bits of a picture",
         keys: &[
