@@ -115,9 +115,13 @@ pub(crate) struct FiguresOptions {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  luthier-lab grammar -o docs/grammar.md\n  luthier-lab grammar -o docs/grammar.md --pictures docs/images/grammar"
+    after_help = "Examples:\n  luthier-lab grammar -o docs/grammar.md\n  luthier-lab grammar -o docs/grammar.md --pictures docs/images/grammar\n  \
+                  luthier-lab grammar bake.color --pictures docs/images/grammar -o docs/grammar.md"
 )]
 pub(crate) struct GrammarOptions {
+    /// Keys whose pictures to render, such as dielectric.alpha; by default all
+    #[arg(value_name = "KEY", requires = "pictures")]
+    pub(crate) keys: Vec<String>,
     #[command(flatten)]
     pub(crate) destination: Destination,
     /// Folder to render pictures into first

@@ -15,7 +15,7 @@ use samples::{Sample, UNSEEN, samples};
 pub(crate) fn run(options: &GrammarOptions) -> Outcome {
     let entries = entries(&reference(), &samples())?;
     if let Some(folder) = &options.pictures {
-        strips::render(&entries, folder, options.size, options.adapter.name.as_deref())?;
+        strips::render(&shown(&entries), folder, options)?;
     }
     deliver(&page::write(&entries)?, options.destination.output.as_deref())
 }

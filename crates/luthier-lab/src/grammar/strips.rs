@@ -10,7 +10,7 @@ use luthier_terminal::{Bar, Failure, Outcome, files, open, valid};
 use luthier_texture::png;
 
 use super::samples::Sample;
-use super::{Entry, shown};
+use crate::cli::GrammarOptions;
 
 /// Directions of the environment for a lobe and a sample of a pixel. Blurred environments would need albedos, whose tables take longer than all pictures.
 const ENVIRONMENT_SAMPLES: u32 = 64;
@@ -30,24 +30,37 @@ pub(crate) fn hashes(samples: &[Sample]) -> String {
     samples.iter().map(line).collect()
 }
 
-/// Renders all strips into a folder.
-pub(crate) fn render(entries: &[Entry], folder: &Path, size: u32, adapter: Option<&str>) -> Outcome {
+/// Renders strips into a folder: those of the keys that are asked for, or all.
+pub(crate) fn render(samples: &[Sample], folder: &Path, options: &GrammarOptions) -> Outcome {
+    let names: Vec<&str> = samples.iter().map(|sample| sample.key).collect();
+    if let Some(unknown) = options.keys.iter().find(|key| !names.contains(&key.as_str())) {
+        return Err(Failure::unknown("key", unknown, &names));
+    }
     std::fs::create_dir_all(folder).map_err(files(folder, "make"))?;
-    let gpu = open(adapter)?;
-    let samples = shown(entries);
+    let (gpu, size) = (open(options.adapter.name.as_deref())?, options.size);
+    let is_asked = |sample: &&Sample| options.keys.is_empty() || options.keys.iter().any(|key| key == sample.key);
+    let asked: Vec<&Sample> = samples.iter().filter(is_asked).collect();
     let bar = Bar::new("pictures");
     let work = std::env::temp_dir().join(format!("luthier-grammar-{}", std::process::id()));
     std::fs::create_dir_all(&work).map_err(files(&work, "make"))?;
-    for (done, sample) in samples.iter().enumerate() {
+    for (done, sample) in asked.iter().enumerate() {
         let pictures =
             if sample.is_surface() { surfaces(sample, &gpu, size, &work) } else { balls(sample, &gpu, size) }?;
         let path = folder.join(sample.picture());
         let bytes = png::encode_image(&strip(&pictures)).map_err(Failure::input)?;
         std::fs::write(&path, bytes).map_err(files(&path, "write"))?;
-        bar.set(done as u64 + 1, samples.len() as u64);
+        bar.set(done as u64 + 1, asked.len() as u64);
     }
     let path = folder.join(HASHES);
-    std::fs::write(&path, hashes(&samples)).map_err(files(&path, "write"))?;
+    let before = std::fs::read_to_string(&path).unwrap_or_default();
+    // A picture that was not asked for stays that of its older sample.
+    let after = hashes(samples);
+    let lines = samples.iter().zip(after.lines()).filter_map(|(sample, line)| match is_asked(&sample) {
+        true => Some(line),
+        false => before.lines().find(|known| known.split(' ').next() == line.split(' ').next()),
+    });
+    let text: String = lines.map(|line| format!("{line}\n")).collect();
+    std::fs::write(&path, text).map_err(files(&path, "write"))?;
     std::fs::remove_dir_all(&work).map_err(files(&work, "remove"))
 }
 

@@ -30,7 +30,7 @@ pub(super) static SAMPLES: [Sample; 10] = [
     sample(
         "bake.color",
         "bake.color",
-        "layer = [{ type = 'thin-film', ior = 1.33, thickness_nm = 700 }, { type = 'conductor', ior = 'ag', alpha = 0.1 }]\nbake = { color = @ }",
+        "layer = [{ type = 'thin-film', ior = 2.3, thickness_nm = 900 }, { type = 'conductor', ior = 'ti', alpha = 0.1 }]\nbake = { color = @ }",
         &["'spectral'", "'three-wavelengths'"],
     ),
     sample(
@@ -54,13 +54,13 @@ pub(super) static SAMPLES: [Sample; 10] = [
     sample(
         "beams.inner_tilt_deg",
         "bake.granier-heidrich",
-        "layer = [{ type = 'dielectric', ior = 1.7, exponents = [90, 900], thickness_um = 1 }, { type = 'diffuse', albedo = [0.02, 0.05, 0.2] }]\nbake = { model = 'granier-heidrich', granier-heidrich = { inner_tilt_deg = @ } }",
+        "layer = [{ type = 'dielectric', ior = 1.7, exponents = [60, 60], thickness_um = 1 }, { type = 'diffuse', albedo = [0.02, 0.05, 0.2] }]\nbake = { model = 'granier-heidrich', granier-heidrich = { inner_tilt_deg = @ } }",
         &["0", "10", "25"],
     ),
     sample(
         "beams.inner_azimuth_deg",
         "bake.granier-heidrich",
-        "layer = [{ type = 'dielectric', ior = 1.7, exponents = [90, 900], thickness_um = 1 }, { type = 'diffuse', albedo = [0.02, 0.05, 0.2] }]\nbake = { model = 'granier-heidrich', granier-heidrich = { inner_tilt_deg = 15, inner_azimuth_deg = @ } }",
+        "layer = [{ type = 'dielectric', ior = 1.7, exponents = [60, 60], thickness_um = 1 }, { type = 'diffuse', albedo = [0.02, 0.05, 0.2] }]\nbake = { model = 'granier-heidrich', granier-heidrich = { inner_tilt_deg = 15, inner_azimuth_deg = @ } }",
         &["0", "90", "180"],
     ),
 ];
