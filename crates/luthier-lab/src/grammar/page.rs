@@ -19,7 +19,8 @@ Made by `luthier-lab grammar -o docs/grammar.md` from the tables that `luthier c
 
 A **unit** of 1 means a pure number. Lists of three numbers are R, G and B, linear Rec.709, where no other order is given. A **default** is the value of a key that is \
 absent. Under each picture stand the values of the key from left to right. *Shown by* lists the models whose shaders show the key; `luthier check` warns of a key \
-that the model of a file leaves out.
+that the model of a file leaves out. Most pictures are by the model `elek`, which needs no simulation; the files are in \
+`luthier-lab/src/grammar/samples`.
 
 ";
 
