@@ -81,7 +81,7 @@ fn alternatives(group: &Alternatives) -> String {
     format!("{needed} of these gives its {}: {}.", group.what, forms.join(", "))
 }
 
-/// What holds where a key is absent that has no value of its own then.
+/// The words for an absent key that has no default value.
 fn absent(table: &str, key: &str) -> &'static str {
     match (table, key) {
         ("bake", "model") => "chosen by what the file asks for",

@@ -26,7 +26,7 @@ pub(crate) struct Entry {
     sights: Vec<Sight>,
 }
 
-/// What there is to see of a key.
+/// The sight of a key: pictures, or the reason why there are none.
 pub(crate) enum Sight {
     /// Pictures.
     Strip(Sample),
