@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 # Everything is computed: no results of earlier runs.
 export LUTHIER_CACHE=
 
-steps=(tests random fuzz release examples engines kind packages scale crash farm)
+steps=(tests random fuzz release examples engines kind packages scale crash farm book)
 # By its name only, because an emulator takes half an hour: architecture.
 declare -A says=(
   [tests]='tests that are ignored elsewhere: the whole stability suite, and audits of tables with planted mistakes'
@@ -24,6 +24,7 @@ declare -A says=(
   [crash]='bakes are killed at every call that changes files and at random moments, interrupted, run side by side, and given faulty files'
   [scale]='libraries of 100 and 1,000 generated materials are baked'
   [farm]='Slurm, Ninja, CMake and Make bake shares and merge them, a Slurm node is killed, jobs for Kubernetes and OpenCue are checked, and machines share a store of the S3 protocol that lies, refuses and is gone'
+  [book]='mdBook builds the book of `docs/`; tests of every change follow its links, samples and tutorial'
   [architecture]='a program for aarch64, emulated, writes the bytes of one for x86-64'
 )
 
@@ -52,6 +53,7 @@ engines() {
   LUTHIER=$PWD/target/release/luthier ./scripts/engines/furnace.sh
 }
 kind() { ./scripts/add-kind.sh; }
+book() { ./scripts/book.sh; }
 packages() { ./scripts/package.sh --verify; }
 crash() {
   cargo build --locked --release -p luthier-cli

@@ -76,8 +76,20 @@ reflectance-table() {
   python3 scripts/reflectance-table.py "${LUTHIER-target/release/luthier}" >docs/pages/reflectance-table.md
 }
 reference() { luthier man --markdown >docs/reference.md; }
+grammar() { luthier-lab grammar --pictures docs/images/grammar -o docs/grammar.md; }
+# Each file of the page, under its name.
+recipes() {
+  awk -v work="$work" '/^```toml$/ { on = 1; text = ""; next } /^```$/ { if (on) print text > file; on = 0 }
+    on { text = text $0 "\n"; if (/^name = /) { split($0, parts, "\""); file = work "/" parts[2] ".toml" } }' docs/recipes.md
+  mkdir -p docs/images/recipes
+  for file in "$work"/recipe-*.toml; do
+    luthier preview "$file" --shape sphere --size 160 -o "docs/images/recipes/$(basename "$file" .toml).png"
+  done
+}
+# The test that follows the tutorial takes its outputs and pictures.
+tutorial() { LUTHIER_ACCEPT=1 cargo test --quiet --locked -p luthier-cli --features view --test cli -- tutorial; }
 
-all=(materials shapes cost papers budgets scenes parity places stability figures models lobes varying anisotropic environment simulation bench shader-size distribution-table speed dfg engine-tables by-hand choices reflectance-table reference)
+all=(materials shapes cost papers budgets scenes parity places stability figures models lobes varying anisotropic environment simulation bench shader-size distribution-table speed dfg engine-tables by-hand choices reflectance-table reference grammar recipes tutorial)
 case ${1-} in
   "") pages=("${all[@]}") ;;
   --cheap) pages=(shader-size reference) ;;

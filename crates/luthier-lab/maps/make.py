@@ -1,6 +1,6 @@
 """The maps of figures: thickness.png, a grey map of periodic noise; bumps.png, a normal map of a field of bumps; patina.png, where patina grows
 first: in blotches and in streaks that water has left, every value as often as every other; circles.png and rays.png, two fields of tangents that cross;
-heights.png, flakes that lie askew; paint.png, a picture in colours.
+heights.png, flakes that lie askew; paint.png, a picture in colours; ripples.png, a normal map of waves.
 
     python3 crates/luthier-lab/maps/make.py
 """
@@ -114,3 +114,15 @@ png("circles.png", 2, rgb(tangents(0.5 * math.pi)))
 png("rays.png", 2, rgb(tangents(0.0)))
 png("heights.png", 0, [[byte(flakes(at(i), at(j))) for i in range(SIZE)] for j in range(SIZE)])
 png("paint.png", 2, rgb(paint))
+
+
+def ripples(u, v):
+    """Normal of two waves that cross, whole waves along both sides, so that they repeat."""
+    a = 2 * math.pi * (4 * u + 2 * v)
+    b = 2 * math.pi * (2 * u - 5 * v)
+    x, y = -0.25 * math.cos(a) - 0.15 * math.cos(b), -0.12 * math.cos(a) + 0.3 * math.cos(b)
+    length = math.sqrt(x * x + y * y + 1)
+    return [byte(0.5 + 0.5 * c / length) for c in (x, y, 1.0)]
+
+
+png("ripples.png", 2, rgb(ripples))

@@ -27,6 +27,8 @@ pub(crate) struct Cli {
 pub(crate) enum Verb {
     /// Make the figures of the papers anew
     Figures(FiguresOptions),
+    /// Describe every key of the grammar, with pictures of what it does: a page in Markdown
+    Grammar(GrammarOptions),
     /// Compare every shader of every material with its f64 twin: a page in Markdown
     Parity(ParityOptions),
     /// Compare shaders at places of surfaces that vary with their f64 twins: a page in Markdown
@@ -109,6 +111,27 @@ pub(crate) struct FiguresOptions {
     /// Print names and titles instead
     #[arg(long)]
     pub(crate) list: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  luthier-lab grammar -o docs/grammar.md\n  luthier-lab grammar -o docs/grammar.md --pictures docs/images/grammar\n  \
+                  luthier-lab grammar bake.color --pictures docs/images/grammar -o docs/grammar.md"
+)]
+pub(crate) struct GrammarOptions {
+    /// Keys whose pictures to render, such as dielectric.alpha; by default all
+    #[arg(value_name = "KEY", requires = "pictures")]
+    pub(crate) keys: Vec<String>,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+    /// Folder to render pictures into first
+    #[arg(long, value_name = "DIR")]
+    pub(crate) pictures: Option<PathBuf>,
+    /// Side of each ball in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 96, value_parser = clap::value_parser!(u32).range(16..=1024))]
+    pub(crate) size: u32,
+    #[command(flatten)]
+    pub(crate) adapter: Adapter,
 }
 
 /// Pairs of directions in each of the five sets: 100,000 in all.

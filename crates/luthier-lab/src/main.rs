@@ -5,6 +5,7 @@ mod budgets;
 mod cli;
 mod environment;
 mod figures;
+mod grammar;
 mod judge;
 mod lobes;
 mod papers;
@@ -26,6 +27,7 @@ fn main() -> ExitCode {
     }
     let outcome = match &luthier_terminal::parse::<Cli>(&[]).verb {
         Verb::Figures(options) => figures::run(options),
+        Verb::Grammar(options) => grammar::run(options),
         Verb::Parity(options) => parity::run(options),
         Verb::Places(options) => places::run(options),
         Verb::Stability(options) => stability::run(options),

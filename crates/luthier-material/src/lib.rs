@@ -5,7 +5,7 @@
 //!
 //! [`parse`] reads one file. A declarative grammar (keys, types, ranges, alternatives) checks it first, a decoder then
 //! builds the [`Stack`](luthier_optics::stack::Stack); both report as much as they can in one run. [`schema`] is the same
-//! grammar as JSON Schema. [`parse_scene`] and [`scene_schema`] do the same for scenes, which name materials, and
+//! grammar as JSON Schema, and [`reference()`] in words. [`parse_scene`] and [`scene_schema`] do the same for scenes, which name materials, and
 //! [`parse_surface`] and [`surface_schema`] for surfaces, which say where materials are.
 //!
 //! Physical nonsense is an error, doubtful physics a warning. This crate crosses the units of files (degrees, artist's
@@ -26,6 +26,7 @@ mod left_out;
 mod material;
 mod parse;
 mod places;
+mod reference;
 mod rewrite;
 mod scene;
 mod schema;
@@ -45,6 +46,7 @@ pub use left_out::{LeftOut, distribution_key, left_out};
 pub use material::{FilmVariation, LayerExtras, Maps, Material, Metallic, NamedImage, NamedMap, VariationSource};
 pub use parse::{Parsed, parse};
 pub use places::Places;
+pub use reference::{KeyReference, TableReference, reference};
 pub use rewrite::rewritten;
 pub use scene::{Light, Scene, SceneMaterial, SceneTarget, View, is_scene, parse_scene};
 pub use schema::{scene_schema, schema, surface_schema};

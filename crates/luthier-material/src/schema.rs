@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
-use crate::grammar::{DOCUMENT, Kind, NAME_MAX, SCENE, SURFACE, Table, TextForm};
+use crate::grammar::{DOCUMENT, Kind, NAME_MAX, SCENE, SURFACE, Table, TextForm, unit};
 
-/// The grammar of material files as JSON Schema (draft 2020-12), generated from the tables that files are checked against.
+/// The grammar of material files as JSON Schema (draft 2020-12), generated from the tables that files are checked against. `x-unit` is the
+/// unit of numbers, "1" for pure ones.
 ///
 /// Conditions between values, such as a conductor being the last layer, are beyond it.
 pub fn schema() -> Value {
@@ -41,10 +42,14 @@ fn table(table: &'static Table, definitions: &mut Definitions) -> Value {
     let mut properties = Map::new();
     for key in table.keys {
         let mut value = kind(&key.kind, definitions);
+        let unit = unit(table, key);
         if let Value::Object(value) = &mut value {
             value.insert("description".to_owned(), json!(key.doc));
             if let Ok(default) = serde_json::from_str::<Value>(key.default) {
                 value.insert("default".to_owned(), default);
+            }
+            if let Some(unit) = unit {
+                value.insert("x-unit".to_owned(), json!(unit));
             }
         }
         properties.insert(key.name.to_owned(), value);
@@ -160,6 +165,7 @@ mod tests {
         assert_eq!(schema.pointer("/$defs/dielectric/oneOf/6/required"), Some(&json!(["exponents"])));
         assert_eq!(schema.pointer("/$defs/dielectric/oneOf/4/required"), Some(&json!(["alpha_x", "alpha_y"])));
         assert_eq!(schema.pointer("/$defs/noise/properties/octaves/default"), Some(&json!(4)));
+        assert_eq!(schema.pointer("/$defs/thin-film/properties/thickness_nm/x-unit"), Some(&json!("nm")));
         assert_eq!(schema.pointer("/$defs/thin-film/properties/roughness"), None);
         let index_or_f0 = json!([{ "required": ["ior"] }, { "required": ["f0"] }]);
         assert_eq!(schema.pointer("/$defs/conductor/allOf/0/oneOf"), Some(&index_or_f0));

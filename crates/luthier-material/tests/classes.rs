@@ -18,8 +18,8 @@ fn starting_files_have_their_class() {
         let parsed = parsed.unwrap_or_else(|errors| panic!("{heading}: {errors:?}"));
         assert_eq!(parsed.material.class, class, "{heading}");
         assert!(parsed.warnings.is_empty(), "{heading}: {:?}", parsed.warnings);
-        // The tree leads to each class by its name; h is said below it.
-        let leaf = format!("{letter}{}\"]", class.name());
+        // The questions lead to each class by its name; h is said below them.
+        let leaf = format!("[{letter}{}](#", class.name());
         assert!(class == SurfaceClass::H || page.contains(&leaf), "{leaf}");
     }
 }

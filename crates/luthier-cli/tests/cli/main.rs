@@ -1,6 +1,7 @@
 //! The `luthier` command as a stranger meets it: every verb through the binary, judged by files, streams and exit codes.
 
 mod bake;
+mod book;
 mod check;
 mod command;
 mod eval;

@@ -3,6 +3,7 @@
 mod command;
 mod costs;
 mod figures;
+mod grammar;
 mod judge;
 mod lobes;
 mod parity;

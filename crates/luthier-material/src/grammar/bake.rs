@@ -28,11 +28,10 @@ pub(super) static BAKE: Table = Table {
     name: "bake",
     doc: "How the tables of this material are to be baked; what is left out is the baker's choice.",
     keys: &[
-        Key::with_default(
+        Key::optional(
             "model",
             Kind::Choice(ShadingModel::NAMES),
-            "\"elek\"",
-            "The reflectance model that the shader evaluates.",
+            "The reflectance model that the shader evaluates; if absent, the first of a list that shows all that the file asks for.",
         ),
         Key::with_default(
             "masking",
@@ -66,9 +65,10 @@ pub(super) static BAKE: Table = Table {
             Kind::List { item: &Kind::Choice(TableKind::NAMES), min: 1, max: TableKind::NAMES.len() },
             "Kinds of tables to bake beside those that the shader reads; settings of a kind ask for it too.",
         ),
-        Key::optional(
+        Key::with_default(
             "color",
             Kind::Choice(ColorMode::NAMES),
+            "\"spectral\"",
             "Integrate spectra, or take the function at three wavelengths as R, G, B.",
         ),
         Key::with_default(

@@ -7,11 +7,13 @@ mod effects;
 mod layers;
 mod scene;
 mod surface;
+mod unit;
 
 pub(crate) use document::DOCUMENT;
 pub(crate) use layers::{INDEX, SAMPLED_NM};
 pub(crate) use scene::SCENE;
 pub(crate) use surface::SURFACE;
+pub(crate) use unit::unit;
 
 /// Version of the grammar that this crate reads.
 pub(crate) const SCHEMA_VERSION: i64 = 1;
@@ -167,6 +169,8 @@ mod tests {
             assert!(table.keys[..i].iter().all(|k| k.name != key.name), "{}.{} twice", table.name, key.name);
             assert!(!key.doc.is_empty(), "{}.{}", table.name, key.name);
             assert!(!key.required || key.default.is_empty(), "{}.{}", table.name, key.name);
+            let has_unit = unit(table, key).is_some();
+            assert_eq!(has_unit, unit::is_numeric(&key.kind), "unit of {}.{}", table.name, key.name);
             visit_kind(&key.kind, seen);
         }
         for form in table.alternatives().flat_map(|a| a.forms) {
@@ -209,6 +213,7 @@ mod tests {
         let mut seen = Vec::new();
         visit(&DOCUMENT, &mut seen);
         visit(&SCENE, &mut seen);
+        visit(&SURFACE, &mut seen);
         assert!(seen.len() >= 15, "{seen:?}");
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::scenes::{sets, tables};
 use luthier_lut::TableKind;
@@ -52,47 +52,4 @@ fn pages_say_what_the_code_says() {
             assert!(found == part, "{page} is out of date; it should have\n{part}");
         }
     }
-}
-
-/// The pages that people read: those in the root, in `docs/` and of the examples.
-fn pages(root: &Path) -> Vec<PathBuf> {
-    let mut folders = vec![root.to_owned(), root.join("docs"), root.join("docs/pages"), root.join("docs/measurements")];
-    folders.extend(fs::read_dir(root.join("examples")).unwrap().map(|entry| entry.unwrap().path()));
-    let files = folders.iter().filter(|folder| folder.is_dir()).flat_map(|folder| fs::read_dir(folder).unwrap());
-    files.map(|entry| entry.unwrap().path()).filter(|path| path.extension().is_some_and(|e| e == "md")).collect()
-}
-
-/// Paths that a page names in backquotes or links to, and that look like files of the repository: not those that a bake writes.
-fn named(text: &str) -> Vec<&str> {
-    let quoted = text.split('`').skip(1).step_by(2);
-    let is_ours = |path: &&str| {
-        let first = path.split('/').next().unwrap_or_default();
-        let is_made = ["out", "target", "tables", "shaders", "maps", "build"].contains(&first);
-        path.contains('/')
-            && !path.contains("NAME")
-            && !path.contains(char::is_whitespace)
-            && !is_made
-            && Path::new(path).extension().is_some()
-    };
-    let links = text.split("](").skip(1).filter_map(|rest| rest.split([')', '#']).next());
-    quoted.filter(is_ours).chain(links.filter(|link| !link.is_empty() && !link.contains("://"))).collect()
-}
-
-#[test]
-fn files_that_pages_name_exist() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let crates = fs::read_dir(root.join("crates")).unwrap().map(|entry| entry.unwrap().path());
-    let mut bases: Vec<PathBuf> = crates.collect();
-    bases.extend([root.clone(), root.join("crates")]);
-    let mut count = 0;
-    for page in pages(&root) {
-        let text = fs::read_to_string(&page).unwrap();
-        let own = page.parent().unwrap().to_owned();
-        for name in named(&text) {
-            count += 1;
-            let exists = bases.iter().chain([&own]).any(|base| base.join(name).exists());
-            assert!(exists, "{}: there is no {name}", page.display());
-        }
-    }
-    assert!(count > 50, "{count} files are named");
 }

@@ -1,0 +1,7 @@
+//! The book: links, samples, and the tutorial as a reader follows it.
+
+mod links;
+mod pages;
+mod samples;
+#[cfg(all(unix, feature = "gpu"))]
+mod tutorial;

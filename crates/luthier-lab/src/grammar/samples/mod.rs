@@ -1,0 +1,63 @@
+//! Samples: for each key that can be seen a material, and values of the key; for each other key the reason why there is nothing to see.
+
+mod bake;
+mod effects;
+mod layers;
+mod surfaces;
+mod textures;
+mod unseen;
+
+pub(crate) use unseen::UNSEEN;
+
+/// Values of a key, and a material that shows them.
+#[derive(Clone, Copy)]
+pub(crate) struct Sample {
+    /// The key, as `table.key`.
+    pub(crate) key: &'static str,
+    /// Key of the file by which a model that leaves the feature out is found, as in `luthier_material::LeftOut`; or several, with bars.
+    pub(crate) at: &'static str,
+    /// The file without `schema` and `name`; `@` is the place of the value, `%` of the root of the repository.
+    pub(crate) text: &'static str,
+    /// Three values, or all that there are. Before a bar stands what the page calls the value, if that is not its text.
+    pub(crate) values: &'static [&'static str],
+}
+
+impl Sample {
+    /// The names of the values.
+    pub(crate) fn labels(&self) -> impl Iterator<Item = &'static str> {
+        self.values.iter().map(|value| value.split_once('|').map_or(*value, |(label, _)| label))
+    }
+
+    /// All that decides the picture.
+    pub(crate) fn hashed(&self) -> String {
+        format!("{}\n{}", self.text, self.values.join("\n"))
+    }
+
+    /// The texts of the files, one for each value.
+    pub(crate) fn texts(&self) -> Vec<String> {
+        let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+        let value = |value: &'static str| value.split_once('|').map_or(value, |(_, text)| text);
+        let kind = if self.is_surface() { "surface" } else { "schema" };
+        let text = |v: &&'static str| self.text.replace('@', value(v)).replace('%', root);
+        self.values.iter().map(|v| format!("{kind} = 1\nname = \"sample\"\n{}\n", text(v))).collect()
+    }
+
+    /// Whether the file is one of a surface.
+    pub(crate) fn is_surface(&self) -> bool {
+        self.key.starts_with("surface")
+    }
+
+    /// Name of the picture.
+    pub(crate) fn picture(&self) -> String {
+        format!("{}.png", self.key.replace(['.', '_'], "-"))
+    }
+}
+
+/// All samples.
+pub(crate) fn samples() -> Vec<Sample> {
+    [layers::SAMPLES.as_slice(), &textures::SAMPLES, &effects::SAMPLES, &bake::SAMPLES, &surfaces::SAMPLES].concat()
+}
+
+const fn sample(key: &'static str, at: &'static str, text: &'static str, values: &'static [&'static str]) -> Sample {
+    Sample { key, at, text, values }
+}
