@@ -7,7 +7,9 @@ use luthier_gpu::{Shape, Shown};
 use luthier_manifest::Form;
 use luthier_terminal::{Outcome, valid};
 
-use super::figure::{Figure, Made};
+use super::claim::{Check, Claim};
+use super::figure::{Figure, LARGE, Made};
+use super::numbers::glitter;
 use super::studio::Studio;
 
 pub(crate) const FIGURES: [Figure; 1] = [Figure {
@@ -17,6 +19,18 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
     caption: "Sunstone has one colour, a varnish over a Lambertian base, and a glitter map of copper flakes below varnish of that colour. Lepidolite has \
               a surface map of grains in three colours and of silver, and few flakes of silver on top. The noise that puts marble into the course's lepidolite \
               is missing. Indices and slopes are the course's, colours and numbers of cells luthier's: the files are in `materials/surfaces`.",
+    size: LARGE,
+    claim: Claim {
+        text: "Metallic cells glitter in a stone of one colour, and fewer of them in a stone of many grains.",
+        checks: &[
+            Check::Within("sunstone: share at least twice as bright as the median", 0.01, 0.5),
+            Check::Falls(&[
+                "sunstone: share at least twice as bright as the median",
+                "lepidolite: share at least twice as bright as the median",
+            ]),
+            Check::Within("lepidolite: share at least twice as bright as the median", 0.001, 0.5),
+        ],
+    },
     make: stones,
 }];
 
@@ -34,6 +48,7 @@ fn stones(studio: &Studio) -> Outcome<Made> {
         let package = Package::of_surfaces(&lit(&materials), surfaces, &MemoryStore::default())?;
         let scene = studio.gpu()?.scene(&package, Form::Baked)?;
         let picture = scene.render_shown(&[Shown::Surface(0)], &studio.settings(Shape::Sphere)?)?;
+        made.measure(format!("{name}: share at least twice as bright as the median"), glitter(&picture));
         pictures.push((name.to_owned(), picture));
     }
     made.sheet("course-5-1", pictures, 2);

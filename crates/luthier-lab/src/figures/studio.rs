@@ -27,6 +27,7 @@ const LIGHTS: [DistantLight; 2] = [
 ];
 
 pub(crate) struct Studio {
+    /// Side of each single picture, of the figure that is made.
     pub(crate) size: u32,
     samples: u32,
     paths: u64,
@@ -38,9 +39,9 @@ pub(crate) struct Studio {
 
 impl Studio {
     pub(crate) fn new(options: &FiguresOptions) -> Self {
-        let FiguresOptions { size, samples, paths, adapter, .. } = options;
+        let FiguresOptions { samples, paths, adapter, .. } = options;
         let (gpu, environment, mesh) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
-        Self { size: *size, samples: *samples, paths: *paths, adapter: adapter.name.clone(), gpu, environment, mesh }
+        Self { size: 0, samples: *samples, paths: *paths, adapter: adapter.name.clone(), gpu, environment, mesh }
     }
 
     /// The adapter, opened when the first figure needs it.
