@@ -88,7 +88,7 @@ Examples:
   luthier-lab figures elek-5 course-classes -o seen --size 256";
 
 /// Paths of the simulation in figures, unless the command line has others.
-pub(crate) const PATHS: u64 = 128;
+pub(crate) const PATHS: u64 = 256;
 
 #[derive(Debug, Args)]
 #[command(after_help = FIGURES_EXAMPLES)]

@@ -1,6 +1,6 @@
 //! The figure of the course of Weidlich and Wilkie about tilted cells alone, without the stone below them.
 
-use luthier_gpu::Shape;
+use luthier_gpu::{RenderSettings, Shape};
 use luthier_manifest::Form;
 use luthier_terminal::Outcome;
 
@@ -15,7 +15,7 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
     title: "tilted cells alone",
     source: "Weidlich and Wilkie 2009, section 5.2.1 and figure 5.1",
     caption: "Copper of the sunstone's glitter, slope 3 degrees, over the whole ball: level, with every cell tilted, and with one cell in ten tilted. Each cell of \
-              the Voronoi diagram has a normal of its own, up to 25 degrees off, and mirrors another part of the surroundings; its edges are straight. The course's stones \
+              the Voronoi diagram has a normal of its own, up to 25 degrees off, and mirrors another part of the surroundings; its edges are straight; those that lean away from the eye at the rim are dark. The course's stones \
               have such cells over grains, which course-5-1 shows. The numbers are the shares of the middle half of the picture that differ from the level ball. The \
               number of cells and the angle are luthier's.",
     size: LARGE,
@@ -42,7 +42,9 @@ fn cells(studio: &Studio) -> Outcome<Made> {
              [effects.glitter]\nseed = 11\nfrequency = 40\nfilled = {filled}\ntilt_deg = 25\n"
         );
         let material = by_course(&label.replace(' ', "-"), &layers)?;
-        let picture = studio.pictures(&[material], Form::Full, Shape::Sphere, |_, _| {})?;
+        // Directions would be drawn about the level surface, which misses what tilted cells mirror.
+        let look = |_, settings: &mut RenderSettings| settings.environment_samples = 0;
+        let picture = studio.pictures(&[material], Form::Baked, Shape::Sphere, look)?;
         pictures.extend(picture.into_iter().map(|picture| (label.to_owned(), picture)));
     }
     if let [(_, level), others @ ..] = pictures.as_slice() {

@@ -38,7 +38,6 @@ pub(crate) const FIGURES: [Figure; 3] = [
                   the simulation does not.",
             checks: &[
                 Check::Falls(&[
-                    "coat of m1 0.01 over m2 0.3: brightest radiance",
                     "coat of m1 0.1 over m2 0.3: brightest radiance",
                     "coat of m1 0.2 over m2 0.3: brightest radiance",
                     "coat of m1 0.4 over m2 0.3: brightest radiance",

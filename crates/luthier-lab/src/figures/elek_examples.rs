@@ -9,8 +9,8 @@ use luthier_terminal::{Failure, Outcome};
 
 use super::claim::{Check, Claim};
 use super::elek_places::crusted;
-use super::figure::{Figure, Labelled, Made, SMALL, TONE, compared};
-use super::numbers::{glitter, over_red};
+use super::figure::{Figure, Labelled, Made, SIMULATED, SMALL, TONE, compared};
+use super::numbers::{grain, over_red};
 use super::studio::{Studio, layered, mapped, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 3] = [
@@ -21,7 +21,7 @@ pub(crate) const FIGURES: [Figure; 3] = [
         caption: "Top row: layered-mc, the simulation. Bottom row: Elek's model, both in f64 under two lights. From left to right: glaze, lacquer, latex, foil, car paint. \
                   The paper adjusts the parameters of each real-time picture to look like its original; here both have the numbers of one file. Smooth coats on \
                   diffuse bases are too bright by up to the square of the index, because the model lacks that factor; the shapes of the highlights agree.",
-        size: SMALL,
+        size: SIMULATED,
         claim: Claim {
             text: "The model in real time looks like the simulation of each surface (mean FLIP of at most 0.1).",
             checks: &[
@@ -61,7 +61,7 @@ pub(crate) const FIGURES: [Figure; 3] = [
             text: "Car paint sparkles, lacquers are deeper where they are thicker, and a transparent varnish turns grey concrete \
                   blue.",
             checks: &[
-                Check::Falls(&["flakes: glitter", "orange: glitter"]),
+                Check::Falls(&["flakes: grain", "orange: grain"]),
                 Check::Falls(&["varnished: blue over red", "concrete: blue over red"]),
                 Check::Falls(&["purple: blue over red", "orange: blue over red"]),
                 Check::Within("orange, with the map of thickness against without: mean FLIP", 0.02, 1.0),
@@ -77,7 +77,7 @@ macro_rules! file {
     };
 }
 
-const SIMULATED: [(&str, &str); 5] = [
+const COMPARED: [(&str, &str); 5] = [
     ("glaze", file!("ceramic-glaze")),
     ("lacquer", file!("red-lacquer")),
     ("latex", file!("latex")),
@@ -88,7 +88,7 @@ const SIMULATED: [(&str, &str); 5] = [
 fn simulated(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let (mut top, mut bottom): (Labelled, Labelled) = (Vec::new(), Vec::new());
-    for (label, text) in SIMULATED {
+    for (label, text) in COMPARED {
         let material = material(label, text)?;
         let reference = studio.ball(&material, "layered-mc")?;
         let model = studio.ball(&material, "elek")?.image;
@@ -100,7 +100,7 @@ fn simulated(studio: &Studio) -> Outcome<Made> {
         bottom.push(("elek".to_owned(), TONE.image(model)));
     }
     top.append(&mut bottom);
-    made.shown("elek-3", top, SIMULATED.len() as u32);
+    made.shown("elek-3", top, COMPARED.len() as u32);
     Ok(made)
 }
 
@@ -197,7 +197,7 @@ fn examples(studio: &Studio) -> Outcome<Made> {
         pictures.push(((*label).to_owned(), one.swap_remove(0)));
     }
     for (label, picture) in &pictures {
-        made.measure(format!("{label}: glitter"), glitter(picture));
+        made.measure(format!("{label}: grain"), grain(picture));
         made.measure(format!("{label}: blue over red"), over_red(picture, 2));
     }
     let even = by_elek("even", &(lacquer("[0.02, 0.3, 0.9]") + CHROMIUM))?;

@@ -54,6 +54,9 @@ pub(crate) const MEDIUM: u32 = 352;
 /// Side of a picture of many on a sheet.
 pub(crate) const SMALL: u32 = 256;
 
+/// Side of a picture in f64: a simulation takes seconds of a core for each.
+pub(crate) const SIMULATED: u32 = 128;
+
 /// Tone curve of all pictures.
 pub(crate) const TONE: ToneMapping = ToneMapping::Shoulder;
 

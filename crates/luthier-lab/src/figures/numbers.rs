@@ -42,6 +42,15 @@ pub(crate) fn variation(image: &Image) -> f64 {
     (squares / f64::max(count, 1.0)).sqrt() / mean.max(1e-9)
 }
 
+/// Mean difference of luminance between neighbours in a row, over the mean, in the middle half of a picture.
+pub(crate) fn grain(image: &Image) -> f64 {
+    let values: Vec<f64> = luminances(image, 0.5).collect();
+    let side = values.len().isqrt().max(1);
+    let differences = values.chunks(side).flat_map(|row| row.windows(2)).map(|pair| (pair[0] - pair[1]).abs());
+    let count = (side * (side - 1)).max(1) as f64;
+    differences.sum::<f64>() / count / luminance(middle(image, 0.5)).max(1e-9)
+}
+
 /// Largest luminance in the middle half of a picture over the median there.
 pub(crate) fn highlight(image: &Image) -> f64 {
     let (largest, median) = (luminances(image, 0.5).fold(0.0, f64::max), median(image));
@@ -112,6 +121,10 @@ mod tests {
         let even = Image { data: [0.4, 0.2, 0.1].repeat(256), ..Image::zeros(16, 16, 3) };
         assert!((middle_differs(&even, &image) - 2.0 / 64.0).abs() < 1e-12);
         assert!(variation(&even) < 1e-6 && variation(&image) > 1.0);
+        // Each bright pixel has two neighbours in its row of 8.
+        let mean = (62.0 * dim + 101.0 * luminance([1.0; 3])) / 64.0;
+        let steps = 2.0 * (101.0 * luminance([1.0; 3]) - 2.0 * dim) / 56.0;
+        assert!(grain(&even) < 1e-6 && (grain(&image) - steps / mean).abs() < 1e-4, "{}", grain(&image));
         assert!((over_red(&even, 1) - 0.5).abs() < 1e-6 && (over_red(&even, 2) - 0.25).abs() < 1e-6);
         assert!((brightness(&even) - dim).abs() < 1e-6);
     }

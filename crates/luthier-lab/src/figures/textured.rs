@@ -10,7 +10,7 @@ use luthier_texture::png;
 
 use super::claim::{Check, Claim};
 use super::figure::{Figure, LARGE, Labelled, Made, SMALL, TONE, compared};
-use super::numbers::{glitter, over_red};
+use super::numbers::{grain, over_red};
 use super::studio::{Studio, layered, mapped};
 
 pub(crate) const FIGURES: [Figure; 5] = [
@@ -25,7 +25,7 @@ pub(crate) const FIGURES: [Figure; 5] = [
             text: "Flakes of a height field sparkle on an object of metallic paint.",
             checks: &[
                 Check::Within("flakes against none: mean FLIP", 0.03, 1.0),
-                Check::Falls(&["flakes: glitter", "none: glitter"]),
+                Check::Falls(&["flakes: grain", "none: grain"]),
             ],
         },
         make: flakes,
@@ -147,8 +147,8 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
     let plain = layered("no-flakes", &(coat + CHROMIUM), ShadingModel::Elek)?;
     let plain = pictures(studio, vec![plain], Form::Full, Shape::Sphere)?.swap_remove(0);
     measure(&mut made, "flakes against none", &ball, &plain)?;
-    made.measure("flakes: glitter", glitter(&ball));
-    made.measure("none: glitter", glitter(&plain));
+    made.measure("flakes: grain", grain(&ball));
+    made.measure("none: grain", grain(&plain));
     let heights = png::decode(include_bytes!("../../maps/heights.png")).map_err(Failure::input)?;
     let mut shown: Labelled = vec![("ball".to_owned(), TONE.image(ball))];
     shown.push(("heights".to_owned(), scaled(&heights, studio.size)));

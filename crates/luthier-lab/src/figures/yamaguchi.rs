@@ -6,7 +6,7 @@ use luthier_report::brightened_difference;
 use luthier_terminal::Outcome;
 
 use super::claim::{Check, Claim};
-use super::figure::{Figure, Made, SMALL, TONE, compared};
+use super::figure::{Figure, Made, SIMULATED, TONE, compared};
 use super::studio::{Studio, material};
 
 pub(crate) const FIGURES: [Figure; 1] = [Figure {
@@ -22,7 +22,7 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
               finds errors too. Where the brushings cross, Belcour's RMSE is still the smaller one, because \
               Yamaguchi's band across the ball has the right shape but is too faint. The slopes are luthier's, because the \
               paper's supplement, which states its own, was not available. So its RMSE values cannot be compared.",
-    size: SMALL,
+    size: SIMULATED,
     claim: Claim {
         text: "Highlights of anisotropic layers are those of the simulation, and nearer to it than Belcour's, which are \
               isotropic.",

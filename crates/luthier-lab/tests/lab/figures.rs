@@ -114,7 +114,13 @@ fn figures_of_earlier_runs_stay_on_the_page() {
         assert!(!figure["because"].as_array().unwrap().is_empty(), "{figure}");
     }
     let page = workshop.text("seen.md");
-    for text in ["seen/yamaguchi-3.png", "seen/yamaguchi-5.svg", "seen/yamaguchi-5-more.svg", "2 of 2 figures show what they must", "*Must show:*"] {
+    for text in [
+        "seen/yamaguchi-3.png",
+        "seen/yamaguchi-5.svg",
+        "seen/yamaguchi-5-more.svg",
+        "2 of 2 figures show what they must",
+        "*Must show:*",
+    ] {
         assert!(page.contains(text), "{text}: {page}");
     }
 
