@@ -276,7 +276,7 @@ fn inside(studio: &Studio) -> Outcome<Made> {
             materials.push(material);
         }
     }
-    let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| settings.exposure = 0.6)?;
+    let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| settings.exposure = 0.4)?;
     let mut shown: Labelled = Vec::new();
     for (index, pair) in indices.into_iter().zip(pictures.chunks_exact(2)) {
         let mean = |image: &Image| image.data.iter().map(|v| f64::from(*v)).sum::<f64>();
