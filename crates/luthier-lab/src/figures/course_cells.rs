@@ -15,7 +15,7 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
     title: "tilted cells alone",
     source: "Weidlich and Wilkie 2009, section 5.2.1 and figure 5.1",
     caption: "Copper of the sunstone's glitter, slope 3 degrees, over the whole ball: level, with every cell tilted, and with one cell in ten tilted. Each cell of \
-              the Voronoi diagram has a normal of its own, up to 25 degrees off, and mirrors another part of the surroundings; its edges are straight; those that lean away from the eye at the rim are dark. The course's stones \
+              the Voronoi diagram has a normal of its own, up to 25 degrees off, and mirrors another part of the surroundings; its edges are straight. The course's stones \
               have such cells over grains, which course-5-1 shows. The numbers are the shares of the middle half of the picture that differ from the level ball. The \
               number of cells and the angle are luthier's.",
     size: LARGE,

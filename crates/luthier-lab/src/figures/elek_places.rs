@@ -49,12 +49,12 @@ pub(crate) const FIGURES: [Figure; 2] = [
         caption: "The pictures show copper under cuprite at the six stages of the paper, with its width of the \
                   transition. Patina grows first where the map is dark: in blotches, and in streaks that water has left. The \
                   transition is so wide that no edge is visible: the copper pales, turns green unevenly and ends as a matt \
-                  green with the tarnish below. A map makes the patina thicker in some places. The numbers are the mean amount of patina over the map, and the mean of the green \
+                  green with the tarnish below. A map makes the patina thicker in some places; copper shows through where it is thin. The numbers are the mean amount of patina over the map, and the mean of the green \
                   channel over that of the red one in the middle of each picture. The maps, the model, the green and the tarnish are luthier's; see \
                   `materials/copper-patina.toml`.",
         size: SMALL,
         claim: Claim {
-            text: "As extent grows from -0.65 to 1.65, copper without patina becomes patina without copper, at no sharp edge.",
+            text: "As extent grows from -0.65 to 1.65, bare copper becomes green all over, at no sharp edge.",
             checks: &[
                 Check::Falls(&[
                     "extent 1.65: mean amount of patina",
