@@ -57,7 +57,7 @@ fn figures() -> Vec<Figure> {
 pub(crate) fn run(options: &FiguresOptions) -> Outcome {
     let all = figures();
     if options.list {
-        let lines: Vec<String> = all.iter().map(|f| format!("{:<16}{} ({})", f.name, f.title, f.source)).collect();
+        let lines: Vec<String> = all.iter().map(|f| format!("{:<18}{} ({})", f.name, f.title, f.source)).collect();
         return print(&lines.join("\n"));
     }
     let names: Vec<&str> = all.iter().map(|figure| figure.name).collect();
