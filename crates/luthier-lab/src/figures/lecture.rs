@@ -89,6 +89,6 @@ fn balls(studio: &Studio) -> Outcome<Made> {
         let roughness = 0.1 + 0.9 * f64::from(column) / last;
         made.measure(format!("metallic 1, roughness {roughness}: highlight over the median"), highlight(&ball));
     }
-    made.sheet("lecture-25", vec![("metallic down, roughness to the right".to_owned(), picture)], 1);
+    made.sheet("lecture-25", vec![("metal down, rough right".to_owned(), picture)], 1);
     Ok(made)
 }
