@@ -43,7 +43,7 @@ stability() {
   luthier-lab stability --json -o docs/measurements/stability.json
   luthier-lab stability -o docs/pages/stability.md
 }
-figures() { luthier-lab figures -o docs/pages/figures --size 96; }
+figures() { luthier-lab figures -o docs/pages/figures; }
 models() { luthier-lab judge materials >docs/pages/models.md; }
 lobes() { luthier-lab lobes materials --random 200 -o docs/pages/lobes.md; }
 varying() { luthier-lab varying --random 8 --noise 0.015 -o docs/pages/varying.md; }

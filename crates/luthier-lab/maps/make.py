@@ -1,6 +1,6 @@
 """The maps of figures: thickness.png, a grey map of periodic noise; bumps.png, a normal map of a field of bumps; patina.png, where patina grows
-first: in blotches and in streaks that water has left, every value as often as every other; circles.png and rays.png, two fields of tangents that cross;
-heights.png, flakes that lie askew; paint.png, a picture in colours; ripples.png, a normal map of waves.
+first: in blotches and in streaks that water has left, every value as often as every other; crust.png, how thick it lies, most where it grew first; circles.png and rays.png, two fields of
+tangents that cross; heights.png, flakes that lie askew; paint.png, a picture in colours; ripples.png, a normal map of waves.
 
     python3 crates/luthier-lab/maps/make.py
 """
@@ -29,15 +29,15 @@ def noise(seed, cells):
     return value
 
 
-def octaves(seed, cells, count):
-    layers = [(noise(seed + k, cells << k), 0.5**k) for k in range(count)]
+def octaves(seed, cells, count, decay=0.5):
+    layers = [(noise(seed + k, cells << k), decay**k) for k in range(count)]
     total = sum(weight for _, weight in layers)
     return lambda u, v: sum(weight * value(u, v) for value, weight in layers) / total
 
 
 def png(name, kind, rows):
     chunk = lambda tag, data: struct.pack(">I", len(data)) + tag + data + struct.pack(">I", zlib.crc32(tag + data))
-    head = struct.pack(">IIBBBBB", SIZE, SIZE, 8, kind, 0, 0, 0)
+    head = struct.pack(">IIBBBBB", len(rows), len(rows), 8, kind, 0, 0, 0)
     body = zlib.compress(b"".join(b"\0" + bytes(row) for row in rows), 9)
     path = os.path.join(os.path.dirname(os.path.abspath(__file__)), name)
     with open(path, "wb") as file:
@@ -71,11 +71,18 @@ stretched = lambda u, v: min(1, max(0, 0.5 + 1.8 * (thickness(u, v) - 0.5)))
 png("thickness.png", 0, [[byte(stretched(at(i), at(j))) for i in range(SIZE)] for j in range(SIZE)])
 png("bumps.png", 2, [[c for i in range(SIZE) for c in normal(at(i), at(j))] for j in range(SIZE)])
 
-blotches, wander, streaks = octaves(21, 3, 5), octaves(40, 4, 3), octaves(60, 9, 3)
-patina = lambda u, v: 0.72 * blotches(u, v) + 0.28 * streaks((u + 0.05 * wander(u, v)) % 1, 0.31)
-grown = [patina(at(i), at(j)) for j in range(SIZE) for i in range(SIZE)]
-ranks = {place: rank for rank, place in enumerate(sorted(range(SIZE * SIZE), key=lambda place: grown[place]))}
-png("patina.png", 0, [[255 * ranks[j * SIZE + i] // (SIZE * SIZE - 1) for i in range(SIZE)] for j in range(SIZE)])
+# Fine, because the model in its figures is as wide as five hundred pixels.
+FINE = 384
+blotches, wander, streaks, grain = octaves(21, 4, 7, 0.65), octaves(40, 4, 4), octaves(60, 9, 5), octaves(80, 16, 5, 0.7)
+patina = lambda u, v: 0.75 * blotches(u, v) + 0.25 * streaks((u + 0.05 * wander(u, v)) % 1, 0.31)
+places = [((i + 0.5) / FINE, (j + 0.5) / FINE) for j in range(FINE) for i in range(FINE)]
+grown = [patina(*place) for place in places]
+ranks = {place: rank for rank, place in enumerate(sorted(range(FINE * FINE), key=lambda place: grown[place]))}
+share = [ranks[i] / (FINE * FINE - 1) for i in range(FINE * FINE)]
+crust = [min(1, max(0, 0.75 - 0.45 * s + 1.2 * (grain(*place) - 0.5))) for s, place in zip(share, places)]
+for name, texels in [("patina.png", share), ("crust.png", crust)]:
+    png(name, 0, [[byte(x) for x in texels[j * FINE : (j + 1) * FINE]] for j in range(FINE)])
+
 
 def tangents(turn):
     """Lines around the middle of the map, which is the front of a ball, turned by an angle; v runs against the bitangent."""

@@ -81,12 +81,16 @@ pub(crate) struct Format {
 
 const FIGURES_EXAMPLES: &str = "\
 Writes the pictures and figures.json into a folder, and a page that explains them beside it: out/figures.md for out/figures.
+Figures that an earlier run left in the folder stay on the page.
 Pictures of shaders depend on the adapter in their last bits; those in f64 (simulation, curves) are the same everywhere.
 
 Examples:
   luthier-lab figures
   luthier-lab figures --list
   luthier-lab figures elek-5 course-classes -o seen --size 256";
+
+/// Paths of the simulation in figures, unless the command line has others.
+pub(crate) const PATHS: u64 = 256;
 
 #[derive(Debug, Args)]
 #[command(after_help = FIGURES_EXAMPLES)]
@@ -97,14 +101,14 @@ pub(crate) struct FiguresOptions {
     /// Folder to write to
     #[arg(long, short, value_name = "DIR", default_value = "out/figures")]
     pub(crate) output: PathBuf,
-    /// Side of each single picture in pixels
-    #[arg(long, value_name = "PIXELS", default_value_t = 128, value_parser = clap::value_parser!(u32).range(16..=1024))]
-    pub(crate) size: u32,
+    /// Side of each single picture in pixels; by default that of each figure
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(16..=1024))]
+    pub(crate) size: Option<u32>,
     /// Samples along each side of a pixel, of shaders
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=16))]
     pub(crate) samples: u32,
     /// Paths of the simulation per pixel, light and channel
-    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u64).range(2..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = PATHS, value_parser = clap::value_parser!(u64).range(2..=1_000_000))]
     pub(crate) paths: u64,
     #[command(flatten)]
     pub(crate) adapter: Adapter,

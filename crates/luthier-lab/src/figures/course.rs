@@ -2,13 +2,14 @@
 
 use luthier_export::MemoryStore;
 use luthier_gpu::{Package, RenderSettings, Shape};
-use luthier_lut::Image;
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::Material;
 use luthier_report::{Curve, Plot, PlotAxis, PlotColor, lightness_chroma_hue};
 use luthier_terminal::Outcome;
 
-use super::figure::{Figure, Made, compared};
+use super::claim::{Check, Claim};
+use super::figure::{Figure, Made, SMALL};
+use super::numbers::{blown_out, highlight, middle, variation};
 use super::studio::{Studio, layered, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 2] = [
@@ -22,9 +23,21 @@ pub(crate) const FIGURES: [Figure; 2] = [
                   highlight is left. The metal of d mirrors the room in colour. In e, a sharp white \
                   reflection of the light lies over a soft coloured one. In f, a rough coat lies over a metal that \
                   still mirrors sharply, because this model does not blur the light that crosses the coat (elek-2 \
-                  compares it with the simulation). The material of g is matt and bright: its picture has half the exposure of the others. In h, two clear layers lie \
+                  compares it with the simulation). The material of g is matt and bright: its picture has about a third of the exposure of the others. In h, two clear layers lie \
                   on a blue base, too rough to show the light. The numbers are the differences between the picture \
                   of the tables and that of the full evaluation.",
+        size: SMALL,
+        claim: Claim {
+            text: "The eight classes look apart: smooth coats have a highlight (a, b), rough ones have none (c, h), and metals \
+                  mirror (d).",
+            checks: &[
+                Check::Falls(&["a ceramic-glaze: highlight over the median", "c latex: highlight over the median"]),
+                Check::Falls(&["b red-lacquer: highlight over the median", "h house-paint: highlight over the median"]),
+                Check::Falls(&["d brass-foil: variation of luminance", "c latex: variation of luminance"]),
+                Check::Falls(&["d brass-foil: variation of luminance", "h house-paint: variation of luminance"]),
+                Check::Within("g silver-paint: share blown out", 0.0, 0.01),
+            ],
+        },
         make: classes,
     },
     Figure {
@@ -37,6 +50,49 @@ pub(crate) const FIGURES: [Figure; 2] = [
                   highlights stay white. The chart shows the colour of the middle of each ball. The absorption is \
                   luthier's. The hue of the ball without varnish is that of the light, and has little meaning at so \
                   small a chroma.",
+        size: SMALL,
+        claim: Claim {
+            text: "A thicker varnish first gets more saturated, then its hue turns from yellow to red and it gets darker.",
+            checks: &[
+                Check::Falls(&[
+                    "thickness 0: lightness L*",
+                    "thickness 0.2: lightness L*",
+                    "thickness 0.4: lightness L*",
+                    "thickness 0.6: lightness L*",
+                    "thickness 0.8: lightness L*",
+                    "thickness 1.2: lightness L*",
+                    "thickness 1.6: lightness L*",
+                    "thickness 3: lightness L*",
+                    "thickness 5: lightness L*",
+                    "thickness 7.5: lightness L*",
+                    "thickness 10: lightness L*",
+                    "thickness 15: lightness L*",
+                ]),
+                Check::Falls(&[
+                    "thickness 3: chroma C*",
+                    "thickness 1.6: chroma C*",
+                    "thickness 1.2: chroma C*",
+                    "thickness 0.8: chroma C*",
+                    "thickness 0.6: chroma C*",
+                    "thickness 0.4: chroma C*",
+                    "thickness 0.2: chroma C*",
+                    "thickness 0: chroma C*",
+                ]),
+                Check::Falls(&[
+                    "thickness 0.2: hue, degrees",
+                    "thickness 0.4: hue, degrees",
+                    "thickness 0.6: hue, degrees",
+                    "thickness 0.8: hue, degrees",
+                    "thickness 1.2: hue, degrees",
+                    "thickness 1.6: hue, degrees",
+                    "thickness 3: hue, degrees",
+                    "thickness 5: hue, degrees",
+                    "thickness 7.5: hue, degrees",
+                    "thickness 10: hue, degrees",
+                    "thickness 15: hue, degrees",
+                ]),
+            ],
+        },
         make: varnish,
     },
 ];
@@ -59,8 +115,15 @@ const CLASSES: [(&str, &str, &str); 8] = [
     of_class!("house-paint", "house"),
 ];
 
-/// The material that is shown at half the exposure: silver is whiter than the light is meant for.
-const BRIGHT: &str = "silver-paint";
+/// Exposure of a material: bright rough metals are whiter than the light is meant for.
+pub(super) fn exposure(material: &str) -> f32 {
+    match material {
+        "silver-paint" => 0.35,
+        "gold-metallic-paint" => 0.5,
+        "sugar" => 0.8,
+        _ => 1.0,
+    }
+}
 
 fn classes(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
@@ -70,13 +133,16 @@ fn classes(studio: &Studio) -> Outcome<Made> {
     }
     let package = Package::for_renderer(&materials, &MemoryStore::default())?;
     let look = |n: usize, settings: &mut RenderSettings| {
-        settings.exposure = if CLASSES[n].0 == BRIGHT { 0.5 } else { 1.0 };
+        settings.exposure = exposure(CLASSES[n].0);
     };
     let baked = studio.rendered(&package, Form::Baked, Shape::Sphere, look)?;
     let full = studio.rendered(&package, Form::Full, Shape::Sphere, look)?;
     for ((material, baked), full) in materials.iter().zip(&baked).zip(&full) {
-        let flip = compared(baked, full)?.flip_mean;
-        made.measure(format!("{} {}, tables against full: mean FLIP", material.class, material.name), flip);
+        made.apart(&format!("{} {}, tables against full", material.class, material.name), baked, full)?;
+        let name = format!("{} {}", material.class.symbol(), material.name);
+        made.measure(format!("{name}: highlight over the median"), highlight(baked));
+        made.measure(format!("{name}: variation of luminance"), variation(baked));
+        made.measure(format!("{name}: share blown out"), blown_out(baked));
     }
     let label =
         |(material, (_, label, _)): (&Material, &(&str, &str, &str))| format!("{} {label}", material.class.symbol());
@@ -121,7 +187,7 @@ fn varnish(studio: &Studio) -> Outcome<Made> {
     let names = [("lightness L*", PlotColor::Ink), ("chroma C*", PlotColor::Red), ("hue, degrees", PlotColor::Blue)];
     let mut curves = names.map(|(name, color)| Curve { name: name.to_owned(), color, points: Vec::new() });
     for (thickness, picture) in THICKNESSES.into_iter().zip(&pictures) {
-        let values = lightness_chroma_hue(middle(picture));
+        let values = lightness_chroma_hue(middle(picture, 0.2));
         for (curve, value) in curves.iter_mut().zip(values) {
             made.measure(format!("thickness {thickness}: {}", curve.name), value);
             curve.points.push([thickness, value]);
@@ -140,19 +206,4 @@ fn varnish(studio: &Studio) -> Outcome<Made> {
         },
     );
     Ok(made)
-}
-
-/// Mean colour of the middle fifth of a picture.
-pub(super) fn middle(image: &Image) -> [f64; 3] {
-    let range = image.width * 2 / 5..image.width * 3 / 5;
-    let count = f64::from(range.end - range.start).max(1.0);
-    let mut sum = [0.0; 3];
-    for y in range.clone() {
-        for x in range.clone() {
-            for (sum, value) in sum.iter_mut().zip(image.texel(x, y)) {
-                *sum += f64::from(*value) / (count * count);
-            }
-        }
-    }
-    sum
 }

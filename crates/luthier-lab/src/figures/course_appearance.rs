@@ -1,14 +1,15 @@
 //! Figures of the course of Weidlich and Wilkie about the look of materials.
 
-use luthier_gpu::Shape;
+use luthier_gpu::{RenderSettings, Shape};
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::Material;
-use luthier_optics::color::luminance;
 use luthier_report::lightness_chroma_hue;
 use luthier_terminal::Outcome;
 
-use super::course::by_course;
-use super::figure::{Figure, Labelled, Made};
+use super::claim::{Check, Claim};
+use super::course::{by_course, exposure};
+use super::figure::{Figure, Labelled, MEDIUM, Made, SMALL};
+use super::numbers::{blown_out, highlight, variation};
 use super::studio::{Studio, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 2] = [
@@ -19,6 +20,27 @@ pub(crate) const FIGURES: [Figure; 2] = [
         caption: "Top row: gold, silver and copper, whose highlights have the colour of the metal. Middle row: silver under three coloured lacquers. Bottom row: \
                   the same lacquers over a white base. Middle and bottom have equal lacquers and slopes; the metals mirror the surroundings, the paints show their \
                   colour, as the course says. The numbers are the variation of luminance over each picture, divided by its mean.",
+        size: MEDIUM,
+        claim: Claim {
+            text: "Metals and coated metals mirror the surroundings, and paints show their own colour.",
+            checks: &[
+                Check::Falls(&[
+                    "gold: variation of luminance",
+                    "purple-metal: variation of luminance",
+                    "purple-paint: variation of luminance",
+                ]),
+                Check::Falls(&[
+                    "silver: variation of luminance",
+                    "orange-metal: variation of luminance",
+                    "orange-paint: variation of luminance",
+                ]),
+                Check::Falls(&[
+                    "copper: variation of luminance",
+                    "green-metal: variation of luminance",
+                    "green-paint: variation of luminance",
+                ]),
+            ],
+        },
         make: metals,
     },
     Figure {
@@ -28,7 +50,19 @@ pub(crate) const FIGURES: [Figure; 2] = [
         caption: "The samples of chapter 5 from the files in `materials/` by the course's model: frosted paints (sugar, latex, house paint, frosted acrylic), \
                   glossy paints (ceramic glaze, red and acrylic lacquer), foils (brass, polished gold), metallic paints (gold, blue), frosted metal (silver and gold paint), a car \
                   paint, and two samples that the course has in words alone: garnet red, a rough clear varnish of slope 12 degrees and index 1.6 over Munsell's 7.5R 2/8, \
-                  and a Christmas ball, tinted lacquer over a silvered inside.",
+                  and a Christmas ball, tinted lacquer over a silvered inside. Silver, gold metallic paint and sugar have less exposure than the others.",
+        size: SMALL,
+        claim: Claim {
+            text: "Sixteen samples look apart: glossy ones have a highlight, frosted ones have none, and no sample is blown out.",
+            checks: &[
+                Check::Falls(&["ceramic-glaze: highlight over the median", "latex: highlight over the median"]),
+                Check::Falls(&["red-lacquer: highlight over the median", "frosted-acrylic: highlight over the median"]),
+                Check::Falls(&["acrylic-lacquer: highlight over the median", "sugar: highlight over the median"]),
+                Check::Within("silver-paint: share blown out", 0.0, 0.01),
+                Check::Within("gold-metallic-paint: share blown out", 0.0, 0.01),
+                Check::Within("sugar: share blown out", 0.0, 0.01),
+            ],
+        },
         make: samples,
     },
 ];
@@ -65,18 +99,7 @@ fn metals(studio: &Studio) -> Outcome<Made> {
     let materials: Vec<Material> = all.iter().map(|(_, material)| material.clone()).collect();
     let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, _| {})?;
     for ((_, material), picture) in all.iter().zip(&pictures) {
-        let middle = picture.width / 4..picture.width * 3 / 4;
-        let values: Vec<f64> = middle
-            .clone()
-            .flat_map(|y| middle.clone().map(move |x| (x, y)))
-            .map(|(x, y)| luminance([0, 1, 2].map(|c: usize| f64::from(picture.texel(x, y)[c]))))
-            .collect();
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
-        let variance = values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / values.len() as f64;
-        made.measure(
-            format!("{}: variation of luminance over its mean", material.name),
-            variance.sqrt() / mean.max(1e-9),
-        );
+        made.measure(format!("{}: variation of luminance", material.name), variation(picture));
     }
     made.sheet("course-4-1", all.into_iter().map(|(name, _)| name).zip(pictures).collect(), 3);
     Ok(made)
@@ -125,15 +148,18 @@ fn samples(studio: &Studio) -> Outcome<Made> {
     }
     let mut pictures: Labelled = Vec::new();
     for (label, material) in &all {
-        let shown = studio.pictures(std::slice::from_ref(material), Form::Full, Shape::Sphere, |_, _| {})?;
+        let look = |_, settings: &mut RenderSettings| settings.exposure = exposure(&material.name);
+        let shown = studio.pictures(std::slice::from_ref(material), Form::Full, Shape::Sphere, look)?;
         for picture in shown {
             let middle = picture.texel(picture.width / 2, picture.height / 2);
             let [lightness, chroma, _] = lightness_chroma_hue([0, 1, 2].map(|c: usize| f64::from(middle[c])));
             made.measure(format!("{}, middle of the ball: lightness", material.name), lightness);
             made.measure(format!("{}, middle of the ball: chroma", material.name), chroma);
+            made.measure(format!("{}: highlight over the median", material.name), highlight(&picture));
+            made.measure(format!("{}: share blown out", material.name), blown_out(&picture));
             pictures.push((format!("{} {label}", material.class.symbol()), picture));
         }
     }
-    made.sheet("course-5-7", pictures, 8);
+    made.sheet("course-5-7", pictures, 4);
     Ok(made)
 }

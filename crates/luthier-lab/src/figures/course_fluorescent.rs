@@ -6,7 +6,8 @@ use luthier_layers::monochrome::Monochrome;
 use luthier_lut::Image;
 use luthier_terminal::{Failure, Outcome};
 
-use super::figure::{Figure, Made};
+use super::claim::{Check, Claim};
+use super::figure::{Figure, LARGE, Made};
 use super::studio::{Studio, material};
 
 pub(crate) const FIGURES: [Figure; 1] = [Figure {
@@ -17,6 +18,17 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
               532 nm. Each picture is the hemisphere of the eye seen from above: its middle is the normal, its edge the horizon. The facets of the varnish mirror in green, \
               around the mirror direction, and the base glows orange everywhere. At 5 and 20 degrees the green light makes a faint yellow spot; at 60 degrees it \
               is bright and has moved to the horizon. The course's photograph at 60 degrees has almost no green, which this model does not explain. The numbers are the shares of the light that leave in green and in orange. Matrix and index (1.5) are luthier's.",
+    size: LARGE,
+    claim: Claim {
+        text: "The base glows in orange from all sides, and the varnish mirrors in green, the more the flatter the light \
+              falls in.",
+        checks: &[
+            Check::Falls(&["60 degrees: leaves in green", "20 degrees: leaves in green", "5 degrees: leaves in green"]),
+            Check::Falls(&["5 degrees: leaves in orange", "5 degrees: leaves in green"]),
+            Check::Falls(&["20 degrees: leaves in orange", "20 degrees: leaves in green"]),
+            Check::Falls(&["60 degrees: leaves in orange", "60 degrees: leaves in green"]),
+        ],
+    },
     make: cardboard,
 }];
 

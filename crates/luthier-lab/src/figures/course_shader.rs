@@ -12,8 +12,10 @@ use luthier_optics::masking::v_cavity;
 use luthier_report::lightness_chroma_hue;
 use luthier_terminal::{Failure, Outcome};
 
+use super::claim::{Check, Claim};
 use super::course::by_course;
-use super::figure::{Figure, Labelled, Made, TONE};
+use super::figure::{Figure, Labelled, MEDIUM, Made, SMALL, TONE};
+use super::numbers::{brightness, over_red};
 use super::studio::{Studio, mapped};
 
 pub(crate) const FIGURES: [Figure; 6] = [
@@ -24,6 +26,22 @@ pub(crate) const FIGURES: [Figure; 6] = [
         caption: "The first ball has a red lacquer that absorbs, the second a clear coat over a base whose albedo has the colour of the first ball's \
                   middle. The other pictures are the differences of hue, chroma and lightness (CIE 1976), grey where there is none and brighter where the \
                   absorbing lacquer has more. Chroma and lightness differ most at the rim, where paths in the lacquer are long, and hue least, as the course says.",
+        size: SMALL,
+        claim: Claim {
+            text: "An absorbing lacquer differs from a clear one over a coloured base in chroma and lightness, most at the rim, \
+                  and hardly in hue.",
+            checks: &[
+                Check::Falls(&[
+                    "mean difference of chroma, where both have a colour",
+                    "mean difference of lightness, where both have a colour",
+                    "mean difference of hue, where both have a colour",
+                ]),
+                Check::Falls(&[
+                    "mean difference of lightness at the rim",
+                    "mean difference of lightness in the middle",
+                ]),
+            ],
+        },
         make: absorption,
     },
     Figure {
@@ -32,6 +50,18 @@ pub(crate) const FIGURES: [Figure; 6] = [
         source: "Weidlich and Wilkie 2009, figure 3.5",
         caption: "Balls with sigma 0, 0.2, 0.4, 0.6, 0.8 and 1.0 under a light from the eye. Sigma 0 falls off towards the rim as Lambert's cosine; with \
                   sigma the ball gets flat like the full Moon. The numbers are the radiance at 0.9 of the radius over that of the middle.",
+        size: SMALL,
+        claim: Claim {
+            text: "With growing sigma the ball gets flat, up to the rim.",
+            checks: &[Check::Falls(&[
+                "sigma 1: radiance near the rim over that of the middle",
+                "sigma 0.8: radiance near the rim over that of the middle",
+                "sigma 0.6: radiance near the rim over that of the middle",
+                "sigma 0.4: radiance near the rim over that of the middle",
+                "sigma 0.2: radiance near the rim over that of the middle",
+                "sigma 0: radiance near the rim over that of the middle",
+            ])],
+        },
         make: bases,
     },
     Figure {
@@ -40,6 +70,26 @@ pub(crate) const FIGURES: [Figure; 6] = [
         source: "Weidlich and Wilkie 2009, figure 3.6",
         caption: "The varnish of the course in six thicknesses, from none to opaque, over silver. The mirrored surroundings get blue and dark, while the \
                   reflection of the varnish itself stays white. The absorption is luthier's.",
+        size: SMALL,
+        claim: Claim {
+            text: "A thicker blue varnish on silver turns it blue, then dark.",
+            checks: &[
+                Check::Falls(&[
+                    "0 um: mean luminance",
+                    "0.2 um: mean luminance",
+                    "0.5 um: mean luminance",
+                    "1 um: mean luminance",
+                    "2 um: mean luminance",
+                    "5 um: mean luminance",
+                ]),
+                Check::Falls(&[
+                    "1 um: blue over red",
+                    "0.5 um: blue over red",
+                    "0.2 um: blue over red",
+                    "0 um: blue over red",
+                ]),
+            ],
+        },
         make: silver,
     },
     Figure {
@@ -50,6 +100,17 @@ pub(crate) const FIGURES: [Figure; 6] = [
                   from the upper left, white where it is 1 (right). The index of the lacquer is 1.3 above and 2.5 below. The term darkens a lacquer of a low index \
                   by a few hundredths, and that of a high index by a fifth. At the rim facets hide each other, and t is 1 again. The course names neither the indices \
                   nor the slope; its picture of a low index has t between 0.95 and 1.",
+        size: MEDIUM,
+        claim: Claim {
+            text: "Internal reflection darkens a lacquer, little for a low index (t from 0.95 to 1) and much for a high one.",
+            checks: &[
+                Check::Falls(&[
+                    "index 1.3: light with the term over that without",
+                    "index 2.5: light with the term over that without",
+                ]),
+                Check::Within("index 1.3: least t of the light from the upper left", 0.95, 1.0),
+            ],
+        },
         make: inside,
     },
     Figure {
@@ -59,6 +120,15 @@ pub(crate) const FIGURES: [Figure; 6] = [
         caption: "From left to right: the coat alone, over black; the base alone; the base through a clear coat; through the coat that absorbs; all of it. \
                   The coat is the surface of the course's shader, Blinn's distribution with V-cavities. \
                   The course's figure adds an ambient term and an environment; here the surroundings are seen by all parts.",
+        size: SMALL,
+        claim: Claim {
+            text: "The shader is the sum of its parts: the highlight of the coat, and a base that absorption darkens and colours.",
+            checks: &[
+                Check::Within("clear coat, over the sum of coat and base: mean luminance", 0.5, 1.0),
+                Check::Falls(&["clear coat: mean luminance", "absorbs: mean luminance"]),
+                Check::Falls(&["clear coat: blue over red", "absorbs: blue over red"]),
+            ],
+        },
         make: parts,
     },
     Figure {
@@ -68,6 +138,17 @@ pub(crate) const FIGURES: [Figure; 6] = [
         caption: "A smooth clear varnish on a diffuse base (a), a smooth tinted one (b), a varnish whose thickness a map varies (c), and a matt varnish over aluminium with \
                   bumps (d): the normal map tilts only what lies below the varnish, whose own reflection runs over the bumps undisturbed. In (e), which the course does not show, \
                   the varnish has the bumps, too. Maps and numbers are luthier's.",
+        size: SMALL,
+        claim: Claim {
+            text: "Each of the four varnishes shows: clear, tinted, of varying thickness, and matt over bumps that do not disturb \
+                  it.",
+            checks: &[
+                Check::Within("b tinted against a clear: mean FLIP", 0.02, 1.0),
+                Check::Within("c thickness against b tinted: mean FLIP", 0.02, 1.0),
+                Check::Within("d below against without bumps: mean FLIP", 0.02, 1.0),
+                Check::Within("e above against d below: mean FLIP", 0.02, 1.0),
+            ],
+        },
         make: varnishes,
     },
 ];
@@ -99,6 +180,8 @@ fn absorption(studio: &Studio) -> Outcome<Made> {
     for (c, (name, scale)) in [("hue", 8.0), ("chroma", 12.0), ("lightness", 8.0)].into_iter().enumerate() {
         let mut apart = Image::zeros(with.width, with.height, 3);
         let (mut sum, mut count) = (0.0, 0.0);
+        // Sums and counts within two thirds of the radius, and outside.
+        let mut zones = [[0.0, 0.0]; 2];
         for y in 0..with.height {
             for x in 0..with.width {
                 let [a, b] = [&with, &without].map(|image| lightness_chroma_hue(rgb(image, x, y)));
@@ -108,18 +191,29 @@ fn absorption(studio: &Studio) -> Outcome<Made> {
                     d -= 360.0 * (d / 360.0).round();
                     d = if seen { d } else { 0.0 };
                 }
-                (sum, count) = if seen { (sum + d.abs(), count + 1.0) } else { (sum, count) };
+                if seen {
+                    (sum, count) = (sum + d.abs(), count + 1.0);
+                    let at = |i: u32| (2.0 * (f64::from(i) + 0.5) / f64::from(with.width) - 1.0) / BALL;
+                    let zone = &mut zones[usize::from(libm::hypot(at(x), at(y)) > 2.0 / 3.0)];
+                    *zone = [zone[0] + d.abs(), zone[1] + 1.0];
+                }
                 let shade = (0.5 + 0.5 * d / scale).clamp(0.0, 1.0) as f32;
                 let at = 3 * (y * with.width + x) as usize;
                 apart.data[at..at + 3].fill(shade * shade);
             }
         }
         made.measure(format!("mean difference of {name}, where both have a colour"), sum / f64::max(count, 1.0));
+        for ([sum, count], zone) in zones.into_iter().zip(["in the middle", "at the rim"]) {
+            made.measure(format!("mean difference of {name} {zone}"), sum / f64::max(count, 1.0));
+        }
         pictures.push((format!("d {name}"), apart));
     }
     made.shown("course-3-3", pictures, 5);
     Ok(made)
 }
+
+/// Radius of the ball over half the side of a picture.
+const BALL: f64 = 0.8;
 
 fn rgb(image: &Image, x: u32, y: u32) -> [f64; 3] {
     let texel = image.texel(x, y);
@@ -141,7 +235,7 @@ fn bases(studio: &Studio) -> Outcome<Made> {
     })?;
     for (sigma, picture) in sigmas.into_iter().zip(&pictures) {
         let middle = picture.width / 2;
-        let edge = middle + (f64::from(middle) * 0.8) as u32 * 9 / 10;
+        let edge = middle + (f64::from(middle) * BALL) as u32 * 9 / 10;
         let ratio = rgb(picture, edge, middle)[1] / rgb(picture, middle, middle)[1].max(1e-9);
         made.measure(format!("sigma {sigma}: radiance near the rim over that of the middle"), ratio);
     }
@@ -158,6 +252,10 @@ fn silver(studio: &Studio) -> Outcome<Made> {
         materials.push(by_course(&format!("silver-{i}"), &(coat(thickness, "[0.6, 0.35, 0.05]") + metal))?);
     }
     let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, _| {})?;
+    for (thickness, picture) in thicknesses.iter().zip(&pictures) {
+        made.measure(format!("{thickness} um: mean luminance"), brightness(picture));
+        made.measure(format!("{thickness} um: blue over red"), over_red(picture, 2));
+    }
     made.sheet("course-3-6", thicknesses.iter().map(|d| format!("{d} um")).zip(pictures).collect(), 6);
     Ok(made)
 }
@@ -178,7 +276,7 @@ fn inside(studio: &Studio) -> Outcome<Made> {
             materials.push(material);
         }
     }
-    let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| settings.exposure = 0.6)?;
+    let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| settings.exposure = 0.4)?;
     let mut shown: Labelled = Vec::new();
     for (index, pair) in indices.into_iter().zip(pictures.chunks_exact(2)) {
         let mean = |image: &Image| image.data.iter().map(|v| f64::from(*v)).sum::<f64>();
@@ -205,7 +303,7 @@ fn seen_inside(size: u32, index: f64) -> (Image, f64) {
     let (mut image, mut least) = (Image::zeros(size, size, 3), 1.0);
     for y in 0..size {
         for x in 0..size {
-            let at = |i: u32| (2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0) / 0.8;
+            let at = |i: u32| (2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0) / BALL;
             let (nx, ny) = (at(x), -at(y));
             let normal = DVec3::new(nx, ny, (1.0 - nx * nx - ny * ny).max(0.0).sqrt());
             let (cos_i, cos_o) = (normal.dot(light), normal.z);
@@ -239,6 +337,12 @@ fn parts(studio: &Studio) -> Outcome<Made> {
         materials.push(by_course(&format!("part-{i}"), layers)?);
     }
     let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, _| {})?;
+    for ((label, _), picture) in all.iter().zip(&pictures) {
+        made.measure(format!("{label}: mean luminance"), brightness(picture));
+        made.measure(format!("{label}: blue over red"), over_red(picture, 2));
+    }
+    let [coat, base, both] = [0, 1, 2].map(|i: usize| brightness(&pictures[i]));
+    made.measure("clear coat, over the sum of coat and base: mean luminance", both / (coat + base));
     made.sheet("course-3-8", all.iter().map(|(name, _)| (*name).to_owned()).zip(pictures).collect(), 5);
     Ok(made)
 }
@@ -256,13 +360,19 @@ fn varnishes(studio: &Studio) -> Outcome<Made> {
         ("b tinted", coat(0.5, RED) + &white),
         ("c thickness", map(coat(2.0, RED), "thickness", "thickness.png") + &white),
         ("d below", matt.clone() + METAL + bumps),
-        ("e above", map(matt, "normal", "bumps.png") + METAL),
+        ("e above", map(matt.clone(), "normal", "bumps.png") + METAL),
     ];
     let mut materials = Vec::new();
     for (i, (_, layers)) in all.iter().enumerate() {
         materials.push(mapped(by_course(&format!("varnish-{i}"), layers)?));
     }
-    let pictures = studio.pictures(&materials, Form::Full, Shape::Torus, |_, _| {})?;
+    materials.push(by_course("no-bumps", &(matt + METAL))?);
+    let mut pictures = studio.pictures(&materials, Form::Full, Shape::Torus, |_, _| {})?;
+    let level = pictures.pop().unwrap_or_else(|| Image::zeros(1, 1, 3));
+    for (i, j) in [(1, 0), (2, 1), (4, 3)] {
+        made.apart(&format!("{} against {}", all[i].0, all[j].0), &pictures[i], &pictures[j])?;
+    }
+    made.apart("d below against without bumps", &pictures[3], &level)?;
     made.sheet("course-3-9", all.iter().map(|(name, _)| (*name).to_owned()).zip(pictures).collect(), 5);
     Ok(made)
 }

@@ -11,8 +11,10 @@ use luthier_material::Material;
 use luthier_report::lightness_chroma_hue;
 use luthier_terminal::{Failure, Outcome, valid};
 
-use super::course::{by_course, middle};
-use super::figure::{Figure, Made, compared};
+use super::claim::{Check, Claim};
+use super::course::by_course;
+use super::figure::{Figure, LARGE as SIZE, Made, compared};
+use super::numbers::{glitter as glittering, middle};
 use super::studio::Studio;
 
 pub(crate) const FIGURES: [Figure; 3] = [
@@ -23,6 +25,18 @@ pub(crate) const FIGURES: [Figure; 3] = [
         caption: "Sunstone has one colour, a varnish over a Lambertian base, and a glitter map of copper flakes below varnish of that colour. Lepidolite has \
                   dark and bright tiles, veins of marble, and few flakes of silver on top; course-5-3 shows its maps one by one. Indices, slopes and numbers of entries are the \
                   course's, colours and numbers of cells luthier's: the files are in `materials/surfaces`.",
+        size: SIZE,
+        claim: Claim {
+            text: "Metallic cells glitter in a stone of one colour, and fewer of them in a stone of many grains.",
+            checks: &[
+                Check::Within("sunstone: share at least twice as bright as the median", 0.01, 0.5),
+                Check::Falls(&[
+                    "sunstone: share at least twice as bright as the median",
+                    "lepidolite: share at least twice as bright as the median",
+                ]),
+                Check::Within("lepidolite: share at least twice as bright as the median", 0.001, 0.5),
+            ],
+        },
         make: stones,
     },
     Figure {
@@ -32,8 +46,18 @@ pub(crate) const FIGURES: [Figure; 3] = [
         caption: "The course draws how maps of Voronoi cells lie one over the other; here each map is a square of a surface that the shader picks. \
                   The surface map (1) has small cells, grains of the dark lepidolite. The glitter map (2) has fewer and larger cells, most of them transparent: here they are dark. \
                   The surface-glitter map (3) is both. The bump map (4) tilts the cells of the glitter map that are not transparent, and no others: one grey material shows \
-                  it. The combined maps (5) are grains, with particles of which some sparkle. The figure has to show that the cells of 2 and of 4 are the same, that 3 has them over the cells of 1, \
-                  and that 5 differs from 3 in these cells alone. It does.",
+                  it. The combined maps (5) are grains, with particles of which some sparkle.",
+        size: SIZE,
+        claim: Claim {
+            text: "The glitter map lies over the surface map, and the bump map tilts the cells of the glitter map and no others.",
+            checks: &[
+                Check::Within("3 against 1: mean FLIP", 0.02, 1.0),
+                Check::Within("5 against 3: mean FLIP", 0.005, 1.0),
+                // The particles that the square shows, and the pixels on their edges.
+                Check::Within("share of the square that glitters, 0.3 of the cells", 0.2, 0.3),
+                Check::Within("share of pixels in which 5 differs from 3", 0.2, 0.3),
+            ],
+        },
         make: maps,
     },
     Figure {
@@ -42,9 +66,21 @@ pub(crate) const FIGURES: [Figure; 3] = [
         source: "Weidlich and Wilkie 2009, figure 5.3",
         caption: "Lepidolite has a surface map of dark tiles and one of bright tiles, nine entries each, of cells of one size. A map of larger tiles has either. The marble has three entries, \
                   brighter than the bright tiles, and one of either kind of tiles, in much smaller cells. Perlin's noise near 0 puts it into veins: \
-                  that is the marble function here, because the course does not print its own. The close-up has \
-                  to show polygonal facets whose colour changes with the larger tiles, and pale lines that cross them. It does. Colours, numbers of cells and \
-                  the noise are luthier's.",
+                  that is the marble function here, because the course does not print its own. Colours, numbers of cells and the noise are luthier's.",
+        size: SIZE,
+        claim: Claim {
+            text: "Dark and bright tiles share the surface, and veins of marble, brighter than both, cross it.",
+            checks: &[
+                Check::Falls(&[
+                    "marble: lightness L* of the middle",
+                    "bright tiles: lightness L* of the middle",
+                    "b dark tiles: lightness L* of the middle",
+                ]),
+                Check::Within("share of the square: bright tiles", 0.1, 0.9),
+                Check::Within("share of the square: dark tiles", 0.1, 0.9),
+                Check::Within("share of the square: marble", 0.02, 0.4),
+            ],
+        },
         make: lepidolite,
     },
 ];
@@ -78,7 +114,12 @@ fn stones(studio: &Studio) -> Outcome<Made> {
     let mut all = Vec::new();
     for name in STONES {
         let (materials, surface) = stone(name)?;
-        let picture = pictures(studio, &materials, &[surface], |_| studio.settings(Shape::Sphere))?;
+        // Directions would be drawn about the level surface, which misses what tilted flakes mirror.
+        let settings = |_| Ok(RenderSettings { environment_samples: 0, ..studio.settings(Shape::Sphere)? });
+        let picture = pictures(studio, &materials, &[surface], settings)?;
+        for picture in &picture {
+            made.measure(format!("{name}: share at least twice as bright as the median"), glittering(picture));
+        }
         all.extend(picture.into_iter().map(|picture| (name.to_owned(), picture)));
     }
     made.sheet("course-5-1", all, 2);
@@ -206,7 +247,7 @@ fn lepidolite(studio: &Studio) -> Outcome<Made> {
     };
     let all = pictures(studio, &materials, &surfaces, near)?;
     for (label, picture) in labels.iter().zip(&all).skip(1).filter(|(label, _)| !label.contains("larger")) {
-        made.measure(format!("{label}: lightness L* of the middle"), lightness_chroma_hue(middle(picture))[0]);
+        made.measure(format!("{label}: lightness L* of the middle"), lightness_chroma_hue(middle(picture, 0.2))[0]);
     }
     let names = ["dark tiles", "marble", "bright tiles", "glitter"];
     for (name, share) in names.iter().zip(shares(&whole)) {

@@ -7,7 +7,10 @@ use luthier_manifest::{Form, MapSlot, ShadingModel};
 use luthier_material::{Material, VariationSource};
 use luthier_terminal::{Failure, Outcome};
 
-use super::figure::{Figure, Labelled, Made, TONE, compared};
+use super::claim::{Check, Claim};
+use super::elek_places::crusted;
+use super::figure::{Figure, Labelled, Made, SIMULATED, SMALL, TONE, compared};
+use super::numbers::{grain, over_red};
 use super::studio::{Studio, layered, mapped, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 3] = [
@@ -18,6 +21,17 @@ pub(crate) const FIGURES: [Figure; 3] = [
         caption: "Top row: layered-mc, the simulation. Bottom row: Elek's model, both in f64 under two lights. From left to right: glaze, lacquer, latex, foil, car paint. \
                   The paper adjusts the parameters of each real-time picture to look like its original; here both have the numbers of one file. Smooth coats on \
                   diffuse bases are too bright by up to the square of the index, because the model lacks that factor; the shapes of the highlights agree.",
+        size: SIMULATED,
+        claim: Claim {
+            text: "The model in real time looks like the simulation of each surface (mean FLIP of at most 0.1).",
+            checks: &[
+                Check::Within("glaze: mean FLIP", 0.0, 0.1),
+                Check::Within("lacquer: mean FLIP", 0.0, 0.1),
+                Check::Within("latex: mean FLIP", 0.0, 0.1),
+                Check::Within("foil: mean FLIP", 0.0, 0.1),
+                Check::Within("car paint: mean FLIP", 0.0, 0.1),
+            ],
+        },
         make: simulated,
     },
     Figure {
@@ -26,6 +40,14 @@ pub(crate) const FIGURES: [Figure; 3] = [
         source: "Elek 2010, figure 9",
         caption: "The map that says where patina grows first, and patina with a wide transition (0.9) and a narrow one (0.2) at the same extent, 0.45. With the wide \
                   one all places have half grown; with the narrow one, metal and patina lie side by side.",
+        size: SMALL,
+        claim: Claim {
+            text: "A wide transition blurs the boundary of the patina, a narrow one makes it sharp.",
+            checks: &[Check::Falls(&[
+                "transition 0.9: share of the map where patina has half grown",
+                "transition 0.2: share of the map where patina has half grown",
+            ])],
+        },
         make: edges,
     },
     Figure {
@@ -34,6 +56,17 @@ pub(crate) const FIGURES: [Figure; 3] = [
         source: "Elek 2010, figure 10",
         caption: "From left to right: car paint whose flakes have slopes of 25 degrees; an orange and a purple lacquer on chromium, whose thickness a map \
                   varies; concrete, a base of Oren and Nayar with sigma 0.5, bare and under a blue transparent varnish. Numbers and map are luthier's.",
+        size: SMALL,
+        claim: Claim {
+            text: "Car paint sparkles, lacquers are deeper where they are thicker, and a transparent varnish turns grey concrete \
+                  blue.",
+            checks: &[
+                Check::Falls(&["flakes: grain", "orange: grain"]),
+                Check::Falls(&["varnished: blue over red", "concrete: blue over red"]),
+                Check::Falls(&["purple: blue over red", "orange: blue over red"]),
+                Check::Within("orange, with the map of thickness against without: mean FLIP", 0.02, 1.0),
+            ],
+        },
         make: examples,
     },
 ];
@@ -44,7 +77,7 @@ macro_rules! file {
     };
 }
 
-const SIMULATED: [(&str, &str); 5] = [
+const COMPARED: [(&str, &str); 5] = [
     ("glaze", file!("ceramic-glaze")),
     ("lacquer", file!("red-lacquer")),
     ("latex", file!("latex")),
@@ -55,7 +88,7 @@ const SIMULATED: [(&str, &str); 5] = [
 fn simulated(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let (mut top, mut bottom): (Labelled, Labelled) = (Vec::new(), Vec::new());
-    for (label, text) in SIMULATED {
+    for (label, text) in COMPARED {
         let material = material(label, text)?;
         let reference = studio.ball(&material, "layered-mc")?;
         let model = studio.ball(&material, "elek")?.image;
@@ -67,7 +100,7 @@ fn simulated(studio: &Studio) -> Outcome<Made> {
         bottom.push(("elek".to_owned(), TONE.image(model)));
     }
     top.append(&mut bottom);
-    made.shown("elek-3", top, SIMULATED.len() as u32);
+    made.shown("elek-3", top, COMPARED.len() as u32);
     Ok(made)
 }
 
@@ -76,7 +109,7 @@ const TRANSITIONS: [f64; 2] = [0.9, 0.2];
 
 fn edges(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
-    let copper = material("copper-patina.toml", file!("copper-patina"))?;
+    let copper = crusted()?;
     let mut materials = Vec::new();
     for (i, transition) in TRANSITIONS.into_iter().enumerate() {
         let mut stage = shaded(&copper, &format!("edge-{i}"), ShadingModel::Elek);
@@ -163,6 +196,13 @@ fn examples(studio: &Studio) -> Outcome<Made> {
         let mut one = studio.pictures(std::slice::from_ref(material), Form::Full, Shape::Sphere, |_, _| {})?;
         pictures.push(((*label).to_owned(), one.swap_remove(0)));
     }
+    for (label, picture) in &pictures {
+        made.measure(format!("{label}: grain"), grain(picture));
+        made.measure(format!("{label}: blue over red"), over_red(picture, 2));
+    }
+    let even = by_elek("even", &(lacquer("[0.02, 0.3, 0.9]") + CHROMIUM))?;
+    let even = studio.pictures(&[even], Form::Full, Shape::Sphere, |_, _| {})?.swap_remove(0);
+    made.apart("orange, with the map of thickness against without", &pictures[1].1, &even)?;
     made.sheet("elek-10", pictures, all.len() as u32);
     Ok(made)
 }

@@ -8,7 +8,9 @@ use luthier_material::{Material, VariationSource};
 use luthier_optics::color::luminance;
 use luthier_terminal::{Failure, Outcome};
 
-use super::figure::{Figure, Made};
+use super::claim::{Check, Claim};
+use super::figure::{Figure, Made, SMALL};
+use super::numbers::over_red;
 use super::studio::{Studio, mapped, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 2] = [
@@ -22,7 +24,22 @@ pub(crate) const FIGURES: [Figure; 2] = [
                   paint becomes smooth. In the bottom row it is not weighted, and the ball stays noisy at any \
                   distance, down to single dark and bright pixels. The number is the variation of luminance that \
                   flakes cause between pixels, divided by the mean, in the middle of the picture; at distance 32 \
-                  that is a square of 8 pixels by default.",
+                  that is a square of 16 pixels.",
+        size: SMALL,
+        claim: Claim {
+            text: "Flakes whose normals are scaled by the distance fade into a smooth paint; without it the paint stays noisy at \
+                  any distance.",
+            checks: &[
+                Check::Falls(&[
+                    "scaled, distance 4: noise of the flakes",
+                    "scaled, distance 8: noise of the flakes",
+                    "scaled, distance 16: noise of the flakes",
+                    "scaled, distance 32: noise of the flakes",
+                ]),
+                Check::Falls(&["plain, distance 32: noise of the flakes", "scaled, distance 32: noise of the flakes"]),
+                Check::Within("plain, distance 32 over distance 4: noise of the flakes", 0.5, 2.0),
+            ],
+        },
         make: flakes,
     },
     Figure {
@@ -32,8 +49,31 @@ pub(crate) const FIGURES: [Figure; 2] = [
         caption: "The pictures show copper under cuprite at the six stages of the paper, with its width of the \
                   transition. Patina grows first where the map is dark: in blotches, and in streaks that water has left. The \
                   transition is so wide that no edge is visible: the copper pales, turns green unevenly and ends as a matt \
-                  green with the tarnish below. The number is the mean amount of patina over the map. The map, the model, the \
-                  green and the tarnish are luthier's; see `materials/copper-patina.toml`.",
+                  green with the tarnish below. A map makes the patina thicker in some places; copper shows through where it is thin. The numbers are the mean amount of patina over the map, and the mean of the green \
+                  channel over that of the red one in the middle of each picture. The maps, the model, the green and the tarnish are luthier's; see \
+                  `materials/copper-patina.toml`.",
+        size: SMALL,
+        claim: Claim {
+            text: "As extent grows from -0.65 to 1.65, bare copper becomes green all over, at no sharp edge.",
+            checks: &[
+                Check::Falls(&[
+                    "extent 1.65: mean amount of patina",
+                    "extent 0.75: mean amount of patina",
+                    "extent 0.45: mean amount of patina",
+                    "extent 0.15: mean amount of patina",
+                    "extent -0.05: mean amount of patina",
+                    "extent -0.65: mean amount of patina",
+                ]),
+                Check::Falls(&[
+                    "extent 1.65: green over red",
+                    "extent 0.75: green over red",
+                    "extent 0.45: green over red",
+                    "extent 0.15: green over red",
+                    "extent -0.05: green over red",
+                    "extent -0.65: green over red",
+                ]),
+            ],
+        },
         make: patina,
     },
 ];
@@ -58,6 +98,7 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
     let materials = [variant("fading", near, 1.0)?, variant("not-fading", 1e6, 1.0)?, variant("smooth", near, 0.0)?];
     let package = Package::for_renderer(&lit(&materials), &MemoryStore::default())?;
     let mut rows = [Vec::new(), Vec::new()];
+    let mut plain = Vec::new();
     for (step, distance) in DISTANCES.into_iter().enumerate() {
         // A pixel is always as wide at the eye; what is far away is smaller, and enlarged.
         let size = (studio.size >> step).max(8);
@@ -70,9 +111,16 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
         })?;
         let smooth = pictures.pop().unwrap_or_else(|| Image::zeros(size, size, 3));
         for ((row, image), what) in rows.iter_mut().zip(pictures).zip(["scaled", "plain"]) {
-            made.measure(format!("{what}, distance {distance}: noise of the flakes"), noise(&image, &smooth));
+            let noise = noise(&image, &smooth);
+            made.measure(format!("{what}, distance {distance}: noise of the flakes"), noise);
+            if what == "plain" {
+                plain.push(noise);
+            }
             row.push((format!("{what}, {distance}"), enlarged(&image, studio.size)));
         }
+    }
+    if let [near, .., far] = plain.as_slice() {
+        made.measure("plain, distance 32 over distance 4: noise of the flakes", far / near);
     }
     let [with, without] = rows;
     made.sheet("elek-7", [with, without].concat(), DISTANCES.len() as u32);
@@ -114,9 +162,18 @@ fn enlarged(image: &Image, size: u32) -> Image {
 const EXTENTS: [f64; 6] = [-0.65, -0.05, 0.15, 0.45, 0.75, 1.65];
 const TRANSITION: f64 = 0.65;
 
+/// Copper under a patina that lies thicker in some places than in others.
+pub(super) fn crusted() -> Outcome<Material> {
+    let absorption = "absorption_per_um = [0.9, 0.25, 0.5]\n";
+    material(
+        "copper-patina.toml",
+        &PATINA.replace(absorption, &format!("{absorption}maps = {{ thickness = \"crust.png\" }}\n")),
+    )
+}
+
 fn patina(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
-    let copper = material("copper-patina.toml", PATINA)?;
+    let copper = crusted()?;
     let mut materials = Vec::new();
     let map = || VariationSource::Image { path: "patina.png".to_owned() };
     for (i, extent) in EXTENTS.into_iter().enumerate() {
@@ -137,6 +194,9 @@ fn patina(studio: &Studio) -> Outcome<Made> {
         made.measure(format!("extent {extent}: mean amount of patina"), amounts.sum::<f64>() / count as f64);
     }
     let pictures = studio.staged(&package, |_, _| {})?;
+    for (extent, picture) in EXTENTS.iter().zip(&pictures) {
+        made.measure(format!("extent {extent}: green over red"), over_red(picture, 1));
+    }
     let labels = EXTENTS.iter().map(|extent| format!("extent {extent}"));
     made.sheet("elek-8", labels.zip(pictures).collect(), 3);
     Ok(made)

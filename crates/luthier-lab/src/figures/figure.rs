@@ -5,6 +5,7 @@ use luthier_lut::Image;
 use luthier_report::{PictureComparison, Plot, brightened_difference, compare_pictures, sheet};
 use luthier_terminal::{Failure, Outcome};
 
+use super::claim::Claim;
 use super::studio::Studio;
 
 /// A figure of a paper, and how to make it anew.
@@ -16,6 +17,9 @@ pub(crate) struct Figure {
     pub(crate) source: &'static str,
     /// Text below the figure: what the paper shows, what differs here, what to see.
     pub(crate) caption: &'static str,
+    /// Side of each single picture in pixels, where the command line has none.
+    pub(crate) size: u32,
+    pub(crate) claim: Claim,
     pub(crate) make: fn(&Studio) -> Outcome<Made>,
 }
 
@@ -40,6 +44,18 @@ pub(crate) struct Measured {
 
 /// Pictures and what stands below each.
 pub(crate) type Labelled = Vec<(String, Image)>;
+
+/// Side of a picture of two or three on a sheet.
+pub(crate) const LARGE: u32 = 512;
+
+/// Side of a picture of three in a row, in several rows.
+pub(crate) const MEDIUM: u32 = 352;
+
+/// Side of a picture of many on a sheet.
+pub(crate) const SMALL: u32 = 256;
+
+/// Side of a picture in f64: a simulation takes seconds of a core for each.
+pub(crate) const SIMULATED: u32 = 128;
 
 /// Tone curve of all pictures.
 pub(crate) const TONE: ToneMapping = ToneMapping::Shoulder;
@@ -66,6 +82,12 @@ impl Made {
 
     pub(crate) fn measure(&mut self, what: impl Into<String>, value: f64) {
         self.measured.push(Measured { what: what.into(), value });
+    }
+
+    /// Notes how far two linear pictures are apart for the eye.
+    pub(crate) fn apart(&mut self, what: &str, a: &Image, b: &Image) -> Outcome {
+        self.measure(format!("{what}: mean FLIP"), compared(a, b)?.flip_mean);
+        Ok(())
     }
 
     /// Compares two linear pictures: RMSE, largest difference and FLIP are noted. The brightened difference of what a

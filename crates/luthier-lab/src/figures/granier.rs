@@ -11,7 +11,9 @@ use luthier_material::Material;
 use luthier_report::{Curve, Plot, PlotAxis, PlotColor};
 use luthier_terminal::Outcome;
 
-use super::figure::{Figure, Made, TONE};
+use super::claim::{Check, Claim};
+use super::figure::{Figure, LARGE, Made, SMALL, TONE};
+use super::numbers::over_red;
 use super::studio::{Studio, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 5] = [
@@ -25,6 +27,21 @@ pub(crate) const FIGURES: [Figure; 5] = [
                   (middle). The chart shows the diffuse coefficient for the three wavelengths. It exceeds 1, so that \
                   a white base under this model reflects more light than it receives. The indices 1.5, 1.6, 1.8 are \
                   those of figure 6; the ranges are luthier's.",
+        size: LARGE,
+        claim: Claim {
+            text: "A narrow range of thicknesses looks like old metal or clay, of one tint; a wide range gives bands of pure \
+                  colours.",
+            checks: &[
+                Check::Falls(&[
+                    "coloured, 200 to 700 nm: spread of the channels",
+                    "old metal, 52 to 84 nm: spread of the channels",
+                ]),
+                Check::Falls(&[
+                    "coloured, 200 to 700 nm: spread of the channels",
+                    "clay, 40 to 58 nm: spread of the channels",
+                ]),
+            ],
+        },
         make: diffuse,
     },
     Figure {
@@ -38,6 +55,16 @@ pub(crate) const FIGURES: [Figure; 5] = [
                   of the first, with a bluish and a yellow edge, and the right of the ball darkens. With one index \
                   for all colours, the second highlight has no coloured edges. With an exponent of 20 for the inner \
                   boundary, it is wide, and its colours blur into each other.",
+        size: SMALL,
+        claim: Claim {
+            text: "Where the boundaries are not parallel, the beam through the layer leaves in another direction: a second \
+                  highlight with coloured edges, unless all colours have one index.",
+            checks: &[
+                Check::Falls(&["14 degrees: spread of the channels", "one index: spread of the channels"]),
+                Check::Within("14 degrees against parallel: mean FLIP", 0.02, 1.0),
+                Check::Within("90 and 20 against 14 degrees: mean FLIP", 0.02, 1.0),
+            ],
+        },
         make: deviation,
     },
     Figure {
@@ -48,6 +75,14 @@ pub(crate) const FIGURES: [Figure; 5] = [
                   like a bump map. A flat boundary gives smooth bands of colour, which are finer for thicker films. \
                   Bumps break these bands up into streaks, like oil on rough ground. One repeat of the thickness map \
                   is 12 and 24 um wide, chosen for the look. The ranges of thickness are luthier's.",
+        size: SMALL,
+        claim: Claim {
+            text: "Normals that follow the thickness break up the smooth bands of colour.",
+            checks: &[
+                Check::Falls(&["flat 100-400: spread of the channels", "bump 100-400: spread of the channels"]),
+                Check::Falls(&["flat 200-900: spread of the channels", "bump 200-900: spread of the channels"]),
+            ],
+        },
         make: correlated,
     },
     Figure {
@@ -61,6 +96,16 @@ pub(crate) const FIGURES: [Figure; 5] = [
                   model with the exact film in the mirror direction. Both have their extremes at the same \
                   thicknesses. But the two beams of the model make the object reflect all light, and more than falls \
                   on it where both are in phase.",
+        size: SMALL,
+        claim: Claim {
+            text: "Colours of interference change with the thickness: thin films are brown, thicker ones blue, then yellow.",
+            checks: &[
+                Check::Falls(&["110 to 140 nm: blue over red", "50 to 70 nm: blue over red"]),
+                Check::Falls(&["110 to 140 nm: blue over red", "160 to 200 nm: blue over red"]),
+                Check::Within("50 to 70 nm: blue over red", 0.0, 1.0),
+                Check::Within("160 to 200 nm: blue over red", 0.0, 1.0),
+            ],
+        },
         make: combined,
     },
     Figure {
@@ -71,6 +116,15 @@ pub(crate) const FIGURES: [Figure; 5] = [
                   As there, the normals of the inner boundary follow the thickness of the layer, the phase has a table of 256 entries, the \
                   thickness one of 256 by 256 of Perlin's noise, and pictures differ in the range of the thickness alone. The mesh casts shadows on \
                   itself and on its floor. Ranges, indices and exponent are luthier's, the latter those of figure 6 and figure 4.",
+        size: SMALL,
+        claim: Claim {
+            text: "Tables show the layer on a mesh, in other colours for each range of thickness.",
+            checks: &[
+                Check::Within("140 to 220 nm against 60 to 110 nm: mean FLIP", 0.03, 1.0),
+                Check::Within("220 to 360 nm against 140 to 220 nm: mean FLIP", 0.03, 1.0),
+                Check::Within("200 to 700 nm against 220 to 360 nm: mean FLIP", 0.03, 1.0),
+            ],
+        },
         make: on_a_mesh,
     },
 ];
@@ -108,11 +162,16 @@ fn on_a_mesh(studio: &Studio) -> Outcome<Made> {
         made.measure(format!("{min} to {max} nm: spread of the channels"), spread(&picture));
         shown.push((format!("{min}-{max} nm"), picture));
     }
+    for (ranges, pair) in MESH_RANGES_NM.windows(2).zip(shown.windows(2)) {
+        if let ([[a, b], [c, d]], [(_, thin), (_, thick)]) = (ranges, pair) {
+            made.apart(&format!("{c} to {d} nm against {a} to {b} nm"), thick, thin)?;
+        }
+    }
     made.sheet("granier-7", shown, 2);
     // One as large as a page is wide.
     let mut settings = studio.stage()?;
     look(&mut settings);
-    settings.size = studio.size * 16 / 3;
+    settings.size = studio.size * 4;
     made.picture("granier-7-large", studio.gpu()?.scene(&package, Form::Baked)?.render(&[1], &settings)?);
     Ok(made)
 }
@@ -255,6 +314,8 @@ fn deviation(studio: &Studio) -> Outcome<Made> {
     for (label, picture) in labels.iter().zip(&pictures) {
         made.measure(format!("{label}: spread of the channels"), spread(picture));
     }
+    made.apart("14 degrees against parallel", &pictures[1], &pictures[0])?;
+    made.apart("90 and 20 against 14 degrees", &pictures[3], &pictures[1])?;
     made.sheet("granier-4", labels.map(str::to_owned).into_iter().zip(pictures).collect(), 4);
     Ok(made)
 }
@@ -309,6 +370,7 @@ fn combined(studio: &Studio) -> Outcome<Made> {
     let mut shown = Vec::new();
     for ((_, [min, max]), picture) in ranges.iter().zip(pictures) {
         made.measure(format!("{min} to {max} nm: spread of the channels"), spread(&picture));
+        made.measure(format!("{min} to {max} nm: blue over red"), over_red(&picture, 2));
         shown.push((format!("{min}-{max} nm"), picture));
     }
     made.sheet("granier-6", shown, 4);

@@ -2,12 +2,15 @@
 
 use luthier_export::{MemoryStore, Package, lit};
 use luthier_gpu::{GRID_SIDE, Shape};
+use luthier_lut::Image;
 use luthier_manifest::Form;
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_terminal::{Failure, Outcome};
 
-use super::figure::{Figure, Made};
+use super::claim::{Check, Claim};
+use super::figure::{Figure, Made, SMALL};
+use super::numbers::highlight;
 use super::studio::{Studio, material};
 
 pub(crate) const FIGURES: [Figure; 1] = [Figure {
@@ -17,6 +20,27 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
     caption: "Metallic falls from 1 to 0 down the rows, roughness grows from 0.1 to 1 along them. The files are of type `metallic-roughness` with the lecture's F0 of \
               copper as base colour (0.955, 0.638, 0.538), and F0 of 0.04 where nothing is metallic; F0 lies on the straight line between. The model is \
               `belcour`, which follows all bounces, so that the base shows its colour. The numbers are F0 down the rows, R, G, B, as the interface of the file has it.",
+    size: SMALL,
+    claim: Claim {
+        text: "F0 falls from that of copper to 0.04 with metallic, and highlights get wider and dimmer with roughness.",
+        checks: &[
+            Check::Falls(&[
+                "metallic 1: F0, R",
+                "metallic 0.75: F0, R",
+                "metallic 0.5: F0, R",
+                "metallic 0.25: F0, R",
+                "metallic 0: F0, R",
+            ]),
+            Check::Within("metallic 0: F0, R", 0.0399, 0.0401),
+            Check::Falls(&[
+                "metallic 1, roughness 0.1: highlight over the median",
+                "metallic 1, roughness 0.325: highlight over the median",
+                "metallic 1, roughness 0.55: highlight over the median",
+                "metallic 1, roughness 0.775: highlight over the median",
+                "metallic 1, roughness 1: highlight over the median",
+            ]),
+        ],
+    },
     make: balls,
 }];
 
@@ -53,6 +77,18 @@ fn balls(studio: &Studio) -> Outcome<Made> {
     settings.environment_samples = 0;
     let all: Vec<u32> = (0..materials.len() as u32).collect();
     let picture = scene.render(&all, &settings).map_err(Failure::device)?;
-    made.sheet("lecture-25", vec![("metallic down, roughness to the right".to_owned(), picture)], 1);
+    let side = picture.width / GRID_SIDE;
+    for column in 0..GRID_SIDE {
+        // The ball of all metal, in its cell of the first row.
+        let mut ball = Image::zeros(side, side, 3);
+        for y in 0..side {
+            for x in 0..side {
+                ball.texel_mut(x, y).copy_from_slice(picture.texel(column * side + x, y));
+            }
+        }
+        let roughness = 0.1 + 0.9 * f64::from(column) / last;
+        made.measure(format!("metallic 1, roughness {roughness}: highlight over the median"), highlight(&ball));
+    }
+    made.sheet("lecture-25", vec![("metal down, rough right".to_owned(), picture)], 1);
     Ok(made)
 }

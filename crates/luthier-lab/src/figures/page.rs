@@ -1,66 +1,99 @@
-//! Texts about figures.
+//! The manifest of the figures of a folder, and the page about them.
 
 use std::fmt::Write;
+use std::io::ErrorKind;
 use std::path::Path;
 
 use luthier_export::GENERATOR;
+use luthier_terminal::{Failure, Outcome, files};
 use serde_json::{Value, json};
 
-use super::figure::{Figure, Made};
-use super::studio::Studio;
-use crate::cli::FiguresOptions;
+use super::Done;
+use super::figure::{Figure, Measured};
+use crate::cli::{FiguresOptions, PATHS};
+
+/// Version of the manifest.
+const SCHEMA: u64 = 2;
 
 /// The manifest.
-pub(crate) fn json(options: &FiguresOptions, studio: &Studio, made: &[(&Figure, Made)]) -> Value {
-    let entry = |(figure, made): &(&Figure, Made)| {
-        let files: Vec<&str> = made.files.iter().map(|(file, _)| file.as_str()).collect();
-        let measured: Vec<Value> = made.measured.iter().map(|m| json!({"what": m.what, "value": m.value})).collect();
+pub(crate) fn json(adapter: Option<&str>, made: &[Done]) -> Value {
+    let entry = |Done { figure, size, command, files, measured, verdict }: &Done| {
+        let measured: Vec<Value> = measured.iter().map(|m| json!({"what": m.what, "value": m.value})).collect();
         json!({
             "name": figure.name,
             "title": figure.title,
             "source": figure.source,
             "caption": figure.caption,
+            "must_show": figure.claim.text,
+            "shows": verdict.holds,
+            "because": verdict.because,
+            "size": size,
             "files": files,
             "measured": measured,
-            "command": command(options, Some(figure.name)),
+            "command": command,
         })
     };
     json!({
-        "schema": 1,
+        "schema": SCHEMA,
         "generator": GENERATOR,
-        "adapter": studio.adapter_name(),
-        "size": options.size,
-        "samples": options.samples,
-        "paths": options.paths,
+        "adapter": adapter,
         "figures": made.iter().map(entry).collect::<Vec<Value>>(),
     })
 }
 
+/// The manifest that an earlier run left; `None` where there is none of this version.
+pub(crate) fn read(path: &Path) -> Outcome<Option<Value>> {
+    let text = match std::fs::read_to_string(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        text => text.map_err(files(path, "read"))?,
+    };
+    let manifest: Value = serde_json::from_str(&text).map_err(Failure::input)?;
+    Ok(Some(manifest).filter(|manifest| manifest["schema"] == SCHEMA))
+}
+
+/// The adapter of an earlier run.
+pub(crate) fn adapter(old: &Value) -> Option<String> {
+    old["adapter"].as_str().map(str::to_owned)
+}
+
+/// A figure as an earlier run made it; `None` where it did not.
+pub(crate) fn kept<'a>(figure: &'a Figure, old: &Value) -> Outcome<Option<Done<'a>>> {
+    let entries = old["figures"].as_array().into_iter().flatten();
+    let Some(entry) = entries.into_iter().find(|entry| entry["name"] == figure.name) else { return Ok(None) };
+    let texts = |key: &str| entry[key].as_array().into_iter().flatten();
+    let files = texts("files").filter_map(Value::as_str).map(str::to_owned).collect();
+    let measured = texts("measured").filter_map(|measured| {
+        Some(Measured { what: measured["what"].as_str()?.to_owned(), value: measured["value"].as_f64()? })
+    });
+    let size = entry["size"].as_u64().unwrap_or(0) as u32;
+    let command = entry["command"].as_str().unwrap_or_default().to_owned();
+    Done::new(figure, size, command, files, measured.collect()).map(Some)
+}
+
 /// The page; its links begin at the folder above the pictures.
-pub(crate) fn markdown(options: &FiguresOptions, studio: &Studio, made: &[(&Figure, Made)]) -> String {
+pub(crate) fn markdown(options: &FiguresOptions, adapter: Option<&str>, made: &[Done]) -> String {
     let folder = options.output.file_name().unwrap_or_default().to_string_lossy();
     let mut page = format!(
-        "# The papers' figures, made anew\n\nMade by `{}`. Each figure was published in a paper on layered materials; luthier \
-         renders it again from the paper's parameters. A single picture is {} pixels wide, with {} samples to a pixel. A \
-         simulation takes {} paths per pixel, light and channel. Adapter: {}. The tone curve keeps values up to 0.8 and bends larger \
-         ones towards 1. RMSE compares linear radiance over all pixels and channels. FLIP compares pictures as a display shows \
-         them at 67 pixels per degree. Where a paper does not state a parameter, and for the light and the shapes, the values are luthier's own.\n",
-        command(options, None),
-        options.size,
-        options.samples * options.samples,
-        options.paths,
-        studio.adapter_name().unwrap_or_else(|| "none was needed".to_owned()),
+        "# The papers' figures, made anew\n\nMade by `luthier-lab figures`. Each figure was published in a paper on layered materials; luthier renders it again \
+         from the paper's parameters. {} of {} figures show what they must: *must show* has the statement, and the numbers that decide. The other numbers of \
+         a figure, and the command that makes it, are below its text. Pictures of shaders have 4 samples to a pixel, and a simulation takes {PATHS} paths per pixel, light \
+         and channel, unless the command says otherwise. Adapter: {}. The tone curve keeps values up to 0.8 and bends larger ones towards 1. RMSE compares \
+         linear radiance over all pixels and channels. FLIP compares pictures as a display shows them at 67 pixels per degree. Where a paper does not state a \
+         parameter, and for the light and the shapes, the values are luthier's own.\n",
+        made.iter().filter(|done| done.verdict.holds).count(),
+        made.len(),
+        adapter.unwrap_or("none was needed"),
     );
-    for (figure, made) in made {
+    for Done { figure, size, command, files, measured, verdict } in made {
         let _ = write!(page, "\n## {}: {}\n\n*{}*\n\n", figure.name, figure.title, figure.source);
-        for (file, _) in &made.files {
+        for file in files {
             let _ = writeln!(page, "![{}]({folder}/{file})\n", figure.title);
         }
+        let verb = if verdict.holds { "It shows this" } else { "**It does not show this**" };
+        let _ = writeln!(page, "*Must show:* {} {verb}: {}.\n", figure.claim.text, verdict.because.join("; "));
         let _ = writeln!(page, "{}\n", figure.caption);
-        if !made.measured.is_empty() {
-            page.push_str("| measured | |\n|---|---|\n");
-        }
-        for measured in &made.measured {
+        let _ = writeln!(page, "| `{command}` | {size} pixels a picture |\n|---|---|");
+        for measured in measured {
             let _ = writeln!(page, "| {} | {} |", measured.what, number(measured.value));
         }
     }
@@ -68,7 +101,7 @@ pub(crate) fn markdown(options: &FiguresOptions, studio: &Studio, made: &[(&Figu
 }
 
 /// Three significant digits.
-fn number(value: f64) -> String {
+pub(crate) fn number(value: f64) -> String {
     match value.abs() {
         0.0 => "0".to_owned(),
         1e-3..10.0 => format!("{value:.3}"),
@@ -77,21 +110,16 @@ fn number(value: f64) -> String {
     }
 }
 
-/// The command line of a figure, or of the page.
-fn command(options: &FiguresOptions, name: Option<&str>) -> String {
-    let mut words = vec!["luthier-lab figures".to_owned()];
-    match name {
-        Some(name) => words.push(name.to_owned()),
-        None => words.extend(options.names.iter().cloned()),
-    }
+/// The command line of a figure.
+pub(crate) fn command(options: &FiguresOptions, name: &str) -> String {
+    let mut words = vec![format!("luthier-lab figures {name}")];
     if options.output != Path::new("out/figures") {
         words.push(format!("-o {}", options.output.display()));
     }
-    let numbers = [
-        ("size", u64::from(options.size), 128),
-        ("samples", u64::from(options.samples), 2),
-        ("paths", options.paths, 128),
-    ];
+    if let Some(size) = options.size {
+        words.push(format!("--size {size}"));
+    }
+    let numbers = [("samples", u64::from(options.samples), 2), ("paths", options.paths, PATHS)];
     let changed = numbers.into_iter().filter(|(_, value, default)| value != default);
     words.extend(changed.map(|(option, value, _)| format!("--{option} {value}")));
     words.join(" ")

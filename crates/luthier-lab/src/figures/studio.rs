@@ -15,6 +15,7 @@ use luthier_material::{Material, parse};
 use luthier_report::{BallPicture, DistantLight, render_ball};
 use luthier_terminal::{Failure, Outcome, adapter_label, open};
 
+use super::figure::SIMULATED;
 use crate::cli::FiguresOptions;
 
 /// Directions of the environment per lobe and sample: with four samples to a pixel, 128 per lobe.
@@ -27,6 +28,7 @@ const LIGHTS: [DistantLight; 2] = [
 ];
 
 pub(crate) struct Studio {
+    /// Side of each single picture, of the figure that is made.
     pub(crate) size: u32,
     samples: u32,
     paths: u64,
@@ -38,9 +40,9 @@ pub(crate) struct Studio {
 
 impl Studio {
     pub(crate) fn new(options: &FiguresOptions) -> Self {
-        let FiguresOptions { size, samples, paths, adapter, .. } = options;
+        let FiguresOptions { samples, paths, adapter, .. } = options;
         let (gpu, environment, mesh) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
-        Self { size: *size, samples: *samples, paths: *paths, adapter: adapter.name.clone(), gpu, environment, mesh }
+        Self { size: 0, samples: *samples, paths: *paths, adapter: adapter.name.clone(), gpu, environment, mesh }
     }
 
     /// The adapter, opened when the first figure needs it.
@@ -120,10 +122,17 @@ impl Studio {
         (0..package.manifest.materials.len()).map(render).collect()
     }
 
-    /// A ball in f64, under two lights and nothing else; estimates from the paths of the command line.
+    /// A ball in f64, at most [`SIMULATED`] pixels wide, under two lights and nothing else; estimates from the paths of the command line. The simulation
+    /// of luthier-gpu would do for most materials; on software adapters it takes longer for more noise.
     pub(crate) fn ball(&self, material: &Material, model: &str) -> Outcome<BallPicture> {
         let model = self.model(model)?;
-        Ok(render_ball(model.as_ref(), &material.stack, material.bake.wavelengths_nm(), &LIGHTS, self.size))
+        Ok(render_ball(
+            model.as_ref(),
+            &material.stack,
+            material.bake.wavelengths_nm(),
+            &LIGHTS,
+            self.size.min(SIMULATED),
+        ))
     }
 
     fn model(&self, name: &str) -> Outcome<Box<dyn Model>> {

@@ -8,7 +8,9 @@ use luthier_material::Material;
 use luthier_terminal::{Failure, Outcome};
 use luthier_texture::png;
 
-use super::figure::{Figure, Labelled, Made, TONE, compared};
+use super::claim::{Check, Claim};
+use super::figure::{Figure, LARGE, Labelled, Made, SMALL, TONE, compared};
+use super::numbers::{grain, over_red};
 use super::studio::{Studio, layered, mapped};
 
 pub(crate) const FIGURES: [Figure; 5] = [
@@ -18,6 +20,14 @@ pub(crate) const FIGURES: [Figure; 5] = [
         source: "Elek 2010, figure 6",
         caption: "Chromium flakes under a tinted coat, the heights of the flakes, and the normals that the bake makes of them by finite differences. The flakes are larger than \
                   the paper's, so that single ones can be seen. Heights and numbers are luthier's; `crates/luthier-lab/maps/make.py` draws them.",
+        size: LARGE,
+        claim: Claim {
+            text: "Flakes of a height field sparkle on an object of metallic paint.",
+            checks: &[
+                Check::Within("flakes against none: mean FLIP", 0.03, 1.0),
+                Check::Falls(&["flakes: grain", "none: grain"]),
+            ],
+        },
         make: flakes,
     },
     Figure {
@@ -25,6 +35,14 @@ pub(crate) const FIGURES: [Figure; 5] = [
         title: "a diffuse map under lacquers",
         source: "Elek 2010, Algorithm 1, line 22, which no figure shows",
         caption: "A painted base, the same under a clear lacquer, and under a lacquer that absorbs. The map multiplies the albedo of the base. Map and numbers are luthier's.",
+        size: LARGE,
+        claim: Claim {
+            text: "A map colours the base, and lacquers lie over it.",
+            checks: &[
+                Check::Within("clear, with the map against without: mean FLIP", 0.1, 1.0),
+                Check::Falls(&["clear: blue over red", "tinted: blue over red"]),
+            ],
+        },
         make: painted,
     },
     Figure {
@@ -33,6 +51,14 @@ pub(crate) const FIGURES: [Figure; 5] = [
         source: "The lecture's slide on textures, which has no figure of a layered surface",
         caption: "A metallic-roughness surface without metal, with a map of how metallic it is, and all of metal. The left and the right picture have a white map in its place. \
                   In the middle paint has come off a metal. Maps and numbers are luthier's.",
+        size: LARGE,
+        claim: Claim {
+            text: "One map makes some places of a surface metal and leaves others paint.",
+            checks: &[
+                Check::Within("the map against paint: mean FLIP", 0.05, 1.0),
+                Check::Within("the map against metal: mean FLIP", 0.05, 1.0),
+            ],
+        },
         make: metal,
     },
     Figure {
@@ -42,6 +68,15 @@ pub(crate) const FIGURES: [Figure; 5] = [
         caption: "A coat of index 1.49 on gold, by Yamaguchi's model. From left to right: both layers isotropic, as Belcour's model has them; the tangents of the base on circles \
                   around the middle; those of the coat on rays; both, so that the fields cross everywhere. Each layer has a map of its own. The paper's fields and slopes \
                   are not known; these are luthier's.",
+        size: SMALL,
+        claim: Claim {
+            text: "Each layer follows a field of tangents of its own, which isotropic distributions cannot show.",
+            checks: &[
+                Check::Within("base against isotropic: mean FLIP", 0.02, 1.0),
+                Check::Within("coat against isotropic: mean FLIP", 0.02, 1.0),
+                Check::Within("crossed against isotropic: mean FLIP", 0.02, 1.0),
+            ],
+        },
         make: crossed,
     },
     Figure {
@@ -51,6 +86,15 @@ pub(crate) const FIGURES: [Figure; 5] = [
         caption: "A matt varnish over aluminium: bumps of the metal alone, bumps of the varnish alone above flat metal, and bumps of both. Where the metal is flat, its \
                   reflection is bent by the bumps through which it is seen, less than a bumpy metal bends it. Dark spots are where light that is mirrored inside \
                   would be totally reflected on its way out, which bumps of both avoid. Map and numbers are luthier's.",
+        size: SMALL,
+        claim: Claim {
+            text: "Bumps of the metal alone leave the reflection of the varnish as it is, and bumps of the varnish alone bend the \
+                  metal less than its own do.",
+            checks: &[Check::Falls(&[
+                "below against flat: RMSE of linear radiance",
+                "above against flat: RMSE of linear radiance",
+            ])],
+        },
         make: bumps,
     },
 ];
@@ -103,6 +147,8 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
     let plain = layered("no-flakes", &(coat + CHROMIUM), ShadingModel::Elek)?;
     let plain = pictures(studio, vec![plain], Form::Full, Shape::Sphere)?.swap_remove(0);
     measure(&mut made, "flakes against none", &ball, &plain)?;
+    made.measure("flakes: grain", grain(&ball));
+    made.measure("none: grain", grain(&plain));
     let heights = png::decode(include_bytes!("../../maps/heights.png")).map_err(Failure::input)?;
     let mut shown: Labelled = vec![("ball".to_owned(), TONE.image(ball))];
     shown.push(("heights".to_owned(), scaled(&heights, studio.size)));
@@ -129,6 +175,9 @@ fn painted(studio: &Studio) -> Outcome<Made> {
     let even = pictures(studio, vec![even], Form::Full, Shape::Sphere)?.swap_remove(0);
     let shown = pictures(studio, materials, Form::Full, Shape::Sphere)?;
     measure(&mut made, "clear, with the map against without", &shown[1], &even)?;
+    for ((label, _), picture) in all.iter().zip(&shown) {
+        made.measure(format!("{label}: blue over red"), over_red(picture, 2));
+    }
     made.sheet("elek-line-22", all.iter().map(|(label, _)| (*label).to_owned()).zip(shown).collect(), 3);
     Ok(made)
 }

@@ -5,7 +5,8 @@ use luthier_material::Material;
 use luthier_report::brightened_difference;
 use luthier_terminal::Outcome;
 
-use super::figure::{Figure, Made, TONE, compared};
+use super::claim::{Check, Claim};
+use super::figure::{Figure, Made, SIMULATED, TONE, compared};
 use super::studio::{Studio, material};
 
 pub(crate) const FIGURES: [Figure; 1] = [Figure {
@@ -21,6 +22,21 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
               finds errors too. Where the brushings cross, Belcour's RMSE is still the smaller one, because \
               Yamaguchi's band across the ball has the right shape but is too faint. The slopes are luthier's, because the \
               paper's supplement, which states its own, was not available. So its RMSE values cannot be compared.",
+    size: SIMULATED,
+    claim: Claim {
+        text: "Highlights of anisotropic layers are those of the simulation, and nearer to it than Belcour's, which are \
+              isotropic.",
+        checks: &[
+            Check::Falls(&[
+                "one way, belcour against simulation: RMSE less the noise",
+                "one way, yamaguchi against simulation: RMSE less the noise",
+            ]),
+            Check::Falls(&[
+                "crossed, belcour against simulation: RMSE less the noise",
+                "crossed, yamaguchi against simulation: RMSE less the noise",
+            ]),
+        ],
+    },
     make: simulation,
 }];
 

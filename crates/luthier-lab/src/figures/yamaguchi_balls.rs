@@ -9,7 +9,8 @@ use luthier_manifest::{Form, ShadingModel};
 use luthier_material::Material;
 use luthier_terminal::{Failure, Outcome};
 
-use super::figure::{Figure, Labelled, Made};
+use super::claim::{Check, Claim};
+use super::figure::{Figure, LARGE, Labelled, Made, SMALL};
 use super::studio::{Studio, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 2] = [
@@ -20,6 +21,18 @@ pub(crate) const FIGURES: [Figure; 2] = [
         caption: "A coat of index 1.49 on gold under the surroundings, by Yamaguchi's model, on a torus whose tangents follow the ring. From left to right: both layers isotropic (a); an \
                   anisotropic base (b); an anisotropic coat (c); both, along one tangent (d); both, the coat across (e). The highlights stretch across the \
                   brushing of the layer that has it. The paper's meshes, slopes and surroundings are not known; these are luthier's.",
+        size: SMALL,
+        claim: Claim {
+            text: "Each layer may be isotropic or anisotropic, along its own tangents, and the surface looks another way each \
+                  time.",
+            checks: &[
+                Check::Within("b base against a isotropic: mean FLIP", 0.02, 1.0),
+                Check::Within("c coat against a isotropic: mean FLIP", 0.02, 1.0),
+                Check::Within("d one way against a isotropic: mean FLIP", 0.02, 1.0),
+                Check::Within("e crossed against a isotropic: mean FLIP", 0.02, 1.0),
+                Check::Within("e crossed against d one way: mean FLIP", 0.02, 1.0),
+            ],
+        },
         make: balls,
     },
     Figure {
@@ -29,6 +42,15 @@ pub(crate) const FIGURES: [Figure; 2] = [
         caption: "Left: an anisotropic distribution of normals over the plane of its half vectors. Right: the BRDF of that surface over the plane of its \
                   outgoing directions, for light at 45 degrees. Both are ellipses with the same axes, as the paper says; by its equation 4 that of the BRDF \
                   is wider by 2 cos 45 degrees = 1.41 along both. The numbers are the standard deviations of the part of each above half of its greatest value.",
+        size: LARGE,
+        claim: Claim {
+            text: "The distribution of normals and the BRDF are ellipses with the same axes on the base plane, that of the BRDF \
+                  wider by 1.41.",
+            checks: &[
+                Check::Within("BRDF over normals: standard deviation along x", 1.34, 1.49),
+                Check::Within("BRDF over normals: standard deviation along y", 1.34, 1.49),
+            ],
+        },
         make: projected,
     },
 ];
@@ -61,6 +83,10 @@ fn balls(studio: &Studio) -> Outcome<Made> {
         materials.push(brushed(&format!("ball-{i}"), coat, base)?);
     }
     let pictures = studio.pictures(&materials, Form::Baked, Shape::Torus, |_, _| {})?;
+    for ((label, ..), picture) in BALLS.iter().zip(&pictures).skip(1) {
+        made.apart(&format!("{label} against a isotropic"), picture, &pictures[0])?;
+    }
+    made.apart("e crossed against d one way", &pictures[4], &pictures[3])?;
     made.sheet("yamaguchi-1", BALLS.iter().map(|(label, ..)| (*label).to_owned()).zip(pictures).collect(), 5);
     Ok(made)
 }
@@ -104,6 +130,10 @@ fn projected(studio: &Studio) -> Outcome<Made> {
     let wi = DVec3::new(0.5_f64.sqrt(), 0.0, 0.5_f64.sqrt());
     let brdf = fine(&|x, y| model.eval(&stack, wi, up(x, y)));
     let mut pictures: Labelled = Vec::new();
+    for (c, axis) in ["x", "y"].into_iter().enumerate() {
+        let ratio = brdf.1[c] / normals.1[c].max(1e-9);
+        made.measure(format!("BRDF over normals: standard deviation along {axis}"), ratio);
+    }
     for (label, (image, [x, y])) in [("normals", normals), ("BRDF", brdf)] {
         made.measure(format!("{label}: standard deviation along x"), x);
         made.measure(format!("{label}: standard deviation along y"), y);

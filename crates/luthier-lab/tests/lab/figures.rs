@@ -3,7 +3,7 @@
 use crate::workshop::Workshop;
 
 /// The figures that the project promises, one by one.
-const NAMES: [&str; 36] = [
+const NAMES: [&str; 38] = [
     "elek-2",
     "elek-4",
     "elek-5",
@@ -20,6 +20,7 @@ const NAMES: [&str; 36] = [
     "yamaguchi-4",
     "yamaguchi-1",
     "yamaguchi-3",
+    "yamaguchi-5",
     "lecture-25",
     "course-classes",
     "course-varnish",
@@ -35,6 +36,7 @@ const NAMES: [&str; 36] = [
     "course-5-1",
     "course-5-2",
     "course-5-3",
+    "course-5-1-cells",
     "elek-6",
     "elek-line-22",
     "lecture-metal",
@@ -94,6 +96,40 @@ fn a_figure_in_f64_is_made_the_same_twice() {
     assert!(value > 0.0 && value < 0.5, "{value}");
     let page = workshop.text("a.md");
     assert!(page.contains("![statistical layering against simulation](a/yamaguchi-4.png)"), "{page}");
+}
+
+/// A run for one figure leaves those of earlier runs on the page, each with its verdict.
+#[test]
+fn figures_of_earlier_runs_stay_on_the_page() {
+    let workshop = Workshop::new();
+    for names in [["yamaguchi-5", "--size", "32"], ["yamaguchi-3", "--size", "32"]] {
+        let args = [["figures", "-o", "seen"], names].concat();
+        workshop.run(&args).exits(0);
+    }
+    let manifest = workshop.json("seen/figures.json");
+    let figures = manifest["figures"].as_array().unwrap();
+    let names: Vec<&str> = figures.iter().map(|figure| figure["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["yamaguchi-3", "yamaguchi-5"]);
+    for figure in figures {
+        assert!(figure["must_show"].as_str().unwrap().ends_with('.'), "{figure}");
+        assert_eq!(figure["shows"], true, "{figure}");
+        assert!(!figure["because"].as_array().unwrap().is_empty(), "{figure}");
+    }
+    let page = workshop.text("seen.md");
+    for text in [
+        "seen/yamaguchi-3.png",
+        "seen/yamaguchi-5.svg",
+        "seen/yamaguchi-5-more.svg",
+        "2 of 2 figures show what they must",
+        "*Must show:*",
+    ] {
+        assert!(page.contains(text), "{text}: {page}");
+    }
+
+    // A number that a claim is about is gone: the figure is named.
+    let text = workshop.text("seen/figures.json").replace("BRDF over normals: standard deviation along x\"", "gone\"");
+    workshop.write("seen/figures.json", &text);
+    workshop.run(&["figures", "yamaguchi-5", "-o", "seen"]).fails(1, &["yamaguchi-3", "make the figure anew"]);
 }
 
 #[test]

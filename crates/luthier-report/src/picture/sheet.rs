@@ -1,16 +1,18 @@
 //! Contact sheets: pictures in rows, each with a name below.
 
-use font8x8::legacy::BASIC_LEGACY;
+use std::sync::OnceLock;
+
+use fontdue::{Font, FontSettings};
 use luthier_lut::Image;
 
-/// Side of a picture from which names are twice as large.
-const LARGE: u32 = 192;
 /// Pixels between pictures.
 const GAP: u32 = 8;
-/// Height of a line of text and its surrounding, in small letters.
+/// Height of a line of text and its surrounding, for each step of [`scale`].
 const LABEL: u32 = 16;
-/// Side of a character.
-const GLYPH: u32 = 8;
+/// Height of the letters over that of a line.
+const LETTERS: f32 = 0.75;
+/// Place of the foot of the letters in a line, over its height.
+const FOOT: f32 = 0.72;
 
 const PAPER: f32 = 0.02;
 const INK: f32 = 0.6;
@@ -19,8 +21,8 @@ const INK: f32 = 0.6;
 pub fn sheet(pictures: &[(String, Image)], columns: u32) -> Image {
     let size = pictures.first().map_or(0, |(_, image)| image.width);
     let rows = (pictures.len() as u32).div_ceil(columns);
-    let scale = if size < LARGE { 1 } else { 2 };
-    let cell = [size + GAP, size + scale * LABEL + GAP];
+    let line = scale(size) * LABEL;
+    let cell = [size + GAP, size + line + GAP];
     let mut sheet = Image::zeros(columns * cell[0] + GAP, rows * cell[1] + GAP, 3);
     sheet.data.fill(PAPER);
     for (i, (name, image)) in pictures.iter().enumerate() {
@@ -31,24 +33,54 @@ pub fn sheet(pictures: &[(String, Image)], columns: u32) -> Image {
                 sheet.texel_mut(left + x, top + y).copy_from_slice(image.texel(x, y));
             }
         }
-        write(&mut sheet, name, [left, top + size + scale * (LABEL - GLYPH) / 2], size, scale);
+        write(&mut sheet, name, [left, top + size], [size, line]);
     }
     sheet
 }
 
+/// Size of letters for the side of a picture, in steps.
+fn scale(size: u32) -> u32 {
+    match size {
+        0..192 => 1,
+        192..448 => 2,
+        _ => 3,
+    }
+}
+
+/// The font of all sheets.
+fn font() -> Option<&'static Font> {
+    static FONT: OnceLock<Option<Font>> = OnceLock::new();
+    let bytes: &[u8] = include_bytes!("../../data/DejaVuSans-ASCII.ttf");
+    FONT.get_or_init(|| Font::from_bytes(bytes, FontSettings::default()).ok()).as_ref()
+}
+
 /// Writes a line in the middle of a width; what does not fit is cut off.
-fn write(sheet: &mut Image, text: &str, [left, top]: [u32; 2], width: u32, scale: u32) {
-    let side = scale * GLYPH;
-    let fitting = (width / side) as usize;
-    let text: Vec<char> = text.chars().take(fitting).collect();
-    let start = left + (width - text.len() as u32 * side) / 2;
-    for (i, character) in text.into_iter().enumerate() {
-        let Some(rows) = BASIC_LEGACY.get(character as usize) else { continue };
-        for (y, row) in rows.iter().enumerate() {
-            for (x, dy) in
-                (0..side).filter(|x| row & 1 << (x / scale) != 0).flat_map(|x| (0..scale).map(move |dy| (x, dy)))
-            {
-                sheet.texel_mut(start + i as u32 * side + x, top + scale * y as u32 + dy).fill(INK);
+fn write(sheet: &mut Image, text: &str, [left, top]: [u32; 2], [width, height]: [u32; 2]) {
+    let Some(font) = font() else { return };
+    let px = LETTERS * height as f32;
+    let mut glyphs = Vec::new();
+    let mut end = 0.0_f32;
+    for character in text.chars() {
+        let next = end + font.metrics(character, px).advance_width;
+        if next > width as f32 {
+            break;
+        }
+        glyphs.push((end, character));
+        end = next;
+    }
+    let start = ((width as f32 - end) / 2.0).floor();
+    for (at, character) in glyphs {
+        let (metrics, coverage) = font.rasterize(character, px);
+        let foot = (FOOT * height as f32) as i32;
+        let (x, y) = ((start + at).round() as i32 + metrics.xmin, foot - metrics.height as i32 - metrics.ymin);
+        for (i, covered) in coverage.into_iter().enumerate() {
+            let (x, y) = (x + (i % metrics.width) as i32, y + (i / metrics.width) as i32);
+            if covered == 0 || x < 0 || x >= width as i32 || y < 0 || y >= height as i32 {
+                continue;
+            }
+            let share = f32::from(covered) / 255.0;
+            for value in sheet.texel_mut(left + x as u32, top + y as u32) {
+                *value += share * (INK - *value);
             }
         }
     }
@@ -61,7 +93,7 @@ mod tests {
     #[test]
     fn pictures_and_names_have_their_places() {
         let picture = |value: f32| Image { data: vec![value; 3 * 24 * 24], ..Image::zeros(24, 24, 3) };
-        let pictures: Vec<_> = (0..3).map(|i| ("I".repeat(i * 2), picture(i as f32))).collect();
+        let pictures: Vec<_> = (0..3).map(|i| ("I".repeat(i * 4), picture(i as f32))).collect();
         let sheet = sheet(&pictures, 2);
         assert_eq!((sheet.width, sheet.height), (2 * 32 + 8, 2 * 48 + 8));
         assert_eq!(sheet.texel(8, 8), [0.0; 3]);
@@ -69,15 +101,28 @@ mod tests {
         assert_eq!(sheet.texel(8, 56), [2.0; 3]);
         // The last cell is empty, and the first has no name; the third's is cut to what fits.
         let ink = |x: u32, y: u32, width: u32, height: u32| {
-            (y..y + height)
-                .flat_map(|y| (x..x + width).map(move |x| (x, y)))
-                .filter(|&(x, y)| sheet.texel(x, y)[0] == INK)
-                .count()
+            let texels = (y..y + height).flat_map(|y| (x..x + width).map(move |x| (x, y)));
+            texels.map(|(x, y)| (sheet.texel(x, y)[0] - PAPER) / (INK - PAPER)).sum::<f32>()
         };
-        assert_eq!(ink(40, 56, 32, 40), 0);
-        assert_eq!(ink(8, 32, 24, 16), 0);
-        let letter = ink(40, 32, 24, 16) / 2;
-        assert!(letter > 10, "{letter}");
-        assert_eq!(ink(8, 80, 24, 16), 3 * letter);
+        assert_eq!(ink(40, 56, 32, 40), 0.0);
+        assert_eq!(ink(8, 32, 24, 16), 0.0);
+        let letter = ink(40, 32, 24, 16) / 4.0;
+        assert!(letter > 5.0, "{letter}");
+        // Eight letters are wider than the picture.
+        let last = ink(8, 80, 24, 16) / letter;
+        assert!((last - last.round()).abs() < 1e-3 && (5.0..8.0).contains(&last), "{last}");
+    }
+
+    /// Letters of all sizes have their feet on the line, and room for what hangs below it.
+    #[test]
+    fn letters_fit_their_line() {
+        for size in [96, 256, 512] {
+            let sheet = sheet(&[("Agjpq|".to_owned(), Image::zeros(size, size, 3))], 1);
+            let line = scale(size) * LABEL;
+            let row = |y: u32| (0..sheet.width).any(|x| sheet.texel(x, 8 + size + y)[0] > 1.01 * PAPER);
+            let inked: Vec<u32> = (0..line).filter(|y| row(*y)).collect();
+            let (Some(first), Some(last)) = (inked.first(), inked.last()) else { panic!("no ink") };
+            assert!(*first > 0 && *last < line - 1 && last - first > line / 2, "{size}: {first} to {last} of {line}");
+        }
     }
 }

@@ -1,0 +1,131 @@
+//! Numbers of pictures that claims are about.
+
+use luthier_lut::Image;
+use luthier_optics::color::luminance;
+
+use super::figure::TONE;
+
+/// Value of a display from which a colour counts as blown out: 249 of 255.
+const BLOWN: f32 = 0.95;
+
+/// Mean over the middle of a picture, a share of its side wide.
+pub(crate) fn middle(image: &Image, share: f64) -> [f64; 3] {
+    let texels = || texels(image, share);
+    let count = texels().count().max(1) as f64;
+    [0, 1, 2].map(|c: usize| texels().map(|texel| f64::from(texel[c])).sum::<f64>() / count)
+}
+
+/// Mean luminance of a picture.
+pub(crate) fn brightness(image: &Image) -> f64 {
+    luminance(middle(image, 1.0))
+}
+
+/// Mean of a channel over that of the red one, in the middle half of a picture.
+pub(crate) fn over_red(image: &Image, channel: usize) -> f64 {
+    let mean = middle(image, 0.5);
+    mean[channel] / mean[0].max(1e-9)
+}
+
+/// Largest luminance of a picture.
+pub(crate) fn brightest(image: &Image) -> f64 {
+    luminances(image, 1.0).fold(0.0, f64::max)
+}
+
+/// Standard deviation of luminance over its mean, in the middle half of a picture.
+pub(crate) fn variation(image: &Image) -> f64 {
+    let mean = luminance(middle(image, 0.5));
+    let (mut squares, mut count) = (0.0, 0.0);
+    for value in luminances(image, 0.5) {
+        squares += (value - mean) * (value - mean);
+        count += 1.0;
+    }
+    (squares / f64::max(count, 1.0)).sqrt() / mean.max(1e-9)
+}
+
+/// Mean difference of luminance between neighbours in a row, over the mean, in the middle half of a picture.
+pub(crate) fn grain(image: &Image) -> f64 {
+    let values: Vec<f64> = luminances(image, 0.5).collect();
+    let side = values.len().isqrt().max(1);
+    let differences = values.chunks(side).flat_map(|row| row.windows(2)).map(|pair| (pair[0] - pair[1]).abs());
+    let count = (side * (side - 1)).max(1) as f64;
+    differences.sum::<f64>() / count / luminance(middle(image, 0.5)).max(1e-9)
+}
+
+/// Largest luminance in the middle half of a picture over the median there.
+pub(crate) fn highlight(image: &Image) -> f64 {
+    let (largest, median) = (luminances(image, 0.5).fold(0.0, f64::max), median(image));
+    largest / median.max(1e-9)
+}
+
+/// Share of the middle half of a picture that is at least twice as bright as the median there.
+pub(crate) fn glitter(image: &Image) -> f64 {
+    let limit = 2.0 * median(image);
+    share(luminances(image, 0.5).map(|value| value > limit))
+}
+
+/// Share of the middle of a picture, 0.8 of its side wide, that a display shows as white.
+pub(crate) fn blown_out(image: &Image) -> f64 {
+    share(texels(image, 0.8).map(|texel| texel.iter().all(|value| TONE.value(*value) >= BLOWN)))
+}
+
+/// Share of the middle half of a picture where another differs, by more than rounding.
+pub(crate) fn middle_differs(a: &Image, b: &Image) -> f64 {
+    let is_other = |(a, b): (&[f32], &[f32])| a.iter().zip(b).any(|(a, b)| (a - b).abs() > 1e-3);
+    share(texels(a, 0.5).zip(texels(b, 0.5)).map(is_other))
+}
+
+fn median(image: &Image) -> f64 {
+    let mut values: Vec<f64> = luminances(image, 0.5).collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
+fn luminances(image: &Image, share: f64) -> impl Iterator<Item = f64> {
+    texels(image, share).map(|texel| luminance([0, 1, 2].map(|c: usize| f64::from(texel[c]))))
+}
+
+/// Texels of the middle of a picture.
+fn texels(image: &Image, share: f64) -> impl Iterator<Item = &[f32]> {
+    let range = move |side: u32| {
+        let margin = (f64::from(side) * (1.0 - share) / 2.0).round() as u32;
+        margin..(side - margin).max(margin + 1)
+    };
+    range(image.height).flat_map(move |y| range(image.width).map(move |x| image.texel(x, y)))
+}
+
+fn share(values: impl Iterator<Item = bool>) -> f64 {
+    let (mut hits, mut count) = (0.0, 0.0);
+    for value in values {
+        hits += f64::from(u8::from(value));
+        count += 1.0;
+    }
+    hits / f64::max(count, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_a_picture_with_one_light() {
+        // A dim picture of 16 pixels a side, whose middle half has 64; one of them is bright and one is blown out.
+        let mut image = Image { data: [0.4, 0.2, 0.1].repeat(256), ..Image::zeros(16, 16, 3) };
+        image.texel_mut(5, 5).fill(1.0);
+        image.texel_mut(8, 8).fill(100.0);
+        let dim = luminance([0.4, 0.2, 0.1]);
+        assert!((brightest(&image) - 100.0 * luminance([1.0; 3])).abs() < 1e-3);
+        assert!((highlight(&image) - 100.0 * luminance([1.0; 3]) / dim).abs() < 1e-3);
+        assert!((glitter(&image) - 2.0 / 64.0).abs() < 1e-12);
+        // 0.8 of 16 pixels are 12 (a margin of 2 on each side).
+        assert!((blown_out(&image) - 1.0 / 144.0).abs() < 1e-12, "{}", blown_out(&image));
+        let even = Image { data: [0.4, 0.2, 0.1].repeat(256), ..Image::zeros(16, 16, 3) };
+        assert!((middle_differs(&even, &image) - 2.0 / 64.0).abs() < 1e-12);
+        assert!(variation(&even) < 1e-6 && variation(&image) > 1.0);
+        // Each bright pixel has two neighbours in its row of 8.
+        let mean = (62.0 * dim + 101.0 * luminance([1.0; 3])) / 64.0;
+        let steps = 2.0 * (101.0 * luminance([1.0; 3]) - 2.0 * dim) / 56.0;
+        assert!(grain(&even) < 1e-6 && (grain(&image) - steps / mean).abs() < 1e-4, "{}", grain(&image));
+        assert!((over_red(&even, 1) - 0.5).abs() < 1e-6 && (over_red(&even, 2) - 0.25).abs() < 1e-6);
+        assert!((brightness(&even) - dim).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,81 @@
+//! The figure of Yamaguchi et al. 2019 about times, from the measurements of `luthier-lab simulation`.
+
+use luthier_report::{Curve, Plot, PlotAxis, PlotColor};
+use luthier_terminal::{Failure, Outcome};
+use serde_json::Value;
+
+use super::claim::{Check, Claim};
+use super::figure::{Figure, Made, SMALL};
+use super::studio::Studio;
+
+pub(crate) const FIGURES: [Figure; 1] = [Figure {
+    name: "yamaguchi-5",
+    title: "time of the anisotropic model over that of the isotropic one",
+    source: "Yamaguchi et al. 2019, figure 5",
+    caption: "The left chart of the paper has the times of a picture by Belcour's model and by Yamaguchi's, over the samples of a pixel; the right one says by how many \
+              percent the second takes longer. Here are both for an anisotropic material and an isotropic one. Times are medians of three pictures of 16 pixels, from \
+              `docs/measurements/simulation-llvmpipe.json`, which `luthier-lab simulation` writes. They were taken on a processor, where pictures of few samples take \
+              milliseconds that vary by more than the models differ; the verdict goes by the largest number of samples. simulation.md has the times of the simulation beside them.",
+    size: SMALL,
+    claim: Claim {
+        text: "Anisotropic layers cost little more time than isotropic ones (at most 10 percent with 2048 samples).",
+        checks: &[
+            Check::Within("yamaguchi-brushed, 2048 samples: percent more than belcour", -10.0, 10.0),
+            Check::Within("silver-paint, 2048 samples: percent more than belcour", -10.0, 10.0),
+        ],
+    },
+    make: times,
+}];
+
+const TIMES: &str = include_str!("../../../../docs/measurements/simulation-llvmpipe.json");
+
+/// Materials of the measurements, with the colours of their curves: of one model and of the other.
+const MATERIALS: [(&str, [PlotColor; 2]); 2] =
+    [("yamaguchi-brushed", [PlotColor::Ink, PlotColor::Red]), ("silver-paint", [PlotColor::Blue, PlotColor::Green])];
+
+/// Median milliseconds by samples, of a material and a model.
+fn medians(all: &Value, material: &str, way: &str) -> Vec<[f64; 2]> {
+    let times = all["times"].as_array().into_iter().flatten();
+    let of = times.filter(|time| time["material"] == material && time["way"] == way);
+    of.filter_map(|time| Some([time["samples"].as_f64()?, time["median_ms"].as_f64()?])).collect()
+}
+
+fn times(_: &Studio) -> Outcome<Made> {
+    let mut made = Made::default();
+    let all: Value = serde_json::from_str(TIMES).map_err(Failure::input)?;
+    let (mut absolute, mut percent) = (Vec::new(), Vec::new());
+    for (material, colors) in MATERIALS {
+        let ways = ["belcour", "yamaguchi"];
+        let [isotropic, anisotropic] = ways.map(|way| medians(&all, material, way));
+        let more = |(a, b): (&[f64; 2], &[f64; 2])| [a[0], 100.0 * (b[1] / a[1] - 1.0)];
+        let points: Vec<[f64; 2]> = isotropic.iter().zip(&anisotropic).map(more).collect();
+        for [samples, percent] in &points {
+            made.measure(format!("{material}, {samples} samples: percent more than belcour"), *percent);
+        }
+        for ((way, color), points) in ways.into_iter().zip(colors).zip([isotropic, anisotropic]) {
+            absolute.push(Curve { name: format!("{material}, {way}"), color, points });
+        }
+        percent.push(Curve { name: material.to_owned(), color: colors[0], points });
+    }
+    let x = || PlotAxis { label: "samples of a pixel".to_owned(), range: [0.0, 2048.0], step: 512.0 };
+    let y = |label: &str, range, step| PlotAxis { label: label.to_owned(), range, step };
+    made.plot(
+        "yamaguchi-5",
+        Plot {
+            title: "Time of a picture against the samples of a pixel".to_owned(),
+            x: x(),
+            y: y("milliseconds", [0.0, 1400.0], 200.0),
+            curves: absolute,
+        },
+    );
+    made.plot(
+        "yamaguchi-5-more",
+        Plot {
+            title: "Time of Yamaguchi's model over Belcour's".to_owned(),
+            x: x(),
+            y: y("percent more", [-40.0, 60.0], 20.0),
+            curves: percent,
+        },
+    );
+    Ok(made)
+}
