@@ -28,7 +28,7 @@ const NAMES: [(&str, &str, &str); 14] = [
 ];
 
 /// Keys of pure numbers.
-const PURES: [&str; 32] = [
+const PURES: [&str; 34] = [
     "f0",
     "roughness",
     "alpha",
@@ -60,6 +60,8 @@ const PURES: [&str; 32] = [
     "ior",
     "exterior",
     "seed",
+    "between",
+    "share",
     "max_abs",
 ];
 

@@ -2,7 +2,7 @@
 
 use super::{Sample, sample};
 
-pub(super) static SAMPLES: [Sample; 10] = [
+pub(super) static SAMPLES: [Sample; 11] = [
     sample(
         "bake.model",
         "bake.model",
@@ -25,7 +25,13 @@ pub(super) static SAMPLES: [Sample; 10] = [
         "bake.internal_reflection",
         "bake.internal_reflection",
         "layer = [{ type = 'dielectric', ior = 2, alpha = 0.2 }, { type = 'conductor', ior = 'cu', alpha = 0.2 }]\nbake = { model = 'elek', internal_reflection = @ }",
-        &["'facets'", "'none'"],
+        &["'facets'", "'none'", "'directions'"],
+    ),
+    sample(
+        "bake.lower_reflectance",
+        "bake.lower_reflectance",
+        "layer = [{ type = 'dielectric', ior = 2, alpha = 0.1 }, { type = 'conductor', ior = { n = 0.5, k = 1.5 }, alpha = 0.2 }]\nbake = { model = 'elek', lower_reflectance = @ }",
+        &["'in-place'", "'in-air'"],
     ),
     sample(
         "bake.color",

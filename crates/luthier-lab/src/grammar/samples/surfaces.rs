@@ -2,17 +2,17 @@
 
 use super::{Sample, sample};
 
-pub(super) static SAMPLES: [Sample; 8] = [
+pub(super) static SAMPLES: [Sample; 15] = [
     sample(
         "surface-cells.seed",
         "cells",
-        "cells = { seed = @, frequency = 8, materials = ['%/materials/surfaces/lepidolite/lilac.toml', '%/materials/surfaces/lepidolite/pink.toml', '%/materials/surfaces/lepidolite/violet.toml'] }",
+        "cells = { seed = @, frequency = 8, materials = ['%/materials/surfaces/lepidolite/dark-1.toml', '%/materials/surfaces/lepidolite/bright-2.toml', '%/materials/surfaces/lepidolite/marble-1.toml'] }",
         &["0", "1", "2"],
     ),
     sample(
         "surface-cells.frequency",
         "cells",
-        "cells = { frequency = @, materials = ['%/materials/surfaces/lepidolite/lilac.toml', '%/materials/surfaces/lepidolite/pink.toml', '%/materials/surfaces/lepidolite/violet.toml'] }",
+        "cells = { frequency = @, materials = ['%/materials/surfaces/lepidolite/dark-1.toml', '%/materials/surfaces/lepidolite/bright-2.toml', '%/materials/surfaces/lepidolite/marble-1.toml'] }",
         &["4", "12", "40"],
     ),
     sample(
@@ -20,10 +20,52 @@ pub(super) static SAMPLES: [Sample; 8] = [
         "cells",
         "cells = { frequency = 8, materials = [@] }",
         &[
-            "one|'%/materials/surfaces/lepidolite/lilac.toml'",
-            "two|'%/materials/surfaces/lepidolite/lilac.toml', '%/materials/surfaces/lepidolite/violet.toml'",
-            "the first three times|'%/materials/surfaces/lepidolite/lilac.toml', '%/materials/surfaces/lepidolite/lilac.toml', '%/materials/surfaces/lepidolite/lilac.toml', '%/materials/surfaces/lepidolite/violet.toml'",
+            "one|'%/materials/surfaces/lepidolite/dark-1.toml'",
+            "two|'%/materials/surfaces/lepidolite/dark-1.toml', '%/materials/surfaces/lepidolite/marble-1.toml'",
+            "the first three times|'%/materials/surfaces/lepidolite/dark-1.toml', '%/materials/surfaces/lepidolite/dark-1.toml', '%/materials/surfaces/lepidolite/dark-1.toml', '%/materials/surfaces/lepidolite/marble-1.toml'",
         ],
+    ),
+    sample(
+        "surface-noise.seed",
+        "switch",
+        "cells = { frequency = 40, materials = ['%/materials/surfaces/lepidolite/dark-1.toml'] }\nswitch = [{ noise = { seed = @, frequency = 3, between = [-1, 0] }, cells = { frequency = 40, materials = ['%/materials/surfaces/lepidolite/bright-2.toml'] } }]",
+        &["0", "1", "2"],
+    ),
+    sample(
+        "surface-noise.frequency",
+        "switch",
+        "cells = { frequency = 40, materials = ['%/materials/surfaces/lepidolite/dark-1.toml'] }\nswitch = [{ noise = { frequency = @, between = [-1, 0] }, cells = { frequency = 40, materials = ['%/materials/surfaces/lepidolite/bright-2.toml'] } }]",
+        &["2", "4", "10"],
+    ),
+    sample(
+        "surface-noise.octaves",
+        "switch",
+        "cells = { frequency = 40, materials = ['%/materials/surfaces/lepidolite/dark-1.toml'] }\nswitch = [{ noise = { frequency = 2, octaves = @, between = [-1, 0] }, cells = { frequency = 40, materials = ['%/materials/surfaces/lepidolite/bright-2.toml'] } }]",
+        &["1", "3", "6"],
+    ),
+    sample(
+        "surface-noise.between",
+        "switch",
+        "cells = { frequency = 40, materials = ['%/materials/surfaces/lepidolite/dark-1.toml'] }\nswitch = [{ noise = { frequency = 3, between = @ }, cells = { frequency = 40, materials = ['%/materials/surfaces/lepidolite/bright-2.toml'] } }]",
+        &["[-1, 0]", "[-0.05, 0.05]", "[0.2, 1]"],
+    ),
+    sample(
+        "surface-tiles.seed",
+        "switch",
+        "cells = { frequency = 40, materials = ['%/materials/surfaces/lepidolite/dark-1.toml'] }\nswitch = [{ tiles = { seed = @ }, cells = { frequency = 40, materials = ['%/materials/surfaces/lepidolite/bright-2.toml'] } }]",
+        &["0", "1", "2"],
+    ),
+    sample(
+        "surface-tiles.frequency",
+        "switch",
+        "cells = { frequency = 40, materials = ['%/materials/surfaces/lepidolite/dark-1.toml'] }\nswitch = [{ tiles = { frequency = @ }, cells = { frequency = 40, materials = ['%/materials/surfaces/lepidolite/bright-2.toml'] } }]",
+        &["3", "6", "12"],
+    ),
+    sample(
+        "surface-tiles.share",
+        "switch",
+        "cells = { frequency = 40, materials = ['%/materials/surfaces/lepidolite/dark-1.toml'] }\nswitch = [{ tiles = { share = @ }, cells = { frequency = 40, materials = ['%/materials/surfaces/lepidolite/bright-2.toml'] } }]",
+        &["0.1", "0.5", "0.9"],
     ),
     sample(
         "surface-glitter.seed",
@@ -56,7 +98,7 @@ pub(super) static SAMPLES: [Sample; 8] = [
         &[
             "copper|'%/materials/surfaces/sunstone/copper.toml'",
             "pale copper|'%/materials/surfaces/sunstone/pale-copper.toml'",
-            "silver|'%/materials/surfaces/lepidolite/silver.toml'",
+            "silver|'%/materials/surfaces/lepidolite/dark-silver.toml'",
         ],
     ),
 ];

@@ -41,6 +41,10 @@ pub(crate) static UNSEEN: [Unseen; 7] = [
             "bake.granier-heidrich",
             "surface.cells",
             "surface.glitter",
+            "surface.switch",
+            "surface-switch.noise",
+            "surface-switch.tiles",
+            "surface-switch.cells",
         ],
     },
     Unseen {
