@@ -201,7 +201,7 @@ fn maps(studio: &Studio) -> Outcome<Made> {
     ];
     let labels = ["1 surface", "2 glitter", "3 both", "4 bumps", "5 combined"];
     let all = pictures(studio, &materials, &surfaces, |_| square(studio))?;
-    made.measure("cells of the surface map per cell of the glitter map", (SMALL / LARGE).powi(2));
+    made.measure("cells of the surface map per cell of the glitter map", SMALL * SMALL / (LARGE * LARGE));
     made.measure(format!("share of the square that glitters, {FILLED} of the cells"), shares(&surfaces[4])[1]);
     made.measure("3 against 1: mean FLIP", compared(&all[2], &all[0])?.flip_mean);
     made.measure("5 against 3: mean FLIP", compared(&all[4], &all[2])?.flip_mean);
