@@ -85,7 +85,7 @@ mod tests {
         let event = Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers };
         let input = RawInput { events: vec![event], ..RawInput::default() };
         let mut found = Vec::new();
-        let _ = context.run_ui(input, |ui| found = actions(ui.ctx()));
+        context.run_ui(input, |ui| found = actions(ui.ctx())).textures_delta.clear();
         found
     }
 

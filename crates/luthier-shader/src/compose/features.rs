@@ -24,7 +24,7 @@ impl Features {
     const ALL: &str = "abc absorption anisotropic bare base_color beckmann below bent bilinear blinn cavities chain chain_diffuse chain_patina clamped closed coat computed conductor critical_view diffuse environment exact face film film_table fitted flakes fluorescent folded free_slopes full ggx glitter granier granier_bare granier_base granier_film granier_own granier_schlick granier_tilted granier_transparent interface internal lazanyi lobes_axes lobes_bare_base lobes_base \
         lobes_diffuse lobes_film lobes_patina lobes_tilted mask_implicit mask_kelemen \
         mask_schlick_smith mask_smith mask_smith_separable mask_v_cavity masked media microfacet_diffuse mixed noise one_lobe \
-        layered oren_nayar own_alphas own_f0 own_normals own_slabs packed particles patina phong picks place powers rows schlick schlick_base several several_maskings several_reflectances several_slopes sgd smith split_root statistics statistics_base surface tabled tangents theta_axis tilted \
+        layered oren_nayar own_alphas own_angles own_f0 own_normals own_slabs packed particles patina phong picks place powers rows schlick schlick_base several several_maskings several_reflectances several_slopes sgd smith split_root statistics statistics_base surface tabled tangents theta_axis tilted \
         total_reflection two_lobes visible";
 
     pub(crate) fn of(set: &MaterialSet<'_>, form: Form) -> Self {
