@@ -7,7 +7,7 @@ use luthier_gallery::{Exhibit, Gallery, Look, Scenery};
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::{Material, Severity};
 use luthier_scene::CostTable;
-use luthier_terminal::{Failure, Outcome, complain, files};
+use luthier_terminal::{Failure, Outcome, complain, deliver};
 
 use crate::cli::GalleryOptions;
 use crate::materials::{bakeable, is_shaded_by, shade_by};
@@ -52,7 +52,7 @@ pub(super) fn write(options: &GalleryOptions, html: &Path) -> Outcome {
     }
     left_out(&gallery);
     let page = gallery.html().map_err(Failure::input)?;
-    std::fs::write(html, page).map_err(files(html, "write"))
+    deliver(&page, Some(html))
 }
 
 /// Title of the page: the name of the only file or folder.

@@ -2,7 +2,9 @@
 
 use std::fmt::Write;
 
-use super::pictures::base64;
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD as STANDARD;
+
 use super::summary::shown;
 use super::trade::{FAMILY, of_shaders};
 use super::{anchor, of_material};
@@ -176,7 +178,7 @@ fn thumbnails(out: &mut String, report: &Report, exhibits: &Exhibits) {
             anchor(index),
             of_material(&material.name),
             escape(&line(report, material)),
-            base64(&picture.png),
+            STANDARD.encode(&picture.png),
             name = escape(&material.name)
         );
     }

@@ -2,6 +2,9 @@
 
 use std::fmt::Write;
 
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD as STANDARD;
+
 use crate::Exhibit;
 use crate::judge::report::MaterialReport;
 use crate::pages::format::{error, escape};
@@ -17,7 +20,7 @@ pub(super) fn write(out: &mut String, material: &MaterialReport, exhibits: &[Exh
             out,
             "<figure><img alt=\"{}: {caption}\" src=\"data:image/png;base64,{}\"/><figcaption>{caption}</figcaption></figure>",
             escape(&material.name),
-            base64(&exhibit.png)
+            STANDARD.encode(&exhibit.png)
         );
     }
     out.push_str("</div>");
@@ -34,35 +37,5 @@ pub(super) fn write(out: &mut String, material: &MaterialReport, exhibits: &[Exh
             error(p.rms_err),
             error(p.max_abs_err)
         );
-    }
-}
-
-/// RFC 4648, with padding.
-pub(super) fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let at = |i: usize| u32::from(chunk.get(i).copied().unwrap_or(0));
-        let bits = at(0) << 16 | at(1) << 8 | at(2);
-        for digit in 0..4 {
-            let index = (bits >> (18 - 6 * digit)) & 63;
-            out.push(if digit <= chunk.len() { char::from(DIGITS[index as usize]) } else { '=' });
-        }
-    }
-    out
-}
-
-#[cfg(test)]
-mod tests {
-    use super::base64;
-
-    /// The test vectors of RFC 4648, section 10, and bytes that use the last digits.
-    #[test]
-    fn base64_of_the_standard() {
-        let cases = ["", "", "f", "Zg==", "fo", "Zm8=", "foo", "Zm9v", "foob", "Zm9vYg==", "foobar", "Zm9vYmFy"];
-        for pair in cases.chunks(2) {
-            assert_eq!(base64(pair[0].as_bytes()), pair[1]);
-        }
-        assert_eq!(base64(&[0xfb, 0xff, 0xbf]), "+/+/");
     }
 }
