@@ -13,7 +13,7 @@ use crate::decide::{Planned, budget, layouts, plan, used};
 use crate::graph::{JobKind, Key, Observer, Results, Silent};
 use crate::kinds::lobes;
 use crate::maps::{MaterialMap, maps};
-use crate::plan::{ImageReader, Plan, PlannedLayers, TileList, color, color_mode};
+use crate::plan::{ImageReader, Plan, PlannedLayers, TileList, color_mode};
 use crate::settings::Settings;
 use crate::{AIM, BakeError, MemoryStore, Store};
 
@@ -125,8 +125,9 @@ pub fn outline_with(
 /// # Errors
 /// See [`BakeError`].
 pub fn kinked_rows(material: &Material, read_image: ImageReader<'_>) -> Result<Vec<(usize, f64)>, BakeError> {
-    let is_kinked =
-        |layer: usize| Interface::of(&material.reflecting_stack(), layer).is_some_and(|i| i.has_kink(&color(material)));
+    let is_kinked = |layer: usize| {
+        Interface::of(&material.reflecting_stack(), layer).is_some_and(|i| i.has_kink(&material.color()))
+    };
     let layers: Vec<usize> = (0..material.stack.layers.len()).filter(|&layer| is_kinked(layer)).collect();
     let materials = std::slice::from_ref(material);
     if layers.is_empty() || !budget(materials, &Budget::default())?.of_texels().is_empty() {

@@ -6,7 +6,6 @@ use luthier_manifest::{FlakesRecord, GlitterRecord, LayerRecord, LobesRecord, Ma
 use luthier_material::{Effects, FlakeSource, Glitter, Material};
 use luthier_optics::stack::Stack;
 
-use crate::plan::color;
 use crate::veil::veil;
 
 /// The constants of a material; `bare` is the layer below its patina, `lobes` are those that were fitted.
@@ -15,7 +14,7 @@ pub(crate) fn constants(
     bare: Option<LayerRecord>,
     lobes: Option<LobesRecord>,
 ) -> MaterialConstants {
-    let (stack, color) = (&material.stack, color(material));
+    let (stack, color) = (&material.stack, material.color());
     let (internal_reflectance, upward_loss) =
         if material.model().is_statistical() { veil(stack, &color) } else { ([0.0; 3], 0.0) };
     let [phong_diffuse, phong_specular] = Coefficients::in_color(stack, &color);

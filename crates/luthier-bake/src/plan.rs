@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use luthier_lut::{Image, TableKind};
 use luthier_manifest::{ColorMode, Feature, Form, LayerRecord};
 use luthier_material::{LayerExtras, Material};
-use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::stack::Stack;
 use rayon::prelude::*;
@@ -51,14 +50,6 @@ pub(crate) struct PlannedLayers {
     pub(crate) layers: Vec<LayerRecord>,
     /// The layer below a patina where none has grown.
     pub(crate) bare: Option<LayerRecord>,
-}
-
-/// The colour that the tables of a material hold.
-pub(crate) fn color(material: &Material) -> Color {
-    match color_mode(material) {
-        ColorMode::Spectral => Color::Spectral,
-        ColorMode::ThreeWavelengths => Color::ThreeWavelengths(material.bake.wavelengths_nm()),
-    }
 }
 
 /// How the tables of a material come by their colour: spectrally, unless its file asks otherwise.
@@ -160,7 +151,7 @@ impl Part {
         bare: Option<&str>,
         read_image: ImageReader<'_>,
     ) -> Result<Vec<LayerRecord>, BakeError> {
-        let (color, model) = (color(material), material.model());
+        let (color, model) = (material.color(), material.model());
         let mut records = records(stack, material.bake.wavelengths_nm(), &Parts::of(material));
         // Models that do not show it have the base's colour under white light, as an albedo.
         if let (Some(last), true) = (records.last_mut(), model.honours(Feature::Reradiation, Form::Baked)) {

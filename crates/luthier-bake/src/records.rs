@@ -11,8 +11,6 @@ use luthier_optics::interface::Interface;
 use luthier_optics::stack::Stack;
 use num_complex::Complex64;
 
-use crate::plan::color;
-
 /// Least modulus of a relative index: at normal incidence on a lesser one Fresnel's formulas in single precision are 0/0.
 const INDEX_MIN: f64 = 1e-3;
 
@@ -45,7 +43,7 @@ impl Parts {
             reflectance: bake.reflectance.filter(|_| model.has_reflectance()).unwrap_or_default(),
             internal_reflection: bake.internal_reflection.filter(|_| model.has_path()).unwrap_or_default(),
             lower_reflectance: bake.lower_reflectance.filter(|_| model.has_path()).unwrap_or_default(),
-            color: color(material),
+            color: material.color(),
         }
     }
 

@@ -2,11 +2,8 @@
 //! approximations.
 
 use luthier_lut::TableKind;
-use luthier_manifest::{
-    ColorMode, Feature, Form, InternalReflection, LowerReflectance, Masking, Reflectance, ShadingModel,
-};
+use luthier_manifest::{Feature, Form, InternalReflection, LowerReflectance, Masking, Reflectance, ShadingModel};
 use luthier_material::{Diagnostic, Material, Severity, distribution_key};
-use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::schlick::schlick;
 use luthier_optics::stack::{Stack, Surface};
@@ -190,9 +187,6 @@ fn of_internal_reflection(
         let hint = "leave it out, or write `[bake] model = \"elek\"` or `\"weidlich-wilkie\"`".to_owned();
         return Some(material.diagnostic(Severity::Error, key, message, Some(hint)));
     }
-    if internal == InternalReflection::Facets {
-        return None;
-    }
     let has_below = material.stack.layers.len() > 1;
     // Of a coat over a mirror, both of alpha 0.1, at 0 degrees, by `luthier eval --furnace`.
     let effect = match internal {
@@ -221,7 +215,7 @@ fn of_lower_reflectance(material: &Material, model: ShadingModel, lower: LowerRe
     if lower == LowerReflectance::InPlace {
         return None;
     }
-    let (color, in_air) = (color(material), material.stack.with_lower_in_air());
+    let (color, in_air) = (material.color(), material.stack.with_lower_in_air());
     let at_normal = |stack: &Stack, layer| Interface::of(stack, layer).map(|here| here.sampled(&color).rgb(1.0));
     let mut worst: Option<(usize, f64, f64)> = None;
     for layer in 1..material.stack.layers.len() {
@@ -245,17 +239,9 @@ fn of_lower_reflectance(material: &Material, model: ShadingModel, lower: LowerRe
     Some(material.diagnostic(Severity::Warning, key, format!("the lower reflectance `{name}` {effect}"), Some(hint)))
 }
 
-/// The colour of the tables of a material.
-fn color(material: &Material) -> Color {
-    match material.bake.color.unwrap_or_default() {
-        ColorMode::Spectral => Color::Spectral,
-        ColorMode::ThreeWavelengths => Color::ThreeWavelengths(material.bake.wavelengths_nm()),
-    }
-}
-
 /// The layer whose curve is farthest off, the error of its worst channel, and the cosine there.
 fn worst(material: &Material, reflectance: Reflectance, layers: usize) -> Option<(usize, f64, f64)> {
-    let color = color(material);
+    let color = material.color();
     let stack = material.reflecting_stack();
     let mut worst: Option<(usize, f64, f64)> = None;
     for layer in 0..layers {

@@ -1,9 +1,7 @@
 //! Description of a cross-section through a material: its parts from the top down, with numbers, colours, heights and outlines. It draws
 //! nothing: the window and pages draw it, each with its own lines and letters.
 
-use luthier_manifest::ColorMode;
 use luthier_optics::Rgb;
-use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Distribution, Film, Layer, Surface};
@@ -197,13 +195,9 @@ impl Material {
 
     /// Reflectance of an interface at normal incidence, with its films or without, in the colour of the bake.
     fn reflected(&self, number: usize, has_films: bool) -> Rgb {
-        let color = match self.bake.color.unwrap_or_default() {
-            ColorMode::Spectral => Color::Spectral,
-            ColorMode::ThreeWavelengths => Color::ThreeWavelengths(self.bake.wavelengths_nm()),
-        };
         let Some(mut interface) = Interface::of(&self.stack, number) else { return [0.0; 3] };
         interface.films.truncate(if has_films { interface.films.len() } else { 0 });
-        interface.sampled(&color).rgb(1.0).map(|c| c.clamp(0.0, 1.0))
+        interface.sampled(&self.color()).rgb(1.0).map(|c| c.clamp(0.0, 1.0))
     }
 
     /// The index of a medium: F0, one number or two, or those of the sodium line with the name of the data set.

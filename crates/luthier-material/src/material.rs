@@ -3,9 +3,10 @@
 use std::borrow::Cow;
 
 use luthier_optics::Rgb;
+use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
 
-use luthier_manifest::{BeamsRecord, Budget, LowerReflectance, MapSlot, ShadingModel};
+use luthier_manifest::{BeamsRecord, Budget, ColorMode, LowerReflectance, MapSlot, ShadingModel};
 
 use crate::bake_settings::{BakeSettings, Beams};
 use crate::class::SurfaceClass;
@@ -75,6 +76,14 @@ impl Material {
         if !model.has_beams() {
             self.bake.beams = None;
             self.layers.iter_mut().for_each(|layer| layer.exponents = None);
+        }
+    }
+
+    /// The colour of its tables: spectral, unless its file asks otherwise.
+    pub fn color(&self) -> Color {
+        match self.bake.color.unwrap_or_default() {
+            ColorMode::Spectral => Color::Spectral,
+            ColorMode::ThreeWavelengths => Color::ThreeWavelengths(self.bake.wavelengths_nm()),
         }
     }
 

@@ -33,7 +33,7 @@ impl Interface {
             Some(Base::Dielectric { ior, .. }) => ior.clone(),
             Some(Base::Conductor { .. } | Base::Diffuse(_)) => return None,
         };
-        let above = if below.reflects_as_in_air() { Ior::vacuum() } else { above };
+        let above = if layer > 0 && below.reflects_as_in_air() { Ior::vacuum() } else { above };
         Some(Self { above, films: here.films.clone(), below })
     }
 
@@ -243,6 +243,34 @@ mod tests {
             Interface { above: Ior::vacuum(), films: Vec::new(), below }.sampled(&Color::Spectral).nodes.len()
         };
         assert_eq!([nodes([0.04; 3]), nodes(F0)], [1, 3]);
+    }
+
+    /// By hand: F0 = ((n - a)^2 + k^2) / ((n + a)^2 + k^2) of n = 2, k = 1 is 0.2 in air and 5/53 below glass of a = 1.5. The exterior, of a
+    /// = 1.25, is above the first interface in either case.
+    #[test]
+    fn lower_interfaces_reflect_as_in_air_and_the_first_does_not() {
+        use crate::stack::{Layer, Slab, Surface};
+        let index = |n, k| Ior::constant(n, k).unwrap();
+        let slab = Slab { thickness_um: 1.0, absorption_per_um: [0.0; 3] };
+        let layer = |base| Layer { films: Vec::new(), surface: Surface::smooth(), base };
+        let layers = vec![
+            layer(Base::Dielectric { ior: index(1.5, 0.0), slab }),
+            layer(Base::Conductor { ior: index(2.0, 1.0) }),
+        ];
+        let stack = Stack { exterior: index(1.25, 0.0), layers };
+        let f0 = |stack: &Stack, layer| Interface::of(stack, layer).unwrap().sampled(&Color::Spectral).rgb(1.0)[0];
+        let in_air = stack.with_lower_in_air();
+        for (found, expected) in [
+            (f0(&stack, 1), 5.0 / 53.0),
+            (f0(&in_air, 1), 0.2),
+            (f0(&stack, 0), 0.0625 / 7.5625),
+            (f0(&in_air, 0), 0.0625 / 7.5625),
+        ] {
+            assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        }
+        // A layer that has lost those above it is the first.
+        let bare = Stack { layers: in_air.layers[1..].to_vec(), ..in_air };
+        assert!((f0(&bare, 0) - (0.75 * 0.75 + 1.0) / (3.25 * 3.25 + 1.0)).abs() < 1e-12);
     }
 
     #[cfg(feature = "serde")]

@@ -20,7 +20,7 @@ use serde_json::{Value, json};
 
 use super::{Kind, Site};
 use crate::graph::{Artefact, Graph, Inputs, Job, JobKind, Results, Store, result_of};
-use crate::plan::{Plan, color};
+use crate::plan::Plan;
 use crate::search::{self, Found};
 use crate::settings::{Ask, Settings, Shape, axis};
 use crate::tile::{TileData, apron, color_in_words, lone_tile};
@@ -145,7 +145,7 @@ pub(crate) fn decide(
 
 /// The fit of a material; with lobes of every number, where a search chooses among them.
 fn fit(material: &Material, is_searched: bool) -> Arc<FitJob> {
-    let (stack, color, varying) = (shown(&material.stack), color(material), varying(material));
+    let (stack, color, varying) = (shown(&material.stack), material.color(), varying(material));
     Arc::new(FitJob { stack, color, varying, is_searched })
 }
 

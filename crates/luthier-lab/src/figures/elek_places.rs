@@ -24,7 +24,7 @@ pub(crate) const FIGURES: [Figure; 2] = [
                   paint becomes smooth. In the bottom row it is not weighted, and the ball stays noisy at any \
                   distance, down to single dark and bright pixels. The number is the variation of luminance that \
                   flakes cause between pixels, divided by the mean, in the middle of the picture; at distance 32 \
-                  that is a square of 16 pixels.",
+                  that is a square of a sixteenth of the picture's side.",
         size: SMALL,
         claim: Claim {
             text: "Flakes whose normals are scaled by the distance fade into a smooth paint; without it the paint stays noisy at \

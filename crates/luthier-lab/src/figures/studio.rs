@@ -122,8 +122,7 @@ impl Studio {
         (0..package.manifest.materials.len()).map(render).collect()
     }
 
-    /// A ball in f64, at most [`SIMULATED`] pixels wide, under two lights and nothing else; estimates from the paths of the command line. The simulation
-    /// of luthier-gpu would do for most materials; on software adapters it takes longer for more noise.
+    /// A ball in f64, at most [`SIMULATED`] pixels wide, under two lights and nothing else; estimates from the paths of the command line.
     pub(crate) fn ball(&self, material: &Material, model: &str) -> Outcome<BallPicture> {
         let model = self.model(model)?;
         Ok(render_ball(
