@@ -58,6 +58,17 @@ simulation() {
     --data docs/measurements/simulation-llvmpipe.json -o docs/pages/simulation.md
 }
 bench() { luthier bench materials/car-paint.toml materials/red-lacquer.toml --json -o docs/measurements/bench-llvmpipe.json; }
+throughput() { luthier-lab throughput materials -o docs/pages/throughput.md; }
+# By its name only, because it wants a GPU: pages and measurements of one, beside those of the software adapter.
+on-gpu() {
+  local two=(materials/car-paint.toml materials/red-lacquer.toml)
+  luthier bench "${two[@]}" --evaluations 60000000 --json -o docs/measurements/bench-gpu.json
+  luthier-lab throughput materials --evaluations 60000000 --data docs/measurements/throughput-gpu.json -o docs/pages/gpu-throughput.md
+  luthier-lab simulation materials/{yamaguchi-brushed,silver-paint}.toml --size 256 --samples 8192 --time-size 512 \
+    --data docs/measurements/simulation-gpu.json -o docs/pages/gpu-simulation.md
+  luthier-lab places -o docs/pages/gpu-places.md
+  luthier-lab parity materials -o docs/pages/gpu-parity.md
+}
 shader-size() { scripts/shader-size.sh >docs/pages/shader-size.md; }
 distribution-table() { scripts/compare-distribution.sh >docs/pages/distribution-table.md; }
 speed() { scripts/bench-table.sh >docs/pages/speed.md; }
@@ -89,7 +100,7 @@ recipes() {
 # The test that follows the tutorial takes its outputs and pictures.
 tutorial() { LUTHIER_ACCEPT=1 cargo test --quiet --locked -p luthier-cli --features view --test cli -- tutorial; }
 
-all=(materials shapes cost papers budgets scenes parity places stability figures models lobes varying anisotropic environment simulation bench shader-size distribution-table speed dfg engine-tables by-hand choices reflectance-table reference grammar recipes tutorial)
+all=(materials shapes cost papers budgets scenes parity places stability figures models lobes varying anisotropic environment simulation bench throughput shader-size distribution-table speed dfg engine-tables by-hand choices reflectance-table reference grammar recipes tutorial)
 case ${1-} in
   "") pages=("${all[@]}") ;;
   --cheap) pages=(shader-size reference) ;;

@@ -18,6 +18,8 @@ pub(crate) struct Context {
     pub(crate) device: wgpu::Device,
     queue: wgpu::Queue,
     faults: Arc<Faults>,
+    /// How much more work one submission holds than on an adapter of which nothing is known.
+    pub(crate) batch: u32,
 }
 
 #[derive(Debug, Default)]
@@ -40,7 +42,7 @@ pub(crate) struct Pass<'a> {
 }
 
 impl Context {
-    pub(crate) fn new(device: wgpu::Device, queue: wgpu::Queue) -> Self {
+    pub(crate) fn new(device: wgpu::Device, queue: wgpu::Queue, batch: u32) -> Self {
         let faults = Arc::new(Faults::default());
         let lost = Arc::clone(&faults);
         device.set_device_lost_callback(move |reason, message| {
@@ -50,7 +52,7 @@ impl Context {
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             put(&uncaptured.uncaptured, error.to_string());
         }));
-        Self { device, queue, faults }
+        Self { device, queue, faults, batch }
     }
 
     /// Runs calls that create or submit things, and turns the errors that the device reports meanwhile into ours.

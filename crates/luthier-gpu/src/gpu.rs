@@ -8,6 +8,9 @@ use luthier_export::Package;
 
 use crate::{GpuError, Scene};
 
+/// Work of one submission on a discrete GPU, in those of other adapters: it takes milliseconds there, and waiting for it less.
+const DISCRETE_BATCH: u32 = 16;
+
 /// An open device.
 #[derive(Debug)]
 pub struct Gpu {
@@ -66,7 +69,8 @@ impl Gpu {
         });
         let (device, queue) =
             pollster::block_on(request).map_err(|source| GpuError::Open { adapter: label(&info), source })?;
-        Ok(Self { context: Context::new(device, queue), info })
+        let batch = if info.device_type == DeviceType::DiscreteGpu { DISCRETE_BATCH } else { 1 };
+        Ok(Self { context: Context::new(device, queue, batch), info })
     }
 
     /// Name of the adapter, as its driver gives it.

@@ -129,7 +129,7 @@ impl Scene {
     /// # Errors
     /// As [`Scene::render`], and [`GpuError::NoSurface`].
     pub fn render_shown(&self, parts: &[Shown], settings: &RenderSettings) -> Result<Image, GpuError> {
-        let image = self.render_passes(parts, settings, &|| false, EVALUATIONS_PER_PASS)?;
+        let image = self.render_passes(parts, settings, &|| false, EVALUATIONS_PER_PASS * self.context.batch)?;
         Ok(image.expect("nobody stops it"))
     }
 
@@ -183,7 +183,7 @@ impl Scene {
         settings: &RenderSettings,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<Image>, GpuError> {
-        self.render_passes(&parts(materials), settings, stop, EVALUATIONS_PER_SHORT_PASS)
+        self.render_passes(&parts(materials), settings, stop, EVALUATIONS_PER_SHORT_PASS * self.context.batch)
     }
 
     fn render_passes(

@@ -18,7 +18,7 @@ const LAYERS_MOST: usize = 8;
 /// Samples of one thread in a submission: far from the 65,535 turns of loops after which software adapters end them.
 const SAMPLES_PER_THREAD: u32 = 32;
 
-/// Samples per submission: a second or two on a software adapter.
+/// Samples per submission: a second or two on a software adapter. Discrete GPUs take more.
 const SAMPLES_PER_PASS: u32 = 1 << 19;
 
 /// Light at a rough interface.
@@ -109,7 +109,7 @@ impl Scene {
         let mut all = Vec::with_capacity(pairs.len());
         for (number, chunk) in pairs.chunks(WORKGROUP * 256).enumerate() {
             let mut sums = vec![Sums::default(); chunk.len()];
-            let blocks = (SAMPLES_PER_PASS / SAMPLES_PER_THREAD / chunk.len() as u32).max(1);
+            let blocks = (SAMPLES_PER_PASS * self.context.batch / SAMPLES_PER_THREAD / chunk.len() as u32).max(1);
             let mut done = 0;
             while done < samples {
                 // Whole threads, or one block of what is left.
@@ -274,7 +274,7 @@ impl Simulation {
         let before = (self.samples, self.sums.clone());
         while left > 0 {
             let count = left.min(SAMPLES_PER_THREAD);
-            let rows = (SAMPLES_PER_PASS / (size * count)).clamp(1, size);
+            let rows = (SAMPLES_PER_PASS * self.context.batch / (size * count)).clamp(1, size);
             for row in (0..size).step_by(rows as usize) {
                 if stop() {
                     (self.samples, self.sums) = before;

@@ -51,6 +51,8 @@ pub(crate) enum Verb {
     Budgets(BudgetsOptions),
     /// Count the cycles of the papers' shaders on today's chips, without the chips: a page in Markdown
     Papers(PapersOptions),
+    /// Time the papers' shaders on the device: a page in Markdown
+    Throughput(ThroughputOptions),
     /// Count the cycles of a shader for every shape of stack: the table by which scenes choose models, as JSON
     Shapes(ShapesOptions),
 }
@@ -82,7 +84,7 @@ pub(crate) struct Format {
 const FIGURES_EXAMPLES: &str = "\
 Writes the pictures and figures.json into a folder, and a page that explains them beside it: out/figures.md for out/figures.
 Figures that an earlier run left in the folder stay on the page.
-Pictures of shaders depend on the adapter in their last bits; those in f64 (simulation, curves) are the same everywhere.
+Pictures of shaders depend on the adapter in their last bits; curves in f64 are the same everywhere.
 
 Examples:
   luthier-lab figures
@@ -90,7 +92,7 @@ Examples:
   luthier-lab figures elek-5 course-classes -o seen --size 256";
 
 /// Paths of the simulation in figures, unless the command line has others.
-pub(crate) const PATHS: u64 = 256;
+pub(crate) const PATHS: u32 = 256;
 
 #[derive(Debug, Args)]
 #[command(after_help = FIGURES_EXAMPLES)]
@@ -107,9 +109,9 @@ pub(crate) struct FiguresOptions {
     /// Samples along each side of a pixel, of shaders
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=16))]
     pub(crate) samples: u32,
-    /// Paths of the simulation per pixel, light and channel
-    #[arg(long, value_name = "N", default_value_t = PATHS, value_parser = clap::value_parser!(u64).range(2..=1_000_000))]
-    pub(crate) paths: u64,
+    /// Paths of the simulation per pixel and light
+    #[arg(long, value_name = "N", default_value_t = PATHS, value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub(crate) paths: u32,
     #[command(flatten)]
     pub(crate) adapter: Adapter,
     /// Print names and titles instead
@@ -315,6 +317,26 @@ pub(crate) struct SimulationOptions {
     pub(crate) time_size: u32,
     /// Times that each of these is made
     #[arg(long, value_name = "N", default_value = "3")]
+    pub(crate) repeats: NonZeroU32,
+    /// File to write the numbers to, as JSON
+    #[arg(long, value_name = "FILE")]
+    pub(crate) data: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) adapter: Adapter,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  luthier-lab throughput materials -o docs/pages/throughput.md")]
+pub(crate) struct ThroughputOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Least number of evaluations in one run
+    #[arg(long, value_name = "N", default_value_t = 1 << 20, value_parser = clap::value_parser!(u32).range(1..=60_000_000))]
+    pub(crate) evaluations: u32,
+    /// Timed runs of each shader
+    #[arg(long, value_name = "N", default_value = "30")]
     pub(crate) repeats: NonZeroU32,
     /// File to write the numbers to, as JSON
     #[arg(long, value_name = "FILE")]

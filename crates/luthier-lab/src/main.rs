@@ -14,6 +14,7 @@ mod places;
 mod shapes;
 mod simulation;
 mod stability;
+mod throughput;
 mod varying;
 
 use std::process::ExitCode;
@@ -39,6 +40,7 @@ fn main() -> ExitCode {
         Verb::Lobes(options) => lobes::run(options),
         Verb::Budgets(options) => budgets::run(options),
         Verb::Papers(options) => papers::run(options),
+        Verb::Throughput(options) => throughput::run(options),
         Verb::Shapes(options) => shapes::run(options),
     };
     match outcome {

@@ -6,7 +6,7 @@ use luthier_bake::Options;
 use luthier_cost::{CostReport, Counts, Family, Harness, Kernel, Style, compile_apart};
 use luthier_export::{GENERATOR, MemoryStore, Package, Shader, outline, read};
 use luthier_lut::TexelFormat;
-use luthier_manifest::{ColorMode, ShadingModel};
+use luthier_manifest::{ColorMode, Manifest, ShadingModel};
 use luthier_material::{FresnelMapping, FresnelSettings, Material};
 use luthier_report::{FLOOR, Pair, ParitySet};
 use luthier_shader::{Form, MaterialSet};
@@ -23,12 +23,8 @@ const GOAL: (f64, f64, f64) = (0.40, 1.5, 0.01);
 
 /// Counts the shaders of the papers, as a page.
 pub(crate) fn run(options: &PapersOptions) -> Outcome {
-    let cases = cases(&valid(read(&options.sources.paths)?, true)?)?;
-    if cases.is_empty() {
-        return Err(Failure::Input(anyhow::anyhow!(
-            "none of the materials has two layers, as those of the papers have"
-        )));
-    }
+    let materials = valid(read(&options.sources.paths)?, true)?;
+    let cases = of_tables(&materials)?.into_iter().map(case).collect::<Outcome<Vec<PaperCase>>>()?;
     let empty = |harness| Kernel::empty(harness).map_err(Failure::input);
     let mut kernels = vec![empty(Harness::Bare)?, empty(Harness::NormalMapped)?];
     kernels.extend(cases.iter().flat_map(|case| &case.variants).flat_map(|variant| variant.kernels.clone()));
@@ -66,8 +62,9 @@ struct PaperVariant {
     kernels: [Kernel; 2],
 }
 
+/// What a row of the tables computes, and what it reads.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Role {
+pub(crate) enum Role {
     Full,
     Approximate,
     Tables,
@@ -75,7 +72,7 @@ enum Role {
     Phong,
 }
 
-const ROLES: [(&str, Role); 5] = [
+pub(crate) const ROLES: [(&str, Role); 5] = [
     ("full", Role::Full),
     ("full, approximated Fresnel", Role::Approximate),
     ("precomputed F and D", Role::Tables),
@@ -83,16 +80,21 @@ const ROLES: [(&str, Role); 5] = [
     ("Phong", Role::Phong),
 ];
 
-/// The cases among the materials.
-fn cases(materials: &[Material]) -> Outcome<Vec<PaperCase>> {
+/// The materials of the tables among those at hand.
+pub(crate) fn of_tables(materials: &[Material]) -> Outcome<Vec<&Material>> {
     let named: Vec<&Material> =
         MATERIALS.iter().filter_map(|name| materials.iter().find(|m| m.name == *name)).collect();
-    let chosen =
+    let chosen: Vec<&Material> =
         if named.is_empty() { materials.iter().filter(|m| m.stack.layers.len() == 2).take(1).collect() } else { named };
-    chosen.into_iter().map(case).collect()
+    if chosen.is_empty() {
+        let text = "none of the materials has two layers, as those of the papers have";
+        return Err(Failure::Input(anyhow::anyhow!(text)));
+    }
+    Ok(chosen)
 }
 
-fn case(material: &Material) -> Outcome<PaperCase> {
+/// A material as the tables have it by Elek's model, and by Phong's.
+pub(crate) fn of_models(material: &Material) -> [Material; 2] {
     let with = |model: ShadingModel| {
         let mut material = material.clone();
         material.bake.model = Some(model);
@@ -107,7 +109,19 @@ fn case(material: &Material) -> Outcome<PaperCase> {
         material.bake.distribution.size = Some([512, 512]);
         material
     };
-    let (elek, phong) = (with(ShadingModel::Elek), with(ShadingModel::Phong));
+    [with(ShadingModel::Elek), with(ShadingModel::Phong)]
+}
+
+/// The shader of a row of the tables, from the materials of a manifest, and its style.
+pub(crate) fn shader(manifest: &Manifest, role: Role, constant: bool) -> (MaterialSet<'_>, Style) {
+    let set = MaterialSet::from_manifest(manifest);
+    let set = if role == Role::FresnelTable { set.with_closed_distribution() } else { set };
+    let form = if matches!(role, Role::Tables | Role::FresnelTable) { Form::Baked } else { Form::Full };
+    (set, Style { form, constant, approximate: role == Role::Approximate })
+}
+
+fn case(material: &Material) -> Outcome<PaperCase> {
+    let [elek, phong] = of_models(material);
     let [of_elek, of_phong] = [&elek, &phong]
         .map(|material| outline(std::slice::from_ref(material), &Options::default(), &MemoryStore::default()));
     let (of_elek, of_phong) = (of_elek?, of_phong?);
@@ -116,10 +130,7 @@ fn case(material: &Material) -> Outcome<PaperCase> {
     for constant in [false, true] {
         for (name, role) in ROLES {
             let manifest = if role == Role::Phong { &of_phong } else { &of_elek };
-            let set = MaterialSet::from_manifest(manifest);
-            let set = if role == Role::FresnelTable { set.with_closed_distribution() } else { set };
-            let form = if matches!(role, Role::Tables | Role::FresnelTable) { Form::Baked } else { Form::Full };
-            let style = Style { form, constant, approximate: role == Role::Approximate };
+            let (set, style) = shader(manifest, role, constant);
             let kernel = |harness| Kernel::of_set(&set, style, harness).map_err(Failure::input);
             let kernels = [kernel(Harness::Bare)?, kernel(Harness::NormalMapped)?];
             texts.push(luthier_cost::shader_text(&set, style).map_err(Failure::input)?);

@@ -16,7 +16,7 @@
 //!
 //! [`audit()`] judges a table of another program against the function that it should hold.
 //! [`parity`] compares the shaders of all models with their f64 twins. [`compare_pictures`] compares two rendered pictures,
-//! [`render_ball`] makes one in f64, [`sheet()`] puts many on one, [`Plot`] draws curves. [`Spread`] is for times of a stopwatch.
+//! [`render_ball`] makes one in f64, [`render_ball_of`] one from values of any source, [`sheet()`] puts many on one, [`Plot`] draws curves. [`Spread`] is for times of a stopwatch.
 //! The caller puts the rest of a page (searches, costs, pictures, models against the reference) into the report: [`Costs`],
 //! [`Exhibits`], [`judge_shading_models`]. [`limits()`] holds the report against budgets.
 //! [`judge_models`] compares every reflectance model with the Monte Carlo simulation of whole stacks.
@@ -41,7 +41,7 @@ pub mod stability;
 pub use audit::{Audit, AuditError, AuditVerdict, Candidate, Mistake, Model, Statement, Term, audit};
 pub use certificate::{Certificate, ErrorMap};
 pub use error::ReportError;
-pub use judge::ball::{BallPicture, DistantLight, render_ball};
+pub use judge::ball::{BallPicture, DistantLight, render_ball, render_ball_of};
 pub use judge::evidence::{
     AgainstReference, Costs, Exhibit, Exhibits, PictureErrors, ReferencePaths, ShaderCost, ShapeCost, StabilitySummary,
 };

@@ -139,13 +139,13 @@ fn clamp(studio: &Studio) -> Outcome<Made> {
     }
     made.sheet("elek-2", labels.into_iter().zip(pictures).collect(), 6);
 
-    let reference = studio.ball(&odd, "layered-mc")?;
+    let reference = studio.simulated(&odd)?;
     let mut balls = vec![("simulation".to_owned(), reference.image.clone())];
     made.measure("simulation: noise, in units of the RMSE", reference.noise);
     for (label, model) in
         [("clamp", "elek"), ("no clamp", "weidlich-wilkie"), ("corrected", "weidlich-wilkie-corrected")]
     {
-        let ball = studio.ball(&odd, model)?.image;
+        let ball = studio.ball(&odd, model)?;
         let apart = compared(&ball, &reference.image)?;
         made.measure(format!("ball, {label}, against simulation: RMSE"), apart.rms_err);
         made.measure(format!("ball, {label}, against simulation: mean FLIP"), apart.flip_mean);

@@ -18,7 +18,7 @@ pub(crate) const FIGURES: [Figure; 3] = [
         name: "elek-3",
         title: "the real-time model against Monte Carlo",
         source: "Elek 2010, figure 3",
-        caption: "Top row: layered-mc, the simulation. Bottom row: Elek's model, both in f64 under two lights. From left to right: glaze, lacquer, latex, foil, car paint. \
+        caption: "Top row: the simulation. Bottom row: Elek's model in f64. Both are under two lights. From left to right: glaze, lacquer, latex, foil, car paint. \
                   The paper adjusts the parameters of each real-time picture to look like its original; here both have the numbers of one file. Smooth coats on \
                   diffuse bases are too bright by up to the square of the index, because the model lacks that factor; the shapes of the highlights agree.",
         size: SIMULATED,
@@ -90,8 +90,8 @@ fn simulated(studio: &Studio) -> Outcome<Made> {
     let (mut top, mut bottom): (Labelled, Labelled) = (Vec::new(), Vec::new());
     for (label, text) in COMPARED {
         let material = material(label, text)?;
-        let reference = studio.ball(&material, "layered-mc")?;
-        let model = studio.ball(&material, "elek")?.image;
+        let reference = studio.simulated(&material)?;
+        let model = studio.ball(&material, "elek")?;
         let apart = compared(&model, &reference.image)?;
         made.measure(format!("{label}, simulation: noise, in units of the RMSE"), reference.noise);
         made.measure(format!("{label}: RMSE of linear radiance"), apart.rms_err);

@@ -54,7 +54,7 @@ pub(crate) const MEDIUM: u32 = 352;
 /// Side of a picture of many on a sheet.
 pub(crate) const SMALL: u32 = 256;
 
-/// Side of a picture in f64: a simulation takes seconds of a core for each.
+/// Side of a picture that is simulated: minutes on a software adapter.
 pub(crate) const SIMULATED: u32 = 128;
 
 /// Tone curve of all pictures.

@@ -76,8 +76,8 @@ pub(crate) fn markdown(options: &FiguresOptions, adapter: Option<&str>, made: &[
     let mut page = format!(
         "# The papers' figures, made anew\n\nMade by `luthier-lab figures`. Each figure was published in a paper on layered materials; luthier renders it again \
          from the paper's parameters. {} of {} figures show what they must: *must show* has the statement, and the numbers that decide. The other numbers of \
-         a figure, and the command that makes it, are below its text. Pictures of shaders have 4 samples to a pixel, and a simulation takes {PATHS} paths per pixel, light \
-         and channel, unless the command says otherwise. Adapter: {}. The tone curve keeps values up to 0.8 and bends larger ones towards 1. RMSE compares \
+         a figure, and the command that makes it, are below its text. Pictures of shaders have 4 samples to a pixel, and a simulation takes {PATHS} paths per pixel and \
+         light, unless the command says otherwise. Adapter: {}. The tone curve keeps values up to 0.8 and bends larger ones towards 1. RMSE compares \
          linear radiance over all pixels and channels. FLIP compares pictures as a display shows them at 67 pixels per degree. Where a paper does not state a \
          parameter, and for the light and the shapes, the values are luthier's own.\n",
         made.iter().filter(|done| done.verdict.holds).count(),
@@ -119,7 +119,7 @@ pub(crate) fn command(options: &FiguresOptions, name: &str) -> String {
     if let Some(size) = options.size {
         words.push(format!("--size {size}"));
     }
-    let numbers = [("samples", u64::from(options.samples), 2), ("paths", options.paths, PATHS)];
+    let numbers = [("samples", options.samples, 2), ("paths", options.paths, PATHS)];
     let changed = numbers.into_iter().filter(|(_, value, default)| value != default);
     words.extend(changed.map(|(option, value, _)| format!("--{option} {value}")));
     words.join(" ")

@@ -5,17 +5,15 @@ use std::io::ErrorKind;
 use std::sync::Arc;
 
 use luthier_export::{MemoryStore, Package};
-use luthier_gpu::{Environment, Gpu, Mesh, RenderSettings, Shape, model};
-use luthier_layers::inputs::Inputs;
-use luthier_layers::model::Model;
+use luthier_gpu::{Environment, Gpu, Mesh, RenderSettings, Shape, Simulated, SimulationSettings, model};
+use luthier_layers::layered_mc::Estimate;
 use luthier_layers::registry;
 use luthier_lut::Image;
-use luthier_manifest::{Form, ShadingModel};
-use luthier_material::{Material, parse};
-use luthier_report::{BallPicture, DistantLight, render_ball};
+use luthier_manifest::{ColorMode, Form, ShadingModel};
+use luthier_material::{Effects, Material, parse};
+use luthier_report::{BallPicture, DistantLight, render_ball, render_ball_of};
 use luthier_terminal::{Failure, Outcome, adapter_label, open};
 
-use super::figure::SIMULATED;
 use crate::cli::FiguresOptions;
 
 /// Directions of the environment per lobe and sample: with four samples to a pixel, 128 per lobe.
@@ -31,7 +29,7 @@ pub(crate) struct Studio {
     /// Side of each single picture, of the figure that is made.
     pub(crate) size: u32,
     samples: u32,
-    paths: u64,
+    paths: u32,
     adapter: Option<String>,
     gpu: OnceCell<Gpu>,
     environment: OnceCell<Arc<Environment>>,
@@ -122,22 +120,30 @@ impl Studio {
         (0..package.manifest.materials.len()).map(render).collect()
     }
 
-    /// A ball in f64, at most [`SIMULATED`] pixels wide, under two lights and nothing else; estimates from the paths of the command line.
-    pub(crate) fn ball(&self, material: &Material, model: &str) -> Outcome<BallPicture> {
-        let model = self.model(model)?;
-        Ok(render_ball(
-            model.as_ref(),
-            &material.stack,
-            material.bake.wavelengths_nm(),
-            &LIGHTS,
-            self.size.min(SIMULATED),
-        ))
+    /// A ball by a model in f64, under two lights and nothing else.
+    pub(crate) fn ball(&self, material: &Material, model: &str) -> Outcome<Image> {
+        let model = registry::model(model).ok_or_else(|| Failure::Input(anyhow::anyhow!("no model `{model}`")))?;
+        let wavelengths_nm = material.bake.wavelengths_nm();
+        Ok(render_ball(model.as_ref(), &material.stack, wavelengths_nm, &LIGHTS, self.size).image)
     }
 
-    fn model(&self, name: &str) -> Outcome<Box<dyn Model>> {
-        let model = registry::model(name).ok_or_else(|| Failure::Input(anyhow::anyhow!("no model `{name}`")))?;
-        let inputs = Inputs { samples: Some(self.paths), ..Inputs::default() };
-        Ok(model.with_inputs(&inputs).unwrap_or(model))
+    /// The same ball by the simulation on the device, of the stack alone.
+    pub(crate) fn simulated(&self, material: &Material) -> Outcome<BallPicture> {
+        // Models play no part: no table is baked.
+        let mut plain = material.clone();
+        plain.shade_by(ShadingModel::Phong);
+        plain.effects = Effects::default();
+        plain.bake.tables.clear();
+        plain.bake.color = Some(ColorMode::ThreeWavelengths);
+        let package = Package::for_renderer(std::slice::from_ref(&plain), &MemoryStore::default())?;
+        let scene = self.gpu()?.scene(&package, Form::Baked)?;
+        render_ball_of(&LIGHTS, self.size, |pairs| {
+            let pairs: Vec<_> =
+                pairs.iter().map(|(wi, wo)| (wi.as_vec3().to_array(), wo.as_vec3().to_array())).collect();
+            let values = scene.simulate(0, &pairs, self.paths, &SimulationSettings::default())?;
+            let estimates = |v: Simulated| [0, 1, 2].map(|c: usize| Estimate::known(v.mean[c], v.std_err[c]));
+            Ok(values.into_iter().map(estimates).collect())
+        })
     }
 }
 

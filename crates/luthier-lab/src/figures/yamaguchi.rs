@@ -76,12 +76,12 @@ fn simulation(studio: &Studio) -> Outcome<Made> {
     let mut pictures: Vec<(String, Image)> = Vec::new();
     for brushing in &BRUSHINGS {
         let material = brushed(brushing)?;
-        let reference = studio.ball(&material, "layered-mc")?;
+        let reference = studio.simulated(&material)?;
         let shown = |label: &str, image: &Image| (label.to_owned(), TONE.image(image.clone()));
         pictures.push(shown(brushing.name, &reference.image));
         made.measure(format!("{}, simulation: noise, in units of the RMSE", brushing.name), reference.noise);
         for model in ["yamaguchi", "belcour"] {
-            let image = studio.ball(&material, model)?.image;
+            let image = studio.ball(&material, model)?;
             let rms = compared(&image, &reference.image)?.rms_err;
             made.measure(format!("{}, {model} against simulation: RMSE", brushing.name), rms);
             // Errors of the simulation are independent of those of the model.

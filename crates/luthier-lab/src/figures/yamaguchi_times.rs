@@ -13,9 +13,9 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
     title: "time of the anisotropic model over that of the isotropic one",
     source: "Yamaguchi et al. 2019, figure 5",
     caption: "The left chart of the paper has the times of a picture by Belcour's model and by Yamaguchi's, over the samples of a pixel; the right one says by how many \
-              percent the second takes longer. Here are both for an anisotropic material and an isotropic one. Times are medians of three pictures of 16 pixels, from \
-              `docs/measurements/simulation-llvmpipe.json`, which `luthier-lab simulation` writes. They were taken on a processor, where pictures of few samples take \
-              milliseconds that vary by more than the models differ; the verdict goes by the largest number of samples. simulation.md has the times of the simulation beside them.",
+              percent the second takes longer. Here are both for an anisotropic material and an isotropic one. Times are medians of three pictures of 512 pixels a side on a GPU, from \
+              `docs/measurements/simulation-gpu.json`, which `luthier-lab simulation` wrote; the file names the GPU. Pictures of few samples take milliseconds that vary by more \
+              than the models differ; the verdict goes by the largest number of samples. gpu-simulation.md has the times of the simulation beside them.",
     size: SMALL,
     claim: Claim {
         text: "Anisotropic layers cost little more time than isotropic ones (at most 10 percent with 2048 samples).",
@@ -27,7 +27,7 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
     make: times,
 }];
 
-const TIMES: &str = include_str!("../../../../docs/measurements/simulation-llvmpipe.json");
+const TIMES: &str = include_str!("../../../../docs/measurements/simulation-gpu.json");
 
 /// Materials of the measurements, with the colours of their curves: of one model and of the other.
 const MATERIALS: [(&str, [PlotColor; 2]); 2] =
@@ -58,24 +58,21 @@ fn times(_: &Studio) -> Outcome<Made> {
         percent.push(Curve { name: material.to_owned(), color: colors[0], points });
     }
     let x = || PlotAxis { label: "samples of a pixel".to_owned(), range: [0.0, 2048.0], step: 512.0 };
-    let y = |label: &str, range, step| PlotAxis { label: label.to_owned(), range, step };
-    made.plot(
-        "yamaguchi-5",
-        Plot {
-            title: "Time of a picture against the samples of a pixel".to_owned(),
-            x: x(),
-            y: y("milliseconds", [0.0, 1400.0], 200.0),
-            curves: absolute,
-        },
-    );
-    made.plot(
-        "yamaguchi-5-more",
-        Plot {
-            title: "Time of Yamaguchi's model over Belcour's".to_owned(),
-            x: x(),
-            y: y("percent more", [-40.0, 60.0], 20.0),
-            curves: percent,
-        },
-    );
+    let y = |label: &str, curves: &[Curve]| {
+        let values = curves.iter().flat_map(|curve| &curve.points).map(|point| point[1]);
+        let [least, most] = values.fold([0.0, 0.0_f64], |[least, most], v| [v.min(least), v.max(most)]);
+        let step = round_step((most - least) / 5.0);
+        PlotAxis { label: label.to_owned(), range: [step * (least / step).floor(), step * (most / step).ceil()], step }
+    };
+    let title = "Time of a picture against the samples of a pixel".to_owned();
+    made.plot("yamaguchi-5", Plot { title, x: x(), y: y("milliseconds", &absolute), curves: absolute });
+    let title = "Time of Yamaguchi's model over Belcour's".to_owned();
+    made.plot("yamaguchi-5-more", Plot { title, x: x(), y: y("percent more", &percent), curves: percent });
     Ok(made)
+}
+
+/// The next larger of 1, 2 and 5 times a power of ten.
+fn round_step(step: f64) -> f64 {
+    let power = libm::exp10(libm::log10(step.max(1e-9)).floor());
+    [1.0, 2.0, 5.0].map(|digit| digit * power).into_iter().find(|round| *round >= step).unwrap_or(10.0 * power)
 }

@@ -1,4 +1,4 @@
-//! `papers` and `shapes`: what a driver's compiler says.
+//! `papers` and `shapes`: what a driver's compiler says; `throughput`: what a clock says.
 
 use luthier_workshop::material_texts::{gold, lacquer};
 
@@ -46,4 +46,30 @@ fn shapes_are_counted_by_model_and_form() {
         }
     }
     assert!(table.rows.iter().all(|row| row.cycles > 0), "{table:?}");
+}
+
+/// Ten shaders of a material of two layers, each with its time; ratios of the page are those of the numbers.
+#[test]
+fn shaders_of_the_papers_are_timed() {
+    let workshop = Workshop::with(&[("lacquer.toml", &lacquer("lacquer")), ("gold.toml", &gold("gold"))]);
+    let small = ["--evaluations", "65536", "--repeats", "5", "--data", "data.json"];
+    let run = workshop.run(&[&["throughput", "lacquer.toml"][..], &small].concat());
+    if run.lacks_adapter() {
+        return;
+    }
+    let page = run.exits(0).stdout;
+    let data: serde_json::Value = serde_json::from_str(&workshop.text("data.json")).unwrap();
+    let rows = data["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 10, "{data}");
+    let net = |row: &serde_json::Value| row["net_ns"].as_f64().unwrap();
+    for row in rows {
+        assert!(row["median_ns"].as_f64().unwrap() > 0.0 && row["harness_ns"].as_f64().unwrap() > 0.0, "{row}");
+        let full = rows.iter().find(|r| r["shader"] == "full" && r["constant"] == row["constant"]).unwrap();
+        let numbers = if row["constant"] == true { ", constants" } else { "" };
+        let line = format!("| {}{numbers} | ", row["shader"].as_str().unwrap());
+        let of_full = format!(" | {:.2} | ", net(full) / net(row));
+        assert!(page.lines().any(|l| l.starts_with(&line) && l.contains(&of_full)), "no {line}{of_full} in {page}");
+    }
+    assert!(page.contains("| 348 | – | 757 | 1648 | 2.18 | 4.74 |"), "{page}");
+    workshop.run(&["throughput", "gold.toml"]).fails(1, &["two layers"]);
 }

@@ -1,4 +1,4 @@
-//! Pictures in f64, for models that no shader has.
+//! Pictures of a ball from values for pairs of directions: of models in f64 that no shader has, and of simulations.
 
 use glam::DVec3;
 use luthier_layers::layered_mc::Estimate;
@@ -62,6 +62,42 @@ pub fn render_ball(
         .collect();
     let noise = (rows.iter().sum::<f64>() / image.data.len().max(1) as f64).sqrt();
     BallPicture { image, noise }
+}
+
+/// The ball of [`render_ball`] from values of `f cos_theta_i`, which `values` has for all pairs of unit directions to a light and to the eye, in the
+/// local frame: as many as it is given, in their order. Pairs with both directions above the horizon are asked for, no others.
+///
+/// # Errors
+/// That of `values`.
+pub fn render_ball_of<E>(
+    lights: &[DistantLight],
+    size: u32,
+    values: impl FnOnce(&[(DVec3, DVec3)]) -> Result<Vec<[Estimate; 3]>, E>,
+) -> Result<BallPicture, E> {
+    let at = |i: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(size) - 1.0;
+    let (mut pairs, mut of) = (Vec::new(), Vec::new());
+    for pixel in 0..size * size {
+        let Some(place) = Place::hit([at(pixel % size), -at(pixel / size)]) else { continue };
+        let wo = place.local(place.to_eye);
+        for light in lights {
+            let wi = place.local(DVec3::from_array(light.direction).normalize());
+            if wi.z > 0.0 && wo.z > 0.0 {
+                pairs.push((wi, wo));
+                of.push((pixel, light.irradiance));
+            }
+        }
+    }
+    let mut image = Image::zeros(size, size, 3);
+    let mut variance = 0.0;
+    for ((pixel, irradiance), value) in of.into_iter().zip(values(&pairs)?) {
+        let texel = image.texel_mut(pixel % size, pixel / size);
+        for c in 0..3 {
+            texel[c] += (irradiance[c] * value[c].mean) as f32;
+            variance += irradiance[c] * irradiance[c] * value[c].variance();
+        }
+    }
+    let noise = (variance / image.data.len().max(1) as f64).sqrt();
+    Ok(BallPicture { image, noise })
 }
 
 /// A point of the ball.
@@ -133,6 +169,24 @@ mod tests {
             assert!((value - expected).abs() < 1e-6, "{middle:?}");
         }
         assert_eq!((seen.image.texel(0, 0), seen.noise), (&[0.0; 3][..], 0.0));
+    }
+
+    /// Both ways to a picture are one where the values are those of the model.
+    #[test]
+    fn values_make_the_picture_of_their_model() {
+        let lights = [
+            DistantLight { direction: [0.3, 0.5, 1.0], irradiance: [1.0, 2.0, 3.0] },
+            DistantLight { direction: [-1.0, 0.1, -0.2], irradiance: [0.5; 3] },
+        ];
+        let stack = white();
+        let stacks = [0, 1, 2].map(|c: usize| Monochrome::new(&stack, WAVELENGTHS_NM[c], c));
+        let value = |(wi, wo): &(DVec3, DVec3)| stacks.each_ref().map(|s| Estimate::exact(Lambert.eval(s, *wi, *wo)));
+        let seen = render_ball_of(&lights, 24, |pairs| Ok::<_, ()>(pairs.iter().map(value).collect())).unwrap();
+        let expected = render_ball(&Lambert, &stack, WAVELENGTHS_NM, &lights, 24);
+        let most = seen.image.data.iter().zip(&expected.image.data).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(most < 1e-6 && seen.image.data.iter().any(|v| *v > 0.1), "{most}");
+        let known = |pairs: &[(DVec3, DVec3)]| Ok::<_, ()>(vec![[Estimate::known(1.0, 0.1); 3]; pairs.len()]);
+        assert!(render_ball_of(&lights[..1], 24, known).unwrap().noise > 0.01);
     }
 
     /// Simulations of a ball are as far apart as their stated noise says, and equal at every run.

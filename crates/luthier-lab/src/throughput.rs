@@ -1,0 +1,202 @@
+//! `throughput`: Table 1 of Elek 2010 and section 3.4.2 of the course of Weidlich and Wilkie 2009, timed on a device.
+
+use std::fmt::Write as _;
+
+use luthier_export::{GENERATOR, MemoryStore, Package, Shader, read};
+use luthier_gpu::{Gpu, Scene, Stopwatch};
+use luthier_material::Material;
+use luthier_report::{Pair, ParitySet, Spread};
+use luthier_shader::Form;
+use luthier_terminal::{Bar, Outcome, adapter_label, deliver, open, valid};
+use serde_json::{Value, json};
+
+use crate::cli::ThroughputOptions;
+use crate::papers::{ROLES, Role, of_models, of_tables, shader};
+
+/// Version of the JSON.
+const SCHEMA: u32 = 1;
+
+/// Pairs of directions, half of them near the mirror direction: few enough for any cache.
+const PAIRS: u32 = 1024;
+
+/// Runs of each shader that are not timed.
+const WARM_UP: u32 = 3;
+
+/// One shader of one material: nanoseconds of an evaluation.
+struct Time {
+    material: String,
+    name: &'static str,
+    role: Role,
+    constant: bool,
+    spread: Spread,
+    /// Median of the same kernel without an evaluation.
+    harness: f64,
+}
+
+impl Time {
+    fn net(&self) -> f64 {
+        self.spread.median - self.harness
+    }
+}
+
+/// Times the shaders of the papers, as a page.
+pub(crate) fn run(options: &ThroughputOptions) -> Outcome {
+    let gpu = open(options.adapter.name.as_deref())?;
+    let materials = valid(read(&options.sources.paths)?, true)?;
+    let chosen = of_tables(&materials)?;
+    let bar = Bar::new("timing");
+    let mut rows = Vec::new();
+    for (i, material) in chosen.iter().enumerate() {
+        rows.extend(times(&gpu, material, options)?);
+        bar.set(i as u64 + 1, chosen.len() as u64);
+    }
+    drop(bar);
+    if let Some(file) = &options.data {
+        deliver(&format!("{:#}\n", data(&gpu, options, &rows)), Some(file))?;
+    }
+    deliver(&page(&gpu, options, &rows), options.destination.output.as_deref())
+}
+
+fn times(gpu: &Gpu, material: &Material, options: &ThroughputOptions) -> Outcome<Vec<Time>> {
+    let layers = luthier_layers::elek::layers(&material.stack);
+    let pairs: Vec<Pair> =
+        [ParitySet::Uniform, ParitySet::NearSpecular].iter().flat_map(|set| set.pairs(PAIRS / 2, &layers)).collect();
+    let package = |material: &Material| Package::for_renderer(std::slice::from_ref(material), &MemoryStore::default());
+    let [of_elek, of_phong] = of_models(material);
+    let (mut of_elek, mut of_phong) = (package(&of_elek)?, package(&of_phong)?);
+    let mut scenes: Vec<(&'static str, Role, bool, Scene)> = Vec::new();
+    for constant in [false, true] {
+        for (name, role) in ROLES {
+            let package = if role == Role::Phong { &mut of_phong } else { &mut of_elek };
+            let (set, style) = shader(&package.manifest, role, constant);
+            let text = luthier_cost::shader_text(&set, style).map_err(luthier_terminal::Failure::input)?;
+            package.shaders = vec![Shader::wgsl(Form::Baked, text)];
+            scenes.push((name, role, constant, gpu.scene(package, Form::Baked)?));
+        }
+    }
+    let watch = |scene, is_empty| Scene::stopwatch(scene, 0, &pairs, options.evaluations, is_empty);
+    let mut watches: Vec<Stopwatch<'_>> = vec![watch(&scenes[0].3, true)?];
+    for (.., scene) in &scenes {
+        watches.push(watch(scene, false)?);
+    }
+    let spreads = in_turn(&watches, options.repeats.get())?;
+    let row = |((name, role, constant, _), spread): (&(&'static str, Role, bool, Scene), &Spread)| Time {
+        material: material.name.clone(),
+        name,
+        role: *role,
+        constant: *constant,
+        spread: *spread,
+        harness: spreads[0].median,
+    };
+    Ok(scenes.iter().zip(&spreads[1..]).map(row).collect())
+}
+
+/// Times of each stopwatch. They take turns, so that a clock that drifts favours none.
+fn in_turn(watches: &[Stopwatch<'_>], repeats: u32) -> Outcome<Vec<Spread>> {
+    let mut times = vec![Vec::new(); watches.len()];
+    for round in 0..WARM_UP + repeats {
+        for (watch, times) in watches.iter().zip(&mut times) {
+            let time = watch.run()?;
+            if round >= WARM_UP {
+                times.push(time);
+            }
+        }
+    }
+    Ok(times.iter().map(|times| Spread::of(times)).collect())
+}
+
+/// Rows of the papers: title, then million pixels per second of full, approximated Fresnel, precomputed and Phong.
+const PAPERS: [(&str, [Option<f64>; 4]); 2] = [
+    ("Elek, Table 1: tables of F and D", [Some(348.0), None, Some(757.0), Some(1648.0)]),
+    ("course, 3.4.2: table of F, Blinn-Phong", [Some(266.0), Some(614.0), Some(885.0), Some(1991.0)]),
+];
+
+fn page(gpu: &Gpu, options: &ThroughputOptions, rows: &[Time]) -> String {
+    let kind = if gpu.is_software() {
+        "The adapter is a program on the CPU, which filters textures in software.\n\n"
+    } else {
+        ""
+    };
+    let sources: Vec<String> = options.sources.paths.iter().map(|path| path.display().to_string()).collect();
+    let mut page = format!(
+        "# The papers' shaders, timed\n\nGenerated by `luthier-lab throughput {} --evaluations {} --repeats {}` on {}.\n\n{kind}\
+         Elek 2010 (Table 1) and Weidlich and Wilkie 2009 (section 3.4.2) print the pixels per second of a GeForce 8800 GTX by the static analysis of FX \
+         Composer, for whole pixel shaders with a normal map and a reflected environment:\n\n\
+         | MPix/s | full | approximated Fresnel | precomputed | Phong | precomputed over full | Phong over full |\n|---|--:|--:|--:|--:|--:|--:|\n",
+        sources.join(" "),
+        options.evaluations,
+        options.repeats,
+        adapter_label(gpu),
+    );
+    for (name, values) in PAPERS {
+        let cells = values.map(|v| v.map_or_else(|| "–".to_owned(), |v| format!("{v:.0}")));
+        let times = |of: usize| values[of].zip(values[0]).map_or(f64::NAN, |(of, full)| of / full);
+        let _ = writeln!(page, "| {name} | {} | {:.2} | {:.2} |", cells.join(" | "), times(2), times(3));
+    }
+    // A GPU takes picoseconds of its whole width.
+    let (scale, unit) = if rows.iter().all(|row| row.spread.median < 0.5) { (1e3, "ps") } else { (1.0, "ns") };
+    page.push_str(
+        "\nHere are times of one evaluation by the clock of the device: the time of a run over its evaluations, which the device makes side by side. An evaluation is what a pixel of the \
+         papers does for one light. It is alone: a normal map and an environment would be alike in all rows, and bring the ratios nearer to 1. *Net* is less the time \
+         of the same kernel without an evaluation. *MPix/s* is millions of evaluations per second, by net times. *Over full* and *over Phong* are ratios of MPix/s. Constants are the numbers \
+         of the material in the code instead of in a buffer, and are compared with *full* and *Phong* of the same kind.\n",
+    );
+    let mut last = "";
+    for row in rows {
+        if row.material != last {
+            last = &row.material;
+            let _ = write!(
+                page,
+                "\n**{last}**; the kernel alone takes {:.2} {unit}\n\n| shader | {unit} | deviation | net {unit} | MPix/s | over full | over Phong |\n|---|--:|--:|--:|--:|--:|--:|\n",
+                scale * row.harness
+            );
+        }
+        let _ = writeln!(
+            page,
+            "| {}{} | {:.2} | {:.2} | {:.2} | {:.0} | {:.2} | {:.2} |",
+            row.name,
+            if row.constant { ", constants" } else { "" },
+            scale * row.spread.median,
+            scale * row.spread.mad,
+            scale * row.net(),
+            1e3 / row.net(),
+            over(rows, row, Role::Full),
+            over(rows, row, Role::Phong),
+        );
+    }
+    page
+}
+
+/// How many times as fast a row is as the row of a role of its material, with constants or without as it is.
+fn over(rows: &[Time], row: &Time, role: Role) -> f64 {
+    let is_partner = |r: &&Time| r.material == row.material && r.constant == row.constant && r.role == role;
+    rows.iter().find(is_partner).map_or(f64::NAN, |r| r.net() / row.net())
+}
+
+fn data(gpu: &Gpu, options: &ThroughputOptions, rows: &[Time]) -> Value {
+    let row = |row: &Time| {
+        json!({
+            "material": row.material,
+            "shader": row.name,
+            "constant": row.constant,
+            "median_ns": row.spread.median,
+            "mad_ns": row.spread.mad,
+            "harness_ns": row.harness,
+            "net_ns": row.net(),
+        })
+    };
+    json!({
+        "schema": SCHEMA,
+        "generator": GENERATOR,
+        "adapter": {
+            "name": gpu.adapter_name(),
+            "driver": gpu.driver(),
+            "backend": gpu.backend(),
+            "software": gpu.is_software(),
+        },
+        "evaluations": options.evaluations,
+        "warm_up": WARM_UP,
+        "repeats": options.repeats,
+        "rows": rows.iter().map(row).collect::<Vec<_>>(),
+    })
+}
