@@ -59,13 +59,19 @@ pub(crate) fn variations(file: &Path, ranges: [&Range; 2], steps: u32) -> Outcom
                 .map_err(|why| Failure::Input(anyhow::anyhow!("{}: {why}", original.label)))?;
         }
         let source = of_text(file, document.to_string());
-        let title = format!("{} {}", numbers[0], numbers[1]);
+        let title = numbers.map(rounded).join(" ");
         if source.parsed.is_err() {
             return Ok(vec![(title, source)]);
         }
         variations.push((title, source));
     }
     Ok(variations)
+}
+
+/// A number with three significant digits.
+fn rounded(number: f64) -> String {
+    let short: f64 = format!("{number:.2e}").parse().unwrap_or(number);
+    short.to_string()
 }
 
 /// Writes a number at a key. A key with dots leads from the top of the file, and counts elements of arrays from 0. One without is that of the
@@ -150,6 +156,12 @@ mod tests {
     fn with(key: &str, number: f64) -> Result<String, String> {
         let mut document: DocumentMut = FILE.parse().unwrap();
         set(&mut document, key, number).map(|()| document.to_string())
+    }
+
+    #[test]
+    fn names_have_three_digits() {
+        let names = [10.666666667, 0.36666, 30.0, 0.0, 1234.5, -0.00012345].map(rounded);
+        assert_eq!(names, ["10.7", "0.367", "30", "0", "1230", "-0.000123"]);
     }
 
     #[test]

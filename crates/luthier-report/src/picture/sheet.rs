@@ -11,13 +11,15 @@ const GAP: u32 = 8;
 const LABEL: u32 = 16;
 /// Height of the letters over that of a line.
 const LETTERS: f32 = 0.75;
+/// Height of the least letters, in pixels, to which those of a long name shrink.
+const LEAST_LETTERS: f32 = 9.0;
 /// Place of the foot of the letters in a line, over its height.
 const FOOT: f32 = 0.72;
 
 const PAPER: f32 = 0.02;
 const INK: f32 = 0.6;
 
-/// A picture of square pictures of one size, in rows, each with its name below; a name that is too long is cut off.
+/// A picture of square pictures of one size, in rows, each with its name below. The letters of a long name are smaller; one that still is too long is cut off.
 pub fn sheet(pictures: &[(String, Image)], columns: u32) -> Image {
     let size = pictures.first().map_or(0, |(_, image)| image.width);
     let rows = (pictures.len() as u32).div_ceil(columns);
@@ -54,10 +56,13 @@ fn font() -> Option<&'static Font> {
     FONT.get_or_init(|| Font::from_bytes(bytes, FontSettings::default()).ok()).as_ref()
 }
 
-/// Writes a line in the middle of a width; what does not fit is cut off.
+/// Writes a line in the middle of a width, in smaller letters where it is long; what does not fit is cut off.
 fn write(sheet: &mut Image, text: &str, [left, top]: [u32; 2], [width, height]: [u32; 2]) {
     let Some(font) = font() else { return };
-    let px = LETTERS * height as f32;
+    let most = LETTERS * height as f32;
+    let whole: f32 = text.chars().map(|character| font.metrics(character, most).advance_width).sum();
+    // Rounding of advances leaves a pixel.
+    let px = (most * (width as f32 - 1.0) / whole.max(1.0)).clamp(LEAST_LETTERS.min(most), most);
     let mut glyphs = Vec::new();
     let mut end = 0.0_f32;
     for character in text.chars() {
@@ -111,6 +116,22 @@ mod tests {
         // Eight letters are wider than the picture.
         let last = ink(8, 80, 24, 16) / letter;
         assert!((last - last.round()).abs() < 1e-3 && (5.0..8.0).contains(&last), "{last}");
+    }
+
+    /// A name of twice the width has letters of half the size, and all of them.
+    #[test]
+    fn a_long_name_has_smaller_letters() {
+        let inked = |name: &str| {
+            let sheet = sheet(&[(name.to_owned(), Image::zeros(256, 256, 3))], 1);
+            let columns = (0..sheet.width).filter(|x| (0..32).any(|y| sheet.texel(*x, 264 + y)[0] > 1.01 * PAPER));
+            let columns: Vec<u32> = columns.collect();
+            (columns[0], columns[columns.len() - 1])
+        };
+        let long = format!("I{}I", "n".repeat(30));
+        let (first, last) = inked(&long);
+        assert!(first >= 8 && last < 264, "{first} to {last}");
+        // Both ends are there: it fills the width.
+        assert!(last - first > 240, "{first} to {last}");
     }
 
     /// Letters of all sizes have their feet on the line, and room for what hangs below it.

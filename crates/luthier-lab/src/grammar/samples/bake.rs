@@ -18,13 +18,13 @@ pub(super) static SAMPLES: [Sample; 11] = [
     sample(
         "bake.reflectance",
         "bake.reflectance",
-        "layer = [{ type = 'conductor', ior = 'cr', alpha = 0.2 }]\nbake = { model = 'elek', reflectance = @ }",
+        "layer = [{ type = 'conductor', ior = { n = [0.3, 0.6, 1.5], k = [1, 1, 1], wavelengths_nm = [690, 550, 450] }, alpha = 0.3 }]\nbake = { model = 'elek', reflectance = @ }",
         &["'exact'", "'approximate'", "'lazanyi'"],
     ),
     sample(
         "bake.internal_reflection",
         "bake.internal_reflection",
-        "layer = [{ type = 'dielectric', ior = 2, alpha = 0.2 }, { type = 'conductor', ior = 'cu', alpha = 0.2 }]\nbake = { model = 'elek', internal_reflection = @ }",
+        "layer = [{ type = 'dielectric', ior = 3, alpha = 0.4 }, { type = 'conductor', ior = 'cu', alpha = 0.4 }]\nbake = { model = 'elek', internal_reflection = @ }",
         &["'facets'", "'none'", "'directions'"],
     ),
     sample(
