@@ -51,6 +51,24 @@ impl Scene {
 }
 
 impl Stopwatch<'_> {
+    /// Nanoseconds per evaluation of several: `repeats` runs of each, after `warm_up` that do not count. They take turns, so that a clock that drifts
+    /// favours none.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn in_turn(watches: &[Self], warm_up: u32, repeats: u32) -> Result<Vec<Vec<f64>>, GpuError> {
+        let mut times = vec![Vec::new(); watches.len()];
+        for round in 0..warm_up + repeats {
+            for (watch, times) in watches.iter().zip(&mut times) {
+                let time = watch.run()?;
+                if round >= warm_up {
+                    times.push(time);
+                }
+            }
+        }
+        Ok(times)
+    }
+
     /// Evaluations of one run.
     pub fn evaluations(&self) -> u32 {
         self.workgroups * WORKGROUP as u32 * PER_THREAD

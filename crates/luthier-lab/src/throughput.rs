@@ -7,7 +7,7 @@ use luthier_gpu::{Gpu, Scene, Stopwatch};
 use luthier_material::Material;
 use luthier_report::{Pair, ParitySet, Spread};
 use luthier_shader::Form;
-use luthier_terminal::{Bar, Outcome, adapter_label, deliver, open, valid};
+use luthier_terminal::{Bar, Outcome, adapter_json, adapter_label, deliver, open, valid};
 use serde_json::{Value, json};
 
 use crate::cli::ThroughputOptions;
@@ -79,7 +79,8 @@ fn times(gpu: &Gpu, material: &Material, options: &ThroughputOptions) -> Outcome
     for (.., scene) in &scenes {
         watches.push(watch(scene, false)?);
     }
-    let spreads = in_turn(&watches, options.repeats.get())?;
+    let times = Stopwatch::in_turn(&watches, WARM_UP, options.repeats.get())?;
+    let spreads: Vec<Spread> = times.iter().map(|times| Spread::of(times)).collect();
     let row = |((name, role, constant, _), spread): (&(&'static str, Role, bool, Scene), &Spread)| Time {
         material: material.name.clone(),
         name,
@@ -89,20 +90,6 @@ fn times(gpu: &Gpu, material: &Material, options: &ThroughputOptions) -> Outcome
         harness: spreads[0].median,
     };
     Ok(scenes.iter().zip(&spreads[1..]).map(row).collect())
-}
-
-/// Times of each stopwatch. They take turns, so that a clock that drifts favours none.
-fn in_turn(watches: &[Stopwatch<'_>], repeats: u32) -> Outcome<Vec<Spread>> {
-    let mut times = vec![Vec::new(); watches.len()];
-    for round in 0..WARM_UP + repeats {
-        for (watch, times) in watches.iter().zip(&mut times) {
-            let time = watch.run()?;
-            if round >= WARM_UP {
-                times.push(time);
-            }
-        }
-    }
-    Ok(times.iter().map(|times| Spread::of(times)).collect())
 }
 
 /// Rows of the papers: title, then million pixels per second of full, approximated Fresnel, precomputed and Phong.
@@ -188,12 +175,7 @@ fn data(gpu: &Gpu, options: &ThroughputOptions, rows: &[Time]) -> Value {
     json!({
         "schema": SCHEMA,
         "generator": GENERATOR,
-        "adapter": {
-            "name": gpu.adapter_name(),
-            "driver": gpu.driver(),
-            "backend": gpu.backend(),
-            "software": gpu.is_software(),
-        },
+        "adapter": adapter_json(gpu),
         "evaluations": options.evaluations,
         "warm_up": WARM_UP,
         "repeats": options.repeats,

@@ -2,6 +2,7 @@
 
 use luthier_gpu::{Gpu, Package, Scene};
 use luthier_report::{Device, Form, Pair};
+use serde_json::{Value, json};
 
 use crate::Outcome;
 
@@ -49,6 +50,16 @@ impl Device for Shaders {
 /// Name, interface and driver of an adapter, as pages have them.
 pub fn adapter_label(gpu: &Gpu) -> String {
     format!("{} ({}, {})", gpu.adapter_name(), gpu.backend(), gpu.driver())
+}
+
+/// The adapter of measurements in JSON; `software` where it is a program on the CPU, which filters textures in software.
+pub fn adapter_json(gpu: &Gpu) -> Value {
+    json!({
+        "name": gpu.adapter_name(),
+        "driver": gpu.driver(),
+        "backend": gpu.backend(),
+        "software": gpu.is_software(),
+    })
 }
 
 /// Opens an adapter: the best there is, or the one whose name contains a text.

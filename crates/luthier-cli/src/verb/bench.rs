@@ -6,8 +6,9 @@ use luthier_manifest::ShadingModel;
 use luthier_material::Material;
 use luthier_report::{ParitySet, Spread};
 use luthier_shader::{Form, MaterialSet, Target, style_name};
-use luthier_terminal::{Bar, Failure, Outcome, deliver, open, valid};
+use luthier_terminal::{Bar, Failure, Outcome, adapter_json, adapter_label, deliver, open, valid};
 use serde::Serialize;
+use serde_json::Value;
 
 use crate::cli::BenchOptions;
 use crate::materials::{is_shaded_by, models, shade_by};
@@ -24,22 +25,13 @@ const SCHEMA: u32 = 1;
 struct Bench {
     schema: u32,
     generator: &'static str,
-    adapter: Adapter,
+    adapter: Value,
     /// `device` for timestamp queries, `host` where the adapter has none: submission and waiting are then part of every time.
     clock: &'static str,
     evaluations: u32,
     warm_up: u32,
     repeats: u32,
     rows: Vec<Row>,
-}
-
-#[derive(Debug, Serialize)]
-struct Adapter {
-    name: String,
-    driver: String,
-    backend: String,
-    /// Whether it is a program on the CPU, which filters textures in software.
-    software: bool,
 }
 
 /// Nanoseconds per evaluation of one shader.
@@ -88,7 +80,7 @@ pub(crate) fn run(options: &BenchOptions) -> Outcome {
             }
             watches.push(watch(false)?);
         }
-        let times = times(&watches, options)?;
+        let times = Stopwatch::in_turn(&watches, options.warm_up, options.repeats.get())?;
         if let Some(watch) = watches.first() {
             (evaluations, has_timestamps) = (watch.evaluations(), watch.has_timestamps());
         }
@@ -96,12 +88,10 @@ pub(crate) fn run(options: &BenchOptions) -> Outcome {
         bar.set(n as u64 + 1, materials.len() as u64);
     }
     drop(bar);
-    let adapter =
-        Adapter { name: gpu.adapter_name(), driver: gpu.driver(), backend: gpu.backend(), software: gpu.is_software() };
     let bench = Bench {
         schema: SCHEMA,
         generator: GENERATOR,
-        adapter,
+        adapter: adapter_json(&gpu),
         clock: if has_timestamps { "device" } else { "host" },
         evaluations,
         warm_up: options.warm_up,
@@ -111,7 +101,7 @@ pub(crate) fn run(options: &BenchOptions) -> Outcome {
     let text = if options.json {
         format!("{:#}\n", serde_json::to_value(&bench).map_err(Failure::input)?)
     } else {
-        bench.to_text()
+        bench.to_text(&gpu)
     };
     deliver(&text, options.output.as_deref())
 }
@@ -157,20 +147,6 @@ fn with_closed(mut package: Package) -> Outcome<Package> {
     Ok(package)
 }
 
-/// Times of each stopwatch. They take turns, so that a clock that drifts is nobody's advantage.
-fn times(watches: &[Stopwatch<'_>], options: &BenchOptions) -> Outcome<Vec<Vec<f64>>> {
-    let mut times = vec![Vec::new(); watches.len()];
-    for round in 0..options.warm_up + options.repeats.get() {
-        for (watch, times) in watches.iter().zip(&mut times) {
-            let time = watch.run()?;
-            if round >= options.warm_up {
-                times.push(time);
-            }
-        }
-    }
-    Ok(times)
-}
-
 fn rows_of(material: &Material, subjects: &[Subject], times: &[Vec<f64>]) -> Vec<Row> {
     let mut spreads = times.iter().map(|times| Spread::of(times));
     let harness = spreads.next().map_or(0.0, |spread| spread.median);
@@ -201,12 +177,12 @@ fn rows_of(material: &Material, subjects: &[Subject], times: &[Vec<f64>]) -> Vec
 }
 
 impl Bench {
-    fn to_text(&self) -> String {
-        let Adapter { name, driver, backend, software } = &self.adapter;
-        let kind = if *software { ", a program on the CPU" } else { "" };
+    fn to_text(&self, gpu: &Gpu) -> String {
+        let kind = if gpu.is_software() { ", a program on the CPU" } else { "" };
         let mut out = format!(
-            "{name} ({backend}, {driver}){kind}; clock: {}; {} evaluations, {} repeats\n\n\
+            "{}{kind}; clock: {}; {} evaluations, {} repeats\n\n\
              {:<24} {:<17} {:<16} {:>9} {:>8} {:>9} {:>7} {:>7}\n",
+            adapter_label(gpu),
             self.clock,
             self.evaluations,
             self.repeats,

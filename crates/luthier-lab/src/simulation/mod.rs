@@ -12,7 +12,7 @@ use luthier_lut::Image;
 use luthier_manifest::{ColorMode, Form, ShadingModel};
 use luthier_material::Material;
 use luthier_report::{Spread, compare_pictures};
-use luthier_terminal::{Bar, Failure, Outcome, adapter_label, deliver, open, valid};
+use luthier_terminal::{Bar, Failure, Outcome, adapter_json, adapter_label, deliver, open, valid};
 use serde_json::{Value, json};
 
 use crate::cli::SimulationOptions;
@@ -203,12 +203,7 @@ fn data(gpu: &Gpu, options: &SimulationOptions, times: &[Time], errors: &[Error]
     json!({
         "schema": SCHEMA,
         "generator": GENERATOR,
-        "adapter": {
-            "name": gpu.adapter_name(),
-            "driver": gpu.driver(),
-            "backend": gpu.backend(),
-            "software": gpu.is_software(),
-        },
+        "adapter": adapter_json(gpu),
         "clock": "host",
         "time_size": options.time_size,
         "repeats": options.repeats,
