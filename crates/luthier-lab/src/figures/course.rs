@@ -11,6 +11,7 @@ use super::claim::{Check, Claim};
 use super::figure::{Figure, Made, SMALL};
 use super::numbers::light::{KEY, even_sky, one_light, surroundings_alone};
 use super::numbers::spot::spot;
+use super::numbers::tint::saturation;
 use super::numbers::{blown_out, middle, variation};
 use super::studio::{Studio, layered, material, shaded};
 
@@ -25,7 +26,8 @@ pub(crate) const FIGURES: [Figure; 2] = [
                   highlight is left. The metal of d mirrors the room in colour. In e, a sharp white \
                   reflection of the light lies over a soft coloured one. In f, a rough coat lies over a metal that \
                   still mirrors sharply, because this model does not blur the light that crosses the coat (elek-2 \
-                  compares it with the simulation). The material of g is matt and bright: its picture has about a third of the exposure of the others. In h, two clear layers lie \
+                  compares it with the simulation): f mirrors the surroundings more clearly than the foil, and the course's \
+                  tree would not call it frosted. The material of g is matt and bright: its picture has about a third of the exposure of the others. In h, two clear layers lie \
                   on a blue base, too rough to show the light. The width of a highlight is the root of the share of the \
                   picture that is at least half as bright as the brightest place, under the key light alone. The contrast of the \
                   surroundings is the variation of luminance without that light, over the mean. Mean FLIP is between the picture \
@@ -67,7 +69,7 @@ pub(crate) const FIGURES: [Figure; 2] = [
         caption: "The pictures show white balls under a yellow varnish at the twelve thicknesses of the course. \
                   First the saturation grows at nearly constant lightness. Then the hue turns from yellow over \
                   orange to red, and the ball darkens, most at its rim, where paths in the varnish are longest. The \
-                  highlights stay white. The chart shows the colour of the middle of each ball; saturation is chroma over lightness. The absorption is \
+                  highlights stay white. The chart shows the colour of the middle of each ball; saturation is the chroma that the colour has at a luminance of 0.5, over 100. The absorption is \
                   luthier's. The hue of the ball without varnish is that of the light, and has little meaning at so \
                   small a chroma.",
         size: SMALL,
@@ -221,7 +223,7 @@ fn varnish(studio: &Studio) -> Outcome<Made> {
     let mut curves = names.map(|(name, color)| Curve { name: name.to_owned(), color, points: Vec::new() });
     for (thickness, picture) in THICKNESSES.into_iter().zip(&pictures) {
         let values = lightness_chroma_hue(middle(picture, 0.2));
-        made.measure(format!("thickness {thickness}: saturation"), values[1] / values[0].max(1e-9));
+        made.measure(format!("thickness {thickness}: saturation"), saturation(middle(picture, 0.2)));
         for (curve, value) in curves.iter_mut().zip(values) {
             made.measure(format!("thickness {thickness}: {}", curve.name), value);
             curve.points.push([thickness, value]);

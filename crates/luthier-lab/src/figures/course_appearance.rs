@@ -26,7 +26,8 @@ pub(crate) const FIGURES: [Figure; 2] = [
         caption: "Top row: gold, silver and copper, whose highlights have the colour of the metal. Middle row: silver under three coloured lacquers. Bottom row: \
                   the same lacquers over a white base. Middle and bottom have equal lacquers and slopes; the metals mirror the surroundings, the paints show their \
                   colour, as the course says. The colour of a highlight is one less the smallest channel over the largest, in the middle of a ball under a white light from the eye. The \
-                  contrast of the surroundings is the variation of luminance without the light, over the mean. Chroma is the mean of what a display shows.",
+                  contrast of the surroundings is the variation of luminance without the light, over the mean. Chroma is the mean of what a display shows: it is about the same over \
+                  metal and paint, because the light crosses the same lacquer twice. The paints look more coloured only in that nothing is mirrored in them.",
         size: MEDIUM,
         claim: Claim {
             text: "Highlights of gold and copper have a colour, and that of silver has none. A metal under a lacquer mirrors the \

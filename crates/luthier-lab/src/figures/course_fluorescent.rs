@@ -17,7 +17,8 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
     caption: "Light of 532 nm falls in from the left on a rough varnish, slope 17 degrees, over a base that sends 0.7 of it out at 600 nm and 0.05 at 532 nm. The \
               course calls 5 degrees grazing: its angles are those to the surface. Each picture is the hemisphere of the eye seen from above: its middle is the normal, its edge the horizon. The facets of the varnish mirror in green, \
               forward of the normal, and the base glows orange everywhere. The numbers are the shares of the light that leave in green and in orange, and how far to the right \
-              the light of each lies, in radii. Matrix and index (1.5) are luthier's.",
+              the light of each lies, in radii. Matrix and index (1.5) are luthier's: at 60 degrees their varnish mirrors 4 of 100 parts in green, and their base sends out 5 unchanged, so that a little more than \
+              a tenth of what leaves is green.",
     size: LARGE,
     claim: Claim {
         text: "The base glows in orange, and the varnish mirrors in green, forward, the more the flatter the light falls in. At 60 \

@@ -16,7 +16,7 @@ use super::claim::{Check, Claim};
 use super::course::by_course;
 use super::figure::{Figure, Labelled, MEDIUM, Made, SMALL, TONE};
 use super::numbers::light::{FROM_EYE, KEY, even_sky, one_light};
-use super::numbers::places::colour_at;
+use super::numbers::places::{ball_normal, colour_at};
 use super::numbers::spot::spot;
 use super::numbers::tint::{hue, lightness_apart, saturation, tint_deviation};
 use super::numbers::{brightness, grain, highlight, middle, over_red};
@@ -30,7 +30,8 @@ pub(crate) const FIGURES: [Figure; 6] = [
         caption: "The first ball has a red lacquer that absorbs, the second a clear coat over a base whose albedo has the colour of the first ball's \
                   middle. The other pictures are the differences of hue, chroma and lightness (CIE 1976), grey where there is none and brighter where the \
                   absorbing lacquer has more. Chroma and lightness differ most at the rim, where paths in the lacquer are long, and hue least, as the course says. \
-                  The difference of hue is CIE's, in the unit of the other two.",
+                  The difference of hue is CIE's, in the unit of the other two. An eye just notices 2.3 units: the mean difference of lightness at the rim, outside of two \
+                  thirds of the radius, is a little less.",
         size: SMALL,
         claim: Claim {
             text: "An absorbing lacquer differs considerably from a clear one over a base of its colour in chroma and lightness, \
@@ -61,8 +62,11 @@ pub(crate) const FIGURES: [Figure; 6] = [
             text: "With growing sigma the base sends more light back to where it came from: from Lambert's cosine at sigma 0, the \
                   ball under a light from the eye gets flat.",
             checks: &[
-                // Lambert's cosine at 0.9 of the radius, 0.44.
-                Check::Within("sigma 0: radiance near the rim over that of the middle", 0.39, 0.49),
+                Check::Within(
+                    "sigma 0: radiance near the rim over that of the middle, over Lambert's cosine",
+                    0.98,
+                    1.02,
+                ),
                 Check::Falls(&[
                     "sigma 1: radiance near the rim over that of the middle",
                     "sigma 0.8: radiance near the rim over that of the middle",
@@ -103,9 +107,9 @@ pub(crate) const FIGURES: [Figure; 6] = [
                     "0 um: saturation",
                 ]),
                 Check::Falls(&["5 um: hue", "2 um: hue", "1 um: hue", "0.5 um: hue"]),
-                // Munsell's blue and purple-blue.
-                Check::Within("1 um: hue", 215.0, 298.0),
-                Check::Within("5 um: hue", 215.0, 298.0),
+                // From the least hue of Munsell's blue to the blue primary of Rec.709, which is at 306 degrees in CIELAB.
+                Check::Within("1 um: hue", 215.0, 306.3),
+                Check::Within("5 um: hue", 215.0, 306.3),
             ],
         },
         make: silver,
@@ -195,14 +199,17 @@ fn diffuse(albedo: &str) -> String {
 const RED: &str = "[0.05, 0.9, 0.7]";
 const CLEAR: &str = "0";
 
+/// Thickness of the red lacquer of figure 3.3.
+const RED_UM: f64 = 0.6;
+
 fn absorption(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
-    let tinted = by_course("tinted", &(coat(0.6, RED) + &diffuse("0.8")))?;
+    let tinted = by_course("tinted", &(coat(RED_UM, RED) + &diffuse("0.8")))?;
     let render = |material: Material| studio.pictures(&[material], Form::Full, Shape::Sphere, |_, _| {});
     let with = render(tinted)?.swap_remove(0);
-    // The colour of the base seen straight on: twice through 0.6 um at the normal.
-    let base = [0.05, 0.9, 0.7].map(|a: f64| 0.8 * libm::exp(-2.0 * 0.6 * a));
-    let without = render(by_course("clear", &(coat(0.6, CLEAR) + &diffuse(&format!("{base:?}"))))?)?.swap_remove(0);
+    // The colour of the base seen straight on: twice through the lacquer at the normal.
+    let base = [0.05, 0.9, 0.7].map(|a: f64| 0.8 * libm::exp(-2.0 * RED_UM * a));
+    let without = render(by_course("clear", &(coat(RED_UM, CLEAR) + &diffuse(&format!("{base:?}"))))?)?.swap_remove(0);
     let mut pictures: Labelled =
         vec![("absorbs".to_owned(), TONE.image(with.clone())), ("clear".to_owned(), TONE.image(without.clone()))];
     for (c, (name, scale)) in [("hue", 8.0), ("chroma", 12.0), ("lightness", 8.0)].into_iter().enumerate() {
@@ -267,6 +274,12 @@ fn bases(studio: &Studio) -> Outcome<Made> {
         let edge = middle + (f64::from(middle) * BALL) as u32 * 9 / 10;
         let ratio = rgb(picture, edge, middle)[1] / rgb(picture, middle, middle)[1].max(1e-9);
         made.measure(format!("sigma {sigma}: radiance near the rim over that of the middle"), ratio);
+        if sigma == 0.0 {
+            let place = 2.0 * (f64::from(edge) + 0.5) / f64::from(picture.width) - 1.0;
+            let cos_theta_i = ball_normal([place, 0.0]).map_or(f64::NAN, |[_, _, z]| z);
+            let what = format!("sigma {sigma}: radiance near the rim over that of the middle, over Lambert's cosine");
+            made.measure(what, ratio / cos_theta_i);
+        }
     }
     made.sheet("course-3-5", sigmas.iter().map(|sigma| format!("sigma {sigma}")).zip(pictures).collect(), 6);
     Ok(made)

@@ -13,7 +13,7 @@ use luthier_terminal::{Failure, Outcome};
 use super::claim::{Check, Claim};
 use super::figure::{Figure, Made, SMALL, compared};
 use super::numbers::brightest;
-use super::numbers::spot::{spot, spot_of};
+use super::numbers::spot::{softened, spot, spot_of};
 use super::studio::{Studio, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 3] = [
@@ -30,7 +30,8 @@ pub(crate) const FIGURES: [Figure; 3] = [
                   m1 0.4 over m2 0.05 in f64 under two lights. The simulation lies between the two: it is softer \
                   than the model without the clamp and far narrower than the model with it. The clamp avoids the \
                   sharp highlight, so that its RMSE is the smallest. It also greys the whole ball, so that its FLIP \
-                  is the largest. `corrected` is Weidlich and Wilkie's model with the factor 1/n^2 and with bounces \
+                  is the largest. The paper offers the clamp as the cure; it trades a highlight that is too narrow for one \
+                  that is too wide, by the larger factor where the table says so. `corrected` is Weidlich and Wilkie's model with the factor 1/n^2 and with bounces \
                   inside the coat. Its energy is nearest to the simulation, but its highlight is as sharp as without \
                   the clamp. The metal is chromium of the paper's appendix A; the red coat is luthier's.",
         size: SMALL,
@@ -184,8 +185,9 @@ fn clamp(studio: &Studio) -> Outcome<Made> {
         balls.push((label.to_owned(), ball));
     }
     if let [(_, simulated), others @ ..] = balls.as_slice() {
+        let simulated = metal_width(&softened(simulated));
         for (label, ball) in others {
-            let ratio = metal_width(ball) / metal_width(simulated).max(1e-9);
+            let ratio = metal_width(&softened(ball)) / simulated.max(1e-9);
             made.measure(format!("ball, {label}: width of the metal's highlight over that of the simulation"), ratio);
             let factor = ratio.max(1.0 / ratio.max(1e-9));
             made.measure(format!("ball, {label}: factor between its width and that of the simulation"), factor);

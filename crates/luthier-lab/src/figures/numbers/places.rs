@@ -1,5 +1,7 @@
 //! Numbers about places of a picture: points of light, noise, edges, and maps that are seen.
 
+use std::f64::consts::PI;
+
 use luthier_lut::Image;
 use luthier_optics::color::luminance;
 
@@ -42,7 +44,7 @@ fn points(image: &Image) -> Vec<bool> {
     is_point
 }
 
-/// Standard deviation of the noise that a picture has and a smooth one of the same surface has not, over the mean of the smooth
+/// Standard deviation of the noise that a picture has and the mean of many of the same surface has not, over the mean of that
 /// one, in the middle half. A broad change is no noise: each pixel is compared with the mean of its eight neighbours.
 pub(crate) fn noise(image: &Image, smooth: &Image) -> f64 {
     let apart = |x: u32, y: u32| value(image, x, y) - value(smooth, x, y);
@@ -133,6 +135,36 @@ pub(crate) fn places_of_square(image: &Image) -> impl Iterator<Item = [f64; 2]> 
     middle_of(height, 0.5).flat_map(move |y| middle_of(width, 0.5).map(move |x| [at(x, width), at(y, height)]))
 }
 
+/// Places of the pixels of a ball that face the eye, and their texture coordinates. The camera is that of all balls.
+pub(crate) fn places_of_ball(image: &Image) -> impl Iterator<Item = ([f64; 2], [f64; 2])> + use<> {
+    let (width, height) = (image.width, image.height);
+    let places = (0..width * height).map(move |i| {
+        let at = |i: u32, side: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(side) - 1.0;
+        [at(i % width, width), -at(i / width, height)]
+    });
+    places.filter_map(|place| {
+        let [x, y, z] = ball_normal(place)?;
+        let uv = [0.5 + libm::atan2(x, z) / (2.0 * PI), libm::acos(y.clamp(-1.0, 1.0)) / PI];
+        (z > 0.5).then_some((place, uv))
+    })
+}
+
+/// Normal of a ball of radius 1 at a place of its picture, by the camera of all balls: 7 away, half of its picture 1.22.
+pub(crate) fn ball_normal([x, y]: [f64; 2]) -> Option<[f64; 3]> {
+    const DISTANCE: f64 = 7.0;
+    const HALF_EXTENT: f64 = 1.22;
+    let across = libm::hypot(x, y) * HALF_EXTENT;
+    let ray = libm::atan(across / DISTANCE);
+    // By the law of sines in the triangle of eye, middle and place.
+    let sin = DISTANCE * libm::sin(ray);
+    if sin >= 1.0 {
+        return None;
+    }
+    let (sin, cos) = libm::sincos(libm::asin(sin) - ray);
+    let scale = if across > 0.0 { sin * HALF_EXTENT / across } else { 0.0 };
+    Some([x * scale, y * scale, cos])
+}
+
 /// Texel of a map at texture coordinates.
 pub(crate) fn nearest(map: &Image, [u, v]: [f64; 2]) -> &[f32] {
     let at = |u: f64, side: u32| ((u.rem_euclid(1.0) * f64::from(side)) as u32).min(side - 1);
@@ -192,6 +224,20 @@ mod tests {
         assert!(
             places.len() == 256 && places.iter().all(|[u, v]| (0.25..0.75).contains(u) && (0.25..0.75).contains(v))
         );
+    }
+
+    /// A ray from the eye to a place of the ball passes through the place of the picture.
+    #[test]
+    fn normals_of_a_ball_are_places_that_the_eye_sees() {
+        for place in [[0.0, 0.0], [0.3, -0.2], [-0.7, 0.4]] {
+            let [x, y, z] = ball_normal(place).unwrap_or_default();
+            assert!((x * x + y * y + z * z - 1.0).abs() < 1e-12);
+            let scale = 7.0 / (7.0 - z) / 1.22;
+            assert!((x * scale - place[0]).abs() < 1e-12 && (y * scale - place[1]).abs() < 1e-12, "{place:?}");
+        }
+        assert!(ball_normal([0.9, 0.0]).is_none());
+        let middle = places_of_ball(&Image::zeros(3, 3, 3)).find(|(place, _)| *place == [0.0, 0.0]);
+        assert_eq!(middle.map(|(_, uv)| uv), Some([0.5, 0.5]));
     }
 
     #[test]

@@ -43,6 +43,24 @@ pub(crate) fn spot(image: &Image) -> Spot {
     spot_of(image, |[r, g, b]| luminance([r, g, b]))
 }
 
+/// A picture of which each pixel is the mean of itself and its neighbours, so that noise does not make its brightest one.
+pub(crate) fn softened(image: &Image) -> Image {
+    let mut soft = image.clone();
+    for y in 0..image.height {
+        for x in 0..image.width {
+            let (mut sum, mut count) = (vec![0.0; image.channels as usize], 0.0);
+            for j in (y.max(1) - 1)..=(y + 1).min(image.height - 1) {
+                for i in (x.max(1) - 1)..=(x + 1).min(image.width - 1) {
+                    sum.iter_mut().zip(image.texel(i, j)).for_each(|(sum, value)| *sum += value);
+                    count += 1.0;
+                }
+            }
+            soft.texel_mut(x, y).iter_mut().zip(sum).for_each(|(soft, sum)| *soft = sum / count);
+        }
+    }
+    soft
+}
+
 /// The part of a picture where a value of its pixels is at least half of the greatest.
 pub(crate) fn spot_of(image: &Image, value: impl Fn([f64; 3]) -> f64) -> Spot {
     let values: Vec<f64> = image.texels().map(|texel| value([0, 1, 2].map(|c: usize| f64::from(texel[c])))).collect();
@@ -124,5 +142,9 @@ mod tests {
         }
         let found = spot(&image);
         assert!(found.elongation() > 1e3 && (found.share - 0.125).abs() < 1e-12);
+        // Three rows of a third.
+        let soft = softened(&image);
+        assert!((soft.texel(4, 2)[0] - 2.0 / 3.0).abs() < 1e-6 && (soft.texel(0, 4)[2] - 2.0 / 3.0).abs() < 1e-6);
+        assert!((spot(&soft).share - 0.375).abs() < 1e-12);
     }
 }

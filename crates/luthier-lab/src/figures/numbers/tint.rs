@@ -1,6 +1,7 @@
 //! Colours of pictures.
 
 use luthier_lut::Image;
+use luthier_optics::color::luminance;
 use luthier_report::lightness_chroma_hue;
 
 use super::super::figure::TONE;
@@ -13,10 +14,10 @@ const COLOURED: f64 = 10.0;
 /// Sectors of 30 degrees.
 const SECTORS: usize = 12;
 
-/// Chroma over lightness (CIE 1976) of a linear colour, which brightness hardly changes.
+/// Saturation of a linear colour, whatever its brightness: the chroma (CIE 1976) that it has at a luminance of 0.5, over 100.
 pub(crate) fn saturation(rgb: [f64; 3]) -> f64 {
-    let [lightness, chroma, _] = lightness_chroma_hue(rgb);
-    chroma / lightness.max(1e-9)
+    let scale = 0.5 / luminance(rgb).max(1e-9);
+    lightness_chroma_hue(rgb.map(|v| v * scale))[1] / 100.0
 }
 
 /// Hue of the mean colour in the middle of a picture, a share of its side wide, in degrees of CIELAB.
@@ -78,6 +79,14 @@ pub(crate) fn lightness_apart(a: &Image, b: &Image) -> f64 {
     mean(texels(a, 0.5).zip(texels(b, 0.5)).map(|(a, b)| (lightness(a) - lightness(b)).abs()))
 }
 
+/// Difference of two colours as a display shows them, CIELAB of 1976.
+pub(crate) fn colours_apart(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let [a, b] = [a, b].map(|colour| colour.map(|v| f64::from(TONE.value(v as f32))));
+    let ([p, q], [r, s]) = (plane(a), plane(b));
+    let lightness = lightness_chroma_hue(a)[0] - lightness_chroma_hue(b)[0];
+    libm::hypot(lightness, libm::hypot(p - r, q - s))
+}
+
 /// CIELAB's a* and b*.
 fn plane(rgb: [f64; 3]) -> [f64; 2] {
     let [_, chroma, hue] = lightness_chroma_hue(rgb);
@@ -125,15 +134,19 @@ mod tests {
     }
 
     #[test]
-    fn brightness_hardly_changes_saturation() {
+    fn brightness_does_not_change_saturation() {
         let colours = [[0.4, 0.2, 0.1], [0.2, 0.1, 0.05]];
         let [bright, dim] = colours.map(saturation);
-        assert!((bright / dim - 1.0).abs() < 0.2 && bright > 1.3 * saturation([0.4, 0.3, 0.25]));
+        assert!((bright / dim - 1.0).abs() < 1e-9 && bright > 1.3 * saturation([0.4, 0.3, 0.25]));
+        assert!(saturation([0.3; 3]) < 1e-9 && saturation([0.0; 3]) < 1e-9);
         let picture = |[r, g, b]: [f32; 3]| halves([r, g, b], [r, g, b]);
         assert!(saturations(&picture([0.4, 0.2, 0.1])).iter().all(|found| (found - bright).abs() < 1e-4));
         let [lightness, expected, _] = lightness_chroma_hue(colours[0]);
         assert!((chroma(&picture([0.4, 0.2, 0.1])) - expected).abs() < 1e-4);
         let apart = lightness_apart(&picture([0.4, 0.2, 0.1]), &picture([0.2, 0.1, 0.05]));
+        // Of greys lightness alone differs: L* is 100 at 1 and 76.07 at 0.5; the tone curve keeps the latter.
+        let greys = colours_apart([0.5; 3], [0.25; 3]);
+        assert!((greys - 76.07 + lightness_chroma_hue([0.25; 3])[0]).abs() < 0.01, "{greys}");
         assert!((apart - lightness + lightness_chroma_hue(colours[1])[0]).abs() < 1e-4);
     }
 }
