@@ -65,7 +65,8 @@ pub(crate) const FIGURES: [Figure; 2] = [
                   paint, and two samples that the course has in words alone: garnet red, a rough clear varnish of slope 12 degrees and index 1.6 over Munsell's 7.5R 2/8, \
                   and a Christmas ball, tinted lacquer over a silvered inside. Silver, gold metallic paint and sugar have less exposure than the others. \
                   Widths and brightest places are those under the key light alone. The highlight over the base is the brightest light of the coat over a black base, over the \
-                  brightest of what the base adds. Saturation is that of what the base adds under a light from the eye.",
+                  brightest of what the base adds. Saturation is that of what the base adds under a light from the eye. It hardly grows to the rim of the red lacquer, because the base of that file is itself of a deep red \
+                  (albedo 1, 0.03, 0.05), which absorption cannot deepen much.",
         size: SMALL,
         claim: Claim {
             text: "Ceramic glaze looks smoother than the lacquer, and mirrors more brightly than acrylic. The tinted lacquer is more \

@@ -30,8 +30,8 @@ pub(crate) const FIGURES: [Figure; 3] = [
                   m1 0.4 over m2 0.05 in f64 under two lights. The simulation lies between the two: it is softer \
                   than the model without the clamp and far narrower than the model with it. The clamp avoids the \
                   sharp highlight, so that its RMSE is the smallest. It also greys the whole ball, so that its FLIP \
-                  is the largest. The paper offers the clamp as the cure; it trades a highlight that is too narrow for one \
-                  that is too wide, by the larger factor where the table says so. `corrected` is Weidlich and Wilkie's model with the factor 1/n^2 and with bounces \
+                  is the largest. The paper offers the clamp as the cure: it trades a highlight that is too narrow for one \
+                  that is too wide by a larger factor. `corrected` is Weidlich and Wilkie's model with the factor 1/n^2 and with bounces \
                   inside the coat. Its energy is nearest to the simulation, but its highlight is as sharp as without \
                   the clamp. The metal is chromium of the paper's appendix A; the red coat is luthier's.",
         size: SMALL,
