@@ -12,7 +12,7 @@ use super::claim::{Check, Claim};
 use super::course::{by_course, exposure};
 use super::figure::{Figure, Labelled, MEDIUM, Made, SMALL};
 use super::numbers::light::{FROM_EYE, KEY, even_sky, one_light, surroundings_alone};
-use super::numbers::places::colour_at;
+use super::numbers::places::color_at;
 use super::numbers::spot::spot;
 use super::numbers::tint::{chroma, saturation};
 use super::numbers::{blown_out, brightest, variation};
@@ -131,7 +131,7 @@ fn metals(studio: &Studio) -> Outcome<Made> {
     let room = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, settings| surroundings_alone(settings))?;
     for ((_, material), ((picture, lit), room)) in all.iter().zip(pictures.iter().zip(&lit).zip(&room)) {
         let name = &material.name;
-        let channels = colour_at(lit, [0.0; 2]);
+        let channels = color_at(lit, [0.0; 2]);
         let [least, most] =
             [channels.into_iter().fold(f64::INFINITY, f64::min), channels.into_iter().fold(0.0, f64::max)];
         made.measure(format!("{name}: colour of the highlight"), 1.0 - least / most.max(1e-9));
@@ -234,7 +234,7 @@ fn measured(studio: &Studio, made: &mut Made, all: &[(String, Material)]) -> Out
                 brightest(coat) / brightest(&without(whole, coat)),
             );
             let base = without(seen, mirrored);
-            let [middle, rim] = [[0.0; 2], RIM].map(|place| saturation(colour_at(&base, place)));
+            let [middle, rim] = [[0.0; 2], RIM].map(|place| saturation(color_at(&base, place)));
             made.measure(format!("{name}: saturation at the rim over that in the middle"), rim / middle.max(1e-9));
         }
         if name == "garnet" {
@@ -251,7 +251,7 @@ fn measured(studio: &Studio, made: &mut Made, all: &[(String, Material)]) -> Out
         settings.environment = white.clone();
     })?;
     for (side, place) in [("in the middle", [0.0; 2]), ("at the rim", RIM)] {
-        let value = around.first().map_or(0.0, |picture| luminance(colour_at(picture, place)));
+        let value = around.first().map_or(0.0, |picture| luminance(color_at(picture, place)));
         made.measure(format!("car-paint: luminance {side}, all around"), value);
     }
     Ok(())

@@ -16,7 +16,7 @@ use super::claim::{Check, Claim};
 use super::course::by_course;
 use super::figure::{Figure, Labelled, MEDIUM, Made, SMALL, TONE};
 use super::numbers::light::{FROM_EYE, KEY, even_sky, one_light};
-use super::numbers::places::{ball_normal, colour_at};
+use super::numbers::places::{ball_normal, color_at};
 use super::numbers::spot::spot;
 use super::numbers::tint::{hue, lightness_apart, saturation, tint_deviation};
 use super::numbers::{brightness, grain, highlight, middle, over_red};
@@ -391,7 +391,7 @@ fn parts(studio: &Studio) -> Outcome<Made> {
     let dark = even_sky(0.0)?;
     let light = |_, settings: &mut RenderSettings| one_light(settings, &dark, FROM_EYE);
     let lit = studio.pictures(&materials, Form::Full, Shape::Sphere, light)?;
-    let [coat, _, clear, absorbs, _] = [0, 1, 2, 3, 4].map(|i: usize| colour_at(&lit[i], [0.0; 2]));
+    let [coat, _, clear, absorbs, _] = [0, 1, 2, 3, 4].map(|i: usize| color_at(&lit[i], [0.0; 2]));
     for (c, channel) in ["R", "G", "B"].into_iter().enumerate() {
         let left = (absorbs[c] - coat[c]) / (clear[c] - coat[c]);
         made.measure(format!("straight on, share of the base that is left: {channel}"), left);

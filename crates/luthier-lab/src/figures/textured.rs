@@ -12,9 +12,9 @@ use super::claim::{Check, Claim};
 use super::figure::{Figure, LARGE, Labelled, Made, SMALL, TONE, compared};
 use super::numbers::light::{KEY, even_sky, one_light};
 use super::numbers::over_red;
-use super::numbers::places::{colour_at, correlation, middle_values, nearest, places_of_ball, sparkles};
+use super::numbers::places::{color_at, correlation, middle_values, nearest, places_of_ball, sparkles};
 use super::numbers::spot::{spot, spot_of};
-use super::numbers::tint::colours_apart;
+use super::numbers::tint::colors_apart;
 use super::studio::{Studio, layered, mapped};
 
 pub(crate) const FIGURES: [Figure; 5] = [
@@ -308,7 +308,7 @@ fn metal(studio: &Studio) -> Outcome<Made> {
             let (mut sum, mut count) = (0.0, 0.0);
             for (place, [u, v]) in places_of_ball(&shown[1]) {
                 if is_there.contains(&f64::from(nearest(&map, [u, v])[0])) {
-                    sum += colours_apart(colour_at(&shown[1], place), colour_at(other, place));
+                    sum += colors_apart(color_at(&shown[1], place), color_at(other, place));
                     count += 1.0;
                 }
             }

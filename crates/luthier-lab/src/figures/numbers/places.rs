@@ -121,7 +121,7 @@ pub(crate) fn middle_values(image: &Image) -> Vec<f64> {
 }
 
 /// Colour at a place from -1 to 1, +x right and +y up.
-pub(crate) fn colour_at(image: &Image, [x, y]: [f64; 2]) -> [f64; 3] {
+pub(crate) fn color_at(image: &Image, [x, y]: [f64; 2]) -> [f64; 3] {
     let at = |v: f64, side: u32| (((0.5 + 0.5 * v) * f64::from(side)) as u32).min(side - 1);
     let texel = image.texel(at(x, image.width), at(-y, image.height));
     [0, 1, 2].map(|c: usize| f64::from(texel[c]))
@@ -215,7 +215,7 @@ mod tests {
         // Brighter all over is no noise.
         assert!(noise(&even(32, 0.7), &smooth) < 1e-6);
         assert!((edges(&chess) - 1.0).abs() < 1e-12 && edges(&smooth) < 1e-12);
-        assert!((colour_at(&chess, [-1.0, 1.0])[0] - 0.6).abs() < 1e-6);
+        assert!((color_at(&chess, [-1.0, 1.0])[0] - 0.6).abs() < 1e-6);
         assert!(
             (nearest(&chess, [0.0, 1.01])[0] - 0.6).abs() < 1e-6
                 && (nearest(&chess, [-0.01, 0.0])[0] - 0.4).abs() < 1e-6

@@ -9,7 +9,7 @@ use super::{middle, texels};
 
 /// Chroma from which a colour has a hue: four of the differences that an eye just notices (2.3 units of CIELAB, Mahy et al.
 /// 1994).
-const COLOURED: f64 = 10.0;
+const COLORED: f64 = 10.0;
 
 /// Sectors of 30 degrees.
 const SECTORS: usize = 12;
@@ -41,7 +41,7 @@ pub(crate) fn hues(image: &Image) -> f64 {
     for texel in texels(image, 0.5) {
         let [_, chroma, hue] = lightness_chroma_hue(shown(texel));
         all += 1;
-        if chroma > COLOURED {
+        if chroma > COLORED {
             sectors[(hue / 360.0 * SECTORS as f64) as usize % SECTORS] += 1;
         }
     }
@@ -80,7 +80,7 @@ pub(crate) fn lightness_apart(a: &Image, b: &Image) -> f64 {
 }
 
 /// Difference of two colours as a display shows them, CIELAB of 1976.
-pub(crate) fn colours_apart(a: [f64; 3], b: [f64; 3]) -> f64 {
+pub(crate) fn colors_apart(a: [f64; 3], b: [f64; 3]) -> f64 {
     let [a, b] = [a, b].map(|colour| colour.map(|v| f64::from(TONE.value(v as f32))));
     let ([p, q], [r, s]) = (plane(a), plane(b));
     let lightness = lightness_chroma_hue(a)[0] - lightness_chroma_hue(b)[0];
@@ -145,7 +145,7 @@ mod tests {
         assert!((chroma(&picture([0.4, 0.2, 0.1])) - expected).abs() < 1e-4);
         let apart = lightness_apart(&picture([0.4, 0.2, 0.1]), &picture([0.2, 0.1, 0.05]));
         // Of greys lightness alone differs: L* is 100 at 1 and 76.07 at 0.5; the tone curve keeps the latter.
-        let greys = colours_apart([0.5; 3], [0.25; 3]);
+        let greys = colors_apart([0.5; 3], [0.25; 3]);
         assert!((greys - 76.07 + lightness_chroma_hue([0.25; 3])[0]).abs() < 0.01, "{greys}");
         assert!((apart - lightness + lightness_chroma_hue(colours[1])[0]).abs() < 1e-4);
     }
