@@ -9,7 +9,10 @@ use luthier_terminal::Outcome;
 
 use super::claim::{Check, Claim};
 use super::figure::{Figure, Made, SMALL};
-use super::numbers::{blown_out, highlight, middle, variation};
+use super::numbers::light::{KEY, even_sky, one_light, surroundings_alone};
+use super::numbers::spot::spot;
+use super::numbers::tint::saturation;
+use super::numbers::{blown_out, middle, variation};
 use super::studio::{Studio, layered, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 2] = [
@@ -23,19 +26,38 @@ pub(crate) const FIGURES: [Figure; 2] = [
                   highlight is left. The metal of d mirrors the room in colour. In e, a sharp white \
                   reflection of the light lies over a soft coloured one. In f, a rough coat lies over a metal that \
                   still mirrors sharply, because this model does not blur the light that crosses the coat (elek-2 \
-                  compares it with the simulation). The material of g is matt and bright: its picture has about a third of the exposure of the others. In h, two clear layers lie \
-                  on a blue base, too rough to show the light. The numbers are the differences between the picture \
+                  compares it with the simulation): f mirrors the surroundings more clearly than the foil, and the course's \
+                  tree would not call it frosted. The material of g is matt and bright: its picture has about a third of the exposure of the others. In h, two clear layers lie \
+                  on a blue base, too rough to show the light. The width of a highlight is the root of the share of the \
+                  picture that is at least half as bright as the brightest place, under the key light alone. The contrast of the \
+                  surroundings is the variation of luminance without that light, over the mean. Mean FLIP is between the picture \
                   of the tables and that of the full evaluation.",
         size: SMALL,
         claim: Claim {
-            text: "The eight classes look apart: smooth coats have a highlight (a, b), rough ones have none (c, h), and metals \
-                  mirror (d).",
+            text: "By the course's tree: paints of a smooth coat have a sharp highlight (a, b), and frosted paint has a blurred \
+                  one (c). Foil mirrors the surroundings clearly (d). Metallic paint mirrors them less clearly, below a sharp \
+                  highlight (e). The highlight of frosted metal is blurred (f), and that of patina is wider still (g).",
             checks: &[
-                Check::Falls(&["a ceramic-glaze: highlight over the median", "c latex: highlight over the median"]),
-                Check::Falls(&["b red-lacquer: highlight over the median", "h house-paint: highlight over the median"]),
-                Check::Falls(&["d brass-foil: variation of luminance", "c latex: variation of luminance"]),
-                Check::Falls(&["d brass-foil: variation of luminance", "h house-paint: variation of luminance"]),
-                Check::Within("g silver-paint: share blown out", 0.0, 0.01),
+                Check::Falls(&["c latex: width of the highlight", "a ceramic-glaze: width of the highlight"]),
+                Check::Falls(&["c latex: width of the highlight", "b red-lacquer: width of the highlight"]),
+                Check::Falls(&[
+                    "g silver-paint: width of the highlight",
+                    "f blue-metallic-paint: width of the highlight",
+                    "e car-paint: width of the highlight",
+                ]),
+                Check::Falls(&[
+                    "d brass-foil: contrast of the surroundings",
+                    "e car-paint: contrast of the surroundings",
+                    "c latex: contrast of the surroundings",
+                ]),
+                Check::Falls(&[
+                    "d brass-foil: contrast of the surroundings",
+                    "a ceramic-glaze: contrast of the surroundings",
+                ]),
+                Check::Falls(&[
+                    "d brass-foil: contrast of the surroundings",
+                    "f blue-metallic-paint: contrast of the surroundings",
+                ]),
             ],
         },
         make: classes,
@@ -47,12 +69,13 @@ pub(crate) const FIGURES: [Figure; 2] = [
         caption: "The pictures show white balls under a yellow varnish at the twelve thicknesses of the course. \
                   First the saturation grows at nearly constant lightness. Then the hue turns from yellow over \
                   orange to red, and the ball darkens, most at its rim, where paths in the varnish are longest. The \
-                  highlights stay white. The chart shows the colour of the middle of each ball. The absorption is \
+                  highlights stay white. The chart shows the colour of the middle of each ball; saturation is the chroma that the colour has at a luminance of 0.5, over 100. The absorption is \
                   luthier's. The hue of the ball without varnish is that of the light, and has little meaning at so \
                   small a chroma.",
         size: SMALL,
         claim: Claim {
-            text: "A thicker varnish first gets more saturated, then its hue turns from yellow to red and it gets darker.",
+            text: "A thin yellow varnish makes white yellow. The thicker it is, the darker and the more saturated is the ball, and its hue \
+                  turns on from yellow.",
             checks: &[
                 Check::Falls(&[
                     "thickness 0: lightness L*",
@@ -69,15 +92,21 @@ pub(crate) const FIGURES: [Figure; 2] = [
                     "thickness 15: lightness L*",
                 ]),
                 Check::Falls(&[
-                    "thickness 3: chroma C*",
-                    "thickness 1.6: chroma C*",
-                    "thickness 1.2: chroma C*",
-                    "thickness 0.8: chroma C*",
-                    "thickness 0.6: chroma C*",
-                    "thickness 0.4: chroma C*",
-                    "thickness 0.2: chroma C*",
-                    "thickness 0: chroma C*",
+                    "thickness 15: saturation",
+                    "thickness 10: saturation",
+                    "thickness 7.5: saturation",
+                    "thickness 5: saturation",
+                    "thickness 3: saturation",
+                    "thickness 1.6: saturation",
+                    "thickness 1.2: saturation",
+                    "thickness 0.8: saturation",
+                    "thickness 0.6: saturation",
+                    "thickness 0.4: saturation",
+                    "thickness 0.2: saturation",
+                    "thickness 0: saturation",
                 ]),
+                // Yellow of Munsell and its neighbours.
+                Check::Within("thickness 0.4: hue, degrees", 77.0, 115.0),
                 Check::Falls(&[
                     "thickness 0.2: hue, degrees",
                     "thickness 0.4: hue, degrees",
@@ -137,11 +166,17 @@ fn classes(studio: &Studio) -> Outcome<Made> {
     };
     let baked = studio.rendered(&package, Form::Baked, Shape::Sphere, look)?;
     let full = studio.rendered(&package, Form::Full, Shape::Sphere, look)?;
+    let dark = even_sky(0.0)?;
+    let lit = studio.rendered(&package, Form::Baked, Shape::Sphere, |_, settings| one_light(settings, &dark, KEY))?;
+    let room = studio.rendered(&package, Form::Baked, Shape::Sphere, |_, settings| surroundings_alone(settings))?;
+    for (material, (lit, room)) in materials.iter().zip(lit.iter().zip(&room)) {
+        let name = format!("{} {}", material.class.symbol(), material.name);
+        made.measure(format!("{name}: width of the highlight"), spot(lit).share.sqrt());
+        made.measure(format!("{name}: contrast of the surroundings"), variation(room));
+    }
     for ((material, baked), full) in materials.iter().zip(&baked).zip(&full) {
         made.apart(&format!("{} {}, tables against full", material.class, material.name), baked, full)?;
         let name = format!("{} {}", material.class.symbol(), material.name);
-        made.measure(format!("{name}: highlight over the median"), highlight(baked));
-        made.measure(format!("{name}: variation of luminance"), variation(baked));
         made.measure(format!("{name}: share blown out"), blown_out(baked));
     }
     let label =
@@ -188,6 +223,7 @@ fn varnish(studio: &Studio) -> Outcome<Made> {
     let mut curves = names.map(|(name, color)| Curve { name: name.to_owned(), color, points: Vec::new() });
     for (thickness, picture) in THICKNESSES.into_iter().zip(&pictures) {
         let values = lightness_chroma_hue(middle(picture, 0.2));
+        made.measure(format!("thickness {thickness}: saturation"), saturation(middle(picture, 0.2)));
         for (curve, value) in curves.iter_mut().zip(values) {
             made.measure(format!("thickness {thickness}: {}", curve.name), value);
             curve.points.push([thickness, value]);

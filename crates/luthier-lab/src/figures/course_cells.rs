@@ -7,7 +7,10 @@ use luthier_terminal::Outcome;
 use super::claim::{Check, Claim};
 use super::course::by_course;
 use super::figure::{Figure, LARGE, Labelled, Made};
+use super::numbers::light::{KEY, even_sky, one_light};
 use super::numbers::middle_differs;
+use super::numbers::places::sparkles;
+use super::numbers::spot::spot;
 use super::studio::Studio;
 
 pub(crate) const FIGURES: [Figure; 1] = [Figure {
@@ -17,14 +20,17 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
     caption: "Copper of the sunstone's glitter, slope 3 degrees, over the whole ball: level, with every cell tilted, and with one cell in ten tilted. Each cell of \
               the Voronoi diagram has a normal of its own, up to 25 degrees off, and mirrors another part of the surroundings; its edges are straight. The course's stones \
               have such cells over grains, which course-5-1 shows. The numbers are the shares of the middle half of the picture that differ from the level ball. The \
-              number of cells and the angle are luthier's.",
+              number of cells and the angle are luthier's. The scatter is the root mean square distance of the places that are at least half as bright as the brightest, under the key \
+              light alone, in half sides of the picture.",
     size: LARGE,
     claim: Claim {
-        text: "Every filled cell is a facet with a normal of its own, and the others stay as they are.",
+        text: "Every filled cell is a facet with a normal of its own, so that the highlight is scattered over the ball. The other cells \
+               stay as they are.",
         checks: &[
             Check::Within("all tilted: share that differs from level", 0.9, 1.0),
             Check::Within("one in ten: share that differs from level", 0.05, 0.15),
-            Check::Within("all tilted against level: mean FLIP", 0.05, 1.0),
+            Check::Falls(&["all tilted: scatter of the highlight", "level: scatter of the highlight"]),
+            Check::Falls(&["all tilted: sparkles", "one in ten: sparkles", "level: sparkles"]),
         ],
     },
     make: cells,
@@ -36,6 +42,7 @@ const FILLED: [(&str, f64); 3] = [("level", 0.0), ("all tilted", 1.0), ("one in 
 fn cells(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let mut pictures: Labelled = Vec::new();
+    let dark = even_sky(0.0)?;
     for (label, filled) in FILLED {
         let layers = format!(
             "[[layer]]\ntype = \"conductor\"\nior = \"cu\"\nslope_deg = 3\ndistribution = \"beckmann\"\n\
@@ -44,7 +51,12 @@ fn cells(studio: &Studio) -> Outcome<Made> {
         let material = by_course(&label.replace(' ', "-"), &layers)?;
         // Directions would be drawn about the level surface, which misses what tilted cells mirror.
         let look = |_, settings: &mut RenderSettings| settings.environment_samples = 0;
+        let light = |_, settings: &mut RenderSettings| one_light(settings, &dark, KEY);
+        for lit in studio.pictures(std::slice::from_ref(&material), Form::Baked, Shape::Sphere, light)? {
+            made.measure(format!("{label}: scatter of the highlight"), spot(&lit).scatter());
+        }
         let picture = studio.pictures(&[material], Form::Baked, Shape::Sphere, look)?;
+        made.measure(format!("{label}: sparkles"), picture.first().map_or(0.0, sparkles));
         pictures.extend(picture.into_iter().map(|picture| (label.to_owned(), picture)));
     }
     if let [(_, level), others @ ..] = pictures.as_slice() {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use luthier_gpu::{Environment, Light, Shape};
+use luthier_gpu::{Environment, Light, RenderSettings, Shape};
 use luthier_lut::Image;
 use luthier_manifest::{Form, InternalReflection};
 use luthier_material::Material;
@@ -15,7 +15,11 @@ use luthier_terminal::{Failure, Outcome};
 use super::claim::{Check, Claim};
 use super::course::by_course;
 use super::figure::{Figure, Labelled, MEDIUM, Made, SMALL, TONE};
-use super::numbers::{brightness, over_red};
+use super::numbers::light::{FROM_EYE, KEY, even_sky, one_light};
+use super::numbers::places::{ball_normal, color_at};
+use super::numbers::spot::spot;
+use super::numbers::tint::{hue, lightness_apart, saturation, tint_deviation};
+use super::numbers::{brightness, grain, highlight, middle, over_red};
 use super::studio::{Studio, mapped};
 
 pub(crate) const FIGURES: [Figure; 6] = [
@@ -25,21 +29,24 @@ pub(crate) const FIGURES: [Figure; 6] = [
         source: "A. Weidlich and A. Wilkie, Exploring the Potential of Layered BRDF Models, SIGGRAPH Asia 2009 Courses, figure 3.3",
         caption: "The first ball has a red lacquer that absorbs, the second a clear coat over a base whose albedo has the colour of the first ball's \
                   middle. The other pictures are the differences of hue, chroma and lightness (CIE 1976), grey where there is none and brighter where the \
-                  absorbing lacquer has more. Chroma and lightness differ most at the rim, where paths in the lacquer are long, and hue least, as the course says.",
+                  absorbing lacquer has more. Chroma and lightness differ most at the rim, where paths in the lacquer are long, and hue least, as the course says. \
+                  The difference of hue is CIE's, in the unit of the other two. An eye just notices 2.3 units: the mean difference of lightness at the rim, outside of two \
+                  thirds of the radius, is a little less.",
         size: SMALL,
         claim: Claim {
-            text: "An absorbing lacquer differs from a clear one over a coloured base in chroma and lightness, most at the rim, \
-                  and hardly in hue.",
+            text: "An absorbing lacquer differs considerably from a clear one over a base of its colour in chroma and lightness, \
+                  mainly at grazing angles, and practically not in hue.",
             checks: &[
-                Check::Falls(&[
-                    "mean difference of chroma, where both have a colour",
-                    "mean difference of lightness, where both have a colour",
-                    "mean difference of hue, where both have a colour",
-                ]),
+                // 2.3 units of CIELAB is the difference that an eye just notices (Mahy et al. 1994).
+                Check::Within("mean difference of hue, where both have a colour", 0.0, 2.3),
+                Check::Within("mean difference of chroma at the rim", 2.3, 200.0),
+                Check::Within("mean difference of lightness at the rim", 2.3, 100.0),
+                Check::Falls(&["mean difference of chroma at the rim", "mean difference of chroma in the middle"]),
                 Check::Falls(&[
                     "mean difference of lightness at the rim",
                     "mean difference of lightness in the middle",
                 ]),
+                Check::Falls(&["mean difference of chroma at the rim", "mean difference of hue at the rim"]),
             ],
         },
         make: absorption,
@@ -52,15 +59,23 @@ pub(crate) const FIGURES: [Figure; 6] = [
                   sigma the ball gets flat like the full Moon. The numbers are the radiance at 0.9 of the radius over that of the middle.",
         size: SMALL,
         claim: Claim {
-            text: "With growing sigma the ball gets flat, up to the rim.",
-            checks: &[Check::Falls(&[
-                "sigma 1: radiance near the rim over that of the middle",
-                "sigma 0.8: radiance near the rim over that of the middle",
-                "sigma 0.6: radiance near the rim over that of the middle",
-                "sigma 0.4: radiance near the rim over that of the middle",
-                "sigma 0.2: radiance near the rim over that of the middle",
-                "sigma 0: radiance near the rim over that of the middle",
-            ])],
+            text: "With growing sigma the base sends more light back to where it came from: from Lambert's cosine at sigma 0, the \
+                  ball under a light from the eye gets flat.",
+            checks: &[
+                Check::Within(
+                    "sigma 0: radiance near the rim over that of the middle, over Lambert's cosine",
+                    0.98,
+                    1.02,
+                ),
+                Check::Falls(&[
+                    "sigma 1: radiance near the rim over that of the middle",
+                    "sigma 0.8: radiance near the rim over that of the middle",
+                    "sigma 0.6: radiance near the rim over that of the middle",
+                    "sigma 0.4: radiance near the rim over that of the middle",
+                    "sigma 0.2: radiance near the rim over that of the middle",
+                    "sigma 0: radiance near the rim over that of the middle",
+                ]),
+            ],
         },
         make: bases,
     },
@@ -72,7 +87,8 @@ pub(crate) const FIGURES: [Figure; 6] = [
                   reflection of the varnish itself stays white. The absorption is luthier's.",
         size: SMALL,
         claim: Claim {
-            text: "A thicker blue varnish on silver turns it blue, then dark.",
+            text: "The thicker a blue varnish on silver is, the darker and the more saturated is the ball, and its hue turns on in \
+                  blue.",
             checks: &[
                 Check::Falls(&[
                     "0 um: mean luminance",
@@ -83,11 +99,17 @@ pub(crate) const FIGURES: [Figure; 6] = [
                     "5 um: mean luminance",
                 ]),
                 Check::Falls(&[
-                    "1 um: blue over red",
-                    "0.5 um: blue over red",
-                    "0.2 um: blue over red",
-                    "0 um: blue over red",
+                    "5 um: saturation",
+                    "2 um: saturation",
+                    "1 um: saturation",
+                    "0.5 um: saturation",
+                    "0.2 um: saturation",
+                    "0 um: saturation",
                 ]),
+                Check::Falls(&["5 um: hue", "2 um: hue", "1 um: hue", "0.5 um: hue"]),
+                // From the least hue of Munsell's blue to the blue primary of Rec.709, which is at 306 degrees in CIELAB.
+                Check::Within("1 um: hue", 215.0, 306.3),
+                Check::Within("5 um: hue", 215.0, 306.3),
             ],
         },
         make: silver,
@@ -102,8 +124,13 @@ pub(crate) const FIGURES: [Figure; 6] = [
                   nor the slope; its picture of a low index has t between 0.95 and 1.",
         size: MEDIUM,
         claim: Claim {
-            text: "Internal reflection darkens a lacquer, little for a low index (t from 0.95 to 1) and much for a high one.",
+            text: "Internal reflection is almost negligible for a lacquer of a low index, where t is from 0.95 to 1. It is more \
+                  prominent for a high index, and still subtle.",
             checks: &[
+                // 2.3 units of CIELAB is what an eye just notices, and colours 10 apart are still called similar.
+                Check::Within("index 1.3: mean difference of lightness", 0.0, 2.3),
+                Check::Within("index 2.5: mean difference of lightness", 0.0, 10.0),
+                Check::Falls(&["index 2.5: mean difference of lightness", "index 1.3: mean difference of lightness"]),
                 Check::Falls(&[
                     "index 1.3: light with the term over that without",
                     "index 2.5: light with the term over that without",
@@ -122,9 +149,13 @@ pub(crate) const FIGURES: [Figure; 6] = [
                   The course's figure adds an ambient term and an environment; here the surroundings are seen by all parts.",
         size: SMALL,
         claim: Claim {
-            text: "The shader is the sum of its parts: the highlight of the coat, and a base that absorption darkens and colours.",
+            text: "The shader is the sum of what the coat mirrors and of the base, which absorption multiplies: straight on by \
+                  exp(-2 a d), 0.951, 0.407 and 0.497.",
             checks: &[
-                Check::Within("clear coat, over the sum of coat and base: mean luminance", 0.5, 1.0),
+                Check::Within("straight on, share of the base that is left: R", 0.941, 0.961),
+                Check::Within("straight on, share of the base that is left: G", 0.397, 0.417),
+                Check::Within("straight on, share of the base that is left: B", 0.487, 0.507),
+                Check::Falls(&["clear coat: highlight over the median", "base: highlight over the median"]),
                 Check::Falls(&["clear coat: mean luminance", "absorbs: mean luminance"]),
                 Check::Falls(&["clear coat: blue over red", "absorbs: blue over red"]),
             ],
@@ -137,16 +168,17 @@ pub(crate) const FIGURES: [Figure; 6] = [
         source: "Weidlich and Wilkie 2009, figure 3.9",
         caption: "A smooth clear varnish on a diffuse base (a), a smooth tinted one (b), a varnish whose thickness a map varies (c), and a matt varnish over aluminium with \
                   bumps (d): the normal map tilts only what lies below the varnish, whose own reflection runs over the bumps undisturbed. In (e), which the course does not show, \
-                  the varnish has the bumps, too. Maps and numbers are luthier's.",
+                  the varnish has the bumps, too. Maps and numbers are luthier's. Widths and grain are those under the key light alone.",
         size: SMALL,
         claim: Claim {
-            text: "Each of the four varnishes shows: clear, tinted, of varying thickness, and matt over bumps that do not disturb \
-                  it.",
+            text: "A smooth varnish has a sharp highlight (a, b), and a matt one a wide highlight (d). A tinted one colours the base \
+                  (b). Where the thickness varies, the colour does (c). Bumps below a varnish are seen through it (d).",
             checks: &[
-                Check::Within("b tinted against a clear: mean FLIP", 0.02, 1.0),
-                Check::Within("c thickness against b tinted: mean FLIP", 0.02, 1.0),
-                Check::Within("d below against without bumps: mean FLIP", 0.02, 1.0),
-                Check::Within("e above against d below: mean FLIP", 0.02, 1.0),
+                Check::Falls(&["b tinted: saturation", "a clear: saturation"]),
+                Check::Falls(&["c thickness: deviation of the colour", "b tinted: deviation of the colour"]),
+                Check::Falls(&["d below: width of the highlight", "a clear: width of the highlight"]),
+                Check::Falls(&["d below: width of the highlight", "b tinted: width of the highlight"]),
+                Check::Falls(&["d below: grain", "without bumps: grain"]),
             ],
         },
         make: varnishes,
@@ -167,14 +199,17 @@ fn diffuse(albedo: &str) -> String {
 const RED: &str = "[0.05, 0.9, 0.7]";
 const CLEAR: &str = "0";
 
+/// Thickness of the red lacquer of figure 3.3.
+const RED_UM: f64 = 0.6;
+
 fn absorption(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
-    let tinted = by_course("tinted", &(coat(0.6, RED) + &diffuse("0.8")))?;
+    let tinted = by_course("tinted", &(coat(RED_UM, RED) + &diffuse("0.8")))?;
     let render = |material: Material| studio.pictures(&[material], Form::Full, Shape::Sphere, |_, _| {});
     let with = render(tinted)?.swap_remove(0);
-    // The colour of the base seen straight on: twice through 0.6 um at the normal.
-    let base = [0.05, 0.9, 0.7].map(|a: f64| 0.8 * libm::exp(-2.0 * 0.6 * a));
-    let without = render(by_course("clear", &(coat(0.6, CLEAR) + &diffuse(&format!("{base:?}"))))?)?.swap_remove(0);
+    // The colour of the base seen straight on: twice through the lacquer at the normal.
+    let base = [0.05, 0.9, 0.7].map(|a: f64| 0.8 * libm::exp(-2.0 * RED_UM * a));
+    let without = render(by_course("clear", &(coat(RED_UM, CLEAR) + &diffuse(&format!("{base:?}"))))?)?.swap_remove(0);
     let mut pictures: Labelled =
         vec![("absorbs".to_owned(), TONE.image(with.clone())), ("clear".to_owned(), TONE.image(without.clone()))];
     for (c, (name, scale)) in [("hue", 8.0), ("chroma", 12.0), ("lightness", 8.0)].into_iter().enumerate() {
@@ -189,7 +224,8 @@ fn absorption(studio: &Studio) -> Outcome<Made> {
                 let (mut d, seen) = (a[2 - c] - b[2 - c], a[1].min(b[1]) > 5.0);
                 if c == 0 {
                     d -= 360.0 * (d / 360.0).round();
-                    d = if seen { d } else { 0.0 };
+                    // CIE's difference of hue, in the unit of chroma and lightness.
+                    d = if seen { 2.0 * (a[1] * b[1]).sqrt() * libm::sin(0.5 * d.to_radians()) } else { 0.0 };
                 }
                 if seen {
                     (sum, count) = (sum + d.abs(), count + 1.0);
@@ -238,6 +274,12 @@ fn bases(studio: &Studio) -> Outcome<Made> {
         let edge = middle + (f64::from(middle) * BALL) as u32 * 9 / 10;
         let ratio = rgb(picture, edge, middle)[1] / rgb(picture, middle, middle)[1].max(1e-9);
         made.measure(format!("sigma {sigma}: radiance near the rim over that of the middle"), ratio);
+        if sigma == 0.0 {
+            let place = 2.0 * (f64::from(edge) + 0.5) / f64::from(picture.width) - 1.0;
+            let cos_theta_i = ball_normal([place, 0.0]).map_or(f64::NAN, |[_, _, z]| z);
+            let what = format!("sigma {sigma}: radiance near the rim over that of the middle, over Lambert's cosine");
+            made.measure(what, ratio / cos_theta_i);
+        }
     }
     made.sheet("course-3-5", sigmas.iter().map(|sigma| format!("sigma {sigma}")).zip(pictures).collect(), 6);
     Ok(made)
@@ -254,7 +296,8 @@ fn silver(studio: &Studio) -> Outcome<Made> {
     let pictures = studio.pictures(&materials, Form::Full, Shape::Sphere, |_, _| {})?;
     for (thickness, picture) in thicknesses.iter().zip(&pictures) {
         made.measure(format!("{thickness} um: mean luminance"), brightness(picture));
-        made.measure(format!("{thickness} um: blue over red"), over_red(picture, 2));
+        made.measure(format!("{thickness} um: saturation"), saturation(middle(picture, 0.5)));
+        made.measure(format!("{thickness} um: hue"), hue(picture, 0.5));
     }
     made.sheet("course-3-6", thicknesses.iter().map(|d| format!("{d} um")).zip(pictures).collect(), 6);
     Ok(made)
@@ -282,6 +325,7 @@ fn inside(studio: &Studio) -> Outcome<Made> {
         let mean = |image: &Image| image.data.iter().map(|v| f64::from(*v)).sum::<f64>();
         if let [with, without] = pair {
             made.measure(format!("index {index}: light with the term over that without"), mean(with) / mean(without));
+            made.measure(format!("index {index}: mean difference of lightness"), lightness_apart(with, without));
             shown.push((format!("{index} with"), TONE.image(with.clone())));
             shown.push((format!("{index} without"), TONE.image(without.clone())));
         }
@@ -340,9 +384,18 @@ fn parts(studio: &Studio) -> Outcome<Made> {
     for ((label, _), picture) in all.iter().zip(&pictures) {
         made.measure(format!("{label}: mean luminance"), brightness(picture));
         made.measure(format!("{label}: blue over red"), over_red(picture, 2));
+        made.measure(format!("{label}: highlight over the median"), highlight(picture));
     }
-    let [coat, base, both] = [0, 1, 2].map(|i: usize| brightness(&pictures[i]));
-    made.measure("clear coat, over the sum of coat and base: mean luminance", both / (coat + base));
+    // Under a light from the eye, in the middle of the ball: less what the coat mirrors, the base through an absorbing coat over
+    // that through a clear one.
+    let dark = even_sky(0.0)?;
+    let light = |_, settings: &mut RenderSettings| one_light(settings, &dark, FROM_EYE);
+    let lit = studio.pictures(&materials, Form::Full, Shape::Sphere, light)?;
+    let [coat, _, clear, absorbs, _] = [0, 1, 2, 3, 4].map(|i: usize| color_at(&lit[i], [0.0; 2]));
+    for (c, channel) in ["R", "G", "B"].into_iter().enumerate() {
+        let left = (absorbs[c] - coat[c]) / (clear[c] - coat[c]);
+        made.measure(format!("straight on, share of the base that is left: {channel}"), left);
+    }
     made.sheet("course-3-8", all.iter().map(|(name, _)| (*name).to_owned()).zip(pictures).collect(), 5);
     Ok(made)
 }
@@ -373,6 +426,16 @@ fn varnishes(studio: &Studio) -> Outcome<Made> {
         made.apart(&format!("{} against {}", all[i].0, all[j].0), &pictures[i], &pictures[j])?;
     }
     made.apart("d below against without bumps", &pictures[3], &level)?;
+    let dark = even_sky(0.0)?;
+    let light = |_, settings: &mut RenderSettings| one_light(settings, &dark, KEY);
+    let lit = studio.pictures(&materials, Form::Full, Shape::Torus, light)?;
+    let labels = all.iter().map(|(name, _)| *name).chain(["without bumps"]);
+    for ((label, picture), lit) in labels.zip(pictures.iter().chain([&level])).zip(&lit) {
+        made.measure(format!("{label}: saturation"), saturation(middle(picture, 0.8)));
+        made.measure(format!("{label}: deviation of the colour"), tint_deviation(picture));
+        made.measure(format!("{label}: grain"), grain(lit));
+        made.measure(format!("{label}: width of the highlight"), spot(lit).share.sqrt());
+    }
     made.sheet("course-3-9", all.iter().map(|(name, _)| (*name).to_owned()).zip(pictures).collect(), 5);
     Ok(made)
 }

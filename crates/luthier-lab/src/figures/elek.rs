@@ -13,6 +13,7 @@ use luthier_terminal::{Failure, Outcome};
 use super::claim::{Check, Claim};
 use super::figure::{Figure, Made, SMALL, compared};
 use super::numbers::brightest;
+use super::numbers::spot::{softened, spot, spot_of};
 use super::studio::{Studio, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 3] = [
@@ -29,21 +30,34 @@ pub(crate) const FIGURES: [Figure; 3] = [
                   m1 0.4 over m2 0.05 in f64 under two lights. The simulation lies between the two: it is softer \
                   than the model without the clamp and far narrower than the model with it. The clamp avoids the \
                   sharp highlight, so that its RMSE is the smallest. It also greys the whole ball, so that its FLIP \
-                  is the largest. `corrected` is Weidlich and Wilkie's model with the factor 1/n^2 and with bounces \
+                  is the largest. The paper offers the clamp as the cure: it trades a highlight that is too narrow for one \
+                  that is too wide by a larger factor. `corrected` is Weidlich and Wilkie's model with the factor 1/n^2 and with bounces \
                   inside the coat. Its energy is nearest to the simulation, but its highlight is as sharp as without \
                   the clamp. The metal is chromium of the paper's appendix A; the red coat is luthier's.",
         size: SMALL,
         claim: Claim {
-            text: "A rough coat softens the metal below it. Without the clamp, a metal under a rough coat mirrors sharply, which \
-                  the simulation does not.",
+            text: "The roughness of the coat shapes the reflection of the metal: it gets wider where m1 exceeds m2. Without the \
+                  clamp, a metal under a rough coat mirrors more sharply than in the simulation. The clamp brings width and \
+                  look of the metal nearer to the simulation.",
             checks: &[
                 Check::Falls(&[
-                    "coat of m1 0.1 over m2 0.3: brightest radiance",
-                    "coat of m1 0.2 over m2 0.3: brightest radiance",
-                    "coat of m1 0.4 over m2 0.3: brightest radiance",
+                    "coat of m1 0.4 over m2 0.3: width of the metal's highlight",
+                    "coat of m1 0.2 over m2 0.3: width of the metal's highlight",
                 ]),
-                Check::Within("tori m1 0.4, m2 0.05, with against without the clamp: mean FLIP", 0.05, 1.0),
+                Check::Falls(&[
+                    "torus, clamped: width of the metal's highlight",
+                    "torus, not clamped: width of the metal's highlight",
+                ]),
+                Check::Within("ball, no clamp: width of the metal's highlight over that of the simulation", 0.0, 1.0),
+                Check::Falls(&[
+                    "ball, no clamp: factor between its width and that of the simulation",
+                    "ball, clamp: factor between its width and that of the simulation",
+                ]),
                 Check::Falls(&["ball, no clamp, against simulation: RMSE", "ball, clamp, against simulation: RMSE"]),
+                Check::Falls(&[
+                    "ball, no clamp, against simulation: mean FLIP",
+                    "ball, clamp, against simulation: mean FLIP",
+                ]),
             ],
         },
         make: clamp,
@@ -63,15 +77,29 @@ pub(crate) const FIGURES: [Figure; 3] = [
                   accurate.",
         size: SMALL,
         claim: Claim {
-            text: "A table of D that is linear in the angle breaks up a sharp highlight, the mapping u^8 shows it as the full \
-                  evaluation does, and MIP maps spoil it.",
+            text: "A table of D that is linear in the angle cannot show a sharp highlight (m 0.01), but does from m 0.02 on. The \
+                  mapping u^8 shows it as the full evaluation does. MIP maps make it of a wrong size.",
             checks: &[
                 Check::Falls(&[
                     "MIP level 3, m = 0.01: largest error over the peak",
                     "linear angle, m = 0.01: largest error over the peak",
                     "u^8, even m, m = 0.01: largest error over the peak",
                 ]),
+                // The least contrast that an eye sees is about a hundredth.
                 Check::Within("linear angle, m = 0.02: largest error over the peak", 0.0, 0.01),
+                Check::Within("linear angle, m = 0.01: largest error over the peak", 0.01, 1.0),
+                Check::Within("u^8, even m, m = 0.01: largest error over the peak", 0.0, 0.01),
+                // The least difference of lengths that an eye sees is about a fortieth.
+                Check::Within(
+                    "u^8, even m, m = 0.01: size of the highlight over that of the full evaluation",
+                    0.975,
+                    1.025,
+                ),
+                Check::Falls(&[
+                    "MIP level 3, m = 0.01: size of the highlight is off by",
+                    "u^8, even m, m = 0.01: size of the highlight is off by",
+                ]),
+                Check::Within("MIP level 3, m = 0.01: size of the highlight is off by", 0.025, 100.0),
             ],
         },
         make: mapping,
@@ -133,8 +161,11 @@ fn clamp(studio: &Studio) -> Outcome<Made> {
     let pictures = studio.pictures(&materials, Form::Baked, Shape::Torus, |_, _| {})?;
     for (alpha, picture) in series.iter().zip(&pictures) {
         made.measure(format!("coat of m1 {alpha} over m2 0.3: brightest radiance"), brightest(picture));
+        made.measure(format!("coat of m1 {alpha} over m2 0.3: width of the metal's highlight"), metal_width(picture));
     }
     if let [.., with, without] = pictures.as_slice() {
+        made.measure("torus, clamped: width of the metal's highlight", metal_width(with));
+        made.measure("torus, not clamped: width of the metal's highlight", metal_width(without));
         made.apart("tori m1 0.4, m2 0.05, with against without the clamp", with, without)?;
     }
     made.sheet("elek-2", labels.into_iter().zip(pictures).collect(), 6);
@@ -153,8 +184,26 @@ fn clamp(studio: &Studio) -> Outcome<Made> {
         made.measure(format!("ball, {label}: mean radiance over that of the simulation"), energy);
         balls.push((label.to_owned(), ball));
     }
+    if let [(_, simulated), others @ ..] = balls.as_slice() {
+        let simulated = metal_width(&softened(simulated));
+        for (label, ball) in others {
+            let ratio = metal_width(&softened(ball)) / simulated.max(1e-9);
+            made.measure(format!("ball, {label}: width of the metal's highlight over that of the simulation"), ratio);
+            let factor = ratio.max(1.0 / ratio.max(1e-9));
+            made.measure(format!("ball, {label}: factor between its width and that of the simulation"), factor);
+        }
+    }
     made.sheet("elek-2-simulation", balls, 4);
     Ok(made)
+}
+
+/// Red over blue of the key light, and so of what a coat reflects.
+const KEY_RED_OVER_BLUE: f64 = 1.75 / 1.62;
+
+/// Width of the highlight of a metal under a red coat: the root of the share of the picture where it is at least half as bright
+/// as at its peak. Red less blue is the light of the metal, because the coat reflects without colour.
+fn metal_width(picture: &Image) -> f64 {
+    spot_of(picture, |[red, _, blue]| red - KEY_RED_OVER_BLUE * blue).share.sqrt()
 }
 
 /// Slope parameters at which tables are compared, and which of them is that of figure 4.
@@ -220,6 +269,12 @@ fn mapping(studio: &Studio) -> Outcome<Made> {
     }
     let mipped = mipped(&full[SHOWN], SHARP[SHOWN]);
     made.measure("MIP level 3, m = 0.01: largest error over the peak", error(&mipped, &full[SHOWN]));
+    let size = |image: &Image| spot(image).share.sqrt();
+    for (label, picture) in [("u^8, even m", &tables[1].2[SHOWN]), ("MIP level 3", &mipped)] {
+        let ratio = size(picture) / size(&full[SHOWN]).max(1e-9);
+        made.measure(format!("{label}, m = 0.01: size of the highlight over that of the full evaluation"), ratio);
+        made.measure(format!("{label}, m = 0.01: size of the highlight is off by"), (ratio - 1.0).abs());
+    }
     shown.push(("full".to_owned(), full[SHOWN].clone()));
     shown.push(("MIP level 3".to_owned(), mipped));
     made.sheet("elek-4", shown, 5);

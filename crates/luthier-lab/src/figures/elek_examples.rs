@@ -5,12 +5,17 @@ use luthier_gpu::Shape;
 use luthier_lut::Image;
 use luthier_manifest::{Form, MapSlot, ShadingModel};
 use luthier_material::{Material, VariationSource};
+use luthier_report::lightness_chroma_hue;
 use luthier_terminal::{Failure, Outcome};
 
 use super::claim::{Check, Claim};
-use super::elek_places::crusted;
+use super::elek_places::{crusted, from_above};
 use super::figure::{Figure, Labelled, Made, SIMULATED, SMALL, TONE, compared};
-use super::numbers::{grain, over_red};
+use super::numbers::places::{
+    correlation, greenness, middle_values, nearest, places_of_square, quantile, sparkles, steepness,
+};
+use super::numbers::tint::saturations;
+use super::numbers::{highlight, middle};
 use super::studio::{Studio, layered, mapped, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 3] = [
@@ -39,14 +44,22 @@ pub(crate) const FIGURES: [Figure; 3] = [
         title: "edges of the patina",
         source: "Elek 2010, figure 9",
         caption: "The map that says where patina grows first, and patina with a wide transition (0.9) and a narrow one (0.2) at the same extent, 0.45. With the wide \
-                  one all places have half grown; with the narrow one, metal and patina lie side by side.",
+                  one all places have half grown; with the narrow one, metal and patina lie side by side. The numbers are of a level square of the same \
+                  material: how green a pixel is, from -1 (red) to 1.",
         size: SMALL,
         claim: Claim {
-            text: "A wide transition blurs the boundary of the patina, a narrow one makes it sharp.",
-            checks: &[Check::Falls(&[
-                "transition 0.9: share of the map where patina has half grown",
-                "transition 0.2: share of the map where patina has half grown",
-            ])],
+            text: "A narrow transition puts bare metal and patina side by side with sharp boundaries, a wide one blurs them.",
+            checks: &[
+                Check::Falls(&[
+                    "transition 0.2: steepest change of green between pixels of the square",
+                    "transition 0.9: steepest change of green between pixels of the square",
+                ]),
+                Check::Falls(&["transition 0.2: range of green", "transition 0.9: range of green"]),
+                // Bare metal is redder than green, and patina is greener.
+                Check::Within("transition 0.2: share of the square that is green", 0.05, 0.95),
+                Check::Within("transition 0.2: green of the tenth with least", -1.0, 0.0),
+                Check::Within("transition 0.2: green of the tenth with most", 0.0, 1.0),
+            ],
         },
         make: edges,
     },
@@ -55,16 +68,28 @@ pub(crate) const FIGURES: [Figure; 3] = [
         title: "car paint, lacquers and concrete",
         source: "Elek 2010, figure 10",
         caption: "From left to right: car paint whose flakes have slopes of 25 degrees; an orange and a purple lacquer on chromium, whose thickness a map \
-                  varies; concrete, a base of Oren and Nayar with sigma 0.5, bare and under a blue transparent varnish. Numbers and map are luthier's.",
+                  varies; concrete, a base of Oren and Nayar with sigma 0.5, bare and under a blue transparent varnish. Numbers and map are luthier's. A pixel sparkles \
+                  where it is at least twice as bright as the median around it. Hues are those of CIELAB: orange is Munsell's yellow-red (42 to 77 degrees), purple his purple \
+                  (298 to 335), blue is from the least of his blue to the primary of Rec.709 (215 to 306). The correlations are those of a level square with the map of thickness.",
         size: SMALL,
         claim: Claim {
-            text: "Car paint sparkles, lacquers are deeper where they are thicker, and a transparent varnish turns grey concrete \
-                  blue.",
+            text: "Car paint sparkles strongly. An orange and a purple lacquer are deeper where they are thicker: darker, and more \
+                  saturated. A transparent varnish turns grey concrete blue and glossy.",
             checks: &[
-                Check::Falls(&["flakes: grain", "orange: grain"]),
-                Check::Falls(&["varnished: blue over red", "concrete: blue over red"]),
-                Check::Falls(&["purple: blue over red", "orange: blue over red"]),
-                Check::Within("orange, with the map of thickness against without: mean FLIP", 0.02, 1.0),
+                Check::Falls(&["flakes: sparkles", "the same paint without flakes: sparkles"]),
+                Check::Falls(&["flakes: sparkles", "orange: sparkles"]),
+                // Each hundredth pixel: more than the single points of a smooth paint.
+                Check::Within("flakes: sparkles", 0.01, 0.5),
+                Check::Within("orange: hue", 42.0, 77.0),
+                Check::Within("purple: hue", 298.0, 335.0),
+                Check::Within("orange: correlation of thickness and saturation", 0.5, 1.0),
+                Check::Within("orange: correlation of thickness and luminance", -1.0, -0.5),
+                Check::Within("purple: correlation of thickness and saturation", 0.5, 1.0),
+                Check::Within("purple: correlation of thickness and luminance", -1.0, -0.5),
+                Check::Within("concrete: chroma", 0.0, 10.0),
+                Check::Within("varnished: hue", 215.0, 306.3),
+                Check::Falls(&["varnished: chroma", "concrete: chroma"]),
+                Check::Falls(&["varnished: highlight over the median", "concrete: highlight over the median"]),
             ],
         },
         make: examples,
@@ -123,12 +148,19 @@ fn edges(studio: &Studio) -> Outcome<Made> {
     let mut pictures: Labelled = Vec::new();
     if let Some(map) = package.maps.iter().find(|map| map.slot == MapSlot::Patina) {
         pictures.push(("map".to_owned(), scaled(&map.image, 2 * studio.size)));
-        for transition in TRANSITIONS {
-            let amount = |texel: &[f32]| (0.5 + (0.45 - f64::from(texel[0])) / (2.0 * transition)).clamp(0.0, 1.0);
-            let amounts: Vec<f64> = map.image.texels().map(amount).collect();
-            let half = amounts.iter().filter(|amount| (0.02..0.98).contains(*amount)).count();
-            let share = half as f64 / amounts.len() as f64;
-            made.measure(format!("transition {transition}: share of the map where patina has half grown"), share);
+    }
+    for (transition, picture) in TRANSITIONS.into_iter().zip(from_above(studio, &package)?) {
+        let green = greenness(&picture);
+        let [least, most] = [0.1, 0.9].map(|share| quantile(&green, share));
+        let share = green.iter().filter(|green| **green > 0.0).count() as f64 / green.len().max(1) as f64;
+        for (what, value) in [
+            ("steepest change of green between pixels of the square", steepness(&green)),
+            ("range of green", most - least),
+            ("green of the tenth with least", least),
+            ("green of the tenth with most", most),
+            ("share of the square that is green", share),
+        ] {
+            made.measure(format!("transition {transition}: {what}"), value);
         }
     }
     let rendered = studio.staged(&package, |_, _| {})?;
@@ -197,12 +229,30 @@ fn examples(studio: &Studio) -> Outcome<Made> {
         pictures.push(((*label).to_owned(), one.swap_remove(0)));
     }
     for (label, picture) in &pictures {
-        made.measure(format!("{label}: grain"), grain(picture));
-        made.measure(format!("{label}: blue over red"), over_red(picture, 2));
+        let [_, chroma, hue] = lightness_chroma_hue(middle(picture, 0.5));
+        made.measure(format!("{label}: sparkles"), sparkles(picture));
+        made.measure(format!("{label}: chroma"), chroma);
+        made.measure(format!("{label}: hue"), hue);
+        made.measure(format!("{label}: highlight over the median"), highlight(picture));
     }
-    let even = by_elek("even", &(lacquer("[0.02, 0.3, 0.9]") + CHROMIUM))?;
-    let even = studio.pictures(&[even], Form::Full, Shape::Sphere, |_, _| {})?.swap_remove(0);
-    made.apart("orange, with the map of thickness against without", &pictures[1].1, &even)?;
+    let mut smooth = all[0].1.clone();
+    if let Some(flakes) = smooth.effects.flakes.as_mut() {
+        flakes.scale = 0.0;
+    }
+    let smooth = studio.pictures(&[smooth], Form::Full, Shape::Sphere, |_, _| {})?.swap_remove(0);
+    made.measure("the same paint without flakes: sparkles", sparkles(&smooth));
+    for (label, lacquered) in &all[1..3] {
+        let package = Package::for_renderer(&lit(std::slice::from_ref(lacquered)), &MemoryStore::default())?;
+        let square = from_above(studio, &package)?.swap_remove(0);
+        let map = package.maps.iter().find(|map| map.slot == MapSlot::Thickness).map(|map| &map.image);
+        let thickness: Vec<f64> = map
+            .into_iter()
+            .flat_map(|map| places_of_square(&square).map(|place| f64::from(nearest(map, place)[0])))
+            .collect();
+        for (what, values) in [("saturation", saturations(&square)), ("luminance", middle_values(&square))] {
+            made.measure(format!("{label}: correlation of thickness and {what}"), correlation(&thickness, &values));
+        }
+    }
     made.sheet("elek-10", pictures, all.len() as u32);
     Ok(made)
 }

@@ -1,16 +1,17 @@
 //! Figures of Elek 2010 about surfaces that vary.
 
 use luthier_export::{MemoryStore, Package, lit};
-use luthier_gpu::Shape;
+use luthier_gpu::{RenderSettings, Shape};
 use luthier_lut::Image;
 use luthier_manifest::{Form, MapSlot, ShadingModel};
 use luthier_material::{Material, VariationSource};
-use luthier_optics::color::luminance;
 use luthier_terminal::{Failure, Outcome};
 
 use super::claim::{Check, Claim};
+use super::course_surfaces::square;
 use super::figure::{Figure, Made, SMALL};
-use super::numbers::over_red;
+use super::numbers::places::{correlation, greenness, nearest, noise, places_of_square};
+use super::numbers::{highlight, over_red};
 use super::studio::{Studio, mapped, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 2] = [
@@ -22,22 +23,34 @@ pub(crate) const FIGURES: [Figure; 2] = [
                   and no filtering. The ball covers fewer pixels at larger distances, and is enlarged. In the top \
                   row, the flakes' normal is weighted by the distance from distance 4 on, as in the paper, and the \
                   paint becomes smooth. In the bottom row it is not weighted, and the ball stays noisy at any \
-                  distance, down to single dark and bright pixels. The number is the variation of luminance that \
-                  flakes cause between pixels, divided by the mean, in the middle of the picture; at distance 32 \
-                  that is a square of a sixteenth of the picture's side.",
+                  distance, down to single dark and bright pixels. The noise is the standard deviation of luminance \
+                  between neighbouring pixels that the flakes cause, divided by the mean, in the middle of the picture. \
+                  A pixel at distance 32 holds 64 times as many flakes as one at distance 4, and the mean over so many has an \
+                  eighth of the noise. The paper's scaling gives less: it adds a flake's normal, about 1 long, to the surface's normal of \
+                  length 1 + 1 at distance 4 and of 1 + 8 at distance 32, so that its tilt falls by 10 over 3. `rays` is \
+                  the mean itself, of 64 rays to a pixel; the noise is what one ray adds to it.",
         size: SMALL,
         claim: Claim {
-            text: "Flakes whose normals are scaled by the distance fade into a smooth paint; without it the paint stays noisy at \
-                  any distance.",
+            text: "Near, flakes sparkle. Scaled by the distance, they fade into a smooth paint as the mean of more and more flakes \
+                  does: to an eighth of the noise at eight times the distance. Without it the paint stays noisy at any \
+                  distance.",
             checks: &[
+                Check::Within("plain, distance 4: noise of the flakes", 0.1, 10.0),
                 Check::Falls(&[
                     "scaled, distance 4: noise of the flakes",
                     "scaled, distance 8: noise of the flakes",
                     "scaled, distance 16: noise of the flakes",
                     "scaled, distance 32: noise of the flakes",
                 ]),
+                // An eighth, within a factor of two.
+                Check::Within("scaled, distance 4 over distance 32: noise of the flakes", 4.0, 16.0),
+                Check::Within("plain, distance 4 over distance 32: noise of the flakes", 0.5, 2.0),
                 Check::Falls(&["plain, distance 32: noise of the flakes", "scaled, distance 32: noise of the flakes"]),
-                Check::Within("plain, distance 32 over distance 4: noise of the flakes", 0.5, 2.0),
+                // For the eye, the scaled flakes are nearer to the mean than plain ones.
+                Check::Falls(&[
+                    "plain against rays, distance 32: mean FLIP",
+                    "scaled against rays, distance 32: mean FLIP",
+                ]),
             ],
         },
         make: flakes,
@@ -49,21 +62,23 @@ pub(crate) const FIGURES: [Figure; 2] = [
         caption: "The pictures show copper under cuprite at the six stages of the paper, with its width of the \
                   transition. Patina grows first where the map is dark: in blotches, and in streaks that water has left. The \
                   transition is so wide that no edge is visible: the copper pales, turns green unevenly and ends as a matt \
-                  green with the tarnish below. A map makes the patina thicker in some places; copper shows through where it is thin. The numbers are the mean amount of patina over the map, and the mean of the green \
-                  channel over that of the red one in the middle of each picture. The maps, the model, the green and the tarnish are luthier's; see \
+                  green with the tarnish below. A map makes the patina thicker in some places; copper shows through where it is thin, so that even at \
+                  the last stage a part stays redder than green. The numbers are the green \
+                  channel over the red one in the middle of each picture. On a level square of the same material the share of pixels that are greener than red is the covered part; \
+                  how green each pixel is goes with how dark the map is there. The maps, the model, the green and the tarnish are luthier's; see \
                   `materials/copper-patina.toml`.",
         size: SMALL,
         claim: Claim {
-            text: "As extent grows from -0.65 to 1.65, bare copper becomes green all over, at no sharp edge.",
+            text: "As extent grows, patina covers more of the copper: nothing at -0.65, all at 1.65, first where the map is dark. \
+                  Bare copper is red and has a highlight; patina is green and matt.",
             checks: &[
-                Check::Falls(&[
-                    "extent 1.65: mean amount of patina",
-                    "extent 0.75: mean amount of patina",
-                    "extent 0.45: mean amount of patina",
-                    "extent 0.15: mean amount of patina",
-                    "extent -0.05: mean amount of patina",
-                    "extent -0.65: mean amount of patina",
-                ]),
+                Check::Within("extent -0.65: share of the square that is green", 0.0, 0.01),
+                Check::Within("extent 1.65: share of the square that is green", 0.99, 1.0),
+                Check::Within("extent 0.15: correlation of green with the darkness of the map", 0.5, 1.0),
+                Check::Within("extent 0.45: correlation of green with the darkness of the map", 0.5, 1.0),
+                Check::Falls(&["extent -0.65: highlight over the median", "extent 1.65: highlight over the median"]),
+                Check::Within("extent -0.65: green over red", 0.0, 1.0),
+                Check::Within("extent 1.65: green over red", 1.0, 10.0),
                 Check::Falls(&[
                     "extent 1.65: green over red",
                     "extent 0.75: green over red",
@@ -84,6 +99,9 @@ const PATINA: &str = include_str!("../../../../materials/copper-patina.toml");
 /// Distances of the eye; in the first the flakes begin to fade.
 const DISTANCES: [f32; 4] = [4.0, 8.0, 16.0, 32.0];
 
+/// Rays along each side of a pixel of the mean over flakes.
+const MANY_RAYS: u32 = 8;
+
 fn flakes(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
     let paint = material("chromium-car-paint.toml", CAR_PAINT)?;
@@ -98,53 +116,46 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
     let materials = [variant("fading", near, 1.0)?, variant("not-fading", 1e6, 1.0)?, variant("smooth", near, 0.0)?];
     let package = Package::for_renderer(&lit(&materials), &MemoryStore::default())?;
     let mut rows = [Vec::new(), Vec::new()];
-    let mut plain = Vec::new();
+    let mut noises = [Vec::new(), Vec::new()];
     for (step, distance) in DISTANCES.into_iter().enumerate() {
         // A pixel is always as wide at the eye; what is far away is smaller, and enlarged.
         let size = (studio.size >> step).max(8);
-        let mut pictures = studio.rendered(&package, Form::Baked, Shape::Sphere, |_, settings| {
-            settings.camera.eye = [0.0, 0.0, distance];
-            settings.camera.half_extent = 1.25;
-            settings.size = size;
-            settings.samples = 1;
-            settings.environment_samples = 0;
-        })?;
-        let smooth = pictures.pop().unwrap_or_else(|| Image::zeros(size, size, 3));
-        for ((row, image), what) in rows.iter_mut().zip(pictures).zip(["scaled", "plain"]) {
-            let noise = noise(&image, &smooth);
-            made.measure(format!("{what}, distance {distance}: noise of the flakes"), noise);
-            if what == "plain" {
-                plain.push(noise);
+        let look = |samples: u32| {
+            move |_: usize, settings: &mut RenderSettings| {
+                settings.camera.eye = [0.0, 0.0, distance];
+                settings.camera.half_extent = 1.25;
+                (settings.size, settings.samples, settings.environment_samples) = (size, samples, 0);
             }
+        };
+        let pictures = studio.rendered(&package, Form::Baked, Shape::Sphere, look(1))?;
+        let means = studio.rendered(&package, Form::Baked, Shape::Sphere, look(MANY_RAYS))?;
+        if let ([scaled, plain, _], [_, mean, _]) = (pictures.as_slice(), means.as_slice()) {
+            for (what, picture) in [("scaled", scaled), ("plain", plain)] {
+                made.apart(&format!("{what} against rays, distance {distance}"), picture, mean)?;
+            }
+        }
+        let (Some(smooth), Some(mean_smooth)) = (pictures.last().cloned(), means.last()) else { continue };
+        let rows = rows.iter_mut().zip(&mut noises).zip(["scaled", "plain"]);
+        for (((row, noises), what), (image, mean)) in rows.zip(pictures.into_iter().zip(&means)) {
+            // One ray without the noise of flakes: the smooth paint with what flakes change of it on the mean.
+            let mut expected = smooth.clone();
+            for (value, (mean, smooth)) in expected.data.iter_mut().zip(mean.data.iter().zip(&mean_smooth.data)) {
+                *value += mean - smooth;
+            }
+            let noise = noise(&image, &expected);
+            made.measure(format!("{what}, distance {distance}: noise of the flakes"), noise);
+            noises.push(noise);
             row.push((format!("{what}, {distance}"), enlarged(&image, studio.size)));
         }
     }
-    if let [near, .., far] = plain.as_slice() {
-        made.measure("plain, distance 32 over distance 4: noise of the flakes", far / near);
+    for (what, noises) in ["scaled", "plain"].into_iter().zip(noises) {
+        if let [near, .., far] = noises.as_slice() {
+            made.measure(format!("{what}, distance 4 over distance 32: noise of the flakes"), near / far);
+        }
     }
     let [with, without] = rows;
     made.sheet("elek-7", [with, without].concat(), DISTANCES.len() as u32);
     Ok(made)
-}
-
-/// Root mean square of what flakes do to the luminance of the middle half of a picture, over its mean.
-fn noise(image: &Image, smooth: &Image) -> f64 {
-    let value = |image: &Image, x: u32, y: u32| {
-        let texel = image.texel(x, y);
-        luminance([0, 1, 2].map(|c| f64::from(texel[c])))
-    };
-    let middle = image.width / 4..image.width * 3 / 4;
-    let count = f64::from((middle.end - middle.start).max(1));
-    let (mut squares, mut sum) = (0.0, 0.0);
-    for y in middle.clone() {
-        for x in middle.clone() {
-            let (here, bare) = (value(image, x, y), value(smooth, x, y));
-            squares += (here - bare) * (here - bare);
-            sum += bare;
-        }
-    }
-    // Both are sums over as many pixels.
-    squares.sqrt() * count / sum.max(1e-12)
 }
 
 /// Every pixel repeated.
@@ -184,20 +195,34 @@ fn patina(studio: &Studio) -> Outcome<Made> {
         materials.push(mapped(stage));
     }
     let package = Package::for_renderer(&lit(&materials), &MemoryStore::default())?;
-    let map = package.maps.iter().find(|map| map.slot == MapSlot::Patina).map(|map| &map.image);
-    for extent in EXTENTS {
-        let amounts = map
-            .into_iter()
-            .flat_map(Image::texels)
-            .map(|texel| (0.5 + (extent - f64::from(texel[0])) / (2.0 * TRANSITION)).clamp(0.0, 1.0));
-        let count = map.map_or(1, Image::texel_count);
-        made.measure(format!("extent {extent}: mean amount of patina"), amounts.sum::<f64>() / count as f64);
+    let level = from_above(studio, &package)?;
+    let dark = darkness(&package, level.first());
+    for (extent, picture) in EXTENTS.iter().zip(&level) {
+        let green = greenness(picture);
+        let share = green.iter().filter(|green| **green > 0.0).count() as f64 / green.len().max(1) as f64;
+        made.measure(format!("extent {extent}: share of the square that is green"), share);
+        let correlation = correlation(&green, &dark);
+        made.measure(format!("extent {extent}: correlation of green with the darkness of the map"), correlation);
     }
     let pictures = studio.staged(&package, |_, _| {})?;
     for (extent, picture) in EXTENTS.iter().zip(&pictures) {
         made.measure(format!("extent {extent}: green over red"), over_red(picture, 1));
+        made.measure(format!("extent {extent}: highlight over the median"), highlight(picture));
     }
     let labels = EXTENTS.iter().map(|extent| format!("extent {extent}"));
     made.sheet("elek-8", labels.zip(pictures).collect(), 3);
     Ok(made)
+}
+
+/// Each material of a bake on a level square that fills the picture.
+pub(super) fn from_above(studio: &Studio, package: &Package) -> Outcome<Vec<Image>> {
+    let square = square(studio)?;
+    studio.rendered(package, Form::Baked, Shape::Plane, |_, settings| *settings = square.clone())
+}
+
+/// How dark the map of the patina is in each pixel of the middle half of a level square, row by row.
+fn darkness(package: &Package, square: Option<&Image>) -> Vec<f64> {
+    let map = package.maps.iter().find(|map| map.slot == MapSlot::Patina).map(|map| &map.image);
+    let (Some(map), Some(square)) = (map, square) else { return Vec::new() };
+    places_of_square(square).map(|[u, v]| 1.0 - f64::from(nearest(map, [u, v])[0])).collect()
 }

@@ -13,7 +13,10 @@ use luthier_terminal::Outcome;
 
 use super::claim::{Check, Claim};
 use super::figure::{Figure, LARGE, Made, SMALL, TONE};
+use super::numbers::light::{FROM_EYE, even_sky, one_light};
 use super::numbers::over_red;
+use super::numbers::spot::{centres, spot};
+use super::numbers::tint::{hue, hues, tint_deviation, tint_grain, tints_apart};
 use super::studio::{Studio, material, shaded};
 
 pub(crate) const FIGURES: [Figure; 5] = [
@@ -29,8 +32,8 @@ pub(crate) const FIGURES: [Figure; 5] = [
                   those of figure 6; the ranges are luthier's.",
         size: LARGE,
         claim: Claim {
-            text: "A narrow range of thicknesses looks like old metal or clay, of one tint; a wide range gives bands of pure \
-                  colours.",
+            text: "A narrow range of thicknesses looks like old metal, or like clay of its reddish yellow. A wide range gives \
+                  bands of pure colours: most of all hues.",
             checks: &[
                 Check::Falls(&[
                     "coloured, 200 to 700 nm: spread of the channels",
@@ -38,8 +41,16 @@ pub(crate) const FIGURES: [Figure; 5] = [
                 ]),
                 Check::Falls(&[
                     "coloured, 200 to 700 nm: spread of the channels",
-                    "clay, 40 to 58 nm: spread of the channels",
+                    "clay, 54 to 68 nm: spread of the channels",
                 ]),
+                Check::Falls(&[
+                    "coloured, 200 to 700 nm: share of the hues",
+                    "old metal, 52 to 84 nm: share of the hues",
+                ]),
+                Check::Falls(&["coloured, 200 to 700 nm: share of the hues", "clay, 54 to 68 nm: share of the hues"]),
+                Check::Within("coloured, 200 to 700 nm: share of the hues", 0.5, 1.0),
+                // Munsell's red and yellow-red, in which clays lie.
+                Check::Within("clay, 54 to 68 nm: hue", 10.0, 77.0),
             ],
         },
         make: diffuse,
@@ -54,15 +65,28 @@ pub(crate) const FIGURES: [Figure; 5] = [
                   which turns the transmitted beam to the side. Each light then has a second highlight to the right \
                   of the first, with a bluish and a yellow edge, and the right of the ball darkens. With one index \
                   for all colours, the second highlight has no coloured edges. With an exponent of 20 for the inner \
-                  boundary, it is wide, and its colours blur into each other.",
+                  boundary, it is wide, and its colours blur into each other. The numbers are of the specular part under the \
+                  light from the eye: how far from the middle the light of each channel lies, in half sides of the picture, and the mean \
+                  saturation of the light.",
         size: SMALL,
         claim: Claim {
-            text: "Where the boundaries are not parallel, the beam through the layer leaves in another direction: a second \
-                  highlight with coloured edges, unless all colours have one index.",
+            text: "Where the boundaries are not parallel, the beam through the layer turns aside: blue, of the highest index, \
+                  furthest, and red least. The more they lean, the further apart the colours are. With one index they stay \
+                  together. A low exponent blurs the colours into each other.",
             checks: &[
-                Check::Falls(&["14 degrees: spread of the channels", "one index: spread of the channels"]),
-                Check::Within("14 degrees against parallel: mean FLIP", 0.02, 1.0),
-                Check::Within("90 and 20 against 14 degrees: mean FLIP", 0.02, 1.0),
+                Check::Falls(&["14 degrees: blue, aside", "14 degrees: green, aside", "14 degrees: red, aside"]),
+                Check::Falls(&["14 degrees: green, aside", "7 degrees: green, aside", "parallel: green, aside"]),
+                Check::Falls(&[
+                    "14 degrees: blue and red apart",
+                    "7 degrees: blue and red apart",
+                    "parallel: blue and red apart",
+                ]),
+                Check::Falls(&["14 degrees: blue and red apart", "one index: blue and red apart"]),
+                Check::Falls(&[
+                    "90 and 20: width of the second highlight",
+                    "14 degrees: width of the second highlight",
+                ]),
+                Check::Falls(&["14 degrees: colours of the highlights", "90 and 20: colours of the highlights"]),
             ],
         },
         make: deviation,
@@ -77,10 +101,12 @@ pub(crate) const FIGURES: [Figure; 5] = [
                   is 12 and 24 um wide, chosen for the look. The ranges of thickness are luthier's.",
         size: SMALL,
         claim: Claim {
-            text: "Normals that follow the thickness break up the smooth bands of colour.",
+            text: "Normals that follow the thickness break up the smooth bands of colour: neighbouring places differ more. The \
+                  colours stay as many as those of oil on a surface.",
             checks: &[
-                Check::Falls(&["flat 100-400: spread of the channels", "bump 100-400: spread of the channels"]),
-                Check::Falls(&["flat 200-900: spread of the channels", "bump 200-900: spread of the channels"]),
+                Check::Falls(&["bump 100-400: colour between neighbours", "flat 100-400: colour between neighbours"]),
+                Check::Falls(&["bump 200-900: colour between neighbours", "flat 200-900: colour between neighbours"]),
+                Check::Within("bump 200-900: share of the hues", 0.5, 1.0),
             ],
         },
         make: correlated,
@@ -98,12 +124,19 @@ pub(crate) const FIGURES: [Figure; 5] = [
                   on it where both are in phase.",
         size: SMALL,
         claim: Claim {
-            text: "Colours of interference change with the thickness: thin films are brown, thicker ones blue, then yellow.",
+            text: "The thickness gives the colour: red is strongest where the layer is thin, and blue or green where it is \
+                  thicker. The deviation takes the colours of the highlight apart, the more the further their indices are \
+                  apart.",
             checks: &[
-                Check::Falls(&["110 to 140 nm: blue over red", "50 to 70 nm: blue over red"]),
-                Check::Falls(&["110 to 140 nm: blue over red", "160 to 200 nm: blue over red"]),
+                Check::Within("50 to 70 nm: green over red", 0.0, 1.0),
                 Check::Within("50 to 70 nm: blue over red", 0.0, 1.0),
-                Check::Within("160 to 200 nm: blue over red", 0.0, 1.0),
+                Check::Within("110 to 140 nm: blue or green over red", 1.0, 100.0),
+                Check::Within("160 to 200 nm: blue or green over red", 1.0, 100.0),
+                Check::Falls(&["highlight: blue, aside", "highlight: green, aside", "highlight: red, aside"]),
+                Check::Falls(&[
+                    "indices 1.5, 1.6, 1.8: blue and red apart",
+                    "indices 1.4, 1.45, 1.6: blue and red apart",
+                ]),
             ],
         },
         make: combined,
@@ -118,11 +151,16 @@ pub(crate) const FIGURES: [Figure; 5] = [
                   itself and on its floor. Ranges, indices and exponent are luthier's, the latter those of figure 6 and figure 4.",
         size: SMALL,
         claim: Claim {
-            text: "Tables show the layer on a mesh, in other colours for each range of thickness.",
+            text: "The range of thickness alone gives the layer on a mesh another colour, and within each picture the colour \
+                  varies. All differences are larger than those that an eye just notices (2.3 units of CIELAB).",
             checks: &[
-                Check::Within("140 to 220 nm against 60 to 110 nm: mean FLIP", 0.03, 1.0),
-                Check::Within("220 to 360 nm against 140 to 220 nm: mean FLIP", 0.03, 1.0),
-                Check::Within("200 to 700 nm against 220 to 360 nm: mean FLIP", 0.03, 1.0),
+                Check::Within("140 to 220 nm against 60 to 110 nm: difference of colour", 2.3, 200.0),
+                Check::Within("220 to 360 nm against 140 to 220 nm: difference of colour", 2.3, 200.0),
+                Check::Within("200 to 700 nm against 220 to 360 nm: difference of colour", 2.3, 200.0),
+                Check::Within("60 to 110 nm: deviation of the colour", 2.3, 200.0),
+                Check::Within("140 to 220 nm: deviation of the colour", 2.3, 200.0),
+                Check::Within("220 to 360 nm: deviation of the colour", 2.3, 200.0),
+                Check::Within("200 to 700 nm: deviation of the colour", 2.3, 200.0),
             ],
         },
         make: on_a_mesh,
@@ -160,11 +198,13 @@ fn on_a_mesh(studio: &Studio) -> Outcome<Made> {
     let mut shown = Vec::new();
     for ([min, max], picture) in MESH_RANGES_NM.into_iter().zip(pictures) {
         made.measure(format!("{min} to {max} nm: spread of the channels"), spread(&picture));
+        made.measure(format!("{min} to {max} nm: deviation of the colour"), tint_deviation(&picture));
         shown.push((format!("{min}-{max} nm"), picture));
     }
     for (ranges, pair) in MESH_RANGES_NM.windows(2).zip(shown.windows(2)) {
         if let ([[a, b], [c, d]], [(_, thin), (_, thick)]) = (ranges, pair) {
-            made.apart(&format!("{c} to {d} nm against {a} to {b} nm"), thick, thin)?;
+            let apart = tints_apart(thick, thin);
+            made.measure(format!("{c} to {d} nm against {a} to {b} nm: difference of colour"), apart);
         }
     }
     made.sheet("granier-7", shown, 2);
@@ -243,7 +283,7 @@ fn diffuse(studio: &Studio) -> Outcome<Made> {
         let (ior, exponents, extent_um, frequency) = (COMBINED_IOR, [130.0; 2], FLAT_UM, 6);
         Coating { name, ior, thickness_nm, exponents, diffuse, tilt_deg: 0.0, extent_um, frequency }
     };
-    let ranges = [("old metal", [52.0, 84.0]), ("coloured", [200.0, 700.0]), ("clay", [40.0, 58.0])];
+    let ranges = [("old metal", [52.0, 84.0]), ("coloured", [200.0, 700.0]), ("clay", [54.0, 68.0])];
     let names = [["metal", "metal-0"], ["coloured", "coloured-0"], ["clay", "clay-0"]];
     let pairs = ranges
         .iter()
@@ -260,6 +300,8 @@ fn diffuse(studio: &Studio) -> Outcome<Made> {
             let mut image = lit.clone();
             image.data.iter_mut().zip(&unlit.data).for_each(|(a, b)| *a = (*a - b).max(0.0));
             made.measure(format!("{name}, {min} to {max} nm: spread of the channels"), spread(&image));
+            made.measure(format!("{name}, {min} to {max} nm: share of the hues"), hues(&image));
+            made.measure(format!("{name}, {min} to {max} nm: hue"), hue(&image, 0.5));
             shown.push((format!("{min}-{max} nm"), image));
         }
     }
@@ -314,8 +356,25 @@ fn deviation(studio: &Studio) -> Outcome<Made> {
     for (label, picture) in labels.iter().zip(&pictures) {
         made.measure(format!("{label}: spread of the channels"), spread(picture));
     }
-    made.apart("14 degrees against parallel", &pictures[1], &pictures[0])?;
-    made.apart("90 and 20 against 14 degrees", &pictures[3], &pictures[1])?;
+    // The specular part alone, under one light.
+    let dark = even_sky(0.0)?;
+    let bare: Vec<Coating> = coatings
+        .into_iter()
+        .chain([coating("half", rising, 170.0, 0.5 * TILT_DEG)])
+        .map(|coating| Coating { diffuse: 0.0, ..coating })
+        .collect();
+    let light = |_, settings: &mut RenderSettings| one_light(settings, &dark, FROM_EYE);
+    let lit = studio.pictures(&materials(&bare)?, Form::Baked, Shape::Sphere, light)?;
+    for (label, picture) in labels.iter().chain([&"7 degrees"]).zip(&lit) {
+        let beam = less(picture, &lit[0], label == &"parallel");
+        let [red, green, blue] = centres(&beam).map(|[x, y]| libm::hypot(x, y));
+        for (channel, aside) in [("red", red), ("green", green), ("blue", blue)] {
+            made.measure(format!("{label}: {channel}, aside"), aside);
+        }
+        made.measure(format!("{label}: blue and red apart"), (blue - red).abs());
+        made.measure(format!("{label}: width of the second highlight"), spot(&beam).share.sqrt());
+        made.measure(format!("{label}: colours of the highlights"), saturation_of_light(picture));
+    }
     made.sheet("granier-4", labels.map(str::to_owned).into_iter().zip(pictures).collect(), 4);
     Ok(made)
 }
@@ -341,6 +400,8 @@ fn correlated(studio: &Studio) -> Outcome<Made> {
     let pictures = studio.pictures(&materials(&coatings)?, Form::Baked, Shape::Sphere, |_, settings| look(settings))?;
     let labels = ["flat 100-400", "bump 100-400", "flat 200-900", "bump 200-900"];
     for (label, picture) in labels.iter().zip(&pictures) {
+        made.measure(format!("{label}: colour between neighbours"), tint_grain(picture));
+        made.measure(format!("{label}: share of the hues"), hues(picture));
         made.measure(format!("{label}: spread of the channels"), spread(picture));
     }
     made.sheet("granier-5", labels.map(str::to_owned).into_iter().zip(pictures).collect(), 4);
@@ -370,10 +431,37 @@ fn combined(studio: &Studio) -> Outcome<Made> {
     let mut shown = Vec::new();
     for ((_, [min, max]), picture) in ranges.iter().zip(pictures) {
         made.measure(format!("{min} to {max} nm: spread of the channels"), spread(&picture));
-        made.measure(format!("{min} to {max} nm: blue over red"), over_red(&picture, 2));
+        let [green, blue] = [1, 2].map(|channel| over_red(&picture, channel));
+        made.measure(format!("{min} to {max} nm: green over red"), green);
+        made.measure(format!("{min} to {max} nm: blue over red"), blue);
+        made.measure(format!("{min} to {max} nm: blue or green over red"), green.max(blue));
         shown.push((format!("{min}-{max} nm"), picture));
     }
     made.sheet("granier-6", shown, 4);
+    // The specular part alone, under one light, of the indices of figure 6 and of figure 4.
+    let dark = even_sky(0.0)?;
+    let bare = [COMBINED_IOR, [1.4, 1.45, 1.6]].map(|ior| [0.0, TILT_DEG].map(|tilt_deg| (ior, tilt_deg)));
+    let bare = bare.concat().into_iter().zip(["p", "q", "r", "s"]).map(|((ior, tilt_deg), name)| Coating {
+        name,
+        ior,
+        thickness_nm: [66.0, 76.0],
+        exponents: [130.0; 2],
+        diffuse: 0.0,
+        tilt_deg,
+        extent_um: FLAT_UM,
+        frequency: 4,
+    });
+    let light = |_, settings: &mut RenderSettings| one_light(settings, &dark, FROM_EYE);
+    let lit = studio.pictures(&materials(&bare.collect::<Vec<_>>())?, Form::Baked, Shape::Sphere, light)?;
+    for (label, pair) in ["1.5, 1.6, 1.8", "1.4, 1.45, 1.6"].into_iter().zip(lit.chunks_exact(2)) {
+        let [red, green, blue] = centres(&less(&pair[1], &pair[0], false)).map(|[x, y]| libm::hypot(x, y));
+        if label.starts_with("1.5") {
+            for (channel, aside) in [("red", red), ("green", green), ("blue", blue)] {
+                made.measure(format!("highlight: {channel}, aside"), aside);
+            }
+        }
+        made.measure(format!("indices {label}: blue and red apart"), (blue - red).abs());
+    }
 
     let green = Coating {
         name: "green",
@@ -461,4 +549,24 @@ fn spread(image: &Image) -> f64 {
         f64::from(high - low)
     };
     image.texels().map(one).sum::<f64>() / image.texel_count() as f64
+}
+
+/// The light of a picture that another has not; all of it where asked for.
+fn less(picture: &Image, other: &Image, all: bool) -> Image {
+    let mut rest = picture.clone();
+    if !all {
+        rest.data.iter_mut().zip(&other.data).for_each(|(a, b)| *a = (*a - b).max(0.0));
+    }
+    rest
+}
+
+/// Mean saturation of the light of a picture, weighted by its brightness: the largest channel less the smallest, over the largest.
+fn saturation_of_light(picture: &Image) -> f64 {
+    let (mut apart, mut whole) = (0.0, 0.0);
+    for texel in picture.texels() {
+        let (low, high) = texel.iter().fold((f32::INFINITY, 0.0_f32), |(a, b), v| (a.min(*v), b.max(*v)));
+        apart += f64::from(high - low);
+        whole += f64::from(high);
+    }
+    apart / f64::max(whole, 1e-12)
 }

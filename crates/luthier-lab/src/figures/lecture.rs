@@ -11,6 +11,7 @@ use luthier_terminal::{Failure, Outcome};
 use super::claim::{Check, Claim};
 use super::figure::{Figure, Made, SMALL};
 use super::numbers::highlight;
+use super::numbers::spot::spot;
 use super::studio::{Studio, material};
 
 pub(crate) const FIGURES: [Figure; 1] = [Figure {
@@ -39,6 +40,16 @@ pub(crate) const FIGURES: [Figure; 1] = [Figure {
                 "metallic 1, roughness 0.775: highlight over the median",
                 "metallic 1, roughness 1: highlight over the median",
             ]),
+            Check::Falls(&[
+                "metallic 1, roughness 1: width of the highlight",
+                "metallic 1, roughness 0.775: width of the highlight",
+                "metallic 1, roughness 0.55: width of the highlight",
+                "metallic 1, roughness 0.325: width of the highlight",
+                "metallic 1, roughness 0.1: width of the highlight",
+            ]),
+            // Halfway between 0.955 and 0.04.
+            Check::Within("metallic 0.5: F0, R", 0.4970, 0.4980),
+            Check::Within("metallic 1: F0, B", 0.5375, 0.5385),
         ],
     },
     make: balls,
@@ -88,6 +99,7 @@ fn balls(studio: &Studio) -> Outcome<Made> {
         }
         let roughness = 0.1 + 0.9 * f64::from(column) / last;
         made.measure(format!("metallic 1, roughness {roughness}: highlight over the median"), highlight(&ball));
+        made.measure(format!("metallic 1, roughness {roughness}: width of the highlight"), spot(&ball).share.sqrt());
     }
     made.sheet("lecture-25", vec![("metal down, rough right".to_owned(), picture)], 1);
     Ok(made)

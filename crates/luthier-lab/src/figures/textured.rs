@@ -10,7 +10,11 @@ use luthier_texture::png;
 
 use super::claim::{Check, Claim};
 use super::figure::{Figure, LARGE, Labelled, Made, SMALL, TONE, compared};
-use super::numbers::{grain, over_red};
+use super::numbers::light::{KEY, even_sky, one_light};
+use super::numbers::over_red;
+use super::numbers::places::{color_at, correlation, middle_values, nearest, places_of_ball, sparkles};
+use super::numbers::spot::{spot, spot_of};
+use super::numbers::tint::colors_apart;
 use super::studio::{Studio, layered, mapped};
 
 pub(crate) const FIGURES: [Figure; 5] = [
@@ -19,13 +23,20 @@ pub(crate) const FIGURES: [Figure; 5] = [
         title: "flakes from a height field",
         source: "Elek 2010, figure 6",
         caption: "Chromium flakes under a tinted coat, the heights of the flakes, and the normals that the bake makes of them by finite differences. The flakes are larger than \
-                  the paper's, so that single ones can be seen. Heights and numbers are luthier's; `crates/luthier-lab/maps/make.py` draws them.",
+                  the paper's, so that single ones can be seen. Heights and numbers are luthier's; `crates/luthier-lab/maps/make.py` draws them. A pixel sparkles where it is at least twice \
+                  as bright as the median around it. Under a coat that absorbs all, flakes cannot be seen.",
         size: LARGE,
         claim: Claim {
-            text: "Flakes of a height field sparkle on an object of metallic paint.",
+            text: "Flakes of a height field sparkle, most of all under direct light: single places are far brighter than those \
+                  around them. The normals are the slopes of the heights, in all directions alike. Flakes tilt what lies \
+                  below the coat, and not the coat.",
             checks: &[
-                Check::Within("flakes against none: mean FLIP", 0.03, 1.0),
-                Check::Falls(&["flakes: grain", "none: grain"]),
+                Check::Falls(&["flakes: sparkles", "none: sparkles"]),
+                Check::Falls(&["flakes: sparkles", "flakes without the direct light: sparkles"]),
+                Check::Within("correlation of the normals with the slopes of the heights, along x", 0.9, 1.0),
+                Check::Within("correlation of the normals with the slopes of the heights, along y", 0.9, 1.0),
+                Check::Within("mean of the normals' tilt over its root mean square", 0.0, 0.1),
+                Check::Within("opaque coat, flakes against none: largest difference of luminance", 0.0, 0.01),
             ],
         },
         make: flakes,
@@ -34,12 +45,19 @@ pub(crate) const FIGURES: [Figure; 5] = [
         name: "elek-line-22",
         title: "a diffuse map under lacquers",
         source: "Elek 2010, Algorithm 1, line 22, which no figure shows",
-        caption: "A painted base, the same under a clear lacquer, and under a lacquer that absorbs. The map multiplies the albedo of the base. Map and numbers are luthier's.",
+        caption: "A painted base, the same under a clear lacquer, and under a lacquer that absorbs. The map multiplies the albedo of the base: less what the lacquer mirrors, a \
+                  painted ball over a white one has the same quotients under the lacquer as bare. Map and numbers are luthier's.",
         size: LARGE,
         claim: Claim {
-            text: "A map colours the base, and lacquers lie over it.",
+            text: "The map multiplies the diffuse light of the base alone, under a lacquer as without one, and a lacquer that \
+                  absorbs colours it further.",
             checks: &[
-                Check::Within("clear, with the map against without: mean FLIP", 0.1, 1.0),
+                Check::Within(
+                    "share of the ball where the base under the lacquer has the colours of the bare one",
+                    0.95,
+                    1.0,
+                ),
+                Check::Within("bare, with the map over without: least of all channels", 0.0, 0.5),
                 Check::Falls(&["clear: blue over red", "tinted: blue over red"]),
             ],
         },
@@ -50,13 +68,19 @@ pub(crate) const FIGURES: [Figure; 5] = [
         title: "textures of base colour and metal",
         source: "The lecture's slide on textures, which has no figure of a layered surface",
         caption: "A metallic-roughness surface without metal, with a map of how metallic it is, and all of metal. The left and the right picture have a white map in its place. \
-                  In the middle paint has come off a metal. Maps and numbers are luthier's.",
+                  In the middle paint has come off a metal. Maps and numbers are luthier's. The numbers are the mean differences of colour (CIELAB) to the other two where the map is below 0.2 and above 0.8.",
         size: LARGE,
         claim: Claim {
             text: "One map makes some places of a surface metal and leaves others paint.",
             checks: &[
-                Check::Within("the map against paint: mean FLIP", 0.05, 1.0),
-                Check::Within("the map against metal: mean FLIP", 0.05, 1.0),
+                Check::Falls(&[
+                    "dark places of the map: difference to metal",
+                    "dark places of the map: difference to paint",
+                ]),
+                Check::Falls(&[
+                    "bright places of the map: difference to paint",
+                    "bright places of the map: difference to metal",
+                ]),
             ],
         },
         make: metal,
@@ -67,14 +91,22 @@ pub(crate) const FIGURES: [Figure; 5] = [
         source: "Yamaguchi et al. 2019, figure 2",
         caption: "A coat of index 1.49 on gold, by Yamaguchi's model. From left to right: both layers isotropic, as Belcour's model has them; the tangents of the base on circles \
                   around the middle; those of the coat on rays; both, so that the fields cross everywhere. Each layer has a map of its own. The paper's fields and slopes \
-                  are not known; these are luthier's.",
+                  are not known; these are luthier's. The numbers are of the same balls under one light beside the middle: the standard deviation of the highlight along the \
+                  circle through it, over that along the ray, of the whole and of the base alone, which is red less blue. `coat alone` is over an opaque absorber.",
         size: SMALL,
         claim: Claim {
-            text: "Each layer follows a field of tangents of its own, which isotropic distributions cannot show.",
+            text: "Highlights follow the field of tangents of each layer: that of the base is long along circles, that of the coat \
+                  along rays. Highlights of isotropic layers are round.",
             checks: &[
-                Check::Within("base against isotropic: mean FLIP", 0.02, 1.0),
-                Check::Within("coat against isotropic: mean FLIP", 0.02, 1.0),
-                Check::Within("crossed against isotropic: mean FLIP", 0.02, 1.0),
+                Check::Within("isotropic, base: length along the circle over that along the ray", 0.9, 1.1),
+                Check::Within("base, base: length along the circle over that along the ray", 1.1, 100.0),
+                Check::Within("crossed, base: length along the circle over that along the ray", 1.1, 100.0),
+                Check::Within("coat alone, whole: length along the circle over that along the ray", 0.0, 0.9),
+                Check::Falls(&[
+                    "base, whole: length along the circle over that along the ray",
+                    "isotropic, whole: length along the circle over that along the ray",
+                    "coat, whole: length along the circle over that along the ray",
+                ]),
             ],
         },
         make: crossed,
@@ -90,10 +122,17 @@ pub(crate) const FIGURES: [Figure; 5] = [
         claim: Claim {
             text: "Bumps of the metal alone leave the reflection of the varnish as it is, and bumps of the varnish alone bend the \
                   metal less than its own do.",
-            checks: &[Check::Falls(&[
-                "below against flat: RMSE of linear radiance",
-                "above against flat: RMSE of linear radiance",
-            ])],
+            checks: &[
+                Check::Within("opaque varnish, below against flat: RMSE of linear radiance", 0.0, 1e-3),
+                Check::Falls(&[
+                    "opaque varnish, above against flat: RMSE of linear radiance",
+                    "opaque varnish, below against flat: RMSE of linear radiance",
+                ]),
+                Check::Falls(&[
+                    "below against flat: RMSE of linear radiance",
+                    "above against flat: RMSE of linear radiance",
+                ]),
+            ],
         },
         make: bumps,
     },
@@ -147,16 +186,57 @@ fn flakes(studio: &Studio) -> Outcome<Made> {
     let plain = layered("no-flakes", &(coat + CHROMIUM), ShadingModel::Elek)?;
     let plain = pictures(studio, vec![plain], Form::Full, Shape::Sphere)?.swap_remove(0);
     measure(&mut made, "flakes against none", &ball, &plain)?;
-    made.measure("flakes: grain", grain(&ball));
-    made.measure("none: grain", grain(&plain));
+    made.measure("flakes: sparkles", sparkles(&ball));
+    made.measure("none: sparkles", sparkles(&plain));
+    let shaded = studio.rendered(&package, Form::Full, Shape::Sphere, |_, settings| settings.lights.clear())?;
+    made.measure("flakes without the direct light: sparkles", shaded.first().map_or(0.0, sparkles));
+    let opaque = ["", heights].map(|flakes| lacquer("100") + CHROMIUM + flakes);
+    let (mut alike, dark) = (Vec::new(), even_sky(0.0)?);
+    for (i, layers) in opaque.into_iter().enumerate() {
+        let material = mapped(layered(&format!("opaque-{i}"), &layers, ShadingModel::Elek)?);
+        let light = |_, settings: &mut RenderSettings| one_light(settings, &dark, KEY);
+        alike.extend(studio.pictures(&[material], Form::Full, Shape::Sphere, light)?.iter().map(middle_values));
+    }
+    if let [none, with] = alike.as_slice() {
+        let largest = none.iter().zip(with).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        made.measure("opaque coat, flakes against none: largest difference of luminance", largest);
+    }
     let heights = png::decode(include_bytes!("../../maps/heights.png")).map_err(Failure::input)?;
     let mut shown: Labelled = vec![("ball".to_owned(), TONE.image(ball))];
     shown.push(("heights".to_owned(), scaled(&heights, studio.size)));
     if let Some(map) = package.maps.iter().find(|map| map.slot == MapSlot::FlakeNormal) {
+        slopes(&mut made, &heights, &map.image);
         shown.push(("normals".to_owned(), scaled(&map.image, studio.size)));
     }
     made.shown("elek-6", shown, 3);
     Ok(made)
+}
+
+/// Compares a map of normals with the slopes of the heights that it is of. Heights rise towards the light: a normal leans to
+/// where they fall. Rows of a map run down, and +y of a normal is up.
+fn slopes(made: &mut Made, heights: &Image, normals: &Image) {
+    let (width, height) = (heights.width, heights.height);
+    let at = |x: u32, y: u32| f64::from(heights.texel(x % width, y % height)[0]);
+    let mut lists: [[Vec<f64>; 2]; 2] = Default::default();
+    for y in 0..height {
+        for x in 0..width {
+            let texel = normals.texel(x * normals.width / width, y * normals.height / height);
+            let fall = [at(x + width - 1, y) - at(x + 1, y), at(x, y + 1) - at(x, y + height - 1)];
+            for (axis, list) in lists.iter_mut().enumerate() {
+                list[0].push(2.0 * f64::from(texel[axis]) - 1.0);
+                list[1].push(fall[axis]);
+            }
+        }
+    }
+    let (mut mean, mut square) = (0.0, 0.0);
+    for (axis, [normals, falls]) in ["x", "y"].into_iter().zip(&lists) {
+        let what = format!("correlation of the normals with the slopes of the heights, along {axis}");
+        made.measure(what, correlation(normals, falls));
+        let count = normals.len().max(1) as f64;
+        mean = libm::hypot(mean, normals.iter().sum::<f64>() / count);
+        square += normals.iter().map(|tilt| tilt * tilt).sum::<f64>() / count;
+    }
+    made.measure("mean of the normals' tilt over its root mean square", mean / square.max(1e-12).sqrt());
 }
 
 fn painted(studio: &Studio) -> Outcome<Made> {
@@ -167,14 +247,35 @@ fn painted(studio: &Studio) -> Outcome<Made> {
     for (label, coat) in &all {
         materials.push(layered(&format!("paint-{label}"), &(coat.clone() + base), ShadingModel::Elek)?);
     }
-    let even = layered(
-        "even",
-        &(lacquer("0") + &base.replace("maps = { albedo = \"paint.png\" }\n", "")),
-        ShadingModel::Elek,
-    )?;
-    let even = pictures(studio, vec![even], Form::Full, Shape::Sphere)?.swap_remove(0);
     let shown = pictures(studio, materials, Form::Full, Shape::Sphere)?;
-    measure(&mut made, "clear, with the map against without", &shown[1], &even)?;
+    // Under the light alone, which the base sees from one side: painted, white and black, bare and lacquered.
+    let dark = even_sky(0.0)?;
+    let white = base.replace("maps = { albedo = \"paint.png\" }\n", "");
+    let black = white.replace("albedo = 0.9", "albedo = 0");
+    let mut quotients = Vec::new();
+    for coat in ["", &lacquer("0")] {
+        let mut three = Vec::new();
+        for (i, below) in [base, &white, &black].into_iter().enumerate() {
+            let material = mapped(layered(&format!("part-{i}"), &(coat.to_owned() + below), ShadingModel::Elek)?);
+            let light = |_, settings: &mut RenderSettings| one_light(settings, &dark, KEY);
+            three.extend(studio.pictures(&[material], Form::Full, Shape::Sphere, light)?);
+        }
+        if let [painted, white, black] = three.as_slice() {
+            let quotient = |i: usize| {
+                let [painted, white, black] = [painted, white, black].map(|image| f64::from(image.data[i]));
+                // Where there is light on a base; the backdrop is the same in all.
+                (white - black > 0.02).then(|| (painted - black) / (white - black))
+            };
+            quotients.push((0..white.data.len()).map(quotient).collect::<Vec<Option<f64>>>());
+        }
+    }
+    if let [bare, lacquered] = quotients.as_slice() {
+        let both: Vec<[f64; 2]> = bare.iter().zip(lacquered).filter_map(|(a, b)| Some([(*a)?, (*b)?])).collect();
+        let alike = both.iter().filter(|[a, b]| (a - b).abs() < 0.02).count() as f64 / both.len().max(1) as f64;
+        made.measure("share of the ball where the base under the lacquer has the colours of the bare one", alike);
+        let least = both.iter().map(|[a, _]| *a).fold(f64::INFINITY, f64::min);
+        made.measure("bare, with the map over without: least of all channels", least);
+    }
     for ((label, _), picture) in all.iter().zip(&shown) {
         made.measure(format!("{label}: blue over red"), over_red(picture, 2));
     }
@@ -201,6 +302,19 @@ fn metal(studio: &Studio) -> Outcome<Made> {
     }
     measure(&mut made, "the map against paint", &shown[1], &shown[0])?;
     measure(&mut made, "the map against metal", &shown[1], &shown[2])?;
+    let map = png::decode(include_bytes!("../../maps/thickness.png")).map_err(Failure::input)?;
+    for (label, is_there) in [("dark", (0.0..0.2)), ("bright", (0.8..1.01))] {
+        for (to, other) in [("paint", &shown[0]), ("metal", &shown[2])] {
+            let (mut sum, mut count) = (0.0, 0.0);
+            for (place, [u, v]) in places_of_ball(&shown[1]) {
+                if is_there.contains(&f64::from(nearest(&map, [u, v])[0])) {
+                    sum += colors_apart(color_at(&shown[1], place), color_at(other, place));
+                    count += 1.0;
+                }
+            }
+            made.measure(format!("{label} places of the map: difference to {to}"), sum / f64::max(count, 1.0));
+        }
+    }
     made.sheet("lecture-metal", all.iter().map(|(label, _)| (*label).to_owned()).zip(shown).collect(), 3);
     Ok(made)
 }
@@ -213,7 +327,7 @@ fn crossed(studio: &Studio) -> Outcome<Made> {
         ("coat", ["rays.png", ""], [0.25, 0.06], [0.23, 0.23]),
         ("crossed", ["rays.png", "circles.png"], [0.25, 0.06], [0.45, 0.12]),
     ];
-    let mut shown = Vec::new();
+    let (mut shown, mut materials) = (Vec::new(), Vec::new());
     for (label, [coat, base], above, below) in all {
         let surface = |[x, y]: [f64; 2], map: &str| {
             let map = if map.is_empty() { String::new() } else { format!("maps = {{ tangent = \"{map}\" }}\n") };
@@ -225,15 +339,34 @@ fn crossed(studio: &Studio) -> Outcome<Made> {
             surface(above, coat),
             surface(below, base)
         );
-        let material = layered(&format!("field-{label}"), &layers, ShadingModel::Yamaguchi)?;
-        shown.extend(pictures(studio, vec![material], Form::Baked, Shape::Sphere)?);
+        let material = mapped(layered(&format!("field-{label}"), &layers, ShadingModel::Yamaguchi)?);
+        shown.extend(studio.pictures(std::slice::from_ref(&material), Form::Baked, Shape::Sphere, |_, _| {})?);
+        materials.push(material);
     }
-    for (label, picture) in ["base", "coat", "crossed"].into_iter().zip(&shown[1..]) {
-        measure(&mut made, &format!("{label} against isotropic"), picture, &shown[0])?;
+    let dark = even_sky(0.0)?;
+    let light = |_, settings: &mut RenderSettings| one_light(settings, &dark, BESIDE);
+    let mut measured: Vec<(&str, Material)> = Vec::new();
+    for ((label, ..), material) in all.iter().zip(materials) {
+        measured.push((label, material));
+    }
+    let alone = "[[layer]]\ntype = \"dielectric\"\nior = 1.49\nalpha_x = 0.25\nalpha_y = 0.06\nmaps = { tangent = \"rays.png\" }\n\
+                 thickness_um = 1\nabsorption_per_um = 100\n[[layer]]\ntype = \"conductor\"\nior = { n = 1.5, k = 1.5 }\nalpha = 0.23\n";
+    measured.push(("coat alone", mapped(layered("coat-alone", alone, ShadingModel::Yamaguchi)?)));
+    for (label, material) in measured {
+        let picture = studio.pictures(&[material], Form::Baked, Shape::Sphere, light)?.swap_remove(0);
+        // The coat reflects without colour, and gold does not.
+        for (part, spot) in [("whole", spot(&picture)), ("base", spot_of(&picture, |[red, _, blue]| red - blue))] {
+            let [x, y] = spot.middle;
+            let length = spot.deviation([-y, x]) / spot.deviation([x, y]).max(1e-9);
+            made.measure(format!("{label}, {part}: length along the circle over that along the ray"), length);
+        }
     }
     made.sheet("yamaguchi-2", all.iter().map(|(label, ..)| (*label).to_owned()).zip(shown).collect(), 4);
     Ok(made)
 }
+
+/// Direction of a light whose highlight lies beside the middle of a ball, at a slant.
+const BESIDE: [f32; 3] = [0.5, 0.5, 0.7];
 
 fn bumps(studio: &Studio) -> Outcome<Made> {
     let mut made = Made::default();
@@ -254,6 +387,17 @@ fn bumps(studio: &Studio) -> Outcome<Made> {
     }
     for (label, picture) in ["below", "above", "both"].into_iter().zip(&shown[1..]) {
         measure(&mut made, &format!("{label} against flat"), picture, &shown[0])?;
+    }
+    // Under a varnish that lets nothing through, its own reflection is left.
+    let (mut alone, dark) = (Vec::new(), even_sky(0.0)?);
+    for (label, coat, base) in &all[..3] {
+        let layers = layers(coat, base).replace("thickness_um = 0.3", "thickness_um = 1\nabsorption_per_um = 100");
+        let material = mapped(layered(&format!("opaque-{label}"), &layers, ShadingModel::WeidlichWilkie)?);
+        let light = |_, settings: &mut RenderSettings| one_light(settings, &dark, KEY);
+        alone.extend(studio.pictures(&[material], Form::Full, Shape::Torus, light)?);
+    }
+    for (label, picture) in ["below", "above"].into_iter().zip(&alone[1..]) {
+        measure(&mut made, &format!("opaque varnish, {label} against flat"), picture, &alone[0])?;
     }
     made.sheet("course-3-9-own", all.iter().map(|(label, ..)| (*label).to_owned()).zip(shown).collect(), 4);
     Ok(made)

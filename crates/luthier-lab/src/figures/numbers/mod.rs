@@ -1,5 +1,12 @@
 //! Numbers of pictures that claims are about.
 
+pub(crate) mod light;
+pub(crate) mod places;
+pub(crate) mod spot;
+pub(crate) mod tint;
+
+use std::ops::Range;
+
 use luthier_lut::Image;
 use luthier_optics::color::luminance;
 
@@ -86,11 +93,13 @@ fn luminances(image: &Image, share: f64) -> impl Iterator<Item = f64> {
 
 /// Texels of the middle of a picture.
 fn texels(image: &Image, share: f64) -> impl Iterator<Item = &[f32]> {
-    let range = move |side: u32| {
-        let margin = (f64::from(side) * (1.0 - share) / 2.0).round() as u32;
-        margin..(side - margin).max(margin + 1)
-    };
-    range(image.height).flat_map(move |y| range(image.width).map(move |x| image.texel(x, y)))
+    middle_of(image.height, share).flat_map(move |y| middle_of(image.width, share).map(move |x| image.texel(x, y)))
+}
+
+/// The middle of a side, a share of it long.
+fn middle_of(side: u32, share: f64) -> Range<u32> {
+    let margin = (f64::from(side) * (1.0 - share) / 2.0).round() as u32;
+    margin..(side - margin).max(margin + 1)
 }
 
 fn share(values: impl Iterator<Item = bool>) -> f64 {
