@@ -8,7 +8,8 @@ use luthier_manifest::MaterialEntry;
 use crate::{Exhibit, Gallery, section};
 
 /// Parts of the script, in order.
-const SCRIPT: [&str; 6] = [
+const SCRIPT: [&str; 7] = [
+    include_str!("page/textures.js"),
     include_str!("page/data.js"),
     include_str!("page/painter.js"),
     include_str!("page/look.js"),
@@ -36,11 +37,11 @@ pub(crate) fn html(gallery: &Gallery, data: &str) -> String {
     }
     out.push_str("</main>\n<script type=\"application/json\" id=\"page-data\">");
     out.push_str(data);
-    out.push_str("</script>\n<script>\n(() => {\n\"use strict\";\n");
+    out.push_str("</script>\n<script type=\"module\">\n");
     for part in SCRIPT {
         out.push_str(part);
     }
-    out.push_str("})();\n</script></body></html>\n");
+    out.push_str("</script></body></html>\n");
     out
 }
 
