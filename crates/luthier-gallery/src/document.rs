@@ -107,7 +107,10 @@ fn article(out: &mut String, gallery: &Gallery, number: usize, exhibit: &Exhibit
             escape(text)
         );
     } else {
-        out.push_str("<p class=\"sub\">The bake has no text of the material file.</p>");
+        let source = entry(gallery, exhibit).map_or("", |entry| &entry.source);
+        let from =
+            if source.is_empty() { String::new() } else { format!(" Its file was <code>{}</code>.", escape(source)) };
+        let _ = writeln!(out, "<p class=\"sub\">The bake has no text of the material file.{from}</p>");
     }
     out.push_str("</div></div></article>\n");
 }
