@@ -17,7 +17,7 @@
 //! picture is that of a material whose file has the multiplied slopes.
 //!
 //! `lobes` is a fit for one roughness. Its shaders stay without places, and the slider is disabled and says why. Fits over `alpha_factor`, which a material with a roughness map has, follow
-//! down from 1. As with maps, the slopes of a base under patina, where `base_alpha` states them, stay.
+//! down from 1. As with maps, the slopes of a base under patina stay where `base_alpha` states them, and `belcour` and `yamaguchi` keep the light that layers return to a diffuse base.
 //!
 //! # Simplifications
 //!

@@ -82,30 +82,64 @@ fn a_factor_is_that_of_a_file_with_the_multiplied_slopes() {
     }
 }
 
-/// A fit has one roughness, and the slider says so; with another model it is there.
+/// Layers of lobes: a coat of a slope parameter, with maps or without, over gold of half of it.
+fn lobes(name: &str, alpha: f64, maps: &str) -> String {
+    format!(
+        "schema = 1\nname = \"{name}\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = {alpha}\nthickness_um = 1\n{maps}\
+         [[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = {}\n[bake]\nmodel = \"lobes\"\n",
+        0.5 * alpha
+    )
+}
+
+/// A fit has one roughness, and the slider says so; with another model it is there. A fit for a roughness map follows down from 1.
 #[test]
-fn lobes_are_of_one_roughness() {
+fn lobes_follow_where_they_were_fitted() {
     let Some(browser) = browser_or_skip() else { return };
-    let coat = "schema = 1\nname = \"coat\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.2\nthickness_um = 1\n\
-                [[layer]]\ntype = \"diffuse\"\nalbedo = [0.8, 0.2, 0.2]\n[bake]\nmodel = \"lobes\"\n";
-    let workshop = Workshop::with(&[("coat.toml", coat)]);
-    workshop.run(&["gallery", "coat.toml", "--html", "page.html"]).exits(0);
+    let maps = "maps = { roughness = \"white.png\" }\n";
+    let workshop = Workshop::with(&[
+        ("m/coat.toml", &lobes("coat", 0.2, "")),
+        ("m/worn.toml", &lobes("worn", 0.2, maps)),
+        ("half.toml", &lobes("worn", 0.1, "")),
+    ]);
+    image::GrayImage::from_pixel(4, 4, image::Luma([255])).save(workshop.path("m/white.png")).unwrap();
+    let size = SIZE.to_string();
+    let run = workshop.run(&["gallery", "half.toml", "-o", "half.png", "--samples", "4", "--size", &size]);
+    if run.lacks_adapter() {
+        return;
+    }
+    run.exits(0);
+    workshop.run(&["gallery", "m", "--html", "page.html"]).exits(0);
     let script = [
         USE,
         r##"
-await drawn(() => (location.hash = "#coat"));
 const slopes = document.getElementById("page-slopes");
-const tells = () => [slopes.disabled, slopes.title, document.getElementById("page-slopes-value").textContent];
+const tells = () => [slopes.disabled, slopes.title, document.getElementById("page-slopes-value").textContent, slopes.max];
+await drawn(() => (location.hash = "#coat"));
 found.choices = all("#page-a option").map(option => option.textContent);
 found.fitted = tells();
 await drawn(() => choose("a", 1));
 found.closed = tells();
+await drawn(() => (location.hash = "#worn"));
+found.worn = tells();
+found.half = [...await luthierPicture("worn", { size: $size, slopes: 0.5 })];
 "##,
     ]
-    .concat();
+    .concat()
+    .replace("$size", &size);
     let found = opened(&browser, &workshop, "page.html", [1000, 700], "", &script);
     assert_eq!(found["choices"], json!(["lobes, tables", "belcour, tables", "belcour, no tables"]));
     assert_eq!([&found["fitted"][0], &found["fitted"][2]], [&json!(true), &json!("fixed")]);
-    assert!(found["fitted"][1].as_str().unwrap().contains("fitted for one roughness"), "{found}");
-    assert_eq!([&found["closed"][0], &found["closed"][2]], [&json!(false), &json!("× 1.00")]);
+    assert!(found["fitted"][1].as_str().unwrap().contains("fitted for one roughness"));
+    assert_eq!(
+        [&found["closed"][0], &found["closed"][2], &found["closed"][3]],
+        [&json!(false), &json!("× 1.00"), &json!("2")]
+    );
+    assert_eq!(
+        [&found["worn"][0], &found["worn"][2], &found["worn"][3]],
+        [&json!(false), &json!("× 1.00"), &json!("0")]
+    );
+    let half = image::open(workshop.path("half.png")).unwrap().into_rgb8();
+    let Apart { mean, median, most_of } = apart(&half, 0, &found["half"]);
+    eprintln!("lobes x 0.5: mean {mean:.3}, median {median}, 99% {most_of}");
+    assert!(median <= 2 && most_of <= 8 && mean < 1.0, "mean {mean}");
 }
