@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::maps::PageMaps;
+use crate::roughness::PageSlopes;
 use crate::sets::{PageSet, PageTable, constants, is_blurred, tables};
 use crate::skies::{PageSky, Reads};
 use crate::{Exhibit, Gallery, GalleryError, Look, Simulated, pack};
@@ -50,6 +51,7 @@ struct PageLook {
     number: usize,
     model: &'static str,
     is_blurred: bool,
+    slopes: PageSlopes,
     bytes: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     table_error: Option<String>,
@@ -156,6 +158,7 @@ impl PageLook {
             number,
             model: entry.model.name(),
             is_blurred: is_blurred(entry),
+            slopes: PageSlopes::of(entry),
             bytes: bytes(table_bytes(package, entry)),
             table_error: table_error(package, entry).map(|error| format!("{error:.1e}")),
             lobe_error: lobes.map(|error| format!("{:.3}", error.lobe)),

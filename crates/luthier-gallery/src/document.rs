@@ -8,7 +8,8 @@ use luthier_manifest::MaterialEntry;
 use crate::{Exhibit, Gallery, section};
 
 /// Parts of the script, in order.
-const SCRIPT: [&str; 6] = [
+const SCRIPT: [&str; 7] = [
+    include_str!("page/textures.js"),
     include_str!("page/data.js"),
     include_str!("page/painter.js"),
     include_str!("page/look.js"),
@@ -36,11 +37,11 @@ pub(crate) fn html(gallery: &Gallery, data: &str) -> String {
     }
     out.push_str("</main>\n<script type=\"application/json\" id=\"page-data\">");
     out.push_str(data);
-    out.push_str("</script>\n<script>\n(() => {\n\"use strict\";\n");
+    out.push_str("</script>\n<script type=\"module\">\n");
     for part in SCRIPT {
         out.push_str(part);
     }
-    out.push_str("})();\n</script></body></html>\n");
+    out.push_str("</script></body></html>\n");
     out
 }
 
@@ -106,7 +107,10 @@ fn article(out: &mut String, gallery: &Gallery, number: usize, exhibit: &Exhibit
             escape(text)
         );
     } else {
-        out.push_str("<p class=\"sub\">The bake has no text of the material file.</p>");
+        let source = entry(gallery, exhibit).map_or("", |entry| &entry.source);
+        let from =
+            if source.is_empty() { String::new() } else { format!(" Its file was <code>{}</code>.", escape(source)) };
+        let _ = writeln!(out, "<p class=\"sub\">The bake has no text of the material file.{from}</p>");
     }
     out.push_str("</div></div></article>\n");
 }

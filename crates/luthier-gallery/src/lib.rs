@@ -9,7 +9,19 @@
 //! Pictures are those of luthier-gpu's ball: the same camera, light and surroundings, sample by sample. Surroundings that were blurred beforehand show what
 //! has tables of albedos (`luthier_export::lit`) or lobes; other materials draw directions.
 //!
-//! Simplifications: maps of single layers and surfaces of several materials are not shown; textures with more than 512 rows or columns are averaged down.
+//! # Roughness
+//!
+//! The large picture has a slider: a factor on the slopes of all interfaces, from a quarter to four. It is the `alpha_factor` of a `LuthierPlace`, which multiplies that of a
+//! roughness map where there is one. Shaders without places get them: the emitter is told of a roughness map of one texel, so that the code is the one that maps
+//! have, and nothing is baked for it. Tables are over the slope parameter or do not depend on it. What lights meet is widened by their size after the factor, so that a
+//! picture is that of a material whose file has the multiplied slopes.
+//!
+//! `lobes` is a fit for one roughness. Its shaders stay without places, and the slider is disabled and says why. Fits over `alpha_factor`, which a material with a roughness map has, follow
+//! down from 1. As with maps, the slopes of a base under patina stay where `base_alpha` states them, and `belcour` and `yamaguchi` keep the light that layers return to a diffuse base.
+//!
+//! # Simplifications
+//!
+//! Maps of single layers and surfaces of several materials are not shown; textures with more than 512 rows or columns are averaged down.
 
 mod data;
 mod document;
@@ -17,6 +29,7 @@ mod error;
 mod exhibit;
 mod maps;
 mod pack;
+mod roughness;
 mod section;
 mod sets;
 mod skies;

@@ -44,8 +44,12 @@ pub(crate) fn figure(out: &mut String, name: &str, section: &CrossSection) {
     }
     out.push_str(
         "<figcaption class=\"sub\">Slopes are to scale, heights are not. Colours: the light that a slab passes, the reflectance of an opaque part, the \
-         albedo of a diffuse one.</figcaption></figure>\n",
+         albedo of a diffuse one.",
     );
+    if section.parts.iter().flat_map(|part| &part.numbers).any(|number| number.name.starts_with("relative")) {
+        out.push_str(" Relative indices are over that of the medium above, at three wavelengths where they are three.");
+    }
+    out.push_str("</figcaption></figure>\n");
 }
 
 /// A part, from its upper boundary down to the bottom, which the parts below cover.

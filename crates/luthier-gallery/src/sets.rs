@@ -9,6 +9,7 @@ use luthier_manifest::{
 use luthier_shader::{MaterialSet, emit};
 use serde::Serialize;
 
+use crate::roughness::{self, PageSlopes};
 use crate::{GalleryError, LIGHT_RADIUS, pack};
 
 /// Formats that WebGL 2 reads without an extension; others are read as half floats.
@@ -77,6 +78,9 @@ impl PageSet {
             all.filter(|(_, entry)| entry.model == model).map(|(i, entry)| (i, entry.clone())).unzip();
         let mut materials = own.clone();
         materials.extend(own.iter().map(lit));
+        if own.iter().any(|entry| matches!(PageSlopes::of(entry), PageSlopes::Octaves(_))) {
+            roughness::with_places(&mut materials);
+        }
         let shows_lobes = materials.iter().any(|entry| entry.shows_lobes());
         let mut manifest = Manifest { materials, surfaces: Vec::new(), ..manifest.clone() };
         manifest.functions = Default::default();

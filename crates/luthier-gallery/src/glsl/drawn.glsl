@@ -14,7 +14,7 @@ float view_lobe(uint material, uint index) {
         if (layer.kind == 2u) {
             return 0.0;
         }
-        alpha = layer.alpha;
+        alpha = layer.alpha * view_slopes;
         if (i < index) {
             spread *= layer.eta;
         }

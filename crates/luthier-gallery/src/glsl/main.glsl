@@ -14,7 +14,7 @@ vec3 view_seen(vec2 at, uint seed) {
     ViewSurface surface = view_surface(view_material, place.uv, length(view_eye - place.position));
     vec3 total = vec3(0.0);
     if (view_is_lit && dot(view_irradiance, view_irradiance) > 0.0) {
-        total = view_lit(view_lit_material, surface, view_light * frame, wo, view_irradiance);
+        total = view_lit(view_lit_material, view_surface_lit(surface), view_light * frame, wo, view_irradiance);
     }
     return total + view_surroundings(view_material, surface, frame, -ray, seed);
 }

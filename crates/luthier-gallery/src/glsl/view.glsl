@@ -27,6 +27,8 @@ uniform highp sampler2D view_maps;
 uniform ivec3 view_headers[28];
 // First blurred map of Beckmann and of GGX.
 uniform ivec2 view_chains;
+// Factor on all slope parameters beside those of textures; other than 1 only where there are places.
+uniform float view_slopes;
 
 const float VIEW_PI = 3.14159265358979;
 
@@ -161,6 +163,7 @@ LuthierPlace view_surface(uint material, vec2 uv, float distance) {
         float roughness = view_bilinear(view_slots[1], uv).x;
         place.alpha_factor = roughness * roughness;
     }
+    place.alpha_factor *= view_slopes;
     if (view_slots[2].y > 0) {
         place.slab_factor = view_bilinear(view_slots[2], uv).x;
     }
@@ -190,10 +193,26 @@ LuthierPlace view_surface(uint material, vec2 uv, float distance) {
 #endif
     return place;
 }
+
+// The place as lights meet it: their size widens slopes after the factor, by as much as it widens those of the first interface without one.
+LuthierPlace view_surface_lit(LuthierPlace place) {
+    if (view_slopes == 1.0) {
+        return place;
+    }
+    float alpha = view_layer(view_material, 0u).alpha;
+    float lit = max(view_layer(view_lit_material, 0u).alpha, 1e-6);
+    float wanted = sqrt(max(view_slopes * view_slopes * alpha * alpha + lit * lit - alpha * alpha, 0.0));
+    place.alpha_factor *= wanted / (view_slopes * lit);
+    return place;
+}
 #else
 #define ViewSurface float
 float view_surface(uint material, vec2 uv, float distance) {
     return 0.0;
+}
+
+float view_surface_lit(float place) {
+    return place;
 }
 #endif
 

@@ -13,8 +13,8 @@ const look = {
   height: Math.asin(toward(LIGHT.direction)[1]),
 };
 
-/** A material by one of its looks, under the light of the page, as the painter takes it. */
-function pictureOf(material, choice, { camera, way, given = look }) {
+/** A material by one of its looks, under the light of the page, as the painter takes it. `slopes` is a factor on all slope parameters. */
+function pictureOf(material, choice, { camera, way, given = look, slopes = 1 }) {
   const { set, number, is_blurred: isBlurred } = data.materials[material].looks[choice.look];
   const level = Math.cos(given.height);
   const direction = [Math.sin(given.azimuth) * level, Math.sin(given.height), Math.cos(given.azimuth) * level];
@@ -28,6 +28,7 @@ function pictureOf(material, choice, { camera, way, given = look }) {
     sky: given.sky,
     skyTurn: given.skyTurn,
     showsSky: given.showsSky,
+    slopes,
     camera,
     light: { direction, irradiance: given.hasLight ? LIGHT.irradiance : [0, 0, 0] },
   };

@@ -72,6 +72,23 @@ function controls() {
   });
 }
 
+/** Articles have the pictures of their tiles while they are printed; those that the filter hides are left out. */
+function printing() {
+  addEventListener("beforeprint", () => {
+    for (const { material, element, canvas } of tiles.all) {
+      const article = document.getElementById(data.materials[material].name);
+      const copy = canvas.cloneNode();
+      copy.className = "printed";
+      copy.getContext("2d").drawImage(canvas, 0, 0);
+      article.querySelector(".place").prepend(copy);
+      article.classList.toggle("left-out", element.hidden);
+    }
+  });
+  addEventListener("afterprint", () => {
+    for (const copy of document.querySelectorAll(".printed")) copy.remove();
+  });
+}
+
 try {
   document.documentElement.classList.add("live");
   painter = new Painter();
@@ -79,6 +96,7 @@ try {
   controls();
   tiles.start();
   stage.start();
+  printing();
   addEventListener("hashchange", open);
   open();
 } catch (error) {
@@ -87,9 +105,9 @@ try {
 }
 
 /** For scripts: pixels of a picture of a material by name, RGBA from the top left, as the page shows it. */
-globalThis.luthierPicture = async (name, { size = 128, samples = 4, look: number = 0, form = "baked", way, directions = 64 } = {}) => {
+globalThis.luthierPicture = async (name, { size = 128, samples = 4, look: number = 0, form = "baked", way, slopes, directions = 64 } = {}) => {
   const material = data.materials.findIndex(item => item.name === name);
-  const picture = pictureOf(material, { look: number, form }, { camera: camera(0, 0), way });
+  const picture = pictureOf(material, { look: number, form }, { camera: camera(0, 0), way, slopes });
   const loaded = await painter.ready(picture);
   const sums = painter.sums(size);
   for (const pass of passes(picture.way, samples, directions, STAGE_TOGETHER)) painter.pass(sums, picture, loaded, pass);

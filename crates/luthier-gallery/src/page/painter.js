@@ -1,15 +1,7 @@
 // Draws balls of materials: one WebGL context for the whole page.
 
-const TABLE_FORMATS = gl => ({
-  rgba8unorm: [gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, Uint8Array],
-  rgb10a2unorm: [gl.RGB10_A2, gl.RGBA, gl.UNSIGNED_INT_2_10_10_10_REV, Uint32Array],
-  rg11b10ufloat: [gl.R11F_G11F_B10F, gl.RGB, gl.UNSIGNED_INT_10F_11F_11F_REV, Uint32Array],
-  r16float: [gl.R16F, gl.RED, gl.HALF_FLOAT, Uint16Array],
-  rg16float: [gl.RG16F, gl.RG, gl.HALF_FLOAT, Uint16Array],
-  rgba16float: [gl.RGBA16F, gl.RGBA, gl.HALF_FLOAT, Uint16Array],
-  r32float: [gl.R32F, gl.RED, gl.FLOAT, Float32Array],
-  rgba32float: [gl.RGBA32F, gl.RGBA, gl.FLOAT, Float32Array],
-});
+/** Bytes of a texel, where it has not four. */
+const TEXEL_BYTES = { r16float: 2, rgba16float: 8, rgba32float: 16 };
 
 const VERTEX = `#version 300 es
 void main() {
@@ -31,12 +23,11 @@ class Painter {
     const gl = this.canvas.getContext("webgl2", { alpha: false, antialias: false, depth: false, powerPreference: "high-performance" });
     if (!gl) throw new Error("this browser has no WebGL 2");
     this.gl = gl;
-    if (gl.getExtension("EXT_color_buffer_float")) this.sum = [gl.RGBA32F, gl.FLOAT];
-    else if (gl.getExtension("EXT_color_buffer_half_float")) this.sum = [gl.RGBA16F, gl.HALF_FLOAT];
+    if (gl.getExtension("EXT_color_buffer_float")) this.sum = "rgba32float";
+    else if (gl.getExtension("EXT_color_buffer_half_float")) this.sum = "rgba16float";
     else throw new Error("this browser draws no floating-point pictures");
     this.parallel = gl.getExtension("KHR_parallel_shader_compile");
-    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-    this.black = this.texture(gl.RGBA16F, gl.RGBA, gl.HALF_FLOAT, 1, 1, new Uint16Array(4), gl.NEAREST);
+    this.black = this.texels("rgba16float", 1, 1, new Uint16Array(4));
     this.blackCube = this.cube([{ width: 1, texels: new Uint16Array(4) }], 1);
     this.show = this.compile(VERTEX, data.glsl.show);
     this.packageTables = kept(number => this.loadTables(number));
@@ -46,14 +37,9 @@ class Painter {
     this.programs = kept(key => this.loadProgram(...key.split(" ")));
   }
 
-  texture(internal, format, type, width, height, texels, filter) {
-    const { gl } = this;
-    const texture = gl.createTexture();
-    gl.bindTexture(gl.TEXTURE_2D, texture);
-    gl.texImage2D(gl.TEXTURE_2D, 0, internal, width, height, 0, format, type, texels);
-    for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, filter);
-    for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, name, gl.CLAMP_TO_EDGE);
-    return texture;
+  /** A texture whose texels are read one by one. */
+  texels(format, width, height, texels) {
+    return makeTexture(this.gl, { format, width, height, texels, filter: this.gl.NEAREST });
   }
 
   /** A cube of levels: six images each, or one for all faces. */
@@ -79,7 +65,7 @@ class Painter {
     const { gl } = this;
     const width = Math.max(...images.map(image => image.width));
     const height = images.reduce((sum, image) => sum + image.height, 0);
-    const texture = this.texture(gl.RGBA16F, gl.RGBA, gl.HALF_FLOAT, width, height, null, gl.NEAREST);
+    const texture = this.texels("rgba16float", width, height, null);
     const headers = [];
     let row = 0;
     for (const image of images) {
@@ -91,25 +77,19 @@ class Painter {
   }
 
   async loadTables(number) {
-    const { gl } = this;
-    const formats = TABLE_FORMATS(gl);
     const tables = await Promise.all(
       data.packages[number].map(async place => {
-        const table = data.tables[place];
-        const [internal, format, type, Texels] = formats[table.format];
-        const bytes = await inflateBytes(table.texels, { r16float: 2, rg16float: 4, rgba16float: 8, rgba32float: 16 }[table.format] || 4);
-        const filter = type === gl.FLOAT ? gl.NEAREST : gl.LINEAR;
-        return [table.name, this.texture(internal, format, type, table.width, table.height, new Texels(bytes), filter)];
+        const { name, format, width, height, texels } = data.tables[place];
+        const bytes = await inflateBytes(texels, TEXEL_BYTES[format] || 4);
+        return [name, makeTexture(this.gl, { format, width, height, texels: bytes })];
       })
     );
     return new Map(tables);
   }
 
   async loadWords(number) {
-    const { gl } = this;
     const { words, size } = data.sets[number];
-    const texels = new Float32Array(await inflateBytes(words, 4));
-    return this.texture(gl.RGBA32F, gl.RGBA, gl.FLOAT, size[0], size[1], texels, gl.NEAREST);
+    return this.texels("rgba32float", size[0], size[1], await inflateBytes(words, 4));
   }
 
   async loadSky(number) {
@@ -142,7 +122,7 @@ class Painter {
     const { size, texels } = data.materials[number].simulated;
     const [image] = await inflateImages(texels, [[size, size]]);
     const { gl } = this;
-    const texture = this.texture(gl.RGBA16F, gl.RGBA, gl.HALF_FLOAT, size, size, image.texels, gl.NEAREST);
+    const texture = this.texels("rgba16float", size, size, image.texels);
     const framebuffer = gl.createFramebuffer();
     gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
@@ -193,9 +173,8 @@ class Painter {
   /** Two pictures of sums: one is read while the other is written. */
   sums(size) {
     const { gl } = this;
-    const [internal, type] = this.sum;
     const sides = [0, 1].map(() => {
-      const texture = this.texture(internal, gl.RGBA, type, size, size, null, gl.NEAREST);
+      const texture = this.texels(this.sum, size, size, null);
       const framebuffer = gl.createFramebuffer();
       gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
       gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
@@ -265,6 +244,7 @@ class Painter {
     gl.uniform2f(at("view_sky"), Math.cos(picture.skyTurn), Math.sin(picture.skyTurn));
     gl.uniform3iv(at("view_headers"), surroundings.maps.headers.flat());
     gl.uniform2iv(at("view_chains"), surroundings.chains);
+    gl.uniform1f(at("view_slopes"), picture.slopes);
     gl.uniform3iv(at("view_slots"), textures.slots);
     gl.uniform1i(at("view_directions"), directions);
     gl.uniform1i(at("view_first_direction"), firstDirection);

@@ -17,6 +17,8 @@ const stage = {
   azimuth: 0,
   height: 0,
   split: 0.5,
+  /** Factor on all slope parameters. */
+  slopes: 1,
   sides: [],
   version: 0,
 
@@ -27,6 +29,10 @@ const stage = {
     find("split").addEventListener("input", event => {
       this.split = event.target.value / 100;
       this.show();
+    });
+    find("slopes").addEventListener("input", () => {
+      this.sayRoughness();
+      this.draw(true).catch(complain);
     });
     find("reset").addEventListener("click", () => this.turnTo(0, 0));
     this.drag();
@@ -50,6 +56,7 @@ const stage = {
       find(id).replaceChildren(...options);
     }
     find("mode").value = "single";
+    find("slopes").value = 0;
     document.getElementById(name).querySelector(".place").append(find("stage"));
     find("stage").hidden = false;
     this.canvas.setAttribute("aria-label", `Picture of ${name}. Arrow keys turn it.`);
@@ -79,8 +86,28 @@ const stage = {
     find("of-split").hidden = this.mode !== "slider";
     find("of-gain").hidden = this.mode !== "difference";
     find("fixed").hidden = !isFixed;
+    this.offerRoughness();
     this.compareFacts();
     this.draw().catch(complain);
+  },
+
+  /** Offers factors on the slopes that all chosen looks follow, or says why one of them follows none. */
+  offerRoughness() {
+    const follows = this.chosen().map(choice => (choice.isSimulated ? { fixed: "The simulated picture has one roughness." } : choice.facts.slopes));
+    const { fixed } = follows.find(item => item.fixed) || {};
+    const input = find("slopes");
+    input.disabled = Boolean(fixed);
+    input.max = fixed ? 2 : Math.min(...follows.map(item => item.octaves));
+    if (fixed) input.value = 0;
+    for (const element of [input, find("of-slopes")]) element.title = fixed || "A factor on the slopes of all interfaces, 1 as the material has them";
+    this.sayRoughness();
+  },
+
+  sayRoughness() {
+    const input = find("slopes");
+    this.slopes = 2 ** input.value;
+    find("slopes-value").textContent = input.disabled ? "fixed" : `× ${this.slopes.toFixed(2)}`;
+    input.setAttribute("aria-valuetext", input.disabled ? input.title : `${this.slopes.toFixed(2)} times the slopes`);
   },
 
   turnTo(azimuth, height) {
@@ -106,7 +133,7 @@ const stage = {
     const sides = await Promise.all(
       chosen.map(async choice => {
         if (choice.isSimulated) return { fixed: await painter.simulated(this.material), scale: 1 };
-        const picture = pictureOf(this.material, choice, { camera: at, way, given: isFixed ? fixed : look });
+        const picture = pictureOf(this.material, choice, { camera: at, way, given: isFixed ? fixed : look, slopes: this.slopes });
         return { picture, loaded: await painter.ready(picture), scale: 0 };
       })
     );

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use luthier_export::{Bake, MANIFEST, Package, lit, of_domain, read};
 use luthier_gallery::{Exhibit, Gallery, Look, Scenery};
 use luthier_manifest::{Form, ShadingModel};
-use luthier_material::{Material, Severity};
+use luthier_material::{CrossSection, Material, Severity};
 use luthier_scene::CostTable;
 use luthier_terminal::{Failure, Outcome, complain, deliver};
 
@@ -28,22 +28,19 @@ pub(super) fn write(options: &GalleryOptions, html: &Path) -> Outcome {
     }
     let is_bake = |path: &&PathBuf| path.join(MANIFEST).is_file();
     let (bakes, rest): (Vec<&PathBuf>, Vec<&PathBuf>) = options.sources.paths.iter().partition(is_bake);
+    if let Some(bake) = bakes.first() {
+        refuse_for_bakes(options, bake)?;
+    }
     let mut gallery =
         Gallery { title: title(options), packages: Vec::new(), exhibits: Vec::new(), skies: SKIES.to_vec() };
     for folder in bakes {
         let package = Package::read(folder)?;
         for (number, entry) in (0..).zip(&package.manifest.materials) {
-            gallery.exhibits.push(Exhibit::new(&entry.name, vec![Look::new(gallery.packages.len(), number)]));
+            let mut exhibit = Exhibit::new(&entry.name, vec![Look::new(gallery.packages.len(), number)]);
+            exhibit.section = Some(CrossSection::recorded(entry));
+            gallery.exhibits.push(exhibit);
         }
         gallery.packages.push(package);
-    }
-    #[cfg(feature = "gpu")]
-    let is_simulated = options.simulated.is_some();
-    #[cfg(not(feature = "gpu"))]
-    let is_simulated = false;
-    if rest.is_empty() && (is_simulated || !options.compare.is_empty()) {
-        let text = "--compare and --simulated need material files: a bake has its models already";
-        return Err(Failure::Usage(anyhow::anyhow!(text)));
     }
     if !rest.is_empty() {
         let paths: Vec<PathBuf> = rest.into_iter().cloned().collect();
@@ -53,6 +50,30 @@ pub(super) fn write(options: &GalleryOptions, html: &Path) -> Outcome {
     left_out(&gallery);
     let page = gallery.html().map_err(Failure::input)?;
     deliver(&page, Some(html))
+}
+
+/// Refuses options that decide how materials are baked, or what of: they have no effect on a bake.
+fn refuse_for_bakes(options: &GalleryOptions, bake: &Path) -> Outcome {
+    let shading = &options.shading;
+    let asked = [
+        (shading.model.is_some(), "--model"),
+        (shading.no_fit, "--no-fit"),
+        (shading.fresnel.is_some(), "--fresnel"),
+        (!shading.tables.is_empty(), "--tables"),
+        (!options.compare.is_empty(), "--compare"),
+        #[cfg(feature = "gpu")]
+        (options.simulated.is_some(), "--simulated"),
+    ];
+    let asked: Vec<&str> = asked.into_iter().filter(|(is_asked, _)| *is_asked).map(|(_, name)| name).collect();
+    if asked.is_empty() {
+        return Ok(());
+    }
+    let (asked, are) = (asked.join(" and "), if asked.len() > 1 { "are" } else { "is" });
+    Err(Failure::Usage(anyhow::anyhow!(
+        "{asked} {are} for material files, and `{}` is a bake, whose models and tables stand: leave out {asked}, or name the material files in \
+         place of the bake",
+        bake.display()
+    )))
 }
 
 /// Title of the page: the name of the only file or folder.

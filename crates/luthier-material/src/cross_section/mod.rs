@@ -1,6 +1,8 @@
 //! Description of a cross-section through a material: its parts from the top down, with numbers, colours, heights and outlines. It draws
 //! nothing: the window and pages draw it, each with its own lines and letters.
 
+mod recorded;
+
 use luthier_optics::Rgb;
 use luthier_optics::interface::Interface;
 use luthier_optics::ior::Ior;
@@ -94,7 +96,6 @@ const FILM_UNIT_NM: f64 = 100.0;
 impl Material {
     /// A cross-section through the material as it is: after edits, other than in its file.
     pub fn cross_section(&self) -> CrossSection {
-        let level = vec![[0.0, 0.0], [1.0, 0.0]];
         let mut parts = vec![Part {
             kind: PartKind::Exterior,
             layer: None,
@@ -102,25 +103,17 @@ impl Material {
             numbers: self.index("exterior", &self.stack.exterior),
             color: [1.0; 3],
             height: EXTERIOR,
-            outline: level.clone(),
+            outline: level(),
         }];
         for (number, layer) in self.stack.layers.iter().enumerate() {
             let has_facets = !matches!(layer.base, Base::Diffuse(_)) && !layer.surface.is_smooth();
-            let outline = if has_facets { outline(&layer.surface) } else { level.clone() };
+            let outline = if has_facets { outline(&layer.surface) } else { level() };
             for i in 0..layer.films.len() {
                 parts.push(self.film(number, i, outline.clone()));
             }
             parts.push(self.medium(number, layer, outline));
         }
-        // Room for what rises into a part from below, and falls into it from above.
-        let reach = |part: &Part| part.outline.iter().fold(0.0, |most: f64, [_, y]| most.max(y.abs()));
-        let reaches: Vec<f64> = parts.iter().map(reach).collect();
-        for (i, part) in parts.iter_mut().enumerate() {
-            let next = reaches.get(i + 1).copied().unwrap_or(0.0);
-            // Lines of films run in parallel with the interface that they coat.
-            part.height += if part.kind == PartKind::Film { 0.0 } else { reaches[i] + next };
-        }
-        CrossSection { parts, effects: effects(&self.effects) }
+        CrossSection { parts: with_room(parts), effects: effects(&self.effects) }
     }
 
     fn film(&self, number: usize, i: usize, outline: Vec<[f64; 2]>) -> Part {
@@ -139,7 +132,7 @@ impl Material {
             label: "thin film".to_owned(),
             numbers,
             color: self.reflected(number, true),
-            height: FILM + FILM_DECADE * libm::log10(1.0 + thickness.nominal_nm() / FILM_UNIT_NM),
+            height: film_height(thickness.nominal_nm()),
             outline,
         }
     }
@@ -266,24 +259,59 @@ fn beyond(extras: &LayerExtras) -> Vec<PartNumber> {
 
 fn effects(effects: &Effects) -> Vec<String> {
     let mut found = Vec::new();
-    if let Some(patina) = &effects.patina {
-        let (extent, transition) = (short(patina.extent), short(patina.transition));
-        found.push(format!("patina: extent {extent}, transition {transition}"));
+    if let Some(record) = &effects.patina {
+        found.push(patina(record.extent, record.transition));
     }
-    if let Some(flakes) = &effects.flakes {
-        let source = match &flakes.source {
+    if let Some(record) = &effects.flakes {
+        let source = match &record.source {
             FlakeSource::NormalMap { path } | FlakeSource::HeightMap { path, .. } => path.clone(),
-            FlakeSource::Cells { count, spread, .. } => {
-                format!("{count} cells, spread {}°", short(spread.to_degrees()))
-            }
+            FlakeSource::Cells { count, spread, .. } => flake_cells(*count, *spread),
         };
-        found.push(format!("flakes: {source}, weight {}, tiling {}", short(flakes.scale), short(flakes.tiling)));
+        found.push(flakes(&source, record.scale, record.tiling));
     }
-    if let Some(glitter) = &effects.glitter {
-        let (filled, tilt) = (short(glitter.filled), short(glitter.tilt.to_degrees()));
-        found.push(format!("glitter: {} cells, filled {filled}, tilt {tilt}°", short(glitter.frequency)));
+    if let Some(record) = &effects.glitter {
+        found.push(glitter(record.frequency, record.filled, record.tilt));
     }
     found
+}
+
+fn patina(extent: f64, transition: f64) -> String {
+    format!("patina: extent {}, transition {}", short(extent), short(transition))
+}
+
+fn flakes(source: &str, scale: f64, tiling: f64) -> String {
+    format!("flakes: {source}, weight {}, tiling {}", short(scale), short(tiling))
+}
+
+/// Flakes in cells, whose slope angle has a standard deviation in radians.
+fn flake_cells(count: u32, spread: f64) -> String {
+    format!("{count} cells, spread {}°", short(spread.to_degrees()))
+}
+
+/// Glitter with a largest tilt in radians.
+fn glitter(frequency: f64, filled: f64, tilt: f64) -> String {
+    format!("glitter: {} cells, filled {}, tilt {}°", short(frequency), short(filled), short(tilt.to_degrees()))
+}
+
+fn film_height(thickness_nm: f64) -> f64 {
+    FILM + FILM_DECADE * libm::log10(1.0 + thickness_nm / FILM_UNIT_NM)
+}
+
+/// Outline of a boundary without facets.
+fn level() -> Vec<[f64; 2]> {
+    vec![[0.0, 0.0], [1.0, 0.0]]
+}
+
+/// Parts with room for what rises into them from below, and falls into them from above.
+fn with_room(mut parts: Vec<Part>) -> Vec<Part> {
+    let reach = |part: &Part| part.outline.iter().fold(0.0, |most: f64, [_, y]| most.max(y.abs()));
+    let reaches: Vec<f64> = parts.iter().map(reach).collect();
+    for (i, part) in parts.iter_mut().enumerate() {
+        let next = reaches.get(i + 1).copied().unwrap_or(0.0);
+        // Lines of films run in parallel with the interface that they coat.
+        part.height += if part.kind == PartKind::Film { 0.0 } else { reaches[i] + next };
+    }
+    parts
 }
 
 fn nm(value: f64) -> String {

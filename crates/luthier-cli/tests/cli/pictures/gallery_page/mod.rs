@@ -1,5 +1,9 @@
 //! `gallery --html`: the page in a browser, from a disk: what it draws, how long that takes, and that it asks for nothing.
 
+mod bakes;
+#[cfg(feature = "gpu")]
+mod roughness;
+
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpListener;
 use std::path::Path;
@@ -137,6 +141,29 @@ fn browser_or_skip() -> Option<std::path::PathBuf> {
     found
 }
 
+/// How far a picture of a page is from the one in a column of a sheet, in 255ths: the mean, the median, and what 99% do not exceed.
+#[cfg(feature = "gpu")]
+struct Apart {
+    mean: f64,
+    median: u8,
+    most_of: u8,
+}
+
+#[cfg(feature = "gpu")]
+fn apart(sheet: &image::RgbImage, column: u32, pixels: &Value) -> Apart {
+    let pixels: Vec<u8> = pixels.as_array().unwrap().iter().map(|v| v.as_u64().unwrap() as u8).collect();
+    let mut apart: Vec<u8> = Vec::new();
+    for (y, x) in (0..SIZE).flat_map(|y| (0..SIZE).map(move |x| (y, x))) {
+        let expected = sheet.get_pixel(8 + column * (SIZE + 8) + x, 8 + y).0;
+        let at = 4 * (y * SIZE + x) as usize;
+        apart.extend((0..3).map(|c| expected[c].abs_diff(pixels[at + c])));
+    }
+    apart.sort_unstable();
+    let share = |part: f64| apart[((apart.len() - 1) as f64 * part) as usize];
+    let mean = apart.iter().map(|v| f64::from(*v)).sum::<f64>() / apart.len() as f64;
+    Apart { mean, median: share(0.5), most_of: share(0.99) }
+}
+
 /// Pictures of the page against those of luthier-gpu, in 255ths of what a display shows.
 #[test]
 #[cfg(feature = "gpu")]
@@ -163,18 +190,9 @@ fn pictures_of_the_page_are_those_of_the_device() {
     );
     let found = opened(&browser, &workshop, "page.html", [1280, 900], "", &script);
     for (column, (name, pixels)) in (0..).zip(MATERIALS.iter().zip(found["pictures"].as_array().unwrap())) {
-        let pixels: Vec<u8> = pixels.as_array().unwrap().iter().map(|v| v.as_u64().unwrap() as u8).collect();
-        let mut apart: Vec<u8> = Vec::new();
-        for (y, x) in (0..SIZE).flat_map(|y| (0..SIZE).map(move |x| (y, x))) {
-            let expected = sheet.get_pixel(8 + column * (SIZE + 8) + x, 8 + y).0;
-            let at = 4 * (y * SIZE + x) as usize;
-            apart.extend((0..3).map(|c| expected[c].abs_diff(pixels[at + c])));
-        }
-        apart.sort_unstable();
-        let share = |part: f64| apart[((apart.len() - 1) as f64 * part) as usize];
-        let mean = apart.iter().map(|v| f64::from(*v)).sum::<f64>() / apart.len() as f64;
-        eprintln!("{name}: mean {mean:.3}, median {}, 99% {}, largest {}", share(0.5), share(0.99), share(1.0));
-        assert!(share(0.5) <= 2 && share(0.99) <= 6 && mean < 1.0, "{name}: mean {mean}");
+        let Apart { mean, median, most_of } = apart(&sheet, column, pixels);
+        eprintln!("{name}: mean {mean:.3}, median {median}, 99% {most_of}");
+        assert!(median <= 2 && most_of <= 6 && mean < 1.0, "{name}: mean {mean}");
     }
 }
 
@@ -232,12 +250,26 @@ const models = await drawn(() => choose("b", 2));
 found.other_model = models.filter((value, i) => i % 4 < 3).reduce((most, value) => Math.max(most, value), 0);
 found.apart = document.getElementById("page-apart").textContent;
 found.facts = all("#page-facts tr").map(row => row.cells[0].textContent);
+const slopes = document.getElementById("page-slopes");
+const slide = value => { slopes.value = value; slopes.dispatchEvent(new Event("input")); };
+await drawn(() => choose("mode", "single"));
+const rougher = await drawn(() => slide(1));
+found.rougher = [apart(front, rougher), document.getElementById("page-slopes-value").textContent, slopes.ariaValueText ?? slopes.getAttribute("aria-valuetext")];
+found.nominal = apart(front, await drawn(() => slide(0)));
+found.matte = await (async () => { await drawn(() => (location.hash = "#ash")); return [slopes.disabled, slopes.title]; })();
+await drawn(() => (location.hash = "#lacquer"));
 dispatchEvent(new KeyboardEvent("keydown", { key: "Escape" }));
 await wait(50);
 found.back = [shown(".tiles li").length, document.activeElement.getAttribute("href")];
 const input = document.getElementById("page-filter");
 input.value = "GOLD"; input.dispatchEvent(new Event("input"));
 found.filtered = shown(".tiles li").map(item => item.querySelector("span").textContent);
+dispatchEvent(new Event("beforeprint"));
+const ink = canvas => new Set(canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data).size;
+found.printed = all("article .printed").map(ink);
+found.leftOut = all("article.left-out").length;
+dispatchEvent(new Event("afterprint"));
+found.unprinted = all(".printed").length;
 found.names = all("input, select, button").filter(control => !control.labels?.length && !control.textContent.trim() && !control.ariaLabel).map(control => control.id);
 "##,
     ]
@@ -254,8 +286,15 @@ found.names = all("input, select, button").filter(control => !control.labels?.le
         let [same, other] = ["same_model", "other_model"].map(|name| found[name].as_u64().unwrap());
         assert!(same < 40 && other > 60, "forms of a model are near, models are not: {same} {other}");
         assert!(found["apart"].as_str().unwrap().contains("Root mean square difference"), "{found}");
+        assert!(found["rougher"][0].as_f64().unwrap() > 0.2 && found["nominal"] == 0, "{found}");
+        assert_eq!([&found["rougher"][1], &found["rougher"][2]], [&json!("× 2.00"), &json!("2.00 times the slopes")]);
+        assert_eq!(found["matte"][0], json!(true), "a diffuse base has no slopes");
+        assert!(found["matte"][1].as_str().unwrap().contains("no interface"), "{found}");
         assert!(found["facts"].as_array().unwrap().contains(&json!("Bytes of tables")), "{found}");
         assert_eq!(found["back"], json!([4, "#lacquer"]), "Escape leads back to where one was");
+        let printed: Vec<u64> = found["printed"].as_array().unwrap().iter().map(|v| v.as_u64().unwrap()).collect();
+        assert!(printed.len() == 4 && printed.iter().all(|&values| values > 8), "pictures in print: {printed:?}");
+        assert_eq!((&found["leftOut"], &found["unprinted"]), (&json!(3), &json!(0)), "the filter holds in print");
         assert_eq!((&found["filtered"], &found["names"]), (&json!(["gold"]), &json!([])));
     }
     // An address leads to its material at once.
@@ -281,30 +320,4 @@ fn a_page_of_sixty() {
     let found = opened(&browser, &workshop, "page.html", [1280, 900], "", "");
     eprintln!("60 materials: {size} bytes, first picture {} ms, all {} ms", found["first_ms"], found["all_ms"]);
     assert!(size < 5_000_000, "{size} bytes");
-}
-
-/// A folder of a bake is shown without material files, and nothing is lost in silence.
-#[test]
-fn a_page_of_a_bake() {
-    let Some(browser) = browser_or_skip() else { return };
-    // Without a table of albedos.
-    let plain = "schema = 1\nname = \"gold\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nroughness = 0.5\n[bake]\nmodel = \"elek\"\n";
-    let workshop = Workshop::with(&[("m/b.toml", plain), ("m/c.toml", &lacquer("lacquer"))]);
-    workshop.run(&["bake", "m", "-q"]).exits(0);
-    workshop.run(&["gallery", "--html", "page.html", "out"]).exits(0);
-    let script = r##"found.ways = JSON.parse(document.getElementById("page-data").textContent).materials.map(m => m.looks[0].is_blurred);
-found.texts = document.querySelectorAll("pre").length;"##;
-    let found = opened(&browser, &workshop, "page.html", [1280, 900], "", script);
-    assert_eq!((&found["ways"], &found["texts"]), (&json!([false, true]), &json!(0)));
-    workshop.run(&["gallery", "--html", "twice.html", "out", "m/b.toml"]).fails(1, &["gold", "rename"]);
-    workshop.run(&["gallery", "--html", "no.html", "m", "--compare", "nothing"]).exits(2);
-    workshop.run(&["gallery", "--html", "no.html", "out", "--compare", "phong"]).exits(2).says(&["material files"]);
-    workshop.run(&["gallery", "m"]).exits(2);
-    workshop.run(&["gallery", "m", "--html", "missing/no.html", "--no-fit"]).fails(3, &["missing/no.html"]);
-    #[cfg(feature = "gpu")]
-    for words in [["--size", "64"], ["-o", "a.png"], ["--exposure", "1"], ["--light", "0,1,0"], ["--adapter", "x"]] {
-        let run = workshop.run(&[&["gallery", "m", "--html", "no.html", "--no-fit"], words.as_slice()].concat());
-        run.exits(2);
-    }
-    assert!(!workshop.path("no.html").exists() && !workshop.path("twice.html").exists());
 }

@@ -1,0 +1,1 @@
+../../crates/luthier-gallery/src/page/textures.js
