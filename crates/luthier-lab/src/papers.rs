@@ -62,7 +62,7 @@ struct PaperVariant {
     kernels: [Kernel; 2],
 }
 
-/// What a row of the tables computes, and what it reads.
+/// Variant of a shader in the tables.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Role {
     Full,

@@ -127,7 +127,7 @@ impl Studio {
         Ok(render_ball(model.as_ref(), &material.stack, wavelengths_nm, &LIGHTS, self.size).image)
     }
 
-    /// The same ball by the simulation on the device, of the stack alone.
+    /// The ball of [`Studio::ball`] by the simulation on the device, of the stack alone.
     pub(crate) fn simulated(&self, material: &Material) -> Outcome<BallPicture> {
         // Models play no part: no table is baked.
         let mut plain = material.clone();
