@@ -55,7 +55,7 @@ pub use renderer::{lit, lit_functions};
 #[cfg(feature = "bake")]
 pub use sources::{Source, find, label, of_text, parse, plain, read, read_all, read_image, read_one};
 #[cfg(feature = "bake")]
-pub use surfaces::{Gathered, SurfaceSource, gather, refuse_surfaces, surface_map};
+pub use surfaces::{Gathered, SurfaceSource, doubt_surfaces, gather, refuse_surfaces, surface_map};
 
 pub(crate) use publish::READY;
 

@@ -3,11 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use luthier_layers::heterogeneous::{Map, Switch};
+use luthier_layers::heterogeneous::{Map, Switch, SwitchShare, switch_shares};
 use luthier_layers::perlin::Perlin;
 use luthier_layers::voronoi::Voronoi;
 use luthier_manifest::{CellsRecord, ParticlesRecord, SurfaceEntry, SwitchBy, SwitchRecord};
-use luthier_material::{Diagnostic, Material, NamedMaterial, Surface, SurfaceCells, is_surface, parse_surface};
+use luthier_material::{
+    Diagnostic, Material, NamedMaterial, Surface, SurfaceCells, SurfaceSwitch, is_surface, parse_surface,
+};
 
 use crate::make::file;
 use crate::sources::{Source, label, plain};
@@ -22,6 +24,8 @@ pub struct SurfaceSource {
     pub text: String,
     /// The surface, or why it is none.
     pub parsed: Result<Surface, Vec<Diagnostic>>,
+    /// Doubts about a surface that can be used, see [`doubt_surfaces`].
+    pub warnings: Vec<Diagnostic>,
     /// The numbers of its materials among [`Gathered::materials`], in the order of [`Surface::materials`].
     numbers: Vec<usize>,
 }
@@ -50,7 +54,13 @@ pub fn gather(files: &[PathBuf]) -> Result<Gathered, ExportError> {
                 let label = label(path);
                 let parsed = parse_surface(&label, &text);
                 gathered.surface_files.push(path.clone());
-                gathered.surfaces.push(SurfaceSource { label, text, parsed, numbers: Vec::new() });
+                gathered.surfaces.push(SurfaceSource {
+                    label,
+                    text,
+                    parsed,
+                    warnings: Vec::new(),
+                    numbers: Vec::new(),
+                });
             }
             _ => gathered.materials.push(path.clone()),
         }
@@ -136,7 +146,45 @@ fn turned(surface: &Surface, named: &NamedMaterial, material: &Material) -> Opti
     Some(surface.diagnostic(named, message, "name a material without it, or put this one into `cells`"))
 }
 
+/// Share of a surface below which grains count as unseen.
+const UNSEEN: f64 = 1e-3;
+
+/// Warns of switches whose grains are on less than a thousandth of a surface: the noise hardly reaches their range, their share of the tiles is small,
+/// or switches before them in the file have their places.
+pub fn doubt_surfaces(surfaces: &mut [SurfaceSource]) {
+    for source in surfaces {
+        let Ok(surface) = &source.parsed else { continue };
+        source.warnings = unseen(surface);
+    }
+}
+
+/// A warning for each switch with unseen grains.
+fn unseen(surface: &Surface) -> Vec<Diagnostic> {
+    let switches: Vec<Switch> = surface.switches.iter().map(|switch| switch_of(&switch.by)).collect();
+    let shares = switch_shares(&switches);
+    let unseen = surface.switches.iter().zip(&shares).filter(|(_, share)| share.seen < UNSEEN);
+    let warning = |(switch, share): (&SurfaceSwitch, &SwitchShare)| {
+        let message = format!("these grains are on less than {} % of the surface", 100.0 * UNSEEN);
+        let hint = match share.noise {
+            _ if share.own >= UNSEEN => "switches before it in the file have its places: put it before them".to_owned(),
+            Some([least, most]) => {
+                format!(
+                    "this noise is from {least:.2} to {most:.2} nearly everywhere: choose a range inside, or a wider one"
+                )
+            }
+            None => "give it a larger `share`".to_owned(),
+        };
+        surface.of_switch(switch, message, hint)
+    };
+    unseen.map(warning).collect()
+}
+
 impl SurfaceSource {
+    /// Its errors; of a surface that can be used, its warnings.
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        self.parsed.as_ref().err().map_or(&self.warnings, Vec::as_slice)
+    }
+
     /// The surface as the manifest has it; `None` where it is unusable.
     pub fn entry(&self) -> Option<SurfaceEntry> {
         let surface = self.parsed.as_ref().ok()?;
@@ -165,6 +213,16 @@ impl SurfaceSource {
     }
 }
 
+/// The places of a switch.
+fn switch_of(by: &SwitchBy) -> Switch {
+    match *by {
+        SwitchBy::Noise { seed, frequency, octaves, between } => {
+            Switch::Noise { noise: Perlin { seed, frequency, octaves }, between }
+        }
+        SwitchBy::Tiles { seed, frequency, share } => Switch::Tiles { cells: Voronoi { seed, frequency }, share },
+    }
+}
+
 /// The f64 twin of `luthier_pick`: its picks have the numbers of materials.
 ///
 /// ```
@@ -182,12 +240,7 @@ pub fn surface_map(surface: &SurfaceEntry) -> Map {
     let grains = |cells: &CellsRecord| Map::Cells { cells: voronoi(cells), stacks: stacks(cells) };
     // The first switch of the file is the outermost.
     let map = surface.switches.iter().rev().fold(grains(&surface.cells), |under, switch| Map::Switch {
-        switch: match switch.by {
-            SwitchBy::Noise { seed, frequency, octaves, between } => {
-                Switch::Noise { noise: Perlin { seed, frequency, octaves }, between }
-            }
-            SwitchBy::Tiles { seed, frequency, share } => Switch::Tiles { cells: Voronoi { seed, frequency }, share },
-        },
+        switch: switch_of(&switch.by),
         inside: Box::new(grains(&switch.cells)),
         outside: Box::new(under),
     });

@@ -48,6 +48,8 @@ pub struct SurfaceSwitch {
     pub by: SwitchBy,
     /// The grains.
     pub cells: SurfaceCells,
+    /// Bytes of the text that say which places: the range of the noise, or the tiles.
+    pub span: Range<usize>,
 }
 
 /// A share of the Voronoi cells of a map of its own, each of one of some materials and tilted.
@@ -87,6 +89,12 @@ impl Surface {
     pub fn diagnostic(&self, material: &NamedMaterial, message: impl Into<String>, hint: &str) -> Diagnostic {
         let hint = Some(hint.to_owned());
         Sink::one(&self.source, &self.text, Severity::Error, material.span.clone(), message.into(), hint)
+    }
+
+    /// A warning about the places of a switch.
+    pub fn of_switch(&self, switch: &SurfaceSwitch, message: impl Into<String>, hint: impl Into<String>) -> Diagnostic {
+        let hint = Some(hint.into());
+        Sink::one(&self.source, &self.text, Severity::Warning, switch.span.clone(), message.into(), hint)
     }
 
     /// An error about its name.
@@ -169,21 +177,27 @@ fn range_of(noise: &Section<'_>) -> Option<[f64; 2]> {
 }
 
 fn switch_of(at: &Section<'_>) -> Option<SurfaceSwitch> {
-    let by = match (at.section("noise"), at.section("tiles")) {
-        (Some(noise), _) => SwitchBy::Noise {
-            seed: noise.integer("seed").unwrap_or(0),
-            frequency: noise.number("frequency").unwrap_or(4.0),
-            octaves: noise.integer("octaves").unwrap_or(4),
-            between: range_of(&noise)?,
-        },
-        (None, Some(tiles)) => SwitchBy::Tiles {
-            seed: tiles.integer("seed").unwrap_or(0),
-            frequency: tiles.number("frequency").unwrap_or(5.0),
-            share: tiles.number("share").unwrap_or(0.5),
-        },
+    let (by, span) = match (at.section("noise"), at.section("tiles")) {
+        (Some(noise), _) => {
+            let by = SwitchBy::Noise {
+                seed: noise.integer("seed").unwrap_or(0),
+                frequency: noise.number("frequency").unwrap_or(4.0),
+                octaves: noise.integer("octaves").unwrap_or(4),
+                between: range_of(&noise)?,
+            };
+            (by, noise.value_span("between"))
+        }
+        (None, Some(tiles)) => {
+            let by = SwitchBy::Tiles {
+                seed: tiles.integer("seed").unwrap_or(0),
+                frequency: tiles.number("frequency").unwrap_or(5.0),
+                share: tiles.number("share").unwrap_or(0.5),
+            };
+            (by, at.value_span("tiles"))
+        }
         (None, None) => return None,
     };
-    Some(SurfaceSwitch { by, cells: cells_of(&at.section("cells")?, 20.0) })
+    Some(SurfaceSwitch { by, cells: cells_of(&at.section("cells")?, 20.0), span })
 }
 
 fn cells_of(at: &Section<'_>, frequency: f64) -> SurfaceCells {
@@ -231,6 +245,8 @@ mod tests {
         let named: Vec<&str> = surface.materials().map(|material| material.file.as_str()).collect();
         assert_eq!(named, ["a.toml", "b.toml", "a.toml", "d.toml", "e.toml", "a.toml", "c.toml"]);
         assert_eq!(surface.particles().iter().map(|one| one.file.as_str()).collect::<Vec<_>>(), ["c.toml"]);
+        let warning = surface.of_switch(first, "nowhere", "elsewhere");
+        assert_eq!((&text[first.span.clone()], warning.severity), ("[-0.05, 0.05]", Severity::Warning));
     }
 
     #[test]

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use luthier_export::{Source, SurfaceSource, find, gather, input, read_all, refuse, refuse_surfaces, refuse_too_many};
+use luthier_export::{
+    Source, SurfaceSource, doubt_surfaces, find, gather, input, read_all, refuse, refuse_surfaces, refuse_too_many,
+};
 use luthier_manifest::ShadingModel;
 use luthier_material::{Diagnostic, Surface, is_scene};
 use luthier_terminal::{Failure, Outcome, diagnostic, files, print, print_diagnostics};
@@ -30,6 +32,7 @@ pub(crate) fn run(options: &CheckOptions) -> Outcome {
     let shading = &options.shading;
     refuse(&mut sources, |material| shading.doubts(material, &[]));
     refuse_surfaces(surfaces, &sources);
+    doubt_surfaces(surfaces);
     refuse_too_many(&mut sources, |materials| shaded(materials, shading, &[]));
     misses::foresee(&mut sources);
     // Models of materials of a scene are the scene's to choose.
@@ -51,7 +54,7 @@ pub(crate) fn run(options: &CheckOptions) -> Outcome {
             lines.push_str(&scene_line(scene));
         }
         for surface in surfaces.iter() {
-            print_diagnostics(surface.parsed.as_ref().err().into_iter().flatten(), &surface.text);
+            print_diagnostics(surface.diagnostics(), &surface.text);
             lines.push_str(&surface_line(surface));
         }
         for (source, model) in all() {
@@ -71,15 +74,17 @@ fn count(diagnostics: &[Diagnostic], what: &str) -> String {
     format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
+/// The number of warnings, for the end of a line.
+fn warned(warnings: &[Diagnostic]) -> String {
+    if warnings.is_empty() { String::new() } else { format!(", {}", count(warnings, "warning")) }
+}
+
 fn line(source: &Source, model: Option<ShadingModel>) -> String {
     match &source.parsed {
         Err(errors) => format!("{}: {}\n", source.label, count(errors, "error")),
         Ok(parsed) => {
             let class = parsed.material.class;
-            let warnings = match parsed.warnings.as_slice() {
-                [] => String::new(),
-                warnings => format!(", {}", count(warnings, "warning")),
-            };
+            let warnings = warned(&parsed.warnings);
             let model = model.map_or_else(String::new, |model| format!(", model {model}"));
             format!("{}: ok, class {} ({}){model}{warnings}\n", source.label, class.symbol(), class.name())
         }
@@ -100,7 +105,7 @@ fn scene_line(scene: &SceneSource) -> String {
 fn surface_line(surface: &SurfaceSource) -> String {
     match &surface.parsed {
         Err(errors) => format!("{}: {}\n", surface.label, count(errors, "error")),
-        Ok(parsed) => format!("{}: ok, surface of {}\n", surface.label, listed(parsed)),
+        Ok(parsed) => format!("{}: ok, surface of {}{}\n", surface.label, listed(parsed), warned(&surface.warnings)),
     }
 }
 
@@ -114,11 +119,11 @@ fn listed(surface: &Surface) -> String {
 }
 
 fn surface_entry(surface: &SurfaceSource) -> Value {
-    let (parsed, errors) = (surface.parsed.as_ref().ok(), surface.parsed.as_ref().err());
-    let named = parsed
+    let named = surface
+        .parsed
+        .as_ref()
         .map(|s| json!({"name": s.name, "materials": s.materials().map(|m| m.file.as_str()).collect::<Vec<_>>()}));
-    let all = diagnostics(errors.map(Vec::as_slice).unwrap_or_default());
-    json!({"file": surface.label, "surface": named, "diagnostics": all})
+    json!({"file": surface.label, "surface": named.ok(), "diagnostics": diagnostics(surface.diagnostics())})
 }
 
 fn entry(source: &Source, model: Option<ShadingModel>) -> Value {

@@ -121,13 +121,17 @@ fn position(out: &mut String, table: &TableFace) {
     let half = f64::from(layout.apron) + 0.5;
     let [[width, height], [tile_width, tile_height]] = [layout.size(), layout.tile_size()];
     let unit = if is_whole(table) { 1.0 / f64::from(width) } else { 1.0 };
-    // Rows side by side, or one below the other.
-    let (row, y) = match (layout.abreast(), &layout.y) {
-        (Some(_), _) => (format!("y * {} + ", float(f64::from(layout.row_size()) * unit)), "0.5".to_owned()),
-        (None, Some(_)) => (String::new(), format!("y + {}", float(half))),
-        (None, None) => (String::new(), "0.5".to_owned()),
+    // Rows side by side, or one below the other. Of those side by side the place of a row is one sum and one quotient of whole numbers and halves, which
+    // are exact: far from the edge of the atlas each rounding is some millionths of a texel.
+    let (across, y) = match (layout.abreast(), &layout.y) {
+        (Some(_), _) => {
+            let first = format!("y * {}.0 + {}", layout.row_size(), float(half));
+            let first = if is_whole(table) { format!("({first}) / {width}.0") } else { first };
+            (format!("{first} + x"), "0.5".to_owned())
+        }
+        (None, Some(_)) => (format!("x + {}", float(half * unit)), format!("y + {}", float(half))),
+        (None, None) => (format!("x + {}", float(half * unit)), "0.5".to_owned()),
     };
-    let across = format!("{row}x + {}", float(half * unit));
     let down = match (layout.tiles, tile_height) {
         (1, _) => y.clone(),
         (_, 1) => "tile + 0.5".to_owned(),

@@ -475,9 +475,9 @@ fn the_first_facet_has_smith_s_masking() {
                 let d = microfacet::distribution(distribution, alpha, half.z, half.x * half.x + half.y * half.y);
                 let lambda = |w: DVec3| microfacet::lambda(distribution, alpha, w.z);
                 let expected = d / (4.0 * eye.z * (1.0 + lambda(light) + lambda(eye)));
-                // Masking by two numbers that are within 2e-4, and f32 at the foot of narrow lobes.
+                // Masking by two numbers that are within 2e-6, and f32 at the foot of narrow lobes.
                 let error = (found - expected).abs() / expected.max(1e-3);
-                assert!(error < 5e-4, "{distribution:?} {alpha} {wi:?} {wo:?}: {found} {expected}");
+                assert!(error < 2e-5, "{distribution:?} {alpha} {wi:?} {wo:?}: {found} {expected}");
             }
         }
     }

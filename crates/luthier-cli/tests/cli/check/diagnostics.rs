@@ -248,3 +248,33 @@ fn what_a_model_leaves_out_is_told() {
     );
     assert_eq!(workshop.run(&["check", "scene.toml"]).exits(0).stderr, "");
 }
+
+/// Perlin noise of four octaves never reaches .9; and a second switch on all tiles of the first is never seen.
+#[test]
+fn switches_without_places_are_doubted() {
+    let tiles = "[[switch]]\ntiles = { share = 0.5 }\ncells = { materials = [\"matte.toml\"] }\n";
+    let noise = "[[switch]]\nnoise = { between = [0.9, 1] }\ncells = { materials = [\"matte.toml\"] }\n";
+    let stone = "surface = 1\nname = \"stone\"\n\n[cells]\nmaterials = [\"matte.toml\"]\n\n";
+    let workshop = Workshop::with(&[
+        ("matte.toml", &matte("matte")),
+        ("stone.toml", &format!("{stone}{tiles}{noise}{tiles}")),
+        ("veined.toml", &format!("{stone}{tiles}{}", noise.replace("0.9, 1", "-0.05, 0.05"))),
+    ]);
+    let run = workshop.run(&["check", "veined.toml"]).exits(0);
+    assert!(run.stderr.is_empty() && run.stdout.starts_with("veined.toml: ok, surface of 1 material\n"), "{run:?}");
+    let run = workshop.run(&["check", "stone.toml"]).exits(0);
+    assert!(run.stdout.starts_with("stone.toml: ok, surface of 1 material, 2 warnings\n"), "{}", run.stdout);
+    for part in [
+        "these grains are on less than 0.1 % of the surface",
+        "stone.toml:11:21",
+        "this noise is from -0.",
+        "stone.toml:14:9",
+        "switches before it in the file have its places",
+    ] {
+        assert!(run.stderr.contains(part), "{part}: {}", run.stderr);
+    }
+    let json = workshop.run(&["check", "stone.toml", "--json"]).exits(0);
+    let found: Value = serde_json::from_str(&json.stdout).unwrap();
+    assert_eq!(found[0]["diagnostics"][0]["severity"], "warning");
+    assert_eq!(found[0]["diagnostics"].as_array().unwrap().len(), 2);
+}

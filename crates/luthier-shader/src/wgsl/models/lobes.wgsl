@@ -93,30 +93,40 @@ struct LuthierPreparedLobes {
     //? end
 }
 
-/// Smith's Lambda of a slope: that of the direction times the slope parameter (Walter et al. 2007, eq. 34 for GGX). That of Beckmann is a rational
-/// function; 1 / (1 + Lambda) is within 5e-5.
-fn luthier_slope_lambda(coat: LuthierLayer, slope: f32) -> f32 {
+//? beckmann
+/// A factor on slopes in `luthier_slope_lambda`, with which exp2(-1 / slope^2) is the exponential of Beckmann's.
+const LUTHIER_SLOPE_SCALE: f32 = 0.84143657;
+//? else
+const LUTHIER_SLOPE_SCALE: f32 = 1.0;
+//? end
+
+/// Smith's Lambda of a direction by its cosine and by `luthier_coat_across_sq` (Walter et al. 2007, eq. 34 for GGX). That of Beckmann is an exponential
+/// over a polynomial; 1 + 2 Lambda is within 2e-6 of itself at all slopes.
+fn luthier_slope_lambda(coat: LuthierLayer, across_sq: f32, cos_theta: f32) -> f32 {
     //? beckmann
     //? ggx
     if coat.distribution > 0.5 {
-        return 0.5 * (sqrt(1.0 + slope * slope) - 1.0);
+        let inverse_cos = 1.0 / (LUTHIER_SLOPE_SCALE * cos_theta);
+        return 0.5 * sqrt(1.0 + across_sq * inverse_cos * inverse_cos) - 0.5;
     }
     //? end
-    let beyond = max(slope - 0.354768, 0.0);
-    let inverse = 1.0 / max(beyond, 1e-9);
-    return beyond / (3.5449077 + inverse * (5.04868 + inverse * (3.41329 + inverse * 1.6329)));
+    let inverse = cos_theta * inverseSqrt(across_sq);
+    let poly = 2.982824 + inverse * (4.4479934 + inverse * (2.4605687 + inverse * 0.49868596));
+    return exp2(-inverse * inverse) / (inverse * poly);
     //? else
-    return 0.5 * (sqrt(1.0 + slope * slope) - 1.0);
+    let inverse_cos = 1.0 / cos_theta;
+    return 0.5 * sqrt(1.0 + across_sq * inverse_cos * inverse_cos) - 0.5;
     //? end
 }
 
-/// The slope parameter of a coat along a direction, times the tangent of the direction's angle.
-fn luthier_coat_slope(coat: LuthierLayer, w: vec3<f32>) -> f32 {
+/// The square of the slope parameter of a coat along a direction times the sine of its angle times `LUTHIER_SLOPE_SCALE`; not 0.
+fn luthier_coat_across_sq(coat: LuthierLayer, w: vec3<f32>) -> f32 {
     //? anisotropic
-    let across = luthier_stretched(coat, coat.alpha_xy, w);
-    return sqrt(dot(across, across)) / w.z;
+    let across = luthier_stretched(coat, coat.alpha_xy * LUTHIER_SLOPE_SCALE, w);
+    return 1e-20 + across.x * across.x + across.y * across.y;
     //? else
-    return coat.alpha * sqrt(dot(w.xy, w.xy)) / w.z;
+    let alpha = coat.alpha * LUTHIER_SLOPE_SCALE;
+    return (1e-20 + w.x * w.x + w.y * w.y) * (alpha * alpha);
     //? end
 }
 
@@ -279,9 +289,10 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     prepared.coat = $layer(material, 0u);
     prepared.wo = wo;
     //? anisotropic
-    prepared.masking = 1.0 + luthier_slope_lambda(prepared.coat, luthier_coat_slope(prepared.coat, wo));
+    prepared.masking = 1.0 + luthier_slope_lambda(prepared.coat, luthier_coat_across_sq(prepared.coat, wo), wo.z);
     //? else
-    prepared.masking = 1.0 + luthier_slope_lambda(prepared.coat, prepared.coat.alpha * sin_theta / wo.z);
+    let alpha = prepared.coat.alpha * LUTHIER_SLOPE_SCALE;
+    prepared.masking = 1.0 + luthier_slope_lambda(prepared.coat, sin_theta_sq * (alpha * alpha), wo.z);
     //? end
     //? lobes_patina
     prepared.cover = cover;
@@ -291,7 +302,7 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     bare_place.base_color = vec3<f32>(-1.0);
     //? end
     prepared.bare = luthier_layer_at(bare_place, material, select(0u, luthier_layer_count(material), is_grown));
-    prepared.bare_masking = 1.0 + luthier_slope_lambda(prepared.bare, luthier_coat_slope(prepared.bare, wo));
+    prepared.bare_masking = 1.0 + luthier_slope_lambda(prepared.bare, luthier_coat_across_sq(prepared.bare, wo), wo.z);
     //? end
     //? lobes_axes
     let axes = luthier_materials[header + $word_glitter_tilt];
@@ -427,7 +438,7 @@ fn luthier_light_bare(prepared: LuthierPreparedLobes, wi: vec3<f32>, sum: vec3<f
         return wi.z * $diffuse(layer, wi, prepared.wo);
     }
     //? end
-    let masking = prepared.bare_masking + luthier_slope_lambda(layer, luthier_coat_slope(layer, wi));
+    let masking = prepared.bare_masking + luthier_slope_lambda(layer, luthier_coat_across_sq(layer, wi), wi.z);
     let facets = luthier_quarter_density(layer, sum) / (masking * prepared.wo.z);
     return luthier_fresnel_term(layer, cos_theta_d) * facets;
 }
@@ -463,7 +474,7 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     let wo = prepared.wo;
     let sum = vec3<f32>(wi.xy + wo.xy, max(wi.z + wo.z, 1e-16));
     // One facet of the first interface. For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
-    let masking = prepared.masking + luthier_slope_lambda(prepared.coat, luthier_coat_slope(prepared.coat, wi));
+    let masking = prepared.masking + luthier_slope_lambda(prepared.coat, luthier_coat_across_sq(prepared.coat, wi), wi.z);
     let facets = luthier_quarter_density(prepared.coat, sum) / (masking * wo.z);
     let cos_theta_d = min(0.5 * length(sum), 1.0);
     var value = luthier_fresnel_term(prepared.coat, cos_theta_d) * facets;

@@ -191,11 +191,12 @@ fn luthier_shown_tap(shown: LuthierShown, lobe: LuthierShownLobe, prepared: Luth
     let wi = vec3<f32>(azimuth.x * across.x - azimuth.y * across.y, azimuth.y * across.x + azimuth.x * across.y, cos_theta_i);
     if lobe.is_coat {
         //? anisotropic
-        let slope_i = luthier_coat_slope(prepared.coat, wi);
+        let across_sq = luthier_coat_across_sq(prepared.coat, wi);
         //? else
-        let slope_i = prepared.coat.alpha * sqrt(sin_sq) / cos_theta_i;
+        let alpha = prepared.coat.alpha * LUTHIER_SLOPE_SCALE;
+        let across_sq = max(sin_sq, 1e-20) * (alpha * alpha);
         //? end
-        let masking = prepared.masking + luthier_slope_lambda(prepared.coat, slope_i);
+        let masking = prepared.masking + luthier_slope_lambda(prepared.coat, across_sq, cos_theta_i);
         let fresnel = luthier_fresnel_term(prepared.coat, clamp(cos_theta_d, 0.0, 1.0));
         weight *= max(fresnel, vec3<f32>(1e-6)) * (max(cos_theta_d, 1e-3) / (wh.z * masking * prepared.wo.z));
     }
