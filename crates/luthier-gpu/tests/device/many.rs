@@ -59,8 +59,11 @@ fn a_large_number_finds_its_own_layers() {
     }
 }
 
-/// A position in a large atlas is rounded to a two-thousandth of a texel at most, of which neighbours of the row differ by a tenth.
-const POSITION: f32 = 1e-4;
+/// A position in a large atlas is rounded to a two-thousandth of a texel at most, of which neighbours of the row differ by a tenth. Graphics hardware
+/// weighs them in steps of 1/256, and rounds to half floats.
+fn tolerance(gpu: &luthier_gpu::Gpu) -> f32 {
+    if gpu.is_software() { 1e-4 } else { 1e-3 }
+}
 
 #[test]
 fn a_large_number_finds_its_own_rows() {
@@ -78,7 +81,7 @@ fn a_large_number_finds_its_own_rows() {
             let (found, expected) = (scene.evaluate(number, &pairs()).unwrap(), alone.evaluate(0, &pairs()).unwrap());
             for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
                 let error = (found - expected).abs() / expected.max(1e-3);
-                assert!(error < POSITION, "material {number}, {columns} columns: {found} alone {expected}");
+                assert!(error < tolerance(&gpu), "material {number}, {columns} columns: {found} alone {expected}");
             }
         }
     }

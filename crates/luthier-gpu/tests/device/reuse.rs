@@ -46,8 +46,9 @@ fn another_shader_cannot_be_rebound() {
 fn a_rendering_may_be_given_up_between_passes() {
     let Some(gpu) = gpu() else { return };
     let scene = gpu.scene(&artefacts(Form::Baked, vec![vec![diffuse([0.5; 3], 0.0)]], &[]), Form::Baked).unwrap();
-    // Enough evaluations for a few passes.
-    let settings = RenderSettings { size: 256, samples: 4, ..dark() };
+    // Enough evaluations for a few passes, of which those of a discrete GPU are larger.
+    let size = if gpu.is_software() { 256 } else { 1024 };
+    let settings = RenderSettings { size, samples: 4, ..dark() };
     let asked = Cell::new(0);
     let never = || {
         asked.set(asked.get() + 1);

@@ -106,7 +106,7 @@ impl ParityRow {
     /// Whether the largest error of a share keeps the tolerance of the model.
     pub fn verdict(&self, share: Share) -> Verdict {
         let max = self.max(share);
-        if max <= tolerance(self.model, self.form, share).limit {
+        if max <= tolerance(self.model, self.form, share, self.weights).limit {
             return Verdict::Met;
         }
         let factor = match share {

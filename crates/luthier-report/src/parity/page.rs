@@ -127,11 +127,13 @@ fn tolerances(out: &mut String, parity: &Parity) {
     let mut named: Vec<(Tolerance, Vec<String>)> = Vec::new();
     for model in models(parity) {
         for form in Form::ALL.into_iter().filter(|&form| model.has(form)) {
+            let row = parity.rows.iter().find(|row| (row.model, row.form) == (model, form));
+            let weights = row.and_then(|row| row.weights);
             for share in Share::ALL {
                 if share == Share::Table && form == Form::Full {
                     continue;
                 }
-                let tolerance = tolerance(model, form, share);
+                let tolerance = tolerance(model, form, share, weights);
                 let of = format!("{} {form}: {}", model.name(), share.name());
                 match named.iter_mut().find(|(t, _)| *t == tolerance) {
                     Some((_, all)) => all.push(of),

@@ -3,8 +3,8 @@
 use luthier_manifest::ShadingModel;
 use serde::{Deserialize, Serialize};
 
-use crate::Form;
 use crate::judge::exceptions::Factor;
+use crate::{Form, Weights};
 
 /// A share of the error of a shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -112,8 +112,23 @@ const PHONG_IN_F32: Tolerance = Tolerance {
              the argument, and beyond an argument of 1 the value falls faster than the error grows.",
 };
 
-/// The tolerance of a shader.
-pub fn tolerance(model: ShadingModel, form: Form, share: Share) -> Tolerance {
+const FILTERED_BY_HARDWARE: Tolerance = Tolerance {
+    name: "FILTERED_BY_HARDWARE",
+    limit: 4e-3,
+    reason: "A filter in hardware has weights of 8 bits, and f32 rounds a coordinate to one side or the other of a step: a part of 256 of the difference of two \
+             texels. A GPU was seen to round filtered half floats to half floats again, off by 2.4e-4 of themselves. Values are products of several.",
+};
+
+const FILTERED_BELOW_A_COAT: Tolerance = Tolerance {
+    name: "FILTERED_BELOW_A_COAT",
+    limit: 2e-2,
+    reason: "The reason of `FILTERED_BY_HARDWARE` holds. In addition, light of lower layers is multiplied by (1 - F)², which is small beyond 88° while F is near 1: \
+             as in `FRESNEL_UNDER_A_COAT`. Tables of the distribution store sixteenth roots, and a Gaussian lobe changes fifteen times as much as its width.",
+};
+
+/// The tolerance of a shader, whose device filters tables with some weights; `None` for a form without tables.
+pub fn tolerance(model: ShadingModel, form: Form, share: Share, weights: Option<Weights>) -> Tolerance {
+    let is_hardware = weights == Some(Weights::EightBit);
     match (share, model) {
         (Share::Table, ShadingModel::Phong) => NO_TABLE,
         (Share::Table, _) if form == Form::Full => NO_TABLE,
@@ -122,6 +137,10 @@ pub fn tolerance(model: ShadingModel, form: Form, share: Share) -> Tolerance {
         (Share::Table, ShadingModel::Lobes) => ROW_TABLE,
         (Share::Table, _) => LOBE_TABLE,
         (Share::Arithmetic, ShadingModel::Phong) => PHONG_IN_F32,
+        (Share::Arithmetic, ShadingModel::Elek | ShadingModel::WeidlichWilkie | ShadingModel::Lobes) if is_hardware => {
+            FILTERED_BELOW_A_COAT
+        }
+        (Share::Arithmetic, _) if is_hardware => FILTERED_BY_HARDWARE,
         (Share::Arithmetic, ShadingModel::GranierHeidrich) => BEAMS_IN_F32,
         (Share::Arithmetic, ShadingModel::Belcour | ShadingModel::Yamaguchi) => STATISTICS_IN_F32,
         (Share::Arithmetic, ShadingModel::Lobes) => LOBES_IN_F32,
@@ -216,4 +235,24 @@ pub const KNOWN: [Known; 6] = [
 /// The known reason for a share of the error of a model that a factor is at fault for.
 pub(super) fn known(model: ShadingModel, share: Share, factor: Factor) -> Option<&'static Known> {
     KNOWN.iter().find(|k| k.models.contains(&model) && k.share == share && k.factor == factor)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A filter in hardware widens tolerances of what it is read for: the arithmetic of forms with tables.
+    #[test]
+    fn hardware_filters_widen_arithmetic_alone() {
+        for model in ShadingModel::ALL {
+            let of = |share, weights| tolerance(model, Form::Baked, share, weights).limit;
+            let [exact, hardware] = [Weights::Exact, Weights::EightBit].map(|w| of(Share::Arithmetic, Some(w)));
+            if model == ShadingModel::Phong {
+                assert!(exact == hardware, "{model}");
+            } else {
+                assert!(hardware > 5.0 * exact && hardware <= 2e-2, "{model}: {exact}, {hardware}");
+            }
+            assert!(of(Share::Table, Some(Weights::Exact)) == of(Share::Table, Some(Weights::EightBit)), "{model}");
+        }
+    }
 }
