@@ -119,14 +119,15 @@ fn luthier_slope_lambda(coat: LuthierLayer, across_sq: f32, cos_theta: f32) -> f
     //? end
 }
 
-/// The square of the slope parameter of a coat along a direction times the sine of its angle times `LUTHIER_SLOPE_SCALE`; not 0.
+/// The square of the slope parameter of a coat along a direction times the sine of its angle times `LUTHIER_SLOPE_SCALE`; so far from 0 that nothing in
+/// `luthier_slope_lambda` is infinite.
 fn luthier_coat_across_sq(coat: LuthierLayer, w: vec3<f32>) -> f32 {
     //? anisotropic
     let across = luthier_stretched(coat, coat.alpha_xy * LUTHIER_SLOPE_SCALE, w);
-    return 1e-20 + across.x * across.x + across.y * across.y;
+    return 1e-18 + across.x * across.x + across.y * across.y;
     //? else
     let alpha = coat.alpha * LUTHIER_SLOPE_SCALE;
-    return (1e-20 + w.x * w.x + w.y * w.y) * (alpha * alpha);
+    return (1e-12 + w.x * w.x + w.y * w.y) * (alpha * alpha);
     //? end
 }
 
@@ -292,7 +293,7 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     prepared.masking = 1.0 + luthier_slope_lambda(prepared.coat, luthier_coat_across_sq(prepared.coat, wo), wo.z);
     //? else
     let alpha = prepared.coat.alpha * LUTHIER_SLOPE_SCALE;
-    prepared.masking = 1.0 + luthier_slope_lambda(prepared.coat, sin_theta_sq * (alpha * alpha), wo.z);
+    prepared.masking = 1.0 + luthier_slope_lambda(prepared.coat, sin_theta_sq * (alpha * alpha) + 1e-18, wo.z);
     //? end
     //? lobes_patina
     prepared.cover = cover;

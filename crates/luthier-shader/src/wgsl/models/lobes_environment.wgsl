@@ -194,7 +194,7 @@ fn luthier_shown_tap(shown: LuthierShown, lobe: LuthierShownLobe, prepared: Luth
         let across_sq = luthier_coat_across_sq(prepared.coat, wi);
         //? else
         let alpha = prepared.coat.alpha * LUTHIER_SLOPE_SCALE;
-        let across_sq = max(sin_sq, 1e-20) * (alpha * alpha);
+        let across_sq = max(sin_sq, 1e-12) * (alpha * alpha);
         //? end
         let masking = prepared.masking + luthier_slope_lambda(prepared.coat, across_sq, cos_theta_i);
         let fresnel = luthier_fresnel_term(prepared.coat, clamp(cos_theta_d, 0.0, 1.0));
