@@ -236,8 +236,8 @@ impl Scene {
         let shares = shares(settings, lobes);
         let per_pixel =
             shares.iter().map(|[_, samples, _, directions]| samples * (1 + directions * lobes)).max().unwrap_or(1);
-        // Rays take longer than what they are for.
-        let cost = if settings.shape == Shape::Mesh { 4 } else { 1 };
+        // Rays take longer than what they are for, and most so on slow GPUs: a pass with them stays as short everywhere.
+        let cost = if settings.shape == Shape::Mesh { 4 * self.context.batch } else { 1 };
         let rows = (evaluations / size.saturating_mul(per_pixel).saturating_mul(cost).max(1)).clamp(1, size);
         let mut data = vec![0.0; (size * size * 3) as usize];
         let blocks = (0..size).step_by(rows as usize).flat_map(|row| shares.iter().map(move |share| (row, *share)));
