@@ -1,10 +1,8 @@
 //! The factor on slopes that a page has for its large picture: which looks follow it, and places for their shaders.
 
 use luthier_manifest::{FileEntry, LayerKind, MapEntry, MapSlot, MaterialEntry, ShadingModel, VaryingFactor};
+use luthier_material::ALPHA_MIN;
 use serde::Serialize;
-
-/// Slope parameter that models take in place of less: that of smooth interfaces.
-const SMOOTH: f64 = 1e-3;
 
 /// Doublings of the slopes at most.
 const OCTAVES: f64 = 2.0;
@@ -25,7 +23,7 @@ impl PageSlopes {
         if interfaces().next().is_none() {
             return Self::Fixed("The material has no interface whose slopes could change.");
         }
-        if interfaces().all(|layer| layer.alpha.max(layer.alpha_xy[0]).max(layer.alpha_xy[1]) <= SMOOTH) {
+        if interfaces().all(|layer| layer.alpha.max(layer.alpha_xy[0]).max(layer.alpha_xy[1]) <= ALPHA_MIN) {
             return Self::Fixed("All interfaces of the material are smooth, and a factor leaves them so.");
         }
         if entry.model != ShadingModel::Lobes {
@@ -71,7 +69,7 @@ mod tests {
         let of = |model, kind, alpha| PageSlopes::of(&entry(model, kind, alpha));
         assert_eq!(of(ShadingModel::Elek, LayerKind::Conductor, 0.2), PageSlopes::Octaves(2.0));
         for fixed in [
-            of(ShadingModel::Elek, LayerKind::Conductor, SMOOTH),
+            of(ShadingModel::Elek, LayerKind::Conductor, ALPHA_MIN),
             of(ShadingModel::Elek, LayerKind::Diffuse, 0.2),
             of(ShadingModel::Lobes, LayerKind::Dielectric, 0.2),
         ] {

@@ -21,8 +21,8 @@ pub(crate) const SODIUM_D_NM: f64 = 589.3;
 /// Wavelengths that the colour integral needs.
 pub(crate) const VISIBLE_NM: (f64, f64) = (360.0, 830.0);
 
-/// Smallest slope parameter that the real-time models tell from a smooth surface.
-const ALPHA_MIN: f64 = 1e-3;
+/// Smallest slope parameter that the real-time models tell from a smooth surface: layer records have it in place of less.
+pub const ALPHA_MIN: f64 = 1e-3;
 
 /// Thickest film whose colour the 5 nm steps of the spectrum still resolve with margin: at n = 1.5 neighbouring fringes
 /// are 13 nm apart at 450 nm.

@@ -41,6 +41,7 @@ pub use bake_settings::{
 pub use class::{SMOOTH_SLOPE_DEG, SurfaceClass};
 pub use cross_section::{CrossSection, Part, PartKind, PartNumber};
 pub use diagnostic::{Diagnostic, Severity};
+pub use doubt::ALPHA_MIN;
 pub use effects::{Effects, FlakeSource, Flakes, Glitter, Patina};
 pub use left_out::{LeftOut, distribution_key, left_out};
 pub use material::{FilmVariation, LayerExtras, Maps, Material, Metallic, NamedImage, NamedMap, VariationSource};

@@ -10,10 +10,8 @@ use super::{
     BASE, CrossSection, EXTERIOR, Part, PartKind, PartNumber, SLAB, film_height, flake_cells, glitter, level, nm,
     outline, patina, rgb, roughness, with_room,
 };
+use crate::doubt::ALPHA_MIN;
 use crate::suggest::short;
-
-/// Slope parameter that records have in place of that of a smooth interface.
-const SMOOTH: f64 = 1e-3;
 
 impl CrossSection {
     /// A cross-section through a material of a manifest, by its layer records. They have neither the thickness of a slab, whose optical depth is among the
@@ -54,7 +52,7 @@ fn number_of(name: &'static str, value: String) -> PartNumber {
 
 /// The micro-surface of a record; smooth where its slopes are no more than those that stand for none.
 fn surface(record: &LayerRecord) -> Surface {
-    let [alpha_x, alpha_y] = record.alpha_xy.map(|alpha| if alpha <= SMOOTH { 0.0 } else { alpha });
+    let [alpha_x, alpha_y] = record.alpha_xy.map(|alpha| if alpha <= ALPHA_MIN { 0.0 } else { alpha });
     Surface { distribution: record.distribution, alpha_x, alpha_y, rotation: record.rotation }
 }
 
@@ -165,7 +163,7 @@ mod tests {
     fn parts_are_those_of_the_records() {
         let coat = LayerRecord {
             kind: LayerKind::Dielectric,
-            alpha_xy: [SMOOTH; 2],
+            alpha_xy: [ALPHA_MIN; 2],
             optical_depth: [0.0, 1.0, 2.0],
             ior_n: [1.5; 3],
             film_ior_n: [1.4; 3],
