@@ -185,8 +185,12 @@ mod tests {
         let expected = render_ball(&Lambert, &stack, WAVELENGTHS_NM, &lights, 24);
         let most = seen.image.data.iter().zip(&expected.image.data).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         assert!(most < 1e-6 && seen.image.data.iter().any(|v| *v > 0.1), "{most}");
+        // Errors of 0.1 of a value of 1, times irradiances of 1, 2 and 3, on the lit share of the picture.
         let known = |pairs: &[(DVec3, DVec3)]| Ok::<_, ()>(vec![[Estimate::known(1.0, 0.1); 3]; pairs.len()]);
-        assert!(render_ball_of(&lights[..1], 24, known).unwrap().noise > 0.01);
+        let seen = render_ball_of(&lights[..1], 24, known).unwrap();
+        let lit = seen.image.texels().filter(|texel| *texel == [1.0, 2.0, 3.0]).count() as f64 / (24.0 * 24.0);
+        let expected = 0.1 * ((1.0 + 4.0 + 9.0) / 3.0 * lit).sqrt();
+        assert!(lit > 0.3 && (seen.noise / expected - 1.0).abs() < 1e-9, "{} {expected}", seen.noise);
     }
 
     /// Simulations of a ball are as far apart as their stated noise says, and equal at every run.
