@@ -7,7 +7,11 @@ use std::path::Path;
 
 use crate::scenes::{sets, tables};
 use luthier_lut::TableKind;
+use luthier_manifest::FunctionGroup;
 use luthier_shader::{Form, MaterialSet, RESERVED_BINDINGS, bindings};
+
+/// Bindings of the environment.
+const ENVIRONMENT: usize = 3;
 
 /// Around a part that is made here.
 const BEGIN: &str = "<!-- made by: LUTHIER_ACCEPT=1 cargo test -p luthier-shader pages -->\n";
@@ -17,15 +21,27 @@ const END: &str = "<!-- end -->\n";
 fn numbers() -> String {
     let mut all = BTreeMap::new();
     for (_, materials) in sets() {
-        let set = MaterialSet::new(&materials, tables());
+        // With every group of functions: the environment binds textures and a sampler of its own.
+        let functions = FunctionGroup::ALL.into_iter().collect();
+        let set = MaterialSet { functions, ..MaterialSet::new(&materials, tables()) };
         all.extend(bindings(&set, Form::Baked).into_iter().map(|entry| (entry.binding, entry)));
     }
-    assert_eq!(all.len(), TableKind::ALL.len() + 2, "sets that read every table, the sampler and the buffer");
+    let kept = TableKind::ALL.len() + 2;
+    assert_eq!(
+        all.len(),
+        kept + ENVIRONMENT,
+        "sets that read every table, the sampler, the buffer and the environment"
+    );
     let mut out = String::from("| number | name | what |\n|---|---|---|\n");
     for (number, entry) in all {
-        let what = match entry.resource.as_str() {
-            "buffer" => "the materials: `array<vec4<f32>>`",
-            "sampler" => "linear, clamp to edge, no mipmaps",
+        let what = match (entry.name.as_str(), entry.resource.as_str()) {
+            ("luthier_environment_map", _) => {
+                "blurred levels of the environment, a cube; where `--functions environment` is asked for"
+            }
+            ("luthier_irradiance_map", _) => "irradiance, a cube; as above",
+            ("luthier_environment_sampler", _) => "linear, within mipmaps and between them; as above",
+            (_, "buffer") => "the materials: `array<vec4<f32>>`",
+            (_, "sampler") => "linear, clamp to edge, no mipmaps",
             _ => "table",
         };
         let _ = writeln!(out, "| {number} | `{}` | {what} |", entry.name);

@@ -83,6 +83,19 @@ fn edges_are_those_of_the_table() {
     }
 }
 
+/// Every crate says what it is for, where it stands and what is not in it.
+#[test]
+fn every_crate_has_a_readme() {
+    for name in allowed().keys() {
+        let path = root().join("crates").join(name).join("README.md");
+        let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        assert!(text.starts_with(&format!("# {name}\n")), "{name}");
+        for part in ["\nNot in this crate: ", "\nIts place: "] {
+            assert!(text.contains(part), "{name}: {part}");
+        }
+    }
+}
+
 #[test]
 fn the_graph_has_no_cycle() {
     let mut left = internal(&dependencies());
