@@ -13,13 +13,14 @@ work=target/jobs
 rm -rf "$work" && mkdir -p "$work"
 
 # Materials that need every kind of job between them.
-inputs=(yamaguchi-brushed:--no-fit chromium-car-paint:--no-fit soap-film:--no-fit varnished-brass:--no-fit granier-film:--no-fit red-lacquer:--model=lobes)
+inputs=(papers/yamaguchi-brushed:--no-fit papers/chromium-car-paint:--no-fit soap-film:--no-fit varnished-brass:--no-fit
+  papers/granier-film:--no-fit red-lacquer:--model=lobes)
 
 target/release/examples/machine >"$work/machine.json"
 for input in "${inputs[@]}"; do
   name=${input%%:*}
   for run in 1 2 3; do
-    "$luthier" bake "materials/$name.toml" "${input#*:}" --threads 1 --json --out "$work/out" >"$work/$name.$run.json" 2>/dev/null
+    "$luthier" bake "materials/$name.toml" "${input#*:}" --threads 1 --json --out "$work/out" >"$work/${name##*/}.$run.json" 2>/dev/null
   done
 done
 
@@ -28,8 +29,8 @@ run='*as luthier_bake::graph::job::Job>::run'
 count() {
   local name=${1%%:*}
   valgrind --tool=callgrind --dump-instr=yes --compress-pos=no --compress-strings=no --toggle-collect="$run" --zero-before="$run" \
-    --dump-after="$run" --callgrind-out-file="$work/$name.calls" \
-    "$luthier" bake "materials/$name.toml" "${1#*:}" --threads 1 --out "$work/counted-$name" >"$work/$name.log" 2>&1
+    --dump-after="$run" --callgrind-out-file="$work/${name##*/}.calls" \
+    "$luthier" bake "materials/$name.toml" "${1#*:}" --threads 1 --out "$work/counted-${name##*/}" >"$work/${name##*/}.log" 2>&1
 }
 export -f count
 export luthier work run

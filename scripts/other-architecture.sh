@@ -11,7 +11,7 @@ cd "$(dirname "$0")/.."
 target=aarch64-unknown-linux-gnu
 folder=target/other-architecture
 sysroot=/usr/aarch64-linux-gnu
-bakes=("materials --no-fit" "materials" "materials/car-paint.toml materials/red-lacquer.toml --model lobes")
+bakes=("materials --no-fit" "materials" "materials/papers/car-paint.toml materials/papers/red-lacquer.toml --model lobes")
 [ $# = 0 ] || bakes=("$*")
 
 need() { # COMMAND HINT

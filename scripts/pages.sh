@@ -16,12 +16,12 @@ export -f luthier
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
+# The 22 stacks that are shipped, each once: the sheets of the papers, and what has no sheet. Pages that compare models take these.
+stacks=(materials/papers materials/{anodised-titanium,brushed-aluminium,polished-gold,soap-film,varnished-brass}.toml)
+
 materials() {
-  local sheet=()
-  for name in red-lacquer anodised-titanium car-paint brass-foil soap-film chromium-car-paint brushed-aluminium yamaguchi-brushed; do
-    sheet+=("materials/$name.toml")
-  done
-  luthier gallery "${sheet[@]}" -o docs/images/materials.png --size 232 --columns 4
+  luthier gallery materials/{red-lacquer,anodised-titanium,car-paint,house-paint,soap-film,gold-paint,brushed-aluminium,varnished-brass}.toml \
+    -o docs/images/materials.png --size 232 --columns 4
   # The example of the README, as it stands there.
   awk '/^```toml$/ { on = 1; next } /^```$/ { on = 0 } on' README.md >"$work/enamel.toml"
   luthier preview "$work/enamel.toml" -o docs/images/enamel.png --size 192
@@ -29,45 +29,45 @@ materials() {
   luthier preview materials/surfaces/lepidolite.toml -o docs/images/lepidolite.png --size 192 --shape sphere
 }
 # Scenes choose by these costs: they are part of the program.
-shapes() { luthier-lab shapes materials materials/scenes/still-life -o crates/luthier-scene/data/cost.json; }
+shapes() { luthier-lab shapes "${stacks[@]}" materials/scenes/still-life -o crates/luthier-scene/data/cost.json; }
 cost() {
-  luthier cost materials -o docs/pages/cost.md
-  luthier cost materials --json -o docs/measurements/gpu-cost.json
+  luthier cost "${stacks[@]}" -o docs/pages/cost.md
+  luthier cost "${stacks[@]}" --json -o docs/measurements/gpu-cost.json
 }
-papers() { luthier-lab papers materials -o docs/pages/papers-cost.md; }
-budgets() { luthier-lab budgets materials -o docs/pages/budgets.md; }
+papers() { luthier-lab papers "${stacks[@]}" -o docs/pages/papers-cost.md; }
+budgets() { luthier-lab budgets "${stacks[@]}" -o docs/pages/budgets.md; }
 scenes() { luthier bake materials/scenes --budgets 1,0.3,0.1,0.03 --allow-miss >docs/pages/scenes.md; }
-parity() { luthier-lab parity materials -o docs/pages/parity.md; }
+parity() { luthier-lab parity "${stacks[@]}" -o docs/pages/parity.md; }
 places() { luthier-lab places -o docs/pages/places.md; }
 stability() {
   luthier-lab stability --json -o docs/measurements/stability.json
   luthier-lab stability -o docs/pages/stability.md
 }
 figures() { luthier-lab figures -o docs/pages/figures; }
-models() { luthier-lab judge materials >docs/pages/models.md; }
-lobes() { luthier-lab lobes materials --random 200 -o docs/pages/lobes.md; }
+models() { luthier-lab judge "${stacks[@]}" >docs/pages/models.md; }
+lobes() { luthier-lab lobes "${stacks[@]}" --random 200 -o docs/pages/lobes.md; }
 varying() { luthier-lab varying --random 8 --noise 0.015 -o docs/pages/varying.md; }
 anisotropic() {
-  luthier-lab anisotropic materials/{brushed-aluminium,yamaguchi-brushed}.toml --random 6 --noise 0.015 -o docs/pages/anisotropic.md
+  luthier-lab anisotropic materials/{brushed-aluminium,papers/yamaguchi-brushed}.toml --random 6 --noise 0.015 -o docs/pages/anisotropic.md
 }
 environment() {
-  luthier-lab environment materials/{silver-paint,latex,frosted-acrylic}.toml --size 12 --rows 128 -o docs/pages/environment.md
+  luthier-lab environment materials/papers/{silver-paint,latex,frosted-acrylic}.toml --size 12 --rows 128 -o docs/pages/environment.md
 }
 simulation() {
-  luthier-lab simulation materials/{yamaguchi-brushed,silver-paint}.toml --size 32 --samples 512 --time-size 16 \
+  luthier-lab simulation materials/papers/{yamaguchi-brushed,silver-paint}.toml --size 32 --samples 512 --time-size 16 \
     --data docs/measurements/simulation-llvmpipe.json -o docs/pages/simulation.md
 }
-bench() { luthier bench materials/car-paint.toml materials/red-lacquer.toml --json -o docs/measurements/bench-llvmpipe.json; }
-throughput() { luthier-lab throughput materials -o docs/pages/throughput.md; }
+bench() { luthier bench materials/papers/car-paint.toml materials/papers/red-lacquer.toml --json -o docs/measurements/bench-llvmpipe.json; }
+throughput() { luthier-lab throughput "${stacks[@]}" -o docs/pages/throughput.md; }
 # By its name only, because it wants a GPU: pages and measurements of one, beside those of the software adapter.
 on-gpu() {
-  local two=(materials/car-paint.toml materials/red-lacquer.toml)
+  local two=(materials/papers/car-paint.toml materials/papers/red-lacquer.toml)
   luthier bench "${two[@]}" --evaluations 60000000 --json -o docs/measurements/bench-gpu.json
-  luthier-lab throughput materials --evaluations 60000000 --data docs/measurements/throughput-gpu.json -o docs/pages/gpu-throughput.md
-  luthier-lab simulation materials/{yamaguchi-brushed,silver-paint}.toml --size 256 --samples 8192 --time-size 512 \
+  luthier-lab throughput "${stacks[@]}" --evaluations 60000000 --data docs/measurements/throughput-gpu.json -o docs/pages/gpu-throughput.md
+  luthier-lab simulation materials/papers/{yamaguchi-brushed,silver-paint}.toml --size 256 --samples 8192 --time-size 512 \
     --data docs/measurements/simulation-gpu.json -o docs/pages/gpu-simulation.md
   luthier-lab places -o docs/pages/gpu-places.md
-  luthier-lab parity materials -o docs/pages/gpu-parity.md
+  luthier-lab parity "${stacks[@]}" -o docs/pages/gpu-parity.md
 }
 shader-size() { scripts/shader-size.sh >docs/pages/shader-size.md; }
 distribution-table() { scripts/compare-distribution.sh >docs/pages/distribution-table.md; }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Bakes materials/, renders the ball of examples/scene.json with wgpu, with three.js and in plain WebGL 2, and compares the pictures.
+# Bakes materials/papers, renders the ball of examples/scene.json with wgpu, with three.js and in plain WebGL 2, and compares the pictures.
 # With --bevy also with Bevy, whose first build takes a while. Needs a Vulkan driver, npm and Chromium; on Debian
 # apt-get install mesa-vulkan-drivers npm chromium. Pictures are left in target/examples/. The environment variable LUTHIER names
 # the program that bakes; by default cargo builds it.
@@ -25,8 +25,9 @@ example() { cargo run --locked --quiet --manifest-path examples/wgpu/Cargo.toml 
 scene() { sed "s/\"material\": \"[a-z-]*\"/\"material\": \"$1\"/" examples/scene.json >"$out/$1.json"; echo "$out/$1.json"; }
 
 step "bake"
-luthier bake materials --out "$bake" --quiet
-luthier bake materials --out "$plain" --no-zstd --quiet
+# The models of papers, and a film.
+luthier bake materials/papers materials/soap-film.toml --out "$bake" --quiet
+luthier bake materials/papers materials/soap-film.toml --out "$plain" --no-zstd --quiet
 
 # What all four programs show, and materials that read the other tables.
 step "wgpu"
@@ -52,7 +53,7 @@ example difference "$out/wgpu-car-paint.png" "$out/three.png" "$limit"
 # Among others the records of the material lie beyond the first row of the material texture, and its rows elsewhere in the tables.
 step "the same material in a library"
 cargo run --locked --quiet -p luthier-material --example library -- 60 "$out/library"
-luthier bake "$out/library" materials --out "$out/many" --target wgsl,glsl-es300 --form baked --no-fit --quiet
+luthier bake "$out/library" materials/papers --out "$out/many" --target wgsl,glsl-es300 --form baked --no-fit --quiet
 example luthier-example-wgpu "$out/many" "$(scene car-paint)" "$out/many-wgpu.png"
 node examples/browser.mjs examples/three "$out/many" "$(scene car-paint)" "$out/many-three.png"
 example difference "$out/many-wgpu.png" "$out/many-three.png" "$limit"

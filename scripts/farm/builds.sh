@@ -82,7 +82,7 @@ for system in "${systems[@]}"; do
   step "$system"
   rm -rf "$work/materials" "$work/plain"
   mkdir -p "$work/$system" "$work/materials"
-  cp materials/{car-paint,soap-film,polished-gold,sugar}.toml "$work/materials"
+  cp materials/{soap-film,polished-gold}.toml materials/papers/{car-paint,sugar}.toml "$work/materials"
   sed -e 's/^name = .*/name = "measured"/' -e 's/^ior = .*/ior = "measured.csv"/' materials/polished-gold.toml >"$work/materials/measured.toml"
   printf 'wavelength_nm,n,k\n360,1.6,1.9\n550,0.4,2.4\n830,0.2,5.1\n' >"$work/materials/measured.csv"
   echo first >"$work/materials/notes.txt"
@@ -103,7 +103,7 @@ for system in "${systems[@]}"; do
   sed -i 's/^550,0.4/550,0.5/' "$work/materials/measured.csv"
   expect some "a file that a material names changed"
   expect none "again"
-  cp materials/red-lacquer.toml "$work/materials"
+  cp materials/papers/red-lacquer.toml "$work/materials"
   expect all "a new material"
   expect none "again"
   LUTHIER_CACHE="$work/plain-store" "$program" bake "$work/materials" "${options[@]}" --relock --out "$work/locked" --quiet 2>/dev/null

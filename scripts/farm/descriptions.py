@@ -11,7 +11,7 @@ import yaml
 
 LUTHIER = os.environ["LUTHIER"]
 EXAMPLES = pathlib.Path("examples/farm")
-NAMES = ["car-paint", "soap-film", "sugar"]
+NAMES = ["car-paint", "soap-film", "papers/sugar"]
 
 
 def run(command, folder, **environment):

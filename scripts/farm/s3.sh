@@ -12,7 +12,7 @@ source scripts/farm/program.sh
 
 arguments=("$@")
 if [ ${#arguments[@]} = 0 ]; then
-  for name in ceramic-glaze polished-gold red-lacquer soap-film varnished-brass; do
+  for name in papers/ceramic-glaze polished-gold papers/red-lacquer soap-film varnished-brass; do
     arguments+=("$PWD/materials/$name.toml")
   done
 fi

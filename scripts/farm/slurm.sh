@@ -37,8 +37,8 @@ if [ $# -gt 0 ]; then
 else
   # Fitted lobes are simulated for seconds each, so that there is a middle of a task.
   mkdir "$work/materials"
-  cp materials/{acrylic-lacquer,brass-foil,car-paint,ceramic-glaze,chromium-car-paint,copper-patina,red-lacquer,varnished-brass}.toml \
-    "$work/materials"
+  cp materials/varnished-brass.toml \
+    materials/papers/{acrylic-lacquer,brass-foil,car-paint,ceramic-glaze,chromium-car-paint,copper-patina,red-lacquer}.toml "$work/materials"
   arguments=("$work/materials" --model lobes)
 fi
 

@@ -68,6 +68,16 @@ impl BakeProgress {
         }
     }
 
+    /// The phase that ends next begins now: the time since the last one was another package's.
+    pub(crate) fn resumes(&self) {
+        self.lock().phase = Some(Instant::now());
+    }
+
+    /// Wall-clock seconds of all phases that have ended.
+    pub(crate) fn seconds_all(&self) -> f64 {
+        self.lock().phases.iter().map(|(_, seconds)| seconds).sum()
+    }
+
     /// Wall-clock seconds per phase of the command, in their order.
     pub(crate) fn phases(&self) -> Vec<(&'static str, f64)> {
         self.lock().phases.clone()

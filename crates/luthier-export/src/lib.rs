@@ -20,6 +20,8 @@ mod beams;
 #[cfg(feature = "bake")]
 mod doubts;
 #[cfg(feature = "bake")]
+mod inner;
+#[cfg(feature = "bake")]
 mod make;
 #[cfg(feature = "bake")]
 mod parts;
@@ -40,6 +42,8 @@ pub use publish::{ENVIRONMENT, REPORT_FILES, REPORT_FOLDER, publish, publish_bes
 
 #[cfg(feature = "bake")]
 pub use doubts::{of_domain, of_model};
+#[cfg(feature = "bake")]
+pub use inner::{inner_files, inner_packages};
 #[cfg(feature = "bake")]
 pub use luthier_bake::{MemoryStore, Missing, Share, Store};
 #[cfg(feature = "bake")]

@@ -154,7 +154,8 @@ pub fn plain(path: &Path) -> PathBuf {
     plain
 }
 
-fn toml_files(folder: &Path) -> Result<Vec<PathBuf>, ExportError> {
+/// The `*.toml` of a folder, by name.
+pub(crate) fn toml_files(folder: &Path) -> Result<Vec<PathBuf>, ExportError> {
     let mut paths = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(|source| file("list", folder, source))? {
         let path = entry.map_err(|source| file("list", folder, source))?.path();

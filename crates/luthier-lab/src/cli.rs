@@ -55,6 +55,8 @@ pub(crate) enum Verb {
     Throughput(ThroughputOptions),
     /// Count the cycles of a shader for every shape of stack: the table by which scenes choose models, as JSON
     Shapes(ShapesOptions),
+    /// Hash what the textures, maps and material buffers below a folder hold, whatever their containers: lines as `sha256sum` has them
+    Texels(TexelsOptions),
 }
 
 /// Destination of a page.
@@ -283,7 +285,9 @@ pub(crate) struct AnisotropicOptions {
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  luthier-lab environment materials/silver-paint.toml -o docs/pages/environment.md")]
+#[command(
+    after_help = "Examples:\n  luthier-lab environment materials/papers/silver-paint.toml -o docs/pages/environment.md"
+)]
 pub(crate) struct EnvironmentOptions {
     #[command(flatten)]
     pub(crate) sources: Sources,
@@ -301,7 +305,7 @@ pub(crate) struct EnvironmentOptions {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  luthier-lab simulation materials/yamaguchi-brushed.toml -o docs/pages/simulation.md"
+    after_help = "Examples:\n  luthier-lab simulation materials/papers/yamaguchi-brushed.toml -o docs/pages/simulation.md"
 )]
 pub(crate) struct SimulationOptions {
     #[command(flatten)]
@@ -374,11 +378,21 @@ pub(crate) struct PapersOptions {
 #[derive(Debug, Args)]
 #[command(
     after_help = "Counts every shape of the materials, whole and without some of their parts, on RDNA2. Needs Mesa's RADV driver, as `luthier cost` does.\n\n\
-                  Examples:\n  luthier-lab shapes materials materials/scenes/still-life -o crates/luthier-scene/data/cost.json"
+                  Examples:\n  luthier-lab shapes materials/papers materials/scenes/still-life -o cost.json"
 )]
 pub(crate) struct ShapesOptions {
     #[command(flatten)]
     pub(crate) sources: Sources,
     #[command(flatten)]
     pub(crate) destination: Destination,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "`scripts/golden.sh` compares these lines with those of earlier bakes.\n\nExamples:\n  luthier-lab texels out"
+)]
+pub(crate) struct TexelsOptions {
+    /// Folder of one bake or of many
+    #[arg(value_name = "DIR")]
+    pub(crate) folder: PathBuf,
 }

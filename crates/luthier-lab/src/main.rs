@@ -14,6 +14,7 @@ mod places;
 mod shapes;
 mod simulation;
 mod stability;
+mod texels;
 mod throughput;
 mod varying;
 
@@ -42,6 +43,7 @@ fn main() -> ExitCode {
         Verb::Papers(options) => papers::run(options),
         Verb::Throughput(options) => throughput::run(options),
         Verb::Shapes(options) => shapes::run(options),
+        Verb::Texels(options) => texels::run(options),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

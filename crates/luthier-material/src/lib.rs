@@ -45,7 +45,7 @@ pub use doubt::ALPHA_MIN;
 pub use effects::{Effects, FlakeSource, Flakes, Glitter, Patina};
 pub use left_out::{LeftOut, distribution_key, left_out};
 pub use material::{FilmVariation, LayerExtras, Maps, Material, Metallic, NamedImage, NamedMap, VariationSource};
-pub use parse::{Parsed, parse};
+pub use parse::{Parsed, is_material, parse};
 pub use places::Places;
 pub use reference::{KeyReference, TableReference, reference};
 pub use rewrite::rewritten;

@@ -1,4 +1,4 @@
-//! Every file in `materials/` is a material, cites its source, and explains what is doubtful about it.
+//! Every file in `materials/` and `materials/papers/` is a material, cites its source, and explains what is doubtful about it.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,6 +9,9 @@ use luthier_optics::stack::Base;
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../materials")
 }
+
+/// The folder inside it that has the models of papers.
+const PAPERS: &str = "papers/";
 
 fn read(name: &str) -> (String, Parsed) {
     let text = fs::read_to_string(folder().join(name)).unwrap();
@@ -23,22 +26,35 @@ fn material(name: &str) -> Material {
 }
 
 fn files() -> Vec<String> {
-    let mut names: Vec<String> = fs::read_dir(folder())
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .filter(|name| name.ends_with(".toml"))
-        .collect();
+    let of = |inner: &str| {
+        let entries = fs::read_dir(folder().join(inner)).unwrap();
+        let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        names.filter(|name| name.ends_with(".toml")).map(|name| format!("{inner}{name}")).collect::<Vec<_>>()
+    };
+    let mut names = [of(""), of(PAPERS)].concat();
     names.sort();
     names
+}
+
+/// What a paper fixes is in `papers/`, and names the paper's model. All else has the model that luthier chooses: of stacks it is `lobes`.
+#[test]
+fn papers_name_models_and_others_do_not() {
+    for file in files() {
+        let material = read(&file).1.material;
+        assert_eq!(material.bake.model.is_some(), file.starts_with(PAPERS), "{file}");
+        if material.bake.model.is_none() && material.stack.layers.len() > 1 && !file.starts_with("soap-film") {
+            assert_eq!(material.model().name(), "lobes", "{file}");
+        }
+    }
 }
 
 #[test]
 fn all_parse_and_cite_their_source() {
     let files = files();
-    assert!(files.len() >= 18, "{files:?}");
+    assert!(files.len() >= 28, "{files:?}");
     for file in files {
         let (text, parsed) = read(&file);
-        assert_eq!(format!("{}.toml", parsed.material.name), file);
+        assert_eq!(format!("{}.toml", parsed.material.name), file.trim_start_matches(PAPERS));
         assert!(!parsed.material.references.is_empty() && !parsed.material.description.is_empty(), "{file}");
         assert!(text.contains("\n# Source: "), "{file}");
     }
@@ -76,14 +92,19 @@ fn the_classes_are_those_of_the_course() {
         ("soap-film", "film"),
         ("anodised-titanium", "film"),
     ] {
-        assert_eq!(material(name).class.symbol(), class, "{name}");
+        let name = if folder().join(PAPERS).join(format!("{name}.toml")).exists() {
+            format!("{PAPERS}{name}")
+        } else {
+            name.to_owned()
+        };
+        assert_eq!(material(&name).class.symbol(), class, "{name}");
     }
 }
 
 /// Oracle: the sheet of the car paint, with its slopes converted on paper (tan 1 and tan 12 degrees).
 #[test]
 fn the_car_paint_is_as_printed() {
-    let stack = material("car-paint").stack;
+    let stack = material("papers/car-paint").stack;
     let [coat, base] = stack.layers.as_slice() else { panic!("{} layers", stack.layers.len()) };
     assert!((coat.surface.alpha_x - 0.017_455_065).abs() < 1e-9);
     assert!((base.surface.alpha_x - 0.212_556_562).abs() < 1e-9);
@@ -100,7 +121,7 @@ fn the_car_paint_is_as_printed() {
 /// The film of Granier's figure lies on the dielectric below it, and only its thickness varies.
 #[test]
 fn a_film_joins_the_layer_that_it_coats() {
-    let material = material("granier-film");
+    let material = material("papers/granier-film");
     assert_eq!((material.stack.layers.len(), material.layers.len()), (2, 2));
     let film = &material.stack.layers[0].films[0];
     assert_eq!((film.thickness.min_nm, film.thickness.max_nm), (66.0, 76.0));
@@ -113,7 +134,7 @@ fn a_film_joins_the_layer_that_it_coats() {
 /// Of 0.7 of the light, a channel keeps exp(-absorption thickness): numbers by another calculator.
 #[test]
 fn a_patina_may_scatter_what_its_absorption_leaves() {
-    let text = fs::read_to_string(folder().join("copper-patina.toml")).unwrap();
+    let text = fs::read_to_string(folder().join("papers/copper-patina.toml")).unwrap();
     let tied = text.replace("diffuse_albedo = [0.25, 0.55, 0.42]", "diffuse_remainder = 0.7");
     assert_ne!(text, tied);
     let parsed = parse("tied.toml", &tied, &|path| fs::read_to_string(folder().join(path))).unwrap();

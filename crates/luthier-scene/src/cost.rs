@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::shape::{distance, shape_of};
 
-/// Output of `luthier-lab shapes materials materials/scenes/still-life`, with the version of the driver in it.
+/// Output of `scripts/pages.sh shapes`, with the version of the driver in it.
 pub const COST_DATA: &str = include_str!("../data/cost.json");
 
 /// Costs of shaders by model, form and shape of the surface.

@@ -8,7 +8,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use luthier_lut::UnknownName;
 
 /// Files to work on.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct Sources {
     /// Material files, or folders of them (their *.toml, not deeper)
     #[arg(value_name = "PATH", default_value = "materials")]

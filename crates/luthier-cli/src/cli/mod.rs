@@ -130,7 +130,7 @@ pub(crate) fn with_all_verbs() -> Command {
 }
 
 /// The model of the shaders, and the tables beside them.
-#[derive(Debug, Default, Args)]
+#[derive(Debug, Clone, Default, Args)]
 pub(crate) struct Shading {
     /// Reflectance model of the shader. By default the one that each material file asks for; of a stack whose file asks for none `lobes`,
     /// or what shows all of it (docs/materials.md)
@@ -149,9 +149,12 @@ pub(crate) struct Shading {
     pub(crate) tables: Vec<TableKind>,
 }
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(
-    after_help = "Examples:\n  luthier bake materials\n  luthier bake a.toml b.toml --out build/luts --threads 1 --json\n  \
+    after_help = "A folder inside a folder among PATH that has material files is a package of its own, unless surfaces of PATH name all of them: it is \
+                  baked into the folder of its name in --out. Folders of scenes or surfaces are not; nothing deeper is. All files are read before \
+                  anything is made, and all packages are made before one is written. As JSON `packages` has what was made, by name.\n\n\
+                  Examples:\n  luthier bake materials\n  luthier bake a.toml b.toml --out build/luts --threads 1 --json\n  \
                   luthier bake a.toml --max-abs 1e-3 --max-cost 200\n  \
                   luthier bake materials --target wgsl,msl --form baked\n  \
                   luthier bake a.toml --tables fgd,fresnel\n  luthier bake a.toml --model elek --fresnel approximate\n  \
@@ -192,7 +195,7 @@ pub(crate) struct BakeOptions {
 }
 
 /// Options for build pipelines.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Build pipelines")]
 pub(crate) struct Pipeline {
     /// Write nothing: exit with 1 and list what is stale where a bake would change the folder
@@ -227,7 +230,7 @@ fn share(text: &str) -> Result<luthier_bake::Share, String> {
 }
 
 /// The shaders to write.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct Emission {
     /// Languages of the shaders; by default wgsl, glsl450 and glsl-es300
     #[arg(long, value_parser = named::<Target>(Target::NAMES), value_name = "NAME,...", value_delimiter = ',')]
@@ -241,7 +244,7 @@ pub(crate) struct Emission {
 }
 
 /// Limits on tables. Each replaces that of the files' `[budget]`; the bake takes the cheapest tables that hold them (docs/pages/budgets.md).
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct Limits {
     /// Largest absolute error of a sampled table; of D, relative to its peak
     #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true)]

@@ -23,7 +23,7 @@ Examples:
   luthier preview red-lacquer -o ball.png --size 1024
   luthier preview materials/car-paint.toml -o ring.png --shape torus --environment studio.hdr
   luthier preview materials/surfaces/sunstone.toml -o stone.png
-  luthier preview materials/yamaguchi-brushed.toml -o ball.png --simulated 256
+  luthier preview materials/papers/yamaguchi-brushed.toml -o ball.png --simulated 256
   luthier preview materials/polished-gold.toml -o gold.png --sky evening-room --background
   luthier preview materials/soap-film.toml -o cat.png --mesh cat.glb
   luthier preview --shape grid -o grid.png";
@@ -129,9 +129,9 @@ degree. The environment goes through both shaders with the same 64 directions un
 The noise of its samples is part of the RMSE; it is printed beside it.
 
 Examples:
-  luthier compare materials/car-paint.toml --a baked --b full -o comparison
+  luthier compare materials/papers/car-paint.toml --a baked --b full -o comparison
   luthier compare materials/car-paint.toml --a elek --b microfacet/full -o comparison
-  luthier compare materials/yamaguchi-brushed.toml --a yamaguchi --b simulated/512 -o comparison
+  luthier compare materials/papers/yamaguchi-brushed.toml --a yamaguchi --b simulated/512 -o comparison
   luthier compare red-lacquer --b full -o comparison --json";
 
 #[derive(Debug, Args)]

@@ -1,72 +1,104 @@
 //! `check`: what is wrong with files, without a bake.
 
 use std::collections::BTreeSet;
+use std::path::PathBuf;
 
 use luthier_export::{
-    Source, SurfaceSource, doubt_surfaces, find, gather, input, read_all, refuse, refuse_surfaces, refuse_too_many,
+    Gathered, Source, SurfaceSource, doubt_surfaces, find, gather, inner_packages, input, read_all, refuse,
+    refuse_surfaces, refuse_too_many,
 };
 use luthier_manifest::ShadingModel;
 use luthier_material::{Diagnostic, Surface, is_scene};
 use luthier_terminal::{Failure, Outcome, diagnostic, files, print, print_diagnostics};
 use serde_json::{Value, json};
 
-use crate::cli::CheckOptions;
+use crate::cli::{CheckOptions, Shading};
 use crate::materials::shaded;
 use crate::misses;
 use crate::verb::scene::SceneSource;
 
-/// Validates files, materials as one set; diagnostics go to standard error, one line per file to standard output.
+/// Validates files, materials of one package as one set; diagnostics go to standard error, one line per file to standard output.
 pub(crate) fn run(options: &CheckOptions) -> Outcome {
-    let (mut others, mut scenes) = (Vec::new(), Vec::new());
-    for path in find(&options.sources.paths)? {
-        let bytes = input::bytes(&path).map_err(files(&path, "read"))?;
-        if is_scene(&String::from_utf8_lossy(&bytes)) {
-            scenes.push(SceneSource::read(&path)?);
-        } else {
-            others.push(path);
+    let mut sets = vec![Set::read(&options.sources.paths, &options.shading)?];
+    // A bake of scenes has no other packages.
+    if sets[0].scenes.is_empty() {
+        for paths in inner_packages(&options.sources.paths)?.values() {
+            sets.push(Set::read(paths, &options.shading)?);
         }
     }
-    let mut found = gather(&others)?;
-    let mut sources = read_all(&found.materials)?;
-    let surfaces = &mut found.surfaces;
-    let shading = &options.shading;
-    refuse(&mut sources, |material| shading.doubts(material, &[]));
-    refuse_surfaces(surfaces, &sources);
-    doubt_surfaces(surfaces);
-    refuse_too_many(&mut sources, |materials| shaded(materials, shading, &[]));
-    misses::foresee(&mut sources);
-    // Models of materials of a scene are the scene's to choose.
-    let of_scenes = || scenes.iter().flat_map(|scene| &scene.materials).map(|source| (source, None));
-    let alone =
-        || sources.iter().map(|source| (source, source.parsed.as_ref().ok().map(|p| shading.model(&p.material))));
-    let all = || alone().chain(of_scenes());
     if options.json {
-        let entries = scenes
-            .iter()
-            .map(scene_entry)
-            .chain(surfaces.iter().map(surface_entry))
-            .chain(all().map(|(source, model)| entry(source, model)));
-        print(&format!("{:#}", Value::from_iter(entries)))?;
+        print(&format!("{:#}", sets.iter().flat_map(Set::entries).collect::<Value>()))?;
     } else {
+        print(&sets.iter().map(Set::lines).collect::<String>())?;
+    }
+    if sets.iter().all(Set::is_usable) { Ok(()) } else { Err(Failure::Verdict) }
+}
+
+/// Files that are baked together, with all that is wrong with them.
+struct Set<'a> {
+    shading: &'a Shading,
+    scenes: Vec<SceneSource>,
+    surfaces: Vec<SurfaceSource>,
+    materials: Vec<Source>,
+}
+
+impl<'a> Set<'a> {
+    fn read(paths: &[PathBuf], shading: &'a Shading) -> Outcome<Self> {
+        let (mut others, mut scenes) = (Vec::new(), Vec::new());
+        for path in find(paths)? {
+            let bytes = input::bytes(&path).map_err(files(&path, "read"))?;
+            if is_scene(&String::from_utf8_lossy(&bytes)) {
+                scenes.push(SceneSource::read(&path)?);
+            } else {
+                others.push(path);
+            }
+        }
+        let Gathered { materials, mut surfaces, .. } = gather(&others)?;
+        let mut materials = read_all(&materials)?;
+        refuse(&mut materials, |material| shading.doubts(material, &[]));
+        refuse_surfaces(&mut surfaces, &materials);
+        doubt_surfaces(&mut surfaces);
+        refuse_too_many(&mut materials, |materials| shaded(materials, shading, &[]));
+        misses::foresee(&mut materials);
+        Ok(Self { shading, scenes, surfaces, materials })
+    }
+
+    /// All materials, and their models: those of a scene are the scene's to choose.
+    fn all(&self) -> impl Iterator<Item = (&Source, Option<ShadingModel>)> {
+        let model = |source: &Source| source.parsed.as_ref().ok().map(|p| self.shading.model(&p.material));
+        let of_scenes = self.scenes.iter().flat_map(|scene| &scene.materials).map(|source| (source, None));
+        self.materials.iter().map(move |source| (source, model(source))).chain(of_scenes)
+    }
+
+    fn entries(&self) -> Vec<Value> {
+        let scenes = self.scenes.iter().map(scene_entry);
+        let surfaces = self.surfaces.iter().map(surface_entry);
+        scenes.chain(surfaces).chain(self.all().map(|(source, model)| entry(source, model))).collect()
+    }
+
+    /// A line for each file. The diagnostics go to standard error.
+    fn lines(&self) -> String {
         let mut lines = String::new();
-        for scene in &scenes {
+        for scene in &self.scenes {
             scene.print_diagnostics();
             lines.push_str(&scene_line(scene));
         }
-        for surface in surfaces.iter() {
+        for surface in &self.surfaces {
             print_diagnostics(surface.diagnostics(), &surface.text);
             lines.push_str(&surface_line(surface));
         }
-        for (source, model) in all() {
+        for (source, model) in self.all() {
             print_diagnostics(source.diagnostics(), &source.text);
             lines.push_str(&line(source, model));
         }
-        print(&lines)?;
+        lines
     }
-    let is_usable = sources.iter().all(|s| s.parsed.is_ok())
-        && surfaces.iter().all(|s| s.parsed.is_ok())
-        && scenes.iter().all(SceneSource::is_usable);
-    if is_usable { Ok(()) } else { Err(Failure::Verdict) }
+
+    fn is_usable(&self) -> bool {
+        self.materials.iter().all(|s| s.parsed.is_ok())
+            && self.surfaces.iter().all(|s| s.parsed.is_ok())
+            && self.scenes.iter().all(SceneSource::is_usable)
+    }
 }
 
 fn count(diagnostics: &[Diagnostic], what: &str) -> String {

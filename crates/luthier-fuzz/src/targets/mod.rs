@@ -29,10 +29,10 @@ pub struct Target {
 pub const TARGETS: [Target; 19] = [
     Target {
         name: "material",
-        parser: "luthier_material::parse",
+        parser: "luthier_material::parse, is_material",
         reads: "material files, and the index files that they name",
         holds: "diagnostics lie in the text and can be shown; slopes, films and bases keep their ranges; reading again gives an equal material",
-        folders: &["materials", "materials/scenes/still-life", "tests/broken"],
+        folders: &["materials", "materials/papers", "materials/scenes/still-life", "tests/broken"],
         run: toml::material,
     },
     Target {

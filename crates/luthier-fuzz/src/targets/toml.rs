@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 
 use luthier_manifest::{ShadingModel, SwitchBy};
 use luthier_material::{
-    Diagnostic, Light, Material, Severity, SurfaceClass, is_scene, is_surface, left_out, parse, parse_scene,
-    parse_surface,
+    Diagnostic, Light, Material, Severity, SurfaceClass, is_material, is_scene, is_surface, left_out, parse,
+    parse_scene, parse_surface,
 };
 use luthier_optics::stack::{Base, Stack};
 
@@ -23,6 +23,7 @@ pub(super) fn material(bytes: &[u8]) {
     let read = |_: &str| if csv.is_empty() { Err(io::Error::other("none")) } else { Ok(csv.to_owned()) };
     match parse("m.toml", text, &read) {
         Ok(parsed) => {
+            assert!(is_material(text), "a material that is not recognised");
             can_be_shown(&parsed.warnings, text);
             assert!(parsed.warnings.iter().all(|d| d.severity == Severity::Warning));
             holds(&parsed.material);

@@ -128,7 +128,7 @@ pub(crate) const FIGURES: [Figure; 2] = [
 
 macro_rules! of_class {
     ($name:literal, $label:literal) => {
-        ($name, $label, include_str!(concat!("../../../../materials/", $name, ".toml")))
+        ($name, $label, include_str!(concat!("../../../../materials/papers/", $name, ".toml")))
     };
 }
 

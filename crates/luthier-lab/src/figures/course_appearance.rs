@@ -60,7 +60,7 @@ pub(crate) const FIGURES: [Figure; 2] = [
         name: "course-5-7",
         title: "samples of materials",
         source: "Weidlich and Wilkie 2009, figure 5.7 and section 5.1",
-        caption: "The samples of chapter 5 from the files in `materials/` by the course's model: frosted paints (sugar, latex, house paint, frosted acrylic), \
+        caption: "The samples of chapter 5 from the files in `materials/papers/` by the course's model: frosted paints (sugar, latex, house paint, frosted acrylic), \
                   glossy paints (ceramic glaze, red and acrylic lacquer), foils (brass, polished gold), metallic paints (gold, blue), frosted metal (silver and gold paint), a car \
                   paint, and two samples that the course has in words alone: garnet red, a rough clear varnish of slope 12 degrees and index 1.6 over Munsell's 7.5R 2/8, \
                   and a Christmas ball, tinted lacquer over a silvered inside. Silver, gold metallic paint and sugar have less exposure than the others. \
@@ -144,6 +144,10 @@ fn metals(studio: &Studio) -> Outcome<Made> {
 
 macro_rules! sample {
     ($name:literal, $label:literal) => {
+        ($name, $label, include_str!(concat!("../../../../materials/papers/", $name, ".toml")))
+    };
+    // One that is not in the course.
+    ($name:literal, $label:literal, own) => {
         ($name, $label, include_str!(concat!("../../../../materials/", $name, ".toml")))
     };
 }
@@ -157,7 +161,7 @@ const SAMPLES: [(&str, &str, &str); 14] = [
     sample!("red-lacquer", "lacquer"),
     sample!("acrylic-lacquer", "acrylic"),
     sample!("brass-foil", "brass"),
-    sample!("polished-gold", "gold"),
+    sample!("polished-gold", "gold", own),
     sample!("gold-metallic-paint", "gold"),
     sample!("blue-metallic-paint", "blue"),
     sample!("silver-paint", "silver"),

@@ -98,7 +98,7 @@ pub(crate) const FIGURES: [Figure; 3] = [
 
 macro_rules! file {
     ($name:literal) => {
-        include_str!(concat!("../../../../materials/", $name, ".toml"))
+        include_str!(concat!("../../../../materials/papers/", $name, ".toml"))
     };
 }
 

@@ -66,7 +66,7 @@ pub(crate) const FIGURES: [Figure; 2] = [
                   the last stage a part stays redder than green. The numbers are the green \
                   channel over the red one in the middle of each picture. On a level square of the same material the share of pixels that are greener than red is the covered part; \
                   how green each pixel is goes with how dark the map is there. The maps, the model, the green and the tarnish are luthier's; see \
-                  `materials/copper-patina.toml`.",
+                  `materials/papers/copper-patina.toml`.",
         size: SMALL,
         claim: Claim {
             text: "As extent grows, patina covers more of the copper: nothing at -0.65, all at 1.65, first where the map is dark. \
@@ -93,8 +93,8 @@ pub(crate) const FIGURES: [Figure; 2] = [
     },
 ];
 
-const CAR_PAINT: &str = include_str!("../../../../materials/chromium-car-paint.toml");
-const PATINA: &str = include_str!("../../../../materials/copper-patina.toml");
+const CAR_PAINT: &str = include_str!("../../../../materials/papers/chromium-car-paint.toml");
+const PATINA: &str = include_str!("../../../../materials/papers/copper-patina.toml");
 
 /// Distances of the eye; in the first the flakes begin to fade.
 const DISTANCES: [f32; 4] = [4.0, 8.0, 16.0, 32.0];

@@ -54,7 +54,7 @@ const BRUSHINGS: [Brushing; 3] = [
     Brushing { name: "crossed", coat: [0.25, 0.06, 90.0], base: [0.45, 0.12, 0.0] },
 ];
 
-/// Figure 1 (e): coat of 1.49 on gold. Wavelengths are labels, see `materials/yamaguchi-brushed.toml`.
+/// Figure 1 (e): coat of 1.49 on gold. Wavelengths are labels, see `materials/papers/yamaguchi-brushed.toml`.
 fn brushed(brushing: &Brushing) -> Outcome<Material> {
     let surface = |[x, y, turn]: [f64; 3]| {
         if x == y { format!("alpha = {x}") } else { format!("alpha_x = {x}\nalpha_y = {y}\nrotation_deg = {turn}") }

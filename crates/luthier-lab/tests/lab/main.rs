@@ -3,6 +3,7 @@
 mod command;
 mod costs;
 mod figures;
+mod golden;
 mod grammar;
 mod judge;
 mod lobes;

@@ -1,6 +1,7 @@
 //! `bake`: files into a folder, and `merge`, which finds the results of shares in the store.
 
 mod locked;
+mod one;
 mod pipeline;
 mod stamp;
 mod watch;
@@ -8,24 +9,15 @@ mod words;
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
-use std::time::Instant;
 
-use luthier_bake::{Observer, Silent};
-use luthier_export::{Bake, Compression, MANIFEST, Package, Source, find, gather, read_all, refuse, refuse_surfaces};
+use luthier_export::{Bake, Compression, inner_packages};
 use luthier_manifest::Functions;
-use luthier_material::Diagnostic;
 use luthier_shader::{Form, Target};
-use luthier_terminal::{Failure, Outcome, complain, print, valid};
+use luthier_terminal::{Failure, Outcome, Sources, print};
 
-use self::locked::LockFile;
-use self::stamp::Stamp;
+use self::one::{Begun, Done, Made};
 use crate::cli::{BakeOptions, Emission};
-use crate::interrupt::whole;
-use crate::materials::{refuse_environment, shaded, shows_environment, valid_surfaces};
-use crate::misses;
-use crate::progress::BakeProgress;
-use crate::store::{disk, store};
-use crate::verb::check::diagnostics;
+use crate::store::disk;
 use crate::verb::scene;
 
 /// Bakes files into a folder. The folder changes only once everything is made.
@@ -59,7 +51,6 @@ fn need_store(user: &str) -> Outcome {
 
 /// Bakes once; the files that the bake read.
 fn once(options: &BakeOptions) -> Outcome<Vec<PathBuf>> {
-    let start = Instant::now();
     if let Some(scenes) = scene::find(&options.sources.paths)? {
         if options.pipeline.is_any() {
             return Err(Failure::Usage(anyhow::anyhow!(
@@ -74,88 +65,43 @@ fn once(options: &BakeOptions) -> Outcome<Vec<PathBuf>> {
             "--allow-miss and --budgets are for scenes (docs/pages/scenes.md)"
         )));
     }
-    let mut found = gather(&find(&options.sources.paths)?)?;
-    let files = [found.materials.as_slice(), &found.surface_files].concat();
-    let lock = LockFile::beside(&options.sources.paths, options.pipeline.relock)?;
-    let stamp = Stamp::new(options, &files, lock.text());
-    let progress = BakeProgress::new(options.pipeline.events);
-    if let Some(kept) = stamp.current().filter(|_| options.pipeline.takes_stamp()) {
-        let read = stamp.files(&files, &kept);
-        pipeline::write_depfile(options, &read, &lock)?;
-        progress.event("up-to-date", &options.out.join(MANIFEST));
-        kept.say(options)?;
-        return Ok(read);
+    let packages = packages(options)?;
+    // Nothing is made before all can be, and nothing is written before all is made.
+    let begun = packages.iter().map(|(_, options)| Begun::read(options)).collect::<Outcome<Vec<_>>>()?;
+    let made = begun.into_iter().map(Begun::make).collect::<Outcome<Vec<_>>>()?;
+    let done = made.into_iter().map(Made::publish).collect::<Outcome<Vec<Done>>>()?;
+    pipeline::write_depfile(options, &done)?;
+    say(options, &packages, &done)?;
+    if done.iter().any(|done| done.is_stale) {
+        return Err(Failure::Verdict);
     }
-    let forms = options.emission.forms();
-    let mut sources = read_all(&found.materials)?;
-    refuse(&mut sources, |material| options.shading.doubts(material, &forms));
-    let mut told: Vec<Diagnostic> = sources.iter().flat_map(Source::diagnostics).cloned().collect();
-    refuse_surfaces(&mut found.surfaces, &sources);
-    let surfaces = valid_surfaces(&found.surfaces)?;
-    let materials = shaded(valid(sources, options.quiet)?, &options.shading, &forms);
-    let is_shown = materials.iter().any(shows_environment) && forms != [Form::Full];
-    refuse_environment(&options.emission.functions, is_shown)?;
-    let limits = luthier_bake::Options { locked: lock.decisions(), ..options.limits.options() };
-    if forms == [Form::Full] && !limits.budget.is_empty() {
-        return Err(Failure::Usage(anyhow::anyhow!(
-            "limits are those of tables, and a bake of --form full has no tables"
-        )));
+    Ok(done.into_iter().flat_map(|done| done.read).collect())
+}
+
+/// The bakes that a command asks for: that of its paths, and, with their names, those of the packages inside its folders.
+fn packages(options: &BakeOptions) -> Outcome<Vec<(String, BakeOptions)>> {
+    let mut all = vec![(String::new(), options.clone())];
+    for (name, paths) in inner_packages(&options.sources.paths)? {
+        let out = options.out.join(&name);
+        all.push((name, BakeOptions { sources: Sources { paths }, out, ..options.clone() }));
     }
-    progress.ends("read");
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(options.threads.map_or(0, usize::from))
-        .build()
-        .map_err(|source| Failure::Files(anyhow::Error::new(source).context("cannot start threads")))?;
-    let observer: &(dyn Observer + Sync) = if options.quiet && !options.pipeline.events { &Silent } else { &progress };
-    let (targets, functions) = (options.emission.targets(), options.emission.functions());
-    let bake = Bake { options: limits, targets, forms, functions, surfaces, observer, ..Bake::default() };
-    let read = pipeline::read_files(&files, &materials);
-    if options.pipeline.dry_run {
-        let missing = pool.install(|| bake.missing(&materials, store()?).map_err(Failure::from))?;
-        pipeline::say_missing(options, &missing)?;
-        return Ok(read);
-    }
-    if let Some(share) = options.pipeline.shard {
-        pool.install(|| bake.share(&materials, store()?, share).map_err(Failure::from))?;
-        pipeline::say_share(options, share, &progress)?;
-        return Ok(read);
-    }
-    let store = store()?;
-    let encoded = pool.install(|| {
-        let mut package = Package::new(&materials, &bake, store)?;
-        // A bake that writes a lock is the bake that the lock gives: the next one finds nothing to do.
-        if let Some(next) = lock.next(&package.manifest) {
-            let locked = luthier_bake::Options { locked: &next.decisions, ..bake.options };
-            package = Package::new(&materials, &Bake { options: locked, ..bake.clone() }, store)?;
-        }
-        progress.ends("make");
-        Ok::<_, Failure>(package.encode(options.compression())?)
-    })?;
-    progress.ends("encode");
-    let manifest = &encoded.manifest;
-    if options.pipeline.check {
-        pipeline::check(options, &encoded, lock.stale(manifest))?;
-        return Ok(read);
-    }
-    whole(&options.out, || encoded.write(&options.out))?;
-    progress.ends("write");
-    if let Some(why) = lock.write(manifest)? {
-        complain(&why);
-    }
-    progress.event("published", &options.out.join(MANIFEST));
-    told.extend(misses::name(manifest, options.quiet)?);
-    pipeline::write_depfile(options, &read, &lock)?;
-    let mut summary = words::summary(options, manifest, &progress, start);
-    summary["diagnostics"] = diagnostics(&told);
+    Ok(all)
+}
+
+/// Says what became of the packages. As JSON the others are in the object of the first, by their names.
+fn say(options: &BakeOptions, packages: &[(String, BakeOptions)], done: &[Done]) -> Outcome {
     if options.json {
-        print(&format!("{summary:#}"))?;
-    } else if !options.quiet {
-        print(&words::text(options, manifest, &progress, start))?;
+        let mut first = done[0].json.clone();
+        if let [_, inner @ ..] = packages {
+            let inner = inner.iter().zip(&done[1..]).map(|((name, _), done)| (name.clone(), done.json.clone()));
+            first["packages"] = inner.collect();
+        }
+        return print(&format!("{first:#}"));
     }
-    // The lock may be another one now.
-    let lock = LockFile::beside(&options.sources.paths, false)?;
-    Stamp::new(options, &files, lock.text()).keep(&encoded, &materials, &summary, told.len());
-    Ok(read)
+    let heading = |name: &str| if name.is_empty() { String::new() } else { format!("{name}:\n") };
+    let said = packages.iter().zip(done).filter(|(_, done)| !done.text.is_empty());
+    let texts: Vec<String> = said.map(|((name, _), done)| heading(name) + done.text.trim_end()).collect();
+    if texts.is_empty() { Ok(()) } else { print(&texts.join("\n\n")) }
 }
 
 impl Emission {

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use luthier_bake::Share;
 use luthier_export::{Encoded, Folder, MANIFEST, Missing};
 use luthier_material::Material;
-use luthier_terminal::{Failure, Outcome, files, print};
+use luthier_terminal::{Outcome, files};
 use serde_json::{Value, json};
 
-use super::locked::LockFile;
+use super::one::Done;
 use crate::cli::{BakeOptions, Pipeline};
 use crate::progress::BakeProgress;
 use crate::watched::all_named;
@@ -30,10 +30,11 @@ pub(super) fn read_files(files: &[PathBuf], materials: &[Material]) -> Vec<PathB
     files.iter().cloned().chain(all_named(materials)).collect()
 }
 
-/// Writes the files that a bake depends on, as a rule of Make, where it is asked for.
-pub(super) fn write_depfile(options: &BakeOptions, read: &[PathBuf], lock: &LockFile) -> Outcome {
+/// Writes the files that all packages depend on, as a rule of Make, where it is asked for. Its target is the manifest of the first: Ninja wants
+/// no other.
+pub(super) fn write_depfile(options: &BakeOptions, done: &[Done]) -> Outcome {
     let Some(path) = &options.pipeline.depfile else { return Ok(()) };
-    let needed: Vec<String> = read.iter().map(PathBuf::as_path).chain(lock.file()).map(escaped).collect();
+    let needed: Vec<String> = done.iter().flat_map(|done| &done.needed).map(|path| escaped(path)).collect();
     let rule = format!("{}: {}\n", escaped(&options.out.join(MANIFEST)), needed.join(" \\\n  "));
     std::fs::write(path, rule).map_err(files(path, "write"))
 }
@@ -44,8 +45,8 @@ fn escaped(path: &Path) -> String {
     text.replace('\\', "/").replace('$', "$$").replace('#', "\\#").replace(' ', "\\ ")
 }
 
-/// Says what of a folder a bake would change; the verdict is no where that is anything.
-pub(super) fn check(options: &BakeOptions, encoded: &Encoded, lock: Option<String>) -> Outcome {
+/// What of a folder a bake would change.
+pub(super) fn check(options: &BakeOptions, encoded: &Encoded, lock: Option<String>) -> Outcome<Done> {
     let mut stale = encoded.stale(&options.out)?;
     stale.extend(lock);
     let before = Folder::open(&options.out).ok();
@@ -56,49 +57,40 @@ pub(super) fn check(options: &BakeOptions, encoded: &Encoded, lock: Option<Strin
     let is_gone = |name: &str| encoded.manifest.material_index(name).is_none();
     let old = before.iter().flat_map(|folder| &folder.manifest().materials);
     materials.extend(old.map(|m| m.name.as_str()).filter(|name| is_gone(name)));
-    if options.json {
-        print(&format!("{:#}", json!({ "stale": stale, "materials": materials })))?;
-    } else if stale.is_empty() {
-        if !options.quiet {
-            print(&format!("up to date: {}", options.out.join(MANIFEST).display()))?;
-        }
-    } else {
+    let text = if !stale.is_empty() {
         let lines = stale.iter().map(|path| format!("stale: {path}"));
         let lines = lines.chain(materials.iter().map(|name| format!("changed: {name}")));
-        print(&lines.collect::<Vec<_>>().join("\n"))?;
-    }
-    if stale.is_empty() { Ok(()) } else { Err(Failure::Verdict) }
+        lines.collect::<Vec<_>>().join("\n")
+    } else if options.quiet {
+        String::new()
+    } else {
+        format!("up to date: {}", options.out.join(MANIFEST).display())
+    };
+    let json = json!({ "stale": stale, "materials": materials });
+    Ok(Done { json, text, is_stale: !stale.is_empty(), ..Done::default() })
 }
 
-/// Says which jobs a bake would run.
-pub(super) fn say_missing(options: &BakeOptions, missing: &Missing) -> Outcome {
-    let jobs = missing.jobs.iter().map(|(kind, count)| (kind.name(), *count));
-    if options.json {
-        let jobs: Value = jobs.map(|(kind, count)| (kind.to_owned(), json!(count))).collect();
-        return print(&format!("{:#}", json!({ "jobs": jobs, "is_all": missing.is_all })));
-    }
-    let mut lines: Vec<String> = jobs.map(|(kind, count)| format!("{count:>6}  {kind}")).collect();
+/// Which jobs a bake would run, as JSON and in words.
+pub(super) fn missing(missing: &Missing) -> (Value, String) {
+    let jobs = || missing.jobs.iter().map(|(kind, count)| (kind.name(), *count));
+    let counts: Value = jobs().map(|(kind, count)| (kind.to_owned(), json!(count))).collect();
+    let mut lines: Vec<String> = jobs().map(|(kind, count)| format!("{count:>6}  {kind}")).collect();
     if lines.is_empty() {
         lines.push("no job would run: the store has all results".to_owned());
     }
     if !missing.is_all {
         lines.push("and what depends on these".to_owned());
     }
-    print(&lines.join("\n"))
+    (json!({ "jobs": counts, "is_all": missing.is_all }), lines.join("\n"))
 }
 
-/// Says what a share took.
-pub(super) fn say_share(options: &BakeOptions, share: Share, progress: &BakeProgress) -> Outcome {
+/// What a share took, as JSON and in words.
+pub(super) fn share(options: &BakeOptions, share: Share, progress: &BakeProgress) -> (Value, String) {
     let (run, found) = (progress.run(), progress.had());
-    if options.json {
-        let seconds: Value = progress.seconds().iter().map(|(kind, s)| (kind.name().to_owned(), json!(s))).collect();
-        let share = json!([share.index, share.count]);
-        print(&format!("{:#}", json!({ "shard": share, "jobs": run, "found": found, "seconds": seconds })))
-    } else if options.quiet {
-        Ok(())
-    } else {
-        print(&format!("share {} of {}: {run} jobs run, {found} were in the store", share.index, share.count))
-    }
+    let seconds: Value = progress.seconds().iter().map(|(kind, s)| (kind.name().to_owned(), json!(s))).collect();
+    let text = format!("share {} of {}: {run} jobs run, {found} were in the store", share.index, share.count);
+    let json = json!({ "shard": [share.index, share.count], "jobs": run, "found": found, "seconds": seconds });
+    (json, if options.quiet { String::new() } else { text })
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use luthier_bake::Key;
 use luthier_export::{Encoded, GENERATOR, MANIFEST, input, shared};
 use luthier_material::Material;
-use luthier_terminal::{Outcome, complain, print};
+use luthier_terminal::complain;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -64,11 +64,6 @@ impl Stamp {
         is_same.then_some(kept)
     }
 
-    /// All files that the bake of a stamp read.
-    pub(super) fn files(&self, files: &[PathBuf], kept: &Kept) -> Vec<PathBuf> {
-        files.iter().chain(&kept.named).cloned().collect()
-    }
-
     /// Keeps the stamp of a bake, if the folder still holds it and not one that another program has published since.
     pub(super) fn keep(&self, encoded: &Encoded, materials: &[Material], summary: &Value, warnings: usize) {
         let (Ok(Some(store)), Some(address)) = (disk(), self.address()) else { return };
@@ -93,21 +88,23 @@ impl Stamp {
 }
 
 impl Kept {
-    /// Says that nothing had to be done.
-    pub(super) fn say(&self, options: &BakeOptions) -> Outcome {
-        if options.json {
-            let mut summary = self.summary.clone();
-            summary["up_to_date"] = json!(true);
-            return print(&format!("{summary:#}"));
-        }
-        if options.quiet {
-            return Ok(());
+    /// All files that the bake read.
+    pub(super) fn files(&self, files: &[PathBuf]) -> Vec<PathBuf> {
+        files.iter().chain(&self.named).cloned().collect()
+    }
+
+    /// That nothing had to be done, as JSON and in words. Warnings that were told before are counted on standard error.
+    pub(super) fn say(&self, options: &BakeOptions) -> (Value, String) {
+        let mut summary = self.summary.clone();
+        summary["up_to_date"] = json!(true);
+        if options.json || options.quiet {
+            return (summary, String::new());
         }
         if self.warnings > 0 {
             let (count, s) = (self.warnings, if self.warnings == 1 { "" } else { "s" });
             complain(&format!("{count} warning{s}, as before: `luthier check` shows all of materials"));
         }
-        print(&format!("up to date: {}", options.out.join(MANIFEST).display()))
+        (summary, format!("up to date: {}", options.out.join(MANIFEST).display()))
     }
 }
 

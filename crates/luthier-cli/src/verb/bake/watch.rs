@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::thread::sleep;
 use std::time::Duration;
 
-use luthier_export::find;
+use luthier_export::{find, inner_files};
 use luthier_terminal::{Failure, Outcome, complain};
 
 use super::once;
@@ -21,7 +21,7 @@ type Files = BTreeMap<PathBuf, Option<watched::State>>;
 /// The files that matter.
 #[derive(PartialEq)]
 struct State {
-    /// Materials that are found now.
+    /// Materials that are found now, and what could be others in folders inside.
     found: Files,
     /// Files that the last bake read.
     read: Files,
@@ -67,6 +67,8 @@ fn state(options: &BakeOptions, read: &[PathBuf]) -> State {
         let state = watched::state(&path);
         (path, state)
     };
-    let found = find(&options.sources.paths).unwrap_or_default();
-    State { found: found.into_iter().map(seen).collect(), read: read.iter().cloned().map(seen).collect() }
+    let paths = &options.sources.paths;
+    let inner = inner_files(paths).unwrap_or_default().into_iter().map(|(_, _, file)| file);
+    let found = find(paths).unwrap_or_default().into_iter().chain(inner);
+    State { found: found.map(seen).collect(), read: read.iter().cloned().map(seen).collect() }
 }

@@ -1,7 +1,5 @@
 //! The result of a bake in words, and as JSON.
 
-use std::time::Instant;
-
 use luthier_export::MANIFEST;
 use luthier_manifest::{CandidateForm, LobesError, Manifest};
 use luthier_terminal::bytes;
@@ -10,7 +8,7 @@ use serde_json::{Value, json};
 use crate::cli::BakeOptions;
 use crate::progress::BakeProgress;
 
-pub(super) fn text(options: &BakeOptions, manifest: &Manifest, progress: &BakeProgress, start: Instant) -> String {
+pub(super) fn text(options: &BakeOptions, manifest: &Manifest, progress: &BakeProgress) -> String {
     let mut out = format!("{} materials, {} tables\n\n", manifest.materials.len(), manifest.tables.len());
     out.push_str(&format!(
         "{:<13} {:>6}  {:>11}  {:<11} {:>10}  {:>9}\n",
@@ -56,13 +54,13 @@ pub(super) fn text(options: &BakeOptions, manifest: &Manifest, progress: &BakePr
         ));
     }
     let jobs: Vec<String> = progress.seconds().iter().map(|(kind, s)| format!("{} {s:.2}", kind.name())).collect();
-    out.push_str(&format!("\nseconds: {}; all {:.2}\n", jobs.join(", "), start.elapsed().as_secs_f64()));
+    out.push_str(&format!("\nseconds: {}; all {:.2}\n", jobs.join(", "), progress.seconds_all()));
     out.push_str(&format!("jobs: {} run, {} found in the store\n", progress.run(), progress.had()));
     out.push_str(&format!("wrote {}\n", options.out.join(MANIFEST).display()));
     out
 }
 
-pub(super) fn summary(options: &BakeOptions, manifest: &Manifest, progress: &BakeProgress, start: Instant) -> Value {
+pub(super) fn summary(options: &BakeOptions, manifest: &Manifest, progress: &BakeProgress) -> Value {
     let tables: Vec<Value> = manifest
         .tables
         .iter()
@@ -92,6 +90,6 @@ pub(super) fn summary(options: &BakeOptions, manifest: &Manifest, progress: &Bak
         "jobs": { "run": progress.run(), "found": progress.had() },
         "seconds": seconds,
         "phases": phases,
-        "seconds_all": start.elapsed().as_secs_f64(),
+        "seconds_all": progress.seconds_all(),
     })
 }

@@ -7,6 +7,7 @@ mod many;
 mod maps;
 mod misses;
 mod output;
+mod packages;
 mod plain;
 mod refusals;
 mod scenes;

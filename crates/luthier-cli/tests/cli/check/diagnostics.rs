@@ -1,6 +1,7 @@
 //! `check`.
 
 use std::fs;
+use std::path::PathBuf;
 
 use luthier_workshop::material_texts::{doubtful, matte};
 use luthier_workshop::{file_name, material_files, root};
@@ -70,11 +71,13 @@ fn the_materials_are_materials() {
         ("glass", "Glass"),
     ];
     let run = Workshop::run_in(&root(), &["check"]).exits(0);
-    let files = material_files("materials");
-    assert!(files.len() >= 16, "{} materials", files.len());
+    let folders = ["materials", "materials/papers"];
+    let files: Vec<(&str, PathBuf)> =
+        folders.iter().flat_map(|folder| material_files(folder).into_iter().map(move |file| (*folder, file))).collect();
+    assert!(files.len() >= 28, "{} materials", files.len());
     assert_eq!(run.stdout.lines().count(), files.len());
-    for (line, file) in run.stdout.lines().zip(&files) {
-        let verdict = line.strip_prefix(&format!("materials/{}: ok, class ", file_name(file)));
+    for (line, (folder, file)) in run.stdout.lines().zip(&files) {
+        let verdict = line.strip_prefix(&format!("{folder}/{}: ok, class ", file_name(file)));
         let class =
             verdict.and_then(|v| v.split_once(" (")).map(|(letter, rest)| (letter, rest.split(')').next().unwrap()));
         assert!(class.is_some_and(|class| classes.contains(&class)), "{line}");
@@ -204,7 +207,7 @@ fn the_materials_of_this_repository_are_inside_their_domains() {
         .filter(|pair| pair[0].contains("outside the domain"))
         .map(|pair| pair[1].trim_start_matches([' ', '-', '>']).split(':').next().unwrap_or_default())
         .collect();
-    assert_eq!(outside, ["materials/granier-film.toml"], "{}", run.stderr);
+    assert_eq!(outside, ["materials/papers/granier-film.toml"], "{}", run.stderr);
     assert!(!run.stderr.contains("warning: the model"), "{}", run.stderr);
 }
 

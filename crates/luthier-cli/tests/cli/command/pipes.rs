@@ -27,7 +27,7 @@ fn a_closed_standard_output_is_no_failure() {
         &["ior"],
         &["ior", "au", "--json"],
         &["check", "materials"],
-        &["shader", "materials/red-lacquer.toml"],
+        &["shader", "materials/papers/red-lacquer.toml"],
         &["--help"],
         &["--version"],
     ];

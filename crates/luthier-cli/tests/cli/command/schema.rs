@@ -34,7 +34,7 @@ fn it_is_a_json_schema() {
 #[test]
 fn it_knows_the_keys_of_the_materials() {
     let text = Workshop::new().run(&["schema"]).exits(0).stdout;
-    for path in material_files("materials") {
+    for path in ["materials", "materials/papers"].into_iter().flat_map(material_files) {
         let material = fs::read_to_string(&path).unwrap();
         let keys = material.lines().filter_map(|line| line.split_once(" = ")).map(|(key, _)| key);
         for key in keys.filter(|key| key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')) {

@@ -1,7 +1,7 @@
 //! `eval` is the f64 twin of the emitted shaders: every shipped material on the device.
 
 use std::f64::consts::TAU;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use glam::DVec3;
 use luthier_export::{Bake, MemoryStore, Package, Shader};
@@ -11,6 +11,7 @@ use luthier_manifest::{ColorMode, Form, ShadingModel};
 use luthier_material::{Material, parse};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
+use luthier_workshop::{material_files, root};
 
 use crate::workshop::Workshop;
 
@@ -42,23 +43,27 @@ pub(crate) fn gpu() -> Option<Gpu> {
     }
 }
 
-fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../materials")
+/// The folders of the shipped materials.
+const FOLDERS: [&str; 2] = ["materials", "materials/papers"];
+
+/// Shipped materials, shaded by a model. One of each name: the paper's where it is in a paper alone.
+pub(super) fn shipped(model: &str) -> Vec<Material> {
+    let [everyday, papers] = FOLDERS.map(|folder| shipped_in(folder, model));
+    let is_other = |material: &Material| everyday.iter().all(|other| other.name != material.name);
+    let others: Vec<Material> = papers.into_iter().filter(is_other).collect();
+    [everyday, others].concat()
 }
 
-/// Every shipped material, shaded by a model.
-pub(super) fn shipped(model: &str) -> Vec<Material> {
-    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().path()).collect();
-    paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
-    paths.sort();
+/// The shipped materials of a folder, shaded by a model.
+fn shipped_in(folder: &str, model: &str) -> Vec<Material> {
     let material = |path: &PathBuf| {
         let text = std::fs::read_to_string(path).unwrap();
-        let read = |name: &str| std::fs::read_to_string(folder().join(name));
+        let read = |name: &str| std::fs::read_to_string(root().join(folder).join(name));
         let mut material = parse(&path.display().to_string(), &text, &read).unwrap().material;
         material.bake.model = ShadingModel::from_name(model);
         material
     };
-    paths.iter().map(material).collect()
+    material_files(folder).iter().map(material).collect()
 }
 
 /// The form `full` of some materials, or that of lobes, with another body of `luthier_eval`, if there is one, over the emitted functions.
@@ -134,8 +139,8 @@ fn every_shipped_material_agrees_with_its_full_shaders() {
     let Some(gpu) = gpu() else { return };
     let pairs = pairs();
     let mut compared = 0;
-    for model in MODELS {
-        let materials = shipped(model);
+    for (model, folder) in MODELS.into_iter().flat_map(|model| FOLDERS.map(|folder| (model, folder))) {
+        let materials = shipped_in(folder, model);
         let scene = scene(&gpu, &materials, None);
         let mut worst = (0.0, "");
         for (number, material) in materials.iter().enumerate() {

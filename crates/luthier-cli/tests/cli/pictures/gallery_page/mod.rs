@@ -20,15 +20,15 @@ use crate::workshop::Workshop;
 
 /// Materials of every model that a shipped file asks for, with films, flakes and patina among them.
 const MATERIALS: [&str; 11] = [
-    "car-paint",
-    "red-lacquer",
-    "house-paint",
-    "frosted-acrylic",
+    "papers/car-paint",
+    "papers/red-lacquer",
+    "papers/house-paint",
+    "papers/frosted-acrylic",
     "brushed-aluminium",
-    "chromium-car-paint",
-    "copper-patina",
-    "granier-film",
-    "yamaguchi-brushed",
+    "papers/chromium-car-paint",
+    "papers/copper-patina",
+    "papers/granier-film",
+    "papers/yamaguchi-brushed",
     "polished-gold",
     "soap-film",
 ];
@@ -186,7 +186,7 @@ fn pictures_of_the_page_are_those_of_the_device() {
     workshop.run(&words).exits(0);
     let script = format!(
         "found.pictures = [];\nfor (const name of {}) found.pictures.push([...await luthierPicture(name, {{ size: {SIZE} }})]);",
-        json!(MATERIALS)
+        json!(MATERIALS.map(|name| name.trim_start_matches("papers/")))
     );
     let found = opened(&browser, &workshop, "page.html", [1280, 900], "", &script);
     for (column, (name, pixels)) in (0..).zip(MATERIALS.iter().zip(found["pictures"].as_array().unwrap())) {

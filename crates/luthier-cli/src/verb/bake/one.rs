@@ -1,0 +1,189 @@
+//! The bake of one package in three steps: its files are read, all of it is made, and it is published.
+
+use std::path::PathBuf;
+
+use luthier_bake::{Observer, Silent};
+use luthier_export::{Bake, Encoded, MANIFEST, Package, Source, find, gather, read_all, refuse, refuse_surfaces};
+use luthier_manifest::SurfaceEntry;
+use luthier_material::{Diagnostic, Material};
+use luthier_shader::Form;
+use luthier_terminal::{Failure, Outcome, complain, valid};
+use serde_json::Value;
+
+use super::locked::LockFile;
+use super::stamp::{Kept, Stamp};
+use super::{pipeline, words};
+use crate::cli::BakeOptions;
+use crate::interrupt::whole;
+use crate::materials::{refuse_environment, shaded, shows_environment, valid_surfaces};
+use crate::misses;
+use crate::progress::BakeProgress;
+use crate::store::store;
+use crate::verb::check::diagnostics;
+
+/// A package whose files are read, and all right.
+pub(super) struct Begun<'a> {
+    options: &'a BakeOptions,
+    /// The files that are found, before those that materials name.
+    files: Vec<PathBuf>,
+    lock: LockFile,
+    progress: BakeProgress,
+    found: Found,
+}
+
+/// What was found of a package.
+enum Found {
+    /// It is as it was baked before.
+    Current(Kept),
+    /// It is to be baked.
+    Set(Set),
+}
+
+/// What is to be baked.
+struct Set {
+    materials: Vec<Material>,
+    surfaces: Vec<SurfaceEntry>,
+    /// Doubts that were told.
+    told: Vec<Diagnostic>,
+}
+
+/// A package that is made, if it was to be.
+pub(super) struct Made<'a> {
+    begun: Begun<'a>,
+    encoded: Option<Encoded>,
+    /// What a step short of a package has to say, as JSON and in words.
+    said: Option<(Value, String)>,
+}
+
+/// What became of a package.
+#[derive(Default)]
+pub(super) struct Done {
+    pub(super) json: Value,
+    pub(super) text: String,
+    /// All files that the bake read.
+    pub(super) read: Vec<PathBuf>,
+    /// These, and the lock.
+    pub(super) needed: Vec<PathBuf>,
+    /// Whether `--check` found that a bake would change the folder.
+    pub(super) is_stale: bool,
+}
+
+impl<'a> Begun<'a> {
+    /// Reads the files of a package, and refuses what cannot be baked.
+    pub(super) fn read(options: &'a BakeOptions) -> Outcome<Self> {
+        let progress = BakeProgress::new(options.pipeline.events);
+        let mut found = gather(&find(&options.sources.paths)?)?;
+        let files = [found.materials.as_slice(), &found.surface_files].concat();
+        let lock = LockFile::beside(&options.sources.paths, options.pipeline.relock)?;
+        let kept = Stamp::new(options, &files, lock.text()).current();
+        if let Some(kept) = kept.filter(|_| options.pipeline.takes_stamp()) {
+            return Ok(Self { options, files, lock, progress, found: Found::Current(kept) });
+        }
+        let forms = options.emission.forms();
+        let mut sources = read_all(&found.materials)?;
+        refuse(&mut sources, |material| options.shading.doubts(material, &forms));
+        let told = sources.iter().flat_map(Source::diagnostics).cloned().collect();
+        refuse_surfaces(&mut found.surfaces, &sources);
+        let surfaces = valid_surfaces(&found.surfaces)?;
+        let materials = shaded(valid(sources, options.quiet)?, &options.shading, &forms);
+        let is_shown = materials.iter().any(shows_environment) && forms != [Form::Full];
+        refuse_environment(&options.emission.functions, is_shown)?;
+        if forms == [Form::Full] && !options.limits.options().budget.is_empty() {
+            return Err(Failure::Usage(anyhow::anyhow!(
+                "limits are those of tables, and a bake of --form full has no tables"
+            )));
+        }
+        progress.ends("read");
+        Ok(Self { options, files, lock, progress, found: Found::Set(Set { materials, surfaces, told }) })
+    }
+
+    /// Makes the package, or as much of it as the options ask for.
+    pub(super) fn make(self) -> Outcome<Made<'a>> {
+        let Self { options, lock, progress, .. } = &self;
+        let Found::Set(set) = &self.found else { return Ok(Made { begun: self, encoded: None, said: None }) };
+        progress.resumes();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(options.threads.map_or(0, usize::from))
+            .build()
+            .map_err(|source| Failure::Files(anyhow::Error::new(source).context("cannot start threads")))?;
+        let observer: &(dyn Observer + Sync) =
+            if options.quiet && !options.pipeline.events { &Silent } else { progress };
+        let bake = Bake {
+            options: luthier_bake::Options { locked: lock.decisions(), ..options.limits.options() },
+            targets: options.emission.targets(),
+            forms: options.emission.forms(),
+            functions: options.emission.functions(),
+            surfaces: set.surfaces.clone(),
+            observer,
+            ..Bake::default()
+        };
+        let materials = &set.materials;
+        if options.pipeline.dry_run {
+            let missing = pool.install(|| bake.missing(materials, store()?).map_err(Failure::from))?;
+            return Ok(Made { encoded: None, said: Some(pipeline::missing(&missing)), begun: self });
+        }
+        if let Some(share) = options.pipeline.shard {
+            pool.install(|| bake.share(materials, store()?, share).map_err(Failure::from))?;
+            return Ok(Made { encoded: None, said: Some(pipeline::share(options, share, progress)), begun: self });
+        }
+        let store = store()?;
+        let encoded = pool.install(|| {
+            let mut package = Package::new(materials, &bake, store)?;
+            // A bake that writes a lock is the bake that the lock gives: the next one finds nothing to do.
+            if let Some(next) = lock.next(&package.manifest) {
+                let locked = luthier_bake::Options { locked: &next.decisions, ..bake.options };
+                package = Package::new(materials, &Bake { options: locked, ..bake.clone() }, store)?;
+            }
+            progress.ends("make");
+            Ok::<_, Failure>(package.encode(options.compression())?)
+        })?;
+        progress.ends("encode");
+        Ok(Made { encoded: Some(encoded), said: None, begun: self })
+    }
+}
+
+impl Made<'_> {
+    /// Publishes the package, where one was made and is not only to be compared.
+    pub(super) fn publish(self) -> Outcome<Done> {
+        let Self { begun: Begun { options, files, lock, progress, found }, encoded, said } = self;
+        let set = match found {
+            Found::Current(kept) => {
+                let read = kept.files(&files);
+                progress.event("up-to-date", &options.out.join(MANIFEST));
+                let (json, text) = kept.say(options);
+                return Ok(Done { json, text, needed: needed(&read, &lock), read, is_stale: false });
+            }
+            Found::Set(set) => set,
+        };
+        let read = pipeline::read_files(&files, &set.materials);
+        let Some(encoded) = encoded else {
+            let (json, text) = said.unwrap_or_default();
+            return Ok(Done { json, text, read, ..Done::default() });
+        };
+        let manifest = &encoded.manifest;
+        if options.pipeline.check {
+            return Ok(Done { read, ..pipeline::check(options, &encoded, lock.stale(manifest))? });
+        }
+        progress.resumes();
+        whole(&options.out, || encoded.write(&options.out))?;
+        progress.ends("write");
+        if let Some(why) = lock.write(manifest)? {
+            complain(&why);
+        }
+        progress.event("published", &options.out.join(MANIFEST));
+        let told = [set.told, misses::name(manifest, options.quiet)?].concat();
+        let needed = needed(&read, &lock);
+        let mut json = words::summary(options, manifest, &progress);
+        json["diagnostics"] = diagnostics(&told);
+        let text = if options.quiet { String::new() } else { words::text(options, manifest, &progress) };
+        // The lock may be another one now.
+        let lock = LockFile::beside(&options.sources.paths, false)?;
+        Stamp::new(options, &files, lock.text()).keep(&encoded, &set.materials, &json, told.len());
+        Ok(Done { json, text, read, needed, is_stale: false })
+    }
+}
+
+/// The files that a bake depends on: those that it read, and the lock as it found it.
+fn needed(read: &[PathBuf], lock: &LockFile) -> Vec<PathBuf> {
+    read.iter().cloned().chain(lock.file().map(PathBuf::from)).collect()
+}
