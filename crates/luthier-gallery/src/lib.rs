@@ -21,7 +21,7 @@
 //!
 //! # Simplifications
 //!
-//! Maps of single layers and surfaces of several materials are not shown; textures with more than 512 rows or columns are averaged down.
+//! Maps of single layers ([`hidden_maps`]), but for the albedo of a base, and surfaces of several materials are not shown; textures with more than 512 rows or columns are averaged down.
 
 mod data;
 mod document;
@@ -37,6 +37,7 @@ mod skies;
 pub use error::GalleryError;
 pub use exhibit::{Exhibit, Look, Simulated};
 pub use luthier_environment::Scenery;
+pub use maps::hidden_maps;
 
 use luthier_export::Package;
 

@@ -2,7 +2,7 @@
 
 use luthier_export::Package;
 use luthier_lut::Image;
-use luthier_manifest::MapSlot;
+use luthier_manifest::{Form, MapSlot, MaterialEntry};
 use serde::Serialize;
 
 use crate::pack;
@@ -20,16 +20,13 @@ pub(crate) struct PageMaps {
 }
 
 impl PageMaps {
-    /// The textures of a material that vary its whole surface, or `None` where there are none.
+    /// The textures of a material that the page shows, or `None` where there are none.
     pub(crate) fn of(package: &Package, number: u32) -> Option<Self> {
         let entry = package.manifest.materials.get(number as usize)?;
         let mut maps = Self { slots: Vec::new(), sizes: Vec::new(), texels: String::new() };
         let mut images = Vec::new();
         for map in package.maps.iter().filter(|map| map.material == number) {
-            let Some(slot) = slot(map.slot).filter(|slot| !maps.slots.contains(slot)) else { continue };
-            if map.slot != MapSlot::Albedo && map.layer.is_some_and(|layer| map.slot.layer_feature(layer).is_some()) {
-                continue;
-            }
+            let Some(slot) = place(map.layer, map.slot).filter(|slot| !maps.slots.contains(slot)) else { continue };
             let stated = entry.maps.iter().find(|stated| (stated.slot, stated.layer) == (map.slot, map.layer));
             let factor = stated.and_then(|stated| stated.factor).unwrap_or([1.0; 3]);
             // Flakes are told apart, and are not averaged.
@@ -53,6 +50,17 @@ impl PageMaps {
         maps.texels = pack::images(&images, true);
         Some(maps)
     }
+}
+
+/// The maps of single layers that the model of a material shows in the form `baked`, and a page does not.
+pub fn hidden_maps(entry: &MaterialEntry) -> impl Iterator<Item = (u32, MapSlot)> {
+    entry.shown_layer_maps(Form::Baked).filter(|(layer, slot)| place(Some(*layer), *slot).is_none())
+}
+
+/// Place of a map in `view.glsl`: of one of the whole surface, or of an albedo, of which a material has one.
+fn place(layer: Option<u32>, map: MapSlot) -> Option<usize> {
+    let is_own = map != MapSlot::Albedo && layer.is_some_and(|layer| map.layer_feature(layer).is_some());
+    slot(map).filter(|_| !is_own)
 }
 
 /// Half the columns and rows; a last odd one is left out.

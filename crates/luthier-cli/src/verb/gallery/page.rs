@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use luthier_export::{Bake, MANIFEST, Package, lit, of_domain, read};
-use luthier_gallery::{Exhibit, Gallery, Look, Scenery};
+use luthier_gallery::{Exhibit, Gallery, Look, Scenery, hidden_maps};
 use luthier_manifest::{Form, ShadingModel};
 use luthier_material::{CrossSection, Material, Severity};
 use luthier_scene::CostTable;
@@ -99,11 +99,10 @@ fn left_out(gallery: &Gallery) {
     for exhibit in &gallery.exhibits {
         let Some(look) = exhibit.looks.first() else { continue };
         let entry = &gallery.packages[look.package].manifest.materials[look.material as usize];
-        if let Some((layer, slot)) = entry.shown_layer_maps(Form::Baked).next() {
-            let (name, slot) = (&entry.name, slot.name());
-            complain(&format!(
-                "warning: {name}: the page does not show maps of single layers, such as `{slot}` of layer {layer}"
-            ));
+        let hidden: Vec<String> =
+            hidden_maps(entry).map(|(layer, slot)| format!("`{}` of layer {layer}", slot.name())).collect();
+        if !hidden.is_empty() {
+            complain(&format!("warning: {}: the page does not show the maps {}", entry.name, hidden.join(", ")));
         }
     }
 }

@@ -86,3 +86,30 @@ fn grids_that_cannot_be() {
     grid("a.toml", ["ior=1.1..2", "ior"]).exits(2).says(&["KEY=FROM..TO"]);
     assert!(!workshop.path("no.png").exists());
 }
+
+/// Warnings are of what the page leaves out. Oracle: the textures that are in the page.
+#[test]
+fn a_page_warns_of_the_maps_that_it_does_not_show() {
+    let material = |name: &str, bumps: &str| {
+        format!(
+            "schema = 1\nname = \"{name}\"\n[bake]\nmodel = \"elek\"\nfgd = {{ size = [8, 8] }}\n\
+             [[layer]]\ntype = \"dielectric\"\nior = 1.5\nroughness = 0.4\n{bumps}\
+             [[layer]]\ntype = \"diffuse\"\nalbedo = [0.8, 0.6, 0.4]\nmaps = {{ albedo = \"map.png\" }}\n"
+        )
+    };
+    let workshop = Workshop::with(&[
+        ("plain.toml", &material("plain", "")),
+        ("bumpy.toml", &material("bumpy", "maps = { bumps = \"map.png\", alpha = \"map.png\" }\n")),
+    ]);
+    image::RgbImage::from_pixel(2, 2, image::Rgb([128, 128, 255])).save(workshop.path("map.png")).unwrap();
+    let page = |file: &str| {
+        let run = workshop.run(&["gallery", file, "--html", "page.html", "--compare", "elek"]).exits(0);
+        let text = workshop.text("page.html");
+        let slots = text.split("\"maps\":{\"slots\":").nth(1).and_then(|rest| rest.split(',').next());
+        assert_eq!(slots, Some("[5]"), "the albedo is the texture number 5 of a page");
+        run.stderr
+    };
+    assert_eq!(page("plain.toml"), "");
+    let bumps = "warning: bumpy: the page does not show the maps `bumps` of layer 0, `alpha` of layer 0\n";
+    assert_eq!(page("bumpy.toml"), bumps);
+}
