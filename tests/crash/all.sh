@@ -18,17 +18,20 @@ fi
 
 said=$(mktemp -d)
 trap 'rm -rf "$said"' EXIT
-tests=(kill-at-rename kill-at-random signals concurrent store faults)
+tests=(kill-at-rename hashed-names kill-at-random signals concurrent store faults)
 failed=()
 for test in "${tests[@]}"; do
   words=("${quick[@]}")
   case $test in
     kill-at-random) words=("$kills") ;;
     faults) words=() ;;
+    hashed-names) words=(--hashed-names "${quick[@]}") ;;
   esac
+  script=$test
+  [ "$test" != hashed-names ] || script=kill-at-rename
   printf '\n== %s %s\n' "$test" "${words[*]}"
   started=$SECONDS
-  "tests/crash/$test.sh" "${words[@]}" 2>&1 | tee "$said/$test" || failed+=("$test")
+  "tests/crash/$script.sh" "${words[@]}" 2>&1 | tee "$said/$test" || failed+=("$test")
   printf '%s\t%d\n' "$test" $((SECONDS - started)) >>"$said/seconds"
 done
 

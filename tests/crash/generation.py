@@ -2,6 +2,8 @@
 
     generation.py name FOLDER NAME=REFERENCE...   the name of the reference bake whose generation the folder holds, for two readers:
                                                   one that follows the rule, and one that does not know `.luthier-ready/`
+    generation.py has FOLDER MANIFEST             fails where the folder lacks a file that this manifest names, or has it with other bytes
+    generation.py tidy FOLDER                     fails where the folder holds a file that neither its manifest nor that of the generation before names
     generation.py watch FOLDER UNTIL NAME=REFERENCE...   reads until the file UNTIL exists, under the shared lock; prints how often it read
                                                   each, and fails where a read was mixed; `--no-lock` reads without
 """
@@ -14,6 +16,7 @@ import sys
 import time
 
 READY = ".luthier-ready"
+BEFORE = ".luthier-before.json"
 
 
 class Mixed(Exception):
@@ -59,6 +62,25 @@ def read(folder, knows_ready=True):
     return hashlib.sha256(manifest).hexdigest()
 
 
+def lacks(folder, manifest):
+    """The files of a manifest that was read earlier which the folder does not have at their places."""
+    with open(manifest, "rb") as file:
+        named = list(entries(json.loads(file.read())))
+    found = {entry["path"]: bytes_of(folder, entry["path"], False) for entry in named}
+    is_whole = lambda e: found[e["path"]] is not None and hashlib.sha256(found[e["path"]]).hexdigest() == e["sha256"]
+    return [entry["path"] for entry in named if not is_whole(entry)]
+
+
+def unnamed(folder):
+    """The files of a folder that no manifest there names."""
+    manifests = ["manifest.json", BEFORE]
+    named = set(manifests)
+    for manifest in manifests:
+        named.update(entry["path"] for entry in entries(json.loads(bytes_of(folder, manifest, False) or b"{}")))
+    held = (os.path.relpath(os.path.join(at, file), folder) for at, _, files in os.walk(folder) for file in files)
+    return sorted(set(held) - named)
+
+
 def name(folder, known, knows_ready):
     try:
         found = read(folder, knows_ready)
@@ -97,6 +119,10 @@ def main(words):
         known = references(words[2:])
         print(name(words[1], known, True), name(words[1], known, False))
         return 0
+    if words[0] in ("has", "tidy"):
+        wrong = lacks(words[1], words[2]) if words[0] == "has" else unnamed(words[1])
+        print(*wrong, sep="\n", end="\n" if wrong else "", file=sys.stderr)
+        return 1 if wrong else 0
     return watch(words[1], words[2], references(words[3:]), locks)
 
 

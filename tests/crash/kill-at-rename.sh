@@ -5,8 +5,14 @@
 #   tests/crash/kill-at-rename.sh           all calls (rename, unlink, rmdir, mkdir, opening for writing, write, close, sync), three starts: a bake
 #                                           in place, none, and a bake that was killed half-way; four minutes with a debug build
 #   tests/crash/kill-at-rename.sh --quick   renames and removals, with a bake in place
+#   tests/crash/kill-at-rename.sh --hashed-names [--quick]   bakes whose names contain hashes
 # Wants what prepare.sh wants. The last column of the table counts the kills after which a reader that does not know `.luthier-ready/` finds a
-# mixed folder, until the next bake.
+# mixed folder, until the next bake. Of names with hashes there must be none, and who has read the old manifest finds all of its files.
+hashed=
+if [ "${1-}" = --hashed-names ]; then
+  hashed=1
+  shift
+fi
 . "$(dirname "$0")/prepare.sh"
 need cc gcc
 cc -shared -fPIC -O1 -Wall -Wextra -Werror -o kill.so "$crash/kill.c" -ldl
@@ -56,6 +62,10 @@ sweep() {
     fi
     count[$reader]=$((${count[$reader]} + 1))
     [ "$plain" != mixed ] || count[plain]=$((count[plain] + 1))
+    if [ -n "$hashed" ]; then
+      [ "$plain" != mixed ] || fail "$problem: a reader of the manifest alone sees a mixed generation"
+      [ "$start" != bake ] || has out old || fail "$problem: files of the generation before are missing"
+    fi
     # The next bake may be of either generation.
     next=new
     [ $((k % 2)) = 1 ] || next=old

@@ -36,8 +36,8 @@ cp -r "$crash/materials" "$work/materials"
 cd "$work"
 declare -A source=([old]=materials/worn.toml [new]=materials/gold.toml)
 
-# bake NAME FOLDER: one of the two generations into a folder.
-bake() { "$luthier" bake "${source[$1]}" --no-fit --no-search --out "$2" --quiet; }
+# bake NAME FOLDER: one of the two generations into a folder; under names with hashes where `hashed` is set.
+bake() { "$luthier" bake "${source[$1]}" --no-fit --no-search ${hashed:+--hashed-names} --out "$2" --quiet; }
 
 bake old "$work/ref-old"
 bake new "$work/ref-new"
@@ -45,5 +45,15 @@ bake new "$work/ref-new"
 # What two readers see in a folder: one that knows `.luthier-ready/`, and one that does not.
 seen() { "$python" -S "$crash/generation.py" name "$1" old="$work/ref-old" new="$work/ref-new"; }
 
-# is_whole FOLDER NAME: a folder holds exactly what an undisturbed bake writes, and no folder more.
-is_whole() { diff -r "$1" "$work/ref-$2"; }
+# is_whole FOLDER NAME: a folder holds exactly what an undisturbed bake writes, and no folder more. Under names with hashes the files of the generation before
+# are there, too, and no others.
+is_whole() {
+  if [ -z "${hashed-}" ]; then
+    diff -r "$1" "$work/ref-$2"
+  else
+    [ "$(seen "$1")" = "$2 $2" ] && "$python" -S "$crash/generation.py" tidy "$1"
+  fi
+}
+
+# has FOLDER NAME: a reader that has read the manifest of a generation before finds its files.
+has() { "$python" -S "$crash/generation.py" has "$1" "$work/ref-$2/manifest.json"; }

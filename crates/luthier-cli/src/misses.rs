@@ -6,7 +6,7 @@ use luthier_export::{Source, read_image, read_one};
 use luthier_lut::TableKind;
 use luthier_manifest::Manifest;
 use luthier_material::{Diagnostic, Material, Severity};
-use luthier_terminal::{Outcome, complain};
+use luthier_terminal::{Outcome, print_diagnostics};
 
 /// A warning for every layer that reads a tile which misses its aim, at its line of its file; unless quiet, they are printed.
 pub(crate) fn name(manifest: &Manifest, quiet: bool) -> Outcome<Vec<Diagnostic>> {
@@ -22,7 +22,7 @@ pub(crate) fn name(manifest: &Manifest, quiet: bool) -> Outcome<Vec<Diagnostic>>
                 let Ok(parsed) = &source.parsed else { continue };
                 let warning = diagnostic(&parsed.material, layer, table.kind, error, aim);
                 if !quiet {
-                    complain(&format!("{}\n", warning.render(&source.text)));
+                    print_diagnostics([&warning], &source.text);
                 }
                 warnings.push(warning);
             }

@@ -6,14 +6,23 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use luthier_bake::{JobKind, Observer};
-use luthier_terminal::{Bar, complain};
-use serde_json::{Value, json};
+use luthier_export::MANIFEST;
+use luthier_terminal::{Bar, tell};
+use serde_json::json;
+
+/// Tells that a folder holds a bake.
+pub(crate) fn published(folder: &Path) {
+    event("published", &folder.join(MANIFEST));
+}
+
+/// Tells of a file.
+pub(crate) fn event(name: &str, path: &Path) {
+    tell(&json!({ "event": name, "path": path.to_string_lossy() }));
+}
 
 /// Follows a bake.
 pub(crate) struct BakeProgress {
     bar: Bar,
-    /// Whether events go to standard error as lines of JSON.
-    has_events: bool,
     state: Mutex<State>,
 }
 
@@ -29,9 +38,9 @@ struct State {
 }
 
 impl BakeProgress {
-    pub(crate) fn new(has_events: bool) -> Self {
+    pub(crate) fn new() -> Self {
         let state = State { phase: Some(Instant::now()), ..State::default() };
-        Self { bar: Bar::new("baking"), has_events, state: Mutex::new(state) }
+        Self { bar: Bar::new("baking"), state: Mutex::new(state) }
     }
 
     /// Number of jobs that have run.
@@ -42,17 +51,6 @@ impl BakeProgress {
     /// Number of jobs whose results a store had.
     pub(crate) fn had(&self) -> u64 {
         self.lock().found
-    }
-
-    /// Tells of a file.
-    pub(crate) fn event(&self, name: &str, path: &Path) {
-        self.tell(&json!({ "event": name, "path": path.to_string_lossy() }));
-    }
-
-    fn tell(&self, event: &Value) {
-        if self.has_events {
-            complain(&event.to_string());
-        }
     }
 
     /// Wall-clock seconds per kind of job, in the order in which they ran.
@@ -92,21 +90,19 @@ impl Observer for BakeProgress {
     fn planned(&self, jobs: usize) {
         let mut state = self.lock();
         state.planned = state.finished + jobs as u64;
-        self.tell(&json!({ "event": "planned", "jobs": jobs }));
+        tell(&json!({ "event": "planned", "jobs": jobs }));
     }
 
     fn found(&self, kind: JobKind, jobs: usize) {
         self.lock().found += jobs as u64;
-        self.tell(&json!({ "event": "found", "kind": kind.name(), "jobs": jobs }));
+        tell(&json!({ "event": "found", "kind": kind.name(), "jobs": jobs }));
     }
 
     fn finished(&self, kind: JobKind) {
         let mut state = self.lock();
         state.finished += 1;
-        self.tell(&json!({ "event": "finished", "kind": kind.name() }));
-        if !self.has_events {
-            self.bar.set(state.finished, state.planned);
-        }
+        tell(&json!({ "event": "finished", "kind": kind.name() }));
+        self.bar.set(state.finished, state.planned);
     }
 
     fn batch(&self, kind: JobKind, running: bool) {

@@ -103,6 +103,25 @@ impl Part {
 }
 
 impl Encoded {
+    /// The same files under names that contain the hashes of their contents, before the extension: `tables/fresnel.0123456789abcdef.ktx2`. The manifest keeps its name, so
+    /// that its replacement alone switches from one bake to the next.
+    #[must_use]
+    pub fn with_hashed_names(mut self) -> Self {
+        let entries = self.manifest.files_mut();
+        let renamed: BTreeMap<String, String> = entries
+            .map(|entry| {
+                let name = publish::hashed(&entry.path, &entry.sha256);
+                (std::mem::replace(&mut entry.path, name.clone()), name)
+            })
+            .collect();
+        for (path, _) in &mut self.files {
+            if let Some(name) = renamed.get(path) {
+                path.clone_from(name);
+            }
+        }
+        self
+    }
+
     /// Publishes all files in a folder at once, see [`publish`](crate::publish()).
     ///
     /// # Errors

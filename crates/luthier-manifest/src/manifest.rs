@@ -212,6 +212,14 @@ impl TableEntry {
 }
 
 impl Manifest {
+    /// The entries of all files.
+    pub fn files_mut(&mut self) -> impl Iterator<Item = &mut FileEntry> {
+        let tables = self.tables.iter_mut().flat_map(|t| [&mut t.texture, &mut t.truth, &mut t.picture]);
+        let maps = self.materials.iter_mut().flat_map(|m| &mut m.maps).map(|map| &mut map.file);
+        let shaders = self.shaders.iter_mut().map(|shader| &mut shader.file);
+        tables.chain(maps).chain(shaders).chain([&mut self.material_buffer])
+    }
+
     /// JSON, indented, with a final newline.
     ///
     /// # Errors

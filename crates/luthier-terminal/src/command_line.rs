@@ -5,19 +5,28 @@ use std::process::exit;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{ColorChoice, CommandFactory, FromArgMatches};
 
-use crate::{complain, has_colour, print_json};
+use crate::failure::{print_json, tell_failure, usage};
+use crate::{complain, has_colour, has_events};
 
 /// The command line of this process; exits where it asks for help or is wrong. `of_features` are verbs that a cargo feature brings, each
 /// with its feature: where such a verb is left out, the failure names the feature.
 pub fn parse<C: CommandFactory + FromArgMatches>(of_features: &[(&str, &str)]) -> C {
+    if has_events() {
+        std::panic::set_hook(Box::new(|panic| complain(&format!("error: {panic}"))));
+    }
     // The parser's own rule colours a dumb terminal of a build server.
     let colour = if has_colour() { ColorChoice::Auto } else { ColorChoice::Never };
     let matches = C::command().color(colour).try_get_matches();
     let line = matches.and_then(|matches| C::from_arg_matches(&matches));
     line.unwrap_or_else(|error| match left_out(&error, of_features) {
         Some((verb, feature)) => {
-            print_json(2, "usage", &format!("this build leaves `{verb}` out"), &[]);
-            complain(&format!("error: this build leaves `{verb}` out\nhint: build with `--features {feature}`"));
+            let failed = usage(&format!("this build leaves `{verb}` out"));
+            print_json(&failed);
+            if has_events() {
+                tell_failure(failed);
+            } else {
+                complain(&format!("error: this build leaves `{verb}` out\nhint: build with `--features {feature}`"));
+            }
             exit(2)
         }
         None => {
@@ -25,7 +34,12 @@ pub fn parse<C: CommandFactory + FromArgMatches>(of_features: &[(&str, &str)]) -
             if error.use_stderr() {
                 let text = error.render().to_string();
                 let sentence = text.lines().next().unwrap_or_default();
-                print_json(2, "usage", sentence.trim_start_matches("error: "), &[]);
+                let failed = usage(sentence.trim_start_matches("error: "));
+                print_json(&failed);
+                if has_events() {
+                    tell_failure(failed);
+                    exit(2);
+                }
             }
             error.exit()
         }

@@ -4,7 +4,7 @@
 //! # In detail
 //!
 //! - [`Failure`]: why a command ends with another code than 0, and the codes. A verb returns an [`Outcome`];
-//! - [`print()`], [`deliver`], [`complain`]: the standard streams, whose readers may be gone;
+//! - [`print()`], [`deliver`], [`complain`], [`tell`]: the standard streams, whose readers may be gone. With `--events` standard error has lines of JSON only;
 //! - [`Bar`]: progress of work that takes longer than a second;
 //! - [`valid`]: the materials of files, with their diagnostics printed;
 //! - [`Sources`], [`named`]: options that many verbs have; [`parse`] reads a command line;
@@ -22,8 +22,8 @@ mod progress;
 pub use command_line::parse;
 #[cfg(feature = "gpu")]
 pub use device::{Shaders, adapter_json, adapter_label, open};
-pub use failure::{Broken, Failure, Outcome, diagnostic, files, print_json};
+pub use failure::{Broken, Failure, Outcome, diagnostic, files};
 pub use materials::{print_diagnostics, valid};
 pub use options::{Sources, named};
-pub use output::{bytes, complain, deliver, has_colour, has_cursor, print, print_bytes};
+pub use output::{bytes, complain, deliver, has_colour, has_cursor, has_events, print, print_bytes, tell};
 pub use progress::Bar;

@@ -3,12 +3,18 @@
 use luthier_export::Source;
 use luthier_material::{Diagnostic, Material};
 
-use crate::{Broken, Failure, Outcome, complain, has_colour};
+use crate::{Broken, Failure, Outcome, complain, diagnostic as as_json, has_colour, has_events, tell};
 
-/// Prints diagnostics of a text to standard error.
+/// Prints diagnostics of a text to standard error; as events where the command line asks for them.
 pub fn print_diagnostics<'d>(diagnostics: impl IntoIterator<Item = &'d Diagnostic>, text: &str) {
     let colour = has_colour();
     for diagnostic in diagnostics {
+        if has_events() {
+            let mut event = as_json(diagnostic);
+            event["event"] = "diagnostic".into();
+            tell(&event);
+            continue;
+        }
         let rendered = if colour { diagnostic.render_coloured(text) } else { diagnostic.render(text) };
         complain(&format!("{rendered}\n"));
     }

@@ -2,6 +2,9 @@
 
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
+use std::sync::OnceLock;
+
+use serde_json::{Value, json};
 
 use crate::{Failure, Outcome, files};
 
@@ -44,14 +47,46 @@ pub fn print_bytes(bytes: &[u8], is_text: bool) -> Outcome {
     Ok(())
 }
 
-/// Writes a line to standard error. Where nobody listens there is nobody to tell.
-pub fn complain(line: &str) {
-    let _ = writeln!(io::stderr().lock(), "{line}");
+/// Writes a text to standard error that begins with its severity, `error: ` or `warning: `, or is a note. Where the command line asks for events it is one, of that
+/// name. Where nobody listens there is nobody to tell.
+pub fn complain(text: &str) {
+    if !has_events() {
+        say(text);
+        return;
+    }
+    let (severity, message) = match text.split_once(": ") {
+        Some((severity @ ("error" | "warning" | "note"), message)) => (severity, message),
+        _ => ("note", text),
+    };
+    tell(&json!({ "event": severity, "message": message.trim_end() }));
 }
 
-/// Whether standard error is a terminal that can move its cursor, for progress bars.
+/// Writes an event to standard error as a line of JSON, where the command line asks for events.
+pub fn tell(event: &Value) {
+    if has_events() {
+        say(&event.to_string());
+    }
+}
+
+fn say(line: &str) {
+    // In one piece: another process may write to the same file.
+    let _ = io::stderr().lock().write_all(format!("{line}\n").as_bytes());
+}
+
+/// Whether the command line asks for events: then standard error has lines of JSON and nothing else, even where the command line is wrong.
+pub fn has_events() -> bool {
+    static IS_ASKED: OnceLock<bool> = OnceLock::new();
+    *IS_ASKED.get_or_init(|| asks_for("--events"))
+}
+
+/// Whether a word is among the options of the command line, however wrong the others are.
+pub(crate) fn asks_for(option: &str) -> bool {
+    std::env::args_os().skip(1).take_while(|word| word != "--").any(|word| word == option)
+}
+
+/// Whether standard error is a terminal that can move its cursor, for progress bars, and has no events.
 pub fn has_cursor() -> bool {
-    io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
+    !has_events() && io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
 }
 
 /// Whether standard error takes colours: where `NO_COLOR` has a value, it does not (no-color.org).

@@ -183,6 +183,9 @@ pub(crate) struct BakeOptions {
     /// Leave the texels of the textures uncompressed, for programs that decode no zstd
     #[arg(long)]
     pub(crate) no_zstd: bool,
+    /// Give every file but the manifest a name that contains its hash: replacing the manifest alone then switches from one bake to the next (docs/pipelines.md)
+    #[arg(long)]
+    pub(crate) hashed_names: bool,
     /// Threads to use; by default all. The bytes do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,

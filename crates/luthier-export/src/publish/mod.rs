@@ -7,6 +7,10 @@
 //!
 //! A file whose bytes are in place already is not staged: it keeps its time of modification, and build systems see that it did not change.
 //!
+//! Where the names in a manifest contain the hashes of their files ([`crate::Encoded::with_hashed_names`]), no file is replaced but the manifest: its renaming alone is the
+//! publication for readers that know nothing of these folders. The files of the generation before stay for those that have read its manifest, which is kept
+//! as `.luthier-before.json`; the next publication removes what neither it nor the manifest in place names.
+//!
 //! Nothing is flushed to the disk (`fsync`) before it is published. That cost 150 ms to 200 ms for the 30 files of a bake of `materials` on
 //! ext4, against 3 ms to 8 ms without. After a loss of power files may be empty: readers know them by their hashes, and the next bake
 //! writes them again, because it compares bytes and not times.
@@ -14,6 +18,8 @@
 mod names;
 mod settle;
 mod stage;
+
+pub(crate) use names::hashed;
 
 use std::fs::{File, OpenOptions};
 use std::io;
@@ -25,6 +31,8 @@ use crate::{MANIFEST, PackageError, input};
 const NEW: &str = ".luthier-new";
 /// Folder of complete files that are being moved to their places.
 pub(crate) const READY: &str = ".luthier-ready";
+/// The manifest of the generation before, where names contain hashes: its files stay until the next publication.
+const BEFORE: &str = ".luthier-before.json";
 /// File that a program locks while it publishes, on systems where it cannot lock the folder.
 const LOCK: &str = ".luthier.lock";
 
@@ -113,9 +121,16 @@ fn lock(folder: &Path, made: &mut Vec<PathBuf>) -> Result<File, PackageError> {
 /// Stages the files that are not in place yet, and publishes them.
 fn replace(folder: &Path, files: &[(&str, &[u8])]) -> Result<(), PackageError> {
     let is_new = |(path, bytes): &&(&str, &[u8])| !stage::holds(&folder.join(path), bytes);
-    let files: Vec<_> = files.iter().filter(is_new).copied().collect();
+    let mut files: Vec<_> = files.iter().filter(is_new).copied().collect();
     if files.is_empty() {
         return Ok(());
+    }
+    let next = files.iter().find(|(path, _)| *path == MANIFEST).map(|(_, next)| String::from_utf8_lossy(next));
+    let before = next.filter(|next| names::are_hashed(next)).and_then(|_| std::fs::read(folder.join(MANIFEST)).ok());
+    if let Some(before) =
+        before.as_deref().filter(|before| !names::named_by(&String::from_utf8_lossy(before)).is_empty())
+    {
+        files.push((BEFORE, before));
     }
     let (new, ready) = (folder.join(NEW), folder.join(READY));
     let staged = stage::stage(folder, &files);

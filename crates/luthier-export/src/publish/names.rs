@@ -6,8 +6,33 @@ use std::path::{Component, PathBuf};
 use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
 
+/// Digits of a hash in a name: 64 bits, of which no two of a folder's few files are the same.
+const DIGITS: usize = 16;
+
+/// A path whose file name contains the hash of the file, before its extension.
+pub(crate) fn hashed(path: &str, sha256: &str) -> String {
+    let digits = sha256.get(..DIGITS).unwrap_or(sha256);
+    match path.rsplit_once('.') {
+        Some((stem, extension)) => format!("{stem}.{digits}.{extension}"),
+        None => format!("{path}.{digits}"),
+    }
+}
+
+/// Whether all names in a manifest contain the hashes of their files: then no file of one generation takes the place of another's.
+pub(super) fn are_hashed(manifest: &str) -> bool {
+    let named = named_with_hashes(manifest);
+    let is_hashed = |(path, hash): &(String, String)| hash.get(..DIGITS).is_some_and(|digits| path.contains(digits));
+    !named.is_empty() && named.iter().all(is_hashed)
+}
+
 /// The files that a manifest of luthier, of any schema, names with a hash, as far as they lie inside its folder.
 pub(super) fn named_by(manifest: &str) -> Vec<PathBuf> {
+    let is_inside = |path: &PathBuf| path.components().all(|part| matches!(part, Component::Normal(_)));
+    named_with_hashes(manifest).into_iter().map(|(path, _)| PathBuf::from(path)).filter(is_inside).collect()
+}
+
+/// Paths and hashes in a manifest of luthier.
+fn named_with_hashes(manifest: &str) -> Vec<(String, String)> {
     #[derive(Deserialize)]
     struct Head {
         generator: String,
@@ -21,12 +46,11 @@ pub(super) fn named_by(manifest: &str) -> Vec<PathBuf> {
     if Names(&mut names).deserialize(&mut pieces).is_err() {
         return Vec::new();
     }
-    let is_inside = |path: &PathBuf| path.components().all(|part| matches!(part, Component::Normal(_)));
-    names.into_iter().map(PathBuf::from).filter(is_inside).collect()
+    names
 }
 
-/// Collects the paths of all objects that have a path and a hash; gives the value where it is a text.
-struct Names<'n>(&'n mut Vec<String>);
+/// Collects the paths and hashes of all objects that have both; gives the value where it is a text.
+struct Names<'n>(&'n mut Vec<(String, String)>);
 
 impl<'de> DeserializeSeed<'de> for Names<'_> {
     type Value = Option<String>;
@@ -53,7 +77,7 @@ impl<'de> Visitor<'de> for Names<'_> {
                 _ => {}
             }
         }
-        self.0.extend(path.filter(|_| hash.is_some()));
+        self.0.extend(path.zip(hash));
         Ok(None)
     }
 
@@ -90,6 +114,24 @@ impl<'de> Visitor<'de> for Names<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Oracle: the names by hand.
+    #[test]
+    fn names_contain_hashes() {
+        let hash = "0123456789abcdef0123";
+        let name = hashed("tables/a.b.ktx2", hash);
+        assert_eq!(
+            (name.as_str(), hashed("a", hash).as_str()),
+            ("tables/a.b.0123456789abcdef.ktx2", "a.0123456789abcdef")
+        );
+        let manifest = |path: &str, hash: &str| {
+            format!(
+                r#"{{"generator": "luthier 0", "a": {{"path": "{path}", "sha256": "{hash}"}}, "b": {{"path": "{name}", "sha256": "{hash}"}}}}"#
+            )
+        };
+        assert!(are_hashed(&manifest("x/0123456789abcdef", hash)));
+        assert!(!are_hashed(&manifest("x", hash)) && !are_hashed(&manifest(&name, "9876543210")) && !are_hashed(""));
+    }
 
     #[test]
     fn only_files_inside_the_folder_are_named() {

@@ -1,11 +1,12 @@
-//! Files at their places: what is ready is moved there, and what it replaces goes.
+//! Files at their places: what is ready is moved there, and what it replaces goes. Of names with hashes nothing is replaced, and what the generation before the last
+//! named goes.
 
 use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::names::named_by;
-use super::{LISTS, NEW, READY, REPORT_FILES, at, list};
+use super::names::{are_hashed, named_by};
+use super::{BEFORE, LISTS, NEW, READY, REPORT_FILES, at, list};
 use crate::{MANIFEST, PackageError};
 
 /// Moves what is ready to its places, the manifest last, and removes what an interrupted program left.
@@ -26,9 +27,14 @@ pub(super) fn settle(folder: &Path) -> Result<(), PackageError> {
         place.parent().map_or(Ok(()), |parent| at("make the folder", parent, std::fs::create_dir_all(parent)))?;
         at("write", &place, std::fs::rename(ready.join(path), &place))
     };
+    let (before, others): (Vec<_>, Vec<_>) = others.into_iter().partition(|path| path == Path::new(BEFORE));
     others.iter().try_for_each(|path| place(path))?;
     for list in lists {
         remove_stale(folder, &list, &std::fs::read_to_string(ready.join(&list)).unwrap_or_default())?;
+        if list == Path::new(MANIFEST) {
+            // What it named is gone: from here on it is the manifest that is about to be replaced.
+            before.iter().try_for_each(|path| place(path))?;
+        }
         place(&list)?;
     }
     at("remove", &ready, std::fs::remove_dir_all(&ready))
@@ -61,7 +67,7 @@ fn list_folders(folder: &Path, folders: &mut Vec<PathBuf>) -> io::Result<()> {
     Ok(())
 }
 
-/// Removes what the list in place names and the next one does not, and the folders that this empties.
+/// Removes what is [`stale`], and the folders that this empties.
 fn remove_stale(folder: &Path, list: &Path, next: &str) -> Result<(), PackageError> {
     for path in stale(folder, list, next) {
         if path.is_file() {
@@ -73,18 +79,29 @@ fn remove_stale(folder: &Path, list: &Path, next: &str) -> Result<(), PackageErr
     Ok(())
 }
 
-/// The files that the list in place names and the next one does not. Some of them may be gone.
+/// The files that the list in place names and the next one does not; where names contain hashes, those of the list before the one in place that neither of them
+/// names. Some of them may be gone.
 pub(super) fn stale(folder: &Path, list: &Path, next: &str) -> Vec<PathBuf> {
     // Unreadable is as good as none: it names nothing.
-    let old = std::fs::read_to_string(folder.join(list)).unwrap_or_default();
-    let mut stale = if old == next { Vec::new() } else { named_by(&old) };
-    if stale.is_empty() {
-        return stale;
+    let read = |list: &Path| std::fs::read_to_string(folder.join(list)).unwrap_or_default();
+    let old = read(list);
+    let replaced = if old == next { Vec::new() } else { named_by(&old) };
+    if replaced.is_empty() {
+        return Vec::new();
     }
-    let current: BTreeSet<PathBuf> = named_by(next).into_iter().chain([list.to_owned()]).collect();
-    stale.retain(|path| !current.contains(path));
+    let mut current: BTreeSet<PathBuf> = named_by(next).into_iter().chain([list.to_owned()]).collect();
+    let mut stale = Vec::new();
     if list == Path::new(MANIFEST) {
+        stale.extend(named_by(&read(Path::new(BEFORE))));
+        if are_hashed(next) {
+            current.extend(replaced);
+        } else {
+            stale.extend(replaced.into_iter().chain([PathBuf::from(BEFORE)]));
+        }
         stale.extend(REPORT_FILES.map(PathBuf::from));
+    } else {
+        stale.extend(replaced);
     }
+    stale.retain(|path| !current.contains(path));
     stale.iter().map(|path| folder.join(path)).collect()
 }

@@ -278,3 +278,65 @@ fn a_folder_that_vanishes_while_it_is_waited_for_is_made_again() {
     });
     assert_eq!(text(&out), "first");
 }
+
+/// A generation under a name with a hash.
+fn hashed_generation(text: &str) -> Vec<(String, Vec<u8>)> {
+    generation(&hashed("shaders/a.wgsl", &sha256(text.as_bytes())), text)
+}
+
+/// The text of the one shader of a manifest, by a reader who knows nothing but paths; none where it is not whole.
+fn read_naively(folder: &Path, manifest: &[u8]) -> Option<String> {
+    let manifest: serde_json::Value = serde_json::from_slice(manifest).unwrap();
+    let entry = &manifest["shaders"][0]["file"];
+    let bytes = std::fs::read(folder.join(entry["path"].as_str().unwrap())).ok()?;
+    (sha256(&bytes) == entry["sha256"].as_str().unwrap()).then(|| String::from_utf8(bytes).unwrap())
+}
+
+/// At every move of a publication the manifest in place is that of one whole generation, and the files of the one before are there.
+#[test]
+fn names_with_hashes_switch_by_their_manifest_alone() {
+    let [first, second, third] = ["first", "second", "third"].map(hashed_generation);
+    let manifest = |folder: &Path| std::fs::read(folder.join(MANIFEST)).unwrap();
+    let ready = [second[0].clone(), (BEFORE.to_owned(), first[1].1.clone()), second[1].clone()];
+    for moved in 0..=ready.len() {
+        let folder = folder();
+        let folder = folder.path();
+        put(folder, &first).unwrap();
+        assert_eq!(names(folder), ["manifest.json", &first[0].0]);
+        std::fs::create_dir_all(folder.join(READY).join("shaders")).unwrap();
+        for (i, (path, bytes)) in ready.iter().enumerate() {
+            std::fs::write(if i < moved { folder.join(path) } else { folder.join(READY).join(path) }, bytes).unwrap();
+        }
+        let expected = if moved == ready.len() { "second" } else { "first" };
+        assert_eq!(read_naively(folder, &manifest(folder)).as_deref(), Some(expected), "{moved} files moved");
+        assert_eq!(read_naively(folder, &first[1].1).as_deref(), Some("first"), "{moved} files moved");
+        assert_eq!(text(folder), "second");
+        // The next one completes it. What neither it nor the one before names goes.
+        put(folder, &third).unwrap();
+        assert_eq!(read_naively(folder, &manifest(folder)).as_deref(), Some("third"));
+        assert_eq!(read_naively(folder, &second[1].1).as_deref(), Some("second"), "{moved} files moved");
+        assert_eq!(names(folder).len(), 4, "{moved} files moved: {:?}", names(folder));
+        assert!(!folder.join(&first[0].0).exists(), "{moved} files moved");
+    }
+}
+
+/// There and back, and over to plain names.
+#[test]
+fn generations_with_hashes_come_back_and_go() {
+    let folder = folder();
+    let folder = folder.path();
+    let [first, second] = ["first", "second"].map(hashed_generation);
+    for generation in [&first, &second, &first, &first] {
+        put(folder, generation).unwrap();
+        assert!(read_naively(folder, &generation[1].1).is_some());
+    }
+    assert_eq!(names(folder).len(), 4, "{:?}", names(folder));
+    assert_eq!(std::fs::read(folder.join(BEFORE)).unwrap(), second[1].1);
+    publish(folder, &[(REPORT_FILES[1], b"judged")]).unwrap();
+    put(folder, &generation("a.wgsl", "plain")).unwrap();
+    assert_eq!(names(folder), ["a.wgsl", "manifest.json"]);
+    // A plain generation is one before as well.
+    put(folder, &first).unwrap();
+    assert_eq!(names(folder).len(), 4, "{:?}", names(folder));
+    assert_eq!(std::fs::read(folder.join("a.wgsl")).unwrap(), b"plain");
+}

@@ -10,7 +10,7 @@ mod words;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use luthier_export::{Bake, Compression, inner_packages};
+use luthier_export::{Bake, Compression, Encoded, Package, inner_packages};
 use luthier_manifest::Functions;
 use luthier_shader::{Form, Target};
 use luthier_terminal::{Failure, Outcome, Sources, print};
@@ -123,7 +123,9 @@ impl Emission {
 }
 
 impl BakeOptions {
-    pub(super) fn compression(&self) -> Compression {
-        if self.no_zstd { Compression::None } else { Compression::Zstd }
+    /// The files of a package, as these options ask for them.
+    pub(super) fn encoded(&self, package: &Package) -> Outcome<Encoded> {
+        let encoded = package.encode(if self.no_zstd { Compression::None } else { Compression::Zstd })?;
+        Ok(if self.hashed_names { encoded.with_hashed_names() } else { encoded })
     }
 }

@@ -17,7 +17,7 @@ use crate::cli::BakeOptions;
 use crate::interrupt::whole;
 use crate::materials::{refuse_environment, shaded, shows_environment, valid_surfaces};
 use crate::misses;
-use crate::progress::BakeProgress;
+use crate::progress::{BakeProgress, event, published};
 use crate::store::store;
 use crate::verb::check::diagnostics;
 
@@ -71,7 +71,7 @@ pub(super) struct Done {
 impl<'a> Begun<'a> {
     /// Reads the files of a package, and refuses what cannot be baked.
     pub(super) fn read(options: &'a BakeOptions) -> Outcome<Self> {
-        let progress = BakeProgress::new(options.pipeline.events);
+        let progress = BakeProgress::new();
         let mut found = gather(&find(&options.sources.paths)?)?;
         let files = [found.materials.as_slice(), &found.surface_files].concat();
         let lock = LockFile::beside(&options.sources.paths, options.pipeline.relock)?;
@@ -135,7 +135,7 @@ impl<'a> Begun<'a> {
                 package = Package::new(materials, &Bake { options: locked, ..bake.clone() }, store)?;
             }
             progress.ends("make");
-            Ok::<_, Failure>(package.encode(options.compression())?)
+            options.encoded(&package)
         })?;
         progress.ends("encode");
         Ok(Made { encoded: Some(encoded), said: None, begun: self })
@@ -149,7 +149,7 @@ impl Made<'_> {
         let set = match found {
             Found::Current(kept) => {
                 let read = kept.files(&files);
-                progress.event("up-to-date", &options.out.join(MANIFEST));
+                event("up-to-date", &options.out.join(MANIFEST));
                 let (json, text) = kept.say(options);
                 return Ok(Done { json, text, needed: needed(&read, &lock), read, is_stale: false });
             }
@@ -170,7 +170,7 @@ impl Made<'_> {
         if let Some(why) = lock.write(manifest)? {
             complain(&why);
         }
-        progress.event("published", &options.out.join(MANIFEST));
+        published(&options.out);
         let told = [set.told, misses::name(manifest, options.quiet)?].concat();
         let needed = needed(&read, &lock);
         let mut json = words::summary(options, manifest, &progress);

@@ -42,9 +42,10 @@ pub(super) struct Kept {
 
 impl Stamp {
     pub(super) fn new(options: &BakeOptions, files: &[PathBuf], lock: &str) -> Self {
-        let BakeOptions { shading, limits, emission, no_zstd, .. } = options;
+        let BakeOptions { shading, limits, emission, no_zstd, hashed_names, .. } = options;
         let program = std::env::current_exe().ok().and_then(|path| state(&path));
-        let decided = format!("{GENERATOR} {program:?} {shading:?} {limits:?} {emission:?} {no_zstd} {lock}");
+        let decided =
+            format!("{GENERATOR} {program:?} {shading:?} {limits:?} {emission:?} {no_zstd} {hashed_names} {lock}");
         Self { out: options.out.clone(), inputs: Key::of(format!("{decided} {}", hash(files)).as_bytes()).to_string() }
     }
 

@@ -35,7 +35,7 @@ pub(super) fn run(options: &BakeOptions) -> Outcome {
         match once(options) {
             Ok(files) => read = files,
             Err(failure @ (Failure::Usage(_) | Failure::BrokenPipe)) => return Err(failure),
-            Err(failure) => complain(&format!("error: {}", failure.sentence())),
+            Err(failure) => failure.tell(),
         }
         crate::store::close();
         if !options.quiet {

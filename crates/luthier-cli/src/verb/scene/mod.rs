@@ -17,6 +17,7 @@ use crate::cli::BakeOptions;
 use crate::interrupt::whole;
 use crate::materials::refuse_environment;
 use crate::misses;
+use crate::progress::published;
 use crate::store::store;
 use crate::verb::check::diagnostics;
 
@@ -81,8 +82,9 @@ pub(super) fn run(options: &BakeOptions, scenes: &[PathBuf]) -> Outcome {
     let made = pool.install(|| director.step(None, options.allow_miss)).map_err(failure)?;
     let is_shown = made.package.manifest.materials.iter().any(|m| m.model == ShadingModel::Lobes);
     refuse_environment(&options.emission.functions, is_shown)?;
-    let encoded = made.package.encode(options.compression())?;
+    let encoded = options.encoded(&made.package)?;
     whole(&options.out, || encoded.write(&options.out))?;
+    published(&options.out);
     let missed = misses::name(&made.package.manifest, options.quiet)?;
     if options.json {
         let manifest = options.out.join(MANIFEST);

@@ -77,3 +77,69 @@ fn texels_are_those_that_the_manifest_describes() {
     change(&workshop, |m| m["tables"][0]["layout"]["x"]["size"] = json!(3));
     refused(&workshop, &["table is", "the manifest says"]);
 }
+
+/// All files that a manifest names, with their hashes.
+fn named(manifest: &Value) -> Vec<(String, String)> {
+    match manifest {
+        Value::Object(entries) => {
+            let own = entries.get("path").and_then(Value::as_str).zip(entries.get("sha256").and_then(Value::as_str));
+            let own = own.map(|(path, hash)| (path.to_owned(), hash.to_owned()));
+            own.into_iter().chain(entries.values().flat_map(named)).collect()
+        }
+        Value::Array(items) => items.iter().flat_map(named).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// Oracle: a bake under plain names, whose files have the same bytes.
+#[test]
+fn names_contain_hashes_where_that_is_asked_for() {
+    let workshop = Workshop::with(&[("gold.toml", &gold("gold"))]);
+    let bake = ["bake", "gold.toml", "--hashed-names", "--cache", "store"];
+    workshop.run(&["bake", "gold.toml", "-q", "--out", "plain"]).exits(0);
+    workshop.run(&bake).exits(0);
+    let whole = |folder: &str| {
+        let manifest = workshop.json(&format!("{folder}/manifest.json"));
+        let found = named(&manifest);
+        for (path, hash) in &found {
+            assert_eq!(&sha256(&std::fs::read(workshop.path(folder).join(path)).unwrap()), hash, "{path}");
+        }
+        found
+    };
+    let (plain, first) = (whole("plain"), whole("out"));
+    assert_eq!(plain.len(), first.len());
+    for ((plain, hash), (path, own)) in plain.iter().zip(&first) {
+        let (stem, extension) = plain.rsplit_once('.').unwrap();
+        assert_eq!((path, own), (&format!("{stem}.{}.{extension}", &hash[..16]), hash));
+    }
+    // Whoever reads the manifest finds them.
+    workshop.run(&["report", "--no-device", "--pairs", "1"]).exits(0);
+    workshop.run(&["gallery", "out", "--html", "page.html"]).exits(0);
+    if cfg!(feature = "gpu") && workshop.run(&["preview", "gold", "-o", "ball.png", "--size", "8"]).code != Some(0) {
+        assert!(workshop.run(&["report", "--pairs", "1"]).lacks_adapter());
+    }
+    workshop.run(&[&bake[..], &["--check"]].concat()).exits(0);
+    let before = workshop.text("out/manifest.json");
+    assert_eq!(workshop.run(&bake).exits(0).stdout, "up to date: out/manifest.json\n");
+    // Plain names are another bake.
+    workshop.run(&["bake", "gold.toml", "--cache", "store", "--check"]).exits(1);
+    // The generation before stays, and the one before that goes.
+    let change = |from: &str, to: &str| workshop.edit("gold.toml", |text| text.replace(from, to));
+    change("roughness = 0.5", "roughness = 0.4");
+    workshop.run(&bake).exits(0);
+    let second = whole("out");
+    assert!(
+        named(&serde_json::from_str(&before).unwrap()).iter().all(|(path, _)| workshop.path("out").join(path).exists())
+    );
+    assert_ne!(first, second);
+    change("\"au\"", "\"cu\"");
+    workshop.run(&bake).exits(0);
+    let third = whole("out");
+    let kept = |path: &String| second.iter().chain(&third).any(|(kept, _)| kept == path);
+    for (path, _) in &first {
+        assert_eq!(workshop.path("out").join(path).exists(), kept(path), "{path}");
+    }
+    for path in workshop.files("out") {
+        assert!(kept(&path) || ["manifest.json", ".luthier-before.json"].contains(&path.as_str()), "{path}");
+    }
+}

@@ -1,5 +1,6 @@
 //! Build pipelines: the store of results, stamps, locks, shares, dependencies, watching.
 
+mod events;
 mod lock;
 mod readers;
 mod shares;
